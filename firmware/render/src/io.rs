@@ -1,0 +1,39 @@
+//! What goes into a tick and what comes out.
+
+/// One report of the touch source.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Touch {
+    /// A finger is on the screen.
+    Down {
+        /// From the left edge of the screen, m.
+        x_m: f32,
+        /// From the top edge of the screen, m.
+        y_m: f32,
+        /// Ticks since the finger was there, as far as the source knows.
+        age_ticks: u32,
+    },
+    /// No finger is on the screen.
+    Up,
+}
+
+/// What the board sees at a tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sense {
+    /// A touch report that came since the tick before.
+    pub touch: Option<Touch>,
+    /// The amplifier says that something is wrong with it.
+    pub amplifier_fault: bool,
+    /// Voltage on the electrode as the amplifier's monitor has it, in volts.
+    pub monitor_v: f32,
+    /// The arm switch is held; always so on a simulator.
+    pub arm_switch: bool,
+}
+
+/// What the board puts out at a tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Drive {
+    /// Bipolar DAC code: 32,767 is the board's full-scale voltage.
+    pub dac_code: i16,
+    /// The amplifier may drive the electrode.
+    pub amplifier_enable: bool,
+}

@@ -1,0 +1,103 @@
+//! The hello: frozen for ever, hand-laid little-endian, so that a newer host can always tell an older board what to do.
+
+use crate::fault::{Fault, State};
+
+/// First four bytes of a hello.
+pub const MAGIC: [u8; 4] = *b"FRXL";
+/// Protocol of this crate, major: raised when an older peer can no longer be talked to.
+pub const PROTOCOL_MAJOR: u8 = 1;
+/// Protocol of this crate, minor: raised when something was added that an older peer may ignore.
+pub const PROTOCOL_MINOR: u8 = 0;
+
+/// What a board says of itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hello {
+    /// Protocol that the board speaks: major, minor.
+    pub protocol: (u8, u8),
+    /// Version of the firmware: major, minor, patch.
+    pub firmware: (u8, u8, u8),
+    /// Kind of board.
+    pub board: BoardKind,
+    /// Unique number of the board.
+    pub id: [u8; 12],
+    /// Ticks a second.
+    pub tick_hz: u32,
+    /// Largest frame in bytes that the board takes.
+    pub frame_max_len: u16,
+    /// Bits of what the firmware can do; none is assigned yet.
+    pub features: u32,
+    /// CRC-32 of the committed scene, zero without one.
+    pub scene_crc32: u32,
+    /// Why the processor last started.
+    pub reset_cause: ResetCause,
+    /// The last hard fault, if there was one since power-on.
+    pub last_fault: Option<Fault>,
+    /// A number that belongs to the last fault.
+    pub fault_detail: u32,
+    /// State of the supervisor.
+    pub state: State,
+    /// Limits of the board, sent as tag-length-value.
+    pub limits: BoardLimits,
+}
+
+/// Kind of board. Numbers never change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BoardKind {
+    /// Simulated in a process on a desktop.
+    Simulator,
+    /// NUCLEO-G474RE with amplifier and electrode.
+    NucleoG474re,
+    /// Emulated Cortex-M4F.
+    Mps2An386,
+    /// A kind that this crate does not know, by number.
+    Other(u8),
+}
+
+impl BoardKind {
+    /// Whether no electrode hangs on the board, so that nobody can be hurt.
+    pub const fn is_simulated(self) -> bool {
+        matches!(self, Self::Simulator | Self::Mps2An386)
+    }
+}
+
+/// Why the processor last started. Numbers never change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ResetCause {
+    /// Power came on.
+    PowerOn,
+    /// The reset pin.
+    Pin,
+    /// Asked for by software, after a panic or a fault among others.
+    Software,
+    /// The independent watchdog.
+    Watchdog,
+    /// Supply voltage fell too low.
+    BrownOut,
+    /// A cause that this crate does not know, by number.
+    Other(u8),
+}
+
+/// Limits of a board that a scene has to keep; refused, never silently clamped, when exceeded by command.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoardLimits {
+    /// Bytes for bitmaps, those being uploaded included.
+    pub bitmap_pool_bytes: u32,
+    /// Most records that a scene may have.
+    pub records_max: u8,
+    /// Bytes that the host may have sent and the board not yet acknowledged.
+    pub receive_window_bytes: u16,
+    /// Largest peak voltage on the electrode, in volts.
+    pub voltage_max_v_peak: f32,
+    /// Voltage on the electrode at the largest DAC code, in volts, peak.
+    pub full_scale_v_peak: f32,
+    /// Time constant of the carrier's edges (amplifier and series resistor), in seconds.
+    pub edge_time_constant_s: f32,
+    /// Worst-case electrode capacitance: bare coating, gap lost, largest contact; in farads.
+    pub electrode_capacitance_max_f: f32,
+    /// Largest rms current through the electrode, in amperes.
+    pub current_max_a_rms: f32,
+    /// Largest peak current through the electrode, in amperes.
+    pub current_max_a_peak: f32,
+    /// Time between two reports of the touch source, in seconds.
+    pub touch_report_period_s: f32,
+}

@@ -1,0 +1,252 @@
+//! Messages in postcard. Enums are append-only: a variant keeps its place for ever.
+
+use serde::{Deserialize, Serialize};
+
+use crate::fault::{Fault, Flags, State};
+
+/// What the host sends: a command with a sequence number that comes back in its answer.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Request {
+    /// Chosen by the host; repeated in the answer.
+    pub sequence: u16,
+    /// What the board is to do.
+    pub command: Command,
+}
+
+/// What the host asks of the board. Every command is answered by one [`Answer`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Command {
+    /// Says that the host is there.
+    Ping,
+    /// Starts the upload of a scene ([`crate::scene`]), and drops any upload that was under way.
+    UploadScene {
+        /// Bytes of the whole scene.
+        len: u32,
+        /// CRC-32 of the whole scene.
+        crc32: u32,
+    },
+    /// Starts the upload of a bitmap, one byte a sample, row after row from the top left; answered
+    /// [`Accepted::AlreadyHeld`] when the pool has it.
+    UploadBitmap {
+        /// Samples in a row.
+        width: u16,
+        /// Rows.
+        height: u16,
+        /// CRC-32 of all samples: the bitmap's name in scene records.
+        crc32: u32,
+    },
+    /// Ends an upload: the board checks its CRC.
+    UploadEnd,
+    /// Makes the uploaded scene the one that plays, whole, at a tick boundary.
+    Commit {
+        /// CRC-32 of the scene that is meant.
+        crc32: u32,
+    },
+    /// Disarmed to Armed.
+    Arm,
+    /// Any state but Faulted to Disarmed; always puts the output to zero.
+    Disarm,
+    /// Armed to Active.
+    Play,
+    /// Active to Armed.
+    Stop,
+    /// Faulted to Disarmed, when the cause is gone.
+    ClearFault,
+    /// Asks for telemetry, one message every so many ticks; zero ends it.
+    Subscribe {
+        /// Ticks between two telemetry messages; at least [`TELEMETRY_PERIOD_MIN_TICKS`], or zero.
+        period_ticks: u32,
+    },
+}
+
+/// Shortest period of telemetry, in ticks: 1 kHz at 40 kHz ticks.
+pub const TELEMETRY_PERIOD_MIN_TICKS: u32 = 40;
+
+/// What the board sends.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum FromBoard {
+    /// Answers one request.
+    Answer(Answer),
+    /// How far an upload has come; gives credit back while chunks flow.
+    Progress {
+        /// Number of the chunk that the board wants next; the host goes back to it when it is lower than expected.
+        next_chunk: u16,
+        /// Bytes received since the hello, garbage included, modulo 2^32.
+        received_bytes: u32,
+    },
+    /// What the board does now.
+    Telemetry(Telemetry),
+    /// The state changed without a command: a fault, or the host was silent.
+    StateChanged {
+        /// The state now.
+        state: State,
+        /// The fault, if one is latched.
+        fault: Option<Fault>,
+        /// Why, where it is not a fault ([`Flags::HOST_SILENT`]).
+        flags: Flags,
+    },
+}
+
+/// The answer to a request.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Answer {
+    /// The request's sequence number.
+    pub sequence: u16,
+    /// Bytes received since the hello, garbage included, modulo 2^32: the credit.
+    pub received_bytes: u32,
+    /// State of the supervisor when the command was taken.
+    pub state: State,
+    /// Whether it was done.
+    pub outcome: Result<Accepted, Refusal>,
+}
+
+/// How a command was accepted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Accepted {
+    /// Done.
+    Done,
+    /// The bitmap is in the pool already: do not send it.
+    AlreadyHeld,
+}
+
+/// Why a command was refused. Numbers say what was found and what the limit is.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Refusal {
+    /// The frame's postcard could not be read: a command of a newer protocol, most likely.
+    UnknownCommand,
+    /// The command does not go with this state.
+    WrongState(State),
+    /// A fault is latched: clear it first.
+    Faulted(Fault),
+    /// No scene was committed.
+    NoScene,
+    /// No upload is under way, or it is not complete.
+    UploadIncomplete {
+        /// Number of the chunk that is wanted next.
+        next_chunk: u16,
+    },
+    /// The CRC-32 of what arrived is not the one that was announced.
+    CrcMismatch {
+        /// As announced.
+        expected: u32,
+        /// As computed.
+        found: u32,
+    },
+    /// A scene larger than the board's buffer.
+    SceneTooLarge {
+        /// Bytes that were asked for.
+        len: u32,
+        /// Bytes that there are.
+        max: u32,
+    },
+    /// The bitmap pool has no room.
+    BitmapPoolFull {
+        /// Bytes that were asked for.
+        len: u32,
+        /// Bytes that are free, after letting go all that the playing scene does not use.
+        free: u32,
+    },
+    /// The scene names a bitmap that the pool does not hold.
+    BitmapMissing {
+        /// CRC-32 of the bitmap.
+        crc32: u32,
+    },
+    /// The scene's bytes are not a scene of this version.
+    Scene(crate::scene::SceneError),
+    /// The scene's numbers are not ones that the board can play.
+    Config(ConfigRefusal),
+    /// The board has not yet let go of the scene before: try again.
+    Busy,
+    /// Telemetry was asked for more often than the board sends it.
+    TelemetryTooFast {
+        /// Shortest period in ticks.
+        period_min_ticks: u32,
+    },
+    /// The arm switch on the board is not held.
+    ArmSwitch,
+}
+
+/// A number in a scene that the board cannot play.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ConfigRefusal {
+    /// Which number.
+    pub field: ConfigField,
+    /// What was found, in SI units.
+    pub found: f32,
+    /// Least that is taken.
+    pub min: f32,
+    /// Most that is taken.
+    pub max: f32,
+    /// The layer it belongs to, counted from zero; 255 for the scene as a whole.
+    pub layer: u8,
+}
+
+/// Names of the numbers that a scene can be refused for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum ConfigField {
+    /// Screen width, m.
+    ScreenWidth,
+    /// Screen height, m.
+    ScreenHeight,
+    /// Finger radius, m.
+    FingerRadius,
+    /// Winkler-Fuss stiffness, Pa/m.
+    Stiffness,
+    /// Friction coefficient.
+    FrictionCoefficient,
+    /// Normal load, N.
+    NormalLoad,
+    /// Effective gap, m.
+    EffectiveGap,
+    /// Largest rms voltage, V.
+    VoltageRms,
+    /// Largest peak voltage, V.
+    VoltagePeak,
+    /// Slew of the envelope, V/s.
+    Slew,
+    /// Carrier frequency, Hz.
+    CarrierFrequency,
+    /// Host timeout, s.
+    HostTimeout,
+    /// Rms current into the worst-case electrode, A.
+    CurrentRms,
+    /// Peak current into the worst-case electrode, A.
+    CurrentPeak,
+    /// A layer's region, m.
+    Region,
+    /// A layer's gain.
+    Gain,
+    /// A layer's friction, N.
+    Friction,
+    /// A grating's wave vector, cycles per metre.
+    WaveVector,
+    /// A grating's phase, turns.
+    Phase,
+    /// A bitmap's place or pitch, m.
+    BitmapPlacement,
+    /// The span of friction between 1 V and the largest voltage, wider than the table.
+    TableRange,
+}
+
+/// What the board does at one tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Telemetry {
+    /// Ticks since power-on, modulo 2^32.
+    pub tick: u32,
+    /// State of the supervisor.
+    pub state: State,
+    /// Limits that act.
+    pub flags: Flags,
+    /// Where the board takes the finger to be, m from the left edge of the screen.
+    pub finger_x_m: f32,
+    /// Where the board takes the finger to be, m from the top edge of the screen.
+    pub finger_y_m: f32,
+    /// Sliding speed, m/s.
+    pub speed_m_per_s: f32,
+    /// Friction that the inverse was asked for, above natural, N.
+    pub asked_electric_friction_n: f32,
+    /// Rms voltage of the envelope, V.
+    pub voltage_v_rms: f32,
+    /// Code that went to the DAC.
+    pub dac_code: i16,
+}

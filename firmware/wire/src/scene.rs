@@ -1,0 +1,188 @@
+//! The compiled scene: a header and fixed-size records, little-endian, the same bytes on the wire and in flash.
+//!
+//! Every friction in a scene is **electric friction**: what the drive adds above `mu F_N`, in newtons. Lengths are in
+//! metres from the screen's top left corner, x to the right, y down.
+
+use serde::{Deserialize, Serialize};
+
+/// Version of the layout.
+pub const SCENE_VERSION: u16 = 1;
+/// Bytes of the header.
+pub const HEADER_LEN: usize = 56;
+/// Bytes of a record.
+pub const RECORD_LEN: usize = 56;
+/// Most records that the layout allows.
+pub const RECORDS_MAX: usize = 64;
+/// Bytes of the largest scene.
+pub const SCENE_MAX_LEN: usize = HEADER_LEN + RECORDS_MAX * RECORD_LEN;
+
+/// What holds for the whole scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Header {
+    /// Width of the screen, m.
+    pub screen_width_m: f32,
+    /// Height of the screen, m.
+    pub screen_height_m: f32,
+    /// Finger radius `R`, m.
+    pub finger_radius_m: f32,
+    /// Winkler-Fuss stiffness `k`, Pa/m.
+    pub stiffness_pa_per_m: f32,
+    /// Friction coefficient `mu`.
+    pub friction_coefficient: f32,
+    /// Normal load `F_N` at which the scene is meant, N.
+    pub normal_load_n: f32,
+    /// Effective gap `h0/eps` of the coating, m.
+    pub effective_gap_m: f32,
+    /// Largest rms voltage, V.
+    pub voltage_max_v_rms: f32,
+    /// Largest peak voltage, V.
+    pub voltage_max_v_peak: f32,
+    /// Fastest change of the envelope, V/s.
+    pub slew_v_per_s: f32,
+    /// Carrier frequency, Hz.
+    pub carrier_hz: f32,
+    /// Time without a word from the host after which the output goes to zero, s.
+    pub host_timeout_s: f32,
+    /// Shape of the carrier.
+    pub carrier: Carrier,
+    /// The scene goes on without a host.
+    pub autonomous: bool,
+    /// The tick estimates where the finger is now from late samples; without it, it takes the last sample as it is.
+    pub prediction: bool,
+}
+
+/// Shape of the carrier.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Carrier {
+    /// Plus and minus the envelope: the square of the voltage has no ripple.
+    #[default]
+    Square,
+    /// A sine whose rms is the envelope.
+    Sine,
+}
+
+/// One layer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Record {
+    /// Where the layer acts.
+    pub region: Region,
+    /// How it joins the layers before it.
+    pub blend: Blend,
+    /// Factor on the layer's friction.
+    pub gain: f32,
+    /// What the layer is.
+    pub layer: Layer,
+}
+
+/// Where a layer acts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Region {
+    /// Everywhere.
+    Screen,
+    /// A rectangle with sides along the screen's; left and top edge belong to it, right and bottom do not.
+    Rectangle {
+        /// Left edge, m.
+        x_m: f32,
+        /// Top edge, m.
+        y_m: f32,
+        /// Width, m.
+        width_m: f32,
+        /// Height, m.
+        height_m: f32,
+    },
+}
+
+/// How a layer joins the layers before it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Blend {
+    /// It takes their place.
+    #[default]
+    Replace,
+    /// It is added to them.
+    Add,
+}
+
+/// What a layer is. Frictions are electric, in newtons, before the gain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Layer {
+    /// The same friction everywhere.
+    Constant {
+        /// Electric friction, N.
+        electric_friction_n: f32,
+    },
+    /// Stripes: `trough + (crest - trough) w(kx x + ky y + phase)`, with `w` between 0 and 1 and one period a turn.
+    Grating {
+        /// Shape of the stripes.
+        wave: Wave,
+        /// Cycles per metre along x.
+        cycles_per_m_x: f32,
+        /// Cycles per metre along y.
+        cycles_per_m_y: f32,
+        /// Phase, in turns.
+        phase_turns: f32,
+        /// Least electric friction, N.
+        trough_n: f32,
+        /// Largest electric friction, N.
+        crest_n: f32,
+    },
+    /// A picture of samples at a pitch, bilinear between their centres, held at the border.
+    Bitmap {
+        /// CRC-32 of the samples: the bitmap's name in the pool.
+        crc32: u32,
+        /// Left edge of the first sample, m.
+        x_m: f32,
+        /// Top edge of the first sample, m.
+        y_m: f32,
+        /// Distance of samples, m.
+        pitch_m: f32,
+        /// Electric friction of sample 0, N.
+        black_n: f32,
+        /// Electric friction of sample 255, N.
+        white_n: f32,
+    },
+}
+
+/// Shape of a grating's stripes over a turn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Wave {
+    /// `(1 + sin(2 pi turns)) / 2`.
+    #[default]
+    Sine,
+    /// 1 in the first half turn, 0 in the second.
+    Square,
+}
+
+/// Why bytes are not a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum SceneError {
+    /// The layout's version is not this one.
+    Version {
+        /// As found.
+        found: u16,
+    },
+    /// The length does not go with the number of records.
+    Length {
+        /// As found.
+        found: u32,
+        /// As the header says.
+        expected: u32,
+    },
+    /// A carrier of unknown shape.
+    UnknownCarrier(u8),
+    /// A record of unknown kind.
+    UnknownKind {
+        /// Number of the record, from zero.
+        record: u8,
+        /// Its kind.
+        kind: u8,
+    },
+    /// A record with an unknown region, blend or wave.
+    UnknownChoice {
+        /// Number of the record, from zero.
+        record: u8,
+        /// Offset in the record of the byte that is not known.
+        offset: u8,
+        /// The byte.
+        value: u8,
+    },
+}

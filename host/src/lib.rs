@@ -1,0 +1,2 @@
+//! Driver library for frixel boards.
+#![forbid(unsafe_code)]

@@ -1,0 +1,2 @@
+//! The `frixel` command.
+fn main() {}

@@ -1,0 +1,11 @@
+//! Contact model of an electrovibration touchscreen (Argatov and Borodich).
+#![no_std]
+#![forbid(unsafe_code)]
+
+mod contact;
+mod real;
+mod table;
+
+pub use contact::{Contact, Finger, LoadedContact, ParameterError};
+pub use real::Real;
+pub use table::{InverseTable, TableError};
