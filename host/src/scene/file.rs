@@ -129,7 +129,7 @@ fn read(mut fields: Fields, log: &mut Log, source: &Source) -> Option<Scene> {
     let tables = fields.tables(log, "layer", false);
     let layers = tables.into_iter().enumerate().map(|(index, table)| Layer::read(table, index + 1, log)).collect();
     let places = fields.close(log);
-    if let Some(found) = version.filter(|found| *found != f64::from(VERSION)) {
+    if let Some(found) = version.filter(|found| found.total_cmp(&f64::from(VERSION)).is_ne()) {
         log.add(places.field("version"), Mistake::Version { found, expected: VERSION });
     }
     let layers: Option<Vec<Layer>> = layers;

@@ -79,8 +79,7 @@ impl Layer {
     /// Reads layer `number`, counted from one.
     pub(super) fn read(mut fields: Fields, number: usize, log: &mut Log) -> Option<Self> {
         fields.rename(format!("layer {number}"));
-        let kinds =
-            [("constant", KindName::Constant), ("grating", KindName::Grating), ("bitmap", KindName::Bitmap)];
+        let kinds = [("constant", KindName::Constant), ("grating", KindName::Grating), ("bitmap", KindName::Bitmap)];
         let name = fields.optional_text(log, "name");
         // Without its kind nobody knows what fields the layer should have.
         let Some(kind_name) = fields.choice(log, "kind", &kinds) else {
@@ -117,10 +116,10 @@ impl Layer {
             None => None,
         };
         let kind = kind?;
-        if let Kind::Grating { low_n, high_n, .. } = kind {
-            if low_n > high_n {
-                log.add(places.field("low_n"), Mistake::LowAboveHigh { low_n, high_n });
-            }
+        if let Kind::Grating { low_n, high_n, .. } = kind
+            && low_n > high_n
+        {
+            log.add(places.field("low_n"), Mistake::LowAboveHigh { low_n, high_n });
         }
         Some(Self { title, region, blend, gain, above, kind, places })
     }

@@ -108,7 +108,9 @@ pub enum Mistake {
         nearest: Nearest,
     },
     /// A scene file of another version.
-    #[error("this scene file has version {found}, and this frixel reads version {expected}: use a frixel that knows it")]
+    #[error(
+        "this scene file has version {found}, and this frixel reads version {expected}: use a frixel that knows it"
+    )]
     Version {
         /// As written.
         found: f64,

@@ -75,14 +75,14 @@ fn grey(bytes: &[u8], frame: &OutputInfo) -> Picture {
     for pixel in bytes.chunks_exact(if wide { 2 * channels } else { channels }) {
         let at = |channel: usize| sample(pixel, channel, wide);
         let (value, alpha) = match frame.color_type {
-            ColorType::Grayscale | ColorType::Indexed => (at(0), 255.0),
-            ColorType::GrayscaleAlpha => (at(0), at(1)),
-            ColorType::Rgb => (luma(at(0), at(1), at(2)), 255.0),
-            ColorType::Rgba => (luma(at(0), at(1), at(2)), at(3)),
+            ColorType::Grayscale | ColorType::Indexed => (f32::from(at(0)), WHITE),
+            ColorType::GrayscaleAlpha => (f32::from(at(0)), at(1)),
+            ColorType::Rgb => (luma([at(0), at(1), at(2)]), WHITE),
+            ColorType::Rgba => (luma([at(0), at(1), at(2)]), at(3)),
         };
         coloured |= channels > 2 && (at(0) != at(1) || at(1) != at(2));
-        transparent |= alpha < 255.0;
-        grey.push(value * (alpha / 255.0));
+        transparent |= alpha < WHITE;
+        grey.push(value / STEP * (f32::from(alpha) / f32::from(WHITE)));
     }
     let said = [
         (coloured, "colour turned to grey"),
@@ -93,21 +93,26 @@ fn grey(bytes: &[u8], frame: &OutputInfo) -> Picture {
     Picture { width: frame.width as usize, height: frame.height as usize, grey, conversions }
 }
 
-/// A channel of a pixel, from 0 to 255.
-fn sample(pixel: &[u8], channel: usize, wide: bool) -> f32 {
+/// The largest sample of 16 bits.
+const WHITE: u16 = u16::MAX;
+/// A step of 8 bits in steps of 16.
+const STEP: f32 = 257.0;
+
+/// A channel of a pixel, in 16 bits.
+fn sample(pixel: &[u8], channel: usize, wide: bool) -> u16 {
     let byte = |index: usize| pixel.get(index).copied().unwrap_or_default();
     if wide {
-        // 65,535 is 255 times 257.
-        f32::from(u16::from_be_bytes([byte(2 * channel), byte(2 * channel + 1)])) / 257.0
+        u16::from_be_bytes([byte(2 * channel), byte(2 * channel + 1)])
     } else {
-        f32::from(byte(channel))
+        u16::from_be_bytes([byte(channel), byte(channel)])
     }
 }
 
 /// Grey keeps its value to the last bit.
-fn luma(red: f32, green: f32, blue: f32) -> f32 {
+fn luma(colour: [u16; 3]) -> f32 {
+    let [red, green, blue] = colour;
     if red == green && green == blue {
-        return red;
+        return f32::from(red);
     }
-    LUMA[0] * red + LUMA[1] * green + LUMA[2] * blue
+    LUMA[0] * f32::from(red) + LUMA[1] * f32::from(green) + LUMA[2] * f32::from(blue)
 }

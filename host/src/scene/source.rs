@@ -25,10 +25,6 @@ impl Source {
         &self.folder
     }
 
-    pub(super) fn text(&self) -> &str {
-        &self.text
-    }
-
     /// Line and column of a byte, both from one; the column counts characters.
     pub(super) fn line_and_column(&self, offset: usize) -> (usize, usize) {
         let before = self.text.get(..offset).unwrap_or(&self.text);
