@@ -59,7 +59,7 @@ impl Active {
         let header = scene.header();
         config::check_header(header, board).map_err(Refusal::Config)?;
         let (carrier, voltage_max_v_rms) = carrier(header, board).map_err(Refusal::Config)?;
-        self.load_layers(scene, board, directory)?;
+        self.load_layers(scene, directory)?;
         self.carrier = carrier;
         self.slew_step_v = header.slew_v_per_s * board.tick_period_s();
         self.host_timeout_ticks = (!header.autonomous).then(|| board.ticks(header.host_timeout_s));
@@ -68,7 +68,7 @@ impl Active {
         Ok(())
     }
 
-    fn load_layers(&mut self, scene: &Scene, board: &Board, directory: &Directory) -> Result<(), Refusal> {
+    fn load_layers(&mut self, scene: &Scene, directory: &Directory) -> Result<(), Refusal> {
         for (number, record) in scene.records().enumerate() {
             let number = number as u8;
             config::check_record(&record, number).map_err(Refusal::Config)?;

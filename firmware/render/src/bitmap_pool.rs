@@ -20,7 +20,11 @@ pub struct BitmapPool {
 
 impl BitmapPool {
     /// An empty pool.
-    #[allow(clippy::new_without_default, reason = "80 KiB belong in a static, not into a value made in passing")]
+    #[allow(
+        clippy::new_without_default,
+        clippy::large_stack_arrays,
+        reason = "80 KiB belong in a static or a box, not into a value made in passing"
+    )]
     pub const fn new() -> Self {
         Self { bytes: [const { AtomicU8::new(0) }; BITMAP_POOL_LEN] }
     }

@@ -1,7 +1,7 @@
 //! What holds for a board, whatever scene it plays.
 
-use frixel_wire::hello::{BoardKind, BoardLimits, ResetCause};
 use frixel_wire::fault::Fault;
+use frixel_wire::hello::{BoardKind, BoardLimits, ResetCause};
 use frixel_wire::scene::RECORDS_MAX;
 
 use crate::BITMAP_POOL_LEN;

@@ -92,7 +92,7 @@ impl Carrier {
                 let turns = self.phase_ticks as f32 / (2 * timing.half_period_ticks) as f32;
                 let code = amplitude * turns::sine(turns);
                 let rounded = if code < 0.0 { (code - 0.5) as i32 } else { (code + 0.5) as i32 };
-                rounded.clamp(-timing.code_max, timing.code_max)
+                rounded.min(timing.code_max).max(-timing.code_max)
             }
         }
     }
@@ -102,7 +102,6 @@ impl Carrier {
 mod tests {
     use super::*;
     use proptest::prelude::*;
-    use std::vec::Vec;
 
     fn timing(shape: Shape, half_period_ticks: u32) -> CarrierTiming {
         CarrierTiming { shape, half_period_ticks, codes_per_v_rms: 100.0, code_max: 20_000 }
@@ -144,7 +143,7 @@ mod tests {
             let full = i64::from(timing.integral_max());
             for i in 0..4000_usize {
                 let half = i as u32 / half_period_ticks;
-                let amplitude = if resonant { if half % 2 == 0 { 200.0 } else { 3.0 } }
+                let amplitude = if resonant { if half.is_multiple_of(2) { 200.0 } else { 3.0 } }
                     else { seed_amplitudes[i % seed_amplitudes.len()] };
                 if i % 1013 == 0 { carrier.rest(&timing); }
                 integral += i64::from(carrier.next(amplitude, &timing).0);

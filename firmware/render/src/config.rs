@@ -129,7 +129,13 @@ mod tests {
                 let t = dt * (f64::from(i) + 0.5);
                 let phase = t / (2.0 * half_period_s);
                 let u = match carrier {
-                    Carrier::Square => if phase.fract() < 0.5 { 1.0 } else { -1.0 },
+                    Carrier::Square => {
+                        if phase.fract() < 0.5 {
+                            1.0
+                        } else {
+                            -1.0
+                        }
+                    }
                     Carrier::Sine => 2.0_f64.sqrt() * libm::sin(core::f64::consts::TAU * phase),
                 };
                 v += (u - v) * dt / tau;

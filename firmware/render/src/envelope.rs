@@ -40,7 +40,7 @@ mod tests {
     #[test]
     fn it_moves_by_the_step_at_most_and_arrives_exactly() {
         let mut envelope = Envelope::default();
-        let slewed: std::vec::Vec<bool> = (0..4).map(|_| envelope.follow(7.0, 2.0)).collect();
+        let slewed: Vec<bool> = (0..4).map(|_| envelope.follow(7.0, 2.0)).collect();
         assert_eq!(slewed, [true, true, true, false]);
         assert_eq!(envelope.voltage_v_rms().to_bits(), 7.0_f32.to_bits());
         assert!(envelope.follow(0.0, 2.0));

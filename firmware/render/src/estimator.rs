@@ -80,12 +80,7 @@ impl Estimator {
         let sampled_at_tick = now_tick.wrapping_sub(age_ticks);
         let step_ticks = sampled_at_tick.wrapping_sub(self.sampled_at_tick) as i32;
         if self.samples == 0 {
-            *self = Self {
-                x: Axis::resting_at(x_m),
-                y: Axis::resting_at(y_m),
-                samples: 1,
-                sampled_at_tick,
-            };
+            *self = Self { x: Axis::resting_at(x_m), y: Axis::resting_at(y_m), samples: 1, sampled_at_tick };
         } else if step_ticks > 0 {
             let step_s = step_ticks as f32 * tick_period_s;
             let gains = gains(self.samples);

@@ -200,14 +200,7 @@ mod tests {
             region: Region::Screen,
             blend: Blend::Replace,
             gain: 1.0,
-            layer: LayerRecord::Bitmap {
-                crc32: 7,
-                x_m: 0.0,
-                y_m: 0.0,
-                pitch_m: 1.0,
-                black_n: 0.0,
-                white_n: 255.0,
-            },
+            layer: LayerRecord::Bitmap { crc32: 7, x_m: 0.0, y_m: 0.0, pitch_m: 1.0, black_n: 0.0, white_n: 255.0 },
         };
         let layer = Layer::new(&record, Some(Bitmap { crc32: 7, offset: 5, width: 2, height: 2 }));
         for (x_m, y_m, expected) in [

@@ -28,7 +28,7 @@
 //! assert_eq!(drive.dac_code, 0);
 //! assert_eq!(session.transmit(&mut [0; 64]), 0); // bytes for the serial line
 //! ```
-#![no_std]
+#![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 
 mod active;
@@ -51,6 +51,6 @@ pub use active::Active;
 pub use bitmap_pool::{BITMAP_POOL_LEN, BitmapPool};
 pub use board::Board;
 pub use io::{Drive, Sense, Touch};
-pub use order::{Order, Status};
+pub use order::{Counters, Order, Status};
 pub use session::Session;
 pub use ticker::Ticker;

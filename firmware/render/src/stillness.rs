@@ -20,10 +20,7 @@ pub(crate) struct StillnessTiming {
 
 impl StillnessTiming {
     pub(crate) fn new(tick_hz: u32) -> Self {
-        Self {
-            still_after_ticks: (STILL_AFTER_S * tick_hz as f32) as u32,
-            ramp_step: 1.0 / (RAMP_S * tick_hz as f32),
-        }
+        Self { still_after_ticks: (STILL_AFTER_S * tick_hz as f32) as u32, ramp_step: 1.0 / (RAMP_S * tick_hz as f32) }
     }
 }
 

@@ -102,13 +102,7 @@ impl Supervisor {
 
     /// Looks after the output at every tick. `driven_v` is what went to the amplifier in the tick before;
     /// `host_timeout_ticks` is `None` for a scene that goes on without a host.
-    pub(crate) fn check(
-        &mut self,
-        sense: &Sense,
-        driven_v: f32,
-        now_tick: u32,
-        host_timeout_ticks: Option<u32>,
-    ) {
+    pub(crate) fn check(&mut self, sense: &Sense, driven_v: f32, now_tick: u32, host_timeout_ticks: Option<u32>) {
         let monitor_wrong = self.monitor.is_wrong(driven_v, sense.monitor_v);
         if self.state == State::Faulted {
             return;
@@ -121,8 +115,7 @@ impl Supervisor {
         } else if self.state != State::Disarmed {
             if !sense.arm_switch {
                 self.raise(Fault::ArmSwitch, 0);
-            } else if host_timeout_ticks
-                .is_some_and(|timeout| now_tick.wrapping_sub(self.host_heard_at_tick) > timeout)
+            } else if host_timeout_ticks.is_some_and(|timeout| now_tick.wrapping_sub(self.host_heard_at_tick) > timeout)
             {
                 self.state = State::Disarmed;
                 self.host_silent = true;

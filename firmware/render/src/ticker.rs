@@ -82,11 +82,8 @@ impl Finger {
     #[inline]
     fn locate(&mut self, now_tick: u32, tick_period_s: f32, prediction: bool) {
         if let Some(estimate) = self.estimator.at(now_tick, tick_period_s) {
-            self.estimate = if prediction {
-                estimate
-            } else {
-                Estimate { x_m: self.last_x_m, y_m: self.last_y_m, ..estimate }
-            };
+            self.estimate =
+                if prediction { estimate } else { Estimate { x_m: self.last_x_m, y_m: self.last_y_m, ..estimate } };
         }
     }
 }

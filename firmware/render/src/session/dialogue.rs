@@ -2,16 +2,14 @@
 
 use frixel_wire::fault::{Flags, State};
 use frixel_wire::hello::{Hello, PROTOCOL_MAJOR, PROTOCOL_MINOR};
-use frixel_wire::message::{
-    Accepted, Answer, Command, FromBoard, Refusal, Request, TELEMETRY_PERIOD_MIN_TICKS,
-};
-use frixel_wire::payload::{Payload, PayloadError};
+use frixel_wire::message::{Accepted, Answer, Command, FromBoard, Refusal, Request, TELEMETRY_PERIOD_MIN_TICKS};
+use frixel_wire::payload::{ParseError, Payload};
 use frixel_wire::scene::{HEADER_LEN, Layer, RECORD_LEN, RECORDS_MAX, SCENE_MAX_LEN, Scene};
 use heapless::{Deque, Vec};
 
 use super::outbox::Outbox;
 use super::upload::{Destination, Report, Staging, Upload};
-use crate::bitmap_pool::Directory;
+use crate::bitmap_pool::{Bitmap, Directory};
 use crate::order::Status;
 use crate::{Active, BitmapPool, Board, Order};
 
@@ -89,7 +87,7 @@ impl<'a> Dialogue<'a> {
     }
 
     /// Takes one frame's payload.
-    pub(super) fn take(&mut self, payload: Result<Payload, PayloadError>, status: &Status, outbox: &mut Outbox) {
+    pub(super) fn take(&mut self, payload: Result<Payload, ParseError>, status: &Status, outbox: &mut Outbox) {
         self.follow_state(status);
         match payload {
             Ok(Payload::HelloRequest { .. }) => {
@@ -106,7 +104,7 @@ impl<'a> Dialogue<'a> {
                 self.take_chunk(number, bytes, outbox);
             }
             // A request whose command is not known still says which answer it waits for.
-            Err(PayloadError::UnknownCommand { sequence }) => {
+            Err(ParseError::UnknownCommand { sequence }) => {
                 self.host_heard();
                 self.answer(sequence, Err(Refusal::UnknownCommand), outbox);
             }
@@ -187,11 +185,7 @@ impl<'a> Dialogue<'a> {
             Command::Play if self.committed_crc32 == 0 => Err(Refusal::NoScene),
             Command::Play => self.change_state(Order::Play, &[State::Armed], State::Active),
             Command::Stop => self.change_state(Order::Stop, &[State::Active], State::Armed),
-            _ => self.change_state(
-                Order::Disarm,
-                &[State::Disarmed, State::Armed, State::Active],
-                State::Disarmed,
-            ),
+            _ => self.change_state(Order::Disarm, &[State::Disarmed, State::Armed, State::Active], State::Disarmed),
         }
     }
 
@@ -258,7 +252,7 @@ impl<'a> Dialogue<'a> {
 
     /// Finds room for a bitmap: beside all others, else in the place of those that no scene wants, else, when nothing
     /// plays, in the place of the committed scene.
-    fn make_room(&mut self, width: u16, height: u16, crc32: u32) -> Result<crate::bitmap_pool::Bitmap, Refusal> {
+    fn make_room(&mut self, width: u16, height: u16, crc32: u32) -> Result<Bitmap, Refusal> {
         let pool_len = self.board.limits.bitmap_pool_bytes;
         if let Ok(bitmap) = self.directory.allocate(width, height, crc32, pool_len) {
             return Ok(bitmap);
@@ -267,9 +261,7 @@ impl<'a> Dialogue<'a> {
         self.directory.retain(|bitmap| committed.contains(&bitmap.crc32) || announced.contains(&bitmap.crc32));
         let refused = match self.directory.allocate(width, height, crc32, pool_len) {
             Ok(bitmap) => return Ok(bitmap),
-            Err(free) => {
-                Refusal::BitmapPoolFull { len: u32::from(width) * u32::from(height), free }
-            }
+            Err(free) => Refusal::BitmapPoolFull { len: u32::from(width) * u32::from(height), free },
         };
         if self.state == State::Active || self.committed_crc32 == 0 {
             return Err(refused);

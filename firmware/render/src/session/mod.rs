@@ -42,7 +42,7 @@ impl<'a> Session<'a> {
             let frame = self.decoder.next_frame(&mut bytes);
             self.dialogue.count_received(before - bytes.len());
             if let Some(frame) = frame {
-                self.dialogue.take(Payload::parse(frame), status, &mut self.outbox);
+                self.dialogue.take(Payload::parse_from_host(frame), status, &mut self.outbox);
             }
         }
     }
