@@ -88,7 +88,7 @@ impl<'a> Dialogue<'a> {
 
     /// Takes one frame's payload.
     pub(super) fn take(&mut self, payload: Result<Payload, ParseError>, status: &Status, outbox: &mut Outbox) {
-        self.follow_state(status);
+        self.report_state(status, outbox);
         match payload {
             Ok(Payload::HelloRequest { .. }) => {
                 self.host_heard();
