@@ -11,8 +11,8 @@ use super::pool::Pool;
 use super::program::Program;
 use super::reach::{Reach, crest, mean_square_left};
 
-/// Fewest ticks of half a carrier period.
-const HALF_PERIOD_MIN_TICKS: f64 = 2.0;
+/// Fewest ticks of half a carrier period that a board takes.
+const HALF_PERIOD_MIN_TICKS: f64 = 4.0;
 /// Below this charge leaks through skin and the felt friction falls (arXiv 2409.18725), Hz.
 const LEAKAGE_HZ: f64 = 250.0;
 /// What a default peak limit allows above the peak that the rms limit needs, so that rounding never makes it the

@@ -21,10 +21,11 @@ const STIFFNESS_PA_PER_M: Range = Range::new(1e3, 1e14, " Pa/m");
 const FRICTION_COEFFICIENT: Range = Range::new(0.001, 10.0, "");
 const LOAD_N: Range = Range::new(0.0, 50.0, " N");
 const VOLTAGE_V_RMS: Range = Range::new(1.0, 1_000.0, " V rms");
-const VOLTAGE_V_PEAK: Range = Range::new(1.0, 2_000.0, " V peak");
+const VOLTAGE_V_PEAK: Range = Range::new(2.0, 2_000.0, " V peak");
 const SLEW_V_PER_US: Range = Range::new(0.001, 1_000.0, " V/us");
 const HOST_TIMEOUT_MS: Range = Range::new(20.0, 1_000.0, " ms");
-const CARRIER_HZ: Range = Range::new(20.0, 20_000.0, " Hz");
+/// Below this the drive is no alternating carrier any more; how fast it may be is a matter of the board's ticks.
+const CARRIER_HZ: Range = Range::new(125.0, 100_000.0, " Hz");
 
 /// A scene file that was read: its fields are known, of the right type and in range. [`super::compile`] checks the rest.
 #[derive(Clone, Debug, PartialEq)]

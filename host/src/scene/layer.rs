@@ -7,12 +7,12 @@ use super::mistake::{Log, Mistake};
 use super::source::Places;
 
 const PLACE_MM: Range = Range::new(-2_000.0, 2_000.0, " mm");
-const SIZE_MM: Range = Range::new(0.01, 4_000.0, " mm");
-const WAVELENGTH_MM: Range = Range::new(0.05, 4_000.0, " mm");
+const SIZE_MM: Range = Range::new(0.01, 2_000.0, " mm");
+const WAVELENGTH_MM: Range = Range::new(0.05, 2_000.0, " mm");
 const PITCH_MM: Range = Range::new(0.02, 10.0, " mm");
 const FRICTION_N: Range = Range::new(-100.0, 100.0, " N");
 const ANGLE_DEG: Range = Range::new(-360.0, 360.0, " degrees");
-const GAIN: Range = Range::new(-1_000.0, 1_000.0, "");
+const GAIN: Range = Range::new(-100.0, 100.0, "");
 /// Distance of a picture's samples where the file names none.
 const PITCH_DEFAULT_MM: f64 = 0.25;
 
