@@ -1,7 +1,7 @@
 //! From a scene as written to a program as played: checks that need the board, other layers, or pictures.
 
 use frixel_wire::hello::BoardLimits;
-use frixel_wire::scene::{Header, Layer as WireLayer, RECORDS_MAX, Record, Region};
+use frixel_wire::scene::{Carrier, Header, Layer as WireLayer, RECORDS_MAX, Record, Region};
 
 use super::excess;
 use super::file::Scene;
@@ -47,6 +47,7 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
     let mut notes = Vec::new();
     let half_period_ticks = half_period_ticks(scene, tick_hz, log, &mut notes)?;
     let header = header(scene, limits, f64::from(half_period_ticks) / f64::from(tick_hz), log, &mut notes);
+    check_current(scene, limits, &header, tick_hz, log);
     let reach = match Reach::of(&header) {
         Ok(reach) => reach,
         Err(error) => {
@@ -135,6 +136,35 @@ fn header(scene: &Scene, limits: &BoardLimits, half_period_s: f64, log: &mut Log
         carrier: shape,
         autonomous: drive.autonomous,
         prediction: scene.prediction,
+    }
+}
+
+/// The current into the worst-case electrode `C` at the largest voltage, as the board budgets it. A square wave of peak
+/// `U` moves `2 U C` at each edge, along an exponential of the edge's time constant `tau`: peak `2 U C / tau`, rms
+/// `2 U C sqrt(f/tau)`. A sine is a staircase of ticks `dt`: peak `w U C` times `dt/tau`, where that is above one.
+fn check_current(scene: &Scene, limits: &BoardLimits, header: &Header, tick_hz: u32, log: &mut Log) {
+    let tau_s = f64::from(limits.edge_time_constant_s);
+    let carrier_hz = f64::from(header.carrier_hz);
+    let left = mean_square_left(header.carrier, 0.5 / carrier_hz, tau_s);
+    let drive_v_peak = f64::from(header.voltage_max_v_rms) * crest(header.carrier) / left.sqrt();
+    let charge_c = f64::from(limits.electrode_capacitance_max_f) * drive_v_peak;
+    let (rms_a, peak_a) = match header.carrier {
+        Carrier::Square => (2.0 * charge_c * (carrier_hz / tau_s).sqrt(), 2.0 * charge_c / tau_s),
+        Carrier::Sine => {
+            let step = 1.0 / (f64::from(tick_hz) * tau_s);
+            let sine_a = core::f64::consts::TAU * carrier_hz * charge_c;
+            (sine_a * core::f64::consts::FRAC_1_SQRT_2 * (0.5 * step).max(1.0).sqrt(), sine_a * step.max(1.0))
+        }
+    };
+    for (kind, found_a, board_a, cure) in [
+        ("rms", rms_a, limits.current_max_a_rms, "`frequency_hz` under [carrier], or `voltage_max_v_rms` under [drive]"),
+        ("peak", peak_a, limits.current_max_a_peak, "`voltage_max_v_rms` under [drive]"),
+    ] {
+        if found_a > f64::from(board_a) {
+            let mistake =
+                Mistake::CurrentAboveBoard { kind, found_ma: found_a * 1e3, board_ma: f64::from(board_a) * 1e3, cure };
+            log.add(scene.carrier.places.table(), mistake);
+        }
     }
 }
 

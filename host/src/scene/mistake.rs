@@ -240,6 +240,21 @@ pub enum Mistake {
         /// Fastest carrier, Hz.
         max: f64,
     },
+    /// More current into the electrode than the board allows.
+    #[error(
+        "this carrier drives {found_ma:.2} mA {kind} into the board's worst-case electrode, and its limit is \
+         {board_ma:.2} mA: lower {cure}"
+    )]
+    CurrentAboveBoard {
+        /// `rms` or `peak`.
+        kind: &'static str,
+        /// The current at the largest voltage, mA.
+        found_ma: f64,
+        /// The board's limit, mA.
+        board_ma: f64,
+        /// What to lower.
+        cure: &'static str,
+    },
     /// Numbers that are each in range and that the contact model refuses together.
     #[error("the contact model refuses this finger and coating ({reason}): check [finger] and [coating]")]
     Model {

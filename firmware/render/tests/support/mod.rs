@@ -4,6 +4,7 @@
     clippy::expect_used,
     clippy::panic,
     dead_code,
+    unreachable_pub,
     reason = "a test uses its part, and may fail"
 )]
 
