@@ -1,2 +1,4 @@
 //! Driver library for frixel boards.
 #![forbid(unsafe_code)]
+
+pub mod device;

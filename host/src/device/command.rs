@@ -1,7 +1,15 @@
-//! Commands in a person's words.
+//! Commands: their frames, their names for a person, what they lead to.
 
 use frixel_wire::fault::State;
-use frixel_wire::message::Command;
+use frixel_wire::frame::FRAME_MAX_LEN;
+use frixel_wire::message::{Command, Request};
+use frixel_wire::payload::{WriteError, request_frame};
+
+/// The frame of a request.
+pub(super) fn frame_of(sequence: u16, command: Command) -> Result<Vec<u8>, WriteError> {
+    let mut buffer = [0; FRAME_MAX_LEN];
+    request_frame(&Request { sequence, command }, &mut buffer).map(<[u8]>::to_vec)
+}
 
 /// What a command does, as error messages have it.
 pub(super) fn name_of(command: &Command) -> &'static str {

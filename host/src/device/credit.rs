@@ -22,12 +22,7 @@ pub(super) struct CountRestarted;
 impl Credit {
     /// The board answered a hello and counts from zero; the host has written `written` bytes.
     pub(super) fn new(window: u16, written: u64) -> Self {
-        Self {
-            window: window.into(),
-            settled: written,
-            offset: written as i64,
-            received: 0,
-        }
+        Self { window: window.into(), settled: written, offset: written as i64, received: 0 }
     }
 
     /// Takes the board's count, modulo 2^32.
@@ -63,9 +58,11 @@ impl Credit {
         self.settled
     }
 
-    /// Whether `len` more bytes keep what is on the way within the window, with `reserve` bytes left over.
+    /// Whether `len` more bytes keep what is on the way within the window, with `reserve` bytes left over. A window too small for that takes
+    /// one frame at a time.
     pub(super) fn allows(&self, len: usize, reserve: usize, written: u64) -> bool {
         let under_way = written.saturating_sub(self.settled);
-        under_way + len as u64 + reserve as u64 <= self.window
+        let reserve = if under_way == 0 { 0 } else { reserve as u64 };
+        under_way + len as u64 + reserve <= self.window
     }
 }

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use frixel_wire::hello::Mismatch;
 use frixel_wire::message::Refusal;
+use frixel_wire::payload::WriteError;
 use thiserror::Error;
 
 /// A port could not be opened.
@@ -66,15 +67,18 @@ pub enum DeviceError {
     Port(#[from] PortError),
     /// Nothing that answers a hello is on the line.
     #[error(
-        "no frixel board answered on {port} within {} ms; check that it is the right port and that frixel firmware runs on the board, \
+        "no frixel board answered on {port} within {} ms{}; check that it is the right port and that frixel firmware runs on the board, \
          then reset the board and try again",
-        .waited.as_millis()
+        .waited.as_millis(),
+        if *.heard_bytes > 0 { ", though something else talks there" } else { "" }
     )]
     NoHello {
         /// Name of the link.
         port: String,
         /// How long it was waited for, in the link's time.
         waited: Duration,
+        /// Bytes that came meanwhile.
+        heard_bytes: usize,
     },
     /// The board speaks another protocol.
     #[error("{port}: {mismatch}")]
@@ -98,7 +102,7 @@ pub enum DeviceError {
         waited: Duration,
     },
     /// The board answered that it will not.
-    #[error("the board on {port} refused ({command}): {refusal}")]
+    #[error("the board on {port} refused ({command}): {refusal:?}")]
     Refused {
         /// Name of the link.
         port: String,
@@ -148,6 +152,9 @@ pub enum DeviceError {
         /// Samples that there are.
         found: usize,
     },
+    /// A frame cannot be written: an upload that is longer than any may be.
+    #[error(transparent)]
+    Frame(#[from] WriteError),
 }
 
 fn port_list(ports: &[String]) -> String {

@@ -5,22 +5,27 @@ use std::time::Duration;
 
 use frixel_wire::frame::Decoder;
 use frixel_wire::hello::Hello;
-use frixel_wire::message::{Accepted, Answer, Command, FromBoard, Refusal, Request};
+use frixel_wire::message::{Accepted, Answer, Command, FromBoard, Refusal};
 use frixel_wire::payload::Payload;
 
 use super::Event;
-use super::command::{name_of, state_after};
+use super::command::{frame_of, name_of, state_after};
 use super::credit::Credit;
 use super::error::{DeviceError, LinkClosed};
-use super::frames;
 use super::link::Link;
 
+/// Sequence number of requests whose answer nobody waits for.
+const UNAWAITED: u16 = 0;
 /// How long a command may take to be answered. A full window ahead of it takes 355 ms at 115,200 baud.
 pub(super) const ANSWER_TIMEOUT: Duration = Duration::from_millis(750);
 /// A command that is not answered is sent again after this time: a frame may have been damaged.
 const REPEAT_AFTER: Duration = Duration::from_millis(250);
 /// Time to the next try when the board was busy.
 const BUSY_RETRY_AFTER: Duration = Duration::from_millis(5);
+/// Most that one listening adds to the silence of a board, so that a host that was itself suspended does not take that for silence.
+const LISTEN_MAX: Duration = Duration::from_millis(100);
+/// What is under way while nothing is asked.
+const WAITING: &str = "wait";
 /// Credit kept free for commands.
 const COMMAND_RESERVE_LEN: usize = 64;
 /// Events kept for a caller who does not fetch them; the oldest go first.
@@ -41,7 +46,8 @@ pub(super) struct Exchange<L> {
     answer: Option<Answer>,
     next_chunk: Option<u16>,
     events: VecDeque<Event>,
-    last_heard: Duration,
+    /// Time listened since anything came.
+    quiet: Duration,
 }
 
 /// A request on its way.
@@ -58,11 +64,11 @@ impl<L: Link> Exchange<L> {
             credit: Credit::new(hello.limits.receive_window_bytes, written),
             reserve: COMMAND_RESERVE_LEN,
             rejected_before: decoder.rejected(),
-            last_heard: link.now(),
+            quiet: Duration::ZERO,
             link,
             decoder,
             incoming: Vec::new(),
-            sequence: 0,
+            sequence: UNAWAITED,
             awaited: Vec::new(),
             answer: None,
             next_chunk: None,
@@ -87,37 +93,40 @@ impl<L: Link> Exchange<L> {
         self.events.pop_front()
     }
 
-    /// Time since anything came from the board, in the link's time.
-    pub(super) fn silent_for(&self) -> Duration {
-        self.link.now().saturating_sub(self.last_heard)
+    pub(super) fn now(&self) -> Duration {
+        self.link.now()
     }
 
     /// Lets the link ping the board whenever nothing was sent for `period`, and keeps credit for those pings.
-    pub(super) fn ping_every(&mut self, period: Duration) {
-        let ping = frames::request(Request {
-            sequence: 0,
-            command: Command::Ping,
-        });
+    pub(super) fn ping_every(&mut self, period: Duration) -> Result<(), DeviceError> {
+        let ping = frame_of(UNAWAITED, Command::Ping)?;
         let pings = ANSWER_TIMEOUT.as_micros().div_ceil(period.as_micros().max(1)) as usize;
         self.reserve = COMMAND_RESERVE_LEN + pings * ping.len();
         self.link.keep_alive(ping, period);
+        Ok(())
     }
 
-    /// Sets what is sent when the link is dropped.
-    pub(super) fn farewell(&mut self, frames: Vec<u8>) {
-        self.link.farewell(frames);
+    /// Sets the commands that are sent when the link is dropped.
+    pub(super) fn say_farewell_with(&mut self, commands: &[Command]) -> Result<(), DeviceError> {
+        let frames: Result<Vec<_>, _> = commands.iter().map(|command| frame_of(UNAWAITED, *command)).collect();
+        self.link.farewell(frames?.concat());
+        Ok(())
     }
 
     /// Sends a command and waits for the board to take it; tries again while it is busy.
     pub(super) fn request(&mut self, command: Command) -> Result<Accepted, DeviceError> {
         match self.ask(command)? {
             Ok(accepted) => Ok(accepted),
-            Err(refusal) => Err(DeviceError::Refused {
-                port: self.link.name().into(),
-                command: name_of(&command),
-                refusal,
-            }),
+            Err(refusal) => Err(self.refused(&command, refusal)),
         }
+    }
+
+    pub(super) fn refused(&self, command: &Command, refusal: Refusal) -> DeviceError {
+        DeviceError::Refused { port: self.link.name().into(), command: name_of(command), refusal }
+    }
+
+    pub(super) fn stalled(&self, arrived_bytes: usize, total_bytes: usize) -> DeviceError {
+        DeviceError::UploadStalled { port: self.link.name().into(), arrived_bytes, total_bytes }
     }
 
     /// Sends a command and waits for its outcome; tries again while the board is busy.
@@ -141,13 +150,13 @@ impl<L: Link> Exchange<L> {
         loop {
             let now = self.link.now();
             if now >= deadline {
-                return Err(self.silent(name_of(&command), now - started));
+                return Err(self.silent(name_of(&command), now.saturating_sub(started)));
             }
             if now >= send_at && self.send(command)? {
                 send_at = now + REPEAT_AFTER;
             }
             let wake_at = if send_at > now { send_at.min(deadline) } else { deadline };
-            self.receive(wake_at - now, name_of(&command))?;
+            self.receive(wake_at.saturating_sub(now), name_of(&command))?;
             if let Some(answer) = self.answer.take() {
                 return Ok(self.outcome(command, &answer));
             }
@@ -156,8 +165,8 @@ impl<L: Link> Exchange<L> {
 
     /// Sends a request when there is credit for it.
     fn send(&mut self, command: Command) -> Result<bool, DeviceError> {
-        let sequence = self.sequence.checked_add(1).unwrap_or(1);
-        let frame = frames::request(Request { sequence, command });
+        let sequence = self.sequence.checked_add(1).unwrap_or(UNAWAITED + 1);
+        let frame = frame_of(sequence, command)?;
         if !self.credit.allows(frame.len(), 0, self.link.written().bytes) {
             return Ok(false);
         }
@@ -167,10 +176,15 @@ impl<L: Link> Exchange<L> {
         Ok(true)
     }
 
+    /// Whether the command that was answered last had been sent more than once, so that the board may have done it before.
+    pub(super) fn repeated(&self) -> bool {
+        self.awaited.len() > 1
+    }
+
     /// A command that was sent twice may be refused because the first one did its work and only the answer was lost.
     fn outcome(&self, command: Command, answer: &Answer) -> Result<Accepted, Refusal> {
         match answer.outcome {
-            Err(Refusal::WrongState(state)) if self.awaited.len() > 1 && state_after(&command) == Some(state) => {
+            Err(Refusal::WrongState(state)) if self.repeated() && state_after(&command) == Some(state) => {
                 Ok(Accepted::Done)
             }
             outcome => outcome,
@@ -199,14 +213,23 @@ impl<L: Link> Exchange<L> {
         self.link.write(frame).map_err(|closed| vanished(closed, doing))
     }
 
+    /// Takes the first that comes within `wait`, or less. An error when the pings have not been answered for too long.
+    pub(super) fn listen(&mut self, wait: Duration) -> Result<(), DeviceError> {
+        self.receive(wait.min(LISTEN_MAX), WAITING)?;
+        if self.quiet >= ANSWER_TIMEOUT {
+            return Err(self.silent(name_of(&Command::Ping), self.quiet));
+        }
+        Ok(())
+    }
+
     /// Takes what comes until `until`.
-    pub(super) fn receive_until(&mut self, until: Duration, doing: &'static str) -> Result<(), DeviceError> {
+    fn receive_until(&mut self, until: Duration, doing: &'static str) -> Result<(), DeviceError> {
         loop {
             let now = self.link.now();
             if now >= until {
                 return Ok(());
             }
-            self.receive(until - now, doing)?;
+            self.receive(until.saturating_sub(now), doing)?;
         }
     }
 
@@ -214,16 +237,17 @@ impl<L: Link> Exchange<L> {
     pub(super) fn receive(&mut self, wait: Duration, doing: &'static str) -> Result<(), DeviceError> {
         let mut incoming = std::mem::take(&mut self.incoming);
         incoming.clear();
-        self.link
-            .read(&mut incoming, wait)
-            .map_err(|closed| vanished(closed, doing))?;
-        if !incoming.is_empty() {
-            self.last_heard = self.link.now();
+        let started = self.link.now();
+        self.link.read(&mut incoming, wait).map_err(|closed| vanished(closed, doing))?;
+        if incoming.is_empty() {
+            self.quiet += self.link.now().saturating_sub(started).min(wait);
+        } else {
+            self.quiet = Duration::ZERO;
         }
         let mut input = incoming.as_slice();
         while let Some(payload) = self.decoder.next_frame(&mut input) {
             // Hellos and what this version does not know are none of a caller's business.
-            if let Ok(Payload::FromBoard(message)) = Payload::parse(payload) {
+            if let Ok(Payload::FromBoard(message)) = Payload::parse_from_board(payload) {
                 self.take(message, doing)?;
             }
         }
@@ -241,10 +265,7 @@ impl<L: Link> Exchange<L> {
                     self.answer = Some(answer);
                 }
             }
-            FromBoard::Progress {
-                next_chunk,
-                received_bytes,
-            } => {
+            FromBoard::Progress { next_chunk, received_bytes } => {
                 self.take_count(received_bytes, doing)?;
                 self.next_chunk = Some(next_chunk);
             }
@@ -258,10 +279,7 @@ impl<L: Link> Exchange<L> {
         let written = self.link.written().bytes;
         self.credit
             .received(received_bytes, written)
-            .map_err(|_| DeviceError::Restarted {
-                port: self.link.name().into(),
-                command: doing,
-            })
+            .map_err(|_| DeviceError::Restarted { port: self.link.name().into(), command: doing })
     }
 
     fn keep(&mut self, event: Event) {
@@ -271,15 +289,11 @@ impl<L: Link> Exchange<L> {
         self.events.push_back(event);
     }
 
-    pub(super) fn silent(&self, command: &'static str, waited: Duration) -> DeviceError {
-        DeviceError::Silent {
-            port: self.link.name().into(),
-            command,
-            waited,
-        }
+    fn silent(&self, command: &'static str, waited: Duration) -> DeviceError {
+        DeviceError::Silent { port: self.link.name().into(), command, waited }
     }
 }
 
-pub(super) fn vanished(closed: LinkClosed, command: &'static str) -> DeviceError {
+fn vanished(closed: LinkClosed, command: &'static str) -> DeviceError {
     DeviceError::Vanished { command, closed }
 }

@@ -32,11 +32,7 @@ pub(super) fn greet<L: Link>(link: &mut L, decoder: &mut Decoder) -> Result<Hell
             };
         }
     }
-    Err(DeviceError::NoHello {
-        port: link.name().into(),
-        waited: link.now() - started,
-        heard_bytes,
-    })
+    Err(DeviceError::NoHello { port: link.name().into(), waited: link.now().saturating_sub(started), heard_bytes })
 }
 
 fn await_hello<L: Link>(
@@ -48,7 +44,7 @@ fn await_hello<L: Link>(
     let mut incoming = Vec::new();
     while link.now() < deadline {
         incoming.clear();
-        link.read(&mut incoming, deadline - link.now()).map_err(gone)?;
+        link.read(&mut incoming, deadline.saturating_sub(link.now())).map_err(gone)?;
         *heard_bytes += incoming.len();
         let mut input = incoming.as_slice();
         while let Some(payload) = decoder.next_frame(&mut input) {
@@ -62,8 +58,5 @@ fn await_hello<L: Link>(
 }
 
 fn gone(closed: LinkClosed) -> DeviceError {
-    DeviceError::Vanished {
-        command: "hello",
-        closed,
-    }
+    DeviceError::Vanished { command: "hello", closed }
 }

@@ -60,9 +60,7 @@ pub fn ports() -> Result<Vec<PortInfo>, PortError> {
     if cfg!(target_os = "linux") && !Path::new("/sys/class/tty").is_dir() {
         return Ok(Vec::new());
     }
-    let found = serialport::available_ports().map_err(|error| PortError::NoList {
-        reason: error.description,
-    })?;
+    let found = serialport::available_ports().map_err(|error| PortError::NoList { reason: error.description })?;
     let mut ports: Vec<PortInfo> = found.into_iter().map(port_info).collect();
     ports.sort_by(|a, b| a.path.cmp(&b.path));
     Ok(ports)
@@ -79,10 +77,7 @@ fn port_info(port: serialport::SerialPortInfo) -> PortInfo {
         }),
         _ => None,
     };
-    PortInfo {
-        path: port.port_name,
-        usb,
-    }
+    PortInfo { path: port.port_name, usb }
 }
 
 /// Says what is behind an error of the serialport crate when `port` was opened.
@@ -91,23 +86,16 @@ pub(super) fn why_not_opened(port: &str, error: serialport::Error) -> PortError 
 
     let port_there = || Path::new(port).exists() || port_paths().iter().any(|path| path == port);
     match error.kind {
-        Kind::Io(ErrorKind::NotFound) => not_there(port),
         // On Windows the same kind says that the port is not there.
         Kind::NoDevice if port_there() => PortError::Busy { port: port.into() },
-        Kind::NoDevice => not_there(port),
+        Kind::NoDevice | Kind::Io(ErrorKind::NotFound) => not_there(port),
         Kind::Io(ErrorKind::PermissionDenied) => PortError::NoPermission { port: port.into() },
-        _ => PortError::NotOpened {
-            port: port.into(),
-            reason: error.description,
-        },
+        _ => PortError::NotOpened { port: port.into(), reason: error.description },
     }
 }
 
 fn not_there(port: &str) -> PortError {
-    PortError::NotThere {
-        port: port.into(),
-        ports: port_paths(),
-    }
+    PortError::NotThere { port: port.into(), ports: port_paths() }
 }
 
 fn port_paths() -> Vec<String> {

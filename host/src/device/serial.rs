@@ -64,23 +64,14 @@ impl SerialLink {
     /// Opens the port at `path` with `baud` bits a second, and throws away what had arrived there before.
     pub fn open(path: &str, baud: u32) -> Result<Self, PortError> {
         let not_opened = |error| why_not_opened(path, error);
-        let mut reader = serialport::new(path, baud)
-            .timeout(READ_POLL)
-            .exclusive(true)
-            .open()
-            .map_err(not_opened)?;
+        let mut reader = serialport::new(path, baud).timeout(READ_POLL).exclusive(true).open().map_err(not_opened)?;
         reader.set_timeout(READ_POLL).map_err(not_opened)?;
         let mut writer = reader.try_clone().map_err(not_opened)?;
         writer.set_timeout(WRITE_TIMEOUT).map_err(not_opened)?;
         reader.clear(ClearBuffer::Input).map_err(not_opened)?;
 
         let opened = Instant::now();
-        let link = Self {
-            path: path.into(),
-            opened,
-            shared: Arc::new(Shared::new(opened)),
-            farewell: Vec::new(),
-        };
+        let link = Self { path: path.into(), opened, shared: Arc::new(Shared::new(opened)), farewell: Vec::new() };
         link.spawn("frixel-read", move |shared| shared.read_from(reader))?;
         link.spawn("frixel-write", move |shared| shared.write_to(writer))?;
         Ok(link)
@@ -108,10 +99,7 @@ impl SerialLink {
     fn check_open(&self, state: &State) -> Result<(), LinkClosed> {
         match &state.closed {
             None => Ok(()),
-            Some(reason) => Err(LinkClosed {
-                port: self.path.clone(),
-                reason: reason.clone(),
-            }),
+            Some(reason) => Err(LinkClosed { port: self.path.clone(), reason: reason.clone() }),
         }
     }
 }
@@ -171,10 +159,7 @@ impl Drop for SerialLink {
         state.closing = true;
         self.shared.queued.notify_one();
         // A thread that the operating system does not let go ends by itself later, and the port closes then.
-        let _ = self
-            .shared
-            .ended
-            .wait_timeout_while(state, DROP_WAIT, |state| state.threads > 0);
+        let _ = self.shared.ended.wait_timeout_while(state, DROP_WAIT, |state| state.threads > 0);
     }
 }
 

@@ -12,9 +12,11 @@ use super::exchange::Exchange;
 use super::link::Link;
 
 /// An upload that has not got on for this long is looked after.
-const STALL_AFTER: Duration = Duration::from_millis(200);
+const STALL_AFTER: Duration = Duration::from_millis(150);
 /// How often in a row an upload is sent again from the same chunk.
-const TRIES: u32 = 4;
+const TRIES: u32 = 3;
+/// How often an upload is started when its end stays unclear.
+const STARTS: u32 = 3;
 
 /// What is to play: a compiled scene, and the bitmaps that it names.
 #[derive(Clone, Debug)]
@@ -34,6 +36,11 @@ impl Upload<'_> {
     /// Bytes of scene and bitmaps together.
     pub fn total_bytes(&self) -> usize {
         self.scene.len() + self.bitmaps.iter().map(|bitmap| bitmap.samples.len()).sum::<usize>()
+    }
+
+    /// Refuses bitmaps that have not one sample for each of their places.
+    pub(super) fn check(&self) -> Result<(), DeviceError> {
+        self.bitmaps.iter().try_for_each(Bitmap::check)
     }
 }
 
@@ -64,8 +71,8 @@ pub struct Progress {
 pub(super) struct UploadCounts {
     /// Bytes of scenes and bitmaps that were sent and have arrived whole.
     pub(super) payload_bytes: u64,
-    /// Chunks that had to be sent more than once.
-    pub(super) chunks_resent: u64,
+    /// Chunks that the board asked for again.
+    pub(super) chunks_lost: u64,
 }
 
 /// Uploads all that the board does not hold yet. Nothing plays before it is committed.
@@ -77,38 +84,48 @@ pub(super) fn send<L: Link>(
 ) -> Result<(), DeviceError> {
     let total_bytes = upload.total_bytes();
     let mut done_before = 0;
-    let scene_start = Command::UploadScene {
-        len: upload.scene.len() as u32,
-        crc32: upload.scene_crc32(),
-    };
+    let scene_start = Command::UploadScene { len: upload.scene.len() as u32, crc32: upload.scene_crc32() };
     let starts = upload.bitmaps.iter().map(|bitmap| (bitmap.start(), bitmap.samples));
     for (start, bytes) in starts.chain([(scene_start, upload.scene)]) {
         let mut report = |done_here| {
-            progress(Progress {
-                done_bytes: done_before + done_here,
-                total_bytes,
-            });
+            progress(Progress { done_bytes: done_before + done_here, total_bytes });
         };
-        if exchange.request(start)? == Accepted::Done {
-            Transfer::new(exchange, name_of(&start), bytes).run(counts, &mut report)?;
-        }
+        send_one(exchange, start, bytes, counts, &mut report)?;
         report(bytes.len());
         done_before += bytes.len();
     }
     Ok(())
 }
 
-impl Bitmap<'_> {
-    fn start(&self) -> Command {
-        Command::UploadBitmap {
-            width: self.width,
-            height: self.height,
-            crc32: self.crc32,
+/// Uploads one scene or bitmap, unless the board holds it.
+fn send_one<L: Link>(
+    exchange: &mut Exchange<L>,
+    start: Command,
+    bytes: &[u8],
+    counts: &mut UploadCounts,
+    report: &mut dyn FnMut(usize),
+) -> Result<(), DeviceError> {
+    for _ in 0..STARTS {
+        if exchange.request(start)? == Accepted::AlreadyHeld {
+            return Ok(());
+        }
+        let mut transfer = Transfer::new(exchange, name_of(&start), bytes);
+        let end = transfer.run(report)?;
+        counts.chunks_lost += transfer.lost;
+        if end == End::Arrived {
+            counts.payload_bytes += bytes.len() as u64;
+            return Ok(());
         }
     }
+    Err(exchange.stalled(0, bytes.len()))
+}
 
-    /// Refuses a bitmap that has not one sample for each of its places.
-    pub(super) fn check(&self) -> Result<(), DeviceError> {
+impl Bitmap<'_> {
+    fn start(&self) -> Command {
+        Command::UploadBitmap { width: self.width, height: self.height, crc32: self.crc32 }
+    }
+
+    fn check(&self) -> Result<(), DeviceError> {
         if self.samples.len() == usize::from(self.width) * usize::from(self.height) {
             return Ok(());
         }
@@ -119,6 +136,15 @@ impl Bitmap<'_> {
             found: self.samples.len(),
         })
     }
+}
+
+/// How a transfer ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum End {
+    /// The board has all of it.
+    Arrived,
+    /// The answer to the end was lost, and the next one cannot tell an upload that is complete from one that was never started.
+    Unclear,
 }
 
 /// One scene or bitmap on its way.
@@ -134,58 +160,52 @@ struct Transfer<'a, L> {
     sent_to: Vec<u64>,
     /// Times in a row that chunks were sent again without the board wanting a later one.
     tries: u32,
-    resent: u64,
+    lost: u64,
 }
 
 impl<'a, L: Link> Transfer<'a, L> {
     fn new(exchange: &'a mut Exchange<L>, doing: &'static str, bytes: &'a [u8]) -> Self {
         exchange.take_next_chunk();
-        Self {
-            exchange,
-            doing,
-            bytes,
-            wanted: 0,
-            next: 0,
-            sent_to: Vec::new(),
-            tries: 0,
-            resent: 0,
-        }
+        Self { exchange, doing, bytes, wanted: 0, next: 0, sent_to: Vec::new(), tries: 0, lost: 0 }
     }
 
-    fn run(mut self, counts: &mut UploadCounts, report: &mut dyn FnMut(usize)) -> Result<(), DeviceError> {
+    fn run(&mut self, report: &mut dyn FnMut(usize)) -> Result<End, DeviceError> {
         loop {
             self.send_chunks(report)?;
             match self.exchange.ask(Command::UploadEnd)? {
-                Ok(_) => break,
+                Ok(_) => return Ok(End::Arrived),
+                Err(Refusal::UploadIncomplete { .. }) if self.exchange.repeated() => return Ok(End::Unclear),
                 Err(Refusal::UploadIncomplete { next_chunk }) => self.send_again_from(next_chunk)?,
                 Err(refusal) => return Err(self.exchange.refused(&Command::UploadEnd, refusal)),
             }
         }
-        counts.payload_bytes += self.bytes.len() as u64;
-        counts.chunks_resent += self.resent;
-        Ok(())
     }
 
-    /// Sends from `next` to the end, and goes back when the board says that it has to.
+    /// Sends from `next` to the end, and goes back when the board says that it has to. Gives up when there is no credit for long: it may be
+    /// lost together with bytes. Then, as after the last chunk, the end of the upload is asked for; it does no harm when it comes too early,
+    /// its refusal says which chunk the board wants, and its answer settles the credit.
     fn send_chunks(&mut self, report: &mut dyn FnMut(usize)) -> Result<(), DeviceError> {
-        let mut moved_at = self.exchange.now();
-        while self.next < self.chunk_count() {
-            let wait = if self.send_next()? { Duration::ZERO } else { STALL_AFTER };
-            let settled_before = self.exchange.settled();
+        let mut sent_at = self.exchange.now();
+        while self.next < self.chunk_count() && self.exchange.now().saturating_sub(sent_at) < STALL_AFTER {
+            let wait = if self.send_next()? {
+                sent_at = self.exchange.now();
+                Duration::ZERO
+            } else {
+                STALL_AFTER
+            };
             self.exchange.receive(wait, self.doing)?;
             self.take_progress(report)?;
-            if wait == Duration::ZERO || self.exchange.settled() > settled_before {
-                moved_at = self.exchange.now();
-            } else if self.exchange.now() - moved_at >= STALL_AFTER {
-                self.look_after()?;
-                moved_at = self.exchange.now();
-            }
         }
         Ok(())
     }
 
     fn chunk_count(&self) -> usize {
         self.bytes.len().div_ceil(CHUNK_LEN)
+    }
+
+    /// Bytes that the board has said it has.
+    fn arrived_bytes(&self) -> usize {
+        self.bytes.len().min(self.wanted * CHUNK_LEN)
     }
 
     /// Sends the next chunk, if there is credit for it.
@@ -199,10 +219,7 @@ impl<'a, L: Link> Transfer<'a, L> {
             return Ok(false);
         };
         match self.sent_to.get_mut(self.next) {
-            Some(before) => {
-                *before = sent_to;
-                self.resent += 1;
-            }
+            Some(before) => *before = sent_to,
             None => self.sent_to.push(sent_to),
         }
         self.next += 1;
@@ -215,7 +232,7 @@ impl<'a, L: Link> Transfer<'a, L> {
             return Ok(());
         };
         self.board_wants(wanted);
-        report(self.bytes.len().min(self.wanted * CHUNK_LEN));
+        report(self.arrived_bytes());
         let off_the_line = |sent_to: &u64| *sent_to <= self.exchange.settled();
         if self.wanted < self.next && self.sent_to.get(self.wanted).is_some_and(off_the_line) {
             self.send_again_from(wanted)?;
@@ -235,23 +252,12 @@ impl<'a, L: Link> Transfer<'a, L> {
         self.board_wants(chunk);
         self.tries += 1;
         if self.tries > TRIES {
-            return Err(DeviceError::UploadStalled {
-                port: self.exchange.link().name().into(),
-                arrived_bytes: self.bytes.len().min(self.wanted * CHUNK_LEN),
-                total_bytes: self.bytes.len(),
-            });
+            return Err(self.exchange.stalled(self.arrived_bytes(), self.bytes.len()));
         }
-        self.next = self.next.min(self.wanted);
+        if self.wanted < self.next {
+            self.next = self.wanted;
+            self.lost += 1;
+        }
         Ok(())
-    }
-
-    /// Nothing comes any more, so credit or the board's words may be lost. The end of an upload that is not complete does no harm, and its
-    /// refusal says where the board stands; by then nothing else is on the line.
-    fn look_after(&mut self) -> Result<(), DeviceError> {
-        match self.exchange.ask(Command::UploadEnd)? {
-            Err(Refusal::UploadIncomplete { next_chunk }) => self.send_again_from(next_chunk),
-            Ok(_) => Ok(()),
-            Err(refusal) => Err(self.exchange.refused(&Command::UploadEnd, refusal)),
-        }
     }
 }
