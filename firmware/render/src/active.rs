@@ -90,12 +90,7 @@ fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), Confi
     let limits = &board.limits;
     let half_period_ticks = board.ticks(0.5 / header.carrier_hz);
     let half_period_s = half_period_ticks as f32 * board.tick_period_s();
-    let crest = match header.carrier {
-        Carrier::Square => 1.0,
-        Carrier::Sine => core::f32::consts::SQRT_2,
-    };
-    let left = config::mean_square_left(header.carrier, half_period_s, limits.edge_time_constant_s);
-    let peak_per_rms = crest / libm::sqrtf(left);
+    let peak_per_rms = config::peak_per_rms(header.carrier, half_period_s, limits.edge_time_constant_s);
     let voltage_max_v_rms = header.voltage_max_v_rms.min(header.voltage_max_v_peak / peak_per_rms);
     let drive_v_peak = voltage_max_v_rms * peak_per_rms;
 
