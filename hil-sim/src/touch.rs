@@ -59,6 +59,7 @@ pub(crate) struct TouchSource {
     finger_was_down: bool,
     last_arrival_tick: Option<u64>,
     under_way: VecDeque<Report>,
+    arrived: Option<Touch>,
 }
 
 impl TouchSource {
@@ -88,18 +89,27 @@ impl TouchSource {
             finger_was_down: false,
             last_arrival_tick: None,
             under_way: VecDeque::new(),
+            arrived: None,
         })
     }
 
-    /// The report that arrives at `tick`, with the finger where it is at that tick. To be called at every tick.
-    pub(crate) fn tick(&mut self, tick: u64, finger: Option<FingerState>) -> Option<Touch> {
+    /// Goes to `tick`, at which the finger is where it is said to be. To be called for every tick from 0.
+    pub(crate) fn tick(&mut self, tick: u64, finger: Option<&FingerState>) {
         if tick >= self.next_sample_tick {
             self.sample(tick, finger);
         }
-        self.under_way.pop_front_if(|report| report.arrival_tick <= tick).map(|report| report.touch)
+        self.arrived = match self.under_way.front() {
+            Some(report) if report.arrival_tick <= tick => self.under_way.pop_front().map(|report| report.touch),
+            _ => None,
+        };
     }
 
-    fn sample(&mut self, tick: u64, finger: Option<FingerState>) {
+    /// The report that arrived at the tick.
+    pub(crate) fn arrived(&self) -> Option<Touch> {
+        self.arrived
+    }
+
+    fn sample(&mut self, tick: u64, finger: Option<&FingerState>) {
         self.samples += 1;
         self.next_sample_tick = (self.phase_ticks + self.samples as f64 * self.period_ticks) as u64;
         // Drawn for every sample, so that a stroke's lifts do not shift the noise of what follows.

@@ -16,7 +16,10 @@ fn finger(tick: u64) -> FingerState {
 fn reports(config: TouchConfig, seed: u64, seconds: u64) -> Vec<(u64, Touch)> {
     let mut source = TouchSource::new(&config, TICK_HZ, seed).unwrap();
     (0..seconds * u64::from(TICK_HZ))
-        .filter_map(|tick| source.tick(tick, Some(finger(tick))).map(|touch| (tick, touch)))
+        .filter_map(|tick| {
+            source.tick(tick, Some(&finger(tick)));
+            source.arrived().map(|touch| (tick, touch))
+        })
         .collect()
 }
 
@@ -146,7 +149,8 @@ fn a_lift_is_reported_once_after_the_latency() {
     let mut seen = Vec::new();
     for tick in 0..60_000 {
         let finger = (down..up).contains(&tick).then(|| finger(tick));
-        seen.extend(source.tick(tick, finger).map(|touch| (tick, touch)));
+        source.tick(tick, finger.as_ref());
+        seen.extend(source.arrived().map(|touch| (tick, touch)));
     }
     let first_tick = seen[0].0;
     assert!((down + 400..down + 800).contains(&first_tick), "first report at {first_tick}");
