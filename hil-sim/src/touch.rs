@@ -57,7 +57,7 @@ pub(crate) struct TouchSource {
     samples: u64,
     next_sample_tick: u64,
     finger_was_down: bool,
-    last_arrival_tick: Option<u64>,
+    /// In the order of their samples: the first has to arrive before the next can.
     under_way: VecDeque<Report>,
     arrived: Option<Touch>,
 }
@@ -87,7 +87,6 @@ impl TouchSource {
             samples: 0,
             next_sample_tick: phase_ticks as u64,
             finger_was_down: false,
-            last_arrival_tick: None,
             under_way: VecDeque::new(),
             arrived: None,
         })
@@ -127,10 +126,7 @@ impl TouchSource {
         };
         self.finger_was_down = finger.is_some();
         let delay_ticks = libm::round(f64::from(self.latency_ticks) + jitter_ticks).max(0.0) as u64;
-        let earliest_tick = self.last_arrival_tick.map_or(0, |last_tick| last_tick + 1);
-        let arrival_tick = (tick + delay_ticks).max(earliest_tick);
-        self.last_arrival_tick = Some(arrival_tick);
-        self.under_way.push_back(Report { arrival_tick, touch });
+        self.under_way.push_back(Report { arrival_tick: tick + delay_ticks, touch });
     }
 }
 

@@ -135,10 +135,14 @@ fn the_phase_of_the_schedule_comes_from_the_seed() {
 }
 
 #[test]
-fn the_same_seed_gives_the_same_reports() {
+fn the_same_seed_gives_the_same_reports_and_another_has_its_own_noise_and_jitter() {
     let config = TouchConfig::default();
     assert_eq!(reports(config, 5, 5), reports(config, 5, 5));
-    assert_ne!(reports(config, 5, 5), reports(config, 6, 5));
+    // The finger moves along x only, so y differs by noise alone; the spacing of reports differs by jitter alone.
+    let noise = |seed| reports(config, seed, 5).iter().map(|&(_, touch)| place(touch).1).collect::<Vec<_>>();
+    let spacing = |seed| reports(config, seed, 5).windows(2).map(|pair| pair[1].0 - pair[0].0).collect::<Vec<_>>();
+    assert_ne!(noise(5)[..400], noise(6)[..400]);
+    assert_ne!(spacing(5)[..400], spacing(6)[..400]);
 }
 
 #[test]
