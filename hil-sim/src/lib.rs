@@ -3,6 +3,7 @@
 //! - [`World`]: what is on the other side of the board's pins. It gives a [`Sense`](frixel_render::Sense) and takes a
 //!   [`Drive`](frixel_render::Drive) at every tick, and tells what the finger [felt](Felt).
 //! - [`Stroke`]: where the finger is at a time.
+//! - [`Rig`]: a board and its world on one thread.
 //! - [`Line`]: one direction of a serial line, whose bytes take the time that the line rate gives them.
 //!
 //! Nothing here knows wall time, and everything random comes from a seed: the same run gives the same bytes on every
@@ -15,6 +16,7 @@ mod error;
 mod fingertip;
 mod line;
 mod random;
+mod rig;
 mod stroke;
 mod touch;
 mod world;
@@ -23,6 +25,7 @@ pub use amplifier::AmplifierConfig;
 pub use error::{OutOfRange, WorldError};
 pub use fingertip::example_finger;
 pub use line::{Line, LineCounts, LineFault};
+pub use rig::{BoardMemory, Rig, RigConfig, TickRecord, contact_of};
 pub use stroke::{FingerState, Point, Stroke, StrokeError};
 pub use touch::TouchConfig;
 pub use world::{Felt, World, WorldConfig};

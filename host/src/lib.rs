@@ -1,2 +1,5 @@
 //! Driver library for frixel boards.
 #![forbid(unsafe_code)]
+
+pub mod scene;
+pub mod wanted;

@@ -1,9 +1,12 @@
 //! Stable numbers of what goes wrong, and of what merely limits, each with a sentence for a person.
 
+use core::fmt;
+
+use postcard::experimental::max_size::MaxSize;
 use serde::{Deserialize, Serialize};
 
-/// State of the supervisor that owns the output.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+/// State of the supervisor that owns the output. Numbers never change.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, MaxSize)]
 #[repr(u8)]
 pub enum State {
     /// Output zero, amplifier off. Every reset lands here.
@@ -17,30 +20,101 @@ pub enum State {
     Faulted = 3,
 }
 
-/// A hard fault. It latches, puts the output to zero and the amplifier off. Numbers never change.
+impl State {
+    /// The state's number on the wire.
+    pub const fn number(self) -> u8 {
+        self as u8
+    }
+}
+
+impl TryFrom<u8> for State {
+    type Error = UnknownNumber;
+
+    fn try_from(number: u8) -> Result<Self, UnknownNumber> {
+        match number {
+            0 => Ok(Self::Disarmed),
+            1 => Ok(Self::Armed),
+            2 => Ok(Self::Active),
+            3 => Ok(Self::Faulted),
+            number => Err(UnknownNumber(number)),
+        }
+    }
+}
+
+/// A hard fault. It latches, puts the output to zero and the amplifier off. Numbers never change, and stand for the
+/// fault on the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[repr(u8)]
+#[serde(try_from = "u8", into = "u8")]
 pub enum Fault {
     /// The amplifier reports a fault.
-    Amplifier = 1,
+    Amplifier,
     /// The monitor voltage is not the voltage that was driven.
-    Monitor = 2,
+    Monitor,
     /// A tick missed its deadline.
-    Deadline = 3,
+    Deadline,
     /// The firmware panicked.
-    Panic = 4,
+    Panic,
     /// The processor took a hard fault.
-    HardFault = 5,
+    HardFault,
     /// The stack overflowed.
-    StackOverflow = 6,
+    StackOverflow,
     /// The independent watchdog was not fed.
-    Watchdog = 7,
+    Watchdog,
     /// The arm switch was let go while playing.
-    ArmSwitch = 8,
+    ArmSwitch,
+    /// A fault of newer firmware that this crate does not know, by number.
+    Other(u8),
+}
+
+impl Fault {
+    /// The fault's stable number, from 1.
+    pub const fn number(self) -> u8 {
+        match self {
+            Self::Amplifier => 1,
+            Self::Monitor => 2,
+            Self::Deadline => 3,
+            Self::Panic => 4,
+            Self::HardFault => 5,
+            Self::StackOverflow => 6,
+            Self::Watchdog => 7,
+            Self::ArmSwitch => 8,
+            Self::Other(number) => number,
+        }
+    }
+}
+
+impl TryFrom<u8> for Fault {
+    type Error = UnknownNumber;
+
+    /// Every number but zero, which stands for no fault, is one.
+    fn try_from(number: u8) -> Result<Self, UnknownNumber> {
+        match number {
+            0 => Err(UnknownNumber(number)),
+            1 => Ok(Self::Amplifier),
+            2 => Ok(Self::Monitor),
+            3 => Ok(Self::Deadline),
+            4 => Ok(Self::Panic),
+            5 => Ok(Self::HardFault),
+            6 => Ok(Self::StackOverflow),
+            7 => Ok(Self::Watchdog),
+            8 => Ok(Self::ArmSwitch),
+            number => Ok(Self::Other(number)),
+        }
+    }
+}
+
+impl From<Fault> for u8 {
+    fn from(fault: Fault) -> Self {
+        fault.number()
+    }
+}
+
+impl MaxSize for Fault {
+    const POSTCARD_MAX_SIZE: usize = u8::POSTCARD_MAX_SIZE;
 }
 
 /// Limits that act without stopping the scene, one bit each; and what the finger does.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, MaxSize)]
 pub struct Flags(pub u16);
 
 impl Flags {
@@ -70,3 +144,15 @@ impl Flags {
         self.0 & other.0 == other.0
     }
 }
+
+/// A number that stands for nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct UnknownNumber(pub u8);
+
+impl fmt::Display for UnknownNumber {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "number {} stands for nothing that this program knows: update it", self.0)
+    }
+}
+
+impl core::error::Error for UnknownNumber {}

@@ -1,4 +1,212 @@
-//! Frames: COBS, CRC-32, a zero byte between.
+//! Frames: payload and CRC-32, COBS-encoded, with a zero byte at the end.
+//!
+//! ```
+//! use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, encode};
+//!
+//! let mut frame = [0; FRAME_MAX_LEN];
+//! let sent = encode(b"hello", &mut frame)?;
+//!
+//! let mut decoder = Decoder::new();
+//! let mut input = sent;
+//! assert_eq!(decoder.next_frame(&mut input), Some(&b"hello"[..]));
+//! # Ok::<(), frixel_wire::frame::PayloadTooLong>(())
+//! ```
+
+use core::fmt;
+
+use cobs::{CobsEncoder, DecodeResult, DecoderState};
+use crc::{CRC_32_ISO_HDLC, Crc, Digest, Table};
+
+use crate::payload::PAYLOAD_MAX_LEN;
 
 /// Largest frame in bytes, zero byte included.
 pub const FRAME_MAX_LEN: usize = 192;
+
+/// Bytes of the CRC-32.
+const CRC_LEN: usize = 4;
+/// Largest frame once decoded: payload and CRC.
+const DECODED_MAX_LEN: usize = PAYLOAD_MAX_LEN + CRC_LEN;
+
+const _: () = assert!(cobs::max_encoding_length(DECODED_MAX_LEN) + 1 == FRAME_MAX_LEN);
+
+/// One table of 1 KiB, in flash.
+static CRC: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISO_HDLC);
+
+/// CRC-32/ISO-HDLC: the CRC of Ethernet, zlib and PNG.
+pub fn crc32(bytes: &[u8]) -> u32 {
+    CRC.checksum(bytes)
+}
+
+/// [`crc32`] of bytes that come piece by piece.
+///
+/// ```
+/// use frixel_wire::frame::{Crc32, crc32};
+/// assert_eq!(Crc32::new().update(b"1234").update(b"56789").finish(), crc32(b"123456789"));
+/// ```
+#[derive(Clone)]
+pub struct Crc32(Digest<'static, u32, Table<1>>);
+
+impl Crc32 {
+    /// Of nothing yet.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self(CRC.digest())
+    }
+
+    /// With these bytes after those before.
+    pub fn update(&mut self, bytes: &[u8]) -> &mut Self {
+        self.0.update(bytes);
+        self
+    }
+
+    /// The CRC-32 of all bytes so far.
+    pub fn finish(&self) -> u32 {
+        self.0.clone().finalize()
+    }
+}
+
+impl Default for Crc32 {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl fmt::Debug for Crc32 {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Crc32({:#010x})", self.finish())
+    }
+}
+
+/// A payload of more than [`PAYLOAD_MAX_LEN`] bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PayloadTooLong {
+    /// Bytes of the payload.
+    pub len: usize,
+}
+
+impl fmt::Display for PayloadTooLong {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "a payload of {} bytes does not fit into a frame, which takes {PAYLOAD_MAX_LEN}: split it", self.len)
+    }
+}
+
+impl core::error::Error for PayloadTooLong {}
+
+/// Makes a frame of a payload; returns the frame's bytes, zero byte included.
+pub fn encode<'f>(payload: &[u8], frame: &'f mut [u8; FRAME_MAX_LEN]) -> Result<&'f [u8], PayloadTooLong> {
+    let too_long = PayloadTooLong { len: payload.len() };
+    if payload.len() > PAYLOAD_MAX_LEN {
+        return Err(too_long);
+    }
+    let mut encoder = CobsEncoder::new(frame.as_mut_slice());
+    encoder.push(payload).map_err(|_| too_long)?;
+    encoder.push(&crc32(payload).to_le_bytes()).map_err(|_| too_long)?;
+    let len = encoder.finalize();
+    *frame.get_mut(len).ok_or(too_long)? = 0;
+    frame.get(..=len).ok_or(too_long)
+}
+
+/// Finds good frames in a stream of bytes.
+///
+/// A frame goes from one zero byte to the next. One that is not COBS, has a wrong CRC, or is too short or too long is
+/// dropped whole and counted; the next one starts after the next zero byte. Zero bytes one after the other are no error.
+#[derive(Debug)]
+pub struct Decoder {
+    decoded: [u8; DECODED_MAX_LEN],
+    len: usize,
+    cobs: DecoderState,
+    overlong: bool,
+    frames: u32,
+    rejected: u32,
+}
+
+impl Decoder {
+    /// Takes the first byte for the start of a frame.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            decoded: [0; DECODED_MAX_LEN],
+            len: 0,
+            cobs: DecoderState::Idle,
+            overlong: false,
+            frames: 0,
+            rejected: 0,
+        }
+    }
+
+    /// Good frames so far, modulo 2^32.
+    pub const fn frames(&self) -> u32 {
+        self.frames
+    }
+
+    /// Bad frames so far, modulo 2^32.
+    pub const fn rejected(&self) -> u32 {
+        self.rejected
+    }
+
+    /// Takes one byte; returns the payload when it ended a good frame.
+    pub fn push(&mut self, byte: u8) -> Option<&[u8]> {
+        if self.take(byte) { self.decoded.get(..self.len) } else { None }
+    }
+
+    /// Takes bytes off the front of `input` until one has ended a good frame, and returns its payload; `None` once
+    /// `input` is empty.
+    pub fn next_frame(&mut self, input: &mut &[u8]) -> Option<&[u8]> {
+        while let Some((&byte, rest)) = input.split_first() {
+            *input = rest;
+            if self.take(byte) {
+                return self.decoded.get(..self.len);
+            }
+        }
+        None
+    }
+
+    /// Whether this byte ended a good frame, whose payload then is the first `len` bytes of `decoded`.
+    fn take(&mut self, byte: u8) -> bool {
+        if byte != 0 {
+            self.take_inside(byte);
+            return false;
+        }
+        if matches!(self.cobs, DecoderState::Idle) {
+            return false;
+        }
+        let cobs_complete = matches!(self.cobs.feed(0), Ok(DecodeResult::DataComplete));
+        let good = cobs_complete && !self.overlong && self.strip_crc();
+        if good {
+            self.frames = self.frames.wrapping_add(1);
+        } else {
+            self.rejected = self.rejected.wrapping_add(1);
+        }
+        good
+    }
+
+    fn take_inside(&mut self, byte: u8) {
+        if matches!(self.cobs, DecoderState::Idle) {
+            self.len = 0;
+            self.overlong = false;
+        }
+        if let Ok(DecodeResult::DataContinue(data)) = self.cobs.feed(byte) {
+            match self.decoded.get_mut(self.len) {
+                Some(place) => {
+                    *place = data;
+                    self.len += 1;
+                }
+                None => self.overlong = true,
+            }
+        }
+    }
+
+    /// Leaves the payload when the CRC after it is right.
+    fn strip_crc(&mut self) -> bool {
+        let decoded = self.decoded.get(..self.len).unwrap_or_default();
+        let Some((payload, crc)) = decoded.split_last_chunk::<CRC_LEN>() else { return false };
+        self.len = payload.len();
+        crc32(payload) == u32::from_le_bytes(*crc)
+    }
+}
+
+impl Default for Decoder {
+    fn default() -> Self {
+        Self::new()
+    }
+}

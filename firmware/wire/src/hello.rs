@@ -1,6 +1,14 @@
 //! The hello: frozen for ever, hand-laid little-endian, so that a newer host can always tell an older board what to do.
 
+mod codec;
+mod compatibility;
+
 use crate::fault::{Fault, State};
+use crate::frame::FRAME_MAX_LEN;
+use crate::payload::PAYLOAD_MAX_LEN;
+
+pub use codec::HelloError;
+pub use compatibility::Mismatch;
 
 /// First four bytes of a hello.
 pub const MAGIC: [u8; 4] = *b"FRXL";
@@ -8,6 +16,12 @@ pub const MAGIC: [u8; 4] = *b"FRXL";
 pub const PROTOCOL_MAJOR: u8 = 1;
 /// Protocol of this crate, minor: raised when something was added that an older peer may ignore.
 pub const PROTOCOL_MINOR: u8 = 0;
+/// Most bytes that a hello of any protocol may have.
+pub const HELLO_MAX_LEN: usize = 128;
+/// Bytes of a hello that this crate writes.
+pub const HELLO_LEN: usize = codec::FIXED_LEN + codec::LIMITS_LEN;
+
+const _: () = assert!(HELLO_LEN <= HELLO_MAX_LEN && HELLO_MAX_LEN < PAYLOAD_MAX_LEN);
 
 /// What a board says of itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +48,7 @@ pub struct Hello {
     pub last_fault: Option<Fault>,
     /// A number that belongs to the last fault.
     pub fault_detail: u32,
-    /// State of the supervisor.
+    /// State of the supervisor; read as [`State::Faulted`] when the board tells one that this crate does not know.
     pub state: State,
     /// Limits of the board, sent as tag-length-value.
     pub limits: BoardLimits,
@@ -58,6 +72,27 @@ impl BoardKind {
     pub const fn is_simulated(self) -> bool {
         matches!(self, Self::Simulator | Self::Mps2An386)
     }
+
+    /// The kind's number on the wire.
+    pub const fn number(self) -> u8 {
+        match self {
+            Self::Simulator => 1,
+            Self::NucleoG474re => 2,
+            Self::Mps2An386 => 3,
+            Self::Other(number) => number,
+        }
+    }
+}
+
+impl From<u8> for BoardKind {
+    fn from(number: u8) -> Self {
+        match number {
+            1 => Self::Simulator,
+            2 => Self::NucleoG474re,
+            3 => Self::Mps2An386,
+            number => Self::Other(number),
+        }
+    }
 }
 
 /// Why the processor last started. Numbers never change.
@@ -75,6 +110,33 @@ pub enum ResetCause {
     BrownOut,
     /// A cause that this crate does not know, by number.
     Other(u8),
+}
+
+impl ResetCause {
+    /// The cause's number on the wire.
+    pub const fn number(self) -> u8 {
+        match self {
+            Self::PowerOn => 1,
+            Self::Pin => 2,
+            Self::Software => 3,
+            Self::Watchdog => 4,
+            Self::BrownOut => 5,
+            Self::Other(number) => number,
+        }
+    }
+}
+
+impl From<u8> for ResetCause {
+    fn from(number: u8) -> Self {
+        match number {
+            1 => Self::PowerOn,
+            2 => Self::Pin,
+            3 => Self::Software,
+            4 => Self::Watchdog,
+            5 => Self::BrownOut,
+            number => Self::Other(number),
+        }
+    }
 }
 
 /// Limits of a board that a scene has to keep; refused, never silently clamped, when exceeded by command.
@@ -100,4 +162,20 @@ pub struct BoardLimits {
     pub current_max_a_peak: f32,
     /// Time between two reports of the touch source, in seconds.
     pub touch_report_period_s: f32,
+}
+
+impl BoardLimits {
+    /// What holds for limits that a hello leaves out: nothing can be played, and one frame at a time may be sent.
+    pub const UNSTATED: Self = Self {
+        bitmap_pool_bytes: 0,
+        records_max: 0,
+        receive_window_bytes: FRAME_MAX_LEN as u16,
+        voltage_max_v_peak: 0.0,
+        full_scale_v_peak: 0.0,
+        edge_time_constant_s: 0.0,
+        electrode_capacitance_max_f: f32::INFINITY,
+        current_max_a_rms: 0.0,
+        current_max_a_peak: 0.0,
+        touch_report_period_s: 0.0,
+    };
 }

@@ -6,6 +6,7 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+mod bytes;
 pub mod fault;
 pub mod frame;
 pub mod hello;

@@ -1,11 +1,12 @@
 //! Messages in postcard. Enums are append-only: a variant keeps its place for ever.
 
+use postcard::experimental::max_size::MaxSize;
 use serde::{Deserialize, Serialize};
 
 use crate::fault::{Fault, Flags, State};
 
 /// What the host sends: a command with a sequence number that comes back in its answer.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize)]
 pub struct Request {
     /// Chosen by the host; repeated in the answer.
     pub sequence: u16,
@@ -14,7 +15,7 @@ pub struct Request {
 }
 
 /// What the host asks of the board. Every command is answered by one [`Answer`].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize)]
 pub enum Command {
     /// Says that the host is there.
     Ping,
@@ -63,7 +64,7 @@ pub enum Command {
 pub const TELEMETRY_PERIOD_MIN_TICKS: u32 = 40;
 
 /// What the board sends.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize)]
 pub enum FromBoard {
     /// Answers one request.
     Answer(Answer),
@@ -88,7 +89,7 @@ pub enum FromBoard {
 }
 
 /// The answer to a request.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize)]
 pub struct Answer {
     /// The request's sequence number.
     pub sequence: u16,
@@ -101,7 +102,7 @@ pub struct Answer {
 }
 
 /// How a command was accepted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, MaxSize)]
 pub enum Accepted {
     /// Done.
     Done,
@@ -110,7 +111,7 @@ pub enum Accepted {
 }
 
 /// Why a command was refused. Numbers say what was found and what the limit is.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize)]
 pub enum Refusal {
     /// The frame's postcard could not be read: a command of a newer protocol, most likely.
     UnknownCommand,
@@ -167,7 +168,7 @@ pub enum Refusal {
 }
 
 /// A number in a scene that the board cannot play.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize)]
 pub struct ConfigRefusal {
     /// Which number.
     pub field: ConfigField,
@@ -182,7 +183,7 @@ pub struct ConfigRefusal {
 }
 
 /// Names of the numbers that a scene can be refused for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, MaxSize)]
 pub enum ConfigField {
     /// Screen width, m.
     ScreenWidth,
@@ -229,7 +230,7 @@ pub enum ConfigField {
 }
 
 /// What the board does at one tick.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, MaxSize)]
 pub struct Telemetry {
     /// Ticks since power-on, modulo 2^32.
     pub tick: u32,

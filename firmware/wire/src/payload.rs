@@ -2,14 +2,191 @@
 //!
 //! | first byte | from | rest |
 //! |---|---|---|
-//! | `0x00` | host | hello request: protocol major, protocol minor |
-//! | `0x01` | board | [`crate::hello::Hello`] |
-//! | `0x02` | host | [`crate::message::Request`] in postcard |
-//! | `0x03` | board | [`crate::message::FromBoard`] in postcard |
-//! | `0x80..=0xff` | host | upload chunk: the chunk's number in 15 bits, big-endian, whose top bit is this byte's; then at most [`CHUNK_LEN`] bytes |
+//! | `0x00` | host | hello request: protocol major, protocol minor; what follows is ignored |
+//! | `0x01` | board | [`Hello`] |
+//! | `0x02` | host | [`Request`] in postcard |
+//! | `0x03` | board | [`FromBoard`] in postcard |
+//! | `0x80..=0xff` | host | upload chunk: the chunk's number in 15 bits, big-endian, whose top bit is this byte's; then 1 to [`CHUNK_LEN`] bytes |
+//!
+//! A host sends with [`hello_request_frame`], [`request_frame`] and [`chunk_frame`] and reads with
+//! [`Payload::parse_from_board`]. A board sends with [`hello_frame`] and [`from_board_frame`] and reads with
+//! [`Payload::parse_from_host`], so that its image holds no code for the other direction.
+
+mod error;
+
+use postcard::experimental::max_size::MaxSize;
+use serde::{Deserialize, Serialize};
+
+use crate::frame::{self, FRAME_MAX_LEN};
+use crate::hello::{Hello, PROTOCOL_MAJOR, PROTOCOL_MINOR};
+use crate::message::{Command, FromBoard, Request};
+
+pub use error::{ParseError, WriteError};
 
 /// Largest payload of a frame in bytes, first byte included: 192 less zero byte, COBS overhead byte and CRC-32.
 pub const PAYLOAD_MAX_LEN: usize = 186;
 
 /// Bytes that every chunk of an upload carries, but for the last, which may be shorter.
 pub const CHUNK_LEN: usize = PAYLOAD_MAX_LEN - 2;
+
+/// Largest number that a chunk can have.
+pub const CHUNK_NUMBER_MAX: u16 = 0x7fff;
+
+const HELLO_REQUEST: u8 = 0x00;
+const HELLO: u8 = 0x01;
+const REQUEST: u8 = 0x02;
+const FROM_BOARD: u8 = 0x03;
+const CHUNK: u8 = 0x80;
+
+const _: () = assert!(Request::POSTCARD_MAX_SIZE < PAYLOAD_MAX_LEN);
+const _: () = assert!(FromBoard::POSTCARD_MAX_SIZE < PAYLOAD_MAX_LEN);
+
+/// What a frame carries.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Payload<'a> {
+    /// The host asks who is there.
+    HelloRequest {
+        /// Protocol that the host speaks: major, minor.
+        protocol: (u8, u8),
+    },
+    /// The board says who it is.
+    Hello(Hello),
+    /// The host asks for something.
+    Request(Request),
+    /// The board answers or reports.
+    FromBoard(FromBoard),
+    /// A piece of the upload that is under way.
+    Chunk {
+        /// The chunk's number, from zero.
+        number: u16,
+        /// Its bytes: [`CHUNK_LEN`] of them, fewer in the last chunk, never none.
+        bytes: &'a [u8],
+    },
+}
+
+impl<'a> Payload<'a> {
+    /// Reads a payload from either side.
+    pub fn parse(payload: &'a [u8]) -> Result<Self, ParseError> {
+        match payload {
+            [HELLO | FROM_BOARD, ..] => Self::parse_from_board(payload),
+            _ => Self::parse_from_host(payload),
+        }
+    }
+
+    /// Reads a payload that a host sent.
+    pub fn parse_from_host(payload: &'a [u8]) -> Result<Self, ParseError> {
+        let (&kind, rest) = payload.split_first().ok_or(ParseError::Empty)?;
+        match (kind, rest) {
+            (HELLO_REQUEST, &[major, minor, ..]) => Ok(Self::HelloRequest { protocol: (major, minor) }),
+            (HELLO_REQUEST, _) => Err(ParseError::Malformed { kind }),
+            (REQUEST, rest) => parse_request(rest).map(Self::Request),
+            (CHUNK.., [low, bytes @ ..]) if !bytes.is_empty() => {
+                Ok(Self::Chunk { number: u16::from_be_bytes([kind & !CHUNK, *low]), bytes })
+            }
+            (CHUNK.., _) => Err(ParseError::Malformed { kind }),
+            (kind, _) => Err(ParseError::UnknownKind { kind }),
+        }
+    }
+
+    /// Reads a payload that a board sent.
+    pub fn parse_from_board(payload: &'a [u8]) -> Result<Self, ParseError> {
+        let (&kind, rest) = payload.split_first().ok_or(ParseError::Empty)?;
+        match kind {
+            HELLO => Hello::parse(rest).map(Self::Hello).map_err(ParseError::Hello),
+            FROM_BOARD => whole(rest).map(Self::FromBoard).ok_or(ParseError::Malformed { kind }),
+            kind => Err(ParseError::UnknownKind { kind }),
+        }
+    }
+
+    /// Writes the payload; returns its bytes.
+    pub fn write<'b>(&self, buffer: &'b mut [u8; PAYLOAD_MAX_LEN]) -> Result<&'b [u8], WriteError> {
+        match self {
+            Self::HelloRequest { protocol: (major, minor) } => join(buffer, &[HELLO_REQUEST], &[*major, *minor]),
+            Self::Hello(hello) => join(buffer, &[HELLO], &hello.write()),
+            Self::Request(request) => write_postcard(buffer, REQUEST, request),
+            Self::FromBoard(message) => write_postcard(buffer, FROM_BOARD, message),
+            Self::Chunk { number, bytes } => write_chunk(buffer, *number, bytes),
+        }
+    }
+
+    /// Writes a whole frame; returns its bytes.
+    pub fn write_frame<'f>(&self, frame: &'f mut [u8; FRAME_MAX_LEN]) -> Result<&'f [u8], WriteError> {
+        let mut buffer = [0; PAYLOAD_MAX_LEN];
+        Ok(frame::encode(self.write(&mut buffer)?, frame)?)
+    }
+}
+
+/// Frame of a hello request in the protocol of this crate.
+pub fn hello_request_frame(frame: &mut [u8; FRAME_MAX_LEN]) -> Result<&[u8], WriteError> {
+    Ok(frame::encode(&[HELLO_REQUEST, PROTOCOL_MAJOR, PROTOCOL_MINOR], frame)?)
+}
+
+/// Frame of a hello.
+pub fn hello_frame<'f>(hello: &Hello, frame: &'f mut [u8; FRAME_MAX_LEN]) -> Result<&'f [u8], WriteError> {
+    let mut buffer = [0; PAYLOAD_MAX_LEN];
+    Ok(frame::encode(join(&mut buffer, &[HELLO], &hello.write())?, frame)?)
+}
+
+/// Frame of a request.
+pub fn request_frame<'f>(request: &Request, frame: &'f mut [u8; FRAME_MAX_LEN]) -> Result<&'f [u8], WriteError> {
+    let mut buffer = [0; PAYLOAD_MAX_LEN];
+    Ok(frame::encode(write_postcard(&mut buffer, REQUEST, request)?, frame)?)
+}
+
+/// Frame of a message of the board.
+pub fn from_board_frame<'f>(message: &FromBoard, frame: &'f mut [u8; FRAME_MAX_LEN]) -> Result<&'f [u8], WriteError> {
+    let mut buffer = [0; PAYLOAD_MAX_LEN];
+    Ok(frame::encode(write_postcard(&mut buffer, FROM_BOARD, message)?, frame)?)
+}
+
+/// Frame of an upload's chunk: its number from zero, and [`CHUNK_LEN`] bytes, or fewer in the last one.
+pub fn chunk_frame<'f>(number: u16, bytes: &[u8], frame: &'f mut [u8; FRAME_MAX_LEN]) -> Result<&'f [u8], WriteError> {
+    let mut buffer = [0; PAYLOAD_MAX_LEN];
+    Ok(frame::encode(write_chunk(&mut buffer, number, bytes)?, frame)?)
+}
+
+fn write_chunk<'b>(buffer: &'b mut [u8; PAYLOAD_MAX_LEN], number: u16, bytes: &[u8]) -> Result<&'b [u8], WriteError> {
+    if number > CHUNK_NUMBER_MAX {
+        return Err(WriteError::ChunkNumber { number });
+    }
+    if bytes.is_empty() || bytes.len() > CHUNK_LEN {
+        return Err(WriteError::ChunkLength { len: bytes.len() });
+    }
+    let [high, low] = number.to_be_bytes();
+    join(buffer, &[CHUNK | high, low], bytes)
+}
+
+fn write_postcard<'b, T: Serialize>(
+    buffer: &'b mut [u8; PAYLOAD_MAX_LEN],
+    kind: u8,
+    message: &T,
+) -> Result<&'b [u8], WriteError> {
+    let [first, rest @ ..] = buffer;
+    *first = kind;
+    let len = postcard::to_slice(message, rest).map_err(|_| WriteError::TooLong)?.len();
+    buffer.get(..=len).ok_or(WriteError::TooLong)
+}
+
+fn join<'b>(buffer: &'b mut [u8; PAYLOAD_MAX_LEN], head: &[u8], tail: &[u8]) -> Result<&'b [u8], WriteError> {
+    let joined = buffer.get_mut(..head.len() + tail.len()).ok_or(WriteError::TooLong)?;
+    for (to, from) in joined.iter_mut().zip(head.iter().chain(tail)) {
+        *to = *from;
+    }
+    Ok(joined)
+}
+
+/// The sequence number comes first, so that a command that cannot be read can still be refused by number.
+fn parse_request(bytes: &[u8]) -> Result<Request, ParseError> {
+    let (sequence, command) =
+        postcard::take_from_bytes::<u16>(bytes).map_err(|_| ParseError::Malformed { kind: REQUEST })?;
+    let command = whole::<Command>(command).ok_or(ParseError::UnknownCommand { sequence })?;
+    Ok(Request { sequence, command })
+}
+
+/// The postcard value that these bytes are, to the last byte.
+fn whole<'a, T: Deserialize<'a>>(bytes: &'a [u8]) -> Option<T> {
+    match postcard::take_from_bytes(bytes) {
+        Ok((value, [])) => Some(value),
+        _ => None,
+    }
+}

@@ -3,7 +3,13 @@
 //! Every friction in a scene is **electric friction**: what the drive adds above `mu F_N`, in newtons. Lengths are in
 //! metres from the screen's top left corner, x to the right, y down.
 
+mod codec;
+mod view;
+
+use postcard::experimental::max_size::MaxSize;
 use serde::{Deserialize, Serialize};
+
+pub use view::Scene;
 
 /// Version of the layout.
 pub const SCENE_VERSION: u16 = 1;
@@ -153,7 +159,7 @@ pub enum Wave {
 }
 
 /// Why bytes are not a scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, MaxSize)]
 pub enum SceneError {
     /// The layout's version is not this one.
     Version {
@@ -185,4 +191,23 @@ pub enum SceneError {
         /// The byte.
         value: u8,
     },
+    /// More records than the layout allows ([`RECORDS_MAX`]).
+    TooManyRecords {
+        /// As the header says.
+        found: u8,
+    },
+    /// Header flags of which at least one is not known.
+    UnknownFlags(u8),
+    /// A byte that its header or record does not use is not zero.
+    NotZero {
+        /// Number of the record, from zero; [`SceneError::HEADER`] for the header.
+        record: u8,
+        /// Offset of the byte in the header or record.
+        offset: u8,
+    },
+}
+
+impl SceneError {
+    /// Stands for the header where a record's number is told.
+    pub const HEADER: u8 = u8::MAX;
 }

@@ -1,0 +1,60 @@
+//! Fields at fixed places of fixed layouts; a field outside its layout does not compile.
+
+/// The `N` bytes at `AT`.
+pub(crate) fn get<const AT: usize, const N: usize, const LEN: usize>(bytes: &[u8; LEN]) -> [u8; N] {
+    const { assert!(AT + N <= LEN, "the field lies outside the layout") };
+    let mut field = [0; N];
+    for (to, from) in field.iter_mut().zip(bytes.iter().skip(AT)) {
+        *to = *from;
+    }
+    field
+}
+
+/// Puts `N` bytes at `AT`.
+pub(crate) fn put<const AT: usize, const N: usize, const LEN: usize>(bytes: &mut [u8; LEN], field: [u8; N]) {
+    const { assert!(AT + N <= LEN, "the field lies outside the layout") };
+    for (to, from) in bytes.iter_mut().skip(AT).zip(field) {
+        *to = from;
+    }
+}
+
+/// The little-endian `f32` at `AT`.
+pub(crate) fn get_f32<const AT: usize, const LEN: usize>(bytes: &[u8; LEN]) -> f32 {
+    f32::from_le_bytes(get::<AT, 4, LEN>(bytes))
+}
+
+/// Puts a little-endian `f32` at `AT`.
+pub(crate) fn put_f32<const AT: usize, const LEN: usize>(bytes: &mut [u8; LEN], field: f32) {
+    put::<AT, 4, LEN>(bytes, field.to_le_bytes());
+}
+
+/// The little-endian `u32` at `AT`.
+pub(crate) fn get_u32<const AT: usize, const LEN: usize>(bytes: &[u8; LEN]) -> u32 {
+    u32::from_le_bytes(get::<AT, 4, LEN>(bytes))
+}
+
+/// Puts a little-endian `u32` at `AT`.
+pub(crate) fn put_u32<const AT: usize, const LEN: usize>(bytes: &mut [u8; LEN], field: u32) {
+    put::<AT, 4, LEN>(bytes, field.to_le_bytes());
+}
+
+/// The little-endian `u16` at `AT`.
+pub(crate) fn get_u16<const AT: usize, const LEN: usize>(bytes: &[u8; LEN]) -> u16 {
+    u16::from_le_bytes(get::<AT, 2, LEN>(bytes))
+}
+
+/// Puts a little-endian `u16` at `AT`.
+pub(crate) fn put_u16<const AT: usize, const LEN: usize>(bytes: &mut [u8; LEN], field: u16) {
+    put::<AT, 2, LEN>(bytes, field.to_le_bytes());
+}
+
+/// The byte at `AT`.
+pub(crate) fn get_u8<const AT: usize, const LEN: usize>(bytes: &[u8; LEN]) -> u8 {
+    let [byte] = get::<AT, 1, LEN>(bytes);
+    byte
+}
+
+/// Puts a byte at `AT`.
+pub(crate) fn put_u8<const AT: usize, const LEN: usize>(bytes: &mut [u8; LEN], field: u8) {
+    put::<AT, 1, LEN>(bytes, [field]);
+}

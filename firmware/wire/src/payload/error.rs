@@ -1,0 +1,89 @@
+//! Why a payload cannot be read or written.
+
+use core::fmt;
+
+use super::{CHUNK_LEN, CHUNK_NUMBER_MAX, PAYLOAD_MAX_LEN};
+use crate::frame::PayloadTooLong;
+use crate::hello::HelloError;
+
+/// Why a payload cannot be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ParseError {
+    /// The frame carries nothing.
+    Empty,
+    /// The first byte is none that the other side sends.
+    UnknownKind {
+        /// The first byte.
+        kind: u8,
+    },
+    /// A request whose command cannot be read: a command of a newer protocol, most likely. It is answered with
+    /// [`crate::message::Refusal::UnknownCommand`].
+    UnknownCommand {
+        /// The request's sequence number.
+        sequence: u16,
+    },
+    /// What follows the first byte does not go with it.
+    Malformed {
+        /// The first byte.
+        kind: u8,
+    },
+    /// The hello cannot be read.
+    Hello(HelloError),
+}
+
+impl fmt::Display for ParseError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Empty => f.write_str("a frame carries no payload: its sender is not frixel"),
+            Self::UnknownKind { kind } => {
+                write!(f, "a payload of kind {kind:#04x} is not expected from this side: update the older of the two")
+            }
+            Self::UnknownCommand { sequence } => {
+                write!(f, "the command of request {sequence} cannot be read: update the firmware")
+            }
+            Self::Malformed { kind } => {
+                write!(f, "a payload of kind {kind:#04x} cannot be read: update the older of host and board")
+            }
+            Self::Hello(error) => error.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for ParseError {}
+
+/// Why a payload cannot be written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WriteError {
+    /// It would be longer than [`PAYLOAD_MAX_LEN`].
+    TooLong,
+    /// A chunk's number beyond [`CHUNK_NUMBER_MAX`].
+    ChunkNumber {
+        /// The chunk's number.
+        number: u16,
+    },
+    /// A chunk without bytes, or with more than [`CHUNK_LEN`].
+    ChunkLength {
+        /// Bytes in the chunk.
+        len: usize,
+    },
+}
+
+impl fmt::Display for WriteError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TooLong => write!(f, "a payload is longer than the {PAYLOAD_MAX_LEN} bytes that a frame takes"),
+            Self::ChunkNumber { number } => {
+                write!(f, "chunk {number} is beyond {CHUNK_NUMBER_MAX}, the last that an upload can have: upload less")
+            }
+            Self::ChunkLength { len } => write!(f, "a chunk takes 1 to {CHUNK_LEN} bytes, this one has {len}"),
+        }
+    }
+}
+
+impl core::error::Error for WriteError {}
+
+impl From<PayloadTooLong> for WriteError {
+    fn from(_: PayloadTooLong) -> Self {
+        Self::TooLong
+    }
+}
