@@ -2,7 +2,7 @@
 
 use frixel_model::{Contact, Finger, InverseTable, TableError};
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
-use frixel_wire::scene::{Carrier, Header, Layer as LayerRecord, RECORDS_MAX, Scene};
+use frixel_wire::scene::{Header, Layer as LayerRecord, RECORDS_MAX, Scene};
 use heapless::Vec;
 
 use crate::Board;

@@ -1,6 +1,6 @@
 //! Whether the numbers of a scene are ones that the board can play. Refused, never silently clamped.
 
-use frixel_model::{sine_mean_square_left, square_mean_square_left};
+use frixel_model::{sine_peak_per_rms, square_peak_per_rms};
 use frixel_wire::message::{ConfigField, ConfigRefusal};
 use frixel_wire::scene::{Carrier, Header, Layer, Record, Region};
 
@@ -81,8 +81,8 @@ pub(crate) fn check_record(record: &Record, layer: u8) -> Result<(), ConfigRefus
 pub(crate) fn peak_per_rms(carrier: Carrier, half_period_s: f32, edge_time_constant_s: f32) -> f32 {
     let (half_period_s, edge_s) = (f64::from(half_period_s), f64::from(edge_time_constant_s));
     match carrier {
-        Carrier::Square => libm::sqrt(1.0 / square_mean_square_left(half_period_s, edge_s)) as f32,
-        Carrier::Sine => libm::sqrt(2.0 / sine_mean_square_left(half_period_s, edge_s)) as f32,
+        Carrier::Square => square_peak_per_rms(half_period_s, edge_s) as f32,
+        Carrier::Sine => sine_peak_per_rms(half_period_s, edge_s) as f32,
     }
 }
 
