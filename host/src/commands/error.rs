@@ -4,10 +4,10 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use frixel::device::{DeviceError, PortError};
+use frixel::player::SimulationError;
 use frixel::rigs::ServerError;
 use frixel::scene::CompileError;
 use frixel_hil_sim::{StrokeError, WorldError};
-use frixel_model::ParameterError;
 use frixel_wire::fault::Fault;
 use thiserror::Error;
 
@@ -23,8 +23,8 @@ pub(crate) enum CommandError {
     Server(#[from] ServerError),
     #[error(transparent)]
     World(#[from] WorldError),
-    #[error("the contact model refuses the scene's finger: {0:?}")]
-    Parameter(ParameterError),
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
     #[error("{}: {source}", path.display())]
     Stroke { path: PathBuf, source: StrokeError },
     #[error("a stroke over this scene: {0}")]
@@ -54,11 +54,5 @@ impl CommandError {
     pub(crate) fn file(path: &Path) -> impl FnOnce(io::Error) -> Self {
         let path = path.to_owned();
         move |source| Self::File { path, source }
-    }
-}
-
-impl From<ParameterError> for CommandError {
-    fn from(error: ParameterError) -> Self {
-        Self::Parameter(error)
     }
 }

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use frixel::device::Counters;
-use frixel::metrics::Metrics;
+use frixel::player::Simulated;
 use frixel::scene::Program;
 use serde::Serialize;
 
@@ -32,14 +32,8 @@ pub(super) struct Summary {
 }
 
 impl Summary {
-    pub(super) fn of_simulator(
-        program: &Program,
-        metrics: &Metrics,
-        counters: Counters,
-        realtime_factor: f64,
-        files: Vec<PathBuf>,
-    ) -> Self {
-        let errors = metrics.summary();
+    pub(super) fn of_simulator(program: &Program, simulated: &Simulated, files: Vec<PathBuf>) -> Self {
+        let errors = simulated.recorder.metrics().summary();
         Self {
             rig: "sim",
             ticks: errors.ticks,
@@ -51,8 +45,8 @@ impl Summary {
             wanted_min_n: errors.wanted_range_n.map(|(min_n, _)| min_n),
             wanted_max_n: errors.wanted_range_n.map(|(_, max_n)| max_n),
             saturated_ticks: errors.saturated_ticks,
-            realtime_factor: Some(realtime_factor),
-            ..Self::of_board(program, 0, 0, counters, files)
+            realtime_factor: Some(simulated.realtime_factor),
+            ..Self::of_board(program, 0, 0, simulated.counters, files)
         }
     }
 

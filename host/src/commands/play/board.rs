@@ -4,16 +4,19 @@ use std::time::Duration;
 
 use frixel::device::{DEFAULT_BAUD, Device, Event, SerialLink};
 use frixel::output::FeltRow;
+use frixel::player::start;
 use frixel::scene::{Program, Scene, compile};
 use frixel::wanted::Wanted;
 use frixel_wire::fault::Flags;
 use frixel_wire::message::Telemetry;
 
 use super::super::interrupt::Interrupt;
-use super::{CommandError, PlayArgs, Summary, pass, start, tell_notes, write_felt_csv};
+use super::{Bars, CommandError, PlayArgs, Summary, tell_notes, write_felt_csv};
 
 /// Most telemetry that a board sends, in messages a second.
 const TELEMETRY_MAX_HZ: u32 = 1000;
+/// Time between two looks at Ctrl-C and at the board's state.
+const STEP: Duration = Duration::from_millis(50);
 
 pub(super) fn play(args: &PlayArgs) -> Result<Summary, CommandError> {
     let port = || args.port.clone();
@@ -32,15 +35,18 @@ pub(super) fn play(args: &PlayArgs) -> Result<Summary, CommandError> {
     }
     let program = compile(&scene, &hello.limits, hello.tick_hz)?;
     tell_notes(&program);
-    start(&mut device, &program)?;
+    let mut bars = Bars::default();
+    start(&mut device, &program, &mut |progress| bars.upload(progress))?;
+    bars.finish();
     device.subscribe(hello.tick_hz.div_ceil(args.csv_hz))?;
 
     let mut diary = Diary::new(&program, hello.tick_hz);
-    pass(&mut device, args.seconds, &mut |device, step: Duration| {
-        device.wait(step, &mut |event| diary.take(&event))?;
+    let mut passed_s = 0.0;
+    while args.seconds.is_none_or(|seconds| passed_s < seconds) && !interrupt.is_asked() {
+        device.wait(STEP, &mut |event| diary.take(&event))?;
         diary.stopped(&args.port)?;
-        Ok(interrupt.is_asked())
-    })?;
+        passed_s += STEP.as_secs_f64();
+    }
     device.stop()?;
     device.disarm()?;
     let files = vec![write_felt_csv(&args.out, &diary.rows)?];
