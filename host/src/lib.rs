@@ -1,2 +1,9 @@
 //! Driver library for frixel boards.
 #![forbid(unsafe_code)]
+
+pub mod device;
+pub mod metrics;
+pub mod output;
+pub mod rigs;
+pub mod scene;
+pub mod wanted;
