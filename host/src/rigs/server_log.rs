@@ -72,7 +72,7 @@ impl ServerLog {
         let telemetry = &record.status.telemetry;
         if telemetry.state != self.state {
             self.state = telemetry.state;
-            self.event(record.tick, &telemetry.state.to_string())?;
+            self.event(record.tick, name_of(telemetry.state))?;
         }
         let host_silent = telemetry.flags.contains(Flags::HOST_SILENT);
         if host_silent && !self.host_silent {
@@ -94,5 +94,15 @@ impl ServerLog {
     fn flush(&mut self) -> io::Result<()> {
         self.felt.flush()?;
         self.events.flush()
+    }
+}
+
+/// A word for a column, where a sentence would not do.
+fn name_of(state: State) -> &'static str {
+    match state {
+        State::Disarmed => "disarmed",
+        State::Armed => "armed",
+        State::Active => "active",
+        State::Faulted => "faulted",
     }
 }
