@@ -12,7 +12,7 @@ use crate::calls::scene;
 use crate::fake_board::FakeBoard;
 use crate::pty_board::PtyBoard;
 
-const LONG: Duration = Duration::from_secs(600);
+const LONG: Duration = Duration::from_mins(10);
 
 fn open(path: &str) -> Result<SerialLink, PortError> {
     SerialLink::open(path, DEFAULT_BAUD)
