@@ -97,19 +97,19 @@ fn a_slow_board_fills_the_window() {
     assert!(link.most_under_way > usize::from(WINDOW) * 9 / 10, "{} bytes", link.most_under_way);
 }
 
-/// Pings go out while an upload waits for credit. The line refuses them too when they go beyond it.
+/// Pings go out while an upload waits for credit, and the line refuses them too when they go beyond it.
 #[test]
 fn pings_have_credit_of_their_own() {
     for host_timeout_s in [0.25, 0.02] {
         let mut link = VirtualLink::new(FakeBoard::new());
-        link.board_delay = Duration::from_millis(230);
-        let samples = samples(20_000);
-        let scene = scene(host_timeout_s);
+        link.board_pause = Duration::from_millis(100)..Duration::from_millis(650);
+        let (samples, scene) = (samples(62_500), scene(host_timeout_s));
         let mut device = connected(link);
         let upload = Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] };
         device.upload(&upload, &mut |_| {}).unwrap();
-        let board = device.into_link().board;
-        assert!(board.pings > 20, "{} pings", board.pings);
+        let link = device.into_link();
+        assert!(link.now() > Duration::from_millis(800), "the board paused in the upload");
+        assert!(link.board.pings > 8, "{} pings", link.board.pings);
     }
 }
 
