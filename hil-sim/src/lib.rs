@@ -1,2 +1,31 @@
 //! A simulator that stands in for amplifier, screen and finger, in virtual time.
+//!
+//! - [`World`]: what is on the other side of the board's pins. It gives a [`Sense`](frixel_render::Sense) and takes a
+//!   [`Drive`](frixel_render::Drive) at every tick, and tells what the finger [felt](Felt).
+//! - [`Stroke`]: where the finger is at a time.
+//! - [`Rig`]: a board and its world on one thread.
+//! - [`Line`]: one direction of a serial line, whose bytes take the time that the line rate gives them.
+//!
+//! Nothing here knows wall time, and everything random comes from a seed: the same run gives the same bytes on every
+//! platform. Mathematics comes from `libm` by name for that reason; `+ - * /` and the square root of `f64` are rounded
+//! correctly everywhere.
 #![forbid(unsafe_code)]
+
+mod amplifier;
+mod error;
+mod fingertip;
+mod line;
+mod random;
+mod rig;
+mod stroke;
+mod touch;
+mod world;
+
+pub use amplifier::AmplifierConfig;
+pub use error::{OutOfRange, WorldError};
+pub use fingertip::example_finger;
+pub use line::{Line, LineCounts, LineFault};
+pub use rig::{BoardMemory, Rig, RigConfig, TickRecord, contact_of};
+pub use stroke::{FingerState, Point, Stroke, StrokeError};
+pub use touch::TouchConfig;
+pub use world::{Felt, World, WorldConfig};

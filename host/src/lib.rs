@@ -2,3 +2,8 @@
 #![forbid(unsafe_code)]
 
 pub mod device;
+pub mod metrics;
+pub mod output;
+pub mod rigs;
+pub mod scene;
+pub mod wanted;

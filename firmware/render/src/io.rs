@@ -5,9 +5,9 @@
 pub enum Touch {
     /// A finger is on the screen.
     Down {
-        /// From the left edge of the screen, m.
+        /// From the left edge of the screen, in m.
         x_m: f32,
-        /// From the top edge of the screen, m.
+        /// From the top edge of the screen, in m.
         y_m: f32,
         /// Ticks since the finger was there, as far as the source knows.
         age_ticks: u32,
@@ -17,13 +17,13 @@ pub enum Touch {
 }
 
 /// What the board sees at a tick.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sense {
     /// A touch report that came since the tick before.
     pub touch: Option<Touch>,
     /// The amplifier says that something is wrong with it.
     pub amplifier_fault: bool,
-    /// Voltage on the electrode as the amplifier's monitor has it, in volts.
+    /// Voltage on the electrode as the amplifier's monitor has it, at the end of the tick before, in volts.
     pub monitor_v: f32,
     /// The arm switch is held; always so on a simulator.
     pub arm_switch: bool,

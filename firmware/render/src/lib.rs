@@ -1,7 +1,56 @@
-//! The firmware without the hardware: a session that turns bytes into scenes, and a tick that turns touch into voltage.
-#![no_std]
+//! The firmware without the hardware: a [`Session`] turns bytes from a host into scenes, and a [`Ticker`] turns touch
+//! into voltage, one tick at a time.
+//!
+//! The two run at different priorities on a board and never share mutable state. What goes between them are values:
+//! [`Order`]s from the session to the ticker, a [`Status`] back, and the two [`Active`] buffers, which change hands by
+//! reference so that a scene is swapped whole at a tick boundary. The [`BitmapPool`] is shared memory of single bytes:
+//! the session writes only where the ticker does not read.
+//!
+//! A board, a simulator and a test all drive them in the same way:
+//!
+//! ```
+//! use frixel_render::{Active, BitmapPool, Board, Sense, Session, Ticker};
+//!
+//! let board = Board::SIMULATOR;
+//! let pool = BitmapPool::new();
+//! let (mut first, mut second) = (Active::new(), Active::new());
+//! let mut ticker = Ticker::new(&board, &pool, &mut first);
+//! let mut session = Session::new(board, &pool, &mut second);
+//!
+//! session.receive(&[0, 0, 0], &ticker.status()); // bytes from the serial line
+//! while let Some(order) = session.next_order() {
+//!     if let Some(spare) = ticker.apply(order) {
+//!         session.take_back(spare);
+//!     }
+//! }
+//! let drive = ticker.tick(&Sense::default()); // 40,000 times a second
+//! session.poll(&ticker.status());
+//! assert_eq!(drive.dac_code, 0);
+//! assert_eq!(session.transmit(&mut [0; 64]), 0); // bytes for the serial line
+//! ```
+#![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 
+mod active;
+mod bitmap_pool;
+mod board;
+mod carrier;
+mod config;
+mod envelope;
+mod estimator;
 mod io;
+mod layer;
+mod order;
+mod session;
+mod stillness;
+mod supervisor;
+mod ticker;
+mod turns;
 
+pub use active::Active;
+pub use bitmap_pool::{BITMAP_POOL_LEN, BitmapPool};
+pub use board::Board;
 pub use io::{Drive, Sense, Touch};
+pub use order::{Counters, Order, Status};
+pub use session::Session;
+pub use ticker::Ticker;

@@ -1,0 +1,129 @@
+//! The coefficients that the tick reads. What can be computed when a scene is committed is never computed in the tick.
+
+use frixel_model::{Contact, Finger, InverseTable, TableError};
+use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
+use frixel_wire::scene::{Header, Layer as LayerRecord, RECORDS_MAX, Scene};
+use heapless::Vec;
+
+use crate::Board;
+use crate::bitmap_pool::{BitmapPool, Directory};
+use crate::carrier::CarrierTiming;
+use crate::config::{self, WHOLE_SCENE};
+use crate::layer::Layer;
+
+/// Coefficients of one scene. A board has two of them: one that plays and one that the next scene is built in.
+pub struct Active {
+    layers: Vec<Layer, RECORDS_MAX>,
+    table: Option<InverseTable>,
+    pub(crate) carrier: CarrierTiming,
+    pub(crate) slew_step_v: f32,
+    /// `None` for a scene that goes on without a host.
+    pub(crate) host_timeout_ticks: Option<u32>,
+    pub(crate) prediction: bool,
+}
+
+impl Active {
+    /// Coefficients of no scene.
+    #[allow(clippy::new_without_default, reason = "it belongs in a static, not into a value made in passing")]
+    pub const fn new() -> Self {
+        Self {
+            layers: Vec::new(),
+            table: None,
+            carrier: CarrierTiming::SILENT,
+            slew_step_v: 0.0,
+            host_timeout_ticks: None,
+            prediction: true,
+        }
+    }
+
+    /// Forgets the scene.
+    pub(crate) fn unload(&mut self) {
+        *self = Self::new();
+    }
+
+    /// The inverse table; `None` without a scene.
+    #[inline]
+    pub(crate) fn table(&self) -> Option<&InverseTable> {
+        self.table.as_ref()
+    }
+
+    /// Electric friction of all layers at a place, in N.
+    #[inline]
+    pub(crate) fn electric_friction_n(&self, x_m: f32, y_m: f32, pool: &BitmapPool) -> f32 {
+        self.layers.iter().fold(0.0, |below_n, layer| layer.blend_over(below_n, x_m, y_m, pool))
+    }
+
+    /// Makes these the coefficients of `scene`. When it is refused, they are those of no scene.
+    pub(crate) fn load(&mut self, scene: &Scene, board: &Board, directory: &Directory) -> Result<(), Refusal> {
+        self.unload();
+        let header = scene.header();
+        config::check_header(header, board).map_err(Refusal::Config)?;
+        let (carrier, voltage_max_v_rms) = carrier(header, board).map_err(Refusal::Config)?;
+        self.load_layers(scene, directory)?;
+        self.carrier = carrier;
+        self.slew_step_v = header.slew_v_per_s * board.tick_period_s();
+        self.host_timeout_ticks = (!header.autonomous).then(|| board.ticks(header.host_timeout_s));
+        self.prediction = header.prediction;
+        self.table = Some(table(header, voltage_max_v_rms).map_err(Refusal::Config)?);
+        Ok(())
+    }
+
+    fn load_layers(&mut self, scene: &Scene, directory: &Directory) -> Result<(), Refusal> {
+        for (number, record) in scene.records().enumerate() {
+            let number = number as u8;
+            config::check_record(&record, number).map_err(Refusal::Config)?;
+            let bitmap = match record.layer {
+                LayerRecord::Bitmap { crc32, .. } => {
+                    Some(directory.find(crc32).ok_or(Refusal::BitmapMissing { crc32 })?)
+                }
+                _ => None,
+            };
+            // There is room for every record that a scene can have.
+            let _ = self.layers.push(Layer::new(&record, bitmap));
+        }
+        Ok(())
+    }
+}
+
+/// The carrier of a scene, and the largest rms voltage that it carries within all limits.
+fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), ConfigRefusal> {
+    let limits = &board.limits;
+    let half_period_ticks = board.ticks(0.5 / header.carrier_hz);
+    let half_period_s = half_period_ticks as f32 * board.tick_period_s();
+    let peak_per_rms = config::peak_per_rms(header.carrier, half_period_s, limits.edge_time_constant_s);
+    let voltage_max_v_rms = header.voltage_max_v_rms.min(header.voltage_max_v_peak / peak_per_rms);
+    let drive_v_peak = voltage_max_v_rms * peak_per_rms;
+
+    let carrier_hz = 0.5 / half_period_s;
+    let (rms_a, peak_a) = config::currents_a(header.carrier, drive_v_peak, carrier_hz, board);
+    config::within(ConfigField::CurrentRms, rms_a, 0.0, limits.current_max_a_rms, WHOLE_SCENE)?;
+    config::within(ConfigField::CurrentPeak, peak_a, 0.0, limits.current_max_a_peak, WHOLE_SCENE)?;
+
+    let codes_per_v = f32::from(i16::MAX) / limits.full_scale_v_peak;
+    let code_max = (header.voltage_max_v_peak * codes_per_v) as i32;
+    let timing = CarrierTiming {
+        shape: header.carrier,
+        half_period_ticks,
+        codes_per_v_rms: peak_per_rms * codes_per_v,
+        code_max: code_max.min(i32::from(i16::MAX)),
+    };
+    Ok((timing, voltage_max_v_rms))
+}
+
+/// The inverse table of a scene's finger, coating and load. It is made in f64, so that its error is the table's own.
+fn table(header: &Header, voltage_max_v_rms: f32) -> Result<InverseTable, ConfigRefusal> {
+    let refusal = |field, found| ConfigRefusal { field, found, min: 0.0, max: f32::INFINITY, layer: WHOLE_SCENE };
+    let finger = Finger {
+        radius_m: f64::from(header.finger_radius_m),
+        stiffness_pa_per_m: f64::from(header.stiffness_pa_per_m),
+        friction_coefficient: f64::from(header.friction_coefficient),
+    };
+    let contact = Contact::new(&finger, f64::from(header.effective_gap_m))
+        .map_err(|_| refusal(ConfigField::EffectiveGap, header.effective_gap_m))?
+        .under_load(f64::from(header.normal_load_n))
+        .map_err(|_| refusal(ConfigField::NormalLoad, header.normal_load_n))?;
+    InverseTable::build(&contact, f64::from(voltage_max_v_rms)).map_err(|error: TableError| {
+        let _ = error;
+        refusal(ConfigField::TableRange, voltage_max_v_rms)
+    })
+}

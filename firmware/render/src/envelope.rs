@@ -1,0 +1,51 @@
+//! The envelope: the rms voltage that the carrier carries, moving no faster than its slew limit.
+
+/// The envelope's state.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Envelope {
+    voltage_v_rms: f32,
+}
+
+impl Envelope {
+    pub(crate) fn voltage_v_rms(&self) -> f32 {
+        self.voltage_v_rms
+    }
+
+    /// Zero at once, whatever the slew limit.
+    pub(crate) fn silence(&mut self) {
+        self.voltage_v_rms = 0.0;
+    }
+
+    /// Moves towards `target_v_rms` by at most `step_max_v`. Returns whether that was too far for one tick.
+    #[inline]
+    pub(crate) fn follow(&mut self, target_v_rms: f32, step_max_v: f32) -> bool {
+        let step_v = target_v_rms - self.voltage_v_rms;
+        if step_v > step_max_v {
+            self.voltage_v_rms += step_max_v;
+            true
+        } else if step_v < -step_max_v {
+            self.voltage_v_rms -= step_max_v;
+            true
+        } else {
+            self.voltage_v_rms = target_v_rms;
+            false
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_moves_by_the_step_at_most_and_arrives_exactly() {
+        let mut envelope = Envelope::default();
+        let slewed: Vec<bool> = (0..4).map(|_| envelope.follow(7.0, 2.0)).collect();
+        assert_eq!(slewed, [true, true, true, false]);
+        assert_eq!(envelope.voltage_v_rms().to_bits(), 7.0_f32.to_bits());
+        assert!(envelope.follow(0.0, 2.0));
+        assert_eq!(envelope.voltage_v_rms().to_bits(), 5.0_f32.to_bits());
+        envelope.silence();
+        assert_eq!(envelope.voltage_v_rms().to_bits(), 0);
+    }
+}

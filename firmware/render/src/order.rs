@@ -1,0 +1,52 @@
+//! What goes between the session and the ticker: values only, so that a board may hand them over through a queue.
+
+use frixel_wire::fault::Fault;
+use frixel_wire::message::Telemetry;
+
+use crate::Active;
+
+/// What the session asks of the ticker. `'a` is the life of the two [`Active`] buffers.
+pub enum Order<'a> {
+    /// The host has said something.
+    HostHeard,
+    /// Play by these coefficients from now on, and hand back the others.
+    Load(&'a mut Active),
+    /// Forget the scene: its bitmaps are about to be overwritten.
+    Unload,
+    /// Disarmed to Armed.
+    Arm,
+    /// Any state but Faulted to Disarmed.
+    Disarm,
+    /// Armed to Active.
+    Play,
+    /// Active to Armed.
+    Stop,
+    /// Faulted to Disarmed.
+    ClearFault,
+}
+
+/// What the ticker tells the session. Made when asked for, not at every tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Status {
+    /// State, flags, place, friction and voltage at the last tick.
+    pub telemetry: Telemetry,
+    /// The last hard fault with a number that belongs to it; it is latched while the state is Faulted.
+    pub fault: Option<(Fault, u32)>,
+    /// Orders that were applied since power-on, modulo 2^32.
+    pub orders_applied: u32,
+    /// The arm switch was held at the last tick.
+    pub arm_switch: bool,
+    /// What was counted since power-on.
+    pub counters: Counters,
+}
+
+/// What a ticker counts since power-on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Ticks at which the friction asked for was out of reach.
+    pub saturated_ticks: u32,
+    /// Ticks at which the envelope was at its slew limit.
+    pub slewed_ticks: u32,
+    /// Early edges of the carrier, to keep direct current off the electrode.
+    pub balanced_edges: u32,
+}

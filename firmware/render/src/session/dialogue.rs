@@ -1,0 +1,353 @@
+//! What the host's frames mean, and what the board answers.
+
+use frixel_wire::fault::{Flags, State};
+use frixel_wire::hello::{Hello, PROTOCOL_MAJOR, PROTOCOL_MINOR};
+use frixel_wire::message::{Accepted, Answer, Command, FromBoard, Refusal, Request, TELEMETRY_PERIOD_MIN_TICKS};
+use frixel_wire::payload::{ParseError, Payload};
+use frixel_wire::scene::{HEADER_LEN, Layer, RECORD_LEN, RECORDS_MAX, SCENE_MAX_LEN, Scene};
+use heapless::{Deque, Vec};
+
+use super::outbox::Outbox;
+use super::upload::{Destination, Report, Staging, Upload};
+use crate::bitmap_pool::{Bitmap, Directory};
+use crate::order::Status;
+use crate::{Active, BitmapPool, Board, Order};
+
+/// Version of this firmware: major, minor, patch.
+const FIRMWARE: (u8, u8, u8) = (0, 1, 0);
+
+/// Orders that may wait for the ticker. A command is refused as busy when there is no room.
+const ORDERS_MAX: usize = 8;
+
+/// CRC-32 names of bitmaps.
+type BitmapNames = Vec<u32, RECORDS_MAX>;
+
+/// The board's side of what is said.
+pub(super) struct Dialogue<'a> {
+    board: Board,
+    pool: &'a BitmapPool,
+    directory: Directory,
+    upload: Option<Upload>,
+    staging: Staging,
+    /// CRC-32 of the scene that the ticker has, zero without one.
+    committed_crc32: u32,
+    /// Bitmaps of the scene that the ticker has.
+    committed_bitmaps: BitmapNames,
+    /// Bitmaps that were announced since the last commit: the next scene's.
+    announced_bitmaps: BitmapNames,
+    /// Coefficients for the next scene; `None` while the ticker has not handed back those of the scene before.
+    spare: Option<&'a mut Active>,
+    orders: Deque<Order<'a>, ORDERS_MAX>,
+    orders_sent: u32,
+    /// State once the ticker has applied every order.
+    state: State,
+    received_bytes: u32,
+    telemetry_period_ticks: u32,
+}
+
+impl<'a> Dialogue<'a> {
+    pub(super) fn new(board: Board, pool: &'a BitmapPool, spare: &'a mut Active) -> Self {
+        Self {
+            board,
+            pool,
+            directory: Directory::default(),
+            upload: None,
+            staging: Staging::new(),
+            committed_crc32: 0,
+            committed_bitmaps: Vec::new(),
+            announced_bitmaps: Vec::new(),
+            spare: Some(spare),
+            orders: Deque::new(),
+            orders_sent: 0,
+            state: State::Disarmed,
+            received_bytes: 0,
+            telemetry_period_ticks: 0,
+        }
+    }
+
+    pub(super) fn count_received(&mut self, bytes: usize) {
+        self.received_bytes = self.received_bytes.wrapping_add(bytes as u32);
+    }
+
+    pub(super) fn telemetry_period_ticks(&self) -> Option<u32> {
+        (self.telemetry_period_ticks > 0).then_some(self.telemetry_period_ticks)
+    }
+
+    pub(super) fn next_order(&mut self) -> Option<Order<'a>> {
+        self.orders.pop_front()
+    }
+
+    pub(super) fn take_back(&mut self, spare: &'a mut Active) {
+        self.spare = Some(spare);
+    }
+
+    pub(super) fn scene(&self) -> Option<&[u8]> {
+        let (bytes, crc32) = self.staging.scene()?;
+        (crc32 == self.committed_crc32).then_some(bytes)
+    }
+
+    /// Takes one frame's payload.
+    pub(super) fn take(&mut self, payload: Result<Payload, ParseError>, status: &Status, outbox: &mut Outbox) {
+        self.report_state(status, outbox);
+        match payload {
+            Ok(Payload::HelloRequest { .. }) => {
+                self.host_heard();
+                self.greet(status, outbox);
+            }
+            Ok(Payload::Request(Request { sequence, command })) => {
+                self.host_heard();
+                let outcome = self.obey(command, status);
+                self.answer(sequence, outcome, outbox);
+            }
+            Ok(Payload::Chunk { number, bytes }) => {
+                self.host_heard();
+                self.take_chunk(number, bytes, outbox);
+            }
+            // A request whose command is not known still says which answer it waits for.
+            Err(ParseError::UnknownCommand { sequence }) => {
+                self.host_heard();
+                self.answer(sequence, Err(Refusal::UnknownCommand), outbox);
+            }
+            // What a board sends, and what cannot be read, is not for a board.
+            Ok(Payload::Hello(_) | Payload::FromBoard(_)) | Err(_) => {}
+        }
+    }
+
+    /// Tells the host of a change of state that it did not ask for.
+    pub(super) fn report_state(&mut self, status: &Status, outbox: &mut Outbox) {
+        let before = self.state;
+        self.follow_state(status);
+        if self.state != before {
+            let fault = status.fault.filter(|_| self.state == State::Faulted).map(|(fault, _)| fault);
+            let flags = Flags(status.telemetry.flags.0 & Flags::HOST_SILENT.0);
+            outbox.send(&FromBoard::StateChanged { state: self.state, fault, flags });
+        }
+    }
+
+    /// The ticker's state holds once it has applied every order.
+    fn follow_state(&mut self, status: &Status) {
+        if status.orders_applied == self.orders_sent {
+            self.state = status.telemetry.state;
+        }
+    }
+
+    fn answer(&mut self, sequence: u16, outcome: Result<Accepted, Refusal>, outbox: &mut Outbox) {
+        let answer = Answer { sequence, received_bytes: self.received_bytes, state: self.state, outcome };
+        outbox.send(&FromBoard::Answer(answer));
+    }
+
+    /// A new client: credit starts anew, and nothing of an unfinished upload is left.
+    fn greet(&mut self, status: &Status, outbox: &mut Outbox) {
+        self.received_bytes = 0;
+        self.telemetry_period_ticks = 0;
+        self.drop_upload();
+        self.announced_bitmaps.clear();
+        outbox.send_hello(&Hello {
+            protocol: (PROTOCOL_MAJOR, PROTOCOL_MINOR),
+            firmware: FIRMWARE,
+            board: self.board.kind,
+            id: self.board.id,
+            tick_hz: self.board.tick_hz,
+            frame_max_len: frixel_wire::frame::FRAME_MAX_LEN as u16,
+            features: 0,
+            scene_crc32: self.committed_crc32,
+            reset_cause: self.board.reset_cause,
+            last_fault: status.fault.map(|(fault, _)| fault),
+            fault_detail: status.fault.map_or(0, |(_, detail)| detail),
+            state: self.state,
+            limits: self.board.limits,
+        });
+    }
+
+    fn obey(&mut self, command: Command, status: &Status) -> Result<Accepted, Refusal> {
+        match command {
+            Command::Ping => Ok(Accepted::Done),
+            Command::UploadScene { len, crc32 } => self.begin_scene(len, crc32),
+            Command::UploadBitmap { width, height, crc32 } => self.begin_bitmap(width, height, crc32),
+            Command::UploadEnd => self.end_upload(),
+            Command::Commit { crc32 } => self.commit(crc32),
+            Command::Subscribe { period_ticks } => self.subscribe(period_ticks),
+            Command::ClearFault => self.change_state(Order::ClearFault, &[State::Faulted], State::Disarmed),
+            Command::Arm | Command::Disarm | Command::Play | Command::Stop => self.drive(command, status),
+        }
+    }
+
+    /// Commands that a latched fault stands in the way of.
+    fn drive(&mut self, command: Command, status: &Status) -> Result<Accepted, Refusal> {
+        if self.state == State::Faulted
+            && let Some((fault, _)) = status.fault
+        {
+            return Err(Refusal::Faulted(fault));
+        }
+        match command {
+            Command::Arm if !status.arm_switch => Err(Refusal::ArmSwitch),
+            Command::Arm => self.change_state(Order::Arm, &[State::Disarmed], State::Armed),
+            Command::Play if self.committed_crc32 == 0 => Err(Refusal::NoScene),
+            Command::Play => self.change_state(Order::Play, &[State::Armed], State::Active),
+            Command::Stop => self.change_state(Order::Stop, &[State::Active], State::Armed),
+            _ => self.change_state(Order::Disarm, &[State::Disarmed, State::Armed, State::Active], State::Disarmed),
+        }
+    }
+
+    fn change_state(&mut self, order: Order<'a>, from: &[State], to: State) -> Result<Accepted, Refusal> {
+        if !from.contains(&self.state) {
+            return Err(Refusal::WrongState(self.state));
+        }
+        self.send_order(order)?;
+        self.state = to;
+        Ok(Accepted::Done)
+    }
+
+    fn send_order(&mut self, order: Order<'a>) -> Result<(), Refusal> {
+        self.orders.push_back(order).map_err(|_| Refusal::Busy)?;
+        self.orders_sent = self.orders_sent.wrapping_add(1);
+        Ok(())
+    }
+
+    /// Tells the ticker that the host is there; once is enough for all frames that wait.
+    fn host_heard(&mut self) {
+        if !matches!(self.orders.back(), Some(Order::HostHeard)) {
+            // No room means that the ticker has not looked for a while; the next frame will tell it.
+            let _ = self.send_order(Order::HostHeard);
+        }
+    }
+
+    fn subscribe(&mut self, period_ticks: u32) -> Result<Accepted, Refusal> {
+        if period_ticks != 0 && period_ticks < TELEMETRY_PERIOD_MIN_TICKS {
+            return Err(Refusal::TelemetryTooFast { period_min_ticks: TELEMETRY_PERIOD_MIN_TICKS });
+        }
+        self.telemetry_period_ticks = period_ticks;
+        Ok(Accepted::Done)
+    }
+
+    fn begin_scene(&mut self, len: u32, crc32: u32) -> Result<Accepted, Refusal> {
+        let records = usize::from(self.board.limits.records_max);
+        let max = (HEADER_LEN + records * RECORD_LEN).min(SCENE_MAX_LEN) as u32;
+        if len > max {
+            return Err(Refusal::SceneTooLarge { len, max });
+        }
+        self.drop_upload();
+        self.staging.begin();
+        self.upload = Some(Upload::new(Destination::Scene, len, crc32));
+        Ok(Accepted::Done)
+    }
+
+    fn begin_bitmap(&mut self, width: u16, height: u16, crc32: u32) -> Result<Accepted, Refusal> {
+        self.drop_upload();
+        if self.spare.is_none() {
+            // The ticker may still read the bitmaps of the scene before.
+            return Err(Refusal::Busy);
+        }
+        if self.announced_bitmaps.len() == self.announced_bitmaps.capacity() {
+            self.announced_bitmaps.clear();
+        }
+        let held = self.directory.find(crc32).is_some();
+        if !held {
+            let bitmap = self.make_room(width, height, crc32)?;
+            self.upload = Some(Upload::new(Destination::Bitmap(bitmap), bitmap.len(), crc32));
+        }
+        let _ = self.announced_bitmaps.push(crc32);
+        Ok(if held { Accepted::AlreadyHeld } else { Accepted::Done })
+    }
+
+    /// Finds room for a bitmap: beside all others, else in the place of those that no scene wants, else, when nothing
+    /// plays, in the place of the committed scene.
+    fn make_room(&mut self, width: u16, height: u16, crc32: u32) -> Result<Bitmap, Refusal> {
+        let pool_len = self.board.limits.bitmap_pool_bytes;
+        if let Ok(bitmap) = self.directory.allocate(width, height, crc32, pool_len) {
+            return Ok(bitmap);
+        }
+        let (committed, announced) = (&self.committed_bitmaps, &self.announced_bitmaps);
+        self.directory.retain(|bitmap| committed.contains(&bitmap.crc32) || announced.contains(&bitmap.crc32));
+        let refused = match self.directory.allocate(width, height, crc32, pool_len) {
+            Ok(bitmap) => return Ok(bitmap),
+            Err(free) => Refusal::BitmapPoolFull { len: u32::from(width) * u32::from(height), free },
+        };
+        if self.state == State::Active || self.committed_crc32 == 0 {
+            return Err(refused);
+        }
+        self.send_order(Order::Unload)?;
+        self.committed_crc32 = 0;
+        self.committed_bitmaps.clear();
+        let announced = &self.announced_bitmaps;
+        self.directory.retain(|bitmap| announced.contains(&bitmap.crc32));
+        self.directory.allocate(width, height, crc32, pool_len).map_err(|_| refused)
+    }
+
+    fn take_chunk(&mut self, number: u16, bytes: &[u8], outbox: &mut Outbox) {
+        if let Some(upload) = &mut self.upload
+            && let Report::Progress { next_chunk } = upload.take(number, bytes, &mut self.staging, self.pool)
+        {
+            outbox.send(&FromBoard::Progress { next_chunk, received_bytes: self.received_bytes });
+        }
+    }
+
+    fn end_upload(&mut self) -> Result<Accepted, Refusal> {
+        let Some(upload) = &self.upload else {
+            return Err(Refusal::UploadIncomplete { next_chunk: 0 });
+        };
+        match upload.check() {
+            Ok(()) => {
+                if upload.destination == Destination::Scene {
+                    let (len, crc32) = upload.len_and_crc32();
+                    self.staging.finish(len, crc32);
+                }
+                self.upload = None;
+                Ok(Accepted::Done)
+            }
+            Err(refusal @ Refusal::UploadIncomplete { .. }) => Err(refusal),
+            Err(refusal) => {
+                self.drop_upload();
+                Err(refusal)
+            }
+        }
+    }
+
+    /// Leaves no trace of an upload under way.
+    fn drop_upload(&mut self) {
+        if let Some(Upload { destination: Destination::Bitmap(unfinished), .. }) = self.upload.take() {
+            self.directory.retain(|bitmap| bitmap.crc32 != unfinished.crc32);
+        }
+    }
+
+    fn commit(&mut self, crc32: u32) -> Result<Accepted, Refusal> {
+        if self.upload.is_some() {
+            return self.end_upload_first();
+        }
+        let (bytes, found) = self.staging.scene().ok_or(Refusal::NoScene)?;
+        if found != crc32 {
+            return Err(Refusal::CrcMismatch { expected: crc32, found });
+        }
+        if self.orders.len() + 1 >= self.orders.capacity() {
+            return Err(Refusal::Busy);
+        }
+        let scene = Scene::parse(bytes).map_err(Refusal::Scene)?;
+        let spare = self.spare.take().ok_or(Refusal::Busy)?;
+        if let Err(refusal) = spare.load(&scene, &self.board, &self.directory) {
+            self.spare = Some(spare);
+            return Err(refusal);
+        }
+        self.committed_bitmaps = bitmaps_of(&scene);
+        self.committed_crc32 = crc32;
+        self.announced_bitmaps.clear();
+        self.send_order(Order::Load(spare))?;
+        Ok(Accepted::Done)
+    }
+
+    /// A commit while an upload is under way says how far that has come.
+    fn end_upload_first(&self) -> Result<Accepted, Refusal> {
+        let check = self.upload.as_ref().map_or(Ok(()), Upload::check);
+        Err(check.err().unwrap_or(Refusal::UploadIncomplete { next_chunk: 0 }))
+    }
+}
+
+fn bitmaps_of(scene: &Scene) -> BitmapNames {
+    scene
+        .records()
+        .filter_map(|record| match record.layer {
+            Layer::Bitmap { crc32, .. } => Some(crc32),
+            _ => None,
+        })
+        .take(RECORDS_MAX)
+        .collect()
+}

@@ -1,0 +1,93 @@
+//! The session: bytes in, bytes out, no clock but the tick count it is shown.
+//!
+//! This module turns bytes into frames and back; [`dialogue`] says what the frames mean, [`upload`] gathers what comes
+//! in chunks.
+
+mod dialogue;
+mod outbox;
+mod upload;
+
+use frixel_wire::frame::Decoder;
+use frixel_wire::message::{FromBoard, Telemetry};
+use frixel_wire::payload::Payload;
+
+use crate::order::Status;
+use crate::{Active, BitmapPool, Board, Order};
+use dialogue::Dialogue;
+use outbox::Outbox;
+
+/// One board's end of the serial line.
+pub struct Session<'a> {
+    decoder: Decoder,
+    dialogue: Dialogue<'a>,
+    outbox: Outbox,
+    telemetry_sent_at_tick: u32,
+}
+
+impl<'a> Session<'a> {
+    /// A session that stores bitmaps in `pool` and builds the next scene in `spare`.
+    pub fn new(board: Board, pool: &'a BitmapPool, spare: &'a mut Active) -> Self {
+        Self {
+            decoder: Decoder::new(),
+            dialogue: Dialogue::new(board, pool, spare),
+            outbox: Outbox::new(),
+            telemetry_sent_at_tick: 0,
+        }
+    }
+
+    /// Takes bytes from the serial line. Answers wait in [`Session::transmit`], orders in [`Session::next_order`].
+    pub fn receive(&mut self, mut bytes: &[u8], status: &Status) {
+        while !bytes.is_empty() {
+            let before = bytes.len();
+            let frame = self.decoder.next_frame(&mut bytes);
+            self.dialogue.count_received(before - bytes.len());
+            if let Some(frame) = frame {
+                self.dialogue.take(Payload::parse_from_host(frame), status, &mut self.outbox);
+            }
+        }
+    }
+
+    /// Sends what is due without being asked: telemetry, and changes of state. To be called after every tick or, when
+    /// there is no time for that, at least once a telemetry period.
+    pub fn poll(&mut self, status: &Status) {
+        self.dialogue.report_state(status, &mut self.outbox);
+        if let Some(period_ticks) = self.dialogue.telemetry_period_ticks()
+            && status.telemetry.tick.wrapping_sub(self.telemetry_sent_at_tick) >= period_ticks
+        {
+            self.telemetry_sent_at_tick = status.telemetry.tick;
+            self.send_telemetry(status.telemetry);
+        }
+    }
+
+    /// The next order for the ticker.
+    pub fn next_order(&mut self) -> Option<Order<'a>> {
+        self.dialogue.next_order()
+    }
+
+    /// Takes back the coefficients that the ticker has let go.
+    pub fn take_back(&mut self, spare: &'a mut Active) {
+        self.dialogue.take_back(spare);
+    }
+
+    /// Moves bytes for the serial line into `bytes`, and returns how many.
+    pub fn transmit(&mut self, bytes: &mut [u8]) -> usize {
+        self.outbox.drain(bytes)
+    }
+
+    /// The committed scene, as it was sent; `None` without one.
+    pub fn scene(&self) -> Option<&[u8]> {
+        self.dialogue.scene()
+    }
+
+    /// Frames that were received whole, and bad ones that were skipped.
+    pub fn frame_counts(&self) -> (u32, u32) {
+        (self.decoder.frames(), self.decoder.rejected())
+    }
+
+    /// Telemetry gives way to answers: it is left out when the line is behind.
+    fn send_telemetry(&mut self, telemetry: Telemetry) {
+        if self.outbox.is_mostly_free() {
+            self.outbox.send(&FromBoard::Telemetry(telemetry));
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! The one owner of the output: Disarmed, Armed, Active, Faulted (DESIGN section 5).
+
+use frixel_wire::fault::{Fault, State};
+
+use crate::{Board, Order, Sense};
+
+/// Host timeout before a scene has set one.
+const HOST_TIMEOUT_DEFAULT_S: f32 = 0.25;
+/// The monitor may be off by this part of full scale.
+const MONITOR_TOLERANCE: f32 = 0.2;
+/// Ticks of a wrong monitor voltage, less those of a right one, that are a fault.
+const MONITOR_WRONG_TICKS: u32 = 20;
+
+/// State of the supervisor.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Supervisor {
+    state: State,
+    fault: Option<(Fault, u32)>,
+    host_heard_at_tick: u32,
+    host_silent: bool,
+    monitor: Monitor,
+}
+
+/// What the monitor should read, and how long it has not.
+#[derive(Clone, Copy, Debug)]
+struct Monitor {
+    expected_v: f32,
+    step: f32,
+    tolerance_v: f32,
+    wrong_ticks: u32,
+}
+
+impl Monitor {
+    fn new(board: &Board) -> Self {
+        Self {
+            expected_v: 0.0,
+            step: 1.0 - libm::expf(-board.tick_period_s() / board.limits.edge_time_constant_s),
+            tolerance_v: MONITOR_TOLERANCE * board.limits.full_scale_v_peak,
+            wrong_ticks: 0,
+        }
+    }
+
+    /// Compares what was driven in the tick before with what the monitor read at its end.
+    fn is_wrong(&mut self, driven_v: f32, monitor_v: f32) -> bool {
+        self.expected_v += self.step * (driven_v - self.expected_v);
+        let error_v = monitor_v - self.expected_v;
+        self.wrong_ticks = if error_v > -self.tolerance_v && error_v < self.tolerance_v {
+            self.wrong_ticks.saturating_sub(1)
+        } else {
+            self.wrong_ticks + 1
+        };
+        self.wrong_ticks >= MONITOR_WRONG_TICKS
+    }
+}
+
+impl Supervisor {
+    pub(crate) fn new(board: &Board) -> Self {
+        Self {
+            state: State::Disarmed,
+            fault: board.reset_fault,
+            host_heard_at_tick: 0,
+            host_silent: false,
+            monitor: Monitor::new(board),
+        }
+    }
+
+    pub(crate) fn state(&self) -> State {
+        self.state
+    }
+
+    pub(crate) fn fault(&self) -> Option<(Fault, u32)> {
+        self.fault
+    }
+
+    /// The output was put to zero because the host had gone silent, and nobody has armed since.
+    pub(crate) fn host_silent(&self) -> bool {
+        self.host_silent
+    }
+
+    /// Takes the orders that concern the state. Those that do not go with the state change nothing.
+    pub(crate) fn apply(&mut self, order: &Order, now_tick: u32) {
+        match (order, self.state) {
+            (Order::HostHeard, _) => self.host_heard_at_tick = now_tick,
+            (Order::Arm, State::Disarmed) => {
+                self.state = State::Armed;
+                self.host_silent = false;
+            }
+            (Order::Play, State::Armed) => self.state = State::Active,
+            (Order::Stop, State::Active) => self.state = State::Armed,
+            (Order::Disarm, State::Armed | State::Active) | (Order::ClearFault, State::Faulted) => {
+                self.state = State::Disarmed;
+            }
+            _ => {}
+        }
+    }
+
+    /// Latches a hard fault.
+    pub(crate) fn raise(&mut self, fault: Fault, detail: u32) {
+        self.state = State::Faulted;
+        self.fault = Some((fault, detail));
+    }
+
+    /// Looks after the output at every tick. `driven_v` is what went to the amplifier in the tick before;
+    /// `host_timeout_ticks` is `None` for a scene that goes on without a host.
+    pub(crate) fn check(&mut self, sense: &Sense, driven_v: f32, now_tick: u32, host_timeout_ticks: Option<u32>) {
+        let monitor_wrong = self.monitor.is_wrong(driven_v, sense.monitor_v);
+        if self.state == State::Faulted {
+            return;
+        }
+        if monitor_wrong {
+            self.monitor.wrong_ticks = 0;
+            self.raise(Fault::Monitor, sense.monitor_v as i32 as u32);
+        } else if sense.amplifier_fault {
+            self.raise(Fault::Amplifier, 0);
+        } else if self.state != State::Disarmed {
+            if !sense.arm_switch {
+                self.raise(Fault::ArmSwitch, 0);
+            } else if host_timeout_ticks.is_some_and(|timeout| now_tick.wrapping_sub(self.host_heard_at_tick) > timeout)
+            {
+                self.state = State::Disarmed;
+                self.host_silent = true;
+            }
+        }
+    }
+}
+
+/// Host timeout in ticks before a scene has set one.
+pub(crate) fn host_timeout_default_ticks(board: &Board) -> u32 {
+    board.ticks(HOST_TIMEOUT_DEFAULT_S)
+}

@@ -1,0 +1,189 @@
+//! Hundreds of volts next to a person: when the output has to be at zero (DESIGN section 5).
+
+mod support;
+
+use frixel_render::{Drive, Touch};
+use frixel_wire::fault::{Fault, Flags, State};
+use frixel_wire::message::{Command, FromBoard, Refusal};
+use frixel_wire::scene::{Header, Layer};
+use support::{Desk, HEADER, Memory, constant, record, scene};
+
+const OFF: Drive = Drive { dac_code: 0, amplifier_enable: false };
+/// Host timeout of the scenes here, in ticks.
+const HOST_TIMEOUT_TICKS: u32 = 10_000;
+
+fn playing(memory: &mut Memory) -> Desk<'_> {
+    let mut desk = Desk::new(memory);
+    desk.play(&constant(0.02));
+    let driven = desk.slide(2000);
+    assert!(driven[1000..].iter().all(|drive| drive.dac_code != 0 && drive.amplifier_enable));
+    desk
+}
+
+#[test]
+fn nothing_is_driven_before_a_host_has_armed_and_played() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    assert!(desk.slide(400).iter().all(|drive| *drive == OFF));
+    desk.greet();
+    assert_eq!(desk.command(Command::Play), Err(Refusal::NoScene));
+    desk.load(&constant(0.02)).unwrap();
+    assert_eq!(desk.command(Command::Play), Err(Refusal::WrongState(State::Disarmed)));
+    desk.command(Command::Arm).unwrap();
+    assert!(desk.slide(400).iter().all(|drive| *drive == OFF));
+}
+
+#[test]
+fn stop_and_disarm_put_the_output_to_zero_at_the_next_tick() {
+    for command in [Command::Stop, Command::Disarm] {
+        let mut memory = Memory::new();
+        let mut desk = playing(&mut memory);
+        desk.command(command).unwrap();
+        assert_eq!(desk.tick(), OFF);
+    }
+}
+
+#[test]
+fn a_lifted_finger_ends_the_drive_at_once() {
+    let mut memory = Memory::new();
+    let mut desk = playing(&mut memory);
+    desk.sense.touch = Some(Touch::Up);
+    assert_eq!(desk.tick(), OFF);
+    assert!(desk.status().telemetry.flags.contains(Flags::NO_FINGER));
+    assert_eq!(desk.status().telemetry.state, State::Active, "the scene goes on for the next touch");
+}
+
+#[test]
+fn touch_data_older_than_three_report_periods_ends_the_drive() {
+    let mut memory = Memory::new();
+    let mut desk = playing(&mut memory);
+    // The last report came 400 ticks before the first of these.
+    let driven: Vec<Drive> = (0..1000).map(|_| desk.tick()).collect();
+    let first_off = driven.iter().position(|drive| *drive == OFF).unwrap();
+    assert!((800..=802).contains(&first_off), "{first_off}");
+    assert!(driven[first_off..].iter().all(|drive| *drive == OFF));
+}
+
+#[test]
+fn a_silent_host_disarms_within_its_timeout() {
+    let mut memory = Memory::new();
+    let mut desk = playing(&mut memory);
+    desk.command(Command::Ping).unwrap();
+    let mut on = 0;
+    for i in 0..2 * HOST_TIMEOUT_TICKS {
+        if i % 400 == 0 {
+            desk.sense.touch = Some(Touch::Down { x_m: 0.03 + 0.1 * 25e-6 * i as f32, y_m: 0.03, age_ticks: 0 });
+        }
+        on += u32::from(desk.tick() != OFF);
+    }
+    assert!((HOST_TIMEOUT_TICKS - 1..=HOST_TIMEOUT_TICKS).contains(&on), "{on}");
+    let told = desk.messages.iter().any(|message| {
+        matches!(message, FromBoard::StateChanged { state: State::Disarmed, fault: None, flags: Flags::HOST_SILENT })
+    });
+    assert!(told, "{:?}", desk.messages);
+    desk.play(&constant(0.02));
+    assert!(!desk.status().telemetry.flags.contains(Flags::HOST_SILENT));
+}
+
+#[test]
+fn an_autonomous_scene_goes_on_without_a_host() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    let header = Header { autonomous: true, ..HEADER };
+    desk.play(&scene(&header, &[record(Layer::Constant { electric_friction_n: 0.02 })]));
+    desk.ticks(2 * HOST_TIMEOUT_TICKS);
+    assert_eq!(desk.status().telemetry.state, State::Active);
+}
+
+fn assert_faults(desk: &mut Desk, fault: Fault, within_ticks: u32) {
+    let driven = desk.slide(within_ticks + 400);
+    assert!(driven[within_ticks as usize..].iter().all(|drive| *drive == OFF), "{fault:?}");
+    assert_eq!(desk.status().telemetry.state, State::Faulted);
+    assert_eq!(desk.status().fault.map(|(fault, _)| fault), Some(fault));
+    assert!(desk.messages.iter().any(|message| {
+        matches!(message, FromBoard::StateChanged { state: State::Faulted, fault: Some(f), .. } if *f == fault)
+    }));
+    for command in [Command::Arm, Command::Play, Command::Stop, Command::Disarm] {
+        assert_eq!(desk.command(command), Err(Refusal::Faulted(fault)));
+    }
+    assert_eq!(desk.greet().last_fault, Some(fault));
+}
+
+#[test]
+fn an_amplifier_fault_latches() {
+    let mut memory = Memory::new();
+    let mut desk = playing(&mut memory);
+    desk.sense.amplifier_fault = true;
+    assert_faults(&mut desk, Fault::Amplifier, 0);
+    desk.command(Command::ClearFault).unwrap();
+    desk.tick();
+    assert_eq!(desk.status().telemetry.state, State::Faulted, "the cause is still there");
+    desk.sense.amplifier_fault = false;
+    desk.command(Command::ClearFault).unwrap();
+    desk.tick();
+    assert_eq!(desk.status().telemetry.state, State::Disarmed);
+}
+
+#[test]
+fn a_switch_let_go_faults() {
+    let mut memory = Memory::new();
+    let mut desk = playing(&mut memory);
+    desk.sense.arm_switch = false;
+    assert_faults(&mut desk, Fault::ArmSwitch, 0);
+    desk.command(Command::ClearFault).unwrap();
+    assert_eq!(desk.command(Command::Arm), Err(Refusal::ArmSwitch));
+}
+
+#[test]
+fn a_monitor_that_does_not_follow_faults_within_a_millisecond() {
+    let mut memory = Memory::new();
+    let mut desk = playing(&mut memory);
+    desk.sense.monitor_v = 60.0; // more than a fifth of 250 V beside what it should read
+    assert_faults(&mut desk, Fault::Monitor, 40);
+}
+
+#[test]
+fn a_missed_deadline_faults() {
+    let mut memory = Memory::new();
+    let mut desk = playing(&mut memory);
+    desk.ticker.raise(Fault::Deadline, 4300);
+    assert_faults(&mut desk, Fault::Deadline, 0);
+}
+
+#[test]
+fn friction_out_of_reach_is_clamped_flagged_and_counted() {
+    for electric_friction_n in [0.5, -0.01] {
+        let mut memory = Memory::new();
+        let mut desk = Desk::new(&mut memory);
+        desk.play(&constant(electric_friction_n));
+        let driven = desk.slide(1200);
+        let status = desk.status();
+        assert!(status.telemetry.flags.contains(Flags::SATURATED));
+        assert!(status.counters.saturated_ticks >= 1199, "{:?}", status.counters);
+        let voltage_v_rms = status.telemetry.voltage_v_rms;
+        let expected = if electric_friction_n > 0.0 { 150.0 } else { 0.0 };
+        assert!((voltage_v_rms - expected).abs() < 0.01, "{voltage_v_rms}");
+        assert!(driven.iter().all(|drive| i32::from(drive.dac_code).abs() <= 26_213), "200 V peak");
+    }
+}
+
+#[test]
+fn the_envelope_keeps_its_slew_limit() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    let header = Header { slew_v_per_s: 2e5, ..HEADER };
+    desk.play(&scene(&header, &[record(Layer::Constant { electric_friction_n: 0.02 })]));
+    desk.command(Command::Ping).unwrap();
+    let mut last_v_rms = 0.0;
+    for i in 0..200 {
+        if i == 0 {
+            desk.sense.touch = Some(Touch::Down { x_m: 0.05, y_m: 0.05, age_ticks: 0 });
+        }
+        desk.tick();
+        let voltage_v_rms = desk.status().telemetry.voltage_v_rms;
+        assert!(voltage_v_rms - last_v_rms <= 5.0 + 1e-3, "2e5 V/s are 5 V a tick");
+        last_v_rms = voltage_v_rms;
+    }
+    assert!(last_v_rms > 100.0);
+    assert_eq!(desk.status().counters.slewed_ticks, 25);
+}

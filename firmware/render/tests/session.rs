@@ -1,0 +1,255 @@
+//! What a host can say to a board, and what the board answers.
+
+mod support;
+
+use frixel_render::Touch;
+use frixel_wire::fault::State;
+use frixel_wire::frame::crc32;
+use frixel_wire::message::{Accepted, Command, ConfigField, FromBoard, Refusal};
+use frixel_wire::payload::CHUNK_LEN;
+use frixel_wire::scene::{Header, Layer, SceneError};
+use proptest::prelude::*;
+use support::{Desk, HEADER, Memory, constant, record, scene};
+
+fn bitmap(crc32: u32) -> Layer {
+    Layer::Bitmap { crc32, x_m: 0.0, y_m: 0.0, pitch_m: 1e-3, black_n: 0.0, white_n: 0.02 }
+}
+
+#[test]
+fn a_board_says_who_it_is_and_what_it_holds() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    let hello = desk.greet();
+    assert_eq!((hello.tick_hz, hello.state, hello.scene_crc32), (40_000, State::Disarmed, 0));
+    let scene = constant(0.01);
+    desk.load(&scene).unwrap();
+    assert_eq!(desk.greet().scene_crc32, crc32(&scene));
+}
+
+#[test]
+fn a_scene_is_used_whole_or_not_at_all() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    let first = constant(0.01);
+    desk.load(&first).unwrap();
+
+    let mut second = constant(0.02);
+    second.resize(second.len() * 4, 0);
+    desk.command(Command::UploadScene { len: second.len() as u32, crc32: crc32(&second) }).unwrap();
+    desk.chunk(0, &second[..CHUNK_LEN]);
+    assert_eq!(
+        desk.command(Command::Commit { crc32: crc32(&second) }),
+        Err(Refusal::UploadIncomplete { next_chunk: 1 })
+    );
+    assert_eq!(desk.command(Command::UploadEnd), Err(Refusal::UploadIncomplete { next_chunk: 1 }));
+    assert_eq!(desk.greet().scene_crc32, crc32(&first));
+}
+
+#[test]
+fn chunks_may_repeat_and_a_gap_is_told_once() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    let samples: Vec<u8> = (0..1000_u32).map(|i| (i * 7) as u8).collect();
+    desk.command(Command::UploadBitmap { width: 100, height: 10, crc32: crc32(&samples) }).unwrap();
+    let chunks: Vec<&[u8]> = samples.chunks(CHUNK_LEN).collect();
+    desk.chunk(0, chunks[0]);
+    desk.chunk(0, chunks[0]);
+    desk.chunk(2, chunks[2]);
+    desk.chunk(3, chunks[3]);
+    let gaps: Vec<FromBoard> = desk.messages.drain(..).collect();
+    assert!(matches!(gaps[..], [FromBoard::Progress { next_chunk: 1, .. }]), "{gaps:?}");
+    for (number, chunk) in chunks.iter().enumerate().skip(1) {
+        desk.chunk(number as u16, chunk);
+    }
+    assert_eq!(desk.command(Command::UploadEnd), Ok(Accepted::Done));
+    assert_eq!(desk.upload_bitmap(100, 10, &samples), Ok(Accepted::AlreadyHeld));
+}
+
+#[test]
+fn a_bitmap_with_a_wrong_byte_is_refused_and_forgotten() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    let samples = vec![3; 400];
+    let expected = crc32(&samples);
+    desk.command(Command::UploadBitmap { width: 20, height: 20, crc32: expected }).unwrap();
+    let mut wrong = samples.clone();
+    wrong[200] ^= 1;
+    desk.chunks(&wrong);
+    let found = crc32(&wrong);
+    assert_eq!(desk.command(Command::UploadEnd), Err(Refusal::CrcMismatch { expected, found }));
+    assert_eq!(desk.upload_bitmap(20, 20, &samples), Ok(Accepted::Done), "not already held");
+}
+
+#[test]
+fn the_pool_keeps_what_plays_and_gives_way_when_nothing_does() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    let first = vec![1; 250 * 250];
+    let second = vec![2; 250 * 250];
+    desk.upload_bitmap(250, 250, &first).unwrap();
+    desk.play(&scene(&HEADER, &[record(bitmap(crc32(&first)))]));
+    let full = desk.upload_bitmap(250, 250, &second);
+    assert_eq!(full, Err(Refusal::BitmapPoolFull { len: 62_500, free: 81_920 - 62_500 }));
+    desk.command(Command::Stop).unwrap();
+    assert_eq!(desk.upload_bitmap(250, 250, &second), Ok(Accepted::Done));
+    assert_eq!(desk.command(Command::Play), Err(Refusal::NoScene), "its bitmap is overwritten");
+    assert_eq!(
+        desk.load(&scene(&HEADER, &[record(bitmap(crc32(&first)))])),
+        Err(Refusal::BitmapMissing { crc32: crc32(&first) })
+    );
+    desk.load(&scene(&HEADER, &[record(bitmap(crc32(&second)))])).unwrap();
+}
+
+#[test]
+fn numbers_that_the_board_cannot_play_are_refused_by_name() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    let field = |desk: &mut Desk, header: Header, layer| match desk.load(&scene(&header, &[record(layer)])) {
+        Err(Refusal::Config(refusal)) => Some(refusal.field),
+        other => panic!("{other:?}"),
+    };
+    let fine = Layer::Constant { electric_friction_n: 0.01 };
+    for (header, expected) in [
+        (Header { finger_radius_m: f32::NAN, ..HEADER }, ConfigField::FingerRadius),
+        (Header { stiffness_pa_per_m: -1.0, ..HEADER }, ConfigField::Stiffness),
+        (Header { friction_coefficient: 0.0, ..HEADER }, ConfigField::FrictionCoefficient),
+        (Header { normal_load_n: -0.1, ..HEADER }, ConfigField::NormalLoad),
+        (Header { effective_gap_m: f32::INFINITY, ..HEADER }, ConfigField::EffectiveGap),
+        (Header { voltage_max_v_peak: 1000.0, ..HEADER }, ConfigField::VoltagePeak),
+        (Header { carrier_hz: 20_000.0, ..HEADER }, ConfigField::CarrierFrequency),
+        (Header { host_timeout_s: 5.0, ..HEADER }, ConfigField::HostTimeout),
+        (Header { carrier_hz: 5_000.0, ..HEADER }, ConfigField::CurrentRms),
+    ] {
+        assert_eq!(field(&mut desk, header, fine), Some(expected));
+    }
+    assert_eq!(
+        field(&mut desk, HEADER, Layer::Constant { electric_friction_n: f32::NAN }),
+        Some(ConfigField::Friction)
+    );
+}
+
+#[test]
+fn what_is_no_scene_is_refused() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    let mut unknown = constant(0.01);
+    unknown[56] = 99;
+    assert_eq!(desk.load(&unknown), Err(Refusal::Scene(SceneError::UnknownKind { record: 0, kind: 99 })));
+    assert!(matches!(
+        desk.command(Command::UploadScene { len: 1 << 20, crc32: 0 }),
+        Err(Refusal::SceneTooLarge { len: 1_048_576, max: 3640 })
+    ));
+    assert_eq!(
+        desk.command(Command::Commit { crc32: 1 }),
+        Err(Refusal::CrcMismatch { expected: 1, found: crc32(&unknown) })
+    );
+}
+
+#[test]
+fn telemetry_comes_at_its_period_and_ends() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    assert!(matches!(
+        desk.command(Command::Subscribe { period_ticks: 39 }),
+        Err(Refusal::TelemetryTooFast { period_min_ticks: 40 })
+    ));
+    desk.command(Command::Subscribe { period_ticks: 40 }).unwrap();
+    desk.ticks(400);
+    let count = desk.messages.iter().filter(|m| matches!(m, FromBoard::Telemetry(_))).count();
+    assert_eq!(count, 10);
+    desk.command(Command::Subscribe { period_ticks: 0 }).unwrap();
+    desk.messages.clear();
+    desk.ticks(400);
+    assert!(desk.messages.is_empty());
+}
+
+#[test]
+fn answers_give_credit_for_every_byte_since_the_hello() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.send(&[1, 2, 3, 0]);
+    desk.greet();
+    let first = desk.answer(Command::Ping).received_bytes;
+    desk.send(&[9, 9, 9, 0]);
+    let second = desk.answer(Command::Ping).received_bytes;
+    assert_eq!(second, 2 * first + 4);
+}
+
+#[test]
+fn a_scene_is_replaced_while_it_plays() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.play(&constant(0.005));
+    desk.slide(2000);
+    let before = desk.status().telemetry;
+    desk.load(&constant(0.01)).unwrap();
+    desk.slide(400);
+    let after = desk.status().telemetry;
+    assert_eq!((before.state, after.state), (State::Active, State::Active));
+    assert!((before.asked_electric_friction_n - 0.005).abs() < 1e-6);
+    assert!((after.asked_electric_friction_n - 0.01).abs() < 1e-6);
+    desk.load(&constant(0.015)).unwrap();
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Bytes that nobody meant never reach the output and never stop the board.
+    #[test]
+    fn arbitrary_bytes_leave_the_board_disarmed_and_listening(bytes in proptest::collection::vec(any::<u8>(), 0..2000)) {
+        let mut memory = Memory::new();
+        let mut desk = Desk::new(&mut memory);
+        desk.send(&bytes);
+        desk.send(&[0]);
+        desk.sense.touch = Some(Touch::Down { x_m: 0.05, y_m: 0.05, age_ticks: 0 });
+        let drive = desk.ticks(10);
+        prop_assert_eq!(drive, frixel_render::Drive::default());
+        prop_assert_eq!(desk.greet().state, State::Disarmed);
+    }
+
+    /// A scene of arbitrary numbers is refused or loaded, and whatever it asks for stays within the limits.
+    #[test]
+    fn arbitrary_scenes_never_drive_beyond_the_limits(
+        floats in proptest::collection::vec(prop_oneof![any::<f32>(), -1.0_f32..200.0], 12),
+        layer in proptest::collection::vec(any::<f32>(), 6),
+    ) {
+        let mut memory = Memory::new();
+        let mut desk = Desk::new(&mut memory);
+        desk.greet();
+        let header = Header {
+            finger_radius_m: floats[0].abs() * 1e-3,
+            stiffness_pa_per_m: floats[1].abs() * 1e6,
+            friction_coefficient: floats[2].abs(),
+            normal_load_n: floats[3].abs() * 0.1,
+            effective_gap_m: floats[4].abs() * 1e-6,
+            voltage_max_v_rms: floats[5],
+            voltage_max_v_peak: floats[6],
+            slew_v_per_s: floats[7].abs() * 1e6,
+            carrier_hz: floats[8] * 20.0,
+            ..HEADER
+        };
+        let layer = Layer::Grating {
+            wave: frixel_wire::scene::Wave::Sine,
+            cycles_per_m_x: layer[0],
+            cycles_per_m_y: layer[1],
+            phase_turns: layer[2],
+            trough_n: layer[3],
+            crest_n: layer[4],
+        };
+        if desk.load(&scene(&header, &[record(layer)])).is_ok() {
+            desk.command(Command::Arm).unwrap();
+            desk.command(Command::Play).unwrap();
+            let code_max = (header.voltage_max_v_peak * 32_767.0 / 250.0) as i32;
+            for drive in desk.slide(500) {
+                prop_assert!(i32::from(drive.dac_code).abs() <= code_max, "{drive:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,234 @@
+//! A board on the desk: session and ticker, spoken to in frames.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    dead_code,
+    unreachable_pub,
+    reason = "a test uses its part, and may fail"
+)]
+
+use frixel_render::{Active, BitmapPool, Board, Drive, Sense, Session, Status, Ticker, Touch};
+use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, crc32};
+use frixel_wire::hello::Hello;
+use frixel_wire::message::{Accepted, Answer, Command, FromBoard, Refusal, Request};
+use frixel_wire::payload::{self, CHUNK_LEN, Payload};
+use frixel_wire::scene::{Blend, Carrier, Header, Layer, Record, Region};
+
+/// What the two halves of a board share; lives longer than the [`Desk`].
+pub struct Memory {
+    pool: BitmapPool,
+    actives: [Active; 2],
+}
+
+impl Memory {
+    pub fn new() -> Box<Self> {
+        Box::new(Self { pool: BitmapPool::new(), actives: [Active::new(), Active::new()] })
+    }
+}
+
+pub struct Desk<'a> {
+    pub session: Session<'a>,
+    pub ticker: Ticker<'a>,
+    /// What the board sees when a test says nothing else: switch held, no finger, and a monitor that reads right.
+    pub sense: Sense,
+    pub messages: Vec<FromBoard>,
+    pub hello: Option<Hello>,
+    monitor: Monitor,
+    decoder: Decoder,
+    sequence: u16,
+}
+
+/// An ideal amplifier with the board's edges.
+struct Monitor {
+    volts_per_code: f32,
+    step: f32,
+    voltage_v: f32,
+}
+
+impl<'a> Desk<'a> {
+    pub fn new(memory: &'a mut Memory) -> Self {
+        let board = Board::SIMULATOR;
+        let Memory { pool, actives: [first, second] } = memory;
+        let mut desk = Self {
+            ticker: Ticker::new(&board, pool, first),
+            session: Session::new(board, pool, second),
+            sense: Sense { arm_switch: true, ..Sense::default() },
+            messages: Vec::new(),
+            hello: None,
+            monitor: Monitor {
+                volts_per_code: board.limits.full_scale_v_peak / 32_767.0,
+                step: 1.0 - (-25e-6_f32 / board.limits.edge_time_constant_s).exp(),
+                voltage_v: 0.0,
+            },
+            decoder: Decoder::new(),
+            sequence: 0,
+        };
+        desk.tick();
+        desk
+    }
+
+    pub fn status(&self) -> Status {
+        self.ticker.status()
+    }
+
+    /// One tick with [`Desk::sense`], whose touch report is used up.
+    pub fn tick(&mut self) -> Drive {
+        let sense = Sense { monitor_v: self.sense.monitor_v + self.monitor.voltage_v, ..self.sense };
+        self.sense.touch = None;
+        let drive = self.ticker.tick(&sense);
+        let target_v = f32::from(drive.dac_code) * self.monitor.volts_per_code;
+        self.monitor.voltage_v += self.monitor.step * (target_v - self.monitor.voltage_v);
+        self.session.poll(&self.ticker.status());
+        self.collect();
+        drive
+    }
+
+    pub fn ticks(&mut self, count: u32) -> Drive {
+        (0..count).map(|_| self.tick()).last().unwrap()
+    }
+
+    /// Ticks with a finger that slides at 100 mm/s along x and is reported every 10 ms, and a host that pings.
+    pub fn slide(&mut self, ticks: u32) -> Vec<Drive> {
+        let start = self.status().telemetry.tick;
+        (0..ticks)
+            .map(|i| {
+                if i % 400 == 0 {
+                    let x_m = 0.01 + 0.1 * 25e-6 * (start + i) as f32;
+                    self.sense.touch = Some(Touch::Down { x_m, y_m: 0.03, age_ticks: 0 });
+                }
+                if i % 2000 == 0 {
+                    self.command(Command::Ping).unwrap();
+                }
+                self.tick()
+            })
+            .collect()
+    }
+
+    pub fn send(&mut self, bytes: &[u8]) {
+        self.session.receive(bytes, &self.ticker.status());
+        while let Some(order) = self.session.next_order() {
+            if let Some(spare) = self.ticker.apply(order) {
+                self.session.take_back(spare);
+            }
+        }
+        self.collect();
+    }
+
+    pub fn greet(&mut self) -> Hello {
+        let mut frame = [0; FRAME_MAX_LEN];
+        let frame = payload::hello_request_frame(&mut frame).unwrap().to_vec();
+        self.send(&frame);
+        self.hello.take().expect("a hello")
+    }
+
+    pub fn answer(&mut self, command: Command) -> Answer {
+        self.sequence += 1;
+        let request = Request { sequence: self.sequence, command };
+        let mut frame = [0; FRAME_MAX_LEN];
+        let frame = payload::request_frame(&request, &mut frame).unwrap().to_vec();
+        self.send(&frame);
+        let sequence = self.sequence;
+        let place = self
+            .messages
+            .iter()
+            .position(|message| matches!(message, FromBoard::Answer(answer) if answer.sequence == sequence))
+            .expect("an answer");
+        let FromBoard::Answer(answer) = self.messages.remove(place) else { unreachable!() };
+        answer
+    }
+
+    pub fn command(&mut self, command: Command) -> Result<Accepted, Refusal> {
+        self.answer(command).outcome
+    }
+
+    pub fn chunk(&mut self, number: u16, bytes: &[u8]) {
+        let mut frame = [0; FRAME_MAX_LEN];
+        let frame = payload::chunk_frame(number, bytes, &mut frame).unwrap().to_vec();
+        self.send(&frame);
+    }
+
+    pub fn chunks(&mut self, bytes: &[u8]) {
+        for (number, chunk) in bytes.chunks(CHUNK_LEN).enumerate() {
+            self.chunk(number as u16, chunk);
+        }
+    }
+
+    pub fn upload_bitmap(&mut self, width: u16, height: u16, samples: &[u8]) -> Result<Accepted, Refusal> {
+        let accepted = self.command(Command::UploadBitmap { width, height, crc32: crc32(samples) })?;
+        if accepted == Accepted::Done {
+            self.chunks(samples);
+            self.command(Command::UploadEnd)?;
+        }
+        Ok(accepted)
+    }
+
+    pub fn upload_scene(&mut self, scene: &[u8]) -> Result<Accepted, Refusal> {
+        self.command(Command::UploadScene { len: scene.len() as u32, crc32: crc32(scene) })?;
+        self.chunks(scene);
+        self.command(Command::UploadEnd)
+    }
+
+    pub fn load(&mut self, scene: &[u8]) -> Result<Accepted, Refusal> {
+        self.upload_scene(scene)?;
+        self.command(Command::Commit { crc32: crc32(scene) })
+    }
+
+    /// From power-on to a playing scene.
+    pub fn play(&mut self, scene: &[u8]) {
+        self.greet();
+        self.load(scene).unwrap();
+        self.command(Command::Arm).unwrap();
+        self.command(Command::Play).unwrap();
+    }
+
+    fn collect(&mut self) {
+        let mut bytes = [0; 4096];
+        let count = self.session.transmit(&mut bytes);
+        for byte in &bytes[..count] {
+            if let Some(frame) = self.decoder.push(*byte) {
+                match Payload::parse_from_board(frame).unwrap() {
+                    Payload::Hello(hello) => self.hello = Some(hello),
+                    Payload::FromBoard(message) => self.messages.push(message),
+                    other => panic!("not from a board: {other:?}"),
+                }
+            }
+        }
+    }
+}
+
+/// The example finger at 0.5 N under at most 150 V rms.
+pub const HEADER: Header = Header {
+    screen_width_m: 0.12,
+    screen_height_m: 0.11,
+    finger_radius_m: 8e-3,
+    stiffness_pa_per_m: 1.8e7,
+    friction_coefficient: 0.5,
+    normal_load_n: 0.5,
+    effective_gap_m: 1e-5,
+    voltage_max_v_rms: 150.0,
+    voltage_max_v_peak: 200.0,
+    slew_v_per_s: 5e6,
+    carrier_hz: 1000.0,
+    host_timeout_s: 0.25,
+    carrier: Carrier::Square,
+    autonomous: false,
+    prediction: true,
+};
+
+pub fn record(layer: Layer) -> Record {
+    Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer }
+}
+
+/// A friction that is the same everywhere.
+pub fn constant(electric_friction_n: f32) -> Vec<u8> {
+    scene(&HEADER, &[record(Layer::Constant { electric_friction_n })])
+}
+
+pub fn scene(header: &Header, records: &[Record]) -> Vec<u8> {
+    let mut bytes = header.write(records.len() as u8).to_vec();
+    for record in records {
+        bytes.extend(record.write());
+    }
+    bytes
+}

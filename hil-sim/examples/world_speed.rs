@@ -1,0 +1,53 @@
+//! How long a tick of the world takes, by stroke: `cargo run --release -p frixel-hil-sim --example world_speed`.
+//!
+//! A square carrier of 1 kHz drives the default world for a minute of virtual time. The sum of the friction is printed
+//! so that the work cannot be left out.
+
+use std::error::Error;
+use std::hint::black_box;
+use std::time::Instant;
+
+use frixel_hil_sim::{Point, Stroke, World, WorldConfig};
+use frixel_render::Drive;
+
+const SECONDS: f64 = 60.0;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let left = Point { x_m: 0.0, y_m: 0.03 };
+    let right = Point { x_m: 0.1 * SECONDS, y_m: 0.03 };
+    let strokes = [
+        ("constant speed", Stroke::constant_speed(left, right, 0.1)?),
+        ("minimum jerk", Stroke::minimum_jerk(left, right, SECONDS)?),
+        ("natural", Stroke::natural(0.1, 0.06, SECONDS)?),
+        ("CSV, 1 kHz", Stroke::from_csv(&csv(SECONDS))?),
+    ];
+    for (name, stroke) in strokes {
+        let mut world = World::new(WorldConfig::default(), stroke, 1)?;
+        world.start_stroke();
+        let ticks = (SECONDS * f64::from(WorldConfig::default().tick_hz)) as u64;
+        let begin = Instant::now();
+        let mut friction_n = 0.0;
+        for tick in 0..ticks {
+            black_box(world.sense());
+            let dac_code = if (tick / 20).is_multiple_of(2) { 25_000 } else { -25_000 };
+            friction_n += world.apply(black_box(Drive { dac_code, amplifier_enable: true })).friction_n;
+        }
+        let wall_s = begin.elapsed().as_secs_f64();
+        println!(
+            "{name:14} {:5.1} ns a tick, {:4.0} times real time, mean friction {:.6} N",
+            1e9 * wall_s / ticks as f64,
+            SECONDS / wall_s,
+            friction_n / ticks as f64
+        );
+    }
+    Ok(())
+}
+
+/// A finger that goes round in zigzags, a row every millisecond.
+fn csv(seconds: f64) -> String {
+    let rows = (seconds * 1000.0) as u32;
+    (0..=rows).fold("t_s,x_mm,y_mm\n".to_owned(), |text, row| {
+        let place_mm = f64::from((row % 1600).min(1600 - row % 1600)) * 0.1;
+        text + &format!("{},{place_mm},30\n", f64::from(row) * 1e-3)
+    })
+}

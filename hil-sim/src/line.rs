@@ -1,0 +1,232 @@
+//! A serial line in virtual time, one direction.
+
+use std::collections::{BTreeMap, VecDeque};
+
+use crate::error::OutOfRange;
+
+/// Start bit, eight data bits, stop bit.
+const BITS_PER_BYTE: u64 = 10;
+
+/// What happens to a byte on the line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LineFault {
+    /// The byte is lost.
+    Drop,
+    /// The bits that are set here arrive inverted.
+    Flip(u8),
+    /// The cable is cut: this byte and all that follow are lost.
+    Cut,
+}
+
+/// Bytes that went into a line, and what became of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LineCounts {
+    /// Given to the line to send.
+    pub sent: u64,
+    /// Arrived at the other end, those with flipped bits included.
+    pub delivered: u64,
+    /// Lost on the way.
+    pub lost: u64,
+    /// Arrived with flipped bits.
+    pub flipped: u64,
+}
+
+/// One direction of a serial line: a byte takes ten bit times, in virtual ticks.
+///
+/// Time is kept in whole numbers, so the rate is exact for every pair of baud rate and tick rate. The sender has an
+/// endless buffer; [`queued`](Self::queued) says how full it is.
+///
+/// ```
+/// use frixel_hil_sim::Line;
+///
+/// let mut line = Line::new(2_000_000, 40_000)?;
+/// line.send(b"twelve bytes");
+/// // Two million bits a second are five bytes in each of 40,000 ticks.
+/// assert_eq!(line.tick(), b"twelv");
+/// assert_eq!(line.tick(), b"e byt");
+/// assert_eq!(line.tick(), b"es");
+/// assert_eq!(line.tick(), b"");
+/// # Ok::<(), frixel_hil_sim::OutOfRange>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Line {
+    /// Progress on the byte on the line that a tick makes; a byte is done at `byte_cost`.
+    progress_per_tick: u64,
+    byte_cost: u64,
+    progress: u64,
+    queue: VecDeque<u8>,
+    delivered: Vec<u8>,
+    faults: BTreeMap<u64, LineFault>,
+    is_cut: bool,
+    counts: LineCounts,
+}
+
+impl Line {
+    /// A line of `baud` bits a second, seen `tick_hz` times a second; both above 0.
+    pub fn new(baud: u32, tick_hz: u32) -> Result<Self, OutOfRange> {
+        for (name, value) in [("baud", baud), ("tick_hz", tick_hz)] {
+            if value == 0 {
+                return Err(OutOfRange { name, expected: "above 0", found: 0.0 });
+            }
+        }
+        Ok(Self {
+            progress_per_tick: u64::from(baud),
+            byte_cost: BITS_PER_BYTE * u64::from(tick_hz),
+            progress: 0,
+            queue: VecDeque::new(),
+            delivered: Vec::new(),
+            faults: BTreeMap::new(),
+            is_cut: false,
+            counts: LineCounts::default(),
+        })
+    }
+
+    /// Lets `fault` happen to the byte number `byte`, counted from 0 when the line was made. A byte has one fault; a
+    /// later one takes the place of an earlier. A byte that has left the line already is not changed.
+    pub fn schedule_fault(&mut self, byte: u64, fault: LineFault) {
+        self.faults.insert(byte, fault);
+    }
+
+    /// Queues bytes behind those that are under way. On an idle line the first of them starts now, at the tick boundary.
+    pub fn send(&mut self, bytes: &[u8]) {
+        self.queue.extend(bytes);
+        self.counts.sent += bytes.len() as u64;
+    }
+
+    /// Advances one tick, and gives the bytes that arrived in it.
+    pub fn tick(&mut self) -> &[u8] {
+        self.delivered.clear();
+        if self.queue.is_empty() {
+            return &self.delivered;
+        }
+        self.progress += self.progress_per_tick;
+        while self.progress >= self.byte_cost {
+            let Some(byte) = self.queue.pop_front() else { break };
+            self.progress -= self.byte_cost;
+            self.arrive(byte);
+        }
+        if self.queue.is_empty() {
+            // The next byte cannot start before it is sent.
+            self.progress = 0;
+        }
+        &self.delivered
+    }
+
+    fn arrive(&mut self, byte: u8) {
+        let number = self.counts.delivered + self.counts.lost;
+        let fault = if self.faults.is_empty() { None } else { self.faults.remove(&number) };
+        self.is_cut |= fault == Some(LineFault::Cut);
+        if self.is_cut || fault == Some(LineFault::Drop) {
+            self.counts.lost += 1;
+            return;
+        }
+        let flips = if let Some(LineFault::Flip(bits)) = fault { bits } else { 0 };
+        self.counts.flipped += u64::from(flips != 0);
+        self.counts.delivered += 1;
+        self.delivered.push(byte ^ flips);
+    }
+
+    /// Bytes that are queued or on the line.
+    pub fn queued(&self) -> usize {
+        self.queue.len()
+    }
+
+    /// Whether the cable has been cut.
+    pub fn is_cut(&self) -> bool {
+        self.is_cut
+    }
+
+    /// Bytes so far.
+    pub fn bytes(&self) -> LineCounts {
+        self.counts
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::{Line, LineCounts, LineFault};
+
+    const TICK_HZ: u32 = 40_000;
+
+    /// The tick in which each of `count` bytes arrives that are sent at once; the first tick is 1.
+    fn arrivals(line: &mut Line, count: usize) -> Vec<u64> {
+        let bytes: Vec<u8> = (0..count).map(|number| number as u8).collect();
+        line.send(&bytes);
+        let mut arrivals = Vec::new();
+        let mut received = Vec::new();
+        let mut tick = 0;
+        while line.queued() > 0 {
+            tick += 1;
+            let delivered = line.tick();
+            received.extend_from_slice(delivered);
+            arrivals.extend(delivered.iter().map(|_| tick));
+        }
+        assert_eq!(received, bytes);
+        arrivals
+    }
+
+    #[test]
+    fn two_megabaud_are_five_bytes_in_a_tick_of_forty_kilohertz() {
+        let arrivals = arrivals(&mut Line::new(2_000_000, TICK_HZ).unwrap(), 1000);
+        let expected: Vec<u64> = (0..1000).map(|number| number / 5 + 1).collect();
+        assert_eq!(arrivals, expected);
+    }
+
+    proptest! {
+        #[test]
+        fn a_byte_takes_ten_bit_times_at_any_rate(baud in 300..6_000_000_u32, tick_hz in 1000..100_000_u32) {
+            let arrivals = arrivals(&mut Line::new(baud, tick_hz).unwrap(), 200);
+            for (number, &tick) in arrivals.iter().enumerate() {
+                // The first tick whose end, tick / tick_hz, is not before the byte's, 10 (number + 1) / baud.
+                let expected = (10 * (number as u64 + 1) * u64::from(tick_hz)).div_ceil(u64::from(baud));
+                prop_assert_eq!(tick, expected);
+            }
+        }
+
+        #[test]
+        fn bytes_that_are_fed_without_a_gap_keep_the_line_full(baud in 9600..3_000_000_u32) {
+            let mut line = Line::new(baud, TICK_HZ).unwrap();
+            for _ in 0..10_000 {
+                if line.queued() < 64 {
+                    line.send(&[0x55; 128]);
+                }
+                line.tick();
+            }
+            prop_assert_eq!(line.bytes().delivered, u64::from(baud) * 10_000 / (10 * u64::from(TICK_HZ)));
+        }
+    }
+
+    #[test]
+    fn an_idle_line_saves_no_time_up() {
+        let mut line = Line::new(115_200, TICK_HZ).unwrap();
+        let first = arrivals(&mut line, 3);
+        for _ in 0..1000 {
+            assert_eq!(line.tick(), b"");
+        }
+        assert_eq!(arrivals(&mut line, 3), first);
+    }
+
+    #[test]
+    fn faults_hit_the_byte_that_they_are_meant_for() {
+        let mut line = Line::new(2_000_000, TICK_HZ).unwrap();
+        line.schedule_fault(1, LineFault::Drop);
+        line.schedule_fault(3, LineFault::Flip(0b0100_0001));
+        line.schedule_fault(6, LineFault::Cut);
+        line.send(&[10, 11, 12, 13]);
+        let mut received = line.tick().to_vec();
+        assert!(!line.is_cut());
+        line.send(&[14, 15, 16, 17]);
+        received.extend_from_slice(line.tick());
+        assert_eq!(received, [10, 12, 0b1101 ^ 0b0100_0001, 14, 15]);
+        assert!(line.is_cut());
+        assert_eq!(line.bytes(), LineCounts { sent: 8, delivered: 5, lost: 3, flipped: 1 });
+    }
+
+    #[test]
+    fn a_rate_of_zero_is_refused_by_name() {
+        assert_eq!(Line::new(0, 1).unwrap_err().to_string(), "baud must be above 0, found 0");
+        assert_eq!(Line::new(1, 0).unwrap_err().to_string(), "tick_hz must be above 0, found 0");
+    }
+}

@@ -1,0 +1,196 @@
+//! The in-process rig: session, ticker and world, tick by tick, on one thread.
+
+use frixel_model::{Contact, Finger, LoadedContact, ParameterError};
+use frixel_render::{Active, BitmapPool, Board, Order, Sense, Session, Status, Ticker};
+use frixel_wire::scene::{Header, Scene};
+
+use crate::{Felt, Line, Stroke, World, WorldConfig, WorldError};
+
+/// Most bytes that a board puts on the line in one tick.
+const TRANSMIT_LEN: usize = 64;
+
+/// Memory of a simulated board: what stands in statics on a real one. Much of it, so it lives in a box.
+pub struct BoardMemory {
+    pool: BitmapPool,
+    actives: [Active; 2],
+}
+
+impl BoardMemory {
+    /// Memory as it is after a reset.
+    #[must_use]
+    pub fn new() -> Box<Self> {
+        Box::new(Self { pool: BitmapPool::new(), actives: [Active::new(), Active::new()] })
+    }
+}
+
+/// What a rig is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RigConfig {
+    /// The simulated board.
+    pub board: Board,
+    /// The world around it.
+    pub world: WorldConfig,
+    /// Rate of the serial line, in bits a second.
+    pub baud: u32,
+}
+
+impl Default for RigConfig {
+    fn default() -> Self {
+        let board = Board::SIMULATOR;
+        let world = WorldConfig {
+            tick_hz: board.tick_hz,
+            full_scale_v_peak: f64::from(board.limits.full_scale_v_peak),
+            ..WorldConfig::default()
+        };
+        Self { board, world, baud: 2_000_000 }
+    }
+}
+
+/// What happened at one tick.
+#[derive(Clone, Copy, Debug)]
+pub struct TickRecord {
+    /// Ticks since power-on, this one included.
+    pub tick: u64,
+    /// What the board says of itself.
+    pub status: Status,
+    /// What the finger felt.
+    pub felt: Felt,
+}
+
+/// A board and its world on one thread, in lockstep and in virtual time.
+pub struct Rig<'a> {
+    session: Session<'a>,
+    ticker: Ticker<'a>,
+    status: Status,
+    world: World,
+    to_board: Line,
+    to_host: Line,
+    at_host: Vec<u8>,
+    scene: Option<Header>,
+    tick: u64,
+    tick_hz: u32,
+}
+
+impl<'a> Rig<'a> {
+    /// A board that has just been reset, in a world whose finger will make `stroke`.
+    pub fn new(memory: &'a mut BoardMemory, config: &RigConfig, stroke: Stroke, seed: u64) -> Result<Self, WorldError> {
+        let BoardMemory { pool, actives: [first, second] } = memory;
+        let tick_hz = config.board.tick_hz;
+        let ticker = Ticker::new(&config.board, pool, first);
+        Ok(Self {
+            session: Session::new(config.board, pool, second),
+            status: ticker.status(),
+            ticker,
+            world: World::new(config.world, stroke, seed)?,
+            to_board: Line::new(config.baud, tick_hz)?,
+            to_host: Line::new(config.baud, tick_hz)?,
+            at_host: Vec::new(),
+            scene: None,
+            tick: 0,
+            tick_hz,
+        })
+    }
+
+    /// Ticks since power-on.
+    pub fn tick(&self) -> u64 {
+        self.tick
+    }
+
+    /// Ticks a second.
+    pub fn tick_hz(&self) -> u32 {
+        self.tick_hz
+    }
+
+    /// The world, for faults and for the finger.
+    pub fn world_mut(&mut self) -> &mut World {
+        &mut self.world
+    }
+
+    /// The line from the host to the board, for faults.
+    pub fn line_to_board_mut(&mut self) -> &mut Line {
+        &mut self.to_board
+    }
+
+    /// The scene that plays or would play; `None` before one was committed.
+    pub fn scene(&self) -> Option<&Header> {
+        self.scene.as_ref()
+    }
+
+    /// Frames that the board received whole, and bad ones that it skipped.
+    pub fn frame_counts(&self) -> (u32, u32) {
+        self.session.frame_counts()
+    }
+
+    /// Gives bytes to the host's end of the line.
+    pub fn send(&mut self, bytes: &[u8]) {
+        self.to_board.send(bytes);
+    }
+
+    /// Moves what has arrived at the host's end of the line to `bytes`.
+    pub fn receive(&mut self, bytes: &mut Vec<u8>) {
+        bytes.append(&mut self.at_host);
+    }
+
+    /// Whether anything has arrived at the host's end of the line.
+    pub fn has_received(&self) -> bool {
+        !self.at_host.is_empty()
+    }
+
+    /// Advances one tick.
+    pub fn step(&mut self) -> TickRecord {
+        let arrived = self.to_board.tick();
+        if !arrived.is_empty() {
+            self.session.receive(arrived, &self.status);
+            self.obey();
+        }
+        let sense: Sense = self.world.sense();
+        let drive = self.ticker.tick(&sense);
+        let felt = self.world.apply(drive);
+        self.status = self.ticker.status();
+        self.session.poll(&self.status);
+        self.transmit();
+        self.tick += 1;
+        TickRecord { tick: self.tick, status: self.status, felt }
+    }
+
+    fn obey(&mut self) {
+        while let Some(order) = self.session.next_order() {
+            let is_new_scene = matches!(order, Order::Load(_));
+            if let Some(spare) = self.ticker.apply(order) {
+                self.session.take_back(spare);
+            }
+            if is_new_scene {
+                self.put_scenes_finger_on();
+            }
+        }
+        self.status = self.ticker.status();
+    }
+
+    /// The finger in the world is the scene's, unless a scenario says otherwise.
+    fn put_scenes_finger_on(&mut self) {
+        let scene = self.session.scene().and_then(|bytes| Scene::parse(bytes).ok());
+        self.scene = scene.map(|scene| *scene.header());
+        if let Some(Ok(contact)) = self.scene.as_ref().map(contact_of) {
+            self.world.set_finger(contact);
+        }
+    }
+
+    fn transmit(&mut self) {
+        let mut bytes = [0; TRANSMIT_LEN];
+        let count = self.session.transmit(&mut bytes);
+        if count > 0 {
+            self.to_host.send(&bytes[..count]);
+        }
+        self.at_host.extend_from_slice(self.to_host.tick());
+    }
+}
+
+/// The contact that a scene means, in the full model's arithmetic.
+pub fn contact_of(header: &Header) -> Result<LoadedContact<f64>, ParameterError> {
+    let finger = Finger {
+        radius_m: f64::from(header.finger_radius_m),
+        stiffness_pa_per_m: f64::from(header.stiffness_pa_per_m),
+        friction_coefficient: f64::from(header.friction_coefficient),
+    };
+    Contact::new(&finger, f64::from(header.effective_gap_m))?.under_load(f64::from(header.normal_load_n))
+}

@@ -1,0 +1,143 @@
+//! Strokes: where the finger is at a time.
+
+mod error;
+mod natural;
+mod rows;
+mod straight;
+mod text;
+
+use crate::error::{above_zero, zero_to_ten};
+pub use error::StrokeError;
+use natural::Natural;
+use rows::Rows;
+use straight::Straight;
+
+/// A place on the screen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// From the left edge of the screen, m.
+    pub x_m: f64,
+    /// From the top edge of the screen, m.
+    pub y_m: f64,
+}
+
+/// Where a finger that is on the screen is, and how fast it slides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FingerState {
+    /// From the left edge of the screen, m.
+    pub x_m: f64,
+    /// From the top edge of the screen, m.
+    pub y_m: f64,
+    /// Sliding speed, whatever its direction, m/s.
+    pub speed_m_per_s: f64,
+}
+
+/// The motion of a finger over the screen, with the finger up before its start and after its end.
+///
+/// ```
+/// use frixel_hil_sim::{Point, Stroke};
+///
+/// let from = Point { x_m: 0.01, y_m: 0.03 };
+/// let to = Point { x_m: 0.09, y_m: 0.03 };
+/// let stroke = Stroke::minimum_jerk(from, to, 0.8)?;
+/// let middle = stroke.at(0.4).ok_or("the finger is on the screen")?;
+/// assert!((middle.x_m - 0.05).abs() < 1e-12);
+/// assert!((middle.speed_m_per_s - 1.875 * 0.08 / 0.8).abs() < 1e-12);
+/// assert!(stroke.at(0.9).is_none());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Stroke {
+    path: Path,
+    /// Time at which the finger leaves the screen, s.
+    end_s: f64,
+    /// Time from one round to the next when the stroke is played in a loop, s.
+    round_s: Option<f64>,
+}
+
+#[derive(Clone, Debug)]
+enum Path {
+    ConstantSpeed(Straight),
+    MinimumJerk(Straight),
+    Natural(Natural),
+    Rows(Rows),
+}
+
+impl Stroke {
+    /// A straight stroke at a constant speed above 0, in m/s.
+    pub fn constant_speed(from: Point, to: Point, speed_m_per_s: f64) -> Result<Self, StrokeError> {
+        let speed_m_per_s = above_zero("speed_m_per_s", speed_m_per_s)?;
+        let straight = Straight::at_speed(from, to, speed_m_per_s)?;
+        Ok(Self::once(straight.duration_s(), Path::ConstantSpeed(straight)))
+    }
+
+    /// A straight stroke of minimum jerk (Flash and Hogan, doi:10.1523/JNEUROSCI.05-07-01688.1985): at rest at both
+    /// ends, and 1.875 times the mean speed in the middle. A hand moves so. `duration_s` is above 0.
+    pub fn minimum_jerk(from: Point, to: Point, duration_s: f64) -> Result<Self, StrokeError> {
+        let straight = Straight::lasting(from, to, duration_s)?;
+        Ok(Self::once(straight.duration_s(), Path::MinimumJerk(straight)))
+    }
+
+    /// A finger that rests at a place for `duration_s` seconds, above 0.
+    pub fn still(place: Point, duration_s: f64) -> Result<Self, StrokeError> {
+        let straight = Straight::lasting(place, place, duration_s)?;
+        Ok(Self::once(straight.duration_s(), Path::ConstantSpeed(straight)))
+    }
+
+    /// The stroke of a person who explores a texture: back and forth across the screen in slightly oblique strokes of
+    /// minimum jerk, about 100 mm/s on average, with the finger down all the `duration_s` seconds (above 0).
+    ///
+    /// It keeps a tenth of the screen away from every edge and ends at the end of a stroke. A time too short for one
+    /// stroke at that pace gets a shorter stroke.
+    pub fn natural(screen_width_m: f64, screen_height_m: f64, duration_s: f64) -> Result<Self, StrokeError> {
+        let natural = Natural::new(screen_width_m, screen_height_m, duration_s)?;
+        Ok(Self::once(duration_s, Path::Natural(natural)))
+    }
+
+    /// A stroke from CSV text with the columns `t_s,x_mm,y_mm`, in any order, others ignored.
+    ///
+    /// Time is from the start of the stroke and rises from row to row; the finger touches at the first row and leaves
+    /// after the last. Between rows it goes straight and at constant speed (linear interpolation), so the rows should
+    /// be as close as the motion needs: every 10 ms or less for a hand.
+    pub fn from_csv(text: &str) -> Result<Self, StrokeError> {
+        let rows = text::rows(text)?;
+        Ok(Self::once(rows.end_s(), Path::Rows(rows)))
+    }
+
+    /// The same stroke again and again, with the finger off the screen for `pause_s` seconds (0 to 10) between rounds.
+    ///
+    /// Without a pause the finger jumps from the end of the stroke to its start.
+    pub fn looped(self, pause_s: f64) -> Result<Self, StrokeError> {
+        let round_s = self.end_s + zero_to_ten("pause_s", pause_s)?;
+        Ok(Self { round_s: Some(round_s), ..self })
+    }
+
+    fn once(end_s: f64, path: Path) -> Self {
+        Self { path, end_s, round_s: None }
+    }
+
+    /// Time from the start of the stroke until the finger leaves the screen, in seconds; infinite when looped.
+    pub fn duration_s(&self) -> f64 {
+        if self.round_s.is_some() { f64::INFINITY } else { self.end_s }
+    }
+
+    /// The finger `t_s` seconds after the start of the stroke, while it is on the screen.
+    pub fn at(&self, t_s: f64) -> Option<FingerState> {
+        let t_s = match self.round_s {
+            Some(round_s) if t_s >= 0.0 => (t_s - libm::trunc(t_s / round_s) * round_s).max(0.0),
+            _ => t_s,
+        };
+        if !(t_s >= 0.0 && t_s <= self.end_s) {
+            return None;
+        }
+        match &self.path {
+            Path::ConstantSpeed(straight) => Some(straight.constant_speed(t_s)),
+            Path::MinimumJerk(straight) => Some(straight.minimum_jerk(t_s)),
+            Path::Natural(natural) => Some(natural.at(t_s)),
+            Path::Rows(rows) => rows.at(t_s),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

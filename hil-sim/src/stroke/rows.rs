@@ -1,0 +1,92 @@
+//! Motion through given rows of time and place.
+
+use super::{FingerState, Point};
+
+/// A place at a time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Row {
+    pub(super) t_s: f64,
+    pub(super) place: Point,
+}
+
+/// From a row to the next, straight and at constant speed.
+#[derive(Clone, Copy, Debug)]
+struct Piece {
+    start: Row,
+    x_speed_m_per_s: f64,
+    y_speed_m_per_s: f64,
+    speed_m_per_s: f64,
+}
+
+/// Rows, ready to be looked up at any time.
+#[derive(Clone, Debug)]
+pub(super) struct Rows {
+    pieces: Vec<Piece>,
+    end_s: f64,
+    /// Time is cut into as many equal slots as there are pieces; this is how many pieces start before each slot, so
+    /// that a look-up searches one slot only.
+    before_slot: Vec<usize>,
+    slots_per_s: f64,
+}
+
+impl Rows {
+    /// Motion through `rows`, whose times rise.
+    ///
+    /// The number of the row that cannot be reached at a finite speed is returned as an error; fewer than two rows are
+    /// a motion that never touches the screen.
+    pub(super) fn new(rows: &[Row]) -> Result<Self, usize> {
+        let mut pieces = Vec::with_capacity(rows.len());
+        for (number, (start, end)) in rows.iter().zip(rows.iter().skip(1)).enumerate() {
+            let time_s = end.t_s - start.t_s;
+            let x_speed_m_per_s = (end.place.x_m - start.place.x_m) / time_s;
+            let y_speed_m_per_s = (end.place.y_m - start.place.y_m) / time_s;
+            let speed_m_per_s = libm::hypot(x_speed_m_per_s, y_speed_m_per_s);
+            if !speed_m_per_s.is_finite() {
+                return Err(number + 1);
+            }
+            pieces.push(Piece { start: *start, x_speed_m_per_s, y_speed_m_per_s, speed_m_per_s });
+        }
+        let end_s = rows.last().map_or(0.0, |row| row.t_s);
+        let mut motion = Self { slots_per_s: pieces.len() as f64 / end_s, before_slot: Vec::new(), pieces, end_s };
+        motion.before_slot = motion.count_before_slots();
+        Ok(motion)
+    }
+
+    pub(super) fn end_s(&self) -> f64 {
+        self.end_s
+    }
+
+    /// Slot of a time. Never falls as time rises, however the product is rounded; the search rests on that alone.
+    fn slot(&self, t_s: f64) -> usize {
+        ((t_s * self.slots_per_s) as usize).min(self.pieces.len())
+    }
+
+    fn count_before_slots(&self) -> Vec<usize> {
+        let mut before_slot = vec![0; self.pieces.len() + 2];
+        for piece in &self.pieces {
+            if let Some(count) = before_slot.get_mut(self.slot(piece.start.t_s) + 1) {
+                *count += 1;
+            }
+        }
+        let mut total = 0;
+        for count in &mut before_slot {
+            total += *count;
+            *count = total;
+        }
+        before_slot
+    }
+
+    /// The finger at a time up to the end; none before the first row.
+    pub(super) fn at(&self, t_s: f64) -> Option<FingerState> {
+        let slot = self.slot(t_s);
+        let (first, last) = (*self.before_slot.get(slot)?, *self.before_slot.get(slot + 1)?);
+        let started = first + self.pieces.get(first..last)?.partition_point(|piece| piece.start.t_s <= t_s);
+        let piece = self.pieces.get(started.checked_sub(1)?)?;
+        let time_s = t_s - piece.start.t_s;
+        Some(FingerState {
+            x_m: piece.start.place.x_m + time_s * piece.x_speed_m_per_s,
+            y_m: piece.start.place.y_m + time_s * piece.y_speed_m_per_s,
+            speed_m_per_s: piece.speed_m_per_s,
+        })
+    }
+}

@@ -1,0 +1,257 @@
+#![allow(clippy::float_cmp, reason = "what has to be exact is tested as exact")]
+
+use proptest::prelude::*;
+
+use super::{FingerState, Point, Stroke, StrokeError};
+
+const LEFT: Point = Point { x_m: 0.01, y_m: 0.02 };
+const RIGHT: Point = Point { x_m: 0.09, y_m: 0.08 };
+/// Between `LEFT` and `RIGHT`.
+const LENGTH_M: f64 = 0.1;
+
+fn at(stroke: &Stroke, t_s: f64) -> FingerState {
+    stroke.at(t_s).unwrap_or_else(|| panic!("finger up at {t_s} s"))
+}
+
+fn distance_m(a: FingerState, b: FingerState) -> f64 {
+    libm::hypot(a.x_m - b.x_m, a.y_m - b.y_m)
+}
+
+fn assert_close(found: f64, expected: f64) {
+    assert!((found - expected).abs() < 1e-12, "{found}, expected {expected}");
+}
+
+/// The speed that the stroke reports is the way it goes over the time it takes, and it never jumps.
+fn assert_speed_is_the_rate_of_the_place(stroke: &Stroke, from_s: f64, to_s: f64) {
+    const STEPS: u32 = 20_000;
+    let step_s = (to_s - from_s) / f64::from(STEPS);
+    let mut fastest: f64 = 0.0;
+    for step in 1..STEPS {
+        let t_s = from_s + step_s * f64::from(step);
+        let (before, now, after) = (at(stroke, t_s - 0.5 * step_s), at(stroke, t_s), at(stroke, t_s + 0.5 * step_s));
+        let found = distance_m(before, after) / step_s;
+        fastest = fastest.max(found);
+        assert!((found - now.speed_m_per_s).abs() < 2e-4, "{found} against {} at {t_s} s", now.speed_m_per_s);
+    }
+    assert!(fastest > 0.05, "nothing moved");
+}
+
+#[test]
+fn constant_speed_is_constant_and_ends_where_it_should() {
+    let stroke = Stroke::constant_speed(LEFT, RIGHT, 0.1).unwrap();
+    assert_close(stroke.duration_s(), 1.0);
+    for (t_s, x_m, y_m) in [(0.0, 0.01, 0.02), (0.25, 0.03, 0.035), (1.0, 0.09, 0.08)] {
+        let state = at(&stroke, t_s);
+        assert_close(state.x_m, x_m);
+        assert_close(state.y_m, y_m);
+        assert_eq!(state.speed_m_per_s, 0.1);
+    }
+}
+
+#[test]
+fn the_finger_is_up_before_the_start_and_after_the_end() {
+    let stroke = Stroke::constant_speed(LEFT, RIGHT, 0.1).unwrap();
+    let rows = Stroke::from_csv("t_s,x_mm,y_mm\n0.5,1,2\n1,2,3").unwrap();
+    for (stroke, times_s) in [(&stroke, [-1e-9, 1.000_001]), (&rows, [0.499_999, 1.000_001])] {
+        for t_s in times_s {
+            assert_eq!(stroke.at(t_s), None);
+        }
+        assert_eq!(stroke.at(f64::NAN), None);
+    }
+}
+
+#[test]
+fn minimum_jerk_rests_at_its_ends_and_is_fastest_in_the_middle() {
+    let duration_s = 0.8;
+    let stroke = Stroke::minimum_jerk(LEFT, RIGHT, duration_s).unwrap();
+    for (t_s, place, speed_m_per_s) in
+        [(0.0, LEFT, 0.0), (0.4, Point { x_m: 0.05, y_m: 0.05 }, 1.875 * LENGTH_M / duration_s), (0.8, RIGHT, 0.0)]
+    {
+        let state = at(&stroke, t_s);
+        assert_close(state.x_m, place.x_m);
+        assert_close(state.y_m, place.y_m);
+        assert_close(state.speed_m_per_s, speed_m_per_s);
+    }
+    let fastest = (0..=1000).map(|ms| at(&stroke, 0.0008 * f64::from(ms)).speed_m_per_s).fold(0.0, f64::max);
+    assert_close(fastest, 1.875 * LENGTH_M / duration_s);
+    assert_speed_is_the_rate_of_the_place(&stroke, 0.0, duration_s);
+}
+
+#[test]
+fn a_still_finger_stays() {
+    let stroke = Stroke::still(LEFT, 2.0).unwrap();
+    assert_eq!(at(&stroke, 1.9), FingerState { x_m: LEFT.x_m, y_m: LEFT.y_m, speed_m_per_s: 0.0 });
+    assert_eq!(stroke.duration_s(), 2.0);
+}
+
+#[test]
+fn a_loop_repeats_with_a_pause_for_ever() {
+    let stroke = Stroke::constant_speed(LEFT, RIGHT, 0.1).unwrap().looped(0.25).unwrap();
+    assert_eq!(stroke.duration_s(), f64::INFINITY);
+    for round in [0.0, 1.0, 1e6] {
+        let start_s = 1.25 * round;
+        assert!(
+            distance_m(at(&stroke, start_s + 0.5), FingerState { x_m: 0.05, y_m: 0.05, speed_m_per_s: 0.1 }) < 1e-9
+        );
+        assert_eq!(stroke.at(start_s + 1.1), None);
+    }
+    assert_eq!(stroke.at(-0.1), None);
+    let error = Stroke::still(LEFT, 1.0).unwrap().looped(-1.0).unwrap_err();
+    assert_eq!(error.to_string(), "stroke: pause_s must be from 0 to 10, found -1");
+}
+
+#[test]
+fn a_natural_stroke_explores_the_screen() {
+    let (width_m, height_m, duration_s) = (0.1, 0.06, 30.0);
+    let stroke = Stroke::natural(width_m, height_m, duration_s).unwrap();
+    assert_speed_is_the_rate_of_the_place(&stroke, 0.0, duration_s);
+    let states: Vec<_> = (0..=30_000).map(|ms| at(&stroke, 1e-3 * f64::from(ms))).collect();
+    let least = |value: fn(&FingerState) -> f64| states.iter().map(value).fold(f64::INFINITY, f64::min);
+    let most = |value: fn(&FingerState) -> f64| states.iter().map(value).fold(f64::NEG_INFINITY, f64::max);
+    assert_close(least(|state| state.x_m), 0.01);
+    assert_close(least(|state| state.y_m), 0.006);
+    assert!((most(|state| state.x_m) - 0.09).abs() < 1e-6);
+    assert!((most(|state| state.y_m) - 0.054).abs() < 1e-6);
+    let mean_m_per_s = states.iter().map(|state| state.speed_m_per_s).sum::<f64>() / states.len() as f64;
+    assert!((mean_m_per_s - 0.1).abs() < 0.005, "{mean_m_per_s}");
+    // Slightly oblique: more than a degree, less than eleven.
+    for pair in states.windows(2) {
+        let (dx, dy) = ((pair[1].x_m - pair[0].x_m).abs(), (pair[1].y_m - pair[0].y_m).abs());
+        if dx > 1e-5 {
+            assert!(dy / dx > 0.02 && dy / dx < 0.19, "{}", dy / dx);
+        }
+    }
+}
+
+proptest! {
+    #[test]
+    fn a_natural_stroke_stays_on_any_screen_at_a_human_pace_for_any_time(
+        width_m in 0.01..1.0_f64,
+        height_m in 0.01..1.0_f64,
+        duration_s in prop_oneof![0.001..1.0_f64, 1.0..1e5_f64],
+    ) {
+        let stroke = Stroke::natural(width_m, height_m, duration_s).unwrap();
+        prop_assert_eq!(stroke.duration_s(), duration_s);
+        for step in 0..=500 {
+            let state = at(&stroke, duration_s * (f64::from(step) / 500.0));
+            prop_assert!(state.x_m > 0.09 * width_m && state.x_m < 0.91 * width_m);
+            prop_assert!(state.y_m > 0.09 * height_m && state.y_m < 0.91 * height_m);
+            prop_assert!(state.speed_m_per_s <= 1.875 * 0.134, "{}", state.speed_m_per_s);
+        }
+        let end = at(&stroke, duration_s);
+        prop_assert!(end.speed_m_per_s < 1e-6);
+    }
+
+    /// Linear interpolation, found by looking through all rows instead of by slot.
+    #[test]
+    fn rows_are_joined_by_straight_lines(
+        rows in prop::collection::vec((1e-4..1.0_f64, -10.0..10.0_f64, -10.0..10.0_f64), 2..40),
+        // Skewed, so that many rows crowd into one slot.
+        power in 1..6_i32,
+        share in 0.0..1.0_f64,
+    ) {
+        let mut t_s = 0.0;
+        let rows: Vec<_> = rows.into_iter().map(|(step_s, x_mm, y_mm)| {
+            t_s += step_s.powi(power) + 1e-6;
+            (t_s, x_mm, y_mm)
+        }).collect();
+        let text = rows.iter().fold("t_s,x_mm,y_mm\n".to_owned(), |text, (t, x, y)| text + &format!("{t:?},{x:?},{y:?}\n"));
+        let stroke = Stroke::from_csv(&text).unwrap();
+        prop_assert_eq!(stroke.duration_s(), t_s);
+        for pair in rows.windows(2) {
+            let ((t0, x0, y0), (t1, x1, y1)) = (pair[0], pair[1]);
+            let state = at(&stroke, t0 + share * (t1 - t0));
+            prop_assert!((state.x_m - 1e-3 * (x0 + share * (x1 - x0))).abs() < 1e-9);
+            prop_assert!((state.y_m - 1e-3 * (y0 + share * (y1 - y0))).abs() < 1e-9);
+            let speed_m_per_s = 1e-3 * libm::hypot(x1 - x0, y1 - y0) / (t1 - t0);
+            prop_assert!((at(&stroke, t0).speed_m_per_s - speed_m_per_s).abs() <= 1e-9 * speed_m_per_s);
+        }
+    }
+}
+
+#[test]
+fn columns_may_stand_in_any_order_among_others_with_quotes_spaces_and_windows_line_ends() {
+    let plain = Stroke::from_csv("t_s,x_mm,y_mm\n0,10,20\n1,30,40\n").unwrap();
+    let other = Stroke::from_csv("\u{feff}note, y_mm ,t_s,x_mm\r\n\"a, b\",20,\"0\",10\r\n\r\n,40, 1 ,3e1").unwrap();
+    for t_s in [0.0, 0.3, 1.0] {
+        assert_eq!(plain.at(t_s), other.at(t_s));
+        assert!(plain.at(t_s).is_some());
+    }
+}
+
+#[test]
+fn bad_text_is_refused_by_line_and_column() {
+    for (text, message) in [
+        ("", "the stroke is empty: expected a header `t_s,x_mm,y_mm` and at least two rows below it"),
+        ("t_s,x_mm,y_mm\n", "the stroke is empty: expected a header `t_s,x_mm,y_mm` and at least two rows below it"),
+        (
+            "t_s,x_mm,y_mm\n0,1,2\n",
+            "line 2: the stroke has one row only: expected at least two, so that the finger moves in time",
+        ),
+        ("0,1,2\n1,2,3\n", "line 1: no column `t_s` in the header `0,1,2`: expected `t_s,x_mm,y_mm`"),
+        ("t_s,x_mm,z_mm\n0,1,2\n", "line 1: no column `y_mm` in the header `t_s,x_mm,z_mm`: expected `t_s,x_mm,y_mm`"),
+        ("t_s,x_mm,y_mm\n0,1,2\n1,2\n", "line 3, column `y_mm`: empty: expected a number"),
+        ("t_s,x_mm,y_mm\n0,,2\n1,2,3\n", "line 2, column `x_mm`: empty: expected a number"),
+        ("t_s,x_mm,y_mm\n0,1,2\n\n1,two,3\n", "line 4, column `x_mm`: `two` is no number: expected one such as `12.5`"),
+        (
+            "\r\n\r\nt_s,x_mm,y_mm\r\n0,1,2\r\n\r\n1,two,3\r\n",
+            "line 6, column `x_mm`: `two` is no number: expected one such as `12.5`",
+        ),
+        (
+            "\u{feff}t_s,x_mm,y_mm\n\n0,1,2\n\n\n1,two,3\n",
+            "line 6, column `x_mm`: `two` is no number: expected one such as `12.5`",
+        ),
+        ("\n\nt_s,x_mm\n", "line 3: no column `y_mm` in the header `t_s,x_mm`: expected `t_s,x_mm,y_mm`"),
+        (
+            "t_s,x_mm,y_mm\n0,1,2\n1,2,nan\n",
+            "line 3, column `y_mm`: `nan` is not finite: expected a number such as `12.5`",
+        ),
+        (
+            "t_s,x_mm,y_mm\n0,1,2\n1,1e999,3\n",
+            "line 3, column `x_mm`: `1e999` is not finite: expected a number such as `12.5`",
+        ),
+        (
+            "t_s,x_mm,y_mm\n-0.1,1,2\n1,2,3\n",
+            "line 2, column `t_s`: -0.1 is below 0: expected time from the start of the stroke",
+        ),
+        (
+            "t_s,x_mm,y_mm\n0,1,2\n0.2,2,3\n0.1,3,3\n",
+            "line 4, column `t_s`: 0.1 comes after 0.2: expected time to rise from row to row",
+        ),
+        (
+            "t_s,x_mm,y_mm\n0,1,2\n0.2,2,3\n0.2,3,3\n",
+            "line 4, column `t_s`: 0.2 comes after 0.2: expected time to rise from row to row",
+        ),
+        (
+            "t_s,x_mm,y_mm\n0,0,0\n1,1,1\n2,1,1e308\n2.000001,1,-1e308\n",
+            "line 5: the finger would jump here in no time: expected a finite speed from the row before",
+        ),
+    ] {
+        assert_eq!(Stroke::from_csv(text).unwrap_err().to_string(), message, "{text:?}");
+    }
+}
+
+#[test]
+fn numbers_that_make_no_stroke_are_refused_by_name() {
+    let message = |result: Result<Stroke, StrokeError>| result.unwrap_err().to_string();
+    assert_eq!(
+        message(Stroke::constant_speed(LEFT, RIGHT, 0.0)),
+        "stroke: speed_m_per_s must be finite and above 0, found 0"
+    );
+    assert_eq!(
+        message(Stroke::constant_speed(LEFT, LEFT, 0.1)),
+        "stroke: length of the stroke in m must be finite and above 0, found 0"
+    );
+    assert_eq!(
+        message(Stroke::minimum_jerk(LEFT, Point { x_m: f64::NAN, y_m: 0.0 }, 1.0)),
+        "stroke: length of the stroke in m must be finite, found NaN"
+    );
+    assert_eq!(
+        message(Stroke::minimum_jerk(LEFT, RIGHT, f64::INFINITY)),
+        "stroke: duration_s must be finite and above 0, found inf"
+    );
+    assert_eq!(
+        message(Stroke::natural(0.1, -0.1, 1.0)),
+        "stroke: screen height in m must be finite and above 0, found -0.1"
+    );
+}

@@ -1,0 +1,79 @@
+//! Strokes as CSV text.
+
+use csv::{ReaderBuilder, StringRecord, Trim};
+
+use super::rows::{Row, Rows};
+use super::{Point, StrokeError};
+
+const COLUMNS: [&str; 3] = ["t_s", "x_mm", "y_mm"];
+const MM_PER_M: f64 = 1e3;
+
+/// The motion that CSV text describes.
+pub(super) fn rows(text: &str) -> Result<Rows, StrokeError> {
+    let mut reader = ReaderBuilder::new().flexible(true).trim(Trim::All).from_reader(text.as_bytes());
+    let malformed = |error: csv::Error| StrokeError::Malformed { reason: error.to_string() };
+    let header = reader.headers().map_err(malformed)?.clone();
+    if header.is_empty() {
+        return Err(StrokeError::Empty);
+    }
+    let columns = find_columns(&header, line_of(&header, text))?;
+    let mut rows: Vec<Row> = Vec::new();
+    let mut lines = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(malformed)?;
+        let line = line_of(&record, text);
+        let row = row(&record, line, columns)?;
+        if row.t_s < 0.0 {
+            return Err(StrokeError::BeforeStart { line, found_s: row.t_s });
+        }
+        if let Some(previous) = rows.last().filter(|previous| previous.t_s >= row.t_s) {
+            return Err(StrokeError::NotRising { line, found_s: row.t_s, previous_s: previous.t_s });
+        }
+        rows.push(row);
+        lines.push(line);
+    }
+    match lines.as_slice() {
+        [] => Err(StrokeError::Empty),
+        [line] => Err(StrokeError::OneRow { line: *line }),
+        lines => Rows::new(&rows)
+            .map_err(|number| StrokeError::Jump { line: lines.get(number).copied().unwrap_or_default() }),
+    }
+}
+
+/// Where each of [`COLUMNS`] stands.
+fn find_columns(header: &StringRecord, line: u64) -> Result<[usize; 3], StrokeError> {
+    let mut places = [0; 3];
+    for (place, column) in places.iter_mut().zip(COLUMNS) {
+        *place = header.iter().position(|name| name == column).ok_or_else(|| StrokeError::MissingColumn {
+            line,
+            column,
+            found: header.iter().collect::<Vec<_>>().join(","),
+        })?;
+    }
+    Ok(places)
+}
+
+fn row(record: &StringRecord, line: u64, places: [usize; 3]) -> Result<Row, StrokeError> {
+    let mut values = [0.0; 3];
+    for ((value, place), column) in values.iter_mut().zip(places).zip(COLUMNS) {
+        *value = number(record.get(place).unwrap_or_default(), line, column)?;
+    }
+    let [t_s, x_mm, y_mm] = values;
+    Ok(Row { t_s, place: Point { x_m: x_mm / MM_PER_M, y_m: y_mm / MM_PER_M } })
+}
+
+fn number(cell: &str, line: u64, column: &'static str) -> Result<f64, StrokeError> {
+    if cell.is_empty() {
+        return Err(StrokeError::MissingValue { line, column });
+    }
+    let found = || cell.to_owned();
+    let value: f64 = cell.parse().map_err(|_| StrokeError::NotANumber { line, column, found: found() })?;
+    if value.is_finite() { Ok(value) } else { Err(StrokeError::NotFinite { line, column, found: found() }) }
+}
+
+/// Line of a record in `text`. The reader's own number is that of the first of the empty lines that it skipped.
+fn line_of(record: &StringRecord, text: &str) -> u64 {
+    let Some(position) = record.position() else { return 1 };
+    let skipped = text.bytes().skip(position.byte() as usize).take_while(|byte| matches!(byte, b'\r' | b'\n'));
+    position.line() + skipped.filter(|&byte| byte == b'\n').count() as u64
+}

@@ -1,0 +1,180 @@
+use frixel_render::Touch;
+
+use super::{TouchConfig, TouchSource};
+use crate::stroke::FingerState;
+
+const TICK_HZ: u32 = 40_000;
+/// The finger of these tests moves by this much every tick, so that a report without noise tells when it was sampled.
+const STEP_M: f64 = 1e-6;
+const SECONDS: u64 = 200;
+
+fn finger(tick: u64) -> FingerState {
+    FingerState { x_m: tick as f64 * STEP_M, y_m: 0.05, speed_m_per_s: STEP_M * f64::from(TICK_HZ) }
+}
+
+/// Every report of a source that watches the finger for a while, with the tick of its arrival.
+fn reports(config: TouchConfig, seed: u64, seconds: u64) -> Vec<(u64, Touch)> {
+    let mut source = TouchSource::new(&config, TICK_HZ, seed).unwrap();
+    (0..seconds * u64::from(TICK_HZ))
+        .filter_map(|tick| {
+            source.tick(tick, Some(&finger(tick)));
+            source.arrived().map(|touch| (tick, touch))
+        })
+        .collect()
+}
+
+fn place(touch: Touch) -> (f64, f64, u32) {
+    match touch {
+        Touch::Down { x_m, y_m, age_ticks } => (f64::from(x_m), f64::from(y_m), age_ticks),
+        Touch::Up => panic!("the finger is down"),
+    }
+}
+
+fn mean_and_deviation(values: &[f64]) -> (f64, f64) {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let variance = values.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / values.len() as f64;
+    (mean, variance.sqrt())
+}
+
+/// Without noise: for every report, the tick of its sample and its delay.
+fn samples_and_delays(config: TouchConfig, seconds: u64) -> Vec<(f64, f64)> {
+    reports(TouchConfig { noise_rms_m: 0.0, ..config }, 5, seconds)
+        .into_iter()
+        .map(|(tick, touch)| {
+            let sampled = place(touch).0 / STEP_M;
+            (sampled, tick as f64 - sampled)
+        })
+        .collect()
+}
+
+#[test]
+fn reports_come_at_the_rate_with_the_latency_and_the_jitter() {
+    // Short enough for a place in f32 to tell the tick within a fifth.
+    const SHORT_S: u64 = 40;
+    let config = TouchConfig::default();
+    let samples_and_delays = samples_and_delays(config, SHORT_S);
+    let expected = SHORT_S as f64 * config.rate_hz;
+    assert!((samples_and_delays.len() as f64 - expected).abs() <= 2.0, "{}", samples_and_delays.len());
+    for pair in samples_and_delays.windows(2) {
+        assert!((pair[1].0 - pair[0].0 - 400.0).abs() < 0.5, "samples are evenly spaced");
+    }
+    let delays: Vec<f64> = samples_and_delays.iter().map(|&(_, delay)| delay).collect();
+    let (mean, deviation) = mean_and_deviation(&delays);
+    // 4,000 reports: standard errors of 0.3 and 0.2 ticks. Cut at three deviations, 20 ticks of jitter are 19.73.
+    assert!((mean - 400.0).abs() < 1.5, "latency {mean} ticks");
+    assert!((deviation - 19.73).abs() < 1.0, "jitter {deviation} ticks");
+    assert!(delays.iter().all(|delay| (delay - 400.0).abs() < 60.8), "jitter beyond three deviations");
+}
+
+#[test]
+fn the_board_is_told_the_nominal_latency() {
+    let reports = reports(TouchConfig::default(), 5, 10);
+    assert!(reports.iter().all(|&(_, touch)| place(touch).2 == 400));
+}
+
+#[test]
+fn without_jitter_the_stated_age_is_exact() {
+    let config = TouchConfig { jitter_rms_s: 0.0, latency_s: 7.5e-3, ..TouchConfig::default() };
+    for (_, delay) in samples_and_delays(config, 10) {
+        assert!((delay - 300.0).abs() < 0.1, "{delay}");
+    }
+}
+
+#[test]
+fn noise_is_that_of_the_configuration_in_each_axis_apart() {
+    let config = TouchConfig { jitter_rms_s: 0.0, latency_s: 0.0, ..TouchConfig::default() };
+    let errors: Vec<(f64, f64)> = reports(config, 5, SECONDS)
+        .into_iter()
+        .map(|(tick, touch)| {
+            let (x_m, y_m, _) = place(touch);
+            (x_m - finger(tick).x_m, y_m - 0.05)
+        })
+        .collect();
+    assert_eq!(errors.len(), 20_000);
+    let (x_errors_m, y_errors_m): (Vec<f64>, Vec<f64>) = errors.iter().copied().unzip();
+    for errors_m in [&x_errors_m, &y_errors_m] {
+        let (mean_m, deviation_m) = mean_and_deviation(errors_m);
+        // Five standard errors.
+        assert!(mean_m.abs() < 0.7e-6, "{mean_m}");
+        assert!((deviation_m - 20e-6).abs() < 0.5e-6, "{deviation_m}");
+    }
+    let covariance = errors.iter().map(|(x_m, y_m)| x_m * y_m).sum::<f64>() / errors.len() as f64;
+    assert!(covariance.abs() < 5.0 * 400e-12 / libm::sqrt(20_000.0), "{covariance}");
+}
+
+#[test]
+fn an_odd_rate_is_kept_without_drift() {
+    let config = TouchConfig { rate_hz: 119.7, jitter_rms_s: 0.0, ..TouchConfig::default() };
+    let count = reports(config, 5, SECONDS).len() as f64;
+    assert!((count - 119.7 * SECONDS as f64).abs() <= 3.0, "{count}");
+}
+
+#[test]
+fn reports_keep_their_order_and_never_precede_their_sample() {
+    // Jitter of five periods on a latency of none: half of the draws would come too early, and most out of order.
+    let config = TouchConfig { latency_s: 0.0, jitter_rms_s: 50e-3, ..TouchConfig::default() };
+    let samples_and_delays = samples_and_delays(config, 20);
+    assert!(samples_and_delays.len() > 1900);
+    for pair in samples_and_delays.windows(2) {
+        assert!(pair[1].0 > pair[0].0, "out of order");
+        assert!(pair[1].1 > -0.5, "before its sample");
+    }
+    let (_, deviation) = mean_and_deviation(&samples_and_delays.iter().map(|&(_, delay)| delay).collect::<Vec<_>>());
+    assert!(deviation > 100.0, "no jitter to speak of: {deviation}");
+}
+
+#[test]
+fn the_phase_of_the_schedule_comes_from_the_seed() {
+    let first_ticks: Vec<u64> = (0..40)
+        .map(|seed| reports(TouchConfig { jitter_rms_s: 0.0, latency_s: 0.0, ..TouchConfig::default() }, seed, 1)[0].0)
+        .collect();
+    assert!(first_ticks.iter().all(|&tick| tick < 400));
+    let (mean, deviation) = mean_and_deviation(&first_ticks.iter().map(|&tick| tick as f64).collect::<Vec<_>>());
+    // Even over 400 ticks: 200 and 115.
+    assert!((mean - 200.0).abs() < 75.0 && (deviation - 115.0).abs() < 40.0, "{mean} {deviation}");
+}
+
+#[test]
+fn the_same_seed_gives_the_same_reports_and_another_has_its_own_noise_and_jitter() {
+    let config = TouchConfig::default();
+    assert_eq!(reports(config, 5, 5), reports(config, 5, 5));
+    // The finger moves along x only, so y differs by noise alone; the spacing of reports differs by jitter alone.
+    let noise = |seed| reports(config, seed, 5).iter().map(|&(_, touch)| place(touch).1).collect::<Vec<_>>();
+    let spacing = |seed| reports(config, seed, 5).windows(2).map(|pair| pair[1].0 - pair[0].0).collect::<Vec<_>>();
+    assert_ne!(noise(5)[..400], noise(6)[..400]);
+    assert_ne!(spacing(5)[..400], spacing(6)[..400]);
+}
+
+#[test]
+fn a_lift_is_reported_once_after_the_latency() {
+    let config = TouchConfig { jitter_rms_s: 0.0, ..TouchConfig::default() };
+    let mut source = TouchSource::new(&config, TICK_HZ, 5).unwrap();
+    let (down, up) = (10_000, 20_000);
+    let mut seen = Vec::new();
+    for tick in 0..60_000 {
+        let finger = (down..up).contains(&tick).then(|| finger(tick));
+        source.tick(tick, finger.as_ref());
+        seen.extend(source.arrived().map(|touch| (tick, touch)));
+    }
+    let first_tick = seen[0].0;
+    assert!((down + 400..down + 800).contains(&first_tick), "first report at {first_tick}");
+    let ups: Vec<u64> = seen.iter().filter(|(_, touch)| *touch == Touch::Up).map(|&(tick, _)| tick).collect();
+    assert_eq!(ups.len(), 1);
+    assert!((up + 400..up + 800).contains(&ups[0]), "lift at {}", ups[0]);
+    assert_eq!(seen.last().unwrap().0, ups[0]);
+    assert_eq!(seen.len(), 26);
+}
+
+#[test]
+fn what_makes_no_sense_is_refused_by_name() {
+    let default = TouchConfig::default();
+    for (config, message) in [
+        (TouchConfig { rate_hz: 0.0, ..default }, "touch rate_hz must be finite and above 0, found 0"),
+        (TouchConfig { rate_hz: 50_000.0, ..default }, "touch rate_hz must be at most the tick rate, found 50000"),
+        (TouchConfig { latency_s: -0.01, ..default }, "touch latency_s must be from 0 to 10, found -0.01"),
+        (TouchConfig { noise_rms_m: f64::NAN, ..default }, "touch noise_rms_m must be from 0 to 10, found NaN"),
+        (TouchConfig { jitter_rms_s: 11.0, ..default }, "touch jitter_rms_s must be from 0 to 10, found 11"),
+    ] {
+        assert_eq!(TouchSource::new(&config, TICK_HZ, 1).unwrap_err().to_string(), message);
+    }
+}

@@ -1,0 +1,163 @@
+//! The world on the other side of the board's pins.
+
+use core::ops::Range;
+
+use frixel_model::LoadedContact;
+use frixel_render::{Drive, Sense};
+
+use crate::amplifier::{Amplifier, AmplifierConfig};
+use crate::error::{OutOfRange, WorldError};
+use crate::fingertip::{Fingertip, Friction, example_finger};
+use crate::stroke::{FingerState, Stroke};
+use crate::touch::{TouchConfig, TouchSource};
+
+/// What the world is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WorldConfig {
+    /// Ticks a second, above 0.
+    pub tick_hz: u32,
+    /// Voltage that the board takes DAC code 32,767 for, in volts, peak. Above 0.
+    pub full_scale_v_peak: f64,
+    /// The amplifier between DAC and electrode.
+    pub amplifier: AmplifierConfig,
+    /// The touch source.
+    pub touch: TouchConfig,
+}
+
+impl Default for WorldConfig {
+    /// 40 kHz and 200 V at full scale.
+    fn default() -> Self {
+        Self {
+            tick_hz: 40_000,
+            full_scale_v_peak: 200.0,
+            amplifier: AmplifierConfig::default(),
+            touch: TouchConfig::default(),
+        }
+    }
+}
+
+/// What came of a tick. All but the mean square is as it is at the end of the tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Felt {
+    /// The finger, if it is on the screen.
+    pub finger: Option<FingerState>,
+    /// Friction under the finger, in newtons: `mu F_N` and the electric part. Zero without a finger.
+    pub friction_n: f64,
+    /// Electric part of the friction, behind the friction lag, in newtons.
+    pub electric_friction_n: f64,
+    /// Voltage on the electrode.
+    pub electrode_v: f64,
+    /// Mean of the squared electrode voltage over the tick, in V^2.
+    pub mean_square_v2: f64,
+}
+
+/// Amplifier, electrode, finger and touch source, in virtual time.
+///
+/// At every tick the board sees [`sense`](Self::sense), and what it puts out goes to [`apply`](Self::apply), which
+/// holds it for a tick. Before any scene the finger is the [example finger](crate::example_finger).
+///
+/// ```
+/// use frixel_hil_sim::{Point, Stroke, World, WorldConfig};
+/// use frixel_render::Drive;
+///
+/// let left = Point { x_m: 0.01, y_m: 0.03 };
+/// let right = Point { x_m: 0.09, y_m: 0.03 };
+/// let stroke = Stroke::constant_speed(left, right, 0.1)?;
+/// let mut world = World::new(WorldConfig::default(), stroke, 1)?;
+/// world.start_stroke();
+/// let sense = world.sense();
+/// assert!(!sense.amplifier_fault);
+/// let felt = world.apply(Drive { dac_code: 0, amplifier_enable: true });
+/// assert_eq!(felt.friction_n, 0.25);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct World {
+    tick_hz: u32,
+    tick: u64,
+    amplifier: Amplifier,
+    amplifier_faults: Vec<Range<u64>>,
+    fingertip: Fingertip,
+    touch_source: TouchSource,
+    stroke: Stroke,
+    /// Tick at which the stroke started, once it has.
+    stroke_start: Option<u64>,
+}
+
+impl World {
+    /// A world at rest at tick 0, with the finger up and everything random drawn from `seed`.
+    pub fn new(config: WorldConfig, stroke: Stroke, seed: u64) -> Result<Self, WorldError> {
+        let WorldConfig { tick_hz, full_scale_v_peak, amplifier, touch } = config;
+        if tick_hz == 0 {
+            return Err(OutOfRange { name: "tick_hz", expected: "above 0", found: 0.0 }.into());
+        }
+        let mut touch_source = TouchSource::new(&touch, tick_hz, seed)?;
+        touch_source.tick(0, None);
+        Ok(Self {
+            tick_hz,
+            tick: 0,
+            amplifier: Amplifier::new(&amplifier, full_scale_v_peak, tick_hz)?,
+            amplifier_faults: Vec::new(),
+            fingertip: Fingertip::new(example_finger().map_err(WorldError::Finger)?, tick_hz),
+            touch_source,
+            stroke,
+            stroke_start: None,
+        })
+    }
+
+    /// Puts another finger on the screen from now on: the contact of a scene's profile under its load.
+    pub fn set_finger(&mut self, contact: LoadedContact<f64>) {
+        self.fingertip.set_contact(contact);
+    }
+
+    /// Starts the stroke, or starts it again: its time zero is the current tick.
+    pub fn start_stroke(&mut self) {
+        self.stroke_start = Some(self.tick);
+    }
+
+    /// Raises the amplifier's fault line for a range of ticks. The amplifier itself works on: to switch it off is up to
+    /// the board.
+    pub fn schedule_amplifier_fault(&mut self, ticks: Range<u64>) {
+        self.amplifier_faults.push(ticks);
+    }
+
+    /// Ticks since the beginning.
+    pub fn tick(&self) -> u64 {
+        self.tick
+    }
+
+    /// The finger at the current tick, if it is on the screen.
+    pub fn finger(&self) -> Option<FingerState> {
+        let ticks = self.tick - self.stroke_start?;
+        self.stroke.at(ticks as f64 / f64::from(self.tick_hz))
+    }
+
+    /// What the board sees at the current tick. Asking twice gives the same answer.
+    pub fn sense(&self) -> Sense {
+        Sense {
+            touch: self.touch_source.arrived(),
+            amplifier_fault: self.amplifier_faults.iter().any(|ticks| ticks.contains(&self.tick)),
+            monitor_v: self.amplifier.output_v() as f32,
+            arm_switch: true,
+        }
+    }
+
+    /// Holds what the board puts out for one tick, and goes to the next.
+    pub fn apply(&mut self, drive: Drive) -> Felt {
+        let output = self.amplifier.tick(drive);
+        self.tick += 1;
+        let finger = self.finger();
+        let Friction { friction_n, electric_friction_n } = match &finger {
+            Some(finger) => self.fingertip.slide(output.mean_square_v2, finger.speed_m_per_s),
+            None => self.fingertip.lift(),
+        };
+        self.touch_source.tick(self.tick, finger.as_ref());
+        Felt {
+            finger,
+            friction_n,
+            electric_friction_n,
+            electrode_v: output.end_v,
+            mean_square_v2: output.mean_square_v2,
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! The whole path in one process: frames over a virtual line into the firmware, its voltage onto a simulated finger.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+use frixel_hil_sim::{BoardMemory, LineFault, Point, Rig, RigConfig, Stroke, TickRecord, contact_of};
+use frixel_wire::fault::State;
+use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, crc32};
+use frixel_wire::message::{Command, FromBoard, Request};
+use frixel_wire::payload::{self, Payload};
+use frixel_wire::scene::{Blend, Carrier, Header, Layer, Record, Region};
+
+const HEADER: Header = Header {
+    screen_width_m: 0.12,
+    screen_height_m: 0.11,
+    finger_radius_m: 8e-3,
+    stiffness_pa_per_m: 1.8e7,
+    friction_coefficient: 0.5,
+    normal_load_n: 0.5,
+    effective_gap_m: 1e-5,
+    voltage_max_v_rms: 150.0,
+    voltage_max_v_peak: 220.0,
+    slew_v_per_s: 5e6,
+    carrier_hz: 1000.0,
+    host_timeout_s: 1.0,
+    carrier: Carrier::Square,
+    autonomous: true,
+    prediction: true,
+};
+
+fn constant(header: &Header, electric_friction_n: f32) -> Vec<u8> {
+    let layer = Layer::Constant { electric_friction_n };
+    let record = Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer };
+    [header.write(1).as_slice(), record.write().as_slice()].concat()
+}
+
+/// Sends one frame and returns the payload bytes of what comes back, with the ticks that it took.
+fn exchange(rig: &mut Rig, frame: &[u8]) -> (Vec<u8>, u64) {
+    let start = rig.tick();
+    rig.send(frame);
+    let mut decoder = Decoder::new();
+    let mut bytes = Vec::new();
+    while rig.tick() < start + 40_000 {
+        rig.step();
+        rig.receive(&mut bytes);
+        for byte in bytes.drain(..) {
+            if let Some(payload) = decoder.push(byte) {
+                return (payload.to_vec(), rig.tick() - start);
+            }
+        }
+    }
+    panic!("no answer within a second of virtual time");
+}
+
+fn command(rig: &mut Rig, command: Command) {
+    let mut frame = [0; FRAME_MAX_LEN];
+    let frame = payload::request_frame(&Request { sequence: 7, command }, &mut frame).unwrap();
+    let (payload, _) = exchange(rig, frame);
+    match Payload::parse_from_board(&payload).unwrap() {
+        Payload::FromBoard(FromBoard::Answer(answer)) => assert!(answer.outcome.is_ok(), "{command:?}: {answer:?}"),
+        other => panic!("{command:?} answered by {other:?}"),
+    }
+}
+
+fn play(rig: &mut Rig, scene: &[u8]) {
+    command(rig, Command::UploadScene { len: scene.len() as u32, crc32: crc32(scene) });
+    let mut frame = [0; FRAME_MAX_LEN];
+    let frame = payload::chunk_frame(0, scene, &mut frame).unwrap();
+    exchange(rig, frame);
+    command(rig, Command::UploadEnd);
+    command(rig, Command::Commit { crc32: crc32(scene) });
+    command(rig, Command::Arm);
+    command(rig, Command::Play);
+    rig.world_mut().start_stroke();
+}
+
+fn slide() -> Stroke {
+    let point = |x_m| Point { x_m, y_m: 0.05 };
+    Stroke::constant_speed(point(0.005), point(0.105), 0.1).unwrap()
+}
+
+/// Means of the friction felt over whole carrier periods, once the finger is known to the board.
+fn felt_means_n(records: &[TickRecord]) -> Vec<f64> {
+    records[4000..]
+        .chunks_exact(40)
+        .map(|period| period.iter().map(|record| record.felt.friction_n).sum::<f64>() / 40.0)
+        .collect()
+}
+
+#[test]
+fn a_hello_takes_the_time_that_its_bytes_take_on_the_line() {
+    let mut memory = BoardMemory::new();
+    let mut rig = Rig::new(&mut memory, &RigConfig::default(), slide(), 1).unwrap();
+    let mut frame = [0; FRAME_MAX_LEN];
+    let request = payload::hello_request_frame(&mut frame).unwrap();
+    let (answer, ticks) = exchange(&mut rig, request);
+    assert!(matches!(Payload::parse_from_board(&answer).unwrap(), Payload::Hello(_)));
+    // Five bytes a tick at 2 Mbaud and 40 kHz; the answer is framed in six bytes more.
+    let bytes_ticks = (request.len().div_ceil(5) + (answer.len() + 6).div_ceil(5)) as u64;
+    // The answer's first bytes share a tick with the request's last.
+    assert_eq!(ticks, bytes_ticks - 1);
+}
+
+#[test]
+fn a_constant_friction_is_felt_within_one_per_cent_of_what_can_be_reached() {
+    for carrier in [Carrier::Square, Carrier::Sine] {
+        let header = Header { carrier, ..HEADER };
+        let contact = contact_of(&header).unwrap();
+        let reach_n = contact.electric_friction_n(150.0);
+        for part in [0.1, 0.5, 0.95] {
+            let wanted_n = contact.natural_friction_n() + part * reach_n;
+            let mut memory = BoardMemory::new();
+            let mut rig = Rig::new(&mut memory, &RigConfig::default(), slide(), 1).unwrap();
+            play(&mut rig, &constant(&header, (part * reach_n) as f32));
+            let records: Vec<TickRecord> = (0..39_000).map(|_| rig.step()).collect();
+            // A sine's pressure swings about its mean, and friction grows a little faster than pressure (DESIGN 1).
+            let bound = if carrier == Carrier::Square { 0.01 } else { 0.03 };
+            for felt_n in felt_means_n(&records) {
+                let error = (felt_n - wanted_n) / reach_n;
+                assert!(error.abs() <= bound, "{carrier:?} at {part} of the range: {error}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_cut_cable_ends_at_zero_within_the_host_timeout() {
+    let header = Header { autonomous: false, host_timeout_s: 0.1, ..HEADER };
+    let mut memory = BoardMemory::new();
+    let mut rig = Rig::new(&mut memory, &RigConfig::default(), slide(), 1).unwrap();
+    play(&mut rig, &constant(&header, 0.01));
+    let cut_at_tick = rig.tick();
+    let sent = rig.line_to_board_mut().bytes().sent;
+    rig.line_to_board_mut().schedule_fault(sent, LineFault::Cut);
+    let last_driven = (0..12_000).map(|_| rig.step()).filter(|r| r.status.telemetry.dac_code != 0).last().unwrap();
+    let ticks = last_driven.tick - cut_at_tick;
+    assert!((3900..=4001).contains(&ticks), "{ticks} ticks after the last byte");
+    assert_eq!(rig.step().status.telemetry.state, State::Disarmed);
+}
+
+#[test]
+fn the_same_seed_gives_the_same_run_and_another_does_not() {
+    let run = |seed| {
+        let mut memory = BoardMemory::new();
+        let mut rig = Rig::new(&mut memory, &RigConfig::default(), slide(), seed).unwrap();
+        play(&mut rig, &constant(&HEADER, 0.01));
+        (0..8000).map(|_| rig.step().felt.friction_n.to_bits()).collect::<Vec<u64>>()
+    };
+    assert_eq!(run(1), run(1));
+    assert_ne!(run(1), run(2));
+}

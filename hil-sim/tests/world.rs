@@ -1,0 +1,231 @@
+//! The world as a board sees it, tick by tick.
+#![allow(clippy::unwrap_used, reason = "these are tests, which clippy does not see in the helpers")]
+
+use frixel_hil_sim::{
+    AmplifierConfig, Felt, FingerState, Point, Stroke, TouchConfig, World, WorldConfig, example_finger,
+};
+use frixel_model::{Contact, Finger};
+use frixel_render::{Drive, Sense, Touch};
+use proptest::prelude::*;
+
+const LEFT: Point = Point { x_m: 0.01, y_m: 0.03 };
+const RIGHT: Point = Point { x_m: 0.09, y_m: 0.03 };
+const DAC_FULL: f64 = 32_767.0;
+
+/// A finger that slides for 0.8 s at the fastest speed that the friction lag was measured at.
+fn sliding() -> Stroke {
+    Stroke::constant_speed(LEFT, RIGHT, 0.1).unwrap()
+}
+
+fn world(config: WorldConfig) -> World {
+    World::new(config, sliding(), 1).unwrap()
+}
+
+fn ideal_amplifier() -> WorldConfig {
+    let amplifier = AmplifierConfig { time_constant_s: 0.0, ..AmplifierConfig::default() };
+    WorldConfig { amplifier, ..WorldConfig::default() }
+}
+
+/// A square carrier of 1 kHz.
+fn square(tick: u64, dac_code: i16) -> Drive {
+    let positive = (tick / 20).is_multiple_of(2);
+    Drive { dac_code: if positive { dac_code } else { -dac_code }, amplifier_enable: true }
+}
+
+#[test]
+fn without_drive_the_finger_feels_exactly_its_natural_friction() {
+    let mut world = world(WorldConfig::default());
+    world.start_stroke();
+    for _ in 0..1000 {
+        let felt = world.apply(Drive { dac_code: 0, amplifier_enable: true });
+        assert_eq!((felt.friction_n, felt.electric_friction_n, felt.mean_square_v2), (0.25, 0.0, 0.0));
+    }
+}
+
+#[test]
+fn a_square_drive_without_lag_is_felt_as_the_model_says() {
+    let contact = example_finger().unwrap();
+    for dac_code in [1, 3000, 16_384, 32_767] {
+        let mut world = world(ideal_amplifier());
+        world.start_stroke();
+        let felt = (0..4000).map(|tick| world.apply(square(tick, dac_code))).last().unwrap();
+        let voltage_v_rms = 200.0 * f64::from(dac_code) / DAC_FULL;
+        let expected_n = contact.electric_friction_n(voltage_v_rms);
+        assert!((felt.electric_friction_n - expected_n).abs() < 1e-9, "{} {expected_n}", felt.electric_friction_n);
+        assert!((felt.friction_n - 0.25 - expected_n).abs() < 1e-9);
+        assert!((felt.mean_square_v2.sqrt() - voltage_v_rms).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn the_carrier_s_edges_cost_what_the_amplifier_s_lag_says() {
+    // Steady state of a square of half period H behind a lag tau: mean square 1 - 2 (tau/H) tanh(H / (2 tau)).
+    let (half_s, tau_s): (f64, f64) = (500e-6, 20e-6);
+    let expected_v2 = 200.0 * 200.0 * (1.0 - 2.0 * (tau_s / half_s) * (half_s / (2.0 * tau_s)).tanh());
+    let mut world = world(WorldConfig::default());
+    let mean_square_v2 =
+        (0..400).map(|tick| world.apply(square(tick, 32_767)).mean_square_v2).skip(360).sum::<f64>() / 40.0;
+    assert!((mean_square_v2 - expected_v2).abs() < 1e-6 * expected_v2, "{mean_square_v2} {expected_v2}");
+}
+
+#[test]
+fn another_finger_feels_its_own_friction() {
+    let finger = Finger { radius_m: 7e-3, stiffness_pa_per_m: 3e7, friction_coefficient: 0.8 };
+    let contact = Contact::new(&finger, 8e-6).unwrap().under_load(0.3).unwrap();
+    let mut world = world(ideal_amplifier());
+    world.set_finger(contact);
+    world.start_stroke();
+    let felt = (0..4000).map(|tick| world.apply(square(tick, 20_000))).last().unwrap();
+    let expected_n = contact.natural_friction_n() + contact.electric_friction_n(200.0 * 20_000.0 / DAC_FULL);
+    assert!((felt.friction_n - expected_n).abs() < 1e-9, "{} {expected_n}", felt.friction_n);
+}
+
+#[test]
+fn friction_follows_a_step_of_drive_with_the_lag_of_the_sliding_speed() {
+    let mut world = world(ideal_amplifier());
+    world.start_stroke();
+    // A time constant at 1,380 Hz is 4.613 ticks: e^(-5 / 4.613) is left after five.
+    let felt = (0..5).map(|tick| world.apply(square(tick, 30_000))).last().unwrap();
+    let share = felt.electric_friction_n / example_finger().unwrap().electric_friction_n(200.0 * 30_000.0 / DAC_FULL);
+    let ticks = 40_000.0 / (core::f64::consts::TAU * 1380.0);
+    assert!((share - (1.0 - (-5.0 / ticks).exp())).abs() < 1e-9, "{share}");
+}
+
+#[test]
+fn the_finger_is_up_until_the_stroke_starts_and_after_its_end() {
+    let mut world = world(WorldConfig::default());
+    for tick in 0..100 {
+        let felt = world.apply(square(tick, 32_767));
+        assert_eq!((felt.finger, felt.friction_n, felt.electric_friction_n), (None, 0.0, 0.0));
+    }
+    world.start_stroke();
+    assert_eq!(world.finger(), Some(FingerState { x_m: 0.01, y_m: 0.03, speed_m_per_s: 0.1 }));
+    let down: Vec<Felt> = (0..32_200).map(|tick| world.apply(square(tick, 32_767))).collect();
+    let middle = down[16_000 - 1].finger.unwrap();
+    assert!((middle.x_m - 0.05).abs() < 1e-12 && (middle.speed_m_per_s - 0.1).abs() < 1e-12);
+    // 0.08 m over 0.1 m/s are 32,000 ticks, or one less when they round to less than 0.8 s.
+    let ticks_down = down.iter().filter(|felt| felt.finger.is_some()).count();
+    assert!((31_999..=32_000).contains(&ticks_down), "{ticks_down}");
+    let last = down.last().unwrap();
+    assert_eq!((last.finger, last.friction_n, last.electric_friction_n), (None, 0.0, 0.0));
+    assert!(last.mean_square_v2 > 30_000.0, "the electrode does not care for the finger");
+    assert_eq!(world.tick(), 32_300);
+}
+
+#[test]
+fn a_stroke_can_be_started_again() {
+    let mut world = world(WorldConfig::default());
+    world.start_stroke();
+    for tick in 0..4000 {
+        world.apply(square(tick, 0));
+    }
+    world.start_stroke();
+    let x_m = world.apply(square(0, 0)).finger.unwrap().x_m;
+    assert!((x_m - 0.010_002_5).abs() < 1e-12, "{x_m}");
+}
+
+#[test]
+fn the_board_sees_the_finger_where_it_was_a_latency_ago() {
+    let touch = TouchConfig { jitter_rms_s: 0.0, noise_rms_m: 0.0, ..TouchConfig::default() };
+    let mut world = world(WorldConfig { touch, ..WorldConfig::default() });
+    world.start_stroke();
+    let mut reports = 0;
+    let mut lifts = 0;
+    for tick in 0..40_000_u64 {
+        assert_eq!(world.sense(), world.sense());
+        match world.sense().touch {
+            Some(Touch::Down { x_m, y_m, age_ticks }) => {
+                let sampled = tick - u64::from(age_ticks);
+                let expected = sliding().at(sampled as f64 / 40_000.0).unwrap();
+                assert_eq!((x_m, y_m), (expected.x_m as f32, expected.y_m as f32));
+                reports += 1;
+            }
+            Some(Touch::Up) => lifts += 1,
+            None => {}
+        }
+        world.apply(Drive::default());
+    }
+    assert_eq!((reports, lifts), (80, 1));
+}
+
+#[test]
+fn the_monitor_shows_the_electrode_and_the_switch_is_held() {
+    let mut world = world(WorldConfig::default());
+    for tick in 0..100 {
+        let felt = world.apply(square(tick, 32_767));
+        let sense = world.sense();
+        assert!((f64::from(sense.monitor_v) - felt.electrode_v).abs() < 1e-5);
+        assert!(sense.arm_switch);
+    }
+    assert!(world.sense().monitor_v > 190.0);
+}
+
+#[test]
+fn the_amplifier_s_fault_line_follows_its_schedule() {
+    let mut world = world(WorldConfig::default());
+    world.schedule_amplifier_fault(10..12);
+    world.schedule_amplifier_fault(20..21);
+    let faulty: Vec<u64> = (0..100)
+        .filter(|_| {
+            let fault = world.sense().amplifier_fault;
+            world.apply(Drive::default());
+            fault
+        })
+        .collect();
+    assert_eq!(faulty, [10, 11, 20]);
+}
+
+proptest! {
+    #[test]
+    fn the_same_seed_gives_the_same_run_and_friction_is_never_below_natural(
+        seed in any::<u64>(),
+        codes in prop::collection::vec((any::<i16>(), any::<bool>()), 1..60),
+    ) {
+        let run = |seed| {
+            let mut world = World::new(WorldConfig::default(), sliding(), seed).unwrap();
+            world.start_stroke();
+            // Each code is held for 40 ticks, so that touch reports come in between.
+            codes.iter().flat_map(|code| [code; 40]).map(|&(dac_code, amplifier_enable)| {
+                (world.sense(), world.apply(Drive { dac_code, amplifier_enable }))
+            }).collect::<Vec<(Sense, Felt)>>()
+        };
+        let first = run(seed);
+        prop_assert_eq!(&first, &run(seed));
+        prop_assert!(first.iter().all(|(_, felt)| felt.friction_n >= 0.25 && felt.friction_n < 0.35));
+    }
+}
+
+#[test]
+fn seeds_differ_in_what_the_board_sees_and_not_in_what_is_felt() {
+    let run = |seed| {
+        let mut world = World::new(WorldConfig::default(), sliding(), seed).unwrap();
+        world.start_stroke();
+        (0..8000).map(|tick| (world.sense().touch, world.apply(square(tick, 20_000)))).unzip()
+    };
+    let (first, second): ((Vec<_>, Vec<_>), (Vec<_>, Vec<_>)) = (run(1), run(2));
+    assert_ne!(first.0, second.0);
+    assert_eq!(first.1, second.1);
+}
+
+#[test]
+fn a_world_that_makes_no_sense_is_refused_by_name() {
+    let refused = |config| World::new(config, sliding(), 1).unwrap_err().to_string();
+    assert_eq!(
+        refused(WorldConfig { tick_hz: 0, ..WorldConfig::default() }),
+        "simulated world: tick_hz must be above 0, found 0"
+    );
+    assert_eq!(
+        refused(WorldConfig { full_scale_v_peak: f64::NAN, ..WorldConfig::default() }),
+        "simulated world: full_scale_v_peak must be finite and above 0, found NaN"
+    );
+    let amplifier = AmplifierConfig { gain: -1.0, ..AmplifierConfig::default() };
+    assert_eq!(
+        refused(WorldConfig { amplifier, ..WorldConfig::default() }),
+        "simulated world: amplifier gain must be finite and above 0, found -1"
+    );
+    let touch = TouchConfig { rate_hz: f64::INFINITY, ..TouchConfig::default() };
+    assert_eq!(
+        refused(WorldConfig { touch, ..WorldConfig::default() }),
+        "simulated world: touch rate_hz must be finite and above 0, found inf"
+    );
+}

@@ -1,0 +1,226 @@
+//! Reads the fields of a TOML table by name, type and range, and finds those that nobody asked for.
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::mistake::{Log, Mistake, Nearest};
+use super::source::Places;
+
+/// What a number may be.
+#[derive(Clone, Copy)]
+pub(super) struct Range {
+    min: f64,
+    max: f64,
+    /// With a space before it.
+    unit: &'static str,
+}
+
+impl Range {
+    pub(super) const fn new(min: f64, max: f64, unit: &'static str) -> Self {
+        Self { min, max, unit }
+    }
+}
+
+/// A table that is being read. Every field that is asked for becomes known; [`Fields::close`] reports the rest.
+pub(super) struct Fields<'i> {
+    table: String,
+    values: DeTable<'i>,
+    places: Places,
+    asked: Vec<&'static str>,
+    missing: Vec<&'static str>,
+}
+
+impl<'i> Fields<'i> {
+    /// `table` is how messages call it; `offset` is where it starts.
+    pub(super) fn new(table: impl Into<String>, offset: usize, values: DeTable<'i>) -> Self {
+        Self { table: table.into(), values, places: Places::new(offset), asked: Vec::new(), missing: Vec::new() }
+    }
+
+    /// From here on, messages call the table so.
+    pub(super) fn rename(&mut self, table: String) {
+        self.table = table;
+    }
+
+    /// A number that has to be there.
+    pub(super) fn number(&mut self, log: &mut Log, field: &'static str, range: Range) -> Option<f64> {
+        self.require(field);
+        self.optional_number(log, field, range)
+    }
+
+    /// A number that may be left out.
+    pub(super) fn optional_number(&mut self, log: &mut Log, field: &'static str, range: Range) -> Option<f64> {
+        let value = self.take(field)?;
+        let offset = value.span().start;
+        let found = match value.get_ref() {
+            DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix()).ok().map(|i| i as f64),
+            DeValue::Float(float) => float.as_str().parse().ok(),
+            _ => None,
+        };
+        let Some(found) = found else {
+            log.add(offset, wrong_type(field, "a number", value.get_ref()));
+            return None;
+        };
+        if found >= range.min && found <= range.max {
+            return Some(found);
+        }
+        log.add(offset, Mistake::OutOfRange { field, found, min: range.min, max: range.max, unit: range.unit });
+        None
+    }
+
+    /// `true` or `false`, or `default` where it is left out.
+    pub(super) fn flag(&mut self, log: &mut Log, field: &'static str, default: bool) -> bool {
+        let Some(value) = self.take(field) else { return default };
+        if let DeValue::Boolean(flag) = value.get_ref() {
+            return *flag;
+        }
+        log.add(value.span().start, wrong_type(field, "`true` or `false`", value.get_ref()));
+        default
+    }
+
+    /// A text that has to be there.
+    pub(super) fn text(&mut self, log: &mut Log, field: &'static str) -> Option<String> {
+        self.require(field);
+        self.optional_text(log, field)
+    }
+
+    /// A text that may be left out.
+    pub(super) fn optional_text(&mut self, log: &mut Log, field: &'static str) -> Option<String> {
+        let value = self.take(field)?;
+        if let DeValue::String(text) = value.get_ref() {
+            return Some(text.clone().into_owned());
+        }
+        log.add(value.span().start, wrong_type(field, "a text in quotes", value.get_ref()));
+        None
+    }
+
+    /// One of some words that has to be there.
+    pub(super) fn choice<T: Copy>(
+        &mut self,
+        log: &mut Log,
+        field: &'static str,
+        choices: &[(&'static str, T)],
+    ) -> Option<T> {
+        self.require(field);
+        self.optional_choice(log, field, choices)
+    }
+
+    /// One of some words, that may be left out.
+    pub(super) fn optional_choice<T: Copy>(
+        &mut self,
+        log: &mut Log,
+        field: &'static str,
+        choices: &[(&'static str, T)],
+    ) -> Option<T> {
+        let found = self.optional_text(log, field)?;
+        if let Some((_, choice)) = choices.iter().find(|(word, _)| *word == found) {
+            return Some(*choice);
+        }
+        let nearest = Nearest::new(&found, choices.iter().map(|(word, _)| *word));
+        log.add(self.places.field(field), Mistake::UnknownChoice { field, found, nearest });
+        None
+    }
+
+    /// A table that has to be there.
+    pub(super) fn table(&mut self, log: &mut Log, field: &'static str) -> Option<Fields<'i>> {
+        self.require(field);
+        self.optional_table(log, field)
+    }
+
+    /// A table that may be left out.
+    pub(super) fn optional_table(&mut self, log: &mut Log, field: &'static str) -> Option<Fields<'i>> {
+        let value = self.take(field)?;
+        let offset = value.span().start;
+        match value.into_inner() {
+            DeValue::Table(values) => Some(Fields::new(format!("[{field}]"), offset, values)),
+            other => {
+                log.add(offset, wrong_type(field, "a table", &other));
+                None
+            }
+        }
+    }
+
+    /// Any number of tables, `[[field]]`; with `one`, `[field]` is a list of one.
+    pub(super) fn tables(&mut self, log: &mut Log, field: &'static str, one: bool) -> Vec<Fields<'i>> {
+        let Some(value) = self.take(field) else { return Vec::new() };
+        let offset = value.span().start;
+        let values = match value.into_inner() {
+            DeValue::Array(values) => values,
+            DeValue::Table(values) if one => return vec![Fields::new(format!("[{field}]"), offset, values)],
+            other => {
+                log.add(offset, wrong_type(field, "a list of tables, each with its name in double brackets", &other));
+                return Vec::new();
+            }
+        };
+        let mut tables = Vec::new();
+        for value in values {
+            let offset = value.span().start;
+            match value.into_inner() {
+                DeValue::Table(values) => tables.push(Fields::new(format!("[[{field}]]"), offset, values)),
+                other => log.add(offset, wrong_type(field, "a list of tables", &other)),
+            }
+        }
+        tables
+    }
+
+    /// Reports what is left over and what is missing; gives back where the fields stand. A missing field whose
+    /// misspelling is reported is not reported again.
+    pub(super) fn close(mut self, log: &mut Log) -> Places {
+        let mut misspelt = Vec::new();
+        for (name, _) in &self.values {
+            let absent = self.asked.iter().copied().filter(|known| !self.places.has(known));
+            let nearest = Nearest::new(name.get_ref(), absent);
+            misspelt.extend(nearest.suggestion.clone());
+            let field = name.get_ref().clone().into_owned();
+            log.add(name.span().start, Mistake::UnknownField { field, table: self.table.clone(), nearest });
+        }
+        self.missing.retain(|field| !misspelt.iter().any(|word| word == field));
+        for field in self.missing {
+            log.add(self.places.table(), Mistake::MissingField { field, table: self.table.clone() });
+        }
+        self.places
+    }
+
+    /// Ends the reading of a table that cannot be understood without `field`: when the field is missing, reports that,
+    /// or its misspelling, and nothing else.
+    pub(super) fn give_up_without(self, log: &mut Log, field: &'static str) {
+        if !self.missing.contains(&field) {
+            return;
+        }
+        let misspelt = self.values.keys().find_map(|name| {
+            let nearest = Nearest::new(name.get_ref(), std::iter::once(field));
+            nearest.suggestion.is_some().then_some((name, nearest))
+        });
+        match misspelt {
+            Some((name, nearest)) => {
+                let field = name.get_ref().clone().into_owned();
+                log.add(name.span().start, Mistake::UnknownField { field, table: self.table, nearest });
+            }
+            None => log.add(self.places.table(), Mistake::MissingField { field, table: self.table }),
+        }
+    }
+
+    fn require(&mut self, field: &'static str) {
+        if !self.values.contains_key(field) {
+            self.missing.push(field);
+        }
+    }
+
+    fn take(&mut self, field: &'static str) -> Option<Spanned<DeValue<'i>>> {
+        self.asked.push(field);
+        let value = self.values.remove(field)?;
+        self.places.add(field, value.span().start);
+        Some(value)
+    }
+}
+
+fn wrong_type(field: &'static str, expected: &'static str, found: &DeValue) -> Mistake {
+    let found = match found {
+        DeValue::String(_) => "a text",
+        DeValue::Integer(_) | DeValue::Float(_) => "a number",
+        DeValue::Boolean(_) => "`true` or `false`",
+        DeValue::Datetime(_) => "a date",
+        DeValue::Array(_) => "a list",
+        DeValue::Table(_) => "a table",
+    };
+    Mistake::WrongType { field, expected, found }
+}

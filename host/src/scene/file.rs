@@ -1,0 +1,218 @@
+//! The scene file as a person writes it, in the file's own units, each number within its range.
+
+use std::fs;
+use std::path::Path;
+
+use toml::de::DeTable;
+
+use super::fields::{Fields, Range};
+use super::layer::Layer;
+use super::mistake::{CompileError, Log, Mistake};
+use super::source::{Places, Source};
+
+/// Version of the file format.
+const VERSION: u32 = 1;
+
+const SCREEN_MM: Range = Range::new(5.0, 2_000.0, " mm");
+const COATING_UM: Range = Range::new(0.01, 1_000.0, " um");
+const PERMITTIVITY: Range = Range::new(1.0, 10_000.0, "");
+const RADIUS_MM: Range = Range::new(0.1, 100.0, " mm");
+const STIFFNESS_PA_PER_M: Range = Range::new(1e3, 1e14, " Pa/m");
+const FRICTION_COEFFICIENT: Range = Range::new(0.001, 10.0, "");
+const LOAD_N: Range = Range::new(0.0, 50.0, " N");
+const VOLTAGE_V_RMS: Range = Range::new(1.0, 1_000.0, " V rms");
+const VOLTAGE_V_PEAK: Range = Range::new(2.0, 2_000.0, " V peak");
+const SLEW_V_PER_US: Range = Range::new(0.001, 1_000.0, " V/us");
+const HOST_TIMEOUT_MS: Range = Range::new(20.0, 1_000.0, " ms");
+/// Below this the drive is no alternating carrier any more; how fast it may be is a matter of the board's ticks.
+const CARRIER_HZ: Range = Range::new(125.0, 100_000.0, " Hz");
+
+/// A scene file that was read: its fields are known, of the right type and in range. [`super::compile`] checks the rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    pub(super) source: Source,
+    pub(super) screen: Screen,
+    pub(super) coating: Coating,
+    pub(super) finger: Finger,
+    pub(super) drive: Drive,
+    pub(super) carrier: Carrier,
+    pub(super) prediction: bool,
+    pub(super) layers: Vec<Layer>,
+}
+
+/// `[screen]`
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Screen {
+    pub(super) width_mm: f64,
+    pub(super) height_mm: f64,
+}
+
+/// `[coating]` or several `[[coating]]`, already one effective gap.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Coating {
+    pub(super) effective_gap_um: f64,
+    pub(super) places: Places,
+}
+
+/// `[finger]`
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Finger {
+    pub(super) radius_mm: f64,
+    pub(super) stiffness_pa_per_m: f64,
+    pub(super) friction_coefficient: f64,
+    pub(super) normal_load_n: f64,
+}
+
+/// `[drive]`
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Drive {
+    pub(super) voltage_max_v_rms: f64,
+    pub(super) voltage_max_v_peak: Option<f64>,
+    pub(super) slew_v_per_us: f64,
+    pub(super) host_timeout_ms: f64,
+    pub(super) autonomous: bool,
+    pub(super) saturate: bool,
+    pub(super) places: Places,
+}
+
+/// `[carrier]`
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Carrier {
+    pub(super) shape: frixel_wire::scene::Carrier,
+    pub(super) frequency_hz: f64,
+    pub(super) places: Places,
+}
+
+impl Scene {
+    /// Reads a scene file. Pictures in it are found from its folder.
+    pub fn load(path: &Path) -> Result<Self, CompileError> {
+        let name = path.display().to_string();
+        let bytes = match fs::read(path) {
+            Ok(bytes) => bytes,
+            Err(source) => return Err(CompileError::Unreadable { file: name, source }),
+        };
+        let folder = path.parent().unwrap_or(Path::new(""));
+        match std::str::from_utf8(&bytes) {
+            Ok(text) => Self::parse(text, &name, folder),
+            Err(error) => {
+                let text = String::from_utf8_lossy(bytes.get(..error.valid_up_to()).unwrap_or_default());
+                let source = Source::new(&name, folder, &text);
+                let mut log = Log::new(&source);
+                log.add(error.valid_up_to(), Mistake::NotUtf8);
+                log.finish(None)
+            }
+        }
+    }
+
+    /// Reads the text of a scene file. `name` is what messages call it; pictures in it are found from `folder`.
+    pub fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, CompileError> {
+        let source = Source::new(name, folder, text);
+        let mut log = Log::new(&source);
+        let scene = match DeTable::parse(text) {
+            Ok(table) => read(Fields::new("the scene", 0, table.into_inner()), &mut log, &source),
+            Err(error) => {
+                log.add(error.span().map_or(0, |span| span.start), Mistake::Syntax(error.message().to_owned()));
+                None
+            }
+        };
+        log.finish(scene)
+    }
+}
+
+fn read(mut fields: Fields, log: &mut Log, source: &Source) -> Option<Scene> {
+    let version = fields.number(log, "version", Range::new(f64::MIN, f64::MAX, ""));
+    let screen = fields.table(log, "screen").and_then(|fields| screen(fields, log));
+    let coating = coating(&mut fields, log);
+    let finger = fields.table(log, "finger").and_then(|fields| finger(fields, log));
+    let drive = drive(fields.optional_table(log, "drive").unwrap_or_else(|| absent("[drive]")), log);
+    let carrier = carrier(fields.optional_table(log, "carrier").unwrap_or_else(|| absent("[carrier]")), log);
+    let prediction = touch(fields.optional_table(log, "touch").unwrap_or_else(|| absent("[touch]")), log);
+    let tables = fields.tables(log, "layer", false);
+    let layers = tables.into_iter().enumerate().map(|(index, table)| Layer::read(table, index + 1, log)).collect();
+    let places = fields.close(log);
+    if let Some(found) = version.filter(|found| found.total_cmp(&f64::from(VERSION)).is_ne()) {
+        log.add(places.field("version"), Mistake::Version { found, expected: VERSION });
+    }
+    let layers: Option<Vec<Layer>> = layers;
+    Some(Scene {
+        source: source.clone(),
+        screen: screen?,
+        coating: coating?,
+        finger: finger?,
+        drive,
+        carrier,
+        prediction,
+        layers: layers?,
+    })
+}
+
+/// A table that the file leaves out: every field has its default.
+fn absent(name: &str) -> Fields<'static> {
+    Fields::new(name, 0, DeTable::new())
+}
+
+fn screen(mut fields: Fields, log: &mut Log) -> Option<Screen> {
+    let width_mm = fields.number(log, "width_mm", SCREEN_MM);
+    let height_mm = fields.number(log, "height_mm", SCREEN_MM);
+    fields.close(log);
+    Some(Screen { width_mm: width_mm?, height_mm: height_mm? })
+}
+
+/// Slabs in series add their thickness over permittivity.
+fn coating(scene: &mut Fields, log: &mut Log) -> Option<Coating> {
+    let slabs = scene.tables(log, "coating", true);
+    if slabs.is_empty() {
+        scene.table(log, "coating");
+        return None;
+    }
+    let mut effective_gap_um = Some(0.0);
+    let mut first = None;
+    for mut slab in slabs {
+        let thickness_um = slab.number(log, "thickness_um", COATING_UM);
+        let permittivity = slab.number(log, "permittivity", PERMITTIVITY);
+        let gap_um = thickness_um.zip(permittivity).map(|(thickness_um, permittivity)| thickness_um / permittivity);
+        effective_gap_um = effective_gap_um.zip(gap_um).map(|(sum, gap)| sum + gap);
+        let places = slab.close(log);
+        first.get_or_insert(places);
+    }
+    Some(Coating { effective_gap_um: effective_gap_um?, places: first? })
+}
+
+fn finger(mut fields: Fields, log: &mut Log) -> Option<Finger> {
+    let radius_mm = fields.number(log, "radius_mm", RADIUS_MM);
+    let stiffness_pa_per_m = fields.number(log, "stiffness_pa_per_m", STIFFNESS_PA_PER_M);
+    let friction_coefficient = fields.number(log, "friction_coefficient", FRICTION_COEFFICIENT);
+    let normal_load_n = fields.number(log, "normal_load_n", LOAD_N);
+    fields.close(log);
+    Some(Finger {
+        radius_mm: radius_mm?,
+        stiffness_pa_per_m: stiffness_pa_per_m?,
+        friction_coefficient: friction_coefficient?,
+        normal_load_n: normal_load_n?,
+    })
+}
+
+fn drive(mut fields: Fields, log: &mut Log) -> Drive {
+    let voltage_max_v_rms = fields.optional_number(log, "voltage_max_v_rms", VOLTAGE_V_RMS).unwrap_or(150.0);
+    let voltage_max_v_peak = fields.optional_number(log, "voltage_max_v_peak", VOLTAGE_V_PEAK);
+    let slew_v_per_us = fields.optional_number(log, "slew_v_per_us", SLEW_V_PER_US).unwrap_or(5.0);
+    let host_timeout_ms = fields.optional_number(log, "host_timeout_ms", HOST_TIMEOUT_MS).unwrap_or(250.0);
+    let autonomous = fields.flag(log, "autonomous", false);
+    let saturate = fields.flag(log, "saturate", false);
+    let places = fields.close(log);
+    Drive { voltage_max_v_rms, voltage_max_v_peak, slew_v_per_us, host_timeout_ms, autonomous, saturate, places }
+}
+
+fn carrier(mut fields: Fields, log: &mut Log) -> Carrier {
+    use frixel_wire::scene::Carrier::{Sine, Square};
+    let shape = fields.optional_choice(log, "shape", &[("square", Square), ("sine", Sine)]).unwrap_or(Square);
+    let frequency_hz = fields.optional_number(log, "frequency_hz", CARRIER_HZ).unwrap_or(1_000.0);
+    let places = fields.close(log);
+    Carrier { shape, frequency_hz, places }
+}
+
+fn touch(mut fields: Fields, log: &mut Log) -> bool {
+    let prediction = fields.flag(log, "prediction", true);
+    fields.close(log);
+    prediction
+}

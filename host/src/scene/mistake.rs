@@ -1,0 +1,333 @@
+//! What can be wrong with a scene, each in one sentence: what was found, what was expected, what to do.
+
+use std::fmt::{self, Display};
+use std::io;
+
+use thiserror::Error;
+
+use super::source::Source;
+
+/// Why a scene file does not become a program.
+#[derive(Debug, Error)]
+pub enum CompileError {
+    /// The scene file itself cannot be read.
+    #[error("{file}: this scene file cannot be read ({source}): check the path")]
+    Unreadable {
+        /// The file as it was named.
+        file: String,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The file was read, and something in it is wrong. The message has a line for each mistake.
+    #[error("{}", list(.file, .mistakes))]
+    Mistakes {
+        /// The file as it was named.
+        file: String,
+        /// Every mistake that was found, in the order of the file.
+        mistakes: Vec<Located>,
+    },
+}
+
+fn list(file: &str, mistakes: &[Located]) -> String {
+    let lines: Vec<String> = mistakes.iter().map(|mistake| format!("{file}:{mistake}")).collect();
+    lines.join("\n")
+}
+
+/// A mistake and where in the file it stands.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{line}:{column}: {mistake}")]
+pub struct Located {
+    /// Line, from one.
+    pub line: usize,
+    /// Column in characters, from one.
+    pub column: usize,
+    /// What is wrong.
+    pub mistake: Mistake,
+}
+
+/// Something wrong in a scene file. Its text is one sentence for the person who wrote the file.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum Mistake {
+    /// The bytes are not UTF-8.
+    #[error("this byte is not UTF-8 text: save the file as UTF-8")]
+    NotUtf8,
+    /// The text is not TOML.
+    #[error("this is not TOML: {0}")]
+    Syntax(String),
+    /// A field that the table does not have.
+    #[error("unknown field `{field}` in {table}; {nearest}")]
+    UnknownField {
+        /// As written.
+        field: String,
+        /// The table it stands in.
+        table: String,
+        /// What may have been meant.
+        nearest: Nearest,
+    },
+    /// A field that the table must have.
+    #[error("{table} has no `{field}`: add it")]
+    MissingField {
+        /// The field that is missing.
+        field: &'static str,
+        /// The table it is missing from.
+        table: String,
+    },
+    /// A value of another type.
+    #[error("`{field}` has to be {expected}, and this is {found}")]
+    WrongType {
+        /// The field.
+        field: &'static str,
+        /// What it should be.
+        expected: &'static str,
+        /// What it is.
+        found: &'static str,
+    },
+    /// A number that is too small, too large, or none.
+    #[error("`{field} = {found}` is out of range: expected {min} to {max}{unit}")]
+    OutOfRange {
+        /// The field.
+        field: &'static str,
+        /// Its value.
+        found: f64,
+        /// Least value.
+        min: f64,
+        /// Largest value.
+        max: f64,
+        /// The unit, with a space before it, or nothing.
+        unit: &'static str,
+    },
+    /// A word that is none of the choices.
+    #[error("`{field} = \"{found}\"` is not known; {nearest}")]
+    UnknownChoice {
+        /// The field.
+        field: &'static str,
+        /// As written.
+        found: String,
+        /// What may have been meant.
+        nearest: Nearest,
+    },
+    /// A scene file of another version.
+    #[error(
+        "this scene file has version {found}, and this frixel reads version {expected}: use a frixel that knows it"
+    )]
+    Version {
+        /// As written.
+        found: f64,
+        /// What this crate reads.
+        expected: u32,
+    },
+    /// Low above high.
+    #[error("`low_n = {low_n}` is above `high_n = {high_n}`: swap them")]
+    LowAboveHigh {
+        /// Friction in the troughs, N.
+        low_n: f64,
+        /// Friction on the crests, N.
+        high_n: f64,
+    },
+    /// A layer that is added, in total newtons.
+    #[error(
+        "{layer} is added to what lies below it, so its friction is a difference and cannot be given in total: \
+         write `above = \"natural\"` or leave `above` out"
+    )]
+    AddedTotal {
+        /// The layer.
+        layer: String,
+    },
+    /// A picture that is not there.
+    #[error("picture \"{picture}\" was not found in {folder}{nearest}: paths start from the scene file's folder")]
+    PictureMissing {
+        /// As written.
+        picture: String,
+        /// Where it was looked for.
+        folder: String,
+        /// `, which has "..."`, or nothing.
+        nearest: String,
+    },
+    /// A picture that cannot be used.
+    #[error("picture \"{picture}\" cannot be used: {reason}")]
+    PictureUnusable {
+        /// As written.
+        picture: String,
+        /// Why, and what to do.
+        reason: String,
+    },
+    /// A region that leaves the screen.
+    #[error(
+        "{layer} reaches {beyond_mm} mm past the {edge} edge of the {screen_width_mm} mm x {screen_height_mm} mm screen: \
+         move it or make it smaller"
+    )]
+    OffScreen {
+        /// The layer.
+        layer: String,
+        /// Which edge.
+        edge: &'static str,
+        /// How far, mm.
+        beyond_mm: f64,
+        /// The screen, mm.
+        screen_width_mm: f64,
+        /// The screen, mm.
+        screen_height_mm: f64,
+    },
+    /// More friction than the drive can give.
+    #[error(
+        "{asking} up to {asked_n} N {reference}, and at {voltage_v_rms} V rms this finger feels at most {reach_n} N \
+         {reference}: lower it, raise `voltage_max_v_rms`, or write `saturate = true` under [drive] to have it clamped"
+    )]
+    AboveReach {
+        /// Which layer or layers ask, with the verb.
+        asking: String,
+        /// What is asked for, N.
+        asked_n: f64,
+        /// `in total` or `above natural friction`.
+        reference: &'static str,
+        /// Largest rms voltage, V.
+        voltage_v_rms: f64,
+        /// The most that can be reached, rounded down, N.
+        reach_n: f64,
+    },
+    /// Less friction than the finger has at no voltage.
+    #[error(
+        "{asking} down to {asked_n} N {reference}, and a drive can only add to the finger's natural friction of \
+         {natural_n} N: raise it, lower `normal_load_n`, or write `saturate = true` under [drive] to have it clamped"
+    )]
+    BelowNatural {
+        /// Which layer or layers ask, with the verb.
+        asking: String,
+        /// What is asked for, N.
+        asked_n: f64,
+        /// `in total` or `above natural friction`.
+        reference: &'static str,
+        /// Friction at no voltage, N.
+        natural_n: f64,
+    },
+    /// More layers than a scene may have.
+    #[error("this is layer {number}, and the board takes {max}: leave some out or draw them into one picture")]
+    TooManyLayers {
+        /// Number of the first layer that is too many.
+        number: usize,
+        /// Most layers.
+        max: usize,
+    },
+    /// Pictures that need more memory than the board has for them.
+    #[error(
+        "the pictures up to this one need {needed_bytes} bytes, and the board has {pool_bytes}: \
+         a pitch_mm of {pitch_mm} would fit"
+    )]
+    PoolTooSmall {
+        /// Bytes of all different pictures up to this one.
+        needed_bytes: u64,
+        /// Bytes of the board's pool.
+        pool_bytes: u32,
+        /// A pitch that fits, mm.
+        pitch_mm: f64,
+    },
+    /// A peak voltage above the board's.
+    #[error("`voltage_max_v_peak = {found}` is above the board's limit of {board} V peak: lower it or leave it out")]
+    PeakAboveBoard {
+        /// As written, V.
+        found: f64,
+        /// The board's limit, V.
+        board: f64,
+    },
+    /// A carrier that the tick cannot make.
+    #[error("`frequency_hz = {found}` is too fast for {tick_hz} ticks a second: expected at most {max} Hz")]
+    CarrierTooFast {
+        /// As written, Hz.
+        found: f64,
+        /// Ticks a second.
+        tick_hz: u32,
+        /// Fastest carrier, Hz.
+        max: f64,
+    },
+    /// More current into the electrode than the board allows.
+    #[error(
+        "this carrier drives {found_ma:.2} mA {kind} into the board's worst-case electrode, and its limit is \
+         {board_ma:.2} mA: lower {cure}"
+    )]
+    CurrentAboveBoard {
+        /// `rms` or `peak`.
+        kind: &'static str,
+        /// The current at the largest voltage, mA.
+        found_ma: f64,
+        /// The board's limit, mA.
+        board_ma: f64,
+        /// What to lower.
+        cure: &'static str,
+    },
+    /// Numbers that are each in range and that the contact model refuses together.
+    #[error("the contact model refuses this finger and coating ({reason}): check [finger] and [coating]")]
+    Model {
+        /// What the model said.
+        reason: String,
+    },
+}
+
+/// What a misspelt word may have been.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Nearest {
+    /// The nearest word, where one is near enough.
+    pub suggestion: Option<String>,
+    /// All words that would do.
+    pub known: Vec<String>,
+}
+
+impl Nearest {
+    /// Likeness (Jaro-Winkler, 0 to 1) from which a word is suggested.
+    const LIKENESS_MIN: f64 = 0.75;
+
+    pub(super) fn new<'k>(found: &str, known: impl Iterator<Item = &'k str>) -> Self {
+        let known: Vec<String> = known.map(str::to_owned).collect();
+        let suggestion = known
+            .iter()
+            .map(|word| (strsim::jaro_winkler(found, word), word))
+            .filter(|(likeness, _)| *likeness >= Self::LIKENESS_MIN)
+            .max_by(|(one, _), (other, _)| one.total_cmp(other))
+            .map(|(_, word)| word.clone());
+        Self { suggestion, known }
+    }
+}
+
+impl Display for Nearest {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.suggestion {
+            Some(word) => write!(formatter, "did you mean `{word}`?"),
+            None if self.known.is_empty() => write!(formatter, "nothing more is expected here"),
+            None => write!(formatter, "expected one of `{}`", self.known.join("`, `")),
+        }
+    }
+}
+
+/// Gathers mistakes, so that a person sees all of them at once.
+pub(super) struct Log<'s> {
+    source: &'s Source,
+    mistakes: Vec<Located>,
+}
+
+impl<'s> Log<'s> {
+    pub(super) fn new(source: &'s Source) -> Self {
+        Self { source, mistakes: Vec::new() }
+    }
+
+    /// Notes a mistake that stands at a byte of the file.
+    pub(super) fn add(&mut self, offset: usize, mistake: Mistake) {
+        let (line, column) = self.source.line_and_column(offset);
+        self.mistakes.push(Located { line, column, mistake });
+    }
+
+    /// The value, if nothing was wrong.
+    pub(super) fn finish<T>(mut self, value: Option<T>) -> Result<T, CompileError> {
+        match value {
+            Some(value) if self.mistakes.is_empty() => Ok(value),
+            _ => {
+                self.mistakes.sort_by_key(|mistake| (mistake.line, mistake.column));
+                Err(CompileError::Mistakes { file: self.source.name().to_owned(), mistakes: self.mistakes })
+            }
+        }
+    }
+
+    /// Whether nothing was wrong so far.
+    pub(super) fn is_empty(&self) -> bool {
+        self.mistakes.is_empty()
+    }
+}

@@ -1,0 +1,26 @@
+//! Scenes: a TOML file that a person writes, checked and compiled to the program that a board plays.
+//!
+//! `docs/scene.md` is the reference of the file. [`Scene::load`] reads it, [`compile`] checks what needs the board or
+//! other layers, and makes a [`Program`]. Both tell every mistake at once, each with line and column.
+
+mod compile;
+mod cover;
+mod excess;
+mod fields;
+mod file;
+mod layer;
+mod mistake;
+mod picture;
+mod pool;
+mod program;
+mod reach;
+mod resample;
+mod source;
+#[cfg(test)]
+mod tests;
+
+pub use compile::compile;
+pub use file::Scene;
+pub use mistake::{CompileError, Located, Mistake, Nearest};
+pub use program::{Bitmap, Program};
+pub use reach::Reach;

@@ -1,0 +1,61 @@
+//! What a scene compiles to.
+
+use frixel_wire::frame::crc32;
+use frixel_wire::scene::{Header, Record};
+
+use super::reach::Reach;
+
+/// A scene as a board plays it, with the pictures that it names.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Program {
+    /// What holds for the whole scene. Voltages are what the board can reach: see [`Reach::voltage_max_v_rms`].
+    pub header: Header,
+    /// The layers from bottom to top, in the order of the file.
+    pub records: Vec<Record>,
+    /// The pictures that records name, each one once.
+    pub bitmaps: Vec<Bitmap>,
+    /// How messages call each record: its number from one, and its name or kind.
+    pub titles: Vec<String>,
+    /// What the finger can be given.
+    pub reach: Reach,
+    /// Ticks of half a carrier period.
+    pub half_period_ticks: u32,
+    /// What was converted, rounded or clamped, a sentence each.
+    pub notes: Vec<String>,
+}
+
+impl Program {
+    /// The scene's bytes, as they are uploaded.
+    pub fn scene_bytes(&self) -> Vec<u8> {
+        // At most 64 records were compiled.
+        let mut bytes = self.header.write(self.records.len() as u8).to_vec();
+        for record in &self.records {
+            bytes.extend_from_slice(&record.write());
+        }
+        bytes
+    }
+
+    /// The bitmap that a record names.
+    pub fn bitmap(&self, crc32: u32) -> Option<&Bitmap> {
+        self.bitmaps.iter().find(|bitmap| bitmap.crc32 == crc32)
+    }
+}
+
+/// Samples of a picture, a byte each, row after row from the top left.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Bitmap {
+    /// CRC-32 of the samples: the bitmap's name in the board's pool.
+    pub crc32: u32,
+    /// Samples in a row.
+    pub width: u16,
+    /// Rows.
+    pub height: u16,
+    /// The samples: 0 is black, 255 white.
+    pub samples: Vec<u8>,
+}
+
+impl Bitmap {
+    pub(super) fn new(width: u16, height: u16, samples: Vec<u8>) -> Self {
+        Self { crc32: crc32(&samples), width, height, samples }
+    }
+}

@@ -1,0 +1,72 @@
+//! What friction a drive can give to a finger.
+
+use frixel_model::{Contact, Finger, ParameterError};
+use frixel_wire::scene::{Carrier, Header};
+
+/// The frictions that a finger can be given: from natural, `mu F_N`, to natural plus the most that the drive adds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reach {
+    /// Friction at no voltage, `mu F_N`, in newtons.
+    pub natural_friction_n: f64,
+    /// Electric friction at the largest voltage, in newtons, Eqs. (43), (21).
+    pub electric_friction_max_n: f64,
+    /// The largest rms voltage, within the scene's rms limit and the peak limits of scene and board, in volts.
+    pub voltage_max_v_rms: f64,
+}
+
+impl Reach {
+    /// Reach under the finger, coating and rms voltage of a header, whose `f32` numbers are what the board has.
+    pub(super) fn of(header: &Header) -> Result<Self, ParameterError> {
+        let finger = Finger {
+            radius_m: f64::from(header.finger_radius_m),
+            stiffness_pa_per_m: f64::from(header.stiffness_pa_per_m),
+            friction_coefficient: f64::from(header.friction_coefficient),
+        };
+        let contact = Contact::new(&finger, f64::from(header.effective_gap_m))?;
+        let loaded = contact.under_load(f64::from(header.normal_load_n))?;
+        let voltage_max_v_rms = f64::from(header.voltage_max_v_rms);
+        Ok(Self {
+            natural_friction_n: loaded.natural_friction_n(),
+            electric_friction_max_n: loaded.electric_friction_n(voltage_max_v_rms),
+            voltage_max_v_rms,
+        })
+    }
+
+    /// Least friction in total, in newtons.
+    pub fn friction_min_n(&self) -> f64 {
+        self.natural_friction_n
+    }
+
+    /// Largest friction in total, in newtons.
+    pub fn friction_max_n(&self) -> f64 {
+        self.natural_friction_n + self.electric_friction_max_n
+    }
+}
+
+/// Peak over rms of a carrier.
+pub(super) fn crest(shape: Carrier) -> f64 {
+    match shape {
+        Carrier::Square => 1.0,
+        Carrier::Sine => core::f64::consts::SQRT_2,
+    }
+}
+
+/// What is left of the drive's mean square behind edges of the time constant `tau_s`: a first-order lag. The board
+/// divides the voltage by the root of it.
+///
+/// A square wave keeps `1 - (2 tau/T) tanh(T/(2 tau))`, with `T` half a period; a sine keeps `1/(1 + (w tau)^2)`.
+pub(super) fn mean_square_left(shape: Carrier, half_period_s: f64, tau_s: f64) -> f64 {
+    if !(tau_s > 0.0) {
+        return 1.0;
+    }
+    match shape {
+        Carrier::Square => {
+            let ratio = 2.0 * tau_s / half_period_s;
+            1.0 - ratio * libm::tanh(1.0 / ratio)
+        }
+        Carrier::Sine => {
+            let lag = core::f64::consts::PI / half_period_s * tau_s;
+            1.0 / (1.0 + lag * lag)
+        }
+    }
+}

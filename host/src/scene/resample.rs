@@ -1,0 +1,73 @@
+//! Brings a picture to the pitch that a board plays.
+
+/// One axis of the grid that a picture is brought to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Axis {
+    /// Samples along it.
+    pub(super) samples: usize,
+    /// Pixels of the picture for each sample.
+    pub(super) pixels_per_sample: f64,
+}
+
+impl Axis {
+    /// Whole samples that cover `length_mm`; the last may reach past the picture's end by less than a pitch.
+    pub(super) fn covering(length_mm: f64, pitch_mm: f64, pixels: usize) -> Self {
+        // A millionth of a sample is rounding of the millimetres, not one sample more.
+        let samples = (length_mm / pitch_mm - 1e-6).ceil().max(1.0) as usize;
+        Self { samples, pixels_per_sample: pixels as f64 * pitch_mm / length_mm }
+    }
+
+    /// Which pixels make a sample, and with what weights, which sum to one. A sample of one pixel or more is the mean
+    /// over its area; a smaller one is interpolated between pixel centres and held at the border.
+    fn weights(self, sample: usize, pixels: usize) -> (usize, Vec<f64>) {
+        let last = pixels.saturating_sub(1);
+        let start = sample as f64 * self.pixels_per_sample;
+        if self.pixels_per_sample < 1.0 {
+            let centre = (start + self.pixels_per_sample / 2.0 - 0.5).clamp(0.0, last as f64);
+            let first = (centre as usize).min(last.saturating_sub(1));
+            let second = centre - first as f64;
+            return if last == 0 { (0, vec![1.0]) } else { (first, vec![1.0 - second, second]) };
+        }
+        let end = (start + self.pixels_per_sample).min(pixels as f64);
+        let first = (start as usize).min(last);
+        let mut weights = Vec::new();
+        for pixel in first..pixels {
+            let overlap = end.min(pixel as f64 + 1.0) - start.max(pixel as f64);
+            if overlap <= 0.0 {
+                break;
+            }
+            weights.push(overlap);
+        }
+        let sum: f64 = weights.iter().sum();
+        (first, weights.iter().map(|weight| weight / sum).collect())
+    }
+}
+
+/// Resamples rows of `width` grey values from 0 to 255 to the grid of `across` and `down`, rounded to whole steps.
+pub(super) fn resample(grey: &[f32], width: usize, across: Axis, down: Axis) -> Vec<u8> {
+    if width == 0 || grey.is_empty() {
+        return Vec::new();
+    }
+    let height = grey.len() / width;
+    let columns: Vec<_> = (0..across.samples).map(|sample| across.weights(sample, width)).collect();
+    let mut narrow = Vec::with_capacity(columns.len() * height);
+    for row in grey.chunks_exact(width) {
+        for (first, weights) in &columns {
+            narrow.push(weighted(weights, row.iter().skip(*first).copied()));
+        }
+    }
+    let mut samples = Vec::with_capacity(across.samples * down.samples);
+    for row in 0..down.samples {
+        let (first, weights) = down.weights(row, height);
+        for column in 0..across.samples {
+            let below = narrow.iter().skip(first * across.samples + column).step_by(across.samples);
+            let value = weighted(&weights, below.copied());
+            samples.push((value + 0.5).clamp(0.0, 255.0) as u8);
+        }
+    }
+    samples
+}
+
+fn weighted(weights: &[f64], values: impl Iterator<Item = f32>) -> f32 {
+    weights.iter().zip(values).map(|(weight, value)| weight * f64::from(value)).sum::<f64>() as f32
+}

@@ -1,0 +1,128 @@
+//! The inverse table against the closed form, in the `f32` arithmetic of the device.
+#![allow(clippy::unwrap_used)]
+
+use frixel_model::{Contact, Finger, InverseTable, LoadedContact, TableError};
+
+/// The example finger of `notes/field-numbers.md`.
+const FINGER: Finger<f64> = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };
+const GAP_M: f64 = 10e-6;
+const BOUND: f64 = InverseTable::RELATIVE_ERROR as f64;
+
+fn contact(normal_load_n: f64) -> LoadedContact<f64> {
+    Contact::new(&FINGER, GAP_M).unwrap().under_load(normal_load_n).unwrap()
+}
+
+/// The largest relative error in friction of `inverse` over every `stride`th `f32` of the contact's range.
+fn worst_error(contact: &LoadedContact<f64>, voltages: (f64, f64), stride: usize, inverse: impl Fn(f32) -> f32) -> f64 {
+    let bits = |voltage_v_rms| (contact.electric_friction_n(voltage_v_rms) as f32).to_bits();
+    let (first, last) = (bits(voltages.0) + 1, bits(voltages.1) - 1);
+    (first..last)
+        .step_by(stride)
+        .chain([last])
+        .map(f32::from_bits)
+        .map(|x| (contact.electric_friction_n(f64::from(inverse(x))) / f64::from(x) - 1.0).abs())
+        .fold(0.0, |worst: f64, error| if error > worst || error.is_nan() { error } else { worst })
+}
+
+#[test]
+fn example_finger_is_within_the_bound_and_zero_output_is_not() {
+    for normal_load_n in [0.0, 0.5] {
+        let contact = contact(normal_load_n);
+        let table = InverseTable::build(&contact, 200.0).unwrap();
+        assert!(size_of_val(&table) <= 2048);
+        let worst = worst_error(&contact, (1.0, 200.0), 997, |x| table.voltage_v_rms(x));
+        println!("load {normal_load_n} N: {worst:e}");
+        assert!(worst <= BOUND, "load {normal_load_n} N: {worst:e}");
+        assert!(worst_error(&contact, (1.0, 200.0), 997, |_| 0.0) > BOUND);
+    }
+}
+
+#[test]
+#[ignore = "every f32 pattern, run by `cargo xtask soak`"]
+fn example_finger_is_within_the_bound_at_every_f32() {
+    for normal_load_n in [0.0, 0.5] {
+        let contact = contact(normal_load_n);
+        let table = InverseTable::build(&contact, 200.0).unwrap();
+        let worst = worst_error(&contact, (1.0, 200.0), 1, |x| table.voltage_v_rms(x));
+        println!("load {normal_load_n} N: {worst:e}");
+        assert!(worst <= BOUND, "load {normal_load_n} N: {worst:e}");
+    }
+}
+
+/// Every `stride`th bit pattern: finite, within [0, largest], rising within the bound, and zero where it must be.
+fn every_pattern_is_answered(normal_load_n: f64, voltage_max_v_rms: f64, stride: usize) {
+    let contact = contact(normal_load_n);
+    let table = InverseTable::build(&contact, voltage_max_v_rms).unwrap();
+    let one_volt_n = contact.electric_friction_n(1.0);
+    let mut highest = 0.0_f32;
+    for x in (0..=u32::MAX).step_by(stride).map(f32::from_bits) {
+        let voltage_v_rms = table.voltage_v_rms(x);
+        assert!((0.0..=table.voltage_max_v_rms()).contains(&voltage_v_rms), "{x:e}: {voltage_v_rms}");
+        if x.is_nan() || x <= 0.0 {
+            assert_eq!(voltage_v_rms.to_bits(), 0, "{x:e}");
+            continue;
+        }
+        assert!(f64::from(voltage_v_rms) >= f64::from(highest) * (1.0 - BOUND / 2.0), "falls at {x:e}");
+        highest = highest.max(voltage_v_rms);
+        if x > table.electric_friction_max_n() {
+            assert_eq!(voltage_v_rms.to_bits(), table.voltage_max_v_rms().to_bits());
+        }
+        if f64::from(x) < one_volt_n {
+            assert!(f64::from(voltage_v_rms) <= 1.0 + BOUND, "{x:e}: {voltage_v_rms}");
+        }
+    }
+    assert_eq!(highest.to_bits(), table.voltage_max_v_rms().to_bits());
+}
+
+#[test]
+fn strided_patterns_are_answered() {
+    for normal_load_n in [0.0, 0.5] {
+        for voltage_max_v_rms in [0.3, 1.0, 150.0, 400.0] {
+            every_pattern_is_answered(normal_load_n, voltage_max_v_rms, 1009);
+        }
+    }
+}
+
+#[test]
+#[ignore = "every f32 pattern, run by `cargo xtask soak`"]
+fn every_f32_pattern_is_answered() {
+    for normal_load_n in [0.0, 0.5] {
+        every_pattern_is_answered(normal_load_n, 200.0, 1);
+    }
+}
+
+#[test]
+fn every_contact_is_within_the_bound() {
+    let mut worst: f64 = 0.0;
+    for stiffness_pa_per_m in [1e5, 1.8e7, 1e9] {
+        for gap_m in [2.5e-7, 1e-6, 1e-5, 1e-4] {
+            for normal_load_n in [0.0, 1e-3, 0.05, 0.5, 5.0, 50.0] {
+                for voltage_max_v_rms in [1.0, 30.0, 200.0] {
+                    let contact = Contact::new(&Finger { stiffness_pa_per_m, ..FINGER }, gap_m)
+                        .unwrap()
+                        .under_load(normal_load_n)
+                        .unwrap();
+                    let table = InverseTable::build(&contact, voltage_max_v_rms).unwrap();
+                    let lowest_v_rms = (voltage_max_v_rms / 200.0).min(1.0);
+                    let error =
+                        worst_error(&contact, (lowest_v_rms, voltage_max_v_rms), 4999, |x| table.voltage_v_rms(x));
+                    worst = worst.max(error);
+                }
+            }
+        }
+    }
+    println!("{worst:e}");
+    assert!(worst <= BOUND, "{worst:e}");
+}
+
+#[test]
+fn what_cannot_be_built_says_why() {
+    let contact = contact(0.5);
+    for voltage_max_v_rms in [f64::NAN, f64::INFINITY, -1.0, 0.0] {
+        assert_eq!(InverseTable::build(&contact, voltage_max_v_rms), Err(TableError::Voltage));
+    }
+    let thin = Contact::new(&FINGER, 1e-9).unwrap().under_load(0.0).unwrap();
+    assert_eq!(InverseTable::build(&thin, 400.0), Err(TableError::TooManySegments));
+    let far = Contact::new(&FINGER, 1e3).unwrap().under_load(0.0).unwrap();
+    assert_eq!(InverseTable::build(&far, 1.0), Err(TableError::Unrepresentable));
+}
