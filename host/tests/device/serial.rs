@@ -147,6 +147,15 @@ fn a_port_in_use_is_refused() {
     assert_eq!(error, PortError::Busy { port: board.path.clone() });
 }
 
+/// Whoever comes while the earlier host is still on its way out waits for it.
+#[test]
+fn a_port_that_is_let_go_soon_opens() {
+    let board = PtyBoard::start(FakeBoard::new());
+    let first = open(&board.path).unwrap();
+    std::thread::spawn(move || drop(first));
+    connect(&board);
+}
+
 #[test]
 fn a_port_that_is_not_there_is_refused() {
     let error = not_opened("/dev/frixel-is-not-there");
