@@ -51,7 +51,7 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
     let reach = match Reach::of(&header) {
         Ok(reach) => reach,
         Err(error) => {
-            log.add(scene.coating.places.table(), Mistake::Model { reason: format!("{error:?}") });
+            log.add(scene.coating.places.table(), Mistake::Model { reason: error.to_string() });
             return None;
         }
     };
@@ -157,7 +157,12 @@ fn check_current(scene: &Scene, limits: &BoardLimits, header: &Header, tick_hz: 
         }
     };
     for (kind, found_a, board_a, cure) in [
-        ("rms", rms_a, limits.current_max_a_rms, "`frequency_hz` under [carrier], or `voltage_max_v_rms` under [drive]"),
+        (
+            "rms",
+            rms_a,
+            limits.current_max_a_rms,
+            "`frequency_hz` under [carrier], or `voltage_max_v_rms` under [drive]",
+        ),
         ("peak", peak_a, limits.current_max_a_peak, "`voltage_max_v_rms` under [drive]"),
     ] {
         if found_a > f64::from(board_a) {
