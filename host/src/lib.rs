@@ -1,5 +1,6 @@
 //! Driver library for frixel boards.
 #![forbid(unsafe_code)]
 
+pub mod metrics;
 pub mod scene;
 pub mod wanted;
