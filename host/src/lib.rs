@@ -2,5 +2,6 @@
 #![forbid(unsafe_code)]
 
 pub mod metrics;
+pub mod output;
 pub mod scene;
 pub mod wanted;

@@ -4,6 +4,7 @@ use frixel_wire::hello::BoardLimits;
 
 use super::{CompileError, Program, Scene, compile};
 
+mod docs;
 mod errors;
 mod layers;
 
