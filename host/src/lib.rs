@@ -3,6 +3,7 @@
 
 pub mod device;
 pub mod metrics;
+pub mod model_csv;
 pub mod output;
 pub mod player;
 pub mod rigs;

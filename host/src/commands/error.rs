@@ -4,6 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use frixel::device::{DeviceError, PortError};
+use frixel::model_csv::CsvError;
 use frixel::output::OutputError;
 use frixel::player::SimulationError;
 use frixel::rigs::ServerError;
@@ -34,6 +35,10 @@ pub(crate) enum CommandError {
     NaturalStroke(StrokeError),
     #[error("{}: {source}", path.display())]
     File { path: PathBuf, source: io::Error },
+    #[error("{input}: {source}")]
+    ModelCsv { input: String, source: CsvError },
+    #[error("{} is the input as well: writing it would destroy it; give --output another name", path.display())]
+    OutputIsInput { path: PathBuf },
     #[error(
         "{port} is a board with an electrode: --stroke moves a simulated finger only; leave it out, or use --port sim"
     )]

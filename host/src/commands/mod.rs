@@ -4,6 +4,7 @@ mod demo;
 mod error;
 mod info;
 mod interrupt;
+mod model;
 mod play;
 mod ports;
 mod sim;
@@ -37,6 +38,9 @@ enum Command {
     Ports,
     /// Say what board is at a port.
     Info(InfoArgs),
+    /// Evaluate or invert the contact model over rows of CSV.
+    #[command(subcommand)]
+    Model(model::ModelCommand),
 }
 
 #[derive(Debug, Args)]
@@ -105,6 +109,7 @@ impl Cli {
             Some(Command::Sim(args)) => sim::run(&args),
             Some(Command::Ports) => ports::run(),
             Some(Command::Info(args)) => info::run(&args),
+            Some(Command::Model(command)) => model::run(&command),
         }
     }
 }
