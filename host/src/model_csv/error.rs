@@ -41,11 +41,19 @@ pub enum CsvError {
 
 impl CsvError {
     pub(super) fn read(error: csv::Error) -> Self {
-        Self::Read(error.into())
+        Self::Read(system_error(error))
     }
 
     pub(super) fn write(error: csv::Error) -> Self {
-        Self::Write(error.into())
+        Self::Write(system_error(error))
+    }
+}
+
+/// With its kind, which the library's own conversion hides.
+fn system_error(error: csv::Error) -> io::Error {
+    match error.into_kind() {
+        csv::ErrorKind::Io(error) => error,
+        other => io::Error::other(format!("{other:?}")),
     }
 }
 

@@ -29,7 +29,7 @@
 //! `status` is `ok`, `no-contact` (radius and friction are zero), `below-natural`, `unstable`, or `invalid: REASON` with
 //! empty cells. One bad row never stops the others. The file as a whole is refused ([`CsvError`]) when its header lacks a
 //! column that every row needs, or has one twice that the model reads; a column that only some variants need is missed in
-//! the rows of those variants. Rows are counted as lines of the file: the header is row 1.
+//! the rows of those variants. Messages count rows from the header, which is row 1; blank lines do not count.
 
 mod columns;
 mod error;
@@ -127,8 +127,7 @@ fn transform(
     let mut record = ByteRecord::new();
     while reader.read_byte_record(&mut record).map_err(CsvError::read)? {
         summary.rows += 1;
-        let line = record.position().map_or(0, csv::Position::line);
-        let (cells, status) = match answer(&Row::new(line, &columns, &record)) {
+        let (cells, status) = match answer(&Row::new(1 + summary.rows, &columns, &record)) {
             Ok(answer) => {
                 summary.beyond_finger_rows += u64::from(answer.beyond_finger);
                 (answer.cells, answer.status.to_owned())
@@ -152,7 +151,7 @@ fn write<'a>(writer: &mut csv::Writer<impl Write>, cells: impl Iterator<Item = &
 
 fn evaluated<T: Number>(row: &Row) -> Result<Answer, Refusal> {
     let model = Model::<T>::read(row)?;
-    let voltage_v_rms = row.number(VOLTAGE)?;
+    let voltage_v_rms = row.real(VOLTAGE)?;
     let sigma0_pa = contact_attraction_pa(voltage_v_rms, model.gap_m)?;
     let (contact_radius_m, stiffness_pa_per_m, friction_n, status) = match model.contact.state(voltage_v_rms) {
         Ok(state) => (state.contact_radius_m, state.stiffness_pa_per_m, state.friction_n, "ok"),
@@ -168,9 +167,9 @@ fn inverted<T: Number>(row: &Row) -> Result<Answer, Refusal> {
     let [total, electric] = FRICTIONS;
     let voltage_v_rms = match (row.is_filled(total), row.is_filled(electric)) {
         (true, true) => return Err(Refusal::BothFrictions),
-        (false, false) => return Err(Refusal::NoFriction { row: row.line() }),
-        (true, false) => model.contact.voltage_for_friction(row.number(total)?),
-        (false, true) => model.contact.voltage_for_electric_friction(row.number(electric)?),
+        (false, false) => return Err(Refusal::NoFriction { row: row.number() }),
+        (true, false) => model.contact.voltage_for_friction(row.real(total)?),
+        (false, true) => model.contact.voltage_for_electric_friction(row.real(electric)?),
     };
     let (cells, status) = match voltage_v_rms {
         Ok(voltage_v_rms) => (cells(&[voltage_v_rms])?, "ok"),

@@ -13,25 +13,25 @@ const QUOTED_CHARS: usize = 40;
 
 /// A row, and where its cells are.
 pub(super) struct Row<'a> {
-    line: u64,
+    number: u64,
     columns: &'a Columns,
     cells: &'a ByteRecord,
 }
 
 impl<'a> Row<'a> {
-    pub(super) fn new(line: u64, columns: &'a Columns, cells: &'a ByteRecord) -> Self {
-        Self { line, columns, cells }
+    pub(super) fn new(number: u64, columns: &'a Columns, cells: &'a ByteRecord) -> Self {
+        Self { number, columns, cells }
     }
 
-    /// Line of the file in which it starts, the header being in line 1.
-    pub(super) fn line(&self) -> u64 {
-        self.line
+    /// Its number, the header being row 1.
+    pub(super) fn number(&self) -> u64 {
+        self.number
     }
 
     /// Refuses a row with more or fewer cells than the header has.
     pub(super) fn check_length(&self) -> Result<(), Refusal> {
         let (expected, found) = (self.columns.len(), self.cells.len());
-        if found == expected { Ok(()) } else { Err(Refusal::Length { row: self.line, expected, found }) }
+        if found == expected { Ok(()) } else { Err(Refusal::Length { row: self.number, expected, found }) }
     }
 
     /// A cell without the blanks around it; empty where there is no such column.
@@ -56,8 +56,8 @@ impl<'a> Row<'a> {
     }
 
     /// The number in a cell that has to have one.
-    pub(super) fn number<T: Number>(&self, column: &'static str) -> Result<T, Refusal> {
-        let row = self.line;
+    pub(super) fn real<T: Number>(&self, column: &'static str) -> Result<T, Refusal> {
+        let row = self.number;
         if !self.columns.has(column) {
             return Err(Refusal::ColumnMissing { row, column, variant: self.quoted(VARIANT) });
         }
@@ -77,7 +77,7 @@ impl<'a> Row<'a> {
     }
 
     /// The number in a cell that may be empty, which is zero.
-    pub(super) fn number_or_zero<T: Number>(&self, column: &'static str) -> Result<T, Refusal> {
-        if self.is_filled(column) { self.number(column) } else { Ok(T::ZERO) }
+    pub(super) fn real_or_zero<T: Number>(&self, column: &'static str) -> Result<T, Refusal> {
+        if self.is_filled(column) { self.real(column) } else { Ok(T::ZERO) }
     }
 }

@@ -29,15 +29,15 @@ impl<T: Number> Model<T> {
         let variant = row.text(VARIANT);
         if !VARIANTS.contains(&variant.as_ref()) {
             let expected = format!("one of {}", VARIANTS.join(", "));
-            return Err(Refusal::Variant { row: row.line(), expected, found: row.quoted(VARIANT) });
+            return Err(Refusal::Variant { row: row.number(), expected, found: row.quoted(VARIANT) });
         }
-        let radius_m = row.number(RADIUS)?;
-        let (thickness_m, relative_permittivity) = (row.number(COATING)?, row.number(PERMITTIVITY)?);
+        let radius_m = row.real(RADIUS)?;
+        let (thickness_m, relative_permittivity) = (row.real(COATING)?, row.real(PERMITTIVITY)?);
         let gap_m = effective_gap_m(&[Slab { thickness_m, relative_permittivity }])?;
         let (contact, stiffness_pa_per_m): (Box<dyn ContactModel<T>>, T) = match variant.as_ref() {
             "soft-upper" => (Box::new(soft(row, radius_m, gap_m)?.under_load(T::ZERO)?), T::ZERO),
             "soft-lower" => (Box::new(soft(row, radius_m, gap_m)?.lower_bound()), T::ZERO),
-            "soft-loaded" => (Box::new(soft(row, radius_m, gap_m)?.under_load(row.number(NORMAL_FORCE)?)?), T::ZERO),
+            "soft-loaded" => (Box::new(soft(row, radius_m, gap_m)?.under_load(row.real(NORMAL_FORCE)?)?), T::ZERO),
             on_springs => winkler_fuss(row, on_springs, radius_m, gap_m)?,
         };
         Ok(Self { contact, radius_m, gap_m, stiffness_pa_per_m })
@@ -47,10 +47,10 @@ impl<T: Number> Model<T> {
 fn soft<T: Number>(row: &Row, radius_m: T, gap_m: T) -> Result<SoftContact<T>, Refusal> {
     let finger = SoftFinger {
         radius_m,
-        modulus_pa: row.number(MODULUS)?,
-        stress_exponent: row.number(STRESS_EXPONENT)?,
-        shape_constant: row.number(SHAPE_CONSTANT)?,
-        friction_coefficient: row.number(FRICTION_COEFFICIENT)?,
+        modulus_pa: row.real(MODULUS)?,
+        stress_exponent: row.real(STRESS_EXPONENT)?,
+        shape_constant: row.real(SHAPE_CONSTANT)?,
+        friction_coefficient: row.real(FRICTION_COEFFICIENT)?,
     };
     Ok(finger.on_gap(gap_m)?)
 }
@@ -58,14 +58,14 @@ fn soft<T: Number>(row: &Row, radius_m: T, gap_m: T) -> Result<SoftContact<T>, R
 type OnSprings<T> = (Box<dyn ContactModel<T>>, T);
 
 fn winkler_fuss<T: Number>(row: &Row, variant: &str, radius_m: T, gap_m: T) -> Result<OnSprings<T>, Refusal> {
-    let stiffness_pa_per_m = row.number(STIFFNESS)?;
-    let finger = Finger { radius_m, stiffness_pa_per_m, friction_coefficient: row.number(FRICTION_COEFFICIENT)? };
+    let stiffness_pa_per_m = row.real(STIFFNESS)?;
+    let finger = Finger { radius_m, stiffness_pa_per_m, friction_coefficient: row.real(FRICTION_COEFFICIENT)? };
     let contact = Contact::new(&finger, gap_m)?;
     let contact: Box<dyn ContactModel<T>> = match variant {
-        "wf-lower" => Box::new(contact.lower_bound(row.number_or_zero(NORMAL_FORCE)?)?),
-        "wf-finite" => Box::new(contact.within(row.number(OUTER_RADIUS)?, row.number_or_zero(NORMAL_FORCE)?)?),
+        "wf-lower" => Box::new(contact.lower_bound(row.real_or_zero(NORMAL_FORCE)?)?),
+        "wf-finite" => Box::new(contact.within(row.real(OUTER_RADIUS)?, row.real_or_zero(NORMAL_FORCE)?)?),
         "wf-loaded" => {
-            let normal_load_n: T = row.number(NORMAL_FORCE)?;
+            let normal_load_n: T = row.real(NORMAL_FORCE)?;
             if normal_load_n < T::ZERO {
                 Box::new(contact.under_pull(-normal_load_n)?)
             } else {
