@@ -82,9 +82,9 @@ def condition(function, p, names):
 
 
 def slope(function, p, name):
-    """Derivative of friction; from one side at zero or where the other has no contact."""
-    step = mpf("1e-25") * (p[name] if p[name] else 1)
+    """Derivative of friction; from one side where the other has no contact."""
     base = function(p)[2]
+    step = mpf("1e-25") * (p[name] if p[name] else base / p["mu"])
     try:
         return (function({**p, name: p[name] + step})[2] - function({**p, name: p[name] - step})[2]) / (2 * step)
     except Exception:

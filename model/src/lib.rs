@@ -23,4 +23,4 @@ pub use real::Real;
 pub use shear::{ShearOnset, TissueSpring};
 pub use soft::{PowerLawShape, SoftContact, SoftFinger, SoftLoadedContact, SoftLowerBound, contact_exponent};
 pub use state::{ContactModel, ContactState, Sensitivity};
-pub use table::{InverseTable, TableError};
+pub use table::{FixedTable, InverseTable, Precision, SizedTable, TableBuilder, TableError, TableShape};

@@ -66,6 +66,20 @@ impl<T: Real> Contact<T> {
         })
     }
 
+    /// The universal curve: every scale is one, so that voltage is `V/V*`, load `n`, friction `F_T/F*` and contact radius
+    /// `sqrt(y)`. A table of it serves every finger and coating under the same `n`.
+    pub fn universal() -> Self {
+        Self {
+            voltage_scale_v_rms: T::ONE,
+            friction_scale_n: T::ONE,
+            load_scale_n: T::ONE,
+            area_scale_m2: T::ONE,
+            radius_m: T::ONE,
+            stiffness_pa_per_m: T::ONE,
+            friction_coefficient: T::ONE,
+        }
+    }
+
     /// The contact under a normal load of zero or more newtons, Eqs. (36), (43): without load the upper bound of the
     /// paper.
     pub fn under_load(self, normal_load_n: T) -> Result<LoadedContact<T>, ParameterError> {
@@ -133,7 +147,9 @@ impl<T: Real> Contact<T> {
     pub fn normal_load_n(&self, contact_radius_m: T, voltage_v_rms: T) -> Result<T, ParameterError> {
         let y = self.area(not_negative("contact_radius_m", contact_radius_m)?);
         let q = self.attraction(not_negative("voltage_v_rms", voltage_v_rms)?);
-        finite("contact_radius_m", self.load_scale_n * (y * (y - T::TWO * q) - T::TWO * q / (T::ONE + q)))
+        // The scale first: squares of y and q may leave the range where the load does not.
+        let inside_n = self.load_scale_n * y * (y - T::TWO * q);
+        finite("contact_radius_m", inside_n - self.load_scale_n * T::TWO * (q / (T::ONE + q)))
     }
 
     /// Capacitance in farads between electrode and finger, out to `outer_radius_m`:
