@@ -3,7 +3,8 @@
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::mistake::{Log, Mistake, Nearest};
+use super::log::Log;
+use super::mistake::{Mistake, Nearest};
 use super::source::Places;
 
 /// What a number may be.

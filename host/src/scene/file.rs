@@ -7,7 +7,8 @@ use toml::de::DeTable;
 
 use super::fields::{Fields, Range};
 use super::layer::Layer;
-use super::mistake::{CompileError, Log, Mistake};
+use super::log::Log;
+use super::mistake::{CompileError, Mistake};
 use super::source::{Places, Source};
 
 /// Version of the file format.
