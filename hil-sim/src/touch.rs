@@ -57,8 +57,9 @@ pub(crate) struct TouchSource {
     samples: u64,
     next_sample_tick: u64,
     finger_was_down: bool,
-    last_arrival_tick: Option<u64>,
+    /// In the order of their samples: the first has to arrive before the next can.
     under_way: VecDeque<Report>,
+    arrived: Option<Touch>,
 }
 
 impl TouchSource {
@@ -86,20 +87,28 @@ impl TouchSource {
             samples: 0,
             next_sample_tick: phase_ticks as u64,
             finger_was_down: false,
-            last_arrival_tick: None,
             under_way: VecDeque::new(),
+            arrived: None,
         })
     }
 
-    /// The report that arrives at `tick`, with the finger where it is at that tick. To be called at every tick.
-    pub(crate) fn tick(&mut self, tick: u64, finger: Option<FingerState>) -> Option<Touch> {
+    /// Goes to `tick`, at which the finger is where it is said to be. To be called for every tick from 0.
+    pub(crate) fn tick(&mut self, tick: u64, finger: Option<&FingerState>) {
         if tick >= self.next_sample_tick {
             self.sample(tick, finger);
         }
-        self.under_way.pop_front_if(|report| report.arrival_tick <= tick).map(|report| report.touch)
+        self.arrived = match self.under_way.front() {
+            Some(report) if report.arrival_tick <= tick => self.under_way.pop_front().map(|report| report.touch),
+            _ => None,
+        };
     }
 
-    fn sample(&mut self, tick: u64, finger: Option<FingerState>) {
+    /// The report that arrived at the tick.
+    pub(crate) fn arrived(&self) -> Option<Touch> {
+        self.arrived
+    }
+
+    fn sample(&mut self, tick: u64, finger: Option<&FingerState>) {
         self.samples += 1;
         self.next_sample_tick = (self.phase_ticks + self.samples as f64 * self.period_ticks) as u64;
         // Drawn for every sample, so that a stroke's lifts do not shift the noise of what follows.
@@ -117,10 +126,7 @@ impl TouchSource {
         };
         self.finger_was_down = finger.is_some();
         let delay_ticks = libm::round(f64::from(self.latency_ticks) + jitter_ticks).max(0.0) as u64;
-        let earliest_tick = self.last_arrival_tick.map_or(0, |last_tick| last_tick + 1);
-        let arrival_tick = (tick + delay_ticks).max(earliest_tick);
-        self.last_arrival_tick = Some(arrival_tick);
-        self.under_way.push_back(Report { arrival_tick, touch });
+        self.under_way.push_back(Report { arrival_tick: tick + delay_ticks, touch });
     }
 }
 

@@ -3,7 +3,7 @@
 use core::ops::Range;
 
 use frixel_model::LoadedContact;
-use frixel_render::{Drive, Sense, Touch};
+use frixel_render::{Drive, Sense};
 
 use crate::amplifier::{Amplifier, AmplifierConfig};
 use crate::error::{OutOfRange, WorldError};
@@ -79,8 +79,6 @@ pub struct World {
     amplifier_faults: Vec<Range<u64>>,
     fingertip: Fingertip,
     touch_source: TouchSource,
-    /// The report that arrived at this tick.
-    touch: Option<Touch>,
     stroke: Stroke,
     /// Tick at which the stroke started, once it has.
     stroke_start: Option<u64>,
@@ -94,13 +92,13 @@ impl World {
             return Err(OutOfRange { name: "tick_hz", expected: "above 0", found: 0.0 }.into());
         }
         let mut touch_source = TouchSource::new(&touch, tick_hz, seed)?;
+        touch_source.tick(0, None);
         Ok(Self {
             tick_hz,
             tick: 0,
             amplifier: Amplifier::new(&amplifier, full_scale_v_peak, tick_hz)?,
             amplifier_faults: Vec::new(),
             fingertip: Fingertip::new(example_finger().map_err(WorldError::Finger)?, tick_hz),
-            touch: touch_source.tick(0, None),
             touch_source,
             stroke,
             stroke_start: None,
@@ -137,7 +135,7 @@ impl World {
     /// What the board sees at the current tick. Asking twice gives the same answer.
     pub fn sense(&self) -> Sense {
         Sense {
-            touch: self.touch,
+            touch: self.touch_source.arrived(),
             amplifier_fault: self.amplifier_faults.iter().any(|ticks| ticks.contains(&self.tick)),
             monitor_v: self.amplifier.output_v() as f32,
             arm_switch: true,
@@ -149,11 +147,11 @@ impl World {
         let output = self.amplifier.tick(drive);
         self.tick += 1;
         let finger = self.finger();
-        let Friction { friction_n, electric_friction_n } = match finger {
+        let Friction { friction_n, electric_friction_n } = match &finger {
             Some(finger) => self.fingertip.slide(output.mean_square_v2, finger.speed_m_per_s),
             None => self.fingertip.lift(),
         };
-        self.touch = self.touch_source.tick(self.tick, finger);
+        self.touch_source.tick(self.tick, finger.as_ref());
         Felt {
             finger,
             friction_n,

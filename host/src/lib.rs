@@ -1,7 +1,10 @@
 //! Driver library for frixel boards.
 #![forbid(unsafe_code)]
 
+pub mod device;
 pub mod metrics;
 pub mod output;
+pub mod player;
+pub mod rigs;
 pub mod scene;
 pub mod wanted;

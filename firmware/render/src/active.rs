@@ -2,13 +2,13 @@
 
 use frixel_model::{Contact, Finger, InverseTable, TableError};
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
-use frixel_wire::scene::{Carrier, Header, Layer as LayerRecord, RECORDS_MAX, Scene};
+use frixel_wire::scene::{Header, Layer as LayerRecord, RECORDS_MAX, Scene};
 use heapless::Vec;
 
 use crate::Board;
 use crate::bitmap_pool::{BitmapPool, Directory};
 use crate::carrier::CarrierTiming;
-use crate::config::{self, WHOLE_SCENE};
+use crate::config;
 use crate::layer::Layer;
 
 /// Coefficients of one scene. A board has two of them: one that plays and one that the next scene is built in.
@@ -90,19 +90,14 @@ fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), Confi
     let limits = &board.limits;
     let half_period_ticks = board.ticks(0.5 / header.carrier_hz);
     let half_period_s = half_period_ticks as f32 * board.tick_period_s();
-    let crest = match header.carrier {
-        Carrier::Square => 1.0,
-        Carrier::Sine => core::f32::consts::SQRT_2,
-    };
-    let left = config::mean_square_left(header.carrier, half_period_s, limits.edge_time_constant_s);
-    let peak_per_rms = crest / libm::sqrtf(left);
+    let peak_per_rms = config::peak_per_rms(header.carrier, half_period_s, limits.edge_time_constant_s);
     let voltage_max_v_rms = header.voltage_max_v_rms.min(header.voltage_max_v_peak / peak_per_rms);
     let drive_v_peak = voltage_max_v_rms * peak_per_rms;
 
     let carrier_hz = 0.5 / half_period_s;
     let (rms_a, peak_a) = config::currents_a(header.carrier, drive_v_peak, carrier_hz, board);
-    config::within(ConfigField::CurrentRms, rms_a, 0.0, limits.current_max_a_rms, WHOLE_SCENE)?;
-    config::within(ConfigField::CurrentPeak, peak_a, 0.0, limits.current_max_a_peak, WHOLE_SCENE)?;
+    config::within(ConfigField::CurrentRms, rms_a, 0.0, limits.current_max_a_rms, ConfigRefusal::WHOLE_SCENE)?;
+    config::within(ConfigField::CurrentPeak, peak_a, 0.0, limits.current_max_a_peak, ConfigRefusal::WHOLE_SCENE)?;
 
     let codes_per_v = f32::from(i16::MAX) / limits.full_scale_v_peak;
     let code_max = (header.voltage_max_v_peak * codes_per_v) as i32;
@@ -117,7 +112,8 @@ fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), Confi
 
 /// The inverse table of a scene's finger, coating and load. It is made in f64, so that its error is the table's own.
 fn table(header: &Header, voltage_max_v_rms: f32) -> Result<InverseTable, ConfigRefusal> {
-    let refusal = |field, found| ConfigRefusal { field, found, min: 0.0, max: f32::INFINITY, layer: WHOLE_SCENE };
+    let refusal =
+        |field, found| ConfigRefusal { field, found, min: 0.0, max: f32::INFINITY, layer: ConfigRefusal::WHOLE_SCENE };
     let finger = Finger {
         radius_m: f64::from(header.finger_radius_m),
         stiffness_pa_per_m: f64::from(header.stiffness_pa_per_m),

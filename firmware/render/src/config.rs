@@ -1,5 +1,6 @@
 //! Whether the numbers of a scene are ones that the board can play. Refused, never silently clamped.
 
+use frixel_model::{sine_peak_per_rms, square_peak_per_rms};
 use frixel_wire::message::{ConfigField, ConfigRefusal};
 use frixel_wire::scene::{Carrier, Header, Layer, Record, Region};
 
@@ -10,8 +11,6 @@ use crate::Board;
 const CARRIER_MIN_HZ: f32 = 125.0;
 /// Fewest ticks in a half period of the carrier.
 const HALF_PERIOD_MIN_TICKS: f32 = 4.0;
-/// `ConfigRefusal::layer` for what belongs to no layer.
-pub(crate) const WHOLE_SCENE: u8 = 255;
 /// Farthest from the screen's corner that anything may be, in m.
 const LENGTH_MAX_M: f32 = 2.0;
 /// Largest friction that a layer may name, in N, either way.
@@ -40,7 +39,7 @@ pub(crate) fn check_header(header: &Header, board: &Board) -> Result<(), ConfigR
         (ConfigField::CarrierFrequency, header.carrier_hz, CARRIER_MIN_HZ, carrier_max_hz),
         (ConfigField::HostTimeout, header.host_timeout_s, 0.02, 1.0),
     ] {
-        within(field, found, min, max, WHOLE_SCENE)?;
+        within(field, found, min, max, ConfigRefusal::WHOLE_SCENE)?;
     }
     Ok(())
 }
@@ -76,21 +75,12 @@ pub(crate) fn check_record(record: &Record, layer: u8) -> Result<(), ConfigRefus
     }
 }
 
-/// Part of the mean square voltage that is left after the carrier's edges, which follow with a time constant.
-///
-/// A square wave of half period `T` through a first-order lag `tau` keeps `1 - (2 tau/T) tanh(T/(2 tau))`, a sine of
-/// angular frequency `w` keeps `1/(1 + (w tau)^2)`.
-pub(crate) fn mean_square_left(carrier: Carrier, half_period_s: f32, edge_time_constant_s: f32) -> f32 {
+/// Peak voltage that an rms voltage on the electrode takes at the DAC: crest factor, and loss in the carrier's edges.
+pub(crate) fn peak_per_rms(carrier: Carrier, half_period_s: f32, edge_time_constant_s: f32) -> f32 {
+    let (half_period_s, edge_s) = (f64::from(half_period_s), f64::from(edge_time_constant_s));
     match carrier {
-        Carrier::Square if edge_time_constant_s > 0.0 => {
-            let ratio = half_period_s / (2.0 * edge_time_constant_s);
-            1.0 - libm::tanhf(ratio) / ratio
-        }
-        Carrier::Square => 1.0,
-        Carrier::Sine => {
-            let turn = core::f32::consts::PI / half_period_s * edge_time_constant_s;
-            1.0 / (1.0 + turn * turn)
-        }
+        Carrier::Square => square_peak_per_rms(half_period_s, edge_s) as f32,
+        Carrier::Sine => sine_peak_per_rms(half_period_s, edge_s) as f32,
     }
 }
 
@@ -117,38 +107,6 @@ pub(crate) fn currents_a(carrier: Carrier, drive_v_peak: f32, carrier_hz: f32, b
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn edge_loss_agrees_with_a_wave_integrated_step_by_step() {
-        let (half_period_s, tau) = (500e-6, 20e-6);
-        for carrier in [Carrier::Square, Carrier::Sine] {
-            let steps = 100_000;
-            let dt = 2.0 * half_period_s / f64::from(steps);
-            let (mut v, mut sum) = (0.0_f64, 0.0);
-            for i in 0..20 * steps {
-                let t = dt * (f64::from(i) + 0.5);
-                let phase = t / (2.0 * half_period_s);
-                let u = match carrier {
-                    Carrier::Square => {
-                        if phase.fract() < 0.5 {
-                            1.0
-                        } else {
-                            -1.0
-                        }
-                    }
-                    Carrier::Sine => 2.0_f64.sqrt() * libm::sin(core::f64::consts::TAU * phase),
-                };
-                v += (u - v) * dt / tau;
-                if i >= 19 * steps {
-                    sum += v * v;
-                }
-            }
-            let expected = sum / f64::from(steps);
-            let found = f64::from(mean_square_left(carrier, half_period_s as f32, tau as f32));
-            assert!((found - expected).abs() < 1e-4, "{carrier:?}: {found} is not {expected}");
-        }
-        assert!(mean_square_left(Carrier::Square, 500e-6, 0.0) >= 1.0);
-    }
 
     #[test]
     fn square_current_agrees_with_charge_and_energy() {

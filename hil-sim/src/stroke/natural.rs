@@ -25,8 +25,6 @@ pub(super) struct Natural {
     y_step_m: f64,
     /// Strokes from the top of the screen to its bottom.
     sweep_strokes: u64,
-    /// Strokes in all.
-    strokes: u64,
     stroke_s: f64,
     mean_speed_m_per_s: f64,
 }
@@ -51,17 +49,16 @@ impl Natural {
             x_step_m: share * width_m,
             y_step_m: share * y_step_m,
             sweep_strokes: sweep_strokes as u64,
-            strokes: strokes as u64,
             stroke_s,
             mean_speed_m_per_s: share * length_m / stroke_s,
         })
     }
 
-    /// The finger at a time from 0 to the duration.
+    /// The finger at a time from 0 to the duration, at which it rests where the next stroke would start.
     pub(super) fn at(&self, t_s: f64) -> FingerState {
         let done = t_s / self.stroke_s;
-        let stroke = (done as u64).min(self.strokes - 1);
-        let (progress, rate) = minimum_jerk((done - stroke as f64).min(1.0));
+        let stroke = done as u64;
+        let (progress, rate) = minimum_jerk(done - stroke as f64);
         let to_the_right = stroke.is_multiple_of(2);
         let step_in_sweep = stroke % self.sweep_strokes;
         let downwards = (stroke / self.sweep_strokes).is_multiple_of(2);

@@ -16,7 +16,10 @@ fn finger(tick: u64) -> FingerState {
 fn reports(config: TouchConfig, seed: u64, seconds: u64) -> Vec<(u64, Touch)> {
     let mut source = TouchSource::new(&config, TICK_HZ, seed).unwrap();
     (0..seconds * u64::from(TICK_HZ))
-        .filter_map(|tick| source.tick(tick, Some(finger(tick))).map(|touch| (tick, touch)))
+        .filter_map(|tick| {
+            source.tick(tick, Some(&finger(tick)));
+            source.arrived().map(|touch| (tick, touch))
+        })
         .collect()
 }
 
@@ -132,10 +135,14 @@ fn the_phase_of_the_schedule_comes_from_the_seed() {
 }
 
 #[test]
-fn the_same_seed_gives_the_same_reports() {
+fn the_same_seed_gives_the_same_reports_and_another_has_its_own_noise_and_jitter() {
     let config = TouchConfig::default();
     assert_eq!(reports(config, 5, 5), reports(config, 5, 5));
-    assert_ne!(reports(config, 5, 5), reports(config, 6, 5));
+    // The finger moves along x only, so y differs by noise alone; the spacing of reports differs by jitter alone.
+    let noise = |seed| reports(config, seed, 5).iter().map(|&(_, touch)| place(touch).1).collect::<Vec<_>>();
+    let spacing = |seed| reports(config, seed, 5).windows(2).map(|pair| pair[1].0 - pair[0].0).collect::<Vec<_>>();
+    assert_ne!(noise(5)[..400], noise(6)[..400]);
+    assert_ne!(spacing(5)[..400], spacing(6)[..400]);
 }
 
 #[test]
@@ -146,7 +153,8 @@ fn a_lift_is_reported_once_after_the_latency() {
     let mut seen = Vec::new();
     for tick in 0..60_000 {
         let finger = (down..up).contains(&tick).then(|| finger(tick));
-        seen.extend(source.tick(tick, finger).map(|touch| (tick, touch)));
+        source.tick(tick, finger.as_ref());
+        seen.extend(source.arrived().map(|touch| (tick, touch)));
     }
     let first_tick = seen[0].0;
     assert!((down + 400..down + 800).contains(&first_tick), "first report at {first_tick}");

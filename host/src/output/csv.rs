@@ -71,6 +71,11 @@ impl FeltCsv {
         self.put(row)
     }
 
+    /// Writes what is held back so far.
+    pub fn flush(&mut self) -> Result<(), OutputError> {
+        self.writer.flush().map_err(|source| OutputError::File { path: self.path.clone(), source })
+    }
+
     /// Writes what is still held back. Dropping does it as well, and hides errors.
     pub fn finish(mut self) -> Result<(), OutputError> {
         self.writer.flush().map_err(|source| OutputError::File { path: self.path, source })

@@ -25,7 +25,7 @@ use thiserror::Error;
 
 pub use csv::{FeltCsv, FeltRow};
 pub use felt_svg::write_felt_svg;
-pub use report::{LinkCounts, Report};
+pub use report::Report;
 pub use scene_png::write_scene_png;
 pub use trace::Trace;
 

@@ -4,26 +4,14 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
+use crate::device::Counters;
 use crate::metrics::{ErrorSize, MetricsSummary};
 use crate::scene::Reach;
-
-/// What went over the line.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct LinkCounts {
-    /// Frames that the host sent.
-    pub frames_sent: u64,
-    /// Frames that either side refused because their check failed.
-    pub frames_rejected: u64,
-    /// Bytes that were meant: payloads of frames.
-    pub payload_bytes: u64,
-    /// Bytes that went over the line.
-    pub wire_bytes: u64,
-}
 
 /// The numbers of a run; its fields are the keys of `--json`. What is not known is `null` there.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
-    /// What played: `simulator`, or the port.
+    /// What played: `sim` or `board`.
     pub rig: String,
     /// Ticks that were played.
     pub ticks: u64,
@@ -65,7 +53,7 @@ impl Report {
         rig: &str,
         metrics: &MetricsSummary,
         reach: &Reach,
-        link: &LinkCounts,
+        link: &Counters,
         realtime_factor: Option<f64>,
     ) -> Self {
         Self {

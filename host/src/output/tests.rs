@@ -7,6 +7,7 @@ use proptest::prelude::*;
 
 use super::trace::Extremes;
 use super::*;
+use crate::device::Counters;
 use crate::metrics::{ErrorSize, MetricsSummary};
 use crate::scene::{Program, Scene, compile};
 use crate::wanted::Wanted;
@@ -285,7 +286,7 @@ fn colours_end_where_the_scale_ends() {
 }
 
 fn report(summary: &MetricsSummary) -> Report {
-    let link = LinkCounts { frames_sent: 400, frames_rejected: 1, payload_bytes: 63_000, wire_bytes: 65_000 };
+    let link = Counters { frames_sent: 400, frames_rejected: 1, payload_bytes: 63_000, wire_bytes: 65_000 };
     let reach =
         crate::scene::Reach { natural_friction_n: 0.25, electric_friction_max_n: 0.025, voltage_max_v_rms: 150.0 };
     Report::new("simulator", summary, &reach, &link, Some(123.4))

@@ -1,13 +1,13 @@
 //! Strokes: where the finger is at a time.
 
+mod error;
 mod natural;
 mod rows;
 mod straight;
 mod text;
 
-use thiserror::Error;
-
-use crate::error::{OutOfRange, above_zero, zero_to_ten};
+use crate::error::{above_zero, zero_to_ten};
+pub use error::StrokeError;
 use natural::Natural;
 use rows::Rows;
 use straight::Straight;
@@ -30,91 +30,6 @@ pub struct FingerState {
     pub y_m: f64,
     /// Sliding speed, whatever its direction, m/s.
     pub speed_m_per_s: f64,
-}
-
-/// Why a stroke cannot be played.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum StrokeError {
-    /// A number is out of range.
-    #[error("stroke: {0}")]
-    OutOfRange(#[from] OutOfRange),
-    /// The text has no rows.
-    #[error("the stroke is empty: expected a header `t_s,x_mm,y_mm` and at least two rows below it")]
-    Empty,
-    /// The text has one row, which is no motion.
-    #[error("line {line}: the stroke has one row only: expected at least two, so that the finger moves in time")]
-    OneRow {
-        /// Line of the row.
-        line: u64,
-    },
-    /// The header lacks a column.
-    #[error("line {line}: no column `{column}` in the header `{found}`: expected `t_s,x_mm,y_mm`")]
-    MissingColumn {
-        /// Line of the header.
-        line: u64,
-        /// The column that is missing.
-        column: &'static str,
-        /// The header as it stands.
-        found: String,
-    },
-    /// A row is too short or has an empty cell.
-    #[error("line {line}, column `{column}`: empty: expected a number")]
-    MissingValue {
-        /// Line of the row.
-        line: u64,
-        /// Column of the cell.
-        column: &'static str,
-    },
-    /// A cell is no number.
-    #[error("line {line}, column `{column}`: `{found}` is no number: expected one such as `12.5`")]
-    NotANumber {
-        /// Line of the row.
-        line: u64,
-        /// Column of the cell.
-        column: &'static str,
-        /// The cell as it stands.
-        found: String,
-    },
-    /// A number is infinite or not a number.
-    #[error("line {line}, column `{column}`: `{found}` is not finite: expected a number such as `12.5`")]
-    NotFinite {
-        /// Line of the row.
-        line: u64,
-        /// Column of the cell.
-        column: &'static str,
-        /// The cell as it stands.
-        found: String,
-    },
-    /// A row lies before the start of the stroke.
-    #[error("line {line}, column `t_s`: {found_s} is below 0: expected time from the start of the stroke")]
-    BeforeStart {
-        /// Line of the row.
-        line: u64,
-        /// Time of the row, s.
-        found_s: f64,
-    },
-    /// Time stands still or runs backwards.
-    #[error("line {line}, column `t_s`: {found_s} comes after {previous_s}: expected time to rise from row to row")]
-    NotRising {
-        /// Line of the row.
-        line: u64,
-        /// Time of the row, s.
-        found_s: f64,
-        /// Time of the row before, s.
-        previous_s: f64,
-    },
-    /// Two rows are so far apart, in so little time, that the speed between them is not finite.
-    #[error("line {line}: the finger would jump here in no time: expected a finite speed from the row before")]
-    Jump {
-        /// Line of the second row.
-        line: u64,
-    },
-    /// The text cannot be read as comma-separated values.
-    #[error("the stroke is no CSV text: {reason}")]
-    Malformed {
-        /// What the reader says.
-        reason: String,
-    },
 }
 
 /// The motion of a finger over the screen, with the finger up before its start and after its end.

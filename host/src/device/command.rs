@@ -1,0 +1,44 @@
+//! Commands: their frames, their names for a person, what they lead to.
+
+use frixel_wire::fault::State;
+use frixel_wire::frame::FRAME_MAX_LEN;
+use frixel_wire::message::{Command, Request};
+use frixel_wire::payload::{WriteError, request_frame};
+
+/// The frame of a request.
+pub(super) fn frame_of(sequence: u16, command: Command) -> Result<Vec<u8>, WriteError> {
+    let mut buffer = [0; FRAME_MAX_LEN];
+    request_frame(&Request { sequence, command }, &mut buffer).map(<[u8]>::to_vec)
+}
+
+/// What a command does, as error messages have it.
+pub(super) fn name_of(command: &Command) -> &'static str {
+    match command {
+        Command::Ping => "ping",
+        Command::UploadScene { .. } => "upload of the scene",
+        Command::UploadBitmap { .. } => "upload of a bitmap",
+        Command::UploadEnd => "end of an upload",
+        Command::Commit { .. } => "commit",
+        Command::Arm => "arm",
+        Command::Disarm => "disarm",
+        Command::Play => "play",
+        Command::Stop => "stop",
+        Command::ClearFault => "clear the fault",
+        Command::Subscribe { .. } => "telemetry",
+    }
+}
+
+/// The state that a command leads to, for those whose work is to change it.
+pub(super) fn state_after(command: &Command) -> Option<State> {
+    match command {
+        Command::Arm | Command::Stop => Some(State::Armed),
+        Command::Disarm | Command::ClearFault => Some(State::Disarmed),
+        Command::Play => Some(State::Active),
+        Command::Ping
+        | Command::UploadScene { .. }
+        | Command::UploadBitmap { .. }
+        | Command::UploadEnd
+        | Command::Commit { .. }
+        | Command::Subscribe { .. } => None,
+    }
+}

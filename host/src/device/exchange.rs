@@ -1,0 +1,299 @@
+//! Requests and their answers, over any [`Link`].
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use frixel_wire::frame::Decoder;
+use frixel_wire::hello::Hello;
+use frixel_wire::message::{Accepted, Answer, Command, FromBoard, Refusal};
+use frixel_wire::payload::Payload;
+
+use super::Event;
+use super::command::{frame_of, name_of, state_after};
+use super::credit::Credit;
+use super::error::{DeviceError, LinkClosed};
+use super::link::Link;
+
+/// Sequence number of requests whose answer nobody waits for.
+const UNAWAITED: u16 = 0;
+/// How long a command may take to be answered. A full window ahead of it takes 355 ms at 115,200 baud.
+pub(super) const ANSWER_TIMEOUT: Duration = Duration::from_millis(750);
+/// A command that is not answered is sent again after this time: a frame may have been damaged.
+const REPEAT_AFTER: Duration = Duration::from_millis(250);
+/// Time to the next try when the board was busy.
+const BUSY_RETRY_AFTER: Duration = Duration::from_millis(5);
+/// Most that one listening adds to the silence of a board, so that a host that was itself suspended does not take that for silence.
+const LISTEN_MAX: Duration = Duration::from_millis(100);
+/// What is under way while nothing is asked.
+const WAITING: &str = "wait";
+/// Credit kept free for commands.
+const COMMAND_RESERVE_LEN: usize = 64;
+/// Events kept for a caller who does not fetch them; the oldest go first.
+const EVENTS_MAX: usize = 4096;
+
+/// A board that has said hello, and what is under way to and from it.
+pub(super) struct Exchange<L> {
+    link: L,
+    decoder: Decoder,
+    /// Frames the decoder had rejected before the hello: leftovers of whoever talked before.
+    rejected_before: u32,
+    incoming: Vec<u8>,
+    credit: Credit,
+    /// Credit that uploads leave free.
+    reserve: usize,
+    sequence: u16,
+    awaited: Vec<Awaited>,
+    answer: Option<Answer>,
+    next_chunk: Option<u16>,
+    events: VecDeque<Event>,
+    /// Time listened since anything came.
+    quiet: Duration,
+}
+
+/// A request on its way.
+struct Awaited {
+    sequence: u16,
+    /// Position on the line of its last byte.
+    end: u64,
+}
+
+impl<L: Link> Exchange<L> {
+    pub(super) fn new(link: L, decoder: Decoder, hello: &Hello) -> Self {
+        let written = link.written().bytes;
+        Self {
+            credit: Credit::new(hello.limits.receive_window_bytes, written),
+            reserve: COMMAND_RESERVE_LEN,
+            rejected_before: decoder.rejected(),
+            quiet: Duration::ZERO,
+            link,
+            decoder,
+            incoming: Vec::new(),
+            sequence: UNAWAITED,
+            awaited: Vec::new(),
+            answer: None,
+            next_chunk: None,
+            events: VecDeque::new(),
+        }
+    }
+
+    pub(super) fn link(&self) -> &L {
+        &self.link
+    }
+
+    pub(super) fn into_link(self) -> L {
+        self.link
+    }
+
+    /// Frames from the board that arrived damaged since the hello.
+    pub(super) fn frames_rejected(&self) -> u32 {
+        self.decoder.rejected().wrapping_sub(self.rejected_before)
+    }
+
+    pub(super) fn next_event(&mut self) -> Option<Event> {
+        self.events.pop_front()
+    }
+
+    pub(super) fn now(&self) -> Duration {
+        self.link.now()
+    }
+
+    /// Lets the link ping the board whenever nothing was sent for `period`, and keeps credit for those pings.
+    pub(super) fn ping_every(&mut self, period: Duration) -> Result<(), DeviceError> {
+        let ping = frame_of(UNAWAITED, Command::Ping)?;
+        let pings = ANSWER_TIMEOUT.as_micros().div_ceil(period.as_micros().max(1)) as usize;
+        self.reserve = COMMAND_RESERVE_LEN + pings * ping.len();
+        self.link.keep_alive(ping, period);
+        Ok(())
+    }
+
+    /// Sets the commands that are sent when the link is dropped.
+    pub(super) fn say_farewell_with(&mut self, commands: &[Command]) -> Result<(), DeviceError> {
+        let frames: Result<Vec<_>, _> = commands.iter().map(|command| frame_of(UNAWAITED, *command)).collect();
+        self.link.farewell(frames?.concat());
+        Ok(())
+    }
+
+    /// Sends a command and waits for the board to take it; tries again while it is busy.
+    pub(super) fn request(&mut self, command: Command) -> Result<Accepted, DeviceError> {
+        match self.ask(command)? {
+            Ok(accepted) => Ok(accepted),
+            Err(refusal) => Err(self.refused(&command, refusal)),
+        }
+    }
+
+    pub(super) fn refused(&self, command: &Command, refusal: Refusal) -> DeviceError {
+        DeviceError::Refused { port: self.link.name().into(), command: name_of(command), refusal }
+    }
+
+    pub(super) fn stalled(&self, arrived_bytes: usize, total_bytes: usize) -> DeviceError {
+        DeviceError::UploadStalled { port: self.link.name().into(), arrived_bytes, total_bytes }
+    }
+
+    /// Sends a command and waits for its outcome; tries again while the board is busy.
+    pub(super) fn ask(&mut self, command: Command) -> Result<Result<Accepted, Refusal>, DeviceError> {
+        let deadline = self.link.now() + ANSWER_TIMEOUT;
+        loop {
+            let outcome = self.ask_once(command, deadline)?;
+            let now = self.link.now();
+            if outcome != Err(Refusal::Busy) || now + BUSY_RETRY_AFTER >= deadline {
+                return Ok(outcome);
+            }
+            self.receive_until(now + BUSY_RETRY_AFTER, name_of(&command))?;
+        }
+    }
+
+    fn ask_once(&mut self, command: Command, deadline: Duration) -> Result<Result<Accepted, Refusal>, DeviceError> {
+        let started = self.link.now();
+        let mut send_at = started;
+        self.awaited.clear();
+        self.answer = None;
+        loop {
+            let now = self.link.now();
+            if now >= deadline {
+                return Err(self.silent(name_of(&command), now.saturating_sub(started)));
+            }
+            if now >= send_at && self.send(command)? {
+                send_at = now + REPEAT_AFTER;
+            }
+            let wake_at = if send_at > now { send_at.min(deadline) } else { deadline };
+            self.receive(wake_at.saturating_sub(now), name_of(&command))?;
+            if let Some(answer) = self.answer.take() {
+                return Ok(self.outcome(command, &answer));
+            }
+        }
+    }
+
+    /// Sends a request when there is credit for it.
+    fn send(&mut self, command: Command) -> Result<bool, DeviceError> {
+        let sequence = self.sequence.checked_add(1).unwrap_or(UNAWAITED + 1);
+        let frame = frame_of(sequence, command)?;
+        if !self.credit.allows(frame.len(), 0, self.link.written().bytes) {
+            return Ok(false);
+        }
+        self.sequence = sequence;
+        let end = self.write(&frame, name_of(&command))?;
+        self.awaited.push(Awaited { sequence, end });
+        Ok(true)
+    }
+
+    /// Whether the command that was answered last had been sent more than once, so that the board may have done it before.
+    pub(super) fn repeated(&self) -> bool {
+        self.awaited.len() > 1
+    }
+
+    /// A command that was sent twice may be refused because the first one did its work and only the answer was lost.
+    fn outcome(&self, command: Command, answer: &Answer) -> Result<Accepted, Refusal> {
+        match answer.outcome {
+            Err(Refusal::WrongState(state)) if self.repeated() && state_after(&command) == Some(state) => {
+                Ok(Accepted::Done)
+            }
+            outcome => outcome,
+        }
+    }
+
+    /// Sends a frame of an upload when there is credit for it; returns the position of its end.
+    pub(super) fn send_bulk(&mut self, frame: &[u8], doing: &'static str) -> Result<Option<u64>, DeviceError> {
+        if !self.credit.allows(frame.len(), self.reserve, self.link.written().bytes) {
+            return Ok(None);
+        }
+        self.write(frame, doing).map(Some)
+    }
+
+    /// Position on the line up to which bytes have reached the board or are lost.
+    pub(super) fn settled(&self) -> u64 {
+        self.credit.settled()
+    }
+
+    /// Number of the chunk that the board said last it wants next.
+    pub(super) fn take_next_chunk(&mut self) -> Option<u16> {
+        self.next_chunk.take()
+    }
+
+    fn write(&mut self, frame: &[u8], doing: &'static str) -> Result<u64, DeviceError> {
+        self.link.write(frame).map_err(|closed| vanished(closed, doing))
+    }
+
+    /// Takes the first that comes within `wait`, or less. An error when the pings have not been answered for too long.
+    pub(super) fn listen(&mut self, wait: Duration) -> Result<(), DeviceError> {
+        self.receive(wait.min(LISTEN_MAX), WAITING)?;
+        if self.quiet >= ANSWER_TIMEOUT {
+            return Err(self.silent(name_of(&Command::Ping), self.quiet));
+        }
+        Ok(())
+    }
+
+    /// Takes what comes until `until`.
+    fn receive_until(&mut self, until: Duration, doing: &'static str) -> Result<(), DeviceError> {
+        loop {
+            let now = self.link.now();
+            if now >= until {
+                return Ok(());
+            }
+            self.receive(until.saturating_sub(now), doing)?;
+        }
+    }
+
+    /// Takes what has come, or the first that comes within `wait`.
+    pub(super) fn receive(&mut self, wait: Duration, doing: &'static str) -> Result<(), DeviceError> {
+        let mut incoming = std::mem::take(&mut self.incoming);
+        incoming.clear();
+        let started = self.link.now();
+        self.link.read(&mut incoming, wait).map_err(|closed| vanished(closed, doing))?;
+        if incoming.is_empty() {
+            self.quiet += self.link.now().saturating_sub(started).min(wait);
+        } else {
+            self.quiet = Duration::ZERO;
+        }
+        let mut input = incoming.as_slice();
+        while let Some(payload) = self.decoder.next_frame(&mut input) {
+            // Hellos and what this version does not know are none of a caller's business.
+            if let Ok(Payload::FromBoard(message)) = Payload::parse_from_board(payload) {
+                self.take(message, doing)?;
+            }
+        }
+        self.incoming = incoming;
+        Ok(())
+    }
+
+    fn take(&mut self, message: FromBoard, doing: &'static str) -> Result<(), DeviceError> {
+        match message {
+            FromBoard::Answer(answer) => {
+                self.take_count(answer.received_bytes, doing)?;
+                let awaited = self.awaited.iter().find(|one| one.sequence == answer.sequence);
+                if let Some(awaited) = awaited {
+                    self.credit.answered(awaited.end, self.link.written().bytes);
+                    self.answer = Some(answer);
+                }
+            }
+            FromBoard::Progress { next_chunk, received_bytes } => {
+                self.take_count(received_bytes, doing)?;
+                self.next_chunk = Some(next_chunk);
+            }
+            FromBoard::Telemetry(telemetry) => self.keep(Event::Telemetry(telemetry)),
+            FromBoard::StateChanged { state, fault, flags } => self.keep(Event::StateChanged { state, fault, flags }),
+        }
+        Ok(())
+    }
+
+    fn take_count(&mut self, received_bytes: u32, doing: &'static str) -> Result<(), DeviceError> {
+        let written = self.link.written().bytes;
+        self.credit
+            .received(received_bytes, written)
+            .map_err(|_| DeviceError::Restarted { port: self.link.name().into(), command: doing })
+    }
+
+    fn keep(&mut self, event: Event) {
+        if self.events.len() == EVENTS_MAX {
+            self.events.pop_front();
+        }
+        self.events.push_back(event);
+    }
+
+    fn silent(&self, command: &'static str, waited: Duration) -> DeviceError {
+        DeviceError::Silent { port: self.link.name().into(), command, waited }
+    }
+}
+
+fn vanished(closed: LinkClosed, command: &'static str) -> DeviceError {
+    DeviceError::Vanished { command, closed }
+}

@@ -1,0 +1,62 @@
+//! The first exchange with a board.
+
+use std::time::Duration;
+
+use frixel_wire::frame::{Decoder, FRAME_MAX_LEN};
+use frixel_wire::hello::Hello;
+use frixel_wire::payload::{Payload, hello_request_frame};
+
+use super::error::{DeviceError, LinkClosed};
+use super::link::Link;
+
+/// Hello requests sent before the board counts as absent.
+const TRIES: u32 = 5;
+/// Time to wait for the answer to each.
+const TRY_TIMEOUT: Duration = Duration::from_millis(150);
+
+/// Asks who is there, and refuses a board that speaks another protocol.
+pub(super) fn greet<L: Link>(link: &mut L, decoder: &mut Decoder) -> Result<Hello, DeviceError> {
+    let mut buffer = [0; FRAME_MAX_LEN];
+    // The zero byte in front ends whatever half a frame an earlier host has left in the board.
+    let request = [&[0], hello_request_frame(&mut buffer)?].concat();
+    let started = link.now();
+    let mut heard_bytes = 0;
+    for attempt in 1..=TRIES {
+        link.write(&request).map_err(gone)?;
+        let deadline = started + TRY_TIMEOUT * attempt;
+        if let Some(hello) = await_hello(link, decoder, deadline, &mut heard_bytes)? {
+            let port = link.name().into();
+            return match hello.compatibility() {
+                Ok(()) => Ok(hello),
+                Err(mismatch) => Err(DeviceError::Version { port, mismatch }),
+            };
+        }
+    }
+    Err(DeviceError::NoHello { port: link.name().into(), waited: link.now().saturating_sub(started), heard_bytes })
+}
+
+fn await_hello<L: Link>(
+    link: &mut L,
+    decoder: &mut Decoder,
+    deadline: Duration,
+    heard_bytes: &mut usize,
+) -> Result<Option<Hello>, DeviceError> {
+    let mut incoming = Vec::new();
+    while link.now() < deadline {
+        incoming.clear();
+        link.read(&mut incoming, deadline.saturating_sub(link.now())).map_err(gone)?;
+        *heard_bytes += incoming.len();
+        let mut input = incoming.as_slice();
+        while let Some(payload) = decoder.next_frame(&mut input) {
+            // Telemetry and answers that were meant for an earlier host come first.
+            if let Ok(Payload::Hello(hello)) = Payload::parse_from_board(payload) {
+                return Ok(Some(hello));
+            }
+        }
+    }
+    Ok(None)
+}
+
+fn gone(closed: LinkClosed) -> DeviceError {
+    DeviceError::Vanished { command: "hello", closed }
+}

@@ -1,0 +1,11 @@
+//! Boards that are not there: the simulated one behind a [`Link`](crate::device::Link) of its own, in virtual time, and
+//! the one behind a pseudo-terminal, paced by the wall clock.
+
+mod recorder;
+mod server;
+mod server_log;
+mod sim_link;
+
+pub use recorder::Recorder;
+pub use server::{Server, ServerError};
+pub use sim_link::SimLink;

@@ -1,0 +1,12 @@
+//! The driver library against a fake board: over a line in virtual time, where everything is counted, and over a pseudo-terminal.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod calls;
+mod fake_board;
+#[cfg(unix)]
+mod pty_board;
+#[cfg(unix)]
+mod serial;
+mod trouble;
+mod uploads;
+mod virtual_link;
