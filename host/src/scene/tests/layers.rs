@@ -141,6 +141,23 @@ fn constants_above_zero_and_above_natural() {
 }
 
 #[test]
+fn left_and_top_edge_belong_to_a_region_and_right_and_bottom_do_not() {
+    // Powers of two in metres, which f32 has exactly.
+    let layers = "[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\n\
+                  region = { x_mm = 15.625, y_mm = 31.25, width_mm = 15.625, height_mm = 31.25 }";
+    let (left, right, top, bottom) = (15.625, 31.25, 31.25, 62.5);
+    let places = [
+        (left, top),
+        (right, 40.0),
+        (20.0, bottom),
+        (right - 1e-6, bottom - 1e-6),
+        (left - 1e-6, top),
+        (left, top - 1e-6),
+    ];
+    close(&frictions_mn(layers, &places), &[10.0, 0.0, 0.0, 10.0, 0.0, 0.0], 1e-5);
+}
+
+#[test]
 fn natural_friction_in_total_is_no_drive() {
     // 0.3 x 0.7 is not 0.21 in binary, and not in range if the difference counted.
     let text = HEAD.replace("friction_coefficient = 0.5", "friction_coefficient = 0.3");
