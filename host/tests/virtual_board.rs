@@ -76,9 +76,9 @@ impl VirtualBoard {
         Log::read(self.folder.path())
     }
 
-    /// The events so far, without one that is half written.
+    /// The events so far, without one that is half written; none before the log is there.
     fn events(&self) -> Vec<Event> {
-        let text = fs::read_to_string(self.folder.path().join("events.csv")).unwrap();
+        let text = fs::read_to_string(self.folder.path().join("events.csv")).unwrap_or_default();
         text.rsplit_once('\n').map_or(Vec::new(), |(lines, _)| read_events(lines))
     }
 
