@@ -11,8 +11,6 @@ use crate::Board;
 const CARRIER_MIN_HZ: f32 = 125.0;
 /// Fewest ticks in a half period of the carrier.
 const HALF_PERIOD_MIN_TICKS: f32 = 4.0;
-/// `ConfigRefusal::layer` for what belongs to no layer.
-pub(crate) const WHOLE_SCENE: u8 = 255;
 /// Farthest from the screen's corner that anything may be, in m.
 const LENGTH_MAX_M: f32 = 2.0;
 /// Largest friction that a layer may name, in N, either way.
@@ -41,7 +39,7 @@ pub(crate) fn check_header(header: &Header, board: &Board) -> Result<(), ConfigR
         (ConfigField::CarrierFrequency, header.carrier_hz, CARRIER_MIN_HZ, carrier_max_hz),
         (ConfigField::HostTimeout, header.host_timeout_s, 0.02, 1.0),
     ] {
-        within(field, found, min, max, WHOLE_SCENE)?;
+        within(field, found, min, max, ConfigRefusal::WHOLE_SCENE)?;
     }
     Ok(())
 }

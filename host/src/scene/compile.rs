@@ -6,7 +6,8 @@ use frixel_wire::scene::{Carrier, Header, Layer as WireLayer, RECORDS_MAX, Recor
 use super::excess;
 use super::file::Scene;
 use super::layer::{Above, Kind, Layer, Rectangle};
-use super::mistake::{CompileError, Log, Mistake};
+use super::log::Log;
+use super::mistake::{CompileError, Mistake};
 use super::pool::Pool;
 use super::program::Program;
 use super::reach::{Reach, crest, mean_square_left};
@@ -51,7 +52,7 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
     let reach = match Reach::of(&header) {
         Ok(reach) => reach,
         Err(error) => {
-            log.add(scene.coating.places.table(), Mistake::Model { reason: format!("{error:?}") });
+            log.add(scene.coating.places.table(), Mistake::Model { reason: error.to_string() });
             return None;
         }
     };

@@ -9,6 +9,7 @@ mod excess;
 mod fields;
 mod file;
 mod layer;
+mod log;
 mod mistake;
 mod picture;
 mod pool;
