@@ -10,7 +10,7 @@ use super::log::Log;
 use super::mistake::{CompileError, Mistake};
 use super::pool::Pool;
 use super::program::Program;
-use super::reach::{Reach, crest, mean_square_left};
+use super::reach::{Reach, peak_per_rms};
 
 /// Fewest ticks of half a carrier period that a board takes.
 const HALF_PERIOD_MIN_TICKS: f64 = 4.0;
@@ -103,8 +103,7 @@ fn header(scene: &Scene, limits: &BoardLimits, half_period_s: f64, log: &mut Log
     let drive = &scene.drive;
     let shape = scene.carrier.shape;
     let board_v_peak = f64::from(limits.voltage_max_v_peak.min(limits.full_scale_v_peak));
-    let left = mean_square_left(shape, half_period_s, f64::from(limits.edge_time_constant_s));
-    let peak_per_rms = crest(shape) / left.sqrt();
+    let peak_per_rms = peak_per_rms(shape, half_period_s, f64::from(limits.edge_time_constant_s));
     let v_peak = match drive.voltage_max_v_peak {
         Some(found) if found > board_v_peak => {
             log.add(drive.places.field("voltage_max_v_peak"), Mistake::PeakAboveBoard { found, board: board_v_peak });
@@ -146,8 +145,7 @@ fn header(scene: &Scene, limits: &BoardLimits, half_period_s: f64, log: &mut Log
 fn check_current(scene: &Scene, limits: &BoardLimits, header: &Header, tick_hz: u32, log: &mut Log) {
     let tau_s = f64::from(limits.edge_time_constant_s);
     let carrier_hz = f64::from(header.carrier_hz);
-    let left = mean_square_left(header.carrier, 0.5 / carrier_hz, tau_s);
-    let drive_v_peak = f64::from(header.voltage_max_v_rms) * crest(header.carrier) / left.sqrt();
+    let drive_v_peak = f64::from(header.voltage_max_v_rms) * peak_per_rms(header.carrier, 0.5 / carrier_hz, tau_s);
     let charge_c = f64::from(limits.electrode_capacitance_max_f) * drive_v_peak;
     let (rms_a, peak_a) = match header.carrier {
         Carrier::Square => (2.0 * charge_c * (carrier_hz / tau_s).sqrt(), 2.0 * charge_c / tau_s),

@@ -1,6 +1,6 @@
 //! What friction a drive can give to a finger.
 
-use frixel_model::{Contact, Finger, InverseTable, ParameterError, TableError};
+use frixel_model::{Contact, Finger, InverseTable, ParameterError, TableError, sine_peak_per_rms, square_peak_per_rms};
 use frixel_wire::scene::{Carrier, Header};
 use thiserror::Error;
 
@@ -55,30 +55,10 @@ impl Reach {
     }
 }
 
-/// Peak over rms of a carrier.
-pub(super) fn crest(shape: Carrier) -> f64 {
+/// Peak that the drive needs for an rms voltage of one on the electrode: crest factor, and loss in the carrier's edges.
+pub(super) fn peak_per_rms(shape: Carrier, half_period_s: f64, edge_time_constant_s: f64) -> f64 {
     match shape {
-        Carrier::Square => 1.0,
-        Carrier::Sine => core::f64::consts::SQRT_2,
-    }
-}
-
-/// What is left of the drive's mean square behind edges of the time constant `tau_s`: a first-order lag. The board
-/// divides the voltage by the root of it.
-///
-/// A square wave keeps `1 - (2 tau/T) tanh(T/(2 tau))`, with `T` half a period; a sine keeps `1/(1 + (w tau)^2)`.
-pub(super) fn mean_square_left(shape: Carrier, half_period_s: f64, tau_s: f64) -> f64 {
-    if !(tau_s > 0.0) {
-        return 1.0;
-    }
-    match shape {
-        Carrier::Square => {
-            let ratio = 2.0 * tau_s / half_period_s;
-            1.0 - ratio * libm::tanh(1.0 / ratio)
-        }
-        Carrier::Sine => {
-            let lag = core::f64::consts::PI / half_period_s * tau_s;
-            1.0 / (1.0 + lag * lag)
-        }
+        Carrier::Square => square_peak_per_rms(half_period_s, edge_time_constant_s),
+        Carrier::Sine => sine_peak_per_rms(half_period_s, edge_time_constant_s),
     }
 }

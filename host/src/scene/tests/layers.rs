@@ -2,7 +2,7 @@
 
 use frixel_wire::scene::{Carrier, Layer, Region, Scene as WireScene};
 
-use super::super::{picture::Picture, reach, resample};
+use super::super::{picture::Picture, resample};
 use super::*;
 use crate::wanted::Wanted;
 
@@ -81,30 +81,6 @@ fn the_largest_voltage_keeps_every_limit() {
     let lag = std::f64::consts::TAU * 1000.0 * 20e-6;
     let (rms, _, _) = reached("[drive]\nvoltage_max_v_peak = 100\n[carrier]\nshape = \"sine\"");
     close(&[rms], &[100.0 / (2.0 * (1.0 + lag * lag)).sqrt()], 1e-4);
-}
-
-#[test]
-fn edges_take_from_the_mean_square_what_a_simulated_lag_takes() {
-    let (half_period_s, tau_s) = (200e-6, 60e-6);
-    for shape in [Carrier::Square, Carrier::Sine] {
-        let steps = 400_000;
-        let step_s = 2.0 * half_period_s / f64::from(steps);
-        let (mut output, mut sum) = (0.0, 0.0);
-        for step in 0..8 * steps {
-            let turns = (f64::from(step % steps) + 0.5) / f64::from(steps);
-            let input = match shape {
-                Carrier::Square if turns < 0.5 => 1.0,
-                Carrier::Square => -1.0,
-                Carrier::Sine => 2f64.sqrt() * (std::f64::consts::TAU * turns).sin(),
-            };
-            output += (input - output) * step_s / tau_s;
-            if step >= 7 * steps {
-                sum += output * output;
-            }
-        }
-        close(&[reach::mean_square_left(shape, half_period_s, tau_s)], &[sum / f64::from(steps)], 1e-5);
-        close(&[reach::mean_square_left(shape, half_period_s, 0.0)], &[1.0], 0.0);
-    }
 }
 
 #[test]
