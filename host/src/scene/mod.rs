@@ -25,3 +25,4 @@ pub use file::Scene;
 pub use mistake::{CompileError, Located, Mistake, Nearest};
 pub use program::{Bitmap, Program};
 pub use reach::Reach;
+pub(crate) use reach::carrier;

@@ -1,7 +1,8 @@
 //! What friction a drive can give to a finger.
 
-use frixel_model::{Contact, Finger, InverseTable, ParameterError, TableError, sine_peak_per_rms, square_peak_per_rms};
-use frixel_wire::scene::{Carrier, Header};
+use frixel_model::{Carrier, Contact, Finger, InverseTable, ParameterError, TableError, Waveform};
+use frixel_wire::hello::BoardLimits;
+use frixel_wire::scene::{Carrier as Shape, Header};
 use thiserror::Error;
 
 /// The frictions that a finger can be given: from natural, `mu F_N`, to natural plus the most that the drive adds.
@@ -55,10 +56,11 @@ impl Reach {
     }
 }
 
-/// Peak that the drive needs for an rms voltage of one on the electrode: crest factor, and loss in the carrier's edges.
-pub(super) fn peak_per_rms(shape: Carrier, half_period_s: f64, edge_time_constant_s: f64) -> f64 {
-    match shape {
-        Carrier::Square => square_peak_per_rms(half_period_s, edge_time_constant_s),
-        Carrier::Sine => sine_peak_per_rms(half_period_s, edge_time_constant_s),
-    }
+/// The carrier of a scene on a board.
+pub(crate) fn carrier(shape: Shape, half_period_s: f64, limits: &BoardLimits) -> Carrier {
+    let waveform = match shape {
+        Shape::Square => Waveform::Square,
+        Shape::Sine => Waveform::Sine,
+    };
+    Carrier { waveform, half_period_s, edge_time_constant_s: f64::from(limits.edge_time_constant_s) }
 }
