@@ -47,14 +47,14 @@ fn json_has_every_number_and_the_same_seed_the_same_bytes() {
         let arguments =
             ["play", &brick(), "--json", "--seconds", "0.5", "--csv-hz", "4000", "--out", out, "--seed", seed];
         let json = succeed(folder.path(), &arguments);
-        (json, fs::read(folder.path().join(out).join("felt.csv")).unwrap())
+        (json, fs::read_to_string(folder.path().join(out).join("felt.csv")).unwrap())
     };
     let (json, first) = run("a", "7");
     let (_, second) = run("b", "7");
     let (_, third) = run("c", "8");
     assert!(first == second, "two runs of one seed differ");
     assert!(first != third, "the seed changes nothing");
-    assert_eq!(first.iter().filter(|byte| **byte == b'\n').count(), 2001);
+    assert_eq!(first.lines().count(), 2001);
 
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!(json["rig"], "sim");
