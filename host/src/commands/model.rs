@@ -83,7 +83,7 @@ pub(super) fn run(command: &ModelCommand) -> Result<(), CommandError> {
 
 fn open(path: Option<&Path>) -> Result<Box<dyn Read>, CommandError> {
     match path {
-        Some(path) => Ok(Box::new(File::open(path).map_err(CommandError::file(path))?)),
+        Some(path) => Ok(Box::new(File::open(path).map_err(CommandError::reading(path))?)),
         None => Ok(Box::new(io::stdin().lock())),
     }
 }
@@ -96,7 +96,7 @@ fn create(args: &FileArgs) -> Result<Box<dyn Write>, CommandError> {
     if args.input.as_ref().is_some_and(same_file) {
         return Err(CommandError::OutputIsInput { path: path.clone() });
     }
-    Ok(Box::new(File::create(path).map_err(CommandError::file(path))?))
+    Ok(Box::new(File::create(path).map_err(CommandError::writing(path))?))
 }
 
 fn tell(summary: &Summary) {
