@@ -6,6 +6,7 @@ pub mod metrics;
 pub mod model_csv;
 pub mod output;
 pub mod player;
+pub mod report;
 pub mod rigs;
 pub mod scene;
 pub mod wanted;

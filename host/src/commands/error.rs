@@ -7,6 +7,7 @@ use frixel::device::{DeviceError, PortError};
 use frixel::model_csv::CsvError;
 use frixel::output::OutputError;
 use frixel::player::SimulationError;
+use frixel::report::ReportError;
 use frixel::rigs::ServerError;
 use frixel::scene::CompileError;
 use frixel_hil_sim::{StrokeError, WorldError};
@@ -25,6 +26,8 @@ pub(crate) enum CommandError {
     Server(#[from] ServerError),
     #[error(transparent)]
     Output(#[from] OutputError),
+    #[error(transparent)]
+    Report(#[from] ReportError),
     #[error(transparent)]
     World(#[from] WorldError),
     #[error(transparent)]

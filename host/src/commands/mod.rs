@@ -7,6 +7,7 @@ mod interrupt;
 mod model;
 mod play;
 mod ports;
+mod report;
 mod sim;
 mod stroke;
 
@@ -41,6 +42,8 @@ enum Command {
     /// Evaluate or invert the contact model over rows of CSV.
     #[command(subcommand)]
     Model(model::ModelCommand),
+    /// Draw the contact model, its error and its cost on one page.
+    Report(report::ReportArgs),
 }
 
 #[derive(Debug, Args)]
@@ -110,6 +113,7 @@ impl Cli {
             Some(Command::Ports) => ports::run(),
             Some(Command::Info(args)) => info::run(&args),
             Some(Command::Model(command)) => model::run(&command),
+            Some(Command::Report(args)) => report::run(&args),
         }
     }
 }
