@@ -11,10 +11,13 @@ pub(super) struct ReportArgs {
     /// Folder for the page and its numbers.
     #[arg(long, default_value = "frixel-report")]
     out: PathBuf,
+    /// Instruction counts of boards, as `cargo xtask bench` writes them to target/bench/bench.json.
+    #[arg(long, value_name = "FILE.json")]
+    bench: Option<PathBuf>,
 }
 
 pub(super) fn run(args: &ReportArgs) -> Result<(), CommandError> {
-    for file in frixel::report::write(&args.out)? {
+    for file in frixel::report::write(&args.out, args.bench.as_deref())? {
         println!("  {:<16} {}", "wrote", file.display());
     }
     Ok(())

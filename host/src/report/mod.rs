@@ -4,20 +4,29 @@
 //! CSV.
 
 mod chart;
+mod counts;
 mod data;
 mod error;
+mod exact;
 mod figures;
 mod page;
+mod ways;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 pub use error::ReportError;
 
+use counts::Counts;
+
 /// Writes the report into a folder, which is made when it is not there, and returns the files in it.
-pub fn write(folder: &Path) -> Result<Vec<PathBuf>, ReportError> {
+///
+/// `bench` is a file of instruction counts as `cargo xtask bench` writes it, for a chart of error over instructions. Run times
+/// are measured; all else is the same in every run.
+pub fn write(folder: &Path, bench: Option<&Path>) -> Result<Vec<PathBuf>, ReportError> {
+    let counts = bench.map(Counts::read).transpose()?;
     fs::create_dir_all(folder).map_err(|source| ReportError::Write { path: folder.to_owned(), source })?;
-    let figures = figures::all()?;
+    let figures = figures::all(counts.as_ref())?;
     let mut files = Vec::new();
     let mut drawn = Vec::new();
     for figure in &figures {

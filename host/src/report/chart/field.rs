@@ -5,9 +5,11 @@ use std::ops::Range;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::{Area, Axis, Drawn, FAMILY, px};
+use super::{Area, Axis, Drawn, FAMILY, FINE, px};
 use crate::output::scale;
 
+/// By how much a cell reaches under its neighbours.
+const OVERLAP: i32 = FINE as i32;
 /// Steps of a colour bar.
 const BAR_STEPS: i32 = 64;
 
@@ -36,10 +38,16 @@ fn colour(axis: &Axis, value: f64) -> RGBColor {
 }
 
 pub(super) fn draw(canvas: &Area, field: &Field, x: &Axis, y: &Axis, at: impl Fn(&(f64, f64)) -> (i32, i32)) -> Drawn {
+    let (width, height) = canvas.dim_in_pixel();
+    let (width, height) = (width as i32, height as i32);
     for cell in &field.cells {
         let corner = |across: f64, up: f64| x.place(across).zip(y.place(up));
         if let (Some(low), Some(high)) = (corner(cell.x.start, cell.y.start), corner(cell.x.end, cell.y.end)) {
-            canvas.draw(&Rectangle::new([at(&low), at(&high)], colour(&field.colours, cell.value).filled()))?;
+            let ((left, bottom), (right, top)) = (at(&low), at(&high));
+            // A little more to the right and down, where the next cell covers it, so that no background shows between them.
+            let (right, bottom) = ((right + OVERLAP).min(width), (bottom + OVERLAP).min(height));
+            let corners = [(left, top), (right, bottom)];
+            canvas.draw(&Rectangle::new(corners, colour(&field.colours, cell.value).filled()))?;
         }
     }
     Ok(())
@@ -54,7 +62,7 @@ pub(super) fn draw_bar(area: &Area, field: &Field, (right, top): (i32, i32), hei
     for step in 0..BAR_STEPS {
         let part = |step: i32| f64::from(step) / f64::from(BAR_STEPS);
         let [red, green, blue] = scale::colour(part(step) + 0.5 / f64::from(BAR_STEPS));
-        let corners = [(left, level(part(step + 1))), (end, level(part(step)))];
+        let corners = [(left, level(part(step + 1))), (end, (level(part(step)) + OVERLAP).min(level(0.0)))];
         area.draw(&Rectangle::new(corners, RGBColor(red, green, blue).filled()))?;
     }
     let style = (FAMILY, px(14)).into_font().color(&BLACK).pos(Pos::new(HPos::Left, VPos::Center));

@@ -32,7 +32,7 @@ pub(in crate::report) fn signed(part: f64) -> RGBColor {
         part if part > 0.0 => (PALETTE[0], part),
         _ => return BLACK,
     };
-    let mixed = |channel: u8| (255.0 + (f64::from(channel) - 255.0) * (0.3 + 0.7 * strength.min(1.0))).round() as u8;
+    let mixed = |channel: u8| (255.0 + (f64::from(channel) - 255.0) * (0.45 + 0.55 * strength.min(1.0))).round() as u8;
     RGBColor(mixed(red), mixed(green), mixed(blue))
 }
 

@@ -5,6 +5,7 @@
 mod axis;
 mod clip;
 mod field;
+mod legend;
 mod look;
 mod plot;
 
@@ -13,6 +14,7 @@ use plotters::prelude::*;
 
 pub(super) use axis::Axis;
 pub(super) use field::{Cell, Field};
+use legend::Legend;
 pub(super) use look::{Line, Look, Mark, PALETTE, graded, signed};
 
 /// The library places everything on whole units, so it draws on a canvas this many times as large.
@@ -23,11 +25,8 @@ const FAMILY: &str = "sans-serif";
 const WIDTH: u32 = 1_000;
 /// Height of a panel's plot with its title and axes.
 const PLOT_HEIGHT: u32 = 360;
-/// Height of a line of a legend.
-const LEGEND_LINE: u32 = 20;
-/// What a legend's entry takes: about so much for each character, and for what stands before the name.
-const CHARACTER: u32 = 7;
-const BEFORE_NAME: u32 = 58;
+/// What is left free below a row of panels.
+const SPACING: u32 = 12;
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Drawn = Result<(), Box<dyn std::error::Error>>;
@@ -38,6 +37,8 @@ pub(super) struct Chart {
     pub(super) panels: Vec<Panel>,
     /// Panels in a row.
     pub(super) columns: u32,
+    /// All panels have the same series: one legend stands below them.
+    pub(super) shared_legend: bool,
 }
 
 /// A plot with its axes and legend.
@@ -71,14 +72,6 @@ impl Panel {
     pub(super) fn add(&mut self, name: &str, look: Look, points: Vec<(f64, f64)>) {
         self.series.push(Series { name: name.to_owned(), points, look });
     }
-
-    /// Columns and lines of the legend in a panel of this width.
-    fn legend(&self, width: u32) -> (u32, u32) {
-        let lengths = self.series.iter().map(|series| series.name.chars().count() as u32).filter(|length| *length > 0);
-        let (entries, longest) = (lengths.clone().count() as u32, lengths.max().unwrap_or(0));
-        let columns = (width / (BEFORE_NAME + CHARACTER * longest)).clamp(1, entries.max(1));
-        (columns, entries.div_ceil(columns))
-    }
 }
 
 impl Chart {
@@ -87,9 +80,13 @@ impl Chart {
         let columns = self.columns.max(1);
         let panel_width = WIDTH / columns;
         let rows: Vec<&[Panel]> = self.panels.chunks(columns as usize).collect();
-        let lines = |row: &[Panel]| row.iter().map(|panel| panel.legend(panel_width).1).max().unwrap_or(0);
-        let height = |row: &[Panel]| PLOT_HEIGHT + lines(row) * LEGEND_LINE + 12;
-        let total: u32 = rows.iter().map(|row| height(row)).sum();
+        let own = |panel: &Panel| if self.shared_legend { Legend::default() } else { Legend::of(&panel.series) };
+        let shared = if self.shared_legend { Legend::of_all(&self.panels) } else { Legend::default() };
+        let legend_height =
+            |row: &[Panel]| row.iter().map(|panel| own(panel).height(panel_width)).max().unwrap_or_default();
+        let height = |row: &[Panel]| PLOT_HEIGHT + legend_height(row) + SPACING;
+        let plots: u32 = rows.iter().map(|row| height(row)).sum();
+        let total = plots + shared.height(WIDTH);
         let mut text = String::new();
         {
             let root = SVGBackend::with_string(&mut text, (px(WIDTH), px(total))).into_drawing_area();
@@ -99,10 +96,12 @@ impl Chart {
                 for (place, panel) in (0..).zip(row) {
                     let area =
                         root.clone().shrink((px(place * panel_width), px(top)), (px(panel_width), px(height(row))));
-                    plot::draw(&area, panel, panel_width)?;
+                    plot::draw(&area, panel)?;
+                    legend::draw(&area, &own(panel), (0, PLOT_HEIGHT), panel_width)?;
                 }
                 top += height(row);
             }
+            legend::draw(&root, &shared, (0, top), WIDTH)?;
             root.present()?;
         }
         let large = format!("width=\"{}\" height=\"{}\"", px(WIDTH), px(total));

@@ -5,30 +5,28 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::clip::clipped;
-use super::{Area, Drawn, FAMILY, LEGEND_LINE, Line, Look, Mark, PLOT_HEIGHT, Panel, Series, field, px};
+use super::{Area, Drawn, FAMILY, Line, Look, Mark, PLOT_HEIGHT, Panel, Series, field, px};
 
 const TITLE_HEIGHT: u32 = 30;
 const X_LABELS_HEIGHT: u32 = 44;
 const Y_LABELS_WIDTH: u32 = 66;
 const LEFT_MARGIN: u32 = 14;
 const RIGHT_MARGIN: u32 = 20;
-/// Where a legend begins.
-const LEFT: u32 = 30;
 /// What the colour bar of a field takes, from the right.
 const BAR_WIDTH: u32 = 96;
 /// Half the size of a mark.
 const MARK: f64 = 4.2;
 
-pub(super) fn draw(area: &Area, panel: &Panel, width: u32) -> Drawn {
-    let (plot, below) = area.split_vertically(px(PLOT_HEIGHT));
+/// Draws a panel into the top of an area.
+pub(super) fn draw(area: &Area, panel: &Panel) -> Drawn {
+    let (plot, _) = area.split_vertically(px(PLOT_HEIGHT));
     let title = (FAMILY, px(17)).into_font().color(&BLACK).pos(Pos::new(HPos::Left, VPos::Center));
     area.draw(&Text::new(
         panel.title.clone(),
         (px(LEFT_MARGIN + Y_LABELS_WIDTH) as i32, px(TITLE_HEIGHT / 2 + 2) as i32),
         title,
     ))?;
-    draw_plot(&plot, panel)?;
-    draw_legend(&below, panel, width)
+    draw_plot(&plot, panel)
 }
 
 fn draw_plot(area: &Area, panel: &Panel) -> Drawn {
@@ -104,7 +102,7 @@ fn draw_series(
     Ok(())
 }
 
-fn draw_line(area: &Area, pixels: &[(i32, i32)], look: &Look) -> Drawn {
+pub(super) fn draw_line(area: &Area, pixels: &[(i32, i32)], look: &Look) -> Drawn {
     if look.line != Line::Dashed {
         area.draw(&PathElement::new(pixels.to_vec(), look.stroke()))?;
         return Ok(());
@@ -140,7 +138,7 @@ fn draw_line(area: &Area, pixels: &[(i32, i32)], look: &Look) -> Drawn {
     Ok(())
 }
 
-fn draw_mark(area: &Area, (x, y): (i32, i32), look: &Look) -> Drawn {
+pub(super) fn draw_mark(area: &Area, (x, y): (i32, i32), look: &Look) -> Drawn {
     let size = MARK * f64::from(px(1));
     let stroke = look.colour.stroke_width(px(2));
     if let Some((corners, _)) = look.corners() {
@@ -157,25 +155,6 @@ fn draw_mark(area: &Area, (x, y): (i32, i32), look: &Look) -> Drawn {
             area.draw(&PathElement::new([(x - reach, y - reach), (x + reach, y + reach)], stroke))?;
             area.draw(&PathElement::new([(x - reach, y + reach), (x + reach, y - reach)], stroke))?;
         }
-    }
-    Ok(())
-}
-
-fn draw_legend(area: &Area, panel: &Panel, width: u32) -> Drawn {
-    let (columns, _) = panel.legend(width);
-    let entry_width = (width - LEFT) / columns;
-    let style = (FAMILY, px(15)).into_font().color(&BLACK).pos(Pos::new(HPos::Left, VPos::Center));
-    for (index, series) in (0..).zip(panel.series.iter().filter(|series| !series.name.is_empty())) {
-        let left = px(LEFT + index % columns * entry_width) as i32;
-        let middle = px(index / columns * LEGEND_LINE + LEGEND_LINE / 2) as i32;
-        let end = left + px(30) as i32;
-        if series.look.line != Line::None {
-            draw_line(area, &[(left, middle), (end, middle)], &series.look)?;
-        }
-        if series.look.mark != Mark::None {
-            draw_mark(area, (left.midpoint(end), middle), &series.look)?;
-        }
-        area.draw(&Text::new(series.name.clone(), (end + px(8) as i32, middle), style.clone()))?;
     }
     Ok(())
 }

@@ -66,7 +66,7 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
                 .to_owned(),
             EXAMPLE.to_owned(),
         ],
-        chart: Chart { panels: vec![left, right], columns: 2 },
+        chart: Chart { panels: vec![left, right], columns: 2, shared_legend: false },
         data,
     })
 }

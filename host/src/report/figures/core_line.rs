@@ -133,7 +133,7 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
                 .to_owned(),
             EXAMPLE.to_owned(),
         ],
-        chart: Chart { panels: vec![radius, friction, radius_mm, friction_mn], columns: 2 },
+        chart: Chart { panels: vec![radius, friction, radius_mm, friction_mn], columns: 2, shared_legend: false },
         data,
     })
 }

@@ -68,7 +68,7 @@ fn draw(
         }
     }
     if any_pulled {
-        panel.add("pull-off: no contact to the left", Look::mark(PALETTE[6], Mark::Ring), Vec::new());
+        panel.add("pull-off", Look::mark(PALETTE[6], Mark::Ring), Vec::new());
     }
 }
 
@@ -139,7 +139,7 @@ pub(super) fn contact_radius() -> Result<Figure, ReportError> {
             EXAMPLE.to_owned(),
         ],
         data: data([&relative, &loaded], &contact),
-        chart: Chart { panels: vec![left, right], columns: 2 },
+        chart: Chart { panels: vec![left, right], columns: 2, shared_legend: false },
     })
 }
 
@@ -171,6 +171,6 @@ pub(super) fn friction() -> Result<Figure, ReportError> {
             EXAMPLE.to_owned(),
         ],
         data: data([&relative, &loaded], &contact),
-        chart: Chart { panels: vec![left, right], columns: 2 },
+        chart: Chart { panels: vec![left, right], columns: 2, shared_legend: false },
     })
 }

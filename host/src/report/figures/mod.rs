@@ -3,11 +3,16 @@
 mod bounds;
 mod core_line;
 mod loads;
+mod run_time;
 mod soft;
+mod stability;
+mod stability_soft;
+mod tick_rate;
 
 use frixel_model::{Contact, Finger, ParameterError, Real};
 
 use super::chart::Chart;
+use super::counts::Counts;
 use super::data::Data;
 use super::error::ReportError;
 
@@ -28,8 +33,24 @@ pub(super) struct Figure {
 }
 
 /// All figures in the page's order.
-pub(super) fn all() -> Result<Vec<Figure>, ReportError> {
-    Ok(vec![core_line::figure()?, loads::contact_radius()?, loads::friction()?, bounds::figure()?, soft::figure()?])
+pub(super) fn all(counts: Option<&Counts>) -> Result<Vec<Figure>, ReportError> {
+    let measured = run_time::measure()?;
+    let instructions = counts.and_then(|counts| run_time::against_instructions(&measured, counts));
+    let figures = [
+        Some(core_line::figure()?),
+        Some(loads::contact_radius()?),
+        Some(loads::friction()?),
+        Some(bounds::figure()?),
+        Some(soft::figure()?),
+        instructions,
+        Some(run_time::against_time(&measured)),
+        Some(run_time::against_size(&measured)),
+        Some(tick_rate::figure()?),
+        Some(stability::in_f64()?),
+        Some(stability::in_f32()?),
+        Some(stability_soft::figure()?),
+    ];
+    Ok(figures.into_iter().flatten().collect())
 }
 
 /// The example finger: 0.25 N at no voltage and 28 mN more at 150 V rms, under 0.5 N. Chosen to give friction of the size
