@@ -1,0 +1,21 @@
+//! What the emulated board and the simulator tell each other through shared memory: the board's pins, as it were.
+//!
+//! The memory is an array of little-endian 32-bit words. [`layout`] says which word is what; [`Given`] and [`Done`] are
+//! what goes into a tick and what comes out of it, [`touch`] a report of the touch source, each as words. Both sides
+//! compile this one crate.
+#![cfg_attr(not(test), no_std)]
+#![forbid(unsafe_code)]
+
+pub mod layout;
+mod tick;
+mod touch;
+mod words;
+
+pub use tick::{DONE_WORDS_MAX, Done, GIVEN_WORDS_MAX, Given, TICK_BYTES_MAX, drive_of, word_of};
+pub use touch::{STAMPED_TOUCH_WORDS, StampedTouch};
+
+use frixel_render::Board;
+use frixel_wire::hello::BoardKind;
+
+/// The emulated board: the limits of the smallest real one, like the simulated board.
+pub const BOARD: Board = Board { kind: BoardKind::Mps2An386, id: *b"frixel-qemu\0", ..Board::SIMULATOR };
