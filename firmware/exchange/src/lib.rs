@@ -11,7 +11,7 @@ mod tick;
 mod touch;
 mod words;
 
-pub use tick::{DONE_WORDS_MAX, Done, GIVEN_WORDS_MAX, Given, TICK_BYTES_MAX, drive_of, word_of};
+pub use tick::{DONE_WORDS_MAX, Done, GIVEN_WORDS_MAX, Given, TICK_BYTES_MAX, TickBytes, drive_of, word_of};
 pub use touch::{STAMPED_TOUCH_WORDS, StampedTouch};
 
 use frixel_render::Board;

@@ -1,12 +1,13 @@
 //! What goes into a tick and what comes out of it.
 
 use frixel_render::{Drive, Sense};
-use heapless::Vec;
 
 use crate::words::{TOUCH_MASK, put_bytes, put_touch, take_bytes, take_touch, touch_kind};
 
 /// Most bytes on the serial line in one tick, either way.
 pub const TICK_BYTES_MAX: usize = 64;
+/// Bytes on the serial line in one tick.
+pub type TickBytes = heapless::Vec<u8, TICK_BYTES_MAX>;
 /// Most words of a [`Given`].
 pub const GIVEN_WORDS_MAX: usize = 6 + TICK_BYTES_MAX / 4;
 /// Most words of a [`Done`].
@@ -25,7 +26,7 @@ pub struct Given {
     /// The tick, counted from 1 at reset.
     pub tick: u32,
     /// Bytes that have come on the serial line.
-    pub received: Vec<u8, TICK_BYTES_MAX>,
+    pub received: TickBytes,
     /// What the board sees.
     pub sense: Sense,
 }
@@ -73,7 +74,7 @@ pub struct Done {
     /// What the board drives.
     pub drive: Drive,
     /// Bytes that go out on the serial line.
-    pub sent: Vec<u8, TICK_BYTES_MAX>,
+    pub sent: TickBytes,
 }
 
 impl Done {
@@ -110,7 +111,7 @@ mod tests {
 
     use super::*;
 
-    fn bytes() -> impl Strategy<Value = Vec<u8, TICK_BYTES_MAX>> {
+    fn bytes() -> impl Strategy<Value = TickBytes> {
         prop::collection::vec(any::<u8>(), 0..=TICK_BYTES_MAX).prop_map(|bytes| bytes.into_iter().collect())
     }
 

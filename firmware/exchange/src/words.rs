@@ -1,9 +1,7 @@
 //! Values to and from words.
 
+use crate::{TICK_BYTES_MAX, TickBytes};
 use frixel_render::Touch;
-use heapless::Vec;
-
-use crate::TICK_BYTES_MAX;
 
 const TOUCH_NONE: u32 = 0;
 const TOUCH_UP: u32 = 1;
@@ -46,8 +44,8 @@ pub(crate) fn put_bytes(bytes: &[u8], put: &mut impl FnMut(u32)) {
     }
 }
 
-pub(crate) fn take_bytes(count: usize, take: &mut impl FnMut() -> u32) -> Vec<u8, TICK_BYTES_MAX> {
-    let mut bytes = Vec::new();
+pub(crate) fn take_bytes(count: usize, take: &mut impl FnMut() -> u32) -> TickBytes {
+    let mut bytes = TickBytes::new();
     while bytes.len() < count.min(TICK_BYTES_MAX) {
         let left = count - bytes.len();
         for byte in take().to_le_bytes().into_iter().take(left) {
