@@ -8,6 +8,6 @@ mod real;
 mod table;
 
 pub use contact::{Contact, Finger, LoadedContact, ParameterError};
-pub use edges::{sine_mean_square_left, square_mean_square_left};
+pub use edges::{sine_peak_per_rms, square_peak_per_rms};
 pub use real::Real;
 pub use table::{InverseTable, TableError};

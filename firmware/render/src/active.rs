@@ -2,13 +2,13 @@
 
 use frixel_model::{Contact, Finger, InverseTable, TableError};
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
-use frixel_wire::scene::{Carrier, Header, Layer as LayerRecord, RECORDS_MAX, Scene};
+use frixel_wire::scene::{Header, Layer as LayerRecord, RECORDS_MAX, Scene};
 use heapless::Vec;
 
 use crate::Board;
 use crate::bitmap_pool::{BitmapPool, Directory};
 use crate::carrier::CarrierTiming;
-use crate::config::{self, WHOLE_SCENE};
+use crate::config;
 use crate::layer::Layer;
 
 /// Coefficients of one scene. A board has two of them: one that plays and one that the next scene is built in.
@@ -96,8 +96,8 @@ fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), Confi
 
     let carrier_hz = 0.5 / half_period_s;
     let (rms_a, peak_a) = config::currents_a(header.carrier, drive_v_peak, carrier_hz, board);
-    config::within(ConfigField::CurrentRms, rms_a, 0.0, limits.current_max_a_rms, WHOLE_SCENE)?;
-    config::within(ConfigField::CurrentPeak, peak_a, 0.0, limits.current_max_a_peak, WHOLE_SCENE)?;
+    config::within(ConfigField::CurrentRms, rms_a, 0.0, limits.current_max_a_rms, ConfigRefusal::WHOLE_SCENE)?;
+    config::within(ConfigField::CurrentPeak, peak_a, 0.0, limits.current_max_a_peak, ConfigRefusal::WHOLE_SCENE)?;
 
     let codes_per_v = f32::from(i16::MAX) / limits.full_scale_v_peak;
     let code_max = (header.voltage_max_v_peak * codes_per_v) as i32;
@@ -112,7 +112,8 @@ fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), Confi
 
 /// The inverse table of a scene's finger, coating and load. It is made in f64, so that its error is the table's own.
 fn table(header: &Header, voltage_max_v_rms: f32) -> Result<InverseTable, ConfigRefusal> {
-    let refusal = |field, found| ConfigRefusal { field, found, min: 0.0, max: f32::INFINITY, layer: WHOLE_SCENE };
+    let refusal =
+        |field, found| ConfigRefusal { field, found, min: 0.0, max: f32::INFINITY, layer: ConfigRefusal::WHOLE_SCENE };
     let finger = Finger {
         radius_m: f64::from(header.finger_radius_m),
         stiffness_pa_per_m: f64::from(header.stiffness_pa_per_m),

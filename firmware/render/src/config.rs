@@ -1,6 +1,6 @@
 //! Whether the numbers of a scene are ones that the board can play. Refused, never silently clamped.
 
-use frixel_model::{sine_mean_square_left, square_mean_square_left};
+use frixel_model::{sine_peak_per_rms, square_peak_per_rms};
 use frixel_wire::message::{ConfigField, ConfigRefusal};
 use frixel_wire::scene::{Carrier, Header, Layer, Record, Region};
 
@@ -11,8 +11,6 @@ use crate::Board;
 const CARRIER_MIN_HZ: f32 = 125.0;
 /// Fewest ticks in a half period of the carrier.
 const HALF_PERIOD_MIN_TICKS: f32 = 4.0;
-/// `ConfigRefusal::layer` for what belongs to no layer.
-pub(crate) const WHOLE_SCENE: u8 = 255;
 /// Farthest from the screen's corner that anything may be, in m.
 const LENGTH_MAX_M: f32 = 2.0;
 /// Largest friction that a layer may name, in N, either way.
@@ -41,7 +39,7 @@ pub(crate) fn check_header(header: &Header, board: &Board) -> Result<(), ConfigR
         (ConfigField::CarrierFrequency, header.carrier_hz, CARRIER_MIN_HZ, carrier_max_hz),
         (ConfigField::HostTimeout, header.host_timeout_s, 0.02, 1.0),
     ] {
-        within(field, found, min, max, WHOLE_SCENE)?;
+        within(field, found, min, max, ConfigRefusal::WHOLE_SCENE)?;
     }
     Ok(())
 }
@@ -81,8 +79,8 @@ pub(crate) fn check_record(record: &Record, layer: u8) -> Result<(), ConfigRefus
 pub(crate) fn peak_per_rms(carrier: Carrier, half_period_s: f32, edge_time_constant_s: f32) -> f32 {
     let (half_period_s, edge_s) = (f64::from(half_period_s), f64::from(edge_time_constant_s));
     match carrier {
-        Carrier::Square => libm::sqrt(1.0 / square_mean_square_left(half_period_s, edge_s)) as f32,
-        Carrier::Sine => libm::sqrt(2.0 / sine_mean_square_left(half_period_s, edge_s)) as f32,
+        Carrier::Square => square_peak_per_rms(half_period_s, edge_s) as f32,
+        Carrier::Sine => sine_peak_per_rms(half_period_s, edge_s) as f32,
     }
 }
 

@@ -46,7 +46,7 @@ impl PtyBoard {
     pub(crate) fn until(&self, wanted: impl Fn(&FakeBoard) -> bool) {
         let started = Instant::now();
         while !wanted(&self.board.lock().unwrap()) {
-            assert!(started.elapsed() < Duration::from_secs(60), "the board did not get there");
+            assert!(started.elapsed() < Duration::from_mins(1), "the board did not get there");
             std::thread::sleep(Duration::from_millis(1));
         }
     }

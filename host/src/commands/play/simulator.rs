@@ -1,0 +1,46 @@
+//! Playing to the simulated board in this process.
+
+use std::path::PathBuf;
+
+use frixel::output::{felt_svg, scene_png};
+use frixel::player::{Simulation, Stage, simulate};
+use frixel::rigs::Recorder;
+use frixel::scene::{Program, Scene, compile};
+use frixel_hil_sim::RigConfig;
+
+use super::super::stroke::stroke;
+use super::{Bars, CommandError, PlayArgs, Summary, tell_notes, write_felt_csv};
+
+pub(super) fn play(args: &PlayArgs) -> Result<Summary, CommandError> {
+    let rig = RigConfig::default();
+    let program = compile(&Scene::load(&args.scene)?, &rig.board.limits, rig.board.tick_hz)?;
+    tell_notes(&program);
+    let (width_m, height_m) = (program.header.screen_width_m, program.header.screen_height_m);
+    let stroke = stroke(args.stroke.as_deref(), width_m.into(), height_m.into(), args.seconds)?;
+    let simulation = Simulation {
+        rig,
+        seconds: args.seconds.unwrap_or(stroke.duration_s()),
+        stroke,
+        seed: args.seed,
+        ticks_per_row: rig.board.tick_hz.div_ceil(args.csv_hz),
+    };
+    let mut bars = Bars::default();
+    let simulated = simulate(&program, &simulation, &mut |stage| match stage {
+        Stage::Upload(progress) => bars.upload(progress),
+        Stage::Play(part) => bars.play(part),
+    })?;
+    bars.finish();
+    let files = write_files(args, &program, &simulated.recorder)?;
+    Ok(Summary::of_simulator(&program, &simulated, files))
+}
+
+/// Writes `felt.csv`, `felt.svg` and `scene.png`.
+fn write_files(args: &PlayArgs, program: &Program, recorder: &Recorder) -> Result<Vec<PathBuf>, CommandError> {
+    let rows = recorder.rows();
+    let csv = write_felt_csv(&args.out, rows)?;
+    let svg = args.out.join("felt.svg");
+    std::fs::write(&svg, felt_svg(rows)).map_err(CommandError::file(&svg))?;
+    let png = args.out.join("scene.png");
+    std::fs::write(&png, scene_png(program, rows)).map_err(CommandError::file(&png))?;
+    Ok(vec![csv, svg, png])
+}
