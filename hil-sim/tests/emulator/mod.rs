@@ -18,5 +18,5 @@ pub fn image() -> Option<Image> {
 }
 
 fn is_ci() -> bool {
-    std::env::var_os("CI").is_some_and(|ci| ci != "" && ci != "false" && ci != "0")
+    std::env::var_os("CI").is_some_and(|ci| !ci.is_empty() && ci != "false" && ci != "0")
 }
