@@ -4,6 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use frixel::device::{DeviceError, PortError};
+use frixel::output::OutputError;
 use frixel::player::SimulationError;
 use frixel::rigs::ServerError;
 use frixel::scene::CompileError;
@@ -21,6 +22,8 @@ pub(crate) enum CommandError {
     Port(#[from] PortError),
     #[error(transparent)]
     Server(#[from] ServerError),
+    #[error(transparent)]
+    Output(#[from] OutputError),
     #[error(transparent)]
     World(#[from] WorldError),
     #[error(transparent)]

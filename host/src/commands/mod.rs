@@ -8,7 +8,6 @@ mod play;
 mod ports;
 mod sim;
 mod stroke;
-mod summary;
 
 use std::path::PathBuf;
 

@@ -6,21 +6,23 @@ mod simulator;
 
 use std::path::{Path, PathBuf};
 
-use frixel::output::{FeltRow, FeltWriter};
+use frixel::output::{FeltCsv, FeltRow};
 use frixel::scene::Program;
 
 use bars::Bars;
 
 use super::PlayArgs;
 use super::error::CommandError;
-use super::summary::Summary;
 
 pub(super) fn run(args: &PlayArgs) -> Result<(), CommandError> {
-    let summary = if args.port == "sim" { simulator::play(args)? } else { board::play(args)? };
+    let (report, files) = if args.port == "sim" { simulator::play(args)? } else { board::play(args)? };
     if args.json {
-        println!("{}", summary.to_json());
+        println!("{}", report.to_json());
     } else {
-        print!("{}", summary.to_text());
+        print!("{}", report.summary());
+        for file in files {
+            println!("  {:<16} {}", "wrote", file.display());
+        }
     }
     Ok(())
 }
@@ -34,13 +36,10 @@ fn tell_notes(program: &Program) {
 
 /// Writes `felt.csv` into a folder that is made when it is not there.
 fn write_felt_csv(folder: &Path, rows: &[FeltRow]) -> Result<PathBuf, CommandError> {
+    std::fs::create_dir_all(folder).map_err(CommandError::file(folder))?;
     let path = folder.join("felt.csv");
-    let write = || {
-        std::fs::create_dir_all(folder)?;
-        let mut writer = FeltWriter::new(std::io::BufWriter::new(std::fs::File::create(&path)?))?;
-        rows.iter().try_for_each(|row| writer.write(row))?;
-        writer.flush()
-    };
-    write().map_err(CommandError::file(&path))?;
+    let mut csv = FeltCsv::create(&path)?;
+    rows.iter().try_for_each(|row| csv.write(row))?;
+    csv.finish()?;
     Ok(path)
 }

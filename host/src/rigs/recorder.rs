@@ -60,18 +60,16 @@ impl Recorder {
         let natural_n = self.wanted.natural_friction_n();
         let wanted_n =
             record.felt.finger.map(|finger| natural_n + self.wanted.electric_friction_n(finger.x_m, finger.y_m));
-        if let Some(wanted_n) = wanted_n {
-            let telemetry = &record.status.telemetry;
-            self.metrics.add(&TickSample {
-                wanted_n,
-                asked_n: natural_n + f64::from(telemetry.asked_electric_friction_n),
-                felt_n: record.felt.friction_n,
-                inversion_n: natural_n + self.inversion.electric_friction_n(telemetry.voltage_v_rms),
-                saturated: telemetry.flags.contains(Flags::SATURATED),
-                finger_down: true,
-                wanted_in_reach: self.inversion.reaches(wanted_n - natural_n),
-            });
-        }
+        let telemetry = &record.status.telemetry;
+        self.metrics.add(&TickSample {
+            wanted_n: wanted_n.unwrap_or_default(),
+            asked_n: natural_n + f64::from(telemetry.asked_electric_friction_n),
+            felt_n: record.felt.friction_n,
+            inversion_n: natural_n + self.inversion.electric_friction_n(telemetry.voltage_v_rms),
+            saturated: telemetry.flags.contains(Flags::SATURATED),
+            finger_down: wanted_n.is_some(),
+            wanted_in_reach: wanted_n.is_some_and(|wanted_n| self.inversion.reaches(wanted_n - natural_n)),
+        });
         self.rows.extend(self.row_maker.take(record, wanted_n));
     }
 }
@@ -180,9 +178,9 @@ impl RowMaker {
             wanted_n: self.wanted.take(),
             asked_n: self.asked.take(),
             felt_n: self.felt.take(),
-            voltage_v_rms: f64::from(telemetry.voltage_v_rms),
-            dac_code: telemetry.dac_code,
-            flags: std::mem::take(&mut self.flags).0,
+            voltage_v_rms: Some(f64::from(telemetry.voltage_v_rms)),
+            dac_code: Some(telemetry.dac_code),
+            flags: Some(std::mem::take(&mut self.flags)),
         })
     }
 }

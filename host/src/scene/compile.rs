@@ -51,7 +51,7 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
     let reach = match Reach::of(&header) {
         Ok(reach) => reach,
         Err(error) => {
-            log.add(scene.coating.places.table(), Mistake::Model { reason: format!("{error:?}") });
+            log.add(scene.coating.places.table(), Mistake::Model { reason: error.to_string() });
             return None;
         }
     };

@@ -255,10 +255,12 @@ pub enum Mistake {
         /// What to lower.
         cure: &'static str,
     },
-    /// Numbers that are each in range and that the contact model refuses together.
-    #[error("the contact model refuses this finger and coating ({reason}): check [finger] and [coating]")]
+    /// Numbers that are each in range and that the contact model or its table refuses together.
+    #[error(
+        "this finger on this coating cannot be played ({reason}): check [finger], [coating] and `voltage_max_v_rms`"
+    )]
     Model {
-        /// What the model said.
+        /// What it was refused for.
         reason: String,
     },
 }

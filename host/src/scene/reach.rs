@@ -1,7 +1,8 @@
 //! What friction a drive can give to a finger.
 
-use frixel_model::{Contact, Finger, ParameterError};
+use frixel_model::{Contact, Finger, InverseTable, ParameterError, TableError};
 use frixel_wire::scene::{Carrier, Header};
+use thiserror::Error;
 
 /// The frictions that a finger can be given: from natural, `mu F_N`, to natural plus the most that the drive adds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,17 +15,28 @@ pub struct Reach {
     pub voltage_max_v_rms: f64,
 }
 
+/// Why a finger and a coating have no reach that a board can play.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub(super) enum ReachError {
+    #[error("the contact model refuses it: {0:?}")]
+    Contact(ParameterError),
+    #[error("its friction between 1 V and the largest voltage does not fit the board's table")]
+    Table,
+}
+
 impl Reach {
     /// Reach under the finger, coating and rms voltage of a header, whose `f32` numbers are what the board has.
-    pub(super) fn of(header: &Header) -> Result<Self, ParameterError> {
+    pub(super) fn of(header: &Header) -> Result<Self, ReachError> {
         let finger = Finger {
             radius_m: f64::from(header.finger_radius_m),
             stiffness_pa_per_m: f64::from(header.stiffness_pa_per_m),
             friction_coefficient: f64::from(header.friction_coefficient),
         };
-        let contact = Contact::new(&finger, f64::from(header.effective_gap_m))?;
-        let loaded = contact.under_load(f64::from(header.normal_load_n))?;
+        let contact = Contact::new(&finger, f64::from(header.effective_gap_m)).map_err(ReachError::Contact)?;
+        let loaded = contact.under_load(f64::from(header.normal_load_n)).map_err(ReachError::Contact)?;
         let voltage_max_v_rms = f64::from(header.voltage_max_v_rms);
+        // The board makes the same table when the scene is committed.
+        InverseTable::build(&loaded, voltage_max_v_rms).map_err(|_: TableError| ReachError::Table)?;
         Ok(Self {
             natural_friction_n: loaded.natural_friction_n(),
             electric_friction_max_n: loaded.electric_friction_n(voltage_max_v_rms),

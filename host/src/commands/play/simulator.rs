@@ -2,16 +2,16 @@
 
 use std::path::PathBuf;
 
-use frixel::output::{felt_svg, scene_png};
+use frixel::output::{Report, Trace, write_felt_svg, write_scene_png};
 use frixel::player::{Simulation, Stage, simulate};
 use frixel::rigs::Recorder;
 use frixel::scene::{Program, Scene, compile};
 use frixel_hil_sim::RigConfig;
 
 use super::super::stroke::stroke;
-use super::{Bars, CommandError, PlayArgs, Summary, tell_notes, write_felt_csv};
+use super::{Bars, CommandError, PlayArgs, tell_notes, write_felt_csv};
 
-pub(super) fn play(args: &PlayArgs) -> Result<Summary, CommandError> {
+pub(super) fn play(args: &PlayArgs) -> Result<(Report, Vec<PathBuf>), CommandError> {
     let rig = RigConfig::default();
     let program = compile(&Scene::load(&args.scene)?, &rig.board.limits, rig.board.tick_hz)?;
     tell_notes(&program);
@@ -30,17 +30,23 @@ pub(super) fn play(args: &PlayArgs) -> Result<Summary, CommandError> {
         Stage::Play(part) => bars.play(part),
     })?;
     bars.finish();
-    let files = write_files(args, &program, &simulated.recorder)?;
-    Ok(Summary::of_simulator(&program, &simulated, files))
+    let metrics = simulated.recorder.metrics().summary();
+    let report = Report::new("sim", &metrics, &program.reach, &simulated.counters, Some(simulated.realtime_factor));
+    Ok((report, write_files(args, &program, &simulated.recorder)?))
 }
 
 /// Writes `felt.csv`, `felt.svg` and `scene.png`.
 fn write_files(args: &PlayArgs, program: &Program, recorder: &Recorder) -> Result<Vec<PathBuf>, CommandError> {
     let rows = recorder.rows();
     let csv = write_felt_csv(&args.out, rows)?;
+    let mut trace = Trace::new();
+    for row in rows {
+        trace.push(row);
+    }
+    let title = args.scene.display().to_string();
     let svg = args.out.join("felt.svg");
-    std::fs::write(&svg, felt_svg(rows)).map_err(CommandError::file(&svg))?;
+    write_felt_svg(&svg, &title, &trace, &program.reach)?;
     let png = args.out.join("scene.png");
-    std::fs::write(&png, scene_png(program, rows)).map_err(CommandError::file(&png))?;
+    write_scene_png(&png, &title, program, &trace)?;
     Ok(vec![csv, svg, png])
 }
