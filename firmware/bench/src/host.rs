@@ -23,10 +23,8 @@ impl<'a> Host<'a> {
         self.sequence += 1;
         let request = Request { sequence: self.sequence, command };
         let mut frame = [0; FRAME_MAX_LEN];
-        match payload::request_frame(&request, &mut frame) {
-            Ok(frame) => self.send(frame),
-            Err(_) => panic!("a command does not fit a frame"),
-        }
+        let Ok(frame) = payload::request_frame(&request, &mut frame) else { panic!("a command does not fit a frame") };
+        self.send(frame);
     }
 
     /// Sends a picture, and returns its name.
@@ -50,10 +48,10 @@ impl<'a> Host<'a> {
     fn chunks(&mut self, bytes: &[u8]) {
         for (number, chunk) in (0..).zip(bytes.chunks(CHUNK_LEN)) {
             let mut frame = [0; FRAME_MAX_LEN];
-            match payload::chunk_frame(number, chunk, &mut frame) {
-                Ok(frame) => self.send(frame),
-                Err(_) => panic!("a chunk does not fit a frame"),
-            }
+            let Ok(frame) = payload::chunk_frame(number, chunk, &mut frame) else {
+                panic!("a chunk does not fit a frame")
+            };
+            self.send(frame);
         }
         self.command(Command::UploadEnd);
     }

@@ -2,9 +2,9 @@
 
 use core::hint::black_box;
 
-use frixel_model::{Contact, Finger, InverseTable, LoadedContact};
+use frixel_model::{Contact, Finger, InverseTable, LoadedContact, Real};
 
-use crate::count::{Counter, Worst};
+use crate::count::Counter;
 
 /// The example finger: radius, stiffness, friction coefficient; coating; load; largest voltage.
 const FINGER: Finger<f64> = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };
@@ -17,26 +17,21 @@ const STEP: usize = 0x1_0003;
 const SPECIALS: [f32; 6] = [0.0, -0.0, -1.0, f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
 
 /// Counts both, without and with a load.
-pub fn run(counter: &Counter) {
-    let (mut table_worst, mut closed_worst) = (Worst::new(), Worst::new());
+pub fn run(counter: &mut Counter) {
+    let mut by_table = counter.case("inverse_table");
+    let mut in_closed_form = counter.case("inverse_closed_form");
     for load_n in NORMAL_LOADS_N {
-        let Ok(contact) = Contact::new(&FINGER, EFFECTIVE_GAP_M).and_then(|contact| contact.under_load(load_n)) else {
-            panic!("the contact model refuses the example finger");
-        };
-        let Ok(table) = InverseTable::build(&contact, VOLTAGE_MAX_V_RMS) else { panic!("no table") };
-        let single = single(load_n);
+        let contact = contact(&FINGER, EFFECTIVE_GAP_M, load_n);
+        let Ok(mut table) = InverseTable::build(&contact, VOLTAGE_MAX_V_RMS) else { panic!("no table") };
+        let mut single = single(load_n);
         for x in (0..0x7f80_0000).step_by(STEP).map(f32::from_bits).chain(SPECIALS) {
-            table_worst.take(net(counter, |x| by_table(black_box(&table), x), |x| nothing(black_box(&table), x), x));
-            closed_worst.take(net(
-                counter,
-                |x| in_closed_form(black_box(&single), x),
-                |x| nothing(black_box(&single), x),
-                x,
-            ));
+            let x = black_box(x);
+            black_box(by_table.take(from_table, &mut table, x));
+            black_box(in_closed_form.take(from_closed_form, &mut single, x));
         }
     }
-    table_worst.report("inverse_table");
-    closed_worst.report("inverse_closed_form");
+    by_table.report();
+    in_closed_form.report();
 }
 
 fn single(load_n: f64) -> LoadedContact<f32> {
@@ -45,35 +40,27 @@ fn single(load_n: f64) -> LoadedContact<f32> {
         stiffness_pa_per_m: FINGER.stiffness_pa_per_m as f32,
         friction_coefficient: FINGER.friction_coefficient as f32,
     };
-    match Contact::new(&finger, EFFECTIVE_GAP_M as f32).and_then(|contact| contact.under_load(load_n as f32)) {
+    contact(&finger, EFFECTIVE_GAP_M as f32, load_n as f32)
+}
+
+fn contact<T: Real>(finger: &Finger<T>, effective_gap_m: T, load_n: T) -> LoadedContact<T> {
+    match Contact::new(finger, effective_gap_m).and_then(|contact| contact.under_load(load_n)) {
         Ok(contact) => contact,
-        Err(_) => panic!("the contact model refuses the example finger"),
+        Err(error) => panic!("the contact model refuses the example finger: {error:?}"),
     }
 }
 
-/// Instructions of one function less those of a function that does nothing: without call and return.
-#[inline(always)]
-fn net(counter: &Counter, full: impl FnOnce(f32) -> f32, empty: impl FnOnce(f32) -> f32, x: f32) -> u32 {
-    let x = black_box(x);
-    let (gross, result) = counter.count(|| full(x));
-    black_box(result);
-    let (call, result) = counter.count(|| empty(x));
-    black_box(result);
-    gross - call
-}
-
 #[inline(never)]
-fn by_table(table: &InverseTable, electric_friction_n: f32) -> f32 {
+fn from_table(table: &mut InverseTable, electric_friction_n: f32) -> f32 {
+    if cfg!(feature = "breach") {
+        for loops in 0..100 {
+            black_box(loops);
+        }
+    }
     table.voltage_v_rms(electric_friction_n)
 }
 
 #[inline(never)]
-fn in_closed_form(contact: &LoadedContact<f32>, electric_friction_n: f32) -> f32 {
+fn from_closed_form(contact: &mut LoadedContact<f32>, electric_friction_n: f32) -> f32 {
     contact.voltage_v_rms(electric_friction_n)
-}
-
-#[inline(never)]
-fn nothing<T>(state: &T, electric_friction_n: f32) -> f32 {
-    black_box(state);
-    electric_friction_n
 }

@@ -1,14 +1,12 @@
 //! Whole ticks, by scene.
 
-use core::hint::black_box;
-
 use cortex_m::singleton;
 use frixel_render::{Active, BitmapPool, Board, Drive, Sense, Session, Ticker, Touch};
 use frixel_wire::fault::State;
 use frixel_wire::message::Command;
 use frixel_wire::scene::{Blend, Carrier, HEADER_LEN, Header, Layer, RECORD_LEN, RECORDS_MAX, Record, Region, Wave};
 
-use crate::count::{Counter, Worst};
+use crate::count::{Case, Counter};
 use crate::host::Host;
 
 /// Ticks counted of each scene: a stroke across the screen.
@@ -56,7 +54,7 @@ const fn record(layer: Layer) -> Record {
 }
 
 /// Counts the ticks of every scene.
-pub fn run(counter: &Counter) {
+pub fn run(counter: &mut Counter) {
     static POOL: BitmapPool = BitmapPool::new();
     let board = Board::SIMULATOR;
     let (Some(first), Some(second)) = (singleton!(: Active = Active::new()), singleton!(: Active = Active::new()))
@@ -72,16 +70,16 @@ pub fn run(counter: &Counter) {
         *sample = (index.wrapping_mul(2_654_435_761) >> 24) as u8;
     }
 
-    bench.disarmed(counter).report("tick_disarmed");
+    bench.idle(counter.case("tick_disarmed"), None);
     bench.play(&HEADER, &[record(GRATING)]);
-    bench.finger_up(counter).report("tick_idle");
-    bench.slide(counter).report("tick_grating");
+    bench.idle(counter.case("tick_idle"), Some(Touch::Up));
+    bench.slide(counter.case("tick_grating"));
     let crc32 = bench.host.bitmap(PICTURE, PICTURE, &samples);
     bench.play(&HEADER, &[record(bitmap(crc32))]);
-    bench.slide(counter).report("tick_bitmap");
+    bench.slide(counter.case("tick_bitmap"));
     let worst_header = Header { carrier: Carrier::Sine, ..HEADER };
     bench.play(&worst_header, &[Record { blend: Blend::Add, ..record(bitmap(crc32)) }; RECORDS_MAX]);
-    bench.slide(counter).report("tick_worst_scene");
+    bench.slide(counter.case("tick_worst_scene"));
 }
 
 /// A playing board.
@@ -125,60 +123,45 @@ impl Bench {
         assert!(self.host.ticker.status().telemetry.state == State::Active, "the scene does not play");
     }
 
-    fn disarmed(&mut self, counter: &Counter) -> Worst {
-        let mut worst = Worst::new();
-        for _ in 0..TICKS {
-            worst.take(self.count(counter, None).0);
-        }
-        worst
-    }
-
-    fn finger_up(&mut self, counter: &Counter) -> Worst {
-        self.host.command(Command::Ping);
-        let mut worst = Worst::new();
+    /// Nothing to drive.
+    fn idle(&mut self, mut case: Case, first_touch: Option<Touch>) {
         for tick in 0..TICKS {
-            worst.take(self.count(counter, (tick == 0).then_some(Touch::Up)).0);
+            let touch = if tick == 0 { first_touch } else { None };
+            self.count(&mut case, touch);
         }
-        worst
+        case.report();
     }
 
     /// A finger that comes down, slides, rests for a while and slides on.
-    fn slide(&mut self, counter: &Counter) -> Worst {
+    fn slide(&mut self, mut case: Case) {
         self.tick(Some(Touch::Up));
-        let mut worst = Worst::new();
         let mut driven = 0;
         for tick in 0..TICKS {
             if tick.is_multiple_of(PING_TICKS) {
                 self.host.command(Command::Ping);
             }
             let touch = tick.is_multiple_of(REPORT_TICKS).then(|| {
-                let along = 1e-5 * tick.min(TICKS / 3).max(tick.saturating_sub(TICKS / 3)) as f32;
-                Touch::Down { x_m: 0.02 + along, y_m: 0.03 + 0.3 * along, age_ticks: REPORT_TICKS }
+                let along_m = 1e-5 * tick.min(TICKS / 3).max(tick.saturating_sub(TICKS / 3)) as f32;
+                Touch::Down { x_m: 0.02 + along_m, y_m: 0.03 + 0.3 * along_m, age_ticks: REPORT_TICKS }
             });
-            let (instructions, drive) = self.count(counter, touch);
-            worst.take(instructions);
-            driven += u32::from(drive.dac_code != 0);
+            driven += u32::from(self.count(&mut case, touch).dac_code != 0);
         }
         assert!(driven > TICKS / 2, "the board does not drive");
-        worst
+        case.report();
     }
 
     fn tick(&mut self, touch: Option<Touch>) -> Drive {
         let sense = self.sense(touch);
-        let drive = self.host.ticker.tick(&sense);
+        let drive = tick(&mut self.host.ticker, &sense);
         self.monitor.follow(drive);
         drive
     }
 
-    /// Instructions of a tick, less those of a function that does nothing: without call and return.
-    fn count(&mut self, counter: &Counter, touch: Option<Touch>) -> (u32, Drive) {
-        let sense = black_box(self.sense(touch));
-        let ticker = black_box(&mut self.host.ticker);
-        let (call, drive) = counter.count(|| nothing(ticker, &sense));
-        black_box(drive);
-        let (gross, drive) = counter.count(|| tick(ticker, &sense));
+    fn count(&mut self, case: &mut Case, touch: Option<Touch>) -> Drive {
+        let sense = self.sense(touch);
+        let drive = case.take(tick, &mut self.host.ticker, &sense);
         self.monitor.follow(drive);
-        (gross - call, drive)
+        drive
     }
 
     fn sense(&self, touch: Option<Touch>) -> Sense {
@@ -189,10 +172,4 @@ impl Bench {
 #[inline(never)]
 fn tick(ticker: &mut Ticker, sense: &Sense) -> Drive {
     ticker.tick(sense)
-}
-
-#[inline(never)]
-fn nothing(ticker: &mut Ticker, sense: &Sense) -> Drive {
-    black_box((ticker, sense));
-    Drive::default()
 }
