@@ -2,12 +2,12 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+mod carrier;
 mod contact;
-mod edges;
 mod real;
 mod table;
 
+pub use carrier::{Carrier, ElectrodeCurrent, Waveform};
 pub use contact::{Contact, Finger, LoadedContact, ParameterError};
-pub use edges::{sine_peak_per_rms, square_peak_per_rms};
 pub use real::Real;
 pub use table::{InverseTable, TableError};

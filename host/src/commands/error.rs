@@ -32,8 +32,10 @@ pub(crate) enum CommandError {
     Stroke { path: PathBuf, source: StrokeError },
     #[error("a stroke over this scene: {0}")]
     NaturalStroke(StrokeError),
-    #[error("{}: {source}", path.display())]
-    File { path: PathBuf, source: io::Error },
+    #[error("{} cannot be read ({source}): check the path", path.display())]
+    Read { path: PathBuf, source: io::Error },
+    #[error("{} cannot be written ({source}): check the folder and its free space", path.display())]
+    Write { path: PathBuf, source: io::Error },
     #[error(
         "{port} is a board with an electrode: --stroke moves a simulated finger only; leave it out, or use --port sim"
     )]
@@ -53,9 +55,15 @@ pub(crate) enum CommandError {
 }
 
 impl CommandError {
-    /// For `map_err` on what is done with a file.
-    pub(crate) fn file(path: &Path) -> impl FnOnce(io::Error) -> Self {
+    /// For `map_err` on what is read.
+    pub(crate) fn reading(path: &Path) -> impl FnOnce(io::Error) -> Self {
         let path = path.to_owned();
-        move |source| Self::File { path, source }
+        move |source| Self::Read { path, source }
+    }
+
+    /// For `map_err` on what is written.
+    pub(crate) fn writing(path: &Path) -> impl FnOnce(io::Error) -> Self {
+        let path = path.to_owned();
+        move |source| Self::Write { path, source }
     }
 }

@@ -36,7 +36,7 @@ fn tell_notes(program: &Program) {
 
 /// Writes `felt.csv` into a folder that is made when it is not there.
 fn write_felt_csv(folder: &Path, rows: &[FeltRow]) -> Result<PathBuf, CommandError> {
-    std::fs::create_dir_all(folder).map_err(CommandError::file(folder))?;
+    std::fs::create_dir_all(folder).map_err(CommandError::writing(folder))?;
     let path = folder.join("felt.csv");
     let mut csv = FeltCsv::create(&path)?;
     rows.iter().try_for_each(|row| csv.write(row))?;

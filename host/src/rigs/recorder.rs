@@ -1,14 +1,13 @@
 //! What a simulated finger felt, tick by tick, against what it should have.
 
 use frixel_hil_sim::{TickRecord, contact_of};
-use frixel_model::{LoadedContact, ParameterError, sine_peak_per_rms, square_peak_per_rms};
+use frixel_model::{LoadedContact, ParameterError};
 use frixel_wire::fault::Flags;
 use frixel_wire::hello::BoardLimits;
-use frixel_wire::scene::Carrier;
 
 use crate::metrics::{Metrics, TickSample};
 use crate::output::FeltRow;
-use crate::scene::Program;
+use crate::scene::{Program, carrier};
 use crate::wanted::Wanted;
 
 /// Gathers the errors of every tick of a program that plays, and a row every so many ticks.
@@ -84,11 +83,7 @@ struct Inversion {
 impl Inversion {
     fn new(program: &Program, limits: &BoardLimits, tick_hz: u32) -> Result<Self, ParameterError> {
         let half_period_s = f64::from(program.half_period_ticks) / f64::from(tick_hz);
-        let edge_s = f64::from(limits.edge_time_constant_s);
-        let peak_per_rms = match program.header.carrier {
-            Carrier::Square => square_peak_per_rms(half_period_s, edge_s),
-            Carrier::Sine => sine_peak_per_rms(half_period_s, edge_s),
-        };
+        let peak_per_rms = carrier(program.header.carrier, half_period_s, limits).peak_per_rms();
         let codes_per_v_peak = f64::from(i16::MAX) / f64::from(limits.full_scale_v_peak);
         Ok(Self {
             contact: contact_of(&program.header)?,

@@ -7,7 +7,8 @@ use toml::de::DeTable;
 
 use super::fields::{Fields, Range};
 use super::layer::Layer;
-use super::mistake::{CompileError, Log, Mistake};
+use super::log::Log;
+use super::mistake::{CompileError, Mistake};
 use super::source::{Places, Source};
 
 /// Version of the file format.
@@ -129,7 +130,7 @@ fn read(mut fields: Fields, log: &mut Log, source: &Source) -> Option<Scene> {
     let drive = drive(fields.optional_table(log, "drive").unwrap_or_else(|| absent("[drive]")), log);
     let carrier = carrier(fields.optional_table(log, "carrier").unwrap_or_else(|| absent("[carrier]")), log);
     let prediction = touch(fields.optional_table(log, "touch").unwrap_or_else(|| absent("[touch]")), log);
-    let tables = fields.tables(log, "layer", false);
+    let tables = fields.tables(log, "layer", false).unwrap_or_default();
     // All are read, so that the mistakes of all are told.
     let layers: Vec<Option<Layer>> = (1..).zip(tables).map(|(number, table)| Layer::read(table, number, log)).collect();
     let places = fields.close(log);
@@ -162,10 +163,10 @@ fn screen(mut fields: Fields, log: &mut Log) -> Option<Screen> {
 
 /// Slabs in series add their thickness over permittivity.
 fn coating(scene: &mut Fields, log: &mut Log) -> Option<Coating> {
-    let slabs = scene.tables(log, "coating", true);
+    scene.require("coating");
+    let slabs = scene.tables(log, "coating", true)?;
     if slabs.is_empty() {
-        scene.table(log, "coating");
-        return None;
+        log.add(0, Mistake::MissingField { field: "coating", table: "the scene".to_owned() });
     }
     let mut effective_gap_um = Some(0.0);
     let mut first = None;

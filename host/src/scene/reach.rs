@@ -1,7 +1,8 @@
 //! What friction a drive can give to a finger.
 
-use frixel_model::{Contact, Finger, InverseTable, ParameterError, TableError};
-use frixel_wire::scene::{Carrier, Header};
+use frixel_model::{Carrier, Contact, Finger, InverseTable, ParameterError, TableError, Waveform};
+use frixel_wire::hello::BoardLimits;
+use frixel_wire::scene::{Carrier as Shape, Header};
 use thiserror::Error;
 
 /// The frictions that a finger can be given: from natural, `mu F_N`, to natural plus the most that the drive adds.
@@ -55,30 +56,11 @@ impl Reach {
     }
 }
 
-/// Peak over rms of a carrier.
-pub(super) fn crest(shape: Carrier) -> f64 {
-    match shape {
-        Carrier::Square => 1.0,
-        Carrier::Sine => core::f64::consts::SQRT_2,
-    }
-}
-
-/// What is left of the drive's mean square behind edges of the time constant `tau_s`: a first-order lag. The board
-/// divides the voltage by the root of it.
-///
-/// A square wave keeps `1 - (2 tau/T) tanh(T/(2 tau))`, with `T` half a period; a sine keeps `1/(1 + (w tau)^2)`.
-pub(super) fn mean_square_left(shape: Carrier, half_period_s: f64, tau_s: f64) -> f64 {
-    if !(tau_s > 0.0) {
-        return 1.0;
-    }
-    match shape {
-        Carrier::Square => {
-            let ratio = 2.0 * tau_s / half_period_s;
-            1.0 - ratio * libm::tanh(1.0 / ratio)
-        }
-        Carrier::Sine => {
-            let lag = core::f64::consts::PI / half_period_s * tau_s;
-            1.0 / (1.0 + lag * lag)
-        }
-    }
+/// The carrier of a scene on a board.
+pub(crate) fn carrier(shape: Shape, half_period_s: f64, limits: &BoardLimits) -> Carrier {
+    let waveform = match shape {
+        Shape::Square => Waveform::Square,
+        Shape::Sine => Waveform::Sine,
+    };
+    Carrier { waveform, half_period_s, edge_time_constant_s: f64::from(limits.edge_time_constant_s) }
 }

@@ -127,6 +127,7 @@ impl FakeBoard {
                 self.hellos += 1;
                 self.received_bytes = 0;
                 self.upload = None;
+                self.telemetry = None;
                 out.append(&mut self.garbage);
                 out.extend_from_slice(hello_frame(&self.hello, &mut [0; FRAME_MAX_LEN]).unwrap());
             }

@@ -12,7 +12,7 @@ use serialport::{SerialPort, TTYPort};
 
 use crate::calls::scene;
 use crate::fake_board::FakeBoard;
-use crate::pty_board::PtyBoard;
+use crate::pty_board::{Patient, PtyBoard};
 
 const LONG: Duration = Duration::from_mins(10);
 
@@ -20,8 +20,8 @@ fn open(path: &str) -> Result<SerialLink, PortError> {
     SerialLink::open(path, DEFAULT_BAUD)
 }
 
-fn connect(board: &PtyBoard) -> Device<SerialLink> {
-    Device::connect(open(&board.path).unwrap()).unwrap()
+fn connect(board: &PtyBoard) -> Device<Patient> {
+    Device::connect(Patient(open(&board.path).unwrap())).unwrap()
 }
 
 fn not_opened(path: &str) -> PortError {

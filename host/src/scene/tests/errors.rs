@@ -124,6 +124,22 @@ fn wrong_types() {
 }
 
 #[test]
+fn coatings_that_are_none() {
+    let slab = "[coating]\nthickness_um = 10\npermittivity = 1\n";
+    let first = |coating: &str| HEAD.replace(slab, "").replace("version = 1", &format!("version = 1\n{coating}"));
+    assert_eq!(message(&first("coating = []")), "test.toml:1:1: the scene has no `coating`: add it");
+    assert_eq!(
+        message(&first("coating = 3")),
+        "test.toml:2:11: `coating` has to be a list of tables, each with its name in double brackets, and this is a number"
+    );
+    assert_eq!(
+        message(&first("coating = [{ thickness_um = 3 }, 4]")),
+        "test.toml:2:12: [[coating]] has no `permittivity`: add it\n\
+         test.toml:2:34: `coating` has to be a list of tables, and this is a number"
+    );
+}
+
+#[test]
 fn numbers_out_of_range() {
     check_head(
         "radius_mm = 8",
@@ -271,6 +287,28 @@ fn friction_out_of_reach() {
     );
     let reachable = "[[layer]]\nkind = \"grating\"\nwavelength_mm = 2\nlow_n = 0\nhigh_n = 0.02778";
     compile_layers(reachable);
+}
+
+#[test]
+fn the_field_to_change_is_pointed_at() {
+    let line = |layers: &str| {
+        let message = message(&format!("{HEAD}{layers}"));
+        assert_eq!(message.lines().count(), 1, "{message}");
+        message.split(':').nth(1).and_then(|line| line.parse::<usize>().ok()).expect("a line") + 1 - FIRST
+    };
+    let grating = |low_n: f64, high_n: f64, gain: f64| {
+        format!("[[layer]]\nkind = \"grating\"\nwavelength_mm = 2\nlow_n = {low_n}\nhigh_n = {high_n}\ngain = {gain}\n")
+    };
+    assert_eq!([line(&grating(0.0, 0.03, 1.0)), line(&grating(-0.01, 0.02, 1.0))], [5, 4]);
+    // A negative gain turns it around.
+    assert_eq!([line(&grating(-0.02, 0.01, -1.0)), line(&grating(-0.03, 0.0, -1.0))], [5, 4]);
+    let bitmap = |black_n: f64, white_n: f64| {
+        format!(
+            "[[layer]]\nkind = \"bitmap\"\npicture = \"textures/brick.png\"\nx_mm = 0\ny_mm = 0\nwidth_mm = 50\n\
+             black_n = {black_n}\nwhite_n = {white_n}"
+        )
+    };
+    assert_eq!([line(&bitmap(0.0, 0.06)), line(&bitmap(-0.03, 0.03)), line(&bitmap(0.06, 0.0))], [8, 7, 7]);
 }
 
 #[test]
@@ -477,7 +515,9 @@ fn files_that_cannot_be_read() {
 proptest! {
     #[test]
     fn no_text_makes_the_parser_panic(text in ".*") {
-        let _ = Scene::parse(&text, "test.toml", scenes());
+        if let Err(error) = Scene::parse(&text, "test.toml", scenes()) {
+            prop_assert!(error.to_string().starts_with("test.toml:"));
+        }
     }
 
     /// Valid TOML of known and unknown names and values of any type, and numbers of any size.
@@ -491,7 +531,9 @@ proptest! {
             text.push_str(&LINES[line].replace("VALUE", &value));
             text.push('\n');
         }
-        let _ = compile_text(&text);
+        if let Err(error) = compile_text(&text) {
+            prop_assert!(error.to_string().lines().all(|line| line.starts_with("test.toml:")), "{}", error);
+        }
     }
 }
 

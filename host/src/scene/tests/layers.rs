@@ -2,7 +2,7 @@
 
 use frixel_wire::scene::{Carrier, Layer, Region, Scene as WireScene};
 
-use super::super::{picture::Picture, reach, resample};
+use super::super::{picture::Picture, resample};
 use super::*;
 use crate::wanted::Wanted;
 
@@ -84,30 +84,6 @@ fn the_largest_voltage_keeps_every_limit() {
 }
 
 #[test]
-fn edges_take_from_the_mean_square_what_a_simulated_lag_takes() {
-    let (half_period_s, tau_s) = (200e-6, 60e-6);
-    for shape in [Carrier::Square, Carrier::Sine] {
-        let steps = 400_000;
-        let step_s = 2.0 * half_period_s / f64::from(steps);
-        let (mut output, mut sum) = (0.0, 0.0);
-        for step in 0..8 * steps {
-            let turns = (f64::from(step % steps) + 0.5) / f64::from(steps);
-            let input = match shape {
-                Carrier::Square if turns < 0.5 => 1.0,
-                Carrier::Square => -1.0,
-                Carrier::Sine => 2f64.sqrt() * (std::f64::consts::TAU * turns).sin(),
-            };
-            output += (input - output) * step_s / tau_s;
-            if step >= 7 * steps {
-                sum += output * output;
-            }
-        }
-        close(&[reach::mean_square_left(shape, half_period_s, tau_s)], &[sum / f64::from(steps)], 1e-5);
-        close(&[reach::mean_square_left(shape, half_period_s, 0.0)], &[1.0], 0.0);
-    }
-}
-
-#[test]
 fn carriers_are_whole_ticks() {
     let program =
         compile_text(&HEAD.replace("# layers follow", "[carrier]\nfrequency_hz = 1300")).expect("it compiles");
@@ -138,6 +114,23 @@ fn constants_above_zero_and_above_natural() {
     ];
     close(&frictions_mn(layers, &places), &[10.0, 4.0, 4.0, 7.0, 13.0, 13.0, 10.0, 10.0], 1e-5);
     close(&frictions_mn("", &places), &[0.0; 8], 0.0);
+}
+
+#[test]
+fn left_and_top_edge_belong_to_a_region_and_right_and_bottom_do_not() {
+    // Powers of two in metres, which f32 has exactly.
+    let layers = "[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\n\
+                  region = { x_mm = 15.625, y_mm = 31.25, width_mm = 15.625, height_mm = 31.25 }";
+    let (left, right, top, bottom) = (15.625, 31.25, 31.25, 62.5);
+    let places = [
+        (left, top),
+        (right, 40.0),
+        (20.0, bottom),
+        (right - 1e-6, bottom - 1e-6),
+        (left - 1e-6, top),
+        (left, top - 1e-6),
+    ];
+    close(&frictions_mn(layers, &places), &[10.0, 0.0, 0.0, 10.0, 0.0, 0.0], 1e-5);
 }
 
 #[test]
