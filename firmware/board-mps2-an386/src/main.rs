@@ -28,6 +28,7 @@ static POOL: BitmapPool = BitmapPool::new();
 
 #[entry]
 fn main() -> ! {
+    shared::set(layout::OUTPUT_AT_START, shared::get(layout::OUTPUT));
     shared::set(layout::STARTS, shared::get(layout::STARTS).wrapping_add(1));
     let board = started();
     // Made in passing, so that no image of them lies in flash.

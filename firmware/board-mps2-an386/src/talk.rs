@@ -78,13 +78,15 @@ impl Talk {
     }
 
     /// What the board does now, as the next tick has it.
+    ///
+    /// This waits without sleep: an emulator whose processor sleeps until the next tick wakes it late, by several ticks
+    /// at times, and the tick takes that for a missed deadline.
     fn status(&mut self) -> Status {
         tick::want_status();
         loop {
             if let Some(status) = self.statuses.dequeue() {
                 return status;
             }
-            cortex_m::asm::wfi();
         }
     }
 

@@ -38,7 +38,7 @@ pub const OUTPUT: usize = 4;
 pub const TICK: usize = 5;
 /// Times that the firmware has started since power-on.
 pub const STARTS: usize = 6;
-/// Tick of the last byte that came on the serial port.
+/// Tick of the last byte that came on the serial port; zero before the first.
 pub const RECEIVED_AT_TICK: usize = 7;
 
 /// Drives in [`DRIVES`] since power-on, modulo 2^32.
@@ -47,6 +47,9 @@ pub const DRIVES_WRITTEN: usize = 8;
 pub const TOUCHES_WRITTEN: usize = 9;
 /// Touch reports that the board has taken since power-on, modulo 2^32.
 pub const TOUCHES_READ: usize = 10;
+
+/// What was driven when the firmware last started: what ended it has to leave the output at zero.
+pub const OUTPUT_AT_START: usize = 11;
 
 /// Number of the batch of ticks that is given, from 1.
 pub const BATCH_GIVEN: usize = 12;

@@ -15,7 +15,15 @@ pub use tick::{DONE_WORDS_MAX, Done, GIVEN_WORDS_MAX, Given, TICK_BYTES_MAX, Tic
 pub use touch::{STAMPED_TOUCH_WORDS, StampedTouch};
 
 use frixel_render::Board;
-use frixel_wire::hello::BoardKind;
+use frixel_wire::hello::{BoardKind, BoardLimits};
 
 /// The emulated board: the limits of the smallest real one, like the simulated board.
-pub const BOARD: Board = Board { kind: BoardKind::Mps2An386, id: *b"frixel-qemu\0", ..Board::SIMULATOR };
+///
+/// Its receive window is half of theirs: the emulator moves 20 kB/s at best over its serial port, a tenth of what a real
+/// one does, and an answer must not wait behind a full window for longer than a host does.
+pub const BOARD: Board = Board {
+    kind: BoardKind::Mps2An386,
+    id: *b"frixel-qemu\0",
+    limits: BoardLimits { receive_window_bytes: 2048, ..Board::SIMULATOR.limits },
+    ..Board::SIMULATOR
+};

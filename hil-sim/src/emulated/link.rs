@@ -1,17 +1,21 @@
 //! An emulated board that ticks by itself, with its serial port behind a pseudo-terminal.
 
+mod follower;
+mod serial;
+
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use frixel_exchange::{STAMPED_TOUCH_WORDS, StampedTouch, drive_of, layout};
+use frixel_exchange::{drive_of, layout};
 use frixel_render::Drive;
 
 use super::machine::Machine;
-use super::memory::Memory;
 use super::{EmulatorError, Image};
 use crate::{Felt, World};
+use follower::{Follower, Wishes};
+use serial::Serial;
 
 /// An instruction takes 8 ns of virtual time, which resembles a Cortex-M4F near 170 MHz. Virtual time waits for wall
 /// time when it is ahead.
@@ -59,13 +63,6 @@ pub struct LinkBoard {
     wishes: Arc<Wishes>,
 }
 
-/// What the board's owner wants of the world's thread.
-#[derive(Debug, Default)]
-struct Wishes {
-    end: AtomicBool,
-    stroke: AtomicBool,
-}
-
 impl LinkBoard {
     /// Starts the board in a world whose finger is up until [`Self::start_stroke`]. Every tick is shown to `watch`, in
     /// the world's own thread.
@@ -75,20 +72,16 @@ impl LinkBoard {
         watch: impl FnMut(&LinkRecord) + Send + 'static,
     ) -> Result<Self, EmulatorError> {
         let mut machine = Machine::start(image, layout::MODE_LINK, &ARGUMENTS)?;
-        let begin = Instant::now();
-        while machine.memory.get(layout::TICK)? == 0 {
-            machine.check()?;
-            if begin.elapsed() > PATIENCE {
-                return Err(EmulatorError::Silent { what: "its first tick", seconds: PATIENCE.as_secs() });
-            }
-            thread::sleep(LOOK_EVERY);
-        }
+        wait_for(&mut machine, layout::TICK, "its first tick")?;
         let output = machine.output()?;
         let serial_path = output.split_whitespace().find(|word| word.starts_with("/dev/")).map(str::to_owned);
         let serial_path = serial_path.ok_or(EmulatorError::NoSerialPort { output })?;
+        let serial = Serial::open(&serial_path)?;
+        serial.write_zero()?;
+        wait_for(&mut machine, layout::RECEIVED_AT_TICK, "to take a byte from its serial port")?;
         let wishes = Arc::new(Wishes::default());
         let memory = machine.memory.try_clone()?;
-        let follower = Follower { memory, world, watch, seen: 0, reports: 0, wishes: Arc::clone(&wishes) };
+        let follower = Follower::new(memory, serial, world, watch, Arc::clone(&wishes));
         let world = thread::spawn(move || follower.run());
         Ok(Self { machine, serial_path, world: Some(world), wishes })
     }
@@ -106,6 +99,16 @@ impl LinkBoard {
     /// What the board drives now.
     pub fn output(&self) -> Result<Drive, EmulatorError> {
         self.machine.memory.get(layout::OUTPUT).map(drive_of)
+    }
+
+    /// What the board drove when its firmware last started.
+    pub fn output_at_start(&self) -> Result<Drive, EmulatorError> {
+        self.machine.memory.get(layout::OUTPUT_AT_START).map(drive_of)
+    }
+
+    /// Ticks since power-on, modulo 2^32: the board's virtual time, resets left out.
+    pub fn ticks(&self) -> Result<u32, EmulatorError> {
+        self.machine.memory.get(layout::DRIVES_WRITTEN)
     }
 
     /// Ticks since the board's last reset.
@@ -159,70 +162,15 @@ impl Drop for LinkBoard {
     }
 }
 
-/// The world that follows what the board drives.
-struct Follower<W> {
-    memory: Memory,
-    world: World,
-    watch: W,
-    /// Drives that were seen.
-    seen: u32,
-    /// Touch reports that were written.
-    reports: u32,
-    wishes: Arc<Wishes>,
-}
-
-impl<W: FnMut(&LinkRecord)> Follower<W> {
-    fn run(mut self) -> Result<(), EmulatorError> {
-        while !self.wishes.end.load(Ordering::Acquire) {
-            if self.wishes.stroke.swap(false, Ordering::AcqRel) {
-                self.world.start_stroke();
-            }
-            self.follow()?;
-            thread::sleep(LOOK_EVERY);
+/// Waits until a word is not zero.
+fn wait_for(machine: &mut Machine, word: usize, what: &'static str) -> Result<(), EmulatorError> {
+    let begin = Instant::now();
+    while machine.memory.get(word)? == 0 {
+        machine.check()?;
+        if begin.elapsed() > PATIENCE {
+            return Err(EmulatorError::Silent { what, seconds: PATIENCE.as_secs() });
         }
-        Ok(())
+        thread::sleep(LOOK_EVERY);
     }
-
-    /// Brings the world to where the board is.
-    fn follow(&mut self) -> Result<(), EmulatorError> {
-        let mut waiting = self.memory.get(layout::DRIVES_WRITTEN)?.wrapping_sub(self.seen) as usize;
-        if waiting > layout::DRIVES_LEN / 2 {
-            return Err(EmulatorError::WorldBehind);
-        }
-        while waiting > 0 {
-            let place = self.seen as usize % layout::DRIVES_LEN;
-            let count = waiting.min(layout::DRIVES_LEN - place);
-            let words = self.memory.get_all(layout::DRIVES + 2 * place, 2 * count)?;
-            for [tick, word] in words.as_chunks().0 {
-                self.tick(*tick, drive_of(*word))?;
-            }
-            self.seen = self.seen.wrapping_add(count as u32);
-            waiting -= count;
-        }
-        Ok(())
-    }
-
-    /// One tick of the world; what it has to report goes to the board.
-    fn tick(&mut self, tick: u32, drive: Drive) -> Result<(), EmulatorError> {
-        let felt = self.world.apply(drive);
-        (self.watch)(&LinkRecord { tick, drive, felt });
-        match self.world.sense().touch {
-            Some(touch) => self.report(StampedTouch { tick: tick.wrapping_add(1), touch }),
-            None => Ok(()),
-        }
-    }
-
-    /// Gives a report to the board; one for which there is no room is lost, as on a bus.
-    fn report(&mut self, report: StampedTouch) -> Result<(), EmulatorError> {
-        let waiting = self.reports.wrapping_sub(self.memory.get(layout::TOUCHES_READ)?);
-        if waiting as usize >= layout::TOUCHES_LEN {
-            return Ok(());
-        }
-        let mut words = Vec::with_capacity(STAMPED_TOUCH_WORDS);
-        report.write(|word| words.push(word));
-        let place = layout::TOUCHES + STAMPED_TOUCH_WORDS * (self.reports as usize % layout::TOUCHES_LEN);
-        self.memory.set_all(place, &words)?;
-        self.reports = self.reports.wrapping_add(1);
-        self.memory.set(layout::TOUCHES_WRITTEN, self.reports)
-    }
+    Ok(())
 }
