@@ -135,6 +135,7 @@ extern "C" fn receive() {
         // tells.
         let _ = receiver.enqueue(read(DATA) as u8);
         shared::set(layout::RECEIVED_AT_TICK, shared::get(layout::TICK));
+        shared::set(layout::RECEIVED_BYTES, shared::get(layout::RECEIVED_BYTES).wrapping_add(1));
     }
 }
 

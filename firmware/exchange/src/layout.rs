@@ -38,8 +38,10 @@ pub const OUTPUT: usize = 4;
 pub const TICK: usize = 5;
 /// Times that the firmware has started since power-on.
 pub const STARTS: usize = 6;
-/// Tick of the last byte that came on the serial port; zero before the first.
+/// Tick of the last byte that came on the serial port.
 pub const RECEIVED_AT_TICK: usize = 7;
+/// Bytes that came on the serial port since power-on, modulo 2^32.
+pub const RECEIVED_BYTES: usize = 15;
 
 /// Drives in [`DRIVES`] since power-on, modulo 2^32.
 pub const DRIVES_WRITTEN: usize = 8;

@@ -78,7 +78,7 @@ impl LinkBoard {
         let serial_path = serial_path.ok_or(EmulatorError::NoSerialPort { output })?;
         let serial = Serial::open(&serial_path)?;
         serial.write_zero()?;
-        wait_for(&mut machine, layout::RECEIVED_AT_TICK, "to take a byte from its serial port")?;
+        wait_for(&mut machine, layout::RECEIVED_BYTES, "to take a byte from its serial port")?;
         let wishes = Arc::new(Wishes::default());
         let memory = machine.memory.try_clone()?;
         let follower = Follower::new(memory, serial, world, watch, Arc::clone(&wishes));
@@ -119,6 +119,11 @@ impl LinkBoard {
     /// Tick at which the last byte came on the serial port.
     pub fn received_at_tick(&self) -> Result<u32, EmulatorError> {
         self.machine.memory.get(layout::RECEIVED_AT_TICK)
+    }
+
+    /// Bytes that have come on the serial port since power-on, modulo 2^32; the first one is the simulator's own.
+    pub fn received_bytes(&self) -> Result<u32, EmulatorError> {
+        self.machine.memory.get(layout::RECEIVED_BYTES)
     }
 
     /// Times that the firmware has started.

@@ -69,8 +69,13 @@ impl Bench {
     }
 }
 
+/// Host timeout of the scenes here, the longest that there is: on a busy machine pings are late.
+pub(crate) const HOST_TIMEOUT_TICKS: u32 = 40_000;
+
 /// One of the bundled scenes, for the emulated board.
 pub(crate) fn program(name: &str) -> Program {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(name);
-    compile(&Scene::load(&path).unwrap(), &BOARD.limits, BOARD.tick_hz).unwrap()
+    let mut program = compile(&Scene::load(&path).unwrap(), &BOARD.limits, BOARD.tick_hz).unwrap();
+    program.header.host_timeout_s = HOST_TIMEOUT_TICKS as f32 / BOARD.tick_hz as f32;
+    program
 }
