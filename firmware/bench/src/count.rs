@@ -50,6 +50,7 @@ pub struct Case {
     inputs: u32,
     instructions: u32,
     worst_input: u32,
+    sum: u64,
 }
 
 impl Counter {
@@ -69,7 +70,7 @@ impl Counter {
         let followed = unsafe { (&raw const FOLLOWED).cast::<u32>().add(self.cases).read_volatile() };
         let number = self.cases;
         self.cases += 1;
-        Case { name, number, followed, inputs: 0, instructions: 0, worst_input: 0 }
+        Case { name, number, followed, inputs: 0, instructions: 0, worst_input: 0, sum: 0 }
     }
 }
 
@@ -83,6 +84,7 @@ impl Case {
         let (call, _) = count(black_box(nothing), state, input, followed);
         let (gross, result) = count(black_box(function), state, input, followed);
         let net = gross - call + NOTHING;
+        self.sum += u64::from(net);
         if net > self.instructions {
             self.instructions = net;
             self.worst_input = self.inputs;
@@ -90,9 +92,10 @@ impl Case {
         result
     }
 
-    /// Tells the largest count and its input.
+    /// Tells the largest count, its input, and the mean of all.
     pub fn report(self) {
-        hprintln!("{} {} {}", self.name, self.instructions, self.worst_input);
+        let inputs = u64::from(self.inputs).max(1);
+        hprintln!("{} {} {} {}", self.name, self.instructions, self.worst_input, self.sum.div_ceil(inputs));
     }
 }
 
