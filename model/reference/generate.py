@@ -165,7 +165,7 @@ class Fixtures:
         if given == "friction_n" and voltage:
             # What rounding of mu F_N and of the total costs the electric part.
             c = max(c, 12 * mpf(wanted) / (mpf(wanted) - q["mu"] * q["load"]))
-        row.update(voltage_v=digits(voltage), status="ok", f32=int(normal_in_f32(voltage) and c < 1e5), condition=mp.nstr(c, 6))
+        row.update(voltage_v=digits(voltage), status="ok", f32=int(normal_in_f32(voltage) and c < 1e6), condition=mp.nstr(c, 6))
         self.inverse.append(row)
 
     @staticmethod
@@ -307,7 +307,7 @@ def named_rows(fixtures):
         p = {**EXAMPLE, "load": 0.5, **({"b": 6e-3} if variant == "wf-finite" else {})}
         fixtures.add_inverse(variant, p, friction=mpf("0.2499"), name="less than natural")
         fixtures.add_inverse(variant, p, friction=mpf("0.25"), name="natural")
-        fixtures.add_inverse(variant, p, friction=mpf("0.2500001"), name="barely above natural")
+        fixtures.add_inverse(variant, p, friction=mpf("0.25001"), name="barely above natural")
     fixtures.add_inverse("soft-loaded", {**SOFT_EXAMPLE, "s": 0.5, "load": 0.5}, friction=mpf("0.2"), name="less than natural")
     for q, name in (("4e-6", "wrong branch off by 245 %"), ("7e7", "wrong branch overflows")):
         fixtures.add("wf-upper", {**EXAMPLE, "voltage": voltage_for(EXAMPLE, mpf(q))}, name)
