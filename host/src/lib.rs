@@ -2,5 +2,9 @@
 #![forbid(unsafe_code)]
 
 pub mod device;
+pub mod metrics;
+pub mod output;
+pub mod player;
+pub mod rigs;
 pub mod scene;
 pub mod wanted;

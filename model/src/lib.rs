@@ -97,9 +97,9 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+mod carrier;
 mod coating;
 mod contact;
-mod edges;
 mod error;
 mod finger;
 mod real;
@@ -109,9 +109,9 @@ mod soft;
 mod state;
 mod table;
 
+pub use carrier::{Carrier, ElectrodeCurrent, Waveform};
 pub use coating::{Slab, VACUUM_PERMITTIVITY_F_PER_M, attraction_pa, contact_attraction_pa, effective_gap_m};
 pub use contact::{Contact, FiniteContact, LoadedContact, LowerBound, PulledContact};
-pub use edges::{sine_mean_square_left, square_mean_square_left};
 pub use error::{Expected, InverseError, ParameterError, StateError};
 pub use finger::Finger;
 pub use real::Real;

@@ -3,18 +3,14 @@
 /// The `N` bytes at `AT`.
 pub(crate) fn get<const AT: usize, const N: usize, const LEN: usize>(bytes: &[u8; LEN]) -> [u8; N] {
     const { assert!(AT + N <= LEN, "the field lies outside the layout") };
-    let mut field = [0; N];
-    for (to, from) in field.iter_mut().zip(bytes.iter().skip(AT)) {
-        *to = *from;
-    }
-    field
+    bytes.get(AT..).and_then(<[u8]>::first_chunk).copied().unwrap_or([0; N])
 }
 
 /// Puts `N` bytes at `AT`.
 pub(crate) fn put<const AT: usize, const N: usize, const LEN: usize>(bytes: &mut [u8; LEN], field: [u8; N]) {
     const { assert!(AT + N <= LEN, "the field lies outside the layout") };
-    for (to, from) in bytes.iter_mut().skip(AT).zip(field) {
-        *to = from;
+    if let Some(place) = bytes.get_mut(AT..).and_then(<[u8]>::first_chunk_mut) {
+        *place = field;
     }
 }
 

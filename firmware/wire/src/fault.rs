@@ -41,6 +41,17 @@ impl TryFrom<u8> for State {
     }
 }
 
+impl fmt::Display for State {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Disarmed => "disarmed: output zero, amplifier off",
+            Self::Armed => "armed: output zero, ready to play",
+            Self::Active => "active: the scene is playing",
+            Self::Faulted => "faulted: output zero, amplifier off, until the fault is cleared",
+        })
+    }
+}
+
 /// A hard fault. It latches, puts the output to zero and the amplifier off. Numbers never change, and stand for the
 /// fault on the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -109,6 +120,33 @@ impl From<Fault> for u8 {
     }
 }
 
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "fault {}: ", self.number())?;
+        f.write_str(match self {
+            Self::Amplifier => {
+                "the amplifier reports that something is wrong; check its supply, wiring and temperature, then clear the fault"
+            }
+            Self::Monitor => {
+                "the electrode's voltage is not the one that was driven; check amplifier, electrode and monitor, then clear the fault"
+            }
+            Self::Deadline => "a tick missed its deadline; clear the fault and play a scene with fewer layers",
+            Self::Panic => "the firmware panicked; report it with what `frixel info` says, then clear the fault",
+            Self::HardFault => {
+                "the processor took a hard fault; report it with what `frixel info` says, then clear the fault"
+            }
+            Self::StackOverflow => {
+                "the firmware's stack overflowed; report it with what `frixel info` says, then clear the fault"
+            }
+            Self::Watchdog => {
+                "the firmware hung until the watchdog restarted it; report it with what `frixel info` says, then clear the fault"
+            }
+            Self::ArmSwitch => "the arm switch was let go while playing; hold it, clear the fault and arm again",
+            Self::Other(_) => "this program does not know it; update the frixel command",
+        })
+    }
+}
+
 impl MaxSize for Fault {
     const POSTCARD_MAX_SIZE: usize = u8::POSTCARD_MAX_SIZE;
 }
@@ -142,6 +180,35 @@ impl Flags {
     /// Whether every bit of `other` is set here.
     pub const fn contains(self, other: Self) -> bool {
         self.0 & other.0 == other.0
+    }
+}
+
+/// What each flag says.
+const FLAG_SENTENCES: [(Flags, &str); 7] = [
+    (Flags::SATURATED, "friction out of reach was clamped"),
+    (Flags::SLEWED, "the envelope is at its slew limit"),
+    (Flags::STILL, "the finger is still"),
+    (Flags::NO_FINGER, "no finger touches the screen"),
+    (Flags::TOUCH_STALE, "touch data is too old"),
+    (Flags::CARRIER_BALANCED, "a carrier edge came early to keep direct current off the electrode"),
+    (Flags::HOST_SILENT, "the host has gone silent, and the output was put to zero"),
+];
+
+/// What the flags that are set say, with a semicolon between.
+impl fmt::Display for Flags {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut left = self.0;
+        let mut separator = "";
+        for (flag, sentence) in FLAG_SENTENCES.into_iter().filter(|(flag, _)| self.contains(*flag)) {
+            write!(f, "{separator}{sentence}")?;
+            separator = "; ";
+            left &= !flag.0;
+        }
+        match (left, self.0) {
+            (_, 0) => f.write_str("nothing limits the output"),
+            (0, _) => Ok(()),
+            (left, _) => write!(f, "{separator}flags {left:#06x}, which this program does not know"),
+        }
     }
 }
 

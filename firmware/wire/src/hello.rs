@@ -3,6 +3,8 @@
 mod codec;
 mod compatibility;
 
+use core::fmt;
+
 use crate::fault::{Fault, State};
 use crate::frame::FRAME_MAX_LEN;
 use crate::payload::PAYLOAD_MAX_LEN;
@@ -95,6 +97,17 @@ impl From<u8> for BoardKind {
     }
 }
 
+impl fmt::Display for BoardKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Simulator => f.write_str("simulator"),
+            Self::NucleoG474re => f.write_str("NUCLEO-G474RE"),
+            Self::Mps2An386 => f.write_str("emulated MPS2-AN386"),
+            Self::Other(number) => write!(f, "board of kind {number}, which this program does not know"),
+        }
+    }
+}
+
 /// Why the processor last started. Numbers never change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ResetCause {
@@ -135,6 +148,19 @@ impl From<u8> for ResetCause {
             4 => Self::Watchdog,
             5 => Self::BrownOut,
             number => Self::Other(number),
+        }
+    }
+}
+
+impl fmt::Display for ResetCause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::PowerOn => f.write_str("power came on"),
+            Self::Pin => f.write_str("the reset pin"),
+            Self::Software => f.write_str("software asked for it"),
+            Self::Watchdog => f.write_str("the watchdog was not fed"),
+            Self::BrownOut => f.write_str("the supply voltage fell too low"),
+            Self::Other(number) => write!(f, "cause {number}, which this program does not know"),
         }
     }
 }

@@ -1,9 +1,13 @@
 //! Messages in postcard. Enums are append-only: a variant keeps its place for ever.
 
+mod refusal;
+
 use postcard::experimental::max_size::MaxSize;
 use serde::{Deserialize, Serialize};
 
 use crate::fault::{Fault, Flags, State};
+
+pub use refusal::{ConfigField, ConfigRefusal, Refusal};
 
 /// What the host sends: a command with a sequence number that comes back in its answer.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize)]
@@ -95,7 +99,7 @@ pub struct Answer {
     pub sequence: u16,
     /// Bytes received since the hello, garbage included, modulo 2^32: the credit.
     pub received_bytes: u32,
-    /// State of the supervisor when the command was taken.
+    /// State of the supervisor once the command is carried out.
     pub state: State,
     /// Whether it was done.
     pub outcome: Result<Accepted, Refusal>,
@@ -108,125 +112,6 @@ pub enum Accepted {
     Done,
     /// The bitmap is in the pool already: do not send it.
     AlreadyHeld,
-}
-
-/// Why a command was refused. Numbers say what was found and what the limit is.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize)]
-pub enum Refusal {
-    /// The frame's postcard could not be read: a command of a newer protocol, most likely.
-    UnknownCommand,
-    /// The command does not go with this state.
-    WrongState(State),
-    /// A fault is latched: clear it first.
-    Faulted(Fault),
-    /// No scene was committed.
-    NoScene,
-    /// No upload is under way, or it is not complete.
-    UploadIncomplete {
-        /// Number of the chunk that is wanted next.
-        next_chunk: u16,
-    },
-    /// The CRC-32 of what arrived is not the one that was announced.
-    CrcMismatch {
-        /// As announced.
-        expected: u32,
-        /// As computed.
-        found: u32,
-    },
-    /// A scene larger than the board's buffer.
-    SceneTooLarge {
-        /// Bytes that were asked for.
-        len: u32,
-        /// Bytes that there are.
-        max: u32,
-    },
-    /// The bitmap pool has no room.
-    BitmapPoolFull {
-        /// Bytes that were asked for.
-        len: u32,
-        /// Bytes that are free, after letting go all that the playing scene does not use.
-        free: u32,
-    },
-    /// The scene names a bitmap that the pool does not hold.
-    BitmapMissing {
-        /// CRC-32 of the bitmap.
-        crc32: u32,
-    },
-    /// The scene's bytes are not a scene of this version.
-    Scene(crate::scene::SceneError),
-    /// The scene's numbers are not ones that the board can play.
-    Config(ConfigRefusal),
-    /// The board has not yet let go of the scene before: try again.
-    Busy,
-    /// Telemetry was asked for more often than the board sends it.
-    TelemetryTooFast {
-        /// Shortest period in ticks.
-        period_min_ticks: u32,
-    },
-    /// The arm switch on the board is not held.
-    ArmSwitch,
-}
-
-/// A number in a scene that the board cannot play.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize)]
-pub struct ConfigRefusal {
-    /// Which number.
-    pub field: ConfigField,
-    /// What was found, in SI units.
-    pub found: f32,
-    /// Least that is taken.
-    pub min: f32,
-    /// Most that is taken.
-    pub max: f32,
-    /// The layer it belongs to, counted from zero; 255 for the scene as a whole.
-    pub layer: u8,
-}
-
-/// Names of the numbers that a scene can be refused for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, MaxSize)]
-pub enum ConfigField {
-    /// Screen width, m.
-    ScreenWidth,
-    /// Screen height, m.
-    ScreenHeight,
-    /// Finger radius, m.
-    FingerRadius,
-    /// Winkler-Fuss stiffness, Pa/m.
-    Stiffness,
-    /// Friction coefficient.
-    FrictionCoefficient,
-    /// Normal load, N.
-    NormalLoad,
-    /// Effective gap, m.
-    EffectiveGap,
-    /// Largest rms voltage, V.
-    VoltageRms,
-    /// Largest peak voltage, V.
-    VoltagePeak,
-    /// Slew of the envelope, V/s.
-    Slew,
-    /// Carrier frequency, Hz.
-    CarrierFrequency,
-    /// Host timeout, s.
-    HostTimeout,
-    /// Rms current into the worst-case electrode, A.
-    CurrentRms,
-    /// Peak current into the worst-case electrode, A.
-    CurrentPeak,
-    /// A layer's region, m.
-    Region,
-    /// A layer's gain.
-    Gain,
-    /// A layer's friction, N.
-    Friction,
-    /// A grating's wave vector, cycles per metre.
-    WaveVector,
-    /// A grating's phase, turns.
-    Phase,
-    /// A bitmap's place or pitch, m.
-    BitmapPlacement,
-    /// The span of friction between 1 V and the largest voltage, wider than the table.
-    TableRange,
 }
 
 /// What the board does at one tick.

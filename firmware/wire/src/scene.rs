@@ -4,11 +4,10 @@
 //! metres from the screen's top left corner, x to the right, y down.
 
 mod codec;
+mod error;
 mod view;
 
-use postcard::experimental::max_size::MaxSize;
-use serde::{Deserialize, Serialize};
-
+pub use error::SceneError;
 pub use view::Scene;
 
 /// Version of the layout.
@@ -156,58 +155,4 @@ pub enum Wave {
     Sine,
     /// 1 in the first half turn, 0 in the second.
     Square,
-}
-
-/// Why bytes are not a scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, MaxSize)]
-pub enum SceneError {
-    /// The layout's version is not this one.
-    Version {
-        /// As found.
-        found: u16,
-    },
-    /// The length does not go with the number of records.
-    Length {
-        /// As found.
-        found: u32,
-        /// As the header says.
-        expected: u32,
-    },
-    /// A carrier of unknown shape.
-    UnknownCarrier(u8),
-    /// A record of unknown kind.
-    UnknownKind {
-        /// Number of the record, from zero.
-        record: u8,
-        /// Its kind.
-        kind: u8,
-    },
-    /// A record with an unknown region, blend or wave.
-    UnknownChoice {
-        /// Number of the record, from zero.
-        record: u8,
-        /// Offset in the record of the byte that is not known.
-        offset: u8,
-        /// The byte.
-        value: u8,
-    },
-    /// More records than the layout allows ([`RECORDS_MAX`]).
-    TooManyRecords {
-        /// As the header says.
-        found: u8,
-    },
-    /// Header flags of which at least one is not known.
-    UnknownFlags(u8),
-    /// A byte that its header or record does not use is not zero.
-    NotZero {
-        /// Number of the record, from zero; [`SceneError::HEADER`] for the header.
-        record: u8,
-        /// Offset of the byte in the header or record.
-        offset: u8,
-    },
-}
-
-impl SceneError {
-    /// Stands for the header where a record's number is told.
-    pub const HEADER: u8 = u8::MAX;
 }

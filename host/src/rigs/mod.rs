@@ -3,8 +3,9 @@
 
 mod recorder;
 mod server;
+mod server_log;
 mod sim_link;
 
-pub use recorder::{FeltRow, Recorder};
+pub use recorder::Recorder;
 pub use server::{Server, ServerError};
 pub use sim_link::SimLink;

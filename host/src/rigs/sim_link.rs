@@ -29,19 +29,12 @@ pub struct SimLink<'a> {
 impl<'a> SimLink<'a> {
     /// A link to `rig`, whose ticks `recorder` will see.
     pub fn new(rig: Rig<'a>, recorder: Recorder) -> Self {
-        Self {
-            rig,
-            recorder,
-            recording: false,
-            written: Written::default(),
-            written_at_tick: 0,
-            keep_alive: None,
-        }
+        Self { rig, recorder, recording: false, written: Written::default(), written_at_tick: 0, keep_alive: None }
     }
 
-    /// The rig and what was recorded.
-    pub fn into_parts(self) -> (Rig<'a>, Recorder) {
-        (self.rig, self.recorder)
+    /// What was recorded.
+    pub fn into_recorder(self) -> Recorder {
+        self.recorder
     }
 
     fn ticks(&self, time: Duration) -> u64 {
@@ -49,9 +42,8 @@ impl<'a> SimLink<'a> {
     }
 
     fn step(&mut self) {
-        let ping = self
-            .keep_alive
-            .take_if(|keep_alive| self.rig.tick() - self.written_at_tick >= keep_alive.period_ticks);
+        let ping =
+            self.keep_alive.take_if(|keep_alive| self.rig.tick() - self.written_at_tick >= keep_alive.period_ticks);
         if let Some(keep_alive) = ping {
             self.send(&keep_alive.frame);
             self.keep_alive = Some(keep_alive);

@@ -160,10 +160,14 @@ impl BoardLimits {
     }
 }
 
-/// Puts a limit of `N` bytes at `AT`: tag, length, value.
+/// Puts tag, length and value of a limit.
 fn limit<const AT: usize, const N: usize>(b: &mut [u8; LIMITS_LEN], tag: u8, value: [u8; N]) {
     const { assert!(AT + 2 + N <= LIMITS_LEN, "the limit lies outside the layout") };
-    for (to, from) in b.iter_mut().skip(AT).zip([tag, N as u8].into_iter().chain(value)) {
-        *to = from;
+    if let Some([to_tag, to_len, to @ ..]) = b.get_mut(AT..)
+        && let Some(to) = to.first_chunk_mut()
+    {
+        *to_tag = tag;
+        *to_len = N as u8;
+        *to = value;
     }
 }

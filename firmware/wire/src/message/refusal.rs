@@ -1,0 +1,232 @@
+//! Why a command is refused: what was found, what was expected, what to do.
+
+use core::fmt;
+
+use postcard::experimental::max_size::MaxSize;
+use serde::{Deserialize, Serialize};
+
+use crate::fault::{Fault, State};
+use crate::scene::SceneError;
+
+/// Why a command was refused. Numbers say what was found and what the limit is.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize)]
+pub enum Refusal {
+    /// The frame's postcard could not be read: a command of a newer protocol, most likely.
+    UnknownCommand,
+    /// The command does not go with this state.
+    WrongState(State),
+    /// A fault is latched: clear it first.
+    Faulted(Fault),
+    /// No scene was committed.
+    NoScene,
+    /// No upload is under way, or it is not complete.
+    UploadIncomplete {
+        /// Number of the chunk that is wanted next.
+        next_chunk: u16,
+    },
+    /// The CRC-32 of what arrived is not the one that was announced.
+    CrcMismatch {
+        /// As announced.
+        expected: u32,
+        /// As computed.
+        found: u32,
+    },
+    /// A scene larger than the board's buffer.
+    SceneTooLarge {
+        /// Bytes that were asked for.
+        len: u32,
+        /// Bytes that there are.
+        max: u32,
+    },
+    /// The bitmap pool has no room.
+    BitmapPoolFull {
+        /// Bytes that were asked for.
+        len: u32,
+        /// Bytes that are free, after letting go all that the playing scene does not use.
+        free: u32,
+    },
+    /// The scene names a bitmap that the pool does not hold.
+    BitmapMissing {
+        /// CRC-32 of the bitmap.
+        crc32: u32,
+    },
+    /// The scene's bytes are not a scene of this version.
+    Scene(SceneError),
+    /// The scene's numbers are not ones that the board can play.
+    Config(ConfigRefusal),
+    /// The board has not yet let go of the scene before: try again.
+    Busy,
+    /// Telemetry was asked for more often than the board sends it.
+    TelemetryTooFast {
+        /// Shortest period in ticks.
+        period_min_ticks: u32,
+    },
+    /// The arm switch on the board is not held.
+    ArmSwitch,
+}
+
+/// A number in a scene that the board cannot play.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize)]
+pub struct ConfigRefusal {
+    /// Which number.
+    pub field: ConfigField,
+    /// What was found, in SI units.
+    pub found: f32,
+    /// Least that is taken.
+    pub min: f32,
+    /// Most that is taken.
+    pub max: f32,
+    /// The layer it belongs to, counted from zero; [`ConfigRefusal::WHOLE_SCENE`] for the scene as a whole.
+    pub layer: u8,
+}
+
+impl ConfigRefusal {
+    /// Stands for the scene as a whole where a layer is told.
+    pub const WHOLE_SCENE: u8 = u8::MAX;
+}
+
+/// Names of the numbers that a scene can be refused for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, MaxSize)]
+pub enum ConfigField {
+    /// Screen width, m.
+    ScreenWidth,
+    /// Screen height, m.
+    ScreenHeight,
+    /// Finger radius, m.
+    FingerRadius,
+    /// Winkler-Fuss stiffness, Pa/m.
+    Stiffness,
+    /// Friction coefficient.
+    FrictionCoefficient,
+    /// Normal load, N.
+    NormalLoad,
+    /// Effective gap, m.
+    EffectiveGap,
+    /// Largest rms voltage, V.
+    VoltageRms,
+    /// Largest peak voltage, V.
+    VoltagePeak,
+    /// Slew of the envelope, V/s.
+    Slew,
+    /// Carrier frequency, Hz.
+    CarrierFrequency,
+    /// Host timeout, s.
+    HostTimeout,
+    /// Rms current into the worst-case electrode, A.
+    CurrentRms,
+    /// Peak current into the worst-case electrode, A.
+    CurrentPeak,
+    /// A layer's region, m.
+    Region,
+    /// A layer's gain.
+    Gain,
+    /// A layer's friction, N.
+    Friction,
+    /// A grating's wave vector, cycles per metre.
+    WaveVector,
+    /// A grating's phase, turns.
+    Phase,
+    /// A bitmap's place or pitch, m.
+    BitmapPlacement,
+    /// The span of friction between 1 V and the largest voltage, wider than the table.
+    TableRange,
+}
+
+impl ConfigField {
+    /// The number's name, and its unit with a space before it, or nothing.
+    const fn name_and_unit(self) -> (&'static str, &'static str) {
+        match self {
+            Self::ScreenWidth => ("screen width", " m"),
+            Self::ScreenHeight => ("screen height", " m"),
+            Self::FingerRadius => ("finger radius", " m"),
+            Self::Stiffness => ("Winkler-Fuss stiffness", " Pa/m"),
+            Self::FrictionCoefficient => ("friction coefficient", ""),
+            Self::NormalLoad => ("normal load", " N"),
+            Self::EffectiveGap => ("effective gap", " m"),
+            Self::VoltageRms => ("largest rms voltage", " V"),
+            Self::VoltagePeak => ("largest peak voltage", " V"),
+            Self::Slew => ("envelope slew", " V/s"),
+            Self::CarrierFrequency => ("carrier frequency", " Hz"),
+            Self::HostTimeout => ("host timeout", " s"),
+            Self::CurrentRms => ("rms current into the worst-case electrode", " A"),
+            Self::CurrentPeak => ("peak current into the worst-case electrode", " A"),
+            Self::Region => ("region", " m"),
+            Self::Gain => ("gain", ""),
+            Self::Friction => ("electric friction", " N"),
+            Self::WaveVector => ("wave vector", " cycles/m"),
+            Self::Phase => ("phase", " turns"),
+            Self::BitmapPlacement => ("bitmap place or pitch", " m"),
+            Self::TableRange => ("span of friction", ""),
+        }
+    }
+}
+
+/// The number's name.
+impl fmt::Display for ConfigField {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name_and_unit().0)
+    }
+}
+
+impl fmt::Display for ConfigRefusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { field, found, min, max, layer } = *self;
+        let (name, unit) = field.name_and_unit();
+        write!(f, "the {name} of ")?;
+        match layer {
+            Self::WHOLE_SCENE => f.write_str("the scene")?,
+            layer => write!(f, "layer {layer} (the first is 0)")?,
+        }
+        write!(f, " is {found:?}{unit}, which the board cannot play: it takes ")?;
+        match (min.is_finite(), max.is_finite()) {
+            (true, true) => write!(f, "{min:?} to {max:?}{unit}"),
+            (true, false) => write!(f, "{min:?}{unit} or more"),
+            (false, true) => write!(f, "{max:?}{unit} or less"),
+            (false, false) => f.write_str("any finite number"),
+        }
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::UnknownCommand => f.write_str("the board does not know this command: flash newer firmware"),
+            Self::WrongState(state) => f.write_str(match state {
+                State::Disarmed => "the board is disarmed: arm it before it is told to play or stop",
+                State::Armed => "the board is armed and does not play: let it play first, or disarm it",
+                State::Active => "the board is playing: stop it first",
+                State::Faulted => "a fault is latched on the board: clear it first",
+            }),
+            Self::Faulted(fault) => write!(f, "a fault is latched on the board: {fault}"),
+            Self::NoScene => f.write_str("the board holds no scene: upload and commit one first"),
+            Self::UploadIncomplete { next_chunk } => write!(
+                f,
+                "no upload is complete: the board waits for chunk {next_chunk}, go on from there or start the upload again"
+            ),
+            Self::CrcMismatch { expected, found } => {
+                write!(f, "CRC-32 {expected:#010x} was announced, what arrived has {found:#010x}: upload it again")
+            }
+            Self::SceneTooLarge { len, max } => {
+                write!(f, "the scene has {len} bytes, the board takes {max}: use fewer layers")
+            }
+            Self::BitmapPoolFull { len, free } => write!(
+                f,
+                "the bitmap has {len} bytes, the board has {free} to give: use a smaller picture or a coarser pitch"
+            ),
+            Self::BitmapMissing { crc32 } => {
+                write!(f, "the scene uses bitmap {crc32:#010x}, which the board does not hold: upload it first")
+            }
+            Self::Scene(error) => error.fmt(f),
+            Self::Config(refusal) => refusal.fmt(f),
+            Self::Busy => f.write_str("the board has not yet let go of the scene before: try again"),
+            Self::TelemetryTooFast { period_min_ticks } => write!(
+                f,
+                "the board sends telemetry every {period_min_ticks} ticks at most: ask for a longer period, or for zero to end it"
+            ),
+            Self::ArmSwitch => f.write_str("the arm switch on the board is not held: hold it and arm again"),
+        }
+    }
+}
+
+impl core::error::Error for ConfigRefusal {}
+impl core::error::Error for Refusal {}

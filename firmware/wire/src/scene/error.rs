@@ -1,0 +1,111 @@
+//! Why bytes are not a scene: what was found, what was expected, what to do.
+
+use core::fmt;
+
+use postcard::experimental::max_size::MaxSize;
+use serde::{Deserialize, Serialize};
+
+use super::RECORDS_MAX;
+
+/// Why bytes are not a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, MaxSize)]
+pub enum SceneError {
+    /// The layout's version is not this one.
+    Version {
+        /// As found.
+        found: u16,
+    },
+    /// The length does not go with the number of records.
+    Length {
+        /// As found.
+        found: u32,
+        /// As the header says.
+        expected: u32,
+    },
+    /// A carrier of unknown shape.
+    UnknownCarrier(u8),
+    /// A record of unknown kind.
+    UnknownKind {
+        /// Number of the record, from zero.
+        record: u8,
+        /// Its kind.
+        kind: u8,
+    },
+    /// A record with an unknown region, blend or wave.
+    UnknownChoice {
+        /// Number of the record, from zero.
+        record: u8,
+        /// Offset in the record of the byte that is not known.
+        offset: u8,
+        /// The byte.
+        value: u8,
+    },
+    /// More records than the layout allows ([`RECORDS_MAX`]).
+    TooManyRecords {
+        /// As the header says.
+        found: u8,
+    },
+    /// Header flags of which at least one is not known.
+    UnknownFlags(u8),
+    /// A byte that its header or record does not use is not zero.
+    NotZero {
+        /// Number of the record, from zero; [`SceneError::HEADER`] for the header.
+        record: u8,
+        /// Offset of the byte in the header or record.
+        offset: u8,
+    },
+}
+
+impl SceneError {
+    /// Stands for the header where a record's number is told.
+    pub const HEADER: u8 = u8::MAX;
+}
+
+/// Sentences of the side that read the bytes, which is the board where it refuses a scene.
+impl fmt::Display for SceneError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Version { found } => write!(
+                f,
+                "a scene of layout version {found} cannot be read: use firmware and frixel command of one version"
+            ),
+            Self::Length { found, expected } => {
+                write!(f, "the scene has {found} bytes where {expected} were expected: compile and upload it again")
+            }
+            Self::UnknownCarrier(shape) => write!(f, "carrier shape {shape} is not known: flash newer firmware"),
+            Self::UnknownKind { record, kind } => {
+                write!(f, "layer {record} (the first is 0) is of kind {kind}, which is not known: flash newer firmware")
+            }
+            Self::UnknownChoice { record, offset, value } => {
+                let what = match offset {
+                    1 => "region",
+                    2 => "blend",
+                    3 => "wave",
+                    _ => "byte",
+                };
+                write!(
+                    f,
+                    "layer {record} (the first is 0) has {what} {value}, which is not known: flash newer firmware"
+                )
+            }
+            Self::TooManyRecords { found } => {
+                write!(f, "the scene has {found} layers, {RECORDS_MAX} are the most: use fewer")
+            }
+            Self::UnknownFlags(flags) => {
+                write!(f, "the scene has flags {flags:#04x}, of which not all are known: flash newer firmware")
+            }
+            Self::NotZero { record, offset } => {
+                match record {
+                    Self::HEADER => f.write_str("the scene's header")?,
+                    record => write!(f, "layer {record} (the first is 0)")?,
+                }
+                write!(
+                    f,
+                    " has byte {offset} set, which nothing uses: compile the scene again, or flash newer firmware"
+                )
+            }
+        }
+    }
+}
+
+impl core::error::Error for SceneError {}

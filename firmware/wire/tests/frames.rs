@@ -1,0 +1,242 @@
+//! Frames on a line that loses, changes and adds bytes.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
+
+use frixel_wire::frame::{Crc32, Decoder, FRAME_MAX_LEN, PayloadTooLong, crc32, encode};
+use frixel_wire::payload::PAYLOAD_MAX_LEN;
+use proptest::prelude::*;
+
+fn frame(payload: &[u8]) -> Vec<u8> {
+    encode(payload, &mut [0; FRAME_MAX_LEN]).unwrap().to_vec()
+}
+
+/// All payloads that a decoder finds in these bytes, and the decoder.
+fn decode(bytes: &[u8]) -> (Vec<Vec<u8>>, Decoder) {
+    let mut decoder = Decoder::new();
+    let mut input = bytes;
+    let mut payloads = Vec::new();
+    while let Some(payload) = decoder.next_frame(&mut input) {
+        payloads.push(payload.to_vec());
+    }
+    assert!(input.is_empty());
+    (payloads, decoder)
+}
+
+/// COBS as its paper has it, written apart from the crate under test; `None` when the bytes are not COBS.
+fn reference_uncobs(mut encoded: &[u8]) -> Option<Vec<u8>> {
+    let mut decoded = Vec::new();
+    while let Some((&code, rest)) = encoded.split_first() {
+        let (run, rest) = rest.split_at_checked(usize::from(code).checked_sub(1)?)?;
+        decoded.extend(run);
+        if code != 0xff && !rest.is_empty() {
+            decoded.push(0);
+        }
+        encoded = rest;
+    }
+    Some(decoded)
+}
+
+/// CRC-32 bit by bit, written apart from the crate under test.
+fn reference_crc32(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(u32::MAX, |crc, byte| {
+        (0..8).fold(crc ^ u32::from(*byte), |crc, _| if crc & 1 == 1 { (crc >> 1) ^ 0xedb8_8320 } else { crc >> 1 })
+    })
+}
+
+/// What a stream holds, by reference: good payloads, and how many frames were bad.
+fn reference_decode(bytes: &[u8]) -> (Vec<Vec<u8>>, u32) {
+    let mut frames: Vec<&[u8]> = bytes.split(|byte| *byte == 0).collect();
+    frames.pop();
+    let mut payloads = Vec::new();
+    let mut rejected = 0;
+    for encoded in frames.into_iter().filter(|frame| !frame.is_empty()) {
+        let decoded = reference_uncobs(encoded).filter(|decoded| decoded.len() <= PAYLOAD_MAX_LEN + 4);
+        let split = decoded.as_deref().and_then(<[u8]>::split_last_chunk::<4>);
+        match split {
+            Some((payload, crc)) if reference_crc32(payload).to_le_bytes() == *crc => payloads.push(payload.to_vec()),
+            _ => rejected += 1,
+        }
+    }
+    (payloads, rejected)
+}
+
+/// What a line does to bytes.
+#[derive(Clone, Debug)]
+enum Noise {
+    Flip { at: prop::sample::Index, bit: u8 },
+    Lose { at: prop::sample::Index, len: usize },
+    Add { at: prop::sample::Index, bytes: Vec<u8> },
+}
+
+fn noise() -> impl Strategy<Value = Noise> {
+    let at = any::<prop::sample::Index>;
+    prop_oneof![
+        (at(), 0..8u8).prop_map(|(at, bit)| Noise::Flip { at, bit }),
+        (at(), 1..300usize).prop_map(|(at, len)| Noise::Lose { at, len }),
+        (at(), prop::collection::vec(any::<u8>(), 1..300)).prop_map(|(at, bytes)| Noise::Add { at, bytes }),
+    ]
+}
+
+fn disturb(line: &mut Vec<u8>, noise: &Noise) {
+    if line.is_empty() {
+        return;
+    }
+    match noise {
+        Noise::Flip { at, bit } => {
+            let at = at.index(line.len());
+            line[at] ^= 1 << bit;
+        }
+        Noise::Lose { at, len } => {
+            let at = at.index(line.len());
+            line.drain(at..line.len().min(at + len));
+        }
+        Noise::Add { at, bytes } => {
+            let at = at.index(line.len());
+            line.splice(at..at, bytes.iter().copied());
+        }
+    }
+}
+
+fn payload() -> impl Strategy<Value = Vec<u8>> {
+    // Zeros and full runs are what COBS turns on: make them frequent.
+    let byte = prop_oneof![Just(0u8), Just(1), Just(0xff), any::<u8>()];
+    prop::collection::vec(byte, 0..=PAYLOAD_MAX_LEN)
+}
+
+#[test]
+fn crc_is_iso_hdlc() {
+    assert_eq!(crc32(b"123456789"), 0xcbf4_3926);
+    assert_eq!(crc32(b""), 0);
+}
+
+/// Every length: a frame is one COBS byte, payload, CRC and zero, and never longer than the largest.
+#[test]
+fn every_length_goes_there_and_back() {
+    for len in 0..=PAYLOAD_MAX_LEN {
+        for fill in [|_| 0, |_| 0xff, |i| i as u8, |i| ((i * 89) >> 3) as u8] as [fn(usize) -> u8; 4] {
+            let payload: Vec<u8> = (0..len).map(fill).collect();
+            let frame = frame(&payload);
+            assert_eq!(frame.len(), len + 6);
+            assert_eq!(frame.iter().position(|byte| *byte == 0), Some(frame.len() - 1));
+            let (payloads, decoder) = decode(&frame);
+            assert_eq!(payloads, [payload]);
+            assert_eq!((decoder.frames(), decoder.rejected()), (1, 0));
+        }
+    }
+}
+
+#[test]
+fn too_long_a_payload_is_refused() {
+    let payload = [0x55; PAYLOAD_MAX_LEN + 1];
+    assert_eq!(encode(&payload, &mut [0; FRAME_MAX_LEN]), Err(PayloadTooLong { len: PAYLOAD_MAX_LEN + 1 }));
+}
+
+#[test]
+fn zeros_between_frames_are_no_error() {
+    let (payloads, decoder) = decode(&[&[0, 0, 0], frame(b"a").as_slice(), &[0, 0], &frame(b"b"), &[0]].concat());
+    assert_eq!(payloads, [b"a", b"b"]);
+    assert_eq!((decoder.frames(), decoder.rejected()), (2, 0));
+}
+
+/// Frames that are right but for their length, one whose longest allowed beginning is right; and a frame hidden behind an
+/// overlong one, which must not be found.
+#[test]
+fn overlong_frames_are_dropped_whole() {
+    let with_crc = |len| {
+        let payload = vec![0x55; len];
+        [payload.as_slice(), &crc32(&payload).to_le_bytes()].concat()
+    };
+    let right = with_crc(PAYLOAD_MAX_LEN);
+    for body in [with_crc(PAYLOAD_MAX_LEN + 1), [right.as_slice(), &[0x55]].concat(), right.repeat(2)] {
+        // Written with lengths of its own: `encode` makes no such frame.
+        let cobs: Vec<u8> = body.chunks(253).flat_map(|run| [&[run.len() as u8 + 1], run].concat()).collect();
+        assert!(!cobs.contains(&0));
+        let (payloads, decoder) = decode(&[cobs.as_slice(), &[0], &frame(b"next")].concat());
+        assert_eq!(payloads, [b"next"]);
+        assert_eq!((decoder.frames(), decoder.rejected()), (1, 1));
+    }
+
+    let hiding = [vec![0x55; 1_000], frame(b"hidden"), frame(b"next")].concat();
+    let (payloads, decoder) = decode(&hiding);
+    assert_eq!(payloads, [b"next"]);
+    assert_eq!((decoder.frames(), decoder.rejected()), (1, 1));
+}
+
+#[test]
+fn frames_too_short_for_a_crc_are_bad() {
+    for len in 0..4u8 {
+        let short = [&[len + 1], vec![1; usize::from(len)].as_slice(), &[0]].concat();
+        let (payloads, decoder) = decode(&short);
+        assert_eq!((payloads.len(), decoder.frames(), decoder.rejected()), (0, 0, 1), "{len} bytes");
+    }
+}
+
+proptest! {
+    #[test]
+    fn payloads_go_there_and_back(payloads in prop::collection::vec(payload(), 0..8)) {
+        let line: Vec<u8> = payloads.iter().flat_map(|payload| frame(payload)).collect();
+        let (found, decoder) = decode(&line);
+        prop_assert_eq!(decoder.frames() as usize, payloads.len());
+        prop_assert_eq!(decoder.rejected(), 0);
+        prop_assert_eq!(found, payloads);
+    }
+
+    #[test]
+    fn frames_are_what_the_references_say(payload in payload()) {
+        let frame = frame(&payload);
+        let body = [payload.as_slice(), &reference_crc32(&payload).to_le_bytes()].concat();
+        prop_assert_eq!(reference_uncobs(&frame[..frame.len() - 1]), Some(body));
+    }
+
+    /// Whatever the line did, no payload comes out that did not go in, and the frame after the next zero is found.
+    #[test]
+    fn a_noisy_line_loses_frames_but_never_invents_one(
+        payloads in prop::collection::vec(payload(), 1..6),
+        noises in prop::collection::vec(noise(), 1..6),
+        last in payload(),
+    ) {
+        let mut line: Vec<u8> = payloads.iter().flat_map(|payload| frame(payload)).collect();
+        for noise in &noises {
+            disturb(&mut line, noise);
+        }
+        let (expected, rejected) = reference_decode(&line);
+        let (found, decoder) = decode(&line);
+        prop_assert!(found.iter().all(|payload| payloads.contains(payload)));
+        prop_assert_eq!(&found, &expected);
+        prop_assert_eq!((decoder.frames() as usize, decoder.rejected()), (expected.len(), rejected));
+
+        line.push(0);
+        let before = decode(&line).0.len();
+        line.extend(frame(&last));
+        let (found, _) = decode(&line);
+        prop_assert_eq!(found.len(), before + 1);
+        prop_assert_eq!(found.last(), Some(&last));
+    }
+
+    /// Bytes that no one meant as frames.
+    #[test]
+    fn garbage_is_read_as_the_reference_reads_it(garbage in prop::collection::vec(0..20u8, 0..2_000)) {
+        let (expected, rejected) = reference_decode(&garbage);
+        let (found, decoder) = decode(&garbage);
+        prop_assert_eq!(found, expected);
+        prop_assert_eq!(decoder.rejected(), rejected);
+    }
+
+    /// Byte by byte and all at once are the same.
+    #[test]
+    fn pushing_bytes_is_reading_a_slice(garbage in prop::collection::vec(any::<u8>(), 0..300), payload in payload()) {
+        let line = [garbage.as_slice(), &[0], &frame(&payload)].concat();
+        let mut decoder = Decoder::new();
+        let mut found = Vec::new();
+        for byte in &line {
+            found.extend(decoder.push(*byte).map(<[u8]>::to_vec));
+        }
+        prop_assert_eq!(found, decode(&line).0);
+    }
+
+    #[test]
+    fn crc_in_pieces_is_the_crc(bytes in prop::collection::vec(any::<u8>(), 0..500), cut in any::<prop::sample::Index>()) {
+        let (head, tail) = bytes.split_at(cut.index(bytes.len() + 1));
+        prop_assert_eq!(Crc32::new().update(head).update(tail).finish(), reference_crc32(&bytes));
+        prop_assert_eq!(crc32(&bytes), reference_crc32(&bytes));
+    }
+}

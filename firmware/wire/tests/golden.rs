@@ -1,0 +1,180 @@
+//! The bytes of everything that goes over the wire, held in `golden/`. To accept a change:
+//! `FRIXEL_BLESS=1 cargo test -p frixel-wire --test golden`.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
+
+mod support;
+
+use std::collections::BTreeSet;
+use std::fmt::Write;
+use std::path::Path;
+use std::{env, fs};
+
+use frixel_wire::fault::{Fault, State};
+use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, encode};
+use frixel_wire::hello::{BoardKind, ResetCause};
+use frixel_wire::message::{Accepted, Answer, Command, ConfigField, FromBoard, Refusal, Telemetry};
+use frixel_wire::payload::{PAYLOAD_MAX_LEN, Payload};
+use frixel_wire::scene::{Header, Record, SceneError};
+use support::hex::{from_hex, to_hex};
+use support::{samples, variants};
+
+/// Compares with the golden file of this name, or writes it.
+fn hold(name: &str, found: &str) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(name);
+    if env::var_os("FRIXEL_BLESS").is_some() {
+        fs::write(path, found).unwrap();
+        return;
+    }
+    let golden = fs::read_to_string(path).unwrap_or_default();
+    let difference = golden.lines().zip(found.lines()).find(|(golden, found)| golden != found);
+    assert!(
+        golden == found,
+        "{name} is not what is written now: first difference {difference:#?}; when the change is meant, run \
+         `FRIXEL_BLESS=1 cargo test -p frixel-wire --test golden`"
+    );
+}
+
+/// The bytes of all lines of this kind.
+fn lines(text: &str, kind: &str) -> impl Iterator<Item = Vec<u8>> {
+    text.lines().filter_map(move |line| line.strip_prefix(kind)?.strip_prefix(' ')).map(from_hex)
+}
+
+/// Holds the payloads and frames of these samples, and reads them back.
+fn hold_frames(name: &str, samples: &[Payload]) {
+    let mut text = String::new();
+    for sample in samples {
+        let mut buffer = [0; PAYLOAD_MAX_LEN];
+        let mut frame = [0; FRAME_MAX_LEN];
+        writeln!(text, "# {sample:?}").unwrap();
+        writeln!(text, "payload {}", to_hex(sample.write(&mut buffer).unwrap())).unwrap();
+        writeln!(text, "frame {}", to_hex(sample.write_frame(&mut frame).unwrap())).unwrap();
+    }
+    hold(name, &text);
+
+    let frames: Vec<u8> = lines(&text, "frame").flatten().collect();
+    let mut decoder = Decoder::new();
+    let mut input = frames.as_slice();
+    for (golden, sample) in lines(&text, "payload").zip(samples) {
+        let payload = decoder.next_frame(&mut input).unwrap();
+        assert_eq!(payload, golden);
+        assert_eq!(Payload::parse(payload).as_ref(), Ok(sample));
+    }
+    assert_eq!(decoder.next_frame(&mut input), None);
+    assert_eq!((decoder.frames(), decoder.rejected()), (samples.len() as u32, 0));
+}
+
+#[test]
+fn what_a_host_sends_is_golden() {
+    hold_frames("host.hex", &samples::from_host());
+}
+
+#[test]
+fn what_a_board_sends_is_golden() {
+    hold_frames("board.hex", &samples::from_board());
+}
+
+#[test]
+fn scenes_are_golden() {
+    let mut text = String::new();
+    for header in samples::headers() {
+        writeln!(text, "# {header:?}, in front of 4 records\nheader {}", to_hex(&header.write(4))).unwrap();
+    }
+    for record in samples::records() {
+        writeln!(text, "# {record:?}\nrecord {}", to_hex(&record.write())).unwrap();
+    }
+    hold("scene.hex", &text);
+
+    for (golden, header) in lines(&text, "header").zip(samples::headers()) {
+        assert_eq!(Header::parse(golden.as_slice().try_into().unwrap()), Ok((header, 4)));
+    }
+    for (golden, record) in lines(&text, "record").zip(samples::records()) {
+        assert_eq!(Record::parse(golden.as_slice().try_into().unwrap(), 0), Ok(record));
+    }
+}
+
+/// Of these values, there is one for every variant of their enum.
+fn assert_all<'de, T: serde::Deserialize<'de> + std::fmt::Debug>(values: impl IntoIterator<Item = T>) {
+    let found: BTreeSet<String> = values.into_iter().map(|value| variants::name(&value)).collect();
+    let all: BTreeSet<String> = variants::all::<T>().into_iter().map(String::from).collect();
+    assert_eq!(found, all, "a variant has no sample in tests/support/samples.rs");
+}
+
+#[test]
+fn every_message_has_golden_bytes() {
+    let mut commands = vec![];
+    for payload in samples::from_host() {
+        if let Payload::Request(request) = payload {
+            commands.push(request.command);
+        }
+    }
+    let (mut messages, mut outcomes, mut states) = (vec![], vec![], vec![]);
+    for payload in samples::from_board() {
+        let Payload::FromBoard(message) = payload else { continue };
+        messages.push(message);
+        match message {
+            FromBoard::Answer(Answer { outcome, .. }) => outcomes.push(outcome),
+            FromBoard::Telemetry(Telemetry { state, .. }) => states.push(state),
+            FromBoard::Progress { .. } | FromBoard::StateChanged { .. } => {}
+        }
+    }
+    let refusals: Vec<Refusal> = outcomes.iter().filter_map(|outcome| outcome.err()).collect();
+    let (mut scene_errors, mut fields) = (vec![], vec![]);
+    for refusal in &refusals {
+        match refusal {
+            Refusal::Scene(error) => scene_errors.push(*error),
+            Refusal::Config(config) => fields.push(config.field),
+            _ => {}
+        }
+    }
+    assert_all::<Command>(commands);
+    assert_all::<FromBoard>(messages);
+    assert_all::<State>(states);
+    assert_all::<Accepted>(outcomes.into_iter().filter_map(Result::ok));
+    assert_all::<Refusal>(refusals);
+    assert_all::<SceneError>(scene_errors);
+    assert_all::<ConfigField>(fields);
+}
+
+/// What has a number of its own rather than a place in an enum: every number with a name, and one without.
+#[test]
+fn every_number_has_golden_bytes() {
+    let hellos: Vec<_> = samples::from_board()
+        .into_iter()
+        .filter_map(|payload| if let Payload::Hello(hello) = payload { Some(hello) } else { None })
+        .collect();
+    for number in 0..=u8::MAX {
+        let fault = Fault::try_from(number).ok();
+        let named = fault.is_some_and(|fault| !matches!(fault, Fault::Other(_)));
+        assert!(!named || hellos.iter().any(|hello| hello.last_fault == fault), "{fault:?}");
+
+        let board = BoardKind::from(number);
+        let named = !matches!(board, BoardKind::Other(_));
+        assert!(!named || hellos.iter().any(|hello| hello.board == board), "{board:?}");
+
+        let cause = ResetCause::from(number);
+        let named = !matches!(cause, ResetCause::Other(_));
+        assert!(!named || hellos.iter().any(|hello| hello.reset_cause == cause), "{cause:?}");
+
+        let state = State::try_from(number);
+        assert!(state.is_err() || hellos.iter().any(|hello| Ok(hello.state) == state), "{state:?}");
+    }
+}
+
+/// The direct ways to a frame give the frames of [`Payload::write_frame`].
+#[test]
+fn one_call_frames_are_the_same() {
+    use frixel_wire::payload::{chunk_frame, from_board_frame, hello_frame, hello_request_frame, request_frame};
+    for payload in samples::from_host().into_iter().chain(samples::from_board()) {
+        let mut direct = [0; FRAME_MAX_LEN];
+        let direct = match payload {
+            Payload::HelloRequest { .. } => hello_request_frame(&mut direct),
+            Payload::Hello(hello) => hello_frame(&hello, &mut direct),
+            Payload::Request(request) => request_frame(&request, &mut direct),
+            Payload::FromBoard(message) => from_board_frame(&message, &mut direct),
+            Payload::Chunk { number, bytes } => chunk_frame(number, bytes, &mut direct),
+        };
+        let mut buffer = [0; PAYLOAD_MAX_LEN];
+        let mut frame = [0; FRAME_MAX_LEN];
+        assert_eq!(direct.unwrap(), encode(payload.write(&mut buffer).unwrap(), &mut frame).unwrap());
+    }
+}

@@ -1,0 +1,167 @@
+//! Parsers under arbitrary bytes.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
+
+mod support;
+
+use frixel_wire::hello::Hello;
+use frixel_wire::message::{Command, Request};
+use frixel_wire::payload::{
+    CHUNK_LEN, CHUNK_NUMBER_MAX, PAYLOAD_MAX_LEN, ParseError, Payload, WriteError, chunk_frame,
+};
+use frixel_wire::scene::{HEADER_LEN, Header, RECORD_LEN, Record, Scene};
+use proptest::prelude::*;
+use support::samples;
+
+fn written(payload: &Payload) -> Vec<u8> {
+    payload.write(&mut [0; PAYLOAD_MAX_LEN]).unwrap().to_vec()
+}
+
+/// Payloads that are nearly right: good ones with a few bytes changed and the end cut off or grown.
+fn nearly() -> impl Strategy<Value = Vec<u8>> {
+    let good: Vec<Vec<u8>> = samples::from_host().iter().chain(&samples::from_board()).map(written).collect();
+    let change = (any::<prop::sample::Index>(), any::<u8>());
+    (prop::sample::select(good), prop::collection::vec(change, 0..4), 0..200usize).prop_map(
+        |(mut bytes, changes, len)| {
+            for (at, byte) in changes {
+                let at = at.index(bytes.len());
+                bytes[at] = byte;
+            }
+            if len < 190 {
+                bytes.resize(len.min(PAYLOAD_MAX_LEN), 0);
+            }
+            bytes
+        },
+    )
+}
+
+/// What can be read can be written, and is then read as the same.
+fn assert_stable(bytes: &[u8]) -> Result<(), TestCaseError> {
+    if let Ok(payload) = Payload::parse(bytes) {
+        let once = written(&payload);
+        let twice = written(&Payload::parse(&once).unwrap());
+        prop_assert_eq!(once, twice);
+    }
+    Ok(())
+}
+
+proptest! {
+    #[test]
+    fn arbitrary_payloads_do_not_panic(bytes in prop::collection::vec(any::<u8>(), 0..=PAYLOAD_MAX_LEN)) {
+        assert_stable(&bytes)?;
+    }
+
+    #[test]
+    fn small_bytes_do_not_panic(bytes in prop::collection::vec(0..24u8, 0..40)) {
+        assert_stable(&bytes)?;
+    }
+
+    #[test]
+    fn nearly_right_payloads_do_not_panic(bytes in nearly()) {
+        assert_stable(&bytes)?;
+    }
+
+    /// What one side may send, the other side's parser reads as [`Payload::parse`] does, and its own refuses.
+    #[test]
+    fn each_side_reads_only_the_other(bytes in nearly()) {
+        let (host, board) = (Payload::parse_from_host(&bytes), Payload::parse_from_board(&bytes));
+        prop_assert!(host.is_err() || board.is_err());
+        let read = [host, board].into_iter().find(Result::is_ok).map(|payload| written(&payload.unwrap()));
+        prop_assert_eq!(Payload::parse(&bytes).ok().map(|payload| written(&payload)), read);
+    }
+
+    #[test]
+    fn arbitrary_hellos_do_not_panic(tail in prop::collection::vec(any::<u8>(), 0..150)) {
+        let bytes = [b"FRXL", tail.as_slice()].concat();
+        if let Ok(hello) = Hello::parse(&bytes) {
+            prop_assert_eq!(hello.write(), Hello::parse(&hello.write()).unwrap().write());
+        }
+    }
+
+    /// A header or record that is accepted has one form only.
+    #[test]
+    fn headers_have_one_form(mut bytes in prop::array::uniform32(any::<u8>()), flags in 0..6u8, carrier in 0..4u8, unused in 0..2u8) {
+        bytes[..4].copy_from_slice(&[1, 0, flags % 3, flags]);
+        let mut header = [0; HEADER_LEN];
+        header[..32].copy_from_slice(&bytes);
+        header[52] = carrier;
+        header[54] = unused;
+        if let Ok((read, records)) = Header::parse(&header) {
+            prop_assert_eq!(read.write(records), header);
+        }
+    }
+
+    #[test]
+    fn records_have_one_form(head in prop::array::uniform4(0..4u8), tail in prop::array::uniform32(any::<u8>()), long in any::<bool>()) {
+        let mut record = [0; RECORD_LEN];
+        record[..4].copy_from_slice(&head);
+        let at = if long { 24 } else { 12 };
+        record[at..at + 32].copy_from_slice(&tail);
+        if let Ok(read) = Record::parse(&record, 0) {
+            prop_assert_eq!(read.write(), record);
+        }
+    }
+
+    #[test]
+    fn arbitrary_scenes_do_not_panic(
+        changes in prop::collection::vec((any::<prop::sample::Index>(), 0..8u8), 0..3),
+        len in 0..400usize,
+    ) {
+        let mut bytes = samples::scene();
+        for (at, byte) in changes {
+            let at = at.index(bytes.len());
+            bytes[at] = byte;
+        }
+        if len < 300 {
+            bytes.resize(len, 0);
+        }
+        if let Ok(scene) = Scene::parse(&bytes) {
+            let mut again = scene.header().write(scene.record_count() as u8).to_vec();
+            again.extend(scene.records().flat_map(|record| record.write()));
+            prop_assert_eq!(again, bytes);
+        }
+    }
+
+    #[test]
+    fn chunks_go_there_and_back(number in 0..=CHUNK_NUMBER_MAX, bytes in prop::collection::vec(any::<u8>(), 1..=CHUNK_LEN)) {
+        let chunk = Payload::Chunk { number, bytes: &bytes };
+        let bytes = written(&chunk);
+        prop_assert_eq!(Payload::parse(&bytes), Ok(chunk));
+    }
+}
+
+#[test]
+fn chunks_that_do_not_fit_are_refused() {
+    let mut frame = [0; 192];
+    assert_eq!(chunk_frame(0x8000, &[1], &mut frame), Err(WriteError::ChunkNumber { number: 0x8000 }));
+    assert_eq!(chunk_frame(0, &[], &mut frame), Err(WriteError::ChunkLength { len: 0 }));
+    assert_eq!(chunk_frame(0, &[1; CHUNK_LEN + 1], &mut frame), Err(WriteError::ChunkLength { len: CHUNK_LEN + 1 }));
+}
+
+#[test]
+fn payloads_that_are_not_right_are_refused() {
+    assert_eq!(Payload::parse(&[]), Err(ParseError::Empty));
+    assert_eq!(Payload::parse(&[0x04]), Err(ParseError::UnknownKind { kind: 0x04 }));
+    assert_eq!(Payload::parse(&[0x7f, 1]), Err(ParseError::UnknownKind { kind: 0x7f }));
+    assert_eq!(Payload::parse(&[0x00, 1]), Err(ParseError::Malformed { kind: 0x00 }));
+    assert_eq!(Payload::parse(&[0x02, 0x80]), Err(ParseError::Malformed { kind: 0x02 }));
+    assert_eq!(Payload::parse(&[0x03, 0x09]), Err(ParseError::Malformed { kind: 0x03 }));
+    assert_eq!(Payload::parse(&[0x80]), Err(ParseError::Malformed { kind: 0x80 }));
+    assert_eq!(Payload::parse(&[0x80, 0x00]), Err(ParseError::Malformed { kind: 0x80 }));
+}
+
+/// A command of a newer protocol, and one with bytes too many, can still be answered by number.
+#[test]
+fn unknown_commands_keep_their_sequence_number() {
+    let unknown = Err(ParseError::UnknownCommand { sequence: 300 });
+    assert_eq!(Payload::parse(&[0x02, 0xac, 0x02, 0x0b]), unknown);
+    assert_eq!(Payload::parse(&[0x02, 0xac, 0x02]), unknown);
+    assert_eq!(Payload::parse(&[0x02, 0xac, 0x02, 0x00, 0x00]), unknown);
+    let ping = Request { sequence: 300, command: Command::Ping };
+    assert_eq!(Payload::parse(&[0x02, 0xac, 0x02, 0x00]), Ok(Payload::Request(ping)));
+}
+
+/// A hello request of a later protocol may be longer.
+#[test]
+fn longer_hello_requests_are_read() {
+    assert_eq!(Payload::parse(&[0x00, 9, 3, 1, 2, 3]), Ok(Payload::HelloRequest { protocol: (9, 3) }));
+}

@@ -1,0 +1,195 @@
+//! `PROTOCOL.md` says what the code does: its tables and its examples are read and compared.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
+
+mod support;
+
+use std::fmt::Debug;
+
+use frixel_wire::fault::{Fault, Flags, State};
+use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, encode};
+use frixel_wire::hello::{BoardKind, BoardLimits, HELLO_LEN, Hello, MAGIC, ResetCause};
+use frixel_wire::message::{
+    Accepted, Command, ConfigField, ConfigRefusal, FromBoard, Refusal, TELEMETRY_PERIOD_MIN_TICKS,
+};
+use frixel_wire::payload::{CHUNK_LEN, CHUNK_NUMBER_MAX, PAYLOAD_MAX_LEN, Payload};
+use frixel_wire::scene::{HEADER_LEN, RECORD_LEN, RECORDS_MAX, SCENE_VERSION, SceneError};
+use support::hex::{from_hex, to_hex};
+use support::{samples, variants};
+
+const PROTOCOL: &str = include_str!("../PROTOCOL.md");
+
+/// Rows of the first table after this line, their cells without spaces and backticks around.
+fn table(line: &str) -> Vec<Vec<&'static str>> {
+    let (_, after) = PROTOCOL.split_once(&format!("\n{line}\n")).expect(line);
+    let rows = after.lines().skip_while(|line| !line.starts_with('|')).take_while(|line| line.starts_with('|'));
+    rows.skip(2)
+        .map(|row| row.trim_matches('|').split('|').map(|cell| cell.trim().trim_matches('`')).collect())
+        .collect()
+}
+
+/// Number and name in the table of this enum.
+fn numbered(name: &str) -> Vec<(usize, &'static str)> {
+    table(&format!("### `{name}`")).iter().map(|row| (row[0].parse().unwrap(), row[1])).collect()
+}
+
+#[test]
+fn examples_are_frames_and_can_be_read() {
+    let mut lines = PROTOCOL.lines();
+    let mut examples = 0;
+    while let Some(line) = lines.next() {
+        let Some(payload) = line.strip_prefix("    payload ").filter(|rest| !rest.contains("and")) else { continue };
+        let payload = from_hex(payload);
+        let frame = lines.next().unwrap().strip_prefix("    frame ").expect(line);
+        assert_eq!(to_hex(encode(&payload, &mut [0; FRAME_MAX_LEN]).unwrap()), frame);
+        let read = Payload::parse(&payload).expect(line);
+        assert_eq!(read.write(&mut [0; PAYLOAD_MAX_LEN]).unwrap(), payload);
+
+        let frame = from_hex(frame);
+        let mut decoder = Decoder::new();
+        assert_eq!(decoder.next_frame(&mut frame.as_slice()), Some(payload.as_slice()));
+        examples += 1;
+    }
+    assert!(examples > 0 && examples == PROTOCOL.matches("\n    frame ").count(), "{examples}");
+}
+
+#[test]
+fn enums_have_the_numbers_that_the_tables_say() {
+    fn check<'de, T: serde::Deserialize<'de>>(name: &str) {
+        assert_eq!(numbered(name), variants::all::<T>().into_iter().enumerate().collect::<Vec<_>>(), "{name}");
+    }
+    check::<Command>("Command");
+    check::<FromBoard>("FromBoard");
+    check::<State>("State");
+    check::<Accepted>("Accepted");
+    check::<Refusal>("Refusal");
+    check::<SceneError>("SceneError");
+    check::<ConfigField>("ConfigField");
+}
+
+#[test]
+fn numbers_have_the_names_that_the_tables_say() {
+    fn check<T: Debug>(name: &str, named: impl Fn(u8) -> Option<T>) {
+        let code: Vec<(usize, String)> =
+            (0..=u8::MAX).filter_map(|n| Some((n.into(), format!("{:?}", named(n)?)))).collect();
+        let page: Vec<(usize, String)> = numbered(name).into_iter().map(|(n, name)| (n, name.into())).collect();
+        assert_eq!(page, code);
+    }
+    check("BoardKind", |n| Some(BoardKind::from(n)).filter(|kind| !matches!(kind, BoardKind::Other(_))));
+    check("ResetCause", |n| Some(ResetCause::from(n)).filter(|cause| !matches!(cause, ResetCause::Other(_))));
+    check("Fault", |n| Fault::try_from(n).ok().filter(|fault| !matches!(fault, Fault::Other(_))));
+    for (number, name) in numbered("State") {
+        let state = State::try_from(number as u8).unwrap();
+        assert_eq!((state.number(), format!("{state:?}").as_str()), (number as u8, name));
+    }
+}
+
+#[test]
+fn flags_have_the_bits_that_the_table_says() {
+    let page: Vec<(Flags, &str)> = numbered("Flags").into_iter().map(|(bit, name)| (Flags(1 << bit), name)).collect();
+    let code = [
+        (Flags::SATURATED, "SATURATED"),
+        (Flags::SLEWED, "SLEWED"),
+        (Flags::STILL, "STILL"),
+        (Flags::NO_FINGER, "NO_FINGER"),
+        (Flags::TOUCH_STALE, "TOUCH_STALE"),
+        (Flags::CARRIER_BALANCED, "CARRIER_BALANCED"),
+        (Flags::HOST_SILENT, "HOST_SILENT"),
+    ];
+    assert_eq!(page, code);
+}
+
+/// The fields that a table names, in order, are those of the value.
+#[test]
+fn fields_are_in_the_order_that_the_tables_say() {
+    fn check(name: &str, value: &impl Debug) -> usize {
+        let table = table(&format!("### `{name}`"));
+        let row = table.iter().find(|row| row[1] == variants::name(value)).unwrap();
+        let page: Vec<_> = row[2].split('`').filter_map(|field| Some(field.split_once(':')?.0)).collect();
+        if !page.is_empty() {
+            assert_eq!(page, field_names(&format!("{value:?}")), "{value:?}");
+        }
+        page.len()
+    }
+    let mut named = 0;
+    for payload in samples::from_host() {
+        if let Payload::Request(request) = payload {
+            named += check("Command", &request.command);
+        }
+    }
+    for payload in samples::from_board() {
+        if let Payload::FromBoard(message) = payload {
+            named += check("FromBoard", &message);
+        }
+    }
+    named += samples::refusals().iter().map(|refusal| check("Refusal", refusal)).sum::<usize>();
+    named += samples::scene_errors().iter().map(|error| check("SceneError", error)).sum::<usize>();
+    assert!(named > 100, "{named}");
+}
+
+/// Names of the outermost fields in a value's debug text.
+fn field_names(debug: &str) -> Vec<&str> {
+    let fields = debug.split_once('{').map_or("", |(_, fields)| fields);
+    let mut depth = 0;
+    let outermost = |c: char| {
+        depth += i32::from(matches!(c, '{' | '(')) - i32::from(matches!(c, '}' | ')'));
+        c == ',' && depth == 0
+    };
+    fields.split(outermost).filter_map(|field| Some(field.split_once(':')?.0.trim())).collect()
+}
+
+/// Every byte of a layout stands in its table, once. Which field it belongs to is for the golden bytes and
+/// `the_layout_is_frozen` to hold.
+#[test]
+fn layouts_have_no_gap() {
+    for (line, len) in [
+        ("After the first byte of the payload, at these offsets:", 44),
+        ("The header:", HEADER_LEN),
+        ("A record:", RECORD_LEN),
+    ] {
+        let mut end = 0;
+        for row in table(line) {
+            assert_eq!(row[0].parse(), Ok(end), "{row:?}");
+            end += row[1].parse::<usize>().unwrap();
+        }
+        assert_eq!(end, len, "{line}");
+    }
+}
+
+/// The limits of the table: tags in order, lengths, and what holds when one is left out.
+#[test]
+fn limits_are_those_of_the_table() {
+    let (_, after) = PROTOCOL.split_once("\n| tag | bytes |").unwrap();
+    let rows: Vec<Vec<&str>> = after
+        .lines()
+        .skip(2)
+        .take_while(|line| line.starts_with('|'))
+        .map(|row| row.trim_matches('|').split('|').map(str::trim).collect())
+        .collect();
+    let unstated = Hello { limits: BoardLimits::UNSTATED, ..samples::hello() }.write();
+    let mut at = 44;
+    for row in rows {
+        let (tag, len): (u8, u8) = (row[0].parse().unwrap(), row[1].parse().unwrap());
+        assert_eq!(unstated[at..at + 2], [tag, len]);
+        let value = &unstated[at + 2..at + 2 + usize::from(len)];
+        let real = row[2].contains("`f32`");
+        let expected = match (row[3], value.len()) {
+            ("infinite", 4) if real => f32::INFINITY.to_le_bytes().to_vec(),
+            (number, 4) if real => number.parse::<f32>().unwrap().to_le_bytes().to_vec(),
+            (number, len) => number.parse::<u32>().unwrap().to_le_bytes()[..len].to_vec(),
+        };
+        assert_eq!(value, expected, "{row:?}");
+        at += 2 + usize::from(len);
+    }
+    assert_eq!(at, HELLO_LEN);
+}
+
+/// Numbers that stand in the text.
+#[test]
+fn constants_are_those_of_the_text() {
+    assert_eq!((FRAME_MAX_LEN, PAYLOAD_MAX_LEN), (192, 186));
+    assert_eq!((CHUNK_LEN, CHUNK_NUMBER_MAX), (184, 32_767));
+    assert_eq!((SCENE_VERSION, RECORDS_MAX), (1, 64));
+    assert_eq!((SceneError::HEADER, ConfigRefusal::WHOLE_SCENE), (255, 255));
+    assert_eq!(TELEMETRY_PERIOD_MIN_TICKS, 40);
+    assert_eq!(to_hex(&MAGIC), "46 52 58 4c");
+}

@@ -1,0 +1,285 @@
+//! At least one value of every variant of everything that goes over the wire. `golden.rs` says so.
+
+use frixel_wire::fault::{Fault, Flags, State};
+use frixel_wire::frame::FRAME_MAX_LEN;
+use frixel_wire::hello::{BoardKind, BoardLimits, Hello, ResetCause};
+use frixel_wire::message::{
+    Accepted, Answer, Command, ConfigField, ConfigRefusal, FromBoard, Refusal, Request, Telemetry,
+};
+use frixel_wire::payload::{CHUNK_LEN, CHUNK_NUMBER_MAX, Payload};
+use frixel_wire::scene::{Blend, Carrier, Header, Layer, Record, Region, SceneError, Wave};
+
+pub const STATES: [State; 4] = [State::Disarmed, State::Armed, State::Active, State::Faulted];
+
+/// All faults that have a name, and one that has none yet.
+pub fn faults() -> impl Iterator<Item = Fault> {
+    (1..=9).map(|number| Fault::try_from(number).unwrap())
+}
+
+/// What a host sends.
+pub fn from_host() -> Vec<Payload<'static>> {
+    static FULL_CHUNK: [u8; CHUNK_LEN] = [0xa5; CHUNK_LEN];
+    let sequences = [0, 1, 127, 128, 300, 16_383, 16_384, 65_535].into_iter().cycle();
+    let mut payloads = vec![Payload::HelloRequest { protocol: (1, 0) }];
+    payloads
+        .extend(sequences.zip(commands()).map(|(sequence, command)| Payload::Request(Request { sequence, command })));
+    payloads.extend([
+        Payload::Chunk { number: 0, bytes: &[0x00] },
+        Payload::Chunk { number: 300, bytes: &[0x00, 0x01, 0xff] },
+        Payload::Chunk { number: CHUNK_NUMBER_MAX, bytes: &FULL_CHUNK },
+    ]);
+    payloads
+}
+
+fn commands() -> Vec<Command> {
+    vec![
+        Command::Ping,
+        Command::UploadScene { len: 168, crc32: 0x0123_4567 },
+        Command::UploadBitmap { width: 400, height: 267, crc32: 0xcbf4_3926 },
+        Command::UploadEnd,
+        Command::Commit { crc32: 0x0123_4567 },
+        Command::Arm,
+        Command::Disarm,
+        Command::Play,
+        Command::Stop,
+        Command::ClearFault,
+        Command::Subscribe { period_ticks: 0 },
+        Command::Subscribe { period_ticks: 40 },
+        Command::Subscribe { period_ticks: u32::MAX },
+    ]
+}
+
+/// What a board sends.
+pub fn from_board() -> Vec<Payload<'static>> {
+    let mut payloads: Vec<_> = hellos().into_iter().map(Payload::Hello).collect();
+    payloads.extend(messages().into_iter().map(Payload::FromBoard));
+    payloads
+}
+
+pub fn hello() -> Hello {
+    Hello {
+        protocol: (1, 0),
+        firmware: (0, 1, 0),
+        board: BoardKind::Simulator,
+        id: *b"frixel sim 1",
+        tick_hz: 40_000,
+        frame_max_len: FRAME_MAX_LEN as u16,
+        features: 0,
+        scene_crc32: 0,
+        reset_cause: ResetCause::PowerOn,
+        last_fault: None,
+        fault_detail: 0,
+        state: State::Disarmed,
+        limits: BoardLimits {
+            bitmap_pool_bytes: 80 * 1024,
+            records_max: 16,
+            receive_window_bytes: 4096,
+            voltage_max_v_peak: 200.0,
+            full_scale_v_peak: 250.0,
+            edge_time_constant_s: 20e-6,
+            electrode_capacitance_max_f: 10e-9,
+            current_max_a_rms: 0.005,
+            current_max_a_peak: 0.1,
+            touch_report_period_s: 0.01,
+        },
+    }
+}
+
+fn hellos() -> Vec<Hello> {
+    let mut hellos = vec![hello()];
+    hellos.extend((2..=4).map(|number| Hello { board: BoardKind::from(number), ..hello() }));
+    hellos.extend((2..=6).map(|number| Hello { reset_cause: ResetCause::from(number), ..hello() }));
+    hellos.extend(faults().map(|fault| Hello { last_fault: Some(fault), fault_detail: 0x0a0b_0c0d, ..hello() }));
+    hellos.extend(STATES.map(|state| Hello { state, scene_crc32: 0xcbf4_3926, ..hello() }));
+    hellos
+}
+
+fn messages() -> Vec<FromBoard> {
+    let mut messages: Vec<_> = outcomes()
+        .into_iter()
+        .zip(1..)
+        .map(|(outcome, sequence)| {
+            FromBoard::Answer(Answer {
+                sequence,
+                received_bytes: 1_000 * u32::from(sequence),
+                state: State::Armed,
+                outcome,
+            })
+        })
+        .collect();
+    messages.extend([
+        FromBoard::Answer(Answer {
+            sequence: u16::MAX,
+            received_bytes: u32::MAX,
+            state: State::Faulted,
+            outcome: Ok(Accepted::Done),
+        }),
+        FromBoard::Progress { next_chunk: 0, received_bytes: 0 },
+        FromBoard::Progress { next_chunk: CHUNK_NUMBER_MAX, received_bytes: u32::MAX },
+    ]);
+    messages.extend(STATES.map(|state| FromBoard::Telemetry(telemetry(state))));
+    messages.push(FromBoard::StateChanged { state: State::Disarmed, fault: None, flags: Flags::HOST_SILENT });
+    messages.extend(faults().map(|fault| FromBoard::StateChanged {
+        state: State::Faulted,
+        fault: Some(fault),
+        flags: Flags::default(),
+    }));
+    messages
+}
+
+fn telemetry(state: State) -> Telemetry {
+    Telemetry {
+        tick: 1_234_567,
+        state,
+        flags: Flags::SATURATED.with(Flags::STILL),
+        finger_x_m: 0.05,
+        finger_y_m: 0.025,
+        speed_m_per_s: 0.1,
+        asked_electric_friction_n: 0.012,
+        voltage_v_rms: 75.5,
+        dac_code: -9_895 + 64 * i16::from(state.number()),
+    }
+}
+
+fn outcomes() -> Vec<Result<Accepted, Refusal>> {
+    let mut outcomes = vec![Ok(Accepted::Done), Ok(Accepted::AlreadyHeld)];
+    outcomes.extend(refusals().into_iter().map(Err));
+    outcomes
+}
+
+pub fn refusals() -> Vec<Refusal> {
+    let mut refusals = vec![Refusal::UnknownCommand];
+    refusals.extend(STATES.map(Refusal::WrongState));
+    refusals.extend(faults().map(Refusal::Faulted));
+    refusals.extend([
+        Refusal::NoScene,
+        Refusal::UploadIncomplete { next_chunk: 300 },
+        Refusal::CrcMismatch { expected: 0x0123_4567, found: 0xcbf4_3926 },
+        Refusal::SceneTooLarge { len: 3_640, max: 952 },
+        Refusal::BitmapPoolFull { len: 106_800, free: 81_920 },
+        Refusal::BitmapMissing { crc32: 0xcbf4_3926 },
+    ]);
+    refusals.extend(scene_errors().map(Refusal::Scene));
+    refusals.extend(
+        config_fields().into_iter().zip(0..).map(|(field, layer)| Refusal::Config(config_refusal(field, layer))),
+    );
+    refusals.extend([
+        Refusal::Config(config_refusal(ConfigField::VoltagePeak, ConfigRefusal::WHOLE_SCENE)),
+        Refusal::Busy,
+        Refusal::TelemetryTooFast { period_min_ticks: 40 },
+        Refusal::ArmSwitch,
+    ]);
+    refusals
+}
+
+pub fn config_refusal(field: ConfigField, layer: u8) -> ConfigRefusal {
+    ConfigRefusal { field, found: 250.5, min: 0.125, max: 50.0, layer }
+}
+
+pub fn scene_errors() -> [SceneError; 9] {
+    [
+        SceneError::Version { found: 2 },
+        SceneError::Length { found: 111, expected: 168 },
+        SceneError::UnknownCarrier(7),
+        SceneError::UnknownKind { record: 3, kind: 9 },
+        SceneError::UnknownChoice { record: 3, offset: 2, value: 8 },
+        SceneError::TooManyRecords { found: 65 },
+        SceneError::UnknownFlags(0x84),
+        SceneError::NotZero { record: 3, offset: 44 },
+        SceneError::NotZero { record: SceneError::HEADER, offset: 53 },
+    ]
+}
+
+pub fn config_fields() -> Vec<ConfigField> {
+    use ConfigField::{
+        BitmapPlacement, CarrierFrequency, CurrentPeak, CurrentRms, EffectiveGap, FingerRadius, Friction,
+        FrictionCoefficient, Gain, HostTimeout, NormalLoad, Phase, Region, ScreenHeight, ScreenWidth, Slew, Stiffness,
+        TableRange, VoltagePeak, VoltageRms, WaveVector,
+    };
+    vec![
+        ScreenWidth,
+        ScreenHeight,
+        FingerRadius,
+        Stiffness,
+        FrictionCoefficient,
+        NormalLoad,
+        EffectiveGap,
+        VoltageRms,
+        VoltagePeak,
+        Slew,
+        CarrierFrequency,
+        HostTimeout,
+        CurrentRms,
+        CurrentPeak,
+        Region,
+        Gain,
+        Friction,
+        WaveVector,
+        Phase,
+        BitmapPlacement,
+        TableRange,
+    ]
+}
+
+pub fn header() -> Header {
+    Header {
+        screen_width_m: 0.1,
+        screen_height_m: 0.0625,
+        finger_radius_m: 0.008,
+        stiffness_pa_per_m: 1e8,
+        friction_coefficient: 0.5,
+        normal_load_n: 0.5,
+        effective_gap_m: 250e-9,
+        voltage_max_v_rms: 150.0,
+        voltage_max_v_peak: 160.0,
+        slew_v_per_s: 100_000.0,
+        carrier_hz: 1_000.0,
+        host_timeout_s: 0.25,
+        carrier: Carrier::Square,
+        autonomous: false,
+        prediction: true,
+    }
+}
+
+pub fn headers() -> Vec<Header> {
+    vec![
+        header(),
+        Header { carrier: Carrier::Sine, prediction: false, ..header() },
+        Header { autonomous: true, ..header() },
+    ]
+}
+
+pub fn records() -> Vec<Record> {
+    let rectangle = Region::Rectangle { x_m: 0.01, y_m: 0.02, width_m: 0.03, height_m: 0.04 };
+    let grating = |wave| Layer::Grating {
+        wave,
+        cycles_per_m_x: 500.0,
+        cycles_per_m_y: -250.0,
+        phase_turns: 0.25,
+        trough_n: 0.002,
+        crest_n: 0.02,
+    };
+    let bitmap =
+        Layer::Bitmap { crc32: 0xcbf4_3926, x_m: 0.001, y_m: 0.002, pitch_m: 0.00025, black_n: 0.0, white_n: 0.025 };
+    vec![
+        Record {
+            region: Region::Screen,
+            blend: Blend::Replace,
+            gain: 1.0,
+            layer: Layer::Constant { electric_friction_n: 0.01 },
+        },
+        Record { region: rectangle, blend: Blend::Add, gain: 0.5, layer: grating(Wave::Sine) },
+        Record { region: Region::Screen, blend: Blend::Add, gain: -1.0, layer: grating(Wave::Square) },
+        Record { region: rectangle, blend: Blend::Replace, gain: 2.0, layer: bitmap },
+    ]
+}
+
+/// A whole scene of [`header`] and [`records`].
+pub fn scene() -> Vec<u8> {
+    let records = records();
+    let mut bytes = header().write(records.len() as u8).to_vec();
+    for record in records {
+        bytes.extend(record.write());
+    }
+    bytes
+}

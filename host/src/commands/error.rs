@@ -1,0 +1,69 @@
+//! What a command ends with when it cannot go on: one sentence each.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use frixel::device::{DeviceError, PortError};
+use frixel::output::OutputError;
+use frixel::player::SimulationError;
+use frixel::rigs::ServerError;
+use frixel::scene::CompileError;
+use frixel_hil_sim::{StrokeError, WorldError};
+use frixel_wire::fault::Fault;
+use thiserror::Error;
+
+#[derive(Debug, Error)]
+pub(crate) enum CommandError {
+    #[error(transparent)]
+    Compile(#[from] CompileError),
+    #[error(transparent)]
+    Device(#[from] DeviceError),
+    #[error(transparent)]
+    Port(#[from] PortError),
+    #[error(transparent)]
+    Server(#[from] ServerError),
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    #[error(transparent)]
+    World(#[from] WorldError),
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+    #[error("{}: {source}", path.display())]
+    Stroke { path: PathBuf, source: StrokeError },
+    #[error("a stroke over this scene: {0}")]
+    NaturalStroke(StrokeError),
+    #[error("{} cannot be read ({source}): check the path", path.display())]
+    Read { path: PathBuf, source: io::Error },
+    #[error("{} cannot be written ({source}): check the folder and its free space", path.display())]
+    Write { path: PathBuf, source: io::Error },
+    #[error(
+        "{port} is a board with an electrode: --stroke moves a simulated finger only; leave it out, or use --port sim"
+    )]
+    StrokeOnBoard { port: String },
+    #[error("{port} sends telemetry at most {max} times a second, --csv-hz {asked} is more; ask for {max} or less")]
+    CsvTooFast { port: String, asked: u32, max: u32 },
+    #[error(
+        "{port} is a board with an electrode: put on --arm, and hold the switch on the board, to let it drive hundreds of volts"
+    )]
+    NotArmed { port: String },
+    #[error("{port} stopped with its output at zero: {fault}")]
+    Faulted { port: String, fault: Fault },
+    #[error("{port} stopped with its output at zero: it had not heard from this host for the scene's host timeout")]
+    HostSilent { port: String },
+    #[error("Ctrl-C cannot be watched for: {0}")]
+    Interrupt(#[from] ctrlc::Error),
+}
+
+impl CommandError {
+    /// For `map_err` on what is read.
+    pub(crate) fn reading(path: &Path) -> impl FnOnce(io::Error) -> Self {
+        let path = path.to_owned();
+        move |source| Self::Read { path, source }
+    }
+
+    /// For `map_err` on what is written.
+    pub(crate) fn writing(path: &Path) -> impl FnOnce(io::Error) -> Self {
+        let path = path.to_owned();
+        move |source| Self::Write { path, source }
+    }
+}

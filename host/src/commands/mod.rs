@@ -1,0 +1,118 @@
+//! What a person types, one module a command.
+
+mod demo;
+mod error;
+mod info;
+mod interrupt;
+mod play;
+mod ports;
+mod sim;
+mod stroke;
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+use error::CommandError;
+
+/// Friction textures on an electrovibration screen, in newtons.
+///
+/// Without a command, plays the demo.
+#[derive(Debug, Parser)]
+#[command(name = "frixel", version, about)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Play the bundled brick texture on the simulated board, under a simulated finger.
+    Demo(DemoArgs),
+    /// Play a scene on a board or on the simulator.
+    Play(PlayArgs),
+    /// Serve a virtual board on a pseudo-terminal, for other programs to play to.
+    Sim(SimArgs),
+    /// List the serial ports.
+    Ports,
+    /// Say what board is at a port.
+    Info(InfoArgs),
+}
+
+#[derive(Debug, Args)]
+struct DemoArgs {
+    /// Folder for what the demo writes.
+    #[arg(long, default_value = "frixel-out")]
+    out: PathBuf,
+}
+
+#[derive(Debug, Args)]
+struct PlayArgs {
+    /// The scene, a TOML file (docs/scene.md).
+    scene: PathBuf,
+    /// `sim` for the simulator in this process, or the path of a board's serial port.
+    #[arg(long, default_value = "sim")]
+    port: String,
+    /// Where the simulated finger goes: a CSV file with the columns `t_s,x_mm,y_mm`.
+    #[arg(long, value_name = "FILE.csv")]
+    stroke: Option<PathBuf>,
+    /// How long to play. Without it, the stroke's length on the simulator, and until Ctrl-C on a board.
+    #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
+    seconds: Option<f64>,
+    /// Folder for what is written.
+    #[arg(long, default_value = "frixel-out")]
+    out: PathBuf,
+    /// Print one JSON object in place of the summary.
+    #[arg(long)]
+    json: bool,
+    /// Seed of all that is random in the simulator.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Rows a second in felt.csv; at most 1000 on a board.
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=40_000))]
+    csv_hz: u32,
+    /// Let a board that is not a simulator drive its electrode.
+    #[arg(long)]
+    arm: bool,
+}
+
+#[derive(Debug, Args)]
+struct SimArgs {
+    /// Where the finger goes, over and over: a CSV file with the columns `t_s,x_mm,y_mm`.
+    #[arg(long, value_name = "FILE.csv")]
+    stroke: Option<PathBuf>,
+    /// Folder for what is written.
+    #[arg(long, default_value = "frixel-out")]
+    out: PathBuf,
+    /// Seed of all that is random.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+#[derive(Debug, Args)]
+struct InfoArgs {
+    /// Path of the board's serial port.
+    #[arg(long)]
+    port: String,
+}
+
+impl Cli {
+    pub(crate) fn run(self) -> Result<(), CommandError> {
+        match self.command {
+            None => demo::run(&DemoArgs { out: "frixel-out".into() }),
+            Some(Command::Demo(args)) => demo::run(&args),
+            Some(Command::Play(args)) => play::run(&args),
+            Some(Command::Sim(args)) => sim::run(&args),
+            Some(Command::Ports) => ports::run(),
+            Some(Command::Info(args)) => info::run(&args),
+        }
+    }
+}
+
+/// A time that can be played.
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if seconds > 0.0 && seconds <= 86_400.0 => Ok(seconds),
+        _ => Err("expected a number of seconds above 0, at most a day".into()),
+    }
+}
