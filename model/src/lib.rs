@@ -9,6 +9,7 @@
 //! Start at [`Contact`]: a finger and a coating, then a load, then a voltage or a friction. On a device, [`InverseTable`]
 //! answers without root or division. The **electric friction** `F_T - mu F_N` is the quantity throughout: under a load the
 //! drive adds a little to much, and the difference of totals would lose it.
+//! [`Carrier`], which is not of the paper, has what the drive loses on its way to the electrode.
 //!
 //! # Where each equation is
 //!
