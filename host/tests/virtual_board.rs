@@ -29,6 +29,11 @@ fn scene() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/brick.toml")
 }
 
+/// Clients that are killed.
+const KILLS: usize = 20;
+/// Of which the first die while the picture goes over the line.
+const UPLOADS_KILLED: usize = 6;
+
 /// One test at a time: on a busy machine a pseudo-terminal may hold bytes back for longer than a client waits.
 static TURN: Mutex<()> = Mutex::new(());
 
@@ -227,9 +232,6 @@ fn lcg(state: &mut u64) -> usize {
 #[test]
 fn a_client_killed_at_any_byte_leaves_the_output_at_zero_and_the_next_one_welcome() {
     let _turn = turn();
-    const KILLS: usize = 20;
-    /// Of which the first die while the picture goes over the line.
-    const UPLOADS_KILLED: usize = 6;
     let board = VirtualBoard::start();
     let folder = TempDir::new().unwrap();
     let mut random = 1;
