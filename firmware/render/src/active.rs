@@ -12,9 +12,10 @@ use crate::config;
 use crate::layer::Layer;
 
 /// Coefficients of one scene. A board has two of them: one that plays and one that the next scene is built in.
+///
+/// In this order: what lies near the beginning is reached in one instruction.
+#[repr(C)]
 pub struct Active {
-    layers: Vec<Layer, RECORDS_MAX>,
-    table: Option<InverseTable>,
     pub(crate) carrier: CarrierTiming,
     pub(crate) slew_step_v: f32,
     /// Largest rms voltage within all limits.
@@ -22,6 +23,8 @@ pub struct Active {
     /// `None` for a scene that goes on without a host.
     pub(crate) host_timeout_ticks: Option<u32>,
     pub(crate) prediction: bool,
+    table: Option<InverseTable>,
+    layers: Vec<Layer, RECORDS_MAX>,
 }
 
 impl Active {
@@ -124,12 +127,8 @@ fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), Confi
 
     let codes_per_v = f32::from(i16::MAX) / limits.full_scale_v_peak;
     let code_max = (header.voltage_max_v_peak * codes_per_v) as i32;
-    let timing = CarrierTiming {
-        shape: header.carrier,
-        half_period_ticks,
-        codes_per_v_rms: peak_per_rms * codes_per_v,
-        code_max: code_max.min(i32::from(i16::MAX)),
-    };
+    let code_max = code_max.min(i32::from(i16::MAX));
+    let timing = CarrierTiming::new(header.carrier, half_period_ticks, peak_per_rms * codes_per_v, code_max);
     Ok((timing, voltage_max_v_rms))
 }
 

@@ -25,16 +25,9 @@ impl Envelope {
     #[inline]
     pub(crate) fn follow(&mut self, target_v_rms: f32, step_max_v: f32) -> bool {
         let step_v = target_v_rms - self.voltage_v_rms;
-        if step_v > step_max_v {
-            self.voltage_v_rms += step_max_v;
-            true
-        } else if step_v < -step_max_v {
-            self.voltage_v_rms -= step_max_v;
-            true
-        } else {
-            self.voltage_v_rms = target_v_rms;
-            false
-        }
+        let too_far = step_v.abs() > step_max_v;
+        self.voltage_v_rms = if too_far { self.voltage_v_rms + step_max_v.copysign(step_v) } else { target_v_rms };
+        too_far
     }
 }
 

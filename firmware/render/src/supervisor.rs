@@ -18,6 +18,7 @@ pub(crate) struct Supervisor {
     state: State,
     fault: Option<(Fault, u32)>,
     host_heard_at_tick: u32,
+    host_timeout_ticks: u32,
     host_silent: bool,
     monitor: Monitor,
 }
@@ -42,16 +43,18 @@ impl Monitor {
     }
 
     /// Compares what was driven in the tick before with what the monitor read at its end.
+    #[inline]
     fn is_wrong(&mut self, driven_v: f32, monitor_v: f32) -> bool {
         self.expected_v += self.step * (driven_v - self.expected_v);
-        let error_v = monitor_v - self.expected_v;
         let tolerance_v = self.floor_v + MONITOR_GAIN_TOLERANCE * driven_v.abs();
         // A monitor that is not a number is wrong, too.
-        self.wrong_ticks = if error_v.abs() < tolerance_v {
-            self.wrong_ticks.saturating_sub(1)
-        } else {
-            self.wrong_ticks.saturating_add(1)
-        };
+        if (monitor_v - self.expected_v).abs() < tolerance_v {
+            if self.wrong_ticks > 0 {
+                self.wrong_ticks -= 1;
+            }
+            return false;
+        }
+        self.wrong_ticks = self.wrong_ticks.saturating_add(1);
         self.wrong_ticks >= MONITOR_WRONG_TICKS
     }
 }
@@ -62,6 +65,7 @@ impl Supervisor {
             state: State::Disarmed,
             fault: board.reset_fault,
             host_heard_at_tick: 0,
+            host_timeout_ticks: host_timeout_default_ticks(board),
             host_silent: false,
             monitor: Monitor::new(board),
         }
@@ -105,26 +109,41 @@ impl Supervisor {
         }
     }
 
-    /// Looks after the output at every tick. `driven_v` is what went to the amplifier in the tick before;
-    /// `host_timeout_ticks` is `None` for a scene that goes on without a host.
-    pub(crate) fn check(&mut self, sense: &Sense, driven_v: f32, now_tick: u32, host_timeout_ticks: Option<u32>) {
+    /// Sets the timeout that holds from now on; `None` for a scene that goes on without a host.
+    pub(crate) fn set_host_timeout(&mut self, ticks: Option<u32>) {
+        // No host is silent for more ticks than this.
+        self.host_timeout_ticks = ticks.unwrap_or(u32::MAX);
+    }
+
+    /// Looks after the output at every tick, and returns whether there may be any. `driven_v` is what went to the
+    /// amplifier in the tick before.
+    #[inline]
+    pub(crate) fn check(&mut self, sense: &Sense, driven_v: f32, now_tick: u32) -> bool {
         let monitor_wrong = self.monitor.is_wrong(driven_v, sense.monitor_v);
+        let host_silent = now_tick.wrapping_sub(self.host_heard_at_tick) > self.host_timeout_ticks;
+        if monitor_wrong || sense.amplifier_fault || host_silent || !sense.arm_switch {
+            self.act(sense, monitor_wrong, host_silent);
+        }
+        self.state == State::Active
+    }
+
+    /// Does what one of the things that [`Self::check`] looks after asks for. Of several the first here counts.
+    #[inline(never)]
+    fn act(&mut self, sense: &Sense, monitor_wrong: bool, host_silent: bool) {
         if self.state == State::Faulted {
             return;
         }
+        let armed = self.state != State::Disarmed;
         if monitor_wrong {
             self.monitor.wrong_ticks = 0;
             self.raise(Fault::Monitor, sense.monitor_v as i32 as u32);
         } else if sense.amplifier_fault {
             self.raise(Fault::Amplifier, 0);
-        } else if self.state != State::Disarmed {
-            if !sense.arm_switch {
-                self.raise(Fault::ArmSwitch, 0);
-            } else if host_timeout_ticks.is_some_and(|timeout| now_tick.wrapping_sub(self.host_heard_at_tick) > timeout)
-            {
-                self.state = State::Disarmed;
-                self.host_silent = true;
-            }
+        } else if armed && !sense.arm_switch {
+            self.raise(Fault::ArmSwitch, 0);
+        } else if armed && host_silent {
+            self.state = State::Disarmed;
+            self.host_silent = true;
         }
     }
 }
