@@ -2,9 +2,9 @@
 
 use frixel_render::{Session, Ticker};
 use frixel_wire::frame::{FRAME_MAX_LEN, crc32};
-use frixel_wire::scene::bitmap_crc32;
 use frixel_wire::message::{Command, Request};
 use frixel_wire::payload::{self, CHUNK_LEN};
+use frixel_wire::scene::bitmap_crc32;
 
 /// A session and the ticker that it gives orders to.
 pub struct Host<'a> {
