@@ -89,9 +89,7 @@ impl Layer {
     }
 
     /// Joins this layer's electric friction at a place to that of the layers below.
-    ///
-    /// Not inlined: in a loop the constants of every kind of layer would be loaded, whether or not there is one.
-    #[inline(never)]
+    #[inline]
     pub(crate) fn blend_over(&self, below_n: f32, x_m: f32, y_m: f32, pool: &BitmapPool) -> f32 {
         if let Some(bounds) = &self.bounds
             && !bounds.contain(x_m, y_m)
@@ -123,7 +121,10 @@ impl Bounds {
 }
 
 impl Source {
-    #[inline]
+    /// Electric friction at a place, in N.
+    ///
+    /// Not inlined: a loop over layers would begin with the constants of every kind, and go past away layers slowly.
+    #[inline(never)]
     fn electric_friction_n(&self, x_m: f32, y_m: f32, pool: &BitmapPool) -> f32 {
         match *self {
             Self::Constant { electric_friction_n } => electric_friction_n,
