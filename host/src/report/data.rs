@@ -2,9 +2,9 @@
 
 /// Rows under named columns.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Data {
-    header: Vec<&'static str>,
-    rows: Vec<Vec<Value>>,
+pub(super) struct Data<const COLUMNS: usize> {
+    header: [&'static str; COLUMNS],
+    rows: Vec<[Value; COLUMNS]>,
 }
 
 /// A cell.
@@ -16,19 +16,19 @@ pub(super) enum Value {
     Text(String),
 }
 
-impl Data {
-    pub(super) fn new(header: &[&'static str]) -> Self {
-        Self { header: header.to_vec(), rows: Vec::new() }
+impl<const COLUMNS: usize> Data<COLUMNS> {
+    pub(super) fn new(header: [&'static str; COLUMNS]) -> Self {
+        Self { header, rows: Vec::new() }
     }
 
-    pub(super) fn row<const N: usize>(&mut self, cells: [Value; N]) {
-        self.rows.push(cells.into());
+    pub(super) fn row(&mut self, cells: [Value; COLUMNS]) {
+        self.rows.push(cells);
     }
 
     /// As a CSV file has them.
     pub(super) fn csv(&self) -> Result<Vec<u8>, csv::Error> {
         let mut writer = csv::Writer::from_writer(Vec::new());
-        writer.write_record(&self.header)?;
+        writer.write_record(self.header)?;
         for row in &self.rows {
             writer.write_record(row.iter().map(Value::text))?;
         }

@@ -45,6 +45,9 @@ pub enum ReportError {
         /// What the drawing library said.
         reason: String,
     },
+    /// The numbers behind a picture could not be written as CSV.
+    #[error("the numbers behind a picture: {0}")]
+    Numbers(#[from] csv::Error),
     /// The model refuses a parameter.
     #[error("the contact model: {0}")]
     Parameter(#[from] ParameterError),

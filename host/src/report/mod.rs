@@ -32,8 +32,7 @@ pub fn write(folder: &Path, bench: Option<&Path>) -> Result<Vec<PathBuf>, Report
     for figure in &figures {
         let drawing = |reason: String| ReportError::Drawing { name: figure.name, reason };
         drawn.push((figure, figure.chart.svg().map_err(|error| drawing(error.to_string()))?));
-        let csv = figure.data.csv().map_err(|error| drawing(error.to_string()))?;
-        files.push(put(folder, &format!("{}.csv", figure.name), &csv)?);
+        files.push(put(folder, &format!("{}.csv", figure.name), &figure.csv)?);
     }
     files.insert(0, put(folder, "index.html", page::html(&drawn).as_bytes())?);
     Ok(files)

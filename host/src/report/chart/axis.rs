@@ -117,3 +117,43 @@ fn superscript(power: i32) -> String {
     let raised = digits.bytes().filter_map(|digit| SUPERSCRIPTS.get(usize::from(digit - b'0')));
     sign.chars().chain(raised.copied()).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashSet;
+
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn powers_are_written_as_such() {
+        let axis = Axis::log("", 1e-17..1e12);
+        for (place, expected) in [(-17.0, "10⁻¹⁷"), (-3.0, "0.001"), (0.0, "1"), (3.0, "1000"), (12.0, "10¹²")] {
+            assert_eq!(axis.tick_label(place), expected);
+        }
+        assert_eq!(axis.tick_label(5e5_f64.log10()), "5·10⁵");
+        assert_eq!(axis.tick_label(0.5_f64.log10()), "0.5");
+    }
+
+    proptest! {
+        #[test]
+        fn every_axis_has_a_few_labels_that_differ(start in -20.0..20.0_f64, decades in 0.7..40.0_f64) {
+            let axis = Axis::log("", 10_f64.powf(start)..10_f64.powf(start + decades));
+            let ticks = axis.ticks();
+            prop_assert!((2..=9).contains(&ticks.len()), "{ticks:?}");
+            let labels: HashSet<_> = ticks.iter().map(|tick| axis.tick_label(*tick)).collect();
+            prop_assert_eq!(labels.len(), ticks.len());
+            prop_assert!(ticks.iter().all(|tick| (start - 1e-6..=start + decades + 1e-6).contains(tick)));
+        }
+
+        #[test]
+        fn every_even_axis_has_a_few_labels_that_differ(start in -1e3..1e3_f64, length in 0.01..1e4_f64) {
+            let axis = Axis::linear("", start..start + length);
+            let ticks = axis.ticks();
+            prop_assert!((2..=8).contains(&ticks.len()), "{ticks:?}");
+            let labels: HashSet<_> = ticks.iter().map(|tick| axis.tick_label(*tick)).collect();
+            prop_assert_eq!(labels.len(), ticks.len());
+        }
+    }
+}

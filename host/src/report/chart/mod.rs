@@ -97,7 +97,7 @@ impl Chart {
                     let area =
                         root.clone().shrink((px(place * panel_width), px(top)), (px(panel_width), px(height(row))));
                     plot::draw(&area, panel)?;
-                    legend::draw(&area, &own(panel), (0, PLOT_HEIGHT), panel_width)?;
+                    legend::draw(&area, &own(panel), (0, PLOT_HEIGHT + SPACING / 2), panel_width)?;
                 }
                 top += height(row);
             }

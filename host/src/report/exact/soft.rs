@@ -7,9 +7,11 @@ use super::{Wide, attraction_of, contact_attraction, pi, voltage_of, wide};
 /// Newton's steps from a first guess; two are usual.
 const STEPS: usize = 60;
 /// Relative size of the last step.
-const SMALL: f64 = 1e-24;
-/// Relative distance over which a slope is taken.
-const SLOPE_STEP: f64 = 1e-15;
+const SMALL: f64 = 1e-22;
+/// Relative distance over which a slope is taken: 2^-40.
+const SLOPE_STEP: f64 = 1.0 / (1_u64 << 40) as f64;
+/// Farther from balance than this, a step is taken in logarithms.
+const FAR: f64 = 1e-3;
 
 /// A soft finger on a coating.
 pub(in crate::report) struct Soft {
@@ -49,13 +51,13 @@ impl Soft {
         (wide(4.0) * &self.radius * spring_force / (pi() * stiffness)).sqrt()
     }
 
-    /// What Eq. (43) lacks to balance.
-    fn residual(&self, spring_force: &Wide, attraction: &Wide, load: &Wide) -> Wide {
+    /// What presses, by Eq. (43), over what the springs carry: it falls through one as they carry more.
+    fn pressing(&self, spring_force: &Wide, attraction: &Wide, load: &Wide) -> Wide {
         let stiffness = self.stiffness_at(spring_force);
         let area = self.area_at(spring_force, &stiffness);
         let around = wide(2.0) * pi() * attraction * &self.radius * &self.gap
             / (wide(1.0) + attraction / (&self.gap * stiffness));
-        spring_force - load - pi() * attraction * area - around
+        (load + pi() * attraction * area + around) / spring_force
     }
 
     /// Electric friction at a voltage above zero, under a load of zero or more, from a first guess above zero; none when
@@ -70,18 +72,21 @@ impl Soft {
         let load = wide(normal_load_n);
         let mut spring_force = wide(guess_n) / &self.friction_coefficient + &load;
         for _ in 0..STEPS {
-            let residual = self.residual(&spring_force, &attraction, &load);
-            let change = &spring_force * wide(SLOPE_STEP);
-            let slope = (self.residual(&(&spring_force + &change), &attraction, &load) - &residual) / &change;
-            let step = residual / slope;
-            // Against the electric part, which a load may dwarf.
-            let small = (&step / (&spring_force - &load)).to_f64().value().abs() <= SMALL;
-            spring_force -= step;
-            if spring_force <= load {
-                return None;
+            let pressing = self.pressing(&spring_force, &attraction, &load);
+            let further = self.pressing(&(&spring_force * wide(1.0 + SLOPE_STEP)), &attraction, &load);
+            // Of the logarithm of what presses over that of what the springs carry; nearly constant, between -1 and 0.
+            let slope = ((further - &pressing) / &pressing).to_f64().value() / SLOPE_STEP;
+            let ratio = pressing.to_f64().value();
+            if (ratio - 1.0).abs() > FAR {
+                spring_force *= wide(ratio.powf(-1.0 / slope));
+                continue;
             }
-            if small {
-                return Some(&self.friction_coefficient * (spring_force - load));
+            let step = &spring_force * (pressing - wide(1.0)) / wide(slope);
+            spring_force -= &step;
+            // Against the electric part, which a load may dwarf.
+            let electric = &spring_force - &load;
+            if (step / &electric).to_f64().value().abs() <= SMALL {
+                return Some(&self.friction_coefficient * electric);
             }
         }
         None

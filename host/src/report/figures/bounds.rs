@@ -13,7 +13,7 @@ const LOADS_N: [f64; 5] = [0.0, 1e-4, 1e-2, 0.1, 0.5];
 pub(super) fn figure() -> Result<Figure, ReportError> {
     let contact = example::<f64>()?;
     let voltages = geometric(1.0, 1e3, 121);
-    let mut data = Data::new(&["bound", "normal_force_n", "outer_radius_m", "voltage_v_rms", "electric_friction_n"]);
+    let mut data = Data::new(["bound", "normal_force_n", "outer_radius_m", "voltage_v_rms", "electric_friction_n"]);
     let mut left =
         Panel::new("No load: the bounds", Axis::log("voltage, V rms", 1.0..1e3), Axis::log("friction, N", 1e-11..1e1));
     let mut curve = |name: &str, load_n: f64, outer_m: Option<f64>, model: &dyn ContactModel<f64>| {
@@ -67,6 +67,6 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
             EXAMPLE.to_owned(),
         ],
         chart: Chart { panels: vec![left, right], columns: 2, shared_legend: false },
-        data,
+        csv: data.csv()?,
     })
 }

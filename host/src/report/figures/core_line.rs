@@ -15,7 +15,7 @@ struct Example {
 }
 
 fn examples() -> [Example; 3] {
-    let soft = Finger { radius_m: 1e-2, stiffness_pa_per_m: 1e6, friction_coefficient: 0.8 };
+    let soft = Finger { radius_m: 1e-2, stiffness_pa_per_m: 3e6, friction_coefficient: 0.8 };
     let hard = Finger { radius_m: 5e-3, stiffness_pa_per_m: 2e9, friction_coefficient: 0.3 };
     [
         Example {
@@ -25,7 +25,7 @@ fn examples() -> [Example; 3] {
             look: Look::mark(PALETTE[1], Mark::Ring),
         },
         Example {
-            name: "R 10 mm, k 1e6 Pa/m, gap 30 µm, µ 0.8",
+            name: "R 10 mm, k 3e6 Pa/m, gap 30 µm, µ 0.8",
             finger: soft,
             gap_m: 3e-5,
             look: Look::mark(PALETTE[2], Mark::Cross),
@@ -95,7 +95,7 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
     friction.add("V → 0 (F ∝ σ₀); V → ∞ (F ∝ σ₀²)", limit, power(2.0, 2.0));
     friction.add("", limit, power(4.0, 4.0));
 
-    let mut data = Data::new(&[
+    let mut data = Data::new([
         "finger",
         "voltage_v_rms",
         "contact_radius_m",
@@ -134,11 +134,11 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
             EXAMPLE.to_owned(),
         ],
         chart: Chart { panels: vec![radius, friction, radius_mm, friction_mn], columns: 2, shared_legend: false },
-        data,
+        csv: data.csv()?,
     })
 }
 
-fn put(data: &mut Data, name: &str, point: &Point) {
+fn put(data: &mut Data<7>, name: &str, point: &Point) {
     data.row([
         name.into(),
         point.voltage_v_rms.into(),

@@ -72,32 +72,40 @@ fn draw(
     }
 }
 
-fn data(families: [&[Curve]; 2], contact: &Contact<f64>) -> Data {
-    let mut data = Data::new(&[
+/// Rows of all curves, each with one quantity in its unit and scaled.
+fn data(
+    families: [&[Curve]; 2],
+    quantity: [&'static str; 2],
+    contact: &Contact<f64>,
+    values: impl Fn(&ContactState<f64>) -> [f64; 2],
+) -> Result<Vec<u8>, ReportError> {
+    let [in_unit, scaled] = quantity;
+    let mut data = Data::new([
+        "panel",
         "relative_normal_force",
         "normal_force_n",
         "voltage_v_rms",
-        "contact_radius_m",
-        "friction_n",
         "voltage_over_scale",
-        "radius_over_scale",
-        "friction_over_scale",
+        in_unit,
+        scaled,
     ]);
-    for curve in families.into_iter().flatten() {
+    let [relative, on_screen] = families;
+    let named = relative.iter().map(|curve| ("relative", curve)).chain(on_screen.iter().map(|curve| ("screen", curve)));
+    for (panel, curve) in named {
         for (voltage_v_rms, state) in &curve.points {
+            let [in_unit, scaled] = values(state);
             data.row([
+                panel.into(),
                 curve.relative_load.into(),
                 curve.normal_load_n.into(),
                 (*voltage_v_rms).into(),
-                state.contact_radius_m.into(),
-                state.friction_n.into(),
                 (voltage_v_rms / contact.voltage_scale_v_rms()).into(),
-                contact.area(state.contact_radius_m).sqrt().into(),
-                (state.friction_n / contact.friction_scale_n()).into(),
+                in_unit.into(),
+                scaled.into(),
             ]);
         }
     }
-    data
+    Ok(data.csv()?)
 }
 
 fn relative_name(curve: &Curve) -> String {
@@ -138,7 +146,9 @@ pub(super) fn contact_radius() -> Result<Figure, ReportError> {
                 .to_owned(),
             EXAMPLE.to_owned(),
         ],
-        data: data([&relative, &loaded], &contact),
+        csv: data([&relative, &loaded], ["contact_radius_m", "radius_over_scale"], &contact, |state| {
+            [state.contact_radius_m, contact.area(state.contact_radius_m).sqrt()]
+        })?,
         chart: Chart { panels: vec![left, right], columns: 2, shared_legend: false },
     })
 }
@@ -170,7 +180,9 @@ pub(super) fn friction() -> Result<Figure, ReportError> {
                 .to_owned(),
             EXAMPLE.to_owned(),
         ],
-        data: data([&relative, &loaded], &contact),
+        csv: data([&relative, &loaded], ["electric_friction_n", "friction_over_scale"], &contact, |state| {
+            [state.electric_friction_n, state.friction_n / contact.friction_scale_n()]
+        })?,
         chart: Chart { panels: vec![left, right], columns: 2, shared_legend: false },
     })
 }

@@ -13,7 +13,6 @@ use frixel_model::{Contact, Finger, ParameterError, Real};
 
 use super::chart::Chart;
 use super::counts::Counts;
-use super::data::Data;
 use super::error::ReportError;
 
 /// Effective gap of the example finger, in metres.
@@ -29,22 +28,23 @@ pub(super) struct Figure {
     /// What a reader who has nothing but the picture needs to know: paragraphs.
     pub(super) caption: Vec<String>,
     pub(super) chart: Chart,
-    pub(super) data: Data,
+    /// What the CSV file has.
+    pub(super) csv: Vec<u8>,
 }
 
 /// All figures in the page's order.
 pub(super) fn all(counts: Option<&Counts>) -> Result<Vec<Figure>, ReportError> {
     let measured = run_time::measure()?;
-    let instructions = counts.and_then(|counts| run_time::against_instructions(&measured, counts));
+    let instructions = counts.map(|counts| run_time::against_instructions(&measured, counts)).transpose()?;
     let figures = [
         Some(core_line::figure()?),
         Some(loads::contact_radius()?),
         Some(loads::friction()?),
         Some(bounds::figure()?),
         Some(soft::figure()?),
-        instructions,
-        Some(run_time::against_time(&measured)),
-        Some(run_time::against_size(&measured)),
+        instructions.flatten(),
+        Some(run_time::against_time(&measured)?),
+        Some(run_time::against_size(&measured)?),
         Some(tick_rate::figure()?),
         Some(stability::in_f64()?),
         Some(stability::in_f32()?),

@@ -103,10 +103,10 @@ pub(super) fn measure() -> Result<[Measured; 2], ReportError> {
 }
 
 /// Error over run time on this computer.
-pub(super) fn against_time(measured: &[Measured; 2]) -> Figure {
+pub(super) fn against_time(measured: &[Measured; 2]) -> Result<Figure, ReportError> {
     let time = || Axis::log("MEASURED run time / the f64 closed form's", 0.05..200.0);
     let panels = measured.each_ref().map(|one| one.panel(time(), |way| Some(way.seconds / one.unit_seconds())));
-    let mut data = Data::new(&[
+    let mut data = Data::new([
         "normal_force_n",
         "way",
         "size",
@@ -127,7 +127,7 @@ pub(super) fn against_time(measured: &[Measured; 2]) -> Figure {
         }
     }
     let (low, high) = RANGE_V_RMS;
-    Figure {
+    Ok(Figure {
         name: "error-against-run-time",
         title: "Error against run time, for every way to invert".to_owned(),
         caption: vec![
@@ -152,19 +152,19 @@ pub(super) fn against_time(measured: &[Measured; 2]) -> Figure {
             EXAMPLE.to_owned(),
         ],
         chart: Chart { panels: panels.into(), columns: 2, shared_legend: true },
-        data,
-    }
+        csv: data.csv()?,
+    })
 }
 
 /// Error over bytes.
-pub(super) fn against_size(measured: &[Measured; 2]) -> Figure {
+pub(super) fn against_size(measured: &[Measured; 2]) -> Result<Figure, ReportError> {
     let size = || Axis::log("size of the table, bytes", 1e2..1e5);
     let panels = measured.each_ref().map(|one| {
         let mut panel = one.panel(size(), |way| way.bytes.map(|bytes| bytes as f64));
         panel.y = Axis::log(ERROR, 1e-7..1e1);
         panel
     });
-    let mut data = Data::new(&["normal_force_n", "way", "size", "bytes", "largest_relative_error"]);
+    let mut data = Data::new(["normal_force_n", "way", "size", "bytes", "largest_relative_error"]);
     for one in measured {
         for way in one.ways.iter().filter(|way| way.bytes.is_some()) {
             let bytes = way.bytes.map_or(Value::Text(String::new()), Value::from);
@@ -172,7 +172,7 @@ pub(super) fn against_size(measured: &[Measured; 2]) -> Figure {
         }
     }
     let octaves = |one: &Measured| range_octaves(one.load_n);
-    Figure {
+    Ok(Figure {
         name: "error-against-size",
         title: "Error against size, for every kind of table".to_owned(),
         caption: vec![
@@ -186,18 +186,18 @@ pub(super) fn against_size(measured: &[Measured; 2]) -> Figure {
             EXAMPLE.to_owned(),
         ],
         chart: Chart { panels: panels.into(), columns: 2, shared_legend: true },
-        data,
-    }
+        csv: data.csv()?,
+    })
 }
 
 /// Error over instructions on boards; none without a count that belongs to a way.
-pub(super) fn against_instructions(measured: &[Measured; 2], counts: &Counts) -> Option<Figure> {
-    let mut data = Data::new(&["core", "way", "instructions", "estimated_cycles", "largest_relative_error"]);
+pub(super) fn against_instructions(measured: &[Measured; 2], counts: &Counts) -> Result<Option<Figure>, ReportError> {
+    let mut data = Data::new(["core", "way", "instructions", "estimated_cycles", "largest_relative_error"]);
     let mut panels = Vec::new();
     for (core, core_name) in CORES {
         let mut panel = Panel::new(
             core_name,
-            Axis::log("instructions of one inversion, at most", 5.0..2e4),
+            Axis::log("instructions of one inversion, at most", 5.0..1e5),
             Axis::log(ERROR, 1e-16..1e-2),
         );
         for (kind, what) in COUNTED {
@@ -216,9 +216,9 @@ pub(super) fn against_instructions(measured: &[Measured; 2], counts: &Counts) ->
         }
     }
     if panels.is_empty() {
-        return None;
+        return Ok(None);
     }
-    Some(Figure {
+    Ok(Some(Figure {
         name: "error-against-instructions",
         title: "Error against instructions on a board".to_owned(),
         caption: vec![
@@ -230,8 +230,8 @@ pub(super) fn against_instructions(measured: &[Measured; 2], counts: &Counts) ->
             EXAMPLE.to_owned(),
         ],
         chart: Chart { columns: panels.len() as u32, panels, shared_legend: true },
-        data,
-    })
+        csv: data.csv()?,
+    }))
 }
 
 fn name(kind: Kind) -> &'static str {

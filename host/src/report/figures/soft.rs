@@ -34,7 +34,7 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
     let mut unloaded = Panel::new("No load", volts(), Axis::log("friction, N", 1e-10..1e1));
     let mut loaded =
         Panel::new("Under 0.5 N: what voltage adds", volts(), Axis::log("electric friction F_T − µ F_N, N", 1e-7..1e1));
-    let mut data = Data::new(&[
+    let mut data = Data::new([
         "finger",
         "stress_exponent",
         "modulus_pa",
@@ -89,6 +89,6 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
             EXAMPLE.to_owned(),
         ],
         chart: Chart { panels: vec![unloaded, loaded], columns: 2, shared_legend: false },
-        data,
+        csv: data.csv()?,
     })
 }

@@ -117,16 +117,16 @@ struct Precision {
 pub(super) fn in_f64() -> Result<Figure, ReportError> {
     let precision =
         Precision { name: "stability-f64", title: "f64", goal: 4e-15, colours: (1e-17, 4e-15), half_unit: "1.1e-16" };
-    Ok(figure(&precision, &map::<f64>()?))
+    figure(&precision, &map::<f64>()?)
 }
 
 pub(super) fn in_f32() -> Result<Figure, ReportError> {
     let precision =
         Precision { name: "stability-f32", title: "f32", goal: 1e-6, colours: (1e-9, 1e-6), half_unit: "6.0e-8" };
-    Ok(figure(&precision, &map::<f32>()?))
+    figure(&precision, &map::<f32>()?)
 }
 
-fn figure(precision: &Precision, map: &Map) -> Figure {
+fn figure(precision: &Precision, map: &Map) -> Result<Figure, ReportError> {
     let panel = |title: &str, error: fn(&Errors) -> f64| {
         let (low, high) = (f64::from(Q_DECADES.0), f64::from(Q_DECADES.1));
         let mut panel = Panel::new(
@@ -145,14 +145,14 @@ fn figure(precision: &Precision, map: &Map) -> Figure {
         panel.notes.push((1.5e-12, 2.6e-7, "↓ no load, n = 0".to_owned()));
         panel
     };
-    let mut data = Data::new(&["q_from", "q_to", "n_from", "n_to", "forward_relative_error", "inverse_relative_error"]);
+    let mut data = Data::new(["q_from", "q_to", "n_from", "n_to", "forward_relative_error", "inverse_relative_error"]);
     for cell in &map.cells {
         let (low, high) = if cell.n > 0.0 { cell.y } else { (0.0, 0.0) };
         let (left, right) = cell.x;
         data.row([left.into(), right.into(), low.into(), high.into(), cell.forward.into(), cell.inverse.into()]);
     }
     let title = precision.title;
-    Figure {
+    Ok(Figure {
         name: precision.name,
         title: format!("Stability in {title}: error over the plane of attraction and load"),
         caption: vec![
@@ -178,6 +178,6 @@ fn figure(precision: &Precision, map: &Map) -> Figure {
             columns: 2,
             shared_legend: true,
         },
-        data,
-    }
+        csv: data.csv()?,
+    })
 }

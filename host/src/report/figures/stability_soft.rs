@@ -119,7 +119,7 @@ fn panel(title: &str, range: std::ops::Range<f64>, goal: f64, points: &[Point]) 
 
 pub(super) fn figure() -> Result<Figure, ReportError> {
     let (double, single) = (points::<f64>()?, points::<f32>()?);
-    let mut data = Data::new(&[
+    let mut data = Data::new([
         "precision",
         "gamma",
         "normal_force_n",
@@ -164,6 +164,6 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
             columns: 2,
             shared_legend: true,
         },
-        data,
+        csv: data.csv()?,
     })
 }

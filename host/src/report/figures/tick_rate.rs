@@ -113,7 +113,7 @@ fn rms_error(case: &Case, tick_hz: u32) -> Result<f64, ReportError> {
 }
 
 /// What is wanted and felt of the finest stripes over a few of them.
-fn trace(panel: &mut Panel, data: &mut Data, case: &Case) -> Result<(), ReportError> {
+fn trace(panel: &mut Panel, data: &mut Data<6>, case: &Case) -> Result<(), ReportError> {
     for (index, (tick_hz, look)) in
         (0..).zip([(1_000, Look::line(PALETTE[1], Line::Solid)), (40_000, Look::line(PALETTE[0], Line::Solid))])
     {
@@ -176,7 +176,7 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
         Axis::log("ticks a second, kHz", 0.9..45.0),
         Axis::log("rms friction error, % of the reachable range", 0.1..100.0),
     );
-    let mut data = Data::new(&[
+    let mut data = Data::new([
         "curve",
         "tick_hz",
         "carrier_hz",
@@ -207,6 +207,6 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
         title: "Error against the rate of ticks, for a felt texture".to_owned(),
         caption: caption(),
         chart: Chart { panels: vec![left, right], columns: 2, shared_legend: false },
-        data,
+        csv: data.csv()?,
     })
 }
