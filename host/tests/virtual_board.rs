@@ -8,6 +8,7 @@ use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::sleep;
 use std::time::Duration;
 
@@ -26,6 +27,18 @@ fn frixel() -> Command {
 
 fn scene() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/brick.toml")
+}
+
+/// Clients that are killed.
+const KILLS: usize = 20;
+/// Of which the first die while the picture goes over the line.
+const UPLOADS_KILLED: usize = 6;
+
+/// One test at a time: on a busy machine a pseudo-terminal may hold bytes back for longer than a client waits.
+static TURN: Mutex<()> = Mutex::new(());
+
+fn turn() -> MutexGuard<'static, ()> {
+    TURN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// A client in a process of its own.
@@ -147,6 +160,7 @@ fn read_events(text: &str) -> Vec<Event> {
 
 #[test]
 fn a_scene_plays_through_a_real_serial_port() {
+    let _turn = turn();
     let board = VirtualBoard::start();
     let folder = TempDir::new().unwrap();
     let played = board.play("0.6", folder.path());
@@ -217,9 +231,7 @@ fn lcg(state: &mut u64) -> usize {
 
 #[test]
 fn a_client_killed_at_any_byte_leaves_the_output_at_zero_and_the_next_one_welcome() {
-    const KILLS: usize = 20;
-    /// Of which the first die while the picture goes over the line.
-    const UPLOADS_KILLED: usize = 6;
+    let _turn = turn();
     let board = VirtualBoard::start();
     let folder = TempDir::new().unwrap();
     let mut random = 1;
@@ -253,6 +265,7 @@ fn a_client_killed_at_any_byte_leaves_the_output_at_zero_and_the_next_one_welcom
 
 #[test]
 fn a_board_that_vanishes_is_said_in_a_sentence() {
+    let _turn = turn();
     let mut board = VirtualBoard::start();
     let folder = TempDir::new().unwrap();
     let process = client(&board.port, "600", folder.path());

@@ -120,6 +120,31 @@ proptest! {
         prop_assert!(finite.electric_friction_n <= upper.electric_friction_n * (1.0 + 1e-13));
     }
 
+    /// A contact may reach the outer radius, where nothing is left around it, but not pass it.
+    #[test]
+    fn contact_may_reach_the_outer_radius(finger in fingers(), load_n in loads(), voltage in log_range(1e-3, 1e3)) {
+        fn reaches<T: Real>(contact: Contact<T>, load_n: T, voltage: T) {
+            let reached = contact.lower_bound(load_n).unwrap().state(voltage).unwrap();
+            let same = contact.within(reached.contact_radius_m, load_n).unwrap();
+            let state = same.state(voltage).unwrap();
+            let ratio: f64 = (state.contact_radius_m / reached.contact_radius_m).into();
+            assert!((ratio - 1.0).abs() < 8.0 * T::EPSILON.into());
+            assert!(same.voltage_for_electric_friction(reached.electric_friction_n).is_ok());
+            let beyond = contact.within(reached.contact_radius_m * T::from_f64(0.999), load_n).unwrap();
+            assert_eq!(beyond.state(voltage).unwrap_err(), StateError::PassesOuterRadius);
+            let inverse = beyond.voltage_for_electric_friction(reached.electric_friction_n);
+            assert_eq!(inverse.unwrap_err(), InverseError::PassesOuterRadius);
+        }
+        reaches(Contact::new(&finger.0, finger.1).unwrap(), load_n, voltage);
+        let (finger, gap_m) = narrow(&finger);
+        let contact = Contact::new(&finger, gap_m).unwrap();
+        // In f32 only where no answer leaves the range.
+        let friction_n = contact.lower_bound(load_n as f32).unwrap().state(voltage as f32).map_or(0.0, |s| s.electric_friction_n);
+        if friction_n > 1e-30 {
+            reaches(contact, load_n as f32, voltage as f32);
+        }
+    }
+
     /// Eqs. (20), (21): the pressure of Eq. (14) over the contact is friction over its coefficient.
     #[test]
     fn pressure_adds_up_to_friction(finger in fingers(), load_n in loads(), voltage in log_range(1e-3, 1e3)) {

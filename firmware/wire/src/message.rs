@@ -37,7 +37,7 @@ pub enum Command {
         width: u16,
         /// Rows.
         height: u16,
-        /// CRC-32 of all samples: the bitmap's name in scene records.
+        /// The bitmap's name in scene records: [`crate::scene::bitmap_crc32`].
         crc32: u32,
     },
     /// Ends an upload: the board checks its CRC.
@@ -99,7 +99,7 @@ pub struct Answer {
     pub sequence: u16,
     /// Bytes received since the hello, garbage included, modulo 2^32: the credit.
     pub received_bytes: u32,
-    /// State of the supervisor when the command was taken.
+    /// State of the supervisor once the command is carried out.
     pub state: State,
     /// Whether it was done.
     pub outcome: Result<Accepted, Refusal>,

@@ -45,12 +45,12 @@ fn a_scene_plays_over_a_serial_port() {
     device.play().unwrap();
     device.subscribe(400).unwrap();
     let mut heard = 0;
-    let waits = (0..6000).take_while(|_| {
+    let waits = (0..100).take_while(|_| {
         device.wait(Duration::from_millis(10), &mut |_| heard += 1).unwrap();
         heard < 5
     });
     waits.count();
-    assert!(heard >= 5, "{heard} messages of telemetry in a minute");
+    assert!(heard >= 5, "{heard} messages of telemetry in a second");
     let counters = device.counters();
     assert_eq!((counters.payload_bytes, counters.frames_rejected), ((samples.len() + scene.len()) as u64, 0));
     let board = board.board.lock().unwrap();

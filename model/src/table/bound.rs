@@ -11,11 +11,12 @@ const DISTANCES: [f64; 3] = [1.0, 0.384_900_179_459_750_5, 0.171_572_875_253_809
 /// an octave it is 30; their interpolation error is a thousand times larger.
 pub(super) const ROUNDING: f64 = 25.0 / (1 << 24) as f64;
 
-/// The last point is put this far below the curve, relative to it, so that rounding stays below the largest voltage.
-pub(super) const TOP_MARGIN: f64 = 1.0 / (1 << 22) as f64;
+/// The last point is put this far below the curve, relative to it: eight half-units, more than rounding at the end of a row
+/// (7.3 of them), so that no voltage is above the largest.
+pub(super) const TOP_MARGIN: f64 = 1.0 / (1 << 21) as f64;
 
-/// Share of the top margin: its polynomial reaches at most 0.5 where the interpolation's error is greatest, and friction grows at
-/// most with the fourth power of the voltage.
+/// Share of the top margin: its polynomial reaches at most 0.5 where the interpolation's error is greatest, and friction grows
+/// at most with the fourth power of the voltage.
 pub(super) const TOP_SHARE: f64 = 0.5 * 4.0 * TOP_MARGIN;
 
 /// The bound on interpolation alone, for rows whose half width is at most `half_width` of where they begin.

@@ -1,5 +1,7 @@
 //! The smallest table that meets an error target.
 
+use core::num::NonZeroU32;
+
 use super::bound::{ROUNDING, TOP_SHARE, half_width, interpolation_error};
 use super::{FixedTable, SizedTable, TableError};
 use crate::LoadedContact;
@@ -21,8 +23,8 @@ pub enum Precision {
 /// let contact = Contact::new(&finger, 10e-6)?.under_load(0.5)?;
 /// let builder = TableBuilder::new(&contact, 1e-6, 28e-3, 1e-3)?;
 /// let shape = builder.smallest(Precision::F32)?;
-/// assert_eq!((shape.coefficients, shape.rows, shape.bytes()), (3, 27, 324));
-/// let mut rows = [[0.0; 3]; 27];
+/// assert_eq!((shape.coefficients, shape.rows, shape.bytes()), (4, 18, 288));
+/// let mut rows = [[0.0; 4]; 18];
 /// let table = builder.build_f32(&mut rows)?;
 /// let friction_n = contact.electric_friction_n(f64::from(table.voltage_v_rms(0.01)));
 /// assert!((friction_n / 0.01 - 1.0).abs() < 1e-3);
@@ -58,13 +60,13 @@ impl TableShape {
 
 pub(super) struct FloatLayout {
     pub(super) rows: usize,
-    pub(super) density: u32,
+    pub(super) density: NonZeroU32,
     relative_error: f64,
 }
 
 pub(super) struct FixedLayout {
     pub(super) rows: usize,
-    pub(super) per_octave: u32,
+    pub(super) per_octave: NonZeroU32,
     pub(super) first_octave: u32,
     relative_error: f64,
 }
@@ -141,7 +143,8 @@ impl<'contact> TableBuilder<'contact> {
         let patterns = u64::from(high.to_bits() - low.to_bits()) + 2;
         let rows = ((patterns * density as u64) >> 32) + 1;
         let relative_error = rest + interpolation_error(coefficients, 256.0 / density).ok_or(TableError::Range)?;
-        Ok(FloatLayout { rows: rows as usize, density: density as u32, relative_error })
+        let density = NonZeroU32::new(density as u32).ok_or(TableError::Target)?;
+        Ok(FloatLayout { rows: rows as usize, density, relative_error })
     }
 
     pub(super) fn fixed_layout(&self, coefficients: usize) -> Result<FixedLayout, TableError> {
@@ -163,7 +166,7 @@ impl<'contact> TableBuilder<'contact> {
         let relative_error = rest + interpolation_error(coefficients, 0.5 / per_octave).ok_or(TableError::Range)?;
         Ok(FixedLayout {
             rows: rows as usize,
-            per_octave: per_octave as u32,
+            per_octave: NonZeroU32::new(per_octave as u32).ok_or(TableError::Target)?,
             first_octave: 32 - octaves as u32,
             relative_error,
         })

@@ -37,7 +37,7 @@ impl<'rows, const C: usize> FixedTable<'rows, C> {
         for (index, row) in rows.iter_mut().enumerate() {
             let (octave, part) = (index as u32 / layout.per_octave, index as u32 % layout.per_octave);
             let octave_n = friction_unit_n * libm::scalbn(1.0, (layout.first_octave + octave) as i32);
-            let step_n = octave_n / f64::from(layout.per_octave);
+            let step_n = octave_n / f64::from(layout.per_octave.get());
             let mut end = point(octave_n + step_n * f64::from(part + 1));
             if index == last {
                 end.1 *= 1.0 - TOP_MARGIN;
@@ -53,7 +53,7 @@ impl<'rows, const C: usize> FixedTable<'rows, C> {
         }
         Ok(Self {
             rows,
-            rows_per_octave: layout.per_octave,
+            rows_per_octave: layout.per_octave.get(),
             first_octave: layout.first_octave,
             friction_unit_n,
             voltage_unit_v_rms,

@@ -1,5 +1,7 @@
 //! The evaluator in f32, and the rows it reads.
 
+use core::num::NonZeroU32;
+
 use super::bound::TOP_MARGIN;
 use super::interpolation::polynomial;
 use super::{TableBuilder, TableError};
@@ -11,7 +13,7 @@ use crate::LoadedContact;
 pub(super) struct Grid {
     first_bits: u32,
     /// Rows to 2^32 bit patterns.
-    density: u32,
+    density: NonZeroU32,
     friction_max_n: f32,
     voltage_max_v_rms: f32,
 }
@@ -20,7 +22,7 @@ impl Grid {
     /// `rows` rows of about `2^32/density` patterns each, the last one up to and with `friction_max_n`.
     pub(super) fn new(
         rows: usize,
-        density: u32,
+        density: NonZeroU32,
         friction_max_n: f32,
         voltage_max_v_rms: f32,
     ) -> Result<Self, TableError> {
@@ -39,7 +41,7 @@ impl Grid {
     pub(super) fn row(&self, friction_n: f32) -> usize {
         // Whatever is outside, and every negative and not-a-number, wraps to the top.
         let patterns = friction_n.to_bits().wrapping_sub(self.first_bits);
-        ((u64::from(patterns) * u64::from(self.density)) >> 32) as usize
+        ((u64::from(patterns) * u64::from(self.density.get())) >> 32) as usize
     }
 
     pub(super) fn friction_max_n(&self) -> f32 {
@@ -82,31 +84,13 @@ impl Grid {
             }
             start = end;
         }
-        if let Some(row) = rows.last_mut() {
-            self.keep_below(row);
-        }
         Ok(())
-    }
-
-    /// Sees to it that rounding does not lift the end of the last row above the largest voltage.
-    fn keep_below<const C: usize>(&self, row: &mut [f32; C]) {
-        // Farther below the end the curve itself is lower by more than rounding and margin together.
-        let end_bits = self.friction_max_n.to_bits();
-        let above = |row: &[f32; C]| {
-            (end_bits.saturating_sub(64)..=end_bits)
-                .any(|bits| horner(row, f32::from_bits(bits)) > self.voltage_max_v_rms)
-        };
-        while above(row) {
-            if let Some(constant) = row.first_mut() {
-                *constant = constant.next_down();
-            }
-        }
     }
 }
 
 /// Patterns from the first row's beginning to that of row `row`: the least whose product with `density` reaches it.
-fn offset(row: u64, density: u32) -> u64 {
-    (row << 32).div_ceil(u64::from(density))
+fn offset(row: u64, density: NonZeroU32) -> u64 {
+    (row << 32).div_ceil(u64::from(density.get()))
 }
 
 #[inline]

@@ -1,5 +1,7 @@
 //! The table of a microcontroller with an FPU: of fixed size, built where it is used.
 
+use core::num::NonZeroU32;
+
 use super::TableError;
 use super::float::{Grid, round_down};
 use crate::LoadedContact;
@@ -7,7 +9,7 @@ use crate::LoadedContact;
 /// Rows in a table: 31.5 octaves, enough for 200 V down to 1 V where friction grows as the fourth power of the voltage.
 const ROWS: usize = 126;
 /// Four rows an octave of 2^23 patterns.
-const DENSITY: u32 = 4 << 9;
+const DENSITY: NonZeroU32 = NonZeroU32::new(4 << 9).unwrap();
 /// The table reaches at least down to this voltage.
 const KNEE_V_RMS: f64 = 1.0;
 /// Or to this part of the largest voltage, when that is lower.
@@ -38,7 +40,9 @@ pub struct InverseTable {
 
 impl InverseTable {
     /// Largest relative error, in electric friction, from the friction at 1 V (or at 1/200 of the largest voltage, when
-    /// that is lower) to that at the largest: proven for every finger, coating and load of zero or more.
+    /// that is lower) to that at the largest: proven for every finger, coating and load of zero or more (9.9e-6, from
+    /// `reference/table_constants.py`). For the example finger between 1 V and 200 V it is 3.6e-6 without load and 1.8e-6 under
+    /// 0.5 N, over every `f32`: `cargo test --release -p frixel-model -- --ignored --nocapture`.
     pub const RELATIVE_ERROR: f32 = 1e-5;
 
     /// A table for `contact`, up to `voltage_max_v_rms`: some 250 evaluations of the closed form for the example finger,

@@ -10,8 +10,8 @@
 //! `s = d ln x/d ln V`, the interpolation's relative error in friction is at most `s |x^C V^(C)|/(C! V)` times the greatest
 //! product of distances to those points, `W (half width/x)^C`. The first factor depends on dimensionless friction and load
 //! only; `reference/table_constants.py` finds its supremum over all frictions and all loads of zero or more, so that the
-//! bound holds for every finger and coating. Rounding adds the share of [`bound::ROUNDING`], the distance kept from the
-//! largest voltage that of [`bound::TOP_MARGIN`].
+//! bound holds for every finger and coating. Rounding adds its share, and so does the distance that the last row keeps
+//! from the largest voltage (`src/table/bound.rs`).
 
 mod bound;
 mod builder;

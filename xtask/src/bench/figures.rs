@@ -1,0 +1,50 @@
+//! What was measured.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+/// Figures by name: instructions of `m4f.…` and `m3.…` at the worst input, bytes of images. Names that end in
+/// [`CYCLES`] and [`MEAN`] are the estimate in cycles, at that input too, and the mean over all inputs.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Figures(BTreeMap<String, u64>);
+
+/// End of the name of an estimate in cycles.
+pub(crate) const CYCLES: &str = "_cycles";
+
+/// End of the name of a mean.
+pub(crate) const MEAN: &str = "_mean";
+
+impl Figures {
+    /// Adds a figure.
+    pub(crate) fn put(&mut self, name: String, value: u64) {
+        self.0.insert(name, value);
+    }
+
+    /// A figure.
+    pub(crate) fn get(&self, name: &str) -> Option<u64> {
+        self.0.get(name).copied()
+    }
+
+    /// A table for a person.
+    pub(crate) fn table(&self) -> String {
+        let mut table = format!("{:28} {:>8} {:>8} {:>12}\n", "", "worst", "mean", "cycles, est.");
+        for (name, value) in self.0.iter().filter(|(name, _)| !name.ends_with(CYCLES) && !name.ends_with(MEAN)) {
+            let beside = |end| self.get(&format!("{name}{end}")).map(|value| value.to_string()).unwrap_or_default();
+            // A string takes what is written to it.
+            let _ = writeln!(table, "{name:28} {value:>8} {:>8} {:>12}", beside(MEAN), beside(CYCLES));
+        }
+        table
+    }
+
+    /// All of it for a program.
+    pub(crate) fn json(&self) -> Result<String, String> {
+        serde_json::to_string_pretty(&self.0).map(|json| json + "\n").map_err(|error| error.to_string())
+    }
+}
+
+#[cfg(test)]
+impl<const N: usize> From<[(&str, u64); N]> for Figures {
+    fn from(figures: [(&str, u64); N]) -> Self {
+        Self(figures.into_iter().map(|(name, value)| (name.to_owned(), value)).collect())
+    }
+}
