@@ -300,8 +300,10 @@ fn fewer_ticks_make_a_larger_error() {
     for stripes in ["2 mm stripes", "1 mm stripes", "0.5 mm stripes", "2 mm stripes, a real touch source"] {
         let errors = curve(&rows, &[("curve", stripes)], "tick_hz", "rms_error_over_reachable_range");
         assert_eq!((errors.len(), errors[0].0, errors[8].0), (9, 1000.0, 40_000.0));
-        assert!(errors.windows(2).all(|pair| pair[1].1 < 1.1 * pair[0].1), "{stripes}: {errors:?}");
-        assert!(errors[0].1 > 1.3 * errors[8].1 && errors[8].1 > 0.0, "{stripes}: {errors:?}");
+        let [slowest, slower, slow] = [errors[0].1, errors[1].1, errors[2].1];
+        assert!(slowest > 1.3 * slower && slower > 1.05 * slow, "{stripes}: {errors:?}");
+        // Beyond, ticks help less and less, and what they cannot help remains.
+        assert!(errors[3..].iter().all(|error| error.1 < slow && error.1 > 0.01), "{stripes}: {errors:?}");
     }
     for row in rows.iter().filter(|row| !row["rms_error_over_reachable_range"].is_empty()) {
         let (ticks, carrier) = (number(row, "tick_hz"), number(row, "carrier_hz"));

@@ -189,7 +189,7 @@ pub(super) fn against_instructions(measured: &[Measured; 2], counts: &Counts) ->
         let mut panel = Panel::new(
             core_name,
             Axis::log("instructions of one inversion, at most", 5.0..1e5),
-            Axis::log(ERROR, 1e-16..1e-2),
+            counted_errors(measured),
         );
         for (kind, name, look) in KINDS {
             let counted = measured.iter().flat_map(|one| one.of(kind)).filter_map(|way| Some((way, way.counted?)));
@@ -224,6 +224,14 @@ pub(super) fn against_instructions(measured: &[Measured; 2], counts: &Counts) ->
         chart: Chart { columns: panels.len() as u32, panels, shared_legend: true },
         csv: data.csv()?,
     }))
+}
+
+/// An axis of the errors of all ways that are counted, with a decade to spare.
+fn counted_errors(measured: &[Measured; 2]) -> Axis {
+    let counted = measured.iter().flat_map(|one| &one.ways).filter(|way| way.counted.is_some());
+    let powers = counted.map(|way| way.error.max(1e-16).log10());
+    let (low, high) = powers.fold((0.0_f64, -16.0_f64), |(low, high), power| (low.min(power), high.max(power)));
+    Axis::log(ERROR, 10_f64.powf(low.floor() - 1.0)..10_f64.powf(high.ceil() + 1.0))
 }
 
 fn name(kind: Kind) -> &'static str {
