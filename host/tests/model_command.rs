@@ -293,6 +293,11 @@ fn reasons_say_what_was_expected_and_found_and_where() {
         f32_status(&changed(GOOD[0], "voltage_v", "1e-50")),
         "invalid: row 3, column voltage_v: 1e-50 is out of the range of f32; use --precision f64"
     );
+    // Friction and contact radius are in range, and the contact attraction is not.
+    assert_eq!(
+        f32_status("wf-upper,1e-10,1e14,1e-7,1,1e-20,1e18,,,,,"),
+        "invalid: the answer is too large for this precision"
+    );
 }
 
 #[test]

@@ -99,7 +99,7 @@ impl Bench<'_> {
     fn in_f64(&self, kind: Kind, size: String, invert: impl Fn(f64) -> f64) -> Way {
         let load_n = self.parameters.normal_load_n;
         let error = |x: f64| relative_error(x, &self.exact.electric_friction_n(invert(x), load_n));
-        let worst = self.frictions(FINE_POINTS).map(error).fold(0.0, f64::max);
+        let worst = largest(self.frictions(FINE_POINTS).map(error));
         Way {
             kind,
             size,
@@ -115,7 +115,7 @@ impl Bench<'_> {
             let x = x as f32;
             (self.contact.electric_friction_n(f64::from(invert(x))) / f64::from(x) - 1.0).abs()
         };
-        let worst = self.frictions(COARSE_POINTS).map(error).fold(0.0, f64::max);
+        let worst = largest(self.frictions(COARSE_POINTS).map(error));
         Way {
             kind,
             size,
@@ -134,7 +134,7 @@ impl Bench<'_> {
             let voltage_v_rms = f64::from(invert(code)) * units.1;
             (self.contact.electric_friction_n(voltage_v_rms) / (f64::from(code) * units.0) - 1.0).abs()
         };
-        let worst = self.frictions(COARSE_POINTS).map(error).fold(0.0, f64::max);
+        let worst = largest(self.frictions(COARSE_POINTS).map(error));
         Way {
             kind,
             size,
@@ -151,10 +151,28 @@ impl Bench<'_> {
     }
 }
 
+/// The largest error; infinite when one is no number, which a plain maximum would pass over.
+fn largest(errors: impl Iterator<Item = f64>) -> f64 {
+    errors.fold(0.0, |worst, error| if error.is_nan() { f64::INFINITY } else { worst.max(error) })
+}
+
 impl Parameters {
     /// In either precision.
     fn as_reals<T: Real>(&self) -> [T; 5] {
         [self.radius_m, self.stiffness_pa_per_m, self.friction_coefficient, self.gap_m, self.normal_load_n]
             .map(T::from_f64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::largest;
+
+    #[test]
+    fn an_error_that_is_no_number_is_the_largest() {
+        for errors in [[1.0, f64::NAN, 2.0], [f64::NAN, 1.0, 2.0], [1.0, 2.0, f64::NAN]] {
+            assert!(largest(errors.into_iter()).is_infinite());
+        }
+        assert!((largest([1.0, 3.0, 2.0].into_iter()) - 3.0).abs() < f64::EPSILON);
     }
 }
