@@ -1,0 +1,20 @@
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
+use super::Server;
+
+/// More than any pseudo-terminal holds.
+const LEN: usize = 1 << 20;
+
+/// A write that waits for its reader would hang here for ever.
+#[test]
+fn a_client_that_does_not_read_does_not_stop_the_board() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut server = Server::open(folder.path(), 40_000, 40).unwrap();
+    for _ in 0..3 {
+        let mut bytes = vec![0x55; LEN];
+        server.transmit(&mut bytes).unwrap();
+        assert!(bytes.is_empty(), "what did not fit is dropped");
+    }
+    let waiting = rustix::io::ioctl_fionread(&server.client_end).unwrap() as usize;
+    assert!(waiting > 0 && waiting < LEN, "{waiting} bytes are there for whoever reads");
+}
