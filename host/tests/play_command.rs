@@ -3,7 +3,9 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
 
 use tempfile::TempDir;
 
@@ -146,4 +148,33 @@ fn a_folder_that_cannot_be_written_is_said() {
         &["play", &brick(), "--seconds", "0.1", "--out", "taken/out"],
         &["taken", "cannot be written"],
     );
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_play_leaves_what_was_played() {
+    let folder = TempDir::new().unwrap();
+    let mut process = Command::new(env!("CARGO_BIN_EXE_frixel"))
+        .args(["play", &brick(), "--seconds", "86400", "--json"])
+        .current_dir(folder.path())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let felt = folder.path().join("frixel-out/felt.csv");
+    while fs::metadata(&felt).map_or(0, |file| file.len()) < 100_000 {
+        assert!(process.try_wait().unwrap().is_none(), "it ended by itself");
+        sleep(Duration::from_millis(5));
+    }
+    let pid = rustix::process::Pid::from_raw(process.id() as i32).unwrap();
+    rustix::process::kill_process(pid, rustix::process::Signal::INT).unwrap();
+    let ended = process.wait_with_output().unwrap();
+    let said = String::from_utf8(ended.stderr).unwrap();
+    assert!(ended.status.success() && said.contains("interrupted: "), "{said}");
+    let json: serde_json::Value = serde_json::from_slice(&ended.stdout).unwrap();
+    let rows = fs::read_to_string(felt).unwrap().lines().count() as u64 - 1;
+    assert_eq!(json["ticks"].as_u64().unwrap() / 40, rows, "every whole row that was played is there");
+    for name in ["felt.svg", "scene.png"] {
+        assert!(fs::metadata(folder.path().join("frixel-out").join(name)).unwrap().len() > 10_000);
+    }
 }
