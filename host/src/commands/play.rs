@@ -49,3 +49,21 @@ fn create_felt_csv(folder: &Path) -> Result<(FeltCsv, PathBuf), CommandError> {
     let path = folder.join("felt.csv");
     Ok((FeltCsv::create(&path)?, path))
 }
+
+/// Ticks between two rows of `felt.csv`.
+fn ticks_per_row(csv_hz: u32, tick_hz: u32) -> Result<u32, CommandError> {
+    let divides = |rate: &u32| tick_hz.is_multiple_of(*rate);
+    if csv_hz > 0 && divides(&csv_hz) {
+        return Ok(tick_hz / csv_hz);
+    }
+    let below = (1..csv_hz.min(tick_hz)).rev().find(divides);
+    let above = (csv_hz..=tick_hz).find(divides);
+    let nearest: Vec<String> = [below, above].iter().flatten().map(u32::to_string).collect();
+    Err(CommandError::CsvUneven { asked: csv_hz, tick_hz, nearest: nearest.join(" or ") })
+}
+
+/// Refuses a time in which not one tick passes.
+fn check_seconds(seconds: f64, tick_hz: u32) -> Result<(), CommandError> {
+    let tick_s = 1.0 / f64::from(tick_hz);
+    if seconds < tick_s { Err(CommandError::TooShort { seconds, tick_s }) } else { Ok(()) }
+}

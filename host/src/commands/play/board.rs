@@ -13,7 +13,7 @@ use frixel_wire::hello::Hello;
 use frixel_wire::message::Telemetry;
 
 use super::super::interrupt::Interrupt;
-use super::{Bars, CommandError, PlayArgs, Played, create_felt_csv, tell_notes};
+use super::{Bars, CommandError, PlayArgs, Played, check_seconds, create_felt_csv, tell_notes, ticks_per_row};
 
 /// Most telemetry that a board sends, in messages a second.
 const TELEMETRY_MAX_HZ: u32 = 1000;
@@ -35,6 +35,8 @@ pub(super) fn play(args: &PlayArgs) -> Result<Played, CommandError> {
     if !(args.arm || hello.board.is_simulated()) {
         return Err(CommandError::NotArmed { port: port() });
     }
+    args.seconds.map_or(Ok(()), |seconds| check_seconds(seconds, hello.tick_hz))?;
+    ticks_per_row(args.csv_hz, hello.tick_hz)?;
     let program = compile(&scene, &hello.limits, hello.tick_hz)?;
     tell_notes(&program);
     let (csv, path) = create_felt_csv(&args.out)?;
@@ -58,7 +60,7 @@ fn listen(
     args: &PlayArgs,
     interrupt: &Interrupt,
 ) -> Result<(), CommandError> {
-    device.subscribe(device.hello().tick_hz / args.csv_hz)?;
+    device.subscribe(ticks_per_row(args.csv_hz, device.hello().tick_hz)?)?;
     let mut left = args.seconds.map_or(Duration::MAX, Duration::from_secs_f64);
     while !left.is_zero() && !interrupt.is_asked() {
         let step = STEP.min(left);

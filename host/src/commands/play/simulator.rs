@@ -9,22 +9,22 @@ use frixel::scene::{Program, Scene, compile};
 use frixel_hil_sim::RigConfig;
 
 use super::super::interrupt::Interrupt;
-use super::super::stroke::stroke;
-use super::{Bars, CommandError, PlayArgs, Played, create_felt_csv, tell_notes};
+use super::super::stroke::{check_on_screen, stroke};
+use super::{Bars, CommandError, PlayArgs, Played, check_seconds, create_felt_csv, tell_notes, ticks_per_row};
 
 pub(super) fn play(args: &PlayArgs) -> Result<Played, CommandError> {
     let rig = RigConfig::default();
+    let ticks_per_row = ticks_per_row(args.csv_hz, rig.board.tick_hz)?;
     let program = compile(&Scene::load(&args.scene)?, &rig.board.limits, rig.board.tick_hz)?;
     tell_notes(&program);
-    let (width_m, height_m) = (program.header.screen_width_m, program.header.screen_height_m);
-    let stroke = stroke(args.stroke.as_deref(), width_m.into(), height_m.into(), args.seconds)?;
-    let simulation = Simulation {
-        rig,
-        seconds: args.seconds.unwrap_or(stroke.duration_s()),
-        stroke,
-        seed: args.seed,
-        ticks_per_row: rig.board.tick_hz.div_ceil(args.csv_hz),
-    };
+    let (width_m, height_m) = (program.header.screen_width_m.into(), program.header.screen_height_m.into());
+    let stroke = stroke(args.stroke.as_deref(), width_m, height_m, args.seconds)?;
+    let seconds = args.seconds.unwrap_or(stroke.duration_s());
+    check_seconds(seconds, rig.board.tick_hz)?;
+    if let Some(path) = &args.stroke {
+        check_on_screen(path, &stroke, width_m, height_m, seconds)?;
+    }
+    let simulation = Simulation { rig, stroke, seconds, seed: args.seed, ticks_per_row };
     let interrupt = Interrupt::watch()?;
     let (csv, csv_path) = create_felt_csv(&args.out)?;
     let mut rows = Rows { csv, trace: Trace::new() };
