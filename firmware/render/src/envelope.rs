@@ -16,6 +16,11 @@ impl Envelope {
         self.voltage_v_rms = 0.0;
     }
 
+    /// Comes down at once to what a new scene allows.
+    pub(crate) fn limit(&mut self, voltage_max_v_rms: f32) {
+        self.voltage_v_rms = self.voltage_v_rms.min(voltage_max_v_rms);
+    }
+
     /// Moves towards `target_v_rms` by at most `step_max_v`. Returns whether that was too far for one tick.
     #[inline]
     pub(crate) fn follow(&mut self, target_v_rms: f32, step_max_v: f32) -> bool {

@@ -81,7 +81,8 @@ impl Estimator {
     /// Knows nothing yet.
     pub(crate) const NEW: Self = Self { x: Axis::ZERO, y: Axis::ZERO, samples: 0, sampled_at_tick: 0 };
 
-    /// Takes a sample that was true `age_ticks` before `now_tick`. One that is not newer than the last says nothing.
+    /// Takes a sample that was true `age_ticks` before `now_tick`. One that is not newer
+    /// than the last says nothing.
     pub(crate) fn update(&mut self, now_tick: u32, age_ticks: u32, x_m: f32, y_m: f32, tick_period_s: f32) {
         let sampled_at_tick = now_tick.wrapping_sub(age_ticks);
         let step_ticks = sampled_at_tick.wrapping_sub(self.sampled_at_tick) as i32;

@@ -6,8 +6,9 @@ use crate::{Board, Order, Sense};
 
 /// Host timeout before a scene has set one.
 const HOST_TIMEOUT_DEFAULT_S: f32 = 0.25;
-/// The monitor may be off by this part of full scale.
-const MONITOR_TOLERANCE: f32 = 0.2;
+/// The monitor may be off by this part of full scale, and by [`MONITOR_GAIN_TOLERANCE`] of what is driven.
+const MONITOR_FLOOR: f32 = 0.04;
+const MONITOR_GAIN_TOLERANCE: f32 = 0.25;
 /// Ticks of a wrong monitor voltage, less those of a right one, that are a fault.
 const MONITOR_WRONG_TICKS: u32 = 20;
 
@@ -27,7 +28,7 @@ pub(crate) struct Supervisor {
 struct Monitor {
     expected_v: f32,
     step: f32,
-    tolerance_v: f32,
+    floor_v: f32,
     wrong_ticks: u32,
 }
 
@@ -36,7 +37,7 @@ impl Monitor {
         Self {
             expected_v: 0.0,
             step: 1.0 - libm::expf(-board.tick_period_s() / board.limits.edge_time_constant_s),
-            tolerance_v: MONITOR_TOLERANCE * board.limits.full_scale_v_peak,
+            floor_v: MONITOR_FLOOR * board.limits.full_scale_v_peak,
             wrong_ticks: 0,
         }
     }
@@ -45,7 +46,9 @@ impl Monitor {
     #[inline]
     fn is_wrong(&mut self, driven_v: f32, monitor_v: f32) -> bool {
         self.expected_v += self.step * (driven_v - self.expected_v);
-        if (monitor_v - self.expected_v).abs() < self.tolerance_v {
+        let tolerance_v = self.floor_v + MONITOR_GAIN_TOLERANCE * driven_v.abs();
+        // A monitor that is not a number is wrong, too.
+        if (monitor_v - self.expected_v).abs() < tolerance_v {
             if self.wrong_ticks > 0 {
                 self.wrong_ticks -= 1;
             }
@@ -98,10 +101,12 @@ impl Supervisor {
         }
     }
 
-    /// Latches a hard fault.
+    /// Latches a hard fault, unless one is latched.
     pub(crate) fn raise(&mut self, fault: Fault, detail: u32) {
-        self.state = State::Faulted;
-        self.fault = Some((fault, detail));
+        if self.state != State::Faulted {
+            self.state = State::Faulted;
+            self.fault = Some((fault, detail));
+        }
     }
 
     /// Sets the timeout that holds from now on; `None` for a scene that goes on without a host.

@@ -13,6 +13,8 @@ use crate::{Active, BitmapPool, Board, Drive, Order, Sense, Status, Touch};
 
 /// Touch data is too old to use after this many report periods without a report.
 const STALE_AFTER_PERIODS: f32 = 3.0;
+/// A sample older than this, 0.8 s at 40 kHz, says nothing of where the finger is now.
+const SAMPLE_AGE_MAX_TICKS: u32 = 1 << 15;
 
 /// Turns touch into voltage, one tick at a time, and owns the output through its supervisor.
 pub struct Ticker<'a> {
@@ -52,6 +54,8 @@ struct Finger {
     stillness: Stillness,
     /// Ticks until the last report is too old, zero without a finger.
     good_ticks: u32,
+    /// When the newest sample was true; outlives stale data, so that a source that is stuck does not start anew.
+    sampled_at_tick: Option<u32>,
     last_x_m: f32,
     last_y_m: f32,
     estimate: Estimate,
@@ -62,6 +66,7 @@ impl Finger {
         estimator: Estimator::NEW,
         stillness: Stillness::MOVING,
         good_ticks: 0,
+        sampled_at_tick: None,
         last_x_m: 0.0,
         last_y_m: 0.0,
         estimate: Estimate::ZERO,
@@ -71,11 +76,16 @@ impl Finger {
         match touch {
             Touch::Up => self.lift(),
             Touch::Down { x_m, y_m, age_ticks } => {
-                self.estimator.update(now_tick, age_ticks, x_m, y_m, timing.tick_period_s);
-                // The report is good at this tick, too.
-                self.good_ticks = timing.stale_after_ticks + 2;
-                self.last_x_m = x_m;
-                self.last_y_m = y_m;
+                let newer = self.sampled_at_tick.is_none_or(|tick| age_ticks < now_tick.wrapping_sub(tick));
+                // A report that says nothing new does not keep the output alive: the source may be stuck.
+                if newer && age_ticks <= SAMPLE_AGE_MAX_TICKS && x_m.is_finite() && y_m.is_finite() {
+                    self.estimator.update(now_tick, age_ticks, x_m, y_m, timing.tick_period_s);
+                    self.sampled_at_tick = Some(now_tick.wrapping_sub(age_ticks));
+                    // The report is good at this tick, too.
+                    self.good_ticks = timing.stale_after_ticks + 2;
+                    self.last_x_m = x_m;
+                    self.last_y_m = y_m;
+                }
             }
         }
     }
@@ -142,12 +152,15 @@ impl<'a> Ticker<'a> {
 
     /// Takes an order of the session, between two ticks. Hands back the coefficients that a [`Order::Load`] replaced.
     pub fn apply(&mut self, order: Order<'a>) -> Option<&'a mut Active> {
-        self.orders_applied = self.orders_applied.wrapping_add(1);
+        if !matches!(order, Order::HostHeard) {
+            self.orders_applied = self.orders_applied.wrapping_add(1);
+        }
         self.supervisor.apply(&order, self.tick);
         let spare = match order {
             Order::Load(next) => {
                 let spare = core::mem::replace(&mut self.active, next);
                 self.carrier.retime(&self.active.carrier);
+                self.envelope.limit(self.active.voltage_max_v_rms);
                 Some(spare)
             }
             Order::Unload => {
@@ -160,8 +173,12 @@ impl<'a> Ticker<'a> {
         spare
     }
 
-    /// Latches a hard fault that the board has found: the output is zero from the next tick on.
+    /// Latches a hard fault that the board has found: the output is zero from the next tick on. A fault that is latched
+    /// already stays the one that is told, since it came first.
     pub fn raise(&mut self, fault: Fault, detail: u32) {
+        if fault == Fault::Deadline {
+            self.counters.missed_deadlines = self.counters.missed_deadlines.wrapping_add(1);
+        }
         self.supervisor.raise(fault, detail);
     }
 

@@ -4,8 +4,10 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use frixel::device::{DeviceError, PortError};
+use frixel::model_csv::CsvError;
 use frixel::output::OutputError;
 use frixel::player::SimulationError;
+use frixel::report::ReportError;
 use frixel::rigs::ServerError;
 use frixel::scene::CompileError;
 use frixel_hil_sim::{StrokeError, WorldError};
@@ -25,6 +27,8 @@ pub(crate) enum CommandError {
     #[error(transparent)]
     Output(#[from] OutputError),
     #[error(transparent)]
+    Report(#[from] ReportError),
+    #[error(transparent)]
     World(#[from] WorldError),
     #[error(transparent)]
     Simulation(#[from] SimulationError),
@@ -32,6 +36,10 @@ pub(crate) enum CommandError {
     Stroke { path: PathBuf, source: StrokeError },
     #[error("a stroke over this scene: {0}")]
     NaturalStroke(StrokeError),
+    #[error("{input}: {source}")]
+    ModelCsv { input: String, source: CsvError },
+    #[error("{} is the input as well: writing it would destroy it; give --output another name", path.display())]
+    OutputIsInput { path: PathBuf },
     #[error("{} cannot be read ({source}): check the path", path.display())]
     Read { path: PathBuf, source: io::Error },
     #[error("{} cannot be written ({source}): check the folder and its free space", path.display())]
