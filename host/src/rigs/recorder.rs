@@ -46,9 +46,19 @@ impl Recorder {
         &self.metrics
     }
 
-    /// The rows so far.
+    /// The rows so far, those that were taken left out.
     pub fn rows(&self) -> &[FeltRow] {
         &self.rows
+    }
+
+    /// Hands over the rows since the last time.
+    pub(crate) fn take_rows(&mut self) -> Vec<FeltRow> {
+        std::mem::take(&mut self.rows)
+    }
+
+    /// Takes no more ticks.
+    pub(crate) fn end(&mut self) {
+        self.ticks_left = 0;
     }
 
     /// Takes one tick, unless there were enough.
