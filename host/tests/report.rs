@@ -8,7 +8,7 @@ use std::process::{Command, Output};
 use std::sync::OnceLock;
 
 /// Counts of the shape that `cargo xtask bench` writes.
-const BENCH: &str = r#"{ "m3.inverse_table": 415, "m4f.inverse_closed_form": 185, "m4f.inverse_closed_form_cycles": 277,
+const BENCH: &str = r#"{ "m3.inverse_table": 415, "m3.inverse_table_fixed": 61, "m4f.inverse_closed_form": 185, "m4f.inverse_closed_form_cycles": 277,
     "m4f.inverse_table": 16, "m4f.inverse_table_cycles": 27, "m4f.tick_idle": 209 }"#;
 
 /// What is the same in no two runs.
@@ -131,7 +131,7 @@ fn two_runs_differ_in_what_is_measured_and_in_nothing_else() {
 fn counts_are_asked_for_and_shown() {
     let counts = rows("error-against-instructions");
     let found: Vec<_> = counts.iter().map(|row| (row["core"].as_str(), row["instructions"].as_str())).collect();
-    assert_eq!(found, [("m4f", "16"), ("m4f", "185"), ("m3", "415")]);
+    assert_eq!(found, [("m4f", "185"), ("m4f", "16"), ("m3", "415"), ("m3", "61")]);
     assert!(report()["index.html"].contains("16 (about 27 cycles)"));
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name).display().to_string();
@@ -153,28 +153,23 @@ fn counts_are_asked_for_and_shown() {
 #[test]
 fn without_a_load_all_fingers_stand_on_one_line_of_slope_one_and_two() {
     let rows = rows("fig3-core-line");
-    let fingers: Vec<_> = ["R 8 mm", "R 10 mm", "R 5 mm"]
-        .into_iter()
-        .map(|name| rows.iter().filter(|row| row["finger"].starts_with(name)).take(12).collect::<Vec<_>>())
-        .collect();
-    for other in &fingers[1..] {
-        for (one, other) in fingers[0].iter().zip(other) {
-            for column in ["voltage_over_scale", "radius_over_scale", "friction_over_scale"] {
-                let ratio = number(one, column) / number(other, column);
-                assert!((ratio - 1.0).abs() < 1e-13, "{column}: {one:?} {other:?}");
-            }
-            assert!((number(one, "friction_n") / number(other, "friction_n") - 1.0).abs() > 0.1, "they differ");
+    let mut fingers = BTreeMap::new();
+    for row in &rows {
+        // DESIGN's dimensionless form of Eqs. (36), (34).
+        let q = number(row, "voltage_over_scale").powi(2);
+        let y = q + (q * q + 2.0 * q / (1.0 + q)).sqrt();
+        for (column, right) in [("radius_over_scale", y.sqrt()), ("friction_over_scale", y * y)] {
+            assert!((number(row, column) - right).abs() <= 1e-13 * right, "{column}: {row:?}");
         }
+        *fingers.entry(row["finger"].as_str()).or_insert(0) += 1;
     }
-    let line: Vec<(f64, f64)> = rows
-        .iter()
-        .filter(|row| number(row, "voltage_over_scale") > 0.0)
-        .map(|row| (number(row, "voltage_over_scale").powi(2), number(row, "friction_over_scale")))
-        .collect();
-    let wide = &line[36..36 + 161];
-    assert!((slope(&wide[..2]) - 1.0).abs() < 0.02, "Eqs. (34), (36) at small sigma0: {}", slope(&wide[..2]));
-    assert!((slope(&wide[159..]) - 2.0).abs() < 0.02, "and at large: {}", slope(&wide[159..]));
-    assert!(wide.windows(2).all(|pair| slope(pair) > 1.0 && slope(pair) < 2.0));
+    assert_eq!(fingers.into_values().collect::<Vec<_>>(), [8, 8, 8, 161 + 101]);
+    let line = rows.iter().filter(|row| row["finger"] == "core line").take(161);
+    let line: Vec<_> =
+        line.map(|row| (number(row, "voltage_over_scale").powi(2), number(row, "friction_over_scale"))).collect();
+    assert!((slope(&line[..2]) - 1.0).abs() < 0.02, "Eqs. (34), (36) at small sigma0: {}", slope(&line[..2]));
+    assert!((slope(&line[159..]) - 2.0).abs() < 0.02, "and at large: {}", slope(&line[159..]));
+    assert!(line.windows(2).all(|pair| slope(pair) > 1.0 && slope(pair) < 2.0));
 }
 
 #[test]
@@ -305,8 +300,10 @@ fn fewer_ticks_make_a_larger_error() {
     for stripes in ["2 mm stripes", "1 mm stripes", "0.5 mm stripes", "2 mm stripes, a real touch source"] {
         let errors = curve(&rows, &[("curve", stripes)], "tick_hz", "rms_error_over_reachable_range");
         assert_eq!((errors.len(), errors[0].0, errors[8].0), (9, 1000.0, 40_000.0));
-        assert!(errors.windows(2).all(|pair| pair[1].1 < 1.1 * pair[0].1), "{stripes}: {errors:?}");
-        assert!(errors[0].1 > 1.3 * errors[8].1 && errors[8].1 > 0.0, "{stripes}: {errors:?}");
+        let [slowest, slower, slow] = [errors[0].1, errors[1].1, errors[2].1];
+        assert!(slowest > 1.3 * slower && slower > 1.05 * slow, "{stripes}: {errors:?}");
+        // Beyond, ticks help less and less, and what they cannot help remains.
+        assert!(errors[3..].iter().all(|error| error.1 < slow && error.1 > 0.01), "{stripes}: {errors:?}");
     }
     for row in rows.iter().filter(|row| !row["rms_error_over_reachable_range"].is_empty()) {
         let (ticks, carrier) = (number(row, "tick_hz"), number(row, "carrier_hz"));

@@ -20,6 +20,12 @@ pub(crate) fn test() -> Result<(), String> {
     budgets()
 }
 
+/// The tests that are left out of every other run, because they look at every number that there is.
+pub(crate) fn soak() -> Result<(), String> {
+    let sweeps = ["test", "--release", "--locked", "--package", "frixel-model", "--", "--ignored", "--nocapture"];
+    cargo("soak", ".", &sweeps, &[])
+}
+
 /// Builds what runs on a board for the board, with warnings as errors, in a target folder of its own so that its
 /// flags do not rebuild everything else.
 fn cross_build() -> Result<(), String> {

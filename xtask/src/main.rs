@@ -12,6 +12,7 @@ const USAGE: &str = "\
 cargo xtask test     format, lints, cross-builds, all tests, docs, budgets: what CI runs
 cargo xtask bench    instructions and estimated cycles on emulated processors, and image sizes
 cargo xtask budgets  the same, held against budgets.toml
+cargo xtask soak     what takes too long for every change: every f32 through the tables
 ";
 
 fn main() -> ExitCode {
@@ -20,6 +21,7 @@ fn main() -> ExitCode {
     let result = match arguments.as_slice() {
         ["test"] => check::test(),
         ["budgets"] => check::budgets(),
+        ["soak"] => check::soak(),
         ["bench"] => bench::bench().map(|figures| print!("{}", figures.table())),
         _ => Err(format!("no such command: {}\n{USAGE}", arguments.join(" "))),
     };

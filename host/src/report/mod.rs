@@ -1,6 +1,6 @@
 //! The report of `frixel report`: the paper's figures from the model, and what the model's error and its inversion cost.
 //!
-//! [`write`] puts an `index.html` that needs nothing else into a folder, and beside it the numbers behind each picture as
+//! [`write()`] puts an `index.html` that needs nothing else into a folder, and beside it the numbers behind each picture as
 //! CSV.
 
 mod chart;

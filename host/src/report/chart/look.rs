@@ -84,12 +84,12 @@ impl Look {
         self.colour.stroke_width(width)
     }
 
-    /// Corners of the mark, in units of its size, and whether it is filled; none for what is no polygon.
-    pub(super) fn corners(&self) -> Option<(&'static [(f64, f64)], bool)> {
+    /// Corners of the mark, in units of its size; none for what is no polygon.
+    pub(super) fn corners(&self) -> Option<&'static [(f64, f64)]> {
         match self.mark {
-            Mark::Square => Some((&[(-0.85, -0.85), (0.85, -0.85), (0.85, 0.85), (-0.85, 0.85)], true)),
-            Mark::Triangle => Some((&[(0.0, -1.15), (1.05, 0.75), (-1.05, 0.75)], true)),
-            Mark::Diamond => Some((&[(0.0, -1.2), (1.2, 0.0), (0.0, 1.2), (-1.2, 0.0)], true)),
+            Mark::Square => Some(&[(-0.85, -0.85), (0.85, -0.85), (0.85, 0.85), (-0.85, 0.85)]),
+            Mark::Triangle => Some(&[(0.0, -1.15), (1.05, 0.75), (-1.05, 0.75)]),
+            Mark::Diamond => Some(&[(0.0, -1.2), (1.2, 0.0), (0.0, 1.2), (-1.2, 0.0)]),
             Mark::None | Mark::Disc | Mark::Ring | Mark::Cross => None,
         }
     }

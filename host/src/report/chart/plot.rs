@@ -141,7 +141,7 @@ pub(super) fn draw_line(area: &Area, pixels: &[(i32, i32)], look: &Look) -> Draw
 pub(super) fn draw_mark(area: &Area, (x, y): (i32, i32), look: &Look) -> Drawn {
     let size = MARK * f64::from(px(1));
     let stroke = look.colour.stroke_width(px(2));
-    if let Some((corners, _)) = look.corners() {
+    if let Some(corners) = look.corners() {
         let corners: Vec<_> =
             corners.iter().map(|(dx, dy)| (x + (size * dx).round() as i32, y + (size * dy).round() as i32)).collect();
         area.draw(&Polygon::new(corners, look.colour.filled()))?;

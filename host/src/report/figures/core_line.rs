@@ -69,32 +69,50 @@ fn points(example: &Example, voltages: impl Iterator<Item = f64>, scaled: bool) 
     Ok(points)
 }
 
-pub(super) fn figure() -> Result<Figure, ReportError> {
-    let line = Look::line(PALETTE[0], Line::Solid);
-    let limit = Look::line(PALETTE[6], Line::Dashed);
-    let scaled_voltage = || Axis::log("voltage V / V*", 1e-2..1e2);
-    let mut radius =
-        Panel::new("Core line: contact radius", scaled_voltage(), Axis::log("contact radius a / √(2 R g)", 0.1..200.0));
-    let mut friction = Panel::new("Core line: friction", scaled_voltage(), Axis::log("friction F_T / F*", 1e-4..1e9));
-    let volts = || Axis::linear("voltage, V rms", 0.0..200.0);
-    let mut radius_mm =
-        Panel::new("Example finger: contact radius", volts(), Axis::linear("contact radius, mm", 0.0..2.0));
-    let mut friction_mn = Panel::new("Example finger: friction", volts(), Axis::linear("friction, mN", 0.0..10.0));
+const LINE: Look = Look::line(PALETTE[0], Line::Solid);
+const LIMIT: Look = Look::line(PALETTE[6], Line::Dashed);
 
-    let [example, ..] = examples();
-    let curve = points(&example, geometric(1e-2, 1e2, 161), true)?;
-    radius.add("Eq. (36)", line, curve.iter().map(|point| (point.scaled_voltage, point.scaled_radius)).collect());
-    friction.add(
-        "Eqs. (36), (34)",
-        line,
-        curve.iter().map(|point| (point.scaled_voltage, point.scaled_friction)).collect(),
-    );
+/// The core lines with their limits, and the fingers on them.
+fn scaled_panels(curve: &[Point], data: &mut Data<7>) -> Result<[Panel; 2], ReportError> {
+    let voltage = || Axis::log("voltage V / V*", 1e-2..1e2);
+    let radius_axis = Axis::log("contact radius a / √(2 R g)", 0.1..200.0);
+    let mut radius = Panel::new("Core line: contact radius", voltage(), radius_axis);
+    let mut friction = Panel::new("Core line: friction", voltage(), Axis::log("friction F_T / F*", 1e-4..1e9));
+    let of_radius = |point: &Point| (point.scaled_voltage, point.scaled_radius);
+    let of_friction = |point: &Point| (point.scaled_voltage, point.scaled_friction);
+    radius.add("Eq. (36)", LINE, curve.iter().map(of_radius).collect());
+    friction.add("Eqs. (36), (34)", LINE, curve.iter().map(of_friction).collect());
     let power = |factor: f64, exponent: f64| [1e-2, 1e2].map(|v: f64| (v, factor * v.powf(exponent))).to_vec();
-    radius.add("V → 0 (a ∝ √V); V → ∞ (a ∝ V)", limit, power(2_f64.powf(0.25), 0.5));
-    radius.add("", limit, power(2_f64.sqrt(), 1.0));
-    friction.add("V → 0 (F ∝ σ₀); V → ∞ (F ∝ σ₀²)", limit, power(2.0, 2.0));
-    friction.add("", limit, power(4.0, 4.0));
+    radius.add("V → 0 (a ∝ √V); V → ∞ (a ∝ V)", LIMIT, power(2_f64.powf(0.25), 0.5));
+    radius.add("", LIMIT, power(2_f64.sqrt(), 1.0));
+    friction.add("V → 0 (F ∝ σ₀); V → ∞ (F ∝ σ₀²)", LIMIT, power(2.0, 2.0));
+    friction.add("", LIMIT, power(4.0, 4.0));
+    let examples = examples();
+    for (index, example) in examples.iter().enumerate() {
+        // Each finger at voltages of its own, so that none hides another.
+        let voltages = geometric(1.3e-2, 80.0, 24).skip(index).step_by(examples.len());
+        let points = points(example, voltages, true)?;
+        radius.add(example.name, example.look, points.iter().map(of_radius).collect());
+        friction.add(example.name, example.look, points.iter().map(of_friction).collect());
+        for point in points {
+            put(data, example.name, &point);
+        }
+    }
+    Ok([radius, friction])
+}
 
+/// The example finger in its own units.
+fn example_panels(curve: &[Point]) -> [Panel; 2] {
+    let volts = || Axis::linear("voltage, V rms", 0.0..200.0);
+    let millimetres = Axis::linear("contact radius, mm", 0.0..2.0);
+    let mut radius = Panel::new("Example finger: contact radius", volts(), millimetres);
+    let mut friction = Panel::new("Example finger: friction", volts(), Axis::linear("friction, mN", 0.0..10.0));
+    radius.add("Eq. (36)", LINE, curve.iter().map(|p| (p.voltage_v_rms, 1e3 * p.contact_radius_m)).collect());
+    friction.add("Eqs. (36), (34)", LINE, curve.iter().map(|p| (p.voltage_v_rms, 1e3 * p.friction_n)).collect());
+    [radius, friction]
+}
+
+pub(super) fn figure() -> Result<Figure, ReportError> {
     let mut data = Data::new([
         "finger",
         "voltage_v_rms",
@@ -104,23 +122,13 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
         "radius_over_scale",
         "friction_over_scale",
     ]);
-    for example in examples() {
-        let points = points(&example, geometric(1.5e-2, 70.0, 12), true)?;
-        radius.add(example.name, example.look, points.iter().map(|p| (p.scaled_voltage, p.scaled_radius)).collect());
-        friction.add(
-            example.name,
-            example.look,
-            points.iter().map(|p| (p.scaled_voltage, p.scaled_friction)).collect(),
-        );
-        for point in points {
-            put(&mut data, example.name, &point);
-        }
-    }
-    let linear = points(&example, even(0.0, 200.0, 101), false)?;
-    radius_mm.add("Eq. (36)", line, linear.iter().map(|p| (p.voltage_v_rms, 1e3 * p.contact_radius_m)).collect());
-    friction_mn.add("Eqs. (36), (34)", line, linear.iter().map(|p| (p.voltage_v_rms, 1e3 * p.friction_n)).collect());
-    for point in curve.iter().chain(&linear) {
-        put(&mut data, example.name, point);
+    let [example, ..] = examples();
+    let scaled = points(&example, geometric(1e-2, 1e2, 161), true)?;
+    let in_volts = points(&example, even(0.0, 200.0, 101), false)?;
+    let mut panels: Vec<Panel> = scaled_panels(&scaled, &mut data)?.into();
+    panels.extend(example_panels(&in_volts));
+    for point in scaled.iter().chain(&in_volts) {
+        put(&mut data, "core line", point);
     }
     Ok(Figure {
         name: "fig3-core-line",
@@ -133,7 +141,7 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
                 .to_owned(),
             EXAMPLE.to_owned(),
         ],
-        chart: Chart { panels: vec![radius, friction, radius_mm, friction_mn], columns: 2, shared_legend: false },
+        chart: Chart { panels, columns: 2, shared_legend: false },
         csv: data.csv()?,
     })
 }

@@ -27,15 +27,7 @@ const KINDS: [(Kind, &str, Look); 12] = [
     (Kind::FixedCubic, "direct table, cubic, integers", dashed(PALETTE[2], Mark::Diamond)),
 ];
 
-/// What instruction counts call a kind.
-const COUNTED: [(Kind, &str); 6] = [
-    (Kind::Device, "inverse_table"),
-    (Kind::ClosedF32, "inverse_closed_form"),
-    (Kind::ClosedF64, "inverse_closed_form_f64"),
-    (Kind::BisectionF32, "inverse_bisection"),
-    (Kind::ForwardTable, "inverse_forward_table"),
-    (Kind::FixedQuadratic, "inverse_fixed_table"),
-];
+/// Processors whose instructions are counted, as the counts and as people call them.
 const CORES: [(&str, &str); 2] = [("m4f", "Cortex-M4F"), ("m3", "Cortex-M3, no FPU")];
 
 const ERROR: &str = "largest relative error in electric friction";
@@ -171,7 +163,6 @@ pub(super) fn against_size(measured: &[Measured; 2]) -> Result<Figure, ReportErr
             data.row([one.load_n.into(), name(way.kind).into(), way.size.as_str().into(), bytes, way.error.into()]);
         }
     }
-    let octaves = |one: &Measured| range_octaves(one.load_n);
     Ok(Figure {
         name: "error-against-size",
         title: "Error against size, for every kind of table".to_owned(),
@@ -180,8 +171,8 @@ pub(super) fn against_size(measured: &[Measured; 2]) -> Result<Figure, ReportErr
                 "Largest relative error in electric friction over 1 V to 200 V, as above, against the bytes of the table. Without a \
                  load friction spans {:.0} octaves, under 0.5 N {:.0}, and tables are shorter. A higher order is smaller at the same \
                  error, until rounding in f32 ends it near 10⁻⁶. The board's table has a fixed size, whatever the load.",
-                octaves(&measured[0]),
-                octaves(&measured[1]),
+                range_octaves(measured[0].load_n),
+                range_octaves(measured[1].load_n),
             ),
             EXAMPLE.to_owned(),
         ],
@@ -198,16 +189,17 @@ pub(super) fn against_instructions(measured: &[Measured; 2], counts: &Counts) ->
         let mut panel = Panel::new(
             core_name,
             Axis::log("instructions of one inversion, at most", 5.0..1e5),
-            Axis::log(ERROR, 1e-16..1e-2),
+            counted_errors(measured),
         );
-        for (kind, what) in COUNTED {
+        for (kind, name, look) in KINDS {
+            let counted = measured.iter().flat_map(|one| one.of(kind)).filter_map(|way| Some((way, way.counted?)));
+            // With and without a load: the larger error counts, as the larger number of instructions does.
+            let worst = counted.max_by(|one, other| one.0.error.total_cmp(&other.0.error));
+            let Some((way, what)) = worst else { continue };
             let Some(instructions) = counts.instructions(core, what) else { continue };
-            let cycles = counts.cycles(core, what);
-            let errors = measured.iter().flat_map(|one| one.of(kind)).map(|way| way.error);
-            let error = errors.fold(0.0, f64::max).max(1e-16);
-            data.row([core.into(), name(kind).into(), instructions.into(), cycles.into(), error.into()]);
-            let Some((_, _, look)) = KINDS.iter().find(|(one, ..)| *one == kind) else { continue };
-            panel.add(name(kind), Look { line: Line::None, ..*look }, vec![(instructions, error)]);
+            let (cycles, error) = (counts.cycles(core, what), way.error.max(1e-16));
+            data.row([core.into(), name.into(), instructions.into(), cycles.into(), error.into()]);
+            panel.add(name, Look { line: Line::None, ..look }, vec![(instructions, error)]);
             let estimate = cycles.map_or(String::new(), |cycles| format!(" (about {cycles} cycles)"));
             panel.notes.push((instructions, error, format!("{instructions}{estimate}")));
         }
@@ -232,6 +224,14 @@ pub(super) fn against_instructions(measured: &[Measured; 2], counts: &Counts) ->
         chart: Chart { columns: panels.len() as u32, panels, shared_legend: true },
         csv: data.csv()?,
     }))
+}
+
+/// An axis of the errors of all ways that are counted, with a decade to spare.
+fn counted_errors(measured: &[Measured; 2]) -> Axis {
+    let counted = measured.iter().flat_map(|one| &one.ways).filter(|way| way.counted.is_some());
+    let powers = counted.map(|way| way.error.max(1e-16).log10());
+    let (low, high) = powers.fold((0.0_f64, -16.0_f64), |(low, high), power| (low.min(power), high.max(power)));
+    Axis::log(ERROR, 10_f64.powf(low.floor() - 1.0)..10_f64.powf(high.ceil() + 1.0))
 }
 
 fn name(kind: Kind) -> &'static str {

@@ -88,7 +88,7 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
             "A stress exponent of 0.5 has a constant stiffness, and falls on the Winkler-Fuss finger.".to_owned(),
             EXAMPLE.to_owned(),
         ],
-        chart: Chart { panels: vec![unloaded, loaded], columns: 2, shared_legend: false },
+        chart: Chart { panels: vec![unloaded, loaded], columns: 2, shared_legend: true },
         csv: data.csv()?,
     })
 }

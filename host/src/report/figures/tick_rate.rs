@@ -159,7 +159,7 @@ fn caption() -> Vec<String> {
              but for its edges.",
             slower.join(", ")
         ),
-        "At few ticks a second the error is the distance that the finger slides in a tick, and halves with it. It ends at what ticks \
+        "At few ticks a second the error is what the finger slides in a tick or two, and halves with it. It ends at what ticks \
          cannot help: the friction lag (1.4 kHz at this speed) and the carrier's edges, or, with a touch source of 100 Hz that is \
          10 ms late and noisy, what is not known of the finger's place. The other curves have a touch source of 500 Hz without \
          delay or noise. What is wanted is taken at the end of each tick."

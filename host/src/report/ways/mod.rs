@@ -45,6 +45,8 @@ pub(super) struct Way {
     pub(super) kind: Kind,
     /// What makes it one of its kind: steps, entries, rows.
     pub(super) size: String,
+    /// What `cargo xtask bench` calls it, if it counts its instructions.
+    pub(super) counted: Option<&'static str>,
     /// Bytes of its table, if it has one.
     pub(super) bytes: Option<usize>,
     /// Largest relative error in electric friction over the range.
@@ -74,9 +76,10 @@ pub(super) struct Parameters {
 impl Bench<'_> {
     /// Everything.
     pub(super) fn all(&self) -> Result<Vec<Way>, ReportError> {
+        let single = self.in_f32(Kind::ClosedF32, String::new(), None, |x| self.single.voltage_v_rms(x));
         let mut ways = vec![
             self.in_f64(Kind::ClosedF64, String::new(), |x| self.contact.voltage_v_rms(x)),
-            self.in_f32(Kind::ClosedF32, String::new(), None, |x| self.single.voltage_v_rms(x)),
+            Way { counted: Some("inverse_closed_form"), ..single },
         ];
         bisection::measure(self, &mut ways);
         forward_table::measure(self, &mut ways);
@@ -97,7 +100,14 @@ impl Bench<'_> {
         let load_n = self.parameters.normal_load_n;
         let error = |x: f64| relative_error(x, &self.exact.electric_friction_n(invert(x), load_n));
         let worst = self.frictions(FINE_POINTS).map(error).fold(0.0, f64::max);
-        Way { kind, size, bytes: None, error: worst, seconds: seconds_per_call(&self.timed(|x| x), invert) }
+        Way {
+            kind,
+            size,
+            counted: None,
+            bytes: None,
+            error: worst,
+            seconds: seconds_per_call(&self.timed(|x| x), invert),
+        }
     }
 
     fn in_f32(&self, kind: Kind, size: String, bytes: Option<usize>, invert: impl Fn(f32) -> f32) -> Way {
@@ -106,7 +116,14 @@ impl Bench<'_> {
             (self.contact.electric_friction_n(f64::from(invert(x))) / f64::from(x) - 1.0).abs()
         };
         let worst = self.frictions(COARSE_POINTS).map(error).fold(0.0, f64::max);
-        Way { kind, size, bytes, error: worst, seconds: seconds_per_call(&self.timed(|x| x as f32), invert) }
+        Way {
+            kind,
+            size,
+            counted: None,
+            bytes,
+            error: worst,
+            seconds: seconds_per_call(&self.timed(|x| x as f32), invert),
+        }
     }
 
     /// Friction and voltage are codes, with their units; the error is that against the code's friction.
@@ -118,7 +135,14 @@ impl Bench<'_> {
             (self.contact.electric_friction_n(voltage_v_rms) / (f64::from(code) * units.0) - 1.0).abs()
         };
         let worst = self.frictions(COARSE_POINTS).map(error).fold(0.0, f64::max);
-        Way { kind, size, bytes: Some(bytes), error: worst, seconds: seconds_per_call(&self.timed(code), invert) }
+        Way {
+            kind,
+            size,
+            counted: None,
+            bytes: Some(bytes),
+            error: worst,
+            seconds: seconds_per_call(&self.timed(code), invert),
+        }
     }
 
     fn timed<T>(&self, convert: impl Fn(f64) -> T) -> Vec<T> {
