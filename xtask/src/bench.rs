@@ -22,8 +22,8 @@ struct Core {
     machine: &'static str,
 }
 
-const CORES: [Core; 2] =
-    [Core { name: "m4f", target: M4F, machine: "mps2-an386" }, Core { name: "m3", target: M3, machine: "mps2-an385" }];
+const M4F_CORE: Core = Core { name: "m4f", target: M4F, machine: "mps2-an386" };
+const M3_CORE: Core = Core { name: "m3", target: M3, machine: "mps2-an385" };
 
 /// Name of the emulator.
 const EMULATOR: &str = "qemu-system-arm";
@@ -40,7 +40,7 @@ pub(crate) fn emulator() -> Result<(), String> {
 pub(crate) fn bench() -> Result<Figures, String> {
     emulator()?;
     let mut figures = Figures::default();
-    for core in &CORES {
+    for core in [&M4F_CORE, &M3_CORE] {
         add_target(core.target)?;
         Image::build(core, false)?.measure(&mut figures)?;
     }
@@ -63,11 +63,12 @@ fn layers(figures: &mut Figures) {
     }
 }
 
+/// The figure that [`breach`] is above.
+pub(crate) const BROKEN: &str = "m4f.inverse_table";
+
 /// Counts an image that is slower on purpose.
 pub(crate) fn breach() -> Result<Figures, String> {
     let mut figures = Figures::default();
-    for core in &CORES {
-        Image::build(core, true)?.count(&mut figures)?;
-    }
+    Image::build(&M4F_CORE, true)?.count(&mut figures)?;
     Ok(figures)
 }

@@ -15,6 +15,12 @@ pub(crate) fn read(path: &Path) -> Result<Limits, String> {
     toml::from_str(&text).map_err(|error| format!("{}: {error}", path.display()))
 }
 
+/// The limit of one figure, which has to have one.
+pub(crate) fn only(limits: &Limits, name: &str) -> Result<Limits, String> {
+    let limit = limits.get(name).ok_or_else(|| format!("budgets.toml has no limit for {name}"))?;
+    Ok(Limits::from([(name.to_owned(), *limit)]))
+}
+
 /// Says which figures are above their limits, and which limits have no figure.
 pub(crate) fn check(limits: &Limits, figures: &Figures) -> Result<(), String> {
     let breaches: Vec<String> = limits

@@ -11,6 +11,7 @@ use std::process::ExitCode;
 const USAGE: &str = "\
 cargo xtask test     format, lints, cross-builds, all tests, docs, budgets: what CI runs
 cargo xtask bench    instructions and estimated cycles on emulated processors, and image sizes
+cargo xtask budgets  the same, held against budgets.toml
 cargo xtask soak     what takes too long for every change: every f32 through the tables
 ";
 
@@ -19,6 +20,7 @@ fn main() -> ExitCode {
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let result = match arguments.as_slice() {
         ["test"] => check::test(),
+        ["budgets"] => check::budgets(),
         ["soak"] => check::soak(),
         ["bench"] => bench::bench().map(|figures| print!("{}", figures.table())),
         _ => Err(format!("no such command: {}\n{USAGE}", arguments.join(" "))),

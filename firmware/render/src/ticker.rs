@@ -74,7 +74,10 @@ impl Finger {
 
     fn take(&mut self, touch: Touch, now_tick: u32, timing: &Timing) {
         match touch {
-            Touch::Up => self.lift(),
+            Touch::Up => {
+                self.lift();
+                self.sampled_at_tick = None;
+            }
             Touch::Down { x_m, y_m, age_ticks } => {
                 let newer = self.sampled_at_tick.is_none_or(|tick| age_ticks < now_tick.wrapping_sub(tick));
                 // A report that says nothing new does not keep the output alive: the source may be stuck.
