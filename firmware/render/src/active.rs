@@ -2,7 +2,7 @@
 
 use frixel_model::{Contact, Finger, InverseTable, TableError};
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
-use frixel_wire::scene::{Header, Layer as LayerRecord, RECORDS_MAX, Scene};
+use frixel_wire::scene::{Carrier, Header, Layer as LayerRecord, RECORDS_MAX, Scene};
 use heapless::Vec;
 
 use crate::Board;
@@ -57,6 +57,9 @@ impl Active {
     pub(crate) fn load(&mut self, scene: &Scene, board: &Board, directory: &Directory) -> Result<(), Refusal> {
         self.unload();
         let header = scene.header();
+        if header.carrier == Carrier::Sine && !cfg!(feature = "sine-carrier") {
+            return Err(Refusal::LeftOut { layer: WHOLE_SCENE });
+        }
         config::check_header(header, board).map_err(Refusal::Config)?;
         let (carrier, voltage_max_v_rms) = carrier(header, board).map_err(Refusal::Config)?;
         self.load_layers(scene, directory)?;
@@ -73,13 +76,14 @@ impl Active {
             let number = number as u8;
             config::check_record(&record, number).map_err(Refusal::Config)?;
             let bitmap = match record.layer {
-                LayerRecord::Bitmap { crc32, .. } => {
+                LayerRecord::Bitmap { crc32, .. } if cfg!(feature = "bitmap") => {
                     Some(directory.find(crc32).ok_or(Refusal::BitmapMissing { crc32 })?)
                 }
                 _ => None,
             };
+            let layer = Layer::new(&record, bitmap).ok_or(Refusal::LeftOut { layer: number })?;
             // There is room for every record that a scene can have.
-            let _ = self.layers.push(Layer::new(&record, bitmap));
+            let _ = self.layers.push(layer);
         }
         Ok(())
     }

@@ -4,11 +4,11 @@ use core::sync::atomic::{AtomicU8, Ordering};
 
 use heapless::Vec;
 
-/// Bytes for bitmaps on the smallest board, those being uploaded included.
-pub const BITMAP_POOL_LEN: usize = 80 * 1024;
+/// Bytes for bitmaps on the smallest board, those being uploaded included; none without the feature `bitmap`.
+pub const BITMAP_POOL_LEN: usize = if cfg!(feature = "bitmap") { 80 * 1024 } else { 0 };
 
 /// Most bitmaps that the pool holds at a time.
-const ENTRIES_MAX: usize = 64;
+const ENTRIES_MAX: usize = if cfg!(feature = "bitmap") { 64 } else { 0 };
 
 /// Samples of bitmaps, shared between the session, which writes, and the tick, which reads.
 ///
@@ -30,6 +30,7 @@ impl BitmapPool {
     }
 
     /// The sample at an offset; zero beyond the end.
+    #[cfg(feature = "bitmap")]
     #[inline]
     pub(crate) fn sample(&self, offset: usize) -> u8 {
         self.bytes.get(offset).map_or(0, |byte| byte.load(Ordering::Relaxed))
@@ -95,7 +96,7 @@ impl Directory {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "bitmap"))]
 mod tests {
     use super::*;
 

@@ -6,6 +6,7 @@
 
 use frixel_wire::scene::Carrier as Shape;
 
+#[cfg(feature = "sine-carrier")]
 use crate::turns;
 
 /// What a carrier is made of; part of `Active`.
@@ -88,12 +89,15 @@ impl Carrier {
                 let code = ((amplitude + 0.5) as i32).min(timing.code_max);
                 if self.phase_ticks < timing.half_period_ticks { code } else { -code }
             }
+            #[cfg(feature = "sine-carrier")]
             Shape::Sine => {
                 let turns = self.phase_ticks as f32 / (2 * timing.half_period_ticks) as f32;
                 let code = amplitude * turns::sine(turns);
                 let rounded = if code < 0.0 { (code - 0.5) as i32 } else { (code + 0.5) as i32 };
                 rounded.min(timing.code_max).max(-timing.code_max)
             }
+            #[cfg(not(feature = "sine-carrier"))]
+            Shape::Sine => 0,
         }
     }
 }
@@ -119,6 +123,7 @@ mod tests {
         }
     }
 
+    #[cfg(feature = "sine-carrier")]
     #[test]
     fn a_sine_has_the_rms_of_its_envelope() {
         let timing = timing(Shape::Sine, 20);

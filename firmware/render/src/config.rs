@@ -14,7 +14,7 @@ const HALF_PERIOD_MIN_TICKS: f32 = 4.0;
 /// `ConfigRefusal::layer` for what belongs to no layer.
 pub(crate) const WHOLE_SCENE: u8 = 255;
 /// Farthest from the screen's corner that anything may be, in m.
-const LENGTH_MAX_M: f32 = 2.0;
+pub(crate) const LENGTH_MAX_M: f32 = 2.0;
 /// Largest friction that a layer may name, in N, either way.
 const FRICTION_MAX_N: f32 = 100.0;
 

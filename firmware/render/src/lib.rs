@@ -28,6 +28,12 @@
 //! assert_eq!(drive.dac_code, 0);
 //! assert_eq!(session.transmit(&mut [0; 64]), 0); // bytes for the serial line
 //! ```
+//!
+//! # Leaving out
+//!
+//! Every Cargo feature is something that a scene or a host may ask for, and all are on by default: `grating` and
+//! `bitmap` layers, the `sine-carrier`, `telemetry`. An image without one of them is smaller, says so in the feature
+//! bits of its hello, and refuses what needs it. Constant layers and the square carrier are always there.
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 
@@ -45,6 +51,7 @@ mod session;
 mod stillness;
 mod supervisor;
 mod ticker;
+#[cfg(any(feature = "grating", feature = "sine-carrier"))]
 mod turns;
 
 pub use active::Active;

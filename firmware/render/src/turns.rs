@@ -4,6 +4,7 @@
 use core::f32::consts::TAU;
 
 /// The fraction of a turn, from 0 up to and including 1 after rounding, for magnitudes below 2^31.
+#[cfg(feature = "grating")]
 #[inline]
 pub(crate) fn fraction(turns: f32) -> f32 {
     let fraction = turns - (turns as i32) as f32;
@@ -48,6 +49,7 @@ mod tests {
         assert!(worst < 3e-7, "{worst:e}");
     }
 
+    #[cfg(feature = "grating")]
     #[test]
     fn fraction_wraps_both_ways() {
         for (turns, expected) in [(0.25, 0.25), (3.75, 0.75), (-0.25, 0.75), (-2.0, 0.0)] {

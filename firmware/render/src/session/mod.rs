@@ -12,7 +12,7 @@ use frixel_wire::message::{FromBoard, Telemetry};
 use frixel_wire::payload::Payload;
 
 use crate::order::Status;
-use crate::{Active, BitmapPool, Board, Order};
+use crate::{Active, BitmapPool, Board, Order, Touch};
 use dialogue::Dialogue;
 use outbox::Outbox;
 
@@ -51,7 +51,8 @@ impl<'a> Session<'a> {
     /// there is no time for that, at least once a telemetry period.
     pub fn poll(&mut self, status: &Status) {
         self.dialogue.report_state(status, &mut self.outbox);
-        if let Some(period_ticks) = self.dialogue.telemetry_period_ticks()
+        if cfg!(feature = "telemetry")
+            && let Some(period_ticks) = self.dialogue.telemetry_period_ticks()
             && status.telemetry.tick.wrapping_sub(self.telemetry_sent_at_tick) >= period_ticks
         {
             self.telemetry_sent_at_tick = status.telemetry.tick;
@@ -62,6 +63,11 @@ impl<'a> Session<'a> {
     /// The next order for the ticker.
     pub fn next_order(&mut self) -> Option<Order<'a>> {
         self.dialogue.next_order()
+    }
+
+    /// The last place of the finger that the host has told, once; for a board with [`Board::touch_from_host`].
+    pub fn next_touch(&mut self) -> Option<Touch> {
+        self.dialogue.next_touch()
     }
 
     /// Takes back the coefficients that the ticker has let go.

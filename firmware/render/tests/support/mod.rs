@@ -48,7 +48,10 @@ struct Monitor {
 
 impl<'a> Desk<'a> {
     pub fn new(memory: &'a mut Memory) -> Self {
-        let board = Board::SIMULATOR;
+        Self::of(Board::SIMULATOR, memory)
+    }
+
+    pub fn of(board: Board, memory: &'a mut Memory) -> Self {
         let Memory { pool, actives: [first, second] } = memory;
         let mut desk = Self {
             ticker: Ticker::new(&board, pool, first),
