@@ -30,7 +30,7 @@ impl BitmapPool {
     }
 
     /// The sample at an offset; zero beyond the end.
-    #[cfg(feature = "bitmap")]
+    #[cfg(any(feature = "bitmap", feature = "store"))]
     #[inline]
     pub(crate) fn sample(&self, offset: usize) -> u8 {
         self.bytes.get(offset).map_or(0, |byte| byte.load(Ordering::Relaxed))

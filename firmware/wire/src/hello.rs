@@ -66,10 +66,8 @@ pub mod feature {
     pub const SINE_CARRIER: u32 = 1 << 2;
     /// Telemetry.
     pub const TELEMETRY: u32 = 1 << 3;
-    /// The last scene is kept over power-off.
-    pub const SCENE_STORE: u32 = 1 << 4;
     /// The host says where the finger is.
-    pub const HOST_TOUCH: u32 = 1 << 5;
+    pub const HOST_TOUCH: u32 = 1 << 4;
 }
 
 /// Kind of board. Numbers never change.

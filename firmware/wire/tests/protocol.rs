@@ -107,7 +107,6 @@ fn features_have_the_bits_that_the_table_says() {
         (feature::BITMAP, "BITMAP"),
         (feature::SINE_CARRIER, "SINE_CARRIER"),
         (feature::TELEMETRY, "TELEMETRY"),
-        (feature::SCENE_STORE, "SCENE_STORE"),
         (feature::HOST_TOUCH, "HOST_TOUCH"),
     ];
     assert_eq!(page, code);

@@ -24,19 +24,19 @@ const FIRMWARE: (u8, u8, u8) = (0, 1, 0);
 const ORDERS_MAX: usize = 8;
 
 /// CRC-32 names of bitmaps.
-type BitmapNames = Vec<u32, RECORDS_MAX>;
+pub(super) type BitmapNames = Vec<u32, RECORDS_MAX>;
 
 /// The board's side of what is said.
 pub(super) struct Dialogue<'a> {
-    board: Board,
-    pool: &'a BitmapPool,
-    directory: Directory,
+    pub(super) board: Board,
+    pub(super) pool: &'a BitmapPool,
+    pub(super) directory: Directory,
     upload: Option<Upload>,
-    staging: Staging,
+    pub(super) staging: Staging,
     /// CRC-32 of the scene that the ticker has, zero without one.
-    committed_crc32: u32,
+    pub(super) committed_crc32: u32,
     /// Bitmaps of the scene that the ticker has.
-    committed_bitmaps: BitmapNames,
+    pub(super) committed_bitmaps: BitmapNames,
     /// Bitmaps that were announced since the last commit: the next scene's.
     announced_bitmaps: BitmapNames,
     /// Coefficients for the next scene; `None` while the ticker has not handed back those of the scene before.
@@ -44,7 +44,7 @@ pub(super) struct Dialogue<'a> {
     orders: Deque<Order<'a>, ORDERS_MAX>,
     orders_sent: u32,
     /// State once the ticker has applied every order.
-    state: State,
+    pub(super) state: State,
     received_bytes: u32,
     telemetry_period_ticks: u32,
     /// The last place of the finger that the host told and the ticker has not been given.
@@ -364,7 +364,7 @@ impl<'a> Dialogue<'a> {
         }
     }
 
-    fn commit(&mut self, crc32: u32) -> Result<Accepted, Refusal> {
+    pub(super) fn commit(&mut self, crc32: u32) -> Result<Accepted, Refusal> {
         if self.upload.is_some() {
             return self.end_upload_first();
         }

@@ -4,6 +4,8 @@
 //! in chunks.
 
 mod dialogue;
+#[cfg(feature = "store")]
+mod kept;
 mod outbox;
 mod upload;
 
@@ -14,6 +16,8 @@ use frixel_wire::payload::Payload;
 use crate::order::Status;
 use crate::{Active, BitmapPool, Board, Order, Touch};
 use dialogue::Dialogue;
+#[cfg(feature = "store")]
+pub use kept::KeptScene;
 use outbox::Outbox;
 
 /// One board's end of the serial line.
@@ -83,6 +87,25 @@ impl<'a> Session<'a> {
     /// The committed scene, as it was sent; `None` without one.
     pub fn scene(&self) -> Option<&[u8]> {
         self.dialogue.scene()
+    }
+
+    /// CRC-32 of what [`Session::kept`] would give.
+    #[cfg(feature = "store")]
+    pub fn kept_crc32(&self) -> Option<u32> {
+        self.dialogue.kept_crc32()
+    }
+
+    /// The committed scene with its bitmaps as bytes to keep; `None` without one, and unless the board is disarmed.
+    #[cfg(feature = "store")]
+    pub fn kept(&self) -> Option<KeptScene<'_>> {
+        self.dialogue.kept()
+    }
+
+    /// Commits a scene from bytes that were kept: `read` gives those at an offset, and `false` beyond their end. Returns
+    /// whether there is a scene that this firmware can play; what is not is as if it had never been kept.
+    #[cfg(feature = "store")]
+    pub fn restore(&mut self, read: impl Fn(u32, &mut [u8]) -> bool) -> bool {
+        self.dialogue.restore(read).is_some()
     }
 
     /// Frames that were received whole, and bad ones that were skipped.

@@ -8,6 +8,9 @@
     reason = "a test uses its part, and may fail"
 )]
 
+#[cfg(feature = "store")]
+pub mod flash;
+
 use frixel_render::{Active, BitmapPool, Board, Drive, Sense, Session, Status, Ticker, Touch};
 use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, crc32};
 use frixel_wire::hello::Hello;
