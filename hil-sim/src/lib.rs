@@ -4,6 +4,7 @@
 //!   [`Drive`](frixel_render::Drive) at every tick, and tells what the finger [felt](Felt).
 //! - [`Stroke`]: where the finger is at a time.
 //! - [`Rig`]: a board and its world on one thread.
+//! - [`emulated`]: the firmware's image for an emulated board, and what the in-process board is compared with.
 //! - [`Line`]: one direction of a serial line, whose bytes take the time that the line rate gives them.
 //!
 //! Nothing here knows wall time, and everything random comes from a seed: the same run gives the same bytes on every
@@ -12,8 +13,11 @@
 #![forbid(unsafe_code)]
 
 mod amplifier;
+#[cfg(unix)]
+pub mod emulated;
 mod error;
 mod fingertip;
+mod journal;
 mod line;
 mod random;
 mod rig;
@@ -24,6 +28,7 @@ mod world;
 pub use amplifier::AmplifierConfig;
 pub use error::{OutOfRange, WorldError};
 pub use fingertip::example_finger;
+pub use journal::Journal;
 pub use line::{Line, LineCounts, LineFault};
 pub use rig::{BoardMemory, Rig, RigConfig, TickRecord, contact_of};
 pub use stroke::{FingerState, Point, Stroke, StrokeError};

@@ -1,13 +1,11 @@
 //! The in-process rig: session, ticker and world, tick by tick, on one thread.
 
+use frixel_exchange::{Done, Given, TICK_BYTES_MAX, TickBytes};
 use frixel_model::{Contact, Finger, LoadedContact, ParameterError};
 use frixel_render::{Active, BitmapPool, Board, Order, Sense, Session, Status, Ticker};
 use frixel_wire::scene::{Header, Scene};
 
-use crate::{Felt, Line, Stroke, World, WorldConfig, WorldError};
-
-/// Most bytes that a board puts on the line in one tick.
-const TRANSMIT_LEN: usize = 64;
+use crate::{Felt, Journal, Line, Stroke, World, WorldConfig, WorldError};
 
 /// Memory of a simulated board: what stands in statics on a real one. Much of it, so it lives in a box.
 pub struct BoardMemory {
@@ -67,6 +65,7 @@ pub struct Rig<'a> {
     to_host: Line,
     at_host: Vec<u8>,
     scene: Option<Header>,
+    journal: Option<Journal>,
     tick: u64,
     tick_hz: u32,
 }
@@ -86,6 +85,7 @@ impl<'a> Rig<'a> {
             to_host: Line::new(config.baud, tick_hz)?,
             at_host: Vec::new(),
             scene: None,
+            journal: None,
             tick: 0,
             tick_hz,
         })
@@ -136,9 +136,22 @@ impl<'a> Rig<'a> {
         !self.at_host.is_empty()
     }
 
+    /// From now on, keeps a journal of all that crosses the board's pins. To be called before the first tick, so that
+    /// another board can be given the same.
+    pub fn start_journal(&mut self) {
+        self.journal = Some(Journal::new());
+    }
+
+    /// The journal so far, which ends with it; `None` when none was started.
+    pub fn take_journal(&mut self) -> Option<Journal> {
+        self.journal.take()
+    }
+
     /// Advances one tick.
     pub fn step(&mut self) -> TickRecord {
         let arrived = self.to_board.tick();
+        let received =
+            self.journal.as_ref().map(|_| arrived.iter().copied().take(TICK_BYTES_MAX).collect::<TickBytes>());
         if !arrived.is_empty() {
             self.session.receive(arrived, &self.status);
             self.obey();
@@ -148,8 +161,12 @@ impl<'a> Rig<'a> {
         let felt = self.world.apply(drive);
         self.status = self.ticker.status();
         self.session.poll(&self.status);
-        self.transmit();
+        let sent = self.transmit();
         self.tick += 1;
+        if let (Some(journal), Some(received)) = (&mut self.journal, received) {
+            let tick = self.tick as u32;
+            journal.push(&Given { tick, received, sense }, &Done { tick, drive, sent });
+        }
         TickRecord { tick: self.tick, status: self.status, felt }
     }
 
@@ -175,13 +192,16 @@ impl<'a> Rig<'a> {
         }
     }
 
-    fn transmit(&mut self) {
-        let mut bytes = [0; TRANSMIT_LEN];
+    /// Moves what the board has to say to the line, and returns it.
+    fn transmit(&mut self) -> TickBytes {
+        let mut bytes = [0; TICK_BYTES_MAX];
         let count = self.session.transmit(&mut bytes);
-        if count > 0 {
-            self.to_host.send(&bytes[..count]);
+        let sent: TickBytes = bytes.into_iter().take(count).collect();
+        if !sent.is_empty() {
+            self.to_host.send(&sent);
         }
         self.at_host.extend_from_slice(self.to_host.tick());
+        sent
     }
 }
 

@@ -4,6 +4,7 @@
 pub mod device;
 pub mod metrics;
 pub mod output;
+pub mod player;
 pub mod rigs;
 pub mod scene;
 pub mod wanted;

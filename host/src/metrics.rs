@@ -43,7 +43,7 @@ pub struct Metrics {
 }
 
 /// What was gathered. Without a tick that counts for it, a number is absent.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MetricsSummary {
     /// All ticks.
     pub ticks: u64,

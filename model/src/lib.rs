@@ -2,12 +2,25 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+mod carrier;
+mod coating;
 mod contact;
-mod edges;
+mod error;
+mod finger;
 mod real;
+mod root;
+mod shear;
+mod soft;
+mod state;
 mod table;
 
-pub use contact::{Contact, Finger, LoadedContact, ParameterError};
-pub use edges::{sine_peak_per_rms, square_peak_per_rms};
+pub use carrier::{Carrier, ElectrodeCurrent, Waveform};
+pub use coating::{Slab, VACUUM_PERMITTIVITY_F_PER_M, attraction_pa, contact_attraction_pa, effective_gap_m};
+pub use contact::{Contact, FiniteContact, LoadedContact, LowerBound, PulledContact};
+pub use error::{Expected, InverseError, ParameterError, StateError};
+pub use finger::Finger;
 pub use real::Real;
+pub use shear::{ShearOnset, TissueSpring};
+pub use soft::{PowerLawShape, SoftContact, SoftFinger, SoftLoadedContact, SoftLowerBound, contact_exponent};
+pub use state::{ContactModel, ContactState, Sensitivity};
 pub use table::{InverseTable, TableError};

@@ -1,14 +1,14 @@
 //! The coefficients that the tick reads. What can be computed when a scene is committed is never computed in the tick.
 
-use frixel_model::{Contact, Finger, InverseTable, TableError};
+use frixel_model::{Carrier, Contact, Finger, InverseTable, Waveform};
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
-use frixel_wire::scene::{Carrier, Header, Layer as LayerRecord, RECORDS_MAX, Scene};
+use frixel_wire::scene::{Carrier as Shape, Header, Layer as LayerRecord, RECORDS_MAX, Scene};
 use heapless::Vec;
 
 use crate::Board;
 use crate::bitmap_pool::{BitmapPool, Directory};
 use crate::carrier::CarrierTiming;
-use crate::config::{self, WHOLE_SCENE};
+use crate::config;
 use crate::layer::Layer;
 
 /// Coefficients of one scene. A board has two of them: one that plays and one that the next scene is built in.
@@ -57,8 +57,8 @@ impl Active {
     pub(crate) fn load(&mut self, scene: &Scene, board: &Board, directory: &Directory) -> Result<(), Refusal> {
         self.unload();
         let header = scene.header();
-        if header.carrier == Carrier::Sine && !cfg!(feature = "sine-carrier") {
-            return Err(Refusal::LeftOut { layer: WHOLE_SCENE });
+        if header.carrier == Shape::Sine && !cfg!(feature = "sine-carrier") {
+            return Err(Refusal::LeftOut { layer: ConfigRefusal::WHOLE_SCENE });
         }
         config::check_header(header, board).map_err(Refusal::Config)?;
         let (carrier, voltage_max_v_rms) = carrier(header, board).map_err(Refusal::Config)?;
@@ -92,16 +92,28 @@ impl Active {
 /// The carrier of a scene, and the largest rms voltage that it carries within all limits.
 fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), ConfigRefusal> {
     let limits = &board.limits;
+    let tick_period_s = f64::from(board.tick_period_s());
     let half_period_ticks = board.ticks(0.5 / header.carrier_hz);
-    let half_period_s = half_period_ticks as f32 * board.tick_period_s();
-    let peak_per_rms = config::peak_per_rms(header.carrier, half_period_s, limits.edge_time_constant_s);
+    let carrier = Carrier {
+        waveform: match header.carrier {
+            Shape::Square => Waveform::Square,
+            Shape::Sine => Waveform::Sine,
+        },
+        half_period_s: f64::from(half_period_ticks) * tick_period_s,
+        edge_time_constant_s: f64::from(limits.edge_time_constant_s),
+    };
+    let peak_per_rms = carrier.peak_per_rms() as f32;
     let voltage_max_v_rms = header.voltage_max_v_rms.min(header.voltage_max_v_peak / peak_per_rms);
-    let drive_v_peak = voltage_max_v_rms * peak_per_rms;
 
-    let carrier_hz = 0.5 / half_period_s;
-    let (rms_a, peak_a) = config::currents_a(header.carrier, drive_v_peak, carrier_hz, board);
-    config::within(ConfigField::CurrentRms, rms_a, 0.0, limits.current_max_a_rms, WHOLE_SCENE)?;
-    config::within(ConfigField::CurrentPeak, peak_a, 0.0, limits.current_max_a_peak, WHOLE_SCENE)?;
+    let capacitance_f = f64::from(limits.electrode_capacitance_max_f);
+    let drive_v_peak = f64::from(voltage_max_v_rms * peak_per_rms);
+    let current = carrier.electrode_current(capacitance_f, drive_v_peak, tick_period_s);
+    for (field, found_a, max_a) in [
+        (ConfigField::CurrentRms, current.a_rms, limits.current_max_a_rms),
+        (ConfigField::CurrentPeak, current.a_peak, limits.current_max_a_peak),
+    ] {
+        config::within(field, found_a as f32, 0.0, max_a, ConfigRefusal::WHOLE_SCENE)?;
+    }
 
     let codes_per_v = f32::from(i16::MAX) / limits.full_scale_v_peak;
     let code_max = (header.voltage_max_v_peak * codes_per_v) as i32;
@@ -116,7 +128,8 @@ fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), Confi
 
 /// The inverse table of a scene's finger, coating and load. It is made in f64, so that its error is the table's own.
 fn table(header: &Header, voltage_max_v_rms: f32) -> Result<InverseTable, ConfigRefusal> {
-    let refusal = |field, found| ConfigRefusal { field, found, min: 0.0, max: f32::INFINITY, layer: WHOLE_SCENE };
+    let refusal =
+        |field, found| ConfigRefusal { field, found, min: 0.0, max: f32::INFINITY, layer: ConfigRefusal::WHOLE_SCENE };
     let finger = Finger {
         radius_m: f64::from(header.finger_radius_m),
         stiffness_pa_per_m: f64::from(header.stiffness_pa_per_m),
@@ -126,8 +139,6 @@ fn table(header: &Header, voltage_max_v_rms: f32) -> Result<InverseTable, Config
         .map_err(|_| refusal(ConfigField::EffectiveGap, header.effective_gap_m))?
         .under_load(f64::from(header.normal_load_n))
         .map_err(|_| refusal(ConfigField::NormalLoad, header.normal_load_n))?;
-    InverseTable::build(&contact, f64::from(voltage_max_v_rms)).map_err(|error: TableError| {
-        let _ = error;
-        refusal(ConfigField::TableRange, voltage_max_v_rms)
-    })
+    InverseTable::build(&contact, f64::from(voltage_max_v_rms))
+        .map_err(|_| refusal(ConfigField::TableRange, voltage_max_v_rms))
 }

@@ -1,8 +1,7 @@
 //! Whether the numbers of a scene are ones that the board can play. Refused, never silently clamped.
 
-use frixel_model::{sine_peak_per_rms, square_peak_per_rms};
 use frixel_wire::message::{ConfigField, ConfigRefusal};
-use frixel_wire::scene::{Carrier, Header, Layer, Record, Region};
+use frixel_wire::scene::{Header, Layer, Record, Region};
 
 use crate::Board;
 
@@ -11,8 +10,6 @@ use crate::Board;
 const CARRIER_MIN_HZ: f32 = 125.0;
 /// Fewest ticks in a half period of the carrier.
 const HALF_PERIOD_MIN_TICKS: f32 = 4.0;
-/// `ConfigRefusal::layer` for what belongs to no layer.
-pub(crate) const WHOLE_SCENE: u8 = 255;
 /// Farthest from the screen's corner that anything may be, in m.
 pub(crate) const LENGTH_MAX_M: f32 = 2.0;
 /// Largest friction that a layer may name, in N, either way.
@@ -41,7 +38,7 @@ pub(crate) fn check_header(header: &Header, board: &Board) -> Result<(), ConfigR
         (ConfigField::CarrierFrequency, header.carrier_hz, CARRIER_MIN_HZ, carrier_max_hz),
         (ConfigField::HostTimeout, header.host_timeout_s, 0.02, 1.0),
     ] {
-        within(field, found, min, max, WHOLE_SCENE)?;
+        within(field, found, min, max, ConfigRefusal::WHOLE_SCENE)?;
     }
     Ok(())
 }
@@ -74,49 +71,5 @@ pub(crate) fn check_record(record: &Record, layer: u8) -> Result<(), ConfigRefus
             friction(black_n)?;
             friction(white_n)
         }
-    }
-}
-
-/// Peak voltage that an rms voltage on the electrode takes at the DAC: crest factor, and loss in the carrier's edges.
-pub(crate) fn peak_per_rms(carrier: Carrier, half_period_s: f32, edge_time_constant_s: f32) -> f32 {
-    let (half_period_s, edge_s) = (f64::from(half_period_s), f64::from(edge_time_constant_s));
-    match carrier {
-        Carrier::Square => square_peak_per_rms(half_period_s, edge_s) as f32,
-        Carrier::Sine => sine_peak_per_rms(half_period_s, edge_s) as f32,
-    }
-}
-
-/// Currents into the worst-case electrode at the largest drive, in A: rms and peak.
-///
-/// A square wave of peak `U` charges the electrode by `2 U C` at every edge, along an exponential of the edge's time
-/// constant `tau`: peak `2 U C / tau`, rms `2 U C sqrt(f/tau)`. A sine of ticks `dt` is a staircase, whose steps are
-/// rounded by the edge: `w U C` at its peak, times `dt/tau` where that is more than one.
-pub(crate) fn currents_a(carrier: Carrier, drive_v_peak: f32, carrier_hz: f32, board: &Board) -> (f32, f32) {
-    let limits = &board.limits;
-    let charge_c = limits.electrode_capacitance_max_f * drive_v_peak;
-    let tau = limits.edge_time_constant_s;
-    match carrier {
-        Carrier::Square => (2.0 * charge_c * libm::sqrtf(carrier_hz / tau), 2.0 * charge_c / tau),
-        Carrier::Sine => {
-            let step_ratio = board.tick_period_s() / tau;
-            let peak_a = core::f32::consts::TAU * carrier_hz * charge_c;
-            let rms_a = peak_a * core::f32::consts::FRAC_1_SQRT_2;
-            (rms_a * libm::sqrtf((0.5 * step_ratio).max(1.0)), peak_a * step_ratio.max(1.0))
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn square_current_agrees_with_charge_and_energy() {
-        let (rms_a, peak_a) = currents_a(Carrier::Square, 150.0, 1000.0, &Board::SIMULATOR);
-        let step_c = 2.0 * 150.0 * 0.53e-9;
-        assert!((peak_a - step_c / 20e-6).abs() < 1e-6);
-        // Two edges a period, each the integral of (peak exp(-t/tau))^2.
-        let expected = libm::sqrtf(2.0 * 1000.0 * peak_a * peak_a * 20e-6 / 2.0);
-        assert!((rms_a - expected).abs() < 1e-7);
     }
 }

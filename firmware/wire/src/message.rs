@@ -120,7 +120,7 @@ pub struct Answer {
     pub sequence: u16,
     /// Bytes received since the hello, garbage included, modulo 2^32: the credit.
     pub received_bytes: u32,
-    /// State of the supervisor when the command was taken.
+    /// State of the supervisor once the command is carried out.
     pub state: State,
     /// Whether it was done.
     pub outcome: Result<Accepted, Refusal>,

@@ -137,17 +137,23 @@ fn zeros_between_frames_are_no_error() {
     assert_eq!((decoder.frames(), decoder.rejected()), (2, 0));
 }
 
-/// A frame that is right but for its length; and one hidden inside an overlong one, which must not be found.
+/// Frames that are right but for their length, one whose longest allowed beginning is right; and a frame hidden behind an
+/// overlong one, which must not be found.
 #[test]
 fn overlong_frames_are_dropped_whole() {
-    let too_long: Vec<u8> = std::iter::repeat_n(0x55, PAYLOAD_MAX_LEN + 1).collect();
-    let crc = crc32(&too_long).to_le_bytes();
-    let body = [too_long.as_slice(), &crc].concat();
-    assert!(!body.contains(&0));
-    let overlong = [&[body.len() as u8 + 1], body.as_slice(), &[0]].concat();
-    let (payloads, decoder) = decode(&[overlong.as_slice(), &frame(b"next")].concat());
-    assert_eq!(payloads, [b"next"]);
-    assert_eq!((decoder.frames(), decoder.rejected()), (1, 1));
+    let with_crc = |len| {
+        let payload = vec![0x55; len];
+        [payload.as_slice(), &crc32(&payload).to_le_bytes()].concat()
+    };
+    let right = with_crc(PAYLOAD_MAX_LEN);
+    for body in [with_crc(PAYLOAD_MAX_LEN + 1), [right.as_slice(), &[0x55]].concat(), right.repeat(2)] {
+        // Written with lengths of its own: `encode` makes no such frame.
+        let cobs: Vec<u8> = body.chunks(253).flat_map(|run| [&[run.len() as u8 + 1], run].concat()).collect();
+        assert!(!cobs.contains(&0));
+        let (payloads, decoder) = decode(&[cobs.as_slice(), &[0], &frame(b"next")].concat());
+        assert_eq!(payloads, [b"next"]);
+        assert_eq!((decoder.frames(), decoder.rejected()), (1, 1));
+    }
 
     let hiding = [vec![0x55; 1_000], frame(b"hidden"), frame(b"next")].concat();
     let (payloads, decoder) = decode(&hiding);

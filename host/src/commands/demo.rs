@@ -30,7 +30,7 @@ pub(super) fn run(args: &DemoArgs) -> Result<(), CommandError> {
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), CommandError> {
     if let Some(folder) = path.parent() {
-        std::fs::create_dir_all(folder).map_err(CommandError::file(folder))?;
+        std::fs::create_dir_all(folder).map_err(CommandError::writing(folder))?;
     }
-    std::fs::write(path, bytes).map_err(CommandError::file(path))
+    std::fs::write(path, bytes).map_err(CommandError::writing(path))
 }

@@ -4,10 +4,11 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use frixel::device::{DeviceError, PortError};
+use frixel::output::OutputError;
+use frixel::player::SimulationError;
 use frixel::rigs::ServerError;
 use frixel::scene::CompileError;
 use frixel_hil_sim::{StrokeError, WorldError};
-use frixel_model::ParameterError;
 use frixel_wire::fault::Fault;
 use thiserror::Error;
 
@@ -22,15 +23,19 @@ pub(crate) enum CommandError {
     #[error(transparent)]
     Server(#[from] ServerError),
     #[error(transparent)]
+    Output(#[from] OutputError),
+    #[error(transparent)]
     World(#[from] WorldError),
-    #[error("the contact model refuses the scene's finger: {0:?}")]
-    Parameter(ParameterError),
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
     #[error("{}: {source}", path.display())]
     Stroke { path: PathBuf, source: StrokeError },
     #[error("a stroke over this scene: {0}")]
     NaturalStroke(StrokeError),
-    #[error("{}: {source}", path.display())]
-    File { path: PathBuf, source: io::Error },
+    #[error("{} cannot be read ({source}): check the path", path.display())]
+    Read { path: PathBuf, source: io::Error },
+    #[error("{} cannot be written ({source}): check the folder and its free space", path.display())]
+    Write { path: PathBuf, source: io::Error },
     #[error(
         "{port} is a board with an electrode: --stroke moves a simulated finger only; leave it out, or use --port sim"
     )]
@@ -50,15 +55,15 @@ pub(crate) enum CommandError {
 }
 
 impl CommandError {
-    /// For `map_err` on what is done with a file.
-    pub(crate) fn file(path: &Path) -> impl FnOnce(io::Error) -> Self {
+    /// For `map_err` on what is read.
+    pub(crate) fn reading(path: &Path) -> impl FnOnce(io::Error) -> Self {
         let path = path.to_owned();
-        move |source| Self::File { path, source }
+        move |source| Self::Read { path, source }
     }
-}
 
-impl From<ParameterError> for CommandError {
-    fn from(error: ParameterError) -> Self {
-        Self::Parameter(error)
+    /// For `map_err` on what is written.
+    pub(crate) fn writing(path: &Path) -> impl FnOnce(io::Error) -> Self {
+        let path = path.to_owned();
+        move |source| Self::Write { path, source }
     }
 }

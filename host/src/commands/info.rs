@@ -15,7 +15,7 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CommandError> {
 /// A hello for a person.
 fn describe(hello: &Hello) -> String {
     let limits = &hello.limits;
-    let id: String = hello.id.iter().map(|byte| format!("{byte:02x}")).collect();
+    let id = hello.id.iter().fold(String::new(), |id, byte| id + &format!("{byte:02x}"));
     let (major, minor, patch) = hello.firmware;
     let scene = if hello.scene_crc32 == 0 { "none".into() } else { format!("{:08x}", hello.scene_crc32) };
     let fault = hello.last_fault.map_or("none".into(), |fault| format!("{fault} (detail {})", hello.fault_detail));
@@ -38,5 +38,5 @@ fn describe(hello: &Hello) -> String {
         ("records", limits.records_max.to_string()),
         ("touch reports", format!("every {} ms", 1e3 * limits.touch_report_period_s)),
     ];
-    lines.iter().map(|(name, value)| format!("{name:16} {value}\n")).collect()
+    lines.iter().fold(String::new(), |text, (name, value)| text + &format!("{name:16} {value}\n"))
 }

@@ -8,7 +8,6 @@ mod play;
 mod ports;
 mod sim;
 mod stroke;
-mod summary;
 
 use std::path::PathBuf;
 
@@ -58,7 +57,7 @@ struct PlayArgs {
     #[arg(long, value_name = "FILE.csv")]
     stroke: Option<PathBuf>,
     /// How long to play. Without it, the stroke's length on the simulator, and until Ctrl-C on a board.
-    #[arg(long, value_name = "S", value_parser = seconds)]
+    #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     seconds: Option<f64>,
     /// Folder for what is written.
     #[arg(long, default_value = "frixel-out")]

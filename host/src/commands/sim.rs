@@ -28,7 +28,7 @@ pub(super) fn run(args: &SimArgs) -> Result<(), CommandError> {
     let mut rig = Rig::new(&mut memory, &config, stroke, args.seed)?;
     let server = Server::open()?;
     println!("port: {}", server.path());
-    io::stdout().flush().map_err(CommandError::file("standard output".as_ref()))?;
+    io::stdout().flush().map_err(CommandError::writing("standard output".as_ref()))?;
     eprintln!("a virtual board is there until Ctrl-C; in another terminal: frixel play SCENE --port {}", server.path());
     server.run(&mut rig, &args.out, config.board.tick_hz / ROWS_HZ, &|| interrupt.is_asked())?;
     eprintln!("wrote {0}/felt.csv and {0}/events.csv", args.out.display());

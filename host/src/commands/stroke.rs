@@ -18,7 +18,7 @@ pub(super) fn stroke(
 ) -> Result<Stroke, CommandError> {
     match file {
         Some(path) => {
-            let text = std::fs::read_to_string(path).map_err(CommandError::file(path))?;
+            let text = std::fs::read_to_string(path).map_err(CommandError::reading(path))?;
             Stroke::from_csv(&text).map_err(|source| CommandError::Stroke { path: path.into(), source })
         }
         None => Stroke::natural(screen_width_m, screen_height_m, seconds.unwrap_or(NATURAL_STROKE_S))

@@ -66,3 +66,6 @@ impl Credit {
         under_way + len as u64 + reserve <= self.window
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -90,7 +90,7 @@ pub enum DeviceError {
     },
     /// The board did not answer.
     #[error(
-        "the board on {port} has not answered for {} ms ({command}); its output goes to zero by itself; check cable and power, then start again",
+        "{command} was not answered by the board on {port} for {} ms; its output goes to zero by itself; check cable and power, then start again",
         .waited.as_millis()
     )]
     Silent {
@@ -102,7 +102,7 @@ pub enum DeviceError {
         waited: Duration,
     },
     /// The board answered that it will not.
-    #[error("the board on {port} refused ({command}): {refusal:?}")]
+    #[error("{command} was refused by the board on {port}: {refusal}")]
     Refused {
         /// Name of the link.
         port: String,

@@ -102,3 +102,36 @@ fn port_paths() -> Vec<String> {
     let ports = ports().unwrap_or_default();
     ports.into_iter().map(|port| port.path).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_port_says_what_is_known_of_it() {
+        let mut port = PortInfo { path: "/dev/ttyS0".into(), usb: None };
+        assert_eq!(port.to_string(), "/dev/ttyS0");
+        port.usb = Some(UsbDevice {
+            vendor_id: 0x0483,
+            product_id: 0x374e,
+            manufacturer: Some("STMicroelectronics".into()),
+            product: None,
+            serial_number: Some("0042".into()),
+        });
+        assert_eq!(port.to_string(), "/dev/ttyS0 (USB 0483:374e, STMicroelectronics, serial number 0042)");
+    }
+
+    #[test]
+    fn what_the_operating_system_says_becomes_advice() {
+        let error = |kind| serialport::Error::new(kind, "reason");
+        let why = |port, kind| why_not_opened(port, error(kind));
+        let io = serialport::ErrorKind::Io;
+        let path = env!("CARGO_MANIFEST_DIR");
+        assert_eq!(why(path, serialport::ErrorKind::NoDevice), PortError::Busy { port: path.into() });
+        assert!(matches!(why("nowhere", serialport::ErrorKind::NoDevice), PortError::NotThere { .. }));
+        assert!(matches!(why("nowhere", io(ErrorKind::NotFound)), PortError::NotThere { .. }));
+        assert!(matches!(why(path, io(ErrorKind::PermissionDenied)), PortError::NoPermission { .. }));
+        assert!(matches!(why(path, serialport::ErrorKind::Unknown), PortError::NotOpened { .. }));
+        assert!(why(path, io(ErrorKind::PermissionDenied)).to_string().contains("dialout"));
+    }
+}

@@ -18,6 +18,10 @@ use super::ports::why_not_opened;
 /// Line rate in bits a second, unless a board says otherwise. Pseudo-terminals and native USB ignore it.
 pub const DEFAULT_BAUD: u32 = 2_000_000;
 
+/// How long a port may still belong to a program that has just ended: a pseudo-terminal stays exclusive until its server sees that the client is gone.
+const BUSY_PATIENCE: Duration = Duration::from_millis(700);
+/// Time between two tries to open a port that is in use.
+const BUSY_RETRY_AFTER: Duration = Duration::from_millis(20);
 /// How often the reading thread looks whether it is to end.
 const READ_POLL: Duration = Duration::from_millis(20);
 /// How long the operating system may refuse bytes before the link counts as broken.
@@ -61,8 +65,19 @@ struct State {
 }
 
 impl SerialLink {
-    /// Opens the port at `path` with `baud` bits a second, and throws away what had arrived there before.
+    /// Opens the port at `path` with `baud` bits a second, and throws away what had arrived there before. Takes at most 0.7 s when the port is in
+    /// use.
     pub fn open(path: &str, baud: u32) -> Result<Self, PortError> {
+        let started = Instant::now();
+        loop {
+            match Self::open_once(path, baud) {
+                Err(PortError::Busy { .. }) if started.elapsed() < BUSY_PATIENCE => thread::sleep(BUSY_RETRY_AFTER),
+                outcome => return outcome,
+            }
+        }
+    }
+
+    fn open_once(path: &str, baud: u32) -> Result<Self, PortError> {
         let not_opened = |error| why_not_opened(path, error);
         let mut reader = serialport::new(path, baud).timeout(READ_POLL).exclusive(true).open().map_err(not_opened)?;
         reader.set_timeout(READ_POLL).map_err(not_opened)?;

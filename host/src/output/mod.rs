@@ -1,49 +1,51 @@
-//! temp
-#![allow(missing_docs)]
-use std::io::{self, Write};
-#[derive(Clone, Copy, Debug)]
-pub struct FeltRow {
-    pub t_s: f64,
-    pub x_mm: Option<f64>,
-    pub y_mm: Option<f64>,
-    pub speed_mm_s: Option<f64>,
-    pub wanted_n: Option<f64>,
-    pub asked_n: Option<f64>,
-    pub felt_n: Option<f64>,
-    pub voltage_v_rms: f64,
-    pub dac_code: i16,
-    pub flags: u16,
-}
-pub struct FeltWriter<W>(W);
-impl<W: Write> FeltWriter<W> {
-    pub fn new(mut w: W) -> io::Result<Self> {
-        writeln!(w, "t_s,x_mm,y_mm,speed_mm_s,wanted_n,asked_n,felt_n,voltage_v_rms,dac_code,flags")?;
-        Ok(Self(w))
-    }
-    pub fn write(&mut self, r: &FeltRow) -> io::Result<()> {
-        let f = |o: Option<f64>| o.map_or(String::new(), |v| format!("{v:.6}"));
-        writeln!(
-            self.0,
-            "{:.6},{},{},{},{},{},{},{:.4},{},{}",
-            r.t_s,
-            f(r.x_mm),
-            f(r.y_mm),
-            f(r.speed_mm_s),
-            f(r.wanted_n),
-            f(r.asked_n),
-            f(r.felt_n),
-            r.voltage_v_rms,
-            r.dac_code,
-            r.flags
-        )
-    }
-    pub fn flush(&mut self) -> io::Result<()> {
-        self.0.flush()
-    }
-}
-pub fn felt_svg(_: &[FeltRow]) -> String {
-    String::new()
-}
-pub fn scene_png(_: &crate::scene::Program, _: &[FeltRow]) -> Vec<u8> {
-    Vec::new()
+//! The files that a played scene leaves behind.
+//!
+//! - [`FeltCsv`]: `felt.csv`, row by row while the scene plays.
+//! - [`Trace`]: the same rows thinned out for pictures, in bounded memory.
+//! - [`write_felt_svg`]: friction and voltage over time.
+//! - [`write_scene_png`]: the friction map of a program with the stroke over it.
+//! - [`Report`]: the numbers, as JSON and as a short text.
+//!
+//! The same input gives the same bytes.
+
+mod canvas;
+mod csv;
+mod felt_svg;
+mod report;
+mod scale;
+mod scene_png;
+#[cfg(test)]
+mod tests;
+mod trace;
+
+use std::io;
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+pub use csv::{FeltCsv, FeltRow};
+pub use felt_svg::write_felt_svg;
+pub use report::Report;
+pub use scene_png::write_scene_png;
+pub use trace::Trace;
+
+/// Why a file could not be written.
+#[derive(Debug, Error)]
+pub enum OutputError {
+    /// The system refused it.
+    #[error("{} cannot be written ({source}): check the folder and its free space", .path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// A picture could not be drawn.
+    #[error("{} cannot be drawn ({reason})", .path.display())]
+    Drawing {
+        /// The file.
+        path: PathBuf,
+        /// What the drawing library said.
+        reason: String,
+    },
 }

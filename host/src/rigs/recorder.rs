@@ -1,14 +1,13 @@
 //! What a simulated finger felt, tick by tick, against what it should have.
 
 use frixel_hil_sim::{TickRecord, contact_of};
-use frixel_model::{LoadedContact, ParameterError, sine_peak_per_rms, square_peak_per_rms};
+use frixel_model::{LoadedContact, ParameterError};
 use frixel_wire::fault::Flags;
 use frixel_wire::hello::BoardLimits;
-use frixel_wire::scene::Carrier;
 
 use crate::metrics::{Metrics, TickSample};
 use crate::output::FeltRow;
-use crate::scene::Program;
+use crate::scene::{Program, carrier};
 use crate::wanted::Wanted;
 
 /// Gathers the errors of every tick of a program that plays, and a row every so many ticks.
@@ -60,18 +59,16 @@ impl Recorder {
         let natural_n = self.wanted.natural_friction_n();
         let wanted_n =
             record.felt.finger.map(|finger| natural_n + self.wanted.electric_friction_n(finger.x_m, finger.y_m));
-        if let Some(wanted_n) = wanted_n {
-            let telemetry = &record.status.telemetry;
-            self.metrics.add(&TickSample {
-                wanted_n,
-                asked_n: natural_n + f64::from(telemetry.asked_electric_friction_n),
-                felt_n: record.felt.friction_n,
-                inversion_n: natural_n + self.inversion.electric_friction_n(telemetry.voltage_v_rms),
-                saturated: telemetry.flags.contains(Flags::SATURATED),
-                finger_down: true,
-                wanted_in_reach: self.inversion.reaches(wanted_n - natural_n),
-            });
-        }
+        let telemetry = &record.status.telemetry;
+        self.metrics.add(&TickSample {
+            wanted_n: wanted_n.unwrap_or_default(),
+            asked_n: natural_n + f64::from(telemetry.asked_electric_friction_n),
+            felt_n: record.felt.friction_n,
+            inversion_n: natural_n + self.inversion.electric_friction_n(telemetry.voltage_v_rms),
+            saturated: telemetry.flags.contains(Flags::SATURATED),
+            finger_down: wanted_n.is_some(),
+            wanted_in_reach: wanted_n.is_some_and(|wanted_n| self.inversion.reaches(wanted_n - natural_n)),
+        });
         self.rows.extend(self.row_maker.take(record, wanted_n));
     }
 }
@@ -86,11 +83,7 @@ struct Inversion {
 impl Inversion {
     fn new(program: &Program, limits: &BoardLimits, tick_hz: u32) -> Result<Self, ParameterError> {
         let half_period_s = f64::from(program.half_period_ticks) / f64::from(tick_hz);
-        let edge_s = f64::from(limits.edge_time_constant_s);
-        let peak_per_rms = match program.header.carrier {
-            Carrier::Square => square_peak_per_rms(half_period_s, edge_s),
-            Carrier::Sine => sine_peak_per_rms(half_period_s, edge_s),
-        };
+        let peak_per_rms = carrier(program.header.carrier, half_period_s, limits).peak_per_rms();
         let codes_per_v_peak = f64::from(i16::MAX) / f64::from(limits.full_scale_v_peak);
         Ok(Self {
             contact: contact_of(&program.header)?,
@@ -180,9 +173,9 @@ impl RowMaker {
             wanted_n: self.wanted.take(),
             asked_n: self.asked.take(),
             felt_n: self.felt.take(),
-            voltage_v_rms: f64::from(telemetry.voltage_v_rms),
-            dac_code: telemetry.dac_code,
-            flags: std::mem::take(&mut self.flags).0,
+            voltage_v_rms: Some(f64::from(telemetry.voltage_v_rms)),
+            dac_code: Some(telemetry.dac_code),
+            flags: Some(std::mem::take(&mut self.flags)),
         })
     }
 }

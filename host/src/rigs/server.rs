@@ -3,7 +3,7 @@
 use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Write};
 use std::os::unix::fs::OpenOptionsExt;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use frixel_hil_sim::Rig;
@@ -12,6 +12,7 @@ use serialport::{SerialPort, TTYPort};
 use thiserror::Error;
 
 use super::server_log::ServerLog;
+use crate::output::OutputError;
 
 /// How long the server sleeps between two looks at the clock.
 const NAP: Duration = Duration::from_millis(1);
@@ -37,13 +38,8 @@ pub enum ServerError {
         source: io::Error,
     },
     /// A file could not be written.
-    #[error("the virtual board could not write {}: {source}", path.display())]
-    File {
-        /// Path of the file.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
+    #[error(transparent)]
+    Output(#[from] OutputError),
 }
 
 /// A virtual board on a pseudo-terminal.
@@ -100,7 +96,7 @@ impl Server {
             self.let_the_next_client_in();
             std::thread::sleep(NAP);
         }
-        log.finish()
+        Ok(log.flush()?)
     }
 
     fn receive(&mut self, rig: &mut Rig) -> Result<(), ServerError> {

@@ -8,8 +8,7 @@ use frixel_hil_sim::{Rig, TickRecord};
 use frixel_wire::fault::{Flags, State};
 
 use super::recorder::RowMaker;
-use super::server::ServerError;
-use crate::output::FeltWriter;
+use crate::output::{FeltCsv, OutputError};
 
 /// Virtual time between two flushes, so that a killed server leaves all but the last moment.
 const FLUSH_PERIOD_S: f64 = 0.1;
@@ -19,9 +18,9 @@ const FLUSH_PERIOD_S: f64 = 0.1;
 /// The second has the columns `t_s,event,last_frame_t_s`: every change of the supervisor's state by its name, and
 /// `host-silent`; with the time at which the last whole frame of a host had arrived.
 pub(super) struct ServerLog {
-    folder: PathBuf,
-    felt: FeltWriter<BufWriter<File>>,
+    felt: FeltCsv,
     events: BufWriter<File>,
+    events_path: PathBuf,
     row_maker: RowMaker,
     tick_period_s: f64,
     ticks_per_flush: u64,
@@ -32,17 +31,16 @@ pub(super) struct ServerLog {
 }
 
 impl ServerLog {
-    pub(super) fn create(folder: &Path, rig: &Rig, ticks_per_row: u32) -> Result<Self, ServerError> {
-        let failed = |source| ServerError::File { path: folder.into(), source };
-        std::fs::create_dir_all(folder).map_err(failed)?;
-        let create = |name| File::create(folder.join(name)).map(BufWriter::new).map_err(failed);
-        let mut events = create("events.csv")?;
-        writeln!(events, "t_s,event,last_frame_t_s").map_err(failed)?;
+    pub(super) fn create(folder: &Path, rig: &Rig, ticks_per_row: u32) -> Result<Self, OutputError> {
+        std::fs::create_dir_all(folder).map_err(failed(folder))?;
+        let path = folder.join("events.csv");
+        let mut events = BufWriter::new(File::create(&path).map_err(failed(&path))?);
+        writeln!(events, "t_s,event,last_frame_t_s").map_err(failed(&path))?;
         let tick_hz = rig.tick_hz();
         Ok(Self {
-            folder: folder.into(),
-            felt: FeltWriter::new(create("felt.csv")?).map_err(failed)?,
+            felt: FeltCsv::create(&folder.join("felt.csv"))?,
             events,
+            events_path: path,
             row_maker: RowMaker::new(tick_hz, ticks_per_row),
             tick_period_s: 1.0 / f64::from(tick_hz),
             ticks_per_flush: (FLUSH_PERIOD_S * f64::from(tick_hz)) as u64,
@@ -54,16 +52,7 @@ impl ServerLog {
     }
 
     /// Takes one tick of `rig`. What is wanted is not known here: the scene's file is the client's.
-    pub(super) fn take(&mut self, record: &TickRecord, rig: &Rig) -> Result<(), ServerError> {
-        self.try_take(record, rig).map_err(|source| ServerError::File { path: self.folder.clone(), source })
-    }
-
-    /// Writes out what is left.
-    pub(super) fn finish(mut self) -> Result<(), ServerError> {
-        self.flush().map_err(|source| ServerError::File { path: self.folder.clone(), source })
-    }
-
-    fn try_take(&mut self, record: &TickRecord, rig: &Rig) -> io::Result<()> {
+    pub(super) fn take(&mut self, record: &TickRecord, rig: &Rig) -> Result<(), OutputError> {
         let (frames, _) = rig.frame_counts();
         if frames != self.frames {
             self.frames = frames;
@@ -72,7 +61,7 @@ impl ServerLog {
         let telemetry = &record.status.telemetry;
         if telemetry.state != self.state {
             self.state = telemetry.state;
-            self.event(record.tick, &telemetry.state.to_string())?;
+            self.event(record.tick, name_of(telemetry.state))?;
         }
         let host_silent = telemetry.flags.contains(Flags::HOST_SILENT);
         if host_silent && !self.host_silent {
@@ -85,14 +74,30 @@ impl ServerLog {
         if record.tick.is_multiple_of(self.ticks_per_flush) { self.flush() } else { Ok(()) }
     }
 
-    fn event(&mut self, tick: u64, event: &str) -> io::Result<()> {
-        let seconds = |tick: u64| tick as f64 * self.tick_period_s;
-        let (t_s, last_frame_t_s) = (seconds(tick), seconds(self.last_frame_at_tick));
-        writeln!(self.events, "{t_s:.6},{event},{last_frame_t_s:.6}")
+    /// Writes out what is held back so far.
+    pub(super) fn flush(&mut self) -> Result<(), OutputError> {
+        self.felt.flush()?;
+        self.events.flush().map_err(failed(&self.events_path))
     }
 
-    fn flush(&mut self) -> io::Result<()> {
-        self.felt.flush()?;
-        self.events.flush()
+    fn event(&mut self, tick: u64, event: &str) -> Result<(), OutputError> {
+        let seconds = |tick: u64| tick as f64 * self.tick_period_s;
+        let (t_s, last_frame_t_s) = (seconds(tick), seconds(self.last_frame_at_tick));
+        writeln!(self.events, "{t_s:.6},{event},{last_frame_t_s:.6}").map_err(failed(&self.events_path))
+    }
+}
+
+fn failed(path: &Path) -> impl FnOnce(io::Error) -> OutputError {
+    let path = path.to_owned();
+    move |source| OutputError::File { path, source }
+}
+
+/// A word for a column, where a sentence would not do.
+fn name_of(state: State) -> &'static str {
+    match state {
+        State::Disarmed => "disarmed",
+        State::Armed => "armed",
+        State::Active => "active",
+        State::Faulted => "faulted",
     }
 }

@@ -32,9 +32,9 @@ impl<'a> SimLink<'a> {
         Self { rig, recorder, recording: false, written: Written::default(), written_at_tick: 0, keep_alive: None }
     }
 
-    /// The rig and what was recorded.
-    pub fn into_parts(self) -> (Rig<'a>, Recorder) {
-        (self.rig, self.recorder)
+    /// What was recorded.
+    pub fn into_recorder(self) -> Recorder {
+        self.recorder
     }
 
     fn ticks(&self, time: Duration) -> u64 {

@@ -1,15 +1,16 @@
 //! From a scene as written to a program as played: checks that need the board, other layers, or pictures.
 
 use frixel_wire::hello::BoardLimits;
-use frixel_wire::scene::{Carrier, Header, Layer as WireLayer, RECORDS_MAX, Record, Region};
+use frixel_wire::scene::{Header, Layer as WireLayer, RECORDS_MAX, Record, Region};
 
 use super::excess;
 use super::file::Scene;
 use super::layer::{Above, Kind, Layer, Rectangle};
-use super::mistake::{CompileError, Log, Mistake};
+use super::log::Log;
+use super::mistake::{CompileError, Mistake};
 use super::pool::Pool;
 use super::program::Program;
-use super::reach::{Reach, crest, mean_square_left};
+use super::reach::{Reach, carrier};
 
 /// Fewest ticks of half a carrier period that a board takes.
 const HALF_PERIOD_MIN_TICKS: f64 = 4.0;
@@ -51,7 +52,7 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
     let reach = match Reach::of(&header) {
         Ok(reach) => reach,
         Err(error) => {
-            log.add(scene.coating.places.table(), Mistake::Model { reason: format!("{error:?}") });
+            log.add(scene.coating.places.table(), Mistake::Model { reason: error.to_string() });
             return None;
         }
     };
@@ -102,8 +103,7 @@ fn header(scene: &Scene, limits: &BoardLimits, half_period_s: f64, log: &mut Log
     let drive = &scene.drive;
     let shape = scene.carrier.shape;
     let board_v_peak = f64::from(limits.voltage_max_v_peak.min(limits.full_scale_v_peak));
-    let left = mean_square_left(shape, half_period_s, f64::from(limits.edge_time_constant_s));
-    let peak_per_rms = crest(shape) / left.sqrt();
+    let peak_per_rms = carrier(shape, half_period_s, limits).peak_per_rms();
     let v_peak = match drive.voltage_max_v_peak {
         Some(found) if found > board_v_peak => {
             log.add(drive.places.field("voltage_max_v_peak"), Mistake::PeakAboveBoard { found, board: board_v_peak });
@@ -139,31 +139,20 @@ fn header(scene: &Scene, limits: &BoardLimits, half_period_s: f64, log: &mut Log
     }
 }
 
-/// The current into the worst-case electrode `C` at the largest voltage, as the board budgets it. A square wave of peak
-/// `U` moves `2 U C` at each edge, along an exponential of the edge's time constant `tau`: peak `2 U C / tau`, rms
-/// `2 U C sqrt(f/tau)`. A sine is a staircase of ticks `dt`: peak `w U C` times `dt/tau`, where that is above one.
+/// The current into the worst-case electrode at the largest voltage, as the board budgets it.
 fn check_current(scene: &Scene, limits: &BoardLimits, header: &Header, tick_hz: u32, log: &mut Log) {
-    let tau_s = f64::from(limits.edge_time_constant_s);
-    let carrier_hz = f64::from(header.carrier_hz);
-    let left = mean_square_left(header.carrier, 0.5 / carrier_hz, tau_s);
-    let drive_v_peak = f64::from(header.voltage_max_v_rms) * crest(header.carrier) / left.sqrt();
-    let charge_c = f64::from(limits.electrode_capacitance_max_f) * drive_v_peak;
-    let (rms_a, peak_a) = match header.carrier {
-        Carrier::Square => (2.0 * charge_c * (carrier_hz / tau_s).sqrt(), 2.0 * charge_c / tau_s),
-        Carrier::Sine => {
-            let step = 1.0 / (f64::from(tick_hz) * tau_s);
-            let sine_a = core::f64::consts::TAU * carrier_hz * charge_c;
-            (sine_a * core::f64::consts::FRAC_1_SQRT_2 * (0.5 * step).max(1.0).sqrt(), sine_a * step.max(1.0))
-        }
-    };
+    let carrier = carrier(header.carrier, 0.5 / f64::from(header.carrier_hz), limits);
+    let drive_v_peak = f64::from(header.voltage_max_v_rms) * carrier.peak_per_rms();
+    let capacitance_f = f64::from(limits.electrode_capacitance_max_f);
+    let current = carrier.electrode_current(capacitance_f, drive_v_peak, 1.0 / f64::from(tick_hz));
     for (kind, found_a, board_a, cure) in [
         (
             "rms",
-            rms_a,
+            current.a_rms,
             limits.current_max_a_rms,
             "`frequency_hz` under [carrier], or `voltage_max_v_rms` under [drive]",
         ),
-        ("peak", peak_a, limits.current_max_a_peak, "`voltage_max_v_rms` under [drive]"),
+        ("peak", current.a_peak, limits.current_max_a_peak, "`voltage_max_v_rms` under [drive]"),
     ] {
         if found_a > f64::from(board_a) {
             let mistake =

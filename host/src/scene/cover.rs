@@ -15,7 +15,7 @@ const CELL_MIN_M: f64 = 1e-6;
 /// Most places that are looked at along each side of a cell.
 const PLACES_PER_SIDE_MAX: f64 = 256.0;
 /// Most places that are looked at in a scene.
-const PLACES_MAX: usize = 4_000_000;
+const PLACES_MAX: usize = 1_000_000;
 
 /// Least and largest electric friction, N.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -154,9 +154,10 @@ fn grating_span(grating: &Grating, cell: Cell) -> Span {
 
 /// The ends of a stretch, and the sample centres within it.
 fn vertices(start_m: f64, end_m: f64, first_m: f64, pitch_m: f64, samples: usize) -> Vec<f64> {
-    let centres = (0..samples).map(|sample| first_m + (sample as f64 + 0.5) * pitch_m);
+    let number = |place_m: f64| (place_m - first_m) / pitch_m - 0.5;
+    let after = (number(end_m).floor() + 1.0).clamp(0.0, samples as f64) as usize;
     let mut vertices = vec![start_m, end_m];
-    vertices.extend(centres.filter(|centre| *centre > start_m && *centre < end_m));
+    vertices.extend((number(start_m).ceil().max(0.0) as usize..after).map(|n| first_m + (n as f64 + 0.5) * pitch_m));
     vertices
 }
 

@@ -3,7 +3,8 @@
 use super::cover::{Cell, Excess, Span, excesses};
 use super::file::Scene;
 use super::layer::{Above, Kind, Layer};
-use super::mistake::{Log, Mistake};
+use super::log::Log;
+use super::mistake::Mistake;
 use super::program::Program;
 use super::reach::Reach;
 use crate::wanted::Wanted;

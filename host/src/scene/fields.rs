@@ -3,7 +3,8 @@
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::mistake::{Log, Mistake, Nearest};
+use super::log::Log;
+use super::mistake::{Mistake, Nearest};
 use super::source::Places;
 
 /// What a number may be.
@@ -139,16 +140,16 @@ impl<'i> Fields<'i> {
         }
     }
 
-    /// Any number of tables, `[[field]]`; with `one`, `[field]` is a list of one.
-    pub(super) fn tables(&mut self, log: &mut Log, field: &'static str, one: bool) -> Vec<Fields<'i>> {
-        let Some(value) = self.take(field) else { return Vec::new() };
+    /// Any number of tables, `[[field]]`; with `one`, `[field]` is a list of one. Nothing where there is no such list.
+    pub(super) fn tables(&mut self, log: &mut Log, field: &'static str, one: bool) -> Option<Vec<Fields<'i>>> {
+        let value = self.take(field)?;
         let offset = value.span().start;
         let values = match value.into_inner() {
             DeValue::Array(values) => values,
-            DeValue::Table(values) if one => return vec![Fields::new(format!("[{field}]"), offset, values)],
+            DeValue::Table(values) if one => return Some(vec![Fields::new(format!("[{field}]"), offset, values)]),
             other => {
                 log.add(offset, wrong_type(field, "a list of tables, each with its name in double brackets", &other));
-                return Vec::new();
+                return None;
             }
         };
         let mut tables = Vec::new();
@@ -159,7 +160,7 @@ impl<'i> Fields<'i> {
                 other => log.add(offset, wrong_type(field, "a list of tables", &other)),
             }
         }
-        tables
+        Some(tables)
     }
 
     /// Reports what is left over and what is missing; gives back where the fields stand. A missing field whose
@@ -199,7 +200,8 @@ impl<'i> Fields<'i> {
         }
     }
 
-    fn require(&mut self, field: &'static str) {
+    /// A missing field is a mistake. To be said before the field is read.
+    pub(super) fn require(&mut self, field: &'static str) {
         if !self.values.contains_key(field) {
             self.missing.push(field);
         }

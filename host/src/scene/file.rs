@@ -7,7 +7,8 @@ use toml::de::DeTable;
 
 use super::fields::{Fields, Range};
 use super::layer::Layer;
-use super::mistake::{CompileError, Log, Mistake};
+use super::log::Log;
+use super::mistake::{CompileError, Mistake};
 use super::source::{Places, Source};
 
 /// Version of the file format.
@@ -15,6 +16,8 @@ const VERSION: u32 = 1;
 
 const SCREEN_MM: Range = Range::new(5.0, 2_000.0, " mm");
 const COATING_UM: Range = Range::new(0.01, 1_000.0, " um");
+/// Largest effective gap that a board takes.
+const EFFECTIVE_GAP_MAX_UM: f64 = 10_000.0;
 const PERMITTIVITY: Range = Range::new(1.0, 10_000.0, "");
 const RADIUS_MM: Range = Range::new(0.1, 100.0, " mm");
 const STIFFNESS_PA_PER_M: Range = Range::new(1e3, 1e14, " Pa/m");
@@ -127,13 +130,13 @@ fn read(mut fields: Fields, log: &mut Log, source: &Source) -> Option<Scene> {
     let drive = drive(fields.optional_table(log, "drive").unwrap_or_else(|| absent("[drive]")), log);
     let carrier = carrier(fields.optional_table(log, "carrier").unwrap_or_else(|| absent("[carrier]")), log);
     let prediction = touch(fields.optional_table(log, "touch").unwrap_or_else(|| absent("[touch]")), log);
-    let tables = fields.tables(log, "layer", false);
-    let layers = tables.into_iter().enumerate().map(|(index, table)| Layer::read(table, index + 1, log)).collect();
+    let tables = fields.tables(log, "layer", false).unwrap_or_default();
+    // All are read, so that the mistakes of all are told.
+    let layers: Vec<Option<Layer>> = (1..).zip(tables).map(|(number, table)| Layer::read(table, number, log)).collect();
     let places = fields.close(log);
     if let Some(found) = version.filter(|found| found.total_cmp(&f64::from(VERSION)).is_ne()) {
         log.add(places.field("version"), Mistake::Version { found, expected: VERSION });
     }
-    let layers: Option<Vec<Layer>> = layers;
     Some(Scene {
         source: source.clone(),
         screen: screen?,
@@ -142,7 +145,7 @@ fn read(mut fields: Fields, log: &mut Log, source: &Source) -> Option<Scene> {
         drive,
         carrier,
         prediction,
-        layers: layers?,
+        layers: layers.into_iter().collect::<Option<_>>()?,
     })
 }
 
@@ -160,10 +163,10 @@ fn screen(mut fields: Fields, log: &mut Log) -> Option<Screen> {
 
 /// Slabs in series add their thickness over permittivity.
 fn coating(scene: &mut Fields, log: &mut Log) -> Option<Coating> {
-    let slabs = scene.tables(log, "coating", true);
+    scene.require("coating");
+    let slabs = scene.tables(log, "coating", true)?;
     if slabs.is_empty() {
-        scene.table(log, "coating");
-        return None;
+        log.add(0, Mistake::MissingField { field: "coating", table: "the scene".to_owned() });
     }
     let mut effective_gap_um = Some(0.0);
     let mut first = None;
@@ -175,7 +178,13 @@ fn coating(scene: &mut Fields, log: &mut Log) -> Option<Coating> {
         let places = slab.close(log);
         first.get_or_insert(places);
     }
-    Some(Coating { effective_gap_um: effective_gap_um?, places: first? })
+    let (effective_gap_um, places) = effective_gap_um.zip(first)?;
+    if effective_gap_um > EFFECTIVE_GAP_MAX_UM {
+        let (field, max) = ("thickness_um / permittivity, summed", EFFECTIVE_GAP_MAX_UM);
+        let mistake = Mistake::OutOfRange { field, found: effective_gap_um, min: 0.0, max, unit: " um" };
+        log.add(places.table(), mistake);
+    }
+    Some(Coating { effective_gap_um, places })
 }
 
 fn finger(mut fields: Fields, log: &mut Log) -> Option<Finger> {

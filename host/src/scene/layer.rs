@@ -3,7 +3,8 @@
 use frixel_wire::scene::{Blend, Wave};
 
 use super::fields::{Fields, Range};
-use super::mistake::{Log, Mistake};
+use super::log::Log;
+use super::mistake::Mistake;
 use super::source::Places;
 
 const PLACE_MM: Range = Range::new(-2_000.0, 2_000.0, " mm");

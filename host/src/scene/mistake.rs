@@ -5,8 +5,6 @@ use std::io;
 
 use thiserror::Error;
 
-use super::source::Source;
-
 /// Why a scene file does not become a program.
 #[derive(Debug, Error)]
 pub enum CompileError {
@@ -255,10 +253,12 @@ pub enum Mistake {
         /// What to lower.
         cure: &'static str,
     },
-    /// Numbers that are each in range and that the contact model refuses together.
-    #[error("the contact model refuses this finger and coating ({reason}): check [finger] and [coating]")]
+    /// Numbers that are each in range and that the contact model or its table refuses together.
+    #[error(
+        "this finger on this coating cannot be played ({reason}): check [finger], [coating] and `voltage_max_v_rms`"
+    )]
     Model {
-        /// What the model said.
+        /// What it was refused for.
         reason: String,
     },
 }
@@ -295,39 +295,5 @@ impl Display for Nearest {
             None if self.known.is_empty() => write!(formatter, "nothing more is expected here"),
             None => write!(formatter, "expected one of `{}`", self.known.join("`, `")),
         }
-    }
-}
-
-/// Gathers mistakes, so that a person sees all of them at once.
-pub(super) struct Log<'s> {
-    source: &'s Source,
-    mistakes: Vec<Located>,
-}
-
-impl<'s> Log<'s> {
-    pub(super) fn new(source: &'s Source) -> Self {
-        Self { source, mistakes: Vec::new() }
-    }
-
-    /// Notes a mistake that stands at a byte of the file.
-    pub(super) fn add(&mut self, offset: usize, mistake: Mistake) {
-        let (line, column) = self.source.line_and_column(offset);
-        self.mistakes.push(Located { line, column, mistake });
-    }
-
-    /// The value, if nothing was wrong.
-    pub(super) fn finish<T>(mut self, value: Option<T>) -> Result<T, CompileError> {
-        match value {
-            Some(value) if self.mistakes.is_empty() => Ok(value),
-            _ => {
-                self.mistakes.sort_by_key(|mistake| (mistake.line, mistake.column));
-                Err(CompileError::Mistakes { file: self.source.name().to_owned(), mistakes: self.mistakes })
-            }
-        }
-    }
-
-    /// Whether nothing was wrong so far.
-    pub(super) fn is_empty(&self) -> bool {
-        self.mistakes.is_empty()
     }
 }

@@ -4,7 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::layer::{Bitmap as BitmapLayer, Layer, Rectangle};
-use super::mistake::{Log, Mistake, Nearest};
+use super::log::Log;
+use super::mistake::{Mistake, Nearest};
 use super::picture::Picture;
 use super::program::Bitmap;
 use super::resample::{Axis, resample};

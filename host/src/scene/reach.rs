@@ -1,7 +1,9 @@
 //! What friction a drive can give to a finger.
 
-use frixel_model::{Contact, Finger, ParameterError};
-use frixel_wire::scene::{Carrier, Header};
+use frixel_model::{Carrier, Contact, Finger, InverseTable, ParameterError, TableError, Waveform};
+use frixel_wire::hello::BoardLimits;
+use frixel_wire::scene::{Carrier as Shape, Header};
+use thiserror::Error;
 
 /// The frictions that a finger can be given: from natural, `mu F_N`, to natural plus the most that the drive adds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,17 +16,28 @@ pub struct Reach {
     pub voltage_max_v_rms: f64,
 }
 
+/// Why a finger and a coating have no reach that a board can play.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub(super) enum ReachError {
+    #[error("the contact model refuses it: {0:?}")]
+    Contact(ParameterError),
+    #[error("its friction between 1 V and the largest voltage does not fit the board's table")]
+    Table,
+}
+
 impl Reach {
     /// Reach under the finger, coating and rms voltage of a header, whose `f32` numbers are what the board has.
-    pub(super) fn of(header: &Header) -> Result<Self, ParameterError> {
+    pub(super) fn of(header: &Header) -> Result<Self, ReachError> {
         let finger = Finger {
             radius_m: f64::from(header.finger_radius_m),
             stiffness_pa_per_m: f64::from(header.stiffness_pa_per_m),
             friction_coefficient: f64::from(header.friction_coefficient),
         };
-        let contact = Contact::new(&finger, f64::from(header.effective_gap_m))?;
-        let loaded = contact.under_load(f64::from(header.normal_load_n))?;
+        let contact = Contact::new(&finger, f64::from(header.effective_gap_m)).map_err(ReachError::Contact)?;
+        let loaded = contact.under_load(f64::from(header.normal_load_n)).map_err(ReachError::Contact)?;
         let voltage_max_v_rms = f64::from(header.voltage_max_v_rms);
+        // The board makes the same table when the scene is committed.
+        InverseTable::build(&loaded, voltage_max_v_rms).map_err(|_: TableError| ReachError::Table)?;
         Ok(Self {
             natural_friction_n: loaded.natural_friction_n(),
             electric_friction_max_n: loaded.electric_friction_n(voltage_max_v_rms),
@@ -43,30 +56,11 @@ impl Reach {
     }
 }
 
-/// Peak over rms of a carrier.
-pub(super) fn crest(shape: Carrier) -> f64 {
-    match shape {
-        Carrier::Square => 1.0,
-        Carrier::Sine => core::f64::consts::SQRT_2,
-    }
-}
-
-/// What is left of the drive's mean square behind edges of the time constant `tau_s`: a first-order lag. The board
-/// divides the voltage by the root of it.
-///
-/// A square wave keeps `1 - (2 tau/T) tanh(T/(2 tau))`, with `T` half a period; a sine keeps `1/(1 + (w tau)^2)`.
-pub(super) fn mean_square_left(shape: Carrier, half_period_s: f64, tau_s: f64) -> f64 {
-    if !(tau_s > 0.0) {
-        return 1.0;
-    }
-    match shape {
-        Carrier::Square => {
-            let ratio = 2.0 * tau_s / half_period_s;
-            1.0 - ratio * libm::tanh(1.0 / ratio)
-        }
-        Carrier::Sine => {
-            let lag = core::f64::consts::PI / half_period_s * tau_s;
-            1.0 / (1.0 + lag * lag)
-        }
-    }
+/// The carrier of a scene on a board.
+pub(crate) fn carrier(shape: Shape, half_period_s: f64, limits: &BoardLimits) -> Carrier {
+    let waveform = match shape {
+        Shape::Square => Waveform::Square,
+        Shape::Sine => Waveform::Sine,
+    };
+    Carrier { waveform, half_period_s, edge_time_constant_s: f64::from(limits.edge_time_constant_s) }
 }

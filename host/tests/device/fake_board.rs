@@ -119,7 +119,7 @@ impl FakeBoard {
 
     fn take(&mut self, payload: &[u8], now: Duration, out: &mut Vec<u8>) {
         if self.hellos > 0 {
-            self.longest_silence = self.longest_silence.max(now - self.last_heard);
+            self.longest_silence = self.longest_silence.max(now.saturating_sub(self.last_heard));
         }
         self.last_heard = now;
         match Payload::parse_from_host(payload).expect("the host sends what the board reads") {
@@ -127,6 +127,7 @@ impl FakeBoard {
                 self.hellos += 1;
                 self.received_bytes = 0;
                 self.upload = None;
+                self.telemetry = None;
                 out.append(&mut self.garbage);
                 out.extend_from_slice(hello_frame(&self.hello, &mut [0; FRAME_MAX_LEN]).unwrap());
             }

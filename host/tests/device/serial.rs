@@ -1,25 +1,27 @@
 //! The serial link over a pseudo-terminal, in real time. Nothing here is measured by the clock.
 
+use std::io::Write;
 use std::time::Duration;
 
 use frixel::device::{Bitmap, DEFAULT_BAUD, Device, DeviceError, Link, PortError, SerialLink, Upload};
 use frixel_wire::fault::State;
-use frixel_wire::frame::crc32;
-use frixel_wire::message::Command;
+use frixel_wire::frame::{FRAME_MAX_LEN, crc32};
+use frixel_wire::message::{Command, Request};
+use frixel_wire::payload::{hello_request_frame, request_frame};
 use serialport::{SerialPort, TTYPort};
 
 use crate::calls::scene;
 use crate::fake_board::FakeBoard;
-use crate::pty_board::PtyBoard;
+use crate::pty_board::{Patient, PtyBoard};
 
-const LONG: Duration = Duration::from_secs(600);
+const LONG: Duration = Duration::from_mins(10);
 
 fn open(path: &str) -> Result<SerialLink, PortError> {
     SerialLink::open(path, DEFAULT_BAUD)
 }
 
-fn connect(board: &PtyBoard) -> Device<SerialLink> {
-    Device::connect(open(&board.path).unwrap()).unwrap()
+fn connect(board: &PtyBoard) -> Device<Patient> {
+    Device::connect(Patient(open(&board.path).unwrap())).unwrap()
 }
 
 fn not_opened(path: &str) -> PortError {
@@ -43,9 +45,12 @@ fn a_scene_plays_over_a_serial_port() {
     device.play().unwrap();
     device.subscribe(400).unwrap();
     let mut heard = 0;
-    while heard < 5 {
+    let waits = (0..100).take_while(|_| {
         device.wait(Duration::from_millis(10), &mut |_| heard += 1).unwrap();
-    }
+        heard < 5
+    });
+    waits.count();
+    assert!(heard >= 5, "{heard} messages of telemetry in a second");
     let counters = device.counters();
     assert_eq!((counters.payload_bytes, counters.frames_rejected), ((samples.len() + scene.len()) as u64, 0));
     let board = board.board.lock().unwrap();
@@ -89,6 +94,21 @@ fn a_host_that_left_telemetry_behind_does_not_disturb_the_next() {
 }
 
 #[test]
+fn an_answer_that_an_earlier_host_did_not_read_is_thrown_away() {
+    let board = PtyBoard::start(FakeBoard::new());
+    let mut earlier = TTYPort::open(&serialport::new(&board.path, DEFAULT_BAUD)).unwrap();
+    earlier.write_all(hello_request_frame(&mut [0; FRAME_MAX_LEN]).unwrap()).unwrap();
+    board.until(|board| board.hellos == 1);
+    // Once the board has seen this, it has sent its hello.
+    let ping = Request { sequence: 1, command: Command::Ping };
+    earlier.write_all(request_frame(&ping, &mut [0; FRAME_MAX_LEN]).unwrap()).unwrap();
+    board.until(|board| board.pings == 1);
+    drop(earlier);
+    board.board.lock().unwrap().hello.fault_detail = 42;
+    assert_eq!(connect(&board).hello().fault_detail, 42);
+}
+
+#[test]
 fn a_pulled_cable_ends_a_long_wait() {
     let mut board = PtyBoard::start(FakeBoard::new());
     let mut device = connect(&board);
@@ -125,6 +145,15 @@ fn a_port_in_use_is_refused() {
     let _first = connect(&board);
     let error = not_opened(&board.path);
     assert_eq!(error, PortError::Busy { port: board.path.clone() });
+}
+
+/// Whoever comes while the earlier host is still on its way out waits for it.
+#[test]
+fn a_port_that_is_let_go_soon_opens() {
+    let board = PtyBoard::start(FakeBoard::new());
+    let first = open(&board.path).unwrap();
+    std::thread::spawn(move || drop(first));
+    connect(&board);
 }
 
 #[test]

@@ -9,7 +9,7 @@ use frixel_wire::message::{Command, Refusal};
 
 use crate::calls::{connected, scene};
 use crate::fake_board::{FakeBoard, WINDOW};
-use crate::virtual_link::{Fate, VirtualLink};
+use crate::virtual_link::{Fate, VirtualLink, Weather};
 
 const WIDTH: u16 = 250;
 
@@ -83,7 +83,7 @@ fn an_upload_takes_the_time_of_its_bytes() {
     device.upload(&Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] }, &mut |_| {}).unwrap();
     let line_time_s = (device.counters().wire_bytes - bytes_before) as f64 / 200_000.0;
     let link = device.into_link();
-    let took_s = (link.now() - started).as_secs_f64();
+    let took_s = link.now().as_secs_f64() - started.as_secs_f64();
     println!("{took_s:.3} s for {line_time_s:.3} s of bytes, at most {} under way", link.most_under_way);
     assert!(took_s < 1.1 * line_time_s, "{took_s} s for {line_time_s} s of bytes");
 }
@@ -95,6 +95,22 @@ fn a_slow_board_fills_the_window() {
     link.board_delay = Duration::from_millis(40);
     let link = upload_over(link).into_link();
     assert!(link.most_under_way > usize::from(WINDOW) * 9 / 10, "{} bytes", link.most_under_way);
+}
+
+/// Pings go out while an upload waits for credit, and the line refuses them too when they go beyond it.
+#[test]
+fn pings_have_credit_of_their_own() {
+    for host_timeout_s in [0.25, 0.02] {
+        let mut link = VirtualLink::new(FakeBoard::new());
+        link.board_pause = Duration::from_millis(100)..Duration::from_millis(650);
+        let (samples, scene) = (samples(62_500), scene(host_timeout_s));
+        let mut device = connected(link);
+        let upload = Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] };
+        device.upload(&upload, &mut |_| {}).unwrap();
+        let link = device.into_link();
+        assert!(link.now() > Duration::from_millis(800), "the board paused in the upload");
+        assert!(link.board.pings > 8, "{} pings", link.board.pings);
+    }
 }
 
 #[test]
@@ -186,7 +202,7 @@ fn any_weather_in_which_no_frame_is_hit_twice_lets_an_upload_through() {
 }
 
 /// Hits one frame in thirty, each frame at most once, and no control frame's neighbour through its last byte.
-fn storm(seed: u64) -> Box<dyn FnMut(u64, &[u8]) -> Fate> {
+fn storm(seed: u64) -> Weather {
     let mut random = Random(seed * 7919);
     let mut hit = BTreeSet::new();
     Box::new(move |_, frame| {

@@ -1,6 +1,7 @@
 //! A line to a fake board in virtual time: bytes take the time that the line rate gives them, and can be lost or damaged.
 
 use std::collections::VecDeque;
+use std::ops::Range;
 use std::time::Duration;
 
 use frixel::device::{Link, LinkClosed, Written};
@@ -32,6 +33,8 @@ pub(crate) struct VirtualLink {
     pub(crate) pulled_at: Option<Duration>,
     /// Time that the board takes before it looks at what has arrived.
     pub(crate) board_delay: Duration,
+    /// From when to when the board looks at nothing, as while it erases flash.
+    pub(crate) board_pause: Range<Duration>,
     /// Most bytes that were on the way to the board, or there and not looked at.
     pub(crate) most_under_way: usize,
     now: Duration,
@@ -51,10 +54,11 @@ struct Line {
 }
 
 impl Line {
-    fn send(&mut self, bytes: Vec<u8>, now: Duration, delay: Duration) {
+    /// Returns when the last byte arrives.
+    fn time_to_send(&mut self, bytes: &[u8], now: Duration) -> Duration {
         let takes = Duration::from_secs(bytes.len() as u64) / BYTES_PER_S;
         self.free_at = self.free_at.max(now) + takes;
-        self.under_way.push_back((self.free_at + delay, bytes));
+        self.free_at
     }
 
     fn next_arrival(&self) -> Option<Duration> {
@@ -75,6 +79,7 @@ impl VirtualLink {
             to_host_weather: Box::new(|_, _| Fate::Arrives),
             pulled_at: None,
             board_delay: Duration::ZERO,
+            board_pause: Duration::ZERO..Duration::ZERO,
             most_under_way: 0,
             now: Duration::ZERO,
             to_board: Line::default(),
@@ -90,7 +95,9 @@ impl VirtualLink {
         for frame in bytes.split_inclusive(|byte| *byte == 0) {
             let fate = (self.to_host_weather)(self.frames_to_host, frame);
             self.frames_to_host += 1;
-            self.to_host.send(weathered(frame, fate), self.now, Duration::ZERO);
+            let bytes = weathered(frame, fate);
+            let arrives = self.to_host.time_to_send(&bytes, self.now);
+            self.to_host.under_way.push_back((arrives, bytes));
         }
     }
 
@@ -131,7 +138,10 @@ impl Link for VirtualLink {
     fn write(&mut self, frame: &[u8]) -> Result<u64, LinkClosed> {
         self.check_plugged()?;
         let fate = (self.to_board_weather)(self.written.frames, frame);
-        self.to_board.send(weathered(frame, fate), self.now, self.board_delay);
+        let bytes = weathered(frame, fate);
+        let arrives = self.to_board.time_to_send(&bytes, self.now) + self.board_delay;
+        let seen = if self.board_pause.contains(&arrives) { self.board_pause.end } else { arrives };
+        self.to_board.under_way.push_back((seen, bytes));
         self.written.add(frame);
         self.last_write = self.now;
         let under_way: usize = self.to_board.under_way.iter().map(|(_, bytes)| bytes.len()).sum();

@@ -1,21 +1,26 @@
 //! Playing to a board at a serial port.
 
+use std::path::PathBuf;
 use std::time::Duration;
 
 use frixel::device::{DEFAULT_BAUD, Device, Event, SerialLink};
-use frixel::output::FeltRow;
+use frixel::metrics::MetricsSummary;
+use frixel::output::{FeltRow, Report};
+use frixel::player::start;
 use frixel::scene::{Program, Scene, compile};
 use frixel::wanted::Wanted;
 use frixel_wire::fault::Flags;
 use frixel_wire::message::Telemetry;
 
 use super::super::interrupt::Interrupt;
-use super::{CommandError, PlayArgs, Summary, pass, start, tell_notes, write_felt_csv};
+use super::{Bars, CommandError, PlayArgs, tell_notes, write_felt_csv};
 
 /// Most telemetry that a board sends, in messages a second.
 const TELEMETRY_MAX_HZ: u32 = 1000;
+/// Time between two looks at Ctrl-C and at the board's state.
+const STEP: Duration = Duration::from_millis(50);
 
-pub(super) fn play(args: &PlayArgs) -> Result<Summary, CommandError> {
+pub(super) fn play(args: &PlayArgs) -> Result<(Report, Vec<PathBuf>), CommandError> {
     let port = || args.port.clone();
     if args.stroke.is_some() {
         return Err(CommandError::StrokeOnBoard { port: port() });
@@ -32,19 +37,22 @@ pub(super) fn play(args: &PlayArgs) -> Result<Summary, CommandError> {
     }
     let program = compile(&scene, &hello.limits, hello.tick_hz)?;
     tell_notes(&program);
-    start(&mut device, &program)?;
+    let mut bars = Bars::default();
+    start(&mut device, &program, &mut |progress| bars.upload(progress))?;
+    bars.finish();
     device.subscribe(hello.tick_hz.div_ceil(args.csv_hz))?;
 
     let mut diary = Diary::new(&program, hello.tick_hz);
-    pass(&mut device, args.seconds, &mut |device, step: Duration| {
-        device.wait(step, &mut |event| diary.take(&event))?;
+    let mut passed_s = 0.0;
+    while args.seconds.is_none_or(|seconds| passed_s < seconds) && !interrupt.is_asked() {
+        device.wait(STEP, &mut |event| diary.take(&event))?;
         diary.stopped(&args.port)?;
-        Ok(interrupt.is_asked())
-    })?;
+        passed_s += STEP.as_secs_f64();
+    }
     device.stop()?;
     device.disarm()?;
-    let files = vec![write_felt_csv(&args.out, &diary.rows)?];
-    Ok(Summary::of_board(&program, diary.ticks(), diary.saturated, device.counters(), files))
+    let report = Report::new("board", &diary.metrics(), &program.reach, &device.counters(), None);
+    Ok((report, vec![write_felt_csv(&args.out, &diary.rows)?]))
 }
 
 /// What a board tells while it plays.
@@ -95,15 +103,23 @@ impl Diary {
             wanted_n: finger_down.then(|| natural_n + self.wanted.electric_friction_n(x_m, y_m)),
             asked_n: finger_down.then_some(natural_n + f64::from(telemetry.asked_electric_friction_n)),
             felt_n: None,
-            voltage_v_rms: f64::from(telemetry.voltage_v_rms),
-            dac_code: telemetry.dac_code,
-            flags: telemetry.flags.0,
+            voltage_v_rms: Some(f64::from(telemetry.voltage_v_rms)),
+            dac_code: Some(telemetry.dac_code),
+            flags: Some(telemetry.flags),
         });
     }
 
-    /// Ticks that telemetry spans.
-    fn ticks(&self) -> u64 {
-        self.first_tick.map_or(0, |first| u64::from(self.last_tick.wrapping_sub(first)))
+    /// The ticks that telemetry spans. What is felt, and how far that is off, no board can tell.
+    fn metrics(&self) -> MetricsSummary {
+        let wanted_n = self.rows.iter().filter_map(|row| row.wanted_n);
+        let range_n =
+            |range: Option<(f64, f64)>, n: f64| Some(range.map_or((n, n), |(min, max)| (min.min(n), max.max(n))));
+        MetricsSummary {
+            ticks: self.first_tick.map_or(0, |first| u64::from(self.last_tick.wrapping_sub(first))),
+            saturated_ticks: self.saturated,
+            wanted_range_n: wanted_n.fold(None, range_n),
+            ..MetricsSummary::default()
+        }
     }
 
     /// An error when the board has stopped without being told to.

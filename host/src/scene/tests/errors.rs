@@ -1,12 +1,584 @@
-#[test]
-fn probe() {
-    use super::*;
-    let p = compile(&Scene::load(&scenes().join("brick.toml")).unwrap(), &LIMITS, TICK_HZ).unwrap();
-    println!("{:?} {:?} {:?} {:?} {:?}", p.header, p.records, p.notes, p.reach, p.bitmaps[0].width);
-    let e = compile_text(&format!("{HEAD}[[layer]]\nkind=\"constat\"\nfriction_m=3\n[[layer]]\nkind='grating'\nwavelenght_mm=3\nlow_n=0\nhigh_n=0.04\n[drve]\nx=1")).unwrap_err();
-    println!("{e}");
-    let e = compile_text(&format!("{HEAD}[[layer]]\nkind='grating'\nwavelength_mm=3\nlow_n=0\nhigh_n=0.04\n[[layer]]\nkind='bitmap'\npicture='textures/brik.png'\nx_mm=1\ny_mm=1\nwidth_mm=200\nblack_n=0\nwhite_n=0.03")).unwrap_err();
-    println!("{e}");
-    let e = compile_text("a = [1,\nb = }\n c = \"\nd = 3").unwrap_err();
-    println!("{e}");
+//! Every mistake, its sentence and its line.
+
+use std::fs;
+
+use proptest::prelude::*;
+
+use super::*;
+
+/// Line of the first layer's `[[layer]]`.
+const FIRST: usize = 19;
+
+fn message(text: &str) -> String {
+    compile_text(text).expect_err("it is wrong").to_string()
 }
+
+/// Compiles the head and these layers, and compares the message with lines of `line:column: sentence`, lines counted
+/// from the first layer's first line, which is 1.
+#[track_caller]
+fn check_layers(layers: &str, expected: &[(usize, usize, &str)]) {
+    let expected: Vec<String> = expected
+        .iter()
+        .map(|(line, column, sentence)| format!("test.toml:{}:{column}: {sentence}", FIRST + line - 1))
+        .collect();
+    assert_eq!(message(&format!("{HEAD}{layers}")), expected.join("\n"));
+}
+
+/// Replaces a piece of the head, and compares the message.
+#[track_caller]
+fn check_head(piece: &str, by: &str, expected: &str) {
+    assert!(HEAD.contains(piece), "{piece}");
+    assert_eq!(message(&HEAD.replace(piece, by)), expected);
+}
+
+#[test]
+fn the_head_ends_where_the_tests_think() {
+    assert_eq!(HEAD.lines().count() + 1, FIRST);
+    compile_text(HEAD).expect("a scene without layers is bare glass");
+}
+
+#[test]
+fn syntax() {
+    check_head("[screen]", "[screen", "test.toml:3:8: this is not TOML: unclosed table, expected `]`");
+    check_head(
+        "120",
+        "120 mm",
+        "test.toml:4:12: this is not TOML: string values must be quoted, expected literal string",
+    );
+    check_head("version = 1", "version = 1\nversion = 2", "test.toml:2:1: this is not TOML: duplicate key");
+}
+
+#[test]
+fn unknown_and_missing_fields() {
+    check_head(
+        "radius_mm",
+        "raduis_mm",
+        "test.toml:12:1: unknown field `raduis_mm` in [finger]; did you mean `radius_mm`?",
+    );
+    check_head(
+        "height_mm = 110",
+        "colour = \"blue\"\nheight_mm = 110",
+        "test.toml:5:1: unknown field `colour` in [screen]; nothing more is expected here",
+    );
+    check_head("height_mm = 110\n", "", "test.toml:3:1: [screen] has no `height_mm`: add it");
+    check_head("version = 1\n", "", "test.toml:1:1: the scene has no `version`: add it");
+    check_head(
+        "[coating]\nthickness_um = 10\npermittivity = 1\n",
+        "",
+        "test.toml:1:1: the scene has no `coating`: add it",
+    );
+    check_head(
+        "# layers follow",
+        "[drive]\nlimit = 3",
+        "test.toml:18:1: unknown field `limit` in [drive]; expected one of `voltage_max_v_rms`, `voltage_max_v_peak`, \
+         `slew_v_per_us`, `host_timeout_ms`, `autonomous`, `saturate`",
+    );
+    check_layers("[[layer]]\nfriction_n = 1", &[(1, 1, "layer 1 has no `kind`: add it")]);
+    check_layers(
+        "[[layer]]\nkimd = \"constant\"\nfriction_n = 1",
+        &[(2, 1, "unknown field `kimd` in layer 1; did you mean `kind`?")],
+    );
+    check_layers(
+        "[[layer]]\nkind = \"grating\"\nname = \"a\"\nwavelenght_mm = 2\nlow_n = 0\nhigh_n = 0.01",
+        &[(4, 1, "unknown field `wavelenght_mm` in layer 1 \"a\"; did you mean `wavelength_mm`?")],
+    );
+    check_layers(
+        "[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\nregion = { x_mm = 0, y_mm = 0, width = 3, height_mm = 3 }",
+        &[(4, 32, "unknown field `width` in this region; did you mean `width_mm`?")],
+    );
+}
+
+#[test]
+fn every_mistake_is_told_at_once() {
+    check_layers(
+        "[[layer]]\nkind = \"constat\"\n[[layer]]\nkind = \"grating\"\nwavelength_mm = 0\nlow_n = \"a\"",
+        &[
+            (2, 8, "`kind = \"constat\"` is not known; did you mean `constant`?"),
+            (3, 1, "layer 2 (grating) has no `high_n`: add it"),
+            (5, 17, "`wavelength_mm = 0` is out of range: expected 0.05 to 2000 mm"),
+            (6, 9, "`low_n` has to be a number, and this is a text"),
+        ],
+    );
+}
+
+#[test]
+fn wrong_types() {
+    check_head(
+        "width_mm = 120",
+        "width_mm = true",
+        "test.toml:4:12: `width_mm` has to be a number, and this is `true` or `false`",
+    );
+    check_head("[screen]", "[[screen]]", "test.toml:3:1: `screen` has to be a table, and this is a list");
+    let layer = "[layer]\nkind = \"constant\"\nfriction_n = 0.26";
+    check_layers(
+        layer,
+        &[(1, 1, "`layer` has to be a list of tables, each with its name in double brackets, and this is a table")],
+    );
+    check_layers("layer = [3]", &[(1, 1, "unknown field `layer` in [finger]; nothing more is expected here")]);
+    check_head(
+        "# layers follow",
+        "[touch]\nprediction = 1",
+        "test.toml:18:14: `prediction` has to be `true` or `false`, and this is a number",
+    );
+    check_layers("[[layer]]\nkind = 3", &[(2, 8, "`kind` has to be a text in quotes, and this is a number")]);
+}
+
+#[test]
+fn coatings_that_are_none() {
+    let slab = "[coating]\nthickness_um = 10\npermittivity = 1\n";
+    let first = |coating: &str| HEAD.replace(slab, "").replace("version = 1", &format!("version = 1\n{coating}"));
+    assert_eq!(message(&first("coating = []")), "test.toml:1:1: the scene has no `coating`: add it");
+    assert_eq!(
+        message(&first("coating = 3")),
+        "test.toml:2:11: `coating` has to be a list of tables, each with its name in double brackets, and this is a number"
+    );
+    assert_eq!(
+        message(&first("coating = [{ thickness_um = 3 }, 4]")),
+        "test.toml:2:12: [[coating]] has no `permittivity`: add it\n\
+         test.toml:2:34: `coating` has to be a list of tables, and this is a number"
+    );
+}
+
+#[test]
+fn numbers_out_of_range() {
+    check_head(
+        "radius_mm = 8",
+        "radius_mm = -8",
+        "test.toml:12:13: `radius_mm = -8` is out of range: expected 0.1 to 100 mm",
+    );
+    check_head(
+        "friction_coefficient = 0.5",
+        "friction_coefficient = nan",
+        "test.toml:14:24: `friction_coefficient = NaN` is out of range: expected 0.001 to 10",
+    );
+    check_head(
+        "normal_load_n = 0.5",
+        "normal_load_n = inf",
+        "test.toml:15:17: `normal_load_n = inf` is out of range: expected 0 to 50 N",
+    );
+    check_head(
+        "# layers follow",
+        "[drive]\nhost_timeout_ms = 5",
+        "test.toml:18:19: `host_timeout_ms = 5` is out of range: expected 20 to 1000 ms",
+    );
+    check_head(
+        "version = 1",
+        "version = 2",
+        "test.toml:1:11: this scene file has version 2, and this frixel reads version 1: use a frixel that knows it",
+    );
+}
+
+#[test]
+fn drive_and_carrier_beyond_the_board() {
+    check_head(
+        "# layers follow",
+        "[carrier]\nfrequency_hz = 6000",
+        "test.toml:18:16: `frequency_hz = 6000` is too fast for 40000 ticks a second: expected at most 5000 Hz",
+    );
+    check_head(
+        "# layers follow",
+        "[drive]\nvoltage_max_v_peak = 221",
+        "test.toml:18:22: `voltage_max_v_peak = 221` is above the board's limit of 220 V peak: lower it or leave it out",
+    );
+    check_head(
+        "# layers follow",
+        "[drive]\nvoltage_max_v_rms = 180\n[carrier]\nfrequency_hz = 5000",
+        "test.toml:19:1: this carrier drives 3.69 mA rms into the board's worst-case electrode, and its limit is 3.00 mA: \
+         lower `frequency_hz` under [carrier], or `voltage_max_v_rms` under [drive]",
+    );
+}
+
+#[test]
+fn fingers_and_coatings_that_cannot_be_played() {
+    let slab = "[coating]\nthickness_um = 10\npermittivity = 1\n";
+    let thick = "[[coating]]\nthickness_um = 1000\npermittivity = 1\n";
+    check_head(
+        slab,
+        &thick.repeat(11),
+        "test.toml:7:1: `thickness_um / permittivity, summed = 11000` is out of range: expected 0 to 10000 um",
+    );
+    let text = HEAD
+        .replace(slab, &thick.repeat(9))
+        .replace("1.8e7", "1e3")
+        .replace("normal_load_n = 0.5", "normal_load_n = 0");
+    assert_eq!(
+        message(&format!("{text}[drive]\nvoltage_max_v_rms = 1")),
+        "test.toml:7:1: this finger on this coating cannot be played (its friction between 1 V and the largest voltage does \
+         not fit the board's table): check [finger], [coating] and `voltage_max_v_rms`"
+    );
+}
+
+#[test]
+fn layers_off_the_screen() {
+    let layer = |region: &str| format!("[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\nregion = {{ {region} }}");
+    let sentence = |beyond: &str, edge: &str| {
+        format!(
+            "layer 1 (constant) reaches {beyond} mm past the {edge} edge of the 120 mm x 110 mm screen: move it or make it \
+             smaller"
+        )
+    };
+    check_layers(&layer("x_mm = 100, y_mm = 0, width_mm = 30, height_mm = 5"), &[(4, 10, &sentence("10", "right"))]);
+    check_layers(
+        &layer("x_mm = -0.0005, y_mm = 0, width_mm = 30, height_mm = 5"),
+        &[(4, 10, &sentence("0.001", "left"))],
+    );
+    check_layers(&layer("x_mm = 3, y_mm = -4, width_mm = 3, height_mm = 3"), &[(4, 10, &sentence("4", "top"))]);
+    check_layers(&layer("x_mm = 0, y_mm = 200, width_mm = 3, height_mm = 3"), &[(4, 10, &sentence("93", "bottom"))]);
+    compile_layers(&layer("x_mm = 0.1, y_mm = 0.1, width_mm = 119.9, height_mm = 109.9"));
+    check_layers(
+        "[[layer]]\nkind = \"bitmap\"\npicture = \"textures/brick.png\"\nx_mm = 30\ny_mm = 0\nwidth_mm = 100\npitch_mm = 0.5\n\
+         black_n = 0\nwhite_n = 0.01",
+        &[(
+            4,
+            8,
+            "layer 1 (bitmap) reaches 10 mm past the right edge of the 120 mm x 110 mm screen: move it or make it smaller",
+        )],
+    );
+}
+
+#[test]
+fn friction_out_of_reach() {
+    check_layers(
+        "[[layer]]\nname = \"hot\"\nkind = \"constant\"\nfriction_n = 0.3",
+        &[(
+            4,
+            14,
+            "layer 1 \"hot\" asks for up to 0.3 N in total, and at 150 V rms this finger feels at most 0.2777 N in total: \
+             lower it, raise `voltage_max_v_rms`, or write `saturate = true` under [drive] to have it clamped",
+        )],
+    );
+    check_layers(
+        "[[layer]]\nkind = \"constant\"\nfriction_n = 0.2",
+        &[(
+            3,
+            14,
+            "layer 1 (constant) asks for down to 0.2 N in total, and a drive can only add to the finger's natural friction \
+             of 0.25 N: raise it, lower `normal_load_n`, or write `saturate = true` under [drive] to have it clamped",
+        )],
+    );
+    check_layers(
+        "[[layer]]\nkind = \"grating\"\nwavelength_mm = 2\nlow_n = -0.001\nhigh_n = 0.0278",
+        &[
+            (
+                4,
+                9,
+                "layer 1 (grating) asks for down to -0.001 N above natural friction, and a drive can only add to the \
+                 finger's natural friction of 0.25 N: raise it, lower `normal_load_n`, or write `saturate = true` under \
+                 [drive] to have it clamped",
+            ),
+            (
+                5,
+                10,
+                "layer 1 (grating) asks for up to 0.0278 N above natural friction, and at 150 V rms this finger feels at \
+                 most 0.02778 N above natural friction: lower it, raise `voltage_max_v_rms`, or write `saturate = true` \
+                 under [drive] to have it clamped",
+            ),
+        ],
+    );
+    check_layers(
+        "[[layer]]\nkind = \"grating\"\nwavelength_mm = 2\nlow_n = 0\nhigh_n = 0.02\ngain = 2",
+        &[(
+            5,
+            10,
+            "layer 1 (grating), with its gain of 2, asks for up to 0.04 N above natural friction, and at 150 V rms this \
+             finger feels at most 0.02778 N above natural friction: lower it, raise `voltage_max_v_rms`, or write \
+             `saturate = true` under [drive] to have it clamped",
+        )],
+    );
+    let reachable = "[[layer]]\nkind = \"grating\"\nwavelength_mm = 2\nlow_n = 0\nhigh_n = 0.02778";
+    compile_layers(reachable);
+}
+
+#[test]
+fn the_field_to_change_is_pointed_at() {
+    let line = |layers: &str| {
+        let message = message(&format!("{HEAD}{layers}"));
+        assert_eq!(message.lines().count(), 1, "{message}");
+        message.split(':').nth(1).and_then(|line| line.parse::<usize>().ok()).expect("a line") + 1 - FIRST
+    };
+    let grating = |low_n: f64, high_n: f64, gain: f64| {
+        format!("[[layer]]\nkind = \"grating\"\nwavelength_mm = 2\nlow_n = {low_n}\nhigh_n = {high_n}\ngain = {gain}\n")
+    };
+    assert_eq!([line(&grating(0.0, 0.03, 1.0)), line(&grating(-0.01, 0.02, 1.0))], [5, 4]);
+    // A negative gain turns it around.
+    assert_eq!([line(&grating(-0.02, 0.01, -1.0)), line(&grating(-0.03, 0.0, -1.0))], [5, 4]);
+    let bitmap = |black_n: f64, white_n: f64| {
+        format!(
+            "[[layer]]\nkind = \"bitmap\"\npicture = \"textures/brick.png\"\nx_mm = 0\ny_mm = 0\nwidth_mm = 50\n\
+             black_n = {black_n}\nwhite_n = {white_n}"
+        )
+    };
+    assert_eq!([line(&bitmap(0.0, 0.06)), line(&bitmap(-0.03, 0.03)), line(&bitmap(0.06, 0.0))], [8, 7, 7]);
+}
+
+#[test]
+fn a_white_that_the_picture_does_not_have_is_not_asked_for() {
+    let layer = |white_n: &str| {
+        format!(
+            "[[layer]]\nkind = \"bitmap\"\npicture = \"textures/brick.png\"\nx_mm = 0\ny_mm = 0\nwidth_mm = 100\n\
+             pitch_mm = 0.5\nblack_n = 0\nwhite_n = {white_n}"
+        )
+    };
+    // The brightest mortar is 221 of 255 at this pitch.
+    let program = compile_layers(&layer("0.032"));
+    let brightest = program.bitmaps[0].samples.iter().max().expect("there are samples");
+    let reach_n = program.reach.electric_friction_max_n;
+    assert!(0.032 * f64::from(*brightest) / 255.0 < reach_n);
+    assert!(0.036 * f64::from(*brightest) / 255.0 > reach_n);
+    check_layers(
+        &layer("0.036"),
+        &[(
+            9,
+            11,
+            &format!(
+                "layer 1 (bitmap) asks for up to {} N above natural friction, and at 150 V rms this finger feels at most \
+                 0.02778 N above natural friction: lower it, raise `voltage_max_v_rms`, or write `saturate = true` under \
+                 [drive] to have it clamped",
+                (0.036 * f64::from(*brightest) / 255.0 * 1e5).ceil() / 1e5
+            ),
+        )],
+    );
+}
+
+const STRIPES: &str =
+    "[[layer]]\nname = \"stripes\"\nkind = \"grating\"\nwavelength_mm = 2\nlow_n = 0\nhigh_n = 0.02\n";
+
+#[test]
+fn sums_out_of_reach() {
+    let added = |above: &str| {
+        format!(
+            "{STRIPES}[[layer]]\nname = \"patch\"\nkind = \"constant\"\nblend = \"add\"\nfriction_n = {above}\n\
+             region = {{ x_mm = 10, y_mm = 20, width_mm = 5, height_mm = 6 }}"
+        )
+    };
+    check_layers(
+        &added("0.01"),
+        &[(
+            7,
+            1,
+            "layer 1 \"stripes\" and layer 2 \"patch\" together (x 10 to 15 mm, y 20 to 26 mm) ask for up to 0.03 N above \
+             natural friction, and at 150 V rms this finger feels at most 0.02778 N above natural friction: lower it, raise \
+             `voltage_max_v_rms`, or write `saturate = true` under [drive] to have it clamped",
+        )],
+    );
+    compile_layers(&added("0.007"));
+    check_layers(
+        &added("-0.01"),
+        &[(
+            7,
+            1,
+            "layer 1 \"stripes\" and layer 2 \"patch\" together (x 10 to 15 mm, y 20 to 26 mm) ask for down to -0.01 N above \
+             natural friction, and a drive can only add to the finger's natural friction of 0.25 N: raise it, lower \
+             `normal_load_n`, or write `saturate = true` under [drive] to have it clamped",
+        )],
+    );
+    check_layers(
+        "[[layer]]\nkind = \"constant\"\nblend = \"add\"\nabove = \"zero\"\nfriction_n = 0.26",
+        &[(
+            4,
+            9,
+            "layer 1 (constant) is added to what lies below it, so its friction is a difference and cannot be given in total: \
+             write `above = \"natural\"` or leave `above` out",
+        )],
+    );
+}
+
+#[test]
+fn sums_are_refused_only_where_a_finger_finds_them() {
+    // In step, crest meets crest; half a turn apart, the two cancel to a constant 0.02 N.
+    let second =
+        |phase: i32| format!("{STRIPES}{}blend = \"add\"\nphase_deg = {phase}\n", STRIPES.replace("stripes", "more"));
+    let refused = message(&format!("{HEAD}{}", second(0)));
+    assert!(refused.contains("layer 1 \"stripes\" and layer 2 \"more\" together"), "{refused}");
+    assert!(refused.contains("ask for up to 0.0399"), "{refused}");
+    let program = compile_layers(&second(180));
+    assert_eq!(
+        program.notes,
+        [
+            "layer 1 \"stripes\" and layer 2 \"more\" together (x 0 to 120 mm, y 0 to 110 mm) ask for up to 0.04 N above natural \
+          friction, and at most 0.02778 N can be reached; no place was found where they do"
+        ]
+    );
+}
+
+#[test]
+fn what_a_layer_hides_is_not_asked_for() {
+    let cover = "[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\nregion = { x_mm = 10, y_mm = 10, width_mm = 20, height_mm = 20 }";
+    let hidden = "[[layer]]\nkind = \"constant\"\nfriction_n = 0.9\nregion = { x_mm = 12, y_mm = 11, width_mm = 3, height_mm = 19 }\n";
+    compile_layers(&format!("{hidden}{cover}"));
+    assert!(message(&format!("{HEAD}{cover}\n{hidden}")).contains("layer 2 (constant) asks for up to 0.9 N"));
+}
+
+#[test]
+fn saturate_lets_everything_pass_and_says_so() {
+    let text = HEAD.replace("# layers follow", "[drive]\nsaturate = true");
+    let program =
+        compile_text(&format!("{text}[[layer]]\nkind = \"constant\"\nfriction_n = 0.3")).expect("it is clamped");
+    assert_eq!(
+        program.notes,
+        ["layer 1 (constant) asks for up to 0.3 N in total, and at most 0.2777 N can be reached; it is clamped there"]
+    );
+}
+
+#[test]
+fn too_many_layers() {
+    let layers = "[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\n".repeat(65);
+    check_layers(
+        &layers,
+        &[(193, 1, "this is layer 65, and the board takes 64: leave some out or draw them into one picture")],
+    );
+}
+
+#[test]
+fn low_above_high() {
+    check_layers(
+        "[[layer]]\nkind = \"grating\"\nwavelength_mm = 2\nlow_n = 0.02\nhigh_n = 0.01",
+        &[(4, 9, "`low_n = 0.02` is above `high_n = 0.01`: swap them")],
+    );
+}
+
+#[test]
+fn pictures() {
+    let layer = |picture: &str, pitch_mm: &str| {
+        format!(
+            "[[layer]]\nkind = \"bitmap\"\npicture = \"{picture}\"\nx_mm = 0\ny_mm = 0\nwidth_mm = 100\n\
+             pitch_mm = {pitch_mm}\nblack_n = 0\nwhite_n = 0.01\n"
+        )
+    };
+    let folder = scenes().join("textures").display().to_string();
+    check_layers(
+        &layer("textures/brik.png", "0.5"),
+        &[(
+            3,
+            11,
+            &format!(
+                "picture \"textures/brik.png\" was not found in {folder}, which has \"brick.png\": paths start from the \
+                 scene file's folder"
+            ),
+        )],
+    );
+    check_layers(
+        &layer("textures/README.md", "0.5"),
+        &[(3, 11, "picture \"textures/README.md\" cannot be used: it is not a PNG file: save it as PNG")],
+    );
+    check_layers(
+        &layer("textures/brick.png", "0.25"),
+        &[(
+            7,
+            12,
+            "the pictures up to this one need 160000 bytes, and the board has 81920: a pitch_mm of 0.36 would fit",
+        )],
+    );
+    compile_layers(&layer("textures/brick.png", "0.36"));
+    check_layers(
+        &layer("textures/brick.png", "0.02"),
+        &[(
+            7,
+            12,
+            "the pictures up to this one need 25000000 bytes, and the board has 81920: a pitch_mm of 0.36 would fit",
+        )],
+    );
+    let two = format!("{}{}", layer("textures/brick.png", "0.4"), layer("textures/brick.png", "0.5"));
+    check_layers(
+        &two,
+        &[(
+            16,
+            12,
+            "the pictures up to this one need 102500 bytes, and the board has 81920: a pitch_mm of 0.57 would fit",
+        )],
+    );
+}
+
+#[test]
+fn damaged_pictures() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let whole = fs::read(scenes().join("textures/brick.png")).expect("the picture");
+    fs::write(folder.path().join("cut.png"), &whole[..whole.len() / 2]).expect("a file");
+    let layer = "[[layer]]\nkind = \"bitmap\"\npicture = \"cut.png\"\nx_mm = 0\ny_mm = 0\nwidth_mm = 50\nblack_n = 0\nwhite_n = 0";
+    let scene = Scene::parse(&format!("{HEAD}{layer}"), "test.toml", folder.path()).expect("it reads");
+    let error = compile(&scene, &LIMITS, TICK_HZ).expect_err("it is cut").to_string();
+    assert!(error.starts_with("test.toml:21:11: picture \"cut.png\" cannot be used: it is damaged ("), "{error}");
+}
+
+#[test]
+fn files_that_cannot_be_read() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("scene.toml");
+    let name = path.display().to_string();
+    let error = Scene::load(&path).expect_err("there is none").to_string();
+    assert!(error.starts_with(&format!("{name}: this scene file cannot be read (")), "{error}");
+    fs::write(&path, b"version = 1\nname = \"\xff\"").expect("a file");
+    let error = Scene::load(&path).expect_err("it is not text").to_string();
+    assert_eq!(error, format!("{name}:2:9: this byte is not UTF-8 text: save the file as UTF-8"));
+}
+
+proptest! {
+    #[test]
+    fn no_text_makes_the_parser_panic(text in ".*") {
+        if let Err(error) = Scene::parse(&text, "test.toml", scenes()) {
+            prop_assert!(error.to_string().starts_with("test.toml:"));
+        }
+    }
+
+    /// Valid TOML of known and unknown names and values of any type, and numbers of any size.
+    #[test]
+    fn no_table_makes_the_compiler_panic(
+        lines in prop::collection::vec((0..LINES.len(), 0..VALUES.len(), any::<f64>()), 0..24),
+    ) {
+        let mut text = String::from(HEAD);
+        for (line, value, number) in lines {
+            let value = if VALUES[value] == "number" { format!("{number:?}") } else { VALUES[value].to_owned() };
+            text.push_str(&LINES[line].replace("VALUE", &value));
+            text.push('\n');
+        }
+        if let Err(error) = compile_text(&text) {
+            prop_assert!(error.to_string().lines().all(|line| line.starts_with("test.toml:")), "{}", error);
+        }
+    }
+}
+
+const LINES: &[&str] = &[
+    "[[layer]]",
+    "[[layer]]\nkind = \"constant\"",
+    "[[layer]]\nkind = \"grating\"",
+    "[[layer]]\nkind = \"bitmap\"\npicture = \"textures/brick.png\"",
+    "kind = VALUE",
+    "friction_n = VALUE",
+    "low_n = VALUE",
+    "high_n = VALUE",
+    "wavelength_mm = VALUE",
+    "angle_deg = VALUE",
+    "gain = VALUE",
+    "blend = VALUE",
+    "region = VALUE",
+    "picture = VALUE",
+    "x_mm = VALUE",
+    "y_mm = VALUE",
+    "width_mm = VALUE",
+    "height_mm = VALUE",
+    "pitch_mm = VALUE",
+    "black_n = VALUE",
+    "white_n = VALUE",
+    "[drive]\nsaturate = VALUE",
+    "[carrier]\nfrequency_hz = VALUE",
+];
+const VALUES: &[&str] = &[
+    "number",
+    "0",
+    "1",
+    "0.01",
+    "2",
+    "50",
+    "true",
+    "\"add\"",
+    "\"bitmap\"",
+    "[1, 2]",
+    "{ x_mm = 1, y_mm = 2 }",
+    "1979-05-27",
+    "{ x_mm = 1, y_mm = 2, width_mm = 3, height_mm = 4 }",
+    "nan",
+    "-inf",
+    "0xff",
+    "1_000",
+    "99999999999999999999",
+];

@@ -4,6 +4,7 @@ use frixel_wire::hello::BoardLimits;
 
 use super::{CompileError, Program, Scene, compile};
 
+mod docs;
 mod errors;
 mod layers;
 
@@ -23,7 +24,7 @@ const LIMITS: BoardLimits = BoardLimits {
 const TICK_HZ: u32 = 40_000;
 
 /// Everything a scene needs but its layers; eighteen lines. The natural friction is 0.25 N, and the drive adds at
-/// most 28.13 mN.
+/// most 27.78 mN.
 const HEAD: &str = "\
 version = 1
 

@@ -1,0 +1,122 @@
+//! Counting instructions with `SysTick`.
+
+use core::arch::naked_asm;
+use core::hint::black_box;
+use core::mem::{MaybeUninit, transmute};
+
+use cortex_m::peripheral::SYST;
+use cortex_m::peripheral::syst::SystClkSource;
+use cortex_m_semihosting::hprintln;
+
+/// `SysTick` runs at 25 MHz, and an instruction takes 1,024 ns: 25.6 counts.
+const COUNTS_OF_FIVE_INSTRUCTIONS: u32 = 128;
+/// `SysTick` is 24 bits wide.
+const WRAP: u32 = 1 << 24;
+
+/// Most cases.
+const CASES_MAX: usize = 32;
+
+/// For every case, by number, the input that a debugger wants to follow, counted from 1; zero for none. The debugger
+/// writes it before the image starts, so the start-up code must not clear it.
+#[unsafe(no_mangle)]
+#[unsafe(link_section = ".uninit.FOLLOWED")]
+static mut FOLLOWED: MaybeUninit<[u32; CASES_MAX]> = MaybeUninit::uninit();
+
+/// A debugger follows from here.
+#[unsafe(no_mangle)]
+#[unsafe(naked)]
+extern "C" fn follow_begin() {
+    naked_asm!("bx lr")
+}
+
+/// A debugger follows to here. The two differ, so that they are not made one.
+#[unsafe(no_mangle)]
+#[unsafe(naked)]
+extern "C" fn follow_end() {
+    naked_asm!("nop", "bx lr")
+}
+
+/// Counts instructions.
+pub struct Counter {
+    _systick: SYST,
+    cases: usize,
+}
+
+/// One thing that is counted for many inputs.
+pub struct Case {
+    name: &'static str,
+    followed: u32,
+    inputs: u32,
+    instructions: u32,
+    worst_input: u32,
+}
+
+impl Counter {
+    /// Starts the timer.
+    pub fn new(mut systick: SYST) -> Self {
+        systick.set_clock_source(SystClkSource::Core);
+        systick.set_reload(WRAP - 1);
+        systick.clear_current();
+        systick.enable_counter();
+        Self { _systick: systick, cases: 0 }
+    }
+
+    /// Begins the next case.
+    pub fn case(&mut self, name: &'static str) -> Case {
+        assert!(self.cases < CASES_MAX, "more cases than a debugger can tell inputs for");
+        // SAFETY: in bounds, and any bits are a number; nobody writes while the image runs.
+        let followed = unsafe { (&raw const FOLLOWED).cast::<u32>().add(self.cases).read_volatile() };
+        self.cases += 1;
+        Case { name, followed, inputs: 0, instructions: 0, worst_input: 0 }
+    }
+}
+
+impl Case {
+    /// Counts a call of `function`, less a call of [`nothing`]: call and return are left out.
+    pub fn take<S, T: Copy, R>(&mut self, function: fn(&mut S, T) -> R, state: &mut S, input: T) -> R {
+        self.inputs += 1;
+        let followed = self.inputs == self.followed;
+        // SAFETY: `nothing` takes whatever is in the registers, and returns zero or its argument, which are an `R`.
+        let nothing = unsafe { transmute::<extern "C" fn(), fn(&mut S, T) -> R>(nothing) };
+        let (call, _) = count(black_box(nothing), state, input, followed);
+        let (gross, result) = count(black_box(function), state, input, followed);
+        let net = gross - call + NOTHING;
+        if net > self.instructions {
+            self.instructions = net;
+            self.worst_input = self.inputs;
+        }
+        result
+    }
+
+    /// Tells the largest count and its input.
+    pub fn report(self) {
+        hprintln!("{} {} {}", self.name, self.instructions, self.worst_input);
+    }
+}
+
+/// Instructions that [`nothing`] takes beside call, frame and return.
+const NOTHING: u32 = 2;
+
+/// A function that is called like any other, sets up its frame like any other, and returns zero. A result in a
+/// floating-point register is the first argument in one.
+#[unsafe(naked)]
+extern "C" fn nothing() {
+    naked_asm!("push {{r7, lr}}", "mov r7, sp", "movs r0, #0", "movs r1, #0", "pop {{r7, pc}}")
+}
+
+/// Instructions of a call, with those of reading the timer. One function for all that is called, so that these are the
+/// same.
+#[inline(never)]
+fn count<S, T, R>(function: fn(&mut S, T) -> R, state: &mut S, input: T, followed: bool) -> (u32, R) {
+    if followed {
+        follow_begin();
+    }
+    let begin = SYST::get_current();
+    let result = function(state, input);
+    let end = SYST::get_current();
+    if followed {
+        follow_end();
+    }
+    let counts = begin.wrapping_sub(end) % WRAP;
+    ((counts * 5 + COUNTS_OF_FIVE_INSTRUCTIONS / 2) / COUNTS_OF_FIVE_INSTRUCTIONS, result)
+}

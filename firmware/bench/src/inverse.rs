@@ -1,0 +1,66 @@
+//! Friction to voltage, by table and in closed form.
+
+use core::hint::black_box;
+
+use frixel_model::{Contact, Finger, InverseTable, LoadedContact, Real};
+
+use crate::count::Counter;
+
+/// The example finger: radius, stiffness, friction coefficient; coating; load; largest voltage.
+const FINGER: Finger<f64> = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };
+const EFFECTIVE_GAP_M: f64 = 1e-5;
+const NORMAL_LOADS_N: [f64; 2] = [0.0, 0.5];
+const VOLTAGE_MAX_V_RMS: f64 = 200.0;
+
+/// One positive `f32` in so many is looked up, by bit pattern.
+const STEP: usize = 0x1_0003;
+const SPECIALS: [f32; 6] = [0.0, -0.0, -1.0, f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
+
+/// Counts both, without and with a load.
+pub fn run(counter: &mut Counter) {
+    let mut by_table = counter.case("inverse_table");
+    let mut in_closed_form = counter.case("inverse_closed_form");
+    for load_n in NORMAL_LOADS_N {
+        let contact = contact(&FINGER, EFFECTIVE_GAP_M, load_n);
+        let Ok(mut table) = InverseTable::build(&contact, VOLTAGE_MAX_V_RMS) else { panic!("no table") };
+        let mut single = single(load_n);
+        for x in (0..0x7f80_0000).step_by(STEP).map(f32::from_bits).chain(SPECIALS) {
+            let x = black_box(x);
+            black_box(by_table.take(from_table, &mut table, x));
+            black_box(in_closed_form.take(from_closed_form, &mut single, x));
+        }
+    }
+    by_table.report();
+    in_closed_form.report();
+}
+
+fn single(load_n: f64) -> LoadedContact<f32> {
+    let finger = Finger {
+        radius_m: FINGER.radius_m as f32,
+        stiffness_pa_per_m: FINGER.stiffness_pa_per_m as f32,
+        friction_coefficient: FINGER.friction_coefficient as f32,
+    };
+    contact(&finger, EFFECTIVE_GAP_M as f32, load_n as f32)
+}
+
+fn contact<T: Real>(finger: &Finger<T>, effective_gap_m: T, load_n: T) -> LoadedContact<T> {
+    match Contact::new(finger, effective_gap_m).and_then(|contact| contact.under_load(load_n)) {
+        Ok(contact) => contact,
+        Err(error) => panic!("the contact model refuses the example finger: {error:?}"),
+    }
+}
+
+#[inline(never)]
+fn from_table(table: &mut InverseTable, electric_friction_n: f32) -> f32 {
+    if cfg!(feature = "breach") {
+        for loops in 0..100 {
+            black_box(loops);
+        }
+    }
+    table.voltage_v_rms(electric_friction_n)
+}
+
+#[inline(never)]
+fn from_closed_form(contact: &mut LoadedContact<f32>, electric_friction_n: f32) -> f32 {
+    contact.voltage_v_rms(electric_friction_n)
+}

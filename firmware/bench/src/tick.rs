@@ -1,0 +1,175 @@
+//! Whole ticks, by scene.
+
+use cortex_m::singleton;
+use frixel_render::{Active, BitmapPool, Board, Drive, Sense, Session, Ticker, Touch};
+use frixel_wire::fault::State;
+use frixel_wire::message::Command;
+use frixel_wire::scene::{Blend, Carrier, HEADER_LEN, Header, Layer, RECORD_LEN, RECORDS_MAX, Record, Region, Wave};
+
+use crate::count::{Case, Counter};
+use crate::host::Host;
+
+/// Ticks counted of each scene: a stroke across the screen.
+const TICKS: u32 = 8_000;
+/// Ticks between two reports of the touch source.
+const REPORT_TICKS: u32 = 400;
+/// Ticks between two pings.
+const PING_TICKS: u32 = 2_000;
+/// Side of the square picture, in samples.
+const PICTURE: u16 = 100;
+
+const HEADER: Header = Header {
+    screen_width_m: 0.12,
+    screen_height_m: 0.11,
+    finger_radius_m: 8e-3,
+    stiffness_pa_per_m: 1.8e7,
+    friction_coefficient: 0.5,
+    normal_load_n: 0.5,
+    effective_gap_m: 1e-5,
+    voltage_max_v_rms: 150.0,
+    voltage_max_v_peak: 200.0,
+    slew_v_per_s: 5e6,
+    carrier_hz: 1000.0,
+    host_timeout_s: 0.25,
+    carrier: Carrier::Square,
+    autonomous: false,
+    prediction: true,
+};
+
+const GRATING: Layer = Layer::Grating {
+    wave: Wave::Sine,
+    cycles_per_m_x: 500.0,
+    cycles_per_m_y: 100.0,
+    phase_turns: 0.2,
+    trough_n: 0.0,
+    crest_n: 0.026,
+};
+
+const fn bitmap(crc32: u32) -> Layer {
+    Layer::Bitmap { crc32, x_m: 0.01, y_m: 0.0, pitch_m: 1e-3, black_n: 0.0, white_n: 0.026 }
+}
+
+const fn record(layer: Layer) -> Record {
+    Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer }
+}
+
+/// Counts the ticks of every scene.
+pub fn run(counter: &mut Counter) {
+    static POOL: BitmapPool = BitmapPool::new();
+    let board = Board::SIMULATOR;
+    let (Some(first), Some(second)) = (singleton!(: Active = Active::new()), singleton!(: Active = Active::new()))
+    else {
+        panic!("this runs once");
+    };
+    let ticker = Ticker::new(&board, &POOL, first);
+    let session = Session::new(board, &POOL, second);
+    let mut bench = Bench { host: Host::new(session, ticker), monitor: Monitor::new(&board) };
+
+    let mut samples = [0; PICTURE as usize * PICTURE as usize];
+    for (index, sample) in (0_u32..).zip(&mut samples) {
+        *sample = (index.wrapping_mul(2_654_435_761) >> 24) as u8;
+    }
+
+    bench.idle(counter.case("tick_disarmed"), None);
+    bench.play(&HEADER, &[record(GRATING)]);
+    bench.idle(counter.case("tick_idle"), Some(Touch::Up));
+    bench.slide(counter.case("tick_grating"));
+    let crc32 = bench.host.bitmap(PICTURE, PICTURE, &samples);
+    bench.play(&HEADER, &[record(bitmap(crc32))]);
+    bench.slide(counter.case("tick_bitmap"));
+    let worst_header = Header { carrier: Carrier::Sine, ..HEADER };
+    bench.play(&worst_header, &[Record { blend: Blend::Add, ..record(bitmap(crc32)) }; RECORDS_MAX]);
+    bench.slide(counter.case("tick_worst_scene"));
+}
+
+/// A playing board.
+struct Bench {
+    host: Host<'static>,
+    monitor: Monitor,
+}
+
+/// An ideal amplifier with the board's edges.
+struct Monitor {
+    voltage_v: f32,
+    volts_per_code: f32,
+    step: f32,
+}
+
+impl Monitor {
+    fn new(board: &Board) -> Self {
+        let tick_period_s = 1.0 / board.tick_hz as f32;
+        Self {
+            voltage_v: 0.0,
+            volts_per_code: board.limits.full_scale_v_peak / f32::from(i16::MAX),
+            step: 1.0 - libm::expf(-tick_period_s / board.limits.edge_time_constant_s),
+        }
+    }
+
+    fn follow(&mut self, drive: Drive) {
+        self.voltage_v += self.step * (f32::from(drive.dac_code) * self.volts_per_code - self.voltage_v);
+    }
+}
+
+impl Bench {
+    fn play(&mut self, header: &Header, records: &[Record]) {
+        let mut scene = [0; HEADER_LEN + RECORDS_MAX * RECORD_LEN];
+        scene[..HEADER_LEN].copy_from_slice(&header.write(records.len() as u8));
+        for (place, record) in scene[HEADER_LEN..].chunks_exact_mut(RECORD_LEN).zip(records) {
+            place.copy_from_slice(&record.write());
+        }
+        self.host.command(Command::Disarm);
+        self.host.play(&scene[..HEADER_LEN + RECORD_LEN * records.len()]);
+        self.tick(None);
+        assert!(self.host.ticker.status().telemetry.state == State::Active, "the scene does not play");
+    }
+
+    /// Nothing to drive.
+    fn idle(&mut self, mut case: Case, first_touch: Option<Touch>) {
+        for tick in 0..TICKS {
+            let touch = if tick == 0 { first_touch } else { None };
+            self.count(&mut case, touch);
+        }
+        case.report();
+    }
+
+    /// A finger that comes down, slides, rests for a while and slides on.
+    fn slide(&mut self, mut case: Case) {
+        self.tick(Some(Touch::Up));
+        let mut driven = 0;
+        for tick in 0..TICKS {
+            if tick.is_multiple_of(PING_TICKS) {
+                self.host.command(Command::Ping);
+            }
+            let touch = tick.is_multiple_of(REPORT_TICKS).then(|| {
+                let along_m = 1e-5 * tick.min(TICKS / 3).max(tick.saturating_sub(TICKS / 3)) as f32;
+                Touch::Down { x_m: 0.02 + along_m, y_m: 0.03 + 0.3 * along_m, age_ticks: REPORT_TICKS }
+            });
+            driven += u32::from(self.count(&mut case, touch).dac_code != 0);
+        }
+        assert!(driven > TICKS / 2, "the board does not drive");
+        case.report();
+    }
+
+    fn tick(&mut self, touch: Option<Touch>) -> Drive {
+        let sense = self.sense(touch);
+        let drive = tick(&mut self.host.ticker, &sense);
+        self.monitor.follow(drive);
+        drive
+    }
+
+    fn count(&mut self, case: &mut Case, touch: Option<Touch>) -> Drive {
+        let sense = self.sense(touch);
+        let drive = case.take(tick, &mut self.host.ticker, &sense);
+        self.monitor.follow(drive);
+        drive
+    }
+
+    fn sense(&self, touch: Option<Touch>) -> Sense {
+        Sense { touch, amplifier_fault: false, monitor_v: self.monitor.voltage_v, arm_switch: true }
+    }
+}
+
+#[inline(never)]
+fn tick(ticker: &mut Ticker, sense: &Sense) -> Drive {
+    ticker.tick(sense)
+}

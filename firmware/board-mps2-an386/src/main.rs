@@ -1,0 +1,53 @@
+//! The firmware on an emulated Cortex-M4F: `qemu-system-arm -M mps2-an386`.
+//!
+//! [`tick`] runs in the `SysTick` interrupt, above everything; [`talk`] runs the session in the main loop, between
+//! [`uart`] and the tick. Amplifier and touch source are words of memory that the simulator looks at ([`shared`]).
+//! Instead of all that, [`lockstep`] ticks whenever the simulator gives it a tick. [`fault`] keeps the reason of a
+//! reset for the next hello, and [`provoke`] gives a reason.
+#![no_std]
+#![no_main]
+
+mod fault;
+mod lockstep;
+mod owned;
+mod provoke;
+mod shared;
+mod talk;
+mod tick;
+mod uart;
+
+use cortex_m::Peripherals;
+use cortex_m::singleton;
+use cortex_m_rt::entry;
+use frixel_exchange::{BOARD, layout};
+use frixel_render::{Active, BitmapPool, Board, Session, Ticker};
+use frixel_wire::hello::ResetCause;
+
+/// Memory for bitmaps, written by the session and read by the tick.
+static POOL: BitmapPool = BitmapPool::new();
+
+#[entry]
+fn main() -> ! {
+    shared::set(layout::OUTPUT_AT_START, shared::get(layout::OUTPUT));
+    shared::set(layout::STARTS, shared::get(layout::STARTS).wrapping_add(1));
+    let board = started();
+    // Made in passing, so that no image of them lies in flash.
+    let (Some(first), Some(second)) = (singleton!(: Active = Active::new()), singleton!(: Active = Active::new()))
+    else {
+        fault::never()
+    };
+    let ticker = Ticker::new(&board, &POOL, first);
+    let Some(session) = singleton!(: Session<'static> = Session::new(board, &POOL, second)) else { fault::never() };
+    match (shared::get(layout::MODE), Peripherals::take()) {
+        (layout::MODE_LINK, Some(peripherals)) => talk::run(&board, session, ticker, peripherals),
+        _ => lockstep::run(session, ticker),
+    }
+}
+
+/// The board as it started: the fault before a reset was the reset's cause.
+fn started() -> Board {
+    match fault::take() {
+        Some(reset_fault) => Board { reset_cause: ResetCause::Software, reset_fault: Some(reset_fault), ..BOARD },
+        None => BOARD,
+    }
+}

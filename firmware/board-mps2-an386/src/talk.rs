@@ -1,0 +1,99 @@
+//! The session in the main loop, between the serial port and the tick.
+
+use cortex_m::Peripherals;
+use cortex_m::singleton;
+use frixel_render::{Active, Board, Order, Session, Status, Ticker};
+use heapless::spsc::{Consumer, Producer, Queue};
+
+use crate::tick::{self, Monitor, Tick};
+use crate::uart::{Queues, Uart};
+use crate::{fault, provoke};
+
+/// Orders that may wait for the tick, one place left free: as many as the session keeps.
+const ORDERS_LEN: usize = 9;
+
+/// Bytes that are taken from the serial port at a time.
+const CHUNK_LEN: usize = 256;
+
+/// The session's ends of the queues to and from the tick.
+struct Talk {
+    session: &'static mut Session<'static>,
+    orders: Producer<'static, Order<'static>>,
+    spares: Consumer<'static, &'static mut Active>,
+    statuses: Consumer<'static, Status>,
+    uart: Uart,
+}
+
+/// Ticks on the board's own timer, and talks to the host on the serial port.
+pub fn run(
+    board: &Board,
+    session: &'static mut Session<'static>,
+    ticker: Ticker<'static>,
+    mut peripherals: Peripherals,
+) -> ! {
+    let (Some(orders), Some(spares), Some(statuses), Some(queues)) = (
+        singleton!(: Queue<Order<'static>, ORDERS_LEN> = Queue::new()),
+        singleton!(: Queue<&'static mut Active, 3> = Queue::new()),
+        singleton!(: Queue<Status, 2> = Queue::new()),
+        singleton!(: Queues = Queues::new()),
+    ) else {
+        fault::never()
+    };
+    let (order_producer, order_consumer) = orders.split();
+    let (spare_producer, spare_consumer) = spares.split();
+    let (status_producer, status_consumer) = statuses.split();
+    let tick = Tick {
+        ticker,
+        orders: order_consumer,
+        spares: spare_producer,
+        statuses: status_producer,
+        monitor: Monitor::new(board),
+        count: 0,
+    };
+    tick::start(tick, board.tick_hz, peripherals.SYST);
+    let uart = Uart::start(queues, &mut peripherals.NVIC);
+    let mut talk = Talk { session, orders: order_producer, spares: spare_consumer, statuses: status_consumer, uart };
+    loop {
+        talk.once();
+        provoke::in_main();
+    }
+}
+
+impl Talk {
+    fn once(&mut self) {
+        let status = self.status();
+        let mut bytes = [0; CHUNK_LEN];
+        let count = self.uart.receive(&mut bytes);
+        self.session.receive(bytes.get(..count).unwrap_or_default(), &status);
+        while let Some(order) = self.session.next_order() {
+            self.order(order);
+        }
+        while let Some(spare) = self.spares.dequeue() {
+            self.session.take_back(spare);
+        }
+        self.session.poll(&status);
+        let room = self.uart.room().min(CHUNK_LEN);
+        let count = self.session.transmit(bytes.get_mut(..room).unwrap_or_default());
+        self.uart.transmit(bytes.get(..count).unwrap_or_default());
+    }
+
+    /// What the board does now, as the next tick has it.
+    ///
+    /// This waits without sleep: an emulator whose processor sleeps until the next tick wakes it late, by several ticks
+    /// at times, and the tick takes that for a missed deadline.
+    fn status(&mut self) -> Status {
+        tick::want_status();
+        loop {
+            if let Some(status) = self.statuses.dequeue() {
+                return status;
+            }
+        }
+    }
+
+    /// Hands an order to the tick, which makes room at once when there is none.
+    fn order(&mut self, mut order: Order<'static>) {
+        while let Err(refused) = self.orders.enqueue(order) {
+            order = refused;
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! The tick: `SysTick` at 40 kHz, above every other interrupt and every critical section.
+
+use core::sync::atomic::{AtomicBool, Ordering};
+
+use cortex_m::peripheral::syst::SystClkSource;
+use cortex_m::peripheral::{SCB, SYST};
+use cortex_m_rt::exception;
+use frixel_exchange::layout;
+use frixel_render::{Active, Board, Order, Sense, Status, Ticker};
+use frixel_wire::fault::Fault;
+use heapless::spsc::{Consumer, Producer};
+
+use crate::owned::Owned;
+use crate::{provoke, shared};
+
+/// Clock of `SysTick` on this machine.
+const CLOCK_HZ: u32 = 25_000_000;
+
+static TICK: Owned<Tick> = Owned::new();
+static STATUS_WANTED: AtomicBool = AtomicBool::new(false);
+
+/// What the tick owns: the ticker and its ends of the queues.
+pub struct Tick {
+    /// Turns touch into voltage.
+    pub ticker: Ticker<'static>,
+    /// Orders from the session.
+    pub orders: Consumer<'static, Order<'static>>,
+    /// Coefficients that go back to the session.
+    pub spares: Producer<'static, &'static mut Active>,
+    /// A status for the session, when it asked for one.
+    pub statuses: Producer<'static, Status>,
+    /// What the amplifier's monitor reads.
+    pub monitor: Monitor,
+    /// Ticks since reset.
+    pub count: u32,
+}
+
+/// The amplifier's monitor. There is no amplifier: it reads what was driven, behind the edges that the board promises.
+pub struct Monitor {
+    voltage_v: f32,
+    volts_per_code: f32,
+    step: f32,
+}
+
+impl Monitor {
+    /// The monitor of a board at rest.
+    pub fn new(board: &Board) -> Self {
+        let tick_period_s = 1.0 / board.tick_hz as f32;
+        Self {
+            voltage_v: 0.0,
+            volts_per_code: board.limits.full_scale_v_peak / f32::from(i16::MAX),
+            step: 1.0 - libm::expf(-tick_period_s / board.limits.edge_time_constant_s),
+        }
+    }
+
+    fn follow(&mut self, dac_code: i16) {
+        self.voltage_v += self.step * (f32::from(dac_code) * self.volts_per_code - self.voltage_v);
+    }
+}
+
+/// Starts to tick.
+pub fn start(tick: Tick, tick_hz: u32, mut systick: SYST) {
+    // SAFETY: SysTick is enabled below.
+    unsafe { TICK.give(tick) };
+    systick.set_clock_source(SystClkSource::Core);
+    systick.set_reload(CLOCK_HZ / tick_hz - 1);
+    systick.clear_current();
+    systick.enable_interrupt();
+    systick.enable_counter();
+}
+
+/// Asks the tick for a status.
+pub fn want_status() {
+    STATUS_WANTED.store(true, Ordering::Release);
+}
+
+/// Deadline: the drive has to be put out before the next tick begins, 25 us. When it is not, the next `SysTick` is
+/// pending already, and the ticker faults; the number that goes with it is the time taken, in counts of 40 ns.
+#[exception]
+fn SysTick() {
+    // SAFETY: this is the handler that owns it.
+    let Some(tick) = (unsafe { TICK.get() }) else { return };
+    tick.run();
+    if SCB::is_pendst_pending() {
+        let reload = SYST::get_reload();
+        tick.ticker.raise(Fault::Deadline, 2 * reload - SYST::get_current());
+    }
+}
+
+impl Tick {
+    fn run(&mut self) {
+        self.count = self.count.wrapping_add(1);
+        while let Some(order) = self.orders.dequeue() {
+            if let Some(spare) = self.ticker.apply(order) {
+                // There are two of them, and room for both.
+                let _ = self.spares.enqueue(spare);
+            }
+        }
+        let sense = Sense {
+            touch: shared::touch(self.count),
+            amplifier_fault: shared::get(layout::AMPLIFIER_FAULT) != 0,
+            monitor_v: self.monitor.voltage_v,
+            arm_switch: true,
+        };
+        let drive = self.ticker.tick(&sense);
+        shared::drive(self.count, drive);
+        self.monitor.follow(drive.dac_code);
+        if STATUS_WANTED.load(Ordering::Acquire) {
+            STATUS_WANTED.store(false, Ordering::Relaxed);
+            // The session asks for the next one when it has taken this one.
+            let _ = self.statuses.enqueue(self.ticker.status());
+        }
+        provoke::in_tick();
+    }
+}

@@ -1,0 +1,161 @@
+//! Serial port: UART0 of the CMSDK (Arm DDI0479, section 4.3), one byte deep, interrupt-driven both ways.
+
+use cortex_m::interrupt::InterruptNumber;
+use cortex_m::peripheral::NVIC;
+use frixel_exchange::layout;
+use heapless::spsc::{Consumer, Producer, Queue};
+
+use crate::owned::Owned;
+use crate::shared;
+
+/// Room for the host's credit and as much again of what was never asked for.
+const RECEIVE_LEN: usize = 8192;
+const TRANSMIT_LEN: usize = 256;
+
+const BASE: usize = 0x4000_4000;
+const DATA: usize = BASE;
+const STATE: usize = BASE + 0x4;
+const CTRL: usize = BASE + 0x8;
+const INTCLEAR: usize = BASE + 0xc;
+const BAUDDIV: usize = BASE + 0x10;
+
+const STATE_TX_FULL: u32 = 1;
+const STATE_RX_FULL: u32 = 1 << 1;
+const CTRL_TX_ENABLE: u32 = 1;
+const CTRL_RX_ENABLE: u32 = 1 << 1;
+const CTRL_TX_INTERRUPT: u32 = 1 << 2;
+const CTRL_RX_INTERRUPT: u32 = 1 << 3;
+const INT_TX: u32 = 1;
+const INT_RX: u32 = 1 << 1;
+
+/// Divider of the 25 MHz clock for 2 Mbaud, as near as it goes with the least that the UART takes.
+const DIVIDER: u32 = 16;
+
+/// Below the tick.
+const PRIORITY: u8 = 0xc0;
+
+static RECEIVER: Owned<Producer<'static, u8>> = Owned::new();
+static TRANSMITTER: Owned<Consumer<'static, u8>> = Owned::new();
+
+/// Interrupts of UART0, by number.
+#[derive(Clone, Copy)]
+#[repr(u16)]
+enum Interrupt {
+    Receive = 0,
+    Transmit = 1,
+}
+
+// SAFETY: these are the numbers of two interrupts, and they never change.
+unsafe impl InterruptNumber for Interrupt {
+    fn number(self) -> u16 {
+        self as u16
+    }
+}
+
+/// Vectors after those of the processor itself.
+#[unsafe(link_section = ".vector_table.interrupts")]
+#[unsafe(no_mangle)]
+static __INTERRUPTS: [extern "C" fn(); 2] = [receive, transmit];
+
+/// The main program's ends of both directions.
+pub struct Uart {
+    received: Consumer<'static, u8>,
+    to_transmit: Producer<'static, u8>,
+}
+
+/// Queues between the main program and the interrupts.
+pub struct Queues {
+    receive: Queue<u8, RECEIVE_LEN>,
+    transmit: Queue<u8, TRANSMIT_LEN>,
+}
+
+impl Queues {
+    /// Empty queues.
+    pub const fn new() -> Self {
+        Self { receive: Queue::new(), transmit: Queue::new() }
+    }
+}
+
+impl Uart {
+    /// Enables the port. `SysTick` should run by now: on an idle emulator without a timer the first byte takes a second.
+    pub fn start(queues: &'static mut Queues, nvic: &mut NVIC) -> Self {
+        let (receiver, received) = queues.receive.split();
+        let (to_transmit, transmitter) = queues.transmit.split();
+        // SAFETY: both interrupts are enabled below.
+        unsafe {
+            RECEIVER.give(receiver);
+            TRANSMITTER.give(transmitter);
+        }
+        write(BAUDDIV, DIVIDER);
+        write(CTRL, CTRL_TX_ENABLE | CTRL_RX_ENABLE | CTRL_TX_INTERRUPT | CTRL_RX_INTERRUPT);
+        for interrupt in [Interrupt::Receive, Interrupt::Transmit] {
+            // SAFETY: no critical section counts on these priorities or on these interrupts being off.
+            unsafe {
+                nvic.set_priority(interrupt, PRIORITY);
+                NVIC::unmask(interrupt);
+            }
+        }
+        Self { received, to_transmit }
+    }
+
+    /// Moves received bytes into `bytes`, and returns how many.
+    pub fn receive(&mut self, bytes: &mut [u8]) -> usize {
+        let mut count = 0;
+        for (place, byte) in bytes.iter_mut().zip(core::iter::from_fn(|| self.received.dequeue())) {
+            *place = byte;
+            count += 1;
+        }
+        count
+    }
+
+    /// Bytes that [`Self::transmit`] takes now.
+    pub fn room(&self) -> usize {
+        self.to_transmit.capacity() - self.to_transmit.len()
+    }
+
+    /// Sends bytes for which there is room.
+    pub fn transmit(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            let _ = self.to_transmit.enqueue(*byte);
+        }
+        if !bytes.is_empty() {
+            // The interrupt sends all but wakes up only when a byte has gone out; this one says that one may.
+            NVIC::pend(Interrupt::Transmit);
+        }
+    }
+}
+
+/// A byte has come.
+extern "C" fn receive() {
+    write(INTCLEAR, INT_RX);
+    // SAFETY: this is the handler that owns it.
+    let Some(receiver) = (unsafe { RECEIVER.get() }) else { return };
+    while read(STATE) & STATE_RX_FULL != 0 {
+        // A host that keeps to its credit never fills the queue; from one that does not, bytes are lost, and a CRC
+        // tells.
+        let _ = receiver.enqueue(read(DATA) as u8);
+        shared::set(layout::RECEIVED_AT_TICK, shared::get(layout::TICK));
+        shared::set(layout::RECEIVED_BYTES, shared::get(layout::RECEIVED_BYTES).wrapping_add(1));
+    }
+}
+
+/// A byte has gone out, or there is one to send.
+extern "C" fn transmit() {
+    write(INTCLEAR, INT_TX);
+    // SAFETY: this is the handler that owns it.
+    let Some(transmitter) = (unsafe { TRANSMITTER.get() }) else { return };
+    while read(STATE) & STATE_TX_FULL == 0 {
+        let Some(byte) = transmitter.dequeue() else { break };
+        write(DATA, u32::from(byte));
+    }
+}
+
+fn read(register: usize) -> u32 {
+    // SAFETY: a register of UART0, which only this module touches.
+    unsafe { (register as *const u32).read_volatile() }
+}
+
+fn write(register: usize, value: u32) {
+    // SAFETY: a register of UART0, which only this module touches.
+    unsafe { (register as *mut u32).write_volatile(value) }
+}

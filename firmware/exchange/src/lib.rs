@@ -1,0 +1,29 @@
+//! What the emulated board and the simulator tell each other through shared memory: the board's pins, as it were.
+//!
+//! The memory is an array of little-endian 32-bit words. [`layout`] says which word is what; [`Given`] and [`Done`] are
+//! what goes into a tick and what comes out of it, [`touch`] a report of the touch source, each as words. Both sides
+//! compile this one crate.
+#![cfg_attr(not(test), no_std)]
+#![forbid(unsafe_code)]
+
+pub mod layout;
+mod tick;
+mod touch;
+mod words;
+
+pub use tick::{DONE_WORDS_MAX, Done, GIVEN_WORDS_MAX, Given, TICK_BYTES_MAX, TickBytes, drive_of, word_of};
+pub use touch::{STAMPED_TOUCH_WORDS, StampedTouch};
+
+use frixel_render::Board;
+use frixel_wire::hello::{BoardKind, BoardLimits};
+
+/// The emulated board: the limits of the smallest real one, like the simulated board.
+///
+/// Its receive window is a quarter of theirs: the emulator moves 20 kB/s over its serial port, and 8 kB/s on a busy
+/// machine, where a real one moves 200. An answer must not wait behind a full window for longer than a host does.
+pub const BOARD: Board = Board {
+    kind: BoardKind::Mps2An386,
+    id: *b"frixel-qemu\0",
+    limits: BoardLimits { receive_window_bytes: 1024, ..Board::SIMULATOR.limits },
+    ..Board::SIMULATOR
+};

@@ -1,0 +1,148 @@
+//! What goes into a tick and what comes out of it.
+
+use frixel_render::{Drive, Sense};
+
+use crate::words::{TOUCH_MASK, put_bytes, put_touch, take_bytes, take_touch, touch_kind};
+
+/// Most bytes on the serial line in one tick, either way.
+pub const TICK_BYTES_MAX: usize = 64;
+/// Bytes on the serial line in one tick.
+pub type TickBytes = heapless::Vec<u8, TICK_BYTES_MAX>;
+/// Most words of a [`Given`].
+pub const GIVEN_WORDS_MAX: usize = 6 + TICK_BYTES_MAX / 4;
+/// Most words of a [`Done`].
+pub const DONE_WORDS_MAX: usize = 2 + TICK_BYTES_MAX / 4;
+
+const AMPLIFIER_FAULT: u32 = 1 << 2;
+const ARM_SWITCH: u32 = 1 << 3;
+const BYTES_SHIFT: u32 = 8;
+
+const AMPLIFIER_ENABLE: u32 = 1 << 16;
+const SENT_SHIFT: u32 = 24;
+
+/// What goes into a tick.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Given {
+    /// The tick, counted from 1 at reset.
+    pub tick: u32,
+    /// Bytes that have come on the serial line.
+    pub received: TickBytes,
+    /// What the board sees.
+    pub sense: Sense,
+}
+
+impl Given {
+    /// Puts its words, [`GIVEN_WORDS_MAX`] at most.
+    pub fn write(&self, mut put: impl FnMut(u32)) {
+        let sense = &self.sense;
+        let mut kind = touch_kind(sense.touch) | (self.received.len() as u32) << BYTES_SHIFT;
+        if sense.amplifier_fault {
+            kind |= AMPLIFIER_FAULT;
+        }
+        if sense.arm_switch {
+            kind |= ARM_SWITCH;
+        }
+        put(self.tick);
+        put(kind);
+        put(sense.monitor_v.to_bits());
+        put_touch(sense.touch, &mut put);
+        put_bytes(&self.received, &mut put);
+    }
+
+    /// Takes its words.
+    pub fn read(mut take: impl FnMut() -> u32) -> Self {
+        let tick = take();
+        let kind = take();
+        let monitor_v = f32::from_bits(take());
+        let touch = take_touch(kind & TOUCH_MASK, &mut take);
+        let sense = Sense {
+            touch,
+            amplifier_fault: kind & AMPLIFIER_FAULT != 0,
+            monitor_v,
+            arm_switch: kind & ARM_SWITCH != 0,
+        };
+        let received = take_bytes((kind >> BYTES_SHIFT) as usize, &mut take);
+        Self { tick, received, sense }
+    }
+}
+
+/// What comes out of a tick.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Done {
+    /// The tick, counted from 1 at reset.
+    pub tick: u32,
+    /// What the board drives.
+    pub drive: Drive,
+    /// Bytes that go out on the serial line.
+    pub sent: TickBytes,
+}
+
+impl Done {
+    /// Puts its words, [`DONE_WORDS_MAX`] at most.
+    pub fn write(&self, mut put: impl FnMut(u32)) {
+        put(self.tick);
+        put(word_of(self.drive) | (self.sent.len() as u32) << SENT_SHIFT);
+        put_bytes(&self.sent, &mut put);
+    }
+
+    /// Takes its words.
+    pub fn read(mut take: impl FnMut() -> u32) -> Self {
+        let tick = take();
+        let word = take();
+        Self { tick, drive: drive_of(word), sent: take_bytes((word >> SENT_SHIFT) as usize, &mut take) }
+    }
+}
+
+/// A drive as a word: the DAC code below, the amplifier's enable in bit 16.
+pub const fn word_of(drive: Drive) -> u32 {
+    let code = drive.dac_code as u16 as u32;
+    if drive.amplifier_enable { code | AMPLIFIER_ENABLE } else { code }
+}
+
+/// The drive of a word.
+pub const fn drive_of(word: u32) -> Drive {
+    Drive { dac_code: word as u16 as i16, amplifier_enable: word & AMPLIFIER_ENABLE != 0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use frixel_render::Touch;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn bytes() -> impl Strategy<Value = TickBytes> {
+        prop::collection::vec(any::<u8>(), 0..=TICK_BYTES_MAX).prop_map(|bytes| bytes.into_iter().collect())
+    }
+
+    fn touch() -> impl Strategy<Value = Option<Touch>> {
+        let down = (-1.0_f32..1.0, -1.0_f32..1.0, any::<u32>());
+        prop_oneof![
+            Just(None),
+            Just(Some(Touch::Up)),
+            down.prop_map(|(x_m, y_m, age_ticks)| Some(Touch::Down { x_m, y_m, age_ticks })),
+        ]
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_given_and_done_comes_back_from_its_words(
+            (tick, received, sent) in (any::<u32>(), bytes(), bytes()),
+            (touch, amplifier_fault, monitor_v, arm_switch) in (touch(), any::<bool>(), -300.0_f32..300.0, any::<bool>()),
+            (dac_code, amplifier_enable) in (any::<i16>(), any::<bool>()),
+        ) {
+            let given = Given { tick, received, sense: Sense { touch, amplifier_fault, monitor_v, arm_switch } };
+            let done = Done { tick, drive: Drive { dac_code, amplifier_enable }, sent };
+            let mut words = std::vec::Vec::new();
+            given.write(|word| words.push(word));
+            prop_assert!(words.len() <= GIVEN_WORDS_MAX);
+            let given_len = words.len();
+            done.write(|word| words.push(word));
+            prop_assert!(words.len() - given_len <= DONE_WORDS_MAX);
+            let mut words = words.into_iter();
+            prop_assert_eq!(Given::read(|| words.next().unwrap()), given);
+            prop_assert_eq!(Done::read(|| words.next().unwrap()), done);
+            prop_assert_eq!(words.next(), None);
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! The world of a board that ticks by itself: it follows what the board drives.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+
+use frixel_exchange::{STAMPED_TOUCH_WORDS, StampedTouch, drive_of, layout};
+use frixel_render::Drive;
+
+use super::serial::Serial;
+use super::{LOOK_EVERY, LinkRecord};
+use crate::World;
+use crate::emulated::EmulatorError;
+use crate::emulated::memory::Memory;
+
+/// What the board's owner wants of the world's thread.
+#[derive(Debug, Default)]
+pub(super) struct Wishes {
+    pub(super) end: AtomicBool,
+    pub(super) stroke: AtomicBool,
+}
+
+/// The world that follows what the board drives.
+pub(super) struct Follower<W> {
+    memory: Memory,
+    serial: Serial,
+    world: World,
+    watch: W,
+    /// Drives that were seen.
+    seen: u32,
+    /// Touch reports that were written.
+    reports: u32,
+    wishes: Arc<Wishes>,
+}
+
+impl<W: FnMut(&LinkRecord)> Follower<W> {
+    pub(super) fn new(memory: Memory, serial: Serial, world: World, watch: W, wishes: Arc<Wishes>) -> Self {
+        Self { memory, serial, world, watch, seen: 0, reports: 0, wishes }
+    }
+
+    /// Follows until the end is wished for.
+    pub(super) fn run(mut self) -> Result<(), EmulatorError> {
+        while !self.wishes.end.load(Ordering::Acquire) {
+            if self.wishes.stroke.swap(false, Ordering::AcqRel) {
+                self.world.start_stroke();
+            }
+            self.follow()?;
+            self.serial.let_the_next_host_in()?;
+            thread::sleep(LOOK_EVERY);
+        }
+        Ok(())
+    }
+
+    /// Brings the world to where the board is.
+    fn follow(&mut self) -> Result<(), EmulatorError> {
+        let mut waiting = self.memory.get(layout::DRIVES_WRITTEN)?.wrapping_sub(self.seen) as usize;
+        if waiting > layout::DRIVES_LEN / 2 {
+            return Err(EmulatorError::WorldBehind);
+        }
+        while waiting > 0 {
+            let place = self.seen as usize % layout::DRIVES_LEN;
+            let count = waiting.min(layout::DRIVES_LEN - place);
+            let words = self.memory.get_all(layout::DRIVES + 2 * place, 2 * count)?;
+            for [tick, word] in words.as_chunks().0 {
+                self.tick(*tick, drive_of(*word))?;
+            }
+            self.seen = self.seen.wrapping_add(count as u32);
+            waiting -= count;
+        }
+        Ok(())
+    }
+
+    /// One tick of the world; what it has to report goes to the board.
+    fn tick(&mut self, tick: u32, drive: Drive) -> Result<(), EmulatorError> {
+        let felt = self.world.apply(drive);
+        (self.watch)(&LinkRecord { tick, drive, felt });
+        match self.world.sense().touch {
+            Some(touch) => self.report(StampedTouch { tick: tick.wrapping_add(1), touch }),
+            None => Ok(()),
+        }
+    }
+
+    /// Gives a report to the board; one for which there is no room is lost, as on a bus.
+    fn report(&mut self, report: StampedTouch) -> Result<(), EmulatorError> {
+        let waiting = self.reports.wrapping_sub(self.memory.get(layout::TOUCHES_READ)?);
+        if waiting as usize >= layout::TOUCHES_LEN {
+            return Ok(());
+        }
+        let mut words = Vec::with_capacity(STAMPED_TOUCH_WORDS);
+        report.write(|word| words.push(word));
+        let place = layout::TOUCHES + STAMPED_TOUCH_WORDS * (self.reports as usize % layout::TOUCHES_LEN);
+        self.memory.set_all(place, &words)?;
+        self.reports = self.reports.wrapping_add(1);
+        self.memory.set(layout::TOUCHES_WRITTEN, self.reports)
+    }
+}

@@ -1,0 +1,38 @@
+//! The host's end of the emulator's serial port.
+
+use std::fs::{File, OpenOptions};
+use std::io::Write;
+use std::os::unix::fs::OpenOptionsExt;
+
+use rustix::fs::OFlags;
+
+use crate::emulated::EmulatorError;
+
+/// The host's end of the pseudo-terminal, held open: the emulator looks only once a second whether somebody has opened
+/// it.
+pub(super) struct Serial(File);
+
+impl Serial {
+    pub(super) fn open(path: &str) -> Result<Self, EmulatorError> {
+        OpenOptions::new()
+            .read(true)
+            .write(true)
+            .custom_flags(OFlags::NOCTTY.bits() as i32)
+            .open(path)
+            .map(Self)
+            .map_err(EmulatorError::system("opening the emulator's serial port"))
+    }
+
+    /// A zero byte alone means nothing to a board.
+    pub(super) fn write_zero(&self) -> Result<(), EmulatorError> {
+        (&self.0).write_all(&[0]).map_err(EmulatorError::system("writing to the emulator's serial port"))
+    }
+
+    /// A host may open the port for itself alone. That lasts until everybody has closed it, so it would keep the next
+    /// host out.
+    pub(super) fn let_the_next_host_in(&self) -> Result<(), EmulatorError> {
+        let refused =
+            |error: rustix::io::Errno| EmulatorError::system("freeing the emulator's serial port")(error.into());
+        rustix::termios::ioctl_tiocnxcl(&self.0).map_err(refused)
+    }
+}

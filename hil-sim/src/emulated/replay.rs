@@ -1,0 +1,88 @@
+//! Whether the emulated board does what the in-process board did, bit for bit.
+
+use std::thread;
+use std::time::{Duration, Instant};
+
+use frixel_exchange::{DONE_WORDS_MAX, Done, layout};
+use thiserror::Error;
+
+use super::machine::Machine;
+use super::{EmulatorError, Image};
+use crate::Journal;
+
+/// Ticks that the board is given at a time.
+const BATCH_TICKS: usize = layout::BATCH_TICKS_MAX;
+/// Wall time between two looks at whether a batch is done.
+const LOOK_EVERY: Duration = Duration::from_micros(200);
+/// Wall time that a batch may take. It takes well under a second.
+const PATIENCE: Duration = Duration::from_mins(2);
+
+/// The first tick at which the boards differ.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Mismatch {
+    /// What the journal says.
+    pub expected: Done,
+    /// What the emulated board did.
+    pub found: Done,
+}
+
+/// Why a journal could not be replayed.
+#[derive(Debug, Error)]
+pub enum ReplayError {
+    /// There is no emulated board.
+    #[error(transparent)]
+    Emulator(#[from] EmulatorError),
+    /// The emulated board does something else.
+    #[error("at tick {} the emulated board does something else: expected {:?}, found {:?}", .0.expected.tick, .0.expected, .0.found)]
+    Mismatch(Box<Mismatch>),
+}
+
+/// Starts the image, gives it what the journal says, and compares what it does: drive, and bytes on the serial line.
+pub fn replay(image: &Image, journal: &Journal) -> Result<(), ReplayError> {
+    let mut machine = Machine::start(image, layout::MODE_LOCKSTEP, &["-serial", "null"])?;
+    let mut from_tick = 0;
+    for batch in 1.. {
+        let ticks = BATCH_TICKS.min(journal.ticks() - from_tick);
+        if ticks == 0 {
+            break;
+        }
+        run(&mut machine, batch, journal.given_words(from_tick, ticks), ticks)?;
+        compare(&machine, journal, from_tick, ticks)?;
+        from_tick += ticks;
+    }
+    Ok(())
+}
+
+/// Has one batch done.
+fn run(machine: &mut Machine, batch: u32, given: &[u32], ticks: usize) -> Result<(), EmulatorError> {
+    machine.memory.set_all(layout::GIVEN, given)?;
+    machine.memory.set(layout::BATCH_TICKS, ticks as u32)?;
+    machine.memory.set(layout::BATCH_GIVEN, batch)?;
+    let begin = Instant::now();
+    while machine.memory.get(layout::BATCH_DONE)? != batch {
+        machine.check()?;
+        if begin.elapsed() > PATIENCE {
+            return Err(EmulatorError::Silent { what: "a batch of ticks", seconds: PATIENCE.as_secs() });
+        }
+        thread::sleep(LOOK_EVERY);
+    }
+    Ok(())
+}
+
+/// Compares one batch.
+fn compare(machine: &Machine, journal: &Journal, from_tick: usize, ticks: usize) -> Result<(), ReplayError> {
+    let expected = journal.done_words(from_tick, ticks);
+    if machine.memory.get_all(layout::DONE, expected.len())? == expected {
+        return Ok(());
+    }
+    let found = machine.memory.get_all(layout::DONE, ticks * DONE_WORDS_MAX)?;
+    let (mut expected, mut found) = (expected.iter().copied(), found.into_iter());
+    for _ in 0..ticks {
+        let expected = Done::read(|| expected.next().unwrap_or_default());
+        let found = Done::read(|| found.next().unwrap_or_default());
+        if expected != found {
+            return Err(ReplayError::Mismatch(Box::new(Mismatch { expected, found })));
+        }
+    }
+    Ok(())
+}

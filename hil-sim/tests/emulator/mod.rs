@@ -1,0 +1,22 @@
+//! The emulated board's image, or a word on why there is none.
+#![allow(unreachable_pub, clippy::panic, reason = "part of a test, which may fail")]
+
+use std::io::Write;
+
+use frixel_hil_sim::emulated::{EmulatorError, Image};
+
+/// The image. Where emulator or target are missing, the test is skipped with a word; under CI it fails.
+pub fn image() -> Option<Image> {
+    match Image::build() {
+        Ok(image) => Some(image),
+        Err(missing @ (EmulatorError::NoEmulator | EmulatorError::NoTarget { .. })) if !is_ci() => {
+            let _ = writeln!(std::io::stderr(), "SKIPPED on the emulated board: {missing}");
+            None
+        }
+        Err(error) => panic!("{error}"),
+    }
+}
+
+fn is_ci() -> bool {
+    std::env::var_os("CI").is_some_and(|ci| !ci.is_empty() && ci != "false" && ci != "0")
+}

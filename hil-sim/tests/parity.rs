@@ -1,0 +1,152 @@
+//! The emulated board does what the in-process board does, bit for bit: drives and bytes on the serial line.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+mod emulator;
+mod script;
+
+use frixel_exchange::BOARD;
+use frixel_hil_sim::emulated::{Image, ReplayError, replay};
+use frixel_hil_sim::{BoardMemory, Journal, LineFault, Point, Rig, RigConfig, Stroke};
+use frixel_render::Board;
+use frixel_wire::fault::State;
+use frixel_wire::message::Command;
+use frixel_wire::scene::{Blend, Carrier, Header, Layer, Record, Region, Wave};
+use script::{HEADER, Script, record, samples, scene};
+
+const TICKS: u64 = 110_000;
+
+fn config(board: Board) -> RigConfig {
+    RigConfig { board, ..RigConfig::default() }
+}
+
+/// The journal of a board, from power-on, that `play` does something with.
+fn journal(board: Board, stroke: Stroke, seed: u64, play: impl FnOnce(&mut Script)) -> Journal {
+    let mut memory = BoardMemory::new();
+    let mut rig = Rig::new(&mut memory, &config(board), stroke, seed).unwrap();
+    rig.start_journal();
+    let mut script = Script::new(rig);
+    play(&mut script);
+    let journal = script.rig.take_journal().unwrap();
+    let driven = journal.done().filter(|done| done.drive.dac_code != 0).count();
+    assert!(driven > journal.ticks() / 2, "the board drove at {driven} of {} ticks", journal.ticks());
+    journal
+}
+
+fn assert_same(image: &Image, journal: &Journal) {
+    assert!(journal.ticks() as u64 >= TICKS);
+    if let Err(error) = replay(image, journal) {
+        panic!("{error}");
+    }
+}
+
+/// Sine stripes in a region on a constant, under a stroke like a person's.
+fn stripes(board: Board) -> Journal {
+    let stroke = Stroke::natural(0.12, 0.08, 3.0).unwrap();
+    journal(board, stroke, 1, |script| {
+        let constant = record(Layer::Constant { electric_friction_n: 0.004 });
+        let stripes = Record {
+            region: Region::Rectangle { x_m: 0.02, y_m: 0.0, width_m: 0.08, height_m: 0.08 },
+            blend: Blend::Add,
+            gain: 1.5,
+            layer: Layer::Grating {
+                wave: Wave::Sine,
+                cycles_per_m_x: 450.0,
+                cycles_per_m_y: 130.0,
+                phase_turns: 0.3,
+                trough_n: 0.001,
+                crest_n: 0.014,
+            },
+        };
+        // No hello, whose bytes would tell of a changed limit before any drive does.
+        script.play(&scene(&HEADER, &[constant, stripes]));
+        script.run(TICKS);
+    })
+}
+
+#[test]
+fn stripes_are_the_same() {
+    let Some(image) = emulator::image() else { return };
+    assert_same(&image, &stripes(BOARD));
+}
+
+#[test]
+fn a_picture_on_a_sine_carrier_is_the_same() {
+    let Some(image) = emulator::image() else { return };
+    let stroke = Stroke::minimum_jerk(Point { x_m: 0.0, y_m: 0.01 }, Point { x_m: 0.1, y_m: 0.07 }, 0.8).unwrap();
+    let journal = journal(BOARD, stroke.looped(0.05).unwrap(), 2, |script| {
+        script.greet();
+        let picture = samples(200 * 150, 7);
+        let crc32 = script.upload_bitmap(200, 150, &picture);
+        let layer = Layer::Bitmap { crc32, x_m: 0.01, y_m: 0.0, pitch_m: 4e-4, black_n: 0.0005, white_n: 0.03 };
+        let header = Header { carrier: Carrier::Sine, slew_v_per_s: 3e5, ..HEADER };
+        script.play(&scene(&header, &[record(layer)]));
+        script.run(TICKS);
+    });
+    assert_same(&image, &journal);
+}
+
+/// Everything at once: every kind of layer, no prediction, telemetry, a bad line, a fault and its end, a second scene.
+#[test]
+fn a_bad_day_is_the_same() {
+    let Some(image) = emulator::image() else { return };
+    let path = Stroke::constant_speed(Point { x_m: 0.01, y_m: 0.02 }, Point { x_m: 0.11, y_m: 0.06 }, 0.12).unwrap();
+    let journal = journal(BOARD, path.looped(0.02).unwrap(), 3, |script| {
+        script.greet();
+        let picture = samples(64 * 64, 9);
+        let crc32 = script.upload_bitmap(64, 64, &picture);
+        let layers = [
+            Layer::Constant { electric_friction_n: 0.002 },
+            Layer::Grating {
+                wave: Wave::Square,
+                cycles_per_m_x: 90.0,
+                cycles_per_m_y: -250.0,
+                phase_turns: -3.2,
+                trough_n: 0.0,
+                crest_n: 0.006,
+            },
+            Layer::Bitmap { crc32, x_m: 0.02, y_m: 0.01, pitch_m: 1e-3, black_n: 0.004, white_n: -0.002 },
+            Layer::Grating {
+                wave: Wave::Sine,
+                cycles_per_m_x: 1000.0,
+                cycles_per_m_y: 0.0,
+                phase_turns: 0.0,
+                trough_n: 0.0,
+                crest_n: 0.02,
+            },
+        ];
+        let records: Vec<Record> =
+            layers.into_iter().map(|layer| Record { blend: Blend::Add, ..record(layer) }).collect();
+        let header = Header { prediction: false, carrier_hz: 700.0, normal_load_n: 0.0, ..HEADER };
+        script.play(&scene(&header, &records));
+        script.command(Command::Subscribe { period_ticks: 400 });
+        for byte in [5, 60, 61, 62] {
+            script.rig.line_to_board_mut().schedule_fault(byte + 40_000, LineFault::Flip(0x10));
+        }
+        script.run(30_000);
+        let now = script.rig.tick();
+        script.rig.world_mut().schedule_amplifier_fault(now..now + 3);
+        script.run(5_000);
+        assert_eq!(script.status().telemetry.state, State::Faulted);
+        script.command(Command::ClearFault);
+        script.rig.send(&samples(1000, 4));
+        script.run(1_000);
+        script.play(&scene(&HEADER, &records));
+        script.run(TICKS);
+    });
+    assert_same(&image, &journal);
+}
+
+#[test]
+fn one_changed_constant_is_seen() {
+    let Some(image) = emulator::image() else { return };
+    let mut board = BOARD;
+    board.limits.edge_time_constant_s *= 1.0 + 1e-4;
+    match replay(&image, &stripes(board)) {
+        Err(ReplayError::Mismatch(mismatch)) => {
+            assert_eq!(mismatch.expected.tick, mismatch.found.tick);
+            assert_ne!(mismatch.expected.drive, mismatch.found.drive);
+        }
+        other => panic!("a changed edge time constant was not seen: {other:?}"),
+    }
+}

@@ -1,0 +1,137 @@
+//! A host in virtual time for the in-process rig, and scenes to play.
+#![allow(unreachable_pub, clippy::unwrap_used, reason = "part of a test, which may fail")]
+
+use frixel_hil_sim::Rig;
+use frixel_render::Status;
+use frixel_wire::frame::{FRAME_MAX_LEN, crc32};
+use frixel_wire::message::{Command, Request};
+use frixel_wire::payload::{self, CHUNK_LEN};
+use frixel_wire::scene::{Blend, Carrier, Header, Layer, Record, Region};
+
+/// Ticks between two pings.
+const PING_TICKS: u64 = 2_000;
+
+/// A host that says what it wants and trusts the board.
+pub struct Script<'a> {
+    pub rig: Rig<'a>,
+    sequence: u16,
+    status: Option<Status>,
+}
+
+impl<'a> Script<'a> {
+    pub fn new(rig: Rig<'a>) -> Self {
+        Self { rig, sequence: 0, status: None }
+    }
+
+    /// Asks who is there.
+    pub fn greet(&mut self) {
+        let mut frame = [0; FRAME_MAX_LEN];
+        self.rig.send(payload::hello_request_frame(&mut frame).unwrap());
+        self.drain();
+    }
+
+    /// The board's status at the last tick.
+    pub fn status(&self) -> Status {
+        self.status.unwrap()
+    }
+
+    /// Sends a command, and runs until the line is idle.
+    pub fn command(&mut self, command: Command) {
+        self.sequence += 1;
+        let mut frame = [0; FRAME_MAX_LEN];
+        let request = Request { sequence: self.sequence, command };
+        self.rig.send(payload::request_frame(&request, &mut frame).unwrap());
+        self.drain();
+    }
+
+    pub fn upload_bitmap(&mut self, width: u16, height: u16, samples: &[u8]) -> u32 {
+        let crc32 = crc32(samples);
+        self.command(Command::UploadBitmap { width, height, crc32 });
+        self.chunks(samples);
+        crc32
+    }
+
+    /// Uploads a scene and plays it under the finger's stroke.
+    pub fn play(&mut self, scene: &[u8]) {
+        let crc32 = crc32(scene);
+        self.command(Command::UploadScene { len: scene.len() as u32, crc32 });
+        self.chunks(scene);
+        self.command(Command::Commit { crc32 });
+        self.command(Command::Arm);
+        self.command(Command::Play);
+        self.rig.world_mut().start_stroke();
+    }
+
+    /// Runs, and says now and then that the host is there.
+    pub fn run(&mut self, ticks: u64) {
+        for tick in 0..ticks {
+            if tick.is_multiple_of(PING_TICKS) {
+                self.command(Command::Ping);
+            }
+            self.step();
+        }
+    }
+
+    fn chunks(&mut self, bytes: &[u8]) {
+        for (number, chunk) in bytes.chunks(CHUNK_LEN).enumerate() {
+            let mut frame = [0; FRAME_MAX_LEN];
+            self.rig.send(payload::chunk_frame(number as u16, chunk, &mut frame).unwrap());
+        }
+        self.command(Command::UploadEnd);
+    }
+
+    fn drain(&mut self) {
+        while self.rig.line_to_board_mut().queued() > 0 {
+            self.step();
+        }
+        self.step();
+    }
+
+    fn step(&mut self) {
+        self.status = Some(self.rig.step().status);
+    }
+}
+
+/// The example finger at 0.5 N under at most 150 V rms.
+pub const HEADER: Header = Header {
+    screen_width_m: 0.12,
+    screen_height_m: 0.08,
+    finger_radius_m: 8e-3,
+    stiffness_pa_per_m: 1.8e7,
+    friction_coefficient: 0.5,
+    normal_load_n: 0.5,
+    effective_gap_m: 1e-5,
+    voltage_max_v_rms: 150.0,
+    voltage_max_v_peak: 200.0,
+    slew_v_per_s: 5e6,
+    carrier_hz: 1000.0,
+    host_timeout_s: 0.25,
+    carrier: Carrier::Square,
+    autonomous: false,
+    prediction: true,
+};
+
+pub fn record(layer: Layer) -> Record {
+    Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer }
+}
+
+pub fn scene(header: &Header, records: &[Record]) -> Vec<u8> {
+    let mut bytes = header.write(records.len() as u8).to_vec();
+    for record in records {
+        bytes.extend(record.write());
+    }
+    bytes
+}
+
+/// Bytes that look random and are the same every time (xorshift, Marsaglia 2003, doi:10.18637/jss.v008.i14).
+pub fn samples(count: usize, seed: u32) -> Vec<u8> {
+    let mut state = seed;
+    (0..count)
+        .map(|_| {
+            state ^= state << 13;
+            state ^= state >> 17;
+            state ^= state << 5;
+            state as u8
+        })
+        .collect()
+}

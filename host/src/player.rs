@@ -1,0 +1,125 @@
+//! Playing a compiled scene: on any board through its [`Device`], or on the simulator from beginning to end.
+
+use std::time::{Duration, Instant};
+
+use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, WorldError};
+use frixel_model::ParameterError;
+use thiserror::Error;
+
+use crate::device::{Bitmap, Counters, Device, DeviceError, Link, Progress, Upload};
+use crate::rigs::{Recorder, SimLink};
+use crate::scene::Program;
+
+/// What is simulated beyond the last recorded tick, so that the recorder has seen it.
+const MARGIN: Duration = Duration::from_millis(5);
+/// Time that passes between two reports of progress.
+const STEP: Duration = Duration::from_millis(50);
+
+/// Takes a board from wherever another client left it to a scene that plays.
+pub fn start<L: Link>(
+    device: &mut Device<L>,
+    program: &Program,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<(), DeviceError> {
+    let scene = program.scene_bytes();
+    let bitmaps = program
+        .bitmaps
+        .iter()
+        .map(|bitmap| Bitmap {
+            crc32: bitmap.crc32,
+            width: bitmap.width,
+            height: bitmap.height,
+            samples: &bitmap.samples,
+        })
+        .collect();
+    let upload = Upload { scene: &scene, bitmaps };
+    device.disarm()?;
+    device.upload(&upload, progress)?;
+    device.commit(upload.scene_crc32())?;
+    device.arm()?;
+    device.play()
+}
+
+/// How to play on the simulator.
+#[derive(Clone, Debug)]
+pub struct Simulation {
+    /// Board, world and line.
+    pub rig: RigConfig,
+    /// Where the finger goes.
+    pub stroke: Stroke,
+    /// For how long, in seconds from the beginning of the stroke.
+    pub seconds: f64,
+    /// Seed of all that is random.
+    pub seed: u64,
+    /// Ticks between two rows of the record.
+    pub ticks_per_row: u32,
+}
+
+/// What came of a simulation.
+pub struct Simulated {
+    /// What was felt against what was wanted.
+    pub recorder: Recorder,
+    /// What went over the line.
+    pub counters: Counters,
+    /// Virtual time over wall time, from the hello to the end.
+    pub realtime_factor: f64,
+}
+
+/// Where a simulation has come to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stage {
+    /// The scene goes over the line.
+    Upload(Progress),
+    /// The scene has been playing for this part, from 0 to 1.
+    Play(f64),
+}
+
+/// Why a simulation did not come to its end.
+#[derive(Debug, Error)]
+pub enum SimulationError {
+    /// The simulated world cannot be made.
+    #[error(transparent)]
+    World(#[from] WorldError),
+    /// The contact model refuses the program's finger.
+    #[error("the contact model refuses the scene's finger: {0:?}")]
+    Finger(ParameterError),
+    /// The board refused, or fell silent.
+    #[error(transparent)]
+    Device(#[from] DeviceError),
+}
+
+/// Plays `program` on the simulated board under a simulated finger.
+///
+/// The program must have been compiled for the limits and the tick rate of the simulation's board.
+pub fn simulate(
+    program: &Program,
+    simulation: &Simulation,
+    on_stage: &mut dyn FnMut(Stage),
+) -> Result<Simulated, SimulationError> {
+    let board = &simulation.rig.board;
+    let ticks = (simulation.seconds * f64::from(board.tick_hz)).round() as u64;
+    let mut memory = BoardMemory::new();
+    let rig = Rig::new(&mut memory, &simulation.rig, simulation.stroke.clone(), simulation.seed)?;
+    let recorder = Recorder::new(program, &board.limits, board.tick_hz, ticks, simulation.ticks_per_row)
+        .map_err(SimulationError::Finger)?;
+
+    let begin = Instant::now();
+    let mut device = Device::connect(SimLink::new(rig, recorder))?;
+    start(&mut device, program, &mut |progress| on_stage(Stage::Upload(progress)))?;
+    let total = Duration::from_secs_f64(simulation.seconds) + MARGIN;
+    let mut passed = Duration::ZERO;
+    while passed < total {
+        let step = STEP.min(total.saturating_sub(passed));
+        device.wait(step, &mut |_| {})?;
+        passed += step;
+        on_stage(Stage::Play(passed.as_secs_f64() / total.as_secs_f64()));
+    }
+    device.stop()?;
+    device.disarm()?;
+    let wall_s = begin.elapsed().as_secs_f64();
+
+    let counters = device.counters();
+    let link = device.into_link();
+    let realtime_factor = link.now().as_secs_f64() / wall_s;
+    Ok(Simulated { recorder: link.into_recorder(), counters, realtime_factor })
+}

@@ -1,0 +1,38 @@
+//! Gathers mistakes while a scene is read and compiled.
+
+use super::mistake::{CompileError, Located, Mistake};
+use super::source::Source;
+
+/// Gathers mistakes, so that a person sees all of them at once.
+pub(super) struct Log<'s> {
+    source: &'s Source,
+    mistakes: Vec<Located>,
+}
+
+impl<'s> Log<'s> {
+    pub(super) fn new(source: &'s Source) -> Self {
+        Self { source, mistakes: Vec::new() }
+    }
+
+    /// Notes a mistake that stands at a byte of the file.
+    pub(super) fn add(&mut self, offset: usize, mistake: Mistake) {
+        let (line, column) = self.source.line_and_column(offset);
+        self.mistakes.push(Located { line, column, mistake });
+    }
+
+    /// The value, if nothing was wrong.
+    pub(super) fn finish<T>(mut self, value: Option<T>) -> Result<T, CompileError> {
+        match value {
+            Some(value) if self.mistakes.is_empty() => Ok(value),
+            _ => {
+                self.mistakes.sort_by_key(|mistake| (mistake.line, mistake.column));
+                Err(CompileError::Mistakes { file: self.source.name().to_owned(), mistakes: self.mistakes })
+            }
+        }
+    }
+
+    /// Whether nothing was wrong so far.
+    pub(super) fn is_empty(&self) -> bool {
+        self.mistakes.is_empty()
+    }
+}

@@ -1,0 +1,281 @@
+//! `frixel sim` and `frixel play` as two processes on a pseudo-terminal, and what happens when one of them is killed.
+//!
+//! Times are the simulator's own, from the log that it keeps; nothing here is measured by the wall clock.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+use std::fs;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::thread::sleep;
+use std::time::Duration;
+
+use serialport::{SerialPort, TTYPort};
+use tempfile::TempDir;
+
+/// Host timeout of the scenes here, s.
+const HOST_TIMEOUT_S: f64 = 0.25;
+const NAP: Duration = Duration::from_millis(5);
+/// A minute of naps: whatever is waited for longer has hung.
+const NAPS_MAX: u32 = 12_000;
+
+fn frixel() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_frixel"))
+}
+
+fn scene() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/brick.toml")
+}
+
+/// Clients that are killed.
+const KILLS: usize = 20;
+/// Of which the first die while the picture goes over the line.
+const UPLOADS_KILLED: usize = 6;
+
+/// One test at a time: on a busy machine a pseudo-terminal may hold bytes back for longer than a client waits.
+static TURN: Mutex<()> = Mutex::new(());
+
+fn turn() -> MutexGuard<'static, ()> {
+    TURN.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A client in a process of its own.
+fn client(port: &str, seconds: &str, folder: &Path) -> Child {
+    frixel()
+        .arg("play")
+        .arg(scene())
+        .args(["--port", port, "--seconds", seconds, "--json", "--out"])
+        .arg(folder)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap()
+}
+
+fn until(what: &str, mut done: impl FnMut() -> bool) {
+    for _ in 0..NAPS_MAX {
+        if done() {
+            return;
+        }
+        sleep(NAP);
+    }
+    panic!("hung: {what}");
+}
+
+/// A virtual board in a process of its own.
+struct VirtualBoard {
+    process: Child,
+    port: String,
+    folder: TempDir,
+}
+
+impl VirtualBoard {
+    fn start() -> Self {
+        let folder = TempDir::new().unwrap();
+        let mut process = frixel().args(["sim", "--out"]).arg(folder.path()).stdout(Stdio::piped()).spawn().unwrap();
+        let mut line = String::new();
+        BufReader::new(process.stdout.take().unwrap()).read_line(&mut line).unwrap();
+        let port = line.trim().strip_prefix("port: ").unwrap().to_owned();
+        Self { process, port, folder }
+    }
+
+    /// Ends it as a person would, and reads what it wrote.
+    fn interrupt(mut self) -> Log {
+        let process = rustix::process::Pid::from_raw(self.process.id() as i32).unwrap();
+        rustix::process::kill_process(process, rustix::process::Signal::INT).unwrap();
+        assert!(self.process.wait().unwrap().success());
+        Log::read(self.folder.path())
+    }
+
+    /// The events so far, without one that is half written; none before the log is there.
+    fn events(&self) -> Vec<Event> {
+        let text = fs::read_to_string(self.folder.path().join("events.csv")).unwrap_or_default();
+        text.rsplit_once('\n').map_or(Vec::new(), |(lines, _)| read_events(lines))
+    }
+
+    fn is_playing(&self) -> bool {
+        self.events().iter().rfind(|event| event.name != "host-silent").is_some_and(|event| event.name == "active")
+    }
+
+    fn is_disarmed(&self) -> bool {
+        self.events().iter().rfind(|event| event.name != "host-silent").is_none_or(|event| event.name == "disarmed")
+    }
+
+    fn play(&self, seconds: &str, folder: &Path) -> Output {
+        client(&self.port, seconds, folder).wait_with_output().unwrap()
+    }
+}
+
+impl Drop for VirtualBoard {
+    fn drop(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+struct Event {
+    t_s: f64,
+    name: String,
+    last_frame_t_s: f64,
+}
+
+struct Log {
+    events: Vec<Event>,
+    /// Time, rms voltage and DAC code of every row.
+    rows: Vec<(f64, f64, i32)>,
+}
+
+impl Log {
+    fn read(folder: &Path) -> Self {
+        let rows = fs::read_to_string(folder.join("felt.csv")).unwrap();
+        let rows = rows.lines().skip(1).map(|line| {
+            let cells: Vec<&str> = line.split(',').collect();
+            (cells[0].parse().unwrap(), cells[7].parse().unwrap(), cells[8].parse().unwrap())
+        });
+        Self { rows: rows.collect(), events: read_events(&fs::read_to_string(folder.join("events.csv")).unwrap()) }
+    }
+
+    fn drives_between(&self, from_s: f64, to_s: f64) -> bool {
+        self.rows.iter().any(|(t_s, v_rms, code)| *t_s >= from_s && *t_s < to_s && (*v_rms > 0.0 || *code != 0))
+    }
+
+    /// When the board next played after a time.
+    fn next_active_s(&self, after_s: f64) -> f64 {
+        let next = self.events.iter().find(|event| event.name == "active" && event.t_s > after_s);
+        next.map_or(f64::INFINITY, |event| event.t_s)
+    }
+}
+
+fn read_events(text: &str) -> Vec<Event> {
+    text.lines()
+        .skip(1)
+        .map(|line| {
+            let cells: Vec<&str> = line.split(',').collect();
+            Event { t_s: cells[0].parse().unwrap(), name: cells[1].into(), last_frame_t_s: cells[2].parse().unwrap() }
+        })
+        .collect()
+}
+
+#[test]
+fn a_scene_plays_through_a_real_serial_port() {
+    let _turn = turn();
+    let board = VirtualBoard::start();
+    let folder = TempDir::new().unwrap();
+    let played = board.play("0.6", folder.path());
+    assert!(played.status.success(), "{}", String::from_utf8_lossy(&played.stderr));
+    let json = String::from_utf8(played.stdout).unwrap();
+    for part in
+        [r#""rig":"board""#, r#""friction_error_rms_n":null"#, r#""frames_rejected":0"#, r#""payload_bytes":62612"#]
+    {
+        assert!(json.contains(part), "{part} is not in {json}");
+    }
+    let felt = fs::read_to_string(folder.path().join("felt.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = felt.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    assert!(rows.len() > 500, "{} rows of 1 kHz telemetry", rows.len());
+    assert!(rows.iter().all(|row| row[6].is_empty()), "a board does not know what is felt");
+    assert!(rows.iter().any(|row| row[7].parse::<f64>().unwrap() > 50.0), "it does know its voltage");
+
+    let log = board.interrupt();
+    let names: Vec<&str> = log.events.iter().map(|event| event.name.as_str()).collect();
+    assert_eq!(names, ["armed", "active", "armed", "disarmed"]);
+    let (active_s, stopped_s) = (log.events[1].t_s, log.events[2].t_s);
+    assert!(log.drives_between(active_s, stopped_s));
+    assert!(!log.drives_between(0.0, active_s));
+    assert!(!log.drives_between(stopped_s + 1e-3, f64::INFINITY));
+}
+
+/// Passes bytes between a client and a board, until the client has sent so many.
+struct Tap {
+    to_client: TTYPort,
+    _client_end: TTYPort,
+    path: String,
+    to_board: TTYPort,
+}
+
+impl Tap {
+    fn new(board: &VirtualBoard) -> Self {
+        let (mut to_client, client_end) = TTYPort::pair().unwrap();
+        to_client.set_timeout(NAP).unwrap();
+        let to_board = TTYPort::open(&serialport::new(&board.port, 2_000_000).timeout(NAP)).unwrap();
+        let path = client_end.name().unwrap();
+        Self { to_client, _client_end: client_end, path, to_board }
+    }
+
+    /// Returns when `count` bytes have gone to the board, or when the client has ended.
+    fn pass(&mut self, client: &mut Child, count: usize) {
+        let mut left = count;
+        let mut bytes = [0; 512];
+        while left > 0 && client.try_wait().unwrap().is_none() {
+            if self.to_client.bytes_to_read().unwrap() > 0 {
+                let room = left.min(bytes.len());
+                let got = self.to_client.read(&mut bytes[..room]).unwrap();
+                self.to_board.write_all(&bytes[..got]).unwrap();
+                left -= got;
+            } else if self.to_board.bytes_to_read().unwrap() > 0 {
+                let got = self.to_board.read(&mut bytes).unwrap();
+                self.to_client.write_all(&bytes[..got]).unwrap();
+            } else {
+                sleep(Duration::from_micros(200));
+            }
+        }
+    }
+}
+
+/// Numbers that look random and are the same in every run.
+fn lcg(state: &mut u64) -> usize {
+    *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+    (*state >> 33) as usize
+}
+
+#[test]
+fn a_client_killed_at_any_byte_leaves_the_output_at_zero_and_the_next_one_welcome() {
+    let _turn = turn();
+    let board = VirtualBoard::start();
+    let folder = TempDir::new().unwrap();
+    let mut random = 1;
+    let mut killed_while_playing = 0;
+    for kill in 0..KILLS {
+        if kill == UPLOADS_KILLED {
+            assert!(board.play("0.1", folder.path()).status.success(), "nothing dead is in the way of an upload");
+        }
+        let mut tap = Tap::new(&board);
+        let mut process = client(&tap.path, "600", folder.path());
+        // Once the board holds the picture, some 300 bytes lead to playing, and pings follow.
+        let count = if kill < UPLOADS_KILLED { lcg(&mut random) % 66_000 } else { 300 + lcg(&mut random) % 300 };
+        tap.pass(&mut process, count);
+        assert!(process.try_wait().unwrap().is_none(), "client {kill} was turned away after {count} bytes");
+        process.kill().unwrap();
+        process.wait().unwrap();
+        until("the board lets go of a dead client", || board.is_disarmed());
+    }
+    let last = board.play("0.3", folder.path());
+    assert!(last.status.success(), "{}", String::from_utf8_lossy(&last.stderr));
+
+    let log = board.interrupt();
+    for silent in log.events.iter().filter(|event| event.name == "host-silent") {
+        let zero_from_s = silent.last_frame_t_s + HOST_TIMEOUT_S + 1e-3;
+        assert!(silent.t_s <= zero_from_s, "{} s after the last frame", silent.t_s - silent.last_frame_t_s);
+        assert!(!log.drives_between(zero_from_s, log.next_active_s(silent.t_s)), "driven after {zero_from_s} s");
+        killed_while_playing += usize::from(log.drives_between(silent.last_frame_t_s, silent.t_s));
+    }
+    assert!(killed_while_playing >= 3, "only {killed_while_playing} clients died while the output was driven");
+}
+
+#[test]
+fn a_board_that_vanishes_is_said_in_a_sentence() {
+    let _turn = turn();
+    let mut board = VirtualBoard::start();
+    let folder = TempDir::new().unwrap();
+    let process = client(&board.port, "600", folder.path());
+    until("the scene plays", || board.is_playing());
+    board.process.kill().unwrap();
+    board.process.wait().unwrap();
+    let ended = process.wait_with_output().unwrap();
+    assert_eq!(ended.status.code(), Some(1));
+    let said = String::from_utf8(ended.stderr).unwrap();
+    let sentence = said.lines().last().unwrap();
+    assert!(sentence.starts_with("frixel: ") && sentence.contains(&board.port), "{said}");
+    assert!(sentence.contains("vanished"), "{said}");
+}

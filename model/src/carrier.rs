@@ -1,0 +1,166 @@
+//! The carrier between the DAC and the electrode: what it loses in its edges, and the current that it drives.
+
+use core::f64::consts::{FRAC_1_SQRT_2, PI};
+
+/// Shape of a carrier.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Waveform {
+    /// Plus and minus its peak.
+    Square,
+    /// A sine.
+    Sine,
+}
+
+/// A carrier that a DAC puts out tick by tick, behind the first-order lag of amplifier and series resistor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Carrier {
+    /// Its shape.
+    pub waveform: Waveform,
+    /// Half a period `T`, in seconds.
+    pub half_period_s: f64,
+    /// Time constant `tau` of the lag, in seconds; zero for none.
+    pub edge_time_constant_s: f64,
+}
+
+/// Current through an electrode.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ElectrodeCurrent {
+    /// Root mean square over a period, in amperes.
+    pub a_rms: f64,
+    /// Largest, in amperes.
+    pub a_peak: f64,
+}
+
+impl Carrier {
+    /// Peak at the DAC for an rms of one on the electrode: crest factor, and loss in the edges.
+    ///
+    /// The lag leaves `1 - (2 tau/T) tanh(T/(2 tau))` of a square wave's mean square: the steady response goes from
+    /// minus to plus its peak along `1 - 2 exp(-t/tau)/(1 + exp(-T/tau))`. It leaves `1/(1 + (w tau)^2)` of a sine's,
+    /// with `w = pi/T`.
+    ///
+    /// ```
+    /// use frixel_model::{Carrier, Waveform};
+    ///
+    /// // 20 us edges take 8 % of the mean square of a 1 kHz square wave.
+    /// let carrier = Carrier { waveform: Waveform::Square, half_period_s: 500e-6, edge_time_constant_s: 20e-6 };
+    /// let peak = carrier.peak_per_rms();
+    /// assert!((peak * peak * 0.92 - 1.0).abs() < 1e-9);
+    /// ```
+    pub fn peak_per_rms(&self) -> f64 {
+        match self.waveform {
+            Waveform::Square if self.edge_time_constant_s > 0.0 => {
+                let ratio = self.half_period_s / (2.0 * self.edge_time_constant_s);
+                1.0 / libm::sqrt(1.0 - libm::tanh(ratio) / ratio)
+            }
+            Waveform::Square => 1.0,
+            Waveform::Sine => {
+                let lag = PI / self.half_period_s * self.edge_time_constant_s;
+                libm::sqrt(2.0 * (1.0 + lag * lag))
+            }
+        }
+    }
+
+    /// Current into a capacitance of `capacitance_f` farads at a peak of `drive_v_peak` volts at the DAC, whose ticks
+    /// are `tick_period_s` seconds apart. Infinite without lag.
+    ///
+    /// A square wave of peak `U` moves the charge `2 U C` at each edge along an exponential: peak `2 U C/tau`, rms
+    /// `2 U C sqrt(f/tau)`. A sine is a staircase of ticks `dt`, each step a decaying exponential on top of what is left
+    /// of those before: with `z = dt/tau`, peak `w U C z/(1 - exp(-z))` and rms `w U C sqrt(z coth(z/2))/2`.
+    pub fn electrode_current(&self, capacitance_f: f64, drive_v_peak: f64, tick_period_s: f64) -> ElectrodeCurrent {
+        let charge_c = capacitance_f * drive_v_peak;
+        let tau_s = self.edge_time_constant_s;
+        match self.waveform {
+            Waveform::Square => {
+                let carrier_hz = 0.5 / self.half_period_s;
+                ElectrodeCurrent {
+                    a_rms: 2.0 * charge_c * libm::sqrt(carrier_hz / tau_s),
+                    a_peak: 2.0 * charge_c / tau_s,
+                }
+            }
+            Waveform::Sine => {
+                let step = tick_period_s / tau_s;
+                let smooth_a = PI / self.half_period_s * charge_c;
+                ElectrodeCurrent {
+                    a_rms: smooth_a * FRAC_1_SQRT_2 * libm::sqrt(0.5 * step / libm::tanh(0.5 * step)),
+                    a_peak: smooth_a * step / -libm::expm1(-step),
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Mean square over the last of twenty periods, stepped through.
+    fn stepped(wave: impl Fn(f64) -> f64, half_period_s: f64, tau_s: f64) -> f64 {
+        let steps = 100_000;
+        let step_s = 2.0 * half_period_s / f64::from(steps);
+        let (mut v, mut sum) = (0.0_f64, 0.0);
+        for i in 0..20 * steps {
+            let turns = (f64::from(i) + 0.5) / f64::from(steps);
+            v += (wave(turns) - v) * step_s / tau_s;
+            if i >= 19 * steps {
+                sum += v * v;
+            }
+        }
+        sum / f64::from(steps)
+    }
+
+    fn carrier(waveform: Waveform, edge_time_constant_s: f64) -> Carrier {
+        Carrier { waveform, half_period_s: 500e-6, edge_time_constant_s }
+    }
+
+    #[test]
+    fn peaks_agree_with_waves_integrated_step_by_step() {
+        let square = |turns: f64| if turns - libm::floor(turns) < 0.5 { 1.0 } else { -1.0 };
+        let sine = |turns: f64| libm::sin(2.0 * PI * turns);
+        for tau_s in [5e-6, 20e-6, 400e-6] {
+            let peak = carrier(Waveform::Square, tau_s).peak_per_rms();
+            assert!((peak * peak * stepped(square, 500e-6, tau_s) - 1.0).abs() < 1e-3, "square {tau_s}");
+            let peak = carrier(Waveform::Sine, tau_s).peak_per_rms();
+            assert!((peak * peak * stepped(sine, 500e-6, tau_s) - 1.0).abs() < 1e-3, "sine {tau_s}");
+        }
+        assert!(carrier(Waveform::Square, 0.0).peak_per_rms() <= 1.0);
+    }
+
+    /// Current through a capacitance whose voltage follows a wave of ticks with a lag, stepped through: rms and peak.
+    fn stepped_current(wave: impl Fn(i32) -> f64, capacitance_f: f64, tau_s: f64) -> (f64, f64) {
+        const STEPS_PER_TICK: i32 = 1000;
+        let step_s = 25e-6 / f64::from(STEPS_PER_TICK);
+        let (mut v, mut sum, mut peak) = (0.0_f64, 0.0, 0.0_f64);
+        for i in 0..200 * STEPS_PER_TICK {
+            let current_a = capacitance_f * (wave(i / STEPS_PER_TICK) - v) / tau_s;
+            v += current_a * step_s / capacitance_f;
+            if i >= 160 * STEPS_PER_TICK {
+                sum += current_a * current_a;
+                peak = peak.max(current_a.abs());
+            }
+        }
+        (libm::sqrt(sum / f64::from(40 * STEPS_PER_TICK)), peak)
+    }
+
+    #[test]
+    fn currents_are_not_less_than_those_of_waves_integrated_step_by_step() {
+        let (capacitance_f, v_peak) = (0.5e-9, 200.0);
+        let square = |tick: i32| if tick % 40 < 20 { v_peak } else { -v_peak };
+        let sine = |tick: i32| v_peak * libm::sin(2.0 * PI * f64::from(tick) / 40.0);
+        for tau_s in [5e-6, 20e-6, 60e-6] {
+            for (waveform, (rms, peak), slack) in [
+                (Waveform::Square, stepped_current(square, capacitance_f, tau_s), 1.02),
+                (Waveform::Sine, stepped_current(sine, capacitance_f, tau_s), 1.1),
+            ] {
+                let found = carrier(waveform, tau_s).electrode_current(capacitance_f, v_peak, 25e-6);
+                assert!(
+                    found.a_rms >= 0.99 * rms && found.a_rms <= slack * rms,
+                    "{waveform:?} {tau_s}: {found:?}, {rms}"
+                );
+                assert!(
+                    found.a_peak >= 0.99 * peak && found.a_peak <= slack * peak,
+                    "{waveform:?} {tau_s}: {found:?}, {peak}"
+                );
+            }
+        }
+    }
+}

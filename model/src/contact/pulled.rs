@@ -1,0 +1,113 @@
+//! The contact while the finger is pulled off, Eq. (43) with a negative normal load.
+
+use super::Contact;
+use super::curve::{Point, root_of_quotient, upper_inverse};
+use crate::error::{InverseError, ParameterError, StateError, finite, not_negative, positive};
+use crate::root::{Step, rising_root};
+use crate::{ContactModel, ContactState, Real, Sensitivity};
+
+/// A contact that a fixed force pulls off the screen (variant `wf-loaded` with a negative load).
+///
+/// It exists while `q^2 + 2 q/(1 + q) + n >= 0` and holds while `y > q`; at pull-off both become equalities. An inverse
+/// refuses the branch below.
+///
+/// Error bounds: those of [`LoadedContact`](crate::LoadedContact) times `max(1, c/12)`, with the condition number `c` the
+/// sum of the relative changes of the answer over those of voltage (or friction), load, stiffness, gap and radius. Near
+/// pull-off it grows without limit, as `q/(y - q)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PulledContact<T> {
+    contact: Contact<T>,
+    /// `mu F_N`, below zero.
+    natural_friction_n: T,
+    /// `n`, below zero.
+    n: T,
+}
+
+impl<T: Real> PulledContact<T> {
+    pub(super) fn new(contact: Contact<T>, pull_n: T) -> Result<Self, ParameterError> {
+        let n = -contact.load(positive("pull_n", pull_n)?);
+        finite("pull_n", n)?;
+        Ok(Self { contact, natural_friction_n: -(contact.friction_coefficient * pull_n), n })
+    }
+
+    /// The rms voltage below which the finger comes off, in volts: the positive root of
+    /// `q^3 + q^2 + (2 + n) q + n = 0`. At most 142 steps; six are usual.
+    pub fn pull_off_voltage_v_rms(&self) -> Result<T, StateError> {
+        Ok(self.contact.voltage_scale_v_rms * self.pull_off_attraction()?.sqrt())
+    }
+
+    /// Friction at pull-off, the least that this contact can have, in newtons: `F* q^2`.
+    pub fn pull_off_friction_n(&self) -> Result<T, StateError> {
+        let q = self.pull_off_attraction()?;
+        Ok(self.contact.friction_scale_n * q * q)
+    }
+
+    /// `q` at pull-off: `q^2 + 2 q/(1 + q)` rises through `-n`.
+    fn pull_off_attraction(&self) -> Result<T, StateError> {
+        let m = -self.n;
+        // q^2 + 2 q bounds the left side from above, q^2 from below.
+        let low = m / (T::ONE + (T::ONE + m).sqrt());
+        let high = m.sqrt();
+        let root = rising_root(low, high, low, |q| {
+            let around = T::ONE / (T::ONE + q);
+            let residual = q - m / q + T::TWO * around;
+            let slope = T::TWO * (T::ONE + around / q * around);
+            Step { residual, next: q - residual / slope }
+        });
+        root.map_err(|_| StateError::NotConverged)
+    }
+
+    fn point(&self, voltage_v_rms: T) -> Result<Point<T>, StateError> {
+        let v = self.contact.scaled_voltage(voltage_v_rms)?;
+        Point::upper(v, self.n).ok_or(StateError::NoContact)
+    }
+
+    fn inverse(&self, friction_n: T, electric_friction_n: T) -> Result<T, InverseError> {
+        let scale = self.contact.friction_scale_n;
+        let y = root_of_quotient(friction_n, scale);
+        if !(y > T::ZERO) {
+            return Err(InverseError::Unstable);
+        }
+        let v = upper_inverse(y, electric_friction_n / (scale * y));
+        if v * v > y {
+            return Err(InverseError::Unstable);
+        }
+        let voltage_v_rms = self.contact.voltage_scale_v_rms * v;
+        if voltage_v_rms.is_finite() { Ok(voltage_v_rms) } else { Err(InverseError::OutOfRange) }
+    }
+}
+
+impl<T: Real> ContactModel<T> for PulledContact<T> {
+    /// `mu F_N`, below zero: not a friction, but where electric friction is counted from.
+    fn natural_friction_n(&self) -> T {
+        self.natural_friction_n
+    }
+
+    fn state(&self, voltage_v_rms: T) -> Result<ContactState<T>, StateError> {
+        self.contact.state_at(&self.point(voltage_v_rms)?)
+    }
+
+    fn voltage_for_electric_friction(&self, electric_friction_n: T) -> Result<T, InverseError> {
+        let friction_n = self.natural_friction_n + finite("electric_friction_n", electric_friction_n)?;
+        if friction_n < T::ZERO {
+            Err(InverseError::BelowNatural)
+        } else {
+            self.inverse(friction_n, electric_friction_n)
+        }
+    }
+
+    /// Without the detour over the electric part, which would lose a friction far below `mu |F_N|`.
+    fn voltage_for_friction(&self, friction_n: T) -> Result<T, InverseError> {
+        let friction_n = not_negative("friction_n", friction_n)?;
+        self.inverse(friction_n, friction_n - self.natural_friction_n)
+    }
+
+    fn sensitivity(&self, voltage_v_rms: T) -> Result<Sensitivity<T>, StateError> {
+        self.contact.sensitivity_at(&self.point(voltage_v_rms)?)
+    }
+
+    /// From the friction at pull-off.
+    fn reachable_friction_n(&self, voltage_max_v_rms: T) -> Result<(T, T), StateError> {
+        Ok((self.pull_off_friction_n()?, self.state(voltage_max_v_rms)?.friction_n))
+    }
+}

@@ -1,0 +1,164 @@
+//! What the model refuses, and why.
+
+use core::error::Error;
+use core::fmt::{Display, Formatter, Result as FmtResult};
+
+use crate::Real;
+
+/// What a parameter must be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Expected {
+    /// Finite and above zero.
+    Positive,
+    /// Finite and not below zero.
+    NotNegative,
+    /// Finite.
+    Finite,
+    /// Above zero and at most one.
+    StressExponent,
+    /// Finite and at least one.
+    AtLeastOne,
+    /// Between the precision's smallest and largest normal numbers, with what follows from it.
+    Representable,
+    /// Not beyond the outer radius.
+    WithinOuterRadius,
+}
+
+/// A parameter that the model refuses, by name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParameterError {
+    /// The parameter's name, as its field or argument is called.
+    pub parameter: &'static str,
+    /// What was expected of it.
+    pub expected: Expected,
+    /// Its value.
+    pub found: f64,
+}
+
+impl Display for ParameterError {
+    fn fmt(&self, f: &mut Formatter<'_>) -> FmtResult {
+        let expected = match self.expected {
+            Expected::Positive => "must be finite and above zero",
+            Expected::NotNegative => "must be finite and not below zero",
+            Expected::Finite => "must be finite",
+            Expected::StressExponent => "must be above zero and at most one",
+            Expected::AtLeastOne => "must be finite and at least one",
+            Expected::Representable => "leads to numbers too large or too small for this precision",
+            Expected::WithinOuterRadius => "must not be beyond the outer radius",
+        };
+        write!(f, "{} {expected}, but is {:e}", self.parameter, self.found)
+    }
+}
+
+impl Error for ParameterError {}
+
+/// Why a contact has no state at a voltage.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StateError {
+    /// The finger is pulled off the screen: there is no contact, and no friction.
+    NoContact,
+    /// The contact would pass the outer radius.
+    PassesOuterRadius,
+    /// The answer is too large for the precision.
+    OutOfRange,
+    /// The root-finder did not close its bracket.
+    NotConverged,
+    /// An argument is refused.
+    Parameter(ParameterError),
+}
+
+impl Display for StateError {
+    fn fmt(&self, f: &mut Formatter<'_>) -> FmtResult {
+        match self {
+            Self::NoContact => f.write_str("no contact: the pull is stronger than the attraction at this voltage"),
+            Self::PassesOuterRadius => f.write_str("the contact would pass the outer radius; lower load or voltage"),
+            Self::OutOfRange => f.write_str("the answer is too large for this precision"),
+            Self::NotConverged => f.write_str("the root-finder did not converge"),
+            Self::Parameter(error) => error.fmt(f),
+        }
+    }
+}
+
+impl Error for StateError {}
+
+/// Why there is no voltage for a friction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum InverseError {
+    /// The friction is less than the finger has at no voltage.
+    BelowNatural,
+    /// The contact of this friction is on the branch below pull-off, where it does not hold.
+    Unstable,
+    /// The contact of this friction would pass the outer radius.
+    PassesOuterRadius,
+    /// The answer is too large for the precision.
+    OutOfRange,
+    /// The root-finder did not close its bracket.
+    NotConverged,
+    /// An argument is refused.
+    Parameter(ParameterError),
+}
+
+impl Display for InverseError {
+    fn fmt(&self, f: &mut Formatter<'_>) -> FmtResult {
+        match self {
+            Self::BelowNatural => f.write_str("the friction is below what the finger has at no voltage"),
+            Self::Unstable => f.write_str("the contact of this friction is unstable: it is below pull-off"),
+            Self::PassesOuterRadius => f.write_str("the contact of this friction would pass the outer radius"),
+            Self::OutOfRange => f.write_str("the answer is too large for this precision"),
+            Self::NotConverged => f.write_str("the root-finder did not converge"),
+            Self::Parameter(error) => error.fmt(f),
+        }
+    }
+}
+
+impl Error for InverseError {}
+
+impl From<ParameterError> for StateError {
+    fn from(error: ParameterError) -> Self {
+        Self::Parameter(error)
+    }
+}
+
+impl From<ParameterError> for InverseError {
+    fn from(error: ParameterError) -> Self {
+        Self::Parameter(error)
+    }
+}
+
+fn require<T: Real>(holds: bool, parameter: &'static str, value: T, expected: Expected) -> Result<T, ParameterError> {
+    if holds && value.is_finite() {
+        Ok(value)
+    } else {
+        Err(ParameterError { parameter, expected, found: value.into() })
+    }
+}
+
+pub(crate) fn positive<T: Real>(parameter: &'static str, value: T) -> Result<T, ParameterError> {
+    require(value > T::ZERO, parameter, value, Expected::Positive)
+}
+
+pub(crate) fn not_negative<T: Real>(parameter: &'static str, value: T) -> Result<T, ParameterError> {
+    require(value >= T::ZERO, parameter, value, Expected::NotNegative)
+}
+
+pub(crate) fn finite<T: Real>(parameter: &'static str, value: T) -> Result<T, ParameterError> {
+    require(true, parameter, value, Expected::Finite)
+}
+
+pub(crate) fn stress_exponent<T: Real>(value: T) -> Result<T, ParameterError> {
+    require(value > T::ZERO && value <= T::ONE, "stress_exponent", value, Expected::StressExponent)
+}
+
+pub(crate) fn at_least_one<T: Real>(parameter: &'static str, value: T) -> Result<T, ParameterError> {
+    require(value >= T::ONE, parameter, value, Expected::AtLeastOne)
+}
+
+/// `value`, computed in f64 from `parameter` and others, in the precision of the model.
+pub(crate) fn scale<T: Real>(parameter: &'static str, found: T, value: f64) -> Result<T, ParameterError> {
+    let scale = T::from_f64(value);
+    if scale >= T::MIN_POSITIVE && scale.is_finite() {
+        Ok(scale)
+    } else {
+        Err(ParameterError { parameter, expected: Expected::Representable, found: found.into() })
+    }
+}

@@ -1,0 +1,55 @@
+//! A finger on Winkler-Fuss springs.
+
+use crate::Real;
+use crate::error::{ParameterError, not_negative, positive};
+
+/// A paraboloid finger, Eq. (1), on springs of constant stiffness, Eq. (10).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Finger<T> {
+    /// Radius of curvature `R` at the contact, in metres.
+    pub radius_m: T,
+    /// Winkler-Fuss stiffness `k`, in Pa/m.
+    pub stiffness_pa_per_m: T,
+    /// Coefficient of friction `mu`.
+    pub friction_coefficient: T,
+}
+
+impl<T: Real> Finger<T> {
+    pub(crate) fn validate(&self) -> Result<(), ParameterError> {
+        positive("radius_m", self.radius_m)?;
+        positive("stiffness_pa_per_m", self.stiffness_pa_per_m)?;
+        positive("friction_coefficient", self.friction_coefficient)?;
+        Ok(())
+    }
+
+    /// Height of the undeformed finger above its lowest point, in metres, Eq. (1): `r^2/(2R)`.
+    pub fn profile_m(&self, radius_from_axis_m: T) -> T {
+        radius_from_axis_m * radius_from_axis_m / (T::TWO * self.radius_m)
+    }
+
+    /// Normal force at a contact approach without voltage, in newtons, Eq. (25): `pi k R delta^2`.
+    pub fn normal_load_n(&self, approach_m: T) -> Result<T, ParameterError> {
+        self.validate()?;
+        let approach_m = not_negative("approach_m", approach_m)?;
+        Ok(T::from_f64(core::f64::consts::PI) * self.stiffness_pa_per_m * self.radius_m * approach_m * approach_m)
+    }
+
+    /// Contact approach `delta` in metres, Eqs. (15), (17): `a^2/(2R) - sigma0/k`. Below zero when the attraction alone
+    /// stretches the finger to the screen.
+    pub fn approach_m(&self, contact_radius_m: T, contact_attraction_pa: T) -> Result<T, ParameterError> {
+        self.validate()?;
+        let contact_radius_m = not_negative("contact_radius_m", contact_radius_m)?;
+        let stretch_m = not_negative("contact_attraction_pa", contact_attraction_pa)? / self.stiffness_pa_per_m;
+        Ok(self.profile_m(contact_radius_m) - stretch_m)
+    }
+
+    /// Contact pressure at a distance from the axis, in pascals, Eqs. (14), (17): `k (a^2 - r^2)/(2R)`; zero outside.
+    ///
+    /// Over the contact it adds up to the friction of Eqs. (20), (21) divided by the coefficient of friction.
+    pub fn contact_pressure_pa(&self, contact_radius_m: T, radius_from_axis_m: T) -> Result<T, ParameterError> {
+        self.validate()?;
+        let a = not_negative("contact_radius_m", contact_radius_m)?;
+        let r = not_negative("radius_from_axis_m", radius_from_axis_m)?.min(a);
+        Ok(self.stiffness_pa_per_m * (a - r) * (a + r) / (T::TWO * self.radius_m))
+    }
+}

@@ -1,0 +1,12 @@
+//! The soft finger of Xydas and Kao: a stiffness that follows from the force it carries.
+
+mod contact;
+mod finger;
+mod shape;
+
+pub use contact::{SoftContact, SoftLoadedContact};
+pub use finger::{SoftFinger, contact_exponent};
+pub use lower::SoftLowerBound;
+pub use shape::PowerLawShape;
+
+mod lower;

@@ -1,0 +1,66 @@
+//! What every variant of the model answers.
+
+use crate::Real;
+use crate::error::{InverseError, StateError};
+
+/// A contact at a voltage.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactState<T> {
+    /// Contact radius `a`, in metres. Beyond the finger's radius the paraboloid no longer resembles it.
+    pub contact_radius_m: T,
+    /// Winkler-Fuss stiffness `k` in Pa/m: the finger's own, or the one that a soft finger has at this friction. Zero
+    /// for a soft finger that nothing presses.
+    pub stiffness_pa_per_m: T,
+    /// Friction `F_T` while sliding, in newtons, Eq. (21).
+    pub friction_n: T,
+    /// What the voltage adds, `F_T - mu F_N`, in newtons, without cancellation.
+    pub electric_friction_n: T,
+}
+
+impl<T: Real> ContactState<T> {
+    pub(crate) fn in_range(self) -> Result<Self, StateError> {
+        let all_finite = self.contact_radius_m.is_finite()
+            && self.stiffness_pa_per_m.is_finite()
+            && self.friction_n.is_finite()
+            && self.electric_friction_n.is_finite();
+        if all_finite { Ok(self) } else { Err(StateError::OutOfRange) }
+    }
+}
+
+/// How friction answers to voltage and load.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sensitivity<T> {
+    /// `dF_T/dV`, in N/V.
+    pub friction_per_volt_n_per_v: T,
+    /// `dF_T/dF_N`, in newtons per newton.
+    pub friction_per_load: T,
+}
+
+/// A contact under a fixed load, with the voltage left open: what all variants of the model have in common.
+pub trait ContactModel<T: Real> {
+    /// Friction at no voltage, `mu F_N`, in newtons.
+    fn natural_friction_n(&self) -> T;
+
+    /// The contact at an rms voltage of zero or more.
+    fn state(&self, voltage_v_rms: T) -> Result<ContactState<T>, StateError>;
+
+    /// The rms voltage at which the electric friction `F_T - mu F_N` is `electric_friction_n`, in volts.
+    fn voltage_for_electric_friction(&self, electric_friction_n: T) -> Result<T, InverseError>;
+
+    /// The rms voltage at which the friction `F_T` is `friction_n`, in volts.
+    ///
+    /// Takes the electric part from the difference to natural friction, so that a relative error of the argument grows
+    /// by `F_T/(F_T - mu F_N)`.
+    fn voltage_for_friction(&self, friction_n: T) -> Result<T, InverseError> {
+        let friction_n = crate::error::not_negative("friction_n", friction_n)?;
+        self.voltage_for_electric_friction(friction_n - self.natural_friction_n())
+    }
+
+    /// How friction answers to small changes of voltage and load.
+    fn sensitivity(&self, voltage_v_rms: T) -> Result<Sensitivity<T>, StateError>;
+
+    /// The least and the largest friction from no voltage to `voltage_max_v_rms`, in newtons.
+    fn reachable_friction_n(&self, voltage_max_v_rms: T) -> Result<(T, T), StateError> {
+        Ok((self.state(T::ZERO)?.friction_n, self.state(voltage_max_v_rms)?.friction_n))
+    }
+}

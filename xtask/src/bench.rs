@@ -1,0 +1,62 @@
+//! `cargo xtask bench`: instructions and estimated cycles on emulated processors, and image sizes.
+
+mod cycles;
+mod figures;
+mod follow;
+mod gdb;
+mod image;
+mod size;
+
+use std::fs;
+use std::process::{Command, Stdio};
+
+use crate::command::{M3, M4F, add_target, root};
+pub(crate) use figures::Figures;
+use image::Image;
+
+/// A processor to count on.
+struct Core {
+    /// In front of the names of its figures.
+    name: &'static str,
+    target: &'static str,
+    machine: &'static str,
+}
+
+const CORES: [Core; 2] =
+    [Core { name: "m4f", target: M4F, machine: "mps2-an386" }, Core { name: "m3", target: M3, machine: "mps2-an385" }];
+
+/// Name of the emulator.
+const EMULATOR: &str = "qemu-system-arm";
+
+/// Says what is missing, if the emulator is.
+pub(crate) fn emulator() -> Result<(), String> {
+    match Command::new(EMULATOR).arg("--version").stdout(Stdio::null()).status() {
+        Ok(_) => Ok(()),
+        Err(_) => Err("the emulator is not installed: `apt-get install qemu-system-arm`".to_owned()),
+    }
+}
+
+/// Measures everything and writes `target/bench/bench.json`.
+pub(crate) fn bench() -> Result<Figures, String> {
+    emulator()?;
+    let mut figures = Figures::default();
+    for core in &CORES {
+        add_target(core.target)?;
+        Image::build(core, false)?.measure(&mut figures)?;
+    }
+    size::measure(&mut figures)?;
+    let folder = root().join("target/bench");
+    fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let path = folder.join("bench.json");
+    fs::write(&path, figures.json()?).map_err(|error| format!("{}: {error}", path.display()))?;
+    Ok(figures)
+}
+
+/// Counts an image that is slower on purpose.
+pub(crate) fn breach() -> Result<Figures, String> {
+    let mut figures = Figures::default();
+    for core in &CORES {
+        Image::build(core, true)?.count(&mut figures)?;
+    }
+    Ok(figures)
+}

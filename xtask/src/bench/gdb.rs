@@ -1,0 +1,118 @@
+//! The little of GDB's remote serial protocol that it takes to follow a program: packets `$data#sum`, acknowledged `+`.
+
+use std::fmt::Write as _;
+use std::io::{ErrorKind, Read, Write};
+use std::net::{TcpListener, TcpStream};
+use std::process::Child;
+use std::thread;
+use std::time::Duration;
+
+/// Wall time that the emulator may take to come to a breakpoint.
+const PATIENCE: Duration = Duration::from_mins(2);
+
+/// Number of the program counter among the registers.
+const PROGRAM_COUNTER: usize = 15;
+
+/// A debugger's end of the line to an emulator that stands still.
+pub(super) struct Gdb(TcpStream);
+
+impl Gdb {
+    /// Takes the connection that the emulator makes.
+    pub(super) fn accept(listener: &TcpListener, emulator: &mut Child) -> Result<Self, String> {
+        listener.set_nonblocking(true).map_err(|error| explain(&error))?;
+        loop {
+            match listener.accept() {
+                Ok((stream, _)) => {
+                    stream.set_nonblocking(false).map_err(|error| explain(&error))?;
+                    stream.set_nodelay(true).map_err(|error| explain(&error))?;
+                    stream.set_read_timeout(Some(PATIENCE)).map_err(|error| explain(&error))?;
+                    return Ok(Self(stream));
+                }
+                Err(error) if error.kind() != ErrorKind::WouldBlock => return Err(explain(&error)),
+                Err(_) => {}
+            }
+            if let Some(status) = emulator.try_wait().map_err(|error| explain(&error))? {
+                return Err(format!("the emulator does not start with a debugger ({status})"));
+            }
+            thread::sleep(Duration::from_millis(1));
+        }
+    }
+
+    /// Writes to memory.
+    pub(super) fn write(&mut self, place: u32, bytes: &[u8]) -> Result<(), String> {
+        let mut packet = format!("M{place:x},{:x}:", bytes.len());
+        for byte in bytes {
+            // A string takes what is written to it.
+            let _ = write!(packet, "{byte:02x}");
+        }
+        self.expect_ok(&packet)
+    }
+
+    /// Stops the program whenever it comes to a place.
+    pub(super) fn set_breakpoint(&mut self, place: u32) -> Result<(), String> {
+        self.expect_ok(&format!("Z0,{place:x},2"))
+    }
+
+    /// Runs to the next breakpoint.
+    pub(super) fn go_on(&mut self) -> Result<(), String> {
+        self.expect_stop("c")
+    }
+
+    /// Runs one instruction.
+    pub(super) fn step(&mut self) -> Result<(), String> {
+        self.expect_stop("s")
+    }
+
+    /// Where the program is.
+    pub(super) fn program_counter(&mut self) -> Result<u32, String> {
+        // All registers, from r0 on, each of eight digits.
+        let answer = self.ask("g")?;
+        let digits = answer.get(8 * PROGRAM_COUNTER..8 * (PROGRAM_COUNTER + 1)).unwrap_or_default();
+        u32::from_str_radix(digits, 16)
+            .map(u32::swap_bytes)
+            .map_err(|_| format!("the emulator says that its registers are `{answer}`"))
+    }
+
+    fn expect_ok(&mut self, packet: &str) -> Result<(), String> {
+        match self.ask(packet)?.as_str() {
+            "OK" => Ok(()),
+            answer => Err(format!("the emulator answers `{packet}` with `{answer}`")),
+        }
+    }
+
+    /// A program that has ended answers with `W`, one that has stopped with `T`.
+    fn expect_stop(&mut self, packet: &str) -> Result<(), String> {
+        match self.ask(packet)? {
+            answer if answer.starts_with('T') => Ok(()),
+            answer => Err(format!("the benchmark image did not come to what was to be followed: `{answer}`")),
+        }
+    }
+
+    fn ask(&mut self, packet: &str) -> Result<String, String> {
+        let sum = packet.bytes().fold(0_u8, u8::wrapping_add);
+        self.0.write_all(format!("${packet}#{sum:02x}").as_bytes()).map_err(|error| explain(&error))?;
+        let mut answer = Vec::new();
+        while self.byte()? != b'$' {}
+        loop {
+            match self.byte()? {
+                b'#' => break,
+                byte => answer.push(byte),
+            }
+        }
+        for _ in 0..2 {
+            self.byte()?;
+        }
+        self.0.write_all(b"+").map_err(|error| explain(&error))?;
+        Ok(String::from_utf8_lossy(&answer).into_owned())
+    }
+
+    fn byte(&mut self) -> Result<u8, String> {
+        let mut byte = [0];
+        self.0.read_exact(&mut byte).map_err(|error| explain(&error))?;
+        Ok(byte[0])
+    }
+}
+
+fn explain(error: &std::io::Error) -> String {
+    format!("debugging the benchmark image: {error}")
+}

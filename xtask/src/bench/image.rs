@@ -1,0 +1,101 @@
+//! The benchmark image (`firmware/bench`) in the emulator.
+
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+use super::figures::{CYCLES, Figures};
+use super::{Core, EMULATOR, follow};
+use crate::command::{cargo_in, root, run};
+
+/// An instruction takes 1,024 ns of virtual time, and nothing else takes any.
+const COUNTING: [&str; 2] = ["-icount", "shift=10,sleep=off"];
+
+/// The image for a core.
+pub(super) struct Image<'a> {
+    core: &'a Core,
+    path: PathBuf,
+}
+
+/// One line of what the image writes.
+pub(super) struct Count {
+    pub(super) name: String,
+    pub(super) instructions: u64,
+    /// Number of the input for which they are the most, from 1.
+    pub(super) worst_input: u32,
+}
+
+impl<'a> Image<'a> {
+    /// Builds the image; one that breaks its budget on purpose when asked for.
+    pub(super) fn build(core: &'a Core, breach: bool) -> Result<Self, String> {
+        let target_folder = if breach { "target/breach" } else { "target" };
+        let mut command = cargo_in("firmware/bench");
+        command.args(["build", "--release", "--locked", "--quiet", "--target", core.target]);
+        command.args(["--target-dir", target_folder]);
+        if breach {
+            command.args(["--features", "breach"]);
+        }
+        run(&format!("benchmark for {}", core.name), &mut command)?;
+        let path = root().join("firmware/bench").join(target_folder).join(core.target).join("release/bench");
+        Ok(Self { core, path })
+    }
+
+    /// Counts instructions.
+    pub(super) fn count(&self, figures: &mut Figures) -> Result<Vec<Count>, String> {
+        let output = self.emulator().output().map_err(|error| format!("{EMULATOR} could not be started: {error}"))?;
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        if !output.status.success() {
+            return Err(format!("the benchmark of {} failed: {text}", self.core.name));
+        }
+        let counts: Vec<Count> = text.lines().map(parse).collect::<Result<_, _>>()?;
+        for count in &counts {
+            figures.put(self.name(count), count.instructions);
+        }
+        Ok(counts)
+    }
+
+    /// Counts instructions, then looks which they are at the worst input and estimates their cycles.
+    pub(super) fn measure(&self, figures: &mut Figures) -> Result<(), String> {
+        let counts = self.count(figures)?;
+        let inputs: Vec<u32> = counts.iter().map(|count| count.worst_input).collect();
+        let followed = follow::follow(self.emulator(), &self.path, &inputs)?;
+        for (count, seen) in counts.iter().zip(followed) {
+            if seen.instructions != count.instructions {
+                return Err(format!(
+                    "{}: the timer counts {} instructions, the debugger {}",
+                    self.name(count),
+                    count.instructions,
+                    seen.instructions
+                ));
+            }
+            figures.put(self.name(count) + CYCLES, seen.cycles);
+        }
+        Ok(())
+    }
+
+    fn name(&self, count: &Count) -> String {
+        format!("{}.{}", self.core.name, count.name)
+    }
+
+    /// The emulator with the image.
+    fn emulator(&self) -> Command {
+        let mut command = Command::new(EMULATOR);
+        command
+            .args(["-M", self.core.machine, "-display", "none", "-monitor", "none", "-serial", "null"])
+            .args(COUNTING)
+            .args(["-semihosting-config", "enable=on,target=native", "-kernel"])
+            .arg(&self.path)
+            .stdin(Stdio::null());
+        command
+    }
+}
+
+fn parse(line: &str) -> Result<Count, String> {
+    let mut words = line.split(' ');
+    let count = (|| {
+        let name = words.next()?.to_owned();
+        let instructions = words.next()?.parse().ok()?;
+        let worst_input = words.next()?.parse().ok()?;
+        Some(Count { name, instructions, worst_input })
+    })();
+    count.ok_or_else(|| format!("the benchmark wrote `{line}`: expected name, instructions and input"))
+}

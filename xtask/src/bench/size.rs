@@ -1,0 +1,66 @@
+//! Sizes of images.
+
+use std::fs;
+use std::path::Path;
+
+use object::Endianness;
+use object::elf::{FileHeader32, PT_LOAD};
+use object::read::elf::{FileHeader, ProgramHeader};
+
+use super::figures::Figures;
+use crate::command::{M4F, cargo_in, root, run};
+
+/// A board's image with some of its features.
+struct Build {
+    /// In the names of its figures.
+    name: &'static str,
+    features: &'static [&'static str],
+}
+
+/// The real board's folder, and its image's name.
+const G474: (&str, &str) = ("firmware/board-nucleo-g474re", "board-nucleo-g474re");
+const G474_BUILDS: [Build; 2] = [
+    Build { name: "full", features: &[] },
+    Build { name: "grating_only", features: &["--no-default-features", "--features", "grating"] },
+];
+/// Where RAM begins on every Cortex-M.
+const RAM: u64 = 0x2000_0000;
+const PERIPHERALS: u64 = 0x4000_0000;
+
+/// Measures the images of the real board, as far as it is there.
+pub(super) fn measure(figures: &mut Figures) -> Result<(), String> {
+    let (folder, image) = G474;
+    if !root().join(folder).is_dir() {
+        return Ok(());
+    }
+    for build in &G474_BUILDS {
+        let target_folder = format!("target/{}", build.name);
+        let mut command = cargo_in(folder);
+        command
+            .args(["build", "--release", "--locked", "--quiet", "--target-dir", &target_folder])
+            .args(build.features);
+        run(&format!("image of {folder}, {}", build.name), &mut command)?;
+        let path = root().join(folder).join(target_folder).join(M4F).join("release").join(image);
+        let (flash, ram) = sizes(&path)?;
+        figures.put(format!("g474.flash_{}", build.name), flash);
+        figures.put(format!("g474.ram_{}", build.name), ram);
+    }
+    Ok(())
+}
+
+/// Bytes of flash and of RAM that an image takes; the stack takes what is left of the RAM.
+fn sizes(path: &Path) -> Result<(u64, u64), String> {
+    let explain = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
+    let bytes = fs::read(path).map_err(|error| explain(&error))?;
+    let header = FileHeader32::<Endianness>::parse(&*bytes).map_err(|error| explain(&error))?;
+    let endian = header.endian().map_err(|error| explain(&error))?;
+    let segments = header.program_headers(endian, &*bytes).map_err(|error| explain(&error))?;
+    let (mut flash, mut ram) = (0, 0);
+    for segment in segments.iter().filter(|segment| segment.p_type(endian) == PT_LOAD) {
+        flash += u64::from(segment.p_filesz(endian));
+        if (RAM..PERIPHERALS).contains(&u64::from(segment.p_vaddr(endian))) {
+            ram += u64::from(segment.p_memsz(endian));
+        }
+    }
+    Ok((flash, ram))
+}

@@ -1,0 +1,37 @@
+//! Running other programs.
+
+use std::env;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Target of the boards.
+pub(crate) const M4F: &str = "thumbv7em-none-eabihf";
+/// Target of a processor without floating point.
+pub(crate) const M3: &str = "thumbv7m-none-eabi";
+
+/// The repository's root.
+pub(crate) fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// A cargo that runs in a folder of the repository.
+pub(crate) fn cargo_in(folder: &str) -> Command {
+    let mut command = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.current_dir(root().join(folder));
+    command
+}
+
+/// Installs a target of the compiler when it is missing.
+pub(crate) fn add_target(target: &str) -> Result<(), String> {
+    run("rustup target", Command::new("rustup").args(["target", "add", target]))
+}
+
+/// Runs a command to its end, under a heading.
+pub(crate) fn run(name: &str, command: &mut Command) -> Result<(), String> {
+    eprintln!("== {name}");
+    match command.status() {
+        Ok(status) if status.success() => Ok(()),
+        Ok(status) => Err(format!("{name} failed ({status}): {command:?}")),
+        Err(error) => Err(format!("{name} could not be started ({error}): {command:?}")),
+    }
+}
