@@ -96,8 +96,8 @@ fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), Confi
     let half_period_ticks = board.ticks(0.5 / header.carrier_hz);
     let carrier = Carrier {
         waveform: match header.carrier {
-            Shape::Square => Waveform::Square,
-            Shape::Sine => Waveform::Sine,
+            Shape::Sine if cfg!(feature = "sine-carrier") => Waveform::Sine,
+            _ => Waveform::Square,
         },
         half_period_s: f64::from(half_period_ticks) * tick_period_s,
         edge_time_constant_s: f64::from(limits.edge_time_constant_s),

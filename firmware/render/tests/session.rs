@@ -318,7 +318,11 @@ fn the_text_of_a_fault_is_told_whole() {
     for len in [0, 1, 31, 32, 33, 64, 191, 192, 250] {
         let mut memory = Memory::new();
         let reset_text: &'static str = "stack overflow at 0x1fff_fff8; ".repeat(9).leak().get(..len).unwrap();
-        let board = Board { reset_fault: Some((Fault::StackOverflow, 7)), reset_text, ..Board::SIMULATOR };
+        let board = Board {
+            reset_fault: Some((Fault::StackOverflow, 7)),
+            reset_text: reset_text.as_bytes(),
+            ..Board::SIMULATOR
+        };
         let mut desk = Desk::of(board, &mut memory);
         let hello = desk.greet();
         assert_eq!((hello.last_fault, hello.fault_detail), (Some(Fault::StackOverflow), 7));

@@ -396,8 +396,7 @@ impl<'a> Dialogue<'a> {
 }
 
 /// The piece of a fault's text that begins at `offset`.
-fn fault_text(text: &str, offset: u8) -> Accepted {
-    let text = text.as_bytes();
+fn fault_text(text: &[u8], offset: u8) -> Accepted {
     let rest = text.get(..text.len().min(FAULT_TEXT_MAX_LEN)).and_then(|text| text.get(usize::from(offset)..));
     let mut bytes = [0; FAULT_TEXT_PIECE_LEN];
     let mut len = 0;
