@@ -20,9 +20,9 @@ pub struct AmplifierConfig {
 }
 
 impl Default for AmplifierConfig {
-    /// Gain exact, 200 V, and edges of 20 us.
+    /// Gain exact, edges of 20 us, and 250 V: the simulated board's full scale, above any voltage that it allows.
     fn default() -> Self {
-        Self { gain: 1.0, saturation_v_peak: 200.0, time_constant_s: 20e-6 }
+        Self { gain: 1.0, saturation_v_peak: 250.0, time_constant_s: 20e-6 }
     }
 }
 

@@ -3,8 +3,10 @@
 
 pub mod device;
 pub mod metrics;
+pub mod model_csv;
 pub mod output;
 pub mod player;
+pub mod report;
 pub mod rigs;
 pub mod scene;
 pub mod wanted;

@@ -49,8 +49,8 @@ pub struct MetricsSummary {
     pub ticks: u64,
     /// Ticks with the finger on the screen.
     pub finger_down_ticks: u64,
-    /// Ticks in which the board clamped what it asked for.
-    pub saturated_ticks: u64,
+    /// Ticks in which the board clamped what it asked for, where every tick was seen.
+    pub saturated_ticks: Option<u64>,
     /// Felt minus wanted, as means over a carrier period.
     pub friction_error: Option<ErrorSize>,
     /// What the model gives for the commanded voltage minus what was asked for.
@@ -113,7 +113,7 @@ impl Metrics {
         MetricsSummary {
             ticks: self.ticks,
             finger_down_ticks: self.finger_down_ticks,
-            saturated_ticks: self.saturated_ticks,
+            saturated_ticks: Some(self.saturated_ticks),
             friction_error: self.friction_error.size(),
             inversion_error: self.inversion_error.size(),
             carrier_ripple_rms_n: self.carrier_ripple.size().map(|size| size.rms_n),

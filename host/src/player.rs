@@ -1,5 +1,6 @@
 //! Playing a compiled scene: on any board through its [`Device`], or on the simulator from beginning to end.
 
+use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, WorldError};
@@ -7,12 +8,13 @@ use frixel_model::ParameterError;
 use thiserror::Error;
 
 use crate::device::{Bitmap, Counters, Device, DeviceError, Link, Progress, Upload};
+use crate::output::FeltRow;
 use crate::rigs::{Recorder, SimLink};
 use crate::scene::Program;
 
 /// What is simulated beyond the last recorded tick, so that the recorder has seen it.
 const MARGIN: Duration = Duration::from_millis(5);
-/// Time that passes between two reports of progress.
+/// Time that passes between two reports of progress, and between two handings over of rows.
 const STEP: Duration = Duration::from_millis(50);
 
 /// Takes a board from wherever another client left it to a scene that plays.
@@ -61,7 +63,7 @@ pub struct Simulated {
     pub recorder: Recorder,
     /// What went over the line.
     pub counters: Counters,
-    /// Virtual time over wall time, from the hello to the end.
+    /// Virtual time over wall time, from the hello to the end; the time that a taker of rows took is left out.
     pub realtime_factor: f64,
 }
 
@@ -88,13 +90,38 @@ pub enum SimulationError {
     Device(#[from] DeviceError),
 }
 
-/// Plays `program` on the simulated board under a simulated finger.
+/// Plays `program` on the simulated board under a simulated finger. The rows stay in [`Simulated::recorder`].
 ///
 /// The program must have been compiled for the limits and the tick rate of the simulation's board.
 pub fn simulate(
     program: &Program,
     simulation: &Simulation,
     on_stage: &mut dyn FnMut(Stage),
+) -> Result<Simulated, SimulationError> {
+    run(program, simulation, on_stage, None)
+}
+
+/// As [`simulate`], but hands the rows over while it plays and keeps none, so that a play of any length fits in memory.
+///
+/// `on_rows` takes the rows of every 50 ms of virtual time. When it breaks, the play ends there; what was played until
+/// then is what came of it.
+pub fn simulate_rows(
+    program: &Program,
+    simulation: &Simulation,
+    on_stage: &mut dyn FnMut(Stage),
+    on_rows: &mut RowTaker,
+) -> Result<Simulated, SimulationError> {
+    run(program, simulation, on_stage, Some(on_rows))
+}
+
+/// Takes rows while a simulation plays, and says whether it is to go on.
+pub type RowTaker<'a> = dyn FnMut(&[FeltRow]) -> ControlFlow<()> + 'a;
+
+fn run(
+    program: &Program,
+    simulation: &Simulation,
+    on_stage: &mut dyn FnMut(Stage),
+    mut on_rows: Option<&mut RowTaker>,
 ) -> Result<Simulated, SimulationError> {
     let board = &simulation.rig.board;
     let ticks = (simulation.seconds * f64::from(board.tick_hz)).round() as u64;
@@ -104,6 +131,7 @@ pub fn simulate(
         .map_err(SimulationError::Finger)?;
 
     let begin = Instant::now();
+    let mut taking_rows = Duration::ZERO;
     let mut device = Device::connect(SimLink::new(rig, recorder))?;
     start(&mut device, program, &mut |progress| on_stage(Stage::Upload(progress)))?;
     let total = Duration::from_secs_f64(simulation.seconds) + MARGIN;
@@ -113,10 +141,19 @@ pub fn simulate(
         device.wait(step, &mut |_| {})?;
         passed += step;
         on_stage(Stage::Play(passed.as_secs_f64() / total.as_secs_f64()));
+        let Some(on_rows) = &mut on_rows else { continue };
+        let recorder = device.link_mut().recorder_mut();
+        let taking = Instant::now();
+        let flow = on_rows(&recorder.take_rows());
+        taking_rows += taking.elapsed();
+        if flow.is_break() {
+            recorder.end();
+            break;
+        }
     }
     device.stop()?;
     device.disarm()?;
-    let wall_s = begin.elapsed().as_secs_f64();
+    let wall_s = begin.elapsed().saturating_sub(taking_rows).as_secs_f64();
 
     let counters = device.counters();
     let link = device.into_link();

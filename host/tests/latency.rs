@@ -36,25 +36,33 @@ fn stroke(name: &str) -> Stroke {
     }
 }
 
-/// Rms friction error in per cent of the reachable range, mean square over the seeds.
-fn error_percent(program: &Program, name: &str, latency_ms: u32) -> f64 {
-    let mut rig = RigConfig::default();
-    rig.world.touch.latency_s = 1e-3 * f64::from(latency_ms);
-    let mean_square = SEEDS
-        .iter()
-        .map(|&seed| {
-            let stroke = stroke(name);
-            let seconds = stroke.duration_s();
-            let simulation = Simulation { rig, stroke, seconds, seed, ticks_per_row: 40_000 };
-            let simulated = simulate(program, &simulation, &mut |_| {}).unwrap();
-            simulated.recorder.metrics().summary().friction_error.unwrap().rms_n.powi(2)
-        })
-        .sum::<f64>()
-        / SEEDS.len() as f64;
-    100.0 * mean_square.sqrt() / program.reach.electric_friction_max_n
+/// Errors in per cent of the reachable range.
+struct Errors {
+    /// Rms friction error, mean square over the seeds.
+    friction_rms: f64,
+    /// Largest inversion error, the DAC's step included, over all ticks of all seeds.
+    inversion_max: f64,
 }
 
-fn curves() -> Vec<Vec<f64>> {
+fn errors(program: &Program, name: &str, latency_ms: u32) -> Errors {
+    let mut rig = RigConfig::default();
+    rig.world.touch.latency_s = 1e-3 * f64::from(latency_ms);
+    let summaries = SEEDS.map(|seed| {
+        let stroke = stroke(name);
+        let seconds = stroke.duration_s();
+        let simulation = Simulation { rig, stroke, seconds, seed, ticks_per_row: 40_000 };
+        simulate(program, &simulation, &mut |_| {}).unwrap().recorder.metrics().summary()
+    });
+    let squares = summaries.iter().map(|summary| summary.friction_error.unwrap().rms_n.powi(2));
+    let inversion = summaries.iter().map(|summary| summary.inversion_error.unwrap().max_n);
+    let percent = 100.0 / program.reach.electric_friction_max_n;
+    Errors {
+        friction_rms: percent * (squares.sum::<f64>() / SEEDS.len() as f64).sqrt(),
+        inversion_max: percent * inversion.fold(0.0, f64::max),
+    }
+}
+
+fn curves() -> Vec<Vec<Errors>> {
     let rig = RigConfig::default();
     let scene = Scene::load(&path("../scenes/brick.toml")).unwrap();
     let mut program = compile(&scene, &rig.board.limits, rig.board.tick_hz).unwrap();
@@ -62,22 +70,24 @@ fn curves() -> Vec<Vec<f64>> {
         .iter()
         .map(|(name, prediction, _)| {
             program.header.prediction = *prediction;
-            LATENCIES_MS.iter().map(|latency_ms| error_percent(&program, name, *latency_ms)).collect()
+            LATENCIES_MS.iter().map(|latency_ms| errors(&program, name, *latency_ms)).collect()
         })
         .collect()
 }
 
-fn csv(curves: &[Vec<f64>]) -> String {
-    let mut text = String::from("latency_ms,stroke,rms_error_percent_of_range\n");
+fn csv(curves: &[Vec<Errors>]) -> String {
+    let mut text =
+        String::from("latency_ms,stroke,rms_error_percent_of_range,inversion_error_at_most_percent_of_range\n");
     for ((name, ..), curve) in CURVES.iter().zip(curves) {
-        for (latency_ms, error) in LATENCIES_MS.iter().zip(curve) {
-            writeln!(text, "{latency_ms},\"{name}\",{error:.3}").unwrap();
+        for (latency_ms, errors) in LATENCIES_MS.iter().zip(curve) {
+            let Errors { friction_rms, inversion_max } = errors;
+            writeln!(text, "{latency_ms},\"{name}\",{friction_rms:.3},{inversion_max:.4}").unwrap();
         }
     }
     text
 }
 
-fn svg(curves: &[Vec<f64>]) -> String {
+fn svg(curves: &[Vec<Errors>]) -> String {
     let mut text = String::new();
     {
         let root = SVGBackend::with_string(&mut text, (760, 460)).into_drawing_area();
@@ -100,7 +110,8 @@ fn svg(curves: &[Vec<f64>]) -> String {
             .draw()
             .unwrap();
         for ((name, _, colour), curve) in CURVES.iter().zip(curves) {
-            let points = || LATENCIES_MS.iter().map(|ms| f64::from(*ms)).zip(curve.iter().copied());
+            let points =
+                || LATENCIES_MS.iter().map(|ms| f64::from(*ms)).zip(curve.iter().map(|errors| errors.friction_rms));
             chart
                 .draw_series(LineSeries::new(points(), colour.stroke_width(2)))
                 .unwrap()

@@ -3,7 +3,9 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
 
 use tempfile::TempDir;
 
@@ -119,11 +121,41 @@ fn a_wrong_stroke_is_refused_with_line_and_column() {
         ("t_s,x_mm,y_mm\n0,1,1\n1,50,50\n0.5,60,60\n", ["line 4, column `t_s`", "rise"]),
         ("t_s,x_mm\n0,1\n1,2\n", ["stroke.csv", "`y_mm`"]),
         ("t_s,x_mm,y_mm\n0,1,1\n1,fifty,50\n", ["line 3, column `x_mm`", "fifty"]),
+        ("t_s,x_mm,y_mm\n0,1,1\n86401,50,50\n", ["stroke.csv lasts 86401 s", "a day"]),
+        ("t_s,x_mm,y_mm\n0,-50,1\n1,-1,50\n", ["stroke.csv is nowhere on the screen", "120 by 110 mm"]),
+        ("t_s,x_mm,y_mm\n0,1,1\n1e-6,1,1\n", ["shorter than one tick", "0.000025 s"]),
     ] {
         fs::write(folder.path().join("stroke.csv"), text).unwrap();
         refuse(folder.path(), &["play", &brick(), "--stroke", "stroke.csv"], &parts);
     }
     refuse(folder.path(), &["play", &brick(), "--stroke", "none.csv"], &["none.csv", "cannot be read"]);
+    fs::write(folder.path().join("latin.csv"), b"t_s,x_mm,y_mm\n0,1,1\xb5\n").unwrap();
+    refuse(folder.path(), &["play", &brick(), "--stroke", "latin.csv"], &["latin.csv is not UTF-8 text"]);
+    assert!(!folder.path().join("frixel-out").exists(), "nothing was played");
+}
+
+#[test]
+fn a_stroke_partly_off_the_screen_is_noted() {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("stroke.csv"), "t_s,x_mm,y_mm\n0,-30,50\n0.4,90,50\n").unwrap();
+    let output = frixel(folder.path(), &["play", &brick(), "--stroke", "stroke.csv"]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{said}");
+    assert!(said.contains("off the screen (120 by 110 mm) for 25.") || said.contains("for 24."), "{said}");
+}
+
+#[test]
+fn times_that_do_not_fit_the_ticks_are_refused() {
+    let folder = TempDir::new().unwrap();
+    for (option, value, parts) in [
+        ("--csv-hz", "3000", ["--csv-hz 3000 does not divide", "2500 or 4000"]),
+        ("--csv-hz", "39999", ["40000 ticks", "20000 or 40000"]),
+        ("--seconds", "2e-5", ["shorter than one tick", "0.000025 s"]),
+    ] {
+        refuse(folder.path(), &["play", &brick(), option, value], &parts);
+    }
+    let said = succeed(folder.path(), &["play", &brick(), "--seconds", "2.5e-5", "--json"]);
+    assert!(said.contains(r#""ticks":1,"#), "{said}");
 }
 
 #[test]
@@ -132,7 +164,7 @@ fn a_wrong_port_is_refused_by_its_name() {
     refuse(folder.path(), &["play", &brick(), "--port", "/dev/frixel-none"], &["/dev/frixel-none", "no port"]);
     refuse(folder.path(), &["info", "--port", "/dev/frixel-none"], &["/dev/frixel-none", "no port"]);
     let stroke = ["play", &brick(), "--port", "/dev/frixel-none", "--stroke", "stroke.csv"];
-    refuse(folder.path(), &stroke, &["/dev/frixel-none", "--stroke"]);
+    refuse(folder.path(), &stroke, &["/dev/frixel-none", "--stroke moves the finger of --port sim only"]);
     let rows = ["play", &brick(), "--port", "/dev/frixel-none", "--csv-hz", "4000"];
     refuse(folder.path(), &rows, &["/dev/frixel-none", "1000"]);
 }
@@ -146,4 +178,33 @@ fn a_folder_that_cannot_be_written_is_said() {
         &["play", &brick(), "--seconds", "0.1", "--out", "taken/out"],
         &["taken", "cannot be written"],
     );
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_play_leaves_what_was_played() {
+    let folder = TempDir::new().unwrap();
+    let mut process = Command::new(env!("CARGO_BIN_EXE_frixel"))
+        .args(["play", &brick(), "--seconds", "86400", "--json"])
+        .current_dir(folder.path())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let felt = folder.path().join("frixel-out/felt.csv");
+    while fs::metadata(&felt).map_or(0, |file| file.len()) < 100_000 {
+        assert!(process.try_wait().unwrap().is_none(), "it ended by itself");
+        sleep(Duration::from_millis(5));
+    }
+    let pid = rustix::process::Pid::from_raw(process.id() as i32).unwrap();
+    rustix::process::kill_process(pid, rustix::process::Signal::INT).unwrap();
+    let ended = process.wait_with_output().unwrap();
+    let said = String::from_utf8(ended.stderr).unwrap();
+    assert!(ended.status.success() && said.contains("interrupted: "), "{said}");
+    let json: serde_json::Value = serde_json::from_slice(&ended.stdout).unwrap();
+    let rows = fs::read_to_string(felt).unwrap().lines().count() as u64 - 1;
+    assert_eq!(json["ticks"].as_u64().unwrap() / 40, rows, "every whole row that was played is there");
+    for name in ["felt.svg", "scene.png"] {
+        assert!(fs::metadata(folder.path().join("frixel-out").join(name)).unwrap().len() > 10_000);
+    }
 }

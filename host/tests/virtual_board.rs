@@ -95,10 +95,6 @@ impl VirtualBoard {
         text.rsplit_once('\n').map_or(Vec::new(), |(lines, _)| read_events(lines))
     }
 
-    fn is_playing(&self) -> bool {
-        self.events().iter().rfind(|event| event.name != "host-silent").is_some_and(|event| event.name == "active")
-    }
-
     fn is_disarmed(&self) -> bool {
         self.events().iter().rfind(|event| event.name != "host-silent").is_none_or(|event| event.name == "disarmed")
     }
@@ -148,6 +144,12 @@ impl Log {
     }
 }
 
+/// Rows of a felt.csv so far; none before it is there.
+fn rows_in(folder: &Path) -> usize {
+    let text = fs::read_to_string(folder.join("felt.csv")).unwrap_or_default();
+    text.lines().count().saturating_sub(1)
+}
+
 fn read_events(text: &str) -> Vec<Event> {
     text.lines()
         .skip(1)
@@ -166,9 +168,13 @@ fn a_scene_plays_through_a_real_serial_port() {
     let played = board.play("0.6", folder.path());
     assert!(played.status.success(), "{}", String::from_utf8_lossy(&played.stderr));
     let json = String::from_utf8(played.stdout).unwrap();
-    for part in
-        [r#""rig":"board""#, r#""friction_error_rms_n":null"#, r#""frames_rejected":0"#, r#""payload_bytes":62612"#]
-    {
+    for part in [
+        r#""rig":"board""#,
+        r#""friction_error_rms_n":null"#,
+        r#""frames_rejected":0"#,
+        r#""payload_bytes":62612"#,
+        r#""saturated_ticks":null"#,
+    ] {
         assert!(json.contains(part), "{part} is not in {json}");
     }
     let felt = fs::read_to_string(folder.path().join("felt.csv")).unwrap();
@@ -269,7 +275,7 @@ fn a_board_that_vanishes_is_said_in_a_sentence() {
     let mut board = VirtualBoard::start();
     let folder = TempDir::new().unwrap();
     let process = client(&board.port, "600", folder.path());
-    until("the scene plays", || board.is_playing());
+    until("rows are written", || rows_in(folder.path()) > 0);
     board.process.kill().unwrap();
     board.process.wait().unwrap();
     let ended = process.wait_with_output().unwrap();
@@ -278,4 +284,58 @@ fn a_board_that_vanishes_is_said_in_a_sentence() {
     let sentence = said.lines().last().unwrap();
     assert!(sentence.starts_with("frixel: ") && sentence.contains(&board.port), "{said}");
     assert!(sentence.contains("vanished"), "{said}");
+    let json: serde_json::Value = serde_json::from_slice(&ended.stdout).unwrap();
+    let ticks = json["ticks"].as_u64().unwrap();
+    assert!(ticks > 0, "the summary is of what was played");
+    let felt = fs::read_to_string(folder.path().join("felt.csv")).unwrap();
+    let last: f64 = felt.lines().last().unwrap().split(',').next().unwrap().parse().unwrap();
+    assert!((last * 40_000.0 - ticks as f64).abs() < 1.0, "the rows end at {last} s, {ticks} ticks were told");
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_said_before_the_board_plays() {
+    let _turn = turn();
+    let board = VirtualBoard::start();
+    let file = tempfile::NamedTempFile::new().unwrap();
+    let refused = board.play("600", &file.path().join("out"));
+    assert_eq!(refused.status.code(), Some(1));
+    let said = String::from_utf8(refused.stderr).unwrap();
+    assert!(said.lines().last().unwrap().contains("cannot be written"), "{said}");
+    assert!(board.interrupt().events.is_empty(), "the board was armed");
+}
+
+#[test]
+fn a_virtual_board_that_cannot_write_announces_no_port() {
+    let file = tempfile::NamedTempFile::new().unwrap();
+    let refused = frixel().args(["sim", "--out"]).arg(file.path().join("out")).output().unwrap();
+    assert_eq!(refused.status.code(), Some(1));
+    assert_eq!(String::from_utf8(refused.stdout).unwrap(), "");
+    assert!(String::from_utf8(refused.stderr).unwrap().contains("cannot be written"));
+}
+
+/// Telemetry that nobody reads any more fills the terminal. Naps count the time, so that a busy machine has more of it.
+#[test]
+fn a_dead_client_does_not_slow_the_board_down() {
+    let _turn = turn();
+    let board = VirtualBoard::start();
+    let folder = TempDir::new().unwrap();
+    let mut process = client(&board.port, "600", folder.path());
+    until("rows are written", || rows_in(folder.path()) > 0);
+    process.kill().unwrap();
+    process.wait().unwrap();
+    until("the board lets go of a dead client", || board.is_disarmed());
+    // Longer than it takes to fill the terminal.
+    let naps_for = |rows: usize| {
+        let end = rows_in(board.folder.path()) + rows;
+        let mut naps = 0_u32;
+        until("virtual time goes on", || {
+            naps += 1;
+            rows_in(board.folder.path()) >= end
+        });
+        naps
+    };
+    naps_for(1000);
+    let naps = naps_for(2000);
+    assert!(naps < 2000, "{naps} naps of 5 ms for 2 s of virtual time");
+    assert!(board.play("0.1", folder.path()).status.success());
 }

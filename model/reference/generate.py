@@ -1,4 +1,4 @@
-"""Writes the fixtures of `tests/`: run `pip install mpmath==1.3.0`, then `python3 model/reference/generate.py`.
+"""Writes the fixtures of `tests/`: run `pip install mpmath==1.4.1`, then `python3 model/reference/generate.py`.
 
 Every input is exact in f32, so that both precisions are held against the same numbers; `f32` is 1 where every answer is a
 normal number of f32 too. `condition` is the sum of the relative changes of the answer over those of the inputs.
@@ -59,10 +59,6 @@ def exact(p):
     return {name: mpf(value) for name, value in p.items()}
 
 
-def moved(function, p, name, by):
-    return function({**p, name: p[name] * (1 + by)})
-
-
 def condition(function, p, names):
     """Largest over the answers of the sum of relative changes over those of the named inputs."""
     step = mpf("1e-25")
@@ -72,9 +68,9 @@ def condition(function, p, names):
         if not p.get(name):
             continue
         try:
-            near = moved(function, p, name, step)
-        except Exception:
-            near = moved(function, p, name, -step)
+            near = function({**p, name: p[name] * (1 + step)})
+        except tuple(STATUS):
+            near = function({**p, name: p[name] * (1 - step)})
         for i, (a, b) in enumerate(zip(base, near)):
             if a:
                 sums[i] += abs((b - a) / a / step)
@@ -82,12 +78,12 @@ def condition(function, p, names):
 
 
 def slope(function, p, name):
-    """Derivative of friction; from one side at zero or where the other has no contact."""
-    step = mpf("1e-25") * (p[name] if p[name] else 1)
+    """Derivative of friction; from one side where the other has no contact."""
     base = function(p)[2]
+    step = mpf("1e-25") * (p[name] if p[name] else base / p["mu"])
     try:
         return (function({**p, name: p[name] + step})[2] - function({**p, name: p[name] - step})[2]) / (2 * step)
-    except Exception:
+    except tuple(STATUS):
         return (function({**p, name: p[name] + step})[2] - base) / step
 
 
@@ -98,7 +94,7 @@ class Fixtures:
     def __init__(self):
         self.forward, self.inverse = [], []
 
-    def add(self, variant, p, name="", inverse=True):
+    def add(self, variant, p, name=""):
         """A forward row and, where there is a state, inverse rows from its rounded friction."""
         p = {key: f32(value) for key, value in p.items()}
         q = exact(p)
@@ -132,7 +128,7 @@ class Fixtures:
         if variant == "wf-finite":
             row["capacitance_f"] = digits(paper.capacitance(q, k, radius**2))
         self.forward.append(row)
-        if inverse and friction and electric:
+        if friction and electric:
             self.add_inverse(variant, p, electric=electric, name=name)
             if q["load"] and (name or abs(electric) > mpf("1e-6") * friction):
                 self.add_inverse(variant, p, friction=friction, name=name)
@@ -165,7 +161,7 @@ class Fixtures:
         if given == "friction_n" and voltage:
             # What rounding of mu F_N and of the total costs the electric part.
             c = max(c, 12 * mpf(wanted) / (mpf(wanted) - q["mu"] * q["load"]))
-        row.update(voltage_v=digits(voltage), status="ok", f32=int(normal_in_f32(voltage) and c < 1e5), condition=mp.nstr(c, 6))
+        row.update(voltage_v=digits(voltage), status="ok", f32=int(normal_in_f32(voltage) and c < 1e6), condition=mp.nstr(c, 6))
         self.inverse.append(row)
 
     @staticmethod
@@ -307,7 +303,7 @@ def named_rows(fixtures):
         p = {**EXAMPLE, "load": 0.5, **({"b": 6e-3} if variant == "wf-finite" else {})}
         fixtures.add_inverse(variant, p, friction=mpf("0.2499"), name="less than natural")
         fixtures.add_inverse(variant, p, friction=mpf("0.25"), name="natural")
-        fixtures.add_inverse(variant, p, friction=mpf("0.2500001"), name="barely above natural")
+        fixtures.add_inverse(variant, p, friction=mpf("0.25001"), name="barely above natural")
     fixtures.add_inverse("soft-loaded", {**SOFT_EXAMPLE, "s": 0.5, "load": 0.5}, friction=mpf("0.2"), name="less than natural")
     for q, name in (("4e-6", "wrong branch off by 245 %"), ("7e7", "wrong branch overflows")):
         fixtures.add("wf-upper", {**EXAMPLE, "voltage": voltage_for(EXAMPLE, mpf(q))}, name)
@@ -341,7 +337,6 @@ def named_rows(fixtures):
         p["voltage"] = soft_voltage(p, mpf(tau))
         for variant in SOFT:
             with_load = {**p, "load": 0.5} if variant == "soft-loaded" else p
-            # Friction fixes the contact radius to a millionth of its precision, the voltage much better.
             fixtures.add(variant, with_load, "stress exponent 1e-6")
 
 

@@ -4,15 +4,15 @@ use crate::Real;
 
 /// Newton steps taken on trust before every other step halves the bracket.
 const TRUSTED_STEPS: u32 = 12;
-/// No more than this: a bracket of floats has fewer than 2^64 members, and every second step after the trusted ones
-/// leaves at most half of them.
+/// No more than this: between two numbers of zero or more there are fewer than 2^63 others, and every second step after
+/// the trusted ones leaves at most half of them.
 const STEPS: u32 = TRUSTED_STEPS + 2 * 64 + 2;
 
 /// One evaluation: on which side of the root, and where to look next.
 pub(crate) struct Step<T> {
     /// Below zero left of the root, above zero right of it.
     pub(crate) residual: T,
-    /// Newton's next point. It is tried when it falls into the bracket.
+    /// Newton's next point. It is tried when it falls into the bracket, and believed when it stays where it is.
     pub(crate) next: T,
 }
 
@@ -49,4 +49,50 @@ pub(crate) fn rising_root<T: Real>(low: T, high: T, start: T, step: impl Fn(T) -
         x = if halve { T::from_rank(bottom + (top - bottom) / 2) } else { next };
     }
     Err(NotConverged)
+}
+
+#[cfg(test)]
+mod tests {
+    use core::cell::Cell;
+
+    use super::*;
+
+    /// The root that `step` leads to, and how often it was asked.
+    fn counted(low: f64, high: f64, step: impl Fn(f64) -> Step<f64>) -> (Result<f64, NotConverged>, u32) {
+        let count = Cell::new(0);
+        let root = rising_root(low, high, high, |x| {
+            count.set(count.get() + 1);
+            step(x)
+        });
+        (root, count.get())
+    }
+
+    #[test]
+    fn newton_takes_a_few_steps() {
+        let (root, count) = counted(0.0, 4.0, |x| Step { residual: x * x - 2.0, next: x - (x * x - 2.0) / (2.0 * x) });
+        assert!((root.unwrap() - core::f64::consts::SQRT_2).abs() <= f64::EPSILON);
+        assert!(count <= 8, "{count}");
+    }
+
+    /// Whatever Newton proposes (outside, nowhere, or a crawl within the bracket), the bound on the steps holds.
+    #[test]
+    fn bad_proposals_are_bisected_within_the_bound() {
+        let proposals: [fn(f64) -> f64; 5] = [|_| -1.0, |_| f64::NAN, |x| x * (1.0 - 1e-9), |x| x * 0.999, |x| x * 2.0];
+        for (low, high) in [(0.0, f64::MAX), (1e-200, 1e200), (0.0, 3.0)] {
+            for next in proposals {
+                for target in [1e-150, 1.0, 2.5] {
+                    let (root, count) = counted(low, high, |x| Step { residual: x - target, next: next(x) });
+                    let root = root.unwrap();
+                    assert!((root / target - 1.0).abs() <= 1e-15, "{root} for {target}");
+                    assert!(count <= STEPS, "{count} steps to {target}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn not_a_number_is_no_root() {
+        let (root, count) = counted(0.0, 1.0, |x| Step { residual: f64::NAN, next: x });
+        assert_eq!((root, count), (Err(NotConverged), 1));
+    }
 }

@@ -114,6 +114,32 @@ fn zero_state<T: Real>(_: ContactState<T>) -> ContactState<T> {
     ContactState { contact_radius_m: zero, stiffness_pa_per_m: zero, friction_n: zero, electric_friction_n: zero }
 }
 
+/// The rows that the issue names are among the fixtures, and none of them only in f64.
+#[test]
+fn named_rows_are_there() {
+    for name in [
+        "squares overflow f32",
+        "q = 4e-29",
+        "y = 1e-19",
+        "y = 2e19",
+        "no friction",
+        "no friction under a pull",
+        "less than natural",
+        "barely above natural",
+        "wrong branch off by 245 %",
+        "wrong branch overflows",
+        "y^2 - n cancels",
+        "within 1e-6 of pull-off",
+        "below pull-off",
+        "beta = y",
+        "just passes the outer radius",
+        "stress exponent 1e-6",
+    ] {
+        let found = rows(FORWARD).into_iter().chain(rows(INVERSE)).filter(|row| row.text("name") == name);
+        assert!(found.filter(Row::in_f32).count() > 0, "{name}");
+    }
+}
+
 #[test]
 fn forward_f64() {
     hold("forward f64", &forward::<f64>(|state| state), &forward::<f64>(zero_state));

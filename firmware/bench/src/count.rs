@@ -22,10 +22,10 @@ const CASES_MAX: usize = 32;
 #[unsafe(link_section = ".uninit.FOLLOWED")]
 static mut FOLLOWED: MaybeUninit<[u32; CASES_MAX]> = MaybeUninit::uninit();
 
-/// A debugger follows from here.
+/// A debugger follows this case from here.
 #[unsafe(no_mangle)]
 #[unsafe(naked)]
-extern "C" fn follow_begin() {
+extern "C" fn follow_begin(_case: usize) {
     naked_asm!("bx lr")
 }
 
@@ -45,10 +45,12 @@ pub struct Counter {
 /// One thing that is counted for many inputs.
 pub struct Case {
     name: &'static str,
+    number: usize,
     followed: u32,
     inputs: u32,
     instructions: u32,
     worst_input: u32,
+    sum: u64,
 }
 
 impl Counter {
@@ -66,8 +68,9 @@ impl Counter {
         assert!(self.cases < CASES_MAX, "more cases than a debugger can tell inputs for");
         // SAFETY: in bounds, and any bits are a number; nobody writes while the image runs.
         let followed = unsafe { (&raw const FOLLOWED).cast::<u32>().add(self.cases).read_volatile() };
+        let number = self.cases;
         self.cases += 1;
-        Case { name, followed, inputs: 0, instructions: 0, worst_input: 0 }
+        Case { name, number, followed, inputs: 0, instructions: 0, worst_input: 0, sum: 0 }
     }
 }
 
@@ -75,12 +78,13 @@ impl Case {
     /// Counts a call of `function`, less a call of [`nothing`]: call and return are left out.
     pub fn take<S, T: Copy, R>(&mut self, function: fn(&mut S, T) -> R, state: &mut S, input: T) -> R {
         self.inputs += 1;
-        let followed = self.inputs == self.followed;
+        let followed = (self.inputs == self.followed).then_some(self.number);
         // SAFETY: `nothing` takes whatever is in the registers, and returns zero or its argument, which are an `R`.
         let nothing = unsafe { transmute::<extern "C" fn(), fn(&mut S, T) -> R>(nothing) };
         let (call, _) = count(black_box(nothing), state, input, followed);
         let (gross, result) = count(black_box(function), state, input, followed);
         let net = gross - call + NOTHING;
+        self.sum += u64::from(net);
         if net > self.instructions {
             self.instructions = net;
             self.worst_input = self.inputs;
@@ -88,9 +92,10 @@ impl Case {
         result
     }
 
-    /// Tells the largest count and its input.
+    /// Tells the largest count, its input, and the mean of all.
     pub fn report(self) {
-        hprintln!("{} {} {}", self.name, self.instructions, self.worst_input);
+        let inputs = u64::from(self.inputs).max(1);
+        hprintln!("{} {} {} {}", self.name, self.instructions, self.worst_input, self.sum.div_ceil(inputs));
     }
 }
 
@@ -107,14 +112,14 @@ extern "C" fn nothing() {
 /// Instructions of a call, with those of reading the timer. One function for all that is called, so that these are the
 /// same.
 #[inline(never)]
-fn count<S, T, R>(function: fn(&mut S, T) -> R, state: &mut S, input: T, followed: bool) -> (u32, R) {
-    if followed {
-        follow_begin();
+fn count<S, T, R>(function: fn(&mut S, T) -> R, state: &mut S, input: T, followed: Option<usize>) -> (u32, R) {
+    if let Some(case) = followed {
+        follow_begin(case);
     }
     let begin = SYST::get_current();
     let result = function(state, input);
     let end = SYST::get_current();
-    if followed {
+    if followed.is_some() {
         follow_end();
     }
     let counts = begin.wrapping_sub(end) % WRAP;

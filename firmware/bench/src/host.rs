@@ -4,6 +4,7 @@ use frixel_render::{Session, Ticker};
 use frixel_wire::frame::{FRAME_MAX_LEN, crc32};
 use frixel_wire::message::{Command, Request};
 use frixel_wire::payload::{self, CHUNK_LEN};
+use frixel_wire::scene::bitmap_crc32;
 
 /// A session and the ticker that it gives orders to.
 pub struct Host<'a> {
@@ -29,7 +30,7 @@ impl<'a> Host<'a> {
 
     /// Sends a picture, and returns its name.
     pub fn bitmap(&mut self, width: u16, height: u16, samples: &[u8]) -> u32 {
-        let crc32 = crc32(samples);
+        let crc32 = bitmap_crc32(width, height, samples);
         self.command(Command::UploadBitmap { width, height, crc32 });
         self.chunks(samples);
         crc32

@@ -1,8 +1,8 @@
-//! Friction to voltage, by table and in closed form.
+//! Friction to voltage, by tables and in closed form.
 
 use core::hint::black_box;
 
-use frixel_model::{Contact, Finger, InverseTable, LoadedContact, Real};
+use frixel_model::{Contact, Finger, FixedTable, InverseTable, LoadedContact, Real, TableBuilder};
 
 use crate::count::Counter;
 
@@ -16,9 +16,18 @@ const VOLTAGE_MAX_V_RMS: f64 = 200.0;
 const STEP: usize = 0x1_0003;
 const SPECIALS: [f32; 6] = [0.0, -0.0, -1.0, f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
 
-/// Counts both, without and with a load.
+/// Least voltage and error of the table in integers, which is made for a range.
+const VOLTAGE_MIN_V_RMS: f64 = 1.0;
+const RELATIVE_ERROR: f64 = 1e-5;
+/// Rows that it may need.
+const FIXED_ROWS: usize = 512;
+/// One code in so many is looked up.
+const CODE_STEP: usize = 0x2_0003;
+
+/// Counts all of them, without and with a load.
 pub fn run(counter: &mut Counter) {
     let mut by_table = counter.case("inverse_table");
+    let mut by_fixed_table = counter.case("inverse_table_fixed");
     let mut in_closed_form = counter.case("inverse_closed_form");
     for load_n in NORMAL_LOADS_N {
         let contact = contact(&FINGER, EFFECTIVE_GAP_M, load_n);
@@ -29,8 +38,14 @@ pub fn run(counter: &mut Counter) {
             black_box(by_table.take(from_table, &mut table, x));
             black_box(in_closed_form.take(from_closed_form, &mut single, x));
         }
+        let mut rows = [[0; 4]; FIXED_ROWS];
+        let mut fixed = fixed(&contact, &mut rows);
+        for code in (0..=u32::MAX).step_by(CODE_STEP) {
+            black_box(by_fixed_table.take(from_fixed_table, &mut fixed, black_box(code)));
+        }
     }
     by_table.report();
+    by_fixed_table.report();
     in_closed_form.report();
 }
 
@@ -48,6 +63,20 @@ fn contact<T: Real>(finger: &Finger<T>, effective_gap_m: T, load_n: T) -> Loaded
         Ok(contact) => contact,
         Err(error) => panic!("the contact model refuses the example finger: {error:?}"),
     }
+}
+
+fn fixed<'rows>(contact: &LoadedContact<f64>, rows: &'rows mut [[i32; 4]]) -> FixedTable<'rows, 4> {
+    let friction_n = |voltage_v_rms| contact.electric_friction_n(voltage_v_rms);
+    let (least_n, largest_n) = (friction_n(VOLTAGE_MIN_V_RMS), friction_n(VOLTAGE_MAX_V_RMS));
+    match TableBuilder::new(contact, least_n, largest_n, RELATIVE_ERROR).and_then(|builder| builder.build_fixed(rows)) {
+        Ok(table) => table,
+        Err(error) => panic!("no table in integers: {error}"),
+    }
+}
+
+#[inline(never)]
+fn from_fixed_table(table: &mut FixedTable<4>, friction_code: u32) -> u32 {
+    table.voltage_code(friction_code)
 }
 
 #[inline(never)]

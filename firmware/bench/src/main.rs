@@ -2,7 +2,7 @@
 //!
 //! `cargo xtask bench` runs this image in the emulator with `-icount shift=10,sleep=off`, where an instruction takes
 //! 1,024 ns of virtual time and nothing else takes any. Every line that it writes is a name, the largest count over all
-//! inputs, and the number of that input. Then a debugger follows that one input ([`count`]), to see which instructions
+//! inputs, the number of that input, and the mean count. Then a debugger follows that one input ([`count`]), to see which instructions
 //! they are.
 #![no_std]
 #![no_main]

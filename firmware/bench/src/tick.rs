@@ -45,6 +45,15 @@ const GRATING: Layer = Layer::Grating {
     crest_n: 0.026,
 };
 
+const SQUARE_GRATING: Layer = Layer::Grating {
+    wave: Wave::Square,
+    cycles_per_m_x: 500.0,
+    cycles_per_m_y: 100.0,
+    phase_turns: 0.2,
+    trough_n: 0.0,
+    crest_n: 0.026,
+};
+
 const fn bitmap(crc32: u32) -> Layer {
     Layer::Bitmap { crc32, x_m: 0.01, y_m: 0.0, pitch_m: 1e-3, black_n: 0.0, white_n: 0.026 }
 }
@@ -77,10 +86,14 @@ pub fn run(counter: &mut Counter) {
     let crc32 = bench.host.bitmap(PICTURE, PICTURE, &samples);
     bench.play(&HEADER, &[record(bitmap(crc32))]);
     bench.slide(counter.case("tick_bitmap"));
+    bench.layers(counter, crc32);
     let worst_header = Header { carrier: Carrier::Sine, ..HEADER };
     bench.play(&worst_header, &[Record { blend: Blend::Add, ..record(bitmap(crc32)) }; RECORDS_MAX]);
     bench.slide(counter.case("tick_worst_scene"));
 }
+
+/// Layers on top of the first one, to see what one of them costs.
+const MORE_LAYERS: usize = 16;
 
 /// A playing board.
 struct Bench {
@@ -121,6 +134,27 @@ impl Bench {
         self.host.play(&scene[..HEADER_LEN + RECORD_LEN * records.len()]);
         self.tick(None);
         assert!(self.host.ticker.status().telemetry.state == State::Active, "the scene does not play");
+    }
+
+    /// What a layer costs, by kind: scenes of one layer, and of [`MORE_LAYERS`] more.
+    fn layers(&mut self, counter: &mut Counter, crc32: u32) {
+        let constant = Layer::Constant { electric_friction_n: 0.001 };
+        let away = Region::Rectangle { x_m: 0.0, y_m: 0.1, width_m: 0.12, height_m: 0.01 };
+        let around = Region::Rectangle { x_m: 0.0, y_m: 0.0, width_m: 0.12, height_m: 0.11 };
+        self.play(&HEADER, &[record(constant)]);
+        self.slide(counter.case("tick_1_constant"));
+        for (name, region, layer) in [
+            ("tick_17_away", away, constant),
+            ("tick_17_constant", around, constant),
+            ("tick_17_sine", around, GRATING),
+            ("tick_17_square", around, SQUARE_GRATING),
+            ("tick_17_bitmap", around, bitmap(crc32)),
+        ] {
+            let mut records = [Record { region, blend: Blend::Add, gain: 0.01, layer }; 1 + MORE_LAYERS];
+            records[0] = record(constant);
+            self.play(&HEADER, &records);
+            self.slide(counter.case(name));
+        }
     }
 
     /// Nothing to drive.

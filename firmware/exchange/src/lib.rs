@@ -1,7 +1,7 @@
 //! What the emulated board and the simulator tell each other through shared memory: the board's pins, as it were.
 //!
 //! The memory is an array of little-endian 32-bit words. [`layout`] says which word is what; [`Given`] and [`Done`] are
-//! what goes into a tick and what comes out of it, [`touch`] a report of the touch source, each as words. Both sides
+//! what goes into a tick and what comes out of it, `touch` a report of the touch source, each as words. Both sides
 //! compile this one crate.
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]

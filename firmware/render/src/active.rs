@@ -12,14 +12,19 @@ use crate::config;
 use crate::layer::Layer;
 
 /// Coefficients of one scene. A board has two of them: one that plays and one that the next scene is built in.
+///
+/// In this order: what lies near the beginning is reached in one instruction.
+#[repr(C)]
 pub struct Active {
-    layers: Vec<Layer, RECORDS_MAX>,
-    table: Option<InverseTable>,
     pub(crate) carrier: CarrierTiming,
     pub(crate) slew_step_v: f32,
+    /// Largest rms voltage within all limits.
+    pub(crate) voltage_max_v_rms: f32,
     /// `None` for a scene that goes on without a host.
     pub(crate) host_timeout_ticks: Option<u32>,
     pub(crate) prediction: bool,
+    table: Option<InverseTable>,
+    layers: Vec<Layer, RECORDS_MAX>,
 }
 
 impl Active {
@@ -31,6 +36,7 @@ impl Active {
             table: None,
             carrier: CarrierTiming::SILENT,
             slew_step_v: 0.0,
+            voltage_max_v_rms: 0.0,
             host_timeout_ticks: None,
             prediction: true,
         }
@@ -38,7 +44,14 @@ impl Active {
 
     /// Forgets the scene.
     pub(crate) fn unload(&mut self) {
-        *self = Self::new();
+        // One by one: the whole of it is thousands of bytes, and a tick may be waiting.
+        self.layers.clear();
+        self.table = None;
+        self.carrier = CarrierTiming::SILENT;
+        self.slew_step_v = 0.0;
+        self.voltage_max_v_rms = 0.0;
+        self.host_timeout_ticks = None;
+        self.prediction = true;
     }
 
     /// The inverse table; `None` without a scene.
@@ -64,6 +77,7 @@ impl Active {
         let (carrier, voltage_max_v_rms) = carrier(header, board).map_err(Refusal::Config)?;
         self.load_layers(scene, directory)?;
         self.carrier = carrier;
+        self.voltage_max_v_rms = voltage_max_v_rms;
         self.slew_step_v = header.slew_v_per_s * board.tick_period_s();
         self.host_timeout_ticks = (!header.autonomous).then(|| board.ticks(header.host_timeout_s));
         self.prediction = header.prediction;
@@ -107,7 +121,7 @@ fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), Confi
 
     let capacitance_f = f64::from(limits.electrode_capacitance_max_f);
     let drive_v_peak = f64::from(voltage_max_v_rms * peak_per_rms);
-    let current = carrier.electrode_current(capacitance_f, drive_v_peak, tick_period_s);
+    let current = carrier.electrode_current(capacitance_f, drive_v_peak);
     for (field, found_a, max_a) in [
         (ConfigField::CurrentRms, current.a_rms, limits.current_max_a_rms),
         (ConfigField::CurrentPeak, current.a_peak, limits.current_max_a_peak),
@@ -117,12 +131,8 @@ fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), Confi
 
     let codes_per_v = f32::from(i16::MAX) / limits.full_scale_v_peak;
     let code_max = (header.voltage_max_v_peak * codes_per_v) as i32;
-    let timing = CarrierTiming {
-        shape: header.carrier,
-        half_period_ticks,
-        codes_per_v_rms: peak_per_rms * codes_per_v,
-        code_max: code_max.min(i32::from(i16::MAX)),
-    };
+    let code_max = code_max.min(i32::from(i16::MAX));
+    let timing = CarrierTiming::new(header.carrier, half_period_ticks, peak_per_rms * codes_per_v, code_max);
     Ok((timing, voltage_max_v_rms))
 }
 

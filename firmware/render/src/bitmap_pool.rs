@@ -2,13 +2,14 @@
 
 use core::sync::atomic::{AtomicU8, Ordering};
 
+use frixel_wire::scene::RECORDS_MAX;
 use heapless::Vec;
 
 /// Bytes for bitmaps on the smallest board, those being uploaded included; none without the feature `bitmap`.
 pub const BITMAP_POOL_LEN: usize = if cfg!(feature = "bitmap") { 80 * 1024 } else { 0 };
 
-/// Most bitmaps that the pool holds at a time.
-const ENTRIES_MAX: usize = if cfg!(feature = "bitmap") { 64 } else { 0 };
+/// Most bitmaps that the pool holds at a time: those of a scene that plays, and those of the next.
+const ENTRIES_MAX: usize = if cfg!(feature = "bitmap") { 2 * RECORDS_MAX } else { 0 };
 
 /// Samples of bitmaps, shared between the session, which writes, and the tick, which reads.
 ///
@@ -30,10 +31,18 @@ impl BitmapPool {
     }
 
     /// The sample at an offset; zero beyond the end.
-    #[cfg(any(feature = "bitmap", feature = "store"))]
     #[inline]
     pub(crate) fn sample(&self, offset: usize) -> u8 {
         self.bytes.get(offset).map_or(0, |byte| byte.load(Ordering::Relaxed))
+    }
+
+    /// Moves samples to a lower offset.
+    fn move_down(&self, from: u32, to: u32, len: u32) {
+        for index in 0..len as usize {
+            if let Some(byte) = self.bytes.get(to as usize + index) {
+                byte.store(self.sample(from as usize + index), Ordering::Relaxed);
+            }
+        }
     }
 
     /// Writes samples from an offset on; what goes beyond the end is left out.
@@ -75,6 +84,16 @@ impl Directory {
     /// Lets go of every bitmap that `keep` does not want.
     pub(crate) fn retain(&mut self, keep: impl Fn(&Bitmap) -> bool) {
         self.entries.retain(keep);
+    }
+
+    /// Moves all bitmaps together, so that what is free is one gap. Nobody may be reading them.
+    pub(crate) fn compact(&mut self, pool: &BitmapPool) {
+        let mut next = 0;
+        for bitmap in &mut self.entries {
+            pool.move_down(bitmap.offset, next, bitmap.len());
+            bitmap.offset = next;
+            next += bitmap.len();
+        }
     }
 
     /// Finds room for a bitmap in the first gap that takes it. Without one, returns the largest gap in bytes.

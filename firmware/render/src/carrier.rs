@@ -18,21 +18,24 @@ pub(crate) struct CarrierTiming {
     pub(crate) codes_per_v_rms: f32,
     /// Largest DAC code.
     pub(crate) code_max: i32,
+    /// Largest magnitude of the running integral, in code ticks.
+    integral_max: i32,
+    turns_per_tick: f32,
 }
 
 impl CarrierTiming {
     /// Output zero.
-    pub(crate) const SILENT: Self =
-        Self { shape: Shape::Square, half_period_ticks: 20, codes_per_v_rms: 0.0, code_max: 0 };
+    pub(crate) const SILENT: Self = Self::new(Shape::Square, 20, 0.0, 0);
 
-    /// Largest magnitude of the running integral, in code ticks: one half period at full voltage.
-    fn integral_max(&self) -> i32 {
-        let ticks = self.half_period_ticks as f32;
-        let mean = match self.shape {
+    /// A carrier whose integral stays within one half period at full voltage.
+    pub(crate) const fn new(shape: Shape, half_period_ticks: u32, codes_per_v_rms: f32, code_max: i32) -> Self {
+        let mean = match shape {
             Shape::Square => 1.0,
             Shape::Sine => core::f32::consts::FRAC_2_PI,
         };
-        (self.code_max as f32 * (ticks * mean)) as i32
+        let integral_max = (code_max as f32 * (half_period_ticks as f32 * mean)) as i32;
+        let turns_per_tick = 0.5 / half_period_ticks as f32;
+        Self { shape, half_period_ticks, codes_per_v_rms, code_max, integral_max, turns_per_tick }
     }
 }
 
@@ -66,20 +69,24 @@ impl Carrier {
     #[inline]
     pub(crate) fn next(&mut self, envelope_v_rms: f32, timing: &CarrierTiming) -> (i16, bool) {
         let code = self.code(envelope_v_rms, timing);
-        let next_integral = (self.integral + code).abs();
-        let early = next_integral > timing.integral_max() && next_integral > self.integral.abs();
-        let code = if early {
+        let too_far = (self.integral + code).abs() > timing.integral_max;
+        let early = too_far && self.takes_out(code);
+        let code = if early { -code } else { code };
+        if early {
             self.phase_ticks = (self.phase_ticks + timing.half_period_ticks) % (2 * timing.half_period_ticks);
-            -code
-        } else {
-            code
-        };
+        }
         self.integral += code;
         self.phase_ticks += 1;
         if self.phase_ticks >= 2 * timing.half_period_ticks {
             self.phase_ticks = 0;
         }
         (code as i16, early)
+    }
+
+    /// Whether a code takes the integral away from zero.
+    #[cold]
+    fn takes_out(&self, code: i32) -> bool {
+        (self.integral + code).abs() > self.integral.abs()
     }
 
     fn code(&self, envelope_v_rms: f32, timing: &CarrierTiming) -> i32 {
@@ -91,10 +98,11 @@ impl Carrier {
             }
             #[cfg(feature = "sine-carrier")]
             Shape::Sine => {
-                let turns = self.phase_ticks as f32 / (2 * timing.half_period_ticks) as f32;
-                let code = amplitude * turns::sine(turns);
-                let rounded = if code < 0.0 { (code - 0.5) as i32 } else { (code + 0.5) as i32 };
-                rounded.min(timing.code_max).max(-timing.code_max)
+                // A quarter of a turn before its crest.
+                let turns = self.phase_ticks as f32 * timing.turns_per_tick - 0.25;
+                let code = amplitude * turns::cosine(turns);
+                let rounded = (code + 0.5_f32.copysign(code)) as i32;
+                rounded.clamp(-timing.code_max, timing.code_max)
             }
             #[cfg(not(feature = "sine-carrier"))]
             Shape::Sine => 0,
@@ -108,7 +116,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn timing(shape: Shape, half_period_ticks: u32) -> CarrierTiming {
-        CarrierTiming { shape, half_period_ticks, codes_per_v_rms: 100.0, code_max: 20_000 }
+        CarrierTiming::new(shape, half_period_ticks, 100.0, 20_000)
     }
 
     #[test]
@@ -145,7 +153,7 @@ mod tests {
             let timing = timing(if sine { Shape::Sine } else { Shape::Square }, half_period_ticks);
             let mut carrier = Carrier::new(&timing);
             let mut integral = 0_i64;
-            let full = i64::from(timing.integral_max());
+            let full = i64::from(timing.integral_max);
             for i in 0..4000_usize {
                 let half = i as u32 / half_period_ticks;
                 let amplitude = if resonant { if half.is_multiple_of(2) { 200.0 } else { 3.0 } }

@@ -16,20 +16,18 @@ impl Envelope {
         self.voltage_v_rms = 0.0;
     }
 
+    /// Comes down at once to what a new scene allows.
+    pub(crate) fn limit(&mut self, voltage_max_v_rms: f32) {
+        self.voltage_v_rms = self.voltage_v_rms.min(voltage_max_v_rms);
+    }
+
     /// Moves towards `target_v_rms` by at most `step_max_v`. Returns whether that was too far for one tick.
     #[inline]
     pub(crate) fn follow(&mut self, target_v_rms: f32, step_max_v: f32) -> bool {
         let step_v = target_v_rms - self.voltage_v_rms;
-        if step_v > step_max_v {
-            self.voltage_v_rms += step_max_v;
-            true
-        } else if step_v < -step_max_v {
-            self.voltage_v_rms -= step_max_v;
-            true
-        } else {
-            self.voltage_v_rms = target_v_rms;
-            false
-        }
+        let too_far = step_v.abs() > step_max_v;
+        self.voltage_v_rms = if too_far { self.voltage_v_rms + step_max_v.copysign(step_v) } else { target_v_rms };
+        too_far
     }
 }
 

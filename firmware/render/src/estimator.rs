@@ -13,39 +13,45 @@ const FADING: f32 = 0.65;
 /// noise too much.
 const LINEAR_SAMPLES: u32 = 3;
 
-/// Position, velocity and acceleration along one axis, in m, m/s and m/s^2, at the time of the last sample.
+/// Position, velocity and half the acceleration along one axis, in m, m/s and m/s^2, at the time of the last sample.
 #[derive(Clone, Copy, Debug)]
 struct Axis {
     position: f32,
     velocity: f32,
-    acceleration: f32,
+    half_acceleration: f32,
 }
 
-/// Gains of one update.
+/// Gains of one update: parts of the residual that go to the position, to the velocity per step, and to half the
+/// acceleration per step squared.
 #[derive(Clone, Copy)]
 struct Gains {
     position: f32,
     velocity: f32,
-    acceleration: f32,
+    half_acceleration: f32,
 }
 
 impl Axis {
     const ZERO: Self = Self::resting_at(0.0);
 
     const fn resting_at(position: f32) -> Self {
-        Self { position, velocity: 0.0, acceleration: 0.0 }
+        Self { position, velocity: 0.0, half_acceleration: 0.0 }
     }
 
-    fn at(&self, time_s: f32) -> f32 {
-        self.position + time_s * (self.velocity + time_s * (0.5 * self.acceleration))
+    /// Position and velocity at a time after the last sample.
+    #[inline]
+    fn at(&self, time_s: f32) -> (f32, f32) {
+        let half_gain = time_s * self.half_acceleration;
+        let mean_velocity = self.velocity + half_gain;
+        (self.position + time_s * mean_velocity, mean_velocity + half_gain)
     }
 
-    fn update(&mut self, measured: f32, step_s: f32, gains: Gains) {
-        let predicted = self.at(step_s);
-        let residual = measured - predicted;
-        self.velocity = self.velocity + step_s * self.acceleration + gains.velocity * residual / step_s;
-        self.position = predicted + gains.position * residual;
-        self.acceleration += 2.0 * gains.acceleration * residual / (step_s * step_s);
+    /// Takes a measured position `step_s` after the last sample. Gains are in 1, 1/s and 1/s^2.
+    fn update(&mut self, measured: f32, step_s: f32, gains: &Gains) {
+        let (position, velocity) = self.at(step_s);
+        let residual = measured - position;
+        self.position = position + gains.position * residual;
+        self.velocity = velocity + gains.velocity * residual;
+        self.half_acceleration += gains.half_acceleration * residual;
     }
 }
 
@@ -75,7 +81,8 @@ impl Estimator {
     /// Knows nothing yet.
     pub(crate) const NEW: Self = Self { x: Axis::ZERO, y: Axis::ZERO, samples: 0, sampled_at_tick: 0 };
 
-    /// Takes a sample that was true `age_ticks` before `now_tick`. One that is not newer than the last says nothing.
+    /// Takes a sample that was true `age_ticks` before `now_tick`. One that is not newer
+    /// than the last says nothing.
     pub(crate) fn update(&mut self, now_tick: u32, age_ticks: u32, x_m: f32, y_m: f32, tick_period_s: f32) {
         let sampled_at_tick = now_tick.wrapping_sub(age_ticks);
         let step_ticks = sampled_at_tick.wrapping_sub(self.sampled_at_tick) as i32;
@@ -83,50 +90,83 @@ impl Estimator {
             *self = Self { x: Axis::resting_at(x_m), y: Axis::resting_at(y_m), samples: 1, sampled_at_tick };
         } else if step_ticks > 0 {
             let step_s = step_ticks as f32 * tick_period_s;
+            let per_s = 1.0 / step_s;
             let gains = gains(self.samples);
-            self.x.update(x_m, step_s, gains);
-            self.y.update(y_m, step_s, gains);
+            let gains = Gains {
+                position: gains.position,
+                velocity: gains.velocity * per_s,
+                half_acceleration: gains.half_acceleration * per_s * per_s,
+            };
+            self.x.update(x_m, step_s, &gains);
+            self.y.update(y_m, step_s, &gains);
             self.samples = self.samples.saturating_add(1);
             self.sampled_at_tick = sampled_at_tick;
         }
     }
 
-    /// The estimate for `now_tick`; `None` before the first sample.
+    /// Begins anew with the next sample.
+    pub(crate) fn forget(&mut self) {
+        self.samples = 0;
+    }
+
+    /// The estimate for `now_tick`. Before the first sample it means nothing.
     #[inline]
-    pub(crate) fn at(&self, now_tick: u32, tick_period_s: f32) -> Option<Estimate> {
-        if self.samples == 0 {
-            return None;
-        }
+    pub(crate) fn at(&self, now_tick: u32, tick_period_s: f32) -> Estimate {
         let time_s = now_tick.wrapping_sub(self.sampled_at_tick) as f32 * tick_period_s;
-        Some(Estimate {
-            x_m: self.x.at(time_s),
-            y_m: self.y.at(time_s),
-            velocity_x_m_per_s: self.x.velocity + time_s * self.x.acceleration,
-            velocity_y_m_per_s: self.y.velocity + time_s * self.y.acceleration,
-        })
+        let (x_m, velocity_x_m_per_s) = self.x.at(time_s);
+        let (y_m, velocity_y_m_per_s) = self.y.at(time_s);
+        Estimate { x_m, y_m, velocity_x_m_per_s, velocity_y_m_per_s }
     }
 }
 
 /// Gains for the sample that comes after `samples` others.
-fn gains(samples: u32) -> Gains {
-    let n = samples.min(1000) as f32;
-    if samples < LINEAR_SAMPLES {
-        let d = (n + 1.0) * (n + 2.0);
-        return Gains { position: 2.0 * (2.0 * n + 1.0) / d, velocity: 6.0 / d, acceleration: 0.0 };
+fn gains(samples: u32) -> &'static Gains {
+    GAINS.get(samples as usize).unwrap_or(&FADING_GAINS)
+}
+
+/// Gains for the first samples, by how many came before: computed beforehand, for divisions are dear in a tick.
+static GAINS: [Gains; FADING_SAMPLES] = {
+    let mut gains = [FADING_GAINS; FADING_SAMPLES];
+    let mut samples = 0;
+    while samples < FADING_SAMPLES {
+        gains[samples] = growing_gains(samples as u32);
+        samples += 1;
     }
-    let d = (n + 1.0) * (n + 2.0) * (n + 3.0);
-    let growing = Gains {
-        position: 3.0 * (3.0 * n * n + 3.0 * n + 2.0) / d,
-        velocity: 18.0 * (2.0 * n + 1.0) / d,
-        acceleration: 30.0 / d,
-    };
+    gains
+};
+
+/// Samples from which on the gains of a growing memory would be below those of a fading one.
+const FADING_SAMPLES: usize = {
+    let mut samples = 0;
+    while growing_gains(samples as u32).position > FADING_GAINS.position {
+        samples += 1;
+    }
+    samples
+};
+
+/// Gains of a fading memory of second degree.
+static FADING_GAINS: Gains = {
     let rest = 1.0 - FADING;
-    let fading = Gains {
+    Gains {
         position: 1.0 - FADING * FADING * FADING,
         velocity: 1.5 * rest * rest * (1.0 + FADING),
-        acceleration: 0.5 * rest * rest * rest,
-    };
-    if growing.position > fading.position { growing } else { fading }
+        half_acceleration: 0.5 * rest * rest * rest,
+    }
+};
+
+/// Gains of a growing memory: a fit to all samples so far.
+const fn growing_gains(samples: u32) -> Gains {
+    let n = samples as f32;
+    if samples < LINEAR_SAMPLES {
+        let d = (n + 1.0) * (n + 2.0);
+        return Gains { position: 2.0 * (2.0 * n + 1.0) / d, velocity: 6.0 / d, half_acceleration: 0.0 };
+    }
+    let d = (n + 1.0) * (n + 2.0) * (n + 3.0);
+    Gains {
+        position: 3.0 * (3.0 * n * n + 3.0 * n + 2.0) / d,
+        velocity: 18.0 * (2.0 * n + 1.0) / d,
+        half_acceleration: 30.0 / d,
+    }
 }
 
 #[cfg(test)]
@@ -143,7 +183,7 @@ mod tests {
             estimator.update(tick + 400, 400, path(tick as f32 * TICK_S), 0.0, TICK_S);
         }
         let now = 1000 + 400 * samples + 300;
-        (estimator.at(now, TICK_S).unwrap().x_m - path(now as f32 * TICK_S)).abs()
+        (estimator.at(now, TICK_S).x_m - path(now as f32 * TICK_S)).abs()
     }
 
     #[test]
@@ -176,7 +216,7 @@ mod tests {
         for i in 0..4 {
             estimator.update(start.wrapping_add(400 * i), 0, 0.001 * i as f32, 0.0, TICK_S);
         }
-        let estimate = estimator.at(start.wrapping_add(1600), TICK_S).unwrap();
+        let estimate = estimator.at(start.wrapping_add(1600), TICK_S);
         assert!((estimate.x_m - 0.004).abs() < 1e-6);
         assert!((estimate.velocity_x_m_per_s - 0.1).abs() < 1e-4);
     }

@@ -11,7 +11,8 @@ use crate::turns;
 /// A layer, ready to be evaluated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Layer {
-    bounds: Bounds,
+    /// `None` for a layer that acts everywhere.
+    bounds: Option<Bounds>,
     blend: Blend,
     source: Source,
 }
@@ -31,14 +32,15 @@ enum Source {
     Constant {
         electric_friction_n: f32,
     },
+    /// `middle + swing w(kx x + ky y + phase)`, with `w` a cosine, or 1 in the first half turn and -1 in the second.
     #[cfg(feature = "grating")]
     Grating {
         wave: Wave,
         cycles_per_m_x: f32,
         cycles_per_m_y: f32,
         phase_turns: f32,
-        trough_n: f32,
-        span_n: f32,
+        middle_n: f32,
+        swing_n: f32,
     },
     #[cfg(feature = "bitmap")]
     Bitmap {
@@ -70,13 +72,15 @@ impl Layer {
             }
             #[cfg(feature = "grating")]
             LayerRecord::Grating { wave, cycles_per_m_x, cycles_per_m_y, phase_turns, trough_n, crest_n } => {
+                // A sine is a cosine a quarter of a turn later.
+                let later_turns = if wave == Wave::Sine { 0.25 } else { 0.0 };
                 Source::Grating {
                     wave,
                     cycles_per_m_x,
                     cycles_per_m_y,
-                    phase_turns,
-                    trough_n: gain * trough_n,
-                    span_n: gain * (crest_n - trough_n),
+                    phase_turns: phase_turns - later_turns,
+                    middle_n: 0.5 * gain * (crest_n + trough_n),
+                    swing_n: 0.5 * gain * (crest_n - trough_n),
                 }
             }
             #[cfg(feature = "bitmap")]
@@ -102,7 +106,9 @@ impl Layer {
     /// Joins this layer's electric friction at a place to that of the layers below.
     #[inline]
     pub(crate) fn blend_over(&self, below_n: f32, x_m: f32, y_m: f32, pool: &BitmapPool) -> f32 {
-        if !self.bounds.contain(x_m, y_m) {
+        if let Some(bounds) = &self.bounds
+            && !bounds.contain(x_m, y_m)
+        {
             return below_n;
         }
         let own_n = self.source.electric_friction_n(x_m, y_m, pool);
@@ -114,16 +120,11 @@ impl Layer {
 }
 
 impl Bounds {
-    fn new(region: Region) -> Self {
+    fn new(region: Region) -> Option<Self> {
         match region {
-            Region::Screen => Self {
-                left_m: f32::NEG_INFINITY,
-                top_m: f32::NEG_INFINITY,
-                right_m: f32::INFINITY,
-                bottom_m: f32::INFINITY,
-            },
+            Region::Screen => None,
             Region::Rectangle { x_m, y_m, width_m, height_m } => {
-                Self { left_m: x_m, top_m: y_m, right_m: x_m + width_m, bottom_m: y_m + height_m }
+                Some(Self { left_m: x_m, top_m: y_m, right_m: x_m + width_m, bottom_m: y_m + height_m })
             }
         }
     }
@@ -135,7 +136,10 @@ impl Bounds {
 }
 
 impl Source {
-    #[inline]
+    /// Electric friction at a place, in N.
+    ///
+    /// Not inlined: a loop over layers would begin with the constants of every kind, and go past away layers slowly.
+    #[inline(never)]
     #[cfg_attr(
         not(all(feature = "grating", feature = "bitmap")),
         allow(unused_variables, reason = "the other kinds of layer do not look at them")
@@ -144,13 +148,13 @@ impl Source {
         match *self {
             Self::Constant { electric_friction_n } => electric_friction_n,
             #[cfg(feature = "grating")]
-            Self::Grating { wave, cycles_per_m_x, cycles_per_m_y, phase_turns, trough_n, span_n } => {
-                let turns = turns::fraction(x_m * cycles_per_m_x + y_m * cycles_per_m_y + phase_turns);
+            Self::Grating { wave, cycles_per_m_x, cycles_per_m_y, phase_turns, middle_n, swing_n } => {
+                let turns = x_m * cycles_per_m_x + y_m * cycles_per_m_y + phase_turns;
                 let height = match wave {
-                    Wave::Sine => 0.5 + 0.5 * turns::sine(turns),
-                    Wave::Square => f32::from(u8::from(turns < 0.5)),
+                    Wave::Sine => turns::cosine(turns),
+                    Wave::Square => 1.0_f32.copysign(turns::centred(turns)),
                 };
-                trough_n + span_n * height
+                middle_n + swing_n * height
             }
             #[cfg(feature = "bitmap")]
             Self::Bitmap { offset, width, height, samples_per_m, x_m: left_m, y_m: top_m, black_n, per_level_n } => {
@@ -171,10 +175,11 @@ impl Source {
 #[cfg(feature = "bitmap")]
 #[inline]
 fn neighbours(place: f32, count: u16) -> (usize, usize, f32) {
-    let last = count.saturating_sub(1);
-    let place = place.max(0.0).min(f32::from(last));
-    let index = place as u16;
-    (usize::from(index), usize::from((index + 1).min(last)), place - f32::from(index))
+    let last = u32::from(count.saturating_sub(1));
+    let place = if place > 0.0 { place } else { 0.0 };
+    // Beyond the last sample both are the last, whatever the distance.
+    let index = (place as u32).min(last);
+    (index as usize, (index + 1).min(last) as usize, place - index as f32)
 }
 
 #[cfg(feature = "bitmap")]

@@ -32,8 +32,9 @@
 //! # Leaving out
 //!
 //! Every Cargo feature is something that a scene or a host may ask for, and all are on by default: `grating` and
-//! `bitmap` layers, the `sine-carrier`, `telemetry`; and the `store` of what a board keeps over power-off. An image without one of them is smaller, says so in the feature
-//! bits of its hello, and refuses what needs it. Constant layers and the square carrier are always there.
+//! `bitmap` layers, the `sine-carrier`, `telemetry`; and the `store` of what a board keeps over power-off. An image
+//! without one of them is smaller, says so in the feature bits of its hello, and refuses what needs it. Constant layers
+//! and the square carrier are always there.
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 

@@ -32,7 +32,7 @@ pub struct Status {
     pub telemetry: Telemetry,
     /// The last hard fault with a number that belongs to it; it is latched while the state is Faulted.
     pub fault: Option<(Fault, u32)>,
-    /// Orders that were applied since power-on, modulo 2^32.
+    /// Orders that were applied since power-on, modulo 2^32, but for [`Order::HostHeard`].
     pub orders_applied: u32,
     /// The arm switch was held at the last tick.
     pub arm_switch: bool,
@@ -49,4 +49,6 @@ pub struct Counters {
     pub slewed_ticks: u32,
     /// Early edges of the carrier, to keep direct current off the electrode.
     pub balanced_edges: u32,
+    /// Ticks whose deadline was missed.
+    pub missed_deadlines: u32,
 }

@@ -27,36 +27,57 @@ impl StillnessTiming {
 /// Whether the finger is still, and how far the ramp has come.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stillness {
+    phase: Phase,
     slow_ticks: u32,
-    still: bool,
     gain: f32,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Phase {
+    /// The finger moves, and the gain is 1.
+    Moving,
+    /// The finger moves, and the gain rises.
+    Returning,
+    /// The finger is still, and the gain falls or is zero.
+    Still,
 }
 
 impl Stillness {
     /// A finger that has just come down is taken to move.
-    pub(crate) const MOVING: Self = Self { slow_ticks: 0, still: false, gain: 1.0 };
+    pub(crate) const MOVING: Self = Self { phase: Phase::Moving, slow_ticks: 0, gain: 1.0 };
 
-    /// Takes one tick's estimate and returns the gain on the friction asked for, from 0 to 1.
+    /// Takes one tick's estimate and returns the gain on the friction asked for, from 0 to below 1; `None` where it is
+    /// 1.
     #[inline]
-    pub(crate) fn update(&mut self, estimate: &Estimate, timing: &StillnessTiming) -> f32 {
+    pub(crate) fn update(&mut self, estimate: &Estimate, timing: &StillnessTiming) -> Option<f32> {
         let speed_squared = estimate.velocity_x_m_per_s * estimate.velocity_x_m_per_s
             + estimate.velocity_y_m_per_s * estimate.velocity_y_m_per_s;
-        if self.still {
-            self.still = speed_squared <= MOVING_ABOVE_M_PER_S * MOVING_ABOVE_M_PER_S;
-            self.slow_ticks = 0;
-        } else if speed_squared < STILL_BELOW_M_PER_S * STILL_BELOW_M_PER_S {
-            self.slow_ticks += 1;
-            self.still = self.slow_ticks >= timing.still_after_ticks;
-        } else {
-            self.slow_ticks = 0;
+        let slow = speed_squared < STILL_BELOW_M_PER_S * STILL_BELOW_M_PER_S;
+        self.slow_ticks = if slow { self.slow_ticks.saturating_add(1) } else { 0 };
+        if self.phase == Phase::Moving && self.slow_ticks < timing.still_after_ticks {
+            return None;
         }
-        let step = if self.still { -timing.ramp_step } else { timing.ramp_step };
-        self.gain = (self.gain + step).clamp(0.0, 1.0);
-        self.gain
+        self.ramp(speed_squared, timing)
     }
 
-    pub(crate) fn is_ramped(&self) -> bool {
-        self.gain < 1.0
+    /// A tick at which the gain moves or is not 1.
+    fn ramp(&mut self, speed_squared: f32, timing: &StillnessTiming) -> Option<f32> {
+        let moving_again = speed_squared > MOVING_ABOVE_M_PER_S * MOVING_ABOVE_M_PER_S;
+        self.phase = match self.phase {
+            Phase::Still if moving_again => Phase::Returning,
+            Phase::Moving | Phase::Returning if self.slow_ticks >= timing.still_after_ticks => Phase::Still,
+            phase => phase,
+        };
+        if self.phase == Phase::Still {
+            self.gain = (self.gain - timing.ramp_step).max(0.0);
+            return Some(self.gain);
+        }
+        self.gain += timing.ramp_step;
+        if self.gain < 1.0 {
+            return Some(self.gain);
+        }
+        *self = Self { slow_ticks: self.slow_ticks, ..Self::MOVING };
+        None
     }
 }
 
@@ -67,7 +88,7 @@ mod tests {
     fn run(stillness: &mut Stillness, speed_m_per_s: f32, ticks: u32) -> f32 {
         let timing = StillnessTiming::new(40_000);
         let estimate = Estimate { velocity_y_m_per_s: speed_m_per_s, ..Estimate::default() };
-        (0..ticks).fold(1.0, |_, _| stillness.update(&estimate, &timing))
+        (0..ticks).fold(1.0, |_, _| stillness.update(&estimate, &timing).unwrap_or(1.0))
     }
 
     #[test]

@@ -6,8 +6,9 @@ use crate::{Board, Order, Sense};
 
 /// Host timeout before a scene has set one.
 const HOST_TIMEOUT_DEFAULT_S: f32 = 0.25;
-/// The monitor may be off by this part of full scale.
-const MONITOR_TOLERANCE: f32 = 0.2;
+/// The monitor may be off by this part of full scale, and by [`MONITOR_GAIN_TOLERANCE`] of what is driven.
+const MONITOR_FLOOR: f32 = 0.04;
+const MONITOR_GAIN_TOLERANCE: f32 = 0.25;
 /// Ticks of a wrong monitor voltage, less those of a right one, that are a fault.
 const MONITOR_WRONG_TICKS: u32 = 20;
 
@@ -17,6 +18,7 @@ pub(crate) struct Supervisor {
     state: State,
     fault: Option<(Fault, u32)>,
     host_heard_at_tick: u32,
+    host_timeout_ticks: u32,
     host_silent: bool,
     monitor: Monitor,
 }
@@ -26,7 +28,7 @@ pub(crate) struct Supervisor {
 struct Monitor {
     expected_v: f32,
     step: f32,
-    tolerance_v: f32,
+    floor_v: f32,
     wrong_ticks: u32,
 }
 
@@ -35,20 +37,24 @@ impl Monitor {
         Self {
             expected_v: 0.0,
             step: 1.0 - libm::expf(-board.tick_period_s() / board.limits.edge_time_constant_s),
-            tolerance_v: MONITOR_TOLERANCE * board.limits.full_scale_v_peak,
+            floor_v: MONITOR_FLOOR * board.limits.full_scale_v_peak,
             wrong_ticks: 0,
         }
     }
 
     /// Compares what was driven in the tick before with what the monitor read at its end.
+    #[inline]
     fn is_wrong(&mut self, driven_v: f32, monitor_v: f32) -> bool {
         self.expected_v += self.step * (driven_v - self.expected_v);
-        let error_v = monitor_v - self.expected_v;
-        self.wrong_ticks = if error_v > -self.tolerance_v && error_v < self.tolerance_v {
-            self.wrong_ticks.saturating_sub(1)
-        } else {
-            self.wrong_ticks + 1
-        };
+        let tolerance_v = self.floor_v + MONITOR_GAIN_TOLERANCE * driven_v.abs();
+        // A monitor that is not a number is wrong, too.
+        if (monitor_v - self.expected_v).abs() < tolerance_v {
+            if self.wrong_ticks > 0 {
+                self.wrong_ticks -= 1;
+            }
+            return false;
+        }
+        self.wrong_ticks = self.wrong_ticks.saturating_add(1);
         self.wrong_ticks >= MONITOR_WRONG_TICKS
     }
 }
@@ -59,6 +65,7 @@ impl Supervisor {
             state: State::Disarmed,
             fault: board.reset_fault,
             host_heard_at_tick: 0,
+            host_timeout_ticks: host_timeout_default_ticks(board),
             host_silent: false,
             monitor: Monitor::new(board),
         }
@@ -94,32 +101,49 @@ impl Supervisor {
         }
     }
 
-    /// Latches a hard fault.
+    /// Latches a hard fault, unless one is latched.
     pub(crate) fn raise(&mut self, fault: Fault, detail: u32) {
-        self.state = State::Faulted;
-        self.fault = Some((fault, detail));
+        if self.state != State::Faulted {
+            self.state = State::Faulted;
+            self.fault = Some((fault, detail));
+        }
     }
 
-    /// Looks after the output at every tick. `driven_v` is what went to the amplifier in the tick before;
-    /// `host_timeout_ticks` is `None` for a scene that goes on without a host.
-    pub(crate) fn check(&mut self, sense: &Sense, driven_v: f32, now_tick: u32, host_timeout_ticks: Option<u32>) {
+    /// Sets the timeout that holds from now on; `None` for a scene that goes on without a host.
+    pub(crate) fn set_host_timeout(&mut self, ticks: Option<u32>) {
+        // No host is silent for more ticks than this.
+        self.host_timeout_ticks = ticks.unwrap_or(u32::MAX);
+    }
+
+    /// Looks after the output at every tick, and returns whether there may be any. `driven_v` is what went to the
+    /// amplifier in the tick before.
+    #[inline]
+    pub(crate) fn check(&mut self, sense: &Sense, driven_v: f32, now_tick: u32) -> bool {
         let monitor_wrong = self.monitor.is_wrong(driven_v, sense.monitor_v);
+        let host_silent = now_tick.wrapping_sub(self.host_heard_at_tick) > self.host_timeout_ticks;
+        if monitor_wrong || sense.amplifier_fault || host_silent || !sense.arm_switch {
+            self.act(sense, monitor_wrong, host_silent);
+        }
+        self.state == State::Active
+    }
+
+    /// Does what one of the things that [`Self::check`] looks after asks for. Of several the first here counts.
+    #[inline(never)]
+    fn act(&mut self, sense: &Sense, monitor_wrong: bool, host_silent: bool) {
         if self.state == State::Faulted {
             return;
         }
+        let armed = self.state != State::Disarmed;
         if monitor_wrong {
             self.monitor.wrong_ticks = 0;
             self.raise(Fault::Monitor, sense.monitor_v as i32 as u32);
         } else if sense.amplifier_fault {
             self.raise(Fault::Amplifier, 0);
-        } else if self.state != State::Disarmed {
-            if !sense.arm_switch {
-                self.raise(Fault::ArmSwitch, 0);
-            } else if host_timeout_ticks.is_some_and(|timeout| now_tick.wrapping_sub(self.host_heard_at_tick) > timeout)
-            {
-                self.state = State::Disarmed;
-                self.host_silent = true;
-            }
+        } else if armed && !sense.arm_switch {
+            self.raise(Fault::ArmSwitch, 0);
+        } else if armed && host_silent {
+            self.state = State::Disarmed;
+            self.host_silent = true;
         }
     }
 }

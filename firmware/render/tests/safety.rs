@@ -187,3 +187,66 @@ fn the_envelope_keeps_its_slew_limit() {
     assert!(last_v_rms > 100.0);
     assert_eq!(desk.status().counters.slewed_ticks, 25);
 }
+
+#[test]
+fn a_touch_source_that_says_the_same_for_ever_ends_the_drive() {
+    let mut memory = Memory::new();
+    let mut desk = playing(&mut memory);
+    for i in 0..4000 {
+        if i % 400 == 0 {
+            desk.command(Command::Ping).unwrap();
+            desk.sense.touch = Some(Touch::Down { x_m: 0.05, y_m: 0.03, age_ticks: 1000 + i });
+        }
+        let drive = desk.tick();
+        assert!(i < 802 || drive == OFF, "driven {i} ticks after the last news of the finger");
+    }
+}
+
+#[test]
+fn a_touch_report_of_no_numbers_changes_nothing() {
+    let mut memory = Memory::new();
+    let mut desk = playing(&mut memory);
+    desk.sense.touch = Some(Touch::Down { x_m: f32::NAN, y_m: f32::INFINITY, age_ticks: 0 });
+    assert!(desk.tick().dac_code != 0);
+    assert!(desk.slide(1200).iter().all(|drive| drive.dac_code != 0));
+}
+
+#[test]
+fn a_new_scenes_voltage_limit_holds_from_its_first_tick() {
+    let mut memory = Memory::new();
+    let mut desk = playing(&mut memory);
+    assert!(desk.status().telemetry.voltage_v_rms > 100.0);
+    let header = Header { voltage_max_v_rms: 20.0, slew_v_per_s: 10.0, ..HEADER };
+    desk.load(&scene(&header, &[record(Layer::Constant { electric_friction_n: 1e-5 })])).unwrap();
+    desk.tick();
+    assert!(desk.status().telemetry.voltage_v_rms <= 20.0);
+}
+
+#[test]
+fn a_dead_amplifier_and_a_live_electrode_are_seen_at_50_volts() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    let header = Header { voltage_max_v_rms: 45.0, ..HEADER };
+    desk.play(&scene(&header, &[record(Layer::Constant { electric_friction_n: 1.0 })]));
+    desk.slide(400);
+    desk.amplifier_dead = true;
+    assert_faults(&mut desk, Fault::Monitor, 40);
+
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.sense.monitor_v = 49.0;
+    desk.ticks(40);
+    assert_eq!(desk.status().fault.map(|(fault, _)| fault), Some(Fault::Monitor));
+}
+
+#[test]
+fn the_first_fault_is_the_one_that_is_told() {
+    let mut memory = Memory::new();
+    let mut desk = playing(&mut memory);
+    desk.ticker.raise(Fault::Deadline, 4300);
+    desk.ticker.raise(Fault::Watchdog, 1);
+    desk.sense.amplifier_fault = true;
+    desk.tick();
+    assert_eq!(desk.status().fault, Some((Fault::Deadline, 4300)));
+    assert_eq!(desk.status().counters.missed_deadlines, 1);
+}

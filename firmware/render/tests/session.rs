@@ -8,13 +8,13 @@ use frixel_render::{Board, Touch};
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::frame::crc32;
 use frixel_wire::hello::feature;
-#[cfg(any(feature = "bitmap", feature = "telemetry"))]
-use frixel_wire::message::FromBoard;
-use frixel_wire::message::{Accepted, Command, ConfigField, Refusal};
+use frixel_wire::message::{Accepted, Command, ConfigField, FromBoard, Refusal};
 use frixel_wire::payload::CHUNK_LEN;
+#[cfg(feature = "bitmap")]
+use frixel_wire::scene::bitmap_crc32;
 use frixel_wire::scene::{Header, Layer, SceneError};
 use proptest::prelude::*;
-use support::{Desk, HEADER, Memory, constant, record, scene};
+use support::{Desk, HEADER, Memory, constant, record, request, scene};
 
 #[cfg(feature = "bitmap")]
 fn bitmap(crc32: u32) -> Layer {
@@ -59,7 +59,7 @@ fn chunks_may_repeat_and_a_gap_is_told_once() {
     let mut desk = Desk::new(&mut memory);
     desk.greet();
     let samples: Vec<u8> = (0..1000_u32).map(|i| (i * 7) as u8).collect();
-    desk.command(Command::UploadBitmap { width: 100, height: 10, crc32: crc32(&samples) }).unwrap();
+    desk.command(Command::UploadBitmap { width: 100, height: 10, crc32: bitmap_crc32(100, 10, &samples) }).unwrap();
     let chunks: Vec<&[u8]> = samples.chunks(CHUNK_LEN).collect();
     desk.chunk(0, chunks[0]);
     desk.chunk(0, chunks[0]);
@@ -81,12 +81,12 @@ fn a_bitmap_with_a_wrong_byte_is_refused_and_forgotten() {
     let mut desk = Desk::new(&mut memory);
     desk.greet();
     let samples = vec![3; 400];
-    let expected = crc32(&samples);
+    let expected = bitmap_crc32(20, 20, &samples);
     desk.command(Command::UploadBitmap { width: 20, height: 20, crc32: expected }).unwrap();
     let mut wrong = samples.clone();
     wrong[200] ^= 1;
     desk.chunks(&wrong);
-    let found = crc32(&wrong);
+    let found = bitmap_crc32(20, 20, &wrong);
     assert_eq!(desk.command(Command::UploadEnd), Err(Refusal::CrcMismatch { expected, found }));
     assert_eq!(desk.upload_bitmap(20, 20, &samples), Ok(Accepted::Done), "not already held");
 }
@@ -100,17 +100,17 @@ fn the_pool_keeps_what_plays_and_gives_way_when_nothing_does() {
     let first = vec![1; 250 * 250];
     let second = vec![2; 250 * 250];
     desk.upload_bitmap(250, 250, &first).unwrap();
-    desk.play(&scene(&HEADER, &[record(bitmap(crc32(&first)))]));
+    desk.play(&scene(&HEADER, &[record(bitmap(bitmap_crc32(250, 250, &first)))]));
     let full = desk.upload_bitmap(250, 250, &second);
     assert_eq!(full, Err(Refusal::BitmapPoolFull { len: 62_500, free: 81_920 - 62_500 }));
     desk.command(Command::Stop).unwrap();
     assert_eq!(desk.upload_bitmap(250, 250, &second), Ok(Accepted::Done));
     assert_eq!(desk.command(Command::Play), Err(Refusal::NoScene), "its bitmap is overwritten");
     assert_eq!(
-        desk.load(&scene(&HEADER, &[record(bitmap(crc32(&first)))])),
-        Err(Refusal::BitmapMissing { crc32: crc32(&first) })
+        desk.load(&scene(&HEADER, &[record(bitmap(bitmap_crc32(250, 250, &first)))])),
+        Err(Refusal::BitmapMissing { crc32: bitmap_crc32(250, 250, &first) })
     );
-    desk.load(&scene(&HEADER, &[record(bitmap(crc32(&second)))])).unwrap();
+    desk.load(&scene(&HEADER, &[record(bitmap(bitmap_crc32(250, 250, &second)))])).unwrap();
 }
 
 #[test]
@@ -206,6 +206,78 @@ fn a_scene_is_replaced_while_it_plays() {
     assert!((before.asked_electric_friction_n - 0.005).abs() < 1e-6);
     assert!((after.asked_electric_friction_n - 0.01).abs() < 1e-6);
     desk.load(&constant(0.015)).unwrap();
+}
+
+#[test]
+fn what_puts_the_output_to_zero_always_has_room() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    desk.load(&constant(0.01)).unwrap();
+    // All in one piece, before the ticker has looked.
+    let mut bytes = Vec::new();
+    let commands = [Command::Arm, Command::Play, Command::Stop, Command::Play, Command::Stop, Command::Play];
+    for (sequence, command) in
+        commands.into_iter().cycle().take(40).chain([Command::Disarm, Command::Disarm]).enumerate()
+    {
+        bytes.extend(request(900 + sequence as u16, command));
+    }
+    desk.send(&bytes);
+    let refused = desk.messages.iter().filter(
+        |message| matches!(message, FromBoard::Answer(answer) if answer.sequence >= 940 && answer.outcome.is_err()),
+    );
+    assert_eq!(refused.count(), 0, "{:?}", desk.messages);
+    desk.sense.touch = Some(Touch::Down { x_m: 0.05, y_m: 0.05, age_ticks: 0 });
+    assert_eq!(desk.tick(), frixel_render::Drive::default());
+    assert_eq!(desk.status().telemetry.state, State::Disarmed);
+}
+
+#[cfg(feature = "bitmap")]
+#[test]
+fn the_same_bytes_in_another_shape_are_another_bitmap() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    let samples = vec![7; 800];
+    assert_eq!(desk.upload_bitmap(40, 20, &samples), Ok(Accepted::Done));
+    assert_eq!(desk.upload_bitmap(20, 40, &samples), Ok(Accepted::Done));
+    assert_eq!(desk.upload_bitmap(40, 20, &samples), Ok(Accepted::AlreadyHeld));
+}
+
+#[cfg(feature = "bitmap")]
+#[test]
+fn free_space_in_pieces_is_moved_together_when_nothing_plays() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    let (first, second, third) = (vec![1; 30_000], vec![2; 30_000], vec![3; 45_000]);
+    desk.upload_bitmap(300, 100, &first).unwrap();
+    desk.upload_bitmap(300, 100, &second).unwrap();
+    let both = [bitmap_crc32(300, 100, &first), bitmap_crc32(300, 100, &second)].map(|crc32| record(bitmap(crc32)));
+    desk.load(&scene(&HEADER, &both)).unwrap();
+    assert_eq!(desk.upload_bitmap(300, 100, &second), Ok(Accepted::AlreadyHeld));
+    assert_eq!(desk.upload_bitmap(450, 100, &third), Ok(Accepted::Done));
+    desk.play(&scene(&HEADER, &[record(bitmap(bitmap_crc32(300, 100, &second)))]));
+    desk.slide(800);
+    let asked_n = desk.status().telemetry.asked_electric_friction_n;
+    assert!((asked_n - 0.02 * 2.0 / 255.0).abs() < 1e-9, "the bitmap that stayed was moved whole: {asked_n}");
+}
+
+#[cfg(feature = "bitmap")]
+#[test]
+fn announced_bitmaps_stay_however_often_they_are_named() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    let (first, second, third) = (vec![1; 30_000], vec![2; 30_000], vec![3; 30_000]);
+    desk.upload_bitmap(300, 100, &first).unwrap();
+    desk.upload_bitmap(300, 100, &second).unwrap();
+    for _ in 0..70 {
+        assert_eq!(desk.upload_bitmap(300, 100, &second), Ok(Accepted::AlreadyHeld));
+    }
+    assert!(matches!(desk.upload_bitmap(300, 100, &third), Err(Refusal::BitmapPoolFull { .. })));
+    let both = [bitmap_crc32(300, 100, &first), bitmap_crc32(300, 100, &second)].map(|crc32| record(bitmap(crc32)));
+    desk.load(&scene(&HEADER, &both)).unwrap();
 }
 
 proptest! {

@@ -9,7 +9,7 @@ use frixel_render::{Board, Drive};
 use frixel_wire::frame::crc32;
 use frixel_wire::hello::BoardLimits;
 use frixel_wire::message::{Accepted, Command};
-use frixel_wire::scene::Layer;
+use frixel_wire::scene::{Layer, bitmap_crc32};
 use proptest::prelude::*;
 use support::flash::{PAGE_LEN, SimulatedFlash};
 use support::{Desk, HEADER, Memory, constant, record, scene};
@@ -162,7 +162,8 @@ fn textured(desk: &mut Desk) -> Vec<u8> {
     let pictures = [content(7, 61 * 53), content(8, 9)];
     desk.upload_bitmap(61, 53, &pictures[0]).unwrap();
     desk.upload_bitmap(3, 3, &pictures[1]).unwrap();
-    let [first, second] = pictures.map(|picture| crc32(&picture));
+    let first = bitmap_crc32(61, 53, &pictures[0]);
+    let second = bitmap_crc32(3, 3, &pictures[1]);
     scene(&HEADER, &[record(layer(first, 1e-3)), record(layer(second, 1e-2)), record(layer(first, 7e-4))])
 }
 

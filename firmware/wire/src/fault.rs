@@ -71,7 +71,7 @@ pub enum Fault {
     StackOverflow,
     /// The independent watchdog was not fed.
     Watchdog,
-    /// The arm switch was let go while playing.
+    /// The arm switch was let go while armed or playing.
     ArmSwitch,
     /// A fault of newer firmware that this crate does not know, by number.
     Other(u8),
@@ -141,7 +141,7 @@ impl fmt::Display for Fault {
             Self::Watchdog => {
                 "the firmware hung until the watchdog restarted it; report it with what `frixel info` says, then clear the fault"
             }
-            Self::ArmSwitch => "the arm switch was let go while playing; hold it, clear the fault and arm again",
+            Self::ArmSwitch => "the arm switch was let go while armed or playing; hold it, clear the fault and arm again",
             Self::Other(_) => "this program does not know it; update the frixel command",
         })
     }

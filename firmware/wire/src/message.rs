@@ -37,7 +37,7 @@ pub enum Command {
         width: u16,
         /// Rows.
         height: u16,
-        /// CRC-32 of all samples: the bitmap's name in scene records.
+        /// The bitmap's name in scene records: [`crate::scene::bitmap_crc32`].
         crc32: u32,
     },
     /// Ends an upload: the board checks its CRC.

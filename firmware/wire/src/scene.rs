@@ -10,6 +10,8 @@ mod view;
 pub use error::SceneError;
 pub use view::Scene;
 
+use crate::frame::Crc32;
+
 /// Version of the layout.
 pub const SCENE_VERSION: u16 = 1;
 /// Bytes of the header.
@@ -20,6 +22,19 @@ pub const RECORD_LEN: usize = 56;
 pub const RECORDS_MAX: usize = 64;
 /// Bytes of the largest scene.
 pub const SCENE_MAX_LEN: usize = HEADER_LEN + RECORDS_MAX * RECORD_LEN;
+
+/// CRC-32 that names a bitmap: of its width and height, each little-endian in two bytes, and its samples. The shape is
+/// part of the name, since the same bytes in another shape are another picture.
+pub fn bitmap_crc32(width: u16, height: u16, samples: &[u8]) -> u32 {
+    bitmap_digest(width, height).update(samples).finish()
+}
+
+/// [`bitmap_crc32`] of samples that come piece by piece.
+pub fn bitmap_digest(width: u16, height: u16) -> Crc32 {
+    let mut digest = Crc32::new();
+    digest.update(&width.to_le_bytes()).update(&height.to_le_bytes());
+    digest
+}
 
 /// What holds for the whole scene.
 #[derive(Clone, Copy, Debug, PartialEq)]

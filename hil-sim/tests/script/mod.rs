@@ -6,7 +6,7 @@ use frixel_render::Status;
 use frixel_wire::frame::{FRAME_MAX_LEN, crc32};
 use frixel_wire::message::{Command, Request};
 use frixel_wire::payload::{self, CHUNK_LEN};
-use frixel_wire::scene::{Blend, Carrier, Header, Layer, Record, Region};
+use frixel_wire::scene::{Blend, Carrier, Header, Layer, Record, Region, bitmap_crc32};
 
 /// Ticks between two pings.
 const PING_TICKS: u64 = 2_000;
@@ -45,7 +45,7 @@ impl<'a> Script<'a> {
     }
 
     pub fn upload_bitmap(&mut self, width: u16, height: u16, samples: &[u8]) -> u32 {
-        let crc32 = crc32(samples);
+        let crc32 = bitmap_crc32(width, height, samples);
         self.command(Command::UploadBitmap { width, height, crc32 });
         self.chunks(samples);
         crc32

@@ -4,8 +4,10 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use frixel::device::{DeviceError, PortError};
+use frixel::model_csv::CsvError;
 use frixel::output::OutputError;
 use frixel::player::SimulationError;
+use frixel::report::ReportError;
 use frixel::rigs::ServerError;
 use frixel::scene::CompileError;
 use frixel_hil_sim::{StrokeError, WorldError};
@@ -25,6 +27,8 @@ pub(crate) enum CommandError {
     #[error(transparent)]
     Output(#[from] OutputError),
     #[error(transparent)]
+    Report(#[from] ReportError),
+    #[error(transparent)]
     World(#[from] WorldError),
     #[error(transparent)]
     Simulation(#[from] SimulationError),
@@ -32,16 +36,31 @@ pub(crate) enum CommandError {
     Stroke { path: PathBuf, source: StrokeError },
     #[error("a stroke over this scene: {0}")]
     NaturalStroke(StrokeError),
+    #[error("{input}: {source}")]
+    ModelCsv { input: String, source: CsvError },
+    #[error("{} is the input as well: writing it would destroy it; give --output another name", path.display())]
+    OutputIsInput { path: PathBuf },
     #[error("{} cannot be read ({source}): check the path", path.display())]
     Read { path: PathBuf, source: io::Error },
     #[error("{} cannot be written ({source}): check the folder and its free space", path.display())]
     Write { path: PathBuf, source: io::Error },
+    #[error("{} is not UTF-8 text: save it as UTF-8, a CSV file with the columns t_s,x_mm,y_mm", path.display())]
+    StrokeNotText { path: PathBuf },
+    #[error("{} lasts {seconds} s, longer than a day (86400 s): give a shorter stroke; its times are in seconds", path.display())]
+    StrokeTooLong { path: PathBuf, seconds: f64 },
     #[error(
-        "{port} is a board with an electrode: --stroke moves a simulated finger only; leave it out, or use --port sim"
+        "{} is nowhere on the screen, which is {width_mm} by {height_mm} mm: give places in mm from its top left corner",
+        path.display()
     )]
+    StrokeOffScreen { path: PathBuf, width_mm: f64, height_mm: f64 },
+    #[error("--stroke moves the finger of --port sim only; a board at {port} has its own: leave it out")]
     StrokeOnBoard { port: String },
     #[error("{port} sends telemetry at most {max} times a second, --csv-hz {asked} is more; ask for {max} or less")]
     CsvTooFast { port: String, asked: u32, max: u32 },
+    #[error("--csv-hz {asked} does not divide the board's {tick_hz} ticks a second; ask for {nearest}")]
+    CsvUneven { asked: u32, tick_hz: u32, nearest: String },
+    #[error("{seconds} s is shorter than one tick of the board, {tick_s} s: play for longer")]
+    TooShort { seconds: f64, tick_s: f64 },
     #[error(
         "{port} is a board with an electrode: put on --arm, and hold the switch on the board, to let it drive hundreds of volts"
     )]

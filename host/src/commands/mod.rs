@@ -4,8 +4,10 @@ mod demo;
 mod error;
 mod info;
 mod interrupt;
+mod model;
 mod play;
 mod ports;
+mod report;
 mod sim;
 mod stroke;
 
@@ -37,6 +39,11 @@ enum Command {
     Ports,
     /// Say what board is at a port.
     Info(InfoArgs),
+    /// Evaluate or invert the contact model over rows of CSV.
+    #[command(subcommand)]
+    Model(model::ModelCommand),
+    /// Draw the contact model, its error and its cost on one page.
+    Report(report::ReportArgs),
 }
 
 #[derive(Debug, Args)]
@@ -105,6 +112,8 @@ impl Cli {
             Some(Command::Sim(args)) => sim::run(&args),
             Some(Command::Ports) => ports::run(),
             Some(Command::Info(args)) => info::run(&args),
+            Some(Command::Model(command)) => model::run(&command),
+            Some(Command::Report(args)) => report::run(&args),
         }
     }
 }

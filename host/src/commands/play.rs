@@ -6,7 +6,7 @@ mod simulator;
 
 use std::path::{Path, PathBuf};
 
-use frixel::output::{FeltCsv, FeltRow};
+use frixel::output::{FeltCsv, Report};
 use frixel::scene::Program;
 
 use bars::Bars;
@@ -15,7 +15,8 @@ use super::PlayArgs;
 use super::error::CommandError;
 
 pub(super) fn run(args: &PlayArgs) -> Result<(), CommandError> {
-    let (report, files) = if args.port == "sim" { simulator::play(args)? } else { board::play(args)? };
+    let Played { report, files, failure } =
+        if args.port == "sim" { simulator::play(args)? } else { board::play(args)? };
     if args.json {
         println!("{}", report.to_json());
     } else {
@@ -24,7 +25,15 @@ pub(super) fn run(args: &PlayArgs) -> Result<(), CommandError> {
             println!("  {:<16} {}", "wrote", file.display());
         }
     }
-    Ok(())
+    failure.map_or(Ok(()), Err)
+}
+
+/// What came of playing.
+struct Played {
+    report: Report,
+    files: Vec<PathBuf>,
+    /// Why it ended before its time, where that is a failure. What was played until then is in the report and the files.
+    failure: Option<CommandError>,
 }
 
 /// Says what the compiler has to say of a scene: conversions, roundings.
@@ -34,12 +43,27 @@ fn tell_notes(program: &Program) {
     }
 }
 
-/// Writes `felt.csv` into a folder that is made when it is not there.
-fn write_felt_csv(folder: &Path, rows: &[FeltRow]) -> Result<PathBuf, CommandError> {
+/// Creates `felt.csv` in a folder that is made when it is not there.
+fn create_felt_csv(folder: &Path) -> Result<(FeltCsv, PathBuf), CommandError> {
     std::fs::create_dir_all(folder).map_err(CommandError::writing(folder))?;
     let path = folder.join("felt.csv");
-    let mut csv = FeltCsv::create(&path)?;
-    rows.iter().try_for_each(|row| csv.write(row))?;
-    csv.finish()?;
-    Ok(path)
+    Ok((FeltCsv::create(&path)?, path))
+}
+
+/// Ticks between two rows of `felt.csv`.
+fn ticks_per_row(csv_hz: u32, tick_hz: u32) -> Result<u32, CommandError> {
+    let divides = |rate: &u32| tick_hz.is_multiple_of(*rate);
+    if csv_hz > 0 && divides(&csv_hz) {
+        return Ok(tick_hz / csv_hz);
+    }
+    let below = (1..csv_hz.min(tick_hz)).rev().find(divides);
+    let above = (csv_hz..=tick_hz).find(divides);
+    let nearest: Vec<String> = [below, above].iter().flatten().map(u32::to_string).collect();
+    Err(CommandError::CsvUneven { asked: csv_hz, tick_hz, nearest: nearest.join(" or ") })
+}
+
+/// Refuses a time in which not one tick passes.
+fn check_seconds(seconds: f64, tick_hz: u32) -> Result<(), CommandError> {
+    let tick_s = 1.0 / f64::from(tick_hz);
+    if seconds < tick_s { Err(CommandError::TooShort { seconds, tick_s }) } else { Ok(()) }
 }

@@ -26,11 +26,12 @@ pub(super) fn run(args: &SimArgs) -> Result<(), CommandError> {
     let config = RigConfig::default();
     let mut memory = BoardMemory::new();
     let mut rig = Rig::new(&mut memory, &config, stroke, args.seed)?;
-    let server = Server::open()?;
+    let tick_hz = config.board.tick_hz;
+    let server = Server::open(&args.out, tick_hz, tick_hz / ROWS_HZ)?;
     println!("port: {}", server.path());
     io::stdout().flush().map_err(CommandError::writing("standard output".as_ref()))?;
     eprintln!("a virtual board is there until Ctrl-C; in another terminal: frixel play SCENE --port {}", server.path());
-    server.run(&mut rig, &args.out, config.board.tick_hz / ROWS_HZ, &|| interrupt.is_asked())?;
+    server.run(&mut rig, &|| interrupt.is_asked())?;
     eprintln!("wrote {0}/felt.csv and {0}/events.csv", args.out.display());
     Ok(())
 }

@@ -1,5 +1,6 @@
 //! Where the simulated finger goes.
 
+use std::io::ErrorKind;
 use std::path::Path;
 
 use frixel_hil_sim::Stroke;
@@ -8,6 +9,12 @@ use super::error::CommandError;
 
 /// Length of a stroke that nobody asked to be longer or shorter, in s.
 const NATURAL_STROKE_S: f64 = 3.0;
+/// Longest stroke of a file: a day, in s.
+const FILE_STROKE_MAX_S: f64 = 86_400.0;
+/// Time between two looks at where a stroke is, in s.
+const LOOK_PERIOD_S: f64 = 1e-3;
+/// Most looks at a stroke.
+const LOOKS_MAX: f64 = 1e6;
 
 /// The stroke of a file, or a natural one over a screen of these sides.
 pub(super) fn stroke(
@@ -17,11 +24,56 @@ pub(super) fn stroke(
     seconds: Option<f64>,
 ) -> Result<Stroke, CommandError> {
     match file {
-        Some(path) => {
-            let text = std::fs::read_to_string(path).map_err(CommandError::reading(path))?;
-            Stroke::from_csv(&text).map_err(|source| CommandError::Stroke { path: path.into(), source })
-        }
+        Some(path) => from_file(path),
         None => Stroke::natural(screen_width_m, screen_height_m, seconds.unwrap_or(NATURAL_STROKE_S))
             .map_err(CommandError::NaturalStroke),
     }
+}
+
+fn from_file(path: &Path) -> Result<Stroke, CommandError> {
+    let text = std::fs::read_to_string(path).map_err(|error| match error.kind() {
+        ErrorKind::InvalidData => CommandError::StrokeNotText { path: path.into() },
+        _ => CommandError::reading(path)(error),
+    })?;
+    let stroke = Stroke::from_csv(&text).map_err(|source| CommandError::Stroke { path: path.into(), source })?;
+    let seconds = stroke.duration_s();
+    if seconds > FILE_STROKE_MAX_S {
+        return Err(CommandError::StrokeTooLong { path: path.into(), seconds });
+    }
+    Ok(stroke)
+}
+
+/// Refuses the stroke of a file that is nowhere on a screen of these sides in its first `seconds`, and says it of one
+/// that is partly off.
+pub(super) fn check_on_screen(
+    path: &Path,
+    stroke: &Stroke,
+    screen_width_m: f64,
+    screen_height_m: f64,
+    seconds: f64,
+) -> Result<(), CommandError> {
+    let end_s = seconds.min(stroke.duration_s());
+    let looks = (end_s / LOOK_PERIOD_S).ceil().clamp(1.0, LOOKS_MAX);
+    let (mut on, mut off) = (0_u32, 0_u32);
+    for finger in (0..=looks as u32).filter_map(|look| stroke.at(end_s * f64::from(look) / looks)) {
+        if (0.0..=screen_width_m).contains(&finger.x_m) && (0.0..=screen_height_m).contains(&finger.y_m) {
+            on += 1;
+        } else {
+            off += 1;
+        }
+    }
+    // A screen's sides come as f32; a micrometre is as exact as anybody writes them.
+    let in_mm = |side_m: f64| (1e6 * side_m).round() / 1e3;
+    let (width_mm, height_mm) = (in_mm(screen_width_m), in_mm(screen_height_m));
+    if on == 0 && off > 0 {
+        return Err(CommandError::StrokeOffScreen { path: path.into(), width_mm, height_mm });
+    }
+    if off > 0 {
+        let percent = (100.0 * f64::from(off) / f64::from(on + off)).max(0.1);
+        let path = path.display();
+        eprintln!(
+            "{path}: the finger is off the screen ({width_mm} by {height_mm} mm) for {percent:.1} % of the stroke"
+        );
+    }
+    Ok(())
 }

@@ -80,6 +80,10 @@ impl<L: Link> Exchange<L> {
         &self.link
     }
 
+    pub(super) fn link_mut(&mut self) -> &mut L {
+        &mut self.link
+    }
+
     pub(super) fn into_link(self) -> L {
         self.link
     }

@@ -53,19 +53,26 @@ pub use ports::{PortInfo, UsbDevice, ports};
 pub use serial::{DEFAULT_BAUD, SerialLink};
 pub use upload::{Bitmap, Progress, Upload};
 
-/// Time between pings when nothing else is sent: a quarter of the host timeout that a scene has when it names none.
-const PING_PERIOD: Duration = Duration::from_millis(60);
-/// Shortest time between pings: a quarter of the shortest host timeout, 20 ms.
+/// Longest time between pings when nothing else is sent: a quarter of the host timeout that a scene has when it names none.
+const PING_PERIOD_MAX: Duration = Duration::from_millis(60);
+/// Shortest time between pings: a quarter of the shortest host timeout, 20 ms. Safe for any scene that a board may hold.
 const PING_PERIOD_MIN: Duration = Duration::from_millis(5);
 
 /// A board that has said hello.
 ///
-/// Pings go out by themselves for as long as the value lives. Dropping it stops and disarms the board, as far as the link still carries
-/// anything; the board puts its output to zero in any case once the pings have stopped.
+/// Pings go out by themselves for as long as the value lives. On a board that may be armed they are often enough for any host timeout, or for
+/// that of the scene that this value has committed. Dropping a value that has armed or played stops and disarms the board, as far as the link still carries anything; the board puts
+/// its output to zero in any case once the pings have stopped.
 pub struct Device<L: Link> {
     exchange: Exchange<L>,
     hello: Hello,
     uploads: UploadCounts,
+    /// CRC-32 of the scene that was uploaded last, and the time between pings that suits it.
+    uploaded: Option<(u32, Duration)>,
+    /// Time between pings that suits the board's scene, if that was committed here.
+    committed: Option<Duration>,
+    /// The board may be armed or active; only then does its host timeout run.
+    armed: bool,
 }
 
 /// What a board tells unasked.
@@ -105,9 +112,11 @@ impl<L: Link> Device<L> {
         let mut exchange = Exchange::new(link, decoder, &hello);
         // Its answer settles the credit, should one of several hello requests have been lost.
         exchange.request(Command::Ping)?;
-        exchange.ping_every(PING_PERIOD)?;
-        exchange.say_farewell_with(&[Command::Stop, Command::Disarm])?;
-        Ok(Self { exchange, hello, uploads: UploadCounts::default() })
+        let armed = matches!(hello.state, State::Armed | State::Active);
+        let uploads = UploadCounts::default();
+        let mut device = Self { exchange, hello, uploads, uploaded: None, committed: None, armed };
+        device.pace_pings()?;
+        Ok(device)
     }
 
     /// What the board said of itself when it was connected.
@@ -116,34 +125,42 @@ impl<L: Link> Device<L> {
     }
 
     /// Uploads bitmaps, those that the board holds already left out, and the scene. What plays does not change before [`Self::commit`].
-    ///
-    /// From here on the pings are frequent enough for the scene's host timeout.
     pub fn upload(&mut self, upload: &Upload, progress: &mut dyn FnMut(Progress)) -> Result<(), DeviceError> {
         upload.check()?;
         // Bytes that are no scene are refused by the board, in its own words.
-        if let Ok(scene) = Scene::parse(upload.scene) {
-            self.exchange.ping_every(ping_period(scene.header().host_timeout_s))?;
-        }
+        let scene = Scene::parse(upload.scene).ok();
+        self.uploaded = scene.map(|scene| (upload.scene_crc32(), ping_period(scene.header().host_timeout_s)));
         upload::send(&mut self.exchange, upload, &mut self.uploads, progress)
     }
 
     /// Makes the uploaded scene the one that plays. `scene_crc32` says which one is meant: [`Upload::scene_crc32`].
+    ///
+    /// From here on the pings follow its host timeout.
     pub fn commit(&mut self, scene_crc32: u32) -> Result<(), DeviceError> {
-        self.request(Command::Commit { crc32: scene_crc32 })
+        // Until the board has answered, either scene's timeout may be the one that counts.
+        self.committed = None;
+        self.pace_pings()?;
+        self.request(Command::Commit { crc32: scene_crc32 })?;
+        self.committed = self.uploaded.filter(|(crc32, _)| *crc32 == scene_crc32).map(|(_, period)| period);
+        self.pace_pings()
     }
 
     /// Disarmed to armed: ready to play, output zero.
     pub fn arm(&mut self) -> Result<(), DeviceError> {
+        self.before_arming()?;
         self.request(Command::Arm)
     }
 
     /// Output to zero, from any state.
     pub fn disarm(&mut self) -> Result<(), DeviceError> {
-        self.request(Command::Disarm)
+        self.request(Command::Disarm)?;
+        self.armed = false;
+        self.pace_pings()
     }
 
     /// Armed to active: the committed scene plays.
     pub fn play(&mut self) -> Result<(), DeviceError> {
+        self.before_arming()?;
         self.request(Command::Play)
     }
 
@@ -195,9 +212,27 @@ impl<L: Link> Device<L> {
         }
     }
 
-    /// Gives the link back, as it is: its pings go on, and it stops and disarms the board when it is dropped.
+    pub(crate) fn link_mut(&mut self) -> &mut L {
+        self.exchange.link_mut()
+    }
+
+    /// Gives the link back, as it is: its pings go on, and after [`Self::arm`] or [`Self::play`] it stops and disarms the board when it is
+    /// dropped.
     pub fn into_link(self) -> L {
         self.exchange.into_link()
+    }
+
+    /// What this value sets going it also ends, and keeps company; what it only looked at it leaves as it is.
+    fn before_arming(&mut self) -> Result<(), DeviceError> {
+        self.exchange.say_farewell_with(&[Command::Stop, Command::Disarm])?;
+        self.armed = true;
+        self.pace_pings()
+    }
+
+    /// A board may hold a scene whose host timeout is not known here, as after a hello or before a commit is answered.
+    fn pace_pings(&mut self) -> Result<(), DeviceError> {
+        let period = if self.armed { self.committed.unwrap_or(PING_PERIOD_MIN) } else { PING_PERIOD_MAX };
+        self.exchange.ping_every(period)
     }
 
     fn request(&mut self, command: Command) -> Result<(), DeviceError> {
@@ -207,8 +242,8 @@ impl<L: Link> Device<L> {
 
 /// A quarter of the host timeout, within what makes sense for any timeout that a board takes.
 fn ping_period(host_timeout_s: f32) -> Duration {
-    let quarter = Duration::try_from_secs_f32(host_timeout_s / 4.0).unwrap_or(PING_PERIOD);
-    quarter.clamp(PING_PERIOD_MIN, PING_PERIOD)
+    let quarter = Duration::try_from_secs_f32(host_timeout_s / 4.0).unwrap_or(PING_PERIOD_MAX);
+    quarter.clamp(PING_PERIOD_MIN, PING_PERIOD_MAX)
 }
 
 const _: () = assert!(ANSWER_TIMEOUT.as_millis() < 1000);

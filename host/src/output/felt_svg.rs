@@ -183,7 +183,8 @@ fn lines(spans: &[Span], part: fn(&Span) -> Option<Extremes>, scale: f64) -> Vec
             (Some(Extremes { least, largest }), Some(line)) => {
                 let (least, largest) = (scale * least, scale * largest);
                 // From where the line stands, the nearer of the two comes first.
-                let falls = line.last().is_some_and(|(_, last)| (last - largest).abs() < (last - least).abs());
+                let falls =
+                    line.last().is_some_and(|&(_, last): &(f64, f64)| (last - largest).abs() < (last - least).abs());
                 let (first, second) = if falls { (largest, least) } else { (least, largest) };
                 line.push((span.start_s, first));
                 if largest > least {

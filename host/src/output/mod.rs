@@ -12,7 +12,7 @@ mod canvas;
 mod csv;
 mod felt_svg;
 mod report;
-mod scale;
+pub(crate) mod scale;
 mod scene_png;
 #[cfg(test)]
 mod tests;

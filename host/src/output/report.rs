@@ -34,7 +34,7 @@ pub struct Report {
     /// Largest friction that was wanted, in total, N.
     pub wanted_max_n: Option<f64>,
     /// Ticks in which the board clamped what it asked for.
-    pub saturated_ticks: u64,
+    pub saturated_ticks: Option<u64>,
     /// Frames that the host sent.
     pub frames_sent: u64,
     /// Frames that either side refused because their check failed.
@@ -109,7 +109,8 @@ impl Report {
         if let Some(ripple_n) = self.carrier_ripple_rms_n {
             line("carrier ripple", format!("{:.4} mN rms", 1e3 * ripple_n));
         }
-        line("ticks", format!("{}, of which saturated {}", self.ticks, self.saturated_ticks));
+        let saturated = self.saturated_ticks.map(|ticks| format!(", of which saturated {ticks}"));
+        line("ticks", format!("{}{}", self.ticks, saturated.unwrap_or_default()));
         line(
             "link",
             format!(

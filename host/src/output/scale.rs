@@ -17,7 +17,7 @@ const VIRIDIS: [Colour; 9] = [
 const UNKNOWN: Colour = [128; 3];
 
 /// The colour of a part of the scale, from 0 to 1; beyond it, the colour of its end.
-pub(super) fn colour(part: f64) -> Colour {
+pub(crate) fn colour(part: f64) -> Colour {
     if part.is_nan() {
         return UNKNOWN;
     }
@@ -30,7 +30,7 @@ pub(super) fn colour(part: f64) -> Colour {
 }
 
 /// The least of 1, 2, 5, 10, ... that is not below `least`.
-pub(super) fn step(least: f64) -> f64 {
+pub(crate) fn step(least: f64) -> f64 {
     let power = 10f64.powi(least.max(1e-300).log10().floor() as i32);
     let steps = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * power);
     // A millionth below is rounding of the power.
@@ -38,14 +38,14 @@ pub(super) fn step(least: f64) -> f64 {
 }
 
 /// Multiples of `step` from `start` to `end`.
-pub(super) fn ticks(start: f64, end: f64, step: f64) -> impl Iterator<Item = f64> {
+pub(crate) fn ticks(start: f64, end: f64, step: f64) -> impl Iterator<Item = f64> {
     let first = (start / step - 1e-6).ceil() as i64;
     let last = (end / step + 1e-6).floor() as i64;
     (first..=last).map(move |number| number as f64 * step)
 }
 
 /// A number on an axis, without digits that say nothing.
-pub(super) fn label(value: f64) -> String {
+pub(crate) fn label(value: f64) -> String {
     let rounded = (value * 1e6).round() / 1e6;
     format!("{}", if rounded.abs() > 0.0 { rounded } else { 0.0 })
 }

@@ -295,7 +295,7 @@ fn report(summary: &MetricsSummary) -> Report {
 const NOTHING: MetricsSummary = MetricsSummary {
     ticks: 0,
     finger_down_ticks: 0,
-    saturated_ticks: 0,
+    saturated_ticks: None,
     friction_error: None,
     inversion_error: None,
     carrier_ripple_rms_n: None,
@@ -307,7 +307,7 @@ fn report_as_json() {
     let known = MetricsSummary {
         ticks: 120_000,
         finger_down_ticks: 100_000,
-        saturated_ticks: 7,
+        saturated_ticks: Some(7),
         friction_error: Some(ErrorSize { rms_n: 0.001, max_n: 0.005 }),
         inversion_error: Some(ErrorSize { rms_n: 1e-6, max_n: 0.00002 }),
         carrier_ripple_rms_n: Some(0.0005),
@@ -338,5 +338,7 @@ fn report_as_json() {
 fn a_report_of_nothing_says_null_and_nothing() {
     let report = report(&NOTHING);
     assert!(report.to_json().contains("\"friction_error_rms_n\":null,\"friction_error_max_n\":null"));
+    assert!(report.to_json().contains("\"saturated_ticks\":null"));
+    assert!(!report.summary().contains("saturated"));
     assert!(!report.summary().contains("error") && !report.summary().contains("NaN"));
 }

@@ -4,6 +4,7 @@ use frixel_hil_sim::{TickRecord, contact_of};
 use frixel_model::{LoadedContact, ParameterError};
 use frixel_wire::fault::Flags;
 use frixel_wire::hello::BoardLimits;
+use frixel_wire::scene::Carrier;
 
 use crate::metrics::{Metrics, TickSample};
 use crate::output::FeltRow;
@@ -45,9 +46,19 @@ impl Recorder {
         &self.metrics
     }
 
-    /// The rows so far.
+    /// The rows so far, those that were taken left out.
     pub fn rows(&self) -> &[FeltRow] {
         &self.rows
+    }
+
+    /// Hands over the rows since the last time.
+    pub(crate) fn take_rows(&mut self) -> Vec<FeltRow> {
+        std::mem::take(&mut self.rows)
+    }
+
+    /// Takes no more ticks.
+    pub(crate) fn end(&mut self) {
+        self.ticks_left = 0;
     }
 
     /// Takes one tick, unless there were enough.
@@ -64,7 +75,7 @@ impl Recorder {
             wanted_n: wanted_n.unwrap_or_default(),
             asked_n: natural_n + f64::from(telemetry.asked_electric_friction_n),
             felt_n: record.felt.friction_n,
-            inversion_n: natural_n + self.inversion.electric_friction_n(telemetry.voltage_v_rms),
+            inversion_n: natural_n + self.inversion.electric_friction_n(telemetry.voltage_v_rms, telemetry.dac_code),
             saturated: telemetry.flags.contains(Flags::SATURATED),
             finger_down: wanted_n.is_some(),
             wanted_in_reach: wanted_n.is_some_and(|wanted_n| self.inversion.reaches(wanted_n - natural_n)),
@@ -76,6 +87,7 @@ impl Recorder {
 /// The full model behind an ideal amplifier and the DAC's steps.
 struct Inversion {
     contact: LoadedContact<f64>,
+    shape: Carrier,
     codes_per_v_rms: f64,
     electric_friction_max_n: f64,
 }
@@ -87,13 +99,18 @@ impl Inversion {
         let codes_per_v_peak = f64::from(i16::MAX) / f64::from(limits.full_scale_v_peak);
         Ok(Self {
             contact: contact_of(&program.header)?,
+            shape: program.header.carrier,
             codes_per_v_rms: peak_per_rms * codes_per_v_peak,
             electric_friction_max_n: program.reach.electric_friction_max_n,
         })
     }
 
-    fn electric_friction_n(&self, voltage_v_rms: f32) -> f64 {
-        let amplitude_code = (f64::from(voltage_v_rms) * self.codes_per_v_rms).round();
+    /// A square wave's code is its amplitude. A sine's is one of many, so its amplitude is rounded as the DAC would.
+    fn electric_friction_n(&self, voltage_v_rms: f32, dac_code: i16) -> f64 {
+        let amplitude_code = match self.shape {
+            Carrier::Square => f64::from(dac_code).abs(),
+            Carrier::Sine => (f64::from(voltage_v_rms) * self.codes_per_v_rms).round(),
+        };
         self.contact.electric_friction_n(amplitude_code / self.codes_per_v_rms)
     }
 
@@ -177,5 +194,27 @@ impl RowMaker {
             dac_code: Some(telemetry.dac_code),
             flags: Some(std::mem::take(&mut self.flags)),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use frixel_hil_sim::RigConfig;
+
+    use super::*;
+    use crate::scene::{Scene, compile};
+
+    #[test]
+    fn a_code_of_zero_is_no_friction_whatever_voltage_was_meant() {
+        let board = RigConfig::default().board;
+        let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/constant.toml");
+        let program = compile(&Scene::load(&scene).unwrap(), &board.limits, board.tick_hz).unwrap();
+        let inversion = Inversion::new(&program, &board.limits, board.tick_hz).unwrap();
+        assert_eq!(inversion.electric_friction_n(100.0, 0).to_bits(), 0);
+        let code = (100.0 * inversion.codes_per_v_rms).round() as i16;
+        let expected_n = inversion.contact.electric_friction_n(100.0);
+        assert!((inversion.electric_friction_n(100.0, -code) / expected_n - 1.0).abs() < 1e-3);
     }
 }

@@ -8,7 +8,8 @@ use std::time::{Duration, Instant};
 
 use frixel_hil_sim::Rig;
 use rustix::fs::OFlags;
-use serialport::{SerialPort, TTYPort};
+use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 use thiserror::Error;
 
 use super::server_log::ServerLog;
@@ -28,7 +29,7 @@ const CLIENT_GONE_AFTER: Duration = Duration::from_millis(500);
 pub enum ServerError {
     /// No pseudo-terminal could be made.
     #[error("no pseudo-terminal for the virtual board: {0}; this needs a Unix system with /dev/pts")]
-    Terminal(#[from] serialport::Error),
+    Terminal(#[from] io::Error),
     /// The pseudo-terminal broke.
     #[error("the virtual board's pseudo-terminal {path} broke: {source}")]
     Line {
@@ -44,21 +45,23 @@ pub enum ServerError {
 
 /// A virtual board on a pseudo-terminal.
 pub struct Server {
-    board_end: TTYPort,
+    /// Never blocks: a client that does not read must not stop the board.
+    board_end: File,
     /// Held open, so that clients may come and go.
     client_end: File,
     path: String,
     heard_at: Instant,
+    log: ServerLog,
 }
 
 impl Server {
-    /// Makes the pseudo-terminal.
-    pub fn open() -> Result<Self, ServerError> {
-        let (board_end, client_end) = TTYPort::pair()?;
-        let path = client_end.name().unwrap_or_default();
-        let held = OpenOptions::new().read(true).write(true).custom_flags(OFlags::NOCTTY.bits() as i32).open(&path);
-        let client_end = held.map_err(|source| ServerError::Line { path: path.clone(), source })?;
-        Ok(Self { board_end, client_end, path, heard_at: Instant::now() })
+    /// Creates `felt.csv`, with a row every `ticks_per_row` ticks, and `events.csv` in `folder`; then makes the
+    /// pseudo-terminal.
+    pub fn open(folder: &Path, tick_hz: u32, ticks_per_row: u32) -> Result<Self, ServerError> {
+        let log = ServerLog::create(folder, tick_hz, ticks_per_row)?;
+        let (board_end, path) = open_board_end()?;
+        let client_end = open_client_end(&path).map_err(|source| ServerError::Line { path: path.clone(), source })?;
+        Ok(Self { board_end, client_end, path, heard_at: Instant::now(), log })
     }
 
     /// What a client opens.
@@ -67,15 +70,8 @@ impl Server {
     }
 
     /// Runs `rig` at the pace of the wall clock until `interrupted`, with the finger on its stroke from the start, and
-    /// writes `felt.csv` and `events.csv` to `folder`.
-    pub fn run(
-        mut self,
-        rig: &mut Rig,
-        folder: &Path,
-        ticks_per_row: u32,
-        interrupted: &dyn Fn() -> bool,
-    ) -> Result<(), ServerError> {
-        let mut log = ServerLog::create(folder, rig, ticks_per_row)?;
+    /// writes down what happens.
+    pub fn run(mut self, rig: &mut Rig, interrupted: &dyn Fn() -> bool) -> Result<(), ServerError> {
         let tick_period_s = 1.0 / f64::from(rig.tick_hz());
         rig.world_mut().start_stroke();
         let mut epoch = Instant::now();
@@ -89,35 +85,38 @@ impl Server {
             }
             for _ in 0..(behind_s.min(BATCH_MAX_S) / tick_period_s) as u32 {
                 let record = rig.step();
-                log.take(&record, rig)?;
+                self.log.take(&record, rig)?;
             }
             rig.receive(&mut bytes);
             self.transmit(&mut bytes)?;
             self.let_the_next_client_in();
             std::thread::sleep(NAP);
         }
-        Ok(log.flush()?)
+        Ok(self.log.flush()?)
     }
 
     fn receive(&mut self, rig: &mut Rig) -> Result<(), ServerError> {
-        let waiting = self.board_end.bytes_to_read()?;
-        if waiting > 0 {
-            let mut bytes = vec![0; waiting as usize];
-            let count = self.board_end.read(&mut bytes).map_err(|source| self.broken(source))?;
-            rig.send(&bytes[..count]);
-            self.heard_at = Instant::now();
+        let mut bytes = [0; 4096];
+        match self.board_end.read(&mut bytes) {
+            Ok(count) => {
+                rig.send(&bytes[..count]);
+                self.heard_at = Instant::now();
+                Ok(())
+            }
+            Err(error) if error.kind() == io::ErrorKind::WouldBlock => Ok(()),
+            Err(error) => Err(self.broken(error)),
         }
-        Ok(())
     }
 
-    /// Bytes that nobody reads are lost, as on a real line; they must not stop the board.
+    /// Bytes that nobody reads are lost, as on a real line; they must not stop the board. What fits is written, and the
+    /// rest dropped.
     fn transmit(&mut self, bytes: &mut Vec<u8>) -> Result<(), ServerError> {
         if bytes.is_empty() {
             return Ok(());
         }
         match self.board_end.write(bytes) {
             Ok(_) => {}
-            Err(error) if matches!(error.kind(), io::ErrorKind::TimedOut | io::ErrorKind::WouldBlock) => {}
+            Err(error) if error.kind() == io::ErrorKind::WouldBlock => {}
             Err(error) => return Err(self.broken(error)),
         }
         bytes.clear();
@@ -137,3 +136,26 @@ impl Server {
         ServerError::Line { path: self.path.clone(), source }
     }
 }
+
+/// The end of a new pseudo-terminal that the board has, and the path of the other.
+fn open_board_end() -> io::Result<(File, String)> {
+    let board_end = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY)?;
+    grantpt(&board_end)?;
+    unlockpt(&board_end)?;
+    let flags = rustix::fs::fcntl_getfl(&board_end)?;
+    rustix::fs::fcntl_setfl(&board_end, flags | OFlags::NONBLOCK)?;
+    let path = ptsname(&board_end, Vec::new())?;
+    Ok((File::from(board_end), path.to_string_lossy().into_owned()))
+}
+
+/// Opens the other end and makes it raw: bytes go through as they are.
+fn open_client_end(path: &str) -> io::Result<File> {
+    let client_end = OpenOptions::new().read(true).write(true).custom_flags(OFlags::NOCTTY.bits() as i32).open(path)?;
+    let mut settings = tcgetattr(&client_end)?;
+    settings.make_raw();
+    tcsetattr(&client_end, OptionalActions::Now, &settings)?;
+    Ok(client_end)
+}
+
+#[cfg(test)]
+mod tests;

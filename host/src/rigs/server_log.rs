@@ -31,12 +31,11 @@ pub(super) struct ServerLog {
 }
 
 impl ServerLog {
-    pub(super) fn create(folder: &Path, rig: &Rig, ticks_per_row: u32) -> Result<Self, OutputError> {
+    pub(super) fn create(folder: &Path, tick_hz: u32, ticks_per_row: u32) -> Result<Self, OutputError> {
         std::fs::create_dir_all(folder).map_err(failed(folder))?;
         let path = folder.join("events.csv");
         let mut events = BufWriter::new(File::create(&path).map_err(failed(&path))?);
         writeln!(events, "t_s,event,last_frame_t_s").map_err(failed(&path))?;
-        let tick_hz = rig.tick_hz();
         Ok(Self {
             felt: FeltCsv::create(&folder.join("felt.csv"))?,
             events,

@@ -37,6 +37,10 @@ impl<'a> SimLink<'a> {
         self.recorder
     }
 
+    pub(crate) fn recorder_mut(&mut self) -> &mut Recorder {
+        &mut self.recorder
+    }
+
     fn ticks(&self, time: Duration) -> u64 {
         (time.as_secs_f64() * f64::from(self.rig.tick_hz())).ceil() as u64
     }

@@ -48,7 +48,7 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
     let mut notes = Vec::new();
     let half_period_ticks = half_period_ticks(scene, tick_hz, log, &mut notes)?;
     let header = header(scene, limits, f64::from(half_period_ticks) / f64::from(tick_hz), log, &mut notes);
-    check_current(scene, limits, &header, tick_hz, log);
+    check_current(scene, limits, &header, log);
     let reach = match Reach::of(&header) {
         Ok(reach) => reach,
         Err(error) => {
@@ -140,11 +140,11 @@ fn header(scene: &Scene, limits: &BoardLimits, half_period_s: f64, log: &mut Log
 }
 
 /// The current into the worst-case electrode at the largest voltage, as the board budgets it.
-fn check_current(scene: &Scene, limits: &BoardLimits, header: &Header, tick_hz: u32, log: &mut Log) {
+fn check_current(scene: &Scene, limits: &BoardLimits, header: &Header, log: &mut Log) {
     let carrier = carrier(header.carrier, 0.5 / f64::from(header.carrier_hz), limits);
     let drive_v_peak = f64::from(header.voltage_max_v_rms) * carrier.peak_per_rms();
     let capacitance_f = f64::from(limits.electrode_capacitance_max_f);
-    let current = carrier.electrode_current(capacitance_f, drive_v_peak, 1.0 / f64::from(tick_hz));
+    let current = carrier.electrode_current(capacitance_f, drive_v_peak);
     for (kind, found_a, board_a, cure) in [
         (
             "rms",

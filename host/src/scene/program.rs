@@ -1,7 +1,6 @@
 //! What a scene compiles to.
 
-use frixel_wire::frame::crc32;
-use frixel_wire::scene::{Header, Record};
+use frixel_wire::scene::{Header, Record, bitmap_crc32};
 
 use super::reach::Reach;
 
@@ -56,6 +55,6 @@ pub struct Bitmap {
 
 impl Bitmap {
     pub(super) fn new(width: u16, height: u16, samples: Vec<u8>) -> Self {
-        Self { crc32: crc32(&samples), width, height, samples }
+        Self { crc32: bitmap_crc32(width, height, &samples), width, height, samples }
     }
 }

@@ -131,22 +131,62 @@ fn pings_keep_the_board_company() {
     assert!(silence <= Duration::from_millis(61), "{silence:?} of silence, a host timeout is 250 ms");
 }
 
+/// Longest time without a frame over the next second.
+fn silence_on(link: &mut VirtualLink) -> Duration {
+    link.board.longest_silence = Duration::ZERO;
+    let mut buffer = Vec::new();
+    let end = link.now() + Duration::from_secs(1);
+    while link.now() < end {
+        link.read(&mut buffer, Duration::from_millis(100)).unwrap();
+    }
+    link.board.longest_silence
+}
+
 #[test]
-fn pings_follow_the_scenes_host_timeout() {
+fn pings_follow_the_committed_scenes_host_timeout() {
     for (host_timeout_s, longest_ms) in [(0.02, 6), (0.1, 26), (1.0, 61), (f32::NAN, 61), (-1.0, 61)] {
         let mut device = virtual_board();
         let scene = scene(host_timeout_s);
-        device.upload(&Upload { scene: &scene, bitmaps: Vec::new() }, &mut |_| {}).unwrap();
-        let mut link = device.into_link();
-        link.board.longest_silence = Duration::ZERO;
-        let mut buffer = Vec::new();
-        let end = link.now() + Duration::from_secs(1);
-        while link.now() < end {
-            link.read(&mut buffer, Duration::from_millis(100)).unwrap();
-        }
-        let silence = link.board.longest_silence;
+        let upload = Upload { scene: &scene, bitmaps: Vec::new() };
+        device.upload(&upload, &mut |_| {}).unwrap();
+        device.commit(upload.scene_crc32()).unwrap();
+        device.arm().unwrap();
+        let silence = silence_on(&mut device.into_link());
         assert!(silence <= Duration::from_millis(longest_ms), "{silence:?} with a timeout of {host_timeout_s} s");
+        assert!(silence > Duration::from_millis(longest_ms / 2), "{silence:?} with a timeout of {host_timeout_s} s");
     }
+}
+
+/// The old scene's timeout counts until the new one is committed, and that of a scene that was there before is not known.
+#[test]
+fn pings_suit_any_scene_on_an_armed_board_until_the_own_one_is_committed() {
+    let scene = scene(1.0);
+    let upload = Upload { scene: &scene, bitmaps: Vec::new() };
+    let mut found = FakeBoard::new();
+    (found.state, found.hello.state) = (State::Active, State::Active);
+    let found = connected(VirtualLink::new(found));
+    let mut armed = virtual_board();
+    armed.arm().unwrap();
+    let mut uploaded = virtual_board();
+    uploaded.arm().unwrap();
+    uploaded.upload(&upload, &mut |_| {}).unwrap();
+    let mut refused = virtual_board();
+    refused.upload(&upload, &mut |_| {}).unwrap();
+    refused.commit(upload.scene_crc32() + 1).unwrap_err();
+    refused.arm().unwrap();
+    for device in [found, armed, uploaded, refused] {
+        let silence = silence_on(&mut device.into_link());
+        assert!(silence <= Duration::from_millis(6), "{silence:?}");
+    }
+}
+
+#[test]
+fn a_disarmed_board_is_pinged_at_leisure() {
+    let mut device = virtual_board();
+    device.arm().unwrap();
+    device.disarm().unwrap();
+    let silence = silence_on(&mut device.into_link());
+    assert!(silence > Duration::from_millis(50), "{silence:?}");
 }
 
 #[test]

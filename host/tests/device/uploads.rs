@@ -100,16 +100,19 @@ fn a_slow_board_fills_the_window() {
 /// Pings go out while an upload waits for credit, and the line refuses them too when they go beyond it.
 #[test]
 fn pings_have_credit_of_their_own() {
-    for host_timeout_s in [0.25, 0.02] {
+    for (armed, pings) in [(false, 8), (true, 80)] {
         let mut link = VirtualLink::new(FakeBoard::new());
         link.board_pause = Duration::from_millis(100)..Duration::from_millis(650);
-        let (samples, scene) = (samples(62_500), scene(host_timeout_s));
+        let (samples, scene) = (samples(62_500), scene(0.25));
         let mut device = connected(link);
+        if armed {
+            device.arm().unwrap();
+        }
         let upload = Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] };
         device.upload(&upload, &mut |_| {}).unwrap();
         let link = device.into_link();
         assert!(link.now() > Duration::from_millis(800), "the board paused in the upload");
-        assert!(link.board.pings > 8, "{} pings", link.board.pings);
+        assert!(link.board.pings > pings, "{} pings", link.board.pings);
     }
 }
 

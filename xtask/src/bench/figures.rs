@@ -3,13 +3,16 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// Figures by name: instructions of `m4f.…` and `m3.…`, bytes of images. A name that ends in [`CYCLES`] is the estimate
-/// in cycles that belongs to the name before it.
+/// Figures by name: instructions of `m4f.…` and `m3.…` at the worst input, bytes of images. Names that end in
+/// [`CYCLES`] and [`MEAN`] are the estimate in cycles, at that input too, and the mean over all inputs.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Figures(BTreeMap<String, u64>);
 
 /// End of the name of an estimate in cycles.
 pub(crate) const CYCLES: &str = "_cycles";
+
+/// End of the name of a mean.
+pub(crate) const MEAN: &str = "_mean";
 
 impl Figures {
     /// Adds a figure.
@@ -24,11 +27,11 @@ impl Figures {
 
     /// A table for a person.
     pub(crate) fn table(&self) -> String {
-        let mut table = format!("{:32} {:>12} {:>12}\n", "", "count", "cycles, est.");
-        for (name, value) in self.0.iter().filter(|(name, _)| !name.ends_with(CYCLES)) {
-            let cycles = self.get(&format!("{name}{CYCLES}")).map(|cycles| cycles.to_string()).unwrap_or_default();
+        let mut table = format!("{:28} {:>8} {:>8} {:>12}\n", "", "worst", "mean", "cycles, est.");
+        for (name, value) in self.0.iter().filter(|(name, _)| !name.ends_with(CYCLES) && !name.ends_with(MEAN)) {
+            let beside = |end| self.get(&format!("{name}{end}")).map(|value| value.to_string()).unwrap_or_default();
             // A string takes what is written to it.
-            let _ = writeln!(table, "{name:32} {value:>12} {cycles:>12}");
+            let _ = writeln!(table, "{name:28} {value:>8} {:>8} {:>12}", beside(MEAN), beside(CYCLES));
         }
         table
     }

@@ -15,7 +15,7 @@ use super::gdb::Gdb;
 const NOTHING: Seen = Seen { instructions: 2, cycles: 2 };
 
 /// What was seen of a case at its worst input: call and return left out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Seen {
     pub(super) instructions: u64,
     pub(super) cycles: u64,
@@ -50,23 +50,22 @@ pub(super) fn follow(mut emulator: Command, image: &Path, inputs: &[u32]) -> Res
     gdb.write(code.symbol("FOLLOWED")?, &words)?;
     let (begin, end) = (code.symbol("follow_begin")? & !1, code.symbol("follow_end")? & !1);
     gdb.set_breakpoint(begin)?;
-    inputs
-        .iter()
-        .map(|_| {
-            let empty = span(&mut gdb, &code, end)?;
-            let full = span(&mut gdb, &code, end)?;
-            Ok(Seen {
-                instructions: full.instructions + NOTHING.instructions - empty.instructions,
-                cycles: full.cycles + NOTHING.cycles - empty.cycles,
-            })
-        })
-        .collect()
+    let mut seen = vec![Seen::default(); inputs.len()];
+    for _ in inputs {
+        let (case, empty) = span(&mut gdb, &code, end)?;
+        let (_, full) = span(&mut gdb, &code, end)?;
+        let seen = seen.get_mut(case as usize).ok_or("the benchmark follows a case that was not asked for")?;
+        seen.instructions = full.instructions + NOTHING.instructions - empty.instructions;
+        seen.cycles = full.cycles + NOTHING.cycles - empty.cycles;
+    }
+    Ok(seen)
 }
 
-/// Goes on to the next beginning, and from there step by step to the end.
-fn span(gdb: &mut Gdb, code: &Code, end: u32) -> Result<Seen, String> {
+/// Goes on to the next beginning, which says what case it is, and from there step by step to the end.
+fn span(gdb: &mut Gdb, code: &Code, end: u32) -> Result<(u32, Seen), String> {
     gdb.go_on()?;
-    let mut seen = Seen { instructions: 0, cycles: 0 };
+    let case = gdb.register(0)?;
+    let mut seen = Seen::default();
     let mut place = gdb.program_counter()?;
     while place != end {
         let (first, second) = code.instruction(place)?;
@@ -76,7 +75,7 @@ fn span(gdb: &mut Gdb, code: &Code, end: u32) -> Result<Seen, String> {
         seen.cycles += cycles(first, second, place, next);
         place = next;
     }
-    Ok(seen)
+    Ok((case, seen))
 }
 
 /// The image's code and symbols.

@@ -65,9 +65,14 @@ impl Gdb {
 
     /// Where the program is.
     pub(super) fn program_counter(&mut self) -> Result<u32, String> {
-        // All registers, from r0 on, each of eight digits.
+        self.register(PROGRAM_COUNTER)
+    }
+
+    /// A register of the processor, from r0 on.
+    pub(super) fn register(&mut self, number: usize) -> Result<u32, String> {
+        // All registers, each of eight digits.
         let answer = self.ask("g")?;
-        let digits = answer.get(8 * PROGRAM_COUNTER..8 * (PROGRAM_COUNTER + 1)).unwrap_or_default();
+        let digits = answer.get(8 * number..8 * (number + 1)).unwrap_or_default();
         u32::from_str_radix(digits, 16)
             .map(u32::swap_bytes)
             .map_err(|_| format!("the emulator says that its registers are `{answer}`"))

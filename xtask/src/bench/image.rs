@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-use super::figures::{CYCLES, Figures};
+use super::figures::{CYCLES, Figures, MEAN};
 use super::{Core, EMULATOR, follow};
 use crate::command::{cargo_in, root, run};
 
@@ -22,6 +22,8 @@ pub(super) struct Count {
     pub(super) instructions: u64,
     /// Number of the input for which they are the most, from 1.
     pub(super) worst_input: u32,
+    /// Over all inputs, rounded up.
+    pub(super) mean: u64,
 }
 
 impl<'a> Image<'a> {
@@ -49,6 +51,7 @@ impl<'a> Image<'a> {
         let counts: Vec<Count> = text.lines().map(parse).collect::<Result<_, _>>()?;
         for count in &counts {
             figures.put(self.name(count), count.instructions);
+            figures.put(self.name(count) + MEAN, count.mean);
         }
         Ok(counts)
     }
@@ -95,7 +98,8 @@ fn parse(line: &str) -> Result<Count, String> {
         let name = words.next()?.to_owned();
         let instructions = words.next()?.parse().ok()?;
         let worst_input = words.next()?.parse().ok()?;
-        Some(Count { name, instructions, worst_input })
+        let mean = words.next()?.parse().ok()?;
+        Some(Count { name, instructions, worst_input, mean })
     })();
-    count.ok_or_else(|| format!("the benchmark wrote `{line}`: expected name, instructions and input"))
+    count.ok_or_else(|| format!("the benchmark wrote `{line}`: expected name, instructions, input and mean"))
 }

@@ -22,6 +22,8 @@ const FIRMWARE: (u8, u8, u8) = (0, 1, 0);
 
 /// Orders that may wait for the ticker. A command is refused as busy when there is no room.
 const ORDERS_MAX: usize = 8;
+/// Of which these are kept for Stop and Disarm, so that what puts the output to zero is never refused for want of room.
+const ORDERS_KEPT: usize = 2;
 
 /// CRC-32 names of bitmaps.
 pub(super) type BitmapNames = Vec<u32, RECORDS_MAX>;
@@ -43,6 +45,7 @@ pub(super) struct Dialogue<'a> {
     spare: Option<&'a mut Active>,
     orders: Deque<Order<'a>, ORDERS_MAX>,
     orders_sent: u32,
+    host_heard: bool,
     /// State once the ticker has applied every order.
     pub(super) state: State,
     received_bytes: u32,
@@ -77,6 +80,7 @@ impl<'a> Dialogue<'a> {
             spare: Some(spare),
             orders: Deque::new(),
             orders_sent: 0,
+            host_heard: false,
             state: State::Disarmed,
             received_bytes: 0,
             telemetry_period_ticks: 0,
@@ -93,7 +97,7 @@ impl<'a> Dialogue<'a> {
     }
 
     pub(super) fn next_order(&mut self) -> Option<Order<'a>> {
-        self.orders.pop_front()
+        if core::mem::take(&mut self.host_heard) { Some(Order::HostHeard) } else { self.orders.pop_front() }
     }
 
     pub(super) fn next_touch(&mut self) -> Option<Touch> {
@@ -114,21 +118,21 @@ impl<'a> Dialogue<'a> {
         self.report_state(status, outbox);
         match payload {
             Ok(Payload::HelloRequest { .. }) => {
-                self.host_heard();
+                self.host_heard = true;
                 self.greet(status, outbox);
             }
             Ok(Payload::Request(Request { sequence, command })) => {
-                self.host_heard();
+                self.host_heard = true;
                 let outcome = self.obey(command, status);
                 self.answer(sequence, outcome, outbox);
             }
             Ok(Payload::Chunk { number, bytes }) => {
-                self.host_heard();
+                self.host_heard = true;
                 self.take_chunk(number, bytes, outbox);
             }
             // A request whose command is not known still says which answer it waits for.
             Err(ParseError::UnknownCommand { sequence }) => {
-                self.host_heard();
+                self.host_heard = true;
                 self.answer(sequence, Err(Refusal::UnknownCommand), outbox);
             }
             // What a board sends, and what cannot be read, is not for a board.
@@ -149,9 +153,13 @@ impl<'a> Dialogue<'a> {
 
     /// The ticker's state holds once it has applied every order.
     fn follow_state(&mut self, status: &Status) {
-        if status.orders_applied == self.orders_sent {
+        if self.is_settled(status) {
             self.state = status.telemetry.state;
         }
+    }
+
+    fn is_settled(&self, status: &Status) -> bool {
+        status.orders_applied == self.orders_sent
     }
 
     fn answer(&mut self, sequence: u16, outcome: Result<Accepted, Refusal>, outbox: &mut Outbox) {
@@ -187,7 +195,7 @@ impl<'a> Dialogue<'a> {
             Command::Ping => Ok(Accepted::Done),
             Command::UploadScene { len, crc32 } => self.begin_scene(len, crc32),
             Command::UploadBitmap { width, height, crc32 } if cfg!(feature = "bitmap") => {
-                self.begin_bitmap(width, height, crc32)
+                self.begin_bitmap(width, height, crc32, self.is_settled(status))
             }
             Command::UploadBitmap { width, height, .. } => {
                 Err(Refusal::BitmapPoolFull { len: u32::from(width) * u32::from(height), free: 0 })
@@ -214,6 +222,7 @@ impl<'a> Dialogue<'a> {
             return Err(Refusal::Faulted(fault));
         }
         match command {
+            Command::Disarm if matches!(self.orders.back(), Some(Order::Disarm)) => Ok(Accepted::Done),
             Command::Arm if !status.arm_switch => Err(Refusal::ArmSwitch),
             Command::Arm => self.change_state(Order::Arm, &[State::Disarmed], State::Armed),
             Command::Play if self.committed_crc32 == 0 => Err(Refusal::NoScene),
@@ -233,17 +242,13 @@ impl<'a> Dialogue<'a> {
     }
 
     fn send_order(&mut self, order: Order<'a>) -> Result<(), Refusal> {
+        let kept = if matches!(order, Order::Stop | Order::Disarm) { 0 } else { ORDERS_KEPT };
+        if self.orders.len() + kept >= ORDERS_MAX {
+            return Err(Refusal::Busy);
+        }
         self.orders.push_back(order).map_err(|_| Refusal::Busy)?;
         self.orders_sent = self.orders_sent.wrapping_add(1);
         Ok(())
-    }
-
-    /// Tells the ticker that the host is there; once is enough for all frames that wait.
-    fn host_heard(&mut self) {
-        if !matches!(self.orders.back(), Some(Order::HostHeard)) {
-            // No room means that the ticker has not looked for a while; the next frame will tell it.
-            let _ = self.send_order(Order::HostHeard);
-        }
     }
 
     fn subscribe(&mut self, period_ticks: u32) -> Result<Accepted, Refusal> {
@@ -282,31 +287,31 @@ impl<'a> Dialogue<'a> {
         }
         self.drop_upload();
         self.staging.begin();
-        self.upload = Some(Upload::new(Destination::Scene, len, crc32));
+        self.upload = Some(Upload::of_scene(len, crc32));
         Ok(Accepted::Done)
     }
 
-    fn begin_bitmap(&mut self, width: u16, height: u16, crc32: u32) -> Result<Accepted, Refusal> {
+    fn begin_bitmap(&mut self, width: u16, height: u16, crc32: u32, settled: bool) -> Result<Accepted, Refusal> {
         self.drop_upload();
         if self.spare.is_none() {
             // The ticker may still read the bitmaps of the scene before.
             return Err(Refusal::Busy);
         }
-        if self.announced_bitmaps.len() == self.announced_bitmaps.capacity() {
-            self.announced_bitmaps.clear();
+        if !self.announced_bitmaps.contains(&crc32) {
+            let full = Refusal::BitmapPoolFull { len: u32::from(width) * u32::from(height), free: 0 };
+            self.announced_bitmaps.push(crc32).map_err(|_| full)?;
         }
-        let held = self.directory.find(crc32).is_some();
-        if !held {
-            let bitmap = self.make_room(width, height, crc32)?;
-            self.upload = Some(Upload::new(Destination::Bitmap(bitmap), bitmap.len(), crc32));
+        if self.directory.find(crc32).is_some() {
+            return Ok(Accepted::AlreadyHeld);
         }
-        let _ = self.announced_bitmaps.push(crc32);
-        Ok(if held { Accepted::AlreadyHeld } else { Accepted::Done })
+        let bitmap = self.make_room(width, height, crc32, settled)?;
+        self.upload = Some(Upload::of_bitmap(bitmap));
+        Ok(Accepted::Done)
     }
 
     /// Finds room for a bitmap: beside all others, else in the place of those that no scene wants, else, when nothing
-    /// plays, in the place of the committed scene.
-    fn make_room(&mut self, width: u16, height: u16, crc32: u32) -> Result<Bitmap, Refusal> {
+    /// plays, in the place of the committed scene, those that stay moved together.
+    fn make_room(&mut self, width: u16, height: u16, crc32: u32, settled: bool) -> Result<Bitmap, Refusal> {
         let pool_len = self.board.limits.bitmap_pool_bytes;
         if let Ok(bitmap) = self.directory.allocate(width, height, crc32, pool_len) {
             return Ok(bitmap);
@@ -317,14 +322,21 @@ impl<'a> Dialogue<'a> {
             Ok(bitmap) => return Ok(bitmap),
             Err(free) => Refusal::BitmapPoolFull { len: u32::from(width) * u32::from(height), free },
         };
-        if self.state == State::Active || self.committed_crc32 == 0 {
+        if self.state == State::Active {
             return Err(refused);
         }
-        self.send_order(Order::Unload)?;
-        self.committed_crc32 = 0;
-        self.committed_bitmaps.clear();
-        let announced = &self.announced_bitmaps;
-        self.directory.retain(|bitmap| announced.contains(&bitmap.crc32));
+        if !settled {
+            // The ticker may not have stopped yet, and still read what would be overwritten.
+            return Err(Refusal::Busy);
+        }
+        if self.committed_crc32 != 0 {
+            self.send_order(Order::Unload)?;
+            self.committed_crc32 = 0;
+            self.committed_bitmaps.clear();
+            let announced = &self.announced_bitmaps;
+            self.directory.retain(|bitmap| announced.contains(&bitmap.crc32));
+        }
+        self.directory.compact(self.pool);
         self.directory.allocate(width, height, crc32, pool_len).map_err(|_| refused)
     }
 
@@ -372,7 +384,7 @@ impl<'a> Dialogue<'a> {
         if found != crc32 {
             return Err(Refusal::CrcMismatch { expected: crc32, found });
         }
-        if self.orders.len() + 1 >= self.orders.capacity() {
+        if self.orders.len() + ORDERS_KEPT >= ORDERS_MAX {
             return Err(Refusal::Busy);
         }
         let scene = Scene::parse(bytes).map_err(Refusal::Scene)?;

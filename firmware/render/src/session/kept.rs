@@ -4,8 +4,8 @@
 //! (4), width (2) and height (2); the scene; the samples of each bitmap, filled up to whole words with zeros.
 
 use frixel_wire::fault::State;
-use frixel_wire::frame::{Crc32, crc32};
-use frixel_wire::scene::{RECORDS_MAX, SCENE_MAX_LEN};
+use frixel_wire::frame::crc32;
+use frixel_wire::scene::{RECORDS_MAX, SCENE_MAX_LEN, bitmap_digest};
 use heapless::Vec;
 
 use super::dialogue::{BitmapNames, Dialogue};
@@ -115,7 +115,7 @@ impl Dialogue<'_> {
     }
 
     fn restore_samples(&mut self, read: &impl Fn(u32, &mut [u8]) -> bool, from: u32, bitmap: &Bitmap) -> Option<()> {
-        let mut digest = Crc32::new();
+        let mut digest = bitmap_digest(bitmap.width, bitmap.height);
         for at in (0..bitmap.len()).step_by(WORD_LEN) {
             let mut word = [0; WORD_LEN];
             read(from.checked_add(at)?, &mut word).then_some(())?;

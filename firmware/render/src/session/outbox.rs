@@ -6,7 +6,8 @@ use frixel_wire::message::FromBoard;
 use frixel_wire::payload;
 use heapless::Deque;
 
-/// Room for the answers to a full window of the smallest requests, telemetry between them.
+/// Room for the answers to 64 requests, or to fewer with telemetry between them. A host waits for its answers, so that it
+/// has one or two outstanding.
 const OUTBOX_LEN: usize = 2048;
 
 /// A queue of whole frames.

@@ -3,7 +3,7 @@
 use frixel_wire::frame::Crc32;
 use frixel_wire::message::Refusal;
 use frixel_wire::payload::CHUNK_LEN;
-use frixel_wire::scene::SCENE_MAX_LEN;
+use frixel_wire::scene::{SCENE_MAX_LEN, bitmap_digest};
 
 use crate::bitmap_pool::{Bitmap, BitmapPool};
 
@@ -36,8 +36,18 @@ pub(super) enum Report {
 }
 
 impl Upload {
-    pub(super) fn new(destination: Destination, len: u32, crc32: u32) -> Self {
-        Self { destination, len, crc32, received: 0, digest: Crc32::new(), next_chunk: 0, gap_reported: false }
+    pub(super) fn of_scene(len: u32, crc32: u32) -> Self {
+        Self::new(Destination::Scene, len, crc32, Crc32::new())
+    }
+
+    /// Starts with the bitmap's shape, which its name covers.
+    pub(super) fn of_bitmap(bitmap: Bitmap) -> Self {
+        let digest = bitmap_digest(bitmap.width, bitmap.height);
+        Self::new(Destination::Bitmap(bitmap), bitmap.len(), bitmap.crc32, digest)
+    }
+
+    fn new(destination: Destination, len: u32, crc32: u32, digest: Crc32) -> Self {
+        Self { destination, len, crc32, received: 0, digest, next_chunk: 0, gap_reported: false }
     }
 
     /// Takes a chunk. One that was there already does no harm; one that comes too early is left out, and the host is

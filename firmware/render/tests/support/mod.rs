@@ -16,7 +16,7 @@ use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, crc32};
 use frixel_wire::hello::Hello;
 use frixel_wire::message::{Accepted, Answer, Command, FromBoard, Refusal, Request};
 use frixel_wire::payload::{self, CHUNK_LEN, Payload};
-use frixel_wire::scene::{Blend, Carrier, Header, Layer, Record, Region};
+use frixel_wire::scene::{Blend, Carrier, Header, Layer, Record, Region, bitmap_crc32};
 
 /// What the two halves of a board share; lives longer than the [`Desk`].
 pub struct Memory {
@@ -37,6 +37,8 @@ pub struct Desk<'a> {
     pub sense: Sense,
     pub messages: Vec<FromBoard>,
     pub hello: Option<Hello>,
+    /// The monitor reads zero, whatever is driven.
+    pub amplifier_dead: bool,
     monitor: Monitor,
     decoder: Decoder,
     sequence: u16,
@@ -62,6 +64,7 @@ impl<'a> Desk<'a> {
             sense: Sense { arm_switch: true, ..Sense::default() },
             messages: Vec::new(),
             hello: None,
+            amplifier_dead: false,
             monitor: Monitor {
                 volts_per_code: board.limits.full_scale_v_peak / 32_767.0,
                 step: 1.0 - (-25e-6_f32 / board.limits.edge_time_constant_s).exp(),
@@ -80,7 +83,8 @@ impl<'a> Desk<'a> {
 
     /// One tick with [`Desk::sense`], whose touch report is used up.
     pub fn tick(&mut self) -> Drive {
-        let sense = Sense { monitor_v: self.sense.monitor_v + self.monitor.voltage_v, ..self.sense };
+        let monitor_v = if self.amplifier_dead { 0.0 } else { self.monitor.voltage_v };
+        let sense = Sense { monitor_v: self.sense.monitor_v + monitor_v, ..self.sense };
         self.sense.touch = None;
         let drive = self.ticker.tick(&sense);
         let target_v = f32::from(drive.dac_code) * self.monitor.volts_per_code;
@@ -130,10 +134,7 @@ impl<'a> Desk<'a> {
 
     pub fn answer(&mut self, command: Command) -> Answer {
         self.sequence += 1;
-        let request = Request { sequence: self.sequence, command };
-        let mut frame = [0; FRAME_MAX_LEN];
-        let frame = payload::request_frame(&request, &mut frame).unwrap().to_vec();
-        self.send(&frame);
+        self.send(&request(self.sequence, command));
         let sequence = self.sequence;
         let place = self
             .messages
@@ -161,7 +162,8 @@ impl<'a> Desk<'a> {
     }
 
     pub fn upload_bitmap(&mut self, width: u16, height: u16, samples: &[u8]) -> Result<Accepted, Refusal> {
-        let accepted = self.command(Command::UploadBitmap { width, height, crc32: crc32(samples) })?;
+        let accepted =
+            self.command(Command::UploadBitmap { width, height, crc32: bitmap_crc32(width, height, samples) })?;
         if accepted == Accepted::Done {
             self.chunks(samples);
             self.command(Command::UploadEnd)?;
@@ -201,6 +203,11 @@ impl<'a> Desk<'a> {
             }
         }
     }
+}
+
+pub fn request(sequence: u16, command: Command) -> Vec<u8> {
+    let mut frame = [0; FRAME_MAX_LEN];
+    payload::request_frame(&Request { sequence, command }, &mut frame).unwrap().to_vec()
 }
 
 /// The example finger at 0.5 N under at most 150 V rms.

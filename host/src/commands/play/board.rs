@@ -1,26 +1,26 @@
 //! Playing to a board at a serial port.
 
-use std::path::PathBuf;
 use std::time::Duration;
 
 use frixel::device::{DEFAULT_BAUD, Device, Event, SerialLink};
 use frixel::metrics::MetricsSummary;
-use frixel::output::{FeltRow, Report};
+use frixel::output::{FeltCsv, FeltRow, OutputError, Report};
 use frixel::player::start;
 use frixel::scene::{Program, Scene, compile};
 use frixel::wanted::Wanted;
 use frixel_wire::fault::Flags;
+use frixel_wire::hello::Hello;
 use frixel_wire::message::Telemetry;
 
 use super::super::interrupt::Interrupt;
-use super::{Bars, CommandError, PlayArgs, tell_notes, write_felt_csv};
+use super::{Bars, CommandError, PlayArgs, Played, check_seconds, create_felt_csv, tell_notes, ticks_per_row};
 
 /// Most telemetry that a board sends, in messages a second.
 const TELEMETRY_MAX_HZ: u32 = 1000;
 /// Time between two looks at Ctrl-C and at the board's state.
 const STEP: Duration = Duration::from_millis(50);
 
-pub(super) fn play(args: &PlayArgs) -> Result<(Report, Vec<PathBuf>), CommandError> {
+pub(super) fn play(args: &PlayArgs) -> Result<Played, CommandError> {
     let port = || args.port.clone();
     if args.stroke.is_some() {
         return Err(CommandError::StrokeOnBoard { port: port() });
@@ -35,24 +35,42 @@ pub(super) fn play(args: &PlayArgs) -> Result<(Report, Vec<PathBuf>), CommandErr
     if !(args.arm || hello.board.is_simulated()) {
         return Err(CommandError::NotArmed { port: port() });
     }
+    args.seconds.map_or(Ok(()), |seconds| check_seconds(seconds, hello.tick_hz))?;
+    ticks_per_row(args.csv_hz, hello.tick_hz)?;
     let program = compile(&scene, &hello.limits, hello.tick_hz)?;
     tell_notes(&program);
+    let (csv, path) = create_felt_csv(&args.out)?;
     let mut bars = Bars::default();
     start(&mut device, &program, &mut |progress| bars.upload(progress))?;
     bars.finish();
-    device.subscribe(hello.tick_hz.div_ceil(args.csv_hz))?;
 
-    let mut diary = Diary::new(&program, hello.tick_hz);
-    let mut passed_s = 0.0;
-    while args.seconds.is_none_or(|seconds| passed_s < seconds) && !interrupt.is_asked() {
-        device.wait(STEP, &mut |event| diary.take(&event))?;
-        diary.stopped(&args.port)?;
-        passed_s += STEP.as_secs_f64();
+    let mut diary = Diary::new(&program, &hello, csv);
+    let ended = listen(&mut device, &mut diary, args, &interrupt);
+    let report = Report::new("board", &diary.metrics(), &program.reach, &device.counters(), None);
+    // The board's output goes to zero before anything else is done.
+    drop(device);
+    let written = diary.csv.finish().map_err(CommandError::from);
+    Ok(Played { report, files: vec![path], failure: ended.and(written).err() })
+}
+
+/// Writes down what the board tells for as long as it plays.
+fn listen(
+    device: &mut Device<SerialLink>,
+    diary: &mut Diary,
+    args: &PlayArgs,
+    interrupt: &Interrupt,
+) -> Result<(), CommandError> {
+    device.subscribe(ticks_per_row(args.csv_hz, device.hello().tick_hz)?)?;
+    let mut left = args.seconds.map_or(Duration::MAX, Duration::from_secs_f64);
+    while !left.is_zero() && !interrupt.is_asked() {
+        let step = STEP.min(left);
+        let waited = device.wait(step, &mut |event| diary.take(&event));
+        diary.check(&args.port)?;
+        waited?;
+        left = left.saturating_sub(step);
     }
     device.stop()?;
-    device.disarm()?;
-    let report = Report::new("board", &diary.metrics(), &program.reach, &device.counters(), None);
-    Ok((report, vec![write_felt_csv(&args.out, &diary.rows)?]))
+    Ok(device.disarm()?)
 }
 
 /// What a board tells while it plays.
@@ -61,20 +79,23 @@ struct Diary {
     tick_period_s: f64,
     first_tick: Option<u32>,
     last_tick: u32,
-    saturated: u64,
-    rows: Vec<FeltRow>,
+    wanted_range_n: Option<(f64, f64)>,
+    csv: FeltCsv,
+    /// Why no more rows are written.
+    write_error: Option<OutputError>,
     end: Option<Event>,
 }
 
 impl Diary {
-    fn new(program: &Program, tick_hz: u32) -> Self {
+    fn new(program: &Program, hello: &Hello, csv: FeltCsv) -> Self {
         Self {
             wanted: Wanted::new(program),
-            tick_period_s: 1.0 / f64::from(tick_hz),
+            tick_period_s: 1.0 / f64::from(hello.tick_hz),
             first_tick: None,
             last_tick: 0,
-            saturated: 0,
-            rows: Vec::new(),
+            wanted_range_n: None,
+            csv,
+            write_error: None,
             end: None,
         }
     }
@@ -91,16 +112,20 @@ impl Diary {
     fn take_telemetry(&mut self, telemetry: &Telemetry) {
         let first_tick = *self.first_tick.get_or_insert(telemetry.tick);
         self.last_tick = telemetry.tick;
-        self.saturated += u64::from(telemetry.flags.contains(Flags::SATURATED));
         let (x_m, y_m) = (f64::from(telemetry.finger_x_m), f64::from(telemetry.finger_y_m));
         let finger_down = !telemetry.flags.contains(Flags::NO_FINGER);
         let natural_n = self.wanted.natural_friction_n();
-        self.rows.push(FeltRow {
+        let wanted_n = finger_down.then(|| natural_n + self.wanted.electric_friction_n(x_m, y_m));
+        if let Some(wanted_n) = wanted_n {
+            let (least_n, largest_n) = self.wanted_range_n.unwrap_or((wanted_n, wanted_n));
+            self.wanted_range_n = Some((least_n.min(wanted_n), largest_n.max(wanted_n)));
+        }
+        self.write(&FeltRow {
             t_s: f64::from(telemetry.tick.wrapping_sub(first_tick)) * self.tick_period_s,
             x_mm: finger_down.then_some(1e3 * x_m),
             y_mm: finger_down.then_some(1e3 * y_m),
             speed_mm_s: finger_down.then_some(1e3 * f64::from(telemetry.speed_m_per_s)),
-            wanted_n: finger_down.then(|| natural_n + self.wanted.electric_friction_n(x_m, y_m)),
+            wanted_n,
             asked_n: finger_down.then_some(natural_n + f64::from(telemetry.asked_electric_friction_n)),
             felt_n: None,
             voltage_v_rms: Some(f64::from(telemetry.voltage_v_rms)),
@@ -109,21 +134,26 @@ impl Diary {
         });
     }
 
-    /// The ticks that telemetry spans. What is felt, and how far that is off, no board can tell.
+    fn write(&mut self, row: &FeltRow) {
+        if self.write_error.is_none() {
+            self.write_error = self.csv.write(row).err();
+        }
+    }
+
+    /// The ticks that telemetry spans. What is felt, how far that is off, and how many ticks were saturated, no board tells.
     fn metrics(&self) -> MetricsSummary {
-        let wanted_n = self.rows.iter().filter_map(|row| row.wanted_n);
-        let range_n =
-            |range: Option<(f64, f64)>, n: f64| Some(range.map_or((n, n), |(min, max)| (min.min(n), max.max(n))));
         MetricsSummary {
             ticks: self.first_tick.map_or(0, |first| u64::from(self.last_tick.wrapping_sub(first))),
-            saturated_ticks: self.saturated,
-            wanted_range_n: wanted_n.fold(None, range_n),
+            wanted_range_n: self.wanted_range_n,
             ..MetricsSummary::default()
         }
     }
 
-    /// An error when the board has stopped without being told to.
-    fn stopped(&self, port: &str) -> Result<(), CommandError> {
+    /// Puts what was written so far into the file. An error when that does not go, or when the board has stopped without
+    /// being told to.
+    fn check(&mut self, port: &str) -> Result<(), CommandError> {
+        self.write_error.take().map_or(Ok(()), Err)?;
+        self.csv.flush()?;
         match self.end {
             Some(Event::StateChanged { fault: Some(fault), .. }) => {
                 Err(CommandError::Faulted { port: port.into(), fault })

@@ -1,52 +1,79 @@
 //! Playing to the simulated board in this process.
 
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 
-use frixel::output::{Report, Trace, write_felt_svg, write_scene_png};
-use frixel::player::{Simulation, Stage, simulate};
-use frixel::rigs::Recorder;
+use frixel::output::{FeltCsv, FeltRow, OutputError, Report, Trace, write_felt_svg, write_scene_png};
+use frixel::player::{Simulation, Stage, simulate_rows};
 use frixel::scene::{Program, Scene, compile};
 use frixel_hil_sim::RigConfig;
 
-use super::super::stroke::stroke;
-use super::{Bars, CommandError, PlayArgs, tell_notes, write_felt_csv};
+use super::super::interrupt::Interrupt;
+use super::super::stroke::{check_on_screen, stroke};
+use super::{Bars, CommandError, PlayArgs, Played, check_seconds, create_felt_csv, tell_notes, ticks_per_row};
 
-pub(super) fn play(args: &PlayArgs) -> Result<(Report, Vec<PathBuf>), CommandError> {
+pub(super) fn play(args: &PlayArgs) -> Result<Played, CommandError> {
     let rig = RigConfig::default();
+    let ticks_per_row = ticks_per_row(args.csv_hz, rig.board.tick_hz)?;
     let program = compile(&Scene::load(&args.scene)?, &rig.board.limits, rig.board.tick_hz)?;
     tell_notes(&program);
-    let (width_m, height_m) = (program.header.screen_width_m, program.header.screen_height_m);
-    let stroke = stroke(args.stroke.as_deref(), width_m.into(), height_m.into(), args.seconds)?;
-    let simulation = Simulation {
-        rig,
-        seconds: args.seconds.unwrap_or(stroke.duration_s()),
-        stroke,
-        seed: args.seed,
-        ticks_per_row: rig.board.tick_hz.div_ceil(args.csv_hz),
-    };
+    let (width_m, height_m) = (program.header.screen_width_m.into(), program.header.screen_height_m.into());
+    let stroke = stroke(args.stroke.as_deref(), width_m, height_m, args.seconds)?;
+    let seconds = args.seconds.unwrap_or(stroke.duration_s());
+    check_seconds(seconds, rig.board.tick_hz)?;
+    if let Some(path) = &args.stroke {
+        check_on_screen(path, &stroke, width_m, height_m, seconds)?;
+    }
+    let simulation = Simulation { rig, stroke, seconds, seed: args.seed, ticks_per_row };
+    let interrupt = Interrupt::watch()?;
+    let (csv, csv_path) = create_felt_csv(&args.out)?;
+    let mut rows = Rows { csv, trace: Trace::new() };
+    let mut write_error = None;
     let mut bars = Bars::default();
-    let simulated = simulate(&program, &simulation, &mut |stage| match stage {
+    let on_stage = &mut |stage| match stage {
         Stage::Upload(progress) => bars.upload(progress),
         Stage::Play(part) => bars.play(part),
+    };
+    let simulated = simulate_rows(&program, &simulation, on_stage, &mut |new| {
+        write_error = rows.take(new).err();
+        if write_error.is_some() || interrupt.is_asked() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     })?;
     bars.finish();
+    write_error.map_or(Ok(()), Err)?;
+    rows.csv.finish()?;
     let metrics = simulated.recorder.metrics().summary();
+    if interrupt.is_asked() {
+        let played_s = metrics.ticks as f64 / f64::from(rig.board.tick_hz);
+        eprintln!("interrupted: what follows is of the first {played_s:.3} s of {:.3} s", simulation.seconds);
+    }
     let report = Report::new("sim", &metrics, &program.reach, &simulated.counters, Some(simulated.realtime_factor));
-    Ok((report, write_files(args, &program, &simulated.recorder)?))
+    let mut files = vec![csv_path];
+    files.extend(draw(args, &program, &rows.trace)?);
+    Ok(Played { report, files, failure: None })
 }
 
-/// Writes `felt.csv`, `felt.svg` and `scene.png`.
-fn write_files(args: &PlayArgs, program: &Program, recorder: &Recorder) -> Result<Vec<PathBuf>, CommandError> {
-    let rows = recorder.rows();
-    let csv = write_felt_csv(&args.out, rows)?;
-    let mut trace = Trace::new();
-    for row in rows {
-        trace.push(row);
+/// Where rows go while the scene plays.
+struct Rows {
+    csv: FeltCsv,
+    trace: Trace,
+}
+
+impl Rows {
+    fn take(&mut self, rows: &[FeltRow]) -> Result<(), OutputError> {
+        for row in rows {
+            self.csv.write(row)?;
+            self.trace.push(row);
+        }
+        Ok(())
     }
+}
+
+/// Draws `felt.svg` and `scene.png`.
+fn draw(args: &PlayArgs, program: &Program, trace: &Trace) -> Result<[PathBuf; 2], CommandError> {
     let title = args.scene.display().to_string();
     let svg = args.out.join("felt.svg");
-    write_felt_svg(&svg, &title, &trace, &program.reach)?;
+    write_felt_svg(&svg, &title, trace, &program.reach)?;
     let png = args.out.join("scene.png");
-    write_scene_png(&png, &title, program, &trace)?;
-    Ok(vec![csv, svg, png])
+    write_scene_png(&png, &title, program, trace)?;
+    Ok([svg, png])
 }

@@ -223,7 +223,7 @@ fn a_picture_is_placed_and_held_at_its_border() {
     assert!(program.notes.is_empty(), "{:?}", program.notes);
     assert_eq!((program.bitmaps[0].width, program.bitmaps[0].height), (3, 2));
     assert_eq!(program.bitmaps[0].samples, [0, 51, 102, 255, 204, 153]);
-    assert_eq!(program.bitmaps[0].crc32, frixel_wire::frame::crc32(&[0, 51, 102, 255, 204, 153]));
+    assert_eq!(program.bitmaps[0].crc32, frixel_wire::scene::bitmap_crc32(3, 2, &program.bitmaps[0].samples));
     let wanted = Wanted::new(&program);
     let at = |x_mm: f64, y_mm: f64| 1e3 * wanted.electric_friction_n(x_mm * 1e-3, y_mm * 1e-3);
     let mn = |grey: f64| 1.0 + 25.0 * grey / 255.0;

@@ -1,0 +1,187 @@
+//! The contact model over the rows of a CSV file: what `frixel model eval` and `frixel model invert` do.
+//!
+//! The first row names the columns, in any order. A row names a `variant` of the model and has the numbers that the
+//! variant needs, in SI units:
+//!
+//! | variant | equations | needs, besides what every row needs | takes as well |
+//! |---|---|---|---|
+//! | `wf-upper` | (34), (36) | `stiffness_pa_per_m` | |
+//! | `wf-lower` | (37)-(39), (42) | `stiffness_pa_per_m` | `normal_force_n` |
+//! | `wf-loaded` | (43), (21) | `stiffness_pa_per_m`, `normal_force_n` | |
+//! | `wf-finite` | (19), (21) | `stiffness_pa_per_m`, `outer_radius_m` | `normal_force_n` |
+//! | `soft-upper` | (29)-(33) | `modulus_pa`, `stress_exponent`, `shape_constant` | |
+//! | `soft-lower` | (40), (41) | `modulus_pa`, `stress_exponent`, `shape_constant` | |
+//! | `soft-loaded` | (29), (43) | `modulus_pa`, `stress_exponent`, `shape_constant`, `normal_force_n` | |
+//!
+//! Every row needs `radius_m`, `coating_m`, `permittivity`, `friction_coefficient`, and `voltage_v` (rms) for [`eval`];
+//! for [`invert`] in its place `friction_n` (total) or `electric_friction_n` (what the voltage adds, exact where the total
+//! would cancel), whichever is filled in. A row that fills in both is invalid: it would say one thing twice. A
+//! `normal_force_n` that may be left out counts as zero. Cells that a variant does not need are not read.
+//!
+//! The output has the input's columns, cell for cell, and behind them
+//!
+//! - [`eval`]: `sigma0_pa, contact_radius_m, effective_stiffness_pa_per_m, friction_n, status`,
+//! - [`invert`]: `voltage_v, status`.
+//!
+//! A name that the input has already is written once more: the last one is the answer. Numbers have 17 significant digits,
+//! or 9 in `f32`, which is what reading them back exactly takes.
+//!
+//! `status` is `ok`, `no-contact` (radius and friction are zero), `below-natural`, `unstable`, or `invalid: REASON` with
+//! empty cells. One bad row never stops the others. The file as a whole is refused ([`CsvError`]) when its header lacks a
+//! column that every row needs, or has one twice that the model reads; a column that only some variants need is missed in
+//! the rows of those variants. Messages count rows from the header, which is row 1; blank lines do not count.
+
+mod columns;
+mod error;
+mod number;
+mod row;
+mod variant;
+
+use std::io::{Read, Write};
+
+use csv::{ByteRecord, ReaderBuilder, WriterBuilder};
+use frixel_model::{InverseError, StateError, contact_attraction_pa};
+
+pub use error::CsvError;
+pub use number::Precision;
+
+use columns::{Columns, FRICTIONS, VOLTAGE};
+use error::Refusal;
+use number::Number;
+use row::Row;
+use variant::Model;
+
+/// What was done.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Summary {
+    /// Rows, the header not counted.
+    pub rows: u64,
+    /// Rows whose status is `invalid`.
+    pub invalid_rows: u64,
+    /// Rows with a contact radius above the finger's radius of curvature, where the paraboloid no longer resembles it.
+    pub beyond_finger_rows: u64,
+}
+
+/// Evaluates the model row by row: voltage to friction.
+///
+/// ```
+/// use frixel::model_csv::{Precision, eval};
+/// let input = "variant,radius_m,stiffness_pa_per_m,coating_m,permittivity,friction_coefficient,voltage_v\n\
+///              wf-upper,8e-3,1.8e7,1e-5,1,0.5,150\n";
+/// let mut output = Vec::new();
+/// let summary = eval(Precision::F64, input.as_bytes(), &mut output)?;
+/// assert_eq!((summary.rows, summary.invalid_rows), (1, 0));
+/// assert!(String::from_utf8(output)?.trim_end().ends_with(",ok"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn eval(precision: Precision, input: impl Read, output: impl Write) -> Result<Summary, CsvError> {
+    match precision {
+        Precision::F64 => transform(&EVAL, evaluated::<f64>, input, output),
+        Precision::F32 => transform(&EVAL, evaluated::<f32>, input, output),
+    }
+}
+
+/// Inverts the model row by row: friction to voltage.
+pub fn invert(precision: Precision, input: impl Read, output: impl Write) -> Result<Summary, CsvError> {
+    match precision {
+        Precision::F64 => transform(&INVERT, inverted::<f64>, input, output),
+        Precision::F32 => transform(&INVERT, inverted::<f32>, input, output),
+    }
+}
+
+/// What one direction reads and writes.
+struct Direction {
+    /// At least one of these columns has to be there, besides what every row needs.
+    given: &'static [&'static str],
+    answers: &'static [&'static str],
+}
+
+const EVAL: Direction = Direction {
+    given: &[VOLTAGE],
+    answers: &["sigma0_pa", "contact_radius_m", "effective_stiffness_pa_per_m", "friction_n"],
+};
+const INVERT: Direction = Direction { given: &FRICTIONS, answers: &["voltage_v"] };
+
+/// What is written behind a row.
+struct Answer {
+    /// As many as the direction has answers.
+    cells: Vec<String>,
+    status: &'static str,
+    beyond_finger: bool,
+}
+
+fn transform(
+    direction: &Direction,
+    answer: fn(&Row) -> Result<Answer, Refusal>,
+    input: impl Read,
+    output: impl Write,
+) -> Result<Summary, CsvError> {
+    let mut reader = ReaderBuilder::new().flexible(true).from_reader(input);
+    let mut writer = WriterBuilder::new().from_writer(output);
+    let header = reader.byte_headers().map_err(CsvError::read)?.clone();
+    let columns = Columns::new(&header, direction.given)?;
+    let names = direction.answers.iter().map(|name| name.as_bytes());
+    write(&mut writer, header.iter().chain(names).chain([b"status".as_slice()]))?;
+
+    let mut summary = Summary::default();
+    let mut record = ByteRecord::new();
+    while reader.read_byte_record(&mut record).map_err(CsvError::read)? {
+        summary.rows += 1;
+        let (cells, status) = match answer(&Row::new(1 + summary.rows, &columns, &record)) {
+            Ok(answer) => {
+                summary.beyond_finger_rows += u64::from(answer.beyond_finger);
+                (answer.cells, answer.status.to_owned())
+            }
+            Err(refusal) => {
+                summary.invalid_rows += 1;
+                (vec![String::new(); direction.answers.len()], format!("invalid: {refusal}"))
+            }
+        };
+        // A row of the wrong length is refused, and still has its status in the column of that name.
+        let passed = (0..columns.len()).map(|place| record.get(place).unwrap_or_default());
+        write(&mut writer, passed.chain(cells.iter().map(String::as_bytes)).chain([status.as_bytes()]))?;
+    }
+    writer.flush().map_err(CsvError::Write)?;
+    Ok(summary)
+}
+
+fn write<'a>(writer: &mut csv::Writer<impl Write>, cells: impl Iterator<Item = &'a [u8]>) -> Result<(), CsvError> {
+    writer.write_record(cells).map_err(CsvError::write)
+}
+
+fn evaluated<T: Number>(row: &Row) -> Result<Answer, Refusal> {
+    let model = Model::<T>::read(row)?;
+    let voltage_v_rms = row.real(VOLTAGE)?;
+    let sigma0_pa = contact_attraction_pa(voltage_v_rms, model.gap_m)?;
+    let (contact_radius_m, stiffness_pa_per_m, friction_n, status) = match model.contact.state(voltage_v_rms) {
+        Ok(state) => (state.contact_radius_m, state.stiffness_pa_per_m, state.friction_n, "ok"),
+        Err(StateError::NoContact) => (T::ZERO, model.stiffness_pa_per_m, T::ZERO, "no-contact"),
+        Err(error) => return Err(error.into()),
+    };
+    let numbers = [sigma0_pa, contact_radius_m, stiffness_pa_per_m, friction_n];
+    Ok(Answer { cells: cells(&numbers)?, status, beyond_finger: contact_radius_m > model.radius_m })
+}
+
+fn inverted<T: Number>(row: &Row) -> Result<Answer, Refusal> {
+    let model = Model::<T>::read(row)?;
+    let [total, electric] = FRICTIONS;
+    let voltage_v_rms = match (row.is_filled(total), row.is_filled(electric)) {
+        (true, true) => return Err(Refusal::BothFrictions),
+        (false, false) => return Err(Refusal::NoFriction { row: row.number() }),
+        (true, false) => model.contact.voltage_for_friction(row.real(total)?),
+        (false, true) => model.contact.voltage_for_electric_friction(row.real(electric)?),
+    };
+    let (cells, status) = match voltage_v_rms {
+        Ok(voltage_v_rms) => (cells(&[voltage_v_rms])?, "ok"),
+        Err(InverseError::BelowNatural) => (vec![String::new()], "below-natural"),
+        Err(InverseError::Unstable) => (vec![String::new()], "unstable"),
+        Err(error) => return Err(error.into()),
+    };
+    Ok(Answer { cells, status, beyond_finger: false })
+}
+
+/// Numbers as text, none of them without being one.
+fn cells<T: Number>(numbers: &[T]) -> Result<Vec<String>, Refusal> {
+    let all_finite = numbers.iter().all(|number| number.is_finite());
+    if all_finite { Ok(numbers.iter().map(|number| number.digits()).collect()) } else { Err(Refusal::TooLarge) }
+}

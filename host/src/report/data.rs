@@ -1,0 +1,72 @@
+//! The numbers behind a picture.
+
+/// Rows under named columns.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Data<const COLUMNS: usize> {
+    header: [&'static str; COLUMNS],
+    rows: Vec<[Value; COLUMNS]>,
+}
+
+/// A cell.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Value {
+    /// Written with as many digits as reading it back takes; an empty cell where it is none.
+    Number(f64),
+    /// Written as it is.
+    Text(String),
+}
+
+impl<const COLUMNS: usize> Data<COLUMNS> {
+    pub(super) fn new(header: [&'static str; COLUMNS]) -> Self {
+        Self { header, rows: Vec::new() }
+    }
+
+    pub(super) fn row(&mut self, cells: [Value; COLUMNS]) {
+        self.rows.push(cells);
+    }
+
+    /// As a CSV file has them.
+    pub(super) fn csv(&self) -> Result<Vec<u8>, csv::Error> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        writer.write_record(self.header)?;
+        for row in &self.rows {
+            writer.write_record(row.iter().map(Value::text))?;
+        }
+        writer.into_inner().map_err(|error| error.into_error().into())
+    }
+}
+
+impl Value {
+    fn text(&self) -> String {
+        match self {
+            Self::Number(number) if !number.is_finite() => String::new(),
+            Self::Number(number) if *number == 0.0 || (1e-4..1e6).contains(&number.abs()) => number.to_string(),
+            Self::Number(number) => format!("{number:e}"),
+            Self::Text(text) => text.clone(),
+        }
+    }
+}
+
+impl From<f64> for Value {
+    fn from(number: f64) -> Self {
+        Self::Number(number)
+    }
+}
+
+impl From<Option<f64>> for Value {
+    fn from(number: Option<f64>) -> Self {
+        Self::Number(number.unwrap_or(f64::NAN))
+    }
+}
+
+impl From<usize> for Value {
+    fn from(number: usize) -> Self {
+        Self::Text(number.to_string())
+    }
+}
+
+impl From<&str> for Value {
+    fn from(text: &str) -> Self {
+        Self::Text(text.to_owned())
+    }
+}

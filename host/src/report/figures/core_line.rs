@@ -1,0 +1,151 @@
+//! Fig. 3 of the paper: contact radius and friction over voltage without a load, on one core line.
+
+use frixel_model::{Contact, ContactModel, Finger};
+
+use super::{EXAMPLE, Figure, GAP_M, ReportError, even, example_finger, geometric};
+use crate::report::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
+use crate::report::data::Data;
+
+/// A finger to put on the line, with how its legend calls it.
+struct Example {
+    name: &'static str,
+    finger: Finger<f64>,
+    gap_m: f64,
+    look: Look,
+}
+
+fn examples() -> [Example; 3] {
+    let soft = Finger { radius_m: 1e-2, stiffness_pa_per_m: 3e6, friction_coefficient: 0.8 };
+    let hard = Finger { radius_m: 5e-3, stiffness_pa_per_m: 2e9, friction_coefficient: 0.3 };
+    [
+        Example {
+            name: "R 8 mm, k 1.8e7 Pa/m, gap 10 µm, µ 0.5",
+            finger: example_finger(),
+            gap_m: GAP_M,
+            look: Look::mark(PALETTE[1], Mark::Ring),
+        },
+        Example {
+            name: "R 10 mm, k 3e6 Pa/m, gap 30 µm, µ 0.8",
+            finger: soft,
+            gap_m: 3e-5,
+            look: Look::mark(PALETTE[2], Mark::Cross),
+        },
+        Example {
+            name: "R 5 mm, k 2e9 Pa/m, gap 0.3 µm, µ 0.3",
+            finger: hard,
+            gap_m: 3e-7,
+            look: Look::mark(PALETTE[3], Mark::Triangle),
+        },
+    ]
+}
+
+/// A finger's state, in its own units and scaled.
+struct Point {
+    voltage_v_rms: f64,
+    contact_radius_m: f64,
+    friction_n: f64,
+    scaled_voltage: f64,
+    scaled_radius: f64,
+    scaled_friction: f64,
+}
+
+fn points(example: &Example, voltages: impl Iterator<Item = f64>, scaled: bool) -> Result<Vec<Point>, ReportError> {
+    let contact = Contact::new(&example.finger, example.gap_m)?;
+    let upper = contact.under_load(0.0)?;
+    let voltage_unit = if scaled { contact.voltage_scale_v_rms() } else { 1.0 };
+    let mut points = Vec::new();
+    for voltage in voltages {
+        let voltage_v_rms = voltage * voltage_unit;
+        let state = upper.state(voltage_v_rms)?;
+        points.push(Point {
+            voltage_v_rms,
+            contact_radius_m: state.contact_radius_m,
+            friction_n: state.friction_n,
+            scaled_voltage: voltage_v_rms / contact.voltage_scale_v_rms(),
+            scaled_radius: contact.area(state.contact_radius_m).sqrt(),
+            scaled_friction: state.friction_n / contact.friction_scale_n(),
+        });
+    }
+    Ok(points)
+}
+
+pub(super) fn figure() -> Result<Figure, ReportError> {
+    let line = Look::line(PALETTE[0], Line::Solid);
+    let limit = Look::line(PALETTE[6], Line::Dashed);
+    let scaled_voltage = || Axis::log("voltage V / V*", 1e-2..1e2);
+    let mut radius =
+        Panel::new("Core line: contact radius", scaled_voltage(), Axis::log("contact radius a / √(2 R g)", 0.1..200.0));
+    let mut friction = Panel::new("Core line: friction", scaled_voltage(), Axis::log("friction F_T / F*", 1e-4..1e9));
+    let volts = || Axis::linear("voltage, V rms", 0.0..200.0);
+    let mut radius_mm =
+        Panel::new("Example finger: contact radius", volts(), Axis::linear("contact radius, mm", 0.0..2.0));
+    let mut friction_mn = Panel::new("Example finger: friction", volts(), Axis::linear("friction, mN", 0.0..10.0));
+
+    let [example, ..] = examples();
+    let curve = points(&example, geometric(1e-2, 1e2, 161), true)?;
+    radius.add("Eq. (36)", line, curve.iter().map(|point| (point.scaled_voltage, point.scaled_radius)).collect());
+    friction.add(
+        "Eqs. (36), (34)",
+        line,
+        curve.iter().map(|point| (point.scaled_voltage, point.scaled_friction)).collect(),
+    );
+    let power = |factor: f64, exponent: f64| [1e-2, 1e2].map(|v: f64| (v, factor * v.powf(exponent))).to_vec();
+    radius.add("V → 0 (a ∝ √V); V → ∞ (a ∝ V)", limit, power(2_f64.powf(0.25), 0.5));
+    radius.add("", limit, power(2_f64.sqrt(), 1.0));
+    friction.add("V → 0 (F ∝ σ₀); V → ∞ (F ∝ σ₀²)", limit, power(2.0, 2.0));
+    friction.add("", limit, power(4.0, 4.0));
+
+    let mut data = Data::new([
+        "finger",
+        "voltage_v_rms",
+        "contact_radius_m",
+        "friction_n",
+        "voltage_over_scale",
+        "radius_over_scale",
+        "friction_over_scale",
+    ]);
+    for example in examples() {
+        let points = points(&example, geometric(1.5e-2, 70.0, 12), true)?;
+        radius.add(example.name, example.look, points.iter().map(|p| (p.scaled_voltage, p.scaled_radius)).collect());
+        friction.add(
+            example.name,
+            example.look,
+            points.iter().map(|p| (p.scaled_voltage, p.scaled_friction)).collect(),
+        );
+        for point in points {
+            put(&mut data, example.name, &point);
+        }
+    }
+    let linear = points(&example, even(0.0, 200.0, 101), false)?;
+    radius_mm.add("Eq. (36)", line, linear.iter().map(|p| (p.voltage_v_rms, 1e3 * p.contact_radius_m)).collect());
+    friction_mn.add("Eqs. (36), (34)", line, linear.iter().map(|p| (p.voltage_v_rms, 1e3 * p.friction_n)).collect());
+    for point in curve.iter().chain(&linear) {
+        put(&mut data, example.name, point);
+    }
+    Ok(Figure {
+        name: "fig3-core-line",
+        title: "Fig. 3 of the paper: contact radius and friction without a load".to_owned(),
+        caption: vec![
+            "Without a normal load, contact radius and friction of every finger fall on one line each when voltage is \
+             scaled by V* = √(2 k g³/ε₀), radius by √(2 R g) and friction by F* = µ π k R g² (g: effective gap). Three very \
+             different fingers, computed in their own units, stand on the lines. At small voltages friction grows with σ₀ ∝ \
+             V², at large ones with σ₀² ∝ V⁴, the lower bound of Eq. (42): dashed."
+                .to_owned(),
+            EXAMPLE.to_owned(),
+        ],
+        chart: Chart { panels: vec![radius, friction, radius_mm, friction_mn], columns: 2, shared_legend: false },
+        csv: data.csv()?,
+    })
+}
+
+fn put(data: &mut Data<7>, name: &str, point: &Point) {
+    data.row([
+        name.into(),
+        point.voltage_v_rms.into(),
+        point.contact_radius_m.into(),
+        point.friction_n.into(),
+        point.scaled_voltage.into(),
+        point.scaled_radius.into(),
+        point.scaled_friction.into(),
+    ]);
+}

@@ -1,0 +1,254 @@
+//! Error against run time and against size, for every way to invert.
+
+use core::f64::consts::LOG10_2;
+
+use frixel_model::ContactModel;
+
+use super::{EXAMPLE, Figure, GAP_M, LOAD_N, ReportError, example, example_finger};
+use crate::report::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
+use crate::report::counts::Counts;
+use crate::report::data::{Data, Value};
+use crate::report::exact::Springs;
+use crate::report::ways::{Bench, Kind, Parameters, RANGE_V_RMS, Way};
+
+/// Kinds in the order of legends: what they are called and how they look.
+const KINDS: [(Kind, &str, Look); 12] = [
+    (Kind::ClosedF64, "closed form, f64", Look::mark(PALETTE[6], Mark::Disc)),
+    (Kind::ClosedF32, "closed form, f32", Look::mark(PALETTE[6], Mark::Ring)),
+    (Kind::Bisection, "bisection, f64", both(PALETTE[1], Mark::Disc)),
+    (Kind::BisectionF32, "bisection, f32", both(PALETTE[1], Mark::Ring)),
+    (Kind::ForwardTable, "forward table, binary search, f32", both(PALETTE[4], Mark::Diamond)),
+    (Kind::Linear, "direct table, linear, f32", both(PALETTE[5], Mark::Triangle)),
+    (Kind::Quadratic, "direct table, quadratic, f32", both(PALETTE[0], Mark::Square)),
+    (Kind::Cubic, "direct table, cubic, f32", both(PALETTE[2], Mark::Diamond)),
+    (Kind::Device, "the board's table, cubic, f32", Look::mark(PALETTE[2], Mark::Ring)),
+    (Kind::FixedLinear, "direct table, linear, integers", dashed(PALETTE[5], Mark::Triangle)),
+    (Kind::FixedQuadratic, "direct table, quadratic, integers", dashed(PALETTE[0], Mark::Square)),
+    (Kind::FixedCubic, "direct table, cubic, integers", dashed(PALETTE[2], Mark::Diamond)),
+];
+
+/// What instruction counts call a kind.
+const COUNTED: [(Kind, &str); 6] = [
+    (Kind::Device, "inverse_table"),
+    (Kind::ClosedF32, "inverse_closed_form"),
+    (Kind::ClosedF64, "inverse_closed_form_f64"),
+    (Kind::BisectionF32, "inverse_bisection"),
+    (Kind::ForwardTable, "inverse_forward_table"),
+    (Kind::FixedQuadratic, "inverse_fixed_table"),
+];
+const CORES: [(&str, &str); 2] = [("m4f", "Cortex-M4F"), ("m3", "Cortex-M3, no FPU")];
+
+const ERROR: &str = "largest relative error in electric friction";
+
+const fn both(colour: plotters::style::RGBColor, mark: Mark) -> Look {
+    Look { colour, line: Line::Thin, mark }
+}
+
+const fn dashed(colour: plotters::style::RGBColor, mark: Mark) -> Look {
+    Look { colour, line: Line::Dashed, mark }
+}
+
+/// All ways, measured for the example finger under one load.
+pub(super) struct Measured {
+    load_n: f64,
+    ways: Vec<Way>,
+}
+
+impl Measured {
+    fn title(&self) -> String {
+        if self.load_n > 0.0 { format!("Under {} N", self.load_n) } else { "No load".to_owned() }
+    }
+
+    /// Run times count in that of the f64 closed form.
+    fn unit_seconds(&self) -> f64 {
+        self.of(Kind::ClosedF64).map(|way| way.seconds).next().unwrap_or(f64::NAN)
+    }
+
+    fn of(&self, kind: Kind) -> impl Iterator<Item = &Way> {
+        self.ways.iter().filter(move |way| way.kind == kind)
+    }
+
+    /// A panel of errors over something that a way has.
+    fn panel(&self, x: Axis, cost: impl Fn(&Way) -> Option<f64>) -> Panel {
+        let mut panel = Panel::new(&self.title(), x, Axis::log(ERROR, 1e-16..1e1));
+        for (kind, name, look) in KINDS {
+            let points: Vec<_> = self.of(kind).filter_map(|way| Some((cost(way)?, way.error.max(1e-16)))).collect();
+            if !points.is_empty() {
+                panel.add(name, look, points);
+            }
+        }
+        panel
+    }
+}
+
+/// Measures all ways without a load and under the example finger's.
+pub(super) fn measure() -> Result<[Measured; 2], ReportError> {
+    let finger = example_finger();
+    let measured = |load_n: f64| {
+        let bench = Bench {
+            contact: &example::<f64>()?.under_load(load_n)?,
+            single: &example::<f32>()?.under_load(load_n as f32)?,
+            exact: &Springs::new(&finger, GAP_M),
+            parameters: Parameters {
+                radius_m: finger.radius_m,
+                stiffness_pa_per_m: finger.stiffness_pa_per_m,
+                friction_coefficient: finger.friction_coefficient,
+                gap_m: GAP_M,
+                normal_load_n: load_n,
+            },
+        };
+        Ok::<_, ReportError>(Measured { load_n, ways: bench.all()? })
+    };
+    Ok([measured(0.0)?, measured(LOAD_N)?])
+}
+
+/// Error over run time on this computer.
+pub(super) fn against_time(measured: &[Measured; 2]) -> Result<Figure, ReportError> {
+    let time = || Axis::log("MEASURED run time / the f64 closed form's", 0.05..200.0);
+    let panels = measured.each_ref().map(|one| one.panel(time(), |way| Some(way.seconds / one.unit_seconds())));
+    let mut data = Data::new([
+        "normal_force_n",
+        "way",
+        "size",
+        "largest_relative_error",
+        "measured_run_time_over_f64_closed_form",
+        "measured_nanoseconds",
+    ]);
+    for one in measured {
+        for way in &one.ways {
+            data.row([
+                one.load_n.into(),
+                name(way.kind).into(),
+                way.size.as_str().into(),
+                way.error.into(),
+                (way.seconds / one.unit_seconds()).into(),
+                (1e9 * way.seconds).into(),
+            ]);
+        }
+    }
+    let (low, high) = RANGE_V_RMS;
+    Ok(Figure {
+        name: "error-against-run-time",
+        title: "Error against run time, for every way to invert".to_owned(),
+        caption: vec![
+            format!(
+                "Down and to the left is better. The error is the largest of |x(V) − x|/x over all electric frictions x from \
+                 x({low} V) to x({high} V), V being the voltage that a way gives for x, and x(V) what the model makes of it; of \
+                 ways in f64 in 256 bits. Each kind comes in several sizes, joined by a line: steps of the bisection, entries of \
+                 the forward table, rows of the direct tables."
+            ),
+            format!(
+                "Run times were measured on the computer that made this page, in one run, as a ratio to the f64 closed form ({}): \
+                 each call waits for the answer of the last one. They differ from run to run and from processor to processor; all \
+                 else on this page does not.",
+                nanoseconds(measured)
+            ),
+            "Bisection is the straightforward way: it halves the range of voltages on Eqs. (36), (34), with a load on Eqs. (43), \
+             (21), which give friction in total. In f32 and under a load the total cannot resolve the electric part. The textbook's \
+             forward table holds friction at even steps of voltage; below the first step it knows nothing. Direct tables find their \
+             row from the bits of the friction and evaluate a polynomial. Integers have codes of 32 bits for friction, and their \
+             error is that against the code."
+                .to_owned(),
+            EXAMPLE.to_owned(),
+        ],
+        chart: Chart { panels: panels.into(), columns: 2, shared_legend: true },
+        csv: data.csv()?,
+    })
+}
+
+/// Error over bytes.
+pub(super) fn against_size(measured: &[Measured; 2]) -> Result<Figure, ReportError> {
+    let size = || Axis::log("size of the table, bytes", 1e2..1e5);
+    let panels = measured.each_ref().map(|one| {
+        let mut panel = one.panel(size(), |way| way.bytes.map(|bytes| bytes as f64));
+        panel.y = Axis::log(ERROR, 1e-7..1e1);
+        panel
+    });
+    let mut data = Data::new(["normal_force_n", "way", "size", "bytes", "largest_relative_error"]);
+    for one in measured {
+        for way in one.ways.iter().filter(|way| way.bytes.is_some()) {
+            let bytes = way.bytes.map_or(Value::Text(String::new()), Value::from);
+            data.row([one.load_n.into(), name(way.kind).into(), way.size.as_str().into(), bytes, way.error.into()]);
+        }
+    }
+    let octaves = |one: &Measured| range_octaves(one.load_n);
+    Ok(Figure {
+        name: "error-against-size",
+        title: "Error against size, for every kind of table".to_owned(),
+        caption: vec![
+            format!(
+                "Largest relative error in electric friction over 1 V to 200 V, as above, against the bytes of the table. Without a \
+                 load friction spans {:.0} octaves, under 0.5 N {:.0}, and tables are shorter. A higher order is smaller at the same \
+                 error, until rounding in f32 ends it near 10⁻⁶. The board's table has a fixed size, whatever the load.",
+                octaves(&measured[0]),
+                octaves(&measured[1]),
+            ),
+            EXAMPLE.to_owned(),
+        ],
+        chart: Chart { panels: panels.into(), columns: 2, shared_legend: true },
+        csv: data.csv()?,
+    })
+}
+
+/// Error over instructions on boards; none without a count that belongs to a way.
+pub(super) fn against_instructions(measured: &[Measured; 2], counts: &Counts) -> Result<Option<Figure>, ReportError> {
+    let mut data = Data::new(["core", "way", "instructions", "estimated_cycles", "largest_relative_error"]);
+    let mut panels = Vec::new();
+    for (core, core_name) in CORES {
+        let mut panel = Panel::new(
+            core_name,
+            Axis::log("instructions of one inversion, at most", 5.0..1e5),
+            Axis::log(ERROR, 1e-16..1e-2),
+        );
+        for (kind, what) in COUNTED {
+            let Some(instructions) = counts.instructions(core, what) else { continue };
+            let cycles = counts.cycles(core, what);
+            let errors = measured.iter().flat_map(|one| one.of(kind)).map(|way| way.error);
+            let error = errors.fold(0.0, f64::max).max(1e-16);
+            data.row([core.into(), name(kind).into(), instructions.into(), cycles.into(), error.into()]);
+            let Some((_, _, look)) = KINDS.iter().find(|(one, ..)| *one == kind) else { continue };
+            panel.add(name(kind), Look { line: Line::None, ..*look }, vec![(instructions, error)]);
+            let estimate = cycles.map_or(String::new(), |cycles| format!(" (about {cycles} cycles)"));
+            panel.notes.push((instructions, error, format!("{instructions}{estimate}")));
+        }
+        if !panel.series.is_empty() {
+            panels.push(panel);
+        }
+    }
+    if panels.is_empty() {
+        return Ok(None);
+    }
+    Ok(Some(Figure {
+        name: "error-against-instructions",
+        title: "Error against instructions on a board".to_owned(),
+        caption: vec![
+            "Largest relative error in electric friction over 1 V to 200 V, without a load or under 0.5 N, whichever is larger, \
+             against the largest number of instructions that one inversion took over all inputs. Counts come from the file given \
+             with --bench, which cargo xtask bench writes: they were counted in an emulator, and the cycles beside them are \
+             estimates; instructions are not cycles."
+                .to_owned(),
+            EXAMPLE.to_owned(),
+        ],
+        chart: Chart { columns: panels.len() as u32, panels, shared_legend: true },
+        csv: data.csv()?,
+    }))
+}
+
+fn name(kind: Kind) -> &'static str {
+    KINDS.iter().find(|(one, ..)| *one == kind).map_or("", |(_, name, _)| *name)
+}
+
+fn nanoseconds(measured: &[Measured; 2]) -> String {
+    let [unloaded, loaded] = measured.each_ref().map(|one| 1e9 * one.unit_seconds());
+    format!("{unloaded:.0} ns without a load, {loaded:.0} ns under 0.5 N")
+}
+
+/// Octaves of electric friction between the least and the largest voltage.
+fn range_octaves(load_n: f64) -> f64 {
+    let friction = |voltage: f64| {
+        let contact = example::<f64>().ok()?.under_load(load_n).ok()?;
+        contact.state(voltage).ok().map(|state| state.electric_friction_n)
+    };
+    let octaves = |low: f64, high: f64| (high / low).log10() / LOG10_2;
+    friction(RANGE_V_RMS.0).zip(friction(RANGE_V_RMS.1)).map_or(f64::NAN, |(low, high)| octaves(low, high))
+}

@@ -1,0 +1,53 @@
+//! `index.html`: the figures with their captions, on one page that needs nothing else.
+
+use std::fmt::Write;
+
+use super::figures::Figure;
+
+const STYLE: &str = "\
+body { font: 16px/1.5 system-ui, sans-serif; color: #1a1a1a; background: #fff; max-width: 1040px; margin: 2rem auto; \
+padding: 0 20px; }
+h1 { margin-bottom: 0; } h2 { margin: 3rem 0 0.5rem; font-size: 1.3rem; }
+figure { margin: 0; } figure svg { width: 100%; height: auto; } figcaption { max-width: 62rem; }
+figcaption p { margin: 0.5rem 0; } nav li { margin: 0.15rem 0; } a { color: #0072b2; }
+";
+
+/// The page of figures that were drawn.
+pub(super) fn html(figures: &[(&Figure, String)]) -> String {
+    let mut page = String::new();
+    // Writing to a string does not fail.
+    let _ = write!(
+        page,
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <title>frixel: the contact model, its error and its cost</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
+         <h1>The contact model, its error and its cost</h1>\n\
+         <p>Made by <code>frixel report</code>, version {}. Equation and figure numbers are those of Argatov and Borodich, \
+         <i>A macro model for electroadhesive contact of a soft finger with a touchscreen</i>. The numbers behind each picture \
+         stand in a CSV file beside this page.</p>\n<nav>\n<ol>\n",
+        env!("CARGO_PKG_VERSION")
+    );
+    for (figure, _) in figures {
+        let _ = writeln!(page, "<li><a href=\"#{}\">{}</a></li>", figure.name, escaped(&figure.title));
+    }
+    page.push_str("</ol>\n</nav>\n");
+    for (figure, svg) in figures {
+        let (name, title) = (figure.name, escaped(&figure.title));
+        let _ = write!(page, "<h2 id=\"{name}\">{title}</h2>\n<figure>\n{}\n<figcaption>\n", labelled(svg, &title));
+        for paragraph in &figure.caption {
+            let _ = writeln!(page, "<p>{}</p>", escaped(paragraph));
+        }
+        let _ = write!(page, "<p><a href=\"{name}.csv\">{name}.csv</a></p>\n</figcaption>\n</figure>\n");
+    }
+    page.push_str("</body>\n</html>\n");
+    page
+}
+
+/// A picture with its title for those who do not see it.
+fn labelled(svg: &str, title: &str) -> String {
+    svg.trim_end().replacen("<svg ", &format!("<svg role=\"img\" aria-label=\"{title}\" "), 1)
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}

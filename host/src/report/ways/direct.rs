@@ -1,0 +1,55 @@
+//! The model's tables, in f32 and in integers, of every order and several sizes, and the one that a board has.
+
+use frixel_model::{InverseTable, Precision, TableBuilder};
+
+use super::{Bench, Kind, RANGE_V_RMS, ReportError, Way};
+
+/// Errors that tables are built for.
+const TARGETS: [f64; 5] = [1e-2, 1e-3, 1e-4, 1e-5, 4e-6];
+
+pub(super) fn measure(bench: &Bench, ways: &mut Vec<Way>) -> Result<(), ReportError> {
+    let device = InverseTable::build(bench.contact, RANGE_V_RMS.1)?;
+    let bytes = size_of::<InverseTable>();
+    ways.push(bench.in_f32(Kind::Device, format!("{bytes} bytes"), Some(bytes), |x| device.voltage_v_rms(x)));
+    let low = bench.contact.electric_friction_n(RANGE_V_RMS.0);
+    let high = bench.contact.electric_friction_n(RANGE_V_RMS.1);
+    for target in TARGETS {
+        let builder = TableBuilder::new(bench.contact, low, high, target)?;
+        float::<2>(bench, &builder, Kind::Linear, ways)?;
+        float::<3>(bench, &builder, Kind::Quadratic, ways)?;
+        float::<4>(bench, &builder, Kind::Cubic, ways)?;
+        fixed::<2>(bench, &builder, Kind::FixedLinear, ways)?;
+        fixed::<3>(bench, &builder, Kind::FixedQuadratic, ways)?;
+        fixed::<4>(bench, &builder, Kind::FixedCubic, ways)?;
+    }
+    Ok(())
+}
+
+fn float<const C: usize>(
+    bench: &Bench,
+    builder: &TableBuilder,
+    kind: Kind,
+    ways: &mut Vec<Way>,
+) -> Result<(), ReportError> {
+    let shape = builder.shape(Precision::F32, C)?;
+    let mut rows = vec![[0.0; C]; shape.rows];
+    let table = builder.build_f32(&mut rows)?;
+    let size = format!("{} rows", shape.rows);
+    ways.push(bench.in_f32(kind, size, Some(shape.bytes()), |x| table.voltage_v_rms(x)));
+    Ok(())
+}
+
+fn fixed<const C: usize>(
+    bench: &Bench,
+    builder: &TableBuilder,
+    kind: Kind,
+    ways: &mut Vec<Way>,
+) -> Result<(), ReportError> {
+    let shape = builder.shape(Precision::Fixed, C)?;
+    let mut rows = vec![[0; C]; shape.rows];
+    let table = builder.build_fixed(&mut rows)?;
+    let units = (table.friction_unit_n(), table.voltage_unit_v_rms());
+    let size = format!("{} rows", shape.rows);
+    ways.push(bench.in_codes(kind, size, shape.bytes(), units, |code| table.voltage_code(code)));
+    Ok(())
+}

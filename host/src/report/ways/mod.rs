@@ -1,0 +1,136 @@
+//! Every way to turn electric friction into voltage, with its error and what it costs.
+
+mod bisection;
+mod direct;
+mod forward_table;
+mod timing;
+
+use frixel_model::{LoadedContact, Real};
+
+use super::error::ReportError;
+use super::exact::{Springs, relative_error};
+use timing::seconds_per_call;
+
+/// Range over which errors are taken, in volts rms.
+pub(super) const RANGE_V_RMS: (f64, f64) = (1.0, 200.0);
+/// Frictions at which an error is taken, of ways in less than f64 and of ways in f64.
+const COARSE_POINTS: usize = 20_000;
+const FINE_POINTS: usize = 400;
+/// Frictions that a run time is taken over.
+const TIMED_POINTS: usize = 1_024;
+/// They are taken in an order in which no processor can guess the next one: by this many places, which shares no factor with
+/// their count.
+const STRIDE: usize = 389;
+
+/// A kind of way, that may come in several sizes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Kind {
+    ClosedF64,
+    ClosedF32,
+    Bisection,
+    BisectionF32,
+    ForwardTable,
+    Linear,
+    Quadratic,
+    Cubic,
+    Device,
+    FixedLinear,
+    FixedQuadratic,
+    FixedCubic,
+}
+
+/// One way, measured.
+#[derive(Clone, Debug)]
+pub(super) struct Way {
+    pub(super) kind: Kind,
+    /// What makes it one of its kind: steps, entries, rows.
+    pub(super) size: String,
+    /// Bytes of its table, if it has one.
+    pub(super) bytes: Option<usize>,
+    /// Largest relative error in electric friction over the range.
+    pub(super) error: f64,
+    /// Seconds for one call in a chain of calls, measured.
+    pub(super) seconds: f64,
+}
+
+/// A finger under a load, and the frictions to try.
+pub(super) struct Bench<'a> {
+    pub(super) contact: &'a LoadedContact<f64>,
+    pub(super) single: &'a LoadedContact<f32>,
+    pub(super) exact: &'a Springs,
+    pub(super) parameters: Parameters,
+}
+
+/// What the straightforward ways compute with.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Parameters {
+    pub(super) radius_m: f64,
+    pub(super) stiffness_pa_per_m: f64,
+    pub(super) friction_coefficient: f64,
+    pub(super) gap_m: f64,
+    pub(super) normal_load_n: f64,
+}
+
+impl Bench<'_> {
+    /// Everything.
+    pub(super) fn all(&self) -> Result<Vec<Way>, ReportError> {
+        let mut ways = vec![
+            self.in_f64(Kind::ClosedF64, String::new(), |x| self.contact.voltage_v_rms(x)),
+            self.in_f32(Kind::ClosedF32, String::new(), None, |x| self.single.voltage_v_rms(x)),
+        ];
+        bisection::measure(self, &mut ways);
+        forward_table::measure(self, &mut ways);
+        direct::measure(self, &mut ways)?;
+        Ok(ways)
+    }
+
+    /// Frictions from the one at the least voltage to the one at the largest, evenly in their logarithms.
+    fn frictions(&self, count: usize) -> impl Iterator<Item = f64> {
+        let (low, high) =
+            (self.contact.electric_friction_n(RANGE_V_RMS.0), self.contact.electric_friction_n(RANGE_V_RMS.1));
+        // Inside the range, so that rounding to f32 does not leave it.
+        let (low, high) = (low * (1.0 + 1e-6), high * (1.0 - 1e-6));
+        (0..count).map(move |index| low * (high / low).powf(index as f64 / (count - 1) as f64))
+    }
+
+    fn in_f64(&self, kind: Kind, size: String, invert: impl Fn(f64) -> f64) -> Way {
+        let load_n = self.parameters.normal_load_n;
+        let error = |x: f64| relative_error(x, &self.exact.electric_friction_n(invert(x), load_n));
+        let worst = self.frictions(FINE_POINTS).map(error).fold(0.0, f64::max);
+        Way { kind, size, bytes: None, error: worst, seconds: seconds_per_call(&self.timed(|x| x), invert) }
+    }
+
+    fn in_f32(&self, kind: Kind, size: String, bytes: Option<usize>, invert: impl Fn(f32) -> f32) -> Way {
+        let error = |x: f64| {
+            let x = x as f32;
+            (self.contact.electric_friction_n(f64::from(invert(x))) / f64::from(x) - 1.0).abs()
+        };
+        let worst = self.frictions(COARSE_POINTS).map(error).fold(0.0, f64::max);
+        Way { kind, size, bytes, error: worst, seconds: seconds_per_call(&self.timed(|x| x as f32), invert) }
+    }
+
+    /// Friction and voltage are codes, with their units; the error is that against the code's friction.
+    fn in_codes(&self, kind: Kind, size: String, bytes: usize, units: (f64, f64), invert: impl Fn(u32) -> u32) -> Way {
+        let code = |x: f64| (x / units.0).round() as u32;
+        let error = |x: f64| {
+            let code = code(x);
+            let voltage_v_rms = f64::from(invert(code)) * units.1;
+            (self.contact.electric_friction_n(voltage_v_rms) / (f64::from(code) * units.0) - 1.0).abs()
+        };
+        let worst = self.frictions(COARSE_POINTS).map(error).fold(0.0, f64::max);
+        Way { kind, size, bytes: Some(bytes), error: worst, seconds: seconds_per_call(&self.timed(code), invert) }
+    }
+
+    fn timed<T>(&self, convert: impl Fn(f64) -> T) -> Vec<T> {
+        let frictions: Vec<f64> = self.frictions(TIMED_POINTS).collect();
+        (0..TIMED_POINTS).map(|index| convert(frictions[index * STRIDE % TIMED_POINTS])).collect()
+    }
+}
+
+impl Parameters {
+    /// In either precision.
+    fn as_reals<T: Real>(&self) -> [T; 5] {
+        [self.radius_m, self.stiffness_pa_per_m, self.friction_coefficient, self.gap_m, self.normal_load_n]
+            .map(T::from_f64)
+    }
+}

@@ -1,0 +1,142 @@
+//! The evaluator in f32, and the rows it reads.
+
+use core::num::NonZeroU32;
+
+use super::bound::TOP_MARGIN;
+use super::interpolation::polynomial;
+use super::{TableBuilder, TableError};
+use crate::LoadedContact;
+
+/// Where the rows of a table lie among the bit patterns, and what stands beyond them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub(super) struct Grid {
+    first_bits: u32,
+    /// Rows to 2^32 bit patterns.
+    density: NonZeroU32,
+    friction_max_n: f32,
+    voltage_max_v_rms: f32,
+}
+
+impl Grid {
+    /// `rows` rows of about `2^32/density` patterns each, the last one up to and with `friction_max_n`.
+    pub(super) fn new(
+        rows: usize,
+        density: NonZeroU32,
+        friction_max_n: f32,
+        voltage_max_v_rms: f32,
+    ) -> Result<Self, TableError> {
+        let end_bits = u64::from(friction_max_n.to_bits()) + 1;
+        let first_bits = end_bits.checked_sub(offset(rows as u64, density)).ok_or(TableError::Unrepresentable)?;
+        Ok(Self { first_bits: first_bits as u32, density, friction_max_n, voltage_max_v_rms })
+    }
+
+    /// Where a row begins; the end of the last row is where the row behind it would begin.
+    pub(super) fn start_n(&self, row: usize) -> f64 {
+        f64::from(f32::from_bits((u64::from(self.first_bits) + offset(row as u64, self.density)) as u32))
+    }
+
+    /// The row of a friction, or a number past the last row when the friction is outside.
+    #[inline]
+    pub(super) fn row(&self, friction_n: f32) -> usize {
+        // Whatever is outside, and every negative and not-a-number, wraps to the top.
+        let patterns = friction_n.to_bits().wrapping_sub(self.first_bits);
+        ((u64::from(patterns) * u64::from(self.density.get())) >> 32) as usize
+    }
+
+    pub(super) fn friction_max_n(&self) -> f32 {
+        self.friction_max_n
+    }
+
+    pub(super) fn voltage_max_v_rms(&self) -> f32 {
+        self.voltage_max_v_rms
+    }
+
+    /// The voltage for a friction: that of its row; without a row, zero below and for not-a-number, the largest above.
+    #[inline]
+    pub(super) fn evaluate<const C: usize>(&self, rows: &[[f32; C]], friction_n: f32) -> f32 {
+        match rows.get(self.row(friction_n)) {
+            Some(row) => horner(row, friction_n),
+            None if friction_n > self.friction_max_n => self.voltage_max_v_rms,
+            None => 0.0,
+        }
+    }
+
+    /// Fills `rows` from the row `first` on, with the curve of `contact`.
+    pub(super) fn fill<const C: usize>(
+        &self,
+        contact: &LoadedContact<f64>,
+        rows: &mut [[f32; C]],
+        first: usize,
+    ) -> Result<(), TableError> {
+        let last = rows.len().saturating_sub(1);
+        let start_n = self.start_n(first);
+        let mut start = (start_n, contact.voltage_v_rms(start_n));
+        for (index, row) in rows.iter_mut().enumerate().skip(first) {
+            let end_n = self.start_n(index + 1);
+            let mut end = (end_n, contact.voltage_v_rms(end_n));
+            if index == last {
+                end.1 *= 1.0 - TOP_MARGIN;
+            }
+            *row = polynomial::<C>(contact, start, end).map(|coefficient| coefficient as f32);
+            if row.iter().any(|coefficient| !coefficient.is_finite()) {
+                return Err(TableError::Unrepresentable);
+            }
+            start = end;
+        }
+        Ok(())
+    }
+}
+
+/// Patterns from the first row's beginning to that of row `row`: the least whose product with `density` reaches it.
+fn offset(row: u64, density: NonZeroU32) -> u64 {
+    (row << 32).div_ceil(u64::from(density.get()))
+}
+
+#[inline]
+fn horner<const C: usize>(row: &[f32; C], x: f32) -> f32 {
+    let Some((highest, lower)) = row.split_last() else { return 0.0 };
+    lower.iter().rev().fold(*highest, |sum, coefficient| sum * x + coefficient)
+}
+
+/// The largest `f32` that is not above `value`.
+pub(super) fn round_down(value: f64) -> f32 {
+    let nearest = value as f32;
+    if f64::from(nearest) > value { nearest.next_down() } else { nearest }
+}
+
+/// A table in f32 over rows that someone else owns, with `C` coefficients a row: from [`TableBuilder::build_f32`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct SizedTable<'rows, const C: usize> {
+    grid: Grid,
+    rows: &'rows [[f32; C]],
+}
+
+impl<'rows, const C: usize> SizedTable<'rows, C> {
+    pub(super) fn fill(builder: &TableBuilder<'_>, storage: &'rows mut [[f32; C]]) -> Result<Self, TableError> {
+        let layout = builder.float_layout(C)?;
+        let rows = storage.get_mut(..layout.rows).ok_or(TableError::TooManySegments)?;
+        let friction_max_n = round_down(builder.friction_max_n);
+        let voltage_max_v_rms = round_down(builder.contact.voltage_v_rms(builder.friction_max_n));
+        let grid = Grid::new(layout.rows, layout.density, friction_max_n, voltage_max_v_rms)?;
+        grid.fill(builder.contact, rows, 0)?;
+        Ok(Self { grid, rows })
+    }
+
+    /// The rms voltage for an electric friction in newtons: zero for a negative friction, for not-a-number and below the
+    /// range; the largest voltage, and never more, above the range.
+    #[inline]
+    pub fn voltage_v_rms(&self, electric_friction_n: f32) -> f32 {
+        self.grid.evaluate(self.rows, electric_friction_n)
+    }
+
+    /// The electric friction up to which the table goes, in newtons, rounded down.
+    pub fn electric_friction_max_n(&self) -> f32 {
+        self.grid.friction_max_n()
+    }
+
+    /// The largest voltage, in volts rms.
+    pub fn voltage_max_v_rms(&self) -> f32 {
+        self.grid.voltage_max_v_rms()
+    }
+}

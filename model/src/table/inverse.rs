@@ -1,0 +1,92 @@
+//! The table of a microcontroller with an FPU: of fixed size, built where it is used.
+
+use core::num::NonZeroU32;
+
+use super::TableError;
+use super::float::{Grid, round_down};
+use crate::LoadedContact;
+
+/// Rows in a table: 31.5 octaves, enough for 200 V down to 1 V where friction grows as the fourth power of the voltage.
+const ROWS: usize = 126;
+/// Four rows an octave of 2^23 patterns.
+const DENSITY: NonZeroU32 = NonZeroU32::new(4 << 9).unwrap();
+/// The table reaches at least down to this voltage.
+const KNEE_V_RMS: f64 = 1.0;
+/// Or to this part of the largest voltage, when that is lower.
+const KNEE_PART: f64 = 1.0 / 200.0;
+
+/// Piecewise cubic from electric friction to rms voltage for one contact under one load; 2,032 bytes.
+///
+/// Rows below the range hold the straight line from zero to the voltage where the range begins.
+///
+/// ```
+/// use frixel_model::{Contact, Finger, InverseTable};
+/// let finger = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };
+/// let contact = Contact::new(&finger, 10e-6)?.under_load(0.5)?;
+/// let table = InverseTable::build(&contact, 150.0)?;
+/// let voltage_v_rms = table.voltage_v_rms(0.01);
+/// let friction_n = contact.electric_friction_n(f64::from(voltage_v_rms));
+/// assert!((friction_n / 0.01 - 1.0).abs() < 1e-5);
+/// assert_eq!(table.voltage_v_rms(f32::NAN), 0.0);
+/// assert_eq!(table.voltage_v_rms(1.0), 150.0);
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+#[repr(C)]
+pub struct InverseTable {
+    grid: Grid,
+    rows: [[f32; 4]; ROWS],
+}
+
+impl InverseTable {
+    /// Largest relative error, in electric friction, from the friction at 1 V (or at 1/200 of the largest voltage, when
+    /// that is lower) to that at the largest: proven for every finger, coating and load of zero or more (9.9e-6, from
+    /// `reference/table_constants.py`). For the example finger between 1 V and 200 V it is 3.6e-6 without load and 1.8e-6 under
+    /// 0.5 N, over every `f32`: `cargo test --release -p frixel-model -- --ignored --nocapture`.
+    pub const RELATIVE_ERROR: f32 = 1e-5;
+
+    /// A table for `contact`, up to `voltage_max_v_rms`: some 250 evaluations of the closed form for the example finger,
+    /// 380 at most.
+    pub fn build(contact: &LoadedContact<f64>, voltage_max_v_rms: f64) -> Result<Self, TableError> {
+        let largest = round_down(voltage_max_v_rms);
+        if !(voltage_max_v_rms.is_finite() && largest > 0.0) {
+            return Err(TableError::Voltage);
+        }
+        let knee_v_rms = KNEE_V_RMS.min(voltage_max_v_rms * KNEE_PART);
+        let knee_n = round_down(contact.electric_friction_n(knee_v_rms));
+        let friction_max_n = round_down(contact.electric_friction_n(f64::from(largest)));
+        if !(knee_n >= f32::MIN_POSITIVE && friction_max_n < f32::MAX) {
+            return Err(TableError::Unrepresentable);
+        }
+        let grid = Grid::new(ROWS, DENSITY, friction_max_n, largest)?;
+        let knee_row = grid.row(knee_n);
+        if knee_row >= ROWS {
+            return Err(TableError::TooManySegments);
+        }
+        let knee_start_n = grid.start_n(knee_row);
+        let line = [0.0, (contact.voltage_v_rms(knee_start_n) / knee_start_n) as f32, 0.0, 0.0];
+        let mut rows = [line; ROWS];
+        grid.fill(contact, &mut rows, knee_row)?;
+        Ok(Self { grid, rows })
+    }
+
+    /// The rms voltage for an electric friction in newtons.
+    ///
+    /// Within [`Self::RELATIVE_ERROR`] of the friction asked for; zero for a negative friction and for not-a-number; the
+    /// largest voltage, and never more, above the largest friction. Below the range it falls on a straight line towards
+    /// zero.
+    #[inline]
+    pub fn voltage_v_rms(&self, electric_friction_n: f32) -> f32 {
+        self.grid.evaluate(&self.rows, electric_friction_n)
+    }
+
+    /// The electric friction at the largest voltage, in newtons, rounded down.
+    pub fn electric_friction_max_n(&self) -> f32 {
+        self.grid.friction_max_n()
+    }
+
+    /// The largest voltage, in volts rms, rounded down.
+    pub fn voltage_max_v_rms(&self) -> f32 {
+        self.grid.voltage_max_v_rms()
+    }
+}

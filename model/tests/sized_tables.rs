@@ -1,0 +1,184 @@
+//! Tables of every order and both precisions against the closed form: the bound that they prove, and how sharp it is.
+#![allow(clippy::unwrap_used)]
+
+use frixel_model::{Contact, Finger, LoadedContact, Precision, TableBuilder, TableError};
+
+const FINGER: Finger<f64> = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };
+
+fn contact(gap_m: f64, normal_load_n: f64) -> LoadedContact<f64> {
+    Contact::new(&FINGER, gap_m).unwrap().under_load(normal_load_n).unwrap()
+}
+
+/// The contacts that are tried: the example finger with and without load, and where friction grows fastest.
+fn contacts() -> [LoadedContact<f64>; 3] {
+    [contact(1e-5, 0.0), contact(1e-5, 0.5), contact(2.5e-7, 1e-3)]
+}
+
+/// Relative error in friction of a voltage that answers `friction_n`.
+fn error(contact: &LoadedContact<f64>, friction_n: f64, voltage_v_rms: f64) -> f64 {
+    (contact.electric_friction_n(voltage_v_rms) / friction_n - 1.0).abs()
+}
+
+fn range(contact: &LoadedContact<f64>) -> (f64, f64) {
+    (contact.electric_friction_n(1.0), contact.electric_friction_n(200.0))
+}
+
+/// The largest error over the range of a table in f32, with its output through `distort`.
+fn worst_f32<const C: usize>(
+    contact: &LoadedContact<f64>,
+    builder: &TableBuilder,
+    rows: usize,
+    distort: impl Fn(f32) -> f32,
+) -> f64 {
+    let mut storage = vec![[0.0; C]; rows];
+    let table = builder.build_f32(&mut storage).unwrap();
+    let (low, _) = range(contact);
+    let (first, last) = ((low as f32).to_bits() + 1, table.electric_friction_max_n().to_bits());
+    let mut highest = 0.0_f32;
+    let worst = (first..last)
+        .step_by(10_007)
+        .chain([last])
+        .map(f32::from_bits)
+        .map(|x| {
+            let voltage_v_rms = table.voltage_v_rms(x);
+            highest = highest.max(voltage_v_rms);
+            error(contact, f64::from(x), f64::from(distort(voltage_v_rms)))
+        })
+        .fold(0.0, f64::max);
+    assert!(highest <= table.voltage_max_v_rms());
+    assert_eq!(table.voltage_v_rms(f32::NAN).to_bits(), 0);
+    assert_eq!(table.voltage_v_rms(-1.0).to_bits(), 0);
+    assert_eq!(table.voltage_v_rms(f32::INFINITY).to_bits(), table.voltage_max_v_rms().to_bits());
+    worst
+}
+
+/// The same for a table in integers.
+fn worst_fixed<const C: usize>(
+    contact: &LoadedContact<f64>,
+    builder: &TableBuilder,
+    rows: usize,
+    distort: impl Fn(u32) -> u32,
+) -> f64 {
+    let mut storage = vec![[0; C]; rows];
+    let table = builder.build_fixed(&mut storage).unwrap();
+    let (low, _) = range(contact);
+    let first = table.friction_code(low);
+    assert_eq!(table.voltage_code(0), 0);
+    assert!(table.voltage_code(u32::MAX) <= 1 << 31);
+    // Codes spread evenly over octaves, as far as there are codes.
+    let steps = ((f64::from(u32::MAX) / f64::from(first)).ln() / 3.7e-4) as i32;
+    (0..steps)
+        .map(|step| f64::from(first) * (3.7e-4 * f64::from(step)).exp())
+        .map(|code| code as u32)
+        .chain([u32::MAX])
+        .map(|code| {
+            let voltage_v_rms = f64::from(distort(table.voltage_code(code))) * table.voltage_unit_v_rms();
+            error(contact, f64::from(code) * table.friction_unit_n(), voltage_v_rms)
+        })
+        .fold(0.0, f64::max)
+}
+
+#[test]
+fn bounds_hold_and_are_not_idle() {
+    for contact in contacts() {
+        let (low, high) = range(&contact);
+        for target in [1e-2, 1e-3, 1e-4, 1e-5, 4e-6] {
+            let builder = TableBuilder::new(&contact, low, high, target).unwrap();
+            for precision in [Precision::F32, Precision::Fixed] {
+                for coefficients in [2, 3, 4] {
+                    let shape = builder.shape(precision, coefficients).unwrap();
+                    let worst = |zero: bool| match (precision, coefficients) {
+                        (Precision::F32, 2) => {
+                            worst_f32::<2>(&contact, &builder, shape.rows, |v| if zero { 0.0 } else { v })
+                        }
+                        (Precision::F32, 3) => {
+                            worst_f32::<3>(&contact, &builder, shape.rows, |v| if zero { 0.0 } else { v })
+                        }
+                        (Precision::F32, _) => {
+                            worst_f32::<4>(&contact, &builder, shape.rows, |v| if zero { 0.0 } else { v })
+                        }
+                        (Precision::Fixed, 2) => {
+                            worst_fixed::<2>(&contact, &builder, shape.rows, |v| if zero { 0 } else { v })
+                        }
+                        (Precision::Fixed, 3) => {
+                            worst_fixed::<3>(&contact, &builder, shape.rows, |v| if zero { 0 } else { v })
+                        }
+                        (Precision::Fixed, _) => {
+                            worst_fixed::<4>(&contact, &builder, shape.rows, |v| if zero { 0 } else { v })
+                        }
+                    };
+                    let found = worst(false);
+                    println!("{shape:?} {} bytes: {found:e}", shape.bytes());
+                    assert!(shape.relative_error <= target);
+                    assert!(found <= shape.relative_error, "{shape:?}: {found:e}");
+                    assert!(found >= shape.relative_error / 20.0, "{shape:?}: {found:e}");
+                    assert!(worst(true) > shape.relative_error);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+#[ignore = "every 32-bit code, run by `cargo xtask soak`"]
+fn every_code_is_answered() {
+    for contact in contacts() {
+        let (low, high) = range(&contact);
+        let builder = TableBuilder::new(&contact, low, high, 1e-5).unwrap();
+        let mut storage = vec![[0; 4]; builder.shape(Precision::Fixed, 4).unwrap().rows];
+        let table = builder.build_fixed(&mut storage).unwrap();
+        let first = table.friction_code(low);
+        let mut highest = 0;
+        for code in 0..=u32::MAX {
+            let voltage_code = table.voltage_code(code);
+            assert!(voltage_code <= 1 << 31, "{code}");
+            assert!(f64::from(voltage_code) >= f64::from(highest) * (1.0 - 5e-6), "falls at {code}");
+            assert!(code < first || voltage_code > 0, "nothing at {code}");
+            highest = highest.max(voltage_code);
+        }
+    }
+}
+
+#[test]
+fn smallest_is_the_smallest_of_all_orders() {
+    let contact = contact(1e-5, 0.0);
+    let (low, high) = range(&contact);
+    let mut bytes = 0;
+    for target in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 4e-6] {
+        let builder = TableBuilder::new(&contact, low, high, target).unwrap();
+        for precision in [Precision::F32, Precision::Fixed] {
+            let smallest = builder.smallest(precision).unwrap();
+            for coefficients in [2, 3, 4] {
+                assert!(smallest.bytes() <= builder.shape(precision, coefficients).unwrap().bytes());
+            }
+        }
+        let smallest = builder.smallest(Precision::F32).unwrap();
+        println!("{target:e}: {smallest:?} {} bytes", smallest.bytes());
+        assert!(smallest.bytes() > bytes, "a finer target costs more");
+        bytes = smallest.bytes();
+    }
+    // A narrower range costs less.
+    let whole = TableBuilder::new(&contact, low, high, 1e-5).unwrap().smallest(Precision::F32).unwrap();
+    let part = TableBuilder::new(&contact, high / 16.0, high, 1e-5).unwrap().smallest(Precision::F32).unwrap();
+    assert!(part.rows <= 17 && whole.rows > 70);
+}
+
+#[test]
+fn what_cannot_be_built_says_why() {
+    let contact = contact(1e-5, 0.5);
+    for (low, high) in [(0.0, 1.0), (-1.0, 1.0), (1e-3, 1e-3), (1e-3, f64::INFINITY), (f64::NAN, 1.0), (1e-3, f64::NAN)]
+    {
+        assert_eq!(TableBuilder::new(&contact, low, high, 1e-5).unwrap_err(), TableError::Range);
+    }
+    for target in [0.0, -1.0, f64::NAN] {
+        assert_eq!(TableBuilder::new(&contact, 1e-6, 1e-2, target).unwrap_err(), TableError::Target);
+    }
+    let fine = TableBuilder::new(&contact, 1e-6, 1e-2, 1e-7).unwrap();
+    assert_eq!(fine.smallest(Precision::F32).unwrap_err(), TableError::Target);
+    let wide = TableBuilder::new(&contact, 1e-50, 1e-2, 1e-5).unwrap();
+    assert_eq!(wide.smallest(Precision::F32).unwrap_err(), TableError::Unrepresentable);
+    let builder = TableBuilder::new(&contact, 1e-6, 1e-2, 1e-5).unwrap();
+    assert_eq!(builder.build_f32(&mut [[0.0; 4]; 10]).unwrap_err(), TableError::TooManySegments);
+    assert_eq!(builder.build_fixed(&mut [[0; 4]; 10]).unwrap_err(), TableError::TooManySegments);
+    assert_eq!(builder.shape(Precision::F32, 5).unwrap_err(), TableError::Range);
+}
