@@ -29,14 +29,14 @@ pub const LIMITS: BoardLimits = BoardLimits {
     voltage_max_v_peak: 50.0,
     // 10 V of the DAC behind an amplifier of gain 20.
     full_scale_v_peak: 200.0,
-    // 47 kOhm in series with the electrode below.
-    edge_time_constant_s: 25e-6,
+    // 68 kOhm in series with the electrode below.
+    edge_time_constant_s: 36e-6,
     // 2 cm^2 of bare 10 um polymer, relative permittivity 3.
     electrode_capacitance_max_f: 0.53e-9,
     // The limit for touch currents in normal use of IEC 61010-1, without its weighting by frequency.
     current_max_a_rms: 0.5e-3,
-    // What the series resistor lets through when an edge swings 50 V to -50 V: 2.1 mA, and a fifth more.
-    current_max_a_peak: 2.5e-3,
+    // What the series resistor lets through when an edge goes from 50 V to -50 V, 1.47 mA, and a fifth more.
+    current_max_a_peak: 1.8e-3,
     touch_report_period_s: 10e-3,
 };
 
