@@ -70,6 +70,9 @@ impl Active {
     pub(crate) fn load(&mut self, scene: &Scene, board: &Board, directory: &Directory) -> Result<(), Refusal> {
         self.unload();
         let header = scene.header();
+        if header.carrier == Shape::Sine && !cfg!(feature = "sine-carrier") {
+            return Err(Refusal::LeftOut { layer: ConfigRefusal::WHOLE_SCENE });
+        }
         config::check_header(header, board).map_err(Refusal::Config)?;
         let (carrier, voltage_max_v_rms) = carrier(header, board).map_err(Refusal::Config)?;
         self.load_layers(scene, directory)?;
@@ -87,13 +90,14 @@ impl Active {
             let number = number as u8;
             config::check_record(&record, number).map_err(Refusal::Config)?;
             let bitmap = match record.layer {
-                LayerRecord::Bitmap { crc32, .. } => {
+                LayerRecord::Bitmap { crc32, .. } if cfg!(feature = "bitmap") => {
                     Some(directory.find(crc32).ok_or(Refusal::BitmapMissing { crc32 })?)
                 }
                 _ => None,
             };
+            let layer = Layer::new(&record, bitmap).ok_or(Refusal::LeftOut { layer: number })?;
             // There is room for every record that a scene can have.
-            let _ = self.layers.push(Layer::new(&record, bitmap));
+            let _ = self.layers.push(layer);
         }
         Ok(())
     }
@@ -106,8 +110,8 @@ fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), Confi
     let half_period_ticks = board.ticks(0.5 / header.carrier_hz);
     let carrier = Carrier {
         waveform: match header.carrier {
-            Shape::Square => Waveform::Square,
-            Shape::Sine => Waveform::Sine,
+            Shape::Sine if cfg!(feature = "sine-carrier") => Waveform::Sine,
+            _ => Waveform::Square,
         },
         half_period_s: f64::from(half_period_ticks) * tick_period_s,
         edge_time_constant_s: f64::from(limits.edge_time_constant_s),

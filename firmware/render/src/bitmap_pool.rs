@@ -5,11 +5,11 @@ use core::sync::atomic::{AtomicU8, Ordering};
 use frixel_wire::scene::RECORDS_MAX;
 use heapless::Vec;
 
-/// Bytes for bitmaps on the smallest board, those being uploaded included.
-pub const BITMAP_POOL_LEN: usize = 80 * 1024;
+/// Bytes for bitmaps on the smallest board, those being uploaded included; none without the feature `bitmap`.
+pub const BITMAP_POOL_LEN: usize = if cfg!(feature = "bitmap") { 80 * 1024 } else { 0 };
 
 /// Most bitmaps that the pool holds at a time: those of a scene that plays, and those of the next.
-const ENTRIES_MAX: usize = 2 * RECORDS_MAX;
+const ENTRIES_MAX: usize = if cfg!(feature = "bitmap") { 2 * RECORDS_MAX } else { 0 };
 
 /// Samples of bitmaps, shared between the session, which writes, and the tick, which reads.
 ///
@@ -115,7 +115,7 @@ impl Directory {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "bitmap"))]
 mod tests {
     use super::*;
 

@@ -21,6 +21,10 @@ pub struct Board {
     pub reset_cause: ResetCause,
     /// The fault that led to the reset, with a number that belongs to it.
     pub reset_fault: Option<(Fault, u32)>,
+    /// What the firmware said of that fault, in UTF-8; empty without one.
+    pub reset_text: &'static [u8],
+    /// The host says where the finger is; without this the board has a touch source of its own.
+    pub touch_from_host: bool,
 }
 
 impl Board {
@@ -47,6 +51,8 @@ impl Board {
         },
         reset_cause: ResetCause::PowerOn,
         reset_fault: None,
+        reset_text: b"",
+        touch_from_host: false,
     };
 
     /// Seconds between two ticks.

@@ -6,6 +6,7 @@
 
 use frixel_wire::scene::Carrier as Shape;
 
+#[cfg(feature = "sine-carrier")]
 use crate::turns;
 
 /// What a carrier is made of; part of `Active`.
@@ -95,6 +96,7 @@ impl Carrier {
                 let code = ((amplitude + 0.5) as i32).min(timing.code_max);
                 if self.phase_ticks < timing.half_period_ticks { code } else { -code }
             }
+            #[cfg(feature = "sine-carrier")]
             Shape::Sine => {
                 // A quarter of a turn before its crest.
                 let turns = self.phase_ticks as f32 * timing.turns_per_tick - 0.25;
@@ -102,6 +104,8 @@ impl Carrier {
                 let rounded = (code + 0.5_f32.copysign(code)) as i32;
                 rounded.clamp(-timing.code_max, timing.code_max)
             }
+            #[cfg(not(feature = "sine-carrier"))]
+            Shape::Sine => 0,
         }
     }
 }
@@ -127,6 +131,7 @@ mod tests {
         }
     }
 
+    #[cfg(feature = "sine-carrier")]
     #[test]
     fn a_sine_has_the_rms_of_its_envelope() {
         let timing = timing(Shape::Sine, 20);

@@ -11,7 +11,7 @@ const CARRIER_MIN_HZ: f32 = 125.0;
 /// Fewest ticks in a half period of the carrier.
 const HALF_PERIOD_MIN_TICKS: f32 = 4.0;
 /// Farthest from the screen's corner that anything may be, in m.
-const LENGTH_MAX_M: f32 = 2.0;
+pub(crate) const LENGTH_MAX_M: f32 = 2.0;
 /// Largest friction that a layer may name, in N, either way.
 const FRICTION_MAX_N: f32 = 100.0;
 

@@ -1,8 +1,11 @@
 //! Layers as the tick evaluates them.
 
-use frixel_wire::scene::{Blend, Layer as LayerRecord, Record, Region, Wave};
+#[cfg(feature = "grating")]
+use frixel_wire::scene::Wave;
+use frixel_wire::scene::{Blend, Layer as LayerRecord, Record, Region};
 
 use crate::bitmap_pool::{Bitmap, BitmapPool};
+#[cfg(feature = "grating")]
 use crate::turns;
 
 /// A layer, ready to be evaluated.
@@ -30,6 +33,7 @@ enum Source {
         electric_friction_n: f32,
     },
     /// `middle + swing w(kx x + ky y + phase)`, with `w` a cosine, or 1 in the first half turn and -1 in the second.
+    #[cfg(feature = "grating")]
     Grating {
         wave: Wave,
         cycles_per_m_x: f32,
@@ -38,6 +42,7 @@ enum Source {
         middle_n: f32,
         swing_n: f32,
     },
+    #[cfg(feature = "bitmap")]
     Bitmap {
         offset: u32,
         width: u16,
@@ -52,13 +57,20 @@ enum Source {
 }
 
 impl Layer {
-    /// The layer of a record whose numbers were checked, and whose bitmap, if it has one, lies at `bitmap`.
-    pub(crate) fn new(record: &Record, bitmap: Option<Bitmap>) -> Self {
+    /// The layer of a record whose numbers were checked, and whose bitmap, if it has one, lies at `bitmap`; `None` for
+    /// a kind that this firmware was built without.
+    #[cfg_attr(not(feature = "bitmap"), allow(unused_variables, reason = "the other kinds of layer have no bitmap"))]
+    #[cfg_attr(
+        all(feature = "grating", feature = "bitmap"),
+        allow(clippy::unnecessary_wraps, reason = "no kind is left out")
+    )]
+    pub(crate) fn new(record: &Record, bitmap: Option<Bitmap>) -> Option<Self> {
         let gain = record.gain;
         let source = match record.layer {
             LayerRecord::Constant { electric_friction_n } => {
                 Source::Constant { electric_friction_n: gain * electric_friction_n }
             }
+            #[cfg(feature = "grating")]
             LayerRecord::Grating { wave, cycles_per_m_x, cycles_per_m_y, phase_turns, trough_n, crest_n } => {
                 // A sine is a cosine a quarter of a turn later.
                 let later_turns = if wave == Wave::Sine { 0.25 } else { 0.0 };
@@ -71,6 +83,7 @@ impl Layer {
                     swing_n: 0.5 * gain * (crest_n - trough_n),
                 }
             }
+            #[cfg(feature = "bitmap")]
             LayerRecord::Bitmap { x_m, y_m, pitch_m, black_n, white_n, .. } => {
                 let (offset, width, height) = bitmap.map_or((0, 0, 0), |b| (b.offset, b.width, b.height));
                 Source::Bitmap {
@@ -84,8 +97,10 @@ impl Layer {
                     per_level_n: gain * (white_n - black_n) / 255.0,
                 }
             }
+            #[cfg(not(all(feature = "grating", feature = "bitmap")))]
+            _ => return None,
         };
-        Self { bounds: Bounds::new(record.region), blend: record.blend, source }
+        Some(Self { bounds: Bounds::new(record.region), blend: record.blend, source })
     }
 
     /// Joins this layer's electric friction at a place to that of the layers below.
@@ -125,9 +140,14 @@ impl Source {
     ///
     /// Not inlined: a loop over layers would begin with the constants of every kind, and go past away layers slowly.
     #[inline(never)]
+    #[cfg_attr(
+        not(all(feature = "grating", feature = "bitmap")),
+        allow(unused_variables, reason = "the other kinds of layer do not look at them")
+    )]
     fn electric_friction_n(&self, x_m: f32, y_m: f32, pool: &BitmapPool) -> f32 {
         match *self {
             Self::Constant { electric_friction_n } => electric_friction_n,
+            #[cfg(feature = "grating")]
             Self::Grating { wave, cycles_per_m_x, cycles_per_m_y, phase_turns, middle_n, swing_n } => {
                 let turns = x_m * cycles_per_m_x + y_m * cycles_per_m_y + phase_turns;
                 let height = match wave {
@@ -136,6 +156,7 @@ impl Source {
                 };
                 middle_n + swing_n * height
             }
+            #[cfg(feature = "bitmap")]
             Self::Bitmap { offset, width, height, samples_per_m, x_m: left_m, y_m: top_m, black_n, per_level_n } => {
                 let (column, next_column, right) = neighbours((x_m - left_m) * samples_per_m, width);
                 let (row, next_row, down) = neighbours((y_m - top_m) * samples_per_m, height);
@@ -151,6 +172,7 @@ impl Source {
 }
 
 /// The two samples on either side of a place, and how far it is from the first to the second. Held at the border.
+#[cfg(feature = "bitmap")]
 #[inline]
 fn neighbours(place: f32, count: u16) -> (usize, usize, f32) {
     let last = u32::from(count.saturating_sub(1));
@@ -160,6 +182,7 @@ fn neighbours(place: f32, count: u16) -> (usize, usize, f32) {
     (index as usize, (index + 1).min(last) as usize, place - index as f32)
 }
 
+#[cfg(feature = "bitmap")]
 #[inline]
 fn mix(from: f32, to: f32, part: f32) -> f32 {
     from + part * (to - from)
@@ -173,6 +196,7 @@ mod tests {
 
     fn constant(blend: Blend, gain: f32, electric_friction_n: f32) -> Layer {
         Layer::new(&Record { region: HERE, blend, gain, layer: LayerRecord::Constant { electric_friction_n } }, None)
+            .unwrap()
     }
 
     fn close(found: f32, expected: f32) {
@@ -197,6 +221,7 @@ mod tests {
         close(constant(Blend::Replace, 1.0, 0.25).blend_over(0.5, 0.02, 0.03, &pool), 0.25);
     }
 
+    #[cfg(feature = "bitmap")]
     #[test]
     fn a_bitmap_is_bilinear_between_centres_and_held_at_its_border() {
         let pool = BitmapPool::new();
@@ -207,7 +232,7 @@ mod tests {
             gain: 1.0,
             layer: LayerRecord::Bitmap { crc32: 7, x_m: 0.0, y_m: 0.0, pitch_m: 1.0, black_n: 0.0, white_n: 255.0 },
         };
-        let layer = Layer::new(&record, Some(Bitmap { crc32: 7, offset: 5, width: 2, height: 2 }));
+        let layer = Layer::new(&record, Some(Bitmap { crc32: 7, offset: 5, width: 2, height: 2 })).unwrap();
         for (x_m, y_m, expected) in [
             (0.5, 0.5, 0.0),
             (1.5, 0.5, 100.0),
@@ -222,6 +247,7 @@ mod tests {
         }
     }
 
+    #[cfg(feature = "grating")]
     #[test]
     fn a_grating_swings_between_trough_and_crest() {
         let pool = BitmapPool::new();
@@ -242,6 +268,7 @@ mod tests {
                 },
                 None,
             )
+            .unwrap()
         };
         close(grating(Wave::Sine).blend_over(0.0, 0.3, 0.0, &pool), 0.012);
         close(grating(Wave::Sine).blend_over(0.0, 0.3, 0.001, &pool), 0.002);

@@ -28,6 +28,13 @@
 //! assert_eq!(drive.dac_code, 0);
 //! assert_eq!(session.transmit(&mut [0; 64]), 0); // bytes for the serial line
 //! ```
+//!
+//! # Leaving out
+//!
+//! Every Cargo feature is something that a scene or a host may ask for, and all are on by default: `grating` and
+//! `bitmap` layers, the `sine-carrier`, `telemetry`; and the `store` of what a board keeps over power-off. An image
+//! without one of them is smaller, says so in the feature bits of its hello, and refuses what needs it. Constant layers
+//! and the square carrier are always there.
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 
@@ -43,8 +50,11 @@ mod layer;
 mod order;
 mod session;
 mod stillness;
+#[cfg(feature = "store")]
+pub mod store;
 mod supervisor;
 mod ticker;
+#[cfg(any(feature = "grating", feature = "sine-carrier"))]
 mod turns;
 
 pub use active::Active;
@@ -52,5 +62,7 @@ pub use bitmap_pool::{BITMAP_POOL_LEN, BitmapPool};
 pub use board::Board;
 pub use io::{Drive, Sense, Touch};
 pub use order::{Counters, Order, Status};
+#[cfg(feature = "store")]
+pub use session::KeptScene;
 pub use session::Session;
 pub use ticker::Ticker;

@@ -43,6 +43,7 @@ mod tests {
         assert!(worst < 3e-7, "{worst:e}");
     }
 
+    #[cfg(feature = "grating")]
     #[test]
     fn an_angle_is_centred_both_ways() {
         for (turns, expected) in [(0.25, 0.25), (3.75, -0.25), (-0.25, -0.25), (-2.0, 0.0), (80_000.25, 0.25)] {

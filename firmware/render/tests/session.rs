@@ -1,16 +1,22 @@
 //! What a host can say to a board, and what the board answers.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
+
 mod support;
 
-use frixel_render::Touch;
-use frixel_wire::fault::State;
+use frixel_render::{Board, Touch};
+use frixel_wire::fault::{Fault, State};
 use frixel_wire::frame::crc32;
+use frixel_wire::hello::feature;
 use frixel_wire::message::{Accepted, Command, ConfigField, FromBoard, Refusal};
 use frixel_wire::payload::CHUNK_LEN;
-use frixel_wire::scene::{Header, Layer, SceneError, bitmap_crc32};
+#[cfg(feature = "bitmap")]
+use frixel_wire::scene::bitmap_crc32;
+use frixel_wire::scene::{Header, Layer, SceneError};
 use proptest::prelude::*;
 use support::{Desk, HEADER, Memory, constant, record, request, scene};
 
+#[cfg(feature = "bitmap")]
 fn bitmap(crc32: u32) -> Layer {
     Layer::Bitmap { crc32, x_m: 0.0, y_m: 0.0, pitch_m: 1e-3, black_n: 0.0, white_n: 0.02 }
 }
@@ -46,6 +52,7 @@ fn a_scene_is_used_whole_or_not_at_all() {
     assert_eq!(desk.greet().scene_crc32, crc32(&first));
 }
 
+#[cfg(feature = "bitmap")]
 #[test]
 fn chunks_may_repeat_and_a_gap_is_told_once() {
     let mut memory = Memory::new();
@@ -67,6 +74,7 @@ fn chunks_may_repeat_and_a_gap_is_told_once() {
     assert_eq!(desk.upload_bitmap(100, 10, &samples), Ok(Accepted::AlreadyHeld));
 }
 
+#[cfg(feature = "bitmap")]
 #[test]
 fn a_bitmap_with_a_wrong_byte_is_refused_and_forgotten() {
     let mut memory = Memory::new();
@@ -83,6 +91,7 @@ fn a_bitmap_with_a_wrong_byte_is_refused_and_forgotten() {
     assert_eq!(desk.upload_bitmap(20, 20, &samples), Ok(Accepted::Done), "not already held");
 }
 
+#[cfg(feature = "bitmap")]
 #[test]
 fn the_pool_keeps_what_plays_and_gives_way_when_nothing_does() {
     let mut memory = Memory::new();
@@ -151,6 +160,7 @@ fn what_is_no_scene_is_refused() {
     );
 }
 
+#[cfg(feature = "telemetry")]
 #[test]
 fn telemetry_comes_at_its_period_and_ends() {
     let mut memory = Memory::new();
@@ -222,6 +232,7 @@ fn what_puts_the_output_to_zero_always_has_room() {
     assert_eq!(desk.status().telemetry.state, State::Disarmed);
 }
 
+#[cfg(feature = "bitmap")]
 #[test]
 fn the_same_bytes_in_another_shape_are_another_bitmap() {
     let mut memory = Memory::new();
@@ -233,6 +244,7 @@ fn the_same_bytes_in_another_shape_are_another_bitmap() {
     assert_eq!(desk.upload_bitmap(40, 20, &samples), Ok(Accepted::AlreadyHeld));
 }
 
+#[cfg(feature = "bitmap")]
 #[test]
 fn free_space_in_pieces_is_moved_together_when_nothing_plays() {
     let mut memory = Memory::new();
@@ -251,6 +263,7 @@ fn free_space_in_pieces_is_moved_together_when_nothing_plays() {
     assert!((asked_n - 0.02 * 2.0 / 255.0).abs() < 1e-9, "the bitmap that stayed was moved whole: {asked_n}");
 }
 
+#[cfg(feature = "bitmap")]
 #[test]
 fn announced_bitmaps_stay_however_often_they_are_named() {
     let mut memory = Memory::new();
@@ -320,5 +333,73 @@ proptest! {
                 prop_assert!(i32::from(drive.dac_code).abs() <= code_max, "{drive:?}");
             }
         }
+    }
+}
+
+#[test]
+fn a_touch_of_the_host_goes_to_the_ticker_once() {
+    let mut memory = Memory::new();
+    let board = Board { touch_from_host: true, ..Board::SIMULATOR };
+    let mut desk = Desk::of(board, &mut memory);
+    desk.greet();
+    assert_eq!(desk.session.next_touch(), None);
+    desk.command(Command::Touch { x_m: 0.02, y_m: 0.03, age_ticks: 400 }).unwrap();
+    assert_eq!(desk.session.next_touch(), Some(Touch::Down { x_m: 0.02, y_m: 0.03, age_ticks: 400 }));
+    assert_eq!(desk.session.next_touch(), None);
+    desk.command(Command::Lift).unwrap();
+    assert_eq!(desk.session.next_touch(), Some(Touch::Up));
+    for x_m in [f32::NAN, f32::INFINITY, -2.1] {
+        let refused = desk.command(Command::Touch { x_m, y_m: 0.03, age_ticks: 0 });
+        assert!(
+            matches!(refused, Err(Refusal::Config(refusal)) if refusal.field == ConfigField::TouchPlace),
+            "{refused:?}"
+        );
+        assert_eq!(desk.session.next_touch(), None);
+    }
+}
+
+#[test]
+fn a_board_with_a_touch_source_takes_none_from_the_host() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    let hello = desk.greet();
+    assert_eq!(hello.features & feature::HOST_TOUCH, 0);
+    for command in [Command::Touch { x_m: 0.02, y_m: 0.03, age_ticks: 0 }, Command::Lift] {
+        assert_eq!(desk.command(command), Err(Refusal::TouchSource));
+    }
+    assert_eq!(desk.session.next_touch(), None);
+}
+
+/// The text as a host puts it together.
+fn fault_text(desk: &mut Desk) -> String {
+    let mut text = Vec::new();
+    loop {
+        let Ok(Accepted::FaultText { len, bytes }) = desk.command(Command::FaultText { offset: text.len() as u8 })
+        else {
+            panic!("no text")
+        };
+        text.extend(&bytes[..usize::from(len)]);
+        if usize::from(len) < bytes.len() {
+            return String::from_utf8(text).unwrap();
+        }
+    }
+}
+
+#[test]
+fn the_text_of_a_fault_is_told_whole() {
+    for len in [0, 1, 31, 32, 33, 64, 191, 192, 250] {
+        let mut memory = Memory::new();
+        let reset_text: &'static str = "stack overflow at 0x1fff_fff8; ".repeat(9).leak().get(..len).unwrap();
+        let board = Board {
+            reset_fault: Some((Fault::StackOverflow, 7)),
+            reset_text: reset_text.as_bytes(),
+            ..Board::SIMULATOR
+        };
+        let mut desk = Desk::of(board, &mut memory);
+        let hello = desk.greet();
+        assert_eq!((hello.last_fault, hello.fault_detail), (Some(Fault::StackOverflow), 7));
+        assert_eq!(fault_text(&mut desk), reset_text[..len.min(192)]);
+        let beyond = desk.command(Command::FaultText { offset: 255 });
+        assert!(matches!(beyond, Ok(Accepted::FaultText { len: 0, .. })));
     }
 }

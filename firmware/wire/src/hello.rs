@@ -40,7 +40,7 @@ pub struct Hello {
     pub tick_hz: u32,
     /// Largest frame in bytes that the board takes.
     pub frame_max_len: u16,
-    /// Bits of what the firmware can do; none is assigned yet.
+    /// Bits of what the firmware can do ([`feature`]).
     pub features: u32,
     /// CRC-32 of the committed scene, zero without one.
     pub scene_crc32: u32,
@@ -54,6 +54,20 @@ pub struct Hello {
     pub state: State,
     /// Limits of the board, sent as tag-length-value.
     pub limits: BoardLimits,
+}
+
+/// Bits of [`Hello::features`]: what the firmware was built with beyond constant layers and the square carrier.
+pub mod feature {
+    /// Grating layers.
+    pub const GRATING: u32 = 1;
+    /// Bitmap layers.
+    pub const BITMAP: u32 = 1 << 1;
+    /// The sine carrier.
+    pub const SINE_CARRIER: u32 = 1 << 2;
+    /// Telemetry.
+    pub const TELEMETRY: u32 = 1 << 3;
+    /// The host says where the finger is.
+    pub const HOST_TOUCH: u32 = 1 << 4;
 }
 
 /// Kind of board. Numbers never change.

@@ -62,7 +62,28 @@ pub enum Command {
         /// Ticks between two telemetry messages; at least [`TELEMETRY_PERIOD_MIN_TICKS`], or zero.
         period_ticks: u32,
     },
+    /// Tells where the host's pointer has the finger; for a board that takes touch from the host.
+    Touch {
+        /// From the left edge of the screen, m.
+        x_m: f32,
+        /// From the top edge of the screen, m.
+        y_m: f32,
+        /// Ticks since the finger was there.
+        age_ticks: u16,
+    },
+    /// Tells that the finger has left the screen; for a board that takes touch from the host.
+    Lift,
+    /// Asks what the firmware said of the fault that led to the last reset; answered [`Accepted::FaultText`].
+    FaultText {
+        /// Bytes of the text that the host has already.
+        offset: u8,
+    },
 }
+
+/// Bytes of a fault's text that one answer carries.
+pub const FAULT_TEXT_PIECE_LEN: usize = 32;
+/// Most bytes that a fault's text has.
+pub const FAULT_TEXT_MAX_LEN: usize = 192;
 
 /// Shortest period of telemetry, in ticks: 1 kHz at 40 kHz ticks.
 pub const TELEMETRY_PERIOD_MIN_TICKS: u32 = 40;
@@ -112,6 +133,13 @@ pub enum Accepted {
     Done,
     /// The bitmap is in the pool already: do not send it.
     AlreadyHeld,
+    /// A piece of the fault's text, UTF-8; the last one has fewer than [`FAULT_TEXT_PIECE_LEN`] bytes, or none.
+    FaultText {
+        /// Bytes of the text in this piece.
+        len: u8,
+        /// The text, and zeros behind it.
+        bytes: [u8; FAULT_TEXT_PIECE_LEN],
+    },
 }
 
 /// What the board does at one tick.

@@ -88,9 +88,14 @@ fn numbers(refusal: Refusal) -> Vec<String> {
             vec![config.field.to_string(), config.found.to_string(), config.min.to_string(), config.max.to_string()]
         }
         Refusal::Scene(error) => scene_numbers(error),
-        Refusal::UnknownCommand | Refusal::WrongState(_) | Refusal::NoScene | Refusal::Busy | Refusal::ArmSwitch => {
-            vec![]
-        }
+        Refusal::LeftOut { layer: ConfigRefusal::WHOLE_SCENE } => vec!["carrier".into()],
+        Refusal::LeftOut { layer } => vec![format!("layer {layer}")],
+        Refusal::UnknownCommand
+        | Refusal::WrongState(_)
+        | Refusal::NoScene
+        | Refusal::Busy
+        | Refusal::ArmSwitch
+        | Refusal::TouchSource => vec![],
     }
 }
 

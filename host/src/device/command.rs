@@ -25,6 +25,9 @@ pub(super) fn name_of(command: &Command) -> &'static str {
         Command::Stop => "stop",
         Command::ClearFault => "clear the fault",
         Command::Subscribe { .. } => "telemetry",
+        Command::Touch { .. } => "touch",
+        Command::Lift => "lift",
+        Command::FaultText { .. } => "text of the fault",
     }
 }
 
@@ -39,6 +42,9 @@ pub(super) fn state_after(command: &Command) -> Option<State> {
         | Command::UploadBitmap { .. }
         | Command::UploadEnd
         | Command::Commit { .. }
-        | Command::Subscribe { .. } => None,
+        | Command::Subscribe { .. }
+        | Command::Touch { .. }
+        | Command::Lift
+        | Command::FaultText { .. } => None,
     }
 }

@@ -162,6 +162,8 @@ impl FakeBoard {
             Command::UploadBitmap { width, height, crc32 } => {
                 self.upload = Some(FakeUpload::new(true, usize::from(width) * usize::from(height), crc32));
             }
+            Command::Touch { .. } | Command::Lift => {}
+            Command::FaultText { .. } => return Ok(Accepted::FaultText { len: 0, bytes: [0; 32] }),
             Command::UploadEnd => self.end_upload()?,
             Command::Commit { crc32: meant } if self.scene.as_ref().is_some_and(|scene| crc32(scene) == meant) => {}
             Command::Commit { crc32: meant } => {

@@ -1,8 +1,11 @@
 //! What the host's frames mean, and what the board answers.
 
 use frixel_wire::fault::{Flags, State};
-use frixel_wire::hello::{Hello, PROTOCOL_MAJOR, PROTOCOL_MINOR};
-use frixel_wire::message::{Accepted, Answer, Command, FromBoard, Refusal, Request, TELEMETRY_PERIOD_MIN_TICKS};
+use frixel_wire::hello::{Hello, PROTOCOL_MAJOR, PROTOCOL_MINOR, feature};
+use frixel_wire::message::{
+    Accepted, Answer, Command, ConfigField, ConfigRefusal, FAULT_TEXT_MAX_LEN, FAULT_TEXT_PIECE_LEN, FromBoard,
+    Refusal, Request, TELEMETRY_PERIOD_MIN_TICKS,
+};
 use frixel_wire::payload::{ParseError, Payload};
 use frixel_wire::scene::{HEADER_LEN, Layer, RECORD_LEN, RECORDS_MAX, SCENE_MAX_LEN, Scene};
 use heapless::{Deque, Vec};
@@ -10,8 +13,9 @@ use heapless::{Deque, Vec};
 use super::outbox::Outbox;
 use super::upload::{Destination, Report, Staging, Upload};
 use crate::bitmap_pool::{Bitmap, Directory};
+use crate::config::{self, LENGTH_MAX_M};
 use crate::order::Status;
-use crate::{Active, BitmapPool, Board, Order};
+use crate::{Active, BitmapPool, Board, Order, Touch};
 
 /// Version of this firmware: major, minor, patch.
 const FIRMWARE: (u8, u8, u8) = (0, 1, 0);
@@ -22,19 +26,19 @@ const ORDERS_MAX: usize = 8;
 const ORDERS_KEPT: usize = 2;
 
 /// CRC-32 names of bitmaps.
-type BitmapNames = Vec<u32, RECORDS_MAX>;
+pub(super) type BitmapNames = Vec<u32, RECORDS_MAX>;
 
 /// The board's side of what is said.
 pub(super) struct Dialogue<'a> {
-    board: Board,
-    pool: &'a BitmapPool,
-    directory: Directory,
+    pub(super) board: Board,
+    pub(super) pool: &'a BitmapPool,
+    pub(super) directory: Directory,
     upload: Option<Upload>,
-    staging: Staging,
+    pub(super) staging: Staging,
     /// CRC-32 of the scene that the ticker has, zero without one.
-    committed_crc32: u32,
+    pub(super) committed_crc32: u32,
     /// Bitmaps of the scene that the ticker has.
-    committed_bitmaps: BitmapNames,
+    pub(super) committed_bitmaps: BitmapNames,
     /// Bitmaps that were announced since the last commit: the next scene's.
     announced_bitmaps: BitmapNames,
     /// Coefficients for the next scene; `None` while the ticker has not handed back those of the scene before.
@@ -43,9 +47,23 @@ pub(super) struct Dialogue<'a> {
     orders_sent: u32,
     host_heard: bool,
     /// State once the ticker has applied every order.
-    state: State,
+    pub(super) state: State,
     received_bytes: u32,
     telemetry_period_ticks: u32,
+    /// The last place of the finger that the host told and the ticker has not been given.
+    touch: Option<Touch>,
+}
+
+/// What this firmware was built with.
+const fn features(board: &Board) -> u32 {
+    const fn bit(present: bool, bit: u32) -> u32 {
+        if present { bit } else { 0 }
+    }
+    bit(cfg!(feature = "grating"), feature::GRATING)
+        | bit(cfg!(feature = "bitmap"), feature::BITMAP)
+        | bit(cfg!(feature = "sine-carrier"), feature::SINE_CARRIER)
+        | bit(cfg!(feature = "telemetry"), feature::TELEMETRY)
+        | bit(board.touch_from_host, feature::HOST_TOUCH)
 }
 
 impl<'a> Dialogue<'a> {
@@ -66,6 +84,7 @@ impl<'a> Dialogue<'a> {
             state: State::Disarmed,
             received_bytes: 0,
             telemetry_period_ticks: 0,
+            touch: None,
         }
     }
 
@@ -79,6 +98,10 @@ impl<'a> Dialogue<'a> {
 
     pub(super) fn next_order(&mut self) -> Option<Order<'a>> {
         if core::mem::take(&mut self.host_heard) { Some(Order::HostHeard) } else { self.orders.pop_front() }
+    }
+
+    pub(super) fn next_touch(&mut self) -> Option<Touch> {
+        self.touch.take()
     }
 
     pub(super) fn take_back(&mut self, spare: &'a mut Active) {
@@ -157,7 +180,7 @@ impl<'a> Dialogue<'a> {
             id: self.board.id,
             tick_hz: self.board.tick_hz,
             frame_max_len: frixel_wire::frame::FRAME_MAX_LEN as u16,
-            features: 0,
+            features: features(&self.board),
             scene_crc32: self.committed_crc32,
             reset_cause: self.board.reset_cause,
             last_fault: status.fault.map(|(fault, _)| fault),
@@ -171,12 +194,21 @@ impl<'a> Dialogue<'a> {
         match command {
             Command::Ping => Ok(Accepted::Done),
             Command::UploadScene { len, crc32 } => self.begin_scene(len, crc32),
-            Command::UploadBitmap { width, height, crc32 } => {
+            Command::UploadBitmap { width, height, crc32 } if cfg!(feature = "bitmap") => {
                 self.begin_bitmap(width, height, crc32, self.is_settled(status))
+            }
+            Command::UploadBitmap { width, height, .. } => {
+                Err(Refusal::BitmapPoolFull { len: u32::from(width) * u32::from(height), free: 0 })
             }
             Command::UploadEnd => self.end_upload(),
             Command::Commit { crc32 } => self.commit(crc32),
-            Command::Subscribe { period_ticks } => self.subscribe(period_ticks),
+            Command::Subscribe { period_ticks } if cfg!(feature = "telemetry") => self.subscribe(period_ticks),
+            Command::Subscribe { .. } => Err(Refusal::UnknownCommand),
+            Command::Touch { x_m, y_m, age_ticks } => {
+                self.touch(Touch::Down { x_m, y_m, age_ticks: u32::from(age_ticks) })
+            }
+            Command::Lift => self.touch(Touch::Up),
+            Command::FaultText { offset } => Ok(fault_text(self.board.reset_text, offset)),
             Command::ClearFault => self.change_state(Order::ClearFault, &[State::Faulted], State::Disarmed),
             Command::Arm | Command::Disarm | Command::Play | Command::Stop => self.drive(command, status),
         }
@@ -224,6 +256,26 @@ impl<'a> Dialogue<'a> {
             return Err(Refusal::TelemetryTooFast { period_min_ticks: TELEMETRY_PERIOD_MIN_TICKS });
         }
         self.telemetry_period_ticks = period_ticks;
+        Ok(Accepted::Done)
+    }
+
+    fn touch(&mut self, touch: Touch) -> Result<Accepted, Refusal> {
+        if !self.board.touch_from_host {
+            return Err(Refusal::TouchSource);
+        }
+        if let Touch::Down { x_m, y_m, .. } = touch {
+            for place_m in [x_m, y_m] {
+                config::within(
+                    ConfigField::TouchPlace,
+                    place_m,
+                    -LENGTH_MAX_M,
+                    LENGTH_MAX_M,
+                    ConfigRefusal::WHOLE_SCENE,
+                )
+                .map_err(Refusal::Config)?;
+            }
+        }
+        self.touch = Some(touch);
         Ok(Accepted::Done)
     }
 
@@ -324,7 +376,7 @@ impl<'a> Dialogue<'a> {
         }
     }
 
-    fn commit(&mut self, crc32: u32) -> Result<Accepted, Refusal> {
+    pub(super) fn commit(&mut self, crc32: u32) -> Result<Accepted, Refusal> {
         if self.upload.is_some() {
             return self.end_upload_first();
         }
@@ -353,6 +405,18 @@ impl<'a> Dialogue<'a> {
         let check = self.upload.as_ref().map_or(Ok(()), Upload::check);
         Err(check.err().unwrap_or(Refusal::UploadIncomplete { next_chunk: 0 }))
     }
+}
+
+/// The piece of a fault's text that begins at `offset`.
+fn fault_text(text: &[u8], offset: u8) -> Accepted {
+    let rest = text.get(..text.len().min(FAULT_TEXT_MAX_LEN)).and_then(|text| text.get(usize::from(offset)..));
+    let mut bytes = [0; FAULT_TEXT_PIECE_LEN];
+    let mut len = 0;
+    for (to, from) in bytes.iter_mut().zip(rest.unwrap_or_default()) {
+        *to = *from;
+        len += 1;
+    }
+    Accepted::FaultText { len, bytes }
 }
 
 fn bitmaps_of(scene: &Scene) -> BitmapNames {

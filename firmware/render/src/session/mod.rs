@@ -4,6 +4,8 @@
 //! in chunks.
 
 mod dialogue;
+#[cfg(feature = "store")]
+mod kept;
 mod outbox;
 mod upload;
 
@@ -12,8 +14,10 @@ use frixel_wire::message::{FromBoard, Telemetry};
 use frixel_wire::payload::Payload;
 
 use crate::order::Status;
-use crate::{Active, BitmapPool, Board, Order};
+use crate::{Active, BitmapPool, Board, Order, Touch};
 use dialogue::Dialogue;
+#[cfg(feature = "store")]
+pub use kept::KeptScene;
 use outbox::Outbox;
 
 /// One board's end of the serial line.
@@ -51,7 +55,8 @@ impl<'a> Session<'a> {
     /// there is no time for that, at least once a telemetry period.
     pub fn poll(&mut self, status: &Status) {
         self.dialogue.report_state(status, &mut self.outbox);
-        if let Some(period_ticks) = self.dialogue.telemetry_period_ticks()
+        if cfg!(feature = "telemetry")
+            && let Some(period_ticks) = self.dialogue.telemetry_period_ticks()
             && status.telemetry.tick.wrapping_sub(self.telemetry_sent_at_tick) >= period_ticks
         {
             self.telemetry_sent_at_tick = status.telemetry.tick;
@@ -62,6 +67,11 @@ impl<'a> Session<'a> {
     /// The next order for the ticker.
     pub fn next_order(&mut self) -> Option<Order<'a>> {
         self.dialogue.next_order()
+    }
+
+    /// The last place of the finger that the host has told, once; for a board with [`Board::touch_from_host`].
+    pub fn next_touch(&mut self) -> Option<Touch> {
+        self.dialogue.next_touch()
     }
 
     /// Takes back the coefficients that the ticker has let go.
@@ -77,6 +87,25 @@ impl<'a> Session<'a> {
     /// The committed scene, as it was sent; `None` without one.
     pub fn scene(&self) -> Option<&[u8]> {
         self.dialogue.scene()
+    }
+
+    /// CRC-32 of what [`Session::kept`] would give.
+    #[cfg(feature = "store")]
+    pub fn kept_crc32(&self) -> Option<u32> {
+        self.dialogue.kept_crc32()
+    }
+
+    /// The committed scene with its bitmaps as bytes to keep; `None` without one, and unless the board is disarmed.
+    #[cfg(feature = "store")]
+    pub fn kept(&self) -> Option<KeptScene<'_>> {
+        self.dialogue.kept()
+    }
+
+    /// Commits a scene from bytes that were kept: `read` gives those at an offset, and `false` beyond their end. Returns
+    /// whether there is a scene that this firmware can play; what is not is as if it had never been kept.
+    #[cfg(feature = "store")]
+    pub fn restore(&mut self, read: impl Fn(u32, &mut [u8]) -> bool) -> bool {
+        self.dialogue.restore(read).is_some()
     }
 
     /// Frames that were received whole, and bad ones that were skipped.

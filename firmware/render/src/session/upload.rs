@@ -110,7 +110,7 @@ impl Staging {
         self.whole = Some((len, crc32));
     }
 
-    fn write(&mut self, offset: usize, bytes: &[u8]) {
+    pub(super) fn write(&mut self, offset: usize, bytes: &[u8]) {
         if let Some(target) = self.bytes.get_mut(offset..offset + bytes.len()) {
             target.copy_from_slice(bytes);
         }

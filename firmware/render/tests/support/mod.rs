@@ -8,6 +8,9 @@
     reason = "a test uses its part, and may fail"
 )]
 
+#[cfg(feature = "store")]
+pub mod flash;
+
 use frixel_render::{Active, BitmapPool, Board, Drive, Sense, Session, Status, Ticker, Touch};
 use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, crc32};
 use frixel_wire::hello::Hello;
@@ -50,7 +53,10 @@ struct Monitor {
 
 impl<'a> Desk<'a> {
     pub fn new(memory: &'a mut Memory) -> Self {
-        let board = Board::SIMULATOR;
+        Self::of(Board::SIMULATOR, memory)
+    }
+
+    pub fn of(board: Board, memory: &'a mut Memory) -> Self {
         let Memory { pool, actives: [first, second] } = memory;
         let mut desk = Self {
             ticker: Ticker::new(&board, pool, first),

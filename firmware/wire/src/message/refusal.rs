@@ -63,6 +63,13 @@ pub enum Refusal {
     },
     /// The arm switch on the board is not held.
     ArmSwitch,
+    /// The firmware was built without what the scene asks for ([`crate::hello::feature`]).
+    LeftOut {
+        /// The layer that asks for it, counted from zero; [`ConfigRefusal::WHOLE_SCENE`] for the carrier.
+        layer: u8,
+    },
+    /// The board has a touch source of its own, and takes none from the host.
+    TouchSource,
 }
 
 /// A number in a scene that the board cannot play.
@@ -130,6 +137,8 @@ pub enum ConfigField {
     BitmapPlacement,
     /// The span of friction between 1 V and the largest voltage, wider than the table.
     TableRange,
+    /// Where the host has the finger, m.
+    TouchPlace,
 }
 
 impl ConfigField {
@@ -157,6 +166,7 @@ impl ConfigField {
             Self::Phase => ("phase", " turns"),
             Self::BitmapPlacement => ("bitmap place or pitch", " m"),
             Self::TableRange => ("span of friction", ""),
+            Self::TouchPlace => ("place of the finger", " m"),
         }
     }
 }
@@ -224,6 +234,16 @@ impl fmt::Display for Refusal {
                 "the board sends telemetry every {period_min_ticks} ticks at most: ask for a longer period, or for zero to end it"
             ),
             Self::ArmSwitch => f.write_str("the arm switch on the board is not held: hold it and arm again"),
+            Self::LeftOut { layer: ConfigRefusal::WHOLE_SCENE } => {
+                f.write_str("the firmware was built without the carrier of the scene: flash one that has it")
+            }
+            Self::LeftOut { layer } => write!(
+                f,
+                "the firmware was built without what layer {layer} (the first is 0) needs: flash one that has it"
+            ),
+            Self::TouchSource => {
+                f.write_str("the board has a touch source of its own: do not send it where the finger is")
+            }
         }
     }
 }

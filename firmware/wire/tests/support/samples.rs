@@ -46,6 +46,9 @@ fn commands() -> Vec<Command> {
         Command::Subscribe { period_ticks: 0 },
         Command::Subscribe { period_ticks: 40 },
         Command::Subscribe { period_ticks: u32::MAX },
+        Command::Touch { x_m: 0.05, y_m: 0.025, age_ticks: 400 },
+        Command::Lift,
+        Command::FaultText { offset: 32 },
     ]
 }
 
@@ -144,6 +147,8 @@ fn telemetry(state: State) -> Telemetry {
 fn outcomes() -> Vec<Result<Accepted, Refusal>> {
     let mut outcomes = vec![Ok(Accepted::Done), Ok(Accepted::AlreadyHeld)];
     outcomes.extend(refusals().into_iter().map(Err));
+    outcomes.push(Ok(Accepted::FaultText { len: 32, bytes: *b"panicked at firmware/render/src/" }));
+    outcomes.push(Ok(Accepted::FaultText { len: 0, bytes: [0; 32] }));
     outcomes
 }
 
@@ -168,6 +173,9 @@ pub fn refusals() -> Vec<Refusal> {
         Refusal::Busy,
         Refusal::TelemetryTooFast { period_min_ticks: 40 },
         Refusal::ArmSwitch,
+        Refusal::LeftOut { layer: 2 },
+        Refusal::LeftOut { layer: ConfigRefusal::WHOLE_SCENE },
+        Refusal::TouchSource,
     ]);
     refusals
 }
@@ -194,7 +202,7 @@ pub fn config_fields() -> Vec<ConfigField> {
     use ConfigField::{
         BitmapPlacement, CarrierFrequency, CurrentPeak, CurrentRms, EffectiveGap, FingerRadius, Friction,
         FrictionCoefficient, Gain, HostTimeout, NormalLoad, Phase, Region, ScreenHeight, ScreenWidth, Slew, Stiffness,
-        TableRange, VoltagePeak, VoltageRms, WaveVector,
+        TableRange, TouchPlace, VoltagePeak, VoltageRms, WaveVector,
     };
     vec![
         ScreenWidth,
@@ -218,6 +226,7 @@ pub fn config_fields() -> Vec<ConfigField> {
         Phase,
         BitmapPlacement,
         TableRange,
+        TouchPlace,
     ]
 }
 

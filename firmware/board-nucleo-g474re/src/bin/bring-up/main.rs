@@ -1,0 +1,73 @@
+//! Brings a new board up, step by step, with the output disconnected first: `cargo run --release --bin bring-up`, and
+//! `docs/hardware.md` beside it. Every step says over RTT what to do; the blue button goes on.
+#![no_std]
+#![no_main]
+
+mod bench;
+mod provoke;
+mod store;
+
+use board_nucleo_g474re::fault::LastReset;
+use board_nucleo_g474re::output::Output;
+use board_nucleo_g474re::{clock, indicator, period};
+use cortex_m::Peripherals;
+use cortex_m_rt::entry;
+use defmt::{info, println};
+use defmt_rtt as _;
+use frixel_parts::fault_record::Text;
+use frixel_wire::message::FAULT_TEXT_MAX_LEN;
+
+use bench::Bench;
+
+#[entry]
+fn main() -> ! {
+    static mut TEXT: Text = [0; FAULT_TEXT_MAX_LEN];
+
+    let output = Output::new();
+    let last_reset = LastReset::take(TEXT);
+    clock::start();
+    clock::start_peripherals();
+    clock::keep_timers_running_in_debug();
+    if let Some(mut core) = Peripherals::take() {
+        clock::start_cycle_counter(&mut core.DCB, &mut core.DWT);
+    }
+    indicator::start();
+    period::start();
+
+    let mut bench = Bench::new(output);
+    if provoke::go_on(&last_reset) {
+        provoke::next();
+    }
+    println!("");
+    println!("frixel bring-up. Read docs/hardware.md first: this board drives hundreds of volts.");
+
+    bench.ask("1. Nothing is connected but USB.");
+    bench.one_shot();
+
+    bench.ask("2. Connect the DAC, and a voltmeter to its output. The amplifier stays disconnected.");
+    bench.dac();
+
+    bench.ask("3. Connect amplifier and arm switch, supply off. The electrode stays disconnected.");
+    bench.inputs();
+
+    bench
+        .ask("4. Switch the amplifier's supply on, a high-voltage probe on its output. Hold the arm switch meanwhile.");
+    for peak_v in [10.0, 25.0, 50.0] {
+        bench.square(peak_v);
+    }
+
+    bench.ask("5. Connect series resistor and a capacitor of the electrode's worst case instead of the electrode.");
+    bench.edge();
+
+    bench.ask("6. Switch the amplifier's supply off. The board will panic, fault and hang, and restart each time.");
+    if !provoke::are_done() {
+        provoke::next();
+    }
+
+    bench.ask("7. The limits that were built in are stored.");
+    store::limits();
+    info!("done: flash the firmware with `cargo run --release`");
+    loop {
+        cortex_m::asm::wfi();
+    }
+}

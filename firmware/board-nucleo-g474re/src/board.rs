@@ -1,0 +1,82 @@
+//! Who this board is, and what it can bear. What is here belongs to the parts that `docs/hardware.md` lists: another
+//! amplifier or electrode has other numbers.
+
+use frixel_parts::monitor::Monitor;
+use frixel_render::store::{Flash, LIMITS_LEN, Slot, read_limits};
+use frixel_render::{BITMAP_POOL_LEN, Board};
+use frixel_wire::hello::{BoardKind, BoardLimits};
+use frixel_wire::scene::RECORDS_MAX;
+use stm32_metapac::UID;
+
+use crate::fault::LastReset;
+use crate::flash::{BankTwo, PAGES};
+
+/// Ticks a second.
+pub const TICK_HZ: u32 = 40_000;
+/// Bytes that the host may have under way.
+pub const RECEIVE_WINDOW: usize = 4096;
+
+/// The monitor's ADC: 12 bits of 3.3 V. The amplifier's monitor gives 1 V for 100 V, of which the level shifter makes
+/// 0.75 V about 1.65 V, so that 220 V fill the span.
+pub const MONITOR: Monitor = Monitor::new(12, 3.3, 0.75 / 100.0);
+
+/// Limits before bring-up has stored others.
+pub const LIMITS: BoardLimits = BoardLimits {
+    bitmap_pool_bytes: BITMAP_POOL_LEN as u32,
+    records_max: RECORDS_MAX as u8,
+    receive_window_bytes: RECEIVE_WINDOW as u16,
+    // Until somebody has measured what this board does.
+    voltage_max_v_peak: 50.0,
+    // 10 V of the DAC behind an amplifier of gain 20.
+    full_scale_v_peak: 200.0,
+    // 68 kOhm in series with the electrode below.
+    edge_time_constant_s: 36e-6,
+    // 2 cm^2 of bare 10 um polymer, relative permittivity 3.
+    electrode_capacitance_max_f: 0.53e-9,
+    // The limit for touch currents in normal use of IEC 61010-1, without its weighting by frequency.
+    current_max_a_rms: 0.5e-3,
+    // What the series resistor lets through when an edge goes from 50 V to -50 V, 1.47 mA, and a fifth more.
+    current_max_a_peak: 1.8e-3,
+    touch_report_period_s: 10e-3,
+};
+
+/// Where the limits are kept: the first two pages of bank 2.
+pub const LIMITS_SLOT: Slot = Slot { first_page: 0, pages: 1 };
+/// Where the last scene is kept: the rest of bank 2, 126 KiB a copy; 80 KiB of bitmaps and the largest scene take 85.
+pub const SCENE_SLOT: Slot = Slot { first_page: 2, pages: (PAGES - 2) / 2 };
+
+const _: () = assert!(
+    SCENE_SLOT.capacity::<BankTwo>() as usize >= 80 * 1024 + frixel_wire::scene::SCENE_MAX_LEN + (1 + RECORDS_MAX) * 16
+);
+
+/// The board as it started.
+pub fn board(last_reset: &LastReset, flash: Option<&BankTwo>) -> Board {
+    Board {
+        kind: BoardKind::NucleoG474re,
+        id: unique_number(),
+        tick_hz: TICK_HZ,
+        limits: flash.and_then(stored_limits).unwrap_or(LIMITS),
+        reset_cause: last_reset.cause,
+        reset_fault: last_reset.fault,
+        reset_text: last_reset.text,
+        touch_from_host: !cfg!(feature = "optical-frame"),
+    }
+}
+
+/// The limits that bring-up has stored.
+pub fn stored_limits(flash: &BankTwo) -> Option<BoardLimits> {
+    let found = LIMITS_SLOT.find(flash).filter(|found| found.len as usize == LIMITS_LEN)?;
+    let mut bytes = [0; LIMITS_LEN];
+    if LIMITS_SLOT.read(flash, &found, 0, &mut bytes) { read_limits(&bytes, &LIMITS) } else { None }
+}
+
+/// The processor's unique number, 96 bits (RM0440, "Unique device ID register").
+fn unique_number() -> [u8; 12] {
+    let mut id = [0; 12];
+    for (index, word) in id.as_chunks_mut::<4>().0.iter_mut().enumerate() {
+        *word = UID.uid(index).read().to_le_bytes();
+    }
+    id
+}
+
+const _: () = assert!(BankTwo::PAGE_LEN == 2048);

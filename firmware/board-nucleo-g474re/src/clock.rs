@@ -1,0 +1,86 @@
+//! The processor's clock: 170 MHz from the internal oscillator, which needs no crystal and cannot fall off the board. Its
+//! 1 % is well within what a serial port bears (5.9 % for one frame of ten bits, halved for either side).
+
+use cortex_m::asm;
+use cortex_m::peripheral::{DCB, DWT};
+use stm32_metapac::rcc::vals::{Hpre, Pllm, Plln, Pllr, Pllsrc, Ppre, Sw};
+use stm32_metapac::{DBGMCU, FLASH, PWR, RCC};
+
+use crate::wait_until;
+
+/// Clock of the core, of both peripheral buses and of all timers, in Hz.
+pub const CORE_HZ: u32 = 170_000_000;
+
+/// Switches to 170 MHz: boost mode of voltage range 1, four wait states, PLL of 16 MHz / 4 * 85 / 2
+/// (RM0440, "Dynamic voltage scaling management", "Read access latency", "PLL").
+pub fn start() {
+    RCC.apb1enr1().modify(|w| w.set_pwren(true));
+    let _ = RCC.apb1enr1().read();
+
+    FLASH.acr().modify(|w| {
+        w.set_latency(stm32_metapac::flash::vals::Latency::WS4);
+        w.set_prften(true);
+        w.set_icen(true);
+        w.set_dcen(true);
+    });
+    wait_until(|| FLASH.acr().read().latency() == stm32_metapac::flash::vals::Latency::WS4, "the flash's wait states");
+
+    RCC.pllcfgr().write(|w| {
+        w.set_pllsrc(Pllsrc::HSI);
+        w.set_pllm(Pllm::DIV4);
+        w.set_plln(Plln::MUL85);
+        w.set_pllr(Pllr::DIV2);
+        w.set_pllren(true);
+    });
+    RCC.cr().modify(|w| w.set_pllon(true));
+    wait_until(|| RCC.cr().read().pllrdy(), "the PLL");
+
+    // Above 80 MHz, half the frequency comes first, for at least 1 us (RM0440, "System clock (SYSCLK)").
+    RCC.cfgr().modify(|w| w.set_hpre(Hpre::DIV2));
+    PWR.cr5().modify(|w| w.set_r1mode(false));
+    RCC.cfgr().modify(|w| w.set_sw(Sw::PLL1_R));
+    wait_until(|| RCC.cfgr().read().sws() == Sw::PLL1_R, "the PLL as system clock");
+    asm::delay(CORE_HZ / 1_000_000);
+    RCC.cfgr().modify(|w| {
+        w.set_hpre(Hpre::DIV1);
+        w.set_ppre1(Ppre::DIV1);
+        w.set_ppre2(Ppre::DIV1);
+    });
+}
+
+/// Switches on what the board uses, but for the pins.
+pub fn start_peripherals() {
+    RCC.ahb1enr().modify(|w| {
+        w.set_dma1en(true);
+        w.set_dmamux1en(true);
+    });
+    RCC.ahb2enr().modify(|w| w.set_adc12en(true));
+    RCC.apb1enr1().modify(|w| {
+        w.set_tim3en(true);
+        w.set_spi2en(true);
+        w.set_usart2en(true);
+        w.set_i2c3en(cfg!(feature = "optical-frame"));
+    });
+    // A peripheral is there two clocks after its enable (RM0440, "Peripheral clock enable register"); the read takes them.
+    let _ = RCC.apb1enr1().read();
+}
+
+/// Starts the cycle counter and sees that it counts: an emulator's does not, and what is measured with one that stands
+/// still would pass whatever it takes.
+pub fn start_cycle_counter(dcb: &mut DCB, dwt: &mut DWT) {
+    dcb.enable_trace();
+    dwt.enable_cycle_counter();
+    let before = DWT::cycle_count();
+    asm::delay(100);
+    let counted = DWT::cycle_count().wrapping_sub(before);
+    assert!(counted >= 100, "the cycle counter does not count");
+}
+
+/// While a debugger halts the core, time goes on for the one-shot, so that the output goes to zero (RM0440, "Debug support for
+/// timers").
+pub fn keep_timers_running_in_debug() {
+    DBGMCU.apb1lfzr().modify(|w| {
+        w.set_tim3(false);
+        w.set_tim4(false);
+    });
+}

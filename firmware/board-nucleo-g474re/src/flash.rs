@@ -1,0 +1,130 @@
+//! Bank 2 of the flash, where the stores are. The image runs from bank 1 and is not held up by what bank 2 does, as long as
+//! nobody reads there meanwhile (RM0440, "Embedded flash memory": "Read-while-write", "Flash program and erase
+//! operations").
+
+use core::ptr;
+use core::sync::atomic::{AtomicBool, Ordering};
+
+use frixel_render::store::{Flash, Operation, WORD_LEN};
+use stm32_metapac::FLASH;
+
+/// First byte of bank 2.
+const START: u32 = 0x0804_0000;
+/// Pages of bank 2.
+pub const PAGES: u32 = 128;
+const LEN: u32 = PAGES * BankTwo::PAGE_LEN;
+/// Unlocks the control register, one after the other.
+const KEYS: [u32; 2] = [0x4567_0123, 0xcdef_89ab];
+
+/// A word that was read could not be corrected.
+static UNREADABLE: AtomicBool = AtomicBool::new(false);
+
+/// Bank 2.
+pub struct BankTwo {
+    under_way: bool,
+}
+
+impl BankTwo {
+    /// Takes bank 2. `None` when the option bytes have made one bank of the two, or swapped them.
+    pub fn new() -> Option<Self> {
+        let options = FLASH.optr().read();
+        (options.dbank() && !options.bfb2()).then_some(Self { under_way: false })
+    }
+
+    fn unlock(&mut self) {
+        if FLASH.cr().read().lock() {
+            for key in KEYS {
+                FLASH.keyr().write_value(key);
+            }
+        }
+        clear_flags();
+        // Errata ES0430: the data cache may be corrupted while the other bank is written.
+        FLASH.acr().modify(|w| w.set_dcen(false));
+        self.under_way = true;
+    }
+}
+
+impl Flash for BankTwo {
+    const PAGE_LEN: u32 = 2048;
+
+    fn read(&self, offset: u32, bytes: &mut [u8]) -> bool {
+        let end = offset.checked_add(bytes.len() as u32);
+        if self.under_way || end.is_none_or(|end| end > LEN) {
+            return false;
+        }
+        UNREADABLE.store(false, Ordering::Relaxed);
+        for (address, byte) in (START + offset..).zip(bytes) {
+            // SAFETY: the address lies in bank 2, as was looked for above, and every byte there is a byte.
+            *byte = unsafe { ptr::with_exposed_provenance::<u8>(address as usize).read_volatile() };
+        }
+        // The exception comes before anything that is after this.
+        cortex_m::asm::dsb();
+        !UNREADABLE.load(Ordering::Relaxed)
+    }
+
+    fn begin_erase(&mut self, page: u32) {
+        if page >= PAGES {
+            return;
+        }
+        self.unlock();
+        FLASH.cr().modify(|w| {
+            w.set_per(true);
+            w.set_bker(true);
+            w.set_pnb(page as u8);
+        });
+        FLASH.cr().modify(|w| w.set_strt(true));
+    }
+
+    fn begin_write(&mut self, offset: u32, word: [u8; WORD_LEN]) {
+        if offset > LEN - WORD_LEN as u32 || !offset.is_multiple_of(WORD_LEN as u32) {
+            return;
+        }
+        self.unlock();
+        FLASH.cr().modify(|w| w.set_pg(true));
+        let word = u64::from_le_bytes(word);
+        for (address, half) in [(START + offset, word as u32), (START + offset + 4, (word >> 32) as u32)] {
+            // SAFETY: the address lies in bank 2 and is a multiple of four, as was looked for above; nothing else is there.
+            unsafe { ptr::with_exposed_provenance_mut::<u32>(address as usize).write_volatile(half) };
+        }
+    }
+
+    fn operation(&mut self) -> Operation {
+        if !self.under_way {
+            return Operation::Done;
+        }
+        let status = FLASH.sr().read();
+        if status.bsy() {
+            return Operation::Busy;
+        }
+        FLASH.cr().modify(|w| {
+            w.set_pg(false);
+            w.set_per(false);
+            w.set_lock(true);
+        });
+        clear_flags();
+        // What the cache has of this bank is no more.
+        FLASH.acr().modify(|w| w.set_dcrst(true));
+        FLASH.acr().modify(|w| w.set_dcrst(false));
+        FLASH.acr().modify(|w| w.set_dcen(true));
+        self.under_way = false;
+        let failed = status.operr() || status.progerr() || status.wrperr() || status.pgaerr() || status.pgserr();
+        if failed { Operation::Failed } else { Operation::Done }
+    }
+}
+
+/// Clears what is set: writing ones does.
+fn clear_flags() {
+    FLASH.sr().modify(|_| {});
+}
+
+/// Whether a non-maskable interrupt came from a word of bank 2 that cannot be corrected: one that was half written when the
+/// power went. The read that met it then says so (RM0440, "Error code correction (ECC)").
+pub(crate) fn take_unreadable() -> bool {
+    let status = FLASH.eccr().read();
+    let ours = status.eccd() && status.bk_ecc();
+    if ours {
+        FLASH.eccr().modify(|w| w.set_eccd(true));
+        UNREADABLE.store(true, Ordering::Relaxed);
+    }
+    ours
+}

@@ -1,0 +1,110 @@
+//! The firmware on a NUCLEO-G474RE: puts together what is in the library beside it.
+#![no_std]
+#![no_main]
+
+use board_nucleo_g474re::adc::Adc;
+use board_nucleo_g474re::dac::Dac;
+use board_nucleo_g474re::fault::{self, LastReset};
+use board_nucleo_g474re::flash::BankTwo;
+use board_nucleo_g474re::output::Output;
+use board_nucleo_g474re::serial::Serial;
+use board_nucleo_g474re::talk::{QueuePairs, Talk};
+use board_nucleo_g474re::tick::{self, Tick};
+use board_nucleo_g474re::watchdog::Watchdog;
+use board_nucleo_g474re::{board, clock, indicator, period};
+use cortex_m::{Peripherals, singleton};
+use cortex_m_rt::entry;
+#[cfg(feature = "log")]
+use defmt_rtt as _;
+use frixel_parts::arm_switch::ArmSwitch;
+use frixel_parts::fault_record::Text;
+#[cfg(feature = "store")]
+use frixel_render::store::SceneKeeper;
+use frixel_render::{Active, BitmapPool, Board, Session, Ticker};
+use frixel_wire::message::FAULT_TEXT_MAX_LEN;
+
+/// Memory for bitmaps, written by the session and read by the tick.
+static POOL: BitmapPool = BitmapPool::new();
+
+#[entry]
+fn main() -> ! {
+    static mut TEXT: Text = [0; FAULT_TEXT_MAX_LEN];
+    static mut QUEUES: QueuePairs = QueuePairs::new();
+
+    start(TEXT, QUEUES).run()
+}
+
+/// Starts everything. Apart from the main function, so that what it needs of the stack is free again afterwards.
+#[inline(never)]
+fn start(text: &'static mut Text, queue_pairs: &'static mut QueuePairs) -> Talk {
+    let output = Output::new();
+    let last_reset = LastReset::take(text);
+    clock::start();
+    clock::start_peripherals();
+    clock::keep_timers_running_in_debug();
+    if let Some(mut core) = Peripherals::take() {
+        clock::start_cycle_counter(&mut core.DCB, &mut core.DWT);
+    }
+    indicator::start();
+    period::start();
+
+    let flash = BankTwo::new();
+    let board = board::board(&last_reset, flash.as_ref());
+    log(&last_reset, &board, flash.is_some());
+    let (ticker, session) = make(board);
+    let status = ticker.status();
+    #[cfg(feature = "store")]
+    let store = flash.map(|flash| (SceneKeeper::new(board::SCENE_SLOT, board::TICK_HZ, &flash, session), flash));
+
+    let (ends, queues) = queue_pairs.split();
+    let tick = Tick { ticker, queues, adc: Adc::new(), dac: Dac::new(), output, arm_switch: ArmSwitch::new() };
+    let serial = Serial::new();
+    #[cfg(feature = "optical-frame")]
+    let optical_frame = board_nucleo_g474re::optical_frame::OpticalFrame::new();
+    tick::start_inputs();
+    tick::start(tick);
+    let watchdog = Watchdog::start();
+    Talk {
+        ends,
+        session,
+        status,
+        serial,
+        #[cfg(feature = "store")]
+        store,
+        #[cfg(feature = "optical-frame")]
+        optical_frame,
+        watchdog,
+    }
+}
+
+/// Makes both halves of the firmware. What is large is made in passing, so that no image of it lies in flash, and the
+/// stack that this takes is free again afterwards.
+#[inline(never)]
+fn make(board: Board) -> (Ticker<'static>, &'static mut Session<'static>) {
+    let (Some(first), Some(second)) = (singleton!(: Active = Active::new()), singleton!(: Active = Active::new()))
+    else {
+        fault::never()
+    };
+    let ticker = Ticker::new(&board, &POOL, first);
+    let Some(session) = singleton!(: Session<'static> = Session::new(board, &POOL, second)) else { fault::never() };
+    (ticker, session)
+}
+
+#[cfg(feature = "log")]
+fn log(last_reset: &LastReset, board: &Board, bank: bool) {
+    let (fault, detail) = last_reset.fault.map_or((0, 0), |(fault, detail)| (fault.number(), detail));
+    defmt::info!(
+        "reset: cause {=u8}, fault {=u8}, {=u32:#x} {=[u8]:a}",
+        last_reset.cause.number(),
+        fault,
+        detail,
+        last_reset.text
+    );
+    defmt::info!("at most {=f32} V peak", board.limits.voltage_max_v_peak);
+    if !bank {
+        defmt::warn!("the flash is not in two banks (option byte DBANK): nothing is kept over power-off");
+    }
+}
+
+#[cfg(not(feature = "log"))]
+fn log(_: &LastReset, _: &Board, _: bool) {}

@@ -1,0 +1,93 @@
+//! Whether there may be any output: DAC clear and amplifier enable, by a one-shot.
+//!
+//! Both pins are channels of TIM4 in one-pulse mode. A kick puts them high, and they fall by themselves [`LIFE_US`] after
+//! the last one, whatever the core does (RM0440, "General-purpose timers": "One-pulse mode", "PWM mode"). They are low while the counter stands at zero, which
+//! is where it stops. Outside, resistors pull both wires down, so that they are low in reset, too.
+//!
+//! | pin | function | |
+//! |---|---|---|
+//! | PB6 | TIM4_CH1 | amplifier enable, high enables |
+//! | PB7 | TIM4_CH2 | CLEAR of the DAC, low clears |
+
+use stm32_metapac::timer::vals::Ocm;
+use stm32_metapac::{GPIOB, RCC, TIM4};
+
+use crate::clock::CORE_HZ;
+use crate::pins;
+
+/// Time from the last kick to zero, in us. A millisecond is promised.
+pub const LIFE_US: u16 = 900;
+
+const AMPLIFIER_ENABLE: u32 = 6;
+const DAC_CLEAR: u32 = 7;
+const TIM4_FUNCTION: u8 = 2;
+
+/// The one-shot.
+pub struct Output(());
+
+impl Output {
+    /// Takes the pins, both low.
+    pub fn new() -> Self {
+        zero_for_good();
+        RCC.apb1enr1().modify(|w| w.set_tim4en(true));
+        let _ = RCC.apb1enr1().read();
+        TIM4.psc().write_value((CORE_HZ / 1_000_000 - 1) as u16);
+        TIM4.arr().write(|w| w.set_arr(LIFE_US));
+        TIM4.cr1().write(|w| w.set_opm(true));
+        TIM4.ccr(0).write(|w| w.set_ccr(1));
+        TIM4.ccr(1).write(|w| w.set_ccr(1));
+        let output = Self(());
+        mode(Ocm::FORCE_INACTIVE);
+        // Loads the prescaler. The counter does not run.
+        TIM4.egr().write(|w| w.set_ug(true));
+        TIM4.ccer().write(|w| {
+            w.set_cce(0, true);
+            w.set_cce(1, true);
+        });
+        pins::alternate(GPIOB, AMPLIFIER_ENABLE, TIM4_FUNCTION);
+        pins::alternate(GPIOB, DAC_CLEAR, TIM4_FUNCTION);
+        output
+    }
+
+    /// Lets the output be for another [`LIFE_US`].
+    #[inline]
+    pub fn kick(&mut self) {
+        if TIM4.cr1().read().cen() && TIM4.cnt().read().cnt() >= 1 {
+            TIM4.cnt().write(|w| w.set_cnt(1));
+        } else {
+            // From zero on: the pins rise when the counter passes 1, since a comparison that changes is what moves them.
+            TIM4.cnt().write(|w| w.set_cnt(0));
+            mode(Ocm::PWM_MODE2);
+        }
+        // Either way: should the counter have come to its end and stopped just now, it must not stay at 1 with the pins high.
+        TIM4.cr1().modify(|w| w.set_cen(true));
+    }
+
+    /// Zero at once.
+    #[inline]
+    pub fn zero(&mut self) {
+        mode(Ocm::FORCE_INACTIVE);
+        TIM4.cr1().modify(|w| w.set_cen(false));
+        TIM4.cnt().write(|w| w.set_cnt(0));
+    }
+
+    /// Whether the pins are high: amplifier enable, DAC clear.
+    pub fn pins(&self) -> (bool, bool) {
+        (pins::is_high(GPIOB, AMPLIFIER_ENABLE), pins::is_high(GPIOB, DAC_CLEAR))
+    }
+}
+
+/// Sets what both channels do.
+fn mode(mode: Ocm) {
+    TIM4.ccmr_output(0).write(|w| {
+        w.set_ocm(0, mode);
+        w.set_ocm(1, mode);
+    });
+}
+
+/// Zero at once, from wherever the processor is, until the next reset: the pins are taken away from the timer.
+pub fn zero_for_good() {
+    pins::start();
+    pins::output_low(GPIOB, AMPLIFIER_ENABLE);
+    pins::output_low(GPIOB, DAC_CLEAR);
+}

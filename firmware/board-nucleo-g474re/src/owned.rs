@@ -1,0 +1,42 @@
+//! What belongs to an interrupt handler.
+
+use core::cell::UnsafeCell;
+use core::mem::MaybeUninit;
+use core::sync::atomic::{AtomicBool, Ordering};
+
+/// A place for a value that the main program gives to one interrupt handler before it enables the interrupt.
+pub(crate) struct Owned<T> {
+    given: AtomicBool,
+    value: UnsafeCell<MaybeUninit<T>>,
+}
+
+// SAFETY: the value is given once, before the interrupt is enabled, and from then on only its handler touches it; so
+// there is never more than one reference to it, and it changes context once, which `Send` allows.
+unsafe impl<T: Send> Sync for Owned<T> {}
+
+impl<T> Owned<T> {
+    /// Nothing was given yet.
+    pub(crate) const fn new() -> Self {
+        Self { given: AtomicBool::new(false), value: UnsafeCell::new(MaybeUninit::uninit()) }
+    }
+
+    /// Gives the value to the handler.
+    ///
+    /// # Safety
+    /// The handler's interrupt has not been enabled yet.
+    pub(crate) unsafe fn give(&self, value: T) {
+        // SAFETY: nobody else looks, says the caller.
+        unsafe { (*self.value.get()).write(value) };
+        self.given.store(true, Ordering::Release);
+    }
+
+    /// The value, for the handler; `None` before it was given.
+    ///
+    /// # Safety
+    /// Only the handler that owns the value calls this, once in each run.
+    #[allow(clippy::mut_from_ref, reason = "the handler is the one owner, says the caller")]
+    pub(crate) unsafe fn get(&self) -> Option<&mut T> {
+        // SAFETY: it was given, and a handler does not interrupt itself, so this is the only reference.
+        self.given.load(Ordering::Acquire).then(|| unsafe { (*self.value.get()).assume_init_mut() })
+    }
+}

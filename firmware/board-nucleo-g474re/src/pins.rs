@@ -1,0 +1,70 @@
+//! Pins. Which of them does what is in the modules that use them, and in the table of `docs/hardware.md`; alternate
+//! functions are those of DS12288, "Alternate functions".
+
+use stm32_metapac::RCC;
+use stm32_metapac::gpio::Gpio;
+use stm32_metapac::gpio::vals::{Moder, Ospeedr, Pupdr};
+
+/// Switches the ports on.
+pub fn start() {
+    RCC.ahb2enr().modify(|w| {
+        w.set_gpioaen(true);
+        w.set_gpioben(true);
+        w.set_gpiocen(true);
+        w.set_gpioden(true);
+    });
+    // A peripheral is there two clocks after its enable (RM0440, "Peripheral clock enable register"); the read takes them.
+    let _ = RCC.ahb2enr().read();
+}
+
+/// Gives a pin to a peripheral.
+pub(crate) fn alternate(port: Gpio, pin: u32, function: u8) {
+    port.ospeedr().modify(|w| w.0 = field(w.0, 2, pin, Ospeedr::HIGH_SPEED as u32));
+    port.afr((pin / 8) as usize).modify(|w| w.0 = field(w.0, 4, pin % 8, u32::from(function)));
+    mode(port, pin, Moder::ALTERNATE);
+}
+
+/// Gives a pin to a peripheral that only ever pulls it down.
+#[cfg_attr(not(feature = "optical-frame"), allow(dead_code, reason = "only the optical frame is on such a bus"))]
+pub(crate) fn alternate_open_drain(port: Gpio, pin: u32, function: u8) {
+    port.otyper().modify(|w| w.0 |= 1 << pin);
+    alternate(port, pin, function);
+}
+
+/// Makes a pin an output that is low.
+pub(crate) fn output_low(port: Gpio, pin: u32) {
+    set(port, pin, false);
+    mode(port, pin, Moder::OUTPUT);
+}
+
+/// Makes a pin an input that is pulled down: a wire that has come off reads as low.
+pub(crate) fn input_pulled_down(port: Gpio, pin: u32) {
+    port.pupdr().modify(|w| w.0 = field(w.0, 2, pin, Pupdr::PULL_DOWN as u32));
+    mode(port, pin, Moder::INPUT);
+}
+
+/// Makes a pin an input that something outside drives.
+pub(crate) fn input(port: Gpio, pin: u32) {
+    mode(port, pin, Moder::INPUT);
+}
+
+/// Whether a pin is high.
+pub(crate) fn is_high(port: Gpio, pin: u32) -> bool {
+    port.idr().read().0 & 1 << pin != 0
+}
+
+/// Puts an output high or low.
+pub(crate) fn set(port: Gpio, pin: u32, high: bool) {
+    // Bits that set are in the lower half, those that reset in the upper.
+    port.bsrr().write(|w| w.0 = 1 << if high { pin } else { pin + 16 });
+}
+
+fn mode(port: Gpio, pin: u32, mode: Moder) {
+    port.moder().modify(|w| w.0 = field(w.0, 2, pin, mode as u32));
+}
+
+/// `register` with `value` in field number `index` of those of `bits` bits that it is made of.
+fn field(register: u32, bits: u32, index: u32, value: u32) -> u32 {
+    let shift = bits * index;
+    register & !(((1 << bits) - 1) << shift) | value << shift
+}

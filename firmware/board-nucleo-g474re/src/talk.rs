@@ -1,0 +1,147 @@
+//! The main loop: the session between serial port and tick, and all that has time.
+
+#[cfg(feature = "store")]
+use frixel_render::store::SceneKeeper;
+use frixel_render::{Active, Order, Session, Status, Touch};
+use frixel_wire::fault::State;
+use heapless::spsc::{Consumer, Producer, Queue};
+
+#[cfg(feature = "store")]
+use crate::flash::BankTwo;
+use crate::indicator;
+use crate::serial::Serial;
+use crate::tick::{self, Queues};
+use crate::watchdog::Watchdog;
+
+/// Orders that may wait for the tick, one place left free: as many as the session keeps.
+const ORDERS_LEN: usize = 9;
+
+/// The main loop's ends of the queues.
+pub struct Ends {
+    orders: Producer<'static, Order<'static>>,
+    spares: Consumer<'static, &'static mut Active>,
+    touches: Producer<'static, Touch>,
+    statuses: Consumer<'static, Status>,
+}
+
+/// The queues between main loop and tick.
+pub struct QueuePairs {
+    orders: Queue<Order<'static>, ORDERS_LEN>,
+    spares: Queue<&'static mut Active, 3>,
+    touches: Queue<Touch, 4>,
+    statuses: Queue<Status, 2>,
+}
+
+impl QueuePairs {
+    /// Empty queues.
+    pub const fn new() -> Self {
+        Self { orders: Queue::new(), spares: Queue::new(), touches: Queue::new(), statuses: Queue::new() }
+    }
+
+    /// The main loop's ends, and the tick's.
+    pub fn split(&'static mut self) -> (Ends, Queues) {
+        let (orders, orders_end) = self.orders.split();
+        let (spares_end, spares) = self.spares.split();
+        let (touches, touches_end) = self.touches.split();
+        let (statuses_end, statuses) = self.statuses.split();
+        (
+            Ends { orders, spares, touches, statuses },
+            Queues { orders: orders_end, spares: spares_end, touches: touches_end, statuses: statuses_end },
+        )
+    }
+}
+
+/// All that runs in the main loop.
+pub struct Talk {
+    /// Its ends of the queues.
+    pub ends: Ends,
+    /// The host's partner.
+    pub session: &'static mut Session<'static>,
+    /// What the tick said last.
+    pub status: Status,
+    /// The host's line.
+    pub serial: Serial,
+    #[cfg(feature = "store")]
+    /// The last scene, and where it is kept; `None` without a bank for it.
+    pub store: Option<(SceneKeeper, BankTwo)>,
+    /// Where the finger is, if the board has a source of its own.
+    #[cfg(feature = "optical-frame")]
+    pub optical_frame: crate::optical_frame::OpticalFrame,
+    /// Resets when this loop stands still.
+    pub watchdog: Watchdog,
+}
+
+impl Talk {
+    /// Runs for ever.
+    pub fn run(mut self) -> ! {
+        tick::want_status();
+        loop {
+            self.follow_status();
+            let (serial, session, status) = (&mut self.serial, &mut self.session, &self.status);
+            serial.receive(|bytes| session.receive(bytes, status));
+            self.hand_over();
+            self.session.poll(&self.status);
+            self.serial.transmit(|bytes| self.session.transmit(bytes));
+            let now_tick = tick::count();
+            #[cfg(feature = "store")]
+            if let Some((keeper, flash)) = &mut self.store {
+                keeper.step(flash, self.session, now_tick);
+            }
+            indicator::show(self.status.telemetry.state, now_tick);
+            self.watchdog.feed();
+        }
+    }
+
+    /// Takes a status, as soon as there is a new one.
+    fn follow_status(&mut self) {
+        if let Some(status) = self.ends.statuses.dequeue() {
+            log_change(&self.status, &status);
+            self.status = status;
+            tick::want_status();
+            self.watchdog.freeze_with_debugger(status.telemetry.state == State::Disarmed);
+        }
+    }
+
+    /// Hands what the session and the touch source have to the tick, and takes back what it has let go.
+    fn hand_over(&mut self) {
+        while let Some(order) = self.session.next_order() {
+            if matches!(order, Order::Arm) {
+                self.watchdog.freeze_with_debugger(false);
+            }
+            let mut order = order;
+            // The next tick makes room.
+            while let Err(refused) = self.ends.orders.enqueue(order) {
+                order = refused;
+            }
+        }
+        while let Some(spare) = self.ends.spares.dequeue() {
+            self.session.take_back(spare);
+        }
+        if let Some(touch) = self.next_touch() {
+            // The queue is full when the tick is late; the next report is newer.
+            let _ = self.ends.touches.enqueue(touch);
+        }
+    }
+
+    #[cfg(feature = "optical-frame")]
+    fn next_touch(&mut self) -> Option<Touch> {
+        self.optical_frame.step(tick::count())
+    }
+
+    #[cfg(not(feature = "optical-frame"))]
+    fn next_touch(&mut self) -> Option<Touch> {
+        self.session.next_touch()
+    }
+}
+
+#[cfg(feature = "log")]
+fn log_change(before: &Status, after: &Status) {
+    let (from, to) = (before.telemetry.state, after.telemetry.state);
+    if from != to {
+        let (fault, detail) = after.fault.map_or((0, 0), |(fault, detail)| (fault.number(), detail));
+        defmt::info!("state {=u8} to {=u8}, last fault {=u8}, {=u32:#x}", from.number(), to.number(), fault, detail);
+    }
+}
+
+#[cfg(not(feature = "log"))]
+fn log_change(_: &Status, _: &Status) {}
