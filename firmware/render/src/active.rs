@@ -2,14 +2,14 @@
 
 use frixel_model::{Carrier, Contact, Finger, InverseTable, Waveform};
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
-use frixel_wire::scene::{Carrier as Shape, Header, Layer as LayerRecord, RECORDS_MAX, Scene};
+use frixel_wire::scene::{Carrier as Shape, Header, RECORDS_MAX, Scene};
 use heapless::Vec;
 
 use crate::Board;
 use crate::bitmap_pool::{BitmapPool, Directory};
 use crate::carrier::CarrierTiming;
 use crate::config;
-use crate::layer::{Layer, Moment};
+use crate::layer::{Around, Clicks, Layer, Loading, Moment, Tables};
 
 /// Coefficients of one scene. A board has two of them: one that plays and one that the next scene is built in.
 ///
@@ -27,6 +27,7 @@ pub struct Active {
     /// A bit for each layer that is on.
     on: u64,
     layers: Vec<Layer, RECORDS_MAX>,
+    tables: Tables,
 }
 
 impl Active {
@@ -35,6 +36,7 @@ impl Active {
     pub const fn new() -> Self {
         Self {
             layers: Vec::new(),
+            tables: Tables::new(),
             on: 0,
             table: None,
             carrier: CarrierTiming::SILENT,
@@ -49,6 +51,7 @@ impl Active {
     pub(crate) fn unload(&mut self) {
         // One by one: the whole of it is thousands of bytes, and a tick may be waiting.
         self.layers.clear();
+        self.tables.clear();
         self.on = 0;
         self.table = None;
         self.carrier = CarrierTiming::SILENT;
@@ -66,14 +69,15 @@ impl Active {
 
     /// Electric friction of all layers that are on, in N.
     #[inline]
-    pub(crate) fn electric_friction_n(&self, moment: &Moment, pool: &BitmapPool) -> f32 {
+    pub(crate) fn electric_friction_n(&self, moment: Moment, pool: &BitmapPool, clicks: &mut Clicks) -> f32 {
+        let mut around = Around { moment, pool, tables: &self.tables, clicks };
         let mut electric_friction_n = 0.0;
         let mut left = self.on;
         while left != 0 {
             let number = left.trailing_zeros() as usize;
             left &= left - 1;
             if let Some(layer) = self.layers.get(number) {
-                electric_friction_n = layer.blend_over(electric_friction_n, moment, pool);
+                electric_friction_n = layer.blend_over(electric_friction_n, &mut around);
             }
         }
         electric_friction_n
@@ -97,7 +101,7 @@ impl Active {
         }
         config::check_header(header, board).map_err(Refusal::Config)?;
         let (carrier, voltage_max_v_rms) = carrier(header, board).map_err(Refusal::Config)?;
-        self.load_layers(scene, directory)?;
+        self.load_layers(scene, board, directory)?;
         self.carrier = carrier;
         self.voltage_max_v_rms = voltage_max_v_rms;
         self.slew_step_v = header.slew_v_per_s * board.tick_period_s();
@@ -107,17 +111,13 @@ impl Active {
         Ok(())
     }
 
-    fn load_layers(&mut self, scene: &Scene, directory: &Directory) -> Result<(), Refusal> {
+    fn load_layers(&mut self, scene: &Scene, board: &Board, directory: &Directory) -> Result<(), Refusal> {
+        self.tables.set_points(scene.points());
+        let mut loading = Loading::new(board, directory, &mut self.tables);
         for (number, record) in scene.records().enumerate() {
             let number = number as u8;
-            config::check_record(&record, number).map_err(Refusal::Config)?;
-            let bitmap = match record.layer {
-                LayerRecord::Bitmap { crc32, .. } if cfg!(feature = "bitmap") => {
-                    Some(directory.find(crc32).ok_or(Refusal::BitmapMissing { crc32 })?)
-                }
-                _ => None,
-            };
-            let layer = Layer::new(&record, bitmap).ok_or(Refusal::LeftOut { layer: number })?;
+            config::check_record(&record, scene, number).map_err(Refusal::Config)?;
+            let layer = loading.layer(&record, number)?;
             // There is room for every record that a scene can have.
             let _ = self.layers.push(layer);
             self.on |= 1 << number;

@@ -6,7 +6,7 @@ use frixel_wire::message::Telemetry;
 use crate::carrier::Carrier;
 use crate::envelope::Envelope;
 use crate::estimator::{Estimate, Estimator};
-use crate::layer::Moment;
+use crate::layer::{Clicks, Moment};
 use crate::order::Counters;
 use crate::stillness::{Stillness, StillnessTiming};
 use crate::supervisor::{self, Supervisor};
@@ -24,6 +24,7 @@ pub struct Ticker<'a> {
     active: &'a mut Active,
     supervisor: Supervisor,
     finger: Finger,
+    clicks: Clicks,
     envelope: Envelope,
     carrier: Carrier,
     tick: u32,
@@ -139,6 +140,7 @@ impl<'a> Ticker<'a> {
             active,
             supervisor: Supervisor::new(board),
             finger: Finger::UP,
+            clicks: Clicks::NONE,
             envelope: Envelope::default(),
             carrier,
             tick: 0,
@@ -165,6 +167,7 @@ impl<'a> Ticker<'a> {
                 let spare = core::mem::replace(&mut self.active, next);
                 self.carrier.retime(&self.active.carrier);
                 self.envelope.limit(self.active.voltage_max_v_rms);
+                self.clicks.forget();
                 Some(spare)
             }
             Order::Unload => {
@@ -292,7 +295,10 @@ impl<'a> Ticker<'a> {
     fn voltage_under_finger_v_rms(&mut self) -> f32 {
         let Some(table) = self.active.table() else { return 0.0 };
         let (x_m, y_m) = self.finger.place(self.active.prediction);
-        let electric_friction_n = self.gain * self.active.electric_friction_n(&Moment { x_m, y_m }, self.pool);
+        let Estimate { velocity_x_m_per_s, velocity_y_m_per_s, .. } = self.finger.estimate;
+        let moment = Moment { x_m, y_m, velocity_x_m_per_s, velocity_y_m_per_s, tick: self.tick, stream: 0.0 };
+        self.clicks.begin(self.tick);
+        let electric_friction_n = self.gain * self.active.electric_friction_n(moment, self.pool, &mut self.clicks);
         self.asked_electric_friction_n = electric_friction_n;
         // Bit patterns of what is negative, and of not-a-number, are above those of every positive number.
         self.out_of_reach = electric_friction_n.to_bits() > table.electric_friction_max_n().to_bits()

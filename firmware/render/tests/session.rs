@@ -18,7 +18,17 @@ use support::{Desk, HEADER, Memory, constant, record, request, scene};
 
 #[cfg(feature = "bitmap")]
 fn bitmap(crc32: u32) -> Layer {
-    Layer::Bitmap { crc32, x_m: 0.0, y_m: 0.0, pitch_m: 1e-3, black_n: 0.0, white_n: 0.02 }
+    Layer::Bitmap {
+        crc32,
+        x_m: 0.0,
+        y_m: 0.0,
+        pitch_m: 1e-3,
+        black_n: 0.0,
+        white_n: 0.02,
+        pitch_y_m: 1e-3,
+        angle_turns: 0.0,
+        tiled: false,
+    }
 }
 
 #[test]
@@ -152,7 +162,7 @@ fn what_is_no_scene_is_refused() {
     assert_eq!(desk.load(&unknown), Err(Refusal::Scene(SceneError::UnknownKind { record: 0, kind: 99 })));
     assert!(matches!(
         desk.command(Command::UploadScene { len: 1 << 20, crc32: 0 }),
-        Err(Refusal::SceneTooLarge { len: 1_048_576, max: 3640 })
+        Err(Refusal::SceneTooLarge { len: 1_048_576, max: 4664 })
     ));
     assert_eq!(
         desk.command(Command::Commit { crc32: 1 }),

@@ -68,6 +68,18 @@ pub mod feature {
     pub const TELEMETRY: u32 = 1 << 3;
     /// The host says where the finger is.
     pub const HOST_TOUCH: u32 = 1 << 4;
+    /// Noise layers.
+    pub const NOISE: u32 = 1 << 5;
+    /// Edge and button layers.
+    pub const EDGE: u32 = 1 << 6;
+    /// Vibration layers.
+    pub const VIBRATION: u32 = 1 << 7;
+    /// Speed layers.
+    pub const SPEED: u32 = 1 << 8;
+    /// Stream layers.
+    pub const STREAM: u32 = 1 << 9;
+    /// Polygons as regions.
+    pub const POLYGON: u32 = 1 << 10;
 }
 
 /// Kind of board. Numbers never change.

@@ -139,6 +139,26 @@ pub enum ConfigField {
     TableRange,
     /// Where the host has the finger, m.
     TouchPlace,
+    /// The part of a turn in which a square grating is high.
+    Duty,
+    /// An angle, turns.
+    Angle,
+    /// A wavelength of noise, m.
+    Wavelength,
+    /// A place or the width of an edge or a rim, m.
+    Shape,
+    /// A vibration's frequency, Hz.
+    VibrationFrequency,
+    /// How long a click or a part of a burst takes, s.
+    Duration,
+    /// A vertex of a polygon, m.
+    Vertex,
+    /// A speed of a curve, m/s, which has to be above the one before.
+    CurveSpeed,
+    /// Layers of noise up to this one.
+    NoiseLayers,
+    /// Edges and buttons up to this one.
+    ClickLayers,
 }
 
 impl ConfigField {
@@ -167,6 +187,16 @@ impl ConfigField {
             Self::BitmapPlacement => ("bitmap place or pitch", " m"),
             Self::TableRange => ("span of friction", ""),
             Self::TouchPlace => ("place of the finger", " m"),
+            Self::Duty => ("duty", ""),
+            Self::Angle => ("angle", " turns"),
+            Self::Wavelength => ("wavelength", " m"),
+            Self::Shape => ("place or width", " m"),
+            Self::VibrationFrequency => ("vibration frequency", " Hz"),
+            Self::Duration => ("click or burst", " s"),
+            Self::Vertex => ("vertex", " m"),
+            Self::CurveSpeed => ("speed", " m/s"),
+            Self::NoiseLayers => ("number of noise layers", ""),
+            Self::ClickLayers => ("number of edges and buttons", ""),
         }
     }
 }

@@ -1,0 +1,97 @@
+//! Short pulses of friction when the finger crosses a line.
+#![cfg_attr(not(feature = "edge"), allow(dead_code, reason = "nothing clicks"))]
+
+use frixel_wire::scene::Click as Record;
+
+use crate::Board;
+
+/// Most edges and buttons of a scene that may click.
+pub(crate) const CLICKS_MAX: usize = if cfg!(feature = "edge") { 16 } else { 0 };
+
+/// A layer's click: `height (1 - t / decay)^2`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Click {
+    height_n: f32,
+    decay_ticks: u32,
+    per_tick: f32,
+    /// Which of the [`Clicks`] is the layer's.
+    slot: u8,
+}
+
+/// What edges and buttons know of the past. It is the ticker's: coefficients stay as they were loaded.
+#[derive(Clone, Debug)]
+pub(crate) struct Clicks {
+    /// The last tick at which layers were evaluated.
+    last_tick: u32,
+    /// Layers were evaluated at the tick before this one.
+    unbroken: bool,
+    slots: [Slot; CLICKS_MAX],
+}
+
+/// What one layer knows of the past.
+#[derive(Clone, Copy, Debug)]
+struct Slot {
+    /// The last tick at which this layer was evaluated, and on which side the finger was.
+    seen_tick: u32,
+    beyond: bool,
+    /// The click's first tick, while it lasts.
+    started_at_tick: Option<u32>,
+}
+
+impl Clicks {
+    pub(crate) const NONE: Self = Self {
+        last_tick: 0,
+        unbroken: false,
+        slots: [Slot { seen_tick: 0, beyond: false, started_at_tick: None }; CLICKS_MAX],
+    };
+
+    /// Another scene plays.
+    pub(crate) fn forget(&mut self) {
+        *self = Self::NONE;
+    }
+
+    /// Layers are about to be evaluated at this tick.
+    #[inline]
+    pub(crate) fn begin(&mut self, tick: u32) {
+        self.unbroken = self.last_tick == tick.wrapping_sub(1);
+        self.last_tick = tick;
+    }
+}
+
+impl Click {
+    pub(super) fn new(record: Record, slot: u8, board: &Board) -> Self {
+        let decay_ticks = board.ticks(record.decay_s).max(1);
+        Self { height_n: record.height_n, decay_ticks, per_tick: 1.0 / decay_ticks as f32, slot }
+    }
+
+    /// Electric friction of the click when the finger is on one side of a line at this tick, or `beyond` it.
+    pub(super) fn across(&self, beyond: bool, tick: u32, clicks: &mut Clicks) -> f32 {
+        let Some(slot) = clicks.slots.get_mut(usize::from(self.slot)) else { return 0.0 };
+        let crossed = slot.seen_tick == tick.wrapping_sub(1) && slot.beyond != beyond;
+        slot.beyond = beyond;
+        self.follow(slot, crossed && clicks.unbroken, tick)
+    }
+
+    /// Electric friction of the click when the finger is inside at this tick.
+    pub(super) fn inside(&self, tick: u32, clicks: &mut Clicks) -> f32 {
+        let Some(slot) = clicks.slots.get_mut(usize::from(self.slot)) else { return 0.0 };
+        let entered = slot.seen_tick != tick.wrapping_sub(1);
+        self.follow(slot, entered && clicks.unbroken, tick)
+    }
+
+    #[inline]
+    fn follow(&self, slot: &mut Slot, starts: bool, tick: u32) -> f32 {
+        slot.seen_tick = tick;
+        if starts {
+            slot.started_at_tick = Some(tick);
+        }
+        let Some(start) = slot.started_at_tick else { return 0.0 };
+        let ticks = tick.wrapping_sub(start);
+        if ticks >= self.decay_ticks {
+            slot.started_at_tick = None;
+            return 0.0;
+        }
+        let left = 1.0 - ticks as f32 * self.per_tick;
+        self.height_n * left * left
+    }
+}
