@@ -69,6 +69,8 @@ pub(crate) enum CommandError {
     Faulted { port: String, fault: Fault },
     #[error("{port} stopped with its output at zero: it had not heard from this host for the scene's host timeout")]
     HostSilent { port: String },
+    #[error("{} is no PNG file by its name: give the picture a name that ends in .png", path.display())]
+    NotPng { path: PathBuf },
     #[error("Ctrl-C cannot be watched for: {0}")]
     Interrupt(#[from] ctrlc::Error),
 }
