@@ -50,6 +50,8 @@ mod layer;
 mod order;
 mod session;
 mod stillness;
+#[cfg(feature = "stream")]
+mod stream;
 #[cfg(feature = "store")]
 pub mod store;
 mod supervisor;
@@ -65,4 +67,6 @@ pub use order::{Counters, Order, Status};
 #[cfg(feature = "store")]
 pub use session::KeptScene;
 pub use session::Session;
+#[cfg(feature = "stream")]
+pub use stream::{STREAM_LEN, StreamBuffer, StreamStart};
 pub use ticker::Ticker;
