@@ -50,10 +50,10 @@ mod layer;
 mod order;
 mod session;
 mod stillness;
-#[cfg(feature = "stream")]
-mod stream;
 #[cfg(feature = "store")]
 pub mod store;
+#[cfg(feature = "stream")]
+mod stream;
 mod supervisor;
 mod ticker;
 #[cfg(any(feature = "grating", feature = "sine-carrier"))]

@@ -21,7 +21,7 @@ pub enum Order<'a> {
         layer: u8,
         /// Whether it takes part at all.
         on: bool,
-        /// Factor on its friction.
+        /// Factor on its friction, in place of its record's.
         gain: f32,
     },
     /// Disarmed to Armed.
@@ -34,15 +34,6 @@ pub enum Order<'a> {
     Stop,
     /// Faulted to Disarmed.
     ClearFault,
-    /// Switch a layer on or off, and set its gain.
-    SetLayer {
-        /// The layer's record, from zero; the scene has it.
-        layer: u8,
-        /// Whether the layer acts.
-        on: bool,
-        /// Factor on the layer's friction in place of its record's, within what a record may have.
-        gain: f32,
-    },
     /// Begin a stream.
     #[cfg(feature = "stream")]
     StartStream(StreamStart),

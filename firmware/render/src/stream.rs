@@ -35,11 +35,7 @@ impl StreamBuffer {
     /// An empty buffer.
     #[allow(clippy::new_without_default, reason = "it belongs in a static, not into a value made in passing")]
     pub const fn new() -> Self {
-        Self {
-            slots: [const { AtomicU32::new(0) }; STREAM_LEN],
-            end: AtomicU32::new(LEN),
-            next: AtomicU32::new(LEN),
-        }
+        Self { slots: [const { AtomicU32::new(0) }; STREAM_LEN], end: AtomicU32::new(LEN), next: AtomicU32::new(LEN) }
     }
 
     fn put(&self, position: u32, sample: u16) {
@@ -272,6 +268,10 @@ impl<'a> Player<'a> {
         if there >= self.start.start_level || (there > 0 && self.last == Some(end)) {
             self.phase = Phase::Playing;
             self.take_next();
+            if self.weight <= 0.0 {
+                // The first sample is reached with it: the next tick takes the second.
+                self.fraction = ONE - self.start.step;
+            }
         } else if there == 0 && self.last == Some(self.next) {
             self.phase = Phase::Over;
         }

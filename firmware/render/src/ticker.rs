@@ -9,6 +9,8 @@ use crate::estimator::{Estimate, Estimator};
 use crate::layer::Moment;
 use crate::order::Counters;
 use crate::stillness::{Stillness, StillnessTiming};
+#[cfg(feature = "stream")]
+use crate::stream::{Player, StreamBuffer, StreamNow};
 use crate::supervisor::{self, Supervisor};
 use crate::{Active, BitmapPool, Board, Drive, Order, Sense, Status, Touch};
 
@@ -37,6 +39,9 @@ pub struct Ticker<'a> {
     flags: Flags,
     counters: Counters,
     orders_applied: u32,
+    /// `None` on a board that has no buffer for it.
+    #[cfg(feature = "stream")]
+    stream: Option<Player<'a>>,
 }
 
 /// What belongs to the board and is computed once.
@@ -151,7 +156,15 @@ impl<'a> Ticker<'a> {
             flags: Flags::NO_FINGER,
             counters: Counters::default(),
             orders_applied: 0,
+            #[cfg(feature = "stream")]
+            stream: None,
         }
+    }
+
+    /// From now on, plays streams from `buffer`, into which the session takes their samples.
+    #[cfg(feature = "stream")]
+    pub fn attach_stream(&mut self, buffer: &'a StreamBuffer) {
+        self.stream = Some(Player::new(buffer, self.timing.tick_period_s));
     }
 
     /// Takes an order of the session, between two ticks. Hands back the coefficients that a [`Order::Load`] replaced.
@@ -175,8 +188,22 @@ impl<'a> Ticker<'a> {
                 self.active.set_layer(layer, on, gain);
                 None
             }
+            #[cfg(feature = "stream")]
+            Order::StartStream(start) => {
+                self.on_stream(|stream| stream.start(start));
+                None
+            }
+            #[cfg(feature = "stream")]
+            Order::EndStream { last } => {
+                self.on_stream(|stream| stream.end(last));
+                None
+            }
             _ => None,
         };
+        #[cfg(feature = "stream")]
+        if self.supervisor.state() != State::Active {
+            self.on_stream(Player::stop);
+        }
         self.supervisor.set_host_timeout(self.host_timeout_ticks());
         spare
     }
@@ -203,6 +230,8 @@ impl<'a> Ticker<'a> {
         }
         let driven_v = f32::from(self.drive.dac_code) * self.timing.volts_per_code;
         let may_drive = self.supervisor.check(sense, driven_v, self.tick);
+        #[cfg(feature = "stream")]
+        self.on_stream(|stream| if may_drive { stream.advance() } else { stream.stop() });
         let finger_there = self.look_after_finger();
         self.drive = if may_drive && finger_there { self.render(sense.touch.is_some()) } else { self.silence() };
         self.drive
@@ -212,7 +241,14 @@ impl<'a> Ticker<'a> {
     pub fn status(&self) -> Status {
         let estimate = &self.finger.estimate;
         let (finger_x_m, finger_y_m) = self.finger.place(self.active.prediction);
-        let flags = if self.supervisor.host_silent() { self.flags.with(Flags::HOST_SILENT) } else { self.flags };
+        let mut flags = self.flags;
+        if self.supervisor.host_silent() {
+            flags = flags.with(Flags::HOST_SILENT);
+        }
+        #[cfg(feature = "stream")]
+        if self.stream.as_ref().is_some_and(Player::is_dry) {
+            flags = flags.with(Flags::STREAM_DRY);
+        }
         Status {
             telemetry: Telemetry {
                 tick: self.tick,
@@ -231,8 +267,31 @@ impl<'a> Ticker<'a> {
             fault: self.supervisor.fault(),
             orders_applied: self.orders_applied,
             arm_switch: self.arm_switch,
-            counters: self.counters,
+            counters: self.counters(),
         }
+    }
+
+    fn counters(&self) -> Counters {
+        #[cfg(feature = "stream")]
+        if let Some(stream) = &self.stream {
+            let (stream_underruns, stream_gaps) = stream.counts();
+            return Counters { stream_underruns, stream_gaps, ..self.counters };
+        }
+        self.counters
+    }
+
+    #[cfg(feature = "stream")]
+    #[inline]
+    fn on_stream(&mut self, act: impl FnOnce(&mut Player<'a>)) {
+        if let Some(stream) = &mut self.stream {
+            act(stream);
+        }
+    }
+
+    #[cfg(feature = "stream")]
+    #[inline]
+    fn stream_now(&self) -> StreamNow {
+        self.stream.as_ref().map_or(StreamNow::default(), Player::now)
     }
 
     /// The timeout that holds now. Only a playing scene may go on without a host.
@@ -292,7 +351,13 @@ impl<'a> Ticker<'a> {
     fn voltage_under_finger_v_rms(&mut self) -> f32 {
         let Some(table) = self.active.table() else { return 0.0 };
         let (x_m, y_m) = self.finger.place(self.active.prediction);
-        let electric_friction_n = self.gain * self.active.electric_friction_n(&Moment { x_m, y_m }, self.pool);
+        let moment = Moment {
+            x_m,
+            y_m,
+            #[cfg(feature = "stream")]
+            stream: self.stream_now(),
+        };
+        let electric_friction_n = self.gain * self.active.electric_friction_n(&moment, self.pool);
         self.asked_electric_friction_n = electric_friction_n;
         // Bit patterns of what is negative, and of not-a-number, are above those of every positive number.
         self.out_of_reach = electric_friction_n.to_bits() > table.electric_friction_max_n().to_bits()

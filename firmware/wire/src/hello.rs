@@ -69,7 +69,7 @@ pub mod feature {
     /// The host says where the finger is.
     pub const HOST_TOUCH: u32 = 1 << 4;
     /// Samples that the host streams while a scene plays.
-    pub const STREAM: u32 = 1 << 5;
+    pub const STREAM: u32 = 1 << 9;
 }
 
 /// Kind of board. Numbers never change.

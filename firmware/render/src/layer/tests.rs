@@ -9,7 +9,7 @@ fn constant(blend: Blend, gain: f32, electric_friction_n: f32) -> Layer {
 }
 
 fn at(x_m: f32, y_m: f32) -> Moment {
-    Moment { x_m, y_m }
+    Moment { x_m, y_m, ..Moment::default() }
 }
 
 fn close(found: f32, expected: f32) {

@@ -145,8 +145,7 @@ impl<'a> Dialogue<'a> {
         let Some(stream) = &mut self.stream else { return };
         let Some((next_index, room)) = stream.intake.progress() else { return };
         let now_tick = status.telemetry.tick;
-        let period_over =
-            now_tick.wrapping_sub(stream.reported_at_tick) >= self.board.ticks(PROGRESS_PERIOD_S);
+        let period_over = now_tick.wrapping_sub(stream.reported_at_tick) >= self.board.ticks(PROGRESS_PERIOD_S);
         if (stream.report_due || period_over) && outbox.is_mostly_free() {
             stream.report_due = false;
             stream.frames = 0;
