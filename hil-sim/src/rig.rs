@@ -3,7 +3,7 @@
 use frixel_exchange::{Done, Given, TICK_BYTES_MAX, TickBytes};
 use frixel_model::{Contact, Finger, LoadedContact, ParameterError};
 use frixel_render::{Active, BitmapPool, Board, Order, Sense, Session, Status, Ticker};
-use frixel_wire::scene::{Header, Scene};
+use frixel_wire::scene::Header;
 
 use crate::{Felt, Journal, Line, Stroke, World, WorldConfig, WorldError};
 
@@ -161,11 +161,12 @@ impl<'a> Rig<'a> {
         let felt = self.world.apply(drive);
         self.status = self.ticker.status();
         self.session.poll(&self.status);
-        let sent = self.transmit();
+        let room = self.room();
+        let sent = self.transmit(room);
         self.tick += 1;
         if let (Some(journal), Some(received)) = (&mut self.journal, received) {
             let tick = self.tick as u32;
-            journal.push(&Given { tick, received, sense }, &Done { tick, drive, sent });
+            journal.push(&Given { tick, received, room, sense }, &Done { tick, drive, sent });
         }
         TickRecord { tick: self.tick, status: self.status, felt }
     }
@@ -185,17 +186,22 @@ impl<'a> Rig<'a> {
 
     /// The finger in the world is the scene's, unless a scenario says otherwise.
     fn put_scenes_finger_on(&mut self) {
-        let scene = self.session.scene().and_then(|bytes| Scene::parse(bytes).ok());
-        self.scene = scene.map(|scene| *scene.header());
+        self.scene = self.session.scene_header().copied();
         if let Some(Ok(contact)) = self.scene.as_ref().map(contact_of) {
             self.world.set_finger(contact);
         }
     }
 
-    /// Moves what the board has to say to the line, and returns it.
-    fn transmit(&mut self) -> TickBytes {
+    /// Bytes that the line takes now. It has a queue as a port has one: what is beyond it waits on the board, which
+    /// leaves telemetry out when too much does.
+    fn room(&self) -> u8 {
+        TICK_BYTES_MAX.saturating_sub(self.to_host.queued()) as u8
+    }
+
+    /// Moves what the board has to say to the line, as far as there is room, and returns it.
+    fn transmit(&mut self, room: u8) -> TickBytes {
         let mut bytes = [0; TICK_BYTES_MAX];
-        let count = self.session.transmit(&mut bytes);
+        let count = self.session.transmit(bytes.get_mut(..usize::from(room)).unwrap_or_default());
         let sent: TickBytes = bytes.into_iter().take(count).collect();
         if !sent.is_empty() {
             self.to_host.send(&sent);

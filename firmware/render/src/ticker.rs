@@ -178,6 +178,7 @@ impl<'a> Ticker<'a> {
                 let spare = core::mem::replace(&mut self.active, next);
                 self.carrier.retime(&self.active.carrier);
                 self.envelope.limit(self.active.voltage_max_v_rms);
+                self.ask_again();
                 Some(spare)
             }
             Order::Unload => {
@@ -186,6 +187,7 @@ impl<'a> Ticker<'a> {
             }
             Order::SetLayer { layer, on, gain } => {
                 self.active.set_layer(layer, on, gain);
+                self.ask_again();
                 None
             }
             #[cfg(feature = "stream")]
@@ -206,6 +208,16 @@ impl<'a> Ticker<'a> {
         }
         self.supervisor.set_host_timeout(self.host_timeout_ticks());
         spare
+    }
+
+    /// An order has changed what the scene asks for: should the next tick go on with what was asked for before, that is
+    /// the new scene's, too.
+    #[cold]
+    #[inline(never)]
+    fn ask_again(&mut self) {
+        if self.drive.amplifier_enable {
+            self.target_v_rms = self.voltage_under_finger_v_rms();
+        }
     }
 
     /// Latches a hard fault that the board has found: the output is zero from the next tick on. A fault that is latched

@@ -53,7 +53,7 @@ pub(super) struct Dialogue<'a> {
     pub(super) state: State,
     pub(super) received_bytes: u32,
     telemetry_period_ticks: u32,
-    /// What can be changed of the committed scene.
+    /// What has to be known of the committed scene beside its bytes, which the next upload takes the place of.
     pub(super) playing: Playing,
     /// What the host streams; `None` on a board that has no buffer for it.
     #[cfg(feature = "stream")]
@@ -387,6 +387,7 @@ impl<'a> Dialogue<'a> {
         if self.committed_crc32 != 0 {
             self.send_order(Order::Unload)?;
             self.committed_crc32 = 0;
+            self.playing = Playing::default();
             self.committed_bitmaps.clear();
             let announced = &self.announced_bitmaps;
             self.directory.retain(|bitmap| announced.contains(&bitmap.crc32));

@@ -4,7 +4,7 @@ use frixel_wire::fault::State;
 use frixel_wire::message::{Accepted, Command, ConfigField, Refusal};
 #[cfg(feature = "stream")]
 use frixel_wire::message::{ConfigRefusal, FromBoard, STREAM_START_LEVEL_MAX};
-use frixel_wire::scene::Scene;
+use frixel_wire::scene::{Header, Scene};
 
 use super::dialogue::Dialogue;
 #[cfg(feature = "stream")]
@@ -21,9 +21,10 @@ const PROGRESS_FRAMES: u32 = 4;
 #[cfg(feature = "stream")]
 const PROGRESS_PERIOD_S: f32 = 0.02;
 
-/// What can be changed of the scene that the ticker has.
+/// What has to be known of the scene that the ticker has, when its bytes are gone.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Playing {
+    pub(super) header: Option<Header>,
     layers: u8,
     #[cfg(feature = "stream")]
     has_stream: bool,
@@ -32,6 +33,7 @@ pub(super) struct Playing {
 impl Playing {
     pub(super) fn new(scene: &Scene) -> Self {
         Self {
+            header: Some(*scene.header()),
             // A scene has no more records than that.
             layers: scene.record_count() as u8,
             #[cfg(feature = "stream")]

@@ -13,6 +13,7 @@ mod upload;
 use frixel_wire::frame::Decoder;
 use frixel_wire::message::{FromBoard, Telemetry};
 use frixel_wire::payload::Payload;
+use frixel_wire::scene::Header;
 
 use crate::order::Status;
 #[cfg(feature = "stream")]
@@ -95,9 +96,15 @@ impl<'a> Session<'a> {
         self.outbox.drain(bytes)
     }
 
-    /// The committed scene, as it was sent; `None` without one.
+    /// The committed scene, as it was sent; `None` without one, and when the upload of another has begun.
     pub fn scene(&self) -> Option<&[u8]> {
         self.dialogue.scene()
+    }
+
+    /// Header of the committed scene; `None` without one. Other than [`Session::scene`], it outlives the upload of the
+    /// next scene.
+    pub fn scene_header(&self) -> Option<&Header> {
+        self.dialogue.playing.header.as_ref()
     }
 
     /// CRC-32 of what [`Session::kept`] would give.
