@@ -2,7 +2,7 @@
 
 use frixel_exchange::{Done, Given, TICK_BYTES_MAX, TickBytes};
 use frixel_model::{Contact, Finger, LoadedContact, ParameterError};
-use frixel_render::{Active, BitmapPool, Board, Order, Sense, Session, Status, Ticker};
+use frixel_render::{Active, BitmapPool, Board, Order, Sense, Session, Status, StreamBuffer, Ticker};
 use frixel_wire::scene::Header;
 
 use crate::{Felt, Journal, Line, Stroke, World, WorldConfig, WorldError};
@@ -11,13 +11,15 @@ use crate::{Felt, Journal, Line, Stroke, World, WorldConfig, WorldError};
 pub struct BoardMemory {
     pool: BitmapPool,
     actives: [Active; 2],
+    stream: StreamBuffer,
 }
 
 impl BoardMemory {
     /// Memory as it is after a reset.
     #[must_use]
     pub fn new() -> Box<Self> {
-        Box::new(Self { pool: BitmapPool::new(), actives: [Active::new(), Active::new()] })
+        let actives = [Active::new(), Active::new()];
+        Box::new(Self { pool: BitmapPool::new(), actives, stream: StreamBuffer::new() })
     }
 }
 
@@ -73,11 +75,14 @@ pub struct Rig<'a> {
 impl<'a> Rig<'a> {
     /// A board that has just been reset, in a world whose finger will make `stroke`.
     pub fn new(memory: &'a mut BoardMemory, config: &RigConfig, stroke: Stroke, seed: u64) -> Result<Self, WorldError> {
-        let BoardMemory { pool, actives: [first, second] } = memory;
+        let BoardMemory { pool, actives: [first, second], stream } = memory;
         let tick_hz = config.board.tick_hz;
-        let ticker = Ticker::new(&config.board, pool, first);
+        let mut ticker = Ticker::new(&config.board, pool, first);
+        ticker.attach_stream(stream);
+        let mut session = Session::new(config.board, pool, second);
+        session.attach_stream(stream);
         Ok(Self {
-            session: Session::new(config.board, pool, second),
+            session,
             status: ticker.status(),
             ticker,
             world: World::new(config.world, stroke, seed)?,

@@ -188,10 +188,14 @@ impl<'a> Dialogue<'a> {
         }
     }
 
+    #[cfg(feature = "stream")]
     fn has_stream(&self) -> bool {
-        #[cfg(feature = "stream")]
-        return self.stream.is_some();
-        #[cfg(not(feature = "stream"))]
+        self.stream.is_some()
+    }
+
+    #[cfg(not(feature = "stream"))]
+    #[allow(clippy::unused_self, reason = "with the feature it is asked")]
+    fn has_stream(&self) -> bool {
         false
     }
 
