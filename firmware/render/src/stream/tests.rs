@@ -229,7 +229,13 @@ fn the_end_is_no_underrun_and_needs_no_start_level() {
         assert_eq!(ends.player.is_dry(), count < 100);
         ends.end();
         ends.take(count, &samples(count, 50));
-        let rest = ends.run(1_000);
+        let rest: Vec<StreamNow> = (0..1_000)
+            .map(|_| {
+                let now = ends.advance();
+                assert!(!ends.player.is_dry(), "what ends does not run dry");
+                now
+            })
+            .collect();
         assert!(rest.iter().any(|now| now.weight > 0.0), "what was there is played");
         assert_eq!(rest.last().map(|now| now.weight.to_bits()), Some(0));
         assert_eq!((ends.player.phase, ends.player.counts()), (Phase::Over, (0, 0)));
@@ -255,4 +261,55 @@ fn what_there_is_no_room_for_is_dropped_and_what_was_due_comes_too_late() {
     // Of the 200 zeros, those from the one that is due on took effect, those before it did not.
     assert!(ends.run(50)[2..].iter().all(|now| now.value.to_bits() == 0));
     assert!((ends.run(52)[51].value - f32::from(sample(300)) * VALUE_PER_SAMPLE).abs() < 1e-6);
+}
+
+#[test]
+fn another_stream_is_heard_from_its_first_sample_and_never_before() {
+    let buffer = StreamBuffer::new();
+    let mut ends = Ends::new(&buffer);
+    ends.start(TICK_HZ, 100);
+    ends.take(0, &samples(0, 600));
+    ends.run(500);
+    ends.end();
+    // The session goes ahead: the ticker has not been told of the new stream.
+    let start = ends.intake.start(TICK_HZ, TICK_HZ, 50);
+    assert_eq!(ends.intake.progress(), Some((0, 1_024)), "what is left of the old one takes no room");
+    ends.take(0, &[7_000; 200]);
+    let old = ends.run(150);
+    let last = f32::from(sample(599)) * VALUE_PER_SAMPLE;
+    assert!(old[110..].iter().all(|now| (now.value - last).abs() < 1e-6), "the old one ends where it ends");
+    let before = old[149];
+    assert!(before.weight > 0.5);
+    ends.player.start(start);
+    assert_eq!(ends.player.now(), before, "it fades from where it was");
+    let new = ends.run(10);
+    assert!((new[9].value - 7_000.0 * VALUE_PER_SAMPLE).abs() < 1e-6);
+    assert_eq!(ends.player.counts(), (0, 0));
+}
+
+#[test]
+fn a_stream_without_a_sample_is_over_when_it_ends() {
+    let buffer = StreamBuffer::new();
+    let mut ends = Ends::new(&buffer);
+    ends.start(TICK_HZ, 100);
+    ends.run(10);
+    assert!(ends.player.is_dry());
+    ends.end();
+    ends.run(1);
+    assert!(!ends.player.is_dry());
+}
+
+#[test]
+fn the_last_sample_is_held_whatever_the_rate() {
+    for sample_hz in [300, 7_001, 30_000, TICK_HZ] {
+        let buffer = StreamBuffer::new();
+        let mut ends = Ends::new(&buffer);
+        ends.start(sample_hz, 20);
+        ends.take(0, &samples(0, 20));
+        let last = f32::from(sample(19)) * VALUE_PER_SAMPLE;
+        let played = ends.run(30 * TICK_HZ / sample_hz);
+        let dry = played.len() - 5 * (TICK_HZ / sample_hz) as usize;
+        assert_eq!(ends.player.counts(), (1, 0));
+        assert!(played[dry..].iter().all(|now| (now.value - last).abs() < 1e-6), "{sample_hz}");
+    }
 }
