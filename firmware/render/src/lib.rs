@@ -54,6 +54,8 @@ mod session;
 mod stillness;
 #[cfg(feature = "store")]
 pub mod store;
+#[cfg(feature = "stream")]
+mod stream;
 mod supervisor;
 mod ticker;
 #[cfg(any(feature = "grating", feature = "sine-carrier"))]
@@ -67,4 +69,6 @@ pub use order::{Counters, Order, Status};
 #[cfg(feature = "store")]
 pub use session::KeptScene;
 pub use session::Session;
+#[cfg(feature = "stream")]
+pub use stream::{STREAM_LEN, StreamBuffer, StreamStart};
 pub use ticker::Ticker;

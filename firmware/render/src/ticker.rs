@@ -8,6 +8,8 @@ use crate::envelope::Envelope;
 use crate::finger::{Finger, FingerTiming, Presence};
 use crate::layer::Moment;
 use crate::order::Counters;
+#[cfg(feature = "stream")]
+use crate::stream::{Player, StreamBuffer, StreamNow};
 use crate::supervisor::{self, Supervisor};
 use crate::{Active, BitmapPool, Board, Drive, Order, Sense, Status};
 
@@ -26,15 +28,22 @@ pub struct Ticker<'a> {
     tick: u32,
     /// When something is next due: a host that is silent, or touch data that are too old.
     due_tick: u32,
+    /// When the host will have been silent for too long, or when to look again if it need not be there.
+    silent_tick: u32,
     /// There is a scene, a finger, and leave to drive.
     live: bool,
     drive: Drive,
     arm_switch: bool,
+    /// Where the finger was taken to be when the scene was last asked, in m.
+    asked_at_m: [f32; 2],
     asked_electric_friction_n: f32,
     target_v_rms: f32,
     flags: Flags,
     counters: Counters,
     orders_applied: u32,
+    /// `None` on a board that has no buffer for it.
+    #[cfg(feature = "stream")]
+    stream: Option<Player<'a>>,
 }
 
 /// What belongs to the board and is computed once.
@@ -64,15 +73,25 @@ impl<'a> Ticker<'a> {
             carrier,
             tick: 0,
             due_tick: LOOK_AFTER_TICKS,
+            silent_tick: LOOK_AFTER_TICKS,
             live: false,
             drive: Drive::default(),
             arm_switch: false,
+            asked_at_m: [0.0; 2],
             asked_electric_friction_n: 0.0,
             target_v_rms: 0.0,
             flags: Flags::NO_FINGER,
             counters: Counters::default(),
             orders_applied: 0,
+            #[cfg(feature = "stream")]
+            stream: None,
         }
+    }
+
+    /// From now on, plays streams from `buffer`, into which the session takes their samples.
+    #[cfg(feature = "stream")]
+    pub fn attach_stream(&mut self, buffer: &'a StreamBuffer) {
+        self.stream = Some(Player::new(buffer, self.timing.finger.tick_period_s()));
     }
 
     /// Takes an order of the session, between two ticks. Hands back the coefficients that a [`Order::Load`] replaced.
@@ -86,7 +105,10 @@ impl<'a> Ticker<'a> {
                 let spare = core::mem::replace(&mut self.active, next);
                 self.carrier.retime(&self.active.carrier);
                 self.envelope.limit(self.active.voltage_max_v_rms);
-                self.finger.locate(self.tick, self.active.prediction, &self.timing.finger);
+                if self.active.prediction != spare.prediction {
+                    self.finger.locate(self.tick, self.active.prediction, &self.timing.finger);
+                }
+                self.ask_again();
                 Some(spare)
             }
             Order::Unload => {
@@ -95,6 +117,17 @@ impl<'a> Ticker<'a> {
             }
             Order::SetLayer { layer, on, gain } => {
                 self.active.set_layer(layer, on, gain);
+                self.ask_again();
+                None
+            }
+            #[cfg(feature = "stream")]
+            Order::StartStream(start) => {
+                self.on_stream(|stream| stream.start(start));
+                None
+            }
+            #[cfg(feature = "stream")]
+            Order::EndStream { last } => {
+                self.on_stream(|stream| stream.end(last));
                 None
             }
             _ => None,
@@ -102,6 +135,16 @@ impl<'a> Ticker<'a> {
         self.supervisor.set_host_timeout(self.host_timeout_ticks());
         self.look();
         spare
+    }
+
+    /// An order has changed what the scene asks for: should the next tick go on with what was asked for before, that is
+    /// the new scene's, too.
+    #[cold]
+    #[inline(never)]
+    fn ask_again(&mut self) {
+        if self.drive.amplifier_enable {
+            self.target_v_rms = self.voltage_v_rms(self.asked_at_m);
+        }
     }
 
     /// Latches a hard fault that the board has found: the output is zero from the next tick on. A fault that is latched
@@ -126,6 +169,8 @@ impl<'a> Ticker<'a> {
         if self.supervisor.check(sense, driven_v) {
             self.look();
         }
+        #[cfg(feature = "stream")]
+        self.on_stream(Player::advance);
         let due = self.due_tick.wrapping_sub(self.tick) as i32 <= 0;
         if due || sense.touch.is_some() || self.finger.is_digesting() {
             self.attend(sense, due);
@@ -133,7 +178,8 @@ impl<'a> Ticker<'a> {
             let still = self.finger.advance(&self.timing.finger);
             self.flags = if still { Flags::STILL } else { Flags::default() };
             if self.live {
-                self.target_v_rms = self.voltage_under_finger_v_rms();
+                self.asked_at_m = self.finger.place_m();
+                self.target_v_rms = self.voltage_v_rms(self.asked_at_m);
             }
         }
         self.put_out()
@@ -157,6 +203,7 @@ impl<'a> Ticker<'a> {
             self.due_tick = self.tick.wrapping_add(1);
         } else {
             self.live &= self.may_be_live();
+            self.find_next_due();
         }
         if self.live {
             self.note_reach();
@@ -173,21 +220,35 @@ impl<'a> Ticker<'a> {
     fn look(&mut self) {
         self.finger.expire(self.tick);
         self.supervisor.expire(self.tick);
-        let until_tick = match self.finger.presence() {
-            Presence::Down { until_tick } => Some(until_tick),
-            Presence::Up | Presence::Stale => None,
+        let in_ticks = self.supervisor.silent_at_tick().map_or(LOOK_AFTER_TICKS, |tick| tick.wrapping_sub(self.tick));
+        self.silent_tick = self.tick.wrapping_add(in_ticks.min(LOOK_AFTER_TICKS));
+        self.find_next_due();
+        self.live = self.may_be_live();
+        #[cfg(feature = "stream")]
+        if self.supervisor.state() != State::Active {
+            self.on_stream(Player::stop);
+        }
+    }
+
+    /// The next deadline: the host's, or before it the finger's.
+    fn find_next_due(&mut self) {
+        self.due_tick = match self.finger.presence() {
+            Presence::Down { until_tick } if (until_tick.wrapping_sub(self.silent_tick) as i32) < 0 => until_tick,
+            _ => self.silent_tick,
         };
-        let ticks_to = |tick: u32| tick.wrapping_sub(self.tick);
-        let until = until_tick.map_or(LOOK_AFTER_TICKS, ticks_to);
-        let silent = self.supervisor.silent_at_tick().map_or(LOOK_AFTER_TICKS, ticks_to);
-        self.due_tick = self.tick.wrapping_add(until.min(silent).min(LOOK_AFTER_TICKS));
-        self.live = self.supervisor.state() == State::Active && until_tick.is_some() && self.active.table().is_some();
     }
 
     /// What the board does now.
     pub fn status(&self) -> Status {
         let [finger_x_m, finger_y_m] = self.finger.place_m();
-        let flags = if self.supervisor.host_silent() { self.flags.with(Flags::HOST_SILENT) } else { self.flags };
+        let mut flags = self.flags;
+        if self.supervisor.host_silent() {
+            flags = flags.with(Flags::HOST_SILENT);
+        }
+        #[cfg(feature = "stream")]
+        if self.stream.as_ref().is_some_and(Player::is_dry) {
+            flags = flags.with(Flags::STREAM_DRY);
+        }
         Status {
             telemetry: Telemetry {
                 tick: self.tick,
@@ -203,8 +264,31 @@ impl<'a> Ticker<'a> {
             fault: self.supervisor.fault(),
             orders_applied: self.orders_applied,
             arm_switch: self.arm_switch,
-            counters: self.counters,
+            counters: self.counters(),
         }
+    }
+
+    fn counters(&self) -> Counters {
+        #[cfg(feature = "stream")]
+        if let Some(stream) = &self.stream {
+            let (stream_underruns, stream_gaps) = stream.counts();
+            return Counters { stream_underruns, stream_gaps, ..self.counters };
+        }
+        self.counters
+    }
+
+    #[cfg(feature = "stream")]
+    #[inline]
+    fn on_stream(&mut self, act: impl FnOnce(&mut Player<'a>)) {
+        if let Some(stream) = &mut self.stream {
+            act(stream);
+        }
+    }
+
+    #[cfg(feature = "stream")]
+    #[inline]
+    fn stream_now(&self) -> StreamNow {
+        self.stream.as_ref().map_or(StreamNow::default(), Player::now)
     }
 
     /// The timeout that holds now. Only a playing scene may go on without a host.
@@ -235,13 +319,17 @@ impl<'a> Ticker<'a> {
         self.drive
     }
 
-    /// The rms voltage that the scene wants under the finger.
+    /// The rms voltage that the scene wants at a place.
     #[inline]
-    fn voltage_under_finger_v_rms(&mut self) -> f32 {
+    fn voltage_v_rms(&mut self, [x_m, y_m]: [f32; 2]) -> f32 {
         let Some(table) = self.active.table() else { return 0.0 };
-        let [x_m, y_m] = self.finger.place_m();
-        let friction_n = self.active.electric_friction_n(&Moment { x_m, y_m }, self.pool);
-        let electric_friction_n = self.finger.gain() * friction_n;
+        let moment = Moment {
+            x_m,
+            y_m,
+            #[cfg(feature = "stream")]
+            stream: self.stream_now(),
+        };
+        let electric_friction_n = self.finger.gain() * self.active.electric_friction_n(&moment, self.pool);
         self.asked_electric_friction_n = electric_friction_n;
         let voltage_v_rms = table.voltage_v_rms(electric_friction_n);
         self.note_reach();

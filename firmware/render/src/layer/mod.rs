@@ -11,6 +11,8 @@ mod tests;
 use frixel_wire::scene::{Blend, Layer as Kind, Record};
 
 use crate::bitmap_pool::{Bitmap, BitmapPool};
+#[cfg(feature = "stream")]
+use crate::stream::StreamNow;
 #[cfg(feature = "grating")]
 use grating::Grating;
 #[cfg(feature = "bitmap")]
@@ -23,6 +25,9 @@ pub(crate) struct Moment {
     /// Where the finger is taken to be, in m.
     pub(crate) x_m: f32,
     pub(crate) y_m: f32,
+    /// The host's stream.
+    #[cfg(feature = "stream")]
+    pub(crate) stream: StreamNow,
 }
 
 /// A layer, ready to be evaluated.
@@ -81,6 +86,12 @@ impl Layer {
             Blend::Add => below_n + own_n,
         }
     }
+}
+
+/// Whether a layer plays what the host streams.
+#[cfg(feature = "stream")]
+pub(crate) fn is_stream(_record: &Record) -> bool {
+    false
 }
 
 impl Source {
