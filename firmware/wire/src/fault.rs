@@ -170,6 +170,8 @@ impl Flags {
     pub const CARRIER_BALANCED: Self = Self(1 << 5);
     /// The host has gone silent, and the output was put to zero.
     pub const HOST_SILENT: Self = Self(1 << 6);
+    /// A stream has no samples to play: its layers fade out, or have faded.
+    pub const STREAM_DRY: Self = Self(1 << 7);
 
     /// These flags and those.
     #[must_use]
@@ -184,7 +186,7 @@ impl Flags {
 }
 
 /// What each flag says.
-const FLAG_SENTENCES: [(Flags, &str); 7] = [
+const FLAG_SENTENCES: [(Flags, &str); 8] = [
     (Flags::SATURATED, "friction out of reach was clamped"),
     (Flags::SLEWED, "the envelope is at its slew limit"),
     (Flags::STILL, "the finger is still"),
@@ -192,6 +194,7 @@ const FLAG_SENTENCES: [(Flags, &str); 7] = [
     (Flags::TOUCH_STALE, "touch data is too old"),
     (Flags::CARRIER_BALANCED, "a carrier edge came early to keep direct current off the electrode"),
     (Flags::HOST_SILENT, "the host has gone silent, and the output was put to zero"),
+    (Flags::STREAM_DRY, "the stream has no samples to play"),
 ];
 
 /// What the flags that are set say, with a semicolon between.

@@ -17,7 +17,7 @@ pub const MAGIC: [u8; 4] = *b"FRXL";
 /// Protocol of this crate, major: raised when an older peer can no longer be talked to.
 pub const PROTOCOL_MAJOR: u8 = 1;
 /// Protocol of this crate, minor: raised when something was added that an older peer may ignore.
-pub const PROTOCOL_MINOR: u8 = 0;
+pub const PROTOCOL_MINOR: u8 = 1;
 /// Most bytes that a hello of any protocol may have.
 pub const HELLO_MAX_LEN: usize = 128;
 /// Bytes of a hello that this crate writes.
@@ -76,7 +76,7 @@ pub mod feature {
     pub const VIBRATION: u32 = 1 << 7;
     /// Speed layers.
     pub const SPEED: u32 = 1 << 8;
-    /// Stream layers.
+    /// Stream layers, and the samples that the host streams for them while a scene plays.
     pub const STREAM: u32 = 1 << 9;
     /// Polygons as regions.
     pub const POLYGON: u32 = 1 << 10;

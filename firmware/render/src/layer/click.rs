@@ -19,20 +19,23 @@ pub(super) struct Click {
 }
 
 /// What edges and buttons know of the past. It is the ticker's: coefficients stay as they were loaded.
+///
+/// The past is counted in evaluations: a tick that has something else to do does not look at layers.
 #[derive(Clone, Debug)]
 pub(crate) struct Clicks {
-    /// The last tick at which layers were evaluated.
-    last_tick: u32,
-    /// Layers were evaluated at the tick before this one.
+    /// How often layers were evaluated, modulo 2^32, and how often the finger was lifted.
+    evaluation: u32,
+    /// The finger was there at the evaluation before this one, and has not been lifted since.
     unbroken: bool,
+    touching: bool,
     slots: [Slot; CLICKS_MAX],
 }
 
 /// What one layer knows of the past.
 #[derive(Clone, Copy, Debug)]
 struct Slot {
-    /// The last tick at which this layer was evaluated, and on which side the finger was.
-    seen_tick: u32,
+    /// The last evaluation of this layer, and on which side the finger was.
+    seen: u32,
     beyond: bool,
     /// The click's first tick, while it lasts.
     started_at_tick: Option<u32>,
@@ -40,9 +43,10 @@ struct Slot {
 
 impl Clicks {
     pub(crate) const NONE: Self = Self {
-        last_tick: 0,
+        evaluation: 0,
         unbroken: false,
-        slots: [Slot { seen_tick: 0, beyond: false, started_at_tick: None }; CLICKS_MAX],
+        touching: false,
+        slots: [Slot { seen: 0, beyond: false, started_at_tick: None }; CLICKS_MAX],
     };
 
     /// Another scene plays.
@@ -50,11 +54,18 @@ impl Clicks {
         *self = Self::NONE;
     }
 
-    /// Layers are about to be evaluated at this tick.
+    /// Layers are about to be evaluated.
     #[inline]
-    pub(crate) fn begin(&mut self, tick: u32) {
-        self.unbroken = self.last_tick == tick.wrapping_sub(1);
-        self.last_tick = tick;
+    pub(crate) fn begin(&mut self) {
+        self.evaluation = self.evaluation.wrapping_add(1);
+        self.unbroken = self.touching;
+        self.touching = true;
+    }
+
+    /// The finger is not on the screen.
+    #[inline]
+    pub(crate) fn lift(&mut self) {
+        self.touching = false;
     }
 }
 
@@ -67,21 +78,22 @@ impl Click {
     /// Electric friction of the click when the finger is on one side of a line at this tick, or `beyond` it.
     pub(super) fn across(&self, beyond: bool, tick: u32, clicks: &mut Clicks) -> f32 {
         let Some(slot) = clicks.slots.get_mut(usize::from(self.slot)) else { return 0.0 };
-        let crossed = slot.seen_tick == tick.wrapping_sub(1) && slot.beyond != beyond;
+        let crossed = slot.seen == clicks.evaluation.wrapping_sub(1) && slot.beyond != beyond;
         slot.beyond = beyond;
+        slot.seen = clicks.evaluation;
         self.follow(slot, crossed && clicks.unbroken, tick)
     }
 
     /// Electric friction of the click when the finger is inside at this tick.
     pub(super) fn inside(&self, tick: u32, clicks: &mut Clicks) -> f32 {
         let Some(slot) = clicks.slots.get_mut(usize::from(self.slot)) else { return 0.0 };
-        let entered = slot.seen_tick != tick.wrapping_sub(1);
+        let entered = slot.seen != clicks.evaluation.wrapping_sub(1);
+        slot.seen = clicks.evaluation;
         self.follow(slot, entered && clicks.unbroken, tick)
     }
 
     #[inline]
     fn follow(&self, slot: &mut Slot, starts: bool, tick: u32) -> f32 {
-        slot.seen_tick = tick;
         if starts {
             slot.started_at_tick = Some(tick);
         }

@@ -14,18 +14,14 @@ use crate::bitmap_pool::Directory;
 
 /// A scene's layers are being loaded.
 pub(crate) struct Loading<'a> {
-    board: &'a Board,
-    directory: &'a Directory,
-    tables: &'a mut Tables,
+    pub(crate) board: &'a Board,
+    pub(crate) directory: &'a Directory,
+    pub(crate) tables: &'a mut Tables,
     /// Layers so far that may click.
-    clicks: u8,
+    pub(crate) clicks: &'a mut u8,
 }
 
-impl<'a> Loading<'a> {
-    pub(crate) fn new(board: &'a Board, directory: &'a Directory, tables: &'a mut Tables) -> Self {
-        Self { board, directory, tables, clicks: 0 }
-    }
-
+impl Loading<'_> {
     /// The layer of record `number`, whose numbers were checked.
     pub(crate) fn layer(&mut self, record: &Record, number: u8) -> Result<Layer, Refusal> {
         let left_out = Refusal::LeftOut { layer: number };
@@ -88,11 +84,11 @@ impl<'a> Loading<'a> {
         if click.height_n.abs() <= 0.0 {
             return Ok(None);
         }
-        let slot = self.clicks;
+        let slot = *self.clicks;
         if usize::from(slot) >= super::CLICKS_MAX {
             return Err(too_many(ConfigField::ClickLayers, super::CLICKS_MAX, number));
         }
-        self.clicks += 1;
+        *self.clicks += 1;
         Ok(Some(super::click::Click::new(click, slot, self.board)))
     }
 }
