@@ -164,7 +164,11 @@ fn a_wrong_port_is_refused_by_its_name() {
     refuse(folder.path(), &["play", &brick(), "--port", "/dev/frixel-none"], &["/dev/frixel-none", "no port"]);
     refuse(folder.path(), &["info", "--port", "/dev/frixel-none"], &["/dev/frixel-none", "no port"]);
     let stroke = ["play", &brick(), "--port", "/dev/frixel-none", "--stroke", "stroke.csv"];
-    refuse(folder.path(), &stroke, &["/dev/frixel-none", "--stroke moves the finger of --port sim only"]);
+    refuse(
+        folder.path(),
+        &stroke,
+        &["/dev/frixel-none", "--stroke moves the finger of --port sim and --port qemu only"],
+    );
     let rows = ["play", &brick(), "--port", "/dev/frixel-none", "--csv-hz", "4000"];
     refuse(folder.path(), &rows, &["/dev/frixel-none", "1000"]);
 }
