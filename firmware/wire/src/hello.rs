@@ -68,6 +68,15 @@ pub mod feature {
     pub const TELEMETRY: u32 = 1 << 3;
     /// The host says where the finger is.
     pub const HOST_TOUCH: u32 = 1 << 4;
+
+    /// The name of each, as the board's Cargo features have it where there is one.
+    pub const NAMES: [(u32, &str); 5] = [
+        (GRATING, "grating"),
+        (BITMAP, "bitmap"),
+        (SINE_CARRIER, "sine-carrier"),
+        (TELEMETRY, "telemetry"),
+        (HOST_TOUCH, "touch from the host"),
+    ];
 }
 
 /// Kind of board. Numbers never change.

@@ -10,6 +10,7 @@ mod ports;
 mod report;
 mod sim;
 mod stroke;
+mod usage;
 
 use std::path::PathBuf;
 
