@@ -253,8 +253,10 @@ fn nothing_is_written_unless_the_board_is_disarmed() {
     }
     desk.command(Command::Arm).unwrap();
     let done = flash.done;
+    assert!(!flash.is_at_rest());
     settle(&mut keeper, &mut flash, &desk, 0);
     assert_eq!(flash.done, done);
+    assert!(flash.is_at_rest(), "somebody has to see the operation to its end");
     let mut memory = Memory::new();
     let mut after = Desk::new(&mut memory);
     SceneKeeper::new(SCENE_SLOT, 40_000, &flash.after_power_on(), &mut after.session);
