@@ -1,6 +1,6 @@
 //! What lies between electrode and finger, and the stress that pulls through it.
 
-use crate::error::{ParameterError, not_negative, positive};
+use crate::error::{ParameterError, not_negative, positive, representable};
 use crate::{Expected, Real};
 
 /// Vacuum permittivity in F/m, CODATA 2022 (doi:10.1103/RevModPhys.97.025002); relative uncertainty 1.6e-10.
@@ -58,5 +58,6 @@ pub fn contact_attraction_pa<T: Real>(voltage_v_rms: T, gap_m: T) -> Result<T, P
 pub fn attraction_pa<T: Real>(voltage_v_rms: T, gap_m: T, separation_m: T) -> Result<T, ParameterError> {
     let field_v_per_m = not_negative("voltage_v_rms", voltage_v_rms)?
         / (positive("gap_m", gap_m)? + not_negative("separation_m", separation_m)?);
-    Ok(T::from_f64(0.5 * VACUUM_PERMITTIVITY_F_PER_M) * field_v_per_m * field_v_per_m)
+    let attraction_pa = T::from_f64(0.5 * VACUUM_PERMITTIVITY_F_PER_M) * field_v_per_m * field_v_per_m;
+    representable("voltage_v_rms", voltage_v_rms, attraction_pa)
 }

@@ -261,6 +261,26 @@ fn limits_of_small_and_large_voltage() {
     assert!((slope(&soft.under_load(0.0).unwrap(), 1e-12) - 1.0).abs() < 1e-4);
 }
 
+/// A friction too small for f32 is zero there; the stiffness that goes with it is not.
+#[test]
+fn stiffness_survives_a_friction_that_vanishes() {
+    for (stress_exponent, voltage) in [(1.0, 1e-5), (0.75, 1e-7), (0.02, 1e-16)] {
+        fn state<T: Real>(stress_exponent: f32, voltage: f32) -> frixel_model::ContactState<T> {
+            let finger = SoftFinger {
+                radius_m: T::from(1.0 / 128.0),
+                modulus_pa: T::from(131_072.0),
+                stress_exponent: T::from(stress_exponent),
+                shape_constant: T::from(4.5),
+                friction_coefficient: T::from(0.5),
+            };
+            finger.on_gap(T::from(1.0 / 131_072.0)).unwrap().lower_bound().state(T::from(voltage)).unwrap()
+        }
+        let (right, found) = (state::<f64>(stress_exponent, voltage), state::<f32>(stress_exponent, voltage));
+        let ratio = f64::from(found.stiffness_pa_per_m) / right.stiffness_pa_per_m;
+        assert!((ratio - 1.0).abs() < 1e-5, "{stress_exponent}: {ratio}");
+    }
+}
+
 /// Eqs. (24)-(26): the stiffness makes the two force laws one; Eqs. (46), (47) with a paraboloid are the soft finger's.
 #[test]
 fn force_laws_agree() {
