@@ -120,6 +120,33 @@ fn bounds_hold_and_are_not_idle() {
 }
 
 #[test]
+#[ignore = "every f32 pattern, run by `cargo xtask soak`"]
+fn every_f32_pattern_is_answered() {
+    for contact in [contact(1e-5, 0.0), contact(1e-5, 0.5)] {
+        let (low, high) = range(&contact);
+        let builder = TableBuilder::new(&contact, low, high, 1e-5).unwrap();
+        let shape = builder.smallest(Precision::F32).unwrap();
+        assert!(shape.coefficients == 4 && shape.bytes() <= 2048, "{shape:?}");
+        let mut storage = vec![[0.0; 4]; shape.rows];
+        let table = builder.build_f32(&mut storage).unwrap();
+        let largest = table.voltage_max_v_rms();
+        let mut highest = 0.0_f32;
+        for x in (0..=u32::MAX).map(f32::from_bits) {
+            let voltage_v_rms = table.voltage_v_rms(x);
+            assert!((0.0..=largest).contains(&voltage_v_rms), "{x:e}: {voltage_v_rms}");
+            if x.is_nan() || x <= 0.0 {
+                assert_eq!(voltage_v_rms.to_bits(), 0, "{x:e}");
+            } else {
+                assert!(f64::from(voltage_v_rms) >= f64::from(highest) * (1.0 - 5e-6), "falls at {x:e}");
+                assert!(f64::from(x) < low || voltage_v_rms > 0.0, "nothing at {x:e}");
+                highest = highest.max(voltage_v_rms);
+            }
+        }
+        assert_eq!(highest.to_bits(), largest.to_bits());
+    }
+}
+
+#[test]
 #[ignore = "every 32-bit code, run by `cargo xtask soak`"]
 fn every_code_is_answered() {
     for contact in contacts() {
