@@ -46,7 +46,7 @@ pub fn effective_gap_m<T: Real>(slabs: &[Slab<T>]) -> Result<T, ParameterError> 
 
 /// Attractive stress `sigma0` inside the contact, in pascals, Eq. (8): `eps0 V^2 / (2 g^2)`.
 ///
-/// `gap_m` is the effective gap. Relative error at most 4 roundings of `T`.
+/// `gap_m` is the effective gap. Relative error at most 5 roundings of `T`.
 pub fn contact_attraction_pa<T: Real>(voltage_v_rms: T, gap_m: T) -> Result<T, ParameterError> {
     attraction_pa(voltage_v_rms, gap_m, T::ZERO)
 }
@@ -54,7 +54,7 @@ pub fn contact_attraction_pa<T: Real>(voltage_v_rms: T, gap_m: T) -> Result<T, P
 /// Attractive stress in pascals where the finger stands `separation_m` above the coating, Eqs. (3), (18).
 ///
 /// `eps0 V^2 / (2 (g + H)^2)`, with the effective gap `g` in `gap_m`: the paper's `h0 + eps H` over `eps`. Relative error
-/// at most 5 roundings of `T`.
+/// at most 7 roundings of `T`.
 pub fn attraction_pa<T: Real>(voltage_v_rms: T, gap_m: T, separation_m: T) -> Result<T, ParameterError> {
     let field_v_per_m = not_negative("voltage_v_rms", voltage_v_rms)?
         / (positive("gap_m", gap_m)? + not_negative("separation_m", separation_m)?);

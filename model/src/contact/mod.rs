@@ -116,14 +116,15 @@ impl<T: Real> Contact<T> {
         self.load_scale_n
     }
 
-    /// Dimensionless attraction `q = sigma0/(g k) = (V/V*)^2` of a voltage. Relative error at most 5 roundings of `T`.
+    /// Dimensionless attraction `q = sigma0/(g k) = (V/V*)^2` of a voltage. Relative error at most 5
+    /// roundings in f32 and 10 in f64, whose scales have roundings of their own.
     pub fn attraction(&self, voltage_v_rms: T) -> T {
         let v = voltage_v_rms / self.voltage_scale_v_rms;
         v * v
     }
 
     /// Dimensionless load `n = F_N/(pi k R g^2)`: the paper's `f_N` of Eq. (44) is `n pi/eps^2`. Relative error at most 2
-    /// roundings of `T`.
+    /// roundings in f32 and 6 in f64.
     pub fn load(&self, normal_load_n: T) -> T {
         normal_load_n / self.load_scale_n
     }

@@ -30,7 +30,7 @@ pub struct SoftFinger<T> {
 impl<T: Real> SoftFinger<T> {
     /// Normal force at a contact approach without voltage, in newtons, Eq. (24): `B E R^2 (delta/R)^(1/(2 gamma))`.
     ///
-    /// Relative error at most `4 (2 + 1/(2 gamma))` roundings of `T`.
+    /// Relative error at most `6 + e (1 + 3 |ln(delta/R)|)` roundings of `T`, with the exponent `e = 1/(2 gamma)`.
     pub fn normal_load_n(&self, approach_m: T) -> Result<T, ParameterError> {
         let forces = self.forces()?;
         let ratio = not_negative("approach_m", approach_m)? / self.radius_m;
@@ -41,7 +41,7 @@ impl<T: Real> SoftFinger<T> {
     /// `B^(4 gamma) E/(pi R) (E R^2/P)^(4 gamma - 1)`.
     ///
     /// The force is the normal load where there is no voltage, and friction over the coefficient of friction where there
-    /// is. Relative error at most 8 roundings of `T` plus the logarithm of `P/(B E R^2)`.
+    /// is. Relative error at most `11 + 3 |ln(P/(B E R^2))|` roundings of `T`.
     pub fn stiffness_pa_per_m(&self, spring_force_n: T) -> Result<T, ParameterError> {
         let forces = self.forces()?;
         let p = positive("spring_force_n", spring_force_n)? / forces.force_scale_n;
