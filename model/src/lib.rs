@@ -41,7 +41,7 @@
 //!
 //! Held in the tests against 80-digit arithmetic on the paper's dimensional equations (`reference/`), each test also seen
 //! to fail with its output forced to zero. How much of each bound is used stands in `docs/model.md`. Relative to the answer,
-//! for every input that keeps answers in the precision's normal range:
+//! for every input that keeps answers in the precision's normal range, and with them `F_T/(mu B E R^2)` of a soft finger:
 //!
 //! | | f64 | f32 |
 //! |---|---|---|

@@ -30,7 +30,8 @@ impl<T: Real> ContactModel<T> for SoftLowerBound<T> {
     fn state(&self, voltage_v_rms: T) -> Result<ContactState<T>, StateError> {
         let double_tau = T::TWO * self.contact.stress(voltage_v_rms)?;
         let area = double_tau.pow(self.contact.forces.two_s);
-        let friction_n = self.friction_scale_n * (double_tau * area);
+        // The scale first: without it the product may leave the range where friction does not.
+        let friction_n = self.friction_scale_n * double_tau * area;
         let stiffness_pa_per_m =
             if double_tau > T::ZERO { self.contact.forces.lower_stiffness_pa_per_m(double_tau) } else { T::ZERO };
         ContactState {
