@@ -267,7 +267,7 @@ fn limits_of_small_and_large_voltage() {
 fn the_soft_lower_bound_keeps_what_f32_can_hold() {
     let (soft, hard) = (131_072.0, 2_147_483_648.0);
     for (modulus_pa, stress_exponent, voltage) in
-        [(soft, 1.0, 1e-5), (soft, 0.75, 1e-7), (soft, 0.02, 1e-16), (hard, 1.0, 0.05), (hard, 1.0, 0.02)]
+        [(soft, 1.0, 1e-5), (soft, 0.75, 1e-7), (soft, 0.02, 1e-16), (hard, 1.0, 0.05), (hard, 1.0, 0.0123)]
     {
         fn state<T: Real>(modulus_pa: f32, stress_exponent: f32, voltage: f32) -> frixel_model::ContactState<T> {
             let finger = SoftFinger {
