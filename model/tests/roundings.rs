@@ -54,6 +54,9 @@ fn answers<T: Real>(inputs: &Inputs) -> Vec<(&'static str, T, f64)> {
     vec![
         ("sigma0", contact_attraction_pa(voltage_v_rms, gap_m).unwrap(), 5.0),
         ("sigma", attraction_pa(voltage_v_rms, gap_m, approach_m).unwrap(), 7.0),
+        ("V*", contact.voltage_scale_v_rms(), 1.0),
+        ("F*", contact.friction_scale_n(), 1.0),
+        ("load scale", contact.load_scale_n(), 1.0),
         ("q", contact.attraction(voltage_v_rms), 5.0),
         ("n", contact.load(force_n), 2.0),
         ("y", contact.area(approach_m), 3.0),

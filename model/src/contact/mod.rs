@@ -101,17 +101,19 @@ impl<T: Real> Contact<T> {
         FiniteContact::new(self, outer_radius_m, normal_load_n)
     }
 
-    /// Voltage scale `V* = sqrt(2 k g^3/eps0)`, in volts rms.
+    /// Voltage scale `V* = sqrt(2 k g^3/eps0)`, in volts rms: that of Eq. (36). Relative error at most 1 rounding in f32 and
+    /// 4 in f64.
     pub fn voltage_scale_v_rms(&self) -> T {
         self.voltage_scale_v_rms
     }
 
-    /// Friction scale `F* = mu pi k R g^2`, in newtons.
+    /// Friction scale `F* = mu pi k R g^2`, in newtons: that of Eq. (34). Relative error at most 1 rounding in f32 and 6 in
+    /// f64.
     pub fn friction_scale_n(&self) -> T {
         self.friction_scale_n
     }
 
-    /// Load scale `pi k R g^2`, in newtons.
+    /// Load scale `pi k R g^2`, in newtons: that of Eq. (43). Relative error at most 1 rounding in f32 and 5 in f64.
     pub fn load_scale_n(&self) -> T {
         self.load_scale_n
     }
