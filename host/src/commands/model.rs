@@ -74,11 +74,11 @@ pub(super) fn run(command: &ModelCommand) -> Result<(), CommandError> {
         // Whoever reads the output has seen enough.
         Err(CsvError::Write(error)) if error.kind() == ErrorKind::BrokenPipe => {}
         Err(source) => {
-            let (path, otherwise) = match source {
+            let (path, stream) = match source {
                 CsvError::Write(_) => (&args.output, "standard output"),
                 _ => (&args.input, "standard input"),
             };
-            let input = path.as_ref().map_or(otherwise.to_owned(), |path| path.display().to_string());
+            let input = path.as_ref().map_or(stream.to_owned(), |path| path.display().to_string());
             return Err(CommandError::ModelCsv { input, source });
         }
     }
