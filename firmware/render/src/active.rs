@@ -9,7 +9,7 @@ use crate::Board;
 use crate::bitmap_pool::{BitmapPool, Directory};
 use crate::carrier::CarrierTiming;
 use crate::config;
-use crate::layer::Layer;
+use crate::layer::{Layer, Moment};
 
 /// Coefficients of one scene. A board has two of them: one that plays and one that the next scene is built in.
 ///
@@ -24,6 +24,8 @@ pub struct Active {
     pub(crate) host_timeout_ticks: Option<u32>,
     pub(crate) prediction: bool,
     table: Option<InverseTable>,
+    /// A bit for each layer that is on.
+    on: u64,
     layers: Vec<Layer, RECORDS_MAX>,
 }
 
@@ -33,6 +35,7 @@ impl Active {
     pub const fn new() -> Self {
         Self {
             layers: Vec::new(),
+            on: 0,
             table: None,
             carrier: CarrierTiming::SILENT,
             slew_step_v: 0.0,
@@ -46,6 +49,7 @@ impl Active {
     pub(crate) fn unload(&mut self) {
         // One by one: the whole of it is thousands of bytes, and a tick may be waiting.
         self.layers.clear();
+        self.on = 0;
         self.table = None;
         self.carrier = CarrierTiming::SILENT;
         self.slew_step_v = 0.0;
@@ -60,10 +64,28 @@ impl Active {
         self.table.as_ref()
     }
 
-    /// Electric friction of all layers at a place, in N.
+    /// Electric friction of all layers that are on, in N.
     #[inline]
-    pub(crate) fn electric_friction_n(&self, x_m: f32, y_m: f32, pool: &BitmapPool) -> f32 {
-        self.layers.iter().fold(0.0, |below_n, layer| layer.blend_over(below_n, x_m, y_m, pool))
+    pub(crate) fn electric_friction_n(&self, moment: &Moment, pool: &BitmapPool) -> f32 {
+        let mut electric_friction_n = 0.0;
+        let mut left = self.on;
+        while left != 0 {
+            let number = left.trailing_zeros() as usize;
+            left &= left - 1;
+            if let Some(layer) = self.layers.get(number) {
+                electric_friction_n = layer.blend_over(electric_friction_n, moment, pool);
+            }
+        }
+        electric_friction_n
+    }
+
+    /// Puts a layer on or off and sets its gain while the scene plays. A layer that the scene does not have is none.
+    pub(crate) fn set_layer(&mut self, number: u8, on: bool, gain: f32) {
+        if let Some(layer) = self.layers.get_mut(usize::from(number)) {
+            layer.set_gain(gain);
+            let bit = 1 << number;
+            self.on = if on { self.on | bit } else { self.on & !bit };
+        }
     }
 
     /// Makes these the coefficients of `scene`. When it is refused, they are those of no scene.
@@ -98,6 +120,7 @@ impl Active {
             let layer = Layer::new(&record, bitmap).ok_or(Refusal::LeftOut { layer: number })?;
             // There is room for every record that a scene can have.
             let _ = self.layers.push(layer);
+            self.on |= 1 << number;
         }
         Ok(())
     }

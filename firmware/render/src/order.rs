@@ -13,6 +13,15 @@ pub enum Order<'a> {
     Load(&'a mut Active),
     /// Forget the scene: its bitmaps are about to be overwritten.
     Unload,
+    /// Change a layer of the scene that plays; a layer that it does not have is none.
+    SetLayer {
+        /// Its number among the scene's records.
+        layer: u8,
+        /// Whether it takes part at all.
+        on: bool,
+        /// Factor on its friction.
+        gain: f32,
+    },
     /// Disarmed to Armed.
     Arm,
     /// Any state but Faulted to Disarmed.

@@ -6,6 +6,7 @@ use frixel_wire::message::Telemetry;
 use crate::carrier::Carrier;
 use crate::envelope::Envelope;
 use crate::estimator::{Estimate, Estimator};
+use crate::layer::Moment;
 use crate::order::Counters;
 use crate::stillness::{Stillness, StillnessTiming};
 use crate::supervisor::{self, Supervisor};
@@ -170,6 +171,10 @@ impl<'a> Ticker<'a> {
                 self.active.unload();
                 None
             }
+            Order::SetLayer { layer, on, gain } => {
+                self.active.set_layer(layer, on, gain);
+                None
+            }
             _ => None,
         };
         self.supervisor.set_host_timeout(self.host_timeout_ticks());
@@ -287,7 +292,7 @@ impl<'a> Ticker<'a> {
     fn voltage_under_finger_v_rms(&mut self) -> f32 {
         let Some(table) = self.active.table() else { return 0.0 };
         let (x_m, y_m) = self.finger.place(self.active.prediction);
-        let electric_friction_n = self.gain * self.active.electric_friction_n(x_m, y_m, self.pool);
+        let electric_friction_n = self.gain * self.active.electric_friction_n(&Moment { x_m, y_m }, self.pool);
         self.asked_electric_friction_n = electric_friction_n;
         // Bit patterns of what is negative, and of not-a-number, are above those of every positive number.
         self.out_of_reach = electric_friction_n.to_bits() > table.electric_friction_max_n().to_bits()

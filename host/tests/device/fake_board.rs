@@ -154,7 +154,7 @@ impl FakeBoard {
 
     fn obey(&mut self, command: Command, now: Duration) -> Result<Accepted, Refusal> {
         match command {
-            Command::Ping => {}
+            Command::Ping | Command::Touch { .. } | Command::Lift => {}
             Command::UploadScene { len, crc32 } => self.upload = Some(FakeUpload::new(false, len as usize, crc32)),
             Command::UploadBitmap { crc32, .. } if self.bitmaps.contains_key(&crc32) => {
                 return Ok(Accepted::AlreadyHeld);
@@ -162,7 +162,6 @@ impl FakeBoard {
             Command::UploadBitmap { width, height, crc32 } => {
                 self.upload = Some(FakeUpload::new(true, usize::from(width) * usize::from(height), crc32));
             }
-            Command::Touch { .. } | Command::Lift => {}
             Command::FaultText { .. } => return Ok(Accepted::FaultText { len: 0, bytes: [0; 32] }),
             Command::UploadEnd => self.end_upload()?,
             Command::Commit { crc32: meant } if self.scene.as_ref().is_some_and(|scene| crc32(scene) == meant) => {}
