@@ -166,6 +166,29 @@ fn every_code_is_answered() {
     }
 }
 
+/// One table of the universal curve, for fingers and coatings with nothing in common but `n`.
+#[test]
+fn a_universal_table_serves_every_contact_of_its_load() {
+    let n = 100.0;
+    let universal = Contact::<f64>::universal().under_load(n).unwrap();
+    let (low, high) = (universal.electric_friction_n(1e-2), universal.electric_friction_n(10.0));
+    let builder = TableBuilder::new(&universal, low, high, 1e-5).unwrap();
+    let mut storage = vec![[0.0; 4]; builder.shape(Precision::F32, 4).unwrap().rows];
+    let table = builder.build_f32(&mut storage).unwrap();
+    let other = Finger { radius_m: 2e-2, stiffness_pa_per_m: 5e8, friction_coefficient: 1.5 };
+    for (finger, gap_m) in [(FINGER, 1e-5), (FINGER, 1e-6), (other, 3e-5)] {
+        let contact = Contact::new(&finger, gap_m).unwrap();
+        let loaded = contact.under_load(n * contact.load_scale_n()).unwrap();
+        for step in 1..100 {
+            let scaled = (low * (high / low).powf(f64::from(step) / 100.0)) as f32;
+            let voltage_v_rms = f64::from(table.voltage_v_rms(scaled)) * contact.voltage_scale_v_rms();
+            let friction_n = f64::from(scaled) * contact.friction_scale_n();
+            assert!(error(&loaded, friction_n, voltage_v_rms) <= 1e-5, "{finger:?} {gap_m} {scaled}");
+            assert!(error(&loaded, friction_n, 0.0) > 1e-5);
+        }
+    }
+}
+
 #[test]
 fn smallest_is_the_smallest_of_all_orders() {
     let contact = contact(1e-5, 0.0);
