@@ -12,6 +12,8 @@ const CARRIER_MIN_HZ: f32 = 125.0;
 const HALF_PERIOD_MIN_TICKS: f32 = 4.0;
 /// Farthest from the screen's corner that anything may be, in m.
 pub(crate) const LENGTH_MAX_M: f32 = 2.0;
+/// Largest gain of a layer, either way.
+pub(crate) const GAIN_MAX: f32 = 100.0;
 /// Largest friction that a layer may name, in N, either way.
 const FRICTION_MAX_N: f32 = 100.0;
 
@@ -48,7 +50,7 @@ pub(crate) fn check_record(record: &Record, layer: u8) -> Result<(), ConfigRefus
     let length = |field, found| within(field, found, -LENGTH_MAX_M, LENGTH_MAX_M, layer);
     let size = |field, found| within(field, found, f32::MIN_POSITIVE, LENGTH_MAX_M, layer);
     let friction = |found| within(ConfigField::Friction, found, -FRICTION_MAX_N, FRICTION_MAX_N, layer);
-    within(ConfigField::Gain, record.gain, -100.0, 100.0, layer)?;
+    within(ConfigField::Gain, record.gain, -GAIN_MAX, GAIN_MAX, layer)?;
     if let Region::Rectangle { x_m, y_m, width_m, height_m } = record.region {
         length(ConfigField::Region, x_m)?;
         length(ConfigField::Region, y_m)?;

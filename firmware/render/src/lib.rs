@@ -45,13 +45,17 @@ mod carrier;
 mod config;
 mod envelope;
 mod estimator;
+mod finger;
 mod io;
 mod layer;
+mod motion;
 mod order;
 mod session;
 mod stillness;
 #[cfg(feature = "store")]
 pub mod store;
+#[cfg(feature = "stream")]
+mod stream;
 mod supervisor;
 mod ticker;
 #[cfg(any(feature = "grating", feature = "sine-carrier"))]
@@ -65,4 +69,6 @@ pub use order::{Counters, Order, Status};
 #[cfg(feature = "store")]
 pub use session::KeptScene;
 pub use session::Session;
+#[cfg(feature = "stream")]
+pub use stream::{STREAM_LEN, StreamBuffer, StreamStart};
 pub use ticker::Ticker;

@@ -170,6 +170,8 @@ impl Flags {
     pub const CARRIER_BALANCED: Self = Self(1 << 5);
     /// The host has gone silent, and the output was put to zero.
     pub const HOST_SILENT: Self = Self(1 << 6);
+    /// A stream has no samples to play: its layers fade out, or have faded.
+    pub const STREAM_DRY: Self = Self(1 << 7);
 
     /// These flags and those.
     #[must_use]
@@ -202,7 +204,7 @@ impl Flags {
 }
 
 /// The name of each flag, for tables, and what it says.
-const FLAGS: [(Flags, &str, &str); 7] = [
+const FLAGS: [(Flags, &str, &str); 8] = [
     (Flags::SATURATED, "saturated", "friction out of reach was clamped"),
     (Flags::SLEWED, "slewed", "the envelope is at its slew limit"),
     (Flags::STILL, "still", "the finger is still"),
@@ -210,6 +212,7 @@ const FLAGS: [(Flags, &str, &str); 7] = [
     (Flags::TOUCH_STALE, "touch-stale", "touch data is too old"),
     (Flags::CARRIER_BALANCED, "carrier-balanced", "a carrier edge came early to keep direct current off the electrode"),
     (Flags::HOST_SILENT, "host-silent", "the host has gone silent, and the output was put to zero"),
+    (Flags::STREAM_DRY, "stream-dry", "the stream has no samples to play"),
 ];
 
 /// What the flags that are set say, with a semicolon between.

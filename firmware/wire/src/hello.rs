@@ -17,7 +17,7 @@ pub const MAGIC: [u8; 4] = *b"FRXL";
 /// Protocol of this crate, major: raised when an older peer can no longer be talked to.
 pub const PROTOCOL_MAJOR: u8 = 1;
 /// Protocol of this crate, minor: raised when something was added that an older peer may ignore.
-pub const PROTOCOL_MINOR: u8 = 0;
+pub const PROTOCOL_MINOR: u8 = 1;
 /// Most bytes that a hello of any protocol may have.
 pub const HELLO_MAX_LEN: usize = 128;
 /// Bytes of a hello that this crate writes.
@@ -68,14 +68,17 @@ pub mod feature {
     pub const TELEMETRY: u32 = 1 << 3;
     /// The host says where the finger is.
     pub const HOST_TOUCH: u32 = 1 << 4;
+    /// Samples that the host streams while a scene plays.
+    pub const STREAM: u32 = 1 << 9;
 
     /// The name of each, as the board's Cargo features have it where there is one.
-    pub const NAMES: [(u32, &str); 5] = [
+    pub const NAMES: [(u32, &str); 6] = [
         (GRATING, "grating"),
         (BITMAP, "bitmap"),
         (SINE_CARRIER, "sine-carrier"),
         (TELEMETRY, "telemetry"),
         (HOST_TOUCH, "touch from the host"),
+        (STREAM, "stream"),
     ];
 }
 

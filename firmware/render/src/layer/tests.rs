@@ -8,8 +8,9 @@ fn constant(blend: Blend, gain: f32, electric_friction_n: f32) -> Layer {
     Layer::new(&Record { region: HERE, blend, gain, layer: Kind::Constant { electric_friction_n } }, None).unwrap()
 }
 
+#[allow(clippy::needless_update, reason = "with more features there is more to it")]
 fn at(x_m: f32, y_m: f32) -> Moment {
-    Moment { x_m, y_m }
+    Moment { x_m, y_m, ..Moment::default() }
 }
 
 fn close(found: f32, expected: f32) {

@@ -70,6 +70,15 @@ pub enum Refusal {
     },
     /// The board has a touch source of its own, and takes none from the host.
     TouchSource,
+    /// The playing scene has no such layer.
+    NoSuchLayer {
+        /// The layer that was named, counted from zero.
+        layer: u8,
+        /// Layers that the scene has.
+        layers: u8,
+    },
+    /// No layer of the playing scene is a stream.
+    NoStreamLayer,
 }
 
 /// A number in a scene that the board cannot play.
@@ -139,6 +148,10 @@ pub enum ConfigField {
     TableRange,
     /// Where the host has the finger, m.
     TouchPlace,
+    /// Samples a second of a stream, Hz.
+    SampleRate,
+    /// Samples with which a stream begins.
+    StartLevel,
 }
 
 impl ConfigField {
@@ -167,6 +180,8 @@ impl ConfigField {
             Self::BitmapPlacement => ("bitmap place or pitch", " m"),
             Self::TableRange => ("span of friction", " V"),
             Self::TouchPlace => ("place of the finger", " m"),
+            Self::SampleRate => ("sample rate of the stream", " Hz"),
+            Self::StartLevel => ("start level of the stream", " samples"),
         }
     }
 }
@@ -250,6 +265,13 @@ impl fmt::Display for Refusal {
             ),
             Self::TouchSource => {
                 f.write_str("the board has a touch source of its own: do not send it where the finger is")
+            }
+            Self::NoSuchLayer { layer, layers } => write!(
+                f,
+                "the playing scene has no layer {layer} (the first is 0), it has {layers}: name one of those, or commit the scene that is meant"
+            ),
+            Self::NoStreamLayer => {
+                f.write_str("no layer of the playing scene is a stream: add one to the scene, or send no samples")
             }
         }
     }
