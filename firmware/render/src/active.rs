@@ -143,11 +143,10 @@ impl Active {
     fn load_layers(&mut self, scene: &Scene, board: &Board, directory: &Directory) -> Result<(), Refusal> {
         self.grid.reset(scene.header().screen_width_m, scene.header().screen_height_m);
         self.tables.set_points(scene.points());
-        let mut clicks = 0;
         for (number, record) in scene.records().enumerate() {
             let number = number as u8;
             config::check_record(&record, scene, number).map_err(Refusal::Config)?;
-            let mut loading = Loading { board, directory, tables: &mut self.tables, clicks: &mut clicks };
+            let mut loading = Loading { board, directory, tables: &mut self.tables };
             let layer = loading.layer(&record, number)?;
             // There is room for every record that a scene can have.
             let _ = self.layers.push(layer);

@@ -80,6 +80,21 @@ pub mod feature {
     pub const STREAM: u32 = 1 << 9;
     /// Polygons as regions.
     pub const POLYGON: u32 = 1 << 10;
+
+    /// The name of each, as the board's Cargo features have it where there is one.
+    pub const NAMES: [(u32, &str); 11] = [
+        (GRATING, "grating"),
+        (BITMAP, "bitmap"),
+        (SINE_CARRIER, "sine-carrier"),
+        (TELEMETRY, "telemetry"),
+        (HOST_TOUCH, "touch from the host"),
+        (NOISE, "noise"),
+        (EDGE, "edge"),
+        (VIBRATION, "vibration"),
+        (SPEED, "speed"),
+        (STREAM, "stream"),
+        (POLYGON, "polygon"),
+    ];
 }
 
 /// Kind of board. Numbers never change.

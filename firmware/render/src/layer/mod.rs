@@ -122,7 +122,7 @@ impl Layer {
     /// This layer's electric friction at a moment, wherever that is.
     #[inline]
     pub(crate) fn own_electric_friction_n(&self, around: &mut Around) -> f32 {
-        self.gain * self.source.electric_friction_n(around)
+        self.gain * self.source.electric_friction_n(&self.region, around)
     }
 
     /// Joins this layer's electric friction at a moment to that of the layers below.
@@ -175,7 +175,7 @@ impl Source {
         not(all(feature = "grating", feature = "bitmap")),
         allow(unused_variables, reason = "the other kinds of layer do not look at them")
     )]
-    fn electric_friction_n(&self, around: &mut Around) -> f32 {
+    fn electric_friction_n(&self, region: &Region, around: &mut Around) -> f32 {
         match self {
             Self::Constant { electric_friction_n } => *electric_friction_n,
             #[cfg(feature = "grating")]
@@ -185,9 +185,9 @@ impl Source {
             #[cfg(feature = "noise")]
             Self::Noise(noise) => noise.electric_friction_n(&around.moment, around.tables.noises()),
             #[cfg(feature = "edge")]
-            Self::Edge(edge) => edge.electric_friction_n(&around.moment, around.clicks),
+            Self::Edge(edge) => edge.electric_friction_n(around),
             #[cfg(feature = "edge")]
-            Self::Button(button) => button.electric_friction_n(&around.moment, around.clicks),
+            Self::Button(button) => button.electric_friction_n(region, around),
             #[cfg(feature = "vibration")]
             Self::Vibration(vibration) => vibration.electric_friction_n(&around.moment),
             #[cfg(feature = "speed")]

@@ -24,7 +24,7 @@ impl Bench {
 
     fn load(&mut self, record: &Record) -> Layer {
         let Self { directory, tables, .. } = self;
-        Loading { board: &Board::SIMULATOR, directory, tables, clicks: &mut 0 }.layer(record, 0).unwrap()
+        Loading { board: &Board::SIMULATOR, directory, tables }.layer(record, 0).unwrap()
     }
 
     fn kind(&mut self, layer: Kind) -> Layer {
