@@ -2,8 +2,8 @@
 
 use frixel_exchange::{Done, Given, TICK_BYTES_MAX, TickBytes};
 use frixel_model::{Contact, Finger, LoadedContact, ParameterError};
-use frixel_render::{Active, BitmapPool, Board, Order, Sense, Session, Status, Ticker};
-use frixel_wire::scene::{Header, Scene};
+use frixel_render::{Active, BitmapPool, Board, Order, Sense, Session, Status, StreamBuffer, Ticker};
+use frixel_wire::scene::Header;
 
 use crate::{Felt, Journal, Line, Stroke, World, WorldConfig, WorldError};
 
@@ -11,13 +11,15 @@ use crate::{Felt, Journal, Line, Stroke, World, WorldConfig, WorldError};
 pub struct BoardMemory {
     pool: BitmapPool,
     actives: [Active; 2],
+    stream: StreamBuffer,
 }
 
 impl BoardMemory {
     /// Memory as it is after a reset.
     #[must_use]
     pub fn new() -> Box<Self> {
-        Box::new(Self { pool: BitmapPool::new(), actives: [Active::new(), Active::new()] })
+        let actives = [Active::new(), Active::new()];
+        Box::new(Self { pool: BitmapPool::new(), actives, stream: StreamBuffer::new() })
     }
 }
 
@@ -73,11 +75,14 @@ pub struct Rig<'a> {
 impl<'a> Rig<'a> {
     /// A board that has just been reset, in a world whose finger will make `stroke`.
     pub fn new(memory: &'a mut BoardMemory, config: &RigConfig, stroke: Stroke, seed: u64) -> Result<Self, WorldError> {
-        let BoardMemory { pool, actives: [first, second] } = memory;
+        let BoardMemory { pool, actives: [first, second], stream } = memory;
         let tick_hz = config.board.tick_hz;
-        let ticker = Ticker::new(&config.board, pool, first);
+        let mut ticker = Ticker::new(&config.board, pool, first);
+        ticker.attach_stream(stream);
+        let mut session = Session::new(config.board, pool, second);
+        session.attach_stream(stream);
         Ok(Self {
-            session: Session::new(config.board, pool, second),
+            session,
             status: ticker.status(),
             ticker,
             world: World::new(config.world, stroke, seed)?,
@@ -161,11 +166,12 @@ impl<'a> Rig<'a> {
         let felt = self.world.apply(drive);
         self.status = self.ticker.status();
         self.session.poll(&self.status);
-        let sent = self.transmit();
+        let room = self.room();
+        let sent = self.transmit(room);
         self.tick += 1;
         if let (Some(journal), Some(received)) = (&mut self.journal, received) {
             let tick = self.tick as u32;
-            journal.push(&Given { tick, received, sense }, &Done { tick, drive, sent });
+            journal.push(&Given { tick, received, room, sense }, &Done { tick, drive, sent });
         }
         TickRecord { tick: self.tick, status: self.status, felt }
     }
@@ -185,17 +191,22 @@ impl<'a> Rig<'a> {
 
     /// The finger in the world is the scene's, unless a scenario says otherwise.
     fn put_scenes_finger_on(&mut self) {
-        let scene = self.session.scene().and_then(|bytes| Scene::parse(bytes).ok());
-        self.scene = scene.map(|scene| *scene.header());
+        self.scene = self.session.scene_header().copied();
         if let Some(Ok(contact)) = self.scene.as_ref().map(contact_of) {
             self.world.set_finger(contact);
         }
     }
 
-    /// Moves what the board has to say to the line, and returns it.
-    fn transmit(&mut self) -> TickBytes {
+    /// Bytes that the line takes now. It has a queue as a port has one: what is beyond it waits on the board, which
+    /// leaves telemetry out when too much does.
+    fn room(&self) -> u8 {
+        TICK_BYTES_MAX.saturating_sub(self.to_host.queued()) as u8
+    }
+
+    /// Moves what the board has to say to the line, as far as there is room, and returns it.
+    fn transmit(&mut self, room: u8) -> TickBytes {
         let mut bytes = [0; TICK_BYTES_MAX];
-        let count = self.session.transmit(&mut bytes);
+        let count = self.session.transmit(bytes.get_mut(..usize::from(room)).unwrap_or_default());
         let sent: TickBytes = bytes.into_iter().take(count).collect();
         if !sent.is_empty() {
             self.to_host.send(&sent);

@@ -96,7 +96,8 @@ fn a_picture_on_a_sine_carrier_is_the_same() {
     assert_same(&image, &journal);
 }
 
-/// Everything at once: every kind of layer, no prediction, telemetry, a bad line, a fault and its end, a second scene.
+/// Everything at once: every kind of layer, some changed while they play, no prediction, telemetry, a bad line, a fault
+/// and its end, a second scene.
 #[test]
 fn a_bad_day_is_the_same() {
     let Some(image) = emulator::image() else { return };
@@ -143,7 +144,10 @@ fn a_bad_day_is_the_same() {
         for byte in [5, 60, 61, 62] {
             script.rig.line_to_board_mut().schedule_fault(byte + 40_000, LineFault::Flip(0x10));
         }
-        script.run(30_000);
+        script.run(10_000);
+        script.command(Command::SetLayer { layer: 1, on: false, gain: 1.0 });
+        script.command(Command::SetLayer { layer: 3, on: true, gain: -0.3 });
+        script.run(20_000);
         let now = script.rig.tick();
         script.rig.world_mut().schedule_amplifier_fault(now..now + 3);
         script.run(5_000);

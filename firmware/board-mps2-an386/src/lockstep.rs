@@ -38,7 +38,8 @@ fn tick(session: &mut Session<'static>, ticker: &mut Ticker<'static>, status: &m
     *status = ticker.status();
     session.poll(status);
     let mut bytes = [0; TICK_BYTES_MAX];
-    let count = session.transmit(&mut bytes);
+    let room = bytes.get_mut(..usize::from(given.room)).unwrap_or_default();
+    let count = session.transmit(room);
     let sent = bytes.into_iter().take(count).collect();
     Done { tick: status.telemetry.tick, drive, sent }
 }

@@ -20,11 +20,13 @@ use cortex_m::Peripherals;
 use cortex_m::singleton;
 use cortex_m_rt::entry;
 use frixel_exchange::{BOARD, layout};
-use frixel_render::{Active, BitmapPool, Board, Session, Ticker};
+use frixel_render::{Active, BitmapPool, Board, Session, StreamBuffer, Ticker};
 use frixel_wire::hello::ResetCause;
 
 /// Memory for bitmaps, written by the session and read by the tick.
 static POOL: BitmapPool = BitmapPool::new();
+/// Samples of a stream, likewise.
+static STREAM: StreamBuffer = StreamBuffer::new();
 
 #[entry]
 fn main() -> ! {
@@ -36,8 +38,10 @@ fn main() -> ! {
     else {
         fault::never()
     };
-    let ticker = Ticker::new(&board, &POOL, first);
+    let mut ticker = Ticker::new(&board, &POOL, first);
+    ticker.attach_stream(&STREAM);
     let Some(session) = singleton!(: Session<'static> = Session::new(board, &POOL, second)) else { fault::never() };
+    session.attach_stream(&STREAM);
     match (shared::get(layout::MODE), Peripherals::take()) {
         (layout::MODE_LINK, Some(peripherals)) => talk::run(&board, session, ticker, peripherals),
         _ => lockstep::run(session, ticker),

@@ -16,6 +16,7 @@ pub const DONE_WORDS_MAX: usize = 2 + TICK_BYTES_MAX / 4;
 const AMPLIFIER_FAULT: u32 = 1 << 2;
 const ARM_SWITCH: u32 = 1 << 3;
 const BYTES_SHIFT: u32 = 8;
+const ROOM_SHIFT: u32 = 16;
 
 const AMPLIFIER_ENABLE: u32 = 1 << 16;
 const SENT_SHIFT: u32 = 24;
@@ -27,6 +28,8 @@ pub struct Given {
     pub tick: u32,
     /// Bytes that have come on the serial line.
     pub received: TickBytes,
+    /// Bytes that the serial line has room for, [`TICK_BYTES_MAX`] at most.
+    pub room: u8,
     /// What the board sees.
     pub sense: Sense,
 }
@@ -35,7 +38,8 @@ impl Given {
     /// Puts its words, [`GIVEN_WORDS_MAX`] at most.
     pub fn write(&self, mut put: impl FnMut(u32)) {
         let sense = &self.sense;
-        let mut kind = touch_kind(sense.touch) | (self.received.len() as u32) << BYTES_SHIFT;
+        let mut kind = touch_kind(sense.touch);
+        kind |= (self.received.len() as u32) << BYTES_SHIFT | u32::from(self.room) << ROOM_SHIFT;
         if sense.amplifier_fault {
             kind |= AMPLIFIER_FAULT;
         }
@@ -61,8 +65,8 @@ impl Given {
             monitor_v,
             arm_switch: kind & ARM_SWITCH != 0,
         };
-        let received = take_bytes((kind >> BYTES_SHIFT) as usize, &mut take);
-        Self { tick, received, sense }
+        let received = take_bytes(usize::from((kind >> BYTES_SHIFT) as u8), &mut take);
+        Self { tick, received, room: (kind >> ROOM_SHIFT) as u8, sense }
     }
 }
 
@@ -127,11 +131,11 @@ mod tests {
     proptest! {
         #[test]
         fn what_is_given_and_done_comes_back_from_its_words(
-            (tick, received, sent) in (any::<u32>(), bytes(), bytes()),
+            (tick, received, room, sent) in (any::<u32>(), bytes(), any::<u8>(), bytes()),
             (touch, amplifier_fault, monitor_v, arm_switch) in (touch(), any::<bool>(), -300.0_f32..300.0, any::<bool>()),
             (dac_code, amplifier_enable) in (any::<i16>(), any::<bool>()),
         ) {
-            let given = Given { tick, received, sense: Sense { touch, amplifier_fault, monitor_v, arm_switch } };
+            let given = Given { tick, received, room, sense: Sense { touch, amplifier_fault, monitor_v, arm_switch } };
             let done = Done { tick, drive: Drive { dac_code, amplifier_enable }, sent };
             let mut words = std::vec::Vec::new();
             given.write(|word| words.push(word));

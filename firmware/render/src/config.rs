@@ -12,6 +12,8 @@ const CARRIER_MIN_HZ: f32 = 125.0;
 const HALF_PERIOD_MIN_TICKS: f32 = 4.0;
 /// Farthest from the screen's corner that anything may be, in m.
 pub(crate) const LENGTH_MAX_M: f32 = 2.0;
+/// Largest gain of a layer, either way.
+pub(crate) const GAIN_MAX: f32 = 100.0;
 /// Largest friction that a layer may name, in N, either way.
 const FRICTION_MAX_N: f32 = 100.0;
 /// Least width and height of a region, in m: their inverses are finite.
@@ -61,7 +63,7 @@ pub(crate) fn check_header(header: &Header, board: &Board) -> Result<(), ConfigR
 
 /// Checks the numbers of layer number `layer` of a scene.
 pub(crate) fn check_record(record: &Record, scene: &Scene, layer: u8) -> Result<(), ConfigRefusal> {
-    within(ConfigField::Gain, record.gain, -100.0, 100.0, layer)?;
+    within(ConfigField::Gain, record.gain, -GAIN_MAX, GAIN_MAX, layer)?;
     check_region(record.region, scene, layer)?;
     check_kind(&record.layer, scene, layer)
 }

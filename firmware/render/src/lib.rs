@@ -46,8 +46,10 @@ mod carrier;
 mod config;
 mod envelope;
 mod estimator;
+mod finger;
 mod io;
 mod layer;
+mod motion;
 mod order;
 #[cfg(any(feature = "edge", feature = "speed"))]
 mod root;
@@ -55,6 +57,8 @@ mod session;
 mod stillness;
 #[cfg(feature = "store")]
 pub mod store;
+#[cfg(feature = "stream")]
+mod stream;
 mod supervisor;
 mod ticker;
 #[cfg(any(
@@ -75,4 +79,6 @@ pub use order::{Counters, Order, Status};
 #[cfg(feature = "store")]
 pub use session::KeptScene;
 pub use session::Session;
+#[cfg(feature = "stream")]
+pub use stream::{STREAM_LEN, StreamBuffer, StreamStart};
 pub use ticker::Ticker;

@@ -4,6 +4,8 @@ use frixel_wire::fault::Fault;
 use frixel_wire::message::Telemetry;
 
 use crate::Active;
+#[cfg(feature = "stream")]
+use crate::stream::StreamStart;
 
 /// What the session asks of the ticker. `'a` is the life of the two [`Active`] buffers.
 pub enum Order<'a> {
@@ -19,7 +21,7 @@ pub enum Order<'a> {
         layer: u8,
         /// Whether it takes part at all.
         on: bool,
-        /// Factor on its friction.
+        /// Factor on its friction, in place of its record's.
         gain: f32,
     },
     /// Disarmed to Armed.
@@ -32,6 +34,15 @@ pub enum Order<'a> {
     Stop,
     /// Faulted to Disarmed.
     ClearFault,
+    /// Begin a stream.
+    #[cfg(feature = "stream")]
+    StartStream(StreamStart),
+    /// Let the stream end.
+    #[cfg(feature = "stream")]
+    EndStream {
+        /// Position behind its last sample.
+        last: u32,
+    },
 }
 
 /// What the ticker tells the session. Made when asked for, not at every tick.
@@ -60,4 +71,8 @@ pub struct Counters {
     pub balanced_edges: u32,
     /// Ticks whose deadline was missed.
     pub missed_deadlines: u32,
+    /// Times that a stream ran dry; none without the feature `stream`.
+    pub stream_underruns: u32,
+    /// Runs of samples of a stream that never came, though later ones did; none without the feature `stream`.
+    pub stream_gaps: u32,
 }

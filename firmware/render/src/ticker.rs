@@ -5,122 +5,54 @@ use frixel_wire::message::Telemetry;
 
 use crate::carrier::Carrier;
 use crate::envelope::Envelope;
-use crate::estimator::{Estimate, Estimator};
+use crate::finger::{Finger, FingerTiming, Presence};
 use crate::layer::{Clicks, Moment};
 use crate::order::Counters;
-use crate::stillness::{Stillness, StillnessTiming};
+#[cfg(feature = "stream")]
+use crate::stream::{Player, StreamBuffer, StreamNow};
 use crate::supervisor::{self, Supervisor};
-use crate::{Active, BitmapPool, Board, Drive, Order, Sense, Status, Touch};
+use crate::{Active, BitmapPool, Board, Drive, Order, Sense, Status};
 
-/// Touch data is too old to use after this many report periods without a report.
-const STALE_AFTER_PERIODS: f32 = 3.0;
-/// A sample older than this, 0.8 s at 40 kHz, says nothing of where the finger is now.
-const SAMPLE_AGE_MAX_TICKS: u32 = 1 << 15;
+/// Ticks until the next look at what has no deadline: far less than the tick counter takes to wrap.
+const LOOK_AFTER_TICKS: u32 = 1 << 30;
 
 /// Turns touch into voltage, one tick at a time, and owns the output through its supervisor.
 pub struct Ticker<'a> {
+    finger: Finger,
     timing: Timing,
     pool: &'a BitmapPool,
     active: &'a mut Active,
     supervisor: Supervisor,
-    finger: Finger,
     clicks: Clicks,
     envelope: Envelope,
     carrier: Carrier,
     tick: u32,
+    /// When something is next due: a host that is silent, or touch data that are too old.
+    due_tick: u32,
+    /// When the host will have been silent for too long, or when to look again if it need not be there.
+    silent_tick: u32,
+    /// There is a scene, a finger, and leave to drive.
+    live: bool,
     drive: Drive,
     arm_switch: bool,
-    /// On the friction under the finger: below 1 while the finger is still or was so.
-    gain: f32,
+    /// Where the finger was taken to be when the scene was last asked, in m.
+    asked_at_m: [f32; 2],
     asked_electric_friction_n: f32,
     target_v_rms: f32,
-    out_of_reach: bool,
     flags: Flags,
     counters: Counters,
     orders_applied: u32,
+    /// `None` on a board that has no buffer for it.
+    #[cfg(feature = "stream")]
+    stream: Option<Player<'a>>,
 }
 
 /// What belongs to the board and is computed once.
 #[derive(Clone, Copy)]
 struct Timing {
-    tick_period_s: f32,
-    stale_after_ticks: u32,
+    finger: FingerTiming,
     host_timeout_default_ticks: u32,
-    stillness: StillnessTiming,
     volts_per_code: f32,
-}
-
-/// What the ticker knows of the finger.
-struct Finger {
-    estimator: Estimator,
-    stillness: Stillness,
-    /// Ticks until the last report is too old, zero without a finger.
-    good_ticks: u32,
-    /// When the newest sample was true; outlives stale data, so that a source that is stuck does not start anew.
-    sampled_at_tick: Option<u32>,
-    last_x_m: f32,
-    last_y_m: f32,
-    estimate: Estimate,
-}
-
-impl Finger {
-    const UP: Self = Self {
-        estimator: Estimator::NEW,
-        stillness: Stillness::MOVING,
-        good_ticks: 0,
-        sampled_at_tick: None,
-        last_x_m: 0.0,
-        last_y_m: 0.0,
-        estimate: Estimate::ZERO,
-    };
-
-    fn take(&mut self, touch: Touch, now_tick: u32, timing: &Timing) {
-        match touch {
-            Touch::Up => {
-                self.lift();
-                self.sampled_at_tick = None;
-            }
-            Touch::Down { x_m, y_m, age_ticks } => {
-                let newer = self.sampled_at_tick.is_none_or(|tick| age_ticks < now_tick.wrapping_sub(tick));
-                // A report that says nothing new does not keep the output alive: the source may be stuck.
-                if newer && age_ticks <= SAMPLE_AGE_MAX_TICKS && x_m.is_finite() && y_m.is_finite() {
-                    self.estimator.update(now_tick, age_ticks, x_m, y_m, timing.tick_period_s);
-                    self.sampled_at_tick = Some(now_tick.wrapping_sub(age_ticks));
-                    // The report is good at this tick, too.
-                    self.good_ticks = timing.stale_after_ticks + 2;
-                    self.last_x_m = x_m;
-                    self.last_y_m = y_m;
-                }
-            }
-        }
-    }
-
-    /// Forgets the finger. What is left of its estimator means nothing without samples.
-    fn lift(&mut self) {
-        self.good_ticks = 0;
-        self.estimator.forget();
-        self.stillness = Stillness::MOVING;
-        self.estimate = Estimate::ZERO;
-        self.last_x_m = 0.0;
-        self.last_y_m = 0.0;
-    }
-
-    /// Estimates where the finger is now.
-    #[inline]
-    fn locate(&mut self, now_tick: u32, tick_period_s: f32) {
-        self.estimate = self.estimator.at(now_tick, tick_period_s);
-    }
-
-    /// Where the finger is taken to be; without prediction, where it was last seen.
-    #[inline]
-    fn place(&self, prediction: bool) -> (f32, f32) {
-        if prediction { (self.estimate.x_m, self.estimate.y_m) } else { self.last_place() }
-    }
-
-    #[cold]
-    fn last_place(&self) -> (f32, f32) {
-        (self.last_x_m, self.last_y_m)
-    }
 }
 
 impl<'a> Ticker<'a> {
@@ -130,10 +62,8 @@ impl<'a> Ticker<'a> {
         let carrier = Carrier::new(&active.carrier);
         Self {
             timing: Timing {
-                tick_period_s: board.tick_period_s(),
-                stale_after_ticks: board.ticks(STALE_AFTER_PERIODS * board.limits.touch_report_period_s),
+                finger: FingerTiming::new(board),
                 host_timeout_default_ticks: supervisor::host_timeout_default_ticks(board),
-                stillness: StillnessTiming::new(board.tick_hz),
                 volts_per_code: board.limits.full_scale_v_peak / f32::from(i16::MAX),
             },
             pool,
@@ -144,16 +74,26 @@ impl<'a> Ticker<'a> {
             envelope: Envelope::default(),
             carrier,
             tick: 0,
+            due_tick: LOOK_AFTER_TICKS,
+            silent_tick: LOOK_AFTER_TICKS,
+            live: false,
             drive: Drive::default(),
             arm_switch: false,
-            gain: 1.0,
+            asked_at_m: [0.0; 2],
             asked_electric_friction_n: 0.0,
             target_v_rms: 0.0,
-            out_of_reach: false,
             flags: Flags::NO_FINGER,
             counters: Counters::default(),
             orders_applied: 0,
+            #[cfg(feature = "stream")]
+            stream: None,
         }
+    }
+
+    /// From now on, plays streams from `buffer`, into which the session takes their samples.
+    #[cfg(feature = "stream")]
+    pub fn attach_stream(&mut self, buffer: &'a StreamBuffer) {
+        self.stream = Some(Player::new(buffer, self.timing.finger.tick_period_s()));
     }
 
     /// Takes an order of the session, between two ticks. Hands back the coefficients that a [`Order::Load`] replaced.
@@ -168,6 +108,10 @@ impl<'a> Ticker<'a> {
                 self.carrier.retime(&self.active.carrier);
                 self.envelope.limit(self.active.voltage_max_v_rms);
                 self.clicks.forget();
+                if self.active.prediction != spare.prediction {
+                    self.finger.locate(self.tick, self.active.prediction, &self.timing.finger);
+                }
+                self.ask_again();
                 Some(spare)
             }
             Order::Unload => {
@@ -176,12 +120,34 @@ impl<'a> Ticker<'a> {
             }
             Order::SetLayer { layer, on, gain } => {
                 self.active.set_layer(layer, on, gain);
+                self.ask_again();
+                None
+            }
+            #[cfg(feature = "stream")]
+            Order::StartStream(start) => {
+                self.on_stream(|stream| stream.start(start));
+                None
+            }
+            #[cfg(feature = "stream")]
+            Order::EndStream { last } => {
+                self.on_stream(|stream| stream.end(last));
                 None
             }
             _ => None,
         };
         self.supervisor.set_host_timeout(self.host_timeout_ticks());
+        self.look();
         spare
+    }
+
+    /// An order has changed what the scene asks for: should the next tick go on with what was asked for before, that is
+    /// the new scene's, too.
+    #[cold]
+    #[inline(never)]
+    fn ask_again(&mut self) {
+        if self.drive.amplifier_enable {
+            self.target_v_rms = self.voltage_v_rms(self.asked_at_m);
+        }
     }
 
     /// Latches a hard fault that the board has found: the output is zero from the next tick on. A fault that is latched
@@ -191,6 +157,7 @@ impl<'a> Ticker<'a> {
             self.counters.missed_deadlines = self.counters.missed_deadlines.wrapping_add(1);
         }
         self.supervisor.raise(fault, detail);
+        self.look();
     }
 
     /// One tick: to be called exactly [`Board::tick_hz`] times a second.
@@ -201,21 +168,90 @@ impl<'a> Ticker<'a> {
     pub fn tick(&mut self, sense: &Sense) -> Drive {
         self.tick = self.tick.wrapping_add(1);
         self.arm_switch = sense.arm_switch;
-        if let Some(touch) = sense.touch {
-            self.finger.take(touch, self.tick, &self.timing);
-        }
         let driven_v = f32::from(self.drive.dac_code) * self.timing.volts_per_code;
-        let may_drive = self.supervisor.check(sense, driven_v, self.tick);
-        let finger_there = self.look_after_finger();
-        self.drive = if may_drive && finger_there { self.render(sense.touch.is_some()) } else { self.silence() };
-        self.drive
+        if self.supervisor.check(sense, driven_v) {
+            self.look();
+        }
+        #[cfg(feature = "stream")]
+        self.on_stream(Player::advance);
+        let due = self.due_tick.wrapping_sub(self.tick) as i32 <= 0;
+        if due || sense.touch.is_some() || self.finger.is_digesting() {
+            self.attend(sense, due);
+        } else {
+            let still = self.finger.advance(&self.timing.finger);
+            self.flags = if still { Flags::STILL } else { Flags::default() };
+            if self.live {
+                self.asked_at_m = self.finger.place_m();
+                self.target_v_rms = self.voltage_v_rms(self.asked_at_m);
+            }
+        }
+        self.put_out()
+    }
+
+    /// Attends to what is due, or to a report of the touch source. That is enough for a tick: it goes on with what the
+    /// tick before asked for.
+    #[inline(never)]
+    fn attend(&mut self, sense: &Sense, due: bool) {
+        let timing = &self.timing.finger;
+        self.finger.go_on();
+        self.flags = if self.finger.gain() < 1.0 { Flags::STILL } else { Flags::default() };
+        match sense.touch {
+            Some(touch) => self.finger.take(touch, self.tick, timing),
+            None if due => {}
+            None => self.finger.digest(self.tick, self.active.prediction, timing),
+        }
+        if due {
+            self.look();
+        } else if !self.live && self.may_be_live() {
+            self.due_tick = self.tick.wrapping_add(1);
+        } else {
+            self.live &= self.may_be_live();
+            self.find_next_due();
+        }
+        if self.live {
+            self.note_reach();
+        }
+    }
+
+    /// There is a scene, a finger, and leave to drive.
+    fn may_be_live(&self) -> bool {
+        let there = matches!(self.finger.presence(), Presence::Down { .. });
+        there && self.supervisor.state() == State::Active && self.active.table().is_some()
+    }
+
+    /// Looks at everything that has a deadline, and finds out whether to drive and when to look again.
+    fn look(&mut self) {
+        self.finger.expire(self.tick);
+        self.supervisor.expire(self.tick);
+        let in_ticks = self.supervisor.silent_at_tick().map_or(LOOK_AFTER_TICKS, |tick| tick.wrapping_sub(self.tick));
+        self.silent_tick = self.tick.wrapping_add(in_ticks.min(LOOK_AFTER_TICKS));
+        self.find_next_due();
+        self.live = self.may_be_live();
+        #[cfg(feature = "stream")]
+        if self.supervisor.state() != State::Active {
+            self.on_stream(Player::stop);
+        }
+    }
+
+    /// The next deadline: the host's, or before it the finger's.
+    fn find_next_due(&mut self) {
+        self.due_tick = match self.finger.presence() {
+            Presence::Down { until_tick } if (until_tick.wrapping_sub(self.silent_tick) as i32) < 0 => until_tick,
+            _ => self.silent_tick,
+        };
     }
 
     /// What the board does now.
     pub fn status(&self) -> Status {
-        let estimate = &self.finger.estimate;
-        let (finger_x_m, finger_y_m) = self.finger.place(self.active.prediction);
-        let flags = if self.supervisor.host_silent() { self.flags.with(Flags::HOST_SILENT) } else { self.flags };
+        let [finger_x_m, finger_y_m] = self.finger.place_m();
+        let mut flags = self.flags;
+        if self.supervisor.host_silent() {
+            flags = flags.with(Flags::HOST_SILENT);
+        }
+        #[cfg(feature = "stream")]
+        if self.stream.as_ref().is_some_and(Player::is_dry) {
+            flags = flags.with(Flags::STREAM_DRY);
+        }
         Status {
             telemetry: Telemetry {
                 tick: self.tick,
@@ -223,10 +259,7 @@ impl<'a> Ticker<'a> {
                 flags,
                 finger_x_m,
                 finger_y_m,
-                speed_m_per_s: libm::sqrtf(
-                    estimate.velocity_x_m_per_s * estimate.velocity_x_m_per_s
-                        + estimate.velocity_y_m_per_s * estimate.velocity_y_m_per_s,
-                ),
+                speed_m_per_s: self.finger.speed_m_per_s(),
                 asked_electric_friction_n: self.asked_electric_friction_n,
                 voltage_v_rms: self.envelope.voltage_v_rms(),
                 dac_code: self.drive.dac_code,
@@ -234,8 +267,31 @@ impl<'a> Ticker<'a> {
             fault: self.supervisor.fault(),
             orders_applied: self.orders_applied,
             arm_switch: self.arm_switch,
-            counters: self.counters,
+            counters: self.counters(),
         }
+    }
+
+    fn counters(&self) -> Counters {
+        #[cfg(feature = "stream")]
+        if let Some(stream) = &self.stream {
+            let (stream_underruns, stream_gaps) = stream.counts();
+            return Counters { stream_underruns, stream_gaps, ..self.counters };
+        }
+        self.counters
+    }
+
+    #[cfg(feature = "stream")]
+    #[inline]
+    fn on_stream(&mut self, act: impl FnOnce(&mut Player<'a>)) {
+        if let Some(stream) = &mut self.stream {
+            act(stream);
+        }
+    }
+
+    #[cfg(feature = "stream")]
+    #[inline]
+    fn stream_now(&self) -> StreamNow {
+        self.stream.as_ref().map_or(StreamNow::default(), Player::now)
     }
 
     /// The timeout that holds now. Only a playing scene may go on without a host.
@@ -247,36 +303,11 @@ impl<'a> Ticker<'a> {
         }
     }
 
-    /// Finds the finger, and returns whether there is one.
+    /// Brings the envelope to what is asked for, and the carrier to the DAC.
     #[inline]
-    fn look_after_finger(&mut self) -> bool {
-        if self.finger.good_ticks == 0 {
-            self.flags = Flags::NO_FINGER;
-            return false;
-        }
-        self.finger.good_ticks -= 1;
-        if self.finger.good_ticks == 0 {
-            self.flags = Flags::TOUCH_STALE;
-            self.finger.lift();
-            return false;
-        }
-        self.finger.locate(self.tick, self.timing.tick_period_s);
-        let ramp = self.finger.stillness.update(&self.finger.estimate, &self.timing.stillness);
-        self.gain = ramp.unwrap_or(1.0);
-        self.flags = if ramp.is_some() { Flags::STILL } else { Flags::default() };
-        true
-    }
-
-    /// Puts the friction under the finger on the carrier. A tick that has taken a report has done enough: it goes on
-    /// with what the tick before asked for, and the longest tick is shorter by a quarter.
-    #[inline]
-    fn render(&mut self, reported: bool) -> Drive {
-        if !reported {
-            self.target_v_rms = self.voltage_under_finger_v_rms();
-        }
-        if self.out_of_reach {
-            self.flags = self.flags.with(Flags::SATURATED);
-            self.counters.saturated_ticks = self.counters.saturated_ticks.wrapping_add(1);
+    fn put_out(&mut self) -> Drive {
+        if !self.live {
+            return self.rest();
         }
         if self.envelope.follow(self.target_v_rms, self.active.slew_step_v) {
             self.flags = self.flags.with(Flags::SLEWED);
@@ -287,37 +318,67 @@ impl<'a> Ticker<'a> {
             self.flags = self.flags.with(Flags::CARRIER_BALANCED);
             self.counters.balanced_edges = self.counters.balanced_edges.wrapping_add(1);
         }
-        Drive { dac_code, amplifier_enable: true }
+        self.drive = Drive { dac_code, amplifier_enable: true };
+        self.drive
     }
 
-    /// The rms voltage that the scene wants under the finger.
+    /// The rms voltage that the scene wants at a place.
     #[inline]
-    fn voltage_under_finger_v_rms(&mut self) -> f32 {
+    fn voltage_v_rms(&mut self, [x_m, y_m]: [f32; 2]) -> f32 {
         let Some(table) = self.active.table() else { return 0.0 };
-        let (x_m, y_m) = self.finger.place(self.active.prediction);
-        let Estimate { velocity_x_m_per_s, velocity_y_m_per_s, .. } = self.finger.estimate;
-        let moment = Moment { x_m, y_m, velocity_x_m_per_s, velocity_y_m_per_s, tick: self.tick, stream: 0.0 };
-        self.clicks.begin(self.tick);
-        let electric_friction_n = self.gain * self.active.electric_friction_n(moment, self.pool, &mut self.clicks);
+        let moment = Moment {
+            x_m,
+            y_m,
+            #[cfg(feature = "speed")]
+            velocity_m_per_s: self.finger.velocity_m_per_s(),
+            tick: self.tick,
+            #[cfg(feature = "stream")]
+            stream: self.stream_now(),
+        };
+        #[cfg(feature = "edge")]
+        self.clicks.begin();
+        let friction_n = self.active.electric_friction_n(moment, self.pool, &mut self.clicks);
+        let electric_friction_n = self.finger.gain() * friction_n;
         self.asked_electric_friction_n = electric_friction_n;
+        let voltage_v_rms = table.voltage_v_rms(electric_friction_n);
+        self.note_reach();
+        voltage_v_rms
+    }
+
+    /// Counts a tick whose friction is out of reach.
+    #[inline]
+    fn note_reach(&mut self) {
+        let asked_n = self.asked_electric_friction_n;
         // Bit patterns of what is negative, and of not-a-number, are above those of every positive number.
-        self.out_of_reach = electric_friction_n.to_bits() > table.electric_friction_max_n().to_bits()
-            && is_not_minus_zero(electric_friction_n);
-        table.voltage_v_rms(electric_friction_n)
+        if asked_n.to_bits() > self.active.electric_friction_max_bits() {
+            self.note_out_of_reach();
+        }
+    }
+
+    #[cold]
+    fn note_out_of_reach(&mut self) {
+        // Minus zero is zero.
+        if self.asked_electric_friction_n != 0.0 {
+            self.flags = self.flags.with(Flags::SATURATED);
+            self.counters.saturated_ticks = self.counters.saturated_ticks.wrapping_add(1);
+        }
     }
 
     /// Zero at once.
-    fn silence(&mut self) -> Drive {
+    #[inline(never)]
+    fn rest(&mut self) -> Drive {
+        match self.finger.presence() {
+            Presence::Up => self.flags = Flags::NO_FINGER,
+            Presence::Stale => self.flags = Flags::NO_FINGER.with(Flags::TOUCH_STALE),
+            Presence::Down { .. } => {}
+        }
         self.asked_electric_friction_n = 0.0;
         self.target_v_rms = 0.0;
-        self.out_of_reach = false;
+        #[cfg(feature = "edge")]
+        self.clicks.lift();
         self.envelope.silence();
         self.carrier.rest(&self.active.carrier);
-        Drive::default()
+        self.drive = Drive::default();
+        self.drive
     }
-}
-
-#[cold]
-fn is_not_minus_zero(electric_friction_n: f32) -> bool {
-    electric_friction_n != 0.0
 }

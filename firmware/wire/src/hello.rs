@@ -17,7 +17,7 @@ pub const MAGIC: [u8; 4] = *b"FRXL";
 /// Protocol of this crate, major: raised when an older peer can no longer be talked to.
 pub const PROTOCOL_MAJOR: u8 = 1;
 /// Protocol of this crate, minor: raised when something was added that an older peer may ignore.
-pub const PROTOCOL_MINOR: u8 = 0;
+pub const PROTOCOL_MINOR: u8 = 1;
 /// Most bytes that a hello of any protocol may have.
 pub const HELLO_MAX_LEN: usize = 128;
 /// Bytes of a hello that this crate writes.
@@ -76,10 +76,25 @@ pub mod feature {
     pub const VIBRATION: u32 = 1 << 7;
     /// Speed layers.
     pub const SPEED: u32 = 1 << 8;
-    /// Stream layers.
+    /// Stream layers, and the samples that the host streams for them while a scene plays.
     pub const STREAM: u32 = 1 << 9;
     /// Polygons as regions.
     pub const POLYGON: u32 = 1 << 10;
+
+    /// The name of each, as the board's Cargo features have it where there is one.
+    pub const NAMES: [(u32, &str); 11] = [
+        (GRATING, "grating"),
+        (BITMAP, "bitmap"),
+        (SINE_CARRIER, "sine-carrier"),
+        (TELEMETRY, "telemetry"),
+        (HOST_TOUCH, "touch from the host"),
+        (NOISE, "noise"),
+        (EDGE, "edge"),
+        (VIBRATION, "vibration"),
+        (SPEED, "speed"),
+        (STREAM, "stream"),
+        (POLYGON, "polygon"),
+    ];
 }
 
 /// Kind of board. Numbers never change.

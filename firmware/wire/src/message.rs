@@ -78,7 +78,47 @@ pub enum Command {
         /// Bytes of the text that the host has already.
         offset: u8,
     },
+    /// Switches a layer of the playing scene on or off and sets its gain, at a tick boundary. A commit brings back
+    /// what the scene says.
+    SetLayer {
+        /// The layer: its record's place in the scene, from zero.
+        layer: u8,
+        /// Whether the layer acts.
+        on: bool,
+        /// Factor on the layer's friction from now on, in place of its record's.
+        gain: f32,
+    },
+    /// Starts a stream of samples for the `stream` layers of the playing scene; one under way is forgotten. Its samples
+    /// count from zero.
+    StartStream {
+        /// Samples a second; at most the board's ticks a second.
+        sample_hz: u32,
+        /// Samples that have to be there before the stream begins to play, and again after it ran dry;
+        /// 1 to [`STREAM_START_LEVEL_MAX`].
+        start_level: u16,
+    },
+    /// Says that no more samples come: the stream ends after the last one, which is no underrun.
+    EndStream,
+    /// As [`Self::Touch`], for one of several fingers. The scene's rule says which of them leads.
+    TouchFinger {
+        /// The finger's number; the same from touch to lift.
+        finger: u8,
+        /// From the left edge of the screen, m.
+        x_m: f32,
+        /// From the top edge of the screen, m.
+        y_m: f32,
+        /// Ticks since the finger was there.
+        age_ticks: u16,
+    },
+    /// As [`Self::Lift`], for one of several fingers.
+    LiftFinger {
+        /// The finger's number.
+        finger: u8,
+    },
 }
+
+/// Largest start level of a stream, in samples: what leaves room in the smallest buffer for two frames more.
+pub const STREAM_START_LEVEL_MAX: u16 = 800;
 
 /// Bytes of a fault's text that one answer carries.
 pub const FAULT_TEXT_PIECE_LEN: usize = 32;
@@ -110,6 +150,19 @@ pub enum FromBoard {
         fault: Option<Fault>,
         /// Why, where it is not a fault ([`Flags::HOST_SILENT`]).
         flags: Flags,
+    },
+    /// How a stream is doing; gives credit back while samples flow, in bytes and in samples.
+    StreamProgress {
+        /// Index of the sample behind the last one that the board has.
+        next_index: u32,
+        /// Samples from `next_index` on that the board has room for. What goes beyond is dropped.
+        room: u16,
+        /// Times that the stream ran dry since power-on, modulo 2^32.
+        underruns: u32,
+        /// Runs of samples that never came, though later ones did, since power-on, modulo 2^32.
+        gaps: u32,
+        /// Bytes received since the hello, garbage included, modulo 2^32.
+        received_bytes: u32,
     },
 }
 

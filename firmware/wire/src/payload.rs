@@ -6,9 +6,10 @@
 //! | `0x01` | board | [`Hello`] |
 //! | `0x02` | host | [`Request`] in postcard |
 //! | `0x03` | board | [`FromBoard`] in postcard |
+//! | `0x04` | host | samples of a stream: index of the first one, 4 bytes; then 1 to [`SAMPLES_MAX`] samples, 2 bytes each; all little-endian |
 //! | `0x80..=0xff` | host | upload chunk: the chunk's number in 15 bits, big-endian, whose top bit is this byte's; then 1 to [`CHUNK_LEN`] bytes |
 //!
-//! A host sends with [`hello_request_frame`], [`request_frame`] and [`chunk_frame`] and reads with
+//! A host sends with [`hello_request_frame`], [`request_frame`], [`chunk_frame`] and [`samples_frame`] and reads with
 //! [`Payload::parse_from_board`]. A board sends with [`hello_frame`] and [`from_board_frame`] and reads with
 //! [`Payload::parse_from_host`], so that its image holds no code for the other direction.
 
@@ -29,6 +30,9 @@ pub const PAYLOAD_MAX_LEN: usize = 186;
 /// Bytes that every chunk of an upload carries, but for the last, which may be shorter.
 pub const CHUNK_LEN: usize = PAYLOAD_MAX_LEN - 2;
 
+/// Most samples of a stream that a frame carries.
+pub const SAMPLES_MAX: usize = (PAYLOAD_MAX_LEN - 5) / 2;
+
 /// Largest number that a chunk can have.
 pub const CHUNK_NUMBER_MAX: u16 = 0x7fff;
 
@@ -36,6 +40,7 @@ const HELLO_REQUEST: u8 = 0x00;
 const HELLO: u8 = 0x01;
 const REQUEST: u8 = 0x02;
 const FROM_BOARD: u8 = 0x03;
+const SAMPLES: u8 = 0x04;
 const CHUNK: u8 = 0x80;
 
 const _: () = assert!(Request::POSTCARD_MAX_SIZE < PAYLOAD_MAX_LEN);
@@ -62,6 +67,13 @@ pub enum Payload<'a> {
         /// Its bytes: [`CHUNK_LEN`] of them, fewer in the last chunk, never none.
         bytes: &'a [u8],
     },
+    /// Samples of the stream that is under way.
+    Samples {
+        /// Index of the first sample, counted from the start of the stream.
+        first_index: u32,
+        /// The samples, each little-endian, 65,535 for 1; up to [`SAMPLES_MAX`] of them, never none.
+        samples: &'a [[u8; 2]],
+    },
 }
 
 impl<'a> Payload<'a> {
@@ -84,6 +96,7 @@ impl<'a> Payload<'a> {
                 Ok(Self::Chunk { number: u16::from_be_bytes([kind & !CHUNK, *low]), bytes })
             }
             (CHUNK.., _) => Err(ParseError::Malformed { kind }),
+            (SAMPLES, rest) => parse_samples(rest).ok_or(ParseError::Malformed { kind }),
             (kind, _) => Err(ParseError::UnknownKind { kind }),
         }
     }
@@ -106,6 +119,7 @@ impl<'a> Payload<'a> {
             Self::Request(request) => write_postcard(buffer, REQUEST, request),
             Self::FromBoard(message) => write_postcard(buffer, FROM_BOARD, message),
             Self::Chunk { number, bytes } => write_chunk(buffer, *number, bytes),
+            Self::Samples { first_index, samples } => write_samples(buffer, *first_index, samples.iter().copied()),
         }
     }
 
@@ -143,6 +157,43 @@ pub fn from_board_frame<'f>(message: &FromBoard, frame: &'f mut [u8; FRAME_MAX_L
 pub fn chunk_frame<'f>(number: u16, bytes: &[u8], frame: &'f mut [u8; FRAME_MAX_LEN]) -> Result<&'f [u8], WriteError> {
     let mut buffer = [0; PAYLOAD_MAX_LEN];
     Ok(frame::encode(write_chunk(&mut buffer, number, bytes)?, frame)?)
+}
+
+/// Frame of samples of a stream: the index of the first one, and 1 to [`SAMPLES_MAX`] of them, 65,535 for 1.
+pub fn samples_frame<'f>(
+    first_index: u32,
+    samples: &[u16],
+    frame: &'f mut [u8; FRAME_MAX_LEN],
+) -> Result<&'f [u8], WriteError> {
+    let mut buffer = [0; PAYLOAD_MAX_LEN];
+    let bytes = samples.iter().map(|sample| sample.to_le_bytes());
+    Ok(frame::encode(write_samples(&mut buffer, first_index, bytes)?, frame)?)
+}
+
+fn write_samples(
+    buffer: &mut [u8; PAYLOAD_MAX_LEN],
+    first_index: u32,
+    samples: impl ExactSizeIterator<Item = [u8; 2]>,
+) -> Result<&[u8], WriteError> {
+    let count = samples.len();
+    if count == 0 || count > SAMPLES_MAX {
+        return Err(WriteError::SampleCount { count });
+    }
+    let [kind, rest @ ..] = buffer;
+    *kind = SAMPLES;
+    let bytes = first_index.to_le_bytes().into_iter().chain(samples.flatten());
+    for (to, from) in rest.iter_mut().zip(bytes) {
+        *to = from;
+    }
+    buffer.get(..5 + 2 * count).ok_or(WriteError::TooLong)
+}
+
+fn parse_samples(rest: &[u8]) -> Option<Payload<'_>> {
+    let (first_index, rest) = rest.split_first_chunk()?;
+    match rest.as_chunks() {
+        (samples @ [_, ..], []) => Some(Payload::Samples { first_index: u32::from_le_bytes(*first_index), samples }),
+        _ => None,
+    }
 }
 
 fn write_chunk<'b>(buffer: &'b mut [u8; PAYLOAD_MAX_LEN], number: u16, bytes: &[u8]) -> Result<&'b [u8], WriteError> {

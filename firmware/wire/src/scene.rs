@@ -6,11 +6,13 @@
 
 mod codec;
 mod error;
+mod grid;
 mod kind;
 mod point;
 mod view;
 
 pub use error::SceneError;
+pub use grid::{Cell, Grid, LayerSet};
 pub use kind::{Beat, Burst, Click, Layer, Wave};
 pub use point::Point;
 pub use view::Scene;

@@ -121,7 +121,7 @@ fn every_message_has_golden_bytes() {
         match message {
             FromBoard::Answer(Answer { outcome, .. }) => outcomes.push(outcome),
             FromBoard::Telemetry(Telemetry { state, .. }) => states.push(state),
-            FromBoard::Progress { .. } | FromBoard::StateChanged { .. } => {}
+            FromBoard::Progress { .. } | FromBoard::StateChanged { .. } | FromBoard::StreamProgress { .. } => {}
         }
     }
     let refusals: Vec<Refusal> = outcomes.iter().filter_map(|outcome| outcome.err()).collect();
@@ -170,7 +170,9 @@ fn every_number_has_golden_bytes() {
 /// The direct ways to a frame give the frames of [`Payload::write_frame`].
 #[test]
 fn one_call_frames_are_the_same() {
-    use frixel_wire::payload::{chunk_frame, from_board_frame, hello_frame, hello_request_frame, request_frame};
+    use frixel_wire::payload::{
+        chunk_frame, from_board_frame, hello_frame, hello_request_frame, request_frame, samples_frame,
+    };
     for payload in samples::from_host().into_iter().chain(samples::from_board()) {
         let mut direct = [0; FRAME_MAX_LEN];
         let direct = match payload {
@@ -179,6 +181,10 @@ fn one_call_frames_are_the_same() {
             Payload::Request(request) => request_frame(&request, &mut direct),
             Payload::FromBoard(message) => from_board_frame(&message, &mut direct),
             Payload::Chunk { number, bytes } => chunk_frame(number, bytes, &mut direct),
+            Payload::Samples { first_index, samples } => {
+                let samples: Vec<u16> = samples.iter().map(|sample| u16::from_le_bytes(*sample)).collect();
+                samples_frame(first_index, &samples, &mut direct)
+            }
         };
         let mut buffer = [0; PAYLOAD_MAX_LEN];
         let mut frame = [0; FRAME_MAX_LEN];

@@ -6,7 +6,8 @@ mod support;
 use frixel_wire::hello::Hello;
 use frixel_wire::message::{Command, Request};
 use frixel_wire::payload::{
-    CHUNK_LEN, CHUNK_NUMBER_MAX, PAYLOAD_MAX_LEN, ParseError, Payload, WriteError, chunk_frame,
+    CHUNK_LEN, CHUNK_NUMBER_MAX, PAYLOAD_MAX_LEN, ParseError, Payload, SAMPLES_MAX, WriteError, chunk_frame,
+    samples_frame,
 };
 use frixel_wire::scene::{HEADER_LEN, Header, RECORD_LEN, Record, Scene};
 use proptest::prelude::*;
@@ -131,21 +132,31 @@ proptest! {
 }
 
 #[test]
-fn chunks_that_do_not_fit_are_refused() {
+fn chunks_and_samples_that_do_not_fit_are_refused() {
     let mut frame = [0; 192];
     assert_eq!(chunk_frame(0x8000, &[1], &mut frame), Err(WriteError::ChunkNumber { number: 0x8000 }));
     assert_eq!(chunk_frame(0, &[], &mut frame), Err(WriteError::ChunkLength { len: 0 }));
     assert_eq!(chunk_frame(0, &[1; CHUNK_LEN + 1], &mut frame), Err(WriteError::ChunkLength { len: CHUNK_LEN + 1 }));
+    for count in [0, SAMPLES_MAX + 1] {
+        let samples = vec![1; count];
+        assert_eq!(samples_frame(0, &samples, &mut frame), Err(WriteError::SampleCount { count }));
+    }
 }
 
 #[test]
 fn payloads_that_are_not_right_are_refused() {
     assert_eq!(Payload::parse(&[]), Err(ParseError::Empty));
-    assert_eq!(Payload::parse(&[0x04]), Err(ParseError::UnknownKind { kind: 0x04 }));
+    assert_eq!(Payload::parse(&[0x05]), Err(ParseError::UnknownKind { kind: 0x05 }));
     assert_eq!(Payload::parse(&[0x7f, 1]), Err(ParseError::UnknownKind { kind: 0x7f }));
     assert_eq!(Payload::parse(&[0x00, 1]), Err(ParseError::Malformed { kind: 0x00 }));
     assert_eq!(Payload::parse(&[0x02, 0x80]), Err(ParseError::Malformed { kind: 0x02 }));
     assert_eq!(Payload::parse(&[0x03, 0x09]), Err(ParseError::Malformed { kind: 0x03 }));
+    assert_eq!(Payload::parse(&[0x04, 1, 2, 3, 4]), Err(ParseError::Malformed { kind: 0x04 }), "no sample");
+    assert_eq!(
+        Payload::parse(&[0x04, 1, 2, 3, 4, 5, 6, 7]),
+        Err(ParseError::Malformed { kind: 0x04 }),
+        "half a sample"
+    );
     assert_eq!(Payload::parse(&[0x80]), Err(ParseError::Malformed { kind: 0x80 }));
     assert_eq!(Payload::parse(&[0x80, 0x00]), Err(ParseError::Malformed { kind: 0x80 }));
 }

@@ -10,9 +10,9 @@ use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, encode};
 use frixel_wire::hello::{BoardKind, BoardLimits, HELLO_LEN, Hello, MAGIC, ResetCause, feature};
 use frixel_wire::message::{
     Accepted, Command, ConfigField, ConfigRefusal, FAULT_TEXT_MAX_LEN, FAULT_TEXT_PIECE_LEN, FromBoard, Refusal,
-    TELEMETRY_PERIOD_MIN_TICKS,
+    STREAM_START_LEVEL_MAX, TELEMETRY_PERIOD_MIN_TICKS,
 };
-use frixel_wire::payload::{CHUNK_LEN, CHUNK_NUMBER_MAX, PAYLOAD_MAX_LEN, Payload};
+use frixel_wire::payload::{CHUNK_LEN, CHUNK_NUMBER_MAX, PAYLOAD_MAX_LEN, Payload, SAMPLES_MAX};
 use frixel_wire::scene::{
     CURVE_POINTS_MAX, HEADER_LEN, POINTS_MAX, POLYGON_POINTS_MAX, RECORD_LEN, RECORDS_MAX, SCENE_VERSION, SceneError,
 };
@@ -97,6 +97,7 @@ fn flags_have_the_bits_that_the_table_says() {
         (Flags::TOUCH_STALE, "TOUCH_STALE"),
         (Flags::CARRIER_BALANCED, "CARRIER_BALANCED"),
         (Flags::HOST_SILENT, "HOST_SILENT"),
+        (Flags::STREAM_DRY, "STREAM_DRY"),
     ];
     assert_eq!(page, code);
 }
@@ -214,6 +215,7 @@ fn constants_are_those_of_the_text() {
     assert_eq!((POLYGON_POINTS_MAX, CURVE_POINTS_MAX), (32, 16));
     assert_eq!((SceneError::HEADER, ConfigRefusal::WHOLE_SCENE), (255, 255));
     assert_eq!(TELEMETRY_PERIOD_MIN_TICKS, 40);
+    assert_eq!((SAMPLES_MAX, STREAM_START_LEVEL_MAX), (90, 800));
     assert_eq!((FAULT_TEXT_PIECE_LEN, FAULT_TEXT_MAX_LEN), (32, 192));
     assert_eq!(to_hex(&MAGIC), "46 52 58 4c");
 }

@@ -48,15 +48,20 @@ fn flags_say_all_that_is_set() {
     assert_eq!(Flags::default().to_string(), "nothing limits the output");
     let named: Vec<String> = (0..16).map(|bit| Flags(1 << bit).to_string()).collect();
     for (bit, sentence) in named.iter().enumerate() {
-        assert_eq!(sentence.contains("does not know"), bit >= 7, "{sentence}");
+        assert_eq!(sentence.contains("does not know"), bit >= 8, "{sentence}");
         assert!(!sentence.contains(';'), "{sentence}");
     }
-    for low in 0..7 {
-        for high in low + 1..7 {
+    for low in 0..8 {
+        for high in low + 1..8 {
             assert_eq!(Flags(1 << low | 1 << high).to_string(), format!("{}; {}", named[low], named[high]));
         }
     }
-    assert_eq!(Flags(0x8101).to_string(), format!("{}; flags 0x8100, which this program does not know", named[0]));
+    let names: BTreeSet<&str> = Flags(u16::MAX).names().collect();
+    assert_eq!(names.len(), 8, "each flag has a name of its own");
+    assert!(names.iter().all(|name| name.chars().all(|letter| letter.is_ascii_lowercase() || letter == '-')));
+    assert!(Flags(1 << 3 | 1 << 9).names().eq(["no-finger"]));
+    assert_eq!((Flags(1 << 3 | 1 << 9).unnamed(), Flags(0xff).unnamed()), (Flags(1 << 9), Flags(0)));
+    assert_eq!(Flags(0x8201).to_string(), format!("{}; flags 0x8200, which this program does not know", named[0]));
 }
 
 /// All the numbers that a refusal carries are in its sentence, after which it says what to do.
@@ -84,18 +89,21 @@ fn numbers(refusal: Refusal) -> Vec<String> {
         Refusal::BitmapPoolFull { len, free } => vec![len.to_string(), free.to_string()],
         Refusal::BitmapMissing { crc32 } => vec![hex(crc32)],
         Refusal::TelemetryTooFast { period_min_ticks } => vec![period_min_ticks.to_string()],
+        Refusal::Config(config) if config.field == ConfigField::TableRange => vec![config.found.to_string()],
         Refusal::Config(config) => {
             vec![config.field.to_string(), config.found.to_string(), config.min.to_string(), config.max.to_string()]
         }
         Refusal::Scene(error) => scene_numbers(error),
         Refusal::LeftOut { layer: ConfigRefusal::WHOLE_SCENE } => vec!["carrier".into()],
         Refusal::LeftOut { layer } => vec![format!("layer {layer}")],
+        Refusal::NoSuchLayer { layer, layers } => vec![format!("layer {layer}"), layers.to_string()],
         Refusal::UnknownCommand
         | Refusal::WrongState(_)
         | Refusal::NoScene
         | Refusal::Busy
         | Refusal::ArmSwitch
-        | Refusal::TouchSource => vec![],
+        | Refusal::TouchSource
+        | Refusal::NoStreamLayer => vec![],
     }
 }
 

@@ -1,7 +1,7 @@
 //! A host in virtual time for the in-process rig, and scenes to play.
-#![allow(unreachable_pub, clippy::unwrap_used, reason = "part of a test, which may fail")]
+#![allow(dead_code, unreachable_pub, clippy::unwrap_used, reason = "a test uses its part, and may fail")]
 
-use frixel_hil_sim::Rig;
+use frixel_hil_sim::{Rig, TickRecord};
 use frixel_render::Status;
 use frixel_wire::frame::{FRAME_MAX_LEN, crc32};
 use frixel_wire::message::{Command, Request};
@@ -37,11 +37,16 @@ impl<'a> Script<'a> {
 
     /// Sends a command, and runs until the line is idle.
     pub fn command(&mut self, command: Command) {
+        self.send(command);
+        self.drain();
+    }
+
+    /// Sends a command.
+    pub fn send(&mut self, command: Command) {
         self.sequence += 1;
         let mut frame = [0; FRAME_MAX_LEN];
         let request = Request { sequence: self.sequence, command };
         self.rig.send(payload::request_frame(&request, &mut frame).unwrap());
-        self.drain();
     }
 
     pub fn upload_bitmap(&mut self, width: u16, height: u16, samples: &[u8]) -> u32 {
@@ -51,12 +56,18 @@ impl<'a> Script<'a> {
         crc32
     }
 
-    /// Uploads a scene and plays it under the finger's stroke.
-    pub fn play(&mut self, scene: &[u8]) {
+    /// Uploads a scene, and returns the command that commits it.
+    pub fn upload(&mut self, scene: &[u8]) -> Command {
         let crc32 = crc32(scene);
         self.command(Command::UploadScene { len: scene.len() as u32, crc32 });
         self.chunks(scene);
-        self.command(Command::Commit { crc32 });
+        Command::Commit { crc32 }
+    }
+
+    /// Uploads a scene and plays it under the finger's stroke.
+    pub fn play(&mut self, scene: &[u8]) {
+        let commit = self.upload(scene);
+        self.command(commit);
         self.command(Command::Arm);
         self.command(Command::Play);
         self.rig.world_mut().start_stroke();
@@ -87,8 +98,10 @@ impl<'a> Script<'a> {
         self.step();
     }
 
-    fn step(&mut self) {
-        self.status = Some(self.rig.step().status);
+    pub fn step(&mut self) -> TickRecord {
+        let record = self.rig.step();
+        self.status = Some(record.status);
+        record
     }
 }
 

@@ -28,6 +28,11 @@ pub(super) fn name_of(command: &Command) -> &'static str {
         Command::Touch { .. } => "touch",
         Command::Lift => "lift",
         Command::FaultText { .. } => "text of the fault",
+        Command::SetLayer { .. } => "change of a layer",
+        Command::StartStream { .. } => "start of a stream",
+        Command::EndStream => "end of a stream",
+        Command::TouchFinger { .. } => "touch of a finger",
+        Command::LiftFinger { .. } => "lift of a finger",
     }
 }
 
@@ -45,6 +50,11 @@ pub(super) fn state_after(command: &Command) -> Option<State> {
         | Command::Subscribe { .. }
         | Command::Touch { .. }
         | Command::Lift
-        | Command::FaultText { .. } => None,
+        | Command::FaultText { .. }
+        | Command::SetLayer { .. }
+        | Command::StartStream { .. }
+        | Command::EndStream
+        | Command::TouchFinger { .. }
+        | Command::LiftFinger { .. } => None,
     }
 }

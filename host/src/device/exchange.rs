@@ -45,9 +45,22 @@ pub(super) struct Exchange<L> {
     awaited: Vec<Awaited>,
     answer: Option<Answer>,
     next_chunk: Option<u16>,
+    stream: Option<StreamReport>,
+    /// What is said of a stream before the next answer is of another one.
+    stream_begins: bool,
     events: VecDeque<Event>,
     /// Time listened since anything came.
     quiet: Duration,
+}
+
+/// What the board said last of a stream.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct StreamReport {
+    /// Index behind the last sample that the board has room for.
+    pub(super) limit: u32,
+    /// Times that a stream ran dry, and gaps in one, since the board's power-on.
+    pub(super) underruns: u32,
+    pub(super) gaps: u32,
 }
 
 /// A request on its way.
@@ -72,6 +85,8 @@ impl<L: Link> Exchange<L> {
             awaited: Vec::new(),
             answer: None,
             next_chunk: None,
+            stream: None,
+            stream_begins: false,
             events: VecDeque::new(),
         }
     }
@@ -213,6 +228,16 @@ impl<L: Link> Exchange<L> {
         self.next_chunk.take()
     }
 
+    /// What the board said last of the stream under way.
+    pub(super) fn stream(&self) -> Option<StreamReport> {
+        self.stream
+    }
+
+    /// The next request starts a stream.
+    pub(super) fn begin_stream(&mut self) {
+        self.stream_begins = true;
+    }
+
     fn write(&mut self, frame: &[u8], doing: &'static str) -> Result<u64, DeviceError> {
         self.link.write(frame).map_err(|closed| vanished(closed, doing))
     }
@@ -267,11 +292,19 @@ impl<L: Link> Exchange<L> {
                 if let Some(awaited) = awaited {
                     self.credit.answered(awaited.end, self.link.written().bytes);
                     self.answer = Some(answer);
+                    if std::mem::take(&mut self.stream_begins) {
+                        self.stream = None;
+                    }
                 }
             }
             FromBoard::Progress { next_chunk, received_bytes } => {
                 self.take_count(received_bytes, doing)?;
                 self.next_chunk = Some(next_chunk);
+            }
+            FromBoard::StreamProgress { next_index, room, underruns, gaps, received_bytes } => {
+                self.take_count(received_bytes, doing)?;
+                let limit = next_index.wrapping_add(u32::from(room));
+                self.stream = Some(StreamReport { limit, underruns, gaps });
             }
             FromBoard::Telemetry(telemetry) => self.keep(Event::Telemetry(telemetry)),
             FromBoard::StateChanged { state, fault, flags } => self.keep(Event::StateChanged { state, fault, flags }),

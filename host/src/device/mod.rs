@@ -34,6 +34,7 @@ mod hello;
 mod link;
 mod ports;
 mod serial;
+mod stream;
 mod upload;
 
 use std::time::Duration;
@@ -51,6 +52,7 @@ pub use error::{DeviceError, LinkClosed, PortError};
 pub use link::{Link, Written};
 pub use ports::{PortInfo, UsbDevice, ports};
 pub use serial::{DEFAULT_BAUD, SerialLink};
+pub use stream::{StreamSettings, StreamStatus};
 pub use upload::{Bitmap, Progress, Upload};
 
 /// Longest time between pings when nothing else is sent: a quarter of the host timeout that a scene has when it names none.
@@ -73,6 +75,8 @@ pub struct Device<L: Link> {
     committed: Option<Duration>,
     /// The board may be armed or active; only then does its host timeout run.
     armed: bool,
+    /// The stream under way.
+    stream: Option<stream::Sent>,
 }
 
 /// What a board tells unasked.
@@ -114,7 +118,7 @@ impl<L: Link> Device<L> {
         exchange.request(Command::Ping)?;
         let armed = matches!(hello.state, State::Armed | State::Active);
         let uploads = UploadCounts::default();
-        let mut device = Self { exchange, hello, uploads, uploaded: None, committed: None, armed };
+        let mut device = Self { exchange, hello, uploads, uploaded: None, committed: None, armed, stream: None };
         device.pace_pings()?;
         Ok(device)
     }
@@ -167,6 +171,14 @@ impl<L: Link> Device<L> {
     /// Active to armed: output zero.
     pub fn stop(&mut self) -> Result<(), DeviceError> {
         self.request(Command::Stop)
+    }
+
+    /// While playing: switches a layer of the committed scene on or off, and sets the factor on its friction, -100 to 100, in place of its
+    /// gain in the scene. It acts at the next tick, and holds until the next commit.
+    ///
+    /// `layer` is the number of the layer's record, from zero. A friction that gets out of reach is clamped, which telemetry's flags tell.
+    pub fn set_layer(&mut self, layer: u8, on: bool, gain: f32) -> Result<(), DeviceError> {
+        self.request(Command::SetLayer { layer, on, gain })
     }
 
     /// Faulted to disarmed, when the cause is gone.

@@ -95,7 +95,9 @@ impl Recorder {
             y_m: finger.y_m,
             t_s: record.tick as f64 * self.tick_period_s,
             speed_m_per_s: finger.speed_m_per_s,
+            // What is streamed is not the program's.
             stream: 0.0,
+            stream_weight: 0.0,
         }))
     }
 }

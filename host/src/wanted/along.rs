@@ -16,6 +16,8 @@ pub struct Moment {
     pub speed_m_per_s: f64,
     /// The stream's sample, from 0 to 1.
     pub stream: f64,
+    /// How much of the stream's layers there is, from 0 without a stream to 1.
+    pub stream_weight: f64,
 }
 
 /// The friction that a program wants along a stroke, moment by moment: one for each tick of the board, so that

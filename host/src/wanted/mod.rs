@@ -50,7 +50,7 @@ impl Wanted {
     /// Electric friction that is wanted at a place, in metres from the screen's top left corner, in newtons. It may
     /// be out of reach. It is not-a-number where a record names a bitmap that the program does not have.
     ///
-    /// Time stands still at 0, the finger too, nothing clicks, and a stream's sample is 0: [`Along`] has those.
+    /// Time stands still at 0, the finger too, nothing clicks and nothing is streamed: [`Along`] has those.
     pub fn electric_friction_n(&self, x_m: f64, y_m: f64) -> f64 {
         self.at(&Moment { x_m, y_m, ..Moment::default() }, |_| 0.0)
     }
@@ -80,15 +80,20 @@ impl Wanted {
     fn at(&self, moment: &Moment, click_n: impl Fn(usize) -> f64) -> f64 {
         let covers = |piece: &Piece| piece.shape.covers(moment.x_m, moment.y_m);
         // What a replacing layer covers need not be known.
-        let lowest = self.pieces.iter().rposition(|piece| piece.blend == Blend::Replace && covers(piece)).unwrap_or(0);
+        let hides = |piece: &Piece| piece.blend == Blend::Replace && !matches!(piece.field, Field::Stream { .. });
+        let lowest = self.pieces.iter().rposition(|piece| hides(piece) && covers(piece)).unwrap_or(0);
         let above = self.pieces.iter().enumerate().skip(lowest).filter(|(_, piece)| covers(piece));
         above.fold(0.0, |below_n, (number, piece)| {
             let own_n = piece.gain * (piece.field.at(moment) + click_n(number));
-            match piece.blend {
+            let blended_n = match piece.blend {
                 Blend::Replace => own_n,
                 Blend::Add => below_n + own_n,
                 Blend::Multiply => below_n * own_n,
                 Blend::Max => own_n.max(below_n),
+            };
+            match piece.field {
+                Field::Stream { .. } => below_n + moment.stream_weight * (blended_n - below_n),
+                _ => blended_n,
             }
         })
     }

@@ -11,6 +11,8 @@ use frixel_wire::payload::{Payload, from_board_frame, hello_frame};
 
 pub(crate) const TICK_HZ: u32 = 40_000;
 pub(crate) const WINDOW: u16 = 4096;
+/// Samples that the board has room for.
+const STREAM_LEN: usize = 1024;
 /// Chunks that go by without a word when all is well.
 const CHUNKS_PER_PROGRESS: u16 = 4;
 
@@ -37,6 +39,11 @@ pub(crate) struct FakeBoard {
     pub(crate) reset_at: Option<Duration>,
     /// The state changes at this time, as when the host was silent.
     pub(crate) falls_to: Option<(Duration, State)>,
+    /// Samples of the stream under way, and how many of them have been played: so many more at every ping.
+    pub(crate) samples: Vec<u16>,
+    pub(crate) plays_per_ping: usize,
+    played: usize,
+    streams: bool,
     decoder: Decoder,
     received_bytes: u32,
     last_heard: Duration,
@@ -69,6 +76,10 @@ impl FakeBoard {
             garbage: Vec::new(),
             reset_at: None,
             falls_to: None,
+            samples: Vec::new(),
+            plays_per_ping: 0,
+            played: 0,
+            streams: false,
             decoder: Decoder::new(),
             received_bytes: 0,
             last_heard: Duration::ZERO,
@@ -133,6 +144,11 @@ impl FakeBoard {
             }
             Payload::Request(request) => self.answer(request, now, out),
             Payload::Chunk { number, bytes } => self.take_chunk(number, bytes, out),
+            Payload::Samples { first_index, samples } => {
+                assert_eq!(first_index as usize, self.samples.len(), "samples come in order");
+                self.samples.extend(samples.iter().map(|sample| u16::from_le_bytes(*sample)));
+                assert!(self.samples.len() - self.played <= STREAM_LEN, "more samples than the board has room for");
+            }
             other => panic!("a host does not send {other:?}"),
         }
     }
@@ -150,11 +166,44 @@ impl FakeBoard {
         };
         let answer = Answer { sequence, received_bytes: self.received_bytes, state: self.state, outcome };
         send(out, &FromBoard::Answer(answer));
+        match command {
+            Command::StartStream { .. } => {
+                (self.streams, self.played) = (true, 0);
+                self.samples.clear();
+                self.tell_of_stream(out);
+            }
+            Command::Ping if self.streams => {
+                self.played = (self.played + self.plays_per_ping).min(self.samples.len());
+                self.tell_of_stream(out);
+            }
+            _ => {}
+        }
+    }
+
+    fn tell_of_stream(&self, out: &mut Vec<u8>) {
+        let (next_index, buffered) = (self.samples.len(), self.samples.len() - self.played);
+        send(
+            out,
+            &FromBoard::StreamProgress {
+                next_index: next_index as u32,
+                room: (STREAM_LEN - buffered) as u16,
+                underruns: 7,
+                gaps: 2,
+                received_bytes: self.received_bytes,
+            },
+        );
     }
 
     fn obey(&mut self, command: Command, now: Duration) -> Result<Accepted, Refusal> {
         match command {
-            Command::Ping | Command::Touch { .. } | Command::Lift => {}
+            Command::Ping
+            | Command::Touch { .. }
+            | Command::Lift
+            | Command::SetLayer { .. }
+            | Command::StartStream { .. }
+            | Command::EndStream
+            | Command::TouchFinger { .. }
+            | Command::LiftFinger { .. } => {}
             Command::UploadScene { len, crc32 } => self.upload = Some(FakeUpload::new(false, len as usize, crc32)),
             Command::UploadBitmap { crc32, .. } if self.bitmaps.contains_key(&crc32) => {
                 return Ok(Accepted::AlreadyHeld);

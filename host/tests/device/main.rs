@@ -7,6 +7,7 @@ mod fake_board;
 mod pty_board;
 #[cfg(unix)]
 mod serial;
+mod stream;
 mod trouble;
 mod uploads;
 mod virtual_link;

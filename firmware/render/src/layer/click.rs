@@ -3,36 +3,42 @@
 
 use frixel_wire::scene::Click as Record;
 
+use super::Around;
 use crate::Board;
 
 /// Most edges and buttons of a scene that may click.
 pub(crate) const CLICKS_MAX: usize = if cfg!(feature = "edge") { 16 } else { 0 };
 
-/// A layer's click: `height (1 - t / decay)^2`.
+/// A layer's click, `height (1 - t / decay)^2`, in the scene's table of clicks.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Click {
+pub(crate) struct Click {
     height_n: f32,
     decay_ticks: u32,
     per_tick: f32,
-    /// Which of the [`Clicks`] is the layer's.
-    slot: u8,
 }
 
+/// Number of a layer's click in the scene's table, and of its past in the [`Clicks`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct ClickNumber(pub(super) u8);
+
 /// What edges and buttons know of the past. It is the ticker's: coefficients stay as they were loaded.
+///
+/// The past is counted in evaluations: a tick that has something else to do does not look at layers.
 #[derive(Clone, Debug)]
 pub(crate) struct Clicks {
-    /// The last tick at which layers were evaluated.
-    last_tick: u32,
-    /// Layers were evaluated at the tick before this one.
+    /// How often layers were evaluated, modulo 2^32, and how often the finger was lifted.
+    evaluation: u32,
+    /// The finger was there at the evaluation before this one, and has not been lifted since.
     unbroken: bool,
+    touching: bool,
     slots: [Slot; CLICKS_MAX],
 }
 
 /// What one layer knows of the past.
 #[derive(Clone, Copy, Debug)]
 struct Slot {
-    /// The last tick at which this layer was evaluated, and on which side the finger was.
-    seen_tick: u32,
+    /// The last evaluation of this layer, and on which side the finger was.
+    seen: u32,
     beyond: bool,
     /// The click's first tick, while it lasts.
     started_at_tick: Option<u32>,
@@ -40,9 +46,10 @@ struct Slot {
 
 impl Clicks {
     pub(crate) const NONE: Self = Self {
-        last_tick: 0,
+        evaluation: 0,
         unbroken: false,
-        slots: [Slot { seen_tick: 0, beyond: false, started_at_tick: None }; CLICKS_MAX],
+        touching: false,
+        slots: [Slot { seen: 0, beyond: false, started_at_tick: None }; CLICKS_MAX],
     };
 
     /// Another scene plays.
@@ -50,48 +57,66 @@ impl Clicks {
         *self = Self::NONE;
     }
 
-    /// Layers are about to be evaluated at this tick.
+    /// Layers are about to be evaluated.
     #[inline]
-    pub(crate) fn begin(&mut self, tick: u32) {
-        self.unbroken = self.last_tick == tick.wrapping_sub(1);
-        self.last_tick = tick;
+    pub(crate) fn begin(&mut self) {
+        self.evaluation = self.evaluation.wrapping_add(1);
+        self.unbroken = self.touching;
+        self.touching = true;
+    }
+
+    /// The finger is not on the screen.
+    #[inline]
+    pub(crate) fn lift(&mut self) {
+        self.touching = false;
     }
 }
 
 impl Click {
-    pub(super) fn new(record: Record, slot: u8, board: &Board) -> Self {
+    pub(super) fn new(record: Record, board: &Board) -> Self {
         let decay_ticks = board.ticks(record.decay_s).max(1);
-        Self { height_n: record.height_n, decay_ticks, per_tick: 1.0 / decay_ticks as f32, slot }
+        Self { height_n: record.height_n, decay_ticks, per_tick: 1.0 / decay_ticks as f32 }
+    }
+}
+
+impl ClickNumber {
+    /// Electric friction of the click when the finger is on one side of a line, or `beyond` it.
+    pub(super) fn across(self, beyond: bool, around: &mut Around) -> f32 {
+        let Some((click, slot)) = self.find(around) else { return 0.0 };
+        let crossed = slot.seen == around.clicks.evaluation.wrapping_sub(1) && slot.beyond != beyond;
+        let slot = Slot { beyond, ..slot };
+        self.follow(&click, slot, crossed, around)
     }
 
-    /// Electric friction of the click when the finger is on one side of a line at this tick, or `beyond` it.
-    pub(super) fn across(&self, beyond: bool, tick: u32, clicks: &mut Clicks) -> f32 {
-        let Some(slot) = clicks.slots.get_mut(usize::from(self.slot)) else { return 0.0 };
-        let crossed = slot.seen_tick == tick.wrapping_sub(1) && slot.beyond != beyond;
-        slot.beyond = beyond;
-        self.follow(slot, crossed && clicks.unbroken, tick)
+    /// Electric friction of the click when the finger is inside.
+    pub(super) fn inside(self, around: &mut Around) -> f32 {
+        let Some((click, slot)) = self.find(around) else { return 0.0 };
+        let entered = slot.seen != around.clicks.evaluation.wrapping_sub(1);
+        self.follow(&click, slot, entered, around)
     }
 
-    /// Electric friction of the click when the finger is inside at this tick.
-    pub(super) fn inside(&self, tick: u32, clicks: &mut Clicks) -> f32 {
-        let Some(slot) = clicks.slots.get_mut(usize::from(self.slot)) else { return 0.0 };
-        let entered = slot.seen_tick != tick.wrapping_sub(1);
-        self.follow(slot, entered && clicks.unbroken, tick)
+    fn find(self, around: &Around) -> Option<(Click, Slot)> {
+        let number = usize::from(self.0);
+        Some((*around.tables.clicks().get(number)?, *around.clicks.slots.get(number)?))
     }
 
-    #[inline]
-    fn follow(&self, slot: &mut Slot, starts: bool, tick: u32) -> f32 {
-        slot.seen_tick = tick;
-        if starts {
+    fn follow(self, click: &Click, mut slot: Slot, starts: bool, around: &mut Around) -> f32 {
+        let (clicks, tick) = (&mut *around.clicks, around.moment.tick);
+        slot.seen = clicks.evaluation;
+        if starts && clicks.unbroken {
             slot.started_at_tick = Some(tick);
         }
-        let Some(start) = slot.started_at_tick else { return 0.0 };
-        let ticks = tick.wrapping_sub(start);
-        if ticks >= self.decay_ticks {
+        let ticks = slot.started_at_tick.map_or(click.decay_ticks, |start| tick.wrapping_sub(start));
+        if ticks >= click.decay_ticks {
             slot.started_at_tick = None;
+        }
+        if let Some(kept) = clicks.slots.get_mut(usize::from(self.0)) {
+            *kept = slot;
+        }
+        if slot.started_at_tick.is_none() {
             return 0.0;
         }
-        let left = 1.0 - ticks as f32 * self.per_tick;
-        self.height_n * left * left
+        let left = 1.0 - ticks as f32 * click.per_tick;
+        click.height_n * left * left
     }
 }

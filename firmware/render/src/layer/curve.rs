@@ -19,10 +19,8 @@ impl Curve {
 
     #[inline]
     pub(super) fn at(&self, moment: &Moment, points: &[Point]) -> f32 {
-        let speed_m_per_s = square_root(
-            moment.velocity_x_m_per_s * moment.velocity_x_m_per_s
-                + moment.velocity_y_m_per_s * moment.velocity_y_m_per_s,
-        );
+        let [x, y] = moment.velocity_m_per_s;
+        let speed_m_per_s = square_root(x * x + y * y);
         let first = usize::from(self.first);
         let Some([start, rest @ ..]) = points.get(first..first + usize::from(self.count)) else { return 0.0 };
         let mut before = start;

@@ -1,7 +1,7 @@
 //! A line with a ridge or a well along it.
 
-use super::click::{Click, Clicks};
-use super::{Moment, direction};
+use super::click::ClickNumber;
+use super::{Around, direction};
 use crate::turns;
 
 /// `level + swing (1 + cos(2 pi d / width))` where the distance `d` is at most half the width, `level` elsewhere.
@@ -14,7 +14,7 @@ pub(super) struct Edge {
     turns_per_m: f32,
     level_n: f32,
     swing_n: f32,
-    click: Option<Click>,
+    click: Option<ClickNumber>,
 }
 
 impl Edge {
@@ -23,7 +23,7 @@ impl Edge {
         angle_turns: f32,
         width_m: f32,
         [level_n, ridge_n]: [f32; 2],
-        click: Option<Click>,
+        click: Option<ClickNumber>,
     ) -> Self {
         let (across_x, across_y) = direction(angle_turns);
         Self {
@@ -39,9 +39,9 @@ impl Edge {
     }
 
     #[inline]
-    pub(super) fn electric_friction_n(&self, moment: &Moment, clicks: &mut Clicks) -> f32 {
-        let beyond_m = self.across_x * moment.x_m + self.across_y * moment.y_m - self.distance_m;
-        let click_n = self.click.as_ref().map_or(0.0, |click| click.across(beyond_m >= 0.0, moment.tick, clicks));
+    pub(super) fn electric_friction_n(&self, around: &mut Around) -> f32 {
+        let beyond_m = self.across_x * around.moment.x_m + self.across_y * around.moment.y_m - self.distance_m;
+        let click_n = self.click.map_or(0.0, |click| click.across(beyond_m >= 0.0, around));
         if beyond_m.abs() >= self.half_width_m {
             return self.level_n + click_n;
         }

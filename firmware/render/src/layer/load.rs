@@ -14,18 +14,12 @@ use crate::bitmap_pool::Directory;
 
 /// A scene's layers are being loaded.
 pub(crate) struct Loading<'a> {
-    board: &'a Board,
-    directory: &'a Directory,
-    tables: &'a mut Tables,
-    /// Layers so far that may click.
-    clicks: u8,
+    pub(crate) board: &'a Board,
+    pub(crate) directory: &'a Directory,
+    pub(crate) tables: &'a mut Tables,
 }
 
-impl<'a> Loading<'a> {
-    pub(crate) fn new(board: &'a Board, directory: &'a Directory, tables: &'a mut Tables) -> Self {
-        Self { board, directory, tables, clicks: 0 }
-    }
-
+impl Loading<'_> {
     /// The layer of record `number`, whose numbers were checked.
     pub(crate) fn layer(&mut self, record: &Record, number: u8) -> Result<Layer, Refusal> {
         let left_out = Refusal::LeftOut { layer: number };
@@ -64,10 +58,7 @@ impl<'a> Loading<'a> {
             #[cfg(feature = "edge")]
             Kind::Button { rim_width_m, rim_n, face_n, click } => {
                 let click = self.click(click, number)?;
-                // The wire has no button in another region.
-                super::Button::new(record.region, rim_width_m, [rim_n, face_n], click)
-                    .map(Source::Button)
-                    .ok_or(Refusal::LeftOut { layer: number })
+                Ok(Source::Button(super::Button::new(rim_width_m, [rim_n, face_n], click)))
             }
             #[cfg(feature = "vibration")]
             Kind::Vibration { beat, frequency_hz, low_n, high_n, burst } => {
@@ -84,16 +75,13 @@ impl<'a> Loading<'a> {
     }
 
     #[cfg(feature = "edge")]
-    fn click(&mut self, click: ClickRecord, number: u8) -> Result<Option<super::click::Click>, Refusal> {
+    fn click(&mut self, click: ClickRecord, number: u8) -> Result<Option<super::click::ClickNumber>, Refusal> {
         if click.height_n.abs() <= 0.0 {
             return Ok(None);
         }
-        let slot = self.clicks;
-        if usize::from(slot) >= super::CLICKS_MAX {
-            return Err(too_many(ConfigField::ClickLayers, super::CLICKS_MAX, number));
-        }
-        self.clicks += 1;
-        Ok(Some(super::click::Click::new(click, slot, self.board)))
+        let refusal = too_many(ConfigField::ClickLayers, super::CLICKS_MAX, number);
+        let click = super::click::Click::new(click, self.board);
+        self.tables.add_click(click).map(Some).map_err(|_| refusal)
     }
 }
 

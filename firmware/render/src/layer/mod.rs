@@ -22,8 +22,12 @@ mod tests;
 mod vibration;
 
 use frixel_wire::scene::Blend;
+#[cfg(feature = "stream")]
+use frixel_wire::scene::{Layer as Kind, Record};
 
 use crate::bitmap_pool::BitmapPool;
+#[cfg(feature = "stream")]
+use crate::stream::StreamNow;
 #[cfg(feature = "edge")]
 use button::Button;
 pub(crate) use click::{CLICKS_MAX, Clicks};
@@ -50,12 +54,13 @@ pub(crate) struct Moment {
     pub(crate) x_m: f32,
     pub(crate) y_m: f32,
     /// How the finger slides.
-    pub(crate) velocity_x_m_per_s: f32,
-    pub(crate) velocity_y_m_per_s: f32,
+    #[cfg(feature = "speed")]
+    pub(crate) velocity_m_per_s: [f32; 2],
     /// Ticks since power-on, modulo 2^32.
     pub(crate) tick: u32,
-    /// The sample of the stream that belongs to this tick, from 0 to 1.
-    pub(crate) stream: f32,
+    /// The host's stream.
+    #[cfg(feature = "stream")]
+    pub(crate) stream: StreamNow,
 }
 
 /// What layers look at besides their own numbers.
@@ -108,14 +113,26 @@ impl Layer {
         self.gain = gain;
     }
 
+    /// On bare glass, it alone is what is asked for, everywhere and always.
+    pub(crate) fn stands_alone(&self) -> bool {
+        let kept = matches!(self.blend, Blend::Replace | Blend::Add);
+        kept && self.region == Region::Screen && !self.source.is_stream()
+    }
+
+    /// This layer's electric friction at a moment, wherever that is.
+    #[inline]
+    pub(crate) fn own_electric_friction_n(&self, around: &mut Around) -> f32 {
+        self.gain * self.source.electric_friction_n(&self.region, around)
+    }
+
     /// Joins this layer's electric friction at a moment to that of the layers below.
     #[inline]
     pub(crate) fn blend_over(&self, below_n: f32, around: &mut Around) -> f32 {
         if !self.region.contains(around.moment.x_m, around.moment.y_m, around.tables.points()) {
             return below_n;
         }
-        let own_n = self.gain * self.source.electric_friction_n(around);
-        match self.blend {
+        let own_n = self.own_electric_friction_n(around);
+        let blended_n = match self.blend {
             Blend::Replace => own_n,
             Blend::Add => below_n + own_n,
             Blend::Multiply => below_n * own_n,
@@ -126,11 +143,30 @@ impl Layer {
                     below_n
                 }
             }
+        };
+        #[cfg(feature = "stream")]
+        if self.source.is_stream() {
+            return below_n + around.moment.stream.weight * (blended_n - below_n);
         }
+        blended_n
     }
 }
 
+/// Whether a layer plays what the host streams.
+#[cfg(feature = "stream")]
+pub(crate) fn is_stream(record: &Record) -> bool {
+    matches!(record.layer, Kind::Stream { .. })
+}
+
 impl Source {
+    #[inline]
+    fn is_stream(&self) -> bool {
+        #[cfg(feature = "stream")]
+        return matches!(self, Self::Stream { .. });
+        #[cfg(not(feature = "stream"))]
+        false
+    }
+
     /// Electric friction at a moment, in N, before the gain.
     ///
     /// Not inlined: a loop over layers would begin with the constants of every kind, and go past away layers slowly.
@@ -139,7 +175,7 @@ impl Source {
         not(all(feature = "grating", feature = "bitmap")),
         allow(unused_variables, reason = "the other kinds of layer do not look at them")
     )]
-    fn electric_friction_n(&self, around: &mut Around) -> f32 {
+    fn electric_friction_n(&self, region: &Region, around: &mut Around) -> f32 {
         match self {
             Self::Constant { electric_friction_n } => *electric_friction_n,
             #[cfg(feature = "grating")]
@@ -149,15 +185,15 @@ impl Source {
             #[cfg(feature = "noise")]
             Self::Noise(noise) => noise.electric_friction_n(&around.moment, around.tables.noises()),
             #[cfg(feature = "edge")]
-            Self::Edge(edge) => edge.electric_friction_n(&around.moment, around.clicks),
+            Self::Edge(edge) => edge.electric_friction_n(around),
             #[cfg(feature = "edge")]
-            Self::Button(button) => button.electric_friction_n(&around.moment, around.clicks),
+            Self::Button(button) => button.electric_friction_n(region, around),
             #[cfg(feature = "vibration")]
             Self::Vibration(vibration) => vibration.electric_friction_n(&around.moment),
             #[cfg(feature = "speed")]
             Self::Curve(curve) => curve.at(&around.moment, around.tables.points()),
             #[cfg(feature = "stream")]
-            Self::Stream { low_n, span_n } => low_n + span_n * around.moment.stream,
+            Self::Stream { low_n, span_n } => low_n + span_n * around.moment.stream.value,
         }
     }
 }

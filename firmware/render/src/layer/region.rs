@@ -96,6 +96,30 @@ impl Region {
     }
 }
 
+#[cfg(feature = "edge")]
+impl Region {
+    /// How far inside its border a place is that it contains: from the nearest side of a rectangle, along the shorter
+    /// half axis of an ellipse. Nothing of what has no such border.
+    #[inline]
+    pub(super) fn depth_m(&self, x_m: f32, y_m: f32) -> f32 {
+        let less = |one: f32, other: f32| if one < other { one } else { other };
+        let depth_m = match self {
+            Self::Rectangle(Bounds { left_m, top_m, right_m, bottom_m }) => {
+                less(less(x_m - left_m, right_m - x_m), less(y_m - top_m, bottom_m - y_m))
+            }
+            Self::Ellipse { middle_x_m, middle_y_m, per_half_width, per_half_height } => {
+                let x = (x_m - middle_x_m) * per_half_width;
+                let y = (y_m - middle_y_m) * per_half_height;
+                let shorter_per_m = -less(-per_half_width, -per_half_height);
+                (1.0 - crate::root::square_root(x * x + y * y)) / shorter_per_m
+            }
+            _ => 0.0,
+        };
+        // On the border rounding may make it less than nothing.
+        if depth_m > 0.0 { depth_m } else { 0.0 }
+    }
+}
+
 #[cfg(feature = "polygon")]
 mod polygon {
     use frixel_wire::scene::Point;

@@ -23,7 +23,8 @@ impl Bench {
     }
 
     fn load(&mut self, record: &Record) -> Layer {
-        Loading::new(&Board::SIMULATOR, &self.directory, &mut self.tables).layer(record, 0).unwrap()
+        let Self { directory, tables, .. } = self;
+        Loading { board: &Board::SIMULATOR, directory, tables }.layer(record, 0).unwrap()
     }
 
     fn kind(&mut self, layer: Kind) -> Layer {
@@ -32,7 +33,7 @@ impl Bench {
 
     /// On top of `below_n`.
     fn over(&mut self, layer: &Layer, below_n: f32, moment: Moment) -> f32 {
-        self.clicks.begin(moment.tick);
+        self.clicks.begin();
         let Self { pool, tables, clicks, .. } = self;
         layer.blend_over(below_n, &mut Around { moment, pool, tables, clicks })
     }
@@ -42,6 +43,7 @@ fn constant(blend: Blend, gain: f32, electric_friction_n: f32) -> Record {
     Record { region: HERE, blend, gain, layer: Kind::Constant { electric_friction_n } }
 }
 
+#[allow(clippy::needless_update, reason = "with more features there is more to it")]
 fn at(x_m: f32, y_m: f32) -> Moment {
     Moment { x_m, y_m, ..Moment::default() }
 }
@@ -309,7 +311,8 @@ mod clicks {
             let left = (1.0 - tick as f32 / 40.0).max(0.0);
             close(found, 0.25 + left * left);
         }
-        let back = slide(&mut bench, &layer, 163, [0.03]);
+        // Ticks with something else to do lie between.
+        let back = slide(&mut bench, &layer, 170, [0.03]);
         close(back[0], 1.25);
     }
 
@@ -322,6 +325,7 @@ mod clicks {
         close(slide(&mut bench, &layer, 101, [0.06])[0], 0.0);
         close(slide(&mut bench, &layer, 102, [0.012])[0], 0.25);
         // Up, and down again elsewhere.
+        bench.clicks.lift();
         close(slide(&mut bench, &layer, 500, [0.03])[0], 0.25);
     }
 
@@ -396,7 +400,7 @@ fn a_curve_is_straight_between_its_points_and_held_outside() {
     for (speed, expected) in
         [(0.0, 0.5), (0.02, 0.5), (0.06, 0.75), (0.1, 1.0), (0.15, 0.625), (0.2, 0.25), (3.0, 0.25)]
     {
-        let moment = Moment { velocity_x_m_per_s: 0.6 * speed, velocity_y_m_per_s: -0.8 * speed, ..Moment::default() };
+        let moment = Moment { velocity_m_per_s: [0.6 * speed, -0.8 * speed], ..Moment::default() };
         close(bench.over(&layer, 2.0, moment), 2.0 * expected);
     }
 }
@@ -406,7 +410,8 @@ fn a_curve_is_straight_between_its_points_and_held_outside() {
 fn a_stream_is_between_its_two_frictions() {
     let mut bench = Bench::new();
     let layer = bench.kind(Kind::Stream { low_n: 0.25, high_n: -0.75 });
-    for (stream, expected) in [(0.0, 0.25), (0.5, -0.25), (1.0, -0.75)] {
-        close(bench.over(&layer, 0.0, Moment { stream, ..Moment::default() }), expected);
+    for (value, weight, expected) in [(0.0, 1.0, 0.25), (0.5, 1.0, -0.25), (1.0, 1.0, -0.75), (1.0, 0.25, 0.5625)] {
+        let stream = crate::stream::StreamNow { value, weight };
+        close(bench.over(&layer, 1.0, Moment { stream, ..Moment::default() }), expected);
     }
 }

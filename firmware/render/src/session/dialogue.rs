@@ -10,6 +10,9 @@ use frixel_wire::payload::{ParseError, Payload};
 use frixel_wire::scene::{HEADER_LEN, Layer, POINT_LEN, POINTS_MAX, RECORD_LEN, RECORDS_MAX, SCENE_MAX_LEN, Scene};
 use heapless::{Deque, Vec};
 
+use super::live::Playing;
+#[cfg(feature = "stream")]
+use super::live::Stream;
 use super::outbox::Outbox;
 use super::upload::{Destination, Report, Staging, Upload};
 use crate::bitmap_pool::{Bitmap, Directory};
@@ -18,7 +21,19 @@ use crate::order::Status;
 use crate::{Active, BitmapPool, Board, Order, Touch};
 
 /// Version of this firmware: major, minor, patch.
-const FIRMWARE: (u8, u8, u8) = (0, 1, 0);
+const FIRMWARE: (u8, u8, u8) = (
+    part(env!("CARGO_PKG_VERSION_MAJOR")),
+    part(env!("CARGO_PKG_VERSION_MINOR")),
+    part(env!("CARGO_PKG_VERSION_PATCH")),
+);
+
+/// A part of the package's version, read when this is compiled.
+const fn part(text: &str) -> u8 {
+    match u8::from_str_radix(text, 10) {
+        Ok(part) => part,
+        Err(_) => u8::MAX,
+    }
+}
 
 /// Orders that may wait for the ticker. A command is refused as busy when there is no room.
 const ORDERS_MAX: usize = 8;
@@ -48,14 +63,19 @@ pub(super) struct Dialogue<'a> {
     host_heard: bool,
     /// State once the ticker has applied every order.
     pub(super) state: State,
-    received_bytes: u32,
+    pub(super) received_bytes: u32,
     telemetry_period_ticks: u32,
+    /// What has to be known of the committed scene beside its bytes, which the next upload takes the place of.
+    pub(super) playing: Playing,
+    /// What the host streams; `None` on a board that has no buffer for it.
+    #[cfg(feature = "stream")]
+    pub(super) stream: Option<Stream<'a>>,
     /// The last place of the finger that the host told and the ticker has not been given.
     touch: Option<Touch>,
 }
 
 /// What this firmware was built with.
-const fn features(board: &Board) -> u32 {
+const fn features(board: &Board, has_stream: bool) -> u32 {
     const fn bit(present: bool, bit: u32) -> u32 {
         if present { bit } else { 0 }
     }
@@ -68,7 +88,7 @@ const fn features(board: &Board) -> u32 {
         | bit(cfg!(feature = "edge"), feature::EDGE)
         | bit(cfg!(feature = "vibration"), feature::VIBRATION)
         | bit(cfg!(feature = "speed"), feature::SPEED)
-        | bit(cfg!(feature = "stream"), feature::STREAM)
+        | bit(has_stream, feature::STREAM)
         | bit(cfg!(feature = "polygon"), feature::POLYGON)
 }
 
@@ -90,6 +110,9 @@ impl<'a> Dialogue<'a> {
             state: State::Disarmed,
             received_bytes: 0,
             telemetry_period_ticks: 0,
+            playing: Playing::default(),
+            #[cfg(feature = "stream")]
+            stream: None,
             touch: None,
         }
     }
@@ -136,6 +159,15 @@ impl<'a> Dialogue<'a> {
                 self.host_heard = true;
                 self.take_chunk(number, bytes, outbox);
             }
+            #[cfg(feature = "stream")]
+            Ok(Payload::Samples { first_index, samples }) => {
+                self.host_heard = true;
+                self.take_samples(first_index, samples);
+                self.report_stream(status, outbox);
+            }
+            // Without the feature, samples are not looked at, but a host is there.
+            #[cfg(not(feature = "stream"))]
+            Ok(Payload::Samples { .. }) => self.host_heard = true,
             // A request whose command is not known still says which answer it waits for.
             Err(ParseError::UnknownCommand { sequence }) => {
                 self.host_heard = true;
@@ -160,8 +192,28 @@ impl<'a> Dialogue<'a> {
     /// The ticker's state holds once it has applied every order.
     fn follow_state(&mut self, status: &Status) {
         if self.is_settled(status) {
-            self.state = status.telemetry.state;
+            self.set_state(status.telemetry.state);
         }
+    }
+
+    /// A stream lasts no longer than the state in which it plays.
+    fn set_state(&mut self, state: State) {
+        self.state = state;
+        #[cfg(feature = "stream")]
+        if state != State::Active {
+            self.forget_stream();
+        }
+    }
+
+    #[cfg(feature = "stream")]
+    fn has_stream(&self) -> bool {
+        self.stream.is_some()
+    }
+
+    #[cfg(not(feature = "stream"))]
+    #[allow(clippy::unused_self, reason = "with the feature it is asked")]
+    fn has_stream(&self) -> bool {
+        false
     }
 
     fn is_settled(&self, status: &Status) -> bool {
@@ -179,6 +231,9 @@ impl<'a> Dialogue<'a> {
         self.telemetry_period_ticks = 0;
         self.drop_upload();
         self.announced_bitmaps.clear();
+        // Should there be no room for the order, the stream runs dry instead.
+        #[cfg(feature = "stream")]
+        let _ = self.end_stream();
         outbox.send_hello(&Hello {
             protocol: (PROTOCOL_MAJOR, PROTOCOL_MINOR),
             firmware: FIRMWARE,
@@ -186,7 +241,7 @@ impl<'a> Dialogue<'a> {
             id: self.board.id,
             tick_hz: self.board.tick_hz,
             frame_max_len: frixel_wire::frame::FRAME_MAX_LEN as u16,
-            features: features(&self.board),
+            features: features(&self.board, self.has_stream()),
             scene_crc32: self.committed_crc32,
             reset_cause: self.board.reset_cause,
             last_fault: status.fault.map(|(fault, _)| fault),
@@ -215,6 +270,17 @@ impl<'a> Dialogue<'a> {
             }
             Command::Lift => self.touch(Touch::Up),
             Command::FaultText { offset } => Ok(fault_text(self.board.reset_text, offset)),
+            Command::SetLayer { .. } => self.change_playing(command, status),
+            #[cfg(feature = "stream")]
+            Command::StartStream { .. } => self.change_playing(command, status),
+            #[cfg(feature = "stream")]
+            Command::EndStream => self.end_stream(),
+            #[cfg(not(feature = "stream"))]
+            Command::StartStream { .. } | Command::EndStream => Err(Refusal::UnknownCommand),
+            Command::TouchFinger { x_m, y_m, age_ticks, .. } => {
+                self.touch(Touch::Down { x_m, y_m, age_ticks: u32::from(age_ticks) })
+            }
+            Command::LiftFinger { .. } => self.touch(Touch::Up),
             Command::ClearFault => self.change_state(Order::ClearFault, &[State::Faulted], State::Disarmed),
             Command::Arm | Command::Disarm | Command::Play | Command::Stop => self.drive(command, status),
         }
@@ -243,14 +309,18 @@ impl<'a> Dialogue<'a> {
             return Err(Refusal::WrongState(self.state));
         }
         self.send_order(order)?;
-        self.state = to;
+        self.set_state(to);
         Ok(Accepted::Done)
     }
 
-    fn send_order(&mut self, order: Order<'a>) -> Result<(), Refusal> {
-        let kept = if matches!(order, Order::Stop | Order::Disarm) { 0 } else { ORDERS_KEPT };
-        if self.orders.len() + kept >= ORDERS_MAX {
-            return Err(Refusal::Busy);
+    /// Refuses when there is no room for another order, but for those that put the output to zero.
+    pub(super) fn room_for_order(&self) -> Result<(), Refusal> {
+        if self.orders.len() + ORDERS_KEPT >= ORDERS_MAX { Err(Refusal::Busy) } else { Ok(()) }
+    }
+
+    pub(super) fn send_order(&mut self, order: Order<'a>) -> Result<(), Refusal> {
+        if !matches!(order, Order::Stop | Order::Disarm) {
+            self.room_for_order()?;
         }
         self.orders.push_back(order).map_err(|_| Refusal::Busy)?;
         self.orders_sent = self.orders_sent.wrapping_add(1);
@@ -338,6 +408,7 @@ impl<'a> Dialogue<'a> {
         if self.committed_crc32 != 0 {
             self.send_order(Order::Unload)?;
             self.committed_crc32 = 0;
+            self.playing = Playing::default();
             self.committed_bitmaps.clear();
             let announced = &self.announced_bitmaps;
             self.directory.retain(|bitmap| announced.contains(&bitmap.crc32));
@@ -390,9 +461,7 @@ impl<'a> Dialogue<'a> {
         if found != crc32 {
             return Err(Refusal::CrcMismatch { expected: crc32, found });
         }
-        if self.orders.len() + ORDERS_KEPT >= ORDERS_MAX {
-            return Err(Refusal::Busy);
-        }
+        self.room_for_order()?;
         let scene = Scene::parse(bytes).map_err(Refusal::Scene)?;
         let spare = self.spare.take().ok_or(Refusal::Busy)?;
         if let Err(refusal) = spare.load(&scene, &self.board, &self.directory) {
@@ -400,6 +469,7 @@ impl<'a> Dialogue<'a> {
             return Err(refusal);
         }
         self.committed_bitmaps = bitmaps_of(&scene);
+        self.playing = Playing::new(&scene);
         self.committed_crc32 = crc32;
         self.announced_bitmaps.clear();
         self.send_order(Order::Load(spare))?;

@@ -6,14 +6,18 @@
 mod dialogue;
 #[cfg(feature = "store")]
 mod kept;
+mod live;
 mod outbox;
 mod upload;
 
 use frixel_wire::frame::Decoder;
 use frixel_wire::message::{FromBoard, Telemetry};
 use frixel_wire::payload::Payload;
+use frixel_wire::scene::Header;
 
 use crate::order::Status;
+#[cfg(feature = "stream")]
+use crate::stream::StreamBuffer;
 use crate::{Active, BitmapPool, Board, Order, Touch};
 use dialogue::Dialogue;
 #[cfg(feature = "store")]
@@ -39,6 +43,12 @@ impl<'a> Session<'a> {
         }
     }
 
+    /// From now on, takes the samples of streams into `buffer`, from which the ticker plays them.
+    #[cfg(feature = "stream")]
+    pub fn attach_stream(&mut self, buffer: &'a StreamBuffer) {
+        self.dialogue.attach_stream(buffer);
+    }
+
     /// Takes bytes from the serial line. Answers wait in [`Session::transmit`], orders in [`Session::next_order`].
     pub fn receive(&mut self, mut bytes: &[u8], status: &Status) {
         while !bytes.is_empty() {
@@ -55,6 +65,8 @@ impl<'a> Session<'a> {
     /// there is no time for that, at least once a telemetry period.
     pub fn poll(&mut self, status: &Status) {
         self.dialogue.report_state(status, &mut self.outbox);
+        #[cfg(feature = "stream")]
+        self.dialogue.report_stream(status, &mut self.outbox);
         if cfg!(feature = "telemetry")
             && let Some(period_ticks) = self.dialogue.telemetry_period_ticks()
             && status.telemetry.tick.wrapping_sub(self.telemetry_sent_at_tick) >= period_ticks
@@ -84,9 +96,15 @@ impl<'a> Session<'a> {
         self.outbox.drain(bytes)
     }
 
-    /// The committed scene, as it was sent; `None` without one.
+    /// The committed scene, as it was sent; `None` without one, and when the upload of another has begun.
     pub fn scene(&self) -> Option<&[u8]> {
         self.dialogue.scene()
+    }
+
+    /// Header of the committed scene; `None` without one. Other than [`Session::scene`], it outlives the upload of the
+    /// next scene.
+    pub fn scene_header(&self) -> Option<&Header> {
+        self.dialogue.playing.header.as_ref()
     }
 
     /// CRC-32 of what [`Session::kept`] would give.

@@ -11,6 +11,8 @@
 #[cfg(feature = "store")]
 pub mod flash;
 
+#[cfg(feature = "stream")]
+use frixel_render::StreamBuffer;
 use frixel_render::{Active, BitmapPool, Board, Drive, Sense, Session, Status, Ticker, Touch};
 use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, crc32};
 use frixel_wire::hello::Hello;
@@ -22,11 +24,18 @@ use frixel_wire::scene::{Blend, Carrier, Header, Layer, Point, Record, Region, b
 pub struct Memory {
     pool: BitmapPool,
     actives: [Active; 2],
+    #[cfg(feature = "stream")]
+    stream: StreamBuffer,
 }
 
 impl Memory {
     pub fn new() -> Box<Self> {
-        Box::new(Self { pool: BitmapPool::new(), actives: [Active::new(), Active::new()] })
+        Box::new(Self {
+            pool: BitmapPool::new(),
+            actives: [Active::new(), Active::new()],
+            #[cfg(feature = "stream")]
+            stream: StreamBuffer::new(),
+        })
     }
 }
 
@@ -57,10 +66,28 @@ impl<'a> Desk<'a> {
     }
 
     pub fn of(board: Board, memory: &'a mut Memory) -> Self {
-        let Memory { pool, actives: [first, second] } = memory;
+        Self::made_of(board, memory, true)
+    }
+
+    /// A board that has no buffer for a stream.
+    pub fn without_stream(memory: &'a mut Memory) -> Self {
+        Self::made_of(Board::SIMULATOR, memory, false)
+    }
+
+    fn made_of(board: Board, memory: &'a mut Memory, with_stream: bool) -> Self {
+        let _ = with_stream;
+        let pool = &memory.pool;
+        let [first, second] = &mut memory.actives;
+        #[cfg_attr(not(feature = "stream"), allow(unused_mut, reason = "there is nothing to attach"))]
+        let (mut ticker, mut session) = (Ticker::new(&board, pool, first), Session::new(board, pool, second));
+        #[cfg(feature = "stream")]
+        if with_stream {
+            ticker.attach_stream(&memory.stream);
+            session.attach_stream(&memory.stream);
+        }
         let mut desk = Self {
-            ticker: Ticker::new(&board, pool, first),
-            session: Session::new(board, pool, second),
+            ticker,
+            session,
             sense: Sense { arm_switch: true, ..Sense::default() },
             messages: Vec::new(),
             hello: None,

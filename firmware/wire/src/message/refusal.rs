@@ -70,6 +70,15 @@ pub enum Refusal {
     },
     /// The board has a touch source of its own, and takes none from the host.
     TouchSource,
+    /// The playing scene has no such layer.
+    NoSuchLayer {
+        /// The layer that was named, counted from zero.
+        layer: u8,
+        /// Layers that the scene has.
+        layers: u8,
+    },
+    /// No layer of the playing scene is a stream.
+    NoStreamLayer,
 }
 
 /// A number in a scene that the board cannot play.
@@ -135,10 +144,14 @@ pub enum ConfigField {
     Phase,
     /// A bitmap's place or pitch, m.
     BitmapPlacement,
-    /// The span of friction between 1 V and the largest voltage, wider than the table.
+    /// The span of friction between 1 V and the largest rms voltage, which is what is told, is wider than the table.
     TableRange,
     /// Where the host has the finger, m.
     TouchPlace,
+    /// Samples a second of a stream, Hz.
+    SampleRate,
+    /// Samples with which a stream begins.
+    StartLevel,
     /// The part of a turn in which a square grating is high.
     Duty,
     /// An angle, turns.
@@ -185,8 +198,10 @@ impl ConfigField {
             Self::WaveVector => ("wave vector", " cycles/m"),
             Self::Phase => ("phase", " turns"),
             Self::BitmapPlacement => ("bitmap place or pitch", " m"),
-            Self::TableRange => ("span of friction", ""),
+            Self::TableRange => ("span of friction", " V"),
             Self::TouchPlace => ("place of the finger", " m"),
+            Self::SampleRate => ("sample rate of the stream", " Hz"),
+            Self::StartLevel => ("start level of the stream", " samples"),
             Self::Duty => ("duty", ""),
             Self::Angle => ("angle", " turns"),
             Self::Wavelength => ("wavelength", " m"),
@@ -212,6 +227,13 @@ impl fmt::Display for ConfigRefusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { field, found, min, max, layer } = *self;
         let (name, unit) = field.name_and_unit();
+        if field == ConfigField::TableRange {
+            return write!(
+                f,
+                "the scene's friction from 1 V to its largest voltage, {found:?} V rms, spans more than the board's table holds: \
+                 lower that voltage, or raise the normal load"
+            );
+        }
         write!(f, "the {name} of ")?;
         match layer {
             Self::WHOLE_SCENE => f.write_str("the scene")?,
@@ -273,6 +295,13 @@ impl fmt::Display for Refusal {
             ),
             Self::TouchSource => {
                 f.write_str("the board has a touch source of its own: do not send it where the finger is")
+            }
+            Self::NoSuchLayer { layer, layers } => write!(
+                f,
+                "the playing scene has no layer {layer} (the first is 0), it has {layers}: name one of those, or commit the scene that is meant"
+            ),
+            Self::NoStreamLayer => {
+                f.write_str("no layer of the playing scene is a stream: add one to the scene, or send no samples")
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use super::{CHUNK_LEN, CHUNK_NUMBER_MAX, PAYLOAD_MAX_LEN};
+use super::{CHUNK_LEN, CHUNK_NUMBER_MAX, PAYLOAD_MAX_LEN, SAMPLES_MAX};
 use crate::frame::PayloadTooLong;
 use crate::hello::HelloError;
 
@@ -66,6 +66,11 @@ pub enum WriteError {
         /// Bytes in the chunk.
         len: usize,
     },
+    /// No samples, or more than [`SAMPLES_MAX`].
+    SampleCount {
+        /// Samples that were given.
+        count: usize,
+    },
 }
 
 impl fmt::Display for WriteError {
@@ -76,6 +81,7 @@ impl fmt::Display for WriteError {
                 write!(f, "chunk {number} is beyond {CHUNK_NUMBER_MAX}, the last that an upload can have: upload less")
             }
             Self::ChunkLength { len } => write!(f, "a chunk takes 1 to {CHUNK_LEN} bytes, this one has {len}"),
+            Self::SampleCount { count } => write!(f, "a frame takes 1 to {SAMPLES_MAX} samples, {count} were given"),
         }
     }
 }

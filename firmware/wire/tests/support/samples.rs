@@ -6,7 +6,7 @@ use frixel_wire::hello::{BoardKind, BoardLimits, Hello, ResetCause};
 use frixel_wire::message::{
     Accepted, Answer, Command, ConfigField, ConfigRefusal, FromBoard, Refusal, Request, Telemetry,
 };
-use frixel_wire::payload::{CHUNK_LEN, CHUNK_NUMBER_MAX, Payload};
+use frixel_wire::payload::{CHUNK_LEN, CHUNK_NUMBER_MAX, Payload, SAMPLES_MAX};
 use frixel_wire::scene::{Beat, Blend, Burst, Carrier, Click, Header, Layer, Point, Record, Region, SceneError, Wave};
 
 pub const STATES: [State; 4] = [State::Disarmed, State::Armed, State::Active, State::Faulted];
@@ -19,14 +19,18 @@ pub fn faults() -> impl Iterator<Item = Fault> {
 /// What a host sends.
 pub fn from_host() -> Vec<Payload<'static>> {
     static FULL_CHUNK: [u8; CHUNK_LEN] = [0xa5; CHUNK_LEN];
+    static FULL_SAMPLES: [[u8; 2]; SAMPLES_MAX] = [[0x5a, 0xa5]; SAMPLES_MAX];
     let sequences = [0, 1, 127, 128, 300, 16_383, 16_384, 65_535].into_iter().cycle();
-    let mut payloads = vec![Payload::HelloRequest { protocol: (1, 0) }];
+    let mut payloads = vec![Payload::HelloRequest { protocol: (1, 1) }];
     payloads
         .extend(sequences.zip(commands()).map(|(sequence, command)| Payload::Request(Request { sequence, command })));
     payloads.extend([
         Payload::Chunk { number: 0, bytes: &[0x00] },
         Payload::Chunk { number: 300, bytes: &[0x00, 0x01, 0xff] },
         Payload::Chunk { number: CHUNK_NUMBER_MAX, bytes: &FULL_CHUNK },
+        Payload::Samples { first_index: 0, samples: &[[0x00, 0x00]] },
+        Payload::Samples { first_index: 70_000, samples: &[[0xff, 0xff], [0x00, 0x80], [0x34, 0x12]] },
+        Payload::Samples { first_index: u32::MAX, samples: &FULL_SAMPLES },
     ]);
     payloads
 }
@@ -49,6 +53,12 @@ fn commands() -> Vec<Command> {
         Command::Touch { x_m: 0.05, y_m: 0.025, age_ticks: 400 },
         Command::Lift,
         Command::FaultText { offset: 32 },
+        Command::SetLayer { layer: 2, on: true, gain: 0.5 },
+        Command::SetLayer { layer: 63, on: false, gain: -1.0 },
+        Command::StartStream { sample_hz: 8_000, start_level: 320 },
+        Command::EndStream,
+        Command::TouchFinger { finger: 3, x_m: 0.05, y_m: 0.025, age_ticks: 400 },
+        Command::LiftFinger { finger: 3 },
     ]
 }
 
@@ -120,6 +130,10 @@ fn messages() -> Vec<FromBoard> {
         FromBoard::Progress { next_chunk: 0, received_bytes: 0 },
         FromBoard::Progress { next_chunk: CHUNK_NUMBER_MAX, received_bytes: u32::MAX },
     ]);
+    messages.extend([
+        FromBoard::StreamProgress { next_index: 0, room: 1024, underruns: 0, gaps: 0, received_bytes: 40 },
+        FromBoard::StreamProgress { next_index: 70_000, room: 300, underruns: 2, gaps: 130, received_bytes: u32::MAX },
+    ]);
     messages.extend(STATES.map(|state| FromBoard::Telemetry(telemetry(state))));
     messages.push(FromBoard::StateChanged { state: State::Disarmed, fault: None, flags: Flags::HOST_SILENT });
     messages.extend(faults().map(|fault| FromBoard::StateChanged {
@@ -176,6 +190,8 @@ pub fn refusals() -> Vec<Refusal> {
         Refusal::LeftOut { layer: 2 },
         Refusal::LeftOut { layer: ConfigRefusal::WHOLE_SCENE },
         Refusal::TouchSource,
+        Refusal::NoSuchLayer { layer: 9, layers: 4 },
+        Refusal::NoStreamLayer,
     ]);
     refusals
 }
@@ -205,8 +221,8 @@ pub fn config_fields() -> Vec<ConfigField> {
     use ConfigField::{
         Angle, BitmapPlacement, CarrierFrequency, ClickLayers, CurrentPeak, CurrentRms, CurveSpeed, Duration, Duty,
         EffectiveGap, FingerRadius, Friction, FrictionCoefficient, Gain, HostTimeout, NoiseLayers, NormalLoad, Phase,
-        Region, ScreenHeight, ScreenWidth, Shape, Slew, Stiffness, TableRange, TouchPlace, Vertex, VibrationFrequency,
-        VoltagePeak, VoltageRms, WaveVector, Wavelength,
+        Region, SampleRate, ScreenHeight, ScreenWidth, Shape, Slew, StartLevel, Stiffness, TableRange, TouchPlace,
+        Vertex, VibrationFrequency, VoltagePeak, VoltageRms, WaveVector, Wavelength,
     };
     vec![
         ScreenWidth,
@@ -231,6 +247,8 @@ pub fn config_fields() -> Vec<ConfigField> {
         BitmapPlacement,
         TableRange,
         TouchPlace,
+        SampleRate,
+        StartLevel,
         Duty,
         Angle,
         Wavelength,

@@ -15,7 +15,7 @@ pub(super) use cell::Cell;
 use cell::Coverage;
 pub(super) use span::Span;
 
-use crate::wanted::Piece;
+use crate::wanted::{Field, Piece};
 
 /// Cells narrower than this come from rounding, m.
 const CELL_MIN_M: f64 = 1e-6;
@@ -95,8 +95,11 @@ impl Stack {
                 continue;
             }
             let own = Span::in_cell(&piece.field, cell).times(piece.gain);
+            // What is streamed may not be there.
+            let always = !matches!(piece.field, Field::Stream { .. });
             let blended = stack.bound.blended(own, piece.blend);
-            if coverage == Coverage::Whole && piece.blend == Blend::Replace {
+            let blended = if always { blended } else { stack.bound.hull(blended) };
+            if coverage == Coverage::Whole && piece.blend == Blend::Replace && always {
                 stack = Self { layers: Vec::new(), bound: own, doubts: 0, outlined: false };
             } else if coverage == Coverage::Whole {
                 stack.bound = blended;
@@ -130,7 +133,8 @@ fn search(pieces: &[Piece], stack: &Stack, cell: Cell, places_left: &mut usize) 
         let x_m = at(cell.left_m, cell.right_m, place % across, across);
         let y_m = at(cell.top_m, cell.bottom_m, place / across, down);
         layers.iter().filter(|piece| piece.shape.covers(x_m, y_m)).fold(Span::ZERO, |below, piece| {
-            below.blended(Span::at_place(&piece.field, x_m, y_m).times(piece.gain), piece.blend)
+            let blended = below.blended(Span::at_place(&piece.field, x_m, y_m).times(piece.gain), piece.blend);
+            if matches!(piece.field, Field::Stream { .. }) { below.hull(blended) } else { blended }
         })
     });
     spans.reduce(Span::hull).unwrap_or(Span::ZERO)

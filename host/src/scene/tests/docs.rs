@@ -64,5 +64,5 @@ fn numbers_in_the_text_are_right() {
     let reach = program.reach;
     assert!(DOCS.contains(&format!("At 150 V rms it feels {:.2} mN more", 1e3 * reach.electric_friction_max_n)));
     assert!(DOCS.contains(&format!("{} N. At 150 V", reach.natural_friction_n)));
-    assert_eq!(LIMITS.bitmap_pool_bytes, 81_920);
+    assert_eq!(LIMITS.bitmap_pool_bytes, 65_536);
 }

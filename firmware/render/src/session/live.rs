@@ -1,0 +1,164 @@
+//! What a host changes while a scene plays: layers, and the samples of a stream.
+
+use frixel_wire::fault::State;
+use frixel_wire::message::{Accepted, Command, ConfigField, Refusal};
+#[cfg(feature = "stream")]
+use frixel_wire::message::{ConfigRefusal, FromBoard, STREAM_START_LEVEL_MAX};
+use frixel_wire::scene::{Header, Scene};
+
+use super::dialogue::Dialogue;
+#[cfg(feature = "stream")]
+use super::outbox::Outbox;
+use crate::config::{self, GAIN_MAX};
+use crate::order::{Order, Status};
+#[cfg(feature = "stream")]
+use crate::stream::{Intake, StreamBuffer};
+
+/// Frames of samples after which the host hears how the stream is doing: less than 1 KiB, as with uploads.
+#[cfg(feature = "stream")]
+const PROGRESS_FRAMES: u32 = 4;
+/// Time after which it hears so in any case, in s.
+#[cfg(feature = "stream")]
+const PROGRESS_PERIOD_S: f32 = 0.02;
+
+/// What has to be known of the scene that the ticker has, when its bytes are gone.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Playing {
+    pub(super) header: Option<Header>,
+    layers: u8,
+    #[cfg(feature = "stream")]
+    has_stream: bool,
+}
+
+impl Playing {
+    pub(super) fn new(scene: &Scene) -> Self {
+        Self {
+            header: Some(*scene.header()),
+            // A scene has no more records than that.
+            layers: scene.record_count() as u8,
+            #[cfg(feature = "stream")]
+            has_stream: scene.records().any(|record| crate::layer::is_stream(&record)),
+        }
+    }
+}
+
+/// The stream that the host sends.
+#[cfg(feature = "stream")]
+pub(super) struct Stream<'a> {
+    intake: Intake<'a>,
+    /// Frames of samples since the host last heard how the stream is doing.
+    frames: u32,
+    reported_at_tick: u32,
+    /// Something has to be told as soon as there is room.
+    report_due: bool,
+}
+
+#[cfg(feature = "stream")]
+impl<'a> Stream<'a> {
+    pub(super) fn new(buffer: &'a StreamBuffer) -> Self {
+        Self { intake: Intake::new(buffer), frames: 0, reported_at_tick: 0, report_due: false }
+    }
+}
+
+impl Dialogue<'_> {
+    /// Commands that only a playing scene takes.
+    pub(super) fn change_playing(&mut self, command: Command, status: &Status) -> Result<Accepted, Refusal> {
+        match (self.state, status.fault) {
+            (State::Active, _) => {}
+            (State::Faulted, Some((fault, _))) => return Err(Refusal::Faulted(fault)),
+            (state, _) => return Err(Refusal::WrongState(state)),
+        }
+        match command {
+            Command::SetLayer { layer, on, gain } => self.set_layer(layer, on, gain),
+            #[cfg(feature = "stream")]
+            Command::StartStream { sample_hz, start_level } => self.start_stream(sample_hz, start_level),
+            _ => Err(Refusal::UnknownCommand),
+        }
+    }
+
+    fn set_layer(&mut self, layer: u8, on: bool, gain: f32) -> Result<Accepted, Refusal> {
+        let layers = self.playing.layers;
+        if layer >= layers {
+            return Err(Refusal::NoSuchLayer { layer, layers });
+        }
+        config::within(ConfigField::Gain, gain, -GAIN_MAX, GAIN_MAX, layer).map_err(Refusal::Config)?;
+        self.send_order(Order::SetLayer { layer, on, gain })?;
+        Ok(Accepted::Done)
+    }
+}
+
+#[cfg(feature = "stream")]
+impl<'a> Dialogue<'a> {
+    pub(super) fn attach_stream(&mut self, buffer: &'a StreamBuffer) {
+        self.stream = Some(Stream::new(buffer));
+    }
+
+    fn start_stream(&mut self, sample_hz: u32, start_level: u16) -> Result<Accepted, Refusal> {
+        let tick_hz = self.board.tick_hz;
+        if self.stream.is_none() {
+            return Err(Refusal::UnknownCommand);
+        }
+        if !self.playing.has_stream {
+            return Err(Refusal::NoStreamLayer);
+        }
+        for (field, found, max) in [
+            (ConfigField::SampleRate, sample_hz as f32, tick_hz as f32),
+            (ConfigField::StartLevel, f32::from(start_level), f32::from(STREAM_START_LEVEL_MAX)),
+        ] {
+            config::within(field, found, 1.0, max, ConfigRefusal::WHOLE_SCENE).map_err(Refusal::Config)?;
+        }
+        self.room_for_order()?;
+        let Some(stream) = &mut self.stream else { return Err(Refusal::UnknownCommand) };
+        let start = stream.intake.start(sample_hz, tick_hz, start_level);
+        stream.report_due = true;
+        self.send_order(Order::StartStream(start))?;
+        Ok(Accepted::Done)
+    }
+
+    /// Takes no more samples, and lets the ticker play those that are there.
+    pub(super) fn end_stream(&mut self) -> Result<Accepted, Refusal> {
+        if self.stream.is_none() {
+            return Err(Refusal::UnknownCommand);
+        }
+        self.room_for_order()?;
+        if let Some(last) = self.stream.as_mut().and_then(|stream| stream.intake.end()) {
+            self.send_order(Order::EndStream { last })?;
+        }
+        Ok(Accepted::Done)
+    }
+
+    /// Takes no more samples. The ticker has forgotten the stream, or will: it does not play.
+    pub(super) fn forget_stream(&mut self) {
+        if let Some(stream) = &mut self.stream {
+            stream.intake.end();
+        }
+    }
+
+    pub(super) fn take_samples(&mut self, first_index: u32, samples: &[[u8; 2]]) {
+        if let Some(stream) = &mut self.stream {
+            stream.intake.take(first_index, samples);
+            stream.frames += 1;
+            stream.report_due |= stream.frames >= PROGRESS_FRAMES;
+        }
+    }
+
+    /// Tells the host how the stream is doing, when that is due and the line is not behind.
+    pub(super) fn report_stream(&mut self, status: &Status, outbox: &mut Outbox) {
+        let Some(stream) = &mut self.stream else { return };
+        let Some((next_index, room)) = stream.intake.progress() else { return };
+        let now_tick = status.telemetry.tick;
+        let period_over = now_tick.wrapping_sub(stream.reported_at_tick) >= self.board.ticks(PROGRESS_PERIOD_S);
+        if (stream.report_due || period_over) && outbox.is_mostly_free() {
+            stream.report_due = false;
+            stream.frames = 0;
+            stream.reported_at_tick = now_tick;
+            outbox.send(&FromBoard::StreamProgress {
+                next_index,
+                room,
+                underruns: status.counters.stream_underruns,
+                gaps: status.counters.stream_gaps,
+                received_bytes: self.received_bytes,
+            });
+        }
+    }
+}

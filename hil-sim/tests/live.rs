@@ -1,0 +1,279 @@
+//! What changes while a scene plays, tick by tick: a layer's gain, a scene that takes another's place.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+mod script;
+
+use frixel_hil_sim::{BoardMemory, Point, Rig, RigConfig, Stroke, TickRecord, TouchConfig, contact_of};
+use frixel_wire::fault::Flags;
+use frixel_wire::frame::{Decoder, FRAME_MAX_LEN};
+use frixel_wire::message::{Command, FromBoard};
+use frixel_wire::payload::{self, CHUNK_LEN, Payload};
+use frixel_wire::scene::{Blend, Header, Layer, Record, Wave};
+use script::{HEADER, Script, record, scene};
+
+/// A touch source that reports in every fifth tick, so that orders and reports meet in one tick now and then.
+fn config() -> RigConfig {
+    let mut config = RigConfig::default();
+    config.world.touch = TouchConfig { rate_hz: 8_000.0, latency_s: 0.0, noise_rms_m: 0.0, jitter_rms_s: 0.0 };
+    config
+}
+
+fn slide() -> Stroke {
+    Stroke::constant_speed(Point { x_m: 0.01, y_m: 0.03 }, Point { x_m: 0.11, y_m: 0.05 }, 0.1).unwrap()
+}
+
+fn constant(electric_friction_n: f32) -> Record {
+    record(Layer::Constant { electric_friction_n })
+}
+
+fn stripes(crest_n: f32, cycles_per_m_x: f32) -> Record {
+    let wave = Wave::Sine;
+    let layer =
+        Layer::Grating { wave, cycles_per_m_x, cycles_per_m_y: 40.0, phase_turns: 0.1, trough_n: 0.001, crest_n };
+    Record { blend: Blend::Add, ..record(layer) }
+}
+
+/// Plays `scene` from power-on for 1,000 ticks, and hands the board over.
+fn play<'a>(memory: &'a mut BoardMemory, scene: &[u8]) -> Script<'a> {
+    let mut script = Script::new(Rig::new(memory, &config(), slide(), 1).unwrap());
+    script.play(scene);
+    for _ in 0..1_000 {
+        script.step();
+    }
+    script
+}
+
+fn amplitude(record: &TickRecord) -> u16 {
+    record.status.telemetry.dac_code.unsigned_abs()
+}
+
+/// Ticks from the one that takes the last byte of the command to the one in which the DAC has what it asks for, for
+/// every phase of the touch source. Half the friction is less voltage, but no less than half as much.
+fn ticks_to_dac(bulk_frames: usize) -> u64 {
+    let mut most = 0;
+    for phase in 0..10 {
+        let mut memory = BoardMemory::new();
+        let mut script = play(&mut memory, &scene(&HEADER, &[constant(0.02)]));
+        for _ in 0..phase {
+            script.step();
+        }
+        let before = amplitude(&script.step());
+        for number in 0..bulk_frames {
+            let mut frame = [0; FRAME_MAX_LEN];
+            script.rig.send(payload::chunk_frame(number as u16, &[7; CHUNK_LEN], &mut frame).unwrap());
+            if number == bulk_frames / 2 {
+                script.send(Command::SetLayer { layer: 0, on: true, gain: 0.5 });
+            }
+        }
+        if bulk_frames == 0 {
+            script.send(Command::SetLayer { layer: 0, on: true, gain: 0.5 });
+        }
+        let sent = script.rig.line_to_board_mut().bytes().sent;
+        let behind = bulk_frames.div_ceil(2).saturating_sub(1) as u64 * 192;
+        let mut last_byte_tick = None;
+        loop {
+            let record = script.step();
+            assert!(record.tick < 20_000, "the gain never reached the DAC");
+            if script.rig.line_to_board_mut().bytes().delivered >= sent - behind && last_byte_tick.is_none() {
+                last_byte_tick = Some(record.tick);
+            }
+            if amplitude(&record) != before {
+                let now = f64::from(amplitude(&record));
+                assert!((0.5..0.8).contains(&(now / f64::from(before))), "{now} after {before}");
+                most = most.max(record.tick + 1 - last_byte_tick.unwrap_or(record.tick));
+                break;
+            }
+        }
+    }
+    most
+}
+
+#[test]
+fn a_gain_is_at_the_dac_within_a_millisecond_on_an_idle_line_and_two_during_an_upload() {
+    let (idle, busy) = (ticks_to_dac(0), ticks_to_dac(40));
+    println!("from the last byte to the DAC: {idle} ticks on an idle line, {busy} during an upload; 40 are 1 ms");
+    assert!(idle <= 40, "{idle} ticks");
+    assert!(busy <= 80, "{busy} ticks");
+}
+
+#[test]
+fn a_layer_goes_off_and_comes_back_as_its_record_has_it_with_the_next_commit() {
+    let both = scene(&HEADER, &[constant(0.01), stripes(0.006, 300.0)]);
+    let mut memory = BoardMemory::new();
+    let mut script = play(&mut memory, &both);
+    script.command(Command::SetLayer { layer: 1, on: false, gain: 1.0 });
+    let asked = |script: &mut Script| script.step().status.telemetry.asked_electric_friction_n;
+    for _ in 0..100 {
+        assert_eq!(asked(&mut script).to_bits(), 0.01_f32.to_bits());
+    }
+    let commit = script.upload(&both);
+    script.command(commit);
+    let back: Vec<f32> = (0..1_000).map(|_| asked(&mut script)).collect();
+    assert!(back.iter().all(|asked_n| *asked_n > 0.0109) && back.iter().any(|asked_n| *asked_n > 0.0155));
+}
+
+#[test]
+fn a_gain_out_of_reach_is_clamped_flagged_and_counted() {
+    let mut memory = BoardMemory::new();
+    let mut script = play(&mut memory, &scene(&HEADER, &[constant(0.01)]));
+    assert_eq!(script.status().counters.saturated_ticks, 0);
+    let reach_n = contact_of(&HEADER).unwrap().electric_friction_n(150.0);
+    script.command(Command::SetLayer { layer: 0, on: true, gain: 100.0 });
+    let counted = script.status().counters.saturated_ticks;
+    for ticks in 1..=100 {
+        let status = script.step().status;
+        assert!(status.telemetry.flags.contains(Flags::SATURATED));
+        assert_eq!(status.counters.saturated_ticks, counted + ticks);
+        assert!((status.telemetry.voltage_v_rms - 150.0).abs() < 0.01, "{}", status.telemetry.voltage_v_rms);
+    }
+    assert!(reach_n < 1.0);
+}
+
+/// What two boards under the same finger do, one playing `before` and one `after` from the start, against a third on
+/// which `after` takes the place of `before` while it plays: the tick of the swap, and the three at each tick.
+struct Swap {
+    swap: usize,
+    before: Vec<TickRecord>,
+    after: Vec<TickRecord>,
+    swapped: Vec<TickRecord>,
+}
+
+const SWAP_TICKS: usize = 3_000;
+
+fn run(first: &[u8], second: Option<(&[u8], usize)>) -> Vec<TickRecord> {
+    let mut memory = BoardMemory::new();
+    let mut script = play(&mut memory, first);
+    let mut records = Vec::new();
+    let mut commit = None;
+    for tick in 0..SWAP_TICKS {
+        if let Some((second, delay)) = second {
+            if tick == 0 {
+                let crc32 = frixel_wire::frame::crc32(second);
+                script.send(Command::UploadScene { len: second.len() as u32, crc32 });
+                for (number, chunk) in second.chunks(CHUNK_LEN).enumerate() {
+                    let mut frame = [0; FRAME_MAX_LEN];
+                    script.rig.send(payload::chunk_frame(number as u16, chunk, &mut frame).unwrap());
+                }
+                script.send(Command::UploadEnd);
+                commit = Some(Command::Commit { crc32 });
+            }
+            if tick == 1_000 + delay {
+                script.send(commit.unwrap());
+            }
+        }
+        if tick.is_multiple_of(1_500) {
+            script.send(Command::Ping);
+        }
+        records.push(script.step());
+    }
+    records
+}
+
+fn swap(before: &[u8], after: &[u8], delay: usize) -> Swap {
+    let swapped = run(before, Some((after, delay)));
+    let orders = swapped[0].status.orders_applied;
+    let swap = swapped.iter().position(|record| record.status.orders_applied != orders).unwrap();
+    Swap { swap, before: run(before, None), after: run(after, None), swapped }
+}
+
+fn asked_bits(records: &[TickRecord]) -> Vec<u32> {
+    records.iter().map(|record| record.status.telemetry.asked_electric_friction_n.to_bits()).collect()
+}
+
+fn amplitudes(records: &[TickRecord]) -> Vec<u16> {
+    records.iter().map(amplitude).collect()
+}
+
+#[test]
+fn a_scene_takes_anothers_place_between_two_ticks() {
+    let before = scene(&HEADER, &[constant(0.004), stripes(0.012, 450.0)]);
+    let after = scene(&HEADER, &[constant(0.015), stripes(0.007, 130.0)]);
+    // Every phase of the touch source: the tick of the swap may take a report, too.
+    for delay in 0..5 {
+        let Swap { swap, before, after, swapped } = swap(&before, &after, delay);
+        assert!((1_000..1_020).contains(&swap), "{swap}");
+        for of in [asked_bits, |records: &[TickRecord]| amplitudes(records).into_iter().map(u32::from).collect()] {
+            let (before, after, swapped) = (of(&before), of(&after), of(&swapped));
+            assert_eq!(swapped[..swap], before[..swap], "delay {delay}");
+            let wrong = (swap..SWAP_TICKS).find(|tick| swapped[*tick] != after[*tick]);
+            assert_eq!(wrong.map(|tick| tick - swap), None, "delay {delay}: ticks after the swap");
+            assert_ne!(before[swap], after[swap], "the two can be told apart");
+        }
+        assert!(swapped.iter().all(|record| record.status.telemetry.dac_code != 0), "delay {delay}: never zero");
+    }
+}
+
+/// Under a slow slew limit the voltage goes straight from where the old scene had it to where the new one wants it.
+#[test]
+fn the_envelope_goes_from_one_scene_to_the_other_at_its_slew_limit() {
+    let header = Header { slew_v_per_s: 1e4, ..HEADER };
+    let (before, after) = (scene(&header, &[constant(0.004)]), scene(&header, &[constant(0.02)]));
+    let Swap { swap, before, after, swapped } = swap(&before, &after, 0);
+    let volts = |record: &TickRecord| record.status.telemetry.voltage_v_rms;
+    let step_v = 1e4 / 40_000.0;
+    let (mut expected_v, target_v) = (volts(&before[swap - 1]), volts(&after[swap]));
+    assert!(target_v - expected_v > 20.0 * step_v);
+    for record in &swapped[swap..] {
+        expected_v = (expected_v + step_v).min(target_v);
+        assert!((volts(record) - expected_v).abs() < 1e-3, "{} is not {expected_v}", volts(record));
+    }
+}
+
+/// Carrier edges keep their distance over the swap; what changes is the amplitude.
+#[test]
+fn the_carrier_goes_on_over_the_swap() {
+    let (before, after) = (scene(&HEADER, &[constant(0.02)]), scene(&HEADER, &[constant(0.005)]));
+    for delay in [0, 7, 13, 21, 33] {
+        let Swap { swap, swapped, .. } = swap(&before, &after, delay);
+        let signs: Vec<bool> =
+            swapped[swap - 200..swap + 200].iter().map(|record| record.status.telemetry.dac_code > 0).collect();
+        let edges: Vec<usize> = (1..signs.len()).filter(|tick| signs[*tick] != signs[tick - 1]).collect();
+        assert!(edges.windows(2).all(|pair| pair[1] - pair[0] == 20), "delay {delay}: {edges:?}");
+    }
+}
+
+/// The finger in the world is the committed scene's, even when the next upload has begun before the rig looked.
+#[test]
+fn a_commit_and_the_next_upload_in_one_tick_leave_no_old_finger() {
+    let mut memory = BoardMemory::new();
+    let config = RigConfig { baud: 20_000_000, ..config() };
+    let mut script = Script::new(Rig::new(&mut memory, &config, slide(), 1).unwrap());
+    script.play(&scene(&HEADER, &[constant(0.01)]));
+    let heavy = Header { normal_load_n: 1.0, ..HEADER };
+    let commit = script.upload(&scene(&heavy, &[constant(0.01)]));
+    script.send(commit);
+    script.send(Command::UploadScene { len: 112, crc32: 1 });
+    script.step();
+    assert_eq!(script.rig.line_to_board_mut().queued(), 0, "both came in one tick");
+    assert_eq!(script.rig.scene(), Some(&heavy));
+    for _ in 0..400 {
+        script.step();
+    }
+    let felt_n = script.step().felt.friction_n;
+    assert!((felt_n - 0.51).abs() < 1e-3, "{felt_n} N");
+}
+
+/// A line that is slower than what is asked for: telemetry is left out, and what comes is not old.
+#[test]
+fn telemetry_on_a_slow_line_stays_fresh() {
+    let mut memory = BoardMemory::new();
+    let config = RigConfig { baud: 9_600, ..config() };
+    let mut script = Script::new(Rig::new(&mut memory, &config, slide(), 1).unwrap());
+    script.command(Command::Subscribe { period_ticks: 40 });
+    let (mut decoder, mut bytes) = (Decoder::new(), Vec::new());
+    let (mut heard, mut oldest) = (0, 0);
+    for _ in 0..400_000 {
+        let tick = script.step().tick as u32;
+        script.rig.receive(&mut bytes);
+        for byte in bytes.drain(..) {
+            let Some(frame) = decoder.push(byte) else { continue };
+            if let Ok(Payload::FromBoard(FromBoard::Telemetry(telemetry))) = Payload::parse_from_board(frame) {
+                heard += 1;
+                oldest = oldest.max(tick - telemetry.tick);
+            }
+        }
+    }
+    // Half an outbox, a frame, and the line's queue: 1,024 + 48 + 64 bytes of 10 bits.
+    assert!(oldest <= 1_136 * 10 * 40_000 / 9_600, "{oldest} ticks");
+    assert!(heard > 200, "{heard}");
+}
