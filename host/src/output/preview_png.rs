@@ -83,7 +83,8 @@ impl Map {
         let wanted = Wanted::new(program).with_vibrations_held();
         let metres = |pixel: usize| (pixel as f64 + 0.5) / frame.pixels_per_mm * 1e-3;
         let part = |x_m: f64, y_m: f64| {
-            let moment = Moment { x_m, y_m, t_s: 0.0, speed_m_per_s: preview.speed_m_per_s, stream: 1.0 };
+            let speed_m_per_s = preview.speed_m_per_s;
+            let moment = Moment { x_m, y_m, speed_m_per_s, stream: 1.0, stream_weight: 1.0, ..Moment::default() };
             wanted.electric_friction_at_n(&moment) / program.reach.electric_friction_max_n
         };
         let places = (0..frame.height).flat_map(|row| (0..frame.width).map(move |column| (column, row)));
