@@ -23,6 +23,17 @@ pub fn start<L: Link>(
     program: &Program,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<(), DeviceError> {
+    load(device, program, progress)?;
+    device.arm()?;
+    device.play()
+}
+
+/// Takes a board from wherever another client left it to a scene that could be played.
+pub(crate) fn load<L: Link>(
+    device: &mut Device<L>,
+    program: &Program,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<(), DeviceError> {
     let scene = program.scene_bytes();
     let bitmaps = program
         .bitmaps
@@ -37,9 +48,7 @@ pub fn start<L: Link>(
     let upload = Upload { scene: &scene, bitmaps };
     device.disarm()?;
     device.upload(&upload, progress)?;
-    device.commit(upload.scene_crc32())?;
-    device.arm()?;
-    device.play()
+    device.commit(upload.scene_crc32())
 }
 
 /// How to play on the simulator.

@@ -3,6 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use frixel::check::RehearsalError;
 use frixel::device::{DeviceError, PortError};
 use frixel::model_csv::CsvError;
 use frixel::output::OutputError;
@@ -22,6 +23,8 @@ pub(crate) enum CommandError {
     Compile(#[from] CompileError),
     #[error(transparent)]
     Device(#[from] DeviceError),
+    #[error(transparent)]
+    Rehearsal(#[from] RehearsalError),
     #[error(transparent)]
     Port(#[from] PortError),
     #[error(transparent)]

@@ -21,7 +21,7 @@ mod tests;
 #[cfg(feature = "vibration")]
 mod vibration;
 
-use frixel_wire::scene::Blend;
+use frixel_wire::scene::{self as wire, Blend};
 #[cfg(feature = "stream")]
 use frixel_wire::scene::{Layer as Kind, Record};
 
@@ -106,6 +106,19 @@ enum Source {
         low_n: f32,
         span_n: f32,
     },
+}
+
+/// Bytes that a record becomes: a layer, and what of it lies in the tables; its points apart.
+pub(crate) fn bytes_of(record: &wire::Record) -> usize {
+    let in_tables = match record.layer {
+        #[cfg(feature = "noise")]
+        wire::Layer::Noise { .. } => size_of::<noise::Waves>(),
+        wire::Layer::Edge { click, .. } | wire::Layer::Button { click, .. } if click.height_n.abs() > 0.0 => {
+            size_of::<click::Click>()
+        }
+        _ => 0,
+    };
+    size_of::<Layer>() + in_tables
 }
 
 impl Layer {
