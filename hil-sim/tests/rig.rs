@@ -29,7 +29,7 @@ const HEADER: Header = Header {
 fn constant(header: &Header, electric_friction_n: f32) -> Vec<u8> {
     let layer = Layer::Constant { electric_friction_n };
     let record = Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer };
-    [header.write(1).as_slice(), record.write().as_slice()].concat()
+    [header.write(1, 0).as_slice(), record.write().as_slice()].concat()
 }
 
 /// Sends one frame and returns the payload bytes of what comes back, with the ticks that it took.

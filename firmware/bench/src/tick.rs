@@ -46,7 +46,7 @@ const GRATING: Layer = Layer::Grating {
 };
 
 const SQUARE_GRATING: Layer = Layer::Grating {
-    wave: Wave::Square,
+    wave: Wave::Square { duty: 0.5 },
     cycles_per_m_x: 500.0,
     cycles_per_m_y: 100.0,
     phase_turns: 0.2,
@@ -55,7 +55,17 @@ const SQUARE_GRATING: Layer = Layer::Grating {
 };
 
 const fn bitmap(crc32: u32) -> Layer {
-    Layer::Bitmap { crc32, x_m: 0.01, y_m: 0.0, pitch_m: 1e-3, black_n: 0.0, white_n: 0.026 }
+    Layer::Bitmap {
+        crc32,
+        x_m: 0.01,
+        y_m: 0.0,
+        pitch_m: 1e-3,
+        black_n: 0.0,
+        white_n: 0.026,
+        pitch_y_m: 1e-3,
+        angle_turns: 0.0,
+        tiled: false,
+    }
 }
 
 const fn record(layer: Layer) -> Record {
@@ -126,7 +136,7 @@ impl Monitor {
 impl Bench {
     fn play(&mut self, header: &Header, records: &[Record]) {
         let mut scene = [0; HEADER_LEN + RECORDS_MAX * RECORD_LEN];
-        scene[..HEADER_LEN].copy_from_slice(&header.write(records.len() as u8));
+        scene[..HEADER_LEN].copy_from_slice(&header.write(records.len() as u8, 0));
         for (place, record) in scene[HEADER_LEN..].chunks_exact_mut(RECORD_LEN).zip(records) {
             place.copy_from_slice(&record.write());
         }

@@ -37,7 +37,7 @@ pub(crate) fn scene(host_timeout_s: f32) -> Vec<u8> {
         autonomous: false,
         prediction: true,
     };
-    header.write(0).to_vec()
+    header.write(0, 0).to_vec()
 }
 
 fn nothing(_: Event) {}

@@ -286,8 +286,8 @@ fn any_colour_type_becomes_grey_and_says_what_was_done() {
 fn ramp(pixels: usize, samples: usize, pixels_per_sample: f64) -> Vec<f64> {
     let row: Vec<f32> = (0..pixels).map(|pixel| pixel as f32).collect();
     let grey: Vec<f32> = row.iter().chain(&row).copied().collect();
-    let across = resample::Axis { samples, pixels_per_sample };
-    let down = resample::Axis { samples: 2, pixels_per_sample: 1.0 };
+    let across = resample::Axis { whole: samples, skipped: 0, samples, pixels_per_sample };
+    let down = resample::Axis { whole: 2, skipped: 0, samples: 2, pixels_per_sample: 1.0 };
     let resampled = resample::resample(&grey, pixels, across, down);
     assert_eq!(resampled[..samples], resampled[samples..]);
     resampled[..samples].iter().map(|value| f64::from(*value)).collect()
