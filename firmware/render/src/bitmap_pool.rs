@@ -24,7 +24,7 @@ impl BitmapPool {
     #[allow(
         clippy::new_without_default,
         clippy::large_stack_arrays,
-        reason = "72 KiB belong in a static or a box, not into a value made in passing"
+        reason = "64 KiB belong in a static or a box, not into a value made in passing"
     )]
     pub const fn new() -> Self {
         Self { bytes: [const { AtomicU8::new(0) }; BITMAP_POOL_LEN] }
