@@ -5,6 +5,7 @@ use frixel_wire::scene::{Header, RECORDS_MAX, Record};
 
 use super::excess;
 use super::file::Scene;
+use super::leave_out::leave_out;
 use super::log::Log;
 use super::lower::Lowering;
 use super::mistake::{CompileError, Mistake};
@@ -73,9 +74,12 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
         reach,
         half_period_ticks,
         notes,
+        left_out: lowered.left_out,
     };
     if log.is_empty() {
         excess::check(scene, &mut program, log);
+        let live: Vec<bool> = scene.layers.iter().map(|layer| layer.live).collect();
+        leave_out(&mut program, &live);
     }
     Some(program)
 }

@@ -9,6 +9,8 @@ mod excess;
 mod fields;
 mod file;
 mod layer;
+mod leave_out;
+mod left_out;
 mod log;
 mod lower;
 mod mistake;
@@ -24,6 +26,7 @@ mod tests;
 
 pub use compile::compile;
 pub use file::Scene;
+pub use left_out::LeftOut;
 pub use mistake::{CompileError, Located, Mistake, Nearest};
 pub use outside::{Asked, Outside};
 pub use program::{Bitmap, Program};

@@ -138,8 +138,8 @@ fn natural_friction_in_total_is_no_drive() {
     // 0.3 x 0.7 is not 0.21 in binary, and not in range if the difference counted.
     let text = HEAD.replace("friction_coefficient = 0.5", "friction_coefficient = 0.3");
     let text = text.replace("normal_load_n = 0.5", "normal_load_n = 0.7");
-    let program =
-        compile_text(&format!("{text}[[layer]]\nkind = \"constant\"\nfriction_n = 0.21")).expect("it compiles");
+    let program = compile_text(&format!("{text}[[layer]]\nlive = true\nkind = \"constant\"\nfriction_n = 0.21"))
+        .expect("it compiles");
     assert_eq!(program.records[0].layer, Layer::Constant { electric_friction_n: 0.0 });
 }
 
