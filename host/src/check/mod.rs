@@ -6,6 +6,7 @@ mod text;
 
 use frixel_hil_sim::{BoardMemory, RigConfig};
 use frixel_wire::scene::Scene as WireScene;
+use frixel_wire::scene::cost::{TICK_INSTRUCTIONS_MAX, Worst};
 use serde::Serialize;
 
 pub use board::BoardImage;
@@ -22,12 +23,16 @@ pub struct SceneCheck {
     pub wire: WireBytes,
     /// What it takes of the board's RAM.
     pub ram: RamBytes,
+    /// The longest tick.
+    pub tick: LongestTick,
     /// What this finger can be given.
     pub reach: ReachableFriction,
     /// What the scene asks for.
     pub asked: Asked,
-    /// What the compiler rounded, converted, clamped and left out, a sentence each.
+    /// What the compiler rounded, converted and clamped, a sentence each.
     pub notes: Vec<String>,
+    /// What it left out and why, a sentence each.
+    pub left_out: Vec<String>,
     /// The smallest image that plays it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub board: Option<BoardImage>,
@@ -55,6 +60,38 @@ pub struct RamBytes {
     pub bitmap_pool_limit_bytes: u32,
     /// Coefficients of layers, points, waves and clicks.
     pub active_bytes: usize,
+}
+
+/// The longest tick on a Cortex-M4F.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LongestTick {
+    /// Instructions that it takes at most.
+    pub instructions: u32,
+    /// Most that a tick may take.
+    pub instructions_limit: u32,
+    /// A place where it may take so many, mm from the screen's left edge.
+    pub x_mm: f64,
+    /// The same from the screen's top edge.
+    pub y_mm: f64,
+    /// The layers that may act there.
+    pub layers: Vec<String>,
+}
+
+impl LongestTick {
+    fn of(program: &Program) -> Self {
+        let Worst { instructions, cell } = program.worst_tick();
+        let layers = u64::from(cell.layers[0]) | u64::from(cell.layers[1]) << u32::BITS;
+        let titles = (0..).zip(&program.titles).filter(|(number, _)| layers >> number & 1 != 0);
+        // A tenth of a millimetre: the grid is coarse.
+        let mm = |metres: f32| (1e4 * f64::from(metres)).round() / 10.0;
+        Self {
+            instructions,
+            instructions_limit: TICK_INSTRUCTIONS_MAX,
+            x_mm: mm(cell.x_m),
+            y_mm: mm(cell.y_m),
+            layers: titles.map(|(_, title)| title.clone()).collect(),
+        }
+    }
 }
 
 /// What the drive can give to the scene's finger, at its load and on its coating.
@@ -92,6 +129,7 @@ impl SceneCheck {
                 bitmap_pool_limit_bytes: rig.board.limits.bitmap_pool_bytes,
                 active_bytes,
             },
+            tick: LongestTick::of(program),
             reach: ReachableFriction {
                 natural_n: reach.natural_friction_n,
                 electric_max_n: reach.electric_friction_max_n,
@@ -100,6 +138,7 @@ impl SceneCheck {
             },
             asked: Asked::of(program),
             notes: program.notes.clone(),
+            left_out: program.left_out.iter().map(ToString::to_string).collect(),
             board: None,
         })
     }

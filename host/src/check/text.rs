@@ -13,7 +13,7 @@ impl SceneCheck {
             // Writing to a string does not fail.
             let _ = writeln!(text, "  {name:<16} {value}");
         };
-        let Self { wire, ram, reach, asked, .. } = self;
+        let Self { wire, ram, tick, reach, asked, .. } = self;
         line("layers", self.layers.to_string());
         line(
             "wire",
@@ -30,6 +30,17 @@ impl SceneCheck {
             ),
         );
         line(
+            "tick",
+            format!(
+                "at most {} of {} instructions, near x {} mm, y {} mm{}",
+                tick.instructions,
+                tick.instructions_limit,
+                tick.x_mm,
+                tick.y_mm,
+                if tick.layers.is_empty() { String::new() } else { format!(": {}", tick.layers.join(", ")) }
+            ),
+        );
+        line(
             "reachable",
             format!(
                 "{:.4} to {:.4} N in total, up to {:.4} N above natural (at {:.1} V rms)",
@@ -40,6 +51,9 @@ impl SceneCheck {
         line("out of reach", out_of_reach(&asked.above, &asked.below));
         for note in &self.notes {
             line("note", note.clone());
+        }
+        for left_out in &self.left_out {
+            line("left out", left_out.clone());
         }
         if let Some(board) = &self.board {
             let features = if board.features.is_empty() { "none".to_owned() } else { board.features.join(", ") };

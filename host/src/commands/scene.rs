@@ -2,6 +2,7 @@
 
 mod check;
 mod preview;
+mod schema;
 
 use clap::Subcommand;
 
@@ -16,11 +17,14 @@ pub(super) enum SceneCommand {
     Check(check::CheckArgs),
     /// Draw the friction map of a scene: a PNG with rulers, and a colour scale in newtons.
     Preview(preview::PreviewArgs),
+    /// Print the JSON schema of the scene file, for editors.
+    Schema,
 }
 
 pub(super) fn run(command: &SceneCommand) -> Result<(), CommandError> {
     match command {
         SceneCommand::Check(args) => check::run(args),
         SceneCommand::Preview(args) => preview::run(args),
+        SceneCommand::Schema => schema::run(),
     }
 }

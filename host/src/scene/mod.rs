@@ -3,6 +3,7 @@
 //! `docs/scene.md` is the reference of the file. [`Scene::load`] reads it, [`compile`] checks what needs the board or
 //! other layers, and makes a [`Program`]. Both tell every mistake at once, each with line and column.
 
+mod asked;
 mod compile;
 mod cover;
 mod excess;
@@ -20,9 +21,11 @@ mod pool;
 mod program;
 mod reach;
 mod resample;
+mod schema;
 mod source;
 #[cfg(test)]
 mod tests;
+mod tick_cost;
 
 pub use compile::compile;
 pub use file::Scene;
@@ -32,3 +35,4 @@ pub use outside::{Asked, Outside};
 pub use program::{Bitmap, Program};
 pub use reach::Reach;
 pub(crate) use reach::carrier;
+pub use schema::json_schema;
