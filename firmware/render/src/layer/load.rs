@@ -26,7 +26,7 @@ impl Loading<'_> {
         let left_out = Refusal::LeftOut { layer: number };
         let region = Region::new(record.region, self.tables.points()).ok_or(left_out)?;
         let source = self.source(record, number)?;
-        Ok(Layer { region, blend: record.blend, gain: record.gain, source })
+        Ok(Layer { region, join: super::Join::new(record), gain: record.gain, source })
     }
 
     #[allow(unused_variables, reason = "kinds that are left out do not look at them")]

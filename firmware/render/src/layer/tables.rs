@@ -63,7 +63,7 @@ impl Tables {
 
     #[cfg(feature = "edge")]
     #[inline]
-    pub(super) fn clicks(&self) -> &[Click] {
+    pub(crate) fn clicks(&self) -> &[Click] {
         &self.clicks
     }
 

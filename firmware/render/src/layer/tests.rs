@@ -35,7 +35,7 @@ impl Bench {
     fn over(&mut self, layer: &Layer, below_n: f32, moment: Moment) -> f32 {
         self.clicks.begin();
         let Self { pool, tables, clicks, .. } = self;
-        layer.blend_over(below_n, &mut Around { moment, pool, tables, clicks })
+        layer.blend_over(below_n, &mut Around { moment: &moment, pool, tables, clicks })
     }
 }
 
