@@ -30,7 +30,7 @@ use crate::bitmap_pool::BitmapPool;
 use crate::stream::StreamNow;
 #[cfg(feature = "edge")]
 use button::Button;
-pub(crate) use click::{CLICKS_MAX, Clicks};
+pub(crate) use click::Clicks;
 #[cfg(feature = "speed")]
 use curve::Curve;
 #[cfg(feature = "edge")]
@@ -64,6 +64,7 @@ pub(crate) struct Moment {
 }
 
 /// What layers look at besides their own numbers.
+#[allow(dead_code, reason = "kinds that are left out do not look at all of it")]
 pub(crate) struct Around<'a> {
     pub(crate) moment: Moment,
     pub(crate) pool: &'a BitmapPool,
@@ -115,8 +116,11 @@ impl Layer {
 
     /// On bare glass, it alone is what is asked for, everywhere and always.
     pub(crate) fn stands_alone(&self) -> bool {
-        let kept = matches!(self.blend, Blend::Replace | Blend::Add);
-        kept && self.region == Region::Screen && !self.source.is_stream()
+        #[cfg(feature = "stream")]
+        if self.source.is_stream() {
+            return false;
+        }
+        self.region == Region::Screen && matches!(self.blend, Blend::Replace | Blend::Add)
     }
 
     /// This layer's electric friction at a moment, wherever that is.
@@ -159,12 +163,10 @@ pub(crate) fn is_stream(record: &Record) -> bool {
 }
 
 impl Source {
+    #[cfg(feature = "stream")]
     #[inline]
     fn is_stream(&self) -> bool {
-        #[cfg(feature = "stream")]
-        return matches!(self, Self::Stream { .. });
-        #[cfg(not(feature = "stream"))]
-        false
+        matches!(self, Self::Stream { .. })
     }
 
     /// Electric friction at a moment, in N, before the gain.
