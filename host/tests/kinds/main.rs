@@ -8,6 +8,7 @@
 
 mod cases;
 mod expected;
+mod stream;
 
 use std::path::Path;
 
