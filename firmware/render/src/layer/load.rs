@@ -29,7 +29,7 @@ impl Loading<'_> {
         Ok(Layer { region, join: super::Join::new(record), gain: record.gain, source })
     }
 
-    #[allow(unused_variables, reason = "kinds that are left out do not look at them")]
+    #[allow(unused_variables, clippy::unused_self, reason = "kinds that are left out do not look at them")]
     fn source(&mut self, record: &Record, number: u8) -> Result<Source, Refusal> {
         match record.layer {
             Kind::Constant { electric_friction_n } => Ok(Source::Constant { electric_friction_n }),
