@@ -119,6 +119,7 @@ impl Bench {
         self.host.command(Command::Disarm);
         self.host.play(&scene[..len]);
         self.tick(None);
+        assert!(self.host.session.scene() == scene.get(..len), "the scene is refused");
         assert!(self.host.ticker.status().telemetry.state == State::Active, "the scene does not play");
     }
 

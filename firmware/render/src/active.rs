@@ -87,9 +87,16 @@ impl Active {
         self.table().map_or(0, |table| table.electric_friction_max_n().to_bits())
     }
 
+    /// Some layer may click.
+    #[cfg(feature = "edge")]
+    #[inline]
+    pub(crate) fn has_clicks(&self) -> bool {
+        !self.tables.clicks().is_empty()
+    }
+
     /// Electric friction of all layers that are on, in N.
     #[inline]
-    pub(crate) fn electric_friction_n(&self, moment: Moment, pool: &BitmapPool, clicks: &mut Clicks) -> f32 {
+    pub(crate) fn electric_friction_n(&self, moment: &Moment, pool: &BitmapPool, clicks: &mut Clicks) -> f32 {
         let around = &mut Around { moment, pool, tables: &self.tables, clicks };
         match self.layers.first() {
             Some(layer) if self.single => layer.own_electric_friction_n(around),
@@ -101,23 +108,21 @@ impl Active {
     fn blended_electric_friction_n(&self, around: &mut Around) -> f32 {
         let [on, others_on] = self.on;
         let [near, others_near] = self.grid.at(around.moment.x_m, around.moment.y_m);
-        let first_n = self.blend(0.0, 0, on & near, around);
-        self.blend(first_n, u32::BITS, others_on & others_near, around)
-    }
-
-    /// Joins the layers of a set, whose first bit is layer number `first`, to what is below them.
-    #[inline]
-    fn blend(&self, below_n: f32, first: u32, set: u32, around: &mut Around) -> f32 {
-        let mut electric_friction_n = below_n;
-        let mut left = set;
-        while left != 0 {
-            let number = first + left.trailing_zeros();
-            left &= left - 1;
+        let (mut first, mut set, mut others) = (0, on & near, others_on & others_near);
+        let mut electric_friction_n = 0.0;
+        loop {
+            if set == 0 {
+                if others == 0 {
+                    return electric_friction_n;
+                }
+                (first, set, others) = (u32::BITS, others, 0);
+            }
+            let number = first + set.trailing_zeros();
+            set &= set - 1;
             if let Some(layer) = self.layers.get(number as usize) {
                 electric_friction_n = layer.blend_over(electric_friction_n, around);
             }
         }
-        electric_friction_n
     }
 
     /// Puts a layer on or off and sets its gain while the scene plays. A layer that the scene does not have is none.

@@ -180,16 +180,21 @@ impl Finger {
         *self = Self { presence, sampled_at_tick: self.sampled_at_tick, ..Self::UP };
     }
 
-    /// Goes on by a tick. Returns whether the finger is still, or has been so.
+    /// Goes on by a tick.
     #[inline]
-    pub(crate) fn advance(&mut self, timing: &FingerTiming) -> bool {
+    pub(crate) fn advance(&mut self) {
         self.motion.advance();
-        self.stillness.advance(&timing.stillness)
     }
 
-    /// Goes on by a tick that has something else to do; whether the finger is still can wait for the next.
-    pub(crate) fn go_on(&mut self) {
-        self.motion.advance();
+    /// The finger is slow, still, or has been so: it has to be settled at every second tick.
+    #[inline]
+    pub(crate) fn is_settling(&self) -> bool {
+        !self.stillness.is_steady()
+    }
+
+    /// Ramps the gain of a finger that is still, or has been so, by two ticks.
+    pub(crate) fn settle(&mut self, timing: &FingerTiming) {
+        self.stillness.settle(&timing.stillness);
     }
 
     /// On the friction under the finger: below 1 while it is still or has been so.

@@ -223,6 +223,11 @@ impl<'a> Player<'a> {
         }
     }
 
+    /// Nothing plays, and nothing fades.
+    pub(crate) fn is_over(&self) -> bool {
+        self.phase == Phase::Over && self.weight <= 0.0
+    }
+
     /// Times that the stream ran dry, and runs of samples that never came, since power-on.
     pub(crate) fn counts(&self) -> (u32, u32) {
         (self.underruns, self.gaps)
@@ -238,7 +243,7 @@ impl<'a> Player<'a> {
     /// Goes on by a tick.
     #[inline]
     pub(crate) fn advance(&mut self) {
-        if self.phase != Phase::Over || self.weight > 0.0 {
+        if !self.is_over() {
             self.go_on();
         }
     }

@@ -35,8 +35,8 @@ pub struct Ticker<'a> {
     live: bool,
     drive: Drive,
     arm_switch: bool,
-    /// Where the finger was taken to be when the scene was last asked, in m.
-    asked_at_m: [f32; 2],
+    /// What the scene was last asked for.
+    moment: Moment,
     asked_electric_friction_n: f32,
     target_v_rms: f32,
     flags: Flags,
@@ -45,6 +45,9 @@ pub struct Ticker<'a> {
     /// `None` on a board that has no buffer for it.
     #[cfg(feature = "stream")]
     stream: Option<Player<'a>>,
+    /// A stream plays, or fades.
+    #[cfg(feature = "stream")]
+    streaming: bool,
 }
 
 /// What belongs to the board and is computed once.
@@ -79,7 +82,7 @@ impl<'a> Ticker<'a> {
             live: false,
             drive: Drive::default(),
             arm_switch: false,
-            asked_at_m: [0.0; 2],
+            moment: Moment::default(),
             asked_electric_friction_n: 0.0,
             target_v_rms: 0.0,
             flags: Flags::NO_FINGER,
@@ -87,6 +90,8 @@ impl<'a> Ticker<'a> {
             orders_applied: 0,
             #[cfg(feature = "stream")]
             stream: None,
+            #[cfg(feature = "stream")]
+            streaming: false,
         }
     }
 
@@ -125,12 +130,17 @@ impl<'a> Ticker<'a> {
             }
             #[cfg(feature = "stream")]
             Order::StartStream(start) => {
-                self.on_stream(|stream| stream.start(start));
+                if let Some(stream) = &mut self.stream {
+                    stream.start(start);
+                    self.streaming = true;
+                }
                 None
             }
             #[cfg(feature = "stream")]
             Order::EndStream { last } => {
-                self.on_stream(|stream| stream.end(last));
+                if let Some(stream) = &mut self.stream {
+                    stream.end(last);
+                }
                 None
             }
             _ => None,
@@ -146,7 +156,7 @@ impl<'a> Ticker<'a> {
     #[inline(never)]
     fn ask_again(&mut self) {
         if self.drive.amplifier_enable {
-            self.target_v_rms = self.voltage_v_rms(self.asked_at_m);
+            self.target_v_rms = self.voltage_v_rms();
         }
     }
 
@@ -173,16 +183,21 @@ impl<'a> Ticker<'a> {
             self.look();
         }
         #[cfg(feature = "stream")]
-        self.on_stream(Player::advance);
+        if self.streaming {
+            self.play_stream();
+        }
         let due = self.due_tick.wrapping_sub(self.tick) as i32 <= 0;
-        if due || sense.touch.is_some() || self.finger.is_digesting() {
+        self.finger.advance();
+        // A slow finger is where it was a tick ago.
+        let settling = self.finger.is_settling();
+        if due || sense.touch.is_some() || self.finger.is_digesting() || settling && self.tick & 1 == 0 {
             self.attend(sense, due);
         } else {
-            let still = self.finger.advance(&self.timing.finger);
-            self.flags = if still { Flags::STILL } else { Flags::default() };
+            self.flags = if settling { self.still() } else { Flags::default() };
             if self.live {
-                self.asked_at_m = self.finger.place_m();
-                self.target_v_rms = self.voltage_v_rms(self.asked_at_m);
+                [self.moment.x_m, self.moment.y_m] = self.finger.place_m();
+                self.moment.tick = self.tick;
+                self.target_v_rms = self.voltage_v_rms();
             }
         }
         self.put_out()
@@ -193,12 +208,16 @@ impl<'a> Ticker<'a> {
     #[inline(never)]
     fn attend(&mut self, sense: &Sense, due: bool) {
         let timing = &self.timing.finger;
-        self.finger.go_on();
-        self.flags = if self.finger.gain() < 1.0 { Flags::STILL } else { Flags::default() };
+        self.flags = self.still();
         match sense.touch {
             Some(touch) => self.finger.take(touch, self.tick, timing),
             None if due => {}
-            None => self.finger.digest(self.tick, self.active.prediction, timing),
+            None if self.finger.is_digesting() => self.finger.digest(self.tick, self.active.prediction, timing),
+            None => self.finger.settle(timing),
+        }
+        #[cfg(feature = "speed")]
+        {
+            self.moment.velocity_m_per_s = self.finger.velocity_m_per_s();
         }
         if due {
             self.look();
@@ -211,6 +230,11 @@ impl<'a> Ticker<'a> {
         if self.live {
             self.note_reach();
         }
+    }
+
+    /// The flag of a finger that is still, if it is.
+    fn still(&self) -> Flags {
+        if self.finger.gain() < 1.0 { Flags::STILL } else { Flags::default() }
     }
 
     /// There is a scene, a finger, and leave to drive.
@@ -229,7 +253,7 @@ impl<'a> Ticker<'a> {
         self.live = self.may_be_live();
         #[cfg(feature = "stream")]
         if self.supervisor.state() != State::Active {
-            self.on_stream(Player::stop);
+            self.stop_stream();
         }
     }
 
@@ -281,17 +305,22 @@ impl<'a> Ticker<'a> {
     }
 
     #[cfg(feature = "stream")]
-    #[inline]
-    fn on_stream(&mut self, act: impl FnOnce(&mut Player<'a>)) {
+    #[inline(never)]
+    fn play_stream(&mut self) {
         if let Some(stream) = &mut self.stream {
-            act(stream);
+            stream.advance();
+            self.moment.stream = stream.now();
+            self.streaming = !stream.is_over();
         }
     }
 
     #[cfg(feature = "stream")]
-    #[inline]
-    fn stream_now(&self) -> StreamNow {
-        self.stream.as_ref().map_or(StreamNow::default(), Player::now)
+    fn stop_stream(&mut self) {
+        if let Some(stream) = &mut self.stream {
+            stream.stop();
+            self.moment.stream = StreamNow::default();
+            self.streaming = false;
+        }
     }
 
     /// The timeout that holds now. Only a playing scene may go on without a host.
@@ -322,26 +351,23 @@ impl<'a> Ticker<'a> {
         self.drive
     }
 
-    /// The rms voltage that the scene wants at a place.
-    #[inline]
-    fn voltage_v_rms(&mut self, [x_m, y_m]: [f32; 2]) -> f32 {
+    /// The rms voltage that the scene wants at this moment.
+    #[allow(clippy::inline_always, reason = "a call would cost every tick a tenth of what it takes")]
+    #[inline(always)]
+    fn voltage_v_rms(&mut self) -> f32 {
         let Some(table) = self.active.table() else { return 0.0 };
-        let moment = Moment {
-            x_m,
-            y_m,
-            #[cfg(feature = "speed")]
-            velocity_m_per_s: self.finger.velocity_m_per_s(),
-            tick: self.tick,
-            #[cfg(feature = "stream")]
-            stream: self.stream_now(),
-        };
         #[cfg(feature = "edge")]
-        self.clicks.begin();
-        let friction_n = self.active.electric_friction_n(moment, self.pool, &mut self.clicks);
+        if self.active.has_clicks() {
+            self.clicks.begin();
+        }
+        let friction_n = self.active.electric_friction_n(&self.moment, self.pool, &mut self.clicks);
         let electric_friction_n = self.finger.gain() * friction_n;
         self.asked_electric_friction_n = electric_friction_n;
         let voltage_v_rms = table.voltage_v_rms(electric_friction_n);
-        self.note_reach();
+        // Bit patterns of what is negative, and of not-a-number, are above those of every positive number.
+        if electric_friction_n.to_bits() > table.electric_friction_max_n().to_bits() {
+            self.note_out_of_reach();
+        }
         voltage_v_rms
     }
 

@@ -1,5 +1,6 @@
 //! Waves of an angle in turns: the same bits everywhere, without `libm`, whose `sinf` costs about 1,480 instructions on
 //! a Cortex-M4F.
+#![allow(dead_code, reason = "which of these is used depends on the kinds that are left out")]
 
 use core::f32::consts::TAU;
 

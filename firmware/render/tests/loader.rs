@@ -3,12 +3,11 @@
 
 mod support;
 
-use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
 use frixel_wire::scene::{
     Beat, Blend, Burst, Click, HEADER_LEN, Layer, Point, RECORD_LEN, Record, Region, Wave, bitmap_crc32,
 };
 use proptest::prelude::*;
-use support::{Desk, HEADER, Memory, record, scene_with_points};
+use support::{Desk, HEADER, Memory, scene_with_points};
 
 const CLICK: Click = Click { height_n: 0.004, decay_s: 0.02 };
 const SAMPLES: [u8; 6] = [0, 50, 100, 150, 200, 250];
@@ -88,18 +87,6 @@ fn points() -> Vec<Point> {
         .to_vec()
 }
 
-fn refusal(record: Record, points: &[Point]) -> Option<ConfigRefusal> {
-    let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    desk.greet();
-    desk.upload_bitmap(3, 2, &SAMPLES).unwrap();
-    match desk.load(&scene_with_points(&HEADER, &[record], points)) {
-        Ok(_) => None,
-        Err(Refusal::Config(refusal)) => Some(refusal),
-        Err(other) => panic!("{other:?}"),
-    }
-}
-
 #[cfg(all(
     feature = "grating",
     feature = "bitmap",
@@ -111,7 +98,22 @@ fn refusal(record: Record, points: &[Point]) -> Option<ConfigRefusal> {
     feature = "polygon"
 ))]
 mod whole {
+    use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
+    use support::record;
+
     use super::*;
+
+    fn refusal(record: Record, points: &[Point]) -> Option<ConfigRefusal> {
+        let mut memory = Memory::new();
+        let mut desk = Desk::new(&mut memory);
+        desk.greet();
+        desk.upload_bitmap(3, 2, &SAMPLES).unwrap();
+        match desk.load(&scene_with_points(&HEADER, &[record], points)) {
+            Ok(_) => None,
+            Err(Refusal::Config(refusal)) => Some(refusal),
+            Err(other) => panic!("{other:?}"),
+        }
+    }
 
     #[test]
     fn every_kind_plays() {

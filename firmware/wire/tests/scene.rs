@@ -157,13 +157,14 @@ fn used(record: &Record) -> BTreeSet<usize> {
     }
     match record.layer {
         Layer::Constant { .. } => used.extend(24..28),
-        Layer::Grating { wave: Wave::Square { .. }, .. } => used.extend([3].into_iter().chain(24..48)),
+        Layer::Grating { wave: Wave::Square { .. }, .. } | Layer::Vibration { .. } => {
+            used.extend([3].into_iter().chain(24..48));
+        }
         Layer::Grating { .. } => used.extend([3].into_iter().chain(24..44)),
         Layer::Bitmap { .. } => used.extend([3].into_iter().chain(24..56)),
         Layer::Noise { .. } => used.extend((24..40).chain(52..56)),
         Layer::Edge { .. } => used.extend(24..56),
         Layer::Button { .. } => used.extend(24..44),
-        Layer::Vibration { .. } => used.extend([3].into_iter().chain(24..48)),
         Layer::Speed { .. } => used.extend(52..54),
         Layer::Stream { .. } => used.extend(24..32),
     }

@@ -1,6 +1,7 @@
 //! What a scene compiles to.
 
-use frixel_wire::scene::{Header, Point, Record, bitmap_crc32};
+use frixel_wire::hello::feature;
+use frixel_wire::scene::{Carrier, Header, Layer, Point, Record, Region, bitmap_crc32};
 
 use super::left_out::LeftOut;
 use super::reach::Reach;
@@ -36,6 +37,25 @@ impl Program {
         bytes.extend(self.records.iter().flat_map(Record::write));
         bytes.extend(self.points.iter().flat_map(Point::write));
         bytes
+    }
+
+    /// The bits of [`frixel_wire::hello::feature`] that a board needs to play it.
+    pub fn features(&self) -> u32 {
+        let carrier = if self.header.carrier == Carrier::Sine { feature::SINE_CARRIER } else { 0 };
+        self.records.iter().fold(carrier, |features, record| {
+            let kind = match record.layer {
+                Layer::Constant { .. } => 0,
+                Layer::Grating { .. } => feature::GRATING,
+                Layer::Bitmap { .. } => feature::BITMAP,
+                Layer::Noise { .. } => feature::NOISE,
+                Layer::Edge { .. } | Layer::Button { .. } => feature::EDGE,
+                Layer::Vibration { .. } => feature::VIBRATION,
+                Layer::Speed { .. } => feature::SPEED,
+                Layer::Stream { .. } => feature::STREAM,
+            };
+            let region = if matches!(record.region, Region::Polygon { .. }) { feature::POLYGON } else { 0 };
+            features | kind | region
+        })
     }
 
     /// The bitmap that a record names.

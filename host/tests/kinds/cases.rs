@@ -118,15 +118,15 @@ fn pictures() -> Vec<Case> {
         },
         Case {
             name: "bitmap, tiled and turned",
-            layers: "[[layer]]\nkind = \"bitmap\"\npicture = \"textures/brick.png\"\nx_mm = 30\ny_mm = 20\nwidth_mm = 31\nheight_mm = 20\n\
-                     pitch_mm = 2.1\nangle_deg = 20\ntiled = true\nwhite_n = 0.026",
+            layers: "[[layer]]\nkind = \"bitmap\"\npicture = \"textures/brick.png\"\nx_mm = 20\ny_mm = 0\nwidth_mm = 61\nheight_mm = 66\n\
+                     pitch_mm = 2\nangle_deg = 20\ntiled = true\nwhite_n = 0.026",
             expected: |scene, at| {
-                // 15 by 10 samples, turned about the middle.
-                let (x, y) = (at.x - 45.5, at.y - 30.0);
-                let (u, v) = (along(x, y, 20.0) + 15.5, along(x, y, 110.0) + 10.0);
-                26.0 * scene.level(u / 31.0 * 15.0, v / 2.0, true)
+                // 31 (30.5, rounded) by 33 samples, turned about the middle.
+                let (x, y) = (at.x - 50.5, at.y - 33.0);
+                let (u, v) = (along(x, y, 20.0) + 30.5, along(x, y, 110.0) + 33.0);
+                26.0 * scene.level(u / 61.0 * 31.0, v / 2.0, true)
             },
-            bound: 0.0008,
+            bound: 0.0031,
             ..CASE
         },
         Case {

@@ -84,12 +84,12 @@ pub fn turn(turns: f64) -> f64 {
 }
 
 pub fn sine(turns: f64) -> f64 {
-    (1.0 + (TAU * turns).sin()) / 2.0
+    0.5 + 0.5 * (TAU * turns).sin()
 }
 
 /// A hill of height 1 and of this width about 0.
 pub fn hill(away: f64, width: f64) -> f64 {
-    if away.abs() < width / 2.0 { (1.0 + (TAU * away / width).cos()) / 2.0 } else { 0.0 }
+    if away.abs() < width / 2.0 { 0.5 + 0.5 * (TAU * away / width).cos() } else { 0.0 }
 }
 
 /// Where a place lies along a direction in degrees, from x towards y.
@@ -113,5 +113,5 @@ pub fn noise(seed: u32, shortest: f64, longest: f64, x: f64, y: f64) -> f64 {
             (TAU * (number * along(x, y, direction) + hash(3 * i + 3))).cos()
         })
         .sum();
-    (1.0 + sum / 8.0) / 2.0
+    0.5 + 0.5 * sum / 8.0
 }

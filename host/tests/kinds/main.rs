@@ -8,6 +8,7 @@
 
 mod cases;
 mod expected;
+mod stream;
 
 use std::path::Path;
 
@@ -88,7 +89,7 @@ fn disagreeing(case: &Case, rows: &[FeltRow], expected_mn: &[f64]) -> usize {
 
 /// The ticks from power-on to the first row: those at which the time-based cases agree with the library.
 fn start_ticks(case: &Case, program: &Program, rows: &[FeltRow]) -> usize {
-    let some: Vec<FeltRow> = rows.iter().take(2_000).cloned().collect();
+    let some: Vec<FeltRow> = rows.iter().take(2_000).copied().collect();
     let away = |start: &usize| disagreeing(case, &some, &expected_mn(case, program, &some, *start));
     (0..case.repeats_after_ticks).min_by_key(away).unwrap()
 }

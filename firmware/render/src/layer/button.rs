@@ -21,7 +21,7 @@ impl Button {
     }
 
     /// Only where the finger is inside the region.
-    #[inline]
+    #[inline(never)]
     pub(super) fn electric_friction_n(&self, region: &Region, around: &mut Around) -> f32 {
         let click_n = self.click.map_or(0.0, |click| click.inside(around));
         let depth_m = region.depth_m(around.moment.x_m, around.moment.y_m);

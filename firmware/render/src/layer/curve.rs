@@ -17,7 +17,7 @@ impl Curve {
         Self { first, count }
     }
 
-    #[inline]
+    #[inline(never)]
     pub(super) fn at(&self, moment: &Moment, points: &[Point]) -> f32 {
         let [x, y] = moment.velocity_m_per_s;
         let speed_m_per_s = square_root(x * x + y * y);

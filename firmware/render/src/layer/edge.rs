@@ -38,7 +38,7 @@ impl Edge {
         }
     }
 
-    #[inline]
+    #[inline(never)]
     pub(super) fn electric_friction_n(&self, around: &mut Around) -> f32 {
         let beyond_m = self.across_x * around.moment.x_m + self.across_y * around.moment.y_m - self.distance_m;
         let click_n = self.click.map_or(0.0, |click| click.across(beyond_m >= 0.0, around));

@@ -52,7 +52,7 @@ impl Grating {
         }
     }
 
-    #[inline]
+    #[inline(never)]
     pub(super) fn electric_friction_n(&self, moment: &Moment) -> f32 {
         let turns = moment.x_m * self.cycles_per_m_x + moment.y_m * self.cycles_per_m_y + self.phase_turns;
         let height = match self.stripes {

@@ -26,10 +26,10 @@ impl Loading<'_> {
         let left_out = Refusal::LeftOut { layer: number };
         let region = Region::new(record.region, self.tables.points()).ok_or(left_out)?;
         let source = self.source(record, number)?;
-        Ok(Layer { region, blend: record.blend, gain: record.gain, source })
+        Ok(Layer { region, join: super::Join::new(record), gain: record.gain, source })
     }
 
-    #[allow(unused_variables, reason = "kinds that are left out do not look at them")]
+    #[allow(unused_variables, clippy::unused_self, reason = "kinds that are left out do not look at them")]
     fn source(&mut self, record: &Record, number: u8) -> Result<Source, Refusal> {
         match record.layer {
             Kind::Constant { electric_friction_n } => Ok(Source::Constant { electric_friction_n }),

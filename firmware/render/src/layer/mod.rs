@@ -21,9 +21,9 @@ mod tests;
 #[cfg(feature = "vibration")]
 mod vibration;
 
-use frixel_wire::scene::{self as wire, Blend};
 #[cfg(feature = "stream")]
-use frixel_wire::scene::{Layer as Kind, Record};
+use frixel_wire::scene::Layer as Kind;
+use frixel_wire::scene::{self as wire, Blend, Record};
 
 use crate::bitmap_pool::BitmapPool;
 #[cfg(feature = "stream")]
@@ -66,7 +66,7 @@ pub(crate) struct Moment {
 /// What layers look at besides their own numbers.
 #[allow(dead_code, reason = "kinds that are left out do not look at all of it")]
 pub(crate) struct Around<'a> {
-    pub(crate) moment: Moment,
+    pub(crate) moment: &'a Moment,
     pub(crate) pool: &'a BitmapPool,
     pub(crate) tables: &'a Tables,
     pub(crate) clicks: &'a mut Clicks,
@@ -76,13 +76,14 @@ pub(crate) struct Around<'a> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Layer {
     region: Region,
-    blend: Blend,
+    join: Join,
     gain: f32,
     source: Source,
 }
 
-/// What a layer is.
+/// What a layer is. Its tag is a byte of its own, so that the tick finds the kind at once.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(u8)]
 enum Source {
     Constant {
         electric_friction_n: f32,
@@ -110,7 +111,7 @@ enum Source {
 }
 
 /// Bytes that a record becomes: a layer, and what of it lies in the tables; its points apart.
-pub(crate) fn bytes_of(record: &wire::Record) -> usize {
+pub(crate) fn bytes_of(record: &Record) -> usize {
     let in_tables = match record.layer {
         #[cfg(feature = "noise")]
         wire::Layer::Noise { .. } => size_of::<noise::Waves>(),
@@ -129,8 +130,7 @@ impl Layer {
 
     /// On bare glass, it alone is what is asked for, everywhere and always.
     pub(crate) fn stands_alone(&self) -> bool {
-        let kept = matches!(self.blend, Blend::Replace | Blend::Add);
-        kept && self.region == Region::Screen && !self.source.is_stream()
+        matches!(self.join, Join::Replace | Join::Add) && self.region == Region::Screen
     }
 
     /// This layer's electric friction at a moment, wherever that is.
@@ -146,24 +146,62 @@ impl Layer {
             return below_n;
         }
         let own_n = self.own_electric_friction_n(around);
-        let blended_n = match self.blend {
-            Blend::Replace => own_n,
-            Blend::Add => below_n + own_n,
-            Blend::Multiply => below_n * own_n,
-            Blend::Max => {
+        match self.join {
+            Join::Replace => own_n,
+            Join::Add => below_n + own_n,
+            Join::Multiply => below_n * own_n,
+            Join::Max => {
                 if own_n > below_n {
                     own_n
                 } else {
                     below_n
                 }
             }
-        };
-        #[cfg(feature = "stream")]
-        if self.source.is_stream() {
-            return below_n + around.moment.stream.weight * (blended_n - below_n);
+            #[cfg(feature = "stream")]
+            Join::Fading(blend) => fading(blend, below_n, own_n, around.moment.stream.weight),
         }
-        blended_n
     }
+}
+
+/// How a layer joins those below it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(u8)]
+enum Join {
+    Replace,
+    Add,
+    Multiply,
+    Max,
+    /// As far as there is a stream.
+    #[cfg(feature = "stream")]
+    Fading(Blend),
+}
+
+impl Join {
+    fn new(record: &Record) -> Self {
+        #[cfg(feature = "stream")]
+        if is_stream(record) {
+            return Self::Fading(record.blend);
+        }
+        match record.blend {
+            Blend::Replace => Self::Replace,
+            Blend::Add => Self::Add,
+            Blend::Multiply => Self::Multiply,
+            Blend::Max => Self::Max,
+        }
+    }
+}
+
+/// A layer that is there by a weight from 0 to 1.
+#[cfg(feature = "stream")]
+#[inline(never)]
+fn fading(blend: Blend, below_n: f32, own_n: f32, weight: f32) -> f32 {
+    let blended_n = match blend {
+        Blend::Replace => own_n,
+        Blend::Add => below_n + own_n,
+        Blend::Multiply => below_n * own_n,
+        Blend::Max => own_n.max(below_n),
+    };
+    below_n + weight * (blended_n - below_n)
 }
 
 /// Whether a layer plays what the host streams.
@@ -173,18 +211,10 @@ pub(crate) fn is_stream(record: &Record) -> bool {
 }
 
 impl Source {
-    #[inline]
-    fn is_stream(&self) -> bool {
-        #[cfg(feature = "stream")]
-        return matches!(self, Self::Stream { .. });
-        #[cfg(not(feature = "stream"))]
-        false
-    }
-
     /// Electric friction at a moment, in N, before the gain.
     ///
-    /// Not inlined: a loop over layers would begin with the constants of every kind, and go past away layers slowly.
-    #[inline(never)]
+    /// Kinds of more than a line are calls: a loop over layers would begin with the constants of all of them.
+    #[inline]
     #[cfg_attr(
         not(all(feature = "grating", feature = "bitmap")),
         allow(unused_variables, reason = "the other kinds of layer do not look at them")
@@ -193,19 +223,19 @@ impl Source {
         match self {
             Self::Constant { electric_friction_n } => *electric_friction_n,
             #[cfg(feature = "grating")]
-            Self::Grating(grating) => grating.electric_friction_n(&around.moment),
+            Self::Grating(grating) => grating.electric_friction_n(around.moment),
             #[cfg(feature = "bitmap")]
-            Self::Picture(picture) => picture.electric_friction_n(&around.moment, around.pool),
+            Self::Picture(picture) => picture.electric_friction_n(around.moment, around.pool),
             #[cfg(feature = "noise")]
-            Self::Noise(noise) => noise.electric_friction_n(&around.moment, around.tables.noises()),
+            Self::Noise(noise) => noise.electric_friction_n(around.moment, around.tables.noises()),
             #[cfg(feature = "edge")]
             Self::Edge(edge) => edge.electric_friction_n(around),
             #[cfg(feature = "edge")]
             Self::Button(button) => button.electric_friction_n(region, around),
             #[cfg(feature = "vibration")]
-            Self::Vibration(vibration) => vibration.electric_friction_n(&around.moment),
+            Self::Vibration(vibration) => vibration.electric_friction_n(around.moment),
             #[cfg(feature = "speed")]
-            Self::Curve(curve) => curve.at(&around.moment, around.tables.points()),
+            Self::Curve(curve) => curve.at(around.moment, around.tables.points()),
             #[cfg(feature = "stream")]
             Self::Stream { low_n, span_n } => low_n + span_n * around.moment.stream.value,
         }

@@ -54,7 +54,7 @@ impl Noise {
         Self { waves, middle_n: 0.5 * (high_n + low_n), swing_n: 0.5 * (high_n - low_n) * (WITHIN / WAVES as f32) }
     }
 
-    #[inline]
+    #[inline(never)]
     pub(super) fn electric_friction_n(&self, moment: &Moment, noises: &[Waves]) -> f32 {
         let Some(Waves(waves)) = noises.get(usize::from(self.waves)) else { return 0.0 };
         let mut sum = 0.0;

@@ -54,7 +54,7 @@ impl Picture {
         }
     }
 
-    #[inline]
+    #[inline(never)]
     pub(super) fn electric_friction_n(&self, moment: &Moment, pool: &BitmapPool) -> f32 {
         let (x_m, y_m) = (moment.x_m - self.x_m, moment.y_m - self.y_m);
         let place = |[per_m_x, per_m_y]: [f32; 2]| x_m * per_m_x + y_m * per_m_y;

@@ -5,6 +5,7 @@ use frixel_wire::scene::{Point, Region as Record};
 /// A region, ready to be tested. Left and top edges belong to it, right and bottom ones do not; an ellipse's border
 /// does.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(u8)]
 pub(super) enum Region {
     Screen,
     Rectangle(Bounds),

@@ -3,9 +3,7 @@
 use frixel_wire::scene::{POINTS_MAX, Point};
 use heapless::Vec;
 
-#[cfg(feature = "edge")]
-use super::click::ClickNumber;
-use super::click::{CLICKS_MAX, Click};
+use super::click::{CLICKS_MAX, Click, ClickNumber};
 #[cfg(feature = "noise")]
 use super::noise::{NOISES_MAX, Waves};
 
@@ -61,14 +59,14 @@ impl Tables {
         self.noises.push(waves).map(|()| number)
     }
 
-    #[cfg(feature = "edge")]
+    #[cfg_attr(not(feature = "edge"), allow(dead_code, reason = "nothing clicks"))]
     #[inline]
-    pub(super) fn clicks(&self) -> &[Click] {
+    pub(crate) fn clicks(&self) -> &[Click] {
         &self.clicks
     }
 
     /// Keeps a click and gives its number; the click again when there is no room.
-    #[cfg(feature = "edge")]
+    #[cfg_attr(not(feature = "edge"), allow(dead_code, reason = "nothing clicks"))]
     pub(super) fn add_click(&mut self, click: Click) -> Result<ClickNumber, Click> {
         let number = self.clicks.len() as u8;
         self.clicks.push(click).map(|()| ClickNumber(number))

@@ -1,6 +1,8 @@
 use std::boxed::Box;
 
-use frixel_wire::scene::{Blend, Layer as Kind, Point, Record, Region};
+#[cfg(any(feature = "polygon", feature = "speed"))]
+use frixel_wire::scene::Point;
+use frixel_wire::scene::{Blend, Layer as Kind, Record, Region};
 
 use super::*;
 use crate::Board;
@@ -27,6 +29,7 @@ impl Bench {
         Loading { board: &Board::SIMULATOR, directory, tables }.layer(record, 0).unwrap()
     }
 
+    #[allow(dead_code, reason = "for kinds that may be left out")]
     fn kind(&mut self, layer: Kind) -> Layer {
         self.load(&Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer })
     }
@@ -35,7 +38,7 @@ impl Bench {
     fn over(&mut self, layer: &Layer, below_n: f32, moment: Moment) -> f32 {
         self.clicks.begin();
         let Self { pool, tables, clicks, .. } = self;
-        layer.blend_over(below_n, &mut Around { moment, pool, tables, clicks })
+        layer.blend_over(below_n, &mut Around { moment: &moment, pool, tables, clicks })
     }
 }
 

@@ -42,7 +42,7 @@ impl Vibration {
         }
     }
 
-    #[inline]
+    #[inline(never)]
     pub(super) fn electric_friction_n(&self, moment: &Moment) -> f32 {
         let phase = moment.tick.wrapping_mul(self.step);
         // As a signed number, the phase is between -1/2 and 1/2 turn.

@@ -3,6 +3,7 @@
     clippy::unwrap_used,
     clippy::expect_used,
     clippy::panic,
+    clippy::large_stack_arrays,
     dead_code,
     unreachable_pub,
     reason = "a test uses its part, and may fail"

@@ -79,7 +79,7 @@ impl Layer {
             (KindName::Constant, Blend::Replace) => Above::Zero,
             _ => Above::Natural,
         });
-        let region = region?;
+        let region = region.ok()?;
         let kind = kind?;
         kind.check(&places, log);
         Some(Self { title, region, blend, gain, above, live, kind, places })

@@ -58,20 +58,33 @@ impl Rectangle {
     }
 }
 
-/// The region of a layer, `Some(None)` for the screen; `None` when it cannot be understood. A button needs one that has
-/// a rim.
-pub(super) fn read(layer: &mut Fields, kind: KindName, log: &mut Log) -> Option<Option<Region>> {
+/// A region that cannot be understood; why has been noted.
+pub(super) struct Misread;
+
+/// The region of a layer, `None` for the screen. A button needs one that has a rim.
+pub(super) fn read(layer: &mut Fields, kind: KindName, log: &mut Log) -> Result<Option<Region>, Misread> {
     let button = kind == KindName::Button;
     if button {
         layer.require("region");
     }
-    let offset = layer.place("region");
-    let Some(mut fields) = layer.optional_table(log, "region") else { return (!button).then_some(None) };
+    let (there, offset) = (layer.has("region"), layer.place("region"));
+    let Some(fields) = layer.optional_table(log, "region") else {
+        return if there || button { Err(Misread) } else { Ok(None) };
+    };
+    let region = region(fields, log).ok_or(Misread)?;
+    if button && matches!(region, Region::Polygon(_)) {
+        log.add(offset, Mistake::ButtonPolygon);
+        return Err(Misread);
+    }
+    Ok(Some(region))
+}
+
+fn region(mut fields: Fields, log: &mut Log) -> Option<Region> {
     fields.rename("this region".to_owned());
     let shapes = [("rectangle", Shape::Rectangle), ("ellipse", Shape::Ellipse), ("polygon", Shape::Polygon)];
-    let wrong = fields.has("shape");
+    let named = fields.has("shape");
     let shape = match fields.optional_choice(log, "shape", &shapes) {
-        None if wrong => return None,
+        None if named => return None,
         shape => shape.unwrap_or(Shape::Rectangle),
     };
     let region = match shape {
@@ -80,12 +93,7 @@ pub(super) fn read(layer: &mut Fields, kind: KindName, log: &mut Log) -> Option<
         Shape::Polygon => polygon(&mut fields, log).map(Region::Polygon),
     };
     fields.close(log);
-    let region = region?;
-    if button && matches!(region, Region::Polygon(_)) {
-        log.add(offset, Mistake::ButtonPolygon);
-        return None;
-    }
-    Some(Some(region))
+    region
 }
 
 fn rectangle(fields: &mut Fields, log: &mut Log) -> Option<Rectangle> {

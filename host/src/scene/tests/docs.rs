@@ -43,7 +43,8 @@ fn every_field_is_named() {
     let layer = |kind: &str| format!("[[layer]]\nkind = \"{kind}\"");
     let tables = ["[screen]", "[coating]", "[finger]", "[drive]", "[carrier]", "[touch]"].map(str::to_owned);
     let layers = KINDS.map(layer);
-    for table in tables.into_iter().chain(layers) {
+    let factors = KINDS.map(|kind| format!("{}\nblend = \"multiply\"", layer(kind)));
+    for table in tables.into_iter().chain(layers).chain(factors) {
         let text = format!("{}\n{table}\nzzz = 1", head_for(head, &table));
         let Err(CompileError::Mistakes { mistakes, .. }) = compile_text(&text) else {
             panic!("{table} takes anything")

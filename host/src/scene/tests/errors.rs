@@ -430,6 +430,169 @@ fn too_many_layers() {
 }
 
 #[test]
+fn amounts_in_the_wrong_unit() {
+    check_layers(
+        "[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\nfriction_fraction = 0.5",
+        &[(4, 21, "`friction_n` and `friction_fraction` say the same in two units: leave one of them out")],
+    );
+    check_layers(
+        "[[layer]]\nkind = \"constant\"\nfriction_fraction = 1.5",
+        &[(3, 21, "`friction_fraction = 1.5` is out of range: expected -1 to 1")],
+    );
+    check_layers(
+        "[[layer]]\nkind = \"grating\"\nblend = \"multiply\"\nwavelength_mm = 2\nlow_n = 0\nhigh_factor = 1",
+        &[(5, 1, "unknown field `low_n` in layer 1 (grating); did you mean `low_factor`?")],
+    );
+    check_layers("[[layer]]\nkind = \"constant\"", &[(1, 1, "layer 1 (constant) has no `friction_n`: add it")]);
+    check_layers(
+        "[[layer]]\nkind = \"speed\"\nblend = \"add\"\nspeeds_mm_per_s = [1, 2]\nfactors = [0, 1]",
+        &[(3, 9, "`blend = \"add\"` is not known; expected one of `multiply`")],
+    );
+}
+
+#[test]
+fn regions_that_are_none() {
+    let region = |region: &str| format!("[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\nregion = {region}");
+    check_layers(
+        &region("{ shape = \"elipse\", x_mm = 0, y_mm = 0, width_mm = 3, height_mm = 3 }"),
+        &[(4, 20, "`shape = \"elipse\"` is not known; did you mean `ellipse`?")],
+    );
+    check_layers(
+        &region("{ shape = \"polygon\", points_mm = [[0, 0], [3, 3]] }"),
+        &[(4, 43, "`points_mm` has 2 entries: expected 3 to 32")],
+    );
+    check_layers(
+        &region("{ shape = \"polygon\", points_mm = [[0, 0], [3, 3], 4] }"),
+        &[(4, 60, "`points_mm` has to be a list of pairs, [[x, y], [x, y]], and this is a number")],
+    );
+    check_layers(
+        &region("{ shape = \"polygon\", points_mm = [[0, 0], [130, 3], [3, 4]] }"),
+        &[(
+            4,
+            10,
+            "layer 1 (constant) reaches 10 mm past the right edge of the 120 mm x 110 mm screen: move it or make it \
+             smaller",
+        )],
+    );
+    let button = "[[layer]]\nkind = \"button\"\nrim_width_mm = 1\nrim_n = 0.01\nface_n = 0";
+    check_layers(button, &[(1, 1, "layer 1 (button) has no `region`: add it")]);
+    check_layers(
+        &format!("{button}\nregion = {{ shape = \"polygon\", points_mm = [[0, 0], [9, 0], [0, 9]] }}"),
+        &[(6, 10, "a button is a rectangle or an ellipse, and this region is a polygon: change its `shape`")],
+    );
+}
+
+#[test]
+fn kinds_that_do_not_make_sense() {
+    check_layers(
+        "[[layer]]\nkind = \"noise\"\nseed = 1.5\nwavelength_min_mm = 4\nwavelength_max_mm = 2\nlow_n = 0\nhigh_n = 0.01",
+        &[
+            (3, 8, "`seed = 1.5` has to be a whole number: round it"),
+            (4, 21, "`wavelength_min_mm = 4` is above `wavelength_max_mm = 2`: swap them"),
+        ],
+    );
+    let speed = |curve: &str| format!("[[layer]]\nkind = \"speed\"\n{curve}");
+    check_layers(
+        &speed("speeds_mm_per_s = [10]\nfactors = [1]"),
+        &[(3, 19, "`speeds_mm_per_s` has 1 entries: expected 2 to 16")],
+    );
+    check_layers(
+        &speed("speeds_mm_per_s = [10, 20]\nfactors = [1]"),
+        &[(4, 11, "`factors` has 1 entries: expected 2")],
+    );
+    check_layers(
+        &speed("speeds_mm_per_s = [10, 5]\nfactors = [1, 2]"),
+        &[(
+            3,
+            19,
+            "the speeds of a curve have to rise, by 0.02 mm/s or more from each to the next, and 5 comes after 10: sort \
+             them",
+        )],
+    );
+    check_layers(
+        "[[layer]]\nkind = \"vibration\"\nfrequency_hz = 80\nlow_n = 0\nhigh_n = 0.01\n\
+         burst = { period_ms = 100, on_ms = 200, ramp_ms = 20 }",
+        &[(6, 36, "`on_ms = 200` is out of range: expected 0 to 100 ms")],
+    );
+}
+
+#[test]
+fn more_than_a_board_has_room_for() {
+    let noise = "[[layer]]\nkind = \"noise\"\nblend = \"add\"\nwavelength_min_mm = 1\nwavelength_max_mm = 2\nlow_n = 0\nhigh_n = 0.001\n";
+    compile_layers(&noise.repeat(8));
+    check_layers(
+        &noise.repeat(9),
+        &[(57, 1, "this is number 9 of the scene's layers of noise, and a board takes 8: leave some out")],
+    );
+    let edge = "[[layer]]\nkind = \"edge\"\nx_mm = 60\ny_mm = 40\nwidth_mm = 2\nridge_n = 0.001\nclick_n = 0.0005\n";
+    compile_layers(&edge.repeat(16));
+    check_layers(
+        &edge.repeat(17),
+        &[(
+            113,
+            1,
+            "this is number 17 of the scene's edges and buttons with a click, and a board takes 16: leave some out",
+        )],
+    );
+    // Each with corners of its own.
+    let polygon = |number: usize| {
+        let side = (0..32).map(|corner| format!("[{}, {}]", corner, number + corner % 2)).collect::<Vec<_>>();
+        format!(
+            "[[layer]]\nkind = \"constant\"\nblend = \"add\"\nfriction_n = 0.001\n\
+             region = {{ shape = \"polygon\", points_mm = [{}] }}\n",
+            side.join(", ")
+        )
+    };
+    let polygons = |count: usize| (0..count).map(polygon).collect::<String>();
+    assert_eq!(compile_layers(&polygons(4)).points.len(), 128);
+    check_layers(
+        &polygons(5),
+        &[(
+            21,
+            1,
+            "this is number 160 of the scene's points of polygons and curves, and a board takes 128: leave some out",
+        )],
+    );
+}
+
+#[test]
+fn what_varies_is_refused_by_what_it_may_be() {
+    check_layers(
+        "[[layer]]\nkind = \"noise\"\nwavelength_min_mm = 1\nwavelength_max_mm = 2\nlow_n = 0\nhigh_n = 0.03",
+        &[(
+            6,
+            10,
+            "layer 1 (noise) asks for up to 0.03 N above natural friction, and at 150 V rms this finger feels at most 0.02778 N above natural friction: lower it, raise `voltage_max_v_rms`, or write `saturate = true` under [drive] to have it clamped",
+        )],
+    );
+    let twice = "[[layer]]\nkind = \"vibration\"\nfrequency_hz = 80\nlow_n = 0\nhigh_fraction = 0.7\n\
+                 [[layer]]\nkind = \"speed\"\nspeeds_mm_per_s = [10, 100]\nfactors = [0.5, 2]";
+    let message = message(&format!("{HEAD}{twice}"));
+    assert!(message.contains("layer 1 (vibration) and layer 2 (speed) together"), "{message}");
+    // A well in what is there is no less than nothing; one in bare glass is.
+    let well = "[[layer]]\nkind = \"edge\"\nx_mm = 60\ny_mm = 40\nwidth_mm = 2\nridge_fraction = -0.5";
+    compile_layers(&format!("[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.6\n{well}"));
+    check_layers(
+        well,
+        &[(
+            6,
+            18,
+            "layer 1 (edge) asks for down to -0.0139 N above natural friction, and a drive can only add to the finger's natural friction of 0.25 N: raise it, lower `normal_load_n`, or write `saturate = true` under [drive] to have it clamped",
+        )],
+    );
+}
+
+/// What lies beside a polygon or an ellipse is not asked for there.
+#[test]
+fn outlines_count_as_they_are() {
+    let corner = "[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.7\nregion = { shape = \"polygon\", points_mm = [[0, 0], [50, 0], [0, 50]] }\n";
+    let other = "[[layer]]\nkind = \"constant\"\nblend = \"add\"\nfriction_fraction = 0.7\nregion = { shape = \"polygon\", points_mm = ";
+    compile_layers(&format!("{corner}{other}[[50, 0], [50, 50], [0, 50]] }}"));
+    let message = message(&format!("{HEAD}{corner}{other}[[40, 0], [50, 50], [0, 40]] }}"));
+    assert!(message.contains("together"), "{message}");
+}
+
+#[test]
 fn low_above_high() {
     check_layers(
         "[[layer]]\nkind = \"grating\"\nwavelength_mm = 2\nlow_n = 0.02\nhigh_n = 0.01",

@@ -138,3 +138,23 @@ fn pictures_are_cropped_to_what_can_be_found_and_shared() {
         assert!((found - expected).abs() < 3e-8, "({x_m}, {y_m}): {found} is not {expected}");
     }
 }
+
+/// What is left out needs no feature of the firmware either.
+#[test]
+fn a_program_needs_the_features_of_what_is_left() {
+    use frixel_wire::hello::feature;
+    let polygon = "region = { shape = \"polygon\", points_mm = [[10, 10], [50, 10], [20, 60]] }\n";
+    let button = "[[layer]]\nkind = \"button\"\nrim_width_mm = 1\nrim_n = 0.01\nface_n = 0\n\
+                  region = { x_mm = 1, y_mm = 1, width_mm = 9, height_mm = 9 }\n";
+    let cover = "[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\n";
+    for (layers, expected) in [
+        (cover.to_owned(), 0),
+        (format!("{STRIPES}{polygon}"), feature::GRATING | feature::POLYGON),
+        (format!("{STRIPES}{polygon}{cover}{button}"), feature::EDGE),
+        (format!("{cover}[[layer]]\nkind = \"stream\"\nlow_n = 0\nhigh_n = 0.01"), feature::STREAM),
+    ] {
+        assert_eq!(compile_layers(&layers).features(), expected, "{layers}");
+    }
+    let sine = HEAD.replace("# layers follow", "[carrier]\nshape = \"sine\"\n");
+    assert_eq!(compile_text(&sine).expect("it compiles").features(), feature::SINE_CARRIER);
+}
