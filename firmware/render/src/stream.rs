@@ -23,7 +23,7 @@ const VALUE_PER_SAMPLE: f32 = 1.0 / 65_535.0;
 ///
 /// Every slot is an atomic of its own, which costs nothing on a Cortex-M and keeps the sharing free of `unsafe`.
 pub struct StreamBuffer {
-    /// The sample in the low half, its round in the high half. No position is in round 0 before all rounds were used.
+    /// The sample in the low half, its round in the high half; all zeros, so that no image of it lies in flash.
     slots: [AtomicU32; STREAM_LEN],
     /// Position behind the last sample that came; the session's to write.
     end: AtomicU32,
@@ -35,7 +35,7 @@ impl StreamBuffer {
     /// An empty buffer.
     #[allow(clippy::new_without_default, reason = "it belongs in a static, not into a value made in passing")]
     pub const fn new() -> Self {
-        Self { slots: [const { AtomicU32::new(0) }; STREAM_LEN], end: AtomicU32::new(LEN), next: AtomicU32::new(LEN) }
+        Self { slots: [const { AtomicU32::new(0) }; STREAM_LEN], end: AtomicU32::new(0), next: AtomicU32::new(0) }
     }
 
     fn put(&self, position: u32, sample: u16) {
@@ -51,10 +51,10 @@ impl StreamBuffer {
     }
 }
 
-/// The round of a position, in the high half.
+/// The round of a position, in the high half. The first one is 1, since a slot that was never filled says 0.
 #[inline]
 fn round(position: u32) -> u32 {
-    (position / LEN) << 16
+    (position / LEN + 1) << 16
 }
 
 /// Samples from `from` to `to`; none when `to` is behind.
@@ -177,9 +177,9 @@ impl<'a> Player<'a> {
         Self {
             buffer,
             phase: Phase::Over,
-            start: StreamStart { first: LEN, step: 0, start_level: 0 },
+            start: StreamStart { first: 0, step: 0, start_level: 0 },
             last: None,
-            next: LEN,
+            next: 0,
             from: 0.0,
             to: 0.0,
             fraction: 0,
