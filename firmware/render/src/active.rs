@@ -2,7 +2,7 @@
 
 use frixel_model::{Carrier, Contact, Finger, InverseTable, Waveform};
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
-use frixel_wire::scene::{Carrier as Shape, Header, Layer as LayerRecord, RECORDS_MAX, Scene};
+use frixel_wire::scene::{Carrier as Shape, Grid, Header, Layer as LayerRecord, LayerSet, RECORDS_MAX, Scene};
 use heapless::Vec;
 
 use crate::Board;
@@ -23,9 +23,12 @@ pub struct Active {
     /// `None` for a scene that goes on without a host.
     pub(crate) host_timeout_ticks: Option<u32>,
     pub(crate) prediction: bool,
+    /// One layer on the whole screen is all that is on.
+    single: bool,
     table: Option<InverseTable>,
-    /// A bit for each layer that is on.
-    on: u64,
+    /// The layers that are on.
+    on: LayerSet,
+    grid: Grid,
     layers: Vec<Layer, RECORDS_MAX>,
 }
 
@@ -35,13 +38,15 @@ impl Active {
     pub const fn new() -> Self {
         Self {
             layers: Vec::new(),
-            on: 0,
+            on: [0; 2],
+            grid: Grid::EMPTY,
             table: None,
             carrier: CarrierTiming::SILENT,
             slew_step_v: 0.0,
             voltage_max_v_rms: 0.0,
             host_timeout_ticks: None,
             prediction: true,
+            single: false,
         }
     }
 
@@ -49,13 +54,14 @@ impl Active {
     pub(crate) fn unload(&mut self) {
         // One by one: the whole of it is thousands of bytes, and a tick may be waiting.
         self.layers.clear();
-        self.on = 0;
+        self.on = [0; 2];
         self.table = None;
         self.carrier = CarrierTiming::SILENT;
         self.slew_step_v = 0.0;
         self.voltage_max_v_rms = 0.0;
         self.host_timeout_ticks = None;
         self.prediction = true;
+        self.single = false;
     }
 
     /// The inverse table; `None` without a scene.
@@ -64,15 +70,38 @@ impl Active {
         self.table.as_ref()
     }
 
+    /// Bits of the largest electric friction within reach; none without a scene.
+    #[inline]
+    pub(crate) fn electric_friction_max_bits(&self) -> u32 {
+        self.table().map_or(0, |table| table.electric_friction_max_n().to_bits())
+    }
+
     /// Electric friction of all layers that are on, in N.
     #[inline]
     pub(crate) fn electric_friction_n(&self, moment: &Moment, pool: &BitmapPool) -> f32 {
-        let mut electric_friction_n = 0.0;
-        let mut left = self.on;
+        match self.layers.first() {
+            Some(layer) if self.single => layer.own_electric_friction_n(moment, pool),
+            _ => self.blended_electric_friction_n(moment, pool),
+        }
+    }
+
+    #[inline(never)]
+    fn blended_electric_friction_n(&self, moment: &Moment, pool: &BitmapPool) -> f32 {
+        let [on, others_on] = self.on;
+        let [near, others_near] = self.grid.at(moment.x_m, moment.y_m);
+        let first_n = self.blend(0.0, 0, on & near, moment, pool);
+        self.blend(first_n, u32::BITS, others_on & others_near, moment, pool)
+    }
+
+    /// Joins the layers of a set, whose first bit is layer number `first`, to what is below them.
+    #[inline]
+    fn blend(&self, below_n: f32, first: u32, set: u32, moment: &Moment, pool: &BitmapPool) -> f32 {
+        let mut electric_friction_n = below_n;
+        let mut left = set;
         while left != 0 {
-            let number = left.trailing_zeros() as usize;
+            let number = first + left.trailing_zeros();
             left &= left - 1;
-            if let Some(layer) = self.layers.get(number) {
+            if let Some(layer) = self.layers.get(number as usize) {
                 electric_friction_n = layer.blend_over(electric_friction_n, moment, pool);
             }
         }
@@ -83,9 +112,9 @@ impl Active {
     pub(crate) fn set_layer(&mut self, number: u8, on: bool, gain: f32) {
         if let Some(layer) = self.layers.get_mut(usize::from(number)) {
             layer.set_gain(gain);
-            let bit = 1 << number;
-            self.on = if on { self.on | bit } else { self.on & !bit };
+            self.put(number, on);
         }
+        self.look_for_a_single_layer();
     }
 
     /// Makes these the coefficients of `scene`. When it is refused, they are those of no scene.
@@ -108,6 +137,7 @@ impl Active {
     }
 
     fn load_layers(&mut self, scene: &Scene, directory: &Directory) -> Result<(), Refusal> {
+        self.grid.reset(scene.header().screen_width_m, scene.header().screen_height_m);
         for (number, record) in scene.records().enumerate() {
             let number = number as u8;
             config::check_record(&record, number).map_err(Refusal::Config)?;
@@ -120,9 +150,22 @@ impl Active {
             let layer = Layer::new(&record, bitmap).ok_or(Refusal::LeftOut { layer: number })?;
             // There is room for every record that a scene can have.
             let _ = self.layers.push(layer);
-            self.on |= 1 << number;
+            self.put(number, true);
+            self.grid.add(number, &record.region);
         }
+        self.look_for_a_single_layer();
         Ok(())
+    }
+
+    fn put(&mut self, number: u8, on: bool) {
+        let [first, others] = &mut self.on;
+        let word = if u32::from(number) < u32::BITS { first } else { others };
+        let bit = 1 << (u32::from(number) % u32::BITS);
+        *word = if on { *word | bit } else { *word & !bit };
+    }
+
+    fn look_for_a_single_layer(&mut self) {
+        self.single = self.on == [1, 0] && self.layers.first().is_some_and(Layer::is_everywhere);
     }
 }
 

@@ -55,13 +55,12 @@ impl Axis {
     }
 }
 
-/// A finger as estimated at a tick.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// A finger as estimated at a tick, along x and y.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Estimate {
-    pub(crate) x_m: f32,
-    pub(crate) y_m: f32,
-    pub(crate) velocity_x_m_per_s: f32,
-    pub(crate) velocity_y_m_per_s: f32,
+    pub(crate) place_m: [f32; 2],
+    pub(crate) velocity_m_per_s: [f32; 2],
+    pub(crate) half_acceleration_m_per_s2: [f32; 2],
 }
 
 /// The filter's state.
@@ -73,18 +72,12 @@ pub(crate) struct Estimator {
     sampled_at_tick: u32,
 }
 
-impl Estimate {
-    pub(crate) const ZERO: Self = Self { x_m: 0.0, y_m: 0.0, velocity_x_m_per_s: 0.0, velocity_y_m_per_s: 0.0 };
-}
-
 impl Estimator {
     /// Knows nothing yet.
     pub(crate) const NEW: Self = Self { x: Axis::ZERO, y: Axis::ZERO, samples: 0, sampled_at_tick: 0 };
 
-    /// Takes a sample that was true `age_ticks` before `now_tick`. One that is not newer
-    /// than the last says nothing.
-    pub(crate) fn update(&mut self, now_tick: u32, age_ticks: u32, x_m: f32, y_m: f32, tick_period_s: f32) {
-        let sampled_at_tick = now_tick.wrapping_sub(age_ticks);
+    /// Takes a sample that was true at a tick. One that is not newer than the last says nothing.
+    pub(crate) fn update(&mut self, sampled_at_tick: u32, [x_m, y_m]: [f32; 2], tick_period_s: f32) {
         let step_ticks = sampled_at_tick.wrapping_sub(self.sampled_at_tick) as i32;
         if self.samples == 0 {
             *self = Self { x: Axis::resting_at(x_m), y: Axis::resting_at(y_m), samples: 1, sampled_at_tick };
@@ -104,18 +97,16 @@ impl Estimator {
         }
     }
 
-    /// Begins anew with the next sample.
-    pub(crate) fn forget(&mut self) {
-        self.samples = 0;
-    }
-
     /// The estimate for `now_tick`. Before the first sample it means nothing.
-    #[inline]
     pub(crate) fn at(&self, now_tick: u32, tick_period_s: f32) -> Estimate {
         let time_s = now_tick.wrapping_sub(self.sampled_at_tick) as f32 * tick_period_s;
         let (x_m, velocity_x_m_per_s) = self.x.at(time_s);
         let (y_m, velocity_y_m_per_s) = self.y.at(time_s);
-        Estimate { x_m, y_m, velocity_x_m_per_s, velocity_y_m_per_s }
+        Estimate {
+            place_m: [x_m, y_m],
+            velocity_m_per_s: [velocity_x_m_per_s, velocity_y_m_per_s],
+            half_acceleration_m_per_s2: [self.x.half_acceleration, self.y.half_acceleration],
+        }
     }
 }
 
@@ -180,10 +171,10 @@ mod tests {
         let mut estimator = Estimator::NEW;
         for i in 0..samples {
             let tick = 1000 + 400 * i;
-            estimator.update(tick + 400, 400, path(tick as f32 * TICK_S), 0.0, TICK_S);
+            estimator.update(tick, [path(tick as f32 * TICK_S), 0.0], TICK_S);
         }
         let now = 1000 + 400 * samples + 300;
-        (estimator.at(now, TICK_S).x_m - path(now as f32 * TICK_S)).abs()
+        (estimator.at(now, TICK_S).place_m[0] - path(now as f32 * TICK_S)).abs()
     }
 
     #[test]
@@ -201,11 +192,11 @@ mod tests {
     #[test]
     fn repeated_and_backward_samples_change_nothing() {
         let mut estimator = Estimator::NEW;
-        estimator.update(1000, 0, 0.01, 0.01, TICK_S);
-        estimator.update(1400, 0, 0.02, 0.01, TICK_S);
+        estimator.update(1000, [0.01, 0.01], TICK_S);
+        estimator.update(1400, [0.02, 0.01], TICK_S);
         let before = estimator.at(1500, TICK_S);
-        estimator.update(1410, 10, 0.5, 0.5, TICK_S);
-        estimator.update(1410, 11, 0.5, 0.5, TICK_S);
+        estimator.update(1400, [0.5, 0.5], TICK_S);
+        estimator.update(1399, [0.5, 0.5], TICK_S);
         assert_eq!(estimator.at(1500, TICK_S), before);
     }
 
@@ -214,10 +205,10 @@ mod tests {
         let mut estimator = Estimator::NEW;
         let start = u32::MAX - 500;
         for i in 0..4 {
-            estimator.update(start.wrapping_add(400 * i), 0, 0.001 * i as f32, 0.0, TICK_S);
+            estimator.update(start.wrapping_add(400 * i), [0.001 * i as f32, 0.0], TICK_S);
         }
         let estimate = estimator.at(start.wrapping_add(1600), TICK_S);
-        assert!((estimate.x_m - 0.004).abs() < 1e-6);
-        assert!((estimate.velocity_x_m_per_s - 0.1).abs() < 1e-4);
+        assert!((estimate.place_m[0] - 0.004).abs() < 1e-6);
+        assert!((estimate.velocity_m_per_s[0] - 0.1).abs() < 1e-4);
     }
 }

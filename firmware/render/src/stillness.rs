@@ -1,8 +1,6 @@
 //! A still finger feels next to nothing while its current rises: its envelope is ramped away, and comes back when it
 //! moves (DESIGN section 3).
 
-use crate::estimator::Estimate;
-
 /// Below this speed the finger counts as still, when it stays there for [`STILL_AFTER_S`].
 const STILL_BELOW_M_PER_S: f32 = 2e-3;
 /// Above this speed a still finger counts as moving.
@@ -25,59 +23,66 @@ impl StillnessTiming {
 }
 
 /// Whether the finger is still, and how far the ramp has come.
+///
+/// The speed is that of the last sample: between two samples nothing new is known of it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stillness {
-    phase: Phase,
+    /// The finger moves fast enough, and the gain is 1: a tick has nothing to do.
+    steady: bool,
+    /// The last sample was below the speed of a still finger.
+    slow: bool,
     slow_ticks: u32,
     gain: f32,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Phase {
-    /// The finger moves, and the gain is 1.
-    Moving,
-    /// The finger moves, and the gain rises.
-    Returning,
-    /// The finger is still, and the gain falls or is zero.
-    Still,
+    /// What is added to the gain at every tick: less than zero while the finger is still.
+    gain_step: f32,
 }
 
 impl Stillness {
     /// A finger that has just come down is taken to move.
-    pub(crate) const MOVING: Self = Self { phase: Phase::Moving, slow_ticks: 0, gain: 1.0 };
+    pub(crate) const MOVING: Self = Self { steady: true, slow: false, slow_ticks: 0, gain: 1.0, gain_step: 0.0 };
 
-    /// Takes one tick's estimate and returns the gain on the friction asked for, from 0 to below 1; `None` where it is
-    /// 1.
-    #[inline]
-    pub(crate) fn update(&mut self, estimate: &Estimate, timing: &StillnessTiming) -> Option<f32> {
-        let speed_squared = estimate.velocity_x_m_per_s * estimate.velocity_x_m_per_s
-            + estimate.velocity_y_m_per_s * estimate.velocity_y_m_per_s;
-        let slow = speed_squared < STILL_BELOW_M_PER_S * STILL_BELOW_M_PER_S;
-        self.slow_ticks = if slow { self.slow_ticks.saturating_add(1) } else { 0 };
-        if self.phase == Phase::Moving && self.slow_ticks < timing.still_after_ticks {
-            return None;
+    /// Takes the velocity of a new sample, in m/s.
+    pub(crate) fn take(&mut self, [x, y]: [f32; 2]) {
+        let speed_squared = x * x + y * y;
+        self.slow = speed_squared < STILL_BELOW_M_PER_S * STILL_BELOW_M_PER_S;
+        if !self.slow {
+            self.slow_ticks = 0;
         }
-        self.ramp(speed_squared, timing)
+        if self.gain_step < 0.0 && speed_squared > MOVING_ABOVE_M_PER_S * MOVING_ABOVE_M_PER_S {
+            self.gain_step = -self.gain_step;
+        }
+        self.steady = !self.slow && self.gain >= 1.0;
     }
 
-    /// A tick at which the gain moves or is not 1.
-    fn ramp(&mut self, speed_squared: f32, timing: &StillnessTiming) -> Option<f32> {
-        let moving_again = speed_squared > MOVING_ABOVE_M_PER_S * MOVING_ABOVE_M_PER_S;
-        self.phase = match self.phase {
-            Phase::Still if moving_again => Phase::Returning,
-            Phase::Moving | Phase::Returning if self.slow_ticks >= timing.still_after_ticks => Phase::Still,
-            phase => phase,
-        };
-        if self.phase == Phase::Still {
-            self.gain = (self.gain - timing.ramp_step).max(0.0);
-            return Some(self.gain);
+    /// On the friction asked for, from 0 to 1.
+    #[inline]
+    pub(crate) fn gain(&self) -> f32 {
+        self.gain
+    }
+
+    /// Goes on by a tick, and returns whether the gain is below 1.
+    #[inline]
+    pub(crate) fn advance(&mut self, timing: &StillnessTiming) -> bool {
+        !self.steady && self.ramp(timing)
+    }
+
+    /// A tick at which the finger is slow, or the gain is not 1.
+    #[inline(never)]
+    fn ramp(&mut self, timing: &StillnessTiming) -> bool {
+        if self.slow {
+            self.slow_ticks = self.slow_ticks.saturating_add(1);
+            if self.slow_ticks >= timing.still_after_ticks {
+                self.gain_step = -timing.ramp_step;
+            }
         }
-        self.gain += timing.ramp_step;
-        if self.gain < 1.0 {
-            return Some(self.gain);
+        let gain = self.gain + self.gain_step;
+        if gain >= 1.0 {
+            self.gain = 1.0;
+            self.steady = !self.slow;
+            return false;
         }
-        *self = Self { slow_ticks: self.slow_ticks, ..Self::MOVING };
-        None
+        self.gain = if gain > 0.0 { gain } else { 0.0 };
+        true
     }
 }
 
@@ -87,8 +92,12 @@ mod tests {
 
     fn run(stillness: &mut Stillness, speed_m_per_s: f32, ticks: u32) -> f32 {
         let timing = StillnessTiming::new(40_000);
-        let estimate = Estimate { velocity_y_m_per_s: speed_m_per_s, ..Estimate::default() };
-        (0..ticks).fold(1.0, |_, _| stillness.update(&estimate, &timing).unwrap_or(1.0))
+        stillness.take([0.0, -speed_m_per_s]);
+        for _ in 0..ticks {
+            let moves = stillness.advance(&timing);
+            assert_eq!(moves, stillness.gain() < 1.0);
+        }
+        stillness.gain()
     }
 
     #[test]

@@ -18,7 +18,8 @@ pub(crate) struct Supervisor {
     state: State,
     fault: Option<(Fault, u32)>,
     host_heard_at_tick: u32,
-    host_timeout_ticks: u32,
+    /// `None` for a scene that goes on without a host.
+    host_timeout_ticks: Option<u32>,
     host_silent: bool,
     monitor: Monitor,
 }
@@ -48,13 +49,14 @@ impl Monitor {
         self.expected_v += self.step * (driven_v - self.expected_v);
         let tolerance_v = self.floor_v + MONITOR_GAIN_TOLERANCE * driven_v.abs();
         // A monitor that is not a number is wrong, too.
-        if (monitor_v - self.expected_v).abs() < tolerance_v {
-            if self.wrong_ticks > 0 {
-                self.wrong_ticks -= 1;
-            }
-            return false;
-        }
-        self.wrong_ticks = self.wrong_ticks.saturating_add(1);
+        let wrong = !((monitor_v - self.expected_v).abs() < tolerance_v);
+        (wrong || self.wrong_ticks > 0) && self.count(wrong)
+    }
+
+    /// Counts a tick, and returns whether there were too many wrong ones.
+    #[cold]
+    fn count(&mut self, wrong: bool) -> bool {
+        self.wrong_ticks = if wrong { self.wrong_ticks.saturating_add(1) } else { self.wrong_ticks.saturating_sub(1) };
         self.wrong_ticks >= MONITOR_WRONG_TICKS
     }
 }
@@ -65,7 +67,7 @@ impl Supervisor {
             state: State::Disarmed,
             fault: board.reset_fault,
             host_heard_at_tick: 0,
-            host_timeout_ticks: host_timeout_default_ticks(board),
+            host_timeout_ticks: Some(host_timeout_default_ticks(board)),
             host_silent: false,
             monitor: Monitor::new(board),
         }
@@ -111,37 +113,50 @@ impl Supervisor {
 
     /// Sets the timeout that holds from now on; `None` for a scene that goes on without a host.
     pub(crate) fn set_host_timeout(&mut self, ticks: Option<u32>) {
-        // No host is silent for more ticks than this.
-        self.host_timeout_ticks = ticks.unwrap_or(u32::MAX);
+        self.host_timeout_ticks = ticks;
     }
 
-    /// Looks after the output at every tick, and returns whether there may be any. `driven_v` is what went to the
-    /// amplifier in the tick before.
+    /// Looks after the output at every tick. `driven_v` is what went to the amplifier in the tick before. Returns
+    /// whether something has changed.
     #[inline]
-    pub(crate) fn check(&mut self, sense: &Sense, driven_v: f32, now_tick: u32) -> bool {
+    pub(crate) fn check(&mut self, sense: &Sense, driven_v: f32) -> bool {
         let monitor_wrong = self.monitor.is_wrong(driven_v, sense.monitor_v);
-        let host_silent = now_tick.wrapping_sub(self.host_heard_at_tick) > self.host_timeout_ticks;
-        if monitor_wrong || sense.amplifier_fault || host_silent || !sense.arm_switch {
-            self.act(sense, monitor_wrong, host_silent);
+        if monitor_wrong || sense.amplifier_fault || !sense.arm_switch {
+            return self.act(sense, monitor_wrong);
         }
-        self.state == State::Active
+        false
     }
 
     /// Does what one of the things that [`Self::check`] looks after asks for. Of several the first here counts.
     #[inline(never)]
-    fn act(&mut self, sense: &Sense, monitor_wrong: bool, host_silent: bool) {
-        if self.state == State::Faulted {
-            return;
+    fn act(&mut self, sense: &Sense, monitor_wrong: bool) -> bool {
+        let before = self.state;
+        if before == State::Faulted {
+            return false;
         }
-        let armed = self.state != State::Disarmed;
         if monitor_wrong {
             self.monitor.wrong_ticks = 0;
             self.raise(Fault::Monitor, sense.monitor_v as i32 as u32);
         } else if sense.amplifier_fault {
             self.raise(Fault::Amplifier, 0);
-        } else if armed && !sense.arm_switch {
+        } else if before != State::Disarmed && !sense.arm_switch {
             self.raise(Fault::ArmSwitch, 0);
-        } else if armed && host_silent {
+        }
+        self.state != before
+    }
+
+    /// The tick at which the host has been silent for too long, if it has to be there.
+    pub(crate) fn silent_at_tick(&self) -> Option<u32> {
+        let needed = matches!(self.state, State::Armed | State::Active);
+        let timeout_ticks = self.host_timeout_ticks.filter(|_| needed)?;
+        Some(self.host_heard_at_tick.wrapping_add(timeout_ticks).wrapping_add(1))
+    }
+
+    /// Disarms when the host has been silent for too long.
+    pub(crate) fn expire(&mut self, now_tick: u32) {
+        if let Some(tick) = self.silent_at_tick()
+            && tick.wrapping_sub(now_tick) as i32 <= 0
+        {
             self.state = State::Disarmed;
             self.host_silent = true;
         }

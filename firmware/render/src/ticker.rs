@@ -5,37 +5,35 @@ use frixel_wire::message::Telemetry;
 
 use crate::carrier::Carrier;
 use crate::envelope::Envelope;
-use crate::estimator::{Estimate, Estimator};
+use crate::finger::{Finger, FingerTiming, Presence};
 use crate::layer::Moment;
 use crate::order::Counters;
-use crate::stillness::{Stillness, StillnessTiming};
 #[cfg(feature = "stream")]
 use crate::stream::{Player, StreamBuffer, StreamNow};
 use crate::supervisor::{self, Supervisor};
-use crate::{Active, BitmapPool, Board, Drive, Order, Sense, Status, Touch};
+use crate::{Active, BitmapPool, Board, Drive, Order, Sense, Status};
 
-/// Touch data is too old to use after this many report periods without a report.
-const STALE_AFTER_PERIODS: f32 = 3.0;
-/// A sample older than this, 0.8 s at 40 kHz, says nothing of where the finger is now.
-const SAMPLE_AGE_MAX_TICKS: u32 = 1 << 15;
+/// Ticks until the next look at what has no deadline: far less than the tick counter takes to wrap.
+const LOOK_AFTER_TICKS: u32 = 1 << 30;
 
 /// Turns touch into voltage, one tick at a time, and owns the output through its supervisor.
 pub struct Ticker<'a> {
+    finger: Finger,
     timing: Timing,
     pool: &'a BitmapPool,
     active: &'a mut Active,
     supervisor: Supervisor,
-    finger: Finger,
     envelope: Envelope,
     carrier: Carrier,
     tick: u32,
+    /// When something is next due: a host that is silent, or touch data that are too old.
+    due_tick: u32,
+    /// There is a scene, a finger, and leave to drive.
+    live: bool,
     drive: Drive,
     arm_switch: bool,
-    /// On the friction under the finger: below 1 while the finger is still or was so.
-    gain: f32,
     asked_electric_friction_n: f32,
     target_v_rms: f32,
-    out_of_reach: bool,
     flags: Flags,
     counters: Counters,
     orders_applied: u32,
@@ -47,84 +45,11 @@ pub struct Ticker<'a> {
 /// What belongs to the board and is computed once.
 #[derive(Clone, Copy)]
 struct Timing {
-    tick_period_s: f32,
-    stale_after_ticks: u32,
+    finger: FingerTiming,
     host_timeout_default_ticks: u32,
-    stillness: StillnessTiming,
     volts_per_code: f32,
-}
-
-/// What the ticker knows of the finger.
-struct Finger {
-    estimator: Estimator,
-    stillness: Stillness,
-    /// Ticks until the last report is too old, zero without a finger.
-    good_ticks: u32,
-    /// When the newest sample was true; outlives stale data, so that a source that is stuck does not start anew.
-    sampled_at_tick: Option<u32>,
-    last_x_m: f32,
-    last_y_m: f32,
-    estimate: Estimate,
-}
-
-impl Finger {
-    const UP: Self = Self {
-        estimator: Estimator::NEW,
-        stillness: Stillness::MOVING,
-        good_ticks: 0,
-        sampled_at_tick: None,
-        last_x_m: 0.0,
-        last_y_m: 0.0,
-        estimate: Estimate::ZERO,
-    };
-
-    fn take(&mut self, touch: Touch, now_tick: u32, timing: &Timing) {
-        match touch {
-            Touch::Up => {
-                self.lift();
-                self.sampled_at_tick = None;
-            }
-            Touch::Down { x_m, y_m, age_ticks } => {
-                let newer = self.sampled_at_tick.is_none_or(|tick| age_ticks < now_tick.wrapping_sub(tick));
-                // A report that says nothing new does not keep the output alive: the source may be stuck.
-                if newer && age_ticks <= SAMPLE_AGE_MAX_TICKS && x_m.is_finite() && y_m.is_finite() {
-                    self.estimator.update(now_tick, age_ticks, x_m, y_m, timing.tick_period_s);
-                    self.sampled_at_tick = Some(now_tick.wrapping_sub(age_ticks));
-                    // The report is good at this tick, too.
-                    self.good_ticks = timing.stale_after_ticks + 2;
-                    self.last_x_m = x_m;
-                    self.last_y_m = y_m;
-                }
-            }
-        }
-    }
-
-    /// Forgets the finger. What is left of its estimator means nothing without samples.
-    fn lift(&mut self) {
-        self.good_ticks = 0;
-        self.estimator.forget();
-        self.stillness = Stillness::MOVING;
-        self.estimate = Estimate::ZERO;
-        self.last_x_m = 0.0;
-        self.last_y_m = 0.0;
-    }
-
-    /// Estimates where the finger is now.
-    #[inline]
-    fn locate(&mut self, now_tick: u32, tick_period_s: f32) {
-        self.estimate = self.estimator.at(now_tick, tick_period_s);
-    }
-
-    /// Where the finger is taken to be; without prediction, where it was last seen.
-    #[inline]
-    fn place(&self, prediction: bool) -> (f32, f32) {
-        if prediction { (self.estimate.x_m, self.estimate.y_m) } else { self.last_place() }
-    }
-
-    #[cold]
-    fn last_place(&self) -> (f32, f32) {
-        (self.last_x_m, self.last_y_m)
-    }
+    #[cfg(feature = "stream")]
+    tick_period_s: f32,
 }
 
 impl<'a> Ticker<'a> {
@@ -134,11 +59,11 @@ impl<'a> Ticker<'a> {
         let carrier = Carrier::new(&active.carrier);
         Self {
             timing: Timing {
-                tick_period_s: board.tick_period_s(),
-                stale_after_ticks: board.ticks(STALE_AFTER_PERIODS * board.limits.touch_report_period_s),
+                finger: FingerTiming::new(board),
                 host_timeout_default_ticks: supervisor::host_timeout_default_ticks(board),
-                stillness: StillnessTiming::new(board.tick_hz),
                 volts_per_code: board.limits.full_scale_v_peak / f32::from(i16::MAX),
+                #[cfg(feature = "stream")]
+                tick_period_s: board.tick_period_s(),
             },
             pool,
             active,
@@ -147,12 +72,12 @@ impl<'a> Ticker<'a> {
             envelope: Envelope::default(),
             carrier,
             tick: 0,
+            due_tick: LOOK_AFTER_TICKS,
+            live: false,
             drive: Drive::default(),
             arm_switch: false,
-            gain: 1.0,
             asked_electric_friction_n: 0.0,
             target_v_rms: 0.0,
-            out_of_reach: false,
             flags: Flags::NO_FINGER,
             counters: Counters::default(),
             orders_applied: 0,
@@ -178,6 +103,7 @@ impl<'a> Ticker<'a> {
                 let spare = core::mem::replace(&mut self.active, next);
                 self.carrier.retime(&self.active.carrier);
                 self.envelope.limit(self.active.voltage_max_v_rms);
+                self.finger.locate(self.tick, self.active.prediction, &self.timing.finger);
                 self.ask_again();
                 Some(spare)
             }
@@ -202,11 +128,8 @@ impl<'a> Ticker<'a> {
             }
             _ => None,
         };
-        #[cfg(feature = "stream")]
-        if self.supervisor.state() != State::Active {
-            self.on_stream(Player::stop);
-        }
         self.supervisor.set_host_timeout(self.host_timeout_ticks());
+        self.look();
         spare
     }
 
@@ -227,6 +150,7 @@ impl<'a> Ticker<'a> {
             self.counters.missed_deadlines = self.counters.missed_deadlines.wrapping_add(1);
         }
         self.supervisor.raise(fault, detail);
+        self.look();
     }
 
     /// One tick: to be called exactly [`Board::tick_hz`] times a second.
@@ -237,22 +161,78 @@ impl<'a> Ticker<'a> {
     pub fn tick(&mut self, sense: &Sense) -> Drive {
         self.tick = self.tick.wrapping_add(1);
         self.arm_switch = sense.arm_switch;
-        if let Some(touch) = sense.touch {
-            self.finger.take(touch, self.tick, &self.timing);
-        }
         let driven_v = f32::from(self.drive.dac_code) * self.timing.volts_per_code;
-        let may_drive = self.supervisor.check(sense, driven_v, self.tick);
+        if self.supervisor.check(sense, driven_v) {
+            self.look();
+        }
         #[cfg(feature = "stream")]
-        self.on_stream(|stream| if may_drive { stream.advance() } else { stream.stop() });
-        let finger_there = self.look_after_finger();
-        self.drive = if may_drive && finger_there { self.render(sense.touch.is_some()) } else { self.silence() };
-        self.drive
+        self.on_stream(Player::advance);
+        let due = self.due_tick.wrapping_sub(self.tick) as i32 <= 0;
+        if due || sense.touch.is_some() || self.finger.is_digesting() {
+            self.attend(sense, due);
+        } else {
+            let still = self.finger.advance(&self.timing.finger);
+            self.flags = if still { Flags::STILL } else { Flags::default() };
+            if self.live {
+                self.target_v_rms = self.voltage_under_finger_v_rms();
+                self.note_reach();
+            }
+        }
+        self.put_out()
+    }
+
+    /// Attends to what is due, or to a report of the touch source. That is enough for a tick: it goes on with what the
+    /// tick before asked for.
+    #[inline(never)]
+    fn attend(&mut self, sense: &Sense, due: bool) {
+        let timing = &self.timing.finger;
+        self.finger.go_on();
+        self.flags = if self.finger.gain() < 1.0 { Flags::STILL } else { Flags::default() };
+        match sense.touch {
+            Some(touch) => self.finger.take(touch, self.tick, timing),
+            None if due => {}
+            None => self.finger.digest(self.tick, self.active.prediction, timing),
+        }
+        if due {
+            self.look();
+        } else if !self.live && self.may_be_live() {
+            self.due_tick = self.tick.wrapping_add(1);
+        } else {
+            self.live &= self.may_be_live();
+        }
+        if self.live {
+            self.note_reach();
+        }
+    }
+
+    /// There is a scene, a finger, and leave to drive.
+    fn may_be_live(&self) -> bool {
+        let there = matches!(self.finger.presence(), Presence::Down { .. });
+        there && self.supervisor.state() == State::Active && self.active.table().is_some()
+    }
+
+    /// Looks at everything that has a deadline, and finds out whether to drive and when to look again.
+    fn look(&mut self) {
+        self.finger.expire(self.tick);
+        self.supervisor.expire(self.tick);
+        let until_tick = match self.finger.presence() {
+            Presence::Down { until_tick } => Some(until_tick),
+            Presence::Up | Presence::Stale => None,
+        };
+        let ticks_to = |tick: u32| tick.wrapping_sub(self.tick);
+        let until = until_tick.map_or(LOOK_AFTER_TICKS, ticks_to);
+        let silent = self.supervisor.silent_at_tick().map_or(LOOK_AFTER_TICKS, ticks_to);
+        self.due_tick = self.tick.wrapping_add(until.min(silent).min(LOOK_AFTER_TICKS));
+        self.live = self.supervisor.state() == State::Active && until_tick.is_some() && self.active.table().is_some();
+        #[cfg(feature = "stream")]
+        if self.supervisor.state() != State::Active {
+            self.on_stream(Player::stop);
+        }
     }
 
     /// What the board does now.
     pub fn status(&self) -> Status {
-        let estimate = &self.finger.estimate;
-        let (finger_x_m, finger_y_m) = self.finger.place(self.active.prediction);
+        let [finger_x_m, finger_y_m] = self.finger.place_m();
         let mut flags = self.flags;
         if self.supervisor.host_silent() {
             flags = flags.with(Flags::HOST_SILENT);
@@ -268,10 +248,7 @@ impl<'a> Ticker<'a> {
                 flags,
                 finger_x_m,
                 finger_y_m,
-                speed_m_per_s: libm::sqrtf(
-                    estimate.velocity_x_m_per_s * estimate.velocity_x_m_per_s
-                        + estimate.velocity_y_m_per_s * estimate.velocity_y_m_per_s,
-                ),
+                speed_m_per_s: self.finger.speed_m_per_s(),
                 asked_electric_friction_n: self.asked_electric_friction_n,
                 voltage_v_rms: self.envelope.voltage_v_rms(),
                 dac_code: self.drive.dac_code,
@@ -315,36 +292,11 @@ impl<'a> Ticker<'a> {
         }
     }
 
-    /// Finds the finger, and returns whether there is one.
+    /// Brings the envelope to what is asked for, and the carrier to the DAC.
     #[inline]
-    fn look_after_finger(&mut self) -> bool {
-        if self.finger.good_ticks == 0 {
-            self.flags = Flags::NO_FINGER;
-            return false;
-        }
-        self.finger.good_ticks -= 1;
-        if self.finger.good_ticks == 0 {
-            self.flags = Flags::TOUCH_STALE;
-            self.finger.lift();
-            return false;
-        }
-        self.finger.locate(self.tick, self.timing.tick_period_s);
-        let ramp = self.finger.stillness.update(&self.finger.estimate, &self.timing.stillness);
-        self.gain = ramp.unwrap_or(1.0);
-        self.flags = if ramp.is_some() { Flags::STILL } else { Flags::default() };
-        true
-    }
-
-    /// Puts the friction under the finger on the carrier. A tick that has taken a report has done enough: it goes on
-    /// with what the tick before asked for, and the longest tick is shorter by a quarter.
-    #[inline]
-    fn render(&mut self, reported: bool) -> Drive {
-        if !reported {
-            self.target_v_rms = self.voltage_under_finger_v_rms();
-        }
-        if self.out_of_reach {
-            self.flags = self.flags.with(Flags::SATURATED);
-            self.counters.saturated_ticks = self.counters.saturated_ticks.wrapping_add(1);
+    fn put_out(&mut self) -> Drive {
+        if !self.live {
+            return self.rest();
         }
         if self.envelope.follow(self.target_v_rms, self.active.slew_step_v) {
             self.flags = self.flags.with(Flags::SLEWED);
@@ -355,40 +307,59 @@ impl<'a> Ticker<'a> {
             self.flags = self.flags.with(Flags::CARRIER_BALANCED);
             self.counters.balanced_edges = self.counters.balanced_edges.wrapping_add(1);
         }
-        Drive { dac_code, amplifier_enable: true }
+        self.drive = Drive { dac_code, amplifier_enable: true };
+        self.drive
     }
 
     /// The rms voltage that the scene wants under the finger.
     #[inline]
     fn voltage_under_finger_v_rms(&mut self) -> f32 {
         let Some(table) = self.active.table() else { return 0.0 };
-        let (x_m, y_m) = self.finger.place(self.active.prediction);
+        let [x_m, y_m] = self.finger.place_m();
         let moment = Moment {
             x_m,
             y_m,
             #[cfg(feature = "stream")]
             stream: self.stream_now(),
         };
-        let electric_friction_n = self.gain * self.active.electric_friction_n(&moment, self.pool);
+        let friction_n = self.active.electric_friction_n(&moment, self.pool);
+        let electric_friction_n = self.finger.gain() * friction_n;
         self.asked_electric_friction_n = electric_friction_n;
-        // Bit patterns of what is negative, and of not-a-number, are above those of every positive number.
-        self.out_of_reach = electric_friction_n.to_bits() > table.electric_friction_max_n().to_bits()
-            && is_not_minus_zero(electric_friction_n);
         table.voltage_v_rms(electric_friction_n)
     }
 
+    /// Counts a tick whose friction is out of reach.
+    #[inline]
+    fn note_reach(&mut self) {
+        let asked_n = self.asked_electric_friction_n;
+        // Bit patterns of what is negative, and of not-a-number, are above those of every positive number.
+        if asked_n.to_bits() > self.active.electric_friction_max_bits() {
+            self.note_out_of_reach();
+        }
+    }
+
+    #[cold]
+    fn note_out_of_reach(&mut self) {
+        // Minus zero is zero.
+        if self.asked_electric_friction_n != 0.0 {
+            self.flags = self.flags.with(Flags::SATURATED);
+            self.counters.saturated_ticks = self.counters.saturated_ticks.wrapping_add(1);
+        }
+    }
+
     /// Zero at once.
-    fn silence(&mut self) -> Drive {
+    #[inline(never)]
+    fn rest(&mut self) -> Drive {
+        match self.finger.presence() {
+            Presence::Up => self.flags = Flags::NO_FINGER,
+            Presence::Stale => self.flags = Flags::NO_FINGER.with(Flags::TOUCH_STALE),
+            Presence::Down { .. } => {}
+        }
         self.asked_electric_friction_n = 0.0;
         self.target_v_rms = 0.0;
-        self.out_of_reach = false;
         self.envelope.silence();
         self.carrier.rest(&self.active.carrier);
-        Drive::default()
+        self.drive = Drive::default();
+        self.drive
     }
-}
-
-#[cold]
-fn is_not_minus_zero(electric_friction_n: f32) -> bool {
-    electric_friction_n != 0.0
 }

@@ -5,9 +5,11 @@
 
 mod codec;
 mod error;
+mod grid;
 mod view;
 
 pub use error::SceneError;
+pub use grid::{Cell, Grid, LayerSet};
 pub use view::Scene;
 
 use crate::frame::Crc32;

@@ -63,13 +63,24 @@ impl Layer {
         self.gain = gain;
     }
 
+    /// It acts on the whole screen.
+    pub(crate) fn is_everywhere(&self) -> bool {
+        self.region == Region::Screen
+    }
+
+    /// This layer's electric friction at a moment, wherever that is.
+    #[inline]
+    pub(crate) fn own_electric_friction_n(&self, moment: &Moment, pool: &BitmapPool) -> f32 {
+        self.gain * self.source.electric_friction_n(moment, pool)
+    }
+
     /// Joins this layer's electric friction at a moment to that of the layers below.
     #[inline]
     pub(crate) fn blend_over(&self, below_n: f32, moment: &Moment, pool: &BitmapPool) -> f32 {
         if !self.region.contains(moment.x_m, moment.y_m) {
             return below_n;
         }
-        let own_n = self.gain * self.source.electric_friction_n(moment, pool);
+        let own_n = self.own_electric_friction_n(moment, pool);
         match self.blend {
             Blend::Replace => own_n,
             Blend::Add => below_n + own_n,
