@@ -108,6 +108,7 @@ impl Piece {
         let gain = f64::from(record.gain);
         let field = match record.layer {
             Layer::Constant { electric_friction_n } => Field::Constant(gain * f64::from(electric_friction_n)),
+            Layer::Stream { low_n, .. } => Field::Constant(gain * f64::from(low_n)),
             Layer::Grating { wave, cycles_per_m_x, cycles_per_m_y, phase_turns, trough_n, crest_n } => {
                 Field::Grating(Grating {
                     wave,

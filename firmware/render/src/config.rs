@@ -59,6 +59,10 @@ pub(crate) fn check_record(record: &Record, layer: u8) -> Result<(), ConfigRefus
     }
     match record.layer {
         Layer::Constant { electric_friction_n } => friction(electric_friction_n),
+        Layer::Stream { low_n, high_n } => {
+            friction(low_n)?;
+            friction(high_n)
+        }
         Layer::Grating { cycles_per_m_x, cycles_per_m_y, phase_turns, trough_n, crest_n, .. } => {
             within(ConfigField::WaveVector, cycles_per_m_x, -2e4, 2e4, layer)?;
             within(ConfigField::WaveVector, cycles_per_m_y, -2e4, 2e4, layer)?;

@@ -162,6 +162,13 @@ pub enum Layer {
         /// Electric friction of sample 255, N.
         white_n: f32,
     },
+    /// What the host streams: `low + (high - low) sample`, with samples from 0 to 1.
+    Stream {
+        /// Electric friction of sample 0, N.
+        low_n: f32,
+        /// Electric friction of sample 1, N.
+        high_n: f32,
+    },
 }
 
 /// Shape of a grating's stripes over a turn.

@@ -49,6 +49,12 @@ enum Source {
     Grating(Grating),
     #[cfg(feature = "bitmap")]
     Picture(Picture),
+    /// `low + span` times the stream's sample.
+    #[cfg(feature = "stream")]
+    Stream {
+        low_n: f32,
+        span_n: f32,
+    },
 }
 
 impl Layer {
@@ -68,10 +74,10 @@ impl Layer {
         self.region == Region::Screen
     }
 
-    /// This layer's electric friction at a moment, wherever that is.
+    /// This layer's electric friction at a moment, wherever that is, with nothing below it.
     #[inline]
     pub(crate) fn own_electric_friction_n(&self, moment: &Moment, pool: &BitmapPool) -> f32 {
-        self.gain * self.source.electric_friction_n(moment, pool)
+        self.faded(0.0, self.gain * self.source.electric_friction_n(moment, pool), moment)
     }
 
     /// Joins this layer's electric friction at a moment to that of the layers below.
@@ -80,18 +86,30 @@ impl Layer {
         if !self.region.contains(moment.x_m, moment.y_m) {
             return below_n;
         }
-        let own_n = self.own_electric_friction_n(moment, pool);
-        match self.blend {
+        let own_n = self.gain * self.source.electric_friction_n(moment, pool);
+        let blended_n = match self.blend {
             Blend::Replace => own_n,
             Blend::Add => below_n + own_n,
+        };
+        self.faded(below_n, blended_n, moment)
+    }
+
+    /// What there is of a blend: all of it, but for a stream, which fades as if the layer were not there.
+    #[inline]
+    #[cfg_attr(not(feature = "stream"), allow(unused_variables, clippy::unused_self, reason = "nothing fades"))]
+    fn faded(&self, below_n: f32, blended_n: f32, moment: &Moment) -> f32 {
+        #[cfg(feature = "stream")]
+        if let Source::Stream { .. } = self.source {
+            return below_n + moment.stream.weight * (blended_n - below_n);
         }
+        blended_n
     }
 }
 
 /// Whether a layer plays what the host streams.
 #[cfg(feature = "stream")]
-pub(crate) fn is_stream(_record: &Record) -> bool {
-    false
+pub(crate) fn is_stream(record: &Record) -> bool {
+    matches!(record.layer, Kind::Stream { .. })
 }
 
 impl Source {
@@ -107,7 +125,9 @@ impl Source {
             Kind::Bitmap { x_m, y_m, pitch_m, black_n, white_n, .. } => {
                 bitmap.map(|bitmap| Self::Picture(Picture::new(bitmap, [x_m, y_m], pitch_m, [black_n, white_n])))
             }
-            #[cfg(not(all(feature = "grating", feature = "bitmap")))]
+            #[cfg(feature = "stream")]
+            Kind::Stream { low_n, high_n } => Some(Self::Stream { low_n, span_n: high_n - low_n }),
+            #[cfg(not(all(feature = "grating", feature = "bitmap", feature = "stream")))]
             _ => {
                 let _ = bitmap;
                 None
@@ -130,6 +150,8 @@ impl Source {
             Self::Grating(grating) => grating.electric_friction_n(moment),
             #[cfg(feature = "bitmap")]
             Self::Picture(picture) => picture.electric_friction_n(moment, pool),
+            #[cfg(feature = "stream")]
+            Self::Stream { low_n, span_n } => low_n + span_n * moment.stream.value,
         }
     }
 }

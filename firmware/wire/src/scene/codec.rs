@@ -16,6 +16,7 @@ const CARRIER_SINE: u8 = 1;
 const KIND_CONSTANT: u8 = 1;
 const KIND_GRATING: u8 = 2;
 const KIND_BITMAP: u8 = 3;
+const KIND_STREAM: u8 = 9;
 
 const REGION_SCREEN: u8 = 0;
 const REGION_RECTANGLE: u8 = 1;
@@ -190,6 +191,11 @@ impl Layer {
                 put_f32::<40, _>(b, white_n);
                 put_u32::<52, _>(b, crc32);
             }
+            Self::Stream { low_n, high_n } => {
+                put_u8::<0, _>(b, KIND_STREAM);
+                put_f32::<24, _>(b, low_n);
+                put_f32::<28, _>(b, high_n);
+            }
         }
     }
 
@@ -216,6 +222,7 @@ impl Layer {
                 black_n: get_f32::<36, _>(b),
                 white_n: get_f32::<40, _>(b),
             }),
+            KIND_STREAM => Ok(Self::Stream { low_n: get_f32::<24, _>(b), high_n: get_f32::<28, _>(b) }),
             kind => Err(SceneError::UnknownKind { record, kind }),
         }
     }
