@@ -16,6 +16,7 @@ mod memory;
 mod replay;
 
 pub use error::EmulatorError;
+pub use frixel_exchange::BOARD;
 pub use image::{Image, available};
 pub use link::{LinkBoard, LinkRecord, Mishap};
 pub use replay::{Mismatch, ReplayError, replay};

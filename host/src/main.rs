@@ -5,11 +5,14 @@ mod commands;
 
 use std::process::ExitCode;
 
-use clap::Parser;
 use commands::Cli;
 
 fn main() -> ExitCode {
-    match Cli::parse().run() {
+    let cli = match Cli::read() {
+        Ok(cli) => cli,
+        Err(code) => return code,
+    };
+    match cli.run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("frixel: {error}");

@@ -274,7 +274,17 @@ fn reasons_say_what_was_expected_and_found_and_where() {
             changed(GOOD[3], "outer_radius_m", "1e-3"),
             "invalid: the contact would pass the outer radius; lower load or voltage",
         ),
-        (changed(GOOD[0], "voltage_v", "1e300"), "invalid: the answer is too large for this precision"),
+        (
+            changed(GOOD[0], "voltage_v", "1e300"),
+            "invalid: voltage_v of 1e300 leads to numbers too large or too small for this precision",
+        ),
+        (changed(GOOD[0], "voltage_v", "1e150"), "invalid: the answer is too large or too small for this precision"),
+        (changed(GOOD[2], "normal_force_n", "-inf"), "invalid: normal_force_n must be finite, but is -inf"),
+        (changed(GOOD[2], "normal_force_n", "nan"), "invalid: normal_force_n must be finite, but is NaN"),
+        (
+            changed(GOOD[2], "normal_force_n", "-1e308"),
+            "invalid: normal_force_n of -1e308 leads to numbers too large or too small for this precision",
+        ),
         (
             changed(GOOD[0], "variant", "wf"),
             "invalid: row 2, column variant: expected one of wf-upper, wf-lower, wf-loaded, wf-finite, soft-upper, \
@@ -296,7 +306,7 @@ fn reasons_say_what_was_expected_and_found_and_where() {
     // Friction and contact radius are in range, and the contact attraction is not.
     assert_eq!(
         f32_status("wf-upper,1e-10,1e14,1e-7,1,1e-20,1e18,,,,,"),
-        "invalid: the answer is too large for this precision"
+        "invalid: voltage_v of 9.999999843067494e17 leads to numbers too large or too small for this precision"
     );
 }
 
@@ -382,8 +392,8 @@ fn invert_takes_the_friction_that_is_filled_in() {
             "below-natural",
             "unstable",
             "invalid: row 8, column friction_n: neither it nor electric_friction_n is filled in",
-            "invalid: friction_n and electric_friction_n are both filled in; leave one empty",
-            "invalid: friction_n must be finite and not below zero, but is -1e-1",
+            "invalid: row 9: friction_n and electric_friction_n are both filled in; leave one empty",
+            "below-natural",
             "ok",
         ]
     );
@@ -404,7 +414,7 @@ fn contacts_beyond_the_finger_are_counted_once_on_standard_error() {
     assert_eq!(
         String::from_utf8(output.stderr).unwrap(),
         "frixel: 2 rows have a contact radius above the finger's radius, where it is no paraboloid any more\n\
-         frixel: 1 row has no answer; their status says why\n"
+         frixel: 1 row has no answer; the status says why\n"
     );
 }
 
@@ -421,8 +431,34 @@ fn files_are_read_and_written_and_never_the_same_one() {
     assert!(!refused.status.success());
     assert!(String::from_utf8(refused.stderr).unwrap().contains("is the input as well"));
     assert_eq!(std::fs::read_to_string(path("in.csv")).unwrap(), text);
+    // What was longer is gone, and what is refused as a whole leaves what was there.
+    std::fs::write(path("long.csv"), text.repeat(100)).unwrap();
+    assert!(run("in.csv", "long.csv").status.success());
+    assert_eq!(std::fs::read(path("long.csv")).unwrap(), std::fs::read(path("out.csv")).unwrap());
+    std::fs::write(path("bad.csv"), "variant,radius_m\n").unwrap();
+    assert!(!run("bad.csv", "out.csv").status.success());
+    assert_eq!(std::fs::read(path("out.csv")).unwrap(), std::fs::read(path("long.csv")).unwrap());
     let missing = run("none.csv", "out.csv");
     assert!(!missing.status.success() && String::from_utf8(missing.stderr).unwrap().contains("none.csv"));
+}
+
+/// Linux has a device that is always full.
+#[cfg(target_os = "linux")]
+#[test]
+fn an_output_that_takes_no_more_is_named() {
+    let text = format!("{HEADER}\n{}\n", GOOD[0]);
+    let full = frixel(&["eval", "--output", "/dev/full"], &text);
+    assert!(!full.status.success());
+    let message = String::from_utf8(full.stderr).unwrap();
+    assert!(message.starts_with("frixel: /dev/full: the output cannot be written: "), "{message}");
+}
+
+#[test]
+fn lines_of_blanks_are_no_rows() {
+    let text = format!("{HEADER}\r\n\r\n{}\r\n \t \r\n{}\r\n   \r\n", GOOD[0], changed(GOOD[0], "radius_m", "x"));
+    let (rows, summary) = transformed(eval, Precision::F64, &text);
+    assert_eq!((summary.rows, summary.invalid_rows), (2, 1));
+    assert!(rows[1]["status"].starts_with("invalid: row 3, column radius_m"), "{:?}", rows[1]);
 }
 
 /// Rows without end.

@@ -158,13 +158,41 @@ fn times_that_do_not_fit_the_ticks_are_refused() {
     assert!(said.contains(r#""ticks":1,"#), "{said}");
 }
 
+/// One line, whatever is wrong with the command line, and an exit of two.
+#[test]
+fn what_cannot_be_understood_is_said_in_a_sentence() {
+    let folder = TempDir::new().unwrap();
+    for (arguments, parts) in [
+        (&["play"][..], ["required", "<SCENE>", "`frixel play --help`"]),
+        (&["play", "a.toml", "--prot", "sim"], ["'--prot'", "'--port'", "`frixel play"]),
+        (&["paly"], ["'paly'", "'play'", "`frixel --help`"]),
+        (&["play", "a.toml", "--seconds", "0"], ["'0'", "seconds above 0", "--help`"]),
+        (&["play", "a.toml", "--csv-hz", "50000"], ["50000", "1..=40000", "--help`"]),
+        (&["info"], ["required", "--port <PORT>", "`frixel info --help`"]),
+    ] {
+        let output = frixel(folder.path(), arguments);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
+        assert!(said.starts_with("frixel: ") && said.lines().count() == 1, "{arguments:?}: {said}");
+        for part in parts {
+            assert!(said.contains(part), "{arguments:?}: {part:?} is not in: {said}");
+        }
+    }
+    assert!(succeed(folder.path(), &["play", "--help"]).contains("--csv-hz <N>"));
+    assert!(succeed(folder.path(), &["--version"]).starts_with("frixel "));
+}
+
 #[test]
 fn a_wrong_port_is_refused_by_its_name() {
     let folder = TempDir::new().unwrap();
     refuse(folder.path(), &["play", &brick(), "--port", "/dev/frixel-none"], &["/dev/frixel-none", "no port"]);
     refuse(folder.path(), &["info", "--port", "/dev/frixel-none"], &["/dev/frixel-none", "no port"]);
     let stroke = ["play", &brick(), "--port", "/dev/frixel-none", "--stroke", "stroke.csv"];
-    refuse(folder.path(), &stroke, &["/dev/frixel-none", "--stroke moves the finger of --port sim only"]);
+    refuse(
+        folder.path(),
+        &stroke,
+        &["/dev/frixel-none", "--stroke moves the finger of --port sim and --port qemu only"],
+    );
     let rows = ["play", &brick(), "--port", "/dev/frixel-none", "--csv-hz", "4000"];
     refuse(folder.path(), &rows, &["/dev/frixel-none", "1000"]);
 }

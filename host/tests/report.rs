@@ -93,6 +93,8 @@ fn the_page_shows_every_figure_and_needs_nothing_else() {
         assert!(page.contains(axis), "{axis}");
     }
     assert_eq!(page.matches("Worst points").count(), 3);
+    // Both directions of the two maps, both precisions of the soft finger.
+    assert_eq!(page.matches("\nworst: ").count(), 6, "they are marked in the pictures");
 }
 
 #[test]
@@ -133,8 +135,19 @@ fn counts_are_asked_for_and_shown() {
     let found: Vec<_> = counts.iter().map(|row| (row["core"].as_str(), row["instructions"].as_str())).collect();
     assert_eq!(found, [("m4f", "185"), ("m4f", "16"), ("m3", "415"), ("m3", "61")]);
     assert!(report()["index.html"].contains("16 (about 27 cycles)"));
+    assert!(report()["index.html"].contains("takes on a board is in the figure before this one"));
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name).display().to_string();
+    // Without a count of an inversion, the page says that, and how to come by one.
+    fs::write(path("other.json"), "{ \"m4f.tick_idle\": 209 }").unwrap();
+    let other = path("other.json");
+    for (args, why) in [(vec!["--bench", &other], "has no count of one"), (vec![], "was made without --bench")] {
+        let run = frixel(&[["--out", &path("page")].as_slice(), &args].concat());
+        assert!(run.status.success(), "{run:?}");
+        let page = fs::read_to_string(folder.path().join("page/index.html")).unwrap();
+        assert!(page.contains(why) && page.contains("cargo xtask bench"), "{why}");
+        assert_eq!(page.matches("<svg ").count(), 11);
+    }
     fs::write(path("bad.json"), "{ \"m4f.inverse_table\": \"sixteen\" }").unwrap();
     for (file, message) in
         [("none.json", "`cargo xtask bench` writes such a file"), ("bad.json", "expected a JSON object of numbers")]

@@ -290,6 +290,7 @@ def named_rows(fixtures):
                 continue
             fixtures.add(variant, {**EXAMPLE, **ends, "voltage": 0.0, "load": load}, "no voltage")
         fixtures.add_inverse(variant, {**EXAMPLE, **ends}, electric=mpf(0), name="no friction")
+        fixtures.add_inverse(variant, {**EXAMPLE, **ends}, friction=mpf(0), name="no friction")
     for load in (0.0, 0.5):
         for variant in ("soft-upper", "soft-loaded", "soft-lower"):
             if variant != "soft-loaded" and load:
@@ -297,6 +298,8 @@ def named_rows(fixtures):
             p = {**SOFT_EXAMPLE, "s": 0.5}
             fixtures.add(variant, {**p, "voltage": 0.0, "load": load}, "no voltage")
             fixtures.add_inverse(variant, {**p, "load": load}, electric=mpf(0), name="no electric friction")
+            if not load:
+                fixtures.add_inverse(variant, {**p, "load": load}, friction=mpf(0), name="no friction")
     fixtures.add_inverse("wf-loaded", {**EXAMPLE, "load": -0.001}, friction=mpf(0), name="no friction under a pull")
     fixtures.add_inverse("wf-lower", {**EXAMPLE, "load": -0.001}, friction=mpf(0), name="no friction under a pull")
     for variant in ("wf-loaded", "wf-lower", "wf-finite"):

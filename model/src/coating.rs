@@ -1,6 +1,6 @@
 //! What lies between electrode and finger, and the stress that pulls through it.
 
-use crate::error::{ParameterError, not_negative, positive};
+use crate::error::{ParameterError, not_negative, positive, representable};
 use crate::{Expected, Real};
 
 /// Vacuum permittivity in F/m, CODATA 2022 (doi:10.1103/RevModPhys.97.025002); relative uncertainty 1.6e-10.
@@ -46,7 +46,7 @@ pub fn effective_gap_m<T: Real>(slabs: &[Slab<T>]) -> Result<T, ParameterError> 
 
 /// Attractive stress `sigma0` inside the contact, in pascals, Eq. (8): `eps0 V^2 / (2 g^2)`.
 ///
-/// `gap_m` is the effective gap. Relative error at most 4 roundings of `T`.
+/// `gap_m` is the effective gap. Relative error at most 5 roundings of `T`.
 pub fn contact_attraction_pa<T: Real>(voltage_v_rms: T, gap_m: T) -> Result<T, ParameterError> {
     attraction_pa(voltage_v_rms, gap_m, T::ZERO)
 }
@@ -54,9 +54,10 @@ pub fn contact_attraction_pa<T: Real>(voltage_v_rms: T, gap_m: T) -> Result<T, P
 /// Attractive stress in pascals where the finger stands `separation_m` above the coating, Eqs. (3), (18).
 ///
 /// `eps0 V^2 / (2 (g + H)^2)`, with the effective gap `g` in `gap_m`: the paper's `h0 + eps H` over `eps`. Relative error
-/// at most 5 roundings of `T`.
+/// at most 7 roundings of `T`.
 pub fn attraction_pa<T: Real>(voltage_v_rms: T, gap_m: T, separation_m: T) -> Result<T, ParameterError> {
     let field_v_per_m = not_negative("voltage_v_rms", voltage_v_rms)?
         / (positive("gap_m", gap_m)? + not_negative("separation_m", separation_m)?);
-    Ok(T::from_f64(0.5 * VACUUM_PERMITTIVITY_F_PER_M) * field_v_per_m * field_v_per_m)
+    let attraction_pa = T::from_f64(0.5 * VACUUM_PERMITTIVITY_F_PER_M) * field_v_per_m * field_v_per_m;
+    representable("voltage_v_rms", voltage_v_rms, attraction_pa)
 }

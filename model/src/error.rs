@@ -37,16 +37,22 @@ pub struct ParameterError {
 
 impl Display for ParameterError {
     fn fmt(&self, f: &mut Formatter<'_>) -> FmtResult {
+        let Self { parameter, found, .. } = self;
         let expected = match self.expected {
             Expected::Positive => "must be finite and above zero",
             Expected::NotNegative => "must be finite and not below zero",
             Expected::Finite => "must be finite",
             Expected::StressExponent => "must be above zero and at most one",
             Expected::AtLeastOne => "must be finite and at least one",
-            Expected::Representable => "leads to numbers too large or too small for this precision",
+            Expected::Representable => {
+                return write!(
+                    f,
+                    "{parameter} of {found:e} leads to numbers too large or too small for this precision"
+                );
+            }
             Expected::WithinOuterRadius => "must not be beyond the outer radius",
         };
-        write!(f, "{} {expected}, but is {:e}", self.parameter, self.found)
+        write!(f, "{parameter} {expected}, but is {found:e}")
     }
 }
 
@@ -59,7 +65,7 @@ pub enum StateError {
     NoContact,
     /// The contact would pass the outer radius.
     PassesOuterRadius,
-    /// The answer is too large for the precision.
+    /// The answer is too large or too small for the precision.
     OutOfRange,
     /// The root-finder did not close its bracket.
     NotConverged,
@@ -72,7 +78,7 @@ impl Display for StateError {
         match self {
             Self::NoContact => f.write_str("no contact: the pull is stronger than the attraction at this voltage"),
             Self::PassesOuterRadius => f.write_str("the contact would pass the outer radius; lower load or voltage"),
-            Self::OutOfRange => f.write_str("the answer is too large for this precision"),
+            Self::OutOfRange => f.write_str("the answer is too large or too small for this precision"),
             Self::NotConverged => f.write_str("the root-finder did not converge"),
             Self::Parameter(error) => error.fmt(f),
         }
@@ -90,7 +96,7 @@ pub enum InverseError {
     Unstable,
     /// The contact of this friction would pass the outer radius.
     PassesOuterRadius,
-    /// The answer is too large for the precision.
+    /// The answer is too large or too small for the precision.
     OutOfRange,
     /// The root-finder did not close its bracket.
     NotConverged,
@@ -104,7 +110,7 @@ impl Display for InverseError {
             Self::BelowNatural => f.write_str("the friction is below what the finger has at no voltage"),
             Self::Unstable => f.write_str("the contact of this friction is unstable: it is below pull-off"),
             Self::PassesOuterRadius => f.write_str("the contact of this friction would pass the outer radius"),
-            Self::OutOfRange => f.write_str("the answer is too large for this precision"),
+            Self::OutOfRange => f.write_str("the answer is too large or too small for this precision"),
             Self::NotConverged => f.write_str("the root-finder did not converge"),
             Self::Parameter(error) => error.fmt(f),
         }
@@ -151,6 +157,29 @@ pub(crate) fn stress_exponent<T: Real>(value: T) -> Result<T, ParameterError> {
 
 pub(crate) fn at_least_one<T: Real>(parameter: &'static str, value: T) -> Result<T, ParameterError> {
     require(value >= T::ONE, parameter, value, Expected::AtLeastOne)
+}
+
+/// `value`, computed from `found` in the precision of the model: refused when it is no number any more.
+pub(crate) fn representable<T: Real>(parameter: &'static str, found: T, value: T) -> Result<T, ParameterError> {
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(ParameterError { parameter, expected: Expected::Representable, found: found.into() })
+    }
+}
+
+/// The electric friction that is wanted of a contact under a load of zero or more.
+pub(crate) fn wanted_electric_friction_n<T: Real>(electric_friction_n: T) -> Result<T, InverseError> {
+    if finite("electric_friction_n", electric_friction_n)? < T::ZERO {
+        Err(InverseError::BelowNatural)
+    } else {
+        Ok(electric_friction_n)
+    }
+}
+
+/// The voltage that was found, unless it left the range.
+pub(crate) fn found_voltage_v_rms<T: Real>(voltage_v_rms: T) -> Result<T, InverseError> {
+    if voltage_v_rms.is_finite() { Ok(voltage_v_rms) } else { Err(InverseError::OutOfRange) }
 }
 
 /// `value`, computed in f64 from `parameter` and others, in the precision of the model.

@@ -1,7 +1,9 @@
 //! A finger on Winkler-Fuss springs.
 
+use core::f64::consts::PI;
+
 use crate::Real;
-use crate::error::{ParameterError, not_negative, positive};
+use crate::error::{ParameterError, not_negative, positive, representable};
 
 /// A paraboloid finger, Eq. (1), on springs of constant stiffness, Eq. (10).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,8 +24,8 @@ impl<T: Real> Finger<T> {
         Ok(())
     }
 
-    /// Height of the undeformed finger above its lowest point, in metres, Eq. (1): `r^2/(2R)`. Relative error at
-    /// most 3 roundings of `T`.
+    /// Height of the undeformed finger above its lowest point, in metres, Eq. (1): `r^2/(2R)`, for any finite distance `r`
+    /// from the axis. Relative error at most 3 roundings of `T`.
     pub fn profile_m(&self, radius_from_axis_m: T) -> T {
         radius_from_axis_m * radius_from_axis_m / (T::TWO * self.radius_m)
     }
@@ -33,7 +35,8 @@ impl<T: Real> Finger<T> {
     pub fn normal_load_n(&self, approach_m: T) -> Result<T, ParameterError> {
         self.validate()?;
         let approach_m = not_negative("approach_m", approach_m)?;
-        Ok(T::from_f64(core::f64::consts::PI) * self.stiffness_pa_per_m * self.radius_m * approach_m * approach_m)
+        let spring_force_n = T::from_f64(PI) * self.stiffness_pa_per_m * self.radius_m * approach_m * approach_m;
+        representable("approach_m", approach_m, spring_force_n)
     }
 
     /// Contact approach `delta` in metres, Eqs. (15), (17): `a^2/(2R) - sigma0/k`. Below zero when the attraction alone
@@ -42,7 +45,7 @@ impl<T: Real> Finger<T> {
         self.validate()?;
         let contact_radius_m = not_negative("contact_radius_m", contact_radius_m)?;
         let stretch_m = not_negative("contact_attraction_pa", contact_attraction_pa)? / self.stiffness_pa_per_m;
-        Ok(self.profile_m(contact_radius_m) - stretch_m)
+        representable("contact_radius_m", contact_radius_m, self.profile_m(contact_radius_m) - stretch_m)
     }
 
     /// Contact pressure at a distance from the axis, in pascals, Eqs. (14), (17): `k (a^2 - r^2)/(2R)`; zero outside. Relative
@@ -53,6 +56,7 @@ impl<T: Real> Finger<T> {
         self.validate()?;
         let a = not_negative("contact_radius_m", contact_radius_m)?;
         let r = not_negative("radius_from_axis_m", radius_from_axis_m)?.min(a);
-        Ok(self.stiffness_pa_per_m * (a - r) * (a + r) / (T::TWO * self.radius_m))
+        let pressure_pa = self.stiffness_pa_per_m * (a - r) * (a + r) / (T::TWO * self.radius_m);
+        representable("contact_radius_m", contact_radius_m, pressure_pa)
     }
 }

@@ -40,8 +40,8 @@
 //! # Accuracy
 //!
 //! Held in the tests against 80-digit arithmetic on the paper's dimensional equations (`reference/`), each test also seen
-//! to fail with its output forced to zero. Relative to the answer, for every input that keeps answers in the precision's
-//! normal range:
+//! to fail with its output forced to zero. How much of each bound is used stands in `docs/model.md`. Relative to the answer,
+//! for every input that keeps answers in the precision's normal range, and with them `F_T/(mu B E R^2)` of a soft finger:
 //!
 //! | | f64 | f32 |
 //! |---|---|---|
@@ -74,6 +74,8 @@
 //! - Eq. (44) scales the load by `k R h0^2`. On the one core line it is `pi k R (h0/eps)^2`: `f_N = n pi/eps^2`.
 //! - Eq. (22) allows the stress exponent 0; Eq. (24) has its reciprocal. Zero is refused.
 //!
+//! These figures, and those of the next section: `cargo test -p frixel-model --test documented -- --nocapture`.
+//!
 //! # What friction can and cannot identify
 //!
 //! Friction over voltage and load depends on the coefficient of friction `mu`, the friction scale `F* = mu pi k R g^2` and
@@ -83,7 +85,8 @@
 //!
 //! Where the load dominates, `x = 2 F* sqrt(n) (V/V*)^2` and data give `mu` and `F* sqrt(n)/V*^2` only; the scales part in
 //! the departure from that square law. For the example finger (8 mm, 1.8e7 Pa/m, 10 um, 0.5 N: `n` is 11,052) it is 1 % at
-//! 1 V, 5.6 % at 150 V, 9.9 % at 200 V: data noisier than that tell one number, and a fit must say so.
+//! 1 V, 5.6 % at 150 V, 9.9 % at 200 V: the first 1 % is there at any small voltage and still a square law; data noisier than
+//! the rest tell one number, and a fit must say so.
 //!
 //! ```
 //! use frixel_model::{Contact, ContactModel, Finger};

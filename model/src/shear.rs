@@ -72,13 +72,18 @@ impl<T: Real> TissueSpring<T> {
         let secant = secant(tangent);
         let shortening = tangent / secant * (tangent / (secant + T::ONE));
         let tangential_force_n = k * (h + l * shortening) * tangent;
-        Ok(ShearOnset {
+        let onset = ShearOnset {
             angle_rad: tangent.atan(),
             displacement_m: (h + l) * tangent,
             normal_reaction_n: if tangent > T::ZERO { tangential_force_n / mu } else { T::ZERO },
             tangential_force_n,
             initial_reaction_n,
-        })
+        };
+        if onset.displacement_m.is_finite() && onset.normal_reaction_n.is_finite() {
+            Ok(onset)
+        } else {
+            Err(StateError::OutOfRange)
+        }
     }
 }
 

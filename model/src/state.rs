@@ -36,6 +36,13 @@ pub struct Sensitivity<T> {
     pub friction_per_load: T,
 }
 
+impl<T: Real> Sensitivity<T> {
+    pub(crate) fn in_range(self) -> Result<Self, StateError> {
+        let all_finite = self.friction_per_volt_n_per_v.is_finite() && self.friction_per_load.is_finite();
+        if all_finite { Ok(self) } else { Err(StateError::OutOfRange) }
+    }
+}
+
 /// A contact under a fixed load, with the voltage left open: what all variants of the model have in common.
 pub trait ContactModel<T: Real> {
     /// Friction at no voltage, `mu F_N`, in newtons. One rounding.
@@ -51,9 +58,9 @@ pub trait ContactModel<T: Real> {
     /// The rms voltage at which the friction `F_T` is `friction_n`, in volts.
     ///
     /// Takes the electric part from the difference to natural friction, so that a relative error of the argument grows
-    /// by `F_T/(F_T - mu F_N)`.
+    /// by `F_T/(F_T - mu F_N)`. A negative friction is below natural.
     fn voltage_for_friction(&self, friction_n: T) -> Result<T, InverseError> {
-        let friction_n = crate::error::not_negative("friction_n", friction_n)?;
+        let friction_n = crate::error::finite("friction_n", friction_n)?;
         self.voltage_for_electric_friction(friction_n - self.natural_friction_n())
     }
 

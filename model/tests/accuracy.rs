@@ -6,7 +6,7 @@ mod common;
 use std::collections::BTreeMap;
 
 use common::{Row, relative_error, rows};
-use frixel_model::{ContactState, InverseError, Real, StateError};
+use frixel_model::{ContactState, InverseError, Real, StateError, VACUUM_PERMITTIVITY_F_PER_M};
 
 const FORWARD: &str = include_str!("fixtures/forward.csv");
 const INVERSE: &str = include_str!("fixtures/inverse.csv");
@@ -138,6 +138,65 @@ fn named_rows_are_there() {
         let found = rows(FORWARD).into_iter().chain(rows(INVERSE)).filter(|row| row.text("name") == name);
         assert!(found.filter(Row::in_f32).count() > 0, "{name}");
     }
+}
+
+/// What a name says of its rows is so: the dimensionless groups, from the rows' own numbers.
+#[test]
+fn named_rows_are_what_they_are_called() {
+    let groups = |row: &Row| {
+        let number = |column| row.number(column).unwrap_or(0.0);
+        let gap_m = number("coating_m") / number("permittivity");
+        let (radius_m, k) = (number("radius_m"), number("stiffness_pa_per_m"));
+        let q = 0.5 * VACUUM_PERMITTIVITY_F_PER_M * number("voltage_v").powi(2) / gap_m.powi(3) / k;
+        let n = number("normal_force_n") / (core::f64::consts::PI * k * radius_m * gap_m * gap_m);
+        (q, n, q + (q * q + 2.0 * q / (1.0 + q) + n).sqrt())
+    };
+    let near = |found: f64, said: f64| (found / said - 1.0).abs() < 0.15;
+    let named = |text, name: &str| {
+        let found: Vec<_> = rows(text).into_iter().filter(|row| row.text("name") == name).collect();
+        assert!(!found.is_empty(), "{name}");
+        found
+    };
+    for row in named(FORWARD, "squares overflow f32") {
+        let (q, _, y) = groups(&row);
+        assert!(q * q > f32::MAX.into() && y * y > f32::MAX.into());
+    }
+    for (name, expected) in
+        [("q = 4e-29", 4.4e-29), ("wrong branch off by 245 %", 4e-6), ("wrong branch overflows", 7e7)]
+    {
+        assert!(named(FORWARD, name).iter().all(|row| near(groups(row).0, expected)), "{name}");
+    }
+    for (name, expected) in [("y = 1e-19", 1e-19), ("y = 2e19", 2e19)] {
+        assert!(named(FORWARD, name).iter().all(|row| near(groups(row).2, expected)), "{name}");
+    }
+    for row in named(FORWARD, "y^2 - n cancels") {
+        let (q, n, _) = groups(&row);
+        assert!(near(q, 1e-12) && near(n, 6e7));
+    }
+    assert!(named(INVERSE, "y^2 - n cancels").iter().any(|row| row.number("electric_friction_n").is_some()));
+    for (name, sign) in [("within 1e-6 of pull-off", -1.0), ("beyond pull-off by 1e-6", 1.0)] {
+        for row in named(FORWARD, name) {
+            let (q, n, _) = groups(&row);
+            let beyond = sign * (-n / (q * q + 2.0 * q / (1.0 + q)) - 1.0);
+            assert!(beyond > 8e-7 && beyond < 1.2e-6, "{name}: {beyond:e}");
+        }
+    }
+    for (name, ok) in [("beta = y", true), ("just passes the outer radius", false)] {
+        for row in named(FORWARD, name) {
+            let (q, n, _) = groups(&row);
+            let gap_m = row.number("coating_m").unwrap();
+            let beta = row.number("outer_radius_m").unwrap().powi(2) / (2.0 * row.number("radius_m").unwrap() * gap_m);
+            let left = (beta * beta - 2.0 * q * beta - n) / (beta * beta);
+            assert!(if ok { left.abs() < 1e-6 } else { left < 0.0 && left > -1e-4 }, "{name}: {left:e}");
+            assert_eq!(row.text("status") == "ok", ok);
+        }
+    }
+    for name in ["no friction", "no friction under a pull"] {
+        let zero = |row: &Row| row.number("friction_n").or(row.number("electric_friction_n")) == Some(0.0);
+        assert!(named(INVERSE, name).iter().all(zero), "{name}");
+    }
+    let soft = named(FORWARD, "stress exponent 1e-6");
+    assert!(soft.iter().all(|row| near(row.number("stress_exponent").unwrap(), 1e-6)));
 }
 
 #[test]

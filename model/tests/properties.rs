@@ -261,6 +261,35 @@ fn limits_of_small_and_large_voltage() {
     assert!((slope(&soft.under_load(0.0).unwrap(), 1e-12) - 1.0).abs() < 1e-4);
 }
 
+/// At the ends of f32 each answer of the lower bound stands for itself: where friction is too small for it, the stiffness is
+/// not, and where friction in its scale is, friction is not.
+#[test]
+fn the_soft_lower_bound_keeps_what_f32_can_hold() {
+    let (soft, hard) = (131_072.0, 2_147_483_648.0);
+    for (modulus_pa, stress_exponent, voltage) in
+        [(soft, 1.0, 1e-5), (soft, 0.75, 1e-7), (soft, 0.02, 1e-16), (hard, 1.0, 0.05), (hard, 1.0, 0.0123)]
+    {
+        fn state<T: Real>(modulus_pa: f32, stress_exponent: f32, voltage: f32) -> frixel_model::ContactState<T> {
+            let finger = SoftFinger {
+                radius_m: T::from(1.0 / 128.0),
+                modulus_pa: T::from(modulus_pa),
+                stress_exponent: T::from(stress_exponent),
+                shape_constant: T::from(4.5),
+                friction_coefficient: T::from(0.5),
+            };
+            finger.on_gap(T::from(1.0 / 131_072.0)).unwrap().lower_bound().state(T::from(voltage)).unwrap()
+        }
+        let (right, found) =
+            (state::<f64>(modulus_pa, stress_exponent, voltage), state::<f32>(modulus_pa, stress_exponent, voltage));
+        let ratio = f64::from(found.stiffness_pa_per_m) / right.stiffness_pa_per_m;
+        assert!((ratio - 1.0).abs() < 1e-5, "{stress_exponent}: {ratio}");
+        if right.friction_n > f32::MIN_POSITIVE.into() {
+            let ratio = f64::from(found.friction_n) / right.friction_n;
+            assert!((ratio - 1.0).abs() < 1e-5, "{stress_exponent}: {ratio}");
+        }
+    }
+}
+
 /// Eqs. (24)-(26): the stiffness makes the two force laws one; Eqs. (46), (47) with a paraboloid are the soft finger's.
 #[test]
 fn force_laws_agree() {

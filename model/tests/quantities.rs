@@ -83,8 +83,9 @@ fn attraction() {
     fn sigma0<T: Real>(row: &Row) -> Option<T> {
         contact_attraction_pa(row.input("voltage_v"), gap_m(row)).ok()
     }
-    hold::<f64>(&rows(FORWARD), "sigma0_pa", sigma0, 1e-15, steady);
-    hold::<f32>(&rows(FORWARD), "sigma0_pa", sigma0, 5e-7, steady);
+    // Five roundings, and twice the one of the gap.
+    hold::<f64>(&rows(FORWARD), "sigma0_pa", sigma0, 3.5 * f64::EPSILON, steady);
+    hold::<f32>(&rows(FORWARD), "sigma0_pa", sigma0, 3.5 * f64::from(f32::EPSILON), steady);
 }
 
 #[test]

@@ -81,11 +81,16 @@ fn loads_voltages_and_frictions_are_refused_by_name() {
         for model in models {
             refused(model.state(bad), "voltage_v_rms");
             refused(model.sensitivity(bad), "voltage_v_rms");
-            let error = model.voltage_for_friction(bad).unwrap_err();
-            let expected = ParameterError { parameter: "friction_n", expected: Expected::NotNegative, found: bad };
-            assert_eq!(error.to_string(), InverseError::Parameter(expected).to_string());
-            if !bad.is_finite() {
-                assert!(model.voltage_for_electric_friction(bad).is_err());
+            for (parameter, answer) in [
+                ("friction_n", model.voltage_for_friction(bad)),
+                ("electric_friction_n", model.voltage_for_electric_friction(bad)),
+            ] {
+                let expected = if bad.is_finite() {
+                    InverseError::BelowNatural
+                } else {
+                    InverseError::Parameter(ParameterError { parameter, expected: Expected::Finite, found: bad })
+                };
+                assert_eq!(answer.unwrap_err().to_string(), expected.to_string());
             }
         }
         refused(contact.pull_off_load_n(bad), "voltage_v_rms");
@@ -94,6 +99,15 @@ fn loads_voltages_and_frictions_are_refused_by_name() {
         refused(contact.capacitance_f(bad, 1.0, 6e-3), "contact_radius_m");
     }
     refused(contact.lower_bound(f64::NAN), "normal_load_n");
+    // What is wrong is named as it was given, and not as what became of it.
+    let thin = Contact::new(&FINGER, 1e-9).unwrap();
+    let error = thin.under_load(1e308).unwrap_err();
+    assert_eq!(error.to_string(), "normal_load_n of 1e308 leads to numbers too large or too small for this precision");
+    refused(thin.lower_bound(-1e308), "normal_load_n");
+    refused(thin.within(6e-3, 1e308), "normal_load_n");
+    refused(thin.under_pull(1e308), "pull_n");
+    refused(thin.under_pull(5e-324), "pull_n");
+    refused(attraction_pa(1e300, 1e-5, 0.0), "voltage_v_rms");
     refused(contact.capacitance_f(7e-3, 1.0, 6e-3), "contact_radius_m");
 }
 

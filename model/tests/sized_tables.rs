@@ -120,6 +120,33 @@ fn bounds_hold_and_are_not_idle() {
 }
 
 #[test]
+#[ignore = "every f32 pattern, run by `cargo xtask soak`"]
+fn every_f32_pattern_is_answered() {
+    for contact in [contact(1e-5, 0.0), contact(1e-5, 0.5)] {
+        let (low, high) = range(&contact);
+        let builder = TableBuilder::new(&contact, low, high, 1e-5).unwrap();
+        let shape = builder.smallest(Precision::F32).unwrap();
+        assert!(shape.coefficients == 4 && shape.bytes() <= 2048, "{shape:?}");
+        let mut storage = vec![[0.0; 4]; shape.rows];
+        let table = builder.build_f32(&mut storage).unwrap();
+        let largest = table.voltage_max_v_rms();
+        let mut highest = 0.0_f32;
+        for x in (0..=u32::MAX).map(f32::from_bits) {
+            let voltage_v_rms = table.voltage_v_rms(x);
+            assert!((0.0..=largest).contains(&voltage_v_rms), "{x:e}: {voltage_v_rms}");
+            if x.is_nan() || x <= 0.0 {
+                assert_eq!(voltage_v_rms.to_bits(), 0, "{x:e}");
+            } else {
+                assert!(f64::from(voltage_v_rms) >= f64::from(highest) * (1.0 - 5e-6), "falls at {x:e}");
+                assert!(f64::from(x) < low || voltage_v_rms > 0.0, "nothing at {x:e}");
+                highest = highest.max(voltage_v_rms);
+            }
+        }
+        assert_eq!(highest.to_bits(), largest.to_bits());
+    }
+}
+
+#[test]
 #[ignore = "every 32-bit code, run by `cargo xtask soak`"]
 fn every_code_is_answered() {
     for contact in contacts() {
@@ -135,6 +162,29 @@ fn every_code_is_answered() {
             assert!(f64::from(voltage_code) >= f64::from(highest) * (1.0 - 5e-6), "falls at {code}");
             assert!(code < first || voltage_code > 0, "nothing at {code}");
             highest = highest.max(voltage_code);
+        }
+    }
+}
+
+/// One table of the universal curve, for fingers and coatings with nothing in common but `n`.
+#[test]
+fn a_universal_table_serves_every_contact_of_its_load() {
+    let n = 100.0;
+    let universal = Contact::<f64>::universal().under_load(n).unwrap();
+    let (low, high) = (universal.electric_friction_n(1e-2), universal.electric_friction_n(10.0));
+    let builder = TableBuilder::new(&universal, low, high, 1e-5).unwrap();
+    let mut storage = vec![[0.0; 4]; builder.shape(Precision::F32, 4).unwrap().rows];
+    let table = builder.build_f32(&mut storage).unwrap();
+    let other = Finger { radius_m: 2e-2, stiffness_pa_per_m: 5e8, friction_coefficient: 1.5 };
+    for (finger, gap_m) in [(FINGER, 1e-5), (FINGER, 1e-6), (other, 3e-5)] {
+        let contact = Contact::new(&finger, gap_m).unwrap();
+        let loaded = contact.under_load(n * contact.load_scale_n()).unwrap();
+        for step in 1..100 {
+            let scaled = (low * (high / low).powf(f64::from(step) / 100.0)) as f32;
+            let voltage_v_rms = f64::from(table.voltage_v_rms(scaled)) * contact.voltage_scale_v_rms();
+            let friction_n = f64::from(scaled) * contact.friction_scale_n();
+            assert!(error(&loaded, friction_n, voltage_v_rms) <= 1e-5, "{finger:?} {gap_m} {scaled}");
+            assert!(error(&loaded, friction_n, 0.0) > 1e-5);
         }
     }
 }

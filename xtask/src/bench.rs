@@ -6,6 +6,8 @@ mod follow;
 mod gdb;
 mod image;
 mod size;
+mod stack;
+mod thumb;
 
 use std::fs;
 use std::process::{Command, Stdio};

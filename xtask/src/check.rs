@@ -1,19 +1,45 @@
 //! `cargo xtask test`: everything that has to hold before a change is taken.
 
 use std::env;
+use std::fs;
 
 use crate::command::{M4F, add_target, cargo_in, root, run};
 use crate::{bench, budgets};
 
 /// Crates that run on a board.
 const BOARD_CRATES: [&str; 4] = ["frixel-model", "frixel-wire", "frixel-render", "frixel-exchange"];
-/// Images outside the workspace, as far as they are there.
-const IMAGES: [&str; 3] = ["firmware/board-nucleo-g474re", "firmware/board-mps2-an386", "firmware/bench"];
+/// Of which this one can be built with less.
+const RENDER: &str = "firmware/render";
+
+/// An image outside the workspace.
+struct Image {
+    folder: &'static str,
+    /// Where it is built: where its size is measured and its emulator looks for it.
+    target_folder: &'static str,
+    /// Features besides the default ones, and sets of features in place of them, that are looked at, too.
+    more: &'static [&'static [&'static str]],
+}
+
+const IMAGES: [Image; 3] = [
+    Image {
+        folder: "firmware/board-nucleo-g474re",
+        target_folder: "target/full",
+        more: &[
+            &["--features", "optical-frame"],
+            &["--no-default-features"],
+            &["--no-default-features", "--features", "grating"],
+            &["--no-default-features", "--features", "bitmap,store,panic-message"],
+        ],
+    },
+    Image { folder: "firmware/board-mps2-an386", target_folder: "target", more: &[] },
+    Image { folder: "firmware/bench", target_folder: "target", more: &[] },
+];
 
 pub(crate) fn test() -> Result<(), String> {
     cargo("format", ".", &["fmt", "--all", "--check"], &[])?;
     cargo("lints", ".", &["clippy", "--workspace", "--all-targets", "--locked", "--", "-D", "warnings"], &[])?;
     cross_build()?;
+    feature_sets()?;
     images()?;
     cargo("tests", ".", &["test", "--workspace", "--locked"], &[])?;
     cargo("docs", ".", &["doc", "--workspace", "--no-deps", "--locked"], &[("RUSTDOCFLAGS", "-D warnings")])?;
@@ -37,13 +63,42 @@ fn cross_build() -> Result<(), String> {
     cargo("cross-build", ".", &arguments, &[("RUSTFLAGS", "-D warnings")])
 }
 
+/// Looks whether the renderer goes without any of its features, and with each of them alone.
+fn feature_sets() -> Result<(), String> {
+    let path = root().join(RENDER).join("Cargo.toml");
+    let text = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let manifest: toml::Table = toml::from_str(&text).map_err(|error| format!("{}: {error}", path.display()))?;
+    let features = manifest.get("features").and_then(toml::Value::as_table);
+    let features = features.ok_or_else(|| format!("{} has no features", path.display()))?;
+    let none = [
+        "check",
+        "--quiet",
+        "--locked",
+        "--target",
+        M4F,
+        "--target-dir",
+        "../../target/cross",
+        "--no-default-features",
+    ];
+    let flags = [("RUSTFLAGS", "-D warnings")];
+    cargo("renderer without features", RENDER, &none, &flags)?;
+    for feature in features.keys().filter(|feature| *feature != "default") {
+        let alone = [&none[..], &["--features", feature]].concat();
+        cargo(&format!("renderer with {feature}"), RENDER, &alone, &flags)?;
+    }
+    Ok(())
+}
+
 /// Format, lints and build of every image.
 fn images() -> Result<(), String> {
-    for folder in IMAGES.into_iter().filter(|folder| root().join(folder).is_dir()) {
+    for Image { folder, target_folder, more } in &IMAGES {
         cargo(&format!("format of {folder}"), folder, &["fmt", "--check"], &[])?;
-        let lints = ["clippy", "--release", "--locked", "--target-dir", "target", "--", "-D", "warnings"];
-        cargo(&format!("lints of {folder}"), folder, &lints, &[])?;
-        let build = ["build", "--release", "--locked", "--target-dir", "target"];
+        for features in [&[][..]].iter().chain(*more) {
+            let lints = ["clippy", "--quiet", "--release", "--locked", "--target-dir", target_folder];
+            let lints = [&lints[..], features, &["--", "-D", "warnings"]].concat();
+            cargo(&format!("lints of {folder} {}", features.join(" ")), folder, &lints, &[])?;
+        }
+        let build = ["build", "--release", "--locked", "--target-dir", target_folder];
         cargo(&format!("build of {folder}"), folder, &build, &[])?;
     }
     Ok(())

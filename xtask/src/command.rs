@@ -2,7 +2,7 @@
 
 use std::env;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Output};
 
 /// Target of the boards.
 pub(crate) const M4F: &str = "thumbv7em-none-eabihf";
@@ -23,6 +23,11 @@ pub(crate) fn cargo_in(folder: &str) -> Command {
 
 /// Installs a target of the compiler when it is missing.
 pub(crate) fn add_target(target: &str) -> Result<(), String> {
+    let libraries = Command::new("rustc").args(["--print", "target-libdir", "--target", target]).output();
+    let is_there = |output: Output| Path::new(String::from_utf8_lossy(&output.stdout).trim()).is_dir();
+    if libraries.is_ok_and(is_there) {
+        return Ok(());
+    }
     run("rustup target", Command::new("rustup").args(["target", "add", target]))
 }
 

@@ -42,11 +42,12 @@ pub const LIMITS: BoardLimits = BoardLimits {
 
 /// Where the limits are kept: the first two pages of bank 2.
 pub const LIMITS_SLOT: Slot = Slot { first_page: 0, pages: 1 };
-/// Where the last scene is kept: the rest of bank 2, 126 KiB a copy; 80 KiB of bitmaps and the largest scene take 85.
+/// Where the last scene is kept: the rest of bank 2, 126 KiB a copy; 72 KiB of bitmaps and the largest scene take 77.
 pub const SCENE_SLOT: Slot = Slot { first_page: 2, pages: (PAGES - 2) / 2 };
 
 const _: () = assert!(
-    SCENE_SLOT.capacity::<BankTwo>() as usize >= 80 * 1024 + frixel_wire::scene::SCENE_MAX_LEN + (1 + RECORDS_MAX) * 16
+    SCENE_SLOT.capacity::<BankTwo>() as usize
+        >= frixel_render::BITMAP_POOL_LEN + frixel_wire::scene::SCENE_MAX_LEN + (1 + RECORDS_MAX) * 16
 );
 
 /// The board as it started.

@@ -16,6 +16,8 @@ pub const CORE_HZ: u32 = 170_000_000;
 pub fn start() {
     RCC.apb1enr1().modify(|w| w.set_pwren(true));
     let _ = RCC.apb1enr1().read();
+    // Else PB6, amplifier enable, is pulled down by 5 kOhm meant for USB-C (RM0440, "PWR_CR3"): good in reset, and no more.
+    PWR.cr3().modify(|w| w.set_ucpd1_dbdis(true));
 
     FLASH.acr().modify(|w| {
         w.set_latency(stm32_metapac::flash::vals::Latency::WS4);
@@ -77,10 +79,13 @@ pub fn start_cycle_counter(dcb: &mut DCB, dwt: &mut DWT) {
 }
 
 /// While a debugger halts the core, time goes on for the one-shot, so that the output goes to zero (RM0440, "Debug support for
-/// timers").
+/// timers"). To be called again and again: a debugger may want it otherwise.
 pub fn keep_timers_running_in_debug() {
-    DBGMCU.apb1lfzr().modify(|w| {
-        w.set_tim3(false);
-        w.set_tim4(false);
-    });
+    let frozen = DBGMCU.apb1lfzr().read();
+    if frozen.tim3() || frozen.tim4() {
+        DBGMCU.apb1lfzr().modify(|w| {
+            w.set_tim3(false);
+            w.set_tim4(false);
+        });
+    }
 }

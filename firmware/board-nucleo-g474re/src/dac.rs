@@ -22,7 +22,8 @@ const MISO: u32 = 14;
 const MOSI: u32 = 15;
 const SPI2_FUNCTION: u8 = 5;
 
-/// Bytes on their way to the DAC.
+/// Bytes on their way to the DAC, in the memory for DMA (`memory.x`); they are written before DMA reads them.
+#[unsafe(link_section = ".dma.FRAME")]
 static FRAME: [AtomicU8; FRAME_LEN] = [const { AtomicU8::new(0) }; FRAME_LEN];
 
 /// The DAC.
@@ -77,6 +78,14 @@ impl Dac {
 
     /// Whether a DAC answers, set up as it should be. Takes several periods.
     pub fn is_there(&mut self) -> bool {
+        // It answers more slowly than it listens: up to 40 ns after an edge, beyond half a clock at 21.25 MHz.
+        set_clock(Br::DIV32);
+        let found = Self::ask();
+        set_clock(Br::DIV8);
+        found
+    }
+
+    fn ask() -> bool {
         send_and_wait(ad5761r::READ_CONTROL);
         while SPI2.sr().read().rxne() {
             let _ = SPI2.dr8().read();
@@ -85,6 +94,14 @@ impl Dac {
         // The receive buffer holds the last four bytes: these three and none of before.
         ad5761r::is_configured([(); FRAME_LEN].map(|()| SPI2.dr8().read()))
     }
+}
+
+/// Changes the clock between two frames (RM0440, "SPI": "Procedure for disabling the SPI").
+fn set_clock(divider: Br) {
+    wait_until(|| !SPI2.sr().read().bsy(), "SPI2");
+    SPI2.cr1().modify(|w| w.set_spe(false));
+    SPI2.cr1().modify(|w| w.set_br(divider));
+    SPI2.cr1().modify(|w| w.set_spe(true));
 }
 
 /// Sends a frame in a period of its own, and waits for the period's end.

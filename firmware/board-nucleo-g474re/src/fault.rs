@@ -95,12 +95,12 @@ unsafe fn DefaultHandler(number: i16) {
     })
 }
 
-/// Flash that cannot be read, or the clock.
+/// Flash that cannot be read, or RAM, or the clock.
 #[exception]
 unsafe fn NonMaskableInt() {
     if !flash::take_unreadable() {
         end(Fault::HardFault, 0, &mut |text| {
-            text.text("a non-maskable interrupt: flash that the image is in cannot be read");
+            text.text("a non-maskable interrupt: the image's flash or RAM cannot be read, or the clock failed");
         })
     }
 }
@@ -117,6 +117,8 @@ struct Frame {
 unsafe extern "C" {
     /// Lowest address of the stack, from the linker script.
     static _stack_end: u32;
+    /// Top of the stack, from the linker script.
+    static _stack_start: u32;
     /// Top of the hard fault's own stack, from the linker script.
     static _fault_stack_start: u32;
 }
@@ -138,13 +140,19 @@ unsafe extern "C" fn hard_fault() -> ! {
     )
 }
 
-/// The number that goes with a hard fault is the program counter; with a stack overflow, the address that was out.
+/// The number that goes with a hard fault is the program counter; with a stack overflow, the address that was out; with a
+/// stack pointer that was lost, where it was.
 extern "C" fn on_hard_fault(frame: *const Frame) -> ! {
     output::zero_for_good();
     let address = frame.addr();
     if address < (&raw const _stack_end).addr() {
         end(Fault::StackOverflow, address as u32, &mut |text| {
             text.text("the stack overflowed");
+        })
+    }
+    if address + size_of::<Frame>() > (&raw const _stack_start).addr() {
+        end(Fault::HardFault, address as u32, &mut |text| {
+            text.text("the stack pointer was outside the stack");
         })
     }
     // SAFETY: the processor has put a frame there, and it lies in the stack. The registers of the fault can be read.

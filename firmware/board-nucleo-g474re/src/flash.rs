@@ -85,6 +85,8 @@ impl Flash for BankTwo {
         for (address, half) in [(START + offset, word as u32), (START + offset + 4, (word >> 32) as u32)] {
             // SAFETY: the address lies in bank 2 and is a multiple of four, as was looked for above; nothing else is there.
             unsafe { ptr::with_exposed_provenance_mut::<u32>(address as usize).write_volatile(half) };
+            // The halves reach the flash one after the other.
+            cortex_m::asm::isb();
         }
     }
 

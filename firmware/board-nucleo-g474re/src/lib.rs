@@ -16,6 +16,7 @@ pub mod dac;
 mod dma;
 pub mod fault;
 pub mod flash;
+pub mod guard;
 pub mod indicator;
 #[cfg(feature = "optical-frame")]
 pub mod optical_frame;

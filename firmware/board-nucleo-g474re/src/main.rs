@@ -11,7 +11,7 @@ use board_nucleo_g474re::serial::Serial;
 use board_nucleo_g474re::talk::{QueuePairs, Talk};
 use board_nucleo_g474re::tick::{self, Tick};
 use board_nucleo_g474re::watchdog::Watchdog;
-use board_nucleo_g474re::{board, clock, indicator, period};
+use board_nucleo_g474re::{board, clock, guard, indicator, period};
 use cortex_m::{Peripherals, singleton};
 use cortex_m_rt::entry;
 #[cfg(feature = "log")]
@@ -38,19 +38,21 @@ fn main() -> ! {
 #[inline(never)]
 fn start(text: &'static mut Text, queue_pairs: &'static mut QueuePairs) -> Talk {
     let output = Output::new();
+    let Some(mut core) = Peripherals::take() else { fault::never() };
+    guard::start(&mut core.MPU);
     let last_reset = LastReset::take(text);
+    // First of all, so that a board that fails while it starts tells why.
+    log_reset(&last_reset);
     clock::start();
     clock::start_peripherals();
     clock::keep_timers_running_in_debug();
-    if let Some(mut core) = Peripherals::take() {
-        clock::start_cycle_counter(&mut core.DCB, &mut core.DWT);
-    }
+    clock::start_cycle_counter(&mut core.DCB, &mut core.DWT);
     indicator::start();
     period::start();
 
     let flash = BankTwo::new();
     let board = board::board(&last_reset, flash.as_ref());
-    log(&last_reset, &board, flash.is_some());
+    log(&board, flash.is_some());
     let (ticker, session) = make(board);
     let status = ticker.status();
     #[cfg(feature = "store")]
@@ -91,7 +93,7 @@ fn make(board: Board) -> (Ticker<'static>, &'static mut Session<'static>) {
 }
 
 #[cfg(feature = "log")]
-fn log(last_reset: &LastReset, board: &Board, bank: bool) {
+fn log_reset(last_reset: &LastReset) {
     let (fault, detail) = last_reset.fault.map_or((0, 0), |(fault, detail)| (fault.number(), detail));
     defmt::info!(
         "reset: cause {=u8}, fault {=u8}, {=u32:#x} {=[u8]:a}",
@@ -100,6 +102,10 @@ fn log(last_reset: &LastReset, board: &Board, bank: bool) {
         detail,
         last_reset.text
     );
+}
+
+#[cfg(feature = "log")]
+fn log(board: &Board, bank: bool) {
     defmt::info!("at most {=f32} V peak", board.limits.voltage_max_v_peak);
     if !bank {
         defmt::warn!("the flash is not in two banks (option byte DBANK): nothing is kept over power-off");
@@ -107,4 +113,7 @@ fn log(last_reset: &LastReset, board: &Board, bank: bool) {
 }
 
 #[cfg(not(feature = "log"))]
-fn log(_: &LastReset, _: &Board, _: bool) {}
+fn log_reset(_: &LastReset) {}
+
+#[cfg(not(feature = "log"))]
+fn log(_: &Board, _: bool) {}

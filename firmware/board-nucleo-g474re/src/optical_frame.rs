@@ -34,6 +34,8 @@ const REST_TICKS: u32 = TICK_HZ / 10;
 /// at bring-up.
 const AGE_TICKS: u32 = TICK_HZ / 100;
 
+/// In the memory for DMA (`memory.x`); what DMA has not written is written before it is read.
+#[unsafe(link_section = ".dma.BYTES")]
 static BYTES: [AtomicU8; MESSAGE_MAX_LEN] = [const { AtomicU8::new(0) }; MESSAGE_MAX_LEN];
 
 /// What is under way.

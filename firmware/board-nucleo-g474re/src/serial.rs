@@ -26,7 +26,11 @@ const RING_LEN: usize = RECEIVE_WINDOW + 512;
 /// Most bytes that are sent at a time: 2.6 ms of the line.
 pub const TRANSMIT_LEN: usize = 512;
 
+/// In the memory for DMA (`memory.x`); it is read where DMA has written.
+#[unsafe(link_section = ".dma.RECEIVED")]
 static RECEIVED: [AtomicU8; RING_LEN] = [const { AtomicU8::new(0) }; RING_LEN];
+/// In the memory for DMA; it is written before DMA reads it.
+#[unsafe(link_section = ".dma.TRANSMITTED")]
 static TRANSMITTED: [AtomicU8; TRANSMIT_LEN] = [const { AtomicU8::new(0) }; TRANSMIT_LEN];
 
 /// The serial port.

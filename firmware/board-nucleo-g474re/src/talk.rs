@@ -8,10 +8,10 @@ use heapless::spsc::{Consumer, Producer, Queue};
 
 #[cfg(feature = "store")]
 use crate::flash::BankTwo;
-use crate::indicator;
 use crate::serial::Serial;
 use crate::tick::{self, Queues};
 use crate::watchdog::Watchdog;
+use crate::{clock, indicator};
 
 /// Orders that may wait for the tick, one place left free: as many as the session keeps.
 const ORDERS_LEN: usize = 9;
@@ -99,6 +99,7 @@ impl Talk {
             self.status = status;
             tick::want_status();
             self.watchdog.freeze_with_debugger(status.telemetry.state == State::Disarmed);
+            clock::keep_timers_running_in_debug();
         }
     }
 

@@ -26,6 +26,11 @@ impl FingerTiming {
             stillness: StillnessTiming::new(board.tick_hz),
         }
     }
+
+    #[cfg(feature = "stream")]
+    pub(crate) fn tick_period_s(&self) -> f32 {
+        self.tick_period_s
+    }
 }
 
 /// The finger on the screen, if there is one.

@@ -28,10 +28,14 @@ pub struct Ticker<'a> {
     tick: u32,
     /// When something is next due: a host that is silent, or touch data that are too old.
     due_tick: u32,
+    /// When the host will have been silent for too long, or when to look again if it need not be there.
+    silent_tick: u32,
     /// There is a scene, a finger, and leave to drive.
     live: bool,
     drive: Drive,
     arm_switch: bool,
+    /// Where the finger was taken to be when the scene was last asked, in m.
+    asked_at_m: [f32; 2],
     asked_electric_friction_n: f32,
     target_v_rms: f32,
     flags: Flags,
@@ -48,8 +52,6 @@ struct Timing {
     finger: FingerTiming,
     host_timeout_default_ticks: u32,
     volts_per_code: f32,
-    #[cfg(feature = "stream")]
-    tick_period_s: f32,
 }
 
 impl<'a> Ticker<'a> {
@@ -62,8 +64,6 @@ impl<'a> Ticker<'a> {
                 finger: FingerTiming::new(board),
                 host_timeout_default_ticks: supervisor::host_timeout_default_ticks(board),
                 volts_per_code: board.limits.full_scale_v_peak / f32::from(i16::MAX),
-                #[cfg(feature = "stream")]
-                tick_period_s: board.tick_period_s(),
             },
             pool,
             active,
@@ -73,9 +73,11 @@ impl<'a> Ticker<'a> {
             carrier,
             tick: 0,
             due_tick: LOOK_AFTER_TICKS,
+            silent_tick: LOOK_AFTER_TICKS,
             live: false,
             drive: Drive::default(),
             arm_switch: false,
+            asked_at_m: [0.0; 2],
             asked_electric_friction_n: 0.0,
             target_v_rms: 0.0,
             flags: Flags::NO_FINGER,
@@ -89,7 +91,7 @@ impl<'a> Ticker<'a> {
     /// From now on, plays streams from `buffer`, into which the session takes their samples.
     #[cfg(feature = "stream")]
     pub fn attach_stream(&mut self, buffer: &'a StreamBuffer) {
-        self.stream = Some(Player::new(buffer, self.timing.tick_period_s));
+        self.stream = Some(Player::new(buffer, self.timing.finger.tick_period_s()));
     }
 
     /// Takes an order of the session, between two ticks. Hands back the coefficients that a [`Order::Load`] replaced.
@@ -103,7 +105,9 @@ impl<'a> Ticker<'a> {
                 let spare = core::mem::replace(&mut self.active, next);
                 self.carrier.retime(&self.active.carrier);
                 self.envelope.limit(self.active.voltage_max_v_rms);
-                self.finger.locate(self.tick, self.active.prediction, &self.timing.finger);
+                if self.active.prediction != spare.prediction {
+                    self.finger.locate(self.tick, self.active.prediction, &self.timing.finger);
+                }
                 self.ask_again();
                 Some(spare)
             }
@@ -139,7 +143,7 @@ impl<'a> Ticker<'a> {
     #[inline(never)]
     fn ask_again(&mut self) {
         if self.drive.amplifier_enable {
-            self.target_v_rms = self.voltage_under_finger_v_rms();
+            self.target_v_rms = self.voltage_v_rms(self.asked_at_m);
         }
     }
 
@@ -174,7 +178,8 @@ impl<'a> Ticker<'a> {
             let still = self.finger.advance(&self.timing.finger);
             self.flags = if still { Flags::STILL } else { Flags::default() };
             if self.live {
-                self.target_v_rms = self.voltage_under_finger_v_rms();
+                self.asked_at_m = self.finger.place_m();
+                self.target_v_rms = self.voltage_v_rms(self.asked_at_m);
                 self.note_reach();
             }
         }
@@ -199,6 +204,7 @@ impl<'a> Ticker<'a> {
             self.due_tick = self.tick.wrapping_add(1);
         } else {
             self.live &= self.may_be_live();
+            self.find_next_due();
         }
         if self.live {
             self.note_reach();
@@ -215,19 +221,22 @@ impl<'a> Ticker<'a> {
     fn look(&mut self) {
         self.finger.expire(self.tick);
         self.supervisor.expire(self.tick);
-        let until_tick = match self.finger.presence() {
-            Presence::Down { until_tick } => Some(until_tick),
-            Presence::Up | Presence::Stale => None,
-        };
-        let ticks_to = |tick: u32| tick.wrapping_sub(self.tick);
-        let until = until_tick.map_or(LOOK_AFTER_TICKS, ticks_to);
-        let silent = self.supervisor.silent_at_tick().map_or(LOOK_AFTER_TICKS, ticks_to);
-        self.due_tick = self.tick.wrapping_add(until.min(silent).min(LOOK_AFTER_TICKS));
-        self.live = self.supervisor.state() == State::Active && until_tick.is_some() && self.active.table().is_some();
+        let in_ticks = self.supervisor.silent_at_tick().map_or(LOOK_AFTER_TICKS, |tick| tick.wrapping_sub(self.tick));
+        self.silent_tick = self.tick.wrapping_add(in_ticks.min(LOOK_AFTER_TICKS));
+        self.find_next_due();
+        self.live = self.may_be_live();
         #[cfg(feature = "stream")]
         if self.supervisor.state() != State::Active {
             self.on_stream(Player::stop);
         }
+    }
+
+    /// The next deadline: the host's, or before it the finger's.
+    fn find_next_due(&mut self) {
+        self.due_tick = match self.finger.presence() {
+            Presence::Down { until_tick } if (until_tick.wrapping_sub(self.silent_tick) as i32) < 0 => until_tick,
+            _ => self.silent_tick,
+        };
     }
 
     /// What the board does now.
@@ -311,19 +320,17 @@ impl<'a> Ticker<'a> {
         self.drive
     }
 
-    /// The rms voltage that the scene wants under the finger.
+    /// The rms voltage that the scene wants at a place.
     #[inline]
-    fn voltage_under_finger_v_rms(&mut self) -> f32 {
+    fn voltage_v_rms(&mut self, [x_m, y_m]: [f32; 2]) -> f32 {
         let Some(table) = self.active.table() else { return 0.0 };
-        let [x_m, y_m] = self.finger.place_m();
         let moment = Moment {
             x_m,
             y_m,
             #[cfg(feature = "stream")]
             stream: self.stream_now(),
         };
-        let friction_n = self.active.electric_friction_n(&moment, self.pool);
-        let electric_friction_n = self.finger.gain() * friction_n;
+        let electric_friction_n = self.finger.gain() * self.active.electric_friction_n(&moment, self.pool);
         self.asked_electric_friction_n = electric_friction_n;
         table.voltage_v_rms(electric_friction_n)
     }

@@ -253,8 +253,10 @@ fn nothing_is_written_unless_the_board_is_disarmed() {
     }
     desk.command(Command::Arm).unwrap();
     let done = flash.done;
+    assert!(!flash.is_at_rest());
     settle(&mut keeper, &mut flash, &desk, 0);
     assert_eq!(flash.done, done);
+    assert!(flash.is_at_rest(), "somebody has to see the operation to its end");
     let mut memory = Memory::new();
     let mut after = Desk::new(&mut memory);
     SceneKeeper::new(SCENE_SLOT, 40_000, &flash.after_power_on(), &mut after.session);
@@ -279,7 +281,7 @@ fn a_scene_that_the_board_can_no_longer_play_is_left_alone() {
     assert_eq!(keeper.settled_crc32(), None);
     assert_eq!((desk.greet().scene_crc32, desk.session.scene()), (0, None));
     // The whole pool is free.
-    desk.upload_bitmap(320, 256, &vec![5; 80 * 1024]).unwrap();
+    desk.upload_bitmap(288, 256, &vec![5; 72 * 1024]).unwrap();
 }
 
 /// What a good CRC stands over need not be good itself.

@@ -183,31 +183,47 @@ impl Flags {
     pub const fn contains(self, other: Self) -> bool {
         self.0 & other.0 == other.0
     }
+
+    /// The names of the flags that are set, each one word, lowest bit first.
+    ///
+    /// ```
+    /// use frixel_wire::fault::Flags;
+    ///
+    /// let flags = Flags::NO_FINGER.with(Flags::SATURATED);
+    /// assert!(flags.names().eq(["saturated", "no-finger"]));
+    /// ```
+    pub fn names(self) -> impl Iterator<Item = &'static str> {
+        FLAGS.into_iter().filter(move |(flag, ..)| self.contains(*flag)).map(|(_, name, _)| name)
+    }
+
+    /// The flags that this crate has no name for.
+    #[must_use]
+    pub fn unnamed(self) -> Self {
+        Self(FLAGS.into_iter().fold(self.0, |left, (flag, ..)| left & !flag.0))
+    }
 }
 
-/// What each flag says.
-const FLAG_SENTENCES: [(Flags, &str); 8] = [
-    (Flags::SATURATED, "friction out of reach was clamped"),
-    (Flags::SLEWED, "the envelope is at its slew limit"),
-    (Flags::STILL, "the finger is still"),
-    (Flags::NO_FINGER, "no finger touches the screen"),
-    (Flags::TOUCH_STALE, "touch data is too old"),
-    (Flags::CARRIER_BALANCED, "a carrier edge came early to keep direct current off the electrode"),
-    (Flags::HOST_SILENT, "the host has gone silent, and the output was put to zero"),
-    (Flags::STREAM_DRY, "the stream has no samples to play"),
+/// The name of each flag, for tables, and what it says.
+const FLAGS: [(Flags, &str, &str); 8] = [
+    (Flags::SATURATED, "saturated", "friction out of reach was clamped"),
+    (Flags::SLEWED, "slewed", "the envelope is at its slew limit"),
+    (Flags::STILL, "still", "the finger is still"),
+    (Flags::NO_FINGER, "no-finger", "no finger touches the screen"),
+    (Flags::TOUCH_STALE, "touch-stale", "touch data is too old"),
+    (Flags::CARRIER_BALANCED, "carrier-balanced", "a carrier edge came early to keep direct current off the electrode"),
+    (Flags::HOST_SILENT, "host-silent", "the host has gone silent, and the output was put to zero"),
+    (Flags::STREAM_DRY, "stream-dry", "the stream has no samples to play"),
 ];
 
 /// What the flags that are set say, with a semicolon between.
 impl fmt::Display for Flags {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut left = self.0;
         let mut separator = "";
-        for (flag, sentence) in FLAG_SENTENCES.into_iter().filter(|(flag, _)| self.contains(*flag)) {
+        for (_, _, sentence) in FLAGS.into_iter().filter(|(flag, ..)| self.contains(*flag)) {
             write!(f, "{separator}{sentence}")?;
             separator = "; ";
-            left &= !flag.0;
         }
-        match (left, self.0) {
+        match (self.unnamed().0, self.0) {
             (_, 0) => f.write_str("nothing limits the output"),
             (0, _) => Ok(()),
             (left, _) => write!(f, "{separator}flags {left:#06x}, which this program does not know"),

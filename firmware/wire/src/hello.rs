@@ -70,6 +70,16 @@ pub mod feature {
     pub const HOST_TOUCH: u32 = 1 << 4;
     /// Samples that the host streams while a scene plays.
     pub const STREAM: u32 = 1 << 9;
+
+    /// The name of each, as the board's Cargo features have it where there is one.
+    pub const NAMES: [(u32, &str); 6] = [
+        (GRATING, "grating"),
+        (BITMAP, "bitmap"),
+        (SINE_CARRIER, "sine-carrier"),
+        (TELEMETRY, "telemetry"),
+        (HOST_TOUCH, "touch from the host"),
+        (STREAM, "stream"),
+    ];
 }
 
 /// Kind of board. Numbers never change.

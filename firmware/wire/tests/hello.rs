@@ -162,4 +162,10 @@ fn mismatch_says_which_side_to_change() {
     let sentence = newer.unwrap_err().to_string();
     assert!(sentence.contains("speaks protocol 2.3") && sentence.contains("speaks 1.1"), "{sentence}");
     assert!(sentence.contains("update the frixel command") && !sentence.contains("flash"), "{sentence}");
+
+    let short = Hello { frame_max_len: 191, ..hello() }.compatibility();
+    assert_eq!(short, Err(Mismatch::FramesTooShort { max: 191 }));
+    let sentence = short.unwrap_err().to_string();
+    assert!(sentence.contains("191") && sentence.contains("192") && sentence.contains("flash"), "{sentence}");
+    assert_eq!(Hello { frame_max_len: 256, ..hello() }.compatibility(), Ok(()));
 }

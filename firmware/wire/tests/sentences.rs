@@ -56,6 +56,11 @@ fn flags_say_all_that_is_set() {
             assert_eq!(Flags(1 << low | 1 << high).to_string(), format!("{}; {}", named[low], named[high]));
         }
     }
+    let names: BTreeSet<&str> = Flags(u16::MAX).names().collect();
+    assert_eq!(names.len(), 8, "each flag has a name of its own");
+    assert!(names.iter().all(|name| name.chars().all(|letter| letter.is_ascii_lowercase() || letter == '-')));
+    assert!(Flags(1 << 3 | 1 << 9).names().eq(["no-finger"]));
+    assert_eq!((Flags(1 << 3 | 1 << 9).unnamed(), Flags(0xff).unnamed()), (Flags(1 << 9), Flags(0)));
     assert_eq!(Flags(0x8201).to_string(), format!("{}; flags 0x8200, which this program does not know", named[0]));
 }
 
@@ -84,6 +89,7 @@ fn numbers(refusal: Refusal) -> Vec<String> {
         Refusal::BitmapPoolFull { len, free } => vec![len.to_string(), free.to_string()],
         Refusal::BitmapMissing { crc32 } => vec![hex(crc32)],
         Refusal::TelemetryTooFast { period_min_ticks } => vec![period_min_ticks.to_string()],
+        Refusal::Config(config) if config.field == ConfigField::TableRange => vec![config.found.to_string()],
         Refusal::Config(config) => {
             vec![config.field.to_string(), config.found.to_string(), config.min.to_string(), config.max.to_string()]
         }

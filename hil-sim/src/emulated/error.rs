@@ -16,12 +16,16 @@ pub enum EmulatorError {
         /// The target's name.
         target: &'static str,
     },
-    /// The board's sources are not where this program was built.
-    #[error("the emulated board's sources are not at `{folder}`: run this from a checkout of frixel")]
-    NoSources {
-        /// Where they should be.
-        folder: String,
-    },
+    /// There is no compiler.
+    #[error(
+        "the emulated board's image takes Rust to build, which is not installed: `curl https://sh.rustup.rs -sSf | sh`"
+    )]
+    NoCompiler,
+    /// The board's sources are not there.
+    #[error(
+        "the emulated board's image is built from frixel's sources, which are not here: run this in a checkout of frixel, or set FRIXEL_CHECKOUT to the folder of one"
+    )]
+    NoSources,
     /// The image does not compile.
     #[error("the emulated board's image does not compile:\n{output}")]
     NotBuilt {

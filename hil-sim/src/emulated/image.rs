@@ -1,7 +1,7 @@
 //! The board's image, and what it takes to build and run it.
 
 use std::env;
-use std::io::ErrorKind;
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -13,18 +13,21 @@ pub(super) const EMULATOR: &str = "qemu-system-arm";
 const TARGET: &str = "thumbv7em-none-eabihf";
 const BOARD: &str = "board-mps2-an386";
 
+/// Names the checkout to build from, where it is not the one around the working directory.
+const CHECKOUT: &str = "FRIXEL_CHECKOUT";
+
 /// An image to run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Image(PathBuf);
 
 impl Image {
     /// Builds the image of the emulated board, as far as it is not built yet.
+    ///
+    /// It is built from the checkout that the environment's `FRIXEL_CHECKOUT` names, or else the one around the working
+    /// directory, or else the one that this program was built in.
     pub fn build() -> Result<Self, EmulatorError> {
         available()?;
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../firmware").join(BOARD);
-        if !folder.join("Cargo.toml").is_file() {
-            return Err(EmulatorError::NoSources { folder: folder.display().to_string() });
-        }
+        let folder = sources()?;
         let target = folder.join("target");
         let output = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
             .args(["build", "--release", "--locked", "--quiet", "--target-dir"])
@@ -32,7 +35,7 @@ impl Image {
             .current_dir(&folder)
             .stdin(Stdio::null())
             .output()
-            .map_err(EmulatorError::system("starting cargo"))?;
+            .map_err(|error| no_compiler_or("starting cargo", error))?;
         if !output.status.success() {
             return Err(EmulatorError::NotBuilt { output: String::from_utf8_lossy(&output.stderr).into_owned() });
         }
@@ -45,7 +48,7 @@ impl Image {
     }
 }
 
-/// Says what is missing for the emulated board, if anything is.
+/// Says what is missing to build and run the emulated board, but for its sources.
 pub fn available() -> Result<(), EmulatorError> {
     match Command::new(EMULATOR).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status() {
         Ok(_) => {}
@@ -56,7 +59,24 @@ pub fn available() -> Result<(), EmulatorError> {
         .args(["--print", "target-libdir", "--target", TARGET])
         .stderr(Stdio::null())
         .output()
-        .map_err(EmulatorError::system("starting rustc"))?;
+        .map_err(|error| no_compiler_or("starting rustc", error))?;
     let libraries = PathBuf::from(String::from_utf8_lossy(&output.stdout).trim());
     if libraries.is_dir() { Ok(()) } else { Err(EmulatorError::NoTarget { target: TARGET }) }
+}
+
+fn no_compiler_or(action: &'static str, error: io::Error) -> EmulatorError {
+    if error.kind() == ErrorKind::NotFound { EmulatorError::NoCompiler } else { EmulatorError::system(action)(error) }
+}
+
+/// The folder of the board's sources.
+fn sources() -> Result<PathBuf, EmulatorError> {
+    let here = env::current_dir().unwrap_or_default();
+    let checkouts: Vec<PathBuf> = if let Some(checkout) = env::var_os(CHECKOUT) {
+        vec![checkout.into()]
+    } else {
+        let built_in = Path::new(env!("CARGO_MANIFEST_DIR")).parent();
+        here.ancestors().chain(built_in).map(Path::to_path_buf).collect()
+    };
+    let mut folders = checkouts.into_iter().map(|checkout| checkout.join("firmware").join(BOARD));
+    folders.find(|folder| folder.join("Cargo.toml").is_file()).ok_or(EmulatorError::NoSources)
 }

@@ -10,7 +10,9 @@ use frixel::player::SimulationError;
 use frixel::report::ReportError;
 use frixel::rigs::ServerError;
 use frixel::scene::CompileError;
+use frixel_hil_sim::emulated::EmulatorError;
 use frixel_hil_sim::{StrokeError, WorldError};
+use frixel_model::ParameterError;
 use frixel_wire::fault::Fault;
 use thiserror::Error;
 
@@ -32,6 +34,10 @@ pub(crate) enum CommandError {
     World(#[from] WorldError),
     #[error(transparent)]
     Simulation(#[from] SimulationError),
+    #[error(transparent)]
+    Emulator(#[from] EmulatorError),
+    #[error("the contact model refuses the scene's finger: {0:?}")]
+    Finger(ParameterError),
     #[error("{}: {source}", path.display())]
     Stroke { path: PathBuf, source: StrokeError },
     #[error("a stroke over this scene: {0}")]
@@ -53,7 +59,9 @@ pub(crate) enum CommandError {
         path.display()
     )]
     StrokeOffScreen { path: PathBuf, width_mm: f64, height_mm: f64 },
-    #[error("--stroke moves the finger of --port sim only; a board at {port} has its own: leave it out")]
+    #[error(
+        "--stroke moves the finger of --port sim and --port qemu only; a board at {port} has its own: leave it out"
+    )]
     StrokeOnBoard { port: String },
     #[error("{port} sends telemetry at most {max} times a second, --csv-hz {asked} is more; ask for {max} or less")]
     CsvTooFast { port: String, asked: u32, max: u32 },

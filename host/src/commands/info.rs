@@ -1,7 +1,7 @@
 //! `frixel info`.
 
 use frixel::device::{DEFAULT_BAUD, Device, SerialLink};
-use frixel_wire::hello::Hello;
+use frixel_wire::hello::{Hello, feature};
 
 use super::InfoArgs;
 use super::error::CommandError;
@@ -23,6 +23,7 @@ fn describe(hello: &Hello) -> String {
         ("board", hello.board.to_string()),
         ("id", id),
         ("firmware", format!("{major}.{minor}.{patch}, protocol {}.{}", hello.protocol.0, hello.protocol.1)),
+        ("features", features(hello.features)),
         ("tick rate", format!("{} Hz", hello.tick_hz)),
         ("state", hello.state.to_string()),
         ("scene", scene),
@@ -39,4 +40,13 @@ fn describe(hello: &Hello) -> String {
         ("touch reports", format!("every {} ms", 1e3 * limits.touch_report_period_s)),
     ];
     lines.iter().fold(String::new(), |text, (name, value)| text + &format!("{name:16} {value}\n"))
+}
+
+/// What the firmware was built with, by name; what this program has no name for, by its bits.
+fn features(bits: u32) -> String {
+    let named = feature::NAMES.iter().filter(|(bit, _)| bits & bit != 0);
+    let unnamed = feature::NAMES.iter().fold(bits, |left, (bit, _)| left & !bit);
+    let names = named.map(|(_, name)| (*name).to_owned());
+    let names: Vec<String> = names.chain((unnamed != 0).then(|| format!("{unnamed:#x}"))).collect();
+    if names.is_empty() { "none".into() } else { names.join(", ") }
 }

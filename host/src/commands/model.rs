@@ -74,7 +74,11 @@ pub(super) fn run(command: &ModelCommand) -> Result<(), CommandError> {
         // Whoever reads the output has seen enough.
         Err(CsvError::Write(error)) if error.kind() == ErrorKind::BrokenPipe => {}
         Err(source) => {
-            let input = args.input.as_ref().map_or("standard input".into(), |path| path.display().to_string());
+            let (path, stream) = match source {
+                CsvError::Write(_) => (&args.output, "standard output"),
+                _ => (&args.input, "standard input"),
+            };
+            let input = path.as_ref().map_or(stream.to_owned(), |path| path.display().to_string());
             return Err(CommandError::ModelCsv { input, source });
         }
     }
@@ -96,7 +100,31 @@ fn create(args: &FileArgs) -> Result<Box<dyn Write>, CommandError> {
     if args.input.as_ref().is_some_and(same_file) {
         return Err(CommandError::OutputIsInput { path: path.clone() });
     }
-    Ok(Box::new(File::create(path).map_err(CommandError::writing(path))?))
+    let file = File::options().write(true).create(true).truncate(false).open(path);
+    Ok(Box::new(Kept { file: file.map_err(CommandError::writing(path))?, begun: false }))
+}
+
+/// A file that keeps what is in it until there is something to write: input that is refused as a whole destroys nothing.
+struct Kept {
+    file: File,
+    begun: bool,
+}
+
+impl Write for Kept {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if !self.begun {
+            // A device or a pipe has no length.
+            if self.file.metadata()?.is_file() {
+                self.file.set_len(0)?;
+            }
+            self.begun = true;
+        }
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
 }
 
 fn tell(summary: &Summary) {
@@ -106,6 +134,6 @@ fn tell(summary: &Summary) {
         eprintln!("frixel: {rows} a contact radius above the finger's radius, where it is no paraboloid any more");
     }
     if summary.invalid_rows > 0 {
-        eprintln!("frixel: {} no answer; their status says why", rows(summary.invalid_rows));
+        eprintln!("frixel: {} no answer; the status says why", rows(summary.invalid_rows));
     }
 }

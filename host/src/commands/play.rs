@@ -2,6 +2,7 @@
 
 mod bars;
 mod board;
+mod emulated;
 mod simulator;
 
 use std::path::{Path, PathBuf};
@@ -15,8 +16,11 @@ use super::PlayArgs;
 use super::error::CommandError;
 
 pub(super) fn run(args: &PlayArgs) -> Result<(), CommandError> {
-    let Played { report, files, failure } =
-        if args.port == "sim" { simulator::play(args)? } else { board::play(args)? };
+    let Played { report, files, failure } = match args.port.as_str() {
+        "sim" => simulator::play(args)?,
+        "qemu" => emulated::play(args)?,
+        _ => board::play(args)?,
+    };
     if args.json {
         println!("{}", report.to_json());
     } else {

@@ -72,12 +72,12 @@ pub(super) enum Refusal {
     Length { row: u64, expected: usize, found: usize },
     #[error("row {row}, column variant: expected {expected}, found {found:?}")]
     Variant { row: u64, expected: String, found: String },
-    #[error("friction_n and electric_friction_n are both filled in; leave one empty")]
-    BothFrictions,
+    #[error("row {row}: friction_n and electric_friction_n are both filled in; leave one empty")]
+    BothFrictions { row: u64 },
     #[error("row {row}, column friction_n: neither it nor electric_friction_n is filled in")]
     NoFriction { row: u64 },
-    #[error("the answer is too large for this precision")]
-    TooLarge,
+    #[error("the answer is too large or too small for this precision")]
+    OutOfRange,
     #[error("{0}")]
     Parameter(ParameterError),
     #[error("{0}")]
@@ -97,7 +97,9 @@ impl From<ParameterError> for Refusal {
             "voltage_v_rms" => VOLTAGE,
             other => other,
         };
-        Self::Parameter(ParameterError { parameter, ..error })
+        // A pull is a load below zero.
+        let found = if error.parameter == "pull_n" { -error.found } else { error.found };
+        Self::Parameter(ParameterError { parameter, found, ..error })
     }
 }
 

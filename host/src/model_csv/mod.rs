@@ -26,10 +26,10 @@
 //! A name that the input has already is written once more: the last one is the answer. Numbers have 17 significant digits,
 //! or 9 in `f32`, which is what reading them back exactly takes.
 //!
-//! `status` is `ok`, `no-contact` (radius and friction are zero), `below-natural`, `unstable`, or `invalid: REASON` with
-//! empty cells. One bad row never stops the others. The file as a whole is refused ([`CsvError`]) when its header lacks a
+//! `status` is `ok`, `no-contact` (radius and friction are zero), `below-natural` (less than the finger has at no voltage, a
+//! negative friction among it), `unstable`, or `invalid: REASON` with empty cells. One bad row never stops the others. The file as a whole is refused ([`CsvError`]) when its header lacks a
 //! column that every row needs, or has one twice that the model reads; a column that only some variants need is missed in
-//! the rows of those variants. Messages count rows from the header, which is row 1; blank lines do not count.
+//! the rows of those variants. Messages count rows from the header, which is row 1; lines of nothing but blanks do not count.
 
 mod columns;
 mod error;
@@ -126,6 +126,9 @@ fn transform(
     let mut summary = Summary::default();
     let mut record = ByteRecord::new();
     while reader.read_byte_record(&mut record).map_err(CsvError::read)? {
+        if is_blank(&record) && columns.len() > 1 {
+            continue;
+        }
         summary.rows += 1;
         let (cells, status) = match answer(&Row::new(1 + summary.rows, &columns, &record)) {
             Ok(answer) => {
@@ -143,6 +146,11 @@ fn transform(
     }
     writer.flush().map_err(CsvError::Write)?;
     Ok(summary)
+}
+
+/// A line of blanks, such as some editors leave at the end of a file.
+fn is_blank(record: &ByteRecord) -> bool {
+    record.len() == 1 && record.iter().all(|cell| cell.trim_ascii().is_empty())
 }
 
 fn write<'a>(writer: &mut csv::Writer<impl Write>, cells: impl Iterator<Item = &'a [u8]>) -> Result<(), CsvError> {
@@ -166,7 +174,7 @@ fn inverted<T: Number>(row: &Row) -> Result<Answer, Refusal> {
     let model = Model::<T>::read(row)?;
     let [total, electric] = FRICTIONS;
     let voltage_v_rms = match (row.is_filled(total), row.is_filled(electric)) {
-        (true, true) => return Err(Refusal::BothFrictions),
+        (true, true) => return Err(Refusal::BothFrictions { row: row.number() }),
         (false, false) => return Err(Refusal::NoFriction { row: row.number() }),
         (true, false) => model.contact.voltage_for_friction(row.real(total)?),
         (false, true) => model.contact.voltage_for_electric_friction(row.real(electric)?),
@@ -183,5 +191,5 @@ fn inverted<T: Number>(row: &Row) -> Result<Answer, Refusal> {
 /// Numbers as text, none of them without being one.
 fn cells<T: Number>(numbers: &[T]) -> Result<Vec<String>, Refusal> {
     let all_finite = numbers.iter().all(|number| number.is_finite());
-    if all_finite { Ok(numbers.iter().map(|number| number.digits()).collect()) } else { Err(Refusal::TooLarge) }
+    if all_finite { Ok(numbers.iter().map(|number| number.digits()).collect()) } else { Err(Refusal::OutOfRange) }
 }

@@ -11,17 +11,6 @@ use super::OutputError;
 
 const HEADER: &str = "t_s,x_mm,y_mm,speed_mm_s,wanted_n,asked_n,felt_n,voltage_v_rms,dac_code,flags\n";
 
-/// The names of flags, as the last column has them.
-const FLAG_NAMES: [(Flags, &str); 7] = [
-    (Flags::SATURATED, "saturated"),
-    (Flags::SLEWED, "slewed"),
-    (Flags::STILL, "still"),
-    (Flags::NO_FINGER, "no-finger"),
-    (Flags::TOUCH_STALE, "touch-stale"),
-    (Flags::CARRIER_BALANCED, "carrier-balanced"),
-    (Flags::HOST_SILENT, "host-silent"),
-];
-
 /// A row of `felt.csv`. What is not known is `None`, an empty cell. Frictions are totals.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FeltRow {
@@ -115,14 +104,11 @@ impl Display for FeltRow {
 
 fn write_flags(formatter: &mut fmt::Formatter<'_>, flags: Flags) -> fmt::Result {
     let mut joint = "";
-    let mut unnamed = flags.0;
-    for (flag, name) in FLAG_NAMES {
-        if flags.contains(flag) {
-            write!(formatter, "{joint}{name}")?;
-            joint = "+";
-            unnamed &= !flag.0;
-        }
+    for name in flags.names() {
+        write!(formatter, "{joint}{name}")?;
+        joint = "+";
     }
+    let unnamed = flags.unnamed().0;
     if unnamed != 0 {
         // Flags of newer firmware.
         write!(formatter, "{joint}0x{unnamed:04x}")?;

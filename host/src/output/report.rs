@@ -11,7 +11,7 @@ use crate::scene::Reach;
 /// The numbers of a run; its fields are the keys of `--json`. What is not known is `null` there.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
-    /// What played: `sim` or `board`.
+    /// What played: `sim`, `qemu` or `board`.
     pub rig: String,
     /// Ticks that were played.
     pub ticks: u64,
@@ -119,7 +119,8 @@ impl Report {
             ),
         );
         if let Some(factor) = self.realtime_factor {
-            line("speed", format!("{factor:.0} times real time"));
+            let decimals = if factor < 10.0 { 2 } else { 0 };
+            line("speed", format!("{factor:.decimals$} times real time"));
         }
         text
     }

@@ -18,6 +18,10 @@ const NAPS_MAX: u32 = 60_000;
 /// One emulator at a time: it takes more than a core.
 static TURN: Mutex<()> = Mutex::new(());
 
+pub(crate) fn turn() -> MutexGuard<'static, ()> {
+    TURN.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 pub(crate) struct Bench {
     pub(crate) board: LinkBoard,
     records: Arc<Mutex<Vec<LinkRecord>>>,
@@ -26,7 +30,7 @@ pub(crate) struct Bench {
 
 impl Bench {
     pub(crate) fn new(image: &Image) -> Self {
-        let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+        let turn = turn();
         let config = WorldConfig {
             tick_hz: BOARD.tick_hz,
             full_scale_v_peak: f64::from(BOARD.limits.full_scale_v_peak),

@@ -6,6 +6,7 @@
 
 mod bench;
 mod cable;
+mod command;
 #[path = "../../../hil-sim/tests/emulator/mod.rs"]
 mod emulator;
 mod link;

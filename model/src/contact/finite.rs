@@ -2,7 +2,10 @@
 
 use super::Contact;
 use super::curve::{Point, root_of_quotient, upper_inverse};
-use crate::error::{Expected, InverseError, ParameterError, StateError, finite, not_negative, positive};
+use crate::error::{
+    Expected, InverseError, ParameterError, StateError, found_voltage_v_rms, not_negative, positive, representable,
+    wanted_electric_friction_n,
+};
 use crate::root::{Step, rising_root};
 use crate::{ContactModel, ContactState, Real, Sensitivity};
 
@@ -30,7 +33,7 @@ impl<T: Real> FiniteContact<T> {
     pub(super) fn new(contact: Contact<T>, outer_radius_m: T, normal_load_n: T) -> Result<Self, ParameterError> {
         let n = contact.load(not_negative("normal_load_n", normal_load_n)?);
         let beta = contact.area(positive("outer_radius_m", outer_radius_m)?);
-        finite("normal_load_n", n)?;
+        representable("normal_load_n", normal_load_n, n)?;
         if !(beta >= T::MIN_POSITIVE && beta.is_finite()) {
             let found = outer_radius_m.into();
             return Err(ParameterError { parameter: "outer_radius_m", expected: Expected::Representable, found });
@@ -63,7 +66,8 @@ impl<T: Real> FiniteContact<T> {
         let root = rising_root(low, high, high, |y| {
             let rest = beta - y;
             let beyond = T::ONE / (T::ONE + q + rest);
-            let residual = y - T::TWO * q - (n + T::TWO * q * rest * around * beyond) / y;
+            // Two factors below one: the product of q and what is left of beta may leave the range.
+            let residual = y - T::TWO * q - (n + T::TWO * (q * around) * (rest * beyond)) / y;
             let slope = T::TWO * (T::ONE - q / y + q * beyond * beyond / y);
             Step { residual, next: y - residual / slope }
         });
@@ -92,9 +96,7 @@ impl<T: Real> ContactModel<T> for FiniteContact<T> {
     }
 
     fn voltage_for_electric_friction(&self, electric_friction_n: T) -> Result<T, InverseError> {
-        if finite("electric_friction_n", electric_friction_n)? < T::ZERO {
-            return Err(InverseError::BelowNatural);
-        }
+        let electric_friction_n = wanted_electric_friction_n(electric_friction_n)?;
         let scale = self.contact.friction_scale_n;
         let y = root_of_quotient(self.natural_friction_n + electric_friction_n, scale);
         if y > self.beta * (T::ONE + T::from(SLACK) * T::EPSILON) {
@@ -116,7 +118,7 @@ impl<T: Real> ContactModel<T> for FiniteContact<T> {
             Step { residual, next: q - residual / slope }
         });
         let q = root.map_err(|_| InverseError::NotConverged)?;
-        Ok(self.contact.voltage_scale_v_rms * q.sqrt())
+        found_voltage_v_rms(self.contact.voltage_scale_v_rms * q.sqrt())
     }
 
     fn sensitivity(&self, voltage_v_rms: T) -> Result<Sensitivity<T>, StateError> {

@@ -2,7 +2,10 @@
 
 use super::Contact;
 use super::curve::{Point, root_of_quotient, upper_inverse};
-use crate::error::{InverseError, ParameterError, StateError, finite, not_negative};
+use crate::error::{
+    InverseError, ParameterError, StateError, found_voltage_v_rms, not_negative, representable,
+    wanted_electric_friction_n,
+};
 use crate::{ContactModel, ContactState, Real, Sensitivity};
 
 /// A contact under a fixed normal load of zero or more, the attraction around it counted to any distance.
@@ -22,7 +25,7 @@ pub struct LoadedContact<T> {
 impl<T: Real> LoadedContact<T> {
     pub(super) fn new(contact: Contact<T>, normal_load_n: T) -> Result<Self, ParameterError> {
         let n = contact.load(not_negative("normal_load_n", normal_load_n)?);
-        finite("normal_load_n", n)?;
+        representable("normal_load_n", normal_load_n, n)?;
         Ok(Self { contact, natural_friction_n: contact.friction_coefficient * normal_load_n, n })
     }
 
@@ -31,12 +34,12 @@ impl<T: Real> LoadedContact<T> {
         &self.contact
     }
 
-    /// Friction at no voltage, `mu F_N`, in newtons.
+    /// Friction at no voltage, `mu F_N`, in newtons. One rounding.
     pub fn natural_friction_n(&self) -> T {
         self.natural_friction_n
     }
 
-    /// Electric friction `x = F_T - mu F_N` in newtons at an rms voltage of zero or more, Eqs. (43), (21).
+    /// Electric friction `x = F_T - mu F_N` in newtons at a finite rms voltage of zero or more, Eqs. (43), (21).
     ///
     /// [`ContactModel::state`] is the same with its argument and its answer checked.
     #[inline]
@@ -45,7 +48,7 @@ impl<T: Real> LoadedContact<T> {
         point.map_or(T::ZERO, |point| point.electric_friction(self.contact.friction_scale_n))
     }
 
-    /// The rms voltage that gives an electric friction, in volts; zero for a friction of zero or less and for
+    /// The rms voltage that gives a finite electric friction, in volts; zero for a friction of zero or less and for
     /// not-a-number.
     ///
     /// [`ContactModel::voltage_for_electric_friction`] is the same with its argument and its answer checked.
@@ -73,11 +76,7 @@ impl<T: Real> ContactModel<T> for LoadedContact<T> {
     }
 
     fn voltage_for_electric_friction(&self, electric_friction_n: T) -> Result<T, InverseError> {
-        if finite("electric_friction_n", electric_friction_n)? < T::ZERO {
-            return Err(InverseError::BelowNatural);
-        }
-        let voltage_v_rms = self.voltage_v_rms(electric_friction_n);
-        if voltage_v_rms.is_finite() { Ok(voltage_v_rms) } else { Err(InverseError::OutOfRange) }
+        found_voltage_v_rms(self.voltage_v_rms(wanted_electric_friction_n(electric_friction_n)?))
     }
 
     fn sensitivity(&self, voltage_v_rms: T) -> Result<Sensitivity<T>, StateError> {

@@ -2,7 +2,7 @@
 
 use super::Contact;
 use super::curve::{Point, root_of_quotient};
-use crate::error::{InverseError, ParameterError, StateError, finite, not_negative};
+use crate::error::{InverseError, ParameterError, StateError, finite, found_voltage_v_rms, representable};
 use crate::{ContactModel, ContactState, Real, Sensitivity};
 
 /// A contact under a fixed normal load of either sign, attracted only where it touches (variant `wf-lower`).
@@ -21,7 +21,7 @@ pub struct LowerBound<T> {
 impl<T: Real> LowerBound<T> {
     pub(super) fn new(contact: Contact<T>, normal_load_n: T) -> Result<Self, ParameterError> {
         let n = contact.load(finite("normal_load_n", normal_load_n)?);
-        finite("normal_load_n", n)?;
+        representable("normal_load_n", normal_load_n, n)?;
         Ok(Self { contact, natural_friction_n: contact.friction_coefficient * normal_load_n, n })
     }
 
@@ -43,8 +43,7 @@ impl<T: Real> LowerBound<T> {
         if q > y {
             return Err(InverseError::Unstable);
         }
-        let voltage_v_rms = self.contact.voltage_scale_v_rms * q.sqrt();
-        if voltage_v_rms.is_finite() { Ok(voltage_v_rms) } else { Err(InverseError::OutOfRange) }
+        found_voltage_v_rms(self.contact.voltage_scale_v_rms * q.sqrt())
     }
 }
 
@@ -64,7 +63,7 @@ impl<T: Real> ContactModel<T> for LowerBound<T> {
 
     /// Without the detour over the electric part, which would lose a friction far below `mu |F_N|` of a pull.
     fn voltage_for_friction(&self, friction_n: T) -> Result<T, InverseError> {
-        let friction_n = not_negative("friction_n", friction_n)?;
+        let friction_n = finite("friction_n", friction_n)?;
         self.inverse(friction_n, friction_n - self.natural_friction_n)
     }
 

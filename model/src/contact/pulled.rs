@@ -2,7 +2,7 @@
 
 use super::Contact;
 use super::curve::{Point, root_of_quotient, upper_inverse};
-use crate::error::{InverseError, ParameterError, StateError, finite, not_negative, positive};
+use crate::error::{Expected, InverseError, ParameterError, StateError, finite, found_voltage_v_rms, positive};
 use crate::root::{Step, rising_root};
 use crate::{ContactModel, ContactState, Real, Sensitivity};
 
@@ -26,21 +26,27 @@ pub struct PulledContact<T> {
 impl<T: Real> PulledContact<T> {
     pub(super) fn new(contact: Contact<T>, pull_n: T) -> Result<Self, ParameterError> {
         let n = -contact.load(positive("pull_n", pull_n)?);
-        finite("pull_n", n)?;
+        if !(-n >= T::MIN_POSITIVE && n.is_finite()) {
+            return Err(ParameterError {
+                parameter: "pull_n",
+                expected: Expected::Representable,
+                found: pull_n.into(),
+            });
+        }
         Ok(Self { contact, natural_friction_n: -(contact.friction_coefficient * pull_n), n })
     }
 
     /// The rms voltage below which the finger comes off, in volts: the positive root of
     /// `q^3 + q^2 + (2 + n) q + n = 0`. At most 142 steps; six are usual. Relative error at most 4e-15 in f64, 1e-6 in f32.
     pub fn pull_off_voltage_v_rms(&self) -> Result<T, StateError> {
-        Ok(self.contact.voltage_scale_v_rms * self.pull_off_attraction()?.sqrt())
+        finite_answer(self.contact.voltage_scale_v_rms * self.pull_off_attraction()?.sqrt())
     }
 
     /// Friction at pull-off, the least that this contact can have, in newtons: `F* q^2`. Error as for the
     /// voltage.
     pub fn pull_off_friction_n(&self) -> Result<T, StateError> {
         let q = self.pull_off_attraction()?;
-        Ok(self.contact.friction_scale_n * q * q)
+        finite_answer(self.contact.friction_scale_n * q * q)
     }
 
     /// `q` at pull-off: `q^2 + 2 q/(1 + q)` rises through `-n`.
@@ -64,6 +70,9 @@ impl<T: Real> PulledContact<T> {
     }
 
     fn inverse(&self, friction_n: T, electric_friction_n: T) -> Result<T, InverseError> {
+        if friction_n < T::ZERO {
+            return Err(InverseError::BelowNatural);
+        }
         let scale = self.contact.friction_scale_n;
         let y = root_of_quotient(friction_n, scale);
         if !(y > T::ZERO) {
@@ -73,8 +82,7 @@ impl<T: Real> PulledContact<T> {
         if v * v > y {
             return Err(InverseError::Unstable);
         }
-        let voltage_v_rms = self.contact.voltage_scale_v_rms * v;
-        if voltage_v_rms.is_finite() { Ok(voltage_v_rms) } else { Err(InverseError::OutOfRange) }
+        found_voltage_v_rms(self.contact.voltage_scale_v_rms * v)
     }
 }
 
@@ -90,16 +98,12 @@ impl<T: Real> ContactModel<T> for PulledContact<T> {
 
     fn voltage_for_electric_friction(&self, electric_friction_n: T) -> Result<T, InverseError> {
         let friction_n = self.natural_friction_n + finite("electric_friction_n", electric_friction_n)?;
-        if friction_n < T::ZERO {
-            Err(InverseError::BelowNatural)
-        } else {
-            self.inverse(friction_n, electric_friction_n)
-        }
+        self.inverse(friction_n, electric_friction_n)
     }
 
     /// Without the detour over the electric part, which would lose a friction far below `mu |F_N|`.
     fn voltage_for_friction(&self, friction_n: T) -> Result<T, InverseError> {
-        let friction_n = not_negative("friction_n", friction_n)?;
+        let friction_n = finite("friction_n", friction_n)?;
         self.inverse(friction_n, friction_n - self.natural_friction_n)
     }
 
@@ -111,4 +115,8 @@ impl<T: Real> ContactModel<T> for PulledContact<T> {
     fn reachable_friction_n(&self, voltage_max_v_rms: T) -> Result<(T, T), StateError> {
         Ok((self.pull_off_friction_n()?, self.state(voltage_max_v_rms)?.friction_n))
     }
+}
+
+fn finite_answer<T: Real>(answer: T) -> Result<T, StateError> {
+    if answer.is_finite() { Ok(answer) } else { Err(StateError::OutOfRange) }
 }

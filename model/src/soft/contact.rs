@@ -5,7 +5,9 @@ use core::f64::consts::PI;
 use super::finger::{ForceLaw, SoftFinger};
 use super::lower::SoftLowerBound;
 use crate::coating::VACUUM_PERMITTIVITY_F_PER_M;
-use crate::error::{InverseError, ParameterError, StateError, finite, not_negative, positive, scale};
+use crate::error::{
+    InverseError, ParameterError, StateError, not_negative, positive, representable, scale, wanted_electric_friction_n,
+};
 use crate::root::{Step, rising_root};
 use crate::{Contact, ContactModel, ContactState, Finger, Real, Sensitivity};
 
@@ -100,7 +102,7 @@ struct Balance<T> {
 impl<T: Real> SoftLoadedContact<T> {
     fn new(contact: SoftContact<T>, normal_load_n: T) -> Result<Self, ParameterError> {
         let load = not_negative("normal_load_n", normal_load_n)? / contact.forces.force_scale_n;
-        finite("normal_load_n", load)?;
+        representable("normal_load_n", normal_load_n, load)?;
         Ok(Self {
             contact,
             normal_load_n,
@@ -185,10 +187,7 @@ impl<T: Real> ContactModel<T> for SoftLoadedContact<T> {
     }
 
     fn voltage_for_electric_friction(&self, electric_friction_n: T) -> Result<T, InverseError> {
-        if finite("electric_friction_n", electric_friction_n)? < T::ZERO {
-            return Err(InverseError::BelowNatural);
-        }
-        if !(electric_friction_n > T::ZERO) {
+        if !(wanted_electric_friction_n(electric_friction_n)? > T::ZERO) {
             return Ok(T::ZERO);
         }
         let SoftContact { finger, gap_m, forces, .. } = &self.contact;
@@ -216,9 +215,10 @@ impl<T: Real> ContactModel<T> for SoftLoadedContact<T> {
         // d ln p/d ln tau: the second term's share of the stress falls as the stress softens it.
         let by_stress = (balance.inside + balance.around * (T::ONE - balance.softening)) / p / steepness;
         let friction_n = mu * self.contact.forces.force_scale_n * p;
-        Ok(Sensitivity {
+        Sensitivity {
             friction_per_volt_n_per_v: T::TWO * friction_n * by_stress / voltage_v_rms,
             friction_per_load: mu / steepness,
-        })
+        }
+        .in_range()
     }
 }

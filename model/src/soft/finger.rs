@@ -2,7 +2,7 @@
 
 use core::f64::consts::PI;
 
-use crate::error::{ParameterError, not_negative, positive, stress_exponent};
+use crate::error::{ParameterError, not_negative, positive, representable, stress_exponent};
 use crate::{Real, SoftContact};
 
 /// Exponent `gamma = s/(2 s + 1)` of the contact radius over the force, Eq. (23), for a stress exponent `s` above zero and
@@ -30,21 +30,22 @@ pub struct SoftFinger<T> {
 impl<T: Real> SoftFinger<T> {
     /// Normal force at a contact approach without voltage, in newtons, Eq. (24): `B E R^2 (delta/R)^(1/(2 gamma))`.
     ///
-    /// Relative error at most `4 (2 + 1/(2 gamma))` roundings of `T`.
+    /// Relative error at most `6 + e (1 + 3 |ln(delta/R)|)` roundings of `T`, with the exponent `e = 1/(2 gamma)`.
     pub fn normal_load_n(&self, approach_m: T) -> Result<T, ParameterError> {
         let forces = self.forces()?;
         let ratio = not_negative("approach_m", approach_m)? / self.radius_m;
-        Ok(forces.force_scale_n * ratio.pow(T::ONE / forces.two_gamma))
+        representable("approach_m", approach_m, forces.force_scale_n * ratio.pow(T::ONE / forces.two_gamma))
     }
 
     /// Equivalent Winkler-Fuss stiffness in Pa/m under a spring force above zero, Eqs. (26), (29):
     /// `B^(4 gamma) E/(pi R) (E R^2/P)^(4 gamma - 1)`.
     ///
     /// The force is the normal load where there is no voltage, and friction over the coefficient of friction where there
-    /// is. Relative error at most 8 roundings of `T` plus the logarithm of `P/(B E R^2)`.
+    /// is. Relative error at most `11 + 3 |ln(P/(B E R^2))|` roundings of `T`.
     pub fn stiffness_pa_per_m(&self, spring_force_n: T) -> Result<T, ParameterError> {
         let forces = self.forces()?;
-        Ok(forces.stiffness_pa_per_m(positive("spring_force_n", spring_force_n)? / forces.force_scale_n))
+        let p = positive("spring_force_n", spring_force_n)? / forces.force_scale_n;
+        representable("spring_force_n", spring_force_n, forces.stiffness_pa_per_m(p))
     }
 
     /// The finger on a coating of effective gap `gap_m`.
@@ -85,5 +86,11 @@ pub(super) struct ForceLaw<T> {
 impl<T: Real> ForceLaw<T> {
     pub(super) fn stiffness_pa_per_m(&self, p: T) -> T {
         self.stiffness_scale_pa_per_m * p.pow(self.stiffening)
+    }
+
+    /// The same at `p = (2 tau)^(2 s + 1)`, which may be too small for the precision where the stiffness is not:
+    /// `(2 s + 1)(1 - 4 gamma) = 1 - 2 s`.
+    pub(super) fn lower_stiffness_pa_per_m(&self, double_tau: T) -> T {
+        self.stiffness_scale_pa_per_m * double_tau.pow(T::ONE - self.two_s)
     }
 }

@@ -1,7 +1,7 @@
 //! The soft finger's lower bound, Eqs. (40), (41).
 
 use super::contact::SoftContact;
-use crate::error::{InverseError, StateError, finite};
+use crate::error::{InverseError, StateError, found_voltage_v_rms, wanted_electric_friction_n};
 use crate::{ContactModel, ContactState, Real, Sensitivity};
 
 /// A soft finger without load, attracted only where it touches (variant `soft-lower`).
@@ -30,9 +30,10 @@ impl<T: Real> ContactModel<T> for SoftLowerBound<T> {
     fn state(&self, voltage_v_rms: T) -> Result<ContactState<T>, StateError> {
         let double_tau = T::TWO * self.contact.stress(voltage_v_rms)?;
         let area = double_tau.pow(self.contact.forces.two_s);
-        let p = double_tau * area;
-        let friction_n = self.friction_scale_n * p;
-        let stiffness_pa_per_m = if p > T::ZERO { self.contact.forces.stiffness_pa_per_m(p) } else { T::ZERO };
+        // The scale first: without it the product may leave the range where friction does not.
+        let friction_n = self.friction_scale_n * double_tau * area;
+        let stiffness_pa_per_m =
+            if double_tau > T::ZERO { self.contact.forces.lower_stiffness_pa_per_m(double_tau) } else { T::ZERO };
         ContactState {
             contact_radius_m: self.contact.contact_radius_m(area),
             stiffness_pa_per_m,
@@ -43,14 +44,10 @@ impl<T: Real> ContactModel<T> for SoftLowerBound<T> {
     }
 
     fn voltage_for_electric_friction(&self, electric_friction_n: T) -> Result<T, InverseError> {
-        if finite("electric_friction_n", electric_friction_n)? < T::ZERO {
-            return Err(InverseError::BelowNatural);
-        }
-        let p = electric_friction_n / self.friction_scale_n;
+        let p = wanted_electric_friction_n(electric_friction_n)? / self.friction_scale_n;
         // (2 s + 1)(1 - 2 gamma) = 1.
         let double_tau = p.pow(T::ONE - self.contact.forces.two_gamma);
-        let voltage_v_rms = self.contact.voltage_scale_v_rms * (double_tau / T::TWO).sqrt();
-        if voltage_v_rms.is_finite() { Ok(voltage_v_rms) } else { Err(InverseError::OutOfRange) }
+        found_voltage_v_rms(self.contact.voltage_scale_v_rms * (double_tau / T::TWO).sqrt())
     }
 
     /// The load's part is that of this bound under a vanishing load.
@@ -59,9 +56,10 @@ impl<T: Real> ContactModel<T> for SoftLowerBound<T> {
         let friction_n = self.state(voltage_v_rms)?.friction_n;
         let friction_per_volt_n_per_v =
             if friction_n > T::ZERO { T::TWO * exponent * friction_n / voltage_v_rms } else { T::ZERO };
-        Ok(Sensitivity {
+        Sensitivity {
             friction_per_volt_n_per_v,
             friction_per_load: self.contact.finger.friction_coefficient * exponent,
-        })
+        }
+        .in_range()
     }
 }

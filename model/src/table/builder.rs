@@ -17,6 +17,9 @@ pub enum Precision {
 
 /// What a table is asked for: a contact, a range of electric friction, an error target.
 ///
+/// The contact may be that of the universal curve, [`Contact::universal`](crate::Contact::universal): such a table takes
+/// friction over `F*` and gives voltage over `V*`, and serves every finger and coating under the same `n`.
+///
 /// ```
 /// use frixel_model::{Contact, Finger, Precision, TableBuilder};
 /// let finger = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };

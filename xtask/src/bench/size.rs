@@ -1,4 +1,4 @@
-//! Sizes of images.
+//! Sizes of images, and how deep their stacks get.
 
 use std::fs;
 use std::path::Path;
@@ -8,6 +8,7 @@ use object::elf::{FileHeader32, PT_LOAD};
 use object::read::elf::{FileHeader, ProgramHeader};
 
 use super::figures::Figures;
+use super::stack::Functions;
 use crate::command::{M4F, cargo_in, root, run};
 
 /// A board's image with some of its features.
@@ -23,6 +24,9 @@ const G474_BUILDS: [Build; 2] = [
     Build { name: "full", features: &[] },
     Build { name: "grating_only", features: &["--no-default-features", "--features", "grating"] },
 ];
+/// The main program, and the exceptions that come on top of each other: the tick, and flash that cannot be read.
+const MAIN: &str = "main";
+const EXCEPTIONS: [&str; 2] = ["TIM3", "NonMaskableInt"];
 /// Where RAM begins on every Cortex-M.
 const RAM: u64 = 0x2000_0000;
 const PERIPHERALS: u64 = 0x4000_0000;
@@ -44,11 +48,15 @@ pub(super) fn measure(figures: &mut Figures) -> Result<(), String> {
         let (flash, ram) = sizes(&path)?;
         figures.put(format!("g474.flash_{}", build.name), flash);
         figures.put(format!("g474.ram_{}", build.name), ram);
+        match Functions::read(&path)?.depth(MAIN, &EXCEPTIONS) {
+            Ok(bytes) => figures.put(format!("g474.stack_{}", build.name), bytes),
+            Err(why) => eprintln!("the depth of the stack is not known: {why}"),
+        }
     }
     Ok(())
 }
 
-/// Bytes of flash and of RAM that an image takes; the stack takes what is left of the RAM.
+/// Bytes of flash and of RAM that an image takes, without its stacks.
 fn sizes(path: &Path) -> Result<(u64, u64), String> {
     let explain = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
     let bytes = fs::read(path).map_err(|error| explain(&error))?;

@@ -21,7 +21,19 @@ use crate::order::Status;
 use crate::{Active, BitmapPool, Board, Order, Touch};
 
 /// Version of this firmware: major, minor, patch.
-const FIRMWARE: (u8, u8, u8) = (0, 1, 0);
+const FIRMWARE: (u8, u8, u8) = (
+    part(env!("CARGO_PKG_VERSION_MAJOR")),
+    part(env!("CARGO_PKG_VERSION_MINOR")),
+    part(env!("CARGO_PKG_VERSION_PATCH")),
+);
+
+/// A part of the package's version, read when this is compiled.
+const fn part(text: &str) -> u8 {
+    match u8::from_str_radix(text, 10) {
+        Ok(part) => part,
+        Err(_) => u8::MAX,
+    }
+}
 
 /// Orders that may wait for the ticker. A command is refused as busy when there is no room.
 const ORDERS_MAX: usize = 8;

@@ -42,12 +42,10 @@ impl SceneKeeper {
     /// Does the next small thing that there is to do, without waiting: to be called again and again. What is under way
     /// is given up as soon as the board is armed or the scene is another one.
     pub fn step<F: Flash>(&mut self, flash: &mut F, session: &Session, now_tick: u32) {
-        if session.kept_crc32() == self.settled_crc32 {
+        let Some(kept) = session.kept().filter(|kept| Some(kept.crc32()) != self.settled_crc32) else {
             self.pending = None;
-            return;
-        }
-        let Some(kept) = session.kept() else {
-            self.pending = None;
+            // What was begun before the board was armed ends, and leaves the flash as it was found.
+            let _ = flash.operation();
             return;
         };
         let begun = Pending { crc32: kept.crc32(), since_tick: now_tick, writer: None };
@@ -56,6 +54,7 @@ impl SceneKeeper {
             other => other.insert(begun),
         };
         if now_tick.wrapping_sub(pending.since_tick) < self.settled_after_ticks {
+            let _ = flash.operation();
             return;
         }
         let writing = match &mut pending.writer {

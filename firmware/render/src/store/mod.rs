@@ -38,7 +38,8 @@ pub trait Flash {
     /// Begins to write a word at an offset that is a multiple of [`WORD_LEN`].
     fn begin_write(&mut self, offset: u32, word: [u8; WORD_LEN]);
 
-    /// What became of the operation that was begun last.
+    /// What became of the operation that was begun last. Asked until it is no longer [`Operation::Busy`], it leaves the
+    /// flash locked.
     fn operation(&mut self) -> Operation;
 }
 

@@ -6,6 +6,7 @@ pub const PAGE_LEN: usize = 512;
 
 /// The flash of a board.
 #[derive(Clone)]
+#[allow(clippy::struct_excessive_bools, reason = "two of them are for the test to set, two are flash's own")]
 pub struct SimulatedFlash {
     pub bytes: Vec<u8>,
     /// Words that cannot be read, because they were half written when the power went, or half erased.
@@ -16,6 +17,8 @@ pub struct SimulatedFlash {
     pub done: usize,
     /// Calls of `operation` for which an operation is busy.
     busy: u32,
+    /// `operation` has told that the last one ended.
+    seen_to_end: bool,
     pub operations_fail: bool,
     failed: bool,
     /// What a torn word reads as: nothing, or something.
@@ -31,6 +34,7 @@ impl SimulatedFlash {
             power_left: None,
             done: 0,
             busy: 0,
+            seen_to_end: true,
             operations_fail: false,
             failed: false,
             torn_words_read,
@@ -40,6 +44,11 @@ impl SimulatedFlash {
 
     pub fn has_power(&self) -> bool {
         self.power_left != Some(0)
+    }
+
+    /// Whether nothing is under way, and the last operation was seen to end.
+    pub fn is_at_rest(&self) -> bool {
+        self.seen_to_end
     }
 
     /// The same flash once the power has come back.
@@ -82,7 +91,7 @@ impl Flash for SimulatedFlash {
 
     fn begin_erase(&mut self, page: u32) {
         assert_eq!(self.busy, 0, "one operation at a time");
-        (self.busy, self.failed) = (3, self.operations_fail);
+        (self.busy, self.failed, self.seen_to_end) = (3, self.operations_fail, false);
         let start = page as usize * PAGE_LEN;
         for at in start..start + PAGE_LEN {
             if !self.spend() {
@@ -103,7 +112,7 @@ impl Flash for SimulatedFlash {
 
     fn begin_write(&mut self, offset: u32, word: [u8; WORD_LEN]) {
         assert_eq!(self.busy, 0, "one operation at a time");
-        (self.busy, self.failed) = (2, self.operations_fail);
+        (self.busy, self.failed, self.seen_to_end) = (2, self.operations_fail, false);
         let start = offset as usize;
         assert_eq!(start % WORD_LEN, 0);
         assert!(self.bytes[start..start + WORD_LEN].iter().all(|byte| *byte == 0xff), "{start} is not erased");
@@ -124,6 +133,7 @@ impl Flash for SimulatedFlash {
             self.busy -= 1;
             return Operation::Busy;
         }
+        self.seen_to_end = true;
         if core::mem::take(&mut self.failed) { Operation::Failed } else { Operation::Done }
     }
 }

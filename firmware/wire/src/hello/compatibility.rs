@@ -3,8 +3,9 @@
 use core::fmt;
 
 use super::{Hello, PROTOCOL_MAJOR, PROTOCOL_MINOR};
+use crate::frame::FRAME_MAX_LEN;
 
-/// Board and host speak protocols of different major versions.
+/// Board and host cannot talk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mismatch {
     /// The board is the older one.
@@ -21,17 +22,24 @@ pub enum Mismatch {
         /// Version of the board's firmware: major, minor, patch.
         firmware: (u8, u8, u8),
     },
+    /// The board takes shorter frames than a host sends.
+    FramesTooShort {
+        /// Bytes of the largest frame that it takes.
+        max: u16,
+    },
 }
 
 impl Hello {
     /// Whether a host with this crate can talk to the board: the major versions of their protocols are the same. When
-    /// they are not, the host sends nothing but hello requests.
+    /// they are not, the host sends nothing but hello requests. The board has to take the largest frame that there is, too.
     pub const fn compatibility(&self) -> Result<(), Mismatch> {
         let (board, firmware) = (self.protocol, self.firmware);
         if board.0 < PROTOCOL_MAJOR {
             Err(Mismatch::BoardOlder { board, firmware })
         } else if board.0 > PROTOCOL_MAJOR {
             Err(Mismatch::BoardNewer { board, firmware })
+        } else if (self.frame_max_len as usize) < FRAME_MAX_LEN {
+            Err(Mismatch::FramesTooShort { max: self.frame_max_len })
         } else {
             Ok(())
         }
@@ -40,17 +48,29 @@ impl Hello {
 
 impl fmt::Display for Mismatch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (Self::BoardOlder { board, firmware } | Self::BoardNewer { board, firmware }) = self;
-        write!(
-            f,
-            "the board's firmware {}.{}.{} speaks protocol {}.{}, this program speaks {PROTOCOL_MAJOR}.{PROTOCOL_MINOR}: ",
-            firmware.0, firmware.1, firmware.2, board.0, board.1
-        )?;
-        match self {
-            Self::BoardOlder { .. } => write!(f, "flash newer firmware, one that speaks protocol {PROTOCOL_MAJOR}"),
-            Self::BoardNewer { .. } => write!(f, "update the frixel command to one that speaks protocol {}", board.0),
+        match *self {
+            Self::BoardOlder { board, firmware } => {
+                speaks(f, board, firmware)?;
+                write!(f, "flash newer firmware, one that speaks protocol {PROTOCOL_MAJOR}")
+            }
+            Self::BoardNewer { board, firmware } => {
+                speaks(f, board, firmware)?;
+                write!(f, "update the frixel command to one that speaks protocol {}", board.0)
+            }
+            Self::FramesTooShort { max } => write!(
+                f,
+                "the board takes frames of {max} bytes at most, this program sends {FRAME_MAX_LEN}: flash newer firmware"
+            ),
         }
     }
+}
+
+fn speaks(f: &mut fmt::Formatter<'_>, board: (u8, u8), firmware: (u8, u8, u8)) -> fmt::Result {
+    write!(
+        f,
+        "the board's firmware {}.{}.{} speaks protocol {}.{}, this program speaks {PROTOCOL_MAJOR}.{PROTOCOL_MINOR}: ",
+        firmware.0, firmware.1, firmware.2, board.0, board.1
+    )
 }
 
 impl core::error::Error for Mismatch {}

@@ -144,7 +144,7 @@ pub enum ConfigField {
     Phase,
     /// A bitmap's place or pitch, m.
     BitmapPlacement,
-    /// The span of friction between 1 V and the largest voltage, wider than the table.
+    /// The span of friction between 1 V and the largest rms voltage, which is what is told, is wider than the table.
     TableRange,
     /// Where the host has the finger, m.
     TouchPlace,
@@ -178,7 +178,7 @@ impl ConfigField {
             Self::WaveVector => ("wave vector", " cycles/m"),
             Self::Phase => ("phase", " turns"),
             Self::BitmapPlacement => ("bitmap place or pitch", " m"),
-            Self::TableRange => ("span of friction", ""),
+            Self::TableRange => ("span of friction", " V"),
             Self::TouchPlace => ("place of the finger", " m"),
             Self::SampleRate => ("sample rate of the stream", " Hz"),
             Self::StartLevel => ("start level of the stream", " samples"),
@@ -197,6 +197,13 @@ impl fmt::Display for ConfigRefusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { field, found, min, max, layer } = *self;
         let (name, unit) = field.name_and_unit();
+        if field == ConfigField::TableRange {
+            return write!(
+                f,
+                "the scene's friction from 1 V to its largest voltage, {found:?} V rms, spans more than the board's table holds: \
+                 lower that voltage, or raise the normal load"
+            );
+        }
         write!(f, "the {name} of ")?;
         match layer {
             Self::WHOLE_SCENE => f.write_str("the scene")?,

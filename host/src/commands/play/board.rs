@@ -154,14 +154,19 @@ impl Diary {
     fn check(&mut self, port: &str) -> Result<(), CommandError> {
         self.write_error.take().map_or(Ok(()), Err)?;
         self.csv.flush()?;
-        match self.end {
-            Some(Event::StateChanged { fault: Some(fault), .. }) => {
-                Err(CommandError::Faulted { port: port.into(), fault })
-            }
-            Some(Event::StateChanged { flags, .. }) if flags.contains(Flags::HOST_SILENT) => {
-                Err(CommandError::HostSilent { port: port.into() })
-            }
-            _ => Ok(()),
+        check_end(self.end.as_ref(), port)
+    }
+}
+
+/// An error when a board has stopped without being told to.
+pub(super) fn check_end(end: Option<&Event>, port: &str) -> Result<(), CommandError> {
+    match end {
+        Some(Event::StateChanged { fault: Some(fault), .. }) => {
+            Err(CommandError::Faulted { port: port.into(), fault: *fault })
         }
+        Some(Event::StateChanged { flags, .. }) if flags.contains(Flags::HOST_SILENT) => {
+            Err(CommandError::HostSilent { port: port.into() })
+        }
+        _ => Ok(()),
     }
 }

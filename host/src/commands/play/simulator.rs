@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use frixel::output::{FeltCsv, FeltRow, OutputError, Report, Trace, write_felt_svg, write_scene_png};
 use frixel::player::{Simulation, Stage, simulate_rows};
 use frixel::scene::{Program, Scene, compile};
-use frixel_hil_sim::RigConfig;
+use frixel_hil_sim::{RigConfig, Stroke};
 
 use super::super::interrupt::Interrupt;
 use super::super::stroke::{check_on_screen, stroke};
@@ -17,13 +17,7 @@ pub(super) fn play(args: &PlayArgs) -> Result<Played, CommandError> {
     let ticks_per_row = ticks_per_row(args.csv_hz, rig.board.tick_hz)?;
     let program = compile(&Scene::load(&args.scene)?, &rig.board.limits, rig.board.tick_hz)?;
     tell_notes(&program);
-    let (width_m, height_m) = (program.header.screen_width_m.into(), program.header.screen_height_m.into());
-    let stroke = stroke(args.stroke.as_deref(), width_m, height_m, args.seconds)?;
-    let seconds = args.seconds.unwrap_or(stroke.duration_s());
-    check_seconds(seconds, rig.board.tick_hz)?;
-    if let Some(path) = &args.stroke {
-        check_on_screen(path, &stroke, width_m, height_m, seconds)?;
-    }
+    let (stroke, seconds) = scene_stroke(args, &program, rig.board.tick_hz)?;
     let simulation = Simulation { rig, stroke, seconds, seed: args.seed, ticks_per_row };
     let interrupt = Interrupt::watch()?;
     let (csv, csv_path) = create_felt_csv(&args.out)?;
@@ -52,14 +46,26 @@ pub(super) fn play(args: &PlayArgs) -> Result<Played, CommandError> {
     Ok(Played { report, files, failure: None })
 }
 
+/// Where the finger goes over a scene's screen, and for how many seconds to play.
+pub(super) fn scene_stroke(args: &PlayArgs, program: &Program, tick_hz: u32) -> Result<(Stroke, f64), CommandError> {
+    let (width_m, height_m) = (program.header.screen_width_m.into(), program.header.screen_height_m.into());
+    let stroke = stroke(args.stroke.as_deref(), width_m, height_m, args.seconds)?;
+    let seconds = args.seconds.unwrap_or(stroke.duration_s());
+    check_seconds(seconds, tick_hz)?;
+    if let Some(path) = &args.stroke {
+        check_on_screen(path, &stroke, width_m, height_m, seconds)?;
+    }
+    Ok((stroke, seconds))
+}
+
 /// Where rows go while the scene plays.
-struct Rows {
-    csv: FeltCsv,
-    trace: Trace,
+pub(super) struct Rows {
+    pub(super) csv: FeltCsv,
+    pub(super) trace: Trace,
 }
 
 impl Rows {
-    fn take(&mut self, rows: &[FeltRow]) -> Result<(), OutputError> {
+    pub(super) fn take(&mut self, rows: &[FeltRow]) -> Result<(), OutputError> {
         for row in rows {
             self.csv.write(row)?;
             self.trace.push(row);
@@ -69,7 +75,7 @@ impl Rows {
 }
 
 /// Draws `felt.svg` and `scene.png`.
-fn draw(args: &PlayArgs, program: &Program, trace: &Trace) -> Result<[PathBuf; 2], CommandError> {
+pub(super) fn draw(args: &PlayArgs, program: &Program, trace: &Trace) -> Result<[PathBuf; 2], CommandError> {
     let title = args.scene.display().to_string();
     let svg = args.out.join("felt.svg");
     write_felt_svg(&svg, &title, trace, &program.reach)?;

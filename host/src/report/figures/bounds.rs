@@ -44,7 +44,7 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
     let mut right = Panel::new(
         "What the bounds leave open",
         Axis::log("voltage, V rms", 1.0..1e3),
-        Axis::linear("lower bound / upper bound of electric friction", 0.0..1.05),
+        Axis::linear("electric friction: lower / upper bound", 0.0..1.05),
     );
     for (index, load_n) in LOADS_N.into_iter().enumerate() {
         let upper = curve("upper", load_n, None, &contact.under_load(load_n)?);

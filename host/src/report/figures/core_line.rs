@@ -124,7 +124,8 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
     ]);
     let [example, ..] = examples();
     let scaled = points(&example, geometric(1e-2, 1e2, 161), true)?;
-    let in_volts = points(&example, even(0.0, 200.0, 101), false)?;
+    // Denser where the contact radius begins, which is steep.
+    let in_volts = points(&example, even(0.0, 1.0, 101).map(|part| 200.0 * part * part), false)?;
     let mut panels: Vec<Panel> = scaled_panels(&scaled, &mut data)?.into();
     panels.extend(example_panels(&in_volts));
     for point in scaled.iter().chain(&in_volts) {

@@ -120,7 +120,7 @@ pub(super) fn contact_radius() -> Result<Figure, ReportError> {
     let contact = example::<f64>()?;
     let (relative, loaded) = (relative_curves(contact)?, load_curves(contact)?);
     let mut left = Panel::new(
-        "The paper's relative loads",
+        "Relative loads of Eq. (44)",
         Axis::linear("voltage V / V*", 0.0..1.8),
         Axis::linear("contact radius a / √(2 R g)", 0.0..2.8),
     );
@@ -157,9 +157,9 @@ pub(super) fn friction() -> Result<Figure, ReportError> {
     let contact = example::<f64>()?;
     let (relative, loaded) = (relative_curves(contact)?, load_curves(contact)?);
     let mut left = Panel::new(
-        "The paper's relative loads",
+        "Relative loads of Eq. (44)",
         Axis::linear("voltage V / V*", 0.0..1.8),
-        Axis::linear("friction F_T / F*", 0.0..50.0),
+        Axis::linear("friction F_T / F*", 0.0..60.0),
     );
     draw(&mut left, &relative, relative_name, |(voltage_v_rms, state)| {
         (voltage_v_rms / contact.voltage_scale_v_rms(), state.friction_n / contact.friction_scale_n())

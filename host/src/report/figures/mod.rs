@@ -35,15 +35,20 @@ pub(super) struct Figure {
 /// All figures in the page's order.
 pub(super) fn all(counts: Option<&Counts>) -> Result<Vec<Figure>, ReportError> {
     let measured = run_time::measure()?;
-    let instructions = counts.map(|counts| run_time::against_instructions(&measured, counts)).transpose()?;
+    let instructions = counts.map(|counts| run_time::against_instructions(&measured, counts)).transpose()?.flatten();
+    let boards = match (&instructions, counts) {
+        (Some(_), _) => run_time::Boards::Shown,
+        (None, Some(_)) => run_time::Boards::NotInTheFile,
+        (None, None) => run_time::Boards::NoFile,
+    };
     let figures = [
         Some(core_line::figure()?),
         Some(loads::contact_radius()?),
         Some(loads::friction()?),
         Some(bounds::figure()?),
         Some(soft::figure()?),
-        instructions.flatten(),
-        Some(run_time::against_time(&measured)?),
+        instructions,
+        Some(run_time::against_time(&measured, boards)?),
         Some(run_time::against_size(&measured)?),
         Some(tick_rate::figure()?),
         Some(stability::in_f64()?),

@@ -94,8 +94,32 @@ pub(super) fn measure() -> Result<[Measured; 2], ReportError> {
     Ok([measured(0.0)?, measured(LOAD_N)?])
 }
 
+/// Whether the page has what an inversion takes on a board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Boards {
+    Shown,
+    NotInTheFile,
+    NoFile,
+}
+
+impl Boards {
+    fn sentence(self) -> &'static str {
+        match self {
+            Self::Shown => "What an inversion takes on a board is in the figure before this one.",
+            Self::NotInTheFile => {
+                "What an inversion takes on a board is not shown: the file given with --bench has no count of one. \
+                 cargo xtask bench writes a file that has, target/bench/bench.json."
+            }
+            Self::NoFile => {
+                "What an inversion takes on a board is not shown: this page was made without --bench. cargo xtask bench \
+                 counts it, and frixel report --bench target/bench/bench.json shows it."
+            }
+        }
+    }
+}
+
 /// Error over run time on this computer.
-pub(super) fn against_time(measured: &[Measured; 2]) -> Result<Figure, ReportError> {
+pub(super) fn against_time(measured: &[Measured; 2], boards: Boards) -> Result<Figure, ReportError> {
     let time = || Axis::log("MEASURED run time / the f64 closed form's", 0.05..200.0);
     let panels = measured.each_ref().map(|one| one.panel(time(), |way| Some(way.seconds / one.unit_seconds())));
     let mut data = Data::new([
@@ -135,6 +159,7 @@ pub(super) fn against_time(measured: &[Measured; 2]) -> Result<Figure, ReportErr
                  else on this page does not.",
                 nanoseconds(measured)
             ),
+            boards.sentence().to_owned(),
             "Bisection is the straightforward way: it halves the range of voltages on Eqs. (36), (34), with a load on Eqs. (43), \
              (21), which give friction in total. In f32 and under a load the total cannot resolve the electric part. The textbook's \
              forward table holds friction at even steps of voltage; below the first step it knows nothing. Direct tables find their \
@@ -217,7 +242,8 @@ pub(super) fn against_instructions(measured: &[Measured; 2], counts: &Counts) ->
             "Largest relative error in electric friction over 1 V to 200 V, without a load or under 0.5 N, whichever is larger, \
              against the largest number of instructions that one inversion took over all inputs. Counts come from the file given \
              with --bench, which cargo xtask bench writes: they were counted in an emulator, and the cycles beside them are \
-             estimates; instructions are not cycles."
+             estimates; instructions are not cycles. A board of 170 MHz has 4,250 cycles to a tick at 40 kHz, and 170 to a \
+             microsecond."
                 .to_owned(),
             EXAMPLE.to_owned(),
         ],

@@ -31,9 +31,9 @@ pub(super) fn alike(stress_exponent: f64) -> Result<SoftFinger<f64>, ParameterEr
 
 pub(super) fn figure() -> Result<Figure, ReportError> {
     let volts = || Axis::log("voltage, V rms", 1.0..1e3);
-    let mut unloaded = Panel::new("No load", volts(), Axis::log("friction, N", 1e-10..1e1));
+    let mut unloaded = Panel::new("No load", volts(), Axis::log("friction, N", 1e-10..1e2));
     let mut loaded =
-        Panel::new("Under 0.5 N: what voltage adds", volts(), Axis::log("electric friction F_T − µ F_N, N", 1e-7..1e1));
+        Panel::new("Under 0.5 N: what voltage adds", volts(), Axis::log("electric friction F_T − µ F_N, N", 1e-7..1e2));
     let mut data = Data::new([
         "finger",
         "stress_exponent",

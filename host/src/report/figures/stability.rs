@@ -3,7 +3,7 @@
 use frixel_model::{Contact, ContactModel, Finger, Real};
 
 use super::{Figure, ReportError};
-use crate::report::chart::{Axis, Cell, Chart, Field, Panel};
+use crate::report::chart::{Axis, Cell, Chart, Field, Look, Mark, PALETTE, Panel};
 use crate::report::data::Data;
 use crate::report::exact::{Springs, relative_error};
 
@@ -127,7 +127,7 @@ pub(super) fn in_f32() -> Result<Figure, ReportError> {
 }
 
 fn figure(precision: &Precision, map: &Map) -> Result<Figure, ReportError> {
-    let panel = |title: &str, error: fn(&Errors) -> f64| {
+    let panel = |title: &str, error: fn(&Errors) -> f64, worst: &Worst| {
         let (low, high) = (f64::from(Q_DECADES.0), f64::from(Q_DECADES.1));
         let mut panel = Panel::new(
             title,
@@ -143,6 +143,9 @@ fn figure(precision: &Precision, map: &Map) -> Result<Figure, ReportError> {
             colours: Axis::log("relative error", precision.colours.0..precision.colours.1),
         });
         panel.notes.push((1.5e-12, 2.6e-7, "↓ no load, n = 0".to_owned()));
+        // Without a load, in the middle of the strip.
+        let n = if worst.n > 0.0 { worst.n } else { (NO_LOAD.0 * NO_LOAD.1).sqrt() };
+        panel.add(&format!("worst: {}", worst.sentence()), Look::mark(PALETTE[1], Mark::Ring), vec![(worst.q, n)]);
         panel
     };
     let mut data = Data::new(["q_from", "q_to", "n_from", "n_to", "forward_relative_error", "inverse_relative_error"]);
@@ -172,11 +175,11 @@ fn figure(precision: &Precision, map: &Map) -> Result<Figure, ReportError> {
         ],
         chart: Chart {
             panels: vec![
-                panel(&format!("Forward in {title}: electric friction"), |cell| cell.forward),
-                panel(&format!("Inverse in {title}: voltage"), |cell| cell.inverse),
+                panel(&format!("Forward in {title}: electric friction"), |cell| cell.forward, &map.forward),
+                panel(&format!("Inverse in {title}: voltage"), |cell| cell.inverse, &map.inverse),
             ],
             columns: 2,
-            shared_legend: true,
+            shared_legend: false,
         },
         csv: data.csv()?,
     })

@@ -3,7 +3,7 @@
 use frixel_model::{ContactModel, Real, SoftFinger, contact_exponent};
 
 use super::{Figure, ReportError, even, geometric};
-use crate::report::chart::{Axis, Chart, Line, Look, PALETTE, Panel};
+use crate::report::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
 use crate::report::data::Data;
 use crate::report::exact::{Soft, relative_error};
 
@@ -32,9 +32,12 @@ impl Worst {
         points.iter().map(part).fold(Self::default(), |worst, one| if one.error > worst.error { one } else { worst })
     }
 
+    fn gamma(&self) -> f64 {
+        self.stress_exponent / (2.0 * self.stress_exponent + 1.0)
+    }
+
     fn sentence(&self) -> String {
-        let Self { error, voltage, stress_exponent } = self;
-        let gamma = stress_exponent / (2.0 * stress_exponent + 1.0);
+        let (Self { error, voltage, stress_exponent }, gamma) = (self, self.gamma());
         format!("{error:.1e} at γ = {gamma:.3} (stress exponent {stress_exponent:.3}), {voltage:.1e} V")
     }
 }
@@ -113,6 +116,10 @@ fn panel(title: &str, range: std::ops::Range<f64>, goal: f64, points: &[Point]) 
         panel.add(&format!("friction, {name}"), solid(forward), curve(|point| point.forward.error));
         panel.add(&format!("voltage, {name}"), solid(inverse), curve(|point| point.inverse.error));
     }
+    let (forward, inverse) = (Worst::of(points, |point| point.forward), Worst::of(points, |point| point.inverse));
+    let (name, worst) = if forward.error > inverse.error { ("friction", forward) } else { ("voltage", inverse) };
+    let place = (worst.gamma(), worst.error);
+    panel.add(&format!("worst: {name} {}", worst.sentence()), Look::mark(PALETTE[6], Mark::Ring), vec![place]);
     panel.add("goal", Look::line(PALETTE[6], Line::Dashed), vec![(0.0, goal), (0.35, goal)]);
     panel
 }
@@ -162,7 +169,7 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
                 panel("f32", 1e-8..1e-4, 1e-5, &single),
             ],
             columns: 2,
-            shared_legend: true,
+            shared_legend: false,
         },
         csv: data.csv()?,
     })

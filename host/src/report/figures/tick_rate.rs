@@ -173,7 +173,7 @@ fn caption() -> Vec<String> {
 pub(super) fn figure() -> Result<Figure, ReportError> {
     let mut left = Panel::new(
         "Stripes under a finger of 100 mm/s",
-        Axis::log("ticks a second, kHz", 0.9..45.0),
+        Axis::log("ticks a second, kHz", 0.9..50.0),
         Axis::log("rms friction error, % of the reachable range", 0.1..100.0),
     );
     let mut data = Data::new([

@@ -7,9 +7,9 @@ mod bench;
 mod provoke;
 mod store;
 
-use board_nucleo_g474re::fault::LastReset;
+use board_nucleo_g474re::fault::{self, LastReset};
 use board_nucleo_g474re::output::Output;
-use board_nucleo_g474re::{clock, indicator, period};
+use board_nucleo_g474re::{clock, guard, indicator, period};
 use cortex_m::Peripherals;
 use cortex_m_rt::entry;
 use defmt::{info, println};
@@ -24,13 +24,13 @@ fn main() -> ! {
     static mut TEXT: Text = [0; FAULT_TEXT_MAX_LEN];
 
     let output = Output::new();
+    let Some(mut core) = Peripherals::take() else { fault::never() };
+    guard::start(&mut core.MPU);
     let last_reset = LastReset::take(TEXT);
     clock::start();
     clock::start_peripherals();
     clock::keep_timers_running_in_debug();
-    if let Some(mut core) = Peripherals::take() {
-        clock::start_cycle_counter(&mut core.DCB, &mut core.DWT);
-    }
+    clock::start_cycle_counter(&mut core.DCB, &mut core.DWT);
     indicator::start();
     period::start();
 

@@ -1,0 +1,76 @@
+//! The figures in the crate's own docs: each is read from `src/lib.rs` and held against the model, to its last digit.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
+use frixel_model::{Contact, ContactModel, Finger, LoadedContact};
+
+const DOCS: &str = include_str!("../src/lib.rs");
+
+/// The crate's docs without their comment signs and line breaks.
+fn docs() -> String {
+    let lines = DOCS.lines().filter_map(|line| line.strip_prefix("//!"));
+    lines.map(str::trim).collect::<Vec<_>>().join(" ")
+}
+
+/// Whether `found` is `written` when it is rounded to the digits that are there.
+#[track_caller]
+fn rounds_to(found: f64, written: &str) {
+    let digits = written.replace(',', "");
+    let decimals = digits.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    let half = 0.5 * 10_f64.powi(-(decimals as i32));
+    let error = (found - digits.parse::<f64>().unwrap()).abs();
+    println!("{written}: {found}");
+    assert!(error <= half * (1.0 + 1e-9), "{found} is not {written}");
+}
+
+fn example() -> Contact<f64> {
+    Contact::new(&Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 }, 1e-5).unwrap()
+}
+
+/// `d ln F_T/d ln sigma0`, half of that over the voltage.
+fn slope(model: &dyn ContactModel<f64>, voltage_v_rms: f64) -> f64 {
+    let friction_n = model.state(voltage_v_rms).unwrap().friction_n;
+    0.5 * model.sensitivity(voltage_v_rms).unwrap().friction_per_volt_n_per_v * voltage_v_rms / friction_n
+}
+
+#[test]
+fn slopes_of_both_bounds() {
+    let contact = example();
+    let (upper, lower) = (contact.under_load(0.0).unwrap(), contact.lower_bound(0.0).unwrap());
+    let mut count = 0;
+    for line in DOCS.lines().filter_map(|line| line.strip_prefix("//!   | ")) {
+        let cells: Vec<&str> = line.trim_end_matches('|').split('|').map(str::trim).collect();
+        let (Ok(q), &[_, upper_slope, lower_slope, ratio]) = (cells[0].parse::<f64>(), cells.as_slice()) else {
+            continue;
+        };
+        let voltage_v_rms = q.sqrt() * contact.voltage_scale_v_rms();
+        rounds_to(slope(&upper, voltage_v_rms), upper_slope);
+        rounds_to(slope(&lower, voltage_v_rms), lower_slope);
+        let friction_n = |model: &dyn ContactModel<f64>| model.state(voltage_v_rms).unwrap().friction_n;
+        rounds_to(friction_n(&upper) / friction_n(&lower), ratio);
+        count += 1;
+    }
+    assert_eq!(count, 6);
+}
+
+/// How far electric friction is above `2 F* sqrt(n) (V/V*)^2`, in per cent.
+fn above_the_square_law(contact: &LoadedContact<f64>, load_n: f64, voltage_v_rms: f64) -> f64 {
+    let scales = contact.contact();
+    let square = 2.0 * scales.friction_scale_n() * scales.load(load_n).sqrt() * scales.attraction(voltage_v_rms);
+    100.0 * (contact.electric_friction_n(voltage_v_rms) / square - 1.0)
+}
+
+#[test]
+fn departure_from_the_square_law() {
+    let docs = docs();
+    let (_, figures) = docs.split_once("`n` is ").unwrap();
+    let (n, figures) = figures.split_once(") it is ").unwrap();
+    rounds_to(example().load(0.5), n);
+    let contact = example().under_load(0.5).unwrap();
+    let (figures, _) = figures.split_once(':').unwrap();
+    let figures: Vec<&str> = figures.split(", ").collect();
+    assert_eq!(figures.len(), 3);
+    for figure in figures {
+        let (per_cent, voltage) = figure.split_once(" % at ").unwrap();
+        rounds_to(above_the_square_law(&contact, 0.5, voltage.strip_suffix(" V").unwrap().parse().unwrap()), per_cent);
+    }
+}

@@ -1,0 +1,185 @@
+//! How deep the stack of a board's image can get, from its instructions: what every function puts on the stack, and whom
+//! it calls.
+//!
+//! What a panic or a fault does comes on top of that: it ends the program, and an overflow then is one fault more, whose
+//! handler has a stack of its own.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
+
+use object::elf::STT_FUNC;
+use object::read::elf::{FileHeader, Sym as _};
+use object::{Endianness, Object, ObjectSection, ObjectSymbol};
+
+use super::thumb::{Instruction, decode};
+
+/// What an exception puts on the stack, floating point and alignment included (Armv7-M architecture reference, B1.5.6).
+const EXCEPTION_BYTES: u64 = 27 * 4;
+/// Parts of the names of functions that end the program.
+const ENDS: [&str; 3] = ["panic", "rust_begin_unwind", "5fault"];
+
+/// A function of the image.
+#[derive(Default)]
+struct Function {
+    name: String,
+    len: u32,
+    own_bytes: u64,
+    calls: Vec<u32>,
+    /// Registers whose contents it calls.
+    called_registers: BTreeSet<u8>,
+    /// Where words stand that it loads, and the registers that they go to.
+    loads: Vec<(u8, u32)>,
+    calls_register: bool,
+    moves_stack: bool,
+}
+
+/// Functions by address.
+pub(super) struct Functions(BTreeMap<u32, Function>);
+
+impl Functions {
+    /// Reads an image's functions.
+    pub(super) fn read(image: &Path) -> Result<Self, String> {
+        let explain = |error: &dyn std::fmt::Display| format!("{}: {error}", image.display());
+        let bytes = fs::read(image).map_err(|error| explain(&error))?;
+        let file = object::read::elf::ElfFile32::<Endianness>::parse(&*bytes).map_err(|error| explain(&error))?;
+        let endian = file.elf_header().endian().map_err(|error| explain(&error))?;
+        let mut functions = BTreeMap::new();
+        // Where code begins (`$t`) and where it is interrupted by tables and literals (`$d`).
+        let mut kinds = BTreeMap::new();
+        for symbol in file.symbols() {
+            let (name, address) = (symbol.name().unwrap_or_default(), symbol.address() as u32);
+            match name.get(..2) {
+                Some("$t") => drop(kinds.insert(address, true)),
+                Some("$d") => drop(kinds.insert(address, false)),
+                _ if symbol.elf_symbol().st_type() == STT_FUNC && symbol.size() > 0 => {
+                    let len = symbol.elf_symbol().st_size(endian);
+                    functions.insert(address & !1, Function { name: name.to_owned(), len, ..Function::default() });
+                }
+                _ => {}
+            }
+        }
+        let text = file.section_by_name(".text").ok_or_else(|| explain(&"no section .text"))?;
+        let code = text.data().map_err(|error| explain(&error))?;
+        let start = text.address() as u32;
+        let is_code = |place: u32| kinds.range(..=place).next_back().is_some_and(|(_, code)| *code);
+        let addresses: BTreeSet<u32> = functions.keys().copied().collect();
+        for (address, function) in &mut functions {
+            let range = address.checked_sub(start).map(|from| from as usize..(from + function.len) as usize);
+            function.scan(*address, range.and_then(|range| code.get(range)).unwrap_or_default(), &is_code);
+            function.look_up_calls(|place| {
+                let from = place.checked_sub(start)? as usize;
+                let bytes = code.get(from..)?.first_chunk()?;
+                let word = u32::from_le_bytes(*bytes);
+                (word & 1 == 1 && addresses.contains(&(word & !1))).then_some(word & !1)
+            });
+        }
+        Ok(Self(functions))
+    }
+
+    /// The deepest that the stack gets, in bytes: the main program, and on top of it every exception of `exceptions`, one
+    /// interrupting the other.
+    pub(super) fn depth(&self, main: &str, exceptions: &[&str]) -> Result<u64, String> {
+        let mut bytes = self.depth_of(main)?;
+        for exception in exceptions {
+            bytes += EXCEPTION_BYTES + self.depth_of(exception)?;
+        }
+        // A hard fault, too, begins with a frame on this stack.
+        Ok(bytes + EXCEPTION_BYTES)
+    }
+
+    fn depth_of(&self, name: &str) -> Result<u64, String> {
+        let found = self.0.iter().find(|(_, function)| function.name == name);
+        let (address, _) = found.ok_or_else(|| format!("the image has no function {name}"))?;
+        self.from(*address, &mut Vec::new(), &mut BTreeMap::new())
+    }
+
+    /// Depth from a function on. `path` led there; `known` are those that were looked at before.
+    fn from(&self, address: u32, path: &mut Vec<u32>, known: &mut BTreeMap<u32, u64>) -> Result<u64, String> {
+        if let Some(bytes) = known.get(&address) {
+            return Ok(*bytes);
+        }
+        let function = self.0.get(&address).ok_or_else(|| format!("nothing is known of the code at {address:#x}"))?;
+        if ENDS.iter().any(|end| function.name.contains(end)) {
+            return Ok(0);
+        }
+        if path.contains(&address) {
+            return Err(format!("{} calls itself", function.name));
+        }
+        if function.calls_register || function.moves_stack {
+            return Err(format!("{} calls, or moves the stack pointer by, what a register says", function.name));
+        }
+        path.push(address);
+        let mut deepest = 0;
+        for call in &function.calls {
+            deepest = deepest.max(self.from(*call, path, known)?);
+        }
+        path.pop();
+        known.insert(address, function.own_bytes + deepest);
+        Ok(function.own_bytes + deepest)
+    }
+}
+
+impl Function {
+    /// Looks at every instruction. What is put on the stack anywhere is added up, whichever way the program takes.
+    fn scan(&mut self, address: u32, code: &[u8], is_code: &dyn Fn(u32) -> bool) {
+        let end = address + self.len;
+        let halfwords: Vec<u16> = code.as_chunks().0.iter().map(|bytes| u16::from_le_bytes(*bytes)).collect();
+        let mut index = 0;
+        while let Some(first) = halfwords.get(index) {
+            let second = halfwords.get(index + 1).copied().unwrap_or_default();
+            let place = address + 2 * index as u32;
+            if !is_code(place) {
+                index += 1;
+                continue;
+            }
+            match decode(*first, second, place) {
+                Instruction::Push(bytes) => self.own_bytes += u64::from(bytes),
+                Instruction::Call(target) => self.calls.push(target),
+                Instruction::Branch(target) if !(address..end).contains(&target) => self.calls.push(target),
+                Instruction::CallRegister(register) => drop(self.called_registers.insert(register)),
+                Instruction::LoadWord(register, from) => self.loads.push((register, from)),
+                Instruction::MoveStack => self.moves_stack = true,
+                Instruction::Branch(_) | Instruction::Other => {}
+            }
+            index += if *first >= 0xe800 { 2 } else { 1 };
+        }
+    }
+
+    /// A function that is called several times is called through a register, where that makes less code: its address is a word
+    /// that was loaded before. `function_at` is the function whose address stands at a place.
+    fn look_up_calls(&mut self, function_at: impl Fn(u32) -> Option<u32>) {
+        for register in &self.called_registers {
+            let loads = self.loads.iter().filter(|(to, _)| to == register);
+            let called: Vec<u32> = loads.filter_map(|(_, from)| function_at(*from)).collect();
+            self.calls_register |= called.is_empty();
+            self.calls.extend(called);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn function(name: &str, own_bytes: u64, calls: &[u32]) -> Function {
+        Function { name: name.to_owned(), own_bytes, calls: calls.to_vec(), ..Function::default() }
+    }
+
+    #[test]
+    fn the_deepest_path_counts_and_one_without_end_is_named() {
+        let mut functions = Functions(BTreeMap::from([
+            (0x10, function("main", 8, &[0x20, 0x30])),
+            (0x20, function("shallow", 16, &[0x60])),
+            (0x30, function("deep", 100, &[0x20, 0x50])),
+            (0x40, function("tick", 40, &[])),
+            (0x50, function("core::panicking::panic", 1000, &[0x50])),
+            (0x60, function("leaf", 4, &[])),
+        ]));
+        assert_eq!(functions.depth("main", &["tick"]), Ok(8 + 100 + 16 + 4 + 108 + 40 + 108));
+        assert!(functions.depth("tock", &[]).is_err());
+        functions.0.insert(0x60, function("leaf", 4, &[0x30]));
+        let refused = functions.depth("main", &[]).unwrap_err();
+        assert!(refused.contains("calls itself"), "{refused}");
+    }
+}
