@@ -49,7 +49,9 @@ fn tones() -> Vec<i16> {
 fn write_wav(path: &Path, samples: &[i16]) {
     let spec = WavSpec { channels: 1, sample_rate: SAMPLE_HZ, bits_per_sample: 16, sample_format: SampleFormat::Int };
     let mut writer = WavWriter::create(path, spec).unwrap();
-    samples.iter().for_each(|sample| writer.write_sample(*sample).unwrap());
+    for sample in samples {
+        writer.write_sample(*sample).unwrap();
+    }
     writer.finalize().unwrap();
 }
 
@@ -171,4 +173,35 @@ fn a_host_that_pauses_is_one_underrun_and_a_fade_and_never_a_stale_value() {
     });
     let expected = (dry as f64 * f64::from(SAMPLE_HZ) / TICK_HZ).round();
     assert!(first.is_some_and(|first| (first as f64 - expected).abs() <= 2.0), "{first:?}, {expected}");
+}
+
+/// The real command: a scene without stream layers refuses samples, and wrong uses are told.
+mod command {
+    use super::*;
+    use std::process::{Command, Output};
+
+    fn frixel(folder: &Path, arguments: &[&str]) -> Output {
+        let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/constant.toml");
+        let mut command = Command::new(env!("CARGO_BIN_EXE_frixel"));
+        command.arg("play").arg(scene).args(["--seconds", "0.2"]).args(arguments).current_dir(folder).output().unwrap()
+    }
+
+    #[test]
+    fn what_cannot_be_streamed_is_refused_in_a_sentence() {
+        let folder = tempfile::tempdir().unwrap();
+        write_wav(&folder.path().join("tones.wav"), &tones());
+        for (arguments, part) in [
+            (&["--stream", "tones.wav"][..], "no layer of the playing scene is a stream"),
+            (&["--stream", "none.wav"], "none.wav cannot be streamed"),
+            (&["--stream", "-"], "put --stream-hz beside"),
+            (&["--stream-hz", "100"], "put --stream - before it"),
+            (&["--stream", "tones.wav", "--stream-hz", "100"], "has a sample rate of its own"),
+            (&["--stream", "-", "--stream-hz", "50000"], "more than the board's 40000 ticks"),
+        ] {
+            let output = frixel(folder.path(), arguments);
+            let said = String::from_utf8(output.stderr).unwrap();
+            assert_eq!(output.status.code(), Some(1), "{arguments:?}: {said}");
+            assert!(said.contains(part), "{arguments:?}: {said}");
+        }
+    }
 }
