@@ -83,6 +83,16 @@ pub enum Carrier {
     Sine,
 }
 
+/// Which of several fingers is followed, since one electrode gives one effect.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Leader {
+    /// The one that came first of those that are on the screen.
+    #[default]
+    First,
+    /// The one that came last.
+    Latest,
+}
+
 /// One layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Record {
