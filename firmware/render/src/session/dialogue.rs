@@ -3,8 +3,8 @@
 use frixel_wire::fault::{Flags, State};
 use frixel_wire::hello::{Hello, PROTOCOL_MAJOR, PROTOCOL_MINOR, feature};
 use frixel_wire::message::{
-    Accepted, Answer, Command, ConfigField, ConfigRefusal, FAULT_TEXT_MAX_LEN, FAULT_TEXT_PIECE_LEN, FromBoard,
-    Refusal, Request, TELEMETRY_PERIOD_MIN_TICKS,
+    Accepted, Answer, Command, FAULT_TEXT_MAX_LEN, FAULT_TEXT_PIECE_LEN, FromBoard, Refusal, Request,
+    TELEMETRY_PERIOD_MIN_TICKS,
 };
 use frixel_wire::payload::{ParseError, Payload};
 use frixel_wire::scene::{HEADER_LEN, Layer, RECORD_LEN, RECORDS_MAX, SCENE_MAX_LEN, Scene};
@@ -17,7 +17,6 @@ use super::live::Stream;
 use super::outbox::Outbox;
 use super::upload::{Destination, Report, Staging, Upload};
 use crate::bitmap_pool::{Bitmap, Directory};
-use crate::config::{self, LENGTH_MAX_M};
 use crate::order::Status;
 use crate::{Active, BitmapPool, Board, Order, Touch};
 

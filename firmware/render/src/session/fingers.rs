@@ -45,7 +45,7 @@ impl Fingers {
     /// Takes that a finger has left. One that was never there is told, too: the ticker may know it from before.
     pub(super) fn lift(&mut self, finger: u8, rule: Leader) {
         self.down.retain(|other| *other != finger);
-        if self.down.is_empty() || self.followed == Some(finger) {
+        if self.down.is_empty() {
             self.let_go();
         }
         self.follow(rule);
