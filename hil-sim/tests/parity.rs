@@ -11,8 +11,8 @@ use frixel_hil_sim::{BoardMemory, Journal, LineFault, Point, Rig, RigConfig, Str
 use frixel_render::Board;
 use frixel_wire::fault::State;
 use frixel_wire::message::Command;
-use frixel_wire::scene::{Blend, Carrier, Header, Layer, Record, Region, Wave};
-use script::{HEADER, Script, record, samples, scene};
+use frixel_wire::scene::{Beat, Blend, Burst, Carrier, Click, Header, Layer, Point as Corner, Record, Region, Wave};
+use script::{HEADER, Script, record, samples, scene, scene_with_points};
 
 const TICKS: u64 = 110_000;
 
@@ -78,7 +78,17 @@ fn a_picture_on_a_sine_carrier_is_the_same() {
         script.greet();
         let picture = samples(200 * 150, 7);
         let crc32 = script.upload_bitmap(200, 150, &picture);
-        let layer = Layer::Bitmap { crc32, x_m: 0.01, y_m: 0.0, pitch_m: 4e-4, black_n: 0.0005, white_n: 0.03 };
+        let layer = Layer::Bitmap {
+            crc32,
+            x_m: 0.01,
+            y_m: 0.0,
+            pitch_m: 4e-4,
+            black_n: 0.0005,
+            white_n: 0.03,
+            pitch_y_m: 4e-4,
+            angle_turns: 0.0,
+            tiled: false,
+        };
         let header = Header { carrier: Carrier::Sine, slew_v_per_s: 3e5, ..HEADER };
         script.play(&scene(&header, &[record(layer)]));
         script.run(TICKS);
@@ -99,14 +109,24 @@ fn a_bad_day_is_the_same() {
         let layers = [
             Layer::Constant { electric_friction_n: 0.002 },
             Layer::Grating {
-                wave: Wave::Square,
+                wave: Wave::Square { duty: 0.5 },
                 cycles_per_m_x: 90.0,
                 cycles_per_m_y: -250.0,
                 phase_turns: -3.2,
                 trough_n: 0.0,
                 crest_n: 0.006,
             },
-            Layer::Bitmap { crc32, x_m: 0.02, y_m: 0.01, pitch_m: 1e-3, black_n: 0.004, white_n: -0.002 },
+            Layer::Bitmap {
+                crc32,
+                x_m: 0.02,
+                y_m: 0.01,
+                pitch_m: 1e-3,
+                black_n: 0.004,
+                white_n: -0.002,
+                pitch_y_m: 1e-3,
+                angle_turns: 0.0,
+                tiled: false,
+            },
             Layer::Grating {
                 wave: Wave::Sine,
                 cycles_per_m_x: 1000.0,
@@ -139,6 +159,77 @@ fn a_bad_day_is_the_same() {
         script.run(TICKS);
     });
     assert_same(&image, &journal);
+}
+
+/// One layer of each kind, each region and each blend, under a finger that crosses them.
+#[test]
+fn every_kind_of_layer_is_the_same() {
+    let Some(image) = emulator::image() else { return };
+    let path = Stroke::minimum_jerk(Point { x_m: 0.005, y_m: 0.02 }, Point { x_m: 0.115, y_m: 0.06 }, 0.9).unwrap();
+    let journal = journal(BOARD, path.looped(0.02).unwrap(), 4, |script| {
+        script.greet();
+        let picture = samples(40 * 30, 11);
+        let crc32 = script.upload_bitmap(40, 30, &picture);
+        let (records, points) = every_kind(crc32);
+        script.play(&scene_with_points(&HEADER, &records, &points));
+        script.run(TICKS);
+    });
+    assert_same(&image, &journal);
+}
+
+fn every_kind(crc32: u32) -> (Vec<Record>, Vec<Corner>) {
+    let rectangle = Region::Rectangle { x_m: 0.03, y_m: 0.025, width_m: 0.03, height_m: 0.03 };
+    let ellipse = Region::Ellipse { x_m: 0.06, y_m: 0.02, width_m: 0.05, height_m: 0.05 };
+    let polygon = Region::Polygon { first: 3, count: 5 };
+    let click = Click { height_n: 0.004, decay_s: 0.05 };
+    let grating = |wave, trough_n, crest_n| Layer::Grating {
+        wave,
+        cycles_per_m_x: 230.0,
+        cycles_per_m_y: -70.0,
+        phase_turns: 0.4,
+        trough_n,
+        crest_n,
+    };
+    let bitmap = |tiled, angle_turns| Layer::Bitmap {
+        crc32,
+        x_m: 0.04,
+        y_m: 0.02,
+        pitch_m: 5e-4,
+        black_n: 0.0,
+        white_n: 0.005,
+        pitch_y_m: 6e-4,
+        angle_turns,
+        tiled,
+    };
+    let noise =
+        Layer::Noise { seed: 0xfeed_5eed, wavelength_min_m: 1e-3, wavelength_max_m: 6e-3, low_n: 0.0, high_n: 0.006 };
+    let vibration = |beat, burst| Layer::Vibration { beat, frequency_hz: 87.3, low_n: 0.0, high_n: 0.003, burst };
+    let edge =
+        Layer::Edge { x_m: 0.05, y_m: 0.04, angle_turns: 0.07, width_m: 0.006, level_n: 0.0, ridge_n: 0.004, click };
+    let button = Layer::Button { rim_width_m: 0.004, rim_n: 0.012, face_n: 0.002, click };
+    let records = [
+        (Region::Screen, Blend::Replace, Layer::Constant { electric_friction_n: 0.003 }),
+        (polygon, Blend::Add, grating(Wave::Sine, 0.0, 0.004)),
+        (rectangle, Blend::Max, grating(Wave::Square { duty: 0.3 }, 0.001, 0.006)),
+        (ellipse, Blend::Multiply, grating(Wave::Triangle, 0.5, 1.5)),
+        (Region::Screen, Blend::Add, grating(Wave::Saw, 0.0, 0.002)),
+        (polygon, Blend::Add, bitmap(true, -0.06)),
+        (rectangle, Blend::Replace, bitmap(false, 0.11)),
+        (Region::Screen, Blend::Add, noise),
+        (Region::Screen, Blend::Add, edge),
+        (rectangle, Blend::Max, button),
+        (ellipse, Blend::Max, button),
+        (Region::Screen, Blend::Add, vibration(Beat::Sine, Burst { period_s: 0.09, on_s: 0.05, ramp_s: 0.02 })),
+        (ellipse, Blend::Add, vibration(Beat::Square, Burst::default())),
+        (polygon, Blend::Add, Layer::Stream { low_n: 0.001, high_n: 0.02 }),
+        (Region::Screen, Blend::Multiply, Layer::Speed { first: 0, count: 3 }),
+    ];
+    let points =
+        [(0.02, 0.4), (0.09, 1.1), (0.2, 0.8), (0.01, 0.01), (0.11, 0.015), (0.06, 0.04), (0.1, 0.07), (0.02, 0.06)];
+    (
+        records.map(|(region, blend, layer)| Record { region, blend, gain: 1.0, layer }).to_vec(),
+        points.map(|(x, y)| Corner { x, y }).to_vec(),
+    )
 }
 
 #[test]

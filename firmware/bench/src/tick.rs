@@ -4,7 +4,7 @@ use cortex_m::singleton;
 use frixel_render::{Active, BitmapPool, Board, Drive, Sense, Session, Ticker, Touch};
 use frixel_wire::fault::State;
 use frixel_wire::message::Command;
-use frixel_wire::scene::{Blend, Carrier, HEADER_LEN, Header, Layer, RECORD_LEN, RECORDS_MAX, Record, Region, Wave};
+use frixel_wire::scene::{Blend, Carrier, HEADER_LEN, Header, Leader, Layer, RECORD_LEN, RECORDS_MAX, Record, Region, Wave};
 
 use crate::count::{Case, Counter};
 use crate::host::Host;
@@ -34,6 +34,7 @@ const HEADER: Header = Header {
     carrier: Carrier::Square,
     autonomous: false,
     prediction: true,
+    leader: Leader::First,
 };
 
 const GRATING: Layer = Layer::Grating {
@@ -46,7 +47,7 @@ const GRATING: Layer = Layer::Grating {
 };
 
 const SQUARE_GRATING: Layer = Layer::Grating {
-    wave: Wave::Square,
+    wave: Wave::Square { duty: 0.5 },
     cycles_per_m_x: 500.0,
     cycles_per_m_y: 100.0,
     phase_turns: 0.2,
@@ -55,7 +56,17 @@ const SQUARE_GRATING: Layer = Layer::Grating {
 };
 
 const fn bitmap(crc32: u32) -> Layer {
-    Layer::Bitmap { crc32, x_m: 0.01, y_m: 0.0, pitch_m: 1e-3, black_n: 0.0, white_n: 0.026 }
+    Layer::Bitmap {
+        crc32,
+        x_m: 0.01,
+        y_m: 0.0,
+        pitch_m: 1e-3,
+        black_n: 0.0,
+        white_n: 0.026,
+        pitch_y_m: 1e-3,
+        angle_turns: 0.0,
+        tiled: false,
+    }
 }
 
 const fn record(layer: Layer) -> Record {
@@ -126,7 +137,7 @@ impl Monitor {
 impl Bench {
     fn play(&mut self, header: &Header, records: &[Record]) {
         let mut scene = [0; HEADER_LEN + RECORDS_MAX * RECORD_LEN];
-        scene[..HEADER_LEN].copy_from_slice(&header.write(records.len() as u8));
+        scene[..HEADER_LEN].copy_from_slice(&header.write(records.len() as u8, 0));
         for (place, record) in scene[HEADER_LEN..].chunks_exact_mut(RECORD_LEN).zip(records) {
             place.copy_from_slice(&record.write());
         }

@@ -42,7 +42,7 @@ pub const LIMITS: BoardLimits = BoardLimits {
 
 /// Where the limits are kept: the first two pages of bank 2.
 pub const LIMITS_SLOT: Slot = Slot { first_page: 0, pages: 1 };
-/// Where the last scene is kept: the rest of bank 2, 126 KiB a copy; 72 KiB of bitmaps and the largest scene take 77.
+/// Where the last scene is kept: the rest of bank 2, 126 KiB a copy; 64 KiB of bitmaps and the largest scene take 71.
 pub const SCENE_SLOT: Slot = Slot { first_page: 2, pages: (PAGES - 2) / 2 };
 
 const _: () = assert!(

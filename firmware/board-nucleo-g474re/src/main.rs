@@ -18,6 +18,8 @@ use cortex_m_rt::entry;
 use defmt_rtt as _;
 use frixel_parts::arm_switch::ArmSwitch;
 use frixel_parts::fault_record::Text;
+#[cfg(feature = "stream")]
+use frixel_render::StreamBuffer;
 #[cfg(feature = "store")]
 use frixel_render::store::SceneKeeper;
 use frixel_render::{Active, BitmapPool, Board, Session, Ticker};
@@ -25,6 +27,9 @@ use frixel_wire::message::FAULT_TEXT_MAX_LEN;
 
 /// Memory for bitmaps, written by the session and read by the tick.
 static POOL: BitmapPool = BitmapPool::new();
+/// Samples of a stream, likewise.
+#[cfg(feature = "stream")]
+static STREAM: StreamBuffer = StreamBuffer::new();
 
 #[entry]
 fn main() -> ! {
@@ -87,8 +92,14 @@ fn make(board: Board) -> (Ticker<'static>, &'static mut Session<'static>) {
     else {
         fault::never()
     };
-    let ticker = Ticker::new(&board, &POOL, first);
+    #[cfg_attr(not(feature = "stream"), allow(unused_mut, reason = "a stream is attached to it"))]
+    let mut ticker = Ticker::new(&board, &POOL, first);
     let Some(session) = singleton!(: Session<'static> = Session::new(board, &POOL, second)) else { fault::never() };
+    #[cfg(feature = "stream")]
+    {
+        ticker.attach_stream(&STREAM);
+        session.attach_stream(&STREAM);
+    }
     (ticker, session)
 }
 

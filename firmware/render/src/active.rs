@@ -2,14 +2,14 @@
 
 use frixel_model::{Carrier, Contact, Finger, InverseTable, Waveform};
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
-use frixel_wire::scene::{Carrier as Shape, Grid, Header, Layer as LayerRecord, LayerSet, RECORDS_MAX, Scene};
+use frixel_wire::scene::{Carrier as Shape, Grid, Header, LayerSet, RECORDS_MAX, Scene};
 use heapless::Vec;
 
 use crate::Board;
 use crate::bitmap_pool::{BitmapPool, Directory};
 use crate::carrier::CarrierTiming;
 use crate::config;
-use crate::layer::{Layer, Moment};
+use crate::layer::{Around, Clicks, Layer, Loading, Moment, Tables};
 
 /// Coefficients of one scene. A board has two of them: one that plays and one that the next scene is built in.
 ///
@@ -30,6 +30,7 @@ pub struct Active {
     on: LayerSet,
     grid: Grid,
     layers: Vec<Layer, RECORDS_MAX>,
+    tables: Tables,
 }
 
 impl Active {
@@ -38,6 +39,7 @@ impl Active {
     pub const fn new() -> Self {
         Self {
             layers: Vec::new(),
+            tables: Tables::new(),
             on: [0; 2],
             grid: Grid::EMPTY,
             table: None,
@@ -54,6 +56,7 @@ impl Active {
     pub(crate) fn unload(&mut self) {
         // One by one: the whole of it is thousands of bytes, and a tick may be waiting.
         self.layers.clear();
+        self.tables.clear();
         self.on = [0; 2];
         self.table = None;
         self.carrier = CarrierTiming::SILENT;
@@ -78,31 +81,32 @@ impl Active {
 
     /// Electric friction of all layers that are on, in N.
     #[inline]
-    pub(crate) fn electric_friction_n(&self, moment: &Moment, pool: &BitmapPool) -> f32 {
+    pub(crate) fn electric_friction_n(&self, moment: Moment, pool: &BitmapPool, clicks: &mut Clicks) -> f32 {
+        let around = &mut Around { moment, pool, tables: &self.tables, clicks };
         match self.layers.first() {
-            Some(layer) if self.single => layer.own_electric_friction_n(moment, pool),
-            _ => self.blended_electric_friction_n(moment, pool),
+            Some(layer) if self.single => layer.own_electric_friction_n(around),
+            _ => self.blended_electric_friction_n(around),
         }
     }
 
     #[inline(never)]
-    fn blended_electric_friction_n(&self, moment: &Moment, pool: &BitmapPool) -> f32 {
+    fn blended_electric_friction_n(&self, around: &mut Around) -> f32 {
         let [on, others_on] = self.on;
-        let [near, others_near] = self.grid.at(moment.x_m, moment.y_m);
-        let first_n = self.blend(0.0, 0, on & near, moment, pool);
-        self.blend(first_n, u32::BITS, others_on & others_near, moment, pool)
+        let [near, others_near] = self.grid.at(around.moment.x_m, around.moment.y_m);
+        let first_n = self.blend(0.0, 0, on & near, around);
+        self.blend(first_n, u32::BITS, others_on & others_near, around)
     }
 
     /// Joins the layers of a set, whose first bit is layer number `first`, to what is below them.
     #[inline]
-    fn blend(&self, below_n: f32, first: u32, set: u32, moment: &Moment, pool: &BitmapPool) -> f32 {
+    fn blend(&self, below_n: f32, first: u32, set: u32, around: &mut Around) -> f32 {
         let mut electric_friction_n = below_n;
         let mut left = set;
         while left != 0 {
             let number = first + left.trailing_zeros();
             left &= left - 1;
             if let Some(layer) = self.layers.get(number as usize) {
-                electric_friction_n = layer.blend_over(electric_friction_n, moment, pool);
+                electric_friction_n = layer.blend_over(electric_friction_n, around);
             }
         }
         electric_friction_n
@@ -126,7 +130,7 @@ impl Active {
         }
         config::check_header(header, board).map_err(Refusal::Config)?;
         let (carrier, voltage_max_v_rms) = carrier(header, board).map_err(Refusal::Config)?;
-        self.load_layers(scene, directory)?;
+        self.load_layers(scene, board, directory)?;
         self.carrier = carrier;
         self.voltage_max_v_rms = voltage_max_v_rms;
         self.slew_step_v = header.slew_v_per_s * board.tick_period_s();
@@ -136,22 +140,18 @@ impl Active {
         Ok(())
     }
 
-    fn load_layers(&mut self, scene: &Scene, directory: &Directory) -> Result<(), Refusal> {
+    fn load_layers(&mut self, scene: &Scene, board: &Board, directory: &Directory) -> Result<(), Refusal> {
         self.grid.reset(scene.header().screen_width_m, scene.header().screen_height_m);
+        self.tables.set_points(scene.points());
         for (number, record) in scene.records().enumerate() {
             let number = number as u8;
-            config::check_record(&record, number).map_err(Refusal::Config)?;
-            let bitmap = match record.layer {
-                LayerRecord::Bitmap { crc32, .. } if cfg!(feature = "bitmap") => {
-                    Some(directory.find(crc32).ok_or(Refusal::BitmapMissing { crc32 })?)
-                }
-                _ => None,
-            };
-            let layer = Layer::new(&record, bitmap).ok_or(Refusal::LeftOut { layer: number })?;
+            config::check_record(&record, scene, number).map_err(Refusal::Config)?;
+            let mut loading = Loading { board, directory, tables: &mut self.tables };
+            let layer = loading.layer(&record, number)?;
             // There is room for every record that a scene can have.
             let _ = self.layers.push(layer);
             self.put(number, true);
-            self.grid.add(number, &record.region);
+            self.grid.add(number, &record.region, self.tables.points());
         }
         self.look_for_a_single_layer();
         Ok(())
@@ -165,7 +165,7 @@ impl Active {
     }
 
     fn look_for_a_single_layer(&mut self) {
-        self.single = self.on == [1, 0] && self.layers.first().is_some_and(Layer::is_everywhere);
+        self.single = self.on == [1, 0] && self.layers.first().is_some_and(Layer::stands_alone);
     }
 }
 

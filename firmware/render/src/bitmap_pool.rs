@@ -6,7 +6,7 @@ use frixel_wire::scene::RECORDS_MAX;
 use heapless::Vec;
 
 /// Bytes for bitmaps on the smallest board, those being uploaded included; none without the feature `bitmap`.
-pub const BITMAP_POOL_LEN: usize = if cfg!(feature = "bitmap") { 72 * 1024 } else { 0 };
+pub const BITMAP_POOL_LEN: usize = if cfg!(feature = "bitmap") { 64 * 1024 } else { 0 };
 
 /// Most bitmaps that the pool holds at a time: those of a scene that plays, and those of the next.
 const ENTRIES_MAX: usize = if cfg!(feature = "bitmap") { 2 * RECORDS_MAX } else { 0 };
@@ -24,7 +24,7 @@ impl BitmapPool {
     #[allow(
         clippy::new_without_default,
         clippy::large_stack_arrays,
-        reason = "72 KiB belong in a static or a box, not into a value made in passing"
+        reason = "64 KiB belong in a static or a box, not into a value made in passing"
     )]
     pub const fn new() -> Self {
         Self { bytes: [const { AtomicU8::new(0) }; BITMAP_POOL_LEN] }

@@ -1,7 +1,7 @@
 //! Whether the numbers of a scene are ones that the board can play. Refused, never silently clamped.
 
 use frixel_wire::message::{ConfigField, ConfigRefusal};
-use frixel_wire::scene::{Header, Layer, Record, Region};
+use frixel_wire::scene::{Header, Layer, Point, Record, Region, Scene, Wave};
 
 use crate::Board;
 
@@ -16,6 +16,22 @@ pub(crate) const LENGTH_MAX_M: f32 = 2.0;
 pub(crate) const GAIN_MAX: f32 = 100.0;
 /// Largest friction that a layer may name, in N, either way.
 const FRICTION_MAX_N: f32 = 100.0;
+/// Least width and height of a region, in m: their inverses are finite.
+const SIZE_MIN_M: f32 = 1e-9;
+/// Finest stripes and noise, in cycles per metre.
+const CYCLES_PER_M_MAX: f32 = 2e4;
+/// Distances of a bitmap's samples, in m.
+const PITCH_MIN_M: f32 = 1e-5;
+const PITCH_MAX_M: f32 = 0.1;
+/// Least width of a ridge or a rim, in m.
+const WIDTH_MIN_M: f32 = 1e-5;
+/// Longest click, in s.
+const CLICK_MAX_S: f32 = 1.0;
+/// Longest period of a burst, in s.
+const BURST_MAX_S: f32 = 60.0;
+/// Largest speed of a curve, and least distance of two, in m/s.
+const SPEED_MAX_M_PER_S: f32 = 10.0;
+const SPEED_STEP_MIN_M_PER_S: f32 = 1e-5;
 
 /// Takes a number when it is from `min` to `max`; not-a-number never is.
 pub(crate) fn within(field: ConfigField, found: f32, min: f32, max: f32, layer: u8) -> Result<(), ConfigRefusal> {
@@ -45,37 +61,103 @@ pub(crate) fn check_header(header: &Header, board: &Board) -> Result<(), ConfigR
     Ok(())
 }
 
-/// Checks the numbers of layer number `layer`.
-pub(crate) fn check_record(record: &Record, layer: u8) -> Result<(), ConfigRefusal> {
-    let length = |field, found| within(field, found, -LENGTH_MAX_M, LENGTH_MAX_M, layer);
-    let size = |field, found| within(field, found, f32::MIN_POSITIVE, LENGTH_MAX_M, layer);
-    let friction = |found| within(ConfigField::Friction, found, -FRICTION_MAX_N, FRICTION_MAX_N, layer);
+/// Checks the numbers of layer number `layer` of a scene.
+pub(crate) fn check_record(record: &Record, scene: &Scene, layer: u8) -> Result<(), ConfigRefusal> {
     within(ConfigField::Gain, record.gain, -GAIN_MAX, GAIN_MAX, layer)?;
-    if let Region::Rectangle { x_m, y_m, width_m, height_m } = record.region {
-        length(ConfigField::Region, x_m)?;
-        length(ConfigField::Region, y_m)?;
-        size(ConfigField::Region, width_m)?;
-        size(ConfigField::Region, height_m)?;
-    }
-    match record.layer {
-        Layer::Constant { electric_friction_n } => friction(electric_friction_n),
-        Layer::Stream { low_n, high_n } => {
-            friction(low_n)?;
-            friction(high_n)
+    check_region(record.region, scene, layer)?;
+    check_kind(&record.layer, scene, layer)
+}
+
+fn check_region(region: Region, scene: &Scene, layer: u8) -> Result<(), ConfigRefusal> {
+    match region {
+        Region::Screen => Ok(()),
+        Region::Rectangle { x_m, y_m, width_m, height_m } | Region::Ellipse { x_m, y_m, width_m, height_m } => {
+            lengths(ConfigField::Region, [x_m, y_m], layer)?;
+            sizes(ConfigField::Region, [width_m, height_m], layer)
         }
-        Layer::Grating { cycles_per_m_x, cycles_per_m_y, phase_turns, trough_n, crest_n, .. } => {
-            within(ConfigField::WaveVector, cycles_per_m_x, -2e4, 2e4, layer)?;
-            within(ConfigField::WaveVector, cycles_per_m_y, -2e4, 2e4, layer)?;
+        Region::Polygon { first, count } => {
+            points(scene, first, count).try_for_each(|vertex| lengths(ConfigField::Vertex, [vertex.x, vertex.y], layer))
+        }
+    }
+}
+
+fn check_kind(kind: &Layer, scene: &Scene, layer: u8) -> Result<(), ConfigRefusal> {
+    match *kind {
+        Layer::Constant { electric_friction_n } => frictions([electric_friction_n], layer),
+        Layer::Grating { wave, cycles_per_m_x, cycles_per_m_y, phase_turns, trough_n, crest_n } => {
+            within(ConfigField::WaveVector, cycles_per_m_x, -CYCLES_PER_M_MAX, CYCLES_PER_M_MAX, layer)?;
+            within(ConfigField::WaveVector, cycles_per_m_y, -CYCLES_PER_M_MAX, CYCLES_PER_M_MAX, layer)?;
             within(ConfigField::Phase, phase_turns, -1000.0, 1000.0, layer)?;
-            friction(trough_n)?;
-            friction(crest_n)
+            if let Wave::Square { duty } = wave {
+                within(ConfigField::Duty, duty, 0.01, 0.99, layer)?;
+            }
+            frictions([trough_n, crest_n], layer)
         }
-        Layer::Bitmap { x_m, y_m, pitch_m, black_n, white_n, .. } => {
-            length(ConfigField::BitmapPlacement, x_m)?;
-            length(ConfigField::BitmapPlacement, y_m)?;
-            within(ConfigField::BitmapPlacement, pitch_m, 1e-5, 0.1, layer)?;
-            friction(black_n)?;
-            friction(white_n)
+        Layer::Bitmap { x_m, y_m, pitch_m, pitch_y_m, angle_turns, black_n, white_n, .. } => {
+            lengths(ConfigField::BitmapPlacement, [x_m, y_m], layer)?;
+            within(ConfigField::BitmapPlacement, pitch_m, PITCH_MIN_M, PITCH_MAX_M, layer)?;
+            within(ConfigField::BitmapPlacement, pitch_y_m, PITCH_MIN_M, PITCH_MAX_M, layer)?;
+            angle(angle_turns, layer)?;
+            frictions([black_n, white_n], layer)
         }
+        Layer::Noise { wavelength_min_m, wavelength_max_m, low_n, high_n, .. } => {
+            let least_m = 1.0 / CYCLES_PER_M_MAX;
+            within(ConfigField::Wavelength, wavelength_max_m, least_m, LENGTH_MAX_M, layer)?;
+            within(ConfigField::Wavelength, wavelength_min_m, least_m, wavelength_max_m, layer)?;
+            frictions([low_n, high_n], layer)
+        }
+        Layer::Edge { x_m, y_m, angle_turns, width_m, level_n, ridge_n, click } => {
+            lengths(ConfigField::Shape, [x_m, y_m], layer)?;
+            within(ConfigField::Shape, width_m, WIDTH_MIN_M, LENGTH_MAX_M, layer)?;
+            angle(angle_turns, layer)?;
+            frictions([level_n, ridge_n, click.height_n], layer)?;
+            within(ConfigField::Duration, click.decay_s, 0.0, CLICK_MAX_S, layer)
+        }
+        Layer::Button { rim_width_m, rim_n, face_n, click } => {
+            within(ConfigField::Shape, rim_width_m, WIDTH_MIN_M, LENGTH_MAX_M, layer)?;
+            frictions([rim_n, face_n, click.height_n], layer)?;
+            within(ConfigField::Duration, click.decay_s, 0.0, CLICK_MAX_S, layer)
+        }
+        Layer::Vibration { frequency_hz, low_n, high_n, burst, .. } => {
+            within(ConfigField::VibrationFrequency, frequency_hz, 0.01, 1000.0, layer)?;
+            within(ConfigField::Duration, burst.period_s, 0.0, BURST_MAX_S, layer)?;
+            within(ConfigField::Duration, burst.on_s, 0.0, burst.period_s, layer)?;
+            within(ConfigField::Duration, burst.ramp_s, 0.0, 0.5 * burst.on_s, layer)?;
+            frictions([low_n, high_n], layer)
+        }
+        Layer::Speed { first, count } => check_curve(points(scene, first, count), layer),
+        Layer::Stream { low_n, high_n } => frictions([low_n, high_n], layer),
     }
+}
+
+/// Speeds rise from point to point.
+fn check_curve(points: impl Iterator<Item = Point>, layer: u8) -> Result<(), ConfigRefusal> {
+    let mut least_m_per_s = 0.0;
+    for point in points {
+        within(ConfigField::CurveSpeed, point.x, least_m_per_s, SPEED_MAX_M_PER_S, layer)?;
+        frictions([point.y], layer)?;
+        least_m_per_s = point.x + SPEED_STEP_MIN_M_PER_S;
+    }
+    Ok(())
+}
+
+fn points(scene: &Scene, first: u8, count: u8) -> impl Iterator<Item = Point> {
+    scene.points().skip(usize::from(first)).take(usize::from(count))
+}
+
+fn frictions<const N: usize>(found: [f32; N], layer: u8) -> Result<(), ConfigRefusal> {
+    let mut found = found.into_iter();
+    found.try_for_each(|found| within(ConfigField::Friction, found, -FRICTION_MAX_N, FRICTION_MAX_N, layer))
+}
+
+fn lengths(field: ConfigField, found: [f32; 2], layer: u8) -> Result<(), ConfigRefusal> {
+    found.into_iter().try_for_each(|found| within(field, found, -LENGTH_MAX_M, LENGTH_MAX_M, layer))
+}
+
+fn sizes(field: ConfigField, found: [f32; 2], layer: u8) -> Result<(), ConfigRefusal> {
+    found.into_iter().try_for_each(|found| within(field, found, SIZE_MIN_M, LENGTH_MAX_M, layer))
+}
+
+fn angle(found: f32, layer: u8) -> Result<(), ConfigRefusal> {
+    within(ConfigField::Angle, found, -1.0, 1.0, layer)
 }

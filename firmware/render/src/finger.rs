@@ -204,6 +204,13 @@ impl Finger {
         self.motion.place_m()
     }
 
+    /// Its velocity as of the last report, in m/s.
+    #[cfg(feature = "speed")]
+    #[inline]
+    pub(crate) fn velocity_m_per_s(&self) -> [f32; 2] {
+        self.velocity_m_per_s
+    }
+
     /// Its speed as of the last report, in m/s.
     pub(crate) fn speed_m_per_s(&self) -> f32 {
         let [x, y] = self.velocity_m_per_s;

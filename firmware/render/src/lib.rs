@@ -31,10 +31,11 @@
 //!
 //! # Leaving out
 //!
-//! Every Cargo feature is something that a scene or a host may ask for, and all are on by default: `grating` and
-//! `bitmap` layers, the `sine-carrier`, `telemetry`; and the `store` of what a board keeps over power-off. An image
-//! without one of them is smaller, says so in the feature bits of its hello, and refuses what needs it. Constant layers
-//! and the square carrier are always there.
+//! Every Cargo feature is something that a scene or a host may ask for, and all are on by default: layers of `grating`,
+//! `bitmap`, `noise`, `edge` (with buttons), `vibration`, `speed` and `stream`, `polygon` regions, the `sine-carrier`,
+//! `telemetry`; and the `store` of what a board keeps over power-off. An image without one of them is smaller, says so
+//! in the feature bits of its hello, and refuses what needs it. Constant layers, rectangles, ellipses, all blends and
+//! the square carrier are always there.
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 
@@ -50,6 +51,8 @@ mod io;
 mod layer;
 mod motion;
 mod order;
+#[cfg(any(feature = "edge", feature = "speed"))]
+mod root;
 mod session;
 mod stillness;
 #[cfg(feature = "store")]
@@ -58,7 +61,14 @@ pub mod store;
 mod stream;
 mod supervisor;
 mod ticker;
-#[cfg(any(feature = "grating", feature = "sine-carrier"))]
+#[cfg(any(
+    feature = "grating",
+    feature = "bitmap",
+    feature = "noise",
+    feature = "edge",
+    feature = "vibration",
+    feature = "sine-carrier"
+))]
 mod turns;
 
 pub use active::Active;

@@ -6,7 +6,7 @@ use frixel_wire::message::Telemetry;
 use crate::carrier::Carrier;
 use crate::envelope::Envelope;
 use crate::finger::{Finger, FingerTiming, Presence};
-use crate::layer::Moment;
+use crate::layer::{Clicks, Moment};
 use crate::order::Counters;
 #[cfg(feature = "stream")]
 use crate::stream::{Player, StreamBuffer, StreamNow};
@@ -23,6 +23,7 @@ pub struct Ticker<'a> {
     pool: &'a BitmapPool,
     active: &'a mut Active,
     supervisor: Supervisor,
+    clicks: Clicks,
     envelope: Envelope,
     carrier: Carrier,
     tick: u32,
@@ -69,6 +70,7 @@ impl<'a> Ticker<'a> {
             active,
             supervisor: Supervisor::new(board),
             finger: Finger::UP,
+            clicks: Clicks::NONE,
             envelope: Envelope::default(),
             carrier,
             tick: 0,
@@ -105,6 +107,7 @@ impl<'a> Ticker<'a> {
                 let spare = core::mem::replace(&mut self.active, next);
                 self.carrier.retime(&self.active.carrier);
                 self.envelope.limit(self.active.voltage_max_v_rms);
+                self.clicks.forget();
                 if self.active.prediction != spare.prediction {
                     self.finger.locate(self.tick, self.active.prediction, &self.timing.finger);
                 }
@@ -327,10 +330,16 @@ impl<'a> Ticker<'a> {
         let moment = Moment {
             x_m,
             y_m,
+            #[cfg(feature = "speed")]
+            velocity_m_per_s: self.finger.velocity_m_per_s(),
+            tick: self.tick,
             #[cfg(feature = "stream")]
             stream: self.stream_now(),
         };
-        let electric_friction_n = self.finger.gain() * self.active.electric_friction_n(&moment, self.pool);
+        #[cfg(feature = "edge")]
+        self.clicks.begin();
+        let friction_n = self.active.electric_friction_n(moment, self.pool, &mut self.clicks);
+        let electric_friction_n = self.finger.gain() * friction_n;
         self.asked_electric_friction_n = electric_friction_n;
         table.voltage_v_rms(electric_friction_n)
     }
@@ -364,6 +373,8 @@ impl<'a> Ticker<'a> {
         }
         self.asked_electric_friction_n = 0.0;
         self.target_v_rms = 0.0;
+        #[cfg(feature = "edge")]
+        self.clicks.lift();
         self.envelope.silence();
         self.carrier.rest(&self.active.carrier);
         self.drive = Drive::default();

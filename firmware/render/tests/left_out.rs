@@ -4,8 +4,8 @@ mod support;
 
 use frixel_wire::hello::feature;
 use frixel_wire::message::{Command, ConfigRefusal, Refusal};
-use frixel_wire::scene::{Carrier, Header, Layer, Wave};
-use support::{Desk, HEADER, Memory, constant, record, scene};
+use frixel_wire::scene::{Beat, Burst, Carrier, Click, Header, Layer, Point, Record, Region, Wave};
+use support::{Desk, HEADER, Memory, constant, record, scene, scene_with_points};
 
 const GRATING: Layer = Layer::Grating {
     wave: Wave::Sine,
@@ -25,6 +25,12 @@ fn the_hello_tells_what_there_is() {
         (cfg!(feature = "bitmap"), feature::BITMAP),
         (cfg!(feature = "sine-carrier"), feature::SINE_CARRIER),
         (cfg!(feature = "telemetry"), feature::TELEMETRY),
+        (cfg!(feature = "noise"), feature::NOISE),
+        (cfg!(feature = "edge"), feature::EDGE),
+        (cfg!(feature = "vibration"), feature::VIBRATION),
+        (cfg!(feature = "speed"), feature::SPEED),
+        (cfg!(feature = "stream"), feature::STREAM),
+        (cfg!(feature = "polygon"), feature::POLYGON),
     ] {
         assert_eq!(hello.features & bit != 0, present, "{bit:#x}");
     }
@@ -40,11 +46,57 @@ fn a_layer_plays_or_is_refused_by_its_number() {
     let found = desk.load(&scene(&HEADER, &records)).err();
     assert_eq!(found, (!cfg!(feature = "grating")).then_some(Refusal::LeftOut { layer: 1 }));
 
-    let bitmap = Layer::Bitmap { crc32: 7, x_m: 0.0, y_m: 0.0, pitch_m: 1e-3, black_n: 0.0, white_n: 0.02 };
+    let bitmap = Layer::Bitmap {
+        crc32: 7,
+        x_m: 0.0,
+        y_m: 0.0,
+        pitch_m: 1e-3,
+        black_n: 0.0,
+        white_n: 0.02,
+        pitch_y_m: 1e-3,
+        angle_turns: 0.0,
+        tiled: false,
+    };
     let found = desk.load(&scene(&HEADER, &[record(bitmap)])).err();
     let expected =
         if cfg!(feature = "bitmap") { Refusal::BitmapMissing { crc32: 7 } } else { Refusal::LeftOut { layer: 0 } };
     assert_eq!(found, Some(expected));
+}
+
+#[test]
+fn a_kind_plays_or_is_refused() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    let click = Click { height_n: 0.01, decay_s: 0.02 };
+    let noise = Layer::Noise { seed: 1, wavelength_min_m: 1e-3, wavelength_max_m: 4e-3, low_n: 0.0, high_n: 0.02 };
+    let edge =
+        Layer::Edge { x_m: 0.05, y_m: 0.05, angle_turns: 0.0, width_m: 2e-3, level_n: 0.0, ridge_n: 0.02, click };
+    let button = Layer::Button { rim_width_m: 2e-3, rim_n: 0.02, face_n: 0.0, click };
+    let vibration = Layer::Vibration {
+        beat: Beat::Sine,
+        frequency_hz: 80.0,
+        low_n: 0.0,
+        high_n: 0.02,
+        burst: Burst { period_s: 0.5, on_s: 0.2, ramp_s: 0.1 },
+    };
+    let constant = Layer::Constant { electric_friction_n: 0.01 };
+    let rectangle = Region::Rectangle { x_m: 0.01, y_m: 0.02, width_m: 0.03, height_m: 0.04 };
+    let polygon = Region::Polygon { first: 0, count: 3 };
+    for (there, region, layer) in [
+        (cfg!(feature = "noise"), Region::Screen, noise),
+        (cfg!(feature = "edge"), Region::Screen, edge),
+        (cfg!(feature = "edge"), rectangle, button),
+        (cfg!(feature = "vibration"), Region::Screen, vibration),
+        (cfg!(feature = "speed"), Region::Screen, Layer::Speed { first: 0, count: 3 }),
+        (cfg!(feature = "stream"), Region::Screen, Layer::Stream { low_n: 0.0, high_n: 0.02 }),
+        (cfg!(feature = "polygon"), polygon, constant),
+    ] {
+        let records = [record(constant), Record { region, ..record(layer) }];
+        let points = [(0.0, 0.0), (0.05, 0.0), (0.1, 0.05)].map(|(x, y)| Point { x, y });
+        let found = desk.load(&scene_with_points(&HEADER, &records, &points)).err();
+        assert_eq!(found, (!there).then_some(Refusal::LeftOut { layer: 1 }), "{layer:?}");
+    }
 }
 
 #[test]

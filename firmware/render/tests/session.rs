@@ -18,7 +18,17 @@ use support::{Desk, HEADER, Memory, constant, record, request, scene};
 
 #[cfg(feature = "bitmap")]
 fn bitmap(crc32: u32) -> Layer {
-    Layer::Bitmap { crc32, x_m: 0.0, y_m: 0.0, pitch_m: 1e-3, black_n: 0.0, white_n: 0.02 }
+    Layer::Bitmap {
+        crc32,
+        x_m: 0.0,
+        y_m: 0.0,
+        pitch_m: 1e-3,
+        black_n: 0.0,
+        white_n: 0.02,
+        pitch_y_m: 1e-3,
+        angle_turns: 0.0,
+        tiled: false,
+    }
 }
 
 #[test]
@@ -102,7 +112,7 @@ fn the_pool_keeps_what_plays_and_gives_way_when_nothing_does() {
     desk.upload_bitmap(250, 250, &first).unwrap();
     desk.play(&scene(&HEADER, &[record(bitmap(bitmap_crc32(250, 250, &first)))]));
     let full = desk.upload_bitmap(250, 250, &second);
-    assert_eq!(full, Err(Refusal::BitmapPoolFull { len: 62_500, free: 81_920 - 62_500 }));
+    assert_eq!(full, Err(Refusal::BitmapPoolFull { len: 62_500, free: 65_536 - 62_500 }));
     desk.command(Command::Stop).unwrap();
     assert_eq!(desk.upload_bitmap(250, 250, &second), Ok(Accepted::Done));
     assert_eq!(desk.command(Command::Play), Err(Refusal::NoScene), "its bitmap is overwritten");
@@ -152,7 +162,7 @@ fn what_is_no_scene_is_refused() {
     assert_eq!(desk.load(&unknown), Err(Refusal::Scene(SceneError::UnknownKind { record: 0, kind: 99 })));
     assert!(matches!(
         desk.command(Command::UploadScene { len: 1 << 20, crc32: 0 }),
-        Err(Refusal::SceneTooLarge { len: 1_048_576, max: 3640 })
+        Err(Refusal::SceneTooLarge { len: 1_048_576, max: 4664 })
     ));
     assert_eq!(
         desk.command(Command::Commit { crc32: 1 }),
@@ -250,13 +260,13 @@ fn free_space_in_pieces_is_moved_together_when_nothing_plays() {
     let mut memory = Memory::new();
     let mut desk = Desk::new(&mut memory);
     desk.greet();
-    let (first, second, third) = (vec![1; 30_000], vec![2; 30_000], vec![3; 45_000]);
+    let (first, second, third) = (vec![1; 30_000], vec![2; 30_000], vec![3; 33_000]);
     desk.upload_bitmap(300, 100, &first).unwrap();
     desk.upload_bitmap(300, 100, &second).unwrap();
     let both = [bitmap_crc32(300, 100, &first), bitmap_crc32(300, 100, &second)].map(|crc32| record(bitmap(crc32)));
     desk.load(&scene(&HEADER, &both)).unwrap();
     assert_eq!(desk.upload_bitmap(300, 100, &second), Ok(Accepted::AlreadyHeld));
-    assert_eq!(desk.upload_bitmap(450, 100, &third), Ok(Accepted::Done));
+    assert_eq!(desk.upload_bitmap(330, 100, &third), Ok(Accepted::Done));
     desk.play(&scene(&HEADER, &[record(bitmap(bitmap_crc32(300, 100, &second)))]));
     desk.slide(800);
     let asked_n = desk.status().telemetry.asked_electric_friction_n;

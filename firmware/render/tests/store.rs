@@ -158,7 +158,17 @@ fn scene_flash() -> SimulatedFlash {
 
 /// A scene of two bitmaps, one of them used twice.
 fn textured(desk: &mut Desk) -> Vec<u8> {
-    let layer = |crc32, pitch_m| Layer::Bitmap { crc32, x_m: 0.0, y_m: 0.0, pitch_m, black_n: 0.0, white_n: 0.02 };
+    let layer = |crc32, pitch_m| Layer::Bitmap {
+        crc32,
+        x_m: 0.0,
+        y_m: 0.0,
+        pitch_m,
+        black_n: 0.0,
+        white_n: 0.02,
+        pitch_y_m: pitch_m,
+        angle_turns: 0.0,
+        tiled: false,
+    };
     let pictures = [content(7, 61 * 53), content(8, 9)];
     desk.upload_bitmap(61, 53, &pictures[0]).unwrap();
     desk.upload_bitmap(3, 3, &pictures[1]).unwrap();
@@ -281,7 +291,7 @@ fn a_scene_that_the_board_can_no_longer_play_is_left_alone() {
     assert_eq!(keeper.settled_crc32(), None);
     assert_eq!((desk.greet().scene_crc32, desk.session.scene()), (0, None));
     // The whole pool is free.
-    desk.upload_bitmap(288, 256, &vec![5; 72 * 1024]).unwrap();
+    desk.upload_bitmap(256, 256, &vec![5; 64 * 1024]).unwrap();
 }
 
 /// What a good CRC stands over need not be good itself.

@@ -68,17 +68,32 @@ pub mod feature {
     pub const TELEMETRY: u32 = 1 << 3;
     /// The host says where the finger is.
     pub const HOST_TOUCH: u32 = 1 << 4;
-    /// Samples that the host streams while a scene plays.
+    /// Noise layers.
+    pub const NOISE: u32 = 1 << 5;
+    /// Edge and button layers.
+    pub const EDGE: u32 = 1 << 6;
+    /// Vibration layers.
+    pub const VIBRATION: u32 = 1 << 7;
+    /// Speed layers.
+    pub const SPEED: u32 = 1 << 8;
+    /// Stream layers, and the samples that the host streams for them while a scene plays.
     pub const STREAM: u32 = 1 << 9;
+    /// Polygons as regions.
+    pub const POLYGON: u32 = 1 << 10;
 
     /// The name of each, as the board's Cargo features have it where there is one.
-    pub const NAMES: [(u32, &str); 6] = [
+    pub const NAMES: [(u32, &str); 11] = [
         (GRATING, "grating"),
         (BITMAP, "bitmap"),
         (SINE_CARRIER, "sine-carrier"),
         (TELEMETRY, "telemetry"),
         (HOST_TOUCH, "touch from the host"),
+        (NOISE, "noise"),
+        (EDGE, "edge"),
+        (VIBRATION, "vibration"),
+        (SPEED, "speed"),
         (STREAM, "stream"),
+        (POLYGON, "polygon"),
     ];
 }
 

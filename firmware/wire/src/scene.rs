@@ -1,29 +1,42 @@
-//! The compiled scene: a header and fixed-size records, little-endian, the same bytes on the wire and in flash.
+//! The compiled scene: a header, fixed-size records and points, little-endian, the same bytes on the wire and in flash.
 //!
-//! Every friction in a scene is **electric friction**: what the drive adds above `mu F_N`, in newtons. Lengths are in
-//! metres from the screen's top left corner, x to the right, y down.
+//! Every friction in a scene is **electric friction**: what the drive adds above `mu F_N`, in newtons; of a layer that
+//! is multiplied, the same numbers are plain factors. Lengths are in metres from the screen's top left corner, x to the
+//! right, y down. Angles are in turns, from x towards y.
 
 mod codec;
 mod error;
 mod grid;
+mod kind;
+mod point;
 mod view;
 
 pub use error::SceneError;
 pub use grid::{Cell, Grid, LayerSet};
+pub use kind::{Beat, Burst, Click, Layer, Wave};
+pub use point::Point;
 pub use view::Scene;
 
 use crate::frame::Crc32;
 
 /// Version of the layout.
-pub const SCENE_VERSION: u16 = 1;
+pub const SCENE_VERSION: u16 = 2;
 /// Bytes of the header.
 pub const HEADER_LEN: usize = 56;
 /// Bytes of a record.
 pub const RECORD_LEN: usize = 56;
 /// Most records that the layout allows.
 pub const RECORDS_MAX: usize = 64;
+/// Bytes of a point.
+pub const POINT_LEN: usize = 8;
+/// Most points that the layout allows, those of all polygons and curves together.
+pub const POINTS_MAX: usize = 128;
+/// Most vertices of a polygon.
+pub const POLYGON_POINTS_MAX: usize = 32;
+/// Most points of a curve of speed.
+pub const CURVE_POINTS_MAX: usize = 16;
 /// Bytes of the largest scene.
-pub const SCENE_MAX_LEN: usize = HEADER_LEN + RECORDS_MAX * RECORD_LEN;
+pub const SCENE_MAX_LEN: usize = HEADER_LEN + RECORDS_MAX * RECORD_LEN + POINTS_MAX * POINT_LEN;
 
 /// CRC-32 that names a bitmap: of its width and height, each little-endian in two bytes, and its samples. The shape is
 /// part of the name, since the same bytes in another shape are another picture.
@@ -71,6 +84,8 @@ pub struct Header {
     pub autonomous: bool,
     /// The tick estimates where the finger is now from late samples; without it, it takes the last sample as it is.
     pub prediction: bool,
+    /// Which finger is followed when the host tells of several.
+    pub leader: Leader,
 }
 
 /// Shape of the carrier.
@@ -100,7 +115,7 @@ pub struct Record {
     pub region: Region,
     /// How it joins the layers before it.
     pub blend: Blend,
-    /// Factor on the layer's friction.
+    /// Factor on what the layer gives.
     pub gain: f32,
     /// What the layer is.
     pub layer: Layer,
@@ -122,6 +137,25 @@ pub enum Region {
         /// Height, m.
         height_m: f32,
     },
+    /// The ellipse that touches the sides of a rectangle; its border belongs to it.
+    Ellipse {
+        /// Left end, m.
+        x_m: f32,
+        /// Top end, m.
+        y_m: f32,
+        /// Width, m.
+        width_m: f32,
+        /// Height, m.
+        height_m: f32,
+    },
+    /// A polygon, by the even-odd rule. Left and top edges belong to it, right and bottom ones do not, so that of two
+    /// polygons with a common edge each place is in one.
+    Polygon {
+        /// Its first vertex among the scene's points, m.
+        first: u8,
+        /// How many vertices it has, 3 to [`POLYGON_POINTS_MAX`]; the last is joined to the first.
+        count: u8,
+    },
 }
 
 /// How a layer joins the layers before it.
@@ -132,61 +166,8 @@ pub enum Blend {
     Replace,
     /// It is added to them.
     Add,
-}
-
-/// What a layer is. Frictions are electric, in newtons, before the gain.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Layer {
-    /// The same friction everywhere.
-    Constant {
-        /// Electric friction, N.
-        electric_friction_n: f32,
-    },
-    /// Stripes: `trough + (crest - trough) w(kx x + ky y + phase)`, with `w` between 0 and 1 and one period a turn.
-    Grating {
-        /// Shape of the stripes.
-        wave: Wave,
-        /// Cycles per metre along x.
-        cycles_per_m_x: f32,
-        /// Cycles per metre along y.
-        cycles_per_m_y: f32,
-        /// Phase, in turns.
-        phase_turns: f32,
-        /// Least electric friction, N.
-        trough_n: f32,
-        /// Largest electric friction, N.
-        crest_n: f32,
-    },
-    /// A picture of samples at a pitch, bilinear between their centres, held at the border.
-    Bitmap {
-        /// CRC-32 of the samples: the bitmap's name in the pool.
-        crc32: u32,
-        /// Left edge of the first sample, m.
-        x_m: f32,
-        /// Top edge of the first sample, m.
-        y_m: f32,
-        /// Distance of samples, m.
-        pitch_m: f32,
-        /// Electric friction of sample 0, N.
-        black_n: f32,
-        /// Electric friction of sample 255, N.
-        white_n: f32,
-    },
-    /// What the host streams: `low + (high - low) sample`, with samples from 0 to 1.
-    Stream {
-        /// Electric friction of sample 0, N.
-        low_n: f32,
-        /// Electric friction of sample 1, N.
-        high_n: f32,
-    },
-}
-
-/// Shape of a grating's stripes over a turn.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Wave {
-    /// `(1 + sin(2 pi turns)) / 2`.
-    #[default]
-    Sine,
-    /// 1 in the first half turn, 0 in the second.
-    Square,
+    /// They are multiplied by it: its numbers are plain factors.
+    Multiply,
+    /// The larger of the two counts.
+    Max,
 }

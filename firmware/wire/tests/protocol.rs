@@ -13,7 +13,9 @@ use frixel_wire::message::{
     STREAM_START_LEVEL_MAX, TELEMETRY_PERIOD_MIN_TICKS,
 };
 use frixel_wire::payload::{CHUNK_LEN, CHUNK_NUMBER_MAX, PAYLOAD_MAX_LEN, Payload, SAMPLES_MAX};
-use frixel_wire::scene::{HEADER_LEN, RECORD_LEN, RECORDS_MAX, SCENE_VERSION, SceneError};
+use frixel_wire::scene::{
+    CURVE_POINTS_MAX, HEADER_LEN, POINTS_MAX, POLYGON_POINTS_MAX, RECORD_LEN, RECORDS_MAX, SCENE_VERSION, SceneError,
+};
 use support::hex::{from_hex, to_hex};
 use support::{samples, variants};
 
@@ -109,7 +111,12 @@ fn features_have_the_bits_that_the_table_says() {
         (feature::SINE_CARRIER, "SINE_CARRIER"),
         (feature::TELEMETRY, "TELEMETRY"),
         (feature::HOST_TOUCH, "HOST_TOUCH"),
+        (feature::NOISE, "NOISE"),
+        (feature::EDGE, "EDGE"),
+        (feature::VIBRATION, "VIBRATION"),
+        (feature::SPEED, "SPEED"),
         (feature::STREAM, "STREAM"),
+        (feature::POLYGON, "POLYGON"),
     ];
     assert_eq!(page, code);
 }
@@ -204,7 +211,8 @@ fn limits_are_those_of_the_table() {
 fn constants_are_those_of_the_text() {
     assert_eq!((FRAME_MAX_LEN, PAYLOAD_MAX_LEN), (192, 186));
     assert_eq!((CHUNK_LEN, CHUNK_NUMBER_MAX), (184, 32_767));
-    assert_eq!((SCENE_VERSION, RECORDS_MAX), (1, 64));
+    assert_eq!((SCENE_VERSION, RECORDS_MAX, POINTS_MAX), (2, 64, 128));
+    assert_eq!((POLYGON_POINTS_MAX, CURVE_POINTS_MAX), (32, 16));
     assert_eq!((SceneError::HEADER, ConfigRefusal::WHOLE_SCENE), (255, 255));
     assert_eq!(TELEMETRY_PERIOD_MIN_TICKS, 40);
     assert_eq!((SAMPLES_MAX, STREAM_START_LEVEL_MAX), (90, 800));

@@ -6,7 +6,8 @@ mod support;
 use std::collections::BTreeSet;
 
 use frixel_wire::scene::{
-    Blend, HEADER_LEN, Header, Layer, RECORD_LEN, RECORDS_MAX, Record, Region, SCENE_MAX_LEN, Scene, SceneError,
+    Blend, HEADER_LEN, Header, Layer, POINT_LEN, POINTS_MAX, Point, RECORD_LEN, RECORDS_MAX, Record, Region,
+    SCENE_MAX_LEN, Scene, SceneError, Wave,
 };
 use support::samples;
 
@@ -22,9 +23,9 @@ fn changed(at: usize, value: u8) -> Vec<u8> {
 
 #[test]
 fn another_version_is_refused_whatever_its_length() {
-    assert_eq!(refused(&changed(0, 2)), SceneError::Version { found: 2 });
-    assert_eq!(refused(&changed(1, 1)), SceneError::Version { found: 0x0101 });
-    assert_eq!(refused(&[2, 0]), SceneError::Version { found: 2 });
+    assert_eq!(refused(&changed(0, 1)), SceneError::Version { found: 1 });
+    assert_eq!(refused(&changed(1, 1)), SceneError::Version { found: 0x0102 });
+    assert_eq!(refused(&[3, 0]), SceneError::Version { found: 3 });
 }
 
 /// Cut anywhere or longer by a byte or a record.
@@ -40,26 +41,78 @@ fn another_length_is_refused() {
     }
     bytes.push(0);
     assert_eq!(refused(&bytes), SceneError::Length { found: expected + 1, expected });
-    bytes.resize(bytes.len() - 1 + RECORD_LEN, 0);
-    assert_eq!(refused(&bytes), SceneError::Length { found: expected + RECORD_LEN as u32, expected });
+    for more in [POINT_LEN, RECORD_LEN] {
+        bytes.resize(expected as usize + more, 0);
+        assert_eq!(refused(&bytes), SceneError::Length { found: expected + more as u32, expected });
+    }
 }
 
 #[test]
 fn the_largest_scene_is_read_and_a_larger_one_refused() {
     let record = samples::records()[0].write();
-    let mut bytes = samples::header().write(RECORDS_MAX as u8).to_vec();
-    bytes.extend(record.repeat(RECORDS_MAX));
+    let point = samples::points()[0].write();
+    let of = |records: usize, points: usize| {
+        let mut bytes = samples::header().write(records as u8, points as u8).to_vec();
+        bytes.extend(record.repeat(records));
+        bytes.extend(point.repeat(points));
+        bytes
+    };
+    let bytes = of(RECORDS_MAX, POINTS_MAX);
     assert_eq!(bytes.len(), SCENE_MAX_LEN);
-    assert_eq!(Scene::parse(&bytes).unwrap().records().count(), RECORDS_MAX);
+    let scene = Scene::parse(&bytes).unwrap();
+    assert_eq!((scene.records().count(), scene.points().count()), (RECORDS_MAX, POINTS_MAX));
 
-    let mut bytes = samples::header().write(RECORDS_MAX as u8 + 1).to_vec();
-    bytes.extend(record.repeat(RECORDS_MAX + 1));
-    assert_eq!(refused(&bytes), SceneError::TooManyRecords { found: RECORDS_MAX as u8 + 1 });
+    let found = RECORDS_MAX as u8 + 1;
+    assert_eq!(refused(&of(RECORDS_MAX + 1, 0)), SceneError::TooManyRecords { found });
+    let found = POINTS_MAX as u8 + 1;
+    assert_eq!(refused(&of(1, POINTS_MAX + 1)), SceneError::TooManyPoints { found });
+}
+
+/// Polygons take 3 to 32 points and curves 2 to 16, all of them the scene's own.
+#[test]
+fn records_name_points_that_there_are() {
+    let of = |record: Record, points: u8| {
+        let mut bytes = samples::header().write(1, points).to_vec();
+        bytes.extend(record.write());
+        bytes.extend(Point::default().write().repeat(usize::from(points)));
+        Scene::parse(&bytes).map(|_| ())
+    };
+    let plain = samples::records()[0];
+    let polygon = |first, count| Record { region: Region::Polygon { first, count }, ..plain };
+    let curve = |first, count| Record { layer: Layer::Speed { first, count }, ..plain };
+    for points in [0, 2, 3, 16, 17, 32, 33, 100, 128] {
+        for first in [0, 1, 95, 96, 97, 112, 126, 127, 255] {
+            for count in [0, 1, 2, 3, 16, 17, 32, 33, 255] {
+                let inside = usize::from(first) + usize::from(count) <= usize::from(points);
+                let error = Err(SceneError::Points { record: 0, first, count });
+                let expected = if inside && (3..=32).contains(&count) { Ok(()) } else { error };
+                assert_eq!(of(polygon(first, count), points), expected);
+                let expected = if inside && (2..=16).contains(&count) { Ok(()) } else { error };
+                assert_eq!(of(curve(first, count), points), expected);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_button_has_a_rectangle_or_an_ellipse() {
+    let mut scene = samples::scene();
+    let number = samples::records().iter().position(|record| matches!(record.layer, Layer::Button { .. })).unwrap();
+    for (region, plain) in [(Region::Screen, false), (Region::Polygon { first: 0, count: 3 }, false)]
+        .into_iter()
+        .chain(samples::records().iter().map(|record| (record.region, true)))
+    {
+        let takes = plain && matches!(region, Region::Rectangle { .. } | Region::Ellipse { .. });
+        let record = Record { region, ..samples::records()[number] };
+        scene[HEADER_LEN + number * RECORD_LEN..][..RECORD_LEN].copy_from_slice(&record.write());
+        let error = Err(SceneError::ButtonRegion { record: number as u8 });
+        assert_eq!(Scene::parse(&scene).map(|_| ()), if takes { Ok(()) } else { error }, "{region:?}");
+    }
 }
 
 #[test]
 fn a_scene_without_layers_is_read() {
-    let bytes = samples::header().write(0);
+    let bytes = samples::header().write(0, 0);
     let scene = Scene::parse(&bytes).unwrap();
     assert_eq!((*scene.header(), scene.record_count()), (samples::header(), 0));
 }
@@ -74,14 +127,14 @@ fn unknown_flags_and_carriers_are_refused() {
     }
 }
 
-/// Every value of kind, region, blend and wave is either refused by name or one that has golden bytes.
+/// Every value of kind, region, blend and form is either refused by name or one that has golden bytes.
 #[test]
 fn unknown_choices_are_refused() {
     let golden: Vec<_> = samples::records().iter().map(Record::write).collect();
     for offset in 0..4 {
         let known: BTreeSet<u8> = golden.iter().map(|record| record[usize::from(offset)]).collect();
         for value in 0..=u8::MAX {
-            // A record that uses everything: a grating on a rectangle.
+            // A record that uses everything, of a kind with a form: a grating on a rectangle.
             let mut record = golden[1];
             record[usize::from(offset)] = value;
             let unknown = match offset {
@@ -94,16 +147,25 @@ fn unknown_choices_are_refused() {
     }
 }
 
-/// Offsets of the bytes that a record uses, from the table in `PROTOCOL.md`.
+/// Offsets of the bytes that a record uses, from the tables in `PROTOCOL.md`.
 fn used(record: &Record) -> BTreeSet<usize> {
     let mut used: BTreeSet<usize> = [0, 1, 2].into_iter().chain(20..24).collect();
-    if matches!(record.region, Region::Rectangle { .. }) {
-        used.extend(4..20);
+    match record.region {
+        Region::Screen => {}
+        Region::Rectangle { .. } | Region::Ellipse { .. } => used.extend(4..20),
+        Region::Polygon { .. } => used.extend(4..6),
     }
     match record.layer {
         Layer::Constant { .. } => used.extend(24..28),
+        Layer::Grating { wave: Wave::Square { .. }, .. } => used.extend([3].into_iter().chain(24..48)),
         Layer::Grating { .. } => used.extend([3].into_iter().chain(24..44)),
-        Layer::Bitmap { .. } => used.extend((24..44).chain(52..56)),
+        Layer::Bitmap { .. } => used.extend([3].into_iter().chain(24..56)),
+        Layer::Noise { .. } => used.extend((24..40).chain(52..56)),
+        Layer::Edge { .. } => used.extend(24..56),
+        Layer::Button { .. } => used.extend(24..44),
+        Layer::Vibration { .. } => used.extend([3].into_iter().chain(24..48)),
+        Layer::Speed { .. } => used.extend(52..54),
+        Layer::Stream { .. } => used.extend(24..32),
     }
     used
 }
@@ -122,7 +184,7 @@ fn bytes_that_nothing_uses_are_zero() {
             assert_eq!(refused, Err(SceneError::NotZero { record: 5, offset: offset as u8 }), "{record:?}");
         }
     }
-    for offset in 53..HEADER_LEN {
+    for offset in 54..HEADER_LEN {
         let not_zero = SceneError::NotZero { record: SceneError::HEADER, offset: offset as u8 };
         assert_eq!(refused(&changed(offset, 1)), not_zero);
     }
@@ -138,10 +200,10 @@ fn bytes_that_something_uses_are_read() {
             assert_ne!(Record::parse(&bytes, 0), Ok(record), "offset {offset} of {record:?}");
         }
     }
-    for offset in 3..53 {
-        let mut bytes = samples::header().write(0);
+    for offset in 3..54 {
+        let mut bytes = samples::header().write(0, 0);
         bytes[offset] ^= 1;
-        assert_ne!(Header::parse(&bytes), Ok((samples::header(), 0)), "offset {offset}");
+        assert_ne!(Header::parse(&bytes), Ok((samples::header(), 0, 0)), "offset {offset}");
     }
 }
 

@@ -116,6 +116,11 @@ fn scene_numbers(error: SceneError) -> Vec<String> {
         SceneError::UnknownChoice { record, value, .. } => vec![format!("layer {record}"), value.to_string()],
         SceneError::TooManyRecords { found } => vec![found.to_string(), "64".into()],
         SceneError::UnknownFlags(flags) => vec![format!("{flags:#04x}")],
+        SceneError::TooManyPoints { found } => vec![found.to_string(), "128".into()],
+        SceneError::Points { record, first, count } => {
+            vec![format!("layer {record}"), first.to_string(), count.to_string()]
+        }
+        SceneError::ButtonRegion { record } => vec![format!("layer {record}")],
         SceneError::NotZero { record: SceneError::HEADER, offset } => vec!["header".into(), offset.to_string()],
         SceneError::NotZero { record, offset } => vec![format!("layer {record}"), offset.to_string()],
     }

@@ -6,7 +6,7 @@ use frixel_render::Status;
 use frixel_wire::frame::{FRAME_MAX_LEN, crc32};
 use frixel_wire::message::{Command, Request};
 use frixel_wire::payload::{self, CHUNK_LEN};
-use frixel_wire::scene::{Blend, Carrier, Header, Layer, Record, Region, bitmap_crc32};
+use frixel_wire::scene::{Blend, Carrier, Header, Layer, Leader, Point, Record, Region, bitmap_crc32};
 
 /// Ticks between two pings.
 const PING_TICKS: u64 = 2_000;
@@ -122,6 +122,7 @@ pub const HEADER: Header = Header {
     carrier: Carrier::Square,
     autonomous: false,
     prediction: true,
+    leader: Leader::First,
 };
 
 pub fn record(layer: Layer) -> Record {
@@ -129,10 +130,13 @@ pub fn record(layer: Layer) -> Record {
 }
 
 pub fn scene(header: &Header, records: &[Record]) -> Vec<u8> {
-    let mut bytes = header.write(records.len() as u8).to_vec();
-    for record in records {
-        bytes.extend(record.write());
-    }
+    scene_with_points(header, records, &[])
+}
+
+pub fn scene_with_points(header: &Header, records: &[Record], points: &[Point]) -> Vec<u8> {
+    let mut bytes = header.write(records.len() as u8, points.len() as u8).to_vec();
+    bytes.extend(records.iter().flat_map(Record::write));
+    bytes.extend(points.iter().flat_map(Point::write));
     bytes
 }
 

@@ -16,6 +16,12 @@ impl Interrupt {
         Ok(Self(asked))
     }
 
+    /// As [`Self::is_asked`], when something else may have been ended by the same Ctrl-C a moment before.
+    pub(super) fn was_asked(&self) -> bool {
+        std::thread::sleep(std::time::Duration::from_millis(50));
+        self.is_asked()
+    }
+
     pub(super) fn is_asked(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }

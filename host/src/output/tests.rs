@@ -13,7 +13,7 @@ use crate::scene::{Program, Scene, compile};
 use crate::wanted::Wanted;
 
 const LIMITS: BoardLimits = BoardLimits {
-    bitmap_pool_bytes: 80 * 1024,
+    bitmap_pool_bytes: 64 * 1024,
     records_max: 64,
     receive_window_bytes: 4096,
     voltage_max_v_peak: 220.0,

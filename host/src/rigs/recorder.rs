@@ -9,11 +9,12 @@ use frixel_wire::scene::Carrier;
 use crate::metrics::{Metrics, TickSample};
 use crate::output::FeltRow;
 use crate::scene::{Program, carrier};
-use crate::wanted::Wanted;
+use crate::wanted::{Along, Moment, Wanted};
 
 /// Gathers the errors of every tick of a program that plays, and a row every so many ticks.
 pub struct Recorder {
-    wanted: Wanted,
+    wanted: Along,
+    tick_period_s: f64,
     inversion: Inversion,
     metrics: Metrics,
     row_maker: RowMaker,
@@ -32,7 +33,8 @@ impl Recorder {
         ticks_per_row: u32,
     ) -> Result<Self, ParameterError> {
         Ok(Self {
-            wanted: Wanted::new(program),
+            wanted: Wanted::new(program).along(),
+            tick_period_s: 1.0 / f64::from(tick_hz),
             inversion: Inversion::new(program, limits, tick_hz)?,
             metrics: Metrics::new(program.half_period_ticks),
             row_maker: RowMaker::new(tick_hz, ticks_per_row),
@@ -68,8 +70,7 @@ impl Recorder {
         }
         self.ticks_left -= 1;
         let natural_n = self.wanted.natural_friction_n();
-        let wanted_n =
-            record.felt.finger.map(|finger| natural_n + self.wanted.electric_friction_n(finger.x_m, finger.y_m));
+        let wanted_n = self.wanted_electric_n(record).map(|electric_n| natural_n + electric_n);
         let telemetry = &record.status.telemetry;
         self.metrics.add(&TickSample {
             wanted_n: wanted_n.unwrap_or_default(),
@@ -81,6 +82,23 @@ impl Recorder {
             wanted_in_reach: wanted_n.is_some_and(|wanted_n| self.inversion.reaches(wanted_n - natural_n)),
         });
         self.rows.extend(self.row_maker.take(record, wanted_n));
+    }
+
+    /// Electric friction wanted where the finger is, when it is on the screen.
+    fn wanted_electric_n(&mut self, record: &TickRecord) -> Option<f64> {
+        let Some(finger) = record.felt.finger else {
+            self.wanted.lift();
+            return None;
+        };
+        Some(self.wanted.electric_friction_n(&Moment {
+            x_m: finger.x_m,
+            y_m: finger.y_m,
+            t_s: record.tick as f64 * self.tick_period_s,
+            speed_m_per_s: finger.speed_m_per_s,
+            // What is streamed is not the program's.
+            stream: 0.0,
+            stream_weight: 0.0,
+        }))
     }
 }
 

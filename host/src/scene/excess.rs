@@ -2,7 +2,7 @@
 
 use super::cover::{Cell, Excess, Span, excesses};
 use super::file::Scene;
-use super::layer::{Above, Kind, Layer};
+use super::layer::{Above, Layer};
 use super::log::Log;
 use super::mistake::Mistake;
 use super::program::Program;
@@ -110,25 +110,10 @@ fn asking(layers: &[&Layer], cell: Cell) -> String {
 fn place(layers: &[&Layer], most: bool) -> usize {
     let Some(layer) = layers.last() else { return 0 };
     let most = most == (layer.gain >= 0.0);
-    let field = match (&layer.kind, layers.len()) {
-        (_, 2..) => return layer.places.table(),
-        (Kind::Constant { .. }, _) => "friction_n",
-        (Kind::Grating { .. }, _) => {
-            if most {
-                "high_n"
-            } else {
-                "low_n"
-            }
-        }
-        (Kind::Bitmap(bitmap), _) => {
-            if most == (bitmap.white_n >= bitmap.black_n) {
-                "white_n"
-            } else {
-                "black_n"
-            }
-        }
-    };
-    layer.places.field(field)
+    if layers.len() > 1 {
+        return layer.places.table();
+    }
+    layer.places.field(layer.kind.extreme(most, &layer.places))
 }
 
 /// Four significant digits, rounded as told.

@@ -1,7 +1,7 @@
 //! Reads the fields of a TOML table by name, type and range, and finds those that nobody asked for.
 
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeArray, DeTable, DeValue};
 
 use super::log::Log;
 use super::mistake::{Mistake, Nearest};
@@ -51,21 +51,7 @@ impl<'i> Fields<'i> {
     /// A number that may be left out.
     pub(super) fn optional_number(&mut self, log: &mut Log, field: &'static str, range: Range) -> Option<f64> {
         let value = self.take(field)?;
-        let offset = value.span().start;
-        let found = match value.get_ref() {
-            DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix()).ok().map(|i| i as f64),
-            DeValue::Float(float) => float.as_str().parse().ok(),
-            _ => None,
-        };
-        let Some(found) = found else {
-            log.add(offset, wrong_type(field, "a number", value.get_ref()));
-            return None;
-        };
-        if found >= range.min && found <= range.max {
-            return Some(found);
-        }
-        log.add(offset, Mistake::OutOfRange { field, found, min: range.min, max: range.max, unit: range.unit });
-        None
+        number(log, field, range, &value)
     }
 
     /// `true` or `false`, or `default` where it is left out.
@@ -200,6 +186,72 @@ impl<'i> Fields<'i> {
         }
     }
 
+    /// A whole number that may be left out.
+    pub(super) fn optional_whole(&mut self, log: &mut Log, field: &'static str, range: Range) -> Option<f64> {
+        let found = self.optional_number(log, field, range)?;
+        if found.fract().abs() > 0.0 {
+            log.add(self.places.field(field), Mistake::NotWhole { field, found });
+            return None;
+        }
+        Some(found)
+    }
+
+    /// A list of numbers that has to be there.
+    pub(super) fn numbers(&mut self, log: &mut Log, field: &'static str, range: Range) -> Option<Vec<f64>> {
+        self.require(field);
+        let list = self.list(log, field, "a list of numbers in square brackets")?;
+        let numbers: Vec<_> = list.iter().map(|value| number(log, field, range, value)).collect();
+        numbers.into_iter().collect()
+    }
+
+    /// A list of pairs of numbers that has to be there.
+    pub(super) fn pairs(&mut self, log: &mut Log, field: &'static str, range: Range) -> Option<Vec<(f64, f64)>> {
+        const EXPECTED: &str = "a list of pairs, [[x, y], [x, y]]";
+        self.require(field);
+        let list = self.list(log, field, EXPECTED)?;
+        let pairs: Vec<_> = list
+            .iter()
+            .map(|value| match value.get_ref() {
+                DeValue::Array(pair) if pair.len() == 2 => {
+                    let mut numbers = pair.iter().map(|value| number(log, field, range, value));
+                    numbers.next()?.zip(numbers.next()?)
+                }
+                other => {
+                    log.add(value.span().start, wrong_type(field, EXPECTED, other));
+                    None
+                }
+            })
+            .collect();
+        pairs.into_iter().collect()
+    }
+
+    fn list(&mut self, log: &mut Log, field: &'static str, expected: &'static str) -> Option<DeArray<'i>> {
+        let value = self.take(field)?;
+        let offset = value.span().start;
+        match value.into_inner() {
+            DeValue::Array(list) => Some(list),
+            other => {
+                log.add(offset, wrong_type(field, expected, &other));
+                None
+            }
+        }
+    }
+
+    /// Whether the file has a field that was not read yet.
+    pub(super) fn has(&self, field: &str) -> bool {
+        self.values.contains_key(field)
+    }
+
+    /// Whether the file has a field that was read.
+    pub(super) fn has_been_read(&self, field: &str) -> bool {
+        self.places.has(field)
+    }
+
+    /// Where a field stands that was not read yet, or the table where the file leaves it out.
+    pub(super) fn place(&self, field: &str) -> usize {
+        self.values.get(field).map_or(self.places.table(), |value| value.span().start)
+    }
+
     /// A missing field is a mistake. To be said before the field is read.
     pub(super) fn require(&mut self, field: &'static str) {
         if !self.values.contains_key(field) {
@@ -213,6 +265,24 @@ impl<'i> Fields<'i> {
         self.places.add(field, value.span().start);
         Some(value)
     }
+}
+
+fn number(log: &mut Log, field: &'static str, range: Range, value: &Spanned<DeValue>) -> Option<f64> {
+    let offset = value.span().start;
+    let found = match value.get_ref() {
+        DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix()).ok().map(|i| i as f64),
+        DeValue::Float(float) => float.as_str().parse().ok(),
+        _ => None,
+    };
+    let Some(found) = found else {
+        log.add(offset, wrong_type(field, "a number", value.get_ref()));
+        return None;
+    };
+    if found >= range.min && found <= range.max {
+        return Some(found);
+    }
+    log.add(offset, Mistake::OutOfRange { field, found, min: range.min, max: range.max, unit: range.unit });
+    None
 }
 
 fn wrong_type(field: &'static str, expected: &'static str, found: &DeValue) -> Mistake {

@@ -116,12 +116,68 @@ pub enum Mistake {
         expected: u32,
     },
     /// Low above high.
-    #[error("`low_n = {low_n}` is above `high_n = {high_n}`: swap them")]
+    #[error("`{low_name} = {low}` is above `{high_name} = {high}`: swap them")]
     LowAboveHigh {
-        /// Friction in the troughs, N.
-        low_n: f64,
-        /// Friction on the crests, N.
-        high_n: f64,
+        /// The field that is to be the lower one.
+        low_name: &'static str,
+        /// Its value.
+        low: f64,
+        /// The field that is to be the higher one.
+        high_name: &'static str,
+        /// Its value.
+        high: f64,
+    },
+    /// One amount in two units.
+    #[error("`{one}` and `{other}` say the same in two units: leave one of them out")]
+    TwoUnits {
+        /// A field.
+        one: &'static str,
+        /// Another that says the same.
+        other: &'static str,
+    },
+    /// A number with a fraction where there can be none.
+    #[error("`{field} = {found}` has to be a whole number: round it")]
+    NotWhole {
+        /// The field.
+        field: &'static str,
+        /// Its value.
+        found: f64,
+    },
+    /// A list that is too short or too long.
+    #[error("`{field}` has {found} entries: expected {}", count(*.min, *.max))]
+    Count {
+        /// The field.
+        field: &'static str,
+        /// How many entries it has.
+        found: usize,
+        /// Fewest entries.
+        min: usize,
+        /// Most entries.
+        max: usize,
+    },
+    /// Speeds of a curve that do not rise.
+    #[error(
+        "the speeds of a curve have to rise, by 0.02 mm/s or more from each to the next, and {after} comes after \
+         {before}: sort them"
+    )]
+    SpeedsDoNotRise {
+        /// A speed, mm/s.
+        before: f64,
+        /// The one after it, mm/s.
+        after: f64,
+    },
+    /// A button that is a polygon.
+    #[error("a button is a rectangle or an ellipse, and this region is a polygon: change its `shape`")]
+    ButtonPolygon,
+    /// More of something than a board has room for.
+    #[error("this is number {number} of the scene's {what}, and a board takes {max}: leave some out")]
+    TooMany {
+        /// What there are too many of.
+        what: &'static str,
+        /// The number of this one, from one.
+        number: usize,
+        /// Most of them.
+        max: usize,
     },
     /// A layer that is added, in total newtons.
     #[error(
@@ -261,6 +317,10 @@ pub enum Mistake {
         /// What it was refused for.
         reason: String,
     },
+}
+
+fn count(min: usize, max: usize) -> String {
+    if min == max { min.to_string() } else { format!("{min} to {max}") }
 }
 
 /// What a misspelt word may have been.

@@ -10,6 +10,7 @@ mod fields;
 mod file;
 mod layer;
 mod log;
+mod lower;
 mod mistake;
 mod picture;
 mod pool;

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::layer::{Bitmap as BitmapLayer, Layer, Rectangle};
+use super::layer::{Bitmap as BitmapLayer, Layer, Rectangle, Region};
 use super::log::Log;
 use super::mistake::{Mistake, Nearest};
 use super::picture::Picture;
@@ -17,6 +17,104 @@ pub(super) struct Pool {
     bitmaps: Vec<Bitmap>,
 }
 
+/// Where a picture's samples lie.
+pub(super) struct Placed {
+    /// Name of the bitmap.
+    pub(super) crc32: u32,
+    /// The corner that its first sample begins at.
+    pub(super) corner_mm: (f64, f64),
+    /// Distance of samples in a row, and of rows.
+    pub(super) pitches_mm: (f64, f64),
+    pub(super) angle_turns: f32,
+    pub(super) tiled: bool,
+    /// The picture's own outline; `None` when it is everywhere.
+    pub(super) outline: Option<Region>,
+}
+
+impl Placed {
+    fn new(bitmap: &BitmapLayer, whole: Rectangle, across: Axis, down: Axis, crc32: u32) -> Self {
+        // It is turned about its middle.
+        let (half_width_mm, half_height_mm) = (0.5 * whole.width_mm, 0.5 * whole.height_mm);
+        let (middle_x_mm, middle_y_mm) = (whole.x_mm + half_width_mm, whole.y_mm + half_height_mm);
+        let (cos, sin) = direction(bitmap.angle_deg);
+        let turned =
+            |x_mm: f64, y_mm: f64| (middle_x_mm + cos * x_mm - sin * y_mm, middle_y_mm + sin * x_mm + cos * y_mm);
+        let pitches_mm = if bitmap.tiled {
+            (whole.width_mm / across.samples as f64, whole.height_mm / down.samples as f64)
+        } else {
+            (bitmap.pitch_mm, bitmap.pitch_mm)
+        };
+        let corner_mm = if bitmap.angle_deg.abs() > 0.0 {
+            turned(-half_width_mm, -half_height_mm)
+        } else {
+            let skipped_mm = |axis: Axis, pitch_mm: f64| axis.skipped as f64 * pitch_mm;
+            (whole.x_mm + skipped_mm(across, pitches_mm.0), whole.y_mm + skipped_mm(down, pitches_mm.1))
+        };
+        let outline = match (bitmap.tiled, bitmap.angle_deg.abs() > 0.0) {
+            (true, _) => None,
+            (false, false) => Some(Region::Rectangle(whole)),
+            (false, true) => Some(Region::Polygon(vec![
+                turned(-half_width_mm, -half_height_mm),
+                turned(half_width_mm, -half_height_mm),
+                turned(half_width_mm, half_height_mm),
+                turned(-half_width_mm, half_height_mm),
+            ])),
+        };
+        let angle_turns = (bitmap.angle_deg / 360.0) as f32;
+        Self { crc32, corner_mm, pitches_mm, angle_turns, tiled: bitmap.tiled, outline }
+    }
+}
+
+/// Cosine and sine of an angle; right angles are exact.
+fn direction(angle_deg: f64) -> (f64, f64) {
+    let exact = |part: f64| if part.abs() < 1e-12 { 0.0 } else { part };
+    (exact(libm::cos(angle_deg.to_radians())), exact(libm::sin(angle_deg.to_radians())))
+}
+
+/// The picture's rectangle before it is turned: what it does not say is its region's.
+fn rectangle(bitmap: &BitmapLayer, region: Option<Rectangle>, height_per_width: f64) -> Option<Rectangle> {
+    let width_mm = bitmap.width_mm.or(region.map(|region| region.width_mm))?;
+    let height_mm = bitmap.height_mm.or(match (bitmap.width_mm, region) {
+        (None, Some(region)) => Some(region.height_mm),
+        _ => Some(width_mm * height_per_width),
+    })?;
+    Some(Rectangle {
+        x_mm: bitmap.x_mm.or(region.map(|region| region.x_mm))?,
+        y_mm: bitmap.y_mm.or(region.map(|region| region.y_mm))?,
+        width_mm,
+        height_mm,
+    })
+}
+
+/// The samples along a row and down the rows: all of a picture that is turned or tiled, else those that can be seen.
+fn axes(
+    bitmap: &BitmapLayer,
+    picture: &Picture,
+    whole: Rectangle,
+    region: Option<Rectangle>,
+    (screen_width_mm, screen_height_mm): (f64, f64),
+) -> (Axis, Axis) {
+    let pitch_mm = bitmap.pitch_mm;
+    if bitmap.tiled {
+        let across = Axis::dividing(whole.width_mm, pitch_mm, picture.width);
+        return (across, Axis::dividing(whole.height_mm, pitch_mm, picture.height));
+    }
+    let across = Axis::covering(whole.width_mm, pitch_mm, picture.width);
+    let down = Axis::covering(whole.height_mm, pitch_mm, picture.height);
+    if bitmap.angle_deg.abs() > 0.0 {
+        return (across, down);
+    }
+    let seen = region.unwrap_or(whole);
+    let crop = |axis: Axis, start_mm: f64, seen_mm: f64, length_mm: f64, screen_mm: f64| {
+        let (from_mm, to_mm) = (seen_mm.max(0.0), (seen_mm + length_mm).min(screen_mm));
+        axis.cropped((from_mm - start_mm) / pitch_mm, (to_mm - start_mm) / pitch_mm)
+    };
+    (
+        crop(across, whole.x_mm, seen.x_mm, seen.width_mm, screen_width_mm),
+        crop(down, whole.y_mm, seen.y_mm, seen.height_mm, screen_height_mm),
+    )
+}
+
 impl Pool {
     pub(super) fn new(folder: PathBuf, size_bytes: u32) -> Self {
         Self { folder, size_bytes, bitmaps: Vec::new() }
@@ -26,30 +124,30 @@ impl Pool {
         self.bitmaps
     }
 
-    /// Reads and resamples a layer's picture. Gives the picture's rectangle and its bitmap's name.
+    /// Reads and resamples a layer's picture. `region` is around the layer's own region, if it has one.
     pub(super) fn place(
         &mut self,
         layer: &Layer,
         bitmap: &BitmapLayer,
+        region: Option<Rectangle>,
+        screen_mm: (f64, f64),
         log: &mut Log,
         notes: &mut Vec<String>,
-    ) -> Option<(Rectangle, u32)> {
+    ) -> Option<Placed> {
         let picture = self.read(layer, bitmap, log)?;
-        let height_mm = bitmap.height_mm.unwrap_or(bitmap.width_mm * picture.height as f64 / picture.width as f64);
-        let across = Axis::covering(bitmap.width_mm, bitmap.pitch_mm, picture.width);
-        let down = Axis::covering(height_mm, bitmap.pitch_mm, picture.height);
+        let whole = rectangle(bitmap, region, picture.height as f64 / picture.width as f64)?;
+        let (across, down) = axes(bitmap, &picture, whole, region, screen_mm);
         // Before resampling, so that a pitch far too fine asks for no memory.
         let bytes = across.samples as u64 * down.samples as u64;
         if !self.fits(layer, bitmap, bytes, log) {
             return None;
         }
-        let samples = resample(&picture.grey, picture.width, across, down);
         // The pool is smaller than 2^32 bytes, yet one side might be longer than the wire can say.
         let (Ok(width), Ok(height)) = (u16::try_from(across.samples), u16::try_from(down.samples)) else {
             self.too_small(layer, bitmap, bytes, log);
             return None;
         };
-        let compiled = Bitmap::new(width, height, samples);
+        let compiled = Bitmap::new(width, height, resample(&picture.grey, picture.width, across, down));
         let crc32 = compiled.crc32;
         if !self.bitmaps.contains(&compiled) {
             let held: u64 = self.bitmaps.iter().map(|bitmap| bitmap.samples.len() as u64).sum();
@@ -59,8 +157,7 @@ impl Pool {
             self.bitmaps.push(compiled);
         }
         notes.extend(note(&picture, bitmap, across, down));
-        let rectangle = Rectangle { x_mm: bitmap.x_mm, y_mm: bitmap.y_mm, width_mm: bitmap.width_mm, height_mm };
-        Some((rectangle, crc32))
+        Some(Placed::new(bitmap, whole, across, down, crc32))
     }
 
     fn read(&self, layer: &Layer, bitmap: &BitmapLayer, log: &mut Log) -> Option<Picture> {
@@ -106,11 +203,14 @@ impl Pool {
 /// What was done to a picture, if anything.
 fn note(picture: &Picture, bitmap: &BitmapLayer, across: Axis, down: Axis) -> Option<String> {
     let mut done: Vec<String> = picture.conversions.iter().map(ToString::to_string).collect();
-    if (across.samples, down.samples) != (picture.width, picture.height) {
+    if (across.whole, down.whole) != (picture.width, picture.height) {
         done.push(format!(
             "{} x {} resampled to {} x {} at {} mm",
-            picture.width, picture.height, across.samples, down.samples, bitmap.pitch_mm
+            picture.width, picture.height, across.whole, down.whole, bitmap.pitch_mm
         ));
+    }
+    if (across.samples, down.samples) != (across.whole, down.whole) {
+        done.push(format!("cropped to the {} x {} that can be seen", across.samples, down.samples));
     }
     let name = Path::new(&bitmap.picture).file_name().unwrap_or(bitmap.picture.as_ref()).to_string_lossy();
     (!done.is_empty()).then(|| format!("{name}: {}", done.join(", ")))

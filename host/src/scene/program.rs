@@ -1,6 +1,6 @@
 //! What a scene compiles to.
 
-use frixel_wire::scene::{Header, Record, bitmap_crc32};
+use frixel_wire::scene::{Header, Point, Record, bitmap_crc32};
 
 use super::reach::Reach;
 
@@ -11,6 +11,8 @@ pub struct Program {
     pub header: Header,
     /// The layers from bottom to top, in the order of the file.
     pub records: Vec<Record>,
+    /// The points that records name.
+    pub points: Vec<Point>,
     /// The pictures that records name, each one once.
     pub bitmaps: Vec<Bitmap>,
     /// How messages call each record: its number from one, and its name or kind.
@@ -26,11 +28,10 @@ pub struct Program {
 impl Program {
     /// The scene's bytes, as they are uploaded.
     pub fn scene_bytes(&self) -> Vec<u8> {
-        // At most 64 records were compiled.
-        let mut bytes = self.header.write(self.records.len() as u8).to_vec();
-        for record in &self.records {
-            bytes.extend_from_slice(&record.write());
-        }
+        // At most 64 records and 128 points were compiled.
+        let mut bytes = self.header.write(self.records.len() as u8, self.points.len() as u8).to_vec();
+        bytes.extend(self.records.iter().flat_map(Record::write));
+        bytes.extend(self.points.iter().flat_map(Point::write));
         bytes
     }
 

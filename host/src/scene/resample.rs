@@ -3,6 +3,10 @@
 /// One axis of the grid that a picture is brought to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Axis {
+    /// Samples of the whole picture.
+    pub(super) whole: usize,
+    /// Samples that are cut off before the first one.
+    pub(super) skipped: usize,
     /// Samples along it.
     pub(super) samples: usize,
     /// Pixels of the picture for each sample.
@@ -14,14 +18,30 @@ impl Axis {
     pub(super) fn covering(length_mm: f64, pitch_mm: f64, pixels: usize) -> Self {
         // A millionth of a sample is rounding of the millimetres, not one sample more.
         let samples = (length_mm / pitch_mm - 1e-6).ceil().max(1.0) as usize;
-        Self { samples, pixels_per_sample: pixels as f64 * pitch_mm / length_mm }
+        Self { whole: samples, skipped: 0, samples, pixels_per_sample: pixels as f64 * pitch_mm / length_mm }
+    }
+
+    /// Whole samples that divide a length, at about this pitch, so that it can be repeated.
+    pub(super) fn dividing(length_mm: f64, pitch_mm: f64, pixels: usize) -> Self {
+        let samples = (length_mm / pitch_mm).round().max(1.0);
+        let whole = samples as usize;
+        Self { whole, skipped: 0, samples: whole, pixels_per_sample: pixels as f64 / samples }
+    }
+
+    /// Only the samples that count between two places, in samples from the axis' start.
+    pub(super) fn cropped(self, from: f64, to: f64) -> Self {
+        let last = (self.samples - 1) as f64;
+        // Samples lie at their centres; those around a place count there. A millionth of a sample is rounding.
+        let skipped = (from - 0.5 + 1e-6).floor().clamp(0.0, last) as usize;
+        let end = (to - 0.5 - 1e-6).ceil().clamp(skipped as f64, last) as usize;
+        Self { skipped, samples: end - skipped + 1, ..self }
     }
 
     /// Which pixels make a sample, and with what weights, which sum to one. A sample of one pixel or more is the mean
     /// over its area; a smaller one is interpolated between pixel centres and held at the border.
     fn weights(self, sample: usize, pixels: usize) -> (usize, Vec<f64>) {
         let last = pixels.saturating_sub(1);
-        let start = sample as f64 * self.pixels_per_sample;
+        let start = (self.skipped + sample) as f64 * self.pixels_per_sample;
         if self.pixels_per_sample < 1.0 {
             let centre = (start + self.pixels_per_sample / 2.0 - 0.5).clamp(0.0, last as f64);
             let first = (centre as usize).min(last.saturating_sub(1));

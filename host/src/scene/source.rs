@@ -61,6 +61,12 @@ impl Places {
         self.fields.iter().find(|(name, _)| *name == field).map_or(self.table, |(_, offset)| *offset)
     }
 
+    /// The first of some fields that the file has, or the first of all where it has none.
+    pub(super) fn first_of(&self, fields: [&'static str; 3]) -> &'static str {
+        let [first, ..] = fields;
+        fields.into_iter().find(|field| self.has(field)).unwrap_or(first)
+    }
+
     /// Whether the file has the field.
     pub(super) fn has(&self, field: &str) -> bool {
         self.fields.iter().any(|(name, _)| *name == field)

@@ -2,8 +2,11 @@
 
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
+use std::os::unix::process::CommandExt;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
 
 use tempfile::TempDir;
 
@@ -13,7 +16,7 @@ use crate::emulator;
 fn play(folder: &Path) -> Command {
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/brick.toml");
     let mut command = Command::new(env!("CARGO_BIN_EXE_frixel"));
-    command.arg("play").arg(scene).args(["--port", "qemu", "--seconds", "0.5", "--json"]).current_dir(folder);
+    command.arg("play").arg(scene).args(["--port", "qemu", "--json"]).current_dir(folder);
     command
 }
 
@@ -24,7 +27,7 @@ fn a_scene_plays_on_the_emulated_board() {
     }
     let _turn = turn();
     let folder = TempDir::new().unwrap();
-    let output = play(folder.path()).output().unwrap();
+    let output = play(folder.path()).args(["--seconds", "0.5"]).output().unwrap();
     assert!(output.status.success(), "{}", said(&output));
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(json["rig"], "qemu");
@@ -45,6 +48,36 @@ fn a_scene_plays_on_the_emulated_board() {
     for name in ["felt.svg", "scene.png"] {
         assert!(fs::metadata(folder.path().join("frixel-out").join(name)).unwrap().len() > 10_000);
     }
+}
+
+/// Ctrl-C in a terminal goes to the emulator, too.
+#[test]
+fn an_interrupted_play_leaves_what_was_played() {
+    if emulator::image().is_none() {
+        return;
+    }
+    let _turn = turn();
+    let folder = TempDir::new().unwrap();
+    let mut command = play(folder.path());
+    let mut process = command
+        .args(["--seconds", "600"])
+        .process_group(0)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let felt = folder.path().join("frixel-out/felt.csv");
+    while fs::metadata(&felt).map_or(0, |file| file.len()) < 20_000 {
+        assert!(process.try_wait().unwrap().is_none(), "it ended by itself");
+        sleep(Duration::from_millis(5));
+    }
+    let group = rustix::process::Pid::from_raw(process.id() as i32).unwrap();
+    rustix::process::kill_process_group(group, rustix::process::Signal::INT).unwrap();
+    let output = process.wait_with_output().unwrap();
+    assert!(output.status.success() && said(&output).contains("interrupted: "), "{}", said(&output));
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let rows = fs::read_to_string(felt).unwrap().lines().count() as u64 - 1;
+    assert_eq!(json["ticks"].as_u64().unwrap() / 40, rows, "every whole row that was played is there");
 }
 
 /// What a machine has on its PATH, and nothing else.

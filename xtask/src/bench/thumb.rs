@@ -63,7 +63,7 @@ fn wide(first: u16, second: u16, place: u32) -> Instruction {
     }
 }
 
-/// BL, B.W and B<c>.W.
+/// `BL`, `B.W` and `B<c>.W`.
 fn far(first: u16, second: u16, place: u32) -> Instruction {
     let bit = |halfword: u16, index: u32| u32::from(halfword) >> index & 1;
     let (sign, j1, j2, low) = (bit(first, 10), bit(second, 13), bit(second, 11), u32::from(second & 0x7ff) << 1);

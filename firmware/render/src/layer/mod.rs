@@ -1,23 +1,51 @@
 //! Layers as the tick evaluates them: a file for each kind that is more than a number.
 
+#[cfg(feature = "edge")]
+mod button;
+mod click;
+#[cfg(feature = "speed")]
+mod curve;
+#[cfg(feature = "edge")]
+mod edge;
 #[cfg(feature = "grating")]
 mod grating;
+mod load;
+#[cfg(feature = "noise")]
+mod noise;
 #[cfg(feature = "bitmap")]
 mod picture;
 mod region;
+mod tables;
 #[cfg(test)]
 mod tests;
+#[cfg(feature = "vibration")]
+mod vibration;
 
-use frixel_wire::scene::{Blend, Layer as Kind, Record};
+use frixel_wire::scene::Blend;
+#[cfg(feature = "stream")]
+use frixel_wire::scene::{Layer as Kind, Record};
 
-use crate::bitmap_pool::{Bitmap, BitmapPool};
+use crate::bitmap_pool::BitmapPool;
 #[cfg(feature = "stream")]
 use crate::stream::StreamNow;
+#[cfg(feature = "edge")]
+use button::Button;
+pub(crate) use click::{CLICKS_MAX, Clicks};
+#[cfg(feature = "speed")]
+use curve::Curve;
+#[cfg(feature = "edge")]
+use edge::Edge;
 #[cfg(feature = "grating")]
 use grating::Grating;
+pub(crate) use load::Loading;
+#[cfg(feature = "noise")]
+use noise::Noise;
 #[cfg(feature = "bitmap")]
 use picture::Picture;
 use region::Region;
+pub(crate) use tables::Tables;
+#[cfg(feature = "vibration")]
+use vibration::Vibration;
 
 /// What a layer's friction depends on at a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -25,9 +53,22 @@ pub(crate) struct Moment {
     /// Where the finger is taken to be, in m.
     pub(crate) x_m: f32,
     pub(crate) y_m: f32,
+    /// How the finger slides.
+    #[cfg(feature = "speed")]
+    pub(crate) velocity_m_per_s: [f32; 2],
+    /// Ticks since power-on, modulo 2^32.
+    pub(crate) tick: u32,
     /// The host's stream.
     #[cfg(feature = "stream")]
     pub(crate) stream: StreamNow,
+}
+
+/// What layers look at besides their own numbers.
+pub(crate) struct Around<'a> {
+    pub(crate) moment: Moment,
+    pub(crate) pool: &'a BitmapPool,
+    pub(crate) tables: &'a Tables,
+    pub(crate) clicks: &'a mut Clicks,
 }
 
 /// A layer, ready to be evaluated.
@@ -49,6 +90,16 @@ enum Source {
     Grating(Grating),
     #[cfg(feature = "bitmap")]
     Picture(Picture),
+    #[cfg(feature = "noise")]
+    Noise(Noise),
+    #[cfg(feature = "edge")]
+    Edge(Edge),
+    #[cfg(feature = "edge")]
+    Button(Button),
+    #[cfg(feature = "vibration")]
+    Vibration(Vibration),
+    #[cfg(feature = "speed")]
+    Curve(Curve),
     /// `low + span` times the stream's sample.
     #[cfg(feature = "stream")]
     Stream {
@@ -58,49 +109,44 @@ enum Source {
 }
 
 impl Layer {
-    /// The layer of a record whose numbers were checked, and whose bitmap, if it has one, lies at `bitmap`; `None` for
-    /// a kind that this firmware was built without.
-    pub(crate) fn new(record: &Record, bitmap: Option<Bitmap>) -> Option<Self> {
-        let source = Source::new(&record.layer, bitmap)?;
-        Some(Self { region: Region::new(record.region), blend: record.blend, gain: record.gain, source })
-    }
-
     pub(crate) fn set_gain(&mut self, gain: f32) {
         self.gain = gain;
     }
 
-    /// It acts on the whole screen.
-    pub(crate) fn is_everywhere(&self) -> bool {
-        self.region == Region::Screen
+    /// On bare glass, it alone is what is asked for, everywhere and always.
+    pub(crate) fn stands_alone(&self) -> bool {
+        let kept = matches!(self.blend, Blend::Replace | Blend::Add);
+        kept && self.region == Region::Screen && !self.source.is_stream()
     }
 
     /// This layer's electric friction at a moment, wherever that is, with nothing below it.
     #[inline]
-    pub(crate) fn own_electric_friction_n(&self, moment: &Moment, pool: &BitmapPool) -> f32 {
-        self.faded(0.0, self.gain * self.source.electric_friction_n(moment, pool), moment)
+    pub(crate) fn own_electric_friction_n(&self, around: &mut Around) -> f32 {
+        self.gain * self.source.electric_friction_n(&self.region, around)
     }
 
     /// Joins this layer's electric friction at a moment to that of the layers below.
     #[inline]
-    pub(crate) fn blend_over(&self, below_n: f32, moment: &Moment, pool: &BitmapPool) -> f32 {
-        if !self.region.contains(moment.x_m, moment.y_m) {
+    pub(crate) fn blend_over(&self, below_n: f32, around: &mut Around) -> f32 {
+        if !self.region.contains(around.moment.x_m, around.moment.y_m, around.tables.points()) {
             return below_n;
         }
-        let own_n = self.gain * self.source.electric_friction_n(moment, pool);
+        let own_n = self.own_electric_friction_n(around);
         let blended_n = match self.blend {
             Blend::Replace => own_n,
             Blend::Add => below_n + own_n,
+            Blend::Multiply => below_n * own_n,
+            Blend::Max => {
+                if own_n > below_n {
+                    own_n
+                } else {
+                    below_n
+                }
+            }
         };
-        self.faded(below_n, blended_n, moment)
-    }
-
-    /// What there is of a blend: all of it, but for a stream, which fades as if the layer were not there.
-    #[inline]
-    #[cfg_attr(not(feature = "stream"), allow(unused_variables, clippy::unused_self, reason = "nothing fades"))]
-    fn faded(&self, below_n: f32, blended_n: f32, moment: &Moment) -> f32 {
         #[cfg(feature = "stream")]
-        if let Source::Stream { .. } = self.source {
-            return below_n + moment.stream.weight * (blended_n - below_n);
+        if self.source.is_stream() {
+            return below_n + around.moment.stream.weight * (blended_n - below_n);
         }
         blended_n
     }
@@ -113,26 +159,12 @@ pub(crate) fn is_stream(record: &Record) -> bool {
 }
 
 impl Source {
-    fn new(kind: &Kind, bitmap: Option<Bitmap>) -> Option<Self> {
-        match *kind {
-            Kind::Constant { electric_friction_n } => Some(Self::Constant { electric_friction_n }),
-            #[cfg(feature = "grating")]
-            Kind::Grating { wave, cycles_per_m_x, cycles_per_m_y, phase_turns, trough_n, crest_n } => {
-                let cycles_per_m = [cycles_per_m_x, cycles_per_m_y];
-                Some(Self::Grating(Grating::new(wave, cycles_per_m, phase_turns, [trough_n, crest_n])))
-            }
-            #[cfg(feature = "bitmap")]
-            Kind::Bitmap { x_m, y_m, pitch_m, black_n, white_n, .. } => {
-                bitmap.map(|bitmap| Self::Picture(Picture::new(bitmap, [x_m, y_m], pitch_m, [black_n, white_n])))
-            }
-            #[cfg(feature = "stream")]
-            Kind::Stream { low_n, high_n } => Some(Self::Stream { low_n, span_n: high_n - low_n }),
-            #[cfg(not(all(feature = "grating", feature = "bitmap", feature = "stream")))]
-            _ => {
-                let _ = bitmap;
-                None
-            }
-        }
+    #[inline]
+    fn is_stream(&self) -> bool {
+        #[cfg(feature = "stream")]
+        return matches!(self, Self::Stream { .. });
+        #[cfg(not(feature = "stream"))]
+        false
     }
 
     /// Electric friction at a moment, in N, before the gain.
@@ -143,15 +175,32 @@ impl Source {
         not(all(feature = "grating", feature = "bitmap")),
         allow(unused_variables, reason = "the other kinds of layer do not look at them")
     )]
-    fn electric_friction_n(&self, moment: &Moment, pool: &BitmapPool) -> f32 {
+    fn electric_friction_n(&self, region: &Region, around: &mut Around) -> f32 {
         match self {
             Self::Constant { electric_friction_n } => *electric_friction_n,
             #[cfg(feature = "grating")]
-            Self::Grating(grating) => grating.electric_friction_n(moment),
+            Self::Grating(grating) => grating.electric_friction_n(&around.moment),
             #[cfg(feature = "bitmap")]
-            Self::Picture(picture) => picture.electric_friction_n(moment, pool),
+            Self::Picture(picture) => picture.electric_friction_n(&around.moment, around.pool),
+            #[cfg(feature = "noise")]
+            Self::Noise(noise) => noise.electric_friction_n(&around.moment, around.tables.noises()),
+            #[cfg(feature = "edge")]
+            Self::Edge(edge) => edge.electric_friction_n(around),
+            #[cfg(feature = "edge")]
+            Self::Button(button) => button.electric_friction_n(region, around),
+            #[cfg(feature = "vibration")]
+            Self::Vibration(vibration) => vibration.electric_friction_n(&around.moment),
+            #[cfg(feature = "speed")]
+            Self::Curve(curve) => curve.at(&around.moment, around.tables.points()),
             #[cfg(feature = "stream")]
-            Self::Stream { low_n, span_n } => low_n + span_n * moment.stream.value,
+            Self::Stream { low_n, span_n } => low_n + span_n * around.moment.stream.value,
         }
     }
+}
+
+/// The direction of an angle, as parts along x and y. Not for the tick.
+#[cfg(any(feature = "bitmap", feature = "noise", feature = "edge"))]
+fn direction(angle_turns: f32) -> (f32, f32) {
+    let (y, x) = libm::sincosf(core::f32::consts::TAU * angle_turns);
+    (x, y)
 }

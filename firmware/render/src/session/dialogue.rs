@@ -7,7 +7,7 @@ use frixel_wire::message::{
     TELEMETRY_PERIOD_MIN_TICKS,
 };
 use frixel_wire::payload::{ParseError, Payload};
-use frixel_wire::scene::{HEADER_LEN, Layer, RECORD_LEN, RECORDS_MAX, SCENE_MAX_LEN, Scene};
+use frixel_wire::scene::{HEADER_LEN, Layer, POINT_LEN, POINTS_MAX, RECORD_LEN, RECORDS_MAX, SCENE_MAX_LEN, Scene};
 use heapless::{Deque, Vec};
 
 use super::fingers::{Fingers, ONLY_FINGER};
@@ -84,7 +84,12 @@ const fn features(board: &Board, has_stream: bool) -> u32 {
         | bit(cfg!(feature = "sine-carrier"), feature::SINE_CARRIER)
         | bit(cfg!(feature = "telemetry"), feature::TELEMETRY)
         | bit(board.touch_from_host, feature::HOST_TOUCH)
+        | bit(cfg!(feature = "noise"), feature::NOISE)
+        | bit(cfg!(feature = "edge"), feature::EDGE)
+        | bit(cfg!(feature = "vibration"), feature::VIBRATION)
+        | bit(cfg!(feature = "speed"), feature::SPEED)
         | bit(has_stream, feature::STREAM)
+        | bit(cfg!(feature = "polygon"), feature::POLYGON)
 }
 
 impl<'a> Dialogue<'a> {
@@ -329,7 +334,7 @@ impl<'a> Dialogue<'a> {
 
     fn begin_scene(&mut self, len: u32, crc32: u32) -> Result<Accepted, Refusal> {
         let records = usize::from(self.board.limits.records_max);
-        let max = (HEADER_LEN + records * RECORD_LEN).min(SCENE_MAX_LEN) as u32;
+        let max = (HEADER_LEN + records * RECORD_LEN + POINTS_MAX * POINT_LEN).min(SCENE_MAX_LEN) as u32;
         if len > max {
             return Err(Refusal::SceneTooLarge { len, max });
         }

@@ -62,9 +62,8 @@ impl<'a> Stream<'a> {
 
 impl Playing {
     /// Which of several fingers leads; the first one before any scene.
-    #[allow(clippy::unused_self, reason = "the scene's header will say")]
     pub(super) fn leader(&self) -> Leader {
-        Leader::First
+        self.header.map_or(Leader::First, |header| header.leader)
     }
 }
 

@@ -18,7 +18,7 @@ use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, crc32};
 use frixel_wire::hello::Hello;
 use frixel_wire::message::{Accepted, Answer, Command, FromBoard, Refusal, Request};
 use frixel_wire::payload::{self, CHUNK_LEN, Payload};
-use frixel_wire::scene::{Blend, Carrier, Header, Layer, Record, Region, bitmap_crc32};
+use frixel_wire::scene::{Blend, Carrier, Header, Layer, Leader, Point, Record, Region, bitmap_crc32};
 
 /// What the two halves of a board share; lives longer than the [`Desk`].
 pub struct Memory {
@@ -254,6 +254,7 @@ pub const HEADER: Header = Header {
     carrier: Carrier::Square,
     autonomous: false,
     prediction: true,
+    leader: Leader::First,
 };
 
 pub fn record(layer: Layer) -> Record {
@@ -266,9 +267,12 @@ pub fn constant(electric_friction_n: f32) -> Vec<u8> {
 }
 
 pub fn scene(header: &Header, records: &[Record]) -> Vec<u8> {
-    let mut bytes = header.write(records.len() as u8).to_vec();
-    for record in records {
-        bytes.extend(record.write());
-    }
+    scene_with_points(header, records, &[])
+}
+
+pub fn scene_with_points(header: &Header, records: &[Record], points: &[Point]) -> Vec<u8> {
+    let mut bytes = header.write(records.len() as u8, points.len() as u8).to_vec();
+    bytes.extend(records.iter().flat_map(Record::write));
+    bytes.extend(points.iter().flat_map(Point::write));
     bytes
 }

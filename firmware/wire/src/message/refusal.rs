@@ -152,6 +152,26 @@ pub enum ConfigField {
     SampleRate,
     /// Samples with which a stream begins.
     StartLevel,
+    /// The part of a turn in which a square grating is high.
+    Duty,
+    /// An angle, turns.
+    Angle,
+    /// A wavelength of noise, m.
+    Wavelength,
+    /// A place or the width of an edge or a rim, m.
+    Shape,
+    /// A vibration's frequency, Hz.
+    VibrationFrequency,
+    /// How long a click or a part of a burst takes, s.
+    Duration,
+    /// A vertex of a polygon, m.
+    Vertex,
+    /// A speed of a curve, m/s, which has to be above the one before.
+    CurveSpeed,
+    /// Layers of noise up to this one.
+    NoiseLayers,
+    /// Edges and buttons up to this one.
+    ClickLayers,
 }
 
 impl ConfigField {
@@ -182,6 +202,16 @@ impl ConfigField {
             Self::TouchPlace => ("place of the finger", " m"),
             Self::SampleRate => ("sample rate of the stream", " Hz"),
             Self::StartLevel => ("start level of the stream", " samples"),
+            Self::Duty => ("duty", ""),
+            Self::Angle => ("angle", " turns"),
+            Self::Wavelength => ("wavelength", " m"),
+            Self::Shape => ("place or width", " m"),
+            Self::VibrationFrequency => ("vibration frequency", " Hz"),
+            Self::Duration => ("click or burst", " s"),
+            Self::Vertex => ("vertex", " m"),
+            Self::CurveSpeed => ("speed", " m/s"),
+            Self::NoiseLayers => ("number of noise layers", ""),
+            Self::ClickLayers => ("number of edges and buttons", ""),
         }
     }
 }

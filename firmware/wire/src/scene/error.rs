@@ -5,7 +5,7 @@ use core::fmt;
 use postcard::experimental::max_size::MaxSize;
 use serde::{Deserialize, Serialize};
 
-use super::RECORDS_MAX;
+use super::{CURVE_POINTS_MAX, POINTS_MAX, POLYGON_POINTS_MAX, RECORDS_MAX};
 
 /// Why bytes are not a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, MaxSize)]
@@ -15,7 +15,7 @@ pub enum SceneError {
         /// As found.
         found: u16,
     },
-    /// The length does not go with the number of records.
+    /// The length does not go with the numbers of records and points.
     Length {
         /// As found.
         found: u32,
@@ -31,7 +31,7 @@ pub enum SceneError {
         /// Its kind.
         kind: u8,
     },
-    /// A record with an unknown region, blend or wave.
+    /// A record with an unknown region, blend or form.
     UnknownChoice {
         /// Number of the record, from zero.
         record: u8,
@@ -53,6 +53,25 @@ pub enum SceneError {
         record: u8,
         /// Offset of the byte in the header or record.
         offset: u8,
+    },
+    /// More points than the layout allows ([`POINTS_MAX`]).
+    TooManyPoints {
+        /// As the header says.
+        found: u8,
+    },
+    /// A polygon or a curve whose points are too few, too many, or not in the scene.
+    Points {
+        /// Number of the record, from zero.
+        record: u8,
+        /// The first point it names, from zero.
+        first: u8,
+        /// How many it names.
+        count: u8,
+    },
+    /// A button whose region is neither a rectangle nor an ellipse.
+    ButtonRegion {
+        /// Number of the record, from zero.
+        record: u8,
     },
 }
 
@@ -80,7 +99,7 @@ impl fmt::Display for SceneError {
                 let what = match offset {
                     1 => "region",
                     2 => "blend",
-                    3 => "wave",
+                    3 => "form",
                     _ => "byte",
                 };
                 write!(
@@ -90,6 +109,23 @@ impl fmt::Display for SceneError {
             }
             Self::TooManyRecords { found } => {
                 write!(f, "the scene has {found} layers, {RECORDS_MAX} are the most: use fewer")
+            }
+            Self::TooManyPoints { found } => {
+                write!(
+                    f,
+                    "the scene has {found} points, {POINTS_MAX} are the most: draw its polygons with fewer vertices"
+                )
+            }
+            Self::Points { record, first, count } => write!(
+                f,
+                "layer {record} (the first is 0) names {count} points from point {first} on: a polygon takes 3 to \
+                 {POLYGON_POINTS_MAX} that the scene has, a curve of speed 2 to {CURVE_POINTS_MAX}"
+            ),
+            Self::ButtonRegion { record } => {
+                write!(
+                    f,
+                    "layer {record} (the first is 0) is a button: give it a rectangle or an ellipse as its region"
+                )
             }
             Self::UnknownFlags(flags) => {
                 write!(f, "the scene has flags {flags:#04x}, of which not all are known: flash newer firmware")

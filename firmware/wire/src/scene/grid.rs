@@ -1,7 +1,7 @@
 //! Which layers may act where: a coarse grid over the screen with a bit for each layer, so that a tick looks only at
 //! layers near the finger, and compiler and board alike find where a scene costs most.
 
-use super::Region;
+use super::{Point, Region};
 
 /// Columns of the grid; as many rows.
 const SIDE: usize = 16;
@@ -39,14 +39,22 @@ impl Grid {
         self.cells.fill([0; 2]);
     }
 
-    /// Adds layer number `layer`, below 64, wherever its region may be. What is off the screen belongs to the cells at
-    /// its border.
-    pub fn add(&mut self, layer: u8, region: &Region) {
+    /// Adds layer number `layer`, below 64, wherever its region may be; `points` are the scene's. What is off the screen
+    /// belongs to the cells at its border.
+    pub fn add(&mut self, layer: u8, region: &Region, points: &[Point]) {
         let bit = 1_u64.checked_shl(u32::from(layer)).unwrap_or(0);
         let bits = [bit as u32, (bit >> 32) as u32];
         let (columns, rows) = match *region {
             Region::Screen => (0..=SIDE - 1, 0..=SIDE - 1),
-            Region::Rectangle { x_m, y_m, width_m, height_m } => (
+            Region::Polygon { first, count } => {
+                let vertices = points.iter().skip(usize::from(first)).take(usize::from(count));
+                let ends = |of: fn(&Point) -> f32, per_m: f32| {
+                    let indices = vertices.clone().map(|vertex| index(of(vertex) * per_m));
+                    indices.clone().min().unwrap_or_default()..=indices.max().unwrap_or_default()
+                };
+                (ends(|vertex| vertex.x, self.columns_per_m), ends(|vertex| vertex.y, self.rows_per_m))
+            }
+            Region::Rectangle { x_m, y_m, width_m, height_m } | Region::Ellipse { x_m, y_m, width_m, height_m } => (
                 // Both ends are found as the finger's cell is, so that rounding never loses one.
                 index(x_m * self.columns_per_m)..=index((x_m + width_m) * self.columns_per_m),
                 index(y_m * self.rows_per_m)..=index((y_m + height_m) * self.rows_per_m),

@@ -1,12 +1,13 @@
 //! A scene read from its bytes.
 
-use super::{HEADER_LEN, Header, RECORD_LEN, Record, SCENE_VERSION, SceneError};
+use super::{HEADER_LEN, Header, POINT_LEN, Point, RECORD_LEN, Record, SCENE_VERSION, SceneError};
 
 /// A whole scene, every byte of it checked; only what its numbers mean is left to the board.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene<'a> {
     header: Header,
     records: &'a [[u8; RECORD_LEN]],
+    points: &'a [[u8; POINT_LEN]],
 }
 
 impl<'a> Scene<'a> {
@@ -23,18 +24,22 @@ impl<'a> Scene<'a> {
         let Some((header, rest)) = bytes.split_first_chunk::<HEADER_LEN>() else {
             return Err(SceneError::Length { found, expected: HEADER_LEN as u32 });
         };
-        let (header, count) = Header::parse(header)?;
-        let expected = HEADER_LEN + usize::from(count) * RECORD_LEN;
-        let (records, []) = rest.as_chunks::<RECORD_LEN>() else {
-            return Err(SceneError::Length { found, expected: expected as u32 });
+        let (header, record_count, point_count) = Header::parse(header)?;
+        let records_len = usize::from(record_count) * RECORD_LEN;
+        let points_len = usize::from(point_count) * POINT_LEN;
+        let expected = (HEADER_LEN + records_len + points_len) as u32;
+        let Some((records, points)) = rest.split_at_checked(records_len) else {
+            return Err(SceneError::Length { found, expected });
         };
-        if records.len() != usize::from(count) {
-            return Err(SceneError::Length { found, expected: expected as u32 });
+        if points.len() != points_len {
+            return Err(SceneError::Length { found, expected });
         }
+        let (records, _) = records.as_chunks::<RECORD_LEN>();
+        let (points, _) = points.as_chunks::<POINT_LEN>();
         for (number, record) in (0..).zip(records) {
-            Record::parse(record, number)?;
+            Record::parse(record, number)?.check(number, point_count)?;
         }
-        Ok(Self { header, records })
+        Ok(Self { header, records, points })
     }
 
     /// What holds for the whole scene.
@@ -50,5 +55,15 @@ impl<'a> Scene<'a> {
     /// How many records there are.
     pub const fn record_count(&self) -> usize {
         self.records.len()
+    }
+
+    /// The points that polygons and curves of speed name.
+    pub fn points(&self) -> impl ExactSizeIterator<Item = Point> + use<'a> {
+        self.points.iter().map(Point::parse)
+    }
+
+    /// How many points there are.
+    pub const fn point_count(&self) -> usize {
+        self.points.len()
     }
 }

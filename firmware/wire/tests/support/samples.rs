@@ -7,7 +7,9 @@ use frixel_wire::message::{
     Accepted, Answer, Command, ConfigField, ConfigRefusal, FromBoard, Refusal, Request, Telemetry,
 };
 use frixel_wire::payload::{CHUNK_LEN, CHUNK_NUMBER_MAX, Payload, SAMPLES_MAX};
-use frixel_wire::scene::{Blend, Carrier, Header, Layer, Record, Region, SceneError, Wave};
+use frixel_wire::scene::{
+    Beat, Blend, Burst, Carrier, Click, Header, Layer, Leader, Point, Record, Region, SceneError, Wave,
+};
 
 pub const STATES: [State; 4] = [State::Disarmed, State::Armed, State::Active, State::Faulted];
 
@@ -200,9 +202,9 @@ pub fn config_refusal(field: ConfigField, layer: u8) -> ConfigRefusal {
     ConfigRefusal { field, found: 250.5, min: 0.125, max: 50.0, layer }
 }
 
-pub fn scene_errors() -> [SceneError; 9] {
+pub fn scene_errors() -> [SceneError; 12] {
     [
-        SceneError::Version { found: 2 },
+        SceneError::Version { found: 1 },
         SceneError::Length { found: 111, expected: 168 },
         SceneError::UnknownCarrier(7),
         SceneError::UnknownKind { record: 3, kind: 9 },
@@ -210,15 +212,19 @@ pub fn scene_errors() -> [SceneError; 9] {
         SceneError::TooManyRecords { found: 65 },
         SceneError::UnknownFlags(0x84),
         SceneError::NotZero { record: 3, offset: 44 },
-        SceneError::NotZero { record: SceneError::HEADER, offset: 53 },
+        SceneError::NotZero { record: SceneError::HEADER, offset: 54 },
+        SceneError::TooManyPoints { found: 129 },
+        SceneError::Points { record: 3, first: 120, count: 9 },
+        SceneError::ButtonRegion { record: 3 },
     ]
 }
 
 pub fn config_fields() -> Vec<ConfigField> {
     use ConfigField::{
-        BitmapPlacement, CarrierFrequency, CurrentPeak, CurrentRms, EffectiveGap, FingerRadius, Friction,
-        FrictionCoefficient, Gain, HostTimeout, NormalLoad, Phase, Region, SampleRate, ScreenHeight, ScreenWidth, Slew,
-        StartLevel, Stiffness, TableRange, TouchPlace, VoltagePeak, VoltageRms, WaveVector,
+        Angle, BitmapPlacement, CarrierFrequency, ClickLayers, CurrentPeak, CurrentRms, CurveSpeed, Duration, Duty,
+        EffectiveGap, FingerRadius, Friction, FrictionCoefficient, Gain, HostTimeout, NoiseLayers, NormalLoad, Phase,
+        Region, SampleRate, ScreenHeight, ScreenWidth, Shape, Slew, StartLevel, Stiffness, TableRange, TouchPlace,
+        Vertex, VibrationFrequency, VoltagePeak, VoltageRms, WaveVector, Wavelength,
     };
     vec![
         ScreenWidth,
@@ -245,6 +251,16 @@ pub fn config_fields() -> Vec<ConfigField> {
         TouchPlace,
         SampleRate,
         StartLevel,
+        Duty,
+        Angle,
+        Wavelength,
+        Shape,
+        VibrationFrequency,
+        Duration,
+        Vertex,
+        CurveSpeed,
+        NoiseLayers,
+        ClickLayers,
     ]
 }
 
@@ -265,6 +281,7 @@ pub fn header() -> Header {
         carrier: Carrier::Square,
         autonomous: false,
         prediction: true,
+        leader: Leader::First,
     }
 }
 
@@ -273,11 +290,14 @@ pub fn headers() -> Vec<Header> {
         header(),
         Header { carrier: Carrier::Sine, prediction: false, ..header() },
         Header { autonomous: true, ..header() },
+        Header { leader: Leader::Latest, ..header() },
     ]
 }
 
 pub fn records() -> Vec<Record> {
     let rectangle = Region::Rectangle { x_m: 0.01, y_m: 0.02, width_m: 0.03, height_m: 0.04 };
+    let ellipse = Region::Ellipse { x_m: 0.02, y_m: 0.01, width_m: 0.04, height_m: 0.03 };
+    let polygon = Region::Polygon { first: 1, count: 3 };
     let grating = |wave| Layer::Grating {
         wave,
         cycles_per_m_x: 500.0,
@@ -286,27 +306,61 @@ pub fn records() -> Vec<Record> {
         trough_n: 0.002,
         crest_n: 0.02,
     };
-    let bitmap =
-        Layer::Bitmap { crc32: 0xcbf4_3926, x_m: 0.001, y_m: 0.002, pitch_m: 0.00025, black_n: 0.0, white_n: 0.025 };
-    vec![
-        Record {
-            region: Region::Screen,
-            blend: Blend::Replace,
-            gain: 1.0,
-            layer: Layer::Constant { electric_friction_n: 0.01 },
-        },
-        Record { region: rectangle, blend: Blend::Add, gain: 0.5, layer: grating(Wave::Sine) },
-        Record { region: Region::Screen, blend: Blend::Add, gain: -1.0, layer: grating(Wave::Square) },
-        Record { region: rectangle, blend: Blend::Replace, gain: 2.0, layer: bitmap },
-    ]
+    let bitmap = |tiled, angle_turns| Layer::Bitmap {
+        crc32: 0xcbf4_3926,
+        x_m: 0.001,
+        y_m: 0.002,
+        pitch_m: 0.00025,
+        black_n: 0.0,
+        white_n: 0.025,
+        pitch_y_m: 0.0003,
+        angle_turns,
+        tiled,
+    };
+    let click = Click { height_n: 0.015, decay_s: 0.02 };
+    let edge =
+        Layer::Edge { x_m: 0.05, y_m: 0.04, angle_turns: 0.125, width_m: 0.004, level_n: 0.001, ridge_n: 0.02, click };
+    let vibration = |beat, burst| Layer::Vibration { beat, frequency_hz: 80.0, low_n: 0.001, high_n: 0.02, burst };
+    let burst = Burst { period_s: 0.5, on_s: 0.25, ramp_s: 0.0625 };
+    let layers = [
+        (Region::Screen, Blend::Replace, 1.0, Layer::Constant { electric_friction_n: 0.01 }),
+        (rectangle, Blend::Add, 0.5, grating(Wave::Sine)),
+        (Region::Screen, Blend::Add, -1.0, grating(Wave::Square { duty: 0.25 })),
+        (rectangle, Blend::Replace, 2.0, bitmap(false, 0.0)),
+        (ellipse, Blend::Multiply, 1.0, grating(Wave::Triangle)),
+        (polygon, Blend::Max, 1.0, grating(Wave::Saw)),
+        (Region::Screen, Blend::Add, 1.0, bitmap(true, 0.125)),
+        (
+            Region::Screen,
+            Blend::Add,
+            1.0,
+            Layer::Noise {
+                seed: 0x0123_4567,
+                wavelength_min_m: 0.001,
+                wavelength_max_m: 0.004,
+                low_n: 0.002,
+                high_n: 0.02,
+            },
+        ),
+        (polygon, Blend::Add, 1.0, edge),
+        (ellipse, Blend::Replace, 1.0, Layer::Button { rim_width_m: 0.002, rim_n: 0.02, face_n: 0.005, click }),
+        (Region::Screen, Blend::Max, 1.0, vibration(Beat::Sine, Burst::default())),
+        (Region::Screen, Blend::Add, 1.0, vibration(Beat::Square, burst)),
+        (Region::Screen, Blend::Multiply, 1.0, Layer::Speed { first: 0, count: 2 }),
+        (rectangle, Blend::Replace, 1.0, Layer::Stream { low_n: 0.002, high_n: 0.02 }),
+    ];
+    layers.map(|(region, blend, gain, layer)| Record { region, blend, gain, layer }).to_vec()
 }
 
-/// A whole scene of [`header`] and [`records`].
+pub fn points() -> Vec<Point> {
+    [(0.0, 0.5), (0.0625, 0.03125), (0.09, 0.0625), (0.05, 0.0625)].map(|(x, y)| Point { x, y }).to_vec()
+}
+
+/// A whole scene of [`header`], [`records`] and [`points`].
 pub fn scene() -> Vec<u8> {
-    let records = records();
-    let mut bytes = header().write(records.len() as u8).to_vec();
-    for record in records {
-        bytes.extend(record.write());
-    }
+    let (records, points) = (records(), points());
+    let mut bytes = header().write(records.len() as u8, points.len() as u8).to_vec();
+    bytes.extend(records.iter().flat_map(Record::write));
+    bytes.extend(points.iter().flat_map(Point::write));
     bytes
 }

@@ -8,9 +8,9 @@ use frixel::device::{Device, Event};
 use frixel::output::{FeltRow, Report, Trace};
 use frixel::player::start;
 use frixel::rigs::{EmulatedLink, EmulatedRecorder};
-use frixel::scene::{Scene, compile};
+use frixel::scene::{Program, Scene, compile};
 use frixel_hil_sim::emulated::{BOARD, Image, LinkBoard, LinkRecord};
-use frixel_hil_sim::{World, WorldConfig, contact_of};
+use frixel_hil_sim::{Stroke, World, WorldConfig, contact_of};
 
 use super::super::interrupt::Interrupt;
 use super::board::check_end;
@@ -33,14 +33,7 @@ pub(super) fn play(args: &PlayArgs) -> Result<Played, CommandError> {
     let program = compile(&Scene::load(&args.scene)?, &BOARD.limits, BOARD.tick_hz)?;
     tell_notes(&program);
     let (stroke, seconds) = scene_stroke(args, &program, BOARD.tick_hz)?;
-    let config = WorldConfig {
-        tick_hz: BOARD.tick_hz,
-        full_scale_v_peak: f64::from(BOARD.limits.full_scale_v_peak),
-        ..WorldConfig::default()
-    };
-    let mut world = World::new(config, stroke, args.seed)?;
-    world.set_finger(contact_of(&program.header).map_err(CommandError::Finger)?);
-
+    let world = world(&program, stroke, args.seed)?;
     let image = Image::build()?;
     let interrupt = Interrupt::watch()?;
     let (sender, records) = mpsc::channel();
@@ -56,8 +49,8 @@ pub(super) fn play(args: &PlayArgs) -> Result<Played, CommandError> {
     board.start_stroke();
     let ticks = (seconds * f64::from(BOARD.tick_hz)).round() as u64;
     let recorder = EmulatedRecorder::new(&program, BOARD.tick_hz, board.tick()?, ticks, ticks_per_row);
-    let mut diary =
-        Diary { records, held: VecDeque::new(), recorder, rows: Rows { csv, trace: Trace::new() }, end: None };
+    let rows = Rows { csv, trace: Trace::new() };
+    let mut diary = Diary { records, held: VecDeque::new(), recorder, rows, end: None };
     let begin = Instant::now();
     let ended = listen(&mut device, &mut diary, &interrupt, &mut |part| bars.play(part));
     let wall_s = begin.elapsed().as_secs_f64();
@@ -65,18 +58,32 @@ pub(super) fn play(args: &PlayArgs) -> Result<Played, CommandError> {
     let counters = device.counters();
     // The board's output goes to zero before anything else is done.
     drop(device);
-    board.check()?;
+    let mut failure = ended.and(board.check().map_err(CommandError::from)).err();
 
     let Diary { recorder, rows, .. } = diary;
     rows.csv.finish()?;
     let played_s = f64::from(recorder.ticks()) / f64::from(BOARD.tick_hz);
-    if interrupt.is_asked() {
+    if interrupt.is_asked() || (failure.is_some() && interrupt.was_asked()) {
+        // Ctrl-C in a terminal ends the emulator, too.
+        failure = None;
         eprintln!("interrupted: what follows is of the first {played_s:.3} s of {seconds:.3} s");
     }
     let report = Report::new("qemu", &recorder.metrics(), &program.reach, &counters, Some(played_s / wall_s));
     let mut files = vec![csv_path];
     files.extend(draw(args, &program, &rows.trace)?);
-    Ok(Played { report, files, failure: ended.err() })
+    Ok(Played { report, files, failure })
+}
+
+/// The world around the board, with the finger that the scene is meant for.
+fn world(program: &Program, stroke: Stroke, seed: u64) -> Result<World, CommandError> {
+    let config = WorldConfig {
+        tick_hz: BOARD.tick_hz,
+        full_scale_v_peak: f64::from(BOARD.limits.full_scale_v_peak),
+        ..WorldConfig::default()
+    };
+    let mut world = World::new(config, stroke, seed)?;
+    world.set_finger(contact_of(&program.header).map_err(CommandError::Finger)?);
+    Ok(world)
 }
 
 /// Writes down what the finger feels for as long as the board plays.
@@ -89,7 +96,8 @@ fn listen(
     device.subscribe(BOARD.tick_hz / TELEMETRY_HZ)?;
     while !diary.recorder.is_done() && !interrupt.is_asked() {
         let waited = device.wait(STEP, &mut |event| diary.hear(event));
-        diary.take_records(HELD_TICKS)?;
+        let over = waited.is_err() || interrupt.is_asked();
+        diary.take_records(if over { 0 } else { HELD_TICKS })?;
         check_end(diary.end.as_ref(), "qemu")?;
         waited?;
         on_part(diary.recorder.part());

@@ -3,6 +3,7 @@
 use super::*;
 use crate::scene::Mistake;
 
+const KINDS: [&str; 9] = ["constant", "grating", "bitmap", "noise", "edge", "button", "vibration", "speed", "stream"];
 const DOCS: &str = include_str!("../../../../docs/scene.md");
 
 /// The TOML examples.
@@ -31,7 +32,7 @@ fn every_example_compiles() {
             panic!("{error}\n{text}");
         }
     }
-    for kind in ["constant", "grating", "bitmap"] {
+    for kind in KINDS {
         assert!(rest.iter().any(|example| example.contains(&format!("kind = \"{kind}\""))), "{kind}");
     }
 }
@@ -41,7 +42,7 @@ fn every_field_is_named() {
     let head = examples()[0];
     let layer = |kind: &str| format!("[[layer]]\nkind = \"{kind}\"");
     let tables = ["[screen]", "[coating]", "[finger]", "[drive]", "[carrier]", "[touch]"].map(str::to_owned);
-    let layers = ["constant", "grating", "bitmap"].map(layer);
+    let layers = KINDS.map(layer);
     for table in tables.into_iter().chain(layers) {
         let text = format!("{}\n{table}\nzzz = 1", head_for(head, &table));
         let Err(CompileError::Mistakes { mistakes, .. }) = compile_text(&text) else {
@@ -63,5 +64,5 @@ fn numbers_in_the_text_are_right() {
     let reach = program.reach;
     assert!(DOCS.contains(&format!("At 150 V rms it feels {:.2} mN more", 1e3 * reach.electric_friction_max_n)));
     assert!(DOCS.contains(&format!("{} N. At 150 V", reach.natural_friction_n)));
-    assert_eq!(LIMITS.bitmap_pool_bytes, 81_920);
+    assert_eq!(LIMITS.bitmap_pool_bytes, 65_536);
 }

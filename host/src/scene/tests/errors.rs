@@ -466,16 +466,16 @@ fn pictures() {
         &[(
             7,
             12,
-            "the pictures up to this one need 160000 bytes, and the board has 81920: a pitch_mm of 0.36 would fit",
+            "the pictures up to this one need 160000 bytes, and the board has 65536: a pitch_mm of 0.4 would fit",
         )],
     );
-    compile_layers(&layer("textures/brick.png", "0.36"));
+    compile_layers(&layer("textures/brick.png", "0.4"));
     check_layers(
         &layer("textures/brick.png", "0.02"),
         &[(
             7,
             12,
-            "the pictures up to this one need 25000000 bytes, and the board has 81920: a pitch_mm of 0.36 would fit",
+            "the pictures up to this one need 25000000 bytes, and the board has 65536: a pitch_mm of 0.4 would fit",
         )],
     );
     let two = format!("{}{}", layer("textures/brick.png", "0.4"), layer("textures/brick.png", "0.5"));
@@ -484,7 +484,7 @@ fn pictures() {
         &[(
             16,
             12,
-            "the pictures up to this one need 102500 bytes, and the board has 81920: a pitch_mm of 0.57 would fit",
+            "the pictures up to this one need 102500 bytes, and the board has 65536: a pitch_mm of 0.64 would fit",
         )],
     );
 }

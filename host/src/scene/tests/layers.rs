@@ -1,6 +1,6 @@
 //! What layers compile to, and what the program then wants, against evaluations written here from the file's numbers.
 
-use frixel_wire::scene::{Carrier, Layer, Region, Scene as WireScene};
+use frixel_wire::scene::{Carrier, Layer, Leader, Region, Scene as WireScene};
 
 use super::super::{picture::Picture, resample};
 use super::*;
@@ -25,7 +25,7 @@ fn header_in_si_units() {
     let text = HEAD.replace(
         "# layers follow",
         "[drive]\nvoltage_max_v_rms = 100\nvoltage_max_v_peak = 200\nslew_v_per_us = 2\nhost_timeout_ms = 100\n\
-         autonomous = true\n[carrier]\nshape = \"sine\"\nfrequency_hz = 800\n[touch]\nprediction = false",
+         autonomous = true\n[carrier]\nshape = \"sine\"\nfrequency_hz = 800\n[touch]\nprediction = false\nleader = \"latest\"",
     );
     let slabs = "[[coating]]\nthickness_um = 1\npermittivity = 4\n[[coating]]\nthickness_um = 9\npermittivity = 1\n";
     let text = text.replace("[coating]\nthickness_um = 10\npermittivity = 1\n", slabs);
@@ -48,6 +48,7 @@ fn header_in_si_units() {
     }
     assert_eq!(header.carrier, Carrier::Sine);
     assert!(header.autonomous && !header.prediction);
+    assert_eq!(header.leader, Leader::Latest);
 }
 
 #[test]
@@ -286,8 +287,8 @@ fn any_colour_type_becomes_grey_and_says_what_was_done() {
 fn ramp(pixels: usize, samples: usize, pixels_per_sample: f64) -> Vec<f64> {
     let row: Vec<f32> = (0..pixels).map(|pixel| pixel as f32).collect();
     let grey: Vec<f32> = row.iter().chain(&row).copied().collect();
-    let across = resample::Axis { samples, pixels_per_sample };
-    let down = resample::Axis { samples: 2, pixels_per_sample: 1.0 };
+    let across = resample::Axis { whole: samples, skipped: 0, samples, pixels_per_sample };
+    let down = resample::Axis { whole: 2, skipped: 0, samples: 2, pixels_per_sample: 1.0 };
     let resampled = resample::resample(&grey, pixels, across, down);
     assert_eq!(resampled[..samples], resampled[samples..]);
     resampled[..samples].iter().map(|value| f64::from(*value)).collect()

@@ -10,7 +10,7 @@ mod layers;
 
 /// A board like the simulated one.
 const LIMITS: BoardLimits = BoardLimits {
-    bitmap_pool_bytes: 80 * 1024,
+    bitmap_pool_bytes: 64 * 1024,
     records_max: 64,
     receive_window_bytes: 4096,
     voltage_max_v_peak: 220.0,

@@ -1,0 +1,238 @@
+//! The device's loader: what it refuses by number, and that no bytes make it or the tick panic.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
+
+mod support;
+
+use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
+use frixel_wire::scene::{
+    Beat, Blend, Burst, Click, HEADER_LEN, Layer, Point, RECORD_LEN, Record, Region, Wave, bitmap_crc32,
+};
+use proptest::prelude::*;
+use support::{Desk, HEADER, Memory, record, scene_with_points};
+
+const CLICK: Click = Click { height_n: 0.004, decay_s: 0.02 };
+const SAMPLES: [u8; 6] = [0, 50, 100, 150, 200, 250];
+
+/// A record of every kind, region and blend.
+fn records() -> Vec<Record> {
+    let rectangle = Region::Rectangle { x_m: 0.01, y_m: 0.02, width_m: 0.03, height_m: 0.04 };
+    let ellipse = Region::Ellipse { x_m: 0.01, y_m: 0.01, width_m: 0.1, height_m: 0.05 };
+    let grating = |wave| Layer::Grating {
+        wave,
+        cycles_per_m_x: 300.0,
+        cycles_per_m_y: 40.0,
+        phase_turns: 0.3,
+        trough_n: 0.001,
+        crest_n: 0.006,
+    };
+    let bitmap = |tiled| Layer::Bitmap {
+        crc32: bitmap_crc32(3, 2, &SAMPLES),
+        x_m: 0.02,
+        y_m: 0.01,
+        pitch_m: 2e-3,
+        black_n: 0.0,
+        white_n: 0.004,
+        pitch_y_m: 3e-3,
+        angle_turns: 0.1,
+        tiled,
+    };
+    [
+        (Region::Screen, Blend::Replace, Layer::Constant { electric_friction_n: 0.004 }),
+        (Region::Polygon { first: 2, count: 4 }, Blend::Add, grating(Wave::Sine)),
+        (rectangle, Blend::Max, grating(Wave::Square { duty: 0.3 })),
+        (ellipse, Blend::Add, grating(Wave::Triangle)),
+        (ellipse, Blend::Multiply, grating(Wave::Saw)),
+        (Region::Screen, Blend::Add, bitmap(true)),
+        (rectangle, Blend::Add, bitmap(false)),
+        (
+            Region::Screen,
+            Blend::Add,
+            Layer::Noise { seed: 3, wavelength_min_m: 1e-3, wavelength_max_m: 4e-3, low_n: 0.0, high_n: 0.003 },
+        ),
+        (
+            Region::Screen,
+            Blend::Add,
+            Layer::Edge {
+                x_m: 0.03,
+                y_m: 0.03,
+                angle_turns: 0.05,
+                width_m: 2e-3,
+                level_n: 0.0,
+                ridge_n: 0.005,
+                click: CLICK,
+            },
+        ),
+        (rectangle, Blend::Max, Layer::Button { rim_width_m: 2e-3, rim_n: 0.02, face_n: 0.0, click: CLICK }),
+        (ellipse, Blend::Max, Layer::Button { rim_width_m: 2e-3, rim_n: 0.02, face_n: 0.0, click: CLICK }),
+        (
+            Region::Screen,
+            Blend::Add,
+            Layer::Vibration {
+                beat: Beat::Sine,
+                frequency_hz: 80.0,
+                low_n: 0.0,
+                high_n: 0.002,
+                burst: Burst { period_s: 0.05, on_s: 0.02, ramp_s: 0.005 },
+            },
+        ),
+        (Region::Screen, Blend::Multiply, Layer::Speed { first: 0, count: 2 }),
+        (Region::Screen, Blend::Add, Layer::Stream { low_n: 0.001, high_n: 0.02 }),
+    ]
+    .map(|(region, blend, layer)| Record { region, blend, gain: 1.0, layer })
+    .to_vec()
+}
+
+fn points() -> Vec<Point> {
+    [(0.02, 0.5), (0.2, 1.5), (0.01, 0.01), (0.1, 0.015), (0.09, 0.05), (0.02, 0.04)]
+        .map(|(x, y)| Point { x, y })
+        .to_vec()
+}
+
+fn refusal(record: Record, points: &[Point]) -> Option<ConfigRefusal> {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    desk.upload_bitmap(3, 2, &SAMPLES).unwrap();
+    match desk.load(&scene_with_points(&HEADER, &[record], points)) {
+        Ok(_) => None,
+        Err(Refusal::Config(refusal)) => Some(refusal),
+        Err(other) => panic!("{other:?}"),
+    }
+}
+
+#[cfg(all(
+    feature = "grating",
+    feature = "bitmap",
+    feature = "noise",
+    feature = "edge",
+    feature = "vibration",
+    feature = "speed",
+    feature = "stream",
+    feature = "polygon"
+))]
+mod whole {
+    use super::*;
+
+    #[test]
+    fn every_kind_plays() {
+        let mut memory = Memory::new();
+        let mut desk = Desk::new(&mut memory);
+        desk.greet();
+        desk.upload_bitmap(3, 2, &SAMPLES).unwrap();
+        desk.play(&scene_with_points(&HEADER, &records(), &points()));
+        assert!(desk.slide(20_000)[400..].iter().all(|drive| drive.dac_code != 0));
+    }
+
+    /// Every number of every kind is judged: a not-a-number in its place is refused, by a field that is there for it.
+    #[test]
+    fn no_number_goes_unseen() {
+        let parameters = |record: &Record| {
+            let bytes = record.write();
+            // The bitmap's name and the noise's seed are not numbers, the points of a curve are judged below.
+            let end = if matches!(record.layer, Layer::Edge { .. }) { RECORD_LEN } else { 52 };
+            let starts = if matches!(record.region, Region::Polygon { .. }) { 20 } else { 4 };
+            (starts..end).step_by(4).filter(|at| bytes[*at..at + 4] != [0; 4]).collect::<Vec<_>>()
+        };
+        let mut judged = 0;
+        for record in records() {
+            assert_eq!(refusal(record, &points()), None, "{record:?}");
+            for at in parameters(&record) {
+                let mut bytes = record.write();
+                bytes[at..at + 4].copy_from_slice(&f32::NAN.to_le_bytes());
+                let record = Record::parse(&bytes, 0).unwrap();
+                assert!(
+                    refusal(record, &points()).is_some_and(|refusal| refusal.found.is_nan()),
+                    "byte {at}: {record:?}"
+                );
+                judged += 1;
+            }
+        }
+        assert!(judged > 80, "{judged}");
+        for at in 0..6 {
+            for axis in 0..2 {
+                let mut points = points();
+                let number = if axis == 0 { &mut points[at].x } else { &mut points[at].y };
+                *number = f32::NAN;
+                let user = if at < 2 { records()[12] } else { records()[1] };
+                assert!(refusal(user, &points).is_some(), "point {at}");
+            }
+        }
+    }
+
+    #[test]
+    fn speeds_of_a_curve_rise() {
+        let curve = record(Layer::Speed { first: 0, count: 2 });
+        let refusal = refusal(curve, &[(0.1, 1.0), (0.1, 2.0)].map(|(x, y)| Point { x, y })).unwrap();
+        assert_eq!((refusal.field, refusal.found), (ConfigField::CurveSpeed, 0.1));
+    }
+
+    #[test]
+    fn side_tables_are_refused_by_what_they_hold() {
+        let of = |layer, count: usize| {
+            let mut memory = Memory::new();
+            let mut desk = Desk::new(&mut memory);
+            desk.greet();
+            desk.load(&scene_with_points(&HEADER, &vec![record(layer); count], &[])).err()
+        };
+        let noise = records()[7].layer;
+        assert_eq!(of(noise, 8), None);
+        let full = |field, max: f32| {
+            Some(Refusal::Config(ConfigRefusal { field, found: max + 1.0, min: 0.0, max, layer: max as u8 }))
+        };
+        assert_eq!(of(noise, 9), full(ConfigField::NoiseLayers, 8.0));
+        let edge = records()[8].layer;
+        assert_eq!(of(edge, 16), None);
+        assert_eq!(of(edge, 17), full(ConfigField::ClickLayers, 16.0));
+    }
+}
+
+/// A whole scene with some of its bytes changed.
+fn nearly() -> impl Strategy<Value = Vec<u8>> {
+    let good = scene_with_points(&HEADER, &records(), &points());
+    let byte = (any::<prop::sample::Index>(), any::<u8>()).prop_map(|(at, byte)| (at, vec![byte]));
+    let small = (any::<prop::sample::Index>(), 0..12u8).prop_map(|(at, byte)| (at, vec![byte]));
+    let number =
+        (any::<prop::sample::Index>(), any::<f32>()).prop_map(|(at, number)| (at, number.to_le_bytes().to_vec()));
+    prop::collection::vec(prop_oneof![byte, small, number], 0..6).prop_map(move |changes| {
+        let mut bytes = good.clone();
+        for (at, change) in changes {
+            // Numbers stand at multiples of four.
+            let at = at.index(bytes.len() / 4) * 4 + if change.len() == 1 { usize::from(change[0] % 4) } else { 0 };
+            bytes[at..at + change.len()].copy_from_slice(&change);
+        }
+        bytes
+    })
+}
+
+/// Loads these bytes and, when they are taken, plays them for a while.
+fn load_and_play(scene: &[u8]) -> bool {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    let _ = desk.upload_bitmap(3, 2, &SAMPLES);
+    if desk.load(scene).is_err() {
+        return false;
+    }
+    desk.command(frixel_wire::message::Command::Arm).unwrap();
+    desk.command(frixel_wire::message::Command::Play).unwrap();
+    desk.slide(1_500);
+    true
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 192, ..ProptestConfig::default() })]
+
+    #[test]
+    fn nearly_right_scenes_do_not_panic(scene in nearly()) {
+        load_and_play(&scene);
+    }
+
+    #[test]
+    fn arbitrary_scenes_do_not_panic(mut scene in prop::collection::vec(any::<u8>(), 0..600), records in 0..8u8, points in 0..9u8) {
+        if let Some(start) = scene.first_chunk_mut::<HEADER_LEN>() {
+            *start = HEADER.write(records, points);
+            scene.resize(HEADER_LEN + usize::from(records) * RECORD_LEN + usize::from(points) * 8, 0x11);
+        }
+        load_and_play(&scene);
+    }
+}

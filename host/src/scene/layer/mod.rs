@@ -1,0 +1,99 @@
+//! `[[layer]]`: what a person writes for one layer.
+
+mod amount;
+mod kind;
+mod region;
+
+use frixel_wire::scene::Blend;
+
+pub(super) use amount::Amount;
+use amount::Unit;
+pub(super) use kind::{Bitmap, Burst, Click, Kind};
+pub(super) use region::{Rectangle, Region};
+
+use super::fields::{Fields, Range};
+use super::log::Log;
+use super::mistake::Mistake;
+use super::source::Places;
+use kind::KindName;
+
+const GAIN: Range = Range::new(-100.0, 100.0, "");
+
+/// One layer as written.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Layer {
+    /// How messages call it: its number from one, and its name or kind.
+    pub(super) title: String,
+    pub(super) region: Option<Region>,
+    pub(super) blend: Blend,
+    pub(super) gain: f64,
+    pub(super) above: Above,
+    /// The host changes it while it plays.
+    pub(super) live: bool,
+    pub(super) kind: Kind,
+    pub(super) places: Places,
+}
+
+/// What a layer's frictions in newtons count from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Above {
+    /// From the finger's friction at no voltage.
+    Natural,
+    /// From zero: they are totals.
+    Zero,
+}
+
+impl Layer {
+    /// Reads layer `number`, counted from one.
+    pub(super) fn read(mut fields: Fields, number: usize, log: &mut Log) -> Option<Self> {
+        fields.rename(format!("layer {number}"));
+        let name = fields.optional_text(log, "name");
+        // Without its kind nobody knows what fields the layer should have.
+        let Some(kind_name) = fields.choice(log, "kind", &KindName::ALL.map(|kind| (kind.word(), kind))) else {
+            fields.give_up_without(log, "kind");
+            return None;
+        };
+        let title = name.map_or_else(
+            || format!("layer {number} ({})", kind_name.word()),
+            |name| format!("layer {number} \"{name}\""),
+        );
+        fields.rename(title.clone());
+        let region = region::read(&mut fields, kind_name, log);
+        let blend = blend(&mut fields, kind_name, log);
+        let gain = fields.optional_number(log, "gain", GAIN).unwrap_or(1.0);
+        let live = fields.flag(log, "live", false);
+        let unit = if blend == Blend::Multiply { Unit::Factor } else { Unit::Friction };
+        // What is multiplied counts from nothing.
+        let above = match unit {
+            Unit::Friction => {
+                fields.optional_choice(log, "above", &[("natural", Above::Natural), ("zero", Above::Zero)])
+            }
+            Unit::Factor => None,
+        };
+        let kind = kind_name.read(&mut fields, unit, log);
+        let places = fields.close(log);
+        if blend == Blend::Add && above == Some(Above::Zero) {
+            log.add(places.field("above"), Mistake::AddedTotal { layer: title.clone() });
+        }
+        let above = above.unwrap_or(match (kind_name, blend) {
+            (KindName::Constant, Blend::Replace) => Above::Zero,
+            _ => Above::Natural,
+        });
+        let region = region?;
+        let kind = kind?;
+        kind.check(&places, log);
+        Some(Self { title, region, blend, gain, above, live, kind, places })
+    }
+}
+
+/// A curve of speed is a factor on what lies below it, and an edge most often a ridge on it.
+fn blend(fields: &mut Fields, kind: KindName, log: &mut Log) -> Blend {
+    let all = [("replace", Blend::Replace), ("add", Blend::Add), ("multiply", Blend::Multiply), ("max", Blend::Max)];
+    match kind {
+        KindName::Speed => {
+            fields.optional_choice(log, "blend", &[("multiply", Blend::Multiply)]).unwrap_or(Blend::Multiply)
+        }
+        KindName::Edge => fields.optional_choice(log, "blend", &all).unwrap_or(Blend::Add),
+        _ => fields.optional_choice(log, "blend", &all).unwrap_or_default(),
+    }
+}

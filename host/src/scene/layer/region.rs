@@ -1,0 +1,108 @@
+//! `region`: where a layer acts.
+
+use super::super::fields::{Fields, Range};
+use super::super::log::Log;
+use super::super::mistake::Mistake;
+use super::kind::KindName;
+
+pub(super) const PLACE_MM: Range = Range::new(-2_000.0, 2_000.0, " mm");
+pub(super) const SIZE_MM: Range = Range::new(0.01, 2_000.0, " mm");
+/// Vertices that a polygon may have.
+const VERTICES: (usize, usize) = (3, frixel_wire::scene::POLYGON_POINTS_MAX);
+
+/// Where a layer acts.
+#[derive(Clone, Debug, PartialEq)]
+pub(in super::super) enum Region {
+    Rectangle(Rectangle),
+    /// Inside of a rectangle.
+    Ellipse(Rectangle),
+    /// Vertices, mm.
+    Polygon(Vec<(f64, f64)>),
+}
+
+/// A rectangle on the screen, from its top left corner.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in super::super) struct Rectangle {
+    pub(in super::super) x_mm: f64,
+    pub(in super::super) y_mm: f64,
+    pub(in super::super) width_mm: f64,
+    pub(in super::super) height_mm: f64,
+}
+
+#[derive(Clone, Copy)]
+enum Shape {
+    Rectangle,
+    Ellipse,
+    Polygon,
+}
+
+impl Region {
+    /// The smallest rectangle around it.
+    pub(in super::super) fn bounds(&self) -> Rectangle {
+        match self {
+            Self::Rectangle(rectangle) | Self::Ellipse(rectangle) => *rectangle,
+            Self::Polygon(vertices) => Rectangle::around(vertices),
+        }
+    }
+}
+
+impl Rectangle {
+    /// The smallest rectangle around some places, mm.
+    pub(in super::super) fn around(places: &[(f64, f64)]) -> Self {
+        let limits = |of: fn(&(f64, f64)) -> f64| {
+            let (least, most) = (f64::INFINITY, f64::NEG_INFINITY);
+            places.iter().map(of).fold((least, most), |(least, most), place| (least.min(place), most.max(place)))
+        };
+        let ((left, right), (top, bottom)) = (limits(|(x_mm, _)| *x_mm), limits(|(_, y_mm)| *y_mm));
+        Self { x_mm: left, y_mm: top, width_mm: right - left, height_mm: bottom - top }
+    }
+}
+
+/// The region of a layer, `Some(None)` for the screen; `None` when it cannot be understood. A button needs one that has
+/// a rim.
+pub(super) fn read(layer: &mut Fields, kind: KindName, log: &mut Log) -> Option<Option<Region>> {
+    let button = kind == KindName::Button;
+    if button {
+        layer.require("region");
+    }
+    let offset = layer.place("region");
+    let Some(mut fields) = layer.optional_table(log, "region") else { return (!button).then_some(None) };
+    fields.rename("this region".to_owned());
+    let shapes = [("rectangle", Shape::Rectangle), ("ellipse", Shape::Ellipse), ("polygon", Shape::Polygon)];
+    let wrong = fields.has("shape");
+    let shape = match fields.optional_choice(log, "shape", &shapes) {
+        None if wrong => return None,
+        shape => shape.unwrap_or(Shape::Rectangle),
+    };
+    let region = match shape {
+        Shape::Rectangle => rectangle(&mut fields, log).map(Region::Rectangle),
+        Shape::Ellipse => rectangle(&mut fields, log).map(Region::Ellipse),
+        Shape::Polygon => polygon(&mut fields, log).map(Region::Polygon),
+    };
+    fields.close(log);
+    let region = region?;
+    if button && matches!(region, Region::Polygon(_)) {
+        log.add(offset, Mistake::ButtonPolygon);
+        return None;
+    }
+    Some(Some(region))
+}
+
+fn rectangle(fields: &mut Fields, log: &mut Log) -> Option<Rectangle> {
+    let x_mm = fields.number(log, "x_mm", PLACE_MM);
+    let y_mm = fields.number(log, "y_mm", PLACE_MM);
+    let width_mm = fields.number(log, "width_mm", SIZE_MM);
+    let height_mm = fields.number(log, "height_mm", SIZE_MM);
+    Some(Rectangle { x_mm: x_mm?, y_mm: y_mm?, width_mm: width_mm?, height_mm: height_mm? })
+}
+
+fn polygon(fields: &mut Fields, log: &mut Log) -> Option<Vec<(f64, f64)>> {
+    let offset = fields.place("points_mm");
+    let vertices = fields.pairs(log, "points_mm", PLACE_MM)?;
+    let (min, max) = VERTICES;
+    if !(min..=max).contains(&vertices.len()) {
+        log.add(offset, Mistake::Count { field: "points_mm", found: vertices.len(), min, max });
+        return None;
+    }
+    Some(vertices)
+}

@@ -1,0 +1,74 @@
+//! Places on the screen: from millimetres and degrees to metres and turns.
+
+use frixel_wire::scene::{Header, Region as WireRegion};
+
+use super::super::file::Scene;
+use super::super::layer::{Layer, Rectangle};
+use super::super::log::Log;
+use super::super::mistake::Mistake;
+use super::MM;
+
+/// A layer may leave the screen by this much before it is refused: millimetres round, mm.
+const OFF_SCREEN_MM: f64 = 1e-6;
+
+/// Cycles per metre along x and y. Right angles are exact.
+pub(super) fn wave_vector(wavelength_mm: f64, angle_deg: f64) -> (f32, f32) {
+    let cycles_per_m = 1.0 / (wavelength_mm * MM);
+    let angle = angle_deg.to_radians();
+    let exact = |part: f64| if part.abs() < 1e-12 { 0.0 } else { part };
+    ((cycles_per_m * exact(libm::cos(angle))) as f32, (cycles_per_m * exact(libm::sin(angle))) as f32)
+}
+
+/// An angle in turns.
+pub(super) fn turns(angle_deg: f64) -> f32 {
+    (angle_deg / 360.0) as f32
+}
+
+/// Refuses a layer that leaves the screen.
+pub(super) fn check_on_screen(scene: &Scene, layer: &Layer, rectangle: Rectangle, log: &mut Log) {
+    let (screen_width_mm, screen_height_mm) = (scene.screen.width_mm, scene.screen.height_mm);
+    let past = [
+        ("left", -rectangle.x_mm),
+        ("top", -rectangle.y_mm),
+        ("right", rectangle.x_mm + rectangle.width_mm - screen_width_mm),
+        ("bottom", rectangle.y_mm + rectangle.height_mm - screen_height_mm),
+    ];
+    let furthest = past.into_iter().max_by(|(_, one), (_, other)| one.total_cmp(other));
+    if let Some((edge, beyond_mm)) = furthest.filter(|(_, beyond_mm)| *beyond_mm > OFF_SCREEN_MM) {
+        let field = if layer.region.is_some() { "region" } else { "x_mm" };
+        // Rounded to a micrometre, upwards, so that it is enough.
+        let beyond_mm = (beyond_mm * 1e3 - 1e-6).ceil() / 1e3;
+        let layer_title = layer.title.clone();
+        log.add(
+            layer.places.field(field),
+            Mistake::OffScreen { layer: layer_title, edge, beyond_mm, screen_width_mm, screen_height_mm },
+        );
+    }
+}
+
+/// The whole screen where the rectangle covers it, which costs the board nothing; a button keeps its sides.
+pub(super) fn rectangle(rectangle: Rectangle, header: &Header, button: bool) -> WireRegion {
+    let [x_m, y_m, width_m, height_m] = stretches(rectangle, header);
+    let everywhere = x_m <= 0.0 && y_m <= 0.0 && width_m >= header.screen_width_m && height_m >= header.screen_height_m;
+    if everywhere && !button { WireRegion::Screen } else { WireRegion::Rectangle { x_m, y_m, width_m, height_m } }
+}
+
+pub(super) fn ellipse(rectangle: Rectangle, header: &Header) -> WireRegion {
+    let [x_m, y_m, width_m, height_m] = stretches(rectangle, header);
+    WireRegion::Ellipse { x_m, y_m, width_m, height_m }
+}
+
+fn stretches(rectangle: Rectangle, header: &Header) -> [f32; 4] {
+    let (x_m, width_m) = stretch(rectangle.x_mm, rectangle.width_mm, header.screen_width_m);
+    let (y_m, height_m) = stretch(rectangle.y_mm, rectangle.height_mm, header.screen_height_m);
+    [x_m, y_m, width_m, height_m]
+}
+
+/// Start and length of a stretch in metres, shortened by the few bits that rounding would put past the screen's end.
+fn stretch(start_mm: f64, length_mm: f64, screen_m: f32) -> (f32, f32) {
+    let start_m = ((start_mm * MM) as f32).max(0.0);
+    let room_m = f64::from(screen_m) - f64::from(start_m);
+    let rounded_m = room_m as f32;
+    let room_m = if f64::from(rounded_m) > room_m { rounded_m.next_down() } else { rounded_m };
+    (start_m, ((length_mm * MM) as f32).min(room_m))
+}

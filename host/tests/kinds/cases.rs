@@ -1,0 +1,345 @@
+//! One scene for each kind of layer, region and blend, with what it means.
+
+use super::expected::{At, Expected, along, hill, noise, sine, turn};
+
+/// A finger's way over the screen, mm.
+#[derive(Clone, Copy)]
+pub enum Path {
+    /// At 100 mm/s.
+    Steady((f64, f64), (f64, f64)),
+    /// Minimum jerk in 1.2 s.
+    Person((f64, f64), (f64, f64)),
+}
+
+pub struct Case {
+    pub name: &'static str,
+    pub layers: &'static str,
+    pub path: Path,
+    /// Electric friction, mN.
+    pub expected: fn(&mut Expected, At) -> f64,
+    /// How far the library's evaluation may be away, mN: it begins with frictions rounded to `f32`.
+    pub agreement_mn: f64,
+    /// It jumps, so that places and times that round may lie on the other side.
+    pub jumps: bool,
+    /// How far what is felt may be away, as a part of the reachable range.
+    pub bound: f64,
+    /// Ticks after which the scene repeats itself; 1 where time plays no part.
+    pub repeats_after_ticks: usize,
+}
+
+const ACROSS: Path = Path::Steady((5.0, 30.0), (115.0, 45.0));
+
+const CASE: Case = Case {
+    name: "",
+    layers: "",
+    path: ACROSS,
+    expected: |_, _| 0.0,
+    agreement_mn: 2e-4,
+    jumps: false,
+    bound: 0.0,
+    repeats_after_ticks: 1,
+};
+
+pub fn all() -> Vec<Case> {
+    [spatial(), pictures(), borders(), in_time(), regions(), blends()].into_iter().flatten().collect()
+}
+
+fn spatial() -> Vec<Case> {
+    vec![
+        Case {
+            name: "constant",
+            layers: "[[layer]]\nkind = \"constant\"\nfriction_n = 0.262\ngain = 1.5",
+            expected: |_, _| 18.0,
+            bound: 0.0013,
+            ..CASE
+        },
+        Case {
+            name: "sine grating",
+            layers: "[[layer]]\nkind = \"grating\"\nwavelength_mm = 5\nangle_deg = 30\nphase_deg = 45\nlow_n = 0.002\nhigh_n = 0.022",
+            expected: |_, at| 2.0 + 20.0 * sine(along(at.x, at.y, 30.0) / 5.0 + 0.125),
+            bound: 0.0272,
+            ..CASE
+        },
+        Case {
+            name: "square grating",
+            layers: "[[layer]]\nkind = \"grating\"\nwave = \"square\"\nduty = 0.3\nwavelength_mm = 10\nlow_n = 0.002\nhigh_n = 0.022",
+            expected: |_, at| if turn(at.x / 10.0) < 0.3 { 22.0 } else { 2.0 },
+            jumps: true,
+            bound: 0.074,
+            ..CASE
+        },
+        Case {
+            name: "triangle grating",
+            layers: "[[layer]]\nkind = \"grating\"\nwave = \"triangle\"\nwavelength_mm = 6\nangle_deg = 90\nlow_n = 0.002\nhigh_n = 0.022",
+            path: Path::Steady((20.0, 5.0), (60.0, 75.0)),
+            expected: |_, at| 2.0 + 20.0 * (1.0 - (2.0 * turn(at.y / 6.0) - 1.0).abs()),
+            bound: 0.0212,
+            ..CASE
+        },
+        Case {
+            name: "saw grating",
+            layers: "[[layer]]\nkind = \"grating\"\nwave = \"saw\"\nwavelength_mm = 12\nlow_n = 0.002\nhigh_n = 0.022",
+            expected: |_, at| 2.0 + 20.0 * turn(at.x / 12.0),
+            jumps: true,
+            bound: 0.0516,
+            ..CASE
+        },
+        Case {
+            name: "noise",
+            layers: "[[layer]]\nkind = \"noise\"\nseed = 20260\nwavelength_min_mm = 4\nwavelength_max_mm = 12\nlow_n = 0.002\nhigh_n = 0.026",
+            expected: |_, at| 2.0 + 24.0 * noise(20260, 4.0, 12.0, at.x, at.y),
+            bound: 0.0085,
+            ..CASE
+        },
+    ]
+}
+
+fn pictures() -> Vec<Case> {
+    vec![
+        Case {
+            name: "bitmap, held",
+            layers: "[[layer]]\nkind = \"bitmap\"\npicture = \"textures/brick.png\"\nx_mm = 40\ny_mm = 10\nwidth_mm = 40\n\
+                     pitch_mm = 2\nblack_n = 0.026\nwhite_n = 0.002\nregion = { x_mm = 20, y_mm = 0, width_mm = 80, height_mm = 80 }",
+            expected: |scene, at| {
+                let level = scene.level((at.x - 40.0) / 2.0, (at.y - 10.0) / 2.0, false);
+                if (20.0..100.0).contains(&at.x) { 26.0 - 24.0 * level } else { 0.0 }
+            },
+            jumps: true,
+            bound: 0.0169,
+            ..CASE
+        },
+        Case {
+            name: "bitmap, bare glass to the most",
+            layers: "[[layer]]\nkind = \"bitmap\"\npicture = \"textures/brick.png\"\npitch_mm = 2\n\
+                     region = { x_mm = 0, y_mm = 0, width_mm = 120, height_mm = 80 }",
+            expected: |scene, at| scene.range * scene.level(at.x / 2.0, at.y / 2.0, false),
+            bound: 0.005,
+            ..CASE
+        },
+        Case {
+            name: "bitmap, tiled and turned",
+            layers: "[[layer]]\nkind = \"bitmap\"\npicture = \"textures/brick.png\"\nx_mm = 30\ny_mm = 20\nwidth_mm = 31\nheight_mm = 20\n\
+                     pitch_mm = 2.1\nangle_deg = 20\ntiled = true\nwhite_n = 0.026",
+            expected: |scene, at| {
+                // 15 by 10 samples, turned about the middle.
+                let (x, y) = (at.x - 45.5, at.y - 30.0);
+                let (u, v) = (along(x, y, 20.0) + 15.5, along(x, y, 110.0) + 10.0);
+                26.0 * scene.level(u / 31.0 * 15.0, v / 2.0, true)
+            },
+            bound: 0.0008,
+            ..CASE
+        },
+        Case {
+            name: "bitmap, turned",
+            layers: "[[layer]]\nkind = \"bitmap\"\npicture = \"textures/brick.png\"\nx_mm = 35\ny_mm = 15\nwidth_mm = 50\nheight_mm = 50\n\
+                     pitch_mm = 2\nangle_deg = -15\nwhite_n = 0.026",
+            expected: |scene, at| {
+                let (x, y) = (at.x - 60.0, at.y - 40.0);
+                let (u, v) = (along(x, y, -15.0) + 25.0, along(x, y, 75.0) + 25.0);
+                let inside = (0.0..50.0).contains(&u) && (0.0..50.0).contains(&v);
+                if inside { 26.0 * scene.level(u / 2.0, v / 2.0, false) } else { 0.0 }
+            },
+            jumps: true,
+            bound: 0.0075,
+            ..CASE
+        },
+    ]
+}
+
+fn borders() -> Vec<Case> {
+    vec![
+        Case {
+            name: "edge",
+            layers: "[[layer]]\nkind = \"edge\"\nx_mm = 60\ny_mm = 40\nangle_deg = 20\nwidth_mm = 12\nridge_n = 0.015\nclick_n = 0.01\nclick_ms = 60",
+            expected: |scene, at| {
+                let away = along(at.x - 60.0, at.y - 40.0, 20.0);
+                15.0 * hill(away, 12.0) + scene.click_on_change(away >= 0.0, at, 10.0, 0.06)
+            },
+            bound: 0.0038,
+            ..CASE
+        },
+        Case {
+            name: "edge, a well",
+            layers: "[[layer]]\nkind = \"constant\"\nabove = \"natural\"\nfriction_n = 0.02\n[[layer]]\nkind = \"edge\"\nx_mm = 50\ny_mm = 0\nwidth_mm = 20\nridge_n = -0.015",
+            expected: |_, at| 20.0 - 15.0 * hill(at.x - 50.0, 20.0),
+            bound: 0.0033,
+            ..CASE
+        },
+        Case {
+            name: "button, rectangle",
+            layers: "[[layer]]\nkind = \"button\"\nrim_width_mm = 8\nrim_n = 0.02\nface_n = 0.005\nclick_n = 0.006\nclick_ms = 100\n\
+                     region = { x_mm = 40, y_mm = 15, width_mm = 40, height_mm = 40 }",
+            expected: |scene, at| {
+                let depth = (20.0 - (at.x - 60.0).abs()).min(20.0 - (at.y - 35.0).abs());
+                let inside = (40.0..80.0).contains(&at.x) && (15.0..55.0).contains(&at.y);
+                let click = scene.click_on_entry(inside, at, 6.0, 0.1);
+                if inside { 5.0 + 15.0 * hill(depth - 4.0, 8.0) + click } else { 0.0 }
+            },
+            bound: 0.0123,
+            ..CASE
+        },
+        Case {
+            name: "button, ellipse",
+            layers: "[[layer]]\nkind = \"button\"\nrim_width_mm = 8\nrim_n = 0.02\nface_n = 0.005\n\
+                     region = { shape = \"ellipse\", x_mm = 30, y_mm = 15, width_mm = 60, height_mm = 40 }",
+            expected: |_, at| {
+                let depth = 20.0 * (1.0 - (((at.x - 60.0) / 30.0).powi(2) + ((at.y - 35.0) / 20.0).powi(2)).sqrt());
+                if depth >= 0.0 { 5.0 + 15.0 * hill(depth - 4.0, 8.0) } else { 0.0 }
+            },
+            bound: 0.0078,
+            ..CASE
+        },
+    ]
+}
+
+fn in_time() -> Vec<Case> {
+    vec![
+        Case {
+            name: "vibration",
+            layers: "[[layer]]\nkind = \"vibration\"\nfrequency_hz = 80\nlow_n = 0.002\nhigh_n = 0.022",
+            expected: |_, at| 2.0 + 20.0 * sine(80.0 * at.t),
+            agreement_mn: 1e-3,
+            bound: 0.0195,
+            repeats_after_ticks: 500,
+            ..CASE
+        },
+        Case {
+            name: "vibration in bursts",
+            layers: "[[layer]]\nkind = \"vibration\"\nfrequency_hz = 50\nlow_n = 0.002\nhigh_n = 0.022\n\
+                     burst = { period_ms = 40, on_ms = 30, ramp_ms = 10 }",
+            expected: |_, at| {
+                let begun = turn(at.t / 0.04) * 0.04;
+                let envelope = (begun.min(0.03 - begun) / 0.01).clamp(0.0, 1.0);
+                2.0 + 20.0 * envelope * sine(50.0 * at.t)
+            },
+            agreement_mn: 1e-3,
+            bound: 0.009,
+            repeats_after_ticks: 1_600,
+            ..CASE
+        },
+        Case {
+            name: "square vibration",
+            layers: "[[layer]]\nkind = \"vibration\"\nwave = \"square\"\nfrequency_hz = 50\nlow_n = 0.002\nhigh_n = 0.022",
+            expected: |_, at| if turn(50.0 * at.t) < 0.5 { 22.0 } else { 2.0 },
+            jumps: true,
+            bound: 0.0452,
+            repeats_after_ticks: 800,
+            ..CASE
+        },
+        Case {
+            name: "speed",
+            layers: "[[layer]]\nkind = \"constant\"\nabove = \"natural\"\nfriction_n = 0.02\n[[layer]]\nkind = \"speed\"\n\
+                     speeds_mm_per_s = [20, 80, 140]\nfactors = [0.2, 1.2, 0.7]",
+            path: Path::Person((5.0, 30.0), (115.0, 45.0)),
+            expected: |_, at| {
+                let factor = match at.speed {
+                    speed if speed < 20.0 => 0.2,
+                    speed if speed < 80.0 => 0.2 + (speed - 20.0) / 60.0,
+                    speed if speed < 140.0 => 1.2 - 0.5 * (speed - 80.0) / 60.0,
+                    _ => 0.7,
+                };
+                20.0 * factor
+            },
+            bound: 0.0357,
+            ..CASE
+        },
+        Case {
+            // Nothing is streamed: the layer is as if it were not there.
+            name: "stream, silent",
+            layers: "[[layer]]\nkind = \"constant\"\nabove = \"natural\"\nfriction_n = 0.012\n\
+                     [[layer]]\nkind = \"stream\"\nlow_n = 0.002\nhigh_n = 0.022",
+            expected: |_, _| 12.0,
+            bound: 0.0006,
+            ..CASE
+        },
+    ]
+}
+
+fn regions() -> Vec<Case> {
+    vec![
+        Case {
+            name: "rectangle, fraction",
+            layers: "[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.75\nregion = { x_mm = 30, y_mm = 20, width_mm = 50, height_mm = 30 }",
+            expected: |scene, at| if (30.0..80.0).contains(&at.x) { 0.75 * scene.range } else { 0.0 },
+            jumps: true,
+            bound: 0.0172,
+            ..CASE
+        },
+        Case {
+            name: "ellipse",
+            layers: "[[layer]]\nkind = \"constant\"\nabove = \"natural\"\nfriction_n = 0.02\n\
+                     region = { shape = \"ellipse\", x_mm = 30, y_mm = 20, width_mm = 50, height_mm = 30 }",
+            expected: |_, at| {
+                let inside = ((at.x - 55.0) / 25.0).powi(2) + ((at.y - 35.0) / 15.0).powi(2) <= 1.0;
+                if inside { 20.0 } else { 0.0 }
+            },
+            jumps: true,
+            bound: 0.0122,
+            ..CASE
+        },
+        Case {
+            // A square of two polygons side by side.
+            name: "polygons",
+            layers: "[[layer]]\nkind = \"constant\"\nblend = \"add\"\nfriction_n = 0.02\n\
+                     region = { shape = \"polygon\", points_mm = [[20, 10], [90, 10], [60, 40], [70, 70], [20, 70]] }\n\
+                     [[layer]]\nkind = \"constant\"\nblend = \"add\"\nfriction_n = 0.01\n\
+                     region = { shape = \"polygon\", points_mm = [[90, 10], [110, 10], [110, 70], [70, 70], [60, 40]] }",
+            expected: |_, at| {
+                if !(20.0..110.0).contains(&at.x) {
+                    return 0.0;
+                }
+                // From (90, 10) to (60, 40), and on to (70, 70).
+                let cut = if at.y < 40.0 { 100.0 - at.y } else { 60.0 + (at.y - 40.0) / 3.0 };
+                if at.x < cut { 20.0 } else { 10.0 }
+            },
+            jumps: true,
+            bound: 0.0207,
+            ..CASE
+        },
+    ]
+}
+
+fn blends() -> Vec<Case> {
+    vec![
+        Case {
+            name: "add",
+            layers: "[[layer]]\nkind = \"grating\"\nwavelength_mm = 12\nlow_n = 0\nhigh_n = 0.012\n\
+                     [[layer]]\nkind = \"grating\"\nblend = \"add\"\nwavelength_mm = 7\nlow_n = 0\nhigh_n = 0.006\ngain = 2",
+            expected: |_, at| 12.0 * sine(at.x / 12.0) + 12.0 * sine(at.x / 7.0),
+            bound: 0.0148,
+            ..CASE
+        },
+        Case {
+            name: "replace",
+            layers: "[[layer]]\nkind = \"constant\"\nfriction_n = 0.9\n\
+                     [[layer]]\nkind = \"grating\"\nwavelength_mm = 12\nlow_n = 0\nhigh_n = 0.012",
+            expected: |_, at| 12.0 * sine(at.x / 12.0),
+            bound: 0.0073,
+            ..CASE
+        },
+        Case {
+            name: "multiply",
+            layers: "[[layer]]\nkind = \"grating\"\nwavelength_mm = 12\nlow_n = 0.01\nhigh_n = 0.02\n\
+                     [[layer]]\nkind = \"grating\"\nblend = \"multiply\"\nwavelength_mm = 30\nlow_factor = 0.5\nhigh_factor = 1.25\ngain = 1.1",
+            expected: |_, at| (10.0 + 10.0 * sine(at.x / 12.0)) * 1.1 * (0.5 + 0.75 * sine(at.x / 30.0)),
+            bound: 0.0066,
+            ..CASE
+        },
+        Case {
+            name: "multiply by an edge",
+            layers: "[[layer]]\nkind = \"constant\"\nabove = \"natural\"\nfriction_n = 0.012\n\
+                     [[layer]]\nkind = \"edge\"\nblend = \"multiply\"\nx_mm = 60\ny_mm = 0\nwidth_mm = 20\nridge_factor = 2",
+            expected: |_, at| 12.0 * (1.0 + hill(at.x - 60.0, 20.0)),
+            bound: 0.0027,
+            ..CASE
+        },
+        Case {
+            name: "max",
+            layers: "[[layer]]\nkind = \"constant\"\nabove = \"natural\"\nfriction_n = 0.012\n\
+                     [[layer]]\nkind = \"grating\"\nblend = \"max\"\nwavelength_mm = 15\nlow_n = 0\nhigh_n = 0.024",
+            expected: |_, at| (24.0 * sine(at.x / 15.0)).max(12.0),
+            bound: 0.0071,
+            ..CASE
+        },
+    ]
+}
