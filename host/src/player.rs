@@ -159,6 +159,7 @@ fn run(
     let mut device = Device::connect(SimLink::new(rig, recorder))?;
     start(&mut device, program, &mut |progress| on_stage(Stage::Upload(progress)))?;
     if let Some(feed) = &mut feed {
+        device.link_mut().recorder_mut().expect_stream();
         feed.start(&mut device)?;
     }
     let step = if feed.is_some() { STREAM_STEP } else { STEP };

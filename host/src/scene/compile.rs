@@ -5,6 +5,7 @@ use frixel_wire::scene::{Header, RECORDS_MAX, Record};
 
 use super::excess;
 use super::file::Scene;
+use super::layer_map::LayerMap;
 use super::log::Log;
 use super::lower::Lowering;
 use super::mistake::{CompileError, Mistake};
@@ -70,6 +71,8 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
         points: lowered.points,
         bitmaps: lowered.bitmaps,
         titles,
+        // Every layer becomes the record of its number.
+        layers: LayerMap::new((0..).zip(&scene.layers).map(|(record, layer)| (layer.name.clone(), Some(record)))),
         reach,
         half_period_ticks,
         notes,

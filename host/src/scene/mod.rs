@@ -9,6 +9,7 @@ mod excess;
 mod fields;
 mod file;
 mod layer;
+mod layer_map;
 mod log;
 mod lower;
 mod mistake;
@@ -23,6 +24,7 @@ mod tests;
 
 pub use compile::compile;
 pub use file::Scene;
+pub use layer_map::{LayerError, LayerMap};
 pub use mistake::{CompileError, Located, Mistake, Nearest};
 pub use program::{Bitmap, Program};
 pub use reach::Reach;

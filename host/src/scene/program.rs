@@ -2,6 +2,7 @@
 
 use frixel_wire::scene::{Header, Point, Record, bitmap_crc32};
 
+use super::layer_map::LayerMap;
 use super::reach::Reach;
 
 /// A scene as a board plays it, with the pictures that it names.
@@ -17,6 +18,8 @@ pub struct Program {
     pub bitmaps: Vec<Bitmap>,
     /// How messages call each record: its number from one, and its name or kind.
     pub titles: Vec<String>,
+    /// Which record each layer of the file became, for a host that changes layers while they play.
+    pub layers: LayerMap,
     /// What the finger can be given.
     pub reach: Reach,
     /// Ticks of half a carrier period.
