@@ -1,5 +1,6 @@
 //! `cargo xtask bench`: instructions and estimated cycles on emulated processors, and image sizes.
 
+pub(crate) mod costs;
 mod cycles;
 mod figures;
 mod follow;
@@ -46,23 +47,12 @@ pub(crate) fn bench() -> Result<Figures, String> {
         add_target(core.target)?;
         Image::build(core, false)?.measure(&mut figures)?;
     }
-    layers(&mut figures);
     size::measure(&mut figures)?;
     let folder = root().join("target/bench");
     fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let path = folder.join("bench.json");
     fs::write(&path, figures.json()?).map_err(|error| format!("{}: {error}", path.display()))?;
     Ok(figures)
-}
-
-/// What one layer more costs, from ticks of scenes of one layer and of sixteen more.
-fn layers(figures: &mut Figures) {
-    let Some(one) = figures.get("m4f.tick_1_constant") else { return };
-    for kind in ["away", "constant", "sine", "square", "bitmap"] {
-        if let Some(more) = figures.get(&format!("m4f.tick_17_{kind}")) {
-            figures.put(format!("m4f.layer_{kind}"), more.saturating_sub(one).div_ceil(16));
-        }
-    }
 }
 
 /// The figure that [`breach`] is above.

@@ -119,6 +119,7 @@ pub(crate) fn budgets() -> Result<(), String> {
     eprint!("{}", figures.table());
     let limits = budgets::read(&root().join("budgets.toml"))?;
     budgets::check(&limits, &figures)?;
+    bench::costs::check(&figures)?;
     let broken = budgets::only(&limits, bench::BROKEN)?;
     match budgets::check(&broken, &bench::breach()?) {
         Err(_) => Ok(()),

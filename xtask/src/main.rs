@@ -11,6 +11,7 @@ use std::process::ExitCode;
 const USAGE: &str = "\
 cargo xtask test     format, lints, cross-builds, all tests, docs, budgets: what CI runs
 cargo xtask bench    instructions and estimated cycles on emulated processors, and image sizes
+         --bless     and writes down what each kind of layer costs, which compiler and board go by
 cargo xtask budgets  the same, held against budgets.toml
 cargo xtask soak     what takes too long for every change: every f32 through the tables
 ";
@@ -22,6 +23,10 @@ fn main() -> ExitCode {
         ["test"] => check::test(),
         ["budgets"] => check::budgets(),
         ["soak"] => check::soak(),
+        ["bench", "--bless"] => bench::bench().and_then(|figures| {
+            print!("{}", figures.table());
+            bench::costs::bless(&figures)
+        }),
         ["bench"] => bench::bench().map(|figures| print!("{}", figures.table())),
         _ => Err(format!("no such command: {}\n{USAGE}", arguments.join(" "))),
     };

@@ -14,7 +14,7 @@ const COUNTS_OF_FIVE_INSTRUCTIONS: u32 = 128;
 const WRAP: u32 = 1 << 24;
 
 /// Most cases.
-const CASES_MAX: usize = 32;
+const CASES_MAX: usize = 64;
 
 /// For every case, by number, the input that a debugger wants to follow, counted from 1; zero for none. The debugger
 /// writes it before the image starts, so the start-up code must not clear it.

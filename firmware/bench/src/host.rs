@@ -1,10 +1,19 @@
 //! A host on the same processor: puts a scene on the board and plays it.
 
+use core::array;
+
 use frixel_render::{Session, Ticker};
 use frixel_wire::frame::{FRAME_MAX_LEN, crc32};
 use frixel_wire::message::{Command, Request};
 use frixel_wire::payload::{self, CHUNK_LEN};
 use frixel_wire::scene::bitmap_crc32;
+
+/// Samples a second of the stream.
+pub const STREAM_HZ: u32 = 40_000 / STREAM_TICKS_PER_SAMPLE;
+/// Ticks for a sample of the stream.
+pub const STREAM_TICKS_PER_SAMPLE: u32 = 2;
+/// Samples that are sent at a time.
+pub const STREAM_FRAME: usize = 64;
 
 /// A session and the ticker that it gives orders to.
 pub struct Host<'a> {
@@ -44,6 +53,16 @@ impl<'a> Host<'a> {
         self.command(Command::Commit { crc32 });
         self.command(Command::Arm);
         self.command(Command::Play);
+    }
+
+    /// Sends frame number `frame` of a stream. A board whose scene has none drops it.
+    pub fn stream(&mut self, frame: u32) {
+        let samples: [u16; STREAM_FRAME] = array::from_fn(|index| if index % 2 == 0 { 0x4000 } else { 0xc000 });
+        let mut bytes = [0; FRAME_MAX_LEN];
+        let Ok(bytes) = payload::samples_frame(frame * STREAM_FRAME as u32, &samples, &mut bytes) else {
+            panic!("samples do not fit a frame")
+        };
+        self.send(bytes);
     }
 
     fn chunks(&mut self, bytes: &[u8]) {

@@ -10,6 +10,7 @@
 mod count;
 mod host;
 mod inverse;
+mod layers;
 mod tick;
 
 use core::panic::PanicInfo;

@@ -1,13 +1,14 @@
 //! Whole ticks, by scene.
 
 use cortex_m::singleton;
-use frixel_render::{Active, BitmapPool, Board, Drive, Sense, Session, Ticker, Touch};
+use frixel_render::{Active, BitmapPool, Board, Drive, Sense, Session, StreamBuffer, Ticker, Touch};
 use frixel_wire::fault::State;
 use frixel_wire::message::Command;
-use frixel_wire::scene::{Blend, Carrier, HEADER_LEN, Header, Leader, Layer, RECORD_LEN, RECORDS_MAX, Record, Region, Wave};
+use frixel_wire::scene::{Carrier, HEADER_LEN, Header, Leader, POINT_LEN, Point, RECORD_LEN, Record, SCENE_MAX_LEN};
 
 use crate::count::{Case, Counter};
-use crate::host::Host;
+use crate::host::{Host, STREAM_FRAME, STREAM_TICKS_PER_SAMPLE};
+use crate::layers::{GRATING, bitmap, record};
 
 /// Ticks counted of each scene: a stroke across the screen.
 const TICKS: u32 = 8_000;
@@ -15,10 +16,12 @@ const TICKS: u32 = 8_000;
 const REPORT_TICKS: u32 = 400;
 /// Ticks between two pings.
 const PING_TICKS: u32 = 2_000;
+/// Ticks between two frames of the stream.
+const STREAM_TICKS: u32 = STREAM_FRAME as u32 * STREAM_TICKS_PER_SAMPLE;
 /// Side of the square picture, in samples.
 const PICTURE: u16 = 100;
 
-const HEADER: Header = Header {
+pub(crate) const HEADER: Header = Header {
     screen_width_m: 0.12,
     screen_height_m: 0.11,
     finger_radius_m: 8e-3,
@@ -37,52 +40,19 @@ const HEADER: Header = Header {
     leader: Leader::First,
 };
 
-const GRATING: Layer = Layer::Grating {
-    wave: Wave::Sine,
-    cycles_per_m_x: 500.0,
-    cycles_per_m_y: 100.0,
-    phase_turns: 0.2,
-    trough_n: 0.0,
-    crest_n: 0.026,
-};
-
-const SQUARE_GRATING: Layer = Layer::Grating {
-    wave: Wave::Square { duty: 0.5 },
-    cycles_per_m_x: 500.0,
-    cycles_per_m_y: 100.0,
-    phase_turns: 0.2,
-    trough_n: 0.0,
-    crest_n: 0.026,
-};
-
-const fn bitmap(crc32: u32) -> Layer {
-    Layer::Bitmap {
-        crc32,
-        x_m: 0.01,
-        y_m: 0.0,
-        pitch_m: 1e-3,
-        black_n: 0.0,
-        white_n: 0.026,
-        pitch_y_m: 1e-3,
-        angle_turns: 0.0,
-        tiled: false,
-    }
-}
-
-const fn record(layer: Layer) -> Record {
-    Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer }
-}
-
 /// Counts the ticks of every scene.
 pub fn run(counter: &mut Counter) {
     static POOL: BitmapPool = BitmapPool::new();
+    static STREAM: StreamBuffer = StreamBuffer::new();
     let board = Board::SIMULATOR;
     let (Some(first), Some(second)) = (singleton!(: Active = Active::new()), singleton!(: Active = Active::new()))
     else {
         panic!("this runs once");
     };
-    let ticker = Ticker::new(&board, &POOL, first);
-    let session = Session::new(board, &POOL, second);
+    let mut ticker = Ticker::new(&board, &POOL, first);
+    let mut session = Session::new(board, &POOL, second);
+    ticker.attach_stream(&STREAM);
+    session.attach_stream(&STREAM);
     let mut bench = Bench { host: Host::new(session, ticker), monitor: Monitor::new(&board) };
 
     let mut samples = [0; PICTURE as usize * PICTURE as usize];
@@ -97,18 +67,14 @@ pub fn run(counter: &mut Counter) {
     let crc32 = bench.host.bitmap(PICTURE, PICTURE, &samples);
     bench.play(&HEADER, &[record(bitmap(crc32))]);
     bench.slide(counter.case("tick_bitmap"));
-    bench.layers(counter, crc32);
-    let worst_header = Header { carrier: Carrier::Sine, ..HEADER };
-    bench.play(&worst_header, &[Record { blend: Blend::Add, ..record(bitmap(crc32)) }; RECORDS_MAX]);
-    bench.slide(counter.case("tick_worst_scene"));
+    bench.costs(counter, crc32);
+    bench.numbers_of_layers(counter);
+    bench.worst_scene(counter, crc32);
 }
 
-/// Layers on top of the first one, to see what one of them costs.
-const MORE_LAYERS: usize = 16;
-
 /// A playing board.
-struct Bench {
-    host: Host<'static>,
+pub(crate) struct Bench {
+    pub(crate) host: Host<'static>,
     monitor: Monitor,
 }
 
@@ -135,37 +101,26 @@ impl Monitor {
 }
 
 impl Bench {
-    fn play(&mut self, header: &Header, records: &[Record]) {
-        let mut scene = [0; HEADER_LEN + RECORDS_MAX * RECORD_LEN];
-        scene[..HEADER_LEN].copy_from_slice(&header.write(records.len() as u8, 0));
-        for (place, record) in scene[HEADER_LEN..].chunks_exact_mut(RECORD_LEN).zip(records) {
-            place.copy_from_slice(&record.write());
-        }
-        self.host.command(Command::Disarm);
-        self.host.play(&scene[..HEADER_LEN + RECORD_LEN * records.len()]);
-        self.tick(None);
-        assert!(self.host.ticker.status().telemetry.state == State::Active, "the scene does not play");
+    pub(crate) fn play(&mut self, header: &Header, records: &[Record]) {
+        self.play_with_points(header, records, &[]);
     }
 
-    /// What a layer costs, by kind: scenes of one layer, and of [`MORE_LAYERS`] more.
-    fn layers(&mut self, counter: &mut Counter, crc32: u32) {
-        let constant = Layer::Constant { electric_friction_n: 0.001 };
-        let away = Region::Rectangle { x_m: 0.0, y_m: 0.1, width_m: 0.12, height_m: 0.01 };
-        let around = Region::Rectangle { x_m: 0.0, y_m: 0.0, width_m: 0.12, height_m: 0.11 };
-        self.play(&HEADER, &[record(constant)]);
-        self.slide(counter.case("tick_1_constant"));
-        for (name, region, layer) in [
-            ("tick_17_away", away, constant),
-            ("tick_17_constant", around, constant),
-            ("tick_17_sine", around, GRATING),
-            ("tick_17_square", around, SQUARE_GRATING),
-            ("tick_17_bitmap", around, bitmap(crc32)),
-        ] {
-            let mut records = [Record { region, blend: Blend::Add, gain: 0.01, layer }; 1 + MORE_LAYERS];
-            records[0] = record(constant);
-            self.play(&HEADER, &records);
-            self.slide(counter.case(name));
+    pub(crate) fn play_with_points(&mut self, header: &Header, records: &[Record], points: &[Point]) {
+        let mut scene = [0; SCENE_MAX_LEN];
+        let (head, rest) = scene.split_at_mut(HEADER_LEN);
+        head.copy_from_slice(&header.write(records.len() as u8, points.len() as u8));
+        let (body, tail) = rest.split_at_mut(RECORD_LEN * records.len());
+        for (place, record) in body.chunks_exact_mut(RECORD_LEN).zip(records) {
+            place.copy_from_slice(&record.write());
         }
+        for (place, point) in tail.chunks_exact_mut(POINT_LEN).zip(points) {
+            place.copy_from_slice(&point.write());
+        }
+        let len = HEADER_LEN + RECORD_LEN * records.len() + POINT_LEN * points.len();
+        self.host.command(Command::Disarm);
+        self.host.play(&scene[..len]);
+        self.tick(None);
+        assert!(self.host.ticker.status().telemetry.state == State::Active, "the scene does not play");
     }
 
     /// Nothing to drive.
@@ -178,12 +133,15 @@ impl Bench {
     }
 
     /// A finger that comes down, slides, rests for a while and slides on.
-    fn slide(&mut self, mut case: Case) {
+    pub(crate) fn slide(&mut self, mut case: Case) {
         self.tick(Some(Touch::Up));
         let mut driven = 0;
         for tick in 0..TICKS {
             if tick.is_multiple_of(PING_TICKS) {
                 self.host.command(Command::Ping);
+            }
+            if tick.is_multiple_of(STREAM_TICKS) {
+                self.host.stream(tick / STREAM_TICKS);
             }
             let touch = tick.is_multiple_of(REPORT_TICKS).then(|| {
                 let along_m = 1e-5 * tick.min(TICKS / 3).max(tick.saturating_sub(TICKS / 3)) as f32;

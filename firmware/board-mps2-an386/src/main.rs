@@ -40,19 +40,18 @@ fn main() -> ! {
     };
     let mut ticker = Ticker::new(&board, &POOL, first);
     ticker.attach_stream(&STREAM);
-    let session = session(board, second);
+    let Some(session) = session(board, second) else { fault::never() };
+    session.attach_stream(&STREAM);
     match (shared::get(layout::MODE), Peripherals::take()) {
         (layout::MODE_LINK, Some(peripherals)) => talk::run(&board, session, ticker, peripherals),
         _ => lockstep::run(session, ticker),
     }
 }
 
-/// The session. It is made in a function of its own, whose stack is free again when the board runs.
+/// Makes the session. Not in `main`, on whose stack the room that it takes to make one would stay for good.
 #[inline(never)]
-fn session(board: Board, spare: &'static mut Active) -> &'static mut Session<'static> {
-    let Some(session) = singleton!(: Session<'static> = Session::new(board, &POOL, spare)) else { fault::never() };
-    session.attach_stream(&STREAM);
-    session
+fn session(board: Board, spare: &'static mut Active) -> Option<&'static mut Session<'static>> {
+    singleton!(: Session<'static> = Session::new(board, &POOL, spare))
 }
 
 /// The board as it started: the fault before a reset was the reset's cause.

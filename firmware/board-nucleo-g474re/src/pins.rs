@@ -20,7 +20,7 @@ pub fn start() {
 /// Gives a pin to a peripheral.
 pub(crate) fn alternate(port: Gpio, pin: u32, function: u8) {
     port.ospeedr().modify(|w| w.0 = field(w.0, 2, pin, Ospeedr::HIGH_SPEED as u32));
-    port.afr((pin / 8) as usize).modify(|w| w.0 = field(w.0, 4, pin % 8, u32::from(function)));
+    port.afr(usize::from(pin >= 8)).modify(|w| w.0 = field(w.0, 4, pin % 8, u32::from(function)));
     mode(port, pin, Moder::ALTERNATE);
 }
 

@@ -2,6 +2,7 @@
 
 use frixel_model::{Carrier, Contact, Finger, InverseTable, Waveform};
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
+use frixel_wire::scene::cost::{self, TICK_INSTRUCTIONS_MAX, Worst};
 use frixel_wire::scene::{Carrier as Shape, Grid, Header, LayerSet, RECORDS_MAX, Scene};
 use heapless::Vec;
 
@@ -143,6 +144,7 @@ impl Active {
     fn load_layers(&mut self, scene: &Scene, board: &Board, directory: &Directory) -> Result<(), Refusal> {
         self.grid.reset(scene.header().screen_width_m, scene.header().screen_height_m);
         self.tables.set_points(scene.points());
+        let mut costs = [0; RECORDS_MAX];
         for (number, record) in scene.records().enumerate() {
             let number = number as u8;
             config::check_record(&record, scene, number).map_err(Refusal::Config)?;
@@ -150,10 +152,18 @@ impl Active {
             let layer = loading.layer(&record, number)?;
             // There is room for every record that a scene can have.
             let _ = self.layers.push(layer);
+            if let Some(place) = costs.get_mut(usize::from(number)) {
+                *place = cost::of_record(&record);
+            }
             self.put(number, true);
             self.grid.add(number, &record.region, self.tables.points());
         }
         self.look_for_a_single_layer();
+        let Worst { instructions, cell } = cost::worst(scene.header(), &self.grid, &costs);
+        if instructions > TICK_INSTRUCTIONS_MAX {
+            let max = TICK_INSTRUCTIONS_MAX;
+            return Err(Refusal::TooCostly { instructions, max, x_m: cell.x_m, y_m: cell.y_m });
+        }
         Ok(())
     }
 

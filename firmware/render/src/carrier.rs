@@ -55,7 +55,7 @@ impl Carrier {
 
     /// Goes on with the timing of another scene. The integral is the electrode's, and stays.
     pub(crate) fn retime(&mut self, timing: &CarrierTiming) {
-        self.phase_ticks %= 2 * timing.half_period_ticks;
+        self.phase_ticks = self.phase_ticks.checked_rem(2 * timing.half_period_ticks).unwrap_or_default();
     }
 
     /// Waits at zero output. It will start again a quarter period before an edge, on the side that takes the integral
@@ -73,7 +73,8 @@ impl Carrier {
         let early = too_far && self.takes_out(code);
         let code = if early { -code } else { code };
         if early {
-            self.phase_ticks = (self.phase_ticks + timing.half_period_ticks) % (2 * timing.half_period_ticks);
+            let half = timing.half_period_ticks;
+            self.phase_ticks = if self.phase_ticks < half { self.phase_ticks + half } else { self.phase_ticks - half };
         }
         self.integral += code;
         self.phase_ticks += 1;
@@ -102,7 +103,8 @@ impl Carrier {
                 let turns = self.phase_ticks as f32 * timing.turns_per_tick - 0.25;
                 let code = amplitude * turns::cosine(turns);
                 let rounded = (code + 0.5_f32.copysign(code)) as i32;
-                rounded.clamp(-timing.code_max, timing.code_max)
+                // Not `clamp`, which has a panic for limits that are the wrong way round.
+                rounded.min(timing.code_max).max(-timing.code_max)
             }
             #[cfg(not(feature = "sine-carrier"))]
             Shape::Sine => 0,

@@ -5,6 +5,7 @@
 //! right, y down. Angles are in turns, from x towards y.
 
 mod codec;
+pub mod cost;
 mod error;
 mod grid;
 mod kind;

@@ -6,6 +6,7 @@ use frixel_wire::scene::{Header, RECORDS_MAX, Record};
 use super::excess;
 use super::file::Scene;
 use super::layer_map::LayerMap;
+use super::leave_out::leave_out;
 use super::log::Log;
 use super::lower::Lowering;
 use super::mistake::{CompileError, Mistake};
@@ -71,16 +72,26 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
         points: lowered.points,
         bitmaps: lowered.bitmaps,
         titles,
-        // Every layer becomes the record of its number.
-        layers: LayerMap::new((0..).zip(&scene.layers).map(|(record, layer)| (layer.name.clone(), Some(record)))),
+        layers: LayerMap::default(),
         reach,
         half_period_ticks,
         notes,
+        left_out: lowered.left_out,
     };
     if log.is_empty() {
         excess::check(scene, &mut program, log);
+        let live: Vec<bool> = scene.layers.iter().map(|layer| layer.live).collect();
+        leave_out(&mut program, &live);
     }
+    program.layers = layer_map(scene, &program.titles);
     Some(program)
+}
+
+/// A layer that the host may change is a record of its own; others may have been reckoned together.
+fn layer_map(scene: &Scene, titles: &[String]) -> LayerMap {
+    let record = |title: &String| (0..).zip(titles).find_map(|(record, other)| (other == title).then_some(record));
+    let records = scene.layers.iter().map(|layer| record(&layer.title).filter(|_| layer.live));
+    LayerMap::new(scene.layers.iter().zip(records).map(|(layer, record)| (layer.name.clone(), record)))
 }
 
 fn half_period_ticks(scene: &Scene, tick_hz: u32, log: &mut Log, notes: &mut Vec<String>) -> Option<u32> {

@@ -27,9 +27,11 @@ pub enum LayerError {
         /// Layers of the scene.
         count: usize,
     },
-    /// The compiler has found no need for a record of its own.
-    #[error("layer {layer:?} is not in the compiled scene: say `live = true` in the file to change it while it plays")]
-    NotCompiled {
+    /// The layer may have no record of its own.
+    #[error(
+        "layer {layer:?} may be reckoned together with others: say `live = true` in the file to change it while it plays"
+    )]
+    NotLive {
         /// What was asked for.
         layer: String,
     },
@@ -40,7 +42,7 @@ fn suggested(suggestion: Option<&str>) -> String {
 }
 
 impl LayerMap {
-    /// The layers from bottom to top: the name, if it has one, and the record, if it became one.
+    /// The layers from bottom to top: the name, if it has one, and the record, if it is one that may be changed.
     pub(super) fn new(layers: impl IntoIterator<Item = (Option<String>, Option<u8>)>) -> Self {
         Self(layers.into_iter().map(|(name, record)| Entry { name, record }).collect())
     }
@@ -51,7 +53,7 @@ impl LayerMap {
         let named = self.0.iter().find(|entry| entry.name.as_deref() == Some(layer));
         let numbered = || self.0.get(layer.parse::<usize>().ok()?.checked_sub(1)?);
         match named.or_else(numbered) {
-            Some(entry) => entry.record.ok_or_else(|| LayerError::NotCompiled { layer: layer.to_owned() }),
+            Some(entry) => entry.record.ok_or_else(|| LayerError::NotLive { layer: layer.to_owned() }),
             None => Err(LayerError::Unknown {
                 found: layer.to_owned(),
                 suggestion: Nearest::new(layer, self.0.iter().filter_map(|entry| entry.name.as_deref())).suggestion,
@@ -73,7 +75,7 @@ mod tests {
         assert_eq!(map.record("rain"), Ok(1));
         assert_eq!(map.record("3"), Ok(1));
         assert_eq!(map.record("1"), Ok(2), "a name comes before a number");
-        assert_eq!(map.record("bricks"), Err(LayerError::NotCompiled { layer: "bricks".into() }));
+        assert_eq!(map.record("bricks"), Err(LayerError::NotLive { layer: "bricks".into() }));
         for wrong in ["0", "5", "brick", ""] {
             let sentence = map.record(wrong).unwrap_err().to_string();
             assert!(sentence.contains("has no layer") && sentence.contains("one of its 4"), "{sentence}");

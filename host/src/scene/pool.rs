@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::layer::{Bitmap as BitmapLayer, Layer, Rectangle, Region};
+use super::left_out::LeftOut;
 use super::log::Log;
 use super::mistake::{Mistake, Nearest};
 use super::picture::Picture;
@@ -15,6 +16,7 @@ pub(super) struct Pool {
     folder: PathBuf,
     size_bytes: u32,
     bitmaps: Vec<Bitmap>,
+    left_out: Vec<LeftOut>,
 }
 
 /// Where a picture's samples lie.
@@ -117,11 +119,12 @@ fn axes(
 
 impl Pool {
     pub(super) fn new(folder: PathBuf, size_bytes: u32) -> Self {
-        Self { folder, size_bytes, bitmaps: Vec::new() }
+        Self { folder, size_bytes, bitmaps: Vec::new(), left_out: Vec::new() }
     }
 
-    pub(super) fn into_bitmaps(self) -> Vec<Bitmap> {
-        self.bitmaps
+    /// The bitmaps, and what was left out of them.
+    pub(super) fn finish(self) -> (Vec<Bitmap>, Vec<LeftOut>) {
+        (self.bitmaps, self.left_out)
     }
 
     /// Reads and resamples a layer's picture. `region` is around the layer's own region, if it has one.
@@ -149,7 +152,14 @@ impl Pool {
         };
         let compiled = Bitmap::new(width, height, resample(&picture.grey, picture.width, across, down));
         let crc32 = compiled.crc32;
-        if !self.bitmaps.contains(&compiled) {
+        let (picture_name, kept) = (file_name(bitmap), across.samples * down.samples);
+        if kept < across.whole * down.whole {
+            let whole = across.whole * down.whole;
+            self.left_out.push(LeftOut::Cropped { picture: picture_name.clone(), whole, kept });
+        }
+        if self.bitmaps.contains(&compiled) {
+            self.left_out.push(LeftOut::Shared { picture: picture_name, bytes: kept });
+        } else {
             let held: u64 = self.bitmaps.iter().map(|bitmap| bitmap.samples.len() as u64).sum();
             if !self.fits(layer, bitmap, held + bytes, log) {
                 return None;
@@ -209,11 +219,11 @@ fn note(picture: &Picture, bitmap: &BitmapLayer, across: Axis, down: Axis) -> Op
             picture.width, picture.height, across.whole, down.whole, bitmap.pitch_mm
         ));
     }
-    if (across.samples, down.samples) != (across.whole, down.whole) {
-        done.push(format!("cropped to the {} x {} that can be seen", across.samples, down.samples));
-    }
-    let name = Path::new(&bitmap.picture).file_name().unwrap_or(bitmap.picture.as_ref()).to_string_lossy();
-    (!done.is_empty()).then(|| format!("{name}: {}", done.join(", ")))
+    (!done.is_empty()).then(|| format!("{}: {}", file_name(bitmap), done.join(", ")))
+}
+
+fn file_name(bitmap: &BitmapLayer) -> String {
+    Path::new(&bitmap.picture).file_name().unwrap_or(bitmap.picture.as_ref()).to_string_lossy().into_owned()
 }
 
 /// `, which has "..."` with the file in a folder whose name is nearest to a path's, or nothing.

@@ -3,6 +3,7 @@
 use frixel_wire::scene::{Header, Point, Record, bitmap_crc32};
 
 use super::layer_map::LayerMap;
+use super::left_out::LeftOut;
 use super::reach::Reach;
 
 /// A scene as a board plays it, with the pictures that it names.
@@ -10,7 +11,7 @@ use super::reach::Reach;
 pub struct Program {
     /// What holds for the whole scene. Voltages are what the board can reach: see [`Reach::voltage_max_v_rms`].
     pub header: Header,
-    /// The layers from bottom to top, in the order of the file.
+    /// The layers from bottom to top, in the order of the file; some may be left out.
     pub records: Vec<Record>,
     /// The points that records name.
     pub points: Vec<Point>,
@@ -26,6 +27,8 @@ pub struct Program {
     pub half_period_ticks: u32,
     /// What was converted, rounded or clamped, a sentence each.
     pub notes: Vec<String>,
+    /// What the file has and the program does without.
+    pub left_out: Vec<LeftOut>,
 }
 
 impl Program {

@@ -26,7 +26,8 @@ const G474_BUILDS: [Build; 2] = [
 ];
 /// The main program, and the exceptions that come on top of each other: the tick, and flash that cannot be read.
 const MAIN: &str = "main";
-const EXCEPTIONS: [&str; 2] = ["TIM3", "NonMaskableInt"];
+const TICK: &str = "TIM3";
+const EXCEPTIONS: [&str; 2] = [TICK, "NonMaskableInt"];
 /// Where RAM begins on every Cortex-M.
 const RAM: u64 = 0x2000_0000;
 const PERIPHERALS: u64 = 0x4000_0000;
@@ -48,7 +49,10 @@ pub(super) fn measure(figures: &mut Figures) -> Result<(), String> {
         let (flash, ram) = sizes(&path)?;
         figures.put(format!("g474.flash_{}", build.name), flash);
         figures.put(format!("g474.ram_{}", build.name), ram);
-        match Functions::read(&path)?.depth(MAIN, &EXCEPTIONS) {
+        let functions = Functions::read(&path)?;
+        // A tick that panics would leave a person with a voltage for as long as the one-shot lives.
+        functions.never_ends(TICK)?;
+        match functions.depth(MAIN, &EXCEPTIONS) {
             Ok(bytes) => figures.put(format!("g474.stack_{}", build.name), bytes),
             Err(why) => eprintln!("the depth of the stack is not known: {why}"),
         }

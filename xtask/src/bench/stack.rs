@@ -19,6 +19,9 @@ const EXCEPTION_BYTES: u64 = 27 * 4;
 /// Parts of the names of functions that end the program.
 const ENDS: [&str; 3] = ["panic", "rust_begin_unwind", "5fault"];
 
+/// Parts of the names of functions that divide by a number that is never zero: a queue's length.
+const DIVIDES: [&str; 1] = ["8heapless4spsc"];
+
 /// A function of the image.
 #[derive(Default)]
 struct Function {
@@ -86,6 +89,25 @@ impl Functions {
         }
         // A hard fault, too, begins with a frame on this stack.
         Ok(bytes + EXCEPTION_BYTES)
+    }
+
+    /// Looks whether a function can end the program: an error that says where.
+    pub(super) fn never_ends(&self, name: &str) -> Result<(), String> {
+        let found = self.0.iter().find(|(_, function)| function.name == name);
+        let (address, _) = found.ok_or_else(|| format!("the image has no function {name}"))?;
+        let (mut open, mut seen) = (vec![*address], BTreeSet::new());
+        while let Some(address) = open.pop() {
+            let Some(function) = self.0.get(&address).filter(|_| seen.insert(address)) else { continue };
+            if DIVIDES.iter().any(|divides| function.name.contains(divides)) {
+                continue;
+            }
+            let called = function.calls.iter().filter_map(|call| self.0.get(call));
+            if let Some(end) = called.clone().find(|called| ENDS.iter().any(|end| called.name.contains(end))) {
+                return Err(format!("{name} can end in {}, by way of {}", end.name, function.name));
+            }
+            open.extend(&function.calls);
+        }
+        Ok(())
     }
 
     fn depth_of(&self, name: &str) -> Result<u64, String> {
@@ -178,6 +200,8 @@ mod tests {
         ]));
         assert_eq!(functions.depth("main", &["tick"]), Ok(8 + 100 + 16 + 4 + 108 + 40 + 108));
         assert!(functions.depth("tock", &[]).is_err());
+        assert_eq!(functions.never_ends("tick"), Ok(()));
+        assert!(functions.never_ends("main").unwrap_err().contains("by way of deep"));
         functions.0.insert(0x60, function("leaf", 4, &[0x30]));
         let refused = functions.depth("main", &[]).unwrap_err();
         assert!(refused.contains("calls itself"), "{refused}");

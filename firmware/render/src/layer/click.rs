@@ -3,6 +3,7 @@
 
 use frixel_wire::scene::Click as Record;
 
+#[cfg(feature = "edge")]
 use super::Around;
 use crate::Board;
 
@@ -79,6 +80,7 @@ impl Click {
     }
 }
 
+#[cfg(feature = "edge")]
 impl ClickNumber {
     /// Electric friction of the click when the finger is on one side of a line, or `beyond` it.
     pub(super) fn across(self, beyond: bool, around: &mut Around) -> f32 {

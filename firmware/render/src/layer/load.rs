@@ -1,8 +1,8 @@
 //! From a record to a layer.
 
+use frixel_wire::message::Refusal;
 #[cfg(any(feature = "noise", feature = "edge"))]
-use frixel_wire::message::ConfigField;
-use frixel_wire::message::{ConfigRefusal, Refusal};
+use frixel_wire::message::{ConfigField, ConfigRefusal};
 #[cfg(feature = "edge")]
 use frixel_wire::scene::Click as ClickRecord;
 use frixel_wire::scene::{Layer as Kind, Record};
@@ -13,6 +13,7 @@ use crate::Board;
 use crate::bitmap_pool::Directory;
 
 /// A scene's layers are being loaded.
+#[allow(dead_code, reason = "kinds that are left out do not look at all of it")]
 pub(crate) struct Loading<'a> {
     pub(crate) board: &'a Board,
     pub(crate) directory: &'a Directory,
@@ -79,7 +80,7 @@ impl Loading<'_> {
         if click.height_n.abs() <= 0.0 {
             return Ok(None);
         }
-        let refusal = too_many(ConfigField::ClickLayers, super::CLICKS_MAX, number);
+        let refusal = too_many(ConfigField::ClickLayers, super::click::CLICKS_MAX, number);
         let click = super::click::Click::new(click, self.board);
         self.tables.add_click(click).map(Some).map_err(|_| refusal)
     }

@@ -30,7 +30,7 @@ use crate::bitmap_pool::BitmapPool;
 use crate::stream::StreamNow;
 #[cfg(feature = "edge")]
 use button::Button;
-pub(crate) use click::{CLICKS_MAX, Clicks};
+pub(crate) use click::Clicks;
 #[cfg(feature = "speed")]
 use curve::Curve;
 #[cfg(feature = "edge")]
@@ -64,6 +64,7 @@ pub(crate) struct Moment {
 }
 
 /// What layers look at besides their own numbers.
+#[allow(dead_code, reason = "kinds that are left out do not look at all of it")]
 pub(crate) struct Around<'a> {
     pub(crate) moment: Moment,
     pub(crate) pool: &'a BitmapPool,

@@ -113,7 +113,9 @@ impl Region {
                 let shorter_per_m = -less(-per_half_width, -per_half_height);
                 (1.0 - crate::root::square_root(x * x + y * y)) / shorter_per_m
             }
-            _ => 0.0,
+            #[cfg(feature = "polygon")]
+            Self::Polygon { .. } => 0.0,
+            Self::Screen => 0.0,
         };
         // On the border rounding may make it less than nothing.
         if depth_m > 0.0 { depth_m } else { 0.0 }

@@ -79,6 +79,17 @@ pub enum Refusal {
     },
     /// No layer of the playing scene is a stream.
     NoStreamLayer,
+    /// The scene would make a tick too long ([`crate::scene::cost`]).
+    TooCostly {
+        /// Instructions of the longest tick.
+        instructions: u32,
+        /// Most that it may take.
+        max: u32,
+        /// A place where that would be, from the left edge of the screen, m.
+        x_m: f32,
+        /// And from its top edge, m.
+        y_m: f32,
+    },
 }
 
 /// A number in a scene that the board cannot play.
@@ -303,6 +314,12 @@ impl fmt::Display for Refusal {
             Self::NoStreamLayer => {
                 f.write_str("no layer of the playing scene is a stream: add one to the scene, or send no samples")
             }
+            Self::TooCostly { instructions, max, x_m, y_m } => write!(
+                f,
+                "a tick would take {instructions} instructions at {:.1} mm, {:.1} mm, and may take {max}: let fewer layers meet there",
+                1e3 * x_m,
+                1e3 * y_m
+            ),
         }
     }
 }

@@ -1,6 +1,8 @@
 //! Which layers may act where: a coarse grid over the screen with a bit for each layer, so that a tick looks only at
 //! layers near the finger, and compiler and board alike find where a scene costs most.
 
+use core::ops::RangeInclusive;
+
 use super::{Point, Region};
 
 /// Columns of the grid; as many rows.
@@ -48,11 +50,10 @@ impl Grid {
             Region::Screen => (0..=SIDE - 1, 0..=SIDE - 1),
             Region::Polygon { first, count } => {
                 let vertices = points.iter().skip(usize::from(first)).take(usize::from(count));
-                let ends = |of: fn(&Point) -> f32, per_m: f32| {
-                    let indices = vertices.clone().map(|vertex| index(of(vertex) * per_m));
-                    indices.clone().min().unwrap_or_default()..=indices.max().unwrap_or_default()
-                };
-                (ends(|vertex| vertex.x, self.columns_per_m), ends(|vertex| vertex.y, self.rows_per_m))
+                (
+                    ends(vertices.clone().map(|vertex| index(vertex.x * self.columns_per_m))),
+                    ends(vertices.map(|vertex| index(vertex.y * self.rows_per_m))),
+                )
             }
             Region::Rectangle { x_m, y_m, width_m, height_m } | Region::Ellipse { x_m, y_m, width_m, height_m } => (
                 // Both ends are found as the finger's cell is, so that rounding never loses one.
@@ -88,6 +89,11 @@ impl Grid {
 
 fn join([first, others]: LayerSet, [more_first, more_others]: LayerSet) -> LayerSet {
     [first | more_first, others | more_others]
+}
+
+/// From the least of some indices to the largest.
+fn ends(indices: impl Iterator<Item = usize> + Clone) -> RangeInclusive<usize> {
+    indices.clone().min().unwrap_or_default()..=indices.max().unwrap_or_default()
 }
 
 /// Column or row of a place in cells, held at the border.

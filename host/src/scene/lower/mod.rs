@@ -9,6 +9,7 @@ use frixel_wire::scene::{
 
 use super::file::Scene;
 use super::layer::{Above, Amount, Burst, Click, Kind, Layer, Region};
+use super::left_out::LeftOut;
 use super::log::Log;
 use super::mistake::Mistake;
 use super::pool::{Placed, Pool};
@@ -42,6 +43,7 @@ pub(super) struct Lowered {
     pub(super) points: Vec<Point>,
     pub(super) bitmaps: Vec<Bitmap>,
     pub(super) notes: Vec<String>,
+    pub(super) left_out: Vec<LeftOut>,
 }
 
 impl<'a, 's> Lowering<'a, 's> {
@@ -58,7 +60,8 @@ impl<'a, 's> Lowering<'a, 's> {
     }
 
     pub(super) fn finish(self) -> Lowered {
-        Lowered { points: self.points, bitmaps: self.pool.into_bitmaps(), notes: self.notes }
+        let (bitmaps, left_out) = self.pool.finish();
+        Lowered { points: self.points, bitmaps, notes: self.notes, left_out }
     }
 
     /// The record of a layer; `None` when something is wrong with it.

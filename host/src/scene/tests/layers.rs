@@ -139,8 +139,8 @@ fn natural_friction_in_total_is_no_drive() {
     // 0.3 x 0.7 is not 0.21 in binary, and not in range if the difference counted.
     let text = HEAD.replace("friction_coefficient = 0.5", "friction_coefficient = 0.3");
     let text = text.replace("normal_load_n = 0.5", "normal_load_n = 0.7");
-    let program =
-        compile_text(&format!("{text}[[layer]]\nkind = \"constant\"\nfriction_n = 0.21")).expect("it compiles");
+    let program = compile_text(&format!("{text}[[layer]]\nlive = true\nkind = \"constant\"\nfriction_n = 0.21"))
+        .expect("it compiles");
     assert_eq!(program.records[0].layer, Layer::Constant { electric_friction_n: 0.0 });
 }
 
@@ -333,4 +333,17 @@ fn bundled_scenes_compile() {
         let program = compile(&Scene::load(&scenes().join(name)).expect(name), &LIMITS, TICK_HZ).expect(name);
         assert!(!program.records.is_empty());
     }
+}
+
+#[test]
+fn a_live_layer_is_found_whatever_was_left_out_below_it() {
+    let program = compile_layers(
+        "[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\n\
+         [[layer]]\nname = \"rest\"\nkind = \"constant\"\nfriction_n = 0.255\n\
+         [[layer]]\nname = \"rain\"\nkind = \"constant\"\nblend = \"add\"\nfriction_n = 0.002\nlive = true\n",
+    );
+    assert_eq!(program.records.len(), 2, "the first is covered");
+    assert_eq!(program.layers.record("rain"), Ok(1));
+    assert_eq!(program.layers.record("3"), Ok(1));
+    assert!(program.layers.record("rest").unwrap_err().to_string().contains("live = true"));
 }

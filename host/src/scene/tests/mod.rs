@@ -7,6 +7,7 @@ use super::{CompileError, Program, Scene, compile};
 mod docs;
 mod errors;
 mod layers;
+mod left_out;
 
 /// A board like the simulated one.
 const LIMITS: BoardLimits = BoardLimits {

@@ -1,0 +1,181 @@
+//! What layers cost, by kind and by number.
+
+use core::array;
+
+use frixel_wire::message::Command;
+use frixel_wire::scene::cost::{self, TICK_INSTRUCTIONS_MAX};
+use frixel_wire::scene::{Beat, Blend, Burst, Carrier, Click, Header, Layer, Point, RECORDS_MAX, Record, Region, Wave};
+
+use crate::count::Counter;
+use crate::tick::{Bench, HEADER};
+
+pub(crate) const GRATING: Layer = grating(Wave::Sine);
+
+const AROUND: Region = Region::Rectangle { x_m: 0.0, y_m: 0.0, width_m: 0.12, height_m: 0.11 };
+const AWAY: Region = Region::Rectangle { x_m: 0.0, y_m: 0.1, width_m: 0.12, height_m: 0.01 };
+const CONSTANT: Layer = Layer::Constant { electric_friction_n: 0.001 };
+/// Ends before the still finger and goes on after it, so that both a click and its end are counted.
+const CLICK: Click = Click { height_n: 0.005, decay_s: 0.05 };
+
+const fn grating(wave: Wave) -> Layer {
+    Layer::Grating {
+        wave,
+        cycles_per_m_x: 500.0,
+        cycles_per_m_y: 100.0,
+        phase_turns: 0.2,
+        trough_n: 0.0,
+        crest_n: 0.026,
+    }
+}
+
+const fn picture(crc32: u32, tiled: bool) -> Layer {
+    Layer::Bitmap {
+        crc32,
+        x_m: 0.01,
+        y_m: 0.0,
+        pitch_m: 1e-3,
+        black_n: 0.0,
+        white_n: 0.026,
+        pitch_y_m: 1e-3,
+        angle_turns: if tiled { 0.05 } else { 0.0 },
+        tiled,
+    }
+}
+
+/// A picture over the screen.
+pub(crate) const fn bitmap(crc32: u32) -> Layer {
+    picture(crc32, false)
+}
+
+const fn vibration(beat: Beat) -> Layer {
+    let burst = Burst { period_s: 0.05, on_s: 0.03, ramp_s: 0.01 };
+    Layer::Vibration { beat, frequency_hz: 90.0, low_n: 0.0, high_n: 0.02, burst }
+}
+
+/// A layer on the whole screen.
+pub(crate) const fn record(layer: Layer) -> Record {
+    Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer }
+}
+
+/// A layer in a region under the finger, with the dearest of blends.
+const fn under(region: Region, layer: Layer) -> Record {
+    Record { region, blend: Blend::Max, gain: 1.0, layer }
+}
+
+impl Bench {
+    /// What a layer of each kind adds to a tick: scenes of two constants, and of one layer more. Two, because the
+    /// longest tick of fewer is one that looks at no layer.
+    pub(crate) fn costs(&mut self, counter: &mut Counter, crc32: u32) {
+        let two = [under(AROUND, CONSTANT); 2];
+        self.play(&HEADER, &two);
+        self.slide(counter.case("tick_two"));
+        self.play(&Header { carrier: Carrier::Sine, ..HEADER }, &two);
+        self.slide(counter.case("tick_two_sine_carrier"));
+        let edge = Layer::Edge {
+            x_m: 0.03,
+            y_m: 0.03,
+            angle_turns: 0.02,
+            width_m: 0.05,
+            level_n: 0.0,
+            ridge_n: 0.02,
+            click: CLICK,
+        };
+        let button = Layer::Button { rim_width_m: 0.02, rim_n: 0.02, face_n: 0.001, click: CLICK };
+        let noise = Layer::Noise { seed: 7, wavelength_min_m: 1e-3, wavelength_max_m: 5e-3, low_n: 0.0, high_n: 0.02 };
+        let entered = Region::Rectangle { x_m: 0.025, y_m: 0.0, width_m: 0.09, height_m: 0.11 };
+        for (name, region, layer) in [
+            ("constant", AROUND, CONSTANT),
+            ("sine", AROUND, GRATING),
+            ("square", AROUND, grating(Wave::Square { duty: 0.5 })),
+            ("triangle", AROUND, grating(Wave::Triangle)),
+            ("saw", AROUND, grating(Wave::Saw)),
+            ("bitmap", AROUND, bitmap(crc32)),
+            ("bitmap_tiled", AROUND, picture(crc32, true)),
+            ("noise", AROUND, noise),
+            ("edge", AROUND, edge),
+            ("button", entered, button),
+            ("vibration_sine", AROUND, vibration(Beat::Sine)),
+            ("vibration_square", AROUND, vibration(Beat::Square)),
+            ("stream", AROUND, Layer::Stream { low_n: 0.0, high_n: 0.02 }),
+            ("ellipse", Region::Ellipse { x_m: -0.05, y_m: -0.05, width_m: 0.2, height_m: 0.2 }, CONSTANT),
+        ] {
+            self.and_one_more(counter, name, under(region, layer), &[]);
+        }
+        self.polygons(counter);
+        self.curves(counter);
+    }
+
+    fn and_one_more(&mut self, counter: &mut Counter, name: &'static str, record: Record, points: &[Point]) {
+        let constant = under(AROUND, CONSTANT);
+        self.play_with_points(&HEADER, &[constant, constant, record], points);
+        if matches!(record.layer, Layer::Stream { .. }) {
+            self.host.command(Command::StartStream { sample_hz: crate::host::STREAM_HZ, start_level: 1 });
+        }
+        self.slide(counter.case(name));
+    }
+
+    /// Polygons around the finger, all of whose edges are level with it at some tick.
+    fn polygons(&mut self, counter: &mut Counter) {
+        for (name, count) in [("polygon_4", 4), ("polygon_8", 8)] {
+            let points: [Point; 8] = array::from_fn(|corner| {
+                let turns = (corner as f32 + 0.5) / f32::from(count);
+                let (sine, cosine) = libm::sincosf(core::f32::consts::TAU * turns);
+                Point { x: 0.06 + 0.15 * cosine, y: 0.03 + 0.15 * sine }
+            });
+            let region = Region::Polygon { first: 0, count };
+            self.and_one_more(counter, name, under(region, CONSTANT), &points[..usize::from(count)]);
+        }
+    }
+
+    /// Curves whose last piece is the one that holds.
+    fn curves(&mut self, counter: &mut Counter) {
+        for (name, count) in [("speed_2", 2), ("speed_8", 8)] {
+            let points: [Point; 8] =
+                array::from_fn(|number| Point { x: 0.01 * number as f32, y: 0.001 * number as f32 });
+            let layer = Layer::Speed { first: 0, count };
+            self.and_one_more(counter, name, under(AROUND, layer), &points[..usize::from(count)]);
+        }
+    }
+
+    /// What a tick costs by the number of layers in the scene, with one and with eight of them under the finger.
+    pub(crate) fn numbers_of_layers(&mut self, counter: &mut Counter) {
+        for (name, there, count) in [
+            ("tick_1_of_1", 1, 1),
+            ("tick_1_of_2", 1, 2),
+            ("tick_1_of_4", 1, 4),
+            ("tick_1_of_8", 1, 8),
+            ("tick_1_of_16", 1, 16),
+            ("tick_1_of_32", 1, 32),
+            ("tick_1_of_64", 1, 64),
+            ("tick_6_of_6", 6, 6),
+            ("tick_6_of_8", 6, 8),
+            ("tick_6_of_16", 6, 16),
+            ("tick_6_of_32", 6, 32),
+            ("tick_6_of_64", 6, 64),
+        ] {
+            let mut records = [under(AWAY, CONSTANT); RECORDS_MAX];
+            records[..there].fill(under(AROUND, CONSTANT));
+            self.play(&HEADER, &records[..count]);
+            self.slide(counter.case(name));
+        }
+    }
+
+    /// As much under the finger as is accepted: pictures, then stripes, then constants, on a sine carrier.
+    pub(crate) fn worst_scene(&mut self, counter: &mut Counter, crc32: u32) {
+        let header = Header { carrier: Carrier::Sine, ..HEADER };
+        let mut records = [under(AROUND, CONSTANT); RECORDS_MAX];
+        let mut count = 0;
+        let mut left = TICK_INSTRUCTIONS_MAX.saturating_sub(cost::of_empty_scene(&header));
+        for layer in [bitmap(crc32), GRATING, CONSTANT] {
+            let record = under(AROUND, layer);
+            let cost = cost::of_record(&record).max(1);
+            while left >= cost && count < RECORDS_MAX {
+                left -= cost;
+                records[count] = record;
+                count += 1;
+            }
+        }
+        self.play(&header, &records[..count]);
+        self.slide(counter.case("tick_worst_scene"));
+    }
+}

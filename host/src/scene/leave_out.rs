@@ -1,0 +1,188 @@
+//! Makes a program smaller without changing what is felt: layers that nobody can find are dropped, layers that ask for
+//! the same everywhere become constants, constants over constants become one, and what nothing names any more goes.
+
+use std::collections::BTreeSet;
+
+use frixel_wire::scene::{Blend, Click, Header, Layer, Point, Record, Region};
+
+use super::left_out::LeftOut;
+use super::program::Program;
+
+/// A record on its way, with what is said about it.
+struct Item {
+    title: String,
+    record: Record,
+    /// The host may change it while it plays.
+    live: bool,
+}
+
+/// Makes a program smaller. `live` says which layers the host may change while it plays.
+pub(super) fn leave_out(program: &mut Program, live: &[bool]) {
+    let titles = std::mem::take(&mut program.titles);
+    let records = std::mem::take(&mut program.records);
+    let together = titles.into_iter().zip(records).zip(live);
+    let mut items: Vec<Item> = together.map(|((title, record), live)| Item { title, record, live: *live }).collect();
+    let left_out = &mut program.left_out;
+    flatten(&mut items, left_out);
+    drop_covered(&mut items, &program.header, left_out);
+    drop_idle(&mut items, left_out);
+    fold(&mut items, left_out);
+    (program.titles, program.records) = items.into_iter().map(|item| (item.title, item.record)).unzip();
+    compact_points(program);
+    drop_bitmaps(program);
+}
+
+/// What asks for the same everywhere and always is a constant.
+fn flatten(items: &mut [Item], left_out: &mut Vec<LeftOut>) {
+    for item in items.iter_mut().filter(|item| !item.live) {
+        let still = |click: &Click| click.height_n.abs() <= 0.0;
+        let same = |one: f32, other: f32| (one.to_bits() == other.to_bits()).then_some(one);
+        let flat = match &item.record.layer {
+            Layer::Grating { trough_n, crest_n, .. } => same(*trough_n, *crest_n),
+            Layer::Bitmap { black_n, white_n, .. } => same(*black_n, *white_n),
+            Layer::Noise { low_n, high_n, .. } | Layer::Vibration { low_n, high_n, .. } => same(*low_n, *high_n),
+            Layer::Edge { level_n, ridge_n, click, .. } if still(click) => same(*level_n, *ridge_n),
+            Layer::Button { rim_n, face_n, click, .. } if still(click) => same(*rim_n, *face_n),
+            _ => None,
+        };
+        if let Some(electric_friction_n) = flat {
+            item.record.layer = Layer::Constant { electric_friction_n };
+            left_out.push(LeftOut::Flat { layer: item.title.clone() });
+        }
+    }
+}
+
+/// Whatever lies below a layer that takes its place wherever it acts.
+fn drop_covered(items: &mut Vec<Item>, header: &Header, left_out: &mut Vec<LeftOut>) {
+    let mut number = 0;
+    while let Some(item) = items.get(number) {
+        let hides = |above: &&Item| {
+            let always = !above.live && !matches!(above.record.layer, Layer::Stream { .. });
+            always && above.record.blend == Blend::Replace && covers(above.record.region, item.record.region, header)
+        };
+        match items.iter().skip(number + 1).find(hides) {
+            Some(by) if !item.live => {
+                left_out.push(LeftOut::Covered { layer: item.title.clone(), by: by.title.clone() });
+                items.remove(number);
+            }
+            _ => number += 1,
+        }
+    }
+}
+
+/// Whether a region acts wherever another does on the screen.
+fn covers(region: Region, other: Region, header: &Header) -> bool {
+    let screen = [0.0, 0.0, header.screen_width_m, header.screen_height_m];
+    let sides = |region| match region {
+        Region::Screen => Some(screen),
+        Region::Rectangle { x_m, y_m, width_m, height_m } | Region::Ellipse { x_m, y_m, width_m, height_m } => {
+            Some([x_m, y_m, x_m + width_m, y_m + height_m])
+        }
+        Region::Polygon { .. } => None,
+    };
+    if region == other || region == Region::Screen {
+        return true;
+    }
+    // Of the others, only a rectangle is known to fill its sides.
+    match (region, sides(region), sides(other)) {
+        (Region::Rectangle { .. }, Some([left, top, right, bottom]), Some([x1, y1, x2, y2])) => {
+            left <= x1 && top <= y1 && right >= x2 && bottom >= y2
+        }
+        _ => false,
+    }
+}
+
+/// Constants that change nothing: nothing added, multiplied by one, and bare glass on bare glass.
+fn drop_idle(items: &mut Vec<Item>, left_out: &mut Vec<LeftOut>) {
+    let mut bare = true;
+    items.retain(|item| {
+        let own = match item.record.layer {
+            Layer::Constant { electric_friction_n } => Some(item.record.gain * electric_friction_n),
+            _ => None,
+        };
+        let is = |value: f32| own.is_some_and(|own| own.to_bits() == value.to_bits());
+        let idle = match item.record.blend {
+            Blend::Add => is(0.0),
+            Blend::Multiply => is(1.0) || bare,
+            Blend::Replace | Blend::Max => bare && is(0.0),
+        };
+        let goes = idle && !item.live;
+        if goes {
+            left_out.push(LeftOut::Idle { layer: item.title.clone() });
+        } else {
+            bare = false;
+        }
+        !goes
+    });
+}
+
+/// A constant that joins the constant right below it, everywhere that one acts. The board would compute the same bits.
+fn fold(items: &mut Vec<Item>, left_out: &mut Vec<LeftOut>) {
+    let mut number = 0;
+    while let (Some(below), Some(above)) = (items.get(number), items.get(number + 1)) {
+        let constant = |item: &Item| match item.record.layer {
+            Layer::Constant { electric_friction_n } if !item.live => Some(item.record.gain * electric_friction_n),
+            _ => None,
+        };
+        let together = below.record.region == above.record.region && below.record.blend == Blend::Replace;
+        let folded = match (constant(below), constant(above), above.record.blend) {
+            (Some(below), Some(above), Blend::Add) if together => Some(below + above),
+            (Some(below), Some(above), Blend::Multiply) if together => Some(below * above),
+            (Some(below), Some(above), Blend::Max) if together => Some(below.max(above)),
+            _ => None,
+        };
+        let Some(electric_friction_n) = folded else {
+            number += 1;
+            continue;
+        };
+        left_out.push(LeftOut::Folded { layer: above.title.clone(), into: below.title.clone() });
+        items.remove(number + 1);
+        if let Some(below) = items.get_mut(number) {
+            below.record.gain = 1.0;
+            below.record.layer = Layer::Constant { electric_friction_n };
+        }
+    }
+}
+
+/// Keeps the points that records still name, and numbers them anew.
+fn compact_points(program: &mut Program) {
+    let all = std::mem::take(&mut program.points);
+    let mut kept: Vec<Point> = Vec::new();
+    let mut moved = |first: &mut u8, count: u8| {
+        let own: Vec<Point> = all.iter().skip(usize::from(*first)).take(usize::from(count)).copied().collect();
+        let place = kept.windows(own.len().max(1)).position(|held| held == own).unwrap_or(kept.len());
+        if place == kept.len() {
+            kept.extend(own);
+        }
+        // There are no more than before.
+        *first = place as u8;
+    };
+    for record in &mut program.records {
+        if let Region::Polygon { first, count } = &mut record.region {
+            moved(first, *count);
+        }
+        if let Layer::Speed { first, count } = &mut record.layer {
+            moved(first, *count);
+        }
+    }
+    program.points = kept;
+}
+
+fn drop_bitmaps(program: &mut Program) {
+    let named: BTreeSet<u32> = program
+        .records
+        .iter()
+        .filter_map(|record| match record.layer {
+            Layer::Bitmap { crc32, .. } => Some(crc32),
+            _ => None,
+        })
+        .collect();
+    let left_out = &mut program.left_out;
+    program.bitmaps.retain(|bitmap| {
+        let keeps = named.contains(&bitmap.crc32);
+        if !keeps {
+            left_out.push(LeftOut::Bitmap { bytes: bitmap.samples.len() });
+        }
+        keeps
+    });
+}

@@ -1,0 +1,112 @@
+//! The file of what each kind of layer costs, which compiler and board read: made from what was measured, and held
+//! against it.
+
+use std::fmt::Write;
+use std::fs;
+
+use super::Figures;
+use crate::command::root;
+
+const PATH: &str = "firmware/wire/src/scene/cost/measured.rs";
+
+/// Layers of a curve or vertices of a polygon in the shorter and the longer of two measured cases.
+const SPEED_POINTS: (u64, u64) = (2, 8);
+const POLYGON_POINTS: (u64, u64) = (4, 8);
+
+/// The name of a cost, what it is, and its instructions.
+type Cost = (&'static str, &'static str, u64);
+
+/// Writes the file anew.
+pub(crate) fn bless(figures: &Figures) -> Result<(), String> {
+    let path = root().join(PATH);
+    fs::write(&path, text(&costs(figures)?)).map_err(|error| format!("{}: {error}", path.display()))
+}
+
+/// Says which costs of the file are not those that were measured.
+pub(crate) fn check(figures: &Figures) -> Result<(), String> {
+    let path = root().join(PATH);
+    let found = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+    if found == text(&costs(figures)?) {
+        return Ok(());
+    }
+    let drifted: Vec<String> = costs(figures)?
+        .into_iter()
+        .filter(|cost| !found.contains(&line(cost)))
+        .map(|(name, _, instructions)| format!("{name} is {instructions}"))
+        .collect();
+    Err(format!("{PATH} is not what was measured; `cargo xtask bench --bless` writes it anew: {}", drifted.join(", ")))
+}
+
+/// Costs from ticks of two constants, and of those and one layer more.
+fn costs(figures: &Figures) -> Result<Vec<Cost>, String> {
+    let tick = |name: &str| {
+        let name = format!("m4f.{name}");
+        figures.get(&name).ok_or_else(|| format!("{name} was not measured"))
+    };
+    let two = tick("tick_two")?;
+    let more = |name: &str| tick(name).map(|instructions| instructions.saturating_sub(two));
+    let constant = more("constant")?;
+    let (speed, speed_point) = line_through(SPEED_POINTS, more("speed_2")?, more("speed_8")?);
+    let (polygon, polygon_edge) = line_through(POLYGON_POINTS, more("polygon_4")?, more("polygon_8")?);
+    Ok(vec![
+        ("EMPTY", "A tick that looks at layers and finds none.", two.saturating_sub(2 * constant)),
+        ("SINE_CARRIER", "What a sine carrier adds.", more("tick_two_sine_carrier")?),
+        ("CONSTANT", "Layers, in a rectangle.", constant),
+        ("SINE", "", more("sine")?),
+        ("SQUARE", "", more("square")?),
+        ("TRIANGLE", "", more("triangle")?),
+        ("SAW", "", more("saw")?),
+        ("BITMAP", "", more("bitmap")?),
+        ("BITMAP_TILED", "", more("bitmap_tiled")?),
+        ("NOISE", "", more("noise")?),
+        ("EDGE", "", more("edge")?),
+        ("BUTTON", "", more("button")?),
+        ("VIBRATION_SINE", "", more("vibration_sine")?),
+        ("VIBRATION_SQUARE", "", more("vibration_square")?),
+        ("SPEED", "A curve, and each of its points.", speed),
+        ("SPEED_POINT", "", speed_point),
+        ("STREAM", "The stream's own work included.", more("stream")?),
+        ("ELLIPSE", "What other regions add to a rectangle.", more("ellipse")?.saturating_sub(constant)),
+        ("POLYGON", "", polygon.saturating_sub(constant)),
+        ("POLYGON_EDGE", "", polygon_edge),
+    ])
+}
+
+/// What is there without points, and what each adds, so that neither of the two cases takes more.
+fn line_through((few, many): (u64, u64), at_few: u64, at_many: u64) -> (u64, u64) {
+    let each = at_many.saturating_sub(at_few).div_ceil(many - few);
+    (at_few.saturating_sub(few * each).max(at_many.saturating_sub(many * each)), each)
+}
+
+fn line((name, _, instructions): &Cost) -> String {
+    format!("pub(super) const {name}: u32 = {instructions};")
+}
+
+fn text(costs: &[Cost]) -> String {
+    let mut text = String::from(
+        "//! Instructions on a Cortex-M4F at the worst input. Written by `cargo xtask bench --bless`; `cargo xtask test` measures\n\
+         //! again and fails when it finds others.\n",
+    );
+    for cost in costs {
+        let (_, comment, _) = cost;
+        // A string takes what is written to it.
+        let _ = match *comment {
+            "" => writeln!(text, "{}", line(cost)),
+            comment => writeln!(text, "\n// {comment}\n{}", line(cost)),
+        };
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn neither_case_takes_more_than_the_line_through_both() {
+        for (at_few, at_many) in [(100, 160), (100, 163), (7, 100), (100, 100)] {
+            let (alone, each) = line_through((2, 8), at_few, at_many);
+            assert!(alone + 2 * each >= at_few && alone + 8 * each >= at_many, "{alone} + n {each}");
+        }
+    }
+}
