@@ -30,6 +30,13 @@ impl<'a> Script<'a> {
         self.drain();
     }
 
+    /// Sends samples of a stream, and runs until the line is idle.
+    pub fn samples(&mut self, first_index: u32, samples: &[u16]) {
+        let mut frame = [0; FRAME_MAX_LEN];
+        self.rig.send(payload::samples_frame(first_index, samples, &mut frame).unwrap());
+        self.drain();
+    }
+
     /// The board's status at the last tick.
     pub fn status(&self) -> Status {
         self.status.unwrap()
