@@ -178,6 +178,7 @@ fn a_host_that_pauses_is_one_underrun_and_a_fade_and_never_a_stale_value() {
 /// The real command: a scene without stream layers refuses samples, and wrong uses are told.
 mod command {
     use super::*;
+    use std::fs::File;
     use std::process::{Command, Output};
 
     fn frixel(folder: &Path, arguments: &[&str]) -> Output {
@@ -203,5 +204,48 @@ mod command {
             assert_eq!(output.status.code(), Some(1), "{arguments:?}: {said}");
             assert!(said.contains(part), "{arguments:?}: {said}");
         }
+    }
+
+    const SCENE: &str = r#"
+version = 1
+screen = { width_mm = 120, height_mm = 80 }
+coating = { thickness_um = 10, permittivity = 1 }
+finger = { radius_mm = 8, stiffness_pa_per_m = 1.8e7, friction_coefficient = 0.5, normal_load_n = 0.5 }
+[[layer]]
+kind = "stream"
+low_n = 0.002
+high_n = 0.018
+"#;
+
+    /// A second and a half of the scene above, with its samples from a file or from standard input: the JSON and felt.csv.
+    fn stream(folder: &Path, out: &str, arguments: &[&str], input: File) -> (serde_json::Value, Vec<u8>) {
+        let output = Command::new(env!("CARGO_BIN_EXE_frixel"))
+            .args(["play", "scene.toml", "--seconds", "1.5", "--json", "--out", out])
+            .args(arguments)
+            .current_dir(folder)
+            .stdin(input)
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        (serde_json::from_slice(&output.stdout).unwrap(), std::fs::read(folder.join(out).join("felt.csv")).unwrap())
+    }
+
+    #[test]
+    fn a_pipe_plays_what_a_file_plays() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        std::fs::write(path("scene.toml"), SCENE).unwrap();
+        write_wav(&path("tones.wav"), &tones());
+        let raw: Vec<u8> = tones().iter().flat_map(|s| ((i32::from(*s) + 32_768) as u16).to_le_bytes()).collect();
+        std::fs::write(path("raw"), raw).unwrap();
+        let open = |name: &str| File::open(path(name)).unwrap();
+
+        let (json, of_file) = stream(folder.path(), "file", &["--stream", "tones.wav"], open("scene.toml"));
+        assert_eq!([&json["stream_samples"], &json["stream_underruns"], &json["stream_gaps"]], [4_000, 0, 0]);
+        assert!(json["friction_error_rms_n"].is_null(), "what is wanted is not known here");
+        let (_, of_pipe) = stream(folder.path(), "pipe", &["--stream", "-", "--stream-hz", "4000"], open("raw"));
+        assert!(of_file == of_pipe, "the two differ");
+        let (_, of_other) = stream(folder.path(), "other", &["--stream", "-", "--stream-hz", "3000"], open("raw"));
+        assert!(of_file != of_other, "the rate changes nothing");
     }
 }
