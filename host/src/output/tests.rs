@@ -319,7 +319,7 @@ fn report_as_json() {
          \"inversion_error_rms_n\":1e-6,\"inversion_error_max_n\":0.00002,\"carrier_ripple_rms_n\":0.0005,\
          \"reachable_min_n\":0.25,\"reachable_max_n\":0.275,\"wanted_min_n\":0.25,\"wanted_max_n\":0.27,\
          \"saturated_ticks\":7,\"frames_sent\":400,\"frames_rejected\":1,\"payload_bytes\":63000,\"wire_bytes\":65000,\
-         \"realtime_factor\":123.4}"
+         \"realtime_factor\":123.4,\"stream_samples\":null,\"stream_underruns\":null,\"stream_gaps\":null}"
     );
     assert_eq!(
         report(&known).summary(),

@@ -5,6 +5,7 @@ use frixel_wire::scene::{Header, RECORDS_MAX, Record};
 
 use super::excess;
 use super::file::Scene;
+use super::layer_map::LayerMap;
 use super::leave_out::leave_out;
 use super::log::Log;
 use super::lower::Lowering;
@@ -71,6 +72,7 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
         points: lowered.points,
         bitmaps: lowered.bitmaps,
         titles,
+        layers: LayerMap::default(),
         reach,
         half_period_ticks,
         notes,
@@ -81,7 +83,15 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
         let live: Vec<bool> = scene.layers.iter().map(|layer| layer.live).collect();
         leave_out(&mut program, &live);
     }
+    program.layers = layer_map(scene, &program.titles);
     Some(program)
+}
+
+/// A layer that the host may change is a record of its own; others may have been reckoned together.
+fn layer_map(scene: &Scene, titles: &[String]) -> LayerMap {
+    let record = |title: &String| (0..).zip(titles).find_map(|(record, other)| (other == title).then_some(record));
+    let records = scene.layers.iter().map(|layer| record(&layer.title).filter(|_| layer.live));
+    LayerMap::new(scene.layers.iter().zip(records).map(|(layer, record)| (layer.name.clone(), record)))
 }
 
 fn half_period_ticks(scene: &Scene, tick_hz: u32, log: &mut Log, notes: &mut Vec<String>) -> Option<u32> {
@@ -141,7 +151,8 @@ fn header(scene: &Scene, limits: &BoardLimits, half_period_s: f64, log: &mut Log
         host_timeout_s: (drive.host_timeout_ms * 1e-3) as f32,
         carrier: shape,
         autonomous: drive.autonomous,
-        prediction: scene.prediction,
+        prediction: scene.touch.prediction,
+        leader: scene.touch.leader,
     }
 }
 

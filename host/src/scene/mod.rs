@@ -9,6 +9,7 @@ mod excess;
 mod fields;
 mod file;
 mod layer;
+mod layer_map;
 mod leave_out;
 mod left_out;
 mod log;
@@ -25,6 +26,7 @@ mod tests;
 
 pub use compile::compile;
 pub use file::Scene;
+pub use layer_map::{LayerError, LayerMap};
 pub use left_out::LeftOut;
 pub use mistake::{CompileError, Located, Mistake, Nearest};
 pub use program::{Bitmap, Program};
