@@ -192,12 +192,20 @@ fn a_scene_takes_anothers_place_between_two_ticks() {
     for delay in 0..5 {
         let Swap { swap, before, after, swapped } = swap(&before, &after, delay);
         assert!((1_000..1_020).contains(&swap), "{swap}");
-        for of in [asked_bits, |records: &[TickRecord]| amplitudes(records).into_iter().map(u32::from).collect()] {
-            let (before, after, swapped) = (of(&before), of(&after), of(&swapped));
-            assert_eq!(swapped[..swap], before[..swap], "delay {delay}");
-            let wrong = (swap..SWAP_TICKS).find(|tick| swapped[*tick] != after[*tick]);
-            assert_eq!(wrong.map(|tick| tick - swap), None, "delay {delay}: ticks after the swap");
-            assert_ne!(before[swap], after[swap], "the two can be told apart");
+        assert_eq!(asked_bits(&swapped[..swap]), asked_bits(&before[..swap]), "delay {delay}");
+        assert_eq!(amplitudes(&swapped[..swap]), amplitudes(&before[..swap]), "delay {delay}");
+        let asked_n = |record: &TickRecord| record.status.telemetry.asked_electric_friction_n;
+        for tick in swap..SWAP_TICKS {
+            // A tick that attends to a report or to the host goes on with what was asked for before, and the two boards
+            // hear from their hosts at other times: what they ask for may be of places a tick or two apart, 2.5 um each.
+            let (found_n, expected_n) = (asked_n(&swapped[tick]), asked_n(&after[tick]));
+            assert!((found_n - expected_n).abs() < 5e-5, "{delay}, {tick}: {found_n} N is not {expected_n} N");
+            let (found, expected) = (amplitude(&swapped[tick]), amplitude(&after[tick]));
+            assert!(found.abs_diff(expected) < 40, "{delay}, {tick}: code {found} is not {expected}");
+            if tick < swap + 4 {
+                assert!((found_n - asked_n(&before[tick])).abs() > 5e-4, "the two can be told apart");
+                assert!(found.abs_diff(amplitude(&before[tick])) > 400, "the two can be told apart");
+            }
         }
         assert!(swapped.iter().all(|record| record.status.telemetry.dac_code != 0), "delay {delay}: never zero");
     }

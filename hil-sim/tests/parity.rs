@@ -135,6 +135,7 @@ fn a_bad_day_is_the_same() {
                 trough_n: 0.0,
                 crest_n: 0.02,
             },
+            Layer::Stream { low_n: -0.002, high_n: 0.008 },
         ];
         let records: Vec<Record> =
             layers.into_iter().map(|layer| Record { blend: Blend::Add, ..record(layer) }).collect();
@@ -144,7 +145,12 @@ fn a_bad_day_is_the_same() {
         for byte in [5, 60, 61, 62] {
             script.rig.line_to_board_mut().schedule_fault(byte + 40_000, LineFault::Flip(0x10));
         }
+        script.command(Command::StartStream { sample_hz: 4_000, start_level: 100 });
+        for frame in [0, 1, 3, 2, 3, 6] {
+            script.samples(90 * frame, &[7_000, 60_000, 30_000].repeat(30));
+        }
         script.run(10_000);
+        assert_eq!((script.status().counters.stream_underruns, script.status().counters.stream_gaps), (1, 1));
         script.command(Command::SetLayer { layer: 1, on: false, gain: 1.0 });
         script.command(Command::SetLayer { layer: 3, on: true, gain: -0.3 });
         script.run(20_000);

@@ -6,7 +6,7 @@ use frixel_wire::fault::State;
 use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, crc32};
 use frixel_wire::message::{Command, FromBoard, Request};
 use frixel_wire::payload::{self, Payload};
-use frixel_wire::scene::{Blend, Carrier, Header, Layer, Record, Region};
+use frixel_wire::scene::{Blend, Carrier, Header, Layer, Leader, Record, Region};
 
 const HEADER: Header = Header {
     screen_width_m: 0.12,
@@ -24,6 +24,7 @@ const HEADER: Header = Header {
     carrier: Carrier::Square,
     autonomous: true,
     prediction: true,
+    leader: Leader::First,
 };
 
 fn constant(header: &Header, electric_friction_n: f32) -> Vec<u8> {

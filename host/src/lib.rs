@@ -10,4 +10,5 @@ pub mod player;
 pub mod report;
 pub mod rigs;
 pub mod scene;
+pub mod stream;
 pub mod wanted;

@@ -7,15 +7,18 @@ use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, WorldError};
 use frixel_model::ParameterError;
 use thiserror::Error;
 
-use crate::device::{Bitmap, Counters, Device, DeviceError, Link, Progress, Upload};
+use crate::device::{Bitmap, Counters, Device, DeviceError, Link, Progress, StreamStatus, Upload};
 use crate::output::FeltRow;
 use crate::rigs::{Recorder, SimLink};
 use crate::scene::Program;
+use crate::stream::{Feed, FeedError};
 
 /// What is simulated beyond the last recorded tick, so that the recorder has seen it.
 const MARGIN: Duration = Duration::from_millis(5);
 /// Time that passes between two reports of progress, and between two handings over of rows.
 const STEP: Duration = Duration::from_millis(50);
+/// The same while samples flow: a buffer of the board lasts 25 ms or more.
+const STREAM_STEP: Duration = Duration::from_millis(5);
 
 /// Takes a board from wherever another client left it to a scene that plays.
 pub fn start<L: Link>(
@@ -23,13 +26,19 @@ pub fn start<L: Link>(
     program: &Program,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<(), DeviceError> {
-    load(device, program, progress)?;
+    device.disarm()?;
+    upload(device, program, progress)?;
     device.arm()?;
     device.play()
 }
 
-/// Takes a board from wherever another client left it to a scene that could be played.
-pub(crate) fn load<L: Link>(
+/// Puts another scene in the place of the one that plays, between two ticks.
+pub fn replace<L: Link>(device: &mut Device<L>, program: &Program) -> Result<(), DeviceError> {
+    upload(device, program, &mut |_| {})
+}
+
+/// Uploads and commits.
+fn upload<L: Link>(
     device: &mut Device<L>,
     program: &Program,
     progress: &mut dyn FnMut(Progress),
@@ -46,7 +55,6 @@ pub(crate) fn load<L: Link>(
         })
         .collect();
     let upload = Upload { scene: &scene, bitmaps };
-    device.disarm()?;
     device.upload(&upload, progress)?;
     device.commit(upload.scene_crc32())
 }
@@ -72,6 +80,8 @@ pub struct Simulated {
     pub recorder: Recorder,
     /// What went over the line.
     pub counters: Counters,
+    /// How the stream did, if there was one.
+    pub stream: Option<StreamStatus>,
     /// Virtual time over wall time, from the hello to the end; the time that a taker of rows took is left out.
     pub realtime_factor: f64,
 }
@@ -97,6 +107,9 @@ pub enum SimulationError {
     /// The board refused, or fell silent.
     #[error(transparent)]
     Device(#[from] DeviceError),
+    /// There are no samples to stream, or no more of them.
+    #[error(transparent)]
+    Feed(#[from] FeedError),
 }
 
 /// Plays `program` on the simulated board under a simulated finger. The rows stay in [`Simulated::recorder`].
@@ -107,20 +120,21 @@ pub fn simulate(
     simulation: &Simulation,
     on_stage: &mut dyn FnMut(Stage),
 ) -> Result<Simulated, SimulationError> {
-    run(program, simulation, on_stage, None)
+    run(program, simulation, None, on_stage, None)
 }
 
-/// As [`simulate`], but hands the rows over while it plays and keeps none, so that a play of any length fits in memory.
+/// As [`simulate`], with samples for the scene's stream layers from when it begins to play, and hands the rows over while it plays and keeps none, so that a play of any length fits in memory.
 ///
 /// `on_rows` takes the rows of every 50 ms of virtual time. When it breaks, the play ends there; what was played until
 /// then is what came of it.
 pub fn simulate_rows(
     program: &Program,
     simulation: &Simulation,
+    feed: Option<&mut Feed>,
     on_stage: &mut dyn FnMut(Stage),
     on_rows: &mut RowTaker,
 ) -> Result<Simulated, SimulationError> {
-    run(program, simulation, on_stage, Some(on_rows))
+    run(program, simulation, feed, on_stage, Some(on_rows))
 }
 
 /// Takes rows while a simulation plays, and says whether it is to go on.
@@ -129,6 +143,7 @@ pub type RowTaker<'a> = dyn FnMut(&[FeltRow]) -> ControlFlow<()> + 'a;
 fn run(
     program: &Program,
     simulation: &Simulation,
+    mut feed: Option<&mut Feed>,
     on_stage: &mut dyn FnMut(Stage),
     mut on_rows: Option<&mut RowTaker>,
 ) -> Result<Simulated, SimulationError> {
@@ -142,12 +157,22 @@ fn run(
     let begin = Instant::now();
     let mut taking_rows = Duration::ZERO;
     let mut device = Device::connect(SimLink::new(rig, recorder))?;
+    if feed.is_some() {
+        device.link_mut().recorder_mut().expect_stream();
+    }
     start(&mut device, program, &mut |progress| on_stage(Stage::Upload(progress)))?;
+    if let Some(feed) = &mut feed {
+        feed.start(&mut device)?;
+    }
+    let step = if feed.is_some() { STREAM_STEP } else { STEP };
     let total = Duration::from_secs_f64(simulation.seconds) + MARGIN;
     let mut passed = Duration::ZERO;
     while passed < total {
-        let step = STEP.min(total.saturating_sub(passed));
+        let step = step.min(total.saturating_sub(passed));
         device.wait(step, &mut |_| {})?;
+        if let Some(feed) = &mut feed {
+            feed.pump(&mut device)?;
+        }
         passed += step;
         on_stage(Stage::Play(passed.as_secs_f64() / total.as_secs_f64()));
         let Some(on_rows) = &mut on_rows else { continue };
@@ -164,8 +189,8 @@ fn run(
     device.disarm()?;
     let wall_s = begin.elapsed().saturating_sub(taking_rows).as_secs_f64();
 
-    let counters = device.counters();
+    let (counters, stream) = (device.counters(), device.stream_status());
     let link = device.into_link();
     let realtime_factor = link.now().as_secs_f64() / wall_s;
-    Ok(Simulated { recorder: link.into_recorder(), counters, realtime_factor })
+    Ok(Simulated { recorder: link.into_recorder(), counters, stream, realtime_factor })
 }

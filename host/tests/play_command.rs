@@ -80,6 +80,9 @@ fn json_has_every_number_and_the_same_seed_the_same_bytes() {
     ] {
         assert!(json[key].is_number(), "{key}: {}", json[key]);
     }
+    for key in ["stream_samples", "stream_underruns", "stream_gaps"] {
+        assert!(json[key].is_null(), "{key}: {}", json[key]);
+    }
 }
 
 /// One sentence on standard error, with what is wrong, and an exit of one.

@@ -4,7 +4,7 @@ use cortex_m::singleton;
 use frixel_render::{Active, BitmapPool, Board, Drive, Sense, Session, StreamBuffer, Ticker, Touch};
 use frixel_wire::fault::State;
 use frixel_wire::message::Command;
-use frixel_wire::scene::{Carrier, HEADER_LEN, Header, POINT_LEN, Point, RECORD_LEN, Record, SCENE_MAX_LEN};
+use frixel_wire::scene::{Carrier, HEADER_LEN, Header, Leader, POINT_LEN, Point, RECORD_LEN, Record, SCENE_MAX_LEN};
 
 use crate::count::{Case, Counter};
 use crate::host::{Host, STREAM_FRAME, STREAM_TICKS_PER_SAMPLE};
@@ -37,6 +37,7 @@ pub(crate) const HEADER: Header = Header {
     carrier: Carrier::Square,
     autonomous: false,
     prediction: true,
+    leader: Leader::First,
 };
 
 /// Counts the ticks of every scene.

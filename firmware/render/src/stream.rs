@@ -23,8 +23,7 @@ const VALUE_PER_SAMPLE: f32 = 1.0 / 65_535.0;
 ///
 /// Every slot is an atomic of its own, which costs nothing on a Cortex-M and keeps the sharing free of `unsafe`.
 pub struct StreamBuffer {
-    /// The sample in the low half, its round in the high half. No position is in round 0 before all rounds were used, so
-    /// that a buffer of zeros is an empty one, and takes no room in an image.
+    /// The sample in the low half, its round in the high half; all zeros, so that no image of it lies in flash.
     slots: [AtomicU32; STREAM_LEN],
     /// Position behind the last sample that came; the session's to write.
     end: AtomicU32,
@@ -52,7 +51,7 @@ impl StreamBuffer {
     }
 }
 
-/// The round of a position, from 1, in the high half.
+/// The round of a position, in the high half. The first one is 1, since a slot that was never filled says 0.
 #[inline]
 fn round(position: u32) -> u32 {
     (position / LEN + 1) << 16

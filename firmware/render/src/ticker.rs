@@ -156,7 +156,7 @@ impl<'a> Ticker<'a> {
     #[inline(never)]
     fn ask_again(&mut self) {
         if self.drive.amplifier_enable {
-            self.target_v_rms = self.voltage_v_rms();
+            (self.target_v_rms, _) = self.voltage_v_rms();
         }
     }
 
@@ -197,7 +197,11 @@ impl<'a> Ticker<'a> {
             if self.live {
                 [self.moment.x_m, self.moment.y_m] = self.finger.place_m();
                 self.moment.tick = self.tick;
-                self.target_v_rms = self.voltage_v_rms();
+                let (voltage_v_rms, out_of_reach) = self.voltage_v_rms();
+                self.target_v_rms = voltage_v_rms;
+                if out_of_reach {
+                    self.note_out_of_reach();
+                }
             }
         }
         self.put_out()
@@ -351,11 +355,11 @@ impl<'a> Ticker<'a> {
         self.drive
     }
 
-    /// The rms voltage that the scene wants at this moment.
+    /// The rms voltage that the scene wants at this moment, and whether the friction may be out of reach.
     #[allow(clippy::inline_always, reason = "a call would cost every tick a tenth of what it takes")]
     #[inline(always)]
-    fn voltage_v_rms(&mut self) -> f32 {
-        let Some(table) = self.active.table() else { return 0.0 };
+    fn voltage_v_rms(&mut self) -> (f32, bool) {
+        let Some(table) = self.active.table() else { return (0.0, false) };
         #[cfg(feature = "edge")]
         if self.active.has_clicks() {
             self.clicks.begin();
@@ -363,12 +367,9 @@ impl<'a> Ticker<'a> {
         let friction_n = self.active.electric_friction_n(&self.moment, self.pool, &mut self.clicks);
         let electric_friction_n = self.finger.gain() * friction_n;
         self.asked_electric_friction_n = electric_friction_n;
-        let voltage_v_rms = table.voltage_v_rms(electric_friction_n);
         // Bit patterns of what is negative, and of not-a-number, are above those of every positive number.
-        if electric_friction_n.to_bits() > table.electric_friction_max_n().to_bits() {
-            self.note_out_of_reach();
-        }
-        voltage_v_rms
+        let out_of_reach = electric_friction_n.to_bits() > table.electric_friction_max_n().to_bits();
+        (table.voltage_v_rms(electric_friction_n), out_of_reach)
     }
 
     /// Counts a tick whose friction is out of reach.

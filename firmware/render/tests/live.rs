@@ -3,9 +3,10 @@
 
 mod support;
 
+use frixel_render::{Board, Touch};
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::message::{Accepted, Command, ConfigField, Refusal};
-use frixel_wire::scene::{Blend, Layer, Record};
+use frixel_wire::scene::{Blend, Header, Layer, Leader, Record};
 use support::{Desk, HEADER, Memory, constant, record, scene};
 
 const HALF: Command = Command::SetLayer { layer: 0, on: true, gain: 0.5 };
@@ -97,5 +98,39 @@ mod streams {
         desk.play(&constant(0.01));
         assert_eq!(desk.command(start), Err(Refusal::NoStreamLayer));
         assert_eq!(desk.command(Command::EndStream), Ok(Accepted::Done), "there is none to end");
+    }
+}
+
+/// Two fingers at a time, from a host that has a touchscreen: the committed scene says which one is followed.
+#[test]
+fn the_scene_says_which_of_two_fingers_is_followed() {
+    for (leader, second_leads) in [(Leader::First, false), (Leader::Latest, true)] {
+        let mut memory = Memory::new();
+        let board = Board { touch_from_host: true, ..Board::SIMULATOR };
+        let mut desk = Desk::of(board, &mut memory);
+        desk.play(&scene(&Header { leader, ..HEADER }, &[record(Layer::Constant { electric_friction_n: 0.01 })]));
+        let mut seen = Vec::new();
+        for report in 0..60_u8 {
+            let x_m = 0.001 * f32::from(report);
+            desk.command(Command::TouchFinger { finger: 4, x_m, y_m: 0.01, age_ticks: 0 }).unwrap();
+            if report > 20 {
+                desk.command(Command::TouchFinger { finger: 9, x_m, y_m: 0.05, age_ticks: 0 }).unwrap();
+            }
+            for _ in 0..200 {
+                desk.sense.touch = desk.session.next_touch();
+                desk.tick();
+            }
+            seen.push(desk.status().telemetry.finger_y_m);
+        }
+        let close = |found: f32, expected: f32| (found - expected).abs() < 1e-4;
+        assert!(close(seen[20], 0.01), "{leader:?}: {seen:?}");
+        let then_m = if second_leads { 0.05 } else { 0.01 };
+        assert!(
+            seen[22..].iter().all(|y_m| close(*y_m, then_m)),
+            "{leader:?}: nothing is made of the way between {seen:?}"
+        );
+        desk.command(Command::LiftFinger { finger: if second_leads { 9 } else { 4 } }).unwrap();
+        assert_eq!(desk.session.next_touch(), Some(Touch::Up));
+        assert_eq!(desk.session.next_touch(), None);
     }
 }

@@ -81,6 +81,12 @@ fn records() -> Vec<Record> {
     .to_vec()
 }
 
+/// A layer, and one below it that is always felt.
+fn on_a_ground(record: Record) -> Vec<Record> {
+    let ground = Layer::Constant { electric_friction_n: 0.005 };
+    vec![Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer: ground }, record]
+}
+
 fn points() -> Vec<Point> {
     [(0.02, 0.5), (0.2, 1.5), (0.01, 0.01), (0.1, 0.015), (0.09, 0.05), (0.02, 0.04)]
         .map(|(x, y)| Point { x, y })
@@ -98,7 +104,7 @@ fn points() -> Vec<Point> {
     feature = "polygon"
 ))]
 mod whole {
-    use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
+    use frixel_wire::message::{Command, ConfigField, ConfigRefusal, Refusal};
     use support::record;
 
     use super::*;
@@ -121,8 +127,12 @@ mod whole {
         let mut desk = Desk::new(&mut memory);
         desk.greet();
         desk.upload_bitmap(3, 2, &SAMPLES).unwrap();
-        desk.play(&scene_with_points(&HEADER, &records(), &points()));
-        assert!(desk.slide(20_000)[400..].iter().all(|drive| drive.dac_code != 0));
+        // One after another: all of them under one finger are refused, for what a tick would take.
+        for record in records() {
+            desk.play(&scene_with_points(&HEADER, &on_a_ground(record), &points()));
+            assert!(desk.slide(8_000)[400..].iter().all(|drive| drive.dac_code != 0), "{record:?}");
+            desk.command(Command::Disarm).unwrap();
+        }
     }
 
     /// Every number of every kind is judged: a not-a-number in its place is refused, by a field that is there for it.
@@ -174,7 +184,14 @@ mod whole {
             let mut memory = Memory::new();
             let mut desk = Desk::new(&mut memory);
             desk.greet();
-            desk.load(&scene_with_points(&HEADER, &vec![record(layer); count], &[])).err()
+            // Side by side: one on another they would take too long.
+            let beside = |number: usize| {
+                let (x_m, y_m) = (1e-3 + 7.5e-3 * (number % 16) as f32, 0.01 + 0.01 * (number / 16) as f32);
+                let region = Region::Rectangle { x_m, y_m, width_m: 4e-3, height_m: 4e-3 };
+                Record { region, ..record(layer) }
+            };
+            let records: Vec<Record> = (0..count).map(beside).collect();
+            desk.load(&scene_with_points(&HEADER, &records, &[])).err()
         };
         let noise = records()[7].layer;
         assert_eq!(of(noise, 8), None);
@@ -190,13 +207,14 @@ mod whole {
 
 /// A whole scene with some of its bytes changed.
 fn nearly() -> impl Strategy<Value = Vec<u8>> {
-    let good = scene_with_points(&HEADER, &records(), &points());
+    let good = |record: Record| scene_with_points(&HEADER, &on_a_ground(record), &points());
     let byte = (any::<prop::sample::Index>(), any::<u8>()).prop_map(|(at, byte)| (at, vec![byte]));
     let small = (any::<prop::sample::Index>(), 0..12u8).prop_map(|(at, byte)| (at, vec![byte]));
     let number =
         (any::<prop::sample::Index>(), any::<f32>()).prop_map(|(at, number)| (at, number.to_le_bytes().to_vec()));
-    prop::collection::vec(prop_oneof![byte, small, number], 0..6).prop_map(move |changes| {
-        let mut bytes = good.clone();
+    let changes = prop::collection::vec(prop_oneof![byte, small, number], 0..6);
+    (prop::sample::select(records()), changes).prop_map(move |(record, changes)| {
+        let mut bytes = good(record);
         for (at, change) in changes {
             // Numbers stand at multiples of four.
             let at = at.index(bytes.len() / 4) * 4 + if change.len() == 1 { usize::from(change[0] % 4) } else { 0 };

@@ -85,6 +85,8 @@ pub struct Header {
     pub autonomous: bool,
     /// The tick estimates where the finger is now from late samples; without it, it takes the last sample as it is.
     pub prediction: bool,
+    /// Which finger is followed when the host tells of several.
+    pub leader: Leader,
 }
 
 /// Shape of the carrier.
@@ -95,6 +97,16 @@ pub enum Carrier {
     Square,
     /// A sine whose rms is the envelope.
     Sine,
+}
+
+/// Which of several fingers is followed, since one electrode gives one effect.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Leader {
+    /// The one that came first of those that are on the screen.
+    #[default]
+    First,
+    /// The one that came last.
+    Latest,
 }
 
 /// One layer.

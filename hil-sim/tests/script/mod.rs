@@ -6,7 +6,7 @@ use frixel_render::Status;
 use frixel_wire::frame::{FRAME_MAX_LEN, crc32};
 use frixel_wire::message::{Command, Request};
 use frixel_wire::payload::{self, CHUNK_LEN};
-use frixel_wire::scene::{Blend, Carrier, Header, Layer, Point, Record, Region, bitmap_crc32};
+use frixel_wire::scene::{Blend, Carrier, Header, Layer, Leader, Point, Record, Region, bitmap_crc32};
 
 /// Ticks between two pings.
 const PING_TICKS: u64 = 2_000;
@@ -27,6 +27,13 @@ impl<'a> Script<'a> {
     pub fn greet(&mut self) {
         let mut frame = [0; FRAME_MAX_LEN];
         self.rig.send(payload::hello_request_frame(&mut frame).unwrap());
+        self.drain();
+    }
+
+    /// Sends samples of a stream, and runs until the line is idle.
+    pub fn samples(&mut self, first_index: u32, samples: &[u16]) {
+        let mut frame = [0; FRAME_MAX_LEN];
+        self.rig.send(payload::samples_frame(first_index, samples, &mut frame).unwrap());
         self.drain();
     }
 
@@ -122,6 +129,7 @@ pub const HEADER: Header = Header {
     carrier: Carrier::Square,
     autonomous: false,
     prediction: true,
+    leader: Leader::First,
 };
 
 pub fn record(layer: Layer) -> Record {

@@ -23,6 +23,9 @@ pub(super) fn run(args: &DemoArgs) -> Result<(), CommandError> {
         seed: 1,
         csv_hz: 1000,
         arm: false,
+        watch: false,
+        stream: None,
+        stream_hz: None,
     })?;
     println!("change a copy of {} and play that: frixel play COPY.toml", scene.display());
     Ok(())

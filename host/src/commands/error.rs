@@ -11,6 +11,7 @@ use frixel::player::SimulationError;
 use frixel::report::ReportError;
 use frixel::rigs::ServerError;
 use frixel::scene::CompileError;
+use frixel::stream::FeedError;
 use frixel_hil_sim::emulated::EmulatorError;
 use frixel_hil_sim::{StrokeError, WorldError};
 use frixel_model::ParameterError;
@@ -76,6 +77,22 @@ pub(crate) enum CommandError {
         "{port} is a board with an electrode: put on --arm, and hold the switch on the board, to let it drive hundreds of volts"
     )]
     NotArmed { port: String },
+    #[error(transparent)]
+    Feed(#[from] FeedError),
+    #[error(
+        "--stream-hz says how many samples a second come on standard input: put --stream - before it, or leave it out"
+    )]
+    StreamRateAlone,
+    #[error("samples on standard input have no rate of their own: put --stream-hz beside --stream -")]
+    StreamRateMissing,
+    #[error("{} has a sample rate of its own: leave --stream-hz out", path.display())]
+    StreamRateOfFile { path: PathBuf },
+    #[error(
+        "--watch follows the file while a board plays in real time, --port {port} does not: start `frixel sim` and give its port"
+    )]
+    WatchInVirtualTime { port: String },
+    #[error("the emulated board's serial port is too slow for a stream: leave --stream out, or play on --port sim")]
+    StreamOnEmulated,
     #[error("{port} stopped with its output at zero: {fault}")]
     Faulted { port: String, fault: Fault },
     #[error("{port} stopped with its output at zero: it had not heard from this host for the scene's host timeout")]

@@ -87,6 +87,16 @@ struct PlayArgs {
     /// Let a board that is not a simulator drive its electrode.
     #[arg(long)]
     arm: bool,
+    /// Play the scene anew whenever its file is saved; for a board at a serial port, `frixel sim` among them.
+    #[arg(long)]
+    watch: bool,
+    /// Samples for the scene's stream layers: a WAV file, or `-` for raw ones on standard input, two bytes each,
+    /// little-endian.
+    #[arg(long, value_name = "FILE.wav")]
+    stream: Option<PathBuf>,
+    /// Samples a second on standard input.
+    #[arg(long, value_name = "HZ")]
+    stream_hz: Option<u32>,
 }
 
 #[derive(Debug, Args)]

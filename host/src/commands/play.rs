@@ -3,7 +3,9 @@
 mod bars;
 mod board;
 mod emulated;
+mod live;
 mod simulator;
+mod watch;
 
 use std::path::{Path, PathBuf};
 
@@ -38,6 +40,11 @@ struct Played {
     files: Vec<PathBuf>,
     /// Why it ended before its time, where that is a failure. What was played until then is in the report and the files.
     failure: Option<CommandError>,
+}
+
+/// A board in virtual time has played before anybody saves anything.
+fn refuse_watch(args: &PlayArgs) -> Result<(), CommandError> {
+    if args.watch { Err(CommandError::WatchInVirtualTime { port: args.port.clone() }) } else { Ok(()) }
 }
 
 /// Says what the compiler has to say of a scene: conversions, roundings.

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
-use crate::device::Counters;
+use crate::device::{Counters, StreamStatus};
 use crate::metrics::{ErrorSize, MetricsSummary};
 use crate::scene::Reach;
 
@@ -45,6 +45,12 @@ pub struct Report {
     pub wire_bytes: u64,
     /// Seconds simulated in a second of wall time, file writing apart.
     pub realtime_factor: Option<f64>,
+    /// Samples that were streamed; `null` without a stream, as the two below.
+    pub stream_samples: Option<u64>,
+    /// Times that the board ran out of samples.
+    pub stream_underruns: Option<u32>,
+    /// Runs of samples that the line lost.
+    pub stream_gaps: Option<u32>,
 }
 
 impl Report {
@@ -74,7 +80,19 @@ impl Report {
             payload_bytes: link.payload_bytes,
             wire_bytes: link.wire_bytes,
             realtime_factor,
+            stream_samples: None,
+            stream_underruns: None,
+            stream_gaps: None,
         }
+    }
+
+    /// Adds how the stream did, if there was one.
+    #[must_use]
+    pub fn with_stream(mut self, stream: Option<StreamStatus>) -> Self {
+        self.stream_samples = stream.map(|stream| stream.sent);
+        self.stream_underruns = stream.map(|stream| stream.underruns);
+        self.stream_gaps = stream.map(|stream| stream.gaps);
+        self
     }
 
     /// One JSON object on one line.
@@ -118,6 +136,11 @@ impl Report {
                 self.frames_sent, self.frames_rejected, self.payload_bytes, self.wire_bytes
             ),
         );
+        if let (Some(samples), Some(underruns), Some(gaps)) =
+            (self.stream_samples, self.stream_underruns, self.stream_gaps)
+        {
+            line("stream", format!("{samples} samples, {underruns} underruns, {gaps} gaps"));
+        }
         if let Some(factor) = self.realtime_factor {
             let decimals = if factor < 10.0 { 2 } else { 0 };
             line("speed", format!("{factor:.decimals$} times real time"));

@@ -20,6 +20,8 @@ pub struct Recorder {
     row_maker: RowMaker,
     rows: Vec<FeltRow>,
     ticks_left: u64,
+    /// Something is streamed: what is wanted is not the program's alone.
+    streamed: bool,
 }
 
 impl Recorder {
@@ -40,6 +42,7 @@ impl Recorder {
             row_maker: RowMaker::new(tick_hz, ticks_per_row),
             rows: Vec::new(),
             ticks_left: ticks,
+            streamed: false,
         })
     }
 
@@ -56,6 +59,11 @@ impl Recorder {
     /// Hands over the rows since the last time.
     pub(crate) fn take_rows(&mut self) -> Vec<FeltRow> {
         std::mem::take(&mut self.rows)
+    }
+
+    /// From now on something is streamed: what is wanted is not known, nor how far off it is what is felt.
+    pub(crate) fn expect_stream(&mut self) {
+        self.streamed = true;
     }
 
     /// Takes no more ticks.
@@ -90,6 +98,9 @@ impl Recorder {
             self.wanted.lift();
             return None;
         };
+        if self.streamed {
+            return None;
+        }
         Some(self.wanted.electric_friction_n(&Moment {
             x_m: finger.x_m,
             y_m: finger.y_m,

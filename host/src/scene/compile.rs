@@ -6,6 +6,7 @@ use frixel_wire::scene::{Header, RECORDS_MAX, Record};
 
 use super::excess;
 use super::file::Scene;
+use super::layer_map::LayerMap;
 use super::leave_out::leave_out;
 use super::log::Log;
 use super::lower::Lowering;
@@ -38,8 +39,21 @@ const MM: f64 = 1e-3;
 /// # }
 /// ```
 pub fn compile(scene: &Scene, limits: &BoardLimits, tick_hz: u32) -> Result<Program, CompileError> {
+    compile_within(scene, limits, tick_hz, TICK_INSTRUCTIONS_MAX)
+}
+
+/// [`compile`] for boards whose tick has time for this many instructions.
+pub(super) fn compile_within(
+    scene: &Scene,
+    limits: &BoardLimits,
+    tick_hz: u32,
+    instructions_max: u32,
+) -> Result<Program, CompileError> {
     let mut log = Log::new(&scene.source);
     let program = assemble(scene, limits, tick_hz, &mut log);
+    if let Some(program) = program.as_ref().filter(|_| log.is_empty()) {
+        tick_cost::check(scene, program, instructions_max, &mut log);
+    }
     log.finish(program)
 }
 
@@ -73,6 +87,7 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
         points: lowered.points,
         bitmaps: lowered.bitmaps,
         titles,
+        layers: LayerMap::default(),
         reach,
         half_period_ticks,
         notes,
@@ -82,9 +97,16 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
         excess::check(scene, &mut program, log);
         let live: Vec<bool> = scene.layers.iter().map(|layer| layer.live).collect();
         leave_out(&mut program, &live);
-        tick_cost::check(scene, &program, TICK_INSTRUCTIONS_MAX, log);
     }
+    program.layers = layer_map(scene, &program.titles);
     Some(program)
+}
+
+/// A layer that the host may change is a record of its own; others may have been reckoned together.
+fn layer_map(scene: &Scene, titles: &[String]) -> LayerMap {
+    let record = |title: &String| (0..).zip(titles).find_map(|(record, other)| (other == title).then_some(record));
+    let records = scene.layers.iter().map(|layer| record(&layer.title).filter(|_| layer.live));
+    LayerMap::new(scene.layers.iter().zip(records).map(|(layer, record)| (layer.name.clone(), record)))
 }
 
 fn half_period_ticks(scene: &Scene, tick_hz: u32, log: &mut Log, notes: &mut Vec<String>) -> Option<u32> {
@@ -144,7 +166,8 @@ fn header(scene: &Scene, limits: &BoardLimits, half_period_s: f64, log: &mut Log
         host_timeout_s: (drive.host_timeout_ms * 1e-3) as f32,
         carrier: shape,
         autonomous: drive.autonomous,
-        prediction: scene.prediction,
+        prediction: scene.touch.prediction,
+        leader: scene.touch.leader,
     }
 }
 

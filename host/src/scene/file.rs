@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 
+use frixel_wire::scene::Leader;
 use toml::de::DeTable;
 
 use super::asked::AskedTable;
@@ -40,7 +41,7 @@ pub struct Scene {
     pub(super) finger: Finger,
     pub(super) drive: Drive,
     pub(super) carrier: Carrier,
-    pub(super) prediction: bool,
+    pub(super) touch: Touch,
     pub(super) layers: Vec<Layer>,
 }
 
@@ -85,6 +86,13 @@ pub(super) struct Carrier {
     pub(super) shape: frixel_wire::scene::Carrier,
     pub(super) frequency_hz: f64,
     pub(super) places: Places,
+}
+
+/// `[touch]`
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Touch {
+    pub(super) prediction: bool,
+    pub(super) leader: Leader,
 }
 
 impl Scene {
@@ -141,7 +149,7 @@ fn read(mut fields: Fields, log: &mut Log, source: &Source) -> Option<Scene> {
     let finger = fields.table(log, "finger").and_then(|fields| finger(fields, log));
     let drive = drive(fields.optional_table(log, "drive").unwrap_or_else(|| absent("[drive]")), log);
     let carrier = carrier(fields.optional_table(log, "carrier").unwrap_or_else(|| absent("[carrier]")), log);
-    let prediction = touch(fields.optional_table(log, "touch").unwrap_or_else(|| absent("[touch]")), log);
+    let touch = touch(fields.optional_table(log, "touch").unwrap_or_else(|| absent("[touch]")), log);
     let tables = fields.tables(log, "layer", false).unwrap_or_default();
     // All are read, so that the mistakes of all are told.
     let layers: Vec<Option<Layer>> = (1..).zip(tables).map(|(number, table)| Layer::read(table, number, log)).collect();
@@ -156,7 +164,7 @@ fn read(mut fields: Fields, log: &mut Log, source: &Source) -> Option<Scene> {
         finger: finger?,
         drive,
         carrier,
-        prediction,
+        touch,
         layers: layers.into_iter().collect::<Option<_>>()?,
     })
 }
@@ -232,8 +240,10 @@ fn carrier(mut fields: Fields, log: &mut Log) -> Carrier {
     Carrier { shape, frequency_hz, places }
 }
 
-fn touch(mut fields: Fields, log: &mut Log) -> bool {
+fn touch(mut fields: Fields, log: &mut Log) -> Touch {
     let prediction = fields.flag(log, "prediction", true);
+    let rules = [("first", Leader::First), ("latest", Leader::Latest)];
+    let leader = fields.optional_choice(log, "leader", &rules).unwrap_or_default();
     fields.close(log);
-    prediction
+    Touch { prediction, leader }
 }

@@ -10,6 +10,7 @@ mod excess;
 mod fields;
 mod file;
 mod layer;
+mod layer_map;
 mod leave_out;
 mod left_out;
 mod log;
@@ -29,6 +30,7 @@ mod tick_cost;
 
 pub use compile::compile;
 pub use file::Scene;
+pub use layer_map::{LayerError, LayerMap};
 pub use left_out::LeftOut;
 pub use mistake::{CompileError, Located, Mistake, Nearest};
 pub use outside::{Asked, Outside};

@@ -3,6 +3,7 @@
 use frixel_wire::hello::feature;
 use frixel_wire::scene::{Carrier, Header, Layer, Point, Record, Region, bitmap_crc32};
 
+use super::layer_map::LayerMap;
 use super::left_out::LeftOut;
 use super::reach::Reach;
 
@@ -19,6 +20,8 @@ pub struct Program {
     pub bitmaps: Vec<Bitmap>,
     /// How messages call each record: its number from one, and its name or kind.
     pub titles: Vec<String>,
+    /// Which record each layer of the file became, for a host that changes layers while they play.
+    pub layers: LayerMap,
     /// What the finger can be given.
     pub reach: Reach,
     /// Ticks of half a carrier period.

@@ -5,7 +5,7 @@ use std::time::Duration;
 use frixel::device::{Device, DeviceError, Event, Link, Upload};
 use frixel_wire::fault::State;
 use frixel_wire::message::{Command, Refusal};
-use frixel_wire::scene::{Carrier, Header};
+use frixel_wire::scene::{Carrier, Header, Leader};
 
 use crate::fake_board::FakeBoard;
 use crate::virtual_link::{Fate, VirtualLink};
@@ -36,6 +36,7 @@ pub(crate) fn scene(host_timeout_s: f32) -> Vec<u8> {
         carrier: Carrier::Square,
         autonomous: false,
         prediction: true,
+        leader: Leader::First,
     };
     header.write(0, 0).to_vec()
 }

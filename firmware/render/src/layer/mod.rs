@@ -133,7 +133,7 @@ impl Layer {
         matches!(self.join, Join::Replace | Join::Add) && self.region == Region::Screen
     }
 
-    /// This layer's electric friction at a moment, wherever that is.
+    /// This layer's electric friction at a moment, wherever that is, with nothing below it.
     #[inline]
     pub(crate) fn own_electric_friction_n(&self, around: &mut Around) -> f32 {
         self.gain * self.source.electric_friction_n(&self.region, around)

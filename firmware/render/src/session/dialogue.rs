@@ -3,20 +3,20 @@
 use frixel_wire::fault::{Flags, State};
 use frixel_wire::hello::{Hello, PROTOCOL_MAJOR, PROTOCOL_MINOR, feature};
 use frixel_wire::message::{
-    Accepted, Answer, Command, ConfigField, ConfigRefusal, FAULT_TEXT_MAX_LEN, FAULT_TEXT_PIECE_LEN, FromBoard,
-    Refusal, Request, TELEMETRY_PERIOD_MIN_TICKS,
+    Accepted, Answer, Command, FAULT_TEXT_MAX_LEN, FAULT_TEXT_PIECE_LEN, FromBoard, Refusal, Request,
+    TELEMETRY_PERIOD_MIN_TICKS,
 };
 use frixel_wire::payload::{ParseError, Payload};
 use frixel_wire::scene::{HEADER_LEN, Layer, POINT_LEN, POINTS_MAX, RECORD_LEN, RECORDS_MAX, SCENE_MAX_LEN, Scene};
 use heapless::{Deque, Vec};
 
+use super::fingers::{Fingers, ONLY_FINGER};
 use super::live::Playing;
 #[cfg(feature = "stream")]
 use super::live::Stream;
 use super::outbox::Outbox;
 use super::upload::{Destination, Report, Staging, Upload};
 use crate::bitmap_pool::{Bitmap, Directory};
-use crate::config::{self, LENGTH_MAX_M};
 use crate::order::Status;
 use crate::{Active, BitmapPool, Board, Order, Touch};
 
@@ -70,8 +70,8 @@ pub(super) struct Dialogue<'a> {
     /// What the host streams; `None` on a board that has no buffer for it.
     #[cfg(feature = "stream")]
     pub(super) stream: Option<Stream<'a>>,
-    /// The last place of the finger that the host told and the ticker has not been given.
-    touch: Option<Touch>,
+    /// Fingers that the host told of.
+    pub(super) fingers: Fingers,
 }
 
 /// What this firmware was built with.
@@ -113,7 +113,7 @@ impl<'a> Dialogue<'a> {
             playing: Playing::default(),
             #[cfg(feature = "stream")]
             stream: None,
-            touch: None,
+            fingers: Fingers::new(),
         }
     }
 
@@ -130,7 +130,7 @@ impl<'a> Dialogue<'a> {
     }
 
     pub(super) fn next_touch(&mut self) -> Option<Touch> {
-        self.touch.take()
+        self.fingers.next()
     }
 
     pub(super) fn take_back(&mut self, spare: &'a mut Active) {
@@ -231,6 +231,7 @@ impl<'a> Dialogue<'a> {
         self.telemetry_period_ticks = 0;
         self.drop_upload();
         self.announced_bitmaps.clear();
+        self.fingers.forget();
         // Should there be no room for the order, the stream runs dry instead.
         #[cfg(feature = "stream")]
         let _ = self.end_stream();
@@ -265,10 +266,8 @@ impl<'a> Dialogue<'a> {
             Command::Commit { crc32 } => self.commit(crc32),
             Command::Subscribe { period_ticks } if cfg!(feature = "telemetry") => self.subscribe(period_ticks),
             Command::Subscribe { .. } => Err(Refusal::UnknownCommand),
-            Command::Touch { x_m, y_m, age_ticks } => {
-                self.touch(Touch::Down { x_m, y_m, age_ticks: u32::from(age_ticks) })
-            }
-            Command::Lift => self.touch(Touch::Up),
+            Command::Touch { x_m, y_m, age_ticks } => self.touch(ONLY_FINGER, x_m, y_m, age_ticks),
+            Command::Lift => self.lift(ONLY_FINGER),
             Command::FaultText { offset } => Ok(fault_text(self.board.reset_text, offset)),
             Command::SetLayer { .. } => self.change_playing(command, status),
             #[cfg(feature = "stream")]
@@ -277,10 +276,8 @@ impl<'a> Dialogue<'a> {
             Command::EndStream => self.end_stream(),
             #[cfg(not(feature = "stream"))]
             Command::StartStream { .. } | Command::EndStream => Err(Refusal::UnknownCommand),
-            Command::TouchFinger { x_m, y_m, age_ticks, .. } => {
-                self.touch(Touch::Down { x_m, y_m, age_ticks: u32::from(age_ticks) })
-            }
-            Command::LiftFinger { .. } => self.touch(Touch::Up),
+            Command::TouchFinger { finger, x_m, y_m, age_ticks } => self.touch(finger, x_m, y_m, age_ticks),
+            Command::LiftFinger { finger } => self.lift(finger),
             Command::ClearFault => self.change_state(Order::ClearFault, &[State::Faulted], State::Disarmed),
             Command::Arm | Command::Disarm | Command::Play | Command::Stop => self.drive(command, status),
         }
@@ -332,26 +329,6 @@ impl<'a> Dialogue<'a> {
             return Err(Refusal::TelemetryTooFast { period_min_ticks: TELEMETRY_PERIOD_MIN_TICKS });
         }
         self.telemetry_period_ticks = period_ticks;
-        Ok(Accepted::Done)
-    }
-
-    fn touch(&mut self, touch: Touch) -> Result<Accepted, Refusal> {
-        if !self.board.touch_from_host {
-            return Err(Refusal::TouchSource);
-        }
-        if let Touch::Down { x_m, y_m, .. } = touch {
-            for place_m in [x_m, y_m] {
-                config::within(
-                    ConfigField::TouchPlace,
-                    place_m,
-                    -LENGTH_MAX_M,
-                    LENGTH_MAX_M,
-                    ConfigRefusal::WHOLE_SCENE,
-                )
-                .map_err(Refusal::Config)?;
-            }
-        }
-        self.touch = Some(touch);
         Ok(Accepted::Done)
     }
 

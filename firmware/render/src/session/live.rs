@@ -4,7 +4,7 @@ use frixel_wire::fault::State;
 use frixel_wire::message::{Accepted, Command, ConfigField, Refusal};
 #[cfg(feature = "stream")]
 use frixel_wire::message::{ConfigRefusal, FromBoard, STREAM_START_LEVEL_MAX};
-use frixel_wire::scene::{Header, Scene};
+use frixel_wire::scene::{Header, Leader, Scene};
 
 use super::dialogue::Dialogue;
 #[cfg(feature = "stream")]
@@ -57,6 +57,13 @@ pub(super) struct Stream<'a> {
 impl<'a> Stream<'a> {
     pub(super) fn new(buffer: &'a StreamBuffer) -> Self {
         Self { intake: Intake::new(buffer), frames: 0, reported_at_tick: 0, report_due: false }
+    }
+}
+
+impl Playing {
+    /// Which of several fingers leads; the first one before any scene.
+    pub(super) fn leader(&self) -> Leader {
+        self.header.map_or(Leader::First, |header| header.leader)
     }
 }
 

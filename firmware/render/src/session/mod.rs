@@ -4,6 +4,7 @@
 //! in chunks.
 
 mod dialogue;
+mod fingers;
 #[cfg(feature = "store")]
 mod kept;
 mod live;

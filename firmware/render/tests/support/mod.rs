@@ -19,7 +19,7 @@ use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, crc32};
 use frixel_wire::hello::Hello;
 use frixel_wire::message::{Accepted, Answer, Command, FromBoard, Refusal, Request};
 use frixel_wire::payload::{self, CHUNK_LEN, Payload};
-use frixel_wire::scene::{Blend, Carrier, Header, Layer, Point, Record, Region, bitmap_crc32};
+use frixel_wire::scene::{Blend, Carrier, Header, Layer, Leader, Point, Record, Region, bitmap_crc32};
 
 /// What the two halves of a board share; lives longer than the [`Desk`].
 pub struct Memory {
@@ -255,6 +255,7 @@ pub const HEADER: Header = Header {
     carrier: Carrier::Square,
     autonomous: false,
     prediction: true,
+    leader: Leader::First,
 };
 
 pub fn record(layer: Layer) -> Record {

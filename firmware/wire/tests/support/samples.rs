@@ -7,7 +7,9 @@ use frixel_wire::message::{
     Accepted, Answer, Command, ConfigField, ConfigRefusal, FromBoard, Refusal, Request, Telemetry,
 };
 use frixel_wire::payload::{CHUNK_LEN, CHUNK_NUMBER_MAX, Payload, SAMPLES_MAX};
-use frixel_wire::scene::{Beat, Blend, Burst, Carrier, Click, Header, Layer, Point, Record, Region, SceneError, Wave};
+use frixel_wire::scene::{
+    Beat, Blend, Burst, Carrier, Click, Header, Layer, Leader, Point, Record, Region, SceneError, Wave,
+};
 
 pub const STATES: [State; 4] = [State::Disarmed, State::Armed, State::Active, State::Faulted];
 
@@ -280,6 +282,7 @@ pub fn header() -> Header {
         carrier: Carrier::Square,
         autonomous: false,
         prediction: true,
+        leader: Leader::First,
     }
 }
 
@@ -288,6 +291,7 @@ pub fn headers() -> Vec<Header> {
         header(),
         Header { carrier: Carrier::Sine, prediction: false, ..header() },
         Header { autonomous: true, ..header() },
+        Header { leader: Leader::Latest, ..header() },
     ]
 }
 

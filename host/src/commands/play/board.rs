@@ -6,19 +6,18 @@ use frixel::device::{DEFAULT_BAUD, Device, Event, SerialLink};
 use frixel::metrics::MetricsSummary;
 use frixel::output::{FeltCsv, FeltRow, OutputError, Report};
 use frixel::player::start;
-use frixel::scene::{Program, Scene, compile};
+use frixel::scene::{Program, Reach, Scene, compile};
 use frixel::wanted::Wanted;
 use frixel_wire::fault::Flags;
 use frixel_wire::hello::Hello;
 use frixel_wire::message::Telemetry;
 
 use super::super::interrupt::Interrupt;
+use super::live::{Live, open_feed};
 use super::{Bars, CommandError, PlayArgs, Played, check_seconds, create_felt_csv, tell_notes, ticks_per_row};
 
 /// Most telemetry that a board sends, in messages a second.
 const TELEMETRY_MAX_HZ: u32 = 1000;
-/// Time between two looks at Ctrl-C and at the board's state.
-const STEP: Duration = Duration::from_millis(50);
 
 pub(super) fn play(args: &PlayArgs) -> Result<Played, CommandError> {
     let port = || args.port.clone();
@@ -28,6 +27,7 @@ pub(super) fn play(args: &PlayArgs) -> Result<Played, CommandError> {
     if args.csv_hz > TELEMETRY_MAX_HZ {
         return Err(CommandError::CsvTooFast { port: port(), asked: args.csv_hz, max: TELEMETRY_MAX_HZ });
     }
+    let mut live = Live::new(args);
     let scene = Scene::load(&args.scene)?;
     let interrupt = Interrupt::watch()?;
     let mut device = Device::connect(SerialLink::open(&args.port, DEFAULT_BAUD)?)?;
@@ -38,6 +38,7 @@ pub(super) fn play(args: &PlayArgs) -> Result<Played, CommandError> {
     args.seconds.map_or(Ok(()), |seconds| check_seconds(seconds, hello.tick_hz))?;
     ticks_per_row(args.csv_hz, hello.tick_hz)?;
     let program = compile(&scene, &hello.limits, hello.tick_hz)?;
+    let feed = open_feed(args, hello.tick_hz, false)?;
     tell_notes(&program);
     let (csv, path) = create_felt_csv(&args.out)?;
     let mut bars = Bars::default();
@@ -45,8 +46,10 @@ pub(super) fn play(args: &PlayArgs) -> Result<Played, CommandError> {
     bars.finish();
 
     let mut diary = Diary::new(&program, &hello, csv);
-    let ended = listen(&mut device, &mut diary, args, &interrupt);
-    let report = Report::new("board", &diary.metrics(), &program.reach, &device.counters(), None);
+    let ended =
+        live.stream(feed, &mut device).and_then(|()| listen(&mut device, &mut diary, &mut live, args, &interrupt));
+    let report = Report::new("board", &diary.metrics(), &diary.reach, &device.counters(), None)
+        .with_stream(device.stream_status());
     // The board's output goes to zero before anything else is done.
     drop(device);
     let written = diary.csv.finish().map_err(CommandError::from);
@@ -57,16 +60,20 @@ pub(super) fn play(args: &PlayArgs) -> Result<Played, CommandError> {
 fn listen(
     device: &mut Device<SerialLink>,
     diary: &mut Diary,
+    live: &mut Live,
     args: &PlayArgs,
     interrupt: &Interrupt,
 ) -> Result<(), CommandError> {
     device.subscribe(ticks_per_row(args.csv_hz, device.hello().tick_hz)?)?;
     let mut left = args.seconds.map_or(Duration::MAX, Duration::from_secs_f64);
     while !left.is_zero() && !interrupt.is_asked() {
-        let step = STEP.min(left);
+        let step = live.step().min(left);
         let waited = device.wait(step, &mut |event| diary.take(&event));
         diary.check(&args.port)?;
         waited?;
+        if let Some(program) = live.go_on(device)? {
+            diary.replace(&program);
+        }
         left = left.saturating_sub(step);
     }
     device.stop()?;
@@ -76,6 +83,7 @@ fn listen(
 /// What a board tells while it plays.
 struct Diary {
     wanted: Wanted,
+    reach: Reach,
     tick_period_s: f64,
     first_tick: Option<u32>,
     last_tick: u32,
@@ -90,6 +98,7 @@ impl Diary {
     fn new(program: &Program, hello: &Hello, csv: FeltCsv) -> Self {
         Self {
             wanted: Wanted::new(program),
+            reach: program.reach,
             tick_period_s: 1.0 / f64::from(hello.tick_hz),
             first_tick: None,
             last_tick: 0,
@@ -98,6 +107,12 @@ impl Diary {
             write_error: None,
             end: None,
         }
+    }
+
+    /// Another program plays from now on.
+    fn replace(&mut self, program: &Program) {
+        self.wanted = Wanted::new(program);
+        self.reach = program.reach;
     }
 
     fn take(&mut self, event: &Event) {

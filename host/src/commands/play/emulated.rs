@@ -15,7 +15,7 @@ use frixel_hil_sim::{Stroke, World, WorldConfig, contact_of};
 use super::super::interrupt::Interrupt;
 use super::board::check_end;
 use super::simulator::{Rows, draw, scene_stroke};
-use super::{Bars, CommandError, PlayArgs, Played, create_felt_csv, tell_notes, ticks_per_row};
+use super::{Bars, CommandError, PlayArgs, Played, create_felt_csv, refuse_watch, tell_notes, ticks_per_row};
 
 /// Most telemetry that the emulated serial port has room for, in messages a second.
 const TELEMETRY_HZ: u32 = 100;
@@ -25,6 +25,10 @@ const STEP: Duration = Duration::from_millis(50);
 const HELD_TICKS: usize = 8_000;
 
 pub(super) fn play(args: &PlayArgs) -> Result<Played, CommandError> {
+    refuse_watch(args)?;
+    if args.stream.is_some() {
+        return Err(CommandError::StreamOnEmulated);
+    }
     let ticks_per_row = ticks_per_row(args.csv_hz, BOARD.tick_hz)?;
     let program = compile(&Scene::load(&args.scene)?, &BOARD.limits, BOARD.tick_hz)?;
     tell_notes(&program);

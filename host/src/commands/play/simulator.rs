@@ -10,14 +10,19 @@ use frixel_hil_sim::{RigConfig, Stroke};
 
 use super::super::interrupt::Interrupt;
 use super::super::stroke::{check_on_screen, stroke};
-use super::{Bars, CommandError, PlayArgs, Played, check_seconds, create_felt_csv, tell_notes, ticks_per_row};
+use super::live::open_feed;
+use super::{
+    Bars, CommandError, PlayArgs, Played, check_seconds, create_felt_csv, refuse_watch, tell_notes, ticks_per_row,
+};
 
 pub(super) fn play(args: &PlayArgs) -> Result<Played, CommandError> {
+    refuse_watch(args)?;
     let rig = RigConfig::default();
     let ticks_per_row = ticks_per_row(args.csv_hz, rig.board.tick_hz)?;
     let program = compile(&Scene::load(&args.scene)?, &rig.board.limits, rig.board.tick_hz)?;
     tell_notes(&program);
     let (stroke, seconds) = scene_stroke(args, &program, rig.board.tick_hz)?;
+    let mut feed = open_feed(args, rig.board.tick_hz, true)?;
     let simulation = Simulation { rig, stroke, seconds, seed: args.seed, ticks_per_row };
     let interrupt = Interrupt::watch()?;
     let (csv, csv_path) = create_felt_csv(&args.out)?;
@@ -28,7 +33,7 @@ pub(super) fn play(args: &PlayArgs) -> Result<Played, CommandError> {
         Stage::Upload(progress) => bars.upload(progress),
         Stage::Play(part) => bars.play(part),
     };
-    let simulated = simulate_rows(&program, &simulation, on_stage, &mut |new| {
+    let simulated = simulate_rows(&program, &simulation, feed.as_mut(), on_stage, &mut |new| {
         write_error = rows.take(new).err();
         if write_error.is_some() || interrupt.is_asked() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     })?;
@@ -40,7 +45,8 @@ pub(super) fn play(args: &PlayArgs) -> Result<Played, CommandError> {
         let played_s = metrics.ticks as f64 / f64::from(rig.board.tick_hz);
         eprintln!("interrupted: what follows is of the first {played_s:.3} s of {:.3} s", simulation.seconds);
     }
-    let report = Report::new("sim", &metrics, &program.reach, &simulated.counters, Some(simulated.realtime_factor));
+    let report = Report::new("sim", &metrics, &program.reach, &simulated.counters, Some(simulated.realtime_factor))
+        .with_stream(simulated.stream);
     let mut files = vec![csv_path];
     files.extend(draw(args, &program, &rows.trace)?);
     Ok(Played { report, files, failure: None })

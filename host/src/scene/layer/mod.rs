@@ -24,6 +24,7 @@ const GAIN: Range = Range::new(-100.0, 100.0, "");
 pub(super) struct Layer {
     /// How messages call it: its number from one, and its name or kind.
     pub(super) title: String,
+    pub(super) name: Option<String>,
     pub(super) region: Option<Region>,
     pub(super) blend: Blend,
     pub(super) gain: f64,
@@ -53,7 +54,7 @@ impl Layer {
             fields.give_up_without(log, "kind");
             return None;
         };
-        let title = name.map_or_else(
+        let title = name.as_ref().map_or_else(
             || format!("layer {number} ({})", kind_name.word()),
             |name| format!("layer {number} \"{name}\""),
         );
@@ -82,7 +83,7 @@ impl Layer {
         let region = region.ok()?;
         let kind = kind?;
         kind.check(&places, log);
-        Some(Self { title, region, blend, gain, above, live, kind, places })
+        Some(Self { title, name, region, blend, gain, above, live, kind, places })
     }
 }
 

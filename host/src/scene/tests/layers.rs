@@ -1,6 +1,6 @@
 //! What layers compile to, and what the program then wants, against evaluations written here from the file's numbers.
 
-use frixel_wire::scene::{Carrier, Layer, Region, Scene as WireScene};
+use frixel_wire::scene::{Carrier, Layer, Leader, Region, Scene as WireScene};
 
 use super::super::{picture::Picture, resample};
 use super::*;
@@ -25,7 +25,7 @@ fn header_in_si_units() {
     let text = HEAD.replace(
         "# layers follow",
         "[drive]\nvoltage_max_v_rms = 100\nvoltage_max_v_peak = 200\nslew_v_per_us = 2\nhost_timeout_ms = 100\n\
-         autonomous = true\n[carrier]\nshape = \"sine\"\nfrequency_hz = 800\n[touch]\nprediction = false",
+         autonomous = true\n[carrier]\nshape = \"sine\"\nfrequency_hz = 800\n[touch]\nprediction = false\nleader = \"latest\"",
     );
     let slabs = "[[coating]]\nthickness_um = 1\npermittivity = 4\n[[coating]]\nthickness_um = 9\npermittivity = 1\n";
     let text = text.replace("[coating]\nthickness_um = 10\npermittivity = 1\n", slabs);
@@ -48,6 +48,7 @@ fn header_in_si_units() {
     }
     assert_eq!(header.carrier, Carrier::Sine);
     assert!(header.autonomous && !header.prediction);
+    assert_eq!(header.leader, Leader::Latest);
 }
 
 #[test]
@@ -332,4 +333,17 @@ fn bundled_scenes_compile() {
         let program = compile(&Scene::load(&scenes().join(name)).expect(name), &LIMITS, TICK_HZ).expect(name);
         assert!(!program.records.is_empty());
     }
+}
+
+#[test]
+fn a_live_layer_is_found_whatever_was_left_out_below_it() {
+    let program = compile_layers(
+        "[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\n\
+         [[layer]]\nname = \"rest\"\nkind = \"constant\"\nfriction_n = 0.255\n\
+         [[layer]]\nname = \"rain\"\nkind = \"constant\"\nblend = \"add\"\nfriction_n = 0.002\nlive = true\n",
+    );
+    assert_eq!(program.records.len(), 2, "the first is covered");
+    assert_eq!(program.layers.record("rain"), Ok(1));
+    assert_eq!(program.layers.record("3"), Ok(1));
+    assert!(program.layers.record("rest").unwrap_err().to_string().contains("live = true"));
 }

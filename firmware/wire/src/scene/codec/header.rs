@@ -2,10 +2,11 @@
 
 use super::first_difference;
 use crate::bytes::{get_f32, get_u8, get_u16, put_f32, put_u8, put_u16};
-use crate::scene::{Carrier, HEADER_LEN, Header, POINTS_MAX, RECORDS_MAX, SCENE_VERSION, SceneError};
+use crate::scene::{Carrier, HEADER_LEN, Header, Leader, POINTS_MAX, RECORDS_MAX, SCENE_VERSION, SceneError};
 
 const AUTONOMOUS: u8 = 1;
 const PREDICTION: u8 = 1 << 1;
+const LEADER_LATEST: u8 = 1 << 2;
 
 const CARRIER_SQUARE: u8 = 0;
 const CARRIER_SINE: u8 = 1;
@@ -18,7 +19,8 @@ impl Header {
         put_u8::<2, _>(&mut b, records);
         let autonomous = if self.autonomous { AUTONOMOUS } else { 0 };
         let prediction = if self.prediction { PREDICTION } else { 0 };
-        put_u8::<3, _>(&mut b, autonomous | prediction);
+        let leader = if self.leader == Leader::Latest { LEADER_LATEST } else { 0 };
+        put_u8::<3, _>(&mut b, autonomous | prediction | leader);
         put_f32::<4, _>(&mut b, self.screen_width_m);
         put_f32::<8, _>(&mut b, self.screen_height_m);
         put_f32::<12, _>(&mut b, self.finger_radius_m);
@@ -55,7 +57,7 @@ impl Header {
             return Err(SceneError::TooManyPoints { found: points });
         }
         let flags = get_u8::<3, _>(b);
-        if flags & !(AUTONOMOUS | PREDICTION) != 0 {
+        if flags & !(AUTONOMOUS | PREDICTION | LEADER_LATEST) != 0 {
             return Err(SceneError::UnknownFlags(flags));
         }
         let carrier = match get_u8::<52, _>(b) {
@@ -79,6 +81,7 @@ impl Header {
             carrier,
             autonomous: flags & AUTONOMOUS != 0,
             prediction: flags & PREDICTION != 0,
+            leader: if flags & LEADER_LATEST == 0 { Leader::First } else { Leader::Latest },
         };
         match first_difference(b, &header.write(records, points)) {
             None => Ok((header, records, points)),

@@ -1,0 +1,197 @@
+//! Which of several fingers leads. One electrode gives one effect, so one finger at a time is followed.
+
+use frixel_wire::message::{Accepted, ConfigField, ConfigRefusal, Refusal};
+use frixel_wire::scene::Leader;
+use heapless::Vec;
+
+use super::dialogue::Dialogue;
+use crate::Touch;
+use crate::config::{self, LENGTH_MAX_M};
+
+/// The finger of a host that has one.
+pub(super) const ONLY_FINGER: u8 = 0;
+
+/// Fingers that are told apart, as many as a person has. One more is not there.
+const FINGERS_MAX: usize = 10;
+
+/// The fingers that the host has on the screen, and what the ticker has to be told of the one that leads.
+pub(super) struct Fingers {
+    /// In the order of their coming.
+    down: Vec<u8, FINGERS_MAX>,
+    /// The finger that the ticker follows.
+    followed: Option<u8>,
+    /// The ticker has to be told that the finger it follows is gone.
+    gone: bool,
+    /// Where the finger that leads was last, if the ticker has not been told.
+    place: Option<Touch>,
+}
+
+impl Fingers {
+    pub(super) const fn new() -> Self {
+        Self { down: Vec::new(), followed: None, gone: false, place: None }
+    }
+
+    /// Takes a finger's place.
+    pub(super) fn touch(&mut self, finger: u8, place: Touch, rule: Leader) {
+        if !self.down.contains(&finger) && self.down.push(finger).is_err() {
+            return;
+        }
+        self.follow(rule);
+        if self.followed == Some(finger) {
+            self.place = Some(place);
+        }
+    }
+
+    /// Takes that a finger has left. One that was never there is told, too: the ticker may know it from before.
+    pub(super) fn lift(&mut self, finger: u8, rule: Leader) {
+        self.down.retain(|other| *other != finger);
+        if self.down.is_empty() {
+            self.let_go();
+        }
+        self.follow(rule);
+    }
+
+    /// Forgets all fingers: another host has come.
+    pub(super) fn forget(&mut self) {
+        if self.followed.is_some() {
+            self.let_go();
+        }
+        self.down.clear();
+    }
+
+    /// What the ticker has to be told next. A finger that takes another's place comes after the other has gone, so that
+    /// nothing is made of the way between them.
+    pub(super) fn next(&mut self) -> Option<Touch> {
+        if core::mem::take(&mut self.gone) { Some(Touch::Up) } else { self.place.take() }
+    }
+
+    /// Follows the finger that leads.
+    fn follow(&mut self, rule: Leader) {
+        let leader = match rule {
+            Leader::First => self.down.first(),
+            Leader::Latest => self.down.last(),
+        };
+        let leader = leader.copied();
+        if leader != self.followed {
+            if self.followed.is_some() {
+                self.let_go();
+            }
+            self.followed = leader;
+        }
+    }
+
+    fn let_go(&mut self) {
+        self.gone = true;
+        self.place = None;
+        self.followed = None;
+    }
+}
+
+impl Dialogue<'_> {
+    pub(super) fn touch(&mut self, finger: u8, x_m: f32, y_m: f32, age_ticks: u16) -> Result<Accepted, Refusal> {
+        if !self.board.touch_from_host {
+            return Err(Refusal::TouchSource);
+        }
+        for place_m in [x_m, y_m] {
+            let field = ConfigField::TouchPlace;
+            config::within(field, place_m, -LENGTH_MAX_M, LENGTH_MAX_M, ConfigRefusal::WHOLE_SCENE)
+                .map_err(Refusal::Config)?;
+        }
+        let place = Touch::Down { x_m, y_m, age_ticks: u32::from(age_ticks) };
+        self.fingers.touch(finger, place, self.playing.leader());
+        Ok(Accepted::Done)
+    }
+
+    pub(super) fn lift(&mut self, finger: u8) -> Result<Accepted, Refusal> {
+        if !self.board.touch_from_host {
+            return Err(Refusal::TouchSource);
+        }
+        self.fingers.lift(finger, self.playing.leader());
+        Ok(Accepted::Done)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn place(finger: u8, step: u32) -> Touch {
+        Touch::Down { x_m: 0.01 * f32::from(finger), y_m: 0.02, age_ticks: step }
+    }
+
+    fn told(fingers: &mut Fingers) -> std::vec::Vec<Touch> {
+        core::iter::from_fn(|| fingers.next()).collect()
+    }
+
+    #[test]
+    fn the_first_leads_until_it_lifts() {
+        let mut fingers = Fingers::new();
+        for step in 0..3 {
+            fingers.touch(7, place(7, step), Leader::First);
+            fingers.touch(2, place(2, step), Leader::First);
+            assert_eq!(told(&mut fingers), [place(7, step)]);
+        }
+        fingers.lift(7, Leader::First);
+        assert_eq!(told(&mut fingers), [Touch::Up]);
+        fingers.touch(2, place(2, 9), Leader::First);
+        assert_eq!(told(&mut fingers), [place(2, 9)]);
+        fingers.lift(2, Leader::First);
+        assert_eq!(told(&mut fingers), [Touch::Up]);
+    }
+
+    #[test]
+    fn the_latest_leads_and_gives_back_what_it_took() {
+        let mut fingers = Fingers::new();
+        fingers.touch(1, place(1, 0), Leader::Latest);
+        assert_eq!(told(&mut fingers), [place(1, 0)]);
+        fingers.touch(5, place(5, 0), Leader::Latest);
+        assert_eq!(told(&mut fingers), [Touch::Up, place(5, 0)], "the way between them is nobody's");
+        fingers.touch(1, place(1, 1), Leader::Latest);
+        assert_eq!(told(&mut fingers), []);
+        fingers.lift(5, Leader::Latest);
+        fingers.touch(1, place(1, 2), Leader::Latest);
+        assert_eq!(told(&mut fingers), [Touch::Up, place(1, 2)]);
+    }
+
+    #[test]
+    fn a_finger_that_does_not_lead_lifts_unnoticed() {
+        let mut fingers = Fingers::new();
+        fingers.touch(1, place(1, 0), Leader::First);
+        fingers.touch(2, place(2, 0), Leader::First);
+        fingers.lift(2, Leader::First);
+        assert_eq!(told(&mut fingers), [place(1, 0)]);
+    }
+
+    #[test]
+    fn a_finger_that_comes_down_again_in_one_batch_begins_anew() {
+        let mut fingers = Fingers::new();
+        fingers.touch(0, place(0, 0), Leader::First);
+        assert_eq!(told(&mut fingers), [place(0, 0)]);
+        fingers.lift(0, Leader::First);
+        fingers.touch(0, place(9, 0), Leader::First);
+        assert_eq!(told(&mut fingers), [Touch::Up, place(9, 0)]);
+    }
+
+    #[test]
+    fn another_rule_another_leader() {
+        let mut fingers = Fingers::new();
+        fingers.touch(1, place(1, 0), Leader::First);
+        fingers.touch(2, place(2, 0), Leader::First);
+        told(&mut fingers);
+        fingers.touch(2, place(2, 1), Leader::Latest);
+        assert_eq!(told(&mut fingers), [Touch::Up, place(2, 1)]);
+    }
+
+    #[test]
+    fn one_finger_too_many_is_not_there_and_a_new_host_has_none() {
+        let mut fingers = Fingers::new();
+        for finger in 0..20 {
+            fingers.touch(finger, place(finger, 0), Leader::Latest);
+        }
+        assert_eq!(told(&mut fingers), [Touch::Up, place(9, 0)]);
+        fingers.forget();
+        assert_eq!(told(&mut fingers), [Touch::Up]);
+        fingers.touch(15, place(15, 0), Leader::First);
+        assert_eq!(told(&mut fingers), [place(15, 0)]);
+    }
+}

@@ -1,0 +1,166 @@
+//! `frixel play --watch` on a virtual board, as processes of their own: a saved file plays, a file with mistakes does not.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+use std::fmt::Write;
+use std::fs::{self, File};
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
+
+use rustix::process::{Pid, Signal, kill_process};
+use tempfile::TempDir;
+
+const NAP: Duration = Duration::from_millis(5);
+/// A minute of naps: whatever is waited for longer has hung.
+const NAPS_MAX: u32 = 12_000;
+
+fn frixel() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_frixel"))
+}
+
+fn until(what: &str, mut done: impl FnMut() -> bool) {
+    for _ in 0..NAPS_MAX {
+        if done() {
+            return;
+        }
+        sleep(NAP);
+    }
+    panic!("hung: {what}");
+}
+
+/// A process that does not outlive the test.
+struct Running(Child);
+
+impl Running {
+    /// Ends it as a person would, and returns whether all was well.
+    fn interrupt(&mut self) -> bool {
+        kill_process(Pid::from_raw(self.0.id() as i32).unwrap(), Signal::INT).unwrap();
+        self.0.wait().unwrap().success()
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// Ten minutes to and fro without a lift, at 50 mm/s.
+fn write_stroke(path: &Path) {
+    let mut text = String::from("t_s,x_mm,y_mm\n");
+    for turn in 0..300 {
+        writeln!(text, "{},{},40", 2 * turn, if turn % 2 == 0 { 10 } else { 110 }).unwrap();
+    }
+    fs::write(path, text).unwrap();
+}
+
+/// The same total friction everywhere.
+fn scene(friction: &str) -> String {
+    format!(
+        "version = 1\n[screen]\nwidth_mm = 120\nheight_mm = 80\n[coating]\nthickness_um = 10\npermittivity = 1\n\
+         [finger]\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\nfriction_coefficient = 0.5\nnormal_load_n = 0.5\n\
+         [[layer]]\nkind = \"constant\"\nfriction_n = {friction}\n"
+    )
+}
+
+/// Friction that the board asked for, in total, a row a millisecond; nothing of a row that is half written.
+fn asked_n(folder: &Path) -> Vec<f64> {
+    let text = fs::read_to_string(folder.join("felt.csv")).unwrap_or_default();
+    let Some((rows, _)) = text.rsplit_once('\n') else { return Vec::new() };
+    rows.lines().skip(1).filter_map(|row| row.split(',').nth(5)?.parse().ok()).collect()
+}
+
+fn is(asked_n: f64, expected_n: f64) -> bool {
+    (asked_n - expected_n).abs() < 1e-6
+}
+
+#[test]
+fn a_saved_scene_plays_and_one_with_mistakes_does_not() {
+    let folder = TempDir::new().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    write_stroke(&path("stroke.csv"));
+    let mut board = Running(
+        frixel()
+            .arg("sim")
+            .arg("--stroke")
+            .arg(path("stroke.csv"))
+            .arg("--out")
+            .arg(path("board"))
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap(),
+    );
+    let mut line = String::new();
+    BufReader::new(board.0.stdout.take().unwrap()).read_line(&mut line).unwrap();
+    let port = line.trim().strip_prefix("port: ").unwrap();
+
+    fs::write(path("scene.toml"), scene("0.26")).unwrap();
+    let mut client = Running(
+        frixel()
+            .arg("play")
+            .arg(path("scene.toml"))
+            .args(["--watch", "--port", port, "--out"])
+            .arg(path("client"))
+            .stdout(Stdio::null())
+            .stderr(File::create(path("said")).unwrap())
+            .spawn()
+            .unwrap(),
+    );
+    let said = || fs::read_to_string(path("said")).unwrap();
+    let last_n = || asked_n(&path("board")).last().copied().unwrap_or_default();
+    until("the first scene plays", || is(last_n(), 0.26));
+
+    // As an editor saves that keeps the old file until the new one is whole.
+    fs::write(path("scene.toml~"), scene("0.27")).unwrap();
+    fs::rename(path("scene.toml~"), path("scene.toml")).unwrap();
+    until("the second scene plays", || is(last_n(), 0.27));
+
+    fs::write(path("scene.toml"), scene("0.28x").replace("[finger]", "[fingr]")).unwrap();
+    until("the mistakes are told", || said().contains("has mistakes: the scene before plays on"));
+    let rows = asked_n(&path("board")).len();
+    until("the second scene plays on", || asked_n(&path("board")).len() > rows + 300);
+
+    fs::write(path("scene.toml"), scene("0.255")).unwrap();
+    until("the mended scene plays", || is(last_n(), 0.255));
+    assert!(client.interrupt(), "{}", said());
+    assert!(board.interrupt());
+
+    let said = said();
+    assert!(said.contains("scene.toml:"), "where the mistakes are: {said}");
+    assert_eq!(said.matches("plays as it was saved").count(), 2, "{said}");
+
+    // Natural friction until the board knows the finger; then one scene after the other, and nothing else: a row is a mean
+    // over a millisecond, so that one row at each change may be of two scenes.
+    let asked = asked_n(&path("board"));
+    let begin = asked.iter().position(|asked_n| *asked_n > 0.2501).unwrap();
+    let mut others = Vec::new();
+    let mut left = [0.26, 0.27, 0.255].into_iter();
+    let mut now_n = left.next().unwrap();
+    let end = asked.iter().rposition(|asked_n| is(*asked_n, 0.255)).unwrap();
+    for asked_n in &asked[begin + 1..end] {
+        if is(*asked_n, now_n) {
+            continue;
+        }
+        match left.clone().next() {
+            Some(next_n) if is(*asked_n, next_n) => now_n = left.next().unwrap(),
+            _ => others.push(*asked_n),
+        }
+    }
+    assert_eq!(left.next(), None, "all three were played");
+    assert!(others.len() <= 2, "beside the scenes: {others:?}");
+    assert!(others.iter().all(|other_n| (0.255..0.27).contains(other_n)), "beside the scenes: {others:?}");
+}
+
+#[test]
+fn a_simulation_that_runs_ahead_of_time_is_not_watched() {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("scene.toml"), scene("0.26")).unwrap();
+    let output = frixel().args(["play", "scene.toml", "--watch"]).current_dir(folder.path()).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("--watch") && said.contains("frixel sim"), "{said}");
+}
