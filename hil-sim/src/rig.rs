@@ -3,7 +3,7 @@
 use frixel_exchange::{Done, Given, TICK_BYTES_MAX, TickBytes};
 use frixel_model::{Contact, Finger, LoadedContact, ParameterError};
 use frixel_render::{Active, BitmapPool, Board, Order, Sense, Session, Status, StreamBuffer, Ticker};
-use frixel_wire::scene::Header;
+use frixel_wire::scene::{Header, Scene};
 
 use crate::{Felt, Journal, Line, Stroke, World, WorldConfig, WorldError};
 
@@ -21,6 +21,13 @@ impl BoardMemory {
     pub fn new() -> Box<Self> {
         let actives = [Active::new(), Active::new()];
         Box::new(Self { pool: BitmapPool::new(), actives, stream: StreamBuffer::new() })
+    }
+
+    /// Bytes of coefficients that a scene fills in a board's RAM: in the ones that play, and as many where the next
+    /// scene is built.
+    #[must_use]
+    pub fn bytes_filled(scene: &Scene) -> usize {
+        Active::bytes_filled(scene)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Driver library for frixel boards.
 #![forbid(unsafe_code)]
 
+pub mod check;
 pub mod device;
 pub mod metrics;
 pub mod model_csv;

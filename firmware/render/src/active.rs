@@ -3,14 +3,14 @@
 use frixel_model::{Carrier, Contact, Finger, InverseTable, Waveform};
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
 use frixel_wire::scene::cost::{self, TICK_INSTRUCTIONS_MAX, Worst};
-use frixel_wire::scene::{Carrier as Shape, Grid, Header, LayerSet, RECORDS_MAX, Scene};
+use frixel_wire::scene::{Carrier as Shape, Grid, Header, LayerSet, Point, RECORDS_MAX, Scene};
 use heapless::Vec;
 
 use crate::Board;
 use crate::bitmap_pool::{BitmapPool, Directory};
 use crate::carrier::CarrierTiming;
 use crate::config;
-use crate::layer::{Around, Clicks, Layer, Loading, Moment, Tables};
+use crate::layer::{self, Around, Clicks, Layer, Loading, Moment, Tables};
 
 /// Coefficients of one scene. A board has two of them: one that plays and one that the next scene is built in.
 ///
@@ -51,6 +51,13 @@ impl Active {
             prediction: true,
             single: false,
         }
+    }
+
+    /// Bytes of these coefficients that a scene fills, for each of the two: its layers, points, waves and clicks. The rest
+    /// is the same for every scene. No pointer is among them, so that they are as many on every target.
+    pub fn bytes_filled(scene: &Scene) -> usize {
+        scene.records().map(|record| layer::bytes_of(&record)).sum::<usize>()
+            + scene.points().len() * size_of::<Point>()
     }
 
     /// Forgets the scene.

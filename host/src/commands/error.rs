@@ -3,6 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use frixel::check::RehearsalError;
 use frixel::device::{DeviceError, PortError};
 use frixel::model_csv::CsvError;
 use frixel::output::OutputError;
@@ -23,6 +24,8 @@ pub(crate) enum CommandError {
     Compile(#[from] CompileError),
     #[error(transparent)]
     Device(#[from] DeviceError),
+    #[error(transparent)]
+    Rehearsal(#[from] RehearsalError),
     #[error(transparent)]
     Port(#[from] PortError),
     #[error(transparent)]
@@ -94,6 +97,8 @@ pub(crate) enum CommandError {
     Faulted { port: String, fault: Fault },
     #[error("{port} stopped with its output at zero: it had not heard from this host for the scene's host timeout")]
     HostSilent { port: String },
+    #[error("{} is no PNG file by its name: give the picture a name that ends in .png", path.display())]
+    NotPng { path: PathBuf },
     #[error("Ctrl-C cannot be watched for: {0}")]
     Interrupt(#[from] ctrlc::Error),
 }

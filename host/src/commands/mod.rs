@@ -8,6 +8,7 @@ mod model;
 mod play;
 mod ports;
 mod report;
+mod scene;
 mod sim;
 mod stroke;
 mod usage;
@@ -34,6 +35,9 @@ enum Command {
     Demo(DemoArgs),
     /// Play a scene on a board or on the simulator.
     Play(PlayArgs),
+    /// Check a scene, or draw it, before it is played.
+    #[command(subcommand)]
+    Scene(scene::SceneCommand),
     /// Serve a virtual board on a pseudo-terminal, for other programs to play to.
     Sim(SimArgs),
     /// List the serial ports.
@@ -121,6 +125,7 @@ impl Cli {
             None => demo::run(&DemoArgs { out: "frixel-out".into() }),
             Some(Command::Demo(args)) => demo::run(&args),
             Some(Command::Play(args)) => play::run(&args),
+            Some(Command::Scene(command)) => scene::run(&command),
             Some(Command::Sim(args)) => sim::run(&args),
             Some(Command::Ports) => ports::run(),
             Some(Command::Info(args)) => info::run(&args),

@@ -1,5 +1,6 @@
 //! Pixels, and the little that is drawn with them: areas, axis lines, smooth strokes, text.
 
+use std::collections::HashMap;
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
@@ -11,6 +12,9 @@ static DEJAVU_SANS: &[u8] = include_bytes!("font/DejaVuSans-subset.ttf");
 /// Height of the font's lines and of its capitals, in its em.
 const LINE_HEIGHT: f32 = 1.164;
 const CAPITAL_HEIGHT: f32 = 0.729;
+
+/// Shades of grey at the edges of letters: enough to the eye.
+const SHADES: f64 = 16.0;
 
 /// Red, green and blue.
 pub(super) type Colour = [u8; 3];
@@ -113,19 +117,57 @@ impl Canvas {
         }
         for (across, down, cover) in dots {
             let (x, y) = if anchor == Anchor::Upright { (down, -across) } else { (across, down) };
-            self.blend(place.0 + x, place.1 + y, BLACK, f64::from(cover.min(1.0)));
+            self.blend(place.0 + x, place.1 + y, BLACK, (f64::from(cover.min(1.0)) * SHADES).round() / SHADES);
         }
     }
 
-    /// Writes the picture as a PNG file.
+    /// How far a text of some size reaches, in pixels.
+    pub(super) fn text_width(&self, words: &str, size: f32) -> f32 {
+        let scaled = self.font.as_scaled(PxScale::from(size * LINE_HEIGHT));
+        words.chars().map(|letter| scaled.h_advance(scaled.glyph_id(letter))).sum()
+    }
+
+    /// Writes the picture as a PNG file: a byte a pixel where there are few colours.
     pub(super) fn write_png(&self, path: &Path) -> Result<(), png::EncodingError> {
         let file = BufWriter::new(File::create(path)?);
         let mut encoder = png::Encoder::new(file, self.width as u32, self.height as u32);
-        encoder.set_color(png::ColorType::Rgb);
         encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_compression(png::Compression::High);
+        let indexed = self.indexed();
+        let bytes = if let Some((palette, indices)) = &indexed {
+            encoder.set_color(png::ColorType::Indexed);
+            encoder.set_palette(palette.concat());
+            encoder.set_filter(png::Filter::NoFilter);
+            indices
+        } else {
+            encoder.set_color(png::ColorType::Rgb);
+            &self.pixels
+        };
         let mut writer = encoder.write_header()?;
-        writer.write_image_data(&self.pixels)?;
+        writer.write_image_data(bytes)?;
         writer.finish()
+    }
+
+    /// The colours in the order in which they appear, and the colour of each pixel; nothing where a byte is too short.
+    fn indexed(&self) -> Option<(Vec<Colour>, Vec<u8>)> {
+        let mut palette: Vec<Colour> = Vec::new();
+        let mut numbers: HashMap<&[u8], u8> = HashMap::new();
+        let mut indices = Vec::with_capacity(self.width * self.height);
+        for pixel in self.pixels.chunks_exact(3) {
+            let known = numbers.get(pixel).copied();
+            let index = match (known, pixel) {
+                (Some(index), _) => index,
+                (None, [red, green, blue]) => {
+                    let index = u8::try_from(palette.len()).ok()?;
+                    palette.push([*red, *green, *blue]);
+                    numbers.insert(pixel, index);
+                    index
+                }
+                _ => return None,
+            };
+            indices.push(index);
+        }
+        Some((palette, indices))
     }
 
     /// Mixes a colour into a pixel; what is off the picture is left out.

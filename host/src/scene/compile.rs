@@ -1,6 +1,7 @@
 //! From a scene as written to a program as played: checks that need the board, other layers, or pictures.
 
 use frixel_wire::hello::BoardLimits;
+use frixel_wire::scene::cost::TICK_INSTRUCTIONS_MAX;
 use frixel_wire::scene::{Header, RECORDS_MAX, Record};
 
 use super::excess;
@@ -13,6 +14,7 @@ use super::mistake::{CompileError, Mistake};
 use super::pool::Pool;
 use super::program::Program;
 use super::reach::{Reach, carrier};
+use super::tick_cost;
 
 /// Fewest ticks of half a carrier period that a board takes.
 const HALF_PERIOD_MIN_TICKS: f64 = 4.0;
@@ -82,6 +84,7 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
         excess::check(scene, &mut program, log);
         let live: Vec<bool> = scene.layers.iter().map(|layer| layer.live).collect();
         leave_out(&mut program, &live);
+        tick_cost::check(scene, &program, TICK_INSTRUCTIONS_MAX, log);
     }
     program.layers = layer_map(scene, &program.titles);
     Some(program)

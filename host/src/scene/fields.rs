@@ -3,17 +3,18 @@
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
+use super::asked::{Asked, AskedTable, Holds};
 use super::log::Log;
 use super::mistake::{Mistake, Nearest};
 use super::source::Places;
 
 /// What a number may be.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Range {
-    min: f64,
-    max: f64,
+    pub(super) min: f64,
+    pub(super) max: f64,
     /// With a space before it.
-    unit: &'static str,
+    pub(super) unit: &'static str,
 }
 
 impl Range {
@@ -25,16 +26,32 @@ impl Range {
 /// A table that is being read. Every field that is asked for becomes known; [`Fields::close`] reports the rest.
 pub(super) struct Fields<'i> {
     table: String,
+    /// The field that the table stands in.
+    key: &'static str,
     values: DeTable<'i>,
     places: Places,
-    asked: Vec<&'static str>,
-    missing: Vec<&'static str>,
+    asked: Vec<Asked>,
+    required: Vec<&'static str>,
+    either: Vec<[&'static str; 2]>,
 }
 
 impl<'i> Fields<'i> {
     /// `table` is how messages call it; `offset` is where it starts.
     pub(super) fn new(table: impl Into<String>, offset: usize, values: DeTable<'i>) -> Self {
-        Self { table: table.into(), values, places: Places::new(offset), asked: Vec::new(), missing: Vec::new() }
+        Self {
+            table: table.into(),
+            key: "",
+            values,
+            places: Places::new(offset),
+            asked: Vec::new(),
+            required: Vec::new(),
+            either: Vec::new(),
+        }
+    }
+
+    /// The table of a field.
+    fn of_field(brackets: &str, key: &'static str, offset: usize, values: DeTable<'i>) -> Self {
+        Self { key, ..Self::new(brackets, offset, values) }
     }
 
     /// From here on, messages call the table so.
@@ -50,13 +67,13 @@ impl<'i> Fields<'i> {
 
     /// A number that may be left out.
     pub(super) fn optional_number(&mut self, log: &mut Log, field: &'static str, range: Range) -> Option<f64> {
-        let value = self.take(field)?;
+        let value = self.take(field, Holds::Number(range))?;
         number(log, field, range, &value)
     }
 
     /// `true` or `false`, or `default` where it is left out.
     pub(super) fn flag(&mut self, log: &mut Log, field: &'static str, default: bool) -> bool {
-        let Some(value) = self.take(field) else { return default };
+        let Some(value) = self.take(field, Holds::Flag) else { return default };
         if let DeValue::Boolean(flag) = value.get_ref() {
             return *flag;
         }
@@ -72,7 +89,11 @@ impl<'i> Fields<'i> {
 
     /// A text that may be left out.
     pub(super) fn optional_text(&mut self, log: &mut Log, field: &'static str) -> Option<String> {
-        let value = self.take(field)?;
+        let value = self.take(field, Holds::Text)?;
+        self.text_of(log, field, &value)
+    }
+
+    fn text_of(&mut self, log: &mut Log, field: &'static str, value: &Spanned<DeValue>) -> Option<String> {
         if let DeValue::String(text) = value.get_ref() {
             return Some(text.clone().into_owned());
         }
@@ -98,7 +119,9 @@ impl<'i> Fields<'i> {
         field: &'static str,
         choices: &[(&'static str, T)],
     ) -> Option<T> {
-        let found = self.optional_text(log, field)?;
+        let words = choices.iter().map(|(word, _)| *word).collect();
+        let value = self.take(field, Holds::Choice(words))?;
+        let found = self.text_of(log, field, &value)?;
         if let Some((_, choice)) = choices.iter().find(|(word, _)| *word == found) {
             return Some(*choice);
         }
@@ -115,10 +138,10 @@ impl<'i> Fields<'i> {
 
     /// A table that may be left out.
     pub(super) fn optional_table(&mut self, log: &mut Log, field: &'static str) -> Option<Fields<'i>> {
-        let value = self.take(field)?;
+        let value = self.take(field, Holds::Table)?;
         let offset = value.span().start;
         match value.into_inner() {
-            DeValue::Table(values) => Some(Fields::new(format!("[{field}]"), offset, values)),
+            DeValue::Table(values) => Some(Fields::of_field(&format!("[{field}]"), field, offset, values)),
             other => {
                 log.add(offset, wrong_type(field, "a table", &other));
                 None
@@ -128,11 +151,13 @@ impl<'i> Fields<'i> {
 
     /// Any number of tables, `[[field]]`; with `one`, `[field]` is a list of one. Nothing where there is no such list.
     pub(super) fn tables(&mut self, log: &mut Log, field: &'static str, one: bool) -> Option<Vec<Fields<'i>>> {
-        let value = self.take(field)?;
+        let value = self.take(field, Holds::Tables { one })?;
         let offset = value.span().start;
         let values = match value.into_inner() {
             DeValue::Array(values) => values,
-            DeValue::Table(values) if one => return Some(vec![Fields::new(format!("[{field}]"), offset, values)]),
+            DeValue::Table(values) if one => {
+                return Some(vec![Fields::of_field(&format!("[{field}]"), field, offset, values)]);
+            }
             other => {
                 log.add(offset, wrong_type(field, "a list of tables, each with its name in double brackets", &other));
                 return None;
@@ -142,7 +167,9 @@ impl<'i> Fields<'i> {
         for value in values {
             let offset = value.span().start;
             match value.into_inner() {
-                DeValue::Table(values) => tables.push(Fields::new(format!("[[{field}]]"), offset, values)),
+                DeValue::Table(values) => {
+                    tables.push(Fields::of_field(&format!("[[{field}]]"), field, offset, values));
+                }
                 other => log.add(offset, wrong_type(field, "a list of tables", &other)),
             }
         }
@@ -151,17 +178,20 @@ impl<'i> Fields<'i> {
 
     /// Reports what is left over and what is missing; gives back where the fields stand. A missing field whose
     /// misspelling is reported is not reported again.
-    pub(super) fn close(mut self, log: &mut Log) -> Places {
+    pub(super) fn close(self, log: &mut Log) -> Places {
+        log.describe(|| self.described());
         let mut misspelt = Vec::new();
         for (name, _) in &self.values {
-            let absent = self.asked.iter().copied().filter(|known| !self.places.has(known));
+            let absent = self.asked.iter().map(|asked| asked.field).filter(|known| !self.places.has(known));
             let nearest = Nearest::new(name.get_ref(), absent);
             misspelt.extend(nearest.suggestion.clone());
             let field = name.get_ref().clone().into_owned();
             log.add(name.span().start, Mistake::UnknownField { field, table: self.table.clone(), nearest });
         }
-        self.missing.retain(|field| !misspelt.iter().any(|word| word == field));
-        for field in self.missing {
+        for field in self.required {
+            if self.places.has(field) || misspelt.iter().any(|word| word == field) {
+                continue;
+            }
             log.add(self.places.table(), Mistake::MissingField { field, table: self.table.clone() });
         }
         self.places
@@ -170,7 +200,8 @@ impl<'i> Fields<'i> {
     /// Ends the reading of a table that cannot be understood without `field`: when the field is missing, reports that,
     /// or its misspelling, and nothing else.
     pub(super) fn give_up_without(self, log: &mut Log, field: &'static str) {
-        if !self.missing.contains(&field) {
+        log.describe(|| self.described());
+        if !self.required.contains(&field) || self.places.has(field) {
             return;
         }
         let misspelt = self.values.keys().find_map(|name| {
@@ -188,7 +219,8 @@ impl<'i> Fields<'i> {
 
     /// A whole number that may be left out.
     pub(super) fn optional_whole(&mut self, log: &mut Log, field: &'static str, range: Range) -> Option<f64> {
-        let found = self.optional_number(log, field, range)?;
+        let value = self.take(field, Holds::Whole(range))?;
+        let found = number(log, field, range, &value)?;
         if found.fract().abs() > 0.0 {
             log.add(self.places.field(field), Mistake::NotWhole { field, found });
             return None;
@@ -199,7 +231,7 @@ impl<'i> Fields<'i> {
     /// A list of numbers that has to be there.
     pub(super) fn numbers(&mut self, log: &mut Log, field: &'static str, range: Range) -> Option<Vec<f64>> {
         self.require(field);
-        let list = self.list(log, field, "a list of numbers in square brackets")?;
+        let list = self.list(log, field, Holds::Numbers(range), "a list of numbers in square brackets")?;
         let numbers: Vec<_> = list.iter().map(|value| number(log, field, range, value)).collect();
         numbers.into_iter().collect()
     }
@@ -208,7 +240,7 @@ impl<'i> Fields<'i> {
     pub(super) fn pairs(&mut self, log: &mut Log, field: &'static str, range: Range) -> Option<Vec<(f64, f64)>> {
         const EXPECTED: &str = "a list of pairs, [[x, y], [x, y]]";
         self.require(field);
-        let list = self.list(log, field, EXPECTED)?;
+        let list = self.list(log, field, Holds::Pairs(range), EXPECTED)?;
         let pairs: Vec<_> = list
             .iter()
             .map(|value| match value.get_ref() {
@@ -225,8 +257,14 @@ impl<'i> Fields<'i> {
         pairs.into_iter().collect()
     }
 
-    fn list(&mut self, log: &mut Log, field: &'static str, expected: &'static str) -> Option<DeArray<'i>> {
-        let value = self.take(field)?;
+    fn list(
+        &mut self,
+        log: &mut Log,
+        field: &'static str,
+        holds: Holds,
+        expected: &'static str,
+    ) -> Option<DeArray<'i>> {
+        let value = self.take(field, holds)?;
         let offset = value.span().start;
         match value.into_inner() {
             DeValue::Array(list) => Some(list),
@@ -254,13 +292,21 @@ impl<'i> Fields<'i> {
 
     /// A missing field is a mistake. To be said before the field is read.
     pub(super) fn require(&mut self, field: &'static str) {
-        if !self.values.contains_key(field) {
-            self.missing.push(field);
-        }
+        self.required.push(field);
     }
 
-    fn take(&mut self, field: &'static str) -> Option<Spanned<DeValue<'i>>> {
-        self.asked.push(field);
+    /// Two fields say the same, so that only one of them is to be there.
+    pub(super) fn either(&mut self, one: &'static str, other: &'static str) {
+        self.either.push([one, other]);
+    }
+
+    fn described(&self) -> AskedTable {
+        let Self { key, asked, required, either, .. } = self;
+        AskedTable { key, asked: asked.clone(), required: required.clone(), either: either.clone() }
+    }
+
+    fn take(&mut self, field: &'static str, holds: Holds) -> Option<Spanned<DeValue<'i>>> {
+        self.asked.push(Asked { field, holds });
         let value = self.values.remove(field)?;
         self.places.add(field, value.span().start);
         Some(value)

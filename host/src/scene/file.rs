@@ -6,6 +6,7 @@ use std::path::Path;
 use frixel_wire::scene::Leader;
 use toml::de::DeTable;
 
+use super::asked::AskedTable;
 use super::fields::{Fields, Range};
 use super::layer::Layer;
 use super::log::Log;
@@ -13,7 +14,7 @@ use super::mistake::{CompileError, Mistake};
 use super::source::{Places, Source};
 
 /// Version of the file format.
-const VERSION: u32 = 1;
+pub(super) const VERSION: u32 = 1;
 
 const SCREEN_MM: Range = Range::new(5.0, 2_000.0, " mm");
 const COATING_UM: Range = Range::new(0.01, 1_000.0, " um");
@@ -128,6 +129,17 @@ impl Scene {
         };
         log.finish(scene)
     }
+}
+
+/// What is asked of the tables of a text.
+pub(super) fn describe(text: &str) -> Vec<AskedTable> {
+    let source = Source::new("", "", text);
+    let mut log = Log::describing(&source);
+    if let Ok(table) = DeTable::parse(text) {
+        // What is wrong with the text is of no interest.
+        let _ = read(Fields::new("the scene", 0, table.into_inner()), &mut log, &source);
+    }
+    log.into_described()
 }
 
 fn read(mut fields: Fields, log: &mut Log, source: &Source) -> Option<Scene> {

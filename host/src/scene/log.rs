@@ -1,5 +1,6 @@
 //! Gathers mistakes while a scene is read and compiled.
 
+use super::asked::AskedTable;
 use super::mistake::{CompileError, Located, Mistake};
 use super::source::Source;
 
@@ -7,11 +8,30 @@ use super::source::Source;
 pub(super) struct Log<'s> {
     source: &'s Source,
     mistakes: Vec<Located>,
+    /// What was asked of each table, in the order in which they were closed; nothing when nobody wants to know.
+    described: Option<Vec<AskedTable>>,
 }
 
 impl<'s> Log<'s> {
     pub(super) fn new(source: &'s Source) -> Self {
-        Self { source, mistakes: Vec::new() }
+        Self { source, mistakes: Vec::new(), described: None }
+    }
+
+    /// One that keeps what is asked of each table.
+    pub(super) fn describing(source: &'s Source) -> Self {
+        Self { described: Some(Vec::new()), ..Self::new(source) }
+    }
+
+    /// Keeps what was asked of a table, if that is wanted.
+    pub(super) fn describe(&mut self, table: impl FnOnce() -> AskedTable) {
+        if let Some(described) = &mut self.described {
+            described.push(table());
+        }
+    }
+
+    /// What was asked of each table.
+    pub(super) fn into_described(self) -> Vec<AskedTable> {
+        self.described.unwrap_or_default()
     }
 
     /// Notes a mistake that stands at a byte of the file.

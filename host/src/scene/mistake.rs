@@ -263,6 +263,23 @@ pub enum Mistake {
         /// Most layers.
         max: usize,
     },
+    /// A place where the tick takes too long.
+    #[error(
+        "a tick takes up to {instructions} instructions where {layers} layers meet (near x {x_mm} mm, y {y_mm} mm), and the board \
+         has time for {max}: move layers apart, or leave some out"
+    )]
+    TickTooLong {
+        /// Instructions of the longest tick.
+        instructions: u32,
+        /// Most instructions.
+        max: u32,
+        /// How many layers may act there.
+        layers: usize,
+        /// The place, mm.
+        x_mm: f64,
+        /// The place, mm.
+        y_mm: f64,
+    },
     /// Pictures that need more memory than the board has for them.
     #[error(
         "the pictures up to this one need {needed_bytes} bytes, and the board has {pool_bytes}: \

@@ -3,6 +3,7 @@
 //! `docs/scene.md` is the reference of the file. [`Scene::load`] reads it, [`compile`] checks what needs the board or
 //! other layers, and makes a [`Program`]. Both tell every mistake at once, each with line and column.
 
+mod asked;
 mod compile;
 mod cover;
 mod excess;
@@ -15,20 +16,25 @@ mod left_out;
 mod log;
 mod lower;
 mod mistake;
+mod outside;
 mod picture;
 mod pool;
 mod program;
 mod reach;
 mod resample;
+mod schema;
 mod source;
 #[cfg(test)]
 mod tests;
+mod tick_cost;
 
 pub use compile::compile;
 pub use file::Scene;
 pub use layer_map::{LayerError, LayerMap};
 pub use left_out::LeftOut;
 pub use mistake::{CompileError, Located, Mistake, Nearest};
+pub use outside::{Asked, Outside};
 pub use program::{Bitmap, Program};
 pub use reach::Reach;
 pub(crate) use reach::carrier;
+pub use schema::json_schema;

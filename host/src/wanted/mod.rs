@@ -55,6 +55,22 @@ impl Wanted {
         self.at(&Moment { x_m, y_m, ..Moment::default() }, |_| 0.0)
     }
 
+    /// As [`Wanted::electric_friction_n`], at a time, a speed and a sample of the stream. Nothing clicks.
+    pub fn electric_friction_at_n(&self, moment: &Moment) -> f64 {
+        self.at(moment, |_| 0.0)
+    }
+
+    /// The same with every vibration held at the most that it asks for.
+    #[must_use]
+    pub fn with_vibrations_held(mut self) -> Self {
+        for piece in &mut self.pieces {
+            if let Field::Vibration(vibration) = &piece.field {
+                piece.field = Field::Constant(vibration.high_n);
+            }
+        }
+        self
+    }
+
     /// What is wanted along a stroke.
     pub fn along(self) -> Along {
         Along::new(self)

@@ -23,7 +23,7 @@ mod vibration;
 
 #[cfg(feature = "stream")]
 use frixel_wire::scene::Layer as Kind;
-use frixel_wire::scene::{Blend, Record};
+use frixel_wire::scene::{self as wire, Blend, Record};
 
 use crate::bitmap_pool::BitmapPool;
 #[cfg(feature = "stream")]
@@ -108,6 +108,19 @@ enum Source {
         low_n: f32,
         span_n: f32,
     },
+}
+
+/// Bytes that a record becomes: a layer, and what of it lies in the tables; its points apart.
+pub(crate) fn bytes_of(record: &Record) -> usize {
+    let in_tables = match record.layer {
+        #[cfg(feature = "noise")]
+        wire::Layer::Noise { .. } => size_of::<noise::Waves>(),
+        wire::Layer::Edge { click, .. } | wire::Layer::Button { click, .. } if click.height_n.abs() > 0.0 => {
+            size_of::<click::Click>()
+        }
+        _ => 0,
+    };
+    size_of::<Layer>() + in_tables
 }
 
 impl Layer {

@@ -132,10 +132,15 @@ fn search(pieces: &[Piece], stack: &Stack, cell: Cell, places_left: &mut usize) 
     let spans = (0..across * down).map(|place| {
         let x_m = at(cell.left_m, cell.right_m, place % across, across);
         let y_m = at(cell.top_m, cell.bottom_m, place / across, down);
-        layers.iter().filter(|piece| piece.shape.covers(x_m, y_m)).fold(Span::ZERO, |below, piece| {
-            let blended = below.blended(Span::at_place(&piece.field, x_m, y_m).times(piece.gain), piece.blend);
-            if matches!(piece.field, Field::Stream { .. }) { below.hull(blended) } else { blended }
-        })
+        span_at(layers.iter().copied(), x_m, y_m)
     });
     spans.reduce(Span::hull).unwrap_or(Span::ZERO)
+}
+
+/// What layers ask for together at a place, at any time and speed.
+pub(super) fn span_at<'p>(layers: impl Iterator<Item = &'p Piece>, x_m: f64, y_m: f64) -> Span {
+    layers.filter(|piece| piece.shape.covers(x_m, y_m)).fold(Span::ZERO, |below, piece| {
+        let blended = below.blended(Span::at_place(&piece.field, x_m, y_m).times(piece.gain), piece.blend);
+        if matches!(piece.field, Field::Stream { .. }) { below.hull(blended) } else { blended }
+    })
 }

@@ -13,7 +13,7 @@ pub(in super::super) struct Span {
 }
 
 impl Span {
-    pub(super) const ZERO: Self = Self { low_n: 0.0, high_n: 0.0 };
+    pub(in super::super) const ZERO: Self = Self { low_n: 0.0, high_n: 0.0 };
 
     pub(super) fn of(values: impl Iterator<Item = f64>) -> Self {
         values.fold(Self { low_n: f64::INFINITY, high_n: f64::NEG_INFINITY }, |span, value| Self {
@@ -22,7 +22,7 @@ impl Span {
         })
     }
 
-    pub(super) fn hull(self, other: Self) -> Self {
+    pub(in super::super) fn hull(self, other: Self) -> Self {
         Self { low_n: self.low_n.min(other.low_n), high_n: self.high_n.max(other.high_n) }
     }
 

@@ -79,6 +79,7 @@ impl Amount {
         if unit == Unit::Factor {
             return fields.optional_number(log, names.factor, FACTOR).map(Self::Factor);
         }
+        fields.either(names.newtons, names.fraction);
         if fields.has(names.newtons) && fields.has(names.fraction) {
             let mistake = Mistake::TwoUnits { one: names.newtons, other: names.fraction };
             log.add(fields.place(names.fraction), mistake);

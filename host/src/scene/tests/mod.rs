@@ -8,6 +8,7 @@ mod docs;
 mod errors;
 mod layers;
 mod left_out;
+mod schema;
 
 /// A board like the simulated one.
 const LIMITS: BoardLimits = BoardLimits {
@@ -26,7 +27,7 @@ const TICK_HZ: u32 = 40_000;
 
 /// Everything a scene needs but its layers; eighteen lines. The natural friction is 0.25 N, and the drive adds at
 /// most 27.78 mN.
-const HEAD: &str = "\
+pub(super) const HEAD: &str = "\
 version = 1
 
 [screen]
@@ -47,12 +48,15 @@ normal_load_n = 0.5
 
 ";
 
-fn scenes() -> &'static Path {
+pub(super) fn scenes() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes"))
 }
 
-fn compile_text(text: &str) -> Result<Program, CompileError> {
-    compile(&Scene::parse(text, "test.toml", scenes())?, &LIMITS, TICK_HZ)
+/// Compiles a text, and sees that the schema for editors thinks of it as the parser does.
+pub(super) fn compile_text(text: &str) -> Result<Program, CompileError> {
+    let scene = Scene::parse(text, "test.toml", scenes());
+    schema::check_agrees(text, scene.as_ref().err());
+    compile(&scene?, &LIMITS, TICK_HZ)
 }
 
 fn compile_layers(layers: &str) -> Program {

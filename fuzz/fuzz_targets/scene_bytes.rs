@@ -1,0 +1,17 @@
+//! Any bytes as a compiled scene: they are refused, or every record of them can be read and written again.
+#![no_main]
+
+use frixel_wire::scene::Scene;
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|bytes: &[u8]| {
+    let Ok(scene) = Scene::parse(bytes) else { return };
+    let records: Vec<_> = scene.records().collect();
+    let points: Vec<_> = scene.points().collect();
+    let mut written = scene.header().write(records.len() as u8, points.len() as u8).to_vec();
+    written.extend(records.iter().flat_map(|record| record.write()));
+    written.extend(points.iter().flat_map(|point| point.write()));
+    let again = Scene::parse(&written).expect("what was read can be written");
+    // Not-a-number is not equal to itself; its bytes are.
+    assert_eq!(format!("{records:?} {points:?}"), format!("{:?} {:?}", again.records().collect::<Vec<_>>(), again.points().collect::<Vec<_>>()));
+});

@@ -1,0 +1,157 @@
+//! What a scene costs and what of it can be felt, before it is played.
+
+mod board;
+mod rehearsal;
+mod text;
+
+use frixel_hil_sim::{BoardMemory, RigConfig};
+use frixel_wire::scene::Scene as WireScene;
+use frixel_wire::scene::cost::{TICK_INSTRUCTIONS_MAX, Worst};
+use serde::Serialize;
+
+pub use board::BoardImage;
+pub use rehearsal::RehearsalError;
+
+use crate::scene::{Asked, Program};
+
+/// The numbers of a scene; its fields are the keys of `--json`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SceneCheck {
+    /// Layers that are played.
+    pub layers: usize,
+    /// What goes over the line.
+    pub wire: WireBytes,
+    /// What it takes of the board's RAM.
+    pub ram: RamBytes,
+    /// The longest tick.
+    pub tick: LongestTick,
+    /// What this finger can be given.
+    pub reach: ReachableFriction,
+    /// What the scene asks for.
+    pub asked: Asked,
+    /// What the compiler rounded, converted and clamped, a sentence each.
+    pub notes: Vec<String>,
+    /// What it left out and why, a sentence each.
+    pub left_out: Vec<String>,
+    /// The smallest image that plays it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub board: Option<BoardImage>,
+}
+
+/// Bytes from host to board, to a board that holds no picture of the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct WireBytes {
+    /// The compiled scene: header, layers, points.
+    pub scene_bytes: usize,
+    /// Samples of its pictures.
+    pub bitmap_bytes: usize,
+    /// What is around them: frames, checks, the commands of the upload, the commit.
+    pub framing_bytes: usize,
+    /// All of them.
+    pub total_bytes: usize,
+}
+
+/// Bytes of the board's RAM that depend on the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct RamBytes {
+    /// Pictures in the pool.
+    pub bitmap_pool_bytes: usize,
+    /// The pool's size. While a scene replaces another one, the pictures of both lie in it.
+    pub bitmap_pool_limit_bytes: u32,
+    /// Coefficients of layers, points, waves and clicks.
+    pub active_bytes: usize,
+}
+
+/// The longest tick on a Cortex-M4F.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LongestTick {
+    /// Instructions that it takes at most.
+    pub instructions: u32,
+    /// Most that a tick may take.
+    pub instructions_limit: u32,
+    /// A place where it may take so many, mm from the screen's left edge.
+    pub x_mm: f64,
+    /// The same from the screen's top edge.
+    pub y_mm: f64,
+    /// The layers that may act there.
+    pub layers: Vec<String>,
+}
+
+impl LongestTick {
+    fn of(program: &Program) -> Self {
+        let Worst { instructions, cell } = program.worst_tick();
+        let layers = u64::from(cell.layers[0]) | u64::from(cell.layers[1]) << u32::BITS;
+        let titles = (0..).zip(&program.titles).filter(|(number, _)| layers >> number & 1 != 0);
+        // A tenth of a millimetre: the grid is coarse.
+        let mm = |metres: f32| (1e4 * f64::from(metres)).round() / 10.0;
+        Self {
+            instructions,
+            instructions_limit: TICK_INSTRUCTIONS_MAX,
+            x_mm: mm(cell.x_m),
+            y_mm: mm(cell.y_m),
+            layers: titles.map(|(_, title)| title.clone()).collect(),
+        }
+    }
+}
+
+/// What the drive can give to the scene's finger, at its load and on its coating.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ReachableFriction {
+    /// Friction at no voltage, in total, N.
+    pub natural_n: f64,
+    /// The most that the drive adds to that, N.
+    pub electric_max_n: f64,
+    /// The most in total, N.
+    pub total_max_n: f64,
+    /// The rms voltage at which that is, V.
+    pub voltage_max_v_rms: f64,
+}
+
+impl SceneCheck {
+    /// Gathers the numbers of a program that was compiled for the board of a simulation, which takes it once.
+    pub fn of(program: &Program, rig: &RigConfig) -> Result<Self, RehearsalError> {
+        let scene = program.scene_bytes();
+        let bitmap_bytes = program.bitmaps.iter().map(|bitmap| bitmap.samples.len()).sum();
+        let total_bytes = rehearsal::wire_bytes(program, rig)?;
+        // The board has just read the same bytes.
+        let active_bytes = WireScene::parse(&scene).map_or(0, |scene| BoardMemory::bytes_filled(&scene));
+        let reach = &program.reach;
+        Ok(Self {
+            layers: program.records.len(),
+            wire: WireBytes {
+                scene_bytes: scene.len(),
+                bitmap_bytes,
+                framing_bytes: total_bytes.saturating_sub(scene.len() + bitmap_bytes),
+                total_bytes,
+            },
+            ram: RamBytes {
+                bitmap_pool_bytes: bitmap_bytes,
+                bitmap_pool_limit_bytes: rig.board.limits.bitmap_pool_bytes,
+                active_bytes,
+            },
+            tick: LongestTick::of(program),
+            reach: ReachableFriction {
+                natural_n: reach.natural_friction_n,
+                electric_max_n: reach.electric_friction_max_n,
+                total_max_n: reach.friction_max_n(),
+                voltage_max_v_rms: reach.voltage_max_v_rms,
+            },
+            asked: Asked::of(program),
+            notes: program.notes.clone(),
+            left_out: program.left_out.iter().map(ToString::to_string).collect(),
+            board: None,
+        })
+    }
+
+    /// Adds the smallest image that plays the program.
+    #[must_use]
+    pub fn with_board(self, program: &Program) -> Self {
+        Self { board: Some(BoardImage::of(program)), ..self }
+    }
+
+    /// One JSON object on one line.
+    pub fn to_json(&self) -> String {
+        // Plain numbers and texts always have a JSON form.
+        serde_json::to_string(self).unwrap_or_default()
+    }
+}

@@ -1,0 +1,30 @@
+//! `frixel scene`: a scene before it is played.
+
+mod check;
+mod preview;
+mod schema;
+
+use clap::Subcommand;
+
+use super::error::CommandError;
+
+#[derive(Debug, Subcommand)]
+pub(super) enum SceneCommand {
+    /// Say what a scene costs and what of it can be felt.
+    ///
+    /// Every mistake is told, with line and column. A scene that no board can play is refused by the number that is
+    /// exceeded.
+    Check(check::CheckArgs),
+    /// Draw the friction map of a scene: a PNG with rulers, and a colour scale in newtons.
+    Preview(preview::PreviewArgs),
+    /// Print the JSON schema of the scene file, for editors.
+    Schema,
+}
+
+pub(super) fn run(command: &SceneCommand) -> Result<(), CommandError> {
+    match command {
+        SceneCommand::Check(args) => check::run(args),
+        SceneCommand::Preview(args) => preview::run(args),
+        SceneCommand::Schema => schema::run(),
+    }
+}

@@ -1,0 +1,66 @@
+//! Refuses a scene whose tick takes too long at some place, as the board would.
+
+use frixel_wire::scene::cost::{Worst, worst_of_scene};
+
+use super::file::Scene;
+use super::log::Log;
+use super::mistake::Mistake;
+use super::program::Program;
+
+/// Refuses a program whose longest tick takes more than `max` instructions. The mistake stands at the topmost layer of the
+/// place.
+pub(super) fn check(scene: &Scene, program: &Program, max: u32, log: &mut Log) {
+    let Worst { instructions, cell } = program.worst_tick();
+    if instructions <= max {
+        return;
+    }
+    let layers = u64::from(cell.layers[0]) | u64::from(cell.layers[1]) << u32::BITS;
+    let titles: Vec<&String> =
+        (0..).zip(&program.titles).filter(|(number, _)| layers >> number & 1 != 0).map(|(_, title)| title).collect();
+    let topmost = scene.layers.iter().rfind(|layer| titles.last().is_some_and(|title| **title == layer.title));
+    let mm = |metres: f32| (1e4 * f64::from(metres)).round() / 10.0;
+    let (x_mm, y_mm) = (mm(cell.x_m), mm(cell.y_m));
+    let mistake = Mistake::TickTooLong { instructions, max, layers: titles.len(), x_mm, y_mm };
+    log.add(topmost.map_or(0, |layer| layer.places.table()), mistake);
+}
+
+impl Program {
+    /// Where a tick takes most on a Cortex-M4F, and how many instructions.
+    pub fn worst_tick(&self) -> Worst {
+        worst_of_scene(&self.header, &self.records, &self.points)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::tests::{HEAD, compile_text, scenes};
+
+    #[test]
+    fn the_longest_tick_is_refused_with_its_place_and_number() {
+        let layer = |x_mm: u32| {
+            format!(
+                "[[layer]]\nkind = \"grating\"\nwavelength_mm = 2\nlow_n = 0\nhigh_n = 0.001\nblend = \"add\"\n\
+                 region = {{ x_mm = {x_mm}, y_mm = 0, width_mm = 20, height_mm = 20 }}\n"
+            )
+        };
+        let text = format!("{HEAD}{}{}{}", layer(0), layer(90), layer(95));
+        let program = compile_text(&text).expect("it compiles");
+        let scene = Scene::parse(&text, "test.toml", scenes()).expect("it reads");
+        let Worst { instructions, cell } = program.worst_tick();
+        assert_eq!(cell.layers, [0b110, 0]);
+        for (max, refused) in [(instructions - 1, true), (instructions, false)] {
+            let mut log = Log::new(&scene.source);
+            check(&scene, &program, max, &mut log);
+            let told = log.finish(Some(())).err().map(|error| error.to_string());
+            let line = 2 * 7 + HEAD.lines().count() + 1;
+            let expected = format!(
+                "test.toml:{line}:1: a tick takes up to {instructions} instructions where 2 layers meet (near x {} mm, y {} mm), and \
+                 the board has time for {max}: move layers apart, or leave some out",
+                (1e4 * f64::from(cell.x_m)).round() / 10.0,
+                (1e4 * f64::from(cell.y_m)).round() / 10.0
+            );
+            assert_eq!(told, refused.then_some(expected));
+        }
+    }
+}
