@@ -26,8 +26,7 @@ pub fn start<L: Link>(
     program: &Program,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<(), DeviceError> {
-    device.disarm()?;
-    upload(device, program, progress)?;
+    load(device, program, progress)?;
     device.arm()?;
     device.play()
 }
@@ -35,6 +34,16 @@ pub fn start<L: Link>(
 /// Puts another scene in the place of the one that plays, between two ticks.
 pub fn replace<L: Link>(device: &mut Device<L>, program: &Program) -> Result<(), DeviceError> {
     upload(device, program, &mut |_| {})
+}
+
+/// Takes a board from wherever another client left it to a scene that could be played.
+pub(crate) fn load<L: Link>(
+    device: &mut Device<L>,
+    program: &Program,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<(), DeviceError> {
+    device.disarm()?;
+    upload(device, program, progress)
 }
 
 /// Uploads and commits.

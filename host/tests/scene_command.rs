@@ -199,7 +199,7 @@ fn what_does_not_fit_is_refused_by_its_number() {
     let piled = "[[layer]]\nkind = \"noise\"\nblend = \"add\"\nwavelength_min_mm = 1\nwavelength_max_mm = 2\nlow_n = 0\nhigh_n = 0.001\n";
     let message = refused(&["scene", "check", &files.scene(&piled.repeat(3))]);
     assert!(
-        message.contains(":30:1: a tick takes up to ") && message.contains("the board has time for 600"),
+        message.contains(":31:1: a tick takes up to ") && message.contains("the board has time for 600"),
         "{message}"
     );
     let triangle = |x: usize| {

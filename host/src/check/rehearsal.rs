@@ -5,7 +5,7 @@ use frixel_model::ParameterError;
 use thiserror::Error;
 
 use crate::device::{Device, DeviceError};
-use crate::player::replace;
+use crate::player::load;
 use crate::rigs::{Recorder, SimLink};
 use crate::scene::Program;
 
@@ -35,6 +35,6 @@ pub(super) fn wire_bytes(program: &Program, rig: &RigConfig) -> Result<usize, Re
     let recorder = Recorder::new(program, &board.limits, board.tick_hz, 0, 1).map_err(RehearsalError::Finger)?;
     let mut device = Device::connect(SimLink::new(Rig::new(&mut memory, rig, stroke, 1)?, recorder))?;
     let before = device.counters().wire_bytes;
-    replace(&mut device, program)?;
+    load(&mut device, program, &mut |_| {})?;
     Ok((device.counters().wire_bytes - before) as usize)
 }

@@ -45,9 +45,10 @@ fn costs(figures: &Figures) -> Result<Vec<Cost>, String> {
     };
     let two = tick("two_constants")?;
     let constant = two.saturating_sub(tick("constant_alone")?);
+    let base = two.saturating_sub(2 * constant);
+    let alone = |name: &str| tick(&format!("{name}_alone")).map(|instructions| instructions.saturating_sub(base));
     // The longer of the two: a tick in which the envelope is at its slew limit is longer than one that is not.
-    let empty = two.saturating_sub(2 * constant).max(tick("1_of_64")?.saturating_sub(constant));
-    let alone = |name: &str| tick(&format!("{name}_alone")).map(|instructions| instructions.saturating_sub(empty));
+    let empty = base.max(tick("1_of_64")?.saturating_sub(constant));
     let (speed, speed_point) = line_through(SPEED_POINTS, alone("speed_2")?, alone("speed_8")?);
     let (polygon, polygon_edge) = line_through(POLYGON_POINTS, alone("polygon_4")?, alone("polygon_8")?);
     Ok(vec![

@@ -58,7 +58,9 @@ impl Picture {
     pub(super) fn electric_friction_n(&self, moment: &Moment, pool: &BitmapPool) -> f32 {
         let (x_m, y_m) = (moment.x_m - self.x_m, moment.y_m - self.y_m);
         let place = |[per_m_x, per_m_y]: [f32; 2]| x_m * per_m_x + y_m * per_m_y;
-        let neighbours = if self.tiled { neighbours_in_tiles } else { neighbours };
+        let neighbours = |place, count| {
+            if self.tiled { neighbours_in_tiles(place, count) } else { neighbours_held(place, count) }
+        };
         let (column, next_column, right) = neighbours(place(self.columns_per_m), self.width);
         let (row, next_row, down) = neighbours(place(self.rows_per_m), self.height);
         let first = self.offset as usize + row * usize::from(self.width);
@@ -71,7 +73,8 @@ impl Picture {
 }
 
 /// The two samples on either side of a place, and how far it is from the first to the second. Held at the border.
-fn neighbours(place: f32, count: u16) -> (usize, usize, f32) {
+#[inline]
+fn neighbours_held(place: f32, count: u16) -> (usize, usize, f32) {
     let last = u32::from(count.saturating_sub(1));
     let place = if place > 0.0 { place } else { 0.0 };
     // Beyond the last sample both are the last, whatever the distance.
@@ -79,7 +82,8 @@ fn neighbours(place: f32, count: u16) -> (usize, usize, f32) {
     (index as usize, (index + 1).min(last) as usize, place - index as f32)
 }
 
-/// As [`neighbours`], with the first sample again behind the last.
+/// As [`neighbours_held`], with the first sample again behind the last.
+#[inline]
 fn neighbours_in_tiles(place: f32, count: u16) -> (usize, usize, f32) {
     let count = u32::from(count);
     let tile = turns::centred(place / count as f32);
