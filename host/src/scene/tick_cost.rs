@@ -15,8 +15,11 @@ pub(super) fn check(scene: &Scene, program: &Program, max: u32, log: &mut Log) {
         return;
     }
     let layers = u64::from(cell.layers[0]) | u64::from(cell.layers[1]) << u32::BITS;
-    let titles: Vec<&str> =
-        (0..).zip(&program.titles).filter(|(number, _)| layers >> number & 1 != 0).map(|(_, title)| title.as_str()).collect();
+    let titles: Vec<&str> = (0..)
+        .zip(&program.titles)
+        .filter(|(number, _)| layers >> number & 1 != 0)
+        .map(|(_, title)| title.as_str())
+        .collect();
     let topmost = scene.layers.iter().rfind(|layer| titles.last().is_some_and(|title| *title == layer.title));
     let mm = |metres: f32| (1e4 * f64::from(metres)).round() / 10.0;
     let (x_mm, y_mm) = (mm(cell.x_m), mm(cell.y_m));
