@@ -118,8 +118,10 @@ impl Talk {
         while let Some(spare) = self.ends.spares.dequeue() {
             self.session.take_back(spare);
         }
-        if let Some(touch) = self.next_touch() {
-            // The queue is full when the tick is late; the next report is newer.
+        // The queue is full when the tick is late. What is taken from the source is told: after a lift nothing else comes.
+        if self.ends.touches.ready()
+            && let Some(touch) = self.next_touch()
+        {
             let _ = self.ends.touches.enqueue(touch);
         }
     }

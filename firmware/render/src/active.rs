@@ -87,6 +87,12 @@ impl Active {
         self.table().map_or(0, |table| table.electric_friction_max_n().to_bits())
     }
 
+    /// Some layer plays what the host streams.
+    #[cfg(feature = "stream")]
+    pub(crate) fn has_stream(&self) -> bool {
+        self.layers.iter().any(Layer::is_stream)
+    }
+
     /// Some layer may click.
     #[cfg(feature = "edge")]
     #[inline]

@@ -76,14 +76,15 @@ impl Estimator {
     /// Knows nothing yet.
     pub(crate) const NEW: Self = Self { x: Axis::ZERO, y: Axis::ZERO, samples: 0, sampled_at_tick: 0 };
 
-    /// Takes a sample that was true at a tick. One that is not newer than the last says nothing.
-    pub(crate) fn update(&mut self, sampled_at_tick: u32, [x_m, y_m]: [f32; 2], tick_period_s: f32) {
+    /// Takes a sample that was true at a tick. One that is not newer than the last says nothing. No velocity is made of
+    /// a time shorter than `step_min_s`: samples that bunch on the way were not taken so close together.
+    pub(crate) fn update(&mut self, sampled_at_tick: u32, [x_m, y_m]: [f32; 2], tick_period_s: f32, step_min_s: f32) {
         let step_ticks = sampled_at_tick.wrapping_sub(self.sampled_at_tick) as i32;
         if self.samples == 0 {
             *self = Self { x: Axis::resting_at(x_m), y: Axis::resting_at(y_m), samples: 1, sampled_at_tick };
         } else if step_ticks > 0 {
             let step_s = step_ticks as f32 * tick_period_s;
-            let per_s = 1.0 / step_s;
+            let per_s = 1.0 / if step_s > step_min_s { step_s } else { step_min_s };
             let gains = gains(self.samples);
             let gains = Gains {
                 position: gains.position,
@@ -165,13 +166,14 @@ mod tests {
     use super::*;
 
     const TICK_S: f32 = 25e-6;
+    const STEP_MIN_S: f32 = 2.5e-3;
 
     /// Feeds exact samples of `path` at 100 Hz, 400 ticks late, and returns the error at the end.
     fn error_m(path: impl Fn(f32) -> f32, samples: u32) -> f32 {
         let mut estimator = Estimator::NEW;
         for i in 0..samples {
             let tick = 1000 + 400 * i;
-            estimator.update(tick, [path(tick as f32 * TICK_S), 0.0], TICK_S);
+            estimator.update(tick, [path(tick as f32 * TICK_S), 0.0], TICK_S, STEP_MIN_S);
         }
         let now = 1000 + 400 * samples + 300;
         (estimator.at(now, TICK_S).place_m[0] - path(now as f32 * TICK_S)).abs()
@@ -192,11 +194,11 @@ mod tests {
     #[test]
     fn repeated_and_backward_samples_change_nothing() {
         let mut estimator = Estimator::NEW;
-        estimator.update(1000, [0.01, 0.01], TICK_S);
-        estimator.update(1400, [0.02, 0.01], TICK_S);
+        estimator.update(1000, [0.01, 0.01], TICK_S, STEP_MIN_S);
+        estimator.update(1400, [0.02, 0.01], TICK_S, STEP_MIN_S);
         let before = estimator.at(1500, TICK_S);
-        estimator.update(1400, [0.5, 0.5], TICK_S);
-        estimator.update(1399, [0.5, 0.5], TICK_S);
+        estimator.update(1400, [0.5, 0.5], TICK_S, STEP_MIN_S);
+        estimator.update(1399, [0.5, 0.5], TICK_S, STEP_MIN_S);
         assert_eq!(estimator.at(1500, TICK_S), before);
     }
 
@@ -205,10 +207,29 @@ mod tests {
         let mut estimator = Estimator::NEW;
         let start = u32::MAX - 500;
         for i in 0..4 {
-            estimator.update(start.wrapping_add(400 * i), [0.001 * i as f32, 0.0], TICK_S);
+            estimator.update(start.wrapping_add(400 * i), [0.001 * i as f32, 0.0], TICK_S, STEP_MIN_S);
         }
         let estimate = estimator.at(start.wrapping_add(1600), TICK_S);
         assert!((estimate.place_m[0] - 0.004).abs() < 1e-6);
         assert!((estimate.velocity_m_per_s[0] - 0.1).abs() < 1e-4);
+    }
+
+    /// One report that is late by nearly a period and then bunched with the next one.
+    #[test]
+    fn a_bunched_sample_does_not_throw_the_finger_away() {
+        let mut estimator = Estimator::NEW;
+        let at = |tick: u32| 0.1 * TICK_S * tick as f32;
+        let mut worst_m = 0.0_f32;
+        for report in 0..40_u32 {
+            // The place is that of the right time, the tick that it is said to be of is not.
+            let tick = 400 * report;
+            let said = if report == 20 { tick + 396 } else { tick };
+            estimator.update(said, [at(tick), 0.0], TICK_S, STEP_MIN_S);
+            for later in [0, 200, 399] {
+                let now = tick + 400 + later;
+                worst_m = worst_m.max((estimator.at(now, TICK_S).place_m[0] - at(now)).abs());
+            }
+        }
+        assert!(worst_m < 5e-3, "{worst_m}");
     }
 }

@@ -7,14 +7,18 @@ use crate::{Board, Touch};
 
 /// Touch data is too old to use after this many report periods without a report.
 const STALE_AFTER_PERIODS: f32 = 3.0;
-/// A sample older than this, 0.8 s at 40 kHz, says nothing of where the finger is now.
-const SAMPLE_AGE_MAX_TICKS: u32 = 1 << 15;
+/// A sample older than this says nothing of where the finger is now, in s.
+const SAMPLE_AGE_MAX_S: f32 = 0.1;
+/// Part of the report period that two samples are taken to be apart at least.
+const STEP_MIN_PERIODS: f32 = 0.25;
 
 /// What belongs to the board's touch source and is computed once.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FingerTiming {
     tick_period_s: f32,
     stale_after_ticks: u32,
+    sample_age_max_ticks: u32,
+    step_min_s: f32,
     stillness: StillnessTiming,
 }
 
@@ -23,6 +27,8 @@ impl FingerTiming {
         Self {
             tick_period_s: board.tick_period_s(),
             stale_after_ticks: board.ticks(STALE_AFTER_PERIODS * board.limits.touch_report_period_s),
+            sample_age_max_ticks: board.ticks(SAMPLE_AGE_MAX_S),
+            step_min_s: STEP_MIN_PERIODS * board.limits.touch_report_period_s,
             stillness: StillnessTiming::new(board.tick_hz),
         }
     }
@@ -35,8 +41,8 @@ impl FingerTiming {
 
 /// The finger on the screen, if there is one.
 ///
-/// A report is taken in over four ticks, a step each: [`Finger::take`], then [`Finger::digest`] three times. So no tick
-/// does much more than one that evaluates a scene.
+/// A report is taken in over four ticks, a step each: [`Finger::take`], then [`Finger::digest`] three times. Only a
+/// source that reports more often than that makes a tick do all of it.
 pub(crate) struct Finger {
     motion: Motion,
     stillness: Stillness,
@@ -113,9 +119,10 @@ impl Finger {
             Touch::Down { x_m, y_m, age_ticks } => {
                 let newer = self.sampled_at_tick.is_none_or(|tick| age_ticks < now_tick.wrapping_sub(tick));
                 // A report that says nothing new does not keep the output alive: the source may be stuck.
-                if newer && age_ticks <= SAMPLE_AGE_MAX_TICKS && x_m.is_finite() && y_m.is_finite() {
+                if newer && age_ticks <= timing.sample_age_max_ticks && x_m.is_finite() && y_m.is_finite() {
                     let at_tick = now_tick.wrapping_sub(age_ticks);
-                    let until_tick = now_tick.wrapping_add(timing.stale_after_ticks + 1);
+                    let left_ticks = timing.sample_age_max_ticks - age_ticks;
+                    let until_tick = now_tick.wrapping_add(timing.stale_after_ticks.min(left_ticks) + 1);
                     self.sampled_at_tick = Some(at_tick);
                     self.sample = Sample { place_m: [x_m, y_m], at_tick, until_tick };
                     self.report = Report::Taken;
@@ -138,7 +145,8 @@ impl Finger {
         match self.report {
             Report::Digested => {}
             Report::Taken => {
-                self.estimator.update(self.sample.at_tick, self.sample.place_m, timing.tick_period_s);
+                let Sample { at_tick, place_m, .. } = self.sample;
+                self.estimator.update(at_tick, place_m, timing.tick_period_s, timing.step_min_s);
                 self.report = Report::Estimated;
             }
             Report::Estimated => {

@@ -35,6 +35,8 @@ pub struct Ticker<'a> {
     live: bool,
     drive: Drive,
     arm_switch: bool,
+    /// An order may have changed what the scene asks for since it was last asked.
+    asked_by_order: bool,
     /// What the scene was last asked for.
     moment: Moment,
     asked_electric_friction_n: f32,
@@ -82,6 +84,7 @@ impl<'a> Ticker<'a> {
             live: false,
             drive: Drive::default(),
             arm_switch: false,
+            asked_by_order: false,
             moment: Moment::default(),
             asked_electric_friction_n: 0.0,
             target_v_rms: 0.0,
@@ -113,10 +116,14 @@ impl<'a> Ticker<'a> {
                 self.carrier.retime(&self.active.carrier);
                 self.envelope.limit(self.active.voltage_max_v_rms);
                 self.clicks.forget();
+                #[cfg(feature = "stream")]
+                if !self.active.has_stream() {
+                    self.stop_stream();
+                }
                 if self.active.prediction != spare.prediction {
                     self.finger.locate(self.tick, self.active.prediction, &self.timing.finger);
                 }
-                self.ask_again();
+                self.asked_by_order = true;
                 Some(spare)
             }
             Order::Unload => {
@@ -125,7 +132,10 @@ impl<'a> Ticker<'a> {
             }
             Order::SetLayer { layer, on, gain } => {
                 self.active.set_layer(layer, on, gain);
-                self.ask_again();
+                // Nobody slid into a layer that is put on under the finger.
+                #[cfg(feature = "edge")]
+                self.clicks.lift();
+                self.asked_by_order = true;
                 None
             }
             #[cfg(feature = "stream")]
@@ -150,12 +160,12 @@ impl<'a> Ticker<'a> {
         spare
     }
 
-    /// An order has changed what the scene asks for: should the next tick go on with what was asked for before, that is
-    /// the new scene's, too.
+    /// An order has changed what the scene asks for: a tick that would go on with what was asked for before asks anew.
     #[cold]
     #[inline(never)]
     fn ask_again(&mut self) {
-        if self.drive.amplifier_enable {
+        self.asked_by_order = false;
+        if self.live {
             (self.target_v_rms, _) = self.voltage_v_rms();
         }
     }
@@ -193,6 +203,9 @@ impl<'a> Ticker<'a> {
         // A slow finger is where it was a tick ago.
         let settling = self.finger.is_settling();
         if due || sense.touch.is_some() || self.finger.is_digesting() || settling && self.tick & 1 == 0 {
+            if self.asked_by_order {
+                self.ask_again();
+            }
             self.attend(sense, due);
         } else {
             self.flags = if settling { self.still() } else { Flags::default() };

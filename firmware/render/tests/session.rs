@@ -10,9 +10,9 @@ use frixel_wire::frame::crc32;
 use frixel_wire::hello::feature;
 use frixel_wire::message::{Accepted, Command, ConfigField, FromBoard, Refusal};
 use frixel_wire::payload::CHUNK_LEN;
-#[cfg(feature = "bitmap")]
-use frixel_wire::scene::bitmap_crc32;
 use frixel_wire::scene::{Header, Layer, SceneError};
+#[cfg(feature = "bitmap")]
+use frixel_wire::scene::{Record, Region, bitmap_crc32};
 use proptest::prelude::*;
 use support::{Desk, HEADER, Memory, constant, record, request, scene};
 
@@ -254,6 +254,16 @@ fn the_same_bytes_in_another_shape_are_another_bitmap() {
     assert_eq!(desk.upload_bitmap(40, 20, &samples), Ok(Accepted::AlreadyHeld));
 }
 
+/// Two pictures that are never under the finger at once, which would take too long.
+#[cfg(feature = "bitmap")]
+fn side_by_side([left, right]: [u32; 2]) -> [Record; 2] {
+    let beside = |x_m, crc32| {
+        let region = Region::Rectangle { x_m, y_m: 0.0, width_m: 0.04, height_m: 0.1 };
+        Record { region, ..record(bitmap(crc32)) }
+    };
+    [beside(0.0, left), beside(0.06, right)]
+}
+
 #[cfg(feature = "bitmap")]
 #[test]
 fn free_space_in_pieces_is_moved_together_when_nothing_plays() {
@@ -263,7 +273,7 @@ fn free_space_in_pieces_is_moved_together_when_nothing_plays() {
     let (first, second, third) = (vec![1; 30_000], vec![2; 30_000], vec![3; 33_000]);
     desk.upload_bitmap(300, 100, &first).unwrap();
     desk.upload_bitmap(300, 100, &second).unwrap();
-    let both = [bitmap_crc32(300, 100, &first), bitmap_crc32(300, 100, &second)].map(|crc32| record(bitmap(crc32)));
+    let both = side_by_side([bitmap_crc32(300, 100, &first), bitmap_crc32(300, 100, &second)]);
     desk.load(&scene(&HEADER, &both)).unwrap();
     assert_eq!(desk.upload_bitmap(300, 100, &second), Ok(Accepted::AlreadyHeld));
     assert_eq!(desk.upload_bitmap(330, 100, &third), Ok(Accepted::Done));
@@ -286,8 +296,25 @@ fn announced_bitmaps_stay_however_often_they_are_named() {
         assert_eq!(desk.upload_bitmap(300, 100, &second), Ok(Accepted::AlreadyHeld));
     }
     assert!(matches!(desk.upload_bitmap(300, 100, &third), Err(Refusal::BitmapPoolFull { .. })));
-    let both = [bitmap_crc32(300, 100, &first), bitmap_crc32(300, 100, &second)].map(|crc32| record(bitmap(crc32)));
+    let both = side_by_side([bitmap_crc32(300, 100, &first), bitmap_crc32(300, 100, &second)]);
     desk.load(&scene(&HEADER, &both)).unwrap();
+}
+
+/// A scene that does not fit leaves the pool to the next.
+#[cfg(feature = "bitmap")]
+#[test]
+fn bitmaps_of_a_scene_that_was_refused_give_way() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    let playing = vec![1; 20_000];
+    desk.upload_bitmap(200, 100, &playing).unwrap();
+    desk.play(&scene(&HEADER, &[record(bitmap(bitmap_crc32(200, 100, &playing)))]));
+    for sample in 2..4 {
+        desk.upload_bitmap(200, 100, &vec![sample; 20_000]).unwrap();
+    }
+    assert!(matches!(desk.upload_bitmap(200, 100, &[4; 20_000]), Err(Refusal::BitmapPoolFull { .. })));
+    assert_eq!(desk.upload_bitmap(200, 100, &[5; 20_000]), Ok(Accepted::Done));
 }
 
 proptest! {

@@ -31,6 +31,8 @@ impl BoardImage {
             ("stream", asks(|layer| matches!(layer, Layer::Stream { .. }))),
             ("polygon", program.records.iter().any(|record| polygon(record.region))),
             ("sine-carrier", program.header.carrier == Carrier::Sine),
+            // `frixel play` follows what a board does.
+            ("telemetry", true),
         ]
         .into_iter()
         .filter_map(|(feature, asked)| asked.then_some(feature))

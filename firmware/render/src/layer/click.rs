@@ -105,6 +105,10 @@ impl ClickNumber {
     fn follow(self, click: &Click, mut slot: Slot, starts: bool, around: &mut Around) -> f32 {
         let (clicks, tick) = (&mut *around.clicks, around.moment.tick);
         slot.seen = clicks.evaluation;
+        if !clicks.unbroken {
+            // What another touch began is over.
+            slot.started_at_tick = None;
+        }
         if starts && clicks.unbroken {
             slot.started_at_tick = Some(tick);
         }

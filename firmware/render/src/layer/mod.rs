@@ -128,6 +128,12 @@ impl Layer {
         self.gain = gain;
     }
 
+    /// It plays what the host streams.
+    #[cfg(feature = "stream")]
+    pub(crate) fn is_stream(&self) -> bool {
+        matches!(self.join, Join::Fading(_))
+    }
+
     /// On bare glass, it alone is what is asked for, everywhere and always.
     pub(crate) fn stands_alone(&self) -> bool {
         matches!(self.join, Join::Replace | Join::Add) && self.region == Region::Screen

@@ -266,7 +266,7 @@ impl<'a> Dialogue<'a> {
             Command::Commit { crc32 } => self.commit(crc32),
             Command::Subscribe { period_ticks } if cfg!(feature = "telemetry") => self.subscribe(period_ticks),
             Command::Subscribe { .. } => Err(Refusal::UnknownCommand),
-            Command::Touch { x_m, y_m, age_ticks } => self.touch(ONLY_FINGER, x_m, y_m, age_ticks),
+            Command::Touch { x_m, y_m, age_ticks } => self.touch(ONLY_FINGER, (x_m, y_m), age_ticks, status),
             Command::Lift => self.lift(ONLY_FINGER),
             Command::FaultText { offset } => Ok(fault_text(self.board.reset_text, offset)),
             Command::SetLayer { .. } => self.change_playing(command, status),
@@ -276,7 +276,7 @@ impl<'a> Dialogue<'a> {
             Command::EndStream => self.end_stream(),
             #[cfg(not(feature = "stream"))]
             Command::StartStream { .. } | Command::EndStream => Err(Refusal::UnknownCommand),
-            Command::TouchFinger { finger, x_m, y_m, age_ticks } => self.touch(finger, x_m, y_m, age_ticks),
+            Command::TouchFinger { finger, x_m, y_m, age_ticks } => self.touch(finger, (x_m, y_m), age_ticks, status),
             Command::LiftFinger { finger } => self.lift(finger),
             Command::ClearFault => self.change_state(Order::ClearFault, &[State::Faulted], State::Disarmed),
             Command::Arm | Command::Disarm | Command::Play | Command::Stop => self.drive(command, status),
@@ -357,7 +357,14 @@ impl<'a> Dialogue<'a> {
         if self.directory.find(crc32).is_some() {
             return Ok(Accepted::AlreadyHeld);
         }
-        let bitmap = self.make_room(width, height, crc32, settled)?;
+        let bitmap = match self.make_room(width, height, crc32, settled) {
+            // The scene that these were for does not fit: they give way to another.
+            Err(full @ Refusal::BitmapPoolFull { .. }) => {
+                self.announced_bitmaps.clear();
+                return Err(full);
+            }
+            found => found?,
+        };
         self.upload = Some(Upload::of_bitmap(bitmap));
         Ok(Accepted::Done)
     }
@@ -443,10 +450,13 @@ impl<'a> Dialogue<'a> {
         let spare = self.spare.take().ok_or(Refusal::Busy)?;
         if let Err(refusal) = spare.load(&scene, &self.board, &self.directory) {
             self.spare = Some(spare);
+            self.announced_bitmaps.clear();
             return Err(refusal);
         }
         self.committed_bitmaps = bitmaps_of(&scene);
         self.playing = Playing::new(&scene);
+        #[cfg(feature = "stream")]
+        self.drop_stream_without_layer();
         self.committed_crc32 = crc32;
         self.announced_bitmaps.clear();
         self.send_order(Order::Load(spare))?;

@@ -1,12 +1,13 @@
 //! Which of several fingers leads. One electrode gives one effect, so one finger at a time is followed.
 
+use frixel_wire::fault::Flags;
 use frixel_wire::message::{Accepted, ConfigField, ConfigRefusal, Refusal};
 use frixel_wire::scene::Leader;
 use heapless::Vec;
 
 use super::dialogue::Dialogue;
-use crate::Touch;
 use crate::config::{self, LENGTH_MAX_M};
+use crate::{Status, Touch};
 
 /// The finger of a host that has one.
 pub(super) const ONLY_FINGER: u8 = 0;
@@ -88,7 +89,13 @@ impl Fingers {
 }
 
 impl Dialogue<'_> {
-    pub(super) fn touch(&mut self, finger: u8, x_m: f32, y_m: f32, age_ticks: u16) -> Result<Accepted, Refusal> {
+    pub(super) fn touch(
+        &mut self,
+        finger: u8,
+        (x_m, y_m): (f32, f32),
+        age_ticks: u16,
+        status: &Status,
+    ) -> Result<Accepted, Refusal> {
         if !self.board.touch_from_host {
             return Err(Refusal::TouchSource);
         }
@@ -98,6 +105,10 @@ impl Dialogue<'_> {
                 .map_err(Refusal::Config)?;
         }
         let place = Touch::Down { x_m, y_m, age_ticks: u32::from(age_ticks) };
+        if status.telemetry.flags.contains(Flags::TOUCH_STALE) {
+            // Nobody has said anything for a while: a finger whose lift was lost is not there any more.
+            self.fingers.forget();
+        }
         self.fingers.touch(finger, place, self.playing.leader());
         Ok(Accepted::Done)
     }

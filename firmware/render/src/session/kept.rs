@@ -32,14 +32,17 @@ impl KeptScene<'_> {
         samples_offset(self.bitmaps.len() as u32, self.scene.len() as u32) + samples
     }
 
-    /// The word at an offset; zeros beyond the end.
+    /// The word at an offset, which is a whole number of words; zeros beyond the end.
     pub fn word(&self, offset: u32) -> [u8; WORD_LEN] {
         let (count, scene_len) = (self.bitmaps.len() as u32, self.scene.len() as u32);
         let mut word = [0; WORD_LEN];
         if offset == 0 {
             return pair(scene_len, count);
         }
-        if let Some(bitmap) = self.bitmaps.get((offset as usize / WORD_LEN) - 1) {
+        if offset % WORD_LEN as u32 != 0 {
+            return word;
+        }
+        if let Some(bitmap) = self.bitmaps.get((offset as usize / WORD_LEN).wrapping_sub(1)) {
             return pair(bitmap.crc32, u32::from(bitmap.height) << 16 | u32::from(bitmap.width));
         }
         if let Some(offset) = offset.checked_sub(samples_offset(count, scene_len)) {

@@ -122,6 +122,13 @@ impl<'a> Dialogue<'a> {
         Ok(Accepted::Done)
     }
 
+    /// A stream is not for a scene that has no layer for it; the ticker stops it by itself.
+    pub(super) fn drop_stream_without_layer(&mut self) {
+        if let Some(stream) = self.stream.as_mut().filter(|_| !self.playing.has_stream) {
+            stream.intake.end();
+        }
+    }
+
     /// Takes no more samples, and lets the ticker play those that are there.
     pub(super) fn end_stream(&mut self) -> Result<Accepted, Refusal> {
         if self.stream.is_none() {
