@@ -6,6 +6,8 @@ use std::path::Path;
 
 use frixel::scene::{Scene, compile};
 use frixel_hil_sim::RigConfig;
+// Its instrumentation calls the fuzzer.
+use libfuzzer_sys as _;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));

@@ -113,7 +113,7 @@ fn ram_grows_by_what_a_layer_takes() {
     let layer = active(&one);
     assert!(layer > 0);
     assert_eq!(active(""), 0);
-    assert_eq!(active(&one.repeat(64)), 64 * layer);
+    assert_eq!(active(&one.repeat(5)), 5 * layer);
     let polygon = "region = { shape = \"polygon\", points_mm = [[0, 0], [30, 0], [0, 30]] }";
     assert_eq!(active(&constant(&format!("friction_n = 0.26\n{polygon}"))), layer + 3 * 8);
 }
@@ -196,6 +196,12 @@ fn what_does_not_fit_is_refused_by_its_number() {
     assert!(message.contains("need 102400 bytes, and the board has 65536"), "{message}");
     let message = refused(&["scene", "check", &files.scene(&constant("friction_n = 0.26").repeat(65))]);
     assert!(message.contains("this is layer 65, and the board takes 64"), "{message}");
+    let piled = "[[layer]]\nkind = \"noise\"\nblend = \"add\"\nwavelength_min_mm = 1\nwavelength_max_mm = 2\nlow_n = 0\nhigh_n = 0.001\n";
+    let message = refused(&["scene", "check", &files.scene(&piled.repeat(3))]);
+    assert!(
+        message.contains(":31:1: a tick takes up to ") && message.contains("the board has time for 600"),
+        "{message}"
+    );
     let triangle = |x: usize| {
         let mut points = String::new();
         for number in 0..32 {

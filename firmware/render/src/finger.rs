@@ -100,7 +100,11 @@ impl Finger {
 
     /// Takes a report of the touch source. A finger that comes down is there when the report is digested; one that is
     /// lifted is gone at once.
-    pub(crate) fn take(&mut self, touch: Touch, now_tick: u32, timing: &FingerTiming) {
+    pub(crate) fn take(&mut self, touch: Touch, now_tick: u32, prediction: bool, timing: &FingerTiming) {
+        // A source that is faster than reports are digested is not to starve the finger.
+        while self.is_digesting() {
+            self.digest(now_tick, prediction, timing);
+        }
         match touch {
             Touch::Up => {
                 self.lift(Presence::Up);

@@ -175,6 +175,8 @@ impl<'a> Ticker<'a> {
     /// Deadline: the drive has to be at the DAC before the next tick begins, 25 us or 4,250 cycles at 40 kHz on the
     /// G474. A board that misses it calls [`Ticker::raise`] with [`Fault::Deadline`]. The tick does not allocate, wait
     /// or panic; its longest path is a scene whose layers all lie under the finger.
+    // A board that is built for size would make it small, and slow.
+    #[inline(never)]
     pub fn tick(&mut self, sense: &Sense) -> Drive {
         self.tick = self.tick.wrapping_add(1);
         self.arm_switch = sense.arm_switch;
@@ -214,7 +216,7 @@ impl<'a> Ticker<'a> {
         let timing = &self.timing.finger;
         self.flags = self.still();
         match sense.touch {
-            Some(touch) => self.finger.take(touch, self.tick, timing),
+            Some(touch) => self.finger.take(touch, self.tick, self.active.prediction, timing),
             None if due => {}
             None if self.finger.is_digesting() => self.finger.digest(self.tick, self.active.prediction, timing),
             None => self.finger.settle(timing),

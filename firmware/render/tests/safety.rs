@@ -252,3 +252,22 @@ fn the_first_fault_is_the_one_that_is_told() {
     assert_eq!(desk.status().fault, Some((Fault::Deadline, 4300)));
     assert_eq!(desk.status().counters.missed_deadlines, 1);
 }
+
+/// A source that reports at every tick is followed as any other.
+#[test]
+fn reports_that_come_faster_than_they_are_taken_in_are_not_lost() {
+    for period_ticks in 1..6 {
+        let mut memory = Memory::new();
+        let mut desk = playing(&mut memory);
+        for tick in 0..2_000_u32 {
+            if tick.is_multiple_of(period_ticks) {
+                let x_m = 0.03 + 0.1 * 25e-6 * tick as f32;
+                desk.sense.touch = Some(Touch::Down { x_m, y_m: 0.03, age_ticks: 0 });
+            }
+            desk.tick();
+        }
+        let telemetry = desk.status().telemetry;
+        assert!((telemetry.finger_x_m - 0.035).abs() < 5e-5, "every {period_ticks}: {telemetry:?}");
+        assert_ne!(telemetry.dac_code, 0, "every {period_ticks}");
+    }
+}

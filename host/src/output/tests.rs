@@ -225,9 +225,10 @@ fn felt_svg_has_axes_units_and_legend() {
 }
 
 fn read_png(path: &Path) -> (usize, Vec<u8>) {
-    let mut reader = png::Decoder::new(std::io::BufReader::new(fs::File::open(path).expect("a file")))
-        .read_info()
-        .expect("a picture");
+    let mut decoder = png::Decoder::new(std::io::BufReader::new(fs::File::open(path).expect("a file")));
+    // A picture of few colours has a palette.
+    decoder.set_transformations(png::Transformations::EXPAND);
+    let mut reader = decoder.read_info().expect("a picture");
     let mut bytes = vec![0; reader.output_buffer_size().expect("a size")];
     let frame = reader.next_frame(&mut bytes).expect("samples");
     assert_eq!((frame.color_type, frame.bit_depth), (png::ColorType::Rgb, png::BitDepth::Eight));

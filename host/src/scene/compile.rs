@@ -39,8 +39,21 @@ const MM: f64 = 1e-3;
 /// # }
 /// ```
 pub fn compile(scene: &Scene, limits: &BoardLimits, tick_hz: u32) -> Result<Program, CompileError> {
+    compile_within(scene, limits, tick_hz, TICK_INSTRUCTIONS_MAX)
+}
+
+/// [`compile`] for boards whose tick has time for this many instructions.
+pub(super) fn compile_within(
+    scene: &Scene,
+    limits: &BoardLimits,
+    tick_hz: u32,
+    instructions_max: u32,
+) -> Result<Program, CompileError> {
     let mut log = Log::new(&scene.source);
     let program = assemble(scene, limits, tick_hz, &mut log);
+    if let Some(program) = program.as_ref().filter(|_| log.is_empty()) {
+        tick_cost::check(scene, program, instructions_max, &mut log);
+    }
     log.finish(program)
 }
 
@@ -84,7 +97,6 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
         excess::check(scene, &mut program, log);
         let live: Vec<bool> = scene.layers.iter().map(|layer| layer.live).collect();
         leave_out(&mut program, &live);
-        tick_cost::check(scene, &program, TICK_INSTRUCTIONS_MAX, log);
     }
     program.layers = layer_map(scene, &program.titles);
     Some(program)

@@ -90,10 +90,10 @@ impl<'i> Fields<'i> {
     /// A text that may be left out.
     pub(super) fn optional_text(&mut self, log: &mut Log, field: &'static str) -> Option<String> {
         let value = self.take(field, Holds::Text)?;
-        self.text_of(log, field, &value)
+        Self::text_of(log, field, &value)
     }
 
-    fn text_of(&mut self, log: &mut Log, field: &'static str, value: &Spanned<DeValue>) -> Option<String> {
+    fn text_of(log: &mut Log, field: &'static str, value: &Spanned<DeValue>) -> Option<String> {
         if let DeValue::String(text) = value.get_ref() {
             return Some(text.clone().into_owned());
         }
@@ -121,7 +121,7 @@ impl<'i> Fields<'i> {
     ) -> Option<T> {
         let words = choices.iter().map(|(word, _)| *word).collect();
         let value = self.take(field, Holds::Choice(words))?;
-        let found = self.text_of(log, field, &value)?;
+        let found = Self::text_of(log, field, &value)?;
         if let Some((_, choice)) = choices.iter().find(|(word, _)| *word == found) {
             return Some(*choice);
         }

@@ -265,16 +265,16 @@ pub enum Mistake {
     },
     /// A place where the tick takes too long.
     #[error(
-        "a tick takes up to {instructions} instructions where {layers} layers meet (near x {x_mm} mm, y {y_mm} mm), and the board \
-         has time for {max}: move layers apart, or leave some out"
+        "a tick takes up to {instructions} instructions near x {x_mm} mm, y {y_mm} mm, for {layers}, and the board has time for \
+         {max}: move layers apart, or leave some out"
     )]
     TickTooLong {
         /// Instructions of the longest tick.
         instructions: u32,
         /// Most instructions.
         max: u32,
-        /// How many layers may act there.
-        layers: usize,
+        /// The layers that may act there.
+        layers: String,
         /// The place, mm.
         x_mm: f64,
         /// The place, mm.

@@ -15,12 +15,15 @@ pub(super) fn check(scene: &Scene, program: &Program, max: u32, log: &mut Log) {
         return;
     }
     let layers = u64::from(cell.layers[0]) | u64::from(cell.layers[1]) << u32::BITS;
-    let titles: Vec<&String> =
-        (0..).zip(&program.titles).filter(|(number, _)| layers >> number & 1 != 0).map(|(_, title)| title).collect();
-    let topmost = scene.layers.iter().rfind(|layer| titles.last().is_some_and(|title| **title == layer.title));
+    let titles: Vec<&str> = (0..)
+        .zip(&program.titles)
+        .filter(|(number, _)| layers >> number & 1 != 0)
+        .map(|(_, title)| title.as_str())
+        .collect();
+    let topmost = scene.layers.iter().rfind(|layer| titles.last().is_some_and(|title| *title == layer.title));
     let mm = |metres: f32| (1e4 * f64::from(metres)).round() / 10.0;
     let (x_mm, y_mm) = (mm(cell.x_m), mm(cell.y_m));
-    let mistake = Mistake::TickTooLong { instructions, max, layers: titles.len(), x_mm, y_mm };
+    let mistake = Mistake::TickTooLong { instructions, max, layers: titles.join(" and "), x_mm, y_mm };
     log.add(topmost.map_or(0, |layer| layer.places.table()), mistake);
 }
 
@@ -55,8 +58,8 @@ mod tests {
             let told = log.finish(Some(())).err().map(|error| error.to_string());
             let line = 2 * 7 + HEAD.lines().count() + 1;
             let expected = format!(
-                "test.toml:{line}:1: a tick takes up to {instructions} instructions where 2 layers meet (near x {} mm, y {} mm), and \
-                 the board has time for {max}: move layers apart, or leave some out",
+                "test.toml:{line}:1: a tick takes up to {instructions} instructions near x {} mm, y {} mm, for layer 2 (grating) and \
+                 layer 3 (grating), and the board has time for {max}: move layers apart, or leave some out",
                 (1e4 * f64::from(cell.x_m)).round() / 10.0,
                 (1e4 * f64::from(cell.y_m)).round() / 10.0
             );
