@@ -129,8 +129,8 @@ impl Family {
             self.scenes.iter().map(|(amount, wire)| (*amount as f64, bytes(wire) as f64)).collect::<Vec<_>>()
         };
         let Self { name, colour, .. } = self;
+        panel.add("", Look::line(PALETTE[6], Line::Dashed), points(OnTheWire::content_bytes));
         panel.add(name, Look { colour: *colour, line: Line::Solid, mark }, points(|wire| wire.wire_bytes));
-        panel.add("without framing", Look::line(PALETTE[6], Line::Dashed), points(OnTheWire::content_bytes));
     }
 
     fn rows(&self, data: &mut Data<7>, unit: &str) {
@@ -171,10 +171,11 @@ pub(super) fn figure(tick: &str) -> Result<Figure, ReportError> {
     let mut left = panel("Gratings", "gratings", 66.0, 4_400.0);
     gratings.draw(&mut left, Mark::None);
     let mut middle = panel("Polygons", "vertices of all polygons", 132.0, 4_400.0);
-    triangles.draw(&mut middle, Mark::Triangle);
+    triangles.draw(&mut middle, Mark::None);
     polygons.draw(&mut middle, Mark::Disc);
     let mut right = panel("A picture", "samples along each side", 262.0, 72_000.0);
     pictures.draw(&mut right, Mark::Square);
+    right.add("without framing", Look::line(PALETTE[6], Line::Dashed), Vec::new());
     Ok(Figure {
         name: "bytes-against-scene-content",
         title: "Bytes on the wire against what is in the scene".to_owned(),
@@ -205,8 +206,8 @@ fn caption(families: &[Family; 4], tick: &str) -> Vec<String> {
         ),
         format!(
             "A layer takes the same whatever its kind; a vertex comes on top of its polygon's layer, and a scene has at most \
-             {POINTS_MAX} of them. Triangles and {} are shown, the most vertices that a tick has time for under a finger. A sample is \
-             a byte, and a picture's size on the wire goes with its area, whatever it shows; one that a board holds already is not \
+             {POINTS_MAX} of them. Triangles and {} are shown: the format takes {POLYGON_POINTS_MAX} in a polygon, but a tick has no \
+             time for more than these. A sample is a byte, and a picture's size on the wire goes with its area, whatever it shows; one that a board holds already is not \
              sent again.",
             polygons.name
         ),

@@ -10,6 +10,8 @@ use crate::report::data::Data;
 const CORE: &str = "m4f";
 /// Layers in the scene.
 const LAYERS: [usize; 7] = [1, 2, 4, 8, 16, 32, 64];
+/// The axis of layers, with room for a number beside the last one.
+const LAYERS_SHOWN: (f64, f64) = (0.9, 80.0);
 /// Layers under the finger: how many, their look, and what they are called.
 const UNDER: [(usize, plotters::style::RGBColor, &str); 2] =
     [(1, PALETTE[0], "one under the finger"), (4, PALETTE[1], "four under the finger")];
@@ -45,13 +47,13 @@ pub(super) fn figure(counts: &Counts) -> Result<Option<Figure>, ReportError> {
     let mut data = Data::new(["core", "layers_under_the_finger", "layers", "instructions", "mean_instructions"]);
     let mut panel = Panel::new(
         "A tick on a Cortex-M4F",
-        Axis::log("layers in the scene", 0.9..71.0),
+        Axis::log("layers in the scene", LAYERS_SHOWN.0..LAYERS_SHOWN.1),
         Axis::linear("instructions of a tick", 0.0..1.12 * worst.max(limit)),
     );
     panel.add(
         &format!("most that a tick may take: {limit}"),
         Look::line(PALETTE[6], Line::Dashed),
-        vec![(0.9, limit), (71.0, limit)],
+        vec![(LAYERS_SHOWN.0, limit), (LAYERS_SHOWN.1, limit)],
     );
     let mut additions = Vec::new();
     for (under, colour, name, curve) in &curves {
