@@ -7,9 +7,15 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::OnceLock;
 
+use frixel::scene::{CompileError, Program, Scene, compile};
+use frixel_hil_sim::RigConfig;
+
 /// Counts of the shape that `cargo xtask bench` writes.
 const BENCH: &str = r#"{ "m3.inverse_table": 415, "m3.inverse_table_fixed": 61, "m4f.inverse_closed_form": 185, "m4f.inverse_closed_form_cycles": 277,
-    "m4f.inverse_table": 16, "m4f.inverse_table_cycles": 27, "m4f.tick_idle": 209 }"#;
+    "m4f.inverse_table": 16, "m4f.inverse_table_cycles": 27, "m4f.tick_idle": 209,
+    "m4f.tick_1_of_1": 331, "m4f.tick_1_of_1_mean": 301, "m4f.tick_1_of_8": 335, "m4f.tick_1_of_8_mean": 302,
+    "m4f.tick_1_of_64": 329, "m4f.tick_1_of_64_mean": 303, "m4f.tick_4_of_4": 517, "m4f.tick_4_of_4_mean": 481,
+    "m4f.tick_4_of_64": 524, "m4f.tick_4_of_64_mean": 482, "m4f.tick_4_of_64_cycles": 841 }"#;
 
 /// What is the same in no two runs.
 const MEASURED: &str = "error-against-run-time";
@@ -74,9 +80,9 @@ fn the_page_shows_every_figure_and_needs_nothing_else() {
     let files = report();
     let page = &files["index.html"];
     let figures: Vec<&str> = files.keys().filter_map(|name| name.strip_suffix(".csv")).collect();
-    assert_eq!(figures.len(), 12);
-    assert_eq!(page.matches("<svg ").count(), 12);
-    assert_eq!(page.matches("</svg>").count(), 12);
+    assert_eq!(figures.len(), 14);
+    assert_eq!(page.matches("<svg ").count(), 14);
+    assert_eq!(page.matches("</svg>").count(), 14);
     for figure in figures {
         assert!(page.contains(&format!("<h2 id=\"{figure}\">")), "{figure}");
         assert!(page.contains(&format!("<a href=\"#{figure}\">")), "{figure}");
@@ -138,15 +144,19 @@ fn counts_are_asked_for_and_shown() {
     assert!(report()["index.html"].contains("takes on a board is in the figure before this one"));
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name).display().to_string();
-    // Without a count of an inversion, the page says that, and how to come by one.
+    // Without a count of an inversion or of a tick among layers, the page says that, and how to come by one.
     fs::write(path("other.json"), "{ \"m4f.tick_idle\": 209 }").unwrap();
     let other = path("other.json");
     for (args, why) in [(vec!["--bench", &other], "has no count of one"), (vec![], "was made without --bench")] {
         let run = frixel(&[["--out", &path("page")].as_slice(), &args].concat());
         assert!(run.status.success(), "{run:?}");
         let page = fs::read_to_string(folder.path().join("page/index.html")).unwrap();
-        assert!(page.contains(why) && page.contains("cargo xtask bench"), "{why}");
-        assert_eq!(page.matches("<svg ").count(), 11);
+        for what in ["an inversion", "a tick"] {
+            let start = page.find(&format!("What {what} takes on a board is not shown: ")).unwrap();
+            let sentence = &page[start..start + page[start..].find("</p>").unwrap()];
+            assert!(sentence.contains(why) && sentence.contains("cargo xtask bench"), "{what}: {sentence}");
+        }
+        assert_eq!(page.matches("<svg ").count(), 12);
     }
     fs::write(path("bad.json"), "{ \"m4f.inverse_table\": \"sixteen\" }").unwrap();
     for (file, message) in
@@ -161,6 +171,107 @@ fn counts_are_asked_for_and_shown() {
     let run = frixel(&["--out", &path("bad.json/out")]);
     assert!(!run.status.success());
     assert!(String::from_utf8(run.stderr).unwrap().contains("check the folder"));
+}
+
+#[test]
+fn a_tick_costs_what_was_counted_and_no_more_than_it_may() {
+    let found: Vec<_> = rows("tick-cost-against-layers")
+        .iter()
+        .map(|row| ["layers_under_the_finger", "layers", "instructions", "mean_instructions"].map(|is| number(row, is)))
+        .collect();
+    let expected = [
+        [1.0, 1.0, 331.0, 301.0],
+        [1.0, 8.0, 335.0, 302.0],
+        [1.0, 64.0, 329.0, 303.0],
+        [4.0, 4.0, 517.0, 481.0],
+        [4.0, 64.0, 524.0, 482.0],
+    ];
+    assert_eq!(found, expected);
+    let section = section("tick-cost-against-layers");
+    for said in [
+        "with one under the finger they add 4 instructions at most",
+        "with four under the finger they add 7 instructions at most",
+        "most that a tick may take: 600",
+    ] {
+        assert!(section.contains(said), "{said}");
+    }
+    assert!(report()["index.html"].contains("What a tick takes on a board is in the figure before this one."));
+    // Why no more than four are under the finger.
+    let constants = |count| {
+        let layer = "[[layer]]\nkind = \"constant\"\nblend = \"max\"\nlive = true\nfriction_n = 0.001\n";
+        compiled(&layer.repeat(count)).map(|_| ()).map_err(|error| error.to_string())
+    };
+    assert_eq!(constants(4), Ok(()));
+    assert!(constants(8).unwrap_err().contains("the board has time for 600"));
+}
+
+/// What the page has of a figure.
+fn section(name: &str) -> &'static str {
+    let page = &report()["index.html"];
+    let start = page.find(&format!("<h2 id=\"{name}\">")).unwrap();
+    &page[start..start + page[start..].find("</figure>").unwrap()]
+}
+
+/// Layers on a screen, compiled for the simulated board.
+fn compiled(layers: &str) -> Result<Program, CompileError> {
+    let head = "version = 1\n[screen]\nwidth_mm = 120\nheight_mm = 80\n[coating]\nthickness_um = 10\npermittivity = 1\n\
+                [finger]\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\nfriction_coefficient = 0.5\nnormal_load_n = 0.5\n";
+    let board = RigConfig::default().board;
+    compile(&Scene::parse(&format!("{head}{layers}"), "a scene", Path::new(""))?, &board.limits, board.tick_hz)
+}
+
+/// The bytes and frames of an upload whose content is cut into chunks of 184 bytes: two bytes of number, four of CRC, one of
+/// COBS and the zero byte go with each.
+fn in_chunks(bytes: f64) -> (f64, f64) {
+    let chunks = (bytes / 184.0).ceil();
+    (bytes + 8.0 * chunks, chunks)
+}
+
+#[test]
+fn bytes_on_the_wire_follow_what_is_in_the_scene() {
+    let rows = rows("bytes-against-scene-content");
+    let of = |content: &str| rows.iter().filter(move |row| row["content"] == content).collect::<Vec<_>>();
+    let (gratings, triangles, pictures) = (of("gratings"), of("triangles"), of("a picture"));
+    let many: Vec<_> = rows.iter().filter(|row| row["content"].starts_with("polygons of ")).collect();
+    assert_eq!((gratings.len(), triangles.len(), pictures.len()), (64, 42, 9));
+    let vertices = number(many[0], "amount");
+    assert!(vertices > 3.0 && many.len() == (128.0 / vertices).floor() as usize, "{vertices}");
+    let amounts = |rows: &[&Row]| rows.iter().map(|row| number(row, "amount")).collect::<Vec<_>>();
+    assert_eq!(amounts(&gratings), (1..=64).map(f64::from).collect::<Vec<_>>());
+    assert_eq!(amounts(&pictures), [50.0, 75.0, 100.0, 125.0, 150.0, 175.0, 200.0, 225.0, 250.0]);
+    for row in &rows {
+        let (amount, scene, pictures) =
+            (number(row, "amount"), number(row, "scene_bytes"), number(row, "picture_bytes"));
+        let (layers, points, samples) = match row["content"].as_str() {
+            "gratings" => (amount, 0.0, 0.0),
+            "triangles" => (amount / 3.0, amount, 0.0),
+            "a picture" => (1.0, 0.0, amount * amount),
+            _ => (amount / vertices, amount, 0.0),
+        };
+        assert_eq!((scene, pictures), (56.0 + 56.0 * layers + 8.0 * points, samples), "{row:?}");
+        // And a few requests, which are short.
+        let (bytes, chunks) = in_chunks(scene);
+        let (more_bytes, more_chunks) = in_chunks(pictures);
+        let requests = number(row, "frames") - chunks - more_chunks;
+        let request_bytes = number(row, "wire_bytes") - bytes - more_bytes;
+        assert_eq!(requests as usize, if samples > 0.0 { 5 } else { 3 }, "{row:?}");
+        assert!(request_bytes > 8.0 * requests && request_bytes < 24.0 * requests, "{request_bytes} of {row:?}");
+    }
+    // One vertex more would take a tick too long: the caption's claim.
+    let polygon = |count: usize| {
+        let angle = |corner| std::f64::consts::TAU * corner as f64 / count as f64;
+        let points: Vec<_> = (0..count)
+            .map(|corner| format!("[{:.3}, {:.3}]", 40.0 + 9.0 * angle(corner).cos(), 40.0 + 9.0 * angle(corner).sin()))
+            .collect();
+        compiled(&format!(
+            "[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\nregion = {{ shape = \"polygon\", points_mm = [{}] }}\n",
+            points.join(", ")
+        ))
+    };
+    assert!(polygon(vertices as usize).is_ok());
+    assert!(
+        vertices >= 32.0 || polygon(vertices as usize + 1).unwrap_err().to_string().contains("the board has time for")
+    );
 }
 
 #[test]

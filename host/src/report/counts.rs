@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::error::ReportError;
 
-/// Counts by name: `CORE.WHAT` instructions, `CORE.WHAT_cycles` an estimate in cycles.
+/// Counts by name: `CORE.WHAT` instructions at most, `CORE.WHAT_mean` on the mean, `CORE.WHAT_cycles` an estimate in cycles.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Counts(BTreeMap<String, f64>);
 
@@ -22,6 +22,11 @@ impl Counts {
     /// Instructions of one call on a core.
     pub(super) fn instructions(&self, core: &str, what: &str) -> Option<f64> {
         self.0.get(&format!("{core}.{what}")).copied()
+    }
+
+    /// Instructions on the mean of all calls.
+    pub(super) fn mean(&self, core: &str, what: &str) -> Option<f64> {
+        self.0.get(&format!("{core}.{what}_mean")).copied()
     }
 
     /// The estimate in cycles that belongs to it.

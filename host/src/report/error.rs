@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use frixel_hil_sim::StrokeError;
 use frixel_model::{InverseError, ParameterError, StateError, TableError};
+use frixel_wire::payload::WriteError;
 use thiserror::Error;
 
 use crate::player::SimulationError;
@@ -60,7 +61,10 @@ pub enum ReportError {
     /// A table cannot be built.
     #[error("a table of the contact model: {0}")]
     Table(#[from] TableError),
-    /// The texture does not compile.
+    /// A scene cannot be framed.
+    #[error("a scene on the wire: {0}")]
+    Wire(#[from] WriteError),
+    /// A scene does not compile.
     #[error(transparent)]
     Texture(#[from] CompileError),
     /// The stroke over the texture cannot be made.

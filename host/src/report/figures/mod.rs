@@ -1,15 +1,20 @@
 //! The figures, one module each.
 
+mod boards;
 mod bounds;
 mod core_line;
 mod loads;
 mod run_time;
+mod scene_bytes;
 mod soft;
 mod stability;
 mod stability_soft;
+mod tick_layers;
 mod tick_rate;
 
 use frixel_model::{Contact, Finger, ParameterError, Real};
+
+use boards::Boards;
 
 use super::chart::Chart;
 use super::counts::Counts;
@@ -36,11 +41,9 @@ pub(super) struct Figure {
 pub(super) fn all(counts: Option<&Counts>) -> Result<Vec<Figure>, ReportError> {
     let measured = run_time::measure()?;
     let instructions = counts.map(|counts| run_time::against_instructions(&measured, counts)).transpose()?.flatten();
-    let boards = match (&instructions, counts) {
-        (Some(_), _) => run_time::Boards::Shown,
-        (None, Some(_)) => run_time::Boards::NotInTheFile,
-        (None, None) => run_time::Boards::NoFile,
-    };
+    let inversions = Boards::new(instructions.as_ref(), counts);
+    let layers = counts.map(tick_layers::figure).transpose()?.flatten();
+    let ticks = Boards::new(layers.as_ref(), counts);
     let figures = [
         Some(core_line::figure()?),
         Some(loads::contact_radius()?),
@@ -48,9 +51,11 @@ pub(super) fn all(counts: Option<&Counts>) -> Result<Vec<Figure>, ReportError> {
         Some(bounds::figure()?),
         Some(soft::figure()?),
         instructions,
-        Some(run_time::against_time(&measured, boards)?),
+        Some(run_time::against_time(&measured, inversions)?),
         Some(run_time::against_size(&measured)?),
         Some(tick_rate::figure()?),
+        layers,
+        Some(scene_bytes::figure(&ticks.sentence("a tick"))?),
         Some(stability::in_f64()?),
         Some(stability::in_f32()?),
         Some(stability_soft::figure()?),

@@ -4,6 +4,7 @@ use core::f64::consts::LOG10_2;
 
 use frixel_model::ContactModel;
 
+use super::boards::Boards;
 use super::{EXAMPLE, Figure, GAP_M, LOAD_N, ReportError, example, example_finger};
 use crate::report::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
 use crate::report::counts::Counts;
@@ -94,30 +95,6 @@ pub(super) fn measure() -> Result<[Measured; 2], ReportError> {
     Ok([measured(0.0)?, measured(LOAD_N)?])
 }
 
-/// Whether the page has what an inversion takes on a board.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Boards {
-    Shown,
-    NotInTheFile,
-    NoFile,
-}
-
-impl Boards {
-    fn sentence(self) -> &'static str {
-        match self {
-            Self::Shown => "What an inversion takes on a board is in the figure before this one.",
-            Self::NotInTheFile => {
-                "What an inversion takes on a board is not shown: the file given with --bench has no count of one. \
-                 cargo xtask bench writes a file that has, target/bench/bench.json."
-            }
-            Self::NoFile => {
-                "What an inversion takes on a board is not shown: this page was made without --bench. cargo xtask bench \
-                 counts it, and frixel report --bench target/bench/bench.json shows it."
-            }
-        }
-    }
-}
-
 /// Error over run time on this computer.
 pub(super) fn against_time(measured: &[Measured; 2], boards: Boards) -> Result<Figure, ReportError> {
     let time = || Axis::log("MEASURED run time / the f64 closed form's", 0.05..200.0);
@@ -159,7 +136,7 @@ pub(super) fn against_time(measured: &[Measured; 2], boards: Boards) -> Result<F
                  else on this page does not.",
                 nanoseconds(measured)
             ),
-            boards.sentence().to_owned(),
+            boards.sentence("an inversion"),
             "Bisection is the straightforward way: it halves the range of voltages on Eqs. (36), (34), with a load on Eqs. (43), \
              (21), which give friction in total. In f32 and under a load the total cannot resolve the electric part. The textbook's \
              forward table holds friction at even steps of voltage; below the first step it knows nothing. Direct tables find their \

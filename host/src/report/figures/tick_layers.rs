@@ -1,0 +1,92 @@
+//! The cost of a tick against the number of layers in the scene.
+
+use frixel_wire::scene::cost::TICK_INSTRUCTIONS_MAX;
+
+use super::{Figure, ReportError};
+use crate::report::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
+use crate::report::counts::Counts;
+use crate::report::data::Data;
+
+const CORE: &str = "m4f";
+/// Layers in the scene.
+const LAYERS: [usize; 7] = [1, 2, 4, 8, 16, 32, 64];
+/// The axis of layers, with room for a number beside the last one.
+const LAYERS_SHOWN: (f64, f64) = (0.9, 80.0);
+/// Layers under the finger: how many, their look, and what they are called.
+const UNDER: [(usize, plotters::style::RGBColor, &str); 2] =
+    [(1, PALETTE[0], "one under the finger"), (4, PALETTE[1], "four under the finger")];
+
+/// A tick with some layers under the finger, and others elsewhere.
+struct Counted {
+    layers: f64,
+    worst: f64,
+    mean: Option<f64>,
+}
+
+fn counted(counts: &Counts, under: usize) -> Vec<Counted> {
+    let of = |layers: usize| {
+        let what = format!("tick_{under}_of_{layers}");
+        let worst = counts.instructions(CORE, &what)?;
+        Some(Counted { layers: layers as f64, worst, mean: counts.mean(CORE, &what) })
+    };
+    LAYERS.into_iter().filter_map(of).collect()
+}
+
+/// What layers that are not under the finger add at most: to the fewest layers, in instructions.
+fn added(curve: &[Counted]) -> Option<f64> {
+    let (first, others) = curve.split_first()?;
+    others.iter().map(|counted| counted.worst - first.worst).reduce(f64::max)
+}
+
+/// None without a count of such a tick.
+pub(super) fn figure(counts: &Counts) -> Result<Option<Figure>, ReportError> {
+    let limit = f64::from(TICK_INSTRUCTIONS_MAX);
+    let curves = UNDER.map(|(under, colour, name)| (under, colour, name, counted(counts, under)));
+    let worst = curves.iter().flat_map(|(.., curve)| curve).map(|counted| counted.worst).reduce(f64::max);
+    let Some(worst) = worst else { return Ok(None) };
+    let mut data = Data::new(["core", "layers_under_the_finger", "layers", "instructions", "mean_instructions"]);
+    let mut panel = Panel::new(
+        "A tick on a Cortex-M4F",
+        Axis::log("layers in the scene", LAYERS_SHOWN.0..LAYERS_SHOWN.1),
+        Axis::linear("instructions of a tick", 0.0..1.12 * worst.max(limit)),
+    );
+    panel.add(
+        &format!("most that a tick may take: {limit}"),
+        Look::line(PALETTE[6], Line::Dashed),
+        vec![(LAYERS_SHOWN.0, limit), (LAYERS_SHOWN.1, limit)],
+    );
+    let mut additions = Vec::new();
+    for (under, colour, name, curve) in &curves {
+        for counted in curve {
+            let (layers, mean) = (counted.layers.into(), counted.mean.into());
+            data.row([CORE.into(), (*under).into(), layers, counted.worst.into(), mean]);
+            panel.notes.push((counted.layers, counted.worst + 0.04 * limit, counted.worst.to_string()));
+        }
+        let worst = curve.iter().map(|counted| (counted.layers, counted.worst)).collect();
+        let mean = curve.iter().filter_map(|counted| Some((counted.layers, counted.mean?))).collect();
+        panel.add(&format!("{name}, worst"), Look { colour: *colour, line: Line::Solid, mark: Mark::Disc }, worst);
+        panel.add(&format!("{name}, mean"), Look { colour: *colour, line: Line::Thin, mark: Mark::Ring }, mean);
+        additions.extend(added(curve).map(|more| format!("with {name} they add {more} instructions at most")));
+    }
+    let elsewhere = if additions.is_empty() { String::new() } else { format!(": {}", additions.join("; ")) };
+    Ok(Some(Figure {
+        name: "tick-cost-against-layers",
+        title: "Cost of a tick against the number of layers".to_owned(),
+        caption: vec![
+            format!(
+                "Instructions of a tick while a finger comes down, slides, rests and slides on: the longest tick, and the mean of \
+                 all. Each layer is a constant in a rectangle; those that are not under the finger lie elsewhere on the screen. A \
+                 grid with a bit for each layer lets a tick look only at the layers near the finger, so that layers elsewhere \
+                 hardly count{elsewhere}."
+            ),
+            format!(
+                "The dashed line is the most that a tick may take, {limit} instructions: a scene with a place that takes more is \
+                 refused. Four layers are shown under the finger and not eight, because already eight constants on top of one \
+                 another would take more than that. Counts come from the file given with --bench, which cargo xtask bench writes: \
+                 they were counted in an emulator."
+            ),
+        ],
+        chart: Chart { panels: vec![panel], columns: 1, shared_legend: false },
+        csv: data.csv()?,
+    }))
+}
