@@ -30,10 +30,12 @@ impl BitmapPool {
         Self { bytes: [const { AtomicU8::new(0) }; BITMAP_POOL_LEN] }
     }
 
-    /// The sample at an offset; zero beyond the end.
+    /// The sample at an offset. No bitmap reaches beyond the end, where the pool begins again: a power of two needs no
+    /// other bound.
     #[inline]
     pub(crate) fn sample(&self, offset: usize) -> u8 {
-        self.bytes.get(offset).map_or(0, |byte| byte.load(Ordering::Relaxed))
+        const { assert!(BITMAP_POOL_LEN == 0 || BITMAP_POOL_LEN.is_power_of_two()) };
+        self.bytes.get(offset & BITMAP_POOL_LEN.wrapping_sub(1)).map_or(0, |byte| byte.load(Ordering::Relaxed))
     }
 
     /// Moves samples to a lower offset.

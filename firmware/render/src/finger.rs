@@ -107,9 +107,8 @@ impl Finger {
     /// Takes a report of the touch source. A finger that comes down is there when the report is digested; one that is
     /// lifted is gone at once.
     pub(crate) fn take(&mut self, touch: Touch, now_tick: u32, prediction: bool, timing: &FingerTiming) {
-        // A source that is faster than reports are digested is not to starve the finger.
-        while self.is_digesting() {
-            self.digest(now_tick, prediction, timing);
+        if self.is_digesting() {
+            self.digest_whole(now_tick, prediction, timing);
         }
         match touch {
             Touch::Up => {
@@ -158,6 +157,15 @@ impl Finger {
                 self.report = Report::Digested;
                 self.stillness.take(self.velocity_m_per_s);
             }
+        }
+    }
+
+    /// Takes in what is left of the newest report at once: a source that is faster is not to starve the finger.
+    #[cold]
+    #[inline(never)]
+    fn digest_whole(&mut self, now_tick: u32, prediction: bool, timing: &FingerTiming) {
+        while self.is_digesting() {
+            self.digest(now_tick, prediction, timing);
         }
     }
 

@@ -16,6 +16,10 @@ use crate::{Active, BitmapPool, Board, Drive, Order, Sense, Status};
 /// Ticks until the next look at what has no deadline: far less than the tick counter takes to wrap.
 const LOOK_AFTER_TICKS: u32 = 1 << 30;
 
+/// After so many ticks that had something else to do, the next looks at the scene all the same: a touch source may
+/// report faster than its reports are taken in.
+const ATTENDED_MAX_TICKS: u32 = 8;
+
 /// Turns touch into voltage, one tick at a time, and owns the output through its supervisor.
 pub struct Ticker<'a> {
     finger: Finger,
@@ -246,6 +250,11 @@ impl<'a> Ticker<'a> {
             self.live &= self.may_be_live();
             self.find_next_due();
         }
+        if self.live && self.tick.wrapping_sub(self.moment.tick) > ATTENDED_MAX_TICKS {
+            [self.moment.x_m, self.moment.y_m] = self.finger.place_m();
+            self.moment.tick = self.tick;
+            self.ask_again();
+        }
         if self.live {
             self.note_reach();
         }
@@ -269,7 +278,11 @@ impl<'a> Ticker<'a> {
         let in_ticks = self.supervisor.silent_at_tick().map_or(LOOK_AFTER_TICKS, |tick| tick.wrapping_sub(self.tick));
         self.silent_tick = self.tick.wrapping_add(in_ticks.min(LOOK_AFTER_TICKS));
         self.find_next_due();
-        self.live = self.may_be_live();
+        let may_be_live = self.may_be_live();
+        if may_be_live && !self.live {
+            self.moment.tick = self.tick;
+        }
+        self.live = may_be_live;
         #[cfg(feature = "stream")]
         if self.supervisor.state() != State::Active {
             self.stop_stream();

@@ -37,9 +37,9 @@ fn records() -> Vec<Record> {
     };
     [
         (Region::Screen, Blend::Replace, Layer::Constant { electric_friction_n: 0.004 }),
-        (Region::Polygon { first: 2, count: 4 }, Blend::Add, grating(Wave::Sine)),
+        (Region::Polygon { first: 2, count: 4 }, Blend::Add, grating(Wave::Triangle)),
         (rectangle, Blend::Max, grating(Wave::Square { duty: 0.3 })),
-        (ellipse, Blend::Add, grating(Wave::Triangle)),
+        (ellipse, Blend::Add, grating(Wave::Sine)),
         (ellipse, Blend::Multiply, grating(Wave::Saw)),
         (Region::Screen, Blend::Add, bitmap(true)),
         (rectangle, Blend::Add, bitmap(false)),

@@ -9,7 +9,7 @@ use frixel_render::{Board, Drive};
 use frixel_wire::frame::crc32;
 use frixel_wire::hello::BoardLimits;
 use frixel_wire::message::{Accepted, Command};
-use frixel_wire::scene::{Layer, bitmap_crc32};
+use frixel_wire::scene::{Layer, Record, Region, bitmap_crc32};
 use proptest::prelude::*;
 use support::flash::{PAGE_LEN, SimulatedFlash};
 use support::{Desk, HEADER, Memory, constant, record, scene};
@@ -174,7 +174,13 @@ fn textured(desk: &mut Desk) -> Vec<u8> {
     desk.upload_bitmap(3, 3, &pictures[1]).unwrap();
     let first = bitmap_crc32(61, 53, &pictures[0]);
     let second = bitmap_crc32(3, 3, &pictures[1]);
-    scene(&HEADER, &[record(layer(first, 1e-3)), record(layer(second, 1e-2)), record(layer(first, 7e-4))])
+    // Side by side: one on another they would take too long.
+    let beside = |x_m, layer| {
+        let region = Region::Rectangle { x_m, y_m: 0.0, width_m: 0.03, height_m: 0.1 };
+        Record { region, ..record(layer) }
+    };
+    let left = beside(0.0, layer(first, 1e-3));
+    scene(&HEADER, &[left, beside(0.04, layer(second, 1e-2)), beside(0.08, layer(first, 7e-4))])
 }
 
 /// Steps the keeper until it has nothing more to do.

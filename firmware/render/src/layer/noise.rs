@@ -7,7 +7,7 @@ use crate::turns;
 pub(crate) const NOISES_MAX: usize = if cfg!(feature = "noise") { 8 } else { 0 };
 /// Waves that a layer of noise is made of.
 const WAVES: usize = 8;
-/// Keeps the sum within its range although a cosine may be 3e-7 larger than 1.
+/// Keeps the sum within its range although a cosine may be a little larger than 1.
 const WITHIN: f32 = 1.0 - 1e-6;
 
 /// The waves of one layer, in the scene's table of noises.

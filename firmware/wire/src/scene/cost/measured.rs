@@ -2,23 +2,23 @@
 //! again and fails when it finds others.
 
 // A tick that looks at layers and finds none.
-pub(super) const EMPTY: u32 = 264;
+pub(super) const EMPTY: u32 = 268;
 
 // What a sine carrier adds.
-pub(super) const SINE_CARRIER: u32 = 49;
+pub(super) const SINE_CARRIER: u32 = 47;
 
 // Layers, in a rectangle.
 pub(super) const CONSTANT: u32 = 64;
-pub(super) const SINE: u32 = 114;
-pub(super) const SQUARE: u32 = 121;
+pub(super) const SINE: u32 = 112;
+pub(super) const SQUARE: u32 = 113;
 pub(super) const TRIANGLE: u32 = 91;
 pub(super) const SAW: u32 = 101;
-pub(super) const BITMAP: u32 = 184;
-pub(super) const BITMAP_TILED: u32 = 208;
-pub(super) const NOISE: u32 = 272;
+pub(super) const BITMAP: u32 = 182;
+pub(super) const BITMAP_TILED: u32 = 198;
+pub(super) const NOISE: u32 = 256;
 pub(super) const EDGE: u32 = 194;
-pub(super) const BUTTON: u32 = 200;
-pub(super) const VIBRATION_SINE: u32 = 147;
+pub(super) const BUTTON: u32 = 203;
+pub(super) const VIBRATION_SINE: u32 = 145;
 pub(super) const VIBRATION_SQUARE: u32 = 126;
 
 // A curve, and each of its points.
@@ -29,6 +29,6 @@ pub(super) const SPEED_POINT: u32 = 7;
 pub(super) const STREAM: u32 = 228;
 
 // What other regions add to a rectangle.
-pub(super) const ELLIPSE: u32 = 15;
-pub(super) const POLYGON: u32 = 83;
-pub(super) const POLYGON_EDGE: u32 = 18;
+pub(super) const ELLIPSE: u32 = 7;
+pub(super) const POLYGON: u32 = 107;
+pub(super) const POLYGON_EDGE: u32 = 14;
