@@ -156,7 +156,7 @@ fn what_is_out_of_reach_is_measured_and_named() {
 fn the_smallest_firmware_has_what_the_scene_asks_for() {
     let files = Files::new();
     let features = |rest: &str| files.check(rest)["board"]["features"].clone();
-    assert_eq!(features(&constant("friction_n = 0.26")), serde_json::json!([]));
+    assert_eq!(features(&constant("friction_n = 0.26")), serde_json::json!(["telemetry"]));
     let every = fs::read_dir(repository().join("scenes")).unwrap().filter_map(|entry| {
         let path = entry.unwrap().path();
         path.extension().is_some_and(|extension| extension == "toml").then(|| path.display().to_string())
@@ -174,8 +174,8 @@ fn the_smallest_firmware_has_what_the_scene_asks_for() {
     found.dedup();
     // All that a scene can ask for, as both manifests have it.
     for (manifest, others) in [
-        ("firmware/render/Cargo.toml", ["telemetry", "store"].as_slice()),
-        ("firmware/board-nucleo-g474re/Cargo.toml", &["telemetry", "store", "panic-message", "log"]),
+        ("firmware/render/Cargo.toml", ["store"].as_slice()),
+        ("firmware/board-nucleo-g474re/Cargo.toml", &["store", "panic-message", "log"]),
     ] {
         let text = fs::read_to_string(repository().join(manifest)).unwrap();
         let list = text.split("default = [").nth(1).unwrap().split(']').next().unwrap();

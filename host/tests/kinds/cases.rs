@@ -278,20 +278,21 @@ fn regions() -> Vec<Case> {
             ..CASE
         },
         Case {
-            // A square of two polygons side by side.
-            name: "polygons",
+            // The left part of a square of two polygons, which together under one finger would take too long.
+            name: "polygon",
             layers: "[[layer]]\nkind = \"constant\"\nblend = \"add\"\nfriction_n = 0.02\n\
-                     region = { shape = \"polygon\", points_mm = [[20, 10], [90, 10], [60, 40], [70, 70], [20, 70]] }\n\
-                     [[layer]]\nkind = \"constant\"\nblend = \"add\"\nfriction_n = 0.01\n\
+                     region = { shape = \"polygon\", points_mm = [[20, 10], [90, 10], [60, 40], [70, 70], [20, 70]] }",
+            expected: |_, at| if (20.0..polygon_cut(at.y)).contains(&at.x) { 20.0 } else { 0.0 },
+            jumps: true,
+            bound: 0.0302,
+            ..CASE
+        },
+        Case {
+            // And the right part.
+            name: "polygon beside it",
+            layers: "[[layer]]\nkind = \"constant\"\nblend = \"add\"\nfriction_n = 0.01\n\
                      region = { shape = \"polygon\", points_mm = [[90, 10], [110, 10], [110, 70], [70, 70], [60, 40]] }",
-            expected: |_, at| {
-                if !(20.0..110.0).contains(&at.x) {
-                    return 0.0;
-                }
-                // From (90, 10) to (60, 40), and on to (70, 70).
-                let cut = if at.y < 40.0 { 100.0 - at.y } else { 60.0 + (at.y - 40.0) / 3.0 };
-                if at.x < cut { 20.0 } else { 10.0 }
-            },
+            expected: |_, at| if (polygon_cut(at.y)..110.0).contains(&at.x) { 10.0 } else { 0.0 },
             jumps: true,
             bound: 0.0207,
             ..CASE
@@ -342,4 +343,9 @@ fn blends() -> Vec<Case> {
             ..CASE
         },
     ]
+}
+
+/// From (90, 10) to (60, 40), and on to (70, 70): where two polygons meet, in mm.
+fn polygon_cut(y: f64) -> f64 {
+    if y < 40.0 { 100.0 - y } else { 60.0 + (y - 40.0) / 3.0 }
 }

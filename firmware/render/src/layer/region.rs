@@ -17,7 +17,6 @@ pub(super) enum Region {
     },
     #[cfg(feature = "polygon")]
     Polygon {
-        bounds: Bounds,
         first: u8,
         count: u8,
     },
@@ -59,14 +58,7 @@ impl Region {
             #[cfg(feature = "polygon")]
             Record::Polygon { first, count } => {
                 let vertices = polygon::vertices(points, first, count);
-                let limit = |limit: fn(f32, f32) -> f32, of: fn(&Point) -> f32| vertices.iter().map(of).reduce(limit);
-                let bounds = Bounds {
-                    left_m: limit(f32::min, |vertex| vertex.x)?,
-                    top_m: limit(f32::min, |vertex| vertex.y)?,
-                    right_m: limit(f32::max, |vertex| vertex.x)?,
-                    bottom_m: limit(f32::max, |vertex| vertex.y)?,
-                };
-                Some(Self::Polygon { bounds, first, count })
+                (!vertices.is_empty()).then_some(Self::Polygon { first, count })
             }
             #[cfg(not(feature = "polygon"))]
             Record::Polygon { .. } => {
@@ -87,9 +79,7 @@ impl Region {
                 x * x + y * y <= 1.0
             }
             #[cfg(feature = "polygon")]
-            Self::Polygon { bounds, first, count } => {
-                bounds.contain(x_m, y_m) && polygon::contains(polygon::vertices(points, *first, *count), x_m, y_m)
-            }
+            Self::Polygon { first, count } => polygon::contains(polygon::vertices(points, *first, *count), x_m, y_m),
             #[cfg(not(feature = "polygon"))]
             #[allow(unreachable_patterns, reason = "points belong to polygons")]
             _ => points.is_empty(),

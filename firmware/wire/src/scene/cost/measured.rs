@@ -29,6 +29,6 @@ pub(super) const SPEED_POINT: u32 = 7;
 pub(super) const STREAM: u32 = 228;
 
 // What other regions add to a rectangle.
-pub(super) const ELLIPSE: u32 = 7;
-pub(super) const POLYGON: u32 = 107;
+pub(super) const ELLIPSE: u32 = 8;
+pub(super) const POLYGON: u32 = 85;
 pub(super) const POLYGON_EDGE: u32 = 14;
