@@ -21,6 +21,7 @@ const LOOK_AFTER_TICKS: u32 = 1 << 30;
 const ATTENDED_MAX_TICKS: u32 = 8;
 
 /// Turns touch into voltage, one tick at a time, and owns the output through its supervisor.
+#[allow(clippy::struct_excessive_bools, reason = "each says one thing that the tick asks in one instruction")]
 pub struct Ticker<'a> {
     finger: Finger,
     timing: Timing,

@@ -313,8 +313,8 @@ fn bitmaps_of_a_scene_that_was_refused_give_way() {
     for sample in 2..4 {
         desk.upload_bitmap(200, 100, &vec![sample; 20_000]).unwrap();
     }
-    assert!(matches!(desk.upload_bitmap(200, 100, &[4; 20_000]), Err(Refusal::BitmapPoolFull { .. })));
-    assert_eq!(desk.upload_bitmap(200, 100, &[5; 20_000]), Ok(Accepted::Done));
+    assert!(matches!(desk.upload_bitmap(200, 100, &vec![4; 20_000]), Err(Refusal::BitmapPoolFull { .. })));
+    assert_eq!(desk.upload_bitmap(200, 100, &vec![5; 20_000]), Ok(Accepted::Done));
 }
 
 proptest! {

@@ -39,7 +39,7 @@ impl KeptScene<'_> {
         if offset == 0 {
             return pair(scene_len, count);
         }
-        if offset % WORD_LEN as u32 != 0 {
+        if !offset.is_multiple_of(WORD_LEN as u32) {
             return word;
         }
         if let Some(bitmap) = self.bitmaps.get((offset as usize / WORD_LEN).wrapping_sub(1)) {
