@@ -81,12 +81,6 @@ impl Active {
         self.table.as_ref()
     }
 
-    /// Bits of the largest electric friction within reach; none without a scene.
-    #[inline]
-    pub(crate) fn electric_friction_max_bits(&self) -> u32 {
-        self.table().map_or(0, |table| table.electric_friction_max_n().to_bits())
-    }
-
     /// Some layer plays what the host streams.
     #[cfg(feature = "stream")]
     pub(crate) fn has_stream(&self) -> bool {

@@ -1,5 +1,6 @@
 //! The tick: touch in, voltage out.
 
+use frixel_model::InverseTable;
 use frixel_wire::fault::{Fault, Flags, State};
 use frixel_wire::message::Telemetry;
 
@@ -215,8 +216,7 @@ impl<'a> Ticker<'a> {
         } else {
             self.flags = if settling { self.still() } else { Flags::default() };
             if self.live {
-                [self.moment.x_m, self.moment.y_m] = self.finger.place_m();
-                self.moment.tick = self.tick;
+                self.meet_the_moment();
                 let (voltage_v_rms, out_of_reach) = self.voltage_v_rms();
                 self.target_v_rms = voltage_v_rms;
                 if out_of_reach {
@@ -252,13 +252,20 @@ impl<'a> Ticker<'a> {
             self.find_next_due();
         }
         if self.live && self.tick.wrapping_sub(self.moment.tick) > ATTENDED_MAX_TICKS {
-            [self.moment.x_m, self.moment.y_m] = self.finger.place_m();
-            self.moment.tick = self.tick;
+            self.meet_the_moment();
             self.ask_again();
         }
-        if self.live {
-            self.note_reach();
+        let asked_n = self.asked_electric_friction_n;
+        if self.live && self.active.table().is_some_and(|table| may_be_out_of_reach(asked_n, table)) {
+            self.note_out_of_reach();
         }
+    }
+
+    /// The scene is to be asked for this tick, with the finger where it is now.
+    #[inline]
+    fn meet_the_moment(&mut self) {
+        [self.moment.x_m, self.moment.y_m] = self.finger.place_m();
+        self.moment.tick = self.tick;
     }
 
     /// The flag of a finger that is still, if it is.
@@ -396,21 +403,10 @@ impl<'a> Ticker<'a> {
         let friction_n = self.active.electric_friction_n(&self.moment, self.pool, &mut self.clicks);
         let electric_friction_n = self.finger.gain() * friction_n;
         self.asked_electric_friction_n = electric_friction_n;
-        // Bit patterns of what is negative, and of not-a-number, are above those of every positive number.
-        let out_of_reach = electric_friction_n.to_bits() > table.electric_friction_max_n().to_bits();
-        (table.voltage_v_rms(electric_friction_n), out_of_reach)
+        (table.voltage_v_rms(electric_friction_n), may_be_out_of_reach(electric_friction_n, table))
     }
 
     /// Counts a tick whose friction is out of reach.
-    #[inline]
-    fn note_reach(&mut self) {
-        let asked_n = self.asked_electric_friction_n;
-        // Bit patterns of what is negative, and of not-a-number, are above those of every positive number.
-        if asked_n.to_bits() > self.active.electric_friction_max_bits() {
-            self.note_out_of_reach();
-        }
-    }
-
     #[cold]
     fn note_out_of_reach(&mut self) {
         // Minus zero is zero.
@@ -437,4 +433,11 @@ impl<'a> Ticker<'a> {
         self.drive = Drive::default();
         self.drive
     }
+}
+
+/// Above the largest friction, negative, or not a number: bit patterns of the last two are above those of every positive
+/// number. Minus zero is among them, and within reach.
+#[inline]
+fn may_be_out_of_reach(electric_friction_n: f32, table: &InverseTable) -> bool {
+    electric_friction_n.to_bits() > table.electric_friction_max_n().to_bits()
 }
