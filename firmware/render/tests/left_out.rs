@@ -5,7 +5,7 @@ mod support;
 use frixel_wire::hello::feature;
 use frixel_wire::message::{Command, ConfigRefusal, Refusal};
 use frixel_wire::scene::{Beat, Burst, Carrier, Click, Header, Layer, Point, Record, Region, Wave};
-use support::{Desk, HEADER, Memory, constant, record, scene, scene_with_points};
+use support::{Desk, HEADER, Memory, bitmap, constant, record, scene, scene_with_points};
 
 const GRATING: Layer = Layer::Grating {
     wave: Wave::Sine,
@@ -46,18 +46,7 @@ fn a_layer_plays_or_is_refused_by_its_number() {
     let found = desk.load(&scene(&HEADER, &records)).err();
     assert_eq!(found, (!cfg!(feature = "grating")).then_some(Refusal::LeftOut { layer: 1 }));
 
-    let bitmap = Layer::Bitmap {
-        crc32: 7,
-        x_m: 0.0,
-        y_m: 0.0,
-        pitch_m: 1e-3,
-        black_n: 0.0,
-        white_n: 0.02,
-        pitch_y_m: 1e-3,
-        angle_turns: 0.0,
-        tiled: false,
-    };
-    let found = desk.load(&scene(&HEADER, &[record(bitmap)])).err();
+    let found = desk.load(&scene(&HEADER, &[record(bitmap(7))])).err();
     let expected =
         if cfg!(feature = "bitmap") { Refusal::BitmapMissing { crc32: 7 } } else { Refusal::LeftOut { layer: 0 } };
     assert_eq!(found, Some(expected));

@@ -14,22 +14,9 @@ use frixel_wire::scene::{Header, Layer, SceneError};
 #[cfg(feature = "bitmap")]
 use frixel_wire::scene::{Record, Region, bitmap_crc32};
 use proptest::prelude::*;
-use support::{Desk, HEADER, Memory, constant, record, request, scene};
-
 #[cfg(feature = "bitmap")]
-fn bitmap(crc32: u32) -> Layer {
-    Layer::Bitmap {
-        crc32,
-        x_m: 0.0,
-        y_m: 0.0,
-        pitch_m: 1e-3,
-        black_n: 0.0,
-        white_n: 0.02,
-        pitch_y_m: 1e-3,
-        angle_turns: 0.0,
-        tiled: false,
-    }
-}
+use support::bitmap;
+use support::{Desk, HEADER, Memory, constant, record, request, scene};
 
 #[test]
 fn a_board_says_who_it_is_and_what_it_holds() {

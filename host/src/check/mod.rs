@@ -12,7 +12,7 @@ use serde::Serialize;
 pub use board::BoardImage;
 pub use rehearsal::RehearsalError;
 
-use crate::scene::{Asked, Program};
+use crate::scene::{Asked, Program, middle_mm};
 
 /// The numbers of a scene; its fields are the keys of `--json`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -80,16 +80,13 @@ pub struct LongestTick {
 impl LongestTick {
     fn of(program: &Program) -> Self {
         let Worst { instructions, cell } = program.worst_tick();
-        let layers = u64::from(cell.layers[0]) | u64::from(cell.layers[1]) << u32::BITS;
-        let titles = (0..).zip(&program.titles).filter(|(number, _)| layers >> number & 1 != 0);
-        // A tenth of a millimetre: the grid is coarse.
-        let mm = |metres: f32| (1e4 * f64::from(metres)).round() / 10.0;
+        let (x_mm, y_mm) = middle_mm(&cell);
         Self {
             instructions,
             instructions_limit: TICK_INSTRUCTIONS_MAX,
-            x_mm: mm(cell.x_m),
-            y_mm: mm(cell.y_m),
-            layers: titles.map(|(_, title)| title.clone()).collect(),
+            x_mm,
+            y_mm,
+            layers: program.titles_in(&cell).into_iter().map(str::to_owned).collect(),
         }
     }
 }

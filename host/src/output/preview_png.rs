@@ -8,7 +8,7 @@ use super::OutputError;
 use super::canvas::{Anchor, BLACK, Canvas, Colour, WHITE};
 use super::map::{Frame, LEFT, TITLE_SIZE, TOP};
 use super::scale::colour;
-use crate::scene::{Program, Reach};
+use crate::scene::{Program, ROUNDING, Reach};
 use crate::wanted::{Moment, Wanted};
 
 /// Colours that the scale is brought to; more are not told apart, and make the file large.
@@ -16,8 +16,6 @@ const COLOURS: f64 = 32.0;
 /// Distance of the lines of a hatching, and their width, in pixels.
 const HATCH_PITCH: usize = 8;
 const HATCH_WIDTH: usize = 2;
-/// Friction this little out of reach, relative to the reach, comes from rounding to `f32`.
-const ROUNDING: f64 = 1e-6;
 /// Distance of two lines of the caption, and where the first one stands under the map, in pixels.
 const LINE: usize = 22;
 const CAPTION: usize = 80;

@@ -6,11 +6,8 @@ use super::layer::{Above, Layer};
 use super::log::Log;
 use super::mistake::Mistake;
 use super::program::Program;
-use super::reach::Reach;
+use super::reach::{ROUNDING, Reach};
 use crate::wanted::Wanted;
-
-/// Friction this little out of reach, relative to the reach, comes from rounding to `f32`.
-const ROUNDING: f64 = 1e-6;
 
 /// Refuses layers that leave the reach; with `saturate`, or where that is not certain, notes it.
 pub(super) fn check(scene: &Scene, program: &mut Program, log: &mut Log) {

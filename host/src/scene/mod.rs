@@ -36,5 +36,6 @@ pub use mistake::{CompileError, Located, Mistake, Nearest};
 pub use outside::{Asked, Outside};
 pub use program::{Bitmap, Program};
 pub use reach::Reach;
-pub(crate) use reach::carrier;
+pub(crate) use reach::{ROUNDING, carrier};
 pub use schema::json_schema;
+pub(crate) use tick_cost::middle_mm;

@@ -5,12 +5,11 @@ use serde::Serialize;
 
 use super::cover::{Span, span_at};
 use super::program::Program;
+use super::reach::ROUNDING;
 use crate::wanted::{Piece, Wanted};
 
 /// Places that are looked at along the longer side of the screen.
 const PLACES: f64 = 600.0;
-/// Friction this little out of reach, relative to the reach, comes from rounding to `f32`.
-const ROUNDING: f64 = 1e-6;
 
 /// What a scene asks for anywhere on its screen, at any time and speed, clicks and streams at their most.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -5,6 +5,9 @@ use frixel_wire::hello::BoardLimits;
 use frixel_wire::scene::{Carrier as Shape, Header};
 use thiserror::Error;
 
+/// Friction this little out of reach, relative to the reach, comes from rounding to `f32`.
+pub(crate) const ROUNDING: f64 = 1e-6;
+
 /// The frictions that a finger can be given: from natural, `mu F_N`, to natural plus the most that the drive adds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reach {

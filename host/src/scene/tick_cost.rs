@@ -1,5 +1,6 @@
 //! Refuses a scene whose tick takes too long at some place, as the board would.
 
+use frixel_wire::scene::Cell;
 use frixel_wire::scene::cost::{Worst, worst_of_scene};
 
 use super::file::Scene;
@@ -14,15 +15,9 @@ pub(super) fn check(scene: &Scene, program: &Program, max: u32, log: &mut Log) {
     if instructions <= max {
         return;
     }
-    let layers = u64::from(cell.layers[0]) | u64::from(cell.layers[1]) << u32::BITS;
-    let titles: Vec<&str> = (0..)
-        .zip(&program.titles)
-        .filter(|(number, _)| layers >> number & 1 != 0)
-        .map(|(_, title)| title.as_str())
-        .collect();
+    let titles = program.titles_in(&cell);
     let topmost = scene.layers.iter().rfind(|layer| titles.last().is_some_and(|title| *title == layer.title));
-    let mm = |metres: f32| (1e4 * f64::from(metres)).round() / 10.0;
-    let (x_mm, y_mm) = (mm(cell.x_m), mm(cell.y_m));
+    let (x_mm, y_mm) = middle_mm(&cell);
     let mistake = Mistake::TickTooLong { instructions, max, layers: titles.join(" and "), x_mm, y_mm };
     log.add(topmost.map_or(0, |layer| layer.places.table()), mistake);
 }
@@ -32,6 +27,17 @@ impl Program {
     pub fn worst_tick(&self) -> Worst {
         worst_of_scene(&self.header, &self.records, &self.points)
     }
+
+    /// How messages call the layers that may act in a cell, from bottom to top.
+    pub(crate) fn titles_in(&self, cell: &Cell) -> Vec<&str> {
+        (0..).zip(&self.titles).filter(|(number, _)| cell.has(*number)).map(|(_, title)| title.as_str()).collect()
+    }
+}
+
+/// The middle of a cell, to a tenth of a millimetre: the grid is coarse.
+pub(crate) fn middle_mm(cell: &Cell) -> (f64, f64) {
+    let mm = |metres: f32| (1e4 * f64::from(metres)).round() / 10.0;
+    (mm(cell.x_m), mm(cell.y_m))
 }
 
 #[cfg(test)]

@@ -262,6 +262,21 @@ pub fn record(layer: Layer) -> Record {
     Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer }
 }
 
+/// A picture with a millimetre from sample to sample.
+pub fn bitmap(crc32: u32) -> Layer {
+    Layer::Bitmap {
+        crc32,
+        x_m: 0.0,
+        y_m: 0.0,
+        pitch_m: 1e-3,
+        black_n: 0.0,
+        white_n: 0.02,
+        pitch_y_m: 1e-3,
+        angle_turns: 0.0,
+        tiled: false,
+    }
+}
+
 /// A friction that is the same everywhere.
 pub fn constant(electric_friction_n: f32) -> Vec<u8> {
     scene(&HEADER, &[record(Layer::Constant { electric_friction_n })])

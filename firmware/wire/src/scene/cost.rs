@@ -35,9 +35,7 @@ pub const fn of_empty_scene(header: &Header) -> u32 {
 pub fn worst(header: &Header, grid: &Grid, costs: &[u32]) -> Worst {
     let empty = Worst { instructions: 0, cell: Cell { x_m: 0.0, y_m: 0.0, layers: [0; 2] } };
     grid.cells().fold(empty, |worst, cell| {
-        let [first, others] = cell.layers;
-        let layers = u64::from(first) | u64::from(others) << 32;
-        let here = (0..).zip(costs).filter(|(number, _)| layers >> number & 1 != 0).map(|(_, cost)| cost);
+        let here = (0..).zip(costs).filter(|(number, _)| cell.has(*number)).map(|(_, cost)| cost);
         let instructions = of_empty_scene(header) + here.sum::<u32>();
         if instructions > worst.instructions { Worst { instructions, cell } } else { worst }
     })

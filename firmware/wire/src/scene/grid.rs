@@ -30,6 +30,15 @@ pub struct Cell {
     pub layers: LayerSet,
 }
 
+impl Cell {
+    /// Whether layer number `layer` may act there.
+    pub fn has(&self, layer: u8) -> bool {
+        let [first, others] = self.layers;
+        let layers = u64::from(first) | u64::from(others) << u32::BITS;
+        layers.checked_shr(u32::from(layer)).is_some_and(|from_it_on| from_it_on & 1 != 0)
+    }
+}
+
 impl Grid {
     /// A grid without layers, on a screen without size.
     pub const EMPTY: Self = Self { columns_per_m: 0.0, rows_per_m: 0.0, cells: [[0; 2]; SIDE * SIDE] };
