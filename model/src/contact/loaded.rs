@@ -72,7 +72,7 @@ impl<T: Real> ContactModel<T> for LoadedContact<T> {
         let v = self.contact.scaled_voltage(voltage_v_rms)?;
         let point = Point::upper(v, self.n).ok_or(StateError::OutOfRange)?;
         let state = self.contact.state_at(&point)?;
-        Ok(ContactState { friction_n: self.natural_friction_n + state.electric_friction_n, ..state })
+        ContactState { friction_n: self.natural_friction_n + state.electric_friction_n, ..state }.in_range()
     }
 
     fn voltage_for_electric_friction(&self, electric_friction_n: T) -> Result<T, InverseError> {
