@@ -10,7 +10,7 @@ use crate::Board;
 use crate::bitmap_pool::{BitmapPool, Directory};
 use crate::carrier::CarrierTiming;
 use crate::config;
-use crate::layer::{self, Around, Clicks, Layer, Loading, Moment, Tables};
+use crate::layer::{self, Around, Clicks, Layer, Loading, Moment, Sole, Tables};
 
 /// Coefficients of one scene. A board has two of them: one that plays and one that the next scene is built in.
 ///
@@ -24,8 +24,8 @@ pub struct Active {
     /// `None` for a scene that goes on without a host.
     pub(crate) host_timeout_ticks: Option<u32>,
     pub(crate) prediction: bool,
-    /// One layer on the whole screen is all that is on.
-    single: bool,
+    /// The one layer that is all there is, if so.
+    sole: Sole,
     table: Option<InverseTable>,
     /// The layers that are on.
     on: LayerSet,
@@ -49,7 +49,7 @@ impl Active {
             voltage_max_v_rms: 0.0,
             host_timeout_ticks: None,
             prediction: true,
-            single: false,
+            sole: Sole::None,
         }
     }
 
@@ -72,7 +72,7 @@ impl Active {
         self.voltage_max_v_rms = 0.0;
         self.host_timeout_ticks = None;
         self.prediction = true;
-        self.single = false;
+        self.sole = Sole::None;
     }
 
     /// The inverse table; `None` without a scene.
@@ -87,27 +87,39 @@ impl Active {
         self.layers.iter().any(Layer::is_stream)
     }
 
-    /// Some layer may click.
-    #[cfg(feature = "edge")]
+    /// Electric friction of all layers that are on, in N, at a place and a tick. What else they depend on is in `moment`.
     #[inline]
-    pub(crate) fn has_clicks(&self) -> bool {
-        !self.tables.clicks().is_empty()
-    }
-
-    /// Electric friction of all layers that are on, in N.
-    #[inline]
-    pub(crate) fn electric_friction_n(&self, moment: &Moment, pool: &BitmapPool, clicks: &mut Clicks) -> f32 {
-        let around = &mut Around { moment, pool, tables: &self.tables, clicks };
-        match self.layers.first() {
-            Some(layer) if self.single => layer.own_electric_friction_n(around),
-            _ => self.blended_electric_friction_n(around),
+    pub(crate) fn electric_friction_n(
+        &self,
+        place_m: [f32; 2],
+        tick: u32,
+        moment: &mut Moment,
+        pool: &BitmapPool,
+        clicks: &mut Clicks,
+    ) -> f32 {
+        match &self.sole {
+            Sole::Constant(electric_friction_n) => *electric_friction_n,
+            #[cfg(feature = "grating")]
+            Sole::Grating(grating) => grating.at(place_m),
+            #[cfg(feature = "bitmap")]
+            Sole::Picture(picture) => picture.electric_friction_n(place_m, pool),
+            Sole::None => {
+                moment.place_m = place_m;
+                moment.tick = tick;
+                self.blended_electric_friction_n(&mut Around { moment, pool, tables: &self.tables, clicks })
+            }
         }
     }
 
     #[inline(never)]
     fn blended_electric_friction_n(&self, around: &mut Around) -> f32 {
         let [on, others_on] = self.on;
-        let [near, others_near] = self.grid.at(around.moment.x_m, around.moment.y_m);
+        let [x_m, y_m] = around.moment.place_m;
+        let [near, others_near] = self.grid.at(x_m, y_m);
+        #[cfg(feature = "edge")]
+        if !self.tables.clicks().is_empty() {
+            around.clicks.begin();
+        }
         let (mut first, mut set, mut others) = (0, on & near, others_on & others_near);
         let mut electric_friction_n = 0.0;
         loop {
@@ -131,7 +143,7 @@ impl Active {
             layer.set_gain(gain);
             self.put(number, on);
         }
-        self.look_for_a_single_layer();
+        self.sole = self.find_sole();
     }
 
     /// Makes these the coefficients of `scene`. When it is refused, they are those of no scene.
@@ -170,7 +182,7 @@ impl Active {
             self.put(number, true);
             self.grid.add(number, &record.region, self.tables.points());
         }
-        self.look_for_a_single_layer();
+        self.sole = self.find_sole();
         let Worst { instructions, cell } = cost::worst(scene.header(), &self.grid, &costs);
         if instructions > TICK_INSTRUCTIONS_MAX {
             let max = TICK_INSTRUCTIONS_MAX;
@@ -186,8 +198,11 @@ impl Active {
         *word = if on { *word | bit } else { *word & !bit };
     }
 
-    fn look_for_a_single_layer(&mut self) {
-        self.single = self.on == [1, 0] && self.layers.first().is_some_and(Layer::stands_alone);
+    fn find_sole(&self) -> Sole {
+        match self.layers.first() {
+            Some(layer) if self.on == [1, 0] => layer.sole(),
+            _ => Sole::None,
+        }
     }
 }
 

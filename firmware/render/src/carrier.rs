@@ -37,51 +37,68 @@ impl CarrierTiming {
         let turns_per_tick = 0.5 / half_period_ticks as f32;
         Self { shape, half_period_ticks, codes_per_v_rms, code_max, integral_max, turns_per_tick }
     }
+
+    /// From the middle of a half period to its edge.
+    fn ticks_from_crest(&self) -> u32 {
+        self.half_period_ticks - self.half_period_ticks / 2
+    }
 }
 
 /// The carrier's state.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Carrier {
-    /// Ticks into the current period, in which the first half is positive.
-    phase_ticks: u32,
+    /// 1 in the first half of a period, -1 in the second.
+    sign: i32,
+    /// Ticks until the next edge, this one included.
+    left_ticks: u32,
     integral: i32,
 }
 
 impl Carrier {
     /// Starts a quarter period in, so that the integral swings evenly about zero.
     pub(crate) fn new(timing: &CarrierTiming) -> Self {
-        Self { phase_ticks: timing.half_period_ticks / 2, integral: 0 }
+        Self { sign: 1, left_ticks: timing.ticks_from_crest(), integral: 0 }
     }
 
     /// Goes on with the timing of another scene. The integral is the electrode's, and stays.
     pub(crate) fn retime(&mut self, timing: &CarrierTiming) {
-        self.phase_ticks = self.phase_ticks.checked_rem(2 * timing.half_period_ticks).unwrap_or_default();
+        self.left_ticks = self.left_ticks.min(timing.half_period_ticks);
     }
 
     /// Waits at zero output. It will start again a quarter period before an edge, on the side that takes the integral
     /// back.
     pub(crate) fn rest(&mut self, timing: &CarrierTiming) {
-        let quarter = timing.half_period_ticks / 2;
-        self.phase_ticks = if self.integral > 0 { timing.half_period_ticks + quarter } else { quarter };
+        self.sign = if self.integral > 0 { -1 } else { 1 };
+        self.left_ticks = timing.ticks_from_crest();
     }
 
     /// The code for this tick, and whether its edge came early to keep direct current away.
     #[inline]
     pub(crate) fn next(&mut self, envelope_v_rms: f32, timing: &CarrierTiming) -> (i16, bool) {
-        let code = self.code(envelope_v_rms, timing);
-        let too_far = (self.integral + code).abs() > timing.integral_max;
+        let mut code = self.sign * self.magnitude(envelope_v_rms, timing);
+        let mut integral = self.integral + code;
+        // Beyond the largest on either side: both are far from overflowing.
+        let too_far = (integral + timing.integral_max) as u32 > 2 * timing.integral_max as u32;
         let early = too_far && self.takes_out(code);
-        let code = if early { -code } else { code };
         if early {
-            let half = timing.half_period_ticks;
-            self.phase_ticks = if self.phase_ticks < half { self.phase_ticks + half } else { self.phase_ticks - half };
+            self.sign = -self.sign;
+            code = -code;
+            integral = self.integral + code;
         }
-        self.integral += code;
-        self.phase_ticks += 1;
-        if self.phase_ticks >= 2 * timing.half_period_ticks {
-            self.phase_ticks = 0;
+        self.integral = integral;
+        if self.left_ticks > 1 {
+            self.left_ticks -= 1;
+        } else {
+            self.turn(timing);
         }
         (code as i16, early)
+    }
+
+    /// An edge.
+    #[cold]
+    fn turn(&mut self, timing: &CarrierTiming) {
+        self.sign = -self.sign;
+        self.left_ticks = timing.half_period_ticks;
     }
 
     /// Whether a code takes the integral away from zero.
@@ -90,25 +107,20 @@ impl Carrier {
         (self.integral + code).abs() > self.integral.abs()
     }
 
-    fn code(&self, envelope_v_rms: f32, timing: &CarrierTiming) -> i32 {
+    #[inline]
+    fn magnitude(&self, envelope_v_rms: f32, timing: &CarrierTiming) -> i32 {
         let amplitude = envelope_v_rms * timing.codes_per_v_rms;
-        match timing.shape {
-            Shape::Square => {
-                let code = ((amplitude + 0.5) as i32).min(timing.code_max);
-                if self.phase_ticks < timing.half_period_ticks { code } else { -code }
-            }
+        let code = match timing.shape {
+            Shape::Square => amplitude,
             #[cfg(feature = "sine-carrier")]
             Shape::Sine => {
-                // A quarter of a turn before its crest.
-                let turns = self.phase_ticks as f32 * timing.turns_per_tick - 0.25;
-                let code = amplitude * turns::cosine(turns);
-                let rounded = (code + 0.5_f32.copysign(code)) as i32;
-                // Not `clamp`, which has a panic for limits that are the wrong way round.
-                rounded.min(timing.code_max).max(-timing.code_max)
+                // The crest, where the cosine has no angle, is a quarter of a turn before the edge.
+                amplitude * turns::cosine(self.left_ticks as f32 * timing.turns_per_tick - 0.25)
             }
             #[cfg(not(feature = "sine-carrier"))]
-            Shape::Sine => 0,
-        }
+            Shape::Sine => 0.0,
+        };
+        ((code + 0.5) as i32).min(timing.code_max)
     }
 }
 

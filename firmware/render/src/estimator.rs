@@ -23,7 +23,7 @@ struct Axis {
 
 /// Gains of one update: parts of the residual that go to the position, to the velocity per step, and to half the
 /// acceleration per step squared.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Gains {
     position: f32,
     velocity: f32,
@@ -31,11 +31,7 @@ struct Gains {
 }
 
 impl Axis {
-    const ZERO: Self = Self::resting_at(0.0);
-
-    const fn resting_at(position: f32) -> Self {
-        Self { position, velocity: 0.0, half_acceleration: 0.0 }
-    }
+    const ZERO: Self = Self { position: 0.0, velocity: 0.0, half_acceleration: 0.0 };
 
     /// Position and velocity at a time after the last sample.
     #[inline]
@@ -55,59 +51,87 @@ impl Axis {
     }
 }
 
-/// A finger as estimated at a tick, along x and y.
+/// A finger as estimated at a tick, along one axis, in m, m/s and m/s^2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Estimate {
-    pub(crate) place_m: [f32; 2],
-    pub(crate) velocity_m_per_s: [f32; 2],
-    pub(crate) half_acceleration_m_per_s2: [f32; 2],
+    pub(crate) place_m: f32,
+    pub(crate) velocity_m_per_s: f32,
+    pub(crate) half_acceleration_m_per_s2: f32,
 }
 
-/// The filter's state.
+/// One of the two axes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Along {
+    X,
+    Y,
+}
+
+/// The filter's state. A sample is taken in by [`Estimator::weigh`], then by [`Estimator::update`] along each axis.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Estimator {
     x: Axis,
     y: Axis,
     samples: u32,
     sampled_at_tick: u32,
+    /// Time from the sample before the last one to the last, and what the last one weighs.
+    step_s: f32,
+    gains: Gains,
 }
 
 impl Estimator {
     /// Knows nothing yet.
-    pub(crate) const NEW: Self = Self { x: Axis::ZERO, y: Axis::ZERO, samples: 0, sampled_at_tick: 0 };
+    pub(crate) const NEW: Self = Self {
+        x: Axis::ZERO,
+        y: Axis::ZERO,
+        samples: 0,
+        sampled_at_tick: 0,
+        step_s: 0.0,
+        gains: Gains { position: 1.0, velocity: 0.0, half_acceleration: 0.0 },
+    };
 
-    /// Takes a sample that was true at a tick. One that is not newer than the last says nothing. No velocity is made of
-    /// a time shorter than `step_min_s`: samples that bunch on the way were not taken so close together.
-    pub(crate) fn update(&mut self, sampled_at_tick: u32, [x_m, y_m]: [f32; 2], tick_period_s: f32, step_min_s: f32) {
-        let step_ticks = sampled_at_tick.wrapping_sub(self.sampled_at_tick) as i32;
-        if self.samples == 0 {
-            *self = Self { x: Axis::resting_at(x_m), y: Axis::resting_at(y_m), samples: 1, sampled_at_tick };
-        } else if step_ticks > 0 {
+    /// Finds what a sample that was true at a tick weighs. Returns whether it says anything: one that is not newer than
+    /// the last does not. No velocity is made of a time shorter than `step_min_s`: samples that bunch on the way were
+    /// not taken so close together.
+    pub(crate) fn weigh(&mut self, sampled_at_tick: u32, tick_period_s: f32, step_min_s: f32) -> bool {
+        // The first sample is the place, by the gains of an estimator that knows nothing.
+        if self.samples > 0 {
+            let step_ticks = sampled_at_tick.wrapping_sub(self.sampled_at_tick) as i32;
+            if step_ticks <= 0 {
+                return false;
+            }
             let step_s = step_ticks as f32 * tick_period_s;
             let per_s = 1.0 / if step_s > step_min_s { step_s } else { step_min_s };
             let gains = gains(self.samples);
-            let gains = Gains {
+            self.step_s = step_s;
+            self.gains = Gains {
                 position: gains.position,
                 velocity: gains.velocity * per_s,
                 half_acceleration: gains.half_acceleration * per_s * per_s,
             };
-            self.x.update(x_m, step_s, &gains);
-            self.y.update(y_m, step_s, &gains);
-            self.samples = self.samples.saturating_add(1);
-            self.sampled_at_tick = sampled_at_tick;
         }
+        self.samples = self.samples.saturating_add(1);
+        self.sampled_at_tick = sampled_at_tick;
+        true
+    }
+
+    /// Takes the place of the sample that was weighed, along one axis, in m.
+    pub(crate) fn update(&mut self, along: Along, place_m: f32) {
+        let axis = match along {
+            Along::X => &mut self.x,
+            Along::Y => &mut self.y,
+        };
+        axis.update(place_m, self.step_s, &self.gains);
     }
 
     /// The estimate for `now_tick`. Before the first sample it means nothing.
-    pub(crate) fn at(&self, now_tick: u32, tick_period_s: f32) -> Estimate {
+    pub(crate) fn at(&self, along: Along, now_tick: u32, tick_period_s: f32) -> Estimate {
+        let axis = match along {
+            Along::X => &self.x,
+            Along::Y => &self.y,
+        };
         let time_s = now_tick.wrapping_sub(self.sampled_at_tick) as f32 * tick_period_s;
-        let (x_m, velocity_x_m_per_s) = self.x.at(time_s);
-        let (y_m, velocity_y_m_per_s) = self.y.at(time_s);
-        Estimate {
-            place_m: [x_m, y_m],
-            velocity_m_per_s: [velocity_x_m_per_s, velocity_y_m_per_s],
-            half_acceleration_m_per_s2: [self.x.half_acceleration, self.y.half_acceleration],
-        }
+        let (place_m, velocity_m_per_s) = axis.at(time_s);
+        Estimate { place_m, velocity_m_per_s, half_acceleration_m_per_s2: axis.half_acceleration }
     }
 }
 
@@ -168,15 +192,26 @@ mod tests {
     const TICK_S: f32 = 25e-6;
     const STEP_MIN_S: f32 = 2.5e-3;
 
+    fn take(estimator: &mut Estimator, tick: u32, [x_m, y_m]: [f32; 2]) {
+        if estimator.weigh(tick, TICK_S, STEP_MIN_S) {
+            estimator.update(Along::X, x_m);
+            estimator.update(Along::Y, y_m);
+        }
+    }
+
+    fn x_m(estimator: &Estimator, tick: u32) -> f32 {
+        estimator.at(Along::X, tick, TICK_S).place_m
+    }
+
     /// Feeds exact samples of `path` at 100 Hz, 400 ticks late, and returns the error at the end.
     fn error_m(path: impl Fn(f32) -> f32, samples: u32) -> f32 {
         let mut estimator = Estimator::NEW;
         for i in 0..samples {
             let tick = 1000 + 400 * i;
-            estimator.update(tick, [path(tick as f32 * TICK_S), 0.0], TICK_S, STEP_MIN_S);
+            take(&mut estimator, tick, [path(tick as f32 * TICK_S), 0.0]);
         }
         let now = 1000 + 400 * samples + 300;
-        (estimator.at(now, TICK_S).place_m[0] - path(now as f32 * TICK_S)).abs()
+        (x_m(&estimator, now) - path(now as f32 * TICK_S)).abs()
     }
 
     #[test]
@@ -194,12 +229,13 @@ mod tests {
     #[test]
     fn repeated_and_backward_samples_change_nothing() {
         let mut estimator = Estimator::NEW;
-        estimator.update(1000, [0.01, 0.01], TICK_S, STEP_MIN_S);
-        estimator.update(1400, [0.02, 0.01], TICK_S, STEP_MIN_S);
-        let before = estimator.at(1500, TICK_S);
-        estimator.update(1400, [0.5, 0.5], TICK_S, STEP_MIN_S);
-        estimator.update(1399, [0.5, 0.5], TICK_S, STEP_MIN_S);
-        assert_eq!(estimator.at(1500, TICK_S), before);
+        let both = |estimator: &Estimator| [Along::X, Along::Y].map(|along| estimator.at(along, 1500, TICK_S));
+        take(&mut estimator, 1000, [0.01, 0.01]);
+        take(&mut estimator, 1400, [0.02, 0.01]);
+        let before = both(&estimator);
+        take(&mut estimator, 1400, [0.5, 0.5]);
+        take(&mut estimator, 1399, [0.5, 0.5]);
+        assert_eq!(both(&estimator), before);
     }
 
     #[test]
@@ -207,11 +243,11 @@ mod tests {
         let mut estimator = Estimator::NEW;
         let start = u32::MAX - 500;
         for i in 0..4 {
-            estimator.update(start.wrapping_add(400 * i), [0.001 * i as f32, 0.0], TICK_S, STEP_MIN_S);
+            take(&mut estimator, start.wrapping_add(400 * i), [0.001 * i as f32, 0.0]);
         }
-        let estimate = estimator.at(start.wrapping_add(1600), TICK_S);
-        assert!((estimate.place_m[0] - 0.004).abs() < 1e-6);
-        assert!((estimate.velocity_m_per_s[0] - 0.1).abs() < 1e-4);
+        let estimate = estimator.at(Along::X, start.wrapping_add(1600), TICK_S);
+        assert!((estimate.place_m - 0.004).abs() < 1e-6);
+        assert!((estimate.velocity_m_per_s - 0.1).abs() < 1e-4);
     }
 
     /// One report that is late by nearly a period and then bunched with the next one.
@@ -224,10 +260,10 @@ mod tests {
             // The place is that of the right time, the tick that it is said to be of is not.
             let tick = 400 * report;
             let said = if report == 20 { tick + 396 } else { tick };
-            estimator.update(said, [at(tick), 0.0], TICK_S, STEP_MIN_S);
+            take(&mut estimator, said, [at(tick), 0.0]);
             for later in [0, 200, 399] {
                 let now = tick + 400 + later;
-                worst_m = worst_m.max((estimator.at(now, TICK_S).place_m[0] - at(now)).abs());
+                worst_m = worst_m.max((x_m(&estimator, now) - at(now)).abs());
             }
         }
         assert!(worst_m < 5e-3, "{worst_m}");

@@ -1,6 +1,6 @@
 //! What the ticker knows of the finger.
 
-use crate::estimator::Estimator;
+use crate::estimator::{Along, Estimate, Estimator};
 use crate::motion::Motion;
 use crate::stillness::{Stillness, StillnessTiming};
 use crate::{Board, Touch};
@@ -41,13 +41,15 @@ impl FingerTiming {
 
 /// The finger on the screen, if there is one.
 ///
-/// A report is taken in over four ticks, a step each: [`Finger::take`], then [`Finger::digest`] three times. Only a
-/// source that reports more often than that makes a tick do all of it.
+/// A report is taken in by small steps, so that no tick has much of it to do: first by [`Finger::take`], then by
+/// [`Finger::go_on`] as long as there is an errand. Only a source that reports before the last report is taken in makes
+/// a tick do all of it.
 pub(crate) struct Finger {
-    motion: Motion,
+    x: Motion,
+    y: Motion,
     stillness: Stillness,
     presence: Presence,
-    report: Report,
+    errand: Errand,
     /// The newest sample.
     sample: Sample,
     /// When the newest sample was true; outlives stale data, so that a source that is stuck does not start anew.
@@ -56,16 +58,21 @@ pub(crate) struct Finger {
     velocity_m_per_s: [f32; 2],
 }
 
-/// How far the newest report has been taken in.
+/// What comes next in taking in the newest report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Report {
-    Digested,
-    /// The estimator does not know the sample yet.
-    Taken,
-    /// The estimator knows it; the motion is still that of the report before.
-    Estimated,
-    /// The motion is this report's; whether the finger is still is not known yet.
-    Located,
+enum Errand {
+    /// Nothing.
+    None,
+    /// To find what the sample weighs.
+    Weigh,
+    UpdateX,
+    UpdateY,
+    LocateX,
+    LocateY,
+    /// To find whether it is slow.
+    Judge,
+    /// To say that it is there.
+    Arrive,
 }
 
 /// A place at which the finger was.
@@ -90,10 +97,11 @@ pub(crate) enum Presence {
 
 impl Finger {
     pub(crate) const UP: Self = Self {
-        motion: Motion::resting_at([0.0; 2]),
+        x: Motion::resting_at(0.0),
+        y: Motion::resting_at(0.0),
         stillness: Stillness::MOVING,
         presence: Presence::Up,
-        report: Report::Digested,
+        errand: Errand::None,
         sample: Sample { place_m: [0.0; 2], at_tick: 0, until_tick: 0 },
         sampled_at_tick: None,
         estimator: Estimator::NEW,
@@ -104,11 +112,17 @@ impl Finger {
         self.presence
     }
 
-    /// Takes a report of the touch source. A finger that comes down is there when the report is digested; one that is
+    /// There is a finger.
+    #[inline]
+    pub(crate) fn is_there(&self) -> bool {
+        matches!(self.presence, Presence::Down { .. })
+    }
+
+    /// Takes a report of the touch source. A finger that comes down is there when the report is taken in; one that is
     /// lifted is gone at once.
     pub(crate) fn take(&mut self, touch: Touch, now_tick: u32, prediction: bool, timing: &FingerTiming) {
-        if self.is_digesting() {
-            self.digest_whole(now_tick, prediction, timing);
+        if self.errand != Errand::None {
+            self.hurry(now_tick, prediction, timing);
         }
         match touch {
             Touch::Up => {
@@ -124,8 +138,8 @@ impl Finger {
                     let until_tick = now_tick.wrapping_add(timing.stale_after_ticks.min(left_ticks) + 1);
                     self.sampled_at_tick = Some(at_tick);
                     self.sample = Sample { place_m: [x_m, y_m], at_tick, until_tick };
-                    self.report = Report::Taken;
-                    if matches!(self.presence, Presence::Down { .. }) {
+                    self.errand = Errand::Weigh;
+                    if self.is_there() {
                         self.presence = Presence::Down { until_tick };
                     }
                 }
@@ -133,57 +147,84 @@ impl Finger {
         }
     }
 
-    /// The newest report has not been taken in wholly.
+    /// There is something to do before the next report: the last one is not taken in wholly, or the finger is slow,
+    /// still, or has been so.
     #[inline]
-    pub(crate) fn is_digesting(&self) -> bool {
-        self.report != Report::Digested
+    pub(crate) fn has_errand(&self) -> bool {
+        self.errand != Errand::None || !self.stillness.is_steady()
     }
 
-    /// Takes in the newest report by another step.
-    pub(crate) fn digest(&mut self, now_tick: u32, prediction: bool, timing: &FingerTiming) {
-        match self.report {
-            Report::Digested => {}
-            Report::Taken => {
-                let Sample { at_tick, place_m, .. } = self.sample;
-                self.estimator.update(at_tick, place_m, timing.tick_period_s, timing.step_min_s);
-                self.report = Report::Estimated;
+    /// Does the next of what there is to do. Returns whether the finger has arrived, or its gain has left 1 or
+    /// come back to it.
+    pub(crate) fn go_on(&mut self, now_tick: u32, prediction: bool, timing: &FingerTiming) -> bool {
+        let [x_m, y_m] = self.sample.place_m;
+        match self.errand {
+            Errand::None => return self.stillness.settle(now_tick, &timing.stillness),
+            Errand::Weigh => {
+                let says_anything = self.estimator.weigh(self.sample.at_tick, timing.tick_period_s, timing.step_min_s);
+                self.errand = if says_anything { Errand::UpdateX } else { Errand::None };
             }
-            Report::Estimated => {
+            Errand::UpdateX => {
+                self.estimator.update(Along::X, x_m);
+                self.errand = Errand::UpdateY;
+            }
+            Errand::UpdateY => {
+                self.estimator.update(Along::Y, y_m);
+                self.errand = Errand::LocateX;
+            }
+            Errand::LocateX => {
+                self.locate_x(now_tick, prediction, timing);
+                self.errand = Errand::LocateY;
+            }
+            Errand::LocateY => {
+                self.locate_y(now_tick, prediction, timing);
+                self.errand = Errand::Judge;
+            }
+            Errand::Judge => {
+                self.stillness.take(self.velocity_m_per_s, now_tick);
+                self.errand = Errand::Arrive;
+            }
+            Errand::Arrive => {
                 self.presence = Presence::Down { until_tick: self.sample.until_tick };
-                self.report = Report::Located;
-                self.locate(now_tick, prediction, timing);
-            }
-            Report::Located => {
-                self.report = Report::Digested;
-                self.stillness.take(self.velocity_m_per_s);
+                self.errand = Errand::None;
+                return true;
             }
         }
+        false
     }
 
-    /// Takes in what is left of the newest report at once: a source that is faster is not to starve the finger.
+    /// Does at once what is left to do: a source that is faster is not to starve the finger.
     #[cold]
     #[inline(never)]
-    fn digest_whole(&mut self, now_tick: u32, prediction: bool, timing: &FingerTiming) {
-        while self.is_digesting() {
-            self.digest(now_tick, prediction, timing);
+    fn hurry(&mut self, now_tick: u32, prediction: bool, timing: &FingerTiming) {
+        while self.errand != Errand::None {
+            self.go_on(now_tick, prediction, timing);
+        }
+        if !self.stillness.is_steady() {
+            self.stillness.settle(now_tick, &timing.stillness);
         }
     }
 
-    /// Estimates anew where the finger is at a tick and how it goes on; without prediction it is taken to stay where
-    /// it was last seen.
+    /// Finds anew where the finger is at a tick and how it goes on, now that another scene may say so in another way.
     pub(crate) fn locate(&mut self, now_tick: u32, prediction: bool, timing: &FingerTiming) {
-        if !matches!(self.presence, Presence::Down { .. }) {
-            return;
+        if self.is_there() {
+            self.locate_x(now_tick, prediction, timing);
+            self.locate_y(now_tick, prediction, timing);
         }
-        let estimate = self.estimator.at(now_tick, timing.tick_period_s);
-        self.velocity_m_per_s = estimate.velocity_m_per_s;
-        self.motion = if prediction {
-            let half_acceleration_m_per_s2 = estimate.half_acceleration_m_per_s2;
-            let period_s = timing.tick_period_s;
-            Motion::new(estimate.place_m, estimate.velocity_m_per_s, half_acceleration_m_per_s2, period_s)
-        } else {
-            Motion::resting_at(self.sample.place_m)
-        };
+    }
+
+    fn locate_x(&mut self, now_tick: u32, prediction: bool, timing: &FingerTiming) {
+        let estimate = self.estimator.at(Along::X, now_tick, timing.tick_period_s);
+        let [velocity_x_m_per_s, _] = &mut self.velocity_m_per_s;
+        *velocity_x_m_per_s = estimate.velocity_m_per_s;
+        self.x = motion(&estimate, self.sample.place_m[0], prediction, timing);
+    }
+
+    fn locate_y(&mut self, now_tick: u32, prediction: bool, timing: &FingerTiming) {
+        let estimate = self.estimator.at(Along::Y, now_tick, timing.tick_period_s);
+        let [_, velocity_y_m_per_s] = &mut self.velocity_m_per_s;
+        *velocity_y_m_per_s = estimate.velocity_m_per_s;
+        self.y = motion(&estimate, self.sample.place_m[1], prediction, timing);
     }
 
     /// Lets go of a finger that is stale at a tick, or will be before it.
@@ -203,18 +244,8 @@ impl Finger {
     /// Goes on by a tick.
     #[inline]
     pub(crate) fn advance(&mut self) {
-        self.motion.advance();
-    }
-
-    /// The finger is slow, still, or has been so: it has to be settled at every second tick.
-    #[inline]
-    pub(crate) fn is_settling(&self) -> bool {
-        !self.stillness.is_steady()
-    }
-
-    /// Ramps the gain of a finger that is still, or has been so, by two ticks.
-    pub(crate) fn settle(&mut self, timing: &FingerTiming) {
-        self.stillness.settle(&timing.stillness);
+        self.x.advance();
+        self.y.advance();
     }
 
     /// On the friction under the finger: below 1 while it is still or has been so.
@@ -226,7 +257,7 @@ impl Finger {
     /// Where the finger is taken to be, in m.
     #[inline]
     pub(crate) fn place_m(&self) -> [f32; 2] {
-        self.motion.place_m()
+        [self.x.place_m(), self.y.place_m()]
     }
 
     /// Its velocity as of the last report, in m/s.
@@ -241,4 +272,10 @@ impl Finger {
         let [x, y] = self.velocity_m_per_s;
         libm::sqrtf(x * x + y * y)
     }
+}
+
+/// How the finger goes on along one axis; without prediction it is taken to stay where it was last seen.
+#[inline]
+fn motion(estimate: &Estimate, seen_at_m: f32, prediction: bool, timing: &FingerTiming) -> Motion {
+    if prediction { Motion::of(estimate, timing.tick_period_s) } else { Motion::resting_at(seen_at_m) }
 }

@@ -28,36 +28,54 @@ pub(crate) struct Supervisor {
 #[derive(Clone, Copy, Debug)]
 struct Monitor {
     expected_v: f32,
+    volts_per_code: f32,
     step: f32,
+    gain_tolerance: f32,
     floor_v: f32,
+    /// As `floor_v`; while wrong ticks are counted, less than nothing: every tick is to be looked at then.
+    unnoticed_v: f32,
     wrong_ticks: u32,
 }
 
 impl Monitor {
     fn new(board: &Board) -> Self {
+        let floor_v = MONITOR_FLOOR * board.limits.full_scale_v_peak;
         Self {
             expected_v: 0.0,
+            volts_per_code: board.limits.full_scale_v_peak / f32::from(i16::MAX),
             step: 1.0 - libm::expf(-board.tick_period_s() / board.limits.edge_time_constant_s),
-            floor_v: MONITOR_FLOOR * board.limits.full_scale_v_peak,
+            gain_tolerance: MONITOR_GAIN_TOLERANCE,
+            floor_v,
+            unnoticed_v: floor_v,
             wrong_ticks: 0,
         }
     }
 
-    /// Compares what was driven in the tick before with what the monitor read at its end.
+    /// Goes on by a tick at whose beginning a voltage was put out. Returns whether what the monitor read at its end is to
+    /// be counted.
     #[inline]
-    fn is_wrong(&mut self, driven_v: f32, monitor_v: f32) -> bool {
+    fn advance(&mut self, driven_v: f32, monitor_v: f32) -> bool {
         self.expected_v += self.step * (driven_v - self.expected_v);
-        let tolerance_v = self.floor_v + MONITOR_GAIN_TOLERANCE * driven_v.abs();
-        // A monitor that is not a number is wrong, too.
-        let wrong = !((monitor_v - self.expected_v).abs() < tolerance_v);
-        (wrong || self.wrong_ticks > 0) && self.count(wrong)
+        !self.is_within(self.unnoticed_v, driven_v, monitor_v)
+    }
+
+    /// Not so for a monitor that is not a number.
+    #[inline]
+    fn is_within(&self, floor_v: f32, driven_v: f32, monitor_v: f32) -> bool {
+        (monitor_v - self.expected_v).abs() < floor_v + self.gain_tolerance * driven_v.abs()
     }
 
     /// Counts a tick, and returns whether there were too many wrong ones.
-    #[cold]
-    fn count(&mut self, wrong: bool) -> bool {
+    fn count(&mut self, driven_v: f32, monitor_v: f32) -> bool {
+        let wrong = !self.is_within(self.floor_v, driven_v, monitor_v);
         self.wrong_ticks = if wrong { self.wrong_ticks.saturating_add(1) } else { self.wrong_ticks.saturating_sub(1) };
+        self.unnoticed_v = if self.wrong_ticks > 0 { f32::NEG_INFINITY } else { self.floor_v };
         self.wrong_ticks >= MONITOR_WRONG_TICKS
+    }
+
+    fn forgive(&mut self) {
+        self.wrong_ticks = 0;
+        self.unnoticed_v = self.floor_v;
     }
 }
 
@@ -116,26 +134,28 @@ impl Supervisor {
         self.host_timeout_ticks = ticks;
     }
 
-    /// Looks after the output at every tick. `driven_v` is what went to the amplifier in the tick before. Returns
+    /// Looks after the output at every tick. `dac_code` is what went to the amplifier in the tick before. Returns
     /// whether something has changed.
     #[inline]
-    pub(crate) fn check(&mut self, sense: &Sense, driven_v: f32) -> bool {
-        let monitor_wrong = self.monitor.is_wrong(driven_v, sense.monitor_v);
-        if monitor_wrong || sense.amplifier_fault || !sense.arm_switch {
-            return self.act(sense, monitor_wrong);
+    pub(crate) fn check(&mut self, sense: &Sense, dac_code: i16) -> bool {
+        let driven_v = f32::from(dac_code) * self.monitor.volts_per_code;
+        if self.monitor.advance(driven_v, sense.monitor_v) || sense.amplifier_fault || !sense.arm_switch {
+            return self.act(sense, driven_v);
         }
         false
     }
 
     /// Does what one of the things that [`Self::check`] looks after asks for. Of several the first here counts.
+    #[cold]
     #[inline(never)]
-    fn act(&mut self, sense: &Sense, monitor_wrong: bool) -> bool {
+    fn act(&mut self, sense: &Sense, driven_v: f32) -> bool {
+        let monitor_wrong = self.monitor.count(driven_v, sense.monitor_v);
         let before = self.state;
         if before == State::Faulted {
             return false;
         }
         if monitor_wrong {
-            self.monitor.wrong_ticks = 0;
+            self.monitor.forgive();
             self.raise(Fault::Monitor, sense.monitor_v as i32 as u32);
         } else if sense.amplifier_fault {
             self.raise(Fault::Amplifier, 0);

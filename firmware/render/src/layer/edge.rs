@@ -40,7 +40,8 @@ impl Edge {
 
     #[inline(never)]
     pub(super) fn electric_friction_n(&self, around: &mut Around) -> f32 {
-        let beyond_m = self.across_x * around.moment.x_m + self.across_y * around.moment.y_m - self.distance_m;
+        let [x_m, y_m] = around.moment.place_m;
+        let beyond_m = self.across_x * x_m + self.across_y * y_m - self.distance_m;
         let click_n = self.click.map_or(0.0, |click| click.across(beyond_m >= 0.0, around));
         if beyond_m.abs() >= self.half_width_m {
             return self.level_n + click_n;

@@ -2,12 +2,11 @@
 
 use frixel_wire::scene::Wave;
 
-use super::Moment;
 use crate::turns;
 
 /// `middle + swing w(kx x + ky y + phase)`, with `w` between -1 and 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Grating {
+pub(crate) struct Grating {
     stripes: Stripes,
     cycles_per_m_x: f32,
     cycles_per_m_y: f32,
@@ -52,9 +51,21 @@ impl Grating {
         }
     }
 
+    /// The same stripes, with friction times `gain`.
+    pub(super) fn scaled(&self, gain: f32) -> Self {
+        Self { middle_n: gain * self.middle_n, swing_n: gain * self.swing_n, ..*self }
+    }
+
+    /// As [`Self::at`], as a call.
     #[inline(never)]
-    pub(super) fn electric_friction_n(&self, moment: &Moment) -> f32 {
-        let turns = moment.x_m * self.cycles_per_m_x + moment.y_m * self.cycles_per_m_y + self.phase_turns;
+    pub(super) fn electric_friction_n(&self, place_m: [f32; 2]) -> f32 {
+        self.at(place_m)
+    }
+
+    /// Electric friction at a place, in N.
+    #[inline]
+    pub(crate) fn at(&self, [x_m, y_m]: [f32; 2]) -> f32 {
+        let turns = x_m * self.cycles_per_m_x + y_m * self.cycles_per_m_y + self.phase_turns;
         let height = match self.stripes {
             Stripes::Cosine => turns::cosine(turns),
             Stripes::Square { half_duty_turns } => {

@@ -51,8 +51,7 @@ use vibration::Vibration;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Moment {
     /// Where the finger is taken to be, in m.
-    pub(crate) x_m: f32,
-    pub(crate) y_m: f32,
+    pub(crate) place_m: [f32; 2],
     /// How the finger slides.
     #[cfg(feature = "speed")]
     pub(crate) velocity_m_per_s: [f32; 2],
@@ -134,9 +133,20 @@ impl Layer {
         matches!(self.join, Join::Fading(_))
     }
 
-    /// On bare glass, it alone is what is asked for, everywhere and always.
-    pub(crate) fn stands_alone(&self) -> bool {
-        matches!(self.join, Join::Replace | Join::Add) && self.region == Region::Screen
+    /// What is asked for when this layer is all there is, on bare glass.
+    pub(crate) fn sole(&self) -> Sole {
+        if !matches!(self.join, Join::Replace | Join::Add) || self.region != Region::Screen {
+            return Sole::None;
+        }
+        match &self.source {
+            Source::Constant { electric_friction_n } => Sole::Constant(self.gain * electric_friction_n),
+            #[cfg(feature = "grating")]
+            Source::Grating(grating) => Sole::Grating(grating.scaled(self.gain)),
+            #[cfg(feature = "bitmap")]
+            Source::Picture(picture) => Sole::Picture(picture.scaled(self.gain)),
+            #[allow(unreachable_patterns, reason = "other kinds are left out")]
+            _ => Sole::None,
+        }
     }
 
     /// This layer's electric friction at a moment, wherever that is, with nothing below it.
@@ -148,7 +158,7 @@ impl Layer {
     /// Joins this layer's electric friction at a moment to that of the layers below.
     #[inline]
     pub(crate) fn blend_over(&self, below_n: f32, around: &mut Around) -> f32 {
-        if !self.region.contains(around.moment.x_m, around.moment.y_m, around.tables.points()) {
+        if !self.region.contains(around.moment.place_m, around.tables.points()) {
             return below_n;
         }
         let own_n = self.own_electric_friction_n(around);
@@ -167,6 +177,21 @@ impl Layer {
             Join::Fading(blend) => fading(blend, below_n, own_n, around.moment.stream.weight),
         }
     }
+}
+
+/// A layer of the commonest kinds that is all there is, everywhere and always, its gain included: the tick needs to look
+/// for nothing else.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(u8)]
+pub(crate) enum Sole {
+    /// There is more, or less, or something else.
+    None,
+    /// In N.
+    Constant(f32),
+    #[cfg(feature = "grating")]
+    Grating(Grating),
+    #[cfg(feature = "bitmap")]
+    Picture(Picture),
 }
 
 /// How a layer joins those below it.
@@ -229,11 +254,11 @@ impl Source {
         match self {
             Self::Constant { electric_friction_n } => *electric_friction_n,
             #[cfg(feature = "grating")]
-            Self::Grating(grating) => grating.electric_friction_n(around.moment),
+            Self::Grating(grating) => grating.electric_friction_n(around.moment.place_m),
             #[cfg(feature = "bitmap")]
-            Self::Picture(picture) => picture.electric_friction_n(around.moment, around.pool),
+            Self::Picture(picture) => picture.electric_friction_n(around.moment.place_m, around.pool),
             #[cfg(feature = "noise")]
-            Self::Noise(noise) => noise.electric_friction_n(around.moment, around.tables.noises()),
+            Self::Noise(noise) => noise.electric_friction_n(around.moment.place_m, around.tables.noises()),
             #[cfg(feature = "edge")]
             Self::Edge(edge) => edge.electric_friction_n(around),
             #[cfg(feature = "edge")]

@@ -1,6 +1,6 @@
 //! Band-limited noise: a sum of waves that a seed says.
 
-use super::{Moment, direction};
+use super::direction;
 use crate::turns;
 
 /// Most layers of noise in a scene.
@@ -55,12 +55,11 @@ impl Noise {
     }
 
     #[inline(never)]
-    pub(super) fn electric_friction_n(&self, moment: &Moment, noises: &[Waves]) -> f32 {
+    pub(super) fn electric_friction_n(&self, [x_m, y_m]: [f32; 2], noises: &[Waves]) -> f32 {
         let Some(Waves(waves)) = noises.get(usize::from(self.waves)) else { return 0.0 };
         let mut sum = 0.0;
         for wave in waves {
-            sum +=
-                turns::cosine(moment.x_m * wave.cycles_per_m_x + moment.y_m * wave.cycles_per_m_y + wave.phase_turns);
+            sum += turns::cosine(x_m * wave.cycles_per_m_x + y_m * wave.cycles_per_m_y + wave.phase_turns);
         }
         self.middle_n + self.swing_n * sum
     }

@@ -1,12 +1,12 @@
 //! A bitmap under the finger.
 
-use super::{Moment, direction};
+use super::direction;
 use crate::bitmap_pool::{Bitmap, BitmapPool};
 use crate::turns;
 
 /// Samples at a pitch, bilinear between their centres, turned about their corner, held at the border or tiled.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Picture {
+pub(crate) struct Picture {
     offset: u32,
     width: u16,
     height: u16,
@@ -54,9 +54,15 @@ impl Picture {
         }
     }
 
+    /// The same picture, with friction times `gain`.
+    pub(super) fn scaled(&self, gain: f32) -> Self {
+        Self { black_n: gain * self.black_n, per_level_n: gain * self.per_level_n, ..*self }
+    }
+
+    /// Electric friction at a place, in N.
     #[inline(never)]
-    pub(super) fn electric_friction_n(&self, moment: &Moment, pool: &BitmapPool) -> f32 {
-        let (x_m, y_m) = (moment.x_m - self.x_m, moment.y_m - self.y_m);
+    pub(crate) fn electric_friction_n(&self, [x_m, y_m]: [f32; 2], pool: &BitmapPool) -> f32 {
+        let (x_m, y_m) = (x_m - self.x_m, y_m - self.y_m);
         let place = |[per_m_x, per_m_y]: [f32; 2]| x_m * per_m_x + y_m * per_m_y;
         let neighbours = |place, count| {
             if self.tiled { neighbours_in_tiles(place, count) } else { neighbours_held(place, count) }

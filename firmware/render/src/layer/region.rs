@@ -69,7 +69,7 @@ impl Region {
     }
 
     #[inline]
-    pub(super) fn contains(&self, x_m: f32, y_m: f32, points: &[Point]) -> bool {
+    pub(super) fn contains(&self, [x_m, y_m]: [f32; 2], points: &[Point]) -> bool {
         match self {
             Self::Screen => true,
             Self::Rectangle(bounds) => bounds.contain(x_m, y_m),
@@ -92,7 +92,7 @@ impl Region {
     /// How far inside its border a place is that it contains: from the nearest side of a rectangle, along the shorter
     /// half axis of an ellipse. Nothing of what has no such border.
     #[inline]
-    pub(super) fn depth_m(&self, x_m: f32, y_m: f32) -> f32 {
+    pub(super) fn depth_m(&self, [x_m, y_m]: [f32; 2]) -> f32 {
         let less = |one: f32, other: f32| if one < other { one } else { other };
         let depth_m = match self {
             Self::Rectangle(Bounds { left_m, top_m, right_m, bottom_m }) => {

@@ -48,7 +48,7 @@ fn constant(blend: Blend, gain: f32, electric_friction_n: f32) -> Record {
 
 #[allow(clippy::needless_update, reason = "with more features there is more to it")]
 fn at(x_m: f32, y_m: f32) -> Moment {
-    Moment { x_m, y_m, ..Moment::default() }
+    Moment { place_m: [x_m, y_m], ..Moment::default() }
 }
 
 fn close(found: f32, expected: f32) {

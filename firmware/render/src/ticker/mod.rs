@@ -1,0 +1,327 @@
+//! The tick: touch in, voltage out.
+
+mod orders;
+mod status;
+
+use frixel_model::InverseTable;
+use frixel_wire::fault::State;
+
+use crate::carrier::Carrier;
+use crate::envelope::Envelope;
+use crate::finger::{Finger, FingerTiming, Presence};
+use crate::layer::{Clicks, Moment};
+use crate::order::Counters;
+#[cfg(feature = "stream")]
+use crate::stream::{Player, StreamBuffer, StreamNow};
+use crate::supervisor::{self, Supervisor};
+use crate::{Active, BitmapPool, Board, Drive, Sense, Touch};
+
+/// Ticks until the next look at what has no deadline: far less than the tick counter takes to wrap.
+const LOOK_AFTER_TICKS: u32 = 1 << 30;
+
+/// After so many ticks in a row that had something else to do, the next asks the scene all the same: a touch source may
+/// report at every tick.
+const ATTENDED_MAX_TICKS: u32 = 4;
+
+/// Turns touch into voltage, one tick at a time, and owns the output through its supervisor.
+pub struct Ticker<'a> {
+    finger: Finger,
+    timing: Timing,
+    pool: &'a BitmapPool,
+    active: &'a mut Active,
+    supervisor: Supervisor,
+    clicks: Clicks,
+    envelope: Envelope,
+    carrier: Carrier,
+    tick: u32,
+    /// When there is something else to do than to ask the scene: an errand of the finger's, or a deadline.
+    due_tick: u32,
+    /// When the host will have been silent for too long, or when to look again if it need not be there.
+    silent_tick: u32,
+    /// The same, or before it, when touch data are too old.
+    deadline_tick: u32,
+    /// When the scene was last asked; long ago after an order that may have changed what it wants.
+    asked_tick: u32,
+    /// There is a scene, a finger, and leave to drive.
+    live: bool,
+    /// The finger has changed in a way that is still to be looked at.
+    finger_changed: bool,
+    arm_switch: bool,
+    dac_code: i16,
+    last: LastTicks,
+    /// What layers depend on besides the place.
+    moment: Moment,
+    asked_electric_friction_n: f32,
+    target_v_rms: f32,
+    counters: Counters,
+    orders_applied: u32,
+    /// `None` on a board that has no buffer for it.
+    #[cfg(feature = "stream")]
+    stream: Option<Player<'a>>,
+    /// A stream plays, or fades.
+    #[cfg(feature = "stream")]
+    streaming: bool,
+}
+
+/// When something was last counted. It means nothing while its count is none.
+#[derive(Clone, Copy, Default)]
+struct LastTicks {
+    saturated_tick: u32,
+    slewed_tick: u32,
+    balanced_tick: u32,
+}
+
+/// What belongs to the board and is computed once.
+#[derive(Clone, Copy)]
+struct Timing {
+    finger: FingerTiming,
+    host_timeout_default_ticks: u32,
+}
+
+impl<'a> Ticker<'a> {
+    /// A ticker with its output at zero, that reads bitmaps from `pool` and starts with `active`, which need not hold
+    /// a scene.
+    pub fn new(board: &Board, pool: &'a BitmapPool, active: &'a mut Active) -> Self {
+        let carrier = Carrier::new(&active.carrier);
+        Self {
+            timing: Timing {
+                finger: FingerTiming::new(board),
+                host_timeout_default_ticks: supervisor::host_timeout_default_ticks(board),
+            },
+            pool,
+            active,
+            supervisor: Supervisor::new(board),
+            finger: Finger::UP,
+            clicks: Clicks::NONE,
+            envelope: Envelope::default(),
+            carrier,
+            tick: 0,
+            due_tick: LOOK_AFTER_TICKS,
+            silent_tick: LOOK_AFTER_TICKS,
+            deadline_tick: LOOK_AFTER_TICKS,
+            asked_tick: 0,
+            live: false,
+            finger_changed: false,
+            arm_switch: false,
+            dac_code: 0,
+            last: LastTicks::default(),
+            moment: Moment::default(),
+            asked_electric_friction_n: 0.0,
+            target_v_rms: 0.0,
+            counters: Counters::default(),
+            orders_applied: 0,
+            #[cfg(feature = "stream")]
+            stream: None,
+            #[cfg(feature = "stream")]
+            streaming: false,
+        }
+    }
+
+    /// From now on, plays streams from `buffer`, into which the session takes their samples.
+    #[cfg(feature = "stream")]
+    pub fn attach_stream(&mut self, buffer: &'a StreamBuffer) {
+        self.stream = Some(Player::new(buffer, self.timing.finger.tick_period_s()));
+    }
+
+    /// One tick: to be called exactly [`Board::tick_hz`] times a second.
+    ///
+    /// Deadline: the drive has to be at the DAC before the next tick begins, 25 us or 4,250 cycles at 40 kHz on the
+    /// G474. A board that misses it calls [`Ticker::raise`] with [`Fault::Deadline`](frixel_wire::fault::Fault::Deadline).
+    /// The tick does not allocate, wait or panic; its longest path is a scene whose layers all lie under the finger.
+    // A board that is built for size would make it small, and slow.
+    #[inline(never)]
+    pub fn tick(&mut self, sense: &Sense) -> Drive {
+        self.tick = self.tick.wrapping_add(1);
+        self.arm_switch = sense.arm_switch;
+        if self.supervisor.check(sense, self.dac_code) {
+            self.look();
+        }
+        #[cfg(feature = "stream")]
+        if self.streaming {
+            self.play_stream();
+        }
+        self.finger.advance();
+        let due = self.due_tick.wrapping_sub(self.tick) as i32 <= 0;
+        let spent = (due || sense.touch.is_some()) && self.attend(sense.touch);
+        if !self.live {
+            return self.rest();
+        }
+        if !spent {
+            self.ask();
+        }
+        self.put_out()
+    }
+
+    /// Does what else there is to do than to ask the scene: takes a report of the touch source, or goes on with the
+    /// last, or meets a deadline. Returns whether that is enough for a tick, whose output goes on with what the scene
+    /// asked for before.
+    #[inline(never)]
+    fn attend(&mut self, touch: Option<Touch>) -> bool {
+        let (timing, prediction) = (&self.timing.finger, self.active.prediction);
+        if let Some(touch) = touch {
+            self.finger.take(touch, self.tick, prediction, timing);
+            self.live &= self.finger.is_there();
+        } else if self.finger_changed {
+            self.look_at_finger();
+        } else if self.finger.has_errand() {
+            self.finger_changed = self.finger.go_on(self.tick, prediction, timing);
+        }
+        if self.deadline_tick.wrapping_sub(self.tick) as i32 <= 0 {
+            self.look();
+        }
+        self.plan();
+        if self.tick.wrapping_sub(self.asked_tick) > ATTENDED_MAX_TICKS {
+            return false;
+        }
+        if self.is_saturated(self.tick.wrapping_sub(1)) {
+            self.note_out_of_reach();
+        }
+        true
+    }
+
+    fn is_saturated(&self, tick: u32) -> bool {
+        self.last.saturated_tick == tick && self.counters.saturated_ticks > 0
+    }
+
+    /// There is a scene, a finger, and leave to drive.
+    fn may_be_live(&self) -> bool {
+        self.finger.is_there() && self.supervisor.state() == State::Active && self.active.table().is_some()
+    }
+
+    /// Looks at everything that has a deadline or that an order may have changed.
+    fn look(&mut self) {
+        self.finger.expire(self.tick);
+        self.supervisor.expire(self.tick);
+        let silent_in_ticks = match self.supervisor.silent_at_tick() {
+            Some(tick) => tick.wrapping_sub(self.tick).min(LOOK_AFTER_TICKS),
+            None => LOOK_AFTER_TICKS,
+        };
+        self.silent_tick = self.tick.wrapping_add(silent_in_ticks);
+        #[cfg(feature = "stream")]
+        if self.supervisor.state() != State::Active {
+            self.stop_stream();
+        }
+        self.look_at_finger();
+        self.plan();
+    }
+
+    /// Looks at what the finger may have changed.
+    fn look_at_finger(&mut self) {
+        self.deadline_tick = match self.finger.presence() {
+            Presence::Down { until_tick } => earlier(until_tick, self.silent_tick),
+            _ => self.silent_tick,
+        };
+        #[cfg(feature = "speed")]
+        {
+            self.moment.velocity_m_per_s = self.finger.velocity_m_per_s();
+        }
+        let may_be_live = self.may_be_live();
+        if may_be_live && !self.live {
+            self.asked_tick = self.tick;
+        }
+        self.live = may_be_live;
+        self.finger_changed = false;
+    }
+
+    /// Finds when there is something else to do than to ask the scene. Errands are done in every second tick, so that the
+    /// others ask it; in every one while there is nothing to ask.
+    fn plan(&mut self) {
+        let mut due_tick = self.deadline_tick;
+        if self.finger_changed || self.finger.has_errand() {
+            let errand_tick = (self.tick | u32::from(self.live)).wrapping_add(1);
+            due_tick = earlier(errand_tick, due_tick);
+        }
+        self.due_tick = due_tick;
+    }
+
+    #[cfg(feature = "stream")]
+    #[inline(never)]
+    fn play_stream(&mut self) {
+        if let Some(stream) = &mut self.stream {
+            stream.advance();
+            self.moment.stream = stream.now();
+            self.streaming = !stream.is_over();
+        }
+    }
+
+    #[cfg(feature = "stream")]
+    fn stop_stream(&mut self) {
+        if let Some(stream) = &mut self.stream {
+            stream.stop();
+            self.moment.stream = StreamNow::default();
+            self.streaming = false;
+        }
+    }
+
+    /// Asks the scene what it wants at this moment, where the finger is now, and finds the voltage for it.
+    #[inline]
+    fn ask(&mut self) {
+        let Some(table) = self.active.table() else { return };
+        self.asked_tick = self.tick;
+        let place_m = self.finger.place_m();
+        let friction_n =
+            self.active.electric_friction_n(place_m, self.tick, &mut self.moment, self.pool, &mut self.clicks);
+        let electric_friction_n = self.finger.gain() * friction_n;
+        self.asked_electric_friction_n = electric_friction_n;
+        self.target_v_rms = table.voltage_v_rms(electric_friction_n);
+        if may_be_out_of_reach(electric_friction_n, table) {
+            self.note_out_of_reach();
+        }
+    }
+
+    /// Counts a tick whose friction is out of reach.
+    #[cold]
+    fn note_out_of_reach(&mut self) {
+        // Minus zero is zero.
+        if self.asked_electric_friction_n != 0.0 {
+            self.last.saturated_tick = self.tick;
+            self.counters.saturated_ticks = self.counters.saturated_ticks.wrapping_add(1);
+        }
+    }
+
+    /// Brings the envelope to what is asked for, and the carrier to the DAC.
+    #[inline]
+    fn put_out(&mut self) -> Drive {
+        if self.envelope.follow(self.target_v_rms, self.active.slew_step_v) {
+            self.last.slewed_tick = self.tick;
+            self.counters.slewed_ticks = self.counters.slewed_ticks.wrapping_add(1);
+        }
+        let (dac_code, early) = self.carrier.next(self.envelope.voltage_v_rms(), &self.active.carrier);
+        if early {
+            self.note_early_edge();
+        }
+        self.dac_code = dac_code;
+        Drive { dac_code, amplifier_enable: true }
+    }
+
+    #[cold]
+    fn note_early_edge(&mut self) {
+        self.last.balanced_tick = self.tick;
+        self.counters.balanced_edges = self.counters.balanced_edges.wrapping_add(1);
+    }
+
+    /// Zero at once.
+    #[inline(never)]
+    fn rest(&mut self) -> Drive {
+        self.asked_electric_friction_n = 0.0;
+        self.target_v_rms = 0.0;
+        self.clicks.lift();
+        self.envelope.silence();
+        self.carrier.rest(&self.active.carrier);
+        self.dac_code = 0;
+        Drive::default()
+    }
+}
+
+/// The earlier of two ticks that are less than 2^31 apart.
+#[inline]
+fn earlier(one_tick: u32, other_tick: u32) -> u32 {
+    if (one_tick.wrapping_sub(other_tick) as i32) < 0 { one_tick } else { other_tick }
+}
+
+/// Above the largest friction, negative, or not a number: bit patterns of the last two are above those of every positive
+/// number. Minus zero is among them, and within reach.
+#[inline]
+fn may_be_out_of_reach(electric_friction_n: f32, table: &InverseTable) -> bool {
+    electric_friction_n.to_bits() > table.electric_friction_max_n().to_bits()
+}
