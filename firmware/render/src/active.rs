@@ -25,7 +25,7 @@ pub struct Active {
     pub(crate) host_timeout_ticks: Option<u32>,
     pub(crate) prediction: bool,
     /// The one layer that is all there is, if so.
-    sole: Sole,
+    sole: Option<Sole>,
     table: Option<InverseTable>,
     /// The layers that are on.
     on: LayerSet,
@@ -49,7 +49,7 @@ impl Active {
             voltage_max_v_rms: 0.0,
             host_timeout_ticks: None,
             prediction: true,
-            sole: Sole::None,
+            sole: None,
         }
     }
 
@@ -72,7 +72,7 @@ impl Active {
         self.voltage_max_v_rms = 0.0;
         self.host_timeout_ticks = None;
         self.prediction = true;
-        self.sole = Sole::None;
+        self.sole = None;
     }
 
     /// The inverse table; `None` without a scene.
@@ -87,32 +87,16 @@ impl Active {
         self.layers.iter().any(Layer::is_stream)
     }
 
-    /// Electric friction of all layers that are on, in N, at a place and a tick. What else they depend on is in `moment`.
+    /// The one layer that is all there is, if so.
     #[inline]
-    pub(crate) fn electric_friction_n(
-        &self,
-        place_m: [f32; 2],
-        tick: u32,
-        moment: &mut Moment,
-        pool: &BitmapPool,
-        clicks: &mut Clicks,
-    ) -> f32 {
-        match &self.sole {
-            Sole::Constant(electric_friction_n) => *electric_friction_n,
-            #[cfg(feature = "grating")]
-            Sole::Grating(grating) => grating.at(place_m),
-            #[cfg(feature = "bitmap")]
-            Sole::Picture(picture) => picture.electric_friction_n(place_m, pool),
-            Sole::None => {
-                moment.place_m = place_m;
-                moment.tick = tick;
-                self.blended_electric_friction_n(&mut Around { moment, pool, tables: &self.tables, clicks })
-            }
-        }
+    pub(crate) fn sole(&self) -> Option<&Sole> {
+        self.sole.as_ref()
     }
 
+    /// Electric friction of all layers that are on, in N.
     #[inline(never)]
-    fn blended_electric_friction_n(&self, around: &mut Around) -> f32 {
+    pub(crate) fn electric_friction_n(&self, moment: &Moment, pool: &BitmapPool, clicks: &mut Clicks) -> f32 {
+        let around = &mut Around { moment, pool, tables: &self.tables, clicks };
         let [on, others_on] = self.on;
         let [x_m, y_m] = around.moment.place_m;
         let [near, others_near] = self.grid.at(x_m, y_m);
@@ -198,11 +182,8 @@ impl Active {
         *word = if on { *word | bit } else { *word & !bit };
     }
 
-    fn find_sole(&self) -> Sole {
-        match self.layers.first() {
-            Some(layer) if self.on == [1, 0] => layer.sole(),
-            _ => Sole::None,
-        }
+    fn find_sole(&self) -> Option<Sole> {
+        self.layers.first().filter(|_| self.on == [1, 0]).and_then(Layer::sole)
     }
 }
 

@@ -52,12 +52,15 @@ pub(crate) struct Carrier {
     /// Ticks until the next edge, this one included.
     left_ticks: u32,
     integral: i32,
+    /// Edges that came early to keep direct current away, modulo 2^32, and the tick of the last.
+    early_edges: u32,
+    last_early_tick: u32,
 }
 
 impl Carrier {
     /// Starts a quarter period in, so that the integral swings evenly about zero.
     pub(crate) fn new(timing: &CarrierTiming) -> Self {
-        Self { sign: 1, left_ticks: timing.ticks_from_crest(), integral: 0 }
+        Self { sign: 1, left_ticks: timing.ticks_from_crest(), integral: 0, early_edges: 0, last_early_tick: 0 }
     }
 
     /// Goes on with the timing of another scene. The integral is the electrode's, and stays.
@@ -72,26 +75,44 @@ impl Carrier {
         self.left_ticks = timing.ticks_from_crest();
     }
 
-    /// The code for this tick, and whether its edge came early to keep direct current away.
+    /// Early edges since power-on, modulo 2^32.
+    pub(crate) fn early_edges(&self) -> u32 {
+        self.early_edges
+    }
+
+    /// When the last of them was.
+    pub(crate) fn last_early_tick(&self) -> u32 {
+        self.last_early_tick
+    }
+
+    /// The code for this tick.
     #[inline]
-    pub(crate) fn next(&mut self, envelope_v_rms: f32, timing: &CarrierTiming) -> (i16, bool) {
+    pub(crate) fn next(&mut self, envelope_v_rms: f32, timing: &CarrierTiming, tick: u32) -> i16 {
         let mut code = self.sign * self.magnitude(envelope_v_rms, timing);
-        let mut integral = self.integral + code;
         // Beyond the largest on either side: both are far from overflowing.
-        let too_far = (integral + timing.integral_max) as u32 > 2 * timing.integral_max as u32;
-        let early = too_far && self.takes_out(code);
-        if early {
-            self.sign = -self.sign;
-            code = -code;
-            integral = self.integral + code;
+        if (self.integral + code + timing.integral_max) as u32 > 2 * timing.integral_max as u32 {
+            code = self.within_balance(code, tick);
         }
-        self.integral = integral;
+        self.integral += code;
         if self.left_ticks > 1 {
             self.left_ticks -= 1;
         } else {
             self.turn(timing);
         }
-        (code as i16, early)
+        code as i16
+    }
+
+    /// A code that would take the integral too far, or what is put out in its place: if it takes the integral away from
+    /// zero, the same with the other sign, as an early edge.
+    #[cold]
+    fn within_balance(&mut self, code: i32, tick: u32) -> i32 {
+        if (self.integral + code).abs() <= self.integral.abs() {
+            return code;
+        }
+        self.sign = -self.sign;
+        self.early_edges = self.early_edges.wrapping_add(1);
+        self.last_early_tick = tick;
+        -code
     }
 
     /// An edge.
@@ -99,12 +120,6 @@ impl Carrier {
     fn turn(&mut self, timing: &CarrierTiming) {
         self.sign = -self.sign;
         self.left_ticks = timing.half_period_ticks;
-    }
-
-    /// Whether a code takes the integral away from zero.
-    #[cold]
-    fn takes_out(&self, code: i32) -> bool {
-        (self.integral + code).abs() > self.integral.abs()
     }
 
     #[inline]
@@ -137,9 +152,9 @@ mod tests {
     fn a_steady_square_alternates_without_early_edges() {
         let timing = timing(Shape::Square, 20);
         let mut carrier = Carrier::new(&timing);
-        let codes: Vec<(i16, bool)> = (0..400).map(|_| carrier.next(200.0, &timing)).collect();
-        assert!(codes.iter().all(|(_, early)| !early));
-        for (i, (code, _)) in codes.iter().enumerate() {
+        let codes: Vec<i16> = (0..400).map(|tick| carrier.next(200.0, &timing, tick)).collect();
+        assert_eq!(carrier.early_edges(), 0);
+        for (i, code) in codes.iter().enumerate() {
             let positive = (i + 10) % 40 < 20;
             assert_eq!(*code, if positive { 20_000 } else { -20_000 }, "{i}");
         }
@@ -150,7 +165,7 @@ mod tests {
     fn a_sine_has_the_rms_of_its_envelope() {
         let timing = timing(Shape::Sine, 20);
         let mut carrier = Carrier::new(&timing);
-        let sum: f64 = (0..4000).map(|_| f64::from(carrier.next(100.0, &timing).0).powi(2)).sum();
+        let sum: f64 = (0..4000).map(|_| f64::from(carrier.next(100.0, &timing, 0)).powi(2)).sum();
         let rms = (sum / 4000.0).sqrt();
         assert!((rms * 2.0_f64.sqrt() - 10_000.0).abs() < 1.0, "{rms}");
     }
@@ -173,7 +188,7 @@ mod tests {
                 let amplitude = if resonant { if half.is_multiple_of(2) { 200.0 } else { 3.0 } }
                     else { seed_amplitudes[i % seed_amplitudes.len()] };
                 if i % 1013 == 0 { carrier.rest(&timing); }
-                integral += i64::from(carrier.next(amplitude, &timing).0);
+                integral += i64::from(carrier.next(amplitude, &timing, 0));
                 prop_assert!(integral.abs() <= full, "{integral} after {i} ticks, {full} allowed");
             }
         }

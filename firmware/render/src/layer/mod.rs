@@ -133,19 +133,19 @@ impl Layer {
         matches!(self.join, Join::Fading(_))
     }
 
-    /// What is asked for when this layer is all there is, on bare glass.
-    pub(crate) fn sole(&self) -> Sole {
+    /// This layer as all there is on bare glass, if that is simpler.
+    pub(crate) fn sole(&self) -> Option<Sole> {
         if !matches!(self.join, Join::Replace | Join::Add) || self.region != Region::Screen {
-            return Sole::None;
+            return None;
         }
         match &self.source {
-            Source::Constant { electric_friction_n } => Sole::Constant(self.gain * electric_friction_n),
+            Source::Constant { electric_friction_n } => Some(Sole::Constant(self.gain * electric_friction_n)),
             #[cfg(feature = "grating")]
-            Source::Grating(grating) => Sole::Grating(grating.scaled(self.gain)),
+            Source::Grating(grating) => Some(Sole::Grating(grating.scaled(self.gain))),
             #[cfg(feature = "bitmap")]
-            Source::Picture(picture) => Sole::Picture(picture.scaled(self.gain)),
+            Source::Picture(picture) => Some(Sole::Picture(picture.scaled(self.gain))),
             #[allow(unreachable_patterns, reason = "other kinds are left out")]
-            _ => Sole::None,
+            _ => None,
         }
     }
 
@@ -184,14 +184,27 @@ impl Layer {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(u8)]
 pub(crate) enum Sole {
-    /// There is more, or less, or something else.
-    None,
     /// In N.
     Constant(f32),
     #[cfg(feature = "grating")]
     Grating(Grating),
     #[cfg(feature = "bitmap")]
     Picture(Picture),
+}
+
+impl Sole {
+    /// Electric friction at a place, in N.
+    #[inline]
+    #[cfg_attr(not(feature = "bitmap"), allow(unused_variables, reason = "only pictures lie in the pool"))]
+    pub(crate) fn electric_friction_n(&self, place_m: [f32; 2], pool: &BitmapPool) -> f32 {
+        match self {
+            Self::Constant(electric_friction_n) => *electric_friction_n,
+            #[cfg(feature = "grating")]
+            Self::Grating(grating) => grating.at(place_m),
+            #[cfg(feature = "bitmap")]
+            Self::Picture(picture) => picture.electric_friction_n(place_m, pool),
+        }
+    }
 }
 
 /// How a layer joins those below it.

@@ -68,7 +68,6 @@ pub struct Ticker<'a> {
 struct LastTicks {
     saturated_tick: u32,
     slewed_tick: u32,
-    balanced_tick: u32,
 }
 
 /// What belongs to the board and is computed once.
@@ -142,21 +141,18 @@ impl<'a> Ticker<'a> {
         }
         self.finger.advance();
         let due = self.due_tick.wrapping_sub(self.tick) as i32 <= 0;
-        let spent = (due || sense.touch.is_some()) && self.attend(sense.touch);
-        if !self.live {
-            return self.rest();
+        if due || sense.touch.is_some() {
+            return self.attend(sense.touch);
         }
-        if !spent {
-            self.ask();
-        }
+        // What is not live is always due.
+        self.ask();
         self.put_out()
     }
 
-    /// Does what else there is to do than to ask the scene: takes a report of the touch source, or goes on with the
-    /// last, or meets a deadline. Returns whether that is enough for a tick, whose output goes on with what the scene
-    /// asked for before.
+    /// A tick in which there is something else to do than to ask the scene: it takes a report of the touch source, or goes
+    /// on with the last, or meets a deadline, or rests. If it drives, it drives what the scene asked for before.
     #[inline(never)]
-    fn attend(&mut self, touch: Option<Touch>) -> bool {
+    fn attend(&mut self, touch: Option<Touch>) -> Drive {
         let (timing, prediction) = (&self.timing.finger, self.active.prediction);
         if let Some(touch) = touch {
             self.finger.take(touch, self.tick, prediction, timing);
@@ -170,13 +166,15 @@ impl<'a> Ticker<'a> {
             self.look();
         }
         self.plan();
-        if self.tick.wrapping_sub(self.asked_tick) > ATTENDED_MAX_TICKS {
-            return false;
+        if !self.live {
+            return self.rest();
         }
-        if self.is_saturated(self.tick.wrapping_sub(1)) {
+        if self.tick.wrapping_sub(self.asked_tick) > ATTENDED_MAX_TICKS {
+            self.ask_anew();
+        } else if self.is_saturated(self.tick.wrapping_sub(1)) {
             self.note_out_of_reach();
         }
-        true
+        self.put_out()
     }
 
     fn is_saturated(&self, tick: u32) -> bool {
@@ -224,14 +222,15 @@ impl<'a> Ticker<'a> {
     }
 
     /// Finds when there is something else to do than to ask the scene. Errands are done in every second tick, so that the
-    /// others ask it; in every one while there is nothing to ask.
+    /// others ask it; while there is nothing to ask, every tick has something else to do.
     fn plan(&mut self) {
-        let mut due_tick = self.deadline_tick;
-        if self.finger_changed || self.finger.has_errand() {
-            let errand_tick = (self.tick | u32::from(self.live)).wrapping_add(1);
-            due_tick = earlier(errand_tick, due_tick);
-        }
-        self.due_tick = due_tick;
+        self.due_tick = if !self.live {
+            self.tick.wrapping_add(1)
+        } else if self.finger_changed || self.finger.has_errand() {
+            earlier((self.tick | 1).wrapping_add(1), self.deadline_tick)
+        } else {
+            self.deadline_tick
+        };
     }
 
     #[cfg(feature = "stream")]
@@ -256,11 +255,33 @@ impl<'a> Ticker<'a> {
     /// Asks the scene what it wants at this moment, where the finger is now, and finds the voltage for it.
     #[inline]
     fn ask(&mut self) {
+        let place_m = self.finger.place_m();
+        let friction_n = match self.active.sole() {
+            Some(sole) => sole.electric_friction_n(place_m, self.pool),
+            None => self.friction_of_layers_n(place_m),
+        };
+        self.want(friction_n);
+    }
+
+    /// Asks the scene in a tick that has done something else already.
+    #[cold]
+    #[inline(never)]
+    fn ask_anew(&mut self) {
+        let friction_n = self.friction_of_layers_n(self.finger.place_m());
+        self.want(friction_n);
+    }
+
+    #[inline]
+    fn friction_of_layers_n(&mut self, place_m: [f32; 2]) -> f32 {
+        self.moment.place_m = place_m;
+        self.moment.tick = self.tick;
+        self.active.electric_friction_n(&self.moment, self.pool, &mut self.clicks)
+    }
+
+    #[inline]
+    fn want(&mut self, friction_n: f32) {
         let Some(table) = self.active.table() else { return };
         self.asked_tick = self.tick;
-        let place_m = self.finger.place_m();
-        let friction_n =
-            self.active.electric_friction_n(place_m, self.tick, &mut self.moment, self.pool, &mut self.clicks);
         let electric_friction_n = self.finger.gain() * friction_n;
         self.asked_electric_friction_n = electric_friction_n;
         self.target_v_rms = table.voltage_v_rms(electric_friction_n);
@@ -280,24 +301,16 @@ impl<'a> Ticker<'a> {
     }
 
     /// Brings the envelope to what is asked for, and the carrier to the DAC.
-    #[inline]
+    #[allow(clippy::inline_always, reason = "the call would cost every tick a tenth of what it takes")]
+    #[inline(always)]
     fn put_out(&mut self) -> Drive {
         if self.envelope.follow(self.target_v_rms, self.active.slew_step_v) {
             self.last.slewed_tick = self.tick;
             self.counters.slewed_ticks = self.counters.slewed_ticks.wrapping_add(1);
         }
-        let (dac_code, early) = self.carrier.next(self.envelope.voltage_v_rms(), &self.active.carrier);
-        if early {
-            self.note_early_edge();
-        }
+        let dac_code = self.carrier.next(self.envelope.voltage_v_rms(), &self.active.carrier, self.tick);
         self.dac_code = dac_code;
         Drive { dac_code, amplifier_enable: true }
-    }
-
-    #[cold]
-    fn note_early_edge(&mut self) {
-        self.last.balanced_tick = self.tick;
-        self.counters.balanced_edges = self.counters.balanced_edges.wrapping_add(1);
     }
 
     /// Zero at once.

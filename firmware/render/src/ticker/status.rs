@@ -34,7 +34,7 @@ impl Ticker<'_> {
     }
 
     fn flags(&self) -> Flags {
-        let Counters { saturated_ticks, slewed_ticks, balanced_edges, .. } = self.counters;
+        let Counters { saturated_ticks, slewed_ticks, .. } = self.counters;
         let now = |count, tick| count > 0 && tick == self.tick;
         #[cfg(feature = "stream")]
         let is_dry = self.stream.as_ref().is_some_and(Player::is_dry);
@@ -46,7 +46,7 @@ impl Ticker<'_> {
             (Flags::STILL, self.finger.gain() < 1.0),
             (Flags::SATURATED, now(saturated_ticks, self.last.saturated_tick)),
             (Flags::SLEWED, now(slewed_ticks, self.last.slewed_tick)),
-            (Flags::CARRIER_BALANCED, now(balanced_edges, self.last.balanced_tick)),
+            (Flags::CARRIER_BALANCED, now(self.carrier.early_edges(), self.carrier.last_early_tick())),
             (Flags::HOST_SILENT, self.supervisor.host_silent()),
             (Flags::STREAM_DRY, is_dry),
         ]
@@ -55,11 +55,12 @@ impl Ticker<'_> {
     }
 
     fn counters(&self) -> Counters {
+        let counters = Counters { balanced_edges: self.carrier.early_edges(), ..self.counters };
         #[cfg(feature = "stream")]
         if let Some(stream) = &self.stream {
             let (stream_underruns, stream_gaps) = stream.counts();
-            return Counters { stream_underruns, stream_gaps, ..self.counters };
+            return Counters { stream_underruns, stream_gaps, ..counters };
         }
-        self.counters
+        counters
     }
 }
