@@ -97,28 +97,35 @@ impl Active {
     #[inline(never)]
     pub(crate) fn electric_friction_n(&self, moment: &Moment, pool: &BitmapPool, clicks: &mut Clicks) -> f32 {
         let around = &mut Around { moment, pool, tables: &self.tables, clicks };
-        let [on, others_on] = self.on;
         let [x_m, y_m] = around.moment.place_m;
+        let [on, others_on] = self.on;
         let [near, others_near] = self.grid.at(x_m, y_m);
         #[cfg(feature = "edge")]
         if !self.tables.clicks().is_empty() {
             around.clicks.begin();
         }
-        let (mut first, mut set, mut others) = (0, on & near, others_on & others_near);
-        let mut electric_friction_n = 0.0;
-        loop {
-            if set == 0 {
-                if others == 0 {
-                    return electric_friction_n;
-                }
-                (first, set, others) = (u32::BITS, others, 0);
-            }
-            let number = first + set.trailing_zeros();
+        let below_n = self.blend(0, on & near, 0.0, around);
+        let others = others_on & others_near;
+        if others == 0 { below_n } else { self.blend_others(others, below_n, around) }
+    }
+
+    /// Blends those of the 32 layers from number `first` on that are in `set`, over what is below them.
+    #[inline]
+    fn blend(&self, first: u32, mut set: u32, below_n: f32, around: &mut Around) -> f32 {
+        let mut electric_friction_n = below_n;
+        while set != 0 {
+            let number = set.trailing_zeros();
             set &= set - 1;
-            if let Some(layer) = self.layers.get(number as usize) {
+            if let Some(layer) = self.layers.get((first + number) as usize) {
                 electric_friction_n = layer.blend_over(electric_friction_n, around);
             }
         }
+        electric_friction_n
+    }
+
+    #[inline(never)]
+    fn blend_others(&self, set: u32, below_n: f32, around: &mut Around) -> f32 {
+        self.blend(u32::BITS, set, below_n, around)
     }
 
     /// Puts a layer on or off and sets its gain while the scene plays. A layer that the scene does not have is none.

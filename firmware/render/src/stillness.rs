@@ -48,16 +48,19 @@ impl Stillness {
     pub(crate) fn take(&mut self, [x, y]: [f32; 2], now_tick: u32) {
         let speed_squared = x * x + y * y;
         self.slow = speed_squared < STILL_BELOW_M_PER_S * STILL_BELOW_M_PER_S;
-        if !self.slow {
-            self.slow_ticks = 0;
+        if self.slow {
+            if self.steady {
+                self.steady = false;
+                self.settled_at_tick = now_tick;
+            }
+            return;
         }
-        if self.gain_per_tick < 0.0 && speed_squared > MOVING_ABOVE_M_PER_S * MOVING_ABOVE_M_PER_S {
+        self.slow_ticks = 0;
+        if self.gain >= 1.0 {
+            self.steady = true;
+        } else if self.gain_per_tick < 0.0 && speed_squared > MOVING_ABOVE_M_PER_S * MOVING_ABOVE_M_PER_S {
             self.gain_per_tick = -self.gain_per_tick;
         }
-        if self.steady {
-            self.settled_at_tick = now_tick;
-        }
-        self.steady = !self.slow && self.gain >= 1.0;
     }
 
     /// On the friction asked for, from 0 to 1.

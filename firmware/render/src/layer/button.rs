@@ -24,7 +24,7 @@ impl Button {
     #[inline(never)]
     pub(super) fn electric_friction_n(&self, region: &Region, around: &mut Around) -> f32 {
         let click_n = self.click.map_or(0.0, |click| click.inside(around));
-        let depth_m = region.depth_m(around.moment.place_m);
+        let depth_m = region.depth_m(around.moment);
         if depth_m >= self.rim_width_m {
             return self.face_n + click_n;
         }

@@ -1,8 +1,6 @@
 //! A curve over sliding speed: the only kind that reads speed.
 
-use frixel_wire::scene::Point;
-
-use super::Moment;
+use super::Around;
 use crate::root::square_root;
 
 /// Straight between its points, held outside of them.
@@ -18,8 +16,9 @@ impl Curve {
     }
 
     #[inline(never)]
-    pub(super) fn at(&self, moment: &Moment, points: &[Point]) -> f32 {
-        let [x, y] = moment.velocity_m_per_s;
+    pub(super) fn electric_friction_n(&self, around: &Around) -> f32 {
+        let points = around.tables.points();
+        let [x, y] = around.moment.velocity_m_per_s;
         let speed_m_per_s = square_root(x * x + y * y);
         let first = usize::from(self.first);
         let Some([start, rest @ ..]) = points.get(first..first + usize::from(self.count)) else { return 0.0 };

@@ -2,6 +2,7 @@
 
 use frixel_wire::scene::Wave;
 
+use super::Around;
 use crate::turns;
 
 /// `middle + swing w(kx x + ky y + phase)`, with `w` between -1 and 1.
@@ -58,8 +59,8 @@ impl Grating {
 
     /// As [`Self::at`], as a call.
     #[inline(never)]
-    pub(super) fn electric_friction_n(&self, place_m: [f32; 2]) -> f32 {
-        self.at(place_m)
+    pub(super) fn electric_friction_n(&self, around: &Around) -> f32 {
+        self.at(around.moment.place_m)
     }
 
     /// Electric friction at a place, in N.

@@ -69,7 +69,7 @@ impl Loading<'_> {
             #[cfg(feature = "speed")]
             Kind::Speed { first, count } => Ok(Source::Curve(super::Curve::new(first, count))),
             #[cfg(feature = "stream")]
-            Kind::Stream { low_n, high_n } => Ok(Source::Stream { low_n, span_n: high_n - low_n }),
+            Kind::Stream { low_n, high_n } => Ok(Source::Stream(super::Streamed::new(low_n, high_n))),
             #[allow(unreachable_patterns, reason = "no kind is left out")]
             _ => Err(Refusal::LeftOut { layer: number }),
         }

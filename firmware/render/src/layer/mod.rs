@@ -15,6 +15,8 @@ mod noise;
 #[cfg(feature = "bitmap")]
 mod picture;
 mod region;
+#[cfg(feature = "stream")]
+mod streamed;
 mod tables;
 #[cfg(test)]
 mod tests;
@@ -43,6 +45,8 @@ use noise::Noise;
 #[cfg(feature = "bitmap")]
 use picture::Picture;
 use region::Region;
+#[cfg(feature = "stream")]
+use streamed::Streamed;
 pub(crate) use tables::Tables;
 #[cfg(feature = "vibration")]
 use vibration::Vibration;
@@ -52,6 +56,8 @@ use vibration::Vibration;
 pub(crate) struct Moment {
     /// Where the finger is taken to be, in m.
     pub(crate) place_m: [f32; 2],
+    /// The same, as rectangles take it.
+    place_steps: [i32; 2],
     /// How the finger slides.
     #[cfg(feature = "speed")]
     pub(crate) velocity_m_per_s: [f32; 2],
@@ -60,6 +66,16 @@ pub(crate) struct Moment {
     /// The host's stream.
     #[cfg(feature = "stream")]
     pub(crate) stream: StreamNow,
+}
+
+impl Moment {
+    /// The finger is at a place at a tick.
+    #[inline]
+    pub(crate) fn meet(&mut self, place_m: [f32; 2], tick: u32) {
+        self.place_m = place_m;
+        self.place_steps = place_m.map(region::steps);
+        self.tick = tick;
+    }
 }
 
 /// What layers look at besides their own numbers.
@@ -101,12 +117,8 @@ enum Source {
     Vibration(Vibration),
     #[cfg(feature = "speed")]
     Curve(Curve),
-    /// `low + span` times the stream's sample.
     #[cfg(feature = "stream")]
-    Stream {
-        low_n: f32,
-        span_n: f32,
-    },
+    Stream(Streamed),
 }
 
 /// Bytes that a record becomes: a layer, and what of it lies in the tables; its points apart.
@@ -158,7 +170,7 @@ impl Layer {
     /// Joins this layer's electric friction at a moment to that of the layers below.
     #[inline]
     pub(crate) fn blend_over(&self, below_n: f32, around: &mut Around) -> f32 {
-        if !self.region.contains(around.moment.place_m, around.tables.points()) {
+        if !self.region.contains(around) {
             return below_n;
         }
         let own_n = self.own_electric_friction_n(around);
@@ -174,7 +186,7 @@ impl Layer {
                 }
             }
             #[cfg(feature = "stream")]
-            Join::Fading(blend) => fading(blend, below_n, own_n, around.moment.stream.weight),
+            Join::Fading(blend) => streamed::fading(blend, below_n, own_n, around),
         }
     }
 }
@@ -235,19 +247,6 @@ impl Join {
     }
 }
 
-/// A layer that is there by a weight from 0 to 1.
-#[cfg(feature = "stream")]
-#[inline(never)]
-fn fading(blend: Blend, below_n: f32, own_n: f32, weight: f32) -> f32 {
-    let blended_n = match blend {
-        Blend::Replace => own_n,
-        Blend::Add => below_n + own_n,
-        Blend::Multiply => below_n * own_n,
-        Blend::Max => own_n.max(below_n),
-    };
-    below_n + weight * (blended_n - below_n)
-}
-
 /// Whether a layer plays what the host streams.
 #[cfg(feature = "stream")]
 pub(crate) fn is_stream(record: &Record) -> bool {
@@ -257,31 +256,32 @@ pub(crate) fn is_stream(record: &Record) -> bool {
 impl Source {
     /// Electric friction at a moment, in N, before the gain.
     ///
-    /// Kinds of more than a line are calls: a loop over layers would begin with the constants of all of them.
+    /// Kinds of more than a number are calls that look around by themselves: a loop over layers would begin with the
+    /// constants of all of them.
     #[inline]
     #[cfg_attr(
-        not(all(feature = "grating", feature = "bitmap")),
+        not(all(feature = "grating", feature = "edge")),
         allow(unused_variables, reason = "the other kinds of layer do not look at them")
     )]
     fn electric_friction_n(&self, region: &Region, around: &mut Around) -> f32 {
         match self {
             Self::Constant { electric_friction_n } => *electric_friction_n,
             #[cfg(feature = "grating")]
-            Self::Grating(grating) => grating.electric_friction_n(around.moment.place_m),
+            Self::Grating(grating) => grating.electric_friction_n(around),
             #[cfg(feature = "bitmap")]
             Self::Picture(picture) => picture.electric_friction_n(around.moment.place_m, around.pool),
             #[cfg(feature = "noise")]
-            Self::Noise(noise) => noise.electric_friction_n(around.moment.place_m, around.tables.noises()),
+            Self::Noise(noise) => noise.electric_friction_n(around),
             #[cfg(feature = "edge")]
             Self::Edge(edge) => edge.electric_friction_n(around),
             #[cfg(feature = "edge")]
             Self::Button(button) => button.electric_friction_n(region, around),
             #[cfg(feature = "vibration")]
-            Self::Vibration(vibration) => vibration.electric_friction_n(around.moment),
+            Self::Vibration(vibration) => vibration.electric_friction_n(around),
             #[cfg(feature = "speed")]
-            Self::Curve(curve) => curve.at(around.moment, around.tables.points()),
+            Self::Curve(curve) => curve.electric_friction_n(around),
             #[cfg(feature = "stream")]
-            Self::Stream { low_n, span_n } => low_n + span_n * around.moment.stream.value,
+            Self::Stream(stream) => stream.electric_friction_n(around),
         }
     }
 }

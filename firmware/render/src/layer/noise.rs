@@ -1,6 +1,6 @@
 //! Band-limited noise: a sum of waves that a seed says.
 
-use super::direction;
+use super::{Around, direction};
 use crate::turns;
 
 /// Most layers of noise in a scene.
@@ -55,8 +55,9 @@ impl Noise {
     }
 
     #[inline(never)]
-    pub(super) fn electric_friction_n(&self, [x_m, y_m]: [f32; 2], noises: &[Waves]) -> f32 {
-        let Some(Waves(waves)) = noises.get(usize::from(self.waves)) else { return 0.0 };
+    pub(super) fn electric_friction_n(&self, around: &Around) -> f32 {
+        let [x_m, y_m] = around.moment.place_m;
+        let Some(Waves(waves)) = around.tables.noises().get(usize::from(self.waves)) else { return 0.0 };
         let mut sum = 0.0;
         for wave in waves {
             sum += turns::cosine(x_m * wave.cycles_per_m_x + y_m * wave.cycles_per_m_y + wave.phase_turns);

@@ -46,9 +46,10 @@ fn constant(blend: Blend, gain: f32, electric_friction_n: f32) -> Record {
     Record { region: HERE, blend, gain, layer: Kind::Constant { electric_friction_n } }
 }
 
-#[allow(clippy::needless_update, reason = "with more features there is more to it")]
 fn at(x_m: f32, y_m: f32) -> Moment {
-    Moment { place_m: [x_m, y_m], ..Moment::default() }
+    let mut moment = Moment::default();
+    moment.meet([x_m, y_m], 0);
+    moment
 }
 
 fn close(found: f32, expected: f32) {

@@ -4,7 +4,7 @@ use core::num::NonZeroU32;
 
 use frixel_wire::scene::{Beat, Burst as Record};
 
-use super::Moment;
+use super::Around;
 use crate::Board;
 use crate::turns;
 
@@ -43,8 +43,9 @@ impl Vibration {
     }
 
     #[inline(never)]
-    pub(super) fn electric_friction_n(&self, moment: &Moment) -> f32 {
-        let phase = moment.tick.wrapping_mul(self.step);
+    pub(super) fn electric_friction_n(&self, around: &Around) -> f32 {
+        let tick = around.moment.tick;
+        let phase = tick.wrapping_mul(self.step);
         // As a signed number, the phase is between -1/2 and 1/2 turn.
         let height = match self.beat {
             Beat::Sine => turns::cosine(phase.wrapping_sub(1 << 30) as i32 as f32 * TURNS_PER_STEP),
@@ -57,7 +58,7 @@ impl Vibration {
             }
         };
         let span_n = match &self.burst {
-            Some(burst) => self.half_span_n * burst.envelope(moment.tick),
+            Some(burst) => self.half_span_n * burst.envelope(tick),
             None => self.half_span_n,
         };
         self.low_n + span_n * (1.0 + height)

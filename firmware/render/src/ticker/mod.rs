@@ -273,8 +273,7 @@ impl<'a> Ticker<'a> {
 
     #[inline]
     fn friction_of_layers_n(&mut self, place_m: [f32; 2]) -> f32 {
-        self.moment.place_m = place_m;
-        self.moment.tick = self.tick;
+        self.moment.meet(place_m, self.tick);
         self.active.electric_friction_n(&self.moment, self.pool, &mut self.clicks)
     }
 
