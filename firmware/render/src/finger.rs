@@ -73,6 +73,8 @@ enum Errand {
     Judge,
     /// To say that it is there.
     Arrive,
+    /// To look at what has changed.
+    Look,
 }
 
 /// A place at which the finger was.
@@ -147,19 +149,17 @@ impl Finger {
         }
     }
 
-    /// There is something to do before the next report: the last one is not taken in wholly, or the finger is slow,
-    /// still, or has been so.
+    /// There is something to do before the next report: the last one is not taken in wholly, or the gain is on its way.
     #[inline]
     pub(crate) fn has_errand(&self) -> bool {
-        self.errand != Errand::None || !self.stillness.is_steady()
+        self.errand != Errand::None || self.stillness.is_ramping()
     }
 
-    /// Does the next of what there is to do. Returns whether the finger has arrived, or its gain has left 1 or
-    /// come back to it.
+    /// Does the next of what there is to do. Returns whether that is to look at what the last report has changed.
     pub(crate) fn go_on(&mut self, now_tick: u32, prediction: bool, timing: &FingerTiming) -> bool {
         let [x_m, y_m] = self.sample.place_m;
         match self.errand {
-            Errand::None => return self.stillness.settle(now_tick, &timing.stillness),
+            Errand::None => self.stillness.settle(now_tick),
             Errand::Weigh => {
                 let says_anything = self.estimator.weigh(self.sample.at_tick, timing.tick_period_s, timing.step_min_s);
                 self.errand = if says_anything { Errand::UpdateX } else { Errand::None };
@@ -181,11 +181,14 @@ impl Finger {
                 self.errand = Errand::Judge;
             }
             Errand::Judge => {
-                self.stillness.take(self.velocity_m_per_s, now_tick);
+                self.stillness.take(self.velocity_m_per_s, now_tick, &timing.stillness);
                 self.errand = Errand::Arrive;
             }
             Errand::Arrive => {
                 self.presence = Presence::Down { until_tick: self.sample.until_tick };
+                self.errand = Errand::Look;
+            }
+            Errand::Look => {
                 self.errand = Errand::None;
                 return true;
             }
@@ -200,8 +203,8 @@ impl Finger {
         while self.errand != Errand::None {
             self.go_on(now_tick, prediction, timing);
         }
-        if !self.stillness.is_steady() {
-            self.stillness.settle(now_tick, &timing.stillness);
+        if self.stillness.is_ramping() {
+            self.stillness.settle(now_tick);
         }
     }
 
@@ -227,8 +230,18 @@ impl Finger {
         self.y = motion(&estimate, self.sample.place_m[1], prediction, timing);
     }
 
-    /// Lets go of a finger that is stale at a tick, or will be before it.
-    pub(crate) fn expire(&mut self, now_tick: u32) {
+    /// When [`Self::expire`] has to be asked, if there is a finger.
+    pub(crate) fn expires_at_tick(&self) -> Option<u32> {
+        match (self.presence, self.stillness.still_at_tick()) {
+            (Presence::Down { until_tick }, Some(still_at_tick)) => Some(earlier(until_tick, still_at_tick)),
+            (Presence::Down { until_tick }, None) => Some(until_tick),
+            _ => None,
+        }
+    }
+
+    /// Lets go of a finger that is stale at a tick, or will be before it, and ramps one away that is still.
+    pub(crate) fn expire(&mut self, now_tick: u32, timing: &FingerTiming) {
+        self.stillness.expire(now_tick, &timing.stillness);
         if let Presence::Down { until_tick } = self.presence
             && until_tick.wrapping_sub(now_tick) as i32 <= 0
         {
@@ -272,6 +285,12 @@ impl Finger {
         let [x, y] = self.velocity_m_per_s;
         libm::sqrtf(x * x + y * y)
     }
+}
+
+/// The earlier of two ticks that are less than 2^31 apart.
+#[inline]
+pub(crate) fn earlier(one_tick: u32, other_tick: u32) -> u32 {
+    if (one_tick.wrapping_sub(other_tick) as i32) < 0 { one_tick } else { other_tick }
 }
 
 /// How the finger goes on along one axis; without prediction it is taken to stay where it was last seen.

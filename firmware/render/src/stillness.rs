@@ -28,39 +28,54 @@ impl StillnessTiming {
 /// The speed is that of the last sample: between two samples nothing new is known of it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stillness {
-    /// The finger moves fast enough, and the gain is 1: there is nothing to settle.
-    steady: bool,
-    /// The last sample was below the speed of a still finger.
-    slow: bool,
-    slow_ticks: u32,
+    /// The gain is on its way to one of its ends: there is something to [`Self::settle`].
+    ramping: bool,
     gain: f32,
-    /// What is added to the gain in a tick: less than zero while the finger is still.
+    /// What is added to the gain in a tick: less than zero for a finger that is still, and zero for one that is not.
     gain_per_tick: f32,
     settled_at_tick: u32,
+    /// When a finger that is slow will be still.
+    still_at_tick: Option<u32>,
 }
 
 impl Stillness {
     /// A finger that has just come down is taken to move.
     pub(crate) const MOVING: Self =
-        Self { steady: true, slow: false, slow_ticks: 0, gain: 1.0, gain_per_tick: 0.0, settled_at_tick: 0 };
+        Self { ramping: false, gain: 1.0, gain_per_tick: 0.0, settled_at_tick: 0, still_at_tick: None };
 
     /// Takes the velocity of a new sample, in m/s.
-    pub(crate) fn take(&mut self, [x, y]: [f32; 2], now_tick: u32) {
+    pub(crate) fn take(&mut self, [x, y]: [f32; 2], now_tick: u32, timing: &StillnessTiming) {
         let speed_squared = x * x + y * y;
-        self.slow = speed_squared < STILL_BELOW_M_PER_S * STILL_BELOW_M_PER_S;
-        if self.slow {
-            if self.steady {
-                self.steady = false;
-                self.settled_at_tick = now_tick;
+        if self.gain_per_tick < 0.0 {
+            if speed_squared > MOVING_ABOVE_M_PER_S * MOVING_ABOVE_M_PER_S {
+                self.ramp(timing.gain_per_tick, now_tick);
             }
-            return;
+        } else if !(speed_squared < STILL_BELOW_M_PER_S * STILL_BELOW_M_PER_S) {
+            self.still_at_tick = None;
+        } else if self.still_at_tick.is_none() {
+            self.still_at_tick = Some(now_tick.wrapping_add(timing.still_after_ticks));
         }
-        self.slow_ticks = 0;
-        if self.gain >= 1.0 {
-            self.steady = true;
-        } else if self.gain_per_tick < 0.0 && speed_squared > MOVING_ABOVE_M_PER_S * MOVING_ABOVE_M_PER_S {
-            self.gain_per_tick = -self.gain_per_tick;
+    }
+
+    /// When [`Self::expire`] has to be asked.
+    pub(crate) fn still_at_tick(&self) -> Option<u32> {
+        self.still_at_tick
+    }
+
+    /// Begins to ramp a finger away that has been slow for long enough.
+    pub(crate) fn expire(&mut self, now_tick: u32, timing: &StillnessTiming) {
+        if let Some(tick) = self.still_at_tick
+            && tick.wrapping_sub(now_tick) as i32 <= 0
+        {
+            self.still_at_tick = None;
+            self.ramp(-timing.gain_per_tick, now_tick);
         }
+    }
+
+    fn ramp(&mut self, gain_per_tick: f32, now_tick: u32) {
+        self.gain_per_tick = gain_per_tick;
+        self.settled_at_tick = now_tick;
+        self.ramping = true;
     }
 
     /// On the friction asked for, from 0 to 1.
@@ -69,32 +84,25 @@ impl Stillness {
         self.gain
     }
 
-    /// The finger moves fast enough, and the gain is 1: there is nothing to [`Self::settle`].
+    /// The gain is on its way: there is something to [`Self::settle`].
     #[inline]
-    pub(crate) fn is_steady(&self) -> bool {
-        self.steady
+    pub(crate) fn is_ramping(&self) -> bool {
+        self.ramping
     }
 
-    /// Goes on to a tick, for a finger that is slow or whose gain is not 1. Returns whether the gain has left 1 or come
-    /// back to it.
-    pub(crate) fn settle(&mut self, now_tick: u32, timing: &StillnessTiming) -> bool {
+    /// Goes on to a tick with a gain that is on its way.
+    pub(crate) fn settle(&mut self, now_tick: u32) {
         let ticks = now_tick.wrapping_sub(self.settled_at_tick);
         self.settled_at_tick = now_tick;
-        if self.slow {
-            self.slow_ticks = self.slow_ticks.saturating_add(ticks);
-            if self.slow_ticks >= timing.still_after_ticks {
-                self.gain_per_tick = -timing.gain_per_tick;
-            }
-        }
-        let before = self.gain;
-        let gain = before + self.gain_per_tick * ticks as f32;
-        if gain >= 1.0 {
+        let gain = self.gain + self.gain_per_tick * ticks as f32;
+        self.gain = gain;
+        if self.gain_per_tick > 0.0 && gain >= 1.0 {
             self.gain = 1.0;
-            self.steady = !self.slow;
-            before < 1.0
-        } else {
-            self.gain = if gain > 0.0 { gain } else { 0.0 };
-            before >= 1.0
+            self.gain_per_tick = 0.0;
+            self.ramping = false;
+        } else if self.gain_per_tick < 0.0 && gain <= 0.0 {
+            self.gain = 0.0;
+            self.ramping = false;
         }
     }
 }
@@ -117,11 +125,13 @@ mod tests {
 
         fn go_on(&mut self, speed_m_per_s: f32, ticks: u32) -> f32 {
             let timing = StillnessTiming::new(40_000);
-            self.stillness.take([0.0, -speed_m_per_s], self.now_tick);
-            for _ in 0..ticks / self.step_ticks {
-                self.now_tick = self.now_tick.wrapping_add(self.step_ticks);
-                self.stillness.settle(self.now_tick, &timing);
-                assert!(!self.stillness.is_steady() || self.stillness.gain() >= 1.0);
+            self.stillness.take([0.0, -speed_m_per_s], self.now_tick, &timing);
+            for tick in 0..ticks {
+                self.now_tick = self.now_tick.wrapping_add(1);
+                self.stillness.expire(self.now_tick, &timing);
+                if self.stillness.is_ramping() && tick % self.step_ticks == 0 {
+                    self.stillness.settle(self.now_tick);
+                }
             }
             self.stillness.gain()
         }
@@ -134,7 +144,7 @@ mod tests {
             assert!(run.go_on(1.9e-3, 1995) >= 1.0);
             let middle = run.go_on(1.9e-3, 205);
             assert!((middle - 0.5).abs() < 0.02, "{middle}");
-            assert!(run.go_on(1.9e-3, 200) <= 1e-3);
+            assert!(run.go_on(1.9e-3, 200 + step_ticks) <= 1e-3);
             assert!(run.go_on(4.9e-3, 4000) <= 0.0, "between the two speeds a still finger stays still");
             assert!(run.go_on(5.1e-3, 405) >= 1.0);
         }

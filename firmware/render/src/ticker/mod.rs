@@ -8,7 +8,7 @@ use frixel_wire::fault::State;
 
 use crate::carrier::Carrier;
 use crate::envelope::Envelope;
-use crate::finger::{Finger, FingerTiming, Presence};
+use crate::finger::{Finger, FingerTiming, earlier};
 use crate::layer::{Clicks, Moment};
 use crate::order::Counters;
 #[cfg(feature = "stream")]
@@ -44,8 +44,6 @@ pub struct Ticker<'a> {
     asked_tick: u32,
     /// There is a scene, a finger, and leave to drive.
     live: bool,
-    /// The finger has changed in a way that is still to be looked at.
-    finger_changed: bool,
     arm_switch: bool,
     dac_code: i16,
     last: LastTicks,
@@ -100,7 +98,6 @@ impl<'a> Ticker<'a> {
             deadline_tick: LOOK_AFTER_TICKS,
             asked_tick: 0,
             live: false,
-            finger_changed: false,
             arm_switch: false,
             dac_code: 0,
             last: LastTicks::default(),
@@ -157,10 +154,8 @@ impl<'a> Ticker<'a> {
         if let Some(touch) = touch {
             self.finger.take(touch, self.tick, prediction, timing);
             self.live &= self.finger.is_there();
-        } else if self.finger_changed {
+        } else if self.finger.has_errand() && self.finger.go_on(self.tick, prediction, timing) {
             self.look_at_finger();
-        } else if self.finger.has_errand() {
-            self.finger_changed = self.finger.go_on(self.tick, prediction, timing);
         }
         if self.deadline_tick.wrapping_sub(self.tick) as i32 <= 0 {
             self.look();
@@ -188,7 +183,7 @@ impl<'a> Ticker<'a> {
 
     /// Looks at everything that has a deadline or that an order may have changed.
     fn look(&mut self) {
-        self.finger.expire(self.tick);
+        self.finger.expire(self.tick, &self.timing.finger);
         self.supervisor.expire(self.tick);
         let silent_in_ticks = match self.supervisor.silent_at_tick() {
             Some(tick) => tick.wrapping_sub(self.tick).min(LOOK_AFTER_TICKS),
@@ -205,9 +200,9 @@ impl<'a> Ticker<'a> {
 
     /// Looks at what the finger may have changed.
     fn look_at_finger(&mut self) {
-        self.deadline_tick = match self.finger.presence() {
-            Presence::Down { until_tick } => earlier(until_tick, self.silent_tick),
-            _ => self.silent_tick,
+        self.deadline_tick = match self.finger.expires_at_tick() {
+            Some(tick) => earlier(tick, self.silent_tick),
+            None => self.silent_tick,
         };
         #[cfg(feature = "speed")]
         {
@@ -218,7 +213,6 @@ impl<'a> Ticker<'a> {
             self.asked_tick = self.tick;
         }
         self.live = may_be_live;
-        self.finger_changed = false;
     }
 
     /// Finds when there is something else to do than to ask the scene. Errands are done in every second tick, so that the
@@ -226,7 +220,7 @@ impl<'a> Ticker<'a> {
     fn plan(&mut self) {
         self.due_tick = if !self.live {
             self.tick.wrapping_add(1)
-        } else if self.finger_changed || self.finger.has_errand() {
+        } else if self.finger.has_errand() {
             earlier((self.tick | 1).wrapping_add(1), self.deadline_tick)
         } else {
             self.deadline_tick
@@ -323,12 +317,6 @@ impl<'a> Ticker<'a> {
         self.dac_code = 0;
         Drive::default()
     }
-}
-
-/// The earlier of two ticks that are less than 2^31 apart.
-#[inline]
-fn earlier(one_tick: u32, other_tick: u32) -> u32 {
-    if (one_tick.wrapping_sub(other_tick) as i32) < 0 { one_tick } else { other_tick }
 }
 
 /// Above the largest friction, negative, or not a number: bit patterns of the last two are above those of every positive
