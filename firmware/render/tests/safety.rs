@@ -20,6 +20,25 @@ fn playing(memory: &mut Memory) -> Desk<'_> {
     desk
 }
 
+/// Without a touch report, a tick has nothing to do but to drive: it must not, all the same.
+#[test]
+fn a_board_that_nobody_has_spoken_to_rests() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    assert!((0..1000).all(|_| desk.tick() == OFF));
+}
+
+#[test]
+fn a_fault_puts_the_output_to_zero_in_its_own_tick() {
+    for ticks in 400..440 {
+        let mut memory = Memory::new();
+        let mut desk = playing(&mut memory);
+        assert_ne!(desk.slide(ticks).last(), Some(&OFF));
+        desk.sense.amplifier_fault = true;
+        assert_eq!(desk.tick(), OFF, "{ticks}");
+    }
+}
+
 #[test]
 fn nothing_is_driven_before_a_host_has_armed_and_played() {
     let mut memory = Memory::new();

@@ -34,7 +34,8 @@ pub struct Ticker<'a> {
     envelope: Envelope,
     carrier: Carrier,
     tick: u32,
-    /// When there is something else to do than to ask the scene: an errand of the finger's, or a deadline.
+    /// When there is something else to do than to ask the scene: an errand of the finger's, or a deadline. Never later than
+    /// now for what is not live.
     due_tick: u32,
     /// When the host will have been silent for too long, or when to look again if it need not be there.
     silent_tick: u32,
@@ -93,7 +94,7 @@ impl<'a> Ticker<'a> {
             envelope: Envelope::default(),
             carrier,
             tick: 0,
-            due_tick: LOOK_AFTER_TICKS,
+            due_tick: 0,
             silent_tick: LOOK_AFTER_TICKS,
             deadline_tick: LOOK_AFTER_TICKS,
             asked_tick: 0,
@@ -130,6 +131,7 @@ impl<'a> Ticker<'a> {
         self.tick = self.tick.wrapping_add(1);
         self.arm_switch = sense.arm_switch;
         if self.supervisor.check(sense, self.dac_code) {
+            // What is not live any more is due.
             self.look();
         }
         #[cfg(feature = "stream")]
@@ -141,7 +143,6 @@ impl<'a> Ticker<'a> {
         if due || sense.touch.is_some() {
             return self.attend(sense.touch);
         }
-        // What is not live is always due.
         self.ask();
         self.put_out()
     }
@@ -216,10 +217,10 @@ impl<'a> Ticker<'a> {
     }
 
     /// Finds when there is something else to do than to ask the scene. Errands are done in every second tick, so that the
-    /// others ask it; while there is nothing to ask, every tick has something else to do.
+    /// others ask it; while there is nothing to ask, every tick from this one on has something else to do.
     fn plan(&mut self) {
         self.due_tick = if !self.live {
-            self.tick.wrapping_add(1)
+            self.tick
         } else if self.finger.has_errand() {
             earlier((self.tick | 1).wrapping_add(1), self.deadline_tick)
         } else {
@@ -303,7 +304,7 @@ impl<'a> Ticker<'a> {
         }
         let dac_code = self.carrier.next(self.envelope.voltage_v_rms(), &self.active.carrier, self.tick);
         self.dac_code = dac_code;
-        Drive { dac_code, amplifier_enable: true }
+        Drive { dac_code, amplifier_enable: self.live }
     }
 
     /// Zero at once.
