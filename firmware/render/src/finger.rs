@@ -121,9 +121,11 @@ impl Finger {
     }
 
     /// Takes a report of the touch source. A finger that comes down is there when the report is taken in; one that is
-    /// lifted is gone at once.
-    pub(crate) fn take(&mut self, touch: Touch, now_tick: u32, prediction: bool, timing: &FingerTiming) {
-        if self.errand != Errand::None {
+    /// lifted is gone at once. Returns whether what was left of the report before had to be taken in: it is to be looked
+    /// at then.
+    pub(crate) fn take(&mut self, touch: Touch, now_tick: u32, prediction: bool, timing: &FingerTiming) -> bool {
+        let late = self.errand != Errand::None;
+        if late {
             self.hurry(now_tick, prediction, timing);
         }
         match touch {
@@ -147,6 +149,7 @@ impl Finger {
                 }
             }
         }
+        late
     }
 
     /// There is something to do before the next report: the last one is not taken in wholly, or the gain is on its way.

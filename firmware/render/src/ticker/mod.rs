@@ -153,8 +153,11 @@ impl<'a> Ticker<'a> {
     fn attend(&mut self, touch: Option<Touch>) -> Drive {
         let (timing, prediction) = (&self.timing.finger, self.active.prediction);
         if let Some(touch) = touch {
-            self.finger.take(touch, self.tick, prediction, timing);
-            self.live &= self.finger.is_there();
+            if self.finger.take(touch, self.tick, prediction, timing) {
+                self.look_at_finger();
+            } else {
+                self.live &= self.finger.is_there();
+            }
         } else if self.finger.has_errand() && self.finger.go_on(self.tick, prediction, timing) {
             self.look_at_finger();
         }
