@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::time::Duration;
 
-use frixel::device::{Bitmap, DEFAULT_BAUD, Device, DeviceError, Link, PortError, SerialLink, Upload};
+use frixel::device::{Bitmap, DEFAULT_BAUD, Device, DeviceError, LEASH, Link, PortError, SerialLink, Upload};
 use frixel_wire::fault::State;
 use frixel_wire::frame::{FRAME_MAX_LEN, crc32};
 use frixel_wire::message::{Command, Request};
@@ -64,6 +64,21 @@ fn pings_go_out_while_nobody_calls() {
     let board = PtyBoard::start(FakeBoard::new());
     let _device = connect(&board);
     board.until(|board| board.pings > 5);
+}
+
+/// However late this thread wakes up: it counts what was sent, and it alone makes calls.
+#[test]
+fn pings_end_when_the_application_hangs_and_go_on_when_it_calls_again() {
+    let board = PtyBoard::start(FakeBoard::new());
+    let mut device = connect(&board);
+    device.arm().unwrap();
+    let sent = |device: &Device<Patient>| device.counters().frames_sent;
+    std::thread::sleep(LEASH);
+    let at_the_end = sent(&device);
+    std::thread::sleep(Duration::from_millis(200));
+    assert_eq!(sent(&device), at_the_end, "pings of 5 ms went on without the application");
+    device.still_here().unwrap();
+    board.until(|_| sent(&device) > at_the_end + 5);
 }
 
 #[test]
