@@ -1,14 +1,19 @@
 //! The session: bytes in, bytes out, no clock but the tick count it is shown.
 //!
-//! This module turns bytes into frames and back; [`dialogue`] says what the frames mean, [`upload`] gathers what comes
-//! in chunks.
+//! This module turns bytes into frames and back; [`dialogue`] says what the frames mean, and the others do what they ask
+//! for: [`greeting`] the hello, [`states`] arming and playing, [`storing`] uploads, whose bytes [`upload`] gathers,
+//! [`commit`] the change of scene, [`live`] what changes while one plays, [`fingers`] touches.
 
+mod commit;
 mod dialogue;
 mod fingers;
+mod greeting;
 #[cfg(feature = "store")]
 mod kept;
 mod live;
 mod outbox;
+mod states;
+mod storing;
 mod upload;
 
 use frixel_wire::frame::Decoder;
