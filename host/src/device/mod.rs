@@ -80,7 +80,7 @@ pub struct Device<L: Link> {
     uploaded: Option<(u32, Duration)>,
     /// Time between pings that suits the board's scene, if that was committed here.
     committed: Option<Duration>,
-    /// The board may be armed or active; only then does its host timeout run.
+    /// The board may be armed or active, by this value or by a scene that goes on without a host.
     armed: bool,
     /// The stream under way.
     stream: Option<stream::Sent>,
@@ -117,6 +117,8 @@ pub struct Counters {
 
 impl<L: Link> Device<L> {
     /// Says hello, checks that both sides speak the same protocol, and starts the pings. Takes at most 0.75 s when nobody answers.
+    ///
+    /// What another client had armed or played is disarmed by the hello; only a playing scene that goes on without a host plays on.
     pub fn connect(mut link: L) -> Result<Self, DeviceError> {
         let mut decoder = Decoder::new();
         let hello = hello::greet(&mut link, &mut decoder)?;
@@ -267,7 +269,7 @@ impl<L: Link> Device<L> {
         self.pace_pings()
     }
 
-    /// A board may hold a scene whose host timeout is not known here, as after a hello or before a commit is answered.
+    /// A board may hold a scene whose host timeout is not known here, as before a commit is answered.
     fn pace_pings(&mut self) -> Result<(), DeviceError> {
         let period = if self.armed { self.committed.unwrap_or(PING_PERIOD_MIN) } else { PING_PERIOD_MAX };
         self.exchange.ping_every(period)

@@ -97,7 +97,7 @@ fn a_dropped_device_stops_and_disarms_and_the_next_host_is_welcome() {
 #[test]
 fn a_device_that_only_looked_leaves_a_playing_board_alone() {
     let mut playing = FakeBoard::new();
-    playing.state = State::Active;
+    (playing.state, playing.autonomous) = (State::Active, true);
     let board = PtyBoard::start(playing);
     drop(connect(&board));
     // By the time that the next host is heard, all that the first one sent has been.

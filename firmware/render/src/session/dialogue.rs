@@ -101,10 +101,7 @@ impl<'a> Dialogue<'a> {
     pub(super) fn take(&mut self, payload: Result<Payload, ParseError>, status: &Status, outbox: &mut Outbox) {
         self.report_state(status, outbox);
         match payload {
-            Ok(Payload::HelloRequest { .. }) => {
-                self.host_heard = true;
-                self.greet(status, outbox);
-            }
+            Ok(Payload::HelloRequest { .. }) => self.greet(status, outbox),
             Ok(Payload::Request(Request { sequence, command })) => {
                 self.host_heard = true;
                 let outcome = self.obey(command, status);

@@ -1,11 +1,12 @@
 //! The hello, and the new session that begins with it.
 
+use frixel_wire::fault::State;
 use frixel_wire::hello::{Hello, PROTOCOL_MAJOR, PROTOCOL_MINOR, feature};
 
 use super::dialogue::Dialogue;
 use super::outbox::Outbox;
-use crate::Board;
 use crate::order::Status;
+use crate::{Board, Order};
 
 /// Version of this firmware: major, minor, patch.
 const FIRMWARE: (u8, u8, u8) = (
@@ -41,8 +42,13 @@ const fn features(board: &Board, has_stream: bool) -> u32 {
 }
 
 impl Dialogue<'_> {
-    /// A new client: credit starts anew, and nothing of an unfinished upload is left.
+    /// A new client: credit starts anew, nothing of an unfinished upload is left, and what the client before had armed is
+    /// disarmed, for that one is gone. A scene that goes on without a host plays on.
     pub(super) fn greet(&mut self, status: &Status, outbox: &mut Outbox) {
+        if !(self.state == State::Active && self.playing.is_autonomous()) {
+            // Refused when there is nothing to disarm; there is always room for this order.
+            let _ = self.change_state(Order::Disarm, &[State::Armed, State::Active], State::Disarmed);
+        }
         self.received_bytes = 0;
         self.telemetry_period_ticks = 0;
         self.drop_upload();
