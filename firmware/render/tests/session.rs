@@ -10,9 +10,9 @@ use frixel_wire::frame::crc32;
 use frixel_wire::hello::feature;
 use frixel_wire::message::{Accepted, Command, ConfigField, FromBoard, Refusal};
 use frixel_wire::payload::CHUNK_LEN;
-use frixel_wire::scene::{Header, Layer, SceneError};
 #[cfg(feature = "bitmap")]
-use frixel_wire::scene::{Record, Region, bitmap_crc32};
+use frixel_wire::scene::bitmap_crc32;
+use frixel_wire::scene::{Header, Layer, Record, Region, SceneError};
 use proptest::prelude::*;
 #[cfg(feature = "bitmap")]
 use support::bitmap;
@@ -155,6 +155,25 @@ fn what_is_no_scene_is_refused() {
         desk.command(Command::Commit { crc32: 1 }),
         Err(Refusal::CrcMismatch { expected: 1, found: crc32(&unknown) })
     );
+}
+
+/// The bytes of a scene with few points and many records are no more than those of one with many points.
+#[test]
+fn a_scene_of_more_records_than_the_board_says_is_refused() {
+    let mut memory = Memory::new();
+    let mut board = Board::SIMULATOR;
+    board.limits.records_max = 2;
+    let mut desk = Desk::of(board, &mut memory);
+    desk.greet();
+    let of = |count: usize| {
+        let beside = |number| {
+            let region = Region::Rectangle { x_m: 0.01 * number as f32, y_m: 0.0, width_m: 0.01, height_m: 0.1 };
+            Record { region, ..record(Layer::Constant { electric_friction_n: 0.01 }) }
+        };
+        scene(&HEADER, &(0..count).map(beside).collect::<Vec<_>>())
+    };
+    desk.load(&of(2)).unwrap();
+    assert_eq!(desk.load(&of(3)), Err(Refusal::Scene(SceneError::TooManyRecords { found: 3 })));
 }
 
 #[cfg(feature = "telemetry")]

@@ -1,7 +1,7 @@
 //! The uploaded scene becomes the one that plays.
 
 use frixel_wire::message::{Accepted, Refusal};
-use frixel_wire::scene::{Layer, RECORDS_MAX, Scene};
+use frixel_wire::scene::{Layer, RECORDS_MAX, Scene, SceneError};
 use heapless::Vec;
 
 use super::dialogue::Dialogue;
@@ -24,6 +24,10 @@ impl Dialogue<'_> {
         }
         self.room_for_order()?;
         let scene = Scene::parse(bytes).map_err(Refusal::Scene)?;
+        if scene.record_count() > usize::from(self.board.limits.records_max) {
+            // A scene has no more records than a byte counts.
+            return Err(Refusal::Scene(SceneError::TooManyRecords { found: scene.record_count() as u8 }));
+        }
         let spare = self.spare.take().ok_or(Refusal::Busy)?;
         if let Err(refusal) = spare.load(&scene, &self.board, &self.directory) {
             self.spare = Some(spare);
