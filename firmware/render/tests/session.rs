@@ -4,7 +4,7 @@
 
 mod support;
 
-use frixel_render::{Board, Touch};
+use frixel_render::{Board, Order, Touch};
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::frame::crc32;
 use frixel_wire::hello::feature;
@@ -174,6 +174,65 @@ fn a_scene_of_more_records_than_the_board_says_is_refused() {
     };
     desk.load(&of(2)).unwrap();
     assert_eq!(desk.load(&of(3)), Err(Refusal::Scene(SceneError::TooManyRecords { found: 3 })));
+}
+
+fn answered(desk: &mut Desk) -> Vec<u16> {
+    desk.collect();
+    let sequence = |message| match message {
+        FromBoard::Answer(answer) => Some(answer.sequence),
+        _ => None,
+    };
+    desk.messages.drain(..).filter_map(sequence).collect()
+}
+
+/// What a host must be able to say at any time does not wait for the work of a commit that came before it.
+#[test]
+fn a_commit_holds_up_no_sign_of_life_and_nothing_that_puts_the_output_to_zero() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.play(&constant(0.01));
+    let next = constant(0.015);
+    desk.upload_scene(&next).unwrap();
+    desk.messages.clear();
+    let bytes = [
+        request(901, Command::Commit { crc32: crc32(&next) }),
+        request(902, Command::Ping),
+        request(903, Command::Stop),
+        request(904, Command::Disarm),
+    ];
+    desk.session.receive(&bytes.concat(), &desk.status());
+    assert_eq!(answered(&mut desk), [902, 903, 904]);
+    let mut orders = 0;
+    while let Some(order) = desk.session.next_order() {
+        assert!(matches!(order, Order::HostHeard | Order::Stop | Order::Disarm));
+        desk.ticker.apply(order);
+        orders += 1;
+    }
+    assert_eq!(orders, 3);
+    desk.session.poll(&desk.status());
+    assert_eq!(answered(&mut desk), [901]);
+    desk.obey();
+    assert_eq!(desk.greet().scene_crc32, crc32(&next));
+}
+
+#[test]
+fn what_asks_for_the_scene_comes_after_the_commit_before_it() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    let scene = constant(0.01);
+    desk.upload_scene(&scene).unwrap();
+    desk.messages.clear();
+    let bytes = [
+        request(901, Command::Commit { crc32: crc32(&scene) }),
+        request(902, Command::Arm),
+        request(903, Command::Play),
+    ];
+    desk.session.receive(&bytes.concat(), &desk.status());
+    assert_eq!(answered(&mut desk), [901, 902, 903]);
+    desk.obey();
+    desk.tick();
+    assert_eq!(desk.status().telemetry.state, State::Active);
 }
 
 #[cfg(feature = "telemetry")]

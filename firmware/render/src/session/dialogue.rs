@@ -40,6 +40,8 @@ pub(super) struct Dialogue<'a> {
     pub(super) host_heard: bool,
     /// State once the ticker has applied every order.
     pub(super) state: State,
+    /// A commit that is done when the bytes that are there have been taken.
+    waiting_commit: Option<Request>,
     pub(super) received_bytes: u32,
     pub(super) telemetry_period_ticks: u32,
     /// What has to be known of the committed scene beside its bytes, which the next upload takes the place of.
@@ -67,6 +69,7 @@ impl<'a> Dialogue<'a> {
             orders_sent: 0,
             host_heard: false,
             state: State::Disarmed,
+            waiting_commit: None,
             received_bytes: 0,
             telemetry_period_ticks: 0,
             playing: Playing::default(),
@@ -100,12 +103,18 @@ impl<'a> Dialogue<'a> {
     /// Takes one frame's payload.
     pub(super) fn take(&mut self, payload: Result<Payload, ParseError>, status: &Status, outbox: &mut Outbox) {
         self.report_state(status, outbox);
+        if !may_overtake_a_commit(&payload) {
+            self.finish_commit(status, outbox);
+        }
         match payload {
             Ok(Payload::HelloRequest { .. }) => self.greet(status, outbox),
-            Ok(Payload::Request(Request { sequence, command })) => {
+            Ok(Payload::Request(request)) => {
                 self.host_heard = true;
-                let outcome = self.obey(command, status);
-                self.answer(sequence, outcome, outbox);
+                if matches!(request.command, Command::Commit { .. }) {
+                    self.waiting_commit = Some(request);
+                } else {
+                    self.serve(request, status, outbox);
+                }
             }
             Ok(Payload::Chunk { number, bytes }) => {
                 self.host_heard = true;
@@ -128,6 +137,18 @@ impl<'a> Dialogue<'a> {
             // What a board sends, and what cannot be read, is not for a board.
             Ok(Payload::Hello(_) | Payload::FromBoard(_)) | Err(_) => {}
         }
+    }
+
+    /// Does the commit that waits, if one does, and answers it.
+    pub(super) fn finish_commit(&mut self, status: &Status, outbox: &mut Outbox) {
+        if let Some(request) = self.waiting_commit.take() {
+            self.serve(request, status, outbox);
+        }
+    }
+
+    fn serve(&mut self, Request { sequence, command }: Request, status: &Status, outbox: &mut Outbox) {
+        let outcome = self.obey(command, status);
+        self.answer(sequence, outcome, outbox);
     }
 
     fn answer(&mut self, sequence: u16, outcome: Result<Accepted, Refusal>, outbox: &mut Outbox) {
@@ -172,6 +193,24 @@ impl<'a> Dialogue<'a> {
         }
         self.telemetry_period_ticks = period_ticks;
         Ok(Accepted::Done)
+    }
+}
+
+/// What may be done before a commit that came earlier: what neither asks for its outcome nor touches what it reads.
+fn may_overtake_a_commit(payload: &Result<Payload, ParseError>) -> bool {
+    match payload {
+        Ok(Payload::Samples { .. }) => true,
+        Ok(Payload::Request(request)) => matches!(
+            request.command,
+            Command::Ping
+                | Command::Stop
+                | Command::Disarm
+                | Command::Touch { .. }
+                | Command::Lift
+                | Command::TouchFinger { .. }
+                | Command::LiftFinger { .. }
+        ),
+        _ => false,
     }
 }
 
