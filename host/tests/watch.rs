@@ -58,11 +58,11 @@ fn write_stroke(path: &Path) {
     fs::write(path, text).unwrap();
 }
 
-/// The same total friction everywhere.
+/// The same total friction everywhere, and the longest host timeout that there is: on a busy machine pings are late.
 fn scene(friction: &str) -> String {
     format!(
         "version = 1\n[screen]\nwidth_mm = 120\nheight_mm = 80\n[coating]\nthickness_um = 10\npermittivity = 1\n\
-         [finger]\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\nfriction_coefficient = 0.5\nnormal_load_n = 0.5\n\
+         [drive]\nhost_timeout_ms = 1000\n[finger]\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\nfriction_coefficient = 0.5\nnormal_load_n = 0.5\n\
          [[layer]]\nkind = \"constant\"\nfriction_n = {friction}\n"
     )
 }
