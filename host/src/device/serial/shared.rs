@@ -189,7 +189,7 @@ mod tests {
         let (shared, opened) = pinging();
         let state = shared.lock();
         assert_eq!(state.keep_alive_due_in(opened), Some(PERIOD));
-        assert_eq!(state.keep_alive_due_in(opened + LEASH - PERIOD), Some(Duration::ZERO));
+        assert_eq!(state.keep_alive_due_in(opened + LEASH.saturating_sub(PERIOD)), Some(Duration::ZERO));
         for late in [LEASH, LEASH + PERIOD, 1000 * LEASH] {
             assert_eq!(state.keep_alive_due_in(opened + late), None, "{late:?} after the last call");
         }
@@ -202,7 +202,7 @@ mod tests {
         state.enter_call();
         assert_eq!(state.keep_alive_due_in(opened + 1000 * LEASH), Some(Duration::ZERO));
         state.leave_call(opened + 1000 * LEASH);
-        assert_eq!(state.keep_alive_due_in(opened + 1001 * LEASH - PERIOD), Some(Duration::ZERO));
+        assert_eq!(state.keep_alive_due_in(opened + (1001 * LEASH).saturating_sub(PERIOD)), Some(Duration::ZERO));
         assert_eq!(state.keep_alive_due_in(opened + 1001 * LEASH), None);
     }
 }
