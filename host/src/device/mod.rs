@@ -65,10 +65,10 @@ const PING_PERIOD_MIN: Duration = Duration::from_millis(5);
 ///
 /// **Pings.** A board that is armed goes to Disarmed, output zero, when it has not heard of its host for the scene's host timeout. Pings go out by
 /// themselves, often enough for any host timeout, or for that of the scene that this value has committed; but only for an application that is
-/// there: [`LEASH`] after the last call of this value they end, and the board goes to Disarmed. So an application that hangs, or that has forgotten the
-/// board, does not keep it playing. A call that waits counts for as long as it waits. An application that plays one thing for long and has nothing to say calls
-/// [`Self::wait`], or in a loop of its own [`Self::still_here`], several times a second: from the loop that would notice that it is to stop, never from
-/// a thread or a timer that would go on without it.
+/// there: [`LEASH`] after the last call that says something to the board or listens to it they end, and the board goes to Disarmed. So an
+/// application that hangs, or that has forgotten the board, does not keep it playing. A call that waits counts for as long as it waits. An application
+/// that plays one thing for long and has nothing to say calls [`Self::wait`], or in a loop of its own [`Self::still_here`], several times a second:
+/// from the loop that would notice that it is to stop, never from a thread or a timer that would go on without it.
 ///
 /// Dropping a value that has armed or played stops and disarms the board, as far as the link still carries anything; the board puts
 /// its output to zero in any case once the pings have stopped.
