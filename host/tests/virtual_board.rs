@@ -12,6 +12,9 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::sleep;
 use std::time::Duration;
 
+use frixel::device::{DEFAULT_BAUD, Device, SerialLink};
+use frixel::player;
+use frixel::scene::{Scene, compile};
 use serialport::{SerialPort, TTYPort};
 use tempfile::TempDir;
 
@@ -277,6 +280,21 @@ fn a_client_killed_at_any_byte_leaves_the_output_at_zero_and_the_next_one_welcom
         killed_while_playing += usize::from(log.drives_between(silent.last_frame_t_s, silent.t_s));
     }
     assert!(killed_while_playing >= 3, "only {killed_while_playing} clients died while the output was driven");
+}
+
+/// The program is there, and makes no call any more.
+#[test]
+fn a_program_that_hangs_does_not_keep_the_board_playing() {
+    let _turn = turn();
+    let board = VirtualBoard::start();
+    let mut device = Device::connect(SerialLink::open(&board.port, DEFAULT_BAUD).unwrap()).unwrap();
+    let hello = *device.hello();
+    let program = compile(&Scene::load(&board.scene).unwrap(), &hello.limits, hello.tick_hz).unwrap();
+    player::start(&mut device, &program, &mut |_| {}).unwrap();
+    let has = |name: &str| board.events().iter().any(|event| event.name == name);
+    until("the board plays", || has("active"));
+    until("the board lets go of a program that hangs", || board.is_disarmed() && has("host-silent"));
+    assert!(device.counters().frames_sent > 0, "the program is still there");
 }
 
 #[test]
