@@ -38,6 +38,7 @@ pub(crate) const HEADER: Header = Header {
     autonomous: false,
     prediction: true,
     leader: Leader::First,
+    layers_fixed: false,
 };
 
 /// Counts the ticks of every scene.

@@ -256,6 +256,7 @@ pub const HEADER: Header = Header {
     autonomous: false,
     prediction: true,
     leader: Leader::First,
+    layers_fixed: false,
 };
 
 pub fn record(layer: Layer) -> Record {
