@@ -7,11 +7,13 @@ use frixel_wire::scene::cost::{self, TICK_INSTRUCTIONS_MAX};
 use frixel_wire::scene::{Beat, Blend, Burst, Carrier, Click, Header, Layer, Point, RECORDS_MAX, Record, Region, Wave};
 
 use crate::count::Counter;
+use crate::host::STREAM_HZ;
 use crate::tick::{Bench, HEADER};
 
 pub(crate) const GRATING: Layer = grating(Wave::Sine);
 
 const AROUND: Region = Region::Rectangle { x_m: 0.0, y_m: 0.0, width_m: 0.12, height_m: 0.11 };
+const STREAM: Layer = Layer::Stream { low_n: 0.001, high_n: 0.02 };
 const CONSTANT: Layer = Layer::Constant { electric_friction_n: 0.001 };
 /// Ends before the still finger and goes on after it, so that both a click and its end are counted.
 const CLICK: Click = Click { height_n: 0.005, decay_s: 0.05 };
@@ -102,11 +104,14 @@ impl Bench {
             ("tick_button_alone", entered, button),
             ("tick_vibration_sine_alone", AROUND, vibration(Beat::Sine)),
             ("tick_vibration_square_alone", AROUND, vibration(Beat::Square)),
-            ("tick_stream_alone", AROUND, Layer::Stream { low_n: 0.001, high_n: 0.02 }),
+            ("tick_stream_alone", AROUND, STREAM),
             ("tick_ellipse_alone", Region::Ellipse { x_m: -0.05, y_m: -0.05, width_m: 0.2, height_m: 0.2 }, CONSTANT),
         ] {
             self.alone(counter, name, under(region, layer), &[]);
         }
+        self.play(&HEADER, &[under(AROUND, CONSTANT), under(away(0), STREAM)]);
+        self.start_stream();
+        self.slide(counter.case("tick_stream_elsewhere"));
         self.polygons(counter);
         self.curves(counter);
     }
@@ -114,9 +119,13 @@ impl Bench {
     fn alone(&mut self, counter: &mut Counter, name: &'static str, record: Record, points: &[Point]) {
         self.play_with_points(&HEADER, &[record], points);
         if matches!(record.layer, Layer::Stream { .. }) {
-            self.host.command(Command::StartStream { sample_hz: crate::host::STREAM_HZ, start_level: 1 });
+            self.start_stream();
         }
         self.slide(counter.case(name));
+    }
+
+    pub(crate) fn start_stream(&mut self) {
+        self.host.command(Command::StartStream { sample_hz: STREAM_HZ, start_level: 1 });
     }
 
     /// Polygons around the finger, all of whose edges are level with it at some tick.

@@ -39,13 +39,24 @@ pub struct RandomFinger {
     lifted: bool,
 }
 
+/// How often a touch source reports.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pace {
+    /// As chips and screens do: every 20 to 400 ticks, 0.5 to 10 ms.
+    Usual,
+    /// Every 1 to 6 ticks, which no chip does, but a host may.
+    Hasty,
+}
+
 impl RandomFinger {
     /// The finger of a seed over the screen of a header.
-    pub fn new(seed: u64, header: &Header) -> Self {
+    pub fn new(seed: u64, header: &Header, pace: Pace) -> Self {
         let mut dice = Dice::new(!seed);
         let size_m = [header.screen_width_m, header.screen_height_m];
-        // Often enough for data that are never stale, mostly; and as fast as a source can be.
-        let report_ticks = dice.pick([400, 400, 400, 80, 20, 6, 4, 3, 2, 1]);
+        let report_ticks = match pace {
+            Pace::Usual => dice.pick([400, 400, 80, 80, 20, 20]),
+            Pace::Hasty => dice.pick([1, 2, 3, 4, 5, 6]),
+        };
         let age_ticks = dice.pick([0, 0, 40, 400]);
         Self {
             place_m: size_m.map(|size_m| dice.between(0.0, size_m)),

@@ -2,7 +2,7 @@
 
 use frixel_model::{Carrier, Contact, Finger, InverseTable, LoadedContact, Waveform};
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
-use frixel_wire::scene::cost::{self, TICK_INSTRUCTIONS_MAX, Worst};
+use frixel_wire::scene::cost::{self, LayerCosts, TICK_INSTRUCTIONS_MAX, Worst};
 use frixel_wire::scene::{Carrier as Shape, Grid, Header, LayerSet, Point, RECORDS_MAX, Scene};
 use heapless::Vec;
 
@@ -177,7 +177,7 @@ impl Active {
     fn load_layers(&mut self, scene: &Scene, board: &Board, directory: &Directory) -> Result<f32, Refusal> {
         self.grid.reset(scene.header().screen_width_m, scene.header().screen_height_m);
         self.tables.set_points(scene.points());
-        let mut costs = [0; RECORDS_MAX];
+        let mut costs = LayerCosts::NONE;
         let mut asked = Asked::NOTHING;
         for (number, record) in scene.records().enumerate() {
             let number = number as u8;
@@ -186,9 +186,7 @@ impl Active {
             let layer = loading.layer(&record, number)?;
             // There is room for every record that a scene can have.
             let _ = self.layers.push(layer);
-            if let Some(place) = costs.get_mut(usize::from(number)) {
-                *place = cost::of_record(&record);
-            }
+            costs.add(number, &record);
             self.put(number, true);
             self.grid.add(number, &record.region, self.tables.points());
             asked.add(number, &record, self.tables.points());

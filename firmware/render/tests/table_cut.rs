@@ -14,7 +14,7 @@
 
 mod support;
 
-use frixel_random_scenes::{RandomFinger, RandomScene, Report};
+use frixel_random_scenes::{Pace, RandomFinger, RandomScene, Report};
 use frixel_render::{Active, Board, TableRows, Touch};
 use frixel_wire::fault::Flags;
 use frixel_wire::frame::FRAME_MAX_LEN;
@@ -50,7 +50,8 @@ fn played(header: &Header, random: &RandomScene, seed: u64) -> Vec<Played> {
     desk.command(Command::Arm).unwrap();
     desk.command(Command::Play).unwrap();
     let _ = desk.command(Command::StartStream { sample_hz: STREAM_HZ, start_level: 20 });
-    let mut finger = RandomFinger::new(seed, header);
+    let pace = if seed % 4 == 0 { Pace::Hasty } else { Pace::Usual };
+    let mut finger = RandomFinger::new(seed, header, pace);
     (0..TICKS)
         .map(|tick| {
             if tick.is_multiple_of(200) {

@@ -49,6 +49,7 @@ fn costs(figures: &Figures) -> Result<Vec<Cost>, String> {
     let alone = |name: &str| tick(&format!("{name}_alone")).map(|instructions| instructions.saturating_sub(base));
     // The longer of the two: a tick in which the envelope is at its slew limit is longer than one that is not.
     let empty = base.max(tick("1_of_64")?.saturating_sub(constant));
+    let stream_elsewhere = tick("stream_elsewhere")?.saturating_sub(tick("constant_alone")?);
     let (speed, speed_point) = line_through(SPEED_POINTS, alone("speed_2")?, alone("speed_8")?);
     let (polygon, polygon_edge) = line_through(POLYGON_POINTS, alone("polygon_4")?, alone("polygon_8")?);
     Ok(vec![
@@ -68,7 +69,8 @@ fn costs(figures: &Figures) -> Result<Vec<Cost>, String> {
         ("VIBRATION_SQUARE", "", alone("vibration_square")?),
         ("SPEED", "A curve, and each of its points.", speed),
         ("SPEED_POINT", "", speed_point),
-        ("STREAM", "The stream's own work included.", alone("stream")?),
+        ("STREAM", "", alone("stream")?.saturating_sub(stream_elsewhere)),
+        ("STREAM_ELSEWHERE", "The stream's own work, wherever the finger is.", stream_elsewhere),
         ("ELLIPSE", "What other regions add to a rectangle.", alone("ellipse")?.saturating_sub(constant)),
         ("POLYGON", "", polygon.saturating_sub(constant)),
         ("POLYGON_EDGE", "", polygon_edge),

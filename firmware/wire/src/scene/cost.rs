@@ -18,6 +18,30 @@ pub struct Worst {
     pub cell: Cell,
 }
 
+/// Instructions that the layers of a scene add to a tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LayerCosts {
+    layers: [u32; RECORDS_MAX],
+    /// Wherever the finger is.
+    everywhere: u32,
+}
+
+impl LayerCosts {
+    /// No layer.
+    pub const NONE: Self = Self { layers: [0; RECORDS_MAX], everywhere: 0 };
+
+    /// Adds layer number `number`.
+    pub fn add(&mut self, number: u8, record: &Record) {
+        if let Some(cost) = self.layers.get_mut(usize::from(number)) {
+            *cost = of_record(record);
+        }
+        if matches!(record.layer, Layer::Stream { .. }) {
+            // There is one stream, however many layers play it.
+            self.everywhere = m::STREAM_ELSEWHERE;
+        }
+    }
+}
+
 /// Instructions that a layer adds to a tick with the finger in its region, or near it.
 pub const fn of_record(record: &Record) -> u32 {
     of_region(&record.region) + of_layer(&record.layer)
@@ -31,12 +55,12 @@ pub const fn of_empty_scene(header: &Header) -> u32 {
     }
 }
 
-/// Where a scene takes most, from its grid and the cost of each of its layers ([`of_record`]).
-pub fn worst(header: &Header, grid: &Grid, costs: &[u32]) -> Worst {
+/// Where a scene takes most, from its grid and the costs of its layers.
+pub fn worst(header: &Header, grid: &Grid, costs: &LayerCosts) -> Worst {
     let empty = Worst { instructions: 0, cell: Cell { x_m: 0.0, y_m: 0.0, layers: [0; 2] } };
     grid.cells().fold(empty, |worst, cell| {
-        let here = (0..).zip(costs).filter(|(number, _)| cell.has(*number)).map(|(_, cost)| cost);
-        let instructions = of_empty_scene(header) + here.sum::<u32>();
+        let here = (0..).zip(&costs.layers).filter(|(number, _)| cell.has(*number)).map(|(_, cost)| cost);
+        let instructions = of_empty_scene(header) + costs.everywhere + here.sum::<u32>();
         if instructions > worst.instructions { Worst { instructions, cell } } else { worst }
     })
 }
@@ -45,10 +69,10 @@ pub fn worst(header: &Header, grid: &Grid, costs: &[u32]) -> Worst {
 pub fn worst_of_scene(header: &Header, records: &[Record], points: &[Point]) -> Worst {
     let mut grid = Grid::EMPTY;
     grid.reset(header.screen_width_m, header.screen_height_m);
-    let mut costs = [0; RECORDS_MAX];
-    for ((number, record), cost) in (0..).zip(records).zip(&mut costs) {
+    let mut costs = LayerCosts::NONE;
+    for (number, record) in (0..).zip(records) {
         grid.add(number, &record.region, points);
-        *cost = of_record(record);
+        costs.add(number, record);
     }
     worst(header, &grid, &costs)
 }
