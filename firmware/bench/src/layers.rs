@@ -128,10 +128,10 @@ impl Bench {
         self.host.command(Command::StartStream { sample_hz: STREAM_HZ, start_level: 1 });
     }
 
-    /// Polygons around the finger, all of whose edges are level with it at some tick.
+    /// Polygons around the finger: two with two edges level with it at every tick, and one with all of its edges.
     fn polygons(&mut self, counter: &mut Counter) {
-        for (name, count) in [("tick_polygon_4_alone", 4), ("tick_polygon_8_alone", 8)] {
-            let points: [Point; 8] = array::from_fn(|corner| {
+        for (name, count) in [("tick_polygon_4_alone", 4), ("tick_polygon_12_alone", 12)] {
+            let points: [Point; 12] = array::from_fn(|corner| {
                 let turns = (corner as f32 + 0.5) / f32::from(count);
                 let (sine, cosine) = libm::sincosf(core::f32::consts::TAU * turns);
                 Point { x: 0.06 + 0.15 * cosine, y: 0.03 + 0.15 * sine }
@@ -139,6 +139,13 @@ impl Bench {
             let region = Region::Polygon { first: 0, count };
             self.alone(counter, name, under(region, CONSTANT), &points[..usize::from(count)]);
         }
+        // Up and down: one edge to the left of the finger and an odd number to its right, so that it is inside.
+        let points: [Point; 6] = array::from_fn(|corner| Point {
+            x: if corner < 2 { -0.4 } else { 2.0 },
+            y: if corner % 2 == 0 { -1.0 } else { 1.0 },
+        });
+        let region = Region::Polygon { first: 0, count: 6 };
+        self.alone(counter, "tick_polygon_6_level_alone", under(region, CONSTANT), &points);
     }
 
     /// Curves whose last piece is the one that holds.
@@ -182,7 +189,7 @@ impl Bench {
         let mut left = TICK_INSTRUCTIONS_MAX.saturating_sub(cost::of_empty_scene(&header));
         for layer in [bitmap(crc32), GRATING, CONSTANT] {
             let record = under(AROUND, layer);
-            let cost = cost::of_record(&record).max(1);
+            let cost = cost::of_record(&record, &[]).max(1);
             while left >= cost && count < RECORDS_MAX {
                 left -= cost;
                 records[count] = record;

@@ -186,7 +186,7 @@ impl Active {
             let layer = loading.layer(&record, number)?;
             // There is room for every record that a scene can have.
             let _ = self.layers.push(layer);
-            costs.add(number, &record);
+            costs.add(number, &record, self.tables.points());
             self.put(number, true);
             self.grid.add(number, &record.region, self.tables.points());
             asked.add(number, &record, self.tables.points());

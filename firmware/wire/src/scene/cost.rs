@@ -30,10 +30,10 @@ impl LayerCosts {
     /// No layer.
     pub const NONE: Self = Self { layers: [0; RECORDS_MAX], everywhere: 0 };
 
-    /// Adds layer number `number`.
-    pub fn add(&mut self, number: u8, record: &Record) {
+    /// Adds layer number `number`; `points` are the scene's.
+    pub fn add(&mut self, number: u8, record: &Record, points: &[Point]) {
         if let Some(cost) = self.layers.get_mut(usize::from(number)) {
-            *cost = of_record(record);
+            *cost = of_record(record, points);
         }
         if matches!(record.layer, Layer::Stream { .. }) {
             // There is one stream, however many layers play it.
@@ -42,9 +42,9 @@ impl LayerCosts {
     }
 }
 
-/// Instructions that a layer adds to a tick with the finger in its region, or near it.
-pub const fn of_record(record: &Record) -> u32 {
-    of_region(&record.region) + of_layer(&record.layer)
+/// Instructions that a layer adds to a tick with the finger in its region, or near it; `points` are the scene's.
+pub fn of_record(record: &Record, points: &[Point]) -> u32 {
+    of_region(&record.region, points) + of_layer(&record.layer)
 }
 
 /// Instructions of a tick that looks at layers and finds none under the finger.
@@ -72,17 +72,28 @@ pub fn worst_of_scene(header: &Header, records: &[Record], points: &[Point]) -> 
     let mut costs = LayerCosts::NONE;
     for (number, record) in (0..).zip(records) {
         grid.add(number, &record.region, points);
-        costs.add(number, record);
+        costs.add(number, record, points);
     }
     worst(header, &grid, &costs)
 }
 
-const fn of_region(region: &Region) -> u32 {
+fn of_region(region: &Region, points: &[Point]) -> u32 {
     match *region {
         Region::Screen | Region::Rectangle { .. } => 0,
         Region::Ellipse { .. } => m::ELLIPSE,
-        Region::Polygon { count, .. } => m::POLYGON + count as u32 * m::POLYGON_EDGE,
+        Region::Polygon { first, count } => {
+            let vertices = points.get(usize::from(first)..).unwrap_or_default();
+            let vertices = vertices.get(..usize::from(count)).unwrap_or_default();
+            m::POLYGON + u32::from(count) * m::POLYGON_EDGE + edges_level_max(vertices) * m::POLYGON_EDGE_LEVEL
+        }
     }
+}
+
+/// Most edges of a polygon that are level with one place: between two vertices, as many as at the upper of the two.
+fn edges_level_max(vertices: &[Point]) -> u32 {
+    let edges = || vertices.iter().zip(vertices.iter().cycle().skip(1));
+    let level_at = |y: f32| edges().filter(|(from, to)| (from.y > y) != (to.y > y)).count();
+    vertices.iter().map(|vertex| level_at(vertex.y)).max().unwrap_or(0) as u32
 }
 
 const fn of_layer(layer: &Layer) -> u32 {
