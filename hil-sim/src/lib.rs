@@ -28,6 +28,7 @@ mod world;
 pub use amplifier::AmplifierConfig;
 pub use error::{OutOfRange, WorldError};
 pub use fingertip::example_finger;
+pub use frixel_render::TableRows;
 pub use journal::Journal;
 pub use line::{Line, LineCounts, LineFault};
 pub use rig::{BoardMemory, Rig, RigConfig, TickRecord, contact_of};

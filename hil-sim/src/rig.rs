@@ -2,7 +2,8 @@
 
 use frixel_exchange::{Done, Given, TICK_BYTES_MAX, TickBytes};
 use frixel_model::{Contact, Finger, LoadedContact, ParameterError};
-use frixel_render::{Active, BitmapPool, Board, Order, Sense, Session, Status, StreamBuffer, Ticker};
+use frixel_render::{Active, BitmapPool, Board, Order, Sense, Session, Status, StreamBuffer, TableRows, Ticker};
+use frixel_wire::message::Refusal;
 use frixel_wire::scene::{Header, Scene};
 
 use crate::{Felt, Journal, Line, Stroke, World, WorldConfig, WorldError};
@@ -28,6 +29,11 @@ impl BoardMemory {
     #[must_use]
     pub fn bytes_filled(scene: &Scene) -> usize {
         Active::bytes_filled(scene)
+    }
+
+    /// Rows of the inverse table that a board computes for a scene.
+    pub fn table_rows(scene: &Scene, board: &Board) -> Result<TableRows, Refusal> {
+        Active::table_rows(scene, board)
     }
 }
 

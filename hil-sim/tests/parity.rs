@@ -137,9 +137,9 @@ fn a_bad_day_is_the_same() {
             },
             Layer::Stream { low_n: -0.002, high_n: 0.008 },
         ];
-        // From left to right, so that not too many are under the finger at once.
-        let band = |x_m| Region::Rectangle { x_m, y_m: 0.0, width_m: 0.03, height_m: 0.08 };
-        let regions = [Region::Screen, band(0.002), band(0.04), band(0.005), band(0.08)];
+        // From left to right, so that not too many are under the finger at once: the stream takes time everywhere.
+        let band = |x_m, width_m| Region::Rectangle { x_m, y_m: 0.0, width_m, height_m: 0.08 };
+        let regions = [band(0.0, 0.035), band(0.002, 0.018), band(0.04, 0.03), band(0.0235, 0.0125), band(0.08, 0.03)];
         let records: Vec<Record> = layers
             .into_iter()
             .zip(regions)

@@ -25,6 +25,7 @@ const HEADER: Header = Header {
     autonomous: true,
     prediction: true,
     leader: Leader::First,
+    layers_fixed: false,
 };
 
 fn constant(header: &Header, electric_friction_n: f32) -> Vec<u8> {

@@ -11,8 +11,9 @@ use std::path::{Path, PathBuf};
 use frixel::output::{FeltRow, Preview, write_preview_png};
 use frixel::player::{Simulation, simulate};
 use frixel::scene::{Asked, Program, Scene, compile};
-use frixel_hil_sim::{RigConfig, Stroke};
+use frixel_hil_sim::{BoardMemory, RigConfig, Stroke};
 use frixel_wire::fault::Flags;
+use frixel_wire::scene::{Header, Scene as WireScene};
 
 const PICTURE_BYTES_MAX: u64 = 40 * 1024;
 /// How much the felt friction has to vary along a stroke over a scene, as a part of what the drive can add.
@@ -86,6 +87,37 @@ fn every_scene_is_felt_without_a_fault_and_within_reach() {
             rows.iter().rfind(wants).zip(rows.iter().rfind(drives)).map(|(wanted, driven)| wanted.t_s - driven.t_s);
         assert!(last.is_some_and(|late_s| late_s < 0.05), "{name}: the drive ends {last:?} s early");
     }
+}
+
+/// The compiler says that no layer is changed, so the board cuts its table to what the scene asks for. What is felt is the
+/// same to the last bit as with the whole table.
+#[test]
+fn no_scene_is_felt_otherwise_because_its_table_is_cut() {
+    let mut cut = 0;
+    for Entry { name, program, .. } in &gallery() {
+        let rig = RigConfig::default();
+        let bytes = program.scene_bytes();
+        let table = BoardMemory::table_rows(&WireScene::parse(&bytes).unwrap(), &rig.board).unwrap();
+        if table.filled == table.whole {
+            continue;
+        }
+        cut += 1;
+        let (width_m, height_m) = (program.header.screen_width_m.into(), program.header.screen_height_m.into());
+        let stroke = Stroke::natural(width_m, height_m, 1.0).unwrap();
+        let simulation = Simulation { rig, seconds: stroke.duration_s(), stroke, seed: 1, ticks_per_row: 10 };
+        let whole = Program { header: Header { layers_fixed: false, ..program.header }, ..program.clone() };
+        let [with_cut, without] = [program, &whole].map(|program| {
+            let simulated =
+                simulate(program, &simulation, &mut |_| {}).unwrap_or_else(|error| panic!("{name}: {error}"));
+            simulated.recorder.rows().to_vec()
+        });
+        assert!(program.header.layers_fixed && with_cut == without, "{name}");
+        assert!(
+            with_cut.iter().any(|row| row.voltage_v_rms.is_some_and(|voltage_v_rms| voltage_v_rms > 1.0)),
+            "{name}"
+        );
+    }
+    assert!(cut > 0);
 }
 
 #[test]

@@ -239,6 +239,14 @@ fn bytes_on_the_wire_follow_what_is_in_the_scene() {
     let amounts = |rows: &[&Row]| rows.iter().map(|row| number(row, "amount")).collect::<Vec<_>>();
     assert_eq!(amounts(&gratings), (1..=64).map(f64::from).collect::<Vec<_>>());
     assert_eq!(amounts(&pictures), [50.0, 75.0, 100.0, 125.0, 150.0, 175.0, 200.0, 225.0, 250.0]);
+    let frictions = of("a friction");
+    assert_eq!(amounts(&frictions), (1..=100).map(f64::from).collect::<Vec<_>>());
+    let table = |percent: usize| number(frictions[percent - 1], "table_bytes");
+    // Four rows of 16 bytes for an octave.
+    for percent in [2, 6, 25, 49] {
+        assert!((table(2 * percent) - table(percent) - 64.0).abs() < 1.0, "{percent}");
+    }
+    assert!(frictions.is_sorted_by_key(|row| number(row, "table_bytes") as u32) && table(100) <= 2016.0);
     for row in &rows {
         let (amount, scene, pictures) =
             (number(row, "amount"), number(row, "scene_bytes"), number(row, "picture_bytes"));
@@ -246,6 +254,7 @@ fn bytes_on_the_wire_follow_what_is_in_the_scene() {
             "gratings" => (amount, 0.0, 0.0),
             "triangles" => (amount / 3.0, amount, 0.0),
             "a picture" => (1.0, 0.0, amount * amount),
+            "a friction" => (1.0, 0.0, 0.0),
             _ => (amount / vertices, amount, 0.0),
         };
         assert_eq!((scene, pictures), (56.0 + 56.0 * layers + 8.0 * points, samples), "{row:?}");

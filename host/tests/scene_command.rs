@@ -157,6 +157,28 @@ fn ram_grows_by_what_a_layer_takes() {
 }
 
 #[test]
+fn the_table_ends_where_the_scene_does_unless_a_layer_may_change() {
+    let files = Files::new();
+    let table = |rest: &str| {
+        let ram = files.check(&constant(rest))["ram"].clone();
+        ["table_bytes", "table_whole_bytes", "table_room_bytes"].map(|key| ram[key].as_u64().unwrap())
+    };
+    let [most, whole, room] = table("friction_fraction = 1");
+    assert!(most == whole && whole < room && room <= 2048, "{most} of {whole}, room for {room}");
+    // Four rows of 16 bytes for an octave.
+    assert_eq!(table("friction_fraction = 0.499"), [whole - 64, whole, room]);
+    assert_eq!(table("friction_fraction = 0.2495"), [whole - 128, whole, room]);
+    assert_eq!(table("friction_fraction = 0.499\nlive = true"), [whole, whole, room]);
+
+    let path = files.path("scene.toml");
+    let said = said(&["scene", "check", &path]);
+    assert!(said.contains("nothing is cut"), "{said}");
+    files.check(&constant("friction_fraction = 0.499"));
+    let said = self::said(&["scene", "check", &path]);
+    assert!(said.contains(&format!("{} of {whole} bytes computed, 4 rows are cut", whole - 64)), "{said}");
+}
+
+#[test]
 fn what_is_out_of_reach_is_measured_and_named() {
     let files = Files::new();
     let saturate = "[drive]\nsaturate = true\n";

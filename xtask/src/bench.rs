@@ -6,6 +6,7 @@ mod figures;
 mod follow;
 mod gdb;
 mod image;
+pub(crate) mod programs;
 mod size;
 mod stack;
 mod thumb;

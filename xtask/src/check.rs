@@ -3,6 +3,7 @@
 use std::env;
 use std::fs;
 
+use crate::bench::programs::{self, Pace};
 use crate::command::{M4F, add_target, cargo_in, root, run};
 use crate::{bench, budgets};
 
@@ -49,7 +50,9 @@ pub(crate) fn test() -> Result<(), String> {
 /// The tests that are left out of every other run, because they look at every number that there is.
 pub(crate) fn soak() -> Result<(), String> {
     let sweeps = ["test", "--release", "--locked", "--package", "frixel-model", "--", "--ignored", "--nocapture"];
-    cargo("soak", ".", &sweeps, &[])
+    cargo("soak", ".", &sweeps, &[])?;
+    eprintln!("== random scenes");
+    programs::check(Pace::Usual, programs::FEW, programs::MANY)
 }
 
 /// Builds what runs on a board for the board, with warnings as errors, in a target folder of its own so that its
@@ -120,6 +123,7 @@ pub(crate) fn budgets() -> Result<(), String> {
     let limits = budgets::read(&root().join("budgets.toml"))?;
     budgets::check(&limits, &figures)?;
     bench::costs::check(&figures)?;
+    programs::check(Pace::Usual, 0, programs::FEW)?;
     let broken = budgets::only(&limits, bench::BROKEN)?;
     match budgets::check(&broken, &bench::breach()?) {
         Err(_) => Ok(()),

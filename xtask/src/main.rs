@@ -8,12 +8,16 @@ mod command;
 use std::env;
 use std::process::ExitCode;
 
+use bench::programs::{self, Pace};
+
 const USAGE: &str = "\
 cargo xtask test     format, lints, cross-builds, all tests, docs, budgets: what CI runs
 cargo xtask bench    instructions and estimated cycles on emulated processors, and image sizes
          --bless     and writes down what each kind of layer costs, which compiler and board go by
-cargo xtask budgets  the same, held against budgets.toml
-cargo xtask soak     what takes too long for every change: every f32 through the tables
+cargo xtask budgets  the same, held against budgets.toml, and random scenes against what the loader reckons for them
+cargo xtask soak     what takes too long for every change: every f32 through the tables, thousands of random scenes
+cargo xtask programs PACE FIRST COUNT
+                     random scenes from seed FIRST on, under touch sources of a PACE that is usual or hasty
 ";
 
 fn main() -> ExitCode {
@@ -27,6 +31,10 @@ fn main() -> ExitCode {
             print!("{}", figures.table());
             bench::costs::bless(&figures)
         }),
+        ["programs", pace, first, count] => match (Pace::named(pace), first.parse(), count.parse()) {
+            (Some(pace), Ok(first), Ok(count)) => programs::check(pace, first, count),
+            _ => Err(format!("no such random scenes: {}\n{USAGE}", arguments.join(" "))),
+        },
         ["bench"] => bench::bench().map(|figures| print!("{}", figures.table())),
         _ => Err(format!("no such command: {}\n{USAGE}", arguments.join(" "))),
     };

@@ -75,6 +75,16 @@ impl Counter {
 }
 
 impl Case {
+    /// A case that no debugger follows, of which there may be any number.
+    pub fn unfollowed() -> Self {
+        Self { name: "", number: 0, followed: 0, inputs: 0, instructions: 0, worst_input: 0, sum: 0 }
+    }
+
+    /// The largest count, and its input.
+    pub fn worst(&self) -> (u32, u32) {
+        (self.instructions, self.worst_input)
+    }
+
     /// Counts a call of `function`, less a call of [`nothing`]: call and return are left out.
     pub fn take<S, T: Copy, R>(&mut self, function: fn(&mut S, T) -> R, state: &mut S, input: T) -> R {
         self.inputs += 1;

@@ -7,11 +7,13 @@ use frixel_wire::scene::cost::{self, TICK_INSTRUCTIONS_MAX};
 use frixel_wire::scene::{Beat, Blend, Burst, Carrier, Click, Header, Layer, Point, RECORDS_MAX, Record, Region, Wave};
 
 use crate::count::Counter;
+use crate::host::STREAM_HZ;
 use crate::tick::{Bench, HEADER};
 
 pub(crate) const GRATING: Layer = grating(Wave::Sine);
 
 const AROUND: Region = Region::Rectangle { x_m: 0.0, y_m: 0.0, width_m: 0.12, height_m: 0.11 };
+const STREAM: Layer = Layer::Stream { low_n: 0.001, high_n: 0.02 };
 const CONSTANT: Layer = Layer::Constant { electric_friction_n: 0.001 };
 /// Ends before the still finger and goes on after it, so that both a click and its end are counted.
 const CLICK: Click = Click { height_n: 0.005, decay_s: 0.05 };
@@ -102,11 +104,14 @@ impl Bench {
             ("tick_button_alone", entered, button),
             ("tick_vibration_sine_alone", AROUND, vibration(Beat::Sine)),
             ("tick_vibration_square_alone", AROUND, vibration(Beat::Square)),
-            ("tick_stream_alone", AROUND, Layer::Stream { low_n: 0.001, high_n: 0.02 }),
+            ("tick_stream_alone", AROUND, STREAM),
             ("tick_ellipse_alone", Region::Ellipse { x_m: -0.05, y_m: -0.05, width_m: 0.2, height_m: 0.2 }, CONSTANT),
         ] {
             self.alone(counter, name, under(region, layer), &[]);
         }
+        self.play(&HEADER, &[under(AROUND, CONSTANT), under(away(0), STREAM)]);
+        self.start_stream();
+        self.slide(counter.case("tick_stream_elsewhere"));
         self.polygons(counter);
         self.curves(counter);
     }
@@ -114,15 +119,19 @@ impl Bench {
     fn alone(&mut self, counter: &mut Counter, name: &'static str, record: Record, points: &[Point]) {
         self.play_with_points(&HEADER, &[record], points);
         if matches!(record.layer, Layer::Stream { .. }) {
-            self.host.command(Command::StartStream { sample_hz: crate::host::STREAM_HZ, start_level: 1 });
+            self.start_stream();
         }
         self.slide(counter.case(name));
     }
 
-    /// Polygons around the finger, all of whose edges are level with it at some tick.
+    pub(crate) fn start_stream(&mut self) {
+        self.host.command(Command::StartStream { sample_hz: STREAM_HZ, start_level: 1 });
+    }
+
+    /// Polygons around the finger: two with two edges level with it at every tick, and one with all of its edges.
     fn polygons(&mut self, counter: &mut Counter) {
-        for (name, count) in [("tick_polygon_4_alone", 4), ("tick_polygon_8_alone", 8)] {
-            let points: [Point; 8] = array::from_fn(|corner| {
+        for (name, count) in [("tick_polygon_4_alone", 4), ("tick_polygon_12_alone", 12)] {
+            let points: [Point; 12] = array::from_fn(|corner| {
                 let turns = (corner as f32 + 0.5) / f32::from(count);
                 let (sine, cosine) = libm::sincosf(core::f32::consts::TAU * turns);
                 Point { x: 0.06 + 0.15 * cosine, y: 0.03 + 0.15 * sine }
@@ -130,6 +139,13 @@ impl Bench {
             let region = Region::Polygon { first: 0, count };
             self.alone(counter, name, under(region, CONSTANT), &points[..usize::from(count)]);
         }
+        // Up and down: one edge to the left of the finger and an odd number to its right, so that it is inside.
+        let points: [Point; 6] = array::from_fn(|corner| Point {
+            x: if corner < 2 { -0.4 } else { 2.0 },
+            y: if corner % 2 == 0 { -1.0 } else { 1.0 },
+        });
+        let region = Region::Polygon { first: 0, count: 6 };
+        self.alone(counter, "tick_polygon_6_level_alone", under(region, CONSTANT), &points);
     }
 
     /// Curves whose last piece is the one that holds.
@@ -173,7 +189,7 @@ impl Bench {
         let mut left = TICK_INSTRUCTIONS_MAX.saturating_sub(cost::of_empty_scene(&header));
         for layer in [bitmap(crc32), GRATING, CONSTANT] {
             let record = under(AROUND, layer);
-            let cost = cost::of_record(&record).max(1);
+            let cost = cost::of_record(&record, &[]).max(1);
             while left >= cost && count < RECORDS_MAX {
                 left -= cost;
                 records[count] = record;

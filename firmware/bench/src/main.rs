@@ -11,20 +11,30 @@ mod count;
 mod host;
 mod inverse;
 mod layers;
+mod programs;
 mod tick;
 
 use core::panic::PanicInfo;
 
 use cortex_m::Peripherals;
 use cortex_m_rt::entry;
-use cortex_m_semihosting::{debug, hprintln};
+use cortex_m_semihosting::{debug, hprintln, nr, syscall1};
 
 use count::Counter;
+use programs::Seeds;
+
+/// Room for the emulator's command line.
+const COMMAND_LINE_MAX_LEN: usize = 256;
 
 #[entry]
 fn main() -> ! {
     if let Some(peripherals) = Peripherals::take() {
         let mut counter = Counter::new(peripherals.SYST);
+        let mut line = [0; COMMAND_LINE_MAX_LEN];
+        if let Some(seeds) = Seeds::of_command_line(command_line(&mut line)) {
+            programs::run(&seeds);
+            debug::exit(debug::EXIT_SUCCESS);
+        }
         inverse::run(&mut counter);
         if cfg!(target_abi = "eabihf") {
             tick::run(&mut counter);
@@ -32,6 +42,16 @@ fn main() -> ! {
         debug::exit(debug::EXIT_SUCCESS);
     }
     panic!("the emulator goes on after the end")
+}
+
+/// The words that the emulator was given for the image; none when it has nothing to tell.
+fn command_line(buffer: &mut [u8; COMMAND_LINE_MAX_LEN]) -> &[u8] {
+    let mut block = [buffer.as_mut_ptr() as usize, buffer.len()];
+    // SAFETY: the block is a pointer and the length behind it, as `SYS_GET_CMDLINE` of the semihosting specification takes
+    // them; it writes no more than that, and the length of the text into the block.
+    let failed = unsafe { syscall1(nr::GET_CMDLINE, block.as_mut_ptr() as usize) } != 0;
+    let [_, len] = block;
+    if failed { &[] } else { buffer.get(..len).unwrap_or_default() }
 }
 
 #[panic_handler]

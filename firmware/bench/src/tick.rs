@@ -15,9 +15,9 @@ const TICKS: u32 = 8_000;
 /// Ticks between two reports of the touch source.
 const REPORT_TICKS: u32 = 400;
 /// Ticks between two pings.
-const PING_TICKS: u32 = 2_000;
+pub(crate) const PING_TICKS: u32 = 2_000;
 /// Ticks between two frames of the stream.
-const STREAM_TICKS: u32 = STREAM_FRAME as u32 * STREAM_TICKS_PER_SAMPLE;
+pub(crate) const STREAM_TICKS: u32 = STREAM_FRAME as u32 * STREAM_TICKS_PER_SAMPLE;
 /// Side of the square picture, in samples.
 const PICTURE: u16 = 100;
 
@@ -38,33 +38,17 @@ pub(crate) const HEADER: Header = Header {
     autonomous: false,
     prediction: true,
     leader: Leader::First,
+    layers_fixed: false,
 };
 
 /// Counts the ticks of every scene.
 pub fn run(counter: &mut Counter) {
-    static POOL: BitmapPool = BitmapPool::new();
-    static STREAM: StreamBuffer = StreamBuffer::new();
-    let board = Board::SIMULATOR;
-    let (Some(first), Some(second)) = (singleton!(: Active = Active::new()), singleton!(: Active = Active::new()))
-    else {
-        panic!("this runs once");
-    };
-    let mut ticker = Ticker::new(&board, &POOL, first);
-    let mut session = Session::new(board, &POOL, second);
-    ticker.attach_stream(&STREAM);
-    session.attach_stream(&STREAM);
-    let mut bench = Bench { host: Host::new(session, ticker), monitor: Monitor::new(&board) };
-
-    let mut samples = [0; PICTURE as usize * PICTURE as usize];
-    for (index, sample) in (0_u32..).zip(&mut samples) {
-        *sample = (index.wrapping_mul(2_654_435_761) >> 24) as u8;
-    }
-
+    let mut bench = Bench::new();
     bench.idle(counter.case("tick_disarmed"), None);
     bench.play(&HEADER, &[record(GRATING)]);
     bench.idle(counter.case("tick_idle"), Some(Touch::Up));
     bench.slide(counter.case("tick_grating"));
-    let crc32 = bench.host.bitmap(PICTURE, PICTURE, &samples);
+    let crc32 = bench.picture();
     bench.play(&HEADER, &[record(bitmap(crc32))]);
     bench.slide(counter.case("tick_bitmap"));
     bench.costs(counter, crc32);
@@ -101,6 +85,31 @@ impl Monitor {
 }
 
 impl Bench {
+    /// A board that has just started. There is one.
+    pub(crate) fn new() -> Self {
+        static POOL: BitmapPool = BitmapPool::new();
+        static STREAM: StreamBuffer = StreamBuffer::new();
+        let board = Board::SIMULATOR;
+        let (Some(first), Some(second)) = (singleton!(: Active = Active::new()), singleton!(: Active = Active::new()))
+        else {
+            panic!("this runs once");
+        };
+        let mut ticker = Ticker::new(&board, &POOL, first);
+        let mut session = Session::new(board, &POOL, second);
+        ticker.attach_stream(&STREAM);
+        session.attach_stream(&STREAM);
+        Self { host: Host::new(session, ticker), monitor: Monitor::new(&board) }
+    }
+
+    /// Sends the board a picture, and returns its name.
+    pub(crate) fn picture(&mut self) -> u32 {
+        let mut samples = [0; PICTURE as usize * PICTURE as usize];
+        for (index, sample) in (0_u32..).zip(&mut samples) {
+            *sample = (index.wrapping_mul(2_654_435_761) >> 24) as u8;
+        }
+        self.host.bitmap(PICTURE, PICTURE, &samples)
+    }
+
     pub(crate) fn play(&mut self, header: &Header, records: &[Record]) {
         self.play_with_points(header, records, &[]);
     }
@@ -116,11 +125,15 @@ impl Bench {
         for (place, point) in tail.chunks_exact_mut(POINT_LEN).zip(points) {
             place.copy_from_slice(&point.write());
         }
-        let len = HEADER_LEN + RECORD_LEN * records.len() + POINT_LEN * points.len();
+        self.play_bytes(&scene[..HEADER_LEN + RECORD_LEN * records.len() + POINT_LEN * points.len()]);
+    }
+
+    /// Plays a compiled scene, which the board has to take.
+    pub(crate) fn play_bytes(&mut self, scene: &[u8]) {
         self.host.command(Command::Disarm);
-        self.host.play(&scene[..len]);
+        self.host.play(scene);
         self.tick(None);
-        assert!(self.host.session.scene() == scene.get(..len), "the scene is refused");
+        assert!(self.host.session.scene() == Some(scene), "the scene is refused");
         assert!(self.host.ticker.status().telemetry.state == State::Active, "the scene does not play");
     }
 
@@ -154,14 +167,14 @@ impl Bench {
         case.report();
     }
 
-    fn tick(&mut self, touch: Option<Touch>) -> Drive {
+    pub(crate) fn tick(&mut self, touch: Option<Touch>) -> Drive {
         let sense = self.sense(touch);
         let drive = tick(&mut self.host.ticker, &sense);
         self.monitor.follow(drive);
         drive
     }
 
-    fn count(&mut self, case: &mut Case, touch: Option<Touch>) -> Drive {
+    pub(crate) fn count(&mut self, case: &mut Case, touch: Option<Touch>) -> Drive {
         let sense = self.sense(touch);
         let drive = case.take(tick, &mut self.host.ticker, &sense);
         self.monitor.follow(drive);

@@ -1,12 +1,13 @@
 //! The coefficients that the tick reads. What can be computed when a scene is committed is never computed in the tick.
 
-use frixel_model::{Carrier, Contact, Finger, InverseTable, Waveform};
+use frixel_model::{Carrier, Contact, Finger, InverseTable, LoadedContact, Waveform};
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
-use frixel_wire::scene::cost::{self, TICK_INSTRUCTIONS_MAX, Worst};
+use frixel_wire::scene::cost::{self, LayerCosts, TICK_INSTRUCTIONS_MAX, Worst};
 use frixel_wire::scene::{Carrier as Shape, Grid, Header, LayerSet, Point, RECORDS_MAX, Scene};
 use heapless::Vec;
 
 use crate::Board;
+use crate::asked::Asked;
 use crate::bitmap_pool::{BitmapPool, Directory};
 use crate::carrier::CarrierTiming;
 use crate::config;
@@ -58,6 +59,25 @@ impl Active {
     pub fn bytes_filled(scene: &Scene) -> usize {
         scene.records().map(|record| layer::bytes_of(&record)).sum::<usize>()
             + scene.points().len() * size_of::<Point>()
+    }
+
+    /// How much of the inverse table the board computes for a scene, whose numbers a board takes. The table's room in RAM
+    /// is the same for every scene; what is cut is the time that its rows take at a commit.
+    pub fn table_rows(scene: &Scene, board: &Board) -> Result<TableRows, Refusal> {
+        let header = scene.header();
+        let mut grid = Grid::EMPTY;
+        grid.reset(header.screen_width_m, header.screen_height_m);
+        let mut tables = Tables::new();
+        tables.set_points(scene.points());
+        let mut asked = Asked::NOTHING;
+        for (number, record) in (0..).zip(scene.records()) {
+            grid.add(number, &record.region, tables.points());
+            asked.add(number, &record, tables.points());
+        }
+        let (_, voltage_max_v_rms) = carrier(header, board).map_err(Refusal::Config)?;
+        let rows = |asked_max_n| rows(header, voltage_max_v_rms, asked_max_n).map_err(Refusal::Config);
+        let (filled, whole) = (rows(asked_max_n(header, &asked, &grid))?, rows(f32::INFINITY)?);
+        Ok(TableRows { filled, whole })
     }
 
     /// Forgets the scene.
@@ -146,20 +166,22 @@ impl Active {
         }
         config::check_header(header, board).map_err(Refusal::Config)?;
         let (carrier, voltage_max_v_rms) = carrier(header, board).map_err(Refusal::Config)?;
-        self.load_layers(scene, board, directory)?;
+        let asked_max_n = self.load_layers(scene, board, directory)?;
         self.carrier = carrier;
         self.voltage_max_v_rms = voltage_max_v_rms;
         self.slew_step_v = header.slew_v_per_s * board.tick_period_s();
         self.host_timeout_ticks = (!header.autonomous).then(|| board.ticks(header.host_timeout_s));
         self.prediction = header.prediction;
-        self.table = Some(table(header, voltage_max_v_rms).map_err(Refusal::Config)?);
+        self.table = Some(table(header, voltage_max_v_rms, asked_max_n).map_err(Refusal::Config)?);
         Ok(())
     }
 
-    fn load_layers(&mut self, scene: &Scene, board: &Board, directory: &Directory) -> Result<(), Refusal> {
+    /// Loads the layers, and gives the largest electric friction that they can ask for, N.
+    fn load_layers(&mut self, scene: &Scene, board: &Board, directory: &Directory) -> Result<f32, Refusal> {
         self.grid.reset(scene.header().screen_width_m, scene.header().screen_height_m);
         self.tables.set_points(scene.points());
-        let mut costs = [0; RECORDS_MAX];
+        let mut costs = LayerCosts::NONE;
+        let mut asked = Asked::NOTHING;
         for (number, record) in scene.records().enumerate() {
             let number = number as u8;
             config::check_record(&record, scene, number).map_err(Refusal::Config)?;
@@ -167,11 +189,10 @@ impl Active {
             let layer = loading.layer(&record, number)?;
             // There is room for every record that a scene can have.
             let _ = self.layers.push(layer);
-            if let Some(place) = costs.get_mut(usize::from(number)) {
-                *place = cost::of_record(&record);
-            }
+            costs.add(number, &record, self.tables.points());
             self.put(number, true);
             self.grid.add(number, &record.region, self.tables.points());
+            asked.add(number, &record, self.tables.points());
         }
         self.sole = self.find_sole();
         let Worst { instructions, cell } = cost::worst(scene.header(), &self.grid, &costs);
@@ -179,7 +200,7 @@ impl Active {
             let max = TICK_INSTRUCTIONS_MAX;
             return Err(Refusal::TooCostly { instructions, max, x_m: cell.x_m, y_m: cell.y_m });
         }
-        Ok(())
+        Ok(asked_max_n(scene.header(), &asked, &self.grid))
     }
 
     fn put(&mut self, number: u8, on: bool) {
@@ -227,19 +248,47 @@ fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), Confi
     Ok((timing, voltage_max_v_rms))
 }
 
-/// The inverse table of a scene's finger, coating and load. It is made in f64, so that its error is the table's own.
-fn table(header: &Header, voltage_max_v_rms: f32) -> Result<InverseTable, ConfigRefusal> {
-    let refusal =
-        |field, found| ConfigRefusal { field, found, min: 0.0, max: f32::INFINITY, layer: ConfigRefusal::WHOLE_SCENE };
+/// Rows of a scene's inverse table with a piece of the curve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TableRows {
+    /// Those that the board computes.
+    pub filled: usize,
+    /// Those that it would compute if the scene asked for all that the drive can give.
+    pub whole: usize,
+}
+
+/// The largest electric friction that a scene can ask for, N. A layer that may be changed while it plays may ask for
+/// anything.
+fn asked_max_n(header: &Header, asked: &Asked, grid: &Grid) -> f32 {
+    if header.layers_fixed { asked.electric_friction_max_n(grid) } else { f32::INFINITY }
+}
+
+/// The inverse table of a scene's finger, coating and load, up to what is asked for. It is made in f64, so that its error
+/// is the table's own.
+fn table(header: &Header, voltage_max_v_rms: f32, asked_max_n: f32) -> Result<InverseTable, ConfigRefusal> {
+    InverseTable::build_up_to(&contact(header)?, f64::from(voltage_max_v_rms), asked_max_n)
+        .map_err(|_| refusal(ConfigField::TableRange, voltage_max_v_rms))
+}
+
+/// How many rows of it hold a piece of the curve.
+fn rows(header: &Header, voltage_max_v_rms: f32, asked_max_n: f32) -> Result<usize, ConfigRefusal> {
+    InverseTable::rows_up_to(&contact(header)?, f64::from(voltage_max_v_rms), asked_max_n)
+        .map_err(|_| refusal(ConfigField::TableRange, voltage_max_v_rms))
+}
+
+fn refusal(field: ConfigField, found: f32) -> ConfigRefusal {
+    ConfigRefusal { field, found, min: 0.0, max: f32::INFINITY, layer: ConfigRefusal::WHOLE_SCENE }
+}
+
+/// A scene's finger on its coating, under its load.
+fn contact(header: &Header) -> Result<LoadedContact<f64>, ConfigRefusal> {
     let finger = Finger {
         radius_m: f64::from(header.finger_radius_m),
         stiffness_pa_per_m: f64::from(header.stiffness_pa_per_m),
         friction_coefficient: f64::from(header.friction_coefficient),
     };
-    let contact = Contact::new(&finger, f64::from(header.effective_gap_m))
+    Contact::new(&finger, f64::from(header.effective_gap_m))
         .map_err(|_| refusal(ConfigField::EffectiveGap, header.effective_gap_m))?
         .under_load(f64::from(header.normal_load_n))
-        .map_err(|_| refusal(ConfigField::NormalLoad, header.normal_load_n))?;
-    InverseTable::build(&contact, f64::from(voltage_max_v_rms))
-        .map_err(|_| refusal(ConfigField::TableRange, voltage_max_v_rms))
+        .map_err(|_| refusal(ConfigField::NormalLoad, header.normal_load_n))
 }

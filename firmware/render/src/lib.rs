@@ -40,6 +40,7 @@
 #![forbid(unsafe_code)]
 
 mod active;
+mod asked;
 mod bitmap_pool;
 mod board;
 mod carrier;
@@ -71,7 +72,7 @@ mod ticker;
 ))]
 mod turns;
 
-pub use active::Active;
+pub use active::{Active, TableRows};
 pub use bitmap_pool::{BITMAP_POOL_LEN, BitmapPool};
 pub use board::Board;
 pub use io::{Drive, Sense, Touch};

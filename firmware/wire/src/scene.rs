@@ -87,6 +87,9 @@ pub struct Header {
     pub prediction: bool,
     /// Which finger is followed when the host tells of several.
     pub leader: Leader,
+    /// No layer is changed while the scene plays: the board prepares for what the records ask for and no more, and refuses
+    /// a change.
+    pub layers_fixed: bool,
 }
 
 /// Shape of the carrier.

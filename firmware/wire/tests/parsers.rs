@@ -80,7 +80,7 @@ proptest! {
 
     /// A header or record that is accepted has one form only.
     #[test]
-    fn headers_have_one_form(mut bytes in prop::array::uniform32(any::<u8>()), flags in 0..10u8, carrier in 0..4u8, unused in 0..2u8) {
+    fn headers_have_one_form(mut bytes in prop::array::uniform32(any::<u8>()), flags in 0..18u8, carrier in 0..4u8, unused in 0..2u8) {
         bytes[..4].copy_from_slice(&[2, 0, flags % 3, flags]);
         let mut header = [0; HEADER_LEN];
         header[..32].copy_from_slice(&bytes);

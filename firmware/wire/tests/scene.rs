@@ -119,7 +119,7 @@ fn a_scene_without_layers_is_read() {
 
 #[test]
 fn unknown_flags_and_carriers_are_refused() {
-    for flags in 8..=u8::MAX {
+    for flags in 16..=u8::MAX {
         assert_eq!(refused(&changed(3, flags)), SceneError::UnknownFlags(flags));
     }
     for shape in 2..=u8::MAX {

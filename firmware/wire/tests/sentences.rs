@@ -107,7 +107,8 @@ fn numbers(refusal: Refusal) -> Vec<String> {
         | Refusal::Busy
         | Refusal::ArmSwitch
         | Refusal::TouchSource
-        | Refusal::NoStreamLayer => vec![],
+        | Refusal::NoStreamLayer
+        | Refusal::LayersFixed => vec![],
     }
 }
 

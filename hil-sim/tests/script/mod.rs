@@ -130,6 +130,7 @@ pub const HEADER: Header = Header {
     autonomous: false,
     prediction: true,
     leader: Leader::First,
+    layers_fixed: false,
 };
 
 pub fn record(layer: Layer) -> Record {

@@ -4,7 +4,8 @@ mod board;
 mod rehearsal;
 mod text;
 
-use frixel_hil_sim::{BoardMemory, RigConfig};
+use frixel_hil_sim::{BoardMemory, RigConfig, TableRows};
+use frixel_model::InverseTable;
 use frixel_wire::scene::Scene as WireScene;
 use frixel_wire::scene::cost::{TICK_INSTRUCTIONS_MAX, Worst};
 use serde::Serialize;
@@ -60,6 +61,12 @@ pub struct RamBytes {
     pub bitmap_pool_limit_bytes: u32,
     /// Coefficients of layers, points, waves and clicks.
     pub active_bytes: usize,
+    /// Rows of the inverse table that the board computes.
+    pub table_bytes: usize,
+    /// Rows that it would compute for a scene that asks for all that can be reached.
+    pub table_whole_bytes: usize,
+    /// The table's room, which is the same for every scene: a cut saves time at a commit, and no RAM.
+    pub table_room_bytes: usize,
 }
 
 /// The longest tick on a Cortex-M4F.
@@ -111,7 +118,10 @@ impl SceneCheck {
         let bitmap_bytes = program.bitmaps.iter().map(|bitmap| bitmap.samples.len()).sum();
         let total_bytes = rehearsal::wire_bytes(program, rig)?;
         // The board has just read the same bytes.
-        let active_bytes = WireScene::parse(&scene).map_or(0, |scene| BoardMemory::bytes_filled(&scene));
+        let taken = WireScene::parse(&scene).ok();
+        let active_bytes = taken.as_ref().map_or(0, BoardMemory::bytes_filled);
+        let table = taken.and_then(|scene| BoardMemory::table_rows(&scene, &rig.board).ok());
+        let table_bytes = |rows: fn(&TableRows) -> usize| InverseTable::ROW_BYTES * table.as_ref().map_or(0, rows);
         let reach = &program.reach;
         Ok(Self {
             layers: program.records.len(),
@@ -125,6 +135,9 @@ impl SceneCheck {
                 bitmap_pool_bytes: bitmap_bytes,
                 bitmap_pool_limit_bytes: rig.board.limits.bitmap_pool_bytes,
                 active_bytes,
+                table_bytes: table_bytes(|table| table.filled),
+                table_whole_bytes: table_bytes(|table| table.whole),
+                table_room_bytes: size_of::<InverseTable>(),
             },
             tick: LongestTick::of(program),
             reach: ReachableFriction {

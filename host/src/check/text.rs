@@ -2,7 +2,9 @@
 
 use std::fmt::Write;
 
-use super::SceneCheck;
+use frixel_model::InverseTable;
+
+use super::{RamBytes, SceneCheck};
 use crate::scene::Outside;
 
 impl SceneCheck {
@@ -29,6 +31,7 @@ impl SceneCheck {
                 ram.bitmap_pool_bytes, ram.bitmap_pool_limit_bytes, ram.active_bytes
             ),
         );
+        line("table", table(ram));
         line(
             "tick",
             format!(
@@ -62,6 +65,19 @@ impl SceneCheck {
         }
         text
     }
+}
+
+/// What the board computes of the inverse table.
+fn table(ram: &RamBytes) -> String {
+    let RamBytes { table_bytes, table_whole_bytes, table_room_bytes, .. } = *ram;
+    let cut = match table_whole_bytes.saturating_sub(table_bytes) / InverseTable::ROW_BYTES {
+        0 => "nothing is cut".to_owned(),
+        1 => "1 row is cut".to_owned(),
+        rows => format!("{rows} rows are cut"),
+    };
+    format!(
+        "{table_bytes} of {table_whole_bytes} bytes computed, {cut}; it has room for {table_room_bytes} whatever the scene"
+    )
 }
 
 fn out_of_reach(above: &Outside, below: &Outside) -> String {

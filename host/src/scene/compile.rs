@@ -169,6 +169,7 @@ fn header(scene: &Scene, limits: &BoardLimits, half_period_s: f64, log: &mut Log
         autonomous: drive.autonomous,
         prediction: scene.touch.prediction,
         leader: scene.touch.leader,
+        layers_fixed: !scene.layers.iter().any(|layer| layer.live),
     }
 }
 

@@ -37,6 +37,7 @@ pub(crate) fn scene(host_timeout_s: f32) -> Vec<u8> {
         autonomous: false,
         prediction: true,
         leader: Leader::First,
+        layers_fixed: false,
     };
     header.write(0, 0).to_vec()
 }

@@ -1,6 +1,7 @@
 //! The evaluator in f32, and the rows it reads.
 
 use core::num::NonZeroU32;
+use core::ops::Range;
 
 use super::bound::TOP_MARGIN;
 use super::interpolation::polynomial;
@@ -62,17 +63,29 @@ impl Grid {
         }
     }
 
-    /// Fills `rows` from the row `first` on, with the curve of `contact`.
+    /// Ends the table in front of the row `end`, and gives the voltage there; `None` when no row is cut.
+    pub(super) fn cut_at(&mut self, end: usize, contact: &LoadedContact<f64>) -> Option<f32> {
+        let end_n = self.start_n(end);
+        let friction_max_n = (end_n as f32).next_down();
+        if friction_max_n >= self.friction_max_n {
+            return None;
+        }
+        self.friction_max_n = friction_max_n;
+        self.voltage_max_v_rms = round_down(contact.voltage_v_rms(end_n));
+        Some(self.voltage_max_v_rms)
+    }
+
+    /// Fills the rows `needed` of all the table's `rows` with the curve of `contact`.
     pub(super) fn fill<const C: usize>(
         &self,
         contact: &LoadedContact<f64>,
         rows: &mut [[f32; C]],
-        first: usize,
+        needed: Range<usize>,
     ) -> Result<(), TableError> {
         let last = rows.len().saturating_sub(1);
-        let start_n = self.start_n(first);
+        let start_n = self.start_n(needed.start);
         let mut start = (start_n, contact.voltage_v_rms(start_n));
-        for (index, row) in rows.iter_mut().enumerate().skip(first) {
+        for (index, row) in rows.iter_mut().enumerate().take(needed.end).skip(needed.start) {
             let end_n = self.start_n(index + 1);
             let mut end = (end_n, contact.voltage_v_rms(end_n));
             if index == last {
@@ -119,7 +132,7 @@ impl<'rows, const C: usize> SizedTable<'rows, C> {
         let friction_max_n = round_down(builder.friction_max_n);
         let voltage_max_v_rms = round_down(builder.contact.voltage_v_rms(builder.friction_max_n));
         let grid = Grid::new(layout.rows, layout.density, friction_max_n, voltage_max_v_rms)?;
-        grid.fill(builder.contact, rows, 0)?;
+        grid.fill(builder.contact, rows, 0..layout.rows)?;
         Ok(Self { grid, rows })
     }
 

@@ -1,6 +1,7 @@
 //! The table of a microcontroller with an FPU: of fixed size, built where it is used.
 
 use core::num::NonZeroU32;
+use core::ops::Range;
 
 use super::TableError;
 use super::float::{Grid, round_down};
@@ -17,7 +18,8 @@ const KNEE_PART: f64 = 1.0 / 200.0;
 
 /// Piecewise cubic from electric friction to rms voltage for one contact under one load; 2,032 bytes.
 ///
-/// Rows below the range hold the straight line from zero to the voltage where the range begins.
+/// Rows below the range hold the straight line from zero to the voltage where the range begins. A scene that asks for less
+/// than the drive can give needs fewer of the rows above: [`InverseTable::build_up_to`].
 ///
 /// ```
 /// use frixel_model::{Contact, Finger, InverseTable};
@@ -45,9 +47,74 @@ impl InverseTable {
     /// 0.5 N, over every `f32`: `cargo test --release -p frixel-model -- --ignored --nocapture`.
     pub const RELATIVE_ERROR: f32 = 1e-5;
 
+    /// Bytes of a row.
+    pub const ROW_BYTES: usize = size_of::<[f32; 4]>();
+
     /// A table for `contact`, up to `voltage_max_v_rms`: some 250 evaluations of the closed form for the example finger,
     /// 380 at most.
     pub fn build(contact: &LoadedContact<f64>, voltage_max_v_rms: f64) -> Result<Self, TableError> {
+        Self::build_up_to(contact, voltage_max_v_rms, f32::INFINITY)
+    }
+
+    /// The same table, cut to the rows that electric frictions up to `asked_max_n` need: up to there it gives the same
+    /// bits. A row that is cut costs no evaluation of the closed form; it holds the voltage where the table ends. What is
+    /// not below the largest friction, not-a-number included, cuts nothing.
+    pub fn build_up_to(
+        contact: &LoadedContact<f64>,
+        voltage_max_v_rms: f64,
+        asked_max_n: f32,
+    ) -> Result<Self, TableError> {
+        let Plan { mut grid, rows: needed } = Plan::new(contact, voltage_max_v_rms, asked_max_n)?;
+        let knee_start_n = grid.start_n(needed.start);
+        let line = [0.0, (contact.voltage_v_rms(knee_start_n) / knee_start_n) as f32, 0.0, 0.0];
+        let mut rows = [line; ROWS];
+        grid.fill(contact, &mut rows, needed.clone())?;
+        if let Some((cut, end)) = rows.get_mut(needed.end..).zip(grid.cut_at(needed.end, contact)) {
+            cut.fill([end, 0.0, 0.0, 0.0]);
+        }
+        Ok(Self { grid, rows })
+    }
+
+    /// Rows with a piece of the curve in the table that [`Self::build_up_to`] makes of the same; the others cost no
+    /// evaluation of the closed form.
+    pub fn rows_up_to(
+        contact: &LoadedContact<f64>,
+        voltage_max_v_rms: f64,
+        asked_max_n: f32,
+    ) -> Result<usize, TableError> {
+        Plan::new(contact, voltage_max_v_rms, asked_max_n).map(|plan| plan.rows.len())
+    }
+
+    /// The rms voltage for an electric friction in newtons.
+    ///
+    /// Within [`Self::RELATIVE_ERROR`] of the friction asked for; zero for a negative friction and for not-a-number; the
+    /// largest voltage, and never more, above the largest friction. Below the range it falls on a straight line towards
+    /// zero.
+    #[inline]
+    pub fn voltage_v_rms(&self, electric_friction_n: f32) -> f32 {
+        self.grid.evaluate(&self.rows, electric_friction_n)
+    }
+
+    /// The electric friction at the largest voltage, in newtons, rounded down; of a table that is cut, where it ends.
+    pub fn electric_friction_max_n(&self) -> f32 {
+        self.grid.friction_max_n()
+    }
+
+    /// The largest voltage, in volts rms, rounded down; of a table that is cut, that where it ends.
+    pub fn voltage_max_v_rms(&self) -> f32 {
+        self.grid.voltage_max_v_rms()
+    }
+}
+
+/// Where the rows of a table lie, and those of them that hold a piece of the curve.
+struct Plan {
+    /// Of the whole table.
+    grid: Grid,
+    rows: Range<usize>,
+}
+
+impl Plan {
+    fn new(contact: &LoadedContact<f64>, voltage_max_v_rms: f64, asked_max_n: f32) -> Result<Self, TableError> {
         let largest = round_down(voltage_max_v_rms);
         if !(voltage_max_v_rms.is_finite() && largest > 0.0) {
             return Err(TableError::Voltage);
@@ -63,30 +130,7 @@ impl InverseTable {
         if knee_row >= ROWS {
             return Err(TableError::TooManySegments);
         }
-        let knee_start_n = grid.start_n(knee_row);
-        let line = [0.0, (contact.voltage_v_rms(knee_start_n) / knee_start_n) as f32, 0.0, 0.0];
-        let mut rows = [line; ROWS];
-        grid.fill(contact, &mut rows, knee_row)?;
-        Ok(Self { grid, rows })
-    }
-
-    /// The rms voltage for an electric friction in newtons.
-    ///
-    /// Within [`Self::RELATIVE_ERROR`] of the friction asked for; zero for a negative friction and for not-a-number; the
-    /// largest voltage, and never more, above the largest friction. Below the range it falls on a straight line towards
-    /// zero.
-    #[inline]
-    pub fn voltage_v_rms(&self, electric_friction_n: f32) -> f32 {
-        self.grid.evaluate(&self.rows, electric_friction_n)
-    }
-
-    /// The electric friction at the largest voltage, in newtons, rounded down.
-    pub fn electric_friction_max_n(&self) -> f32 {
-        self.grid.friction_max_n()
-    }
-
-    /// The largest voltage, in volts rms, rounded down.
-    pub fn voltage_max_v_rms(&self) -> f32 {
-        self.grid.voltage_max_v_rms()
+        let end = if asked_max_n < friction_max_n { grid.row(asked_max_n.max(knee_n)) + 1 } else { ROWS };
+        Ok(Self { grid, rows: knee_row..end })
     }
 }

@@ -11,7 +11,11 @@ const PATH: &str = "firmware/wire/src/scene/cost/measured.rs";
 
 /// Points of a curve or vertices of a polygon in the shorter and the longer of two measured cases.
 const SPEED_POINTS: (u64, u64) = (2, 8);
-const POLYGON_POINTS: (u64, u64) = (4, 8);
+const POLYGON_POINTS: (u64, u64) = (4, 12);
+/// Edges of both that are level with the finger.
+const POLYGON_EDGES_LEVEL: u64 = 2;
+/// Vertices of the polygon all of whose edges are.
+const LEVEL_POLYGON_POINTS: u64 = 6;
 
 /// The name of a cost, what it is, and its instructions.
 type Cost = (&'static str, &'static str, u64);
@@ -49,8 +53,13 @@ fn costs(figures: &Figures) -> Result<Vec<Cost>, String> {
     let alone = |name: &str| tick(&format!("{name}_alone")).map(|instructions| instructions.saturating_sub(base));
     // The longer of the two: a tick in which the envelope is at its slew limit is longer than one that is not.
     let empty = base.max(tick("1_of_64")?.saturating_sub(constant));
+    let stream_elsewhere = tick("stream_elsewhere")?.saturating_sub(tick("constant_alone")?);
     let (speed, speed_point) = line_through(SPEED_POINTS, alone("speed_2")?, alone("speed_8")?);
-    let (polygon, polygon_edge) = line_through(POLYGON_POINTS, alone("polygon_4")?, alone("polygon_8")?);
+    let (polygon, polygon_edge) = line_through(POLYGON_POINTS, alone("polygon_4")?, alone("polygon_12")?);
+    let more_level = LEVEL_POLYGON_POINTS - POLYGON_EDGES_LEVEL;
+    let with_two_level = polygon + LEVEL_POLYGON_POINTS * polygon_edge;
+    let polygon_edge_level = alone("polygon_6_level")?.saturating_sub(with_two_level).div_ceil(more_level);
+    let polygon = polygon.saturating_sub(constant + POLYGON_EDGES_LEVEL * polygon_edge_level);
     Ok(vec![
         ("EMPTY", "A tick that looks at layers and finds none.", empty),
         ("SINE_CARRIER", "What a sine carrier adds.", tick("two_constants_sine_carrier")?.saturating_sub(two)),
@@ -68,10 +77,16 @@ fn costs(figures: &Figures) -> Result<Vec<Cost>, String> {
         ("VIBRATION_SQUARE", "", alone("vibration_square")?),
         ("SPEED", "A curve, and each of its points.", speed),
         ("SPEED_POINT", "", speed_point),
-        ("STREAM", "The stream's own work included.", alone("stream")?),
+        ("STREAM", "", alone("stream")?.saturating_sub(stream_elsewhere)),
+        ("STREAM_ELSEWHERE", "The stream's own work, wherever the finger is.", stream_elsewhere),
         ("ELLIPSE", "What other regions add to a rectangle.", alone("ellipse")?.saturating_sub(constant)),
-        ("POLYGON", "", polygon.saturating_sub(constant)),
+        (
+            "POLYGON",
+            "A polygon, each of its edges, and what each of those adds that are level with the finger.",
+            polygon,
+        ),
         ("POLYGON_EDGE", "", polygon_edge),
+        ("POLYGON_EDGE_LEVEL", "", polygon_edge_level),
     ])
 }
 

@@ -43,11 +43,7 @@ impl<'a> Image<'a> {
 
     /// Counts instructions.
     pub(super) fn count(&self, figures: &mut Figures) -> Result<Vec<Count>, String> {
-        let output = self.emulator().output().map_err(|error| format!("{EMULATOR} could not be started: {error}"))?;
-        let text = String::from_utf8_lossy(&output.stdout).into_owned();
-        if !output.status.success() {
-            return Err(format!("the benchmark of {} failed: {text}", self.core.name));
-        }
+        let text = self.run(&[])?;
         let counts: Vec<Count> = text.lines().map(parse).collect::<Result<_, _>>()?;
         for count in &counts {
             figures.put(self.name(count), count.instructions);
@@ -56,11 +52,24 @@ impl<'a> Image<'a> {
         Ok(counts)
     }
 
+    /// Runs the image with these words on its command line, and gives what it writes.
+    pub(super) fn run(&self, words: &[String]) -> Result<String, String> {
+        let output =
+            self.emulator(words).output().map_err(|error| format!("{EMULATOR} could not be started: {error}"))?;
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        if output.status.success() {
+            Ok(text)
+        } else {
+            let said = String::from_utf8_lossy(&output.stderr);
+            Err(format!("the benchmark of {} failed: {text}{said}", self.core.name))
+        }
+    }
+
     /// Counts instructions, then looks which they are at the worst input and estimates their cycles.
     pub(super) fn measure(&self, figures: &mut Figures) -> Result<(), String> {
         let counts = self.count(figures)?;
         let inputs: Vec<u32> = counts.iter().map(|count| count.worst_input).collect();
-        let followed = follow::follow(self.emulator(), &self.path, &inputs)?;
+        let followed = follow::follow(self.emulator(&[]), &self.path, &inputs)?;
         for (count, seen) in counts.iter().zip(followed) {
             if seen.instructions != count.instructions {
                 return Err(format!(
@@ -79,13 +88,14 @@ impl<'a> Image<'a> {
         format!("{}.{}", self.core.name, count.name)
     }
 
-    /// The emulator with the image.
-    fn emulator(&self) -> Command {
+    /// The emulator with the image, and words for it.
+    fn emulator(&self, words: &[String]) -> Command {
+        let words = [&["bench".to_owned()], words].concat().join(",arg=");
         let mut command = Command::new(EMULATOR);
         command
             .args(["-M", self.core.machine, "-display", "none", "-monitor", "none", "-serial", "null"])
             .args(COUNTING)
-            .args(["-semihosting-config", "enable=on,target=native", "-kernel"])
+            .args(["-semihosting-config", &format!("enable=on,target=native,arg={words}"), "-kernel"])
             .arg(&self.path)
             .stdin(Stdio::null());
         command

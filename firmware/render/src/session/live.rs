@@ -89,6 +89,9 @@ impl Dialogue<'_> {
     }
 
     fn set_layer(&mut self, layer: u8, on: bool, gain: f32) -> Result<Accepted, Refusal> {
+        if self.playing.header.is_some_and(|header| header.layers_fixed) {
+            return Err(Refusal::LayersFixed);
+        }
         let layers = self.playing.layers;
         if layer >= layers {
             return Err(Refusal::NoSuchLayer { layer, layers });

@@ -90,6 +90,8 @@ pub enum Refusal {
         /// And from its top edge, m.
         y_m: f32,
     },
+    /// The playing scene says that no layer of it is changed ([`crate::scene::Header::layers_fixed`]).
+    LayersFixed,
 }
 
 /// A number in a scene that the board cannot play.
@@ -319,6 +321,9 @@ impl fmt::Display for Refusal {
                 "a tick would take {instructions} instructions at {:.1} mm, {:.1} mm, and may take {max}: let fewer layers meet there",
                 1e3 * x_m,
                 1e3 * y_m
+            ),
+            Self::LayersFixed => f.write_str(
+                "the playing scene says that its layers stay as they are: say `live = true` in those that are to change, and commit it again",
             ),
         }
     }

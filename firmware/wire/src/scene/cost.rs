@@ -18,9 +18,33 @@ pub struct Worst {
     pub cell: Cell,
 }
 
-/// Instructions that a layer adds to a tick with the finger in its region, or near it.
-pub const fn of_record(record: &Record) -> u32 {
-    of_region(&record.region) + of_layer(&record.layer)
+/// Instructions that the layers of a scene add to a tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LayerCosts {
+    layers: [u32; RECORDS_MAX],
+    /// Wherever the finger is.
+    everywhere: u32,
+}
+
+impl LayerCosts {
+    /// No layer.
+    pub const NONE: Self = Self { layers: [0; RECORDS_MAX], everywhere: 0 };
+
+    /// Adds layer number `number`; `points` are the scene's.
+    pub fn add(&mut self, number: u8, record: &Record, points: &[Point]) {
+        if let Some(cost) = self.layers.get_mut(usize::from(number)) {
+            *cost = of_record(record, points);
+        }
+        if matches!(record.layer, Layer::Stream { .. }) {
+            // There is one stream, however many layers play it.
+            self.everywhere = m::STREAM_ELSEWHERE;
+        }
+    }
+}
+
+/// Instructions that a layer adds to a tick with the finger in its region, or near it; `points` are the scene's.
+pub fn of_record(record: &Record, points: &[Point]) -> u32 {
+    of_region(&record.region, points) + of_layer(&record.layer)
 }
 
 /// Instructions of a tick that looks at layers and finds none under the finger.
@@ -31,12 +55,12 @@ pub const fn of_empty_scene(header: &Header) -> u32 {
     }
 }
 
-/// Where a scene takes most, from its grid and the cost of each of its layers ([`of_record`]).
-pub fn worst(header: &Header, grid: &Grid, costs: &[u32]) -> Worst {
+/// Where a scene takes most, from its grid and the costs of its layers.
+pub fn worst(header: &Header, grid: &Grid, costs: &LayerCosts) -> Worst {
     let empty = Worst { instructions: 0, cell: Cell { x_m: 0.0, y_m: 0.0, layers: [0; 2] } };
     grid.cells().fold(empty, |worst, cell| {
-        let here = (0..).zip(costs).filter(|(number, _)| cell.has(*number)).map(|(_, cost)| cost);
-        let instructions = of_empty_scene(header) + here.sum::<u32>();
+        let here = (0..).zip(&costs.layers).filter(|(number, _)| cell.has(*number)).map(|(_, cost)| cost);
+        let instructions = of_empty_scene(header) + costs.everywhere + here.sum::<u32>();
         if instructions > worst.instructions { Worst { instructions, cell } } else { worst }
     })
 }
@@ -45,20 +69,31 @@ pub fn worst(header: &Header, grid: &Grid, costs: &[u32]) -> Worst {
 pub fn worst_of_scene(header: &Header, records: &[Record], points: &[Point]) -> Worst {
     let mut grid = Grid::EMPTY;
     grid.reset(header.screen_width_m, header.screen_height_m);
-    let mut costs = [0; RECORDS_MAX];
-    for ((number, record), cost) in (0..).zip(records).zip(&mut costs) {
+    let mut costs = LayerCosts::NONE;
+    for (number, record) in (0..).zip(records) {
         grid.add(number, &record.region, points);
-        *cost = of_record(record);
+        costs.add(number, record, points);
     }
     worst(header, &grid, &costs)
 }
 
-const fn of_region(region: &Region) -> u32 {
+fn of_region(region: &Region, points: &[Point]) -> u32 {
     match *region {
         Region::Screen | Region::Rectangle { .. } => 0,
         Region::Ellipse { .. } => m::ELLIPSE,
-        Region::Polygon { count, .. } => m::POLYGON + count as u32 * m::POLYGON_EDGE,
+        Region::Polygon { first, count } => {
+            let vertices = points.get(usize::from(first)..).unwrap_or_default();
+            let vertices = vertices.get(..usize::from(count)).unwrap_or_default();
+            m::POLYGON + u32::from(count) * m::POLYGON_EDGE + edges_level_max(vertices) * m::POLYGON_EDGE_LEVEL
+        }
     }
+}
+
+/// Most edges of a polygon that are level with one place: between two vertices, as many as at the upper of the two.
+fn edges_level_max(vertices: &[Point]) -> u32 {
+    let edges = || vertices.iter().zip(vertices.iter().cycle().skip(1));
+    let level_at = |y: f32| edges().filter(|(from, to)| (from.y > y) != (to.y > y)).count();
+    vertices.iter().map(|vertex| level_at(vertex.y)).max().unwrap_or(0) as u32
 }
 
 const fn of_layer(layer: &Layer) -> u32 {

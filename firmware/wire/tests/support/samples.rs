@@ -23,7 +23,7 @@ pub fn from_host() -> Vec<Payload<'static>> {
     static FULL_CHUNK: [u8; CHUNK_LEN] = [0xa5; CHUNK_LEN];
     static FULL_SAMPLES: [[u8; 2]; SAMPLES_MAX] = [[0x5a, 0xa5]; SAMPLES_MAX];
     let sequences = [0, 1, 127, 128, 300, 16_383, 16_384, 65_535].into_iter().cycle();
-    let mut payloads = vec![Payload::HelloRequest { protocol: (1, 1) }];
+    let mut payloads = vec![Payload::HelloRequest { protocol: (1, 2) }];
     payloads
         .extend(sequences.zip(commands()).map(|(sequence, command)| Payload::Request(Request { sequence, command })));
     payloads.extend([
@@ -195,6 +195,7 @@ pub fn refusals() -> Vec<Refusal> {
         Refusal::NoSuchLayer { layer: 9, layers: 4 },
         Refusal::NoStreamLayer,
         Refusal::TooCostly { instructions: 812, max: 600, x_m: 0.0125, y_m: 0.25 },
+        Refusal::LayersFixed,
     ]);
     refusals
 }
@@ -283,6 +284,7 @@ pub fn header() -> Header {
         autonomous: false,
         prediction: true,
         leader: Leader::First,
+        layers_fixed: false,
     }
 }
 
@@ -292,6 +294,7 @@ pub fn headers() -> Vec<Header> {
         Header { carrier: Carrier::Sine, prediction: false, ..header() },
         Header { autonomous: true, ..header() },
         Header { leader: Leader::Latest, ..header() },
+        Header { layers_fixed: true, ..header() },
     ]
 }
 

@@ -1,12 +1,14 @@
-//! Bytes on the wire against what is in the scene.
+//! Bytes on the wire, and of the table, against what is in the scene.
 
 use std::fmt::Write;
 use std::fs::File;
 use std::io;
+use std::ops::RangeInclusive;
 use std::path::Path;
 
-use frixel_hil_sim::RigConfig;
-use frixel_wire::scene::{POINTS_MAX, POLYGON_POINTS_MAX, RECORDS_MAX};
+use frixel_hil_sim::{BoardMemory, RigConfig};
+use frixel_model::InverseTable;
+use frixel_wire::scene::{POINTS_MAX, POLYGON_POINTS_MAX, RECORDS_MAX, Scene as WireScene};
 
 use super::{Figure, ReportError};
 use crate::report::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
@@ -27,6 +29,8 @@ const VERTICES_MIN: usize = 3;
 const SIDES: [usize; 9] = [50, 75, 100, 125, 150, 175, 200, 225, 250];
 const PITCH_MM: f64 = 0.25;
 const PICTURE: &str = "picture.png";
+/// Frictions that are asked for, in percent of what can be reached.
+const PERCENTS: RangeInclusive<usize> = 1..=100;
 /// Bits that a byte takes on a serial line.
 const BITS_PER_BYTE: f64 = 10.0;
 
@@ -74,6 +78,11 @@ fn picture(side: usize) -> String {
     )
 }
 
+/// The same friction everywhere.
+fn one_friction(percent: usize) -> String {
+    format!("{HEAD}[[layer]]\nkind = \"constant\"\nfriction_fraction = {}\n", percent as f64 / 100.0)
+}
+
 /// A picture of all greys, which goes by its own number of samples whatever is asked.
 fn write_picture(folder: &Path) -> Result<(), ReportError> {
     const SIDE: u8 = 64;
@@ -101,12 +110,28 @@ fn vertices_max(folder: &Path) -> usize {
     (VERTICES_MIN..=POLYGON_POINTS_MAX).rev().find(fits).unwrap_or(VERTICES_MIN)
 }
 
+/// Bytes of the inverse table that the board computes for a program.
+fn table_bytes(program: &Program) -> usize {
+    let scene = program.scene_bytes();
+    let rows = WireScene::parse(&scene).ok().and_then(|scene| {
+        let rows = BoardMemory::table_rows(&scene, &RigConfig::default().board);
+        rows.ok().map(|rows| rows.filled)
+    });
+    InverseTable::ROW_BYTES * rows.unwrap_or_default()
+}
+
 /// Scenes of one kind of content.
 struct Family {
     name: String,
     colour: plotters::style::RGBColor,
-    /// How much is in each scene, and what it is on the wire.
-    scenes: Vec<(usize, OnTheWire)>,
+    scenes: Vec<Measured>,
+}
+
+/// How much is in a scene, what it is on the wire, and how much of the table it needs.
+struct Measured {
+    amount: usize,
+    wire: OnTheWire,
+    table_bytes: usize,
 }
 
 impl Family {
@@ -116,34 +141,51 @@ impl Family {
         folder: &Path,
         scenes: impl Iterator<Item = (usize, String)>,
     ) -> Result<Self, ReportError> {
-        let measured = |(amount, text): (usize, String)| Ok((amount, OnTheWire::of(&compiled(&text, folder)?)?));
+        let measured = |(amount, text): (usize, String)| {
+            let program = compiled(&text, folder)?;
+            Ok(Measured { amount, wire: OnTheWire::of(&program)?, table_bytes: table_bytes(&program) })
+        };
         Ok(Self { name: name.to_owned(), colour, scenes: scenes.map(measured).collect::<Result<_, ReportError>>()? })
     }
 
     fn largest(&self) -> OnTheWire {
-        self.scenes.last().map(|(_, wire)| *wire).unwrap_or_default()
+        self.scenes.last().map(|scene| scene.wire).unwrap_or_default()
+    }
+
+    fn draw_table(&self, panel: &mut Panel) {
+        let points = self.scenes.iter().map(|scene| (scene.amount as f64, scene.table_bytes as f64)).collect();
+        panel.add("", Look { colour: self.colour, line: Line::Solid, mark: Mark::None }, points);
     }
 
     fn draw(&self, panel: &mut Panel, mark: Mark) {
         let points = |bytes: fn(&OnTheWire) -> usize| {
-            self.scenes.iter().map(|(amount, wire)| (*amount as f64, bytes(wire) as f64)).collect::<Vec<_>>()
+            self.scenes.iter().map(|scene| (scene.amount as f64, bytes(&scene.wire) as f64)).collect::<Vec<_>>()
         };
         let Self { name, colour, .. } = self;
         panel.add("", Look::line(PALETTE[6], Line::Dashed), points(OnTheWire::content_bytes));
         panel.add(name, Look { colour: *colour, line: Line::Solid, mark }, points(|wire| wire.wire_bytes));
     }
 
-    fn rows(&self, data: &mut Data<7>, unit: &str) {
-        for (amount, wire) in &self.scenes {
+    fn rows(&self, data: &mut Data<8>, unit: &str) {
+        for Measured { amount, wire, table_bytes } in &self.scenes {
             let [scene, picture] = [wire.scene_bytes, wire.picture_bytes].map(Into::into);
             let (frames, bytes) = (wire.frames.into(), wire.wire_bytes.into());
-            data.row([self.name.as_str().into(), unit.into(), (*amount).into(), scene, picture, frames, bytes]);
+            data.row([
+                self.name.as_str().into(),
+                unit.into(),
+                (*amount).into(),
+                scene,
+                picture,
+                frames,
+                bytes,
+                (*table_bytes).into(),
+            ]);
         }
     }
 }
 
-/// All scenes: gratings, polygons of few and of many vertices, pictures.
-fn families() -> Result<[Family; 4], ReportError> {
+/// All scenes: gratings, polygons of few and of many vertices, pictures, frictions.
+fn families() -> Result<[Family; 5], ReportError> {
     let folder = tempfile::tempdir().map_err(|source| ReportError::Write { path: std::env::temp_dir(), source })?;
     let folder = folder.path();
     write_picture(folder)?;
@@ -155,38 +197,47 @@ fn families() -> Result<[Family; 4], ReportError> {
         Family::new("triangles", PALETTE[2], folder, of_polygons(VERTICES_MIN))?,
         Family::new(&format!("polygons of {many} vertices"), PALETTE[1], folder, of_polygons(many))?,
         Family::new("a picture", PALETTE[3], folder, SIDES.into_iter().map(|side| (side, picture(side))))?,
+        Family::new("a friction", PALETTE[4], folder, PERCENTS.map(|percent| (percent, one_friction(percent))))?,
     ])
 }
 
 pub(super) fn figure(tick: &str) -> Result<Figure, ReportError> {
     let families = families()?;
-    let [gratings, triangles, polygons, pictures] = &families;
-    let mut data = Data::new(["content", "unit", "amount", "scene_bytes", "picture_bytes", "frames", "wire_bytes"]);
-    for (family, unit) in families.iter().zip(["layers", "vertices", "vertices", "samples a side"]) {
+    let [gratings, triangles, polygons, pictures, frictions] = &families;
+    let mut data =
+        Data::new(["content", "unit", "amount", "scene_bytes", "picture_bytes", "frames", "wire_bytes", "table_bytes"]);
+    let units = ["layers", "vertices", "vertices", "samples a side", "percent of the reach"];
+    for (family, unit) in families.iter().zip(units) {
         family.rows(&mut data, unit);
     }
-    let panel = |title: &str, x: &str, amounts: f64, bytes: f64| {
-        Panel::new(title, Axis::linear(x, 0.0..amounts), Axis::linear("bytes on the wire", 0.0..bytes))
+    let panel = |title: &str, x: &str, amounts: f64, y: &str, bytes: f64| {
+        Panel::new(title, Axis::linear(x, 0.0..amounts), Axis::linear(y, 0.0..bytes))
     };
-    let mut left = panel("Gratings", "gratings", 66.0, 4_400.0);
+    let wire = "bytes on the wire";
+    let mut left = panel("Gratings", "gratings", 66.0, wire, 4_400.0);
     gratings.draw(&mut left, Mark::None);
-    let mut middle = panel("Polygons", "vertices of all polygons", 132.0, 4_400.0);
+    let mut middle = panel("Polygons", "vertices of all polygons", 132.0, wire, 4_400.0);
     triangles.draw(&mut middle, Mark::None);
     polygons.draw(&mut middle, Mark::Disc);
-    let mut right = panel("A picture", "samples along each side", 262.0, 72_000.0);
+    let mut right = panel("A picture", "samples along each side", 262.0, wire, 72_000.0);
     pictures.draw(&mut right, Mark::Square);
     right.add("without framing", Look::line(PALETTE[6], Line::Dashed), Vec::new());
+    let mut table = panel("The table", "largest friction, % of the reach", 104.0, "bytes of the table", 1_100.0);
+    frictions.draw_table(&mut table);
     Ok(Figure {
         name: "bytes-against-scene-content",
-        title: "Bytes on the wire against what is in the scene".to_owned(),
+        title: "Bytes on the wire and of the table against what is in the scene".to_owned(),
         caption: caption(&families, tick),
-        chart: Chart { panels: vec![left, middle, right], columns: 3, shared_legend: true },
+        chart: Chart { panels: vec![left, middle, right, table], columns: 2, shared_legend: true },
         csv: data.csv()?,
     })
 }
 
-fn caption(families: &[Family; 4], tick: &str) -> Vec<String> {
-    let [gratings, _, polygons, pictures] = families;
+fn caption(families: &[Family; 5], tick: &str) -> Vec<String> {
+    let [gratings, _, polygons, pictures, frictions] = families;
+    let table = |percent: usize| {
+        frictions.scenes.iter().find(|scene| scene.amount == percent).map_or(0, |scene| scene.table_bytes)
+    };
     let (scene, picture) = (gratings.largest(), pictures.largest());
     let milliseconds = |bytes: usize, baud: f64| 1e3 * bytes as f64 * BITS_PER_BYTE / baud;
     vec![
@@ -210,6 +261,15 @@ fn caption(families: &[Family; 4], tick: &str) -> Vec<String> {
              time for more than these. A sample is a byte, and a picture's size on the wire goes with its area, whatever it shows; one that a board holds already is not \
              sent again.",
             polygons.name
+        ),
+        format!(
+            "The board computes of its inverse table what a scene can ask for: {} bytes for all of the reach, {} for half of it, {} for \
+             a tenth. The table's room in RAM, {} bytes, is the same for every scene; what is saved is time when the scene is taken. It \
+             reaches down to 1 V for every scene, since the friction of a still finger is ramped away.",
+            table(100),
+            table(50),
+            table(10),
+            size_of::<InverseTable>(),
         ),
         tick.to_owned(),
     ]

@@ -7,6 +7,7 @@ use crate::scene::{Carrier, HEADER_LEN, Header, Leader, POINTS_MAX, RECORDS_MAX,
 const AUTONOMOUS: u8 = 1;
 const PREDICTION: u8 = 1 << 1;
 const LEADER_LATEST: u8 = 1 << 2;
+const LAYERS_FIXED: u8 = 1 << 3;
 
 const CARRIER_SQUARE: u8 = 0;
 const CARRIER_SINE: u8 = 1;
@@ -20,7 +21,8 @@ impl Header {
         let autonomous = if self.autonomous { AUTONOMOUS } else { 0 };
         let prediction = if self.prediction { PREDICTION } else { 0 };
         let leader = if self.leader == Leader::Latest { LEADER_LATEST } else { 0 };
-        put_u8::<3, _>(&mut b, autonomous | prediction | leader);
+        let layers_fixed = if self.layers_fixed { LAYERS_FIXED } else { 0 };
+        put_u8::<3, _>(&mut b, autonomous | prediction | leader | layers_fixed);
         put_f32::<4, _>(&mut b, self.screen_width_m);
         put_f32::<8, _>(&mut b, self.screen_height_m);
         put_f32::<12, _>(&mut b, self.finger_radius_m);
@@ -57,7 +59,7 @@ impl Header {
             return Err(SceneError::TooManyPoints { found: points });
         }
         let flags = get_u8::<3, _>(b);
-        if flags & !(AUTONOMOUS | PREDICTION | LEADER_LATEST) != 0 {
+        if flags & !(AUTONOMOUS | PREDICTION | LEADER_LATEST | LAYERS_FIXED) != 0 {
             return Err(SceneError::UnknownFlags(flags));
         }
         let carrier = match get_u8::<52, _>(b) {
@@ -82,6 +84,7 @@ impl Header {
             autonomous: flags & AUTONOMOUS != 0,
             prediction: flags & PREDICTION != 0,
             leader: if flags & LEADER_LATEST == 0 { Leader::First } else { Leader::Latest },
+            layers_fixed: flags & LAYERS_FIXED != 0,
         };
         match first_difference(b, &header.write(records, points)) {
             None => Ok((header, records, points)),

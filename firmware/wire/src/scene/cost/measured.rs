@@ -24,11 +24,15 @@ pub(super) const VIBRATION_SQUARE: u32 = 126;
 // A curve, and each of its points.
 pub(super) const SPEED: u32 = 130;
 pub(super) const SPEED_POINT: u32 = 7;
+pub(super) const STREAM: u32 = 98;
 
-// The stream's own work included.
-pub(super) const STREAM: u32 = 228;
+// The stream's own work, wherever the finger is.
+pub(super) const STREAM_ELSEWHERE: u32 = 130;
 
 // What other regions add to a rectangle.
 pub(super) const ELLIPSE: u32 = 8;
-pub(super) const POLYGON: u32 = 85;
-pub(super) const POLYGON_EDGE: u32 = 14;
+
+// A polygon, each of its edges, and what each of those adds that are level with the finger.
+pub(super) const POLYGON: u32 = 23;
+pub(super) const POLYGON_EDGE: u32 = 17;
+pub(super) const POLYGON_EDGE_LEVEL: u32 = 21;

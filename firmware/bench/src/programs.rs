@@ -1,0 +1,81 @@
+//! Random scenes that a board accepts, each played under a random finger: no tick may take more than the loader reckoned.
+//!
+//! The emulator's command line says `programs`, the pace of the touch source (`usual` or
+//! `hasty`), the first seed and how many follow. Every line that is written is a seed,
+//! the instructions of the longest tick, those that the loader reckoned, and the number of that tick.
+
+use core::str;
+
+use cortex_m_semihosting::hprintln;
+use frixel_random_scenes::{Pace, RandomFinger, RandomScene, Report};
+use frixel_render::Touch;
+use frixel_wire::message::Command;
+use frixel_wire::scene::{Layer, SCENE_MAX_LEN};
+
+use crate::count::Case;
+use crate::tick::{Bench, PING_TICKS, STREAM_TICKS};
+
+/// Ticks counted of each scene.
+const TICKS: u32 = 2_000;
+
+/// Seeds that were asked for.
+pub struct Seeds {
+    pace: Pace,
+    first: u64,
+    count: u64,
+}
+
+impl Seeds {
+    /// Reads the emulator's command line; `None` when it asks for something else.
+    pub fn of_command_line(line: &[u8]) -> Option<Self> {
+        let line = str::from_utf8(line).ok()?;
+        let mut words = line.split_ascii_whitespace().skip_while(|word| *word != "programs").skip(1);
+        let pace = match words.next()? {
+            "usual" => Pace::Usual,
+            "hasty" => Pace::Hasty,
+            _ => return None,
+        };
+        let mut number = || words.next()?.parse().ok();
+        Some(Self { pace, first: number()?, count: number()? })
+    }
+}
+
+/// Plays the scenes of all seeds.
+pub fn run(seeds: &Seeds) {
+    let mut bench = Bench::new();
+    let crc32 = bench.picture();
+    // The board sees that its arm switch is held.
+    bench.tick(None);
+    for seed in seeds.first..seeds.first + seeds.count {
+        bench.play_random(seed, seeds.pace, crc32);
+    }
+}
+
+impl Bench {
+    fn play_random(&mut self, seed: u64, pace: Pace, crc32: u32) {
+        let scene = RandomScene::new(seed, crc32);
+        let reckoned = scene.worst_tick().instructions;
+        self.play_bytes(scene.write(&mut [0; SCENE_MAX_LEN]));
+        if scene.records.iter().any(|record| matches!(record.layer, Layer::Stream { .. })) {
+            self.start_stream();
+        }
+        let mut finger = RandomFinger::new(seed, &scene.header, pace);
+        let mut case = Case::unfollowed();
+        self.tick(Some(Touch::Up));
+        for tick in 0..TICKS {
+            if tick.is_multiple_of(PING_TICKS / 2) {
+                self.host.command(Command::Ping);
+            }
+            if tick.is_multiple_of(STREAM_TICKS) {
+                self.host.stream(tick / STREAM_TICKS);
+            }
+            let touch = finger.tick().map(|report| match report {
+                Report::Down { x_m, y_m, age_ticks } => Touch::Down { x_m, y_m, age_ticks },
+                Report::Up => Touch::Up,
+            });
+            self.count(&mut case, touch);
+        }
+        let (instructions, tick) = case.worst();
+        hprintln!("{} {} {} {}", seed, instructions, reckoned, tick);
+    }
+}
