@@ -139,7 +139,8 @@ fn a_bad_day_is_the_same() {
         ];
         // From left to right, so that not too many are under the finger at once: the stream takes time everywhere.
         let band = |x_m, width_m| Region::Rectangle { x_m, y_m: 0.0, width_m, height_m: 0.08 };
-        let regions = [band(0.0, 0.035), band(0.002, 0.018), band(0.04, 0.03), band(0.0235, 0.0125), band(0.08, 0.03)];
+        let regions =
+            [band(0.0, 0.0745), band(0.002, 0.018), band(0.0755, 0.0445), band(0.0235, 0.0125), band(0.05, 0.024)];
         let records: Vec<Record> = layers
             .into_iter()
             .zip(regions)
