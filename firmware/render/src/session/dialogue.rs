@@ -7,7 +7,9 @@ use frixel_wire::message::{
     TELEMETRY_PERIOD_MIN_TICKS,
 };
 use frixel_wire::payload::{ParseError, Payload};
-use frixel_wire::scene::{HEADER_LEN, Layer, POINT_LEN, POINTS_MAX, RECORD_LEN, RECORDS_MAX, SCENE_MAX_LEN, Scene};
+use frixel_wire::scene::{
+    HEADER_LEN, Layer, POINT_LEN, POINTS_MAX, RECORD_LEN, RECORDS_MAX, SCENE_MAX_LEN, Scene, SceneError,
+};
 use heapless::{Deque, Vec};
 
 use super::fingers::{Fingers, ONLY_FINGER};
@@ -446,7 +448,7 @@ impl<'a> Dialogue<'a> {
             return Err(Refusal::CrcMismatch { expected: crc32, found });
         }
         self.room_for_order()?;
-        let scene = Scene::parse(bytes).map_err(Refusal::Scene)?;
+        let scene = Scene::parse(bytes).map_err(not_a_scene)?;
         let spare = self.spare.take().ok_or(Refusal::Busy)?;
         if let Err(refusal) = spare.load(&scene, &self.board, &self.directory) {
             self.spare = Some(spare);
@@ -470,6 +472,11 @@ impl<'a> Dialogue<'a> {
     }
 }
 
+/// Tells what this firmware was built without from what nobody knows.
+fn not_a_scene(error: SceneError) -> Refusal {
+    error.left_out().map_or(Refusal::Scene(error), |layer| Refusal::LeftOut { layer })
+}
+
 /// The piece of a fault's text that begins at `offset`.
 fn fault_text(text: &[u8], offset: u8) -> Accepted {
     let rest = text.get(..text.len().min(FAULT_TEXT_MAX_LEN)).and_then(|text| text.get(usize::from(offset)..));
@@ -483,6 +490,9 @@ fn fault_text(text: &[u8], offset: u8) -> Accepted {
 }
 
 fn bitmaps_of(scene: &Scene) -> BitmapNames {
+    if !cfg!(feature = "bitmap") {
+        return BitmapNames::new();
+    }
     scene
         .records()
         .filter_map(|record| match record.layer {
