@@ -4,16 +4,17 @@ use core::num::NonZeroU32;
 
 use super::TableError;
 use super::float::{Grid, round_down};
-use crate::LoadedContact;
+use crate::double_single::DoubleSingle;
+use crate::{Finger, LoadedContact, Real};
 
 /// Rows in a table: 31.5 octaves, enough for 200 V down to 1 V where friction grows as the fourth power of the voltage.
 const ROWS: usize = 126;
 /// Four rows an octave of 2^23 patterns.
 const DENSITY: NonZeroU32 = NonZeroU32::new(4 << 9).unwrap();
 /// The table reaches at least down to this voltage.
-const KNEE_V_RMS: f64 = 1.0;
+const KNEE_V_RMS: f32 = 1.0;
 /// Or to this part of the largest voltage, when that is lower.
-const KNEE_PART: f64 = 1.0 / 200.0;
+const KNEE_PART: f32 = 1.0 / 200.0;
 
 /// Piecewise cubic from electric friction to rms voltage for one contact under one load; 2,032 bytes.
 ///
@@ -48,13 +49,35 @@ impl InverseTable {
     /// A table for `contact`, up to `voltage_max_v_rms`: some 250 evaluations of the closed form for the example finger,
     /// 380 at most.
     pub fn build(contact: &LoadedContact<f64>, voltage_max_v_rms: f64) -> Result<Self, TableError> {
-        let largest = round_down(voltage_max_v_rms);
-        if !(voltage_max_v_rms.is_finite() && largest > 0.0) {
+        if !(voltage_max_v_rms.is_finite() && round_down(voltage_max_v_rms) > 0.0) {
             return Err(TableError::Voltage);
         }
-        let knee_v_rms = KNEE_V_RMS.min(voltage_max_v_rms * KNEE_PART);
-        let knee_n = round_down(contact.electric_friction_n(knee_v_rms));
-        let friction_max_n = round_down(contact.electric_friction_n(f64::from(largest)));
+        Self::in_double_single(&contact.in_double_single(), DoubleSingle::from_f64(voltage_max_v_rms))
+    }
+
+    /// The same from what a board is told: finger, coating (its effective gap in metres), normal load in newtons and largest
+    /// voltage in volts rms. Nothing of it needs `f64`.
+    pub fn of_finger(
+        finger: &Finger<f32>,
+        gap_m: f32,
+        normal_load_n: f32,
+        voltage_max_v_rms: f32,
+    ) -> Result<Self, TableError> {
+        if !(voltage_max_v_rms.is_finite() && voltage_max_v_rms > 0.0) {
+            return Err(TableError::Voltage);
+        }
+        let contact = LoadedContact::of_finger(finger, gap_m, normal_load_n).ok_or(TableError::Contact)?;
+        Self::in_double_single(&contact, DoubleSingle::from(voltage_max_v_rms))
+    }
+
+    fn in_double_single(
+        contact: &LoadedContact<DoubleSingle>,
+        voltage_max_v_rms: DoubleSingle,
+    ) -> Result<Self, TableError> {
+        let largest = round_down(voltage_max_v_rms);
+        let knee_v_rms = KNEE_V_RMS.min(largest * KNEE_PART);
+        let knee_n = round_down(contact.electric_friction_n(DoubleSingle::from(knee_v_rms)));
+        let friction_max_n = round_down(contact.electric_friction_n(DoubleSingle::from(largest)));
         if !(knee_n >= f32::MIN_POSITIVE && friction_max_n < f32::MAX) {
             return Err(TableError::Unrepresentable);
         }
@@ -63,8 +86,8 @@ impl InverseTable {
         if knee_row >= ROWS {
             return Err(TableError::TooManySegments);
         }
-        let knee_start_n = grid.start_n(knee_row);
-        let line = [0.0, (contact.voltage_v_rms(knee_start_n) / knee_start_n) as f32, 0.0, 0.0];
+        let knee_start = DoubleSingle::from(grid.start_n(knee_row));
+        let line = [0.0, (contact.voltage_v_rms(knee_start) / knee_start).to_f32(), 0.0, 0.0];
         let mut rows = [line; ROWS];
         grid.fill(contact, &mut rows, knee_row)?;
         Ok(Self { grid, rows })
