@@ -33,7 +33,9 @@ const BURST_MAX_S: f32 = 60.0;
 const SPEED_MAX_M_PER_S: f32 = 10.0;
 const SPEED_STEP_MIN_M_PER_S: f32 = 1e-5;
 
+// Code of its own: nearly every line below calls it.
 /// Takes a number when it is from `min` to `max`; not-a-number never is.
+#[inline(never)]
 pub(crate) fn within(field: ConfigField, found: f32, min: f32, max: f32, layer: u8) -> Result<(), ConfigRefusal> {
     if found >= min && found <= max { Ok(()) } else { Err(ConfigRefusal { field, found, min, max, layer }) }
 }

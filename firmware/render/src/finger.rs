@@ -239,6 +239,6 @@ impl Finger {
     /// Its speed as of the last report, in m/s.
     pub(crate) fn speed_m_per_s(&self) -> f32 {
         let [x, y] = self.velocity_m_per_s;
-        libm::sqrtf(x * x + y * y)
+        crate::root::square_root(x * x + y * y)
     }
 }

@@ -317,6 +317,7 @@ impl<'a> Dialogue<'a> {
         if self.orders.len() + ORDERS_KEPT >= ORDERS_MAX { Err(Refusal::Busy) } else { Ok(()) }
     }
 
+    #[inline(never)]
     pub(super) fn send_order(&mut self, order: Order<'a>) -> Result<(), Refusal> {
         if !matches!(order, Order::Stop | Order::Disarm) {
             self.room_for_order()?;
@@ -434,7 +435,9 @@ impl<'a> Dialogue<'a> {
 
     /// Leaves no trace of an upload under way.
     fn drop_upload(&mut self) {
-        if let Some(Upload { destination: Destination::Bitmap(unfinished), .. }) = self.upload.take() {
+        if let Some(Upload { destination: Destination::Bitmap(unfinished), .. }) = self.upload.take()
+            && cfg!(feature = "bitmap")
+        {
             self.directory.retain(|bitmap| bitmap.crc32 != unfinished.crc32);
         }
     }

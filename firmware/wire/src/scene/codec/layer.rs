@@ -153,7 +153,9 @@ fn put<const N: usize>(b: &mut [u8; RECORD_LEN], kind: u8, parameters: [f32; N])
     put_u8::<0, _>(b, kind);
     let places = b.get_mut(PARAMETERS_AT..).into_iter().flat_map(|places| places.chunks_exact_mut(4));
     for (place, parameter) in places.zip(parameters) {
-        place.copy_from_slice(&parameter.to_le_bytes());
+        for (to, from) in place.iter_mut().zip(parameter.to_le_bytes()) {
+            *to = from;
+        }
     }
 }
 
