@@ -100,7 +100,7 @@ impl Div for DoubleSingle {
 }
 
 impl PartialOrd for DoubleSingle {
-    #[inline]
+    #[inline(never)]
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         match self.high.partial_cmp(&other.high) {
             Some(Ordering::Equal) => self.low.partial_cmp(&other.low),

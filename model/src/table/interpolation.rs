@@ -1,9 +1,11 @@
 //! Polynomials through a row's points.
 
+use core::mem::replace;
+
 use crate::{LoadedContact, Real};
 
-/// Where the points lie between -1 and 1: the ends, and what makes the product of distances least with them.
-const INNER: f64 = core::f64::consts::SQRT_2 - 1.0;
+/// Where the points lie between -1 and 1: the ends, and what makes the product of distances least with them, to 1e-8.
+const INNER: f32 = core::f32::consts::SQRT_2 - 1.0;
 
 /// A point of the curve: friction and voltage.
 pub(super) type Point<T> = (T, T);
@@ -18,14 +20,15 @@ pub(super) fn polynomial<T: Real, const C: usize>(
     end: Point<T>,
     unit: f32,
 ) -> [f32; C] {
-    let scaled = points::<T, C>(contact, start, end).map(|(x, v)| (x / T::from(unit), v));
-    let mut coefficients = through(&scaled).map(Real::to_f32);
-    for power in 1..C {
-        for coefficient in coefficients.iter_mut().skip(power) {
-            *coefficient /= unit;
-        }
+    let mut points = points::<T, C>(contact, start, end);
+    for (x, _) in &mut points {
+        *x = *x / T::from(unit);
     }
-    coefficients
+    let mut row = [0.0; C];
+    for (power, (to, coefficient)) in row.iter_mut().zip(through(&points)).enumerate() {
+        *to = (0..power).fold(coefficient.to_f32(), |scaled, _| scaled / unit);
+    }
+    row
 }
 
 /// The same in the variable that runs from 0 at `start` to 1 at `end`.
@@ -39,50 +42,49 @@ pub(super) fn local_polynomial<const C: usize>(
 }
 
 fn points<T: Real, const C: usize>(contact: &LoadedContact<T>, start: Point<T>, end: Point<T>) -> [Point<T>; C] {
-    let a_half = T::from(0.5);
-    let (middle, half) = (a_half * (start.0 + end.0), a_half * (end.0 - start.0));
-    let inner = |at: T| {
-        let x = middle + at * half;
-        (x, contact.voltage_v_rms(x))
+    let (middle, half) = (T::from(0.5) * (start.0 + end.0), T::from(0.5) * (end.0 - start.0));
+    let inner: &[f32] = match C {
+        4 => &[-INNER, INNER],
+        3 => &[0.0],
+        _ => &[],
     };
-    let mut index = 0;
-    [(); C].map(|()| {
-        index += 1;
-        match index {
-            1 => start,
-            _ if index == C => end,
-            2 if C == 3 => inner(T::ZERO),
-            2 => inner(-T::from_f64(INNER)),
-            _ => inner(T::from_f64(INNER)),
-        }
-    })
+    let mut points = [start; C];
+    for (point, at) in points.iter_mut().skip(1).zip(inner) {
+        let x = middle + T::from(*at) * half;
+        *point = (x, contact.voltage_v_rms(x));
+    }
+    if let Some(last) = points.last_mut() {
+        *last = end;
+    }
+    points
 }
 
-/// Lagrange's form, multiplied out.
+/// Newton's form, multiplied out from its innermost bracket.
 fn through<T: Real, const C: usize>(points: &[Point<T>; C]) -> [T; C] {
-    let mut sum = [T::ZERO; C];
-    for (index, &(x, v)) in points.iter().enumerate() {
-        let mut basis = [T::ZERO; C];
-        if let Some(constant) = basis.first_mut() {
-            *constant = v;
-        }
-        for (_, &(root, _)) in points.iter().enumerate().filter(|&(other, _)| other != index) {
-            times_linear(&mut basis, root);
-            for coefficient in &mut basis {
-                *coefficient = *coefficient / (x - root);
-            }
-        }
-        for (total, coefficient) in sum.iter_mut().zip(basis) {
-            *total = *total + coefficient;
+    let differences = divided_differences(points);
+    let mut polynomial = [T::ZERO; C];
+    for (&(root, _), difference) in points.iter().rev().zip(differences.iter().rev()) {
+        // The polynomial so far times `x - root`, and the difference.
+        let mut below = *difference;
+        for coefficient in &mut polynomial {
+            (below, *coefficient) = (*coefficient, below - root * *coefficient);
         }
     }
-    sum
+    polynomial
 }
 
-/// Multiplies a polynomial by `x - root`.
-fn times_linear<T: Real>(polynomial: &mut [T], root: T) {
-    let mut below = T::ZERO;
-    for coefficient in polynomial {
-        (below, *coefficient) = (*coefficient, below - root * *coefficient);
+/// Of the first point, the first two, and so on to all of them.
+fn divided_differences<T: Real, const C: usize>(points: &[Point<T>; C]) -> [T; C] {
+    let mut differences = [T::ZERO; C];
+    for (difference, (_, v)) in differences.iter_mut().zip(points) {
+        *difference = *v;
     }
+    for order in 1..C {
+        let mut values = differences.iter_mut().skip(order - 1);
+        let Some(mut before) = values.next().map(|first| *first) else { continue };
+        for (difference, (last, first)) in values.zip(points.iter().skip(order).zip(points)) {
+            before = replace(difference, (*difference - before) / (last.0 - first.0));
+        }
+    }
+    differences
 }

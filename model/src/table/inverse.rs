@@ -57,6 +57,7 @@ impl InverseTable {
 
     /// The same from what a board is told: finger, coating (its effective gap in metres), normal load in newtons and largest
     /// voltage in volts rms. Nothing of it needs `f64`.
+    #[inline(never)]
     pub fn of_finger(
         finger: &Finger<f32>,
         gap_m: f32,
