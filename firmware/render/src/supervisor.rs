@@ -37,7 +37,7 @@ impl Monitor {
     fn new(board: &Board) -> Self {
         Self {
             expected_v: 0.0,
-            step: 1.0 - libm::expf(-board.tick_period_s() / board.limits.edge_time_constant_s),
+            step: lag_step(board.tick_period_s() / board.limits.edge_time_constant_s),
             floor_v: MONITOR_FLOOR * board.limits.full_scale_v_peak,
             wrong_ticks: 0,
         }
@@ -59,6 +59,17 @@ impl Monitor {
         self.wrong_ticks = if wrong { self.wrong_ticks.saturating_add(1) } else { self.wrong_ticks.saturating_sub(1) };
         self.wrong_ticks >= MONITOR_WRONG_TICKS
     }
+}
+
+/// `1 - exp(-x)`, what a first-order lag follows in `x` of its time constants, within 1e-5 for `x` up to one and 1e-3 for any
+/// above zero: 64 steps of the trapezoidal rule. `libm::expf` is five times the code.
+fn lag_step(x: f32) -> f32 {
+    let half_step = (x / 128.0).min(1.0);
+    let mut left = (1.0 - half_step) / (1.0 + half_step);
+    for _ in 0..6 {
+        left *= left;
+    }
+    1.0 - left
 }
 
 impl Supervisor {
