@@ -29,7 +29,7 @@ const PARAMETERS_AT: usize = 24;
 impl Layer {
     pub(super) fn write(&self, b: &mut [u8; RECORD_LEN]) {
         match *self {
-            Self::Constant { electric_friction_n } => put(b, KIND_CONSTANT, [electric_friction_n]),
+            Self::Constant { electric_friction_n } => put(b, KIND_CONSTANT, &[electric_friction_n]),
             Self::Grating { wave, cycles_per_m_x, cycles_per_m_y, phase_turns, trough_n, crest_n }
                 if cfg!(feature = "grating") =>
             {
@@ -40,28 +40,28 @@ impl Layer {
                     Wave::Saw => (WAVE_SAW, 0.0),
                 };
                 put_u8::<FORM_AT, _>(b, form);
-                put(b, KIND_GRATING, [cycles_per_m_x, cycles_per_m_y, phase_turns, trough_n, crest_n, duty]);
+                put(b, KIND_GRATING, &[cycles_per_m_x, cycles_per_m_y, phase_turns, trough_n, crest_n, duty]);
             }
             Self::Bitmap { crc32, x_m, y_m, pitch_m, black_n, white_n, pitch_y_m, angle_turns, tiled }
                 if cfg!(feature = "bitmap") =>
             {
                 put_u8::<FORM_AT, _>(b, if tiled { BITMAP_TILED } else { BITMAP_HELD });
                 put_u32::<52, _>(b, crc32);
-                put(b, KIND_BITMAP, [x_m, y_m, pitch_m, black_n, white_n, pitch_y_m, angle_turns]);
+                put(b, KIND_BITMAP, &[x_m, y_m, pitch_m, black_n, white_n, pitch_y_m, angle_turns]);
             }
             Self::Noise { seed, wavelength_min_m, wavelength_max_m, low_n, high_n } if cfg!(feature = "noise") => {
                 put_u32::<52, _>(b, seed);
-                put(b, KIND_NOISE, [wavelength_min_m, wavelength_max_m, low_n, high_n]);
+                put(b, KIND_NOISE, &[wavelength_min_m, wavelength_max_m, low_n, high_n]);
             }
             Self::Edge { x_m, y_m, angle_turns, width_m, level_n, ridge_n, click: Click { height_n, decay_s } }
                 if cfg!(feature = "edge") =>
             {
-                put(b, KIND_EDGE, [x_m, y_m, angle_turns, width_m, level_n, ridge_n, height_n, decay_s]);
+                put(b, KIND_EDGE, &[x_m, y_m, angle_turns, width_m, level_n, ridge_n, height_n, decay_s]);
             }
             Self::Button { rim_width_m, rim_n, face_n, click: Click { height_n, decay_s } }
                 if cfg!(feature = "edge") =>
             {
-                put(b, KIND_BUTTON, [rim_width_m, rim_n, face_n, height_n, decay_s]);
+                put(b, KIND_BUTTON, &[rim_width_m, rim_n, face_n, height_n, decay_s]);
             }
             Self::Vibration { beat, frequency_hz, low_n, high_n, burst: Burst { period_s, on_s, ramp_s } }
                 if cfg!(feature = "vibration") =>
@@ -71,14 +71,14 @@ impl Layer {
                     Beat::Square => WAVE_SQUARE,
                 };
                 put_u8::<FORM_AT, _>(b, form);
-                put(b, KIND_VIBRATION, [frequency_hz, low_n, high_n, period_s, on_s, ramp_s]);
+                put(b, KIND_VIBRATION, &[frequency_hz, low_n, high_n, period_s, on_s, ramp_s]);
             }
             Self::Speed { first, count } if cfg!(feature = "speed") => {
                 put_u8::<52, _>(b, first);
                 put_u8::<53, _>(b, count);
-                put(b, KIND_SPEED, []);
+                put(b, KIND_SPEED, &[]);
             }
-            Self::Stream { low_n, high_n } if cfg!(feature = "stream") => put(b, KIND_STREAM, [low_n, high_n]),
+            Self::Stream { low_n, high_n } if cfg!(feature = "stream") => put(b, KIND_STREAM, &[low_n, high_n]),
             // Left out, and never read: its kind stays zero, which is none.
             _ => {}
         }
@@ -149,13 +149,11 @@ impl Layer {
 }
 
 /// Puts kind and parameters.
-fn put<const N: usize>(b: &mut [u8; RECORD_LEN], kind: u8, parameters: [f32; N]) {
+fn put(b: &mut [u8; RECORD_LEN], kind: u8, parameters: &[f32]) {
     put_u8::<0, _>(b, kind);
-    let places = b.get_mut(PARAMETERS_AT..).into_iter().flat_map(|places| places.chunks_exact_mut(4));
-    for (place, parameter) in places.zip(parameters) {
-        for (to, from) in place.iter_mut().zip(parameter.to_le_bytes()) {
-            *to = from;
-        }
+    let (places, _) = b.get_mut(PARAMETERS_AT..).unwrap_or_default().as_chunks_mut();
+    for (place, parameter) in places.iter_mut().zip(parameters) {
+        *place = parameter.to_le_bytes();
     }
 }
 
