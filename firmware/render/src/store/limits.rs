@@ -36,9 +36,8 @@ pub fn read_limits(bytes: &[u8; LIMITS_LEN], limits: &BoardLimits) -> Option<Boa
         current_max_a_peak: numbers.next()?,
         ..*limits
     };
-    let plausible = plausible
-        && kept.voltage_max_v_peak <= kept.full_scale_v_peak
-        && kept.voltage_max_v_peak <= VOLTAGE_MAX_V_PEAK;
+    let plausible =
+        plausible && kept.voltage_max_v_peak <= kept.full_scale_v_peak && kept.voltage_max_v_peak <= VOLTAGE_MAX_V_PEAK;
     (u32::from_le_bytes(*version) == VERSION && plausible).then_some(kept)
 }
 

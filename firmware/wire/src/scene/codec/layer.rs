@@ -27,9 +27,25 @@ const FORM_AT: usize = 3;
 const PARAMETERS_AT: usize = 24;
 
 impl Layer {
+    /// The kind's number, which is all that is written of a kind whose feature is off.
+    const fn kind(&self) -> u8 {
+        match self {
+            Self::Constant { .. } => KIND_CONSTANT,
+            Self::Grating { .. } => KIND_GRATING,
+            Self::Bitmap { .. } => KIND_BITMAP,
+            Self::Noise { .. } => KIND_NOISE,
+            Self::Edge { .. } => KIND_EDGE,
+            Self::Button { .. } => KIND_BUTTON,
+            Self::Vibration { .. } => KIND_VIBRATION,
+            Self::Speed { .. } => KIND_SPEED,
+            Self::Stream { .. } => KIND_STREAM,
+        }
+    }
+
     pub(super) fn write(&self, b: &mut [u8; RECORD_LEN]) {
+        put_u8::<0, _>(b, self.kind());
         match *self {
-            Self::Constant { electric_friction_n } => put(b, KIND_CONSTANT, &[electric_friction_n]),
+            Self::Constant { electric_friction_n } => put(b, &[electric_friction_n]),
             Self::Grating { wave, cycles_per_m_x, cycles_per_m_y, phase_turns, trough_n, crest_n }
                 if cfg!(feature = "grating") =>
             {
@@ -40,28 +56,28 @@ impl Layer {
                     Wave::Saw => (WAVE_SAW, 0.0),
                 };
                 put_u8::<FORM_AT, _>(b, form);
-                put(b, KIND_GRATING, &[cycles_per_m_x, cycles_per_m_y, phase_turns, trough_n, crest_n, duty]);
+                put(b, &[cycles_per_m_x, cycles_per_m_y, phase_turns, trough_n, crest_n, duty]);
             }
             Self::Bitmap { crc32, x_m, y_m, pitch_m, black_n, white_n, pitch_y_m, angle_turns, tiled }
                 if cfg!(feature = "bitmap") =>
             {
                 put_u8::<FORM_AT, _>(b, if tiled { BITMAP_TILED } else { BITMAP_HELD });
                 put_u32::<52, _>(b, crc32);
-                put(b, KIND_BITMAP, &[x_m, y_m, pitch_m, black_n, white_n, pitch_y_m, angle_turns]);
+                put(b, &[x_m, y_m, pitch_m, black_n, white_n, pitch_y_m, angle_turns]);
             }
             Self::Noise { seed, wavelength_min_m, wavelength_max_m, low_n, high_n } if cfg!(feature = "noise") => {
                 put_u32::<52, _>(b, seed);
-                put(b, KIND_NOISE, &[wavelength_min_m, wavelength_max_m, low_n, high_n]);
+                put(b, &[wavelength_min_m, wavelength_max_m, low_n, high_n]);
             }
             Self::Edge { x_m, y_m, angle_turns, width_m, level_n, ridge_n, click: Click { height_n, decay_s } }
                 if cfg!(feature = "edge") =>
             {
-                put(b, KIND_EDGE, &[x_m, y_m, angle_turns, width_m, level_n, ridge_n, height_n, decay_s]);
+                put(b, &[x_m, y_m, angle_turns, width_m, level_n, ridge_n, height_n, decay_s]);
             }
             Self::Button { rim_width_m, rim_n, face_n, click: Click { height_n, decay_s } }
                 if cfg!(feature = "edge") =>
             {
-                put(b, KIND_BUTTON, &[rim_width_m, rim_n, face_n, height_n, decay_s]);
+                put(b, &[rim_width_m, rim_n, face_n, height_n, decay_s]);
             }
             Self::Vibration { beat, frequency_hz, low_n, high_n, burst: Burst { period_s, on_s, ramp_s } }
                 if cfg!(feature = "vibration") =>
@@ -71,15 +87,13 @@ impl Layer {
                     Beat::Square => WAVE_SQUARE,
                 };
                 put_u8::<FORM_AT, _>(b, form);
-                put(b, KIND_VIBRATION, &[frequency_hz, low_n, high_n, period_s, on_s, ramp_s]);
+                put(b, &[frequency_hz, low_n, high_n, period_s, on_s, ramp_s]);
             }
             Self::Speed { first, count } if cfg!(feature = "speed") => {
                 put_u8::<52, _>(b, first);
                 put_u8::<53, _>(b, count);
-                put(b, KIND_SPEED, &[]);
             }
-            Self::Stream { low_n, high_n } if cfg!(feature = "stream") => put(b, KIND_STREAM, &[low_n, high_n]),
-            // Left out, and never read: its kind stays zero, which is none.
+            Self::Stream { low_n, high_n } if cfg!(feature = "stream") => put(b, &[low_n, high_n]),
             _ => {}
         }
     }
@@ -148,9 +162,8 @@ impl Layer {
     }
 }
 
-/// Puts kind and parameters.
-fn put(b: &mut [u8; RECORD_LEN], kind: u8, parameters: &[f32]) {
-    put_u8::<0, _>(b, kind);
+/// Puts the parameters that are `f32`.
+fn put(b: &mut [u8; RECORD_LEN], parameters: &[f32]) {
     let (places, _) = b.get_mut(PARAMETERS_AT..).unwrap_or_default().as_chunks_mut();
     for (place, parameter) in places.iter_mut().zip(parameters) {
         *place = parameter.to_le_bytes();

@@ -27,8 +27,8 @@ impl Region {
                 put_u8::<4, _>(b, first);
                 put_u8::<5, _>(b, count);
             }
-            // Left out, and never read.
-            Self::Polygon { .. } => {}
+            // Left out: nobody reads more of it.
+            Self::Polygon { .. } => put_u8::<REGION_AT, _>(b, REGION_POLYGON),
         }
     }
 
