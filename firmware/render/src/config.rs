@@ -72,7 +72,6 @@ pub(crate) fn check_record(record: &Record, scene: &Scene, layer: u8) -> Result<
 
 fn check_region(region: Region, scene: &Scene, layer: u8) -> Result<(), ConfigRefusal> {
     match region {
-        Region::Screen => Ok(()),
         Region::Rectangle { x_m, y_m, width_m, height_m } | Region::Ellipse { x_m, y_m, width_m, height_m } => {
             lengths(ConfigField::Region, [x_m, y_m], layer)?;
             sizes(ConfigField::Region, [width_m, height_m], layer)
@@ -80,8 +79,8 @@ fn check_region(region: Region, scene: &Scene, layer: u8) -> Result<(), ConfigRe
         Region::Polygon { first, count } if cfg!(feature = "polygon") => {
             points(scene, first, count).try_for_each(|vertex| lengths(ConfigField::Vertex, [vertex.x, vertex.y], layer))
         }
-        // Left out: refused when it is read.
-        Region::Polygon { .. } => Ok(()),
+        // A polygon that is left out is refused when it is read.
+        Region::Screen | Region::Polygon { .. } => Ok(()),
     }
 }
 

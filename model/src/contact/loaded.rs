@@ -92,7 +92,7 @@ impl LoadedContact<DoubleSingle> {
     /// As [`Contact::new`] and [`Contact::under_load`] make it, from numbers that a board is told; `None` where they refuse.
     pub(crate) fn of_finger(finger: &Finger<f32>, gap_m: f32, normal_load_n: f32) -> Option<Self> {
         let Finger { radius_m, stiffness_pa_per_m, friction_coefficient } = *finger;
-        let in_range = |value: f32| value >= f32::MIN_POSITIVE && value <= f32::MAX;
+        let in_range = |value: f32| (f32::MIN_POSITIVE..=f32::MAX).contains(&value);
         let given = [radius_m, stiffness_pa_per_m, friction_coefficient, gap_m];
         if !(given.into_iter().all(in_range) && normal_load_n >= 0.0) {
             return None;
