@@ -167,8 +167,8 @@ impl<'a> Rig<'a> {
             self.journal.as_ref().map(|_| arrived.iter().copied().take(TICK_BYTES_MAX).collect::<TickBytes>());
         if !arrived.is_empty() {
             self.session.receive(arrived, &self.status);
-            self.obey();
         }
+        self.obey();
         let sense: Sense = self.world.sense();
         let drive = self.ticker.tick(&sense);
         let felt = self.world.apply(drive);
@@ -194,7 +194,6 @@ impl<'a> Rig<'a> {
                 self.put_scenes_finger_on();
             }
         }
-        self.status = self.ticker.status();
     }
 
     /// The finger in the world is the scene's, unless a scenario says otherwise.

@@ -166,9 +166,6 @@ fn run(
     let begin = Instant::now();
     let mut taking_rows = Duration::ZERO;
     let mut device = Device::connect(SimLink::new(rig, recorder))?;
-    if feed.is_some() {
-        device.link_mut().recorder_mut().expect_stream();
-    }
     start(&mut device, program, &mut |progress| on_stage(Stage::Upload(progress)))?;
     if let Some(feed) = &mut feed {
         feed.start(&mut device)?;

@@ -76,6 +76,44 @@ impl Files {
     }
 }
 
+#[test]
+fn mistakes_are_json_where_that_is_asked_for() {
+    let files = Files::new();
+    let check = |scene: &str| {
+        let output = frixel(&["scene", "check", scene, "--json"]);
+        assert_eq!(output.status.code(), Some(1));
+        serde_json::from_slice::<Value>(&output.stdout).unwrap()
+    };
+    let scene = files.scene(
+        "[[layer]]\nkind = \"gratin\"\nwavelenght_mm = 2 # wide\nlow_n = 0\nhigh_n = 0.01\n\
+         [[layer]]\nkind = \"constant\"\nregion = { x_mm = 0, y_mm = -3000, width_mm = 3, height_mm = 3 }\n",
+    );
+    let json = check(&scene);
+    assert_eq!((json["file"].as_str(), json["unreadable"].is_null()), (Some(scene.as_str()), true));
+    let mistakes: Vec<_> = json["mistakes"].as_array().unwrap().iter().collect();
+    let found: Vec<_> = mistakes
+        .iter()
+        .map(|mistake| {
+            let number = |key: &str| mistake[key].as_u64().unwrap();
+            (number("line"), number("column"), mistake["text"].as_str().unwrap(), mistake["nearest"].as_str())
+        })
+        .collect();
+    assert_eq!(
+        found,
+        [
+            (18, 8, "\"gratin\"", Some("grating")),
+            (19, 1, "wavelenght_mm", Some("wavelength_mm")),
+            (22, 1, "[[layer]]", None),
+            (24, 29, "-3000", None),
+        ]
+    );
+    assert_eq!(mistakes[2]["message"], "layer 2 (constant) has no `friction_n`: add it");
+
+    let missing = check(&files.path("none.toml"));
+    assert!(missing["unreadable"].as_str().is_some_and(|reason| !reason.is_empty()), "{missing}");
+    assert_eq!(missing["mistakes"], Value::Array(Vec::new()));
+}
+
 fn constant(rest: &str) -> String {
     format!("[[layer]]\nkind = \"constant\"\n{rest}\n")
 }
@@ -226,7 +264,8 @@ fn wrong_input_is_said_as_play_says_it() {
     for scene in [&wrong, &empty, &binary, &missing, &folder] {
         let message = refused(&["scene", "check", scene]);
         assert!(message.starts_with(&format!("frixel: {scene}:")), "{message}");
-        assert_eq!(message, refused(&["scene", "check", scene, "--json", "--board"]));
+        let json = frixel(&["scene", "check", scene, "--json", "--board"]);
+        assert_eq!((json.status.code(), String::from_utf8(json.stderr).unwrap()), (Some(1), message.clone()));
         assert_eq!(message, refused(&["scene", "preview", scene, "-o", &files.path("map.png")]));
         assert_eq!(message, refused(&["play", scene, "--out", &files.path("out")]));
     }

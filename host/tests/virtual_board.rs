@@ -12,11 +12,14 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::sleep;
 use std::time::Duration;
 
+use frixel::device::{DEFAULT_BAUD, Device, SerialLink};
+use frixel::player;
+use frixel::scene::{Scene, compile};
 use serialport::{SerialPort, TTYPort};
 use tempfile::TempDir;
 
-/// Host timeout of the scenes here, s.
-const HOST_TIMEOUT_S: f64 = 0.25;
+/// Host timeout of the scene here, s: the longest that there is, for on a busy machine pings are late.
+const HOST_TIMEOUT_S: f64 = 1.0;
 const NAP: Duration = Duration::from_millis(5);
 /// A minute of naps: whatever is waited for longer has hung.
 const NAPS_MAX: u32 = 12_000;
@@ -25,8 +28,15 @@ fn frixel() -> Command {
     Command::new(env!("CARGO_BIN_EXE_frixel"))
 }
 
-fn scene() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/brick.toml")
+/// The brick with this host timeout, in a folder.
+fn scene(folder: &Path) -> PathBuf {
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
+    let brick = fs::read_to_string(scenes.join("brick.toml")).unwrap();
+    let path = folder.join("brick.toml");
+    let picture = scenes.join("textures/brick.png").display().to_string();
+    let timeout = format!("[drive]\nhost_timeout_ms = {}\n", 1e3 * HOST_TIMEOUT_S);
+    fs::write(&path, brick.replace("textures/brick.png", &picture).replace("[drive]\n", &timeout)).unwrap();
+    path
 }
 
 /// Clients that are killed.
@@ -42,10 +52,10 @@ fn turn() -> MutexGuard<'static, ()> {
 }
 
 /// A client in a process of its own.
-fn client(port: &str, seconds: &str, folder: &Path) -> Child {
+fn client(scene: &Path, port: &str, seconds: &str, folder: &Path) -> Child {
     frixel()
         .arg("play")
-        .arg(scene())
+        .arg(scene)
         .args(["--port", port, "--seconds", seconds, "--json", "--out"])
         .arg(folder)
         .stdout(Stdio::piped())
@@ -69,6 +79,8 @@ struct VirtualBoard {
     process: Child,
     port: String,
     folder: TempDir,
+    /// What clients play.
+    scene: PathBuf,
 }
 
 impl VirtualBoard {
@@ -78,7 +90,8 @@ impl VirtualBoard {
         let mut line = String::new();
         BufReader::new(process.stdout.take().unwrap()).read_line(&mut line).unwrap();
         let port = line.trim().strip_prefix("port: ").unwrap().to_owned();
-        Self { process, port, folder }
+        let scene = scene(folder.path());
+        Self { process, port, folder, scene }
     }
 
     /// Ends it as a person would, and reads what it wrote.
@@ -100,7 +113,7 @@ impl VirtualBoard {
     }
 
     fn play(&self, seconds: &str, folder: &Path) -> Output {
-        client(&self.port, seconds, folder).wait_with_output().unwrap()
+        client(&self.scene, &self.port, seconds, folder).wait_with_output().unwrap()
     }
 }
 
@@ -247,7 +260,7 @@ fn a_client_killed_at_any_byte_leaves_the_output_at_zero_and_the_next_one_welcom
             assert!(board.play("0.1", folder.path()).status.success(), "nothing dead is in the way of an upload");
         }
         let mut tap = Tap::new(&board);
-        let mut process = client(&tap.path, "600", folder.path());
+        let mut process = client(&board.scene, &tap.path, "600", folder.path());
         // Once the board holds the picture, some 300 bytes lead to playing, and pings follow.
         let count = if kill < UPLOADS_KILLED { lcg(&mut random) % 66_000 } else { 300 + lcg(&mut random) % 300 };
         tap.pass(&mut process, count);
@@ -269,12 +282,27 @@ fn a_client_killed_at_any_byte_leaves_the_output_at_zero_and_the_next_one_welcom
     assert!(killed_while_playing >= 3, "only {killed_while_playing} clients died while the output was driven");
 }
 
+/// The program is there, and makes no call any more.
+#[test]
+fn a_program_that_hangs_does_not_keep_the_board_playing() {
+    let _turn = turn();
+    let board = VirtualBoard::start();
+    let mut device = Device::connect(SerialLink::open(&board.port, DEFAULT_BAUD).unwrap()).unwrap();
+    let hello = *device.hello();
+    let program = compile(&Scene::load(&board.scene).unwrap(), &hello.limits, hello.tick_hz).unwrap();
+    player::start(&mut device, &program, &mut |_| {}).unwrap();
+    let has = |name: &str| board.events().iter().any(|event| event.name == name);
+    until("the board plays", || has("active"));
+    until("the board lets go of a program that hangs", || board.is_disarmed() && has("host-silent"));
+    assert!(device.counters().frames_sent > 0, "the program is still there");
+}
+
 #[test]
 fn a_board_that_vanishes_is_said_in_a_sentence() {
     let _turn = turn();
     let mut board = VirtualBoard::start();
     let folder = TempDir::new().unwrap();
-    let process = client(&board.port, "600", folder.path());
+    let process = client(&board.scene, &board.port, "600", folder.path());
     until("rows are written", || rows_in(folder.path()) > 0);
     board.process.kill().unwrap();
     board.process.wait().unwrap();
@@ -319,7 +347,7 @@ fn a_dead_client_does_not_slow_the_board_down() {
     let _turn = turn();
     let board = VirtualBoard::start();
     let folder = TempDir::new().unwrap();
-    let mut process = client(&board.port, "600", folder.path());
+    let mut process = client(&board.scene, &board.port, "600", folder.path());
     until("rows are written", || rows_in(folder.path()) > 0);
     process.kill().unwrap();
     process.wait().unwrap();

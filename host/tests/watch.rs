@@ -58,11 +58,11 @@ fn write_stroke(path: &Path) {
     fs::write(path, text).unwrap();
 }
 
-/// The same total friction everywhere.
+/// The same total friction everywhere, and the longest host timeout that there is: on a busy machine pings are late.
 fn scene(friction: &str) -> String {
     format!(
         "version = 1\n[screen]\nwidth_mm = 120\nheight_mm = 80\n[coating]\nthickness_um = 10\npermittivity = 1\n\
-         [finger]\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\nfriction_coefficient = 0.5\nnormal_load_n = 0.5\n\
+         [drive]\nhost_timeout_ms = 1000\n[finger]\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\nfriction_coefficient = 0.5\nnormal_load_n = 0.5\n\
          [[layer]]\nkind = \"constant\"\nfriction_n = {friction}\n"
     )
 }
@@ -153,6 +153,68 @@ fn a_saved_scene_plays_and_one_with_mistakes_does_not() {
     assert_eq!(left.next(), None, "all three were played");
     assert!(others.len() <= 2, "beside the scenes: {others:?}");
     assert!(others.iter().all(|other_n| (0.255..0.27).contains(other_n)), "beside the scenes: {others:?}");
+}
+
+/// Grey from left to right, or from right to left.
+fn write_picture(path: &Path, mirrored: bool) {
+    let grey: Vec<u8> = (0..200 * 200_u32).map(|at| if mirrored { 199 - at % 200 } else { at % 200 } as u8).collect();
+    let mut encoder = png::Encoder::new(File::create(path).unwrap(), 200, 200);
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.write_header().unwrap().write_image_data(&grey).unwrap();
+}
+
+/// Each picture fits on the board, and both together do not.
+#[test]
+fn a_saved_scene_that_has_no_room_beside_the_one_that_plays_is_told_with_what_to_do() {
+    let folder = TempDir::new().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let picture = |name: &str| {
+        scene("0.26").replace(
+            "kind = \"constant\"\nfriction_n = 0.26\n",
+            &format!("kind = \"bitmap\"\npicture = \"{name}\"\nx_mm = 0\ny_mm = 0\nwidth_mm = 50\nblack_n = 0\nwhite_n = 0.02\n"),
+        )
+    };
+    write_picture(&path("one.png"), false);
+    write_picture(&path("other.png"), true);
+    fs::write(path("scene.toml"), picture("one.png")).unwrap();
+    let mut board =
+        Running(frixel().arg("sim").arg("--out").arg(path("board")).stdout(Stdio::piped()).spawn().unwrap());
+    let mut line = String::new();
+    BufReader::new(board.0.stdout.take().unwrap()).read_line(&mut line).unwrap();
+    let port = line.trim().strip_prefix("port: ").unwrap();
+    let mut client = Running(
+        frixel()
+            .arg("play")
+            .arg(path("scene.toml"))
+            .args(["--watch", "--port", port, "--out"])
+            .arg(path("client"))
+            .stdout(Stdio::null())
+            .stderr(File::create(path("said")).unwrap())
+            .spawn()
+            .unwrap(),
+    );
+    let said = || fs::read_to_string(path("said")).unwrap();
+    let rows = || asked_n(&path("client")).len();
+    until("the first scene plays", || rows() > 0);
+    fs::write(path("scene.toml"), picture("other.png")).unwrap();
+    until("the saved scene is refused", || said().contains("do not fit on the board together"));
+    let before = rows();
+    until("the first scene plays on", || rows() > before + 300);
+    assert!(client.interrupt(), "{}", said());
+    assert!(board.interrupt());
+    let said = said();
+    assert!(said.contains("the scene before plays on") && said.contains("`pitch_mm`"), "{said}");
+    assert!(!said.contains("plays as it was saved"), "{said}");
+}
+
+#[test]
+fn a_stream_is_not_watched() {
+    let folder = TempDir::new().unwrap();
+    let command = ["play", "scene.toml", "--port", "/dev/frixel-is-not-there", "--watch", "--stream", "tones.wav"];
+    let output = frixel().args(command).current_dir(folder.path()).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("leave out --watch or --stream"), "{said}");
 }
 
 #[test]

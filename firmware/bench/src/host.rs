@@ -77,7 +77,9 @@ impl<'a> Host<'a> {
     }
 
     fn send(&mut self, bytes: &[u8]) {
-        self.session.receive(bytes, &self.ticker.status());
+        let status = self.ticker.status();
+        self.session.receive(bytes, &status);
+        self.session.poll(&status);
         while let Some(order) = self.session.next_order() {
             if let Some(spare) = self.ticker.apply(order) {
                 self.session.take_back(spare);

@@ -28,10 +28,11 @@ pub fn run(session: &mut Session<'static>, mut ticker: Ticker<'static>) -> ! {
 fn tick(session: &mut Session<'static>, ticker: &mut Ticker<'static>, status: &mut Status, given: &Given) -> Done {
     if !given.received.is_empty() {
         session.receive(&given.received, status);
-        while let Some(order) = session.next_order() {
-            if let Some(spare) = ticker.apply(order) {
-                session.take_back(spare);
-            }
+    }
+    // That of a commit comes a tick after its bytes.
+    while let Some(order) = session.next_order() {
+        if let Some(spare) = ticker.apply(order) {
+            session.take_back(spare);
         }
     }
     let drive = ticker.tick(&given.sense);

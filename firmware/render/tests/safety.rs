@@ -85,14 +85,57 @@ fn a_silent_host_disarms_within_its_timeout() {
     assert!(!desk.status().telemetry.flags.contains(Flags::HOST_SILENT));
 }
 
+/// Nobody but the client that armed keeps a board armed.
+#[test]
+fn a_new_clients_hello_ends_what_the_client_before_had_armed() {
+    let mut memory = Memory::new();
+    let mut desk = playing(&mut memory);
+    assert_eq!(desk.greet().state, State::Disarmed);
+    assert_eq!(desk.tick(), OFF);
+    assert_eq!(desk.status().telemetry.state, State::Disarmed);
+
+    desk.command(Command::Arm).unwrap();
+    assert_eq!(desk.greet().state, State::Disarmed);
+    // Whoever has said hello may arm.
+    desk.command(Command::Arm).unwrap();
+    desk.command(Command::Play).unwrap();
+    desk.tick();
+    assert_eq!(desk.status().telemetry.state, State::Active);
+}
+
+fn autonomous() -> Vec<u8> {
+    let header = Header { autonomous: true, ..HEADER };
+    scene(&header, &[record(Layer::Constant { electric_friction_n: 0.02 })])
+}
+
 #[test]
 fn an_autonomous_scene_goes_on_without_a_host() {
     let mut memory = Memory::new();
     let mut desk = Desk::new(&mut memory);
-    let header = Header { autonomous: true, ..HEADER };
-    desk.play(&scene(&header, &[record(Layer::Constant { electric_friction_n: 0.02 })]));
+    desk.play(&autonomous());
     desk.ticks(2 * HOST_TIMEOUT_TICKS);
     assert_eq!(desk.status().telemetry.state, State::Active);
+    assert_eq!(desk.greet().state, State::Active, "a client may look");
+    desk.ticks(2 * HOST_TIMEOUT_TICKS);
+    assert_eq!(desk.status().telemetry.state, State::Active);
+}
+
+/// Only what plays goes on without a host.
+#[test]
+fn a_board_armed_for_an_autonomous_scene_needs_its_host() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    desk.load(&autonomous()).unwrap();
+    desk.command(Command::Arm).unwrap();
+    desk.ticks(HOST_TIMEOUT_TICKS - 1);
+    assert_eq!(desk.status().telemetry.state, State::Armed);
+    desk.ticks(2);
+    assert_eq!(desk.status().telemetry.state, State::Disarmed);
+
+    desk.command(Command::Arm).unwrap();
+    desk.tick();
+    assert_eq!(desk.greet().state, State::Disarmed, "nothing plays that a hello would end");
 }
 
 fn assert_faults(desk: &mut Desk, fault: Fault, within_ticks: u32) {

@@ -4,15 +4,15 @@
 
 mod support;
 
-use frixel_render::{Board, Touch};
+use frixel_render::{Board, Order, Touch};
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::frame::crc32;
 use frixel_wire::hello::feature;
 use frixel_wire::message::{Accepted, Command, ConfigField, FromBoard, Refusal};
 use frixel_wire::payload::CHUNK_LEN;
-use frixel_wire::scene::{Header, Layer, SceneError};
 #[cfg(feature = "bitmap")]
-use frixel_wire::scene::{Record, Region, bitmap_crc32};
+use frixel_wire::scene::bitmap_crc32;
+use frixel_wire::scene::{Header, Layer, Record, Region, SceneError};
 use proptest::prelude::*;
 #[cfg(feature = "bitmap")]
 use support::bitmap;
@@ -155,6 +155,84 @@ fn what_is_no_scene_is_refused() {
         desk.command(Command::Commit { crc32: 1 }),
         Err(Refusal::CrcMismatch { expected: 1, found: crc32(&unknown) })
     );
+}
+
+/// The bytes of a scene with few points and many records are no more than those of one with many points.
+#[test]
+fn a_scene_of_more_records_than_the_board_says_is_refused() {
+    let mut memory = Memory::new();
+    let mut board = Board::SIMULATOR;
+    board.limits.records_max = 2;
+    let mut desk = Desk::of(board, &mut memory);
+    desk.greet();
+    let of = |count: usize| {
+        let beside = |number| {
+            let region = Region::Rectangle { x_m: 0.01 * number as f32, y_m: 0.0, width_m: 0.01, height_m: 0.1 };
+            Record { region, ..record(Layer::Constant { electric_friction_n: 0.01 }) }
+        };
+        scene(&HEADER, &(0..count).map(beside).collect::<Vec<_>>())
+    };
+    desk.load(&of(2)).unwrap();
+    assert_eq!(desk.load(&of(3)), Err(Refusal::Scene(SceneError::TooManyRecords { found: 3 })));
+}
+
+fn answered(desk: &mut Desk) -> Vec<u16> {
+    desk.collect();
+    let sequence = |message| match message {
+        FromBoard::Answer(answer) => Some(answer.sequence),
+        _ => None,
+    };
+    desk.messages.drain(..).filter_map(sequence).collect()
+}
+
+/// What a host must be able to say at any time does not wait for the work of a commit that came before it.
+#[test]
+fn a_commit_holds_up_no_sign_of_life_and_nothing_that_puts_the_output_to_zero() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.play(&constant(0.01));
+    let next = constant(0.015);
+    desk.upload_scene(&next).unwrap();
+    desk.messages.clear();
+    let bytes = [
+        request(901, Command::Commit { crc32: crc32(&next) }),
+        request(902, Command::Ping),
+        request(903, Command::Stop),
+        request(904, Command::Disarm),
+    ];
+    desk.session.receive(&bytes.concat(), &desk.status());
+    assert_eq!(answered(&mut desk), [902, 903, 904]);
+    let mut orders = 0;
+    while let Some(order) = desk.session.next_order() {
+        assert!(matches!(order, Order::HostHeard | Order::Stop | Order::Disarm));
+        desk.ticker.apply(order);
+        orders += 1;
+    }
+    assert_eq!(orders, 3);
+    desk.session.poll(&desk.status());
+    assert_eq!(answered(&mut desk), [901]);
+    desk.obey();
+    assert_eq!(desk.greet().scene_crc32, crc32(&next));
+}
+
+#[test]
+fn what_asks_for_the_scene_comes_after_the_commit_before_it() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    let scene = constant(0.01);
+    desk.upload_scene(&scene).unwrap();
+    desk.messages.clear();
+    let bytes = [
+        request(901, Command::Commit { crc32: crc32(&scene) }),
+        request(902, Command::Arm),
+        request(903, Command::Play),
+    ];
+    desk.session.receive(&bytes.concat(), &desk.status());
+    assert_eq!(answered(&mut desk), [901, 902, 903]);
+    desk.obey();
+    desk.tick();
+    assert_eq!(desk.status().telemetry.state, State::Active);
 }
 
 #[cfg(feature = "telemetry")]

@@ -23,8 +23,8 @@ const ARGUMENTS: [&str; 4] = ["-icount", "shift=3,align=on", "-serial", "pty"];
 
 /// Wall time between two looks at what the board has driven.
 const LOOK_EVERY: Duration = Duration::from_millis(1);
-/// Wall time that the emulator may take to start.
-const PATIENCE: Duration = Duration::from_secs(30);
+/// Wall time that the emulator may take to start, on a machine that is busy with other things.
+const PATIENCE: Duration = Duration::from_mins(2);
 
 /// What an emulated board can be made to suffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

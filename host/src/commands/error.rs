@@ -91,6 +91,10 @@ pub(crate) enum CommandError {
         "--watch follows the file while a board plays in real time, --port {port} does not: start `frixel sim` and give its port"
     )]
     WatchInVirtualTime { port: String },
+    #[error(
+        "--watch sends a saved scene while it plays, and a stream runs dry meanwhile: leave out --watch or --stream"
+    )]
+    WatchWithStream,
     #[error("the emulated board's serial port is too slow for a stream: leave --stream out, or play on --port sim")]
     StreamOnEmulated,
     #[error("{port} stopped with its output at zero: {fault}")]

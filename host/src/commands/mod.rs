@@ -87,7 +87,8 @@ struct PlayArgs {
     /// Let a board that is not a simulator drive its electrode.
     #[arg(long)]
     arm: bool,
-    /// Play the scene anew whenever its file is saved; for a board at a serial port, `frixel sim` among them.
+    /// Play the scene anew whenever its file is saved; for a board at a serial port, `frixel sim` among them. Not with
+    /// --stream.
     #[arg(long)]
     watch: bool,
     /// Samples for the scene's stream layers: a WAV file, or `-` for raw ones on standard input, two bytes each,

@@ -1,18 +1,20 @@
 //! Requests and their answers, over any [`Link`].
 
+mod incoming;
+
 use std::collections::VecDeque;
 use std::time::Duration;
 
 use frixel_wire::frame::Decoder;
 use frixel_wire::hello::Hello;
-use frixel_wire::message::{Accepted, Answer, Command, FromBoard, Refusal};
-use frixel_wire::payload::Payload;
+use frixel_wire::message::{Accepted, Answer, Command, Refusal};
 
 use super::Event;
 use super::command::{frame_of, name_of, state_after};
 use super::credit::Credit;
 use super::error::{DeviceError, LinkClosed};
 use super::link::Link;
+pub(super) use incoming::StreamReport;
 
 /// Sequence number of requests whose answer nobody waits for.
 const UNAWAITED: u16 = 0;
@@ -22,14 +24,8 @@ pub(super) const ANSWER_TIMEOUT: Duration = Duration::from_millis(750);
 const REPEAT_AFTER: Duration = Duration::from_millis(250);
 /// Time to the next try when the board was busy.
 const BUSY_RETRY_AFTER: Duration = Duration::from_millis(5);
-/// Most that one listening adds to the silence of a board, so that a host that was itself suspended does not take that for silence.
-const LISTEN_MAX: Duration = Duration::from_millis(100);
-/// What is under way while nothing is asked.
-const WAITING: &str = "wait";
 /// Credit kept free for commands.
 const COMMAND_RESERVE_LEN: usize = 64;
-/// Events kept for a caller who does not fetch them; the oldest go first.
-const EVENTS_MAX: usize = 4096;
 
 /// A board that has said hello, and what is under way to and from it.
 pub(super) struct Exchange<L> {
@@ -51,16 +47,6 @@ pub(super) struct Exchange<L> {
     events: VecDeque<Event>,
     /// Time listened since anything came.
     quiet: Duration,
-}
-
-/// What the board said last of a stream.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct StreamReport {
-    /// Index behind the last sample that the board has room for.
-    pub(super) limit: u32,
-    /// Times that a stream ran dry, and gaps in one, since the board's power-on.
-    pub(super) underruns: u32,
-    pub(super) gaps: u32,
 }
 
 /// A request on its way.
@@ -240,90 +226,6 @@ impl<L: Link> Exchange<L> {
 
     fn write(&mut self, frame: &[u8], doing: &'static str) -> Result<u64, DeviceError> {
         self.link.write(frame).map_err(|closed| vanished(closed, doing))
-    }
-
-    /// Takes the first that comes within `wait`, or less. An error when the pings have not been answered for too long.
-    pub(super) fn listen(&mut self, wait: Duration) -> Result<(), DeviceError> {
-        self.receive(wait.min(LISTEN_MAX), WAITING)?;
-        if self.quiet >= ANSWER_TIMEOUT {
-            return Err(self.silent(name_of(&Command::Ping), self.quiet));
-        }
-        Ok(())
-    }
-
-    /// Takes what comes until `until`.
-    fn receive_until(&mut self, until: Duration, doing: &'static str) -> Result<(), DeviceError> {
-        loop {
-            let now = self.link.now();
-            if now >= until {
-                return Ok(());
-            }
-            self.receive(until.saturating_sub(now), doing)?;
-        }
-    }
-
-    /// Takes what has come, or the first that comes within `wait`.
-    pub(super) fn receive(&mut self, wait: Duration, doing: &'static str) -> Result<(), DeviceError> {
-        let mut incoming = std::mem::take(&mut self.incoming);
-        incoming.clear();
-        let started = self.link.now();
-        self.link.read(&mut incoming, wait).map_err(|closed| vanished(closed, doing))?;
-        if incoming.is_empty() {
-            self.quiet += self.link.now().saturating_sub(started).min(wait);
-        } else {
-            self.quiet = Duration::ZERO;
-        }
-        let mut input = incoming.as_slice();
-        while let Some(payload) = self.decoder.next_frame(&mut input) {
-            // Hellos and what this version does not know are none of a caller's business.
-            if let Ok(Payload::FromBoard(message)) = Payload::parse_from_board(payload) {
-                self.take(message, doing)?;
-            }
-        }
-        self.incoming = incoming;
-        Ok(())
-    }
-
-    fn take(&mut self, message: FromBoard, doing: &'static str) -> Result<(), DeviceError> {
-        match message {
-            FromBoard::Answer(answer) => {
-                self.take_count(answer.received_bytes, doing)?;
-                let awaited = self.awaited.iter().find(|one| one.sequence == answer.sequence);
-                if let Some(awaited) = awaited {
-                    self.credit.answered(awaited.end, self.link.written().bytes);
-                    self.answer = Some(answer);
-                    if std::mem::take(&mut self.stream_begins) {
-                        self.stream = None;
-                    }
-                }
-            }
-            FromBoard::Progress { next_chunk, received_bytes } => {
-                self.take_count(received_bytes, doing)?;
-                self.next_chunk = Some(next_chunk);
-            }
-            FromBoard::StreamProgress { next_index, room, underruns, gaps, received_bytes } => {
-                self.take_count(received_bytes, doing)?;
-                let limit = next_index.wrapping_add(u32::from(room));
-                self.stream = Some(StreamReport { limit, underruns, gaps });
-            }
-            FromBoard::Telemetry(telemetry) => self.keep(Event::Telemetry(telemetry)),
-            FromBoard::StateChanged { state, fault, flags } => self.keep(Event::StateChanged { state, fault, flags }),
-        }
-        Ok(())
-    }
-
-    fn take_count(&mut self, received_bytes: u32, doing: &'static str) -> Result<(), DeviceError> {
-        let written = self.link.written().bytes;
-        self.credit
-            .received(received_bytes, written)
-            .map_err(|_| DeviceError::Restarted { port: self.link.name().into(), command: doing })
-    }
-
-    fn keep(&mut self, event: Event) {
-        if self.events.len() == EVENTS_MAX {
-            self.events.pop_front();
-        }
-        self.events.push_back(event);
     }
 
     fn silent(&self, command: &'static str, waited: Duration) -> DeviceError {

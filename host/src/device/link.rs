@@ -4,6 +4,10 @@ use std::time::Duration;
 
 use super::error::LinkClosed;
 
+/// How long a link sends its keep-alive frame for an application that does not call it. After this the board hears nothing more, and puts its
+/// output to zero when its host timeout is over.
+pub const LEASH: Duration = Duration::from_secs(1);
+
 /// A line to one board, with its own clock.
 ///
 /// [`super::Device`] runs the protocol over it. A serial port is a [`super::SerialLink`]; a simulated board is a link whose clock is virtual,
@@ -22,6 +26,9 @@ pub trait Link {
     fn now(&self) -> Duration;
 
     /// From now on, sends `frame` by itself whenever nothing was written for `period`. Takes the place of the call before.
+    ///
+    /// It vouches for the application, so that it must not outlive it: [`LEASH`] after the last [`Self::write`] or [`Self::read`] it ends, until the next
+    /// of these. A link whose clock stands still between two calls needs no leash.
     fn keep_alive(&mut self, frame: Vec<u8>, period: Duration);
 
     /// Sets what is sent when the link is dropped, as far as that goes without waiting. A link whose board ends with it has nothing to send.

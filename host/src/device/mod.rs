@@ -45,11 +45,12 @@ use frixel_wire::hello::Hello;
 use frixel_wire::message::{Command, Telemetry};
 use frixel_wire::scene::Scene;
 
+use command::name_of;
 use exchange::{ANSWER_TIMEOUT, Exchange};
 use upload::UploadCounts;
 
 pub use error::{DeviceError, LinkClosed, PortError};
-pub use link::{Link, Written};
+pub use link::{LEASH, Link, Written};
 pub use ports::{PortInfo, UsbDevice, ports};
 pub use serial::{DEFAULT_BAUD, SerialLink};
 pub use stream::{StreamSettings, StreamStatus};
@@ -62,8 +63,14 @@ const PING_PERIOD_MIN: Duration = Duration::from_millis(5);
 
 /// A board that has said hello.
 ///
-/// Pings go out by themselves for as long as the value lives. On a board that may be armed they are often enough for any host timeout, or for
-/// that of the scene that this value has committed. Dropping a value that has armed or played stops and disarms the board, as far as the link still carries anything; the board puts
+/// **Pings.** A board that is armed goes to Disarmed, output zero, when it has not heard of its host for the scene's host timeout. Pings go out by
+/// themselves, often enough for any host timeout, or for that of the scene that this value has committed; but only for an application that is
+/// there: [`LEASH`] after the last call that says something to the board or listens to it they end, and the board goes to Disarmed. So an
+/// application that hangs, or that has forgotten the board, does not keep it playing. A call that waits counts for as long as it waits. An application
+/// that plays one thing for long and has nothing to say calls [`Self::wait`], or in a loop of its own [`Self::still_here`], several times a second:
+/// from the loop that would notice that it is to stop, never from a thread or a timer that would go on without it.
+///
+/// Dropping a value that has armed or played stops and disarms the board, as far as the link still carries anything; the board puts
 /// its output to zero in any case once the pings have stopped.
 pub struct Device<L: Link> {
     exchange: Exchange<L>,
@@ -73,7 +80,7 @@ pub struct Device<L: Link> {
     uploaded: Option<(u32, Duration)>,
     /// Time between pings that suits the board's scene, if that was committed here.
     committed: Option<Duration>,
-    /// The board may be armed or active; only then does its host timeout run.
+    /// The board may be armed or active, by this value or by a scene that goes on without a host.
     armed: bool,
     /// The stream under way.
     stream: Option<stream::Sent>,
@@ -110,6 +117,8 @@ pub struct Counters {
 
 impl<L: Link> Device<L> {
     /// Says hello, checks that both sides speak the same protocol, and starts the pings. Takes at most 0.75 s when nobody answers.
+    ///
+    /// What another client had armed or played is disarmed by the hello; only a playing scene that goes on without a host plays on.
     pub fn connect(mut link: L) -> Result<Self, DeviceError> {
         let mut decoder = Decoder::new();
         let hello = hello::greet(&mut link, &mut decoder)?;
@@ -213,6 +222,25 @@ impl<L: Link> Device<L> {
         }
     }
 
+    /// Says that the application is there and means what plays: the pings go on for another [`LEASH`]. Takes what the board has told meanwhile, for the next
+    /// [`Self::wait`] to hand over; does not wait itself, and so does not notice a board that has fallen silent.
+    ///
+    /// For a program with a loop of its own that holds a scene and has no other call to make.
+    ///
+    /// ```no_run
+    /// # use frixel::device::{Device, DeviceError, Link};
+    /// # fn draw_a_frame() -> bool { false }
+    /// # fn run<L: Link>(board: &mut Device<L>) -> Result<(), DeviceError> {
+    /// while draw_a_frame() {
+    ///     board.still_here()?;
+    /// }
+    /// board.stop()
+    /// # }
+    /// ```
+    pub fn still_here(&mut self) -> Result<(), DeviceError> {
+        self.exchange.receive(Duration::ZERO, name_of(&Command::Ping))
+    }
+
     /// What went over the line so far.
     pub fn counters(&self) -> Counters {
         let written = self.exchange.link().written();
@@ -228,7 +256,7 @@ impl<L: Link> Device<L> {
         self.exchange.link_mut()
     }
 
-    /// Gives the link back, as it is: its pings go on, and after [`Self::arm`] or [`Self::play`] it stops and disarms the board when it is
+    /// Gives the link back, as it is: its pings go on to the end of their leash, and after [`Self::arm`] or [`Self::play`] it stops and disarms the board when it is
     /// dropped.
     pub fn into_link(self) -> L {
         self.exchange.into_link()
@@ -241,7 +269,7 @@ impl<L: Link> Device<L> {
         self.pace_pings()
     }
 
-    /// A board may hold a scene whose host timeout is not known here, as after a hello or before a commit is answered.
+    /// A board may hold a scene whose host timeout is not known here, as before a commit is answered.
     fn pace_pings(&mut self) -> Result<(), DeviceError> {
         let period = if self.armed { self.committed.unwrap_or(PING_PERIOD_MIN) } else { PING_PERIOD_MAX };
         self.exchange.ping_every(period)

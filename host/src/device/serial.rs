@@ -1,19 +1,21 @@
 //! A serial port as a [`Link`].
 //!
 //! Two threads stand behind it. One reads. The other writes, one frame after the other, and sends the keep-alive frame when there was nothing
-//! to write for its period. No call waits for the operating system to take bytes: a port whose other end has stopped reading can block a write
+//! to write for its period and the application has not been away for longer than the leash. No call waits for the operating system to take bytes: a port whose other end has stopped reading can block a write
 //! for ever, and then only the writing thread stands still.
 
-use std::io::{self, Read, Write};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+mod shared;
+
+use std::sync::{Arc, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use serialport::{ClearBuffer, SerialPort};
+use serialport::ClearBuffer;
 
 use super::error::{LinkClosed, PortError};
 use super::link::{Link, Written};
 use super::ports::why_not_opened;
+use shared::{Shared, State};
 
 /// Line rate in bits a second, unless a board says otherwise. Pseudo-terminals and native USB ignore it.
 pub const DEFAULT_BAUD: u32 = 2_000_000;
@@ -28,8 +30,6 @@ const READ_POLL: Duration = Duration::from_millis(20);
 const WRITE_TIMEOUT: Duration = Duration::from_millis(500);
 /// How long a drop waits for the last frames to go out and the port to close.
 const DROP_WAIT: Duration = Duration::from_millis(50);
-/// Bytes kept for a caller who does not read: 20 seconds of telemetry at 1 kHz. What comes on top is lost.
-const INBOX_MAX_LEN: usize = 1 << 20;
 
 /// A serial port. Exclusive: a second program that opens it is told that it is in use.
 ///
@@ -39,29 +39,6 @@ pub struct SerialLink {
     opened: Instant,
     shared: Arc<Shared>,
     farewell: Vec<u8>,
-}
-
-struct Shared {
-    state: Mutex<State>,
-    /// Bytes arrived, or the link closed.
-    arrived: Condvar,
-    /// There is something to write, or the keep-alive changed, or the link is closing.
-    queued: Condvar,
-    /// A thread has ended and let go of the port.
-    ended: Condvar,
-}
-
-struct State {
-    inbox: Vec<u8>,
-    outbox: Vec<u8>,
-    written: Written,
-    last_write: Instant,
-    keep_alive: Option<(Vec<u8>, Duration)>,
-    /// Why no more bytes come or go.
-    closed: Option<String>,
-    /// The link is being dropped.
-    closing: bool,
-    threads: u8,
 }
 
 impl SerialLink {
@@ -124,17 +101,22 @@ impl Link for SerialLink {
         let mut state = self.shared.lock();
         self.check_open(&state)?;
         state.queue(frame);
+        state.leave_call(Instant::now());
         self.shared.queued.notify_one();
         Ok(state.written.bytes)
     }
 
     fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed> {
-        let state = self.shared.lock();
+        let mut state = self.shared.lock();
+        state.enter_call();
+        // The keep-alive may have been at the end of its leash.
+        self.shared.queued.notify_one();
         let (mut state, _) = self
             .shared
             .arrived
             .wait_timeout_while(state, wait, |state| state.inbox.is_empty() && state.closed.is_none())
             .unwrap_or_else(PoisonError::into_inner);
+        state.leave_call(Instant::now());
         // What came before the cable was pulled still counts.
         if state.inbox.is_empty() {
             self.check_open(&state)?;
@@ -148,7 +130,7 @@ impl Link for SerialLink {
     }
 
     fn keep_alive(&mut self, frame: Vec<u8>, period: Duration) {
-        self.shared.lock().keep_alive = Some((frame, period));
+        self.shared.lock().keep_alive(frame, period);
         self.shared.queued.notify_one();
     }
 
@@ -176,120 +158,4 @@ impl Drop for SerialLink {
         // A thread that the operating system does not let go ends by itself later, and the port closes then.
         let _ = self.shared.ended.wait_timeout_while(state, DROP_WAIT, |state| state.threads > 0);
     }
-}
-
-impl Shared {
-    fn new(opened: Instant) -> Self {
-        Self {
-            state: Mutex::new(State {
-                inbox: Vec::new(),
-                outbox: Vec::new(),
-                written: Written::default(),
-                last_write: opened,
-                keep_alive: None,
-                closed: None,
-                closing: false,
-                threads: 0,
-            }),
-            arrived: Condvar::new(),
-            queued: Condvar::new(),
-            ended: Condvar::new(),
-        }
-    }
-
-    fn lock(&self) -> MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn read_from(&self, mut port: Box<dyn SerialPort>) {
-        let mut bytes = [0; 1024];
-        loop {
-            let outcome = port.read(&mut bytes);
-            let mut state = self.lock();
-            if state.closing || state.closed.is_some() {
-                return;
-            }
-            match outcome {
-                Ok(0) => return self.close(state, "the other end hung up".into()),
-                Ok(len) => {
-                    let room = INBOX_MAX_LEN - state.inbox.len();
-                    state.inbox.extend(bytes.iter().take(len.min(room)));
-                    self.arrived.notify_one();
-                }
-                Err(error) if is_passing(&error) => {}
-                Err(error) => return self.close(state, error.to_string()),
-            }
-        }
-    }
-
-    fn write_to(&self, mut port: Box<dyn SerialPort>) {
-        while let Some(bytes) = self.next_to_write() {
-            if let Err(error) = port.write_all(&bytes) {
-                return self.close(self.lock(), format!("it takes no more bytes: {error}"));
-            }
-        }
-    }
-
-    /// Waits for bytes to write, those of the keep-alive among them. `None` when all is written and the link closes.
-    fn next_to_write(&self) -> Option<Vec<u8>> {
-        let mut state = self.lock();
-        loop {
-            if state.closed.is_some() {
-                return None;
-            }
-            if !state.outbox.is_empty() {
-                return Some(std::mem::take(&mut state.outbox));
-            }
-            if state.closing {
-                return None;
-            }
-            state = match state.keep_alive_due_in() {
-                Some(Duration::ZERO) => {
-                    state.queue_keep_alive();
-                    state
-                }
-                Some(wait) => {
-                    let woken = self.queued.wait_timeout(state, wait);
-                    woken.unwrap_or_else(PoisonError::into_inner).0
-                }
-                None => self.queued.wait(state).unwrap_or_else(PoisonError::into_inner),
-            };
-        }
-    }
-
-    fn close(&self, mut state: MutexGuard<'_, State>, reason: String) {
-        state.closed.get_or_insert(reason);
-        self.arrived.notify_one();
-        self.queued.notify_one();
-    }
-
-    fn thread_ended(&self) {
-        self.lock().threads -= 1;
-        self.ended.notify_one();
-    }
-}
-
-impl State {
-    fn queue(&mut self, frame: &[u8]) {
-        self.outbox.extend_from_slice(frame);
-        self.written.add(frame);
-        self.last_write = Instant::now();
-    }
-
-    fn queue_keep_alive(&mut self) {
-        if let Some((frame, period)) = self.keep_alive.take() {
-            self.queue(&frame);
-            self.keep_alive = Some((frame, period));
-        }
-    }
-
-    fn keep_alive_due_in(&self) -> Option<Duration> {
-        let (_, period) = self.keep_alive.as_ref()?;
-        Some(period.saturating_sub(self.last_write.elapsed()))
-    }
-}
-
-fn is_passing(error: &io::Error) -> bool {
-    use io::ErrorKind::{Interrupted, TimedOut, WouldBlock};
-    matches!(error.kind(), Interrupted | TimedOut | WouldBlock)
 }

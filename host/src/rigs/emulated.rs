@@ -14,7 +14,7 @@ pub use recorder::EmulatedRecorder;
 /// Wall time between two looks at the board's clock.
 const LOOK_EVERY: Duration = Duration::from_millis(2);
 /// Wall time after which a clock that does not move is taken to have stopped.
-const PATIENCE: Duration = Duration::from_secs(30);
+const PATIENCE: Duration = Duration::from_mins(2);
 
 /// A real serial port to an emulated board, on the board's clock.
 ///

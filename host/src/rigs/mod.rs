@@ -7,6 +7,7 @@ mod recorder;
 mod server;
 mod server_log;
 mod sim_link;
+mod streamed;
 
 pub use emulated::{EmulatedLink, EmulatedRecorder};
 pub use recorder::Recorder;

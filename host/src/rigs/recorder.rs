@@ -6,6 +6,7 @@ use frixel_wire::fault::Flags;
 use frixel_wire::hello::BoardLimits;
 use frixel_wire::scene::Carrier;
 
+use super::streamed::Streamed;
 use crate::metrics::{Metrics, TickSample};
 use crate::output::FeltRow;
 use crate::scene::{Program, carrier};
@@ -20,8 +21,7 @@ pub struct Recorder {
     row_maker: RowMaker,
     rows: Vec<FeltRow>,
     ticks_left: u64,
-    /// Something is streamed: what is wanted is not the program's alone.
-    streamed: bool,
+    streamed: Streamed,
 }
 
 impl Recorder {
@@ -42,7 +42,7 @@ impl Recorder {
             row_maker: RowMaker::new(tick_hz, ticks_per_row),
             rows: Vec::new(),
             ticks_left: ticks,
-            streamed: false,
+            streamed: Streamed::new(tick_hz),
         })
     }
 
@@ -61,9 +61,9 @@ impl Recorder {
         std::mem::take(&mut self.rows)
     }
 
-    /// From now on something is streamed: what is wanted is not known, nor how far off it is what is felt.
-    pub(crate) fn expect_stream(&mut self) {
-        self.streamed = true;
+    /// Hears what the host sends to the board: samples of a stream are part of what is wanted.
+    pub(super) fn hear(&mut self, frame: &[u8]) {
+        self.streamed.hear(frame);
     }
 
     /// Takes no more ticks.
@@ -94,21 +94,18 @@ impl Recorder {
 
     /// Electric friction wanted where the finger is, when it is on the screen.
     fn wanted_electric_n(&mut self, record: &TickRecord) -> Option<f64> {
+        let (stream, stream_weight) = self.streamed.next(record.status.telemetry.flags);
         let Some(finger) = record.felt.finger else {
             self.wanted.lift();
             return None;
         };
-        if self.streamed {
-            return None;
-        }
         Some(self.wanted.electric_friction_n(&Moment {
             x_m: finger.x_m,
             y_m: finger.y_m,
             t_s: record.tick as f64 * self.tick_period_s,
             speed_m_per_s: finger.speed_m_per_s,
-            // What is streamed is not the program's.
-            stream: 0.0,
-            stream_weight: 0.0,
+            stream,
+            stream_weight,
         }))
     }
 }

@@ -63,6 +63,7 @@ impl<'a> SimLink<'a> {
 
     fn send(&mut self, frame: &[u8]) {
         self.rig.send(frame);
+        self.recorder.hear(frame);
         self.written.add(frame);
         self.written_at_tick = self.rig.tick();
     }

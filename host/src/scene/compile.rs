@@ -4,13 +4,14 @@ use frixel_wire::hello::BoardLimits;
 use frixel_wire::scene::cost::TICK_INSTRUCTIONS_MAX;
 use frixel_wire::scene::{Header, RECORDS_MAX, Record};
 
+use super::compile_error::CompileError;
 use super::excess;
 use super::file::Scene;
 use super::layer_map::LayerMap;
 use super::leave_out::leave_out;
 use super::log::Log;
 use super::lower::Lowering;
-use super::mistake::{CompileError, Mistake};
+use super::mistake::Mistake;
 use super::pool::Pool;
 use super::program::Program;
 use super::reach::{Reach, carrier};

@@ -5,7 +5,8 @@ use toml::de::{DeArray, DeTable, DeValue};
 
 use super::asked::{Asked, AskedTable, Holds};
 use super::log::Log;
-use super::mistake::{Mistake, Nearest};
+use super::mistake::Mistake;
+use super::nearest::Nearest;
 use super::source::Places;
 
 /// What a number may be.
@@ -101,15 +102,22 @@ impl<'i> Fields<'i> {
         None
     }
 
-    /// One of some words that has to be there.
-    pub(super) fn choice<T: Copy>(
+    /// One of some words that has to be there. One that is not known is noted, and read as the one that may have been meant,
+    /// so that what depends on it can be looked at.
+    pub(super) fn choice_or_nearest<T: Copy>(
         &mut self,
         log: &mut Log,
         field: &'static str,
         choices: &[(&'static str, T)],
     ) -> Option<T> {
         self.require(field);
-        self.optional_choice(log, field, choices)
+        match self.word(log, field, choices)? {
+            Ok(choice) => Some(choice),
+            Err(nearest) => {
+                let meant = nearest.suggestion?;
+                choices.iter().find(|(word, _)| *word == meant).map(|(_, choice)| *choice)
+            }
+        }
     }
 
     /// One of some words, that may be left out.
@@ -119,15 +127,25 @@ impl<'i> Fields<'i> {
         field: &'static str,
         choices: &[(&'static str, T)],
     ) -> Option<T> {
+        self.word(log, field, choices)?.ok()
+    }
+
+    /// One of some words, or, when that was noted, what may have been meant.
+    fn word<T: Copy>(
+        &mut self,
+        log: &mut Log,
+        field: &'static str,
+        choices: &[(&'static str, T)],
+    ) -> Option<Result<T, Nearest>> {
         let words = choices.iter().map(|(word, _)| *word).collect();
         let value = self.take(field, Holds::Choice(words))?;
         let found = Self::text_of(log, field, &value)?;
         if let Some((_, choice)) = choices.iter().find(|(word, _)| *word == found) {
-            return Some(*choice);
+            return Some(Ok(*choice));
         }
         let nearest = Nearest::new(&found, choices.iter().map(|(word, _)| *word));
-        log.add(self.places.field(field), Mistake::UnknownChoice { field, found, nearest });
-        None
+        log.add(self.places.field(field), Mistake::UnknownChoice { field, found, nearest: nearest.clone() });
+        Some(Err(nearest))
     }
 
     /// A table that has to be there.

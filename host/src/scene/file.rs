@@ -7,10 +7,11 @@ use frixel_wire::scene::Leader;
 use toml::de::DeTable;
 
 use super::asked::AskedTable;
+use super::compile_error::CompileError;
 use super::fields::{Fields, Range};
 use super::layer::Layer;
 use super::log::Log;
-use super::mistake::{CompileError, Mistake};
+use super::mistake::Mistake;
 use super::source::{Places, Source};
 
 /// Version of the file format.

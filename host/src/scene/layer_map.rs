@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::mistake::Nearest;
+use super::nearest::Nearest;
 
 /// The layers of a file, each with its record in the compiled program.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -1,7 +1,8 @@
 //! Gathers mistakes while a scene is read and compiled.
 
 use super::asked::AskedTable;
-use super::mistake::{CompileError, Located, Mistake};
+use super::compile_error::{CompileError, Located};
+use super::mistake::Mistake;
 use super::source::Source;
 
 /// Gathers mistakes, so that a person sees all of them at once.
@@ -37,7 +38,8 @@ impl<'s> Log<'s> {
     /// Notes a mistake that stands at a byte of the file.
     pub(super) fn add(&mut self, offset: usize, mistake: Mistake) {
         let (line, column) = self.source.line_and_column(offset);
-        self.mistakes.push(Located { line, column, mistake });
+        let text = self.source.word_at(offset).to_owned();
+        self.mistakes.push(Located { line, column, text, mistake });
     }
 
     /// The value, if nothing was wrong.

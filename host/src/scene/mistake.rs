@@ -1,47 +1,8 @@
 //! What can be wrong with a scene, each in one sentence: what was found, what was expected, what to do.
 
-use std::fmt::{self, Display};
-use std::io;
-
 use thiserror::Error;
 
-/// Why a scene file does not become a program.
-#[derive(Debug, Error)]
-pub enum CompileError {
-    /// The scene file itself cannot be read.
-    #[error("{file}: this scene file cannot be read ({source}): check the path")]
-    Unreadable {
-        /// The file as it was named.
-        file: String,
-        /// What the system said.
-        source: io::Error,
-    },
-    /// The file was read, and something in it is wrong. The message has a line for each mistake.
-    #[error("{}", list(.file, .mistakes))]
-    Mistakes {
-        /// The file as it was named.
-        file: String,
-        /// Every mistake that was found, in the order of the file.
-        mistakes: Vec<Located>,
-    },
-}
-
-fn list(file: &str, mistakes: &[Located]) -> String {
-    let lines: Vec<String> = mistakes.iter().map(|mistake| format!("{file}:{mistake}")).collect();
-    lines.join("\n")
-}
-
-/// A mistake and where in the file it stands.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[error("{line}:{column}: {mistake}")]
-pub struct Located {
-    /// Line, from one.
-    pub line: usize,
-    /// Column in characters, from one.
-    pub column: usize,
-    /// What is wrong.
-    pub mistake: Mistake,
-}
+use super::nearest::Nearest;
 
 /// Something wrong in a scene file. Its text is one sentence for the person who wrote the file.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -189,14 +150,14 @@ pub enum Mistake {
         layer: String,
     },
     /// A picture that is not there.
-    #[error("picture \"{picture}\" was not found in {folder}{nearest}: paths start from the scene file's folder")]
+    #[error("picture \"{picture}\" was not found in {folder}{}: paths start from the scene file's folder", which_has(.nearest.as_deref()))]
     PictureMissing {
         /// As written.
         picture: String,
         /// Where it was looked for.
         folder: String,
-        /// `, which has "..."`, or nothing.
-        nearest: String,
+        /// The file there whose name is nearest, where one is near enough.
+        nearest: Option<String>,
     },
     /// A picture that cannot be used.
     #[error("picture \"{picture}\" cannot be used: {reason}")]
@@ -336,41 +297,21 @@ pub enum Mistake {
     },
 }
 
-fn count(min: usize, max: usize) -> String {
-    if min == max { min.to_string() } else { format!("{min} to {max}") }
-}
-
-/// What a misspelt word may have been.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Nearest {
-    /// The nearest word, where one is near enough.
-    pub suggestion: Option<String>,
-    /// All words that would do.
-    pub known: Vec<String>,
-}
-
-impl Nearest {
-    /// Likeness (Jaro-Winkler, 0 to 1) from which a word is suggested.
-    const LIKENESS_MIN: f64 = 0.75;
-
-    pub(super) fn new<'k>(found: &str, known: impl Iterator<Item = &'k str>) -> Self {
-        let known: Vec<String> = known.map(str::to_owned).collect();
-        let suggestion = known
-            .iter()
-            .map(|word| (strsim::jaro_winkler(found, word), word))
-            .filter(|(likeness, _)| *likeness >= Self::LIKENESS_MIN)
-            .max_by(|(one, _), (other, _)| one.total_cmp(other))
-            .map(|(_, word)| word.clone());
-        Self { suggestion, known }
-    }
-}
-
-impl Display for Nearest {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match &self.suggestion {
-            Some(word) => write!(formatter, "did you mean `{word}`?"),
-            None if self.known.is_empty() => write!(formatter, "nothing more is expected here"),
-            None => write!(formatter, "expected one of `{}`", self.known.join("`, `")),
+impl Mistake {
+    /// The valid name that may have been meant, where a name is not known and one is near enough.
+    pub fn nearest(&self) -> Option<&str> {
+        match self {
+            Self::UnknownField { nearest, .. } | Self::UnknownChoice { nearest, .. } => nearest.suggestion.as_deref(),
+            Self::PictureMissing { nearest, .. } => nearest.as_deref(),
+            _ => None,
         }
     }
+}
+
+fn which_has(nearest: Option<&str>) -> String {
+    nearest.map_or(String::new(), |name| format!(", which has \"{name}\""))
+}
+
+fn count(min: usize, max: usize) -> String {
+    if min == max { min.to_string() } else { format!("{min} to {max}") }
 }

@@ -5,6 +5,7 @@
 
 mod asked;
 mod compile;
+mod compile_error;
 mod cover;
 mod excess;
 mod fields;
@@ -16,6 +17,7 @@ mod left_out;
 mod log;
 mod lower;
 mod mistake;
+mod nearest;
 mod outside;
 mod picture;
 mod pool;
@@ -29,10 +31,12 @@ mod tests;
 mod tick_cost;
 
 pub use compile::compile;
+pub use compile_error::{CompileError, Located};
 pub use file::Scene;
 pub use layer_map::{LayerError, LayerMap};
 pub use left_out::LeftOut;
-pub use mistake::{CompileError, Located, Mistake, Nearest};
+pub use mistake::Mistake;
+pub use nearest::Nearest;
 pub use outside::{Asked, Outside};
 pub use program::{Bitmap, Program};
 pub use reach::Reach;

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use super::layer::{Bitmap as BitmapLayer, Layer, Rectangle, Region};
 use super::left_out::LeftOut;
 use super::log::Log;
-use super::mistake::{Mistake, Nearest};
+use super::mistake::Mistake;
+use super::nearest::Nearest;
 use super::picture::Picture;
 use super::program::Bitmap;
 use super::resample::{Axis, resample};
@@ -226,8 +227,8 @@ fn file_name(bitmap: &BitmapLayer) -> String {
     Path::new(&bitmap.picture).file_name().unwrap_or(bitmap.picture.as_ref()).to_string_lossy().into_owned()
 }
 
-/// `, which has "..."` with the file in a folder whose name is nearest to a path's, or nothing.
-fn nearest_file(folder: &Path, path: &Path) -> String {
+/// The file in a folder whose name is nearest to a path's, where one is near enough.
+fn nearest_file(folder: &Path, path: &Path) -> Option<String> {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let mut names: Vec<String> = fs::read_dir(folder)
         .into_iter()
@@ -236,6 +237,5 @@ fn nearest_file(folder: &Path, path: &Path) -> String {
         .collect();
     names.sort();
     let wanted = path.file_name().unwrap_or_default().to_string_lossy();
-    let nearest = Nearest::new(&wanted, names.iter().map(String::as_str));
-    nearest.suggestion.map_or(String::new(), |name| format!(", which has \"{name}\""))
+    Nearest::new(&wanted, names.iter().map(String::as_str)).suggestion
 }

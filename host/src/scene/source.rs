@@ -33,6 +33,18 @@ impl Source {
         let column = before.get(line_start..).map_or(0, |start| start.chars().count()) + 1;
         (line, column)
     }
+
+    /// The key, value or table head that begins at a byte; of one that goes over several lines, the first.
+    pub(super) fn word_at(&self, offset: usize) -> &str {
+        let line = self.text.get(offset..).and_then(|rest| rest.lines().next()).unwrap_or_default();
+        let end = match line.chars().next() {
+            Some(quote @ ('"' | '\'')) => line.get(1..).and_then(|rest| rest.find(quote)).map(|len| len + 2),
+            Some('[') => line.rfind(']').map(|last| last + 1),
+            Some('{') => line.rfind('}').map(|last| last + 1),
+            _ => line.find([' ', '\t', '=', ',', ']', '}', '#']),
+        };
+        end.and_then(|end| line.get(..end)).unwrap_or(line).trim_end()
+    }
 }
 
 /// Where a table and its fields stand in the file, as byte offsets.

@@ -57,9 +57,9 @@ pub enum FeedError {
         /// Which sample, from zero, counted in the first channel.
         index: usize,
     },
-    /// More samples a second than the board plays.
+    /// No samples a second, or more than the board plays.
     #[error(
-        "{sample_hz} samples a second are more than the board's {tick_hz} ticks: give it at most that many, and at least 1"
+        "a stream of {sample_hz} samples a second cannot be played: give 1 to {tick_hz}, the board's ticks a second"
     )]
     Rate {
         /// Samples a second that were asked for.

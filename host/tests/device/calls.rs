@@ -164,7 +164,7 @@ fn pings_suit_any_scene_on_an_armed_board_until_the_own_one_is_committed() {
     let scene = scene(1.0);
     let upload = Upload { scene: &scene, bitmaps: Vec::new() };
     let mut found = FakeBoard::new();
-    (found.state, found.hello.state) = (State::Active, State::Active);
+    (found.state, found.autonomous) = (State::Active, true);
     let found = connected(VirtualLink::new(found));
     let mut armed = virtual_board();
     armed.arm().unwrap();

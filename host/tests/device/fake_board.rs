@@ -21,6 +21,8 @@ pub(crate) type Refuse = Box<dyn FnMut(&Command) -> Option<Refusal> + Send>;
 pub(crate) struct FakeBoard {
     pub(crate) hello: Hello,
     pub(crate) state: State,
+    /// What plays goes on without a host.
+    pub(crate) autonomous: bool,
     pub(crate) bitmaps: BTreeMap<u32, Vec<u8>>,
     pub(crate) scene: Option<Vec<u8>>,
     /// Commands in the order of their coming, pings left out.
@@ -65,6 +67,7 @@ impl FakeBoard {
         Self {
             hello: hello(),
             state: State::Disarmed,
+            autonomous: false,
             bitmaps: BTreeMap::new(),
             scene: None,
             commands: Vec::new(),
@@ -139,6 +142,11 @@ impl FakeBoard {
                 self.received_bytes = 0;
                 self.upload = None;
                 self.telemetry = None;
+                let plays_on = self.autonomous && self.state == State::Active;
+                if matches!(self.state, State::Armed | State::Active) && !plays_on {
+                    self.state = State::Disarmed;
+                }
+                self.hello.state = self.state;
                 out.append(&mut self.garbage);
                 out.extend_from_slice(hello_frame(&self.hello, &mut [0; FRAME_MAX_LEN]).unwrap());
             }

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::time::Duration;
 
-use frixel::device::{Bitmap, DEFAULT_BAUD, Device, DeviceError, Link, PortError, SerialLink, Upload};
+use frixel::device::{Bitmap, DEFAULT_BAUD, Device, DeviceError, LEASH, Link, PortError, SerialLink, Upload};
 use frixel_wire::fault::State;
 use frixel_wire::frame::{FRAME_MAX_LEN, crc32};
 use frixel_wire::message::{Command, Request};
@@ -62,8 +62,26 @@ fn a_scene_plays_over_a_serial_port() {
 #[test]
 fn pings_go_out_while_nobody_calls() {
     let board = PtyBoard::start(FakeBoard::new());
-    let _device = connect(&board);
-    board.until(|board| board.pings > 5);
+    let mut device = connect(&board);
+    // Then a ping is due every 5 ms, some 200 before the leash ends.
+    device.arm().unwrap();
+    let before = board.board.lock().unwrap().pings;
+    board.until(|board| board.pings > before + 5);
+}
+
+/// However late this thread wakes up: it counts what was sent, and it alone makes calls.
+#[test]
+fn pings_end_when_the_application_hangs_and_go_on_when_it_calls_again() {
+    let board = PtyBoard::start(FakeBoard::new());
+    let mut device = connect(&board);
+    device.arm().unwrap();
+    let sent = |device: &Device<Patient>| device.counters().frames_sent;
+    std::thread::sleep(LEASH);
+    let at_the_end = sent(&device);
+    std::thread::sleep(Duration::from_millis(200));
+    assert_eq!(sent(&device), at_the_end, "pings of 5 ms went on without the application");
+    device.still_here().unwrap();
+    board.until(|_| sent(&device) > at_the_end + 5);
 }
 
 #[test]
@@ -82,7 +100,7 @@ fn a_dropped_device_stops_and_disarms_and_the_next_host_is_welcome() {
 #[test]
 fn a_device_that_only_looked_leaves_a_playing_board_alone() {
     let mut playing = FakeBoard::new();
-    playing.state = State::Active;
+    (playing.state, playing.autonomous) = (State::Active, true);
     let board = PtyBoard::start(playing);
     drop(connect(&board));
     // By the time that the next host is heard, all that the first one sent has been.

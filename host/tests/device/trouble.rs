@@ -119,7 +119,7 @@ fn two_hosts_one_after_the_other() {
     let mut first = connected(VirtualLink::new(FakeBoard::new()));
     first.arm().unwrap();
     let mut second = connected(first.into_link());
-    second.disarm().unwrap();
+    assert_eq!(second.hello().state, State::Disarmed, "what the first armed is not the second's");
     second.arm().unwrap();
     assert_eq!(second.into_link().board.state, State::Armed);
 }

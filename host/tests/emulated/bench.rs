@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::sleep;
 use std::time::Duration;
 
+use frixel::device::{Device, Link};
 use frixel::scene::{Program, Scene, compile};
 use frixel_exchange::BOARD;
 use frixel_hil_sim::emulated::{Image, LinkBoard, LinkRecord};
@@ -61,15 +62,21 @@ impl Bench {
         panic!("hung: {what}");
     }
 
-    /// Waits until the board drives.
-    pub(crate) fn until_driven(&self) {
-        self.until("the board drives", |board| board.output().unwrap().dac_code != 0);
+    /// Waits until the board drives, for a host that is there all the time.
+    pub(crate) fn until_driven<L: Link>(&self, device: &mut Device<L>) {
+        self.until("the board drives", |board| {
+            device.still_here().unwrap();
+            board.output().unwrap().dac_code != 0
+        });
     }
 
-    /// Lets some of the board's ticks pass.
-    pub(crate) fn pass(&self, ticks: u32) {
+    /// Lets some of the board's ticks pass, for a host that is there all the time.
+    pub(crate) fn pass<L: Link>(&self, device: &mut Device<L>, ticks: u32) {
         let start = self.board.ticks().unwrap();
-        self.until("ticks pass", |board| board.ticks().unwrap().wrapping_sub(start) >= ticks);
+        self.until("ticks pass", |board| {
+            device.still_here().unwrap();
+            board.ticks().unwrap().wrapping_sub(start) >= ticks
+        });
     }
 }
 

@@ -24,10 +24,10 @@ fn a_picture_goes_up_plays_and_stops() {
     assert_eq!((hello.reset_cause, hello.last_fault, hello.state), (ResetCause::PowerOn, None, State::Disarmed));
 
     player::start(&mut device, &program, &mut |_| {}).unwrap();
-    bench.until_driven();
-    bench.pass(4_000);
+    bench.until_driven(&mut device);
+    bench.pass(&mut device, 4_000);
     device.stop().unwrap();
-    bench.pass(10);
+    bench.pass(&mut device, 10);
     assert_eq!(bench.board.output().unwrap(), Drive::default());
 
     let driven: Vec<_> = bench.records().into_iter().filter(|record| record.drive.amplifier_enable).collect();
@@ -44,7 +44,7 @@ fn rubbish_between_frames_does_no_harm() {
     let rubbish = vec![vec![7, 1, 2, 0], [vec![0x55; 700], vec![0]].concat(), vec![0, 0, 0], vec![2, 9, 3, 8, 8, 0]];
     let mut device = Device::connect(Cable::plug(&bench.board).with_rubbish(rubbish)).unwrap();
     player::start(&mut device, &program("grating.toml"), &mut |_| {}).unwrap();
-    bench.until_driven();
+    bench.until_driven(&mut device);
     device.stop().unwrap();
     assert_eq!(device.counters().frames_rejected, 0, "the board's own frames arrive whole");
 }
@@ -55,7 +55,7 @@ fn a_cut_cable_puts_the_output_to_zero_within_the_host_timeout() {
     let bench = Bench::new(&image);
     let mut device = Device::connect(Cable::plug(&bench.board)).unwrap();
     player::start(&mut device, &program("constant.toml"), &mut |_| {}).unwrap();
-    bench.until_driven();
+    bench.until_driven(&mut device);
     drop(device);
     bench.until("the board falls silent", |board| {
         board.tick().unwrap().wrapping_sub(board.received_at_tick().unwrap()) > HOST_TIMEOUT_TICKS + 1_000

@@ -17,7 +17,7 @@ fn suffer(mishap: Mishap) -> Option<Hello> {
     let bench = Bench::new(&image);
     let mut device = Device::connect(Cable::plug(&bench.board)).unwrap();
     player::start(&mut device, &program("constant.toml"), &mut |_| {}).unwrap();
-    bench.until_driven();
+    bench.until_driven(&mut device);
     bench.board.provoke(mishap).unwrap();
     let starts = if mishap == Mishap::Overrun { 1 } else { 2 };
     bench.until("the output is off", |board| {
@@ -28,13 +28,13 @@ fn suffer(mishap: Mishap) -> Option<Hello> {
 
     let mut device = Device::connect(Cable::plug(&bench.board)).unwrap();
     let hello = *device.hello();
-    bench.pass(4_000);
+    bench.pass(&mut device, 4_000);
     assert_eq!(bench.board.output().unwrap(), Drive::default(), "nothing starts by itself");
     if hello.state == State::Faulted {
         device.clear_fault().unwrap();
     }
     player::start(&mut device, &program("constant.toml"), &mut |_| {}).unwrap();
-    bench.until_driven();
+    bench.until_driven(&mut device);
     Some(hello)
 }
 

@@ -8,7 +8,8 @@ use frixel_wire::frame::crc32;
 use frixel_wire::scene::{RECORDS_MAX, SCENE_MAX_LEN, bitmap_digest};
 use heapless::Vec;
 
-use super::dialogue::{BitmapNames, Dialogue};
+use super::commit::BitmapNames;
+use super::dialogue::Dialogue;
 use crate::bitmap_pool::{Bitmap, BitmapPool};
 use crate::store::WORD_LEN;
 

@@ -61,6 +61,11 @@ impl<'a> Stream<'a> {
 }
 
 impl Playing {
+    /// The scene goes on without a host.
+    pub(super) fn is_autonomous(&self) -> bool {
+        self.header.is_some_and(|header| header.autonomous)
+    }
+
     /// Which of several fingers leads; the first one before any scene.
     pub(super) fn leader(&self) -> Leader {
         self.header.map_or(Leader::First, |header| header.leader)

@@ -1,14 +1,19 @@
 //! The session: bytes in, bytes out, no clock but the tick count it is shown.
 //!
-//! This module turns bytes into frames and back; [`dialogue`] says what the frames mean, [`upload`] gathers what comes
-//! in chunks.
+//! This module turns bytes into frames and back; [`dialogue`] says what the frames mean, and the others do what they ask
+//! for: [`greeting`] the hello, [`states`] arming and playing, [`storing`] uploads, whose bytes [`upload`] gathers,
+//! [`commit`] the change of scene, [`live`] what changes while one plays, [`fingers`] touches.
 
+mod commit;
 mod dialogue;
 mod fingers;
+mod greeting;
 #[cfg(feature = "store")]
 mod kept;
 mod live;
 mod outbox;
+mod states;
+mod storing;
 mod upload;
 
 use frixel_wire::fault::State;
@@ -51,7 +56,8 @@ impl<'a> Session<'a> {
         self.dialogue.attach_stream(buffer);
     }
 
-    /// Takes bytes from the serial line. Answers wait in [`Session::transmit`], orders in [`Session::next_order`].
+    /// Takes bytes from the serial line. Answers wait in [`Session::transmit`], orders in [`Session::next_order`]; a commit
+    /// waits for [`Session::poll`], so that it holds up nothing that came with it.
     pub fn receive(&mut self, mut bytes: &[u8], status: &Status) {
         while !bytes.is_empty() {
             let before = bytes.len();
@@ -63,9 +69,11 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Sends what is due without being asked: telemetry, and changes of state. To be called after every tick or, when
-    /// there is no time for that, at least once a telemetry period.
+    /// Does a commit that has come, which takes some 14 ms of a Cortex-M4F at 170 MHz; and sends what is due without being
+    /// asked: telemetry, and changes of state. To be called after every tick or, when there is no time for that, at least
+    /// once a telemetry period; the orders of [`Session::receive`] before, those of a commit after it.
     pub fn poll(&mut self, status: &Status) {
+        self.dialogue.finish_commit(status, &mut self.outbox);
         self.dialogue.report_state(status, &mut self.outbox);
         #[cfg(feature = "stream")]
         self.dialogue.report_stream(status, &mut self.outbox);

@@ -143,14 +143,22 @@ impl<'a> Desk<'a> {
             .collect()
     }
 
+    /// Bytes in, and a round of the main loop.
     pub fn send(&mut self, bytes: &[u8]) {
         self.session.receive(bytes, &self.ticker.status());
+        self.obey();
+        self.session.poll(&self.ticker.status());
+        self.obey();
+        self.collect();
+    }
+
+    /// Hands the session's orders to the ticker.
+    pub fn obey(&mut self) {
         while let Some(order) = self.session.next_order() {
             if let Some(spare) = self.ticker.apply(order) {
                 self.session.take_back(spare);
             }
         }
-        self.collect();
     }
 
     pub fn greet(&mut self) -> Hello {
@@ -218,7 +226,8 @@ impl<'a> Desk<'a> {
         self.command(Command::Play).unwrap();
     }
 
-    fn collect(&mut self) {
+    /// Takes what the board has to say.
+    pub fn collect(&mut self) {
         let mut bytes = [0; 4096];
         let count = self.session.transmit(&mut bytes);
         for byte in &bytes[..count] {

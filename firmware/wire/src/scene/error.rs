@@ -40,7 +40,7 @@ pub enum SceneError {
         /// The byte.
         value: u8,
     },
-    /// More records than the layout allows ([`RECORDS_MAX`]).
+    /// More records than the layout allows ([`RECORDS_MAX`]), or than the limits of the board.
     TooManyRecords {
         /// As the header says.
         found: u8,
@@ -108,7 +108,7 @@ impl fmt::Display for SceneError {
                 )
             }
             Self::TooManyRecords { found } => {
-                write!(f, "the scene has {found} layers, {RECORDS_MAX} are the most: use fewer")
+                write!(f, "the scene has {found} layers, more than the board takes ({RECORDS_MAX} at most): use fewer")
             }
             Self::TooManyPoints { found } => {
                 write!(

@@ -27,6 +27,9 @@ pub(super) fn play(args: &PlayArgs) -> Result<Played, CommandError> {
     if args.csv_hz > TELEMETRY_MAX_HZ {
         return Err(CommandError::CsvTooFast { port: port(), asked: args.csv_hz, max: TELEMETRY_MAX_HZ });
     }
+    if args.watch && args.stream.is_some() {
+        return Err(CommandError::WatchWithStream);
+    }
     let mut live = Live::new(args);
     let scene = Scene::load(&args.scene)?;
     let interrupt = Interrupt::watch()?;

@@ -1,14 +1,17 @@
 //! What changes while a scene plays: the scene, when its file is saved, and the samples of a stream.
 
 use std::io::stdin;
+use std::panic::resume_unwind;
 use std::path::Path;
+use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use frixel::device::{Device, DeviceError, Link};
 use frixel::player;
-use frixel::scene::{Program, Scene, compile};
+use frixel::scene::{CompileError, Program, Scene, compile};
 use frixel::stream::Feed;
 use frixel_wire::hello::Hello;
+use frixel_wire::message::Refusal;
 
 use super::watch::Watch;
 use super::{CommandError, PlayArgs, tell_notes};
@@ -36,13 +39,16 @@ pub(super) fn open_feed(args: &PlayArgs, tick_hz: u32, waits: bool) -> Result<Op
 pub(super) struct Live<'a> {
     path: &'a Path,
     watch: Option<Watch>,
+    /// The saved scene, which is compiled apart: the board wants to hear of its host meanwhile.
+    compiling: Option<JoinHandle<Result<Program, CompileError>>>,
     feed: Option<Feed>,
 }
 
 impl<'a> Live<'a> {
     /// To be made before the scene is read.
     pub(super) fn new(args: &'a PlayArgs) -> Self {
-        Self { path: &args.scene, watch: args.watch.then(|| Watch::new(&args.scene)), feed: None }
+        let watch = args.watch.then(|| Watch::new(&args.scene));
+        Self { path: &args.scene, watch, compiling: None, feed: None }
     }
 
     /// Begins the stream, if there is to be one, on a board that plays.
@@ -61,14 +67,25 @@ impl<'a> Live<'a> {
         if let Some(feed) = &mut self.feed {
             feed.pump(device)?;
         }
-        if self.watch.as_mut().is_some_and(Watch::is_saved) { reload(self.path, device) } else { Ok(None) }
+        if let Some(compiling) = self.compiling.take_if(|compiling| compiling.is_finished()) {
+            let compiled = compiling.join().unwrap_or_else(|panic| resume_unwind(panic));
+            return replace(self.path, compiled, device);
+        }
+        if self.compiling.is_none() && self.watch.as_mut().is_some_and(Watch::is_saved) {
+            let (path, Hello { limits, tick_hz, .. }) = (self.path.to_owned(), *device.hello());
+            let compile = move || Scene::load(&path).and_then(|scene| compile(&scene, &limits, tick_hz));
+            self.compiling = Some(thread::spawn(compile));
+        }
+        Ok(None)
     }
 }
 
 /// Plays what the file says now. What is wrong with it is told, and the scene before plays on.
-fn reload<L: Link>(path: &Path, device: &mut Device<L>) -> Result<Option<Program>, CommandError> {
-    let Hello { limits, tick_hz, .. } = *device.hello();
-    let compiled = Scene::load(path).and_then(|scene| compile(&scene, &limits, tick_hz));
+fn replace<L: Link>(
+    path: &Path,
+    compiled: Result<Program, CompileError>,
+    device: &mut Device<L>,
+) -> Result<Option<Program>, CommandError> {
     let program = match compiled {
         Ok(program) => program,
         Err(error) => {
@@ -82,6 +99,15 @@ fn reload<L: Link>(path: &Path, device: &mut Device<L>) -> Result<Option<Program
             tell_notes(&program);
             eprintln!("frixel: {} plays as it was saved", path.display());
             Ok(Some(program))
+        }
+        Err(DeviceError::Refused { refusal: Refusal::BitmapPoolFull { len, free }, .. }) => {
+            eprintln!(
+                "frixel: the pictures of {} and of the scene that plays do not fit on the board together ({len} bytes, \
+                 {free} free): the scene before plays on; play the file anew without --watch, or give its pictures a \
+                 larger `pitch_mm`",
+                path.display()
+            );
+            Ok(None)
         }
         Err(refused @ DeviceError::Refused { .. }) => {
             eprintln!("frixel: {refused}: the scene before plays on");

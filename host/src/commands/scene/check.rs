@@ -16,7 +16,7 @@ pub(in super::super) struct CheckArgs {
     /// Say what the smallest firmware that plays it is built with.
     #[arg(long)]
     board: bool,
-    /// Print one JSON object in place of the summary.
+    /// Print one JSON object in place of the summary; of a scene with mistakes, all of them.
     #[arg(long)]
     json: bool,
 }
@@ -24,7 +24,14 @@ pub(in super::super) struct CheckArgs {
 pub(super) fn run(args: &CheckArgs) -> Result<(), CommandError> {
     // The simulated board has the limits of the smallest one.
     let rig = RigConfig::default();
-    let program = compile(&Scene::load(&args.scene)?, &rig.board.limits, rig.board.tick_hz)?;
+    let compiled = Scene::load(&args.scene).and_then(|scene| compile(&scene, &rig.board.limits, rig.board.tick_hz));
+    let program = match compiled {
+        Err(error) if args.json => {
+            println!("{}", error.to_json());
+            return Err(error.into());
+        }
+        compiled => compiled?,
+    };
     let check = SceneCheck::of(&program, &rig)?;
     let check = if args.board { check.with_board(&program) } else { check };
     if args.json {

@@ -49,8 +49,10 @@ impl Layer {
     pub(super) fn read(mut fields: Fields, number: usize, log: &mut Log) -> Option<Self> {
         fields.rename(format!("layer {number}"));
         let name = fields.optional_text(log, "name");
-        // Without its kind nobody knows what fields the layer should have.
-        let Some(kind_name) = fields.choice(log, "kind", &KindName::ALL.map(|kind| (kind.word(), kind))) else {
+        let kinds = KindName::ALL.map(|kind| (kind.word(), kind));
+        let Some(kind_name) = fields.choice_or_nearest(log, "kind", &kinds) else {
+            // Nobody knows what else the layer should have; these every kind has.
+            let _ = Common::read(&mut fields, KindName::Constant, log);
             fields.give_up_without(log, "kind");
             return None;
         };
@@ -59,18 +61,7 @@ impl Layer {
             |name| format!("layer {number} \"{name}\""),
         );
         fields.rename(title.clone());
-        let region = region::read(&mut fields, kind_name, log);
-        let blend = blend(&mut fields, kind_name, log);
-        let gain = fields.optional_number(log, "gain", GAIN).unwrap_or(1.0);
-        let live = fields.flag(log, "live", false);
-        let unit = if blend == Blend::Multiply { Unit::Factor } else { Unit::Friction };
-        // What is multiplied counts from nothing.
-        let above = match unit {
-            Unit::Friction => {
-                fields.optional_choice(log, "above", &[("natural", Above::Natural), ("zero", Above::Zero)])
-            }
-            Unit::Factor => None,
-        };
+        let Common { region, blend, gain, live, unit, above } = Common::read(&mut fields, kind_name, log);
         let kind = kind_name.read(&mut fields, unit, log);
         let places = fields.close(log);
         if blend == Blend::Add && above == Some(Above::Zero) {
@@ -84,6 +75,34 @@ impl Layer {
         let kind = kind?;
         kind.check(&places, log);
         Some(Self { title, name, region, blend, gain, above, live, kind, places })
+    }
+}
+
+/// What every kind of layer has.
+struct Common {
+    region: Result<Option<Region>, region::Misread>,
+    blend: Blend,
+    gain: f64,
+    live: bool,
+    unit: Unit,
+    above: Option<Above>,
+}
+
+impl Common {
+    fn read(fields: &mut Fields, kind: KindName, log: &mut Log) -> Self {
+        let region = region::read(fields, kind, log);
+        let blend = blend(fields, kind, log);
+        let gain = fields.optional_number(log, "gain", GAIN).unwrap_or(1.0);
+        let live = fields.flag(log, "live", false);
+        let unit = if blend == Blend::Multiply { Unit::Factor } else { Unit::Friction };
+        // What is multiplied counts from nothing.
+        let above = match unit {
+            Unit::Friction => {
+                fields.optional_choice(log, "above", &[("natural", Above::Natural), ("zero", Above::Zero)])
+            }
+            Unit::Factor => None,
+        };
+        Self { region, blend, gain, live, unit, above }
     }
 }
 

@@ -93,10 +93,40 @@ fn every_mistake_is_told_at_once() {
     check_layers(
         "[[layer]]\nkind = \"constat\"\n[[layer]]\nkind = \"grating\"\nwavelength_mm = 0\nlow_n = \"a\"",
         &[
+            (1, 1, "layer 1 (constant) has no `friction_n`: add it"),
             (2, 8, "`kind = \"constat\"` is not known; did you mean `constant`?"),
             (3, 1, "layer 2 (grating) has no `high_n`: add it"),
             (5, 17, "`wavelength_mm = 0` is out of range: expected 0.05 to 2000 mm"),
             (6, 9, "`low_n` has to be a number, and this is a text"),
+        ],
+    );
+}
+
+/// A kind that is nearly right is read as what was meant; of one that is nothing like it, what every kind has.
+#[test]
+fn an_unknown_kind_does_not_hide_what_else_is_wrong() {
+    check_layers(
+        "[[layer]]\nkind = \"gratin\"\nwavelenght_mm = 2\nlow_n = \"a\"\nhigh_n = 0.01\ngain = 500",
+        &[
+            (2, 8, "`kind = \"gratin\"` is not known; did you mean `grating`?"),
+            (3, 1, "unknown field `wavelenght_mm` in layer 1 (grating); did you mean `wavelength_mm`?"),
+            (4, 9, "`low_n` has to be a number, and this is a text"),
+            (6, 8, "`gain = 500` is out of range: expected -100 to 100"),
+        ],
+    );
+    check_layers(
+        "[[layer]]\nkind = \"xyzzy\"\nwavelength_mm = 2\nlive = 3\nblend = \"ad\"\n\
+         region = { x_mm = 0, y_mm = 0, width_mm = 3 }",
+        &[
+            (
+                2,
+                8,
+                "`kind = \"xyzzy\"` is not known; expected one of `constant`, `grating`, `bitmap`, `noise`, `edge`, \
+                 `button`, `vibration`, `speed`, `stream`",
+            ),
+            (4, 8, "`live` has to be `true` or `false`, and this is a number"),
+            (5, 9, "`blend = \"ad\"` is not known; did you mean `add`?"),
+            (6, 10, "this region has no `height_mm`: add it"),
         ],
     );
 }

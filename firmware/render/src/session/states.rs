@@ -1,0 +1,93 @@
+//! The board's state: the commands that change it, the orders that carry it out, and what the host hears of it.
+
+use frixel_wire::fault::{Flags, State};
+use frixel_wire::message::{Accepted, Command, FromBoard, Refusal};
+
+use super::dialogue::Dialogue;
+use super::outbox::Outbox;
+use crate::Order;
+use crate::order::Status;
+
+/// Orders that may wait for the ticker. A command is refused as busy when there is no room.
+pub(super) const ORDERS_MAX: usize = 8;
+/// Of which these are kept for Stop and Disarm, so that what puts the output to zero is never refused for want of room.
+const ORDERS_KEPT: usize = 2;
+
+impl<'a> Dialogue<'a> {
+    /// Tells the host of a change of state that it did not ask for.
+    pub(super) fn report_state(&mut self, status: &Status, outbox: &mut Outbox) {
+        let before = self.state;
+        self.follow_state(status);
+        if self.state != before {
+            let fault = status.fault.filter(|_| self.state == State::Faulted).map(|(fault, _)| fault);
+            let flags = Flags(status.telemetry.flags.0 & Flags::HOST_SILENT.0);
+            outbox.send(&FromBoard::StateChanged { state: self.state, fault, flags });
+        }
+    }
+
+    /// The ticker's state holds once it has applied every order.
+    fn follow_state(&mut self, status: &Status) {
+        if self.is_settled(status) {
+            self.set_state(status.telemetry.state);
+        }
+    }
+
+    /// A stream lasts no longer than the state in which it plays.
+    fn set_state(&mut self, state: State) {
+        self.state = state;
+        #[cfg(feature = "stream")]
+        if state != State::Active {
+            self.forget_stream();
+        }
+    }
+
+    pub(super) fn is_settled(&self, status: &Status) -> bool {
+        status.orders_applied == self.orders_sent
+    }
+
+    /// Commands that a latched fault stands in the way of.
+    pub(super) fn drive(&mut self, command: Command, status: &Status) -> Result<Accepted, Refusal> {
+        if self.state == State::Faulted
+            && let Some((fault, _)) = status.fault
+        {
+            return Err(Refusal::Faulted(fault));
+        }
+        match command {
+            Command::Disarm if matches!(self.orders.back(), Some(Order::Disarm)) => Ok(Accepted::Done),
+            Command::Arm if !status.arm_switch => Err(Refusal::ArmSwitch),
+            Command::Arm => self.change_state(Order::Arm, &[State::Disarmed], State::Armed),
+            Command::Play if self.committed_crc32 == 0 => Err(Refusal::NoScene),
+            Command::Play => self.change_state(Order::Play, &[State::Armed], State::Active),
+            Command::Stop => self.change_state(Order::Stop, &[State::Active], State::Armed),
+            _ => self.change_state(Order::Disarm, &[State::Disarmed, State::Armed, State::Active], State::Disarmed),
+        }
+    }
+
+    pub(super) fn change_state(&mut self, order: Order<'a>, from: &[State], to: State) -> Result<Accepted, Refusal> {
+        if !from.contains(&self.state) {
+            return Err(Refusal::WrongState(self.state));
+        }
+        self.send_order(order)?;
+        self.set_state(to);
+        Ok(Accepted::Done)
+    }
+
+    /// Refuses when there is no room for another order, but for those that put the output to zero.
+    pub(super) fn room_for_order(&self) -> Result<(), Refusal> {
+        if self.orders.len() + ORDERS_KEPT >= ORDERS_MAX { Err(Refusal::Busy) } else { Ok(()) }
+    }
+
+    #[inline(never)]
+    pub(super) fn send_order(&mut self, order: Order<'a>) -> Result<(), Refusal> {
+        if !matches!(order, Order::Stop | Order::Disarm) {
+            self.room_for_order()?;
+        }
+        self.orders.push_back(order).map_err(|_| Refusal::Busy)?;
+        self.orders_sent = self.orders_sent.wrapping_add(1);
+        Ok(())
+    }
+
+    pub(super) fn next_order(&mut self) -> Option<Order<'a>> {
+        if core::mem::take(&mut self.host_heard) { Some(Order::HostHeard) } else { self.orders.pop_front() }
+    }
+}
