@@ -2,6 +2,9 @@
 
 use core::f64::consts::PI;
 
+use crate::Real;
+use crate::double_single::DoubleSingle;
+
 /// Shape of a carrier.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Waveform {
@@ -17,18 +20,18 @@ pub struct Carrier {
     /// Its shape.
     pub waveform: Waveform,
     /// Half a period `T`, in seconds.
-    pub half_period_s: f64,
+    pub half_period_s: f32,
     /// Time constant `tau` of the lag, in seconds; zero for none.
-    pub edge_time_constant_s: f64,
+    pub edge_time_constant_s: f32,
 }
 
 /// Current through an electrode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ElectrodeCurrent {
     /// Root mean square over a period, in amperes.
-    pub a_rms: f64,
+    pub a_rms: f32,
     /// Largest, in amperes.
-    pub a_peak: f64,
+    pub a_peak: f32,
 }
 
 impl Carrier {
@@ -44,19 +47,22 @@ impl Carrier {
     /// // 20 us edges take 8 % of the mean square of a 1 kHz square wave.
     /// let carrier = Carrier { waveform: Waveform::Square, half_period_s: 500e-6, edge_time_constant_s: 20e-6 };
     /// let peak = carrier.peak_per_rms();
-    /// assert!((peak * peak * 0.92 - 1.0).abs() < 1e-9);
+    /// assert!((peak * peak * 0.92 - 1.0).abs() < 2e-7);
     /// ```
-    pub fn peak_per_rms(&self) -> f64 {
-        match self.waveform {
+    pub fn peak_per_rms(&self) -> f32 {
+        let half_period_s = DoubleSingle::from(self.half_period_s);
+        let edge_time_constant_s = DoubleSingle::from(self.edge_time_constant_s);
+        let square = match self.waveform {
             Waveform::Square if self.edge_time_constant_s > 0.0 => {
-                1.0 / libm::sqrt(square_left(self.half_period_s / (2.0 * self.edge_time_constant_s)))
+                DoubleSingle::ONE / square_left(half_period_s / (DoubleSingle::TWO * edge_time_constant_s))
             }
-            Waveform::Square => 1.0,
+            Waveform::Square => DoubleSingle::ONE,
             Waveform::Sine => {
-                let lag = PI / self.half_period_s * self.edge_time_constant_s;
-                libm::sqrt(2.0 * (1.0 + lag * lag))
+                let lag = DoubleSingle::from_f64(PI) / half_period_s * edge_time_constant_s;
+                DoubleSingle::TWO * (DoubleSingle::ONE + lag * lag)
             }
-        }
+        };
+        square.sqrt().to_f32()
     }
 
     /// Largest current into a capacitance of `capacitance_f` farads at a peak `U` of `drive_v_peak` volts at the DAC, for
@@ -65,11 +71,11 @@ impl Carrier {
     /// A full swing moves the charge `2 U C` along an exponential: peak `2 U C/tau`, and with two swings a period an rms
     /// of `2 U C sqrt(f/tau)`. That is a square wave at full voltage. It is the budget of a sine, too: a sine is smooth
     /// only while its envelope is, and edges in a texture, or early edges that keep direct current away, step it.
-    pub fn electrode_current(&self, capacitance_f: f64, drive_v_peak: f64) -> ElectrodeCurrent {
+    pub fn electrode_current(&self, capacitance_f: f32, drive_v_peak: f32) -> ElectrodeCurrent {
         let swing_c = 2.0 * capacitance_f * drive_v_peak;
         let carrier_hz = 0.5 / self.half_period_s;
         ElectrodeCurrent {
-            a_rms: swing_c * libm::sqrt(carrier_hz / self.edge_time_constant_s),
+            a_rms: swing_c * DoubleSingle::from(carrier_hz / self.edge_time_constant_s).sqrt().to_f32(),
             a_peak: swing_c / self.edge_time_constant_s,
         }
     }
@@ -77,16 +83,17 @@ impl Carrier {
 
 /// `1 - tanh(r)/r`: by Lambert's continued fraction `tanh(r) = r/(1 + r^2/(3 + r^2/(5 + ...)))`, which keeps its digits for
 /// small `r` and is a tenth of the code of `tanh`.
-fn square_left(r: f64) -> f64 {
-    /// From here on `tanh` is one to the last bit.
-    const STEEP: f64 = 20.0;
+fn square_left<T: Real>(r: T) -> T {
+    /// From here on `tanh` is one to the last bit of `f64`.
+    const STEEP: f32 = 20.0;
     /// Terms that leave less than a last bit up to there.
-    const TERMS: u32 = 32;
-    if r > STEEP {
-        return 1.0 - 1.0 / r;
+    const TERMS: u16 = 32;
+    if r > T::from(STEEP) {
+        return T::ONE - T::ONE / r;
     }
     let square = r * r;
-    let tail = (1..TERMS).rev().fold(f64::from(2 * TERMS + 1), |tail, term| f64::from(2 * term + 1) + square / tail);
+    let odd = |term: u16| T::from(f32::from(2 * term + 1));
+    let tail = (1..TERMS).rev().fold(odd(TERMS), |tail, term| odd(term) + square / tail);
     square / (tail + square)
 }
 
@@ -125,7 +132,7 @@ mod tests {
     }
 
     fn carrier(waveform: Waveform, edge_time_constant_s: f64) -> Carrier {
-        Carrier { waveform, half_period_s: 500e-6, edge_time_constant_s }
+        Carrier { waveform, half_period_s: 500e-6, edge_time_constant_s: edge_time_constant_s as f32 }
     }
 
     #[test]
@@ -133,9 +140,9 @@ mod tests {
         let square = |turns: f64| if turns - libm::floor(turns) < 0.5 { 1.0 } else { -1.0 };
         let sine = |turns: f64| libm::sin(2.0 * PI * turns);
         for tau_s in [5e-6, 20e-6, 400e-6] {
-            let peak = carrier(Waveform::Square, tau_s).peak_per_rms();
+            let peak = f64::from(carrier(Waveform::Square, tau_s).peak_per_rms());
             assert!((peak * peak * stepped(square, 500e-6, tau_s) - 1.0).abs() < 1e-3, "square {tau_s}");
-            let peak = carrier(Waveform::Sine, tau_s).peak_per_rms();
+            let peak = f64::from(carrier(Waveform::Sine, tau_s).peak_per_rms());
             assert!((peak * peak * stepped(sine, 500e-6, tau_s) - 1.0).abs() < 1e-3, "sine {tau_s}");
         }
         assert!(carrier(Waveform::Square, 0.0).peak_per_rms() <= 1.0);
@@ -163,12 +170,13 @@ mod tests {
         let square = |tick: i32| if tick % 40 < 20 { v_peak } else { -v_peak };
         let sine = |tick: i32| v_peak * libm::sin(2.0 * PI * f64::from(tick) / 40.0);
         for tau_s in [5e-6, 20e-6, 60e-6] {
-            let found = carrier(Waveform::Square, tau_s).electrode_current(capacitance_f, v_peak);
+            let found = carrier(Waveform::Square, tau_s).electrode_current(capacitance_f as f32, v_peak as f32);
+            let (found_a_rms, found_a_peak) = (f64::from(found.a_rms), f64::from(found.a_peak));
             let (rms, peak) = stepped_current(square, capacitance_f, tau_s);
-            assert!(found.a_rms >= 0.99 * rms && found.a_rms <= 1.02 * rms, "{tau_s}: {found:?}, {rms}");
-            assert!(found.a_peak >= 0.99 * peak && found.a_peak <= 1.02 * peak, "{tau_s}: {found:?}, {peak}");
+            assert!(found_a_rms >= 0.99 * rms && found_a_rms <= 1.02 * rms, "{tau_s}: {found:?}, {rms}");
+            assert!(found_a_peak >= 0.99 * peak && found_a_peak <= 1.02 * peak, "{tau_s}: {found:?}, {peak}");
             let (rms, peak) = stepped_current(sine, capacitance_f, tau_s);
-            assert!(found.a_rms > rms && found.a_peak > peak, "{tau_s}: {found:?}, {rms}, {peak}");
+            assert!(found_a_rms > rms && found_a_peak > peak, "{tau_s}: {found:?}, {rms}, {peak}");
         }
     }
 }

@@ -104,6 +104,7 @@
 mod carrier;
 mod coating;
 mod contact;
+mod double_single;
 mod error;
 mod finger;
 mod real;

@@ -7,6 +7,7 @@ mod sealed {
     pub trait Sealed {}
     impl Sealed for f32 {}
     impl Sealed for f64 {}
+    impl Sealed for crate::double_single::DoubleSingle {}
 }
 
 /// A real number: `f32` or `f64`, with mathematics from `libm` by name, so that desktop and chip give the same bits.
@@ -39,6 +40,8 @@ pub trait Real:
 
     /// The nearest number to `value`.
     fn from_f64(value: f64) -> Self;
+    /// The nearest `f32`.
+    fn to_f32(self) -> f32;
     /// Square root, correctly rounded.
     #[must_use]
     fn sqrt(self) -> Self;
@@ -84,6 +87,9 @@ impl Real for f64 {
     fn from_f64(value: f64) -> Self {
         value
     }
+    fn to_f32(self) -> f32 {
+        self as f32
+    }
     fn sqrt(self) -> Self {
         libm::sqrt(self)
     }
@@ -120,6 +126,9 @@ impl Real for f32 {
 
     fn from_f64(value: f64) -> Self {
         value as f32
+    }
+    fn to_f32(self) -> f32 {
+        self
     }
     fn sqrt(self) -> Self {
         libm::sqrtf(self)

@@ -135,7 +135,8 @@ fn a_cut_table_is_the_whole_one_up_to_what_is_asked_for() {
     for (normal_load_n, voltage_max_v_rms) in [(0.0, 0.3), (0.0, 150.0), (0.5, 150.0), (0.5, 200.0)] {
         let contact = contact(normal_load_n);
         let whole = InverseTable::build(&contact, voltage_max_v_rms).unwrap();
-        let rows = |asked_max_n| InverseTable::rows_up_to(&contact, voltage_max_v_rms, asked_max_n).unwrap();
+        let rows =
+            |asked_max_n| InverseTable::build_up_to(&contact, voltage_max_v_rms, asked_max_n).unwrap().rows_filled();
         let largest_n = whole.electric_friction_max_n();
         let knee_n = contact.electric_friction_n((voltage_max_v_rms / 200.0).min(1.0)) as f32;
         let mut fewest = usize::MAX;

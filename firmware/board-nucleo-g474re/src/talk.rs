@@ -98,7 +98,9 @@ impl Talk {
             log_change(&self.status, &status);
             self.status = status;
             tick::want_status();
-            self.watchdog.freeze_with_debugger(status.telemetry.state == State::Disarmed);
+            // An order to arm may be on its way behind this status.
+            let disarmed = [self.status.telemetry.state, self.session.state()] == [State::Disarmed; 2];
+            self.watchdog.freeze_with_debugger(disarmed);
             clock::keep_timers_running_in_debug();
         }
     }

@@ -1,6 +1,6 @@
 //! The coefficients that the tick reads. What can be computed when a scene is committed is never computed in the tick.
 
-use frixel_model::{Carrier, Contact, Finger, InverseTable, LoadedContact, Waveform};
+use frixel_model::{Carrier, Finger, InverseTable, TableError, Waveform};
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
 use frixel_wire::scene::cost::{self, LayerCosts, TICK_INSTRUCTIONS_MAX, Worst};
 use frixel_wire::scene::{Carrier as Shape, Grid, Header, LayerSet, Point, RECORDS_MAX, Scene};
@@ -75,7 +75,10 @@ impl Active {
             asked.add(number, &record, tables.points());
         }
         let (_, voltage_max_v_rms) = carrier(header, board).map_err(Refusal::Config)?;
-        let rows = |asked_max_n| rows(header, voltage_max_v_rms, asked_max_n).map_err(Refusal::Config);
+        let rows = |asked_max_n| {
+            let table = table(header, voltage_max_v_rms, asked_max_n).map_err(Refusal::Config)?;
+            Ok::<_, Refusal>(table.rows_filled())
+        };
         let (filled, whole) = (rows(asked_max_n(header, &asked, &grid))?, rows(f32::INFINITY)?);
         Ok(TableRows { filled, whole })
     }
@@ -218,27 +221,25 @@ impl Active {
 /// The carrier of a scene, and the largest rms voltage that it carries within all limits.
 fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), ConfigRefusal> {
     let limits = &board.limits;
-    let tick_period_s = f64::from(board.tick_period_s());
     let half_period_ticks = board.ticks(0.5 / header.carrier_hz);
     let carrier = Carrier {
         waveform: match header.carrier {
             Shape::Sine if cfg!(feature = "sine-carrier") => Waveform::Sine,
             _ => Waveform::Square,
         },
-        half_period_s: f64::from(half_period_ticks) * tick_period_s,
-        edge_time_constant_s: f64::from(limits.edge_time_constant_s),
+        half_period_s: half_period_ticks as f32 * board.tick_period_s(),
+        edge_time_constant_s: limits.edge_time_constant_s,
     };
-    let peak_per_rms = carrier.peak_per_rms() as f32;
+    let peak_per_rms = carrier.peak_per_rms();
     let voltage_max_v_rms = header.voltage_max_v_rms.min(header.voltage_max_v_peak / peak_per_rms);
 
-    let capacitance_f = f64::from(limits.electrode_capacitance_max_f);
-    let drive_v_peak = f64::from(voltage_max_v_rms * peak_per_rms);
-    let current = carrier.electrode_current(capacitance_f, drive_v_peak);
+    let drive_v_peak = voltage_max_v_rms * peak_per_rms;
+    let current = carrier.electrode_current(limits.electrode_capacitance_max_f, drive_v_peak);
     for (field, found_a, max_a) in [
         (ConfigField::CurrentRms, current.a_rms, limits.current_max_a_rms),
         (ConfigField::CurrentPeak, current.a_peak, limits.current_max_a_peak),
     ] {
-        config::within(field, found_a as f32, 0.0, max_a, ConfigRefusal::WHOLE_SCENE)?;
+        config::within(field, found_a, 0.0, max_a, ConfigRefusal::WHOLE_SCENE)?;
     }
 
     let codes_per_v = f32::from(i16::MAX) / limits.full_scale_v_peak;
@@ -263,32 +264,26 @@ fn asked_max_n(header: &Header, asked: &Asked, grid: &Grid) -> f32 {
     if header.layers_fixed { asked.electric_friction_max_n(grid) } else { f32::INFINITY }
 }
 
-/// The inverse table of a scene's finger, coating and load, up to what is asked for. It is made in f64, so that its error
-/// is the table's own.
+/// The inverse table of a scene's finger, coating and load, up to what is asked for.
 fn table(header: &Header, voltage_max_v_rms: f32, asked_max_n: f32) -> Result<InverseTable, ConfigRefusal> {
-    InverseTable::build_up_to(&contact(header)?, f64::from(voltage_max_v_rms), asked_max_n)
-        .map_err(|_| refusal(ConfigField::TableRange, voltage_max_v_rms))
+    let Header { effective_gap_m, normal_load_n, .. } = *header;
+    InverseTable::of_finger(&finger(header), effective_gap_m, normal_load_n, voltage_max_v_rms, asked_max_n)
+        .map_err(|error| no_table(&error, header, voltage_max_v_rms))
 }
 
-/// How many rows of it hold a piece of the curve.
-fn rows(header: &Header, voltage_max_v_rms: f32, asked_max_n: f32) -> Result<usize, ConfigRefusal> {
-    InverseTable::rows_up_to(&contact(header)?, f64::from(voltage_max_v_rms), asked_max_n)
-        .map_err(|_| refusal(ConfigField::TableRange, voltage_max_v_rms))
-}
-
-fn refusal(field: ConfigField, found: f32) -> ConfigRefusal {
+fn no_table(error: &TableError, header: &Header, voltage_max_v_rms: f32) -> ConfigRefusal {
+    let (field, found) = match error {
+        TableError::Contact => (ConfigField::EffectiveGap, header.effective_gap_m),
+        _ => (ConfigField::TableRange, voltage_max_v_rms),
+    };
     ConfigRefusal { field, found, min: 0.0, max: f32::INFINITY, layer: ConfigRefusal::WHOLE_SCENE }
 }
 
-/// A scene's finger on its coating, under its load.
-fn contact(header: &Header) -> Result<LoadedContact<f64>, ConfigRefusal> {
-    let finger = Finger {
-        radius_m: f64::from(header.finger_radius_m),
-        stiffness_pa_per_m: f64::from(header.stiffness_pa_per_m),
-        friction_coefficient: f64::from(header.friction_coefficient),
-    };
-    Contact::new(&finger, f64::from(header.effective_gap_m))
-        .map_err(|_| refusal(ConfigField::EffectiveGap, header.effective_gap_m))?
-        .under_load(f64::from(header.normal_load_n))
-        .map_err(|_| refusal(ConfigField::NormalLoad, header.normal_load_n))
+/// A scene's finger.
+fn finger(header: &Header) -> Finger<f32> {
+    Finger {
+        radius_m: header.finger_radius_m,
+        stiffness_pa_per_m: header.stiffness_pa_per_m,
+        friction_coefficient: header.friction_coefficient,
+    }
 }

@@ -33,7 +33,9 @@ const BURST_MAX_S: f32 = 60.0;
 const SPEED_MAX_M_PER_S: f32 = 10.0;
 const SPEED_STEP_MIN_M_PER_S: f32 = 1e-5;
 
+// Code of its own: nearly every line below calls it.
 /// Takes a number when it is from `min` to `max`; not-a-number never is.
+#[inline(never)]
 pub(crate) fn within(field: ConfigField, found: f32, min: f32, max: f32, layer: u8) -> Result<(), ConfigRefusal> {
     if found >= min && found <= max { Ok(()) } else { Err(ConfigRefusal { field, found, min, max, layer }) }
 }
@@ -70,21 +72,24 @@ pub(crate) fn check_record(record: &Record, scene: &Scene, layer: u8) -> Result<
 
 fn check_region(region: Region, scene: &Scene, layer: u8) -> Result<(), ConfigRefusal> {
     match region {
-        Region::Screen => Ok(()),
         Region::Rectangle { x_m, y_m, width_m, height_m } | Region::Ellipse { x_m, y_m, width_m, height_m } => {
             lengths(ConfigField::Region, [x_m, y_m], layer)?;
             sizes(ConfigField::Region, [width_m, height_m], layer)
         }
-        Region::Polygon { first, count } => {
+        Region::Polygon { first, count } if cfg!(feature = "polygon") => {
             points(scene, first, count).try_for_each(|vertex| lengths(ConfigField::Vertex, [vertex.x, vertex.y], layer))
         }
+        // A polygon that is left out is refused when it is read.
+        Region::Screen | Region::Polygon { .. } => Ok(()),
     }
 }
 
 fn check_kind(kind: &Layer, scene: &Scene, layer: u8) -> Result<(), ConfigRefusal> {
     match *kind {
         Layer::Constant { electric_friction_n } => frictions([electric_friction_n], layer),
-        Layer::Grating { wave, cycles_per_m_x, cycles_per_m_y, phase_turns, trough_n, crest_n } => {
+        Layer::Grating { wave, cycles_per_m_x, cycles_per_m_y, phase_turns, trough_n, crest_n }
+            if cfg!(feature = "grating") =>
+        {
             within(ConfigField::WaveVector, cycles_per_m_x, -CYCLES_PER_M_MAX, CYCLES_PER_M_MAX, layer)?;
             within(ConfigField::WaveVector, cycles_per_m_y, -CYCLES_PER_M_MAX, CYCLES_PER_M_MAX, layer)?;
             within(ConfigField::Phase, phase_turns, -1000.0, 1000.0, layer)?;
@@ -93,40 +98,44 @@ fn check_kind(kind: &Layer, scene: &Scene, layer: u8) -> Result<(), ConfigRefusa
             }
             frictions([trough_n, crest_n], layer)
         }
-        Layer::Bitmap { x_m, y_m, pitch_m, pitch_y_m, angle_turns, black_n, white_n, .. } => {
+        Layer::Bitmap { x_m, y_m, pitch_m, pitch_y_m, angle_turns, black_n, white_n, .. }
+            if cfg!(feature = "bitmap") =>
+        {
             lengths(ConfigField::BitmapPlacement, [x_m, y_m], layer)?;
             within(ConfigField::BitmapPlacement, pitch_m, PITCH_MIN_M, PITCH_MAX_M, layer)?;
             within(ConfigField::BitmapPlacement, pitch_y_m, PITCH_MIN_M, PITCH_MAX_M, layer)?;
             angle(angle_turns, layer)?;
             frictions([black_n, white_n], layer)
         }
-        Layer::Noise { wavelength_min_m, wavelength_max_m, low_n, high_n, .. } => {
+        Layer::Noise { wavelength_min_m, wavelength_max_m, low_n, high_n, .. } if cfg!(feature = "noise") => {
             let least_m = 1.0 / CYCLES_PER_M_MAX;
             within(ConfigField::Wavelength, wavelength_max_m, least_m, LENGTH_MAX_M, layer)?;
             within(ConfigField::Wavelength, wavelength_min_m, least_m, wavelength_max_m, layer)?;
             frictions([low_n, high_n], layer)
         }
-        Layer::Edge { x_m, y_m, angle_turns, width_m, level_n, ridge_n, click } => {
+        Layer::Edge { x_m, y_m, angle_turns, width_m, level_n, ridge_n, click } if cfg!(feature = "edge") => {
             lengths(ConfigField::Shape, [x_m, y_m], layer)?;
             within(ConfigField::Shape, width_m, WIDTH_MIN_M, LENGTH_MAX_M, layer)?;
             angle(angle_turns, layer)?;
             frictions([level_n, ridge_n, click.height_n], layer)?;
             within(ConfigField::Duration, click.decay_s, 0.0, CLICK_MAX_S, layer)
         }
-        Layer::Button { rim_width_m, rim_n, face_n, click } => {
+        Layer::Button { rim_width_m, rim_n, face_n, click } if cfg!(feature = "edge") => {
             within(ConfigField::Shape, rim_width_m, WIDTH_MIN_M, LENGTH_MAX_M, layer)?;
             frictions([rim_n, face_n, click.height_n], layer)?;
             within(ConfigField::Duration, click.decay_s, 0.0, CLICK_MAX_S, layer)
         }
-        Layer::Vibration { frequency_hz, low_n, high_n, burst, .. } => {
+        Layer::Vibration { frequency_hz, low_n, high_n, burst, .. } if cfg!(feature = "vibration") => {
             within(ConfigField::VibrationFrequency, frequency_hz, 0.01, 1000.0, layer)?;
             within(ConfigField::Duration, burst.period_s, 0.0, BURST_MAX_S, layer)?;
             within(ConfigField::Duration, burst.on_s, 0.0, burst.period_s, layer)?;
             within(ConfigField::Duration, burst.ramp_s, 0.0, 0.5 * burst.on_s, layer)?;
             frictions([low_n, high_n], layer)
         }
-        Layer::Speed { first, count } => check_curve(points(scene, first, count), layer),
-        Layer::Stream { low_n, high_n } => frictions([low_n, high_n], layer),
+        Layer::Speed { first, count } if cfg!(feature = "speed") => check_curve(points(scene, first, count), layer),
+        Layer::Stream { low_n, high_n } if cfg!(feature = "stream") => frictions([low_n, high_n], layer),
+        // Left out: refused when it is read.
+        _ => Ok(()),
     }
 }
 

@@ -42,8 +42,7 @@ impl FingerTiming {
 /// The finger on the screen, if there is one.
 ///
 /// A report is taken in by small steps, so that no tick has much of it to do: first by [`Finger::take`], then by
-/// [`Finger::go_on`] as long as there is an errand. Only a source that reports before the last report is taken in makes
-/// a tick do all of it.
+/// [`Finger::go_on`] as long as there is an errand.
 pub(crate) struct Finger {
     x: Motion,
     y: Motion,
@@ -120,23 +119,21 @@ impl Finger {
         matches!(self.presence, Presence::Down { .. })
     }
 
-    /// Takes a report of the touch source. A finger that comes down is there when the report is taken in; one that is
-    /// lifted is gone at once. Returns whether what was left of the report before had to be taken in: it is to be looked
-    /// at then.
-    pub(crate) fn take(&mut self, touch: Touch, now_tick: u32, prediction: bool, timing: &FingerTiming) -> bool {
-        let late = self.errand != Errand::None;
-        if late {
-            self.hurry(now_tick, prediction, timing);
-        }
+    /// Takes a report of the touch source, unless the last is not taken in wholly: a source that is faster is heard again
+    /// soon. A finger that comes down is there when its report is taken in; one that is lifted is gone at once. Returns
+    /// whether the report was taken.
+    pub(crate) fn take(&mut self, touch: Touch, now_tick: u32, timing: &FingerTiming) -> bool {
         match touch {
             Touch::Up => {
                 self.lift(Presence::Up);
                 self.sampled_at_tick = None;
+                true
             }
-            Touch::Down { x_m, y_m, age_ticks } => {
+            Touch::Down { x_m, y_m, age_ticks } if self.errand == Errand::None => {
                 let newer = self.sampled_at_tick.is_none_or(|tick| age_ticks < now_tick.wrapping_sub(tick));
                 // A report that says nothing new does not keep the output alive: the source may be stuck.
-                if newer && age_ticks <= timing.sample_age_max_ticks && x_m.is_finite() && y_m.is_finite() {
+                let taken = newer && age_ticks <= timing.sample_age_max_ticks && x_m.is_finite() && y_m.is_finite();
+                if taken {
                     let at_tick = now_tick.wrapping_sub(age_ticks);
                     let left_ticks = timing.sample_age_max_ticks - age_ticks;
                     let until_tick = now_tick.wrapping_add(timing.stale_after_ticks.min(left_ticks) + 1);
@@ -147,9 +144,10 @@ impl Finger {
                         self.presence = Presence::Down { until_tick };
                     }
                 }
+                taken
             }
+            Touch::Down { .. } => false,
         }
-        late
     }
 
     /// There is something to do before the next report: the last one is not taken in wholly, or the gain is on its way.
@@ -197,18 +195,6 @@ impl Finger {
             }
         }
         false
-    }
-
-    /// Does at once what is left to do: a source that is faster is not to starve the finger.
-    #[cold]
-    #[inline(never)]
-    fn hurry(&mut self, now_tick: u32, prediction: bool, timing: &FingerTiming) {
-        while self.errand != Errand::None {
-            self.go_on(now_tick, prediction, timing);
-        }
-        if self.stillness.is_ramping() {
-            self.stillness.settle(now_tick);
-        }
     }
 
     /// Finds anew where the finger is at a tick and how it goes on, now that another scene may say so in another way.
@@ -286,7 +272,7 @@ impl Finger {
     /// Its speed as of the last report, in m/s.
     pub(crate) fn speed_m_per_s(&self) -> f32 {
         let [x, y] = self.velocity_m_per_s;
-        libm::sqrtf(x * x + y * y)
+        crate::root::square_root(x * x + y * y)
     }
 }
 

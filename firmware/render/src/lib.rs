@@ -52,7 +52,6 @@ mod io;
 mod layer;
 mod motion;
 mod order;
-#[cfg(any(feature = "edge", feature = "speed"))]
 mod root;
 mod session;
 mod stillness;

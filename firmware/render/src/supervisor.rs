@@ -43,7 +43,7 @@ impl Monitor {
         Self {
             expected_v: 0.0,
             volts_per_code: board.limits.full_scale_v_peak / f32::from(i16::MAX),
-            step: 1.0 - libm::expf(-board.tick_period_s() / board.limits.edge_time_constant_s),
+            step: lag_step(board.tick_period_s() / board.limits.edge_time_constant_s),
             gain_tolerance: MONITOR_GAIN_TOLERANCE,
             floor_v,
             unnoticed_v: floor_v,
@@ -77,6 +77,17 @@ impl Monitor {
         self.wrong_ticks = 0;
         self.unnoticed_v = self.floor_v;
     }
+}
+
+/// `1 - exp(-x)`, what a first-order lag follows in `x` of its time constants, within 1e-5 for `x` up to one and 1e-3 for any
+/// above zero: 64 steps of the trapezoidal rule. `libm::expf` is five times the code.
+fn lag_step(x: f32) -> f32 {
+    let half_step = (x / 128.0).min(1.0);
+    let mut left = (1.0 - half_step) / (1.0 + half_step);
+    for _ in 0..6 {
+        left *= left;
+    }
+    1.0 - left
 }
 
 impl Supervisor {

@@ -86,6 +86,7 @@ impl<'a> Payload<'a> {
     }
 
     /// Reads a payload that a host sent.
+    #[inline(never)]
     pub fn parse_from_host(payload: &'a [u8]) -> Result<Self, ParseError> {
         let (&kind, rest) = payload.split_first().ok_or(ParseError::Empty)?;
         match (kind, rest) {
@@ -136,6 +137,7 @@ pub fn hello_request_frame(frame: &mut [u8; FRAME_MAX_LEN]) -> Result<&[u8], Wri
 }
 
 /// Frame of a hello.
+#[inline(never)]
 pub fn hello_frame<'f>(hello: &Hello, frame: &'f mut [u8; FRAME_MAX_LEN]) -> Result<&'f [u8], WriteError> {
     let mut buffer = [0; PAYLOAD_MAX_LEN];
     Ok(frame::encode(join(&mut buffer, &[HELLO], &hello.write())?, frame)?)
@@ -148,6 +150,7 @@ pub fn request_frame<'f>(request: &Request, frame: &'f mut [u8; FRAME_MAX_LEN]) 
 }
 
 /// Frame of a message of the board.
+#[inline(never)]
 pub fn from_board_frame<'f>(message: &FromBoard, frame: &'f mut [u8; FRAME_MAX_LEN]) -> Result<&'f [u8], WriteError> {
     let mut buffer = [0; PAYLOAD_MAX_LEN];
     Ok(frame::encode(write_postcard(&mut buffer, FROM_BOARD, message)?, frame)?)

@@ -121,7 +121,7 @@ struct Inversion {
 impl Inversion {
     fn new(program: &Program, limits: &BoardLimits, tick_hz: u32) -> Result<Self, ParameterError> {
         let half_period_s = f64::from(program.half_period_ticks) / f64::from(tick_hz);
-        let peak_per_rms = carrier(program.header.carrier, half_period_s, limits).peak_per_rms();
+        let peak_per_rms = f64::from(carrier(program.header.carrier, half_period_s, limits).peak_per_rms());
         let codes_per_v_peak = f64::from(i16::MAX) / f64::from(limits.full_scale_v_peak);
         Ok(Self {
             contact: contact_of(&program.header)?,

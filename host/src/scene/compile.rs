@@ -135,7 +135,7 @@ fn header(scene: &Scene, limits: &BoardLimits, half_period_s: f64, log: &mut Log
     let drive = &scene.drive;
     let shape = scene.carrier.shape;
     let board_v_peak = f64::from(limits.voltage_max_v_peak.min(limits.full_scale_v_peak));
-    let peak_per_rms = carrier(shape, half_period_s, limits).peak_per_rms();
+    let peak_per_rms = f64::from(carrier(shape, half_period_s, limits).peak_per_rms());
     let v_peak = match drive.voltage_max_v_peak {
         Some(found) if found > board_v_peak => {
             log.add(drive.places.field("voltage_max_v_peak"), Mistake::PeakAboveBoard { found, board: board_v_peak });
@@ -176,9 +176,8 @@ fn header(scene: &Scene, limits: &BoardLimits, half_period_s: f64, log: &mut Log
 /// The current into the worst-case electrode at the largest voltage, as the board budgets it.
 fn check_current(scene: &Scene, limits: &BoardLimits, header: &Header, log: &mut Log) {
     let carrier = carrier(header.carrier, 0.5 / f64::from(header.carrier_hz), limits);
-    let drive_v_peak = f64::from(header.voltage_max_v_rms) * carrier.peak_per_rms();
-    let capacitance_f = f64::from(limits.electrode_capacitance_max_f);
-    let current = carrier.electrode_current(capacitance_f, drive_v_peak);
+    let drive_v_peak = header.voltage_max_v_rms * carrier.peak_per_rms();
+    let current = carrier.electrode_current(limits.electrode_capacitance_max_f, drive_v_peak);
     for (kind, found_a, board_a, cure) in [
         (
             "rms",
@@ -188,9 +187,13 @@ fn check_current(scene: &Scene, limits: &BoardLimits, header: &Header, log: &mut
         ),
         ("peak", current.a_peak, limits.current_max_a_peak, "`voltage_max_v_rms` under [drive]"),
     ] {
-        if found_a > f64::from(board_a) {
-            let mistake =
-                Mistake::CurrentAboveBoard { kind, found_ma: found_a * 1e3, board_ma: f64::from(board_a) * 1e3, cure };
+        if found_a > board_a {
+            let mistake = Mistake::CurrentAboveBoard {
+                kind,
+                found_ma: f64::from(found_a) * 1e3,
+                board_ma: f64::from(board_a) * 1e3,
+                cure,
+            };
             log.add(scene.carrier.places.table(), mistake);
         }
     }

@@ -40,7 +40,14 @@ impl Reach {
         let loaded = contact.under_load(f64::from(header.normal_load_n)).map_err(ReachError::Contact)?;
         let voltage_max_v_rms = f64::from(header.voltage_max_v_rms);
         // The board makes the same table when the scene is committed.
-        InverseTable::build(&loaded, voltage_max_v_rms).map_err(|_: TableError| ReachError::Table)?;
+        let finger = Finger {
+            radius_m: header.finger_radius_m,
+            stiffness_pa_per_m: header.stiffness_pa_per_m,
+            friction_coefficient: header.friction_coefficient,
+        };
+        let (gap_m, normal_load_n) = (header.effective_gap_m, header.normal_load_n);
+        InverseTable::of_finger(&finger, gap_m, normal_load_n, header.voltage_max_v_rms)
+            .map_err(|_: TableError| ReachError::Table)?;
         Ok(Self {
             natural_friction_n: loaded.natural_friction_n(),
             electric_friction_max_n: loaded.electric_friction_n(voltage_max_v_rms),
@@ -59,11 +66,11 @@ impl Reach {
     }
 }
 
-/// The carrier of a scene on a board.
+/// The carrier of a scene on a board, in the board's precision.
 pub(crate) fn carrier(shape: Shape, half_period_s: f64, limits: &BoardLimits) -> Carrier {
     let waveform = match shape {
         Shape::Square => Waveform::Square,
         Shape::Sine => Waveform::Sine,
     };
-    Carrier { waveform, half_period_s, edge_time_constant_s: f64::from(limits.edge_time_constant_s) }
+    Carrier { waveform, half_period_s: half_period_s as f32, edge_time_constant_s: limits.edge_time_constant_s }
 }

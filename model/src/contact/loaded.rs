@@ -1,12 +1,16 @@
 //! The contact under a load of zero or more, Eqs. (36), (43), (21): infallible and without iteration.
 
+use core::f64::consts::PI;
+
 use super::Contact;
 use super::curve::{Point, root_of_quotient, upper_inverse};
+use crate::coating::VACUUM_PERMITTIVITY_F_PER_M;
+use crate::double_single::DoubleSingle;
 use crate::error::{
     InverseError, ParameterError, StateError, found_voltage_v_rms, not_negative, representable,
     wanted_electric_friction_n,
 };
-use crate::{ContactModel, ContactState, Real, Sensitivity};
+use crate::{ContactModel, ContactState, Finger, Real, Sensitivity};
 
 /// A contact under a fixed normal load of zero or more, the attraction around it counted to any distance.
 ///
@@ -60,6 +64,58 @@ impl<T: Real> LoadedContact<T> {
         let scale = self.contact.friction_scale_n;
         let y = root_of_quotient(self.natural_friction_n + electric_friction_n, scale);
         self.contact.voltage_scale_v_rms * upper_inverse(y, electric_friction_n / (scale * y))
+    }
+}
+
+impl LoadedContact<f64> {
+    /// The same in numbers of fewer bits, for a table.
+    pub(crate) fn in_double_single(&self) -> LoadedContact<DoubleSingle> {
+        let number = DoubleSingle::from_f64;
+        let Contact { voltage_scale_v_rms, friction_scale_n, load_scale_n, area_scale_m2, .. } = self.contact;
+        LoadedContact {
+            contact: Contact {
+                voltage_scale_v_rms: number(voltage_scale_v_rms),
+                friction_scale_n: number(friction_scale_n),
+                load_scale_n: number(load_scale_n),
+                area_scale_m2: number(area_scale_m2),
+                radius_m: number(self.contact.radius_m),
+                stiffness_pa_per_m: number(self.contact.stiffness_pa_per_m),
+                friction_coefficient: number(self.contact.friction_coefficient),
+            },
+            natural_friction_n: number(self.natural_friction_n),
+            n: number(self.n),
+        }
+    }
+}
+
+impl LoadedContact<DoubleSingle> {
+    /// As [`Contact::new`] and [`Contact::under_load`] make it, from numbers that a board is told; `None` where they refuse.
+    pub(crate) fn of_finger(finger: &Finger<f32>, gap_m: f32, normal_load_n: f32) -> Option<Self> {
+        let Finger { radius_m, stiffness_pa_per_m, friction_coefficient } = *finger;
+        let in_range = |value: f32| (f32::MIN_POSITIVE..=f32::MAX).contains(&value);
+        let given = [radius_m, stiffness_pa_per_m, friction_coefficient, gap_m];
+        if !(given.into_iter().all(in_range) && normal_load_n >= 0.0) {
+            return None;
+        }
+        let [radius_m, stiffness_pa_per_m, friction_coefficient, g] = given.map(DoubleSingle::from);
+        let normal_load_n = DoubleSingle::from(normal_load_n);
+        // From the left, each product stays far from the least number.
+        let load_scale_n = DoubleSingle::from_f64(PI) * stiffness_pa_per_m * radius_m * g * g;
+        let square = stiffness_pa_per_m * g * DoubleSingle::from_f64(2.0 / VACUUM_PERMITTIVITY_F_PER_M);
+        let contact = Contact {
+            voltage_scale_v_rms: square.sqrt() * g,
+            friction_scale_n: friction_coefficient * load_scale_n,
+            load_scale_n,
+            area_scale_m2: DoubleSingle::TWO * radius_m * g,
+            radius_m,
+            stiffness_pa_per_m,
+            friction_coefficient,
+        };
+        let natural_friction_n = friction_coefficient * normal_load_n;
+        let n = contact.load(normal_load_n);
+        let scales = [contact.voltage_scale_v_rms, contact.friction_scale_n, load_scale_n];
+        let fits = scales.into_iter().all(|scale| in_range(scale.to_f32()));
+        (fits && natural_friction_n.is_finite() && n.is_finite()).then_some(Self { contact, natural_friction_n, n })
     }
 }
 

@@ -13,11 +13,11 @@ pub(super) const ROUNDING: f64 = 25.0 / (1 << 24) as f64;
 
 /// The last point is put this far below the curve, relative to it: eight half-units, more than rounding at the end of a row
 /// (7.3 of them), so that no voltage is above the largest.
-pub(super) const TOP_MARGIN: f64 = 1.0 / (1 << 21) as f64;
+pub(super) const TOP_MARGIN: f32 = 1.0 / (1 << 21) as f32;
 
 /// Share of the top margin: its polynomial reaches at most 0.5 where the interpolation's error is greatest, and friction grows
 /// at most with the fourth power of the voltage.
-pub(super) const TOP_SHARE: f64 = 0.5 * 4.0 * TOP_MARGIN;
+pub(super) const TOP_SHARE: f64 = 0.5 * 4.0 * TOP_MARGIN as f64;
 
 /// The bound on interpolation alone, for rows whose half width is at most `half_width` of where they begin.
 pub(super) fn interpolation_error(coefficients: usize, half_width: f64) -> Option<f64> {

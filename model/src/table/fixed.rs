@@ -40,7 +40,7 @@ impl<'rows, const C: usize> FixedTable<'rows, C> {
             let step_n = octave_n / f64::from(layout.per_octave.get());
             let mut end = point(octave_n + step_n * f64::from(part + 1));
             if index == last {
-                end.1 *= 1.0 - TOP_MARGIN;
+                end.1 *= 1.0 - f64::from(TOP_MARGIN);
             }
             let start = point(octave_n + step_n * f64::from(part));
             // Each product with the place, in Q31, keeps the upper word only and so halves: the coefficients make up for it.

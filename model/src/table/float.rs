@@ -6,7 +6,7 @@ use core::ops::Range;
 use super::bound::TOP_MARGIN;
 use super::interpolation::polynomial;
 use super::{TableBuilder, TableError};
-use crate::LoadedContact;
+use crate::{LoadedContact, Real};
 
 /// Where the rows of a table lie among the bit patterns, and what stands beyond them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,8 +33,8 @@ impl Grid {
     }
 
     /// Where a row begins; the end of the last row is where the row behind it would begin.
-    pub(super) fn start_n(&self, row: usize) -> f64 {
-        f64::from(f32::from_bits((u64::from(self.first_bits) + offset(row as u64, self.density)) as u32))
+    pub(super) fn start_n(&self, row: usize) -> f32 {
+        f32::from_bits((u64::from(self.first_bits) + offset(row as u64, self.density)) as u32)
     }
 
     /// The row of a friction, or a number past the last row when the friction is outside.
@@ -64,34 +64,36 @@ impl Grid {
     }
 
     /// Ends the table in front of the row `end`, and gives the voltage there; `None` when no row is cut.
-    pub(super) fn cut_at(&mut self, end: usize, contact: &LoadedContact<f64>) -> Option<f32> {
+    pub(super) fn cut_at<T: Real>(&mut self, end: usize, contact: &LoadedContact<T>) -> Option<f32> {
         let end_n = self.start_n(end);
-        let friction_max_n = (end_n as f32).next_down();
+        let friction_max_n = end_n.next_down();
         if friction_max_n >= self.friction_max_n {
             return None;
         }
         self.friction_max_n = friction_max_n;
-        self.voltage_max_v_rms = round_down(contact.voltage_v_rms(end_n));
+        self.voltage_max_v_rms = round_down(contact.voltage_v_rms(T::from(end_n)));
         Some(self.voltage_max_v_rms)
     }
 
     /// Fills the rows `needed` of all the table's `rows` with the curve of `contact`.
-    pub(super) fn fill<const C: usize>(
+    pub(super) fn fill<T: Real, const C: usize>(
         &self,
-        contact: &LoadedContact<f64>,
+        contact: &LoadedContact<T>,
         rows: &mut [[f32; C]],
         needed: Range<usize>,
     ) -> Result<(), TableError> {
         let last = rows.len().saturating_sub(1);
-        let start_n = self.start_n(needed.start);
-        let mut start = (start_n, contact.voltage_v_rms(start_n));
+        let point = |friction_n: f32| {
+            let friction_n = T::from(friction_n);
+            (friction_n, contact.voltage_v_rms(friction_n))
+        };
+        let mut start = point(self.start_n(needed.start));
         for (index, row) in rows.iter_mut().enumerate().take(needed.end).skip(needed.start) {
-            let end_n = self.start_n(index + 1);
-            let mut end = (end_n, contact.voltage_v_rms(end_n));
+            let mut end = point(self.start_n(index + 1));
             if index == last {
-                end.1 *= 1.0 - TOP_MARGIN;
+                end.1 = end.1 * T::from(1.0 - TOP_MARGIN);
             }
-            *row = polynomial::<C>(contact, start, end).map(|coefficient| coefficient as f32);
+            *row = polynomial::<T, C>(contact, start, end, power_of_two(self.start_n(index)));
             if row.iter().any(|coefficient| !coefficient.is_finite()) {
                 return Err(TableError::Unrepresentable);
             }
@@ -112,10 +114,15 @@ fn horner<const C: usize>(row: &[f32; C], x: f32) -> f32 {
     lower.iter().rev().fold(*highest, |sum, coefficient| sum * x + coefficient)
 }
 
+/// The power of two that a positive number begins with; the smallest normal one for what is less.
+fn power_of_two(value: f32) -> f32 {
+    f32::from_bits(value.max(f32::MIN_POSITIVE).to_bits() & f32::INFINITY.to_bits())
+}
+
 /// The largest `f32` that is not above `value`.
-pub(super) fn round_down(value: f64) -> f32 {
-    let nearest = value as f32;
-    if f64::from(nearest) > value { nearest.next_down() } else { nearest }
+pub(super) fn round_down<T: Real>(value: T) -> f32 {
+    let nearest = value.to_f32();
+    if T::from(nearest) > value { nearest.next_down() } else { nearest }
 }
 
 /// A table in f32 over rows that someone else owns, with `C` coefficients a row: from [`TableBuilder::build_f32`].

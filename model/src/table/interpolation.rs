@@ -1,69 +1,90 @@
 //! Polynomials through a row's points.
 
-use crate::LoadedContact;
+use core::mem::replace;
 
-/// Where the points lie between -1 and 1: the ends, and what makes the product of distances least with them.
-const INNER: f64 = core::f64::consts::SQRT_2 - 1.0;
+use crate::{LoadedContact, Real};
+
+/// Where the points lie between -1 and 1: the ends, and what makes the product of distances least with them, to 1e-8.
+const INNER: f32 = core::f32::consts::SQRT_2 - 1.0;
 
 /// A point of the curve: friction and voltage.
-pub(super) type Point = (f64, f64);
+pub(super) type Point<T> = (T, T);
 
 /// Coefficients, constant first, of the polynomial in the friction through `start`, `end` and, with more than two
 /// coefficients, one or two points of the curve between them.
-pub(super) fn polynomial<const C: usize>(contact: &LoadedContact<f64>, start: Point, end: Point) -> [f64; C] {
-    through(&points::<C>(contact, start, end))
+///
+/// It is made in the friction over `unit`, a power of two near it, so that no product on the way leaves the range of `f32`.
+pub(super) fn polynomial<T: Real, const C: usize>(
+    contact: &LoadedContact<T>,
+    start: Point<T>,
+    end: Point<T>,
+    unit: f32,
+) -> [f32; C] {
+    let mut points = points::<T, C>(contact, start, end);
+    for (x, _) in &mut points {
+        *x = *x / T::from(unit);
+    }
+    let mut row = [0.0; C];
+    for (power, (to, coefficient)) in row.iter_mut().zip(through(&points)).enumerate() {
+        *to = (0..power).fold(coefficient.to_f32(), |scaled, _| scaled / unit);
+    }
+    row
 }
 
 /// The same in the variable that runs from 0 at `start` to 1 at `end`.
-pub(super) fn local_polynomial<const C: usize>(contact: &LoadedContact<f64>, start: Point, end: Point) -> [f64; C] {
+pub(super) fn local_polynomial<const C: usize>(
+    contact: &LoadedContact<f64>,
+    start: Point<f64>,
+    end: Point<f64>,
+) -> [f64; C] {
     let width = end.0 - start.0;
-    through(&points::<C>(contact, start, end).map(|(x, v)| ((x - start.0) / width, v)))
+    through(&points::<f64, C>(contact, start, end).map(|(x, v)| ((x - start.0) / width, v)))
 }
 
-fn points<const C: usize>(contact: &LoadedContact<f64>, start: Point, end: Point) -> [Point; C] {
-    let (middle, half) = (0.5 * (start.0 + end.0), 0.5 * (end.0 - start.0));
-    let inner = |at: f64| {
-        let x = middle + at * half;
-        (x, contact.voltage_v_rms(x))
+fn points<T: Real, const C: usize>(contact: &LoadedContact<T>, start: Point<T>, end: Point<T>) -> [Point<T>; C] {
+    let (middle, half) = (T::from(0.5) * (start.0 + end.0), T::from(0.5) * (end.0 - start.0));
+    let inner: &[f32] = match C {
+        4 => &[-INNER, INNER],
+        3 => &[0.0],
+        _ => &[],
     };
-    let mut index = 0;
-    [(); C].map(|()| {
-        index += 1;
-        match index {
-            1 => start,
-            _ if index == C => end,
-            2 if C == 3 => inner(0.0),
-            2 => inner(-INNER),
-            _ => inner(INNER),
-        }
-    })
+    let mut points = [start; C];
+    for (point, at) in points.iter_mut().skip(1).zip(inner) {
+        let x = middle + T::from(*at) * half;
+        *point = (x, contact.voltage_v_rms(x));
+    }
+    if let Some(last) = points.last_mut() {
+        *last = end;
+    }
+    points
 }
 
-/// Lagrange's form, multiplied out.
-fn through<const C: usize>(points: &[Point; C]) -> [f64; C] {
-    let mut sum = [0.0; C];
-    for (index, &(x, v)) in points.iter().enumerate() {
-        let mut basis = [0.0; C];
-        if let Some(constant) = basis.first_mut() {
-            *constant = v;
-        }
-        for (_, &(root, _)) in points.iter().enumerate().filter(|&(other, _)| other != index) {
-            times_linear(&mut basis, root);
-            for coefficient in &mut basis {
-                *coefficient /= x - root;
-            }
-        }
-        for (total, coefficient) in sum.iter_mut().zip(basis) {
-            *total += coefficient;
+/// Newton's form, multiplied out from its innermost bracket.
+fn through<T: Real, const C: usize>(points: &[Point<T>; C]) -> [T; C] {
+    let differences = divided_differences(points);
+    let mut polynomial = [T::ZERO; C];
+    for (&(root, _), difference) in points.iter().rev().zip(differences.iter().rev()) {
+        // The polynomial so far times `x - root`, and the difference.
+        let mut below = *difference;
+        for coefficient in &mut polynomial {
+            (below, *coefficient) = (*coefficient, below - root * *coefficient);
         }
     }
-    sum
+    polynomial
 }
 
-/// Multiplies a polynomial by `x - root`.
-fn times_linear(polynomial: &mut [f64], root: f64) {
-    let mut below = 0.0;
-    for coefficient in polynomial {
-        (below, *coefficient) = (*coefficient, below - root * *coefficient);
+/// Of the first point, the first two, and so on to all of them.
+fn divided_differences<T: Real, const C: usize>(points: &[Point<T>; C]) -> [T; C] {
+    let mut differences = [T::ZERO; C];
+    for (difference, (_, v)) in differences.iter_mut().zip(points) {
+        *difference = *v;
     }
+    for order in 1..C {
+        let mut values = differences.iter_mut().skip(order - 1);
+        let Some(mut before) = values.next().map(|first| *first) else { continue };
+        for (difference, (last, first)) in values.zip(points.iter().skip(order).zip(points)) {
+            before = replace(difference, (*difference - before) / (last.0 - first.0));
+        }
+    }
+    differences
 }

@@ -5,16 +5,17 @@ use core::ops::Range;
 
 use super::TableError;
 use super::float::{Grid, round_down};
-use crate::LoadedContact;
+use crate::double_single::DoubleSingle;
+use crate::{Finger, LoadedContact, Real};
 
 /// Rows in a table: 31.5 octaves, enough for 200 V down to 1 V where friction grows as the fourth power of the voltage.
 const ROWS: usize = 126;
 /// Four rows an octave of 2^23 patterns.
 const DENSITY: NonZeroU32 = NonZeroU32::new(4 << 9).unwrap();
 /// The table reaches at least down to this voltage.
-const KNEE_V_RMS: f64 = 1.0;
+const KNEE_V_RMS: f32 = 1.0;
 /// Or to this part of the largest voltage, when that is lower.
-const KNEE_PART: f64 = 1.0 / 200.0;
+const KNEE_PART: f32 = 1.0 / 200.0;
 
 /// Piecewise cubic from electric friction to rms voltage for one contact under one load; 2,032 bytes.
 ///
@@ -51,7 +52,8 @@ impl InverseTable {
     pub const ROW_BYTES: usize = size_of::<[f32; 4]>();
 
     /// A table for `contact`, up to `voltage_max_v_rms`: some 250 evaluations of the closed form for the example finger,
-    /// 380 at most.
+    /// 380 at most, in pairs of `f32`, as a board makes it. They keep 13 digits, far below the rounding of the rows, as
+    /// long as the scales of the contact are above 1e-24.
     pub fn build(contact: &LoadedContact<f64>, voltage_max_v_rms: f64) -> Result<Self, TableError> {
         Self::build_up_to(contact, voltage_max_v_rms, f32::INFINITY)
     }
@@ -64,25 +66,31 @@ impl InverseTable {
         voltage_max_v_rms: f64,
         asked_max_n: f32,
     ) -> Result<Self, TableError> {
-        let Plan { mut grid, rows: needed } = Plan::new(contact, voltage_max_v_rms, asked_max_n)?;
-        let knee_start_n = grid.start_n(needed.start);
-        let line = [0.0, (contact.voltage_v_rms(knee_start_n) / knee_start_n) as f32, 0.0, 0.0];
-        let mut rows = [line; ROWS];
-        grid.fill(contact, &mut rows, needed.clone())?;
-        if let Some((cut, end)) = rows.get_mut(needed.end..).zip(grid.cut_at(needed.end, contact)) {
-            cut.fill([end, 0.0, 0.0, 0.0]);
+        if !(voltage_max_v_rms.is_finite() && round_down(voltage_max_v_rms) > 0.0) {
+            return Err(TableError::Voltage);
         }
-        Ok(Self { grid, rows })
+        let contact = contact.in_double_single();
+        Plan::new(&contact, DoubleSingle::from_f64(voltage_max_v_rms), asked_max_n)?.table(&contact)
     }
 
-    /// Rows with a piece of the curve in the table that [`Self::build_up_to`] makes of the same; the others cost no
-    /// evaluation of the closed form.
-    pub fn rows_up_to(
-        contact: &LoadedContact<f64>,
-        voltage_max_v_rms: f64,
+    /// The same from what a board is told: finger, coating (its effective gap in metres), normal load in newtons and largest
+    /// voltage in volts rms. Nothing of it needs `f64`.
+    #[inline(never)]
+    pub fn of_finger(
+        finger: &Finger<f32>,
+        gap_m: f32,
+        normal_load_n: f32,
+        voltage_max_v_rms: f32,
         asked_max_n: f32,
-    ) -> Result<usize, TableError> {
-        Plan::new(contact, voltage_max_v_rms, asked_max_n).map(|plan| plan.rows.len())
+    ) -> Result<Self, TableError> {
+        let contact = LoadedContact::of_finger(finger, gap_m, normal_load_n).ok_or(TableError::Contact)?;
+        Plan::of_contact(&contact, voltage_max_v_rms, asked_max_n)?.table(&contact)
+    }
+
+    /// Rows with a piece of the curve. The others cost no evaluation of the closed form.
+    pub fn rows_filled(&self) -> usize {
+        // The line towards zero and the constant beyond a cut have no curvature; the curve has it everywhere.
+        self.rows.iter().filter(|[_, _, curvature, _]| curvature.abs() > 0.0).count()
     }
 
     /// The rms voltage for an electric friction in newtons.
@@ -114,14 +122,26 @@ struct Plan {
 }
 
 impl Plan {
-    fn new(contact: &LoadedContact<f64>, voltage_max_v_rms: f64, asked_max_n: f32) -> Result<Self, TableError> {
-        let largest = round_down(voltage_max_v_rms);
-        if !(voltage_max_v_rms.is_finite() && largest > 0.0) {
+    fn of_contact(
+        contact: &LoadedContact<DoubleSingle>,
+        voltage_max_v_rms: f32,
+        asked_max_n: f32,
+    ) -> Result<Self, TableError> {
+        if !(voltage_max_v_rms.is_finite() && voltage_max_v_rms > 0.0) {
             return Err(TableError::Voltage);
         }
-        let knee_v_rms = KNEE_V_RMS.min(voltage_max_v_rms * KNEE_PART);
-        let knee_n = round_down(contact.electric_friction_n(knee_v_rms));
-        let friction_max_n = round_down(contact.electric_friction_n(f64::from(largest)));
+        Self::new(contact, DoubleSingle::from(voltage_max_v_rms), asked_max_n)
+    }
+
+    fn new(
+        contact: &LoadedContact<DoubleSingle>,
+        voltage_max_v_rms: DoubleSingle,
+        asked_max_n: f32,
+    ) -> Result<Self, TableError> {
+        let largest = round_down(voltage_max_v_rms);
+        let knee_v_rms = KNEE_V_RMS.min(largest * KNEE_PART);
+        let knee_n = round_down(contact.electric_friction_n(DoubleSingle::from(knee_v_rms)));
+        let friction_max_n = round_down(contact.electric_friction_n(DoubleSingle::from(largest)));
         if !(knee_n >= f32::MIN_POSITIVE && friction_max_n < f32::MAX) {
             return Err(TableError::Unrepresentable);
         }
@@ -132,5 +152,17 @@ impl Plan {
         }
         let end = if asked_max_n < friction_max_n { grid.row(asked_max_n.max(knee_n)) + 1 } else { ROWS };
         Ok(Self { grid, rows: knee_row..end })
+    }
+
+    fn table(self, contact: &LoadedContact<DoubleSingle>) -> Result<InverseTable, TableError> {
+        let Self { mut grid, rows: needed } = self;
+        let knee_start = DoubleSingle::from(grid.start_n(needed.start));
+        let line = [0.0, (contact.voltage_v_rms(knee_start) / knee_start).to_f32(), 0.0, 0.0];
+        let mut rows = [line; ROWS];
+        grid.fill(contact, &mut rows, needed.clone())?;
+        if let Some((cut, end)) = rows.get_mut(needed.end..).zip(grid.cut_at(needed.end, contact)) {
+            cut.fill([end, 0.0, 0.0, 0.0]);
+        }
+        Ok(InverseTable { grid, rows })
     }
 }

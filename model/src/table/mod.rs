@@ -33,6 +33,9 @@ pub use inverse::InverseTable;
 pub enum TableError {
     /// The largest voltage is not finite or not above zero.
     Voltage,
+    /// Finger, gap or load are not finite, or not above zero (the load may be zero), or lead to scales that are too large or too
+    /// small for `f32`.
+    Contact,
     /// The range of frictions is empty, or does not begin above zero.
     Range,
     /// The error target is below what the precision's rounding leaves.
@@ -47,6 +50,9 @@ impl Display for TableError {
     fn fmt(&self, f: &mut Formatter<'_>) -> FmtResult {
         f.write_str(match self {
             Self::Voltage => "the largest voltage must be finite and above zero",
+            Self::Contact => {
+                "finger, gap and load must be finite and above zero, and friction and voltage scales fit into f32"
+            }
             Self::Range => "the range of frictions must begin above zero and not be empty",
             Self::Target => "the error target is below the rounding error of the table's precision; allow more",
             Self::TooManySegments => "the range of frictions needs more rows than the table has room for; narrow it",

@@ -19,6 +19,9 @@ const EXCEPTION_BYTES: u64 = 27 * 4;
 /// Parts of the names of functions that end the program.
 const ENDS: [&str; 3] = ["panic", "rust_begin_unwind", "5fault"];
 
+/// How the names begin of what the linker has taken out of several functions.
+const OUTLINED: &str = "OUTLINED_FUNCTION";
+
 /// Parts of the names of functions that divide by a number that is never zero: a queue's length.
 const DIVIDES: [&str; 1] = ["8heapless4spsc"];
 
@@ -70,6 +73,9 @@ impl Functions {
         for (address, function) in &mut functions {
             let range = address.checked_sub(start).map(|from| from as usize..(from + function.len) as usize);
             function.scan(*address, range.and_then(|range| code.get(range)).unwrap_or_default(), &is_code);
+        }
+        call_for_outlined(&mut functions);
+        for function in functions.values_mut() {
             function.look_up_calls(|place| {
                 let from = place.checked_sub(start)? as usize;
                 let bytes = code.get(from..)?.first_chunk()?;
@@ -142,6 +148,23 @@ impl Functions {
     }
 }
 
+/// What the linker has taken out of several functions may end in a call through a register that they have loaded: then
+/// the call is theirs.
+fn call_for_outlined(functions: &mut BTreeMap<u32, Function>) {
+    let mut outlined = BTreeMap::new();
+    for (address, function) in functions.iter_mut().filter(|(_, function)| function.name.starts_with(OUTLINED)) {
+        let loads = &function.loads;
+        let theirs = |register: &u8| !loads.iter().any(|(to, _)| to == register);
+        let registers: BTreeSet<u8> = function.called_registers.iter().copied().filter(theirs).collect();
+        function.called_registers.retain(|register| !registers.contains(register));
+        outlined.insert(*address, registers);
+    }
+    for function in functions.values_mut() {
+        let registers = function.calls.iter().filter_map(|call| outlined.get(call)).flatten();
+        function.called_registers.extend(registers);
+    }
+}
+
 impl Function {
     /// Looks at every instruction. What is put on the stack anywhere is added up, whichever way the program takes.
     fn scan(&mut self, address: u32, code: &[u8], is_code: &dyn Fn(u32) -> bool) {
@@ -186,6 +209,22 @@ mod tests {
 
     fn function(name: &str, own_bytes: u64, calls: &[u32]) -> Function {
         Function { name: name.to_owned(), own_bytes, calls: calls.to_vec(), ..Function::default() }
+    }
+
+    #[test]
+    fn a_call_through_a_register_is_that_of_the_function_that_loaded_it() {
+        let loads = Function { loads: vec![(4, 0x100)], ..function("loads", 8, &[0x20]) };
+        let outlined = Function { called_registers: [4].into(), ..function("OUTLINED_FUNCTION_0", 0, &[]) };
+        let stranger = Function { called_registers: [4].into(), ..function("stranger", 0, &[]) };
+        let mut functions = BTreeMap::from([(0x10, loads), (0x20, outlined), (0x30, stranger)]);
+        functions.insert(0x40, function("called", 100, &[]));
+        call_for_outlined(&mut functions);
+        for function in functions.values_mut() {
+            function.look_up_calls(|place| (place == 0x100).then_some(0x40));
+        }
+        let functions = Functions(functions);
+        assert_eq!(functions.depth("loads", &[]), Ok(8 + 100 + 108));
+        assert!(functions.depth("stranger", &[]).is_err());
     }
 
     #[test]

@@ -23,7 +23,7 @@ impl Dialogue<'_> {
             return Err(Refusal::CrcMismatch { expected: crc32, found });
         }
         self.room_for_order()?;
-        let scene = Scene::parse(bytes).map_err(Refusal::Scene)?;
+        let scene = Scene::parse(bytes).map_err(not_a_scene)?;
         if scene.record_count() > usize::from(self.board.limits.records_max) {
             // A scene has no more records than a byte counts.
             return Err(Refusal::Scene(SceneError::TooManyRecords { found: scene.record_count() as u8 }));
@@ -52,6 +52,9 @@ impl Dialogue<'_> {
 }
 
 fn bitmaps_of(scene: &Scene) -> BitmapNames {
+    if !cfg!(feature = "bitmap") {
+        return BitmapNames::new();
+    }
     scene
         .records()
         .filter_map(|record| match record.layer {
@@ -60,4 +63,9 @@ fn bitmaps_of(scene: &Scene) -> BitmapNames {
         })
         .take(RECORDS_MAX)
         .collect()
+}
+
+/// Tells what this firmware was built without from what nobody knows.
+fn not_a_scene(error: SceneError) -> Refusal {
+    error.left_out().map_or(Refusal::Scene(error), |layer| Refusal::LeftOut { layer })
 }

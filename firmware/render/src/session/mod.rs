@@ -16,6 +16,7 @@ mod states;
 mod storing;
 mod upload;
 
+use frixel_wire::fault::State;
 use frixel_wire::frame::Decoder;
 use frixel_wire::message::{FromBoard, Telemetry};
 use frixel_wire::payload::Payload;
@@ -103,6 +104,11 @@ impl<'a> Session<'a> {
     /// Moves bytes for the serial line into `bytes`, and returns how many.
     pub fn transmit(&mut self, bytes: &mut [u8]) -> usize {
         self.outbox.drain(bytes)
+    }
+
+    /// The supervisor's state once the ticker has applied every order that was given out.
+    pub fn state(&self) -> State {
+        self.dialogue.state
     }
 
     /// The committed scene, as it was sent; `None` without one, and when the upload of another has begun.

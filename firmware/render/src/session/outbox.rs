@@ -24,7 +24,9 @@ impl Outbox {
         self.bytes.len() < OUTBOX_LEN / 2
     }
 
+    // Code of its own, as what it calls: many lines call it.
     /// Queues a message; one that does not fit is left out whole, and the host asks again after its deadline.
+    #[inline(never)]
     pub(super) fn send(&mut self, message: &FromBoard) {
         let mut frame = [0; FRAME_MAX_LEN];
         if let Ok(frame) = payload::from_board_frame(message, &mut frame) {
@@ -39,6 +41,7 @@ impl Outbox {
         }
     }
 
+    #[inline(never)]
     fn push(&mut self, frame: &[u8]) {
         if OUTBOX_LEN - self.bytes.len() >= frame.len() {
             for byte in frame {

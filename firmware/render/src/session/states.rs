@@ -77,6 +77,7 @@ impl<'a> Dialogue<'a> {
         if self.orders.len() + ORDERS_KEPT >= ORDERS_MAX { Err(Refusal::Busy) } else { Ok(()) }
     }
 
+    #[inline(never)]
     pub(super) fn send_order(&mut self, order: Order<'a>) -> Result<(), Refusal> {
         if !matches!(order, Order::Stop | Order::Disarm) {
             self.room_for_order()?;

@@ -118,7 +118,9 @@ impl Dialogue<'_> {
 
     /// Leaves no trace of an upload under way.
     pub(super) fn drop_upload(&mut self) {
-        if let Some(Upload { destination: Destination::Bitmap(unfinished), .. }) = self.upload.take() {
+        if let Some(Upload { destination: Destination::Bitmap(unfinished), .. }) = self.upload.take()
+            && cfg!(feature = "bitmap")
+        {
             self.directory.retain(|bitmap| bitmap.crc32 != unfinished.crc32);
         }
     }

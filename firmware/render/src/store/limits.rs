@@ -8,6 +8,8 @@ const VERSION: u32 = 1;
 pub const LIMITS_LEN: usize = 28;
 /// Largest voltage that is believed, in V peak; whatever a slot says, no electrovibration screen takes more.
 const VOLTAGE_MAX_V_PEAK: f32 = 500.0;
+/// No board has a number as large, in any unit.
+const NUMBER_MAX: f32 = 1e9;
 
 /// The bytes to keep of the limits that bring-up measures.
 pub fn write_limits(limits: &BoardLimits) -> [u8; LIMITS_LEN] {
@@ -24,6 +26,7 @@ pub fn read_limits(bytes: &[u8; LIMITS_LEN], limits: &BoardLimits) -> Option<Boa
     let (words, _) = bytes.as_chunks::<4>();
     let [version, numbers @ ..] = words else { return None };
     let mut numbers = numbers.iter().map(|number| f32::from_le_bytes(*number));
+    let plausible = numbers.clone().all(|number| number > 0.0 && number < NUMBER_MAX);
     let kept = BoardLimits {
         voltage_max_v_peak: numbers.next()?,
         full_scale_v_peak: numbers.next()?,
@@ -33,9 +36,8 @@ pub fn read_limits(bytes: &[u8; LIMITS_LEN], limits: &BoardLimits) -> Option<Boa
         current_max_a_peak: numbers.next()?,
         ..*limits
     };
-    let plausible = measured(&kept).into_iter().all(|number| number.is_finite() && number > 0.0)
-        && kept.voltage_max_v_peak <= kept.full_scale_v_peak
-        && kept.voltage_max_v_peak <= VOLTAGE_MAX_V_PEAK;
+    let plausible =
+        plausible && kept.voltage_max_v_peak <= kept.full_scale_v_peak && kept.voltage_max_v_peak <= VOLTAGE_MAX_V_PEAK;
     (u32::from_le_bytes(*version) == VERSION && plausible).then_some(kept)
 }
 

@@ -19,10 +19,6 @@ use crate::{Active, BitmapPool, Board, Drive, Sense, Touch};
 /// Ticks until the next look at what has no deadline: far less than the tick counter takes to wrap.
 const LOOK_AFTER_TICKS: u32 = 1 << 30;
 
-/// After so many ticks in a row that had something else to do, the next asks the scene all the same: a touch source may
-/// report at every tick.
-const ATTENDED_MAX_TICKS: u32 = 4;
-
 /// Turns touch into voltage, one tick at a time, and owns the output through its supervisor.
 pub struct Ticker<'a> {
     finger: Finger,
@@ -139,8 +135,8 @@ impl<'a> Ticker<'a> {
             self.play_stream();
         }
         self.finger.advance();
-        let due = self.due_tick.wrapping_sub(self.tick) as i32 <= 0;
-        if due || sense.touch.is_some() {
+        let due = self.is_past(self.due_tick);
+        if (due || sense.touch.is_some()) && self.may_attend(sense.touch) {
             return self.attend(sense.touch);
         }
         self.ask();
@@ -152,28 +148,39 @@ impl<'a> Ticker<'a> {
     #[inline(never)]
     fn attend(&mut self, touch: Option<Touch>) -> Drive {
         let (timing, prediction) = (&self.timing.finger, self.active.prediction);
-        if let Some(touch) = touch {
-            if self.finger.take(touch, self.tick, prediction, timing) {
-                self.look_at_finger();
-            } else {
-                self.live &= self.finger.is_there();
-            }
+        let taken = touch.is_some_and(|touch| self.finger.take(touch, self.tick, timing));
+        if taken {
+            self.live &= self.finger.is_there();
         } else if self.finger.has_errand() && self.finger.go_on(self.tick, prediction, timing) {
             self.look_at_finger();
         }
-        if self.deadline_tick.wrapping_sub(self.tick) as i32 <= 0 {
+        if self.is_past(self.deadline_tick) {
             self.look();
         }
         self.plan();
         if !self.live {
             return self.rest();
         }
-        if self.tick.wrapping_sub(self.asked_tick) > ATTENDED_MAX_TICKS {
-            self.ask_anew();
-        } else if self.is_saturated(self.tick.wrapping_sub(1)) {
+        if self.is_saturated(self.tick.wrapping_sub(1)) {
             self.note_out_of_reach();
         }
         self.put_out()
+    }
+
+    /// Whether this tick may do something else than ask the scene. When the tick before did, or an order has changed what
+    /// the scene wants since, an errand waits and a report is left out: the source will say more. A lift never waits, nor
+    /// does a deadline.
+    #[inline]
+    fn may_attend(&self, touch: Option<Touch>) -> bool {
+        self.tick.wrapping_sub(self.asked_tick) == 1
+            || !self.live
+            || touch == Some(Touch::Up)
+            || self.is_past(self.deadline_tick)
+    }
+
+    #[inline]
+    fn is_past(&self, tick: u32) -> bool {
+        tick.wrapping_sub(self.tick) as i32 <= 0
     }
 
     fn is_saturated(&self, tick: u32) -> bool {
@@ -258,14 +265,6 @@ impl<'a> Ticker<'a> {
             Some(sole) => sole.electric_friction_n(place_m, self.pool),
             None => self.friction_of_layers_n(place_m),
         };
-        self.want(friction_n);
-    }
-
-    /// Asks the scene in a tick that has done something else already.
-    #[cold]
-    #[inline(never)]
-    fn ask_anew(&mut self) {
-        let friction_n = self.friction_of_layers_n(self.finger.place_m());
         self.want(friction_n);
     }
 

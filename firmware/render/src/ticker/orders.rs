@@ -2,7 +2,7 @@
 
 use frixel_wire::fault::{Fault, State};
 
-use super::{ATTENDED_MAX_TICKS, Ticker};
+use super::Ticker;
 use crate::{Active, Order};
 
 impl<'a> Ticker<'a> {
@@ -62,9 +62,9 @@ impl<'a> Ticker<'a> {
         spare
     }
 
-    /// What was asked for last is asked for no longer, even in a tick that has something else to do.
+    /// What was asked for last is asked for no longer: the next tick asks anew, whatever else there is to do.
     fn ask_at_once(&mut self) {
-        self.asked_tick = self.tick.wrapping_sub(ATTENDED_MAX_TICKS);
+        self.asked_tick = self.tick.wrapping_sub(1);
     }
 
     /// The timeout that holds now. Only a playing scene may go on without a host.

@@ -79,13 +79,14 @@ pub fn worst_of_scene(header: &Header, records: &[Record], points: &[Point]) -> 
 
 fn of_region(region: &Region, points: &[Point]) -> u32 {
     match *region {
-        Region::Screen | Region::Rectangle { .. } => 0,
         Region::Ellipse { .. } => m::ELLIPSE,
-        Region::Polygon { first, count } => {
+        Region::Polygon { first, count } if cfg!(feature = "polygon") => {
             let vertices = points.get(usize::from(first)..).unwrap_or_default();
             let vertices = vertices.get(..usize::from(count)).unwrap_or_default();
             m::POLYGON + u32::from(count) * m::POLYGON_EDGE + edges_level_max(vertices) * m::POLYGON_EDGE_LEVEL
         }
+        // A polygon that is left out is never read.
+        Region::Screen | Region::Rectangle { .. } | Region::Polygon { .. } => 0,
     }
 }
 
@@ -99,20 +100,22 @@ fn edges_level_max(vertices: &[Point]) -> u32 {
 const fn of_layer(layer: &Layer) -> u32 {
     match *layer {
         Layer::Constant { .. } => m::CONSTANT,
-        Layer::Grating { wave, .. } => match wave {
+        Layer::Grating { wave, .. } if cfg!(feature = "grating") => match wave {
             Wave::Sine => m::SINE,
             Wave::Square { .. } => m::SQUARE,
             Wave::Triangle => m::TRIANGLE,
             Wave::Saw => m::SAW,
         },
-        Layer::Bitmap { tiled: false, .. } => m::BITMAP,
-        Layer::Bitmap { tiled: true, .. } => m::BITMAP_TILED,
-        Layer::Noise { .. } => m::NOISE,
-        Layer::Edge { .. } => m::EDGE,
-        Layer::Button { .. } => m::BUTTON,
-        Layer::Vibration { beat: Beat::Sine, .. } => m::VIBRATION_SINE,
-        Layer::Vibration { beat: Beat::Square, .. } => m::VIBRATION_SQUARE,
-        Layer::Speed { count, .. } => m::SPEED + count as u32 * m::SPEED_POINT,
-        Layer::Stream { .. } => m::STREAM,
+        Layer::Bitmap { tiled: false, .. } if cfg!(feature = "bitmap") => m::BITMAP,
+        Layer::Bitmap { tiled: true, .. } if cfg!(feature = "bitmap") => m::BITMAP_TILED,
+        Layer::Noise { .. } if cfg!(feature = "noise") => m::NOISE,
+        Layer::Edge { .. } if cfg!(feature = "edge") => m::EDGE,
+        Layer::Button { .. } if cfg!(feature = "edge") => m::BUTTON,
+        Layer::Vibration { beat: Beat::Sine, .. } if cfg!(feature = "vibration") => m::VIBRATION_SINE,
+        Layer::Vibration { beat: Beat::Square, .. } if cfg!(feature = "vibration") => m::VIBRATION_SQUARE,
+        Layer::Speed { count, .. } if cfg!(feature = "speed") => m::SPEED + count as u32 * m::SPEED_POINT,
+        Layer::Stream { .. } if cfg!(feature = "stream") => m::STREAM,
+        // Left out: it is never read.
+        _ => 0,
     }
 }

@@ -56,8 +56,7 @@ impl Grid {
         let bit = 1_u64.checked_shl(u32::from(layer)).unwrap_or(0);
         let bits = [bit as u32, (bit >> 32) as u32];
         let (columns, rows) = match *region {
-            Region::Screen => (0..=SIDE - 1, 0..=SIDE - 1),
-            Region::Polygon { first, count } => {
+            Region::Polygon { first, count } if cfg!(feature = "polygon") => {
                 let vertices = points.iter().skip(usize::from(first)).take(usize::from(count));
                 (
                     ends(vertices.clone().map(|vertex| index(vertex.x * self.columns_per_m))),
@@ -69,6 +68,7 @@ impl Grid {
                 index(x_m * self.columns_per_m)..=index((x_m + width_m) * self.columns_per_m),
                 index(y_m * self.rows_per_m)..=index((y_m + height_m) * self.rows_per_m),
             ),
+            Region::Screen | Region::Polygon { .. } => (0..=SIDE - 1, 0..=SIDE - 1),
         };
         for row in rows {
             for column in columns.clone() {

@@ -38,12 +38,18 @@ impl Record {
                 Err(SceneError::Points { record, first, count })
             }
         };
-        if let Region::Polygon { first, count } = self.region {
+        if cfg!(feature = "polygon")
+            && let Region::Polygon { first, count } = self.region
+        {
             inside(first, count, 3, POLYGON_POINTS_MAX)?;
         }
         match (&self.layer, self.region) {
-            (Layer::Speed { first, count }, _) => inside(*first, *count, 2, CURVE_POINTS_MAX),
-            (Layer::Button { .. }, Region::Screen | Region::Polygon { .. }) => Err(SceneError::ButtonRegion { record }),
+            (Layer::Speed { first, count }, _) if cfg!(feature = "speed") => {
+                inside(*first, *count, 2, CURVE_POINTS_MAX)
+            }
+            (Layer::Button { .. }, Region::Screen | Region::Polygon { .. }) if cfg!(feature = "edge") => {
+                Err(SceneError::ButtonRegion { record })
+            }
             _ => Ok(()),
         }
     }

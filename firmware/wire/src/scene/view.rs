@@ -12,6 +12,7 @@ pub struct Scene<'a> {
 
 impl<'a> Scene<'a> {
     /// Checks version, length, header and every record.
+    #[inline(never)]
     pub fn parse(bytes: &'a [u8]) -> Result<Self, SceneError> {
         // The version comes first: a scene of another version may be of any length.
         if let Some(version) = bytes.first_chunk::<2>() {

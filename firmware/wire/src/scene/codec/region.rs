@@ -6,9 +6,9 @@ use crate::scene::{RECORD_LEN, Region, SceneError};
 const REGION_SCREEN: u8 = 0;
 const REGION_RECTANGLE: u8 = 1;
 const REGION_ELLIPSE: u8 = 2;
-const REGION_POLYGON: u8 = 3;
+pub(super) const REGION_POLYGON: u8 = 3;
 
-const REGION_AT: usize = 1;
+pub(super) const REGION_AT: usize = 1;
 
 impl Region {
     pub(super) fn write(&self, b: &mut [u8; RECORD_LEN]) {
@@ -22,11 +22,13 @@ impl Region {
                 put_u8::<REGION_AT, _>(b, REGION_ELLIPSE);
                 put_box(b, [x_m, y_m, width_m, height_m]);
             }
-            Self::Polygon { first, count } => {
+            Self::Polygon { first, count } if cfg!(feature = "polygon") => {
                 put_u8::<REGION_AT, _>(b, REGION_POLYGON);
                 put_u8::<4, _>(b, first);
                 put_u8::<5, _>(b, count);
             }
+            // Left out: nobody reads more of it.
+            Self::Polygon { .. } => put_u8::<REGION_AT, _>(b, REGION_POLYGON),
         }
     }
 
@@ -36,7 +38,9 @@ impl Region {
             REGION_SCREEN => Ok(Self::Screen),
             REGION_RECTANGLE => Ok(Self::Rectangle { x_m, y_m, width_m, height_m }),
             REGION_ELLIPSE => Ok(Self::Ellipse { x_m, y_m, width_m, height_m }),
-            REGION_POLYGON => Ok(Self::Polygon { first: get_u8::<4, _>(b), count: get_u8::<5, _>(b) }),
+            REGION_POLYGON if cfg!(feature = "polygon") => {
+                Ok(Self::Polygon { first: get_u8::<4, _>(b), count: get_u8::<5, _>(b) })
+            }
             value => Err(SceneError::UnknownChoice { record, offset: REGION_AT as u8, value }),
         }
     }
