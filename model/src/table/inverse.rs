@@ -1,7 +1,6 @@
 //! The table of a microcontroller with an FPU: of fixed size, built where it is used.
 
 use core::num::NonZeroU32;
-use core::ops::Range;
 
 use super::TableError;
 use super::float::{Grid, round_down};
@@ -69,8 +68,8 @@ impl InverseTable {
         if !(voltage_max_v_rms.is_finite() && round_down(voltage_max_v_rms) > 0.0) {
             return Err(TableError::Voltage);
         }
-        let contact = contact.in_double_single();
-        Plan::new(&contact, DoubleSingle::from_f64(voltage_max_v_rms), asked_max_n)?.table(&contact)
+        let voltage_max_v_rms = DoubleSingle::from_f64(voltage_max_v_rms);
+        Self::in_double_single(&contact.in_double_single(), voltage_max_v_rms, asked_max_n)
     }
 
     /// The same from what a board is told: finger, coating (its effective gap in metres), normal load in newtons and largest
@@ -83,8 +82,39 @@ impl InverseTable {
         voltage_max_v_rms: f32,
         asked_max_n: f32,
     ) -> Result<Self, TableError> {
+        if !(voltage_max_v_rms.is_finite() && voltage_max_v_rms > 0.0) {
+            return Err(TableError::Voltage);
+        }
         let contact = LoadedContact::of_finger(finger, gap_m, normal_load_n).ok_or(TableError::Contact)?;
-        Plan::of_contact(&contact, voltage_max_v_rms, asked_max_n)?.table(&contact)
+        Self::in_double_single(&contact, DoubleSingle::from(voltage_max_v_rms), asked_max_n)
+    }
+
+    fn in_double_single(
+        contact: &LoadedContact<DoubleSingle>,
+        voltage_max_v_rms: DoubleSingle,
+        asked_max_n: f32,
+    ) -> Result<Self, TableError> {
+        let largest = round_down(voltage_max_v_rms);
+        let knee_v_rms = KNEE_V_RMS.min(largest * KNEE_PART);
+        let knee_n = round_down(contact.electric_friction_n(DoubleSingle::from(knee_v_rms)));
+        let friction_max_n = round_down(contact.electric_friction_n(DoubleSingle::from(largest)));
+        if !(knee_n >= f32::MIN_POSITIVE && friction_max_n < f32::MAX) {
+            return Err(TableError::Unrepresentable);
+        }
+        let mut grid = Grid::new(ROWS, DENSITY, friction_max_n, largest)?;
+        let knee_row = grid.row(knee_n);
+        if knee_row >= ROWS {
+            return Err(TableError::TooManySegments);
+        }
+        let end = if asked_max_n < friction_max_n { grid.row(asked_max_n.max(knee_n)) + 1 } else { ROWS };
+        let knee_start = DoubleSingle::from(grid.start_n(knee_row));
+        let line = [0.0, (contact.voltage_v_rms(knee_start) / knee_start).to_f32(), 0.0, 0.0];
+        let mut rows = [line; ROWS];
+        grid.fill(contact, &mut rows, knee_row..end)?;
+        if let Some((cut, end)) = rows.get_mut(end..).zip(grid.cut_at(end, contact)) {
+            cut.fill([end, 0.0, 0.0, 0.0]);
+        }
+        Ok(Self { grid, rows })
     }
 
     /// Rows with a piece of the curve. The others cost no evaluation of the closed form.
@@ -111,58 +141,5 @@ impl InverseTable {
     /// The largest voltage, in volts rms, rounded down; of a table that is cut, that where it ends.
     pub fn voltage_max_v_rms(&self) -> f32 {
         self.grid.voltage_max_v_rms()
-    }
-}
-
-/// Where the rows of a table lie, and those of them that hold a piece of the curve.
-struct Plan {
-    /// Of the whole table.
-    grid: Grid,
-    rows: Range<usize>,
-}
-
-impl Plan {
-    fn of_contact(
-        contact: &LoadedContact<DoubleSingle>,
-        voltage_max_v_rms: f32,
-        asked_max_n: f32,
-    ) -> Result<Self, TableError> {
-        if !(voltage_max_v_rms.is_finite() && voltage_max_v_rms > 0.0) {
-            return Err(TableError::Voltage);
-        }
-        Self::new(contact, DoubleSingle::from(voltage_max_v_rms), asked_max_n)
-    }
-
-    fn new(
-        contact: &LoadedContact<DoubleSingle>,
-        voltage_max_v_rms: DoubleSingle,
-        asked_max_n: f32,
-    ) -> Result<Self, TableError> {
-        let largest = round_down(voltage_max_v_rms);
-        let knee_v_rms = KNEE_V_RMS.min(largest * KNEE_PART);
-        let knee_n = round_down(contact.electric_friction_n(DoubleSingle::from(knee_v_rms)));
-        let friction_max_n = round_down(contact.electric_friction_n(DoubleSingle::from(largest)));
-        if !(knee_n >= f32::MIN_POSITIVE && friction_max_n < f32::MAX) {
-            return Err(TableError::Unrepresentable);
-        }
-        let grid = Grid::new(ROWS, DENSITY, friction_max_n, largest)?;
-        let knee_row = grid.row(knee_n);
-        if knee_row >= ROWS {
-            return Err(TableError::TooManySegments);
-        }
-        let end = if asked_max_n < friction_max_n { grid.row(asked_max_n.max(knee_n)) + 1 } else { ROWS };
-        Ok(Self { grid, rows: knee_row..end })
-    }
-
-    fn table(self, contact: &LoadedContact<DoubleSingle>) -> Result<InverseTable, TableError> {
-        let Self { mut grid, rows: needed } = self;
-        let knee_start = DoubleSingle::from(grid.start_n(needed.start));
-        let line = [0.0, (contact.voltage_v_rms(knee_start) / knee_start).to_f32(), 0.0, 0.0];
-        let mut rows = [line; ROWS];
-        grid.fill(contact, &mut rows, needed.clone())?;
-        if let Some((cut, end)) = rows.get_mut(needed.end..).zip(grid.cut_at(needed.end, contact)) {
-            cut.fill([end, 0.0, 0.0, 0.0]);
-        }
-        Ok(InverseTable { grid, rows })
     }
 }
