@@ -56,6 +56,7 @@ impl Active {
 
     /// Bytes of these coefficients that a scene fills, for each of the two: its layers, points, waves and clicks. The rest
     /// is the same for every scene. No pointer is among them, so that they are as many on every target.
+    #[inline]
     pub fn bytes_filled(scene: &Scene) -> usize {
         scene.records().map(|record| layer::bytes_of(&record)).sum::<usize>()
             + scene.points().len() * size_of::<Point>()
@@ -63,6 +64,7 @@ impl Active {
 
     /// How much of the inverse table the board computes for a scene, whose numbers a board takes. The table's room in RAM
     /// is the same for every scene; what is cut is the time that its rows take at a commit.
+    #[inline]
     pub fn table_rows(scene: &Scene, board: &Board) -> Result<TableRows, Refusal> {
         let header = scene.header();
         let mut grid = Grid::EMPTY;
@@ -84,6 +86,7 @@ impl Active {
     }
 
     /// Forgets the scene.
+    #[inline]
     pub(crate) fn unload(&mut self) {
         // One by one: the whole of it is thousands of bytes, and a tick may be waiting.
         self.layers.clear();
@@ -106,6 +109,7 @@ impl Active {
 
     /// Some layer plays what the host streams.
     #[cfg(feature = "stream")]
+    #[inline]
     pub(crate) fn has_stream(&self) -> bool {
         self.layers.iter().any(Layer::is_stream)
     }
@@ -152,6 +156,7 @@ impl Active {
     }
 
     /// Puts a layer on or off and sets its gain while the scene plays. A layer that the scene does not have is none.
+    #[inline]
     pub(crate) fn set_layer(&mut self, number: u8, on: bool, gain: f32) {
         if let Some(layer) = self.layers.get_mut(usize::from(number)) {
             layer.set_gain(gain);
@@ -161,6 +166,7 @@ impl Active {
     }
 
     /// Makes these the coefficients of `scene`. When it is refused, they are those of no scene.
+    #[inline]
     pub(crate) fn load(&mut self, scene: &Scene, board: &Board, directory: &Directory) -> Result<(), Refusal> {
         self.unload();
         let header = scene.header();
@@ -180,6 +186,7 @@ impl Active {
     }
 
     /// Loads the layers, and gives the largest electric friction that they can ask for, N.
+    #[inline]
     fn load_layers(&mut self, scene: &Scene, board: &Board, directory: &Directory) -> Result<f32, Refusal> {
         self.grid.reset(scene.header().screen_width_m, scene.header().screen_height_m);
         self.tables.set_points(scene.points());
@@ -206,6 +213,7 @@ impl Active {
         Ok(asked_max_n(scene.header(), &asked, &self.grid))
     }
 
+    #[inline]
     fn put(&mut self, number: u8, on: bool) {
         let [first, others] = &mut self.on;
         let word = if u32::from(number) < u32::BITS { first } else { others };
@@ -213,12 +221,14 @@ impl Active {
         *word = if on { *word | bit } else { *word & !bit };
     }
 
+    #[inline]
     fn find_sole(&self) -> Option<Sole> {
         self.layers.first().filter(|_| self.on == [1, 0]).and_then(Layer::sole)
     }
 }
 
 /// The carrier of a scene, and the largest rms voltage that it carries within all limits.
+#[inline]
 fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), ConfigRefusal> {
     let limits = &board.limits;
     let half_period_ticks = board.ticks(0.5 / header.carrier_hz);
@@ -260,17 +270,20 @@ pub struct TableRows {
 
 /// The largest electric friction that a scene can ask for, N. A layer that may be changed while it plays may ask for
 /// anything.
+#[inline]
 fn asked_max_n(header: &Header, asked: &Asked, grid: &Grid) -> f32 {
-    if header.layers_fixed { asked.electric_friction_max_n(grid) } else { f32::INFINITY }
+    if cfg!(feature = "table-cut") && header.layers_fixed { asked.electric_friction_max_n(grid) } else { f32::INFINITY }
 }
 
 /// The inverse table of a scene's finger, coating and load, up to what is asked for.
+#[inline]
 fn table(header: &Header, voltage_max_v_rms: f32, asked_max_n: f32) -> Result<InverseTable, ConfigRefusal> {
     let Header { effective_gap_m, normal_load_n, .. } = *header;
     InverseTable::of_finger(&finger(header), effective_gap_m, normal_load_n, voltage_max_v_rms, asked_max_n)
         .map_err(|error| no_table(&error, header, voltage_max_v_rms))
 }
 
+#[inline]
 fn no_table(error: &TableError, header: &Header, voltage_max_v_rms: f32) -> ConfigRefusal {
     let (field, found) = match error {
         TableError::Contact => (ConfigField::EffectiveGap, header.effective_gap_m),
@@ -280,6 +293,7 @@ fn no_table(error: &TableError, header: &Header, voltage_max_v_rms: f32) -> Conf
 }
 
 /// A scene's finger.
+#[inline]
 fn finger(header: &Header) -> Finger<f32> {
     Finger {
         radius_m: header.finger_radius_m,

@@ -64,7 +64,7 @@ fn larger(one: f32, other: f32) -> f32 {
 
 /// The records of a scene as far as their friction goes.
 pub(crate) struct Asked {
-    layers: [Option<Own>; RECORDS_MAX],
+    layers: [Own; RECORDS_MAX],
 }
 
 /// What a layer gives, its gain included, and how it joins those below.
@@ -79,7 +79,7 @@ struct Own {
 }
 
 impl Asked {
-    pub(crate) const NOTHING: Self = Self { layers: [None; RECORDS_MAX] };
+    pub(crate) const NOTHING: Self = Self { layers: [Own::NOTHING; RECORDS_MAX] };
 
     /// Adds layer number `number`; `points` are the scene's.
     pub(crate) fn add(&mut self, number: u8, record: &Record, points: &[Point]) {
@@ -88,7 +88,7 @@ impl Asked {
         let span = gain.times(of_layer(&record.layer, points).rounded_outward());
         let everywhere = record.region == Region::Screen && !fades;
         if let Some(place) = self.layers.get_mut(usize::from(number)) {
-            *place = Some(Own { span, blend: record.blend, everywhere, fades });
+            *place = Own { span, blend: record.blend, everywhere, fades };
         }
     }
 
@@ -105,7 +105,7 @@ impl Asked {
             }
             last_layers = cell.layers;
             let there = (0..).zip(&self.layers).filter(|(number, _)| cell.has(*number));
-            let span = there.filter_map(|(_, own)| *own).fold(Span::NOTHING, Own::over);
+            let span = there.fold(Span::NOTHING, |below, (_, own)| own.over(below));
             largest_n = larger(largest_n, span.high);
         }
         largest_n
@@ -113,10 +113,12 @@ impl Asked {
 }
 
 impl Own {
+    const NOTHING: Self = Self { span: Span::NOTHING, blend: Blend::Replace, everywhere: false, fades: false };
+
     /// With this layer over what is below: also without it, where it may not be.
-    fn over(below: Span, own: Self) -> Span {
-        let blended = below.blended(own.span, own.blend);
-        match own {
+    fn over(&self, below: Span) -> Span {
+        let blended = below.blended(self.span, self.blend);
+        match self {
             Self { everywhere: true, .. } => blended,
             Self { fades: true, .. } => below.hull(blended).rounded_outward(),
             Self { .. } => below.hull(blended),

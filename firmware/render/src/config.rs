@@ -41,6 +41,7 @@ pub(crate) fn within(field: ConfigField, found: f32, min: f32, max: f32, layer: 
 }
 
 /// Checks what holds for the whole scene, but for the drive (see [`crate::active`]).
+#[inline]
 pub(crate) fn check_header(header: &Header, board: &Board) -> Result<(), ConfigRefusal> {
     let limits = &board.limits;
     let carrier_max_hz = board.tick_hz as f32 / (2.0 * HALF_PERIOD_MIN_TICKS);
@@ -64,12 +65,14 @@ pub(crate) fn check_header(header: &Header, board: &Board) -> Result<(), ConfigR
 }
 
 /// Checks the numbers of layer number `layer` of a scene.
+#[inline]
 pub(crate) fn check_record(record: &Record, scene: &Scene, layer: u8) -> Result<(), ConfigRefusal> {
     within(ConfigField::Gain, record.gain, -GAIN_MAX, GAIN_MAX, layer)?;
     check_region(record.region, scene, layer)?;
     check_kind(&record.layer, scene, layer)
 }
 
+#[inline]
 fn check_region(region: Region, scene: &Scene, layer: u8) -> Result<(), ConfigRefusal> {
     match region {
         Region::Rectangle { x_m, y_m, width_m, height_m } | Region::Ellipse { x_m, y_m, width_m, height_m } => {
@@ -84,6 +87,7 @@ fn check_region(region: Region, scene: &Scene, layer: u8) -> Result<(), ConfigRe
     }
 }
 
+#[inline]
 fn check_kind(kind: &Layer, scene: &Scene, layer: u8) -> Result<(), ConfigRefusal> {
     match *kind {
         Layer::Constant { electric_friction_n } => frictions([electric_friction_n], layer),
@@ -140,6 +144,7 @@ fn check_kind(kind: &Layer, scene: &Scene, layer: u8) -> Result<(), ConfigRefusa
 }
 
 /// Speeds rise from point to point.
+#[inline]
 fn check_curve(points: impl Iterator<Item = Point>, layer: u8) -> Result<(), ConfigRefusal> {
     let mut least_m_per_s = 0.0;
     for point in points {
@@ -150,23 +155,28 @@ fn check_curve(points: impl Iterator<Item = Point>, layer: u8) -> Result<(), Con
     Ok(())
 }
 
+#[inline]
 fn points(scene: &Scene, first: u8, count: u8) -> impl Iterator<Item = Point> {
     scene.points().skip(usize::from(first)).take(usize::from(count))
 }
 
+#[inline]
 fn frictions<const N: usize>(found: [f32; N], layer: u8) -> Result<(), ConfigRefusal> {
     let mut found = found.into_iter();
     found.try_for_each(|found| within(ConfigField::Friction, found, -FRICTION_MAX_N, FRICTION_MAX_N, layer))
 }
 
+#[inline]
 fn lengths(field: ConfigField, found: [f32; 2], layer: u8) -> Result<(), ConfigRefusal> {
     found.into_iter().try_for_each(|found| within(field, found, -LENGTH_MAX_M, LENGTH_MAX_M, layer))
 }
 
+#[inline]
 fn sizes(field: ConfigField, found: [f32; 2], layer: u8) -> Result<(), ConfigRefusal> {
     found.into_iter().try_for_each(|found| within(field, found, SIZE_MIN_M, LENGTH_MAX_M, layer))
 }
 
+#[inline]
 fn angle(found: f32, layer: u8) -> Result<(), ConfigRefusal> {
     within(ConfigField::Angle, found, -1.0, 1.0, layer)
 }

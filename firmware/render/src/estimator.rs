@@ -115,6 +115,7 @@ impl Estimator {
     }
 
     /// Takes the place of the sample that was weighed, along one axis, in m.
+    #[inline(never)]
     pub(crate) fn update(&mut self, along: Along, place_m: f32) {
         let axis = match along {
             Along::X => &mut self.x,

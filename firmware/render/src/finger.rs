@@ -1,6 +1,6 @@
 //! What the ticker knows of the finger.
 
-use crate::estimator::{Along, Estimate, Estimator};
+use crate::estimator::{Along, Estimator};
 use crate::motion::Motion;
 use crate::stillness::{Stillness, StillnessTiming};
 use crate::{Board, Touch};
@@ -174,11 +174,11 @@ impl Finger {
                 self.errand = Errand::LocateX;
             }
             Errand::LocateX => {
-                self.locate_x(now_tick, prediction, timing);
+                self.locate_along(Along::X, now_tick, prediction, timing);
                 self.errand = Errand::LocateY;
             }
             Errand::LocateY => {
-                self.locate_y(now_tick, prediction, timing);
+                self.locate_along(Along::Y, now_tick, prediction, timing);
                 self.errand = Errand::Judge;
             }
             Errand::Judge => {
@@ -200,23 +200,22 @@ impl Finger {
     /// Finds anew where the finger is at a tick and how it goes on, now that another scene may say so in another way.
     pub(crate) fn locate(&mut self, now_tick: u32, prediction: bool, timing: &FingerTiming) {
         if self.is_there() {
-            self.locate_x(now_tick, prediction, timing);
-            self.locate_y(now_tick, prediction, timing);
+            self.locate_along(Along::X, now_tick, prediction, timing);
+            self.locate_along(Along::Y, now_tick, prediction, timing);
         }
     }
 
-    fn locate_x(&mut self, now_tick: u32, prediction: bool, timing: &FingerTiming) {
-        let estimate = self.estimator.at(Along::X, now_tick, timing.tick_period_s);
-        let [velocity_x_m_per_s, _] = &mut self.velocity_m_per_s;
-        *velocity_x_m_per_s = estimate.velocity_m_per_s;
-        self.x = motion(&estimate, self.sample.place_m[0], prediction, timing);
-    }
-
-    fn locate_y(&mut self, now_tick: u32, prediction: bool, timing: &FingerTiming) {
-        let estimate = self.estimator.at(Along::Y, now_tick, timing.tick_period_s);
-        let [_, velocity_y_m_per_s] = &mut self.velocity_m_per_s;
-        *velocity_y_m_per_s = estimate.velocity_m_per_s;
-        self.y = motion(&estimate, self.sample.place_m[1], prediction, timing);
+    #[inline(never)]
+    fn locate_along(&mut self, along: Along, now_tick: u32, prediction: bool, timing: &FingerTiming) {
+        let estimate = self.estimator.at(along, now_tick, timing.tick_period_s);
+        let ([x_m_per_s, y_m_per_s], [seen_x_m, seen_y_m]) = (&mut self.velocity_m_per_s, self.sample.place_m);
+        let (motion, velocity_m_per_s, seen_m) = match along {
+            Along::X => (&mut self.x, x_m_per_s, seen_x_m),
+            Along::Y => (&mut self.y, y_m_per_s, seen_y_m),
+        };
+        *velocity_m_per_s = estimate.velocity_m_per_s;
+        // Without prediction the finger is taken to stay where it was last seen.
+        *motion = if prediction { Motion::of(&estimate, timing.tick_period_s) } else { Motion::resting_at(seen_m) };
     }
 
     /// When [`Self::expire`] has to be asked, if there is a finger.
@@ -239,6 +238,8 @@ impl Finger {
     }
 
     /// Forgets the finger. What is left of its estimator means nothing without samples.
+    #[cold]
+    #[inline(never)]
     fn lift(&mut self, presence: Presence) {
         *self = Self { presence, sampled_at_tick: self.sampled_at_tick, ..Self::UP };
     }
@@ -280,10 +281,4 @@ impl Finger {
 #[inline]
 pub(crate) fn earlier(one_tick: u32, other_tick: u32) -> u32 {
     if (one_tick.wrapping_sub(other_tick) as i32) < 0 { one_tick } else { other_tick }
-}
-
-/// How the finger goes on along one axis; without prediction it is taken to stay where it was last seen.
-#[inline]
-fn motion(estimate: &Estimate, seen_at_m: f32, prediction: bool, timing: &FingerTiming) -> Motion {
-    if prediction { Motion::of(estimate, timing.tick_period_s) } else { Motion::resting_at(seen_at_m) }
 }

@@ -35,7 +35,13 @@
 //! `bitmap`, `noise`, `edge` (with buttons), `vibration`, `speed` and `stream`, `polygon` regions, the `sine-carrier`,
 //! `telemetry`; and the `store` of what a board keeps over power-off. An image without one of them is smaller, says so
 //! in the feature bits of its hello, and refuses what needs it. Constant layers, rectangles, ellipses, all blends and
-//! the square carrier are always there.
+//! the square carrier are always there. `table-cut` is for shorter commits: they compute no more of the inverse table than
+//! a scene asks for. Without it the same scenes play, bit for bit.
+//!
+//! # Fast and small
+//!
+//! A board builds this crate for speed and itself for size. What a session or a commit does is `#[inline]`: a board takes
+//! it in, and so builds it for size, too.
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 

@@ -22,6 +22,7 @@ pub(crate) struct Loading<'a> {
 
 impl Loading<'_> {
     /// The layer of record `number`, whose numbers were checked.
+    #[inline]
     pub(crate) fn layer(&mut self, record: &Record, number: u8) -> Result<Layer, Refusal> {
         let left_out = Refusal::LeftOut { layer: number };
         let region = Region::new(record.region, self.tables.points()).ok_or(left_out)?;
@@ -30,6 +31,7 @@ impl Loading<'_> {
     }
 
     #[allow(unused_variables, clippy::unused_self, reason = "kinds that are left out do not look at them")]
+    #[inline]
     fn source(&mut self, record: &Record, number: u8) -> Result<Source, Refusal> {
         match record.layer {
             Kind::Constant { electric_friction_n } => Ok(Source::Constant { electric_friction_n }),
@@ -76,6 +78,7 @@ impl Loading<'_> {
     }
 
     #[cfg(feature = "edge")]
+    #[inline]
     fn click(&mut self, click: ClickRecord, number: u8) -> Result<Option<super::click::ClickNumber>, Refusal> {
         if click.height_n.abs() <= 0.0 {
             return Ok(None);
@@ -87,6 +90,7 @@ impl Loading<'_> {
 }
 
 #[cfg(any(feature = "noise", feature = "edge"))]
+#[inline]
 fn too_many(field: ConfigField, max: usize, layer: u8) -> Refusal {
     let max = max as f32;
     Refusal::Config(ConfigRefusal { field, found: max + 1.0, min: 0.0, max, layer })

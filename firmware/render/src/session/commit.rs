@@ -14,6 +14,7 @@ pub(super) type BitmapNames = Vec<u32, RECORDS_MAX>;
 
 impl Dialogue<'_> {
     /// Commits the uploaded scene, which takes some 14 ms of a Cortex-M4F at 170 MHz.
+    #[inline]
     pub(super) fn commit(&mut self, crc32: u32) -> Result<Accepted, Refusal> {
         if self.upload.is_some() {
             return self.end_upload_first();
@@ -45,12 +46,14 @@ impl Dialogue<'_> {
     }
 
     /// A commit while an upload is under way says how far that has come.
+    #[inline]
     fn end_upload_first(&self) -> Result<Accepted, Refusal> {
         let check = self.upload.as_ref().map_or(Ok(()), Upload::check);
         Err(check.err().unwrap_or(Refusal::UploadIncomplete { next_chunk: 0 }))
     }
 }
 
+#[inline]
 fn bitmaps_of(scene: &Scene) -> BitmapNames {
     if !cfg!(feature = "bitmap") {
         return BitmapNames::new();
@@ -66,6 +69,7 @@ fn bitmaps_of(scene: &Scene) -> BitmapNames {
 }
 
 /// Tells what this firmware was built without from what nobody knows.
+#[inline]
 fn not_a_scene(error: SceneError) -> Refusal {
     error.left_out().map_or(Refusal::Scene(error), |layer| Refusal::LeftOut { layer })
 }

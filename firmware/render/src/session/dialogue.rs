@@ -54,6 +54,7 @@ pub(super) struct Dialogue<'a> {
 }
 
 impl<'a> Dialogue<'a> {
+    #[inline]
     pub(super) fn new(board: Board, pool: &'a BitmapPool, spare: &'a mut Active) -> Self {
         Self {
             board,
@@ -79,28 +80,34 @@ impl<'a> Dialogue<'a> {
         }
     }
 
+    #[inline]
     pub(super) fn count_received(&mut self, bytes: usize) {
         self.received_bytes = self.received_bytes.wrapping_add(bytes as u32);
     }
 
+    #[inline]
     pub(super) fn telemetry_period_ticks(&self) -> Option<u32> {
         (self.telemetry_period_ticks > 0).then_some(self.telemetry_period_ticks)
     }
 
+    #[inline]
     pub(super) fn next_touch(&mut self) -> Option<Touch> {
         self.fingers.next()
     }
 
+    #[inline]
     pub(super) fn take_back(&mut self, spare: &'a mut Active) {
         self.spare = Some(spare);
     }
 
+    #[inline]
     pub(super) fn scene(&self) -> Option<&[u8]> {
         let (bytes, crc32) = self.staging.scene()?;
         (crc32 == self.committed_crc32).then_some(bytes)
     }
 
     /// Takes one frame's payload.
+    #[inline]
     pub(super) fn take(&mut self, payload: Result<Payload, ParseError>, status: &Status, outbox: &mut Outbox) {
         self.report_state(status, outbox);
         if !may_overtake_a_commit(&payload) {
@@ -140,22 +147,26 @@ impl<'a> Dialogue<'a> {
     }
 
     /// Does the commit that waits, if one does, and answers it.
+    #[inline]
     pub(super) fn finish_commit(&mut self, status: &Status, outbox: &mut Outbox) {
         if let Some(request) = self.waiting_commit.take() {
             self.serve(request, status, outbox);
         }
     }
 
+    #[inline]
     fn serve(&mut self, Request { sequence, command }: Request, status: &Status, outbox: &mut Outbox) {
         let outcome = self.obey(command, status);
         self.answer(sequence, outcome, outbox);
     }
 
+    #[inline]
     fn answer(&mut self, sequence: u16, outcome: Result<Accepted, Refusal>, outbox: &mut Outbox) {
         let answer = Answer { sequence, received_bytes: self.received_bytes, state: self.state, outcome };
         outbox.send(&FromBoard::Answer(answer));
     }
 
+    #[inline]
     fn obey(&mut self, command: Command, status: &Status) -> Result<Accepted, Refusal> {
         match command {
             Command::Ping => Ok(Accepted::Done),
@@ -187,6 +198,7 @@ impl<'a> Dialogue<'a> {
         }
     }
 
+    #[inline]
     fn subscribe(&mut self, period_ticks: u32) -> Result<Accepted, Refusal> {
         if period_ticks != 0 && period_ticks < TELEMETRY_PERIOD_MIN_TICKS {
             return Err(Refusal::TelemetryTooFast { period_min_ticks: TELEMETRY_PERIOD_MIN_TICKS });
@@ -197,6 +209,7 @@ impl<'a> Dialogue<'a> {
 }
 
 /// What may be done before a commit that came earlier: what neither asks for its outcome nor touches what it reads.
+#[inline]
 fn may_overtake_a_commit(payload: &Result<Payload, ParseError>) -> bool {
     match payload {
         Ok(Payload::Samples { .. }) => true,
@@ -215,6 +228,7 @@ fn may_overtake_a_commit(payload: &Result<Payload, ParseError>) -> bool {
 }
 
 /// The piece of a fault's text that begins at `offset`.
+#[inline]
 fn fault_text(text: &[u8], offset: u8) -> Accepted {
     let rest = text.get(..text.len().min(FAULT_TEXT_MAX_LEN)).and_then(|text| text.get(usize::from(offset)..));
     let mut bytes = [0; FAULT_TEXT_PIECE_LEN];

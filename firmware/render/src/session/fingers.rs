@@ -33,6 +33,7 @@ impl Fingers {
     }
 
     /// Takes a finger's place.
+    #[inline]
     pub(super) fn touch(&mut self, finger: u8, place: Touch, rule: Leader) {
         if !self.down.contains(&finger) && self.down.push(finger).is_err() {
             return;
@@ -44,6 +45,7 @@ impl Fingers {
     }
 
     /// Takes that a finger has left. One that was never there is told, too: the ticker may know it from before.
+    #[inline]
     pub(super) fn lift(&mut self, finger: u8, rule: Leader) {
         self.down.retain(|other| *other != finger);
         if self.down.is_empty() {
@@ -53,6 +55,7 @@ impl Fingers {
     }
 
     /// Forgets all fingers: another host has come.
+    #[inline]
     pub(super) fn forget(&mut self) {
         if self.followed.is_some() {
             self.let_go();
@@ -62,11 +65,13 @@ impl Fingers {
 
     /// What the ticker has to be told next. A finger that takes another's place comes after the other has gone, so that
     /// nothing is made of the way between them.
+    #[inline]
     pub(super) fn next(&mut self) -> Option<Touch> {
         if core::mem::take(&mut self.gone) { Some(Touch::Up) } else { self.place.take() }
     }
 
     /// Follows the finger that leads.
+    #[inline]
     fn follow(&mut self, rule: Leader) {
         let leader = match rule {
             Leader::First => self.down.first(),
@@ -81,6 +86,7 @@ impl Fingers {
         }
     }
 
+    #[inline]
     fn let_go(&mut self) {
         self.gone = true;
         self.place = None;
@@ -89,6 +95,7 @@ impl Fingers {
 }
 
 impl Dialogue<'_> {
+    #[inline]
     pub(super) fn touch(
         &mut self,
         finger: u8,
@@ -113,6 +120,7 @@ impl Dialogue<'_> {
         Ok(Accepted::Done)
     }
 
+    #[inline]
     pub(super) fn lift(&mut self, finger: u8) -> Result<Accepted, Refusal> {
         if !self.board.touch_from_host {
             return Err(Refusal::TouchSource);

@@ -44,6 +44,7 @@ const fn features(board: &Board, has_stream: bool) -> u32 {
 impl Dialogue<'_> {
     /// A new client: credit starts anew, nothing of an unfinished upload is left, and what the client before had armed is
     /// disarmed, for that one is gone. A scene that goes on without a host plays on.
+    #[inline]
     pub(super) fn greet(&mut self, status: &Status, outbox: &mut Outbox) {
         if !(self.state == State::Active && self.playing.is_autonomous()) {
             // Refused when there is nothing to disarm; there is always room for this order.
@@ -75,12 +76,14 @@ impl Dialogue<'_> {
     }
 
     #[cfg(feature = "stream")]
+    #[inline]
     fn has_stream(&self) -> bool {
         self.stream.is_some()
     }
 
     #[cfg(not(feature = "stream"))]
     #[allow(clippy::unused_self, reason = "with the feature it is asked")]
+    #[inline]
     fn has_stream(&self) -> bool {
         false
     }

@@ -41,6 +41,7 @@ pub struct Session<'a> {
 
 impl<'a> Session<'a> {
     /// A session that stores bitmaps in `pool` and builds the next scene in `spare`.
+    #[inline]
     pub fn new(board: Board, pool: &'a BitmapPool, spare: &'a mut Active) -> Self {
         Self {
             decoder: Decoder::new(),
@@ -52,12 +53,14 @@ impl<'a> Session<'a> {
 
     /// From now on, takes the samples of streams into `buffer`, from which the ticker plays them.
     #[cfg(feature = "stream")]
+    #[inline]
     pub fn attach_stream(&mut self, buffer: &'a StreamBuffer) {
         self.dialogue.attach_stream(buffer);
     }
 
     /// Takes bytes from the serial line. Answers wait in [`Session::transmit`], orders in [`Session::next_order`]; a commit
     /// waits for [`Session::poll`], so that it holds up nothing that came with it.
+    #[inline]
     pub fn receive(&mut self, mut bytes: &[u8], status: &Status) {
         while !bytes.is_empty() {
             let before = bytes.len();
@@ -72,6 +75,7 @@ impl<'a> Session<'a> {
     /// Does a commit that has come, which takes some 14 ms of a Cortex-M4F at 170 MHz; and sends what is due without being
     /// asked: telemetry, and changes of state. To be called after every tick or, when there is no time for that, at least
     /// once a telemetry period; the orders of [`Session::receive`] before, those of a commit after it.
+    #[inline]
     pub fn poll(&mut self, status: &Status) {
         self.dialogue.finish_commit(status, &mut self.outbox);
         self.dialogue.report_state(status, &mut self.outbox);
@@ -87,49 +91,58 @@ impl<'a> Session<'a> {
     }
 
     /// The next order for the ticker.
+    #[inline]
     pub fn next_order(&mut self) -> Option<Order<'a>> {
         self.dialogue.next_order()
     }
 
     /// The last place of the finger that the host has told, once; for a board with [`Board::touch_from_host`].
+    #[inline]
     pub fn next_touch(&mut self) -> Option<Touch> {
         self.dialogue.next_touch()
     }
 
     /// Takes back the coefficients that the ticker has let go.
+    #[inline]
     pub fn take_back(&mut self, spare: &'a mut Active) {
         self.dialogue.take_back(spare);
     }
 
     /// Moves bytes for the serial line into `bytes`, and returns how many.
+    #[inline]
     pub fn transmit(&mut self, bytes: &mut [u8]) -> usize {
         self.outbox.drain(bytes)
     }
 
     /// The supervisor's state once the ticker has applied every order that was given out.
+    #[inline]
     pub fn state(&self) -> State {
         self.dialogue.state
     }
 
     /// The committed scene, as it was sent; `None` without one, and when the upload of another has begun.
+    #[inline]
     pub fn scene(&self) -> Option<&[u8]> {
         self.dialogue.scene()
     }
 
     /// Header of the committed scene; `None` without one. Other than [`Session::scene`], it outlives the upload of the
     /// next scene.
+    #[inline]
     pub fn scene_header(&self) -> Option<&Header> {
         self.dialogue.playing.header.as_ref()
     }
 
     /// CRC-32 of what [`Session::kept`] would give.
     #[cfg(feature = "store")]
+    #[inline]
     pub fn kept_crc32(&self) -> Option<u32> {
         self.dialogue.kept_crc32()
     }
 
     /// The committed scene with its bitmaps as bytes to keep; `None` without one, and unless the board is disarmed.
     #[cfg(feature = "store")]
+    #[inline]
     pub fn kept(&self) -> Option<KeptScene<'_>> {
         self.dialogue.kept()
     }
@@ -137,16 +150,19 @@ impl<'a> Session<'a> {
     /// Commits a scene from bytes that were kept: `read` gives those at an offset, and `false` beyond their end. Returns
     /// whether there is a scene that this firmware can play; what is not is as if it had never been kept.
     #[cfg(feature = "store")]
+    #[inline]
     pub fn restore(&mut self, read: impl Fn(u32, &mut [u8]) -> bool) -> bool {
         self.dialogue.restore(read).is_some()
     }
 
     /// Frames that were received whole, and bad ones that were skipped.
+    #[inline]
     pub fn frame_counts(&self) -> (u32, u32) {
         (self.decoder.frames(), self.decoder.rejected())
     }
 
     /// Telemetry gives way to answers: it is left out when the line is behind.
+    #[inline]
     fn send_telemetry(&mut self, telemetry: Telemetry) {
         if self.outbox.is_mostly_free() {
             self.outbox.send(&FromBoard::Telemetry(telemetry));

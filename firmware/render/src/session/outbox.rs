@@ -20,6 +20,7 @@ impl Outbox {
         Self { bytes: Deque::new() }
     }
 
+    #[inline]
     pub(super) fn is_mostly_free(&self) -> bool {
         self.bytes.len() < OUTBOX_LEN / 2
     }
@@ -34,6 +35,7 @@ impl Outbox {
         }
     }
 
+    #[inline]
     pub(super) fn send_hello(&mut self, hello: &Hello) {
         let mut frame = [0; FRAME_MAX_LEN];
         if let Ok(frame) = payload::hello_frame(hello, &mut frame) {
@@ -51,6 +53,7 @@ impl Outbox {
         }
     }
 
+    #[inline]
     pub(super) fn drain(&mut self, bytes: &mut [u8]) -> usize {
         let mut count = 0;
         for byte in bytes {

@@ -15,6 +15,7 @@ const ORDERS_KEPT: usize = 2;
 
 impl<'a> Dialogue<'a> {
     /// Tells the host of a change of state that it did not ask for.
+    #[inline]
     pub(super) fn report_state(&mut self, status: &Status, outbox: &mut Outbox) {
         let before = self.state;
         self.follow_state(status);
@@ -26,6 +27,7 @@ impl<'a> Dialogue<'a> {
     }
 
     /// The ticker's state holds once it has applied every order.
+    #[inline]
     fn follow_state(&mut self, status: &Status) {
         if self.is_settled(status) {
             self.set_state(status.telemetry.state);
@@ -33,6 +35,7 @@ impl<'a> Dialogue<'a> {
     }
 
     /// A stream lasts no longer than the state in which it plays.
+    #[inline]
     fn set_state(&mut self, state: State) {
         self.state = state;
         #[cfg(feature = "stream")]
@@ -41,11 +44,13 @@ impl<'a> Dialogue<'a> {
         }
     }
 
+    #[inline]
     pub(super) fn is_settled(&self, status: &Status) -> bool {
         status.orders_applied == self.orders_sent
     }
 
     /// Commands that a latched fault stands in the way of.
+    #[inline]
     pub(super) fn drive(&mut self, command: Command, status: &Status) -> Result<Accepted, Refusal> {
         if self.state == State::Faulted
             && let Some((fault, _)) = status.fault
@@ -63,6 +68,7 @@ impl<'a> Dialogue<'a> {
         }
     }
 
+    #[inline]
     pub(super) fn change_state(&mut self, order: Order<'a>, from: &[State], to: State) -> Result<Accepted, Refusal> {
         if !from.contains(&self.state) {
             return Err(Refusal::WrongState(self.state));
@@ -73,6 +79,7 @@ impl<'a> Dialogue<'a> {
     }
 
     /// Refuses when there is no room for another order, but for those that put the output to zero.
+    #[inline]
     pub(super) fn room_for_order(&self) -> Result<(), Refusal> {
         if self.orders.len() + ORDERS_KEPT >= ORDERS_MAX { Err(Refusal::Busy) } else { Ok(()) }
     }
@@ -87,6 +94,7 @@ impl<'a> Dialogue<'a> {
         Ok(())
     }
 
+    #[inline]
     pub(super) fn next_order(&mut self) -> Option<Order<'a>> {
         if core::mem::take(&mut self.host_heard) { Some(Order::HostHeard) } else { self.orders.pop_front() }
     }

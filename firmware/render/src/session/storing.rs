@@ -12,6 +12,7 @@ use crate::Order;
 use crate::bitmap_pool::Bitmap;
 
 impl Dialogue<'_> {
+    #[inline]
     pub(super) fn begin_scene(&mut self, len: u32, crc32: u32) -> Result<Accepted, Refusal> {
         let records = usize::from(self.board.limits.records_max);
         let max = (HEADER_LEN + records * RECORD_LEN + POINTS_MAX * POINT_LEN).min(SCENE_MAX_LEN) as u32;
@@ -24,6 +25,7 @@ impl Dialogue<'_> {
         Ok(Accepted::Done)
     }
 
+    #[inline]
     pub(super) fn begin_bitmap(
         &mut self,
         width: u16,
@@ -57,6 +59,7 @@ impl Dialogue<'_> {
 
     /// Finds room for a bitmap: beside all others, else in the place of those that no scene wants, else, when nothing
     /// plays, in the place of the committed scene, those that stay moved together.
+    #[inline]
     fn make_room(&mut self, width: u16, height: u16, crc32: u32, settled: bool) -> Result<Bitmap, Refusal> {
         let pool_len = self.board.limits.bitmap_pool_bytes;
         if let Ok(bitmap) = self.directory.allocate(width, height, crc32, pool_len) {
@@ -87,6 +90,7 @@ impl Dialogue<'_> {
         self.directory.allocate(width, height, crc32, pool_len).map_err(|_| refused)
     }
 
+    #[inline]
     pub(super) fn take_chunk(&mut self, number: u16, bytes: &[u8], outbox: &mut Outbox) {
         if let Some(upload) = &mut self.upload
             && let Report::Progress { next_chunk } = upload.take(number, bytes, &mut self.staging, self.pool)
@@ -95,6 +99,7 @@ impl Dialogue<'_> {
         }
     }
 
+    #[inline]
     pub(super) fn end_upload(&mut self) -> Result<Accepted, Refusal> {
         let Some(upload) = &self.upload else {
             return Err(Refusal::UploadIncomplete { next_chunk: 0 });
@@ -117,6 +122,7 @@ impl Dialogue<'_> {
     }
 
     /// Leaves no trace of an upload under way.
+    #[inline]
     pub(super) fn drop_upload(&mut self) {
         if let Some(Upload { destination: Destination::Bitmap(unfinished), .. }) = self.upload.take()
             && cfg!(feature = "bitmap")

@@ -36,22 +36,26 @@ pub(super) enum Report {
 }
 
 impl Upload {
+    #[inline]
     pub(super) fn of_scene(len: u32, crc32: u32) -> Self {
         Self::new(Destination::Scene, len, crc32, Crc32::new())
     }
 
     /// Starts with the bitmap's shape, which its name covers.
+    #[inline]
     pub(super) fn of_bitmap(bitmap: Bitmap) -> Self {
         let digest = bitmap_digest(bitmap.width, bitmap.height);
         Self::new(Destination::Bitmap(bitmap), bitmap.len(), bitmap.crc32, digest)
     }
 
+    #[inline]
     fn new(destination: Destination, len: u32, crc32: u32, digest: Crc32) -> Self {
         Self { destination, len, crc32, received: 0, digest, next_chunk: 0, gap_reported: false }
     }
 
     /// Takes a chunk. One that was there already does no harm; one that comes too early is left out, and the host is
     /// told, once, which one is wanted.
+    #[inline]
     pub(super) fn take(&mut self, number: u16, bytes: &[u8], staging: &mut Staging, pool: &BitmapPool) -> Report {
         let wanted_len = (self.len - self.received).min(CHUNK_LEN as u32);
         if number != self.next_chunk || bytes.len() as u32 != wanted_len || wanted_len == 0 {
@@ -75,6 +79,7 @@ impl Upload {
     }
 
     /// Whether all bytes came, and as they were announced.
+    #[inline]
     pub(super) fn check(&self) -> Result<(), Refusal> {
         if self.received < self.len {
             return Err(Refusal::UploadIncomplete { next_chunk: self.next_chunk });
@@ -83,6 +88,7 @@ impl Upload {
         if found == self.crc32 { Ok(()) } else { Err(Refusal::CrcMismatch { expected: self.crc32, found }) }
     }
 
+    #[inline]
     pub(super) fn len_and_crc32(&self) -> (u32, u32) {
         (self.len, self.crc32)
     }
@@ -101,15 +107,18 @@ impl Staging {
     }
 
     /// Gives up the scene: another begins to take its place.
+    #[inline]
     pub(super) fn begin(&mut self) {
         self.whole = None;
     }
 
     /// The scene is all there.
+    #[inline]
     pub(super) fn finish(&mut self, len: u32, crc32: u32) {
         self.whole = Some((len, crc32));
     }
 
+    #[inline]
     pub(super) fn write(&mut self, offset: usize, bytes: &[u8]) {
         if let Some(target) = self.bytes.get_mut(offset..offset + bytes.len()) {
             target.copy_from_slice(bytes);
@@ -117,6 +126,7 @@ impl Staging {
     }
 
     /// The whole scene with its CRC-32.
+    #[inline]
     pub(super) fn scene(&self) -> Option<(&[u8], u32)> {
         let (len, crc32) = self.whole?;
         Some((self.bytes.get(..len as usize)?, crc32))

@@ -7,6 +7,7 @@ use crate::{Active, Order};
 
 impl<'a> Ticker<'a> {
     /// Takes an order of the session, between two ticks. Hands back the coefficients that a [`Order::Load`] replaced.
+    #[inline]
     pub fn apply(&mut self, order: Order<'a>) -> Option<&'a mut Active> {
         if !matches!(order, Order::HostHeard) {
             self.orders_applied = self.orders_applied.wrapping_add(1);
@@ -63,11 +64,13 @@ impl<'a> Ticker<'a> {
     }
 
     /// What was asked for last is asked for no longer: the next tick asks anew, whatever else there is to do.
+    #[inline]
     fn ask_at_once(&mut self) {
         self.asked_tick = self.tick.wrapping_sub(1);
     }
 
     /// The timeout that holds now. Only a playing scene may go on without a host.
+    #[inline]
     fn host_timeout_ticks(&self) -> Option<u32> {
         if self.supervisor.state() == State::Active {
             self.active.host_timeout_ticks
@@ -78,6 +81,7 @@ impl<'a> Ticker<'a> {
 
     /// Latches a hard fault that the board has found: the output is zero from the next tick on. A fault that is latched
     /// already stays the one that is told, since it came first.
+    #[inline]
     pub fn raise(&mut self, fault: Fault, detail: u32) {
         if fault == Fault::Deadline {
             self.counters.missed_deadlines = self.counters.missed_deadlines.wrapping_add(1);
