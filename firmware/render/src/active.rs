@@ -1,5 +1,7 @@
 //! The coefficients that the tick reads. What can be computed when a scene is committed is never computed in the tick.
 
+use core::borrow::Borrow;
+
 use frixel_model::{Carrier, Finger, InverseTable, TableError, Waveform};
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
 use frixel_wire::scene::cost::{self, LayerCosts, TICK_INSTRUCTIONS_MAX, Worst};
@@ -166,8 +168,14 @@ impl Active {
     }
 
     /// Makes these the coefficients of `scene`. When it is refused, they are those of no scene.
-    #[inline]
-    pub(crate) fn load(&mut self, scene: &Scene, board: &Board, directory: &Directory) -> Result<(), Refusal> {
+    // One copy, which the board builds: see "Fast and small" in the crate's documentation.
+    #[inline(never)]
+    pub(crate) fn load<D: Borrow<Directory>>(
+        &mut self,
+        scene: &Scene,
+        board: &Board,
+        directory: &D,
+    ) -> Result<(), Refusal> {
         self.unload();
         let header = scene.header();
         if header.carrier == Shape::Sine && !cfg!(feature = "sine-carrier") {
@@ -175,7 +183,7 @@ impl Active {
         }
         config::check_header(header, board).map_err(Refusal::Config)?;
         let (carrier, voltage_max_v_rms) = carrier(header, board).map_err(Refusal::Config)?;
-        let asked_max_n = self.load_layers(scene, board, directory)?;
+        let asked_max_n = self.load_layers(scene, board, directory.borrow())?;
         self.carrier = carrier;
         self.voltage_max_v_rms = voltage_max_v_rms;
         self.slew_step_v = header.slew_v_per_s * board.tick_period_s();

@@ -54,7 +54,6 @@ pub(super) struct Dialogue<'a> {
 }
 
 impl<'a> Dialogue<'a> {
-    #[inline]
     pub(super) fn new(board: Board, pool: &'a BitmapPool, spare: &'a mut Active) -> Self {
         Self {
             board,

@@ -41,7 +41,6 @@ pub struct Session<'a> {
 
 impl<'a> Session<'a> {
     /// A session that stores bitmaps in `pool` and builds the next scene in `spare`.
-    #[inline]
     pub fn new(board: Board, pool: &'a BitmapPool, spare: &'a mut Active) -> Self {
         Self {
             decoder: Decoder::new(),
