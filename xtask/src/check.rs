@@ -52,7 +52,7 @@ pub(crate) fn soak() -> Result<(), String> {
     let sweeps = ["test", "--release", "--locked", "--package", "frixel-model", "--", "--ignored", "--nocapture"];
     cargo("soak", ".", &sweeps, &[])?;
     eprintln!("== random scenes");
-    programs::check(Pace::Usual, programs::FEW, programs::MANY)
+    Pace::ALL.into_iter().try_for_each(|pace| programs::check(pace, programs::FEW, programs::MANY))
 }
 
 /// Builds what runs on a board for the board, with warnings as errors, in a target folder of its own so that its
@@ -123,7 +123,7 @@ pub(crate) fn budgets() -> Result<(), String> {
     let limits = budgets::read(&root().join("budgets.toml"))?;
     budgets::check(&limits, &figures)?;
     bench::costs::check(&figures)?;
-    programs::check(Pace::Usual, 0, programs::FEW)?;
+    Pace::ALL.into_iter().try_for_each(|pace| programs::check(pace, 0, programs::FEW))?;
     let broken = budgets::only(&limits, bench::BROKEN)?;
     match budgets::check(&broken, &bench::breach()?) {
         Err(_) => Ok(()),

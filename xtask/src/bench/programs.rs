@@ -6,9 +6,9 @@ use super::image::Image;
 use super::{EMULATOR, M4F_CORE};
 use crate::command::add_target;
 
-/// Scenes that are played for every change: some ten seconds.
+/// Scenes of a pace that are played for every change: some ten seconds.
 pub(crate) const FEW: u64 = 500;
-/// Scenes that are played in `cargo xtask soak`: some two minutes.
+/// Scenes of a pace that are played in `cargo xtask soak`: some two minutes.
 pub(crate) const MANY: u64 = 6_000;
 
 /// How often the touch source of a random scene reports, as the image calls it.
@@ -21,9 +21,12 @@ pub(crate) enum Pace {
 }
 
 impl Pace {
+    /// Every pace.
+    pub(crate) const ALL: [Self; 2] = [Self::Usual, Self::Hasty];
+
     /// The pace of this name.
     pub(crate) fn named(name: &str) -> Option<Self> {
-        [Self::Usual, Self::Hasty].into_iter().find(|pace| pace.to_string() == name)
+        Self::ALL.into_iter().find(|pace| pace.to_string() == name)
     }
 }
 
