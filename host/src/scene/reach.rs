@@ -46,7 +46,7 @@ impl Reach {
             friction_coefficient: header.friction_coefficient,
         };
         let (gap_m, normal_load_n) = (header.effective_gap_m, header.normal_load_n);
-        InverseTable::of_finger(&finger, gap_m, normal_load_n, header.voltage_max_v_rms)
+        InverseTable::of_finger(&finger, gap_m, normal_load_n, header.voltage_max_v_rms, f32::INFINITY)
             .map_err(|_: TableError| ReachError::Table)?;
         Ok(Self {
             natural_friction_n: loaded.natural_friction_n(),

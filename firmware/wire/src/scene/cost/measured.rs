@@ -2,37 +2,37 @@
 //! again and fails when it finds others.
 
 // A tick that looks at layers and finds none.
-pub(super) const EMPTY: u32 = 245;
+pub(super) const EMPTY: u32 = 247;
 
 // What a sine carrier adds.
-pub(super) const SINE_CARRIER: u32 = 41;
+pub(super) const SINE_CARRIER: u32 = 23;
 
 // Layers, in a rectangle.
 pub(super) const CONSTANT: u32 = 38;
-pub(super) const SINE: u32 = 83;
-pub(super) const SQUARE: u32 = 85;
-pub(super) const TRIANGLE: u32 = 65;
-pub(super) const SAW: u32 = 65;
-pub(super) const BITMAP: u32 = 134;
-pub(super) const BITMAP_TILED: u32 = 158;
-pub(super) const NOISE: u32 = 217;
-pub(super) const EDGE: u32 = 165;
-pub(super) const BUTTON: u32 = 179;
+pub(super) const SINE: u32 = 81;
+pub(super) const SQUARE: u32 = 90;
+pub(super) const TRIANGLE: u32 = 83;
+pub(super) const SAW: u32 = 78;
+pub(super) const BITMAP: u32 = 152;
+pub(super) const BITMAP_TILED: u32 = 176;
+pub(super) const NOISE: u32 = 235;
+pub(super) const EDGE: u32 = 171;
+pub(super) const BUTTON: u32 = 177;
 pub(super) const VIBRATION_SINE: u32 = 116;
 pub(super) const VIBRATION_SQUARE: u32 = 97;
 
 // A curve, and each of its points.
-pub(super) const SPEED: u32 = 97;
+pub(super) const SPEED: u32 = 106;
 pub(super) const SPEED_POINT: u32 = 7;
-pub(super) const STREAM: u32 = 67;
+pub(super) const STREAM: u32 = 75;
 
 // The stream's own work, wherever the finger is.
-pub(super) const STREAM_ELSEWHERE: u32 = 126;
+pub(super) const STREAM_ELSEWHERE: u32 = 116;
 
 // What other regions add to a rectangle.
-pub(super) const ELLIPSE: u32 = 12;
+pub(super) const ELLIPSE: u32 = 13;
 
 // A polygon, each of its edges, and what each of those adds that are level with the finger.
-pub(super) const POLYGON: u32 = 32;
+pub(super) const POLYGON: u32 = 41;
 pub(super) const POLYGON_EDGE: u32 = 16;
 pub(super) const POLYGON_EDGE_LEVEL: u32 = 22;
