@@ -14,7 +14,7 @@ const LAYERS: [usize; 7] = [1, 2, 4, 8, 16, 32, 64];
 const LAYERS_SHOWN: (f64, f64) = (0.9, 80.0);
 /// Layers under the finger: how many, their look, and what they are called.
 const UNDER: [(usize, plotters::style::RGBColor, &str); 2] =
-    [(1, PALETTE[0], "one under the finger"), (4, PALETTE[1], "four under the finger")];
+    [(1, PALETTE[0], "one under the finger"), (8, PALETTE[1], "eight under the finger")];
 
 /// A tick with some layers under the finger, and others elsewhere.
 struct Counted {
@@ -81,9 +81,8 @@ pub(super) fn figure(counts: &Counts) -> Result<Option<Figure>, ReportError> {
             ),
             format!(
                 "The dashed line is the most that a tick may take, {limit} instructions: a scene with a place that takes more is \
-                 refused. Four layers are shown under the finger and not eight, because already eight constants on top of one \
-                 another would take more than that. Counts come from the file given with --bench, which cargo xtask bench writes: \
-                 they were counted in an emulator."
+                 refused. Counts come from the file given with --bench, which cargo xtask bench writes: they were counted in an \
+                 emulator."
             ),
         ],
         chart: Chart { panels: vec![panel], columns: 1, shared_legend: false },

@@ -2,17 +2,17 @@
 //! again and fails when it finds others.
 
 // A tick that looks at layers and finds none.
-pub(super) const EMPTY: u32 = 247;
+pub(super) const EMPTY: u32 = 259;
 
 // What a sine carrier adds.
 pub(super) const SINE_CARRIER: u32 = 23;
 
 // Layers, in a rectangle.
 pub(super) const CONSTANT: u32 = 38;
-pub(super) const SINE: u32 = 81;
+pub(super) const SINE: u32 = 91;
 pub(super) const SQUARE: u32 = 90;
 pub(super) const TRIANGLE: u32 = 83;
-pub(super) const SAW: u32 = 78;
+pub(super) const SAW: u32 = 73;
 pub(super) const BITMAP: u32 = 152;
 pub(super) const BITMAP_TILED: u32 = 176;
 pub(super) const NOISE: u32 = 235;
