@@ -189,8 +189,8 @@ fn a_tick_costs_what_was_counted_and_no_more_than_it_may() {
     assert_eq!(found, expected);
     let section = section("tick-cost-against-layers");
     for said in [
-        "with one under the finger they add 4 instructions at most",
-        "with eight under the finger they add 7 instructions at most",
+        "with one under the finger they add 2 instructions on average",
+        "with eight under the finger they add 1 instructions on average",
         "most that a tick may take: 600",
     ] {
         assert!(section.contains(said), "{said}");

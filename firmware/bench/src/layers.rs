@@ -14,6 +14,8 @@ pub(crate) const GRATING: Layer = grating(Wave::Sine);
 
 const AROUND: Region = Region::Rectangle { x_m: 0.0, y_m: 0.0, width_m: 0.12, height_m: 0.11 };
 const STREAM: Layer = Layer::Stream { low_n: 0.001, high_n: 0.02 };
+/// The part of the screen where the finger is, and no layer that is elsewhere.
+const UPPER_PART: Region = Region::Rectangle { x_m: 0.0, y_m: 0.0, width_m: 0.12, height_m: 0.06 };
 const CONSTANT: Layer = Layer::Constant { electric_friction_n: 0.001 };
 /// More than the drive gives, which is counted in every tick.
 const OUT_OF_REACH: Layer = Layer::Constant { electric_friction_n: 1.0 };
@@ -177,7 +179,7 @@ impl Bench {
             ("tick_8_of_64", 8, 64),
         ] {
             let records: [Record; RECORDS_MAX] =
-                array::from_fn(|number| under(if number < there { AROUND } else { away(number) }, CONSTANT));
+                array::from_fn(|number| under(if number < there { UPPER_PART } else { away(number) }, CONSTANT));
             self.play(&HEADER, &records[..count]);
             self.slide(counter.case(name));
         }

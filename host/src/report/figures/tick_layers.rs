@@ -32,10 +32,12 @@ fn counted(counts: &Counts, under: usize) -> Vec<Counted> {
     LAYERS.into_iter().filter_map(of).collect()
 }
 
-/// What layers that are not under the finger add at most: to the fewest layers, in instructions.
+/// What layers that are not under the finger add on average: to the fewest layers, in instructions. The longest ticks
+/// differ by what else falls into them, such as an early edge of the carrier.
 fn added(curve: &[Counted]) -> Option<f64> {
     let (first, others) = curve.split_first()?;
-    others.iter().map(|counted| counted.worst - first.worst).reduce(f64::max)
+    let fewest = first.mean?;
+    others.iter().filter_map(|counted| Some(counted.mean? - fewest)).reduce(f64::max)
 }
 
 /// None without a count of such a tick.
@@ -66,7 +68,7 @@ pub(super) fn figure(counts: &Counts) -> Result<Option<Figure>, ReportError> {
         let mean = curve.iter().filter_map(|counted| Some((counted.layers, counted.mean?))).collect();
         panel.add(&format!("{name}, worst"), Look { colour: *colour, line: Line::Solid, mark: Mark::Disc }, worst);
         panel.add(&format!("{name}, mean"), Look { colour: *colour, line: Line::Thin, mark: Mark::Ring }, mean);
-        additions.extend(added(curve).map(|more| format!("with {name} they add {more} instructions at most")));
+        additions.extend(added(curve).map(|more| format!("with {name} they add {more} instructions on average")));
     }
     let elsewhere = if additions.is_empty() { String::new() } else { format!(": {}", additions.join("; ")) };
     Ok(Some(Figure {
@@ -77,7 +79,7 @@ pub(super) fn figure(counts: &Counts) -> Result<Option<Figure>, ReportError> {
                 "Instructions of a tick while a finger comes down, slides, rests and slides on: the longest tick, and the mean of \
                  all. Each layer is a constant in a rectangle; those that are not under the finger lie elsewhere on the screen. A \
                  grid with a bit for each layer lets a tick look only at the layers near the finger, so that layers elsewhere \
-                 hardly count{elsewhere}."
+                 hardly count{elsewhere}. The longest ticks differ by what else falls into them, such as an early edge of the carrier."
             ),
             format!(
                 "The dashed line is the most that a tick may take, {limit} instructions: a scene with a place that takes more is \
