@@ -31,7 +31,7 @@ pub struct Ticker<'a> {
     carrier: Carrier,
     tick: u32,
     /// When there is something else to do than to ask the scene: an errand of the finger's, or a deadline. Never later than
-    /// now for what is not live.
+    /// now for what is not live, so that it never drives.
     due_tick: u32,
     /// When the host will have been silent for too long, or when to look again if it need not be there.
     silent_tick: u32,
@@ -226,16 +226,10 @@ impl<'a> Ticker<'a> {
         self.live = may_be_live;
     }
 
-    /// Finds when there is something else to do than to ask the scene. Errands are done in every second tick, so that the
-    /// others ask it; while there is nothing to ask, every tick from this one on has something else to do.
+    /// Finds when there is something else to do than to ask the scene: at once, if there is an errand or nothing to ask.
     fn plan(&mut self) {
-        self.due_tick = if !self.live {
-            self.tick
-        } else if self.finger.has_errand() {
-            earlier((self.tick | 1).wrapping_add(1), self.deadline_tick)
-        } else {
-            self.deadline_tick
-        };
+        let at_once = !self.live || self.finger.has_errand();
+        self.due_tick = if at_once { self.tick } else { self.deadline_tick };
     }
 
     #[cfg(feature = "stream")]
