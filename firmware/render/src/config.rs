@@ -16,8 +16,8 @@ pub(crate) const LENGTH_MAX_M: f32 = 2.0;
 pub(crate) const GAIN_MAX: f32 = 100.0;
 /// Largest friction that a layer may name, in N, either way.
 const FRICTION_MAX_N: f32 = 100.0;
-/// Least width and height of a region, in m: their inverses are finite.
-const SIZE_MIN_M: f32 = 1e-9;
+/// Least width and height of a region, in m: their inverses are finite, and a rectangle is a step wide at least.
+const SIZE_MIN_M: f32 = 4e-9;
 /// Finest stripes and noise, in cycles per metre.
 const CYCLES_PER_M_MAX: f32 = 2e4;
 /// Distances of a bitmap's samples, in m.

@@ -1,5 +1,6 @@
 //! What the ticker knows of the finger.
 
+use crate::config::LENGTH_MAX_M;
 use crate::estimator::{Along, Estimator};
 use crate::motion::Motion;
 use crate::stillness::{Stillness, StillnessTiming};
@@ -119,9 +120,14 @@ impl Finger {
         matches!(self.presence, Presence::Down { .. })
     }
 
-    /// Takes a report of the touch source, unless the last is not taken in wholly: a source that is faster is heard again
-    /// soon. A finger that comes down is there when its report is taken in; one that is lifted is gone at once. Returns
-    /// whether the report was taken.
+    /// The last report is taken in wholly, so that another may be taken.
+    #[inline]
+    pub(crate) fn is_ready(&self) -> bool {
+        self.errand == Errand::None
+    }
+
+    /// Takes a report of the touch source, one that is not a lift only when [`Finger::is_ready`]. A finger that comes down
+    /// is there when its report is taken in; one that is lifted is gone at once. Returns whether the report said anything.
     pub(crate) fn take(&mut self, touch: Touch, now_tick: u32, timing: &FingerTiming) -> bool {
         match touch {
             Touch::Up => {
@@ -132,7 +138,8 @@ impl Finger {
             Touch::Down { x_m, y_m, age_ticks } if self.errand == Errand::None => {
                 let newer = self.sampled_at_tick.is_none_or(|tick| age_ticks < now_tick.wrapping_sub(tick));
                 // A report that says nothing new does not keep the output alive: the source may be stuck.
-                let taken = newer && age_ticks <= timing.sample_age_max_ticks && x_m.is_finite() && y_m.is_finite();
+                let somewhere = [x_m, y_m].into_iter().all(|place_m| place_m.abs() <= LENGTH_MAX_M);
+                let taken = newer && age_ticks <= timing.sample_age_max_ticks && somewhere;
                 if taken {
                     let at_tick = now_tick.wrapping_sub(age_ticks);
                     let left_ticks = timing.sample_age_max_ticks - age_ticks;
@@ -191,6 +198,10 @@ impl Finger {
             }
             Errand::Look => {
                 self.errand = Errand::None;
+                // A source whose next report is here already leaves no other time for it.
+                if self.stillness.is_ramping() {
+                    self.stillness.settle(now_tick);
+                }
                 return true;
             }
         }
@@ -199,7 +210,9 @@ impl Finger {
 
     /// Finds anew where the finger is at a tick and how it goes on, now that another scene may say so in another way.
     pub(crate) fn locate(&mut self, now_tick: u32, prediction: bool, timing: &FingerTiming) {
-        if self.is_there() {
+        // With a sample that is weighed and not taken by both axes, they are of different times; they are located soon.
+        let between = matches!(self.errand, Errand::UpdateX | Errand::UpdateY);
+        if self.is_there() && !between {
             self.locate_along(Along::X, now_tick, prediction, timing);
             self.locate_along(Along::Y, now_tick, prediction, timing);
         }

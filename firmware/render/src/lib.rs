@@ -36,7 +36,7 @@
 //! `telemetry`; and the `store` of what a board keeps over power-off. An image without one of them is smaller, says so
 //! in the feature bits of its hello, and refuses what needs it. Constant layers, rectangles, ellipses, all blends and
 //! the square carrier are always there. `table-cut` is for shorter commits: they compute no more of the inverse table than
-//! a scene asks for. Without it the same scenes play, bit for bit.
+//! a scene asks for. Without it, scenes whose whole range can be computed play the same, bit for bit.
 //!
 //! # Fast and small
 //!

@@ -4,8 +4,8 @@ use frixel_wire::scene::{Point, Region as Record};
 
 use super::{Around, Moment};
 
-/// Rectangles are told apart in whole steps of 2^-28 m, 3.7 nm, in a third of what it takes in `f32`. Whatever a scene may
-/// name is within 4 m.
+/// Rectangles are told apart in whole steps of 2^-28 m, 3.7 nm: a tick compares whole numbers sooner than those in `f32`.
+/// Whatever a scene may name is within 4 m.
 const STEPS_PER_M: f32 = (1 << 28) as f32;
 
 /// A place in steps; held at the ends of the numbers.

@@ -35,8 +35,11 @@ pub struct Ticker<'a> {
     due_tick: u32,
     /// When the host will have been silent for too long, or when to look again if it need not be there.
     silent_tick: u32,
-    /// The same, or before it, when touch data are too old.
+    /// The same, or before it, when touch data are too old or a slow finger is still. It may be too early while a report
+    /// is taken in: what is looked at then says so.
     deadline_tick: u32,
+    /// A report of the touch source that there was no time for yet.
+    waiting: Option<Waiting>,
     /// When the scene was last asked; long ago after an order that may have changed what it wants.
     asked_tick: u32,
     /// There is a scene, a finger, and leave to drive.
@@ -56,6 +59,26 @@ pub struct Ticker<'a> {
     /// A stream plays, or fades.
     #[cfg(feature = "stream")]
     streaming: bool,
+}
+
+/// A report that was not taken in the tick that brought it.
+#[derive(Clone, Copy)]
+struct Waiting {
+    touch: Touch,
+    since_tick: u32,
+}
+
+impl Waiting {
+    /// The report as of a tick.
+    fn at(&self, now_tick: u32) -> Touch {
+        match self.touch {
+            Touch::Down { x_m, y_m, age_ticks } => {
+                let waited_ticks = now_tick.wrapping_sub(self.since_tick);
+                Touch::Down { x_m, y_m, age_ticks: age_ticks.saturating_add(waited_ticks) }
+            }
+            Touch::Up => Touch::Up,
+        }
+    }
 }
 
 /// When something was last counted. It means nothing while its count is none.
@@ -93,6 +116,7 @@ impl<'a> Ticker<'a> {
             due_tick: 0,
             silent_tick: LOOK_AFTER_TICKS,
             deadline_tick: LOOK_AFTER_TICKS,
+            waiting: None,
             asked_tick: 0,
             live: false,
             arm_switch: false,
@@ -136,8 +160,11 @@ impl<'a> Ticker<'a> {
         }
         self.finger.advance();
         let due = self.is_past(self.due_tick);
-        if (due || sense.touch.is_some()) && self.may_attend(sense.touch) {
-            return self.attend(sense.touch);
+        if due || sense.touch.is_some() {
+            if self.may_attend(sense.touch) {
+                return self.attend(sense.touch);
+            }
+            self.keep(sense.touch);
         }
         self.ask();
         self.put_out()
@@ -147,8 +174,15 @@ impl<'a> Ticker<'a> {
     /// on with the last, or meets a deadline, or rests. If it drives, it drives what the scene asked for before.
     #[inline(never)]
     fn attend(&mut self, touch: Option<Touch>) -> Drive {
+        self.keep(touch);
         let (timing, prediction) = (&self.timing.finger, self.active.prediction);
-        let taken = touch.is_some_and(|touch| self.finger.take(touch, self.tick, timing));
+        let taken = match self.waiting {
+            Some(report) if self.finger.is_ready() || report.touch == Touch::Up => {
+                self.waiting = None;
+                self.finger.take(report.at(self.tick), self.tick, timing)
+            }
+            _ => false,
+        };
         if taken {
             self.live &= self.finger.is_there();
         } else if self.finger.has_errand() && self.finger.go_on(self.tick, prediction, timing) {
@@ -167,9 +201,17 @@ impl<'a> Ticker<'a> {
         self.put_out()
     }
 
+    /// Keeps a report until there is time for it. Of several the newest counts.
+    #[inline]
+    fn keep(&mut self, touch: Option<Touch>) {
+        if let Some(touch) = touch {
+            self.waiting = Some(Waiting { touch, since_tick: self.tick });
+            self.due_tick = self.tick;
+        }
+    }
+
     /// Whether this tick may do something else than ask the scene. When the tick before did, or an order has changed what
-    /// the scene wants since, an errand waits and a report is left out: the source will say more. A lift never waits, nor
-    /// does a deadline.
+    /// the scene wants since, errands and reports wait. A lift never waits, nor does a deadline.
     #[inline]
     fn may_attend(&self, touch: Option<Touch>) -> bool {
         self.tick.wrapping_sub(self.asked_tick) == 1
@@ -220,7 +262,10 @@ impl<'a> Ticker<'a> {
             self.moment.velocity_m_per_s = self.finger.velocity_m_per_s();
         }
         let may_be_live = self.may_be_live();
-        if may_be_live && !self.live {
+        if may_be_live != self.live {
+            // What was asked for in another life is asked for no longer.
+            self.target_v_rms = 0.0;
+            self.asked_electric_friction_n = 0.0;
             self.asked_tick = self.tick;
         }
         self.live = may_be_live;
@@ -228,7 +273,7 @@ impl<'a> Ticker<'a> {
 
     /// Finds when there is something else to do than to ask the scene: at once, if there is an errand or nothing to ask.
     fn plan(&mut self) {
-        let at_once = !self.live || self.finger.has_errand();
+        let at_once = !self.live || self.waiting.is_some() || self.finger.has_errand();
         self.due_tick = if at_once { self.tick } else { self.deadline_tick };
     }
 

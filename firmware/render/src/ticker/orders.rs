@@ -18,6 +18,7 @@ impl<'a> Ticker<'a> {
                 let spare = core::mem::replace(&mut self.active, next);
                 self.carrier.retime(&self.active.carrier);
                 self.envelope.limit(self.active.voltage_max_v_rms);
+                self.target_v_rms = self.target_v_rms.min(self.active.voltage_max_v_rms);
                 self.clicks.forget();
                 #[cfg(feature = "stream")]
                 if !self.active.has_stream() {
@@ -63,7 +64,7 @@ impl<'a> Ticker<'a> {
         spare
     }
 
-    /// What was asked for last is asked for no longer: the next tick asks anew, whatever else there is to do.
+    /// What was asked for last is asked for no longer: the next tick asks anew, unless a deadline or a lift is in it.
     #[inline]
     fn ask_at_once(&mut self) {
         self.asked_tick = self.tick.wrapping_sub(1);
