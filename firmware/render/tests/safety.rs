@@ -285,6 +285,68 @@ fn a_new_scenes_voltage_limit_holds_from_its_first_tick() {
     assert!(desk.status().telemetry.voltage_v_rms <= 20.0);
 }
 
+/// A tick of a finger that slides, and rests from tick 4,000 on.
+fn slide_and_rest(desk: &mut Desk, tick: u32) {
+    if tick.is_multiple_of(400) {
+        let x_m = 0.03 + 2.5e-6 * tick.min(4_000) as f32;
+        desk.sense.touch = Some(Touch::Down { x_m, y_m: 0.03, age_ticks: 0 });
+        desk.command(Command::Ping).unwrap();
+    }
+    desk.tick();
+}
+
+/// Also in the ticks that have something else to do than to ask the scene: around the one in which a slow finger becomes
+/// still.
+#[test]
+fn a_new_scenes_voltage_limit_holds_in_a_tick_with_a_deadline() {
+    let mut memory = Memory::new();
+    let mut desk = playing(&mut memory);
+    let still = |desk: &Desk| desk.status().telemetry.flags.contains(Flags::STILL);
+    let still_at = (0..20_000).find(|tick| {
+        slide_and_rest(&mut desk, *tick);
+        still(&desk)
+    });
+    let still_at = still_at.unwrap();
+    for ticks in still_at - 12..still_at + 4 {
+        let mut memory = Memory::new();
+        let mut desk = playing(&mut memory);
+        (0..ticks).for_each(|tick| slide_and_rest(&mut desk, tick));
+        assert!(desk.status().telemetry.voltage_v_rms > 100.0, "{ticks}");
+        let header = Header { voltage_max_v_rms: 20.0, slew_v_per_s: 1e9, ..HEADER };
+        desk.load(&scene(&header, &[record(Layer::Constant { electric_friction_n: 1e-5 })])).unwrap();
+        for tick in ticks..ticks + 40 {
+            slide_and_rest(&mut desk, tick);
+            assert!(desk.status().telemetry.voltage_v_rms <= 20.0, "{ticks}, {tick}");
+        }
+    }
+}
+
+#[test]
+fn a_still_finger_is_ramped_away_and_comes_back_however_often_it_is_reported() {
+    for period_ticks in (1..=24).chain([40, 400, 667]) {
+        let mut memory = Memory::new();
+        let mut desk = playing(&mut memory);
+        let mut x_m = 0.03;
+        let mut slide = |desk: &mut Desk, step_m: f32| {
+            for tick in 0..6_000_u32.max(40 * period_ticks) {
+                x_m += step_m;
+                if tick.is_multiple_of(period_ticks) {
+                    desk.sense.touch = Some(Touch::Down { x_m, y_m: 0.03, age_ticks: 0 });
+                }
+                if tick.is_multiple_of(2_000) {
+                    desk.command(Command::Ping).unwrap();
+                }
+                desk.tick();
+            }
+            desk.status().telemetry
+        };
+        let still = slide(&mut desk, 0.0);
+        assert!(still.flags.contains(Flags::STILL) && still.dac_code == 0, "every {period_ticks}: {still:?}");
+        let moving = slide(&mut desk, 2.5e-6);
+        assert!(!moving.flags.contains(Flags::STILL) && moving.dac_code != 0, "every {period_ticks}: {moving:?}");
+    }
+}
+
 #[test]
 fn a_dead_amplifier_and_a_live_electrode_are_seen_at_50_volts() {
     let mut memory = Memory::new();
