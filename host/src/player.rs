@@ -52,7 +52,7 @@ fn upload<L: Link>(
     program: &Program,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<(), DeviceError> {
-    let scene = program.scene_bytes();
+    let scene = program.scene_bytes_for(device.hello().protocol);
     let bitmaps = program
         .bitmaps
         .iter()

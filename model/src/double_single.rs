@@ -1,5 +1,5 @@
 //! Numbers of some 44 bits as sums of two `f32`: what a board computes with where `f32` is not enough, since its FPU has no
-//! `f64`. In software `f64` is several times the code and the time.
+//! `f64`. In software, `f64` would cost an image its routines.
 
 use core::cmp::Ordering;
 use core::fmt::{Display, Formatter, Result as FmtResult};

@@ -80,7 +80,7 @@ impl Monitor {
 }
 
 /// `1 - exp(-x)`, what a first-order lag follows in `x` of its time constants, within 1e-5 for `x` up to one and 1e-3 for any
-/// above zero: 64 steps of the trapezoidal rule. `libm::expf` is five times the code.
+/// above zero: 64 steps of the trapezoidal rule. `libm::expf` would cost an image more than it is worth.
 fn lag_step(x: f32) -> f32 {
     let half_step = (x / 128.0).min(1.0);
     let mut left = (1.0 - half_step) / (1.0 + half_step);

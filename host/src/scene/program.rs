@@ -1,11 +1,14 @@
 //! What a scene compiles to.
 
-use frixel_wire::hello::feature;
+use frixel_wire::hello::{PROTOCOL_MAJOR, PROTOCOL_MINOR, feature};
 use frixel_wire::scene::{Carrier, Header, Layer, Point, Record, Region, bitmap_crc32};
 
 use super::layer_map::LayerMap;
 use super::left_out::LeftOut;
 use super::reach::Reach;
+
+/// The protocol that knows [`Header::layers_fixed`].
+const LAYERS_FIXED_SINCE: (u8, u8) = (1, 2);
 
 /// A scene as a board plays it, with the pictures that it names.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,10 +36,18 @@ pub struct Program {
 }
 
 impl Program {
-    /// The scene's bytes, as they are uploaded.
+    /// The scene's bytes, as they are uploaded to a board of this version.
     pub fn scene_bytes(&self) -> Vec<u8> {
+        self.scene_bytes_for((PROTOCOL_MAJOR, PROTOCOL_MINOR))
+    }
+
+    /// The scene's bytes, as they are uploaded to a board that speaks a protocol, major and minor: one that is older does
+    /// without the flags that came later.
+    pub fn scene_bytes_for(&self, protocol: (u8, u8)) -> Vec<u8> {
+        let layers_fixed = self.header.layers_fixed && protocol >= LAYERS_FIXED_SINCE;
+        let header = Header { layers_fixed, ..self.header };
         // At most 64 records and 128 points were compiled.
-        let mut bytes = self.header.write(self.records.len() as u8, self.points.len() as u8).to_vec();
+        let mut bytes = header.write(self.records.len() as u8, self.points.len() as u8).to_vec();
         bytes.extend(self.records.iter().flat_map(Record::write));
         bytes.extend(self.points.iter().flat_map(Point::write));
         bytes

@@ -13,7 +13,7 @@ use crate::Order;
 pub(super) type BitmapNames = Vec<u32, RECORDS_MAX>;
 
 impl Dialogue<'_> {
-    /// Commits the uploaded scene, which takes some 14 ms of a Cortex-M4F at 170 MHz.
+    /// Commits the uploaded scene, which takes the time of many ticks.
     #[inline]
     pub(super) fn commit(&mut self, crc32: u32) -> Result<Accepted, Refusal> {
         if self.upload.is_some() {

@@ -57,8 +57,9 @@ impl<'a> Session<'a> {
         self.dialogue.attach_stream(buffer);
     }
 
-    /// Takes bytes from the serial line. Answers wait in [`Session::transmit`], orders in [`Session::next_order`]; a commit
-    /// waits for [`Session::poll`], so that it holds up nothing that came with it.
+    /// Takes bytes from the serial line. Answers wait in [`Session::transmit`], orders in [`Session::next_order`]. A commit
+    /// waits for [`Session::poll`], so that it does not hold up the signs of life, touches and stops that came with it, unless
+    /// something behind it has to know how it ended.
     #[inline]
     pub fn receive(&mut self, mut bytes: &[u8], status: &Status) {
         while !bytes.is_empty() {
@@ -71,7 +72,7 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Does a commit that has come, which takes some 14 ms of a Cortex-M4F at 170 MHz; and sends what is due without being
+    /// Does a commit that has come, which takes the time of many ticks; and sends what is due without being
     /// asked: telemetry, and changes of state. To be called after every tick or, when there is no time for that, at least
     /// once a telemetry period; the orders of [`Session::receive`] before, those of a commit after it.
     #[inline]

@@ -347,3 +347,14 @@ fn a_live_layer_is_found_whatever_was_left_out_below_it() {
     assert_eq!(program.layers.record("3"), Ok(1));
     assert!(program.layers.record("rest").unwrap_err().to_string().contains("live = true"));
 }
+
+#[test]
+fn a_board_of_an_older_protocol_gets_no_flag_that_it_does_not_know() {
+    let program = compile_layers("[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\n");
+    assert!(program.header.layers_fixed);
+    for (protocol, layers_fixed) in [((1, 1), false), ((1, 2), true), ((2, 0), true)] {
+        let bytes = program.scene_bytes_for(protocol);
+        let scene = WireScene::parse(&bytes).unwrap();
+        assert_eq!(scene.header().layers_fixed, layers_fixed, "{protocol:?}");
+    }
+}
