@@ -126,8 +126,9 @@ impl Finger {
         self.errand == Errand::None
     }
 
-    /// Takes a report of the touch source, one that is not a lift only when [`Finger::is_ready`]. A finger that comes down
-    /// is there when its report is taken in; one that is lifted is gone at once. Returns whether the report said anything.
+    /// Takes a report of the touch source; one that is not a lift only when [`Finger::is_ready`], which no source is kept from
+    /// for more than 18 ticks. A finger that comes down is there when its report is taken in; one that is lifted is gone at
+    /// once. Returns whether the report was taken.
     pub(crate) fn take(&mut self, touch: Touch, now_tick: u32, timing: &FingerTiming) -> bool {
         match touch {
             Touch::Up => {

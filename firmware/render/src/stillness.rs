@@ -91,6 +91,7 @@ impl Stillness {
     }
 
     /// Goes on to a tick with a gain that is on its way.
+    #[inline(never)]
     pub(crate) fn settle(&mut self, now_tick: u32) {
         let ticks = now_tick.wrapping_sub(self.settled_at_tick);
         self.settled_at_tick = now_tick;

@@ -376,9 +376,8 @@ fn the_first_fault_is_the_one_that_is_told() {
     assert_eq!(desk.status().counters.missed_deadlines, 1);
 }
 
-/// A source that reports at every tick is followed as any other.
 #[test]
-fn reports_that_come_faster_than_they_are_taken_in_are_not_lost() {
+fn a_source_that_reports_at_every_tick_is_followed_as_any_other() {
     for period_ticks in 1..6 {
         let mut memory = Memory::new();
         let mut desk = playing(&mut memory);

@@ -19,6 +19,9 @@ use crate::{Active, BitmapPool, Board, Drive, Sense, Touch};
 /// Ticks until the next look at what has no deadline: far less than the tick counter takes to wrap.
 const LOOK_AFTER_TICKS: u32 = 1 << 30;
 
+/// For so long nothing but an order leaves the scene unasked.
+const ORDERED_TICKS: u32 = 4;
+
 /// Turns touch into voltage, one tick at a time, and owns the output through its supervisor.
 pub struct Ticker<'a> {
     finger: Finger,
@@ -38,8 +41,6 @@ pub struct Ticker<'a> {
     /// The same, or before it, when touch data are too old or a slow finger is still. It may be too early while a report
     /// is taken in: what is looked at then says so.
     deadline_tick: u32,
-    /// A report of the touch source that there was no time for yet.
-    waiting: Option<Waiting>,
     /// When the scene was last asked; long ago after an order that may have changed what it wants.
     asked_tick: u32,
     /// There is a scene, a finger, and leave to drive.
@@ -59,26 +60,6 @@ pub struct Ticker<'a> {
     /// A stream plays, or fades.
     #[cfg(feature = "stream")]
     streaming: bool,
-}
-
-/// A report that was not taken in the tick that brought it.
-#[derive(Clone, Copy)]
-struct Waiting {
-    touch: Touch,
-    since_tick: u32,
-}
-
-impl Waiting {
-    /// The report as of a tick.
-    fn at(&self, now_tick: u32) -> Touch {
-        match self.touch {
-            Touch::Down { x_m, y_m, age_ticks } => {
-                let waited_ticks = now_tick.wrapping_sub(self.since_tick);
-                Touch::Down { x_m, y_m, age_ticks: age_ticks.saturating_add(waited_ticks) }
-            }
-            Touch::Up => Touch::Up,
-        }
-    }
 }
 
 /// When something was last counted. It means nothing while its count is none.
@@ -116,7 +97,6 @@ impl<'a> Ticker<'a> {
             due_tick: 0,
             silent_tick: LOOK_AFTER_TICKS,
             deadline_tick: LOOK_AFTER_TICKS,
-            waiting: None,
             asked_tick: 0,
             live: false,
             arm_switch: false,
@@ -160,11 +140,8 @@ impl<'a> Ticker<'a> {
         }
         self.finger.advance();
         let due = self.is_past(self.due_tick);
-        if due || sense.touch.is_some() {
-            if self.may_attend(sense.touch) {
-                return self.attend(sense.touch);
-            }
-            self.keep(sense.touch);
+        if (due || sense.touch.is_some()) && self.may_attend(sense.touch) {
+            return self.attend(sense.touch);
         }
         self.ask();
         self.put_out()
@@ -174,18 +151,11 @@ impl<'a> Ticker<'a> {
     /// on with the last, or meets a deadline, or rests. If it drives, it drives what the scene asked for before.
     #[inline(never)]
     fn attend(&mut self, touch: Option<Touch>) -> Drive {
-        self.keep(touch);
-        let (timing, prediction) = (&self.timing.finger, self.active.prediction);
-        let taken = match self.waiting {
-            Some(report) if self.finger.is_ready() || report.touch == Touch::Up => {
-                self.waiting = None;
-                self.finger.take(report.at(self.tick), self.tick, timing)
-            }
-            _ => false,
-        };
+        let taken = touch.is_some_and(|touch| self.finger.take(touch, self.tick, &self.timing.finger));
         if taken {
             self.live &= self.finger.is_there();
-        } else if self.finger.has_errand() && self.finger.go_on(self.tick, prediction, timing) {
+        } else if self.finger.has_errand() && self.finger.go_on(self.tick, self.active.prediction, &self.timing.finger)
+        {
             self.look_at_finger();
         }
         if self.is_past(self.deadline_tick) {
@@ -201,23 +171,16 @@ impl<'a> Ticker<'a> {
         self.put_out()
     }
 
-    /// Keeps a report until there is time for it. Of several the newest counts.
-    #[inline]
-    fn keep(&mut self, touch: Option<Touch>) {
-        if let Some(touch) = touch {
-            self.waiting = Some(Waiting { touch, since_tick: self.tick });
-            self.due_tick = self.tick;
-        }
-    }
-
-    /// Whether this tick may do something else than ask the scene. When the tick before did, or an order has changed what
-    /// the scene wants since, errands and reports wait. A lift never waits, nor does a deadline.
+    /// Whether this tick may do something else than ask the scene: when the tick before asked it. A lift or a deadline never
+    /// waits, and a report that can be taken may have the tick after an errand, but not one after an order: it is left out.
     #[inline]
     fn may_attend(&self, touch: Option<Touch>) -> bool {
-        self.tick.wrapping_sub(self.asked_tick) == 1
+        let asked_before_ticks = self.tick.wrapping_sub(self.asked_tick);
+        asked_before_ticks == 1
             || !self.live
             || touch == Some(Touch::Up)
             || self.is_past(self.deadline_tick)
+            || asked_before_ticks < ORDERED_TICKS && touch.is_some() && self.finger.is_ready()
     }
 
     #[inline]
@@ -252,6 +215,7 @@ impl<'a> Ticker<'a> {
     }
 
     /// Looks at what the finger may have changed.
+    #[inline(never)]
     fn look_at_finger(&mut self) {
         self.deadline_tick = match self.finger.expires_at_tick() {
             Some(tick) => earlier(tick, self.silent_tick),
@@ -273,7 +237,7 @@ impl<'a> Ticker<'a> {
 
     /// Finds when there is something else to do than to ask the scene: at once, if there is an errand or nothing to ask.
     fn plan(&mut self) {
-        let at_once = !self.live || self.waiting.is_some() || self.finger.has_errand();
+        let at_once = !self.live || self.finger.has_errand();
         self.due_tick = if at_once { self.tick } else { self.deadline_tick };
     }
 

@@ -2,7 +2,7 @@
 
 use frixel_wire::fault::{Fault, State};
 
-use super::Ticker;
+use super::{ORDERED_TICKS, Ticker};
 use crate::{Active, Order};
 
 impl<'a> Ticker<'a> {
@@ -67,7 +67,7 @@ impl<'a> Ticker<'a> {
     /// What was asked for last is asked for no longer: the next tick asks anew, unless a deadline or a lift is in it.
     #[inline]
     fn ask_at_once(&mut self) {
-        self.asked_tick = self.tick.wrapping_sub(1);
+        self.asked_tick = self.tick.wrapping_sub(ORDERED_TICKS);
     }
 
     /// The timeout that holds now. Only a playing scene may go on without a host.
