@@ -290,7 +290,7 @@ fn slide_and_rest(desk: &mut Desk, tick: u32) {
     if tick.is_multiple_of(400) {
         let x_m = 0.03 + 2.5e-6 * tick.min(4_000) as f32;
         desk.sense.touch = Some(Touch::Down { x_m, y_m: 0.03, age_ticks: 0 });
-        desk.command(Command::Ping).unwrap();
+        assert!(desk.command(Command::Ping).is_ok());
     }
     desk.tick();
 }
