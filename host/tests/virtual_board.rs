@@ -4,10 +4,12 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
+mod processes;
+
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Child, Output, Stdio};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::sleep;
 use std::time::Duration;
@@ -15,18 +17,12 @@ use std::time::Duration;
 use frixel::device::{DEFAULT_BAUD, Device, SerialLink};
 use frixel::player;
 use frixel::scene::{Scene, compile};
+use processes::{NAP, frixel, until};
 use serialport::{SerialPort, TTYPort};
 use tempfile::TempDir;
 
 /// Host timeout of the scene here, s: the longest that there is, for on a busy machine pings are late.
 const HOST_TIMEOUT_S: f64 = 1.0;
-const NAP: Duration = Duration::from_millis(5);
-/// A minute of naps: whatever is waited for longer has hung.
-const NAPS_MAX: u32 = 12_000;
-
-fn frixel() -> Command {
-    Command::new(env!("CARGO_BIN_EXE_frixel"))
-}
 
 /// The brick with this host timeout, in a folder.
 fn scene(folder: &Path) -> PathBuf {
@@ -62,16 +58,6 @@ fn client(scene: &Path, port: &str, seconds: &str, folder: &Path) -> Child {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap()
-}
-
-fn until(what: &str, mut done: impl FnMut() -> bool) {
-    for _ in 0..NAPS_MAX {
-        if done() {
-            return;
-        }
-        sleep(NAP);
-    }
-    panic!("hung: {what}");
 }
 
 /// A virtual board in a process of its own.

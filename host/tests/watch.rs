@@ -2,34 +2,17 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
+mod processes;
+
 use std::fmt::Write;
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader};
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
-use std::thread::sleep;
-use std::time::Duration;
+use std::process::{Child, Stdio};
 
+use processes::{frixel, until};
 use rustix::process::{Pid, Signal, kill_process};
 use tempfile::TempDir;
-
-const NAP: Duration = Duration::from_millis(5);
-/// A minute of naps: whatever is waited for longer has hung.
-const NAPS_MAX: u32 = 12_000;
-
-fn frixel() -> Command {
-    Command::new(env!("CARGO_BIN_EXE_frixel"))
-}
-
-fn until(what: &str, mut done: impl FnMut() -> bool) {
-    for _ in 0..NAPS_MAX {
-        if done() {
-            return;
-        }
-        sleep(NAP);
-    }
-    panic!("hung: {what}");
-}
 
 /// A process that does not outlive the test.
 struct Running(Child);
@@ -47,6 +30,25 @@ impl Drop for Running {
         let _ = self.0.kill();
         let _ = self.0.wait();
     }
+}
+
+/// A virtual board that writes what is felt into `board` of a folder, and its port.
+fn virtual_board(folder: &Path, arguments: &[&str]) -> (Running, String) {
+    let mut command = frixel();
+    command.arg("sim").args(arguments).args(["--out", "board"]).current_dir(folder).stdout(Stdio::piped());
+    let mut board = Running(command.spawn().unwrap());
+    let mut line = String::new();
+    BufReader::new(board.0.stdout.take().unwrap()).read_line(&mut line).unwrap();
+    let port = line.trim().strip_prefix("port: ").unwrap().to_owned();
+    (board, port)
+}
+
+/// A client that plays `scene.toml` of a folder whenever it is saved; what it says is in `said`.
+fn watching_client(folder: &Path, port: &str) -> Running {
+    let mut command = frixel();
+    command.args(["play", "scene.toml", "--watch", "--port", port, "--out", "client"]).current_dir(folder);
+    command.stdout(Stdio::null()).stderr(File::create(folder.join("said")).unwrap());
+    Running(command.spawn().unwrap())
 }
 
 /// Ten minutes to and fro without a lift, at 50 mm/s.
@@ -83,33 +85,10 @@ fn a_saved_scene_plays_and_one_with_mistakes_does_not() {
     let folder = TempDir::new().unwrap();
     let path = |name: &str| folder.path().join(name);
     write_stroke(&path("stroke.csv"));
-    let mut board = Running(
-        frixel()
-            .arg("sim")
-            .arg("--stroke")
-            .arg(path("stroke.csv"))
-            .arg("--out")
-            .arg(path("board"))
-            .stdout(Stdio::piped())
-            .spawn()
-            .unwrap(),
-    );
-    let mut line = String::new();
-    BufReader::new(board.0.stdout.take().unwrap()).read_line(&mut line).unwrap();
-    let port = line.trim().strip_prefix("port: ").unwrap();
+    let (mut board, port) = virtual_board(folder.path(), &["--stroke", "stroke.csv"]);
 
     fs::write(path("scene.toml"), scene("0.26")).unwrap();
-    let mut client = Running(
-        frixel()
-            .arg("play")
-            .arg(path("scene.toml"))
-            .args(["--watch", "--port", port, "--out"])
-            .arg(path("client"))
-            .stdout(Stdio::null())
-            .stderr(File::create(path("said")).unwrap())
-            .spawn()
-            .unwrap(),
-    );
+    let mut client = watching_client(folder.path(), &port);
     let said = || fs::read_to_string(path("said")).unwrap();
     let last_n = || asked_n(&path("board")).last().copied().unwrap_or_default();
     until("the first scene plays", || is(last_n(), 0.26));
@@ -177,22 +156,8 @@ fn a_saved_scene_that_has_no_room_beside_the_one_that_plays_is_told_with_what_to
     write_picture(&path("one.png"), false);
     write_picture(&path("other.png"), true);
     fs::write(path("scene.toml"), picture("one.png")).unwrap();
-    let mut board =
-        Running(frixel().arg("sim").arg("--out").arg(path("board")).stdout(Stdio::piped()).spawn().unwrap());
-    let mut line = String::new();
-    BufReader::new(board.0.stdout.take().unwrap()).read_line(&mut line).unwrap();
-    let port = line.trim().strip_prefix("port: ").unwrap();
-    let mut client = Running(
-        frixel()
-            .arg("play")
-            .arg(path("scene.toml"))
-            .args(["--watch", "--port", port, "--out"])
-            .arg(path("client"))
-            .stdout(Stdio::null())
-            .stderr(File::create(path("said")).unwrap())
-            .spawn()
-            .unwrap(),
-    );
+    let (mut board, port) = virtual_board(folder.path(), &[]);
+    let mut client = watching_client(folder.path(), &port);
     let said = || fs::read_to_string(path("said")).unwrap();
     let rows = || asked_n(&path("client")).len();
     until("the first scene plays", || rows() > 0);

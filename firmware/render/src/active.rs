@@ -58,7 +58,6 @@ impl Active {
 
     /// Bytes of these coefficients that a scene fills, for each of the two: its layers, points, waves and clicks. The rest
     /// is the same for every scene. No pointer is among them, so that they are as many on every target.
-    #[inline]
     pub fn bytes_filled(scene: &Scene) -> usize {
         scene.records().map(|record| layer::bytes_of(&record)).sum::<usize>()
             + scene.points().len() * size_of::<Point>()
@@ -66,7 +65,6 @@ impl Active {
 
     /// How much of the inverse table the board computes for a scene, whose numbers a board takes. The table's room in RAM
     /// is the same for every scene; what is cut is the time that its rows take at a commit.
-    #[inline]
     pub fn table_rows(scene: &Scene, board: &Board) -> Result<TableRows, Refusal> {
         let header = scene.header();
         let mut grid = Grid::EMPTY;

@@ -1,6 +1,7 @@
 //! What the ticker knows of the finger.
 
 use crate::config::LENGTH_MAX_M;
+use crate::deadline::{earlier, is_past};
 use crate::estimator::{Along, Estimator};
 use crate::motion::Motion;
 use crate::stillness::{Stillness, StillnessTiming};
@@ -136,7 +137,7 @@ impl Finger {
                 self.sampled_at_tick = None;
                 true
             }
-            Touch::Down { x_m, y_m, age_ticks } if self.errand == Errand::None => {
+            Touch::Down { x_m, y_m, age_ticks } if self.is_ready() => {
                 let newer = self.sampled_at_tick.is_none_or(|tick| age_ticks < now_tick.wrapping_sub(tick));
                 // A report that says nothing new does not keep the output alive: the source may be stuck.
                 let somewhere = [x_m, y_m].into_iter().all(|place_m| place_m.abs() <= LENGTH_MAX_M);
@@ -161,7 +162,7 @@ impl Finger {
     /// There is something to do before the next report: the last one is not taken in wholly, or the gain is on its way.
     #[inline]
     pub(crate) fn has_errand(&self) -> bool {
-        self.errand != Errand::None || self.stillness.is_ramping()
+        !self.is_ready() || self.stillness.is_ramping()
     }
 
     /// Does the next of what there is to do. Returns whether that is to look at what the last report has changed.
@@ -245,7 +246,7 @@ impl Finger {
     pub(crate) fn expire(&mut self, now_tick: u32, timing: &FingerTiming) {
         self.stillness.expire(now_tick, &timing.stillness);
         if let Presence::Down { until_tick } = self.presence
-            && until_tick.wrapping_sub(now_tick) as i32 <= 0
+            && is_past(until_tick, now_tick)
         {
             self.lift(Presence::Stale);
         }
@@ -289,10 +290,4 @@ impl Finger {
         let [x, y] = self.velocity_m_per_s;
         crate::root::square_root(x * x + y * y)
     }
-}
-
-/// The earlier of two ticks that are less than 2^31 apart.
-#[inline]
-pub(crate) fn earlier(one_tick: u32, other_tick: u32) -> u32 {
-    if (one_tick.wrapping_sub(other_tick) as i32) < 0 { one_tick } else { other_tick }
 }

@@ -51,6 +51,7 @@ mod bitmap_pool;
 mod board;
 mod carrier;
 mod config;
+mod deadline;
 mod envelope;
 mod estimator;
 mod finger;

@@ -1,6 +1,8 @@
 //! A still finger feels next to nothing while its current rises: its envelope is ramped away, and comes back when it
 //! moves (DESIGN section 3).
 
+use crate::deadline::is_past;
+
 /// Below this speed the finger counts as still, when it stays there for [`STILL_AFTER_S`].
 const STILL_BELOW_M_PER_S: f32 = 2e-3;
 /// Above this speed a still finger counts as moving.
@@ -65,7 +67,7 @@ impl Stillness {
     /// Begins to ramp a finger away that has been slow for long enough.
     pub(crate) fn expire(&mut self, now_tick: u32, timing: &StillnessTiming) {
         if let Some(tick) = self.still_at_tick
-            && tick.wrapping_sub(now_tick) as i32 <= 0
+            && is_past(tick, now_tick)
         {
             self.still_at_tick = None;
             self.ramp(-timing.gain_per_tick, now_tick);

@@ -2,6 +2,7 @@
 
 use frixel_wire::fault::{Fault, State};
 
+use crate::deadline::is_past;
 use crate::{Board, Order, Sense};
 
 /// Host timeout before a scene has set one.
@@ -30,6 +31,7 @@ struct Monitor {
     expected_v: f32,
     volts_per_code: f32,
     step: f32,
+    /// [`MONITOR_GAIN_TOLERANCE`], beside the others: as a constant it would keep a register over the whole tick.
     gain_tolerance: f32,
     floor_v: f32,
     /// As `floor_v`; while wrong ticks are counted, less than nothing: every tick is to be looked at then.
@@ -186,7 +188,7 @@ impl Supervisor {
     /// Disarms when the host has been silent for too long.
     pub(crate) fn expire(&mut self, now_tick: u32) {
         if let Some(tick) = self.silent_at_tick()
-            && tick.wrapping_sub(now_tick) as i32 <= 0
+            && is_past(tick, now_tick)
         {
             self.state = State::Disarmed;
             self.host_silent = true;

@@ -7,8 +7,9 @@ use frixel_model::InverseTable;
 use frixel_wire::fault::State;
 
 use crate::carrier::Carrier;
+use crate::deadline::{earlier, is_past};
 use crate::envelope::Envelope;
-use crate::finger::{Finger, FingerTiming, earlier};
+use crate::finger::{Finger, FingerTiming};
 use crate::layer::{Clicks, Moment};
 use crate::order::Counters;
 #[cfg(feature = "stream")]
@@ -139,7 +140,7 @@ impl<'a> Ticker<'a> {
             self.play_stream();
         }
         self.finger.advance();
-        let due = self.is_past(self.due_tick);
+        let due = is_past(self.due_tick, self.tick);
         if (due || sense.touch.is_some()) && self.may_attend(sense.touch) {
             return self.attend(sense.touch);
         }
@@ -158,14 +159,14 @@ impl<'a> Ticker<'a> {
         {
             self.look_at_finger();
         }
-        if self.is_past(self.deadline_tick) {
+        if is_past(self.deadline_tick, self.tick) {
             self.look();
         }
         self.plan();
         if !self.live {
             return self.rest();
         }
-        if self.is_saturated(self.tick.wrapping_sub(1)) {
+        if self.counters.saturated_ticks > 0 && self.last.saturated_tick == self.tick.wrapping_sub(1) {
             self.note_out_of_reach();
         }
         self.put_out()
@@ -179,17 +180,8 @@ impl<'a> Ticker<'a> {
         asked_before_ticks == 1
             || !self.live
             || touch == Some(Touch::Up)
-            || self.is_past(self.deadline_tick)
+            || is_past(self.deadline_tick, self.tick)
             || asked_before_ticks < ORDERED_TICKS && touch.is_some() && self.finger.is_ready()
-    }
-
-    #[inline]
-    fn is_past(&self, tick: u32) -> bool {
-        tick.wrapping_sub(self.tick) as i32 <= 0
-    }
-
-    fn is_saturated(&self, tick: u32) -> bool {
-        self.last.saturated_tick == tick && self.counters.saturated_ticks > 0
     }
 
     /// There is a scene, a finger, and leave to drive.
@@ -263,23 +255,15 @@ impl<'a> Ticker<'a> {
     /// Asks the scene what it wants at this moment, where the finger is now, and finds the voltage for it.
     #[inline]
     fn ask(&mut self) {
+        let Some(table) = self.active.table() else { return };
         let place_m = self.finger.place_m();
         let friction_n = match self.active.sole() {
             Some(sole) => sole.electric_friction_n(place_m, self.pool),
-            None => self.friction_of_layers_n(place_m),
+            None => {
+                self.moment.meet(place_m, self.tick);
+                self.active.electric_friction_n(&self.moment, self.pool, &mut self.clicks)
+            }
         };
-        self.want(friction_n);
-    }
-
-    #[inline]
-    fn friction_of_layers_n(&mut self, place_m: [f32; 2]) -> f32 {
-        self.moment.meet(place_m, self.tick);
-        self.active.electric_friction_n(&self.moment, self.pool, &mut self.clicks)
-    }
-
-    #[inline]
-    fn want(&mut self, friction_n: f32) {
-        let Some(table) = self.active.table() else { return };
         self.asked_tick = self.tick;
         let electric_friction_n = self.finger.gain() * friction_n;
         self.asked_electric_friction_n = electric_friction_n;

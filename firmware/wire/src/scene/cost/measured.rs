@@ -2,7 +2,7 @@
 //! again and fails when it finds others.
 
 // A tick that looks at layers and finds none.
-pub(super) const EMPTY: u32 = 269;
+pub(super) const EMPTY: u32 = 270;
 
 // What a sine carrier adds.
 pub(super) const SINE_CARRIER: u32 = 23;
@@ -12,7 +12,7 @@ pub(super) const CONSTANT: u32 = 38;
 pub(super) const SINE: u32 = 82;
 pub(super) const SQUARE: u32 = 89;
 pub(super) const TRIANGLE: u32 = 83;
-pub(super) const SAW: u32 = 73;
+pub(super) const SAW: u32 = 72;
 pub(super) const BITMAP: u32 = 149;
 pub(super) const BITMAP_TILED: u32 = 167;
 pub(super) const NOISE: u32 = 232;
