@@ -257,12 +257,11 @@ impl<'a> Ticker<'a> {
     fn ask(&mut self) {
         let Some(table) = self.active.table() else { return };
         let place_m = self.finger.place_m();
-        let friction_n = match self.active.sole() {
-            Some(sole) => sole.electric_friction_n(place_m, self.pool),
-            None => {
-                self.moment.meet(place_m, self.tick);
-                self.active.electric_friction_n(&self.moment, self.pool, &mut self.clicks)
-            }
+        let friction_n = if let Some(sole) = self.active.sole() {
+            sole.electric_friction_n(place_m, self.pool)
+        } else {
+            self.moment.meet(place_m, self.tick);
+            self.active.electric_friction_n(&self.moment, self.pool, &mut self.clicks)
         };
         self.asked_tick = self.tick;
         let electric_friction_n = self.finger.gain() * friction_n;
