@@ -17,7 +17,7 @@ const POLYGON_EDGES_LEVEL: u64 = 2;
 /// Vertices of the polygon all of whose edges are.
 const LEVEL_POLYGON_POINTS: u64 = 6;
 
-/// Instructions that several rare things in one tick take beyond the longest case: a report under a hasty source, an edge
+/// Instructions that several rare things in one tick take beyond the longest case: a report under a fast source, an edge
 /// of the carrier, a limit that acts. `cargo xtask soak` plays thousands of random scenes to find one that takes more.
 const RARE: u64 = 16;
 
