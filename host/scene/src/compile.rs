@@ -31,8 +31,8 @@ const MM: f64 = 1e-3;
 /// # Example
 ///
 /// ```no_run
-/// use frixel::scene::{Scene, compile};
-/// # fn play(limits: &frixel_wire::hello::BoardLimits) -> Result<(), frixel::scene::CompileError> {
+/// use frixel_scene::{Scene, compile};
+/// # fn play(limits: &frixel_wire::hello::BoardLimits) -> Result<(), frixel_scene::CompileError> {
 /// let scene = Scene::load("scenes/brick.toml".as_ref())?;
 /// let program = compile(&scene, limits, 40_000)?;
 /// println!("{} layers, up to {} N", program.records.len(), program.reach.friction_max_n());
