@@ -1,14 +1,14 @@
-//! What layers ask for, each kind from its meaning in `docs/scene.md` and `PROTOCOL.md`.
+//! The friction of each kind of layer, from its meaning in `docs/scene.md` and `PROTOCOL.md`.
 
 use std::f64::consts::TAU;
 
 use frixel_wire::scene::{Beat, Burst, Click, Layer, Record, Region, Wave};
 
-use super::Moment;
+use super::Context;
 use super::samples::{Placement, Samples};
 use crate::Program;
 
-/// What a layer asks for over plane and time, before its gain: electric friction in newtons, or a factor.
+/// What a layer contributes over plane and time, before its gain: electric friction in newtons, or a factor.
 #[derive(Clone, Debug)]
 pub(crate) enum Field {
     Constant(f64),
@@ -18,7 +18,7 @@ pub(crate) enum Field {
     Edge(Edge),
     Button(Button),
     Vibration(Vibration),
-    /// Speeds in m/s, and what is there.
+    /// Speeds in m/s, and the factor or friction at each.
     Curve(Vec<(f64, f64)>),
     Stream {
         low_n: f64,
@@ -131,18 +131,18 @@ impl Field {
         }
     }
 
-    /// What is asked for at a moment, clicks left out.
-    pub(crate) fn at(&self, moment: &Moment) -> f64 {
+    /// The layer's contribution in a context, without clicks.
+    pub(crate) fn at(&self, context: &Context) -> f64 {
         match self {
             Self::Constant(friction_n) => *friction_n,
-            Self::Grating(grating) => grating.at_turns(grating.turns(moment.x_m, moment.y_m)),
-            Self::Samples(samples) => samples.at(moment.x_m, moment.y_m),
-            Self::Noise(noise) => noise.at(moment.x_m, moment.y_m),
-            Self::Edge(edge) => edge.at_distance(edge.distance_m(moment.x_m, moment.y_m)),
-            Self::Button(button) => button.at(moment.x_m, moment.y_m),
-            Self::Vibration(vibration) => vibration.at(moment.t_s),
-            Self::Curve(points) => curve(points, moment.speed_m_per_s),
-            Self::Stream { low_n, high_n } => low_n + (high_n - low_n) * moment.stream,
+            Self::Grating(grating) => grating.at_turns(grating.turns(context.x_m, context.y_m)),
+            Self::Samples(samples) => samples.at(context.x_m, context.y_m),
+            Self::Noise(noise) => noise.at(context.x_m, context.y_m),
+            Self::Edge(edge) => edge.at_distance(edge.distance_m(context.x_m, context.y_m)),
+            Self::Button(button) => button.at(context.x_m, context.y_m),
+            Self::Vibration(vibration) => vibration.at(context.t_s),
+            Self::Curve(points) => curve(points, context.speed_m_per_s),
+            Self::Stream { low_n, high_n } => low_n + (high_n - low_n) * context.stream,
         }
     }
 

@@ -1,25 +1,25 @@
-//! The friction that a program wants, evaluated in `f64` and independently of the firmware.
+//! The reference: the friction that a program means, evaluated in `f64` and independently of the firmware.
 
-mod along;
 mod field;
 mod samples;
 mod shape;
+mod stroke;
 
 use frixel_wire::scene::{Blend, Record};
 
-pub use along::{Along, Moment};
 pub(crate) use field::{Edge, Field, Grating};
 pub(crate) use samples::Samples;
 pub(crate) use shape::{Shape, edges};
+pub use stroke::{Context, StrokeReference};
 
 use crate::Program;
 
-/// Evaluates the friction that a program wants at a place on the screen.
+/// Evaluates the friction that a program means at a place on the screen.
 ///
-/// What is wanted is defined by the compiled program: frictions as rounded to `f32`, pictures as resampled. It is
-/// not clipped to what can be reached.
+/// The compiled program defines it: frictions as rounded to `f32`, pictures as resampled. It is not clipped to what
+/// can be reached.
 #[derive(Clone, Debug)]
-pub struct Wanted {
+pub struct Reference {
     natural_friction_n: f64,
     pieces: Vec<Piece>,
 }
@@ -33,7 +33,7 @@ pub(crate) struct Piece {
     pub(crate) field: Field,
 }
 
-impl Wanted {
+impl Reference {
     /// Makes a program ready to be evaluated.
     pub fn new(program: &Program) -> Self {
         let pieces = program.records.iter().map(|record| Piece::new(record, program)).collect();
@@ -47,20 +47,20 @@ impl Wanted {
         self.natural_friction_n
     }
 
-    /// Electric friction that is wanted at a place, in metres from the screen's top left corner, in newtons. It may
-    /// be out of reach. It is not-a-number where a record names a bitmap that the program does not have.
+    /// Electric friction at a place, in metres from the screen's top left corner, in newtons. It may be out of reach.
+    /// It is not-a-number where a record names a bitmap that the program does not have.
     ///
-    /// Time stands still at 0, the finger too, nothing clicks and nothing is streamed: [`Along`] has those.
+    /// Time and speed are 0, nothing clicks and nothing is streamed: [`StrokeReference`] has those.
     pub fn electric_friction_n(&self, x_m: f64, y_m: f64) -> f64 {
-        self.at(&Moment { x_m, y_m, ..Moment::default() }, |_| 0.0)
+        self.at(&Context { x_m, y_m, ..Context::default() }, |_| 0.0)
     }
 
-    /// As [`Wanted::electric_friction_n`], at a time, a speed and a sample of the stream. Nothing clicks.
-    pub fn electric_friction_at_n(&self, moment: &Moment) -> f64 {
-        self.at(moment, |_| 0.0)
+    /// As [`Self::electric_friction_n`], at a time, a speed and a sample of the stream. Nothing clicks.
+    pub fn electric_friction_at_n(&self, context: &Context) -> f64 {
+        self.at(context, |_| 0.0)
     }
 
-    /// The same with every vibration held at the most that it asks for.
+    /// The same with every vibration held at its largest friction.
     #[must_use]
     pub fn with_vibrations_held(mut self) -> Self {
         for piece in &mut self.pieces {
@@ -71,20 +71,20 @@ impl Wanted {
         self
     }
 
-    /// What is wanted along a stroke.
-    pub fn along(self) -> Along {
-        Along::new(self)
+    /// The reference along a stroke, which clicks where the finger crosses an edge or enters a button.
+    pub fn along_stroke(self) -> StrokeReference {
+        StrokeReference::new(self)
     }
 
-    /// Electric friction at a moment, where `click_n` is what a layer's click adds.
-    fn at(&self, moment: &Moment, click_n: impl Fn(usize) -> f64) -> f64 {
-        let covers = |piece: &Piece| piece.shape.covers(moment.x_m, moment.y_m);
-        // What a replacing layer covers need not be known.
+    /// Electric friction in a context, where `click_n` is what a layer's click adds.
+    fn at(&self, context: &Context, click_n: impl Fn(usize) -> f64) -> f64 {
+        let covers = |piece: &Piece| piece.shape.covers(context.x_m, context.y_m);
+        // Nothing below a layer that replaces has to be evaluated.
         let hides = |piece: &Piece| piece.blend == Blend::Replace && !matches!(piece.field, Field::Stream { .. });
         let lowest = self.pieces.iter().rposition(|piece| hides(piece) && covers(piece)).unwrap_or(0);
         let above = self.pieces.iter().enumerate().skip(lowest).filter(|(_, piece)| covers(piece));
         above.fold(0.0, |below_n, (number, piece)| {
-            let own_n = piece.gain * (piece.field.at(moment) + click_n(number));
+            let own_n = piece.gain * (piece.field.at(context) + click_n(number));
             let blended_n = match piece.blend {
                 Blend::Replace => own_n,
                 Blend::Add => below_n + own_n,
@@ -92,7 +92,7 @@ impl Wanted {
                 Blend::Max => own_n.max(below_n),
             };
             match piece.field {
-                Field::Stream { .. } => below_n + moment.stream_weight * (blended_n - below_n),
+                Field::Stream { .. } => below_n + context.stream_weight * (blended_n - below_n),
                 _ => blended_n,
             }
         })
