@@ -21,10 +21,10 @@ impl<P: Read + ReadReady + Write + WriteReady> SerialLink<P> {
         Self { port, transmitting: [0; CHUNK_LEN], taken: 0, len: 0 }
     }
 
-    /// Passes the received bytes to `take`, in pieces, until the port has none left.
-    pub fn receive(&mut self, mut take: impl FnMut(&[u8])) -> Result<(), P::Error> {
-        let mut bytes = [0; CHUNK_LEN];
-        while self.port.read_ready()? {
+    /// Passes received bytes to `take`, at most 256 of them: the caller has other things to do between two pieces.
+    pub fn receive(&mut self, take: impl FnOnce(&[u8])) -> Result<(), P::Error> {
+        if self.port.read_ready()? {
+            let mut bytes = [0; CHUNK_LEN];
             let len = self.port.read(&mut bytes)?;
             take(bytes.get(..len).unwrap_or_default());
         }
