@@ -170,6 +170,7 @@ fn a_touch_frame_that_fails_is_left_alone_for_a_while_and_set_up_again() {
     module.corrupt_length();
     module.touch(TouchEvent::Down, 10, 20);
     assert_eq!(poll_for(pin!(frame.next_touch()), 200), Some(Err(zforce::Error::Length([0xee, 0]))));
+    module.forget_settings();
     let mut touch = pin!(frame.next_touch());
     assert!(poll_for(touch.as_mut(), 100).is_none());
     module.touch(TouchEvent::Up, 10, 20);

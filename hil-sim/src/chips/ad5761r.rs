@@ -22,6 +22,7 @@ const BROWN_OUT: u16 = 1 << 11;
 const WRITABLE: u16 = 0x07ff;
 
 #[derive(Debug)]
+#[allow(clippy::struct_excessive_bools, reason = "each is a wire or a state of its own")]
 struct Chip {
     is_supplied: bool,
     has_sdo: bool,

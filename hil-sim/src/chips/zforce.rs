@@ -97,13 +97,18 @@ impl ZForceModule {
         DataReadyPin(Rc::clone(&self.0))
     }
 
-    /// Restarts: the module forgets what it was set to, and announces that it has started.
-    pub fn restart(&self) {
+    /// Forgets what the module was set to, and what waits, as a short dip of its supply does.
+    pub fn forget_settings(&self) {
         let mut module = self.0.borrow_mut();
         module.is_enabled = false;
         module.frequency_hz = None;
         module.waiting.clear();
-        module.push(&[NOTIFICATION, 0x09, 0x40, 0x02, 0x00, 0x00, 0x63, 0x03, 0x80, 0x01, 0x00]);
+    }
+
+    /// Restarts the module, which forgets its settings and announces that it has started.
+    pub fn restart(&self) {
+        self.forget_settings();
+        self.0.borrow_mut().push(&[NOTIFICATION, 0x09, 0x40, 0x02, 0x00, 0x00, 0x63, 0x03, 0x80, 0x01, 0x00]);
     }
 
     /// Connects or disconnects the bus.
