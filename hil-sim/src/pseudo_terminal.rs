@@ -18,6 +18,8 @@ pub struct PseudoTerminal {
     client_end: File,
     path: String,
     presence: Presence,
+    /// Bytes have come since it was last asked whether the client has gone.
+    heard: bool,
 }
 
 impl PseudoTerminal {
@@ -35,7 +37,7 @@ impl PseudoTerminal {
         settings.make_raw();
         tcsetattr(&client_end, OptionalActions::Now, &settings)?;
         let presence = Presence::watch(&path)?;
-        Ok(Self { board_end: File::from(board_end), client_end, path, presence })
+        Ok(Self { board_end: File::from(board_end), client_end, path, presence, heard: false })
     }
 
     /// What a client opens.
@@ -46,9 +48,7 @@ impl PseudoTerminal {
     /// Reads what a client has written, and returns how many bytes; 0 when there are none now.
     pub fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
         let count = now((&self.board_end).read(bytes))?;
-        if count > 0 {
-            self.presence.heard();
-        }
+        self.heard |= count > 0;
         Ok(count)
     }
 
@@ -61,7 +61,7 @@ impl PseudoTerminal {
     /// next client may open the terminal. What it had written itself may still be read: the commands that end its session
     /// are the last of it.
     pub fn client_has_gone(&mut self) -> io::Result<bool> {
-        if !self.presence.has_ended()? {
+        if !self.presence.has_ended(std::mem::take(&mut self.heard))? {
             return Ok(false);
         }
         tcflush(&self.client_end, QueueSelector::IFlush)?;
@@ -103,10 +103,8 @@ mod presence {
             Ok(Self { events, clients: 0 })
         }
 
-        pub(super) fn heard(&mut self) {}
-
         /// Whether the last client has closed the terminal since this was last asked.
-        pub(super) fn has_ended(&mut self) -> io::Result<bool> {
+        pub(super) fn has_ended(&mut self, _heard: bool) -> io::Result<bool> {
             let clients_before = self.clients;
             let mut opened = false;
             let mut buffer = [MaybeUninit::uninit(); 1024];
@@ -147,14 +145,10 @@ mod presence {
             Ok(Self { heard_at: Instant::now() })
         }
 
-        pub(super) fn heard(&mut self) {
-            self.heard_at = Instant::now();
-        }
-
-        pub(super) fn has_ended(&mut self) -> io::Result<bool> {
-            let has_ended = self.heard_at.elapsed() > CLIENT_GONE_AFTER;
-            if has_ended {
-                self.heard();
+        pub(super) fn has_ended(&mut self, heard: bool) -> io::Result<bool> {
+            let has_ended = !heard && self.heard_at.elapsed() > CLIENT_GONE_AFTER;
+            if heard || has_ended {
+                self.heard_at = Instant::now();
             }
             Ok(has_ended)
         }
