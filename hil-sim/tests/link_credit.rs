@@ -72,7 +72,7 @@ fn a_host_that_did_not_read_for_three_seconds_finds_every_answer() {
     for byte in bytes {
         match decoder.push(byte).map(|frame| Payload::parse_from_board(frame).unwrap()) {
             Some(Payload::FromBoard(FromBoard::Answer(answer))) if answer.sequence >= 100 => {
-                answered.push(answer.sequence)
+                answered.push(answer.sequence);
             }
             Some(Payload::FromBoard(FromBoard::Telemetry(telemetry))) => {
                 telemetry_ticks.push(telemetry.tick);
