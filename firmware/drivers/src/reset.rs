@@ -1,4 +1,4 @@
-//! Why the processor started.
+//! Reset cause of the STM32G4.
 
 use frixel_wire::hello::ResetCause;
 
@@ -10,8 +10,8 @@ const SOFTWARE: u32 = 1 << 28;
 const INDEPENDENT_WATCHDOG: u32 = 1 << 29;
 const WINDOW_WATCHDOG: u32 = 1 << 30;
 
-/// The cause that these flags of `RCC_CSR` tell. Every reset pulls the pin, and a supply that comes up sets the flag of a
-/// brown-out: it is one when RAM has `survived` it.
+/// The cause of a reset from the flags of `RCC_CSR`. Every reset sets the flag of the pin, and power-on sets that of a
+/// brown-out: it was a brown-out if RAM has kept its content (`ram_survived`).
 pub const fn cause(rcc_csr: u32, ram_survived: bool) -> ResetCause {
     if rcc_csr & (INDEPENDENT_WATCHDOG | WINDOW_WATCHDOG) != 0 {
         ResetCause::Watchdog

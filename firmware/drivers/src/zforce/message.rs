@@ -1,15 +1,14 @@
-//! Messages of Neonode's zForce touch sensor modules: a bar of infrared light along one edge of the screen, which
-//! measures the finger without touching glass or drive (Neonode Touch Sensor Module User's Guide: I2C transport,
-//! serialization protocol quick start, ASN.1 PDU examples).
+//! Messages of the zForce modules (Neonode Touch Sensor Module User's Guide: serialization protocol quick start, ASN.1 PDU
+//! examples).
 //!
-//! On I2C, every message has two bytes in front, `ee` and its length. The module says with its data-ready pin that there
-//! is one; it is read in two goes, first those two bytes, then the message.
+//! On I2C, every message has two bytes in front, `ee` and its length. The module raises its data-ready pin while a
+//! message waits; the host reads the two bytes first, then the message.
 
 /// Address on the I2C bus, 7 bits.
 pub const I2C_ADDRESS: u8 = 0x50;
 /// First byte on the bus.
 const TRANSPORT: u8 = 0xee;
-/// Bytes that tell how long a message is.
+/// Bytes in front of a message.
 pub const LENGTH_LEN: usize = 2;
 /// Most bytes of a message that is read: a notification of up to eight touches.
 pub const MESSAGE_MAX_LEN: usize = 127;
@@ -32,9 +31,10 @@ const EVENT_UP: u8 = 2;
 /// Coordinates are in tenths of a millimetre.
 const M_PER_UNIT: f32 = 1e-4;
 
-/// What a message says.
+/// A report of a finger.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Message {
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Touch {
     /// A finger is here, in metres from the sensor's own corner.
     Down {
         /// Along the sensor.
@@ -44,19 +44,26 @@ pub enum Message {
     },
     /// The finger has gone.
     Up,
-    /// The module has started: it wants its requests again.
+}
+
+/// What a message says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Message {
+    /// A report of a finger.
+    Touch(Touch),
+    /// The module has started and waits for its requests.
     Started,
-    /// Something that does not matter here: an answer, another notification, an invalid touch.
+    /// A message that does not matter here: an answer, another notification, an invalid touch.
     Other,
 }
 
-/// Length of the message that follows these bytes; `None` when they are not the two in front of one that can be read.
+/// Length of the message that follows these two bytes; `None` when they cannot stand in front of a message.
 pub fn message_len(length: [u8; LENGTH_LEN]) -> Option<usize> {
     let [transport, len] = length;
     (transport == TRANSPORT && len > 0 && usize::from(len) <= MESSAGE_MAX_LEN).then_some(usize::from(len))
 }
 
-/// Reads a message. Of several touches it takes the first.
+/// Parses a message. Of several touches it takes the first.
 pub fn parse(message: &[u8]) -> Message {
     let Some((NOTIFICATION, content, _)) = element(message) else { return Message::Other };
     let Some((address, body)) = content.split_first_chunk::<4>() else { return Message::Other };
@@ -72,11 +79,11 @@ pub fn parse(message: &[u8]) -> Message {
 
 fn parse_touch(touch: &[u8]) -> Message {
     match *touch {
-        [_, EVENT_DOWN | EVENT_MOVE, x_high, x_low, y_high, y_low, ..] => Message::Down {
+        [_, EVENT_DOWN | EVENT_MOVE, x_high, x_low, y_high, y_low, ..] => Message::Touch(Touch::Down {
             x_m: f32::from(u16::from_be_bytes([x_high, x_low])) * M_PER_UNIT,
             y_m: f32::from(u16::from_be_bytes([y_high, y_low])) * M_PER_UNIT,
-        },
-        [_, EVENT_UP, ..] => Message::Up,
+        }),
+        [_, EVENT_UP, ..] => Message::Touch(Touch::Up),
         _ => Message::Other,
     }
 }
@@ -103,11 +110,11 @@ mod tests {
     }
 
     fn near(message: Message, x_m: f32, y_m: f32) -> bool {
-        matches!(message, Message::Down { x_m: x, y_m: y } if (x - x_m).abs() < 1e-6 && (y - y_m).abs() < 1e-6)
+        matches!(message, Message::Touch(Touch::Down { x_m: x, y_m: y }) if (x - x_m).abs() < 1e-6 && (y - y_m).abs() < 1e-6)
     }
 
     #[test]
-    fn requests_tell_their_own_length() {
+    fn requests_carry_their_own_length() {
         for request in [&SET_FREQUENCY[..], &ENABLE[..]] {
             assert_eq!(message_len([request[0], request[1]]), Some(request.len() - LENGTH_LEN));
             let (tag, content, rest) = element(&request[LENGTH_LEN..]).unwrap();
@@ -120,7 +127,7 @@ mod tests {
     fn a_touch_is_a_place_in_metres() {
         assert!(near(parse(&one_touch(0, 1234, 56)), 0.1234, 0.0056));
         assert!(near(parse(&one_touch(1, 65_535, 0)), 6.5535, 0.0));
-        assert_eq!(parse(&one_touch(2, 1234, 56)), Message::Up);
+        assert_eq!(parse(&one_touch(2, 1234, 56)), Message::Touch(Touch::Up));
         assert_eq!(parse(&one_touch(3, 1234, 56)), Message::Other, "invalid");
         assert_eq!(parse(&one_touch(4, 1234, 56)), Message::Other, "ghost");
     }
@@ -140,21 +147,21 @@ mod tests {
     }
 
     #[test]
-    fn a_module_that_has_started_is_heard() {
+    fn a_restart_is_recognised() {
         assert_eq!(parse(&[0xf0, 0x09, 0x40, 0x02, 0x00, 0x00, 0x63, 0x03, 0x80, 0x01, 0x00]), Message::Started);
         let answer = [0xef, 0x09, 0x40, 0x02, 0x02, 0x00, 0x65, 0x03, 0x81, 0x01, 0x00];
         assert_eq!(parse(&answer), Message::Other);
     }
 
     #[test]
-    fn lengths_that_cannot_be_are_refused() {
+    fn invalid_lengths_are_refused() {
         for length in [[0xee, 0], [0xee, 128], [0xee, 255], [0xff, 10], [0, 10]] {
             assert_eq!(message_len(length), None, "{length:02x?}");
         }
     }
 
     proptest! {
-        /// Whatever the bus brings: no panic, and every cut of a touch is no touch.
+        /// No bytes make it panic, and a truncated touch is not a touch.
         #[test]
         fn anything_can_be_parsed(bytes in proptest::collection::vec(any::<u8>(), 0..130), cut in 0_usize..19) {
             let _ = parse(&bytes);

@@ -1,8 +1,8 @@
-//! What went wrong, kept in RAM over a reset.
+//! The last fault, kept in RAM over a reset.
 //!
-//! A board puts one [`FaultRecord`] where the start-up code clears nothing. A panic or a fault [saves](FaultRecord::save)
-//! into it and resets; the next start [takes](FaultRecord::take) what is there, once. After power-on, RAM holds anything,
-//! and a CRC-32 tells that from a record.
+//! A board places one [`FaultRecord`] in memory that the start-up code does not clear. A panic or a fault
+//! [saves](FaultRecord::save) into it and resets; the next start [takes](FaultRecord::take) the record, once. After
+//! power-on the memory holds random bits, which a CRC-32 distinguishes from a record.
 
 use core::fmt;
 use core::sync::atomic::{AtomicU8, AtomicU32, Ordering};
@@ -11,7 +11,7 @@ use frixel_wire::fault::Fault;
 use frixel_wire::frame::Crc32;
 use frixel_wire::message::FAULT_TEXT_MAX_LEN;
 
-/// A fault, a number that belongs to it, and what the firmware said.
+/// A fault, its detail (a number whose meaning depends on the fault), and a text.
 pub struct FaultRecord {
     number: AtomicU32,
     detail: AtomicU32,
@@ -24,7 +24,7 @@ pub struct FaultRecord {
 pub type Text = [u8; FAULT_TEXT_MAX_LEN];
 
 impl FaultRecord {
-    /// No record.
+    /// An empty record.
     #[allow(clippy::new_without_default, reason = "it belongs in a static")]
     pub const fn new() -> Self {
         Self {
@@ -36,7 +36,7 @@ impl FaultRecord {
         }
     }
 
-    /// Keeps a fault, and the text that `say` writes. Of a longer one, the beginning.
+    /// Stores a fault and the text that `say` writes, cut to [`FAULT_TEXT_MAX_LEN`] bytes.
     pub fn save(&self, fault: Fault, detail: u32, say: &mut dyn FnMut(&mut Writer)) {
         self.forget();
         self.number.store(u32::from(fault.number()), Ordering::Relaxed);
@@ -47,9 +47,7 @@ impl FaultRecord {
         self.check.store(self.checksum(), Ordering::Relaxed);
     }
 
-    /// The fault that was kept, with its number and what was said, if there is one. It is told once.
-    ///
-    /// The text is UTF-8.
+    /// Removes the record and returns the fault, its detail and its text (UTF-8); `None` without a valid record.
     pub fn take<'t>(&self, text: &'t mut Text) -> Option<(Fault, u32, &'t [u8])> {
         let good = self.check.load(Ordering::Relaxed) == self.checksum();
         let fault = Fault::try_from(self.number.load(Ordering::Relaxed) as u8).ok();
@@ -81,12 +79,12 @@ impl FaultRecord {
     }
 }
 
-/// Writes into the text of a record, whole characters only. It never fails; and [`Writer::text`] and [`Writer::hex`] do
-/// without the machinery of `core::fmt`, which takes 3 KiB of an image.
+/// Writes into the text of a record, whole characters only. It never fails. [`Writer::text`] and [`Writer::hex`] do not
+/// use `core::fmt`, which takes 3 KiB of an image.
 pub struct Writer<'r> {
     record: &'r FaultRecord,
     len: usize,
-    /// The text was cut, and nothing more goes in.
+    /// The text was cut; nothing more is written.
     full: bool,
 }
 
@@ -139,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn a_record_is_told_once() {
+    fn a_record_is_taken_once() {
         let record = FaultRecord::new();
         assert_eq!(take(&record), None);
         record.save(Fault::Panic, 42, &mut |text| write!(text, "src/tick.rs:{}", 42).unwrap());
@@ -172,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn what_ram_holds_after_power_on_is_no_record() {
+    fn random_memory_is_not_a_record() {
         for fill in [0x00, 0xff, 0x55, 0xa5_u8] {
             let record = FaultRecord::new();
             let word = u32::from_le_bytes([fill; 4]);
@@ -187,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn any_changed_bit_spoils_it() {
+    fn any_changed_bit_invalidates_it() {
         let saved = || {
             let record = FaultRecord::new();
             record.save(Fault::StackOverflow, 0x1fff_fff8, &mut |text| _ = text.text("stack"));
