@@ -1,0 +1,58 @@
+//! `frixel play`: a scene on a board, real or not.
+//!
+//! [`Plan`] says what is to be played, [`rigs`] opens the board that `--port` names, [`follow`] plays and records, and
+//! [`Outputs`] writes the files. This module prints what came of it.
+
+mod follow;
+mod live_scene;
+mod outputs;
+mod plan;
+mod progress;
+mod rigs;
+mod saved_file;
+
+use std::path::PathBuf;
+
+use frixel::output::Report;
+use frixel_scene::Scene;
+
+use super::PlayArgs;
+use super::error::CommandError;
+use super::interrupt::Interrupt;
+use live_scene::LiveScene;
+use rigs::Target;
+
+/// What came of a play.
+struct Played {
+    report: Report,
+    files: Vec<PathBuf>,
+    /// Why it ended before its time, where that is a failure. What was played until then is in the report and the files.
+    failure: Option<CommandError>,
+}
+
+pub(super) fn run(args: &PlayArgs) -> Result<(), CommandError> {
+    let target = Target::of(&args.port);
+    plan::check_options(args, target)?;
+    // Before the file is read for the first time, so that no change is missed.
+    let live_scene = args.watch.then(|| LiveScene::new(&args.scene));
+    let scene = Scene::load(&args.scene)?;
+    let interrupt = Interrupt::watch()?;
+    let played = match target {
+        Target::Simulator => rigs::play_on_simulator(args, &scene, &interrupt),
+        Target::Emulator => rigs::play_on_emulator(args, &scene, &interrupt),
+        Target::Port => rigs::play_on_port(args, &scene, live_scene, &interrupt),
+    }?;
+    print(args, &played);
+    played.failure.map_or(Ok(()), Err)
+}
+
+fn print(args: &PlayArgs, Played { report, files, .. }: &Played) {
+    if args.json {
+        println!("{}", report.to_json());
+        return;
+    }
+    print!("{}", report.summary());
+    for file in files {
+        println!("  {:<16} {}", "wrote", file.display());
+    }
+}

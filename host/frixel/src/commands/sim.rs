@@ -1,0 +1,37 @@
+//! `frixel sim`.
+
+use std::io::{self, Write};
+
+use frixel::rigs::Server;
+use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
+
+use super::SimArgs;
+use super::error::CommandError;
+use super::interrupt::Interrupt;
+use super::stroke::stroke;
+
+/// The screen that the finger goes over when nobody says otherwise: that of the bundled scenes.
+const SCREEN_WIDTH_M: f64 = 0.12;
+const SCREEN_HEIGHT_M: f64 = 0.11;
+/// Time for which the finger is lifted before it makes its stroke again.
+const PAUSE_S: f64 = 0.2;
+/// Rows a second in felt.csv.
+const ROWS_HZ: u32 = 1000;
+
+pub(super) fn run(args: &SimArgs) -> Result<(), CommandError> {
+    let interrupt = Interrupt::watch()?;
+    let stroke = stroke(args.stroke.as_deref(), SCREEN_WIDTH_M, SCREEN_HEIGHT_M, None)?
+        .looped(PAUSE_S)
+        .map_err(CommandError::NaturalStroke)?;
+    let config = RigConfig::default();
+    let mut memory = BoardMemory::new();
+    let mut rig = Rig::new(&mut memory, &config, stroke, args.seed)?;
+    let tick_hz = config.board.tick_hz;
+    let server = Server::open(&args.out, tick_hz, tick_hz / ROWS_HZ)?;
+    println!("port: {}", server.path());
+    io::stdout().flush().map_err(CommandError::writing("standard output".as_ref()))?;
+    eprintln!("a virtual board is there until Ctrl-C; in another terminal: frixel play SCENE --port {}", server.path());
+    server.run(&mut rig, &|| interrupt.is_requested())?;
+    eprintln!("wrote {0}/felt.csv and {0}/events.csv", args.out.display());
+    Ok(())
+}

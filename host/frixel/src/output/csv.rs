@@ -1,0 +1,152 @@
+//! The CSV files of a play: `felt.csv`, what happened under the finger, and `events.csv`, what happened to the board.
+
+use std::fmt::{self, Display};
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::marker::PhantomData;
+use std::path::{Path, PathBuf};
+
+use frixel_scene::recorder::FeltRow;
+use frixel_wire::fault::Flags;
+
+use super::OutputError;
+use crate::rigs::BoardEvent;
+
+/// A row of a CSV file. `docs/outputs.md` says what the columns mean.
+pub trait CsvRow {
+    /// The names of the columns, with commas between them.
+    const HEADER: &'static str;
+
+    /// Writes the cells, with commas between them. What is not known is an empty cell.
+    fn write_cells(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result;
+}
+
+/// A CSV file that is written row by row. Lines end in a line feed.
+#[derive(Debug)]
+pub struct CsvFile<R> {
+    path: PathBuf,
+    writer: BufWriter<File>,
+    rows: PhantomData<R>,
+}
+
+/// `felt.csv`.
+///
+/// Numbers have fixed decimals: a microsecond, a tenth of a micrometre, a micrometre a second, a nanonewton, a tenth
+/// of a millivolt. Flags are names joined by `+`, or `none`.
+pub type FeltCsv = CsvFile<FeltRow>;
+
+/// `events.csv`.
+pub type EventCsv = CsvFile<EventRow>;
+
+/// A row of `events.csv`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EventRow {
+    /// What happened, and when.
+    pub event: BoardEvent,
+    /// When the last whole frame of a host had arrived, s.
+    pub last_frame_t_s: f64,
+}
+
+impl<R: CsvRow> CsvFile<R> {
+    /// Creates the file, or empties it, and writes the header row.
+    pub fn create(path: &Path) -> Result<Self, OutputError> {
+        let file = File::create(path).map_err(|source| OutputError::File { path: path.to_owned(), source })?;
+        let mut csv = Self { path: path.to_owned(), writer: BufWriter::new(file), rows: PhantomData };
+        csv.write_line(R::HEADER)?;
+        Ok(csv)
+    }
+
+    /// Writes a row.
+    pub fn write(&mut self, row: &R) -> Result<(), OutputError> {
+        self.write_line(Cells(row))
+    }
+
+    /// Writes what is buffered so far.
+    pub fn flush(&mut self) -> Result<(), OutputError> {
+        self.writer.flush().map_err(|source| OutputError::File { path: self.path.clone(), source })
+    }
+
+    /// Writes what is still buffered. Dropping the file does it as well, and hides errors.
+    pub fn finish(mut self) -> Result<(), OutputError> {
+        self.flush()
+    }
+
+    fn write_line(&mut self, line: impl Display) -> Result<(), OutputError> {
+        writeln!(self.writer, "{line}").map_err(|source| OutputError::File { path: self.path.clone(), source })
+    }
+}
+
+impl CsvRow for FeltRow {
+    const HEADER: &'static str = "t_s,x_mm,y_mm,speed_mm_s,wanted_n,asked_n,felt_n,voltage_v_rms,dac_code,flags";
+
+    fn write_cells(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let cell =
+            |value: Option<f64>, decimals: usize| Cell { value: value.filter(|value| value.is_finite()), decimals };
+        write!(
+            formatter,
+            "{},{},{},{},{},{},{},{},",
+            cell(Some(self.t_s), 6),
+            cell(self.x_mm, 4),
+            cell(self.y_mm, 4),
+            cell(self.speed_mm_s, 3),
+            cell(self.wanted_n, 9),
+            cell(self.asked_n, 9),
+            cell(self.felt_n, 9),
+            cell(self.voltage_v_rms, 4)
+        )?;
+        if let Some(code) = self.dac_code {
+            write!(formatter, "{code}")?;
+        }
+        formatter.write_str(",")?;
+        self.flags.map_or(Ok(()), |flags| write_flags(formatter, flags))
+    }
+}
+
+impl CsvRow for EventRow {
+    const HEADER: &'static str = "t_s,event,last_frame_t_s";
+
+    fn write_cells(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let BoardEvent { t_s, kind } = self.event;
+        write!(formatter, "{t_s:.6},{},{:.6}", kind.name(), self.last_frame_t_s)
+    }
+}
+
+fn write_flags(formatter: &mut fmt::Formatter<'_>, flags: Flags) -> fmt::Result {
+    let mut joint = "";
+    for name in flags.names() {
+        write!(formatter, "{joint}{name}")?;
+        joint = "+";
+    }
+    let unnamed = flags.unnamed().0;
+    if unnamed != 0 {
+        // Flags of newer firmware.
+        write!(formatter, "{joint}0x{unnamed:04x}")?;
+    } else if flags.0 == 0 {
+        formatter.write_str("none")?;
+    }
+    Ok(())
+}
+
+/// The cells of a row, for a formatter.
+struct Cells<'r, R>(&'r R);
+
+impl<R: CsvRow> Display for Cells<'_, R> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.write_cells(formatter)
+    }
+}
+
+/// A number with fixed decimals, zero never with a minus; or nothing.
+struct Cell {
+    value: Option<f64>,
+    decimals: usize,
+}
+
+impl Display for Cell {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Some(value) = self.value else { return Ok(()) };
+        let half_step = 0.5 / 10f64.powi(self.decimals as i32);
+        let value = if value.abs() < half_step { 0.0 } else { value };
+        write!(formatter, "{value:.*}", self.decimals)
+    }
+}

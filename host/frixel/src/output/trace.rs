@@ -1,0 +1,148 @@
+//! Rows thinned out for pictures, in bounded memory however long a scene plays.
+
+use frixel_scene::recorder::FeltRow;
+
+/// Most spans of time that are told apart.
+const SPANS_MAX: usize = 1_600;
+/// Most places of the stroke that are told apart.
+const PLACES_MAX: usize = 8_000;
+/// The stroke is told apart to this distance, mm.
+const PLACE_STEP_MM: f64 = 0.2;
+
+/// Friction, voltage and stroke of a run. Where there are many rows, it keeps least and largest of each span of time.
+#[derive(Clone, Debug)]
+pub struct Trace {
+    spans: Vec<Span>,
+    rows_per_span: usize,
+    rows_in_last: usize,
+    stroke: Vec<Option<(f64, f64)>>,
+    place_step_mm: f64,
+}
+
+/// What happened over some rows that follow each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Span {
+    pub(super) start_s: f64,
+    pub(super) end_s: f64,
+    pub(super) wanted_n: Option<Extremes>,
+    pub(super) asked_n: Option<Extremes>,
+    pub(super) felt_n: Option<Extremes>,
+    pub(super) voltage_v_rms: Option<Extremes>,
+}
+
+/// Least and largest value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Extremes {
+    pub(super) least: f64,
+    pub(super) largest: f64,
+}
+
+impl Extremes {
+    fn of(value: Option<f64>) -> Option<Self> {
+        value.filter(|value| value.is_finite()).map(|value| Self { least: value, largest: value })
+    }
+
+    fn join(one: Option<Self>, other: Option<Self>) -> Option<Self> {
+        match (one, other) {
+            (Some(one), Some(other)) => {
+                Some(Self { least: one.least.min(other.least), largest: one.largest.max(other.largest) })
+            }
+            _ => one.or(other),
+        }
+    }
+}
+
+impl Span {
+    fn of(row: &FeltRow) -> Self {
+        Self {
+            start_s: row.t_s,
+            end_s: row.t_s,
+            wanted_n: Extremes::of(row.wanted_n),
+            asked_n: Extremes::of(row.asked_n),
+            felt_n: Extremes::of(row.felt_n),
+            voltage_v_rms: Extremes::of(row.voltage_v_rms),
+        }
+    }
+
+    fn join(&self, later: &Self) -> Self {
+        Self {
+            start_s: self.start_s,
+            end_s: later.end_s,
+            wanted_n: Extremes::join(self.wanted_n, later.wanted_n),
+            asked_n: Extremes::join(self.asked_n, later.asked_n),
+            felt_n: Extremes::join(self.felt_n, later.felt_n),
+            voltage_v_rms: Extremes::join(self.voltage_v_rms, later.voltage_v_rms),
+        }
+    }
+}
+
+impl Default for Trace {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Trace {
+    /// Nothing yet.
+    pub fn new() -> Self {
+        Self { spans: Vec::new(), rows_per_span: 1, rows_in_last: 1, stroke: Vec::new(), place_step_mm: PLACE_STEP_MM }
+    }
+
+    /// Takes the next row.
+    pub fn push(&mut self, row: &FeltRow) {
+        self.push_span(Span::of(row));
+        self.push_place(row.x_mm.zip(row.y_mm).filter(|(x_mm, y_mm)| x_mm.is_finite() && y_mm.is_finite()));
+    }
+
+    /// Spans in the order of time.
+    pub(super) fn spans(&self) -> &[Span] {
+        &self.spans
+    }
+
+    /// The stroke, mm, cut where the finger was lifted.
+    pub(super) fn strokes(&self) -> impl Iterator<Item = Vec<(f64, f64)>> {
+        self.stroke
+            .split(Option::is_none)
+            .filter(|piece| !piece.is_empty())
+            .map(|piece| piece.iter().flatten().copied().collect())
+    }
+
+    fn push_span(&mut self, span: Span) {
+        match self.spans.last_mut() {
+            Some(last) if self.rows_in_last < self.rows_per_span => {
+                *last = last.join(&span);
+                self.rows_in_last += 1;
+            }
+            _ => {
+                self.spans.push(span);
+                self.rows_in_last = 1;
+            }
+        }
+        if self.spans.len() >= SPANS_MAX && self.rows_in_last == self.rows_per_span {
+            let halved =
+                self.spans.chunks(2).filter_map(|pair| pair.iter().copied().reduce(|one, other| one.join(&other)));
+            self.spans = halved.collect();
+            self.rows_per_span *= 2;
+            self.rows_in_last = self.rows_per_span;
+        }
+    }
+
+    fn push_place(&mut self, place: Option<(f64, f64)>) {
+        match (self.stroke.last(), place) {
+            (None | Some(None), None) => return,
+            (Some(Some((x_mm, y_mm))), Some(place)) if (place.0 - x_mm).hypot(place.1 - y_mm) < self.place_step_mm => {
+                return;
+            }
+            _ => self.stroke.push(place),
+        }
+        if self.stroke.len() >= PLACES_MAX {
+            self.place_step_mm *= 2.0;
+            let mut nth = 0_u32;
+            self.stroke.retain(|place| {
+                nth += u32::from(place.is_some());
+                place.is_none() || nth % 2 == 1
+            });
+            self.stroke.dedup_by(|later, earlier| later.is_none() && earlier.is_none());
+        }
+    }
+}

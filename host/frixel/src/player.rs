@@ -1,0 +1,244 @@
+//! Playing a compiled scene on any board through its [`Device`], recorded while it plays.
+
+use std::time::Duration;
+
+use frixel_driver::{Bitmap, Counters, Device, DeviceError, Event, Link, LinkClosed, Progress, StreamStatus, Upload};
+use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, WorldError};
+use frixel_model::ParameterError;
+use frixel_scene::Program;
+use frixel_scene::recorder::Recorder;
+use frixel_wire::message::Telemetry;
+use thiserror::Error;
+
+use crate::rigs::{EventLog, RecordedLink, SimLink, StopReason};
+use crate::stream::{Feed, FeedError};
+
+/// Longest time between two steps of a play.
+const STEP_MAX: Duration = Duration::from_millis(50);
+/// The same while samples flow: a board's buffer lasts 25 ms or more.
+const STREAM_STEP_MAX: Duration = Duration::from_millis(5);
+/// Time beyond the last tick of the record: the link's clock is rounded.
+const MARGIN: Duration = Duration::from_millis(5);
+
+/// Takes a board from wherever another client left it to a scene that plays.
+pub fn start<L: Link>(
+    device: &mut Device<L>,
+    program: &Program,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<(), DeviceError> {
+    load(device, program, progress)?;
+    device.arm()?;
+    device.play()
+}
+
+/// Takes a board from wherever another client left it to a scene that could be played.
+pub(crate) fn load<L: Link>(
+    device: &mut Device<L>,
+    program: &Program,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<(), DeviceError> {
+    device.disarm()?;
+    upload(device, program, progress)
+}
+
+/// Uploads and commits.
+fn upload<L: Link>(
+    device: &mut Device<L>,
+    program: &Program,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<(), DeviceError> {
+    let scene = program.scene_bytes_for(device.hello().protocol);
+    let bitmaps = program
+        .bitmaps
+        .iter()
+        .map(|bitmap| Bitmap {
+            crc32: bitmap.crc32,
+            width: bitmap.width,
+            height: bitmap.height,
+            samples: &bitmap.samples,
+        })
+        .collect();
+    let upload = Upload { scene: &scene, bitmaps };
+    device.upload(&upload, progress)?;
+    device.commit(upload.scene_crc32())
+}
+
+/// Why a play did not come to its end.
+#[derive(Debug, Error)]
+pub enum PlayError {
+    /// The simulated world cannot be made.
+    #[error(transparent)]
+    World(#[from] WorldError),
+    /// The contact model refuses the program's finger.
+    #[error("the contact model refuses the scene's finger: {0:?}")]
+    Finger(ParameterError),
+    /// The board refused, or fell silent.
+    #[error(transparent)]
+    Device(#[from] DeviceError),
+    /// There are no samples to stream, or no more of them.
+    #[error(transparent)]
+    Feed(#[from] FeedError),
+    /// The board stopped without a command.
+    #[error("the board {0}")]
+    Stopped(StopReason),
+}
+
+/// A play: a scene on a board, the record of it, and the samples that are streamed meanwhile.
+///
+/// Call [`Self::start`], then [`Self::step`] until [`Self::ticks_left`] is zero or somebody has had enough, then
+/// [`Self::stop`]. Dropping a player stops the board, too.
+pub struct Player<L: RecordedLink> {
+    device: Device<L>,
+    feed: Option<Feed>,
+    events: EventLog,
+    telemetry: Vec<Telemetry>,
+}
+
+impl<L: RecordedLink> Player<L> {
+    /// Records on this board with `recorder` from when the scene plays.
+    pub fn new(mut device: Device<L>, recorder: Recorder) -> Self {
+        *device.link_mut().recorder_mut() = recorder;
+        let events = EventLog::new(device.hello().state);
+        Self { device, feed: None, events, telemetry: Vec::new() }
+    }
+
+    /// Uploads the scene and plays it, with a telemetry message every so many ticks; 0 for none.
+    pub fn start(
+        &mut self,
+        program: &Program,
+        telemetry_period_ticks: u32,
+        progress: &mut dyn FnMut(Progress),
+    ) -> Result<(), PlayError> {
+        start(&mut self.device, program, progress)?;
+        let begun = self.device.link_mut().begin();
+        begun.map_err(vanished)?;
+        if telemetry_period_ticks > 0 {
+            self.device.subscribe(telemetry_period_ticks)?;
+        }
+        Ok(())
+    }
+
+    /// Streams what `feed` has to the scene that plays.
+    pub fn stream(&mut self, feed: Feed) -> Result<(), PlayError> {
+        Ok(self.feed.insert(feed).start(&mut self.device)?)
+    }
+
+    /// Puts another scene in the place of the one that plays, between two ticks, and compares with that.
+    pub fn replace(&mut self, program: &Program) -> Result<(), PlayError> {
+        upload(&mut self.device, program, &mut |_| {})?;
+        let hello = *self.device.hello();
+        self.recorder_mut().replace(program, &hello.limits, hello.tick_hz).map_err(PlayError::Finger)
+    }
+
+    /// Lets some time pass on the board, `time_max` at most: records what happens, and sends samples.
+    ///
+    /// Returns how much time has passed. An error when the board is gone or has stopped without a command; what
+    /// happened until then has been recorded.
+    pub fn step(&mut self, time_max: Duration) -> Result<Duration, PlayError> {
+        let step_max = if self.feed.is_some() { STREAM_STEP_MAX } else { STEP_MAX };
+        let time = step_max.min(time_max).min(self.time_left());
+        let waited = self.wait(time);
+        self.events.stop_reason().map_or(Ok(()), |reason| Err(PlayError::Stopped(reason)))?;
+        waited?;
+        if let Some(feed) = &mut self.feed {
+            feed.pump(&mut self.device)?;
+        }
+        Ok(time)
+    }
+
+    /// Ends play and record: output zero, disarmed.
+    pub fn stop(&mut self) -> Result<(), PlayError> {
+        self.device.stop()?;
+        Ok(self.device.disarm()?)
+    }
+
+    /// The board.
+    pub fn device(&self) -> &Device<L> {
+        &self.device
+    }
+
+    /// The record.
+    pub fn recorder_mut(&mut self) -> &mut Recorder {
+        self.device.link_mut().recorder_mut()
+    }
+
+    /// Ends the record with what is known now, and hands over the recorder. The board is stopped when that has not been
+    /// done.
+    pub fn into_recorder(mut self) -> Recorder {
+        self.device.link_mut().record_rest();
+        std::mem::replace(self.recorder_mut(), Recorder::idle())
+    }
+
+    /// Time to the end of the record, and a little more.
+    fn time_left(&mut self) -> Duration {
+        let tick_hz = self.device.hello().tick_hz;
+        let ticks = self.recorder_mut().ticks_left();
+        Duration::try_from_secs_f64(ticks as f64 / f64::from(tick_hz)).unwrap_or(Duration::MAX).saturating_add(MARGIN)
+    }
+
+    /// Waits, and takes what the board sends meanwhile.
+    fn wait(&mut self, time: Duration) -> Result<(), PlayError> {
+        let Self { device, telemetry, events, .. } = self;
+        let t_s = device.link_mut().recorder_mut().t_s();
+        let waited = device.wait(time, &mut |event| match event {
+            Event::Telemetry(message) => telemetry.push(message),
+            Event::StateChanged { state, fault, flags } => events.observe(t_s, state, fault, flags),
+        });
+        device.link_mut().record(telemetry).map_err(vanished)?;
+        telemetry.clear();
+        Ok(waited?)
+    }
+}
+
+fn vanished(closed: LinkClosed) -> PlayError {
+    DeviceError::Vanished { command: "play", closed }.into()
+}
+
+/// How to play on the simulator.
+#[derive(Clone, Debug)]
+pub struct Simulation {
+    /// Board, world and line.
+    pub rig: RigConfig,
+    /// Where the finger goes.
+    pub stroke: Stroke,
+    /// For how long, in seconds from the beginning of the stroke.
+    pub seconds: f64,
+    /// Seed of all that is random.
+    pub seed: u64,
+    /// Ticks between two rows of the record.
+    pub ticks_per_row: u32,
+}
+
+/// What came of a simulation.
+pub struct Simulated {
+    /// What was felt, compared with the reference.
+    pub recorder: Recorder,
+    /// What went over the line.
+    pub counters: Counters,
+    /// How the stream did, if there was one.
+    pub stream: Option<StreamStatus>,
+}
+
+/// Plays `program` on the simulated board under a simulated finger, with samples for its stream layers if there are
+/// any.
+///
+/// The program must have been compiled for the limits and the tick rate of the simulation's board.
+pub fn simulate(program: &Program, simulation: &Simulation, feed: Option<Feed>) -> Result<Simulated, PlayError> {
+    let board = &simulation.rig.board;
+    let ticks = (simulation.seconds * f64::from(board.tick_hz)).round() as u64;
+    let recorder = Recorder::new(program, &board.limits, board.tick_hz, ticks, simulation.ticks_per_row)
+        .map_err(PlayError::Finger)?;
+    let mut memory = BoardMemory::new();
+    let rig = Rig::new(&mut memory, &simulation.rig, simulation.stroke.clone(), simulation.seed)?;
+    let mut player = Player::new(Device::connect(SimLink::new(rig, Recorder::idle()))?, recorder);
+    player.start(program, 0, &mut |_| {})?;
+    if let Some(feed) = feed {
+        player.stream(feed)?;
+    }
+    while player.recorder_mut().ticks_left() > 0 {
+        player.step(Duration::MAX)?;
+    }
+    player.stop()?;
+    let (counters, stream) = (player.device().counters(), player.device().stream_status());
+    Ok(Simulated { recorder: player.into_recorder(), counters, stream })
+}

@@ -1,0 +1,78 @@
+//! The files of a virtual board: what its finger felt, and what happened to it.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use frixel_hil_sim::{Rig, TickRecord};
+use frixel_scene::recorder::Recorder;
+use frixel_wire::fault::State;
+
+use super::EventLog;
+use super::sim_link::observation;
+use crate::output::{EventCsv, EventRow, FeltCsv, OutputError};
+
+/// Virtual time between two flushes, so that a killed server leaves all but the last moment.
+const FLUSH_PERIOD_S: f64 = 0.1;
+
+/// `felt.csv` and `events.csv` of a virtual board. The reference is unknown: the scene's file is the client's.
+pub(super) struct ServerLog {
+    felt_csv: FeltCsv,
+    events_csv: EventCsv,
+    recorder: Recorder,
+    events: EventLog,
+    tick_period_s: f64,
+    ticks_per_flush: u64,
+    frames: u32,
+    last_frame_at_tick: u64,
+}
+
+impl ServerLog {
+    /// Creates the two files in `folder`, which is made when it is not there.
+    pub(super) fn create(folder: &Path, tick_hz: u32, ticks_per_row: u32) -> Result<Self, OutputError> {
+        std::fs::create_dir_all(folder).map_err(failed(folder))?;
+        let mut recorder = Recorder::without_reference(tick_hz, ticks_per_row);
+        recorder.start(0);
+        Ok(Self {
+            felt_csv: FeltCsv::create(&folder.join("felt.csv"))?,
+            events_csv: EventCsv::create(&folder.join("events.csv"))?,
+            recorder,
+            events: EventLog::new(State::Disarmed),
+            tick_period_s: 1.0 / f64::from(tick_hz),
+            ticks_per_flush: (FLUSH_PERIOD_S * f64::from(tick_hz)) as u64,
+            frames: 0,
+            last_frame_at_tick: 0,
+        })
+    }
+
+    /// Takes one tick of `rig`.
+    pub(super) fn take(&mut self, record: &TickRecord, rig: &Rig) -> Result<(), OutputError> {
+        let (frames, _) = rig.frame_counts();
+        if frames != self.frames {
+            self.frames = frames;
+            self.last_frame_at_tick = record.tick;
+        }
+        self.recorder.record(&observation(record));
+        for row in self.recorder.take_rows() {
+            self.felt_csv.write(&row)?;
+        }
+        let status = &record.status;
+        let t_s = record.tick as f64 * self.tick_period_s;
+        self.events.observe(t_s, status.telemetry.state, status.fault.map(|(fault, _)| fault), status.telemetry.flags);
+        let last_frame_t_s = self.last_frame_at_tick as f64 * self.tick_period_s;
+        for event in self.events.take_events() {
+            self.events_csv.write(&EventRow { event, last_frame_t_s })?;
+        }
+        if record.tick.is_multiple_of(self.ticks_per_flush) { self.flush() } else { Ok(()) }
+    }
+
+    /// Writes what is buffered so far.
+    pub(super) fn flush(&mut self) -> Result<(), OutputError> {
+        self.felt_csv.flush()?;
+        self.events_csv.flush()
+    }
+}
+
+fn failed(path: &Path) -> impl FnOnce(io::Error) -> OutputError {
+    let path: PathBuf = path.to_owned();
+    move |source| OutputError::File { path, source }
+}

@@ -1,0 +1,135 @@
+//! Says which layers ask for friction that cannot be given.
+
+use super::cover::{Cell, Excess, Span, excesses};
+use super::file::Scene;
+use super::layer::{Above, Layer};
+use super::log::Log;
+use super::mistake::Mistake;
+use super::program::Program;
+use super::reach::{ROUNDING, Reach};
+use crate::reference::Reference;
+
+/// Refuses layers that leave the reach; with `saturate`, or where that is not certain, notes it.
+pub(super) fn check(scene: &Scene, program: &mut Program, log: &mut Log) {
+    let reach = program.reach;
+    let slack_n = ROUNDING * reach.electric_friction_max_n;
+    let span = Span { low_n: -slack_n, high_n: reach.electric_friction_max_n + slack_n };
+    let reference = Reference::new(program);
+    let width_m = f64::from(program.header.screen_width_m);
+    let height_m = f64::from(program.header.screen_height_m);
+    for excess in excesses(reference.pieces(), width_m, height_m, span) {
+        let layers: Vec<&Layer> = excess.layers.iter().filter_map(|number| scene.layers.get(*number)).collect();
+        let found = sides(&layers, &excess, excess.found, span, &reach);
+        if found.is_empty() {
+            let possible = sides(&layers, &excess, excess.bound, span, &reach);
+            program.notes.extend(possible.iter().map(|side| note(side, "; no place was found where they do")));
+        } else if scene.drive.saturate {
+            program.notes.extend(found.iter().map(|side| note(side, "; it is clamped there")));
+        } else {
+            for Side { offset, mistake } in found {
+                log.add(offset, mistake);
+            }
+        }
+    }
+}
+
+/// A side of the reach that layers leave, and where in the file to change that.
+struct Side {
+    offset: usize,
+    mistake: Mistake,
+}
+
+fn sides(layers: &[&Layer], excess: &Excess, asked: Span, span: Span, reach: &Reach) -> Vec<Side> {
+    let above = match layers {
+        [layer] => layer.above,
+        _ => Above::Natural,
+    };
+    let (reference, offset_n) = match above {
+        Above::Natural => ("above natural friction", 0.0),
+        Above::Zero => ("in total", reach.natural_friction_n),
+    };
+    let asking = asking(layers, excess.cell);
+    let mut sides = Vec::new();
+    if asked.high_n > span.high_n {
+        let mistake = Mistake::AboveReach {
+            asking: asking.clone(),
+            asked_n: digits(asked.high_n + offset_n, up),
+            reference,
+            voltage_v_rms: digits(reach.voltage_max_v_rms, f64::round),
+            reach_n: digits(reach.electric_friction_max_n + offset_n, f64::floor),
+        };
+        sides.push(Side { offset: place(layers, true), mistake });
+    }
+    if asked.low_n < span.low_n {
+        let mistake = Mistake::BelowNatural {
+            asking,
+            asked_n: digits(asked.low_n + offset_n, down),
+            reference,
+            natural_n: digits(reach.natural_friction_n, f64::round),
+        };
+        sides.push(Side { offset: place(layers, false), mistake });
+    }
+    sides
+}
+
+fn note(side: &Side, ending: &str) -> String {
+    match &side.mistake {
+        Mistake::AboveReach { asking, asked_n, reference, reach_n, .. } => {
+            format!("{asking} up to {asked_n} N {reference}, and at most {reach_n} N can be reached{ending}")
+        }
+        Mistake::BelowNatural { asking, asked_n, reference, natural_n } => {
+            format!("{asking} down to {asked_n} N {reference}, below the natural friction of {natural_n} N{ending}")
+        }
+        other => other.to_string(),
+    }
+}
+
+/// Which layers ask, and where.
+fn asking(layers: &[&Layer], cell: Cell) -> String {
+    if let [layer] = layers {
+        let gained = layer.places.has("gain");
+        let gain = if gained { format!(", with its gain of {},", layer.gain) } else { String::new() };
+        return format!("{}{gain} asks for", layer.title);
+    }
+    let titles: Vec<&str> = layers.iter().map(|layer| layer.title.as_str()).collect();
+    let mm = |metres: f64| digits(metres * 1e3, f64::round);
+    format!(
+        "{} together (x {} to {} mm, y {} to {} mm) ask for",
+        titles.join(" and "),
+        mm(cell.left_m),
+        mm(cell.right_m),
+        mm(cell.top_m),
+        mm(cell.bottom_m)
+    )
+}
+
+/// The field that asks for the most, or the least; of several layers, the topmost one.
+fn place(layers: &[&Layer], most: bool) -> usize {
+    let Some(layer) = layers.last() else { return 0 };
+    let most = most == (layer.gain >= 0.0);
+    if layers.len() > 1 {
+        return layer.places.table();
+    }
+    layer.places.field(layer.kind.extreme(most, &layer.places))
+}
+
+/// Four significant digits, rounded as told.
+fn digits(value: f64, to_whole: fn(f64) -> f64) -> f64 {
+    if !(value.abs() > 0.0) {
+        return 0.0;
+    }
+    let digits = 3 - value.abs().log10().floor() as i32;
+    // Powers of ten that are whole numbers, so that the result prints in its few digits.
+    let scale = 10f64.powi(digits.abs());
+    if digits >= 0 { to_whole(value * scale) / scale } else { to_whole(value / scale) * scale }
+}
+
+/// The next whole number above; what `f32` may have added to four digits does not count.
+fn up(value: f64) -> f64 {
+    (value - 0.002).ceil()
+}
+
+/// The next whole number below; what `f32` may have taken from four digits does not count.
+fn down(value: f64) -> f64 {
+    (value + 0.002).floor()
+}

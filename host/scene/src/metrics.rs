@@ -1,0 +1,254 @@
+//! The size of the errors of what was felt, gathered sample by sample.
+//!
+//! - The **friction error** is felt minus wanted, both as means over one carrier period that ends at the sample: what
+//!   the carrier does within a period is no error. It counts wherever the finger is down. In the first period after the
+//!   finger came down, the mean is over the samples since then, so nothing is left out; when the finger goes up, the
+//!   window is emptied.
+//! - The **inversion error** is what the model gives for the commanded voltage minus what the board asked for. It counts
+//!   where the finger is down and the wanted friction is in reach.
+//! - The **carrier ripple** is felt minus its mean over the carrier period around it, half a period on either side, so
+//!   that a friction that moves steadily has none. It counts where that period lies wholly within a touch.
+//!
+//! All but the wanted friction needs a sample for every tick; a number that would need what was not seen is absent.
+
+/// What is known of one tick. Frictions are totals, in newtons.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sample {
+    /// The finger is on the screen.
+    pub finger_down: bool,
+    /// The reference at the finger's place.
+    pub wanted_n: Option<f64>,
+    /// What the board asked its inverse for.
+    pub asked_n: Option<f64>,
+    /// What the finger felt.
+    pub felt_n: Option<f64>,
+    /// What the full model gives for the commanded rms voltage, the DAC's step included, through an ideal amplifier;
+    /// absent where the wanted friction is out of reach.
+    pub inversion_n: Option<f64>,
+    /// The board clamped what it asked for; absent where the board did not report.
+    pub saturated: Option<bool>,
+}
+
+/// Gathers errors, sample by sample.
+#[derive(Clone, Debug)]
+pub struct Metrics {
+    error: PeriodMean,
+    felt: Centred,
+    finger_down_samples: u64,
+    /// Samples in which the board reported.
+    reports: u64,
+    saturated_samples: u64,
+    friction_error: Spread,
+    inversion_error: Spread,
+    carrier_ripple: Spread,
+    wanted_range_n: Option<(f64, f64)>,
+}
+
+/// The errors of a play. A number for which nothing counted, or which needs ticks that were not seen, is absent.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MetricsSummary {
+    /// Ticks that were played.
+    pub ticks: u64,
+    /// Ticks that were seen with the finger on the screen.
+    pub finger_down_ticks: u64,
+    /// Ticks in which the board clamped what it asked for.
+    pub saturated_ticks: Option<u64>,
+    /// Felt minus wanted, as means over a carrier period.
+    pub friction_error: Option<ErrorSize>,
+    /// What the model gives for the commanded voltage minus what was asked for.
+    pub inversion_error: Option<ErrorSize>,
+    /// Root mean square of felt minus its mean over the carrier period around it, N.
+    pub carrier_ripple_rms_n: Option<f64>,
+    /// Least and largest friction that was wanted under the finger, in total, N.
+    pub wanted_range_n: Option<(f64, f64)>,
+}
+
+/// The size of an error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ErrorSize {
+    /// Root mean square, N.
+    pub rms_n: f64,
+    /// Largest magnitude, N.
+    pub max_n: f64,
+}
+
+impl Metrics {
+    /// Nothing gathered yet, on a carrier of twice `half_period_ticks` a period.
+    pub fn new(half_period_ticks: u32) -> Self {
+        let half = half_period_ticks.max(1) as usize;
+        Self {
+            error: PeriodMean::new(2 * half),
+            felt: Centred::new(half),
+            finger_down_samples: 0,
+            reports: 0,
+            saturated_samples: 0,
+            friction_error: Spread::default(),
+            inversion_error: Spread::default(),
+            carrier_ripple: Spread::default(),
+            wanted_range_n: None,
+        }
+    }
+
+    /// The carrier has twice `half_period_ticks` a period from now on. The windows are emptied.
+    pub fn set_half_period(&mut self, half_period_ticks: u32) {
+        let Self { error, felt, .. } = Self::new(half_period_ticks);
+        (self.error, self.felt) = (error, felt);
+    }
+
+    /// Takes the next sample.
+    pub fn add(&mut self, sample: &Sample) {
+        if let Some(saturated) = sample.saturated {
+            self.reports += 1;
+            self.saturated_samples += u64::from(saturated);
+        }
+        if !sample.finger_down {
+            self.error.clear();
+            self.felt.clear();
+            return;
+        }
+        self.finger_down_samples += 1;
+        if let Some((felt_n, wanted_n)) = sample.felt_n.zip(sample.wanted_n) {
+            self.friction_error.add(self.error.push(felt_n - wanted_n));
+        }
+        if let Some((inversion_n, asked_n)) = sample.inversion_n.zip(sample.asked_n) {
+            self.inversion_error.add(inversion_n - asked_n);
+        }
+        if let Some(ripple_n) = sample.felt_n.and_then(|felt_n| self.felt.push(felt_n)) {
+            self.carrier_ripple.add(ripple_n);
+        }
+        if let Some(wanted_n) = sample.wanted_n {
+            let (least_n, largest_n) = self.wanted_range_n.unwrap_or((wanted_n, wanted_n));
+            self.wanted_range_n = Some((least_n.min(wanted_n), largest_n.max(wanted_n)));
+        }
+    }
+
+    /// The errors so far, of a play of so many ticks.
+    pub fn summary(&self, ticks: u64) -> MetricsSummary {
+        let every_tick_reported = self.reports == ticks;
+        MetricsSummary {
+            ticks,
+            finger_down_ticks: self.finger_down_samples,
+            saturated_ticks: every_tick_reported.then_some(self.saturated_samples),
+            friction_error: self.friction_error.size(),
+            inversion_error: self.inversion_error.size().filter(|_| every_tick_reported),
+            carrier_ripple_rms_n: self.carrier_ripple.size().map(|size| size.rms_n),
+            wanted_range_n: self.wanted_range_n,
+        }
+    }
+}
+
+/// Root mean square and largest magnitude of a series.
+#[derive(Clone, Copy, Debug, Default)]
+struct Spread {
+    count: u64,
+    max: f64,
+    /// Sum of squares, and what its last bits lost (Neumaier's summation; squares never shrink the sum).
+    squares: f64,
+    lost: f64,
+}
+
+impl Spread {
+    fn add(&mut self, value: f64) {
+        self.count += 1;
+        self.max = self.max.max(value.abs());
+        let square = value * value;
+        let sum = self.squares + square;
+        self.lost += if self.squares >= square { (self.squares - sum) + square } else { (square - sum) + self.squares };
+        self.squares = sum;
+    }
+
+    fn size(&self) -> Option<ErrorSize> {
+        let mean = (self.squares + self.lost) / self.count as f64;
+        (self.count > 0).then(|| ErrorSize { rms_n: mean.sqrt(), max_n: self.max })
+    }
+}
+
+/// The last so many values and their sum. The sum is made anew each time the ring comes round, so that rounding does
+/// not pile up over hours.
+#[derive(Clone, Debug)]
+struct Ring {
+    values: Vec<f64>,
+    next: usize,
+    filled: usize,
+    sum: f64,
+}
+
+impl Ring {
+    fn new(length: usize) -> Self {
+        Self { values: vec![0.0; length], next: 0, filled: 0, sum: 0.0 }
+    }
+
+    fn clear(&mut self) {
+        self.values.fill(0.0);
+        (self.next, self.filled, self.sum) = (0, 0, 0.0);
+    }
+
+    fn push(&mut self, value: f64) {
+        self.sum += value - self.values[self.next];
+        self.values[self.next] = value;
+        self.next += 1;
+        self.filled = self.filled.max(self.next);
+        if self.next == self.values.len() {
+            self.next = 0;
+            self.sum = self.values.iter().sum();
+        }
+    }
+
+    fn is_full(&self) -> bool {
+        self.filled == self.values.len()
+    }
+
+    /// The value that came `ago` values before the last one.
+    fn ago(&self, ago: usize) -> f64 {
+        let length = self.values.len();
+        self.values[(self.next + length - 1 - ago) % length]
+    }
+}
+
+/// Mean over a period that ends at the last value, or over what there is of it.
+#[derive(Clone, Debug)]
+struct PeriodMean(Ring);
+
+impl PeriodMean {
+    fn new(period: usize) -> Self {
+        Self(Ring::new(period))
+    }
+
+    fn clear(&mut self) {
+        self.0.clear();
+    }
+
+    fn push(&mut self, value: f64) -> f64 {
+        self.0.push(value);
+        self.0.sum / self.0.filled as f64
+    }
+}
+
+/// Difference of a value and the mean over the period around it. The window has one value more than a period, and its
+/// two ends count half, so that it is centred on a value.
+#[derive(Clone, Debug)]
+struct Centred {
+    ring: Ring,
+    half: usize,
+}
+
+impl Centred {
+    fn new(half: usize) -> Self {
+        Self { ring: Ring::new(2 * half + 1), half }
+    }
+
+    fn clear(&mut self) {
+        self.ring.clear();
+    }
+
+    /// The difference for the value that came half a period before this one, once there is a whole window.
+    fn push(&mut self, value: f64) -> Option<f64> {
+        self.ring.push(value);
+        let ends = 0.5 * (self.ring.ago(0) + self.ring.ago(2 * self.half));
+        let mean = (self.ring.sum - ends) / (2 * self.half) as f64;
+        self.ring.is_full().then(|| self.ring.ago(self.half) - mean)
+    }
+}
+
+#[cfg(test)]
+mod tests;

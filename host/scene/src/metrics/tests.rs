@@ -1,0 +1,155 @@
+use proptest::prelude::*;
+
+use super::*;
+
+const HALF_PERIOD_TICKS: u32 = 4;
+const PERIOD: usize = 8;
+
+fn sample(wanted_n: f64, felt_n: f64) -> Sample {
+    Sample {
+        finger_down: true,
+        wanted_n: Some(wanted_n),
+        asked_n: Some(wanted_n),
+        felt_n: Some(felt_n),
+        inversion_n: Some(felt_n),
+        saturated: Some(false),
+    }
+}
+
+const UP: Sample = Sample {
+    finger_down: false,
+    wanted_n: None,
+    asked_n: None,
+    felt_n: None,
+    inversion_n: None,
+    saturated: Some(false),
+};
+
+fn gather(samples: &[Sample]) -> MetricsSummary {
+    let mut metrics = Metrics::new(HALF_PERIOD_TICKS);
+    for sample in samples {
+        metrics.add(sample);
+    }
+    metrics.summary(samples.len() as u64)
+}
+
+#[track_caller]
+fn close(found: f64, expected: f64) {
+    assert!((found - expected).abs() <= 1e-12 * expected.abs().max(1.0), "{found} is not {expected}");
+}
+
+fn rms(values: &[f64]) -> f64 {
+    (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
+}
+
+#[test]
+fn nothing_gathered_is_absent() {
+    let up = Sample { saturated: Some(true), ..UP };
+    let summary = gather(&[up, up]);
+    assert_eq!((summary.ticks, summary.finger_down_ticks, summary.saturated_ticks), (2, 0, Some(2)));
+    assert_eq!((summary.friction_error, summary.inversion_error), (None, None));
+    assert_eq!((summary.carrier_ripple_rms_n, summary.wanted_range_n), (None, None));
+}
+
+/// One tick in forty, as a board's telemetry has them, and no finger that could say what it felt.
+#[test]
+fn what_needs_every_tick_is_absent_when_some_were_not_seen() {
+    let mut metrics = Metrics::new(HALF_PERIOD_TICKS);
+    for wanted_n in [0.26, 0.27] {
+        metrics.add(&Sample { felt_n: None, ..sample(wanted_n, 0.25) });
+    }
+    let summary = metrics.summary(41);
+    assert_eq!(summary.wanted_range_n, Some((0.26, 0.27)));
+    assert_eq!((summary.saturated_ticks, summary.inversion_error), (None, None));
+    assert_eq!((summary.friction_error, summary.carrier_ripple_rms_n), (None, None));
+    assert!(metrics.summary(2).inversion_error.is_some(), "two of two ticks were seen");
+}
+
+#[test]
+fn another_carrier_begins_with_empty_windows() {
+    let mut metrics = Metrics::new(1);
+    metrics.add(&sample(0.25, 0.35));
+    metrics.set_half_period(HALF_PERIOD_TICKS);
+    metrics.add(&sample(0.25, 0.25));
+    let error = metrics.summary(2).friction_error.expect("an error");
+    close(error.rms_n, (0.5 * 0.1_f64.powi(2)).sqrt());
+}
+
+#[test]
+fn a_carrier_that_averages_out_is_ripple_and_no_error() {
+    let samples: Vec<_> = (0..800).map(|tick| sample(0.26, 0.26 + if tick % 8 < 4 { 0.003 } else { -0.003 })).collect();
+    let summary = gather(&samples);
+    close(summary.carrier_ripple_rms_n.expect("ripple"), 0.003);
+    // Only windows that are not yet a whole period see the carrier.
+    let first: Vec<f64> =
+        [1.0, 1.0, 1.0, 1.0, 3.0 / 5.0, 2.0 / 6.0, 1.0 / 7.0].iter().map(|part| 0.003 * part).collect();
+    let expected = (first.iter().map(|error| error * error).sum::<f64>() / 800.0).sqrt();
+    let error = summary.friction_error.expect("an error");
+    close(error.rms_n, expected);
+    close(error.max_n, 0.003);
+}
+
+#[test]
+fn steady_motion_has_no_ripple() {
+    let samples: Vec<_> = (0..200).map(|tick| sample(0.25, 0.25 + 1e-4 * f64::from(tick))).collect();
+    assert!(gather(&samples).carrier_ripple_rms_n.expect("ripple") < 1e-15);
+}
+
+#[test]
+fn inversion_counts_only_what_is_in_reach_and_saturation_always() {
+    let out = Sample { inversion_n: None, saturated: Some(true), ..sample(0.4, 0.2) };
+    let summary = gather(&[out, sample(0.26, 0.261), sample(0.26, 0.258)]);
+    let error = summary.inversion_error.expect("an error");
+    close(error.rms_n, rms(&[0.001, -0.002]));
+    close(error.max_n, 0.002);
+    assert_eq!((summary.ticks, summary.saturated_ticks), (3, Some(1)));
+    assert_eq!(summary.wanted_range_n, Some((0.26, 0.4)));
+}
+
+#[test]
+fn a_window_starts_anew_with_each_touch() {
+    let mut samples = vec![sample(0.25, 0.35); 3 * PERIOD];
+    samples.push(UP);
+    samples.extend([sample(0.25, 0.25); 5]);
+    let error = gather(&samples).friction_error.expect("an error");
+    let expected = (f64::from(3 * 8) * 0.1 * 0.1 / f64::from(3 * 8 + 5)).sqrt();
+    close(error.rms_n, expected);
+}
+
+#[test]
+fn hours_do_not_wear_the_sums() {
+    // A large value leaves rounding in a running sum, which must not stay there.
+    let mut metrics = Metrics::new(HALF_PERIOD_TICKS);
+    for tick in 0..1_000_000_u32 {
+        let value = if tick % 1000 == 0 { 1e9 } else { 1e-9 };
+        metrics.add(&sample(0.0, value));
+    }
+    let mut later = metrics.clone();
+    later.friction_error = Spread::default();
+    for _ in 0..100 {
+        later.add(&sample(0.0, 1e-9));
+    }
+    close(1e9 * later.summary(0).friction_error.expect("an error").rms_n, 1.0);
+}
+
+proptest! {
+    #[test]
+    fn windows_are_the_means_they_say(felt in prop::collection::vec(0.2..0.3f64, 1..60)) {
+        let samples: Vec<_> = felt.iter().map(|felt_n| sample(0.25, *felt_n)).collect();
+        let summary = gather(&samples);
+        let mean = |window: &[f64]| window.iter().sum::<f64>() / window.len() as f64;
+        let errors: Vec<f64> =
+            (0..felt.len()).map(|last| mean(&felt[(last + 1).saturating_sub(PERIOD)..=last]) - 0.25).collect();
+        let error = summary.friction_error.expect("an error");
+        prop_assert!((error.rms_n - rms(&errors)).abs() < 1e-15);
+        prop_assert!((error.max_n - errors.iter().fold(0.0, |max, error| error.abs().max(max))).abs() < 1e-15);
+        let ripples: Vec<f64> = felt
+            .windows(PERIOD + 1)
+            .map(|window| window[PERIOD / 2] - 0.5 * (mean(&window[..PERIOD]) + mean(&window[1..])))
+            .collect();
+        match summary.carrier_ripple_rms_n {
+            Some(ripple_n) => prop_assert!((ripple_n - rms(&ripples)).abs() < 1e-15),
+            None => prop_assert!(ripples.is_empty()),
+        }
+    }
+}

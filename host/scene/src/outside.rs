@@ -1,0 +1,124 @@
+//! What a scene asks for over its screen, and how much of that is out of reach.
+
+use frixel_wire::scene::Blend;
+use serde::Serialize;
+
+use super::cover::{Span, span_at};
+use super::program::Program;
+use super::reach::ROUNDING;
+use crate::reference::{Piece, Reference};
+
+/// Places that are looked at along the longer side of the screen.
+const PLACES: f64 = 600.0;
+
+/// What a scene asks for anywhere on its screen, at any time and speed, clicks and streams at their most.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Asked {
+    /// Least friction, in total, N.
+    pub least_n: f64,
+    /// Largest friction, in total, N.
+    pub most_n: f64,
+    /// What is more than the drive can give; it is clamped.
+    pub above: Outside,
+    /// What is less than the finger has at no voltage; it is clamped.
+    pub below: Outside,
+}
+
+/// The part of a scene on one side of the reach.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Outside {
+    /// How much of the screen's area it is, in percent.
+    pub screen_percent: f64,
+    /// The layers that count there.
+    pub layers: Vec<String>,
+}
+
+impl Asked {
+    /// Looks at a grid of places all over the screen of a program.
+    pub fn of(program: &Program) -> Self {
+        let reference = Reference::new(program);
+        let pieces = reference.pieces();
+        let reach = &program.reach;
+        let slack_n = ROUNDING * reach.electric_friction_max_n;
+        let places = Places::of(program);
+        let mut range: Option<Span> = None;
+        let mut above = Counted::new(pieces.len());
+        let mut below = Counted::new(pieces.len());
+        for (x_m, y_m) in places.iter() {
+            let span = span_at(pieces.iter(), x_m, y_m);
+            range = Some(range.map_or(span, |range| range.hull(span)));
+            above.count(span.high_n > reach.electric_friction_max_n + slack_n, pieces, x_m, y_m);
+            below.count(span.low_n < -slack_n, pieces, x_m, y_m);
+        }
+        let Span { low_n, high_n } = range.unwrap_or(Span::ZERO);
+        Self {
+            least_n: reach.natural_friction_n + low_n,
+            most_n: reach.natural_friction_n + high_n,
+            above: above.outside(program, places.count()),
+            below: below.outside(program, places.count()),
+        }
+    }
+}
+
+/// Places in the middle of the fields of a grid.
+struct Places {
+    pitch_m: (f64, f64),
+    count: (usize, usize),
+}
+
+impl Places {
+    fn of(program: &Program) -> Self {
+        let (width_m, height_m) = (program.header.screen_width_m, program.header.screen_height_m);
+        let sides_m = (f64::from(width_m), f64::from(height_m));
+        let pitch_m = sides_m.0.max(sides_m.1) / PLACES;
+        let count = |side_m: f64| (side_m / pitch_m).round().max(1.0) as usize;
+        let count = (count(sides_m.0), count(sides_m.1));
+        Self { pitch_m: (sides_m.0 / count.0 as f64, sides_m.1 / count.1 as f64), count }
+    }
+
+    fn count(&self) -> usize {
+        self.count.0 * self.count.1
+    }
+
+    fn iter(&self) -> impl Iterator<Item = (f64, f64)> {
+        let place = |pitch_m: f64, number: usize| pitch_m * (number as f64 + 0.5);
+        (0..self.count()).map(move |number| {
+            (place(self.pitch_m.0, number % self.count.0), place(self.pitch_m.1, number / self.count.0))
+        })
+    }
+}
+
+/// Places on one side of the reach, and the layers that count there.
+struct Counted {
+    places: usize,
+    layers: Vec<bool>,
+}
+
+impl Counted {
+    fn new(layers: usize) -> Self {
+        Self { places: 0, layers: vec![false; layers] }
+    }
+
+    fn count(&mut self, outside: bool, pieces: &[Piece], x_m: f64, y_m: f64) {
+        if !outside {
+            return;
+        }
+        self.places += 1;
+        for (piece, counts) in pieces.iter().zip(&mut self.layers).rev() {
+            if piece.shape.covers(x_m, y_m) {
+                *counts = true;
+                if piece.blend == Blend::Replace {
+                    break;
+                }
+            }
+        }
+    }
+
+    fn outside(self, program: &Program, places: usize) -> Outside {
+        let titles = program.titles.iter().zip(self.layers);
+        Outside {
+            screen_percent: 100.0 * self.places as f64 / places.max(1) as f64,
+            layers: titles.filter(|(_, counts)| *counts).map(|(title, _)| title.clone()).collect(),
+        }
+    }
+}

@@ -1,0 +1,360 @@
+//! What layers compile to, and what the program then wants, against evaluations written here from the file's numbers.
+
+use frixel_wire::scene::{Carrier, Layer, Leader, Region, Scene as WireScene};
+
+use super::super::{picture::Picture, resample};
+use super::*;
+use crate::reference::Reference;
+
+/// Frictions that a finger finds, in mN above natural, at places in mm.
+fn frictions_mn(layers: &str, places_mm: &[(f64, f64)]) -> Vec<f64> {
+    let reference = Reference::new(&compile_layers(layers));
+    places_mm.iter().map(|(x, y)| 1e3 * reference.electric_friction_n(x * 1e-3, y * 1e-3)).collect()
+}
+
+#[track_caller]
+fn close(found: &[f64], expected: &[f64], tolerance: f64) {
+    assert_eq!(found.len(), expected.len());
+    for (found, expected) in found.iter().zip(expected) {
+        assert!((found - expected).abs() <= tolerance, "{found} is not {expected}");
+    }
+}
+
+#[test]
+fn header_in_si_units() {
+    let text = HEAD.replace(
+        "# layers follow",
+        "[drive]\nvoltage_max_v_rms = 100\nvoltage_max_v_peak = 200\nslew_v_per_us = 2\nhost_timeout_ms = 100\n\
+         autonomous = true\n[carrier]\nshape = \"sine\"\nfrequency_hz = 800\n[touch]\nprediction = false\nleader = \"latest\"",
+    );
+    let slabs = "[[coating]]\nthickness_um = 1\npermittivity = 4\n[[coating]]\nthickness_um = 9\npermittivity = 1\n";
+    let text = text.replace("[coating]\nthickness_um = 10\npermittivity = 1\n", slabs);
+    let header = compile_text(&text).expect("it compiles").header;
+    for (found, expected) in [
+        (header.screen_width_m, 0.12),
+        (header.screen_height_m, 0.11),
+        (header.finger_radius_m, 0.008),
+        (header.stiffness_pa_per_m, 1.8e7),
+        (header.friction_coefficient, 0.5),
+        (header.normal_load_n, 0.5),
+        (header.effective_gap_m, 9.25e-6),
+        (header.voltage_max_v_rms, 100.0),
+        (header.voltage_max_v_peak, 200.0),
+        (header.slew_v_per_s, 2e6),
+        (header.carrier_hz, 800.0),
+        (header.host_timeout_s, 0.1),
+    ] {
+        assert!((found - expected).abs() <= 1e-6 * expected, "{found} is not {expected}");
+    }
+    assert_eq!(header.carrier, Carrier::Sine);
+    assert!(header.autonomous && !header.prediction);
+    assert_eq!(header.leader, Leader::Latest);
+}
+
+#[test]
+fn scene_bytes_are_the_wires() {
+    let program = compile_layers(
+        "[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\n[[layer]]\nkind = \"grating\"\nblend = \"add\"\nwavelength_mm = 2\n\
+         low_n = 0\nhigh_n = 0.01\nregion = { x_mm = 1, y_mm = 2, width_mm = 3, height_mm = 4 }",
+    );
+    let bytes = program.scene_bytes();
+    let scene = WireScene::parse(&bytes).expect("the wire reads it");
+    assert_eq!(*scene.header(), program.header);
+    assert_eq!(scene.records().collect::<Vec<_>>(), program.records);
+}
+
+#[test]
+fn the_largest_voltage_keeps_every_limit() {
+    let reached = |drive: &str| {
+        let program = compile_text(&HEAD.replace("# layers follow", drive)).expect("it compiles");
+        (f64::from(program.header.voltage_max_v_rms), f64::from(program.header.voltage_max_v_peak), program.notes)
+    };
+    // Half a period is 25 time constants long: 1 - (2/25) tanh(12.5) of the mean square is left.
+    let edges = (1.0_f64 - 0.08).sqrt();
+    let (rms, peak, notes) = reached("");
+    close(&[rms, peak * edges / 1.001], &[150.0, 150.0], 1e-4);
+    assert!(notes.is_empty(), "{notes:?}");
+    let (rms, peak, notes) = reached("[drive]\nvoltage_max_v_peak = 100");
+    close(&[rms, peak], &[100.0 * edges, 100.0], 1e-4);
+    assert_eq!(notes, ["drive: 150 V rms would need 156.4 V peak; the limit of 100 V peak allows 95.9 V rms"]);
+    let (rms, peak, _) = reached("[drive]\nvoltage_max_v_rms = 400");
+    close(&[rms, peak], &[220.0 * edges, 220.0], 1e-4);
+    let lag = std::f64::consts::TAU * 1000.0 * 20e-6;
+    let (rms, _, _) = reached("[drive]\nvoltage_max_v_peak = 100\n[carrier]\nshape = \"sine\"");
+    close(&[rms], &[100.0 / (2.0 * (1.0 + lag * lag)).sqrt()], 1e-4);
+}
+
+#[test]
+fn carriers_are_whole_ticks() {
+    let program =
+        compile_text(&HEAD.replace("# layers follow", "[carrier]\nfrequency_hz = 1300")).expect("it compiles");
+    assert_eq!(program.half_period_ticks, 15);
+    assert_eq!(program.notes, ["carrier: 1300 Hz rounded to 1333.333 Hz, 15 ticks for each half period"]);
+    let program = compile_text(&HEAD.replace("# layers follow", "[carrier]\nfrequency_hz = 200")).expect("it compiles");
+    assert_eq!(
+        program.notes,
+        ["carrier: 200 Hz is below 250 Hz, where charge leaks through skin and less friction is felt"]
+    );
+}
+
+#[test]
+fn constants_above_zero_and_above_natural() {
+    let layers = "\
+[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\n\
+[[layer]]\nkind = \"constant\"\nabove = \"natural\"\nfriction_n = 0.004\nregion = { x_mm = 10, y_mm = 10, width_mm = 10, height_mm = 10 }\n\
+[[layer]]\nkind = \"constant\"\nblend = \"add\"\nfriction_n = 0.001\ngain = 3\nregion = { x_mm = 15, y_mm = 10, width_mm = 10, height_mm = 10 }\n";
+    let places = [
+        (5.0, 5.0),
+        (10.0, 10.0),
+        (14.99, 19.99),
+        (15.0, 15.0),
+        (20.0, 12.0),
+        (24.99, 12.0),
+        (25.0, 12.0),
+        (12.0, 20.0),
+    ];
+    close(&frictions_mn(layers, &places), &[10.0, 4.0, 4.0, 7.0, 13.0, 13.0, 10.0, 10.0], 1e-5);
+    close(&frictions_mn("", &places), &[0.0; 8], 0.0);
+}
+
+#[test]
+fn left_and_top_edge_belong_to_a_region_and_right_and_bottom_do_not() {
+    // Powers of two in metres, which f32 has exactly.
+    let layers = "[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\n\
+                  region = { x_mm = 15.625, y_mm = 31.25, width_mm = 15.625, height_mm = 31.25 }";
+    let (left, right, top, bottom) = (15.625, 31.25, 31.25, 62.5);
+    let places = [
+        (left, top),
+        (right, 40.0),
+        (20.0, bottom),
+        (right - 1e-6, bottom - 1e-6),
+        (left - 1e-6, top),
+        (left, top - 1e-6),
+    ];
+    close(&frictions_mn(layers, &places), &[10.0, 0.0, 0.0, 10.0, 0.0, 0.0], 1e-5);
+}
+
+#[test]
+fn natural_friction_in_total_is_no_drive() {
+    // 0.3 x 0.7 is not 0.21 in binary, and not in range if the difference counted.
+    let text = HEAD.replace("friction_coefficient = 0.5", "friction_coefficient = 0.3");
+    let text = text.replace("normal_load_n = 0.5", "normal_load_n = 0.7");
+    let program = compile_text(&format!("{text}[[layer]]\nlive = true\nkind = \"constant\"\nfriction_n = 0.21"))
+        .expect("it compiles");
+    assert_eq!(program.records[0].layer, Layer::Constant { electric_friction_n: 0.0 });
+}
+
+#[test]
+fn gratings_against_their_formula() {
+    let layers = |wave: &str, angle_deg: f64, phase_deg: f64| {
+        format!(
+            "[[layer]]\nkind = \"grating\"\nwave = \"{wave}\"\nwavelength_mm = 3\nangle_deg = {angle_deg}\nphase_deg = {phase_deg}\n\
+             low_n = 0.004\nhigh_n = 0.02"
+        )
+    };
+    for (angle_deg, phase_deg) in [(0.0_f64, 0.0_f64), (90.0, 0.0), (30.0, 45.0), (-120.0, -270.0), (180.0, 10.0)] {
+        for (x, y) in [(0.1, 0.2), (17.3, 41.9), (119.0, 3.0), (60.0, 109.0)] {
+            let (sin, cos) = angle_deg.to_radians().sin_cos();
+            let turns = (x * cos + y * sin) / 3.0 + phase_deg / 360.0;
+            let sine = 12.0 + 8.0 * (std::f64::consts::TAU * turns).sin();
+            close(&frictions_mn(&layers("sine", angle_deg, phase_deg), &[(x, y)]), &[sine], 1e-3);
+            let square = if turns.rem_euclid(1.0) < 0.5 { 20.0 } else { 4.0 };
+            close(&frictions_mn(&layers("square", angle_deg, phase_deg), &[(x, y)]), &[square], 1e-5);
+        }
+    }
+}
+
+#[test]
+fn right_angles_have_no_slant() {
+    let program =
+        compile_layers("[[layer]]\nkind = \"grating\"\nwavelength_mm = 2\nangle_deg = 90\nlow_n = 0\nhigh_n = 0.01");
+    let Layer::Grating { cycles_per_m_x, cycles_per_m_y, .. } = program.records[0].layer else { panic!("a grating") };
+    assert_eq!((cycles_per_m_x, cycles_per_m_y), (0.0, 500.0));
+}
+
+#[test]
+fn regions_as_large_as_the_screen_are_the_screen() {
+    let layer = |width_mm: f64| {
+        format!(
+            "[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\nregion = {{ x_mm = 0, y_mm = 0, width_mm = {width_mm}, height_mm = 110 }}"
+        )
+    };
+    assert_eq!(compile_layers(&layer(120.0)).records[0].region, Region::Screen);
+    assert_ne!(compile_layers(&layer(119.0)).records[0].region, Region::Screen);
+}
+
+#[test]
+fn regions_never_round_past_the_screen() {
+    for tenths in 1..1199 {
+        let x_mm = f64::from(tenths) / 10.0;
+        let program = compile_layers(&format!(
+            "[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\nregion = {{ x_mm = {x_mm}, y_mm = 0, width_mm = {}, height_mm = 1 }}",
+            120.0 - x_mm
+        ));
+        let Region::Rectangle { x_m, width_m, .. } = program.records[0].region else { panic!("a rectangle") };
+        assert!(f64::from(x_m) + f64::from(width_m) <= f64::from(program.header.screen_width_m));
+        assert!(f64::from(x_m) + f64::from(width_m) > 0.12 - 1e-7);
+    }
+}
+
+/// Writes a PNG file of 8 or 16 bits a sample.
+fn write_png(path: &Path, width: u32, colour: png::ColorType, depth: png::BitDepth, data: &[u8]) {
+    let bytes_per_pixel = colour.samples() * if depth == png::BitDepth::Sixteen { 2 } else { 1 };
+    let height = data.len() / bytes_per_pixel / width as usize;
+    let mut encoder = png::Encoder::new(std::fs::File::create(path).expect("a file"), width, height as u32);
+    encoder.set_color(colour);
+    encoder.set_depth(depth);
+    encoder.write_header().expect("a header").write_image_data(data).expect("samples");
+}
+
+#[test]
+fn a_picture_is_placed_and_held_at_its_border() {
+    let folder = tempfile::tempdir().expect("a folder");
+    write_png(
+        &folder.path().join("p.png"),
+        3,
+        png::ColorType::Grayscale,
+        png::BitDepth::Eight,
+        &[0, 51, 102, 255, 204, 153],
+    );
+    let layer = "[[layer]]\nkind = \"bitmap\"\npicture = \"p.png\"\nx_mm = 20\ny_mm = 30\nwidth_mm = 6\npitch_mm = 2\n\
+                 black_n = 0.001\nwhite_n = 0.026";
+    let scene = Scene::parse(&format!("{HEAD}{layer}"), "test.toml", folder.path()).expect("it reads");
+    let program = compile(&scene, &LIMITS, TICK_HZ).expect("it compiles");
+    assert!(program.notes.is_empty(), "{:?}", program.notes);
+    assert_eq!((program.bitmaps[0].width, program.bitmaps[0].height), (3, 2));
+    assert_eq!(program.bitmaps[0].samples, [0, 51, 102, 255, 204, 153]);
+    assert_eq!(program.bitmaps[0].crc32, frixel_wire::scene::bitmap_crc32(3, 2, &program.bitmaps[0].samples));
+    let reference = Reference::new(&program);
+    let at = |x_mm: f64, y_mm: f64| 1e3 * reference.electric_friction_n(x_mm * 1e-3, y_mm * 1e-3);
+    let mn = |grey: f64| 1.0 + 25.0 * grey / 255.0;
+    // Centres, halfway between them, a quarter of the way in both directions, and the border.
+    close(&[at(21.0, 31.0), at(23.0, 31.0), at(25.0, 33.0)], &[mn(0.0), mn(51.0), mn(153.0)], 1e-5);
+    close(&[at(22.0, 31.0), at(21.0, 32.0)], &[mn(25.5), mn(127.5)], 1e-5);
+    let blend = 0.75 * (0.75 * 51.0 + 0.25 * 102.0) + 0.25 * (0.75 * 204.0 + 0.25 * 153.0);
+    close(&[at(23.5, 31.5)], &[mn(blend)], 1e-5);
+    close(&[at(20.0001, 30.0001), at(25.9999, 33.9999)], &[mn(0.0), mn(153.0)], 1e-5);
+    // The picture's rectangle is the layer's region.
+    close(&[at(19.999, 31.0), at(26.001, 31.0), at(21.0, 29.999), at(21.0, 34.001)], &[0.0; 4], 0.0);
+    close(&[reference.natural_friction_n()], &[0.25], 1e-9);
+}
+
+#[test]
+fn one_picture_twice_is_sent_once() {
+    let layer = |x_mm: u32| {
+        format!(
+            "[[layer]]\nkind = \"bitmap\"\npicture = \"textures/brick.png\"\nx_mm = {x_mm}\ny_mm = 0\nwidth_mm = 50\n\
+             black_n = 0\nwhite_n = 0.01\n"
+        )
+    };
+    let program = compile_layers(&format!("{}{}", layer(0), layer(60)));
+    assert_eq!(program.bitmaps.len(), 1);
+    assert_eq!(program.notes, ["brick.png: 512 x 512 resampled to 200 x 200 at 0.25 mm"; 2]);
+}
+
+fn read_png(colour: png::ColorType, depth: png::BitDepth, data: &[u8]) -> Picture {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("p.png");
+    write_png(&path, 2, colour, depth, data);
+    Picture::read(&path).expect("a picture")
+}
+
+#[test]
+fn any_colour_type_becomes_grey_and_says_what_was_done() {
+    use png::BitDepth::{Eight, Sixteen};
+    use png::ColorType::{Grayscale, GrayscaleAlpha, Rgb, Rgba};
+    let check = |picture: &Picture, grey: [f64; 2], conversions: &[&str]| {
+        close(&picture.grey.iter().map(|value| f64::from(*value)).collect::<Vec<_>>(), &grey, 1e-3);
+        assert_eq!(picture.conversions, conversions);
+    };
+    check(&read_png(Grayscale, Eight, &[7, 200]), [7.0, 200.0], &[]);
+    check(&read_png(Rgb, Eight, &[7, 7, 7, 200, 200, 200]), [7.0, 200.0], &[]);
+    check(
+        &read_png(Rgb, Eight, &[255, 0, 0, 0, 100, 200]),
+        [0.2126 * 255.0, 0.7152 * 100.0 + 0.0722 * 200.0],
+        &["colour turned to grey"],
+    );
+    check(&read_png(GrayscaleAlpha, Eight, &[100, 255, 100, 51]), [100.0, 20.0], &["transparency laid over black"]);
+    check(&read_png(Rgba, Eight, &[9, 9, 9, 255, 100, 100, 100, 255]), [9.0, 100.0], &[]);
+    check(
+        &read_png(Grayscale, Sixteen, &[0x80, 0x00, 0xff, 0xff]),
+        [32768.0 / 257.0, 255.0],
+        &["16 bits a sample rounded to 8"],
+    );
+}
+
+/// A ramp of `pixels` resampled to `samples` of `pixels_per_sample`.
+fn ramp(pixels: usize, samples: usize, pixels_per_sample: f64) -> Vec<f64> {
+    let row: Vec<f32> = (0..pixels).map(|pixel| pixel as f32).collect();
+    let grey: Vec<f32> = row.iter().chain(&row).copied().collect();
+    let across = resample::Axis { whole: samples, skipped: 0, samples, pixels_per_sample };
+    let down = resample::Axis { whole: 2, skipped: 0, samples: 2, pixels_per_sample: 1.0 };
+    let resampled = resample::resample(&grey, pixels, across, down);
+    assert_eq!(resampled[..samples], resampled[samples..]);
+    resampled[..samples].iter().map(|value| f64::from(*value)).collect()
+}
+
+#[test]
+fn a_ramp_stays_a_ramp() {
+    // A pixel's value is its number, so the mean over a sample is its centre in pixels less half a pixel.
+    for (samples, pixels_per_sample) in [(250, 1.0), (125, 2.0), (122, 250.0 / 122.0), (97, 2.5), (25, 10.0)] {
+        let centre = |sample: usize| (sample as f64 + 0.5) * pixels_per_sample - 0.5;
+        let expected: Vec<f64> = (0..samples).map(centre).collect();
+        close(&ramp(250, samples, pixels_per_sample), &expected, 0.5 + 1e-4);
+    }
+    // Enlarged, it is held at the border.
+    let expected: Vec<f64> = (0..400).map(|sample| ((f64::from(sample) + 0.5) / 4.0 - 0.5).clamp(0.0, 99.0)).collect();
+    close(&ramp(100, 400, 0.25), &expected, 0.5 + 1e-4);
+    // A last sample that reaches past the end is the mean of what there is.
+    close(&ramp(10, 4, 3.0), &[1.0, 4.0, 7.0, 9.0], 0.0);
+    close(&ramp(1, 3, 0.5), &[0.0; 3], 0.0);
+}
+
+#[test]
+fn shrinking_keeps_the_mean() {
+    let picture = Picture::read(&scenes().join("textures/brick.png")).expect("the picture");
+    let axis = resample::Axis::covering(100.0, 0.4, picture.width);
+    assert_eq!(axis.samples, 250);
+    let samples = resample::resample(&picture.grey, picture.width, axis, axis);
+    let mean = samples.iter().map(|sample| f64::from(*sample)).sum::<f64>() / samples.len() as f64;
+    let expected = picture.grey.iter().map(|value| f64::from(*value)).sum::<f64>() / picture.grey.len() as f64;
+    assert!((mean - expected).abs() < 0.05, "{mean} is not {expected}");
+}
+
+#[test]
+fn pitches_that_do_not_divide_the_picture_reach_past_its_end() {
+    let axis = |length_mm, pitch_mm| resample::Axis::covering(length_mm, pitch_mm, 512).samples;
+    assert_eq!((axis(100.0, 0.4), axis(100.0, 0.3), axis(99.9, 0.3), axis(0.1, 10.0)), (250, 334, 333, 1));
+}
+
+#[test]
+fn bundled_scenes_compile() {
+    for name in ["brick.toml", "grating.toml", "constant.toml"] {
+        let program = compile(&Scene::load(&scenes().join(name)).expect(name), &LIMITS, TICK_HZ).expect(name);
+        assert!(!program.records.is_empty());
+    }
+}
+
+#[test]
+fn a_live_layer_is_found_whatever_was_left_out_below_it() {
+    let program = compile_layers(
+        "[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\n\
+         [[layer]]\nname = \"rest\"\nkind = \"constant\"\nfriction_n = 0.255\n\
+         [[layer]]\nname = \"rain\"\nkind = \"constant\"\nblend = \"add\"\nfriction_n = 0.002\nlive = true\n",
+    );
+    assert_eq!(program.records.len(), 2, "the first is covered");
+    assert_eq!(program.layers.record("rain"), Ok(1));
+    assert_eq!(program.layers.record("3"), Ok(1));
+    assert!(program.layers.record("rest").unwrap_err().to_string().contains("live = true"));
+}
+
+#[test]
+fn a_board_of_an_older_protocol_gets_no_flag_that_it_does_not_know() {
+    let program = compile_layers("[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\n");
+    assert!(program.header.layers_fixed);
+    for (protocol, layers_fixed) in [((1, 1), false), ((1, 2), true), ((2, 0), true)] {
+        let bytes = program.scene_bytes_for(protocol);
+        let scene = WireScene::parse(&bytes).unwrap();
+        assert_eq!(scene.header().layers_fixed, layers_fixed, "{protocol:?}");
+    }
+}
