@@ -96,6 +96,7 @@ pub fn hello() -> Hello {
             current_max_a_rms: 0.005,
             current_max_a_peak: 0.1,
             touch_report_period_s: 0.01,
+            tick_cycles_max: 2_000,
         },
     }
 }
