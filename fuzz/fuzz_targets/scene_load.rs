@@ -10,8 +10,8 @@ use frixel::device::{Device, DeviceError, Upload};
 use frixel::rigs::{Recorder, SimLink};
 use frixel::scene::{Program, Scene, compile};
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
-use frixel_wire::scene::Scene as WireScene;
-use frixel_wire::scene::cost::{TICK_INSTRUCTIONS_MAX, worst_of_scene};
+use frixel_layers::Scene as WireScene;
+use frixel_layers::cost::{TICK_INSTRUCTIONS_MAX, worst_of_scene};
 use libfuzzer_sys::fuzz_target;
 
 /// Bare glass, for a recorder that has nothing to compare.

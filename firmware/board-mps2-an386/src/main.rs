@@ -20,7 +20,8 @@ use cortex_m::Peripherals;
 use cortex_m::singleton;
 use cortex_m_rt::entry;
 use frixel_exchange::{BOARD, layout};
-use frixel_render::{Active, BitmapPool, Board, Session, StreamBuffer, Ticker};
+use frixel_layers::{BitmapPool};
+use frixel_render::{Active, Board, Session, StreamBuffer, Ticker};
 use frixel_wire::hello::ResetCause;
 
 /// Memory for bitmaps, written by the session and read by the tick.

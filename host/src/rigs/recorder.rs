@@ -1,10 +1,10 @@
 //! What a simulated finger felt, tick by tick, against what it should have.
 
 use frixel_hil_sim::{TickRecord, contact_of};
+use frixel_layers::Carrier;
 use frixel_model::{LoadedContact, ParameterError};
 use frixel_wire::fault::Flags;
 use frixel_wire::hello::BoardLimits;
-use frixel_wire::scene::Carrier;
 
 use super::streamed::Streamed;
 use crate::metrics::{Metrics, TickSample};

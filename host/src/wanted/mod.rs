@@ -5,7 +5,7 @@ mod field;
 mod samples;
 mod shape;
 
-use frixel_wire::scene::{Blend, Record};
+use frixel_layers::{Blend, Record};
 
 pub use along::{Along, Moment};
 pub(crate) use field::{Edge, Field, Grating};
