@@ -1,0 +1,263 @@
+//! Bulk uploads: chunks under credit, sent again from where one was lost.
+
+use std::time::Duration;
+
+use frixel_wire::frame::{FRAME_MAX_LEN, crc32};
+use frixel_wire::message::{Accepted, Command, Refusal};
+use frixel_wire::payload::{CHUNK_LEN, chunk_frame};
+
+use super::command::name_of;
+use super::error::DeviceError;
+use super::exchange::Exchange;
+use super::link::Link;
+
+/// An upload that has not got on for this long is looked after.
+const STALL_AFTER: Duration = Duration::from_millis(150);
+/// How often in a row an upload is sent again from the same chunk.
+const TRIES: u32 = 3;
+/// How often an upload is started when its end stays unclear.
+const STARTS: u32 = 3;
+
+/// What is to play: a compiled scene, and the bitmaps that it names.
+#[derive(Clone, Debug)]
+pub struct Upload<'a> {
+    /// The scene's bytes, as `frixel-layers` lays them out.
+    pub scene: &'a [u8],
+    /// The bitmaps. Those that the board holds already are not sent.
+    pub bitmaps: Vec<Bitmap<'a>>,
+}
+
+impl Upload<'_> {
+    /// CRC-32 of the scene, which [`super::Device::commit`] names it by.
+    pub fn scene_crc32(&self) -> u32 {
+        crc32(self.scene)
+    }
+
+    /// Bytes of scene and bitmaps together.
+    pub fn total_bytes(&self) -> usize {
+        self.scene.len() + self.bitmaps.iter().map(|bitmap| bitmap.samples.len()).sum::<usize>()
+    }
+
+    /// Refuses bitmaps that have not one sample for each of their places.
+    pub(super) fn check(&self) -> Result<(), DeviceError> {
+        self.bitmaps.iter().try_for_each(Bitmap::check)
+    }
+}
+
+/// A bitmap of a scene.
+#[derive(Clone, Copy, Debug)]
+pub struct Bitmap<'a> {
+    /// CRC-32 of the samples: the bitmap's name in the scene.
+    pub crc32: u32,
+    /// Samples in a row.
+    pub width: u16,
+    /// Rows.
+    pub height: u16,
+    /// One byte a sample, row after row from the top left.
+    pub samples: &'a [u8],
+}
+
+/// How far an upload has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress {
+    /// Bytes of scene and bitmaps that the board has, those that it held before included.
+    pub done_bytes: usize,
+    /// Bytes of scene and bitmaps together.
+    pub total_bytes: usize,
+}
+
+/// Counts of uploads since the hello.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct UploadCounts {
+    /// Bytes of scenes and bitmaps that were sent and have arrived whole.
+    pub(super) payload_bytes: u64,
+    /// Chunks that the board asked for again.
+    pub(super) chunks_lost: u64,
+}
+
+/// Uploads all that the board does not hold yet. Nothing plays before it is committed.
+pub(super) fn send<L: Link>(
+    exchange: &mut Exchange<L>,
+    upload: &Upload,
+    counts: &mut UploadCounts,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<(), DeviceError> {
+    let total_bytes = upload.total_bytes();
+    let mut done_before = 0;
+    let scene_start = Command::UploadScene { len: upload.scene.len() as u32, crc32: upload.scene_crc32() };
+    let starts = upload.bitmaps.iter().map(|bitmap| (bitmap.start(), bitmap.samples));
+    for (start, bytes) in starts.chain([(scene_start, upload.scene)]) {
+        let mut report = |done_here| {
+            progress(Progress { done_bytes: done_before + done_here, total_bytes });
+        };
+        send_one(exchange, start, bytes, counts, &mut report)?;
+        report(bytes.len());
+        done_before += bytes.len();
+    }
+    Ok(())
+}
+
+/// Uploads one scene or bitmap, unless the board holds it.
+fn send_one<L: Link>(
+    exchange: &mut Exchange<L>,
+    start: Command,
+    bytes: &[u8],
+    counts: &mut UploadCounts,
+    report: &mut dyn FnMut(usize),
+) -> Result<(), DeviceError> {
+    for _ in 0..STARTS {
+        if exchange.request(start)? == Accepted::AlreadyHeld {
+            return Ok(());
+        }
+        let mut transfer = Transfer::new(exchange, name_of(&start), bytes);
+        let end = transfer.run(report)?;
+        counts.chunks_lost += transfer.lost;
+        if end == End::Arrived {
+            counts.payload_bytes += bytes.len() as u64;
+            return Ok(());
+        }
+    }
+    Err(exchange.stalled(0, bytes.len()))
+}
+
+impl Bitmap<'_> {
+    fn start(&self) -> Command {
+        Command::UploadBitmap { width: self.width, height: self.height, crc32: self.crc32 }
+    }
+
+    fn check(&self) -> Result<(), DeviceError> {
+        if self.samples.len() == usize::from(self.width) * usize::from(self.height) {
+            return Ok(());
+        }
+        Err(DeviceError::BitmapSize {
+            crc32: self.crc32,
+            width: self.width,
+            height: self.height,
+            found: self.samples.len(),
+        })
+    }
+}
+
+/// How a transfer ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum End {
+    /// The board has all of it.
+    Arrived,
+    /// The answer to the end was lost, and the next one cannot tell an upload that is complete from one that was never started.
+    Unclear,
+}
+
+/// One scene or bitmap on its way.
+struct Transfer<'a, L> {
+    exchange: &'a mut Exchange<L>,
+    doing: &'static str,
+    bytes: &'a [u8],
+    /// The chunk that the board wants next, as far as is known.
+    wanted: usize,
+    /// The chunk to send next.
+    next: usize,
+    /// For each chunk, the position on the line at which its last sending ended.
+    sent_to: Vec<u64>,
+    /// Times in a row that chunks were sent again without the board wanting a later one.
+    tries: u32,
+    lost: u64,
+}
+
+impl<'a, L: Link> Transfer<'a, L> {
+    fn new(exchange: &'a mut Exchange<L>, doing: &'static str, bytes: &'a [u8]) -> Self {
+        exchange.take_next_chunk();
+        Self { exchange, doing, bytes, wanted: 0, next: 0, sent_to: Vec::new(), tries: 0, lost: 0 }
+    }
+
+    fn run(&mut self, report: &mut dyn FnMut(usize)) -> Result<End, DeviceError> {
+        loop {
+            self.send_chunks(report)?;
+            match self.exchange.ask(Command::UploadEnd)? {
+                Ok(_) => return Ok(End::Arrived),
+                Err(Refusal::UploadIncomplete { .. }) if self.exchange.repeated() => return Ok(End::Unclear),
+                Err(Refusal::UploadIncomplete { next_chunk }) => self.send_again_from(next_chunk)?,
+                Err(refusal) => return Err(self.exchange.refused(&Command::UploadEnd, refusal)),
+            }
+        }
+    }
+
+    /// Sends from `next` to the end, and goes back when the board says that it has to. Gives up when there is no credit for long: it may be
+    /// lost together with bytes. Then, as after the last chunk, the end of the upload is asked for; it does no harm when it comes too early,
+    /// its refusal says which chunk the board wants, and its answer settles the credit.
+    fn send_chunks(&mut self, report: &mut dyn FnMut(usize)) -> Result<(), DeviceError> {
+        let mut sent_at = self.exchange.now();
+        while self.next < self.chunk_count() && self.exchange.now().saturating_sub(sent_at) < STALL_AFTER {
+            let wait = if self.send_next()? {
+                sent_at = self.exchange.now();
+                Duration::ZERO
+            } else {
+                STALL_AFTER
+            };
+            self.exchange.receive(wait, self.doing)?;
+            self.take_progress(report)?;
+        }
+        Ok(())
+    }
+
+    fn chunk_count(&self) -> usize {
+        self.bytes.len().div_ceil(CHUNK_LEN)
+    }
+
+    /// Bytes that the board has said it has.
+    fn arrived_bytes(&self) -> usize {
+        self.bytes.len().min(self.wanted * CHUNK_LEN)
+    }
+
+    /// Sends the next chunk, if there is credit for it.
+    fn send_next(&mut self) -> Result<bool, DeviceError> {
+        let start = self.next * CHUNK_LEN;
+        let end = self.bytes.len().min(start + CHUNK_LEN);
+        let bytes = self.bytes.get(start..end).unwrap_or_default();
+        let mut buffer = [0; FRAME_MAX_LEN];
+        let frame = chunk_frame(u16::try_from(self.next).unwrap_or(u16::MAX), bytes, &mut buffer)?;
+        let Some(sent_to) = self.exchange.send_bulk(frame, self.doing)? else {
+            return Ok(false);
+        };
+        match self.sent_to.get_mut(self.next) {
+            Some(before) => *before = sent_to,
+            None => self.sent_to.push(sent_to),
+        }
+        self.next += 1;
+        Ok(true)
+    }
+
+    /// Takes what the board said last. It lacks a chunk that it wants although all of it is off the line.
+    fn take_progress(&mut self, report: &mut dyn FnMut(usize)) -> Result<(), DeviceError> {
+        let Some(wanted) = self.exchange.take_next_chunk() else {
+            return Ok(());
+        };
+        self.board_wants(wanted);
+        report(self.arrived_bytes());
+        let off_the_line = |sent_to: &u64| *sent_to <= self.exchange.settled();
+        if self.wanted < self.next && self.sent_to.get(self.wanted).is_some_and(off_the_line) {
+            self.send_again_from(wanted)?;
+        }
+        Ok(())
+    }
+
+    fn board_wants(&mut self, chunk: u16) {
+        let chunk = usize::from(chunk).min(self.chunk_count());
+        if chunk > self.wanted {
+            self.tries = 0;
+        }
+        self.wanted = chunk;
+    }
+
+    fn send_again_from(&mut self, chunk: u16) -> Result<(), DeviceError> {
+        self.board_wants(chunk);
+        self.tries += 1;
+        if self.tries > TRIES {
+            return Err(self.exchange.stalled(self.arrived_bytes(), self.bytes.len()));
+        }
+        if self.wanted < self.next {
+            self.next = self.wanted;
+            self.lost += 1;
+        }
+        Ok(())
+    }
+}
