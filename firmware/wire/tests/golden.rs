@@ -147,7 +147,8 @@ fn one_call_frames_are_the_same() {
     use frixel_wire::payload::{
         chunk_frame, from_board_frame, hello_frame, hello_request_frame, request_frame, samples_frame,
     };
-    for payload in samples::from_host().into_iter().chain(samples::from_board()) {
+    let older = |payload: &Payload| *payload == Payload::HelloRequest { protocol: (1, 2) };
+    for payload in samples::from_host().into_iter().chain(samples::from_board()).filter(|payload| !older(payload)) {
         let mut direct = [0; FRAME_MAX_LEN];
         let direct = match payload {
             Payload::HelloRequest { .. } => hello_request_frame(&mut direct),

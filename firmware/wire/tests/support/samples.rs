@@ -31,6 +31,7 @@ pub fn from_host() -> Vec<Payload<'static>> {
         Payload::Samples { first_index: 0, samples: &[[0x00, 0x00]] },
         Payload::Samples { first_index: 70_000, samples: &[[0xff, 0xff], [0x00, 0x80], [0x34, 0x12]] },
         Payload::Samples { first_index: u32::MAX, samples: &FULL_SAMPLES },
+        Payload::HelloRequest { protocol: (1, 3) },
     ]);
     payloads
 }
@@ -141,6 +142,13 @@ fn messages() -> Vec<FromBoard> {
         fault: Some(fault),
         flags: Flags::default(),
     }));
+    // Since protocol 1.3, behind what has golden bytes.
+    messages.push(FromBoard::Answer(Answer {
+        sequence: 200,
+        received_bytes: 200_000,
+        state: State::Armed,
+        outcome: Err(Refusal::Config(config_refusal(ConfigField::ElectricFrictionMax, ConfigRefusal::WHOLE_SCENE))),
+    }));
     messages
 }
 
@@ -222,9 +230,9 @@ pub fn scene_errors() -> [SceneError; 12] {
 pub fn config_fields() -> Vec<ConfigField> {
     use ConfigField::{
         Angle, BitmapPlacement, CarrierFrequency, ClickLayers, CurrentPeak, CurrentRms, CurveSpeed, Duration, Duty,
-        EffectiveGap, ElectricFrictionMax, FingerRadius, Friction, FrictionCoefficient, Gain, HostTimeout, NoiseLayers,
-        NormalLoad, Phase, Region, SampleRate, ScreenHeight, ScreenWidth, Shape, Slew, StartLevel, Stiffness,
-        TableRange, TouchPlace, Vertex, VibrationFrequency, VoltagePeak, VoltageRms, WaveVector, Wavelength,
+        EffectiveGap, FingerRadius, Friction, FrictionCoefficient, Gain, HostTimeout, NoiseLayers, NormalLoad, Phase,
+        Region, SampleRate, ScreenHeight, ScreenWidth, Shape, Slew, StartLevel, Stiffness, TableRange, TouchPlace,
+        Vertex, VibrationFrequency, VoltagePeak, VoltageRms, WaveVector, Wavelength,
     };
     vec![
         ScreenWidth,
@@ -261,6 +269,5 @@ pub fn config_fields() -> Vec<ConfigField> {
         CurveSpeed,
         NoiseLayers,
         ClickLayers,
-        ElectricFrictionMax,
     ]
 }
