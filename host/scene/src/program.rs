@@ -67,6 +67,11 @@ impl Program {
         })
     }
 
+    /// Whether the friction at a place depends on what happened before, beside the time: on a click, or on a stream.
+    pub fn has_history(&self) -> bool {
+        self.records.iter().any(|record| record.layer.click().is_some() || record.layer.is_streamed())
+    }
+
     /// The bitmap that a record names.
     pub fn bitmap(&self, crc32: u32) -> Option<&Bitmap> {
         self.bitmaps.iter().find(|bitmap| bitmap.crc32 == crc32)
