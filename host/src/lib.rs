@@ -1,6 +1,7 @@
 //! Driver library for frixel boards.
 #![forbid(unsafe_code)]
 
+mod chart;
 pub mod check;
 pub mod device;
 pub mod metrics;

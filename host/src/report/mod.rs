@@ -4,13 +4,12 @@
 //! [`write()`] puts an `index.html` that needs nothing else into a folder, and beside it the numbers behind each picture as
 //! CSV.
 
-mod chart;
 mod counts;
 mod data;
 mod error;
-mod exact;
 mod figures;
 mod page;
+mod reference;
 mod ways;
 mod wire;
 

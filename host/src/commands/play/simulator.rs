@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
-use frixel::output::{FeltCsv, FeltRow, OutputError, Report, Trace, write_felt_svg, write_scene_png};
+use frixel::output::{FeltCsv, FeltRow, OutputError, Report, Subject, Trace, write_felt_svg, write_scene_png};
 use frixel::player::{Simulation, Stage, simulate_rows};
 use frixel::scene::{Program, Scene, compile};
 use frixel_hil_sim::{RigConfig, Stroke};
@@ -82,10 +82,10 @@ impl Rows {
 
 /// Draws `felt.svg` and `scene.png`.
 pub(super) fn draw(args: &PlayArgs, program: &Program, trace: &Trace) -> Result<[PathBuf; 2], CommandError> {
-    let title = args.scene.display().to_string();
+    let subject = Subject { name: args.scene.display().to_string(), simulated: true };
     let svg = args.out.join("felt.svg");
-    write_felt_svg(&svg, &title, trace, &program.reach)?;
+    write_felt_svg(&svg, &subject, trace, &program.reach)?;
     let png = args.out.join("scene.png");
-    write_scene_png(&png, &title, program, trace)?;
+    write_scene_png(&png, &subject, program, trace)?;
     Ok([svg, png])
 }

@@ -3,7 +3,7 @@
 use frixel_model::{Contact, ContactModel, Finger};
 
 use super::{EXAMPLE, Figure, GAP_M, ReportError, even, example_finger, geometric};
-use crate::report::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
+use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
 use crate::report::data::Data;
 
 /// A finger to put on the line, with how its legend calls it.
@@ -142,7 +142,7 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
                 .to_owned(),
             EXAMPLE.to_owned(),
         ],
-        chart: Chart { panels, columns: 2, shared_legend: false },
+        chart: Chart::new(panels, 2),
         csv: data.csv()?,
     })
 }

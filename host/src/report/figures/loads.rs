@@ -5,7 +5,7 @@ use core::f64::consts::PI;
 use frixel_model::{Contact, ContactModel, ContactState};
 
 use super::{EXAMPLE, Figure, ReportError, even, example};
-use crate::report::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, graded, signed};
+use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, graded, signed};
 use crate::report::data::Data;
 
 /// The paper's relative normal force `f_N = F_N/(k R h0^2)`, Eq. (44), for a coating of permittivity one.
@@ -149,7 +149,7 @@ pub(super) fn contact_radius() -> Result<Figure, ReportError> {
         csv: data([&relative, &loaded], ["contact_radius_m", "radius_over_scale"], &contact, |state| {
             [state.contact_radius_m, contact.area(state.contact_radius_m).sqrt()]
         })?,
-        chart: Chart { panels: vec![left, right], columns: 2, shared_legend: false },
+        chart: Chart::new(vec![left, right], 2),
     })
 }
 
@@ -183,6 +183,6 @@ pub(super) fn friction() -> Result<Figure, ReportError> {
         csv: data([&relative, &loaded], ["electric_friction_n", "friction_over_scale"], &contact, |state| {
             [state.electric_friction_n, state.friction_n / contact.friction_scale_n()]
         })?,
-        chart: Chart { panels: vec![left, right], columns: 2, shared_legend: false },
+        chart: Chart::new(vec![left, right], 2),
     })
 }

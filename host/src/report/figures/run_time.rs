@@ -6,10 +6,9 @@ use frixel_model::ContactModel;
 
 use super::boards::Boards;
 use super::{EXAMPLE, Figure, GAP_M, LOAD_N, ReportError, example, example_finger};
-use crate::report::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
+use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};
 use crate::report::counts::Counts;
 use crate::report::data::{Data, Value};
-use crate::report::exact::Springs;
 use crate::report::ways::{Bench, Kind, Parameters, RANGE_V_RMS, Way};
 
 /// Kinds in the order of legends: what they are called and how they look.
@@ -33,11 +32,11 @@ const CORES: [(&str, &str); 2] = [("m4f", "Cortex-M4F"), ("m3", "Cortex-M3, no F
 
 const ERROR: &str = "largest relative error in electric friction";
 
-const fn both(colour: plotters::style::RGBColor, mark: Mark) -> Look {
+const fn both(colour: RGBColor, mark: Mark) -> Look {
     Look { colour, line: Line::Thin, mark }
 }
 
-const fn dashed(colour: plotters::style::RGBColor, mark: Mark) -> Look {
+const fn dashed(colour: RGBColor, mark: Mark) -> Look {
     Look { colour, line: Line::Dashed, mark }
 }
 
@@ -81,7 +80,6 @@ pub(super) fn measure() -> Result<[Measured; 2], ReportError> {
         let bench = Bench {
             contact: &example::<f64>()?.under_load(load_n)?,
             single: &example::<f32>()?.under_load(load_n as f32)?,
-            exact: &Springs::new(&finger, GAP_M),
             parameters: Parameters {
                 radius_m: finger.radius_m,
                 stiffness_pa_per_m: finger.stiffness_pa_per_m,
@@ -126,8 +124,8 @@ pub(super) fn against_time(measured: &[Measured; 2], boards: Boards) -> Result<F
         caption: vec![
             format!(
                 "Down and to the left is better. The error is the largest of |x(V) − x|/x over all electric frictions x from \
-                 x({low} V) to x({high} V), V being the voltage that a way gives for x, and x(V) what the model makes of it; of \
-                 ways in f64 in 256 bits. Each kind comes in several sizes, joined by a line: steps of the bisection, entries of \
+                 x({low} V) to x({high} V), V being the voltage that a way gives for x, and x(V) what the model makes of it \
+                 in f64, right to 4e-15. Each kind comes in several sizes, joined by a line: steps of the bisection, entries of \
                  the forward table, rows of the direct tables."
             ),
             format!(
@@ -145,7 +143,7 @@ pub(super) fn against_time(measured: &[Measured; 2], boards: Boards) -> Result<F
                 .to_owned(),
             EXAMPLE.to_owned(),
         ],
-        chart: Chart { panels: panels.into(), columns: 2, shared_legend: true },
+        chart: Chart::new(panels.into(), 2).with_shared_legend(),
         csv: data.csv()?,
     })
 }
@@ -178,7 +176,7 @@ pub(super) fn against_size(measured: &[Measured; 2]) -> Result<Figure, ReportErr
             ),
             EXAMPLE.to_owned(),
         ],
-        chart: Chart { panels: panels.into(), columns: 2, shared_legend: true },
+        chart: Chart::new(panels.into(), 2).with_shared_legend(),
         csv: data.csv()?,
     })
 }
@@ -212,6 +210,7 @@ pub(super) fn against_instructions(measured: &[Measured; 2], counts: &Counts) ->
     if panels.is_empty() {
         return Ok(None);
     }
+    let columns = panels.len() as u32;
     Ok(Some(Figure {
         name: "error-against-instructions",
         title: "Error against instructions on a board".to_owned(),
@@ -224,7 +223,7 @@ pub(super) fn against_instructions(measured: &[Measured; 2], counts: &Counts) ->
                 .to_owned(),
             EXAMPLE.to_owned(),
         ],
-        chart: Chart { columns: panels.len() as u32, panels, shared_legend: true },
+        chart: Chart::new(panels, columns).with_shared_legend(),
         csv: data.csv()?,
     }))
 }

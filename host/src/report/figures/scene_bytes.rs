@@ -11,7 +11,7 @@ use frixel_model::InverseTable;
 use frixel_wire::scene::{POINTS_MAX, POLYGON_POINTS_MAX, RECORDS_MAX, Scene as WireScene};
 
 use super::{Figure, ReportError};
-use crate::report::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
+use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};
 use crate::report::data::Data;
 use crate::report::wire::OnTheWire;
 use crate::scene::{CompileError, Program, Scene, compile};
@@ -123,7 +123,7 @@ fn table_bytes(program: &Program) -> usize {
 /// Scenes of one kind of content.
 struct Family {
     name: String,
-    colour: plotters::style::RGBColor,
+    colour: RGBColor,
     scenes: Vec<Measured>,
 }
 
@@ -137,7 +137,7 @@ struct Measured {
 impl Family {
     fn new(
         name: &str,
-        colour: plotters::style::RGBColor,
+        colour: RGBColor,
         folder: &Path,
         scenes: impl Iterator<Item = (usize, String)>,
     ) -> Result<Self, ReportError> {
@@ -228,7 +228,7 @@ pub(super) fn figure(tick: &str) -> Result<Figure, ReportError> {
         name: "bytes-against-scene-content",
         title: "Bytes on the wire and of the table against what is in the scene".to_owned(),
         caption: caption(&families, tick),
-        chart: Chart { panels: vec![left, middle, right, table], columns: 2, shared_legend: true },
+        chart: Chart::new(vec![left, middle, right, table], 2).with_shared_legend(),
         csv: data.csv()?,
     })
 }

@@ -3,7 +3,7 @@
 use frixel_wire::scene::cost::TICK_INSTRUCTIONS_MAX;
 
 use super::{Figure, ReportError};
-use crate::report::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
+use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};
 use crate::report::counts::Counts;
 use crate::report::data::Data;
 
@@ -13,7 +13,7 @@ const LAYERS: [usize; 7] = [1, 2, 4, 8, 16, 32, 64];
 /// The axis of layers, with room for a number beside the last one.
 const LAYERS_SHOWN: (f64, f64) = (0.9, 80.0);
 /// Layers under the finger: how many, their look, and what they are called.
-const UNDER: [(usize, plotters::style::RGBColor, &str); 2] =
+const UNDER: [(usize, RGBColor, &str); 2] =
     [(1, PALETTE[0], "one under the finger"), (8, PALETTE[1], "eight under the finger")];
 
 /// A tick with some layers under the finger, and others elsewhere.
@@ -87,7 +87,7 @@ pub(super) fn figure(counts: &Counts) -> Result<Option<Figure>, ReportError> {
                  emulator."
             ),
         ],
-        chart: Chart { panels: vec![panel], columns: 1, shared_legend: false },
+        chart: Chart::new(vec![panel], 1),
         csv: data.csv()?,
     }))
 }

@@ -5,9 +5,9 @@ use std::path::Path;
 use frixel_hil_sim::{Point, RigConfig, Stroke, TouchConfig};
 
 use super::{Figure, ReportError};
+use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
 use crate::output::FeltRow;
 use crate::player::{Simulation, simulate};
-use crate::report::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
 use crate::report::data::Data;
 use crate::scene::{Scene, compile};
 
@@ -172,7 +172,7 @@ fn caption() -> Vec<String> {
 
 pub(super) fn figure() -> Result<Figure, ReportError> {
     let mut left = Panel::new(
-        "Stripes under a finger of 100 mm/s",
+        "Stripes under a finger of 100 mm/s, simulated",
         Axis::log("ticks a second, kHz", 0.9..50.0),
         Axis::log("rms friction error, % of the reachable range", 0.1..100.0),
     );
@@ -196,7 +196,7 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
         left.add(case.name, case.look, points);
     }
     let mut right = Panel::new(
-        "0.5 mm stripes, tick by tick",
+        "0.5 mm stripes, tick by tick, simulated",
         Axis::linear("time, ms", 0.0..20.0),
         Axis::linear("electric friction, mN", -2.0..24.0),
     );
@@ -206,7 +206,7 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
         name: "error-against-tick-rate",
         title: "Error against the rate of ticks, for a felt texture".to_owned(),
         caption: caption(),
-        chart: Chart { panels: vec![left, right], columns: 2, shared_legend: false },
+        chart: Chart::new(vec![left, right], 2),
         csv: data.csv()?,
     })
 }
