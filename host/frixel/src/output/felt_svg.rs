@@ -1,0 +1,224 @@
+//! `felt.svg`: friction and voltage over time.
+
+use std::fs;
+use std::path::Path;
+
+use super::trace::{Extremes, Span, Trace};
+use super::{OutputError, Subject};
+use crate::chart::{Axis, Chart, Line, Look, Margins, PALETTE, Panel, RGBColor};
+use frixel_scene::Reach;
+
+const REFERENCE: RGBColor = RGBColor(0xf2, 0xb1, 0x34);
+const FELT: RGBColor = PALETTE[0];
+const VOLTAGE: RGBColor = PALETTE[1];
+const REACH: RGBColor = RGBColor(0x55, 0x88, 0xb0);
+const REACH_OPACITY: f64 = 0.12;
+
+/// Heights of the two panels and width of their plots, in pixels.
+const HEIGHTS: (u32, u32) = (350, 240);
+const PLOT_WIDTH: f64 = 900.0;
+/// Width of a piece of the time axis in which a signal is a line or an envelope, in pixels.
+const PIECE: f64 = 6.0;
+/// A signal that turns back so many times within five pieces has less than five pixels to a period: it is drawn as its
+/// envelope. A turn counts when it is higher than this part of the axis.
+const TURNS_MAX: usize = 12;
+const TURN_MIN: f64 = 0.03;
+/// How much an envelope covers of what is behind it.
+const OPACITY: f64 = 0.4;
+
+/// One quantity of a span.
+type Part = fn(&Span) -> Option<Extremes>;
+
+/// Writes reference and felt friction, and below them the voltage, over time; the reach is shaded. Where nothing was felt,
+/// as on a real board, the commanded friction stands in its place. What changes too fast to be drawn is drawn as its
+/// envelope.
+pub fn write_felt_svg(path: &Path, subject: &Subject, trace: &Trace, reach: &Reach) -> Result<(), OutputError> {
+    let text = chart(subject, trace, reach).svg().map_err(OutputError::drawing(path))?;
+    fs::write(path, text).map_err(|source| OutputError::File { path: path.to_owned(), source })
+}
+
+fn chart(subject: &Subject, trace: &Trace, reach: &Reach) -> Chart {
+    let mut chart = Chart::new(vec![friction(trace.spans(), reach), voltage(trace.spans())], 1);
+    chart.title = subject.title();
+    chart
+}
+
+fn friction(spans: &[Span], reach: &Reach) -> Panel {
+    let felt = spans.iter().any(|span| span.felt_n.is_some());
+    let (name, second): (_, Part) =
+        if felt { ("felt", |span| span.felt_n) } else { ("commanded", |span| span.asked_n) };
+    let first: Part = |span| span.wanted_n;
+    let (natural_mn, most_mn) = (1e3 * reach.friction_min_n(), 1e3 * reach.friction_max_n());
+    let drawn = [extremes(spans, first), extremes(spans, second)].into_iter().flatten();
+    let (low, high) = drawn
+        .fold((natural_mn, most_mn), |(low, high), range| (low.min(1e3 * range.least), high.max(1e3 * range.largest)));
+    let (start, end) = times(spans);
+    let mut panel = panel("friction, mN", (start, end), (low, high), HEIGHTS.0);
+    panel.margins.bottom = 26;
+    panel.x.label.clear();
+    let corners = [(start, natural_mn), (end, natural_mn), (end, most_mn), (start, most_mn)];
+    panel.add("reachable", Look::line(REACH, Line::Filled(REACH_OPACITY)), corners.to_vec());
+    let signals = [("wanted", REFERENCE, Line::Thick, first), (name, FELT, Line::Solid, second)];
+    for (name, colour, line, part) in signals {
+        Signal { part, scale: 1e3, range: high - low }.add_to(&mut panel, spans, name, Look::line(colour, line));
+    }
+    panel
+}
+
+fn voltage(spans: &[Span]) -> Panel {
+    let part: Part = |span| span.voltage_v_rms;
+    let largest = extremes(spans, part).map_or(0.0, |range| range.largest).max(1.0);
+    let mut panel = panel("voltage, V rms", times(spans), (0.0, largest), HEIGHTS.1);
+    Signal { part, scale: 1.0, range: largest }.add_to(&mut panel, spans, "", Look::line(VOLTAGE, Line::Solid));
+    panel
+}
+
+/// An empty panel over time, with a twentieth more than the range on either side.
+fn panel(label: &str, times: (f64, f64), (low, high): (f64, f64), height: u32) -> Panel {
+    let margin = 0.05 * (high - low).max(1e-6);
+    let x = Axis::linear("time, s", times.0..times.1).with_labels(12.0);
+    let y = Axis::linear(label, low - margin..high + margin);
+    Panel { height, margins: Margins { left: 80, right: 20, top: 8, bottom: 44 }, ..Panel::new("", x, y) }
+}
+
+/// From the first time to the last, in seconds; one second where there is no such stretch.
+fn times(spans: &[Span]) -> (f64, f64) {
+    match (spans.first(), spans.last()) {
+        (Some(first), Some(last)) if last.end_s > first.start_s => (first.start_s, last.end_s),
+        (Some(first), _) => (first.start_s, first.start_s + 1.0),
+        _ => (0.0, 1.0),
+    }
+}
+
+/// Least and largest value of all spans.
+fn extremes(spans: &[Span], part: Part) -> Option<Extremes> {
+    spans.iter().filter_map(part).reduce(Extremes::joined)
+}
+
+/// How a quantity of spans is drawn.
+struct Signal {
+    part: Part,
+    /// From the quantity's unit to the axis' unit.
+    scale: f64,
+    /// Length of the axis, in its unit.
+    range: f64,
+}
+
+/// A stretch of time, shorter than can be seen, with what the signal does in it.
+#[derive(Default)]
+struct Piece {
+    /// Places of the line.
+    line: Vec<(f64, f64)>,
+    turns: usize,
+}
+
+impl Signal {
+    /// Adds the signal to a panel: as a line, and where it is too fast for one as its envelope.
+    fn add_to(&self, panel: &mut Panel, spans: &[Span], name: &str, look: Look) {
+        let envelope = Look { line: Line::Filled(OPACITY), ..look };
+        let comma = if name.is_empty() { "" } else { ", " };
+        let too_fast = format!("{name}{comma}too fast to draw: least to largest");
+        let mut names = [Some(name), Some(too_fast.as_str())];
+        let (start_s, end_s) = times(spans);
+        let piece_s = (end_s - start_s) * PIECE / PLOT_WIDTH;
+        for stretch in self.stretches(spans) {
+            for (fast, places) in runs(&self.pieces(&stretch, start_s, piece_s)) {
+                let (look, points) = if fast { (envelope, envelope_of(&places, piece_s)) } else { (look, places) };
+                panel.add(names[usize::from(fast)].take().unwrap_or_default(), look, points);
+            }
+        }
+        if let Some(name) = names[0] {
+            panel.add(name, look, Vec::new());
+        }
+    }
+
+    /// Places through least and largest value of each span; a new stretch begins where a value is not known.
+    fn stretches(&self, spans: &[Span]) -> Vec<Vec<(f64, f64)>> {
+        let mut stretches = vec![Vec::new()];
+        for span in spans {
+            match ((self.part)(span), stretches.last_mut()) {
+                (Some(Extremes { least, largest }), Some(stretch)) => {
+                    let (least, largest) = (self.scale * least, self.scale * largest);
+                    // From where the line stands, the nearer of the two comes first.
+                    let last = stretch.last().map(|&(_, last): &(f64, f64)| last);
+                    let falls = last.is_some_and(|last| (last - largest).abs() < (last - least).abs());
+                    let (first, second) = if falls { (largest, least) } else { (least, largest) };
+                    stretch.push((span.start_s, first));
+                    if largest > least {
+                        stretch.push((span.end_s, second));
+                    }
+                }
+                _ => stretches.push(Vec::new()),
+            }
+        }
+        stretches.retain(|stretch| !stretch.is_empty());
+        stretches
+    }
+
+    /// Cuts a stretch into pieces of time, and counts in each how often the signal turns back.
+    fn pieces(&self, stretch: &[(f64, f64)], start_s: f64, piece_s: f64) -> Vec<Piece> {
+        let number = |time_s: f64| ((time_s - start_s) / piece_s) as usize;
+        let first = stretch.first().map_or(0, |place| number(place.0));
+        let mut pieces: Vec<Piece> = Vec::new();
+        // The last turn, and the direction since then.
+        let (mut turn, mut rises) = (stretch.first().map_or(0.0, |place| place.1), None);
+        for &(time_s, value) in stretch {
+            let place = number(time_s) - first;
+            pieces.resize_with(pieces.len().max(place + 1), Piece::default);
+            let Some(piece) = pieces.get_mut(place) else { continue };
+            piece.line.push((time_s, value));
+            let further = rises.is_some_and(|rises| (value > turn) == rises);
+            if further {
+                turn = value;
+            } else if (value - turn).abs() > TURN_MIN * self.range {
+                piece.turns += usize::from(rises.is_some());
+                (turn, rises) = (value, Some(value > turn));
+            }
+        }
+        pieces
+    }
+}
+
+/// Puts pieces together that follow each other and are drawn in the same way: whether that is as an envelope, and the
+/// places, each run beginning where the last one ended.
+fn runs(pieces: &[Piece]) -> Vec<(bool, Vec<(f64, f64)>)> {
+    let turns = |place: usize| -> usize {
+        let near = pieces.iter().skip(place.saturating_sub(2)).take(place + 3 - place.saturating_sub(2));
+        near.map(|piece| piece.turns).sum()
+    };
+    let mut runs: Vec<(bool, Vec<(f64, f64)>)> = Vec::new();
+    for (place, piece) in pieces.iter().enumerate() {
+        let fast = turns(place) >= TURNS_MAX;
+        match runs.last_mut() {
+            Some((last, places)) if *last == fast => places.extend(&piece.line),
+            Some((_, places)) => {
+                let joint = places.last().copied();
+                runs.push((fast, joint.into_iter().chain(piece.line.iter().copied()).collect()));
+            }
+            None => runs.push((fast, piece.line.clone())),
+        }
+    }
+    runs
+}
+
+/// The polygon around places: largest values from the first time to the last, and least values back.
+fn envelope_of(places: &[(f64, f64)], piece_s: f64) -> Vec<(f64, f64)> {
+    let mut upper: Vec<(f64, f64)> = Vec::new();
+    let mut lower: Vec<(f64, f64)> = Vec::new();
+    let mut rest = places;
+    while let Some(&(start_s, _)) = rest.first() {
+        let count = rest.iter().take_while(|(time_s, _)| *time_s < start_s + piece_s).count().max(1);
+        let (piece, later) = rest.split_at(count);
+        // Both ends of a piece, so that it reaches up to the next one.
+        let end_s = later.first().or(piece.last()).map_or(start_s, |place| place.0);
+        let (least, largest) = piece.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, largest), (_, value)| {
+            (least.min(*value), largest.max(*value))
+        });
+        upper.extend([(start_s, largest), (end_s, largest)]);
+        lower.extend([(start_s, least), (end_s, least)]);
+        rest = later;
+    }
+    lower.reverse();
+    upper.extend(lower);
+    upper
+}

@@ -1,0 +1,45 @@
+//! `scene.png`: the friction map of a program, with the stroke over it.
+
+use std::fs;
+use std::path::Path;
+
+use super::map::Frame;
+use super::trace::Trace;
+use super::{OutputError, Subject};
+use crate::chart::{Line, Look, Mark, RGBColor, colour};
+use frixel_scene::Program;
+use frixel_scene::wanted::Wanted;
+
+/// Largest size of the map, in pixels.
+const MAP_MAX: (f64, f64) = (1_000.0, 800.0);
+const STROKE: RGBColor = RGBColor(255, 59, 48);
+const CASING: RGBColor = RGBColor(255, 255, 255);
+
+/// Writes the friction that a program wants all over the screen, and the stroke of a run. The colours span the reach;
+/// what is beyond has the colour of its end.
+pub fn write_scene_png(path: &Path, subject: &Subject, program: &Program, trace: &Trace) -> Result<(), OutputError> {
+    let frame = Frame::of(program, MAP_MAX);
+    let wanted = Wanted::new(program);
+    let colour_at = |(x_m, y_m)| colour(wanted.electric_friction_n(x_m, y_m) / program.reach.electric_friction_max_n);
+    let mut chart = frame.chart(frame.pixels().map(|(_, place)| colour_at(place)).collect(), &program.reach);
+    chart.title = subject.title();
+    let strokes: Vec<Vec<(f64, f64)>> = trace.strokes().collect();
+    let start = strokes.first().and_then(|stroke| stroke.first()).copied();
+    for panel in &mut chart.panels {
+        // The stroke is cased in white, so that it shows on every colour.
+        for (look, mark) in [
+            (Look::line(CASING, Line::Thick), Look::mark(CASING, Mark::Casing)),
+            (Look::line(STROKE, Line::Solid), Look::mark(STROKE, Mark::Disc)),
+        ] {
+            for stroke in &strokes {
+                panel.add("", look, stroke.clone());
+            }
+            panel.add("", mark, start.into_iter().collect());
+        }
+        if start.is_some() {
+            panel.add("stroke, from its dot", Look { line: Line::Solid, ..Look::mark(STROKE, Mark::Disc) }, Vec::new());
+        }
+    }
+    let bytes = chart.png().map_err(OutputError::drawing(path))?;
+    fs::write(path, bytes).map_err(|source| OutputError::File { path: path.to_owned(), source })
+}
