@@ -1,4 +1,4 @@
-//! Driver library for frixel boards.
+//! What the `frixel` command is made of: playing, recording, pictures and reports.
 #![forbid(unsafe_code)]
 
 mod chart;

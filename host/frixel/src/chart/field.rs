@@ -77,7 +77,8 @@ impl Field {
                 for cell in cells {
                     let corners = [(cell.x.start, cell.y.end), (cell.x.end, cell.y.start)].map(|one| plane.unit(one));
                     let [Some(start), Some(end)] = corners else { continue };
-                    // A cell reaches under its neighbours to the right and below, so that no background shows between them.
+                    // A cell reaches under its neighbours to the right and below, so that no background shows between
+                    // them.
                     let under = scale.px(1) as i32;
                     let end = ((end.0 + under).min(right), (end.1 + under).min(bottom));
                     // A value without a logarithm is zero: the lowest colour.
@@ -133,7 +134,7 @@ impl Raster {
         }
         let size = ((self.width * fine) as u32, (self.height * fine) as u32);
         let picture = BitMapElement::with_owned_buffer((0, 0), size, bytes);
-        let picture: BitMapElement<(i32, i32)> = picture.ok_or_else(|| DrawError::new("a map lacks pixels"))?;
+        let picture: BitMapElement<(i32, i32)> = picture.ok_or_else(|| DrawError::new(&"a map lacks pixels"))?;
         canvas.draw(&picture)?;
         let (right, bottom) = (size.0 as i32 - 1, size.1 as i32 - 1);
         canvas.draw(&Rectangle::new([(0, 0), (right, bottom)], scale.stroke(1)))?;

@@ -1,7 +1,7 @@
 //! Charts in the one look that all pictures of frixel share, drawn with `plotters`.
 //!
-//! A [`Chart`] is a value: panels with axes, series, coloured fields and legends. [`Chart::svg`] and [`Chart::png`] draw it.
-//! Legends stand beside the plots, never over them. The same chart gives the same bytes.
+//! A [`Chart`] is a value: panels with axes, series, coloured fields and legends. [`Chart::svg`] and [`Chart::png`]
+//! draw it. Legends stand beside the plots, never over them. The same chart gives the same bytes.
 
 mod axis;
 mod clip;
@@ -43,14 +43,14 @@ type Drawn = Result<(), DrawError>;
 pub(crate) struct DrawError(String);
 
 impl DrawError {
-    fn new(reason: impl ToString) -> Self {
+    fn new(reason: &impl ToString) -> Self {
         Self(reason.to_string())
     }
 }
 
 impl<E: std::error::Error + Send + Sync> From<DrawingAreaErrorKind<E>> for DrawError {
     fn from(error: DrawingAreaErrorKind<E>) -> Self {
-        Self::new(error)
+        Self::new(&error)
     }
 }
 

@@ -12,8 +12,8 @@ use super::{Area, DrawError, Drawn};
 const SCALE: Scale = Scale(2);
 /// Steps of grey: enough for the edges of letters, few enough for a palette.
 const GREYS: u32 = 17;
-/// How far plotters places letters too high, as a part of their size: their box ends at 1/1.24 of it, with the baseline in
-/// the middle of the size.
+/// How far plotters places letters too high, as a part of their size: their box ends at 1/1.24 of it, with the baseline
+/// in the middle of the size.
 const TOO_HIGH: f64 = 0.2;
 
 /// Draws a picture of some size in pixels, and encodes it.
@@ -29,7 +29,7 @@ pub(super) fn encoded(
         draw(&Bitmap(backend).into_drawing_area(), SCALE)?;
     }
     let pixels = reduced(&fine, width as usize);
-    encode(&pixels, (width, height)).map_err(DrawError::new)
+    encode(&pixels, (width, height)).map_err(|error| DrawError::new(&error))
 }
 
 /// The means of squares of units, as pixels.
@@ -85,20 +85,20 @@ fn encode(pixels: &[[u8; 3]], (width, height): (u32, u32)) -> Result<Vec<u8>, pn
     Ok(file)
 }
 
-/// The colours in the order in which they appear, and the number of each pixel's; `None` for more colours than a byte counts.
+/// The colours in the order in which they appear, and the number of each pixel's; `None` for more colours than a byte
+/// counts.
 fn indexed(pixels: &[[u8; 3]]) -> Option<(Vec<[u8; 3]>, Vec<u8>)> {
     let mut palette = Vec::new();
     let mut numbers = HashMap::new();
     let mut indices = Vec::with_capacity(pixels.len());
     for pixel in pixels {
-        let index = match numbers.get(pixel) {
-            Some(index) => *index,
-            None => {
-                let index = u8::try_from(palette.len()).ok()?;
-                palette.push(*pixel);
-                numbers.insert(*pixel, index);
-                index
-            }
+        let index = if let Some(index) = numbers.get(pixel) {
+            *index
+        } else {
+            let index = u8::try_from(palette.len()).ok()?;
+            palette.push(*pixel);
+            numbers.insert(*pixel, index);
+            index
         };
         indices.push(index);
     }

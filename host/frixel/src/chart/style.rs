@@ -43,7 +43,8 @@ pub(crate) const PALETTE: [RGBColor; 7] = [
 ];
 const UNKNOWN: RGBColor = RGBColor(128, 128, 128);
 
-/// The colour of a part of a colour scale, from 0 to 1; beyond it, the colour of its end. Grey where it is not a number.
+/// The colour of a part of a colour scale, from 0 to 1; beyond it, the colour of its end. Grey where it is not a
+/// number.
 pub(crate) fn colour(part: f64) -> RGBColor {
     if part.is_nan() {
         return UNKNOWN;
@@ -195,14 +196,16 @@ pub(super) fn grid() -> RGBAColor {
 pub(super) fn load_font() -> Drawn {
     static LOADED: OnceLock<bool> = OnceLock::new();
     let loaded = *LOADED.get_or_init(|| register_font(FAMILY, FontStyle::Normal, FONT).is_ok());
-    if loaded { Ok(()) } else { Err(DrawError::new("the font is broken")) }
+    if loaded { Ok(()) } else { Err(DrawError::new(&"the font is broken")) }
 }
+
+/// Text is measured so many times as large as it is drawn, since plotters rounds to whole units.
+const FINE: u32 = 8;
 
 /// Width of a text of some size, in pixels.
 pub(super) fn text_width(text: &str, size: u32) -> Result<u32, DrawError> {
     load_font()?;
-    // Measured large, since plotters rounds to whole units.
-    const FINE: u32 = 8;
-    let ((left, _), (right, _)) = (FAMILY, FINE * size).into_font().layout_box(text).map_err(DrawError::new)?;
+    let ((left, _), (right, _)) =
+        (FAMILY, FINE * size).into_font().layout_box(text).map_err(|error| DrawError::new(&error))?;
     Ok((right - left).unsigned_abs().div_ceil(FINE))
 }

@@ -29,9 +29,9 @@ const OPACITY: f64 = 0.4;
 /// One quantity of a span.
 type Part = fn(&Span) -> Option<Extremes>;
 
-/// Writes reference and felt friction, and below them the voltage, over time; the reach is shaded. Where nothing was felt,
-/// as on a real board, the commanded friction stands in its place. What changes too fast to be drawn is drawn as its
-/// envelope.
+/// Writes reference and felt friction, and below them the voltage, over time; the reach is shaded. Where nothing was
+/// felt, as on a real board, the commanded friction stands in its place. What changes too fast to be drawn is drawn as
+/// its envelope.
 pub fn write_felt_svg(path: &Path, subject: &Subject, trace: &Trace, reach: &Reach) -> Result<(), OutputError> {
     let text = chart(subject, trace, reach).svg().map_err(OutputError::drawing(path))?;
     fs::write(path, text).map_err(|source| OutputError::File { path: path.to_owned(), source })

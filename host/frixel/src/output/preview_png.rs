@@ -41,8 +41,9 @@ enum Side {
     Above,
 }
 
-/// Writes the friction that a program wants all over the screen. The colours span the reach; what is beyond has the colour
-/// of its end, and is hatched. Vibrations and streams are drawn at the most that they ask for; the caption says so.
+/// Writes the friction that a program wants all over the screen. The colours span the reach; what is beyond has the
+/// colour of its end, and is hatched. Vibrations and streams are drawn at the most that they ask for; the caption says
+/// so.
 pub fn write_preview_png(path: &Path, title: &str, program: &Program, preview: &Preview) -> Result<(), OutputError> {
     let frame = Frame::of(program, (f64::from(preview.map_max.0), f64::from(preview.map_max.1)));
     let map = Map::of(program, preview, &frame);

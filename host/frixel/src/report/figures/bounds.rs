@@ -56,13 +56,13 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
         name: "upper-and-lower-bound",
         title: "Upper against lower bound".to_owned(),
         caption: vec![
-            "The upper bound counts the attraction around the contact to any distance, the lower bound not at all. Left: \
-             without a load they part at small voltages, where the upper bound grows with V² and the lower one with V⁴, and meet \
-             far above V* = 64 V. A finger that ends at an outer radius b lies between them; its curve stops where the contact \
-             would pass b: rings."
+            "The upper bound counts the attraction around the contact to any distance, the lower bound not at all. \
+             Left: without a load they part at small voltages, where the upper bound grows with V² and the lower one \
+             with V⁴, and meet far above V* = 64 V. A finger that ends at an outer radius b lies between them; its \
+             curve stops where the contact would pass b: rings."
                 .to_owned(),
-            "Right: under a load the contact is large, what surrounds it hardly matters, and the bounds nearly coincide: at \
-             0.5 N they are 1 % apart at any voltage that a screen has."
+            "Right: under a load the contact is large, what surrounds it hardly matters, and the bounds nearly \
+             coincide: at 0.5 N they are 1 % apart at any voltage that a screen has."
                 .to_owned(),
             EXAMPLE.to_owned(),
         ],

@@ -136,9 +136,9 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
         title: "Fig. 3 of the paper: contact radius and friction without a load".to_owned(),
         caption: vec![
             "Without a normal load, contact radius and friction of every finger fall on one line each when voltage is \
-             scaled by V* = √(2 k g³/ε₀), radius by √(2 R g) and friction by F* = µ π k R g² (g: effective gap). Three very \
-             different fingers, computed in their own units, stand on the lines. At small voltages friction grows with σ₀ ∝ \
-             V², at large ones with σ₀² ∝ V⁴, the lower bound of Eq. (42): dashed."
+             scaled by V* = √(2 k g³/ε₀), radius by √(2 R g) and friction by F* = µ π k R g² (g: effective gap). Three \
+             very different fingers, computed in their own units, stand on the lines. At small voltages friction grows \
+             with σ₀ ∝ V², at large ones with σ₀² ∝ V⁴, the lower bound of Eq. (42): dashed."
                 .to_owned(),
             EXAMPLE.to_owned(),
         ],

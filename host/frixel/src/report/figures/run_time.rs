@@ -123,23 +123,23 @@ pub(super) fn against_time(measured: &[Measured; 2], boards: Boards) -> Result<F
         title: "Error against run time, for every way to invert".to_owned(),
         caption: vec![
             format!(
-                "Down and to the left is better. The error is the largest of |x(V) − x|/x over all electric frictions x from \
-                 x({low} V) to x({high} V), V being the voltage that a way gives for x, and x(V) what the model makes of it \
-                 in f64, right to 4e-15. Each kind comes in several sizes, joined by a line: steps of the bisection, entries of \
-                 the forward table, rows of the direct tables."
+                "Down and to the left is better. The error is the largest of |x(V) − x|/x over all electric frictions \
+                 x from x({low} V) to x({high} V), V being the voltage that a way gives for x, and x(V) what the model \
+                 makes of it in f64, right to 4e-15. Each kind comes in several sizes, joined by a line: steps of the \
+                 bisection, entries of the forward table, rows of the direct tables."
             ),
             format!(
-                "Run times were measured on the computer that made this page, in one run, as a ratio to the f64 closed form ({}): \
-                 each call waits for the answer of the last one. They differ from run to run and from processor to processor; all \
-                 else on this page does not.",
+                "Run times were measured on the computer that made this page, in one run, as a ratio to the f64 closed \
+                 form ({}): each call waits for the answer of the last one. They differ from run to run and from \
+                 processor to processor; all else on this page does not.",
                 nanoseconds(measured)
             ),
             boards.sentence("an inversion"),
-            "Bisection is the straightforward way: it halves the range of voltages on Eqs. (36), (34), with a load on Eqs. (43), \
-             (21), which give friction in total. In f32 and under a load the total cannot resolve the electric part. The textbook's \
-             forward table holds friction at even steps of voltage; below the first step it knows nothing. Direct tables find their \
-             row from the bits of the friction and evaluate a polynomial. Integers have codes of 32 bits for friction, and their \
-             error is that against the code."
+            "Bisection is the straightforward way: it halves the range of voltages on Eqs. (36), (34), with a load on \
+             Eqs. (43), (21), which give friction in total. In f32 and under a load the total cannot resolve the \
+             electric part. The textbook's forward table holds friction at even steps of voltage; below the first step \
+             it knows nothing. Direct tables find their row from the bits of the friction and evaluate a polynomial. \
+             Integers have codes of 32 bits for friction, and their error is that against the code."
                 .to_owned(),
             EXAMPLE.to_owned(),
         ],
@@ -168,9 +168,10 @@ pub(super) fn against_size(measured: &[Measured; 2]) -> Result<Figure, ReportErr
         title: "Error against size, for every kind of table".to_owned(),
         caption: vec![
             format!(
-                "Largest relative error in electric friction over 1 V to 200 V, as above, against the bytes of the table. Without a \
-                 load friction spans {:.0} octaves, under 0.5 N {:.0}, and tables are shorter. A higher order is smaller at the same \
-                 error, until rounding in f32 ends it near 10⁻⁶. The board's table has a fixed size, whatever the load.",
+                "Largest relative error in electric friction over 1 V to 200 V, as above, against the bytes of the \
+                 table. Without a load friction spans {:.0} octaves, under 0.5 N {:.0}, and tables are shorter. A \
+                 higher order is smaller at the same error, until rounding in f32 ends it near 10⁻⁶. The board's table \
+                 has a fixed size, whatever the load.",
                 range_octaves(measured[0].load_n),
                 range_octaves(measured[1].load_n),
             ),
@@ -215,11 +216,11 @@ pub(super) fn against_instructions(measured: &[Measured; 2], counts: &Counts) ->
         name: "error-against-instructions",
         title: "Error against instructions on a board".to_owned(),
         caption: vec![
-            "Largest relative error in electric friction over 1 V to 200 V, without a load or under 0.5 N, whichever is larger, \
-             against the largest number of instructions that one inversion took over all inputs. Counts come from the file given \
-             with --bench, which cargo xtask bench writes: they were counted in an emulator, and the cycles beside them are \
-             estimates; instructions are not cycles. A board of 170 MHz has 4,250 cycles to a tick at 40 kHz, and 170 to a \
-             microsecond."
+            "Largest relative error in electric friction over 1 V to 200 V, without a load or under 0.5 N, whichever \
+             is larger, against the largest number of instructions that one inversion took over all inputs. Counts \
+             come from the file given with --bench, which cargo xtask bench writes: they were counted in an emulator, \
+             and the cycles beside them are estimates; instructions are not cycles. A board of 170 MHz has 4,250 \
+             cycles to a tick at 40 kHz, and 170 to a microsecond."
                 .to_owned(),
             EXAMPLE.to_owned(),
         ],

@@ -242,10 +242,11 @@ fn caption(families: &[Family; 5], tick: &str) -> Vec<String> {
     let milliseconds = |bytes: usize, baud: f64| 1e3 * bytes as f64 * BITS_PER_BYTE / baud;
     vec![
         format!(
-            "All bytes that the host sends from the start of an upload to its commit, as compiler and driver make them: chunks of \
-             header, layers, points and samples in their frames, and the requests around them. Dashed: the compiled scene and its \
-             picture alone. {RECORDS_MAX} gratings are {} bytes in {} frames, {:.0} ms at 2 Mbaud and {:.0} ms at 115,200 baud; a \
-             picture of 250 by 250 samples is {} bytes in {} frames, {:.0} ms and {:.1} s.",
+            "All bytes that the host sends from the start of an upload to its commit, as compiler and driver make \
+             them: chunks of header, layers, points and samples in their frames, and the requests around them. Dashed: \
+             the compiled scene and its picture alone. {RECORDS_MAX} gratings are {} bytes in {} frames, {:.0} ms at 2 \
+             Mbaud and {:.0} ms at 115,200 baud; a picture of 250 by 250 samples is {} bytes in {} frames, {:.0} ms \
+             and {:.1} s.",
             scene.wire_bytes,
             scene.frames,
             milliseconds(scene.wire_bytes, 2e6),
@@ -256,16 +257,17 @@ fn caption(families: &[Family; 5], tick: &str) -> Vec<String> {
             1e-3 * milliseconds(picture.wire_bytes, 115_200.0),
         ),
         format!(
-            "A layer takes the same whatever its kind; a vertex comes on top of its polygon's layer, and a scene has at most \
-             {POINTS_MAX} of them. Triangles and {} are shown: the format takes {POLYGON_POINTS_MAX} in a polygon, but a tick has no \
-             time for more than these. A sample is a byte, and a picture's size on the wire goes with its area, whatever it shows; one that a board holds already is not \
-             sent again.",
+            "A layer takes the same whatever its kind; a vertex comes on top of its polygon's layer, and a scene has \
+             at most {POINTS_MAX} of them. Triangles and {} are shown: the format takes {POLYGON_POINTS_MAX} in a \
+             polygon, but a tick has no time for more than these. A sample is a byte, and a picture's size on the wire \
+             goes with its area, whatever it shows; one that a board holds already is not sent again.",
             polygons.name
         ),
         format!(
-            "The board computes of its inverse table what a scene can ask for: {} bytes for all of the reach, {} for half of it, {} for \
-             a tenth. The table's room in RAM, {} bytes, is the same for every scene; what is saved is time when the scene is taken. It \
-             reaches down to 1 V for every scene, since the friction of a still finger is ramped away.",
+            "The board computes of its inverse table what a scene can ask for: {} bytes for all of the reach, {} for \
+             half of it, {} for a tenth. The table's room in RAM, {} bytes, is the same for every scene; what is saved \
+             is time when the scene is taken. It reaches down to 1 V for every scene, since the friction of a still \
+             finger is ramped away.",
             table(100),
             table(50),
             table(10),

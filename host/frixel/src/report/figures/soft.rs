@@ -83,10 +83,11 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
         name: "soft-finger",
         title: "Soft finger against Winkler-Fuss".to_owned(),
         caption: vec![
-            "A soft finger's stiffness follows from the force it carries, Eq. (29). All of these are as stiff as the example \
-             finger under 0.5 N. Left: without a load they carry far less, so that a stress exponent below 0.5 makes them \
-             softer there and one above it stiffer; the lower bounds, Eq. (40), grow with the power 2 s + 1 of σ₀ ∝ V². Right: \
-             under the load at which they are alike they stay alike until voltage adds as much as the load."
+            "A soft finger's stiffness follows from the force it carries, Eq. (29). All of these are as stiff as the \
+             example finger under 0.5 N. Left: without a load they carry far less, so that a stress exponent below 0.5 \
+             makes them softer there and one above it stiffer; the lower bounds, Eq. (40), grow with the power 2 s + 1 \
+             of σ₀ ∝ V². Right: under the load at which they are alike they stay alike until voltage adds as much as \
+             the load."
                 .to_owned(),
             "A stress exponent of 0.5 has a constant stiffness, and falls on the Winkler-Fuss finger.".to_owned(),
             EXAMPLE.to_owned(),

@@ -134,15 +134,16 @@ fn figure(precision: &Precision, map: &Map) -> Result<Figure, ReportError> {
         title: format!("Stability in {title}: error over the plane of attraction and load"),
         caption: vec![
             format!(
-                "Largest relative error of electric friction from voltage (left) and of voltage from electric friction (right), \
-                 Eqs. (43), (21), computed in {title}, in the middle of each cell. The reference is what the paper's dimensional \
-                 equations give in 80 digits (mpmath, model/reference) for the same inputs, which are exact in f32. Half a unit in the last place is {}; the \
-                 goal is {:e}, the upper end of the colours.",
+                "Largest relative error of electric friction from voltage (left) and of voltage from electric friction \
+                 (right), Eqs. (43), (21), computed in {title}, in the middle of each cell. The reference is what the \
+                 paper's dimensional equations give in 80 digits (mpmath, model/reference) for the same inputs, which \
+                 are exact in f32. Half a unit in the last place is {}; the goal is {:e}, the upper end of the \
+                 colours.",
                 precision.half_unit, precision.goal
             ),
             format!(
-                "Worst points: forward {}; inverse {}. The finger's parameters are powers of two (R = 1/128 m, k = 2²⁴ Pa/m, gap \
-                 2⁻¹⁷ m, µ = 1/2), and so exact.",
+                "Worst points: forward {}; inverse {}. The finger's parameters are powers of two (R = 1/128 m, k = 2²⁴ \
+                 Pa/m, gap 2⁻¹⁷ m, µ = 1/2), and so exact.",
                 map.forward.sentence(),
                 map.inverse.sentence()
             ),

@@ -136,8 +136,9 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
         name: "stability-soft",
         title: "Stability of the soft finger: error over its exponent".to_owned(),
         caption: vec![
-            "Largest relative error over eleven voltages from 1 µV to 10 kV of electric friction from voltage, Eqs. (29), (43), and of \
-             voltage from electric friction, against the same equations in 80 digits (mpmath, model/reference). Dashed: the goals, 4e-14 and 1e-5."
+            "Largest relative error over eleven voltages from 1 µV to 10 kV of electric friction from voltage, Eqs. \
+             (29), (43), and of voltage from electric friction, against the same equations in 80 digits (mpmath, \
+             model/reference). Dashed: the goals, 4e-14 and 1e-5."
                 .to_owned(),
             format!("Worst points in f64: {}. In f32: {}.", worst(&double), worst(&single)),
             "Soft finger: R = 1/128 m, E = 2¹⁷ Pa, B = 4.5, µ = 1/2, gap 2⁻¹⁷ m, all exact in f32; stress exponents from 0.02 to 1."

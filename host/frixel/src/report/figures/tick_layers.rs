@@ -76,15 +76,16 @@ pub(super) fn figure(counts: &Counts) -> Result<Option<Figure>, ReportError> {
         title: "Cost of a tick against the number of layers".to_owned(),
         caption: vec![
             format!(
-                "Instructions of a tick while a finger comes down, slides, rests and slides on: the longest tick, and the mean of \
-                 all. Each layer is a constant in a rectangle; those that are not under the finger lie elsewhere on the screen. A \
-                 grid with a bit for each layer lets a tick look only at the layers near the finger, so that layers elsewhere \
-                 hardly count{elsewhere}. The longest ticks differ by what else falls into them, such as an early edge of the carrier."
+                "Instructions of a tick while a finger comes down, slides, rests and slides on: the longest tick, and \
+                 the mean of all. Each layer is a constant in a rectangle; those that are not under the finger lie \
+                 elsewhere on the screen. A grid with a bit for each layer lets a tick look only at the layers near \
+                 the finger, so that layers elsewhere hardly count{elsewhere}. The longest ticks differ by what else \
+                 falls into them, such as an early edge of the carrier."
             ),
             format!(
-                "The dashed line is the most that a tick may take, {limit} instructions: a scene with a place that takes more is \
-                 refused. Counts come from the file given with --bench, which cargo xtask bench writes: they were counted in an \
-                 emulator."
+                "The dashed line is the most that a tick may take, {limit} instructions: a scene with a place that \
+                 takes more is refused. Counts come from the file given with --bench, which cargo xtask bench writes: \
+                 they were counted in an emulator."
             ),
         ],
         chart: Chart::new(vec![panel], 1),

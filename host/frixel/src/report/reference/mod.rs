@@ -1,4 +1,5 @@
-//! Answers of the paper's equations in 80 digits, made by `model/reference/report.py`: the report compares the model with them.
+//! Answers of the paper's equations in 80 digits, made by `model/reference/report.py`: the report compares the model
+//! with them.
 
 use frixel_model::{ContactModel, Real};
 use serde::Deserialize;

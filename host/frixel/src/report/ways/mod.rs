@@ -16,8 +16,8 @@ pub(super) const RANGE_V_RMS: (f64, f64) = (1.0, 200.0);
 const ERROR_POINTS: usize = 20_000;
 /// Frictions that a run time is taken over.
 const TIMED_POINTS: usize = 1_024;
-/// They are taken in an order in which no processor can guess the next one: by this many places, which shares no factor with
-/// their count.
+/// They are taken in an order in which no processor can guess the next one: by this many places, which shares no factor
+/// with their count.
 const STRIDE: usize = 389;
 
 /// A kind of way, that may come in several sizes.
