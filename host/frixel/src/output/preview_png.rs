@@ -8,7 +8,7 @@ use frixel_wire::scene::Layer;
 use super::OutputError;
 use super::map::Frame;
 use crate::chart::{RGBColor, colour};
-use frixel_scene::wanted::{Moment, Wanted};
+use frixel_scene::reference::{Context, Reference};
 use frixel_scene::{Program, ROUNDING, Reach};
 
 /// Distance of the lines of a hatching, and their width, in pixels.
@@ -55,18 +55,18 @@ pub fn write_preview_png(path: &Path, title: &str, program: &Program, preview: &
     fs::write(path, bytes).map_err(|source| OutputError::File { path: path.to_owned(), source })
 }
 
-/// What is wanted at every pixel, as a part of the reach.
+/// Friction of the reference at every pixel, as a part of the reach.
 struct Map {
     parts: Vec<f64>,
 }
 
 impl Map {
     fn of(program: &Program, preview: &Preview, frame: &Frame) -> Self {
-        let wanted = Wanted::new(program).with_vibrations_held();
+        let reference = Reference::new(program).with_vibrations_held();
         let part = |(x_m, y_m): (f64, f64)| {
             let speed_m_per_s = preview.speed_m_per_s;
-            let moment = Moment { x_m, y_m, speed_m_per_s, stream: 1.0, stream_weight: 1.0, ..Moment::default() };
-            wanted.electric_friction_at_n(&moment) / program.reach.electric_friction_max_n
+            let context = Context { x_m, y_m, speed_m_per_s, stream: 1.0, stream_weight: 1.0, ..Context::default() };
+            reference.electric_friction_at_n(&context) / program.reach.electric_friction_max_n
         };
         Self { parts: frame.pixels().map(|(_, place)| part(place)).collect() }
     }

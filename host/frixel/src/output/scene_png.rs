@@ -8,7 +8,7 @@ use super::trace::Trace;
 use super::{OutputError, Subject};
 use crate::chart::{Line, Look, Mark, RGBColor, colour};
 use frixel_scene::Program;
-use frixel_scene::wanted::Wanted;
+use frixel_scene::reference::Reference;
 
 /// Largest size of the map, in pixels.
 const MAP_MAX: (f64, f64) = (1_000.0, 800.0);
@@ -19,8 +19,9 @@ const CASING: RGBColor = RGBColor(255, 255, 255);
 /// what is beyond has the colour of its end.
 pub fn write_scene_png(path: &Path, subject: &Subject, program: &Program, trace: &Trace) -> Result<(), OutputError> {
     let frame = Frame::of(program, MAP_MAX);
-    let wanted = Wanted::new(program);
-    let colour_at = |(x_m, y_m)| colour(wanted.electric_friction_n(x_m, y_m) / program.reach.electric_friction_max_n);
+    let reference = Reference::new(program);
+    let colour_at =
+        |(x_m, y_m)| colour(reference.electric_friction_n(x_m, y_m) / program.reach.electric_friction_max_n);
     let mut chart = frame.chart(frame.pixels().map(|(_, place)| colour_at(place)).collect(), &program.reach);
     chart.title = subject.title();
     let strokes: Vec<Vec<(f64, f64)>> = trace.strokes().collect();
