@@ -1,8 +1,8 @@
-//! Random scenes that a board accepts, each played under a random finger: no tick may take more than the loader reckoned.
+//! Random scenes that a board accepts, each played under a random finger: no tick may take more than the loader estimates.
 //!
 //! The emulator's command line says `programs`, the pace of the touch source (`usual` or
 //! `fast`), the first seed and how many follow. Every line that is written is a seed,
-//! the instructions of the longest tick, those that the loader reckoned, and the number of that tick.
+//! the instructions of the longest tick, the core cycles that the loader estimates, and the number of that tick.
 
 use core::str;
 
@@ -56,7 +56,7 @@ pub fn run(seeds: &Seeds, counter: &mut Counter) {
 impl Bench {
     fn play_random(&mut self, seed: u64, pace: Pace, crc32: u32, mut case: Case) {
         let scene = RandomScene::new(seed, crc32);
-        let reckoned = scene.worst_tick().instructions;
+        let estimated_core_cycles = scene.worst_tick().core_cycles;
         self.play_bytes(scene.write(&mut [0; SCENE_MAX_LEN]));
         if scene.records.iter().any(|record| matches!(record.layer, Layer::Stream(_))) {
             self.start_stream();
@@ -77,6 +77,6 @@ impl Bench {
             self.count(&mut case, touch);
         }
         let (instructions, tick) = case.worst();
-        hprintln!("{} {} {} {}", seed, instructions, reckoned, tick);
+        hprintln!("{} {} {} {}", seed, instructions, estimated_core_cycles, tick);
     }
 }

@@ -8,8 +8,8 @@ use crate::bitmap_pool::{BitmapPool, StoredBitmap};
 use crate::blend::Blend;
 use crate::click::Clicks;
 use crate::context::{Context, Inputs};
-use crate::cost::{self, LayerCosts, TICK_INSTRUCTIONS_MAX, Worst};
-use crate::grid::{Grid, LayerSet};
+use crate::cost::{self, LayerCosts};
+use crate::grid::{Cell, Grid, LayerSet};
 use crate::header::Header;
 use crate::kinds::Coefficients;
 use crate::point::Point;
@@ -71,14 +71,14 @@ impl ActiveLayers {
         Ok(())
     }
 
-    /// Refuses a scene whose longest tick takes too long.
-    pub fn check_cost(&self, header: &Header, costs: &LayerCosts) -> Result<(), Refusal> {
-        let Worst { instructions, cell } = cost::worst(header, &self.grid, costs);
-        let max = TICK_INSTRUCTIONS_MAX;
-        if instructions <= max {
+    /// Refuses a scene whose longest tick is estimated at more than `tick_cycles_max`.
+    pub fn check_cost(&self, header: &Header, costs: &LayerCosts, tick_cycles_max: u32) -> Result<(), Refusal> {
+        let worst = cost::worst(header, &self.grid, costs);
+        if worst.cycles() <= tick_cycles_max {
             return Ok(());
         }
-        Err(Refusal::TooCostly { instructions, max, x_m: cell.x_m, y_m: cell.y_m })
+        let Cell { x_m, y_m, .. } = worst.cell;
+        Err(Refusal::TooCostly { cycles: worst.cycles(), cycles_max: tick_cycles_max, x_m, y_m })
     }
 
     /// Some layer plays what the host streams.

@@ -132,7 +132,7 @@ impl Active {
         for record in scene.records() {
             self.layers.push(&record, board.tick_hz, &|crc32| directory.find(crc32), &mut costs)?;
         }
-        self.layers.check_cost(scene.header(), &costs)
+        self.layers.check_cost(scene.header(), &costs, board.limits.tick_cycles_max)
     }
 }
 

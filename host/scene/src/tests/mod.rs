@@ -58,7 +58,7 @@ pub(super) fn compile_text(text: &str) -> Result<Program, CompileError> {
     let scene = Scene::parse(text, "test.toml", scenes());
     schema::check_agrees(text, scene.as_ref().err());
     // What a tick takes has tests of its own; others may pile up layers.
-    compile::compile_within(&scene?, &LIMITS, TICK_HZ, u32::MAX)
+    compile::compile(&scene?, &BoardLimits { tick_cycles_max: u32::MAX, ..LIMITS }, TICK_HZ)
 }
 
 fn compile_layers(layers: &str) -> Program {
