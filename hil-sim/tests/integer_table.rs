@@ -54,10 +54,10 @@ fn on_the_cortex_m3(load_n: f64) -> String {
         VOLTAGE_MAX_V_RMS,
         RELATIVE_ERROR,
     ];
-    let words: String = numbers.iter().map(|number| format!(",arg={:x}", number.to_bits())).collect();
+    let words = numbers.map(|number| format!("arg={:x}", number.to_bits())).join(",");
     let output = Command::new(EMULATOR)
         .args(["-M", "mps2-an385", "-display", "none", "-monitor", "none", "-serial", "null", "-semihosting-config"])
-        .arg(format!("enable=on,target=native,arg={IMAGE}{words},arg={STEP:x}"))
+        .arg(format!("enable=on,target=native,arg={IMAGE},{words},arg={STEP:x}"))
         .arg("-kernel")
         .arg(folder.join("target").join(TARGET).join("release").join(IMAGE))
         .stdin(Stdio::null())
