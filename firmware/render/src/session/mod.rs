@@ -19,7 +19,7 @@ mod upload;
 
 use frixel_wire::fault::State;
 use frixel_wire::frame::Decoder;
-use frixel_wire::message::{FromBoard, Telemetry};
+use frixel_wire::message::FromBoard;
 use frixel_wire::payload::Payload;
 use frixel_wire::scene::Header;
 
@@ -101,7 +101,7 @@ impl<'a> Session<'a> {
             && status.telemetry.tick.wrapping_sub(self.telemetry_sent_at_tick) >= period_ticks
         {
             self.telemetry_sent_at_tick = status.telemetry.tick;
-            self.send_telemetry(status.telemetry);
+            self.outbox.send_unasked(&FromBoard::Telemetry(status.telemetry));
         }
     }
 
@@ -182,11 +182,4 @@ impl<'a> Session<'a> {
         (self.decoder.frames().wrapping_sub(discarded), self.decoder.rejected().wrapping_add(discarded))
     }
 
-    /// Telemetry gives way to answers: it is left out when the line is behind.
-    #[inline]
-    fn send_telemetry(&mut self, telemetry: Telemetry) {
-        if self.outbox.is_mostly_free() {
-            self.outbox.send(&FromBoard::Telemetry(telemetry));
-        }
-    }
 }
