@@ -191,6 +191,9 @@ fn a_scene_plays_through_a_real_serial_port() {
     assert!(!log.drives_between(stopped_s + 1e-3, f64::INFINITY));
 }
 
+/// How long a write to a client may take that has no processor for itself. Reads do not wait: they ask first.
+const WRITE_TIMEOUT: Duration = Duration::from_secs(30);
+
 /// Passes bytes between a client and a board, until the client has sent so many.
 struct Tap {
     to_client: TTYPort,
@@ -202,8 +205,8 @@ struct Tap {
 impl Tap {
     fn new(board: &VirtualBoard) -> Self {
         let (mut to_client, client_end) = TTYPort::pair().unwrap();
-        to_client.set_timeout(NAP).unwrap();
-        let to_board = TTYPort::open(&serialport::new(&board.port, 2_000_000).timeout(NAP)).unwrap();
+        to_client.set_timeout(WRITE_TIMEOUT).unwrap();
+        let to_board = TTYPort::open(&serialport::new(&board.port, 2_000_000).timeout(WRITE_TIMEOUT)).unwrap();
         let path = client_end.name().unwrap();
         Self { to_client, _client_end: client_end, path, to_board }
     }

@@ -181,5 +181,4 @@ impl<'a> Session<'a> {
         let discarded = self.frames_discarded;
         (self.decoder.frames().wrapping_sub(discarded), self.decoder.rejected().wrapping_add(discarded))
     }
-
 }
