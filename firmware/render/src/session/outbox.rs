@@ -8,13 +8,14 @@ use heapless::Deque;
 
 /// Answers that may be outstanding (`PROTOCOL.md`, section 5). A host waits for its answers, so that it has one or two.
 const ANSWERS_MAX: usize = 64;
-/// The longest answer's frame: a piece of a fault's text, with a sequence number and a count of the longest form.
-const ANSWER_MAX_LEN: usize = 52;
+/// The longest frame of an answer, that a scene is too costly, with a sequence number and a count of the longest form.
+/// A piece of a fault's text is longer, 52 bytes; a text has seven of them at most.
+const ANSWER_MAX_LEN: usize = 37;
 /// Frames that nobody waits for are left out while more than this is queued, 2.5 ms of a line of 2 Mbaud. So they leave
 /// room for all answers, and what comes of them is not old.
 const UNASKED_MAX_LEN: usize = 512;
 /// Room for all of them, and for what tells how an upload goes and what the board's state is.
-const OUTBOX_LEN: usize = 4096;
+const OUTBOX_LEN: usize = 3072;
 
 const _: () = assert!(ANSWERS_MAX * ANSWER_MAX_LEN + UNASKED_MAX_LEN + FRAME_MAX_LEN <= OUTBOX_LEN);
 
