@@ -17,17 +17,18 @@ mod states;
 mod storing;
 mod upload;
 
+use frixel_layers::Header;
 use frixel_wire::fault::State;
 use frixel_wire::frame::Decoder;
 use frixel_wire::message::FromBoard;
 use frixel_wire::payload::Payload;
-use frixel_wire::scene::Header;
 
 use crate::order::Status;
 #[cfg(feature = "stream")]
 use crate::stream::StreamBuffer;
-use crate::{Active, BitmapPool, Board, Order, Touch};
+use crate::{Active, Board, Order, Touch};
 use dialogue::Dialogue;
+use frixel_layers::BitmapPool;
 #[cfg(feature = "store")]
 pub use kept::KeptScene;
 use outbox::Outbox;
