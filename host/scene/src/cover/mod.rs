@@ -9,13 +9,13 @@ mod span;
 
 use std::collections::BTreeMap;
 
-use frixel_wire::scene::Blend;
+use frixel_layers::Blend;
 
 pub(super) use cell::Cell;
 use cell::Coverage;
 pub(super) use span::Span;
 
-use crate::wanted::{Field, Piece};
+use crate::reference::{Field, Piece};
 
 /// Cells narrower than this come from rounding, m.
 const CELL_MIN_M: f64 = 1e-6;

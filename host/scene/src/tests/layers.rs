@@ -1,15 +1,15 @@
 //! What layers compile to, and what the program then wants, against evaluations written here from the file's numbers.
 
-use frixel_wire::scene::{Carrier, Layer, Leader, Region, Scene as WireScene};
+use frixel_layers::{Carrier, Constant, Grating, Layer, Leader, Region, Scene as WireScene};
 
 use super::super::{picture::Picture, resample};
 use super::*;
-use crate::wanted::Wanted;
+use crate::reference::Reference;
 
 /// Frictions that a finger finds, in mN above natural, at places in mm.
 fn frictions_mn(layers: &str, places_mm: &[(f64, f64)]) -> Vec<f64> {
-    let wanted = Wanted::new(&compile_layers(layers));
-    places_mm.iter().map(|(x, y)| 1e3 * wanted.electric_friction_n(x * 1e-3, y * 1e-3)).collect()
+    let reference = Reference::new(&compile_layers(layers));
+    places_mm.iter().map(|(x, y)| 1e3 * reference.electric_friction_n(x * 1e-3, y * 1e-3)).collect()
 }
 
 #[track_caller]
@@ -141,7 +141,7 @@ fn natural_friction_in_total_is_no_drive() {
     let text = text.replace("normal_load_n = 0.5", "normal_load_n = 0.7");
     let program = compile_text(&format!("{text}[[layer]]\nlive = true\nkind = \"constant\"\nfriction_n = 0.21"))
         .expect("it compiles");
-    assert_eq!(program.records[0].layer, Layer::Constant { electric_friction_n: 0.0 });
+    assert_eq!(program.records[0].layer, Layer::Constant(Constant { electric_friction_n: 0.0 }));
 }
 
 #[test]
@@ -168,7 +168,9 @@ fn gratings_against_their_formula() {
 fn right_angles_have_no_slant() {
     let program =
         compile_layers("[[layer]]\nkind = \"grating\"\nwavelength_mm = 2\nangle_deg = 90\nlow_n = 0\nhigh_n = 0.01");
-    let Layer::Grating { cycles_per_m_x, cycles_per_m_y, .. } = program.records[0].layer else { panic!("a grating") };
+    let Layer::Grating(Grating { cycles_per_m_x, cycles_per_m_y, .. }) = program.records[0].layer else {
+        panic!("a grating")
+    };
     assert_eq!((cycles_per_m_x, cycles_per_m_y), (0.0, 500.0));
 }
 
@@ -225,8 +227,8 @@ fn a_picture_is_placed_and_held_at_its_border() {
     assert_eq!((program.bitmaps[0].width, program.bitmaps[0].height), (3, 2));
     assert_eq!(program.bitmaps[0].samples, [0, 51, 102, 255, 204, 153]);
     assert_eq!(program.bitmaps[0].crc32, frixel_wire::scene::bitmap_crc32(3, 2, &program.bitmaps[0].samples));
-    let wanted = Wanted::new(&program);
-    let at = |x_mm: f64, y_mm: f64| 1e3 * wanted.electric_friction_n(x_mm * 1e-3, y_mm * 1e-3);
+    let reference = Reference::new(&program);
+    let at = |x_mm: f64, y_mm: f64| 1e3 * reference.electric_friction_n(x_mm * 1e-3, y_mm * 1e-3);
     let mn = |grey: f64| 1.0 + 25.0 * grey / 255.0;
     // Centres, halfway between them, a quarter of the way in both directions, and the border.
     close(&[at(21.0, 31.0), at(23.0, 31.0), at(25.0, 33.0)], &[mn(0.0), mn(51.0), mn(153.0)], 1e-5);
@@ -236,7 +238,7 @@ fn a_picture_is_placed_and_held_at_its_border() {
     close(&[at(20.0001, 30.0001), at(25.9999, 33.9999)], &[mn(0.0), mn(153.0)], 1e-5);
     // The picture's rectangle is the layer's region.
     close(&[at(19.999, 31.0), at(26.001, 31.0), at(21.0, 29.999), at(21.0, 34.001)], &[0.0; 4], 0.0);
-    close(&[wanted.natural_friction_n()], &[0.25], 1e-9);
+    close(&[reference.natural_friction_n()], &[0.25], 1e-9);
 }
 
 #[test]
