@@ -2,7 +2,7 @@
 
 #[cfg(feature = "store")]
 use frixel_render::store::SceneKeeper;
-use frixel_render::{Active, Order, Session, Status, Touch};
+use frixel_render::{Active, Order, Session, Status};
 use frixel_wire::fault::State;
 use heapless::spsc::{Consumer, Producer, Queue};
 
@@ -20,7 +20,6 @@ const ORDERS_LEN: usize = 9;
 pub struct Ends {
     orders: Producer<'static, Order<'static>>,
     spares: Consumer<'static, &'static mut Active>,
-    touches: Producer<'static, Touch>,
     statuses: Consumer<'static, Status>,
 }
 
@@ -28,26 +27,21 @@ pub struct Ends {
 pub struct QueuePairs {
     orders: Queue<Order<'static>, ORDERS_LEN>,
     spares: Queue<&'static mut Active, 3>,
-    touches: Queue<Touch, 4>,
     statuses: Queue<Status, 2>,
 }
 
 impl QueuePairs {
     /// Empty queues.
     pub const fn new() -> Self {
-        Self { orders: Queue::new(), spares: Queue::new(), touches: Queue::new(), statuses: Queue::new() }
+        Self { orders: Queue::new(), spares: Queue::new(), statuses: Queue::new() }
     }
 
     /// The main loop's ends, and the tick's.
     pub fn split(&'static mut self) -> (Ends, Queues) {
         let (orders, orders_end) = self.orders.split();
         let (spares_end, spares) = self.spares.split();
-        let (touches, touches_end) = self.touches.split();
         let (statuses_end, statuses) = self.statuses.split();
-        (
-            Ends { orders, spares, touches, statuses },
-            Queues { orders: orders_end, spares: spares_end, touches: touches_end, statuses: statuses_end },
-        )
+        (Ends { orders, spares, statuses }, Queues { orders: orders_end, spares: spares_end, statuses: statuses_end })
     }
 }
 
@@ -79,6 +73,10 @@ impl Talk {
             self.follow_status();
             let (serial, session, status) = (&mut self.serial, &mut self.session, &self.status);
             serial.receive(|bytes| session.receive(bytes, status));
+            #[cfg(feature = "optical-frame")]
+            if let Some(touch) = self.optical_frame.step(tick::count()) {
+                self.session.touch(touch, tick::count());
+            }
             self.hand_over();
             self.session.poll(&self.status);
             self.serial.transmit(|bytes| self.session.transmit(bytes));
@@ -105,37 +103,20 @@ impl Talk {
         }
     }
 
-    /// Hands what the session and the touch source have to the tick, and takes back what it has let go.
+    /// Hands orders to the tick, as many as there is room for, and takes back the coefficients that it has let go.
     fn hand_over(&mut self) {
-        while let Some(order) = self.session.next_order() {
+        while self.ends.orders.ready()
+            && let Some(order) = self.session.next_order()
+        {
             if matches!(order, Order::Arm) {
                 self.watchdog.freeze_with_debugger(false);
             }
-            let mut order = order;
-            // The next tick makes room.
-            while let Err(refused) = self.ends.orders.enqueue(order) {
-                order = refused;
-            }
+            // There is room: the condition of the loop says so.
+            let _ = self.ends.orders.enqueue(order);
         }
         while let Some(spare) = self.ends.spares.dequeue() {
             self.session.take_back(spare);
         }
-        // The queue is full when the tick is late. What is taken from the source is told: after a lift nothing else comes.
-        if self.ends.touches.ready()
-            && let Some(touch) = self.next_touch()
-        {
-            let _ = self.ends.touches.enqueue(touch);
-        }
-    }
-
-    #[cfg(feature = "optical-frame")]
-    fn next_touch(&mut self) -> Option<Touch> {
-        self.optical_frame.step(tick::count())
-    }
-
-    #[cfg(not(feature = "optical-frame"))]
-    fn next_touch(&mut self) -> Option<Touch> {
-        self.session.next_touch()
     }
 }
 

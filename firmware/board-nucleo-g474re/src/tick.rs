@@ -10,7 +10,7 @@ use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use cortex_m::peripheral::NVIC;
 use frixel_parts::arm_switch::ArmSwitch;
-use frixel_render::{Active, Order, Sense, Status, Ticker, Touch};
+use frixel_render::{Active, Order, Sense, Status, Ticker};
 use frixel_wire::fault::Fault;
 use heapless::spsc::{Consumer, Producer};
 use stm32_metapac::{GPIOC, Interrupt, interrupt};
@@ -54,8 +54,6 @@ pub struct Queues {
     pub orders: Consumer<'static, Order<'static>>,
     /// Coefficients that go back to the session.
     pub spares: Producer<'static, &'static mut Active>,
-    /// Reports of where the finger is.
-    pub touches: Consumer<'static, Touch>,
     /// A status for the session, when it asked for one.
     pub statuses: Producer<'static, Status>,
 }
@@ -106,11 +104,11 @@ fn TIM3() {
 impl Tick {
     fn run(&mut self) {
         COUNT.store(count().wrapping_add(1), Ordering::Relaxed);
-        while let Some(order) = self.queues.orders.dequeue() {
-            if let Some(spare) = self.ticker.apply(order) {
-                // There are two of them, and room for both.
-                let _ = self.queues.spares.enqueue(spare);
-            }
+        if let Some(order) = self.queues.orders.dequeue()
+            && let Some(spare) = self.ticker.apply(order)
+        {
+            // There are two of them, and room for both.
+            let _ = self.queues.spares.enqueue(spare);
         }
         let sense = self.sense();
         let drive = self.ticker.tick(&sense);
@@ -132,7 +130,6 @@ impl Tick {
     fn sense(&mut self) -> Sense {
         let (amplifier_is_well, contact_closed) = inputs();
         Sense {
-            touch: self.queues.touches.dequeue(),
             amplifier_fault: !amplifier_is_well,
             monitor_v: self.adc.monitor_v(),
             arm_switch: self.arm_switch.update(contact_closed),

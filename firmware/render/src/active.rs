@@ -2,7 +2,7 @@
 
 use core::borrow::Borrow;
 
-use frixel_model::{Carrier, Finger, InverseTable, TableError, Waveform};
+use frixel_model::{Carrier, Finger, InverseTable, InverseTableFilling, TableError, Waveform};
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
 use frixel_wire::scene::cost::{self, LayerCosts, TICK_INSTRUCTIONS_MAX, Worst};
 use frixel_wire::scene::{Carrier as Shape, Grid, Header, LayerSet, Point, RECORDS_MAX, Scene};
@@ -13,7 +13,42 @@ use crate::asked::Asked;
 use crate::bitmap_pool::{BitmapPool, Directory};
 use crate::carrier::CarrierTiming;
 use crate::config;
-use crate::layer::{self, Around, Clicks, Layer, Loading, Moment, Sole, Tables};
+use crate::layer::{self, Around, Clicks, Layer, LayerLoading, Moment, Tables};
+
+/// Layers that a step of loading takes.
+const LAYERS_PER_STEP: usize = 8;
+/// Cells of the grid whose cost a step of loading finds.
+const CELLS_PER_STEP: usize = 64;
+/// Rows of the inverse table that a step of loading computes.
+const ROWS_PER_STEP: usize = 8;
+
+/// How far a scene is loaded: the next step.
+#[derive(Clone, Debug)]
+pub(crate) enum Loading {
+    /// What holds for the whole scene.
+    Drive,
+    /// Layers from a number on.
+    Layers {
+        /// Number of the first.
+        next: usize,
+    },
+    /// The cost of a tick, from a cell of the grid on.
+    Cost {
+        /// Number of the first.
+        next_cell: usize,
+        /// The worst cell before it.
+        worst: Worst,
+    },
+    /// The layout of the inverse table.
+    Table,
+    /// Rows of the inverse table.
+    Rows(InverseTableFilling),
+}
+
+impl Loading {
+    /// The cost of a tick.
+    const COST: Self = Self::Cost { next_cell: 0, worst: Worst::NOWHERE };
+}
 
 /// Coefficients of one scene. A board has two of them: one that plays and one that the next scene is built in.
 ///
@@ -27,8 +62,6 @@ pub struct Active {
     /// `None` for a scene that goes on without a host.
     pub(crate) host_timeout_ticks: Option<u32>,
     pub(crate) prediction: bool,
-    /// The one layer that is all there is, if so.
-    sole: Option<Sole>,
     table: Option<InverseTable>,
     /// The layers that are on.
     on: LayerSet,
@@ -52,7 +85,6 @@ impl Active {
             voltage_max_v_rms: 0.0,
             host_timeout_ticks: None,
             prediction: true,
-            sole: None,
         }
     }
 
@@ -78,8 +110,8 @@ impl Active {
         }
         let (_, voltage_max_v_rms) = carrier(header, board).map_err(Refusal::Config)?;
         let rows = |asked_max_n| {
-            let table = table(header, voltage_max_v_rms, asked_max_n).map_err(Refusal::Config)?;
-            Ok::<_, Refusal>(table.rows_filled())
+            let (_, filling) = begin_table(header, voltage_max_v_rms, asked_max_n).map_err(Refusal::Config)?;
+            Ok::<_, Refusal>(filling.rows())
         };
         let (filled, whole) = (rows(asked_max_n(header, &asked, &grid))?, rows(f32::INFINITY)?);
         Ok(TableRows { filled, whole })
@@ -98,7 +130,6 @@ impl Active {
         self.voltage_max_v_rms = 0.0;
         self.host_timeout_ticks = None;
         self.prediction = true;
-        self.sole = None;
     }
 
     /// The inverse table; `None` without a scene.
@@ -114,14 +145,8 @@ impl Active {
         self.layers.iter().any(Layer::is_stream)
     }
 
-    /// The one layer that is all there is, if so.
-    #[inline]
-    pub(crate) fn sole(&self) -> Option<&Sole> {
-        self.sole.as_ref()
-    }
-
     /// Electric friction of all layers that are on, in N.
-    #[inline(never)]
+    #[inline]
     pub(crate) fn electric_friction_n(&self, moment: &Moment, pool: &BitmapPool, clicks: &mut Clicks) -> f32 {
         let around = &mut Around { moment, pool, tables: &self.tables, clicks };
         let [x_m, y_m] = around.moment.place_m;
@@ -162,61 +187,121 @@ impl Active {
             layer.set_gain(gain);
             self.put(number, on);
         }
-        self.sole = self.find_sole();
     }
 
-    /// Makes these the coefficients of `scene`. When it is refused, they are those of no scene.
-    // One copy, which the board builds: see "Fast and small" in the crate's documentation.
-    #[inline(never)]
-    pub(crate) fn load<D: Borrow<Directory>>(
+    /// Does the next step of making these the coefficients of `scene`, each well below a millisecond of a board's time.
+    /// Returns whether it was the last. When the scene is refused, these are the coefficients of no scene; before the last
+    /// step they are of no use.
+    pub(crate) fn load_step<D: Borrow<Directory>>(
         &mut self,
+        loading: &mut Loading,
         scene: &Scene,
         board: &Board,
         directory: &D,
-    ) -> Result<(), Refusal> {
+    ) -> Result<bool, Refusal> {
+        let stepped = self.try_load_step(loading, scene, board, directory.borrow());
+        if stepped.is_err() {
+            self.unload();
+        }
+        stepped
+    }
+
+    fn try_load_step(
+        &mut self,
+        loading: &mut Loading,
+        scene: &Scene,
+        board: &Board,
+        directory: &Directory,
+    ) -> Result<bool, Refusal> {
+        *loading = match loading {
+            Loading::Drive => {
+                self.load_drive(scene, board)?;
+                Loading::Layers { next: 0 }
+            }
+            Loading::Layers { next } => {
+                self.load_layers(*next, scene, board, directory)?;
+                let next = *next + LAYERS_PER_STEP;
+                if next < scene.record_count() { Loading::Layers { next } } else { Loading::COST }
+            }
+            Loading::Cost { next_cell, worst } => {
+                let worst = self.worst(*next_cell, *worst, scene);
+                let next_cell = *next_cell + CELLS_PER_STEP;
+                if next_cell < Grid::CELLS {
+                    Loading::Cost { next_cell, worst }
+                } else {
+                    check_cost(&worst)?;
+                    Loading::Table
+                }
+            }
+            Loading::Table => {
+                let (table, filling) = begin_table(scene.header(), self.voltage_max_v_rms, self.asked_max_n(scene))
+                    .map_err(Refusal::Config)?;
+                self.table = Some(table);
+                Loading::Rows(filling)
+            }
+            Loading::Rows(filling) => {
+                let Some(table) = &mut self.table else { return Ok(true) };
+                return filling
+                    .fill(table, ROWS_PER_STEP)
+                    .map_err(|error| Refusal::Config(no_table(&error, scene.header(), self.voltage_max_v_rms)));
+            }
+        };
+        Ok(false)
+    }
+
+    /// Loads what holds for the whole scene, the inverse table left out.
+    #[inline]
+    fn load_drive(&mut self, scene: &Scene, board: &Board) -> Result<(), Refusal> {
         self.unload();
         let header = scene.header();
         if header.carrier == Shape::Sine && !cfg!(feature = "sine-carrier") {
             return Err(Refusal::LeftOut { layer: ConfigRefusal::WHOLE_SCENE });
         }
         config::check_header(header, board).map_err(Refusal::Config)?;
-        let (carrier, voltage_max_v_rms) = carrier(header, board).map_err(Refusal::Config)?;
-        let asked_max_n = self.load_layers(scene, board, directory.borrow())?;
-        self.carrier = carrier;
-        self.voltage_max_v_rms = voltage_max_v_rms;
+        (self.carrier, self.voltage_max_v_rms) = carrier(header, board).map_err(Refusal::Config)?;
         self.slew_step_v = header.slew_v_per_s * board.tick_period_s();
         self.host_timeout_ticks = (!header.autonomous).then(|| board.ticks(header.host_timeout_s));
         self.prediction = header.prediction;
-        self.table = Some(table(header, voltage_max_v_rms, asked_max_n).map_err(Refusal::Config)?);
+        self.grid.reset(header.screen_width_m, header.screen_height_m);
+        self.tables.set_points(scene.points());
         Ok(())
     }
 
-    /// Loads the layers, and gives the largest electric friction that they can ask for, N.
+    /// Loads the next layers.
     #[inline]
-    fn load_layers(&mut self, scene: &Scene, board: &Board, directory: &Directory) -> Result<f32, Refusal> {
-        self.grid.reset(scene.header().screen_width_m, scene.header().screen_height_m);
-        self.tables.set_points(scene.points());
-        let mut costs = LayerCosts::NONE;
-        let mut asked = Asked::NOTHING;
-        for (number, record) in scene.records().enumerate() {
+    fn load_layers(&mut self, next: usize, scene: &Scene, board: &Board, directory: &Directory) -> Result<(), Refusal> {
+        for (number, record) in scene.records().enumerate().skip(next).take(LAYERS_PER_STEP) {
             let number = number as u8;
             config::check_record(&record, scene, number).map_err(Refusal::Config)?;
-            let mut loading = Loading { board, directory, tables: &mut self.tables };
+            let mut loading = LayerLoading { board, directory, tables: &mut self.tables };
             let layer = loading.layer(&record, number)?;
             // There is room for every record that a scene can have.
             let _ = self.layers.push(layer);
-            costs.add(number, &record, self.tables.points());
             self.put(number, true);
             self.grid.add(number, &record.region, self.tables.points());
+        }
+        Ok(())
+    }
+
+    /// The cell in which a tick takes longest, of those so far and the next.
+    #[inline]
+    fn worst(&self, next_cell: usize, so_far: Worst, scene: &Scene) -> Worst {
+        let mut costs = LayerCosts::NONE;
+        for (number, record) in (0..).zip(scene.records()) {
+            costs.add(number, &record, self.tables.points());
+        }
+        let cells = self.grid.cells().skip(next_cell).take(CELLS_PER_STEP);
+        cost::worst_of_cells(scene.header(), cells, &costs, so_far)
+    }
+
+    /// The largest electric friction that the scene can ask for, N.
+    #[inline]
+    fn asked_max_n(&self, scene: &Scene) -> f32 {
+        let mut asked = Asked::NOTHING;
+        for (number, record) in (0..).zip(scene.records()) {
             asked.add(number, &record, self.tables.points());
         }
-        self.sole = self.find_sole();
-        let Worst { instructions, cell } = cost::worst(scene.header(), &self.grid, &costs);
-        if instructions > TICK_INSTRUCTIONS_MAX {
-            let max = TICK_INSTRUCTIONS_MAX;
-            return Err(Refusal::TooCostly { instructions, max, x_m: cell.x_m, y_m: cell.y_m });
-        }
-        Ok(asked_max_n(scene.header(), &asked, &self.grid))
+        asked_max_n(scene.header(), &asked, &self.grid)
     }
 
     #[inline]
@@ -226,10 +311,16 @@ impl Active {
         let bit = 1 << (u32::from(number) % u32::BITS);
         *word = if on { *word | bit } else { *word & !bit };
     }
+}
 
-    #[inline]
-    fn find_sole(&self) -> Option<Sole> {
-        self.layers.first().filter(|_| self.on == [1, 0]).and_then(Layer::sole)
+/// Refuses a scene whose longest tick is too long.
+#[inline]
+fn check_cost(&Worst { instructions, cell }: &Worst) -> Result<(), Refusal> {
+    let max = TICK_INSTRUCTIONS_MAX;
+    if instructions > max {
+        Err(Refusal::TooCostly { instructions, max, x_m: cell.x_m, y_m: cell.y_m })
+    } else {
+        Ok(())
     }
 }
 
@@ -281,11 +372,15 @@ fn asked_max_n(header: &Header, asked: &Asked, grid: &Grid) -> f32 {
     if cfg!(feature = "table-cut") && header.layers_fixed { asked.electric_friction_max_n(grid) } else { f32::INFINITY }
 }
 
-/// The inverse table of a scene's finger, coating and load, up to what is asked for.
+/// Begins the inverse table of a scene's finger, coating and load, up to what is asked for.
 #[inline]
-fn table(header: &Header, voltage_max_v_rms: f32, asked_max_n: f32) -> Result<InverseTable, ConfigRefusal> {
+fn begin_table(
+    header: &Header,
+    voltage_max_v_rms: f32,
+    asked_max_n: f32,
+) -> Result<(InverseTable, InverseTableFilling), ConfigRefusal> {
     let Header { effective_gap_m, normal_load_n, .. } = *header;
-    InverseTable::of_finger(&finger(header), effective_gap_m, normal_load_n, voltage_max_v_rms, asked_max_n)
+    InverseTable::begin(&finger(header), effective_gap_m, normal_load_n, voltage_max_v_rms, asked_max_n)
         .map_err(|error| no_table(&error, header, voltage_max_v_rms))
 }
 

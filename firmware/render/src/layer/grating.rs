@@ -52,11 +52,6 @@ impl Grating {
         }
     }
 
-    /// The same stripes, with friction times `gain`.
-    pub(super) fn scaled(&self, gain: f32) -> Self {
-        Self { middle_n: gain * self.middle_n, swing_n: gain * self.swing_n, ..*self }
-    }
-
     /// As [`Self::at`], as a call.
     #[inline(never)]
     pub(super) fn electric_friction_n(&self, around: &Around) -> f32 {

@@ -14,13 +14,13 @@ use crate::bitmap_pool::Directory;
 
 /// A scene's layers are being loaded.
 #[allow(dead_code, reason = "kinds that are left out do not look at all of it")]
-pub(crate) struct Loading<'a> {
+pub(crate) struct LayerLoading<'a> {
     pub(crate) board: &'a Board,
     pub(crate) directory: &'a Directory,
     pub(crate) tables: &'a mut Tables,
 }
 
-impl Loading<'_> {
+impl LayerLoading<'_> {
     /// The layer of record `number`, whose numbers were checked.
     #[inline]
     pub(crate) fn layer(&mut self, record: &Record, number: u8) -> Result<Layer, Refusal> {

@@ -39,7 +39,7 @@ use curve::Curve;
 use edge::Edge;
 #[cfg(feature = "grating")]
 use grating::Grating;
-pub(crate) use load::Loading;
+pub(crate) use load::LayerLoading;
 #[cfg(feature = "noise")]
 use noise::Noise;
 #[cfg(feature = "bitmap")]
@@ -145,22 +145,6 @@ impl Layer {
         matches!(self.join, Join::Fading(_))
     }
 
-    /// This layer as all there is on bare glass, if that is simpler.
-    pub(crate) fn sole(&self) -> Option<Sole> {
-        if !matches!(self.join, Join::Replace | Join::Add) || self.region != Region::Screen {
-            return None;
-        }
-        match &self.source {
-            Source::Constant { electric_friction_n } => Some(Sole::Constant(self.gain * electric_friction_n)),
-            #[cfg(feature = "grating")]
-            Source::Grating(grating) => Some(Sole::Grating(grating.scaled(self.gain))),
-            #[cfg(feature = "bitmap")]
-            Source::Picture(picture) => Some(Sole::Picture(picture.scaled(self.gain))),
-            #[allow(unreachable_patterns, reason = "other kinds are left out")]
-            _ => None,
-        }
-    }
-
     /// This layer's electric friction at a moment, wherever that is, with nothing below it.
     #[inline]
     pub(crate) fn own_electric_friction_n(&self, around: &mut Around) -> f32 {
@@ -187,34 +171,6 @@ impl Layer {
             }
             #[cfg(feature = "stream")]
             Join::Fading(blend) => streamed::fading(blend, below_n, own_n, around),
-        }
-    }
-}
-
-/// A layer of the commonest kinds that is all there is, everywhere and always, its gain included: the tick needs to look
-/// for nothing else.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(u8)]
-pub(crate) enum Sole {
-    /// In N.
-    Constant(f32),
-    #[cfg(feature = "grating")]
-    Grating(Grating),
-    #[cfg(feature = "bitmap")]
-    Picture(Picture),
-}
-
-impl Sole {
-    /// Electric friction at a place, in N.
-    #[inline]
-    #[cfg_attr(not(feature = "bitmap"), allow(unused_variables, reason = "only pictures lie in the pool"))]
-    pub(crate) fn electric_friction_n(&self, place_m: [f32; 2], pool: &BitmapPool) -> f32 {
-        match self {
-            Self::Constant(electric_friction_n) => *electric_friction_n,
-            #[cfg(feature = "grating")]
-            Self::Grating(grating) => grating.at(place_m),
-            #[cfg(feature = "bitmap")]
-            Self::Picture(picture) => picture.electric_friction_n(place_m, pool),
         }
     }
 }

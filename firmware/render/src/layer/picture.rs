@@ -54,11 +54,6 @@ impl Picture {
         }
     }
 
-    /// The same picture, with friction times `gain`.
-    pub(super) fn scaled(&self, gain: f32) -> Self {
-        Self { black_n: gain * self.black_n, per_level_n: gain * self.per_level_n, ..*self }
-    }
-
     /// Electric friction at a place, in N.
     #[inline(never)]
     pub(crate) fn electric_friction_n(&self, [x_m, y_m]: [f32; 2], pool: &BitmapPool) -> f32 {

@@ -26,7 +26,7 @@ impl Bench {
 
     fn load(&mut self, record: &Record) -> Layer {
         let Self { directory, tables, .. } = self;
-        Loading { board: &Board::SIMULATOR, directory, tables }.layer(record, 0).unwrap()
+        LayerLoading { board: &Board::SIMULATOR, directory, tables }.layer(record, 0).unwrap()
     }
 
     #[allow(dead_code, reason = "for kinds that may be left out")]

@@ -8,7 +8,7 @@ use frixel_wire::message::{
 use frixel_wire::payload::{ParseError, Payload};
 use heapless::{Deque, Vec};
 
-use super::commit::BitmapNames;
+use super::commit::{BitmapNames, Commit};
 use super::fingers::{Fingers, ONLY_FINGER};
 use super::live::Playing;
 #[cfg(feature = "stream")]
@@ -18,7 +18,8 @@ use super::states::ORDERS_MAX;
 use super::upload::{Staging, Upload};
 use crate::bitmap_pool::Directory;
 use crate::order::Status;
-use crate::{Active, BitmapPool, Board, Order, Touch};
+use crate::tracker::Tracker;
+use crate::{Active, BitmapPool, Board, Order};
 
 /// The board's side of what is said.
 pub(super) struct Dialogue<'a> {
@@ -40,8 +41,8 @@ pub(super) struct Dialogue<'a> {
     pub(super) host_heard: bool,
     /// State once the ticker has applied every order.
     pub(super) state: State,
-    /// A commit that is done when the bytes that are there have been taken.
-    waiting_commit: Option<Request>,
+    /// The commit under way.
+    pub(super) commit: Option<Commit>,
     pub(super) received_bytes: u32,
     pub(super) telemetry_period_ticks: u32,
     /// What has to be known of the committed scene beside its bytes, which the next upload takes the place of.
@@ -49,8 +50,9 @@ pub(super) struct Dialogue<'a> {
     /// What the host streams; `None` on a board that has no buffer for it.
     #[cfg(feature = "stream")]
     pub(super) stream: Option<Stream<'a>>,
-    /// Fingers that the host told of.
+    /// Fingers that the host reported.
     pub(super) fingers: Fingers,
+    pub(super) tracker: Tracker,
 }
 
 impl<'a> Dialogue<'a> {
@@ -69,13 +71,14 @@ impl<'a> Dialogue<'a> {
             orders_sent: 0,
             host_heard: false,
             state: State::Disarmed,
-            waiting_commit: None,
+            commit: None,
             received_bytes: 0,
             telemetry_period_ticks: 0,
             playing: Playing::default(),
             #[cfg(feature = "stream")]
             stream: None,
             fingers: Fingers::new(),
+            tracker: Tracker::new(&board),
         }
     }
 
@@ -87,11 +90,6 @@ impl<'a> Dialogue<'a> {
     #[inline]
     pub(super) fn telemetry_period_ticks(&self) -> Option<u32> {
         (self.telemetry_period_ticks > 0).then_some(self.telemetry_period_ticks)
-    }
-
-    #[inline]
-    pub(super) fn next_touch(&mut self) -> Option<Touch> {
-        self.fingers.next()
     }
 
     #[inline]
@@ -110,14 +108,14 @@ impl<'a> Dialogue<'a> {
     pub(super) fn take(&mut self, payload: Result<Payload, ParseError>, status: &Status, outbox: &mut Outbox) {
         self.report_state(status, outbox);
         if !may_overtake_a_commit(&payload) {
-            self.finish_commit(status, outbox);
+            self.finish_commit(outbox);
         }
         match payload {
             Ok(Payload::HelloRequest { .. }) => self.greet(status, outbox),
             Ok(Payload::Request(request)) => {
                 self.host_heard = true;
-                if matches!(request.command, Command::Commit { .. }) {
-                    self.waiting_commit = Some(request);
+                if let Command::Commit { crc32 } = request.command {
+                    self.commit = Some(Commit::new(request.sequence, crc32));
                 } else {
                     self.serve(request, status, outbox);
                 }
@@ -145,14 +143,6 @@ impl<'a> Dialogue<'a> {
         }
     }
 
-    /// Does the commit that waits, if one does, and answers it.
-    #[inline]
-    pub(super) fn finish_commit(&mut self, status: &Status, outbox: &mut Outbox) {
-        if let Some(request) = self.waiting_commit.take() {
-            self.serve(request, status, outbox);
-        }
-    }
-
     #[inline]
     fn serve(&mut self, Request { sequence, command }: Request, status: &Status, outbox: &mut Outbox) {
         let outcome = self.obey(command, status);
@@ -160,7 +150,7 @@ impl<'a> Dialogue<'a> {
     }
 
     #[inline]
-    fn answer(&mut self, sequence: u16, outcome: Result<Accepted, Refusal>, outbox: &mut Outbox) {
+    pub(super) fn answer(&mut self, sequence: u16, outcome: Result<Accepted, Refusal>, outbox: &mut Outbox) {
         let answer = Answer { sequence, received_bytes: self.received_bytes, state: self.state, outcome };
         outbox.send(&FromBoard::Answer(answer));
     }
@@ -177,11 +167,12 @@ impl<'a> Dialogue<'a> {
                 Err(Refusal::BitmapPoolFull { len: u32::from(width) * u32::from(height), free: 0 })
             }
             Command::UploadEnd => self.end_upload(),
-            Command::Commit { crc32 } => self.commit(crc32),
+            // A commit begins where its request is taken, and not here.
+            Command::Commit { .. } => Err(Refusal::Busy),
             Command::Subscribe { period_ticks } if cfg!(feature = "telemetry") => self.subscribe(period_ticks),
             Command::Subscribe { .. } => Err(Refusal::UnknownCommand),
             Command::Touch { x_m, y_m, age_ticks } => self.touch(ONLY_FINGER, (x_m, y_m), age_ticks, status),
-            Command::Lift => self.lift(ONLY_FINGER),
+            Command::Lift => self.lift(ONLY_FINGER, status),
             Command::FaultText { offset } => Ok(fault_text(self.board.reset_text, offset)),
             Command::SetLayer { .. } => self.change_playing(command, status),
             #[cfg(feature = "stream")]
@@ -191,7 +182,7 @@ impl<'a> Dialogue<'a> {
             #[cfg(not(feature = "stream"))]
             Command::StartStream { .. } | Command::EndStream => Err(Refusal::UnknownCommand),
             Command::TouchFinger { finger, x_m, y_m, age_ticks } => self.touch(finger, (x_m, y_m), age_ticks, status),
-            Command::LiftFinger { finger } => self.lift(finger),
+            Command::LiftFinger { finger } => self.lift(finger, status),
             Command::ClearFault => self.change_state(Order::ClearFault, &[State::Faulted], State::Disarmed),
             Command::Arm | Command::Disarm | Command::Play | Command::Stop => self.drive(command, status),
         }

@@ -94,8 +94,17 @@ impl<'a> Dialogue<'a> {
         Ok(())
     }
 
+    /// Orders of the host come first. They are bounded, so that they hold up a lift by a few ticks only; and a host that
+    /// says a lot does not keep the board from seeing that it is there.
     #[inline]
     pub(super) fn next_order(&mut self) -> Option<Order<'a>> {
-        if core::mem::take(&mut self.host_heard) { Some(Order::HostHeard) } else { self.orders.pop_front() }
+        if let Some(order) = self.orders.pop_front() {
+            self.host_heard &= !order.is_sign_of_life();
+            return Some(order);
+        }
+        if core::mem::take(&mut self.host_heard) {
+            return Some(Order::HostHeard);
+        }
+        self.tracker.next_order()
     }
 }
