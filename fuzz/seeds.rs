@@ -4,7 +4,7 @@ use std::error::Error;
 use std::fs;
 use std::path::Path;
 
-use frixel::scene::{Scene, compile};
+use frixel_scene::{Scene, compile};
 use frixel_hil_sim::RigConfig;
 // Its instrumentation calls the fuzzer.
 use libfuzzer_sys as _;

@@ -6,9 +6,9 @@ use std::path::Path;
 use std::sync::LazyLock;
 use std::time::Duration;
 
-use frixel::device::{Device, DeviceError, Upload};
+use frixel_driver::{Device, DeviceError, Upload};
 use frixel::rigs::{Recorder, SimLink};
-use frixel::scene::{Program, Scene, compile};
+use frixel_scene::{Program, Scene, compile};
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
 use frixel_wire::scene::Scene as WireScene;
 use frixel_wire::scene::cost::{TICK_INSTRUCTIONS_MAX, worst_of_scene};

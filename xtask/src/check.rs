@@ -5,11 +5,12 @@ use std::fs;
 
 use crate::bench::programs::{self, Pace};
 use crate::command::{M4F, add_target, cargo_in, root, run};
-use crate::{bench, budgets};
+use crate::stages::Stages;
+use crate::{bench, budgets, stamps, test_programs};
 
-/// Crates that run on a board.
-const BOARD_CRATES: [&str; 4] = ["frixel-model", "frixel-wire", "frixel-render", "frixel-exchange"];
-/// Of which this one can be built with less.
+/// What the images and the budgets depend on.
+const FIRMWARE_INPUTS: [&str; 6] = ["budgets.toml", "Cargo.lock", "Cargo.toml", "firmware", "model", "xtask"];
+/// The crate whose features an image chooses from.
 const RENDER: &str = "firmware/render";
 
 /// An image outside the workspace.
@@ -17,7 +18,7 @@ struct Image {
     folder: &'static str,
     /// Where it is built: where its size is measured and its emulator looks for it.
     target_folder: &'static str,
-    /// Features besides the default ones, and sets of features in place of them, that are looked at, too.
+    /// Features besides the default ones, and sets of features in place of them, that are checked, too.
     more: &'static [&'static [&'static str]],
 }
 
@@ -36,54 +37,51 @@ const IMAGES: [Image; 3] = [
     Image { folder: "firmware/bench", target_folder: "target", more: &[] },
 ];
 
+/// Runs every check, and prints the time that each stage took.
 pub(crate) fn test() -> Result<(), String> {
-    cargo("format", ".", &["fmt", "--all", "--check"], &[])?;
-    cargo("lints", ".", &["clippy", "--workspace", "--all-targets", "--locked", "--", "-D", "warnings"], &[])?;
-    cross_build()?;
-    feature_sets()?;
-    images()?;
-    cargo("tests", ".", &["test", "--workspace", "--locked"], &[])?;
-    cargo("docs", ".", &["doc", "--workspace", "--no-deps", "--locked"], &[("RUSTDOCFLAGS", "-D warnings")])?;
-    budgets()
+    let mut stages = Stages::new();
+    stages.run("format", || cargo("format", ".", &["fmt", "--all", "--check"], &[]))?;
+    let lints = ["clippy", "--workspace", "--all-targets", "--locked", "--", "-D", "warnings"];
+    stages.run("lints", || cargo("lints", ".", &lints, &[]))?;
+    stages.run("feature sets", || unless_firmware_unchanged("feature-sets", feature_sets))?;
+    stages.run("images", || unless_firmware_unchanged("images", images))?;
+    stages.run("tests", test_programs::run_all)?;
+    stages.run("documentation tests", test_programs::run_documentation)?;
+    let docs = ["doc", "--workspace", "--no-deps", "--locked"];
+    stages.run("documentation", || cargo("documentation", ".", &docs, &[("RUSTDOCFLAGS", "-D warnings")]))?;
+    stages.run("budgets", || unless_firmware_unchanged("budgets", budgets))?;
+    eprint!("{}", stages.table());
+    Ok(())
 }
 
-/// The tests that are left out of every other run, because they look at every number that there is.
+/// The tests that take too long for every change, because they go through every number that there is.
 pub(crate) fn soak() -> Result<(), String> {
+    let mut stages = Stages::new();
     let sweeps = ["test", "--release", "--locked", "--package", "frixel-model", "--", "--ignored", "--nocapture"];
-    cargo("soak", ".", &sweeps, &[])?;
-    eprintln!("== random scenes");
-    Pace::ALL.into_iter().try_for_each(|pace| programs::check(pace, programs::FEW, programs::MANY))
+    stages.run("every f32", || cargo("soak", ".", &sweeps, &[]))?;
+    stages.run("random scenes", || {
+        Pace::ALL.into_iter().try_for_each(|pace| programs::check(pace, programs::FEW, programs::MANY))
+    })?;
+    eprint!("{}", stages.table());
+    Ok(())
 }
 
-/// Builds what runs on a board for the board, with warnings as errors, in a target folder of its own so that its
-/// flags do not rebuild everything else.
-fn cross_build() -> Result<(), String> {
-    add_target(M4F)?;
-    let mut arguments = vec!["build", "--locked", "--target", M4F, "--target-dir", "target/cross"];
-    for name in BOARD_CRATES {
-        arguments.extend(["--package", name]);
-    }
-    cargo("cross-build", ".", &arguments, &[("RUSTFLAGS", "-D warnings")])
+fn unless_firmware_unchanged(name: &str, check: impl FnOnce() -> Result<(), String>) -> Result<(), String> {
+    stamps::unless_unchanged(name, &FIRMWARE_INPUTS.map(str::to_owned), check)
 }
 
-/// Looks whether the renderer goes without any of its features, and with each of them alone.
+/// Checks that the renderer goes without any of its features, and with each of them alone, with warnings as errors.
 fn feature_sets() -> Result<(), String> {
+    add_target(M4F)?;
     let path = root().join(RENDER).join("Cargo.toml");
     let text = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
     let manifest: toml::Table = toml::from_str(&text).map_err(|error| format!("{}: {error}", path.display()))?;
     let features = manifest.get("features").and_then(toml::Value::as_table);
     let features = features.ok_or_else(|| format!("{} has no features", path.display()))?;
-    let none = [
-        "check",
-        "--quiet",
-        "--locked",
-        "--target",
-        M4F,
-        "--target-dir",
-        "../../target/cross",
-        "--no-default-features",
-    ];
+    let all = ["check", "--quiet", "--locked", "--target", M4F, "--target-dir", "../../target/cross"];
+    let none = [&all[..], &["--no-default-features"]].concat();
     let flags = [("RUSTFLAGS", "-D warnings")];
+    cargo("renderer with all features", RENDER, &all, &flags)?;
     cargo("renderer without features", RENDER, &none, &flags)?;
     for feature in features.keys().filter(|feature| *feature != "default") {
         let alone = [&none[..], &["--features", feature]].concat();
@@ -107,10 +105,9 @@ fn images() -> Result<(), String> {
     Ok(())
 }
 
-/// Counts instructions and measures sizes, compares them with what they may be, and sees that an image that breaks its
+/// Counts instructions and measures sizes, compares them with what they may be, and checks that an image that breaks its
 /// budget on purpose is noticed.
 pub(crate) fn budgets() -> Result<(), String> {
-    eprintln!("== budgets");
     if let Err(missing) = bench::emulator() {
         if is_ci() {
             return Err(missing);

@@ -2,7 +2,7 @@
 
 use std::env;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 /// Target of the boards.
 pub(crate) const M4F: &str = "thumbv7em-none-eabihf";
@@ -31,9 +31,19 @@ pub(crate) fn add_target(target: &str) -> Result<(), String> {
     run("rustup target", Command::new("rustup").args(["target", "add", target]))
 }
 
-/// Runs a command to its end, under a heading.
+/// What a command writes to its standard output.
+pub(crate) fn text_of(command: &mut Command) -> Result<String, String> {
+    let output = command.stderr(Stdio::inherit()).output();
+    let output = output.map_err(|error| format!("{command:?} could not be started: {error}"))?;
+    if !output.status.success() {
+        return Err(format!("{command:?} failed ({})", output.status));
+    }
+    String::from_utf8(output.stdout).map_err(|_| format!("{command:?} wrote what is not UTF-8"))
+}
+
+/// Runs a command to its end, and says what it is.
 pub(crate) fn run(name: &str, command: &mut Command) -> Result<(), String> {
-    eprintln!("== {name}");
+    eprintln!("-- {name}");
     match command.status() {
         Ok(status) if status.success() => Ok(()),
         Ok(status) => Err(format!("{name} failed ({status}): {command:?}")),

@@ -4,6 +4,9 @@ mod bench;
 mod budgets;
 mod check;
 mod command;
+mod stages;
+mod stamps;
+mod test_programs;
 
 use std::env;
 use std::process::ExitCode;

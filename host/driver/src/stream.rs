@@ -1,0 +1,123 @@
+//! Streams: samples for the stream layers of the scene that plays, as fast as the board plays them.
+
+use std::time::Duration;
+
+use frixel_wire::frame::FRAME_MAX_LEN;
+use frixel_wire::message::{Command, STREAM_START_LEVEL_MAX};
+use frixel_wire::payload::{SAMPLES_MAX, samples_frame};
+
+use super::exchange::StreamReport;
+use super::{Device, DeviceError, Link};
+
+/// What is under way while samples are sent.
+const STREAMING: &str = "stream";
+/// Time that a start level stands for, unless a caller wants another: what an operating system may keep a host waiting.
+const START_S: f64 = 0.05;
+
+/// How a stream is played.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StreamSettings {
+    /// Samples a second, from 1 to the board's ticks a second.
+    pub sample_hz: u32,
+    /// Samples that the board waits for before it plays, 1 to 800. So many samples are the stream's latency, and how long the host may
+    /// pause without an underrun.
+    pub start_level: u16,
+}
+
+impl StreamSettings {
+    /// A start level of 50 ms, or as much of that as the board's buffer allows.
+    pub fn new(sample_hz: u32) -> Self {
+        let level = (START_S * f64::from(sample_hz)).ceil();
+        Self { sample_hz, start_level: level.clamp(1.0, f64::from(STREAM_START_LEVEL_MAX)) as u16 }
+    }
+}
+
+/// How a stream is doing, as the board said last.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct StreamStatus {
+    /// Samples that were sent.
+    pub sent: u64,
+    /// Times that the board ran out of samples, and faded the stream out.
+    pub underruns: u32,
+    /// Runs of samples that the line lost.
+    pub gaps: u32,
+}
+
+/// A stream under way.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Sent {
+    samples: u64,
+    /// The board's first report: its counts run from power-on.
+    first: Option<StreamReport>,
+}
+
+impl<L: Link> Device<L> {
+    /// Starts a stream for the stream layers of the scene that plays. One under way is forgotten.
+    ///
+    /// Samples follow with [`Self::send_samples`]; between two calls a program lets time pass with [`Self::wait`].
+    ///
+    /// ```no_run
+    /// # use std::time::Duration;
+    /// # use frixel_driver::{Device, DeviceError, Link, StreamSettings};
+    /// # fn play<L: Link>(board: &mut Device<L>, mut samples: &[u16]) -> Result<(), DeviceError> {
+    /// board.start_stream(StreamSettings::new(8_000))?;
+    /// while !samples.is_empty() {
+    ///     let sent = board.send_samples(samples)?;
+    ///     samples = &samples[sent..];
+    ///     board.wait(Duration::from_millis(5), &mut |_| {})?;
+    /// }
+    /// board.end_stream()
+    /// # }
+    /// ```
+    pub fn start_stream(&mut self, settings: StreamSettings) -> Result<(), DeviceError> {
+        let StreamSettings { sample_hz, start_level } = settings;
+        self.exchange.begin_stream();
+        self.request(Command::StartStream { sample_hz, start_level })?;
+        self.stream = Some(Sent::default());
+        Ok(())
+    }
+
+    /// Sends as many samples as the board has room for, 65,535 for 1, and returns how many. Does not wait.
+    ///
+    /// The board plays those that it has at their own rate. Without a stream under way nothing is sent.
+    pub fn send_samples(&mut self, samples: &[u16]) -> Result<usize, DeviceError> {
+        self.exchange.receive(Duration::ZERO, STREAMING)?;
+        let (Some(mut sent), Some(report)) = (self.stream, self.exchange.stream()) else { return Ok(0) };
+        sent.first.get_or_insert(report);
+        let mut done = 0;
+        for frame in samples.chunks(SAMPLES_MAX) {
+            let index = sent.samples as u32;
+            let room = report.limit.wrapping_sub(index) as i32;
+            if room < frame.len() as i32 {
+                break;
+            }
+            let mut buffer = [0; FRAME_MAX_LEN];
+            let bytes = samples_frame(index, frame, &mut buffer)?;
+            if self.exchange.send_bulk(bytes, STREAMING)?.is_none() {
+                break;
+            }
+            sent.samples += frame.len() as u64;
+            done += frame.len();
+        }
+        self.stream = Some(sent);
+        Ok(done)
+    }
+
+    /// Says that no more samples come: the board plays those that it has, and fades the stream out. That is no underrun.
+    pub fn end_stream(&mut self) -> Result<(), DeviceError> {
+        self.request(Command::EndStream)
+    }
+
+    /// How the stream is doing that was started last; `None` before the first one.
+    pub fn stream_status(&self) -> Option<StreamStatus> {
+        let Sent { samples, first } = self.stream?;
+        let (Some(first), Some(now)) = (first, self.exchange.stream()) else {
+            return Some(StreamStatus { sent: samples, ..StreamStatus::default() });
+        };
+        Some(StreamStatus {
+            sent: samples,
+            underruns: now.underruns.wrapping_sub(first.underruns),
+            gaps: now.gaps.wrapping_sub(first.gaps),
+        })
+    }
+}

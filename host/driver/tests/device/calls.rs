@@ -1,0 +1,257 @@
+//! Commands, answers, pings and events when all is well, and when a frame gets lost.
+
+use std::time::Duration;
+
+use frixel_driver::{Device, DeviceError, Event, Link, Upload};
+use frixel_wire::fault::State;
+use frixel_wire::message::{Command, Refusal};
+use frixel_wire::scene::{Carrier, Header, Leader};
+
+use crate::fake_board::FakeBoard;
+use crate::virtual_link::{Fate, VirtualLink};
+
+pub(crate) fn connected(link: VirtualLink) -> Device<VirtualLink> {
+    Device::connect(link).unwrap()
+}
+
+fn virtual_board() -> Device<VirtualLink> {
+    connected(VirtualLink::new(FakeBoard::new()))
+}
+
+/// A scene without layers.
+pub(crate) fn scene(host_timeout_s: f32) -> Vec<u8> {
+    let header = Header {
+        screen_width_m: 0.1,
+        screen_height_m: 0.1,
+        finger_radius_m: 0.01,
+        stiffness_pa_per_m: 1e9,
+        friction_coefficient: 0.5,
+        normal_load_n: 0.5,
+        effective_gap_m: 1e-6,
+        voltage_max_v_rms: 100.0,
+        voltage_max_v_peak: 150.0,
+        slew_v_per_s: 1e6,
+        carrier_hz: 1000.0,
+        host_timeout_s,
+        carrier: Carrier::Square,
+        autonomous: false,
+        prediction: true,
+        leader: Leader::First,
+        layers_fixed: false,
+    };
+    header.write(0, 0).to_vec()
+}
+
+fn nothing(_: Event) {}
+
+#[test]
+fn a_scene_goes_from_upload_to_play_and_back() {
+    let mut device = virtual_board();
+    let scene = scene(0.25);
+    let upload = Upload { scene: &scene, bitmaps: Vec::new() };
+    device.upload(&upload, &mut |_| {}).unwrap();
+    device.commit(upload.scene_crc32()).unwrap();
+    device.arm().unwrap();
+    device.play().unwrap();
+    device.stop().unwrap();
+    device.disarm().unwrap();
+
+    let board = device.into_link().board;
+    assert_eq!(board.scene.as_deref(), Some(scene.as_slice()));
+    assert_eq!(board.state, State::Disarmed);
+    let crc32 = upload.scene_crc32();
+    assert_eq!(
+        board.commands,
+        [
+            Command::UploadScene { len: scene.len() as u32, crc32 },
+            Command::UploadEnd,
+            Command::Commit { crc32 },
+            Command::Arm,
+            Command::Play,
+            Command::Stop,
+            Command::Disarm,
+        ]
+    );
+}
+
+#[test]
+fn the_hello_is_the_boards() {
+    assert_eq!(*virtual_board().hello(), FakeBoard::new().hello);
+}
+
+#[test]
+fn wait_lets_its_time_pass_and_hands_over_telemetry() {
+    let mut device = virtual_board();
+    device.subscribe(400).unwrap();
+    let mut ticks = Vec::new();
+    device
+        .wait(Duration::from_secs(1), &mut |event| match event {
+            Event::Telemetry(telemetry) => ticks.push(telemetry.tick),
+            Event::StateChanged { .. } => panic!("nothing changed the state"),
+        })
+        .unwrap();
+    assert!((99..=100).contains(&ticks.len()), "{} messages in 1 s at 100 Hz", ticks.len());
+    assert!(ticks.windows(2).all(|pair| pair[1] - pair[0] == 400));
+
+    device.subscribe(0).unwrap();
+    let before = device.into_link();
+    let started = before.now();
+    let mut device = connected(before);
+    let mut late = 0;
+    device.wait(Duration::from_secs(1), &mut |_| late += 1).unwrap();
+    assert_eq!(late, 0, "telemetry was ended");
+    assert!(device.into_link().now() >= started + Duration::from_secs(1));
+}
+
+#[test]
+fn what_the_board_tells_during_a_call_is_kept() {
+    let mut board = FakeBoard::new();
+    let mut busy = 3;
+    board.falls_to = Some((Duration::from_millis(3), State::Disarmed));
+    board.refuse = Some(Box::new(move |command| {
+        busy -= i32::from(*command == Command::Arm);
+        (busy >= 0 && *command == Command::Arm).then_some(Refusal::Busy)
+    }));
+    let mut device = connected(VirtualLink::new(board));
+    device.arm().unwrap();
+    let mut changes = Vec::new();
+    device
+        .wait(Duration::ZERO, &mut |event| {
+            if let Event::StateChanged { state, .. } = event {
+                changes.push(state);
+            }
+        })
+        .unwrap();
+    assert_eq!(changes, [State::Disarmed]);
+}
+
+#[test]
+fn pings_keep_the_board_company() {
+    let mut device = virtual_board();
+    device.wait(Duration::from_secs(10), &mut nothing).unwrap();
+    let silence = device.into_link().board.longest_silence;
+    assert!(silence <= Duration::from_millis(61), "{silence:?} of silence, a host timeout is 250 ms");
+}
+
+/// Longest time without a frame over the next second.
+fn silence_on(link: &mut VirtualLink) -> Duration {
+    link.board.longest_silence = Duration::ZERO;
+    let mut buffer = Vec::new();
+    let end = link.now() + Duration::from_secs(1);
+    while link.now() < end {
+        link.read(&mut buffer, Duration::from_millis(100)).unwrap();
+    }
+    link.board.longest_silence
+}
+
+#[test]
+fn pings_follow_the_committed_scenes_host_timeout() {
+    for (host_timeout_s, longest_ms) in [(0.02, 6), (0.1, 26), (1.0, 61), (f32::NAN, 61), (-1.0, 61)] {
+        let mut device = virtual_board();
+        let scene = scene(host_timeout_s);
+        let upload = Upload { scene: &scene, bitmaps: Vec::new() };
+        device.upload(&upload, &mut |_| {}).unwrap();
+        device.commit(upload.scene_crc32()).unwrap();
+        device.arm().unwrap();
+        let silence = silence_on(&mut device.into_link());
+        assert!(silence <= Duration::from_millis(longest_ms), "{silence:?} with a timeout of {host_timeout_s} s");
+        assert!(silence > Duration::from_millis(longest_ms / 2), "{silence:?} with a timeout of {host_timeout_s} s");
+    }
+}
+
+/// The old scene's timeout counts until the new one is committed, and that of a scene that was there before is not known.
+#[test]
+fn pings_suit_any_scene_on_an_armed_board_until_the_own_one_is_committed() {
+    let scene = scene(1.0);
+    let upload = Upload { scene: &scene, bitmaps: Vec::new() };
+    let mut found = FakeBoard::new();
+    (found.state, found.autonomous) = (State::Active, true);
+    let found = connected(VirtualLink::new(found));
+    let mut armed = virtual_board();
+    armed.arm().unwrap();
+    let mut uploaded = virtual_board();
+    uploaded.arm().unwrap();
+    uploaded.upload(&upload, &mut |_| {}).unwrap();
+    let mut refused = virtual_board();
+    refused.upload(&upload, &mut |_| {}).unwrap();
+    refused.commit(upload.scene_crc32() + 1).unwrap_err();
+    refused.arm().unwrap();
+    for device in [found, armed, uploaded, refused] {
+        let silence = silence_on(&mut device.into_link());
+        assert!(silence <= Duration::from_millis(6), "{silence:?}");
+    }
+}
+
+#[test]
+fn a_disarmed_board_is_pinged_at_leisure() {
+    let mut device = virtual_board();
+    device.arm().unwrap();
+    device.disarm().unwrap();
+    let silence = silence_on(&mut device.into_link());
+    assert!(silence > Duration::from_millis(50), "{silence:?}");
+}
+
+#[test]
+fn a_refusal_names_the_command_and_the_reason() {
+    let mut device = virtual_board();
+    let error = device.play().unwrap_err();
+    assert!(
+        matches!(error, DeviceError::Refused { command: "play", refusal: Refusal::WrongState(State::Disarmed), .. }),
+        "{error}"
+    );
+}
+
+#[test]
+fn busy_is_tried_again_until_the_board_is_not() {
+    let mut board = FakeBoard::new();
+    let mut left = 20;
+    board.refuse = Some(Box::new(move |command| {
+        left -= i32::from(matches!(command, Command::Arm));
+        (left > 0 && *command == Command::Arm).then_some(Refusal::Busy)
+    }));
+    let mut device = connected(VirtualLink::new(board));
+    device.arm().unwrap();
+    assert_eq!(device.into_link().board.state, State::Armed);
+}
+
+#[test]
+fn a_board_that_stays_busy_is_given_up_within_a_second() {
+    let mut board = FakeBoard::new();
+    board.refuse = Some(Box::new(|command| (*command == Command::Arm).then_some(Refusal::Busy)));
+    let mut device = connected(VirtualLink::new(board));
+    let error = device.arm().unwrap_err();
+    assert!(matches!(error, DeviceError::Refused { refusal: Refusal::Busy, .. }), "{error}");
+    assert!(device.into_link().now() < Duration::from_secs(1));
+}
+
+/// The board armed at the first command; the second one is refused, and that is as good.
+#[test]
+fn a_lost_answer_does_not_fail_a_command() {
+    let mut link = VirtualLink::new(FakeBoard::new());
+    // After the hello and the answer to the first ping.
+    link.to_host_weather = Box::new(|number, _| if number == 2 { Fate::Lost } else { Fate::Arrives });
+    let mut device = connected(link);
+    device.arm().unwrap();
+    let board = device.into_link().board;
+    assert_eq!(board.state, State::Armed);
+    assert_eq!(board.commands, [Command::Arm, Command::Arm]);
+}
+
+#[test]
+fn a_lost_command_is_sent_again() {
+    let mut link = VirtualLink::new(FakeBoard::new());
+    link.to_board_weather = Box::new(|number, _| if number == 2 { Fate::Damaged(5) } else { Fate::Arrives });
+    let mut device = connected(link);
+    device.arm().unwrap();
+    assert_eq!(device.into_link().board.commands, [Command::Arm]);
+}
+
+#[test]
+fn damaged_frames_of_the_board_are_counted() {
+    let mut link = VirtualLink::new(FakeBoard::new());
+    link.to_host_weather = Box::new(|number, _| if number == 2 { Fate::Damaged(3) } else { Fate::Arrives });
+    let mut device = connected(link);
+    assert_eq!(device.counters().frames_rejected, 0);
+    device.ping().unwrap();
+    assert_eq!(device.counters().frames_rejected, 1);
+}

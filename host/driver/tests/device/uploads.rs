@@ -1,0 +1,269 @@
+//! Bulk uploads: what arrives, what it costs, and that credit is kept. The virtual line itself refuses bytes beyond the credit.
+
+use std::collections::BTreeSet;
+use std::time::Duration;
+
+use frixel_driver::{Bitmap, Device, DeviceError, Link, Upload};
+use frixel_wire::frame::crc32;
+use frixel_wire::message::{Command, Refusal};
+
+use crate::calls::{connected, scene};
+use crate::fake_board::{FakeBoard, WINDOW};
+use crate::virtual_link::{Fate, VirtualLink, Weather};
+
+const WIDTH: u16 = 250;
+
+/// Samples that look like nothing in particular.
+fn samples(len: usize) -> Vec<u8> {
+    let mut random = Random(1);
+    (0..len).map(|_| random.next() as u8).collect()
+}
+
+fn bitmap(samples: &[u8]) -> Bitmap<'_> {
+    Bitmap { crc32: crc32(samples), width: WIDTH, height: (samples.len() / usize::from(WIDTH)) as u16, samples }
+}
+
+/// Xorshift: the same weather in every run.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0 >> 16
+    }
+}
+
+fn is_chunk(frame: &[u8]) -> bool {
+    frame.len() > 100
+}
+
+/// Uploads a bitmap of 62,500 samples and a scene, and checks that both have arrived.
+fn upload_over(link: VirtualLink) -> Device<VirtualLink> {
+    let (samples, scene) = (samples(62_500), scene(0.25));
+    let mut device = connected(link);
+    let upload = Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] };
+    device.upload(&upload, &mut |_| {}).unwrap();
+    device.commit(upload.scene_crc32()).unwrap();
+    let link = device.into_link();
+    assert_eq!(link.board.bitmaps.get(&crc32(&samples)), Some(&samples));
+    assert_eq!(link.board.scene.as_ref(), Some(&scene));
+    connected(link)
+}
+
+#[test]
+fn at_least_95_percent_of_the_line_is_payload() {
+    let samples = samples(62_500);
+    let scene = scene(0.25);
+    let mut device = connected(VirtualLink::new(FakeBoard::new()));
+    let before = device.counters();
+    device.upload(&Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] }, &mut |_| {}).unwrap();
+    let after = device.counters();
+
+    assert_eq!(after.payload_bytes, (samples.len() + scene.len()) as u64);
+    assert_eq!(after.frames_rejected, 0);
+    let share = after.payload_bytes as f64 / (after.wire_bytes - before.wire_bytes) as f64;
+    println!("{:.2} % of {} bytes are payload", 100.0 * share, after.wire_bytes - before.wire_bytes);
+    assert!(share >= 0.95, "{share}");
+}
+
+/// Credit is used so well that the line never rests, but for the round trips of the commands.
+#[test]
+fn an_upload_takes_the_time_of_its_bytes() {
+    let samples = samples(62_500);
+    let scene = scene(0.25);
+    let mut link = VirtualLink::new(FakeBoard::new());
+    link.board_delay = Duration::from_millis(2);
+    let mut device = connected(link);
+    let bytes_before = device.counters().wire_bytes;
+    let link = device.into_link();
+    let started = link.now();
+    device = connected(link);
+    device.upload(&Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] }, &mut |_| {}).unwrap();
+    let line_time_s = (device.counters().wire_bytes - bytes_before) as f64 / 200_000.0;
+    let link = device.into_link();
+    let took_s = link.now().as_secs_f64() - started.as_secs_f64();
+    println!("{took_s:.3} s for {line_time_s:.3} s of bytes, at most {} under way", link.most_under_way);
+    assert!(took_s < 1.1 * line_time_s, "{took_s} s for {line_time_s} s of bytes");
+}
+
+/// Else a line that refuses bytes beyond the credit would prove nothing.
+#[test]
+fn a_slow_board_fills_the_window() {
+    let mut link = VirtualLink::new(FakeBoard::new());
+    link.board_delay = Duration::from_millis(40);
+    let link = upload_over(link).into_link();
+    assert!(link.most_under_way > usize::from(WINDOW) * 9 / 10, "{} bytes", link.most_under_way);
+}
+
+/// Pings go out while an upload waits for credit, and the line refuses them too when they go beyond it.
+#[test]
+fn pings_have_credit_of_their_own() {
+    for (armed, pings) in [(false, 8), (true, 80)] {
+        let mut link = VirtualLink::new(FakeBoard::new());
+        link.board_pause = Duration::from_millis(100)..Duration::from_millis(650);
+        let (samples, scene) = (samples(62_500), scene(0.25));
+        let mut device = connected(link);
+        if armed {
+            device.arm().unwrap();
+        }
+        let upload = Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] };
+        device.upload(&upload, &mut |_| {}).unwrap();
+        let link = device.into_link();
+        assert!(link.now() > Duration::from_millis(800), "the board paused in the upload");
+        assert!(link.board.pings > pings, "{} pings", link.board.pings);
+    }
+}
+
+#[test]
+fn a_board_with_room_for_one_frame_takes_an_upload() {
+    let mut board = FakeBoard::new();
+    board.hello.limits.receive_window_bytes = 192;
+    let link = upload_over(VirtualLink::new(board)).into_link();
+    assert!(link.most_under_way <= 192, "{} bytes", link.most_under_way);
+}
+
+#[test]
+fn nothing_is_committed_by_an_upload() {
+    let mut device = connected(VirtualLink::new(FakeBoard::new()));
+    let scene = scene(0.25);
+    device.upload(&Upload { scene: &scene, bitmaps: Vec::new() }, &mut |_| {}).unwrap();
+    assert_eq!(device.into_link().board.scene, None);
+}
+
+#[test]
+fn a_bitmap_that_the_board_holds_is_not_sent_again() {
+    let mut device = upload_over(VirtualLink::new(FakeBoard::new()));
+    let payload_before = device.counters().payload_bytes;
+    let (samples, scene) = (samples(62_500), scene(0.25));
+    device.upload(&Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] }, &mut |_| {}).unwrap();
+    assert_eq!(device.counters().payload_bytes - payload_before, scene.len() as u64);
+}
+
+#[test]
+fn progress_only_grows_and_ends_with_all() {
+    let (samples, scene) = (samples(62_500), scene(0.25));
+    let mut device = connected(VirtualLink::new(FakeBoard::new()));
+    let mut steps = Vec::new();
+    let upload = Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] };
+    device.upload(&upload, &mut |progress| steps.push(progress)).unwrap();
+    assert!(steps.iter().all(|step| step.total_bytes == samples.len() + scene.len()));
+    assert!(steps.windows(2).all(|pair| pair[0].done_bytes <= pair[1].done_bytes));
+    assert_eq!(steps.last().unwrap().done_bytes, samples.len() + scene.len());
+    assert!(steps.len() > 50, "{} steps", steps.len());
+}
+
+#[test]
+fn one_lost_or_damaged_chunk_costs_no_more_than_a_window() {
+    for fate in [Fate::Lost, Fate::Tail(50), Fate::Damaged(70), Fate::Damaged(191)] {
+        let mut link = VirtualLink::new(FakeBoard::new());
+        link.to_board_weather = Box::new(move |number, _| if number == 100 { fate } else { Fate::Arrives });
+        let clean = upload_over(VirtualLink::new(FakeBoard::new())).counters();
+        let stormy = upload_over(link).counters();
+        let extra = stormy.wire_bytes - clean.wire_bytes;
+        assert!((192..=u64::from(WINDOW) + 192).contains(&extra), "{fate:?} cost {extra} bytes");
+    }
+}
+
+/// Far more than a window is lost in all: credit comes back, or the upload would stop for good.
+#[test]
+fn lost_bytes_do_not_use_up_the_credit() {
+    let mut link = VirtualLink::new(FakeBoard::new());
+    let mut seen = BTreeSet::new();
+    link.to_board_weather = Box::new(move |_, frame| {
+        let first = is_chunk(frame) && seen.insert(frame.to_vec());
+        if first && seen.len().is_multiple_of(10) { Fate::Lost } else { Fate::Arrives }
+    });
+    let link = upload_over(link).into_link();
+    assert!(link.written().bytes > 62_500 + 4 * u64::from(WINDOW));
+}
+
+/// The last chunk has no later one behind it that would show the gap.
+#[test]
+fn a_lost_last_chunk_is_sent_again() {
+    let mut link = VirtualLink::new(FakeBoard::new());
+    let mut lost = false;
+    link.to_board_weather = Box::new(move |_, frame| {
+        let last = frame.len() == 62_500 % 184 + 8;
+        let fate = if last && !lost { Fate::Lost } else { Fate::Arrives };
+        lost |= last;
+        fate
+    });
+    upload_over(link);
+}
+
+#[test]
+fn any_weather_in_which_no_frame_is_hit_twice_lets_an_upload_through() {
+    for seed in 1..=60 {
+        let mut link = VirtualLink::new(FakeBoard::new());
+        link.board_delay = Duration::from_micros(seed * 50);
+        link.to_board_weather = storm(seed);
+        link.to_host_weather = storm(seed + 1000);
+        upload_over(link);
+    }
+}
+
+/// Hits one frame in thirty, each frame at most once, and no control frame's neighbour through its last byte.
+fn storm(seed: u64) -> Weather {
+    let mut random = Random(seed * 7919);
+    let mut hit = BTreeSet::new();
+    Box::new(move |_, frame| {
+        let (dice, place) = (random.next() % 30, random.next() as usize);
+        if dice > 0 || !hit.insert(frame.to_vec()) {
+            return Fate::Arrives;
+        }
+        match place % 3 {
+            0 => Fate::Lost,
+            1 => Fate::Tail(place % frame.len()),
+            _ => Fate::Damaged(place % (frame.len() - 1)),
+        }
+    })
+}
+
+#[test]
+fn an_upload_that_does_not_get_on_ends_within_a_second() {
+    let mut link = VirtualLink::new(FakeBoard::new());
+    let mut chunks = 0;
+    link.to_board_weather = Box::new(move |_, frame| {
+        chunks += u32::from(is_chunk(frame));
+        if is_chunk(frame) && chunks > 50 { Fate::Lost } else { Fate::Arrives }
+    });
+    let mut device = connected(link);
+    let (samples, scene) = (samples(62_500), scene(0.25));
+    let upload = Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] };
+    let error = device.upload(&upload, &mut |_| {}).unwrap_err();
+    let expected = DeviceError::UploadStalled {
+        port: "the virtual line".into(),
+        arrived_bytes: 50 * 184,
+        total_bytes: samples.len(),
+    };
+    assert_eq!(error, expected);
+    let link = device.into_link();
+    assert!(link.now() < Duration::from_secs(1), "{:?}", link.now());
+    assert_eq!(link.board.scene, None);
+}
+
+#[test]
+fn a_refused_upload_is_not_sent() {
+    let mut board = FakeBoard::new();
+    let full = Refusal::BitmapPoolFull { len: 62_500, free: 1000 };
+    board.refuse = Some(Box::new(move |command| matches!(command, Command::UploadBitmap { .. }).then_some(full)));
+    let mut device = connected(VirtualLink::new(board));
+    let (samples, scene) = (samples(62_500), scene(0.25));
+    let error = device.upload(&Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] }, &mut |_| {}).unwrap_err();
+    assert!(matches!(error, DeviceError::Refused { refusal, .. } if refusal == full), "{error}");
+    assert!(device.counters().wire_bytes < 200);
+}
+
+#[test]
+fn a_bitmap_of_another_size_is_refused_before_anything_is_sent() {
+    let samples = samples(62_500);
+    let scene = scene(0.25);
+    let mut device = connected(VirtualLink::new(FakeBoard::new()));
+    let before = device.counters();
+    let wrong = Bitmap { height: 249, ..bitmap(&samples) };
+    let error = device.upload(&Upload { scene: &scene, bitmaps: vec![wrong] }, &mut |_| {}).unwrap_err();
+    assert!(matches!(error, DeviceError::BitmapSize { found: 62_500, .. }), "{error}");
+    assert_eq!(device.counters(), before);
+}

@@ -1,0 +1,122 @@
+//! What a command ends with when it cannot go on: one sentence each.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use frixel::check::RehearsalError;
+use frixel::model_csv::CsvError;
+use frixel::output::OutputError;
+use frixel::player::SimulationError;
+use frixel::report::ReportError;
+use frixel::rigs::ServerError;
+use frixel::stream::FeedError;
+use frixel_driver::{DeviceError, PortError};
+use frixel_hil_sim::emulated::EmulatorError;
+use frixel_hil_sim::{StrokeError, WorldError};
+use frixel_model::ParameterError;
+use frixel_scene::CompileError;
+use frixel_wire::fault::Fault;
+use thiserror::Error;
+
+#[derive(Debug, Error)]
+pub(crate) enum CommandError {
+    #[error(transparent)]
+    Compile(#[from] CompileError),
+    #[error(transparent)]
+    Device(#[from] DeviceError),
+    #[error(transparent)]
+    Rehearsal(#[from] RehearsalError),
+    #[error(transparent)]
+    Port(#[from] PortError),
+    #[error(transparent)]
+    Server(#[from] ServerError),
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    #[error(transparent)]
+    Report(#[from] ReportError),
+    #[error(transparent)]
+    World(#[from] WorldError),
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+    #[error(transparent)]
+    Emulator(#[from] EmulatorError),
+    #[error("the contact model refuses the scene's finger: {0:?}")]
+    Finger(ParameterError),
+    #[error("{}: {source}", path.display())]
+    Stroke { path: PathBuf, source: StrokeError },
+    #[error("a stroke over this scene: {0}")]
+    NaturalStroke(StrokeError),
+    #[error("{input}: {source}")]
+    ModelCsv { input: String, source: CsvError },
+    #[error("{} is the input as well: writing it would destroy it; give --output another name", path.display())]
+    OutputIsInput { path: PathBuf },
+    #[error("{} cannot be read ({source}): check the path", path.display())]
+    Read { path: PathBuf, source: io::Error },
+    #[error("{} cannot be written ({source}): check the folder and its free space", path.display())]
+    Write { path: PathBuf, source: io::Error },
+    #[error("{} is not UTF-8 text: save it as UTF-8, a CSV file with the columns t_s,x_mm,y_mm", path.display())]
+    StrokeNotText { path: PathBuf },
+    #[error("{} lasts {seconds} s, longer than a day (86400 s): give a shorter stroke; its times are in seconds", path.display())]
+    StrokeTooLong { path: PathBuf, seconds: f64 },
+    #[error(
+        "{} is nowhere on the screen, which is {width_mm} by {height_mm} mm: give places in mm from its top left corner",
+        path.display()
+    )]
+    StrokeOffScreen { path: PathBuf, width_mm: f64, height_mm: f64 },
+    #[error(
+        "--stroke moves the finger of --port sim and --port qemu only; a board at {port} has its own: leave it out"
+    )]
+    StrokeOnBoard { port: String },
+    #[error("{port} sends telemetry at most {max} times a second, --csv-hz {asked} is more; ask for {max} or less")]
+    CsvTooFast { port: String, asked: u32, max: u32 },
+    #[error("--csv-hz {asked} does not divide the board's {tick_hz} ticks a second; ask for {nearest}")]
+    CsvUneven { asked: u32, tick_hz: u32, nearest: String },
+    #[error("{seconds} s is shorter than one tick of the board, {tick_s} s: play for longer")]
+    TooShort { seconds: f64, tick_s: f64 },
+    #[error(
+        "{port} is a board with an electrode: put on --arm, and hold the switch on the board, to let it drive hundreds of volts"
+    )]
+    NotArmed { port: String },
+    #[error(transparent)]
+    Feed(#[from] FeedError),
+    #[error(
+        "--stream-hz says how many samples a second come on standard input: put --stream - before it, or leave it out"
+    )]
+    StreamRateAlone,
+    #[error("samples on standard input have no rate of their own: put --stream-hz beside --stream -")]
+    StreamRateMissing,
+    #[error("{} has a sample rate of its own: leave --stream-hz out", path.display())]
+    StreamRateOfFile { path: PathBuf },
+    #[error(
+        "--watch follows the file while a board plays in real time, --port {port} does not: start `frixel sim` and give its port"
+    )]
+    WatchInVirtualTime { port: String },
+    #[error(
+        "--watch sends a saved scene while it plays, and a stream runs dry meanwhile: leave out --watch or --stream"
+    )]
+    WatchWithStream,
+    #[error("the emulated board's serial port is too slow for a stream: leave --stream out, or play on --port sim")]
+    StreamOnEmulated,
+    #[error("{port} stopped with its output at zero: {fault}")]
+    Faulted { port: String, fault: Fault },
+    #[error("{port} stopped with its output at zero: it had not heard from this host for the scene's host timeout")]
+    HostSilent { port: String },
+    #[error("{} is no PNG file by its name: give the picture a name that ends in .png", path.display())]
+    NotPng { path: PathBuf },
+    #[error("Ctrl-C cannot be watched for: {0}")]
+    Interrupt(#[from] ctrlc::Error),
+}
+
+impl CommandError {
+    /// For `map_err` on what is read.
+    pub(crate) fn reading(path: &Path) -> impl FnOnce(io::Error) -> Self {
+        let path = path.to_owned();
+        move |source| Self::Read { path, source }
+    }
+
+    /// For `map_err` on what is written.
+    pub(crate) fn writing(path: &Path) -> impl FnOnce(io::Error) -> Self {
+        let path = path.to_owned();
+        move |source| Self::Write { path, source }
+    }
+}

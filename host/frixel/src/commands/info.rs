@@ -1,0 +1,52 @@
+//! `frixel info`.
+
+use frixel_driver::{DEFAULT_BAUD, Device, SerialLink};
+use frixel_wire::hello::{Hello, feature};
+
+use super::InfoArgs;
+use super::error::CommandError;
+
+pub(super) fn run(args: &InfoArgs) -> Result<(), CommandError> {
+    let device = Device::connect(SerialLink::open(&args.port, DEFAULT_BAUD)?)?;
+    print!("{}", describe(device.hello()));
+    Ok(())
+}
+
+/// A hello for a person.
+fn describe(hello: &Hello) -> String {
+    let limits = &hello.limits;
+    let id = hello.id.iter().fold(String::new(), |id, byte| id + &format!("{byte:02x}"));
+    let (major, minor, patch) = hello.firmware;
+    let scene = if hello.scene_crc32 == 0 { "none".into() } else { format!("{:08x}", hello.scene_crc32) };
+    let fault = hello.last_fault.map_or("none".into(), |fault| format!("{fault} (detail {})", hello.fault_detail));
+    let lines = [
+        ("board", hello.board.to_string()),
+        ("id", id),
+        ("firmware", format!("{major}.{minor}.{patch}, protocol {}.{}", hello.protocol.0, hello.protocol.1)),
+        ("features", features(hello.features)),
+        ("tick rate", format!("{} Hz", hello.tick_hz)),
+        ("state", hello.state.to_string()),
+        ("scene", scene),
+        ("last reset", hello.reset_cause.to_string()),
+        ("last fault", fault),
+        ("largest voltage", format!("{} V peak", limits.voltage_max_v_peak)),
+        (
+            "largest current",
+            format!("{} mA rms, {} mA peak", 1e3 * limits.current_max_a_rms, 1e3 * limits.current_max_a_peak),
+        ),
+        ("worst electrode", format!("{} nF", 1e9 * limits.electrode_capacitance_max_f)),
+        ("bitmaps", format!("{} KiB", limits.bitmap_pool_bytes / 1024)),
+        ("records", limits.records_max.to_string()),
+        ("touch reports", format!("every {} ms", 1e3 * limits.touch_report_period_s)),
+    ];
+    lines.iter().fold(String::new(), |text, (name, value)| text + &format!("{name:16} {value}\n"))
+}
+
+/// What the firmware was built with, by name; what this program has no name for, by its bits.
+fn features(bits: u32) -> String {
+    let named = feature::NAMES.iter().filter(|(bit, _)| bits & bit != 0);
+    let unnamed = feature::NAMES.iter().fold(bits, |left, (bit, _)| left & !bit);
+    let names = named.map(|(_, name)| (*name).to_owned());
+    let names: Vec<String> = names.chain((unnamed != 0).then(|| format!("{unnamed:#x}"))).collect();
+    if names.is_empty() { "none".into() } else { names.join(", ") }
+}

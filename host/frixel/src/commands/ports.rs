@@ -1,0 +1,16 @@
+//! `frixel ports`.
+
+use frixel_driver::ports;
+
+use super::error::CommandError;
+
+pub(super) fn run() -> Result<(), CommandError> {
+    let found = ports()?;
+    if found.is_empty() {
+        println!("no serial port found; plug a board in, or start `frixel sim` and use the port that it prints");
+    }
+    for port in found {
+        println!("{port}");
+    }
+    Ok(())
+}

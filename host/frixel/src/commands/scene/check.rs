@@ -1,0 +1,43 @@
+//! `frixel scene check`: what a scene costs and what of it can be felt.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use frixel::check::SceneCheck;
+use frixel_hil_sim::RigConfig;
+use frixel_scene::{Scene, compile};
+
+use super::super::error::CommandError;
+
+#[derive(Debug, Args)]
+pub(in super::super) struct CheckArgs {
+    /// The scene, a TOML file (docs/scene.md).
+    scene: PathBuf,
+    /// Say what the smallest firmware that plays it is built with.
+    #[arg(long)]
+    board: bool,
+    /// Print one JSON object in place of the summary; of a scene with mistakes, all of them.
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(args: &CheckArgs) -> Result<(), CommandError> {
+    // The simulated board has the limits of the smallest one.
+    let rig = RigConfig::default();
+    let compiled = Scene::load(&args.scene).and_then(|scene| compile(&scene, &rig.board.limits, rig.board.tick_hz));
+    let program = match compiled {
+        Err(error) if args.json => {
+            println!("{}", error.to_json());
+            return Err(error.into());
+        }
+        compiled => compiled?,
+    };
+    let check = SceneCheck::of(&program, &rig)?;
+    let check = if args.board { check.with_board(&program) } else { check };
+    if args.json {
+        println!("{}", check.to_json());
+    } else {
+        print!("{}", check.summary());
+    }
+    Ok(())
+}

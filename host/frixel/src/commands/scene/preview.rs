@@ -1,0 +1,47 @@
+//! `frixel scene preview`: the friction map of a scene.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use frixel::output::{Preview, write_preview_png};
+use frixel_hil_sim::RigConfig;
+use frixel_scene::{Scene, compile};
+
+use super::super::error::CommandError;
+
+#[derive(Debug, Args)]
+pub(in super::super) struct PreviewArgs {
+    /// The scene, a TOML file (docs/scene.md).
+    scene: PathBuf,
+    /// The picture, a PNG file.
+    #[arg(short, long, value_name = "FILE.png")]
+    output: PathBuf,
+    /// How fast the finger slides: only curves of speed ask for it.
+    #[arg(long, value_name = "MM_PER_S", default_value_t = 100.0, value_parser = speed, allow_negative_numbers = true)]
+    speed_mm_per_s: f64,
+    /// Largest width of the map, in pixels.
+    #[arg(long, value_name = "PIXELS", default_value_t = 1_000, value_parser = clap::value_parser!(u32).range(100..=4_000))]
+    map_width: u32,
+}
+
+pub(super) fn run(args: &PreviewArgs) -> Result<(), CommandError> {
+    if !args.output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+        return Err(CommandError::NotPng { path: args.output.clone() });
+    }
+    let board = RigConfig::default().board;
+    let program = compile(&Scene::load(&args.scene)?, &board.limits, board.tick_hz)?;
+    let title = args.scene.file_name().unwrap_or_default().to_string_lossy();
+    let map_max = (args.map_width, args.map_width * 4 / 5);
+    let preview = Preview { speed_m_per_s: 1e-3 * args.speed_mm_per_s, map_max };
+    write_preview_png(&args.output, &title, &program, &preview)?;
+    println!("  {:<16} {}", "wrote", args.output.display());
+    Ok(())
+}
+
+/// A speed that a finger can have.
+fn speed(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(speed_mm_per_s) if (0.0..=10_000.0).contains(&speed_mm_per_s) => Ok(speed_mm_per_s),
+        _ => Err("expected a speed from 0 to 10000 mm/s".into()),
+    }
+}

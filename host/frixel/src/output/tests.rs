@@ -1,0 +1,345 @@
+use std::fs;
+use std::path::Path;
+
+use frixel_wire::fault::Flags;
+use frixel_wire::hello::BoardLimits;
+use proptest::prelude::*;
+
+use super::trace::Extremes;
+use super::*;
+use frixel_driver::Counters;
+use frixel_scene::metrics::{ErrorSize, MetricsSummary};
+use frixel_scene::wanted::Wanted;
+use frixel_scene::{Program, Scene, compile};
+
+const LIMITS: BoardLimits = BoardLimits {
+    bitmap_pool_bytes: 64 * 1024,
+    records_max: 64,
+    receive_window_bytes: 4096,
+    voltage_max_v_peak: 220.0,
+    full_scale_v_peak: 250.0,
+    edge_time_constant_s: 20e-6,
+    electrode_capacitance_max_f: 0.53e-9,
+    current_max_a_rms: 3e-3,
+    current_max_a_peak: 15e-3,
+    touch_report_period_s: 0.01,
+};
+
+fn brick() -> Program {
+    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/brick.toml"));
+    compile(&Scene::load(path).expect("it reads"), &LIMITS, 40_000).expect("it compiles")
+}
+
+/// Rows of a stroke along a slanted line, every millisecond; what is felt lags behind a little.
+fn stroke(program: &Program, seconds: f64) -> Vec<FeltRow> {
+    let wanted = Wanted::new(program);
+    let rows = (seconds * 1e3) as usize;
+    let at = |row: usize| {
+        let part = row as f64 / rows as f64;
+        (5.0 + 110.0 * part, 30.0 + 40.0 * part + 8.0 * (12.0 * part).sin())
+    };
+    let friction_n =
+        |(x_mm, y_mm): (f64, f64)| wanted.natural_friction_n() + wanted.electric_friction_n(x_mm * 1e-3, y_mm * 1e-3);
+    let row = |row: usize| {
+        let (x_mm, y_mm) = at(row);
+        let felt_n = friction_n(at(row.saturating_sub(2)));
+        FeltRow {
+            t_s: row as f64 * 1e-3,
+            x_mm: Some(x_mm),
+            y_mm: Some(y_mm),
+            speed_mm_s: Some(50.0),
+            wanted_n: Some(friction_n((x_mm, y_mm))),
+            asked_n: Some(felt_n),
+            felt_n: Some(felt_n),
+            voltage_v_rms: Some(150.0 * ((felt_n - 0.25) / 0.0278).max(0.0).sqrt()),
+            dac_code: Some(1000),
+            flags: Some(Flags::default()),
+        }
+    };
+    (0..=rows).map(row).collect()
+}
+
+fn trace(rows: &[FeltRow]) -> Trace {
+    let mut trace = Trace::new();
+    for row in rows {
+        trace.push(row);
+    }
+    trace
+}
+
+#[test]
+fn csv_bytes() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("felt.csv");
+    let mut csv = FeltCsv::create(&path).expect("a file");
+    let rows = [
+        FeltRow {
+            t_s: 0.001,
+            x_mm: Some(12.345_678),
+            y_mm: Some(-0.000_04),
+            speed_mm_s: Some(100.0),
+            wanted_n: Some(0.25),
+            asked_n: Some(0.263_123_456_7),
+            felt_n: Some(0.262),
+            voltage_v_rms: Some(99.999_96),
+            dac_code: Some(-12_345),
+            flags: Some(Flags::default()),
+        },
+        FeltRow { t_s: 1.5, flags: Some(Flags::STILL.with(Flags::SATURATED)), ..FeltRow::default() },
+        FeltRow { t_s: 2.0, felt_n: Some(f64::NAN), flags: Some(Flags(0x8008)), ..FeltRow::default() },
+        FeltRow { t_s: 3.0, dac_code: Some(0), ..FeltRow::default() },
+    ];
+    for row in &rows {
+        csv.write(row).expect("a row");
+    }
+    csv.finish().expect("the end");
+    assert_eq!(
+        fs::read_to_string(&path).expect("the file"),
+        "t_s,x_mm,y_mm,speed_mm_s,wanted_n,asked_n,felt_n,voltage_v_rms,dac_code,flags\n\
+         0.001000,12.3457,0.0000,100.000,0.250000000,0.263123457,0.262000000,100.0000,-12345,none\n\
+         1.500000,,,,,,,,,saturated+still\n\
+         2.000000,,,,,,,,,no-finger+0x8000\n\
+         3.000000,,,,,,,,0,\n"
+    );
+}
+
+#[test]
+fn files_that_cannot_be_written_are_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("missing").join("felt.csv");
+    let error = FeltCsv::create(&path).expect_err("no folder").to_string();
+    assert!(error.starts_with(&format!("{} cannot be written (", path.display())), "{error}");
+    let program = brick();
+    let error = write_scene_png(&path, "", &program, &Trace::new()).expect_err("no folder").to_string();
+    assert!(error.starts_with(&format!("{} cannot be written (", path.display())), "{error}");
+}
+
+/// Noise that never repeats, from 0 to 1.
+fn noise(row: usize) -> f64 {
+    (row as f64 * 0.618_033_988_749_895).fract()
+}
+
+fn noisy(rows: usize) -> impl Iterator<Item = FeltRow> {
+    (0..rows).map(|row| FeltRow {
+        t_s: row as f64 * 25e-6,
+        x_mm: Some(120.0 * noise(3 * row)),
+        y_mm: Some(80.0 * noise(7 * row)),
+        wanted_n: Some(0.25 + 0.03 * noise(row)),
+        felt_n: Some(0.25 + 0.03 * noise(row + 13)),
+        voltage_v_rms: Some(150.0 * noise(row + 29)),
+        ..FeltRow::default()
+    })
+}
+
+#[test]
+fn a_long_trace_stays_small_and_keeps_its_extremes() {
+    let mut trace = Trace::new();
+    for (number, mut row) in noisy(300_000).enumerate() {
+        if number == 123_457 {
+            row.felt_n = Some(0.9);
+        }
+        trace.push(&row);
+    }
+    assert!((800..1_600).contains(&trace.spans().len()), "{}", trace.spans().len());
+    assert!(trace.strokes().map(|stroke| stroke.len()).sum::<usize>() < 8_000);
+    let largest = trace.spans().iter().filter_map(|span| span.felt_n).map(|felt_n| felt_n.largest);
+    assert!(largest.fold(0.0, f64::max) >= 0.9);
+    let ends = (trace.spans()[0].start_s, trace.spans()[trace.spans().len() - 1].end_s);
+    assert_eq!(ends, (0.0, 299_999.0 * 25e-6));
+
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("felt.svg");
+    write_felt_svg(&path, "noise", &trace, &brick().reach).expect("a picture");
+    let bytes = fs::metadata(&path).expect("the file").len();
+    assert!(bytes < 1_000_000, "{bytes} bytes");
+}
+
+proptest! {
+    /// Every row lies within the one span that covers its time.
+    #[test]
+    fn spans_cover_their_rows(rows in 1..8_000_usize) {
+        let rows: Vec<FeltRow> = noisy(rows).collect();
+        let trace = trace(&rows);
+        let mut spans = trace.spans().iter();
+        let mut span = spans.next().expect("a span");
+        for row in &rows {
+            if row.t_s > span.end_s {
+                span = spans.next().expect("a span for every row");
+            }
+            prop_assert!(span.start_s <= row.t_s && row.t_s <= span.end_s);
+            let Some(Extremes { least, largest }) = span.felt_n else { panic!("felt") };
+            prop_assert!(row.felt_n.is_some_and(|felt_n| least <= felt_n && felt_n <= largest));
+        }
+        prop_assert!(spans.next().is_none());
+    }
+
+    #[test]
+    fn a_stroke_is_cut_where_the_finger_is_lifted(pieces in prop::collection::vec(1..50_usize, 1..6)) {
+        let mut trace = Trace::new();
+        for (number, piece) in pieces.iter().enumerate() {
+            for step in 0..*piece {
+                let place = (Some(step as f64), Some(number as f64));
+                trace.push(&FeltRow { x_mm: place.0, y_mm: place.1, ..FeltRow::default() });
+            }
+            trace.push(&FeltRow::default());
+            trace.push(&FeltRow::default());
+        }
+        let strokes: Vec<Vec<(f64, f64)>> = trace.strokes().collect();
+        prop_assert_eq!(strokes.iter().map(Vec::len).collect::<Vec<_>>(), pieces);
+    }
+
+    #[test]
+    fn steps_are_one_two_or_five(least in 1e-6..1e6f64) {
+        let step = scale::step(least);
+        prop_assert!(step >= least * (1.0 - 1e-5) && step <= 2.5 * least * (1.0 + 1e-5));
+        let digits = step / 10f64.powi(step.log10().floor() as i32);
+        prop_assert!([1.0, 2.0, 5.0, 10.0].iter().any(|digit| (digits - digit).abs() < 1e-6), "{}", digits);
+    }
+}
+
+#[test]
+fn felt_svg_has_axes_units_and_legend() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let program = brick();
+    let draw = |name: &str, rows: &[FeltRow]| {
+        let path = folder.path().join(name);
+        write_felt_svg(&path, "a < b & c", &trace(rows), &program.reach).expect("a picture");
+        fs::read_to_string(&path).expect("the file")
+    };
+    let mut rows = stroke(&program, 1.0);
+    let svg = draw("felt.svg", &rows);
+    for text in ["a &lt; b &amp; c", "friction, mN", "voltage, V rms", "time, s", "wanted", "felt", "reachable"] {
+        assert!(svg.lines().any(|line| line == text), "{text}");
+    }
+    assert!(svg.starts_with("<svg width=\"1000\" height=\"640\" viewBox=\"0 0 8000 5120\""));
+    assert_eq!(svg, draw("again.svg", &rows));
+    // A board that cannot tell what was felt.
+    for row in &mut rows {
+        row.felt_n = None;
+    }
+    let svg = draw("asked.svg", &rows);
+    assert!(svg.lines().any(|line| line == "asked for") && !svg.lines().any(|line| line == "felt"));
+    // Nothing at all is an empty picture, not an error.
+    draw("empty.svg", &[]);
+    draw("one.svg", &rows[..1]);
+}
+
+fn read_png(path: &Path) -> (usize, Vec<u8>) {
+    let mut decoder = png::Decoder::new(std::io::BufReader::new(fs::File::open(path).expect("a file")));
+    // A picture of few colours has a palette.
+    decoder.set_transformations(png::Transformations::EXPAND);
+    let mut reader = decoder.read_info().expect("a picture");
+    let mut bytes = vec![0; reader.output_buffer_size().expect("a size")];
+    let frame = reader.next_frame(&mut bytes).expect("samples");
+    assert_eq!((frame.color_type, frame.bit_depth), (png::ColorType::Rgb, png::BitDepth::Eight));
+    (frame.width as usize, bytes)
+}
+
+#[test]
+fn scene_png_shows_friction_and_stroke_where_they_are() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("scene.png");
+    let program = brick();
+    let rows = stroke(&program, 1.0);
+    write_scene_png(&path, "brick", &program, &trace(&rows)).expect("a picture");
+    let (width, bytes) = read_png(&path);
+    let again = folder.path().join("again.png");
+    write_scene_png(&again, "brick", &program, &trace(&rows)).expect("a picture");
+    assert_eq!(fs::read(&path).expect("a file"), fs::read(again).expect("a file"));
+    // 110 mm are 800 pixels, from the map's corner at (84, 60).
+    let pixel = |x_mm: f64, y_mm: f64| {
+        let at = |mm: f64| (mm * 800.0 / 110.0) as usize;
+        let first = 3 * ((60 + at(y_mm)) * width + 84 + at(x_mm));
+        [bytes[first], bytes[first + 1], bytes[first + 2]]
+    };
+    assert_eq!(pixel(2.0, 2.0), scale::colour(0.0));
+    let wanted = Wanted::new(&program);
+    for (x_mm, y_mm) in [(20.0, 20.0), (100.0, 100.0), (60.0, 90.0)] {
+        let expected =
+            scale::colour(wanted.electric_friction_n(x_mm * 1e-3, y_mm * 1e-3) / program.reach.electric_friction_max_n);
+        let near = pixel(x_mm, y_mm).iter().zip(expected).all(|(one, other)| one.abs_diff(other) < 24);
+        assert!(near, "{:?} is not {expected:?}", pixel(x_mm, y_mm));
+    }
+    let (x_mm, y_mm) = rows[500].x_mm.zip(rows[500].y_mm).expect("a place");
+    assert_eq!(pixel(x_mm, y_mm), [255, 59, 48]);
+}
+
+#[test]
+fn screens_of_any_shape_are_drawn() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut program = brick();
+    for (width_m, height_m) in [(2.0, 0.005), (0.005, 2.0), (0.005, 0.005), (2.0, 2.0)] {
+        (program.header.screen_width_m, program.header.screen_height_m) = (width_m, height_m);
+        let path = folder.path().join("scene.png");
+        write_scene_png(&path, "any shape", &program, &Trace::new()).expect("a picture");
+        let (width, bytes) = read_png(&path);
+        assert!(width < 1_300 && bytes.len() / 3 / width < 1_000);
+    }
+}
+
+#[test]
+fn colours_end_where_the_scale_ends() {
+    assert_eq!(scale::colour(-3.0), scale::colour(0.0));
+    assert_eq!(scale::colour(3.0), [253, 231, 37]);
+    assert_eq!(scale::colour(f64::NAN), [128, 128, 128]);
+    assert_eq!(scale::ticks(250.0, 277.8, 5.0).collect::<Vec<_>>(), [250.0, 255.0, 260.0, 265.0, 270.0, 275.0]);
+    assert_eq!([scale::label(-1e-9), scale::label(250.0), scale::label(0.1 + 0.2)], ["0", "250", "0.3"]);
+}
+
+fn report(summary: &MetricsSummary) -> Report {
+    let link = Counters { frames_sent: 400, frames_rejected: 1, payload_bytes: 63_000, wire_bytes: 65_000 };
+    let reach =
+        frixel_scene::Reach { natural_friction_n: 0.25, electric_friction_max_n: 0.025, voltage_max_v_rms: 150.0 };
+    Report::new("simulator", summary, &reach, &link, Some(123.4))
+}
+
+const NOTHING: MetricsSummary = MetricsSummary {
+    ticks: 0,
+    finger_down_ticks: 0,
+    saturated_ticks: None,
+    friction_error: None,
+    inversion_error: None,
+    carrier_ripple_rms_n: None,
+    wanted_range_n: None,
+};
+
+#[test]
+fn report_as_json() {
+    let known = MetricsSummary {
+        ticks: 120_000,
+        finger_down_ticks: 100_000,
+        saturated_ticks: Some(7),
+        friction_error: Some(ErrorSize { rms_n: 0.001, max_n: 0.005 }),
+        inversion_error: Some(ErrorSize { rms_n: 1e-6, max_n: 0.00002 }),
+        carrier_ripple_rms_n: Some(0.0005),
+        wanted_range_n: Some((0.25, 0.27)),
+    };
+    assert_eq!(
+        report(&known).to_json(),
+        "{\"rig\":\"simulator\",\"ticks\":120000,\"friction_error_rms_n\":0.001,\"friction_error_max_n\":0.005,\
+         \"inversion_error_rms_n\":1e-6,\"inversion_error_max_n\":0.00002,\"carrier_ripple_rms_n\":0.0005,\
+         \"reachable_min_n\":0.25,\"reachable_max_n\":0.275,\"wanted_min_n\":0.25,\"wanted_max_n\":0.27,\
+         \"saturated_ticks\":7,\"frames_sent\":400,\"frames_rejected\":1,\"payload_bytes\":63000,\"wire_bytes\":65000,\
+         \"realtime_factor\":123.4,\"stream_samples\":null,\"stream_underruns\":null,\"stream_gaps\":null}"
+    );
+    assert_eq!(
+        report(&known).summary(),
+        "  reachable        250.00 to 275.00 mN\n\
+         \x20 wanted           250.00 to 270.00 mN\n\
+         \x20 friction error   1.0000 mN rms, 5.0000 mN at most (4.000 % and 20.000 % of the range)\n\
+         \x20 inversion error  0.0010 mN rms, 0.0200 mN at most (0.004 % and 0.080 % of the range)\n\
+         \x20 carrier ripple   0.5000 mN rms\n\
+         \x20 ticks            120000, of which saturated 7\n\
+         \x20 link             400 frames sent, 1 rejected, 63000 payload bytes in 65000\n\
+         \x20 speed            123 times real time\n"
+    );
+}
+
+#[test]
+fn a_report_of_nothing_says_null_and_nothing() {
+    let report = report(&NOTHING);
+    assert!(report.to_json().contains("\"friction_error_rms_n\":null,\"friction_error_max_n\":null"));
+    assert!(report.to_json().contains("\"saturated_ticks\":null"));
+    assert!(!report.summary().contains("saturated"));
+    assert!(!report.summary().contains("error") && !report.summary().contains("NaN"));
+}

@@ -1,0 +1,320 @@
+//! Bytes on the wire, and of the table, against what is in the scene.
+
+use std::fmt::Write;
+use std::fs::File;
+use std::io;
+use std::ops::RangeInclusive;
+use std::path::Path;
+
+use frixel_hil_sim::{BoardMemory, RigConfig};
+use frixel_model::InverseTable;
+use frixel_wire::scene::{POINTS_MAX, POLYGON_POINTS_MAX, RECORDS_MAX, Scene as WireScene};
+
+use super::{Figure, ReportError};
+use crate::report::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
+use crate::report::data::Data;
+use crate::report::wire::OnTheWire;
+use frixel_scene::{CompileError, Program, Scene, compile};
+
+/// What every scene begins with.
+const HEAD: &str = "version = 1\n\
+                    [screen]\nwidth_mm = 120\nheight_mm = 80\n\
+                    [coating]\nthickness_um = 10\npermittivity = 1\n\
+                    [finger]\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\nfriction_coefficient = 0.5\nnormal_load_n = 0.5\n";
+/// Layers lie in the places of a lattice, so that no two are in one cell of the board's grid.
+const COLUMNS: usize = 8;
+const LATTICE_MM: (f64, f64) = (15.0, 10.0);
+const VERTICES_MIN: usize = 3;
+/// Samples along the side of a picture.
+const SIDES: [usize; 9] = [50, 75, 100, 125, 150, 175, 200, 225, 250];
+const PITCH_MM: f64 = 0.25;
+const PICTURE: &str = "picture.png";
+/// Frictions that are asked for, in percent of what can be reached.
+const PERCENTS: RangeInclusive<usize> = 1..=100;
+/// Bits that a byte takes on a serial line.
+const BITS_PER_BYTE: f64 = 10.0;
+
+fn corner_mm(number: usize) -> (f64, f64) {
+    ((number % COLUMNS) as f64 * LATTICE_MM.0, (number / COLUMNS) as f64 * LATTICE_MM.1)
+}
+
+fn gratings(count: usize) -> String {
+    (0..count).fold(HEAD.to_owned(), |mut text, number| {
+        let (x_mm, y_mm) = corner_mm(number);
+        // Writing to a string does not fail.
+        let _ = write!(
+            text,
+            "[[layer]]\nkind = \"grating\"\nwavelength_mm = 2\nlow_n = 0\nhigh_n = 0.02\n\
+             region = {{ x_mm = {x_mm}, y_mm = {y_mm}, width_mm = 5, height_mm = 4 }}\n"
+        );
+        text
+    })
+}
+
+fn polygons(count: usize, vertices: usize) -> String {
+    (0..count).fold(HEAD.to_owned(), |mut text, number| {
+        let (left_mm, top_mm) = corner_mm(number);
+        let points: Vec<_> = (0..vertices)
+            .map(|vertex| {
+                let angle = core::f64::consts::TAU * vertex as f64 / vertices as f64;
+                format!("[{:.3}, {:.3}]", left_mm + 3.0 + 2.5 * libm::cos(angle), top_mm + 3.0 + 2.5 * libm::sin(angle))
+            })
+            .collect();
+        let _ = write!(
+            text,
+            "[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n\
+             region = {{ shape = \"polygon\", points_mm = [{}] }}\n",
+            points.join(", ")
+        );
+        text
+    })
+}
+
+fn picture(side: usize) -> String {
+    let width_mm = side as f64 * PITCH_MM;
+    format!(
+        "{HEAD}[[layer]]\nkind = \"bitmap\"\npicture = \"{PICTURE}\"\nx_mm = 0\ny_mm = 0\nwidth_mm = {width_mm}\n\
+         pitch_mm = {PITCH_MM}\n"
+    )
+}
+
+/// The same friction everywhere.
+fn one_friction(percent: usize) -> String {
+    format!("{HEAD}[[layer]]\nkind = \"constant\"\nfriction_fraction = {}\n", percent as f64 / 100.0)
+}
+
+/// A picture of all greys, which goes by its own number of samples whatever is asked.
+fn write_picture(folder: &Path) -> Result<(), ReportError> {
+    const SIDE: u8 = 64;
+    let path = folder.join(PICTURE);
+    let greys: Vec<u8> = (0..SIDE).flat_map(|row| (0..SIDE).map(move |column| 2 * (row + column))).collect();
+    let written = File::create(&path).and_then(|file| {
+        let mut encoder = png::Encoder::new(file, SIDE.into(), SIDE.into());
+        encoder.set_color(png::ColorType::Grayscale);
+        encoder.set_depth(png::BitDepth::Eight);
+        let mut writer = encoder.write_header().map_err(io::Error::other)?;
+        writer.write_image_data(&greys).map_err(io::Error::other)?;
+        writer.finish().map_err(io::Error::other)
+    });
+    written.map_err(|source| ReportError::Write { path, source })
+}
+
+fn compiled(text: &str, folder: &Path) -> Result<Program, CompileError> {
+    let board = RigConfig::default().board;
+    compile(&Scene::parse(text, "a scene of the report", folder)?, &board.limits, board.tick_hz)
+}
+
+/// The most vertices of a polygon that a tick has time for.
+fn vertices_max(folder: &Path) -> usize {
+    let fits = |vertices: &usize| compiled(&polygons(1, *vertices), folder).is_ok();
+    (VERTICES_MIN..=POLYGON_POINTS_MAX).rev().find(fits).unwrap_or(VERTICES_MIN)
+}
+
+/// Bytes of the inverse table that the board computes for a program.
+fn table_bytes(program: &Program) -> usize {
+    let scene = program.scene_bytes();
+    let rows = WireScene::parse(&scene).ok().and_then(|scene| {
+        let rows = BoardMemory::table_rows(&scene, &RigConfig::default().board);
+        rows.ok().map(|rows| rows.filled)
+    });
+    InverseTable::ROW_BYTES * rows.unwrap_or_default()
+}
+
+/// Scenes of one kind of content.
+struct Family {
+    name: String,
+    colour: plotters::style::RGBColor,
+    scenes: Vec<Measured>,
+}
+
+/// How much is in a scene, what it is on the wire, and how much of the table it needs.
+struct Measured {
+    amount: usize,
+    wire: OnTheWire,
+    table_bytes: usize,
+}
+
+impl Family {
+    fn new(
+        name: &str,
+        colour: plotters::style::RGBColor,
+        folder: &Path,
+        scenes: impl Iterator<Item = (usize, String)>,
+    ) -> Result<Self, ReportError> {
+        let measured = |(amount, text): (usize, String)| {
+            let program = compiled(&text, folder)?;
+            Ok(Measured { amount, wire: OnTheWire::of(&program)?, table_bytes: table_bytes(&program) })
+        };
+        Ok(Self { name: name.to_owned(), colour, scenes: scenes.map(measured).collect::<Result<_, ReportError>>()? })
+    }
+
+    fn largest(&self) -> OnTheWire {
+        self.scenes.last().map(|scene| scene.wire).unwrap_or_default()
+    }
+
+    fn draw_table(&self, panel: &mut Panel) {
+        let points = self.scenes.iter().map(|scene| (scene.amount as f64, scene.table_bytes as f64)).collect();
+        panel.add("", Look { colour: self.colour, line: Line::Solid, mark: Mark::None }, points);
+    }
+
+    fn draw(&self, panel: &mut Panel, mark: Mark) {
+        let points = |bytes: fn(&OnTheWire) -> usize| {
+            self.scenes.iter().map(|scene| (scene.amount as f64, bytes(&scene.wire) as f64)).collect::<Vec<_>>()
+        };
+        let Self { name, colour, .. } = self;
+        panel.add("", Look::line(PALETTE[6], Line::Dashed), points(OnTheWire::content_bytes));
+        panel.add(name, Look { colour: *colour, line: Line::Solid, mark }, points(|wire| wire.wire_bytes));
+    }
+
+    fn rows(&self, data: &mut Data<8>, unit: &str) {
+        for Measured { amount, wire, table_bytes } in &self.scenes {
+            let [scene, picture] = [wire.scene_bytes, wire.picture_bytes].map(Into::into);
+            let (frames, bytes) = (wire.frames.into(), wire.wire_bytes.into());
+            data.row([
+                self.name.as_str().into(),
+                unit.into(),
+                (*amount).into(),
+                scene,
+                picture,
+                frames,
+                bytes,
+                (*table_bytes).into(),
+            ]);
+        }
+    }
+}
+
+/// All scenes: gratings, polygons of few and of many vertices, pictures, frictions.
+fn families() -> Result<[Family; 5], ReportError> {
+    let folder = tempfile::tempdir().map_err(|source| ReportError::Write { path: std::env::temp_dir(), source })?;
+    let folder = folder.path();
+    write_picture(folder)?;
+    let many = vertices_max(folder);
+    let of_polygons =
+        |vertices: usize| (1..=POINTS_MAX / vertices).map(move |count| (count * vertices, polygons(count, vertices)));
+    Ok([
+        Family::new("gratings", PALETTE[0], folder, (1..=RECORDS_MAX).map(|count| (count, gratings(count))))?,
+        Family::new("triangles", PALETTE[2], folder, of_polygons(VERTICES_MIN))?,
+        Family::new(&format!("polygons of {many} vertices"), PALETTE[1], folder, of_polygons(many))?,
+        Family::new("a picture", PALETTE[3], folder, SIDES.into_iter().map(|side| (side, picture(side))))?,
+        Family::new("a friction", PALETTE[4], folder, PERCENTS.map(|percent| (percent, one_friction(percent))))?,
+    ])
+}
+
+pub(super) fn figure(tick: &str) -> Result<Figure, ReportError> {
+    let families = families()?;
+    let [gratings, triangles, polygons, pictures, frictions] = &families;
+    let mut data =
+        Data::new(["content", "unit", "amount", "scene_bytes", "picture_bytes", "frames", "wire_bytes", "table_bytes"]);
+    let units = ["layers", "vertices", "vertices", "samples a side", "percent of the reach"];
+    for (family, unit) in families.iter().zip(units) {
+        family.rows(&mut data, unit);
+    }
+    let panel = |title: &str, x: &str, amounts: f64, y: &str, bytes: f64| {
+        Panel::new(title, Axis::linear(x, 0.0..amounts), Axis::linear(y, 0.0..bytes))
+    };
+    let wire = "bytes on the wire";
+    let mut left = panel("Gratings", "gratings", 66.0, wire, 4_400.0);
+    gratings.draw(&mut left, Mark::None);
+    let mut middle = panel("Polygons", "vertices of all polygons", 132.0, wire, 4_400.0);
+    triangles.draw(&mut middle, Mark::None);
+    polygons.draw(&mut middle, Mark::Disc);
+    let mut right = panel("A picture", "samples along each side", 262.0, wire, 72_000.0);
+    pictures.draw(&mut right, Mark::Square);
+    right.add("without framing", Look::line(PALETTE[6], Line::Dashed), Vec::new());
+    let mut table = panel("The table", "largest friction, % of the reach", 104.0, "bytes of the table", 1_100.0);
+    frictions.draw_table(&mut table);
+    Ok(Figure {
+        name: "bytes-against-scene-content",
+        title: "Bytes on the wire and of the table against what is in the scene".to_owned(),
+        caption: caption(&families, tick),
+        chart: Chart { panels: vec![left, middle, right, table], columns: 2, shared_legend: true },
+        csv: data.csv()?,
+    })
+}
+
+fn caption(families: &[Family; 5], tick: &str) -> Vec<String> {
+    let [gratings, _, polygons, pictures, frictions] = families;
+    let table = |percent: usize| {
+        frictions.scenes.iter().find(|scene| scene.amount == percent).map_or(0, |scene| scene.table_bytes)
+    };
+    let (scene, picture) = (gratings.largest(), pictures.largest());
+    let milliseconds = |bytes: usize, baud: f64| 1e3 * bytes as f64 * BITS_PER_BYTE / baud;
+    vec![
+        format!(
+            "All bytes that the host sends from the start of an upload to its commit, as compiler and driver make them: chunks of \
+             header, layers, points and samples in their frames, and the requests around them. Dashed: the compiled scene and its \
+             picture alone. {RECORDS_MAX} gratings are {} bytes in {} frames, {:.0} ms at 2 Mbaud and {:.0} ms at 115,200 baud; a \
+             picture of 250 by 250 samples is {} bytes in {} frames, {:.0} ms and {:.1} s.",
+            scene.wire_bytes,
+            scene.frames,
+            milliseconds(scene.wire_bytes, 2e6),
+            milliseconds(scene.wire_bytes, 115_200.0),
+            picture.wire_bytes,
+            picture.frames,
+            milliseconds(picture.wire_bytes, 2e6),
+            1e-3 * milliseconds(picture.wire_bytes, 115_200.0),
+        ),
+        format!(
+            "A layer takes the same whatever its kind; a vertex comes on top of its polygon's layer, and a scene has at most \
+             {POINTS_MAX} of them. Triangles and {} are shown: the format takes {POLYGON_POINTS_MAX} in a polygon, but a tick has no \
+             time for more than these. A sample is a byte, and a picture's size on the wire goes with its area, whatever it shows; one that a board holds already is not \
+             sent again.",
+            polygons.name
+        ),
+        format!(
+            "The board computes of its inverse table what a scene can ask for: {} bytes for all of the reach, {} for half of it, {} for \
+             a tenth. The table's room in RAM, {} bytes, is the same for every scene; what is saved is time when the scene is taken. It \
+             reaches down to 1 V for every scene, since the friction of a still finger is ramped away.",
+            table(100),
+            table(50),
+            table(10),
+            size_of::<InverseTable>(),
+        ),
+        tick.to_owned(),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use frixel_hil_sim::{BoardMemory, Point, Rig, Stroke};
+
+    use super::*;
+    use crate::rigs::{Recorder, SimLink};
+    use frixel_driver::{Bitmap, Device, Upload};
+
+    /// What the driver sends to a simulated board: frames and bytes.
+    fn sent(program: &Program) -> (u64, u64) {
+        let config = RigConfig::default();
+        let (mut memory, board) = (BoardMemory::new(), &config.board);
+        let point = Point { x_m: 0.01, y_m: 0.01 };
+        let stroke = Stroke::constant_speed(point, Point { x_m: 0.1, ..point }, 0.1).expect("a stroke");
+        let rig = Rig::new(&mut memory, &config, stroke, 1).expect("a rig");
+        let recorder = Recorder::new(program, &board.limits, board.tick_hz, 1, 1).expect("a recorder");
+        let mut device = Device::connect(SimLink::new(rig, recorder)).expect("a board");
+        let before = device.counters();
+        let scene = program.scene_bytes();
+        let bitmaps = program.bitmaps.iter().map(|bitmap| Bitmap {
+            crc32: bitmap.crc32,
+            width: bitmap.width,
+            height: bitmap.height,
+            samples: &bitmap.samples,
+        });
+        let upload = Upload { scene: &scene, bitmaps: bitmaps.collect() };
+        device.upload(&upload, &mut |_| {}).expect("an upload");
+        device.commit(upload.scene_crc32()).expect("a commit");
+        let after = device.counters();
+        (after.frames_sent - before.frames_sent, after.wire_bytes - before.wire_bytes)
+    }
+
+    #[test]
+    fn the_driver_sends_as_much() {
+        let folder = tempfile::tempdir().expect("a folder");
+        write_picture(folder.path()).expect("a picture");
+        for text in [HEAD.to_owned(), gratings(1), gratings(64), polygons(42, 3), picture(50), picture(250)] {
+            let program = compiled(&text, folder.path()).expect("it compiles");
+            let wire = OnTheWire::of(&program).expect("frames");
+            assert_eq!((wire.frames as u64, wire.wire_bytes as u64), sent(&program));
+        }
+    }
+}

@@ -1,0 +1,212 @@
+//! Error against the rate of ticks: what a finger feels of a texture.
+
+use std::path::Path;
+
+use frixel_hil_sim::{Point, RigConfig, Stroke, TouchConfig};
+
+use super::{Figure, ReportError};
+use crate::output::FeltRow;
+use crate::player::{Simulation, simulate};
+use crate::report::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
+use crate::report::data::Data;
+use frixel_scene::{Scene, compile};
+
+/// Ticks a second, all whole numbers of ticks to a window.
+const TICKS_HZ: [u32; 9] = [1_000, 2_000, 4_000, 5_000, 8_000, 10_000, 16_000, 20_000, 40_000];
+/// Ticks of half a carrier period, at least.
+const HALF_PERIOD_MIN_TICKS: u32 = 4;
+/// The carrier where ticks allow it, in Hz.
+const CARRIER_HZ: u32 = 1_000;
+/// Windows a second over which felt and wanted friction are taken as means, whatever the ticks: a period of that carrier.
+const WINDOW_HZ: u32 = 1_000;
+const SPEED_M_PER_S: f64 = 0.1;
+/// Each seed has another phase between carrier, touch source and stripes.
+const SEEDS: [u64; 5] = [1, 2, 3, 4, 5];
+/// What is left out at the beginning, in s: the envelope rises, and the estimator finds the finger.
+const SETTLING_S: f64 = 0.1;
+
+/// A touch source that is neither late nor inexact.
+const IDEAL_TOUCH: TouchConfig = TouchConfig { rate_hz: 500.0, latency_s: 0.0, noise_rms_m: 0.0, jitter_rms_s: 0.0 };
+
+/// A curve of the chart.
+struct Case {
+    name: &'static str,
+    wavelength_mm: f64,
+    touch: TouchConfig,
+    look: Look,
+}
+
+fn cases() -> [Case; 4] {
+    let curve = |colour, mark| Look { colour, line: Line::Solid, mark };
+    [
+        Case { name: "2 mm stripes", wavelength_mm: 2.0, touch: IDEAL_TOUCH, look: curve(PALETTE[0], Mark::Disc) },
+        Case { name: "1 mm stripes", wavelength_mm: 1.0, touch: IDEAL_TOUCH, look: curve(PALETTE[2], Mark::Square) },
+        Case {
+            name: "0.5 mm stripes",
+            wavelength_mm: 0.5,
+            touch: IDEAL_TOUCH,
+            look: curve(PALETTE[1], Mark::Triangle),
+        },
+        Case {
+            name: "2 mm stripes, a real touch source",
+            wavelength_mm: 2.0,
+            touch: TouchConfig::default(),
+            look: curve(PALETTE[3], Mark::Ring),
+        },
+    ]
+}
+
+/// The carrier at a rate of ticks: as fast as its half period allows, and no faster than is of use.
+fn carrier_hz(tick_hz: u32) -> u32 {
+    (tick_hz / (2 * HALF_PERIOD_MIN_TICKS)).min(CARRIER_HZ)
+}
+
+fn scene(wavelength_mm: f64, carrier_hz: u32) -> String {
+    format!(
+        "version = 1\n\
+         [screen]\nwidth_mm = 120\nheight_mm = 80\n\
+         [coating]\nthickness_um = 10\npermittivity = 1\n\
+         [finger]\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\nfriction_coefficient = 0.5\nnormal_load_n = 0.5\n\
+         [carrier]\nfrequency_hz = {carrier_hz}\n\
+         [[layer]]\nkind = \"grating\"\nwavelength_mm = {wavelength_mm}\nlow_n = 0.0\nhigh_n = 0.02\n"
+    )
+}
+
+/// What was felt, in rows a window long or a tick long, and the electric range that is reachable.
+struct Felt {
+    rows: Vec<FeltRow>,
+    natural_n: f64,
+    range_n: f64,
+}
+
+fn felt(case: &Case, tick_hz: u32, rows_hz: u32, seed: u64) -> Result<Felt, ReportError> {
+    let mut rig = RigConfig::default();
+    rig.board.tick_hz = tick_hz;
+    rig.world.tick_hz = tick_hz;
+    rig.world.touch = case.touch;
+    let text = scene(case.wavelength_mm, carrier_hz(tick_hz));
+    let scene = Scene::parse(&text, "the report's texture", Path::new(""))?;
+    let program = compile(&scene, &rig.board.limits, tick_hz)?;
+    let stroke = Stroke::constant_speed(Point { x_m: 0.01, y_m: 0.04 }, Point { x_m: 0.11, y_m: 0.04 }, SPEED_M_PER_S)?;
+    let simulation =
+        Simulation { rig, seconds: stroke.duration_s(), stroke, seed, ticks_per_row: tick_hz.div_ceil(rows_hz) };
+    let simulated = simulate(&program, &simulation, &mut |_| {})?;
+    Ok(Felt {
+        rows: simulated.recorder.rows().to_vec(),
+        natural_n: program.reach.friction_min_n(),
+        range_n: program.reach.electric_friction_max_n,
+    })
+}
+
+/// Root mean square of felt less wanted over the windows of all seeds, as a part of the reachable range.
+fn rms_error(case: &Case, tick_hz: u32) -> Result<f64, ReportError> {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for seed in SEEDS {
+        let felt = felt(case, tick_hz, WINDOW_HZ, seed)?;
+        let settled = felt.rows.iter().filter(|row| row.t_s > SETTLING_S);
+        for error_n in settled.filter_map(|row| Some(row.felt_n? - row.wanted_n?)) {
+            sum += (error_n / felt.range_n).powi(2);
+            count += 1.0;
+        }
+    }
+    Ok((sum / count).sqrt())
+}
+
+/// What is wanted and felt of the finest stripes over a few of them.
+fn trace(panel: &mut Panel, data: &mut Data<6>, case: &Case) -> Result<(), ReportError> {
+    for (index, (tick_hz, look)) in
+        (0..).zip([(1_000, Look::line(PALETTE[1], Line::Solid)), (40_000, Look::line(PALETTE[0], Line::Solid))])
+    {
+        let felt = felt(case, tick_hz, tick_hz, SEEDS[0])?;
+        let start_s = 0.3;
+        let shown: Vec<_> = felt.rows.iter().filter(|row| (start_s..start_s + 0.02).contains(&row.t_s)).collect();
+        let natural_n = felt.natural_n;
+        let part = |value: fn(&FeltRow) -> Option<f64>| {
+            shown
+                .iter()
+                .filter_map(|row| Some((1e3 * (row.t_s - start_s), 1e3 * (value(row)? - natural_n))))
+                .collect::<Vec<_>>()
+        };
+        let mut put = |curve: &str, time_ms: f64, friction_mn: f64| {
+            let (ticks, carrier) = (f64::from(tick_hz), f64::from(carrier_hz(tick_hz)));
+            data.row([curve.into(), ticks.into(), carrier.into(), None.into(), time_ms.into(), friction_mn.into()]);
+        };
+        for (time_ms, wanted_mn) in part(|row| row.wanted_n) {
+            put("wanted", time_ms, wanted_mn);
+        }
+        let curve = part(|row| row.felt_n);
+        for (time_ms, felt_mn) in &curve {
+            put("felt", *time_ms, *felt_mn);
+        }
+        panel.add(&format!("felt at {} kHz", tick_hz / 1_000), look, curve);
+        if index == 1 {
+            panel.add("wanted", Look::line(PALETTE[6], Line::Dashed), part(|row| row.wanted_n));
+        }
+    }
+    Ok(())
+}
+
+fn caption() -> Vec<String> {
+    let carriers: Vec<_> = TICKS_HZ.iter().filter(|tick_hz| carrier_hz(**tick_hz) < CARRIER_HZ).collect();
+    let slower: Vec<_> =
+        carriers.iter().map(|tick_hz| format!("{} Hz at {} kHz", carrier_hz(**tick_hz), **tick_hz / 1_000)).collect();
+    vec![
+        format!(
+            "A sine grating of 20 mN under a finger that slides at 100 mm/s, played on the simulated board with its ticks at \
+             another rate, and felt through amplifier and friction lag. Left: root mean square of felt less wanted friction, both \
+             as means over 1 ms, over five seeds. The carrier is 1 kHz where half its period has the {HALF_PERIOD_MIN_TICKS} ticks \
+             that a board demands; with fewer ticks it is slower ({}). A square carrier's force does not depend on its frequency \
+             but for its edges.",
+            slower.join(", ")
+        ),
+        "At few ticks a second the error is what the finger slides in a tick or two, and halves with it. It ends at what ticks \
+         cannot help: the friction lag (1.4 kHz at this speed) and the carrier's edges, or, with a touch source of 100 Hz that is \
+         10 ms late and noisy, what is not known of the finger's place. The other curves have a touch source of 500 Hz without \
+         delay or noise. What is wanted is taken at the end of each tick."
+            .to_owned(),
+        "Right: the finest stripes tick by tick, with that touch source. The spikes at 40 kHz are the edges of the carrier, which a \
+         mean over its period takes out."
+            .to_owned(),
+    ]
+}
+
+pub(super) fn figure() -> Result<Figure, ReportError> {
+    let mut left = Panel::new(
+        "Stripes under a finger of 100 mm/s",
+        Axis::log("ticks a second, kHz", 0.9..50.0),
+        Axis::log("rms friction error, % of the reachable range", 0.1..100.0),
+    );
+    let mut data = Data::new([
+        "curve",
+        "tick_hz",
+        "carrier_hz",
+        "rms_error_over_reachable_range",
+        "time_ms",
+        "electric_friction_mn",
+    ]);
+    for case in cases() {
+        let mut points = Vec::new();
+        for tick_hz in TICKS_HZ {
+            let error = rms_error(&case, tick_hz)?;
+            points.push((1e-3 * f64::from(tick_hz), 100.0 * error));
+            let carrier_hz = f64::from(carrier_hz(tick_hz));
+            let ticks = f64::from(tick_hz);
+            data.row([case.name.into(), ticks.into(), carrier_hz.into(), error.into(), None.into(), None.into()]);
+        }
+        left.add(case.name, case.look, points);
+    }
+    let mut right = Panel::new(
+        "0.5 mm stripes, tick by tick",
+        Axis::linear("time, ms", 0.0..20.0),
+        Axis::linear("electric friction, mN", -2.0..24.0),
+    );
+    let [_, _, finest, _] = cases();
+    trace(&mut right, &mut data, &finest)?;
+    Ok(Figure {
+        name: "error-against-tick-rate",
+        title: "Error against the rate of ticks, for a felt texture".to_owned(),
+        caption: caption(),
+        chart: Chart { panels: vec![left, right], columns: 2, shared_legend: false },
+        csv: data.csv()?,
+    })
+}

@@ -1,0 +1,108 @@
+//! A virtual board behind a pseudo-terminal, paced by the wall clock.
+
+use std::io;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use frixel_hil_sim::{PseudoTerminal, Rig};
+use thiserror::Error;
+
+use super::server_log::ServerLog;
+use crate::output::OutputError;
+
+/// How long the server sleeps between two looks at the clock.
+const NAP: Duration = Duration::from_millis(1);
+/// Most virtual time between two looks at the terminal, so that what a client sends meanwhile is not late.
+const BATCH_MAX_S: f64 = 5e-3;
+/// Most reads of 4 KiB between two batches of ticks: more than a terminal holds, and an end for a client that writes as fast
+/// as it is read.
+const READS_MAX: usize = 16;
+/// When the wall clock is this far ahead, the machine was busy elsewhere: virtual time lets it go.
+const LAG_MAX_S: f64 = 50e-3;
+
+/// Why a virtual board ended.
+#[derive(Debug, Error)]
+pub enum ServerError {
+    /// No pseudo-terminal could be made.
+    #[error("no pseudo-terminal for the virtual board: {0}; this needs a Unix system with /dev/pts")]
+    Terminal(#[from] io::Error),
+    /// The pseudo-terminal broke.
+    #[error("the virtual board's pseudo-terminal {path} broke: {source}")]
+    Line {
+        /// Path of the terminal.
+        path: String,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// A file could not be written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+}
+
+/// A virtual board on a pseudo-terminal.
+pub struct Server {
+    terminal: PseudoTerminal,
+    /// What the terminal had no room for: the client has not read what came before.
+    unwritten: Vec<u8>,
+    log: ServerLog,
+}
+
+impl Server {
+    /// Creates `felt.csv`, with a row every `ticks_per_row` ticks, and `events.csv` in `folder`; then makes the
+    /// pseudo-terminal.
+    pub fn open(folder: &Path, tick_hz: u32, ticks_per_row: u32) -> Result<Self, ServerError> {
+        let log = ServerLog::create(folder, tick_hz, ticks_per_row)?;
+        Ok(Self { terminal: PseudoTerminal::open()?, unwritten: Vec::new(), log })
+    }
+
+    /// What a client opens.
+    pub fn path(&self) -> &str {
+        self.terminal.path()
+    }
+
+    /// Runs `rig` at the pace of the wall clock until `interrupted`, with the finger on its stroke from the start, and
+    /// writes down what happens.
+    pub fn run(mut self, rig: &mut Rig, interrupted: &dyn Fn() -> bool) -> Result<(), ServerError> {
+        let tick_period_s = 1.0 / f64::from(rig.tick_hz());
+        rig.world_mut().start_stroke();
+        let mut epoch = Instant::now();
+        while !interrupted() {
+            self.exchange(rig).map_err(|source| ServerError::Line { path: self.path().to_owned(), source })?;
+            let mut behind_s = epoch.elapsed().as_secs_f64() - rig.tick() as f64 * tick_period_s;
+            if behind_s > LAG_MAX_S {
+                epoch += Duration::from_secs_f64(behind_s - BATCH_MAX_S);
+                behind_s = BATCH_MAX_S;
+            }
+            for _ in 0..(behind_s.min(BATCH_MAX_S) / tick_period_s) as u32 {
+                let record = rig.step();
+                self.log.take(&record, rig)?;
+            }
+            std::thread::sleep(NAP);
+        }
+        Ok(self.log.flush()?)
+    }
+
+    /// Moves bytes between client and board.
+    ///
+    /// All that the client has written is taken at once, and the rig drops what is beyond its credit: what waited in the
+    /// terminal would reach the board after the client has gone. A client that does not read holds up the board's line, but
+    /// not the board.
+    fn exchange(&mut self, rig: &mut Rig) -> io::Result<()> {
+        if self.terminal.client_has_gone()? {
+            self.unwritten.clear();
+        }
+        let mut bytes = [0; 4096];
+        for _ in 0..READS_MAX {
+            let count = self.terminal.read(&mut bytes)?;
+            if count == 0 {
+                break;
+            }
+            rig.send(bytes.get(..count).unwrap_or_default());
+        }
+        rig.receive(&mut self.unwritten);
+        let written = self.terminal.write(&self.unwritten)?;
+        self.unwritten.drain(..written);
+        rig.set_host_away(!self.unwritten.is_empty());
+        Ok(())
+    }
+}

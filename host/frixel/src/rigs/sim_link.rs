@@ -1,0 +1,102 @@
+//! A link to the in-process rig. Its clock is the rig's: a wait of a second passes in no time.
+
+use std::time::Duration;
+
+use frixel_hil_sim::Rig;
+use frixel_wire::fault::State;
+
+use super::Recorder;
+use frixel_driver::{Link, LinkClosed, Written};
+
+/// A frame that goes out by itself.
+struct KeepAlive {
+    frame: Vec<u8>,
+    period_ticks: u64,
+}
+
+/// The host's end of a simulated board's line.
+///
+/// The finger begins its stroke, and the recorder begins to record, when the scene first plays.
+pub struct SimLink<'a> {
+    rig: Rig<'a>,
+    recorder: Recorder,
+    recording: bool,
+    written: Written,
+    written_at_tick: u64,
+    keep_alive: Option<KeepAlive>,
+}
+
+impl<'a> SimLink<'a> {
+    /// A link to `rig`, whose ticks `recorder` will see.
+    pub fn new(rig: Rig<'a>, recorder: Recorder) -> Self {
+        Self { rig, recorder, recording: false, written: Written::default(), written_at_tick: 0, keep_alive: None }
+    }
+
+    /// What was recorded.
+    pub fn into_recorder(self) -> Recorder {
+        self.recorder
+    }
+
+    pub(crate) fn recorder_mut(&mut self) -> &mut Recorder {
+        &mut self.recorder
+    }
+
+    fn ticks(&self, time: Duration) -> u64 {
+        (time.as_secs_f64() * f64::from(self.rig.tick_hz())).ceil() as u64
+    }
+
+    fn step(&mut self) {
+        let ping =
+            self.keep_alive.take_if(|keep_alive| self.rig.tick() - self.written_at_tick >= keep_alive.period_ticks);
+        if let Some(keep_alive) = ping {
+            self.send(&keep_alive.frame);
+            self.keep_alive = Some(keep_alive);
+        }
+        let record = self.rig.step();
+        if self.recording {
+            self.recorder.take(&record);
+        } else if record.status.telemetry.state == State::Active {
+            self.rig.world_mut().start_stroke();
+            self.recording = true;
+        }
+    }
+
+    fn send(&mut self, frame: &[u8]) {
+        self.rig.send(frame);
+        self.recorder.hear(frame);
+        self.written.add(frame);
+        self.written_at_tick = self.rig.tick();
+    }
+}
+
+impl Link for SimLink<'_> {
+    fn write(&mut self, frame: &[u8]) -> Result<u64, LinkClosed> {
+        self.send(frame);
+        Ok(self.written.bytes)
+    }
+
+    fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed> {
+        let end = self.rig.tick() + self.ticks(wait);
+        while !self.rig.has_received() && self.rig.tick() < end {
+            self.step();
+        }
+        self.rig.receive(buffer);
+        Ok(())
+    }
+
+    fn now(&self) -> Duration {
+        Duration::from_secs_f64(self.rig.tick() as f64 / f64::from(self.rig.tick_hz()))
+    }
+
+    fn keep_alive(&mut self, frame: Vec<u8>, period: Duration) {
+        self.keep_alive = Some(KeepAlive { frame, period_ticks: self.ticks(period) });
+    }
+
+    fn written(&self) -> Written {
+        self.written
+    }
+
+    fn name(&self) -> &'static str {
+        "sim"
+    }
+}

@@ -1,0 +1,147 @@
+//! `frixel play --port qemu` as a person uses it.
+
+use std::fs;
+use std::os::unix::fs::PermissionsExt;
+use std::os::unix::process::CommandExt;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
+
+use tempfile::TempDir;
+
+use crate::bench::turn;
+use crate::emulator;
+
+/// Plays the brick with the longest host timeout that there is: on a busy machine pings are late.
+fn play(folder: &Path) -> Command {
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    fs::create_dir_all(folder.join("textures")).unwrap();
+    fs::copy(scenes.join("textures/brick.png"), folder.join("textures/brick.png")).unwrap();
+    let brick = fs::read_to_string(scenes.join("brick.toml")).unwrap();
+    let scene = folder.join("brick.toml");
+    fs::write(&scene, brick.replace("[drive]\n", "[drive]\nhost_timeout_ms = 1000\n")).unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_frixel"));
+    command.arg("play").arg(scene).args(["--port", "qemu", "--json"]).current_dir(folder);
+    command
+}
+
+#[test]
+fn a_scene_plays_on_the_emulated_board() {
+    if emulator::image().is_none() {
+        return;
+    }
+    let _turn = turn();
+    let folder = TempDir::new().unwrap();
+    let output = play(folder.path()).args(["--seconds", "0.5"]).output().unwrap();
+    assert!(output.status.success(), "{}", said(&output));
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(json["rig"], "qemu");
+    assert_eq!(json["ticks"], 20_000);
+    assert_eq!(json["frames_rejected"], 0);
+    // What only a look at every tick could tell.
+    assert!(json["saturated_ticks"].is_null() && json["inversion_error_rms_n"].is_null());
+    // The first strokes of the brick are within 3 mN on every rig; with the output at zero it would be 10.
+    let error_n = json["friction_error_rms_n"].as_f64().unwrap();
+    assert!((1e-6..5e-3).contains(&error_n), "{error_n} N rms");
+
+    let felt = fs::read_to_string(folder.path().join("frixel-out/felt.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = felt.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    assert_eq!(rows.len(), 500);
+    let largest = |column: usize| rows.iter().filter_map(|row| row[column].parse::<f64>().ok()).fold(0.0, f64::max);
+    assert!((0.26..0.28).contains(&largest(6)), "felt {} N at most", largest(6));
+    assert!((50.0..200.0).contains(&largest(7)), "{} V rms at most", largest(7));
+    for name in ["felt.svg", "scene.png"] {
+        assert!(fs::metadata(folder.path().join("frixel-out").join(name)).unwrap().len() > 10_000);
+    }
+}
+
+/// Ctrl-C in a terminal goes to the emulator, too.
+#[test]
+fn an_interrupted_play_leaves_what_was_played() {
+    if emulator::image().is_none() {
+        return;
+    }
+    let _turn = turn();
+    let folder = TempDir::new().unwrap();
+    let mut command = play(folder.path());
+    let mut process = command
+        .args(["--seconds", "600"])
+        .process_group(0)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let felt = folder.path().join("frixel-out/felt.csv");
+    while fs::metadata(&felt).map_or(0, |file| file.len()) < 20_000 {
+        assert!(process.try_wait().unwrap().is_none(), "it ended by itself");
+        sleep(Duration::from_millis(5));
+    }
+    let group = rustix::process::Pid::from_raw(process.id() as i32).unwrap();
+    rustix::process::kill_process_group(group, rustix::process::Signal::INT).unwrap();
+    let output = process.wait_with_output().unwrap();
+    assert!(output.status.success() && said(&output).contains("interrupted: "), "{}", said(&output));
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let rows = fs::read_to_string(felt).unwrap().lines().count() as u64 - 1;
+    assert_eq!(json["ticks"].as_u64().unwrap() / 40, rows, "every whole row that was played is there");
+}
+
+/// What a machine has on its PATH, and nothing else.
+struct Tools(TempDir);
+
+impl Tools {
+    fn new(tools: &[(&str, &str)]) -> Self {
+        let folder = TempDir::new().unwrap();
+        for (name, script) in tools {
+            let path = folder.path().join(name);
+            fs::write(&path, format!("#!/bin/sh\n{script}\n")).unwrap();
+            fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
+        }
+        Self(folder)
+    }
+
+    /// One sentence that names the cure, and an exit of one, before anything is written.
+    fn refused(&self, checkout: Option<&Path>, parts: &[&str]) {
+        let folder = TempDir::new().unwrap();
+        let mut command = play(folder.path());
+        command.env("PATH", self.0.path()).env_remove("CARGO");
+        if let Some(checkout) = checkout {
+            command.env("FRIXEL_CHECKOUT", checkout);
+        }
+        let output = command.output().unwrap();
+        let said = said(&output);
+        assert_eq!(output.status.code(), Some(1), "{said}");
+        let sentence = said.lines().last().unwrap_or_default();
+        assert!(sentence.starts_with("frixel: "), "{said}");
+        for part in parts {
+            assert!(sentence.contains(part), "{part:?} is not in: {said}");
+        }
+        assert!(!folder.path().join("frixel-out").exists(), "nothing was played");
+    }
+}
+
+const EMULATOR: (&str, &str) = ("qemu-system-arm", "exit 0");
+
+#[test]
+fn what_is_missing_is_said_with_the_command_that_installs_it() {
+    let command = ["`apt-get install qemu-system-arm`"];
+    Tools::new(&[]).refused(None, &command);
+    let command = ["`curl https://sh.rustup.rs -sSf | sh`"];
+    Tools::new(&[EMULATOR]).refused(None, &command);
+    // What rustc says of a target that it does not have.
+    let rustc = ("rustc", "echo /nowhere/lib/rustlib/thumbv7em-none-eabihf/lib");
+    Tools::new(&[EMULATOR, rustc]).refused(None, &["`rustup target add thumbv7em-none-eabihf`"]);
+    let rustc = ("rustc", "echo /");
+    Tools::new(&[EMULATOR, rustc]).refused(None, &["`curl https://sh.rustup.rs -sSf | sh`"]);
+}
+
+#[test]
+fn outside_a_checkout_it_says_what_it_takes() {
+    let elsewhere = TempDir::new().unwrap();
+    let tools = Tools::new(&[EMULATOR, ("rustc", "echo /")]);
+    tools.refused(Some(elsewhere.path()), &["frixel's sources", "in a checkout", "FRIXEL_CHECKOUT"]);
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}

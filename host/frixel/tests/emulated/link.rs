@@ -1,0 +1,72 @@
+//! The link: hello, upload, play and stop over the emulated serial port, rubbish in between, and a cable that is cut.
+
+use frixel::player;
+use frixel_driver::Device;
+use frixel_render::Drive;
+use frixel_wire::fault::State;
+use frixel_wire::hello::{BoardKind, ResetCause};
+
+use crate::bench::{Bench, HOST_TIMEOUT_TICKS, program};
+use crate::cable::Cable;
+use crate::emulator;
+
+/// From the last byte of a frame to the tick that knows of it: the session looks at every tick.
+const HEARD_WITHIN_TICKS: u32 = 4;
+
+#[test]
+fn a_picture_goes_up_plays_and_stops() {
+    let Some(image) = emulator::image() else { return };
+    let bench = Bench::new(&image);
+    let program = program("brick.toml");
+    let mut device = Device::connect(Cable::plug(&bench.board)).unwrap();
+    let hello = *device.hello();
+    assert_eq!(hello.board, BoardKind::Mps2An386);
+    assert_eq!((hello.reset_cause, hello.last_fault, hello.state), (ResetCause::PowerOn, None, State::Disarmed));
+
+    player::start(&mut device, &program, &mut |_| {}).unwrap();
+    bench.until_driven(&mut device);
+    bench.pass(&mut device, 4_000);
+    device.stop().unwrap();
+    bench.pass(&mut device, 10);
+    assert_eq!(bench.board.output().unwrap(), Drive::default());
+
+    let driven: Vec<_> = bench.records().into_iter().filter(|record| record.drive.amplifier_enable).collect();
+    assert!(driven.len() > 4_000, "{} ticks", driven.len());
+    let felt_n = driven.iter().map(|record| record.felt.electric_friction_n).fold(0.0, f64::max);
+    assert!((0.015..0.03).contains(&felt_n), "the brick's mortar feels like 26 mN, not {felt_n} N");
+}
+
+#[test]
+fn rubbish_between_frames_does_no_harm() {
+    let Some(image) = emulator::image() else { return };
+    let bench = Bench::new(&image);
+    // Truncated, oversized, zeros only, and what looks like a frame but for its CRC.
+    let rubbish = vec![vec![7, 1, 2, 0], [vec![0x55; 700], vec![0]].concat(), vec![0, 0, 0], vec![2, 9, 3, 8, 8, 0]];
+    let mut device = Device::connect(Cable::plug(&bench.board).with_rubbish(rubbish)).unwrap();
+    player::start(&mut device, &program("grating.toml"), &mut |_| {}).unwrap();
+    bench.until_driven(&mut device);
+    device.stop().unwrap();
+    assert_eq!(device.counters().frames_rejected, 0, "the board's own frames arrive whole");
+}
+
+#[test]
+fn a_cut_cable_puts_the_output_to_zero_within_the_host_timeout() {
+    let Some(image) = emulator::image() else { return };
+    let bench = Bench::new(&image);
+    let mut device = Device::connect(Cable::plug(&bench.board)).unwrap();
+    player::start(&mut device, &program("constant.toml"), &mut |_| {}).unwrap();
+    bench.until_driven(&mut device);
+    drop(device);
+    bench.until("the board falls silent", |board| {
+        board.tick().unwrap().wrapping_sub(board.received_at_tick().unwrap()) > HOST_TIMEOUT_TICKS + 1_000
+    });
+    let last_byte = bench.board.received_at_tick().unwrap();
+    let records = bench.records();
+    let last_driven = records.iter().rev().find(|record| record.drive != Drive::default()).unwrap();
+    let ticks = last_driven.tick - last_byte;
+    assert!(ticks <= HOST_TIMEOUT_TICKS + HEARD_WITHIN_TICKS, "driven for {ticks} ticks after the last byte");
+    assert!(ticks >= HOST_TIMEOUT_TICKS - HEARD_WITHIN_TICKS, "driven for {ticks} ticks only");
+
+    let hello = *Device::connect(Cable::plug(&bench.board)).unwrap().hello();
+    assert_eq!((hello.state, hello.last_fault), (State::Disarmed, None));
+}

@@ -1,0 +1,13 @@
+//! The host on a real serial port to the emulated board.
+//!
+//! All deadlines are in the board's virtual time; the emulator may be as slow as it likes.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may fail")]
+
+mod bench;
+mod cable;
+mod command;
+#[path = "../../../../hil-sim/tests/emulator/mod.rs"]
+mod emulator;
+mod link;
+mod mishaps;

@@ -1,0 +1,186 @@
+//! Every scene of `scenes/` plays on the simulator, and `docs/gallery.md` shows it.
+//!
+//! `FRIXEL_BLESS=1 cargo test -p frixel --test gallery` writes page and pictures anew; without it, this test holds them.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+use std::fmt::Write;
+use std::fs::{self, File};
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+
+use frixel::output::{FeltRow, Preview, write_preview_png};
+use frixel::player::{Simulation, simulate};
+use frixel_hil_sim::{BoardMemory, RigConfig, Stroke};
+use frixel_scene::{Asked, Program, Scene, compile};
+use frixel_wire::fault::Flags;
+use frixel_wire::scene::{Header, Scene as WireScene};
+
+const PICTURE_BYTES_MAX: u64 = 40 * 1024;
+/// How much the felt friction has to vary along a stroke over a scene, as a part of what the drive can add.
+const FELT_PART_MIN: f64 = 0.1;
+
+struct Entry {
+    name: String,
+    text: String,
+    program: Program,
+}
+
+fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn gallery() -> Vec<Entry> {
+    let rig = RigConfig::default();
+    let paths = fs::read_dir(repository().join("scenes")).unwrap().map(|entry| entry.unwrap().path());
+    let mut scenes: Vec<PathBuf> = paths.filter(|path| path.extension().is_some_and(|end| end == "toml")).collect();
+    scenes.sort();
+    let entries = scenes.iter().map(|path| Entry {
+        name: path.file_stem().unwrap().to_string_lossy().into_owned(),
+        text: fs::read_to_string(path).unwrap(),
+        program: compile(&Scene::load(path).unwrap(), &rig.board.limits, rig.board.tick_hz)
+            .unwrap_or_else(|error| panic!("{error}")),
+    });
+    entries.collect()
+}
+
+impl Entry {
+    /// The comment that the file begins with, as a paragraph.
+    fn comment(&self) -> String {
+        let lines = self.text.lines().map_while(|line| line.strip_prefix('#'));
+        lines.map(str::trim).collect::<Vec<_>>().join(" ")
+    }
+}
+
+#[test]
+fn every_scene_is_felt_without_a_fault_and_within_reach() {
+    let gallery = gallery();
+    assert!(gallery.len() >= 8, "{}", gallery.len());
+    for Entry { name, text, program } in &gallery {
+        let rig = RigConfig::default();
+        let (width_m, height_m) = (program.header.screen_width_m.into(), program.header.screen_height_m.into());
+        let stroke = Stroke::natural(width_m, height_m, 2.0).unwrap();
+        let simulation = Simulation { rig, seconds: stroke.duration_s(), stroke, seed: 1, ticks_per_row: 40 };
+        let simulated = simulate(program, &simulation, &mut |_| {}).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let rows = simulated.recorder.rows();
+        let felt =
+            rows.iter().filter_map(|row| row.felt_n.filter(|_| row.speed_mm_s.is_some_and(|speed| speed > 20.0)));
+        let (least_n, most_n) =
+            felt.fold((f64::INFINITY, 0.0_f64), |(least, most), felt_n| (least.min(felt_n), most.max(felt_n)));
+        let part = (most_n - least_n) / program.reach.electric_friction_max_n;
+        assert!(part > FELT_PART_MIN, "{name}: felt from {least_n} to {most_n} N");
+        let flags = rows.iter().filter_map(|row| row.flags);
+        assert!(flags.clone().count() > 1_000, "{name}");
+        if !text.contains("saturate = true") {
+            let Asked { above, below, most_n, .. } = Asked::of(program);
+            assert_eq!((above.screen_percent, below.screen_percent), (0.0, 0.0), "{name}");
+            // One that asks for all of the reach may round to a last bit more.
+            let all = most_n > (1.0 - 1e-6) * program.reach.friction_max_n();
+            assert!(all || flags.clone().all(|flags| !flags.contains(Flags::SATURATED)), "{name} saturates");
+        }
+        // A fault would have ended the play, and the drive with it.
+        let wants = |row: &&FeltRow| {
+            let friction_n = row.wanted_n.filter(|_| row.speed_mm_s.is_some_and(|speed| speed > 20.0));
+            friction_n.is_some_and(|friction_n| friction_n > program.reach.natural_friction_n + 1e-3)
+        };
+        let drives = |row: &&FeltRow| row.voltage_v_rms.is_some_and(|voltage_v_rms| voltage_v_rms > 1.0);
+        let last =
+            rows.iter().rfind(wants).zip(rows.iter().rfind(drives)).map(|(wanted, driven)| wanted.t_s - driven.t_s);
+        assert!(last.is_some_and(|late_s| late_s < 0.05), "{name}: the drive ends {last:?} s early");
+    }
+}
+
+/// The compiler says that no layer is changed, so the board cuts its table to what the scene asks for. What is felt is the
+/// same to the last bit as with the whole table.
+#[test]
+fn no_scene_is_felt_otherwise_because_its_table_is_cut() {
+    let mut cut = 0;
+    for Entry { name, program, .. } in &gallery() {
+        let rig = RigConfig::default();
+        let bytes = program.scene_bytes();
+        let table = BoardMemory::table_rows(&WireScene::parse(&bytes).unwrap(), &rig.board).unwrap();
+        if table.filled == table.whole {
+            continue;
+        }
+        cut += 1;
+        let (width_m, height_m) = (program.header.screen_width_m.into(), program.header.screen_height_m.into());
+        let stroke = Stroke::natural(width_m, height_m, 1.0).unwrap();
+        let simulation = Simulation { rig, seconds: stroke.duration_s(), stroke, seed: 1, ticks_per_row: 10 };
+        let whole = Program { header: Header { layers_fixed: false, ..program.header }, ..program.clone() };
+        let [with_cut, without] = [program, &whole].map(|program| {
+            let simulated =
+                simulate(program, &simulation, &mut |_| {}).unwrap_or_else(|error| panic!("{name}: {error}"));
+            simulated.recorder.rows().to_vec()
+        });
+        assert!(program.header.layers_fixed && with_cut == without, "{name}");
+        assert!(
+            with_cut.iter().any(|row| row.voltage_v_rms.is_some_and(|voltage_v_rms| voltage_v_rms > 1.0)),
+            "{name}"
+        );
+    }
+    assert!(cut > 0);
+}
+
+#[test]
+fn every_scene_says_what_it_feels_like_and_what_is_assumed() {
+    for entry in gallery() {
+        let comment = entry.comment();
+        let sentences = comment.matches(". ").count() + 1;
+        assert!(comment.len() > 80 && sentences >= 2, "{}: {comment}", entry.name);
+        assert!(comment.contains("Assumed"), "{} does not say what is assumed", entry.name);
+    }
+}
+
+/// Size and pixels of a picture.
+fn decoded(path: &Path) -> (u32, u32, Vec<u8>) {
+    let file = File::open(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let mut decoder = png::Decoder::new(BufReader::new(file));
+    decoder.set_transformations(png::Transformations::EXPAND);
+    let mut reader = decoder.read_info().unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    let frame = reader.next_frame(&mut bytes).unwrap();
+    bytes.truncate(frame.buffer_size());
+    (frame.width, frame.height, bytes)
+}
+
+fn page(gallery: &[Entry]) -> String {
+    let mut page = "# Gallery\n\nScenes to start from: copy one, change it, look at it with `frixel scene preview`, play it with \
+                    `frixel play`. The pictures are made by\n`FRIXEL_BLESS=1 cargo test -p frixel --test gallery`, and the same test plays every \
+                    scene on the simulator.\n"
+        .to_owned();
+    for entry in gallery {
+        let name = &entry.name;
+        let _ = write!(
+            page,
+            "\n## {name}\n\n{}\n\n[scenes/{name}.toml](../scenes/{name}.toml)\n\n![friction map of {name}.toml](gallery/{name}.png)\n",
+            entry.comment()
+        );
+    }
+    page
+}
+
+#[test]
+fn the_gallery_in_the_docs_shows_these_scenes() {
+    let gallery = gallery();
+    let docs = repository().join("docs");
+    let bless = std::env::var_os("FRIXEL_BLESS").is_some();
+    let drawn_in = tempfile::tempdir().unwrap();
+    let held_in = docs.join("gallery");
+    if bless {
+        fs::create_dir_all(&held_in).unwrap();
+        fs::write(docs.join("gallery.md"), page(&gallery)).unwrap();
+    }
+    assert!(fs::read_to_string(docs.join("gallery.md")).unwrap() == page(&gallery), "docs/gallery.md: bless it");
+    for Entry { name, program, .. } in &gallery {
+        let file = format!("{name}.png");
+        let (drawn, held) = (drawn_in.path().join(&file), held_in.join(&file));
+        let preview = Preview { map_max: (400, 400), ..Preview::default() };
+        write_preview_png(&drawn, &format!("{name}.toml"), program, &preview).unwrap();
+        if bless {
+            fs::copy(&drawn, &held).unwrap();
+        }
+        assert!(decoded(&drawn) == decoded(&held), "{}: look at it, then bless it", held.display());
+        assert!(fs::metadata(&held).unwrap().len() <= PICTURE_BYTES_MAX, "{}", held.display());
+    }
+    let held = fs::read_dir(&held_in).unwrap().count();
+    assert_eq!(held, gallery.len(), "docs/gallery has pictures of no scene");
+}

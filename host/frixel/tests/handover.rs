@@ -1,0 +1,35 @@
+//! One client after the other on one board: what the first set going is not the second's.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
+use std::path::Path;
+
+use frixel::player;
+use frixel::rigs::{Recorder, SimLink};
+use frixel_driver::Device;
+use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
+use frixel_scene::{Scene, compile};
+use frixel_wire::fault::State;
+
+/// The state that a second client finds, when the first one has left its scene playing.
+fn found(autonomous: bool) -> State {
+    let config = RigConfig::default();
+    let scene = Scene::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/constant.toml")).unwrap();
+    let mut program = compile(&scene, &config.board.limits, config.board.tick_hz).unwrap();
+    program.header.autonomous = autonomous;
+    let mut memory = BoardMemory::new();
+    let rig = Rig::new(&mut memory, &config, Stroke::natural(0.12, 0.11, 1.0).unwrap(), 1).unwrap();
+    let recorder = Recorder::new(&program, &config.board.limits, config.board.tick_hz, 400, 40).unwrap();
+    let mut first = Device::connect(SimLink::new(rig, recorder)).unwrap();
+    player::start(&mut first, &program, &mut |_| {}).unwrap();
+    Device::connect(first.into_link()).unwrap().hello().state
+}
+
+#[test]
+fn a_hello_disarms_what_another_client_played() {
+    assert_eq!(found(false), State::Disarmed);
+}
+
+#[test]
+fn a_scene_that_goes_on_without_a_host_plays_on() {
+    assert_eq!(found(true), State::Active);
+}

@@ -1,0 +1,241 @@
+//! `frixel play` as a person uses it: what it writes, and what it says to wrong input.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
+
+use tempfile::TempDir;
+
+fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn brick() -> String {
+    repository().join("scenes/brick.toml").display().to_string()
+}
+
+fn frixel(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_frixel")).args(arguments).current_dir(folder).output().unwrap()
+}
+
+fn succeed(folder: &Path, arguments: &[&str]) -> String {
+    let output = frixel(folder, arguments);
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn without_a_command_it_is_the_demo() {
+    let folder = TempDir::new().unwrap();
+    let said = succeed(folder.path(), &[]);
+    for name in ["felt.csv", "felt.svg", "scene.png"] {
+        let path = Path::new("frixel-out").join(name);
+        assert!(said.contains(&path.display().to_string()), "{name} is not named in {said}");
+        assert!(fs::metadata(folder.path().join(path)).unwrap().len() > 10_000);
+    }
+    let copy = folder.path().join("copy.toml");
+    fs::copy(folder.path().join("frixel-out/brick.toml"), &copy).unwrap();
+    fs::rename(folder.path().join("frixel-out/textures"), folder.path().join("textures")).unwrap();
+    succeed(folder.path(), &["play", "copy.toml", "--seconds", "0.1"]);
+}
+
+#[test]
+fn json_has_every_number_and_the_same_seed_the_same_bytes() {
+    let folder = TempDir::new().unwrap();
+    let run = |out: &str, seed: &str| {
+        let arguments =
+            ["play", &brick(), "--json", "--seconds", "0.5", "--csv-hz", "4000", "--out", out, "--seed", seed];
+        let json = succeed(folder.path(), &arguments);
+        (json, fs::read_to_string(folder.path().join(out).join("felt.csv")).unwrap())
+    };
+    let (json, first) = run("a", "7");
+    let (_, second) = run("b", "7");
+    let (_, third) = run("c", "8");
+    assert!(first == second, "two runs of one seed differ");
+    assert!(first != third, "the seed changes nothing");
+    assert_eq!(first.lines().count(), 2001);
+
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["rig"], "sim");
+    assert_eq!(json["ticks"], 20_000);
+    for key in [
+        "friction_error_rms_n",
+        "friction_error_max_n",
+        "inversion_error_rms_n",
+        "inversion_error_max_n",
+        "carrier_ripple_rms_n",
+        "reachable_min_n",
+        "reachable_max_n",
+        "wanted_min_n",
+        "wanted_max_n",
+        "saturated_ticks",
+        "frames_sent",
+        "frames_rejected",
+        "payload_bytes",
+        "wire_bytes",
+        "realtime_factor",
+    ] {
+        assert!(json[key].is_number(), "{key}: {}", json[key]);
+    }
+    for key in ["stream_samples", "stream_underruns", "stream_gaps"] {
+        assert!(json[key].is_null(), "{key}: {}", json[key]);
+    }
+}
+
+/// One sentence on standard error, with what is wrong, and an exit of one.
+fn refuse(folder: &Path, arguments: &[&str], parts: &[&str]) {
+    let output = frixel(folder, arguments);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{arguments:?}: {said}");
+    let sentence = said.lines().last().unwrap_or_default();
+    assert!(sentence.starts_with("frixel: "), "{said}");
+    for part in parts {
+        assert!(sentence.contains(part), "{arguments:?}: {part:?} is not in: {sentence}");
+    }
+}
+
+#[test]
+fn a_wrong_scene_is_refused_with_file_line_and_cure() {
+    let folder = TempDir::new().unwrap();
+    fs::create_dir(folder.path().join("textures")).unwrap();
+    fs::copy(repository().join("scenes/textures/brick.png"), folder.path().join("textures/brick.png")).unwrap();
+    let scene = fs::read_to_string(brick()).unwrap();
+    for (from, to, parts) in [
+        ("radius_mm", "raduis_mm", ["wrong.toml:15:1", "raduis_mm", "`radius_mm`"]),
+        ("textures/brick.png", "textures/brik.png", ["wrong.toml:30:", "brik.png", "not found"]),
+        ("white_n = 0.026", "white_n = 0.26", ["layer 1", "\"brick\"", "saturate = true"]),
+        ("x_mm = 10", "x_mm = 60", ["layer 1", "\"brick\"", "screen"]),
+    ] {
+        assert!(scene.contains(from));
+        fs::write(folder.path().join("wrong.toml"), scene.replace(from, to)).unwrap();
+        refuse(folder.path(), &["play", "wrong.toml"], &parts);
+    }
+    refuse(folder.path(), &["play", "nowhere.toml"], &["nowhere.toml", "cannot be read", "check the path"]);
+}
+
+#[test]
+fn a_wrong_stroke_is_refused_with_line_and_column() {
+    let folder = TempDir::new().unwrap();
+    for (text, parts) in [
+        ("t_s,x_mm,y_mm\n", ["stroke.csv", "empty"]),
+        ("t_s,x_mm,y_mm\n0,1,1\n1,50,50\n0.5,60,60\n", ["line 4, column `t_s`", "rise"]),
+        ("t_s,x_mm\n0,1\n1,2\n", ["stroke.csv", "`y_mm`"]),
+        ("t_s,x_mm,y_mm\n0,1,1\n1,fifty,50\n", ["line 3, column `x_mm`", "fifty"]),
+        ("t_s,x_mm,y_mm\n0,1,1\n86401,50,50\n", ["stroke.csv lasts 86401 s", "a day"]),
+        ("t_s,x_mm,y_mm\n0,-50,1\n1,-1,50\n", ["stroke.csv is nowhere on the screen", "120 by 110 mm"]),
+        ("t_s,x_mm,y_mm\n0,1,1\n1e-6,1,1\n", ["shorter than one tick", "0.000025 s"]),
+    ] {
+        fs::write(folder.path().join("stroke.csv"), text).unwrap();
+        refuse(folder.path(), &["play", &brick(), "--stroke", "stroke.csv"], &parts);
+    }
+    refuse(folder.path(), &["play", &brick(), "--stroke", "none.csv"], &["none.csv", "cannot be read"]);
+    fs::write(folder.path().join("latin.csv"), b"t_s,x_mm,y_mm\n0,1,1\xb5\n").unwrap();
+    refuse(folder.path(), &["play", &brick(), "--stroke", "latin.csv"], &["latin.csv is not UTF-8 text"]);
+    assert!(!folder.path().join("frixel-out").exists(), "nothing was played");
+}
+
+#[test]
+fn a_stroke_partly_off_the_screen_is_noted() {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("stroke.csv"), "t_s,x_mm,y_mm\n0,-30,50\n0.4,90,50\n").unwrap();
+    let output = frixel(folder.path(), &["play", &brick(), "--stroke", "stroke.csv"]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{said}");
+    assert!(said.contains("off the screen (120 by 110 mm) for 25.") || said.contains("for 24."), "{said}");
+}
+
+#[test]
+fn times_that_do_not_fit_the_ticks_are_refused() {
+    let folder = TempDir::new().unwrap();
+    for (option, value, parts) in [
+        ("--csv-hz", "3000", ["--csv-hz 3000 does not divide", "2500 or 4000"]),
+        ("--csv-hz", "39999", ["40000 ticks", "20000 or 40000"]),
+        ("--seconds", "2e-5", ["shorter than one tick", "0.000025 s"]),
+    ] {
+        refuse(folder.path(), &["play", &brick(), option, value], &parts);
+    }
+    let said = succeed(folder.path(), &["play", &brick(), "--seconds", "2.5e-5", "--json"]);
+    assert!(said.contains(r#""ticks":1,"#), "{said}");
+}
+
+/// One line, whatever is wrong with the command line, and an exit of two.
+#[test]
+fn what_cannot_be_understood_is_said_in_a_sentence() {
+    let folder = TempDir::new().unwrap();
+    for (arguments, parts) in [
+        (&["play"][..], ["required", "<SCENE>", "`frixel play --help`"]),
+        (&["play", "a.toml", "--prot", "sim"], ["'--prot'", "'--port'", "`frixel play"]),
+        (&["paly"], ["'paly'", "'play'", "`frixel --help`"]),
+        (&["play", "a.toml", "--seconds", "0"], ["'0'", "seconds above 0", "--help`"]),
+        (&["play", "a.toml", "--csv-hz", "50000"], ["50000", "1..=40000", "--help`"]),
+        (&["info"], ["required", "--port <PORT>", "`frixel info --help`"]),
+    ] {
+        let output = frixel(folder.path(), arguments);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
+        assert!(said.starts_with("frixel: ") && said.lines().count() == 1, "{arguments:?}: {said}");
+        for part in parts {
+            assert!(said.contains(part), "{arguments:?}: {part:?} is not in: {said}");
+        }
+    }
+    assert!(succeed(folder.path(), &["play", "--help"]).contains("--csv-hz <N>"));
+    assert!(succeed(folder.path(), &["--version"]).starts_with("frixel "));
+}
+
+#[test]
+fn a_wrong_port_is_refused_by_its_name() {
+    let folder = TempDir::new().unwrap();
+    refuse(folder.path(), &["play", &brick(), "--port", "/dev/frixel-none"], &["/dev/frixel-none", "no port"]);
+    refuse(folder.path(), &["info", "--port", "/dev/frixel-none"], &["/dev/frixel-none", "no port"]);
+    let stroke = ["play", &brick(), "--port", "/dev/frixel-none", "--stroke", "stroke.csv"];
+    refuse(
+        folder.path(),
+        &stroke,
+        &["/dev/frixel-none", "--stroke moves the finger of --port sim and --port qemu only"],
+    );
+    let rows = ["play", &brick(), "--port", "/dev/frixel-none", "--csv-hz", "4000"];
+    refuse(folder.path(), &rows, &["/dev/frixel-none", "1000"]);
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_said() {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("taken"), "").unwrap();
+    refuse(
+        folder.path(),
+        &["play", &brick(), "--seconds", "0.1", "--out", "taken/out"],
+        &["taken", "cannot be written"],
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_play_leaves_what_was_played() {
+    let folder = TempDir::new().unwrap();
+    let mut process = Command::new(env!("CARGO_BIN_EXE_frixel"))
+        .args(["play", &brick(), "--seconds", "86400", "--json"])
+        .current_dir(folder.path())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let felt = folder.path().join("frixel-out/felt.csv");
+    while fs::metadata(&felt).map_or(0, |file| file.len()) < 100_000 {
+        assert!(process.try_wait().unwrap().is_none(), "it ended by itself");
+        sleep(Duration::from_millis(5));
+    }
+    let pid = rustix::process::Pid::from_raw(process.id() as i32).unwrap();
+    rustix::process::kill_process(pid, rustix::process::Signal::INT).unwrap();
+    let ended = process.wait_with_output().unwrap();
+    let said = String::from_utf8(ended.stderr).unwrap();
+    assert!(ended.status.success() && said.contains("interrupted: "), "{said}");
+    let json: serde_json::Value = serde_json::from_slice(&ended.stdout).unwrap();
+    let rows = fs::read_to_string(felt).unwrap().lines().count() as u64 - 1;
+    assert_eq!(json["ticks"].as_u64().unwrap() / 40, rows, "every whole row that was played is there");
+    for name in ["felt.svg", "scene.png"] {
+        assert!(fs::metadata(folder.path().join("frixel-out").join(name)).unwrap().len() > 10_000);
+    }
+}

@@ -1,0 +1,445 @@
+//! `frixel report`: its files, and that its numbers are what the paper and the model's bounds say.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+use std::collections::{BTreeMap, HashMap};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::OnceLock;
+
+use frixel_hil_sim::RigConfig;
+use frixel_scene::{CompileError, Program, Scene, compile};
+
+/// Counts of the shape that `cargo xtask bench` writes.
+const BENCH: &str = r#"{ "m3.inverse_table": 415, "m3.inverse_table_fixed": 61, "m4f.inverse_closed_form": 185, "m4f.inverse_closed_form_cycles": 277,
+    "m4f.inverse_table": 16, "m4f.inverse_table_cycles": 27, "m4f.tick_idle": 209,
+    "m4f.tick_1_of_1": 331, "m4f.tick_1_of_1_mean": 301, "m4f.tick_1_of_8": 335, "m4f.tick_1_of_8_mean": 302,
+    "m4f.tick_1_of_64": 329, "m4f.tick_1_of_64_mean": 303, "m4f.tick_8_of_8": 517, "m4f.tick_8_of_8_mean": 481,
+    "m4f.tick_8_of_64": 524, "m4f.tick_8_of_64_mean": 482, "m4f.tick_8_of_64_cycles": 841 }"#;
+
+/// What is the same in no two runs.
+const MEASURED: &str = "error-against-run-time";
+
+type Row = HashMap<String, String>;
+
+fn frixel(args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_frixel")).arg("report").args(args).output().unwrap()
+}
+
+/// A report that is made once for all tests, with counts.
+fn report() -> &'static BTreeMap<String, String> {
+    static REPORT: OnceLock<BTreeMap<String, String>> = OnceLock::new();
+    REPORT.get_or_init(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let bench = folder.path().join("bench.json");
+        fs::write(&bench, BENCH).unwrap();
+        let out = folder.path().join("a/b");
+        files(&frixel::report::write(&out, Some(&bench)).unwrap(), &out)
+    })
+}
+
+fn files(paths: &[PathBuf], folder: &Path) -> BTreeMap<String, String> {
+    let name = |path: &PathBuf| path.strip_prefix(folder).unwrap().display().to_string();
+    let files: BTreeMap<_, _> = paths.iter().map(|path| (name(path), fs::read_to_string(path).unwrap())).collect();
+    assert_eq!(files.len(), fs::read_dir(folder).unwrap().count(), "every file is named");
+    files
+}
+
+fn rows(name: &str) -> Vec<Row> {
+    let text = &report()[&format!("{name}.csv")];
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let header = reader.headers().unwrap().clone();
+    let row =
+        |record: csv::StringRecord| header.iter().map(str::to_owned).zip(record.iter().map(str::to_owned)).collect();
+    reader.records().map(|record| row(record.unwrap())).collect()
+}
+
+fn number(row: &Row, column: &str) -> f64 {
+    row[column].parse().unwrap_or_else(|_| panic!("{column} of {row:?}"))
+}
+
+/// Rows of one curve, as pairs of numbers.
+fn curve(rows: &[Row], is: &[(&str, &str)], x: &str, y: &str) -> Vec<(f64, f64)> {
+    let of_curve = rows.iter().filter(|row| is.iter().all(|(column, value)| row[*column] == *value));
+    let points: Vec<_> = of_curve.map(|row| (number(row, x), number(row, y))).collect();
+    assert!(points.len() > 2, "{is:?}");
+    points
+}
+
+/// Slope of ln y over ln x between two neighbours.
+fn slope(pair: &[(f64, f64)]) -> f64 {
+    (pair[1].1 / pair[0].1).ln() / (pair[1].0 / pair[0].0).ln()
+}
+
+fn largest(rows: &[Row], column: &str) -> f64 {
+    rows.iter().map(|row| number(row, column)).fold(0.0, f64::max)
+}
+
+#[test]
+fn the_page_shows_every_figure_and_needs_nothing_else() {
+    let files = report();
+    let page = &files["index.html"];
+    let figures: Vec<&str> = files.keys().filter_map(|name| name.strip_suffix(".csv")).collect();
+    assert_eq!(figures.len(), 14);
+    assert_eq!(page.matches("<svg ").count(), 14);
+    assert_eq!(page.matches("</svg>").count(), 14);
+    for figure in figures {
+        assert!(page.contains(&format!("<h2 id=\"{figure}\">")), "{figure}");
+        assert!(page.contains(&format!("<a href=\"#{figure}\">")), "{figure}");
+        assert!(page.contains(&format!("<a href=\"{figure}.csv\">")), "{figure}");
+    }
+    for outside in ["<script", "<link", "<img", "src=", "@import", "url(", "https://"] {
+        assert!(!page.contains(outside), "{outside}");
+    }
+    assert_eq!(page.matches("http://").count(), page.matches("xmlns=\"http://www.w3.org/2000/svg\"").count());
+    assert!(!page.contains("NaN") && !page.contains("inf"), "no number that is none");
+    for axis in
+        ["voltage, V rms", "contact radius, mm", "friction, mN", "relative error", "ticks a second, kHz", "bytes"]
+    {
+        assert!(page.contains(axis), "{axis}");
+    }
+    assert_eq!(page.matches("Worst points").count(), 3);
+    // Both directions of the two maps, both precisions of the soft finger.
+    assert_eq!(page.matches("\nworst: ").count(), 6, "they are marked in the pictures");
+}
+
+#[test]
+fn two_runs_differ_in_what_is_measured_and_in_nothing_else() {
+    let folder = tempfile::tempdir().unwrap();
+    let bench = folder.path().join("bench.json");
+    fs::write(&bench, BENCH).unwrap();
+    let out = folder.path().join("out");
+    let run = frixel(&["--out", &out.display().to_string(), "--bench", &bench.display().to_string()]);
+    assert!(run.status.success() && run.stderr.is_empty(), "{run:?}");
+    let named = String::from_utf8(run.stdout).unwrap();
+    let paths: Vec<PathBuf> =
+        named.lines().map(|line| line.trim_start().strip_prefix("wrote").unwrap().trim().into()).collect();
+    let (first, second) = (report(), files(&paths, &out));
+    assert_eq!(first.keys().collect::<Vec<_>>(), second.keys().collect::<Vec<_>>());
+    // Without the section of the measured figure.
+    let constant = |page: &str| {
+        let start = page.find(&format!("<h2 id=\"{MEASURED}\">")).unwrap();
+        let end = start + 1 + page[start + 1..].find("<h2 ").unwrap();
+        page[..start].to_owned() + &page[end..]
+    };
+    assert_eq!(constant(&first["index.html"]), constant(&second["index.html"]));
+    for (name, text) in first {
+        if name != "index.html" && *name != format!("{MEASURED}.csv") {
+            assert_eq!(text, &second[name], "{name}");
+        }
+    }
+    let section = &first["index.html"][first["index.html"].find(&format!("<h2 id=\"{MEASURED}\">")).unwrap()..];
+    assert!(
+        section.contains("MEASURED") && section.contains("were measured on the computer"),
+        "what is measured says so"
+    );
+}
+
+#[test]
+fn counts_are_asked_for_and_shown() {
+    let counts = rows("error-against-instructions");
+    let found: Vec<_> = counts.iter().map(|row| (row["core"].as_str(), row["instructions"].as_str())).collect();
+    assert_eq!(found, [("m4f", "185"), ("m4f", "16"), ("m3", "415"), ("m3", "61")]);
+    assert!(report()["index.html"].contains("16 (about 27 cycles)"));
+    assert!(report()["index.html"].contains("takes on a board is in the figure before this one"));
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    // Without a count of an inversion or of a tick among layers, the page says that, and how to come by one.
+    fs::write(path("other.json"), "{ \"m4f.tick_idle\": 209 }").unwrap();
+    let other = path("other.json");
+    for (args, why) in [(vec!["--bench", &other], "has no count of one"), (vec![], "was made without --bench")] {
+        let run = frixel(&[["--out", &path("page")].as_slice(), &args].concat());
+        assert!(run.status.success(), "{run:?}");
+        let page = fs::read_to_string(folder.path().join("page/index.html")).unwrap();
+        for what in ["an inversion", "a tick"] {
+            let start = page.find(&format!("What {what} takes on a board is not shown: ")).unwrap();
+            let sentence = &page[start..start + page[start..].find("</p>").unwrap()];
+            assert!(sentence.contains(why) && sentence.contains("cargo xtask bench"), "{what}: {sentence}");
+        }
+        assert_eq!(page.matches("<svg ").count(), 12);
+    }
+    fs::write(path("bad.json"), "{ \"m4f.inverse_table\": \"sixteen\" }").unwrap();
+    for (file, message) in
+        [("none.json", "`cargo xtask bench` writes such a file"), ("bad.json", "expected a JSON object of numbers")]
+    {
+        let run = frixel(&["--out", &path("out"), "--bench", &path(file)]);
+        assert!(!run.status.success());
+        let stderr = String::from_utf8(run.stderr).unwrap();
+        assert!(stderr.contains(file) && stderr.contains(message), "{stderr}");
+    }
+    // A folder that cannot be made.
+    let run = frixel(&["--out", &path("bad.json/out")]);
+    assert!(!run.status.success());
+    assert!(String::from_utf8(run.stderr).unwrap().contains("check the folder"));
+}
+
+#[test]
+fn a_tick_costs_what_was_counted_and_no_more_than_it_may() {
+    let found: Vec<_> = rows("tick-cost-against-layers")
+        .iter()
+        .map(|row| ["layers_under_the_finger", "layers", "instructions", "mean_instructions"].map(|is| number(row, is)))
+        .collect();
+    let expected = [
+        [1.0, 1.0, 331.0, 301.0],
+        [1.0, 8.0, 335.0, 302.0],
+        [1.0, 64.0, 329.0, 303.0],
+        [8.0, 8.0, 517.0, 481.0],
+        [8.0, 64.0, 524.0, 482.0],
+    ];
+    assert_eq!(found, expected);
+    let section = section("tick-cost-against-layers");
+    for said in [
+        "with one under the finger they add 2 instructions on average",
+        "with eight under the finger they add 1 instructions on average",
+        "most that a tick may take: 600",
+    ] {
+        assert!(section.contains(said), "{said}");
+    }
+    assert!(report()["index.html"].contains("What a tick takes on a board is in the figure before this one."));
+    let constants = |count| {
+        let layer = "[[layer]]\nkind = \"constant\"\nblend = \"max\"\nlive = true\nfriction_n = 0.001\n";
+        compiled(&layer.repeat(count)).map(|_| ()).map_err(|error| error.to_string())
+    };
+    assert_eq!(constants(8), Ok(()));
+    assert!(constants(12).unwrap_err().contains("the board has time for 600"));
+}
+
+/// What the page has of a figure.
+fn section(name: &str) -> &'static str {
+    let page = &report()["index.html"];
+    let start = page.find(&format!("<h2 id=\"{name}\">")).unwrap();
+    &page[start..start + page[start..].find("</figure>").unwrap()]
+}
+
+/// Layers on a screen, compiled for the simulated board.
+fn compiled(layers: &str) -> Result<Program, CompileError> {
+    let head = "version = 1\n[screen]\nwidth_mm = 120\nheight_mm = 80\n[coating]\nthickness_um = 10\npermittivity = 1\n\
+                [finger]\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\nfriction_coefficient = 0.5\nnormal_load_n = 0.5\n";
+    let board = RigConfig::default().board;
+    compile(&Scene::parse(&format!("{head}{layers}"), "a scene", Path::new(""))?, &board.limits, board.tick_hz)
+}
+
+/// The bytes and frames of an upload whose content is cut into chunks of 184 bytes: two bytes of number, four of CRC, one of
+/// COBS and the zero byte go with each.
+fn in_chunks(bytes: f64) -> (f64, f64) {
+    let chunks = (bytes / 184.0).ceil();
+    (bytes + 8.0 * chunks, chunks)
+}
+
+#[test]
+fn bytes_on_the_wire_follow_what_is_in_the_scene() {
+    let rows = rows("bytes-against-scene-content");
+    let of = |content: &str| rows.iter().filter(move |row| row["content"] == content).collect::<Vec<_>>();
+    let (gratings, triangles, pictures) = (of("gratings"), of("triangles"), of("a picture"));
+    let many: Vec<_> = rows.iter().filter(|row| row["content"].starts_with("polygons of ")).collect();
+    assert_eq!((gratings.len(), triangles.len(), pictures.len()), (64, 42, 9));
+    let vertices = number(many[0], "amount");
+    assert!(vertices > 3.0 && many.len() == (128.0 / vertices).floor() as usize, "{vertices}");
+    let amounts = |rows: &[&Row]| rows.iter().map(|row| number(row, "amount")).collect::<Vec<_>>();
+    assert_eq!(amounts(&gratings), (1..=64).map(f64::from).collect::<Vec<_>>());
+    assert_eq!(amounts(&pictures), [50.0, 75.0, 100.0, 125.0, 150.0, 175.0, 200.0, 225.0, 250.0]);
+    let frictions = of("a friction");
+    assert_eq!(amounts(&frictions), (1..=100).map(f64::from).collect::<Vec<_>>());
+    let table = |percent: usize| number(frictions[percent - 1], "table_bytes");
+    // Four rows of 16 bytes for an octave.
+    for percent in [2, 6, 25, 49] {
+        assert!((table(2 * percent) - table(percent) - 64.0).abs() < 1.0, "{percent}");
+    }
+    assert!(frictions.is_sorted_by_key(|row| number(row, "table_bytes") as u32) && table(100) <= 2016.0);
+    for row in &rows {
+        let (amount, scene, pictures) =
+            (number(row, "amount"), number(row, "scene_bytes"), number(row, "picture_bytes"));
+        let (layers, points, samples) = match row["content"].as_str() {
+            "gratings" => (amount, 0.0, 0.0),
+            "triangles" => (amount / 3.0, amount, 0.0),
+            "a picture" => (1.0, 0.0, amount * amount),
+            "a friction" => (1.0, 0.0, 0.0),
+            _ => (amount / vertices, amount, 0.0),
+        };
+        assert_eq!((scene, pictures), (56.0 + 56.0 * layers + 8.0 * points, samples), "{row:?}");
+        // And a few requests, which are short.
+        let (bytes, chunks) = in_chunks(scene);
+        let (more_bytes, more_chunks) = in_chunks(pictures);
+        let requests = number(row, "frames") - chunks - more_chunks;
+        let request_bytes = number(row, "wire_bytes") - bytes - more_bytes;
+        assert_eq!(requests as usize, if samples > 0.0 { 5 } else { 3 }, "{row:?}");
+        assert!(request_bytes > 8.0 * requests && request_bytes < 24.0 * requests, "{request_bytes} of {row:?}");
+    }
+    // One vertex more would take a tick too long: the caption's claim.
+    let polygon = |count: usize| {
+        let angle = |corner| std::f64::consts::TAU * corner as f64 / count as f64;
+        let points: Vec<_> = (0..count)
+            .map(|corner| format!("[{:.3}, {:.3}]", 40.0 + 9.0 * angle(corner).cos(), 40.0 + 9.0 * angle(corner).sin()))
+            .collect();
+        compiled(&format!(
+            "[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\nregion = {{ shape = \"polygon\", points_mm = [{}] }}\n",
+            points.join(", ")
+        ))
+    };
+    assert!(polygon(vertices as usize).is_ok());
+    assert!(
+        vertices >= 32.0 || polygon(vertices as usize + 1).unwrap_err().to_string().contains("the board has time for")
+    );
+}
+
+#[test]
+fn without_a_load_all_fingers_stand_on_one_line_of_slope_one_and_two() {
+    let rows = rows("fig3-core-line");
+    let mut fingers = BTreeMap::new();
+    for row in &rows {
+        // DESIGN's dimensionless form of Eqs. (36), (34).
+        let q = number(row, "voltage_over_scale").powi(2);
+        let y = q + (q * q + 2.0 * q / (1.0 + q)).sqrt();
+        for (column, right) in [("radius_over_scale", y.sqrt()), ("friction_over_scale", y * y)] {
+            assert!((number(row, column) - right).abs() <= 1e-13 * right, "{column}: {row:?}");
+        }
+        *fingers.entry(row["finger"].as_str()).or_insert(0) += 1;
+    }
+    assert_eq!(fingers.into_values().collect::<Vec<_>>(), [8, 8, 8, 161 + 101]);
+    let line = rows.iter().filter(|row| row["finger"] == "core line").take(161);
+    let line: Vec<_> =
+        line.map(|row| (number(row, "voltage_over_scale").powi(2), number(row, "friction_over_scale"))).collect();
+    assert!((slope(&line[..2]) - 1.0).abs() < 0.02, "Eqs. (34), (36) at small sigma0: {}", slope(&line[..2]));
+    assert!((slope(&line[159..]) - 2.0).abs() < 0.02, "and at large: {}", slope(&line[159..]));
+    assert!(line.windows(2).all(|pair| slope(pair) > 1.0 && slope(pair) < 2.0));
+}
+
+#[test]
+fn bounds_enclose_what_lies_between_and_part_where_voltage_is_small() {
+    let rows = rows("upper-and-lower-bound");
+    let bound =
+        |name| curve(&rows, &[("bound", name), ("normal_force_n", "0")], "voltage_v_rms", "electric_friction_n");
+    let (upper, lower) = (bound("upper"), bound("lower"));
+    // Over sigma0, which is the voltage's square.
+    assert!(lower.windows(2).all(|pair| (slope(pair) / 2.0 - 2.0).abs() < 1e-9), "Eq. (42) has slope 2");
+    assert!((slope(&upper[..2]) / 2.0 - 1.0).abs() < 0.02);
+    assert!(upper.iter().zip(&lower).all(|(upper, lower)| upper.1 > lower.1));
+    for outer in ["0.001", "0.0005", "0.0002"] {
+        let is = [("bound", "finite"), ("outer_radius_m", outer)];
+        let finite = curve(&rows, &is, "voltage_v_rms", "electric_friction_n");
+        assert!(finite.len() < upper.len(), "it would pass the outer radius at last");
+        for ((finite, upper), lower) in finite.iter().zip(&upper).zip(&lower) {
+            assert!(upper.1 > finite.1 && finite.1 > lower.1 * (1.0 - 1e-9), "{outer} {finite:?}");
+        }
+    }
+}
+
+#[test]
+fn curves_of_a_pull_begin_at_pull_off_and_all_rise() {
+    let (radii, frictions) = (rows("fig4-contact-radius-under-load"), rows("fig5-friction-under-load"));
+    let mut last = Vec::new();
+    for load in ["-20", "-10", "-5", "-1", "0", "1", "5", "10", "20"] {
+        let is = [("panel", "relative"), ("relative_normal_force", load)];
+        let radius = curve(&radii, &is, "voltage_over_scale", "radius_over_scale");
+        let friction = curve(&frictions, &is, "voltage_over_scale", "friction_over_scale");
+        // y = q there, which is where the root of the balance is double: half the digits are lost.
+        let (voltage, start) = radius[0];
+        if load.starts_with('-') {
+            assert!((start / voltage - 1.0).abs() < 1e-4, "{load}: {voltage} {start}");
+        } else {
+            assert!(voltage.abs() < f64::MIN_POSITIVE);
+        }
+        for points in [&radius, &friction] {
+            assert!(points.windows(2).all(|pair| pair[1].1 > pair[0].1), "{load} rises");
+        }
+        for (radius, friction) in radius.iter().zip(&friction) {
+            assert!((radius.1.powi(4) - friction.1).abs() <= 1e-12 * friction.1, "Eq. (21)");
+        }
+        last.push(friction[friction.len() - 1].1);
+    }
+    assert!(last.windows(2).all(|pair| pair[1] > pair[0]), "more load, more friction");
+}
+
+#[test]
+fn soft_fingers_have_their_powers_and_one_of_them_is_winkler_fuss() {
+    let rows = rows("soft-finger");
+    let pair = |name, exponent| {
+        curve(&rows, &[("finger", name), ("stress_exponent", exponent)], "voltage_v_rms", "electric_friction_n")
+    };
+    for exponent in ["0.1", "0.3", "0.5", "0.75", "1"] {
+        let power = 2.0 * exponent.parse::<f64>().unwrap() + 1.0;
+        let lower = pair("soft-lower", exponent);
+        assert!(lower.windows(2).all(|pair| (slope(pair) / 2.0 - power).abs() < 1e-9), "Eq. (40) at {exponent}");
+        assert!(pair("soft-upper", exponent).iter().zip(&lower).all(|(upper, lower)| upper.1 > lower.1));
+    }
+    for (soft, springs) in [("soft-upper", "wf-upper"), ("soft-loaded", "wf-loaded")] {
+        for (soft, springs) in pair(soft, "0.5").iter().zip(pair(springs, "")) {
+            assert!((soft.1 / springs.1 - 1.0).abs() < 1e-12, "{soft:?} {springs:?}");
+        }
+    }
+}
+
+#[test]
+fn maps_stay_below_the_goals_and_are_not_empty() {
+    for (name, goal, least) in [("stability-f64", 4e-15, 1e-16), ("stability-f32", 1e-6, 6e-8)] {
+        let rows = rows(name);
+        assert_eq!(rows.len(), 24 * 3 * (14 * 3 + 1));
+        for column in ["forward_relative_error", "inverse_relative_error"] {
+            let worst = largest(&rows, column);
+            assert!(worst <= goal && worst > least, "{name} {column}: {worst}");
+        }
+    }
+    let rows = rows("stability-soft");
+    for (precision, goal, least) in [("f64", 4e-14, 1e-16), ("f32", 1e-5, 6e-8)] {
+        let rows: Vec<Row> = rows.iter().filter(|row| row["precision"] == precision).cloned().collect();
+        assert_eq!(rows.len(), 66);
+        for column in ["forward_relative_error", "inverse_relative_error"] {
+            let worst = largest(&rows, column);
+            assert!(worst <= goal && worst > least, "{precision} {column}: {worst}");
+        }
+    }
+}
+
+/// Errors of a way in the order of its sizes.
+fn errors(way: &str, load: &str) -> Vec<f64> {
+    let rows = rows(MEASURED);
+    let of_way = rows.iter().filter(|row| row["way"] == way && row["normal_force_n"] == load);
+    of_way.map(|row| number(row, "largest_relative_error")).collect()
+}
+
+#[test]
+fn every_way_is_as_far_off_as_it_has_to_be() {
+    for load in ["0", "0.5"] {
+        for (way, goal) in
+            [("closed form, f64", 4e-15), ("closed form, f32", 1e-6), ("the board's table, cubic, f32", 1e-5)]
+        {
+            assert!(errors(way, load).iter().all(|error| *error <= goal && *error > 0.0), "{way} {load}");
+        }
+        for order in ["linear", "quadratic", "cubic"] {
+            for precision in ["f32", "integers"] {
+                let errors = errors(&format!("direct table, {order}, {precision}"), load);
+                for (error, target) in errors.iter().zip([1e-2, 1e-3, 1e-4, 1e-5, 4e-6]) {
+                    assert!(*error <= target, "{order} {precision} {load}: {error} for {target}");
+                }
+                assert_eq!(errors.len(), 5);
+            }
+        }
+        for way in ["bisection, f64", "forward table, binary search, f32"] {
+            let errors = errors(way, load);
+            assert!(errors.len() >= 4 && errors.windows(2).all(|pair| pair[1] < pair[0] / 3.0), "{way} {errors:?}");
+        }
+    }
+    // Friction in total cannot resolve the electric part in f32.
+    let bisection = |load| errors("bisection, f32", load)[2];
+    assert!(bisection("0") < 1e-4 && bisection("0.5") > 1e-2);
+    let rows = rows(MEASURED);
+    assert!(rows.iter().all(|row| number(row, "measured_run_time_over_f64_closed_form") > 0.0));
+}
+
+#[test]
+fn fewer_ticks_make_a_larger_error() {
+    let rows = rows("error-against-tick-rate");
+    for stripes in ["2 mm stripes", "1 mm stripes", "0.5 mm stripes", "2 mm stripes, a real touch source"] {
+        let errors = curve(&rows, &[("curve", stripes)], "tick_hz", "rms_error_over_reachable_range");
+        assert_eq!((errors.len(), errors[0].0, errors[8].0), (9, 1000.0, 40_000.0));
+        let [slowest, slower, slow] = [errors[0].1, errors[1].1, errors[2].1];
+        // At 1 and 2 kHz the touch source reports every 2 and 4 ticks, and ticks that take reports in are most of them.
+        assert!(slowest > slower && slower > 1.05 * slow, "{stripes}: {errors:?}");
+        // Beyond, ticks help less and less, and what they cannot help remains.
+        assert!(errors[3..].iter().all(|error| error.1 < slow && error.1 > 0.01), "{stripes}: {errors:?}");
+    }
+    for row in rows.iter().filter(|row| !row["rms_error_over_reachable_range"].is_empty()) {
+        let (ticks, carrier) = (number(row, "tick_hz"), number(row, "carrier_hz"));
+        assert!(carrier >= 125.0 && ticks / (2.0 * carrier) >= 4.0, "what a board takes");
+    }
+}

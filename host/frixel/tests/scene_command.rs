@@ -1,0 +1,328 @@
+//! `frixel scene` as a person uses it: numbers, pictures, and what it says to wrong input.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// All that a scene needs but its layers: a screen of 120 mm by 80 mm, 0.25 N of natural friction, 27.78 mN more.
+const HEAD: &str = "\
+version = 1
+
+[screen]
+width_mm = 120
+height_mm = 80
+
+[coating]
+thickness_um = 10
+permittivity = 1
+
+[finger]
+radius_mm = 8
+stiffness_pa_per_m = 1.8e7
+friction_coefficient = 0.5
+normal_load_n = 0.5
+";
+
+fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn frixel(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_frixel")).args(arguments).current_dir(repository()).output().unwrap()
+}
+
+fn said(arguments: &[&str]) -> String {
+    let output = frixel(arguments);
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// What a command that fails with status 1 says on standard error.
+fn refused(arguments: &[&str]) -> String {
+    let output = frixel(arguments);
+    assert_eq!(output.status.code(), Some(1), "{arguments:?}");
+    assert!(output.stdout.is_empty(), "{arguments:?} said {}", String::from_utf8_lossy(&output.stdout));
+    String::from_utf8(output.stderr).unwrap()
+}
+
+/// Files that a test writes.
+struct Files(TempDir);
+
+impl Files {
+    fn new() -> Self {
+        Self(TempDir::new().unwrap())
+    }
+
+    fn path(&self, name: &str) -> String {
+        self.0.path().join(name).display().to_string()
+    }
+
+    fn write(&self, name: &str, bytes: impl AsRef<[u8]>) -> String {
+        fs::write(self.0.path().join(name), bytes).unwrap();
+        self.path(name)
+    }
+
+    fn scene(&self, rest: &str) -> String {
+        self.write("scene.toml", format!("{HEAD}\n{rest}"))
+    }
+
+    fn check(&self, rest: &str) -> Value {
+        serde_json::from_str(&said(&["scene", "check", &self.scene(rest), "--json", "--board"])).unwrap()
+    }
+}
+
+#[test]
+fn mistakes_are_json_where_that_is_asked_for() {
+    let files = Files::new();
+    let check = |scene: &str| {
+        let output = frixel(&["scene", "check", scene, "--json"]);
+        assert_eq!(output.status.code(), Some(1));
+        serde_json::from_slice::<Value>(&output.stdout).unwrap()
+    };
+    let scene = files.scene(
+        "[[layer]]\nkind = \"gratin\"\nwavelenght_mm = 2 # wide\nlow_n = 0\nhigh_n = 0.01\n\
+         [[layer]]\nkind = \"constant\"\nregion = { x_mm = 0, y_mm = -3000, width_mm = 3, height_mm = 3 }\n",
+    );
+    let json = check(&scene);
+    assert_eq!((json["file"].as_str(), json["unreadable"].is_null()), (Some(scene.as_str()), true));
+    let mistakes: Vec<_> = json["mistakes"].as_array().unwrap().iter().collect();
+    let found: Vec<_> = mistakes
+        .iter()
+        .map(|mistake| {
+            let number = |key: &str| mistake[key].as_u64().unwrap();
+            (number("line"), number("column"), mistake["text"].as_str().unwrap(), mistake["nearest"].as_str())
+        })
+        .collect();
+    assert_eq!(
+        found,
+        [
+            (18, 8, "\"gratin\"", Some("grating")),
+            (19, 1, "wavelenght_mm", Some("wavelength_mm")),
+            (22, 1, "[[layer]]", None),
+            (24, 29, "-3000", None),
+        ]
+    );
+    assert_eq!(mistakes[2]["message"], "layer 2 (constant) has no `friction_n`: add it");
+
+    let missing = check(&files.path("none.toml"));
+    assert!(missing["unreadable"].as_str().is_some_and(|reason| !reason.is_empty()), "{missing}");
+    assert_eq!(missing["mistakes"], Value::Array(Vec::new()));
+}
+
+fn constant(rest: &str) -> String {
+    format!("[[layer]]\nkind = \"constant\"\n{rest}\n")
+}
+
+#[test]
+fn bytes_are_those_that_a_play_sends() {
+    let files = Files::new();
+    let check: Value = serde_json::from_str(&said(&["scene", "check", "scenes/brick.toml", "--json"])).unwrap();
+    let out = files.path("out");
+    let played: Value =
+        serde_json::from_str(&said(&["play", "scenes/brick.toml", "--json", "--seconds", "0.01", "--out", &out]))
+            .unwrap();
+    let (wire, ram) = (&check["wire"], &check["ram"]);
+    let number = |value: &Value| value.as_u64().unwrap();
+    assert_eq!(number(&wire["bitmap_bytes"]), 250 * 250);
+    assert_eq!(ram["bitmap_pool_bytes"], wire["bitmap_bytes"]);
+    assert_eq!(number(&wire["scene_bytes"]) + number(&wire["bitmap_bytes"]), number(&played["payload_bytes"]));
+    assert_eq!(
+        number(&wire["total_bytes"]),
+        number(&wire["scene_bytes"]) + number(&wire["bitmap_bytes"]) + number(&wire["framing_bytes"])
+    );
+    // The play has a hello, the orders to arm, play and stop, and pings.
+    let more = number(&played["wire_bytes"]) - number(&wire["total_bytes"]);
+    assert!((20..200).contains(&more), "{more}");
+    // The goal for a bulk upload.
+    assert!(number(&wire["framing_bytes"]) * 20 <= number(&wire["total_bytes"]), "{wire}");
+    assert!(check.get("board").is_none());
+}
+
+#[test]
+fn ram_grows_by_what_a_layer_takes() {
+    let files = Files::new();
+    let active = |rest: &str| files.check(rest)["ram"]["active_bytes"].as_u64().unwrap();
+    let one = constant("friction_n = 0.26\nlive = true");
+    let layer = active(&one);
+    assert!(layer > 0);
+    assert_eq!(active(""), 0);
+    assert_eq!(active(&one.repeat(5)), 5 * layer);
+    let polygon = "region = { shape = \"polygon\", points_mm = [[0, 0], [30, 0], [0, 30]] }";
+    assert_eq!(active(&constant(&format!("friction_n = 0.26\n{polygon}"))), layer + 3 * 8);
+}
+
+#[test]
+fn the_table_ends_where_the_scene_does_unless_a_layer_may_change() {
+    let files = Files::new();
+    let table = |rest: &str| {
+        let ram = files.check(&constant(rest))["ram"].clone();
+        ["table_bytes", "table_whole_bytes", "table_room_bytes"].map(|key| ram[key].as_u64().unwrap())
+    };
+    let [most, whole, room] = table("friction_fraction = 1");
+    assert!(most == whole && whole < room && room <= 2048, "{most} of {whole}, room for {room}");
+    // Four rows of 16 bytes for an octave.
+    assert_eq!(table("friction_fraction = 0.499"), [whole - 64, whole, room]);
+    assert_eq!(table("friction_fraction = 0.2495"), [whole - 128, whole, room]);
+    assert_eq!(table("friction_fraction = 0.499\nlive = true"), [whole, whole, room]);
+
+    let path = files.path("scene.toml");
+    let said = said(&["scene", "check", &path]);
+    assert!(said.contains("nothing is cut"), "{said}");
+    files.check(&constant("friction_fraction = 0.499"));
+    let said = self::said(&["scene", "check", &path]);
+    assert!(said.contains(&format!("{} of {whole} bytes computed, 4 rows are cut", whole - 64)), "{said}");
+}
+
+#[test]
+fn what_is_out_of_reach_is_measured_and_named() {
+    let files = Files::new();
+    let saturate = "[drive]\nsaturate = true\n";
+    let region = "region = { x_mm = 30, y_mm = 0, width_mm = 30, height_mm = 80 }";
+    let layers = [
+        constant(&format!("name = \"too rough\"\n{region}\nfriction_n = 0.3")),
+        constant(
+            "name = \"too smooth\"\nregion = { x_mm = 60, y_mm = 40, width_mm = 60, height_mm = 40 }\nfriction_n = 0.2",
+        ),
+    ];
+    let check = files.check(&format!("{saturate}{}", layers.concat()));
+    let asked = &check["asked"];
+    let near = |value: &Value, expected: f64| {
+        let found = value.as_f64().unwrap();
+        assert!((found - expected).abs() < 1e-6 * expected, "{found} is not {expected}");
+    };
+    near(&asked["least_n"], 0.2);
+    near(&asked["most_n"], 0.3);
+    near(&asked["above"]["screen_percent"], 25.0);
+    near(&asked["below"]["screen_percent"], 25.0);
+    assert_eq!(asked["above"]["layers"], serde_json::json!(["layer 1 \"too rough\""]));
+    assert_eq!(asked["below"]["layers"], serde_json::json!(["layer 2 \"too smooth\""]));
+    // The paper's Eqs. (43), (21) at 150 V.
+    near(&check["reach"]["natural_n"], 0.25);
+    near(&check["reach"]["total_max_n"], 0.277_781_2);
+
+    let text = said(&["scene", "check", &files.path("scene.toml")]);
+    assert!(text.contains("25.0 % of the screen above, by layer 1 \"too rough\"; 25.0 %"), "{text}");
+    let inside = files.check(&constant("friction_n = 0.26"));
+    near(&inside["asked"]["most_n"], 0.26);
+    assert_eq!(inside["asked"]["above"]["screen_percent"], 0.0);
+}
+
+#[test]
+fn the_smallest_firmware_has_what_the_scene_asks_for() {
+    let files = Files::new();
+    let features = |rest: &str| files.check(rest)["board"]["features"].clone();
+    assert_eq!(features(&constant("friction_n = 0.26")), serde_json::json!(["telemetry"]));
+    let every = fs::read_dir(repository().join("scenes")).unwrap().filter_map(|entry| {
+        let path = entry.unwrap().path();
+        path.extension().is_some_and(|extension| extension == "toml").then(|| path.display().to_string())
+    });
+    let stream = "[carrier]\nshape = \"sine\"\n[[layer]]\nkind = \"stream\"\nlow_n = 0\nhigh_n = 0.01\n";
+    let mut found: Vec<String> = Vec::new();
+    for scene in every.chain([files.scene(stream)]) {
+        let check: Value = serde_json::from_str(&said(&["scene", "check", &scene, "--json", "--board"])).unwrap();
+        let names: Vec<String> = serde_json::from_value(check["board"]["features"].clone()).unwrap();
+        let command = check["board"]["command"].as_str().unwrap();
+        assert!(command.contains("--no-default-features") && command.ends_with(&names.join(",")), "{command}");
+        found.extend(names);
+    }
+    found.sort();
+    found.dedup();
+    // All that a scene can ask for, as both manifests have it.
+    for (manifest, others) in [
+        ("firmware/render/Cargo.toml", ["store", "table-cut"].as_slice()),
+        ("firmware/board-nucleo-g474re/Cargo.toml", &["store", "table-cut", "panic-message", "log"]),
+    ] {
+        let text = fs::read_to_string(repository().join(manifest)).unwrap();
+        let list = text.split("default = [").nth(1).unwrap().split(']').next().unwrap();
+        let mut known: Vec<&str> =
+            list.split(',').map(|name| name.trim().trim_matches('"')).filter(|name| !name.is_empty()).collect();
+        known.retain(|name| !others.contains(name));
+        known.sort_unstable();
+        assert_eq!(found, known, "{manifest}");
+    }
+}
+
+#[test]
+fn what_does_not_fit_is_refused_by_its_number() {
+    let files = Files::new();
+    fs::copy(repository().join("scenes/textures/brick.png"), files.path("brick.png")).unwrap();
+    let bitmap = "[[layer]]\nkind = \"bitmap\"\npicture = \"brick.png\"\nx_mm = 0\ny_mm = 0\nwidth_mm = 80\n";
+    let message = refused(&["scene", "check", &files.scene(bitmap)]);
+    assert!(message.contains("need 102400 bytes, and the board has 65536"), "{message}");
+    let message = refused(&["scene", "check", &files.scene(&constant("friction_n = 0.26").repeat(65))]);
+    assert!(message.contains("this is layer 65, and the board takes 64"), "{message}");
+    let piled = "[[layer]]\nkind = \"noise\"\nblend = \"add\"\nwavelength_min_mm = 1\nwavelength_max_mm = 2\nlow_n = 0\nhigh_n = 0.001\n";
+    let message = refused(&["scene", "check", &files.scene(&piled.repeat(3))]);
+    assert!(
+        message.contains(":31:1: a tick takes up to ") && message.contains("the board has time for 600"),
+        "{message}"
+    );
+    let triangle = |x: usize| {
+        let mut points = String::new();
+        for number in 0..32 {
+            let _ = write!(points, "[{}, {}],", x + number % 5, number);
+        }
+        constant(&format!("friction_n = 0.26\nregion = {{ shape = \"polygon\", points_mm = [{points}] }}"))
+    };
+    let message = refused(&["scene", "check", &files.scene(&(0..5).map(triangle).collect::<String>())]);
+    assert!(
+        message.contains("number 160 of the scene's points of polygons and curves, and a board takes 128"),
+        "{message}"
+    );
+}
+
+#[test]
+fn wrong_input_is_said_as_play_says_it() {
+    let files = Files::new();
+    let wrong = files.scene("[[layer]]\nkind = \"gratting\"\n[[layer]]\nkind = \"constant\"\nfriction_nn = 1\n");
+    let empty = files.write("empty.toml", "");
+    let binary = files.write("binary.toml", [0x7f, b'E', b'L', b'F', 0xff, 0xfe, 0x00]);
+    let (missing, folder) = (files.path("missing.toml"), files.path("."));
+    for scene in [&wrong, &empty, &binary, &missing, &folder] {
+        let message = refused(&["scene", "check", scene]);
+        assert!(message.starts_with(&format!("frixel: {scene}:")), "{message}");
+        let json = frixel(&["scene", "check", scene, "--json", "--board"]);
+        assert_eq!((json.status.code(), String::from_utf8(json.stderr).unwrap()), (Some(1), message.clone()));
+        assert_eq!(message, refused(&["scene", "preview", scene, "-o", &files.path("map.png")]));
+        assert_eq!(message, refused(&["play", scene, "--out", &files.path("out")]));
+    }
+    let message = refused(&["scene", "check", &wrong]);
+    assert!(message.contains(":18:8: `kind = \"gratting\"` is not known; did you mean `grating`?\n"), "{message}");
+    assert!(message.contains(":21:1: unknown field `friction_nn` in layer 2 (constant); did you mean `friction_n`?"));
+    assert_eq!(refused(&["scene", "check", &empty]).lines().count(), 4);
+    assert!(refused(&["scene", "check", &binary]).contains("not UTF-8"));
+    assert!(!Path::new(&files.path("map.png")).exists());
+}
+
+/// Pixels of the rows that a map of 300 by 200 pixels lies in; the caption is below them.
+fn map(path: &str) -> Vec<u8> {
+    let mut decoder = png::Decoder::new(std::io::BufReader::new(fs::File::open(path).unwrap()));
+    decoder.set_transformations(png::Transformations::EXPAND);
+    let mut reader = decoder.read_info().unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    let frame = reader.next_frame(&mut bytes).unwrap();
+    bytes.chunks_exact(frame.line_size).skip(60).take(200).flatten().copied().collect()
+}
+
+#[test]
+fn a_preview_is_a_png_of_the_asked_size() {
+    let files = Files::new();
+    let path = files.path("map.png");
+    let message = said(&["scene", "preview", "scenes/ribs.toml", "-o", &path, "--map-width", "300"]);
+    assert!(message.contains(&path), "{message}");
+    let decoder = png::Decoder::new(std::io::BufReader::new(fs::File::open(&path).unwrap()));
+    let reader = decoder.read_info().unwrap();
+    assert_eq!(reader.info().width, 300 + 84 + 150);
+    let slow = files.path("slow.png");
+    said(&["scene", "preview", "scenes/ribs.toml", "-o", &slow, "--map-width", "300", "--speed-mm-per-s", "15"]);
+    assert!(map(&slow) != map(&path), "the speed changes nothing");
+    let message = refused(&["scene", "preview", "scenes/ribs.toml", "-o", &files.path("map.jpg")]);
+    assert!(message.contains("map.jpg is no PNG file by its name"), "{message}");
+    let message = refused(&["scene", "preview", "scenes/ribs.toml", "-o", &files.path("no/map.png")]);
+    assert!(message.contains("no/map.png cannot be written"), "{message}");
+}

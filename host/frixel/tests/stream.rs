@@ -1,0 +1,277 @@
+//! A stream from a WAV file through driver, line, board and amplifier to the finger, in virtual time.
+//!
+//! What the board asks for is compared, tick by tick, with straight lines between the file's samples in f64.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+use std::f64::consts::TAU;
+use std::path::Path;
+use std::time::Duration;
+
+use frixel::output::FeltRow;
+use frixel::player;
+use frixel::rigs::{Recorder, SimLink};
+use frixel::stream::Feed;
+use frixel_driver::{Device, StreamStatus};
+use frixel_hil_sim::{BoardMemory, Point, Rig, RigConfig, Stroke};
+use frixel_scene::{Program, Scene, compile};
+use frixel_wire::fault::Flags;
+use frixel_wire::scene::{Blend, Layer, Record, Region};
+use hound::{SampleFormat, WavSpec, WavWriter};
+
+const SAMPLE_HZ: u32 = 4_000;
+const TICK_HZ: f64 = 40_000.0;
+const FADE_TICKS: f64 = 400.0;
+const NATURAL_N: f64 = 0.25;
+const LOW_N: f64 = 0.002;
+const HIGH_N: f64 = 0.018;
+
+/// The friction that a stream alone gives.
+fn program() -> Program {
+    let rig = RigConfig::default();
+    let scene = Scene::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/constant.toml")).unwrap();
+    let mut program = compile(&scene, &rig.board.limits, rig.board.tick_hz).unwrap();
+    let layer = Layer::Stream { low_n: LOW_N as f32, high_n: HIGH_N as f32 };
+    program.records = vec![Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer }];
+    program
+}
+
+/// A second of two tones, as a 16-bit WAV has it.
+fn tones() -> Vec<i16> {
+    (0..SAMPLE_HZ)
+        .map(|index| {
+            let t_s = f64::from(index) / f64::from(SAMPLE_HZ);
+            let value = 0.55 * (TAU * 37.0 * t_s).sin() + 0.4 * (TAU * 210.0 * t_s).cos();
+            (32_767.0 * value).round() as i16
+        })
+        .collect()
+}
+
+fn write_wav(path: &Path, samples: &[i16]) {
+    let spec = WavSpec { channels: 1, sample_rate: SAMPLE_HZ, bits_per_sample: 16, sample_format: SampleFormat::Int };
+    let mut writer = WavWriter::create(path, spec).unwrap();
+    for sample in samples {
+        writer.write_sample(*sample).unwrap();
+    }
+    writer.finalize().unwrap();
+}
+
+/// Total friction, `ticks` ticks after the first one that plays, from the file's samples and nothing else.
+fn wanted_n(samples: &[i16], ticks: f64) -> f64 {
+    let value = |index: f64| (f64::from(samples[index as usize]) + 32_768.0) / 65_535.0;
+    let place = (ticks - 1.0).max(0.0) * f64::from(SAMPLE_HZ) / TICK_HZ;
+    let before = place.floor();
+    let sample = value(before) + (place - before) * (value(before + 1.0) - value(before));
+    let weight = ((ticks + 1.0) / FADE_TICKS).min(1.0);
+    NATURAL_N + weight * (LOW_N + (HIGH_N - LOW_N) * sample)
+}
+
+fn is_dry(row: &FeltRow) -> bool {
+    row.flags.unwrap().contains(Flags::STREAM_DRY)
+}
+
+/// Plays the tones under a sliding finger; the host sends nothing in `pause`, in milliseconds from the stream's start.
+/// Returns a row a tick, and what the board said of the stream.
+fn play(pause_ms: std::ops::Range<u64>) -> (Vec<FeltRow>, StreamStatus) {
+    let folder = tempfile::tempdir().unwrap();
+    let wav = folder.path().join("tones.wav");
+    write_wav(&wav, &tones());
+    let program = program();
+    let config = RigConfig::default();
+    let stroke =
+        Stroke::constant_speed(Point { x_m: 0.005, y_m: 0.03 }, Point { x_m: 0.115, y_m: 0.03 }, 0.05).unwrap();
+    let mut memory = BoardMemory::new();
+    let rig = Rig::new(&mut memory, &config, stroke, 1).unwrap();
+    let recorder = Recorder::new(&program, &config.board.limits, config.board.tick_hz, 80_000, 1).unwrap();
+    let mut device = Device::connect(SimLink::new(rig, recorder)).unwrap();
+    player::start(&mut device, &program, &mut |_| {}).unwrap();
+    device.wait(Duration::from_millis(100), &mut |_| {}).unwrap();
+    let mut feed = Feed::wav(&wav, config.board.tick_hz).unwrap();
+    feed.start(&mut device).unwrap();
+    for step in 0..330 {
+        device.wait(Duration::from_millis(5), &mut |_| {}).unwrap();
+        if !pause_ms.contains(&(5 * step)) {
+            feed.pump(&mut device).unwrap();
+        }
+    }
+    let status = device.stream_status().unwrap();
+    (device.into_link().into_recorder().rows().to_vec(), status)
+}
+
+/// Rows from the first tick that plays.
+fn from_start(rows: &[FeltRow]) -> &[FeltRow] {
+    let filling = rows.iter().position(is_dry).unwrap();
+    let start = rows[filling..].iter().position(|row| !is_dry(row)).unwrap();
+    &rows[filling + start..]
+}
+
+#[test]
+fn what_is_asked_for_is_the_file() {
+    let samples = tones();
+    let (rows, status) = play(0..0);
+    assert_eq!(status, StreamStatus { sent: 4_000, underruns: 0, gaps: 0 });
+    let played = from_start(&rows);
+    let ticks = 10 * samples.len() - 20;
+    let mut at_once = 0;
+    for (tick, row) in played[..ticks].iter().enumerate() {
+        let asked_n = row.asked_n.unwrap();
+        // A tick that attends to a report goes on with what was asked for a few ticks before.
+        let lag = (0..7.min(tick + 1)).find(|lag| (asked_n - wanted_n(&samples, (tick - lag) as f64)).abs() < 1e-7);
+        assert!(lag.is_some(), "tick {tick}: {asked_n} N is not {} N", wanted_n(&samples, tick as f64));
+        at_once += usize::from(lag == Some(0));
+    }
+    assert!(at_once * 100 > 95 * ticks, "{at_once} of {ticks} ticks at once");
+    assert!(rows.iter().all(|row| row.flags.unwrap().0 & Flags::SATURATED.0 == 0));
+}
+
+/// Means over a carrier period, with all lags of amplifier and friction.
+#[test]
+fn what_is_felt_is_the_file() {
+    let samples = tones();
+    let (rows, _) = play(0..0);
+    let errors: Vec<f64> = from_start(&rows)[400..39_000]
+        .chunks_exact(40)
+        .enumerate()
+        .map(|(period, rows)| {
+            let felt_n = rows.iter().map(|row| row.felt_n.unwrap()).sum::<f64>() / 40.0;
+            let wanted_n =
+                (0..40).map(|tick| wanted_n(&samples, (400 + 40 * period + tick) as f64)).sum::<f64>() / 40.0;
+            felt_n - wanted_n
+        })
+        .collect();
+    let rms_n = (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt();
+    println!("felt: {:.2} % rms of the stream's span", 100.0 * rms_n / (HIGH_N - LOW_N));
+    // At 50 mm/s friction follows behind 690 Hz: 210 Hz lose a twentieth, and come 0.23 ms late.
+    assert!(rms_n < 0.06 * (HIGH_N - LOW_N), "{rms_n} N");
+}
+
+#[test]
+fn a_host_that_pauses_is_one_underrun_and_a_fade_and_never_a_stale_value() {
+    let (rows, status) = play(300..800);
+    assert_eq!((status.underruns, status.gaps), (1, 0));
+    assert_eq!(status.sent, 4_000, "all of it was played in the end");
+    let played = from_start(&rows);
+    let dry = played.iter().position(is_dry).unwrap();
+    let held_n = played[dry].asked_n.unwrap() - NATURAL_N;
+    let back = dry + played[dry..].iter().position(|row| !is_dry(row)).unwrap();
+    assert!(back - dry > 4_000, "a fade of 400 ticks and a long rest: {}", back - dry);
+    for (tick, row) in played[dry..back].iter().enumerate() {
+        let asked_n = row.asked_n.unwrap() - NATURAL_N;
+        let weight = (1.0 - tick as f64 / FADE_TICKS).max(0.0);
+        // Attending to a report makes it a few steps of the fade late.
+        assert!((asked_n - weight * held_n).abs() <= 5.0 * held_n / FADE_TICKS + 1e-9, "{tick}: {asked_n} N");
+        assert!(tick < 410 || asked_n.abs() < 1e-12, "{tick}: {asked_n} N is stale");
+    }
+    // It goes on with the sample that it waited for, and fades in from nothing.
+    assert!(played[back].asked_n.unwrap() - NATURAL_N < 2.0 * HIGH_N / FADE_TICKS);
+    let samples = tones();
+    let first = (0..samples.len() - 50).find(|first| {
+        (420..440).all(|tick| {
+            let place = *first as f64 * 10.0 + f64::from(tick);
+            let wanted_n = wanted_n(&samples, place);
+            (played[back + tick as usize].asked_n.unwrap() - wanted_n).abs() < 1e-7
+        })
+    });
+    let expected = (dry as f64 * f64::from(SAMPLE_HZ) / TICK_HZ).round();
+    assert!(first.is_some_and(|first| (first as f64 - expected).abs() <= 2.0), "{first:?}, {expected}");
+}
+
+/// What the recorder has for wanted is what this test works out by itself, and what the board asks for.
+#[test]
+fn the_recorder_knows_what_is_streamed() {
+    let samples = tones();
+    for (pause_ms, dry_s) in [(0..0, 0.0), (300..310, 0.0), (300..800, 0.3)] {
+        let (rows, status) = play(pause_ms.clone());
+        assert_eq!(status.underruns, u32::from(dry_s > 0.0));
+        let filling = rows.iter().position(is_dry).unwrap();
+        assert!(rows[..filling].iter().all(|row| (row.wanted_n.unwrap() - NATURAL_N).abs() < 1e-12), "nothing streams");
+        let played = from_start(&rows);
+        if status.underruns == 0 {
+            for (tick, row) in played[..10 * samples.len() - 20].iter().enumerate() {
+                let expected_n = wanted_n(&samples, tick as f64);
+                assert!((row.wanted_n.unwrap() - expected_n).abs() < 1e-9, "{tick}: {:?} N", row.wanted_n);
+            }
+        }
+        let as_asked = |row: &FeltRow| (row.asked_n.unwrap() - row.wanted_n.unwrap()).abs() < 2e-7;
+        let same = played.iter().filter(|row| as_asked(row)).count();
+        assert!(same * 100 > 95 * played.len(), "{same} of {} ticks, paused {pause_ms:?} ms", played.len());
+        assert!(as_asked(played.last().unwrap()) && played.last().unwrap().wanted_n == Some(NATURAL_N), "it has faded");
+    }
+}
+
+/// The real command: a scene without stream layers refuses samples, and wrong uses are told.
+mod command {
+    use super::*;
+    use std::fs::File;
+    use std::process::{Command, Output};
+
+    fn frixel(folder: &Path, arguments: &[&str]) -> Output {
+        let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/constant.toml");
+        let mut command = Command::new(env!("CARGO_BIN_EXE_frixel"));
+        command.arg("play").arg(scene).args(["--seconds", "0.2"]).args(arguments).current_dir(folder).output().unwrap()
+    }
+
+    #[test]
+    fn what_cannot_be_streamed_is_refused_in_a_sentence() {
+        let folder = tempfile::tempdir().unwrap();
+        write_wav(&folder.path().join("tones.wav"), &tones());
+        for (arguments, part) in [
+            (&["--stream", "tones.wav"][..], "no layer of the playing scene is a stream"),
+            (&["--stream", "none.wav"], "none.wav cannot be streamed"),
+            (&["--stream", "-"], "put --stream-hz beside"),
+            (&["--stream-hz", "100"], "put --stream - before it"),
+            (&["--stream", "tones.wav", "--stream-hz", "100"], "has a sample rate of its own"),
+            (&["--stream", "-", "--stream-hz", "50000"], "50000 samples a second cannot be played: give 1 to 40000"),
+            (&["--stream", "-", "--stream-hz", "0"], "0 samples a second cannot be played: give 1 to 40000"),
+        ] {
+            let output = frixel(folder.path(), arguments);
+            let said = String::from_utf8(output.stderr).unwrap();
+            assert_eq!(output.status.code(), Some(1), "{arguments:?}: {said}");
+            assert!(said.contains(part), "{arguments:?}: {said}");
+        }
+    }
+
+    const SCENE: &str = r#"
+version = 1
+screen = { width_mm = 120, height_mm = 80 }
+coating = { thickness_um = 10, permittivity = 1 }
+finger = { radius_mm = 8, stiffness_pa_per_m = 1.8e7, friction_coefficient = 0.5, normal_load_n = 0.5 }
+[[layer]]
+kind = "stream"
+low_n = 0.002
+high_n = 0.018
+"#;
+
+    /// A second and a half of the scene above, with its samples from a file or from standard input: the JSON and felt.csv.
+    fn stream(folder: &Path, out: &str, arguments: &[&str], input: File) -> (serde_json::Value, Vec<u8>) {
+        let output = Command::new(env!("CARGO_BIN_EXE_frixel"))
+            .args(["play", "scene.toml", "--seconds", "1.5", "--json", "--out", out])
+            .args(arguments)
+            .current_dir(folder)
+            .stdin(input)
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        (serde_json::from_slice(&output.stdout).unwrap(), std::fs::read(folder.join(out).join("felt.csv")).unwrap())
+    }
+
+    #[test]
+    fn a_pipe_plays_what_a_file_plays() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        std::fs::write(path("scene.toml"), SCENE).unwrap();
+        write_wav(&path("tones.wav"), &tones());
+        let raw: Vec<u8> = tones().iter().flat_map(|s| ((i32::from(*s) + 32_768) as u16).to_le_bytes()).collect();
+        std::fs::write(path("raw"), raw).unwrap();
+        let open = |name: &str| File::open(path(name)).unwrap();
+
+        let (json, of_file) = stream(folder.path(), "file", &["--stream", "tones.wav"], open("scene.toml"));
+        assert_eq!([&json["stream_samples"], &json["stream_underruns"], &json["stream_gaps"]], [4_000, 0, 0]);
+        // 7 % of the span were found, what a slow finger costs among them; of an output at zero it would be 50 %.
+        let error_n = json["friction_error_rms_n"].as_f64().unwrap();
+        assert!((1e-6..0.1 * (HIGH_N - LOW_N)).contains(&error_n), "{error_n} N rms");
+        let (_, of_pipe) = stream(folder.path(), "pipe", &["--stream", "-", "--stream-hz", "4000"], open("raw"));
+        assert!(of_file == of_pipe, "the two differ");
+        let (_, of_other) = stream(folder.path(), "other", &["--stream", "-", "--stream-hz", "3000"], open("raw"));
+        assert!(of_file != of_other, "the rate changes nothing");
+    }
+}

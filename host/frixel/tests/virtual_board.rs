@@ -1,0 +1,355 @@
+//! `frixel sim` and `frixel play` as two processes on a pseudo-terminal, and what happens when one of them is killed.
+//!
+//! Times are the simulator's own, from the log that it keeps; nothing here is measured by the wall clock.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+mod processes;
+
+use std::fs;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Output, Stdio};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::thread::sleep;
+use std::time::Duration;
+
+use frixel::player;
+use frixel_driver::{DEFAULT_BAUD, Device, SerialLink};
+use frixel_scene::{Scene, compile};
+use processes::{NAP, frixel, until};
+use serialport::{SerialPort, TTYPort};
+use tempfile::TempDir;
+
+/// Host timeout of the scene here, s: the longest that there is, for on a busy machine pings are late.
+const HOST_TIMEOUT_S: f64 = 1.0;
+
+/// The brick with this host timeout, in a folder.
+fn scene(folder: &Path) -> PathBuf {
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    let brick = fs::read_to_string(scenes.join("brick.toml")).unwrap();
+    let path = folder.join("brick.toml");
+    let picture = scenes.join("textures/brick.png").display().to_string();
+    let timeout = format!("[drive]\nhost_timeout_ms = {}\n", 1e3 * HOST_TIMEOUT_S);
+    fs::write(&path, brick.replace("textures/brick.png", &picture).replace("[drive]\n", &timeout)).unwrap();
+    path
+}
+
+/// Clients that are killed.
+const KILLS: usize = 20;
+/// Of which the first die while the picture goes over the line.
+const UPLOADS_KILLED: usize = 6;
+
+/// One test at a time: on a busy machine a pseudo-terminal may hold bytes back for longer than a client waits.
+static TURN: Mutex<()> = Mutex::new(());
+
+fn turn() -> MutexGuard<'static, ()> {
+    TURN.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A client in a process of its own.
+fn client(scene: &Path, port: &str, seconds: &str, folder: &Path) -> Child {
+    frixel()
+        .arg("play")
+        .arg(scene)
+        .args(["--port", port, "--seconds", seconds, "--json", "--out"])
+        .arg(folder)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap()
+}
+
+/// A virtual board in a process of its own.
+struct VirtualBoard {
+    process: Child,
+    port: String,
+    folder: TempDir,
+    /// What clients play.
+    scene: PathBuf,
+}
+
+impl VirtualBoard {
+    fn start() -> Self {
+        let folder = TempDir::new().unwrap();
+        let mut process = frixel().args(["sim", "--out"]).arg(folder.path()).stdout(Stdio::piped()).spawn().unwrap();
+        let mut line = String::new();
+        BufReader::new(process.stdout.take().unwrap()).read_line(&mut line).unwrap();
+        let port = line.trim().strip_prefix("port: ").unwrap().to_owned();
+        let scene = scene(folder.path());
+        Self { process, port, folder, scene }
+    }
+
+    /// Ends it as a person would, and reads what it wrote.
+    fn interrupt(mut self) -> Log {
+        let process = rustix::process::Pid::from_raw(self.process.id() as i32).unwrap();
+        rustix::process::kill_process(process, rustix::process::Signal::INT).unwrap();
+        assert!(self.process.wait().unwrap().success());
+        Log::read(self.folder.path())
+    }
+
+    /// The events so far, without one that is half written; none before the log is there.
+    fn events(&self) -> Vec<Event> {
+        let text = fs::read_to_string(self.folder.path().join("events.csv")).unwrap_or_default();
+        text.rsplit_once('\n').map_or(Vec::new(), |(lines, _)| read_events(lines))
+    }
+
+    fn is_disarmed(&self) -> bool {
+        self.events().iter().rfind(|event| event.name != "host-silent").is_none_or(|event| event.name == "disarmed")
+    }
+
+    fn play(&self, seconds: &str, folder: &Path) -> Output {
+        client(&self.scene, &self.port, seconds, folder).wait_with_output().unwrap()
+    }
+}
+
+impl Drop for VirtualBoard {
+    fn drop(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+struct Event {
+    t_s: f64,
+    name: String,
+    last_frame_t_s: f64,
+}
+
+struct Log {
+    events: Vec<Event>,
+    /// Time, rms voltage and DAC code of every row.
+    rows: Vec<(f64, f64, i32)>,
+}
+
+impl Log {
+    fn read(folder: &Path) -> Self {
+        let rows = fs::read_to_string(folder.join("felt.csv")).unwrap();
+        let rows = rows.lines().skip(1).map(|line| {
+            let cells: Vec<&str> = line.split(',').collect();
+            (cells[0].parse().unwrap(), cells[7].parse().unwrap(), cells[8].parse().unwrap())
+        });
+        Self { rows: rows.collect(), events: read_events(&fs::read_to_string(folder.join("events.csv")).unwrap()) }
+    }
+
+    fn drives_between(&self, from_s: f64, to_s: f64) -> bool {
+        self.rows.iter().any(|(t_s, v_rms, code)| *t_s >= from_s && *t_s < to_s && (*v_rms > 0.0 || *code != 0))
+    }
+
+    /// When the board next played after a time.
+    fn next_active_s(&self, after_s: f64) -> f64 {
+        let next = self.events.iter().find(|event| event.name == "active" && event.t_s > after_s);
+        next.map_or(f64::INFINITY, |event| event.t_s)
+    }
+}
+
+/// Rows of a felt.csv so far; none before it is there.
+fn rows_in(folder: &Path) -> usize {
+    let text = fs::read_to_string(folder.join("felt.csv")).unwrap_or_default();
+    text.lines().count().saturating_sub(1)
+}
+
+fn read_events(text: &str) -> Vec<Event> {
+    text.lines()
+        .skip(1)
+        .map(|line| {
+            let cells: Vec<&str> = line.split(',').collect();
+            Event { t_s: cells[0].parse().unwrap(), name: cells[1].into(), last_frame_t_s: cells[2].parse().unwrap() }
+        })
+        .collect()
+}
+
+#[test]
+fn a_scene_plays_through_a_real_serial_port() {
+    let _turn = turn();
+    let board = VirtualBoard::start();
+    let folder = TempDir::new().unwrap();
+    let played = board.play("0.6", folder.path());
+    assert!(played.status.success(), "{}", String::from_utf8_lossy(&played.stderr));
+    let json = String::from_utf8(played.stdout).unwrap();
+    for part in [
+        r#""rig":"board""#,
+        r#""friction_error_rms_n":null"#,
+        r#""frames_rejected":0"#,
+        r#""payload_bytes":62612"#,
+        r#""saturated_ticks":null"#,
+    ] {
+        assert!(json.contains(part), "{part} is not in {json}");
+    }
+    let felt = fs::read_to_string(folder.path().join("felt.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = felt.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    assert!(rows.len() > 500, "{} rows of 1 kHz telemetry", rows.len());
+    assert!(rows.iter().all(|row| row[6].is_empty()), "a board does not know what is felt");
+    assert!(rows.iter().any(|row| row[7].parse::<f64>().unwrap() > 50.0), "it does know its voltage");
+
+    let log = board.interrupt();
+    let names: Vec<&str> = log.events.iter().map(|event| event.name.as_str()).collect();
+    assert_eq!(names, ["armed", "active", "armed", "disarmed"]);
+    let (active_s, stopped_s) = (log.events[1].t_s, log.events[2].t_s);
+    assert!(log.drives_between(active_s, stopped_s));
+    assert!(!log.drives_between(0.0, active_s));
+    assert!(!log.drives_between(stopped_s + 1e-3, f64::INFINITY));
+}
+
+/// Passes bytes between a client and a board, until the client has sent so many.
+struct Tap {
+    to_client: TTYPort,
+    _client_end: TTYPort,
+    path: String,
+    to_board: TTYPort,
+}
+
+impl Tap {
+    fn new(board: &VirtualBoard) -> Self {
+        let (mut to_client, client_end) = TTYPort::pair().unwrap();
+        to_client.set_timeout(NAP).unwrap();
+        let to_board = TTYPort::open(&serialport::new(&board.port, 2_000_000).timeout(NAP)).unwrap();
+        let path = client_end.name().unwrap();
+        Self { to_client, _client_end: client_end, path, to_board }
+    }
+
+    /// Returns when `count` bytes have gone to the board, or when the client has ended.
+    fn pass(&mut self, client: &mut Child, count: usize) {
+        let mut left = count;
+        let mut bytes = [0; 512];
+        while left > 0 && client.try_wait().unwrap().is_none() {
+            if self.to_client.bytes_to_read().unwrap() > 0 {
+                let room = left.min(bytes.len());
+                let got = self.to_client.read(&mut bytes[..room]).unwrap();
+                self.to_board.write_all(&bytes[..got]).unwrap();
+                left -= got;
+            } else if self.to_board.bytes_to_read().unwrap() > 0 {
+                let got = self.to_board.read(&mut bytes).unwrap();
+                self.to_client.write_all(&bytes[..got]).unwrap();
+            } else {
+                sleep(Duration::from_micros(200));
+            }
+        }
+    }
+}
+
+/// Numbers that look random and are the same in every run.
+fn lcg(state: &mut u64) -> usize {
+    *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+    (*state >> 33) as usize
+}
+
+#[test]
+fn a_client_killed_at_any_byte_leaves_the_output_at_zero_and_the_next_one_welcome() {
+    let _turn = turn();
+    let board = VirtualBoard::start();
+    let folder = TempDir::new().unwrap();
+    let mut random = 1;
+    let mut killed_while_playing = 0;
+    for kill in 0..KILLS {
+        if kill == UPLOADS_KILLED {
+            assert!(board.play("0.1", folder.path()).status.success(), "nothing dead is in the way of an upload");
+        }
+        let mut tap = Tap::new(&board);
+        let mut process = client(&board.scene, &tap.path, "600", folder.path());
+        // Once the board holds the picture, some 300 bytes lead to playing, and pings follow.
+        let count = if kill < UPLOADS_KILLED { lcg(&mut random) % 66_000 } else { 300 + lcg(&mut random) % 300 };
+        tap.pass(&mut process, count);
+        assert!(process.try_wait().unwrap().is_none(), "client {kill} was turned away after {count} bytes");
+        process.kill().unwrap();
+        process.wait().unwrap();
+        until("the board lets go of a dead client", || board.is_disarmed());
+    }
+    let last = board.play("0.3", folder.path());
+    assert!(last.status.success(), "{}", String::from_utf8_lossy(&last.stderr));
+
+    let log = board.interrupt();
+    for silent in log.events.iter().filter(|event| event.name == "host-silent") {
+        let zero_from_s = silent.last_frame_t_s + HOST_TIMEOUT_S + 1e-3;
+        assert!(silent.t_s <= zero_from_s, "{} s after the last frame", silent.t_s - silent.last_frame_t_s);
+        assert!(!log.drives_between(zero_from_s, log.next_active_s(silent.t_s)), "driven after {zero_from_s} s");
+        killed_while_playing += usize::from(log.drives_between(silent.last_frame_t_s, silent.t_s));
+    }
+    assert!(killed_while_playing >= 3, "only {killed_while_playing} clients died while the output was driven");
+}
+
+/// The program is there, and makes no call any more.
+#[test]
+fn a_program_that_hangs_does_not_keep_the_board_playing() {
+    let _turn = turn();
+    let board = VirtualBoard::start();
+    let mut device = Device::connect(SerialLink::open(&board.port, DEFAULT_BAUD).unwrap()).unwrap();
+    let hello = *device.hello();
+    let program = compile(&Scene::load(&board.scene).unwrap(), &hello.limits, hello.tick_hz).unwrap();
+    player::start(&mut device, &program, &mut |_| {}).unwrap();
+    let has = |name: &str| board.events().iter().any(|event| event.name == name);
+    until("the board plays", || has("active"));
+    until("the board lets go of a program that hangs", || board.is_disarmed() && has("host-silent"));
+    assert!(device.counters().frames_sent > 0, "the program is still there");
+}
+
+#[test]
+fn a_board_that_vanishes_is_said_in_a_sentence() {
+    let _turn = turn();
+    let mut board = VirtualBoard::start();
+    let folder = TempDir::new().unwrap();
+    let process = client(&board.scene, &board.port, "600", folder.path());
+    until("rows are written", || rows_in(folder.path()) > 0);
+    board.process.kill().unwrap();
+    board.process.wait().unwrap();
+    let ended = process.wait_with_output().unwrap();
+    assert_eq!(ended.status.code(), Some(1));
+    let said = String::from_utf8(ended.stderr).unwrap();
+    let sentence = said.lines().last().unwrap();
+    assert!(sentence.starts_with("frixel: ") && sentence.contains(&board.port), "{said}");
+    assert!(sentence.contains("vanished"), "{said}");
+    let json: serde_json::Value = serde_json::from_slice(&ended.stdout).unwrap();
+    let ticks = json["ticks"].as_u64().unwrap();
+    assert!(ticks > 0, "the summary is of what was played");
+    let felt = fs::read_to_string(folder.path().join("felt.csv")).unwrap();
+    let last: f64 = felt.lines().last().unwrap().split(',').next().unwrap().parse().unwrap();
+    assert!((last * 40_000.0 - ticks as f64).abs() < 1.0, "the rows end at {last} s, {ticks} ticks were told");
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_said_before_the_board_plays() {
+    let _turn = turn();
+    let board = VirtualBoard::start();
+    let file = tempfile::NamedTempFile::new().unwrap();
+    let refused = board.play("600", &file.path().join("out"));
+    assert_eq!(refused.status.code(), Some(1));
+    let said = String::from_utf8(refused.stderr).unwrap();
+    assert!(said.lines().last().unwrap().contains("cannot be written"), "{said}");
+    assert!(board.interrupt().events.is_empty(), "the board was armed");
+}
+
+#[test]
+fn a_virtual_board_that_cannot_write_announces_no_port() {
+    let file = tempfile::NamedTempFile::new().unwrap();
+    let refused = frixel().args(["sim", "--out"]).arg(file.path().join("out")).output().unwrap();
+    assert_eq!(refused.status.code(), Some(1));
+    assert_eq!(String::from_utf8(refused.stdout).unwrap(), "");
+    assert!(String::from_utf8(refused.stderr).unwrap().contains("cannot be written"));
+}
+
+/// Telemetry that nobody reads any more fills the terminal. Naps count the time, so that a busy machine has more of it.
+#[test]
+fn a_dead_client_does_not_slow_the_board_down() {
+    let _turn = turn();
+    let board = VirtualBoard::start();
+    let folder = TempDir::new().unwrap();
+    let mut process = client(&board.scene, &board.port, "600", folder.path());
+    until("rows are written", || rows_in(folder.path()) > 0);
+    process.kill().unwrap();
+    process.wait().unwrap();
+    until("the board lets go of a dead client", || board.is_disarmed());
+    // Longer than it takes to fill the terminal.
+    let naps_for = |rows: usize| {
+        let end = rows_in(board.folder.path()) + rows;
+        let mut naps = 0_u32;
+        until("virtual time goes on", || {
+            naps += 1;
+            rows_in(board.folder.path()) >= end
+        });
+        naps
+    };
+    naps_for(1000);
+    let naps = naps_for(2000);
+    assert!(naps < 2000, "{naps} naps of 5 ms for 2 s of virtual time");
+    assert!(board.play("0.1", folder.path()).status.success());
+}

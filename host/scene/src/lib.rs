@@ -1,0 +1,50 @@
+//! Scenes: a TOML file that a person writes, checked and compiled to the program that a board plays.
+//!
+//! `docs/scene.md` is the reference of the file. [`Scene::load`] reads it, [`compile`] checks what needs the board or
+//! other layers, and makes a [`Program`]. Both tell every mistake at once, each with line and column.
+//!
+//! - [`wanted`]: the friction that a program wants, in `f64`, independently of the firmware.
+//! - [`metrics`]: how far what was felt is from that.
+#![forbid(unsafe_code)]
+
+mod asked;
+mod compile;
+mod compile_error;
+mod cover;
+mod excess;
+mod fields;
+mod file;
+mod layer;
+mod layer_map;
+mod leave_out;
+mod left_out;
+mod log;
+mod lower;
+pub mod metrics;
+mod mistake;
+mod nearest;
+mod outside;
+mod picture;
+mod pool;
+mod program;
+mod reach;
+mod resample;
+mod schema;
+mod source;
+#[cfg(test)]
+mod tests;
+mod tick_cost;
+pub mod wanted;
+
+pub use compile::compile;
+pub use compile_error::{CompileError, Located};
+pub use file::Scene;
+pub use layer_map::{LayerError, LayerMap};
+pub use left_out::LeftOut;
+pub use mistake::Mistake;
+pub use nearest::Nearest;
+pub use outside::{Asked, Outside};
+pub use program::{Bitmap, Program};
+pub use reach::{ROUNDING, Reach, carrier};
+pub use schema::json_schema;
+pub use tick_cost::middle_mm;

@@ -1,0 +1,76 @@
+//! What friction a drive can give to a finger.
+
+use frixel_model::{Carrier, Contact, Finger, InverseTable, ParameterError, TableError, Waveform};
+use frixel_wire::hello::BoardLimits;
+use frixel_wire::scene::{Carrier as Shape, Header};
+use thiserror::Error;
+
+/// Friction this little out of reach, relative to the reach, comes from rounding to `f32`.
+pub const ROUNDING: f64 = 1e-6;
+
+/// The frictions that a finger can be given: from natural, `mu F_N`, to natural plus the most that the drive adds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reach {
+    /// Friction at no voltage, `mu F_N`, in newtons.
+    pub natural_friction_n: f64,
+    /// Electric friction at the largest voltage, in newtons, Eqs. (43), (21).
+    pub electric_friction_max_n: f64,
+    /// The largest rms voltage, within the scene's rms limit and the peak limits of scene and board, in volts.
+    pub voltage_max_v_rms: f64,
+}
+
+/// Why a finger and a coating have no reach that a board can play.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub(super) enum ReachError {
+    #[error("the contact model refuses it: {0:?}")]
+    Contact(ParameterError),
+    #[error("its friction between 1 V and the largest voltage does not fit the board's table")]
+    Table,
+}
+
+impl Reach {
+    /// Reach under the finger, coating and rms voltage of a header, whose `f32` numbers are what the board has.
+    pub(super) fn of(header: &Header) -> Result<Self, ReachError> {
+        let finger = Finger {
+            radius_m: f64::from(header.finger_radius_m),
+            stiffness_pa_per_m: f64::from(header.stiffness_pa_per_m),
+            friction_coefficient: f64::from(header.friction_coefficient),
+        };
+        let contact = Contact::new(&finger, f64::from(header.effective_gap_m)).map_err(ReachError::Contact)?;
+        let loaded = contact.under_load(f64::from(header.normal_load_n)).map_err(ReachError::Contact)?;
+        let voltage_max_v_rms = f64::from(header.voltage_max_v_rms);
+        // The board makes the same table when the scene is committed.
+        let finger = Finger {
+            radius_m: header.finger_radius_m,
+            stiffness_pa_per_m: header.stiffness_pa_per_m,
+            friction_coefficient: header.friction_coefficient,
+        };
+        let (gap_m, normal_load_n) = (header.effective_gap_m, header.normal_load_n);
+        InverseTable::of_finger(&finger, gap_m, normal_load_n, header.voltage_max_v_rms, f32::INFINITY)
+            .map_err(|_: TableError| ReachError::Table)?;
+        Ok(Self {
+            natural_friction_n: loaded.natural_friction_n(),
+            electric_friction_max_n: loaded.electric_friction_n(voltage_max_v_rms),
+            voltage_max_v_rms,
+        })
+    }
+
+    /// Least friction in total, in newtons.
+    pub fn friction_min_n(&self) -> f64 {
+        self.natural_friction_n
+    }
+
+    /// Largest friction in total, in newtons.
+    pub fn friction_max_n(&self) -> f64 {
+        self.natural_friction_n + self.electric_friction_max_n
+    }
+}
+
+/// The carrier of a scene on a board, in the board's precision.
+pub fn carrier(shape: Shape, half_period_s: f64, limits: &BoardLimits) -> Carrier {
+    let waveform = match shape {
+        Shape::Square => Waveform::Square,
+        Shape::Sine => Waveform::Sine,
+    };
+    Carrier { waveform, half_period_s: half_period_s as f32, edge_time_constant_s: limits.edge_time_constant_s }
+}

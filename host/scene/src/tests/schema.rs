@@ -1,0 +1,135 @@
+//! The JSON schema says what the parser says, and `docs/scene.schema.json` is the one that is made.
+//!
+//! `FRIXEL_BLESS=1 cargo test -p frixel-scene --lib schema` writes the file anew.
+
+use std::fs;
+use std::path::PathBuf;
+use std::sync::LazyLock;
+
+use jsonschema::Validator;
+use serde_json::Value;
+
+use super::*;
+use crate::{Mistake, json_schema};
+
+static SCHEMA: LazyLock<Validator> = LazyLock::new(|| {
+    let schema: Value = serde_json::from_str(&json_schema()).expect("it is JSON");
+    jsonschema::meta::validate(&schema).expect("it is a schema");
+    jsonschema::validator_for(&schema).expect("it is a schema")
+});
+
+/// A scene as an editor's schema sees it. What JSON cannot say becomes `null`.
+fn json(text: &str) -> Option<Value> {
+    let table: toml::Table = toml::from_str(text).ok()?;
+    serde_json::to_value(table).ok()
+}
+
+/// Whether a mistake is one of grammar, which a schema can see.
+fn is_grammar(mistake: &Mistake) -> bool {
+    matches!(
+        mistake,
+        Mistake::UnknownField { .. }
+            | Mistake::MissingField { .. }
+            | Mistake::WrongType { .. }
+            | Mistake::UnknownChoice { .. }
+            | Mistake::TwoUnits { .. }
+            | Mistake::NotWhole { .. }
+            | Mistake::Version { .. }
+    )
+}
+
+/// Panics where the schema takes what the parser refuses for its grammar, or refuses what the parser takes.
+#[track_caller]
+pub(super) fn check_agrees(text: &str, refused: Option<&CompileError>) {
+    let Some(scene) = json(text) else { return };
+    let errors = || SCHEMA.iter_errors(&scene).map(|error| error.to_string()).collect::<Vec<_>>().join("\n");
+    match refused {
+        None => assert!(SCHEMA.is_valid(&scene), "the parser takes it, the schema does not: {}\n{text}", errors()),
+        Some(CompileError::Mistakes { mistakes, .. }) => {
+            let grammar = mistakes.iter().find(|located| is_grammar(&located.mistake));
+            if let Some(mistake) = grammar {
+                assert!(!SCHEMA.is_valid(&scene), "the schema does not see that {mistake}\n{text}");
+            }
+        }
+        Some(error) => panic!("{error}"),
+    }
+}
+
+#[test]
+fn the_schema_in_the_docs_is_the_one_that_is_made() {
+    let path: PathBuf = scenes().join("../docs/scene.schema.json");
+    if std::env::var_os("FRIXEL_BLESS").is_some() {
+        fs::write(&path, json_schema()).expect("it is written");
+    }
+    let held = fs::read_to_string(&path).expect("it is there");
+    assert!(held == json_schema(), "bless it: FRIXEL_BLESS=1 cargo test -p frixel-scene --lib schema");
+}
+
+#[test]
+fn every_scene_of_the_gallery_is_valid() {
+    let mut found = 0;
+    for entry in fs::read_dir(scenes()).expect("a folder") {
+        let path = entry.expect("a file").path();
+        if path.extension().is_some_and(|extension| extension == "toml") {
+            check_agrees(&fs::read_to_string(&path).expect("a text"), None);
+            found += 1;
+        }
+    }
+    assert!(found >= 8, "{found}");
+}
+
+/// The field at a path, taken out of a schema's object.
+fn field<'v>(object: &'v Value, name: &str) -> &'v Value {
+    &object["properties"][name]
+}
+
+#[test]
+fn every_field_has_a_meaning() {
+    let schema: Value = serde_json::from_str(&json_schema()).expect("it is JSON");
+    let layers = field(&schema, "layer")["items"]["oneOf"].as_array().expect("layers").iter();
+    let tables = ["screen", "finger", "drive", "carrier", "touch"].map(|table| field(&schema, table));
+    let mut described = 0;
+    for object in layers.chain(tables) {
+        for (name, field) in object["properties"].as_object().expect("fields") {
+            // The kind says itself; a reference has no room for more.
+            if name != "kind" && field.get("$ref").is_none() {
+                assert!(field["description"].as_str().is_some_and(|text| !text.is_empty()), "{name} in {object}");
+                described += 1;
+            }
+        }
+    }
+    assert!(described > 100, "{described}");
+}
+
+#[test]
+fn what_goes_together_is_told_from_what_does_not() {
+    let layer = |rest: &str| format!("{HEAD}[[layer]]\n{rest}");
+    for (text, right) in [
+        ("kind = \"grating\"\nwavelength_mm = 2\nlow_n = 0\nhigh_n = 0.01\nwave = \"square\"\nduty = 0.3", true),
+        ("kind = \"grating\"\nwavelength_mm = 2\nlow_n = 0\nhigh_n = 0.01\nduty = 0.3", false),
+        ("kind = \"grating\"\nwavelength_mm = 2\nlow_n = 0\nhigh_fraction = 0.3", true),
+        ("kind = \"grating\"\nwavelength_mm = 2\nlow_n = 0\nhigh_n = 0.01\nhigh_fraction = 0.3", false),
+        ("kind = \"grating\"\nwavelength_mm = 2\nblend = \"multiply\"\nlow_factor = 0\nhigh_factor = 1", true),
+        ("kind = \"grating\"\nwavelength_mm = 2\nlow_factor = 0\nhigh_factor = 1", false),
+        (
+            "kind = \"constant\"\nfriction_n = 0.26\nregion = { shape = \"polygon\", points_mm = [[0, 0], [9, 0], [0, 9]] }",
+            true,
+        ),
+        (
+            "kind = \"constant\"\nfriction_n = 0.26\nregion = { shape = \"ellipse\", points_mm = [[0, 0], [9, 0], [0, 9]] }",
+            false,
+        ),
+        ("kind = \"bitmap\"\npicture = \"textures/brick.png\"\nx_mm = 0\ny_mm = 0\nwidth_mm = 20", true),
+        ("kind = \"bitmap\"\npicture = \"textures/brick.png\"\ny_mm = 0\nwidth_mm = 20", false),
+        (
+            "kind = \"bitmap\"\npicture = \"textures/brick.png\"\nregion = { x_mm = 0, y_mm = 0, width_mm = 20, height_mm = 20 }",
+            true,
+        ),
+        ("kind = \"speed\"\nspeeds_mm_per_s = [10, 20]\nfactors = [0, 1]\nblend = \"add\"", false),
+    ] {
+        let text = layer(text);
+        let scene = json(&text).expect("it is TOML");
+        assert_eq!(SCHEMA.is_valid(&scene), right, "{text}");
+        assert_eq!(compile_text(&text).is_ok(), right, "{text}");
+    }
+}

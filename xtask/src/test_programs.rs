@@ -1,0 +1,158 @@
+//! The workspace's tests: built once, then run package by package unless nothing that a package depends on has changed.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use serde_json::Value;
+
+use crate::command::{cargo_in, root, run, text_of};
+use crate::stamps;
+
+/// What tests read or build besides the folders of their package and of the packages that it depends on.
+const MORE_INPUTS: [(&str, &[&str]); 2] =
+    [("frixel", &["README.md", "docs", "firmware", "scenes"]), ("frixel-hil-sim", &["firmware", "scenes"])];
+
+/// A package of the workspace.
+struct Package {
+    folder: String,
+    /// Names of the packages of the workspace that it depends on, tests included.
+    dependencies: Vec<String>,
+}
+
+/// A built test program.
+struct TestProgram {
+    package: String,
+    path: PathBuf,
+}
+
+/// Builds and runs all tests but those in documentation.
+pub(crate) fn run_all() -> Result<(), String> {
+    let packages = packages()?;
+    let programs = build()?;
+    for (name, package) in &packages {
+        let programs: Vec<&TestProgram> = programs.iter().filter(|program| program.package == *name).collect();
+        if !programs.is_empty() {
+            let inputs = inputs(name, &packages);
+            stamps::unless_unchanged(&format!("tests-{name}"), &inputs, || {
+                programs.iter().try_for_each(|program| program.run(&package.folder))
+            })?;
+        }
+    }
+    Ok(())
+}
+
+/// Runs the tests in documentation.
+pub(crate) fn run_documentation() -> Result<(), String> {
+    let folders: Vec<String> = packages()?.into_values().map(|package| package.folder).collect();
+    stamps::unless_unchanged("documentation-tests", &folders, || {
+        run("documentation tests", cargo_in(".").args(["test", "--workspace", "--locked", "--doc"]))
+    })
+}
+
+impl TestProgram {
+    fn run(&self, folder: &str) -> Result<(), String> {
+        let name = self.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let folder = root().join(folder);
+        // As cargo runs it.
+        let mut command = Command::new(&self.path);
+        run(&format!("{}: {name}", self.package), command.current_dir(&folder).env("CARGO_MANIFEST_DIR", &folder))
+    }
+}
+
+/// Files and folders that the tests of a package depend on.
+fn inputs(name: &str, packages: &BTreeMap<String, Package>) -> Vec<String> {
+    let mut found = BTreeSet::new();
+    let mut waiting = vec![name];
+    while let Some(name) = waiting.pop() {
+        if let Some(package) = packages.get(name)
+            && found.insert(name)
+        {
+            waiting.extend(package.dependencies.iter().map(String::as_str));
+        }
+    }
+    let folders = found.iter().filter_map(|name| packages.get(*name)).map(|package| package.folder.clone());
+    let more = MORE_INPUTS.iter().filter(|(package, _)| *package == name).flat_map(|(_, more)| *more);
+    let always = ["Cargo.lock", "Cargo.toml"].iter();
+    folders.chain(more.chain(always).map(|path| (*path).to_owned())).collect()
+}
+
+/// Builds every test program of the workspace, with one set of features for all.
+fn build() -> Result<Vec<TestProgram>, String> {
+    let mut command = cargo_in(".");
+    command.args(["test", "--workspace", "--locked", "--no-run", "--message-format", "json-render-diagnostics"]);
+    let messages = text_of(&mut command)?;
+    messages.lines().filter_map(|line| test_program(line).transpose()).collect()
+}
+
+/// The test program that a message of cargo's tells of, if it does.
+fn test_program(line: &str) -> Result<Option<TestProgram>, String> {
+    let message: Value = serde_json::from_str(line).map_err(|error| format!("cargo wrote `{line}`: {error}"))?;
+    let is_test = message.pointer("/profile/test").and_then(Value::as_bool) == Some(true);
+    let path = message.get("executable").and_then(Value::as_str);
+    let manifest = message.get("manifest_path").and_then(Value::as_str);
+    let (true, Some(path), Some(manifest)) = (is_test, path, manifest) else { return Ok(None) };
+    Ok(Some(TestProgram { package: name_in(Path::new(manifest))?, path: path.into() }))
+}
+
+/// The name of the package with this manifest.
+fn name_in(manifest: &Path) -> Result<String, String> {
+    let explain = |error: &dyn std::fmt::Display| format!("{}: {error}", manifest.display());
+    let text = std::fs::read_to_string(manifest).map_err(|error| explain(&error))?;
+    let table: toml::Table = toml::from_str(&text).map_err(|error| explain(&error))?;
+    let name = table.get("package").and_then(|package| package.get("name")).and_then(toml::Value::as_str);
+    name.map(str::to_owned).ok_or_else(|| explain(&"it has no package name"))
+}
+
+/// The packages of the workspace by name, as cargo knows them.
+fn packages() -> Result<BTreeMap<String, Package>, String> {
+    let mut command = cargo_in(".");
+    command.args(["metadata", "--locked", "--no-deps", "--format-version", "1"]);
+    let metadata: Value = serde_json::from_str(&text_of(&mut command)?).map_err(|error| error.to_string())?;
+    let root = metadata.get("workspace_root").and_then(Value::as_str).ok_or("cargo names no workspace")?;
+    let packages = metadata.get("packages").and_then(Value::as_array).ok_or("cargo names no packages")?;
+    packages
+        .iter()
+        .map(|package| package_of(package, Path::new(root)).ok_or_else(|| format!("cargo describes {package}")))
+        .collect()
+}
+
+/// A package's name and what there is to know of it, from cargo's description.
+fn package_of(package: &Value, root: &Path) -> Option<(String, Package)> {
+    let manifest = Path::new(package.get("manifest_path")?.as_str()?);
+    let folder = manifest.parent()?.strip_prefix(root).ok()?.to_str()?.to_owned();
+    let dependencies = package.get("dependencies")?.as_array()?;
+    let dependencies = dependencies.iter().filter(|dependency| dependency.get("path").is_some());
+    let dependencies = dependencies.filter_map(|dependency| Some(dependency.get("name")?.as_str()?.to_owned()));
+    Some((package.get("name")?.as_str()?.to_owned(), Package { folder, dependencies: dependencies.collect() }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_inputs_of_a_package_are_those_of_all_that_it_depends_on() {
+        let package = |folder: &str, dependencies: &[&str]| Package {
+            folder: folder.to_owned(),
+            dependencies: dependencies.iter().map(|name| (*name).to_owned()).collect(),
+        };
+        let packages = BTreeMap::from([
+            ("model".to_owned(), package("model", &[])),
+            ("wire".to_owned(), package("firmware/wire", &["model"])),
+            ("frixel".to_owned(), package("host", &["wire"])),
+        ]);
+        let found = inputs("frixel", &packages);
+        for expected in ["model", "firmware/wire", "host", "scenes", "Cargo.lock"] {
+            assert!(found.iter().any(|path| path == expected), "{expected} is missing in {found:?}");
+        }
+        assert_eq!(inputs("model", &packages), ["model", "Cargo.lock", "Cargo.toml"]);
+    }
+
+    #[test]
+    fn only_test_programs_are_run() {
+        let library = r#"{"reason":"compiler-artifact","profile":{"test":false},"executable":null}"#;
+        assert!(test_program(library).unwrap().is_none());
+        assert!(test_program("not JSON").is_err());
+    }
+}
