@@ -40,6 +40,8 @@ pub(super) struct Dialogue<'a> {
     pub(super) orders: Deque<Order<'a>, ORDERS_MAX>,
     pub(super) orders_sent: u32,
     pub(super) host_heard: bool,
+    /// A sign of life has waited for an order of the finger.
+    pub(super) sign_of_life_waited: bool,
     /// State once the ticker has applied every order.
     pub(super) state: State,
     /// The commit under way.
@@ -71,6 +73,7 @@ impl<'a> Dialogue<'a> {
             orders: Deque::new(),
             orders_sent: 0,
             host_heard: false,
+            sign_of_life_waited: false,
             state: State::Disarmed,
             commit: None,
             credit: Credit::new(board.limits.receive_window_bytes),
