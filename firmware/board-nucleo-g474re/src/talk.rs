@@ -1,20 +1,26 @@
 //! The main loop: the session between serial port and tick, and all that has time.
 
+use frixel_drivers::serial::SerialLink;
+use frixel_drivers::state_light::StateLight;
 #[cfg(feature = "store")]
 use frixel_render::store::SceneKeeper;
 use frixel_render::{Active, Order, Session, Status};
 use frixel_wire::fault::State;
 use heapless::spsc::{Consumer, Producer, Queue};
 
+use crate::dac::Dac;
 #[cfg(feature = "store")]
 use crate::flash::BankTwo;
+#[cfg(feature = "optical-frame")]
+use crate::optical_frame::OpticalFrame;
+use crate::pins::Pin;
 use crate::serial::Serial;
 use crate::tick::{self, Queues};
 use crate::watchdog::Watchdog;
-use crate::{clock, indicator};
+use crate::{arming, clock};
 
-/// Orders that may wait for the tick, one place left free: as many as the session keeps.
-const ORDERS_LEN: usize = 9;
+/// Orders that may wait for the tick, one place left free. The session keeps the others.
+const ORDERS_LEN: usize = 5;
 
 /// The main loop's ends of the queues.
 pub struct Ends {
@@ -54,38 +60,39 @@ pub struct Talk {
     /// What the tick said last.
     pub status: Status,
     /// The host's line.
-    pub serial: Serial,
+    pub serial: SerialLink<Serial>,
+    /// The DAC, while the board is not armed.
+    pub dac: Dac,
+    /// The light that shows the state.
+    pub light: StateLight<Pin>,
     #[cfg(feature = "store")]
     /// The last scene, and where it is kept; `None` without a bank for it.
     pub store: Option<(SceneKeeper, BankTwo)>,
-    /// Where the finger is, if the board has a source of its own.
-    #[cfg(feature = "optical-frame")]
-    pub optical_frame: crate::optical_frame::OpticalFrame,
     /// Resets when this loop stands still.
     pub watchdog: Watchdog,
 }
 
 impl Talk {
     /// Runs for ever.
-    pub fn run(mut self) -> ! {
+    pub fn run(mut self, #[cfg(feature = "optical-frame")] mut touch_source: OpticalFrame<'_>) -> ! {
         tick::want_status();
         loop {
             self.follow_status();
             let (serial, session, status) = (&mut self.serial, &mut self.session, &self.status);
-            serial.receive(|bytes| session.receive(bytes, status));
+            let Ok(()) = serial.receive(|bytes| session.receive(bytes, status));
             #[cfg(feature = "optical-frame")]
-            if let Some(touch) = self.optical_frame.step(tick::count()) {
+            if let Some(touch) = touch_source.next_touch() {
                 self.session.touch(touch, tick::count());
             }
             self.hand_over();
             self.session.poll(&self.status);
-            self.serial.transmit(|bytes| self.session.transmit(bytes));
+            let Ok(()) = self.serial.transmit(|bytes| self.session.transmit(bytes));
             let now_tick = tick::count();
             #[cfg(feature = "store")]
             if let Some((keeper, flash)) = &mut self.store {
                 keeper.step(flash, self.session, now_tick);
             }
-            indicator::show(self.status.telemetry.state, now_tick);
+            self.light.show(self.status.telemetry.state, now_tick);
             self.watchdog.feed();
         }
     }
@@ -103,13 +110,14 @@ impl Talk {
         }
     }
 
-    /// Hands orders to the tick, as many as there is room for, and takes back the coefficients that it has let go.
+    /// Hands orders to the tick, as many as there is room for, and takes back the coefficients that the tick no longer uses.
     fn hand_over(&mut self) {
         while self.ends.orders.ready()
             && let Some(order) = self.session.next_order()
         {
             if matches!(order, Order::Arm) {
                 self.watchdog.freeze_with_debugger(false);
+                arming::prepare(&mut self.dac);
             }
             // There is room: the condition of the loop says so.
             let _ = self.ends.orders.enqueue(order);

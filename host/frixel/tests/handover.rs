@@ -4,9 +4,10 @@
 use std::path::Path;
 
 use frixel::player;
-use frixel::rigs::{Recorder, SimLink};
+use frixel::rigs::SimLink;
 use frixel_driver::Device;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
+use frixel_scene::recorder::Recorder;
 use frixel_scene::{Scene, compile};
 use frixel_wire::fault::State;
 
@@ -18,8 +19,7 @@ fn found(autonomous: bool) -> State {
     program.header.autonomous = autonomous;
     let mut memory = BoardMemory::new();
     let rig = Rig::new(&mut memory, &config, Stroke::natural(0.12, 0.11, 1.0).unwrap(), 1).unwrap();
-    let recorder = Recorder::new(&program, &config.board.limits, config.board.tick_hz, 400, 40).unwrap();
-    let mut first = Device::connect(SimLink::new(rig, recorder)).unwrap();
+    let mut first = Device::connect(SimLink::new(rig, Recorder::idle())).unwrap();
     player::start(&mut first, &program, &mut |_| {}).unwrap();
     Device::connect(first.into_link()).unwrap().hello().state
 }
