@@ -4,7 +4,8 @@
 //! has no clock but the tick counts that it is given, and makes an immutable [`Track`] of each report that says something
 //! new. Tracks and lifts leave it as orders, one after the other.
 
-use crate::config::LENGTH_MAX_M;
+use frixel_layers::range::LENGTH_MAX_M;
+
 use crate::deadline::is_past;
 use crate::estimator::{Estimate, Estimator};
 use crate::finger::STALE_AFTER_PERIODS;
@@ -89,7 +90,7 @@ impl Tracker {
             }
             Touch::Down { x_m, y_m, age_ticks } => {
                 let is_newer = self.newest_at_tick.is_none_or(|tick| age_ticks < now_tick.wrapping_sub(tick));
-                let is_somewhere = [x_m, y_m].into_iter().all(|place_m| place_m.abs() <= LENGTH_MAX_M);
+                let is_somewhere = [x_m, y_m].into_iter().all(|place_m| place_m.abs() <= LENGTH_MAX_M as f32);
                 if is_newer && is_somewhere && age_ticks <= self.timing.sample_age_max_ticks {
                     let at_tick = now_tick.wrapping_sub(age_ticks);
                     self.newest_at_tick = Some(at_tick);

@@ -3,11 +3,12 @@
 
 mod support;
 
+use frixel_layers::{Constant, Header, Layer, Record, Region};
 use frixel_render::{Drive, Order, Touch, Track};
 use frixel_wire::fault::{Flags, State};
 use frixel_wire::frame::crc32;
 use frixel_wire::message::{Answer, Command};
-use frixel_wire::scene::{Header, Layer, RECORDS_MAX, Record, Region};
+use frixel_wire::scene::RECORDS_MAX;
 use support::{COMMIT_POLLS_MAX, Desk, HEADER, Memory, constant, record, request, scene};
 
 const OFF: Drive = Drive { dac_code: 0, amplifier_enable: false };
@@ -45,7 +46,7 @@ fn slide(desk: &mut Desk, tick: u32) -> Drive {
 fn largest_scene() -> Vec<u8> {
     let beside = |number: usize| {
         let region = Region::Rectangle { x_m: 0.0015 * number as f32, y_m: 0.0, width_m: 0.0015, height_m: 0.1 };
-        Record { region, ..record(Layer::Constant { electric_friction_n: 0.01 }) }
+        Record { region, ..record(Layer::Constant(Constant { electric_friction_n: 0.01 })) }
     };
     scene(&HEADER, &(0..RECORDS_MAX).map(beside).collect::<Vec<_>>())
 }
@@ -115,7 +116,7 @@ fn another_contact_is_a_lift_first() {
     let mut memory = Memory::new();
     let header = Header { slew_v_per_s: 1e5, ..HEADER };
     let mut desk = Desk::new(&mut memory);
-    desk.play(&scene(&header, &[record(Layer::Constant { electric_friction_n: 0.02 })]));
+    desk.play(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.02 }))]));
     for tick in 0..1_600 {
         slide(&mut desk, tick);
     }
@@ -186,7 +187,7 @@ fn a_track_that_ended_long_ago_never_comes_back() {
     let mut memory = Memory::new();
     let mut desk = Desk::new(&mut memory);
     let header = Header { autonomous: true, ..HEADER };
-    desk.play(&scene(&header, &[record(Layer::Constant { electric_friction_n: 0.02 })]));
+    desk.play(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.02 }))]));
     let first_tick = desk.status().telemetry.tick;
     for tick in 0..400 {
         slide(&mut desk, tick);

@@ -17,10 +17,11 @@ use super::live::Stream;
 use super::outbox::Outbox;
 use super::states::ORDERS_MAX;
 use super::upload::{Staging, Upload};
-use crate::bitmap_pool::Directory;
+use crate::bitmap_directory::Directory;
 use crate::order::Status;
 use crate::tracker::Tracker;
-use crate::{Active, BitmapPool, Board, Order};
+use crate::{Active, Board, Order};
+use frixel_layers::BitmapPool;
 
 /// The board's side of what is said.
 pub(super) struct Dialogue<'a> {

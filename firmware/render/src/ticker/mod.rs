@@ -3,6 +3,9 @@
 mod orders;
 mod status;
 
+#[cfg(feature = "stream")]
+use frixel_layers::StreamSample;
+use frixel_layers::{BitmapPool, Clicks, Inputs};
 use frixel_model::InverseTable;
 use frixel_wire::fault::State;
 
@@ -10,12 +13,11 @@ use crate::carrier::Carrier;
 use crate::deadline::{earlier, is_past};
 use crate::envelope::Envelope;
 use crate::finger::{Finger, STALE_AFTER_PERIODS};
-use crate::layer::{Clicks, Moment};
 use crate::order::Counters;
 #[cfg(feature = "stream")]
-use crate::stream::{Player, StreamBuffer, StreamNow};
+use crate::stream::{Player, StreamBuffer};
 use crate::supervisor::{self, Supervisor};
-use crate::{Active, BitmapPool, Board, Drive, Sense, Track};
+use crate::{Active, Board, Drive, Sense, Track};
 
 /// Turns the finger's track into voltage, one tick at a time, and owns the output through its supervisor.
 pub struct Ticker<'a> {
@@ -33,7 +35,7 @@ pub struct Ticker<'a> {
     pool: &'a BitmapPool,
     clicks: Clicks,
     /// What layers depend on besides the place.
-    moment: Moment,
+    inputs: Inputs,
     /// `None` on a board that has no buffer for it.
     #[cfg(feature = "stream")]
     stream: Option<Player<'a>>,
@@ -76,7 +78,7 @@ impl<'a> Ticker<'a> {
             active,
             pool,
             clicks: Clicks::NONE,
-            moment: Moment::default(),
+            inputs: Inputs::default(),
             #[cfg(feature = "stream")]
             stream: None,
             envelope: Envelope::default(),
@@ -130,13 +132,10 @@ impl<'a> Ticker<'a> {
 
         // What drives it: the finger's place, the scene there, the voltage for its friction, envelope and carrier.
         let elapsed_s = self.elapsed_s(track);
-        self.moment.meet(track.place_m(elapsed_s), self.tick);
-        #[cfg(feature = "speed")]
-        {
-            self.moment.velocity_m_per_s = track.velocity_m_per_s(elapsed_s);
-        }
+        self.inputs.set_place(track.place_m(elapsed_s), self.tick);
+        self.inputs.velocity_m_per_s = track.velocity_m_per_s(elapsed_s);
         let gain = track.ramp.gain_at(self.tick);
-        let friction_n = gain * self.active.electric_friction_n(&self.moment, self.pool, &mut self.clicks);
+        let friction_n = gain * self.active.electric_friction_n(&self.inputs, self.pool, &mut self.clicks);
         let target_v_rms = table.voltage_v_rms(friction_n);
         if is_out_of_reach(friction_n, table) {
             self.counters.saturated_ticks = self.counters.saturated_ticks.wrapping_add(1);
@@ -198,7 +197,7 @@ impl<'a> Ticker<'a> {
             && !stream.is_over()
         {
             stream.advance();
-            self.moment.stream = stream.now();
+            self.inputs.stream = stream.now();
         }
     }
 
@@ -206,7 +205,7 @@ impl<'a> Ticker<'a> {
     fn stop_stream(&mut self) {
         if let Some(stream) = &mut self.stream {
             stream.stop();
-            self.moment.stream = StreamNow::default();
+            self.inputs.stream = StreamSample::default();
         }
     }
 }

@@ -69,7 +69,7 @@ impl<'a> Ticker<'a> {
         let spare = core::mem::replace(&mut self.active, next);
         self.carrier.retime(&self.active.carrier);
         self.envelope.limit(self.active.voltage_max_v_rms);
-        self.clicks.forget();
+        self.clicks.reset();
         #[cfg(feature = "stream")]
         if !self.active.has_stream() {
             self.stop_stream();

@@ -40,7 +40,7 @@ impl Ticker<'_> {
 
     fn speed_m_per_s(&self) -> f32 {
         let [x, y] = self.finger.track().map_or([0.0; 2], |track| track.velocity_m_per_s(self.elapsed_s(track)));
-        crate::root::square_root(x * x + y * y)
+        frixel_layers::square_root(x * x + y * y)
     }
 
     fn flags(&self) -> Flags {

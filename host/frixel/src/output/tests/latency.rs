@@ -1,0 +1,117 @@
+//! How the friction error of the brick scene grows with the latency of the touch source: `docs/latency.csv` and
+//! `docs/latency.svg`.
+//!
+//! `FRIXEL_BLESS=1 cargo test -p frixel --lib latency` writes them anew; without it, this test holds them.
+
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};
+use crate::player::{Simulation, simulate};
+use frixel_hil_sim::{Point, RigConfig, Stroke};
+use frixel_scene::{Program, Scene, compile};
+
+const LATENCIES_MS: [u32; 10] = [5, 10, 15, 20, 25, 30, 35, 40, 45, 50];
+const SEEDS: [u64; 5] = [1, 2, 3, 4, 5];
+/// Stroke, whether the tick predicts, colour.
+const CURVES: [(&str, bool, RGBColor); 4] = [
+    ("constant 100 mm/s", true, PALETTE[0]),
+    ("minimum jerk", true, PALETTE[1]),
+    ("constant 100 mm/s, no prediction", false, PALETTE[5]),
+    ("minimum jerk, no prediction", false, PALETTE[4]),
+];
+
+fn path(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs").join(name)
+}
+
+fn stroke(name: &str) -> Stroke {
+    let (start, end) = (Point { x_m: 0.004, y_m: 0.03 }, Point { x_m: 0.116, y_m: 0.045 });
+    if name.starts_with("constant") {
+        Stroke::constant_speed(start, end, 0.1).unwrap()
+    } else {
+        Stroke::minimum_jerk(start, end, 1.2).unwrap()
+    }
+}
+
+/// Errors in per cent of the reachable range.
+struct Errors {
+    /// Rms friction error, mean square over the seeds.
+    friction_rms: f64,
+    /// Largest inversion error, the DAC's step included, over all ticks of all seeds.
+    inversion_max: f64,
+}
+
+fn errors(program: &Program, name: &str, latency_ms: u32) -> Errors {
+    let mut rig = RigConfig::default();
+    rig.world.touch.latency_s = 1e-3 * f64::from(latency_ms);
+    let summaries = SEEDS.map(|seed| {
+        let stroke = stroke(name);
+        let seconds = stroke.duration_s();
+        let simulation = Simulation { rig, stroke, seconds, seed, ticks_per_row: 40_000 };
+        simulate(program, &simulation, None).unwrap().recorder.summary()
+    });
+    let squares = summaries.iter().map(|summary| summary.friction_error.unwrap().rms_n.powi(2));
+    let inversion = summaries.iter().map(|summary| summary.inversion_error.unwrap().max_n);
+    let percent = 100.0 / program.reach.electric_friction_max_n;
+    Errors {
+        friction_rms: percent * (squares.sum::<f64>() / SEEDS.len() as f64).sqrt(),
+        inversion_max: percent * inversion.fold(0.0, f64::max),
+    }
+}
+
+fn curves() -> Vec<Vec<Errors>> {
+    let rig = RigConfig::default();
+    let scene = Scene::load(&path("../scenes/brick.toml")).unwrap();
+    let mut program = compile(&scene, &rig.board.limits, rig.board.tick_hz).unwrap();
+    CURVES
+        .iter()
+        .map(|(name, prediction, _)| {
+            program.header.prediction = *prediction;
+            LATENCIES_MS.iter().map(|latency_ms| errors(&program, name, *latency_ms)).collect()
+        })
+        .collect()
+}
+
+fn csv(curves: &[Vec<Errors>]) -> String {
+    let mut text =
+        String::from("latency_ms,stroke,rms_error_percent_of_range,inversion_error_at_most_percent_of_range\n");
+    for ((name, ..), curve) in CURVES.iter().zip(curves) {
+        for (latency_ms, errors) in LATENCIES_MS.iter().zip(curve) {
+            let Errors { friction_rms, inversion_max } = errors;
+            writeln!(text, "{latency_ms},\"{name}\",{friction_rms:.3},{inversion_max:.4}").unwrap();
+        }
+    }
+    text
+}
+
+fn svg(curves: &[Vec<Errors>]) -> String {
+    let mut panel = Panel::new(
+        "",
+        Axis::linear("latency of the touch source, ms (100 Hz, noise 0.02 mm rms, jitter 0.5 ms)", 0.0..52.0),
+        Axis::linear("rms friction error, % of the reachable range", 0.0..20.0),
+    );
+    for ((name, _, colour), curve) in CURVES.iter().zip(curves) {
+        let points = LATENCIES_MS.iter().map(|ms| f64::from(*ms)).zip(curve.iter().map(|errors| errors.friction_rms));
+        panel.add(name, Look { line: Line::Solid, ..Look::mark(*colour, Mark::Disc) }, points.collect());
+    }
+    let mut chart = Chart::new(vec![panel], 1);
+    chart.title = "Brick scene: friction error over touch latency, simulated".to_owned();
+    chart.width = 760;
+    chart.svg().unwrap()
+}
+
+#[test]
+fn the_error_over_latency_in_the_docs_is_the_one_that_is_simulated() {
+    let curves = curves();
+    let files = [(path("latency.csv"), csv(&curves)), (path("latency.svg"), svg(&curves))];
+    for (path, text) in files {
+        if std::env::var_os("FRIXEL_BLESS").is_some() {
+            fs::write(&path, text).unwrap();
+        } else {
+            let held = fs::read_to_string(&path).unwrap();
+            assert!(held == text, "{} is not what is simulated; look at it, then bless it", path.display());
+        }
+    }
+}
