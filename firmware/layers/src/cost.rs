@@ -8,6 +8,7 @@
 
 pub(crate) mod measured;
 
+use frixel_wire::message::Refusal;
 use frixel_wire::scene::RECORDS_MAX;
 
 use crate::grid::{Cell, Grid};
@@ -32,9 +33,19 @@ pub struct Worst {
 }
 
 impl Worst {
+    /// No place: where a search begins.
+    pub const NOWHERE: Self = Self { core_cycles: 0, cell: Cell { x_m: 0.0, y_m: 0.0, layers: [0; 2] } };
+
     /// Cycles of the longest tick, flash wait states included.
     pub const fn cycles(&self) -> u32 {
         cycles(self.core_cycles)
+    }
+
+    /// Refuses a scene whose longest tick is estimated at more than `cycles_max`.
+    pub fn check(&self, cycles_max: u32) -> Result<(), Refusal> {
+        let Cell { x_m, y_m, .. } = self.cell;
+        let cycles = self.cycles();
+        if cycles <= cycles_max { Ok(()) } else { Err(Refusal::TooCostly { cycles, cycles_max, x_m, y_m }) }
     }
 }
 
@@ -80,8 +91,12 @@ pub const fn of_empty_scene(header: &Header) -> u32 {
 
 /// Where a scene takes most, from its grid and the costs of its layers.
 pub fn worst(header: &Header, grid: &Grid, costs: &LayerCosts) -> Worst {
-    let empty = Worst { core_cycles: 0, cell: Cell { x_m: 0.0, y_m: 0.0, layers: [0; 2] } };
-    grid.cells().fold(empty, |worst, cell| {
+    worst_of_cells(header, grid.cells(), costs, Worst::NOWHERE)
+}
+
+/// [`worst`] of some cells of the grid and of those before, whose worst is `so_far`.
+pub fn worst_of_cells(header: &Header, cells: impl Iterator<Item = Cell>, costs: &LayerCosts, so_far: Worst) -> Worst {
+    cells.fold(so_far, |worst, cell| {
         let here = (0..).zip(&costs.layers).filter(|(number, _)| cell.has(*number)).map(|(_, cost)| cost);
         let core_cycles = of_empty_scene(header) + costs.everywhere + here.sum::<u32>();
         if core_cycles > worst.core_cycles { Worst { core_cycles, cell } } else { worst }
