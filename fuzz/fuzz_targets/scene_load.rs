@@ -2,7 +2,7 @@
 //! tick is in time.
 #![no_main]
 
-use std::path::Path;
+use std::collections::BTreeMap;
 use std::sync::LazyLock;
 use std::time::Duration;
 
@@ -21,7 +21,7 @@ const GLASS: &str = "version = 1\nscreen = { width_mm = 120, height_mm = 80 }\n\
 
 static PROGRAM: LazyLock<Program> = LazyLock::new(|| {
     let rig = RigConfig::default();
-    let scene = Scene::parse(GLASS, "glass.toml", Path::new("")).expect("it reads");
+    let scene = Scene::parse(GLASS, "glass.toml", &BTreeMap::new()).expect("it reads");
     compile(&scene, &rig.board.limits, rig.board.tick_hz).expect("it compiles")
 });
 

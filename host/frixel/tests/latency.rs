@@ -9,8 +9,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use frixel::player::{Simulation, simulate};
+use frixel::scene_file;
 use frixel_hil_sim::{Point, RigConfig, Stroke};
-use frixel_scene::{Program, Scene, compile};
+use frixel_scene::{Program, compile};
 use plotters::prelude::*;
 
 const LATENCIES_MS: [u32; 10] = [5, 10, 15, 20, 25, 30, 35, 40, 45, 50];
@@ -64,7 +65,7 @@ fn errors(program: &Program, name: &str, latency_ms: u32) -> Errors {
 
 fn curves() -> Vec<Vec<Errors>> {
     let rig = RigConfig::default();
-    let scene = Scene::load(&path("../scenes/brick.toml")).unwrap();
+    let scene = scene_file::load(&path("../scenes/brick.toml")).unwrap();
     let mut program = compile(&scene, &rig.board.limits, rig.board.tick_hz).unwrap();
     CURVES
         .iter()

@@ -230,13 +230,14 @@ mod tests {
     use frixel_hil_sim::RigConfig;
 
     use super::*;
-    use frixel_scene::{Scene, compile};
+    use crate::scene_file;
+    use frixel_scene::compile;
 
     #[test]
     fn a_code_of_zero_is_no_friction_whatever_voltage_was_meant() {
         let board = RigConfig::default().board;
         let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/constant.toml");
-        let program = compile(&Scene::load(&scene).unwrap(), &board.limits, board.tick_hz).unwrap();
+        let program = compile(&scene_file::load(&scene).unwrap(), &board.limits, board.tick_hz).unwrap();
         let inversion = Inversion::new(&program, &board.limits, board.tick_hz).unwrap();
         assert_eq!(inversion.electric_friction_n(100.0, 0).to_bits(), 0);
         let code = (100.0 * inversion.codes_per_v_rms).round() as i16;

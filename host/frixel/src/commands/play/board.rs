@@ -4,10 +4,11 @@ use std::time::Duration;
 
 use frixel::output::{FeltCsv, FeltRow, OutputError, Report};
 use frixel::player::start;
+use frixel::scene_file;
 use frixel_driver::{DEFAULT_BAUD, Device, Event, SerialLink};
 use frixel_scene::metrics::MetricsSummary;
 use frixel_scene::wanted::Wanted;
-use frixel_scene::{Program, Reach, Scene, compile};
+use frixel_scene::{Program, Reach, compile};
 use frixel_wire::fault::Flags;
 use frixel_wire::hello::Hello;
 use frixel_wire::message::Telemetry;
@@ -31,7 +32,7 @@ pub(super) fn play(args: &PlayArgs) -> Result<Played, CommandError> {
         return Err(CommandError::WatchWithStream);
     }
     let mut live = Live::new(args);
-    let scene = Scene::load(&args.scene)?;
+    let scene = scene_file::load(&args.scene)?;
     let interrupt = Interrupt::watch()?;
     let mut device = Device::connect(SerialLink::open(&args.port, DEFAULT_BAUD)?)?;
     let hello = *device.hello();

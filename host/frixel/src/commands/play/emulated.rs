@@ -7,10 +7,11 @@ use std::time::{Duration, Instant};
 use frixel::output::{FeltRow, Report, Trace};
 use frixel::player::start;
 use frixel::rigs::{EmulatedLink, EmulatedRecorder};
+use frixel::scene_file;
 use frixel_driver::{Device, Event};
 use frixel_hil_sim::emulated::{BOARD, Image, LinkBoard, LinkRecord};
 use frixel_hil_sim::{Stroke, World, WorldConfig, contact_of};
-use frixel_scene::{Program, Scene, compile};
+use frixel_scene::{Program, compile};
 
 use super::super::interrupt::Interrupt;
 use super::board::check_end;
@@ -30,7 +31,7 @@ pub(super) fn play(args: &PlayArgs) -> Result<Played, CommandError> {
         return Err(CommandError::StreamOnEmulated);
     }
     let ticks_per_row = ticks_per_row(args.csv_hz, BOARD.tick_hz)?;
-    let program = compile(&Scene::load(&args.scene)?, &BOARD.limits, BOARD.tick_hz)?;
+    let program = compile(&scene_file::load(&args.scene)?, &BOARD.limits, BOARD.tick_hz)?;
     tell_notes(&program);
     let (stroke, seconds) = scene_stroke(args, &program, BOARD.tick_hz)?;
     let world = world(&program, stroke, args.seed)?;

@@ -7,9 +7,10 @@ use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use frixel::player;
+use frixel::scene_file::{self, SceneFileError};
 use frixel::stream::Feed;
 use frixel_driver::{Device, DeviceError, Link};
-use frixel_scene::{CompileError, Program, Scene, compile};
+use frixel_scene::{Program, compile};
 use frixel_wire::hello::Hello;
 use frixel_wire::message::Refusal;
 
@@ -40,7 +41,7 @@ pub(super) struct Live<'a> {
     path: &'a Path,
     watch: Option<Watch>,
     /// The saved scene, which is compiled apart: the board wants to hear of its host meanwhile.
-    compiling: Option<JoinHandle<Result<Program, CompileError>>>,
+    compiling: Option<JoinHandle<Result<Program, SceneFileError>>>,
     feed: Option<Feed>,
 }
 
@@ -73,7 +74,7 @@ impl<'a> Live<'a> {
         }
         if self.compiling.is_none() && self.watch.as_mut().is_some_and(Watch::is_saved) {
             let (path, Hello { limits, tick_hz, .. }) = (self.path.to_owned(), *device.hello());
-            let compile = move || Scene::load(&path).and_then(|scene| compile(&scene, &limits, tick_hz));
+            let compile = move || scene_file::load(&path).and_then(|scene| Ok(compile(&scene, &limits, tick_hz)?));
             self.compiling = Some(thread::spawn(compile));
         }
         Ok(None)
@@ -83,7 +84,7 @@ impl<'a> Live<'a> {
 /// Plays what the file says now. What is wrong with it is told, and the scene before plays on.
 fn replace<L: Link>(
     path: &Path,
-    compiled: Result<Program, CompileError>,
+    compiled: Result<Program, SceneFileError>,
     device: &mut Device<L>,
 ) -> Result<Option<Program>, CommandError> {
     let program = match compiled {

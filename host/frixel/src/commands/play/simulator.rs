@@ -5,8 +5,9 @@ use std::path::PathBuf;
 
 use frixel::output::{FeltCsv, FeltRow, OutputError, Report, Trace, write_felt_svg, write_scene_png};
 use frixel::player::{Simulation, Stage, simulate_rows};
+use frixel::scene_file;
 use frixel_hil_sim::{RigConfig, Stroke};
-use frixel_scene::{Program, Scene, compile};
+use frixel_scene::{Program, compile};
 
 use super::super::interrupt::Interrupt;
 use super::super::stroke::{check_on_screen, stroke};
@@ -19,7 +20,7 @@ pub(super) fn play(args: &PlayArgs) -> Result<Played, CommandError> {
     refuse_watch(args)?;
     let rig = RigConfig::default();
     let ticks_per_row = ticks_per_row(args.csv_hz, rig.board.tick_hz)?;
-    let program = compile(&Scene::load(&args.scene)?, &rig.board.limits, rig.board.tick_hz)?;
+    let program = compile(&scene_file::load(&args.scene)?, &rig.board.limits, rig.board.tick_hz)?;
     tell_notes(&program);
     let (stroke, seconds) = scene_stroke(args, &program, rig.board.tick_hz)?;
     let mut feed = open_feed(args, rig.board.tick_hz, true)?;

@@ -154,7 +154,8 @@ mod tests {
     use frixel_wire::fault::{Flags, State};
 
     use super::*;
-    use frixel_scene::{Scene, compile};
+    use crate::scene_file;
+    use frixel_scene::compile;
 
     fn record(tick: u32, friction_n: f64) -> LinkRecord {
         let finger = Some(FingerState { x_m: 0.05, y_m: 0.05, speed_m_per_s: 0.1 });
@@ -179,7 +180,7 @@ mod tests {
     #[test]
     fn a_row_has_the_mean_of_its_ticks_and_what_was_told_of_one_of_them() {
         let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/constant.toml");
-        let program = compile(&Scene::load(&scene).unwrap(), &BOARD.limits, BOARD.tick_hz).unwrap();
+        let program = compile(&scene_file::load(&scene).unwrap(), &BOARD.limits, BOARD.tick_hz).unwrap();
         let mut recorder = EmulatedRecorder::new(&program, BOARD.tick_hz, 100, 12, 4);
         for tick in [50, 102, 105, 111] {
             recorder.tell(&telemetry(tick));
