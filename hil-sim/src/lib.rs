@@ -19,6 +19,8 @@ mod error;
 mod fingertip;
 mod journal;
 mod line;
+#[cfg(unix)]
+mod pseudo_terminal;
 mod random;
 mod rig;
 mod stroke;
@@ -31,6 +33,8 @@ pub use fingertip::example_finger;
 pub use frixel_render::TableRows;
 pub use journal::Journal;
 pub use line::{Line, LineCounts, LineFault};
+#[cfg(unix)]
+pub use pseudo_terminal::PseudoTerminal;
 pub use rig::{BoardMemory, Rig, RigConfig, TickRecord, contact_of};
 pub use stroke::{FingerState, Point, Stroke, StrokeError};
 pub use touch::TouchConfig;

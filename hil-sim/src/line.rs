@@ -29,12 +29,14 @@ pub struct LineCounts {
     pub lost: u64,
     /// Arrived with flipped bits.
     pub flipped: u64,
+    /// Given to the line when its queue was full: they never went out, and have no number.
+    pub overrun: u64,
 }
 
 /// One direction of a serial line: a byte takes ten bit times, in virtual ticks.
 ///
 /// Time is kept in whole numbers, so the rate is exact for every pair of baud rate and tick rate. The sender has an
-/// endless buffer; [`queued`](Self::queued) says how full it is.
+/// endless buffer unless [`limit_queue`](Self::limit_queue) says otherwise; [`queued`](Self::queued) says how full it is.
 ///
 /// ```
 /// use frixel_hil_sim::Line;
@@ -55,6 +57,7 @@ pub struct Line {
     byte_cost: u64,
     progress: u64,
     queue: VecDeque<u8>,
+    queue_max_len: usize,
     delivered: Vec<u8>,
     faults: BTreeMap<u64, LineFault>,
     is_cut: bool,
@@ -74,6 +77,7 @@ impl Line {
             byte_cost: BITS_PER_BYTE * u64::from(tick_hz),
             progress: 0,
             queue: VecDeque::new(),
+            queue_max_len: usize::MAX,
             delivered: Vec::new(),
             faults: BTreeMap::new(),
             is_cut: false,
@@ -87,10 +91,18 @@ impl Line {
         self.faults.insert(byte, fault);
     }
 
+    /// From now on, no more than `len` bytes wait on the line; what is sent beyond that is lost.
+    pub fn limit_queue(&mut self, len: usize) {
+        self.queue_max_len = len;
+    }
+
     /// Queues bytes behind those that are under way. On an idle line the first of them starts now, at the tick boundary.
     pub fn send(&mut self, bytes: &[u8]) {
-        self.queue.extend(bytes);
+        let room = self.queue_max_len.saturating_sub(self.queue.len());
+        let (queued, overrun) = bytes.split_at(room.min(bytes.len()));
+        self.queue.extend(queued);
         self.counts.sent += bytes.len() as u64;
+        self.counts.overrun += overrun.len() as u64;
     }
 
     /// Advances one tick, and gives the bytes that arrived in it.
@@ -221,7 +233,19 @@ mod tests {
         received.extend_from_slice(line.tick());
         assert_eq!(received, [10, 12, 0b1101 ^ 0b0100_0001, 14, 15]);
         assert!(line.is_cut());
-        assert_eq!(line.bytes(), LineCounts { sent: 8, delivered: 5, lost: 3, flipped: 1 });
+        assert_eq!(line.bytes(), LineCounts { sent: 8, delivered: 5, lost: 3, flipped: 1, overrun: 0 });
+    }
+
+    #[test]
+    fn what_a_full_queue_cannot_take_is_lost_at_once() {
+        let mut line = Line::new(2_000_000, TICK_HZ).unwrap();
+        line.limit_queue(7);
+        line.send(&[1, 2, 3, 4, 5, 6]);
+        line.send(&[7, 8, 9]);
+        assert_eq!(line.tick(), [1, 2, 3, 4, 5]);
+        line.send(&[10]);
+        assert_eq!(line.tick(), [6, 7, 10]);
+        assert_eq!(line.bytes(), LineCounts { sent: 10, delivered: 8, lost: 0, flipped: 0, overrun: 2 });
     }
 
     #[test]

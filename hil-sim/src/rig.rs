@@ -8,6 +8,9 @@ use frixel_wire::scene::{Header, Scene};
 
 use crate::{Felt, Journal, Line, Stroke, World, WorldConfig, WorldError};
 
+/// Room in a board's receive buffer beyond the host's credit: for hello requests, which need none, and for noise.
+const RECEIVE_MARGIN_LEN: usize = 512;
+
 /// Memory of a simulated board: what stands in statics on a real one. Much of it, so it lives in a box.
 pub struct BoardMemory {
     pool: BitmapPool,
@@ -80,6 +83,7 @@ pub struct Rig<'a> {
     to_board: Line,
     to_host: Line,
     at_host: Vec<u8>,
+    host_is_away: bool,
     scene: Option<Header>,
     journal: Option<Journal>,
     tick: u64,
@@ -95,14 +99,17 @@ impl<'a> Rig<'a> {
         ticker.attach_stream(stream);
         let mut session = Session::new(config.board, pool, second);
         session.attach_stream(stream);
+        let mut to_board = Line::new(config.baud, tick_hz)?;
+        to_board.limit_queue(usize::from(config.board.limits.receive_window_bytes) + RECEIVE_MARGIN_LEN);
         Ok(Self {
             session,
             status: ticker.status(),
             ticker,
             world: World::new(config.world, stroke, seed)?,
-            to_board: Line::new(config.baud, tick_hz)?,
+            to_board,
             to_host: Line::new(config.baud, tick_hz)?,
             at_host: Vec::new(),
+            host_is_away: false,
             scene: None,
             journal: None,
             tick: 0,
@@ -140,9 +147,17 @@ impl<'a> Rig<'a> {
         self.session.frame_counts()
     }
 
-    /// Gives bytes to the host's end of the line.
+    /// Gives bytes to the host's end of the line. More than a host's credit and a margin for what needs none are lost, as
+    /// on a board whose receive buffer is full: nothing is delivered later than a host that keeps to its credit could
+    /// have sent it.
     pub fn send(&mut self, bytes: &[u8]) {
         self.to_board.send(bytes);
+    }
+
+    /// Says whether the host reads what the board sends. While it does not, the line takes nothing from the board, as a
+    /// port that a full buffer holds up: what the board has to say waits in its own transmit queue.
+    pub fn set_host_away(&mut self, is_away: bool) {
+        self.host_is_away = is_away;
     }
 
     /// Moves what has arrived at the host's end of the line to `bytes`.
@@ -213,7 +228,7 @@ impl<'a> Rig<'a> {
     /// Bytes that the line takes now. It has a queue as a port has one: what is beyond it waits on the board, which
     /// leaves telemetry out when too much does.
     fn room(&self) -> u8 {
-        TICK_BYTES_MAX.saturating_sub(self.to_host.queued()) as u8
+        if self.host_is_away { 0 } else { TICK_BYTES_MAX.saturating_sub(self.to_host.queued()) as u8 }
     }
 
     /// Moves what the board has to say to the line, as far as there is room, and returns it.

@@ -9,6 +9,7 @@ use frixel_wire::payload::{ParseError, Payload};
 use heapless::{Deque, Vec};
 
 use super::commit::BitmapNames;
+use super::credit::Credit;
 use super::fingers::{Fingers, ONLY_FINGER};
 use super::live::Playing;
 #[cfg(feature = "stream")]
@@ -42,7 +43,7 @@ pub(super) struct Dialogue<'a> {
     pub(super) state: State,
     /// A commit that is done when the bytes that are there have been taken.
     waiting_commit: Option<Request>,
-    pub(super) received_bytes: u32,
+    pub(super) credit: Credit,
     pub(super) telemetry_period_ticks: u32,
     /// What has to be known of the committed scene beside its bytes, which the next upload takes the place of.
     pub(super) playing: Playing,
@@ -70,18 +71,13 @@ impl<'a> Dialogue<'a> {
             host_heard: false,
             state: State::Disarmed,
             waiting_commit: None,
-            received_bytes: 0,
+            credit: Credit::new(board.limits.receive_window_bytes),
             telemetry_period_ticks: 0,
             playing: Playing::default(),
             #[cfg(feature = "stream")]
             stream: None,
             fingers: Fingers::new(),
         }
-    }
-
-    #[inline]
-    pub(super) fn count_received(&mut self, bytes: usize) {
-        self.received_bytes = self.received_bytes.wrapping_add(bytes as u32);
     }
 
     #[inline]
@@ -161,8 +157,16 @@ impl<'a> Dialogue<'a> {
 
     #[inline]
     fn answer(&mut self, sequence: u16, outcome: Result<Accepted, Refusal>, outbox: &mut Outbox) {
-        let answer = Answer { sequence, received_bytes: self.received_bytes, state: self.state, outcome };
-        outbox.send(&FromBoard::Answer(answer));
+        let answer = Answer { sequence, received_bytes: self.credit.received(), state: self.state, outcome };
+        self.report(&FromBoard::Answer(answer), outbox);
+    }
+
+    /// Sends a message that tells how many bytes were received.
+    #[inline]
+    pub(super) fn report(&mut self, message: &FromBoard, outbox: &mut Outbox) {
+        if outbox.send(message) {
+            self.credit.reported();
+        }
     }
 
     #[inline]

@@ -50,7 +50,7 @@ impl Dialogue<'_> {
             // Refused when there is nothing to disarm; there is always room for this order.
             let _ = self.change_state(Order::Disarm, &[State::Armed, State::Active], State::Disarmed);
         }
-        self.received_bytes = 0;
+        self.credit.restart();
         self.telemetry_period_ticks = 0;
         self.drop_upload();
         self.announced_bitmaps.clear();

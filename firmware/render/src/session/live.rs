@@ -174,13 +174,14 @@ impl<'a> Dialogue<'a> {
             stream.report_due = false;
             stream.frames = 0;
             stream.reported_at_tick = now_tick;
-            outbox.send(&FromBoard::StreamProgress {
+            let progress = FromBoard::StreamProgress {
                 next_index,
                 room,
                 underruns: status.counters.stream_underruns,
                 gaps: status.counters.stream_gaps,
-                received_bytes: self.received_bytes,
-            });
+                received_bytes: self.credit.received(),
+            };
+            self.report(&progress, outbox);
         }
     }
 }

@@ -5,6 +5,7 @@
 //! [`commit`] the change of scene, [`live`] what changes while one plays, [`fingers`] touches.
 
 mod commit;
+mod credit;
 mod dialogue;
 mod fingers;
 mod greeting;
@@ -37,6 +38,10 @@ pub struct Session<'a> {
     dialogue: Dialogue<'a>,
     outbox: Outbox,
     telemetry_sent_at_tick: u32,
+    /// A byte of the frame that is being received was beyond the host's credit.
+    beyond_credit: bool,
+    /// Frames that were discarded because they were beyond the host's credit, modulo 2^32.
+    frames_discarded: u32,
 }
 
 impl<'a> Session<'a> {
@@ -47,6 +52,8 @@ impl<'a> Session<'a> {
             dialogue: Dialogue::new(board, pool, spare),
             outbox: Outbox::new(),
             telemetry_sent_at_tick: 0,
+            beyond_credit: false,
+            frames_discarded: 0,
         }
     }
 
@@ -60,14 +67,22 @@ impl<'a> Session<'a> {
     /// Takes bytes from the serial line. Answers wait in [`Session::transmit`], orders in [`Session::next_order`]. A commit
     /// waits for [`Session::poll`], so that it does not hold up the signs of life, touches and stops that came with it, unless
     /// something behind it has to know how it ended.
+    ///
+    /// Frames beyond the host's credit are discarded: they are no sign of life, no touch and no order. Only a hello
+    /// request needs no credit.
     #[inline]
     pub fn receive(&mut self, mut bytes: &[u8], status: &Status) {
         while !bytes.is_empty() {
             let before = bytes.len();
             let frame = self.decoder.next_frame(&mut bytes);
-            self.dialogue.count_received(before - bytes.len());
-            if let Some(frame) = frame {
-                self.dialogue.take(Payload::parse_from_host(frame), status, &mut self.outbox);
+            self.beyond_credit |= !self.dialogue.credit.take(before - bytes.len());
+            let Some(frame) = frame else { continue };
+            let payload = Payload::parse_from_host(frame);
+            let beyond_credit = core::mem::take(&mut self.beyond_credit);
+            if beyond_credit && !matches!(payload, Ok(Payload::HelloRequest { .. })) {
+                self.frames_discarded = self.frames_discarded.wrapping_add(1);
+            } else {
+                self.dialogue.take(payload, status, &mut self.outbox);
             }
         }
     }
@@ -111,7 +126,11 @@ impl<'a> Session<'a> {
     /// Moves bytes for the serial line into `bytes`, and returns how many.
     #[inline]
     pub fn transmit(&mut self, bytes: &mut [u8]) -> usize {
-        self.outbox.drain(bytes)
+        let count = self.outbox.drain(bytes);
+        if count > 0 {
+            self.dialogue.credit.grant_reported();
+        }
+        count
     }
 
     /// The supervisor's state once the ticker has applied every order that was given out.
@@ -155,10 +174,12 @@ impl<'a> Session<'a> {
         self.dialogue.restore(read).is_some()
     }
 
-    /// Frames that were received whole, and bad ones that were skipped.
+    /// Frames that were received whole and within the host's credit, and those that were discarded: bad ones, and those
+    /// beyond the credit.
     #[inline]
     pub fn frame_counts(&self) -> (u32, u32) {
-        (self.decoder.frames(), self.decoder.rejected())
+        let discarded = self.frames_discarded;
+        (self.decoder.frames().wrapping_sub(discarded), self.decoder.rejected().wrapping_add(discarded))
     }
 
     /// Telemetry gives way to answers: it is left out when the line is behind.

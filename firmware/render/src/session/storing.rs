@@ -95,7 +95,7 @@ impl Dialogue<'_> {
         if let Some(upload) = &mut self.upload
             && let Report::Progress { next_chunk } = upload.take(number, bytes, &mut self.staging, self.pool)
         {
-            outbox.send(&FromBoard::Progress { next_chunk, received_bytes: self.received_bytes });
+            self.report(&FromBoard::Progress { next_chunk, received_bytes: self.credit.received() }, outbox);
         }
     }
 

@@ -49,6 +49,8 @@ pub struct Desk<'a> {
     pub hello: Option<Hello>,
     /// The monitor reads zero, whatever is driven.
     pub amplifier_dead: bool,
+    /// The host reads what the board sends.
+    pub reads: bool,
     monitor: Monitor,
     decoder: Decoder,
     sequence: u16,
@@ -93,6 +95,7 @@ impl<'a> Desk<'a> {
             messages: Vec::new(),
             hello: None,
             amplifier_dead: false,
+            reads: true,
             monitor: Monitor {
                 volts_per_code: board.limits.full_scale_v_peak / 32_767.0,
                 step: 1.0 - (-25e-6_f32 / board.limits.edge_time_constant_s).exp(),
@@ -226,8 +229,11 @@ impl<'a> Desk<'a> {
         self.command(Command::Play).unwrap();
     }
 
-    /// Takes what the board has to say.
+    /// Takes what the board has to say, while the host [reads](Self::reads).
     pub fn collect(&mut self) {
+        if !self.reads {
+            return;
+        }
         let mut bytes = [0; 4096];
         let count = self.session.transmit(&mut bytes);
         for byte in &bytes[..count] {

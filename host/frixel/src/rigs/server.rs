@@ -1,15 +1,10 @@
 //! A virtual board behind a pseudo-terminal, paced by the wall clock.
 
-use std::fs::{File, OpenOptions};
-use std::io::{self, Read, Write};
-use std::os::unix::fs::OpenOptionsExt;
+use std::io;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use frixel_hil_sim::Rig;
-use rustix::fs::OFlags;
-use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
-use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
+use frixel_hil_sim::{PseudoTerminal, Rig};
 use thiserror::Error;
 
 use super::server_log::ServerLog;
@@ -19,10 +14,11 @@ use crate::output::OutputError;
 const NAP: Duration = Duration::from_millis(1);
 /// Most virtual time between two looks at the terminal, so that what a client sends meanwhile is not late.
 const BATCH_MAX_S: f64 = 5e-3;
+/// Most reads of 4 KiB between two batches of ticks: more than a terminal holds, and an end for a client that writes as fast
+/// as it is read.
+const READS_MAX: usize = 16;
 /// When the wall clock is this far ahead, the machine was busy elsewhere: virtual time lets it go.
 const LAG_MAX_S: f64 = 50e-3;
-/// A client that was silent for this long is gone, or idle; pings come several times as often.
-const CLIENT_GONE_AFTER: Duration = Duration::from_millis(500);
 
 /// Why a virtual board ended.
 #[derive(Debug, Error)]
@@ -45,12 +41,9 @@ pub enum ServerError {
 
 /// A virtual board on a pseudo-terminal.
 pub struct Server {
-    /// Never blocks: a client that does not read must not stop the board.
-    board_end: File,
-    /// Held open, so that clients may come and go.
-    client_end: File,
-    path: String,
-    heard_at: Instant,
+    terminal: PseudoTerminal,
+    /// What the terminal had no room for: the client has not read what came before.
+    unwritten: Vec<u8>,
     log: ServerLog,
 }
 
@@ -59,14 +52,12 @@ impl Server {
     /// pseudo-terminal.
     pub fn open(folder: &Path, tick_hz: u32, ticks_per_row: u32) -> Result<Self, ServerError> {
         let log = ServerLog::create(folder, tick_hz, ticks_per_row)?;
-        let (board_end, path) = open_board_end()?;
-        let client_end = open_client_end(&path).map_err(|source| ServerError::Line { path: path.clone(), source })?;
-        Ok(Self { board_end, client_end, path, heard_at: Instant::now(), log })
+        Ok(Self { terminal: PseudoTerminal::open()?, unwritten: Vec::new(), log })
     }
 
     /// What a client opens.
     pub fn path(&self) -> &str {
-        &self.path
+        self.terminal.path()
     }
 
     /// Runs `rig` at the pace of the wall clock until `interrupted`, with the finger on its stroke from the start, and
@@ -75,9 +66,8 @@ impl Server {
         let tick_period_s = 1.0 / f64::from(rig.tick_hz());
         rig.world_mut().start_stroke();
         let mut epoch = Instant::now();
-        let mut bytes = Vec::new();
         while !interrupted() {
-            self.receive(rig)?;
+            self.exchange(rig).map_err(|source| ServerError::Line { path: self.path().to_owned(), source })?;
             let mut behind_s = epoch.elapsed().as_secs_f64() - rig.tick() as f64 * tick_period_s;
             if behind_s > LAG_MAX_S {
                 epoch += Duration::from_secs_f64(behind_s - BATCH_MAX_S);
@@ -87,75 +77,32 @@ impl Server {
                 let record = rig.step();
                 self.log.take(&record, rig)?;
             }
-            rig.receive(&mut bytes);
-            self.transmit(&mut bytes)?;
-            self.let_the_next_client_in();
             std::thread::sleep(NAP);
         }
         Ok(self.log.flush()?)
     }
 
-    fn receive(&mut self, rig: &mut Rig) -> Result<(), ServerError> {
+    /// Moves bytes between client and board.
+    ///
+    /// All that the client has written is taken at once, and the rig drops what is beyond its credit: what waited in the
+    /// terminal would reach the board after the client has gone. A client that does not read holds up the board's line, but
+    /// not the board.
+    fn exchange(&mut self, rig: &mut Rig) -> io::Result<()> {
+        if self.terminal.client_has_gone()? {
+            self.unwritten.clear();
+        }
         let mut bytes = [0; 4096];
-        match self.board_end.read(&mut bytes) {
-            Ok(count) => {
-                rig.send(&bytes[..count]);
-                self.heard_at = Instant::now();
-                Ok(())
+        for _ in 0..READS_MAX {
+            let count = self.terminal.read(&mut bytes)?;
+            if count == 0 {
+                break;
             }
-            Err(error) if error.kind() == io::ErrorKind::WouldBlock => Ok(()),
-            Err(error) => Err(self.broken(error)),
+            rig.send(bytes.get(..count).unwrap_or_default());
         }
-    }
-
-    /// Bytes that nobody reads are lost, as on a real line; they must not stop the board. What fits is written, and the
-    /// rest dropped.
-    fn transmit(&mut self, bytes: &mut Vec<u8>) -> Result<(), ServerError> {
-        if bytes.is_empty() {
-            return Ok(());
-        }
-        match self.board_end.write(bytes) {
-            Ok(_) => {}
-            Err(error) if error.kind() == io::ErrorKind::WouldBlock => {}
-            Err(error) => return Err(self.broken(error)),
-        }
-        bytes.clear();
+        rig.receive(&mut self.unwritten);
+        let written = self.terminal.write(&self.unwritten)?;
+        self.unwritten.drain(..written);
+        rig.set_host_away(!self.unwritten.is_empty());
         Ok(())
     }
-
-    /// A client that was killed leaves the terminal in exclusive mode, which lasts for as long as anybody holds it open.
-    fn let_the_next_client_in(&mut self) {
-        if self.heard_at.elapsed() > CLIENT_GONE_AFTER {
-            self.heard_at = Instant::now();
-            // Should it fail, the next client is told that the port is busy.
-            let _ = rustix::termios::ioctl_tiocnxcl(&self.client_end);
-        }
-    }
-
-    fn broken(&self, source: io::Error) -> ServerError {
-        ServerError::Line { path: self.path.clone(), source }
-    }
 }
-
-/// The end of a new pseudo-terminal that the board has, and the path of the other.
-fn open_board_end() -> io::Result<(File, String)> {
-    let board_end = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY)?;
-    grantpt(&board_end)?;
-    unlockpt(&board_end)?;
-    let flags = rustix::fs::fcntl_getfl(&board_end)?;
-    rustix::fs::fcntl_setfl(&board_end, flags | OFlags::NONBLOCK)?;
-    let path = ptsname(&board_end, Vec::new())?;
-    Ok((File::from(board_end), path.to_string_lossy().into_owned()))
-}
-
-/// Opens the other end and makes it raw: bytes go through as they are.
-fn open_client_end(path: &str) -> io::Result<File> {
-    let client_end = OpenOptions::new().read(true).write(true).custom_flags(OFlags::NOCTTY.bits() as i32).open(path)?;
-    let mut settings = tcgetattr(&client_end)?;
-    settings.make_raw();
-    tcsetattr(&client_end, OptionalActions::Now, &settings)?;
-    Ok(client_end)
-}
-
-#[cfg(test)]
-mod tests;
