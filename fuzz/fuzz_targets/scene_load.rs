@@ -2,36 +2,22 @@
 //! tick is in time.
 #![no_main]
 
-use std::collections::BTreeMap;
-use std::sync::LazyLock;
 use std::time::Duration;
 
+use frixel::rigs::SimLink;
 use frixel_driver::{Device, DeviceError, Upload};
-use frixel::rigs::{Recorder, SimLink};
-use frixel_scene::{Program, Scene, compile};
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
+use frixel_scene::recorder::Recorder;
 use frixel_wire::scene::Scene as WireScene;
 use frixel_wire::scene::cost::{TICK_INSTRUCTIONS_MAX, worst_of_scene};
 use libfuzzer_sys::fuzz_target;
-
-/// Bare glass, for a recorder that has nothing to compare.
-const GLASS: &str = "version = 1\nscreen = { width_mm = 120, height_mm = 80 }\n\
-    coating = { thickness_um = 10, permittivity = 1 }\n\
-    finger = { radius_mm = 8, stiffness_pa_per_m = 1.8e7, friction_coefficient = 0.5, normal_load_n = 0.5 }\n";
-
-static PROGRAM: LazyLock<Program> = LazyLock::new(|| {
-    let rig = RigConfig::default();
-    let scene = Scene::parse(GLASS, "glass.toml", &BTreeMap::new()).expect("it reads");
-    compile(&scene, &rig.board.limits, rig.board.tick_hz).expect("it compiles")
-});
 
 fuzz_target!(|bytes: &[u8]| {
     let rig = RigConfig::default();
     let mut memory = BoardMemory::new();
     let stroke = Stroke::natural(0.12, 0.08, 1.0).expect("a stroke");
-    let recorder = Recorder::new(&PROGRAM, &rig.board.limits, rig.board.tick_hz, 0, 1).expect("a finger");
     let rig = Rig::new(&mut memory, &rig, stroke, 1).expect("a rig");
-    let mut device = Device::connect(SimLink::new(rig, recorder)).expect("a board");
+    let mut device = Device::connect(SimLink::new(rig, Recorder::idle())).expect("a board");
     let upload = Upload { scene: bytes, bitmaps: Vec::new() };
     let taken = device.upload(&upload, &mut |_| {}).and_then(|()| device.commit(upload.scene_crc32()));
     match taken {

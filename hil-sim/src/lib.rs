@@ -4,6 +4,7 @@
 //!   [`Drive`](frixel_render::Drive) at every tick, and tells what the finger [felt](Felt).
 //! - [`Stroke`]: where the finger is at a time.
 //! - [`Rig`]: a board and its world on one thread.
+//! - [`chips`]: models of the chips on a board, for their drivers to run against.
 //! - [`emulated`]: the firmware's image for an emulated board, and what the in-process board is compared with.
 //! - [`Line`]: one direction of a serial line, whose bytes take the time that the line rate gives them.
 //!
@@ -13,6 +14,7 @@
 #![forbid(unsafe_code)]
 
 mod amplifier;
+pub mod chips;
 #[cfg(unix)]
 pub mod emulated;
 mod error;

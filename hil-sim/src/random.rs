@@ -9,6 +9,7 @@ pub(crate) enum Purpose {
     ReportPhase = 1,
     PlaceNoise = 2,
     ReportJitter = 3,
+    ContactBounce = 4,
 }
 
 /// A stream of random numbers.

@@ -1,73 +1,48 @@
-//! What ends the firmware, and what is known of it after the reset: output to zero first, then the reason kept, then
-//! the reset.
+//! Panics and faults: output to zero first, then the fault stored for the next start, then the reset.
 
 use core::arch::naked_asm;
-use core::mem::MaybeUninit;
 use core::panic::PanicInfo;
 
 use cortex_m::interrupt;
 use cortex_m::peripheral::SCB;
 use cortex_m_rt::exception;
+use frixel_drivers::fault_record::{FaultRecord, Text, Writer};
 use frixel_wire::fault::Fault;
 
 use crate::shared;
 
-/// Says that a reason was kept, and was not there by chance.
-const KEPT: u32 = 0x6b65_7074;
-
-/// A reason for a reset.
-#[derive(Clone, Copy)]
-#[repr(C)]
-struct Reason {
-    kept: u32,
-    number: u32,
-    detail: u32,
-    check: u32,
-}
-
 /// Outside of what the start-up code clears.
-#[unsafe(link_section = ".uninit.REASON")]
-static mut REASON: MaybeUninit<Reason> = MaybeUninit::uninit();
+#[unsafe(link_section = ".uninit.RECORD")]
+static RECORD: FaultRecord = FaultRecord::new();
 
-/// The fault that led to the reset, with a number that belongs to it, if it was one. It is told once.
-pub fn take() -> Option<(Fault, u32)> {
-    // SAFETY: any four words are a `Reason`; only this function and `end` touch it, and `end` never returns here.
-    let reason = unsafe {
-        let reason = (&raw const REASON).cast::<Reason>().read_volatile();
-        (&raw mut REASON).cast::<u32>().write_volatile(0);
-        reason
-    };
-    if reason.kept != KEPT || reason.check != check(reason.number, reason.detail) {
-        return None;
-    }
-    Fault::try_from(reason.number as u8).ok().map(|fault| (fault, reason.detail))
+/// The fault that led to the reset with its detail, if it was one, and its text in `text`. It is returned once.
+pub fn take(text: &'static mut Text) -> Option<(Fault, u32, &'static [u8])> {
+    RECORD.take(text)
 }
 
-const fn check(number: u32, detail: u32) -> u32 {
-    !(number.rotate_left(16) ^ detail)
-}
-
-/// Puts the output to zero, keeps the reason and resets.
-fn end(fault: Fault, detail: u32) -> ! {
+/// Puts the output to zero, stores the fault and resets.
+fn end(fault: Fault, detail: u32, say: &mut dyn FnMut(&mut Writer)) -> ! {
     interrupt::disable();
     shared::output_off();
-    let number = u32::from(fault.number());
-    let reason = Reason { kept: KEPT, number, detail, check: check(number, detail) };
-    // SAFETY: interrupts are off, and nothing comes back from here.
-    unsafe { (&raw mut REASON).cast::<Reason>().write_volatile(reason) };
+    RECORD.save(fault, detail, say);
     SCB::sys_reset()
 }
 
 /// A panic; the number that goes with it is the line.
 #[panic_handler]
 fn panic(info: &PanicInfo) -> ! {
-    end(Fault::Panic, info.location().map_or(0, core::panic::Location::line))
+    let (file, line) = info.location().map_or(("", 0), |place| (place.file(), place.line()));
+    end(Fault::Panic, line, &mut |text| {
+        text.text("panicked in ").text(file);
+    })
 }
 
 /// An exception that nobody handles.
 #[exception]
 unsafe fn DefaultHandler(number: i16) {
-    end(Fault::HardFault, u32::from(number.unsigned_abs()));
+    end(Fault::HardFault, u32::from(number.unsigned_abs()), &mut |text| {
+        text.text("an interrupt came that nobody handles");
+    });
 }
 
 /// What an exception puts on the stack.
@@ -109,14 +84,18 @@ unsafe extern "C" {
 extern "C" fn on_hard_fault(frame: *const Frame) -> ! {
     let bottom = (&raw const _stack_end) as usize;
     if (frame as usize) < bottom {
-        end(Fault::StackOverflow, frame as u32);
+        end(Fault::StackOverflow, frame as u32, &mut |text| {
+            text.text("the stack overflowed");
+        });
     }
     // SAFETY: the processor has put a frame there, and it lies in the stack.
     let program_counter = unsafe { (&raw const (*frame).program_counter).read() };
-    end(Fault::HardFault, program_counter)
+    end(Fault::HardFault, program_counter, &mut |text| {
+        text.text("pc ").hex(program_counter);
+    })
 }
 
 /// For what cannot happen.
 pub fn never() -> ! {
-    end(Fault::Panic, 0)
+    panic!("a static was taken twice")
 }

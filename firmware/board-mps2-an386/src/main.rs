@@ -19,9 +19,11 @@ mod uart;
 use cortex_m::Peripherals;
 use cortex_m::singleton;
 use cortex_m_rt::entry;
+use frixel_drivers::fault_record::Text;
 use frixel_exchange::{BOARD, layout};
 use frixel_render::{Active, BitmapPool, Board, Session, StreamBuffer, Ticker};
 use frixel_wire::hello::ResetCause;
+use frixel_wire::message::FAULT_TEXT_MAX_LEN;
 
 /// Memory for bitmaps, written by the session and read by the tick.
 static POOL: BitmapPool = BitmapPool::new();
@@ -30,9 +32,11 @@ static STREAM: StreamBuffer = StreamBuffer::new();
 
 #[entry]
 fn main() -> ! {
+    static mut TEXT: Text = [0; FAULT_TEXT_MAX_LEN];
+
     shared::set(layout::OUTPUT_AT_START, shared::get(layout::OUTPUT));
     shared::set(layout::STARTS, shared::get(layout::STARTS).wrapping_add(1));
-    let board = started();
+    let board = started(TEXT);
     // Made in passing, so that no image of them lies in flash.
     let (Some(first), Some(second)) = (singleton!(: Active = Active::new()), singleton!(: Active = Active::new()))
     else {
@@ -55,9 +59,11 @@ fn session(board: Board, spare: &'static mut Active) -> Option<&'static mut Sess
 }
 
 /// The board as it started: the fault before a reset was the reset's cause.
-fn started() -> Board {
-    match fault::take() {
-        Some(reset_fault) => Board { reset_cause: ResetCause::Software, reset_fault: Some(reset_fault), ..BOARD },
+fn started(text: &'static mut Text) -> Board {
+    match fault::take(text) {
+        Some((fault, detail, reset_text)) => {
+            Board { reset_cause: ResetCause::Software, reset_fault: Some((fault, detail)), reset_text, ..BOARD }
+        }
         None => BOARD,
     }
 }

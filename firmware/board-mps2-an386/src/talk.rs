@@ -2,6 +2,7 @@
 
 use cortex_m::Peripherals;
 use cortex_m::singleton;
+use frixel_drivers::serial::SerialLink;
 use frixel_render::{Active, Board, Order, Session, Status, Ticker};
 use heapless::spsc::{Consumer, Producer, Queue};
 
@@ -12,16 +13,13 @@ use crate::{fault, provoke};
 /// Orders that may wait for the tick, one place left free: as many as the session keeps.
 const ORDERS_LEN: usize = 9;
 
-/// Bytes that are taken from the serial port at a time.
-const CHUNK_LEN: usize = 256;
-
 /// The session's ends of the queues to and from the tick.
 struct Talk {
     session: &'static mut Session<'static>,
     orders: Producer<'static, Order<'static>>,
     spares: Consumer<'static, &'static mut Active>,
     statuses: Consumer<'static, Status>,
-    uart: Uart,
+    serial: SerialLink<Uart>,
 }
 
 /// Ticks on the board's own timer, and talks to the host on the serial port.
@@ -51,8 +49,8 @@ pub fn run(
         count: 0,
     };
     tick::start(tick, board.tick_hz, peripherals.SYST);
-    let uart = Uart::start(queues, &mut peripherals.NVIC);
-    let mut talk = Talk { session, orders: order_producer, spares: spare_consumer, statuses: status_consumer, uart };
+    let serial = SerialLink::new(Uart::start(queues, &mut peripherals.NVIC));
+    let mut talk = Talk { session, orders: order_producer, spares: spare_consumer, statuses: status_consumer, serial };
     loop {
         talk.once();
         provoke::in_main();
@@ -62,9 +60,7 @@ pub fn run(
 impl Talk {
     fn once(&mut self) {
         let status = self.status();
-        let mut bytes = [0; CHUNK_LEN];
-        let count = self.uart.receive(&mut bytes);
-        self.session.receive(bytes.get(..count).unwrap_or_default(), &status);
+        let Ok(()) = self.serial.receive(|bytes| self.session.receive(bytes, &status));
         while let Some(order) = self.session.next_order() {
             self.order(order);
         }
@@ -72,9 +68,7 @@ impl Talk {
             self.session.take_back(spare);
         }
         self.session.poll(&status);
-        let room = self.uart.room().min(CHUNK_LEN);
-        let count = self.session.transmit(bytes.get_mut(..room).unwrap_or_default());
-        self.uart.transmit(bytes.get(..count).unwrap_or_default());
+        let Ok(()) = self.serial.transmit(|bytes| self.session.transmit(bytes));
     }
 
     /// What the board does now, as the next tick has it.

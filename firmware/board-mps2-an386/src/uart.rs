@@ -1,7 +1,10 @@
 //! Serial port: UART0 of the CMSDK (Arm DDI0479, section 4.3), one byte deep, interrupt-driven both ways.
 
+use core::convert::Infallible;
+
 use cortex_m::interrupt::InterruptNumber;
 use cortex_m::peripheral::NVIC;
+use embedded_io::{ErrorType, Read, ReadReady, Write, WriteReady};
 use frixel_exchange::layout;
 use heapless::spsc::{Consumer, Producer, Queue};
 
@@ -97,31 +100,51 @@ impl Uart {
         }
         Self { received, to_transmit }
     }
+}
 
-    /// Moves received bytes into `bytes`, and returns how many.
-    pub fn receive(&mut self, bytes: &mut [u8]) -> usize {
+impl ErrorType for Uart {
+    type Error = Infallible;
+}
+
+impl ReadReady for Uart {
+    fn read_ready(&mut self) -> Result<bool, Infallible> {
+        Ok(self.received.ready())
+    }
+}
+
+impl Read for Uart {
+    fn read(&mut self, bytes: &mut [u8]) -> Result<usize, Infallible> {
         let mut count = 0;
-        for (place, byte) in bytes.iter_mut().zip(core::iter::from_fn(|| self.received.dequeue())) {
-            *place = byte;
-            count += 1;
+        while count == 0 && !bytes.is_empty() {
+            for (place, byte) in bytes.iter_mut().zip(core::iter::from_fn(|| self.received.dequeue())) {
+                *place = byte;
+                count += 1;
+            }
         }
-        count
+        Ok(count)
+    }
+}
+
+impl WriteReady for Uart {
+    fn write_ready(&mut self) -> Result<bool, Infallible> {
+        Ok(self.to_transmit.ready())
+    }
+}
+
+impl Write for Uart {
+    fn write(&mut self, bytes: &[u8]) -> Result<usize, Infallible> {
+        let mut count = 0;
+        while count == 0 && !bytes.is_empty() {
+            count = bytes.iter().take_while(|byte| self.to_transmit.enqueue(**byte).is_ok()).count();
+        }
+        // The interrupt comes by itself only after a byte has gone out; this starts the first.
+        NVIC::pend(Interrupt::Transmit);
+        Ok(count)
     }
 
-    /// Bytes that [`Self::transmit`] takes now.
-    pub fn room(&self) -> usize {
-        self.to_transmit.capacity() - self.to_transmit.len()
-    }
-
-    /// Sends bytes for which there is room.
-    pub fn transmit(&mut self, bytes: &[u8]) {
-        for byte in bytes {
-            let _ = self.to_transmit.enqueue(*byte);
-        }
-        if !bytes.is_empty() {
-            // The interrupt sends all but wakes up only when a byte has gone out; this one says that one may.
-            NVIC::pend(Interrupt::Transmit);
-        }
+    fn flush(&mut self) -> Result<(), Infallible> {
+        while !self.to_transmit.is_empty() {}
+        Ok(())
     }
 }
 

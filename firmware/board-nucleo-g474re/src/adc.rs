@@ -5,7 +5,7 @@
 //! | PA0 | ADC12_IN1 | monitor, 1.65 V for 0 V on the electrode |
 
 use cortex_m::asm;
-use frixel_parts::monitor::Monitor;
+use frixel_drivers::monitor::MonitorScale;
 use stm32_metapac::adc::vals::{Adcaldif, Ovrmod, Res, SampleTime};
 use stm32_metapac::adccommon::vals::Ckmode;
 use stm32_metapac::{ADC1, ADC12_COMMON};
@@ -18,7 +18,7 @@ const CHANNEL: u8 = 1;
 
 /// The monitor's ADC. PA0 is analog from reset on.
 pub struct Adc {
-    monitor: Monitor,
+    monitor: MonitorScale,
 }
 
 impl Adc {

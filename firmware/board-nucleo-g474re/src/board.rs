@@ -1,7 +1,7 @@
 //! Who this board is, and what it can bear. What is here belongs to the parts that `docs/hardware.md` lists: another
 //! amplifier or electrode has other numbers.
 
-use frixel_parts::monitor::Monitor;
+use frixel_drivers::monitor::MonitorScale;
 use frixel_render::store::{Flash, LIMITS_LEN, Slot, read_limits};
 use frixel_render::{BITMAP_POOL_LEN, Board};
 use frixel_wire::hello::{BoardKind, BoardLimits};
@@ -18,7 +18,7 @@ pub const RECEIVE_WINDOW: usize = 4096;
 
 /// The monitor's ADC: 12 bits of 3.3 V. The amplifier's monitor gives 1 V for 100 V, of which the level shifter makes
 /// 0.75 V about 1.65 V, so that 220 V fill the span.
-pub const MONITOR: Monitor = Monitor::new(12, 3.3, 0.75 / 100.0);
+pub const MONITOR: MonitorScale = MonitorScale::new(12, 3.3, 0.75 / 100.0);
 
 /// Limits before bring-up has stored others.
 pub const LIMITS: BoardLimits = BoardLimits {

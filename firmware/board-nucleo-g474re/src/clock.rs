@@ -3,6 +3,7 @@
 
 use cortex_m::asm;
 use cortex_m::peripheral::{DCB, DWT};
+use embedded_hal::delay::DelayNs;
 use stm32_metapac::rcc::vals::{Hpre, Pllm, Plln, Pllr, Pllsrc, Ppre, Sw};
 use stm32_metapac::{DBGMCU, FLASH, PWR, RCC};
 
@@ -27,6 +28,8 @@ pub fn start() {
     });
     wait_until(|| FLASH.acr().read().latency() == stm32_metapac::flash::vals::Latency::WS4, "the flash's wait states");
 
+    // Boost mode before the PLL runs: the normal mode of range 1 ends at 150 MHz.
+    PWR.cr5().modify(|w| w.set_r1mode(false));
     RCC.pllcfgr().write(|w| {
         w.set_pllsrc(Pllsrc::HSI);
         w.set_pllm(Pllm::DIV4);
@@ -39,7 +42,6 @@ pub fn start() {
 
     // Above 80 MHz, half the frequency comes first, for at least 1 us (RM0440, "System clock (SYSCLK)").
     RCC.cfgr().modify(|w| w.set_hpre(Hpre::DIV2));
-    PWR.cr5().modify(|w| w.set_r1mode(false));
     RCC.cfgr().modify(|w| w.set_sw(Sw::PLL1_R));
     wait_until(|| RCC.cfgr().read().sws() == Sw::PLL1_R, "the PLL as system clock");
     asm::delay(CORE_HZ / 1_000_000);
@@ -65,6 +67,15 @@ pub fn start_peripherals() {
     });
     // A peripheral is there two clocks after its enable (RM0440, "Peripheral clock enable register"); the read takes them.
     let _ = RCC.apb1enr1().read();
+}
+
+/// Waits by counting cycles; longer when interrupts come in between.
+pub struct CycleDelay;
+
+impl DelayNs for CycleDelay {
+    fn delay_ns(&mut self, ns: u32) {
+        asm::delay((CORE_HZ / 1_000_000).saturating_mul(ns.div_ceil(1000)));
+    }
 }
 
 /// Starts the cycle counter and sees that it counts: an emulator's does not, and what is measured with one that stands

@@ -1,69 +1,79 @@
-//! The DAC, an AD5761R on SPI2: three bytes by DMA, latched by a timer's edge ([`crate::period`]).
+//! The DAC, an AD5761R on SPI2. Two halves share the bus in turns ([`BusHandover`](frixel_drivers::bus_handover::BusHandover)):
+//!
+//! - [`DacFrames`], in the tick: one output frame a period by DMA, latched by a timer's edge ([`crate::period`]);
+//! - [`DacBus`], in the main loop: an `SpiDevice` for the driver that configures the DAC and reads it back.
 //!
 //! | pin | function | |
 //! |---|---|---|
 //! | PB13 | SPI2_SCK | SCLK |
 //! | PB15 | SPI2_MOSI | SDI |
-//! | PB14 | SPI2_MISO | SDO, for [`Dac::is_there`] |
+//! | PB14 | SPI2_MISO | SDO, to read back |
 
 use core::sync::atomic::{AtomicU8, Ordering};
 
-use cortex_m::asm;
-use frixel_parts::ad5761r::{self, FRAME_LEN, Frame};
+use embedded_hal::delay::DelayNs;
+use embedded_hal::spi::{self, ErrorKind, ErrorType, Operation, SpiDevice};
+use frixel_drivers::ad5761r::{self, Ad5761r, FRAME_LEN};
 use stm32_metapac::bdma::vals::{Dir, Pl};
 use stm32_metapac::spi::vals::{Br, Cpha, Cpol, Ds, Frxth, Mstr};
 use stm32_metapac::{GPIOB, SPI2};
 
-use crate::clock::CORE_HZ;
-use crate::{dma, period, pins, wait_until};
+use crate::clock::CycleDelay;
+use crate::{ROUNDS_MAX, dma, period, pins};
 
 const SCK: u32 = 13;
 const MISO: u32 = 14;
 const MOSI: u32 = 15;
 const SPI2_FUNCTION: u8 = 5;
+/// Clock of the tick's frames: 170 MHz / 8 is 21.25 MHz of the DAC's 50.
+const FRAME_CLOCK: Br = Br::DIV8;
+/// Clock of the driver, 5.3 MHz. SDO follows an edge by up to 40 ns, more than half a period at 21.25 MHz.
+const DRIVER_CLOCK: Br = Br::DIV32;
 
 /// Bytes on their way to the DAC, in the memory for DMA (`memory.x`); they are written before DMA reads them.
 #[unsafe(link_section = ".dma.FRAME")]
 static FRAME: [AtomicU8; FRAME_LEN] = [const { AtomicU8::new(0) }; FRAME_LEN];
 
-/// The DAC.
-pub struct Dac(());
+/// The driver of this board's DAC.
+pub type Dac = Ad5761r<DacBus, CycleDelay>;
+/// What it reports.
+pub type DacError = ad5761r::Error<SpiError>;
 
-impl Dac {
-    /// Sets the DAC up: +-10 V, output at zero. [`period::start`] comes before.
-    pub fn new() -> Self {
-        // SCLK is high between frames, and the DAC takes bits at falling edges; 170 MHz / 8 is 21.25 MHz of its 50.
-        SPI2.cr1().write(|w| {
-            w.set_mstr(Mstr::MASTER);
-            w.set_cpol(Cpol::IDLE_HIGH);
-            w.set_cpha(Cpha::FIRST_EDGE);
-            w.set_br(Br::DIV8);
-            w.set_ssm(true);
-            w.set_ssi(true);
-        });
-        SPI2.cr2().write(|w| {
-            w.set_ds(Ds::BITS8);
-            w.set_frxth(Frxth::QUARTER);
-            w.set_txdmaen(true);
-        });
-        SPI2.cr1().modify(|w| w.set_spe(true));
-        for pin in [SCK, MISO, MOSI] {
-            pins::alternate(GPIOB, pin, SPI2_FUNCTION);
-        }
-        let transfer = dma::Transfer {
-            request: dma::Request::Spi2Tx,
-            direction: Dir::FROM_MEMORY,
-            priority: Pl::VERY_HIGH,
-            circular: false,
-            register: SPI2.dr8().as_ptr().cast(),
-        };
-        dma::set_up(dma::DAC, &transfer, &FRAME);
-        for frame in [ad5761r::RESET, ad5761r::CONFIGURE, ad5761r::output(0)] {
-            send_and_wait(frame);
-        }
-        Self(())
+/// Starts SPI2 and returns its two halves. [`period::start`] comes before. The DAC has not been configured yet.
+pub fn start() -> (DacFrames, Dac) {
+    // SCLK is high between frames, and the DAC samples at falling edges: mode 2.
+    SPI2.cr1().write(|w| {
+        w.set_mstr(Mstr::MASTER);
+        w.set_cpol(Cpol::IDLE_HIGH);
+        w.set_cpha(Cpha::FIRST_EDGE);
+        w.set_br(FRAME_CLOCK);
+        w.set_ssm(true);
+        w.set_ssi(true);
+    });
+    SPI2.cr2().write(|w| {
+        w.set_ds(Ds::BITS8);
+        w.set_frxth(Frxth::QUARTER);
+        w.set_txdmaen(true);
+    });
+    SPI2.cr1().modify(|w| w.set_spe(true));
+    for pin in [SCK, MISO, MOSI] {
+        pins::alternate(GPIOB, pin, SPI2_FUNCTION);
     }
+    let transfer = dma::Transfer {
+        request: dma::Request::Spi2Tx,
+        direction: Dir::FROM_MEMORY,
+        priority: Pl::VERY_HIGH,
+        circular: false,
+        register: SPI2.dr8().as_ptr().cast(),
+    };
+    dma::set_up(dma::DAC, &transfer, &FRAME);
+    (DacFrames(()), Ad5761r::new(DacBus(()), CycleDelay))
+}
 
+/// The tick's half of the DAC.
+pub struct DacFrames(());
+
+impl DacFrames {
     /// Begins to send a code, which the DAC puts out at the end of the period. `false` when it is too late for that, or
     /// the frame before is still under way; then nothing is sent.
     #[inline]
@@ -72,52 +82,99 @@ impl Dac {
         if period::cycles() > period::DEADLINE_CYCLES || dma::remaining(dma::DAC) > 0 {
             return false;
         }
-        begin(ad5761r::output(code));
+        for (to, from) in FRAME.iter().zip(ad5761r::output(code)) {
+            to.store(from, Ordering::Relaxed);
+        }
+        period::begin_frame();
+        dma::begin(dma::DAC, FRAME_LEN as u16);
         true
     }
+}
 
-    /// Whether a DAC answers, set up as it should be. Takes several periods.
-    pub fn is_there(&mut self) -> bool {
-        // It answers more slowly than it listens: up to 40 ns after an edge, beyond half a clock at 21.25 MHz.
-        set_clock(Br::DIV32);
-        let found = Self::ask();
-        set_clock(Br::DIV8);
-        found
+/// The main loop's half of the DAC: polled, while the tick sends nothing.
+pub struct DacBus(());
+
+/// Why a transfer failed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "log", derive(defmt::Format))]
+pub enum SpiError {
+    /// SPI2 did not become idle, or did not receive a byte.
+    Timeout,
+}
+
+impl spi::Error for SpiError {
+    fn kind(&self) -> ErrorKind {
+        ErrorKind::Other
     }
+}
 
-    fn ask() -> bool {
-        send_and_wait(ad5761r::READ_CONTROL);
+impl ErrorType for DacBus {
+    type Error = SpiError;
+}
+
+impl SpiDevice for DacBus {
+    /// SYNC is low for the whole transaction. The tick may interrupt it at any place: the bus then stands still.
+    fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), SpiError> {
+        configure(DRIVER_CLOCK, false)?;
+        // Bytes that came while the tick sent, and the overrun that they led to.
         while SPI2.sr().read().rxne() {
             let _ = SPI2.dr8().read();
         }
-        send_and_wait(ad5761r::NOTHING);
-        // The receive buffer holds the last four bytes: these three and none of before.
-        ad5761r::is_configured([(); FRAME_LEN].map(|()| SPI2.dr8().read()))
+        period::hold_sync_low();
+        let result = operations.iter_mut().try_for_each(run);
+        period::end_frame();
+        configure(FRAME_CLOCK, true)?;
+        result
     }
 }
 
-/// Changes the clock between two frames (RM0440, "SPI": "Procedure for disabling the SPI").
-fn set_clock(divider: Br) {
-    wait_until(|| !SPI2.sr().read().bsy(), "SPI2");
+fn run(operation: &mut Operation<'_, u8>) -> Result<(), SpiError> {
+    match operation {
+        Operation::Read(bytes) => {
+            for byte in bytes.iter_mut() {
+                *byte = exchange(0)?;
+            }
+        }
+        Operation::Write(bytes) => {
+            for byte in *bytes {
+                exchange(*byte)?;
+            }
+        }
+        Operation::Transfer(read, write) => {
+            for index in 0..read.len().max(write.len()) {
+                let received = exchange(write.get(index).copied().unwrap_or_default())?;
+                if let Some(byte) = read.get_mut(index) {
+                    *byte = received;
+                }
+            }
+        }
+        Operation::TransferInPlace(bytes) => {
+            for byte in bytes.iter_mut() {
+                *byte = exchange(*byte)?;
+            }
+        }
+        Operation::DelayNs(ns) => CycleDelay.delay_ns(*ns),
+    }
+    Ok(())
+}
+
+/// Sends a byte, and returns the one that came meanwhile.
+fn exchange(byte: u8) -> Result<u8, SpiError> {
+    SPI2.dr8().write_value(byte);
+    wait_until(|| SPI2.sr().read().rxne())?;
+    Ok(SPI2.dr8().read())
+}
+
+/// Changes clock and DMA between two frames (RM0440, "SPI": "Procedure for disabling the SPI").
+fn configure(clock: Br, dma: bool) -> Result<(), SpiError> {
+    wait_until(|| !SPI2.sr().read().bsy())?;
     SPI2.cr1().modify(|w| w.set_spe(false));
-    SPI2.cr1().modify(|w| w.set_br(divider));
+    SPI2.cr1().modify(|w| w.set_br(clock));
+    SPI2.cr2().modify(|w| w.set_txdmaen(dma));
     SPI2.cr1().modify(|w| w.set_spe(true));
+    Ok(())
 }
 
-/// Sends a frame in a period of its own, and waits for the period's end.
-fn send_and_wait(frame: Frame) {
-    let _ = period::has_begun();
-    wait_until(period::has_begun, "a period of TIM3");
-    begin(frame);
-    wait_until(period::has_begun, "a period of TIM3");
-    // What the DAC takes to do it (a reset, the longest, less than 10 us).
-    asm::delay(CORE_HZ / 100_000);
-}
-
-fn begin(frame: Frame) {
-    for (to, from) in FRAME.iter().zip(frame) {
-        to.store(from, Ordering::Relaxed);
-    }
-    period::begin_frame();
-    dma::begin(dma::DAC, FRAME_LEN as u16);
+fn wait_until(ready: impl Fn() -> bool) -> Result<(), SpiError> {
+    if (0..ROUNDS_MAX).any(|_| ready()) { Ok(()) } else { Err(SpiError::Timeout) }
 }

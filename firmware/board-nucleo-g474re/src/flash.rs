@@ -38,6 +38,8 @@ impl BankTwo {
             }
         }
         clear_flags();
+        // The flash reports an operation error only with its interrupt enabled (RM0440, "FLASH_SR": OPERR). Nobody unmasks it.
+        FLASH.cr().modify(|w| w.set_errie(true));
         // Errata ES0430: the data cache may be corrupted while the other bank is written.
         FLASH.acr().modify(|w| w.set_dcen(false));
         self.under_way = true;
@@ -59,6 +61,7 @@ impl Flash for BankTwo {
         }
         // The exception comes before anything that is after this.
         cortex_m::asm::dsb();
+        cortex_m::asm::isb();
         !UNREADABLE.load(Ordering::Relaxed)
     }
 

@@ -5,10 +5,11 @@
 //! One interrupt, [`tick`], runs above everything, 40,000 times a second. All else is the main loop, [`talk`]: serial
 //! port, session, stores, optical frame, watchdog. Between them go the lock-free queues of `heapless`; no critical section
 //! masks the tick ([`critical`]). None of it has run on hardware in this repository's CI: what can be tested without is in
-//! `firmware/render` and `firmware/parts`.
+//! `firmware/render` and `firmware/drivers`.
 #![no_std]
 
 pub mod adc;
+pub mod arming;
 pub mod board;
 pub mod clock;
 pub mod critical;
@@ -29,7 +30,7 @@ pub mod talk;
 pub mod tick;
 pub mod watchdog;
 
-/// Rounds that anything in the processor may take to become ready; more than a tenth of a second.
+/// Polls that a part of the processor may take to become ready; more than a tenth of a second.
 const ROUNDS_MAX: u32 = 5_000_000;
 
 /// Waits until a part of the processor is ready. When it never is, the panic that says so puts the output to zero and

@@ -2,22 +2,27 @@
 #![no_std]
 #![no_main]
 
+#[cfg(feature = "optical-frame")]
+use core::pin::pin;
+
 use board_nucleo_g474re::adc::Adc;
-use board_nucleo_g474re::dac::Dac;
+use board_nucleo_g474re::dac::DacError;
 use board_nucleo_g474re::fault::{self, LastReset};
 use board_nucleo_g474re::flash::BankTwo;
+#[cfg(feature = "optical-frame")]
+use board_nucleo_g474re::optical_frame::{self, OpticalFrame, Reports};
 use board_nucleo_g474re::output::Output;
 use board_nucleo_g474re::serial::Serial;
 use board_nucleo_g474re::talk::{QueuePairs, Talk};
 use board_nucleo_g474re::tick::{self, Tick};
 use board_nucleo_g474re::watchdog::Watchdog;
-use board_nucleo_g474re::{board, clock, guard, indicator, period};
+use board_nucleo_g474re::{board, clock, dac, guard, indicator, period};
 use cortex_m::{Peripherals, singleton};
 use cortex_m_rt::entry;
 #[cfg(feature = "log")]
 use defmt_rtt as _;
-use frixel_parts::arm_switch::ArmSwitch;
-use frixel_parts::fault_record::Text;
+use frixel_drivers::fault_record::Text;
+use frixel_drivers::serial::SerialLink;
 #[cfg(feature = "stream")]
 use frixel_render::StreamBuffer;
 #[cfg(feature = "store")]
@@ -36,7 +41,15 @@ fn main() -> ! {
     static mut TEXT: Text = [0; FAULT_TEXT_MAX_LEN];
     static mut QUEUES: QueuePairs = QueuePairs::new();
 
-    start(TEXT, QUEUES).run()
+    let talk = start(TEXT, QUEUES);
+    #[cfg(feature = "optical-frame")]
+    {
+        let reports = Reports::new(None);
+        let reading = pin!(optical_frame::read(&reports));
+        talk.run(OpticalFrame::new(reading, &reports))
+    }
+    #[cfg(not(feature = "optical-frame"))]
+    talk.run()
 }
 
 /// Starts everything. Apart from the main function, so that what it needs of the stack is free again afterwards.
@@ -52,7 +65,7 @@ fn start(text: &'static mut Text, queue_pairs: &'static mut QueuePairs) -> Talk 
     clock::start_peripherals();
     clock::keep_timers_running_in_debug();
     clock::start_cycle_counter(&mut core.DCB, &mut core.DWT);
-    indicator::start();
+    let light = indicator::start();
     period::start();
 
     let flash = BankTwo::new();
@@ -64,11 +77,11 @@ fn start(text: &'static mut Text, queue_pairs: &'static mut QueuePairs) -> Talk 
     let store = flash.map(|flash| (SceneKeeper::new(board::SCENE_SLOT, board::TICK_HZ, &flash, session), flash));
 
     let (ends, queues) = queue_pairs.split();
-    let tick = Tick { ticker, queues, adc: Adc::new(), dac: Dac::new(), output, arm_switch: ArmSwitch::new() };
-    let serial = Serial::new();
-    #[cfg(feature = "optical-frame")]
-    let optical_frame = board_nucleo_g474re::optical_frame::OpticalFrame::new();
-    tick::start_inputs();
+    let (frames, mut dac) = dac::start();
+    log_dac(dac.prepare());
+    let (amplifier, arm_switch) = (tick::amplifier(output), tick::arm_switch());
+    let tick = Tick { ticker, queues, adc: Adc::new(), dac: frames, amplifier, arm_switch };
+    let serial = SerialLink::new(Serial::new());
     tick::start(tick);
     let watchdog = Watchdog::start();
     Talk {
@@ -76,10 +89,10 @@ fn start(text: &'static mut Text, queue_pairs: &'static mut QueuePairs) -> Talk 
         session,
         status,
         serial,
+        dac,
+        light,
         #[cfg(feature = "store")]
         store,
-        #[cfg(feature = "optical-frame")]
-        optical_frame,
         watchdog,
     }
 }
@@ -122,6 +135,17 @@ fn log(board: &Board, bank: bool) {
         defmt::warn!("the flash is not in two banks (option byte DBANK): nothing is kept over power-off");
     }
 }
+
+/// A DAC that is not there yet is no fault: it is checked again before the board arms.
+#[cfg(feature = "log")]
+fn log_dac(prepared: Result<(), DacError>) {
+    if let Err(error) = prepared {
+        defmt::warn!("the DAC is not ready: {}", error);
+    }
+}
+
+#[cfg(not(feature = "log"))]
+fn log_dac(_: Result<(), DacError>) {}
 
 #[cfg(not(feature = "log"))]
 fn log_reset(_: &LastReset) {}

@@ -1,5 +1,5 @@
-//! The optical touch frame, a Neonode zForce module on I2C3, by DMA: a transfer is begun, looked after, and given up when it
-//! takes too long, all without waiting (RM0440, "I2C": "I2C master mode", "DMA requests").
+//! The optical touch frame, a Neonode zForce module on I2C3. Transfers go by DMA, so that the main loop waits for none of
+//! them (RM0440, "I2C": "I2C master mode", "DMA requests").
 //!
 //! The module lies along the top edge of the screen, its corner at the screen's.
 //!
@@ -9,9 +9,16 @@
 //! | PC9 | I2C3_SDA | |
 //! | PD2 | input, pulled down | data ready |
 
+use core::cell::Cell;
+use core::future::poll_fn;
+use core::pin::Pin as Pinned;
 use core::sync::atomic::{AtomicU8, Ordering};
+use core::task::Poll;
 
-use frixel_parts::zforce::{self, ENABLE, I2C_ADDRESS, LENGTH_LEN, MESSAGE_MAX_LEN, Message, SET_FREQUENCY};
+use embedded_hal_async::delay::DelayNs;
+use embedded_hal_async::i2c::{self, ErrorKind, ErrorType, I2c, NoAcknowledgeSource, Operation};
+use frixel_drivers::polling::{poll_once, yield_now};
+use frixel_drivers::zforce::{self, MESSAGE_MAX_LEN, ZForce};
 use frixel_render::Touch;
 use stm32_metapac::bdma::vals::{Dir as DmaDir, Pl};
 use stm32_metapac::i2c::vals::{Autoend, Dir};
@@ -19,7 +26,8 @@ use stm32_metapac::rcc::vals::I2csel;
 use stm32_metapac::{GPIOC, GPIOD, I2C3, RCC};
 
 use crate::board::TICK_HZ;
-use crate::{dma, pins};
+use crate::pins::Pin;
+use crate::{dma, pins, tick};
 
 const SCL: u32 = 8;
 const SDA: u32 = 9;
@@ -28,8 +36,6 @@ const I2C3_FUNCTION: u8 = 8;
 
 /// Longest that a transfer may take: the longest message is 2.9 ms on the bus, and the module may stretch the clock.
 const TRANSFER_TICKS: u32 = TICK_HZ / 1000 * 6;
-/// After a transfer that failed, the module is left alone for so long.
-const REST_TICKS: u32 = TICK_HZ / 10;
 /// Age of a place when it is read: two scans at 200 Hz, one that sees the finger and one that is reported. To be measured
 /// at bring-up.
 const AGE_TICKS: u32 = TICK_HZ / 100;
@@ -38,134 +44,162 @@ const AGE_TICKS: u32 = TICK_HZ / 100;
 #[unsafe(link_section = ".dma.BYTES")]
 static BYTES: [AtomicU8; MESSAGE_MAX_LEN] = [const { AtomicU8::new(0) }; MESSAGE_MAX_LEN];
 
-/// What is under way.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Doing {
-    Nothing,
-    Request,
-    Length,
-    Message(usize),
-    Resting,
+/// The report that the frame has read last, until somebody takes it.
+pub type Reports = Cell<Option<Touch>>;
+
+/// The frame as a touch source: a future that reads reports, and the place where it puts them.
+pub struct OpticalFrame<'a> {
+    reading: Pinned<&'a mut dyn Future<Output = ()>>,
+    reports: &'a Reports,
 }
 
-/// The frame.
-pub struct OpticalFrame {
-    doing: Doing,
-    since_tick: u32,
-    /// Requests that the module has had since it started.
-    requests: usize,
+impl<'a> OpticalFrame<'a> {
+    /// A source from [`read`] and the place that it was given.
+    pub fn new(reading: Pinned<&'a mut dyn Future<Output = ()>>, reports: &'a Reports) -> Self {
+        Self { reading, reports }
+    }
+
+    /// Continues to read without waiting, and returns a report when one is complete. To be called again and again.
+    pub fn next_touch(&mut self) -> Option<Touch> {
+        let _ = poll_once(self.reading.as_mut());
+        self.reports.take()
+    }
 }
 
-/// How a transfer stands.
-enum Transfer {
-    UnderWay,
-    Done,
-    Failed,
+/// Takes the bus, and reads one report after the other into `reports`. It never ends.
+pub async fn read(reports: &Reports) {
+    let mut frame = ZForce::new(Bus::new(), Pin::input_pulled_down(GPIOD, DATA_READY), TickDelay);
+    loop {
+        match frame.next_touch().await {
+            Ok(zforce::Touch::Down { x_m, y_m }) => {
+                reports.set(Some(Touch::Down { x_m, y_m, age_ticks: AGE_TICKS }));
+            }
+            Ok(zforce::Touch::Up) => reports.set(Some(Touch::Up)),
+            Err(error) => log(error),
+        }
+        // The report is taken before the next is read.
+        while reports.get().is_some() {
+            yield_now().await;
+        }
+    }
 }
 
-impl OpticalFrame {
-    /// Takes the bus, at 400 kHz.
-    pub fn new() -> Self {
+#[cfg(feature = "log")]
+fn log(error: zforce::Error<Error>) {
+    defmt::warn!("touch frame: {}", error);
+}
+
+#[cfg(not(feature = "log"))]
+fn log(_: zforce::Error<Error>) {}
+
+/// Waits by counting ticks.
+struct TickDelay;
+
+impl DelayNs for TickDelay {
+    async fn delay_ns(&mut self, ns: u32) {
+        let (from_tick, ticks) = (tick::count(), ns.div_ceil(1_000_000_000 / TICK_HZ));
+        while tick::count().wrapping_sub(from_tick) <= ticks {
+            yield_now().await;
+        }
+    }
+}
+
+/// I2C3 at 400 kHz.
+struct Bus(());
+
+/// Why a transfer failed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "log", derive(defmt::Format))]
+pub enum Error {
+    /// The module did not acknowledge.
+    NoAcknowledge,
+    /// The bus was lost to another master, or shorted.
+    ArbitrationLoss,
+    /// The transfer took longer than 6 ms.
+    Timeout,
+    /// A transaction of several transfers, or of more than 127 bytes: the module needs neither.
+    Unsupported,
+}
+
+impl i2c::Error for Error {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::NoAcknowledge => ErrorKind::NoAcknowledge(NoAcknowledgeSource::Unknown),
+            Self::ArbitrationLoss => ErrorKind::ArbitrationLoss,
+            Self::Timeout | Self::Unsupported => ErrorKind::Other,
+        }
+    }
+}
+
+impl ErrorType for Bus {
+    type Error = Error;
+}
+
+impl I2c for Bus {
+    async fn transaction(&mut self, address: u8, operations: &mut [Operation<'_>]) -> Result<(), Error> {
+        let [operation] = operations else { return Err(Error::Unsupported) };
+        let len = match operation {
+            Operation::Read(bytes) => bytes.len(),
+            Operation::Write(bytes) => bytes.len(),
+        };
+        if len > MESSAGE_MAX_LEN {
+            return Err(Error::Unsupported);
+        }
+        match operation {
+            Operation::Write(bytes) => begin_write(address, bytes),
+            Operation::Read(_) => begin_read(address, len),
+        }
+        let from_tick = tick::count();
+        let result = poll_fn(|_| poll_transfer(from_tick)).await;
+        if result.is_err() {
+            release();
+        }
+        if let Operation::Read(bytes) = operation {
+            for (to, from) in bytes.iter_mut().zip(&BYTES) {
+                *to = from.load(Ordering::Relaxed);
+            }
+        }
+        result
+    }
+}
+
+impl Bus {
+    fn new() -> Self {
         RCC.ccipr().modify(|w| w.set_i2c3sel(I2csel::HSI));
         pins::alternate_open_drain(GPIOC, SCL, I2C3_FUNCTION);
         pins::alternate_open_drain(GPIOC, SDA, I2C3_FUNCTION);
-        pins::input_pulled_down(GPIOD, DATA_READY);
         enable();
-        Self { doing: Doing::Nothing, since_tick: 0, requests: 0 }
+        Self(())
     }
+}
 
-    /// Does the next small thing that there is to do. To be called again and again.
-    pub fn step(&mut self, now_tick: u32) -> Option<Touch> {
-        match self.doing {
-            Doing::Nothing => self.begin(now_tick),
-            Doing::Resting if now_tick.wrapping_sub(self.since_tick) > REST_TICKS => self.doing = Doing::Nothing,
-            Doing::Resting => {}
-            Doing::Request | Doing::Length | Doing::Message(_) => match self.transfer(now_tick) {
-                Transfer::UnderWay => {}
-                Transfer::Done => return self.done(now_tick),
-                Transfer::Failed => self.rest(now_tick),
-            },
-        }
-        None
+fn poll_transfer(from_tick: u32) -> Poll<Result<(), Error>> {
+    let status = I2C3.isr().read();
+    if status.berr() {
+        // Errata ES0430, 2.15.2: spurious in master mode, and the transfer goes on.
+        I2C3.icr().write(|w| w.set_berrcf(true));
     }
+    if status.nackf() {
+        Poll::Ready(Err(Error::NoAcknowledge))
+    } else if status.arlo() {
+        Poll::Ready(Err(Error::ArbitrationLoss))
+    } else if status.stopf() {
+        I2C3.icr().write(|w| w.set_stopcf(true));
+        Poll::Ready(Ok(()))
+    } else if tick::count().wrapping_sub(from_tick) > TRANSFER_TICKS {
+        Poll::Ready(Err(Error::Timeout))
+    } else {
+        Poll::Pending
+    }
+}
 
-    fn begin(&mut self, now_tick: u32) {
-        let requests: [&[u8]; 2] = [&SET_FREQUENCY, &ENABLE];
-        self.since_tick = now_tick;
-        if let Some(request) = requests.get(self.requests) {
-            self.requests += 1;
-            self.doing = Doing::Request;
-            write(request);
-        } else if pins::is_high(GPIOD, DATA_READY) {
-            self.doing = Doing::Length;
-            read(LENGTH_LEN);
-        }
+/// Lets go of the bus and clears all flags: off for three clocks (RM0440, "Software reset" of I2C).
+fn release() {
+    I2C3.cr1().write(|w| w.set_pe(false));
+    for _ in 0..3 {
+        let _ = I2C3.cr1().read();
     }
-
-    fn done(&mut self, now_tick: u32) -> Option<Touch> {
-        let mut bytes = [0; MESSAGE_MAX_LEN];
-        for (to, from) in bytes.iter_mut().zip(&BYTES) {
-            *to = from.load(Ordering::Relaxed);
-        }
-        match self.doing {
-            Doing::Length => {
-                let length = bytes.first_chunk().copied().unwrap_or_default();
-                if let Some(len) = zforce::message_len(length) {
-                    self.since_tick = now_tick;
-                    self.doing = Doing::Message(len);
-                    read(len);
-                } else {
-                    self.rest(now_tick);
-                }
-                None
-            }
-            Doing::Message(len) => {
-                self.doing = Doing::Nothing;
-                self.report(zforce::parse(bytes.get(..len).unwrap_or_default()))
-            }
-            _ => {
-                self.doing = Doing::Nothing;
-                None
-            }
-        }
-    }
-
-    fn report(&mut self, message: Message) -> Option<Touch> {
-        match message {
-            Message::Down { x_m, y_m } => Some(Touch::Down { x_m, y_m, age_ticks: AGE_TICKS }),
-            Message::Up => Some(Touch::Up),
-            Message::Started => {
-                self.requests = 0;
-                None
-            }
-            Message::Other => None,
-        }
-    }
-
-    fn transfer(&self, now_tick: u32) -> Transfer {
-        let status = I2C3.isr().read();
-        if status.nackf() || status.berr() || status.arlo() || now_tick.wrapping_sub(self.since_tick) > TRANSFER_TICKS {
-            Transfer::Failed
-        } else if status.stopf() {
-            I2C3.icr().write(|w| w.set_stopcf(true));
-            Transfer::Done
-        } else {
-            Transfer::UnderWay
-        }
-    }
-
-    /// Lets go of the bus, and tells the module everything anew later.
-    fn rest(&mut self, now_tick: u32) {
-        // Off for three clocks, which clears all that is under way (RM0440, "Software reset" of I2C).
-        I2C3.cr1().write(|w| w.set_pe(false));
-        for _ in 0..3 {
-            let _ = I2C3.cr1().read();
-        }
-        enable();
-        self.requests = 0;
-        self.doing = Doing::Resting;
-        self.since_tick = now_tick;
-    }
+    enable();
 }
 
 /// 400 kHz from 16 MHz (RM0440, "I2C": "`I2C_TIMINGR` register configuration examples").
@@ -184,25 +218,25 @@ fn enable() {
     });
 }
 
-fn write(request: &[u8]) {
-    for (to, from) in BYTES.iter().zip(request) {
+fn begin_write(address: u8, bytes: &[u8]) {
+    for (to, from) in BYTES.iter().zip(bytes) {
         to.store(*from, Ordering::Relaxed);
     }
     let register = I2C3.txdr().as_ptr().cast();
-    begin(Dir::WRITE, dma::Request::I2c3Tx, DmaDir::FROM_MEMORY, register, request.len());
+    begin(address, Dir::WRITE, dma::Request::I2c3Tx, DmaDir::FROM_MEMORY, register, bytes.len());
 }
 
-fn read(len: usize) {
+fn begin_read(address: u8, len: usize) {
     let register = I2C3.rxdr().as_ptr().cast();
-    begin(Dir::READ, dma::Request::I2c3Rx, DmaDir::FROM_PERIPHERAL, register, len);
+    begin(address, Dir::READ, dma::Request::I2c3Rx, DmaDir::FROM_PERIPHERAL, register, len);
 }
 
-fn begin(dir: Dir, request: dma::Request, direction: DmaDir, register: *mut (), len: usize) {
+fn begin(address: u8, dir: Dir, request: dma::Request, direction: DmaDir, register: *mut (), len: usize) {
     let transfer = dma::Transfer { request, direction, priority: Pl::LOW, circular: false, register };
     dma::set_up(dma::OPTICAL_FRAME, &transfer, &BYTES);
     dma::begin(dma::OPTICAL_FRAME, len as u16);
     I2C3.cr2().write(|w| {
-        w.set_sadd(u16::from(I2C_ADDRESS) << 1);
+        w.set_sadd(u16::from(address) << 1);
         w.set_dir(dir);
         w.set_nbytes(len as u8);
         w.set_autoend(Autoend::AUTOMATIC);

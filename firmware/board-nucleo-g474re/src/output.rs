@@ -9,6 +9,9 @@
 //! | PB6 | TIM4_CH1 | amplifier enable, high enables |
 //! | PB7 | TIM4_CH2 | CLEAR of the DAC, low clears |
 
+use core::convert::Infallible;
+
+use embedded_hal::digital::{ErrorType, OutputPin};
 use stm32_metapac::timer::vals::Ocm;
 use stm32_metapac::{GPIOB, RCC, TIM4};
 
@@ -74,6 +77,25 @@ impl Output {
     /// Whether the pins are high: amplifier enable, DAC clear.
     pub fn pins(&self) -> (bool, bool) {
         (pins::is_high(GPIOB, AMPLIFIER_ENABLE), pins::is_high(GPIOB, DAC_CLEAR))
+    }
+}
+
+impl ErrorType for Output {
+    type Error = Infallible;
+}
+
+/// The amplifier's enable: high for [`LIFE_US`] only, unless it is set again.
+impl OutputPin for Output {
+    #[inline]
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        self.kick();
+        Ok(())
+    }
+
+    #[inline]
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        self.zero();
+        Ok(())
     }
 }
 

@@ -67,6 +67,11 @@ pub(crate) fn begin_frame() {
     TIM3.ccmr_output(0).write(|w| w.set_ocm(0, Ocm::ACTIVE_ON_MATCH));
 }
 
+/// Puts SYNC low until [`end_frame`].
+pub(crate) fn hold_sync_low() {
+    TIM3.ccmr_output(0).write(|w| w.set_ocm(0, Ocm::FORCE_INACTIVE));
+}
+
 /// Puts SYNC high at once.
 pub(crate) fn end_frame() {
     TIM3.ccmr_output(0).write(|w| w.set_ocm(0, Ocm::FORCE_ACTIVE));

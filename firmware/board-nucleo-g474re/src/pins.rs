@@ -1,6 +1,9 @@
 //! Pins. Which of them does what is in the modules that use them, and in the table of `docs/hardware.md`; alternate
 //! functions are those of DS12288, "Alternate functions".
 
+use core::convert::Infallible;
+
+use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 use stm32_metapac::RCC;
 use stm32_metapac::gpio::Gpio;
 use stm32_metapac::gpio::vals::{Moder, Ospeedr, Pupdr};
@@ -15,6 +18,54 @@ pub fn start() {
     });
     // A peripheral is there two clocks after its enable (RM0440, "Peripheral clock enable register"); the read takes them.
     let _ = RCC.ahb2enr().read();
+}
+
+/// A pin that software reads or sets.
+pub struct Pin {
+    port: Gpio,
+    number: u32,
+}
+
+impl Pin {
+    /// An output that is low.
+    pub(crate) fn output_low(port: Gpio, number: u32) -> Self {
+        output_low(port, number);
+        Self { port, number }
+    }
+
+    /// An input that is pulled down: a wire that has come off reads as low.
+    pub(crate) fn input_pulled_down(port: Gpio, number: u32) -> Self {
+        input_pulled_down(port, number);
+        Self { port, number }
+    }
+}
+
+impl ErrorType for Pin {
+    type Error = Infallible;
+}
+
+impl InputPin for Pin {
+    #[inline]
+    fn is_high(&mut self) -> Result<bool, Infallible> {
+        Ok(is_high(self.port, self.number))
+    }
+
+    #[inline]
+    fn is_low(&mut self) -> Result<bool, Infallible> {
+        Ok(!is_high(self.port, self.number))
+    }
+}
+
+impl OutputPin for Pin {
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        set(self.port, self.number, true);
+        Ok(())
+    }
+
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        set(self.port, self.number, false);
+        Ok(())
+    }
 }
 
 /// Gives a pin to a peripheral.

@@ -6,9 +6,11 @@
 //! | PA2 | USART2_TX | to the ST-Link |
 //! | PA3 | USART2_RX | from the ST-Link |
 
+use core::convert::Infallible;
 use core::sync::atomic::{AtomicU8, Ordering};
 
-use frixel_parts::ring::RingReader;
+use embedded_io::{ErrorType, Read, ReadReady, Write, WriteReady};
+use frixel_drivers::ring::RingReader;
 use stm32_metapac::bdma::vals::{Dir, Pl};
 use stm32_metapac::{GPIOA, USART2};
 
@@ -23,8 +25,8 @@ const USART2_FUNCTION: u8 = 7;
 
 /// Bytes of the ring: those that the host may have under way, and those of a hello and some noise without credit.
 const RING_LEN: usize = RECEIVE_WINDOW + 512;
-/// Most bytes that are sent at a time: 2.6 ms of the line.
-pub const TRANSMIT_LEN: usize = 512;
+/// Most bytes that DMA sends at a time: 1.3 ms of the line.
+const TRANSMIT_LEN: usize = 256;
 
 /// In the memory for DMA (`memory.x`); it is read where DMA has written.
 #[unsafe(link_section = ".dma.RECEIVED")]
@@ -77,37 +79,60 @@ impl Serial {
         });
         Self { reader: RingReader::new() }
     }
+}
 
-    /// Takes bytes that have come, and gives them piece by piece to `receive`.
-    pub fn receive(&mut self, mut receive: impl FnMut(&[u8])) {
+impl ErrorType for Serial {
+    type Error = Infallible;
+}
+
+impl ReadReady for Serial {
+    fn read_ready(&mut self) -> Result<bool, Infallible> {
+        Ok(!self.reader.is_empty(dma::remaining(dma::RECEIVE)))
+    }
+}
+
+impl Read for Serial {
+    fn read(&mut self, bytes: &mut [u8]) -> Result<usize, Infallible> {
+        if bytes.is_empty() {
+            return Ok(0);
+        }
         loop {
-            let piece = self.reader.take(dma::remaining(dma::RECEIVE));
-            if piece.is_empty() {
-                return;
+            let piece = self.reader.take(dma::remaining(dma::RECEIVE), bytes.len());
+            let places = RECEIVED.get(piece).unwrap_or_default();
+            if places.is_empty() {
+                continue;
             }
-            let mut bytes = [0; 256];
-            for places in RECEIVED.get(piece).unwrap_or_default().chunks(bytes.len()) {
-                for (to, from) in bytes.iter_mut().zip(places) {
-                    *to = from.load(Ordering::Relaxed);
-                }
-                receive(bytes.get(..places.len()).unwrap_or_default());
+            for (to, from) in bytes.iter_mut().zip(places) {
+                *to = from.load(Ordering::Relaxed);
             }
+            return Ok(places.len());
         }
     }
+}
 
-    /// Sends the bytes that `transmit` writes, and returns how many there are, when those before have gone.
-    pub fn transmit(&mut self, transmit: impl FnOnce(&mut [u8]) -> usize) {
-        if dma::remaining(dma::TRANSMIT) > 0 {
-            return;
+impl WriteReady for Serial {
+    fn write_ready(&mut self) -> Result<bool, Infallible> {
+        Ok(dma::remaining(dma::TRANSMIT) == 0)
+    }
+}
+
+impl Write for Serial {
+    /// Starts to send, once the bytes before have gone.
+    fn write(&mut self, bytes: &[u8]) -> Result<usize, Infallible> {
+        if bytes.is_empty() {
+            return Ok(0);
         }
-        let mut bytes = [0; TRANSMIT_LEN];
-        let len = transmit(&mut bytes).min(TRANSMIT_LEN);
-        if len == 0 {
-            return;
-        }
-        for (to, from) in TRANSMITTED.iter().zip(bytes.get(..len).unwrap_or_default()) {
+        self.flush()?;
+        let len = bytes.len().min(TRANSMIT_LEN);
+        for (to, from) in TRANSMITTED.iter().zip(bytes) {
             to.store(*from, Ordering::Relaxed);
         }
         dma::begin(dma::TRANSMIT, len as u16);
+        Ok(len)
+    }
+
+    fn flush(&mut self) -> Result<(), Infallible> {
+        while dma::remaining(dma::TRANSMIT) > 0 {}
+        Ok(())
     }
 }

@@ -1,17 +1,23 @@
 //! The main loop: the session between serial port and tick, and all that has time.
 
+use frixel_drivers::serial::SerialLink;
+use frixel_drivers::state_light::StateLight;
 #[cfg(feature = "store")]
 use frixel_render::store::SceneKeeper;
 use frixel_render::{Active, Order, Session, Status, Touch};
 use frixel_wire::fault::State;
 use heapless::spsc::{Consumer, Producer, Queue};
 
+use crate::dac::Dac;
 #[cfg(feature = "store")]
 use crate::flash::BankTwo;
+#[cfg(feature = "optical-frame")]
+use crate::optical_frame::OpticalFrame;
+use crate::pins::Pin;
 use crate::serial::Serial;
 use crate::tick::{self, Queues};
 use crate::watchdog::Watchdog;
-use crate::{clock, indicator};
+use crate::{arming, clock};
 
 /// Orders that may wait for the tick, one place left free: as many as the session keeps.
 const ORDERS_LEN: usize = 9;
@@ -60,34 +66,45 @@ pub struct Talk {
     /// What the tick said last.
     pub status: Status,
     /// The host's line.
-    pub serial: Serial,
+    pub serial: SerialLink<Serial>,
+    /// The DAC, while the board is not armed.
+    pub dac: Dac,
+    /// The light that shows the state.
+    pub light: StateLight<Pin>,
     #[cfg(feature = "store")]
     /// The last scene, and where it is kept; `None` without a bank for it.
     pub store: Option<(SceneKeeper, BankTwo)>,
-    /// Where the finger is, if the board has a source of its own.
-    #[cfg(feature = "optical-frame")]
-    pub optical_frame: crate::optical_frame::OpticalFrame,
     /// Resets when this loop stands still.
     pub watchdog: Watchdog,
 }
 
 impl Talk {
     /// Runs for ever.
-    pub fn run(mut self) -> ! {
+    pub fn run(mut self, #[cfg(feature = "optical-frame")] mut touch_source: OpticalFrame<'_>) -> ! {
         tick::want_status();
         loop {
             self.follow_status();
             let (serial, session, status) = (&mut self.serial, &mut self.session, &self.status);
-            serial.receive(|bytes| session.receive(bytes, status));
+            let Ok(()) = serial.receive(|bytes| session.receive(bytes, status));
             self.hand_over();
+            // The queue is full when the tick is late.
+            if self.ends.touches.ready() {
+                #[cfg(feature = "optical-frame")]
+                let touch = touch_source.next_touch();
+                #[cfg(not(feature = "optical-frame"))]
+                let touch = self.session.next_touch();
+                if let Some(touch) = touch {
+                    let _ = self.ends.touches.enqueue(touch);
+                }
+            }
             self.session.poll(&self.status);
-            self.serial.transmit(|bytes| self.session.transmit(bytes));
+            let Ok(()) = self.serial.transmit(|bytes| self.session.transmit(bytes));
             let now_tick = tick::count();
             #[cfg(feature = "store")]
             if let Some((keeper, flash)) = &mut self.store {
                 keeper.step(flash, self.session, now_tick);
             }
-            indicator::show(self.status.telemetry.state, now_tick);
+            self.light.show(self.status.telemetry.state, now_tick);
             self.watchdog.feed();
         }
     }
@@ -105,11 +122,12 @@ impl Talk {
         }
     }
 
-    /// Hands what the session and the touch source have to the tick, and takes back what it has let go.
+    /// Hands the session's orders to the tick, and takes back the coefficients that the tick no longer uses.
     fn hand_over(&mut self) {
         while let Some(order) = self.session.next_order() {
             if matches!(order, Order::Arm) {
                 self.watchdog.freeze_with_debugger(false);
+                arming::prepare(&mut self.dac);
             }
             let mut order = order;
             // The next tick makes room.
@@ -120,22 +138,6 @@ impl Talk {
         while let Some(spare) = self.ends.spares.dequeue() {
             self.session.take_back(spare);
         }
-        // The queue is full when the tick is late. What is taken from the source is told: after a lift nothing else comes.
-        if self.ends.touches.ready()
-            && let Some(touch) = self.next_touch()
-        {
-            let _ = self.ends.touches.enqueue(touch);
-        }
-    }
-
-    #[cfg(feature = "optical-frame")]
-    fn next_touch(&mut self) -> Option<Touch> {
-        self.optical_frame.step(tick::count())
-    }
-
-    #[cfg(not(feature = "optical-frame"))]
-    fn next_touch(&mut self) -> Option<Touch> {
-        self.session.next_touch()
     }
 }
 

@@ -9,16 +9,19 @@
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use cortex_m::peripheral::NVIC;
-use frixel_parts::arm_switch::ArmSwitch;
+use frixel_drivers::amplifier::Amplifier;
+use frixel_drivers::arm_switch::ArmSwitch;
+use frixel_drivers::bus_handover::BusHandover;
 use frixel_render::{Active, Order, Sense, Status, Ticker, Touch};
 use frixel_wire::fault::Fault;
 use heapless::spsc::{Consumer, Producer};
 use stm32_metapac::{GPIOC, Interrupt, interrupt};
 
 use crate::adc::Adc;
-use crate::dac::Dac;
+use crate::dac::DacFrames;
 use crate::output::Output;
 use crate::owned::Owned;
+use crate::pins::Pin;
 use crate::{period, pins};
 
 const AMPLIFIER_WELL: u32 = 10;
@@ -28,6 +31,11 @@ const BUTTON: u32 = 13;
 static TICK: Owned<Tick> = Owned::new();
 static STATUS_WANTED: AtomicBool = AtomicBool::new(false);
 static COUNT: AtomicU32 = AtomicU32::new(0);
+/// The main loop's turn on the DAC's bus, before it arms.
+pub static DAC_BUS: BusHandover = BusHandover::new();
+/// A fault that the main loop has found: its number above [`FAULT_SHIFT`], its detail below; zero for none.
+static FAULT: AtomicU32 = AtomicU32::new(0);
+const FAULT_SHIFT: u32 = 24;
 
 #[cfg(feature = "log")]
 defmt::timestamp!("tick {=u32}", count());
@@ -41,11 +49,11 @@ pub struct Tick {
     /// The amplifier's monitor.
     pub adc: Adc,
     /// The DAC.
-    pub dac: Dac,
-    /// Amplifier enable and DAC clear.
-    pub output: Output,
+    pub dac: DacFrames,
+    /// The amplifier, whose enable clears the DAC too while it is low.
+    pub amplifier: Amplifier<Output, Pin>,
     /// The switch that a person holds.
-    pub arm_switch: ArmSwitch,
+    pub arm_switch: ArmSwitch<Pin>,
 }
 
 /// The tick's ends of the queues between it and the main loop.
@@ -60,7 +68,7 @@ pub struct Queues {
     pub statuses: Producer<'static, Status>,
 }
 
-/// Starts to tick. [`start_inputs`] comes before.
+/// Starts to tick.
 pub fn start(tick: Tick) {
     // SAFETY: TIM3 is unmasked below.
     unsafe { TICK.give(tick) };
@@ -69,7 +77,17 @@ pub fn start(tick: Tick) {
     unsafe { NVIC::unmask(Interrupt::TIM3) };
 }
 
-/// Takes the input pins. The button of the board, PC13, is an input, too, which only bring-up looks at.
+/// The amplifier behind the one-shot.
+pub fn amplifier(output: Output) -> Amplifier<Output, Pin> {
+    Amplifier::new(output, Pin::input_pulled_down(GPIOC, AMPLIFIER_WELL))
+}
+
+/// The arm switch.
+pub fn arm_switch() -> ArmSwitch<Pin> {
+    ArmSwitch::new(Pin::input_pulled_down(GPIOC, ARM_SWITCH))
+}
+
+/// Configures all input pins, and the button of the board, PC13, for bring-up.
 pub fn start_inputs() {
     pins::input_pulled_down(GPIOC, AMPLIFIER_WELL);
     pins::input_pulled_down(GPIOC, ARM_SWITCH);
@@ -86,7 +104,12 @@ pub fn want_status() {
     STATUS_WANTED.store(true, Ordering::Release);
 }
 
-/// What the inputs say: the amplifier is well, and the contact of the arm switch is closed.
+/// Raises a fault at the next tick. `detail` has 24 bits.
+pub fn raise(fault: Fault, detail: u32) {
+    FAULT.store(u32::from(fault.number()) << FAULT_SHIFT | detail & ((1 << FAULT_SHIFT) - 1), Ordering::Release);
+}
+
+/// The levels of the inputs: the amplifier is well, and the contact of the arm switch is closed.
 pub fn inputs() -> (bool, bool) {
     (pins::is_high(GPIOC, AMPLIFIER_WELL), pins::is_high(GPIOC, ARM_SWITCH))
 }
@@ -112,10 +135,17 @@ impl Tick {
                 let _ = self.queues.spares.enqueue(spare);
             }
         }
+        let found = FAULT.load(Ordering::Acquire);
+        if found != 0 {
+            self.raise_found(found);
+        }
         let sense = self.sense();
         let drive = self.ticker.tick(&sense);
-        if self.dac.send(drive.dac_code) {
-            if drive.amplifier_enable { self.output.kick() } else { self.output.zero() }
+        let output_is_zero = !drive.amplifier_enable && !self.queues.orders.ready();
+        if !DAC_BUS.tick_sends(output_is_zero) {
+            self.amplifier.set_enabled(false);
+        } else if self.dac.send(drive.dac_code) {
+            self.amplifier.set_enabled(drive.amplifier_enable);
         } else {
             self.late(period::cycles());
         }
@@ -130,18 +160,25 @@ impl Tick {
     }
 
     fn sense(&mut self) -> Sense {
-        let (amplifier_is_well, contact_closed) = inputs();
         Sense {
             touch: self.queues.touches.dequeue(),
-            amplifier_fault: !amplifier_is_well,
+            amplifier_fault: self.amplifier.has_fault(),
             monitor_v: self.adc.monitor_v(),
-            arm_switch: self.arm_switch.update(contact_closed),
+            arm_switch: self.arm_switch.is_held(),
         }
     }
 
     #[cold]
     fn late(&mut self, cycles: u32) {
-        self.output.zero();
+        self.amplifier.set_enabled(false);
         self.ticker.raise(Fault::Deadline, cycles);
+    }
+
+    #[cold]
+    fn raise_found(&mut self, found: u32) {
+        FAULT.store(0, Ordering::Relaxed);
+        if let Ok(fault) = Fault::try_from((found >> FAULT_SHIFT) as u8) {
+            self.ticker.raise(fault, found & ((1 << FAULT_SHIFT) - 1));
+        }
     }
 }

@@ -73,6 +73,9 @@ pub enum Fault {
     Watchdog,
     /// The arm switch was let go while armed or playing.
     ArmSwitch,
+    /// The DAC did not hold its configuration when it was read back before arming. From protocol 1.3 on; the detail is the
+    /// control register as it was read.
+    Dac,
     /// A fault of newer firmware that this crate does not know, by number.
     Other(u8),
 }
@@ -89,6 +92,7 @@ impl Fault {
             Self::StackOverflow => 6,
             Self::Watchdog => 7,
             Self::ArmSwitch => 8,
+            Self::Dac => 9,
             Self::Other(number) => number,
         }
     }
@@ -109,6 +113,7 @@ impl TryFrom<u8> for Fault {
             6 => Ok(Self::StackOverflow),
             7 => Ok(Self::Watchdog),
             8 => Ok(Self::ArmSwitch),
+            9 => Ok(Self::Dac),
             number => Ok(Self::Other(number)),
         }
     }
@@ -142,6 +147,9 @@ impl fmt::Display for Fault {
                 "the firmware hung until the watchdog restarted it; report it with what `frixel info` says, then clear the fault"
             }
             Self::ArmSwitch => "the arm switch was let go while armed or playing; hold it, clear the fault and arm again",
+            Self::Dac => {
+                "the DAC did not answer with its configuration before arming; check its supplies and wires, clear the fault and arm again"
+            }
             Self::Other(_) => "this program does not know it; update the frixel command",
         })
     }

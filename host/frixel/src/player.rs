@@ -1,24 +1,24 @@
-//! Playing a compiled scene: on any board through its [`Device`], or on the simulator from beginning to end.
+//! Playing a compiled scene on any board through its [`Device`], recorded while it plays.
 
-use std::ops::ControlFlow;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
+use frixel_driver::{Bitmap, Counters, Device, DeviceError, Event, Link, LinkClosed, Progress, StreamStatus, Upload};
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, WorldError};
 use frixel_model::ParameterError;
+use frixel_scene::Program;
+use frixel_scene::recorder::Recorder;
+use frixel_wire::message::Telemetry;
 use thiserror::Error;
 
-use crate::output::FeltRow;
-use crate::rigs::{Recorder, SimLink};
+use crate::rigs::{EventLog, RecordedLink, SimLink, StopReason};
 use crate::stream::{Feed, FeedError};
-use frixel_driver::{Bitmap, Counters, Device, DeviceError, Link, Progress, StreamStatus, Upload};
-use frixel_scene::Program;
 
-/// What is simulated beyond the last recorded tick, so that the recorder has seen it.
+/// Longest time between two steps of a play.
+const STEP_MAX: Duration = Duration::from_millis(50);
+/// The same while samples flow: a board's buffer lasts 25 ms or more.
+const STREAM_STEP_MAX: Duration = Duration::from_millis(5);
+/// Time beyond the last tick of the record: the link's clock is rounded.
 const MARGIN: Duration = Duration::from_millis(5);
-/// Time that passes between two reports of progress, and between two handings over of rows.
-const STEP: Duration = Duration::from_millis(50);
-/// The same while samples flow: a buffer of the board lasts 25 ms or more.
-const STREAM_STEP: Duration = Duration::from_millis(5);
 
 /// Takes a board from wherever another client left it to a scene that plays.
 pub fn start<L: Link>(
@@ -29,11 +29,6 @@ pub fn start<L: Link>(
     load(device, program, progress)?;
     device.arm()?;
     device.play()
-}
-
-/// Puts another scene in the place of the one that plays, between two ticks.
-pub fn replace<L: Link>(device: &mut Device<L>, program: &Program) -> Result<(), DeviceError> {
-    upload(device, program, &mut |_| {})
 }
 
 /// Takes a board from wherever another client left it to a scene that could be played.
@@ -68,6 +63,137 @@ fn upload<L: Link>(
     device.commit(upload.scene_crc32())
 }
 
+/// Why a play did not come to its end.
+#[derive(Debug, Error)]
+pub enum PlayError {
+    /// The simulated world cannot be made.
+    #[error(transparent)]
+    World(#[from] WorldError),
+    /// The contact model refuses the program's finger.
+    #[error("the contact model refuses the scene's finger: {0:?}")]
+    Finger(ParameterError),
+    /// The board refused, or fell silent.
+    #[error(transparent)]
+    Device(#[from] DeviceError),
+    /// There are no samples to stream, or no more of them.
+    #[error(transparent)]
+    Feed(#[from] FeedError),
+    /// The board stopped without a command.
+    #[error("the board {0}")]
+    Stopped(StopReason),
+}
+
+/// A play: a scene on a board, the record of it, and the samples that are streamed meanwhile.
+///
+/// Call [`Self::start`], then [`Self::step`] until [`Self::ticks_left`] is zero or somebody has had enough, then
+/// [`Self::stop`]. Dropping a player stops the board, too.
+pub struct Player<L: RecordedLink> {
+    device: Device<L>,
+    feed: Option<Feed>,
+    events: EventLog,
+    telemetry: Vec<Telemetry>,
+}
+
+impl<L: RecordedLink> Player<L> {
+    /// Records on this board with `recorder` from when the scene plays.
+    pub fn new(mut device: Device<L>, recorder: Recorder) -> Self {
+        *device.link_mut().recorder_mut() = recorder;
+        let events = EventLog::new(device.hello().state);
+        Self { device, feed: None, events, telemetry: Vec::new() }
+    }
+
+    /// Uploads the scene and plays it, with a telemetry message every so many ticks; 0 for none.
+    pub fn start(
+        &mut self,
+        program: &Program,
+        telemetry_period_ticks: u32,
+        progress: &mut dyn FnMut(Progress),
+    ) -> Result<(), PlayError> {
+        start(&mut self.device, program, progress)?;
+        let begun = self.device.link_mut().begin();
+        begun.map_err(vanished)?;
+        if telemetry_period_ticks > 0 {
+            self.device.subscribe(telemetry_period_ticks)?;
+        }
+        Ok(())
+    }
+
+    /// Streams what `feed` has to the scene that plays.
+    pub fn stream(&mut self, feed: Feed) -> Result<(), PlayError> {
+        Ok(self.feed.insert(feed).start(&mut self.device)?)
+    }
+
+    /// Puts another scene in the place of the one that plays, between two ticks, and compares with that.
+    pub fn replace(&mut self, program: &Program) -> Result<(), PlayError> {
+        upload(&mut self.device, program, &mut |_| {})?;
+        let hello = *self.device.hello();
+        self.recorder_mut().replace(program, &hello.limits, hello.tick_hz).map_err(PlayError::Finger)
+    }
+
+    /// Lets some time pass on the board, `time_max` at most: records what happens, and sends samples.
+    ///
+    /// Returns how much time has passed. An error when the board is gone or has stopped without a command; what
+    /// happened until then has been recorded.
+    pub fn step(&mut self, time_max: Duration) -> Result<Duration, PlayError> {
+        let step_max = if self.feed.is_some() { STREAM_STEP_MAX } else { STEP_MAX };
+        let time = step_max.min(time_max).min(self.time_left());
+        let waited = self.wait(time);
+        self.events.stop_reason().map_or(Ok(()), |reason| Err(PlayError::Stopped(reason)))?;
+        waited?;
+        if let Some(feed) = &mut self.feed {
+            feed.pump(&mut self.device)?;
+        }
+        Ok(time)
+    }
+
+    /// Ends play and record: output zero, disarmed.
+    pub fn stop(&mut self) -> Result<(), PlayError> {
+        self.device.stop()?;
+        Ok(self.device.disarm()?)
+    }
+
+    /// The board.
+    pub fn device(&self) -> &Device<L> {
+        &self.device
+    }
+
+    /// The record.
+    pub fn recorder_mut(&mut self) -> &mut Recorder {
+        self.device.link_mut().recorder_mut()
+    }
+
+    /// Ends the record with what is known now, and hands over the recorder. The board is stopped when that has not been
+    /// done.
+    pub fn into_recorder(mut self) -> Recorder {
+        self.device.link_mut().record_rest();
+        std::mem::replace(self.recorder_mut(), Recorder::idle())
+    }
+
+    /// Time to the end of the record, and a little more.
+    fn time_left(&mut self) -> Duration {
+        let tick_hz = self.device.hello().tick_hz;
+        let ticks = self.recorder_mut().ticks_left();
+        Duration::try_from_secs_f64(ticks as f64 / f64::from(tick_hz)).unwrap_or(Duration::MAX).saturating_add(MARGIN)
+    }
+
+    /// Waits, and takes what the board sends meanwhile.
+    fn wait(&mut self, time: Duration) -> Result<(), PlayError> {
+        let Self { device, telemetry, events, .. } = self;
+        let t_s = device.link_mut().recorder_mut().t_s();
+        let waited = device.wait(time, &mut |event| match event {
+            Event::Telemetry(message) => telemetry.push(message),
+            Event::StateChanged { state, fault, flags } => events.observe(t_s, state, fault, flags),
+        });
+        device.link_mut().record(telemetry).map_err(vanished)?;
+        telemetry.clear();
+        Ok(waited?)
+    }
+}
+
+fn vanished(closed: LinkClosed) -> PlayError {
+    DeviceError::Vanished { command: "play", closed }.into()
+}
+
 /// How to play on the simulator.
 #[derive(Clone, Debug)]
 pub struct Simulation {
@@ -85,118 +211,34 @@ pub struct Simulation {
 
 /// What came of a simulation.
 pub struct Simulated {
-    /// What was felt against what was wanted.
+    /// What was felt, compared with the reference.
     pub recorder: Recorder,
     /// What went over the line.
     pub counters: Counters,
     /// How the stream did, if there was one.
     pub stream: Option<StreamStatus>,
-    /// Virtual time over wall time, from the hello to the end; the time that a taker of rows took is left out.
-    pub realtime_factor: f64,
 }
 
-/// Where a simulation has come to.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Stage {
-    /// The scene goes over the line.
-    Upload(Progress),
-    /// The scene has been playing for this part, from 0 to 1.
-    Play(f64),
-}
-
-/// Why a simulation did not come to its end.
-#[derive(Debug, Error)]
-pub enum SimulationError {
-    /// The simulated world cannot be made.
-    #[error(transparent)]
-    World(#[from] WorldError),
-    /// The contact model refuses the program's finger.
-    #[error("the contact model refuses the scene's finger: {0:?}")]
-    Finger(ParameterError),
-    /// The board refused, or fell silent.
-    #[error(transparent)]
-    Device(#[from] DeviceError),
-    /// There are no samples to stream, or no more of them.
-    #[error(transparent)]
-    Feed(#[from] FeedError),
-}
-
-/// Plays `program` on the simulated board under a simulated finger. The rows stay in [`Simulated::recorder`].
+/// Plays `program` on the simulated board under a simulated finger, with samples for its stream layers if there are
+/// any.
 ///
 /// The program must have been compiled for the limits and the tick rate of the simulation's board.
-pub fn simulate(
-    program: &Program,
-    simulation: &Simulation,
-    on_stage: &mut dyn FnMut(Stage),
-) -> Result<Simulated, SimulationError> {
-    run(program, simulation, None, on_stage, None)
-}
-
-/// As [`simulate`], with samples for the scene's stream layers from when it begins to play, and hands the rows over while it plays and keeps none, so that a play of any length fits in memory.
-///
-/// `on_rows` takes the rows of every 50 ms of virtual time. When it breaks, the play ends there; what was played until
-/// then is what came of it.
-pub fn simulate_rows(
-    program: &Program,
-    simulation: &Simulation,
-    feed: Option<&mut Feed>,
-    on_stage: &mut dyn FnMut(Stage),
-    on_rows: &mut RowTaker,
-) -> Result<Simulated, SimulationError> {
-    run(program, simulation, feed, on_stage, Some(on_rows))
-}
-
-/// Takes rows while a simulation plays, and says whether it is to go on.
-pub type RowTaker<'a> = dyn FnMut(&[FeltRow]) -> ControlFlow<()> + 'a;
-
-fn run(
-    program: &Program,
-    simulation: &Simulation,
-    mut feed: Option<&mut Feed>,
-    on_stage: &mut dyn FnMut(Stage),
-    mut on_rows: Option<&mut RowTaker>,
-) -> Result<Simulated, SimulationError> {
+pub fn simulate(program: &Program, simulation: &Simulation, feed: Option<Feed>) -> Result<Simulated, PlayError> {
     let board = &simulation.rig.board;
     let ticks = (simulation.seconds * f64::from(board.tick_hz)).round() as u64;
+    let recorder = Recorder::new(program, &board.limits, board.tick_hz, ticks, simulation.ticks_per_row)
+        .map_err(PlayError::Finger)?;
     let mut memory = BoardMemory::new();
     let rig = Rig::new(&mut memory, &simulation.rig, simulation.stroke.clone(), simulation.seed)?;
-    let recorder = Recorder::new(program, &board.limits, board.tick_hz, ticks, simulation.ticks_per_row)
-        .map_err(SimulationError::Finger)?;
-
-    let begin = Instant::now();
-    let mut taking_rows = Duration::ZERO;
-    let mut device = Device::connect(SimLink::new(rig, recorder))?;
-    start(&mut device, program, &mut |progress| on_stage(Stage::Upload(progress)))?;
-    if let Some(feed) = &mut feed {
-        feed.start(&mut device)?;
+    let mut player = Player::new(Device::connect(SimLink::new(rig, Recorder::idle()))?, recorder);
+    player.start(program, 0, &mut |_| {})?;
+    if let Some(feed) = feed {
+        player.stream(feed)?;
     }
-    let step = if feed.is_some() { STREAM_STEP } else { STEP };
-    let total = Duration::from_secs_f64(simulation.seconds) + MARGIN;
-    let mut passed = Duration::ZERO;
-    while passed < total {
-        let step = step.min(total.saturating_sub(passed));
-        device.wait(step, &mut |_| {})?;
-        if let Some(feed) = &mut feed {
-            feed.pump(&mut device)?;
-        }
-        passed += step;
-        on_stage(Stage::Play(passed.as_secs_f64() / total.as_secs_f64()));
-        let Some(on_rows) = &mut on_rows else { continue };
-        let recorder = device.link_mut().recorder_mut();
-        let taking = Instant::now();
-        let flow = on_rows(&recorder.take_rows());
-        taking_rows += taking.elapsed();
-        if flow.is_break() {
-            recorder.end();
-            break;
-        }
+    while player.recorder_mut().ticks_left() > 0 {
+        player.step(Duration::MAX)?;
     }
-    device.stop()?;
-    device.disarm()?;
-    let wall_s = begin.elapsed().saturating_sub(taking_rows).as_secs_f64();
-
-    let (counters, stream) = (device.counters(), device.stream_status());
-    let link = device.into_link();
-    let realtime_factor = link.now().as_secs_f64() / wall_s;
-    Ok(Simulated { recorder: link.into_recorder(), counters, stream, realtime_factor })
+    player.stop()?;
+    let (counters, stream) = (player.device().counters(), player.device().stream_status());
+    Ok(Simulated { recorder: player.into_recorder(), counters, stream })
 }

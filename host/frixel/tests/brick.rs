@@ -44,11 +44,11 @@ fn minimum_jerk() -> Stroke {
 
 fn play(program: &Program, rig: RigConfig, stroke: Stroke, seed: u64) -> Simulated {
     let seconds = stroke.duration_s();
-    simulate(program, &Simulation { rig, stroke, seconds, seed, ticks_per_row: 1 }, &mut |_| {}).unwrap()
+    simulate(program, &Simulation { rig, stroke, seconds, seed, ticks_per_row: 1 }, None).unwrap()
 }
 
 fn errors(prediction: bool, stroke: Stroke, seed: u64) -> MetricsSummary {
-    play(&brick(prediction), rig(), stroke, seed).recorder.metrics().summary()
+    play(&brick(prediction), rig(), stroke, seed).recorder.summary()
 }
 
 /// Rms friction error as a part of the reachable electric range.
@@ -125,7 +125,7 @@ fn an_output_forced_to_zero_misses_every_goal() {
     let mut program = brick(true);
     program.header.voltage_max_v_rms = 1.0;
     for (stroke, goal) in [(constant_speed(), 0.05), (minimum_jerk(), 0.10)] {
-        let summary = play(&program, rig(), stroke, 1).recorder.metrics().summary();
+        let summary = play(&program, rig(), stroke, 1).recorder.summary();
         assert!(friction_error(&summary) > goal, "{}", friction_error(&summary));
         let range_n = program.reach.electric_friction_max_n;
         assert!(summary.inversion_error.unwrap().max_n > 1e-3 * range_n);

@@ -8,10 +8,11 @@ use std::fs::{self, File};
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-use frixel::output::{FeltRow, Preview, write_preview_png};
+use frixel::output::{Preview, write_preview_png};
 use frixel::player::{Simulation, simulate};
 use frixel::scene_file;
 use frixel_hil_sim::{BoardMemory, RigConfig, Stroke};
+use frixel_scene::recorder::FeltRow;
 use frixel_scene::{Asked, Program, compile};
 use frixel_wire::fault::Flags;
 use frixel_wire::scene::{Header, Scene as WireScene};
@@ -61,7 +62,7 @@ fn every_scene_is_felt_without_a_fault_and_within_reach() {
         let (width_m, height_m) = (program.header.screen_width_m.into(), program.header.screen_height_m.into());
         let stroke = Stroke::natural(width_m, height_m, 2.0).unwrap();
         let simulation = Simulation { rig, seconds: stroke.duration_s(), stroke, seed: 1, ticks_per_row: 40 };
-        let simulated = simulate(program, &simulation, &mut |_| {}).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let simulated = simulate(program, &simulation, None).unwrap_or_else(|error| panic!("{name}: {error}"));
         let rows = simulated.recorder.rows();
         let felt =
             rows.iter().filter_map(|row| row.felt_n.filter(|_| row.speed_mm_s.is_some_and(|speed| speed > 20.0)));
@@ -108,8 +109,7 @@ fn no_scene_is_felt_otherwise_because_its_table_is_cut() {
         let simulation = Simulation { rig, seconds: stroke.duration_s(), stroke, seed: 1, ticks_per_row: 10 };
         let whole = Program { header: Header { layers_fixed: false, ..program.header }, ..program.clone() };
         let [with_cut, without] = [program, &whole].map(|program| {
-            let simulated =
-                simulate(program, &simulation, &mut |_| {}).unwrap_or_else(|error| panic!("{name}: {error}"));
+            let simulated = simulate(program, &simulation, None).unwrap_or_else(|error| panic!("{name}: {error}"));
             simulated.recorder.rows().to_vec()
         });
         assert!(program.header.layers_fixed && with_cut == without, "{name}");

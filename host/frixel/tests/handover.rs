@@ -4,11 +4,12 @@
 use std::path::Path;
 
 use frixel::player;
-use frixel::rigs::{Recorder, SimLink};
+use frixel::rigs::SimLink;
 use frixel::scene_file;
 use frixel_driver::Device;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
 use frixel_scene::compile;
+use frixel_scene::recorder::Recorder;
 use frixel_wire::fault::State;
 
 /// The state that a second client finds, when the first one has left its scene playing.
@@ -19,8 +20,7 @@ fn found(autonomous: bool) -> State {
     program.header.autonomous = autonomous;
     let mut memory = BoardMemory::new();
     let rig = Rig::new(&mut memory, &config, Stroke::natural(0.12, 0.11, 1.0).unwrap(), 1).unwrap();
-    let recorder = Recorder::new(&program, &config.board.limits, config.board.tick_hz, 400, 40).unwrap();
-    let mut first = Device::connect(SimLink::new(rig, recorder)).unwrap();
+    let mut first = Device::connect(SimLink::new(rig, Recorder::idle())).unwrap();
     player::start(&mut first, &program, &mut |_| {}).unwrap();
     Device::connect(first.into_link()).unwrap().hello().state
 }

@@ -52,7 +52,7 @@ fn errors(program: &Program, name: &str, latency_ms: u32) -> Errors {
         let stroke = stroke(name);
         let seconds = stroke.duration_s();
         let simulation = Simulation { rig, stroke, seconds, seed, ticks_per_row: 40_000 };
-        simulate(program, &simulation, &mut |_| {}).unwrap().recorder.metrics().summary()
+        simulate(program, &simulation, None).unwrap().recorder.summary()
     });
     let squares = summaries.iter().map(|summary| summary.friction_error.unwrap().rms_n.powi(2));
     let inversion = summaries.iter().map(|summary| summary.inversion_error.unwrap().max_n);

@@ -7,13 +7,13 @@ use std::f64::consts::TAU;
 use std::path::Path;
 use std::time::Duration;
 
-use frixel::output::FeltRow;
 use frixel::player;
-use frixel::rigs::{Recorder, SimLink};
+use frixel::rigs::SimLink;
 use frixel::scene_file;
 use frixel::stream::Feed;
 use frixel_driver::{Device, StreamStatus};
 use frixel_hil_sim::{BoardMemory, Point, Rig, RigConfig, Stroke};
+use frixel_scene::recorder::{FeltRow, Recorder};
 use frixel_scene::{Program, compile};
 use frixel_wire::fault::Flags;
 use frixel_wire::scene::{Blend, Layer, Record, Region};

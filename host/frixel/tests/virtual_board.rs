@@ -7,7 +7,7 @@
 mod processes;
 
 use std::fs;
-use std::io::{BufRead, BufReader, Read, Write};
+use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Output, Stdio};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -217,16 +217,27 @@ impl Tap {
             if self.to_client.bytes_to_read().unwrap() > 0 {
                 let room = left.min(bytes.len());
                 let got = self.to_client.read(&mut bytes[..room]).unwrap();
-                self.to_board.write_all(&bytes[..got]).unwrap();
+                write_all(&mut self.to_board, &bytes[..got]);
                 left -= got;
             } else if self.to_board.bytes_to_read().unwrap() > 0 {
                 let got = self.to_board.read(&mut bytes).unwrap();
-                self.to_client.write_all(&bytes[..got]).unwrap();
+                write_all(&mut self.to_client, &bytes[..got]);
             } else {
                 sleep(Duration::from_micros(200));
             }
         }
     }
+}
+
+/// Writes to a terminal whose reader may be away for longer than a write waits, as on a busy machine.
+fn write_all(terminal: &mut TTYPort, mut bytes: &[u8]) {
+    until("a terminal takes bytes", || {
+        match terminal.write(bytes) {
+            Ok(written) => bytes = &bytes[written..],
+            Err(error) => assert_eq!(error.kind(), ErrorKind::TimedOut, "{error}"),
+        }
+        bytes.is_empty()
+    });
 }
 
 /// Numbers that look random and are the same in every run.

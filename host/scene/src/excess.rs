@@ -7,17 +7,17 @@ use super::log::Log;
 use super::mistake::Mistake;
 use super::program::Program;
 use super::reach::{ROUNDING, Reach};
-use crate::wanted::Wanted;
+use crate::reference::Reference;
 
 /// Refuses layers that leave the reach; with `saturate`, or where that is not certain, notes it.
 pub(super) fn check(scene: &Scene, program: &mut Program, log: &mut Log) {
     let reach = program.reach;
     let slack_n = ROUNDING * reach.electric_friction_max_n;
     let span = Span { low_n: -slack_n, high_n: reach.electric_friction_max_n + slack_n };
-    let wanted = Wanted::new(program);
+    let reference = Reference::new(program);
     let width_m = f64::from(program.header.screen_width_m);
     let height_m = f64::from(program.header.screen_height_m);
-    for excess in excesses(wanted.pieces(), width_m, height_m, span) {
+    for excess in excesses(reference.pieces(), width_m, height_m, span) {
         let layers: Vec<&Layer> = excess.layers.iter().filter_map(|number| scene.layers.get(*number)).collect();
         let found = sides(&layers, &excess, excess.found, span, &reach);
         if found.is_empty() {

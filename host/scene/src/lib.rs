@@ -3,8 +3,9 @@
 //! `docs/scene.md` is the reference of the file. [`Scene::parse`] reads it, [`compile`] checks what needs the board or
 //! other layers, and makes a [`Program`]. Both tell every mistake at once, each with line and column.
 //!
-//! - [`wanted`]: the friction that a program wants, in `f64`, independently of the firmware.
-//! - [`metrics`]: how far what was felt is from that.
+//! - [`reference`]: the friction that a program means, in `f64`, independently of the firmware.
+//! - [`recorder`]: what a board did and what its finger felt, compared with that.
+//! - [`metrics`]: the size of the errors.
 #![forbid(unsafe_code)]
 
 mod asked;
@@ -29,13 +30,14 @@ mod pictures;
 mod pool;
 mod program;
 mod reach;
+pub mod recorder;
+pub mod reference;
 mod resample;
 mod schema;
 mod source;
 #[cfg(test)]
 mod tests;
 mod tick_cost;
-pub mod wanted;
 
 pub use compile::compile;
 pub use compile_error::{CompileError, Located};

@@ -1,55 +1,57 @@
-//! How far what was felt is from what was wanted, gathered tick by tick.
+//! The size of the errors of what was felt, gathered sample by sample.
 //!
-//! - The **friction error** is felt minus wanted, both as means over one carrier period that ends at the tick: what
-//!   the carrier does within a period is no error. It counts at every tick with the finger down. In the first period
-//!   after the finger came down, the mean is over the ticks since then, so nothing is left out; when the finger goes
-//!   up, the window is emptied.
-//! - The **inversion error** is what the model gives for the commanded voltage minus what was asked for in that tick.
-//!   It counts at every tick with the finger down and the wanted friction in reach.
+//! - The **friction error** is felt minus wanted, both as means over one carrier period that ends at the sample: what
+//!   the carrier does within a period is no error. It counts wherever the finger is down. In the first period after the
+//!   finger came down, the mean is over the samples since then, so nothing is left out; when the finger goes up, the
+//!   window is emptied.
+//! - The **inversion error** is what the model gives for the commanded voltage minus what the board asked for. It counts
+//!   where the finger is down and the wanted friction is in reach.
 //! - The **carrier ripple** is felt minus its mean over the carrier period around it, half a period on either side, so
 //!   that a friction that moves steadily has none. It counts where that period lies wholly within a touch.
+//!
+//! All but the wanted friction needs a sample for every tick; a number that would need what was not seen is absent.
 
-/// One tick, as it was wanted, asked for and felt. Frictions are totals, in newtons.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TickSample {
-    /// What the program wants at the finger's true place.
-    pub wanted_n: f64,
-    /// What the board asked its inverse for.
-    pub asked_n: f64,
-    /// What the finger felt.
-    pub felt_n: f64,
-    /// What the full model gives for the commanded rms voltage, the DAC's step included, through an ideal amplifier.
-    pub inversion_n: f64,
-    /// The board clamped what it asked for.
-    pub saturated: bool,
+/// What is known of one tick. Frictions are totals, in newtons.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sample {
     /// The finger is on the screen.
     pub finger_down: bool,
-    /// What is wanted is within reach.
-    pub wanted_in_reach: bool,
+    /// The reference at the finger's place.
+    pub wanted_n: Option<f64>,
+    /// What the board asked its inverse for.
+    pub asked_n: Option<f64>,
+    /// What the finger felt.
+    pub felt_n: Option<f64>,
+    /// What the full model gives for the commanded rms voltage, the DAC's step included, through an ideal amplifier;
+    /// absent where the wanted friction is out of reach.
+    pub inversion_n: Option<f64>,
+    /// The board clamped what it asked for; absent where the board did not report.
+    pub saturated: Option<bool>,
 }
 
-/// Gathers errors at every tick.
+/// Gathers errors, sample by sample.
 #[derive(Clone, Debug)]
 pub struct Metrics {
     error: PeriodMean,
     felt: Centred,
-    ticks: u64,
-    finger_down_ticks: u64,
-    saturated_ticks: u64,
+    finger_down_samples: u64,
+    /// Samples in which the board reported.
+    reports: u64,
+    saturated_samples: u64,
     friction_error: Spread,
     inversion_error: Spread,
     carrier_ripple: Spread,
     wanted_range_n: Option<(f64, f64)>,
 }
 
-/// What was gathered. Without a tick that counts for it, a number is absent.
+/// The errors of a play. A number for which nothing counted, or which needs ticks that were not seen, is absent.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MetricsSummary {
-    /// All ticks.
+    /// Ticks that were played.
     pub ticks: u64,
-    /// Ticks with the finger on the screen.
+    /// Ticks that were seen with the finger on the screen.
     pub finger_down_ticks: u64,
-    /// Ticks in which the board clamped what it asked for, where every tick was seen.
+    /// Ticks in which the board clamped what it asked for.
     pub saturated_ticks: Option<u64>,
     /// Felt minus wanted, as means over a carrier period.
     pub friction_error: Option<ErrorSize>,
@@ -61,7 +63,7 @@ pub struct MetricsSummary {
     pub wanted_range_n: Option<(f64, f64)>,
 }
 
-/// How large an error was.
+/// The size of an error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorSize {
     /// Root mean square, N.
@@ -77,9 +79,9 @@ impl Metrics {
         Self {
             error: PeriodMean::new(2 * half),
             felt: Centred::new(half),
-            ticks: 0,
-            finger_down_ticks: 0,
-            saturated_ticks: 0,
+            finger_down_samples: 0,
+            reports: 0,
+            saturated_samples: 0,
             friction_error: Spread::default(),
             inversion_error: Spread::default(),
             carrier_ripple: Spread::default(),
@@ -87,35 +89,48 @@ impl Metrics {
         }
     }
 
-    /// Takes the next tick.
-    pub fn add(&mut self, sample: &TickSample) {
-        self.ticks += 1;
-        self.saturated_ticks += u64::from(sample.saturated);
+    /// The carrier has twice `half_period_ticks` a period from now on. The windows are emptied.
+    pub fn set_half_period(&mut self, half_period_ticks: u32) {
+        let Self { error, felt, .. } = Self::new(half_period_ticks);
+        (self.error, self.felt) = (error, felt);
+    }
+
+    /// Takes the next sample.
+    pub fn add(&mut self, sample: &Sample) {
+        if let Some(saturated) = sample.saturated {
+            self.reports += 1;
+            self.saturated_samples += u64::from(saturated);
+        }
         if !sample.finger_down {
             self.error.clear();
             self.felt.clear();
             return;
         }
-        self.finger_down_ticks += 1;
-        self.friction_error.add(self.error.push(sample.felt_n - sample.wanted_n));
-        if sample.wanted_in_reach {
-            self.inversion_error.add(sample.inversion_n - sample.asked_n);
+        self.finger_down_samples += 1;
+        if let Some((felt_n, wanted_n)) = sample.felt_n.zip(sample.wanted_n) {
+            self.friction_error.add(self.error.push(felt_n - wanted_n));
         }
-        if let Some(ripple_n) = self.felt.push(sample.felt_n) {
+        if let Some((inversion_n, asked_n)) = sample.inversion_n.zip(sample.asked_n) {
+            self.inversion_error.add(inversion_n - asked_n);
+        }
+        if let Some(ripple_n) = sample.felt_n.and_then(|felt_n| self.felt.push(felt_n)) {
             self.carrier_ripple.add(ripple_n);
         }
-        let (least_n, largest_n) = self.wanted_range_n.unwrap_or((sample.wanted_n, sample.wanted_n));
-        self.wanted_range_n = Some((least_n.min(sample.wanted_n), largest_n.max(sample.wanted_n)));
+        if let Some(wanted_n) = sample.wanted_n {
+            let (least_n, largest_n) = self.wanted_range_n.unwrap_or((wanted_n, wanted_n));
+            self.wanted_range_n = Some((least_n.min(wanted_n), largest_n.max(wanted_n)));
+        }
     }
 
-    /// What was gathered so far.
-    pub fn summary(&self) -> MetricsSummary {
+    /// The errors so far, of a play of so many ticks.
+    pub fn summary(&self, ticks: u64) -> MetricsSummary {
+        let every_tick_reported = self.reports == ticks;
         MetricsSummary {
-            ticks: self.ticks,
-            finger_down_ticks: self.finger_down_ticks,
-            saturated_ticks: Some(self.saturated_ticks),
+            ticks,
+            finger_down_ticks: self.finger_down_samples,
+            saturated_ticks: every_tick_reported.then_some(self.saturated_samples),
             friction_error: self.friction_error.size(),
-            inversion_error: self.inversion_error.size(),
+            inversion_error: self.inversion_error.size().filter(|_| every_tick_reported),
             carrier_ripple_rms_n: self.carrier_ripple.size().map(|size| size.rms_n),
             wanted_range_n: self.wanted_range_n,
         }

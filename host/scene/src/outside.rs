@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::cover::{Span, span_at};
 use super::program::Program;
 use super::reach::ROUNDING;
-use crate::wanted::{Piece, Wanted};
+use crate::reference::{Piece, Reference};
 
 /// Places that are looked at along the longer side of the screen.
 const PLACES: f64 = 600.0;
@@ -36,8 +36,8 @@ pub struct Outside {
 impl Asked {
     /// Looks at a grid of places all over the screen of a program.
     pub fn of(program: &Program) -> Self {
-        let wanted = Wanted::new(program);
-        let pieces = wanted.pieces();
+        let reference = Reference::new(program);
+        let pieces = reference.pieces();
         let reach = &program.reach;
         let slack_n = ROUNDING * reach.electric_friction_max_n;
         let places = Places::of(program);

@@ -72,6 +72,14 @@ impl Program {
         })
     }
 
+    /// Whether the friction at a place depends on what happened before, beside the time: on a click, or on a stream.
+    pub fn has_history(&self) -> bool {
+        self.records.iter().any(|record| match record.layer {
+            Layer::Edge { click, .. } | Layer::Button { click, .. } => click.height_n.abs() > 0.0,
+            layer => matches!(layer, Layer::Stream { .. }),
+        })
+    }
+
     /// The bitmap that a record names.
     pub fn bitmap(&self, crc32: u32) -> Option<&Bitmap> {
         self.bitmaps.iter().find(|bitmap| bitmap.crc32 == crc32)

@@ -1,13 +1,13 @@
 //! A scene goes to a simulated board, which takes it but does not play it.
 
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, StrokeError, WorldError};
-use frixel_model::ParameterError;
 use thiserror::Error;
 
 use crate::player::load;
-use crate::rigs::{Recorder, SimLink};
+use crate::rigs::SimLink;
 use frixel_driver::{Device, DeviceError};
 use frixel_scene::Program;
+use frixel_scene::recorder::Recorder;
 
 /// Why a simulated board did not take a scene.
 #[derive(Debug, Error)]
@@ -18,9 +18,6 @@ pub enum RehearsalError {
     /// The screen has no room for a stroke.
     #[error("a stroke over this scene: {0}")]
     Stroke(#[from] StrokeError),
-    /// The contact model refuses the program's finger.
-    #[error("the contact model refuses the scene's finger: {0:?}")]
-    Finger(ParameterError),
     /// The board refused it, with the number that is exceeded.
     #[error("the board does not take this scene: {0}")]
     Device(#[from] DeviceError),
@@ -31,9 +28,7 @@ pub(super) fn wire_bytes(program: &Program, rig: &RigConfig) -> Result<usize, Re
     let mut memory = BoardMemory::new();
     let header = &program.header;
     let stroke = Stroke::natural(header.screen_width_m.into(), header.screen_height_m.into(), 1.0)?;
-    let board = &rig.board;
-    let recorder = Recorder::new(program, &board.limits, board.tick_hz, 0, 1).map_err(RehearsalError::Finger)?;
-    let mut device = Device::connect(SimLink::new(Rig::new(&mut memory, rig, stroke, 1)?, recorder))?;
+    let mut device = Device::connect(SimLink::new(Rig::new(&mut memory, rig, stroke, 1)?, Recorder::idle()))?;
     let before = device.counters().wire_bytes;
     load(&mut device, program, &mut |_| {})?;
     Ok((device.counters().wire_bytes - before) as usize)

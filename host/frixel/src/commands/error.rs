@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use frixel::check::RehearsalError;
 use frixel::model_csv::CsvError;
 use frixel::output::OutputError;
-use frixel::player::SimulationError;
+use frixel::player::PlayError;
 use frixel::report::ReportError;
-use frixel::rigs::ServerError;
+use frixel::rigs::{ServerError, StopReason};
 use frixel::scene_file::SceneFileError;
 use frixel::stream::FeedError;
 use frixel_driver::{DeviceError, PortError};
@@ -16,7 +16,6 @@ use frixel_hil_sim::emulated::EmulatorError;
 use frixel_hil_sim::{StrokeError, WorldError};
 use frixel_model::ParameterError;
 use frixel_scene::CompileError;
-use frixel_wire::fault::Fault;
 use thiserror::Error;
 
 #[derive(Debug, Error)]
@@ -40,7 +39,7 @@ pub(crate) enum CommandError {
     #[error(transparent)]
     World(#[from] WorldError),
     #[error(transparent)]
-    Simulation(#[from] SimulationError),
+    Play(PlayError),
     #[error(transparent)]
     Emulator(#[from] EmulatorError),
     #[error("the contact model refuses the scene's finger: {0:?}")]
@@ -100,10 +99,8 @@ pub(crate) enum CommandError {
     WatchWithStream,
     #[error("the emulated board's serial port is too slow for a stream: leave --stream out, or play on --port sim")]
     StreamOnEmulated,
-    #[error("{port} stopped with its output at zero: {fault}")]
-    Faulted { port: String, fault: Fault },
-    #[error("{port} stopped with its output at zero: it had not heard from this host for the scene's host timeout")]
-    HostSilent { port: String },
+    #[error("{port} {reason}")]
+    Stopped { port: String, reason: StopReason },
     #[error("{} is no PNG file by its name: give the picture a name that ends in .png", path.display())]
     NotPng { path: PathBuf },
     #[error("Ctrl-C cannot be watched for: {0}")]
@@ -111,6 +108,14 @@ pub(crate) enum CommandError {
 }
 
 impl CommandError {
+    /// Why a play on the board that `--port` names did not come to its end.
+    pub(crate) fn of_play(port: &str, error: PlayError) -> Self {
+        match error {
+            PlayError::Stopped(reason) => Self::Stopped { port: port.to_owned(), reason },
+            error => Self::Play(error),
+        }
+    }
+
     /// For `map_err` on what is read.
     pub(crate) fn reading(path: &Path) -> impl FnOnce(io::Error) -> Self {
         let path = path.to_owned();

@@ -1,40 +1,28 @@
-//! `frixel play`: a scene on the simulator or on a board.
+//! `frixel play`: a scene on a board, real or not.
+//!
+//! [`Plan`] says what is to be played, [`rigs`] opens the board that `--port` names, [`follow`] plays and records, and
+//! [`Outputs`] writes the files. This module prints what came of it.
 
-mod bars;
-mod board;
-mod emulated;
-mod live;
-mod simulator;
-mod watch;
+mod follow;
+mod live_scene;
+mod outputs;
+mod plan;
+mod progress;
+mod rigs;
+mod saved_file;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use frixel::output::{FeltCsv, Report};
-use frixel_scene::Program;
-
-use bars::Bars;
+use frixel::output::Report;
+use frixel::scene_file;
 
 use super::PlayArgs;
 use super::error::CommandError;
+use super::interrupt::Interrupt;
+use live_scene::LiveScene;
+use rigs::Target;
 
-pub(super) fn run(args: &PlayArgs) -> Result<(), CommandError> {
-    let Played { report, files, failure } = match args.port.as_str() {
-        "sim" => simulator::play(args)?,
-        "qemu" => emulated::play(args)?,
-        _ => board::play(args)?,
-    };
-    if args.json {
-        println!("{}", report.to_json());
-    } else {
-        print!("{}", report.summary());
-        for file in files {
-            println!("  {:<16} {}", "wrote", file.display());
-        }
-    }
-    failure.map_or(Ok(()), Err)
-}
-
-/// What came of playing.
+/// What came of a play.
 struct Played {
     report: Report,
     files: Vec<PathBuf>,
@@ -42,39 +30,29 @@ struct Played {
     failure: Option<CommandError>,
 }
 
-/// A board in virtual time has played before anybody saves anything.
-fn refuse_watch(args: &PlayArgs) -> Result<(), CommandError> {
-    if args.watch { Err(CommandError::WatchInVirtualTime { port: args.port.clone() }) } else { Ok(()) }
+pub(super) fn run(args: &PlayArgs) -> Result<(), CommandError> {
+    let target = Target::of(&args.port);
+    plan::check_options(args, target)?;
+    // Before the file is read for the first time, so that no change is missed.
+    let live_scene = args.watch.then(|| LiveScene::new(&args.scene));
+    let scene = scene_file::load(&args.scene)?;
+    let interrupt = Interrupt::watch()?;
+    let played = match target {
+        Target::Simulator => rigs::play_on_simulator(args, &scene, &interrupt),
+        Target::Emulator => rigs::play_on_emulator(args, &scene, &interrupt),
+        Target::Port => rigs::play_on_port(args, &scene, live_scene, &interrupt),
+    }?;
+    print(args, &played);
+    played.failure.map_or(Ok(()), Err)
 }
 
-/// Says what the compiler has to say of a scene: conversions, roundings.
-fn tell_notes(program: &Program) {
-    for note in &program.notes {
-        eprintln!("{note}");
+fn print(args: &PlayArgs, Played { report, files, .. }: &Played) {
+    if args.json {
+        println!("{}", report.to_json());
+        return;
     }
-}
-
-/// Creates `felt.csv` in a folder that is made when it is not there.
-fn create_felt_csv(folder: &Path) -> Result<(FeltCsv, PathBuf), CommandError> {
-    std::fs::create_dir_all(folder).map_err(CommandError::writing(folder))?;
-    let path = folder.join("felt.csv");
-    Ok((FeltCsv::create(&path)?, path))
-}
-
-/// Ticks between two rows of `felt.csv`.
-fn ticks_per_row(csv_hz: u32, tick_hz: u32) -> Result<u32, CommandError> {
-    let divides = |rate: &u32| tick_hz.is_multiple_of(*rate);
-    if csv_hz > 0 && divides(&csv_hz) {
-        return Ok(tick_hz / csv_hz);
+    print!("{}", report.summary());
+    for file in files {
+        println!("  {:<16} {}", "wrote", file.display());
     }
-    let below = (1..csv_hz.min(tick_hz)).rev().find(divides);
-    let above = (csv_hz..=tick_hz).find(divides);
-    let nearest: Vec<String> = [below, above].iter().flatten().map(u32::to_string).collect();
-    Err(CommandError::CsvUneven { asked: csv_hz, tick_hz, nearest: nearest.join(" or ") })
-}
-
-/// Refuses a time in which not one tick passes.
-fn check_seconds(seconds: f64, tick_hz: u32) -> Result<(), CommandError> {
-    let tick_s = 1.0 / f64::from(tick_hz);
-    if seconds < tick_s { Err(CommandError::TooShort { seconds, tick_s }) } else { Ok(()) }
 }

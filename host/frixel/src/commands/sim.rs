@@ -31,7 +31,7 @@ pub(super) fn run(args: &SimArgs) -> Result<(), CommandError> {
     println!("port: {}", server.path());
     io::stdout().flush().map_err(CommandError::writing("standard output".as_ref()))?;
     eprintln!("a virtual board is there until Ctrl-C; in another terminal: frixel play SCENE --port {}", server.path());
-    server.run(&mut rig, &|| interrupt.is_asked())?;
+    server.run(&mut rig, &|| interrupt.is_requested())?;
     eprintln!("wrote {0}/felt.csv and {0}/events.csv", args.out.display());
     Ok(())
 }

@@ -1,82 +1,85 @@
-//! `felt.csv`: what happened under the finger, a row at a time.
+//! The CSV files of a play: `felt.csv`, what happened under the finger, and `events.csv`, what happened to the board.
 
 use std::fmt::{self, Display};
 use std::fs::File;
 use std::io::{BufWriter, Write};
+use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
+use frixel_scene::recorder::FeltRow;
 use frixel_wire::fault::Flags;
 
 use super::OutputError;
+use crate::rigs::BoardEvent;
 
-const HEADER: &str = "t_s,x_mm,y_mm,speed_mm_s,wanted_n,asked_n,felt_n,voltage_v_rms,dac_code,flags\n";
+/// A row of a CSV file. `docs/outputs.md` says what the columns mean.
+pub trait CsvRow {
+    /// The names of the columns, with commas between them.
+    const HEADER: &'static str;
 
-/// A row of `felt.csv`. What is not known is `None`, an empty cell. Frictions are totals.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct FeltRow {
-    /// Time since the scene began to play, s.
-    pub t_s: f64,
-    /// The finger's true place from the left edge of the screen, mm.
-    pub x_mm: Option<f64>,
-    /// The finger's true place from the top edge of the screen, mm.
-    pub y_mm: Option<f64>,
-    /// The finger's true speed, mm/s.
-    pub speed_mm_s: Option<f64>,
-    /// Friction that the scene wants there, N.
-    pub wanted_n: Option<f64>,
-    /// Friction that the board asked its inverse for, N.
-    pub asked_n: Option<f64>,
-    /// Friction that the finger felt, N.
-    pub felt_n: Option<f64>,
-    /// Rms voltage of the envelope, V.
-    pub voltage_v_rms: Option<f64>,
-    /// Code that went to the DAC.
-    pub dac_code: Option<i16>,
-    /// What limited the board.
-    pub flags: Option<Flags>,
+    /// Writes the cells, with commas between them. What is not known is an empty cell.
+    fn write_cells(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result;
 }
 
-/// Writes `felt.csv` while the scene plays.
-///
-/// Numbers have fixed decimals: a microsecond, a tenth of a micrometre, a micrometre a second, a nanonewton, a tenth
-/// of a millivolt. Flags are names joined by `+`, or `none`. Lines end in a line feed.
+/// A CSV file that is written row by row. Lines end in a line feed.
 #[derive(Debug)]
-pub struct FeltCsv {
+pub struct CsvFile<R> {
     path: PathBuf,
     writer: BufWriter<File>,
+    rows: PhantomData<R>,
 }
 
-impl FeltCsv {
+/// `felt.csv`.
+///
+/// Numbers have fixed decimals: a microsecond, a tenth of a micrometre, a micrometre a second, a nanonewton, a tenth
+/// of a millivolt. Flags are names joined by `+`, or `none`.
+pub type FeltCsv = CsvFile<FeltRow>;
+
+/// `events.csv`.
+pub type EventCsv = CsvFile<EventRow>;
+
+/// A row of `events.csv`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EventRow {
+    /// What happened, and when.
+    pub event: BoardEvent,
+    /// When the last whole frame of a host had arrived, s.
+    pub last_frame_t_s: f64,
+}
+
+impl<R: CsvRow> CsvFile<R> {
     /// Creates the file, or empties it, and writes the header row.
     pub fn create(path: &Path) -> Result<Self, OutputError> {
         let file = File::create(path).map_err(|source| OutputError::File { path: path.to_owned(), source })?;
-        let mut csv = Self { path: path.to_owned(), writer: BufWriter::new(file) };
-        csv.put(HEADER)?;
+        let mut csv = Self { path: path.to_owned(), writer: BufWriter::new(file), rows: PhantomData };
+        csv.write_line(R::HEADER)?;
         Ok(csv)
     }
 
     /// Writes a row.
-    pub fn write(&mut self, row: &FeltRow) -> Result<(), OutputError> {
-        self.put(row)
+    pub fn write(&mut self, row: &R) -> Result<(), OutputError> {
+        self.write_line(Cells(row))
     }
 
-    /// Writes what is held back so far.
+    /// Writes what is buffered so far.
     pub fn flush(&mut self) -> Result<(), OutputError> {
         self.writer.flush().map_err(|source| OutputError::File { path: self.path.clone(), source })
     }
 
-    /// Writes what is still held back. Dropping does it as well, and hides errors.
+    /// Writes what is still buffered. Dropping the file does it as well, and hides errors.
     pub fn finish(mut self) -> Result<(), OutputError> {
-        self.writer.flush().map_err(|source| OutputError::File { path: self.path, source })
+        self.flush()
     }
 
-    fn put(&mut self, text: impl Display) -> Result<(), OutputError> {
-        write!(self.writer, "{text}").map_err(|source| OutputError::File { path: self.path.clone(), source })
+    fn write_line(&mut self, line: impl Display) -> Result<(), OutputError> {
+        writeln!(self.writer, "{line}").map_err(|source| OutputError::File { path: self.path.clone(), source })
     }
 }
 
-impl Display for FeltRow {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl CsvRow for FeltRow {
+    const HEADER: &'static str = "t_s,x_mm,y_mm,speed_mm_s,wanted_n,asked_n,felt_n,voltage_v_rms,dac_code,flags";
+
+    fn write_cells(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let cell =
             |value: Option<f64>, decimals: usize| Cell { value: value.filter(|value| value.is_finite()), decimals };
         write!(
@@ -95,10 +98,16 @@ impl Display for FeltRow {
             write!(formatter, "{code}")?;
         }
         formatter.write_str(",")?;
-        if let Some(flags) = self.flags {
-            write_flags(formatter, flags)?;
-        }
-        formatter.write_str("\n")
+        self.flags.map_or(Ok(()), |flags| write_flags(formatter, flags))
+    }
+}
+
+impl CsvRow for EventRow {
+    const HEADER: &'static str = "t_s,event,last_frame_t_s";
+
+    fn write_cells(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let BoardEvent { t_s, kind } = self.event;
+        write!(formatter, "{t_s:.6},{},{:.6}", kind.name(), self.last_frame_t_s)
     }
 }
 
@@ -116,6 +125,15 @@ fn write_flags(formatter: &mut fmt::Formatter<'_>, flags: Flags) -> fmt::Result 
         formatter.write_str("none")?;
     }
     Ok(())
+}
+
+/// The cells of a row, for a formatter.
+struct Cells<'r, R>(&'r R);
+
+impl<R: CsvRow> Display for Cells<'_, R> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.write_cells(formatter)
+    }
 }
 
 /// A number with fixed decimals, zero never with a minus; or nothing.

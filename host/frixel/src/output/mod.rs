@@ -1,6 +1,6 @@
 //! The files that a played scene leaves behind.
 //!
-//! - [`FeltCsv`]: `felt.csv`, row by row while the scene plays.
+//! - [`FeltCsv`] and [`EventCsv`]: `felt.csv` and `events.csv`, row by row while the scene plays.
 //! - [`Trace`]: the same rows thinned out for pictures, in bounded memory.
 //! - [`write_felt_svg`]: friction and voltage over time.
 //! - [`write_scene_png`]: the friction map of a program with the stroke over it.
@@ -26,7 +26,7 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-pub use csv::{FeltCsv, FeltRow};
+pub use csv::{CsvFile, CsvRow, EventCsv, EventRow, FeltCsv};
 pub use felt_svg::write_felt_svg;
 pub use preview_png::{Preview, write_preview_png};
 pub use report::Report;

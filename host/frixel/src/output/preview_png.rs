@@ -8,7 +8,7 @@ use super::OutputError;
 use super::canvas::{Anchor, BLACK, Canvas, Colour, WHITE};
 use super::map::{Frame, LEFT, TITLE_SIZE, TOP};
 use super::scale::colour;
-use frixel_scene::wanted::{Moment, Wanted};
+use frixel_scene::reference::{Context, Reference};
 use frixel_scene::{Program, ROUNDING, Reach};
 
 /// Colours that the scale is brought to; more are not told apart, and make the file large.
@@ -70,7 +70,7 @@ pub fn write_preview_png(path: &Path, title: &str, program: &Program, preview: &
     canvas.write_png(path).map_err(OutputError::encoding(path))
 }
 
-/// What is wanted at every pixel, as a part of the reach.
+/// Friction of the reference at every pixel, as a part of the reach.
 struct Map {
     width: usize,
     parts: Vec<f64>,
@@ -78,12 +78,12 @@ struct Map {
 
 impl Map {
     fn of(program: &Program, preview: &Preview, frame: &Frame) -> Self {
-        let wanted = Wanted::new(program).with_vibrations_held();
+        let reference = Reference::new(program).with_vibrations_held();
         let metres = |pixel: usize| (pixel as f64 + 0.5) / frame.pixels_per_mm * 1e-3;
         let part = |x_m: f64, y_m: f64| {
             let speed_m_per_s = preview.speed_m_per_s;
-            let moment = Moment { x_m, y_m, speed_m_per_s, stream: 1.0, stream_weight: 1.0, ..Moment::default() };
-            wanted.electric_friction_at_n(&moment) / program.reach.electric_friction_max_n
+            let context = Context { x_m, y_m, speed_m_per_s, stream: 1.0, stream_weight: 1.0, ..Context::default() };
+            reference.electric_friction_at_n(&context) / program.reach.electric_friction_max_n
         };
         let places = (0..frame.height).flat_map(|row| (0..frame.width).map(move |column| (column, row)));
         Self { width: frame.width, parts: places.map(|(column, row)| part(metres(column), metres(row))).collect() }

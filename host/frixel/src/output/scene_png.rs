@@ -8,7 +8,7 @@ use super::map::{Frame, LABEL_SIZE, LEFT, TITLE_SIZE, TOP};
 use super::scale::colour;
 use super::trace::Trace;
 use frixel_scene::Program;
-use frixel_scene::wanted::Wanted;
+use frixel_scene::reference::Reference;
 
 /// Largest size of the map, in pixels.
 const MAP_MAX: (f64, f64) = (1_000.0, 800.0);
@@ -28,9 +28,9 @@ pub fn write_scene_png(path: &Path, title: &str, program: &Program, trace: &Trac
 }
 
 fn draw_map(canvas: &mut Canvas, frame: &Frame, program: &Program) {
-    let wanted = Wanted::new(program);
+    let reference = Reference::new(program);
     frame.draw_map(canvas, |_, (x_m, y_m)| {
-        colour(wanted.electric_friction_n(x_m, y_m) / program.reach.electric_friction_max_n)
+        colour(reference.electric_friction_n(x_m, y_m) / program.reach.electric_friction_max_n)
     });
 }
 

@@ -10,7 +10,8 @@ use super::*;
 use crate::scene_file;
 use frixel_driver::Counters;
 use frixel_scene::metrics::{ErrorSize, MetricsSummary};
-use frixel_scene::wanted::Wanted;
+use frixel_scene::recorder::FeltRow;
+use frixel_scene::reference::Reference;
 use frixel_scene::{Program, compile};
 
 const LIMITS: BoardLimits = BoardLimits {
@@ -33,14 +34,15 @@ fn brick() -> Program {
 
 /// Rows of a stroke along a slanted line, every millisecond; what is felt lags behind a little.
 fn stroke(program: &Program, seconds: f64) -> Vec<FeltRow> {
-    let wanted = Wanted::new(program);
+    let reference = Reference::new(program);
     let rows = (seconds * 1e3) as usize;
     let at = |row: usize| {
         let part = row as f64 / rows as f64;
         (5.0 + 110.0 * part, 30.0 + 40.0 * part + 8.0 * (12.0 * part).sin())
     };
-    let friction_n =
-        |(x_mm, y_mm): (f64, f64)| wanted.natural_friction_n() + wanted.electric_friction_n(x_mm * 1e-3, y_mm * 1e-3);
+    let friction_n = |(x_mm, y_mm): (f64, f64)| {
+        reference.natural_friction_n() + reference.electric_friction_n(x_mm * 1e-3, y_mm * 1e-3)
+    };
     let row = |row: usize| {
         let (x_mm, y_mm) = at(row);
         let felt_n = friction_n(at(row.saturating_sub(2)));
@@ -254,10 +256,11 @@ fn scene_png_shows_friction_and_stroke_where_they_are() {
         [bytes[first], bytes[first + 1], bytes[first + 2]]
     };
     assert_eq!(pixel(2.0, 2.0), scale::colour(0.0));
-    let wanted = Wanted::new(&program);
+    let reference = Reference::new(&program);
     for (x_mm, y_mm) in [(20.0, 20.0), (100.0, 100.0), (60.0, 90.0)] {
-        let expected =
-            scale::colour(wanted.electric_friction_n(x_mm * 1e-3, y_mm * 1e-3) / program.reach.electric_friction_max_n);
+        let expected = scale::colour(
+            reference.electric_friction_n(x_mm * 1e-3, y_mm * 1e-3) / program.reach.electric_friction_max_n,
+        );
         let near = pixel(x_mm, y_mm).iter().zip(expected).all(|(one, other)| one.abs_diff(other) < 24);
         assert!(near, "{:?} is not {expected:?}", pixel(x_mm, y_mm));
     }

@@ -1,6 +1,6 @@
 //! Rows thinned out for pictures, in bounded memory however long a scene plays.
 
-use super::FeltRow;
+use frixel_scene::recorder::FeltRow;
 
 /// Most spans of time that are told apart.
 const SPANS_MAX: usize = 1_600;

@@ -8,7 +8,7 @@ use frixel_model::{InverseError, ParameterError, StateError, TableError};
 use frixel_wire::payload::WriteError;
 use thiserror::Error;
 
-use crate::player::SimulationError;
+use crate::player::PlayError;
 use frixel_scene::CompileError;
 
 /// Why a report cannot be made.
@@ -72,5 +72,5 @@ pub enum ReportError {
     Stroke(#[from] StrokeError),
     /// The texture cannot be simulated.
     #[error(transparent)]
-    Simulation(#[from] SimulationError),
+    Simulation(#[from] PlayError),
 }

@@ -1,44 +1,66 @@
-//! The host's side of an emulated board: its serial port on the board's clock, and what its finger felt.
-
-mod recorder;
+//! The host's side of an emulated board: its serial port on the board's clock, and the record of what its finger felt.
 
 use std::cell::Cell;
+use std::collections::VecDeque;
+use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant};
 
-use frixel_hil_sim::emulated::{BOARD, EmulatorError, LinkBoard};
-
 use frixel_driver::{DEFAULT_BAUD, DeviceError, Link, LinkClosed, SerialLink, Written};
+use frixel_hil_sim::emulated::{BOARD, EmulatorError, LinkBoard, LinkRecord};
+use frixel_scene::recorder::{Observation, Recorder};
+use frixel_wire::message::Telemetry;
 
-pub use recorder::EmulatedRecorder;
+use super::RecordedLink;
+use super::recorded::finger_and_felt;
 
-/// Wall time between two looks at the board's clock.
-const LOOK_EVERY: Duration = Duration::from_millis(2);
+/// Wall time between two readings of the board's clock.
+const POLL_PERIOD: Duration = Duration::from_millis(2);
 /// Wall time after which a clock that does not move is taken to have stopped.
 const PATIENCE: Duration = Duration::from_mins(2);
+/// Ticks that wait for the telemetry that belongs to them: 0.2 s.
+const HELD_TICKS: usize = 8_000;
 
 /// A real serial port to an emulated board, on the board's clock.
 ///
 /// The clock stands still while bytes are on their way to the board: how fast the emulator moves them depends on what
 /// else the machine does.
+///
+/// The record has every tick of the world. The emulated serial port is too slow for telemetry at every row: what only
+/// the board knows stands in the rows that a telemetry message falls in.
 pub struct EmulatedLink<'b> {
     serial: SerialLink,
     board: &'b LinkBoard,
     /// Bytes that the board had received when the link was opened.
     received_before: u32,
-    /// Ticks of the board when they were last looked at.
+    /// Ticks of the board when they were last read.
     seen_ticks: Cell<u32>,
     /// Ticks that have passed on the link's clock.
     clock_ticks: Cell<u64>,
+    records: Receiver<LinkRecord>,
+    /// Ticks that wait for their telemetry, and telemetry that waits for its tick.
+    held: VecDeque<LinkRecord>,
+    telemetry: VecDeque<Telemetry>,
+    recorder: Recorder,
 }
 
 impl<'b> EmulatedLink<'b> {
-    /// Opens the board's serial port.
-    pub fn open(board: &'b LinkBoard) -> Result<Self, DeviceError> {
+    /// Opens the board's serial port. `records` are what [`LinkBoard::start`] shows of each tick.
+    pub fn open(board: &'b LinkBoard, records: Receiver<LinkRecord>) -> Result<Self, DeviceError> {
         let serial = SerialLink::open(board.serial_path(), DEFAULT_BAUD)?;
         let counts = board.received_bytes().and_then(|received| Ok((received, board.ticks()?)));
         let (received_before, ticks) =
             counts.map_err(|error| DeviceError::Vanished { command: "open", closed: closed(board, &error) })?;
-        Ok(Self { serial, board, received_before, seen_ticks: Cell::new(ticks), clock_ticks: Cell::new(0) })
+        Ok(Self {
+            serial,
+            board,
+            received_before,
+            seen_ticks: Cell::new(ticks),
+            clock_ticks: Cell::new(0),
+            records,
+            held: VecDeque::new(),
+            telemetry: VecDeque::new(),
+            recorder: Recorder::idle(),
+        })
     }
 
     /// Lets the clock follow the board's.
@@ -46,17 +68,61 @@ impl<'b> EmulatedLink<'b> {
         let ticks = self.board.ticks()?;
         let passed = ticks.wrapping_sub(self.seen_ticks.replace(ticks));
         let received = self.board.received_bytes()?.wrapping_sub(self.received_before);
-        // Both counts come round; the difference is never near that.
+        // Both counts are modulo 2^32; the difference is never near that.
         let under_way = (self.serial.written().bytes as u32).wrapping_sub(received) as i32;
         if under_way <= 0 {
             self.clock_ticks.update(|clock| clock + u64::from(passed));
         }
         Ok(())
     }
+
+    /// Records the ticks so far, but for the last `held` of them.
+    fn record_ticks(&mut self, held: usize) {
+        self.held.extend(self.records.try_iter());
+        let count = self.held.len().saturating_sub(held);
+        for record in self.held.drain(..count) {
+            let telemetry = telemetry_of(record.tick, &mut self.telemetry);
+            let (finger, felt) = finger_and_felt(&record.felt);
+            let dac_code = Some(record.drive.dac_code);
+            self.recorder.record(&Observation { tick: record.tick, finger, felt, dac_code, telemetry });
+        }
+    }
+}
+
+/// Removes the telemetry up to a tick, and returns that of the tick itself.
+fn telemetry_of(tick: u32, telemetry: &mut VecDeque<Telemetry>) -> Option<Telemetry> {
+    let mut last = None;
+    while let Some(earlier) = telemetry.pop_front_if(|telemetry| tick.wrapping_sub(telemetry.tick) as i32 >= 0) {
+        last = Some(earlier);
+    }
+    last.filter(|last| last.tick == tick)
+}
+
+impl RecordedLink for EmulatedLink<'_> {
+    fn recorder_mut(&mut self) -> &mut Recorder {
+        &mut self.recorder
+    }
+
+    fn begin(&mut self) -> Result<(), LinkClosed> {
+        self.board.start_stroke();
+        self.recorder.start(self.board.tick().map_err(|error| closed(self.board, &error))?);
+        Ok(())
+    }
+
+    fn record(&mut self, telemetry: &[Telemetry]) -> Result<(), LinkClosed> {
+        self.telemetry.extend(telemetry);
+        self.record_ticks(HELD_TICKS);
+        Ok(())
+    }
+
+    fn record_rest(&mut self) {
+        self.record_ticks(0);
+    }
 }
 
 impl Link for EmulatedLink<'_> {
     fn write(&mut self, frame: &[u8]) -> Result<u64, LinkClosed> {
+        self.recorder.record_sent(frame);
         self.serial.write(frame)
     }
 
@@ -65,7 +131,7 @@ impl Link for EmulatedLink<'_> {
         let before = buffer.len();
         let (mut moved_at, mut seen) = (Instant::now(), self.now());
         while buffer.len() == before && self.now() < end {
-            self.serial.read(buffer, LOOK_EVERY)?;
+            self.serial.read(buffer, POLL_PERIOD)?;
             self.follow().map_err(|error| closed(self.board, &error))?;
             if self.now() != seen {
                 (moved_at, seen) = (Instant::now(), self.now());

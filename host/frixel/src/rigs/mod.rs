@@ -1,15 +1,21 @@
-//! Boards that are not there: the simulated one behind a [`Link`](frixel_driver::Link) of its own, in virtual time, the
-//! one behind a pseudo-terminal, paced by the wall clock, and the emulated one behind a pseudo-terminal, on a clock of its
-//! own.
+//! The boards that a scene can play on, each behind a [`Link`](frixel_driver::Link), with the record of the play.
+//!
+//! - [`SimLink`]: the board in this process, in virtual time.
+//! - [`EmulatedLink`]: the firmware in an emulator, on the emulator's clock.
+//! - [`PortLink`]: a board at a serial port.
+//! - [`Server`]: a virtual board behind a pseudo-terminal, paced by the wall clock, for other programs to play on.
 
 mod emulated;
-mod recorder;
+mod event_log;
+mod port;
+mod recorded;
 mod server;
 mod server_log;
 mod sim_link;
-mod streamed;
 
-pub use emulated::{EmulatedLink, EmulatedRecorder};
-pub use recorder::Recorder;
+pub use emulated::EmulatedLink;
+pub use event_log::{BoardEvent, EventKind, EventLog, StopReason};
+pub use port::PortLink;
+pub use recorded::RecordedLink;
 pub use server::{Server, ServerError};
 pub use sim_link::SimLink;

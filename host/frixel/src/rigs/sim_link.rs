@@ -2,11 +2,14 @@
 
 use std::time::Duration;
 
-use frixel_hil_sim::Rig;
-use frixel_wire::fault::State;
-
-use super::Recorder;
 use frixel_driver::{Link, LinkClosed, Written};
+use frixel_hil_sim::{Rig, TickRecord};
+use frixel_scene::recorder::{Observation, Recorder};
+use frixel_wire::fault::State;
+use frixel_wire::message::Telemetry;
+
+use super::RecordedLink;
+use super::recorded::finger_and_felt;
 
 /// A frame that goes out by itself.
 struct KeepAlive {
@@ -16,7 +19,7 @@ struct KeepAlive {
 
 /// The host's end of a simulated board's line.
 ///
-/// The finger begins its stroke, and the recorder begins to record, when the scene first plays.
+/// The finger begins its stroke, and the recorder its record, when the scene first plays.
 pub struct SimLink<'a> {
     rig: Rig<'a>,
     recorder: Recorder,
@@ -27,7 +30,7 @@ pub struct SimLink<'a> {
 }
 
 impl<'a> SimLink<'a> {
-    /// A link to `rig`, whose ticks `recorder` will see.
+    /// A link to `rig`, whose ticks `recorder` records.
     pub fn new(rig: Rig<'a>, recorder: Recorder) -> Self {
         Self { rig, recorder, recording: false, written: Written::default(), written_at_tick: 0, keep_alive: None }
     }
@@ -35,10 +38,6 @@ impl<'a> SimLink<'a> {
     /// What was recorded.
     pub fn into_recorder(self) -> Recorder {
         self.recorder
-    }
-
-    pub(crate) fn recorder_mut(&mut self) -> &mut Recorder {
-        &mut self.recorder
     }
 
     fn ticks(&self, time: Duration) -> u64 {
@@ -54,18 +53,43 @@ impl<'a> SimLink<'a> {
         }
         let record = self.rig.step();
         if self.recording {
-            self.recorder.take(&record);
+            self.recorder.record(&observation(&record));
         } else if record.status.telemetry.state == State::Active {
             self.rig.world_mut().start_stroke();
+            self.recorder.start(record.tick as u32);
             self.recording = true;
         }
     }
 
     fn send(&mut self, frame: &[u8]) {
         self.rig.send(frame);
-        self.recorder.hear(frame);
+        self.recorder.record_sent(frame);
         self.written.add(frame);
         self.written_at_tick = self.rig.tick();
+    }
+}
+
+/// All that there is to know of a tick: here both board and finger can be seen.
+pub(super) fn observation(record: &TickRecord) -> Observation {
+    let telemetry = record.status.telemetry;
+    let (finger, felt) = finger_and_felt(&record.felt);
+    Observation {
+        tick: record.tick as u32,
+        finger,
+        felt,
+        dac_code: Some(telemetry.dac_code),
+        telemetry: Some(telemetry),
+    }
+}
+
+impl RecordedLink for SimLink<'_> {
+    fn recorder_mut(&mut self) -> &mut Recorder {
+        &mut self.recorder
+    }
+
+    /// Every tick has been recorded as it happened, with what telemetry would say of it.
+    fn record(&mut self, _telemetry: &[Telemetry]) -> Result<(), LinkClosed> {
+        Ok(())
     }
 }
 

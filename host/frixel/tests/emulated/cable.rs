@@ -1,5 +1,6 @@
 //! A serial link to an emulated board that can be cut and that carries rubbish.
 
+use std::sync::mpsc;
 use std::time::Duration;
 
 use frixel::rigs::EmulatedLink;
@@ -16,7 +17,7 @@ pub(crate) struct Cable<'b> {
 
 impl<'b> Cable<'b> {
     pub(crate) fn plug(board: &'b LinkBoard) -> Self {
-        Self { link: EmulatedLink::open(board).unwrap(), rubbish: Vec::new(), frames: 0 }
+        Self { link: EmulatedLink::open(board, mpsc::channel().1).unwrap(), rubbish: Vec::new(), frames: 0 }
     }
 
     /// With rubbish in front of every frame.

@@ -14,10 +14,10 @@ use std::path::Path;
 
 use cases::{Case, Path as StrokePath};
 use expected::{At, Expected};
-use frixel::output::FeltRow;
 use frixel::player::{Simulation, simulate};
 use frixel::scene_file::PictureFolder;
 use frixel_hil_sim::{Point, RigConfig, Stroke};
+use frixel_scene::recorder::FeltRow;
 use frixel_scene::{Program, Scene, compile};
 
 const HEAD: &str = "\
@@ -61,7 +61,7 @@ fn play(program: &Program, path: StrokePath) -> Vec<FeltRow> {
     let stroke = stroke(path);
     let seconds = stroke.duration_s();
     let simulation = Simulation { rig: RigConfig::default(), stroke, seconds, seed: 1, ticks_per_row: 1 };
-    simulate(program, &simulation, &mut |_| {}).unwrap().recorder.rows().to_vec()
+    simulate(program, &simulation, None).unwrap().recorder.rows().to_vec()
 }
 
 /// Electric friction that the case expects at each row, in mN, when the stroke began so many ticks after power-on.

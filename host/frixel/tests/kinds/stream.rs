@@ -3,12 +3,12 @@
 use std::f64::consts::TAU;
 use std::time::Duration;
 
-use frixel::output::FeltRow;
 use frixel::player;
-use frixel::rigs::{Recorder, SimLink};
+use frixel::rigs::SimLink;
 use frixel_driver::{Device, StreamSettings};
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
 use frixel_scene::Program;
+use frixel_scene::recorder::{FeltRow, Recorder};
 
 use super::cases::Path;
 use super::{NATURAL_N, PERIOD_TICKS, compiled, stroke};

@@ -1,6 +1,6 @@
 //! Cells of the screen, and how much of one a layer covers.
 
-use crate::wanted::{Shape, edges};
+use crate::reference::{Shape, edges};
 
 /// A rectangle of the screen, m.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -15,7 +15,7 @@ pub(super) use cell::Cell;
 use cell::Coverage;
 pub(super) use span::Span;
 
-use crate::wanted::{Field, Piece};
+use crate::reference::{Field, Piece};
 
 /// Cells narrower than this come from rounding, m.
 const CELL_MIN_M: f64 = 1e-6;

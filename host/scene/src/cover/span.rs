@@ -3,7 +3,7 @@
 use frixel_wire::scene::{Blend, Click, Wave};
 
 use super::cell::Cell;
-use crate::wanted::{Edge, Field, Grating, Moment, Piece, Samples};
+use crate::reference::{Context, Edge, Field, Grating, Piece, Samples};
 
 /// Least and largest electric friction, N.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,7 +67,7 @@ impl Span {
             Field::Stream { low_n, high_n } => Self::of([*low_n, *high_n].into_iter()),
             Field::Curve(points) => Self::of(points.iter().map(|(_, friction_n)| *friction_n)),
             _ => {
-                let friction_n = field.at(&Moment { x_m, y_m, ..Moment::default() });
+                let friction_n = field.at(&Context { x_m, y_m, ..Context::default() });
                 Self { low_n: friction_n, high_n: friction_n }.with_click(field.click().unwrap_or_default())
             }
         }
@@ -142,7 +142,7 @@ fn samples_span(field: &Field, samples: &Samples, cell: Cell) -> Span {
     let columns = stretch(cell.left_m, cell.right_m, samples.x_m, samples.pitch_m, around(u, samples.width));
     let rows = stretch(cell.top_m, cell.bottom_m, samples.y_m, samples.pitch_y_m, around(v, samples.height));
     let places = rows.iter().flat_map(|y_m| columns.iter().map(|x_m| (*x_m, *y_m)));
-    Span::of(places.map(|(x_m, y_m)| field.at(&Moment { x_m, y_m, ..Moment::default() })))
+    Span::of(places.map(|(x_m, y_m)| field.at(&Context { x_m, y_m, ..Context::default() })))
 }
 
 /// The samples that positions in a span lie between. Twice as many as there are show all that tiling repeats.

@@ -5,24 +5,32 @@ use super::*;
 const HALF_PERIOD_TICKS: u32 = 4;
 const PERIOD: usize = 8;
 
-fn sample(wanted_n: f64, felt_n: f64) -> TickSample {
-    TickSample {
-        wanted_n,
-        asked_n: wanted_n,
-        felt_n,
-        inversion_n: felt_n,
-        saturated: false,
+fn sample(wanted_n: f64, felt_n: f64) -> Sample {
+    Sample {
         finger_down: true,
-        wanted_in_reach: true,
+        wanted_n: Some(wanted_n),
+        asked_n: Some(wanted_n),
+        felt_n: Some(felt_n),
+        inversion_n: Some(felt_n),
+        saturated: Some(false),
     }
 }
 
-fn gather(samples: &[TickSample]) -> MetricsSummary {
+const UP: Sample = Sample {
+    finger_down: false,
+    wanted_n: None,
+    asked_n: None,
+    felt_n: None,
+    inversion_n: None,
+    saturated: Some(false),
+};
+
+fn gather(samples: &[Sample]) -> MetricsSummary {
     let mut metrics = Metrics::new(HALF_PERIOD_TICKS);
     for sample in samples {
         metrics.add(sample);
     }
-    metrics.summary()
+    metrics.summary(samples.len() as u64)
 }
 
 #[track_caller]
@@ -36,11 +44,35 @@ fn rms(values: &[f64]) -> f64 {
 
 #[test]
 fn nothing_gathered_is_absent() {
-    let up = TickSample { finger_down: false, saturated: true, ..sample(0.3, 0.1) };
+    let up = Sample { saturated: Some(true), ..UP };
     let summary = gather(&[up, up]);
     assert_eq!((summary.ticks, summary.finger_down_ticks, summary.saturated_ticks), (2, 0, Some(2)));
     assert_eq!((summary.friction_error, summary.inversion_error), (None, None));
     assert_eq!((summary.carrier_ripple_rms_n, summary.wanted_range_n), (None, None));
+}
+
+/// One tick in forty, as a board's telemetry has them, and no finger that could say what it felt.
+#[test]
+fn what_needs_every_tick_is_absent_when_some_were_not_seen() {
+    let mut metrics = Metrics::new(HALF_PERIOD_TICKS);
+    for wanted_n in [0.26, 0.27] {
+        metrics.add(&Sample { felt_n: None, ..sample(wanted_n, 0.25) });
+    }
+    let summary = metrics.summary(41);
+    assert_eq!(summary.wanted_range_n, Some((0.26, 0.27)));
+    assert_eq!((summary.saturated_ticks, summary.inversion_error), (None, None));
+    assert_eq!((summary.friction_error, summary.carrier_ripple_rms_n), (None, None));
+    assert!(metrics.summary(2).inversion_error.is_some(), "two of two ticks were seen");
+}
+
+#[test]
+fn another_carrier_begins_with_empty_windows() {
+    let mut metrics = Metrics::new(1);
+    metrics.add(&sample(0.25, 0.35));
+    metrics.set_half_period(HALF_PERIOD_TICKS);
+    metrics.add(&sample(0.25, 0.25));
+    let error = metrics.summary(2).friction_error.expect("an error");
+    close(error.rms_n, (0.5 * 0.1_f64.powi(2)).sqrt());
 }
 
 #[test]
@@ -65,7 +97,7 @@ fn steady_motion_has_no_ripple() {
 
 #[test]
 fn inversion_counts_only_what_is_in_reach_and_saturation_always() {
-    let out = TickSample { wanted_in_reach: false, saturated: true, ..sample(0.4, 0.2) };
+    let out = Sample { inversion_n: None, saturated: Some(true), ..sample(0.4, 0.2) };
     let summary = gather(&[out, sample(0.26, 0.261), sample(0.26, 0.258)]);
     let error = summary.inversion_error.expect("an error");
     close(error.rms_n, rms(&[0.001, -0.002]));
@@ -76,9 +108,8 @@ fn inversion_counts_only_what_is_in_reach_and_saturation_always() {
 
 #[test]
 fn a_window_starts_anew_with_each_touch() {
-    let up = TickSample { finger_down: false, ..sample(0.0, 0.0) };
     let mut samples = vec![sample(0.25, 0.35); 3 * PERIOD];
-    samples.push(up);
+    samples.push(UP);
     samples.extend([sample(0.25, 0.25); 5]);
     let error = gather(&samples).friction_error.expect("an error");
     let expected = (f64::from(3 * 8) * 0.1 * 0.1 / f64::from(3 * 8 + 5)).sqrt();
@@ -98,7 +129,7 @@ fn hours_do_not_wear_the_sums() {
     for _ in 0..100 {
         later.add(&sample(0.0, 1e-9));
     }
-    close(1e9 * later.summary().friction_error.expect("an error").rms_n, 1.0);
+    close(1e9 * later.summary(0).friction_error.expect("an error").rms_n, 1.0);
 }
 
 proptest! {

@@ -4,12 +4,12 @@ use frixel_wire::scene::{Carrier, Layer, Leader, Region, Scene as WireScene};
 
 use super::super::{picture::Picture, resample};
 use super::*;
-use crate::wanted::Wanted;
+use crate::reference::Reference;
 
 /// Frictions that a finger finds, in mN above natural, at places in mm.
 fn frictions_mn(layers: &str, places_mm: &[(f64, f64)]) -> Vec<f64> {
-    let wanted = Wanted::new(&compile_layers(layers));
-    places_mm.iter().map(|(x, y)| 1e3 * wanted.electric_friction_n(x * 1e-3, y * 1e-3)).collect()
+    let reference = Reference::new(&compile_layers(layers));
+    places_mm.iter().map(|(x, y)| 1e3 * reference.electric_friction_n(x * 1e-3, y * 1e-3)).collect()
 }
 
 #[track_caller]
@@ -221,8 +221,8 @@ fn a_picture_is_placed_and_held_at_its_border() {
     assert_eq!((program.bitmaps[0].width, program.bitmaps[0].height), (3, 2));
     assert_eq!(program.bitmaps[0].samples, [0, 51, 102, 255, 204, 153]);
     assert_eq!(program.bitmaps[0].crc32, frixel_wire::scene::bitmap_crc32(3, 2, &program.bitmaps[0].samples));
-    let wanted = Wanted::new(&program);
-    let at = |x_mm: f64, y_mm: f64| 1e3 * wanted.electric_friction_n(x_mm * 1e-3, y_mm * 1e-3);
+    let reference = Reference::new(&program);
+    let at = |x_mm: f64, y_mm: f64| 1e3 * reference.electric_friction_n(x_mm * 1e-3, y_mm * 1e-3);
     let mn = |grey: f64| 1.0 + 25.0 * grey / 255.0;
     // Centres, halfway between them, a quarter of the way in both directions, and the border.
     close(&[at(21.0, 31.0), at(23.0, 31.0), at(25.0, 33.0)], &[mn(0.0), mn(51.0), mn(153.0)], 1e-5);
@@ -232,7 +232,7 @@ fn a_picture_is_placed_and_held_at_its_border() {
     close(&[at(20.0001, 30.0001), at(25.9999, 33.9999)], &[mn(0.0), mn(153.0)], 1e-5);
     // The picture's rectangle is the layer's region.
     close(&[at(19.999, 31.0), at(26.001, 31.0), at(21.0, 29.999), at(21.0, 34.001)], &[0.0; 4], 0.0);
-    close(&[wanted.natural_friction_n()], &[0.25], 1e-9);
+    close(&[reference.natural_friction_n()], &[0.25], 1e-9);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! What is left out, and that nobody feels it.
 
 use super::*;
-use crate::wanted::{Moment, Wanted};
+use crate::reference::{Context, Reference};
 
 /// Compiles these layers, and again with every one kept because the host may change it.
 fn small_and_whole(layers: &str) -> (Program, Program) {
@@ -17,9 +17,9 @@ fn check(layers: &str, expected: &[&str], records: usize) {
     assert_eq!((small.records.len(), small.titles.len()), (records, records));
     assert_eq!(whole.records.len(), layers.matches("[[layer]]").count());
     assert!(small.scene_bytes().len() <= whole.scene_bytes().len());
-    let (mut small, mut whole) = (Wanted::new(&small).along(), Wanted::new(&whole).along());
+    let (mut small, mut whole) = (Reference::new(&small).along_stroke(), Reference::new(&whole).along_stroke());
     for place in 0..8_000 {
-        let moment = Moment {
+        let context = Context {
             x_m: 0.12 * f64::from(place % 100) / 100.0,
             y_m: 0.11 * f64::from(place / 100) / 80.0,
             t_s: f64::from(place) * 25e-6,
@@ -27,8 +27,8 @@ fn check(layers: &str, expected: &[&str], records: usize) {
             stream: 0.5,
             stream_weight: 1.0,
         };
-        let (found, expected) = (small.electric_friction_n(&moment), whole.electric_friction_n(&moment));
-        assert!((found - expected).abs() < 1e-9, "{moment:?}: {found} is not {expected}");
+        let (found, expected) = (small.electric_friction_n(&context), whole.electric_friction_n(&context));
+        assert!((found - expected).abs() < 1e-9, "{context:?}: {found} is not {expected}");
     }
 }
 
@@ -130,7 +130,7 @@ fn pictures_are_cropped_to_what_can_be_found_and_shared() {
     );
     // What is cropped is what the whole picture has there.
     let whole = compile_layers(&picture("region = { x_mm = 0, y_mm = 0, width_mm = 120, height_mm = 110 }\n"));
-    let (part, whole) = (Wanted::new(&program), Wanted::new(&whole));
+    let (part, whole) = (Reference::new(&program), Reference::new(&whole));
     for place in 0..2_000 {
         let (x_m, y_m) =
             (0.0206 + 0.0398 * f64::from(place % 50) / 50.0, 0.0301 + 0.0100 * f64::from(place / 50) / 40.0);

@@ -14,7 +14,7 @@ mod left_out;
 mod schema;
 
 /// A board like the simulated one.
-const LIMITS: BoardLimits = BoardLimits {
+pub(super) const LIMITS: BoardLimits = BoardLimits {
     bitmap_pool_bytes: 64 * 1024,
     records_max: 64,
     receive_window_bytes: 4096,
@@ -26,7 +26,7 @@ const LIMITS: BoardLimits = BoardLimits {
     current_max_a_peak: 15e-3,
     touch_report_period_s: 0.01,
 };
-const TICK_HZ: u32 = 40_000;
+pub(super) const TICK_HZ: u32 = 40_000;
 
 /// Everything a scene needs but its layers; eighteen lines. The natural friction is 0.25 N, and the drive adds at
 /// most 27.78 mN.

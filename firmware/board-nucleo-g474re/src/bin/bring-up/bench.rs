@@ -3,7 +3,7 @@
 use board_nucleo_g474re::adc::Adc;
 use board_nucleo_g474re::board::{LIMITS, TICK_HZ};
 use board_nucleo_g474re::clock::CORE_HZ;
-use board_nucleo_g474re::dac::Dac;
+use board_nucleo_g474re::dac::{self, Dac, DacFrames};
 use board_nucleo_g474re::output::{LIFE_US, Output};
 use board_nucleo_g474re::{period, tick};
 use cortex_m::peripheral::DWT;
@@ -19,6 +19,7 @@ const CYCLES_PER_US: u32 = CORE_HZ / 1_000_000;
 /// The board under test.
 pub(crate) struct Bench {
     output: Output,
+    frames: DacFrames,
     dac: Dac,
     adc: Adc,
     button_rests_high: bool,
@@ -28,7 +29,8 @@ impl Bench {
     /// Takes the board.
     pub(crate) fn new(output: Output) -> Self {
         tick::start_inputs();
-        Self { output, dac: Dac::new(), adc: Adc::new(), button_rests_high: button_is_high() }
+        let (frames, dac) = dac::start();
+        Self { output, frames, dac, adc: Adc::new(), button_rests_high: button_is_high() }
     }
 
     /// Says what to do, and waits for the button, output at zero.
@@ -81,10 +83,11 @@ impl Bench {
 
     /// What the DAC puts out.
     pub(crate) fn dac(&mut self) {
-        if self.dac.is_there() {
-            info!("the DAC answers, and is set up");
-        } else {
-            error!("the DAC does not answer on PB14: check supply, SPI2 (PB13, PB15), SYNC (PC6)");
+        match self.dac.prepare() {
+            Ok(()) => info!("the DAC answers with its configuration"),
+            Err(error) => {
+                error!("the DAC does not answer on PB14: check supply, SPI2 (PB13, PB15), SYNC (PC6): {}", error);
+            }
         }
         for (code, volts) in [(0, 0), (16_384, 5), (-16_384, -5)] {
             println!("the voltmeter shows {=i32} V; the button goes on", volts);
@@ -193,7 +196,7 @@ impl Bench {
 
     /// Puts a code out at the end of this period, and keeps the output alive.
     fn put(&mut self, code: i16) {
-        if self.dac.send(code) {
+        if self.frames.send(code) {
             self.output.kick();
         } else {
             self.output.zero();

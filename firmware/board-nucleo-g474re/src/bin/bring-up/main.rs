@@ -14,7 +14,7 @@ use cortex_m::Peripherals;
 use cortex_m_rt::entry;
 use defmt::{info, println};
 use defmt_rtt as _;
-use frixel_parts::fault_record::Text;
+use frixel_drivers::fault_record::Text;
 use frixel_wire::message::FAULT_TEXT_MAX_LEN;
 
 use bench::Bench;
@@ -31,7 +31,7 @@ fn main() -> ! {
     clock::start_peripherals();
     clock::keep_timers_running_in_debug();
     clock::start_cycle_counter(&mut core.DCB, &mut core.DWT);
-    indicator::start();
+    let _ = indicator::start();
     period::start();
 
     let mut bench = Bench::new(output);

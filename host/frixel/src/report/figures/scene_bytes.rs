@@ -285,18 +285,18 @@ mod tests {
     use frixel_hil_sim::{BoardMemory, Point, Rig, Stroke};
 
     use super::*;
-    use crate::rigs::{Recorder, SimLink};
+    use crate::rigs::SimLink;
     use frixel_driver::{Bitmap, Device, Upload};
+    use frixel_scene::recorder::Recorder;
 
     /// What the driver sends to a simulated board: frames and bytes.
     fn sent(program: &Program) -> (u64, u64) {
         let config = RigConfig::default();
-        let (mut memory, board) = (BoardMemory::new(), &config.board);
+        let mut memory = BoardMemory::new();
         let point = Point { x_m: 0.01, y_m: 0.01 };
         let stroke = Stroke::constant_speed(point, Point { x_m: 0.1, ..point }, 0.1).expect("a stroke");
         let rig = Rig::new(&mut memory, &config, stroke, 1).expect("a rig");
-        let recorder = Recorder::new(program, &board.limits, board.tick_hz, 1, 1).expect("a recorder");
-        let mut device = Device::connect(SimLink::new(rig, recorder)).expect("a board");
+        let mut device = Device::connect(SimLink::new(rig, Recorder::idle())).expect("a board");
         let before = device.counters();
         let scene = program.scene_bytes();
         let bitmaps = program.bitmaps.iter().map(|bitmap| Bitmap {

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use frixel_hil_sim::{Point, RigConfig, Stroke, TouchConfig};
 
 use super::{Figure, ReportError};
-use crate::output::FeltRow;
 use crate::player::{Simulation, simulate};
 use crate::report::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
 use crate::report::data::Data;
+use frixel_scene::recorder::FeltRow;
 use frixel_scene::{Scene, compile};
 
 /// Ticks a second, all whole numbers of ticks to a window.
@@ -90,7 +90,7 @@ fn felt(case: &Case, tick_hz: u32, rows_hz: u32, seed: u64) -> Result<Felt, Repo
     let stroke = Stroke::constant_speed(Point { x_m: 0.01, y_m: 0.04 }, Point { x_m: 0.11, y_m: 0.04 }, SPEED_M_PER_S)?;
     let simulation =
         Simulation { rig, seconds: stroke.duration_s(), stroke, seed, ticks_per_row: tick_hz.div_ceil(rows_hz) };
-    let simulated = simulate(&program, &simulation, &mut |_| {})?;
+    let simulated = simulate(&program, &simulation, None)?;
     Ok(Felt {
         rows: simulated.recorder.rows().to_vec(),
         natural_n: program.reach.friction_min_n(),

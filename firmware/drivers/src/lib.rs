@@ -1,0 +1,35 @@
+//! Drivers of the parts on a driver board, over `embedded-hal` 1.0, `embedded-hal-async` and `embedded-io`. A board's own
+//! crate holds registers and wiring only, and implements those traits; the chip models of `frixel-hil-sim` implement
+//! them too, and the tests run these drivers against the models.
+//!
+//! | module | part | traits |
+//! |---|---|---|
+//! | [`ad5761r`] | 16-bit bipolar DAC | `SpiDevice`, `DelayNs` |
+//! | [`bus_handover`] | sharing the DAC's bus with the tick | |
+//! | [`zforce`] | optical touch frame | asynchronous `I2c` and `DelayNs`, `InputPin` |
+//! | [`polling`] | futures without an executor | |
+//! | [`amplifier`] | enable and well lines of the amplifier | `OutputPin`, `InputPin` |
+//! | [`monitor`] | the amplifier's monitor output behind an ADC | |
+//! | [`arm_switch`] | switch that a person holds | `InputPin` |
+//! | [`state_light`] | light that shows the state | `OutputPin` |
+//! | [`serial`] | bytes between port and session | `embedded-io` |
+//! | [`ring`] | reading a ring that DMA writes | |
+//! | [`fault_record`] | the last fault, kept in RAM over a reset | |
+//! | [`reset`] | reset cause of the STM32G4 | |
+//!
+//! With the feature `defmt`, the errors implement `defmt::Format`.
+#![cfg_attr(not(test), no_std)]
+#![forbid(unsafe_code)]
+
+pub mod ad5761r;
+pub mod amplifier;
+pub mod arm_switch;
+pub mod bus_handover;
+pub mod fault_record;
+pub mod monitor;
+pub mod polling;
+pub mod reset;
+pub mod ring;
+pub mod serial;
+pub mod state_light;
+pub mod zforce;

@@ -1,0 +1,55 @@
+//! Bytes between a serial port and the session, without waiting.
+
+use embedded_io::{Read, ReadReady, Write, WriteReady};
+
+/// Bytes that are moved at a time: a frame of the protocol and some.
+const CHUNK_LEN: usize = 256;
+
+/// A port, and the bytes that it could not take yet.
+#[derive(Debug)]
+pub struct SerialLink<P> {
+    port: P,
+    transmitting: [u8; CHUNK_LEN],
+    /// Bytes of `transmitting` that the port has taken, and bytes that are there.
+    taken: usize,
+    len: usize,
+}
+
+impl<P: Read + ReadReady + Write + WriteReady> SerialLink<P> {
+    /// A link over `port`.
+    pub const fn new(port: P) -> Self {
+        Self { port, transmitting: [0; CHUNK_LEN], taken: 0, len: 0 }
+    }
+
+    /// Passes received bytes to `take`, at most 256 of them: the caller has other things to do between two pieces.
+    pub fn receive(&mut self, take: impl FnOnce(&[u8])) -> Result<(), P::Error> {
+        if self.port.read_ready()? {
+            let mut bytes = [0; CHUNK_LEN];
+            let len = self.port.read(&mut bytes)?;
+            take(bytes.get(..len).unwrap_or_default());
+        }
+        Ok(())
+    }
+
+    /// Sends as much as the port takes of what `fill` writes; `fill` returns how many bytes it has written, 0 when there is
+    /// nothing to send.
+    pub fn transmit(&mut self, mut fill: impl FnMut(&mut [u8]) -> usize) -> Result<(), P::Error> {
+        while self.port.write_ready()? {
+            if self.taken == self.len {
+                self.taken = 0;
+                self.len = fill(&mut self.transmitting).min(CHUNK_LEN);
+            }
+            let rest = self.transmitting.get(self.taken..self.len).unwrap_or_default();
+            if rest.is_empty() {
+                return Ok(());
+            }
+            self.taken += self.port.write(rest)?;
+        }
+        Ok(())
+    }
+
+    /// The port.
+    pub fn port_mut(&mut self) -> &mut P {
+        &mut self.port
+    }
+}

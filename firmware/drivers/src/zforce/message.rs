@@ -1,0 +1,171 @@
+//! Messages of the zForce modules (Neonode Touch Sensor Module User's Guide: serialization protocol quick start, ASN.1 PDU
+//! examples).
+//!
+//! On I2C, every message has two bytes in front, `ee` and its length. The module raises its data-ready pin while a
+//! message waits; the host reads the two bytes first, then the message.
+
+/// Address on the I2C bus, 7 bits.
+pub const I2C_ADDRESS: u8 = 0x50;
+/// First byte on the bus.
+const TRANSPORT: u8 = 0xee;
+/// Bytes in front of a message.
+pub const LENGTH_LEN: usize = 2;
+/// Most bytes of a message that is read: a notification of up to eight touches.
+pub const MESSAGE_MAX_LEN: usize = 127;
+
+/// Request: 200 scans a second, with a finger and without.
+pub const SET_FREQUENCY: [u8; 18] =
+    [TRANSPORT, 0x10, 0xee, 0x0e, 0x40, 0x02, 0x00, 0x00, 0x68, 0x08, 0x80, 0x02, 0x00, 0xc8, 0x82, 0x02, 0x00, 0xc8];
+/// Request: send notifications from now on.
+pub const ENABLE: [u8; 13] = [TRANSPORT, 0x0b, 0xee, 0x09, 0x40, 0x02, 0x02, 0x00, 0x65, 0x03, 0x81, 0x01, 0x00];
+
+const NOTIFICATION: u8 = 0xf0;
+/// The sensor itself, as opposed to the module that it sits on.
+const SENSOR_ADDRESS: [u8; 4] = [0x40, 0x02, 0x02, 0x00];
+const TOUCHES: u8 = 0xa0;
+const TOUCH: u8 = 0x42;
+const BOOT_COMPLETE: u8 = 0x63;
+const EVENT_DOWN: u8 = 0;
+const EVENT_MOVE: u8 = 1;
+const EVENT_UP: u8 = 2;
+/// Coordinates are in tenths of a millimetre.
+const M_PER_UNIT: f32 = 1e-4;
+
+/// A report of a finger.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Touch {
+    /// A finger is here, in metres from the sensor's own corner.
+    Down {
+        /// Along the sensor.
+        x_m: f32,
+        /// Away from it.
+        y_m: f32,
+    },
+    /// The finger has gone.
+    Up,
+}
+
+/// What a message says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Message {
+    /// A report of a finger.
+    Touch(Touch),
+    /// The module has started and waits for its requests.
+    Started,
+    /// A message that does not matter here: an answer, another notification, an invalid touch.
+    Other,
+}
+
+/// Length of the message that follows these two bytes; `None` when they cannot stand in front of a message.
+pub fn message_len(length: [u8; LENGTH_LEN]) -> Option<usize> {
+    let [transport, len] = length;
+    (transport == TRANSPORT && len > 0 && usize::from(len) <= MESSAGE_MAX_LEN).then_some(usize::from(len))
+}
+
+/// Parses a message. Of several touches it takes the first.
+pub fn parse(message: &[u8]) -> Message {
+    let Some((NOTIFICATION, content, _)) = element(message) else { return Message::Other };
+    let Some((address, body)) = content.split_first_chunk::<4>() else { return Message::Other };
+    match element(body) {
+        Some((TOUCHES, touches, _)) if *address == SENSOR_ADDRESS => match element(touches) {
+            Some((TOUCH, touch, _)) => parse_touch(touch),
+            _ => Message::Other,
+        },
+        Some((BOOT_COMPLETE, ..)) => Message::Started,
+        _ => Message::Other,
+    }
+}
+
+fn parse_touch(touch: &[u8]) -> Message {
+    match *touch {
+        [_, EVENT_DOWN | EVENT_MOVE, x_high, x_low, y_high, y_low, ..] => Message::Touch(Touch::Down {
+            x_m: f32::from(u16::from_be_bytes([x_high, x_low])) * M_PER_UNIT,
+            y_m: f32::from(u16::from_be_bytes([y_high, y_low])) * M_PER_UNIT,
+        }),
+        [_, EVENT_UP, ..] => Message::Touch(Touch::Up),
+        _ => Message::Other,
+    }
+}
+
+/// The first element of these bytes: its tag, its content, and what follows it. Lengths above 127 do not occur.
+fn element(bytes: &[u8]) -> Option<(u8, &[u8], &[u8])> {
+    let ([tag, len], rest) = bytes.split_first_chunk()?;
+    let (content, rest) = rest.split_at_checked(usize::from(*len))?;
+    Some((*tag, content, rest))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// One touch without a time stamp, as the ASN.1 PDU examples have it.
+    fn one_touch(event: u8, x: u16, y: u16) -> Vec<u8> {
+        let mut message = vec![0xf0, 0x11, 0x40, 0x02, 0x02, 0x00, 0xa0, 0x0b, 0x42, 0x09, 0x00, event];
+        message.extend(x.to_be_bytes());
+        message.extend(y.to_be_bytes());
+        message.extend([0x10, 0x10, 0x80]);
+        message
+    }
+
+    fn near(message: Message, x_m: f32, y_m: f32) -> bool {
+        matches!(message, Message::Touch(Touch::Down { x_m: x, y_m: y }) if (x - x_m).abs() < 1e-6 && (y - y_m).abs() < 1e-6)
+    }
+
+    #[test]
+    fn requests_carry_their_own_length() {
+        for request in [&SET_FREQUENCY[..], &ENABLE[..]] {
+            assert_eq!(message_len([request[0], request[1]]), Some(request.len() - LENGTH_LEN));
+            let (tag, content, rest) = element(&request[LENGTH_LEN..]).unwrap();
+            assert_eq!((tag, rest), (0xee, &[][..]));
+            assert!(element(&content[4..]).unwrap().2.is_empty());
+        }
+    }
+
+    #[test]
+    fn a_touch_is_a_place_in_metres() {
+        assert!(near(parse(&one_touch(0, 1234, 56)), 0.1234, 0.0056));
+        assert!(near(parse(&one_touch(1, 65_535, 0)), 6.5535, 0.0));
+        assert_eq!(parse(&one_touch(2, 1234, 56)), Message::Touch(Touch::Up));
+        assert_eq!(parse(&one_touch(3, 1234, 56)), Message::Other, "invalid");
+        assert_eq!(parse(&one_touch(4, 1234, 56)), Message::Other, "ghost");
+    }
+
+    #[test]
+    fn a_time_stamp_and_a_second_touch_change_nothing() {
+        let mut message = one_touch(1, 100, 200);
+        message.extend([0x58, 0x02, 0x12, 0x34]);
+        message[1] += 4;
+        message[7] += 4;
+        assert!(near(parse(&message), 0.01, 0.02));
+        let mut message = one_touch(1, 100, 200);
+        message.extend([0x42, 0x09, 0x01, 0x01, 0x03, 0x00, 0x03, 0x00, 0x10, 0x10, 0x80]);
+        message[1] += 11;
+        message[7] += 11;
+        assert!(near(parse(&message), 0.01, 0.02));
+    }
+
+    #[test]
+    fn a_restart_is_recognised() {
+        assert_eq!(parse(&[0xf0, 0x09, 0x40, 0x02, 0x00, 0x00, 0x63, 0x03, 0x80, 0x01, 0x00]), Message::Started);
+        let answer = [0xef, 0x09, 0x40, 0x02, 0x02, 0x00, 0x65, 0x03, 0x81, 0x01, 0x00];
+        assert_eq!(parse(&answer), Message::Other);
+    }
+
+    #[test]
+    fn invalid_lengths_are_refused() {
+        for length in [[0xee, 0], [0xee, 128], [0xee, 255], [0xff, 10], [0, 10]] {
+            assert_eq!(message_len(length), None, "{length:02x?}");
+        }
+    }
+
+    proptest! {
+        /// No bytes make it panic, and a truncated touch is not a touch.
+        #[test]
+        fn anything_can_be_parsed(bytes in proptest::collection::vec(any::<u8>(), 0..130), cut in 0_usize..19) {
+            let _ = parse(&bytes);
+            prop_assert_eq!(parse(&one_touch(1, 100, 200)[..cut]), Message::Other);
+        }
+    }
+}

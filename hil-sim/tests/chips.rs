@@ -1,0 +1,339 @@
+//! The drivers of `frixel-drivers` against models of their chips.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
+
+use std::collections::VecDeque;
+use std::convert::Infallible;
+use std::pin::pin;
+use std::task::Poll;
+
+use embedded_hal::spi::SpiDevice;
+use embedded_io::{ErrorType, Read, ReadReady, Write, WriteReady};
+use frixel_drivers::ad5761r::{self, Ad5761r};
+use frixel_drivers::amplifier::Amplifier;
+use frixel_drivers::arm_switch::ArmSwitch;
+use frixel_drivers::polling::poll_once;
+use frixel_drivers::serial::SerialLink;
+use frixel_drivers::state_light::StateLight;
+use frixel_drivers::zforce::{self, Touch, ZForce};
+use frixel_hil_sim::chips::{
+    Ad5761rChip, BouncingContact, BusFault, ChipDelay, ChipSpi, PolledDelay, TouchEvent, ZForceModule,
+};
+use frixel_wire::fault::State;
+
+/// A step of the DAC, in volts.
+const STEP_V: f64 = 10.0 / 32_768.0;
+
+fn dac(chip: &Ad5761rChip) -> Ad5761r<ChipSpi, ChipDelay> {
+    Ad5761r::new(chip.spi(), chip.delay())
+}
+
+/// A frame that the tick sends by hardware of its own.
+fn tick_frame(chip: &Ad5761rChip, code: i16) {
+    chip.spi().write(&ad5761r::output(code)).unwrap();
+}
+
+#[test]
+fn codes_are_volts_once_the_dac_is_prepared() {
+    let chip = Ad5761rChip::new();
+    tick_frame(&chip, 16_384);
+    assert!(chip.output_v().abs() < f64::EPSILON, "clamped until it is configured");
+    let mut dac = dac(&chip);
+    dac.prepare().unwrap();
+    assert!(chip.output_v().abs() < f64::EPSILON);
+    for code in [i16::MIN, -i16::MAX, -16_384, -1, 0, 1, 16_384, i16::MAX] {
+        tick_frame(&chip, code);
+        assert!((chip.output_v() - f64::from(code) * STEP_V).abs() < 1e-9, "{code}: {} V", chip.output_v());
+        dac.check().unwrap();
+    }
+}
+
+#[test]
+fn preparing_sets_the_output_to_zero() {
+    let chip = Ad5761rChip::new();
+    let mut dac = dac(&chip);
+    dac.prepare().unwrap();
+    tick_frame(&chip, 30_000);
+    dac.prepare().unwrap();
+    assert!(chip.output_v().abs() < f64::EPSILON);
+}
+
+#[test]
+fn the_falling_edge_of_clear_sets_the_output_to_zero() {
+    let chip = Ad5761rChip::new();
+    dac(&chip).prepare().unwrap();
+    tick_frame(&chip, 30_000);
+    chip.set_clear(false);
+    assert!(chip.output_v().abs() < f64::EPSILON);
+}
+
+/// Without configuration, zero in two's complement would be minus full scale in straight binary.
+#[test]
+fn a_dac_that_lost_its_configuration_is_noticed_and_configured_again() {
+    let chip = Ad5761rChip::new();
+    let mut dac = dac(&chip);
+    dac.prepare().unwrap();
+    chip.supply(false);
+    chip.supply(true);
+    assert!(matches!(dac.check(), Err(ad5761r::Error::Configuration(_))));
+    tick_frame(&chip, 16_384);
+    assert!(chip.output_v().abs() < f64::EPSILON);
+    dac.prepare().unwrap();
+    tick_frame(&chip, 16_384);
+    assert!((chip.output_v() - 5.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_dac_that_does_not_answer_is_an_error() {
+    let chip = Ad5761rChip::new();
+    chip.supply(false);
+    let error = dac(&chip).prepare().unwrap_err();
+    assert!(matches!(error, ad5761r::Error::Configuration(_)), "{error}");
+    chip.supply(true);
+    chip.connect_sdo(false);
+    let error = dac(&chip).prepare().unwrap_err();
+    assert_eq!(error.detail(), 0xffff);
+    chip.connect_sdo(true);
+    dac(&chip).prepare().unwrap();
+}
+
+#[test]
+fn a_brown_out_is_reported_until_the_dac_is_prepared_again() {
+    let chip = Ad5761rChip::new();
+    let mut dac = dac(&chip);
+    dac.prepare().unwrap();
+    chip.brown_out();
+    assert!(matches!(dac.check(), Err(ad5761r::Error::BrownOut(_))));
+    dac.prepare().unwrap();
+}
+
+#[test]
+fn a_short_circuit_is_reported_as_long_as_it_lasts() {
+    let chip = Ad5761rChip::new();
+    let mut dac = dac(&chip);
+    chip.short_circuit(true);
+    assert!(matches!(dac.prepare(), Err(ad5761r::Error::ShortCircuit(_))));
+    chip.short_circuit(false);
+    dac.prepare().unwrap();
+}
+
+/// Polls until the future is ready, at most so many times.
+fn poll_for<F: Future>(mut future: std::pin::Pin<&mut F>, polls: usize) -> Option<F::Output> {
+    (0..polls).find_map(|_| match poll_once(future.as_mut()) {
+        Poll::Ready(output) => Some(output),
+        Poll::Pending => None,
+    })
+}
+
+#[test]
+fn the_touch_frame_is_set_up_and_reports_fingers() {
+    let module = ZForceModule::new(3);
+    let mut frame = ZForce::new(module.bus(), module.data_ready(), PolledDelay);
+    {
+        let mut touch = pin!(frame.next_touch());
+        assert!(poll_for(touch.as_mut(), 1000).is_none(), "nobody touches it");
+        assert_eq!(module.frequency_hz(), Some(200));
+        module.touch(TouchEvent::Invalid, 1, 1);
+        module.touch(TouchEvent::Down, 1234, 56);
+        let Some(Ok(Touch::Down { x_m, y_m })) = poll_for(touch, 1000) else { panic!("no report") };
+        assert!((x_m - 0.1234).abs() < 1e-6 && (y_m - 0.0056).abs() < 1e-6);
+    }
+    module.touch(TouchEvent::Move, 2000, 0);
+    module.touch(TouchEvent::Up, 2000, 0);
+    assert!(matches!(poll_for(pin!(frame.next_touch()), 1000), Some(Ok(Touch::Down { .. }))));
+    assert_eq!(poll_for(pin!(frame.next_touch()), 1000), Some(Ok(Touch::Up)));
+}
+
+#[test]
+fn a_touch_frame_that_restarts_is_set_up_again() {
+    let module = ZForceModule::new(0);
+    let mut frame = ZForce::new(module.bus(), module.data_ready(), PolledDelay);
+    assert!(poll_for(pin!(frame.next_touch()), 100).is_none());
+    module.restart();
+    let mut touch = pin!(frame.next_touch());
+    assert!(poll_for(touch.as_mut(), 100).is_none());
+    module.touch(TouchEvent::Down, 10, 20);
+    assert!(matches!(poll_for(touch, 100), Some(Ok(Touch::Down { .. }))));
+}
+
+#[test]
+fn a_touch_frame_that_fails_is_left_alone_for_a_while_and_set_up_again() {
+    let module = ZForceModule::new(0);
+    module.connect(false);
+    let mut frame = ZForce::new(module.bus(), module.data_ready(), PolledDelay);
+    {
+        let mut touch = pin!(frame.next_touch());
+        assert!(poll_for(touch.as_mut(), 100).is_none(), "100 ms of pause");
+        assert_eq!(poll_for(touch, 2), Some(Err(zforce::Error::I2c(BusFault::NoAcknowledge))));
+    }
+    module.connect(true);
+    assert!(poll_for(pin!(frame.next_touch()), 100).is_none());
+    module.corrupt_length();
+    module.touch(TouchEvent::Down, 10, 20);
+    assert_eq!(poll_for(pin!(frame.next_touch()), 200), Some(Err(zforce::Error::Length([0xee, 0]))));
+    module.forget_settings();
+    let mut touch = pin!(frame.next_touch());
+    assert!(poll_for(touch.as_mut(), 100).is_none());
+    module.touch(TouchEvent::Up, 10, 20);
+    assert_eq!(poll_for(touch, 100), Some(Ok(Touch::Up)));
+}
+
+/// Presses or releases the button, and returns the ticks until the driver agrees, and how often it changed its mind.
+fn change(
+    contact: &BouncingContact,
+    switch: &mut ArmSwitch<impl embedded_hal::digital::InputPin>,
+    press: bool,
+) -> (usize, usize) {
+    contact.press(press);
+    let mut held = !press;
+    let (mut at_tick, mut changes) = (0, 0);
+    for tick in 1..=2000 {
+        contact.tick();
+        let now = switch.is_held();
+        if now != held {
+            (held, at_tick) = (now, tick);
+            changes += 1;
+        }
+    }
+    (at_tick, changes)
+}
+
+/// A contact bounces for up to 5 ms, 200 ticks.
+#[test]
+fn a_bouncing_switch_is_pressed_and_released_once() {
+    for seed in 0..50 {
+        let contact = BouncingContact::new(false, 200, seed);
+        let mut switch = ArmSwitch::new(contact.pin());
+        for _ in 0..100 {
+            contact.tick();
+            assert!(!switch.is_held());
+        }
+        let (tick, changes) = change(&contact, &mut switch, true);
+        assert!(changes == 1 && (800..=1000).contains(&tick), "seed {seed}: {changes} changes, last after {tick}");
+        let (tick, changes) = change(&contact, &mut switch, false);
+        assert!(changes == 1 && (40..=240).contains(&tick), "seed {seed}: {changes} changes, last after {tick}");
+    }
+}
+
+#[test]
+fn a_welded_switch_is_never_held() {
+    let contact = BouncingContact::new(true, 200, 1);
+    let mut switch = ArmSwitch::new(contact.pin());
+    for _ in 0..40_000 {
+        contact.tick();
+        assert!(!switch.is_held());
+    }
+    change(&contact, &mut switch, false);
+    assert_eq!(change(&contact, &mut switch, true).1, 1, "once it has been open it is a switch like any other");
+}
+
+/// An output that lives for one tick after it was set.
+#[derive(Default)]
+struct OneShot {
+    left_ticks: u32,
+}
+
+impl embedded_hal::digital::ErrorType for &mut OneShot {
+    type Error = Infallible;
+}
+
+impl embedded_hal::digital::OutputPin for &mut OneShot {
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        self.left_ticks = 1;
+        Ok(())
+    }
+
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        self.left_ticks = 0;
+        Ok(())
+    }
+}
+
+#[test]
+fn an_amplifier_whose_wire_is_off_has_a_fault() {
+    let well = BouncingContact::new(true, 0, 1);
+    let mut enable = OneShot::default();
+    let mut amplifier = Amplifier::new(&mut enable, well.pin());
+    assert!(!amplifier.has_fault());
+    assert!(amplifier.set_enabled(true));
+    well.press(false);
+    well.tick();
+    assert!(amplifier.has_fault());
+    assert_eq!(enable.left_ticks, 1);
+    assert!(Amplifier::new(&mut enable, well.pin()).set_enabled(false));
+    assert_eq!(enable.left_ticks, 0);
+}
+
+#[test]
+fn the_light_shows_the_state() {
+    let mut pin = OneShot::default();
+    let mut is_on = |state, tick| {
+        StateLight::new(&mut pin).show(state, tick);
+        pin.left_ticks > 0
+    };
+    assert!(!is_on(State::Disarmed, 0) && is_on(State::Armed, 0) && is_on(State::Active, 0));
+    assert!(is_on(State::Faulted, 0) && !is_on(State::Faulted, 5_000) && is_on(State::Faulted, 10_000));
+}
+
+/// A port that sends what it has received, `room` bytes a tick.
+#[derive(Default)]
+struct Loopback {
+    bytes: VecDeque<u8>,
+    room: usize,
+}
+
+impl ErrorType for Loopback {
+    type Error = Infallible;
+}
+
+impl ReadReady for Loopback {
+    fn read_ready(&mut self) -> Result<bool, Infallible> {
+        Ok(!self.bytes.is_empty())
+    }
+}
+
+impl Read for Loopback {
+    fn read(&mut self, bytes: &mut [u8]) -> Result<usize, Infallible> {
+        let len = bytes.len().min(self.bytes.len());
+        for (to, from) in bytes.iter_mut().zip(self.bytes.drain(..len)) {
+            *to = from;
+        }
+        Ok(len)
+    }
+}
+
+impl WriteReady for Loopback {
+    fn write_ready(&mut self) -> Result<bool, Infallible> {
+        Ok(self.room > 0)
+    }
+}
+
+impl Write for Loopback {
+    fn write(&mut self, bytes: &[u8]) -> Result<usize, Infallible> {
+        let len = bytes.len().min(self.room);
+        self.room -= len;
+        self.bytes.extend(bytes.iter().take(len));
+        Ok(len)
+    }
+
+    fn flush(&mut self) -> Result<(), Infallible> {
+        Ok(())
+    }
+}
+
+#[test]
+fn a_slow_port_loses_and_repeats_nothing() {
+    let mut link = SerialLink::new(Loopback::default());
+    let sent: Vec<u8> = (0..3_000_u32).map(|number| (number % 251) as u8).collect();
+    let (mut next, mut received) = (0, Vec::new());
+    for tick in 0..3_000 {
+        link.port_mut().room = [0, 1, 7, 64][tick % 4];
+        let Ok(()) = link.transmit(|bytes| {
+            let len = bytes.len().min(sent.len() - next).min(100);
+            bytes[..len].copy_from_slice(&sent[next..next + len]);
+            next += len;
+            len
+        });
+        let Ok(()) = link.receive(|bytes| received.extend_from_slice(bytes));
+    }
+    assert_eq!(received, sent);
+}

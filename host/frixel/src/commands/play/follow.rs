@@ -1,0 +1,117 @@
+//! Plays a plan on a board that is open, from the upload to the files.
+
+use std::time::{Duration, Instant};
+
+use frixel::output::Report;
+use frixel::player::{PlayError, Player};
+use frixel::rigs::RecordedLink;
+use frixel_driver::Device;
+
+use super::live_scene::LiveScene;
+use super::outputs::Outputs;
+use super::plan::Plan;
+use super::progress::Bars;
+use super::{CommandError, Interrupt, PlayArgs, Played};
+
+/// Plays until the plan is over, a person ends it, or the board does. What was played until then has been recorded.
+pub(super) fn follow<L: RecordedLink>(
+    args: &PlayArgs,
+    plan: Plan,
+    device: Device<L>,
+    live_scene: Option<LiveScene>,
+    interrupt: &Interrupt,
+) -> Result<Played, CommandError> {
+    let outputs = Outputs::create(args, plan.target)?;
+    let player = Player::new(device, plan.recorder()?);
+    let mut play =
+        Play { args, plan, player, outputs, live_scene, interrupt, bars: Bars::default(), writing: Duration::ZERO };
+    play.start()?;
+    let begin = Instant::now();
+    let ended = play.until_over();
+    let playing = begin.elapsed().saturating_sub(play.writing);
+    Ok(play.finish(ended, playing))
+}
+
+/// A play under way.
+struct Play<'a, L: RecordedLink> {
+    args: &'a PlayArgs,
+    plan: Plan,
+    player: Player<L>,
+    outputs: Outputs,
+    live_scene: Option<LiveScene>,
+    interrupt: &'a Interrupt,
+    bars: Bars,
+    /// Wall time that writing has taken.
+    writing: Duration,
+}
+
+impl<L: RecordedLink> Play<'_, L> {
+    fn start(&mut self) -> Result<(), CommandError> {
+        let Self { plan, player, bars, .. } = self;
+        let started = player.start(&plan.program, plan.telemetry_period_ticks, &mut |progress| bars.upload(progress));
+        started.map_err(|error| self.error(error))
+    }
+
+    fn until_over(&mut self) -> Result<(), CommandError> {
+        if let Some(feed) = self.plan.feed.take() {
+            self.player.stream(feed).map_err(|error| self.error(error))?;
+        }
+        let mut left = self.plan.time_max();
+        while !left.is_zero() && self.player.recorder_mut().ticks_left() > 0 && !self.interrupt.is_requested() {
+            let stepped = self.player.step(left);
+            self.write_rows()?;
+            left = left.saturating_sub(stepped.map_err(|error| self.error(error))?);
+            self.refresh_scene()?;
+            self.bars.play(self.player.recorder_mut().t_s() / self.plan.seconds());
+        }
+        self.player.stop().map_err(|error| self.error(error))
+    }
+
+    fn write_rows(&mut self) -> Result<(), CommandError> {
+        let begin = Instant::now();
+        let written = self.outputs.write(&self.player.recorder_mut().take_rows());
+        self.writing += begin.elapsed();
+        written
+    }
+
+    /// Plays the scene's file when it was saved.
+    fn refresh_scene(&mut self) -> Result<(), CommandError> {
+        let Some(live_scene) = &mut self.live_scene else { return Ok(()) };
+        match live_scene.refresh(&mut self.player) {
+            Ok(Some(program)) => self.plan.program = program,
+            Ok(None) => {}
+            Err(error) => return Err(self.error(error)),
+        }
+        Ok(())
+    }
+
+    /// Puts the output to zero, then writes what is left to be written.
+    fn finish(mut self, ended: Result<(), CommandError>, playing: Duration) -> Played {
+        self.bars.finish();
+        let (counters, stream) = (self.player.device().counters(), self.player.device().stream_status());
+        let mut recorder = self.player.into_recorder();
+        let Plan { program, target, .. } = &self.plan;
+        let is_requested = self.interrupt.is_requested() || (ended.is_err() && self.interrupt.was_requested());
+        let interrupted = is_requested && target.is_virtual_time();
+        if interrupted {
+            let (played_s, seconds) = (recorder.t_s(), self.plan.seconds());
+            eprintln!("interrupted: what follows is of the first {played_s:.3} s of {seconds:.3} s");
+        }
+        let realtime_factor = target.is_virtual_time().then(|| recorder.t_s() / playing.as_secs_f64());
+        let report = Report::new(target.name(), &recorder.summary(), &program.reach, &counters, realtime_factor)
+            .with_stream(stream);
+        let written = self.outputs.write(&recorder.take_rows());
+        let finished = written.and_then(|()| self.outputs.finish(program));
+        // Ctrl-C in a terminal ends an emulator, too: that is no failure.
+        let failure = ended.err().filter(|_| !interrupted);
+        let (files, failure) = match finished {
+            Ok(files) => (files, failure),
+            Err(error) => (Vec::new(), failure.or(Some(error))),
+        };
+        Played { report, files, failure }
+    }
+
+    fn error(&self, error: PlayError) -> CommandError {
+        CommandError::of_play(&self.args.port, error)
+    }
+}

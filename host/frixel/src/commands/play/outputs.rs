@@ -1,0 +1,55 @@
+//! The files of a play.
+
+use std::path::PathBuf;
+
+use frixel::output::{FeltCsv, Trace, write_felt_svg, write_scene_png};
+use frixel_scene::Program;
+use frixel_scene::recorder::FeltRow;
+
+use super::rigs::Target;
+use super::{CommandError, PlayArgs};
+
+/// `felt.csv`, written while the scene plays; and, where the finger is simulated, the pictures of it.
+pub(super) struct Outputs {
+    folder: PathBuf,
+    title: String,
+    csv: FeltCsv,
+    csv_path: PathBuf,
+    trace: Option<Trace>,
+}
+
+impl Outputs {
+    /// Creates `felt.csv`, in a folder that is made when it is not there.
+    pub(super) fn create(args: &PlayArgs, target: Target) -> Result<Self, CommandError> {
+        let folder = args.out.clone();
+        std::fs::create_dir_all(&folder).map_err(CommandError::writing(&folder))?;
+        let csv_path = folder.join("felt.csv");
+        let csv = FeltCsv::create(&csv_path)?;
+        let trace = target.is_virtual_time().then(Trace::new);
+        Ok(Self { folder, title: args.scene.display().to_string(), csv, csv_path, trace })
+    }
+
+    /// Writes rows, so that they are in the file when this returns.
+    pub(super) fn write(&mut self, rows: &[FeltRow]) -> Result<(), CommandError> {
+        for row in rows {
+            self.csv.write(row)?;
+            if let Some(trace) = &mut self.trace {
+                trace.push(row);
+            }
+        }
+        Ok(self.csv.flush()?)
+    }
+
+    /// Closes `felt.csv`, and draws `felt.svg` and `scene.png`. Returns the files.
+    pub(super) fn finish(self, program: &Program) -> Result<Vec<PathBuf>, CommandError> {
+        self.csv.finish()?;
+        let mut files = vec![self.csv_path];
+        if let Some(trace) = &self.trace {
+            let (svg, png) = (self.folder.join("felt.svg"), self.folder.join("scene.png"));
+            write_felt_svg(&svg, &self.title, trace, &program.reach)?;
+            write_scene_png(&png, &self.title, program, trace)?;
+            files.extend([svg, png]);
+        }
+        Ok(files)
+    }
+}

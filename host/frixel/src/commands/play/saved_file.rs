@@ -1,0 +1,114 @@
+//! A file that is followed while somebody edits it.
+
+use std::fs::{self, Metadata};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant, SystemTime};
+
+/// Time between two checks of the file. A change has to last from one check to the next, so that a file that is being
+/// written is not read half.
+const CHECK_PERIOD: Duration = Duration::from_millis(100);
+
+/// Notices when a file was saved, in place or by an editor that puts another file in its place.
+pub(super) struct SavedFile {
+    path: PathBuf,
+    checked_at: Instant,
+    /// What the file was when it was last read.
+    read: Option<Fingerprint>,
+    /// What it was at the last check.
+    checked: Option<Fingerprint>,
+}
+
+/// What changes when a file is saved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Fingerprint {
+    modified: Option<SystemTime>,
+    len: u64,
+    file: u64,
+}
+
+impl Fingerprint {
+    fn of(path: &Path) -> Option<Self> {
+        let metadata = fs::metadata(path).ok()?;
+        Some(Self { modified: metadata.modified().ok(), len: metadata.len(), file: file_number(&metadata) })
+    }
+}
+
+#[cfg(unix)]
+fn file_number(metadata: &Metadata) -> u64 {
+    std::os::unix::fs::MetadataExt::ino(metadata)
+}
+
+#[cfg(not(unix))]
+fn file_number(_metadata: &Metadata) -> u64 {
+    0
+}
+
+impl SavedFile {
+    /// Follows a file from what it is now. Call this before the file is read for the first time.
+    pub(super) fn new(path: &Path) -> Self {
+        let now = Fingerprint::of(path);
+        Self { path: path.to_owned(), checked_at: Instant::now(), read: now, checked: now }
+    }
+
+    /// Whether the file has changed since this last returned true. Between two checks, and while there is no file, it has
+    /// not.
+    pub(super) fn is_saved(&mut self) -> bool {
+        if self.checked_at.elapsed() < CHECK_PERIOD {
+            return false;
+        }
+        self.checked_at = Instant::now();
+        self.check()
+    }
+
+    fn check(&mut self) -> bool {
+        let now = Fingerprint::of(&self.path);
+        let is_settled = now == std::mem::replace(&mut self.checked, now);
+        let saved = is_settled && now.is_some() && now != self.read;
+        if saved {
+            self.read = now;
+        }
+        saved
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The two checks that a change has to last for, and one more.
+    fn checks(file: &mut SavedFile) -> [bool; 3] {
+        [file.check(), file.check(), file.check()]
+    }
+
+    #[test]
+    fn a_file_is_saved_in_place_or_by_another_in_its_place() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.toml");
+        fs::write(&path, "one").unwrap();
+        let mut file = SavedFile::new(&path);
+        assert_eq!(checks(&mut file), [false; 3]);
+        fs::write(&path, "another").unwrap();
+        assert_eq!(checks(&mut file), [false, true, false]);
+        let other = folder.path().join(".scene.toml.swp");
+        fs::write(&other, "another").unwrap();
+        fs::rename(&other, &path).unwrap();
+        assert_eq!(checks(&mut file), [false, true, false]);
+        fs::remove_file(&path).unwrap();
+        assert_eq!(checks(&mut file), [false; 3], "a file that was removed was not saved");
+        fs::write(&path, "again").unwrap();
+        assert_eq!(checks(&mut file), [false, true, false]);
+    }
+
+    #[test]
+    fn a_file_that_still_grows_is_not_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.toml");
+        fs::write(&path, "").unwrap();
+        let mut file = SavedFile::new(&path);
+        for len in 1..10 {
+            fs::write(&path, "x".repeat(len)).unwrap();
+            assert!(!file.check());
+        }
+        assert!(file.check());
+    }
+}

@@ -1,0 +1,66 @@
+//! A board at a serial port, of which telemetry is all that can be seen.
+
+use std::time::Duration;
+
+use frixel_driver::{Link, LinkClosed, SerialLink, Written};
+use frixel_scene::recorder::{Observation, Recorder};
+use frixel_wire::message::Telemetry;
+
+use super::RecordedLink;
+
+/// A serial port, with the record of what the board at it reports.
+pub struct PortLink {
+    serial: SerialLink,
+    recorder: Recorder,
+}
+
+impl PortLink {
+    /// Records what the board at `serial` reports.
+    pub fn new(serial: SerialLink) -> Self {
+        Self { serial, recorder: Recorder::idle() }
+    }
+}
+
+impl RecordedLink for PortLink {
+    fn recorder_mut(&mut self) -> &mut Recorder {
+        &mut self.recorder
+    }
+
+    fn record(&mut self, telemetry: &[Telemetry]) -> Result<(), LinkClosed> {
+        for telemetry in telemetry {
+            self.recorder.record(&Observation::from_telemetry(telemetry));
+        }
+        Ok(())
+    }
+}
+
+impl Link for PortLink {
+    fn write(&mut self, frame: &[u8]) -> Result<u64, LinkClosed> {
+        self.recorder.record_sent(frame);
+        self.serial.write(frame)
+    }
+
+    fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed> {
+        self.serial.read(buffer, wait)
+    }
+
+    fn now(&self) -> Duration {
+        self.serial.now()
+    }
+
+    fn keep_alive(&mut self, frame: Vec<u8>, period: Duration) {
+        self.serial.keep_alive(frame, period);
+    }
+
+    fn farewell(&mut self, frames: Vec<u8>) {
+        self.serial.farewell(frames);
+    }
+
+    fn written(&self) -> Written {
+        self.serial.written()
+    }
+
+    fn name(&self) -> &str {
+        self.serial.name()
+    }
+}

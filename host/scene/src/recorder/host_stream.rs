@@ -1,0 +1,187 @@
+//! The stream that a host sends, as a finger should feel it: decoded from the host's frames, and independent of the
+//! firmware that plays it.
+
+use std::collections::VecDeque;
+
+use frixel_wire::frame::Decoder;
+use frixel_wire::message::{Command, Request};
+use frixel_wire::payload::Payload;
+
+/// Time in which a stream fades in and out, s (PROTOCOL, section 15).
+const FADE_S: f64 = 0.01;
+/// Time that a board may have had samples without a report that it waits for more, s. After it, a report is taken to
+/// have been lost between two telemetry messages, and the stream to play.
+const START_MISSED_AFTER_S: f64 = 0.05;
+
+/// A stream under way. The board decides when it plays and when it waits for samples, and reports it by a flag; its
+/// value while it plays is a straight line from each of the host's samples to the next.
+#[derive(Debug)]
+pub(super) struct HostStream {
+    decoder: Decoder,
+    tick_hz: f64,
+    /// Samples from the one that plays on; `first_index` is the index of the first.
+    samples: VecDeque<u16>,
+    first_index: u64,
+    samples_per_tick: f64,
+    phase: Phase,
+    /// Index of the sample that plays, with the part of the way to the next one.
+    place: f64,
+    /// The host has sent the end of the stream.
+    ended: bool,
+    /// How much of the stream's layers is felt, from 0 to 1.
+    weight: f64,
+    /// The board last reported that it waits for samples.
+    dry: bool,
+    /// Ticks since the board may have begun to play.
+    ticks_with_samples: u32,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Phase {
+    /// No stream, or one that is over.
+    Over,
+    /// The host has started it, and the board has not reported that it waits for samples.
+    Requested,
+    /// The board waits for samples.
+    Waiting,
+    /// The board reached the sample at this place in this tick, and leaves it two ticks later.
+    Begun,
+    Playing,
+}
+
+impl HostStream {
+    pub(super) fn new(tick_hz: u32) -> Self {
+        Self {
+            decoder: Decoder::new(),
+            tick_hz: f64::from(tick_hz),
+            samples: VecDeque::new(),
+            first_index: 0,
+            samples_per_tick: 0.0,
+            phase: Phase::Over,
+            place: 0.0,
+            ended: false,
+            weight: 0.0,
+            dry: false,
+            ticks_with_samples: 0,
+        }
+    }
+
+    /// Takes bytes that the host sends.
+    pub(super) fn receive(&mut self, mut bytes: &[u8]) {
+        let mut decoder = std::mem::take(&mut self.decoder);
+        while let Some(payload) = decoder.next_frame(&mut bytes) {
+            match Payload::parse_from_host(payload) {
+                Ok(Payload::Request(Request { command, .. })) => self.handle(command),
+                Ok(Payload::Samples { first_index, samples }) => self.append(first_index, samples),
+                _ => {}
+            }
+        }
+        self.decoder = decoder;
+    }
+
+    /// Goes on by so many ticks, after the last of which the board reported whether it waits for samples; `None` when
+    /// it reported nothing. Returns the sample, from 0 to 1, and the weight of the stream's layers, from 0 to 1.
+    ///
+    /// A change between two reports is placed half way between them.
+    pub(super) fn advance(&mut self, ticks: u32, dry: Option<bool>) -> (f64, f64) {
+        let before = self.dry;
+        self.dry = dry.unwrap_or(before);
+        if self.phase == Phase::Over && self.weight <= 0.0 {
+            return (self.value(), 0.0);
+        }
+        for tick in 0..ticks {
+            self.tick(if tick < ticks / 2 { before } else { self.dry });
+        }
+        (self.value(), self.weight)
+    }
+
+    fn handle(&mut self, command: Command) {
+        match command {
+            Command::StartStream { sample_hz, .. } => {
+                self.samples.clear();
+                self.samples_per_tick = f64::from(sample_hz) / self.tick_hz;
+                (self.phase, self.first_index, self.place, self.ended) = (Phase::Requested, 0, 0.0, false);
+                self.ticks_with_samples = 0;
+            }
+            Command::EndStream => self.ended = true,
+            Command::Stop | Command::Disarm => (self.phase, self.weight) = (Phase::Over, 0.0),
+            _ => {}
+        }
+    }
+
+    /// Appends samples. Those of an index that is there already take the place of what was sent from there on.
+    fn append(&mut self, first_index: u32, samples: &[[u8; 2]]) {
+        // Indices on the line are modulo 2^32.
+        let offset = first_index.wrapping_sub(self.first_index as u32) as usize;
+        if offset <= self.samples.len() {
+            self.samples.truncate(offset);
+            self.samples.extend(samples.iter().map(|sample| u16::from_le_bytes(*sample)));
+        }
+    }
+
+    fn tick(&mut self, dry: bool) {
+        self.phase = match (self.phase, dry) {
+            (Phase::Over, _) => Phase::Over,
+            (Phase::Requested, false) => self.wait_for_report(),
+            (Phase::Requested | Phase::Waiting, true) => Phase::Waiting,
+            (Phase::Waiting, false) => self.begin(),
+            (Phase::Begun | Phase::Playing, true) => {
+                // The board holds the sample that it has come to while it fades the stream out.
+                self.place = self.place.round();
+                Phase::Waiting
+            }
+            (Phase::Begun, false) => Phase::Playing,
+            (Phase::Playing, false) => self.play(),
+        };
+        let step = 1.0 / (FADE_S * self.tick_hz);
+        let plays = matches!(self.phase, Phase::Begun | Phase::Playing);
+        self.weight = if plays { (self.weight + step).min(1.0) } else { (self.weight - step).max(0.0) };
+    }
+
+    /// Before a board reports that it waits for samples, the request may be on its way.
+    fn wait_for_report(&mut self) -> Phase {
+        self.ticks_with_samples += u32::from(!self.samples.is_empty());
+        let missed = f64::from(self.ticks_with_samples) > START_MISSED_AFTER_S * self.tick_hz;
+        if missed { self.begin() } else { Phase::Requested }
+    }
+
+    /// While the stream still fades out, the board goes on from where it held it. Later it begins with the sample that
+    /// it waited for.
+    fn begin(&mut self) -> Phase {
+        if self.weight > 0.0 {
+            return Phase::Playing;
+        }
+        if self.place > 0.0 {
+            self.place += 1.0;
+        }
+        Phase::Begun
+    }
+
+    fn play(&mut self) -> Phase {
+        self.place += self.samples_per_tick;
+        let end = self.first_index + self.samples.len() as u64;
+        let last = end.saturating_sub(1) as f64;
+        let over = self.place >= last;
+        if over {
+            self.place = last;
+        }
+        self.forget_played();
+        if over && self.ended { Phase::Over } else { Phase::Playing }
+    }
+
+    /// Drops samples that lie behind, so that a stream of any length fits in memory.
+    fn forget_played(&mut self) {
+        while self.first_index < self.place as u64 && self.samples.len() > 1 {
+            self.samples.pop_front();
+            self.first_index += 1;
+        }
+    }
+
+    fn value(&self) -> f64 {
+        let before = self.place.floor();
+        let offset = (before as u64).saturating_sub(self.first_index) as usize;
+        let sample = |at: usize| self.samples.get(at).or(self.samples.back()).map_or(0.0, |sample| f64::from(*sample));
+        let (from, to) = (sample(offset), sample(offset + 1));
+        (from + (self.place - before) * (to - from)) / f64::from(u16::MAX)
+    }
+}

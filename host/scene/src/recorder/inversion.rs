@@ -1,0 +1,66 @@
+//! What a commanded voltage is worth without the errors of amplifier and finger.
+
+use frixel_model::{Contact, Finger, LoadedContact, ParameterError};
+use frixel_wire::hello::BoardLimits;
+use frixel_wire::scene::Carrier;
+
+use crate::{Program, carrier};
+
+/// The full model behind an ideal amplifier and the DAC's steps.
+#[derive(Debug)]
+pub(super) struct Inversion {
+    contact: LoadedContact<f64>,
+    carrier: Carrier,
+    codes_per_v_rms: f64,
+    electric_friction_max_n: f64,
+}
+
+impl Inversion {
+    pub(super) fn new(program: &Program, limits: &BoardLimits, tick_hz: u32) -> Result<Self, ParameterError> {
+        let header = &program.header;
+        let finger = Finger {
+            radius_m: f64::from(header.finger_radius_m),
+            stiffness_pa_per_m: f64::from(header.stiffness_pa_per_m),
+            friction_coefficient: f64::from(header.friction_coefficient),
+        };
+        let contact = Contact::new(&finger, f64::from(header.effective_gap_m))?;
+        let half_period_s = f64::from(program.half_period_ticks) / f64::from(tick_hz);
+        let peak_per_rms = f64::from(carrier(header.carrier, half_period_s, limits).peak_per_rms());
+        let codes_per_v_peak = f64::from(i16::MAX) / f64::from(limits.full_scale_v_peak);
+        Ok(Self {
+            contact: contact.under_load(f64::from(header.normal_load_n))?,
+            carrier: header.carrier,
+            codes_per_v_rms: peak_per_rms * codes_per_v_peak,
+            electric_friction_max_n: program.reach.electric_friction_max_n,
+        })
+    }
+
+    /// Electric friction at a commanded voltage, the DAC's step included, N.
+    ///
+    /// The code of a square wave is its amplitude. A sine's is one of many, so its amplitude is rounded as the DAC
+    /// would round it.
+    pub(super) fn electric_friction_n(&self, voltage_v_rms: f32, dac_code: i16) -> f64 {
+        let amplitude_code = match self.carrier {
+            Carrier::Square => f64::from(dac_code).abs(),
+            Carrier::Sine => (f64::from(voltage_v_rms) * self.codes_per_v_rms).round(),
+        };
+        self.contact.electric_friction_n(amplitude_code / self.codes_per_v_rms)
+    }
+
+    /// Whether the drive can add so much friction.
+    pub(super) fn reaches(&self, electric_friction_n: f64) -> bool {
+        (0.0..=self.electric_friction_max_n).contains(&electric_friction_n)
+    }
+
+    /// DAC codes of an rms voltage.
+    #[cfg(test)]
+    pub(super) fn code_of(&self, voltage_v_rms: f64) -> i16 {
+        (voltage_v_rms * self.codes_per_v_rms).round() as i16
+    }
+
+    /// Electric friction at an rms voltage that has no steps, N.
+    #[cfg(test)]
+    pub(super) fn without_steps_n(&self, voltage_v_rms: f64) -> f64 {
+        self.contact.electric_friction_n(voltage_v_rms)
+    }
+}

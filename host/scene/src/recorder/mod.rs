@@ -1,0 +1,215 @@
+//! What a board did and what its finger felt, recorded and compared with the [reference](crate::reference).
+//!
+//! One [`Recorder`] serves every rig. [`Observation`]s go in: one for every tick where the board or its world is
+//! simulated, one for every telemetry message of a board at a port. [`FeltRow`]s and a [`MetricsSummary`] come out.
+//! What a source cannot see is `None` in an observation, and an absent cell or number in what comes out.
+
+mod host_stream;
+mod inversion;
+mod observation;
+mod rows;
+
+use frixel_model::ParameterError;
+use frixel_wire::fault::Flags;
+use frixel_wire::hello::BoardLimits;
+
+use crate::Program;
+use crate::metrics::{Metrics, MetricsSummary, Sample};
+use crate::reference::{Context, Reference, StrokeReference};
+use host_stream::HostStream;
+use inversion::Inversion;
+pub use observation::{FeltFriction, FingerState, Observation};
+pub use rows::FeltRow;
+use rows::{Frictions, RowMaker};
+
+/// Records one play.
+///
+/// Time zero is the tick that [`Self::start`] names, or else the first observation.
+#[derive(Debug)]
+pub struct Recorder {
+    comparison: Option<Comparison>,
+    row_maker: RowMaker,
+    rows: Vec<FeltRow>,
+    tick_period_s: f64,
+    ticks_max: u64,
+    start_tick: Option<u64>,
+    last_tick: u64,
+}
+
+/// What a play is compared with, and how far it is from that.
+#[derive(Debug)]
+struct Comparison {
+    reference: StrokeReference,
+    inversion: Inversion,
+    stream: HostStream,
+    metrics: Metrics,
+}
+
+impl Recorder {
+    /// Compares with the reference of `program`, on a board of these limits that ticks `tick_hz` times a second.
+    /// Records `ticks_max` ticks at most, with a row for every `ticks_per_row` of them.
+    ///
+    /// The contact model may refuse the program's finger; it does not refuse that of a program that was compiled.
+    pub fn new(
+        program: &Program,
+        limits: &BoardLimits,
+        tick_hz: u32,
+        ticks_max: u64,
+        ticks_per_row: u32,
+    ) -> Result<Self, ParameterError> {
+        let comparison = Comparison {
+            reference: Reference::new(program).along_stroke(),
+            inversion: Inversion::new(program, limits, tick_hz)?,
+            stream: HostStream::new(tick_hz),
+            metrics: Metrics::new(program.half_period_ticks),
+        };
+        Ok(Self { comparison: Some(comparison), ticks_max, ..Self::without_reference(tick_hz, ticks_per_row) })
+    }
+
+    /// Records a board whose program is unknown: no row has `wanted_n`, and the summary has no errors.
+    pub fn without_reference(tick_hz: u32, ticks_per_row: u32) -> Self {
+        Self {
+            comparison: None,
+            row_maker: RowMaker::new(tick_hz, ticks_per_row),
+            rows: Vec::new(),
+            tick_period_s: 1.0 / f64::from(tick_hz),
+            ticks_max: u64::MAX,
+            start_tick: None,
+            last_tick: 0,
+        }
+    }
+
+    /// Records nothing. It stands in until a play has its recorder.
+    pub fn idle() -> Self {
+        Self { ticks_max: 0, ..Self::without_reference(1, u32::MAX) }
+    }
+
+    /// Makes `tick` time zero: the record begins with the tick after it, and earlier observations are ignored.
+    pub fn start(&mut self, tick: u32) {
+        self.start_tick = Some(u64::from(tick));
+        self.last_tick = u64::from(tick);
+    }
+
+    /// Ends the record: later observations are ignored.
+    pub fn end(&mut self) {
+        self.ticks_max = self.ticks();
+    }
+
+    /// Compares with another program from now on, as when a scene is replaced while it plays. A recorder without a
+    /// reference stays without one.
+    pub fn replace(&mut self, program: &Program, limits: &BoardLimits, tick_hz: u32) -> Result<(), ParameterError> {
+        if let Some(comparison) = &mut self.comparison {
+            comparison.reference = Reference::new(program).along_stroke();
+            comparison.inversion = Inversion::new(program, limits, tick_hz)?;
+            comparison.metrics.set_half_period(program.half_period_ticks);
+        }
+        Ok(())
+    }
+
+    /// Takes bytes that the host sends to the board: whole frames or parts of them, in order. Samples of a stream are
+    /// part of the reference.
+    pub fn record_sent(&mut self, bytes: &[u8]) {
+        if let Some(comparison) = &mut self.comparison {
+            comparison.stream.receive(bytes);
+        }
+    }
+
+    /// Takes an observation. One that is not later than the one before, or beyond the end of the record, is ignored.
+    pub fn record(&mut self, observation: &Observation) {
+        let Some(ticks_passed) = self.advance_to(observation.tick) else { return };
+        let frictions = match &mut self.comparison {
+            Some(comparison) => comparison.add(observation, self.last_tick as f64 * self.tick_period_s, ticks_passed),
+            None => Frictions::without_reference(observation),
+        };
+        self.rows.extend(self.row_maker.add(observation, self.ticks(), &frictions));
+    }
+
+    /// Ticks of the record so far.
+    pub fn ticks(&self) -> u64 {
+        self.start_tick.map_or(0, |start_tick| self.last_tick - start_tick)
+    }
+
+    /// Time of the record so far, s.
+    pub fn t_s(&self) -> f64 {
+        self.ticks() as f64 * self.tick_period_s
+    }
+
+    /// Ticks that are still to be recorded.
+    pub fn ticks_left(&self) -> u64 {
+        self.ticks_max - self.ticks()
+    }
+
+    /// The rows so far, without those that were taken.
+    pub fn rows(&self) -> &[FeltRow] {
+        &self.rows
+    }
+
+    /// Removes the rows so far and returns them.
+    pub fn take_rows(&mut self) -> Vec<FeltRow> {
+        std::mem::take(&mut self.rows)
+    }
+
+    /// The numbers so far. Without a reference, only the ticks.
+    pub fn summary(&self) -> MetricsSummary {
+        let ticks = self.ticks();
+        match &self.comparison {
+            Some(comparison) => comparison.metrics.summary(ticks),
+            None => MetricsSummary { ticks, ..MetricsSummary::default() },
+        }
+    }
+
+    /// Goes to a tick of the board's counter, which is modulo 2^32, and returns how many ticks have passed since the
+    /// observation before; `None` when the tick is not to be recorded.
+    fn advance_to(&mut self, tick: u32) -> Option<u32> {
+        if self.start_tick.is_none() && self.ticks_max > 0 {
+            self.start(tick);
+            return Some(0);
+        }
+        let passed = tick.wrapping_sub(self.last_tick as u32);
+        let is_later = (passed as i32) > 0;
+        if !is_later || u64::from(passed) > self.ticks_left() {
+            return None;
+        }
+        self.last_tick += u64::from(passed);
+        Some(passed)
+    }
+}
+
+impl Comparison {
+    /// Adds an observation at a time since power-on, so many ticks after the one before.
+    fn add(&mut self, observation: &Observation, t_s: f64, ticks_passed: u32) -> Frictions {
+        let natural_n = self.reference.natural_friction_n();
+        let telemetry = observation.telemetry.as_ref();
+        let wanted_n =
+            self.reference_electric_n(observation, t_s, ticks_passed).map(|electric_n| natural_n + electric_n);
+        let asked_n = telemetry.map(|telemetry| natural_n + f64::from(telemetry.asked_electric_friction_n));
+        let felt_n = observation.felt.map(|felt| felt.friction_n);
+        let in_reach = wanted_n.is_some_and(|wanted_n| self.inversion.reaches(wanted_n - natural_n));
+        self.metrics.add(&Sample {
+            finger_down: observation.finger.is_some(),
+            wanted_n,
+            asked_n,
+            felt_n,
+            inversion_n: telemetry.filter(|_| in_reach).map(|telemetry| {
+                natural_n + self.inversion.electric_friction_n(telemetry.voltage_v_rms, telemetry.dac_code)
+            }),
+            saturated: telemetry.map(|telemetry| telemetry.flags.contains(Flags::SATURATED)),
+        });
+        Frictions { wanted_n, asked_n, felt_n }
+    }
+
+    /// Electric friction of the reference where the finger is; `None` while it is up.
+    fn reference_electric_n(&mut self, observation: &Observation, t_s: f64, ticks_passed: u32) -> Option<f64> {
+        let dry = observation.telemetry.map(|telemetry| telemetry.flags.contains(Flags::STREAM_DRY));
+        let (stream, stream_weight) = self.stream.advance(ticks_passed, dry);
+        let Some(FingerState { x_m, y_m, speed_m_per_s }) = observation.finger else {
+            self.reference.lift();
+            return None;
+        };
+        let context = Context { x_m, y_m, t_s, speed_m_per_s, stream, stream_weight };
+        Some(self.reference.electric_friction_n(&context))
+    }
+}
+
+#[cfg(test)]
+mod tests;

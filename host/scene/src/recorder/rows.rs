@@ -1,0 +1,142 @@
+//! What comes out of a recorder, a row for so many ticks.
+
+use frixel_wire::fault::Flags;
+
+use super::Observation;
+
+/// A row of `felt.csv`. What is not known is `None`, an empty cell. Frictions are totals, and means over the row's
+/// ticks.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FeltRow {
+    /// Time since the scene began to play, at the end of the row, s.
+    pub t_s: f64,
+    /// The finger's place from the left edge of the screen at the end of the row, mm.
+    pub x_mm: Option<f64>,
+    /// The finger's place from the top edge of the screen at the end of the row, mm.
+    pub y_mm: Option<f64>,
+    /// The finger's speed at the end of the row, mm/s.
+    pub speed_mm_s: Option<f64>,
+    /// The reference: friction that the scene means at the finger's place, N.
+    pub wanted_n: Option<f64>,
+    /// The command: friction that the board asked its inverse for, N.
+    pub asked_n: Option<f64>,
+    /// Friction that the finger felt, N.
+    pub felt_n: Option<f64>,
+    /// Rms voltage of the envelope, V, as the board reported it last in the row.
+    pub voltage_v_rms: Option<f64>,
+    /// Code that went to the DAC last in the row.
+    pub dac_code: Option<i16>,
+    /// Every flag that the board reported in the row.
+    pub flags: Option<Flags>,
+}
+
+/// Total frictions at one tick, N.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Frictions {
+    pub(super) wanted_n: Option<f64>,
+    pub(super) asked_n: Option<f64>,
+    pub(super) felt_n: Option<f64>,
+}
+
+impl Frictions {
+    /// What is known without a program: natural friction is then what the simulated finger had.
+    pub(super) fn without_reference(observation: &Observation) -> Self {
+        let natural_n = observation.felt.map(|felt| felt.friction_n - felt.electric_friction_n);
+        let electric_n = observation.telemetry.map(|telemetry| f64::from(telemetry.asked_electric_friction_n));
+        Self {
+            wanted_n: None,
+            asked_n: natural_n.zip(electric_n).map(|(natural_n, electric_n)| natural_n + electric_n),
+            felt_n: observation.felt.map(|felt| felt.friction_n),
+        }
+    }
+}
+
+/// Makes a row for every so many ticks.
+///
+/// At a row a millisecond and a carrier of 1 kHz, felt friction is the mean over a carrier period, and does not show
+/// which part of a carrier's edge the row ended on.
+#[derive(Debug)]
+pub(super) struct RowMaker {
+    tick_period_s: f64,
+    ticks_per_row: u64,
+    /// Number of the row under way: row `n` ends `n * ticks_per_row` ticks after time zero.
+    number: u64,
+    row: FeltRow,
+    wanted: Mean,
+    asked: Mean,
+    felt: Mean,
+}
+
+impl RowMaker {
+    pub(super) fn new(tick_hz: u32, ticks_per_row: u32) -> Self {
+        Self {
+            tick_period_s: 1.0 / f64::from(tick_hz),
+            ticks_per_row: u64::from(ticks_per_row.max(1)),
+            number: 0,
+            row: FeltRow::default(),
+            wanted: Mean::default(),
+            asked: Mean::default(),
+            felt: Mean::default(),
+        }
+    }
+
+    /// Takes what was observed so many ticks after time zero. Returns the row that it completes.
+    ///
+    /// A row whose last tick was not observed is left out.
+    pub(super) fn add(&mut self, observation: &Observation, ticks: u64, frictions: &Frictions) -> Option<FeltRow> {
+        let number = ticks.div_ceil(self.ticks_per_row);
+        if number != self.number {
+            self.begin(number);
+        }
+        self.row.dac_code = observation.dac_code.or(self.row.dac_code);
+        if let Some(telemetry) = &observation.telemetry {
+            self.row.voltage_v_rms = Some(f64::from(telemetry.voltage_v_rms));
+            self.row.flags = Some(self.row.flags.unwrap_or_default().with(telemetry.flags));
+        }
+        if observation.finger.is_some() {
+            self.wanted.add(frictions.wanted_n);
+            self.asked.add(frictions.asked_n);
+            self.felt.add(frictions.felt_n);
+        }
+        (ticks == number * self.ticks_per_row).then(|| self.finish(observation, ticks))
+    }
+
+    fn begin(&mut self, number: u64) {
+        self.number = number;
+        self.row = FeltRow::default();
+        (self.wanted, self.asked, self.felt) = (Mean::default(), Mean::default(), Mean::default());
+    }
+
+    fn finish(&self, observation: &Observation, ticks: u64) -> FeltRow {
+        FeltRow {
+            t_s: ticks as f64 * self.tick_period_s,
+            x_mm: observation.finger.map(|finger| 1e3 * finger.x_m),
+            y_mm: observation.finger.map(|finger| 1e3 * finger.y_m),
+            speed_mm_s: observation.finger.map(|finger| 1e3 * finger.speed_m_per_s),
+            wanted_n: self.wanted.value(),
+            asked_n: self.asked.value(),
+            felt_n: self.felt.value(),
+            ..self.row
+        }
+    }
+}
+
+/// A mean of the values that are known.
+#[derive(Clone, Copy, Debug, Default)]
+struct Mean {
+    sum: f64,
+    count: u32,
+}
+
+impl Mean {
+    fn add(&mut self, value: Option<f64>) {
+        if let Some(value) = value {
+            self.sum += value;
+            self.count += 1;
+        }
+    }
+
+    fn value(&self) -> Option<f64> {
+        (self.count > 0).then(|| self.sum / f64::from(self.count))
+    }
+}

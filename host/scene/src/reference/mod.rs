@@ -1,0 +1,113 @@
+//! The reference: the friction that a program means, evaluated in `f64` and independently of the firmware.
+
+mod field;
+mod samples;
+mod shape;
+mod stroke;
+
+use frixel_wire::scene::{Blend, Record};
+
+pub(crate) use field::{Edge, Field, Grating};
+pub(crate) use samples::Samples;
+pub(crate) use shape::{Shape, edges};
+pub use stroke::{Context, StrokeReference};
+
+use crate::Program;
+
+/// Evaluates the friction that a program means at a place on the screen.
+///
+/// The compiled program defines it: frictions as rounded to `f32`, pictures as resampled. It is not clipped to what
+/// can be reached.
+#[derive(Clone, Debug)]
+pub struct Reference {
+    natural_friction_n: f64,
+    pieces: Vec<Piece>,
+}
+
+/// A record made ready to be evaluated.
+#[derive(Clone, Debug)]
+pub(crate) struct Piece {
+    pub(crate) shape: Shape,
+    pub(crate) blend: Blend,
+    pub(crate) gain: f64,
+    pub(crate) field: Field,
+}
+
+impl Reference {
+    /// Makes a program ready to be evaluated.
+    pub fn new(program: &Program) -> Self {
+        let pieces = program.records.iter().map(|record| Piece::new(record, program)).collect();
+        let natural_friction_n =
+            f64::from(program.header.friction_coefficient) * f64::from(program.header.normal_load_n);
+        Self { natural_friction_n, pieces }
+    }
+
+    /// Friction at no voltage, `mu F_N`, in newtons.
+    pub fn natural_friction_n(&self) -> f64 {
+        self.natural_friction_n
+    }
+
+    /// Electric friction at a place, in metres from the screen's top left corner, in newtons. It may be out of reach.
+    /// It is not-a-number where a record names a bitmap that the program does not have.
+    ///
+    /// Time and speed are 0, nothing clicks and nothing is streamed: [`StrokeReference`] has those.
+    pub fn electric_friction_n(&self, x_m: f64, y_m: f64) -> f64 {
+        self.at(&Context { x_m, y_m, ..Context::default() }, |_| 0.0)
+    }
+
+    /// As [`Self::electric_friction_n`], at a time, a speed and a sample of the stream. Nothing clicks.
+    pub fn electric_friction_at_n(&self, context: &Context) -> f64 {
+        self.at(context, |_| 0.0)
+    }
+
+    /// The same with every vibration held at its largest friction.
+    #[must_use]
+    pub fn with_vibrations_held(mut self) -> Self {
+        for piece in &mut self.pieces {
+            if let Field::Vibration(vibration) = &piece.field {
+                piece.field = Field::Constant(vibration.high_n);
+            }
+        }
+        self
+    }
+
+    /// The reference along a stroke, which clicks where the finger crosses an edge or enters a button.
+    pub fn along_stroke(self) -> StrokeReference {
+        StrokeReference::new(self)
+    }
+
+    /// Electric friction in a context, where `click_n` is what a layer's click adds.
+    fn at(&self, context: &Context, click_n: impl Fn(usize) -> f64) -> f64 {
+        let covers = |piece: &Piece| piece.shape.covers(context.x_m, context.y_m);
+        // Nothing below a layer that replaces has to be evaluated.
+        let hides = |piece: &Piece| piece.blend == Blend::Replace && !matches!(piece.field, Field::Stream { .. });
+        let lowest = self.pieces.iter().rposition(|piece| hides(piece) && covers(piece)).unwrap_or(0);
+        let above = self.pieces.iter().enumerate().skip(lowest).filter(|(_, piece)| covers(piece));
+        above.fold(0.0, |below_n, (number, piece)| {
+            let own_n = piece.gain * (piece.field.at(context) + click_n(number));
+            let blended_n = match piece.blend {
+                Blend::Replace => own_n,
+                Blend::Add => below_n + own_n,
+                Blend::Multiply => below_n * own_n,
+                Blend::Max => own_n.max(below_n),
+            };
+            match piece.field {
+                Field::Stream { .. } => below_n + context.stream_weight * (blended_n - below_n),
+                _ => blended_n,
+            }
+        })
+    }
+
+    /// The layers, the first one at the bottom.
+    pub(crate) fn pieces(&self) -> &[Piece] {
+        &self.pieces
+    }
+}
+
+impl Piece {
+    fn new(record: &Record, program: &Program) -> Self {
+        let shape = Shape::new(record.region, &program.points);
+        let field = Field::new(record, program);
+        Self { shape, blend: record.blend, gain: f64::from(record.gain), field }
+    }
+}

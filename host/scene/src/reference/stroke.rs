@@ -1,0 +1,103 @@
+//! The reference along a stroke: clicks depend on where the finger was before.
+
+use super::Reference;
+use super::field::Field;
+
+/// Where the finger is, when, how fast, and what is streamed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Context {
+    /// Place from the screen's left edge, m.
+    pub x_m: f64,
+    /// Place from the screen's top edge, m.
+    pub y_m: f64,
+    /// Time since the board's power-on, s: that of its tick.
+    pub t_s: f64,
+    /// Sliding speed, m/s.
+    pub speed_m_per_s: f64,
+    /// The stream's sample, from 0 to 1.
+    pub stream: f64,
+    /// Weight of the stream's layers, from 0 without a stream to 1.
+    pub stream_weight: f64,
+}
+
+/// The reference along a stroke, context by context in the order of time.
+///
+/// A click begins in the first context on the other side of an edge or inside of a button: with one context a tick, at
+/// the tick in which the board sees the crossing.
+#[derive(Clone, Debug)]
+pub struct StrokeReference {
+    reference: Reference,
+    clicking: Vec<ClickingLayer>,
+    touching: bool,
+}
+
+/// The past of a layer that clicks.
+#[derive(Clone, Debug)]
+struct ClickingLayer {
+    layer: usize,
+    /// On which side of an edge, or inside of a button, the finger was in the context before; `None` outside.
+    side: Option<bool>,
+    clicked_at_s: Option<f64>,
+}
+
+impl StrokeReference {
+    pub(super) fn new(reference: Reference) -> Self {
+        let clicks = |layer: &usize| reference.pieces.get(*layer).is_some_and(|piece| piece.field.click().is_some());
+        let layers = (0..reference.pieces.len()).filter(clicks);
+        let clicking = layers.map(|layer| ClickingLayer { layer, side: None, clicked_at_s: None }).collect();
+        Self { reference, clicking, touching: false }
+    }
+
+    /// Friction at no voltage, `mu F_N`, in newtons.
+    pub fn natural_friction_n(&self) -> f64 {
+        self.reference.natural_friction_n
+    }
+
+    /// Electric friction in the next context of the stroke, in newtons, as [`Reference::electric_friction_n`] has it.
+    pub fn electric_friction_n(&mut self, context: &Context) -> f64 {
+        for layer in &mut self.clicking {
+            layer.follow(&self.reference, context, self.touching);
+        }
+        self.touching = true;
+        let click_n = |number: usize| {
+            let layer = self.clicking.iter().find(|layer| layer.layer == number);
+            layer.and_then(|layer| layer.click_n(&self.reference, context.t_s)).unwrap_or(0.0)
+        };
+        self.reference.at(context, click_n)
+    }
+
+    /// The finger leaves the screen.
+    pub fn lift(&mut self) {
+        self.touching = false;
+        for layer in &mut self.clicking {
+            layer.side = None;
+        }
+    }
+}
+
+impl ClickingLayer {
+    /// Notes where the finger is, and begins a click when it has crossed an edge, or entered a button while it touched.
+    fn follow(&mut self, reference: &Reference, context: &Context, touching: bool) {
+        let Some(piece) = reference.pieces.get(self.layer) else { return };
+        let side = piece.shape.covers(context.x_m, context.y_m).then(|| match &piece.field {
+            Field::Edge(edge) => edge.distance_m(context.x_m, context.y_m) >= 0.0,
+            _ => true,
+        });
+        let clicks = match (&piece.field, self.side, side) {
+            (Field::Edge(_), Some(before), Some(now)) => before != now,
+            (Field::Button(_), None, Some(_)) => touching,
+            _ => false,
+        };
+        if clicks {
+            self.clicked_at_s = Some(context.t_s);
+        }
+        self.side = side;
+    }
+
+    /// What the last click still adds, N; `None` when it is over.
+    fn click_n(&self, reference: &Reference, t_s: f64) -> Option<f64> {
+        let click = reference.pieces.get(self.layer)?.field.click()?;
+        let left = 1.0 - (t_s - self.clicked_at_s?) / f64::from(click.decay_s);
+        (left > 0.0).then(|| f64::from(click.height_n) * left * left)
+    }
+}
