@@ -18,7 +18,7 @@ use frixel::player;
 use frixel::scene_file;
 use frixel_driver::{DEFAULT_BAUD, Device, SerialLink};
 use frixel_scene::compile;
-use processes::{NAP, frixel, until};
+use processes::{frixel, until};
 use serialport::{SerialPort, TTYPort};
 use tempfile::TempDir;
 
