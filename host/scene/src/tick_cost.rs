@@ -111,7 +111,7 @@ fn rounded_mm((x_m, y_m): (f64, f64)) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tests::{HEAD, compile_text, scenes};
+    use crate::tests::{HEAD, PICTURES, compile_text};
 
     fn layer(x_mm: u32) -> String {
         format!(
@@ -123,7 +123,7 @@ mod tests {
     /// What a board says that has time for so many cycles more or less than the scene takes.
     fn message(text: &str, more_cycles: i32) -> Option<String> {
         let program = compile_text(text).expect("it compiles");
-        let scene = Scene::parse(text, "test.toml", scenes()).expect("it reads");
+        let scene = Scene::parse(text, "test.toml", &*PICTURES).expect("it reads");
         let mut log = Log::new(&scene.source);
         check(&scene, &program, program.worst_tick().cycles().saturating_add_signed(more_cycles), &mut log);
         log.finish(Some(())).err().map(|error| error.to_string())
