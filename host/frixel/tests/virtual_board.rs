@@ -9,7 +9,7 @@ mod processes;
 use std::fs;
 use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Output, Stdio};
+use std::process::{Child, Command, Output, Stdio};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::sleep;
 use std::time::Duration;
@@ -17,6 +17,7 @@ use std::time::Duration;
 use frixel::player;
 use frixel_driver::{DEFAULT_BAUD, Device, SerialLink};
 use frixel_scene::{Scene, compile};
+use hound::{SampleFormat, WavSpec, WavWriter};
 use processes::{NAP, frixel, until};
 use serialport::{SerialPort, TTYPort};
 use tempfile::TempDir;
@@ -49,15 +50,21 @@ fn turn() -> MutexGuard<'static, ()> {
 
 /// A client in a process of its own.
 fn client(scene: &Path, port: &str, seconds: &str, folder: &Path) -> Child {
-    frixel()
-        .arg("play")
-        .arg(scene)
-        .args(["--port", port, "--seconds", seconds, "--json", "--out"])
-        .arg(folder)
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap()
+    play_command(scene, port, seconds, folder).spawn().unwrap()
+}
+
+fn play_command(scene: &Path, port: &str, seconds: &str, folder: &Path) -> Command {
+    let mut command = frixel();
+    command.arg("play").arg(scene).args(["--port", port, "--seconds", seconds, "--json", "--out"]).arg(folder);
+    command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    command
+}
+
+/// Ends a process as a person would.
+fn interrupt(process: Child) -> Output {
+    let pid = rustix::process::Pid::from_raw(process.id() as i32).unwrap();
+    rustix::process::kill_process(pid, rustix::process::Signal::INT).unwrap();
+    process.wait_with_output().unwrap()
 }
 
 /// A virtual board in a process of its own.
@@ -82,8 +89,8 @@ impl VirtualBoard {
 
     /// Ends it as a person would, and reads what it wrote.
     fn interrupt(mut self) -> Log {
-        let process = rustix::process::Pid::from_raw(self.process.id() as i32).unwrap();
-        rustix::process::kill_process(process, rustix::process::Signal::INT).unwrap();
+        let pid = rustix::process::Pid::from_raw(self.process.id() as i32).unwrap();
+        rustix::process::kill_process(pid, rustix::process::Signal::INT).unwrap();
         assert!(self.process.wait().unwrap().success());
         Log::read(self.folder.path())
     }
@@ -143,6 +150,12 @@ impl Log {
     }
 }
 
+/// The cells of each row of a felt.csv.
+fn felt_cells(folder: &Path) -> Vec<Vec<String>> {
+    let text = fs::read_to_string(folder.join("felt.csv")).unwrap();
+    text.lines().skip(1).map(|line| line.split(',').map(str::to_owned).collect()).collect()
+}
+
 /// Rows of a felt.csv so far; none before it is there.
 fn rows_in(folder: &Path) -> usize {
     let text = fs::read_to_string(folder.join("felt.csv")).unwrap_or_default();
@@ -159,26 +172,24 @@ fn read_events(text: &str) -> Vec<Event> {
         .collect()
 }
 
+/// What holds however busy the machine is: the scene arrives whole, and the board plays it until it is told to stop. How
+/// many frames had to be sent again depends on the machine.
 #[test]
 fn a_scene_plays_through_a_real_serial_port() {
     let _turn = turn();
     let board = VirtualBoard::start();
     let folder = TempDir::new().unwrap();
-    let played = board.play("0.6", folder.path());
+    let process = client(&board.scene, &board.port, "600", folder.path());
+    until("half a second of rows is written", || rows_in(folder.path()) > 500);
+    let played = interrupt(process);
     assert!(played.status.success(), "{}", String::from_utf8_lossy(&played.stderr));
     let json = String::from_utf8(played.stdout).unwrap();
-    for part in [
-        r#""rig":"board""#,
-        r#""friction_error_rms_n":null"#,
-        r#""frames_rejected":0"#,
-        r#""payload_bytes":62612"#,
-        r#""saturated_ticks":null"#,
-    ] {
+    for part in
+        [r#""rig":"board""#, r#""friction_error_rms_n":null"#, r#""payload_bytes":62612"#, r#""saturated_ticks":null"#]
+    {
         assert!(json.contains(part), "{part} is not in {json}");
     }
-    let felt = fs::read_to_string(folder.path().join("felt.csv")).unwrap();
-    let rows: Vec<Vec<&str>> = felt.lines().skip(1).map(|line| line.split(',').collect()).collect();
-    assert!(rows.len() > 500, "{} rows of 1 kHz telemetry", rows.len());
+    let rows = felt_cells(folder.path());
     assert!(rows.iter().all(|row| row[6].is_empty()), "a board does not know what is felt");
     assert!(rows.iter().any(|row| row[7].parse::<f64>().unwrap() > 50.0), "it does know its voltage");
 
@@ -189,6 +200,57 @@ fn a_scene_plays_through_a_real_serial_port() {
     assert!(log.drives_between(active_s, stopped_s));
     assert!(!log.drives_between(0.0, active_s));
     assert!(!log.drives_between(stopped_s + 1e-3, f64::INFINITY));
+}
+
+const STREAM_SCENE: &str = r#"
+version = 1
+screen = { width_mm = 120, height_mm = 110 }
+coating = { thickness_um = 10, permittivity = 1 }
+finger = { radius_mm = 8, stiffness_pa_per_m = 1.8e7, friction_coefficient = 0.5, normal_load_n = 0.5 }
+drive = { host_timeout_ms = 1000 }
+[[layer]]
+kind = "stream"
+low_n = 0.0
+high_n = 0.02
+"#;
+
+/// A tone that is slow beside the millisecond between two telemetry messages.
+fn write_tone(path: &Path) {
+    let spec = WavSpec { channels: 1, sample_rate: 1_000, bits_per_sample: 16, sample_format: SampleFormat::Int };
+    let mut writer = WavWriter::create(path, spec).unwrap();
+    for index in 0..60_000_u32 {
+        let turns = 4.0 * f64::from(index) / 1_000.0;
+        writer.write_sample((32_767.0 * (std::f64::consts::TAU * turns).sin()) as i16).unwrap();
+    }
+    writer.finalize().unwrap();
+}
+
+/// What the board asks for is the stream as this test knows it from outside; the reference has to follow it.
+#[test]
+fn the_reference_of_a_board_at_a_port_has_what_is_streamed() {
+    let _turn = turn();
+    let board = VirtualBoard::start();
+    let folder = TempDir::new().unwrap();
+    let (scene, tone) = (folder.path().join("stream.toml"), folder.path().join("tone.wav"));
+    fs::write(&scene, STREAM_SCENE).unwrap();
+    write_tone(&tone);
+    let mut command = play_command(&scene, &board.port, "600", folder.path());
+    let process = command.arg("--stream").arg(&tone).spawn().unwrap();
+    until("rows are written", || rows_in(folder.path()) > 1_500);
+    let played = interrupt(process);
+    assert!(played.status.success(), "{}", String::from_utf8_lossy(&played.stderr));
+    let json: serde_json::Value = serde_json::from_slice(&played.stdout).unwrap();
+    assert!(json["wanted_max_n"].as_f64().unwrap() > 0.265, "{json}");
+
+    let friction_n = |cell: &str| cell.parse::<f64>().ok();
+    let rows = felt_cells(folder.path());
+    let pairs: Vec<(f64, f64)> =
+        rows.iter().filter_map(|row| Some((friction_n(&row[4])?, friction_n(&row[5])?))).collect();
+    assert!(pairs.len() > 500, "{} rows with a finger", pairs.len());
+    let near = pairs.iter().filter(|(wanted_n, asked_n)| (wanted_n - asked_n).abs() < 2e-3).count();
+    assert!(near * 10 > pairs.len() * 9, "the reference is near what was asked for in {near} of {} rows", pairs.len());
+    let varied = pairs.iter().filter(|(_, asked_n)| (asked_n - 0.25).abs() > 4e-3).count();
+    assert!(varied * 2 > pairs.len(), "something was streamed in {varied} of {} rows", pairs.len());
 }
 
 /// Passes bytes between a client and a board, until the client has sent so many.
