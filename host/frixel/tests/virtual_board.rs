@@ -212,8 +212,8 @@ fn read_events(text: &str) -> Vec<Event> {
         .collect()
 }
 
-/// What holds however busy the machine is: the scene arrives whole, and the board plays it until it is told to stop. How
-/// many frames had to be sent again depends on the machine.
+/// What holds however busy the machine is: the scene arrives whole, and the board plays it until the client stops it.
+/// How many frames had to be sent again depends on the machine.
 #[test]
 fn a_scene_plays_through_a_real_serial_port() {
     let _turn = turn();
@@ -265,7 +265,8 @@ fn write_tone(path: &Path) {
     writer.finalize().unwrap();
 }
 
-/// What the board asks for is the stream as this test knows it from outside; the reference has to follow it.
+/// The board's command is the stream as it is seen from outside. The reference, made from what the host has sent, has to
+/// follow it.
 #[test]
 fn the_reference_of_a_board_at_a_port_has_what_is_streamed() {
     let _turn = turn();
@@ -288,7 +289,7 @@ fn the_reference_of_a_board_at_a_port_has_what_is_streamed() {
         rows.iter().filter_map(|row| Some((friction_n(&row[4])?, friction_n(&row[5])?))).collect();
     assert!(pairs.len() > 500, "{} rows with a finger", pairs.len());
     let near = pairs.iter().filter(|(wanted_n, asked_n)| (wanted_n - asked_n).abs() < 2e-3).count();
-    assert!(near * 10 > pairs.len() * 9, "the reference is near what was asked for in {near} of {} rows", pairs.len());
+    assert!(near * 10 > pairs.len() * 9, "the reference is near the command in {near} of {} rows", pairs.len());
     let varied = pairs.iter().filter(|(_, asked_n)| (asked_n - 0.25).abs() > 4e-3).count();
     assert!(varied * 2 > pairs.len(), "something was streamed in {varied} of {} rows", pairs.len());
 }
@@ -426,7 +427,7 @@ fn a_board_that_vanishes_is_said_in_a_sentence() {
     assert!(ticks > 0, "the summary is of what was played");
     let felt = fs::read_to_string(folder.path().join("felt.csv")).unwrap();
     let last: f64 = felt.lines().last().unwrap().split(',').next().unwrap().parse().unwrap();
-    assert!((last * 40_000.0 - ticks as f64).abs() < 1.0, "the rows end at {last} s, {ticks} ticks were told");
+    assert!((last * 40_000.0 - ticks as f64).abs() < 1.0, "the rows end at {last} s, {ticks} ticks were reported");
 }
 
 #[test]
