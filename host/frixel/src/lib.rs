@@ -1,6 +1,7 @@
-//! Driver library for frixel boards.
+//! What the `frixel` command is made of: playing, recording, pictures and reports.
 #![forbid(unsafe_code)]
 
+mod chart;
 pub mod check;
 pub mod model_csv;
 pub mod output;

@@ -1,199 +1,224 @@
 //! `felt.svg`: friction and voltage over time.
 
 use std::fs;
-use std::ops::Range;
 use std::path::Path;
 
-use plotters::coord::Shift;
-use plotters::prelude::*;
-
-use super::OutputError;
-use super::scale::label;
 use super::trace::{Extremes, Span, Trace};
+use super::{OutputError, Subject};
+use crate::chart::{Axis, Chart, Line, Look, Margins, PALETTE, Panel, RGBColor};
 use frixel_scene::Reach;
 
-/// Size of the picture as it is shown.
-const WIDTH: u32 = 1_000;
-const HEIGHT: u32 = 640;
-/// The library places everything on whole units, so it draws on a canvas this many times as large.
-const FINE: u32 = 8;
+const REFERENCE: RGBColor = RGBColor(0xf2, 0xb1, 0x34);
+const FELT: RGBColor = PALETTE[0];
+const VOLTAGE: RGBColor = PALETTE[1];
+const REACH: RGBColor = RGBColor(0x55, 0x88, 0xb0);
+const REACH_OPACITY: f64 = 0.12;
 
-/// What drawings call the font; the viewer takes its own.
-const FAMILY: &str = "sans-serif";
+/// Heights of the two panels and width of their plots, in pixels.
+const HEIGHTS: (u32, u32) = (350, 240);
+const PLOT_WIDTH: f64 = 900.0;
+/// Width of a piece of the time axis in which a signal is a line or an envelope, in pixels.
+const PIECE: f64 = 6.0;
+/// A signal that turns back so many times within five pieces has less than five pixels to a period: it is drawn as its
+/// envelope. A turn counts when it is higher than this part of the axis.
+const TURNS_MAX: usize = 12;
+const TURN_MIN: f64 = 0.03;
+/// How much an envelope covers of what is behind it.
+const OPACITY: f64 = 0.4;
 
-const WANTED: RGBColor = RGBColor(0xf2, 0xb1, 0x34);
-const FELT: RGBColor = RGBColor(0x00, 0x72, 0xb2);
-const VOLTAGE: RGBColor = RGBColor(0xd5, 0x5e, 0x00);
-const REACH: RGBColor = RGBColor(0xee, 0xf3, 0xf7);
+/// One quantity of a span.
+type Part = fn(&Span) -> Option<Extremes>;
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-type Drawn = Result<(), Box<dyn std::error::Error>>;
-
-/// Writes wanted and felt friction, and below them the voltage, over time. Where nothing was felt, as on a real
-/// board, the friction that was asked for stands in its place. `title` stands above; the reach is shaded.
-pub fn write_felt_svg(path: &Path, title: &str, trace: &Trace, reach: &Reach) -> Result<(), OutputError> {
-    let text = draw(title, trace, reach).map_err(|error| {
-        let reason = error.to_string();
-        OutputError::Drawing { path: path.to_owned(), reason }
-    })?;
+/// Writes reference and felt friction, and below them the voltage, over time; the reach is shaded. Where nothing was
+/// felt, as on a real board, the commanded friction stands in its place. What changes too fast to be drawn is drawn as
+/// its envelope.
+pub fn write_felt_svg(path: &Path, subject: &Subject, trace: &Trace, reach: &Reach) -> Result<(), OutputError> {
+    let text = chart(subject, trace, reach).svg().map_err(OutputError::drawing(path))?;
     fs::write(path, text).map_err(|source| OutputError::File { path: path.to_owned(), source })
 }
 
-fn draw(title: &str, trace: &Trace, reach: &Reach) -> Result<String, Box<dyn std::error::Error>> {
-    let (width, height) = (WIDTH * FINE, HEIGHT * FINE);
-    let mut text = String::new();
-    {
-        let root = SVGBackend::with_string(&mut text, (width, height)).into_drawing_area();
-        root.fill(&WHITE)?;
-        let root =
-            root.margin(px(14), px(6), px(14), px(6)).titled(title, (FAMILY, px(19)).into_font().color(&BLACK))?;
-        let (upper, lower) = root.margin(px(12), 0, 0, 0).split_vertically(px(350));
-        let times = times(trace.spans());
-        draw_friction(&upper, trace.spans(), reach, times.clone())?;
-        draw_voltage(&lower, trace.spans(), times)?;
-        root.present()?;
-    }
-    let (large, shown) =
-        (format!("width=\"{width}\" height=\"{height}\""), format!("width=\"{WIDTH}\" height=\"{HEIGHT}\""));
-    Ok(text.replacen(&large, &shown, 1))
+fn chart(subject: &Subject, trace: &Trace, reach: &Reach) -> Chart {
+    let mut chart = Chart::new(vec![friction(trace.spans(), reach), voltage(trace.spans())], 1);
+    chart.title = subject.title();
+    chart
 }
 
-fn px(shown: u32) -> u32 {
-    shown * FINE
-}
-
-fn draw_friction(area: &Area, spans: &[Span], reach: &Reach, times: Range<f64>) -> Drawn {
+fn friction(spans: &[Span], reach: &Reach) -> Panel {
     let felt = spans.iter().any(|span| span.felt_n.is_some());
-    let (name, second): (_, fn(&Span) -> Option<Extremes>) =
-        if felt { ("felt", |span| span.felt_n) } else { ("asked for", |span| span.asked_n) };
+    let (name, second): (_, Part) =
+        if felt { ("felt", |span| span.felt_n) } else { ("commanded", |span| span.asked_n) };
+    let first: Part = |span| span.wanted_n;
     let (natural_mn, most_mn) = (1e3 * reach.friction_min_n(), 1e3 * reach.friction_max_n());
-    let drawn = [extremes(spans, |span| span.wanted_n), extremes(spans, second)].into_iter().flatten();
-    let range = with_margin(drawn.fold((natural_mn, most_mn), |(least, largest), range| {
-        (least.min(1e3 * range.least), largest.max(1e3 * range.largest))
-    }));
-    let mut chart = ChartBuilder::on(area)
-        .margin_right(px(24))
-        .x_label_area_size(px(8))
-        .y_label_area_size(px(72))
-        .build_cartesian_2d(times.clone(), range)?;
-    chart.draw_series([Rectangle::new([(times.start, natural_mn), (times.end, most_mn)], REACH.filled())])?;
-    chart
-        .configure_mesh()
-        .disable_x_axis()
-        .y_desc("friction, mN")
-        .y_labels(8)
-        .y_label_formatter(&|value| label(*value))
-        .label_style((FAMILY, px(15)))
-        .axis_desc_style((FAMILY, px(16)))
-        .set_all_tick_mark_size(px(5))
-        .axis_style(BLACK.stroke_width(FINE))
-        .bold_line_style(BLACK.mix(0.15).stroke_width(FINE))
-        .light_line_style(TRANSPARENT)
-        .draw()?;
-    for (name, colour, width, part) in
-        [("wanted", WANTED, px(5), wanted as fn(&Span) -> Option<Extremes>), (name, FELT, px(2), second)]
-    {
-        for line in lines(spans, part, 1e3) {
-            chart.draw_series(LineSeries::new(line, colour.stroke_width(width)))?;
-        }
-        let empty = std::iter::empty::<PathElement<(f64, f64)>>();
-        chart
-            .draw_series(empty)?
-            .label(name)
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + px(24) as i32, y)], colour.stroke_width(width)));
+    let drawn = [extremes(spans, first), extremes(spans, second)].into_iter().flatten();
+    let (low, high) = drawn
+        .fold((natural_mn, most_mn), |(low, high), range| (low.min(1e3 * range.least), high.max(1e3 * range.largest)));
+    let (start, end) = times(spans);
+    let mut panel = panel("friction, mN", (start, end), (low, high), HEIGHTS.0);
+    panel.margins.bottom = 26;
+    panel.x.label.clear();
+    let corners = [(start, natural_mn), (end, natural_mn), (end, most_mn), (start, most_mn)];
+    panel.add("reachable", Look::line(REACH, Line::Filled(REACH_OPACITY)), corners.to_vec());
+    let signals = [("wanted", REFERENCE, Line::Thick, first), (name, FELT, Line::Solid, second)];
+    for (name, colour, line, part) in signals {
+        Signal { part, scale: 1e3, range: high - low }.add_to(&mut panel, spans, name, Look::line(colour, line));
     }
-    let empty = std::iter::empty::<PathElement<(f64, f64)>>();
-    chart.draw_series(empty)?.label("reachable").legend(|(x, y)| {
-        let half = px(6) as i32;
-        Rectangle::new([(x, y - half), (x + px(24) as i32, y + half)], RGBColor(0xc9, 0xd8, 0xe4).filled())
-    });
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
-        .margin(px(10))
-        .legend_area_size(px(32))
-        .label_font((FAMILY, px(15)))
-        .background_style(WHITE.mix(0.9))
-        .border_style(BLACK.mix(0.3).stroke_width(FINE))
-        .draw()?;
-    Ok(())
+    panel
 }
 
-fn wanted(span: &Span) -> Option<Extremes> {
-    span.wanted_n
+fn voltage(spans: &[Span]) -> Panel {
+    let part: Part = |span| span.voltage_v_rms;
+    let largest = extremes(spans, part).map_or(0.0, |range| range.largest).max(1.0);
+    let mut panel = panel("voltage, V rms", times(spans), (0.0, largest), HEIGHTS.1);
+    Signal { part, scale: 1.0, range: largest }.add_to(&mut panel, spans, "", Look::line(VOLTAGE, Line::Solid));
+    panel
 }
 
-fn draw_voltage(area: &Area, spans: &[Span], times: Range<f64>) -> Drawn {
-    let largest = extremes(spans, |span| span.voltage_v_rms).map_or(0.0, |range| range.largest);
-    let mut chart = ChartBuilder::on(area)
-        .margin_top(px(12))
-        .margin_right(px(24))
-        .x_label_area_size(px(46))
-        .y_label_area_size(px(72))
-        .build_cartesian_2d(times, with_margin((0.0, largest.max(1.0))))?;
-    chart
-        .configure_mesh()
-        .x_desc("time, s")
-        .y_desc("voltage, V rms")
-        .x_labels(12)
-        .y_labels(6)
-        .x_label_formatter(&|value| label(*value))
-        .y_label_formatter(&|value| label(*value))
-        .label_style((FAMILY, px(15)))
-        .axis_desc_style((FAMILY, px(16)))
-        .set_all_tick_mark_size(px(5))
-        .axis_style(BLACK.stroke_width(FINE))
-        .bold_line_style(BLACK.mix(0.15).stroke_width(FINE))
-        .light_line_style(TRANSPARENT)
-        .draw()?;
-    for line in lines(spans, |span| span.voltage_v_rms, 1.0) {
-        chart.draw_series(LineSeries::new(line, VOLTAGE.stroke_width(2 * FINE)))?;
-    }
-    Ok(())
+/// An empty panel over time, with a twentieth more than the range on either side.
+fn panel(label: &str, times: (f64, f64), (low, high): (f64, f64), height: u32) -> Panel {
+    let margin = 0.05 * (high - low).max(1e-6);
+    let x = Axis::linear("time, s", times.0..times.1).with_labels(12.0);
+    let y = Axis::linear(label, low - margin..high + margin);
+    Panel { height, margins: Margins { left: 80, right: 20, top: 8, bottom: 44 }, ..Panel::new("", x, y) }
 }
 
-/// From the first time to the last; a second where there is no such stretch.
-fn times(spans: &[Span]) -> Range<f64> {
+/// From the first time to the last, in seconds; one second where there is no such stretch.
+fn times(spans: &[Span]) -> (f64, f64) {
     match (spans.first(), spans.last()) {
-        (Some(first), Some(last)) if last.end_s > first.start_s => first.start_s..last.end_s,
-        (Some(first), _) => first.start_s..first.start_s + 1.0,
-        _ => 0.0..1.0,
+        (Some(first), Some(last)) if last.end_s > first.start_s => (first.start_s, last.end_s),
+        (Some(first), _) => (first.start_s, first.start_s + 1.0),
+        _ => (0.0, 1.0),
     }
 }
 
 /// Least and largest value of all spans.
-fn extremes(spans: &[Span], part: fn(&Span) -> Option<Extremes>) -> Option<Extremes> {
-    spans
-        .iter()
-        .filter_map(part)
-        .reduce(|one, other| Extremes { least: one.least.min(other.least), largest: one.largest.max(other.largest) })
+fn extremes(spans: &[Span], part: Part) -> Option<Extremes> {
+    spans.iter().filter_map(part).reduce(Extremes::joined)
 }
 
-/// A twentieth more on either side.
-fn with_margin((least, largest): (f64, f64)) -> Range<f64> {
-    let margin = 0.05 * (largest - least).max(1e-6);
-    least - margin..largest + margin
+/// How a quantity of spans is drawn.
+struct Signal {
+    part: Part,
+    /// From the quantity's unit to the axis' unit.
+    scale: f64,
+    /// Length of the axis, in its unit.
+    range: f64,
 }
 
-/// Lines through least and largest of each span, cut where a value is not known.
-fn lines(spans: &[Span], part: fn(&Span) -> Option<Extremes>, scale: f64) -> Vec<Vec<(f64, f64)>> {
-    let mut lines = vec![Vec::new()];
-    for span in spans {
-        match (part(span), lines.last_mut()) {
-            (Some(Extremes { least, largest }), Some(line)) => {
-                let (least, largest) = (scale * least, scale * largest);
-                // From where the line stands, the nearer of the two comes first.
-                let falls =
-                    line.last().is_some_and(|&(_, last): &(f64, f64)| (last - largest).abs() < (last - least).abs());
-                let (first, second) = if falls { (largest, least) } else { (least, largest) };
-                line.push((span.start_s, first));
-                if largest > least {
-                    line.push((span.end_s, second));
-                }
+/// A stretch of time, shorter than can be seen, with what the signal does in it.
+#[derive(Default)]
+struct Piece {
+    /// Places of the line.
+    line: Vec<(f64, f64)>,
+    turns: usize,
+}
+
+impl Signal {
+    /// Adds the signal to a panel: as a line, and where it is too fast for one as its envelope.
+    fn add_to(&self, panel: &mut Panel, spans: &[Span], name: &str, look: Look) {
+        let envelope = Look { line: Line::Filled(OPACITY), ..look };
+        let comma = if name.is_empty() { "" } else { ", " };
+        let too_fast = format!("{name}{comma}too fast to draw: least to largest");
+        let mut names = [Some(name), Some(too_fast.as_str())];
+        let (start_s, end_s) = times(spans);
+        let piece_s = (end_s - start_s) * PIECE / PLOT_WIDTH;
+        for stretch in self.stretches(spans) {
+            for (fast, places) in runs(&self.pieces(&stretch, start_s, piece_s)) {
+                let (look, points) = if fast { (envelope, envelope_of(&places, piece_s)) } else { (look, places) };
+                panel.add(names[usize::from(fast)].take().unwrap_or_default(), look, points);
             }
-            _ => lines.push(Vec::new()),
+        }
+        if let Some(name) = names[0] {
+            panel.add(name, look, Vec::new());
         }
     }
-    lines.retain(|line| !line.is_empty());
-    lines
+
+    /// Places through least and largest value of each span; a new stretch begins where a value is not known.
+    fn stretches(&self, spans: &[Span]) -> Vec<Vec<(f64, f64)>> {
+        let mut stretches = vec![Vec::new()];
+        for span in spans {
+            match ((self.part)(span), stretches.last_mut()) {
+                (Some(Extremes { least, largest }), Some(stretch)) => {
+                    let (least, largest) = (self.scale * least, self.scale * largest);
+                    // From where the line stands, the nearer of the two comes first.
+                    let last = stretch.last().map(|&(_, last): &(f64, f64)| last);
+                    let falls = last.is_some_and(|last| (last - largest).abs() < (last - least).abs());
+                    let (first, second) = if falls { (largest, least) } else { (least, largest) };
+                    stretch.push((span.start_s, first));
+                    if largest > least {
+                        stretch.push((span.end_s, second));
+                    }
+                }
+                _ => stretches.push(Vec::new()),
+            }
+        }
+        stretches.retain(|stretch| !stretch.is_empty());
+        stretches
+    }
+
+    /// Cuts a stretch into pieces of time, and counts in each how often the signal turns back.
+    fn pieces(&self, stretch: &[(f64, f64)], start_s: f64, piece_s: f64) -> Vec<Piece> {
+        let number = |time_s: f64| ((time_s - start_s) / piece_s) as usize;
+        let first = stretch.first().map_or(0, |place| number(place.0));
+        let mut pieces: Vec<Piece> = Vec::new();
+        // The last turn, and the direction since then.
+        let (mut turn, mut rises) = (stretch.first().map_or(0.0, |place| place.1), None);
+        for &(time_s, value) in stretch {
+            let place = number(time_s) - first;
+            pieces.resize_with(pieces.len().max(place + 1), Piece::default);
+            let Some(piece) = pieces.get_mut(place) else { continue };
+            piece.line.push((time_s, value));
+            let further = rises.is_some_and(|rises| (value > turn) == rises);
+            if further {
+                turn = value;
+            } else if (value - turn).abs() > TURN_MIN * self.range {
+                piece.turns += usize::from(rises.is_some());
+                (turn, rises) = (value, Some(value > turn));
+            }
+        }
+        pieces
+    }
+}
+
+/// Puts pieces together that follow each other and are drawn in the same way: whether that is as an envelope, and the
+/// places, each run beginning where the last one ended.
+fn runs(pieces: &[Piece]) -> Vec<(bool, Vec<(f64, f64)>)> {
+    let turns = |place: usize| -> usize {
+        let near = pieces.iter().skip(place.saturating_sub(2)).take(place + 3 - place.saturating_sub(2));
+        near.map(|piece| piece.turns).sum()
+    };
+    let mut runs: Vec<(bool, Vec<(f64, f64)>)> = Vec::new();
+    for (place, piece) in pieces.iter().enumerate() {
+        let fast = turns(place) >= TURNS_MAX;
+        match runs.last_mut() {
+            Some((last, places)) if *last == fast => places.extend(&piece.line),
+            Some((_, places)) => {
+                let joint = places.last().copied();
+                runs.push((fast, joint.into_iter().chain(piece.line.iter().copied()).collect()));
+            }
+            None => runs.push((fast, piece.line.clone())),
+        }
+    }
+    runs
+}
+
+/// The polygon around places: largest values from the first time to the last, and least values back.
+fn envelope_of(places: &[(f64, f64)], piece_s: f64) -> Vec<(f64, f64)> {
+    let mut upper: Vec<(f64, f64)> = Vec::new();
+    let mut lower: Vec<(f64, f64)> = Vec::new();
+    let mut rest = places;
+    while let Some(&(start_s, _)) = rest.first() {
+        let count = rest.iter().take_while(|(time_s, _)| *time_s < start_s + piece_s).count().max(1);
+        let (piece, later) = rest.split_at(count);
+        // Both ends of a piece, so that it reaches up to the next one.
+        let end_s = later.first().or(piece.last()).map_or(start_s, |place| place.0);
+        let (least, largest) = piece.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, largest), (_, value)| {
+            (least.min(*value), largest.max(*value))
+        });
+        upper.extend([(start_s, largest), (end_s, largest)]);
+        lower.extend([(start_s, least), (end_s, least)]);
+        rest = later;
+    }
+    lower.reverse();
+    upper.extend(lower);
+    upper
 }

@@ -9,13 +9,11 @@
 //!
 //! The same input gives the same bytes.
 
-mod canvas;
 mod csv;
 mod felt_svg;
 mod map;
 mod preview_png;
 mod report;
-pub(crate) mod scale;
 mod scene_png;
 #[cfg(test)]
 mod tests;
@@ -32,6 +30,22 @@ pub use preview_png::{Preview, write_preview_png};
 pub use report::Report;
 pub use scene_png::write_scene_png;
 pub use trace::Trace;
+
+/// What a picture is of: its title.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Subject {
+    /// The scene.
+    pub name: String,
+    /// The finger, or the board as well, is simulated.
+    pub simulated: bool,
+}
+
+impl Subject {
+    /// The scene's name; what is simulated says so.
+    fn title(&self) -> String {
+        if self.simulated { format!("{}, simulated", self.name) } else { self.name.clone() }
+    }
+}
 
 /// Why a file could not be written.
 #[derive(Debug, Error)]
@@ -58,10 +72,5 @@ impl OutputError {
     /// For `map_err` on what is drawn.
     fn drawing<E: ToString>(path: &Path) -> impl FnOnce(E) -> Self {
         move |error| Self::Drawing { path: path.to_owned(), reason: error.to_string() }
-    }
-
-    /// For `map_err` on a picture that is written.
-    fn encoding(path: &Path) -> impl FnOnce(png::EncodingError) -> Self {
-        move |error| Self::File { path: path.to_owned(), source: io::Error::other(error) }
     }
 }

@@ -1,27 +1,21 @@
 //! The friction map of a program before it is played: what a designer looks at.
 
+use std::fs;
 use std::path::Path;
 
 use frixel_wire::scene::Layer;
 
 use super::OutputError;
-use super::canvas::{Anchor, BLACK, Canvas, Colour, WHITE};
-use super::map::{Frame, LEFT, TITLE_SIZE, TOP};
-use super::scale::colour;
+use super::map::Frame;
+use crate::chart::{RGBColor, colour};
 use frixel_scene::reference::{Context, Reference};
 use frixel_scene::{Program, ROUNDING, Reach};
 
-/// Colours that the scale is brought to; more are not told apart, and make the file large.
-const COLOURS: f64 = 32.0;
 /// Distance of the lines of a hatching, and their width, in pixels.
 const HATCH_PITCH: usize = 8;
 const HATCH_WIDTH: usize = 2;
-/// Distance of two lines of the caption, and where the first one stands under the map, in pixels.
-const LINE: usize = 22;
-const CAPTION: usize = 80;
-/// Space left under the caption, in pixels.
-const MARGIN: usize = 12;
-const CAPTION_SIZE: f32 = 13.0;
+const BLACK: RGBColor = RGBColor(0, 0, 0);
+const WHITE: RGBColor = RGBColor(255, 255, 255);
 
 /// How a preview is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,56 +41,34 @@ enum Side {
     Above,
 }
 
-/// Writes the friction that a program wants all over the screen. The colours span the reach; what is beyond has the colour
-/// of its end, and is hatched. Vibrations and streams are drawn at the most that they ask for; the caption says so.
+/// Writes the friction that a program wants all over the screen. The colours span the reach; what is beyond has the
+/// colour of its end, and is hatched. Vibrations and streams are drawn at the most that they ask for; the caption says
+/// so.
 pub fn write_preview_png(path: &Path, title: &str, program: &Program, preview: &Preview) -> Result<(), OutputError> {
     let frame = Frame::of(program, (f64::from(preview.map_max.0), f64::from(preview.map_max.1)));
     let map = Map::of(program, preview, &frame);
-    // The caption is set before the size of the picture is known.
-    let measure = Canvas::new(1, 1).map_err(OutputError::drawing(path))?;
-    let room = (frame.outer_width() - LEFT - MARGIN) as f32;
-    let caption: Vec<String> =
-        caption(program, preview, &map).iter().flat_map(|sentence| wrap(&measure, sentence, room)).collect();
-    let height = frame.outer_height() + MARGIN + LINE * caption.len();
-    let mut canvas = Canvas::new(frame.outer_width(), height).map_err(OutputError::drawing(path))?;
-    frame.draw_map(&mut canvas, |(column, row), _| map.colour(column, row));
-    frame.draw_rulers(&mut canvas);
-    frame.draw_scale(&mut canvas, &program.reach, stepped);
-    canvas.text(title, TITLE_SIZE, (LEFT as i64, 32), Anchor::Start);
-    for (number, line) in caption.iter().enumerate() {
-        let y = TOP + frame.height + CAPTION + number * LINE;
-        canvas.text(line, CAPTION_SIZE, (LEFT as i64, y as i64), Anchor::Start);
-    }
-    canvas.write_png(path).map_err(OutputError::encoding(path))
+    let pixels = frame.pixels().zip(&map.parts).map(|(((column, row), _), part)| colour_of(*part, column + row));
+    let mut chart = frame.chart(pixels.collect(), &program.reach);
+    title.clone_into(&mut chart.title);
+    chart.caption = caption(program, preview, &map);
+    let bytes = chart.png().map_err(OutputError::drawing(path))?;
+    fs::write(path, bytes).map_err(|source| OutputError::File { path: path.to_owned(), source })
 }
 
 /// Friction of the reference at every pixel, as a part of the reach.
 struct Map {
-    width: usize,
     parts: Vec<f64>,
 }
 
 impl Map {
     fn of(program: &Program, preview: &Preview, frame: &Frame) -> Self {
         let reference = Reference::new(program).with_vibrations_held();
-        let metres = |pixel: usize| (pixel as f64 + 0.5) / frame.pixels_per_mm * 1e-3;
-        let part = |x_m: f64, y_m: f64| {
+        let part = |(x_m, y_m): (f64, f64)| {
             let speed_m_per_s = preview.speed_m_per_s;
             let context = Context { x_m, y_m, speed_m_per_s, stream: 1.0, stream_weight: 1.0, ..Context::default() };
             reference.electric_friction_at_n(&context) / program.reach.electric_friction_max_n
         };
-        let places = (0..frame.height).flat_map(|row| (0..frame.width).map(move |column| (column, row)));
-        Self { width: frame.width, parts: places.map(|(column, row)| part(metres(column), metres(row))).collect() }
-    }
-
-    fn colour(&self, column: usize, row: usize) -> Colour {
-        let part = self.parts.get(row * self.width + column).copied().unwrap_or(f64::NAN);
-        let hatched = (column + row) % HATCH_PITCH < HATCH_WIDTH;
-        match side(part) {
-            Side::Below if hatched => WHITE,
-            Side::Above if hatched => BLACK,
-            _ => stepped(part),
-        }
+        Self { parts: frame.pixels().map(|(_, place)| part(place)).collect() }
     }
 
     /// How much of the map lies on a side, in percent.
@@ -106,9 +78,14 @@ impl Map {
     }
 }
 
-/// The colour of a part of the reach, one of few.
-fn stepped(part: f64) -> Colour {
-    colour((part.clamp(0.0, 1.0) * COLOURS).round() / COLOURS)
+/// The colour of a part of the reach; beyond it, hatched along diagonals of the picture.
+fn colour_of(part: f64, diagonal: usize) -> RGBColor {
+    let hatched = diagonal % HATCH_PITCH < HATCH_WIDTH;
+    match side(part) {
+        Side::Below if hatched => WHITE,
+        Side::Above if hatched => BLACK,
+        _ => colour(part),
+    }
 }
 
 fn side(part: f64) -> Side {
@@ -126,10 +103,10 @@ fn caption(program: &Program, preview: &Preview, map: &Map) -> Vec<String> {
     let header = &program.header;
     let Reach { voltage_max_v_rms, .. } = program.reach;
     let mut sentences = vec![format!(
-        "Load {} N: {} N without voltage, {} N at {} V rms.",
+        "Load {} N: {} mN without voltage, {} mN at {} V rms.",
         rounded(f64::from(header.normal_load_n)),
-        rounded(program.reach.friction_min_n()),
-        rounded(program.reach.friction_max_n()),
+        rounded(1e3 * program.reach.friction_min_n()),
+        rounded(1e3 * program.reach.friction_max_n()),
         rounded(voltage_max_v_rms)
     )];
     let any = |wanted: fn(&Layer) -> bool| program.records.iter().any(|record| wanted(&record.layer));
@@ -166,19 +143,4 @@ fn caption(program: &Program, preview: &Preview, map: &Map) -> Vec<String> {
 fn rounded(value: f64) -> f64 {
     let scale = 10f64.powi(3 - value.abs().max(1e-9).log10().floor() as i32);
     (value * scale).round() / scale
-}
-
-/// Breaks a sentence between words, so that each line has at most `room` pixels.
-fn wrap(canvas: &Canvas, sentence: &str, room: f32) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in sentence.split(' ') {
-        match lines.last_mut() {
-            Some(line) if canvas.text_width(&format!("{line} {word}"), CAPTION_SIZE) <= room => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    lines
 }

@@ -1,3 +1,5 @@
+mod latency;
+
 use std::fs;
 use std::path::Path;
 
@@ -7,6 +9,7 @@ use proptest::prelude::*;
 
 use super::trace::Extremes;
 use super::*;
+use crate::chart::{RGBColor, colour};
 use frixel_driver::Counters;
 use frixel_scene::metrics::{ErrorSize, MetricsSummary};
 use frixel_scene::recorder::FeltRow;
@@ -61,6 +64,10 @@ fn stroke(program: &Program, seconds: f64) -> Vec<FeltRow> {
     (0..=rows).map(row).collect()
 }
 
+fn subject(name: &str) -> Subject {
+    Subject { name: name.to_owned(), simulated: true }
+}
+
 fn trace(rows: &[FeltRow]) -> Trace {
     let mut trace = Trace::new();
     for row in rows {
@@ -112,7 +119,7 @@ fn files_that_cannot_be_written_are_named() {
     let error = FeltCsv::create(&path).expect_err("no folder").to_string();
     assert!(error.starts_with(&format!("{} cannot be written (", path.display())), "{error}");
     let program = brick();
-    let error = write_scene_png(&path, "", &program, &Trace::new()).expect_err("no folder").to_string();
+    let error = write_scene_png(&path, &subject(""), &program, &Trace::new()).expect_err("no folder").to_string();
     assert!(error.starts_with(&format!("{} cannot be written (", path.display())), "{error}");
 }
 
@@ -151,7 +158,7 @@ fn a_long_trace_stays_small_and_keeps_its_extremes() {
 
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("felt.svg");
-    write_felt_svg(&path, "noise", &trace, &brick().reach).expect("a picture");
+    write_felt_svg(&path, &subject("noise"), &trace, &brick().reach).expect("a picture");
     let bytes = fs::metadata(&path).expect("the file").len();
     assert!(bytes < 1_000_000, "{bytes} bytes");
 }
@@ -189,14 +196,6 @@ proptest! {
         let strokes: Vec<Vec<(f64, f64)>> = trace.strokes().collect();
         prop_assert_eq!(strokes.iter().map(Vec::len).collect::<Vec<_>>(), pieces);
     }
-
-    #[test]
-    fn steps_are_one_two_or_five(least in 1e-6..1e6f64) {
-        let step = scale::step(least);
-        prop_assert!(step >= least * (1.0 - 1e-5) && step <= 2.5 * least * (1.0 + 1e-5));
-        let digits = step / 10f64.powi(step.log10().floor() as i32);
-        prop_assert!([1.0, 2.0, 5.0, 10.0].iter().any(|digit| (digits - digit).abs() < 1e-6), "{}", digits);
-    }
 }
 
 #[test]
@@ -205,25 +204,34 @@ fn felt_svg_has_axes_units_and_legend() {
     let program = brick();
     let draw = |name: &str, rows: &[FeltRow]| {
         let path = folder.path().join(name);
-        write_felt_svg(&path, "a < b & c", &trace(rows), &program.reach).expect("a picture");
+        write_felt_svg(&path, &subject("a < b & c"), &trace(rows), &program.reach).expect("a picture");
         fs::read_to_string(&path).expect("the file")
     };
     let mut rows = stroke(&program, 1.0);
     let svg = draw("felt.svg", &rows);
-    for text in ["a &lt; b &amp; c", "friction, mN", "voltage, V rms", "time, s", "wanted", "felt", "reachable"] {
+    for text in
+        ["a &lt; b &amp; c, simulated", "friction, mN", "voltage, V rms", "time, s", "wanted", "felt", "reachable"]
+    {
         assert!(svg.lines().any(|line| line == text), "{text}");
     }
-    assert!(svg.starts_with("<svg width=\"1000\" height=\"640\" viewBox=\"0 0 8000 5120\""));
+    assert!(svg.starts_with("<svg width=\"1000\" height="));
+    assert!(!svg.contains("too fast to draw"));
     assert_eq!(svg, draw("again.svg", &rows));
     // A board that cannot tell what was felt.
     for row in &mut rows {
         row.felt_n = None;
     }
     let svg = draw("asked.svg", &rows);
-    assert!(svg.lines().any(|line| line == "asked for") && !svg.lines().any(|line| line == "felt"));
+    assert!(svg.lines().any(|line| line == "commanded") && !svg.lines().any(|line| line == "felt"));
     // Nothing at all is an empty picture, not an error.
     draw("empty.svg", &[]);
     draw("one.svg", &rows[..1]);
+}
+
+/// The colour of a part of the scale, as a pixel has it.
+fn part_colour(part: f64) -> [u8; 3] {
+    let RGBColor(red, green, blue) = colour(part);
+    [red, green, blue]
 }
 
 fn read_png(path: &Path) -> (usize, Vec<u8>) {
@@ -243,10 +251,10 @@ fn scene_png_shows_friction_and_stroke_where_they_are() {
     let path = folder.path().join("scene.png");
     let program = brick();
     let rows = stroke(&program, 1.0);
-    write_scene_png(&path, "brick", &program, &trace(&rows)).expect("a picture");
+    write_scene_png(&path, &subject("brick"), &program, &trace(&rows)).expect("a picture");
     let (width, bytes) = read_png(&path);
     let again = folder.path().join("again.png");
-    write_scene_png(&again, "brick", &program, &trace(&rows)).expect("a picture");
+    write_scene_png(&again, &subject("brick"), &program, &trace(&rows)).expect("a picture");
     assert_eq!(fs::read(&path).expect("a file"), fs::read(again).expect("a file"));
     // 110 mm are 800 pixels, from the map's corner at (84, 60).
     let pixel = |x_mm: f64, y_mm: f64| {
@@ -254,10 +262,10 @@ fn scene_png_shows_friction_and_stroke_where_they_are() {
         let first = 3 * ((60 + at(y_mm)) * width + 84 + at(x_mm));
         [bytes[first], bytes[first + 1], bytes[first + 2]]
     };
-    assert_eq!(pixel(2.0, 2.0), scale::colour(0.0));
+    assert_eq!(pixel(2.0, 2.0), part_colour(0.0));
     let reference = Reference::new(&program);
     for (x_mm, y_mm) in [(20.0, 20.0), (100.0, 100.0), (60.0, 90.0)] {
-        let expected = scale::colour(
+        let expected = part_colour(
             reference.electric_friction_n(x_mm * 1e-3, y_mm * 1e-3) / program.reach.electric_friction_max_n,
         );
         let near = pixel(x_mm, y_mm).iter().zip(expected).all(|(one, other)| one.abs_diff(other) < 24);
@@ -274,7 +282,7 @@ fn screens_of_any_shape_are_drawn() {
     for (width_m, height_m) in [(2.0, 0.005), (0.005, 2.0), (0.005, 0.005), (2.0, 2.0)] {
         (program.header.screen_width_m, program.header.screen_height_m) = (width_m, height_m);
         let path = folder.path().join("scene.png");
-        write_scene_png(&path, "any shape", &program, &Trace::new()).expect("a picture");
+        write_scene_png(&path, &subject("any shape"), &program, &Trace::new()).expect("a picture");
         let (width, bytes) = read_png(&path);
         assert!(width < 1_300 && bytes.len() / 3 / width < 1_000);
     }
@@ -282,11 +290,39 @@ fn screens_of_any_shape_are_drawn() {
 
 #[test]
 fn colours_end_where_the_scale_ends() {
-    assert_eq!(scale::colour(-3.0), scale::colour(0.0));
-    assert_eq!(scale::colour(3.0), [253, 231, 37]);
-    assert_eq!(scale::colour(f64::NAN), [128, 128, 128]);
-    assert_eq!(scale::ticks(250.0, 277.8, 5.0).collect::<Vec<_>>(), [250.0, 255.0, 260.0, 265.0, 270.0, 275.0]);
-    assert_eq!([scale::label(-1e-9), scale::label(250.0), scale::label(0.1 + 0.2)], ["0", "250", "0.3"]);
+    assert_eq!(part_colour(-3.0), part_colour(0.0));
+    assert_eq!(part_colour(3.0), part_colour(1.0));
+    assert_ne!(part_colour(0.0), part_colour(1.0));
+    assert_eq!(part_colour(f64::NAN), [128, 128, 128]);
+}
+
+/// Rows of a friction that changes with time alone, as a vibration does, between two times.
+fn vibration(frequency_hz: f64, between_s: std::ops::Range<f64>) -> Vec<FeltRow> {
+    let row = |row: usize| {
+        let t_s = row as f64 * 1e-3;
+        let swing = if between_s.contains(&t_s) { (std::f64::consts::TAU * frequency_hz * t_s).sin() } else { 0.0 };
+        let friction_n = Some(0.26 + 0.01 * swing);
+        FeltRow { t_s, wanted_n: friction_n, felt_n: friction_n, ..FeltRow::default() }
+    };
+    (0..3_000).map(row).collect()
+}
+
+#[test]
+fn what_is_too_fast_to_draw_is_drawn_as_its_envelope() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("felt.svg");
+    let drawn = |frequency_hz: f64| {
+        let rows = vibration(frequency_hz, 1.0..2.0);
+        write_felt_svg(&path, &subject(""), &trace(&rows), &brick().reach).expect("a picture");
+        fs::read_to_string(&path).expect("the file")
+    };
+    let (slow, fast) = (drawn(20.0), drawn(150.0));
+    let named = "felt, too fast to draw: least to largest";
+    assert!(!slow.contains(named) && fast.contains(named));
+    // The reach is a polygon in both; in the fast one, two envelopes and two samples of them in the legend.
+    let polygons = |svg: &str| svg.matches("<polygon").count();
+    assert_eq!(polygons(&fast) - polygons(&slow), 4);
+    assert!(fast.len() < slow.len());
 }
 
 fn report(summary: &MetricsSummary) -> Report {

@@ -42,11 +42,14 @@ impl Extremes {
         value.filter(|value| value.is_finite()).map(|value| Self { least: value, largest: value })
     }
 
+    /// The extremes of both.
+    pub(super) fn joined(self, other: Self) -> Self {
+        Self { least: self.least.min(other.least), largest: self.largest.max(other.largest) }
+    }
+
     fn join(one: Option<Self>, other: Option<Self>) -> Option<Self> {
         match (one, other) {
-            (Some(one), Some(other)) => {
-                Some(Self { least: one.least.min(other.least), largest: one.largest.max(other.largest) })
-            }
+            (Some(one), Some(other)) => Some(one.joined(other)),
             _ => one.or(other),
         }
     }

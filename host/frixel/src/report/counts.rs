@@ -6,7 +6,8 @@ use std::path::Path;
 
 use super::error::ReportError;
 
-/// Counts by name: `CORE.WHAT` instructions at most, `CORE.WHAT_mean` on the mean, `CORE.WHAT_cycles` an estimate in cycles.
+/// Counts by name: `CORE.WHAT` instructions at most, `CORE.WHAT_mean` on the mean, `CORE.WHAT_cycles` an estimate in
+/// cycles.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Counts(BTreeMap<String, f64>);
 

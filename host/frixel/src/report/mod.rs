@@ -1,16 +1,15 @@
 //! The report of `frixel report`: the paper's figures from the model, what the model's error and its
 //! inversion cost, and what a scene costs a board and the line.
 //!
-//! [`write()`] puts an `index.html` that needs nothing else into a folder, and beside it the numbers behind each picture as
-//! CSV.
+//! [`write()`] puts an `index.html` that needs nothing else into a folder, and beside it the numbers behind each
+//! picture as CSV.
 
-mod chart;
 mod counts;
 mod data;
 mod error;
-mod exact;
 mod figures;
 mod page;
+mod reference;
 mod ways;
 mod wire;
 
@@ -23,8 +22,8 @@ use counts::Counts;
 
 /// Writes the report into a folder, which is made when it is not there, and returns the files in it.
 ///
-/// `bench` is a file of instruction counts as `cargo xtask bench` writes it, for charts of what an inversion and a tick take. Run times
-/// are measured; all else is the same in every run.
+/// `bench` is a file of instruction counts as `cargo xtask bench` writes it, for charts of what an inversion and a tick
+/// take. Run times are measured; all else is the same in every run.
 pub fn write(folder: &Path, bench: Option<&Path>) -> Result<Vec<PathBuf>, ReportError> {
     let counts = bench.map(Counts::read).transpose()?;
     fs::create_dir_all(folder).map_err(|source| ReportError::Write { path: folder.to_owned(), source })?;

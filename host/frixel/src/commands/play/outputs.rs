@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use frixel::output::{FeltCsv, Trace, write_felt_svg, write_scene_png};
+use frixel::output::{FeltCsv, Subject, Trace, write_felt_svg, write_scene_png};
 use frixel_scene::Program;
 use frixel_scene::recorder::FeltRow;
 
@@ -46,8 +46,9 @@ impl Outputs {
         let mut files = vec![self.csv_path];
         if let Some(trace) = &self.trace {
             let (svg, png) = (self.folder.join("felt.svg"), self.folder.join("scene.png"));
-            write_felt_svg(&svg, &self.title, trace, &program.reach)?;
-            write_scene_png(&png, &self.title, program, trace)?;
+            let subject = Subject { name: self.title, simulated: true };
+            write_felt_svg(&svg, &subject, trace, &program.reach)?;
+            write_scene_png(&png, &subject, program, trace)?;
             files.extend([svg, png]);
         }
         Ok(files)

@@ -25,12 +25,12 @@ impl Boards {
         match self {
             Self::Shown => format!("What {what} takes on a board is in the figure before this one."),
             Self::NotInTheFile => format!(
-                "What {what} takes on a board is not shown: the file given with --bench has no count of one. cargo xtask bench \
-                 writes a file that has, target/bench/bench.json."
+                "What {what} takes on a board is not shown: the file given with --bench has no count of one. cargo \
+                 xtask bench writes a file that has, target/bench/bench.json."
             ),
             Self::NoFile => format!(
-                "What {what} takes on a board is not shown: this page was made without --bench. cargo xtask bench counts it, and \
-                 frixel report --bench target/bench/bench.json shows it."
+                "What {what} takes on a board is not shown: this page was made without --bench. cargo xtask bench \
+                 counts it, and frixel report --bench target/bench/bench.json shows it."
             ),
         }
     }

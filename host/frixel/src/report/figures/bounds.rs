@@ -3,7 +3,7 @@
 use frixel_model::ContactModel;
 
 use super::{EXAMPLE, Figure, ReportError, example, geometric};
-use crate::report::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, graded};
+use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, graded};
 use crate::report::data::Data;
 
 /// Outer radii of the attraction, in metres.
@@ -15,7 +15,7 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
     let voltages = geometric(1.0, 1e3, 121);
     let mut data = Data::new(["bound", "normal_force_n", "outer_radius_m", "voltage_v_rms", "electric_friction_n"]);
     let mut left =
-        Panel::new("No load: the bounds", Axis::log("voltage, V rms", 1.0..1e3), Axis::log("friction, N", 1e-11..1e1));
+        Panel::new("No load: the bounds", Axis::log("voltage, V rms", 1.0..1e3), Axis::log("friction, mN", 1e-8..1e4));
     let mut curve = |name: &str, load_n: f64, outer_m: Option<f64>, model: &dyn ContactModel<f64>| {
         let points: Vec<_> = voltages
             .clone()
@@ -25,7 +25,7 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
         for (voltage, friction) in &points {
             data.row([name.into(), load_n.into(), outer_m.into(), (*voltage).into(), (*friction).into()]);
         }
-        points
+        points.into_iter().map(|(voltage, friction_n)| (voltage, 1e3 * friction_n)).collect::<Vec<_>>()
     };
     let upper = curve("upper", 0.0, None, &contact.under_load(0.0)?);
     left.add("upper bound, Eqs. (34), (36)", Look::line(PALETTE[0], Line::Solid), upper);
@@ -56,17 +56,17 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
         name: "upper-and-lower-bound",
         title: "Upper against lower bound".to_owned(),
         caption: vec![
-            "The upper bound counts the attraction around the contact to any distance, the lower bound not at all. Left: \
-             without a load they part at small voltages, where the upper bound grows with V² and the lower one with V⁴, and meet \
-             far above V* = 64 V. A finger that ends at an outer radius b lies between them; its curve stops where the contact \
-             would pass b: rings."
+            "The upper bound counts the attraction around the contact to any distance, the lower bound not at all. \
+             Left: without a load they part at small voltages, where the upper bound grows with V² and the lower one \
+             with V⁴, and meet far above V* = 64 V. A finger that ends at an outer radius b lies between them; its \
+             curve stops where the contact would pass b: rings."
                 .to_owned(),
-            "Right: under a load the contact is large, what surrounds it hardly matters, and the bounds nearly coincide: at \
-             0.5 N they are 1 % apart at any voltage that a screen has."
+            "Right: under a load the contact is large, what surrounds it hardly matters, and the bounds nearly \
+             coincide: at 0.5 N they are 1 % apart at any voltage that a screen has."
                 .to_owned(),
             EXAMPLE.to_owned(),
         ],
-        chart: Chart { panels: vec![left, right], columns: 2, shared_legend: false },
+        chart: Chart::new(vec![left, right], 2),
         csv: data.csv()?,
     })
 }

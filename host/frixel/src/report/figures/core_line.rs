@@ -3,7 +3,7 @@
 use frixel_model::{Contact, ContactModel, Finger};
 
 use super::{EXAMPLE, Figure, GAP_M, ReportError, even, example_finger, geometric};
-use crate::report::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
+use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
 use crate::report::data::Data;
 
 /// A finger to put on the line, with how its legend calls it.
@@ -136,13 +136,13 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
         title: "Fig. 3 of the paper: contact radius and friction without a load".to_owned(),
         caption: vec![
             "Without a normal load, contact radius and friction of every finger fall on one line each when voltage is \
-             scaled by V* = √(2 k g³/ε₀), radius by √(2 R g) and friction by F* = µ π k R g² (g: effective gap). Three very \
-             different fingers, computed in their own units, stand on the lines. At small voltages friction grows with σ₀ ∝ \
-             V², at large ones with σ₀² ∝ V⁴, the lower bound of Eq. (42): dashed."
+             scaled by V* = √(2 k g³/ε₀), radius by √(2 R g) and friction by F* = µ π k R g² (g: effective gap). Three \
+             very different fingers, computed in their own units, stand on the lines. At small voltages friction grows \
+             with σ₀ ∝ V², at large ones with σ₀² ∝ V⁴, the lower bound of Eq. (42): dashed."
                 .to_owned(),
             EXAMPLE.to_owned(),
         ],
-        chart: Chart { panels, columns: 2, shared_legend: false },
+        chart: Chart::new(panels, 2),
         csv: data.csv()?,
     })
 }

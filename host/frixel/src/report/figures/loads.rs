@@ -5,7 +5,7 @@ use core::f64::consts::PI;
 use frixel_model::{Contact, ContactModel, ContactState};
 
 use super::{EXAMPLE, Figure, ReportError, even, example};
-use crate::report::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, graded, signed};
+use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, graded, signed};
 use crate::report::data::Data;
 
 /// The paper's relative normal force `f_N = F_N/(k R h0^2)`, Eq. (44), for a coating of permittivity one.
@@ -137,19 +137,19 @@ pub(super) fn contact_radius() -> Result<Figure, ReportError> {
         name: "fig4-contact-radius-under-load",
         title: "Fig. 4 of the paper: contact radius under normal loads of both signs".to_owned(),
         caption: vec![
-            "Contact radius over voltage, Eq. (43), for the relative normal force f_N = F_N/(k R h₀²) of Eq. (44) (permittivity \
-             1). A finger that is pulled (f_N < 0) sticks only above a voltage, and comes off with a contact that is not \
-             small: rings. A pressing finger has its contact already without voltage."
+            "Contact radius over voltage, Eq. (43), for the relative normal force f_N = F_N/(k R h₀²) of Eq. (44) \
+             (permittivity 1). A finger that is pulled (f_N < 0) sticks only above a voltage, and comes off with a \
+             contact that is not small: rings. A pressing finger has its contact already without voltage."
                 .to_owned(),
-            "Real loads are far beyond the paper's range: 0.5 N is f_N = 35,000 for the example finger, and voltage hardly \
-             changes its contact radius."
+            "Real loads are far beyond the paper's range: 0.5 N is f_N = 35,000 for the example finger, and voltage \
+             hardly changes its contact radius."
                 .to_owned(),
             EXAMPLE.to_owned(),
         ],
         csv: data([&relative, &loaded], ["contact_radius_m", "radius_over_scale"], &contact, |state| {
             [state.contact_radius_m, contact.area(state.contact_radius_m).sqrt()]
         })?,
-        chart: Chart { panels: vec![left, right], columns: 2, shared_legend: false },
+        chart: Chart::new(vec![left, right], 2),
     })
 }
 
@@ -174,15 +174,15 @@ pub(super) fn friction() -> Result<Figure, ReportError> {
         name: "fig5-friction-under-load",
         title: "Fig. 5 of the paper: friction under normal loads of both signs".to_owned(),
         caption: vec![
-            "Friction over voltage, Eqs. (43), (21), for the loads of Fig. 4. Left: in total, scaled by F* = µ π k R g²; a \
-             pulled finger has friction only above its pull-off (rings). Right: the part that voltage adds to the friction µ \
-             F_N of an example finger that presses; a larger contact is attracted more."
+            "Friction over voltage, Eqs. (43), (21), for the loads of Fig. 4. Left: in total, scaled by F* = µ π k R \
+             g²; a pulled finger has friction only above its pull-off (rings). Right: the part that voltage adds to \
+             the friction µ F_N of an example finger that presses; a larger contact is attracted more."
                 .to_owned(),
             EXAMPLE.to_owned(),
         ],
         csv: data([&relative, &loaded], ["electric_friction_n", "friction_over_scale"], &contact, |state| {
             [state.electric_friction_n, state.friction_n / contact.friction_scale_n()]
         })?,
-        chart: Chart { panels: vec![left, right], columns: 2, shared_legend: false },
+        chart: Chart::new(vec![left, right], 2),
     })
 }

@@ -16,9 +16,9 @@ use frixel_model::{Contact, Finger, ParameterError, Real};
 
 use boards::Boards;
 
-use super::chart::Chart;
 use super::counts::Counts;
 use super::error::ReportError;
+use crate::chart::Chart;
 
 /// Effective gap of the example finger, in metres.
 const GAP_M: f64 = 1e-5;
@@ -63,8 +63,8 @@ pub(super) fn all(counts: Option<&Counts>) -> Result<Vec<Figure>, ReportError> {
     Ok(figures.into_iter().flatten().collect())
 }
 
-/// The example finger: 0.25 N at no voltage and 28 mN more at 150 V rms, under 0.5 N. Chosen to give friction of the size
-/// that is measured; a real finger's profile is fitted.
+/// The example finger: 250 mN at no voltage and 28 mN more at 150 V rms, under 0.5 N. Chosen to give friction of the
+/// size that is measured; a real finger's profile is fitted.
 fn example_finger() -> Finger<f64> {
     Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 }
 }
@@ -81,8 +81,8 @@ fn example<T: Real>() -> Result<Contact<T>, ParameterError> {
 }
 
 /// What every caption about the example finger ends with.
-const EXAMPLE: &str = "Example finger: R = 8 mm, k = 18 MPa/m, µ = 0.5, effective gap 10 µm (0.25 N of friction without voltage \
-                       under 0.5 N, and 28 mN more at 150 V rms).";
+const EXAMPLE: &str = "Example finger: R = 8 mm, k = 18 MPa/m, µ = 0.5, effective gap 10 µm (250 mN of friction \
+                       without voltage under 0.5 N, and 28 mN more at 150 V rms).";
 
 /// `count` values from `start` to `end`, evenly.
 fn even(start: f64, end: f64, count: usize) -> impl Iterator<Item = f64> + Clone {

@@ -6,10 +6,9 @@ use frixel_model::ContactModel;
 
 use super::boards::Boards;
 use super::{EXAMPLE, Figure, GAP_M, LOAD_N, ReportError, example, example_finger};
-use crate::report::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
+use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};
 use crate::report::counts::Counts;
 use crate::report::data::{Data, Value};
-use crate::report::exact::Springs;
 use crate::report::ways::{Bench, Kind, Parameters, RANGE_V_RMS, Way};
 
 /// Kinds in the order of legends: what they are called and how they look.
@@ -33,11 +32,11 @@ const CORES: [(&str, &str); 2] = [("m4f", "Cortex-M4F"), ("m3", "Cortex-M3, no F
 
 const ERROR: &str = "largest relative error in electric friction";
 
-const fn both(colour: plotters::style::RGBColor, mark: Mark) -> Look {
+const fn both(colour: RGBColor, mark: Mark) -> Look {
     Look { colour, line: Line::Thin, mark }
 }
 
-const fn dashed(colour: plotters::style::RGBColor, mark: Mark) -> Look {
+const fn dashed(colour: RGBColor, mark: Mark) -> Look {
     Look { colour, line: Line::Dashed, mark }
 }
 
@@ -81,7 +80,6 @@ pub(super) fn measure() -> Result<[Measured; 2], ReportError> {
         let bench = Bench {
             contact: &example::<f64>()?.under_load(load_n)?,
             single: &example::<f32>()?.under_load(load_n as f32)?,
-            exact: &Springs::new(&finger, GAP_M),
             parameters: Parameters {
                 radius_m: finger.radius_m,
                 stiffness_pa_per_m: finger.stiffness_pa_per_m,
@@ -125,27 +123,27 @@ pub(super) fn against_time(measured: &[Measured; 2], boards: Boards) -> Result<F
         title: "Error against run time, for every way to invert".to_owned(),
         caption: vec![
             format!(
-                "Down and to the left is better. The error is the largest of |x(V) − x|/x over all electric frictions x from \
-                 x({low} V) to x({high} V), V being the voltage that a way gives for x, and x(V) what the model makes of it; of \
-                 ways in f64 in 256 bits. Each kind comes in several sizes, joined by a line: steps of the bisection, entries of \
-                 the forward table, rows of the direct tables."
+                "Down and to the left is better. The error is the largest of |x(V) − x|/x over all electric frictions \
+                 x from x({low} V) to x({high} V), V being the voltage that a way gives for x, and x(V) what the model \
+                 makes of it in f64, right to 4e-15. Each kind comes in several sizes, joined by a line: steps of the \
+                 bisection, entries of the forward table, rows of the direct tables."
             ),
             format!(
-                "Run times were measured on the computer that made this page, in one run, as a ratio to the f64 closed form ({}): \
-                 each call waits for the answer of the last one. They differ from run to run and from processor to processor; all \
-                 else on this page does not.",
+                "Run times were measured on the computer that made this page, in one run, as a ratio to the f64 closed \
+                 form ({}): each call waits for the answer of the last one. They differ from run to run and from \
+                 processor to processor; all else on this page does not.",
                 nanoseconds(measured)
             ),
             boards.sentence("an inversion"),
-            "Bisection is the straightforward way: it halves the range of voltages on Eqs. (36), (34), with a load on Eqs. (43), \
-             (21), which give friction in total. In f32 and under a load the total cannot resolve the electric part. The textbook's \
-             forward table holds friction at even steps of voltage; below the first step it knows nothing. Direct tables find their \
-             row from the bits of the friction and evaluate a polynomial. Integers have codes of 32 bits for friction, and their \
-             error is that against the code."
+            "Bisection is the straightforward way: it halves the range of voltages on Eqs. (36), (34), with a load on \
+             Eqs. (43), (21), which give friction in total. In f32 and under a load the total cannot resolve the \
+             electric part. The textbook's forward table holds friction at even steps of voltage; below the first step \
+             it knows nothing. Direct tables find their row from the bits of the friction and evaluate a polynomial. \
+             Integers have codes of 32 bits for friction, and their error is that against the code."
                 .to_owned(),
             EXAMPLE.to_owned(),
         ],
-        chart: Chart { panels: panels.into(), columns: 2, shared_legend: true },
+        chart: Chart::new(panels.into(), 2).with_shared_legend(),
         csv: data.csv()?,
     })
 }
@@ -170,15 +168,16 @@ pub(super) fn against_size(measured: &[Measured; 2]) -> Result<Figure, ReportErr
         title: "Error against size, for every kind of table".to_owned(),
         caption: vec![
             format!(
-                "Largest relative error in electric friction over 1 V to 200 V, as above, against the bytes of the table. Without a \
-                 load friction spans {:.0} octaves, under 0.5 N {:.0}, and tables are shorter. A higher order is smaller at the same \
-                 error, until rounding in f32 ends it near 10⁻⁶. The board's table has a fixed size, whatever the load.",
+                "Largest relative error in electric friction over 1 V to 200 V, as above, against the bytes of the \
+                 table. Without a load friction spans {:.0} octaves, under 0.5 N {:.0}, and tables are shorter. A \
+                 higher order is smaller at the same error, until rounding in f32 ends it near 10⁻⁶. The board's table \
+                 has a fixed size, whatever the load.",
                 range_octaves(measured[0].load_n),
                 range_octaves(measured[1].load_n),
             ),
             EXAMPLE.to_owned(),
         ],
-        chart: Chart { panels: panels.into(), columns: 2, shared_legend: true },
+        chart: Chart::new(panels.into(), 2).with_shared_legend(),
         csv: data.csv()?,
     })
 }
@@ -212,19 +211,20 @@ pub(super) fn against_instructions(measured: &[Measured; 2], counts: &Counts) ->
     if panels.is_empty() {
         return Ok(None);
     }
+    let columns = panels.len() as u32;
     Ok(Some(Figure {
         name: "error-against-instructions",
         title: "Error against instructions on a board".to_owned(),
         caption: vec![
-            "Largest relative error in electric friction over 1 V to 200 V, without a load or under 0.5 N, whichever is larger, \
-             against the largest number of instructions that one inversion took over all inputs. Counts come from the file given \
-             with --bench, which cargo xtask bench writes: they were counted in an emulator, and the cycles beside them are \
-             estimates; instructions are not cycles. A board of 170 MHz has 4,250 cycles to a tick at 40 kHz, and 170 to a \
-             microsecond."
+            "Largest relative error in electric friction over 1 V to 200 V, without a load or under 0.5 N, whichever \
+             is larger, against the largest number of instructions that one inversion took over all inputs. Counts \
+             come from the file given with --bench, which cargo xtask bench writes: they were counted in an emulator, \
+             and the cycles beside them are estimates; instructions are not cycles. A board of 170 MHz has 4,250 \
+             cycles to a tick at 40 kHz, and 170 to a microsecond."
                 .to_owned(),
             EXAMPLE.to_owned(),
         ],
-        chart: Chart { columns: panels.len() as u32, panels, shared_legend: true },
+        chart: Chart::new(panels, columns).with_shared_legend(),
         csv: data.csv()?,
     }))
 }

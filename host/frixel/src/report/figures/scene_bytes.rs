@@ -11,7 +11,7 @@ use frixel_model::InverseTable;
 use frixel_wire::scene::{POINTS_MAX, POLYGON_POINTS_MAX, RECORDS_MAX, Scene as WireScene};
 
 use super::{Figure, ReportError};
-use crate::report::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
+use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};
 use crate::report::data::Data;
 use crate::report::wire::OnTheWire;
 use frixel_scene::{CompileError, Program, Scene, compile};
@@ -123,7 +123,7 @@ fn table_bytes(program: &Program) -> usize {
 /// Scenes of one kind of content.
 struct Family {
     name: String,
-    colour: plotters::style::RGBColor,
+    colour: RGBColor,
     scenes: Vec<Measured>,
 }
 
@@ -137,7 +137,7 @@ struct Measured {
 impl Family {
     fn new(
         name: &str,
-        colour: plotters::style::RGBColor,
+        colour: RGBColor,
         folder: &Path,
         scenes: impl Iterator<Item = (usize, String)>,
     ) -> Result<Self, ReportError> {
@@ -228,7 +228,7 @@ pub(super) fn figure(tick: &str) -> Result<Figure, ReportError> {
         name: "bytes-against-scene-content",
         title: "Bytes on the wire and of the table against what is in the scene".to_owned(),
         caption: caption(&families, tick),
-        chart: Chart { panels: vec![left, middle, right, table], columns: 2, shared_legend: true },
+        chart: Chart::new(vec![left, middle, right, table], 2).with_shared_legend(),
         csv: data.csv()?,
     })
 }
@@ -242,10 +242,11 @@ fn caption(families: &[Family; 5], tick: &str) -> Vec<String> {
     let milliseconds = |bytes: usize, baud: f64| 1e3 * bytes as f64 * BITS_PER_BYTE / baud;
     vec![
         format!(
-            "All bytes that the host sends from the start of an upload to its commit, as compiler and driver make them: chunks of \
-             header, layers, points and samples in their frames, and the requests around them. Dashed: the compiled scene and its \
-             picture alone. {RECORDS_MAX} gratings are {} bytes in {} frames, {:.0} ms at 2 Mbaud and {:.0} ms at 115,200 baud; a \
-             picture of 250 by 250 samples is {} bytes in {} frames, {:.0} ms and {:.1} s.",
+            "All bytes that the host sends from the start of an upload to its commit, as compiler and driver make \
+             them: chunks of header, layers, points and samples in their frames, and the requests around them. Dashed: \
+             the compiled scene and its picture alone. {RECORDS_MAX} gratings are {} bytes in {} frames, {:.0} ms at 2 \
+             Mbaud and {:.0} ms at 115,200 baud; a picture of 250 by 250 samples is {} bytes in {} frames, {:.0} ms \
+             and {:.1} s.",
             scene.wire_bytes,
             scene.frames,
             milliseconds(scene.wire_bytes, 2e6),
@@ -256,16 +257,17 @@ fn caption(families: &[Family; 5], tick: &str) -> Vec<String> {
             1e-3 * milliseconds(picture.wire_bytes, 115_200.0),
         ),
         format!(
-            "A layer takes the same whatever its kind; a vertex comes on top of its polygon's layer, and a scene has at most \
-             {POINTS_MAX} of them. Triangles and {} are shown: the format takes {POLYGON_POINTS_MAX} in a polygon, but a tick has no \
-             time for more than these. A sample is a byte, and a picture's size on the wire goes with its area, whatever it shows; one that a board holds already is not \
-             sent again.",
+            "A layer takes the same whatever its kind; a vertex comes on top of its polygon's layer, and a scene has \
+             at most {POINTS_MAX} of them. Triangles and {} are shown: the format takes {POLYGON_POINTS_MAX} in a \
+             polygon, but a tick has no time for more than these. A sample is a byte, and a picture's size on the wire \
+             goes with its area, whatever it shows; one that a board holds already is not sent again.",
             polygons.name
         ),
         format!(
-            "The board computes of its inverse table what a scene can ask for: {} bytes for all of the reach, {} for half of it, {} for \
-             a tenth. The table's room in RAM, {} bytes, is the same for every scene; what is saved is time when the scene is taken. It \
-             reaches down to 1 V for every scene, since the friction of a still finger is ramped away.",
+            "The board computes of its inverse table what a scene can ask for: {} bytes for all of the reach, {} for \
+             half of it, {} for a tenth. The table's room in RAM, {} bytes, is the same for every scene; what is saved \
+             is time when the scene is taken. It reaches down to 1 V for every scene, since the friction of a still \
+             finger is ramped away.",
             table(100),
             table(50),
             table(10),

@@ -5,7 +5,7 @@ use core::f64::consts::PI;
 use frixel_model::{ContactModel, ParameterError, SoftContact, SoftFinger, contact_exponent};
 
 use super::{EXAMPLE, Figure, GAP_M, LOAD_N, ReportError, example, example_finger, geometric};
-use crate::report::chart::{Axis, Chart, Line, Look, PALETTE, Panel, graded};
+use crate::chart::{Axis, Chart, Line, Look, PALETTE, Panel, graded};
 use crate::report::data::Data;
 
 /// Stress exponents; at 0.5 the stiffness is constant.
@@ -31,9 +31,12 @@ pub(super) fn alike(stress_exponent: f64) -> Result<SoftFinger<f64>, ParameterEr
 
 pub(super) fn figure() -> Result<Figure, ReportError> {
     let volts = || Axis::log("voltage, V rms", 1.0..1e3);
-    let mut unloaded = Panel::new("No load", volts(), Axis::log("friction, N", 1e-10..1e2));
-    let mut loaded =
-        Panel::new("Under 0.5 N: what voltage adds", volts(), Axis::log("electric friction F_T − µ F_N, N", 1e-7..1e2));
+    let mut unloaded = Panel::new("No load", volts(), Axis::log("friction, mN", 1e-7..1e5));
+    let mut loaded = Panel::new(
+        "Under 0.5 N: what voltage adds",
+        volts(),
+        Axis::log("electric friction F_T − µ F_N, mN", 1e-4..1e5),
+    );
     let mut data = Data::new([
         "finger",
         "stress_exponent",
@@ -47,7 +50,7 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
         let mut points = Vec::new();
         for voltage in geometric(1.0, 1e3, 121) {
             let state = model.state(voltage)?;
-            points.push((voltage, state.electric_friction_n));
+            points.push((voltage, 1e3 * state.electric_friction_n));
             data.row([
                 name.into(),
                 soft.map(|finger| finger.stress_exponent).into(),
@@ -80,15 +83,16 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
         name: "soft-finger",
         title: "Soft finger against Winkler-Fuss".to_owned(),
         caption: vec![
-            "A soft finger's stiffness follows from the force it carries, Eq. (29). All of these are as stiff as the example \
-             finger under 0.5 N. Left: without a load they carry far less, so that a stress exponent below 0.5 makes them \
-             softer there and one above it stiffer; the lower bounds, Eq. (40), grow with the power 2 s + 1 of σ₀ ∝ V². Right: \
-             under the load at which they are alike they stay alike until voltage adds as much as the load."
+            "A soft finger's stiffness follows from the force it carries, Eq. (29). All of these are as stiff as the \
+             example finger under 0.5 N. Left: without a load they carry far less, so that a stress exponent below 0.5 \
+             makes them softer there and one above it stiffer; the lower bounds, Eq. (40), grow with the power 2 s + 1 \
+             of σ₀ ∝ V². Right: under the load at which they are alike they stay alike until voltage adds as much as \
+             the load."
                 .to_owned(),
             "A stress exponent of 0.5 has a constant stiffness, and falls on the Winkler-Fuss finger.".to_owned(),
             EXAMPLE.to_owned(),
         ],
-        chart: Chart { panels: vec![unloaded, loaded], columns: 2, shared_legend: true },
+        chart: Chart::new(vec![unloaded, loaded], 2).with_shared_legend(),
         csv: data.csv()?,
     })
 }

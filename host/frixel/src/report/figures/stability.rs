@@ -1,23 +1,17 @@
 //! Stability maps: relative error over the plane of attraction and load.
 
-use frixel_model::{Contact, ContactModel, Finger, Real};
+use frixel_model::{Contact, Finger, Real};
 
 use super::{Figure, ReportError};
-use crate::report::chart::{Axis, Cell, Chart, Field, Look, Mark, PALETTE, Panel};
+use crate::chart::{Axis, Cell, Chart, Field, Look, Mark, PALETTE, Panel};
 use crate::report::data::Data;
-use crate::report::exact::{Springs, relative_error};
+use crate::report::reference::{CELLS_PER_DECADE, PlaneRow, Q_DECADES, plane};
 
 /// Powers of two, and so exact in f32: what is measured is the model's rounding, and not that of its parameters.
 const FINGER: Finger<f64> =
     Finger { radius_m: 1.0 / 128.0, stiffness_pa_per_m: 16_777_216.0, friction_coefficient: 0.5 };
 const GAP_M: f64 = 1.0 / 131_072.0;
 
-/// Decades of `q` and of `n`, and cells to a decade.
-const Q_DECADES: (i32, i32) = (-12, 12);
-const N_DECADES: (i32, i32) = (-6, 8);
-const CELLS_PER_DECADE: i32 = 3;
-/// Places in a cell at which the error is taken, as parts of its sides. The largest counts.
-const PLACES: [(f64, f64); 4] = [(0.12, 0.58), (0.37, 0.08), (0.62, 0.83), (0.87, 0.33)];
 /// Where the strip without a load stands, and the least load of the plane.
 const NO_LOAD: (f64, f64) = (1e-8, 1e-7);
 
@@ -51,6 +45,13 @@ struct Errors {
     inverse: f64,
 }
 
+impl Errors {
+    fn of_cell(row: &PlaneRow) -> Self {
+        let cell = |cell: i32| (power(cell), power(cell + 1));
+        Self { x: cell(row.q_cell), y: row.n_cell.map_or(NO_LOAD, cell), n: 0.0, forward: 0.0, inverse: 0.0 }
+    }
+}
+
 struct Map {
     cells: Vec<Errors>,
     forward: Worst,
@@ -68,41 +69,18 @@ fn map<T: Real>() -> Result<Map, ReportError> {
         friction_coefficient: T::from_f64(FINGER.friction_coefficient),
     };
     let contact = Contact::new(&finger, T::from_f64(GAP_M))?;
-    let exact = Springs::new(&FINGER, GAP_M);
-    let rows = N_DECADES.0 * CELLS_PER_DECADE..N_DECADES.1 * CELLS_PER_DECADE;
     let mut map = Map { cells: Vec::new(), forward: Worst::default(), inverse: Worst::default() };
-    for row in rows.map(Some).chain([None]) {
-        for column in Q_DECADES.0 * CELLS_PER_DECADE..Q_DECADES.1 * CELLS_PER_DECADE {
-            let (left, right) = (power(column), power(column + 1));
-            let (low, high) = row.map_or(NO_LOAD, |row| (power(row), power(row + 1)));
-            let mut cell = Errors { x: (left, right), y: (low, high), n: 0.0, forward: 0.0, inverse: 0.0 };
-            for (across, up) in PLACES {
-                let q = left * (right / left).powf(across);
-                let n = if row.is_some() { low * (high / low).powf(up) } else { 0.0 };
-                let (forward, inverse) = errors(&contact, &exact, q, n)?;
-                cell.n = n;
-                cell.forward = cell.forward.max(forward);
-                cell.inverse = cell.inverse.max(inverse);
-                map.forward.take(forward, q, n);
-                map.inverse.take(inverse, q, n);
-            }
-            map.cells.push(cell);
-        }
+    for row in plane()? {
+        let answers = row.answers();
+        let model = contact.under_load(T::from_f64(answers.normal_load_n))?;
+        let (forward, inverse) = answers.errors(&model)?;
+        let q = (answers.voltage_v_rms / contact.voltage_scale_v_rms().into()).powi(2);
+        let n = answers.normal_load_n / contact.load_scale_n().into();
+        map.forward.take(forward, q, n);
+        map.inverse.take(inverse, q, n);
+        map.cells.push(Errors { n, forward, inverse, ..Errors::of_cell(&row) });
     }
     Ok(map)
-}
-
-/// Errors of electric friction and of voltage at a place of the plane, for inputs rounded to the precision.
-fn errors<T: Real>(contact: &Contact<T>, exact: &Springs, q: f64, n: f64) -> Result<(f64, f64), ReportError> {
-    let voltage = T::from_f64(contact.voltage_scale_v_rms().into() * q.sqrt());
-    let load = T::from_f64(contact.load_scale_n().into() * n);
-    let model = contact.under_load(load)?;
-    let right = exact.electric_friction_n(voltage.into(), load.into());
-    let forward = relative_error(model.state(voltage)?.electric_friction_n.into(), &right);
-    let friction = T::from_f64(right.to_f64().value());
-    let right = exact.voltage_v_rms(friction.into(), load.into());
-    let inverse = relative_error(model.voltage_for_electric_friction(friction)?.into(), &right);
-    Ok((forward, inverse))
 }
 
 /// What differs between the two precisions.
@@ -129,19 +107,15 @@ pub(super) fn in_f32() -> Result<Figure, ReportError> {
 fn figure(precision: &Precision, map: &Map) -> Result<Figure, ReportError> {
     let panel = |title: &str, error: fn(&Errors) -> f64, worst: &Worst| {
         let (low, high) = (f64::from(Q_DECADES.0), f64::from(Q_DECADES.1));
+        let cells =
+            map.cells.iter().map(|cell| Cell { x: cell.x.0..cell.x.1, y: cell.y.0..cell.y.1, value: error(cell) });
+        let colours = Axis::log("relative error", precision.colours.0..precision.colours.1);
         let mut panel = Panel::new(
             title,
             Axis::log("attraction q = σ₀/(g k) = (V/V*)²", 10_f64.powf(low)..10_f64.powf(high)),
             Axis::log("load n = F_N/(π k R g²)", NO_LOAD.0..1e8),
-        );
-        panel.field = Some(Field {
-            cells: map
-                .cells
-                .iter()
-                .map(|cell| Cell { x: cell.x.0..cell.x.1, y: cell.y.0..cell.y.1, value: error(cell) })
-                .collect(),
-            colours: Axis::log("relative error", precision.colours.0..precision.colours.1),
-        });
+        )
+        .with_field(Field::cells(cells.collect(), colours));
         panel.notes.push((1.5e-12, 2.6e-7, "↓ no load, n = 0".to_owned()));
         // Without a load, in the middle of the strip.
         let n = if worst.n > 0.0 { worst.n } else { (NO_LOAD.0 * NO_LOAD.1).sqrt() };
@@ -160,27 +134,27 @@ fn figure(precision: &Precision, map: &Map) -> Result<Figure, ReportError> {
         title: format!("Stability in {title}: error over the plane of attraction and load"),
         caption: vec![
             format!(
-                "Largest relative error of electric friction from voltage (left) and of voltage from electric friction (right), \
-                 Eqs. (43), (21), computed in {title}; the largest of four places in each cell. Right is what the paper's \
-                 dimensional equations give in 256 bits (dashu-float) for the same inputs. Half a unit in the last place is {}; the \
-                 goal is {:e}, the upper end of the colours.",
+                "Largest relative error of electric friction from voltage (left) and of voltage from electric friction \
+                 (right), Eqs. (43), (21), computed in {title}, in the middle of each cell. The reference is what the \
+                 paper's dimensional equations give in 80 digits (mpmath, model/reference) for the same inputs, which \
+                 are exact in f32. Half a unit in the last place is {}; the goal is {:e}, the upper end of the \
+                 colours.",
                 precision.half_unit, precision.goal
             ),
             format!(
-                "Worst points: forward {}; inverse {}. The finger's parameters are powers of two (R = 1/128 m, k = 2²⁴ Pa/m, gap \
-                 2⁻¹⁷ m, µ = 1/2), and so exact.",
+                "Worst points: forward {}; inverse {}. The finger's parameters are powers of two (R = 1/128 m, k = 2²⁴ \
+                 Pa/m, gap 2⁻¹⁷ m, µ = 1/2), and so exact.",
                 map.forward.sentence(),
                 map.inverse.sentence()
             ),
         ],
-        chart: Chart {
-            panels: vec![
+        chart: Chart::new(
+            vec![
                 panel(&format!("Forward in {title}: electric friction"), |cell| cell.forward, &map.forward),
                 panel(&format!("Inverse in {title}: voltage"), |cell| cell.inverse, &map.inverse),
             ],
-            columns: 2,
-            shared_legend: false,
-        },
+            2,
+        ),
         csv: data.csv()?,
     })
 }

@@ -1,11 +1,11 @@
 //! Stability of the soft finger: relative error over its exponent.
 
-use frixel_model::{ContactModel, Real, SoftFinger, contact_exponent};
+use frixel_model::{Real, SoftFinger, contact_exponent};
 
-use super::{Figure, ReportError, even, geometric};
-use crate::report::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
+use super::{Figure, ReportError};
+use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
 use crate::report::data::Data;
-use crate::report::exact::{Soft, relative_error};
+use crate::report::reference::{SoftRow, soft};
 
 /// Powers of two, and so exact in f32.
 const RADIUS_M: f64 = 1.0 / 128.0;
@@ -14,11 +14,6 @@ const SHAPE_CONSTANT: f64 = 4.5;
 const FRICTION_COEFFICIENT: f64 = 0.5;
 const GAP_M: f64 = 1.0 / 131_072.0;
 const LOADS_N: [f64; 2] = [0.0, 0.5];
-/// Voltages at each exponent, in V rms.
-const VOLTAGES: (f64, f64, usize) = (1e-6, 1e4, 21);
-/// Stress exponents.
-const STRESS_EXPONENTS: (f64, f64, usize) = (0.02, 1.0, 33);
-
 /// Where an error was largest.
 #[derive(Clone, Copy, Debug, Default)]
 struct Worst {
@@ -51,50 +46,35 @@ struct Point {
 }
 
 fn points<T: Real>() -> Result<Vec<Point>, ReportError> {
-    let (low, high, count) = STRESS_EXPONENTS;
-    let mut points = Vec::new();
-    for load_n in LOADS_N {
-        for stress_exponent in even(low, high, count) {
-            // Exact in f32, and so in f64.
-            let stress_exponent = f64::from(stress_exponent as f32);
-            points.push(point::<T>(stress_exponent, load_n)?);
-        }
-    }
-    Ok(points)
+    let rows = soft()?;
+    let alike = |one: &SoftRow, other: &SoftRow| {
+        let [one, other] =
+            [one, other].map(|row| (row.stress_exponent.to_bits(), row.answers().normal_load_n.to_bits()));
+        one == other
+    };
+    rows.chunk_by(alike).map(point::<T>).collect()
 }
 
-fn point<T: Real>(stress_exponent: f64, load_n: f64) -> Result<Point, ReportError> {
-    let wide = SoftFinger {
-        radius_m: RADIUS_M,
-        modulus_pa: MODULUS_PA,
-        stress_exponent,
-        shape_constant: SHAPE_CONSTANT,
-        friction_coefficient: FRICTION_COEFFICIENT,
-    };
+/// The worst errors over rows that differ only in their voltage.
+fn point<T: Real>(rows: &[SoftRow]) -> Result<Point, ReportError> {
+    let (mut forward, mut inverse) = (Worst::default(), Worst::default());
+    let stress_exponent = rows.first().map_or(f64::NAN, |row| row.stress_exponent);
+    let load_n = rows.first().map_or(f64::NAN, |row| row.answers().normal_load_n);
     let finger = SoftFinger {
-        radius_m: T::from_f64(wide.radius_m),
-        modulus_pa: T::from_f64(wide.modulus_pa),
-        stress_exponent: T::from_f64(wide.stress_exponent),
-        shape_constant: T::from_f64(wide.shape_constant),
-        friction_coefficient: T::from_f64(wide.friction_coefficient),
+        radius_m: T::from_f64(RADIUS_M),
+        modulus_pa: T::from_f64(MODULUS_PA),
+        stress_exponent: T::from_f64(stress_exponent),
+        shape_constant: T::from_f64(SHAPE_CONSTANT),
+        friction_coefficient: T::from_f64(FRICTION_COEFFICIENT),
     };
     let model = finger.on_gap(T::from_f64(GAP_M))?.under_load(T::from_f64(load_n))?;
-    let exact = Soft::new(&wide, GAP_M);
-    let gamma = contact_exponent(stress_exponent)?;
-    let mut point = Point { gamma, load_n, forward: Worst::default(), inverse: Worst::default() };
-    let (low, high, count) = VOLTAGES;
-    for voltage in geometric(low, high, count) {
-        let voltage = T::from_f64(voltage);
-        let found: f64 = model.state(voltage)?.electric_friction_n.into();
-        let right = exact.electric_friction_n(voltage.into(), load_n, found);
-        let error = right.as_ref().map_or(f64::INFINITY, |right| relative_error(found, right));
-        point.forward = worse(point.forward, error, voltage.into(), stress_exponent);
-        let friction = T::from_f64(right.map_or(found, |right| right.to_f64().value()));
-        let right = exact.voltage_v_rms(friction.into(), load_n);
-        let error = relative_error(model.voltage_for_electric_friction(friction)?.into(), &right);
-        point.inverse = worse(point.inverse, error, voltage.into(), stress_exponent);
+    for row in rows {
+        let answers = row.answers();
+        let (forward_error, inverse_error) = answers.errors(&model)?;
+        forward = worse(forward, forward_error, answers.voltage_v_rms, stress_exponent);
+        inverse = worse(inverse, inverse_error, answers.voltage_v_rms, stress_exponent);
     }
-    Ok(point)
+    Ok(Point { gamma: contact_exponent(stress_exponent)?, load_n, forward, inverse })
 }
 
 fn worse(worst: Worst, error: f64, voltage: f64, stress_exponent: f64) -> Worst {
@@ -156,21 +136,18 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
         name: "stability-soft",
         title: "Stability of the soft finger: error over its exponent".to_owned(),
         caption: vec![
-            "Largest relative error over voltages from 1 µV to 10 kV of electric friction from voltage, Eqs. (29), (43), and of \
-             voltage from electric friction, against the same equations in 256 bits (dashu-float). Dashed: the goals, 4e-14 and 1e-5."
+            "Largest relative error over eleven voltages from 1 µV to 10 kV of electric friction from voltage, Eqs. \
+             (29), (43), and of voltage from electric friction, against the same equations in 80 digits (mpmath, \
+             model/reference). Dashed: the goals, 4e-14 and 1e-5."
                 .to_owned(),
             format!("Worst points in f64: {}. In f32: {}.", worst(&double), worst(&single)),
             "Soft finger: R = 1/128 m, E = 2¹⁷ Pa, B = 4.5, µ = 1/2, gap 2⁻¹⁷ m, all exact in f32; stress exponents from 0.02 to 1."
                 .to_owned(),
         ],
-        chart: Chart {
-            panels: vec![
-                panel("f64", 1e-16..1e-12, 4e-14, &double),
-                panel("f32", 1e-8..1e-4, 1e-5, &single),
-            ],
-            columns: 2,
-            shared_legend: false,
-        },
+        chart: Chart::new(
+            vec![panel("f64", 1e-16..1e-12, 4e-14, &double), panel("f32", 1e-8..1e-4, 1e-5, &single)],
+            2,
+        ),
         csv: data.csv()?,
     })
 }

@@ -3,7 +3,7 @@
 use frixel_wire::scene::cost::TICK_INSTRUCTIONS_MAX;
 
 use super::{Figure, ReportError};
-use crate::report::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
+use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};
 use crate::report::counts::Counts;
 use crate::report::data::Data;
 
@@ -13,7 +13,7 @@ const LAYERS: [usize; 7] = [1, 2, 4, 8, 16, 32, 64];
 /// The axis of layers, with room for a number beside the last one.
 const LAYERS_SHOWN: (f64, f64) = (0.9, 80.0);
 /// Layers under the finger: how many, their look, and what they are called.
-const UNDER: [(usize, plotters::style::RGBColor, &str); 2] =
+const UNDER: [(usize, RGBColor, &str); 2] =
     [(1, PALETTE[0], "one under the finger"), (8, PALETTE[1], "eight under the finger")];
 
 /// A tick with some layers under the finger, and others elsewhere.
@@ -76,18 +76,19 @@ pub(super) fn figure(counts: &Counts) -> Result<Option<Figure>, ReportError> {
         title: "Cost of a tick against the number of layers".to_owned(),
         caption: vec![
             format!(
-                "Instructions of a tick while a finger comes down, slides, rests and slides on: the longest tick, and the mean of \
-                 all. Each layer is a constant in a rectangle; those that are not under the finger lie elsewhere on the screen. A \
-                 grid with a bit for each layer lets a tick look only at the layers near the finger, so that layers elsewhere \
-                 hardly count{elsewhere}. The longest ticks differ by what else falls into them, such as an early edge of the carrier."
+                "Instructions of a tick while a finger comes down, slides, rests and slides on: the longest tick, and \
+                 the mean of all. Each layer is a constant in a rectangle; those that are not under the finger lie \
+                 elsewhere on the screen. A grid with a bit for each layer lets a tick look only at the layers near \
+                 the finger, so that layers elsewhere hardly count{elsewhere}. The longest ticks differ by what else \
+                 falls into them, such as an early edge of the carrier."
             ),
             format!(
-                "The dashed line is the most that a tick may take, {limit} instructions: a scene with a place that takes more is \
-                 refused. Counts come from the file given with --bench, which cargo xtask bench writes: they were counted in an \
-                 emulator."
+                "The dashed line is the most that a tick may take, {limit} instructions: a scene with a place that \
+                 takes more is refused. Counts come from the file given with --bench, which cargo xtask bench writes: \
+                 they were counted in an emulator."
             ),
         ],
-        chart: Chart { panels: vec![panel], columns: 1, shared_legend: false },
+        chart: Chart::new(vec![panel], 1),
         csv: data.csv()?,
     }))
 }

@@ -5,8 +5,8 @@ use std::path::Path;
 use frixel_hil_sim::{Point, RigConfig, Stroke, TouchConfig};
 
 use super::{Figure, ReportError};
+use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
 use crate::player::{Simulation, simulate};
-use crate::report::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
 use crate::report::data::Data;
 use frixel_scene::recorder::FeltRow;
 use frixel_scene::{Scene, compile};
@@ -17,7 +17,8 @@ const TICKS_HZ: [u32; 9] = [1_000, 2_000, 4_000, 5_000, 8_000, 10_000, 16_000, 2
 const HALF_PERIOD_MIN_TICKS: u32 = 4;
 /// The carrier where ticks allow it, in Hz.
 const CARRIER_HZ: u32 = 1_000;
-/// Windows a second over which felt and wanted friction are taken as means, whatever the ticks: a period of that carrier.
+/// Windows a second over which felt and wanted friction are taken as means, whatever the ticks: a period of that
+/// carrier.
 const WINDOW_HZ: u32 = 1_000;
 const SPEED_M_PER_S: f64 = 0.1;
 /// Each seed has another phase between carrier, touch source and stripes.
@@ -152,27 +153,27 @@ fn caption() -> Vec<String> {
         carriers.iter().map(|tick_hz| format!("{} Hz at {} kHz", carrier_hz(**tick_hz), **tick_hz / 1_000)).collect();
     vec![
         format!(
-            "A sine grating of 20 mN under a finger that slides at 100 mm/s, played on the simulated board with its ticks at \
-             another rate, and felt through amplifier and friction lag. Left: root mean square of felt less wanted friction, both \
-             as means over 1 ms, over five seeds. The carrier is 1 kHz where half its period has the {HALF_PERIOD_MIN_TICKS} ticks \
-             that a board demands; with fewer ticks it is slower ({}). A square carrier's force does not depend on its frequency \
-             but for its edges.",
+            "A sine grating of 20 mN under a finger that slides at 100 mm/s, played on the simulated board with its \
+             ticks at another rate, and felt through amplifier and friction lag. Left: root mean square of felt less \
+             wanted friction, both as means over 1 ms, over five seeds. The carrier is 1 kHz where half its period has \
+             the {HALF_PERIOD_MIN_TICKS} ticks that a board demands; with fewer ticks it is slower ({}). A square \
+             carrier's force does not depend on its frequency but for its edges.",
             slower.join(", ")
         ),
-        "At few ticks a second the error is what the finger slides in a tick or two, and halves with it. It ends at what ticks \
-         cannot help: the friction lag (1.4 kHz at this speed) and the carrier's edges, or, with a touch source of 100 Hz that is \
-         10 ms late and noisy, what is not known of the finger's place. The other curves have a touch source of 500 Hz without \
-         delay or noise. What is wanted is taken at the end of each tick."
+        "At few ticks a second the error is what the finger slides in a tick or two, and halves with it. It ends at \
+         what ticks cannot help: the friction lag (1.4 kHz at this speed) and the carrier's edges, or, with a touch \
+         source of 100 Hz that is 10 ms late and noisy, what is not known of the finger's place. The other curves have \
+         a touch source of 500 Hz without delay or noise. What is wanted is taken at the end of each tick."
             .to_owned(),
-        "Right: the finest stripes tick by tick, with that touch source. The spikes at 40 kHz are the edges of the carrier, which a \
-         mean over its period takes out."
+        "Right: the finest stripes tick by tick, with that touch source. The spikes at 40 kHz are the edges of the \
+         carrier, which a mean over its period takes out."
             .to_owned(),
     ]
 }
 
 pub(super) fn figure() -> Result<Figure, ReportError> {
     let mut left = Panel::new(
-        "Stripes under a finger of 100 mm/s",
+        "Stripes under a finger of 100 mm/s, simulated",
         Axis::log("ticks a second, kHz", 0.9..50.0),
         Axis::log("rms friction error, % of the reachable range", 0.1..100.0),
     );
@@ -196,7 +197,7 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
         left.add(case.name, case.look, points);
     }
     let mut right = Panel::new(
-        "0.5 mm stripes, tick by tick",
+        "0.5 mm stripes, tick by tick, simulated",
         Axis::linear("time, ms", 0.0..20.0),
         Axis::linear("electric friction, mN", -2.0..24.0),
     );
@@ -206,7 +207,7 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
         name: "error-against-tick-rate",
         title: "Error against the rate of ticks, for a felt texture".to_owned(),
         caption: caption(),
-        chart: Chart { panels: vec![left, right], columns: 2, shared_legend: false },
+        chart: Chart::new(vec![left, right], 2),
         csv: data.csv()?,
     })
 }

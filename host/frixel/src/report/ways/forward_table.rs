@@ -1,4 +1,5 @@
-//! The textbook's way: a table of friction at even steps of voltage, a binary search, a straight line between two entries.
+//! The textbook's way: a table of friction at even steps of voltage, a binary search, a straight line between two
+//! entries.
 
 use super::{Bench, Kind, RANGE_V_RMS, Way};
 

@@ -8,18 +8,16 @@ mod timing;
 use frixel_model::{LoadedContact, Real};
 
 use super::error::ReportError;
-use super::exact::{Springs, relative_error};
 use timing::seconds_per_call;
 
 /// Range over which errors are taken, in volts rms.
 pub(super) const RANGE_V_RMS: (f64, f64) = (1.0, 200.0);
-/// Frictions at which an error is taken, of ways in less than f64 and of ways in f64.
-const COARSE_POINTS: usize = 20_000;
-const FINE_POINTS: usize = 400;
+/// Frictions at which an error is taken.
+const ERROR_POINTS: usize = 20_000;
 /// Frictions that a run time is taken over.
 const TIMED_POINTS: usize = 1_024;
-/// They are taken in an order in which no processor can guess the next one: by this many places, which shares no factor with
-/// their count.
+/// They are taken in an order in which no processor can guess the next one: by this many places, which shares no factor
+/// with their count.
 const STRIDE: usize = 389;
 
 /// A kind of way, that may come in several sizes.
@@ -59,7 +57,6 @@ pub(super) struct Way {
 pub(super) struct Bench<'a> {
     pub(super) contact: &'a LoadedContact<f64>,
     pub(super) single: &'a LoadedContact<f32>,
-    pub(super) exact: &'a Springs,
     pub(super) parameters: Parameters,
 }
 
@@ -97,9 +94,8 @@ impl Bench<'_> {
     }
 
     fn in_f64(&self, kind: Kind, size: String, invert: impl Fn(f64) -> f64) -> Way {
-        let load_n = self.parameters.normal_load_n;
-        let error = |x: f64| relative_error(x, &self.exact.electric_friction_n(invert(x), load_n));
-        let worst = largest(self.frictions(FINE_POINTS).map(error));
+        let error = |x: f64| (self.contact.electric_friction_n(invert(x)) / x - 1.0).abs();
+        let worst = largest(self.frictions(ERROR_POINTS).map(error));
         Way {
             kind,
             size,
@@ -115,7 +111,7 @@ impl Bench<'_> {
             let x = x as f32;
             (self.contact.electric_friction_n(f64::from(invert(x))) / f64::from(x) - 1.0).abs()
         };
-        let worst = largest(self.frictions(COARSE_POINTS).map(error));
+        let worst = largest(self.frictions(ERROR_POINTS).map(error));
         Way {
             kind,
             size,
@@ -134,7 +130,7 @@ impl Bench<'_> {
             let voltage_v_rms = f64::from(invert(code)) * units.1;
             (self.contact.electric_friction_n(voltage_v_rms) / (f64::from(code) * units.0) - 1.0).abs()
         };
-        let worst = largest(self.frictions(COARSE_POINTS).map(error));
+        let worst = largest(self.frictions(ERROR_POINTS).map(error));
         Way {
             kind,
             size,

@@ -9,7 +9,8 @@ const ROUNDS: usize = 24;
 
 /// A number that a chain of calls can be made of.
 pub(super) trait Sample: Copy + Default {
-    /// This number, computed from the last answer as well: `self + last * nothing`, where `nothing` is zero and nobody knows.
+    /// This number, computed from the last answer as well: `self + last * nothing`, where `nothing` is zero and nobody
+    /// knows.
     fn behind(self, last: Self, nothing: Self) -> Self;
 }
 
@@ -35,8 +36,8 @@ impl Sample for u32 {
     }
 }
 
-/// Seconds from one call's beginning to the next one's, when each waits for the last one's answer as a control loop does,
-/// less the waiting itself.
+/// Seconds from one call's beginning to the next one's, when each waits for the last one's answer as a control loop
+/// does, less the waiting itself.
 pub(super) fn seconds_per_call<T: Sample>(inputs: &[T], call: impl Fn(T) -> T) -> f64 {
     let chain = shortest(inputs, call) - shortest(inputs, |x| x);
     // Clocks are too coarse to tell a call of a fraction of a nanosecond from none.

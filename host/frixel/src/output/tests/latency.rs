@@ -1,26 +1,25 @@
 //! How the friction error of the brick scene grows with the latency of the touch source: `docs/latency.csv` and
 //! `docs/latency.svg`.
 //!
-//! `FRIXEL_BLESS=1 cargo test -p frixel --test latency` writes them anew; without it, this test holds them.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+//! `FRIXEL_BLESS=1 cargo test -p frixel --lib latency` writes them anew; without it, this test holds them.
 
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use frixel::player::{Simulation, simulate};
+use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};
+use crate::player::{Simulation, simulate};
 use frixel_hil_sim::{Point, RigConfig, Stroke};
 use frixel_scene::{Program, Scene, compile};
-use plotters::prelude::*;
 
 const LATENCIES_MS: [u32; 10] = [5, 10, 15, 20, 25, 30, 35, 40, 45, 50];
 const SEEDS: [u64; 5] = [1, 2, 3, 4, 5];
 /// Stroke, whether the tick predicts, colour.
 const CURVES: [(&str, bool, RGBColor); 4] = [
-    ("constant 100 mm/s", true, RGBColor(0, 114, 178)),
-    ("minimum jerk", true, RGBColor(213, 94, 0)),
-    ("constant 100 mm/s, no prediction", false, RGBColor(86, 180, 233)),
-    ("minimum jerk, no prediction", false, RGBColor(230, 159, 0)),
+    ("constant 100 mm/s", true, PALETTE[0]),
+    ("minimum jerk", true, PALETTE[1]),
+    ("constant 100 mm/s, no prediction", false, PALETTE[5]),
+    ("minimum jerk, no prediction", false, PALETTE[4]),
 ];
 
 fn path(name: &str) -> PathBuf {
@@ -88,48 +87,19 @@ fn csv(curves: &[Vec<Errors>]) -> String {
 }
 
 fn svg(curves: &[Vec<Errors>]) -> String {
-    let mut text = String::new();
-    {
-        let root = SVGBackend::with_string(&mut text, (760, 460)).into_drawing_area();
-        root.fill(&WHITE).unwrap();
-        let mut chart = ChartBuilder::on(&root)
-            .caption("Brick scene: friction error over touch latency", ("sans-serif", 18))
-            .margin(12)
-            .x_label_area_size(44)
-            .y_label_area_size(56)
-            .build_cartesian_2d(0.0..52.0, 0.0..20.0)
-            .unwrap();
-        chart
-            .configure_mesh()
-            .light_line_style(WHITE)
-            .x_label_formatter(&|ms| format!("{ms:.0}"))
-            .y_label_formatter(&|percent| format!("{percent:.0}"))
-            .x_desc("latency of the touch source, ms (100 Hz, noise 0.02 mm rms, jitter 0.5 ms)")
-            .y_desc("rms error, % of the reachable range")
-            .label_style(("sans-serif", 13))
-            .draw()
-            .unwrap();
-        for ((name, _, colour), curve) in CURVES.iter().zip(curves) {
-            let points =
-                || LATENCIES_MS.iter().map(|ms| f64::from(*ms)).zip(curve.iter().map(|errors| errors.friction_rms));
-            chart
-                .draw_series(LineSeries::new(points(), colour.stroke_width(2)))
-                .unwrap()
-                .label(*name)
-                .legend(|(x, y)| PathElement::new([(x, y), (x + 20, y)], colour.stroke_width(2)));
-            chart.draw_series(points().map(|point| Circle::new(point, 3, colour.filled()))).unwrap();
-        }
-        chart
-            .configure_series_labels()
-            .position(SeriesLabelPosition::MiddleRight)
-            .background_style(WHITE)
-            .border_style(BLACK)
-            .label_font(("sans-serif", 13))
-            .draw()
-            .unwrap();
-        root.present().unwrap();
+    let mut panel = Panel::new(
+        "",
+        Axis::linear("latency of the touch source, ms (100 Hz, noise 0.02 mm rms, jitter 0.5 ms)", 0.0..52.0),
+        Axis::linear("rms friction error, % of the reachable range", 0.0..20.0),
+    );
+    for ((name, _, colour), curve) in CURVES.iter().zip(curves) {
+        let points = LATENCIES_MS.iter().map(|ms| f64::from(*ms)).zip(curve.iter().map(|errors| errors.friction_rms));
+        panel.add(name, Look { line: Line::Solid, ..Look::mark(*colour, Mark::Disc) }, points.collect());
     }
-    text
+    let mut chart = Chart::new(vec![panel], 1);
+    chart.title = "Brick scene: friction error over touch latency, simulated".to_owned();
+    chart.width = 760;
+    chart.svg().unwrap()
 }
 
 #[test]

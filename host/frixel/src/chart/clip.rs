@@ -4,7 +4,7 @@ use std::ops::Range;
 
 type Place = (f64, f64);
 
-/// The stretches of a line through `places` that lie in a rectangle. A place that is none ends a stretch.
+/// The stretches of a line through `places` that lie in a rectangle. `None` breaks the line.
 pub(super) fn clipped(places: &[Option<Place>], x: &Range<f64>, y: &Range<f64>) -> Vec<Vec<Place>> {
     let mut stretches: Vec<Vec<Place>> = Vec::new();
     let mut open = false;
@@ -49,7 +49,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_is_cut_where_it_crosses_the_edges_and_where_it_has_a_hole() {
+    fn a_line_is_cut_where_it_crosses_the_edges_and_where_it_is_broken() {
         let places = [(-1.0, 0.5), (0.5, 0.5), (0.5, 2.0), (0.9, 2.0), (0.9, -1.0)].map(Some);
         let found = clipped(&places, &(0.0..1.0), &(0.0..1.0));
         assert_eq!(found, [vec![(0.0, 0.5), (0.5, 0.5), (0.5, 1.0)], vec![(0.9, 1.0), (0.9, 0.0)]]);

@@ -1,0 +1,143 @@
+//! Coloured fields: a value over a plane, with its colour scale.
+
+use std::ops::Range;
+
+use plotters::element::BitMapElement;
+use plotters::prelude::*;
+use plotters::style::text_anchor::HPos;
+
+use super::plot::Plane;
+use super::style::{NOTE, Scale, colour};
+use super::{Area, Axis, DrawError, Drawn};
+
+/// Steps of a colour scale as it is drawn.
+const SCALE_STEPS: u32 = 64;
+/// Place of a colour scale from the plot's right edge, its width, and the room that its labels have, in pixels.
+const SCALE_GAP: u32 = 20;
+const SCALE_WIDTH: u32 = 18;
+const SCALE_LABELS: u32 = 56;
+/// Height of its title above the plot's top edge, in pixels.
+const SCALE_TITLE: u32 = 14;
+
+/// A value over a plane, drawn as a colour.
+#[derive(Clone, Debug)]
+pub(crate) struct Field {
+    pub(crate) values: Values,
+    /// What the colours mean: from the first to the last colour of the scale.
+    pub(crate) colours: Axis,
+}
+
+/// What a field is made of.
+#[derive(Clone, Debug)]
+pub(crate) enum Values {
+    Cells(Vec<Cell>),
+    Raster(Raster),
+}
+
+/// A rectangle of one value.
+#[derive(Clone, Debug)]
+pub(crate) struct Cell {
+    pub(crate) x: Range<f64>,
+    pub(crate) y: Range<f64>,
+    pub(crate) value: f64,
+}
+
+/// A colour for every pixel of a plot, in rows from the top. Only a PNG file can show it.
+#[derive(Clone, Debug)]
+pub(crate) struct Raster {
+    pub(crate) width: usize,
+    pub(crate) height: usize,
+    pub(crate) pixels: Vec<RGBColor>,
+}
+
+impl Field {
+    /// Rectangles.
+    pub(crate) fn cells(cells: Vec<Cell>, colours: Axis) -> Self {
+        Self { values: Values::Cells(cells), colours }
+    }
+
+    /// Pixels.
+    pub(crate) fn pixels(raster: Raster, colours: Axis) -> Self {
+        Self { values: Values::Raster(raster), colours }
+    }
+
+    /// The pixels, if it is made of them.
+    pub(super) fn raster(&self) -> Option<&Raster> {
+        match &self.values {
+            Values::Raster(raster) => Some(raster),
+            Values::Cells(_) => None,
+        }
+    }
+
+    pub(super) fn draw<DB: DrawingBackend>(&self, canvas: &Area<DB>, plane: &Plane, scale: Scale) -> Drawn {
+        match &self.values {
+            Values::Raster(raster) => raster.draw(canvas, scale),
+            Values::Cells(cells) => {
+                let (right, bottom) = (plane.size.0 as i32, plane.size.1 as i32);
+                for cell in cells {
+                    let corners = [(cell.x.start, cell.y.end), (cell.x.end, cell.y.start)].map(|one| plane.unit(one));
+                    let [Some(start), Some(end)] = corners else { continue };
+                    // A cell reaches under its neighbours to the right and below, so that no background shows between
+                    // them.
+                    let under = scale.px(1) as i32;
+                    let end = ((end.0 + under).min(right), (end.1 + under).min(bottom));
+                    // A value without a logarithm is zero: the lowest colour.
+                    let colour = colour(self.colours.part(cell.value).unwrap_or(0.0));
+                    canvas.draw(&Rectangle::new([start, end], colour.filled()))?;
+                }
+                Ok(())
+            }
+        }
+    }
+
+    /// Draws the colour scale beside a plot that has its right top corner at a place of the area; all in units.
+    pub(super) fn draw_scale<DB: DrawingBackend>(
+        &self,
+        area: &Area<DB>,
+        (right, top): (i32, i32),
+        height: u32,
+        scale: Scale,
+    ) -> Drawn {
+        let px = |pixels| scale.px(pixels) as i32;
+        let (left, end) = (right + px(SCALE_GAP), right + px(SCALE_GAP + SCALE_WIDTH));
+        let level = |part: f64| top + ((1.0 - part) * f64::from(height)).round() as i32;
+        for step in (0..SCALE_STEPS).rev() {
+            let part = |step: f64| step / f64::from(SCALE_STEPS);
+            let step = f64::from(step);
+            // Each step reaches under the next one below, so that no background shows between them.
+            let bottom = (level(part(step)) + px(1)).min(level(0.0));
+            let corners = [(left, level(part(step + 1.0))), (end, bottom)];
+            area.draw(&Rectangle::new(corners, colour(part(step + 0.5)).filled()))?;
+        }
+        for tick in self.colours.ticks() {
+            let Some(part) = self.colours.part(tick) else { continue };
+            let y = level(part);
+            area.draw(&PathElement::new([(end, y), (end + px(4), y)], scale.stroke(1)))?;
+            let label =
+                Text::new(self.colours.tick_label(tick), (end + px(8), y), scale.letters_at(NOTE + 1, HPos::Left));
+            area.draw(&label)?;
+        }
+        let title = (end + px(SCALE_LABELS), top - px(SCALE_TITLE));
+        area.draw(&Text::new(self.colours.label.as_str(), title, scale.letters_at(NOTE + 1, HPos::Right)))?;
+        Ok(())
+    }
+}
+
+impl Raster {
+    /// Every pixel as a square of units, in a frame.
+    fn draw<DB: DrawingBackend>(&self, canvas: &Area<DB>, scale: Scale) -> Drawn {
+        let fine = scale.px(1) as usize;
+        let mut bytes = Vec::with_capacity(3 * self.pixels.len() * fine * fine);
+        for row in self.pixels.chunks(self.width.max(1)) {
+            let line: Vec<u8> = row.iter().flat_map(|RGBColor(r, g, b)| [*r, *g, *b].repeat(fine)).collect();
+            bytes.extend(line.repeat(fine));
+        }
+        let size = ((self.width * fine) as u32, (self.height * fine) as u32);
+        let picture = BitMapElement::with_owned_buffer((0, 0), size, bytes);
+        let picture: BitMapElement<(i32, i32)> = picture.ok_or_else(|| DrawError::new(&"a map lacks pixels"))?;
+        canvas.draw(&picture)?;
+        let (right, bottom) = (size.0 as i32 - 1, size.1 as i32 - 1);
+        canvas.draw(&Rectangle::new([(0, 0), (right, bottom)], scale.stroke(1)))?;
+        Ok(())
+    }
+}

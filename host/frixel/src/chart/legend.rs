@@ -1,0 +1,90 @@
+//! Legends: names of the looks of series.
+
+use plotters::prelude::*;
+use plotters::style::text_anchor::HPos;
+
+use super::style::{LABEL, Scale, text_width};
+use super::{Area, DrawError, Drawn, Line, Look, Mark, Panel, Series};
+
+/// Height of a line, in pixels.
+const LINE_HEIGHT: u32 = 20;
+/// Width of the sample that stands before a name, of the gap behind it, and of the gap between columns, in pixels.
+const SAMPLE: u32 = 30;
+const GAP: u32 = 8;
+const COLUMN_GAP: u32 = 24;
+/// Where a legend begins, from the left, in pixels.
+const LEFT: u32 = 30;
+
+/// Names and looks, in order.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Legend(Vec<(String, Look)>);
+
+impl Legend {
+    /// The series that have a name.
+    pub(super) fn of(series: &[Series]) -> Self {
+        let named = series.iter().filter(|series| !series.name.is_empty());
+        Self(named.map(|series| (series.name.clone(), series.look)).collect())
+    }
+
+    /// The series of all panels, each name once.
+    pub(super) fn of_all(panels: &[Panel]) -> Self {
+        let mut all = Self::default();
+        for (name, look) in panels.iter().flat_map(|panel| Self::of(&panel.series).0) {
+            if !all.0.iter().any(|(known, _)| *known == name) {
+                all.0.push((name, look));
+            }
+        }
+        all
+    }
+
+    /// Its height within a width, both in pixels.
+    pub(super) fn height(&self, width: u32) -> Result<u32, DrawError> {
+        Ok(self.lines(width)? as u32 * LINE_HEIGHT)
+    }
+
+    fn columns(&self, width: u32) -> Result<usize, DrawError> {
+        let mut longest = 0;
+        for (name, _) in &self.0 {
+            longest = longest.max(text_width(name, LABEL)?);
+        }
+        let columns = (width - LEFT) / (SAMPLE + GAP + COLUMN_GAP + longest);
+        Ok((columns as usize).clamp(1, self.0.len().max(1)))
+    }
+
+    fn lines(&self, width: u32) -> Result<usize, DrawError> {
+        Ok(self.0.len().div_ceil(self.columns(width)?))
+    }
+
+    /// Draws the legend into a width from a corner in pixels, column after column.
+    pub(super) fn draw<DB: DrawingBackend>(
+        &self,
+        area: &Area<DB>,
+        (x, y): (u32, u32),
+        width: u32,
+        scale: Scale,
+    ) -> Drawn {
+        let (columns, lines) = (self.columns(width)?, self.lines(width)?);
+        let column_width = (width - LEFT) / columns as u32;
+        for (index, (name, look)) in self.0.iter().enumerate() {
+            let (column, line) = ((index / lines) as u32, (index % lines) as u32);
+            let left = x + LEFT + column * column_width;
+            let middle = scale.px(y + line * LINE_HEIGHT + LINE_HEIGHT / 2) as i32;
+            draw_sample(area, (scale.px(left) as i32, middle), look, scale)?;
+            let place = (scale.px(left + SAMPLE + GAP) as i32, middle);
+            area.draw(&Text::new(name.as_str(), place, scale.letters_at(LABEL, HPos::Left)))?;
+        }
+        Ok(())
+    }
+}
+
+/// Draws a short piece of a look, from the place to the right.
+fn draw_sample<DB: DrawingBackend>(area: &Area<DB>, (left, y): (i32, i32), look: &Look, scale: Scale) -> Drawn {
+    let right = left + scale.px(SAMPLE) as i32;
+    let half = scale.px(6) as i32;
+    let line = match look.line {
+        Line::Filled(_) => vec![(left, y - half), (right, y - half), (right, y + half), (left, y + half)],
+        _ => vec![(left, y), (right, y)],
+    };
+    scale.draw_line(area, &line, look)?;
+    if look.mark == Mark::None { Ok(()) } else { scale.draw_mark(area, (left.midpoint(right), y), look) }
+}

@@ -1,0 +1,247 @@
+//! Charts in the one look that all pictures of frixel share, drawn with `plotters`.
+//!
+//! A [`Chart`] is a value: panels with axes, series, coloured fields and legends. [`Chart::svg`] and [`Chart::png`]
+//! draw it. Legends stand beside the plots, never over them. The same chart gives the same bytes.
+
+mod axis;
+mod clip;
+mod field;
+mod legend;
+mod plot;
+mod png;
+mod style;
+
+use plotters::coord::Shift;
+use plotters::prelude::*;
+pub(crate) use plotters::style::RGBColor;
+use plotters::style::text_anchor::HPos;
+use thiserror::Error;
+
+pub(crate) use axis::Axis;
+pub(crate) use field::{Cell, Field, Raster};
+use legend::Legend;
+use style::{EDGE, NOTE, Scale, TITLE, WIDTH};
+pub(crate) use style::{Line, Look, Mark, PALETTE, colour, graded, signed};
+
+/// Height of a panel's plot with its title and axes, in pixels, unless the panel says otherwise.
+const PANEL_HEIGHT: u32 = 360;
+/// Height of the line that a chart's title stands in, in pixels.
+const TITLE_HEIGHT: u32 = 34;
+/// Space below a row of panels, in pixels.
+const SPACING: u32 = 12;
+/// Height of a line of the caption, in pixels.
+const CAPTION_LINE: u32 = 22;
+/// SVG coordinates are whole numbers of this part of a pixel.
+const SVG_SCALE: Scale = Scale(8);
+
+type Area<DB> = DrawingArea<DB, Shift>;
+type Drawn = Result<(), DrawError>;
+
+/// Why a chart cannot be drawn: what the drawing library reported.
+#[derive(Debug, Error)]
+#[error("{0}")]
+pub(crate) struct DrawError(String);
+
+impl DrawError {
+    fn new(reason: &impl ToString) -> Self {
+        Self(reason.to_string())
+    }
+}
+
+impl<E: std::error::Error + Send + Sync> From<DrawingAreaErrorKind<E>> for DrawError {
+    fn from(error: DrawingAreaErrorKind<E>) -> Self {
+        Self::new(&error)
+    }
+}
+
+/// Panels side by side, and in several rows.
+#[derive(Clone, Debug)]
+pub(crate) struct Chart {
+    /// Stands above all panels; empty for none.
+    pub(crate) title: String,
+    pub(crate) panels: Vec<Panel>,
+    /// Panels in a row.
+    pub(crate) columns: u32,
+    /// All panels have the same series: one legend stands below them.
+    pub(crate) shared_legend: bool,
+    /// Sentences below the panels.
+    pub(crate) caption: Vec<String>,
+    /// Width of the picture, in pixels.
+    pub(crate) width: u32,
+}
+
+/// A plot with its axes and legend.
+#[derive(Clone, Debug)]
+pub(crate) struct Panel {
+    pub(crate) title: String,
+    pub(crate) x: Axis,
+    pub(crate) y: Axis,
+    pub(crate) series: Vec<Series>,
+    pub(crate) field: Option<Field>,
+    /// Short texts, each to the right of a place.
+    pub(crate) notes: Vec<(f64, f64, String)>,
+    /// Height of plot, title and axes, in pixels.
+    pub(crate) height: u32,
+    pub(crate) margins: Margins,
+}
+
+/// Space around a plot for title, labels and colour scale, in pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Margins {
+    pub(crate) left: u32,
+    pub(crate) right: u32,
+    pub(crate) top: u32,
+    pub(crate) bottom: u32,
+}
+
+/// Points that are drawn in one look. A series without a name is not in the legend.
+#[derive(Clone, Debug)]
+pub(crate) struct Series {
+    pub(crate) name: String,
+    /// Values; a line is cut where one is not a number.
+    pub(crate) points: Vec<(f64, f64)>,
+    pub(crate) look: Look,
+}
+
+impl Panel {
+    /// An empty plot.
+    pub(crate) fn new(title: &str, x: Axis, y: Axis) -> Self {
+        let margins = Margins { left: 80, right: 20, top: 30, bottom: 44 };
+        let (title, height) = (title.to_owned(), PANEL_HEIGHT);
+        Self { title, x, y, series: Vec::new(), field: None, notes: Vec::new(), height, margins }
+    }
+
+    /// Adds a series.
+    pub(crate) fn add(&mut self, name: &str, look: Look, points: Vec<(f64, f64)>) {
+        self.series.push(Series { name: name.to_owned(), points, look });
+    }
+
+    /// Adds a coloured field, with room for its colour scale.
+    pub(crate) fn with_field(mut self, field: Field) -> Self {
+        self.field = Some(field);
+        self.margins.right = 100;
+        self
+    }
+}
+
+impl Chart {
+    /// Panels without a title, in so many columns, each with its own legend.
+    pub(crate) fn new(panels: Vec<Panel>, columns: u32) -> Self {
+        Self { title: String::new(), panels, columns, shared_legend: false, caption: Vec::new(), width: WIDTH }
+    }
+
+    /// The same with one legend for all panels.
+    pub(crate) fn with_shared_legend(self) -> Self {
+        Self { shared_legend: true, ..self }
+    }
+
+    /// An SVG document.
+    pub(crate) fn svg(&self) -> Result<String, DrawError> {
+        let layout = Layout::of(self)?;
+        let fine = |pixels| SVG_SCALE.px(pixels);
+        let mut text = String::new();
+        {
+            let area = SVGBackend::with_string(&mut text, (fine(self.width), fine(layout.height))).into_drawing_area();
+            self.draw(&area, &layout, SVG_SCALE)?;
+        }
+        let size = |width: u32, height: u32| format!("width=\"{width}\" height=\"{height}\"");
+        let drawn = size(fine(self.width), fine(layout.height));
+        Ok(text.replacen(&drawn, &size(self.width, layout.height), 1))
+    }
+
+    /// A PNG file.
+    pub(crate) fn png(&self) -> Result<Vec<u8>, DrawError> {
+        let layout = Layout::of(self)?;
+        png::encoded((self.width, layout.height), |area, scale| self.draw(area, &layout, scale))
+    }
+
+    fn draw<DB: DrawingBackend>(&self, area: &Area<DB>, layout: &Layout, scale: Scale) -> Drawn {
+        let px = |pixels| scale.px(pixels);
+        area.fill(&WHITE)?;
+        let left = self.panels.first().map_or(EDGE, |panel| panel.margins.left);
+        if !self.title.is_empty() {
+            let place = (px(left) as i32, px(TITLE_HEIGHT / 2) as i32);
+            area.draw(&Text::new(self.title.as_str(), place, scale.letters_at(TITLE + 2, HPos::Left)))?;
+        }
+        let panel_width = layout.panel_width;
+        let mut top = layout.title_height;
+        for row in &layout.rows {
+            for (column, panel) in (0..).zip(row.panels) {
+                let corner = (px(column * panel_width), px(top));
+                let place = area.clone().shrink(corner, (px(panel_width), px(row.height)));
+                plot::draw(&place, panel, scale)?;
+                if !self.shared_legend {
+                    Legend::of(&panel.series).draw(&place, (0, row.plot_height + SPACING / 2), panel_width, scale)?;
+                }
+            }
+            top += row.height;
+        }
+        if self.shared_legend {
+            Legend::of_all(&self.panels).draw(area, (0, top), self.width, scale)?;
+        }
+        top = layout.height - layout.caption.len() as u32 * CAPTION_LINE - SPACING;
+        for line in &layout.caption {
+            let place = (px(left) as i32, px(top + CAPTION_LINE / 2) as i32);
+            area.draw(&Text::new(line.as_str(), place, scale.letters_at(NOTE, HPos::Left)))?;
+            top += CAPTION_LINE;
+        }
+        area.present()?;
+        Ok(())
+    }
+}
+
+/// Where the parts of a chart stand, in pixels.
+struct Layout<'c> {
+    title_height: u32,
+    panel_width: u32,
+    rows: Vec<Row<'c>>,
+    /// The caption, broken into lines.
+    caption: Vec<String>,
+    height: u32,
+}
+
+/// A row of panels; their legends stand below the plots.
+struct Row<'c> {
+    panels: &'c [Panel],
+    plot_height: u32,
+    height: u32,
+}
+
+impl<'c> Layout<'c> {
+    fn of(chart: &'c Chart) -> Result<Self, DrawError> {
+        let columns = chart.columns.max(1);
+        let panel_width = chart.width / columns;
+        let mut rows = Vec::new();
+        for panels in chart.panels.chunks(columns as usize) {
+            let plot_height = panels.iter().map(|panel| panel.height).max().unwrap_or_default();
+            let mut legend_height = 0;
+            for panel in panels.iter().filter(|_| !chart.shared_legend) {
+                legend_height = legend_height.max(Legend::of(&panel.series).height(panel_width)?);
+            }
+            rows.push(Row { panels, plot_height, height: plot_height + legend_height + SPACING });
+        }
+        let legend_height = if chart.shared_legend { Legend::of_all(&chart.panels).height(chart.width)? } else { 0 };
+        let left = chart.panels.first().map_or(EDGE, |panel| panel.margins.left);
+        let mut caption = Vec::new();
+        for sentence in &chart.caption {
+            caption.extend(wrapped(sentence, chart.width - left - EDGE)?);
+        }
+        let title_height = if chart.title.is_empty() { 0 } else { TITLE_HEIGHT };
+        let caption_height = if caption.is_empty() { 0 } else { caption.len() as u32 * CAPTION_LINE + SPACING };
+        let height = title_height + rows.iter().map(|row| row.height).sum::<u32>() + legend_height + caption_height;
+        Ok(Self { title_height, panel_width, rows, caption, height })
+    }
+}
+
+/// Breaks a sentence between words, so that no line is wider than `room` pixels if its words are not.
+fn wrapped(sentence: &str, room: u32) -> Result<Vec<String>, DrawError> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in sentence.split(' ') {
+        let longer = lines.last().map(|line| format!("{line} {word}"));
+        match (lines.last_mut(), longer) {
+            (Some(line), Some(longer)) if style::text_width(&longer, NOTE)? <= room => *line = longer,
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    Ok(lines)
+}

@@ -1,0 +1,158 @@
+//! PNG files: drawn finer than they are, and brought to size.
+
+use std::collections::HashMap;
+
+use plotters::prelude::{BitMapBackend, IntoDrawingArea};
+use plotters_backend::{BackendColor, BackendCoord, BackendTextStyle, DrawingBackend, DrawingErrorKind, FontTransform};
+
+use super::style::{Scale, load_font};
+use super::{Area, DrawError, Drawn};
+
+/// Each pixel is the mean of this many units in both directions, so that lines and letters have smooth edges.
+const SCALE: Scale = Scale(2);
+/// Steps of grey: enough for the edges of letters, few enough for a palette.
+const GREYS: u32 = 17;
+/// How far plotters places letters too high, as a part of their size: their box ends at 1/1.24 of it, with the baseline
+/// in the middle of the size.
+const TOO_HIGH: f64 = 0.2;
+
+/// Draws a picture of some size in pixels, and encodes it.
+pub(super) fn encoded(
+    (width, height): (u32, u32),
+    draw: impl FnOnce(&Area<Bitmap>, Scale) -> Drawn,
+) -> Result<Vec<u8>, DrawError> {
+    load_font()?;
+    let (fine_width, fine_height) = (SCALE.px(width), SCALE.px(height));
+    let mut fine = vec![255; 3 * fine_width as usize * fine_height as usize];
+    {
+        let backend = BitMapBackend::with_buffer(&mut fine, (fine_width, fine_height));
+        draw(&Bitmap(backend).into_drawing_area(), SCALE)?;
+    }
+    let pixels = reduced(&fine, width as usize);
+    encode(&pixels, (width, height)).map_err(|error| DrawError::new(&error))
+}
+
+/// The means of squares of units, as pixels.
+fn reduced(fine: &[u8], width: usize) -> Vec<[u8; 3]> {
+    let side = SCALE.px(1) as usize;
+    let fine_row = 3 * width * side;
+    let rows = fine.chunks_exact(fine_row * side);
+    rows.flat_map(|rows| {
+        (0..width).map(move |column| {
+            let mut sums = [0_u32; 3];
+            for row in rows.chunks_exact(fine_row) {
+                for unit in row[3 * column * side..3 * (column + 1) * side].chunks_exact(3) {
+                    for (sum, value) in sums.iter_mut().zip(unit) {
+                        *sum += u32::from(*value);
+                    }
+                }
+            }
+            let count = (side * side) as u32;
+            few_greys(sums.map(|sum| ((sum + count / 2) / count) as u8))
+        })
+    })
+    .collect()
+}
+
+/// A grey is rounded to one of few.
+fn few_greys(pixel: [u8; 3]) -> [u8; 3] {
+    let [red, green, blue] = pixel;
+    if red != green || green != blue {
+        return pixel;
+    }
+    let step = 255 / (GREYS - 1);
+    [((u32::from(red) + step / 2) / step * step).min(255) as u8; 3]
+}
+
+/// A PNG file: a byte a pixel where there are few colours.
+fn encode(pixels: &[[u8; 3]], (width, height): (u32, u32)) -> Result<Vec<u8>, png::EncodingError> {
+    let mut file = Vec::new();
+    let mut encoder = png::Encoder::new(&mut file, width, height);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::High);
+    let bytes = if let Some((palette, indices)) = indexed(pixels) {
+        encoder.set_color(png::ColorType::Indexed);
+        encoder.set_palette(palette.concat());
+        encoder.set_filter(png::Filter::NoFilter);
+        indices
+    } else {
+        encoder.set_color(png::ColorType::Rgb);
+        pixels.concat()
+    };
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&bytes)?;
+    writer.finish()?;
+    Ok(file)
+}
+
+/// The colours in the order in which they appear, and the number of each pixel's; `None` for more colours than a byte
+/// counts.
+fn indexed(pixels: &[[u8; 3]]) -> Option<(Vec<[u8; 3]>, Vec<u8>)> {
+    let mut palette = Vec::new();
+    let mut numbers = HashMap::new();
+    let mut indices = Vec::with_capacity(pixels.len());
+    for pixel in pixels {
+        let index = if let Some(index) = numbers.get(pixel) {
+            *index
+        } else {
+            let index = u8::try_from(palette.len()).ok()?;
+            palette.push(*pixel);
+            numbers.insert(*pixel, index);
+            index
+        };
+        indices.push(index);
+    }
+    Some((palette, indices))
+}
+
+/// The bitmap backend of plotters with letters at the height at which an SVG viewer places them.
+pub(super) struct Bitmap<'b>(BitMapBackend<'b>);
+
+impl<'b> DrawingBackend for Bitmap<'b> {
+    type ErrorType = <BitMapBackend<'b> as DrawingBackend>::ErrorType;
+
+    fn get_size(&self) -> (u32, u32) {
+        self.0.get_size()
+    }
+
+    fn ensure_prepared(&mut self) -> Result<(), DrawingErrorKind<Self::ErrorType>> {
+        self.0.ensure_prepared()
+    }
+
+    fn present(&mut self) -> Result<(), DrawingErrorKind<Self::ErrorType>> {
+        self.0.present()
+    }
+
+    fn draw_pixel(
+        &mut self,
+        place: BackendCoord,
+        colour: BackendColor,
+    ) -> Result<(), DrawingErrorKind<Self::ErrorType>> {
+        self.0.draw_pixel(place, colour)
+    }
+
+    fn draw_text<S: BackendTextStyle>(
+        &mut self,
+        text: &str,
+        style: &S,
+        (x, y): BackendCoord,
+    ) -> Result<(), DrawingErrorKind<Self::ErrorType>> {
+        let shift = (TOO_HIGH * style.size()).round() as i32;
+        let place = match style.transform() {
+            FontTransform::None => (x, y + shift),
+            FontTransform::Rotate90 => (x - shift, y),
+            FontTransform::Rotate180 => (x, y - shift),
+            FontTransform::Rotate270 => (x + shift, y),
+        };
+        self.0.draw_text(text, style, place)
+    }
+
+    fn blit_bitmap(
+        &mut self,
+        place: BackendCoord,
+        size: (u32, u32),
+        pixels: &[u8],
+    ) -> Result<(), DrawingErrorKind<Self::ErrorType>> {
+        self.0.blit_bitmap(place, size, pixels)
+    }
+}

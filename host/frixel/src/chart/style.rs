@@ -1,0 +1,211 @@
+//! How a frixel chart looks: sizes, colours, lines, marks, letters.
+
+use std::sync::OnceLock;
+
+use plotters::element::DashedPathElement;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::style::{FontStyle, RGBAColor, ShapeStyle, TextStyle, register_font};
+
+use super::{Area, DrawError, Drawn};
+
+/// Width of a chart as it is shown, in pixels.
+pub(super) const WIDTH: u32 = 1_000;
+/// Space that is left free to the left of an upright axis label, in pixels.
+pub(super) const EDGE: u32 = 14;
+/// Sizes of letters, in pixels.
+pub(super) const TITLE: u32 = 17;
+pub(super) const AXIS_LABEL: u32 = 16;
+pub(super) const LABEL: u32 = 15;
+pub(super) const NOTE: u32 = 13;
+
+/// What drawings call the font: the viewer of an SVG file takes its own, a PNG file is drawn with [`FONT`].
+pub(super) const FAMILY: &str = "sans-serif";
+/// `DejaVu` Sans with few characters; its licence stands beside it.
+static FONT: &[u8] = include_bytes!("font/DejaVuSans-subset.ttf");
+
+/// Half the size of a mark, in pixels.
+const MARK: f64 = 4.2;
+/// Lengths of a dash and of the gap behind it, in pixels.
+const DASH: (u32, u32) = (7, 5);
+/// Steps of the colour scale; more cannot be told apart, and make picture files large.
+const COLOUR_STEPS: f64 = 32.0;
+
+/// Colours that can be told apart with any kind of colour vision (Okabe and Ito, <https://jfly.uni-koeln.de/color/>).
+pub(crate) const PALETTE: [RGBColor; 7] = [
+    RGBColor(0x00, 0x72, 0xb2),
+    RGBColor(0xd5, 0x5e, 0x00),
+    RGBColor(0x00, 0x9e, 0x73),
+    RGBColor(0xcc, 0x79, 0xa7),
+    RGBColor(0xe6, 0x9f, 0x00),
+    RGBColor(0x56, 0xb4, 0xe9),
+    RGBColor(0x33, 0x33, 0x33),
+];
+const UNKNOWN: RGBColor = RGBColor(128, 128, 128);
+
+/// The colour of a part of a colour scale, from 0 to 1; beyond it, the colour of its end. Grey where it is not a
+/// number.
+pub(crate) fn colour(part: f64) -> RGBColor {
+    if part.is_nan() {
+        return UNKNOWN;
+    }
+    ViridisRGB.get_color((part.clamp(0.0, 1.0) * COLOUR_STEPS).round() / COLOUR_STEPS)
+}
+
+/// The colour of member `index` of a family of `count` curves whose order means something.
+pub(crate) fn graded(index: usize, count: usize) -> RGBColor {
+    // The bright end of the scale is too pale for a line on white.
+    colour(0.85 * index as f64 / (count.max(2) - 1) as f64)
+}
+
+/// The colour of a value between minus one and one: orange below zero, blue above it, stronger the farther.
+pub(crate) fn signed(part: f64) -> RGBColor {
+    let (RGBColor(red, green, blue), strength) = match part {
+        part if part < 0.0 => (PALETTE[1], -part),
+        part if part > 0.0 => (PALETTE[0], part),
+        _ => return BLACK,
+    };
+    let mixed = |channel: u8| (255.0 + (f64::from(channel) - 255.0) * (0.45 + 0.55 * strength.min(1.0))).round() as u8;
+    RGBColor(mixed(red), mixed(green), mixed(blue))
+}
+
+/// How a series looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Look {
+    pub(crate) colour: RGBColor,
+    pub(crate) line: Line,
+    pub(crate) mark: Mark,
+}
+
+/// The line through the points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Line {
+    None,
+    Solid,
+    Thin,
+    Thick,
+    Dashed,
+    /// The area that the points enclose, with this opacity from 0 to 1.
+    Filled(f64),
+}
+
+/// What stands at the points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Mark {
+    None,
+    Disc,
+    /// A disc with room for another one of another colour on it.
+    Casing,
+    Ring,
+    Square,
+    Triangle,
+    Diamond,
+    Cross,
+}
+
+impl Look {
+    /// A line without marks.
+    pub(crate) const fn line(colour: RGBColor, line: Line) -> Self {
+        Self { colour, line, mark: Mark::None }
+    }
+
+    /// Marks without a line.
+    pub(crate) const fn mark(colour: RGBColor, mark: Mark) -> Self {
+        Self { colour, line: Line::None, mark }
+    }
+
+    /// Corners of a mark that is a polygon, in units of its size.
+    fn corners(self) -> Option<&'static [(f64, f64)]> {
+        match self.mark {
+            Mark::Square => Some(&[(-0.85, -0.85), (0.85, -0.85), (0.85, 0.85), (-0.85, 0.85)]),
+            Mark::Triangle => Some(&[(0.0, -1.15), (1.05, 0.75), (-1.05, 0.75)]),
+            Mark::Diamond => Some(&[(0.0, -1.2), (1.2, 0.0), (0.0, 1.2), (-1.2, 0.0)]),
+            Mark::None | Mark::Disc | Mark::Casing | Mark::Ring | Mark::Cross => None,
+        }
+    }
+}
+
+/// Units of a drawing area to a shown pixel. Plotters places everything on whole units: more of them draw finer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Scale(pub(super) u32);
+
+impl Scale {
+    /// A length in pixels, in units.
+    pub(super) fn px(self, shown: u32) -> u32 {
+        shown * self.0
+    }
+
+    /// A black line of some width in pixels.
+    pub(super) fn stroke(self, width: u32) -> ShapeStyle {
+        BLACK.stroke_width(self.px(width))
+    }
+
+    /// Black letters of some size in pixels.
+    pub(super) fn letters(self, size: u32) -> TextStyle<'static> {
+        (FAMILY, self.px(size)).into_font().color(&BLACK)
+    }
+
+    /// Black letters whose middle line is level with the place, to its right or to its left.
+    pub(super) fn letters_at(self, size: u32, side: HPos) -> TextStyle<'static> {
+        self.letters(size).pos(Pos::new(side, VPos::Center))
+    }
+
+    /// Draws the line of a look through units of an area.
+    pub(super) fn draw_line<DB: DrawingBackend>(self, area: &Area<DB>, line: &[(i32, i32)], look: &Look) -> Drawn {
+        let stroke = |width| look.colour.stroke_width(self.px(width));
+        match look.line {
+            Line::None => {}
+            Line::Thin => area.draw(&PathElement::new(line, stroke(1)))?,
+            Line::Solid => area.draw(&PathElement::new(line, stroke(2)))?,
+            Line::Thick => area.draw(&PathElement::new(line, stroke(5)))?,
+            Line::Dashed => {
+                let (dash, gap) = (self.px(DASH.0) as i32, self.px(DASH.1) as i32);
+                area.draw(&DashedPathElement::new(line.to_vec(), dash, gap, stroke(2)))?;
+            }
+            Line::Filled(opacity) => area.draw(&Polygon::new(line, look.colour.mix(opacity).filled()))?,
+        }
+        Ok(())
+    }
+
+    /// Draws the mark of a look at a place of an area, in units.
+    pub(super) fn draw_mark<DB: DrawingBackend>(self, area: &Area<DB>, (x, y): (i32, i32), look: &Look) -> Drawn {
+        let size = MARK * f64::from(self.0);
+        let at = |(dx, dy): &(f64, f64)| (x + (size * dx).round() as i32, y + (size * dy).round() as i32);
+        if let Some(corners) = look.corners() {
+            let corners: Vec<_> = corners.iter().map(at).collect();
+            area.draw(&Polygon::new(corners, look.colour.filled()))?;
+        }
+        let stroke = look.colour.stroke_width(self.px(2));
+        match look.mark {
+            Mark::Disc => area.draw(&Circle::new((x, y), size as i32, look.colour.filled()))?,
+            Mark::Casing => area.draw(&Circle::new((x, y), (1.5 * size) as i32, look.colour.filled()))?,
+            Mark::Ring => area.draw(&Circle::new((x, y), size as i32, stroke))?,
+            Mark::Cross => area.draw(&Cross::new((x, y), size as i32, stroke))?,
+            _ => {}
+        }
+        Ok(())
+    }
+}
+
+/// A thin grey line of a grid.
+pub(super) fn grid() -> RGBAColor {
+    BLACK.mix(0.13)
+}
+
+/// Makes the font known to plotters, which measures letters with it.
+pub(super) fn load_font() -> Drawn {
+    static LOADED: OnceLock<bool> = OnceLock::new();
+    let loaded = *LOADED.get_or_init(|| register_font(FAMILY, FontStyle::Normal, FONT).is_ok());
+    if loaded { Ok(()) } else { Err(DrawError::new(&"the font is broken")) }
+}
+
+/// Text is measured so many times as large as it is drawn, since plotters rounds to whole units.
+const FINE: u32 = 8;
+
+/// Width of a text of some size, in pixels.
+pub(super) fn text_width(text: &str, size: u32) -> Result<u32, DrawError> {
+    load_font()?;
+    let ((left, _), (right, _)) =
+        (FAMILY, FINE * size).into_font().layout_box(text).map_err(|error| DrawError::new(&error))?;
+    Ok((right - left).unsigned_abs().div_ceil(FINE))
+}

@@ -1,0 +1,125 @@
+//! Answers of the paper's equations in 80 digits, made by `model/reference/report.py`: the report compares the model
+//! with them.
+
+use frixel_model::{ContactModel, Real};
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+
+use super::ReportError;
+
+const PLANE: &str = include_str!("plane.csv");
+const SOFT: &str = include_str!("soft.csv");
+
+/// Cells to a decade of the plane.
+pub(super) const CELLS_PER_DECADE: i32 = 3;
+/// Decades of attraction `q` that the plane covers.
+pub(super) const Q_DECADES: (i32, i32) = (-12, 12);
+
+/// A place in the middle of a cell of the plane of attraction and load.
+#[derive(Clone, Debug, Deserialize)]
+pub(super) struct PlaneRow {
+    /// The cell's lower end in parts of a decade of `n`; absent without a load.
+    pub(super) n_cell: Option<i32>,
+    /// The cell's lower end in parts of a decade of `q`.
+    pub(super) q_cell: i32,
+    voltage_v: f64,
+    normal_force_n: f64,
+    electric_friction_n: f64,
+    electric_friction_n_rest: f64,
+    given_electric_friction_n: f64,
+    answer_voltage_v: f64,
+    answer_voltage_v_rest: f64,
+}
+
+/// A soft finger at a voltage.
+#[derive(Clone, Debug, Deserialize)]
+pub(super) struct SoftRow {
+    pub(super) stress_exponent: f64,
+    voltage_v: f64,
+    normal_force_n: f64,
+    electric_friction_n: f64,
+    electric_friction_n_rest: f64,
+    given_electric_friction_n: f64,
+    answer_voltage_v: f64,
+    answer_voltage_v_rest: f64,
+}
+
+/// Inputs that are exact in f32, with their answers.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Answers {
+    pub(super) voltage_v_rms: f64,
+    pub(super) normal_load_n: f64,
+    electric_friction_n: Answer,
+    given_electric_friction_n: f64,
+    given_voltage_v_rms: Answer,
+}
+
+/// The nearest f64, and the rest.
+#[derive(Clone, Copy, Debug)]
+struct Answer(f64, f64);
+
+impl Answer {
+    /// How far `found` is from the answer, relative to it; infinite for what is no number.
+    fn relative_error(self, found: f64) -> f64 {
+        let Self(nearest, rest) = self;
+        // `found - nearest` is exact where both are near.
+        if found.is_finite() { (((found - nearest) - rest) / nearest).abs() } else { f64::INFINITY }
+    }
+}
+
+impl Answers {
+    /// Relative errors of electric friction from voltage, and of voltage from electric friction.
+    pub(super) fn errors<T: Real>(&self, model: &impl ContactModel<T>) -> Result<(f64, f64), ReportError> {
+        let friction_n = model.state(T::from_f64(self.voltage_v_rms))?.electric_friction_n;
+        let voltage_v_rms = model.voltage_for_electric_friction(T::from_f64(self.given_electric_friction_n))?;
+        let forward = self.electric_friction_n.relative_error(friction_n.into());
+        Ok((forward, self.given_voltage_v_rms.relative_error(voltage_v_rms.into())))
+    }
+}
+
+macro_rules! answers {
+    ($row:ty) => {
+        impl $row {
+            /// Inputs and answers.
+            pub(super) fn answers(&self) -> Answers {
+                Answers {
+                    voltage_v_rms: self.voltage_v,
+                    normal_load_n: self.normal_force_n,
+                    electric_friction_n: Answer(self.electric_friction_n, self.electric_friction_n_rest),
+                    given_electric_friction_n: self.given_electric_friction_n,
+                    given_voltage_v_rms: Answer(self.answer_voltage_v, self.answer_voltage_v_rest),
+                }
+            }
+        }
+    };
+}
+
+answers!(PlaneRow);
+answers!(SoftRow);
+
+/// All places of the plane: loads from small to large, then none.
+pub(super) fn plane() -> Result<Vec<PlaneRow>, csv::Error> {
+    rows(PLANE)
+}
+
+/// The soft finger: without a load, then with one; exponents, then voltages from small to large.
+pub(super) fn soft() -> Result<Vec<SoftRow>, csv::Error> {
+    rows(SOFT)
+}
+
+fn rows<R: DeserializeOwned>(text: &str) -> Result<Vec<R>, csv::Error> {
+    csv::Reader::from_reader(text.as_bytes()).deserialize().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_are_resolved_below_the_last_bit() {
+        let answer = Answer(1.0, 1e-17);
+        assert!((answer.relative_error(1.0) - 1e-17).abs() < 1e-30);
+        assert!((answer.relative_error(1.0 + f64::EPSILON) - (f64::EPSILON - 1e-17)).abs() < 1e-30);
+        assert!(answer.relative_error(f64::NAN).is_infinite());
+    }
+}
