@@ -6,7 +6,7 @@ use std::path::Path;
 use frixel::check::SceneCheck;
 use frixel_scene::{Scene, compile};
 use frixel_hil_sim::RigConfig;
-use frixel_wire::scene::cost::TICK_INSTRUCTIONS_MAX;
+use frixel_layers::cost::TICK_INSTRUCTIONS_MAX;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {

@@ -4,10 +4,10 @@
 //! voltage, however the amplitude moves: a code that would take it out is put out with the other sign, as an early
 //! edge.
 
-use frixel_wire::scene::Carrier as Shape;
+use frixel_layers::Carrier as Shape;
 
 #[cfg(feature = "sine-carrier")]
-use crate::turns;
+use frixel_layers::cosine;
 
 /// What a carrier is made of; part of `Active`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -130,7 +130,7 @@ impl Carrier {
             #[cfg(feature = "sine-carrier")]
             Shape::Sine => {
                 // The crest, where the cosine has no angle, is a quarter of a turn before the edge.
-                amplitude * turns::cosine(self.left_ticks as f32 * timing.turns_per_tick - 0.25)
+                amplitude * cosine(self.left_ticks as f32 * timing.turns_per_tick - 0.25)
             }
             #[cfg(not(feature = "sine-carrier"))]
             Shape::Sine => 0.0,

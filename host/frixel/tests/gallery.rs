@@ -11,10 +11,10 @@ use std::path::{Path, PathBuf};
 use frixel::output::{Preview, write_preview_png};
 use frixel::player::{Simulation, simulate};
 use frixel_hil_sim::{BoardMemory, RigConfig, Stroke};
+use frixel_layers::{Header, Scene as WireScene};
 use frixel_scene::recorder::FeltRow;
 use frixel_scene::{Asked, Program, Scene, compile};
 use frixel_wire::fault::Flags;
-use frixel_wire::scene::{Header, Scene as WireScene};
 
 const PICTURE_BYTES_MAX: u64 = 40 * 1024;
 /// How much the felt friction has to vary along a stroke over a scene, as a part of what the drive can add.

@@ -12,10 +12,10 @@ use frixel::rigs::SimLink;
 use frixel::stream::Feed;
 use frixel_driver::{Device, StreamStatus};
 use frixel_hil_sim::{BoardMemory, Point, Rig, RigConfig, Stroke};
+use frixel_layers::{Blend, Layer, Record, Region, Stream};
 use frixel_scene::recorder::{FeltRow, Recorder};
 use frixel_scene::{Program, Scene, compile};
 use frixel_wire::fault::Flags;
-use frixel_wire::scene::{Blend, Layer, Record, Region};
 use hound::{SampleFormat, WavSpec, WavWriter};
 
 const SAMPLE_HZ: u32 = 4_000;
@@ -30,7 +30,7 @@ fn program() -> Program {
     let rig = RigConfig::default();
     let scene = Scene::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/constant.toml")).unwrap();
     let mut program = compile(&scene, &rig.board.limits, rig.board.tick_hz).unwrap();
-    let layer = Layer::Stream { low_n: LOW_N as f32, high_n: HIGH_N as f32 };
+    let layer = Layer::Stream(Stream { low_n: LOW_N as f32, high_n: HIGH_N as f32 });
     program.records = vec![Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer }];
     program
 }

@@ -7,7 +7,7 @@
 mod processes;
 
 use std::fs;
-use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
+use std::io::{BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -18,7 +18,7 @@ use frixel::player;
 use frixel_driver::{DEFAULT_BAUD, Device, DeviceError, SerialLink};
 use frixel_scene::{Scene, compile};
 use hound::{SampleFormat, WavSpec, WavWriter};
-use processes::{NAP, frixel, until};
+use processes::{frixel, until};
 use serialport::{SerialPort, TTYPort};
 use tempfile::TempDir;
 
@@ -294,6 +294,9 @@ fn the_reference_of_a_board_at_a_port_has_what_is_streamed() {
     assert!(varied * 2 > pairs.len(), "something was streamed in {varied} of {} rows", pairs.len());
 }
 
+/// How long a write to a client may take that has no processor for itself. Reads do not wait: they ask first.
+const WRITE_TIMEOUT: Duration = Duration::from_secs(30);
+
 /// Passes bytes between a client and a board, until the client has sent so many.
 struct Tap {
     to_client: TTYPort,
@@ -305,8 +308,8 @@ struct Tap {
 impl Tap {
     fn new(board: &VirtualBoard) -> Self {
         let (mut to_client, client_end) = TTYPort::pair().unwrap();
-        to_client.set_timeout(NAP).unwrap();
-        let to_board = TTYPort::open(&serialport::new(&board.port, 2_000_000).timeout(NAP)).unwrap();
+        to_client.set_timeout(WRITE_TIMEOUT).unwrap();
+        let to_board = TTYPort::open(&serialport::new(&board.port, 2_000_000).timeout(WRITE_TIMEOUT)).unwrap();
         let path = client_end.name().unwrap();
         Self { to_client, _client_end: client_end, path, to_board }
     }
@@ -319,27 +322,16 @@ impl Tap {
             if self.to_client.bytes_to_read().unwrap() > 0 {
                 let room = left.min(bytes.len());
                 let got = self.to_client.read(&mut bytes[..room]).unwrap();
-                write_all(&mut self.to_board, &bytes[..got]);
+                self.to_board.write_all(&bytes[..got]).unwrap();
                 left -= got;
             } else if self.to_board.bytes_to_read().unwrap() > 0 {
                 let got = self.to_board.read(&mut bytes).unwrap();
-                write_all(&mut self.to_client, &bytes[..got]);
+                self.to_client.write_all(&bytes[..got]).unwrap();
             } else {
                 sleep(Duration::from_micros(200));
             }
         }
     }
-}
-
-/// Writes to a terminal whose reader may be away for longer than a write waits, as on a busy machine.
-fn write_all(terminal: &mut TTYPort, mut bytes: &[u8]) {
-    until("a terminal takes bytes", || {
-        match terminal.write(bytes) {
-            Ok(written) => bytes = &bytes[written..],
-            Err(error) => assert_eq!(error.kind(), ErrorKind::TimedOut, "{error}"),
-        }
-        bytes.is_empty()
-    });
 }
 
 /// Numbers that look random and are the same in every run.

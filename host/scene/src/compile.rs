@@ -1,8 +1,9 @@
 //! From a scene as written to a program as played: checks that need the board, other layers, or pictures.
 
+use frixel_layers::cost::TICK_INSTRUCTIONS_MAX;
+use frixel_layers::{Header, Record, electric_friction_max_n};
 use frixel_wire::hello::BoardLimits;
-use frixel_wire::scene::cost::TICK_INSTRUCTIONS_MAX;
-use frixel_wire::scene::{Header, RECORDS_MAX, Record};
+use frixel_wire::scene::RECORDS_MAX;
 
 use super::compile_error::CompileError;
 use super::excess;
@@ -98,6 +99,10 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
         excess::check(scene, &mut program, log);
         let live: Vec<bool> = scene.layers.iter().map(|layer| layer.live).collect();
         leave_out(&mut program, &live);
+        let Program { header, records, points, .. } = &mut program;
+        if header.layers_fixed {
+            header.electric_friction_max_n = electric_friction_max_n(header, records, points);
+        }
     }
     program.layers = layer_map(scene, &program.titles);
     Some(program)
@@ -170,6 +175,7 @@ fn header(scene: &Scene, limits: &BoardLimits, half_period_s: f64, log: &mut Log
         prediction: scene.touch.prediction,
         leader: scene.touch.leader,
         layers_fixed: !scene.layers.iter().any(|layer| layer.live),
+        electric_friction_max_n: None,
     }
 }
 

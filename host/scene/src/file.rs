@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use frixel_wire::scene::Leader;
+use frixel_layers::Leader;
 use toml::de::DeTable;
 
 use super::asked::AskedTable;
@@ -84,7 +84,7 @@ pub(super) struct Drive {
 /// `[carrier]`
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Carrier {
-    pub(super) shape: frixel_wire::scene::Carrier,
+    pub(super) shape: frixel_layers::Carrier,
     pub(super) frequency_hz: f64,
     pub(super) places: Places,
 }
@@ -234,7 +234,7 @@ fn drive(mut fields: Fields, log: &mut Log) -> Drive {
 }
 
 fn carrier(mut fields: Fields, log: &mut Log) -> Carrier {
-    use frixel_wire::scene::Carrier::{Sine, Square};
+    use frixel_layers::Carrier::{Sine, Square};
     let shape = fields.optional_choice(log, "shape", &[("square", Square), ("sine", Sine)]).unwrap_or(Square);
     let frequency_hz = fields.optional_number(log, "frequency_hz", CARRIER_HZ).unwrap_or(1_000.0);
     let places = fields.close(log);

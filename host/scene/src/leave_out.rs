@@ -3,7 +3,10 @@
 
 use std::collections::BTreeSet;
 
-use frixel_wire::scene::{Blend, Click, Header, Layer, Point, Record, Region};
+use frixel_layers::{
+    Bitmap, Blend, Button, Click, Constant, Edge, Grating, Header, Layer, Noise, Point, Record, Region, Speed,
+    Vibration,
+};
 
 use super::left_out::LeftOut;
 use super::program::Program;
@@ -38,15 +41,17 @@ fn flatten(items: &mut [Item], left_out: &mut Vec<LeftOut>) {
         let still = |click: &Click| click.height_n.abs() <= 0.0;
         let same = |one: f32, other: f32| (one.to_bits() == other.to_bits()).then_some(one);
         let flat = match &item.record.layer {
-            Layer::Grating { trough_n, crest_n, .. } => same(*trough_n, *crest_n),
-            Layer::Bitmap { black_n, white_n, .. } => same(*black_n, *white_n),
-            Layer::Noise { low_n, high_n, .. } | Layer::Vibration { low_n, high_n, .. } => same(*low_n, *high_n),
-            Layer::Edge { level_n, ridge_n, click, .. } if still(click) => same(*level_n, *ridge_n),
-            Layer::Button { rim_n, face_n, click, .. } if still(click) => same(*rim_n, *face_n),
+            Layer::Grating(Grating { trough_n, crest_n, .. }) => same(*trough_n, *crest_n),
+            Layer::Bitmap(Bitmap { black_n, white_n, .. }) => same(*black_n, *white_n),
+            Layer::Noise(Noise { low_n, high_n, .. }) | Layer::Vibration(Vibration { low_n, high_n, .. }) => {
+                same(*low_n, *high_n)
+            }
+            Layer::Edge(Edge { level_n, ridge_n, click, .. }) if still(click) => same(*level_n, *ridge_n),
+            Layer::Button(Button { rim_n, face_n, click, .. }) if still(click) => same(*rim_n, *face_n),
             _ => None,
         };
         if let Some(electric_friction_n) = flat {
-            item.record.layer = Layer::Constant { electric_friction_n };
+            item.record.layer = Layer::Constant(Constant { electric_friction_n });
             left_out.push(LeftOut::Flat { layer: item.title.clone() });
         }
     }
@@ -57,7 +62,7 @@ fn drop_covered(items: &mut Vec<Item>, header: &Header, left_out: &mut Vec<LeftO
     let mut number = 0;
     while let Some(item) = items.get(number) {
         let hides = |above: &&Item| {
-            let always = !above.live && !matches!(above.record.layer, Layer::Stream { .. });
+            let always = !above.live && !matches!(above.record.layer, Layer::Stream(_));
             always && above.record.blend == Blend::Replace && covers(above.record.region, item.record.region, header)
         };
         match items.iter().skip(number + 1).find(hides) {
@@ -97,7 +102,7 @@ fn drop_idle(items: &mut Vec<Item>, left_out: &mut Vec<LeftOut>) {
     let mut bare = true;
     items.retain(|item| {
         let own = match item.record.layer {
-            Layer::Constant { electric_friction_n } => Some(item.record.gain * electric_friction_n),
+            Layer::Constant(Constant { electric_friction_n }) => Some(item.record.gain * electric_friction_n),
             _ => None,
         };
         let is = |value: f32| own.is_some_and(|own| own.to_bits() == value.to_bits());
@@ -121,7 +126,9 @@ fn fold(items: &mut Vec<Item>, left_out: &mut Vec<LeftOut>) {
     let mut number = 0;
     while let (Some(below), Some(above)) = (items.get(number), items.get(number + 1)) {
         let constant = |item: &Item| match item.record.layer {
-            Layer::Constant { electric_friction_n } if !item.live => Some(item.record.gain * electric_friction_n),
+            Layer::Constant(Constant { electric_friction_n }) if !item.live => {
+                Some(item.record.gain * electric_friction_n)
+            }
             _ => None,
         };
         let together = below.record.region == above.record.region && below.record.blend == Blend::Replace;
@@ -139,7 +146,7 @@ fn fold(items: &mut Vec<Item>, left_out: &mut Vec<LeftOut>) {
         items.remove(number + 1);
         if let Some(below) = items.get_mut(number) {
             below.record.gain = 1.0;
-            below.record.layer = Layer::Constant { electric_friction_n };
+            below.record.layer = Layer::Constant(Constant { electric_friction_n });
         }
     }
 }
@@ -161,7 +168,7 @@ fn compact_points(program: &mut Program) {
         if let Region::Polygon { first, count } = &mut record.region {
             moved(first, *count);
         }
-        if let Layer::Speed { first, count } = &mut record.layer {
+        if let Layer::Speed(Speed { first, count }) = &mut record.layer {
             moved(first, *count);
         }
     }
@@ -173,7 +180,7 @@ fn drop_bitmaps(program: &mut Program) {
         .records
         .iter()
         .filter_map(|record| match record.layer {
-            Layer::Bitmap { crc32, .. } => Some(crc32),
+            Layer::Bitmap(Bitmap { crc32, .. }) => Some(crc32),
             _ => None,
         })
         .collect();

@@ -1,6 +1,6 @@
 //! What a scene asks for over its screen, and how much of that is out of reach.
 
-use frixel_wire::scene::Blend;
+use frixel_layers::Blend;
 use serde::Serialize;
 
 use super::cover::{Span, span_at};

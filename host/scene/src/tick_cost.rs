@@ -1,7 +1,7 @@
 //! Refuses a scene whose tick takes too long at some place, as the board would.
 
-use frixel_wire::scene::Cell;
-use frixel_wire::scene::cost::{Worst, worst_of_scene};
+use frixel_layers::Cell;
+use frixel_layers::cost::{Worst, worst_of_scene};
 
 use super::file::Scene;
 use super::log::Log;

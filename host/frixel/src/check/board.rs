@@ -1,6 +1,6 @@
 //! The smallest firmware that plays a scene.
 
-use frixel_wire::scene::{Carrier, Layer, Region};
+use frixel_layers::{Carrier, Layer, Region};
 use serde::Serialize;
 
 use frixel_scene::Program;
@@ -22,13 +22,13 @@ impl BoardImage {
         let asks = |layer: fn(&Layer) -> bool| program.records.iter().any(|record| layer(&record.layer));
         let polygon = |region: Region| matches!(region, Region::Polygon { .. });
         let features: Vec<&str> = [
-            ("grating", asks(|layer| matches!(layer, Layer::Grating { .. }))),
-            ("bitmap", asks(|layer| matches!(layer, Layer::Bitmap { .. }))),
-            ("noise", asks(|layer| matches!(layer, Layer::Noise { .. }))),
-            ("edge", asks(|layer| matches!(layer, Layer::Edge { .. } | Layer::Button { .. }))),
-            ("vibration", asks(|layer| matches!(layer, Layer::Vibration { .. }))),
-            ("speed", asks(|layer| matches!(layer, Layer::Speed { .. }))),
-            ("stream", asks(|layer| matches!(layer, Layer::Stream { .. }))),
+            ("grating", asks(|layer| matches!(layer, Layer::Grating(_)))),
+            ("bitmap", asks(|layer| matches!(layer, Layer::Bitmap(_)))),
+            ("noise", asks(|layer| matches!(layer, Layer::Noise(_)))),
+            ("edge", asks(|layer| matches!(layer, Layer::Edge(_) | Layer::Button(_)))),
+            ("vibration", asks(|layer| matches!(layer, Layer::Vibration(_)))),
+            ("speed", asks(|layer| matches!(layer, Layer::Speed(_)))),
+            ("stream", asks(|layer| matches!(layer, Layer::Stream(_)))),
             ("polygon", program.records.iter().any(|record| polygon(record.region))),
             ("sine-carrier", program.header.carrier == Carrier::Sine),
             // `frixel play` follows what a board does.

@@ -26,8 +26,7 @@ fn play(folder: &Path) -> Command {
     command
 }
 
-/// What holds however busy the machine is. How many frames had to be sent again depends on it: the emulated serial port
-/// loses bytes when the emulator is kept waiting.
+/// What holds however busy the machine is. How many frames had to be sent again depends on it.
 #[test]
 fn a_scene_plays_on_the_emulated_board() {
     if emulator::image().is_none() {

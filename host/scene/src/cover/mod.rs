@@ -9,7 +9,7 @@ mod span;
 
 use std::collections::BTreeMap;
 
-use frixel_wire::scene::Blend;
+use frixel_layers::Blend;
 
 pub(super) use cell::Cell;
 use cell::Coverage;

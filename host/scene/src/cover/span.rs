@@ -1,6 +1,6 @@
 //! Least and largest friction of layers.
 
-use frixel_wire::scene::{Blend, Click, Wave};
+use frixel_layers::{Blend, Click, Wave};
 
 use super::cell::Cell;
 use crate::reference::{Context, Edge, Field, Grating, Piece, Samples};

@@ -1,6 +1,7 @@
 //! What belongs to each kind of layer.
 
-use frixel_wire::scene::{Beat, CURVE_POINTS_MAX, Wave};
+use frixel_layers::{Beat, Wave};
+use frixel_wire::scene::CURVE_POINTS_MAX;
 
 use super::super::fields::{Fields, Range};
 use super::super::log::Log;

@@ -4,7 +4,7 @@ mod amount;
 mod kind;
 mod region;
 
-use frixel_wire::scene::Blend;
+use frixel_layers::Blend;
 
 pub(super) use amount::Amount;
 use amount::Unit;

@@ -2,10 +2,11 @@
 
 mod place;
 
-use frixel_wire::scene::{
-    Blend, Burst as WireBurst, Click as WireClick, Header, Layer as WireLayer, POINTS_MAX, Point, Record,
-    Region as WireRegion,
+use frixel_layers::{
+    Blend, Burst as WireBurst, Button, Click as WireClick, Constant, Edge, Grating, Header, Layer as WireLayer, Noise,
+    Point, Record, Region as WireRegion, Speed, Stream, Vibration,
 };
+use frixel_wire::scene::POINTS_MAX;
 
 use super::file::Scene;
 use super::layer::{Above, Amount, Burst, Click, Kind, Layer, Region};
@@ -89,31 +90,31 @@ impl<'a, 's> Lowering<'a, 's> {
     fn kind(&mut self, layer: &Layer, kind: &Kind) -> Option<WireLayer> {
         let amount = |amount| self.amount(layer, amount);
         Some(match kind {
-            Kind::Constant { friction } => WireLayer::Constant { electric_friction_n: amount(*friction) },
+            Kind::Constant { friction } => WireLayer::Constant(Constant { electric_friction_n: amount(*friction) }),
             Kind::Grating { wave, wavelength_mm, angle_deg, phase_deg, low, high } => {
                 let (cycles_per_m_x, cycles_per_m_y) = place::wave_vector(*wavelength_mm, *angle_deg);
-                WireLayer::Grating {
+                WireLayer::Grating(Grating {
                     wave: *wave,
                     cycles_per_m_x,
                     cycles_per_m_y,
                     phase_turns: (phase_deg / 360.0).rem_euclid(1.0) as f32,
                     trough_n: amount(*low),
                     crest_n: amount(*high),
-                }
+                })
             }
             Kind::Noise { seed, wavelength_min_mm, wavelength_max_mm, low, high } => {
-                let noise = WireLayer::Noise {
+                let noise = WireLayer::Noise(Noise {
                     seed: *seed,
                     wavelength_min_m: (wavelength_min_mm * MM) as f32,
                     wavelength_max_m: (wavelength_max_mm * MM) as f32,
                     low_n: amount(*low),
                     high_n: amount(*high),
-                };
+                });
                 self.noises += 1;
                 self.limit(layer, "layers of noise", self.noises, NOISES_MAX)?;
                 noise
             }
-            Kind::Edge { x_mm, y_mm, angle_deg, width_mm, ridge, click } => WireLayer::Edge {
+            Kind::Edge { x_mm, y_mm, angle_deg, width_mm, ridge, click } => WireLayer::Edge(Edge {
                 x_m: (x_mm * MM) as f32,
                 y_m: (y_mm * MM) as f32,
                 angle_turns: place::turns(*angle_deg),
@@ -121,34 +122,34 @@ impl<'a, 's> Lowering<'a, 's> {
                 level_n: if layer.blend == Blend::Multiply { 1.0 } else { 0.0 },
                 ridge_n: amount(*ridge),
                 click: self.click(layer, *click)?,
-            },
-            Kind::Button { rim_width_mm, rim, face, click } => WireLayer::Button {
+            }),
+            Kind::Button { rim_width_mm, rim, face, click } => WireLayer::Button(Button {
                 rim_width_m: (rim_width_mm * MM) as f32,
                 rim_n: amount(*rim),
                 face_n: amount(*face),
                 click: self.click(layer, *click)?,
-            },
-            Kind::Vibration { beat, frequency_hz, low, high, burst } => WireLayer::Vibration {
+            }),
+            Kind::Vibration { beat, frequency_hz, low, high, burst } => WireLayer::Vibration(Vibration {
                 beat: *beat,
                 frequency_hz: *frequency_hz as f32,
                 low_n: amount(*low),
                 high_n: amount(*high),
                 burst: burst.map_or(WireBurst::default(), |burst| self.burst(burst)),
-            },
+            }),
             Kind::Speed { speeds_mm_per_s, factors } => {
                 let pairs = speeds_mm_per_s.iter().zip(factors);
                 let points = pairs.map(|(speed, factor)| Point { x: (speed * MM) as f32, y: *factor as f32 });
                 let (first, count) = self.points(layer, points.collect())?;
-                WireLayer::Speed { first, count }
+                WireLayer::Speed(Speed { first, count })
             }
-            Kind::Stream { low, high } => WireLayer::Stream { low_n: amount(*low), high_n: amount(*high) },
+            Kind::Stream { low, high } => WireLayer::Stream(Stream { low_n: amount(*low), high_n: amount(*high) }),
             // It is placed apart.
             Kind::Bitmap(_) => return None,
         })
     }
 
     fn bitmap(&self, layer: &Layer, placed: &Placed, black: Amount, white: Amount) -> WireLayer {
-        WireLayer::Bitmap {
+        WireLayer::Bitmap(frixel_layers::Bitmap {
             crc32: placed.crc32,
             x_m: (placed.corner_mm.0 * MM) as f32,
             y_m: (placed.corner_mm.1 * MM) as f32,
@@ -158,7 +159,7 @@ impl<'a, 's> Lowering<'a, 's> {
             pitch_y_m: (placed.pitches_mm.1 * MM) as f32,
             angle_turns: placed.angle_turns,
             tiled: placed.tiled,
-        }
+        })
     }
 
     /// An amount as the wire has it: electric friction in newtons, or a factor.

@@ -1,6 +1,6 @@
 //! Places on the screen: from millimetres and degrees to metres and turns.
 
-use frixel_wire::scene::{Header, Region as WireRegion};
+use frixel_layers::{Header, Region as WireRegion};
 
 use super::super::file::Scene;
 use super::super::layer::{Layer, Rectangle};

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use frixel_wire::scene::{Beat, Burst, Click, Layer, Record, Region, Wave};
+use frixel_layers::{Beat, Bitmap, Burst, Click, Constant, Layer, Record, Region, Speed, Stream, Wave};
 
 use super::Context;
 use super::samples::{Placement, Samples};
@@ -83,51 +83,62 @@ pub(crate) struct Vibration {
 impl Field {
     pub(super) fn new(record: &Record, program: &Program) -> Self {
         match record.layer {
-            Layer::Constant { electric_friction_n } => Self::Constant(f64::from(electric_friction_n)),
-            Layer::Grating { wave, cycles_per_m_x, cycles_per_m_y, phase_turns, trough_n, crest_n } => {
-                Self::Grating(Grating {
-                    wave,
-                    cycles_per_m_x: f64::from(cycles_per_m_x),
-                    cycles_per_m_y: f64::from(cycles_per_m_y),
-                    phase_turns: f64::from(phase_turns),
-                    trough_n: f64::from(trough_n),
-                    span_n: f64::from(crest_n) - f64::from(trough_n),
-                })
-            }
-            Layer::Bitmap { crc32, x_m, y_m, pitch_m, black_n, white_n, pitch_y_m, angle_turns, tiled } => {
+            Layer::Constant(Constant { electric_friction_n }) => Self::Constant(f64::from(electric_friction_n)),
+            Layer::Grating(frixel_layers::Grating {
+                wave,
+                cycles_per_m_x,
+                cycles_per_m_y,
+                phase_turns,
+                trough_n,
+                crest_n,
+            }) => Self::Grating(Grating {
+                wave,
+                cycles_per_m_x: f64::from(cycles_per_m_x),
+                cycles_per_m_y: f64::from(cycles_per_m_y),
+                phase_turns: f64::from(phase_turns),
+                trough_n: f64::from(trough_n),
+                span_n: f64::from(crest_n) - f64::from(trough_n),
+            }),
+            Layer::Bitmap(Bitmap { crc32, x_m, y_m, pitch_m, black_n, white_n, pitch_y_m, angle_turns, tiled }) => {
                 let bitmap = program.bitmap(crc32).filter(|bitmap| bitmap.width > 0 && bitmap.height > 0);
                 let place = Placement { corner_m: (x_m, y_m), pitches_m: (pitch_m, pitch_y_m), angle_turns, tiled };
                 bitmap.map_or(Self::Constant(f64::NAN), |bitmap| {
                     Self::Samples(Samples::new(bitmap, &place, f64::from(black_n), f64::from(white_n)))
                 })
             }
-            Layer::Noise { seed, wavelength_min_m, wavelength_max_m, low_n, high_n } => {
+            Layer::Noise(frixel_layers::Noise { seed, wavelength_min_m, wavelength_max_m, low_n, high_n }) => {
                 let wavelengths_m = (f64::from(wavelength_min_m), f64::from(wavelength_max_m));
                 Self::Noise(Noise::new(seed, wavelengths_m, f64::from(low_n), f64::from(high_n)))
             }
-            Layer::Edge { x_m, y_m, angle_turns, width_m, level_n, ridge_n, click } => Self::Edge(Edge {
-                place_m: (f64::from(x_m), f64::from(y_m)),
-                angle_turns: f64::from(angle_turns),
-                width_m: f64::from(width_m),
-                level_n: f64::from(level_n),
-                ridge_n: f64::from(ridge_n),
-                click,
-            }),
-            Layer::Button { rim_width_m, rim_n, face_n, click } => {
+            Layer::Edge(frixel_layers::Edge { x_m, y_m, angle_turns, width_m, level_n, ridge_n, click }) => {
+                Self::Edge(Edge {
+                    place_m: (f64::from(x_m), f64::from(y_m)),
+                    angle_turns: f64::from(angle_turns),
+                    width_m: f64::from(width_m),
+                    level_n: f64::from(level_n),
+                    ridge_n: f64::from(ridge_n),
+                    click,
+                })
+            }
+            Layer::Button(frixel_layers::Button { rim_width_m, rim_n, face_n, click }) => {
                 Self::Button(Button::new(record.region, [rim_width_m, rim_n, face_n], click))
             }
-            Layer::Vibration { beat, frequency_hz, low_n, high_n, burst } => Self::Vibration(Vibration {
-                beat,
-                frequency_hz: f64::from(frequency_hz),
-                low_n: f64::from(low_n),
-                high_n: f64::from(high_n),
-                burst,
-            }),
-            Layer::Speed { first, count } => {
+            Layer::Vibration(frixel_layers::Vibration { beat, frequency_hz, low_n, high_n, burst }) => {
+                Self::Vibration(Vibration {
+                    beat,
+                    frequency_hz: f64::from(frequency_hz),
+                    low_n: f64::from(low_n),
+                    high_n: f64::from(high_n),
+                    burst,
+                })
+            }
+            Layer::Speed(Speed { first, count }) => {
                 let own = program.points.iter().skip(usize::from(first)).take(usize::from(count));
                 Self::Curve(own.map(|point| (f64::from(point.x), f64::from(point.y))).collect())
             }
-            Layer::Stream { low_n, high_n } => Self::Stream { low_n: f64::from(low_n), high_n: f64::from(high_n) },
+            Layer::Stream(Stream { low_n, high_n }) => {
+                Self::Stream { low_n: f64::from(low_n), high_n: f64::from(high_n) }
+            }
         }
     }
 

@@ -5,7 +5,7 @@ mod samples;
 mod shape;
 mod stroke;
 
-use frixel_wire::scene::{Blend, Record};
+use frixel_layers::{Blend, Record};
 
 pub(crate) use field::{Edge, Field, Grating};
 pub(crate) use samples::Samples;

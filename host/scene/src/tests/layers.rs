@@ -1,6 +1,6 @@
 //! What layers compile to, and what the program then wants, against evaluations written here from the file's numbers.
 
-use frixel_wire::scene::{Carrier, Layer, Leader, Region, Scene as WireScene};
+use frixel_layers::{Carrier, Constant, Grating, Layer, Leader, Region, Scene as WireScene};
 
 use super::super::{picture::Picture, resample};
 use super::*;
@@ -141,7 +141,7 @@ fn natural_friction_in_total_is_no_drive() {
     let text = text.replace("normal_load_n = 0.5", "normal_load_n = 0.7");
     let program = compile_text(&format!("{text}[[layer]]\nlive = true\nkind = \"constant\"\nfriction_n = 0.21"))
         .expect("it compiles");
-    assert_eq!(program.records[0].layer, Layer::Constant { electric_friction_n: 0.0 });
+    assert_eq!(program.records[0].layer, Layer::Constant(Constant { electric_friction_n: 0.0 }));
 }
 
 #[test]
@@ -168,7 +168,9 @@ fn gratings_against_their_formula() {
 fn right_angles_have_no_slant() {
     let program =
         compile_layers("[[layer]]\nkind = \"grating\"\nwavelength_mm = 2\nangle_deg = 90\nlow_n = 0\nhigh_n = 0.01");
-    let Layer::Grating { cycles_per_m_x, cycles_per_m_y, .. } = program.records[0].layer else { panic!("a grating") };
+    let Layer::Grating(Grating { cycles_per_m_x, cycles_per_m_y, .. }) = program.records[0].layer else {
+        panic!("a grating")
+    };
     assert_eq!((cycles_per_m_x, cycles_per_m_y), (0.0, 500.0));
 }
 

@@ -7,8 +7,9 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 
 use frixel_hil_sim::{BoardMemory, RigConfig};
+use frixel_layers::Scene as WireScene;
 use frixel_model::InverseTable;
-use frixel_wire::scene::{POINTS_MAX, POLYGON_POINTS_MAX, RECORDS_MAX, Scene as WireScene};
+use frixel_wire::scene::{POINTS_MAX, POLYGON_POINTS_MAX, RECORDS_MAX};
 
 use super::{Figure, ReportError};
 use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};
