@@ -15,8 +15,9 @@ use std::thread::sleep;
 use std::time::Duration;
 
 use frixel::player;
+use frixel::scene_file;
 use frixel_driver::{DEFAULT_BAUD, Device, DeviceError, SerialLink};
-use frixel_scene::{Scene, compile};
+use frixel_scene::compile;
 use hound::{SampleFormat, WavSpec, WavWriter};
 use processes::{frixel, until};
 use serialport::{SerialPort, TTYPort};
@@ -372,7 +373,7 @@ fn a_client_killed_at_any_byte_leaves_the_output_at_zero_and_the_next_one_welcom
 fn start_playing(board: &VirtualBoard) -> Option<Device<SerialLink>> {
     let started = Device::connect(SerialLink::open(&board.port, DEFAULT_BAUD).unwrap()).and_then(|mut device| {
         let hello = *device.hello();
-        let program = compile(&Scene::load(&board.scene).unwrap(), &hello.limits, hello.tick_hz).unwrap();
+        let program = compile(&scene_file::load(&board.scene).unwrap(), &hello.limits, hello.tick_hz).unwrap();
         player::start(&mut device, &program, &mut |_| {}).map(|()| device)
     });
     match started {

@@ -70,9 +70,9 @@ impl Plan {
         Ok(Self { target, program, feed, ticks_per_row, telemetry_period_ticks, limits, tick_hz, seconds })
     }
 
-    /// Where a simulated finger goes over the scene's screen. The play lasts as long as the stroke, unless a time was
-    /// given.
-    pub(super) fn take_stroke(&mut self, args: &PlayArgs) -> Result<Stroke, CommandError> {
+    /// Chooses where a simulated finger goes over the scene's screen. The play lasts as long as that stroke, unless
+    /// `--seconds` says otherwise.
+    pub(super) fn choose_stroke(&mut self, args: &PlayArgs) -> Result<Stroke, CommandError> {
         let header = &self.program.header;
         let (width_m, height_m) = (header.screen_width_m.into(), header.screen_height_m.into());
         let stroke = stroke(args.stroke.as_deref(), width_m, height_m, args.seconds)?;
