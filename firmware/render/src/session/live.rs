@@ -169,18 +169,22 @@ impl<'a> Dialogue<'a> {
         let Some((next_index, room)) = stream.intake.progress() else { return };
         let now_tick = status.telemetry.tick;
         let period_over = now_tick.wrapping_sub(stream.reported_at_tick) >= self.board.ticks(PROGRESS_PERIOD_S);
-        if (stream.report_due || period_over) && outbox.is_mostly_free() {
+        if !stream.report_due && !period_over {
+            return;
+        }
+        let progress = FromBoard::StreamProgress {
+            next_index,
+            room,
+            underruns: status.counters.stream_underruns,
+            gaps: status.counters.stream_gaps,
+            received_bytes: self.credit.received(),
+        };
+        // When the line is behind, the next call tries again.
+        if outbox.send_unasked(&progress) {
+            self.credit.reported();
             stream.report_due = false;
             stream.frames = 0;
             stream.reported_at_tick = now_tick;
-            let progress = FromBoard::StreamProgress {
-                next_index,
-                room,
-                underruns: status.counters.stream_underruns,
-                gaps: status.counters.stream_gaps,
-                received_bytes: self.credit.received(),
-            };
-            self.report(&progress, outbox);
         }
     }
 }
