@@ -7,16 +7,17 @@
 use std::path::Path;
 
 use frixel::player::{Simulated, Simulation, simulate};
+use frixel::scene_file;
 use frixel_hil_sim::{Point, RigConfig, Stroke};
 use frixel_scene::metrics::MetricsSummary;
-use frixel_scene::{Program, Scene, compile};
+use frixel_scene::{Program, compile};
 
 const START: Point = Point { x_m: 0.004, y_m: 0.03 };
 const END: Point = Point { x_m: 0.116, y_m: 0.045 };
 
 fn brick(prediction: bool) -> Program {
     let rig = RigConfig::default();
-    let scene = Scene::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/brick.toml")).unwrap();
+    let scene = scene_file::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/brick.toml")).unwrap();
     let mut program = compile(&scene, &rig.board.limits, rig.board.tick_hz).unwrap();
     program.header.prediction = prediction;
     program

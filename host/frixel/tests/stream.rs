@@ -9,12 +9,13 @@ use std::time::Duration;
 
 use frixel::player;
 use frixel::rigs::SimLink;
+use frixel::scene_file;
 use frixel::stream::Feed;
 use frixel_driver::{Device, StreamStatus};
 use frixel_hil_sim::{BoardMemory, Point, Rig, RigConfig, Stroke};
 use frixel_layers::{Blend, Layer, Record, Region, Stream};
 use frixel_scene::recorder::{FeltRow, Recorder};
-use frixel_scene::{Program, Scene, compile};
+use frixel_scene::{Program, compile};
 use frixel_wire::fault::Flags;
 use hound::{SampleFormat, WavSpec, WavWriter};
 
@@ -28,7 +29,7 @@ const HIGH_N: f64 = 0.018;
 /// The friction that a stream alone gives.
 fn program() -> Program {
     let rig = RigConfig::default();
-    let scene = Scene::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/constant.toml")).unwrap();
+    let scene = scene_file::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/constant.toml")).unwrap();
     let mut program = compile(&scene, &rig.board.limits, rig.board.tick_hz).unwrap();
     let layer = Layer::Stream(Stream { low_n: LOW_N as f32, high_n: HIGH_N as f32 });
     program.records = vec![Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer }];

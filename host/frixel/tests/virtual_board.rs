@@ -15,9 +15,10 @@ use std::thread::sleep;
 use std::time::Duration;
 
 use frixel::player;
+use frixel::scene_file;
 use frixel_driver::{DEFAULT_BAUD, Device, SerialLink};
-use frixel_scene::{Scene, compile};
-use processes::{NAP, frixel, until};
+use frixel_scene::compile;
+use processes::{frixel, until};
 use serialport::{SerialPort, TTYPort};
 use tempfile::TempDir;
 
@@ -292,7 +293,7 @@ fn a_program_that_hangs_does_not_keep_the_board_playing() {
     let board = VirtualBoard::start();
     let mut device = Device::connect(SerialLink::open(&board.port, DEFAULT_BAUD).unwrap()).unwrap();
     let hello = *device.hello();
-    let program = compile(&Scene::load(&board.scene).unwrap(), &hello.limits, hello.tick_hz).unwrap();
+    let program = compile(&scene_file::load(&board.scene).unwrap(), &hello.limits, hello.tick_hz).unwrap();
     player::start(&mut device, &program, &mut |_| {}).unwrap();
     let has = |name: &str| board.events().iter().any(|event| event.name == name);
     until("the board plays", || has("active"));

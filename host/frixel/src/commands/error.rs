@@ -9,6 +9,7 @@ use frixel::output::OutputError;
 use frixel::player::PlayError;
 use frixel::report::ReportError;
 use frixel::rigs::{ServerError, StopReason};
+use frixel::scene_file::SceneFileError;
 use frixel::stream::FeedError;
 use frixel_driver::{DeviceError, PortError};
 use frixel_hil_sim::emulated::EmulatorError;
@@ -19,6 +20,8 @@ use thiserror::Error;
 
 #[derive(Debug, Error)]
 pub(crate) enum CommandError {
+    #[error(transparent)]
+    SceneFile(#[from] SceneFileError),
     #[error(transparent)]
     Compile(#[from] CompileError),
     #[error(transparent)]

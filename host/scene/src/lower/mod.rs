@@ -25,7 +25,7 @@ pub(crate) struct Lowering<'a, 's> {
     header: &'a Header,
     reach: &'a Reach,
     pub(crate) tick_hz: u32,
-    pool: Pool,
+    pool: Pool<'a>,
     points: Vec<Point>,
     pub(crate) noises: usize,
     pub(crate) clicks: usize,
@@ -47,7 +47,7 @@ impl<'a, 's> Lowering<'a, 's> {
         header: &'a Header,
         reach: &'a Reach,
         tick_hz: u32,
-        pool: Pool,
+        pool: Pool<'a>,
         log: &'a mut Log<'s>,
     ) -> Self {
         let (points, notes) = (Vec::new(), Vec::new());
