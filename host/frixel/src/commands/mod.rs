@@ -11,7 +11,6 @@ mod report;
 mod scene;
 mod sim;
 mod stroke;
-mod usage;
 
 use std::path::PathBuf;
 
