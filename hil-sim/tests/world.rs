@@ -133,7 +133,7 @@ fn the_board_sees_the_finger_where_it_was_a_latency_ago() {
     let mut lifts = 0;
     for tick in 0..40_000_u64 {
         assert_eq!(world.sense(), world.sense());
-        match world.sense().touch {
+        match world.touch() {
             Some(Touch::Down { x_m, y_m, age_ticks }) => {
                 let sampled = tick - u64::from(age_ticks);
                 let expected = sliding().at(sampled as f64 / 40_000.0).unwrap();
@@ -200,7 +200,7 @@ fn seeds_differ_in_what_the_board_sees_and_not_in_what_is_felt() {
     let run = |seed| {
         let mut world = World::new(WorldConfig::default(), sliding(), seed).unwrap();
         world.start_stroke();
-        (0..8000).map(|tick| (world.sense().touch, world.apply(square(tick, 20_000)))).unzip()
+        (0..8000).map(|tick| (world.touch(), world.apply(square(tick, 20_000)))).unzip()
     };
     let (first, second): ((Vec<_>, Vec<_>), (Vec<_>, Vec<_>)) = (run(1), run(2));
     assert_ne!(first.0, second.0);

@@ -64,7 +64,7 @@ impl Bench {
         self.tick(Some(Touch::Up));
         for tick in 0..TICKS {
             if tick.is_multiple_of(PING_TICKS / 2) {
-                self.host.command(Command::Ping);
+                self.host.ping();
             }
             if tick.is_multiple_of(STREAM_TICKS) {
                 self.host.stream(tick / STREAM_TICKS);

@@ -151,14 +151,14 @@ impl Bench {
     /// A finger that comes down, slides, rests for a while and slides on.
     pub(crate) fn slide(&mut self, mut case: Case) {
         self.tick(Some(Touch::Up));
-        // Every case begins at the same place among the errands, so that they meet the same things in the same ticks.
+        // Every case begins at the same distance from a report, so that they meet the same things in the same ticks.
         while !self.host.ticker.status().telemetry.tick.is_multiple_of(REPORT_TICKS) {
             self.tick(None);
         }
         let mut driven = 0;
         for tick in 0..TICKS {
             if tick.is_multiple_of(PING_TICKS) {
-                self.host.command(Command::Ping);
+                self.host.ping();
             }
             if tick.is_multiple_of(STREAM_TICKS) {
                 self.host.stream(tick / STREAM_TICKS);
@@ -176,25 +176,28 @@ impl Bench {
     }
 
     pub(crate) fn tick(&mut self, touch: Option<Touch>) -> Drive {
-        let sense = self.sense(touch);
-        let drive = tick(&mut self.host.ticker, &sense);
+        self.host.before_tick(touch);
+        let sense = self.sense();
+        let drive = tick(&mut self.host, &sense);
         self.monitor.follow(drive);
         drive
     }
 
     pub(crate) fn count(&mut self, case: &mut Case, touch: Option<Touch>) -> Drive {
-        let sense = self.sense(touch);
-        let drive = case.take(tick, &mut self.host.ticker, &sense);
+        self.host.before_tick(touch);
+        let sense = self.sense();
+        let drive = case.take(tick, &mut self.host, &sense);
         self.monitor.follow(drive);
         drive
     }
 
-    fn sense(&self, touch: Option<Touch>) -> Sense {
-        Sense { touch, amplifier_fault: false, monitor_v: self.monitor.voltage_v, arm_switch: true }
+    fn sense(&self) -> Sense {
+        Sense { amplifier_fault: false, monitor_v: self.monitor.voltage_v, arm_switch: true }
     }
 }
 
+/// A tick with the order before it.
 #[inline(never)]
-fn tick(ticker: &mut Ticker, sense: &Sense) -> Drive {
-    ticker.tick(sense)
+fn tick(host: &mut Host<'static>, sense: &Sense) -> Drive {
+    host.tick(sense)
 }

@@ -90,14 +90,13 @@ fn SysTick() {
 impl Tick {
     fn run(&mut self) {
         self.count = self.count.wrapping_add(1);
-        while let Some(order) = self.orders.dequeue() {
-            if let Some(spare) = self.ticker.apply(order) {
-                // There are two of them, and room for both.
-                let _ = self.spares.enqueue(spare);
-            }
+        if let Some(order) = self.orders.dequeue()
+            && let Some(spare) = self.ticker.apply(order)
+        {
+            // There are two of them, and room for both.
+            let _ = self.spares.enqueue(spare);
         }
         let sense = Sense {
-            touch: shared::touch(self.count),
             amplifier_fault: shared::get(layout::AMPLIFIER_FAULT) != 0,
             monitor_v: self.monitor.voltage_v,
             arm_switch: true,

@@ -5,6 +5,7 @@
 
 pub(crate) mod measured;
 
+use frixel_wire::message::Refusal;
 use frixel_wire::scene::RECORDS_MAX;
 
 use crate::grid::{Cell, Grid};
@@ -22,6 +23,21 @@ pub struct Worst {
     pub instructions: u32,
     /// A cell of the grid that it is in.
     pub cell: Cell,
+}
+
+impl Worst {
+    /// No place: where a search begins.
+    pub const NOWHERE: Self = Self { instructions: 0, cell: Cell { x_m: 0.0, y_m: 0.0, layers: [0; 2] } };
+
+    /// Refuses a scene whose longest tick takes too long.
+    pub fn check(&self) -> Result<(), Refusal> {
+        let Self { instructions, cell } = *self;
+        let max = TICK_INSTRUCTIONS_MAX;
+        if instructions <= max {
+            return Ok(());
+        }
+        Err(Refusal::TooCostly { instructions, max, x_m: cell.x_m, y_m: cell.y_m })
+    }
 }
 
 /// Instructions that the layers of a scene add to a tick.
@@ -61,8 +77,12 @@ pub const fn of_empty_scene(header: &Header) -> u32 {
 
 /// Where a scene takes most, from its grid and the costs of its layers.
 pub fn worst(header: &Header, grid: &Grid, costs: &LayerCosts) -> Worst {
-    let empty = Worst { instructions: 0, cell: Cell { x_m: 0.0, y_m: 0.0, layers: [0; 2] } };
-    grid.cells().fold(empty, |worst, cell| {
+    worst_of_cells(header, grid.cells(), costs, Worst::NOWHERE)
+}
+
+/// [`worst`] of some cells of the grid and of those before, whose worst is `so_far`.
+pub fn worst_of_cells(header: &Header, cells: impl Iterator<Item = Cell>, costs: &LayerCosts, so_far: Worst) -> Worst {
+    cells.fold(so_far, |worst, cell| {
         let here = (0..).zip(&costs.layers).filter(|(number, _)| cell.has(*number)).map(|(_, cost)| cost);
         let instructions = of_empty_scene(header) + costs.everywhere + here.sum::<u32>();
         if instructions > worst.instructions { Worst { instructions, cell } } else { worst }

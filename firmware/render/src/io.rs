@@ -19,8 +19,6 @@ pub enum Touch {
 /// What the board sees at a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sense {
-    /// A touch report that came since the tick before.
-    pub touch: Option<Touch>,
     /// The amplifier says that something is wrong with it.
     pub amplifier_fault: bool,
     /// Voltage on the electrode as the amplifier's monitor has it, at the end of the tick before, in volts.

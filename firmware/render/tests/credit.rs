@@ -75,11 +75,9 @@ fn a_frame_beyond_the_credit_is_no_touch() {
     let mut desk = Desk::of(Board { touch_from_host: true, ..Board::SIMULATOR }, &mut memory);
     desk.greet();
     desk.reads = false;
-    desk.session.receive(&window_of(Command::Lift), &desk.status());
-    assert_eq!(desk.session.next_touch(), Some(Touch::Up));
+    assert_eq!(orders(&mut desk, &window_of(Command::Lift)), (true, 1));
     let touch = Command::Touch { x_m: 0.02, y_m: 0.03, age_ticks: 0 };
-    desk.session.receive(&requests(touch, WINDOW), &desk.status());
-    assert_eq!(desk.session.next_touch(), None);
+    assert_eq!(orders(&mut desk, &requests(touch, WINDOW)), (false, 0));
 }
 
 /// What a client has left behind, however much it is, keeps nothing playing.
@@ -94,7 +92,7 @@ fn a_client_that_ignores_credit_and_reads_nothing_is_silent_after_its_window() {
     let mut last_on = 0;
     for tick in 0..window_ticks + 2 * HOST_TIMEOUT_TICKS {
         if tick % 400 == 0 {
-            desk.sense.touch = Some(Touch::Down { x_m: 0.03 + 2.5e-6 * tick as f32, y_m: 0.03, age_ticks: 0 });
+            desk.touch = Some(Touch::Down { x_m: 0.03 + 2.5e-6 * tick as f32, y_m: 0.03, age_ticks: 0 });
         }
         desk.session.receive(bytes.next().unwrap(), &desk.status());
         desk.obey();

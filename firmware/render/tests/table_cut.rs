@@ -71,7 +71,7 @@ fn played(header: &Header, random: &RandomScene, seed: u64) -> Vec<Played> {
                 desk.send(&frame);
                 desk.command(Command::Ping).unwrap();
             }
-            desk.sense.touch = finger.tick().map(|report| match report {
+            desk.touch = finger.tick().map(|report| match report {
                 Report::Down { x_m, y_m, age_ticks } => Touch::Down { x_m, y_m, age_ticks },
                 Report::Up => Touch::Up,
             });
