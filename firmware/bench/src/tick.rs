@@ -1,7 +1,7 @@
 //! Whole ticks, by scene.
 
 use cortex_m::singleton;
-use frixel_layers::{BitmapPool};
+use frixel_layers::BitmapPool;
 use frixel_render::{Active, Board, Drive, Sense, Session, StreamBuffer, Ticker, Touch};
 use frixel_wire::fault::State;
 use frixel_wire::message::Command;
@@ -133,6 +133,9 @@ impl Bench {
     /// Plays a compiled scene, which the board has to take.
     pub(crate) fn play_bytes(&mut self, scene: &[u8]) {
         self.host.command(Command::Disarm);
+        // The arm switch is released in the first tick after that, and held in the second.
+        self.tick(None);
+        self.tick(None);
         self.host.play(scene);
         self.tick(None);
         assert!(self.host.session.scene() == Some(scene), "the scene is refused");
@@ -192,7 +195,8 @@ impl Bench {
     }
 
     fn sense(&self) -> Sense {
-        Sense { amplifier_fault: false, monitor_v: self.monitor.voltage_v, arm_switch: true }
+        let arm_switch = !self.host.ticker.waits_for_release();
+        Sense { amplifier_fault: false, monitor_v: self.monitor.voltage_v, arm_switch }
     }
 }
 

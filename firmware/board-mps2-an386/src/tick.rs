@@ -99,7 +99,7 @@ impl Tick {
         let sense = Sense {
             amplifier_fault: shared::get(layout::AMPLIFIER_FAULT) != 0,
             monitor_v: self.monitor.voltage_v,
-            arm_switch: true,
+            arm_switch: !self.ticker.waits_for_release(),
         };
         let drive = self.ticker.tick(&sense);
         shared::drive(self.count, drive);

@@ -23,7 +23,7 @@ pub struct Sense {
     pub amplifier_fault: bool,
     /// Voltage on the electrode as the amplifier's monitor has it, at the end of the tick before, in volts.
     pub monitor_v: f32,
-    /// The arm switch is held; always so on a simulator.
+    /// The arm switch is held.
     pub arm_switch: bool,
 }
 

@@ -22,6 +22,8 @@ pub(crate) struct Supervisor {
     /// `None` for a scene that goes on without a host.
     host_timeout_ticks: Option<u32>,
     host_silent: bool,
+    /// The arm switch was open at some tick since the reset or the last disarming: to hold it now means to have pressed it.
+    switch_was_released: bool,
     monitor: Monitor,
 }
 
@@ -99,6 +101,7 @@ impl Supervisor {
             host_heard_at_tick: 0,
             host_timeout_ticks: Some(host_timeout_default_ticks(board)),
             host_silent: false,
+            switch_was_released: false,
             monitor: Monitor::new(board),
         }
     }
@@ -122,17 +125,29 @@ impl Supervisor {
             self.host_heard_at_tick = now_tick;
         }
         match (order, self.state) {
-            (Order::Arm, State::Disarmed) => {
+            // A host that has not seen yet that the switch must be pressed again is ignored.
+            (Order::Arm, State::Disarmed) if self.switch_was_released => {
                 self.state = State::Armed;
                 self.host_silent = false;
             }
             (Order::Play, State::Armed) => self.state = State::Active,
             (Order::Stop, State::Active) => self.state = State::Armed,
             (Order::Disarm, State::Armed | State::Active) | (Order::ClearFault, State::Faulted) => {
-                self.state = State::Disarmed;
+                self.disarm();
             }
             _ => {}
         }
+    }
+
+    /// Whoever wants to arm presses the switch anew.
+    fn disarm(&mut self) {
+        self.state = State::Disarmed;
+        self.switch_was_released = false;
+    }
+
+    /// Whether the arm switch, held now, was pressed since the reset or the last disarming.
+    pub(crate) fn switch_was_released(&self) -> bool {
+        self.switch_was_released
     }
 
     /// Latches a hard fault, unless one is latched.
@@ -163,6 +178,7 @@ impl Supervisor {
     #[inline(never)]
     fn judge(&mut self, sense: &Sense, driven_v: f32) {
         let monitor_wrong = self.monitor.count(driven_v, sense.monitor_v);
+        self.switch_was_released |= !sense.arm_switch;
         if self.state == State::Faulted {
             return;
         }
@@ -187,7 +203,7 @@ impl Supervisor {
         if let Some(tick) = self.host_deadline_tick()
             && is_past(tick, now_tick)
         {
-            self.state = State::Disarmed;
+            self.disarm();
             self.host_silent = true;
         }
     }

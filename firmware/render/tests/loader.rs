@@ -138,6 +138,7 @@ mod whole {
             desk.play(&scene_with_points(&HEADER, &on_a_ground(record), &points()));
             assert!(desk.slide(8_000)[400..].iter().all(|drive| drive.dac_code != 0), "{record:?}");
             desk.command(Command::Disarm).unwrap();
+            desk.press_switch();
         }
     }
 

@@ -113,9 +113,11 @@ fn a_new_clients_hello_ends_what_the_client_before_had_armed() {
     assert_eq!(desk.tick(), OFF);
     assert_eq!(desk.status().telemetry.state, State::Disarmed);
 
+    desk.press_switch();
     desk.command(Command::Arm).unwrap();
     assert_eq!(desk.greet().state, State::Disarmed);
     // Whoever has said hello may arm.
+    desk.press_switch();
     desk.command(Command::Arm).unwrap();
     desk.command(Command::Play).unwrap();
     desk.tick();
@@ -152,6 +154,7 @@ fn a_board_armed_for_an_autonomous_scene_needs_its_host() {
     desk.ticks(2);
     assert_eq!(desk.status().telemetry.state, State::Disarmed);
 
+    desk.press_switch();
     desk.command(Command::Arm).unwrap();
     desk.tick();
     assert_eq!(desk.greet().state, State::Disarmed, "nothing plays that a hello would end");

@@ -266,6 +266,7 @@ fn nothing_is_written_unless_the_board_is_disarmed() {
 
     // Armed in the middle of a write: it ends there, and the copy before is still the one.
     desk.command(Command::Disarm).unwrap();
+    desk.press_switch();
     keeper.step(&mut flash, &desk.session, 0);
     while flash.done < done + PAGE_LEN + 40 {
         keeper.step(&mut flash, &desk.session, SETTLED_TICKS);

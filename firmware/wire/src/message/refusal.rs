@@ -61,7 +61,7 @@ pub enum Refusal {
         /// Shortest period in ticks.
         period_min_ticks: u32,
     },
-    /// The arm switch on the board is not held.
+    /// The arm switch on the board is not held, or was not pressed since the board was reset or last disarmed.
     ArmSwitch,
     /// The firmware was built without what the scene asks for ([`crate::hello::feature`]).
     LeftOut {
@@ -301,7 +301,7 @@ impl fmt::Display for Refusal {
                 f,
                 "the board sends telemetry every {period_min_ticks} ticks at most: ask for a longer period, or for zero to end it"
             ),
-            Self::ArmSwitch => f.write_str("the arm switch on the board is not held: hold it and arm again"),
+            Self::ArmSwitch => f.write_str("the arm switch was not pressed since the board was last disarmed: release it, press and hold it, and arm again"),
             Self::LeftOut { layer: ConfigRefusal::WHOLE_SCENE } => {
                 f.write_str("the firmware was built without the carrier of the scene: flash one that has it")
             }
