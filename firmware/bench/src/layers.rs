@@ -2,10 +2,13 @@
 
 use core::array;
 
+use frixel_layers::cost;
+use frixel_layers::{
+    Beat, Bitmap, Blend, Burst, Button, Carrier, Click, Constant, Edge, Grating, Header, Layer, Noise, Point, Record,
+    Region, Speed, Stream, Vibration, Wave,
+};
 use frixel_wire::hello::BoardLimits;
 use frixel_wire::message::Command;
-use frixel_layers::cost;
-use frixel_layers::{Beat, Bitmap, Blend, Burst, Button, Carrier, Click, Constant, Edge, Grating, Header, Layer, Noise, Point, Record, Region, Speed, Stream, Vibration, Wave};
 use frixel_wire::scene::RECORDS_MAX;
 
 use crate::count::Counter;
