@@ -196,7 +196,7 @@ impl Bench {
 
     /// Puts a code out at the end of this period, and keeps the output alive.
     fn put(&mut self, code: i16) {
-        if self.frames.send(code) {
+        if self.frames.send(DacCode::from_bits(code)) {
             self.output.kick();
         } else {
             self.output.zero();
