@@ -10,10 +10,11 @@ use std::path::{Path, PathBuf};
 
 use frixel::output::{Preview, write_preview_png};
 use frixel::player::{Simulation, simulate};
+use frixel::scene_file;
 use frixel_hil_sim::{BoardMemory, RigConfig, Stroke};
 use frixel_layers::{Header, Scene as WireScene};
 use frixel_scene::recorder::FeltRow;
-use frixel_scene::{Asked, Program, Scene, compile};
+use frixel_scene::{Asked, Program, compile};
 use frixel_wire::fault::Flags;
 
 const PICTURE_BYTES_MAX: u64 = 40 * 1024;
@@ -38,7 +39,7 @@ fn gallery() -> Vec<Entry> {
     let entries = scenes.iter().map(|path| Entry {
         name: path.file_stem().unwrap().to_string_lossy().into_owned(),
         text: fs::read_to_string(path).unwrap(),
-        program: compile(&Scene::load(path).unwrap(), &rig.board.limits, rig.board.tick_hz)
+        program: compile(&scene_file::load(path).unwrap(), &rig.board.limits, rig.board.tick_hz)
             .unwrap_or_else(|error| panic!("{error}")),
     });
     entries.collect()

@@ -32,9 +32,12 @@ const MM: f64 = 1e-3;
 /// # Example
 ///
 /// ```no_run
+/// use std::collections::BTreeMap;
+///
 /// use frixel_scene::{Scene, compile};
-/// # fn play(limits: &frixel_wire::hello::BoardLimits) -> Result<(), frixel_scene::CompileError> {
-/// let scene = Scene::load("scenes/brick.toml".as_ref())?;
+/// # fn play(text: &str, png: Vec<u8>, limits: &frixel_wire::hello::BoardLimits) -> Result<(), frixel_scene::CompileError> {
+/// let pictures = BTreeMap::from([("textures/brick.png".to_owned(), png)]);
+/// let scene = Scene::parse(text, "brick.toml", &pictures)?;
 /// let program = compile(&scene, limits, 40_000)?;
 /// println!("{} layers, up to {} N", program.records.len(), program.reach.friction_max_n());
 /// # Ok(())
@@ -76,7 +79,7 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
         log.add(layer.places.table(), Mistake::TooManyLayers { number: layers_max + 1, max: layers_max });
         return None;
     }
-    let pool = Pool::new(scene.source.folder().clone(), limits.bitmap_pool_bytes);
+    let pool = Pool::new(&scene.pictures, limits.bitmap_pool_bytes);
     let mut lowering = Lowering::new(scene, &header, &reach, tick_hz, pool, log);
     // All of them, so that the mistakes of all are told.
     let records: Vec<Option<Record>> = scene.layers.iter().map(|layer| lowering.record(layer)).collect();

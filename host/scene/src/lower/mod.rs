@@ -31,7 +31,7 @@ pub(super) struct Lowering<'a, 's> {
     header: &'a Header,
     reach: &'a Reach,
     tick_hz: u32,
-    pool: Pool,
+    pool: Pool<'a>,
     points: Vec<Point>,
     noises: usize,
     clicks: usize,
@@ -53,7 +53,7 @@ impl<'a, 's> Lowering<'a, 's> {
         header: &'a Header,
         reach: &'a Reach,
         tick_hz: u32,
-        pool: Pool,
+        pool: Pool<'a>,
         log: &'a mut Log<'s>,
     ) -> Self {
         let (points, notes) = (Vec::new(), Vec::new());
