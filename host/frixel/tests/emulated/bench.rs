@@ -12,7 +12,7 @@ use frixel_hil_sim::emulated::{Image, LinkBoard, LinkRecord};
 use frixel_hil_sim::{Stroke, World, WorldConfig};
 use frixel_scene::{Program, compile};
 
-/// Wall time between two looks at what is waited for.
+/// Wall time between two checks of what is waited for.
 const NAP: Duration = Duration::from_millis(2);
 /// Two minutes of naps: whatever is waited for longer has hung.
 const NAPS_MAX: u32 = 60_000;
