@@ -66,7 +66,7 @@ impl Bench {
     /// Waits until the board drives, for a host that is there all the time.
     pub(crate) fn until_driven<L: Link>(&self, device: &mut Device<L>) {
         self.until("the board drives", |board| {
-            device.still_here().unwrap();
+            device.keep_alive().unwrap();
             board.output().unwrap().dac_code != 0
         });
     }
@@ -75,7 +75,7 @@ impl Bench {
     pub(crate) fn pass<L: Link>(&self, device: &mut Device<L>, ticks: u32) {
         let start = self.board.ticks().unwrap();
         self.until("ticks pass", |board| {
-            device.still_here().unwrap();
+            device.keep_alive().unwrap();
             board.ticks().unwrap().wrapping_sub(start) >= ticks
         });
     }
