@@ -1,7 +1,6 @@
 //! The amplifier: DAC code in, electrode voltage out, with gain error, saturation and a first-order lag.
 
 use frixel_render::Drive;
-use frixel_wire::dac_code::DacCode;
 
 use crate::error::{OutOfRange, above_zero, zero_to_ten};
 
@@ -102,6 +101,7 @@ mod tests {
     #![allow(clippy::float_cmp, reason = "what has to be exact is tested as exact")]
 
     use frixel_render::Drive;
+    use frixel_wire::dac_code::DacCode;
     use proptest::prelude::*;
 
     use super::{Amplifier, AmplifierConfig};

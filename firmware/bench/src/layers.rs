@@ -2,10 +2,13 @@
 
 use core::array;
 
-use frixel_wire::message::Command;
 use frixel_layers::cost::{self, TICK_INSTRUCTIONS_MAX};
-use frixel_layers::{Beat, Bitmap, Blend, Burst, Button, Carrier, Click, Constant, Edge, Grating, Header, Layer, Noise, Point, Record, Region, Speed, Stream, Vibration, Wave};
-use frixel_wire::scene::{RECORDS_MAX};
+use frixel_layers::{
+    Beat, Bitmap, Blend, Burst, Button, Carrier, Click, Constant, Edge, Grating, Header, Layer, Noise, Point, Record,
+    Region, Speed, Stream, Vibration, Wave,
+};
+use frixel_wire::message::Command;
+use frixel_wire::scene::RECORDS_MAX;
 
 use crate::count::Counter;
 use crate::host::STREAM_HZ;

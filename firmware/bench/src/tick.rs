@@ -2,11 +2,11 @@
 
 use cortex_m::singleton;
 use frixel_layers::BitmapPool;
+use frixel_layers::{Carrier, HEADER_LEN, Header, Leader, POINT_LEN, Point, RECORD_LEN, Record, SCENE_MAX_LEN};
 use frixel_render::{Active, Board, Drive, Sense, Session, StreamBuffer, Ticker, Touch};
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::State;
 use frixel_wire::message::Command;
-use frixel_layers::{Carrier, HEADER_LEN, Header, Leader, POINT_LEN, Point, RECORD_LEN, Record, SCENE_MAX_LEN};
 
 use crate::count::{Case, Counter};
 use crate::host::{Host, STREAM_FRAME, STREAM_TICKS_PER_SAMPLE};
