@@ -67,7 +67,7 @@ pub struct Felt {
 /// world.start_stroke();
 /// let sense = world.sense();
 /// assert!(!sense.amplifier_fault);
-/// let felt = world.apply(Drive { dac_code: 0, amplifier_enable: true });
+/// let felt = world.apply(Drive { amplifier_enable: true, ..Drive::default() });
 /// assert_eq!(felt.friction_n, 0.25);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

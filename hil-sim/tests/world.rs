@@ -6,6 +6,7 @@ use frixel_hil_sim::{
 };
 use frixel_model::{Contact, Finger};
 use frixel_render::{Drive, Sense, Touch};
+use frixel_wire::dac_code::DacCode;
 use proptest::prelude::*;
 
 const LEFT: Point = Point { x_m: 0.01, y_m: 0.03 };
@@ -29,7 +30,7 @@ fn ideal_amplifier() -> WorldConfig {
 /// A square carrier of 1 kHz.
 fn square(tick: u64, dac_code: i16) -> Drive {
     let positive = (tick / 20).is_multiple_of(2);
-    Drive { dac_code: if positive { dac_code } else { -dac_code }, amplifier_enable: true }
+    Drive { dac_code: DacCode::from_bits(if positive { dac_code } else { -dac_code }), amplifier_enable: true }
 }
 
 #[test]
@@ -37,7 +38,7 @@ fn without_drive_the_finger_feels_exactly_its_natural_friction() {
     let mut world = world(WorldConfig::default());
     world.start_stroke();
     for _ in 0..1000 {
-        let felt = world.apply(Drive { dac_code: 0, amplifier_enable: true });
+        let felt = world.apply(Drive { amplifier_enable: true, ..Drive::default() });
         assert_eq!((felt.friction_n, felt.electric_friction_n, felt.mean_square_v2), (0.25, 0.0, 0.0));
     }
 }
@@ -222,7 +223,7 @@ proptest! {
             world.start_stroke();
             // Each code is held for 40 ticks, so that touch reports come in between.
             codes.iter().flat_map(|code| [code; 40]).map(|&(dac_code, amplifier_enable)| {
-                (world.sense(), world.apply(Drive { dac_code, amplifier_enable }))
+                (world.sense(), world.apply(Drive { dac_code: DacCode::from_bits(dac_code), amplifier_enable }))
             }).collect::<Vec<(Sense, Felt)>>()
         };
         let first = run(seed);

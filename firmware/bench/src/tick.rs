@@ -4,6 +4,7 @@ use cortex_m::singleton;
 use frixel_layers::BitmapPool;
 use frixel_layers::{Carrier, HEADER_LEN, Header, Leader, POINT_LEN, Point, RECORD_LEN, Record, SCENE_MAX_LEN};
 use frixel_render::{Active, Board, Drive, Sense, Session, StreamBuffer, Ticker, Touch};
+use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::State;
 use frixel_wire::message::Command;
 
@@ -82,7 +83,7 @@ impl Monitor {
     }
 
     fn follow(&mut self, drive: Drive) {
-        self.voltage_v += self.step * (f32::from(drive.dac_code) * self.volts_per_code - self.voltage_v);
+        self.voltage_v += self.step * (f32::from(drive.dac_code.bits()) * self.volts_per_code - self.voltage_v);
     }
 }
 
@@ -172,7 +173,7 @@ impl Bench {
                 let along_m = 1e-5 * tick.min(TICKS / 3).max(tick.saturating_sub(TICKS / 3)) as f32;
                 Touch::Down { x_m: 0.02 + along_m, y_m: 0.03 + 0.3 * along_m, age_ticks: REPORT_TICKS }
             });
-            driven += u32::from(self.count(&mut case, touch).dac_code != 0);
+            driven += u32::from(self.count(&mut case, touch).dac_code != DacCode::ZERO);
         }
         assert!(driven > TICKS / 2, "the board does not drive");
         case.report();

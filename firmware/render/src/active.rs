@@ -7,6 +7,7 @@ use frixel_layers::{
     ActiveLayers, BitmapPool, Carrier as Shape, Clicks, Grid, Header, Inputs, Point, Scene, active_bytes, within,
 };
 use frixel_model::{Carrier, Finger, InverseTable, InverseTableFilling, TableError, Waveform};
+use frixel_wire::dac_code::DacCode;
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
 
 use crate::Board;
@@ -240,7 +241,7 @@ fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), Confi
 
     let codes_per_v = f32::from(i16::MAX) / limits.full_scale_v_peak;
     let code_max = (header.voltage_max_v_peak * codes_per_v) as i32;
-    let code_max = code_max.min(i32::from(i16::MAX));
+    let code_max = DacCode::from_bits(code_max.min(i32::from(i16::MAX)) as i16);
     let timing = CarrierTiming::new(header.carrier, half_period_ticks, peak_per_rms * codes_per_v, code_max);
     Ok((timing, voltage_max_v_rms))
 }

@@ -1,5 +1,7 @@
 //! What goes into a tick and what comes out.
 
+use frixel_wire::dac_code::DacCode;
+
 /// One report of the touch source.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Touch {
@@ -30,8 +32,8 @@ pub struct Sense {
 /// What the board puts out at a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Drive {
-    /// Bipolar DAC code: 32,767 is the board's full-scale voltage.
-    pub dac_code: i16,
+    /// Bipolar DAC code, a fraction of the board's full-scale voltage.
+    pub dac_code: DacCode,
     /// The amplifier may drive the electrode.
     pub amplifier_enable: bool,
 }

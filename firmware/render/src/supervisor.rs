@@ -1,5 +1,6 @@
 //! The one owner of the output: Disarmed, Armed, Active, Faulted (DESIGN section 5).
 
+use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::{Fault, State};
 
 use crate::deadline::is_past;
@@ -166,8 +167,8 @@ impl Supervisor {
     /// Faults when the amplifier, its monitor or the arm switch say so. `dac_code` is what went to the amplifier in the tick
     /// before.
     #[inline]
-    pub(crate) fn check(&mut self, sense: &Sense, dac_code: i16) {
-        let driven_v = f32::from(dac_code) * self.monitor.volts_per_code;
+    pub(crate) fn check(&mut self, sense: &Sense, dac_code: DacCode) {
+        let driven_v = f32::from(dac_code.bits()) * self.monitor.volts_per_code;
         if self.monitor.advance(driven_v, sense.monitor_v) || sense.amplifier_fault || !sense.arm_switch {
             self.judge(sense, driven_v);
         }

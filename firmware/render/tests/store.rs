@@ -212,7 +212,7 @@ fn the_last_scene_plays_after_power_off() {
     settle(&mut keeper, &mut flash, &desk, 0);
     assert_eq!((keeper.settled_crc32(), keeper.failures()), (Some(crc32(&scene)), 0));
     let before = played(&mut desk);
-    assert!(before.iter().any(|drive| drive.dac_code != 0));
+    assert!(before.iter().any(|drive| drive.dac_code.bits() != 0));
 
     let mut memory = Memory::new();
     let mut desk = Desk::new(&mut memory);

@@ -35,7 +35,7 @@ impl Ticker<'_> {
                 speed_m_per_s: self.speed_m_per_s(),
                 asked_electric_friction_n: self.electric_friction_n,
                 voltage_v_rms: self.envelope.voltage_v_rms(),
-                dac_code: self.dac_code,
+                dac_code: self.dac_code.bits(),
             },
             fault: self.supervisor.fault(),
             orders_applied: self.orders_applied,

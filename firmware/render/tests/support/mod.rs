@@ -131,7 +131,7 @@ impl<'a> Desk<'a> {
         let arm_switch = self.sense.arm_switch && !self.ticker.waits_for_release();
         let sense = Sense { monitor_v: self.sense.monitor_v + monitor_v, arm_switch, ..self.sense };
         let drive = self.ticker.tick(&sense);
-        let target_v = f32::from(drive.dac_code) * self.monitor.volts_per_code;
+        let target_v = f32::from(drive.dac_code.bits()) * self.monitor.volts_per_code;
         self.monitor.voltage_v += self.monitor.step * (target_v - self.monitor.voltage_v);
         self.session.poll(&self.ticker.status());
         self.collect();

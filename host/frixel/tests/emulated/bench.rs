@@ -67,7 +67,7 @@ impl Bench {
     pub(crate) fn until_driven<L: Link>(&self, device: &mut Device<L>) {
         self.until("the board drives", |board| {
             device.keep_alive().unwrap();
-            board.output().unwrap().dac_code != 0
+            board.output().unwrap().dac_code.bits() != 0
         });
     }
 
