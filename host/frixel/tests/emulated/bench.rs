@@ -71,6 +71,18 @@ impl Bench {
         });
     }
 
+    /// Waits until the finger has felt so much electric friction, for a host that is there all the time.
+    pub(crate) fn until_felt<L: Link>(&self, device: &mut Device<L>, electric_friction_n: f64) {
+        let mut checked = 0;
+        self.until("the finger feels the scene", |_| {
+            device.still_here().unwrap();
+            let records = self.records.lock().unwrap();
+            let new = &records[checked..];
+            checked = records.len();
+            new.iter().any(|record| record.felt.electric_friction_n >= electric_friction_n)
+        });
+    }
+
     /// Lets some of the board's ticks pass, for a host that is there all the time.
     pub(crate) fn pass<L: Link>(&self, device: &mut Device<L>, ticks: u32) {
         let start = self.board.ticks().unwrap();
