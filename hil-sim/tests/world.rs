@@ -7,6 +7,7 @@ use frixel_hil_sim::{
 use frixel_model::{Contact, Finger};
 use frixel_render::{Drive, Sense, Touch};
 use frixel_wire::dac_code::DacCode;
+use frixel_wire::dac_code::DacCode;
 use proptest::prelude::*;
 
 const LEFT: Point = Point { x_m: 0.01, y_m: 0.03 };
@@ -68,7 +69,7 @@ fn a_finger_stays_where_it_was_placed_until_it_is_lifted_or_a_stroke_starts() {
     let mut world = world(WorldConfig::default());
     let finger = FingerState { x_m: 0.04, y_m: 0.05, speed_m_per_s: 0.0 };
     world.place_finger(finger);
-    let drive = Drive { dac_code: 0, amplifier_enable: true };
+    let drive = Drive { dac_code: DacCode::ZERO, amplifier_enable: true };
     for _ in 0..100 {
         assert_eq!(world.apply(drive).finger, Some(finger));
     }

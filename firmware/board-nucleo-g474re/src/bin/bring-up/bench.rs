@@ -7,8 +7,8 @@ use board_nucleo_g474re::dac::{self, Dac, DacFrames};
 use board_nucleo_g474re::output::{LIFE_US, Output};
 use board_nucleo_g474re::{period, tick};
 use cortex_m::peripheral::DWT;
-use frixel_wire::dac_code::DacCode;
 use defmt::{error, info, println, warn};
+use frixel_wire::dac_code::DacCode;
 use frixel_wire::dac_code::DacCode;
 use stm32_metapac::GPIOC;
 
