@@ -7,7 +7,6 @@ use frixel_hil_sim::{
 use frixel_model::{Contact, Finger};
 use frixel_render::{Drive, Sense, Touch};
 use frixel_wire::dac_code::DacCode;
-use frixel_wire::dac_code::DacCode;
 use proptest::prelude::*;
 
 const LEFT: Point = Point { x_m: 0.01, y_m: 0.03 };

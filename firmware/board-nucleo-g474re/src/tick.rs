@@ -13,7 +13,6 @@ use frixel_drivers::amplifier::Amplifier;
 use frixel_drivers::arm_switch::ArmSwitch;
 use frixel_drivers::bus_handover::BusHandover;
 use frixel_render::{Active, Order, Sense, Status, Ticker};
-use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::Fault;
 use heapless::spsc::{Consumer, Producer};
 use stm32_metapac::{GPIOC, Interrupt, interrupt};
@@ -143,7 +142,7 @@ impl Tick {
         let output_is_zero = !drive.amplifier_enable && !self.queues.orders.ready();
         if !DAC_BUS.tick_sends(output_is_zero) {
             self.amplifier.set_enabled(false);
-        } else if self.dac.send(DacCode::from_bits(drive.dac_code)) {
+        } else if self.dac.send(drive.dac_code) {
             self.amplifier.set_enabled(drive.amplifier_enable);
         } else {
             self.late(period::cycles());
