@@ -75,7 +75,7 @@ impl Bench {
     pub(crate) fn until_felt<L: Link>(&self, device: &mut Device<L>, electric_friction_n: f64) {
         let mut checked = 0;
         self.until("the finger feels the scene", |_| {
-            device.still_here().unwrap();
+            device.keep_alive().unwrap();
             let records = self.records.lock().unwrap();
             let new = &records[checked..];
             checked = records.len();

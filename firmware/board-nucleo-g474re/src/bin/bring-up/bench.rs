@@ -9,7 +9,6 @@ use board_nucleo_g474re::{period, tick};
 use cortex_m::peripheral::DWT;
 use defmt::{error, info, println, warn};
 use frixel_wire::dac_code::DacCode;
-use frixel_wire::dac_code::DacCode;
 use stm32_metapac::GPIOC;
 
 /// The blue button, PC13. Which level means pressed is told by the one that it has when nobody presses.
