@@ -43,6 +43,42 @@ fn without_drive_the_finger_feels_exactly_its_natural_friction() {
     }
 }
 
+/// Whatever moves the finger, the world is the same: felt friction and touch reports, bit for bit.
+#[test]
+fn a_finger_that_is_placed_at_every_tick_is_the_finger_of_the_stroke() {
+    let stroke = sliding();
+    let mut by_stroke = world(WorldConfig::default());
+    let mut placed = by_stroke.clone();
+    by_stroke.start_stroke();
+    // Beyond the end of the stroke, where the finger is lifted.
+    for tick in 1..=40_000_u64 {
+        match stroke.at(tick as f64 / 40_000.0) {
+            Some(finger) => placed.place_finger(finger),
+            None => placed.lift_finger(),
+        }
+        let drive = square(tick, 20_000);
+        assert_eq!(placed.apply(drive), by_stroke.apply(drive), "tick {tick}");
+        assert_eq!(placed.sense(), by_stroke.sense(), "tick {tick}");
+    }
+    assert_eq!(placed.finger(), None, "the stroke ended");
+}
+
+#[test]
+fn a_finger_stays_where_it_was_placed_until_it_is_lifted_or_a_stroke_starts() {
+    let mut world = world(WorldConfig::default());
+    let finger = FingerState { x_m: 0.04, y_m: 0.05, speed_m_per_s: 0.0 };
+    world.place_finger(finger);
+    let drive = Drive { dac_code: DacCode::ZERO, amplifier_enable: true };
+    for _ in 0..100 {
+        assert_eq!(world.apply(drive).finger, Some(finger));
+    }
+    world.lift_finger();
+    assert_eq!(world.apply(drive).finger, None);
+    world.place_finger(finger);
+    world.start_stroke();
+    assert_ne!(world.apply(drive).finger, Some(finger));
+}
+
 #[test]
 fn a_square_drive_without_lag_is_felt_as_the_model_says() {
     let contact = example_finger().unwrap();

@@ -39,6 +39,7 @@ pub const LIMITS: BoardLimits = BoardLimits {
     // What the series resistor lets through when an edge goes from 50 V to -50 V, 1.47 mA, and a fifth more.
     current_max_a_peak: 1.8e-3,
     touch_report_period_s: 10e-3,
+    tick_cycles_max: BoardLimits::SMALLEST_TICK_CYCLES_MAX,
 };
 
 /// Where the limits are kept: the first two pages of bank 2.

@@ -178,7 +178,7 @@ impl Active {
                 if end_cell < Grid::CELLS {
                     Loading::Cost { next_cell: end_cell, worst }
                 } else {
-                    worst.check()?;
+                    worst.check(board.limits.tick_cycles_max)?;
                     Loading::Table
                 }
             }
