@@ -1,5 +1,6 @@
 //! What the supervisor owes to the person at the electrode (DESIGN section 5).
 
+use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::{Fault, State};
 use proptest::prelude::*;
 
@@ -267,7 +268,7 @@ proptest! {
         let mut supervisor = in_state(State::Disarmed);
         for (tick, (amplifier_fault, arm_switch, monitor_v, dac_code)) in inputs.into_iter().enumerate() {
             let before = supervisor.state();
-            supervisor.check(&Sense { amplifier_fault, arm_switch, monitor_v, ..Sense::default() }, dac_code);
+            supervisor.check(&Sense { amplifier_fault, arm_switch, monitor_v, ..Sense::default() }, DacCode::from_bits(dac_code));
             supervisor.expire(tick as u32);
             prop_assert!(matches!(supervisor.state(), State::Disarmed | State::Faulted));
             prop_assert!(before != State::Faulted || supervisor.state() == State::Faulted);
