@@ -8,7 +8,7 @@ use core::str;
 
 use cortex_m_semihosting::hprintln;
 use frixel_random_scenes::{Pace, RandomFinger, RandomScene, Report};
-use frixel_render::Touch;
+use frixel_session::Touch;
 use frixel_wire::message::Command;
 use frixel_layers::{Layer, SCENE_MAX_LEN};
 

@@ -6,7 +6,7 @@ use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m::peripheral::{SCB, SYST};
 use cortex_m_rt::exception;
 use frixel_exchange::layout;
-use frixel_render::{Active, Board, Order, Sense, Status, Ticker};
+use frixel_control::{Active, Board, Order, Sense, Status, Ticker};
 use frixel_wire::fault::Fault;
 use heapless::spsc::{Consumer, Producer};
 

@@ -6,7 +6,7 @@ use cortex_m::interrupt::InterruptNumber;
 use cortex_m::peripheral::NVIC;
 use embedded_io::{ErrorType, Read, ReadReady, Write, WriteReady};
 use frixel_exchange::layout;
-use frixel_render::Board;
+use frixel_control::Board;
 use heapless::spsc::{Consumer, Producer, Queue};
 
 use crate::owned::Owned;

@@ -24,11 +24,12 @@ use defmt_rtt as _;
 use frixel_drivers::fault_record::Text;
 use frixel_drivers::serial::SerialLink;
 #[cfg(feature = "stream")]
-use frixel_render::StreamBuffer;
+use frixel_control::StreamBuffer;
 #[cfg(feature = "store")]
-use frixel_render::store::SceneKeeper;
+use frixel_session::store::SceneKeeper;
 use frixel_layers::{BitmapPool};
-use frixel_render::{Active, Board, Session, Ticker};
+use frixel_control::{Active, Board, Ticker};
+use frixel_session::Session;
 use frixel_wire::message::FAULT_TEXT_MAX_LEN;
 
 /// Memory for bitmaps, written by the session and read by the tick.

@@ -3,8 +3,9 @@
 use frixel_drivers::serial::SerialLink;
 use frixel_drivers::state_light::StateLight;
 #[cfg(feature = "store")]
-use frixel_render::store::SceneKeeper;
-use frixel_render::{Active, Order, Session, Status};
+use frixel_session::store::SceneKeeper;
+use frixel_control::{Active, Order, Status};
+use frixel_session::Session;
 use frixel_wire::fault::State;
 use heapless::spsc::{Consumer, Producer, Queue};
 

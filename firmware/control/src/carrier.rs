@@ -1,0 +1,196 @@
+//! The carrier: alternates the envelope's sign, so that no charge leaks through the skin and no direct current flows.
+//!
+//! The running integral of the DAC code, exact in integers, never leaves plus or minus one half period at full
+//! voltage, however the amplitude moves: a code that would take it out is put out with the other sign, as an early
+//! edge.
+
+use frixel_layers::Carrier as Shape;
+
+#[cfg(feature = "sine-carrier")]
+use frixel_layers::cosine;
+
+/// What a carrier is made of; part of `Active`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CarrierTiming {
+    pub(crate) shape: Shape,
+    pub(crate) half_period_ticks: u32,
+    /// DAC codes for a volt rms of envelope: crest factor and loss in the edges included.
+    pub(crate) codes_per_v_rms: f32,
+    /// Largest DAC code.
+    pub(crate) code_max: i32,
+    /// Largest magnitude of the running integral, in code ticks.
+    integral_max: i32,
+    turns_per_tick: f32,
+}
+
+impl CarrierTiming {
+    /// Output zero.
+    pub const SILENT: Self = Self::new(Shape::Square, 20, 0.0, 0);
+
+    /// A carrier whose integral stays within one half period at full voltage.
+    pub const fn new(shape: Shape, half_period_ticks: u32, codes_per_v_rms: f32, code_max: i32) -> Self {
+        let mean = match shape {
+            Shape::Square => 1.0,
+            Shape::Sine => core::f32::consts::FRAC_2_PI,
+        };
+        let integral_max = (code_max as f32 * (half_period_ticks as f32 * mean)) as i32;
+        let turns_per_tick = 0.5 / half_period_ticks as f32;
+        Self { shape, half_period_ticks, codes_per_v_rms, code_max, integral_max, turns_per_tick }
+    }
+
+    /// From the middle of a half period to its edge.
+    fn ticks_from_crest(&self) -> u32 {
+        self.half_period_ticks - self.half_period_ticks / 2
+    }
+}
+
+/// The carrier's state.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Carrier {
+    /// 1 in the first half of a period, -1 in the second.
+    sign: i32,
+    /// Ticks until the next edge, this one included.
+    left_ticks: u32,
+    integral: i32,
+    /// Edges that came early to keep direct current away, modulo 2^32, and the tick of the last.
+    early_edges: u32,
+    last_early_tick: u32,
+}
+
+impl Carrier {
+    /// Starts a quarter period in, so that the integral swings evenly about zero.
+    pub(crate) fn new(timing: &CarrierTiming) -> Self {
+        Self { sign: 1, left_ticks: timing.ticks_from_crest(), integral: 0, early_edges: 0, last_early_tick: 0 }
+    }
+
+    /// Goes on with the timing of another scene. The integral is the electrode's, and stays.
+    pub(crate) fn retime(&mut self, timing: &CarrierTiming) {
+        self.left_ticks = self.left_ticks.min(timing.half_period_ticks);
+    }
+
+    /// Waits at zero output. It will start again a quarter period before an edge, on the side that takes the integral
+    /// back.
+    pub(crate) fn rest(&mut self, timing: &CarrierTiming) {
+        self.sign = if self.integral > 0 { -1 } else { 1 };
+        self.left_ticks = timing.ticks_from_crest();
+    }
+
+    /// Early edges since power-on, modulo 2^32.
+    pub(crate) fn early_edges(&self) -> u32 {
+        self.early_edges
+    }
+
+    /// When the last of them was.
+    pub(crate) fn last_early_tick(&self) -> u32 {
+        self.last_early_tick
+    }
+
+    /// The code for this tick.
+    #[inline]
+    pub(crate) fn next(&mut self, envelope_v_rms: f32, timing: &CarrierTiming, tick: u32) -> i16 {
+        let mut code = self.sign * self.magnitude(envelope_v_rms, timing);
+        // Beyond the largest on either side: both are far from overflowing.
+        if (self.integral + code + timing.integral_max) as u32 > 2 * timing.integral_max as u32 {
+            code = self.within_balance(code, tick);
+        }
+        self.integral += code;
+        if self.left_ticks > 1 {
+            self.left_ticks -= 1;
+        } else {
+            self.turn(timing);
+        }
+        code as i16
+    }
+
+    /// A code that would take the integral too far, or what is put out in its place: if it takes the integral away from
+    /// zero, the same with the other sign, as an early edge.
+    #[cold]
+    fn within_balance(&mut self, code: i32, tick: u32) -> i32 {
+        if (self.integral + code).abs() <= self.integral.abs() {
+            return code;
+        }
+        self.sign = -self.sign;
+        self.early_edges = self.early_edges.wrapping_add(1);
+        self.last_early_tick = tick;
+        -code
+    }
+
+    /// An edge.
+    #[cold]
+    fn turn(&mut self, timing: &CarrierTiming) {
+        self.sign = -self.sign;
+        self.left_ticks = timing.half_period_ticks;
+    }
+
+    #[inline]
+    fn magnitude(&self, envelope_v_rms: f32, timing: &CarrierTiming) -> i32 {
+        let amplitude = envelope_v_rms * timing.codes_per_v_rms;
+        let code = match timing.shape {
+            Shape::Square => amplitude,
+            #[cfg(feature = "sine-carrier")]
+            Shape::Sine => {
+                // The crest, where the cosine has no angle, is a quarter of a turn before the edge.
+                amplitude * cosine(self.left_ticks as f32 * timing.turns_per_tick - 0.25)
+            }
+            #[cfg(not(feature = "sine-carrier"))]
+            Shape::Sine => 0.0,
+        };
+        ((code + 0.5) as i32).min(timing.code_max)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn timing(shape: Shape, half_period_ticks: u32) -> CarrierTiming {
+        CarrierTiming::new(shape, half_period_ticks, 100.0, 20_000)
+    }
+
+    #[test]
+    fn a_steady_square_alternates_without_early_edges() {
+        let timing = timing(Shape::Square, 20);
+        let mut carrier = Carrier::new(&timing);
+        let codes: Vec<i16> = (0..400).map(|tick| carrier.next(200.0, &timing, tick)).collect();
+        assert_eq!(carrier.early_edges(), 0);
+        for (i, code) in codes.iter().enumerate() {
+            let positive = (i + 10) % 40 < 20;
+            assert_eq!(*code, if positive { 20_000 } else { -20_000 }, "{i}");
+        }
+    }
+
+    #[cfg(feature = "sine-carrier")]
+    #[test]
+    fn a_sine_has_the_rms_of_its_envelope() {
+        let timing = timing(Shape::Sine, 20);
+        let mut carrier = Carrier::new(&timing);
+        let sum: f64 = (0..4000).map(|_| f64::from(carrier.next(100.0, &timing, 0)).powi(2)).sum();
+        let rms = (sum / 4000.0).sqrt();
+        assert!((rms * 2.0_f64.sqrt() - 10_000.0).abs() < 1.0, "{rms}");
+    }
+
+    proptest! {
+        /// Amplitudes that move with the carrier are the worst: every half wave of one sign large, of the other small.
+        #[test]
+        fn the_integral_stays_within_a_half_period_at_full_voltage(
+            sine in any::<bool>(),
+            half_period_ticks in 4_u32..80,
+            seed_amplitudes in proptest::collection::vec(0.0_f32..200.0, 1..200),
+            resonant in any::<bool>(),
+        ) {
+            let timing = timing(if sine { Shape::Sine } else { Shape::Square }, half_period_ticks);
+            let mut carrier = Carrier::new(&timing);
+            let mut integral = 0_i64;
+            let full = i64::from(timing.integral_max);
+            for i in 0..4000_usize {
+                let half = i as u32 / half_period_ticks;
+                let amplitude = if resonant { if half.is_multiple_of(2) { 200.0 } else { 3.0 } }
+                    else { seed_amplitudes[i % seed_amplitudes.len()] };
+                if i % 1013 == 0 { carrier.rest(&timing); }
+                integral += i64::from(carrier.next(amplitude, &timing, 0));
+                prop_assert!(integral.abs() <= full, "{integral} after {i} ticks, {full} allowed");
+            }
+        }
+    }
+}
