@@ -1,6 +1,6 @@
 //! The uploaded scene becomes the one that plays.
 //!
-//! A commit takes a board the time of hundreds of ticks. [`Dialogue::step_commit`] advances it by one step of at most a
+//! A commit takes a board the time of hundreds of ticks. [`Commands::step_commit`] advances it by one step of at most a
 //! millisecond, so that touches, signs of life and stops are served in between.
 
 use frixel_layers::{Scene, disabled_record};
@@ -8,10 +8,10 @@ use frixel_wire::message::{Accepted, Refusal};
 use frixel_wire::scene::{RECORDS_MAX, SceneError};
 use heapless::Vec;
 
-use crate::dialogue::Dialogue;
+use crate::commands::Commands;
 use crate::live::Playing;
 use crate::loading::Loading;
-use crate::outbox::Outbox;
+use crate::transmit_queue::TransmitQueue;
 use crate::upload::Upload;
 use frixel_control::Order;
 
@@ -43,21 +43,21 @@ impl Commit {
     }
 }
 
-impl Dialogue<'_> {
+impl Commands<'_> {
     /// Does the next step of the commit, if one is under way, and answers after the last.
-    pub(crate) fn step_commit(&mut self, outbox: &mut Outbox) {
+    pub(crate) fn step_commit(&mut self, queue: &mut TransmitQueue) {
         let Some(mut commit) = self.commit.take() else { return };
         match self.step(&mut commit) {
             Ok(false) => self.commit = Some(commit),
-            Ok(true) => self.answer(commit.sequence, Ok(Accepted::Done), outbox),
-            Err(refusal) => self.answer(commit.sequence, Err(refusal), outbox),
+            Ok(true) => self.answer(commit.sequence, Ok(Accepted::Done), queue),
+            Err(refusal) => self.answer(commit.sequence, Err(refusal), queue),
         }
     }
 
     /// Does all that is left of the commit, for a request that has to know how it ended.
-    pub(crate) fn finish_commit(&mut self, outbox: &mut Outbox) {
+    pub(crate) fn finish_commit(&mut self, queue: &mut TransmitQueue) {
         while self.commit.is_some() {
-            self.step_commit(outbox);
+            self.step_commit(queue);
         }
     }
 

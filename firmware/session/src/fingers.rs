@@ -7,7 +7,7 @@ use frixel_wire::message::{Accepted, ConfigField, ConfigRefusal, Refusal};
 use heapless::Vec;
 
 use crate::Touch;
-use crate::dialogue::Dialogue;
+use crate::commands::Commands;
 use frixel_control::Status;
 
 /// The finger of a host that has one.
@@ -89,7 +89,7 @@ impl Fingers {
     }
 }
 
-impl Dialogue<'_> {
+impl Commands<'_> {
     pub(crate) fn touch(
         &mut self,
         finger: u8,

@@ -3,8 +3,8 @@
 use frixel_wire::fault::State;
 use frixel_wire::hello::{Hello, PROTOCOL_MAJOR, PROTOCOL_MINOR, feature};
 
-use crate::dialogue::Dialogue;
-use crate::outbox::Outbox;
+use crate::commands::Commands;
+use crate::transmit_queue::TransmitQueue;
 use frixel_control::Status;
 use frixel_control::{Board, Order};
 
@@ -35,10 +35,10 @@ const fn features(board: &Board, has_stream: bool) -> u32 {
         | bit(board.touch_from_host, feature::HOST_TOUCH)
 }
 
-impl Dialogue<'_> {
+impl Commands<'_> {
     /// A new client: credit starts anew, nothing of an unfinished upload is left, and what the client before had armed is
     /// disarmed, for that one is gone. A scene that goes on without a host plays on.
-    pub(crate) fn greet(&mut self, status: &Status, outbox: &mut Outbox) {
+    pub(crate) fn handle_hello(&mut self, status: &Status, queue: &mut TransmitQueue) {
         if !(self.state == State::Active && self.playing.is_autonomous()) {
             // Refused when there is nothing to disarm; there is always room for this order.
             let _ = self.change_state(Order::Disarm, &[State::Armed, State::Active], State::Disarmed);
@@ -51,7 +51,7 @@ impl Dialogue<'_> {
         // Should there be no room for the order, the stream runs dry instead.
         #[cfg(feature = "stream")]
         let _ = self.end_stream();
-        outbox.send_hello(&Hello {
+        queue.send_hello(&Hello {
             protocol: (PROTOCOL_MAJOR, PROTOCOL_MINOR),
             firmware: FIRMWARE,
             board: self.board.kind,

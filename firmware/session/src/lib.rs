@@ -37,7 +37,7 @@
 //!
 //! # Inside
 //!
-//! `session` turns bytes into frames and back; `dialogue` says what the frames mean, and the others do what they ask for:
+//! `session` turns bytes into frames and back; `commands` says what the frames mean, and the others do what they ask for:
 //! `greeting` the hello, `states` arming and playing, `storing` uploads, whose bytes `upload` gathers, `commit` the change of
 //! scene, which `loading` computes step by step, `live` what changes while one plays, `fingers` touches of the host.
 //! `tracker` turns touch reports into tracks, with `estimator` and `standstill`.
@@ -53,28 +53,28 @@
 #![forbid(unsafe_code)]
 
 mod bitmap_directory;
+mod commands;
 mod commit;
 mod credit;
-mod dialogue;
 mod estimator;
 mod fingers;
 mod greeting;
-#[cfg(feature = "store")]
-mod kept;
 mod live;
 mod loading;
-mod outbox;
 mod session;
 mod standstill;
 mod states;
 #[cfg(feature = "store")]
 pub mod store;
+#[cfg(feature = "store")]
+mod stored;
 mod storing;
 mod tracker;
+mod transmit_queue;
 mod upload;
 
-#[cfg(feature = "store")]
-pub use kept::KeptScene;
 pub use loading::{TableRows, active_bytes_filled, table_rows};
 pub use session::Session;
+#[cfg(feature = "store")]
+pub use stored::StoredScene;
 pub use tracker::Touch;

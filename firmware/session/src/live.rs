@@ -6,9 +6,9 @@ use frixel_wire::message::{Accepted, Command, ConfigField, Refusal};
 #[cfg(feature = "stream")]
 use frixel_wire::message::{ConfigRefusal, FromBoard, STREAM_START_LEVEL_MAX};
 
-use crate::dialogue::Dialogue;
+use crate::commands::Commands;
 #[cfg(feature = "stream")]
-use crate::outbox::Outbox;
+use crate::transmit_queue::TransmitQueue;
 use frixel_control::{Order, Status};
 #[cfg(feature = "stream")]
 use frixel_control::{StreamBuffer, StreamIntake};
@@ -71,7 +71,7 @@ impl Playing {
     }
 }
 
-impl Dialogue<'_> {
+impl Commands<'_> {
     /// Commands that only a playing scene takes.
     pub(crate) fn change_playing(&mut self, command: Command, status: &Status) -> Result<Accepted, Refusal> {
         match (self.state, status.fault) {
@@ -102,7 +102,7 @@ impl Dialogue<'_> {
 }
 
 #[cfg(feature = "stream")]
-impl<'a> Dialogue<'a> {
+impl<'a> Commands<'a> {
     pub(crate) fn attach_stream(&mut self, buffer: &'a StreamBuffer) {
         self.stream = Some(Stream::new(buffer));
     }
@@ -164,7 +164,7 @@ impl<'a> Dialogue<'a> {
     }
 
     /// Tells the host how the stream is doing, when that is due and the line is not behind.
-    pub(crate) fn report_stream(&mut self, status: &Status, outbox: &mut Outbox) {
+    pub(crate) fn report_stream(&mut self, status: &Status, queue: &mut TransmitQueue) {
         let Some(stream) = &mut self.stream else { return };
         let Some((next_index, room)) = stream.intake.progress() else { return };
         let now_tick = status.telemetry.tick;
@@ -180,7 +180,7 @@ impl<'a> Dialogue<'a> {
             received_bytes: self.credit.received(),
         };
         // When the line is behind, the next call tries again.
-        if outbox.send_unasked(&progress) {
+        if queue.send_unasked(&progress) {
             self.credit.reported();
             stream.report_due = false;
             stream.frames = 0;

@@ -7,10 +7,10 @@ use frixel_wire::message::FromBoard;
 use frixel_wire::payload::Payload;
 
 use crate::Touch;
-use crate::dialogue::Dialogue;
+use crate::commands::Commands;
 #[cfg(feature = "store")]
-use crate::kept::KeptScene;
-use crate::outbox::Outbox;
+use crate::stored::StoredScene;
+use crate::transmit_queue::TransmitQueue;
 use frixel_control::Status;
 #[cfg(feature = "stream")]
 use frixel_control::StreamBuffer;
@@ -20,8 +20,8 @@ use frixel_layers::BitmapPool;
 /// One board's end of the serial line.
 pub struct Session<'a> {
     decoder: Decoder,
-    dialogue: Dialogue<'a>,
-    outbox: Outbox,
+    commands: Commands<'a>,
+    queue: TransmitQueue,
     telemetry_sent_at_tick: u32,
     /// A byte of the frame that is being received was beyond the host's credit.
     beyond_credit: bool,
@@ -34,8 +34,8 @@ impl<'a> Session<'a> {
     pub fn new(board: Board, pool: &'a BitmapPool, spare: &'a mut Active) -> Self {
         Self {
             decoder: Decoder::new(),
-            dialogue: Dialogue::new(board, pool, spare),
-            outbox: Outbox::new(),
+            commands: Commands::new(board, pool, spare),
+            queue: TransmitQueue::new(),
             telemetry_sent_at_tick: 0,
             beyond_credit: false,
             frames_discarded: 0,
@@ -45,7 +45,7 @@ impl<'a> Session<'a> {
     /// From now on, takes the samples of streams into `buffer`, from which the ticker plays them.
     #[cfg(feature = "stream")]
     pub fn attach_stream(&mut self, buffer: &'a StreamBuffer) {
-        self.dialogue.attach_stream(buffer);
+        self.commands.attach_stream(buffer);
     }
 
     /// Takes bytes from the serial line. Answers wait in [`Session::transmit`], orders in [`Session::next_order`]. A commit
@@ -59,14 +59,14 @@ impl<'a> Session<'a> {
         while !bytes.is_empty() {
             let before = bytes.len();
             let frame = self.decoder.next_frame(&mut bytes);
-            self.beyond_credit |= !self.dialogue.credit.take(before - bytes.len());
+            self.beyond_credit |= !self.commands.credit.take(before - bytes.len());
             let Some(frame) = frame else { continue };
             let payload = Payload::parse_from_host(frame);
             let beyond_credit = core::mem::take(&mut self.beyond_credit);
             if beyond_credit && !matches!(payload, Ok(Payload::HelloRequest { .. })) {
                 self.frames_discarded = self.frames_discarded.wrapping_add(1);
             } else {
-                self.dialogue.take(payload, status, &mut self.outbox);
+                self.commands.take(payload, status, &mut self.queue);
             }
         }
     }
@@ -75,77 +75,77 @@ impl<'a> Session<'a> {
     /// changes of state. To be called after every tick or, when there is no time for that, at least once a telemetry
     /// period, and with touch reports, orders and bytes handed over in between.
     pub fn poll(&mut self, status: &Status) {
-        self.dialogue.tracker.expire(status.telemetry.tick);
-        self.dialogue.step_commit(&mut self.outbox);
-        self.dialogue.report_state(status, &mut self.outbox);
+        self.commands.tracker.expire(status.telemetry.tick);
+        self.commands.step_commit(&mut self.queue);
+        self.commands.report_state(status, &mut self.queue);
         #[cfg(feature = "stream")]
-        self.dialogue.report_stream(status, &mut self.outbox);
+        self.commands.report_stream(status, &mut self.queue);
         if cfg!(feature = "telemetry")
-            && let Some(period_ticks) = self.dialogue.telemetry_period_ticks()
+            && let Some(period_ticks) = self.commands.telemetry_period_ticks()
             && status.telemetry.tick.wrapping_sub(self.telemetry_sent_at_tick) >= period_ticks
         {
             self.telemetry_sent_at_tick = status.telemetry.tick;
-            self.outbox.send_unasked(&FromBoard::Telemetry(status.telemetry));
+            self.queue.send_unasked(&FromBoard::Telemetry(status.telemetry));
         }
     }
 
     /// Takes a report of the board's touch source that arrived at a tick.
     pub fn touch(&mut self, touch: Touch, tick: u32) {
-        self.dialogue.tracker.report(touch, tick);
+        self.commands.tracker.report(touch, tick);
     }
 
     /// The next order for the ticker, which takes one before each tick.
     pub fn next_order(&mut self) -> Option<Order<'a>> {
-        self.dialogue.next_order()
+        self.commands.next_order()
     }
 
     /// Takes back the coefficients that the ticker has let go.
     pub fn take_back(&mut self, spare: &'a mut Active) {
-        self.dialogue.take_back(spare);
+        self.commands.take_back(spare);
     }
 
     /// Moves bytes for the serial line into `bytes`, and returns how many.
     pub fn transmit(&mut self, bytes: &mut [u8]) -> usize {
-        let count = self.outbox.drain(bytes);
+        let count = self.queue.drain(bytes);
         if count > 0 {
-            self.dialogue.credit.grant_reported();
+            self.commands.credit.grant_reported();
         }
         count
     }
 
     /// The supervisor's state once the ticker has applied every order that was given out.
     pub fn state(&self) -> State {
-        self.dialogue.state
+        self.commands.state
     }
 
     /// The committed scene, as it was sent; `None` without one, and when the upload of another has begun.
     pub fn scene(&self) -> Option<&[u8]> {
-        self.dialogue.scene()
+        self.commands.scene()
     }
 
     /// Header of the committed scene; `None` without one. Other than [`Session::scene`], it outlives the upload of the
     /// next scene.
     pub fn scene_header(&self) -> Option<&Header> {
-        self.dialogue.playing.header.as_ref()
+        self.commands.playing.header.as_ref()
     }
 
     /// CRC-32 of what [`Session::kept`] would give.
     #[cfg(feature = "store")]
     pub fn kept_crc32(&self) -> Option<u32> {
-        self.dialogue.kept_crc32()
+        self.commands.kept_crc32()
     }
 
     /// The committed scene with its bitmaps as bytes to keep; `None` without one, and unless the board is disarmed.
     #[cfg(feature = "store")]
-    pub fn kept(&self) -> Option<KeptScene<'_>> {
-        self.dialogue.kept()
+    pub fn kept(&self) -> Option<StoredScene<'_>> {
+        self.commands.kept()
     }
 
     /// Commits a scene from bytes that were kept: `read` gives those at an offset, and `false` beyond their end. Returns
     /// whether there is a scene that this firmware can play; what is not is as if it had never been kept.
     #[cfg(feature = "store")]
     pub fn restore(&mut self, read: impl Fn(u32, &mut [u8]) -> bool) -> bool {
-        self.dialogue.restore(read).is_some()
+        self.commands.restore(read).is_some()
     }
 
     /// Frames that were received whole and within the host's credit, and those that were discarded: bad ones, and those

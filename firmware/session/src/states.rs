@@ -3,8 +3,8 @@
 use frixel_wire::fault::{Flags, State};
 use frixel_wire::message::{Accepted, Command, FromBoard, Refusal};
 
-use crate::dialogue::Dialogue;
-use crate::outbox::Outbox;
+use crate::commands::Commands;
+use crate::transmit_queue::TransmitQueue;
 use frixel_control::Order;
 use frixel_control::Status;
 
@@ -13,15 +13,15 @@ pub(crate) const ORDERS_MAX: usize = 8;
 /// Of which these are kept for Stop and Disarm, so that what puts the output to zero is never refused for want of room.
 const ORDERS_KEPT: usize = 2;
 
-impl<'a> Dialogue<'a> {
+impl<'a> Commands<'a> {
     /// Tells the host of a change of state that it did not ask for.
-    pub(crate) fn report_state(&mut self, status: &Status, outbox: &mut Outbox) {
+    pub(crate) fn report_state(&mut self, status: &Status, queue: &mut TransmitQueue) {
         let before = self.state;
         self.follow_state(status);
         if self.state != before {
             let fault = status.fault.filter(|_| self.state == State::Faulted).map(|(fault, _)| fault);
             let flags = Flags(status.telemetry.flags.0 & Flags::HOST_SILENT.0);
-            outbox.send(&FromBoard::StateChanged { state: self.state, fault, flags });
+            queue.send(&FromBoard::StateChanged { state: self.state, fault, flags });
         }
     }
 

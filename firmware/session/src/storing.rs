@@ -5,13 +5,13 @@ use frixel_wire::fault::State;
 use frixel_wire::message::{Accepted, FromBoard, Refusal};
 use frixel_wire::scene::POINTS_MAX;
 
-use crate::dialogue::Dialogue;
+use crate::commands::Commands;
 use crate::live::Playing;
-use crate::outbox::Outbox;
+use crate::transmit_queue::TransmitQueue;
 use crate::upload::{Destination, Report, Upload};
 use frixel_control::Order;
 
-impl Dialogue<'_> {
+impl Commands<'_> {
     pub(crate) fn begin_scene(&mut self, len: u32, crc32: u32) -> Result<Accepted, Refusal> {
         let records = usize::from(self.board.limits.records_max);
         let max = (HEADER_LEN + records * RECORD_LEN + POINTS_MAX * POINT_LEN).min(SCENE_MAX_LEN) as u32;
@@ -87,11 +87,11 @@ impl Dialogue<'_> {
         self.directory.allocate(width, height, crc32, pool_len).map_err(|_| refused)
     }
 
-    pub(crate) fn take_chunk(&mut self, number: u16, bytes: &[u8], outbox: &mut Outbox) {
+    pub(crate) fn take_chunk(&mut self, number: u16, bytes: &[u8], queue: &mut TransmitQueue) {
         if let Some(upload) = &mut self.upload
             && let Report::Progress { next_chunk } = upload.take(number, bytes, &mut self.staging, self.pool)
         {
-            self.report(&FromBoard::Progress { next_chunk, received_bytes: self.credit.received() }, outbox);
+            self.report(&FromBoard::Progress { next_chunk, received_bytes: self.credit.received() }, queue);
         }
     }
 

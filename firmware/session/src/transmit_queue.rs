@@ -15,18 +15,18 @@ const ANSWER_MAX_LEN: usize = 37;
 /// room for all answers, and what comes of them is not old.
 const UNASKED_MAX_LEN: usize = 512;
 /// Room for all of them, and for what tells how an upload goes and what the board's state is.
-const OUTBOX_LEN: usize = 3072;
+const QUEUE_LEN: usize = 3072;
 
-const _: () = assert!(ANSWERS_MAX * ANSWER_MAX_LEN + UNASKED_MAX_LEN + FRAME_MAX_LEN <= OUTBOX_LEN);
+const _: () = assert!(ANSWERS_MAX * ANSWER_MAX_LEN + UNASKED_MAX_LEN + FRAME_MAX_LEN <= QUEUE_LEN);
 
 /// A queue of whole frames, the first of which may have left in part.
-pub(crate) struct Outbox {
-    bytes: Deque<u8, OUTBOX_LEN>,
+pub(crate) struct TransmitQueue {
+    bytes: Deque<u8, QUEUE_LEN>,
     /// The last byte that left did not end a frame.
     is_inside_frame: bool,
 }
 
-impl Outbox {
+impl TransmitQueue {
     pub(crate) const fn new() -> Self {
         Self { bytes: Deque::new(), is_inside_frame: false }
     }
@@ -34,7 +34,7 @@ impl Outbox {
     /// Queues a message, and returns whether there was room. One that does not fit is left out whole, and the host asks
     /// again after its deadline.
     pub(crate) fn send(&mut self, message: &FromBoard) -> bool {
-        self.send_within(OUTBOX_LEN, message)
+        self.send_within(QUEUE_LEN, message)
     }
 
     /// Queues a message that no request asked for, such as telemetry, unless the line is behind.
@@ -71,7 +71,7 @@ impl Outbox {
 
     #[inline(never)]
     fn push(&mut self, frame: &[u8]) -> bool {
-        let fits = OUTBOX_LEN - self.bytes.len() >= frame.len();
+        let fits = QUEUE_LEN - self.bytes.len() >= frame.len();
         if fits {
             for byte in frame {
                 // There is room: it was looked for above.

@@ -1,4 +1,4 @@
-//! What the host's frames mean, and what the board answers.
+//! The command handler: dispatches the frames of the host, and answers them.
 
 use frixel_wire::fault::State;
 use frixel_wire::message::{
@@ -15,16 +15,16 @@ use crate::fingers::{Fingers, ONLY_FINGER};
 use crate::live::Playing;
 #[cfg(feature = "stream")]
 use crate::live::Stream;
-use crate::outbox::Outbox;
 use crate::states::ORDERS_MAX;
 use crate::tracker::Tracker;
+use crate::transmit_queue::TransmitQueue;
 use crate::upload::{Staging, Upload};
 use frixel_control::Status;
 use frixel_control::{Active, Board, Order};
 use frixel_layers::BitmapPool;
 
-/// The board's side of what is said.
-pub(crate) struct Dialogue<'a> {
+/// Handles the commands of the host: state of the session, and of the scene and finger that it has handed to the ticker.
+pub(crate) struct Commands<'a> {
     pub(crate) board: Board,
     pub(crate) pool: &'a BitmapPool,
     pub(crate) directory: Directory,
@@ -59,7 +59,7 @@ pub(crate) struct Dialogue<'a> {
     pub(crate) tracker: Tracker,
 }
 
-impl<'a> Dialogue<'a> {
+impl<'a> Commands<'a> {
     pub(crate) fn new(board: Board, pool: &'a BitmapPool, spare: &'a mut Active) -> Self {
         Self {
             board,
@@ -101,30 +101,30 @@ impl<'a> Dialogue<'a> {
     }
 
     /// Takes one frame's payload.
-    pub(crate) fn take(&mut self, payload: Result<Payload, ParseError>, status: &Status, outbox: &mut Outbox) {
-        self.report_state(status, outbox);
+    pub(crate) fn take(&mut self, payload: Result<Payload, ParseError>, status: &Status, queue: &mut TransmitQueue) {
+        self.report_state(status, queue);
         if !may_overtake_a_commit(&payload) {
-            self.finish_commit(outbox);
+            self.finish_commit(queue);
         }
         match payload {
-            Ok(Payload::HelloRequest { .. }) => self.greet(status, outbox),
+            Ok(Payload::HelloRequest { .. }) => self.handle_hello(status, queue),
             Ok(Payload::Request(request)) => {
                 self.host_heard = true;
                 if let Command::Commit { crc32 } = request.command {
                     self.commit = Some(Commit::new(request.sequence, crc32));
                 } else {
-                    self.serve(request, status, outbox);
+                    self.serve(request, status, queue);
                 }
             }
             Ok(Payload::Chunk { number, bytes }) => {
                 self.host_heard = true;
-                self.take_chunk(number, bytes, outbox);
+                self.take_chunk(number, bytes, queue);
             }
             #[cfg(feature = "stream")]
             Ok(Payload::Samples { first_index, samples }) => {
                 self.host_heard = true;
                 self.take_samples(first_index, samples);
-                self.report_stream(status, outbox);
+                self.report_stream(status, queue);
             }
             // Without the feature, samples are not looked at, but a host is there.
             #[cfg(not(feature = "stream"))]
@@ -132,31 +132,31 @@ impl<'a> Dialogue<'a> {
             // A request whose command is not known still says which answer it waits for.
             Err(ParseError::UnknownCommand { sequence }) => {
                 self.host_heard = true;
-                self.answer(sequence, Err(Refusal::UnknownCommand), outbox);
+                self.answer(sequence, Err(Refusal::UnknownCommand), queue);
             }
             // What a board sends, and what cannot be read, is not for a board.
             Ok(Payload::Hello(_) | Payload::FromBoard(_)) | Err(_) => {}
         }
     }
 
-    fn serve(&mut self, Request { sequence, command }: Request, status: &Status, outbox: &mut Outbox) {
-        let outcome = self.obey(command, status);
-        self.answer(sequence, outcome, outbox);
+    fn serve(&mut self, Request { sequence, command }: Request, status: &Status, queue: &mut TransmitQueue) {
+        let outcome = self.dispatch(command, status);
+        self.answer(sequence, outcome, queue);
     }
 
-    pub(crate) fn answer(&mut self, sequence: u16, outcome: Result<Accepted, Refusal>, outbox: &mut Outbox) {
+    pub(crate) fn answer(&mut self, sequence: u16, outcome: Result<Accepted, Refusal>, queue: &mut TransmitQueue) {
         let answer = Answer { sequence, received_bytes: self.credit.received(), state: self.state, outcome };
-        self.report(&FromBoard::Answer(answer), outbox);
+        self.report(&FromBoard::Answer(answer), queue);
     }
 
     /// Sends a message that tells how many bytes were received.
-    pub(crate) fn report(&mut self, message: &FromBoard, outbox: &mut Outbox) {
-        if outbox.send(message) {
+    pub(crate) fn report(&mut self, message: &FromBoard, queue: &mut TransmitQueue) {
+        if queue.send(message) {
             self.credit.reported();
         }
     }
 
-    fn obey(&mut self, command: Command, status: &Status) -> Result<Accepted, Refusal> {
+    fn dispatch(&mut self, command: Command, status: &Status) -> Result<Accepted, Refusal> {
         match command {
             Command::Ping => Ok(Accepted::Done),
             Command::UploadScene { len, crc32 } => self.begin_scene(len, crc32),

@@ -8,20 +8,20 @@ use frixel_wire::frame::crc32;
 use frixel_wire::scene::{RECORDS_MAX, bitmap_digest};
 use heapless::Vec;
 
+use crate::commands::Commands;
 use crate::commit::BitmapNames;
-use crate::dialogue::Dialogue;
 use crate::store::WORD_LEN;
 use frixel_layers::{BitmapPool, SCENE_MAX_LEN, StoredBitmap as Bitmap};
 
 /// The committed scene with its bitmaps.
-pub struct KeptScene<'s> {
+pub struct StoredScene<'s> {
     scene: &'s [u8],
     crc32: u32,
     bitmaps: Vec<Bitmap, RECORDS_MAX>,
     pool: &'s BitmapPool,
 }
 
-impl KeptScene<'_> {
+impl StoredScene<'_> {
     /// CRC-32 of the scene: its name.
     pub fn crc32(&self) -> u32 {
         self.crc32
@@ -71,13 +71,13 @@ impl KeptScene<'_> {
     }
 }
 
-impl Dialogue<'_> {
+impl Commands<'_> {
     /// CRC-32 of the scene that there is to keep: of one that is committed while the board is disarmed.
     pub(crate) fn kept_crc32(&self) -> Option<u32> {
         (self.state == State::Disarmed && self.scene().is_some()).then_some(self.committed_crc32)
     }
 
-    pub(crate) fn kept(&self) -> Option<KeptScene<'_>> {
+    pub(crate) fn kept(&self) -> Option<StoredScene<'_>> {
         let crc32 = self.kept_crc32()?;
         let mut bitmaps = Vec::new();
         for (index, crc32) in self.committed_bitmaps.iter().enumerate() {
@@ -85,10 +85,10 @@ impl Dialogue<'_> {
                 bitmaps.push(self.directory.find(*crc32)?).ok()?;
             }
         }
-        Some(KeptScene { scene: self.scene()?, crc32, bitmaps, pool: self.pool })
+        Some(StoredScene { scene: self.scene()?, crc32, bitmaps, pool: self.pool })
     }
 
-    /// Commits a scene from the bytes of a [`KeptScene`]. Nothing of one that cannot be committed is left.
+    /// Commits a scene from the bytes of a [`StoredScene`]. Nothing of one that cannot be committed is left.
     pub(crate) fn restore(&mut self, read: impl Fn(u32, &mut [u8]) -> bool) -> Option<()> {
         let mut names = BitmapNames::new();
         let restored = self.restore_parts(&read, &mut names);
