@@ -40,16 +40,19 @@ impl Journal {
     }
 
     /// Words of the inputs of some ticks.
+    #[cfg(unix)]
     pub(crate) fn input_words(&self, from_tick: usize, ticks: usize) -> &[u32] {
         self.inputs.get(self.end(from_tick).0..self.end(from_tick + ticks).0).unwrap_or_default()
     }
 
     /// Words of the outputs of some ticks.
+    #[cfg(unix)]
     pub(crate) fn output_words(&self, from_tick: usize, ticks: usize) -> &[u32] {
         self.outputs.get(self.end(from_tick).1..self.end(from_tick + ticks).1).unwrap_or_default()
     }
 
     /// Where the first `ticks` ticks end.
+    #[cfg(unix)]
     fn end(&self, ticks: usize) -> (usize, usize) {
         ticks.checked_sub(1).and_then(|last| self.ends.get(last)).copied().unwrap_or_default()
     }

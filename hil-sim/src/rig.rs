@@ -196,7 +196,8 @@ impl<'a> Rig<'a> {
             self.session.touch(touch, self.status.telemetry.tick.wrapping_add(1));
         }
         self.obey();
-        let sense: Sense = self.world.sense();
+        let arm_switch = !self.ticker.waits_for_release();
+        let sense = Sense { arm_switch, ..self.world.sense() };
         let drive = self.ticker.tick(&sense);
         let felt = self.world.apply(drive);
         self.status = self.ticker.status();

@@ -31,7 +31,7 @@ fn journal(board: Board, stroke: Stroke, seed: u64, play: impl FnOnce(&mut Scrip
     let mut script = Script::new(rig);
     play(&mut script);
     let journal = script.rig.take_journal().unwrap();
-    let driven = journal.outputs().filter(|output| output.drive.dac_code != 0).count();
+    let driven = journal.outputs().filter(|output| output.drive.dac_code.bits() != 0).count();
     assert!(driven > journal.ticks() / 2, "the board drove at {driven} of {} ticks", journal.ticks());
     journal
 }

@@ -1,12 +1,13 @@
 //! Whole ticks, by scene.
 
 use cortex_m::singleton;
-use frixel_layers::{BitmapPool};
+use frixel_layers::BitmapPool;
+use frixel_layers::{Carrier, HEADER_LEN, Header, Leader, POINT_LEN, Point, RECORD_LEN, Record, SCENE_MAX_LEN};
 use frixel_control::{Active, Board, Drive, Sense, StreamBuffer, Ticker};
 use frixel_session::{Session, Touch};
+use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::State;
 use frixel_wire::message::Command;
-use frixel_layers::{Carrier, HEADER_LEN, Header, Leader, POINT_LEN, Point, RECORD_LEN, Record, SCENE_MAX_LEN};
 
 use crate::count::{Case, Counter};
 use crate::host::{Host, STREAM_FRAME, STREAM_TICKS_PER_SAMPLE};
@@ -83,7 +84,7 @@ impl Monitor {
     }
 
     fn follow(&mut self, drive: Drive) {
-        self.voltage_v += self.step * (f32::from(drive.dac_code) * self.volts_per_code - self.voltage_v);
+        self.voltage_v += self.step * (f32::from(drive.dac_code.bits()) * self.volts_per_code - self.voltage_v);
     }
 }
 
@@ -134,6 +135,9 @@ impl Bench {
     /// Plays a compiled scene, which the board has to take.
     pub(crate) fn play_bytes(&mut self, scene: &[u8]) {
         self.host.command(Command::Disarm);
+        // The arm switch is released in the first tick after that, and held in the second.
+        self.tick(None);
+        self.tick(None);
         self.host.play(scene);
         self.tick(None);
         assert!(self.host.session.scene() == Some(scene), "the scene is refused");
@@ -170,7 +174,7 @@ impl Bench {
                 let along_m = 1e-5 * tick.min(TICKS / 3).max(tick.saturating_sub(TICKS / 3)) as f32;
                 Touch::Down { x_m: 0.02 + along_m, y_m: 0.03 + 0.3 * along_m, age_ticks: REPORT_TICKS }
             });
-            driven += u32::from(self.count(&mut case, touch).dac_code != 0);
+            driven += u32::from(self.count(&mut case, touch).dac_code != DacCode::ZERO);
         }
         assert!(driven > TICKS / 2, "the board does not drive");
         case.report();
@@ -193,7 +197,8 @@ impl Bench {
     }
 
     fn sense(&self) -> Sense {
-        Sense { amplifier_fault: false, monitor_v: self.monitor.voltage_v, arm_switch: true }
+        let arm_switch = !self.host.ticker.waits_for_release();
+        Sense { amplifier_fault: false, monitor_v: self.monitor.voltage_v, arm_switch }
     }
 }
 

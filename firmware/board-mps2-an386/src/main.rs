@@ -21,7 +21,7 @@ use cortex_m::singleton;
 use cortex_m_rt::entry;
 use frixel_drivers::fault_record::Text;
 use frixel_exchange::{BOARD, layout};
-use frixel_layers::{BitmapPool};
+use frixel_layers::BitmapPool;
 use frixel_control::{Active, Board, StreamBuffer, Ticker};
 use frixel_session::Session;
 use frixel_wire::hello::ResetCause;

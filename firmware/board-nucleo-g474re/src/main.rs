@@ -23,11 +23,11 @@ use cortex_m_rt::entry;
 use defmt_rtt as _;
 use frixel_drivers::fault_record::Text;
 use frixel_drivers::serial::SerialLink;
+use frixel_layers::BitmapPool;
 #[cfg(feature = "stream")]
 use frixel_control::StreamBuffer;
 #[cfg(feature = "store")]
 use frixel_session::store::SceneKeeper;
-use frixel_layers::{BitmapPool};
 use frixel_control::{Active, Board, Ticker};
 use frixel_session::Session;
 use frixel_wire::message::FAULT_TEXT_MAX_LEN;

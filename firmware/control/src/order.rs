@@ -72,7 +72,7 @@ pub struct Status {
     pub fault: Option<(Fault, u32)>,
     /// Orders that were applied since power-on, modulo 2^32. Signs of life, tracks and lifts are not counted.
     pub orders_applied: u32,
-    /// The arm switch was held at the last tick.
+    /// The arm switch was held at the last tick, and has been pressed since the reset or the last disarming.
     pub arm_switch: bool,
     /// What was counted since power-on.
     pub counters: Counters,

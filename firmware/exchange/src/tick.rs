@@ -2,6 +2,7 @@
 
 use frixel_control::{Drive, Sense};
 use frixel_session::Touch;
+use frixel_wire::dac_code::DacCode;
 
 use crate::words::{TOUCH_MASK, put_bytes, put_touch, take_bytes, take_touch, touch_kind};
 
@@ -98,13 +99,13 @@ impl TickOutput {
 
 /// A drive as a word: the DAC code below, the amplifier's enable in bit 16.
 pub const fn word_of(drive: Drive) -> u32 {
-    let code = drive.dac_code as u16 as u32;
+    let code = drive.dac_code.bits() as u16 as u32;
     if drive.amplifier_enable { code | AMPLIFIER_ENABLE } else { code }
 }
 
 /// The drive of a word.
 pub const fn drive_of(word: u32) -> Drive {
-    Drive { dac_code: word as u16 as i16, amplifier_enable: word & AMPLIFIER_ENABLE != 0 }
+    Drive { dac_code: DacCode::from_bits(word as u16 as i16), amplifier_enable: word & AMPLIFIER_ENABLE != 0 }
 }
 
 #[cfg(test)]
@@ -135,7 +136,7 @@ mod tests {
         ) {
             let sense = Sense { amplifier_fault, monitor_v, arm_switch };
             let input = TickInput { tick, received, room, touch, sense };
-            let output = TickOutput { tick, drive: Drive { dac_code, amplifier_enable }, sent };
+            let output = TickOutput { tick, drive: Drive { dac_code: DacCode::from_bits(dac_code), amplifier_enable }, sent };
             let mut words = std::vec::Vec::new();
             input.write(|word| words.push(word));
             prop_assert!(words.len() <= INPUT_WORDS_MAX);

@@ -31,7 +31,7 @@
 //! }
 //! let drive = ticker.tick(&Sense::default()); // 40,000 times a second
 //! session.poll(&ticker.status());
-//! assert_eq!(drive.dac_code, 0);
+//! assert_eq!(drive.dac_code.bits(), 0);
 //! assert_eq!(session.transmit(&mut [0; 64]), 0); // bytes for the serial line
 //! ```
 //!

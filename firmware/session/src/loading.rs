@@ -4,6 +4,7 @@ use frixel_control::{Active, Board, CarrierTiming};
 use frixel_layers::cost::Worst;
 use frixel_layers::{Carrier as Shape, Grid, Header, Point, Scene, active_bytes, within};
 use frixel_model::{Carrier, Finger, InverseTable, InverseTableFilling, TableError, Waveform};
+use frixel_wire::dac_code::DacCode;
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
 
 use crate::bitmap_directory::Directory;
@@ -85,7 +86,7 @@ impl Loading {
                 if end_cell < Grid::CELLS {
                     Self::Cost { next_cell: end_cell, worst }
                 } else {
-                    worst.check()?;
+                    worst.check(board.limits.tick_cycles_max)?;
                     Self::Table
                 }
             }
@@ -147,7 +148,7 @@ fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), Confi
 
     let codes_per_v = f32::from(i16::MAX) / limits.full_scale_v_peak;
     let code_max = (header.voltage_max_v_peak * codes_per_v) as i32;
-    let code_max = code_max.min(i32::from(i16::MAX));
+    let code_max = DacCode::from_bits(code_max.min(i32::from(i16::MAX)) as i16);
     let timing = CarrierTiming::new(header.carrier, half_period_ticks, peak_per_rms * codes_per_v, code_max);
     Ok((timing, voltage_max_v_rms))
 }

@@ -4,11 +4,12 @@ mod support;
 
 use frixel_control::{Board, Drive, Order};
 use frixel_session::Touch;
+use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::State;
 use frixel_wire::message::{Command, FromBoard};
 use support::{Desk, Memory, constant, request};
 
-const OFF: Drive = Drive { dac_code: 0, amplifier_enable: false };
+const OFF: Drive = Drive { dac_code: DacCode::ZERO, amplifier_enable: false };
 /// Host timeout of the scenes here, in ticks.
 const HOST_TIMEOUT_TICKS: u32 = 10_000;
 const WINDOW: usize = Board::SIMULATOR.limits.receive_window_bytes as usize;

@@ -5,11 +5,12 @@ mod support;
 use frixel_control::Drive;
 use frixel_layers::{Constant, Header, Layer};
 use frixel_session::Touch;
+use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::{Fault, Flags, State};
 use frixel_wire::message::{Command, FromBoard, Refusal};
 use support::{Desk, HEADER, Memory, constant, record, scene};
 
-const OFF: Drive = Drive { dac_code: 0, amplifier_enable: false };
+const OFF: Drive = Drive { dac_code: DacCode::ZERO, amplifier_enable: false };
 /// Host timeout of the scenes here, in ticks.
 const HOST_TIMEOUT_TICKS: u32 = 10_000;
 
@@ -17,7 +18,7 @@ fn playing(memory: &mut Memory) -> Desk<'_> {
     let mut desk = Desk::new(memory);
     desk.play(&constant(0.02));
     let driven = desk.slide(2000);
-    assert!(driven[1000..].iter().all(|drive| drive.dac_code != 0 && drive.amplifier_enable));
+    assert!(driven[1000..].iter().all(|drive| drive.dac_code.bits() != 0 && drive.amplifier_enable));
     desk
 }
 
@@ -114,9 +115,11 @@ fn a_new_clients_hello_ends_what_the_client_before_had_armed() {
     assert_eq!(desk.tick(), OFF);
     assert_eq!(desk.status().telemetry.state, State::Disarmed);
 
+    desk.press_switch();
     desk.command(Command::Arm).unwrap();
     assert_eq!(desk.greet().state, State::Disarmed);
     // Whoever has said hello may arm.
+    desk.press_switch();
     desk.command(Command::Arm).unwrap();
     desk.command(Command::Play).unwrap();
     desk.tick();
@@ -153,6 +156,7 @@ fn a_board_armed_for_an_autonomous_scene_needs_its_host() {
     desk.ticks(2);
     assert_eq!(desk.status().telemetry.state, State::Disarmed);
 
+    desk.press_switch();
     desk.command(Command::Arm).unwrap();
     desk.tick();
     assert_eq!(desk.greet().state, State::Disarmed, "nothing plays that a hello would end");
@@ -226,7 +230,7 @@ fn friction_out_of_reach_is_clamped_flagged_and_counted() {
         let voltage_v_rms = status.telemetry.voltage_v_rms;
         let expected = if electric_friction_n > 0.0 { 150.0 } else { 0.0 };
         assert!((voltage_v_rms - expected).abs() < 0.01, "{voltage_v_rms}");
-        assert!(driven.iter().all(|drive| i32::from(drive.dac_code).abs() <= 26_213), "200 V peak");
+        assert!(driven.iter().all(|drive| i32::from(drive.dac_code.bits()).abs() <= 26_213), "200 V peak");
     }
 }
 
@@ -270,8 +274,8 @@ fn a_touch_report_of_no_numbers_changes_nothing() {
     let mut memory = Memory::new();
     let mut desk = playing(&mut memory);
     desk.touch = Some(Touch::Down { x_m: f32::NAN, y_m: f32::INFINITY, age_ticks: 0 });
-    assert!(desk.tick().dac_code != 0);
-    assert!(desk.slide(1200).iter().all(|drive| drive.dac_code != 0));
+    assert!(desk.tick().dac_code.bits() != 0);
+    assert!(desk.slide(1200).iter().all(|drive| drive.dac_code.bits() != 0));
 }
 
 #[test]

@@ -6,13 +6,14 @@ mod support;
 use frixel_control::{Drive, Order, Track};
 use frixel_layers::{Constant, Header, Layer, Record, Region};
 use frixel_session::Touch;
+use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::{Flags, State};
 use frixel_wire::frame::crc32;
 use frixel_wire::message::{Answer, Command};
 use frixel_wire::scene::RECORDS_MAX;
 use support::{COMMIT_POLLS_MAX, Desk, HEADER, Memory, constant, record, request, scene};
 
-const OFF: Drive = Drive { dac_code: 0, amplifier_enable: false };
+const OFF: Drive = Drive { dac_code: DacCode::ZERO, amplifier_enable: false };
 const REPORT_TICKS: u32 = 400;
 /// 2 ms.
 const LIFT_TICKS_MAX: u32 = 80;

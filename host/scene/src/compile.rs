@@ -1,6 +1,5 @@
 //! From a scene as written to a program as played: checks that need the board, other layers, or pictures.
 
-use frixel_layers::cost::TICK_INSTRUCTIONS_MAX;
 use frixel_layers::{Header, Record, electric_friction_max_n};
 use frixel_wire::hello::BoardLimits;
 use frixel_wire::scene::RECORDS_MAX;
@@ -32,29 +31,22 @@ const MM: f64 = 1e-3;
 /// # Example
 ///
 /// ```no_run
+/// use std::collections::BTreeMap;
+///
 /// use frixel_scene::{Scene, compile};
-/// # fn play(limits: &frixel_wire::hello::BoardLimits) -> Result<(), frixel_scene::CompileError> {
-/// let scene = Scene::load("scenes/brick.toml".as_ref())?;
+/// # fn play(text: &str, png: Vec<u8>, limits: &frixel_wire::hello::BoardLimits) -> Result<(), frixel_scene::CompileError> {
+/// let pictures = BTreeMap::from([("textures/brick.png".to_owned(), png)]);
+/// let scene = Scene::parse(text, "brick.toml", &pictures)?;
 /// let program = compile(&scene, limits, 40_000)?;
 /// println!("{} layers, up to {} N", program.records.len(), program.reach.friction_max_n());
 /// # Ok(())
 /// # }
 /// ```
 pub fn compile(scene: &Scene, limits: &BoardLimits, tick_hz: u32) -> Result<Program, CompileError> {
-    compile_within(scene, limits, tick_hz, TICK_INSTRUCTIONS_MAX)
-}
-
-/// [`compile`] for boards whose tick has time for this many instructions.
-pub(super) fn compile_within(
-    scene: &Scene,
-    limits: &BoardLimits,
-    tick_hz: u32,
-    instructions_max: u32,
-) -> Result<Program, CompileError> {
     let mut log = Log::new(&scene.source);
     let program = assemble(scene, limits, tick_hz, &mut log);
     if let Some(program) = program.as_ref().filter(|_| log.is_empty()) {
-        tick_cost::check(scene, program, instructions_max, &mut log);
+        tick_cost::check(scene, program, limits.tick_cycles_max, &mut log);
     }
     log.finish(program)
 }
@@ -76,7 +68,7 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
         log.add(layer.places.table(), Mistake::TooManyLayers { number: layers_max + 1, max: layers_max });
         return None;
     }
-    let pool = Pool::new(scene.source.folder().clone(), limits.bitmap_pool_bytes);
+    let pool = Pool::new(&scene.pictures, limits.bitmap_pool_bytes);
     let mut lowering = Lowering::new(scene, &header, &reach, tick_hz, pool, log);
     // All of them, so that the mistakes of all are told.
     let records: Vec<Option<Record>> = scene.layers.iter().map(|layer| lowering.record(layer)).collect();

@@ -7,6 +7,7 @@ mod status;
 use frixel_layers::StreamSample;
 use frixel_layers::{BitmapPool, Clicks, Inputs};
 use frixel_model::InverseTable;
+use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::State;
 
 use crate::carrier::Carrier;
@@ -44,7 +45,7 @@ pub struct Ticker<'a> {
     /// What the last tick did.
     electric_friction_n: f32,
     target_v_rms: f32,
-    dac_code: i16,
+    dac_code: DacCode,
     arm_switch: bool,
     counters: Counters,
     orders_applied: u32,
@@ -85,7 +86,7 @@ impl<'a> Ticker<'a> {
             carrier,
             electric_friction_n: 0.0,
             target_v_rms: 0.0,
-            dac_code: 0,
+            dac_code: DacCode::ZERO,
             arm_switch: false,
             counters: Counters::default(),
             orders_applied: 0,
@@ -169,7 +170,7 @@ impl<'a> Ticker<'a> {
         self.carrier.rest(&self.active.carrier);
         self.electric_friction_n = 0.0;
         self.target_v_rms = 0.0;
-        self.dac_code = 0;
+        self.dac_code = DacCode::ZERO;
         Drive::default()
     }
 

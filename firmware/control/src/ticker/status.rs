@@ -1,6 +1,6 @@
 //! What the ticker reports.
 
-use frixel_wire::fault::Flags;
+use frixel_wire::fault::{Flags, State};
 use frixel_wire::message::Telemetry;
 
 use super::{Ticker, is_out_of_reach};
@@ -11,6 +11,17 @@ use crate::order::Counters;
 use crate::stream::Player;
 
 impl Ticker<'_> {
+    /// The state of the supervisor.
+    pub fn state(&self) -> State {
+        self.supervisor.state()
+    }
+
+    /// Whether the arm switch has to be released, and then pressed, before the board arms. Where no person stands at a
+    /// switch, as on a simulated board, the switch is held whenever this is not so: then the host alone decides.
+    pub fn waits_for_release(&self) -> bool {
+        self.supervisor.state() == State::Disarmed && !self.supervisor.switch_was_released()
+    }
+
     /// What the board does now.
     pub fn status(&self) -> Status {
         let [finger_x_m, finger_y_m] = self.place_m();
@@ -24,11 +35,11 @@ impl Ticker<'_> {
                 speed_m_per_s: self.speed_m_per_s(),
                 asked_electric_friction_n: self.electric_friction_n,
                 voltage_v_rms: self.envelope.voltage_v_rms(),
-                dac_code: self.dac_code,
+                dac_code: self.dac_code.bits(),
             },
             fault: self.supervisor.fault(),
             orders_applied: self.orders_applied,
-            arm_switch: self.arm_switch,
+            arm_switch: self.arm_switch && self.supervisor.switch_was_released(),
             counters: self.counters(),
         }
     }

@@ -113,7 +113,8 @@ impl<'a> Desk<'a> {
             decoder: Decoder::new(),
             sequence: 0,
         };
-        desk.tick();
+        // The arm switch is released at the first tick and held from the second on.
+        desk.ticks(2);
         desk
     }
 
@@ -128,9 +129,10 @@ impl<'a> Desk<'a> {
         }
         self.obey_one();
         let monitor_v = if self.amplifier_dead { 0.0 } else { self.monitor.voltage_v };
-        let sense = Sense { monitor_v: self.sense.monitor_v + monitor_v, ..self.sense };
+        let arm_switch = self.sense.arm_switch && !self.ticker.waits_for_release();
+        let sense = Sense { monitor_v: self.sense.monitor_v + monitor_v, arm_switch, ..self.sense };
         let drive = self.ticker.tick(&sense);
-        let target_v = f32::from(drive.dac_code) * self.monitor.volts_per_code;
+        let target_v = f32::from(drive.dac_code.bits()) * self.monitor.volts_per_code;
         self.monitor.voltage_v += self.monitor.step * (target_v - self.monitor.voltage_v);
         self.session.poll(&self.ticker.status());
         self.collect();
@@ -248,6 +250,11 @@ impl<'a> Desk<'a> {
     pub fn load(&mut self, scene: &[u8]) -> Result<Accepted, Refusal> {
         self.upload_scene(scene)?;
         self.command(Command::Commit { crc32: crc32(scene) })
+    }
+
+    /// Lets the person at the arm switch release it and press it again, as it takes after a disarming.
+    pub fn press_switch(&mut self) {
+        self.ticks(2);
     }
 
     /// From power-on to a playing scene.

@@ -3,6 +3,8 @@
 //! [`Plan`] says what is to be played, [`rigs`] opens the board that `--port` names, [`follow`] plays and records, and
 //! [`Outputs`] writes the files. This module prints what came of it.
 
+#[cfg(unix)]
+mod emulator;
 mod follow;
 mod live_scene;
 mod outputs;
@@ -14,7 +16,7 @@ mod saved_file;
 use std::path::PathBuf;
 
 use frixel::output::Report;
-use frixel_scene::Scene;
+use frixel::scene_file;
 
 use super::PlayArgs;
 use super::error::CommandError;
@@ -35,7 +37,7 @@ pub(super) fn run(args: &PlayArgs) -> Result<(), CommandError> {
     plan::check_options(args, target)?;
     // Before the file is read for the first time, so that no change is missed.
     let live_scene = args.watch.then(|| LiveScene::new(&args.scene));
-    let scene = Scene::load(&args.scene)?;
+    let scene = scene_file::load(&args.scene)?;
     let interrupt = Interrupt::watch()?;
     let played = match target {
         Target::Simulator => rigs::play_on_simulator(args, &scene, &interrupt),

@@ -10,11 +10,12 @@ use proptest::prelude::*;
 use super::trace::Extremes;
 use super::*;
 use crate::chart::{RGBColor, colour};
+use crate::scene_file;
 use frixel_driver::Counters;
 use frixel_scene::metrics::{ErrorSize, MetricsSummary};
 use frixel_scene::recorder::FeltRow;
 use frixel_scene::reference::Reference;
-use frixel_scene::{Program, Scene, compile};
+use frixel_scene::{Program, compile};
 
 const LIMITS: BoardLimits = BoardLimits {
     bitmap_pool_bytes: 64 * 1024,
@@ -27,11 +28,12 @@ const LIMITS: BoardLimits = BoardLimits {
     current_max_a_rms: 3e-3,
     current_max_a_peak: 15e-3,
     touch_report_period_s: 0.01,
+    tick_cycles_max: 2_550,
 };
 
 fn brick() -> Program {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/brick.toml"));
-    compile(&Scene::load(path).expect("it reads"), &LIMITS, 40_000).expect("it compiles")
+    compile(&scene_file::load(path).expect("it reads"), &LIMITS, 40_000).expect("it compiles")
 }
 
 /// Rows of a stroke along a slanted line, every millisecond; what is felt lags behind a little.

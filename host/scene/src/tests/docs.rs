@@ -46,9 +46,7 @@ fn every_field_is_named() {
     let factors = KINDS.map(|kind| format!("{}\nblend = \"multiply\"", layer(kind)));
     for table in tables.into_iter().chain(layers).chain(factors) {
         let text = format!("{}\n{table}\nzzz = 1", head_for(head, &table));
-        let Err(CompileError::Mistakes { mistakes, .. }) = compile_text(&text) else {
-            panic!("{table} takes anything")
-        };
+        let Err(CompileError { mistakes, .. }) = compile_text(&text) else { panic!("{table} takes anything") };
         let known = mistakes.iter().find_map(|located| match &located.mistake {
             Mistake::UnknownField { field, nearest, .. } if field == "zzz" => Some(&nearest.known),
             _ => None,

@@ -199,29 +199,25 @@ fn regions_never_round_past_the_screen() {
     }
 }
 
-/// Writes a PNG file of 8 or 16 bits a sample.
-fn write_png(path: &Path, width: u32, colour: png::ColorType, depth: png::BitDepth, data: &[u8]) {
+/// A PNG file of 8 or 16 bits a sample.
+fn png_of(width: u32, colour: png::ColorType, depth: png::BitDepth, data: &[u8]) -> Vec<u8> {
+    let mut bytes = Vec::new();
     let bytes_per_pixel = colour.samples() * if depth == png::BitDepth::Sixteen { 2 } else { 1 };
     let height = data.len() / bytes_per_pixel / width as usize;
-    let mut encoder = png::Encoder::new(std::fs::File::create(path).expect("a file"), width, height as u32);
+    let mut encoder = png::Encoder::new(&mut bytes, width, height as u32);
     encoder.set_color(colour);
     encoder.set_depth(depth);
     encoder.write_header().expect("a header").write_image_data(data).expect("samples");
+    bytes
 }
 
 #[test]
 fn a_picture_is_placed_and_held_at_its_border() {
-    let folder = tempfile::tempdir().expect("a folder");
-    write_png(
-        &folder.path().join("p.png"),
-        3,
-        png::ColorType::Grayscale,
-        png::BitDepth::Eight,
-        &[0, 51, 102, 255, 204, 153],
-    );
+    let png = png_of(3, png::ColorType::Grayscale, png::BitDepth::Eight, &[0, 51, 102, 255, 204, 153]);
+    let pictures = BTreeMap::from([("p.png".to_owned(), png)]);
     let layer = "[[layer]]\nkind = \"bitmap\"\npicture = \"p.png\"\nx_mm = 20\ny_mm = 30\nwidth_mm = 6\npitch_mm = 2\n\
                  black_n = 0.001\nwhite_n = 0.026";
-    let scene = Scene::parse(&format!("{HEAD}{layer}"), "test.toml", folder.path()).expect("it reads");
+    let scene = Scene::parse(&format!("{HEAD}{layer}"), "test.toml", &pictures).expect("it reads");
     let program = compile(&scene, &LIMITS, TICK_HZ).expect("it compiles");
     assert!(program.notes.is_empty(), "{:?}", program.notes);
     assert_eq!((program.bitmaps[0].width, program.bitmaps[0].height), (3, 2));
@@ -255,10 +251,7 @@ fn one_picture_twice_is_sent_once() {
 }
 
 fn read_png(colour: png::ColorType, depth: png::BitDepth, data: &[u8]) -> Picture {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("p.png");
-    write_png(&path, 2, colour, depth, data);
-    Picture::read(&path).expect("a picture")
+    Picture::decode(&png_of(2, colour, depth, data)).expect("a picture")
 }
 
 #[test]
@@ -314,7 +307,7 @@ fn a_ramp_stays_a_ramp() {
 
 #[test]
 fn shrinking_keeps_the_mean() {
-    let picture = Picture::read(&scenes().join("textures/brick.png")).expect("the picture");
+    let picture = Picture::decode(&PICTURES["textures/brick.png"]).expect("the picture");
     let axis = resample::Axis::covering(100.0, 0.4, picture.width);
     assert_eq!(axis.samples, 250);
     let samples = resample::resample(&picture.grey, picture.width, axis, axis);
@@ -332,7 +325,7 @@ fn pitches_that_do_not_divide_the_picture_reach_past_its_end() {
 #[test]
 fn bundled_scenes_compile() {
     for name in ["brick.toml", "grating.toml", "constant.toml"] {
-        let program = compile(&Scene::load(&scenes().join(name)).expect(name), &LIMITS, TICK_HZ).expect(name);
+        let program = compile(&bundled(name), &LIMITS, TICK_HZ).expect(name);
         assert!(!program.records.is_empty());
     }
 }
