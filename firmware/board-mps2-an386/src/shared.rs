@@ -3,8 +3,8 @@
 
 use core::sync::atomic::{Ordering, fence};
 
-use frixel_exchange::{STAMPED_TOUCH_WORDS, StampedTouch, layout, word_of};
 use frixel_control::Drive;
+use frixel_exchange::{STAMPED_TOUCH_WORDS, StampedTouch, layout, word_of};
 use frixel_session::Touch;
 
 /// Where the PSRAM is mapped (Arm DAI0386, MPS2 FPGA image AN386).

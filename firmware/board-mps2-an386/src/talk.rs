@@ -2,8 +2,8 @@
 
 use cortex_m::Peripherals;
 use cortex_m::singleton;
-use frixel_drivers::serial::SerialLink;
 use frixel_control::{Active, Board, Order, Status, Ticker};
+use frixel_drivers::serial::SerialLink;
 use frixel_session::Session;
 use heapless::spsc::{Consumer, Producer, Queue};
 
