@@ -9,7 +9,7 @@ use core::str;
 use cortex_m_semihosting::hprintln;
 use frixel_layers::{Layer, SCENE_MAX_LEN};
 use frixel_random_scenes::{Pace, RandomFinger, RandomScene, Report};
-use frixel_render::Touch;
+use frixel_session::Touch;
 
 use crate::count::{Case, Counter};
 use crate::tick::{Bench, PING_TICKS, STREAM_TICKS};

@@ -1,9 +1,10 @@
 //! Whole ticks, by scene.
 
 use cortex_m::singleton;
+use frixel_control::{Active, Board, Drive, Sense, StreamBuffer, Ticker};
 use frixel_layers::BitmapPool;
 use frixel_layers::{Carrier, HEADER_LEN, Header, Leader, POINT_LEN, Point, RECORD_LEN, Record, SCENE_MAX_LEN};
-use frixel_render::{Active, Board, Drive, Sense, Session, StreamBuffer, Ticker, Touch};
+use frixel_session::{Session, Touch};
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::State;
 use frixel_wire::message::Command;

@@ -21,14 +21,15 @@ use cortex_m::{Peripherals, singleton};
 use cortex_m_rt::entry;
 #[cfg(feature = "log")]
 use defmt_rtt as _;
+#[cfg(feature = "stream")]
+use frixel_control::StreamBuffer;
+use frixel_control::{Active, Board, Ticker};
 use frixel_drivers::fault_record::Text;
 use frixel_drivers::serial::SerialLink;
 use frixel_layers::BitmapPool;
-#[cfg(feature = "stream")]
-use frixel_render::StreamBuffer;
+use frixel_session::Session;
 #[cfg(feature = "store")]
-use frixel_render::store::SceneKeeper;
-use frixel_render::{Active, Board, Session, Ticker};
+use frixel_session::store::SceneKeeper;
 use frixel_wire::message::FAULT_TEXT_MAX_LEN;
 
 /// Memory for bitmaps, written by the session and read by the tick.

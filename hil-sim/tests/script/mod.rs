@@ -1,9 +1,9 @@
 //! A host in virtual time for the in-process rig, and scenes to play.
 #![allow(dead_code, unreachable_pub, clippy::unwrap_used, reason = "a test uses its part, and may fail")]
 
+use frixel_control::Status;
 use frixel_hil_sim::{Rig, TickRecord};
 use frixel_layers::{Blend, Carrier, Header, Layer, Leader, Point, Record, Region};
-use frixel_render::Status;
 use frixel_wire::frame::{FRAME_MAX_LEN, crc32};
 use frixel_wire::message::{Command, Request};
 use frixel_wire::payload::{self, CHUNK_LEN};
