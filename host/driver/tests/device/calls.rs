@@ -3,8 +3,9 @@
 use std::time::Duration;
 
 use frixel_driver::{Device, DeviceError, Event, Link, Upload};
-use frixel_layers::{Carrier, Header, Leader};
+use frixel_layers::{Blend, Carrier, Header, Layer, Leader, Record, Region, Stream};
 use frixel_wire::fault::State;
+use frixel_wire::hello::feature;
 use frixel_wire::message::{Command, Refusal};
 
 use crate::fake_board::FakeBoard;
@@ -73,6 +74,30 @@ fn a_scene_goes_from_upload_to_play_and_back() {
             Command::Disarm,
         ]
     );
+}
+
+/// As with a board whose protocol is older than the kind.
+#[test]
+fn a_scene_that_the_firmware_cannot_play_is_refused_before_it_is_uploaded() {
+    let stream = Layer::Stream(Stream { low_n: 0.0, high_n: 0.01 });
+    let region = Region::Polygon { first: 0, count: 3 };
+    let record = Record { region, blend: Blend::Replace, gain: 1.0, layer: stream };
+    let mut scene = scene(0.25);
+    scene[2] = 1;
+    scene[53] = 3;
+    scene.extend(record.write());
+    scene.extend([0; 24]);
+    for (features, refused) in [(feature::GRATING, true), (feature::STREAM | feature::POLYGON, false)] {
+        let mut board = FakeBoard::new();
+        board.hello.features = features;
+        board.hello.protocol = (1, 2);
+        let mut device = connected(VirtualLink::new(board));
+        let error = device.upload(&Upload { scene: &scene, bitmaps: Vec::new() }, &mut |_| {}).err();
+        let said = error.map(|error| error.to_string());
+        assert_eq!(said.is_some(), refused, "{said:?}");
+        assert!(said.is_none_or(|said| said.contains("needs stream and polygon") && said.contains("protocol 1.2")));
+        assert_eq!(device.into_link().board.commands.is_empty(), refused);
+    }
 }
 
 #[test]
