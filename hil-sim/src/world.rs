@@ -3,7 +3,7 @@
 use core::ops::Range;
 
 use frixel_model::LoadedContact;
-use frixel_render::{Drive, Sense};
+use frixel_render::{Drive, Sense, Touch};
 
 use crate::amplifier::{Amplifier, AmplifierConfig};
 use crate::error::{OutOfRange, WorldError};
@@ -67,7 +67,7 @@ pub struct Felt {
 /// world.start_stroke();
 /// let sense = world.sense();
 /// assert!(!sense.amplifier_fault);
-/// let felt = world.apply(Drive { dac_code: 0, amplifier_enable: true });
+/// let felt = world.apply(Drive { amplifier_enable: true, ..Drive::default() });
 /// assert_eq!(felt.friction_n, 0.25);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -158,14 +158,18 @@ impl World {
         }
     }
 
-    /// What the board sees at the current tick. Asking twice gives the same answer.
+    /// What the board's tick sees at the current tick. Asking twice gives the same answer.
     pub fn sense(&self) -> Sense {
         Sense {
-            touch: self.touch_source.arrived(),
             amplifier_fault: self.amplifier_faults.iter().any(|ticks| ticks.contains(&self.tick)),
             monitor_v: self.amplifier.output_v() as f32,
             arm_switch: true,
         }
+    }
+
+    /// The report of the touch source that arrived at the current tick.
+    pub fn touch(&self) -> Option<Touch> {
+        self.touch_source.arrived()
     }
 
     /// Holds what the board puts out for one tick, and goes to the next.

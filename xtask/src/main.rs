@@ -23,7 +23,7 @@ cargo xtask portability
                      the crates of a page in WebAssembly, where scenes are played; the command on Windows and macOS
 cargo xtask soak     what takes too long for every change: every f32 through the tables, thousands of random scenes
 cargo xtask programs PACE FIRST COUNT
-                     random scenes from seed FIRST on, under touch sources of a PACE that is usual or hasty
+                     random scenes from seed FIRST on, under touch sources of a PACE that is usual or fast
 ";
 
 fn main() -> ExitCode {

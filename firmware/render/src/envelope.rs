@@ -24,9 +24,15 @@ impl Envelope {
     /// Moves towards `target_v_rms` by at most `step_max_v`. Returns whether that was too far for one tick.
     #[inline]
     pub(crate) fn follow(&mut self, target_v_rms: f32, step_max_v: f32) -> bool {
-        let step_v = target_v_rms - self.voltage_v_rms;
-        let too_far = step_v.abs() > step_max_v;
-        self.voltage_v_rms = if too_far { self.voltage_v_rms + step_max_v.copysign(step_v) } else { target_v_rms };
+        let (lowest_v_rms, highest_v_rms) = (self.voltage_v_rms - step_max_v, self.voltage_v_rms + step_max_v);
+        let (voltage_v_rms, too_far) = if target_v_rms > highest_v_rms {
+            (highest_v_rms, true)
+        } else if target_v_rms < lowest_v_rms {
+            (lowest_v_rms, true)
+        } else {
+            (target_v_rms, false)
+        };
+        self.voltage_v_rms = voltage_v_rms;
         too_far
     }
 }
@@ -45,5 +51,23 @@ mod tests {
         assert_eq!(envelope.voltage_v_rms().to_bits(), 5.0_f32.to_bits());
         envelope.silence();
         assert_eq!(envelope.voltage_v_rms().to_bits(), 0);
+    }
+
+    #[test]
+    fn a_step_of_just_the_limit_is_not_too_far() {
+        let mut envelope = Envelope::default();
+        assert!(!envelope.follow(2.0, 2.0));
+        assert!(!envelope.follow(0.0, 2.0));
+        assert!(!envelope.follow(0.0, 0.0));
+    }
+
+    #[test]
+    fn a_new_limit_lowers_it_at_once_and_never_raises_it() {
+        let mut envelope = Envelope::default();
+        envelope.follow(7.0, 10.0);
+        envelope.limit(5.0);
+        assert_eq!(envelope.voltage_v_rms().to_bits(), 5.0_f32.to_bits());
+        envelope.limit(20.0);
+        assert_eq!(envelope.voltage_v_rms().to_bits(), 5.0_f32.to_bits());
     }
 }

@@ -23,8 +23,9 @@ const BRICK_PNG: &[u8] = include_bytes!("../../../scenes/textures/brick.png");
 
 /// How long each scene plays, in virtual time.
 const PLAY_TIME: Duration = Duration::from_millis(200);
-/// The finger's speed, m/s, and the tick rate that it is moved at, Hz.
-const SPEED_M_PER_S: f64 = 0.15;
+/// The finger's stroke, 100 mm long.
+const STROKE_S: f64 = 0.5;
+const ACCELERATION_M_PER_S2: f64 = 0.8;
 const TICK_HZ: f64 = 40_000.0;
 
 /// The hash for WebAssembly, as an export of one plain number.
@@ -88,12 +89,11 @@ struct RigLine<'a> {
 
 impl RigLine<'_> {
     fn step(&mut self) {
-        // Back and forth over the screen, on a slant: it passes every layer.
-        let way_m = SPEED_M_PER_S * self.rig.tick() as f64 / TICK_HZ;
-        let along = (way_m / 0.1) % 2.0;
-        let along = if along < 1.0 { along } else { 2.0 - along };
-        let finger = FingerState { x_m: 0.01 + 0.1 * along, y_m: 0.02 + 0.05 * along, speed_m_per_s: SPEED_M_PER_S };
-        self.rig.world_mut().place_finger(finger);
+        // From the left to the right edge, faster and faster, and again.
+        let t_s = (self.rig.tick() as f64 / TICK_HZ) % STROKE_S;
+        let way_m = 0.5 * ACCELERATION_M_PER_S2 * t_s * t_s;
+        let speed_m_per_s = ACCELERATION_M_PER_S2 * t_s;
+        self.rig.world_mut().place_finger(FingerState { x_m: 0.01 + way_m, y_m: 0.03 + 0.3 * way_m, speed_m_per_s });
         let TickRecord { status, felt, .. } = self.rig.step();
         self.hash.add(felt.friction_n.to_bits());
         self.hash.add(felt.electrode_v.to_bits());

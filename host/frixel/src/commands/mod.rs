@@ -12,7 +12,6 @@ mod scene;
 #[cfg(unix)]
 mod sim;
 mod stroke;
-mod usage;
 
 use std::path::PathBuf;
 

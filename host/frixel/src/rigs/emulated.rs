@@ -85,7 +85,7 @@ impl<'b> EmulatedLink<'b> {
         for record in self.held.drain(..count) {
             let telemetry = telemetry_of(record.tick, &mut self.telemetry);
             let (finger, felt) = finger_and_felt(&record.felt);
-            let dac_code = Some(record.drive.dac_code);
+            let dac_code = Some(record.drive.dac_code.bits());
             self.recorder.record(&Observation { tick: record.tick, finger, felt, dac_code, telemetry });
         }
     }

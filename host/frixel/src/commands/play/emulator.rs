@@ -16,7 +16,7 @@ use super::{CommandError, Interrupt, PlayArgs, Played};
 /// Plays on the firmware in an emulator, under a simulated finger.
 pub(super) fn play_on_emulator(args: &PlayArgs, scene: &Scene, interrupt: &Interrupt) -> Result<Played, CommandError> {
     let mut plan = Plan::new(args, scene, Target::Emulator, (&BOARD.limits, BOARD.tick_hz))?;
-    let stroke = plan.take_stroke(args)?;
+    let stroke = plan.choose_stroke(args)?;
     let world = world(&plan.program, stroke, args.seed)?;
     let image = Image::build()?;
     let (sender, records) = mpsc::channel();
