@@ -130,7 +130,7 @@ pub(crate) fn budgets() -> Result<(), String> {
 }
 
 /// Whether a skipped rig is a failure.
-fn is_ci() -> bool {
+pub(crate) fn is_ci() -> bool {
     env::var_os("CI").is_some_and(|ci| !ci.is_empty() && ci != "false" && ci != "0")
 }
 

@@ -37,6 +37,7 @@ mod resample;
 mod schema;
 mod source;
 #[cfg(test)]
+#[allow(clippy::disallowed_methods, reason = "the tests read the bundled scenes")]
 mod tests;
 mod tick_cost;
 
