@@ -266,8 +266,8 @@ fn write_tone(path: &Path) {
     writer.finalize().unwrap();
 }
 
-/// The board's command is the stream as it is seen from outside. The reference, made from what the host has sent, has to
-/// follow it.
+/// The board's command is the stream as it is seen from outside. The reference, made from what the host has sent, has
+/// to follow it.
 #[test]
 fn the_reference_of_a_board_at_a_port_has_what_is_streamed() {
     let _turn = turn();
