@@ -7,10 +7,10 @@
 use core::str;
 
 use cortex_m_semihosting::hprintln;
-use frixel_random_scenes::{Pace, RandomFinger, RandomScene, Report};
+use frixel_testkit::{Pace, RandomFinger, RandomScene, Report};
 use frixel_render::Touch;
 use frixel_wire::message::Command;
-use frixel_layers::{Layer, SCENE_MAX_LEN};
+use frixel_layers::Layer;
 
 use crate::count::Case;
 use crate::tick::{Bench, PING_TICKS, STREAM_TICKS};
@@ -32,7 +32,7 @@ impl Seeds {
         let mut words = line.split_ascii_whitespace().skip_while(|word| *word != "programs").skip(1);
         let pace = match words.next()? {
             "usual" => Pace::Usual,
-            "hasty" => Pace::Hasty,
+            "fast" => Pace::Fast,
             _ => return None,
         };
         let mut number = || words.next()?.parse().ok();
@@ -55,7 +55,7 @@ impl Bench {
     fn play_random(&mut self, seed: u64, pace: Pace, crc32: u32) {
         let scene = RandomScene::new(seed, crc32);
         let reckoned = scene.worst_tick().instructions;
-        self.play_bytes(scene.write(&mut [0; SCENE_MAX_LEN]));
+        self.play_bytes(&scene.bytes());
         if scene.records.iter().any(|record| matches!(record.layer, Layer::Stream(_))) {
             self.start_stream();
         }

@@ -15,8 +15,8 @@
 mod support;
 
 use frixel_layers::{Blend, Constant, Header, Layer, Record, Region, Scene, electric_friction_max_n};
-use frixel_random_scenes::{Pace, RandomFinger, RandomScene, Report};
 use frixel_render::{Active, Board, TableRows, Touch};
+use frixel_testkit::{Pace, RandomFinger, RandomScene, Report};
 use frixel_wire::fault::Flags;
 use frixel_wire::frame::FRAME_MAX_LEN;
 use frixel_wire::message::{Command, ConfigField, Refusal};
@@ -60,7 +60,7 @@ fn played(header: &Header, random: &RandomScene, seed: u64) -> Vec<Played> {
     desk.command(Command::Arm).unwrap();
     desk.command(Command::Play).unwrap();
     let _ = desk.command(Command::StartStream { sample_hz: STREAM_HZ, start_level: 20 });
-    let pace = if seed.is_multiple_of(4) { Pace::Hasty } else { Pace::Usual };
+    let pace = if seed.is_multiple_of(4) { Pace::Fast } else { Pace::Usual };
     let mut finger = RandomFinger::new(seed, header, pace);
     (0..TICKS)
         .map(|tick| {

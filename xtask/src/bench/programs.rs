@@ -17,12 +17,12 @@ pub(crate) enum Pace {
     /// As chips and screens do.
     Usual,
     /// As fast as a host may.
-    Hasty,
+    Fast,
 }
 
 impl Pace {
     /// Every pace.
-    pub(crate) const ALL: [Self; 2] = [Self::Usual, Self::Hasty];
+    pub(crate) const ALL: [Self; 2] = [Self::Usual, Self::Fast];
 
     /// The pace of this name.
     pub(crate) fn named(name: &str) -> Option<Self> {
@@ -34,7 +34,7 @@ impl fmt::Display for Pace {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Usual => "usual",
-            Self::Hasty => "hasty",
+            Self::Fast => "fast",
         })
     }
 }
