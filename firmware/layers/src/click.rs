@@ -38,7 +38,7 @@ impl Parameter for Click {
 
 impl Click {
     /// The click's height is not zero.
-    pub(crate) fn is_felt(&self) -> bool {
+    pub fn is_felt(&self) -> bool {
         self.height_n.abs() > 0.0
     }
 

@@ -95,7 +95,7 @@ fn larger<T: PartialOrd + Copy>(one: T, other: T) -> T {
 }
 
 #[allow(clippy::eq_op, reason = "only not-a-number differs from itself")]
-fn is_nan<T: PartialOrd>(value: T) -> bool {
+fn is_nan<T: PartialOrd + Copy>(value: T) -> bool {
     value != value
 }
 

@@ -123,7 +123,9 @@ macro_rules! kinds {
 
         /// Whether a kind with this number is known to this crate, with its feature or without.
         pub(crate) const fn is_known(number: u8) -> bool {
-            matches!(number, $( $number )|*)
+            let mut known = false;
+            $( known |= number == $number; )*
+            known
         }
 
         /// Bits of [`frixel_wire::hello::feature`] of the kinds whose features are on.

@@ -217,6 +217,7 @@ impl Sides {
 
 impl ActiveRegion {
     /// `None` for a region whose feature is off.
+    #[cfg_attr(feature = "polygon", allow(clippy::unnecessary_wraps, reason = "every region is on"))]
     pub(crate) fn new(region: &Region) -> Option<Self> {
         match *region {
             Region::Screen => Some(Self::Screen),

@@ -71,11 +71,11 @@ fn played(header: &Header, random: &RandomScene, seed: u64) -> Vec<Played> {
                 desk.send(&frame);
                 desk.command(Command::Ping).unwrap();
             }
-            desk.sense.touch = finger.tick().map(|report| match report {
+            desk.touch = finger.tick().map(|report| match report {
                 Report::Down { x_m, y_m, age_ticks } => Touch::Down { x_m, y_m, age_ticks },
                 Report::Up => Touch::Up,
             });
-            let dac_code = desk.tick().dac_code;
+            let dac_code = desk.tick().dac_code.bits();
             let telemetry = desk.status().telemetry;
             Played { asked_bits: telemetry.asked_electric_friction_n.to_bits(), dac_code, flags: telemetry.flags }
         })

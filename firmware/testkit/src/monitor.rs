@@ -1,5 +1,6 @@
 //! An amplifier that does what it is told, and its monitor.
 
+use frixel_wire::dac_code::DacCode;
 use frixel_wire::hello::BoardLimits;
 
 /// What the monitor of an ideal amplifier reads, behind the edges that a board promises.
@@ -30,7 +31,7 @@ impl IdealMonitor {
     }
 
     /// Goes on by a tick at whose beginning this DAC code was put out.
-    pub fn follow(&mut self, dac_code: i16) {
-        self.voltage_v += self.step * (f32::from(dac_code) * self.volts_per_code - self.voltage_v);
+    pub fn follow(&mut self, dac_code: DacCode) {
+        self.voltage_v += self.step * (f32::from(dac_code.bits()) * self.volts_per_code - self.voltage_v);
     }
 }

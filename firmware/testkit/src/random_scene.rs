@@ -1,7 +1,8 @@
 //! A scene that a board accepts.
 
-use frixel_layers::cost::{TICK_INSTRUCTIONS_MAX, Worst, worst_of_scene};
+use frixel_layers::cost::{Worst, worst_of_scene};
 use frixel_layers::{Button, Carrier, Click, Edge, Header, Layer, Leader, Point, Record, electric_friction_max_n};
+use frixel_wire::hello::BoardLimits;
 use frixel_wire::scene::{POINTS_MAX, RECORDS_MAX};
 use heapless::Vec;
 
@@ -78,7 +79,7 @@ impl RandomScene {
         let number = |is: fn(&Layer) -> bool| self.records.iter().filter(|record| is(&record.layer)).count();
         number(|layer| matches!(layer, Layer::Noise(_))) <= NOISES_MAX
             && number(clicks) <= CLICKS_MAX
-            && self.worst_tick().instructions <= TICK_INSTRUCTIONS_MAX
+            && self.worst_tick().cycles() <= BoardLimits::SMALLEST_TICK_CYCLES_MAX
     }
 }
 

@@ -5,14 +5,12 @@ mod commands;
 
 use std::process::ExitCode;
 
+use clap::Parser;
 use commands::Cli;
 
+/// Exits with 2 where the command line is not understood, with 1 where the command fails.
 fn main() -> ExitCode {
-    let cli = match Cli::read() {
-        Ok(cli) => cli,
-        Err(code) => return code,
-    };
-    match cli.run() {
+    match Cli::parse().run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("frixel: {error}");

@@ -1,7 +1,7 @@
-//! The brick scene, from its file to the finger: the numbers that issue "First light" asks for.
+//! The brick scene, from its file to the finger: the goals that README names.
 //!
-//! What is wanted is evaluated here a second time, from the picture as the compiler resampled it, and compared with what
-//! the recorder took for wanted, so that the errors below are errors against the picture.
+//! The reference is evaluated here a second time, from the picture as the compiler resampled it, and compared with that of
+//! the recorder, so that the errors below are errors against the picture.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::path::Path;
@@ -23,7 +23,7 @@ fn brick(prediction: bool) -> Program {
     program
 }
 
-/// Touch source as the issue has it: 100 Hz, 10 ms late, noise 0.02 mm rms, jitter 0.5 ms.
+/// The touch source that the goals are for: 100 Hz, 10 ms late, noise 0.02 mm rms, jitter 0.5 ms.
 fn rig() -> RigConfig {
     let rig = RigConfig::default();
     let touch = &rig.world.touch;

@@ -1,6 +1,6 @@
 //! A stream from a WAV file through driver, line, board and amplifier to the finger, in virtual time.
 //!
-//! What the board asks for is compared, tick by tick, with straight lines between the file's samples in f64.
+//! The friction that the board commands is compared, tick by tick, with straight lines between the file's samples in f64.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::f64::consts::TAU;
@@ -115,7 +115,7 @@ fn what_is_asked_for_is_the_file() {
     let mut at_once = 0;
     for (tick, row) in played[..ticks].iter().enumerate() {
         let asked_n = row.asked_n.unwrap();
-        // A tick that attends to a report goes on with what was asked for a few ticks before.
+        // A tick that takes an order may hold the command of a few ticks before.
         let lag = (0..7.min(tick + 1)).find(|lag| (asked_n - wanted_n(&samples, (tick - lag) as f64)).abs() < 1e-7);
         assert!(lag.is_some(), "tick {tick}: {asked_n} N is not {} N", wanted_n(&samples, tick as f64));
         at_once += usize::from(lag == Some(0));
@@ -176,7 +176,7 @@ fn a_host_that_pauses_is_one_underrun_and_a_fade_and_never_a_stale_value() {
     assert!(first.is_some_and(|first| (first as f64 - expected).abs() <= 2.0), "{first:?}, {expected}");
 }
 
-/// What the recorder has for wanted is what this test works out by itself, and what the board asks for.
+/// The recorder's reference is what this test computes by itself, and what the board commands.
 #[test]
 fn the_recorder_knows_what_is_streamed() {
     let samples = tones();
@@ -199,7 +199,7 @@ fn the_recorder_knows_what_is_streamed() {
     }
 }
 
-/// The real command: a scene without stream layers refuses samples, and wrong uses are told.
+/// The command as a process: a scene without stream layers refuses samples, and so do options that do not go together.
 mod command {
     use super::*;
     use std::fs::File;

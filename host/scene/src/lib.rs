@@ -15,6 +15,7 @@ mod cover;
 mod excess;
 mod fields;
 mod file;
+mod kinds;
 mod layer;
 mod layer_map;
 mod leave_out;

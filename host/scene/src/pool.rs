@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::layer::{Bitmap as BitmapLayer, Layer, Rectangle, Region};
+use super::kinds::Bitmap as BitmapLayer;
+use super::layer::{Layer, Rectangle, Region};
 use super::left_out::LeftOut;
 use super::log::Log;
 use super::mistake::Mistake;
@@ -24,17 +25,17 @@ pub(super) struct Pool<'s> {
 }
 
 /// Where a picture's samples lie.
-pub(super) struct Placed {
+pub(crate) struct Placed {
     /// Name of the bitmap.
-    pub(super) crc32: u32,
+    pub(crate) crc32: u32,
     /// The corner that its first sample begins at.
-    pub(super) corner_mm: (f64, f64),
+    pub(crate) corner_mm: (f64, f64),
     /// Distance of samples in a row, and of rows.
-    pub(super) pitches_mm: (f64, f64),
-    pub(super) angle_turns: f32,
-    pub(super) tiled: bool,
+    pub(crate) pitches_mm: (f64, f64),
+    pub(crate) angle_turns: f32,
+    pub(crate) tiled: bool,
     /// The picture's own outline; `None` when it is everywhere.
-    pub(super) outline: Option<Region>,
+    pub(crate) outline: Option<Region>,
 }
 
 impl Placed {

@@ -8,10 +8,13 @@ use frixel::model_csv::CsvError;
 use frixel::output::OutputError;
 use frixel::player::PlayError;
 use frixel::report::ReportError;
-use frixel::rigs::{ServerError, StopReason};
+#[cfg(unix)]
+use frixel::rigs::ServerError;
+use frixel::rigs::StopReason;
 use frixel::scene_file::SceneFileError;
 use frixel::stream::FeedError;
 use frixel_driver::{DeviceError, PortError};
+#[cfg(unix)]
 use frixel_hil_sim::emulated::EmulatorError;
 use frixel_hil_sim::{StrokeError, WorldError};
 use frixel_model::ParameterError;
@@ -30,6 +33,7 @@ pub(crate) enum CommandError {
     Rehearsal(#[from] RehearsalError),
     #[error(transparent)]
     Port(#[from] PortError),
+    #[cfg(unix)]
     #[error(transparent)]
     Server(#[from] ServerError),
     #[error(transparent)]
@@ -40,8 +44,15 @@ pub(crate) enum CommandError {
     World(#[from] WorldError),
     #[error(transparent)]
     Play(PlayError),
+    #[cfg(unix)]
     #[error(transparent)]
     Emulator(#[from] EmulatorError),
+    #[cfg(not(unix))]
+    #[error(
+        "{what} needs a pseudo-terminal, which this operating system does not have: use Linux, macOS or WSL, or play on \
+         --port sim"
+    )]
+    NoPseudoTerminal { what: &'static str },
     #[error("the contact model refuses the scene's finger: {0:?}")]
     Finger(ParameterError),
     #[error("{}: {source}", path.display())]
@@ -69,10 +80,10 @@ pub(crate) enum CommandError {
         "--stroke moves the finger of --port sim and --port qemu only; a board at {port} has its own: leave it out"
     )]
     StrokeOnBoard { port: String },
-    #[error("{port} sends telemetry at most {max} times a second, --csv-hz {asked} is more; ask for {max} or less")]
-    CsvTooFast { port: String, asked: u32, max: u32 },
-    #[error("--csv-hz {asked} does not divide the board's {tick_hz} ticks a second; ask for {nearest}")]
-    CsvUneven { asked: u32, tick_hz: u32, nearest: String },
+    #[error("{port} sends telemetry at most {max} times a second, --csv-hz {found} is more; give {max} or less")]
+    CsvTooFast { port: String, found: u32, max: u32 },
+    #[error("--csv-hz {found} does not divide the board's {tick_hz} ticks a second; give {nearest}")]
+    CsvUneven { found: u32, tick_hz: u32, nearest: String },
     #[error("{seconds} s is shorter than one tick of the board, {tick_s} s: play for longer")]
     TooShort { seconds: f64, tick_s: f64 },
     #[error(

@@ -1,16 +1,19 @@
 //! What a layer asks for, in one of three units that stand in the field's name.
 
+use frixel_layers::range;
+
 use super::super::fields::{Fields, Range};
 use super::super::log::Log;
 use super::super::mistake::Mistake;
+use super::super::source::Places;
 
-const FRICTION_N: Range = Range::new(-100.0, 100.0, " N");
+const FRICTION_N: Range = Range::new(range::FRICTION_N.min, range::FRICTION_N.max, " N");
 const FRACTION: Range = Range::new(-1.0, 1.0, "");
-pub(super) const FACTOR: Range = Range::new(-100.0, 100.0, "");
+pub(crate) const FACTOR: Range = Range::new(range::FRICTION_N.min, range::FRICTION_N.max, "");
 
 /// What a layer asks for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in super::super) enum Amount {
+pub(crate) enum Amount {
     /// Friction, N.
     Newtons(f64),
     /// A fraction of the most that the drive can add here.
@@ -21,7 +24,7 @@ pub(in super::super) enum Amount {
 
 /// What the amounts of a layer may be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Unit {
+pub(crate) enum Unit {
     /// Newtons or fractions.
     Friction,
     /// Factors.
@@ -30,10 +33,10 @@ pub(super) enum Unit {
 
 /// The fields that an amount may stand in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Names {
-    pub(super) newtons: &'static str,
-    pub(super) fraction: &'static str,
-    pub(super) factor: &'static str,
+pub(crate) struct Names {
+    pub(crate) newtons: &'static str,
+    pub(crate) fraction: &'static str,
+    pub(crate) factor: &'static str,
 }
 
 macro_rules! names {
@@ -47,25 +50,25 @@ macro_rules! names {
 }
 
 impl Names {
-    pub(super) const FRICTION: Self = names!("friction");
-    pub(super) const LOW: Self = names!("low");
-    pub(super) const HIGH: Self = names!("high");
-    pub(super) const BLACK: Self = names!("black");
-    pub(super) const WHITE: Self = names!("white");
-    pub(super) const RIDGE: Self = names!("ridge");
-    pub(super) const RIM: Self = names!("rim");
-    pub(super) const FACE: Self = names!("face");
-    pub(super) const CLICK: Self = names!("click");
+    pub(crate) const FRICTION: Self = names!("friction");
+    pub(crate) const LOW: Self = names!("low");
+    pub(crate) const HIGH: Self = names!("high");
+    pub(crate) const BLACK: Self = names!("black");
+    pub(crate) const WHITE: Self = names!("white");
+    pub(crate) const RIDGE: Self = names!("ridge");
+    pub(crate) const RIM: Self = names!("rim");
+    pub(crate) const FACE: Self = names!("face");
+    pub(crate) const CLICK: Self = names!("click");
 
     /// All names, so that the one in use can be found among a layer's fields.
-    pub(super) fn all(self) -> [&'static str; 3] {
+    pub(crate) fn all(self) -> [&'static str; 3] {
         [self.newtons, self.fraction, self.factor]
     }
 }
 
 impl Amount {
     /// Reads an amount that has to be there.
-    pub(super) fn read(fields: &mut Fields, names: Names, unit: Unit, log: &mut Log) -> Option<Self> {
+    pub(crate) fn read(fields: &mut Fields, names: Names, unit: Unit, log: &mut Log) -> Option<Self> {
         match unit {
             Unit::Factor => fields.require(names.factor),
             Unit::Friction if !fields.has(names.fraction) => fields.require(names.newtons),
@@ -75,7 +78,7 @@ impl Amount {
     }
 
     /// Reads an amount that may be left out.
-    pub(super) fn optional(fields: &mut Fields, names: Names, unit: Unit, log: &mut Log) -> Option<Self> {
+    pub(crate) fn optional(fields: &mut Fields, names: Names, unit: Unit, log: &mut Log) -> Option<Self> {
         if unit == Unit::Factor {
             return fields.optional_number(log, names.factor, FACTOR).map(Self::Factor);
         }
@@ -90,7 +93,7 @@ impl Amount {
     }
 
     /// Whether it is more than another amount, where that can be told.
-    pub(super) fn is_above(self, other: Self) -> bool {
+    pub(crate) fn is_above(self, other: Self) -> bool {
         match (self, other) {
             (Self::Newtons(one), Self::Newtons(other))
             | (Self::Fraction(one), Self::Fraction(other))
@@ -99,9 +102,38 @@ impl Amount {
         }
     }
 
-    pub(super) fn number(self) -> f64 {
+    pub(crate) fn number(self) -> f64 {
         match self {
             Self::Newtons(number) | Self::Fraction(number) | Self::Factor(number) => number,
         }
+    }
+}
+
+/// The least and the largest amount of a layer that varies between two.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LowHigh {
+    pub(crate) low: Amount,
+    pub(crate) high: Amount,
+}
+
+impl LowHigh {
+    pub(crate) fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
+        let low = Amount::read(fields, Names::LOW, unit, log);
+        let high = Amount::read(fields, Names::HIGH, unit, log);
+        Some(Self { low: low?, high: high? })
+    }
+
+    /// Finds a least amount that is above the largest.
+    pub(crate) fn check(self, places: &Places, log: &mut Log) {
+        if self.low.is_above(self.high) {
+            let (low_name, high_name) = (places.first_of(Names::LOW.all()), places.first_of(Names::HIGH.all()));
+            let (low, high) = (self.low.number(), self.high.number());
+            log.add(places.field(low_name), Mistake::LowAboveHigh { low_name, low, high_name, high });
+        }
+    }
+
+    /// The field of the largest amount, or of the least.
+    pub(crate) fn extreme(most: bool, places: &Places) -> &'static str {
+        places.first_of(if most { Names::HIGH } else { Names::LOW }.all())
     }
 }

@@ -1,43 +1,40 @@
 //! `[[layer]]`: what a person writes for one layer.
 
 mod amount;
-mod kind;
 mod region;
 
-use frixel_layers::Blend;
+use frixel_layers::{Blend, range};
 
-pub(super) use amount::Amount;
-use amount::Unit;
-pub(super) use kind::{Bitmap, Burst, Click, Kind};
-pub(super) use region::{Rectangle, Region};
+pub(crate) use amount::{Amount, FACTOR, LowHigh, Names, Unit};
+pub(crate) use region::{PLACE_MM, Rectangle, Region, SIZE_MM};
 
 use super::fields::{Fields, Range};
+use super::kinds::{Kind, KindName};
 use super::log::Log;
 use super::mistake::Mistake;
 use super::source::Places;
-use kind::KindName;
 
-const GAIN: Range = Range::new(-100.0, 100.0, "");
+const GAIN: Range = Range::new(range::GAIN.min, range::GAIN.max, "");
 
 /// One layer as written.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Layer {
+pub(crate) struct Layer {
     /// How messages call it: its number from one, and its name or kind.
-    pub(super) title: String,
-    pub(super) name: Option<String>,
-    pub(super) region: Option<Region>,
-    pub(super) blend: Blend,
-    pub(super) gain: f64,
-    pub(super) above: Above,
+    pub(crate) title: String,
+    pub(crate) name: Option<String>,
+    pub(crate) region: Option<Region>,
+    pub(crate) blend: Blend,
+    pub(crate) gain: f64,
+    pub(crate) above: Above,
     /// The host changes it while it plays.
-    pub(super) live: bool,
-    pub(super) kind: Kind,
-    pub(super) places: Places,
+    pub(crate) live: bool,
+    pub(crate) kind: Kind,
+    pub(crate) places: Places,
 }
 
 /// What a layer's frictions in newtons count from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Above {
+pub(crate) enum Above {
     /// From the finger's friction at no voltage.
     Natural,
     /// From zero: they are totals.
@@ -46,11 +43,10 @@ pub(super) enum Above {
 
 impl Layer {
     /// Reads layer `number`, counted from one.
-    pub(super) fn read(mut fields: Fields, number: usize, log: &mut Log) -> Option<Self> {
+    pub(crate) fn read(mut fields: Fields, number: usize, log: &mut Log) -> Option<Self> {
         fields.rename(format!("layer {number}"));
         let name = fields.optional_text(log, "name");
-        let kinds = KindName::ALL.map(|kind| (kind.word(), kind));
-        let Some(kind_name) = fields.choice_or_nearest(log, "kind", &kinds) else {
+        let Some(kind_name) = fields.choice_or_nearest(log, "kind", KindName::ALL) else {
             // Nobody knows what else the layer should have; these every kind has.
             let _ = Common::read(&mut fields, KindName::Constant, log);
             fields.give_up_without(log, "kind");
@@ -67,10 +63,8 @@ impl Layer {
         if blend == Blend::Add && above == Some(Above::Zero) {
             log.add(places.field("above"), Mistake::AddedTotal { layer: title.clone() });
         }
-        let above = above.unwrap_or(match (kind_name, blend) {
-            (KindName::Constant, Blend::Replace) => Above::Zero,
-            _ => Above::Natural,
-        });
+        let is_total = kind_name.has_totals() && blend == Blend::Replace;
+        let above = above.unwrap_or(if is_total { Above::Zero } else { Above::Natural });
         let region = region.ok()?;
         let kind = kind?;
         kind.check(&places, log);
@@ -91,7 +85,8 @@ struct Common {
 impl Common {
     fn read(fields: &mut Fields, kind: KindName, log: &mut Log) -> Self {
         let region = region::read(fields, kind, log);
-        let blend = blend(fields, kind, log);
+        let (blends, blend) = kind.blends();
+        let blend = fields.optional_choice(log, "blend", blends).unwrap_or(blend);
         let gain = fields.optional_number(log, "gain", GAIN).unwrap_or(1.0);
         let live = fields.flag(log, "live", false);
         let unit = if blend == Blend::Multiply { Unit::Factor } else { Unit::Friction };
@@ -103,17 +98,5 @@ impl Common {
             Unit::Factor => None,
         };
         Self { region, blend, gain, live, unit, above }
-    }
-}
-
-/// A curve of speed is a factor on what lies below it, and an edge most often a ridge on it.
-fn blend(fields: &mut Fields, kind: KindName, log: &mut Log) -> Blend {
-    let all = [("replace", Blend::Replace), ("add", Blend::Add), ("multiply", Blend::Multiply), ("max", Blend::Max)];
-    match kind {
-        KindName::Speed => {
-            fields.optional_choice(log, "blend", &[("multiply", Blend::Multiply)]).unwrap_or(Blend::Multiply)
-        }
-        KindName::Edge => fields.optional_choice(log, "blend", &all).unwrap_or(Blend::Add),
-        _ => fields.optional_choice(log, "blend", &all).unwrap_or_default(),
     }
 }

@@ -112,7 +112,7 @@ fn the_error_over_latency_in_the_docs_is_the_one_that_is_simulated() {
             fs::write(&path, text).unwrap();
         } else {
             let held = fs::read_to_string(&path).unwrap();
-            assert!(held == text, "{} is not what is simulated; look at it, then bless it", path.display());
+            assert!(held == text, "{} is not what is simulated; inspect it, then bless it", path.display());
         }
     }
 }

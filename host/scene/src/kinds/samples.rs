@@ -2,19 +2,21 @@
 
 use std::f64::consts::TAU;
 
+use frixel_layers::Bitmap as Record;
+
 use crate::Bitmap;
 
 /// A picture's samples, bilinear between their centres, turned about their corner, held at the border or tiled.
-#[derive(Clone, Debug)]
-pub(crate) struct Samples {
-    pub(crate) x_m: f64,
-    pub(crate) y_m: f64,
-    pub(crate) pitch_m: f64,
-    pub(crate) pitch_y_m: f64,
-    pub(crate) angle_turns: f64,
-    pub(crate) tiled: bool,
-    pub(crate) width: usize,
-    pub(crate) height: usize,
+#[derive(Debug)]
+pub(super) struct Samples {
+    pub(super) x_m: f64,
+    pub(super) y_m: f64,
+    pub(super) pitch_m: f64,
+    pub(super) pitch_y_m: f64,
+    angle_turns: f64,
+    tiled: bool,
+    pub(super) width: usize,
+    pub(super) height: usize,
     along_x: f64,
     along_y: f64,
     black_n: f64,
@@ -22,24 +24,17 @@ pub(crate) struct Samples {
     bytes: Vec<u8>,
 }
 
-/// Where a picture lies: its corner, the distances of samples and of rows, and how far it is turned.
-pub(super) struct Placement {
-    pub(super) corner_m: (f32, f32),
-    pub(super) pitches_m: (f32, f32),
-    pub(super) angle_turns: f32,
-    pub(super) tiled: bool,
-}
-
 impl Samples {
-    pub(super) fn new(bitmap: &Bitmap, place: &Placement, black_n: f64, white_n: f64) -> Self {
-        let angle_turns = f64::from(place.angle_turns);
+    pub(super) fn new(bitmap: &Bitmap, record: &Record) -> Self {
+        let angle_turns = f64::from(record.angle_turns);
+        let (black_n, white_n) = (f64::from(record.black_n), f64::from(record.white_n));
         Self {
-            x_m: f64::from(place.corner_m.0),
-            y_m: f64::from(place.corner_m.1),
-            pitch_m: f64::from(place.pitches_m.0),
-            pitch_y_m: f64::from(place.pitches_m.1),
+            x_m: f64::from(record.x_m),
+            y_m: f64::from(record.y_m),
+            pitch_m: f64::from(record.pitch_m),
+            pitch_y_m: f64::from(record.pitch_y_m),
             angle_turns,
-            tiled: place.tiled,
+            tiled: record.tiled,
             width: usize::from(bitmap.width),
             height: usize::from(bitmap.height),
             along_x: libm::cos(TAU * angle_turns),
@@ -50,7 +45,12 @@ impl Samples {
         }
     }
 
-    pub(super) fn at(&self, x_m: f64, y_m: f64) -> f64 {
+    pub(super) fn is_turned(&self) -> bool {
+        self.angle_turns.abs() > 0.0
+    }
+
+    /// Friction at a place, N.
+    pub(super) fn at_place(&self, x_m: f64, y_m: f64) -> f64 {
         let (u, v) = self.position(x_m, y_m);
         let (column, next_column, right) = self.between(u, self.width);
         let (row, next_row, below) = self.between(v, self.height);
@@ -60,7 +60,7 @@ impl Samples {
     }
 
     /// A place in samples from the first one's centre, along a row and across the rows.
-    pub(crate) fn position(&self, x_m: f64, y_m: f64) -> (f64, f64) {
+    pub(super) fn position(&self, x_m: f64, y_m: f64) -> (f64, f64) {
         let (x_m, y_m) = (x_m - self.x_m, y_m - self.y_m);
         let along_m = self.along_x * x_m + self.along_y * y_m;
         let across_m = self.along_x * y_m - self.along_y * x_m;
@@ -68,7 +68,7 @@ impl Samples {
     }
 
     /// Friction of the samples in these columns and rows, which go on beyond the picture as it is held or tiled.
-    pub(crate) fn frictions(
+    pub(super) fn frictions(
         &self,
         columns: std::ops::RangeInclusive<i64>,
         rows: std::ops::RangeInclusive<i64>,
