@@ -1,14 +1,12 @@
 //! Whole ticks, by scene.
 
 use cortex_m::singleton;
-use frixel_layers::BitmapPool;
-use frixel_layers::{Header, Point, Record};
+use frixel_layers::{BitmapPool, Header, Point, Record};
 use frixel_render::{Active, Board, Drive, Sense, Session, StreamBuffer, Ticker, Touch};
+use frixel_testkit::{HEADER, IdealMonitor, record, scene_with_points};
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::State;
 use frixel_wire::message::Command;
-use frixel_layers::{Header, Point, Record};
-use frixel_testkit::{HEADER, IdealMonitor, record, scene_with_points};
 
 use crate::count::{Case, Counter};
 use crate::host::{Host, STREAM_FRAME, STREAM_TICKS_PER_SAMPLE};
