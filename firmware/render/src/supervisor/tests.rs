@@ -19,15 +19,16 @@ fn reading(monitor_v: f32) -> Sense {
     Sense { monitor_v, arm_switch: true, ..Sense::default() }
 }
 
-/// A tick in which the arm switch is open.
-fn release_switch(supervisor: &mut Supervisor) {
-    supervisor.check(&Sense { arm_switch: false, ..Sense::default() }, DacCode::ZERO);
+/// The person at the arm switch releases it and presses it again.
+fn press_switch(supervisor: &mut Supervisor) {
+    for arm_switch in [false, true] {
+        supervisor.check(&Sense { arm_switch, ..reading(0.0) }, DacCode::ZERO);
+    }
 }
 
-/// A supervisor in this state, whose arm switch was open once.
 fn in_state(state: State) -> Supervisor {
     let mut supervisor = Supervisor::new(&BOARD);
-    release_switch(&mut supervisor);
+    press_switch(&mut supervisor);
     match state {
         State::Disarmed => {}
         State::Armed => supervisor.apply(&Order::Arm, 0),
@@ -262,7 +263,7 @@ fn a_host_that_arms_again_is_not_silent_any_more() {
     assert!(supervisor.host_silent());
     supervisor.apply(&Order::HostHeard, 10_002);
     assert!(supervisor.host_silent(), "it is heard, and has not armed");
-    release_switch(&mut supervisor);
+    press_switch(&mut supervisor);
     supervisor.apply(&Order::Arm, 10_002);
     assert!(!supervisor.host_silent());
 }
@@ -277,16 +278,16 @@ fn arming_takes_a_switch_that_was_open_since_the_reset_or_the_last_disarming() {
     };
     let mut supervisor = Supervisor::new(&BOARD);
     assert!(!armed(&mut supervisor, 1), "held since the reset");
-    release_switch(&mut supervisor);
+    press_switch(&mut supervisor);
     assert!(armed(&mut supervisor, 2));
     supervisor.apply(&Order::Disarm, 3);
     assert!(!armed(&mut supervisor, 3), "held since it was disarmed");
-    release_switch(&mut supervisor);
+    press_switch(&mut supervisor);
     assert!(armed(&mut supervisor, 4));
     supervisor.expire(4 + 10_001);
     assert!(!armed(&mut supervisor, 4 + 10_001), "held since the host fell silent");
     supervisor.raise(Fault::Deadline, 1);
-    release_switch(&mut supervisor);
+    press_switch(&mut supervisor);
     supervisor.apply(&Order::ClearFault, 0);
     assert!(!armed(&mut supervisor, 0), "held since the fault was cleared");
 }
