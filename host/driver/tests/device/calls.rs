@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use frixel_driver::{Device, DeviceError, Event, Link, Upload};
-use frixel_layers::{Header, Layer, Stream};
+use frixel_layers::{Blend, Header, Layer, Record, Region, Stream};
 use frixel_testkit::HEADER;
 use frixel_wire::fault::State;
 use frixel_wire::hello::feature;
