@@ -80,7 +80,7 @@ impl Carrier {
     /// Waits at zero output. It will start again a quarter period before an edge, on the side that takes the integral
     /// back.
     pub(crate) fn rest(&mut self, timing: &CarrierTiming) {
-        self.sign = if self.integral > 0 { -1 } else { 1 };
+        self.sign = if self.integral.is_positive() { -1 } else { 1 };
         self.left_ticks = timing.ticks_from_crest();
     }
 
@@ -99,8 +99,8 @@ impl Carrier {
     pub(crate) fn next(&mut self, envelope_v_rms: f32, timing: &CarrierTiming, tick: u32) -> DacCode {
         let mut code = self.magnitude(envelope_v_rms, timing) * self.sign;
         // Beyond the largest on either side: both are far from overflowing.
-        let (above_least, range) = (self.integral + code + timing.integral_max, timing.integral_max * 2);
-        if above_least.to_bits().cast_unsigned() > range.to_bits().cast_unsigned() {
+        let above_least = (self.integral + code + timing.integral_max).to_bits().cast_unsigned();
+        if above_least > 2 * timing.integral_max.to_bits().cast_unsigned() {
             code = self.within_balance(code, tick);
         }
         self.integral += code;

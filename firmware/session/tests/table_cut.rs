@@ -103,7 +103,7 @@ proptest! {
 #[test]
 fn many_random_scenes_have_a_table_that_is_cut_and_drive() {
     let crc32 = bitmap_crc32(3, 2, &SAMPLES);
-    let scenes: Vec<(u64, RandomScene)> = (0..400).map(|seed| (seed, RandomScene::new(seed, crc32))).collect();
+    let scenes: Vec<(u64, RandomScene)> = (0..500).map(|seed| (seed, RandomScene::new(seed, crc32))).collect();
     let cut: Vec<&(u64, RandomScene)> = scenes
         .iter()
         .filter(|(_, random)| {

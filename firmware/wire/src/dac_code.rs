@@ -12,6 +12,7 @@ use fixed::types::I1F15;
 /// assert_eq!(DacCode::ZERO.bits(), 0);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(transparent)]
 pub struct DacCode(pub I1F15);
 
 impl DacCode {
