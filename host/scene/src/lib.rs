@@ -8,13 +8,13 @@
 //! - [`metrics`]: the size of the errors.
 #![forbid(unsafe_code)]
 
-mod asked;
 mod compile;
 mod compile_error;
 mod cover;
 mod excess;
 mod fields;
 mod file;
+mod grammar;
 mod layer;
 mod layer_map;
 mod leave_out;
@@ -34,6 +34,7 @@ pub mod reference;
 mod resample;
 mod schema;
 mod source;
+mod tables;
 #[cfg(test)]
 mod tests;
 mod tick_cost;

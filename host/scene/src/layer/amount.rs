@@ -1,12 +1,9 @@
 //! What a layer asks for, in one of three units that stand in the field's name.
 
-use super::super::fields::{Fields, Range};
+use super::super::fields::Fields;
+use super::super::grammar::{Absence, AmountFields, FieldSpec};
 use super::super::log::Log;
 use super::super::mistake::Mistake;
-
-const FRICTION_N: Range = Range::new(-100.0, 100.0, " N");
-const FRACTION: Range = Range::new(-1.0, 1.0, "");
-pub(super) const FACTOR: Range = Range::new(-100.0, 100.0, "");
 
 /// What a layer asks for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,64 +25,26 @@ pub(super) enum Unit {
     Factor,
 }
 
-/// The fields that an amount may stand in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Names {
-    pub(super) newtons: &'static str,
-    pub(super) fraction: &'static str,
-    pub(super) factor: &'static str,
-}
-
-macro_rules! names {
-    ($stem:literal) => {
-        Names {
-            newtons: concat!($stem, "_n"),
-            fraction: concat!($stem, "_fraction"),
-            factor: concat!($stem, "_factor"),
-        }
-    };
-}
-
-impl Names {
-    pub(super) const FRICTION: Self = names!("friction");
-    pub(super) const LOW: Self = names!("low");
-    pub(super) const HIGH: Self = names!("high");
-    pub(super) const BLACK: Self = names!("black");
-    pub(super) const WHITE: Self = names!("white");
-    pub(super) const RIDGE: Self = names!("ridge");
-    pub(super) const RIM: Self = names!("rim");
-    pub(super) const FACE: Self = names!("face");
-    pub(super) const CLICK: Self = names!("click");
-
-    /// All names, so that the one in use can be found among a layer's fields.
-    pub(super) fn all(self) -> [&'static str; 3] {
-        [self.newtons, self.fraction, self.factor]
-    }
-}
-
 impl Amount {
-    /// Reads an amount that has to be there.
-    pub(super) fn read(fields: &mut Fields, names: Names, unit: Unit, log: &mut Log) -> Option<Self> {
-        match unit {
-            Unit::Factor => fields.require(names.factor),
-            Unit::Friction if !fields.has(names.fraction) => fields.require(names.newtons),
-            Unit::Friction => {}
-        }
-        Self::optional(fields, names, unit, log)
-    }
-
-    /// Reads an amount that may be left out.
-    pub(super) fn optional(fields: &mut Fields, names: Names, unit: Unit, log: &mut Log) -> Option<Self> {
+    /// Reads an amount, in the unit that the layer's amounts have.
+    pub(super) fn read(fields: &mut Fields, amount: &AmountFields, unit: Unit, log: &mut Log) -> Option<Self> {
+        let AmountFields { newtons, fraction, factor } = amount;
         if unit == Unit::Factor {
-            return fields.optional_number(log, names.factor, FACTOR).map(Self::Factor);
+            return fields.number(log, factor).map(Self::Factor);
         }
-        fields.either(names.newtons, names.fraction);
-        if fields.has(names.newtons) && fields.has(names.fraction) {
-            let mistake = Mistake::TwoUnits { one: names.newtons, other: names.fraction };
-            log.add(fields.place(names.fraction), mistake);
+        fields.either(newtons, fraction);
+        let (has_newtons, has_fraction) = (fields.has(newtons.name), fields.has(fraction.name));
+        if has_newtons && has_fraction {
+            let mistake = Mistake::TwoUnits { one: newtons.name, other: fraction.name };
+            log.add(fields.place(fraction.name), mistake);
         }
-        let newtons = fields.optional_number(log, names.newtons, FRICTION_N).map(Self::Newtons);
-        let fraction = fields.optional_number(log, names.fraction, FRACTION).map(Self::Fraction);
+        // Either of the two will do, so that neither is required by itself.
+        let absence = Absence::Means("");
+        if newtons.absence == Absence::Mistake && !has_fraction {
+            fields.require(newtons);
+        }
+        let newtons = fields.number(log, &FieldSpec { absence, ..*newtons }).map(Self::Newtons);
+        let fraction = fields.number(log, &FieldSpec { absence, ..*fraction }).map(Self::Fraction);
         newtons.or(fraction)
     }
 

@@ -2,27 +2,13 @@
 
 use frixel_wire::scene::{Beat, CURVE_POINTS_MAX, Wave};
 
-use super::super::fields::{Fields, Range};
+use super::super::fields::Fields;
+use super::super::grammar::{AmountFields, FieldSpec};
 use super::super::log::Log;
 use super::super::mistake::Mistake;
 use super::super::source::Places;
-use super::amount::{Amount, FACTOR, Names, Unit};
-use super::region::{PLACE_MM, SIZE_MM};
-
-const WAVELENGTH_MM: Range = Range::new(0.05, 2_000.0, " mm");
-const PITCH_MM: Range = Range::new(0.02, 10.0, " mm");
-const ANGLE_DEG: Range = Range::new(-360.0, 360.0, " degrees");
-const DUTY: Range = Range::new(0.01, 0.99, "");
-const CLICK_MS: Range = Range::new(0.1, 1_000.0, " ms");
-const FREQUENCY_HZ: Range = Range::new(0.01, 1_000.0, " Hz");
-const BURST_MS: Range = Range::new(1.0, 60_000.0, " ms");
-const RAMP_MS: Range = Range::new(0.0, 30_000.0, " ms");
-const SPEED_MM_PER_S: Range = Range::new(0.0, 10_000.0, " mm/s");
-const SEED: Range = Range::new(0.0, 4_294_967_295.0, "");
-/// Distance of a picture's samples where the file names none.
-const PITCH_DEFAULT_MM: f64 = 0.25;
-/// How long a click takes where the file says nothing.
-const CLICK_DEFAULT_MS: f64 = 20.0;
+use super::super::tables;
+use super::amount::{Amount, Unit};
 
 /// What a layer is.
 #[derive(Clone, Debug, PartialEq)]
@@ -111,7 +97,9 @@ impl KindName {
 
     pub(super) fn read(self, fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Kind> {
         match self {
-            Self::Constant => Some(Kind::Constant { friction: Amount::read(fields, Names::FRICTION, unit, log)? }),
+            Self::Constant => {
+                Some(Kind::Constant { friction: Amount::read(fields, &tables::constant::FRICTION, unit, log)? })
+            }
             Self::Grating => grating(fields, unit, log),
             Self::Bitmap => bitmap(fields, unit, log).map(Kind::Bitmap),
             Self::Noise => noise(fields, unit, log),
@@ -120,7 +108,7 @@ impl KindName {
             Self::Vibration => vibration(fields, unit, log),
             Self::Speed => speed(fields, log),
             Self::Stream => {
-                let (low, high) = low_and_high(fields, unit, log);
+                let (low, high) = low_and_high(fields, [&tables::stream::LOW, &tables::stream::HIGH], unit, log);
                 Some(Kind::Stream { low: low?, high: high? })
             }
         }
@@ -136,7 +124,8 @@ impl Kind {
         | Self::Stream { low, high } = self
             && low.is_above(*high)
         {
-            let (low_name, high_name) = (places.first_of(Names::LOW.all()), places.first_of(Names::HIGH.all()));
+            let (low_name, high_name) =
+                (places.first_of(tables::grating::LOW.names()), places.first_of(tables::grating::HIGH.names()));
             let mistake = Mistake::LowAboveHigh { low_name, low: low.number(), high_name, high: high.number() };
             log.add(places.field(low_name), mistake);
         }
@@ -150,70 +139,77 @@ impl Kind {
 
     /// The field that asks for the most, or for the least.
     pub(in super::super) fn extreme(&self, most: bool, places: &Places) -> &'static str {
-        let either = |low: Names, high: Names| if most { high } else { low };
-        let names = match self {
-            Self::Constant { .. } => Names::FRICTION,
-            Self::Bitmap(Bitmap { black, white, .. }) if black.is_above(*white) => either(Names::WHITE, Names::BLACK),
-            Self::Bitmap(_) => either(Names::BLACK, Names::WHITE),
-            Self::Edge { .. } => Names::RIDGE,
-            Self::Button { rim, face, .. } if face.is_above(*rim) => either(Names::RIM, Names::FACE),
-            Self::Button { .. } => either(Names::FACE, Names::RIM),
-            Self::Speed { .. } => return "factors",
-            _ => either(Names::LOW, Names::HIGH),
+        use tables::{bitmap, button, constant, edge, grating};
+        let either = |low: AmountFields, high: AmountFields| if most { high } else { low };
+        let amount = match self {
+            Self::Constant { .. } => constant::FRICTION,
+            Self::Bitmap(Bitmap { black, white, .. }) if black.is_above(*white) => either(bitmap::WHITE, bitmap::BLACK),
+            Self::Bitmap(_) => either(bitmap::BLACK, bitmap::WHITE),
+            Self::Edge { .. } => edge::RIDGE,
+            Self::Button { rim, face, .. } if face.is_above(*rim) => either(button::RIM, button::FACE),
+            Self::Button { .. } => either(button::FACE, button::RIM),
+            Self::Speed { .. } => return tables::speed::FACTORS.name,
+            _ => either(grating::LOW, grating::HIGH),
         };
-        places.first_of(names.all())
+        places.first_of(amount.names())
     }
 }
 
-fn low_and_high(fields: &mut Fields, unit: Unit, log: &mut Log) -> (Option<Amount>, Option<Amount>) {
-    (Amount::read(fields, Names::LOW, unit, log), Amount::read(fields, Names::HIGH, unit, log))
+fn low_and_high(
+    fields: &mut Fields,
+    [low, high]: [&AmountFields; 2],
+    unit: Unit,
+    log: &mut Log,
+) -> (Option<Amount>, Option<Amount>) {
+    (Amount::read(fields, low, unit, log), Amount::read(fields, high, unit, log))
 }
 
 fn grating(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Kind> {
     let square = Wave::Square { duty: 0.5 };
     let waves = [("sine", Wave::Sine), ("square", square), ("triangle", Wave::Triangle), ("saw", Wave::Saw)];
-    let wave = fields.optional_choice(log, "wave", &waves).unwrap_or_default();
+    let wave = fields.choice(log, &tables::grating::WAVE, &waves).unwrap_or_default();
     let wave = match wave {
-        Wave::Square { .. } => Wave::Square { duty: fields.optional_number(log, "duty", DUTY).unwrap_or(0.5) as f32 },
+        Wave::Square { .. } => Wave::Square { duty: fields.number_or_default(log, &tables::grating::DUTY) as f32 },
         other => other,
     };
-    let wavelength_mm = fields.number(log, "wavelength_mm", WAVELENGTH_MM);
-    let angle_deg = fields.optional_number(log, "angle_deg", ANGLE_DEG).unwrap_or(0.0);
-    let phase_deg = fields.optional_number(log, "phase_deg", ANGLE_DEG).unwrap_or(0.0);
-    let (low, high) = low_and_high(fields, unit, log);
+    let wavelength_mm = fields.number(log, &tables::grating::WAVELENGTH_MM);
+    let angle_deg = fields.number_or_default(log, &tables::grating::ANGLE_DEG);
+    let phase_deg = fields.number_or_default(log, &tables::grating::PHASE_DEG);
+    let (low, high) = low_and_high(fields, [&tables::grating::LOW, &tables::grating::HIGH], unit, log);
     Some(Kind::Grating { wave, wavelength_mm: wavelength_mm?, angle_deg, phase_deg, low: low?, high: high? })
 }
 
 fn bitmap(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Bitmap> {
     // What a region says need not be said again.
-    let mut place = |field, range| {
-        if !fields.has_been_read("region") {
+    let mut place = |field: &FieldSpec| {
+        if !fields.has_been_read(tables::layer::REGION.name) {
             fields.require(field);
         }
-        fields.optional_number(log, field, range)
+        fields.number(log, field)
     };
-    let (x_mm, y_mm, width_mm) = (place("x_mm", PLACE_MM), place("y_mm", PLACE_MM), place("width_mm", SIZE_MM));
-    let picture = fields.text(log, "picture");
-    let height_mm = fields.optional_number(log, "height_mm", SIZE_MM);
-    let pitch_mm = fields.optional_number(log, "pitch_mm", PITCH_MM).unwrap_or(PITCH_DEFAULT_MM);
-    let angle_deg = fields.optional_number(log, "angle_deg", ANGLE_DEG).unwrap_or(0.0);
-    let tiled = fields.flag(log, "tiled", false);
+    let (x_mm, y_mm) = (place(&tables::bitmap::X_MM), place(&tables::bitmap::Y_MM));
+    let width_mm = place(&tables::bitmap::WIDTH_MM);
+    let picture = fields.text(log, &tables::bitmap::PICTURE);
+    let height_mm = fields.number(log, &tables::bitmap::HEIGHT_MM);
+    let pitch_mm = fields.number_or_default(log, &tables::bitmap::PITCH_MM);
+    let angle_deg = fields.number_or_default(log, &tables::bitmap::ANGLE_DEG);
+    let tiled = fields.flag(log, &tables::bitmap::TILED);
     // Bare glass, and the most that the drive gives: what a friction image without numbers means.
     let (black, white) = match unit {
         Unit::Friction => (Amount::Fraction(0.0), Amount::Fraction(1.0)),
         Unit::Factor => (Amount::Factor(0.0), Amount::Factor(1.0)),
     };
-    let black = Amount::optional(fields, Names::BLACK, unit, log).unwrap_or(black);
-    let white = Amount::optional(fields, Names::WHITE, unit, log).unwrap_or(white);
+    let black = Amount::read(fields, &tables::bitmap::BLACK, unit, log).unwrap_or(black);
+    let white = Amount::read(fields, &tables::bitmap::WHITE, unit, log).unwrap_or(white);
     let picture = picture?;
     Some(Bitmap { picture, x_mm, y_mm, width_mm, height_mm, pitch_mm, angle_deg, tiled, black, white })
 }
 
 fn noise(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Kind> {
-    let seed = fields.optional_whole(log, "seed", SEED).unwrap_or(0.0) as u32;
-    let wavelength_min_mm = fields.number(log, "wavelength_min_mm", WAVELENGTH_MM);
-    let wavelength_max_mm = fields.number(log, "wavelength_max_mm", WAVELENGTH_MM);
-    let (low, high) = low_and_high(fields, unit, log);
+    let seed = fields.number_or_default(log, &tables::noise::SEED) as u32;
+    let wavelength_min_mm = fields.number(log, &tables::noise::WAVELENGTH_MIN_MM);
+    let wavelength_max_mm = fields.number(log, &tables::noise::WAVELENGTH_MAX_MM);
+    let (low, high) = low_and_high(fields, [&tables::noise::LOW, &tables::noise::HIGH], unit, log);
     Some(Kind::Noise {
         seed,
         wavelength_min_mm: wavelength_min_mm?,
@@ -224,35 +220,35 @@ fn noise(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Kind> {
 }
 
 fn edge(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Kind> {
-    let x_mm = fields.number(log, "x_mm", PLACE_MM);
-    let y_mm = fields.number(log, "y_mm", PLACE_MM);
-    let angle_deg = fields.optional_number(log, "angle_deg", ANGLE_DEG).unwrap_or(0.0);
-    let width_mm = fields.number(log, "width_mm", SIZE_MM);
-    let ridge = Amount::read(fields, Names::RIDGE, unit, log);
-    let click = click(fields, unit, log);
+    let x_mm = fields.number(log, &tables::edge::X_MM);
+    let y_mm = fields.number(log, &tables::edge::Y_MM);
+    let angle_deg = fields.number_or_default(log, &tables::edge::ANGLE_DEG);
+    let width_mm = fields.number(log, &tables::edge::WIDTH_MM);
+    let ridge = Amount::read(fields, &tables::edge::RIDGE, unit, log);
+    let click = click(fields, &tables::edge::CLICK, unit, log);
     Some(Kind::Edge { x_mm: x_mm?, y_mm: y_mm?, angle_deg, width_mm: width_mm?, ridge: ridge?, click })
 }
 
 fn button(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Kind> {
-    let rim_width_mm = fields.number(log, "rim_width_mm", SIZE_MM);
-    let rim = Amount::read(fields, Names::RIM, unit, log);
-    let face = Amount::read(fields, Names::FACE, unit, log);
-    let click = click(fields, unit, log);
+    let rim_width_mm = fields.number(log, &tables::button::RIM_WIDTH_MM);
+    let rim = Amount::read(fields, &tables::button::RIM, unit, log);
+    let face = Amount::read(fields, &tables::button::FACE, unit, log);
+    let click = click(fields, &tables::button::CLICK, unit, log);
     Some(Kind::Button { rim_width_mm: rim_width_mm?, rim: rim?, face: face?, click })
 }
 
-fn click(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Click> {
-    let decay_ms = fields.optional_number(log, "click_ms", CLICK_MS).unwrap_or(CLICK_DEFAULT_MS);
-    Some(Click { height: Amount::optional(fields, Names::CLICK, unit, log)?, decay_ms })
+fn click(fields: &mut Fields, height: &AmountFields, unit: Unit, log: &mut Log) -> Option<Click> {
+    let decay_ms = fields.number_or_default(log, &tables::CLICK_MS);
+    Some(Click { height: Amount::read(fields, height, unit, log)?, decay_ms })
 }
 
 fn vibration(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Kind> {
     let beats = [("sine", Beat::Sine), ("square", Beat::Square)];
-    let beat = fields.optional_choice(log, "wave", &beats).unwrap_or_default();
-    let frequency_hz = fields.number(log, "frequency_hz", FREQUENCY_HZ);
-    let (low, high) = low_and_high(fields, unit, log);
+    let beat = fields.choice(log, &tables::vibration::WAVE, &beats).unwrap_or_default();
+    let frequency_hz = fields.number(log, &tables::vibration::FREQUENCY_HZ);
+    let (low, high) = low_and_high(fields, [&tables::vibration::LOW, &tables::vibration::HIGH], unit, log);
     let wanted = fields.has("burst");
-    let burst = fields.optional_table(log, "burst").and_then(|fields| burst(fields, log));
+    let burst = fields.table(log, &tables::vibration::BURST).and_then(|fields| burst(fields, log));
     if wanted && burst.is_none() {
         return None;
     }
@@ -261,9 +257,9 @@ fn vibration(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Kind> {
 
 fn burst(mut fields: Fields, log: &mut Log) -> Option<Burst> {
     fields.rename("this burst".to_owned());
-    let period_ms = fields.number(log, "period_ms", BURST_MS);
-    let on_ms = fields.number(log, "on_ms", BURST_MS);
-    let ramp_ms = fields.optional_number(log, "ramp_ms", RAMP_MS).unwrap_or(0.0);
+    let period_ms = fields.number(log, &tables::burst::PERIOD_MS);
+    let on_ms = fields.number(log, &tables::burst::ON_MS);
+    let ramp_ms = fields.number_or_default(log, &tables::burst::RAMP_MS);
     let places = fields.close(log);
     let (period_ms, on_ms) = (period_ms?, on_ms?);
     for (field, found, max) in [("on_ms", on_ms, period_ms), ("ramp_ms", ramp_ms, 0.5 * on_ms)] {
@@ -276,8 +272,8 @@ fn burst(mut fields: Fields, log: &mut Log) -> Option<Burst> {
 
 fn speed(fields: &mut Fields, log: &mut Log) -> Option<Kind> {
     let (offset, factors_offset) = (fields.place("speeds_mm_per_s"), fields.place("factors"));
-    let speeds_mm_per_s = fields.numbers(log, "speeds_mm_per_s", SPEED_MM_PER_S);
-    let factors = fields.numbers(log, "factors", FACTOR);
+    let speeds_mm_per_s = fields.numbers(log, &tables::speed::SPEEDS_MM_PER_S);
+    let factors = fields.numbers(log, &tables::speed::FACTORS);
     let (speeds_mm_per_s, factors) = (speeds_mm_per_s?, factors?);
     let (found, min, max) = (speeds_mm_per_s.len(), 2, CURVE_POINTS_MAX);
     if !(min..=max).contains(&found) {

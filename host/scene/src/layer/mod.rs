@@ -11,13 +11,12 @@ use amount::Unit;
 pub(super) use kind::{Bitmap, Burst, Click, Kind};
 pub(super) use region::{Rectangle, Region};
 
-use super::fields::{Fields, Range};
+use super::fields::Fields;
 use super::log::Log;
 use super::mistake::Mistake;
 use super::source::Places;
+use super::tables;
 use kind::KindName;
-
-const GAIN: Range = Range::new(-100.0, 100.0, "");
 
 /// One layer as written.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,9 +47,9 @@ impl Layer {
     /// Reads layer `number`, counted from one.
     pub(super) fn read(mut fields: Fields, number: usize, log: &mut Log) -> Option<Self> {
         fields.rename(format!("layer {number}"));
-        let name = fields.optional_text(log, "name");
+        let name = fields.text(log, &tables::layer::NAME);
         let kinds = KindName::ALL.map(|kind| (kind.word(), kind));
-        let Some(kind_name) = fields.choice_or_nearest(log, "kind", &kinds) else {
+        let Some(kind_name) = fields.choice_or_nearest(log, &tables::layer::KIND, &kinds) else {
             // Nobody knows what else the layer should have; these every kind has.
             let _ = Common::read(&mut fields, KindName::Constant, log);
             fields.give_up_without(log, "kind");
@@ -92,13 +91,13 @@ impl Common {
     fn read(fields: &mut Fields, kind: KindName, log: &mut Log) -> Self {
         let region = region::read(fields, kind, log);
         let blend = blend(fields, kind, log);
-        let gain = fields.optional_number(log, "gain", GAIN).unwrap_or(1.0);
-        let live = fields.flag(log, "live", false);
+        let gain = fields.number_or_default(log, &tables::layer::GAIN);
+        let live = fields.flag(log, &tables::layer::LIVE);
         let unit = if blend == Blend::Multiply { Unit::Factor } else { Unit::Friction };
         // What is multiplied counts from nothing.
         let above = match unit {
             Unit::Friction => {
-                fields.optional_choice(log, "above", &[("natural", Above::Natural), ("zero", Above::Zero)])
+                fields.choice(log, &tables::layer::ABOVE, &[("natural", Above::Natural), ("zero", Above::Zero)])
             }
             Unit::Factor => None,
         };
@@ -111,9 +110,9 @@ fn blend(fields: &mut Fields, kind: KindName, log: &mut Log) -> Blend {
     let all = [("replace", Blend::Replace), ("add", Blend::Add), ("multiply", Blend::Multiply), ("max", Blend::Max)];
     match kind {
         KindName::Speed => {
-            fields.optional_choice(log, "blend", &[("multiply", Blend::Multiply)]).unwrap_or(Blend::Multiply)
+            fields.choice(log, &tables::layer::BLEND, &[("multiply", Blend::Multiply)]).unwrap_or(Blend::Multiply)
         }
-        KindName::Edge => fields.optional_choice(log, "blend", &all).unwrap_or(Blend::Add),
-        _ => fields.optional_choice(log, "blend", &all).unwrap_or_default(),
+        KindName::Edge => fields.choice(log, &tables::layer::BLEND, &all).unwrap_or(Blend::Add),
+        _ => fields.choice(log, &tables::layer::BLEND, &all).unwrap_or_default(),
     }
 }
