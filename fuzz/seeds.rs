@@ -4,7 +4,8 @@ use std::error::Error;
 use std::fs;
 use std::path::Path;
 
-use frixel_scene::{Scene, compile};
+use frixel::scene_file;
+use frixel_scene::{compile};
 use frixel_hil_sim::RigConfig;
 // Its instrumentation calls the fuzzer.
 use libfuzzer_sys as _;
@@ -17,7 +18,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         if path.extension().is_none_or(|extension| extension != "toml") {
             continue;
         }
-        let program = compile(&Scene::load(&path)?, &board.limits, board.tick_hz)?;
+        let program = compile(&scene_file::load(&path)?, &board.limits, board.tick_hz)?;
         for target in ["scene_bytes", "scene_load"].iter().filter(|_| program.bitmaps.is_empty()) {
             let folder = root.join("corpus").join(target);
             fs::create_dir_all(&folder)?;

@@ -1,7 +1,7 @@
 //! Any bytes as a compiled scene: they are refused, or every record of them can be read and written again.
 #![no_main]
 
-use frixel_wire::scene::Scene;
+use frixel_layers::Scene;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

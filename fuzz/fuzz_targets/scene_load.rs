@@ -7,9 +7,9 @@ use std::time::Duration;
 use frixel::rigs::SimLink;
 use frixel_driver::{Device, DeviceError, Upload};
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
+use frixel_layers::Scene as WireScene;
+use frixel_layers::cost::{TICK_INSTRUCTIONS_MAX, worst_of_scene};
 use frixel_scene::recorder::Recorder;
-use frixel_wire::scene::Scene as WireScene;
-use frixel_wire::scene::cost::{TICK_INSTRUCTIONS_MAX, worst_of_scene};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

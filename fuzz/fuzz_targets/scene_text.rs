@@ -1,18 +1,18 @@
 //! Any text as a scene file: it is refused, or it becomes a program that a board takes and whose tick is in time.
 #![no_main]
 
-use std::path::Path;
+use std::collections::BTreeMap;
 
 use frixel::check::SceneCheck;
 use frixel_scene::{Scene, compile};
 use frixel_hil_sim::RigConfig;
-use frixel_wire::scene::cost::TICK_INSTRUCTIONS_MAX;
+use frixel_layers::cost::TICK_INSTRUCTIONS_MAX;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {
     let rig = RigConfig::default();
-    // A folder that is not there: what is under test is the text, not the pictures of this machine.
-    let Ok(scene) = Scene::parse(text, "fuzz.toml", Path::new("/nonexistent")) else { return };
+    // No pictures: the text is under test.
+    let Ok(scene) = Scene::parse(text, "fuzz.toml", &BTreeMap::new()) else { return };
     let Ok(program) = compile(&scene, &rig.board.limits, rig.board.tick_hz) else { return };
     assert!(program.worst_tick().instructions <= TICK_INSTRUCTIONS_MAX);
     if let Err(error) = SceneCheck::of(&program, &rig) {

@@ -1,10 +1,11 @@
 //! The in-process rig: session, ticker and world, tick by tick, on one thread.
 
 use frixel_exchange::{Done, Given, TICK_BYTES_MAX, TickBytes};
+use frixel_layers::BitmapPool;
+use frixel_layers::{Header, Scene};
 use frixel_model::{Contact, Finger, LoadedContact, ParameterError};
-use frixel_render::{Active, BitmapPool, Board, Order, Sense, Session, Status, StreamBuffer, TableRows, Ticker};
+use frixel_render::{Active, Board, Order, Sense, Session, Status, StreamBuffer, TableRows, Ticker};
 use frixel_wire::message::Refusal;
-use frixel_wire::scene::{Header, Scene};
 
 use crate::{Felt, Journal, Line, Stroke, World, WorldConfig, WorldError};
 

@@ -5,11 +5,11 @@
 mod script;
 
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, TickRecord};
+use frixel_layers::Layer;
 use frixel_wire::fault::State;
 use frixel_wire::frame::{Decoder, FRAME_MAX_LEN};
 use frixel_wire::message::{Command, FromBoard, Request};
 use frixel_wire::payload::{self, Payload};
-use frixel_wire::scene::Layer;
 use script::{HEADER, Script, record, scene};
 
 /// Ticks of the host timeout of the scene here.
@@ -18,7 +18,7 @@ const HOST_TIMEOUT_TICKS: u64 = 10_000;
 fn playing(memory: &mut BoardMemory) -> Script<'_> {
     let stroke = Stroke::natural(0.12, 0.08, 60.0).unwrap();
     let mut script = Script::new(Rig::new(memory, &RigConfig::default(), stroke, 1).unwrap());
-    script.play(&scene(&HEADER, &[record(Layer::Constant { electric_friction_n: 0.02 })]));
+    script.play(&scene(&HEADER, &[record(Layer::Constant(frixel_layers::Constant { electric_friction_n: 0.02 }))]));
     script
 }
 

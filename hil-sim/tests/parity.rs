@@ -8,10 +8,13 @@ mod script;
 use frixel_exchange::BOARD;
 use frixel_hil_sim::emulated::{Image, ReplayError, replay};
 use frixel_hil_sim::{BoardMemory, Journal, LineFault, Point, Rig, RigConfig, Stroke};
+use frixel_layers::{
+    Beat, Bitmap, Blend, Burst, Button, Carrier, Click, Constant, Edge, Grating, Header, Layer, Noise, Point as Corner,
+    Record, Region, Speed, Stream, Vibration, Wave,
+};
 use frixel_render::Board;
 use frixel_wire::fault::State;
 use frixel_wire::message::Command;
-use frixel_wire::scene::{Beat, Blend, Burst, Carrier, Click, Header, Layer, Point as Corner, Record, Region, Wave};
 use script::{HEADER, Script, record, samples, scene, scene_with_points};
 
 const TICKS: u64 = 110_000;
@@ -44,19 +47,19 @@ fn assert_same(image: &Image, journal: &Journal) {
 fn stripes(board: Board) -> Journal {
     let stroke = Stroke::natural(0.12, 0.08, 3.0).unwrap();
     journal(board, stroke, 1, |script| {
-        let constant = record(Layer::Constant { electric_friction_n: 0.004 });
+        let constant = record(Layer::Constant(Constant { electric_friction_n: 0.004 }));
         let stripes = Record {
             region: Region::Rectangle { x_m: 0.02, y_m: 0.0, width_m: 0.08, height_m: 0.08 },
             blend: Blend::Add,
             gain: 1.5,
-            layer: Layer::Grating {
+            layer: Layer::Grating(Grating {
                 wave: Wave::Sine,
                 cycles_per_m_x: 450.0,
                 cycles_per_m_y: 130.0,
                 phase_turns: 0.3,
                 trough_n: 0.001,
                 crest_n: 0.014,
-            },
+            }),
         };
         // No hello, whose bytes would tell of a changed limit before any drive does.
         script.play(&scene(&HEADER, &[constant, stripes]));
@@ -78,7 +81,7 @@ fn a_picture_on_a_sine_carrier_is_the_same() {
         script.greet();
         let picture = samples(200 * 150, 7);
         let crc32 = script.upload_bitmap(200, 150, &picture);
-        let layer = Layer::Bitmap {
+        let layer = Layer::Bitmap(Bitmap {
             crc32,
             x_m: 0.01,
             y_m: 0.0,
@@ -88,7 +91,7 @@ fn a_picture_on_a_sine_carrier_is_the_same() {
             pitch_y_m: 4e-4,
             angle_turns: 0.0,
             tiled: false,
-        };
+        });
         let header = Header { carrier: Carrier::Sine, slew_v_per_s: 3e5, ..HEADER };
         script.play(&scene(&header, &[record(layer)]));
         script.run(TICKS);
@@ -107,16 +110,16 @@ fn a_bad_day_is_the_same() {
         let picture = samples(64 * 64, 9);
         let crc32 = script.upload_bitmap(64, 64, &picture);
         let layers = [
-            Layer::Constant { electric_friction_n: 0.002 },
-            Layer::Grating {
+            Layer::Constant(Constant { electric_friction_n: 0.002 }),
+            Layer::Grating(Grating {
                 wave: Wave::Square { duty: 0.5 },
                 cycles_per_m_x: 90.0,
                 cycles_per_m_y: -250.0,
                 phase_turns: -3.2,
                 trough_n: 0.0,
                 crest_n: 0.006,
-            },
-            Layer::Bitmap {
+            }),
+            Layer::Bitmap(Bitmap {
                 crc32,
                 x_m: 0.02,
                 y_m: 0.01,
@@ -126,16 +129,16 @@ fn a_bad_day_is_the_same() {
                 pitch_y_m: 1e-3,
                 angle_turns: 0.0,
                 tiled: false,
-            },
-            Layer::Grating {
+            }),
+            Layer::Grating(Grating {
                 wave: Wave::Sine,
                 cycles_per_m_x: 1000.0,
                 cycles_per_m_y: 0.0,
                 phase_turns: 0.0,
                 trough_n: 0.0,
                 crest_n: 0.02,
-            },
-            Layer::Stream { low_n: -0.002, high_n: 0.008 },
+            }),
+            Layer::Stream(Stream { low_n: -0.002, high_n: 0.008 }),
         ];
         // From left to right, so that not too many are under the finger at once: the stream takes time everywhere.
         let band = |x_m, width_m| Region::Rectangle { x_m, y_m: 0.0, width_m, height_m: 0.08 };
@@ -198,33 +201,50 @@ fn every_kind(crc32: u32) -> (Vec<Record>, Vec<Corner>) {
     let ellipse = Region::Ellipse { x_m: 0.06, y_m: 0.02, width_m: 0.05, height_m: 0.05 };
     let polygon = Region::Polygon { first: 3, count: 5 };
     let click = Click { height_n: 0.004, decay_s: 0.05 };
-    let grating = |wave, trough_n, crest_n| Layer::Grating {
-        wave,
-        cycles_per_m_x: 230.0,
-        cycles_per_m_y: -70.0,
-        phase_turns: 0.4,
-        trough_n,
-        crest_n,
+    let grating = |wave, trough_n, crest_n| {
+        Layer::Grating(Grating {
+            wave,
+            cycles_per_m_x: 230.0,
+            cycles_per_m_y: -70.0,
+            phase_turns: 0.4,
+            trough_n,
+            crest_n,
+        })
     };
-    let bitmap = |tiled, angle_turns| Layer::Bitmap {
-        crc32,
-        x_m: 0.04,
-        y_m: 0.02,
-        pitch_m: 5e-4,
-        black_n: 0.0,
-        white_n: 0.005,
-        pitch_y_m: 6e-4,
-        angle_turns,
-        tiled,
+    let bitmap = |tiled, angle_turns| {
+        Layer::Bitmap(Bitmap {
+            crc32,
+            x_m: 0.04,
+            y_m: 0.02,
+            pitch_m: 5e-4,
+            black_n: 0.0,
+            white_n: 0.005,
+            pitch_y_m: 6e-4,
+            angle_turns,
+            tiled,
+        })
     };
-    let noise =
-        Layer::Noise { seed: 0xfeed_5eed, wavelength_min_m: 1e-3, wavelength_max_m: 6e-3, low_n: 0.0, high_n: 0.006 };
-    let vibration = |beat, burst| Layer::Vibration { beat, frequency_hz: 87.3, low_n: 0.0, high_n: 0.003, burst };
-    let edge =
-        Layer::Edge { x_m: 0.05, y_m: 0.04, angle_turns: 0.07, width_m: 0.006, level_n: 0.0, ridge_n: 0.004, click };
-    let button = Layer::Button { rim_width_m: 0.004, rim_n: 0.012, face_n: 0.002, click };
+    let noise = Layer::Noise(Noise {
+        seed: 0xfeed_5eed,
+        wavelength_min_m: 1e-3,
+        wavelength_max_m: 6e-3,
+        low_n: 0.0,
+        high_n: 0.006,
+    });
+    let vibration =
+        |beat, burst| Layer::Vibration(Vibration { beat, frequency_hz: 87.3, low_n: 0.0, high_n: 0.003, burst });
+    let edge = Layer::Edge(Edge {
+        x_m: 0.05,
+        y_m: 0.04,
+        angle_turns: 0.07,
+        width_m: 0.006,
+        level_n: 0.0,
+        ridge_n: 0.004,
+        click,
+    });
+    let button = Layer::Button(Button { rim_width_m: 0.004, rim_n: 0.012, face_n: 0.002, click });
     let records = [
-        (Region::Screen, Blend::Replace, Layer::Constant { electric_friction_n: 0.003 }),
+        (Region::Screen, Blend::Replace, Layer::Constant(Constant { electric_friction_n: 0.003 })),
         (polygon, Blend::Add, grating(Wave::Sine, 0.0, 0.004)),
         (rectangle, Blend::Max, grating(Wave::Square { duty: 0.3 }, 0.001, 0.006)),
         (ellipse, Blend::Multiply, grating(Wave::Triangle, 0.5, 1.5)),
@@ -237,8 +257,8 @@ fn every_kind(crc32: u32) -> (Vec<Record>, Vec<Corner>) {
         (ellipse, Blend::Max, button),
         (Region::Screen, Blend::Add, vibration(Beat::Sine, Burst { period_s: 0.09, on_s: 0.05, ramp_s: 0.02 })),
         (ellipse, Blend::Add, vibration(Beat::Square, Burst::default())),
-        (polygon, Blend::Add, Layer::Stream { low_n: 0.001, high_n: 0.02 }),
-        (Region::Screen, Blend::Multiply, Layer::Speed { first: 0, count: 3 }),
+        (polygon, Blend::Add, Layer::Stream(Stream { low_n: 0.001, high_n: 0.02 })),
+        (Region::Screen, Blend::Multiply, Layer::Speed(Speed { first: 0, count: 3 })),
     ];
     let points =
         [(0.02, 0.4), (0.09, 1.1), (0.2, 0.8), (0.01, 0.01), (0.11, 0.015), (0.06, 0.04), (0.1, 0.07), (0.02, 0.06)];

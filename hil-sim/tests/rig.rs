@@ -2,11 +2,11 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use frixel_hil_sim::{BoardMemory, LineFault, Point, Rig, RigConfig, Stroke, TickRecord, contact_of};
+use frixel_layers::{Blend, Carrier, Constant, Header, Layer, Leader, Record, Region};
 use frixel_wire::fault::State;
 use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, crc32};
 use frixel_wire::message::{Command, FromBoard, Request};
 use frixel_wire::payload::{self, Payload};
-use frixel_wire::scene::{Blend, Carrier, Header, Layer, Leader, Record, Region};
 
 const HEADER: Header = Header {
     screen_width_m: 0.12,
@@ -26,10 +26,11 @@ const HEADER: Header = Header {
     prediction: true,
     leader: Leader::First,
     layers_fixed: false,
+    electric_friction_max_n: None,
 };
 
 fn constant(header: &Header, electric_friction_n: f32) -> Vec<u8> {
-    let layer = Layer::Constant { electric_friction_n };
+    let layer = Layer::Constant(Constant { electric_friction_n });
     let record = Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer };
     [header.write(1, 0).as_slice(), record.write().as_slice()].concat()
 }

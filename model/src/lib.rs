@@ -119,6 +119,7 @@ pub use coating::{Slab, VACUUM_PERMITTIVITY_F_PER_M, attraction_pa, contact_attr
 pub use contact::{Contact, FiniteContact, LoadedContact, LowerBound, PulledContact};
 pub use error::{Expected, InverseError, ParameterError, StateError};
 pub use finger::Finger;
+pub use fixed::types::{U0F32, U1F31};
 pub use real::Real;
 pub use shear::{ShearOnset, TissueSpring};
 pub use soft::{PowerLawShape, SoftContact, SoftFinger, SoftLoadedContact, SoftLowerBound, contact_exponent};

@@ -283,7 +283,7 @@ fn the_soft_lower_bound_keeps_what_f32_can_hold() {
             (state::<f64>(modulus_pa, stress_exponent, voltage), state::<f32>(modulus_pa, stress_exponent, voltage));
         let ratio = f64::from(found.stiffness_pa_per_m) / right.stiffness_pa_per_m;
         assert!((ratio - 1.0).abs() < 1e-5, "{stress_exponent}: {ratio}");
-        if right.friction_n > f32::MIN_POSITIVE.into() {
+        if right.friction_n > f64::from(f32::MIN_POSITIVE) {
             let ratio = f64::from(found.friction_n) / right.friction_n;
             assert!((ratio - 1.0).abs() < 1e-5, "{stress_exponent}: {ratio}");
         }

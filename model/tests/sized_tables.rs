@@ -1,7 +1,7 @@
 //! Tables of every order and both precisions against the closed form: the bound that they prove, and how sharp it is.
 #![allow(clippy::unwrap_used)]
 
-use frixel_model::{Contact, Finger, LoadedContact, Precision, TableBuilder, TableError};
+use frixel_model::{Contact, Finger, LoadedContact, Precision, TableBuilder, TableError, U0F32, U1F31};
 
 const FINGER: Finger<f64> = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };
 
@@ -57,23 +57,22 @@ fn worst_fixed<const C: usize>(
     contact: &LoadedContact<f64>,
     builder: &TableBuilder,
     rows: usize,
-    distort: impl Fn(u32) -> u32,
+    distort: impl Fn(U1F31) -> U1F31,
 ) -> f64 {
     let mut storage = vec![[0; C]; rows];
     let table = builder.build_fixed(&mut storage).unwrap();
     let (low, _) = range(contact);
-    let first = table.friction_code(low);
-    assert_eq!(table.voltage_code(0), 0);
-    assert!(table.voltage_code(u32::MAX) <= 1 << 31);
-    // Codes spread evenly over octaves, as far as there are codes.
-    let steps = ((f64::from(u32::MAX) / f64::from(first)).ln() / 3.7e-4) as i32;
+    let first = table.friction(low).to_num::<f64>();
+    assert_eq!(table.voltage(U0F32::ZERO), U1F31::ZERO);
+    assert!(table.voltage(U0F32::MAX) <= U1F31::ONE);
+    // Frictions spread evenly over octaves, as far as there are steps.
+    let steps = ((1.0 / first).ln() / 3.7e-4) as i32;
     (0..steps)
-        .map(|step| f64::from(first) * (3.7e-4 * f64::from(step)).exp())
-        .map(|code| code as u32)
-        .chain([u32::MAX])
-        .map(|code| {
-            let voltage_v_rms = f64::from(distort(table.voltage_code(code))) * table.voltage_unit_v_rms();
-            error(contact, f64::from(code) * table.friction_unit_n(), voltage_v_rms)
+        .map(|step| U0F32::from_num(first * (3.7e-4 * f64::from(step)).exp()))
+        .chain([U0F32::MAX])
+        .map(|friction| {
+            let voltage_v_rms = distort(table.voltage(friction)).to_num::<f64>() * table.voltage_max_v_rms();
+            error(contact, friction.to_num::<f64>() * table.friction_max_n(), voltage_v_rms)
         })
         .fold(0.0, f64::max)
 }
@@ -98,13 +97,13 @@ fn bounds_hold_and_are_not_idle() {
                             worst_f32::<4>(&contact, &builder, shape.rows, |v| if zero { 0.0 } else { v })
                         }
                         (Precision::Fixed, 2) => {
-                            worst_fixed::<2>(&contact, &builder, shape.rows, |v| if zero { 0 } else { v })
+                            worst_fixed::<2>(&contact, &builder, shape.rows, |v| if zero { U1F31::ZERO } else { v })
                         }
                         (Precision::Fixed, 3) => {
-                            worst_fixed::<3>(&contact, &builder, shape.rows, |v| if zero { 0 } else { v })
+                            worst_fixed::<3>(&contact, &builder, shape.rows, |v| if zero { U1F31::ZERO } else { v })
                         }
                         (Precision::Fixed, _) => {
-                            worst_fixed::<4>(&contact, &builder, shape.rows, |v| if zero { 0 } else { v })
+                            worst_fixed::<4>(&contact, &builder, shape.rows, |v| if zero { U1F31::ZERO } else { v })
                         }
                     };
                     let found = worst(false);
@@ -154,14 +153,14 @@ fn every_code_is_answered() {
         let builder = TableBuilder::new(&contact, low, high, 1e-5).unwrap();
         let mut storage = vec![[0; 4]; builder.shape(Precision::Fixed, 4).unwrap().rows];
         let table = builder.build_fixed(&mut storage).unwrap();
-        let first = table.friction_code(low);
-        let mut highest = 0;
-        for code in 0..=u32::MAX {
-            let voltage_code = table.voltage_code(code);
-            assert!(voltage_code <= 1 << 31, "{code}");
-            assert!(f64::from(voltage_code) >= f64::from(highest) * (1.0 - 5e-6), "falls at {code}");
-            assert!(code < first || voltage_code > 0, "nothing at {code}");
-            highest = highest.max(voltage_code);
+        let first = table.friction(low);
+        let mut highest = U1F31::ZERO;
+        for friction in (0..=u32::MAX).map(U0F32::from_bits) {
+            let voltage = table.voltage(friction);
+            assert!(voltage <= U1F31::ONE, "{friction}");
+            assert!(voltage.to_num::<f64>() >= highest.to_num::<f64>() * (1.0 - 5e-6), "falls at {friction}");
+            assert!(friction < first || voltage > 0, "nothing at {friction}");
+            highest = highest.max(voltage);
         }
     }
 }

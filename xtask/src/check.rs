@@ -22,7 +22,7 @@ struct Image {
     more: &'static [&'static [&'static str]],
 }
 
-const IMAGES: [Image; 3] = [
+const IMAGES: [Image; 4] = [
     Image {
         folder: "firmware/board-nucleo-g474re",
         target_folder: "target/full",
@@ -35,6 +35,7 @@ const IMAGES: [Image; 3] = [
     },
     Image { folder: "firmware/board-mps2-an386", target_folder: "target", more: &[] },
     Image { folder: "firmware/bench", target_folder: "target", more: &[] },
+    Image { folder: "firmware/table-cortex-m3", target_folder: "target", more: &[] },
 ];
 
 /// Runs every check, and prints the time that each stage took.

@@ -2,7 +2,7 @@
 
 use core::hint::black_box;
 
-use frixel_model::{Contact, Finger, FixedTable, InverseTable, LoadedContact, Real, TableBuilder};
+use frixel_model::{Contact, Finger, FixedTable, InverseTable, LoadedContact, Real, TableBuilder, U0F32};
 
 use crate::count::Counter;
 
@@ -75,8 +75,8 @@ fn fixed<'rows>(contact: &LoadedContact<f64>, rows: &'rows mut [[i32; 4]]) -> Fi
 }
 
 #[inline(never)]
-fn from_fixed_table(table: &mut FixedTable<4>, friction_code: u32) -> u32 {
-    table.voltage_code(friction_code)
+fn from_fixed_table(table: &mut FixedTable<4>, friction: u32) -> u32 {
+    table.voltage(U0F32::from_bits(friction)).to_bits()
 }
 
 #[inline(never)]

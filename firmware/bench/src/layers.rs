@@ -3,8 +3,9 @@
 use core::array;
 
 use frixel_wire::message::Command;
-use frixel_wire::scene::cost::{self, TICK_INSTRUCTIONS_MAX};
-use frixel_wire::scene::{Beat, Blend, Burst, Carrier, Click, Header, Layer, Point, RECORDS_MAX, Record, Region, Wave};
+use frixel_layers::cost::{self, TICK_INSTRUCTIONS_MAX};
+use frixel_layers::{Beat, Bitmap, Blend, Burst, Button, Carrier, Click, Constant, Edge, Grating, Header, Layer, Noise, Point, Record, Region, Speed, Stream, Vibration, Wave};
+use frixel_wire::scene::{RECORDS_MAX};
 
 use crate::count::Counter;
 use crate::host::STREAM_HZ;
@@ -13,12 +14,12 @@ use crate::tick::{Bench, HEADER};
 pub(crate) const GRATING: Layer = grating(Wave::Sine);
 
 const AROUND: Region = Region::Rectangle { x_m: 0.0, y_m: 0.0, width_m: 0.12, height_m: 0.11 };
-const STREAM: Layer = Layer::Stream { low_n: 0.001, high_n: 0.02 };
+const STREAM: Layer = Layer::Stream(Stream { low_n: 0.001, high_n: 0.02 });
 /// The part of the screen where the finger is, and no layer that is elsewhere.
 const UPPER_PART: Region = Region::Rectangle { x_m: 0.0, y_m: 0.0, width_m: 0.12, height_m: 0.06 };
-const CONSTANT: Layer = Layer::Constant { electric_friction_n: 0.001 };
+const CONSTANT: Layer = Layer::Constant(Constant { electric_friction_n: 0.001 });
 /// More than the drive gives, which is counted in every tick.
-const OUT_OF_REACH: Layer = Layer::Constant { electric_friction_n: 1.0 };
+const OUT_OF_REACH: Layer = Layer::Constant(Constant { electric_friction_n: 1.0 });
 /// Ends before the still finger and goes on after it, so that both a click and its end are counted.
 const CLICK: Click = Click { height_n: 0.005, decay_s: 0.05 };
 
@@ -29,18 +30,18 @@ fn away(number: usize) -> Region {
 }
 
 const fn grating(wave: Wave) -> Layer {
-    Layer::Grating {
+    Layer::Grating(Grating {
         wave,
         cycles_per_m_x: 500.0,
         cycles_per_m_y: 100.0,
         phase_turns: 0.2,
         trough_n: 0.0,
         crest_n: 0.026,
-    }
+    })
 }
 
 const fn picture(crc32: u32, tiled: bool) -> Layer {
-    Layer::Bitmap {
+    Layer::Bitmap(Bitmap {
         crc32,
         x_m: 0.01,
         y_m: 0.0,
@@ -50,7 +51,7 @@ const fn picture(crc32: u32, tiled: bool) -> Layer {
         pitch_y_m: 1e-3,
         angle_turns: if tiled { 0.05 } else { 0.0 },
         tiled,
-    }
+    })
 }
 
 /// A picture over the screen.
@@ -60,7 +61,7 @@ pub(crate) const fn bitmap(crc32: u32) -> Layer {
 
 const fn vibration(beat: Beat) -> Layer {
     let burst = Burst { period_s: 0.05, on_s: 0.03, ramp_s: 0.01 };
-    Layer::Vibration { beat, frequency_hz: 90.0, low_n: 0.001, high_n: 0.02, burst }
+    Layer::Vibration(Vibration { beat, frequency_hz: 90.0, low_n: 0.001, high_n: 0.02, burst })
 }
 
 /// A layer on the whole screen.
@@ -82,7 +83,7 @@ impl Bench {
         self.slide(counter.case("tick_two_constants"));
         self.play(&Header { carrier: Carrier::Sine, ..HEADER }, &two);
         self.slide(counter.case("tick_two_constants_sine_carrier"));
-        let edge = Layer::Edge {
+        let edge = Layer::Edge(Edge {
             x_m: 0.03,
             y_m: 0.03,
             angle_turns: 0.02,
@@ -90,10 +91,10 @@ impl Bench {
             level_n: 0.0,
             ridge_n: 0.02,
             click: CLICK,
-        };
-        let button = Layer::Button { rim_width_m: 0.02, rim_n: 0.02, face_n: 0.001, click: CLICK };
+        });
+        let button = Layer::Button(Button { rim_width_m: 0.02, rim_n: 0.02, face_n: 0.001, click: CLICK });
         let noise =
-            Layer::Noise { seed: 7, wavelength_min_m: 1e-3, wavelength_max_m: 5e-3, low_n: 0.001, high_n: 0.02 };
+            Layer::Noise(Noise { seed: 7, wavelength_min_m: 1e-3, wavelength_max_m: 5e-3, low_n: 0.001, high_n: 0.02 });
         let entered = Region::Rectangle { x_m: 0.025, y_m: 0.0, width_m: 0.09, height_m: 0.11 };
         for (name, region, layer) in [
             ("tick_constant_alone", AROUND, CONSTANT),
@@ -123,7 +124,7 @@ impl Bench {
 
     fn alone(&mut self, counter: &mut Counter, name: &'static str, record: Record, points: &[Point]) {
         self.play_with_points(&HEADER, &[record], points);
-        if matches!(record.layer, Layer::Stream { .. }) {
+        if matches!(record.layer, Layer::Stream(_)) {
             self.start_stream();
         }
         self.slide(counter.case(name));
@@ -158,7 +159,7 @@ impl Bench {
         for (name, count) in [("tick_speed_2_alone", 2), ("tick_speed_8_alone", 8)] {
             let points: [Point; 8] =
                 array::from_fn(|number| Point { x: 0.01 * number as f32, y: 0.001 * number as f32 });
-            let layer = Layer::Speed { first: 0, count };
+            let layer = Layer::Speed(Speed { first: 0, count });
             self.alone(counter, name, under(AROUND, layer), &points[..usize::from(count)]);
         }
     }

@@ -10,7 +10,7 @@ use cortex_m_semihosting::hprintln;
 use frixel_random_scenes::{Pace, RandomFinger, RandomScene, Report};
 use frixel_render::Touch;
 use frixel_wire::message::Command;
-use frixel_wire::scene::{Layer, SCENE_MAX_LEN};
+use frixel_layers::{Layer, SCENE_MAX_LEN};
 
 use crate::count::Case;
 use crate::tick::{Bench, PING_TICKS, STREAM_TICKS};
@@ -56,7 +56,7 @@ impl Bench {
         let scene = RandomScene::new(seed, crc32);
         let reckoned = scene.worst_tick().instructions;
         self.play_bytes(scene.write(&mut [0; SCENE_MAX_LEN]));
-        if scene.records.iter().any(|record| matches!(record.layer, Layer::Stream { .. })) {
+        if scene.records.iter().any(|record| matches!(record.layer, Layer::Stream(_))) {
             self.start_stream();
         }
         let mut finger = RandomFinger::new(seed, &scene.header, pace);

@@ -1,10 +1,11 @@
 //! Whole ticks, by scene.
 
 use cortex_m::singleton;
-use frixel_render::{Active, BitmapPool, Board, Drive, Sense, Session, StreamBuffer, Ticker, Touch};
+use frixel_layers::{BitmapPool};
+use frixel_render::{Active, Board, Drive, Sense, Session, StreamBuffer, Ticker, Touch};
 use frixel_wire::fault::State;
 use frixel_wire::message::Command;
-use frixel_wire::scene::{Carrier, HEADER_LEN, Header, Leader, POINT_LEN, Point, RECORD_LEN, Record, SCENE_MAX_LEN};
+use frixel_layers::{Carrier, HEADER_LEN, Header, Leader, POINT_LEN, Point, RECORD_LEN, Record, SCENE_MAX_LEN};
 
 use crate::count::{Case, Counter};
 use crate::host::{Host, STREAM_FRAME, STREAM_TICKS_PER_SAMPLE};
@@ -39,6 +40,7 @@ pub(crate) const HEADER: Header = Header {
     prediction: true,
     leader: Leader::First,
     layers_fixed: false,
+    electric_friction_max_n: None,
 };
 
 /// Counts the ticks of every scene.

@@ -3,7 +3,8 @@
 
 use frixel_drivers::monitor::MonitorScale;
 use frixel_render::store::{Flash, LIMITS_LEN, Slot, read_limits};
-use frixel_render::{BITMAP_POOL_LEN, Board};
+use frixel_layers::{BITMAP_POOL_LEN};
+use frixel_render::{Board};
 use frixel_wire::hello::{BoardKind, BoardLimits};
 use frixel_wire::scene::RECORDS_MAX;
 use stm32_metapac::UID;
@@ -47,7 +48,7 @@ pub const SCENE_SLOT: Slot = Slot { first_page: 2, pages: (PAGES - 2) / 2 };
 
 const _: () = assert!(
     SCENE_SLOT.capacity::<BankTwo>() as usize
-        >= frixel_render::BITMAP_POOL_LEN + frixel_wire::scene::SCENE_MAX_LEN + (1 + RECORDS_MAX) * 16
+        >= frixel_layers::BITMAP_POOL_LEN + frixel_layers::SCENE_MAX_LEN + (1 + RECORDS_MAX) * 16
 );
 
 /// The board as it started.

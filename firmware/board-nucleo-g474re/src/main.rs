@@ -27,7 +27,8 @@ use frixel_drivers::serial::SerialLink;
 use frixel_render::StreamBuffer;
 #[cfg(feature = "store")]
 use frixel_render::store::SceneKeeper;
-use frixel_render::{Active, BitmapPool, Board, Session, Ticker};
+use frixel_layers::{BitmapPool};
+use frixel_render::{Active, Board, Session, Ticker};
 use frixel_wire::message::FAULT_TEXT_MAX_LEN;
 
 /// Memory for bitmaps, written by the session and read by the tick.

@@ -1,6 +1,6 @@
 //! A finger that slides, rests, jumps and lifts, under touch sources of every pace.
 
-use frixel_wire::scene::Header;
+use frixel_layers::Header;
 
 use crate::dice::Dice;
 

@@ -2,9 +2,11 @@
 
 use core::ops::Range;
 
-use frixel_wire::scene::{
-    Beat, Blend, Burst, CURVE_POINTS_MAX, Click, Header, Layer, POLYGON_POINTS_MAX, Point, Record, Region, Wave,
+use frixel_layers::{
+    Beat, Bitmap, Blend, Burst, Button, Click, Constant, Edge, Grating, Header, Layer, Noise, Point, Record, Region,
+    Speed, Stream, Vibration, Wave,
 };
+use frixel_wire::scene::{CURVE_POINTS_MAX, POLYGON_POINTS_MAX};
 
 use crate::dice::Dice;
 
@@ -27,7 +29,7 @@ impl NewPoints {
 
 /// The same friction everywhere, for layers above to act on.
 pub(crate) fn ground(dice: &mut Dice) -> Record {
-    let layer = Layer::Constant { electric_friction_n: REACH_N * dice.between(0.02, 0.6) };
+    let layer = Layer::Constant(Constant { electric_friction_n: REACH_N * dice.between(0.02, 0.6) });
     Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer }
 }
 
@@ -37,7 +39,7 @@ pub(crate) fn record(dice: &mut Dice, header: &Header, picture: u32, points: &mu
     let amounts = if blend == Blend::Multiply { Amounts::Factors } else { Amounts::Frictions };
     let layer = layer(dice, header, amounts, picture, points);
     let region =
-        if matches!(layer, Layer::Button { .. }) { box_region(dice, header) } else { region(dice, header, points) };
+        if matches!(layer, Layer::Button(_)) { box_region(dice, header) } else { region(dice, header, points) };
     let gain = dice.pick([1.0, 1.0, 1.0, 0.5, 0.7, 0.9, 1.7, -0.3, 0.0]);
     Record { region, blend, gain, layer }
 }
@@ -71,16 +73,16 @@ fn layer(dice: &mut Dice, header: &Header, amounts: Amounts, picture: u32, point
     let click = Click { height_n: dice.pick([0.0, one, other]), decay_s: dice.pick([0.0, 1e-4, 0.02, 1.0]) };
     let turned = dice.between(-1.0, 1.0);
     match dice.below(9) {
-        0 => Layer::Constant { electric_friction_n: one },
-        1 => Layer::Grating {
+        0 => Layer::Constant(Constant { electric_friction_n: one }),
+        1 => Layer::Grating(Grating {
             wave: dice.pick([Wave::Sine, Wave::Square { duty: 0.3 }, Wave::Triangle, Wave::Saw]),
             cycles_per_m_x: dice.between(-2e3, 2e3),
             cycles_per_m_y: dice.between(-2e3, 2e3),
             phase_turns: dice.between(-3.0, 3.0),
             trough_n: one,
             crest_n: other,
-        },
-        2 => Layer::Bitmap {
+        }),
+        2 => Layer::Bitmap(Bitmap {
             crc32: picture,
             x_m: dice.between(-0.5, 1.0) * width_m,
             y_m: dice.between(-0.5, 1.0) * height_m,
@@ -90,15 +92,15 @@ fn layer(dice: &mut Dice, header: &Header, amounts: Amounts, picture: u32, point
             pitch_y_m: dice.pick([1e-4, 1e-3, 3e-3]),
             angle_turns: dice.pick([0.0, 0.25, turned]),
             tiled: dice.once_in(2),
-        },
-        3 => Layer::Noise {
+        }),
+        3 => Layer::Noise(Noise {
             seed: dice.bits(),
             wavelength_min_m: dice.between(5e-5, 2e-3),
             wavelength_max_m: dice.between(2e-3, 0.5),
             low_n: one,
             high_n: other,
-        },
-        4 => Layer::Edge {
+        }),
+        4 => Layer::Edge(Edge {
             x_m: dice.between(0.0, 1.0) * width_m,
             y_m: dice.between(0.0, 1.0) * height_m,
             angle_turns: dice.between(-1.0, 1.0),
@@ -106,23 +108,23 @@ fn layer(dice: &mut Dice, header: &Header, amounts: Amounts, picture: u32, point
             level_n: one,
             ridge_n: other,
             click,
-        },
-        5 => Layer::Button { rim_width_m: dice.pick([1e-3, 0.01, 0.1]), rim_n: one, face_n: other, click },
-        6 => Layer::Vibration {
+        }),
+        5 => Layer::Button(Button { rim_width_m: dice.pick([1e-3, 0.01, 0.1]), rim_n: one, face_n: other, click }),
+        6 => Layer::Vibration(Vibration {
             beat: dice.pick([Beat::Sine, Beat::Square]),
             frequency_hz: dice.pick([0.01, 80.0, 1000.0]),
             low_n: one,
             high_n: other,
             burst: dice.pick([Burst::default(), Burst { period_s: 0.02, on_s: 0.012, ramp_s: 0.005 }]),
-        },
+        }),
         7 => {
             let count = 2 + dice.below(CURVE_POINTS_MAX as u32 - 1);
             let step_m_per_s = dice.pick([1e-3, 0.02, 0.1]);
             let curve = (0..count).map(|number| Point { x: step_m_per_s * number as f32, y: amounts.draw(dice) });
             let added = points.add(curve);
-            Layer::Speed { first: added.start, count: added.len() as u8 }
+            Layer::Speed(Speed { first: added.start, count: added.len() as u8 })
         }
-        _ => Layer::Stream { low_n: one, high_n: other },
+        _ => Layer::Stream(Stream { low_n: one, high_n: other }),
     }
 }
 

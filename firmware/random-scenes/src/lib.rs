@@ -4,9 +4,9 @@
 //! use frixel_random_scenes::{Pace, RandomFinger, RandomScene};
 //!
 //! let scene = RandomScene::new(7, 0x1234_5678);
-//! let mut bytes = [0; frixel_wire::scene::SCENE_MAX_LEN];
+//! let mut bytes = [0; frixel_layers::SCENE_MAX_LEN];
 //! let bytes = scene.write(&mut bytes);
-//! assert!(frixel_wire::scene::Scene::parse(bytes).is_ok());
+//! assert!(frixel_layers::Scene::parse(bytes).is_ok());
 //!
 //! let mut finger = RandomFinger::new(7, &scene.header, Pace::Usual);
 //! let reports = (0..1_000).filter_map(|_| finger.tick()).count();

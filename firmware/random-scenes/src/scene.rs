@@ -1,10 +1,11 @@
 //! A scene that a board accepts.
 
-use frixel_wire::scene::cost::{TICK_INSTRUCTIONS_MAX, Worst, worst_of_scene};
-use frixel_wire::scene::{
-    Carrier, Click, HEADER_LEN, Header, Layer, Leader, POINT_LEN, POINTS_MAX, Point, RECORD_LEN, RECORDS_MAX, Record,
-    SCENE_MAX_LEN,
+use frixel_layers::cost::{TICK_INSTRUCTIONS_MAX, Worst, worst_of_scene};
+use frixel_layers::{
+    Button, Carrier, Click, Edge, HEADER_LEN, Header, Layer, Leader, POINT_LEN, Point, RECORD_LEN, Record,
+    SCENE_MAX_LEN, electric_friction_max_n,
 };
+use frixel_wire::scene::{POINTS_MAX, RECORDS_MAX};
 use heapless::Vec;
 
 use crate::dice::Dice;
@@ -41,6 +42,10 @@ impl RandomScene {
             if !scene.add(dice, picture) {
                 misses += 1;
             }
+        }
+        if scene.header.layers_fixed {
+            scene.header.electric_friction_max_n =
+                electric_friction_max_n(&scene.header, &scene.records, &scene.points);
         }
         scene
     }
@@ -83,15 +88,15 @@ impl RandomScene {
 
     fn is_accepted(&self) -> bool {
         let number = |is: fn(&Layer) -> bool| self.records.iter().filter(|record| is(&record.layer)).count();
-        number(|layer| matches!(layer, Layer::Noise { .. })) <= NOISES_MAX
+        number(|layer| matches!(layer, Layer::Noise(_))) <= NOISES_MAX
             && number(clicks) <= CLICKS_MAX
             && self.worst_tick().instructions <= TICK_INSTRUCTIONS_MAX
     }
 }
 
 fn clicks(layer: &Layer) -> bool {
-    let (Layer::Edge { click: Click { height_n, .. }, .. } | Layer::Button { click: Click { height_n, .. }, .. }) =
-        layer
+    let (Layer::Edge(Edge { click: Click { height_n, .. }, .. })
+    | Layer::Button(Button { click: Click { height_n, .. }, .. })) = layer
     else {
         return false;
     };
@@ -117,5 +122,6 @@ fn header(dice: &mut Dice) -> Header {
         prediction: !dice.once_in(4),
         leader: dice.pick([Leader::First, Leader::Latest]),
         layers_fixed: dice.once_in(2),
+        electric_friction_max_n: None,
     }
 }

@@ -4,7 +4,7 @@ use frixel_wire::fault::Fault;
 use frixel_wire::hello::{BoardKind, BoardLimits, ResetCause};
 use frixel_wire::scene::RECORDS_MAX;
 
-use crate::BITMAP_POOL_LEN;
+use frixel_layers::{BITMAP_POOL_LEN, ticks};
 
 /// A board: who it is, how fast it ticks, what it can bear. It does not change while the firmware runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,6 +62,6 @@ impl Board {
 
     /// The number of ticks nearest to a time.
     pub(crate) fn ticks(&self, time_s: f32) -> u32 {
-        (time_s * self.tick_hz as f32 + 0.5) as u32
+        ticks(time_s, self.tick_hz)
     }
 }

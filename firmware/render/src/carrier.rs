@@ -4,10 +4,10 @@
 //! voltage, however the amplitude moves: a code that would take it out is put out with the other sign, as an early
 //! edge.
 
-use frixel_wire::scene::Carrier as Shape;
+use frixel_layers::Carrier as Shape;
 
 #[cfg(feature = "sine-carrier")]
-use crate::turns;
+use frixel_layers::cosine;
 
 /// What a carrier is made of; part of `Active`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -130,7 +130,7 @@ impl Carrier {
             #[cfg(feature = "sine-carrier")]
             Shape::Sine => {
                 // The crest, where the cosine has no angle, is a quarter of a turn before the edge.
-                amplitude * turns::cosine(self.left_ticks as f32 * timing.turns_per_tick - 0.25)
+                amplitude * cosine(self.left_ticks as f32 * timing.turns_per_tick - 0.25)
             }
             #[cfg(not(feature = "sine-carrier"))]
             Shape::Sine => 0.0,
@@ -140,57 +140,4 @@ impl Carrier {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    fn timing(shape: Shape, half_period_ticks: u32) -> CarrierTiming {
-        CarrierTiming::new(shape, half_period_ticks, 100.0, 20_000)
-    }
-
-    #[test]
-    fn a_steady_square_alternates_without_early_edges() {
-        let timing = timing(Shape::Square, 20);
-        let mut carrier = Carrier::new(&timing);
-        let codes: Vec<i16> = (0..400).map(|tick| carrier.next(200.0, &timing, tick)).collect();
-        assert_eq!(carrier.early_edges(), 0);
-        for (i, code) in codes.iter().enumerate() {
-            let positive = (i + 10) % 40 < 20;
-            assert_eq!(*code, if positive { 20_000 } else { -20_000 }, "{i}");
-        }
-    }
-
-    #[cfg(feature = "sine-carrier")]
-    #[test]
-    fn a_sine_has_the_rms_of_its_envelope() {
-        let timing = timing(Shape::Sine, 20);
-        let mut carrier = Carrier::new(&timing);
-        let sum: f64 = (0..4000).map(|_| f64::from(carrier.next(100.0, &timing, 0)).powi(2)).sum();
-        let rms = (sum / 4000.0).sqrt();
-        assert!((rms * 2.0_f64.sqrt() - 10_000.0).abs() < 1.0, "{rms}");
-    }
-
-    proptest! {
-        /// Amplitudes that move with the carrier are the worst: every half wave of one sign large, of the other small.
-        #[test]
-        fn the_integral_stays_within_a_half_period_at_full_voltage(
-            sine in any::<bool>(),
-            half_period_ticks in 4_u32..80,
-            seed_amplitudes in proptest::collection::vec(0.0_f32..200.0, 1..200),
-            resonant in any::<bool>(),
-        ) {
-            let timing = timing(if sine { Shape::Sine } else { Shape::Square }, half_period_ticks);
-            let mut carrier = Carrier::new(&timing);
-            let mut integral = 0_i64;
-            let full = i64::from(timing.integral_max);
-            for i in 0..4000_usize {
-                let half = i as u32 / half_period_ticks;
-                let amplitude = if resonant { if half.is_multiple_of(2) { 200.0 } else { 3.0 } }
-                    else { seed_amplitudes[i % seed_amplitudes.len()] };
-                if i % 1013 == 0 { carrier.rest(&timing); }
-                integral += i64::from(carrier.next(amplitude, &timing, 0));
-                prop_assert!(integral.abs() <= full, "{integral} after {i} ticks, {full} allowed");
-            }
-        }
-    }
-}
+mod tests;

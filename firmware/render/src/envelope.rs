@@ -46,4 +46,22 @@ mod tests {
         envelope.silence();
         assert_eq!(envelope.voltage_v_rms().to_bits(), 0);
     }
+
+    #[test]
+    fn a_step_of_just_the_limit_is_not_too_far() {
+        let mut envelope = Envelope::default();
+        assert!(!envelope.follow(2.0, 2.0));
+        assert!(!envelope.follow(0.0, 2.0));
+        assert!(!envelope.follow(0.0, 0.0));
+    }
+
+    #[test]
+    fn a_new_limit_lowers_it_at_once_and_never_raises_it() {
+        let mut envelope = Envelope::default();
+        envelope.follow(7.0, 10.0);
+        envelope.limit(5.0);
+        assert_eq!(envelope.voltage_v_rms().to_bits(), 5.0_f32.to_bits());
+        envelope.limit(20.0);
+        assert_eq!(envelope.voltage_v_rms().to_bits(), 5.0_f32.to_bits());
+    }
 }

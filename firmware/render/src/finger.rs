@@ -1,11 +1,11 @@
 //! What the ticker knows of the finger.
 
-use crate::config::LENGTH_MAX_M;
 use crate::deadline::{earlier, is_past};
 use crate::estimator::{Along, Estimator};
 use crate::motion::Motion;
 use crate::stillness::{Stillness, StillnessTiming};
 use crate::{Board, Touch};
+use frixel_layers::range::LENGTH_MAX_M;
 
 /// Touch data is too old to use after this many report periods without a report.
 const STALE_AFTER_PERIODS: f32 = 3.0;
@@ -140,7 +140,7 @@ impl Finger {
             Touch::Down { x_m, y_m, age_ticks } if self.is_ready() => {
                 let newer = self.sampled_at_tick.is_none_or(|tick| age_ticks < now_tick.wrapping_sub(tick));
                 // A report that says nothing new does not keep the output alive: the source may be stuck.
-                let somewhere = [x_m, y_m].into_iter().all(|place_m| place_m.abs() <= LENGTH_MAX_M);
+                let somewhere = [x_m, y_m].into_iter().all(|place_m| place_m.abs() <= LENGTH_MAX_M as f32);
                 let taken = newer && age_ticks <= timing.sample_age_max_ticks && somewhere;
                 if taken {
                     let at_tick = now_tick.wrapping_sub(age_ticks);
@@ -288,6 +288,6 @@ impl Finger {
     /// Its speed as of the last report, in m/s.
     pub(crate) fn speed_m_per_s(&self) -> f32 {
         let [x, y] = self.velocity_m_per_s;
-        crate::root::square_root(x * x + y * y)
+        frixel_layers::square_root(x * x + y * y)
     }
 }

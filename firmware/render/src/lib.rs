@@ -3,13 +3,14 @@
 //!
 //! The two run at different priorities on a board and never share mutable state. What goes between them are values:
 //! [`Order`]s from the session to the ticker, a [`Status`] back, and the two [`Active`] buffers, which change hands by
-//! reference so that a scene is swapped whole at a tick boundary. The [`BitmapPool`] is shared memory of single bytes:
+//! reference so that a scene is swapped whole at a tick boundary. The [`BitmapPool`](frixel_layers::BitmapPool) is shared memory of single bytes:
 //! the session writes only where the ticker does not read.
 //!
 //! A board, a simulator and a test all drive them in the same way:
 //!
 //! ```
-//! use frixel_render::{Active, BitmapPool, Board, Sense, Session, Ticker};
+//! use frixel_layers::BitmapPool;
+//! use frixel_render::{Active, Board, Sense, Session, Ticker};
 //!
 //! let board = Board::SIMULATOR;
 //! let pool = BitmapPool::new();
@@ -35,8 +36,7 @@
 //! `bitmap`, `noise`, `edge` (with buttons), `vibration`, `speed` and `stream`, `polygon` regions, the `sine-carrier`,
 //! `telemetry`; and the `store` of what a board keeps over power-off. An image without one of them is smaller, says so
 //! in the feature bits of its hello, and refuses what needs it. Constant layers, rectangles, ellipses, all blends and
-//! the square carrier are always there. `table-cut` is for shorter commits: they compute no more of the inverse table than
-//! a scene asks for. Without it, scenes whose whole range can be computed play the same, bit for bit.
+//! the square carrier are always there.
 //!
 //! # Fast and small
 //!
@@ -46,20 +46,16 @@
 #![forbid(unsafe_code)]
 
 mod active;
-mod asked;
-mod bitmap_pool;
+mod bitmap_directory;
 mod board;
 mod carrier;
-mod config;
 mod deadline;
 mod envelope;
 mod estimator;
 mod finger;
 mod io;
-mod layer;
 mod motion;
 mod order;
-mod root;
 mod session;
 mod stillness;
 #[cfg(feature = "store")]
@@ -68,18 +64,8 @@ pub mod store;
 mod stream;
 mod supervisor;
 mod ticker;
-#[cfg(any(
-    feature = "grating",
-    feature = "bitmap",
-    feature = "noise",
-    feature = "edge",
-    feature = "vibration",
-    feature = "sine-carrier"
-))]
-mod turns;
 
 pub use active::{Active, TableRows};
-pub use bitmap_pool::{BITMAP_POOL_LEN, BitmapPool};
 pub use board::Board;
 pub use io::{Drive, Sense, Touch};
 pub use order::{Counters, Order, Status};

@@ -8,6 +8,7 @@
 //! one that is due. Rounds have 16 bits: only a slot that was passed over 65,535 times in a row could deceive.
 
 use core::sync::atomic::{AtomicU32, Ordering};
+use frixel_layers::StreamSample;
 
 /// Samples that a stream's buffer holds.
 pub const STREAM_LEN: usize = 1024;
@@ -133,15 +134,6 @@ impl<'a> Intake<'a> {
     }
 }
 
-/// What a stream is worth at a tick.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct StreamNow {
-    /// The sample, 0 to 1.
-    pub(crate) value: f32,
-    /// How much of its layers there is: 1, less while it fades, and 0 without a stream.
-    pub(crate) weight: f32,
-}
-
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Phase {
     /// There is no stream, or it is over.
@@ -234,9 +226,9 @@ impl<'a> Player<'a> {
 
     /// What the stream is worth now.
     #[inline]
-    pub(crate) fn now(&self) -> StreamNow {
+    pub(crate) fn now(&self) -> StreamSample {
         let part = self.fraction as f32 * (1.0 / ONE as f32);
-        StreamNow { value: self.from + part * (self.to - self.from), weight: self.weight }
+        StreamSample { value: self.from + part * (self.to - self.from), weight: self.weight }
     }
 
     /// Goes on by a tick.

@@ -67,17 +67,16 @@ impl Monitor {
         (monitor_v - self.expected_v).abs() < floor_v + self.gain_tolerance * driven_v.abs()
     }
 
-    /// Counts a tick, and returns whether there were too many wrong ones.
+    /// Counts a tick, and returns whether there were too many wrong ones. No more than those are counted, so that a
+    /// monitor that reads right again is soon believed, however long it was wrong.
     fn count(&mut self, driven_v: f32, monitor_v: f32) -> bool {
-        let wrong = !self.is_within(self.floor_v, driven_v, monitor_v);
-        self.wrong_ticks = if wrong { self.wrong_ticks.saturating_add(1) } else { self.wrong_ticks.saturating_sub(1) };
+        self.wrong_ticks = if self.is_within(self.floor_v, driven_v, monitor_v) {
+            self.wrong_ticks.saturating_sub(1)
+        } else {
+            (self.wrong_ticks + 1).min(MONITOR_WRONG_TICKS)
+        };
         self.unnoticed_v = if self.wrong_ticks > 0 { f32::NEG_INFINITY } else { self.floor_v };
-        self.wrong_ticks >= MONITOR_WRONG_TICKS
-    }
-
-    fn forgive(&mut self) {
-        self.wrong_ticks = 0;
-        self.unnoticed_v = self.floor_v;
+        self.wrong_ticks == MONITOR_WRONG_TICKS
     }
 }
 
@@ -168,7 +167,6 @@ impl Supervisor {
             return false;
         }
         if monitor_wrong {
-            self.monitor.forgive();
             self.raise(Fault::Monitor, sense.monitor_v as i32 as u32);
         } else if sense.amplifier_fault {
             self.raise(Fault::Amplifier, 0);
@@ -200,3 +198,6 @@ impl Supervisor {
 pub(crate) fn host_timeout_default_ticks(board: &Board) -> u32 {
     board.ticks(HOST_TIMEOUT_DEFAULT_S)
 }
+
+#[cfg(test)]
+mod tests;

@@ -163,3 +163,31 @@ fn noise_does_not_use_credit_up() {
     }
     assert!(!desk.messages.iter().any(|message| matches!(message, FromBoard::StateChanged { .. })));
 }
+
+/// The most that may be outstanding, each of them a refusal with all its numbers, behind a host that is away.
+#[cfg(feature = "telemetry")]
+#[test]
+fn an_answer_always_has_its_place_and_telemetry_is_left_out() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::of(Board { touch_from_host: true, ..Board::SIMULATOR }, &mut memory);
+    desk.greet();
+    desk.command(Command::Subscribe { period_ticks: 40 }).unwrap();
+    desk.messages.clear();
+    desk.reads = false;
+    desk.ticks(40_000);
+    for sequence in 65_000..65_064 {
+        desk.send(&request(sequence, Command::Touch { x_m: f32::NAN, y_m: 0.0, age_ticks: 0 }));
+        desk.ticks(400);
+    }
+    desk.reads = true;
+    desk.collect();
+    let answered = desk.messages.iter().filter_map(|message| match message {
+        FromBoard::Answer(answer) => Some((answer.sequence, answer.outcome.is_err())),
+        _ => None,
+    });
+    assert_eq!(answered.collect::<Vec<_>>(), (65_000..65_064).map(|sequence| (sequence, true)).collect::<Vec<_>>());
+    desk.messages.clear();
+    desk.ticks(400);
+    let telemetry = desk.messages.iter().filter(|message| matches!(message, FromBoard::Telemetry(_)));
+    assert_eq!(telemetry.count(), 10, "it goes on");
+}

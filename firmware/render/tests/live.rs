@@ -3,10 +3,10 @@
 
 mod support;
 
+use frixel_layers::{Blend, Constant, Header, Layer, Leader, Record};
 use frixel_render::{Board, Touch};
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::message::{Accepted, Command, ConfigField, Refusal};
-use frixel_wire::scene::{Blend, Header, Layer, Leader, Record};
 use support::{Desk, HEADER, Memory, constant, record, scene};
 
 const HALF: Command = Command::SetLayer { layer: 0, on: true, gain: 0.5 };
@@ -31,7 +31,7 @@ fn a_layer_is_changed_only_while_it_plays() {
 fn a_layer_that_is_not_there_and_a_gain_beyond_its_range_are_refused_by_number() {
     let mut memory = Memory::new();
     let mut desk = Desk::new(&mut memory);
-    let layer = record(Layer::Constant { electric_friction_n: 0.01 });
+    let layer = record(Layer::Constant(Constant { electric_friction_n: 0.01 }));
     desk.play(&scene(&HEADER, &[layer, Record { blend: Blend::Add, ..layer }]));
     desk.slide(1_000);
     for layer in [2, 63, 64, 255] {
@@ -60,7 +60,7 @@ fn a_layers_number_is_of_the_scene_that_was_committed_last() {
     let mut memory = Memory::new();
     let mut desk = Desk::new(&mut memory);
     desk.play(&constant(0.01));
-    let layer = record(Layer::Constant { electric_friction_n: 0.002 });
+    let layer = record(Layer::Constant(Constant { electric_friction_n: 0.002 }));
     desk.upload_scene(&scene(&HEADER, &[layer, layer, layer])).unwrap();
     let last = Command::SetLayer { layer: 2, on: true, gain: 1.0 };
     assert_eq!(desk.command(last), Err(Refusal::NoSuchLayer { layer: 2, layers: 1 }), "uploaded, not committed");
@@ -108,7 +108,10 @@ fn the_scene_says_which_of_two_fingers_is_followed() {
         let mut memory = Memory::new();
         let board = Board { touch_from_host: true, ..Board::SIMULATOR };
         let mut desk = Desk::of(board, &mut memory);
-        desk.play(&scene(&Header { leader, ..HEADER }, &[record(Layer::Constant { electric_friction_n: 0.01 })]));
+        desk.play(&scene(
+            &Header { leader, ..HEADER },
+            &[record(Layer::Constant(Constant { electric_friction_n: 0.01 }))],
+        ));
         let mut seen = Vec::new();
         for report in 0..60_u8 {
             let x_m = 0.001 * f32::from(report);

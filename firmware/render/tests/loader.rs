@@ -3,9 +3,11 @@
 
 mod support;
 
-use frixel_wire::scene::{
-    Beat, Blend, Burst, Click, HEADER_LEN, Layer, Point, RECORD_LEN, Record, Region, Wave, bitmap_crc32,
+use frixel_layers::{
+    Beat, Bitmap, Blend, Burst, Button, Click, Constant, Edge, Grating, HEADER_LEN, Layer, Noise, Point, RECORD_LEN,
+    Record, Region, Speed, Stream, Vibration, Wave,
 };
+use frixel_wire::scene::bitmap_crc32;
 use proptest::prelude::*;
 use support::{Desk, HEADER, Memory, scene_with_points};
 
@@ -16,27 +18,31 @@ const SAMPLES: [u8; 6] = [0, 50, 100, 150, 200, 250];
 fn records() -> Vec<Record> {
     let rectangle = Region::Rectangle { x_m: 0.01, y_m: 0.02, width_m: 0.03, height_m: 0.04 };
     let ellipse = Region::Ellipse { x_m: 0.01, y_m: 0.01, width_m: 0.1, height_m: 0.05 };
-    let grating = |wave| Layer::Grating {
-        wave,
-        cycles_per_m_x: 300.0,
-        cycles_per_m_y: 40.0,
-        phase_turns: 0.3,
-        trough_n: 0.001,
-        crest_n: 0.006,
+    let grating = |wave| {
+        Layer::Grating(Grating {
+            wave,
+            cycles_per_m_x: 300.0,
+            cycles_per_m_y: 40.0,
+            phase_turns: 0.3,
+            trough_n: 0.001,
+            crest_n: 0.006,
+        })
     };
-    let bitmap = |tiled| Layer::Bitmap {
-        crc32: bitmap_crc32(3, 2, &SAMPLES),
-        x_m: 0.02,
-        y_m: 0.01,
-        pitch_m: 2e-3,
-        black_n: 0.0,
-        white_n: 0.004,
-        pitch_y_m: 3e-3,
-        angle_turns: 0.1,
-        tiled,
+    let bitmap = |tiled| {
+        Layer::Bitmap(Bitmap {
+            crc32: bitmap_crc32(3, 2, &SAMPLES),
+            x_m: 0.02,
+            y_m: 0.01,
+            pitch_m: 2e-3,
+            black_n: 0.0,
+            white_n: 0.004,
+            pitch_y_m: 3e-3,
+            angle_turns: 0.1,
+            tiled,
+        })
     };
     [
-        (Region::Screen, Blend::Replace, Layer::Constant { electric_friction_n: 0.004 }),
+        (Region::Screen, Blend::Replace, Layer::Constant(Constant { electric_friction_n: 0.004 })),
         (Region::Polygon { first: 2, count: 4 }, Blend::Add, grating(Wave::Triangle)),
         (rectangle, Blend::Max, grating(Wave::Square { duty: 0.3 })),
         (ellipse, Blend::Add, grating(Wave::Sine)),
@@ -46,12 +52,12 @@ fn records() -> Vec<Record> {
         (
             Region::Screen,
             Blend::Add,
-            Layer::Noise { seed: 3, wavelength_min_m: 1e-3, wavelength_max_m: 4e-3, low_n: 0.0, high_n: 0.003 },
+            Layer::Noise(Noise { seed: 3, wavelength_min_m: 1e-3, wavelength_max_m: 4e-3, low_n: 0.0, high_n: 0.003 }),
         ),
         (
             Region::Screen,
             Blend::Add,
-            Layer::Edge {
+            Layer::Edge(Edge {
                 x_m: 0.03,
                 y_m: 0.03,
                 angle_turns: 0.05,
@@ -59,23 +65,23 @@ fn records() -> Vec<Record> {
                 level_n: 0.0,
                 ridge_n: 0.005,
                 click: CLICK,
-            },
+            }),
         ),
-        (rectangle, Blend::Max, Layer::Button { rim_width_m: 2e-3, rim_n: 0.02, face_n: 0.0, click: CLICK }),
-        (ellipse, Blend::Max, Layer::Button { rim_width_m: 2e-3, rim_n: 0.02, face_n: 0.0, click: CLICK }),
+        (rectangle, Blend::Max, Layer::Button(Button { rim_width_m: 2e-3, rim_n: 0.02, face_n: 0.0, click: CLICK })),
+        (ellipse, Blend::Max, Layer::Button(Button { rim_width_m: 2e-3, rim_n: 0.02, face_n: 0.0, click: CLICK })),
         (
             Region::Screen,
             Blend::Add,
-            Layer::Vibration {
+            Layer::Vibration(Vibration {
                 beat: Beat::Sine,
                 frequency_hz: 80.0,
                 low_n: 0.0,
                 high_n: 0.002,
                 burst: Burst { period_s: 0.05, on_s: 0.02, ramp_s: 0.005 },
-            },
+            }),
         ),
-        (Region::Screen, Blend::Multiply, Layer::Speed { first: 0, count: 2 }),
-        (Region::Screen, Blend::Add, Layer::Stream { low_n: 0.001, high_n: 0.02 }),
+        (Region::Screen, Blend::Multiply, Layer::Speed(Speed { first: 0, count: 2 })),
+        (Region::Screen, Blend::Add, Layer::Stream(Stream { low_n: 0.001, high_n: 0.02 })),
     ]
     .map(|(region, blend, layer)| Record { region, blend, gain: 1.0, layer })
     .to_vec()
@@ -83,7 +89,7 @@ fn records() -> Vec<Record> {
 
 /// A layer, and one below it that is always felt.
 fn on_a_ground(record: Record) -> Vec<Record> {
-    let ground = Layer::Constant { electric_friction_n: 0.005 };
+    let ground = Layer::Constant(Constant { electric_friction_n: 0.005 });
     vec![Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer: ground }, record]
 }
 
@@ -141,7 +147,7 @@ mod whole {
         let parameters = |record: &Record| {
             let bytes = record.write();
             // The bitmap's name and the noise's seed are not numbers, the points of a curve are judged below.
-            let end = if matches!(record.layer, Layer::Edge { .. }) { RECORD_LEN } else { 52 };
+            let end = if matches!(record.layer, Layer::Edge(_)) { RECORD_LEN } else { 52 };
             let starts = if matches!(record.region, Region::Polygon { .. }) { 20 } else { 4 };
             (starts..end).step_by(4).filter(|at| bytes[*at..at + 4] != [0; 4]).collect::<Vec<_>>()
         };
@@ -173,7 +179,7 @@ mod whole {
 
     #[test]
     fn speeds_of_a_curve_rise() {
-        let curve = record(Layer::Speed { first: 0, count: 2 });
+        let curve = record(Layer::Speed(Speed { first: 0, count: 2 }));
         let refusal = refusal(curve, &[(0.1, 1.0), (0.1, 2.0)].map(|(x, y)| Point { x, y })).unwrap();
         assert_eq!((refusal.field, refusal.found), (ConfigField::CurveSpeed, 0.1));
     }

@@ -2,10 +2,10 @@
 
 mod support;
 
+use frixel_layers::{Constant, Header, Layer};
 use frixel_render::{Drive, Touch};
 use frixel_wire::fault::{Fault, Flags, State};
 use frixel_wire::message::{Command, FromBoard, Refusal};
-use frixel_wire::scene::{Header, Layer};
 use support::{Desk, HEADER, Memory, constant, record, scene};
 
 const OFF: Drive = Drive { dac_code: 0, amplifier_enable: false };
@@ -124,7 +124,7 @@ fn a_new_clients_hello_ends_what_the_client_before_had_armed() {
 
 fn autonomous() -> Vec<u8> {
     let header = Header { autonomous: true, ..HEADER };
-    scene(&header, &[record(Layer::Constant { electric_friction_n: 0.02 })])
+    scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.02 }))])
 }
 
 #[test]
@@ -235,7 +235,7 @@ fn the_envelope_keeps_its_slew_limit() {
     let mut memory = Memory::new();
     let mut desk = Desk::new(&mut memory);
     let header = Header { slew_v_per_s: 2e5, ..HEADER };
-    desk.play(&scene(&header, &[record(Layer::Constant { electric_friction_n: 0.02 })]));
+    desk.play(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.02 }))]));
     desk.command(Command::Ping).unwrap();
     let mut last_v_rms = 0.0;
     for i in 0..200 {
@@ -280,7 +280,7 @@ fn a_new_scenes_voltage_limit_holds_from_its_first_tick() {
     let mut desk = playing(&mut memory);
     assert!(desk.status().telemetry.voltage_v_rms > 100.0);
     let header = Header { voltage_max_v_rms: 20.0, slew_v_per_s: 10.0, ..HEADER };
-    desk.load(&scene(&header, &[record(Layer::Constant { electric_friction_n: 1e-5 })])).unwrap();
+    desk.load(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 1e-5 }))])).unwrap();
     desk.tick();
     assert!(desk.status().telemetry.voltage_v_rms <= 20.0);
 }
@@ -313,7 +313,7 @@ fn a_new_scenes_voltage_limit_holds_in_a_tick_with_a_deadline() {
         (0..ticks).for_each(|tick| slide_and_rest(&mut desk, tick));
         assert!(desk.status().telemetry.voltage_v_rms > 100.0, "{ticks}");
         let header = Header { voltage_max_v_rms: 20.0, slew_v_per_s: 1e9, ..HEADER };
-        desk.load(&scene(&header, &[record(Layer::Constant { electric_friction_n: 1e-5 })])).unwrap();
+        desk.load(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 1e-5 }))])).unwrap();
         for tick in ticks..ticks + 40 {
             slide_and_rest(&mut desk, tick);
             assert!(desk.status().telemetry.voltage_v_rms <= 20.0, "{ticks}, {tick}");
@@ -352,7 +352,7 @@ fn a_dead_amplifier_and_a_live_electrode_are_seen_at_50_volts() {
     let mut memory = Memory::new();
     let mut desk = Desk::new(&mut memory);
     let header = Header { voltage_max_v_rms: 45.0, ..HEADER };
-    desk.play(&scene(&header, &[record(Layer::Constant { electric_friction_n: 1.0 })]));
+    desk.play(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 1.0 }))]));
     desk.slide(400);
     desk.amplifier_dead = true;
     assert_faults(&mut desk, Fault::Monitor, 40);

@@ -4,15 +4,16 @@
 
 mod support;
 
+use frixel_layers::{Constant, Grating, Header, Layer, Record, Region};
 use frixel_render::{Board, Order, Touch};
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::frame::crc32;
 use frixel_wire::hello::feature;
 use frixel_wire::message::{Accepted, Command, ConfigField, FromBoard, Refusal};
 use frixel_wire::payload::CHUNK_LEN;
+use frixel_wire::scene::SceneError;
 #[cfg(feature = "bitmap")]
 use frixel_wire::scene::bitmap_crc32;
-use frixel_wire::scene::{Header, Layer, Record, Region, SceneError};
 use proptest::prelude::*;
 #[cfg(feature = "bitmap")]
 use support::bitmap;
@@ -119,7 +120,7 @@ fn numbers_that_the_board_cannot_play_are_refused_by_name() {
         Err(Refusal::Config(refusal)) => Some(refusal.field),
         other => panic!("{other:?}"),
     };
-    let fine = Layer::Constant { electric_friction_n: 0.01 };
+    let fine = Layer::Constant(Constant { electric_friction_n: 0.01 });
     for (header, expected) in [
         (Header { finger_radius_m: f32::NAN, ..HEADER }, ConfigField::FingerRadius),
         (Header { stiffness_pa_per_m: -1.0, ..HEADER }, ConfigField::Stiffness),
@@ -134,7 +135,7 @@ fn numbers_that_the_board_cannot_play_are_refused_by_name() {
         assert_eq!(field(&mut desk, header, fine), Some(expected));
     }
     assert_eq!(
-        field(&mut desk, HEADER, Layer::Constant { electric_friction_n: f32::NAN }),
+        field(&mut desk, HEADER, Layer::Constant(Constant { electric_friction_n: f32::NAN })),
         Some(ConfigField::Friction)
     );
 }
@@ -168,7 +169,7 @@ fn a_scene_of_more_records_than_the_board_says_is_refused() {
     let of = |count: usize| {
         let beside = |number| {
             let region = Region::Rectangle { x_m: 0.01 * number as f32, y_m: 0.0, width_m: 0.01, height_m: 0.1 };
-            Record { region, ..record(Layer::Constant { electric_friction_n: 0.01 }) }
+            Record { region, ..record(Layer::Constant(Constant { electric_friction_n: 0.01 })) }
         };
         scene(&HEADER, &(0..count).map(beside).collect::<Vec<_>>())
     };
@@ -419,14 +420,14 @@ proptest! {
             carrier_hz: floats[8] * 20.0,
             ..HEADER
         };
-        let layer = Layer::Grating {
-            wave: frixel_wire::scene::Wave::Sine,
+        let layer = Layer::Grating(Grating {
+            wave: frixel_layers::Wave::Sine,
             cycles_per_m_x: layer[0],
             cycles_per_m_y: layer[1],
             phase_turns: layer[2],
             trough_n: layer[3],
             crest_n: layer[4],
-        };
+        });
         if desk.load(&scene(&header, &[record(layer)])).is_ok() {
             desk.command(Command::Arm).unwrap();
             desk.command(Command::Play).unwrap();

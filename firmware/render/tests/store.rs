@@ -4,12 +4,13 @@
 
 mod support;
 
+use frixel_layers::{Bitmap, Layer, Record, Region};
 use frixel_render::store::{Found, SceneKeeper, Slot, WORD_LEN, Writer, Writing};
 use frixel_render::{Board, Drive};
 use frixel_wire::frame::crc32;
 use frixel_wire::hello::BoardLimits;
 use frixel_wire::message::{Accepted, Command};
-use frixel_wire::scene::{Layer, Record, Region, bitmap_crc32};
+use frixel_wire::scene::bitmap_crc32;
 use proptest::prelude::*;
 use support::flash::{PAGE_LEN, SimulatedFlash};
 use support::{Desk, HEADER, Memory, constant, record, scene};
@@ -158,16 +159,18 @@ fn scene_flash() -> SimulatedFlash {
 
 /// A scene of two bitmaps, one of them used twice.
 fn textured(desk: &mut Desk) -> Vec<u8> {
-    let layer = |crc32, pitch_m| Layer::Bitmap {
-        crc32,
-        x_m: 0.0,
-        y_m: 0.0,
-        pitch_m,
-        black_n: 0.0,
-        white_n: 0.02,
-        pitch_y_m: pitch_m,
-        angle_turns: 0.0,
-        tiled: false,
+    let layer = |crc32, pitch_m| {
+        Layer::Bitmap(Bitmap {
+            crc32,
+            x_m: 0.0,
+            y_m: 0.0,
+            pitch_m,
+            black_n: 0.0,
+            white_n: 0.02,
+            pitch_y_m: pitch_m,
+            angle_turns: 0.0,
+            tiled: false,
+        })
     };
     let pictures = [content(7, 61 * 53), content(8, 9)];
     desk.upload_bitmap(61, 53, &pictures[0]).unwrap();

@@ -1,4 +1,4 @@
-//! A table that is cut to what a scene can ask for plays the scene as the whole table does.
+//! A table that ends at the largest friction that the header names plays the scene as the whole table does.
 #![cfg(all(
     feature = "grating",
     feature = "bitmap",
@@ -14,15 +14,16 @@
 
 mod support;
 
+use frixel_layers::{Blend, Constant, Header, Layer, Record, Region, Scene, electric_friction_max_n};
 use frixel_random_scenes::{Pace, RandomFinger, RandomScene, Report};
 use frixel_render::{Active, Board, TableRows, Touch};
 use frixel_wire::fault::Flags;
 use frixel_wire::frame::FRAME_MAX_LEN;
-use frixel_wire::message::{Command, Refusal};
+use frixel_wire::message::{Command, ConfigField, Refusal};
 use frixel_wire::payload::samples_frame;
-use frixel_wire::scene::{Blend, Click, Header, Layer, Record, Region, Scene, bitmap_crc32};
+use frixel_wire::scene::bitmap_crc32;
 use proptest::prelude::*;
-use support::{Desk, HEADER, Memory, record, scene, scene_with_points};
+use support::{Desk, HEADER, Memory, scene, scene_with_points};
 
 const SAMPLES: [u8; 6] = [0, 255, 100, 150, 200, 250];
 const TICKS: u32 = 3_000;
@@ -30,6 +31,15 @@ const STREAM_HZ: u32 = 10_000;
 
 fn rows(scene: &[u8]) -> TableRows {
     Active::table_rows(&Scene::parse(scene).unwrap(), &Board::SIMULATOR).unwrap()
+}
+
+/// What a header says of the largest friction of a scene whose layers stay as they are.
+fn largest_n(random: &RandomScene) -> Option<f32> {
+    electric_friction_max_n(&random.header, &random.records, &random.points)
+}
+
+fn cut_header(random: &RandomScene) -> Header {
+    Header { electric_friction_max_n: largest_n(random), ..random.header }
 }
 
 /// What a board made of a scene at one tick.
@@ -79,8 +89,8 @@ proptest! {
     #[test]
     fn no_tick_sees_the_cut(seed in any::<u64>()) {
         let random = RandomScene::new(seed, bitmap_crc32(3, 2, &SAMPLES));
-        let [cut, whole] = [true, false].map(|layers_fixed| {
-            played(&Header { layers_fixed, ..random.header }, &random, seed)
+        let [cut, whole] = [largest_n(&random), None].map(|electric_friction_max_n| {
+            played(&Header { electric_friction_max_n, ..random.header }, &random, seed)
         });
         for (tick, (cut, whole)) in cut.iter().zip(&whole).enumerate() {
             prop_assert_eq!(cut, whole, "tick {} of scene {}", tick, seed);
@@ -96,77 +106,66 @@ fn many_random_scenes_have_a_table_that_is_cut_and_drive() {
     let cut: Vec<&(u64, RandomScene)> = scenes
         .iter()
         .filter(|(_, random)| {
-            let header = Header { layers_fixed: true, ..random.header };
-            let TableRows { filled, whole } = rows(&scene_with_points(&header, &random.records, &random.points));
+            let TableRows { filled, whole } =
+                rows(&scene_with_points(&cut_header(random), &random.records, &random.points));
             filled < whole
         })
         .collect();
     assert!(cut.len() > 40, "{}", cut.len());
-    let driven = cut.iter().filter(|(seed, random)| {
-        let header = Header { layers_fixed: true, ..random.header };
-        played(&header, random, *seed).iter().any(|played| played.dac_code != 0)
-    });
+    let driven = cut
+        .iter()
+        .filter(|(seed, random)| played(&cut_header(random), random, *seed).iter().any(|played| played.dac_code != 0));
     let driven = driven.count();
     println!("{} of {} cut, {driven} of them drive", cut.len(), scenes.len());
     assert!(driven > 40);
 }
 
 const fn constant(electric_friction_n: f32) -> Record {
-    Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer: Layer::Constant { electric_friction_n } }
+    Record {
+        region: Region::Screen,
+        blend: Blend::Replace,
+        gain: 1.0,
+        layer: Layer::Constant(Constant { electric_friction_n }),
+    }
 }
 
 #[test]
-fn a_table_goes_as_far_as_the_scene() {
-    let fixed = Header { layers_fixed: true, ..HEADER };
-    let of = |header: &Header, records: &[Record]| rows(&scene(header, records));
-    let whole = of(&HEADER, &[constant(0.001)]);
-    assert_eq!(whole.filled, whole.whole, "a layer may be changed");
-    assert_eq!(of(&fixed, &[constant(0.1)]), whole, "out of reach");
+fn a_table_ends_where_the_header_says() {
+    let of = |electric_friction_max_n| rows(&scene(&Header { electric_friction_max_n, ..HEADER }, &[constant(0.001)]));
+    let whole = of(None);
+    assert_eq!(whole.filled, whole.whole);
+    assert_eq!(of(Some(f32::MAX)), whole, "out of reach");
     // Four rows an octave.
-    let asks = |records: &[Record]| of(&fixed, records).filled;
-    assert_eq!(asks(&[constant(0.02)]), asks(&[constant(0.01)]) + 4);
-    assert_eq!(asks(&[]), 1);
-    assert_eq!(asks(&[constant(-0.02)]), 1);
+    assert_eq!(of(Some(0.02)).filled, of(Some(0.01)).filled + 4);
+    assert_eq!(of(Some(0.0)).filled, 1);
+}
 
-    let over = |blend, gain, friction_n| Record { blend, gain, ..constant(friction_n) };
-    for (above, sum_n) in [
-        (over(Blend::Replace, 1.0, 0.004), 0.004),
-        (over(Blend::Add, 1.0, 0.006), 0.016),
-        (over(Blend::Add, -1.0, 0.006), 0.004),
-        (over(Blend::Multiply, 0.5, 0.5), 0.0025),
-        (over(Blend::Max, 2.0, 0.01), 0.02),
-        (over(Blend::Max, 1.0, 0.001), 0.01),
-    ] {
-        assert_eq!(asks(&[constant(0.01), above]), asks(&[constant(sum_n)]), "{above:?}");
-        let part = Record { region: Region::Rectangle { x_m: 0.0, y_m: 0.0, width_m: 0.01, height_m: 0.01 }, ..above };
-        assert_eq!(
-            asks(&[constant(0.01), part]),
-            asks(&[constant(sum_n.max(0.01))]),
-            "in a part of the screen: {above:?}"
+/// Above the row that the table ends in, friction is out of reach, and the board says so.
+#[test]
+fn what_is_above_the_end_of_the_table_is_counted_as_saturated() {
+    for (electric_friction_max_n, saturated) in [(None, false), (Some(0.02), false), (Some(0.005), true)] {
+        let mut memory = Memory::new();
+        let mut desk = Desk::new(&mut memory);
+        desk.play(&scene(&Header { electric_friction_max_n, ..HEADER }, &[constant(0.02)]));
+        desk.slide(2_000);
+        let counted = desk.status().counters.saturated_ticks > 0;
+        assert_eq!(counted, saturated, "{electric_friction_max_n:?}");
+    }
+}
+
+#[test]
+fn a_largest_friction_that_is_no_number_is_refused() {
+    for electric_friction_max_n in [f32::NAN, f32::INFINITY, -0.01] {
+        let header = Header { electric_friction_max_n: Some(electric_friction_max_n), ..HEADER };
+        let mut memory = Memory::new();
+        let mut desk = Desk::new(&mut memory);
+        desk.greet();
+        let refused = desk.load(&scene(&header, &[constant(0.01)])).unwrap_err();
+        assert!(
+            matches!(refused, Refusal::Config(refusal) if refusal.field == ConfigField::ElectricFrictionMax),
+            "{refused:?}"
         );
     }
-    // What is added side by side is no sum.
-    let beside = |x_m| Record {
-        region: Region::Rectangle { x_m, y_m: 0.0, width_m: 0.01, height_m: 0.1 },
-        ..over(Blend::Add, 1.0, 0.006)
-    };
-    assert_eq!(asks(&[beside(0.01), beside(0.03), beside(0.05)]), asks(&[constant(0.006)]));
-    // An ellipse in a screen leaves its corners.
-    let ellipse =
-        Region::Ellipse { x_m: 0.0, y_m: 0.0, width_m: HEADER.screen_width_m, height_m: HEADER.screen_height_m };
-    let smooth = Record { region: ellipse, ..constant(0.002) };
-    assert_eq!(asks(&[constant(0.01), smooth]), asks(&[constant(0.01)]));
-    // A click comes on top.
-    let click = Click { height_n: 0.004, decay_s: 0.02 };
-    let edge =
-        Layer::Edge { x_m: 0.05, y_m: 0.05, angle_turns: 0.0, width_m: 0.01, level_n: 0.0, ridge_n: 0.006, click };
-    assert_eq!(asks(&[record(edge)]), asks(&[constant(0.01)]));
-    let button = Layer::Button { rim_width_m: 1e-3, rim_n: 0.006, face_n: 0.001, click };
-    assert_eq!(asks(&[Record { region: ellipse, ..record(button) }]), asks(&[constant(0.01)]));
-    // A stream asks for no more than its two numbers say, and may not be there.
-    let stream = record(Layer::Stream { low_n: 0.002, high_n: 0.006 });
-    assert_eq!(asks(&[constant(0.003), stream]), asks(&[constant(0.006)]));
-    assert_eq!(asks(&[constant(0.01), stream]), asks(&[constant(0.01)]));
 }
 
 #[test]

@@ -17,7 +17,7 @@ pub const MAGIC: [u8; 4] = *b"FRXL";
 /// Protocol of this crate, major: raised when an older peer can no longer be talked to.
 pub const PROTOCOL_MAJOR: u8 = 1;
 /// Protocol of this crate, minor: raised when something was added that an older peer may ignore.
-pub const PROTOCOL_MINOR: u8 = 2;
+pub const PROTOCOL_MINOR: u8 = 3;
 /// Most bytes that a hello of any protocol may have.
 pub const HELLO_MAX_LEN: usize = 128;
 /// Bytes of a hello that this crate writes.

@@ -9,7 +9,6 @@ use frixel_wire::payload::{
     CHUNK_LEN, CHUNK_NUMBER_MAX, PAYLOAD_MAX_LEN, ParseError, Payload, SAMPLES_MAX, WriteError, chunk_frame,
     samples_frame,
 };
-use frixel_wire::scene::{HEADER_LEN, Header, RECORD_LEN, Record, Scene};
 use proptest::prelude::*;
 use support::samples;
 
@@ -75,51 +74,6 @@ proptest! {
         let bytes = [b"FRXL", tail.as_slice()].concat();
         if let Ok(hello) = Hello::parse(&bytes) {
             prop_assert_eq!(hello.write(), Hello::parse(&hello.write()).unwrap().write());
-        }
-    }
-
-    /// A header or record that is accepted has one form only.
-    #[test]
-    fn headers_have_one_form(mut bytes in prop::array::uniform32(any::<u8>()), flags in 0..18u8, carrier in 0..4u8, unused in 0..2u8) {
-        bytes[..4].copy_from_slice(&[2, 0, flags % 3, flags]);
-        let mut header = [0; HEADER_LEN];
-        header[..32].copy_from_slice(&bytes);
-        header[52] = carrier;
-        header[54] = unused;
-        if let Ok((read, records, points)) = Header::parse(&header) {
-            prop_assert_eq!(read.write(records, points), header);
-        }
-    }
-
-    #[test]
-    fn records_have_one_form(head in prop::array::uniform4(0..10u8), tail in prop::array::uniform32(any::<u8>()), long in any::<bool>()) {
-        let mut record = [0; RECORD_LEN];
-        record[..4].copy_from_slice(&head);
-        let at = if long { 24 } else { 12 };
-        record[at..at + 32].copy_from_slice(&tail);
-        if let Ok(read) = Record::parse(&record, 0) {
-            prop_assert_eq!(read.write(), record);
-        }
-    }
-
-    #[test]
-    fn arbitrary_scenes_do_not_panic(
-        changes in prop::collection::vec((any::<prop::sample::Index>(), 0..8u8), 0..3),
-        len in 0..1_400usize,
-    ) {
-        let mut bytes = samples::scene();
-        for (at, byte) in changes {
-            let at = at.index(bytes.len());
-            bytes[at] = byte;
-        }
-        if len < 900 {
-            bytes.resize(len, 0);
-        }
-        if let Ok(scene) = Scene::parse(&bytes) {
-            let mut again = scene.header().write(scene.record_count() as u8, scene.point_count() as u8).to_vec();
-            again.extend(scene.records().flat_map(|record| record.write()));
-            again.extend(scene.points().flat_map(|point| point.write()));
-            prop_assert_eq!(again, bytes);
         }
     }
 

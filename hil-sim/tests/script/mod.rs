@@ -2,11 +2,12 @@
 #![allow(dead_code, unreachable_pub, clippy::unwrap_used, reason = "a test uses its part, and may fail")]
 
 use frixel_hil_sim::{Rig, TickRecord};
+use frixel_layers::{Blend, Carrier, Header, Layer, Leader, Point, Record, Region};
 use frixel_render::Status;
 use frixel_wire::frame::{FRAME_MAX_LEN, crc32};
 use frixel_wire::message::{Command, Request};
 use frixel_wire::payload::{self, CHUNK_LEN};
-use frixel_wire::scene::{Blend, Carrier, Header, Layer, Leader, Point, Record, Region, bitmap_crc32};
+use frixel_wire::scene::bitmap_crc32;
 
 /// Ticks between two pings.
 const PING_TICKS: u64 = 2_000;
@@ -131,6 +132,7 @@ pub const HEADER: Header = Header {
     prediction: true,
     leader: Leader::First,
     layers_fixed: false,
+    electric_friction_max_n: None,
 };
 
 pub fn record(layer: Layer) -> Record {

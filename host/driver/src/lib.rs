@@ -40,11 +40,11 @@ mod upload;
 
 use std::time::Duration;
 
+use frixel_layers::Scene;
 use frixel_wire::fault::{Fault, Flags, State};
 use frixel_wire::frame::Decoder;
 use frixel_wire::hello::Hello;
 use frixel_wire::message::{Command, Telemetry};
-use frixel_wire::scene::Scene;
 
 use command::name_of;
 use exchange::{ANSWER_TIMEOUT, Exchange};

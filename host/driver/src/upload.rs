@@ -21,7 +21,7 @@ const STARTS: u32 = 3;
 /// What is to play: a compiled scene, and the bitmaps that it names.
 #[derive(Clone, Debug)]
 pub struct Upload<'a> {
-    /// The scene's bytes, as `frixel_wire::scene` lays them out.
+    /// The scene's bytes, as `frixel-layers` lays them out.
     pub scene: &'a [u8],
     /// The bitmaps. Those that the board holds already are not sent.
     pub bitmaps: Vec<Bitmap<'a>>,

@@ -8,4 +8,5 @@ pub mod output;
 pub mod player;
 pub mod report;
 pub mod rigs;
+pub mod scene_file;
 pub mod stream;

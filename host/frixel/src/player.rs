@@ -242,3 +242,33 @@ pub fn simulate(program: &Program, simulation: &Simulation, feed: Option<Feed>) 
     let (counters, stream) = (player.device().counters(), player.device().stream_status());
     Ok(Simulated { recorder: player.into_recorder(), counters, stream })
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use frixel_scene::compile;
+    use frixel_wire::fault::Fault;
+
+    use super::*;
+
+    /// A fault ends a play in virtual time as it does at a port, with what was played until then in the record.
+    #[test]
+    fn a_board_that_stops_by_itself_ends_the_play() {
+        let config = RigConfig::default();
+        let board = &config.board;
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/constant.toml");
+        let program = compile(&crate::scene_file::load(&path).unwrap(), &board.limits, board.tick_hz).unwrap();
+        let mut memory = BoardMemory::new();
+        let mut rig = Rig::new(&mut memory, &config, Stroke::natural(0.12, 0.11, 1.0).unwrap(), 1).unwrap();
+        rig.world_mut().schedule_amplifier_fault(20_000..u64::MAX);
+        let recorder = Recorder::new(&program, &board.limits, board.tick_hz, 400_000, 40).unwrap();
+        let mut player = Player::new(Device::connect(SimLink::new(rig, Recorder::idle())).unwrap(), recorder);
+        player.start(&program, 0, &mut |_| {}).unwrap();
+        let error = (0..100).find_map(|_| player.step(Duration::MAX).err()).unwrap();
+        assert!(matches!(error, PlayError::Stopped(StopReason::Fault(Fault::Amplifier))), "{error}");
+        let recorder = player.into_recorder();
+        assert!((10_000..25_000).contains(&recorder.ticks()), "{} ticks", recorder.ticks());
+        assert!(!recorder.rows().is_empty());
+    }
+}

@@ -1,28 +1,29 @@
-//! The brick scene, from its file to the finger: the numbers that issue "First light" asks for.
+//! The brick scene, from its file to the finger: the goals that README names.
 //!
-//! What is wanted is evaluated here a second time, from the picture as the compiler resampled it, and compared with what
-//! the recorder took for wanted, so that the errors below are errors against the picture.
+//! The reference is evaluated here a second time, from the picture as the compiler resampled it, and compared with that of
+//! the recorder, so that the errors below are errors against the picture.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::path::Path;
 
 use frixel::player::{Simulated, Simulation, simulate};
+use frixel::scene_file;
 use frixel_hil_sim::{Point, RigConfig, Stroke};
 use frixel_scene::metrics::MetricsSummary;
-use frixel_scene::{Program, Scene, compile};
+use frixel_scene::{Program, compile};
 
 const START: Point = Point { x_m: 0.004, y_m: 0.03 };
 const END: Point = Point { x_m: 0.116, y_m: 0.045 };
 
 fn brick(prediction: bool) -> Program {
     let rig = RigConfig::default();
-    let scene = Scene::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/brick.toml")).unwrap();
+    let scene = scene_file::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/brick.toml")).unwrap();
     let mut program = compile(&scene, &rig.board.limits, rig.board.tick_hz).unwrap();
     program.header.prediction = prediction;
     program
 }
 
-/// Touch source as the issue has it: 100 Hz, 10 ms late, noise 0.02 mm rms, jitter 0.5 ms.
+/// The touch source that the goals are for: 100 Hz, 10 ms late, noise 0.02 mm rms, jitter 0.5 ms.
 fn rig() -> RigConfig {
     let rig = RigConfig::default();
     let touch = &rig.world.touch;

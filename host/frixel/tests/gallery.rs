@@ -10,11 +10,12 @@ use std::path::{Path, PathBuf};
 
 use frixel::output::{Preview, write_preview_png};
 use frixel::player::{Simulation, simulate};
+use frixel::scene_file;
 use frixel_hil_sim::{BoardMemory, RigConfig, Stroke};
+use frixel_layers::{Header, Scene as WireScene};
 use frixel_scene::recorder::FeltRow;
-use frixel_scene::{Asked, Program, Scene, compile};
+use frixel_scene::{Asked, Program, compile};
 use frixel_wire::fault::Flags;
-use frixel_wire::scene::{Header, Scene as WireScene};
 
 const PICTURE_BYTES_MAX: u64 = 40 * 1024;
 /// How much the felt friction has to vary along a stroke over a scene, as a part of what the drive can add.
@@ -38,7 +39,7 @@ fn gallery() -> Vec<Entry> {
     let entries = scenes.iter().map(|path| Entry {
         name: path.file_stem().unwrap().to_string_lossy().into_owned(),
         text: fs::read_to_string(path).unwrap(),
-        program: compile(&Scene::load(path).unwrap(), &rig.board.limits, rig.board.tick_hz)
+        program: compile(&scene_file::load(path).unwrap(), &rig.board.limits, rig.board.tick_hz)
             .unwrap_or_else(|error| panic!("{error}")),
     });
     entries.collect()
@@ -90,7 +91,7 @@ fn every_scene_is_felt_without_a_fault_and_within_reach() {
     }
 }
 
-/// The compiler says that no layer is changed, so the board cuts its table to what the scene asks for. What is felt is the
+/// The compiler says the largest friction that the scene asks for, and the board ends its table there. What is felt is the
 /// same to the last bit as with the whole table.
 #[test]
 fn no_scene_is_felt_otherwise_because_its_table_is_cut() {
@@ -106,12 +107,12 @@ fn no_scene_is_felt_otherwise_because_its_table_is_cut() {
         let (width_m, height_m) = (program.header.screen_width_m.into(), program.header.screen_height_m.into());
         let stroke = Stroke::natural(width_m, height_m, 1.0).unwrap();
         let simulation = Simulation { rig, seconds: stroke.duration_s(), stroke, seed: 1, ticks_per_row: 10 };
-        let whole = Program { header: Header { layers_fixed: false, ..program.header }, ..program.clone() };
+        let whole = Program { header: Header { electric_friction_max_n: None, ..program.header }, ..program.clone() };
         let [with_cut, without] = [program, &whole].map(|program| {
             let simulated = simulate(program, &simulation, None).unwrap_or_else(|error| panic!("{name}: {error}"));
             simulated.recorder.rows().to_vec()
         });
-        assert!(program.header.layers_fixed && with_cut == without, "{name}");
+        assert!(program.header.electric_friction_max_n.is_some() && with_cut == without, "{name}");
         assert!(
             with_cut.iter().any(|row| row.voltage_v_rms.is_some_and(|voltage_v_rms| voltage_v_rms > 1.0)),
             "{name}"

@@ -5,16 +5,17 @@ use std::path::Path;
 
 use frixel::player;
 use frixel::rigs::SimLink;
+use frixel::scene_file;
 use frixel_driver::Device;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
+use frixel_scene::compile;
 use frixel_scene::recorder::Recorder;
-use frixel_scene::{Scene, compile};
 use frixel_wire::fault::State;
 
 /// The state that a second client finds, when the first one has left its scene playing.
 fn found(autonomous: bool) -> State {
     let config = RigConfig::default();
-    let scene = Scene::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/constant.toml")).unwrap();
+    let scene = scene_file::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/constant.toml")).unwrap();
     let mut program = compile(&scene, &config.board.limits, config.board.tick_hz).unwrap();
     program.header.autonomous = autonomous;
     let mut memory = BoardMemory::new();

@@ -61,6 +61,7 @@ fn json_has_every_number_and_the_same_seed_the_same_bytes() {
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!(json["rig"], "sim");
     assert_eq!(json["ticks"], 20_000);
+    assert_eq!(json["frames_rejected"], 0, "no byte is late in virtual time");
     for key in [
         "friction_error_rms_n",
         "friction_error_max_n",

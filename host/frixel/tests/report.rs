@@ -216,7 +216,7 @@ fn compiled(layers: &str) -> Result<Program, CompileError> {
     let head = "version = 1\n[screen]\nwidth_mm = 120\nheight_mm = 80\n[coating]\nthickness_um = 10\npermittivity = 1\n\
                 [finger]\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\nfriction_coefficient = 0.5\nnormal_load_n = 0.5\n";
     let board = RigConfig::default().board;
-    compile(&Scene::parse(&format!("{head}{layers}"), "a scene", Path::new(""))?, &board.limits, board.tick_hz)
+    compile(&Scene::parse(&format!("{head}{layers}"), "a scene", &BTreeMap::new())?, &board.limits, board.tick_hz)
 }
 
 /// The bytes and frames of an upload whose content is cut into chunks of 184 bytes: two bytes of number, four of CRC, one of

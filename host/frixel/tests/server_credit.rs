@@ -10,8 +10,9 @@ use std::thread::{self, sleep};
 use std::time::Duration;
 
 use frixel::rigs::Server;
+use frixel::scene_file;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
-use frixel_scene::{Scene, compile};
+use frixel_scene::compile;
 use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, crc32};
 use frixel_wire::message::{Answer, Command, FromBoard, Request};
 use frixel_wire::payload::{self, CHUNK_LEN, Payload};
@@ -91,7 +92,7 @@ enum Message {
 fn scene() -> Vec<u8> {
     let config = RigConfig::default();
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/constant.toml");
-    compile(&Scene::load(&path).unwrap(), &config.board.limits, config.board.tick_hz).unwrap().scene_bytes()
+    compile(&scene_file::load(&path).unwrap(), &config.board.limits, config.board.tick_hz).unwrap().scene_bytes()
 }
 
 /// Runs a virtual board while `talk` does, to which its port and its folder are given.

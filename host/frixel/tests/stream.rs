@@ -1,6 +1,6 @@
 //! A stream from a WAV file through driver, line, board and amplifier to the finger, in virtual time.
 //!
-//! What the board asks for is compared, tick by tick, with straight lines between the file's samples in f64.
+//! The friction that the board commands is compared, tick by tick, with straight lines between the file's samples in f64.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::f64::consts::TAU;
@@ -9,13 +9,14 @@ use std::time::Duration;
 
 use frixel::player;
 use frixel::rigs::SimLink;
+use frixel::scene_file;
 use frixel::stream::Feed;
 use frixel_driver::{Device, StreamStatus};
 use frixel_hil_sim::{BoardMemory, Point, Rig, RigConfig, Stroke};
+use frixel_layers::{Blend, Layer, Record, Region, Stream};
 use frixel_scene::recorder::{FeltRow, Recorder};
-use frixel_scene::{Program, Scene, compile};
+use frixel_scene::{Program, compile};
 use frixel_wire::fault::Flags;
-use frixel_wire::scene::{Blend, Layer, Record, Region};
 use hound::{SampleFormat, WavSpec, WavWriter};
 
 const SAMPLE_HZ: u32 = 4_000;
@@ -28,9 +29,9 @@ const HIGH_N: f64 = 0.018;
 /// The friction that a stream alone gives.
 fn program() -> Program {
     let rig = RigConfig::default();
-    let scene = Scene::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/constant.toml")).unwrap();
+    let scene = scene_file::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/constant.toml")).unwrap();
     let mut program = compile(&scene, &rig.board.limits, rig.board.tick_hz).unwrap();
-    let layer = Layer::Stream { low_n: LOW_N as f32, high_n: HIGH_N as f32 };
+    let layer = Layer::Stream(Stream { low_n: LOW_N as f32, high_n: HIGH_N as f32 });
     program.records = vec![Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer }];
     program
 }
@@ -114,7 +115,7 @@ fn what_is_asked_for_is_the_file() {
     let mut at_once = 0;
     for (tick, row) in played[..ticks].iter().enumerate() {
         let asked_n = row.asked_n.unwrap();
-        // A tick that attends to a report goes on with what was asked for a few ticks before.
+        // A tick that takes an order may hold the command of a few ticks before.
         let lag = (0..7.min(tick + 1)).find(|lag| (asked_n - wanted_n(&samples, (tick - lag) as f64)).abs() < 1e-7);
         assert!(lag.is_some(), "tick {tick}: {asked_n} N is not {} N", wanted_n(&samples, tick as f64));
         at_once += usize::from(lag == Some(0));
@@ -175,7 +176,7 @@ fn a_host_that_pauses_is_one_underrun_and_a_fade_and_never_a_stale_value() {
     assert!(first.is_some_and(|first| (first as f64 - expected).abs() <= 2.0), "{first:?}, {expected}");
 }
 
-/// What the recorder has for wanted is what this test works out by itself, and what the board asks for.
+/// The recorder's reference is what this test computes by itself, and what the board commands.
 #[test]
 fn the_recorder_knows_what_is_streamed() {
     let samples = tones();
@@ -198,7 +199,7 @@ fn the_recorder_knows_what_is_streamed() {
     }
 }
 
-/// The real command: a scene without stream layers refuses samples, and wrong uses are told.
+/// The command as a process: a scene without stream layers refuses samples, and so do options that do not go together.
 mod command {
     use super::*;
     use std::fs::File;

@@ -69,7 +69,7 @@ fn scene(friction: &str) -> String {
     )
 }
 
-/// Friction that the board asked for, in total, a row a millisecond; nothing of a row that is half written.
+/// The column `asked_n`, a row a millisecond, without a row that is half written.
 fn asked_n(folder: &Path) -> Vec<f64> {
     let text = fs::read_to_string(folder.join("felt.csv")).unwrap_or_default();
     let Some((rows, _)) = text.rsplit_once('\n') else { return Vec::new() };
@@ -99,7 +99,7 @@ fn a_saved_scene_plays_and_one_with_mistakes_does_not() {
     until("the second scene plays", || is(last_n(), 0.27));
 
     fs::write(path("scene.toml"), scene("0.28x").replace("[finger]", "[fingr]")).unwrap();
-    until("the mistakes are told", || said().contains("has mistakes: the scene before plays on"));
+    until("the mistakes are reported", || said().contains("has mistakes: the scene before plays on"));
     let rows = asked_n(&path("board")).len();
     until("the second scene plays on", || asked_n(&path("board")).len() > rows + 300);
 

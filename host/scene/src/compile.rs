@@ -1,8 +1,9 @@
 //! From a scene as written to a program as played: checks that need the board, other layers, or pictures.
 
+use frixel_layers::cost::TICK_INSTRUCTIONS_MAX;
+use frixel_layers::{Header, Record, electric_friction_max_n};
 use frixel_wire::hello::BoardLimits;
-use frixel_wire::scene::cost::TICK_INSTRUCTIONS_MAX;
-use frixel_wire::scene::{Header, RECORDS_MAX, Record};
+use frixel_wire::scene::RECORDS_MAX;
 
 use super::compile_error::CompileError;
 use super::excess;
@@ -31,9 +32,12 @@ const MM: f64 = 1e-3;
 /// # Example
 ///
 /// ```no_run
+/// use std::collections::BTreeMap;
+///
 /// use frixel_scene::{Scene, compile};
-/// # fn play(limits: &frixel_wire::hello::BoardLimits) -> Result<(), frixel_scene::CompileError> {
-/// let scene = Scene::load("scenes/brick.toml".as_ref())?;
+/// # fn play(text: &str, png: Vec<u8>, limits: &frixel_wire::hello::BoardLimits) -> Result<(), frixel_scene::CompileError> {
+/// let pictures = BTreeMap::from([("textures/brick.png".to_owned(), png)]);
+/// let scene = Scene::parse(text, "brick.toml", &pictures)?;
 /// let program = compile(&scene, limits, 40_000)?;
 /// println!("{} layers, up to {} N", program.records.len(), program.reach.friction_max_n());
 /// # Ok(())
@@ -75,7 +79,7 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
         log.add(layer.places.table(), Mistake::TooManyLayers { number: layers_max + 1, max: layers_max });
         return None;
     }
-    let pool = Pool::new(scene.source.folder().clone(), limits.bitmap_pool_bytes);
+    let pool = Pool::new(&scene.pictures, limits.bitmap_pool_bytes);
     let mut lowering = Lowering::new(scene, &header, &reach, tick_hz, pool, log);
     // All of them, so that the mistakes of all are told.
     let records: Vec<Option<Record>> = scene.layers.iter().map(|layer| lowering.record(layer)).collect();
@@ -98,6 +102,10 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
         excess::check(scene, &mut program, log);
         let live: Vec<bool> = scene.layers.iter().map(|layer| layer.live).collect();
         leave_out(&mut program, &live);
+        let Program { header, records, points, .. } = &mut program;
+        if header.layers_fixed {
+            header.electric_friction_max_n = electric_friction_max_n(header, records, points);
+        }
     }
     program.layers = layer_map(scene, &program.titles);
     Some(program)
@@ -170,6 +178,7 @@ fn header(scene: &Scene, limits: &BoardLimits, half_period_s: f64, log: &mut Log
         prediction: scene.touch.prediction,
         leader: scene.touch.leader,
         layers_fixed: !scene.layers.iter().any(|layer| layer.live),
+        electric_friction_max_n: None,
     }
 }
 

@@ -1,31 +1,18 @@
 //! Why a scene file does not become a program, for a person and for a program.
 
-use std::io;
-
 use serde::Serialize;
 use thiserror::Error;
 
 use super::mistake::Mistake;
 
-/// Why a scene file does not become a program.
-#[derive(Debug, Error)]
-pub enum CompileError {
-    /// The scene file itself cannot be read.
-    #[error("{file}: this scene file cannot be read ({source}): check the path")]
-    Unreadable {
-        /// The file as it was named.
-        file: String,
-        /// What the system said.
-        source: io::Error,
-    },
-    /// The file was read, and something in it is wrong. The message has a line for each mistake.
-    #[error("{}", list(.file, .mistakes))]
-    Mistakes {
-        /// The file as it was named.
-        file: String,
-        /// Every mistake that was found, in the order of the file.
-        mistakes: Vec<Located>,
-    },
+/// Why a scene file does not become a program. The message has a line for each mistake.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{}", list(.file, .mistakes))]
+pub struct CompileError {
+    /// The file's name, as it was given.
+    pub file: String,
+    /// Every mistake that was found, in the order of the file; at least one.
+    pub mistakes: Vec<Located>,
 }
 
 fn list(file: &str, mistakes: &[Located]) -> String {
@@ -48,26 +35,20 @@ pub struct Located {
 }
 
 impl CompileError {
-    /// One JSON object on one line: `file`; `unreadable`, what the system said, or null; `mistakes`, a list of objects with `line` and `column`, both from
-    /// one, `text`, what stands there, `nearest`, the valid name that may have been meant, or null, and `message`, a sentence.
+    /// One JSON object on one line: `file`; `unreadable`, null; `mistakes`, a list of objects with `line` and `column`,
+    /// both from one, `text`, what stands there, `nearest`, the valid name that may have been meant, or null, and
+    /// `message`, a sentence. A caller that reads files gives `unreadable` a text when it could not.
     pub fn to_json(&self) -> String {
-        let json = match self {
-            Self::Unreadable { file, source } => {
-                ErrorJson { file, unreadable: Some(source.to_string()), mistakes: Vec::new() }
-            }
-            Self::Mistakes { file, mistakes } => {
-                ErrorJson { file, unreadable: None, mistakes: mistakes.iter().map(MistakeJson::of).collect() }
-            }
-        };
+        let mistakes = self.mistakes.iter().map(MistakeJson::of).collect();
         // Plain numbers and texts always have a JSON form.
-        serde_json::to_string(&json).unwrap_or_default()
+        serde_json::to_string(&ErrorJson { file: &self.file, unreadable: None, mistakes }).unwrap_or_default()
     }
 }
 
 #[derive(Serialize)]
 struct ErrorJson<'e> {
     file: &'e str,
-    unreadable: Option<String>,
+    unreadable: Option<()>,
     mistakes: Vec<MistakeJson<'e>>,
 }
 

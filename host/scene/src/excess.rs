@@ -1,6 +1,8 @@
 //! Says which layers ask for friction that cannot be given.
 
-use super::cover::{Cell, Excess, Span, excesses};
+use frixel_layers::Interval;
+
+use super::cover::{Cell, Excess, excesses};
 use super::file::Scene;
 use super::layer::{Above, Layer};
 use super::log::Log;
@@ -13,15 +15,15 @@ use crate::reference::Reference;
 pub(super) fn check(scene: &Scene, program: &mut Program, log: &mut Log) {
     let reach = program.reach;
     let slack_n = ROUNDING * reach.electric_friction_max_n;
-    let span = Span { low_n: -slack_n, high_n: reach.electric_friction_max_n + slack_n };
+    let within = Interval { low: -slack_n, high: reach.electric_friction_max_n + slack_n };
     let reference = Reference::new(program);
     let width_m = f64::from(program.header.screen_width_m);
     let height_m = f64::from(program.header.screen_height_m);
-    for excess in excesses(reference.pieces(), width_m, height_m, span) {
+    for excess in excesses(reference.pieces(), width_m, height_m, within) {
         let layers: Vec<&Layer> = excess.layers.iter().filter_map(|number| scene.layers.get(*number)).collect();
-        let found = sides(&layers, &excess, excess.found, span, &reach);
+        let found = sides(&layers, &excess, excess.found, within, &reach);
         if found.is_empty() {
-            let possible = sides(&layers, &excess, excess.bound, span, &reach);
+            let possible = sides(&layers, &excess, excess.bound, within, &reach);
             program.notes.extend(possible.iter().map(|side| note(side, "; no place was found where they do")));
         } else if scene.drive.saturate {
             program.notes.extend(found.iter().map(|side| note(side, "; it is clamped there")));
@@ -39,7 +41,7 @@ struct Side {
     mistake: Mistake,
 }
 
-fn sides(layers: &[&Layer], excess: &Excess, asked: Span, span: Span, reach: &Reach) -> Vec<Side> {
+fn sides(layers: &[&Layer], excess: &Excess, asked: Interval<f64>, within: Interval<f64>, reach: &Reach) -> Vec<Side> {
     let above = match layers {
         [layer] => layer.above,
         _ => Above::Natural,
@@ -50,20 +52,20 @@ fn sides(layers: &[&Layer], excess: &Excess, asked: Span, span: Span, reach: &Re
     };
     let asking = asking(layers, excess.cell);
     let mut sides = Vec::new();
-    if asked.high_n > span.high_n {
+    if asked.high > within.high {
         let mistake = Mistake::AboveReach {
             asking: asking.clone(),
-            asked_n: digits(asked.high_n + offset_n, up),
+            asked_n: digits(asked.high + offset_n, up),
             reference,
             voltage_v_rms: digits(reach.voltage_max_v_rms, f64::round),
             reach_n: digits(reach.electric_friction_max_n + offset_n, f64::floor),
         };
         sides.push(Side { offset: place(layers, true), mistake });
     }
-    if asked.low_n < span.low_n {
+    if asked.low < within.low {
         let mistake = Mistake::BelowNatural {
             asking,
-            asked_n: digits(asked.low_n + offset_n, down),
+            asked_n: digits(asked.low + offset_n, down),
             reference,
             natural_n: digits(reach.natural_friction_n, f64::round),
         };

@@ -1,17 +1,17 @@
 //! The scene file as a person writes it, in the file's own units, each number within its range.
 
-use std::fs;
-use std::path::Path;
-
-use frixel_wire::scene::Leader;
+use frixel_layers::Leader;
 use toml::de::DeTable;
 
 use super::compile_error::CompileError;
 use super::fields::Fields;
 use super::grammar::KnownTable;
+use super::kinds::Kind;
 use super::layer::Layer;
 use super::log::Log;
 use super::mistake::Mistake;
+use super::pictures::Pictures;
+use super::pool::PictureBytes;
 use super::source::{Places, Source};
 use super::tables;
 
@@ -26,6 +26,7 @@ const EFFECTIVE_GAP_MAX_UM: f64 = 10_000.0;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     pub(super) source: Source,
+    pub(super) pictures: PictureBytes,
     pub(super) screen: Screen,
     pub(super) coating: Coating,
     pub(super) finger: Finger,
@@ -73,7 +74,7 @@ pub(super) struct Drive {
 /// `[carrier]`
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Carrier {
-    pub(super) shape: frixel_wire::scene::Carrier,
+    pub(super) shape: frixel_layers::Carrier,
     pub(super) frequency_hz: f64,
     pub(super) places: Places,
 }
@@ -86,29 +87,9 @@ pub(super) struct Touch {
 }
 
 impl Scene {
-    /// Reads a scene file. Pictures in it are found from its folder.
-    pub fn load(path: &Path) -> Result<Self, CompileError> {
-        let name = path.display().to_string();
-        let bytes = match fs::read(path) {
-            Ok(bytes) => bytes,
-            Err(source) => return Err(CompileError::Unreadable { file: name, source }),
-        };
-        let folder = path.parent().unwrap_or(Path::new(""));
-        match std::str::from_utf8(&bytes) {
-            Ok(text) => Self::parse(text, &name, folder),
-            Err(error) => {
-                let text = String::from_utf8_lossy(bytes.get(..error.valid_up_to()).unwrap_or_default());
-                let source = Source::new(&name, folder, &text);
-                let mut log = Log::new(&source);
-                log.add(error.valid_up_to(), Mistake::NotUtf8);
-                log.finish(None)
-            }
-        }
-    }
-
-    /// Reads the text of a scene file. `name` is what messages call it; pictures in it are found from `folder`.
-    pub fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, CompileError> {
-        let source = Source::new(name, folder, text);
+    /// Reads the text of a scene file. Messages call the file `name`; `pictures` gives the pictures that it names.
+    pub fn parse(text: &str, name: &str, pictures: &dyn Pictures) -> Result<Self, CompileError> {
+        let source = Source::new(name, text);
         let mut log = Log::new(&source);
         let scene = match DeTable::parse(text) {
             Ok(table) => read(Fields::new("the scene", 0, table.into_inner()), &mut log, &source),
@@ -117,13 +98,37 @@ impl Scene {
                 None
             }
         };
-        log.finish(scene)
+        let mut scene = log.finish(scene)?;
+        scene.pictures = scene.picture_names().map(|name| (name.to_owned(), pictures.png(name))).collect();
+        Ok(scene)
+    }
+
+    /// Reads the bytes of a scene file, as [`Self::parse`] reads its text.
+    pub fn parse_bytes(bytes: &[u8], name: &str, pictures: &dyn Pictures) -> Result<Self, CompileError> {
+        match std::str::from_utf8(bytes) {
+            Ok(text) => Self::parse(text, name, pictures),
+            Err(error) => {
+                let text = String::from_utf8_lossy(bytes.get(..error.valid_up_to()).unwrap_or_default());
+                let source = Source::new(name, &text);
+                let mut log = Log::new(&source);
+                log.add(error.valid_up_to(), Mistake::NotUtf8);
+                log.finish(None)
+            }
+        }
+    }
+
+    /// The names of the pictures that the scene's layers have, as the file writes them.
+    pub fn picture_names(&self) -> impl Iterator<Item = &str> {
+        self.layers.iter().filter_map(|layer| match &layer.kind {
+            Kind::Bitmap(bitmap) => Some(bitmap.picture.as_str()),
+            _ => None,
+        })
     }
 }
 
 /// The known fields of the tables of a text.
 pub(super) fn describe(text: &str) -> Vec<KnownTable> {
-    let source = Source::new("", "", text);
+    let source = Source::new("", text);
     let mut log = Log::describing(&source);
     if let Ok(table) = DeTable::parse(text) {
         // What is wrong with the text is of no interest.
@@ -149,6 +154,7 @@ fn read(mut fields: Fields, log: &mut Log, source: &Source) -> Option<Scene> {
     }
     Some(Scene {
         source: source.clone(),
+        pictures: PictureBytes::new(),
         screen: screen?,
         coating: coating?,
         finger: finger?,
@@ -222,7 +228,7 @@ fn drive(mut fields: Fields, log: &mut Log) -> Drive {
 }
 
 fn carrier(mut fields: Fields, log: &mut Log) -> Carrier {
-    use frixel_wire::scene::Carrier::{Sine, Square};
+    use frixel_layers::Carrier::{Sine, Square};
     let shape = fields.choice(log, &tables::carrier::SHAPE, &[("square", Square), ("sine", Sine)]).unwrap_or(Square);
     let frequency_hz = fields.number_or_default(log, &tables::carrier::FREQUENCY_HZ);
     let places = fields.close(log);

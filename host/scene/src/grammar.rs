@@ -2,17 +2,17 @@
 
 /// A field of a table: what the parser checks, editors show, and `docs/scene.md` says.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct FieldSpec {
-    pub(super) name: &'static str,
-    pub(super) holds: Holds,
-    pub(super) absence: Absence,
+pub(crate) struct FieldSpec {
+    pub(crate) name: &'static str,
+    pub(crate) holds: Holds,
+    pub(crate) absence: Absence,
     /// In Markdown.
-    pub(super) meaning: &'static str,
+    pub(crate) meaning: &'static str,
 }
 
 /// What a field may hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Holds {
+pub(crate) enum Holds {
     Number(Range),
     /// A whole number.
     Whole(Range),
@@ -33,7 +33,7 @@ pub(super) enum Holds {
 
 /// What it means when a file leaves a field out.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Absence {
+pub(crate) enum Absence {
     /// It is a mistake.
     Mistake,
     /// The field is this number.
@@ -46,59 +46,59 @@ pub(super) enum Absence {
 
 /// What a number may be.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Range {
-    pub(super) min: f64,
-    pub(super) max: f64,
+pub(crate) struct Range {
+    pub(crate) min: f64,
+    pub(crate) max: f64,
     /// With a space before it.
-    pub(super) unit: &'static str,
+    pub(crate) unit: &'static str,
 }
 
 impl Range {
-    pub(super) const fn new(min: f64, max: f64, unit: &'static str) -> Self {
+    pub(crate) const fn new(min: f64, max: f64, unit: &'static str) -> Self {
         Self { min, max, unit }
     }
 }
 
 impl FieldSpec {
-    pub(super) const fn new(name: &'static str, holds: Holds, absence: Absence, meaning: &'static str) -> Self {
+    pub(crate) const fn new(name: &'static str, holds: Holds, absence: Absence, meaning: &'static str) -> Self {
         Self { name, holds, absence, meaning }
     }
 
     /// The number that it is when a file leaves it out, or not-a-number where it has no such number.
-    pub(super) fn default_number(&self) -> f64 {
+    pub(crate) fn default_number(&self) -> f64 {
         if let Absence::Number(number) = self.absence { number } else { f64::NAN }
     }
 }
 
 /// The three fields that an amount may stand in.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct AmountFields {
-    pub(super) newtons: FieldSpec,
-    pub(super) fraction: FieldSpec,
-    pub(super) factor: FieldSpec,
+pub(crate) struct AmountFields {
+    pub(crate) newtons: FieldSpec,
+    pub(crate) fraction: FieldSpec,
+    pub(crate) factor: FieldSpec,
 }
 
 impl AmountFields {
     /// Their names, so that the one in use can be found among a layer's fields.
-    pub(super) fn names(&self) -> [&'static str; 3] {
+    pub(crate) fn names(&self) -> [&'static str; 3] {
         [self.newtons.name, self.fraction.name, self.factor.name]
     }
 }
 
 /// A field that the parser looked for, with the words that it may be.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct KnownField {
-    pub(super) field: FieldSpec,
-    pub(super) words: Vec<&'static str>,
+pub(crate) struct KnownField {
+    pub(crate) field: FieldSpec,
+    pub(crate) words: Vec<&'static str>,
 }
 
 /// All fields that the parser looked for in a table, where the rest of the table was as it was.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct KnownTable {
+pub(crate) struct KnownTable {
     /// The field that the table stands in.
-    pub(super) key: &'static str,
-    pub(super) fields: Vec<KnownField>,
-    pub(super) required: Vec<&'static str>,
+    pub(crate) key: &'static str,
+    pub(crate) fields: Vec<KnownField>,
+    pub(crate) required: Vec<&'static str>,
     /// Fields of which only one may be there; where the first is required, either will do.
-    pub(super) either: Vec<[&'static str; 2]>,
+    pub(crate) either: Vec<[&'static str; 2]>,
 }

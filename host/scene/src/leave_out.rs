@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use frixel_wire::scene::{Blend, Click, Header, Layer, Point, Record, Region};
+use frixel_layers::{Blend, Constant, Header, Interval, Layer, Point, Record, Region, Speed};
 
 use super::left_out::LeftOut;
 use super::program::Program;
@@ -23,7 +23,7 @@ pub(super) fn leave_out(program: &mut Program, live: &[bool]) {
     let together = titles.into_iter().zip(records).zip(live);
     let mut items: Vec<Item> = together.map(|((title, record), live)| Item { title, record, live: *live }).collect();
     let left_out = &mut program.left_out;
-    flatten(&mut items, left_out);
+    flatten(&mut items, &program.points, left_out);
     drop_covered(&mut items, &program.header, left_out);
     drop_idle(&mut items, left_out);
     fold(&mut items, left_out);
@@ -33,20 +33,15 @@ pub(super) fn leave_out(program: &mut Program, live: &[bool]) {
 }
 
 /// What asks for the same everywhere and always is a constant.
-fn flatten(items: &mut [Item], left_out: &mut Vec<LeftOut>) {
+fn flatten(items: &mut [Item], points: &[Point], left_out: &mut Vec<LeftOut>) {
     for item in items.iter_mut().filter(|item| !item.live) {
-        let still = |click: &Click| click.height_n.abs() <= 0.0;
-        let same = |one: f32, other: f32| (one.to_bits() == other.to_bits()).then_some(one);
-        let flat = match &item.record.layer {
-            Layer::Grating { trough_n, crest_n, .. } => same(*trough_n, *crest_n),
-            Layer::Bitmap { black_n, white_n, .. } => same(*black_n, *white_n),
-            Layer::Noise { low_n, high_n, .. } | Layer::Vibration { low_n, high_n, .. } => same(*low_n, *high_n),
-            Layer::Edge { level_n, ridge_n, click, .. } if still(click) => same(*level_n, *ridge_n),
-            Layer::Button { rim_n, face_n, click, .. } if still(click) => same(*rim_n, *face_n),
-            _ => None,
-        };
-        if let Some(electric_friction_n) = flat {
-            item.record.layer = Layer::Constant { electric_friction_n };
+        let layer = &item.record.layer;
+        if layer.is_streamed() || matches!(layer, Layer::Constant(_)) {
+            continue;
+        }
+        let Interval { low, high } = layer.bounds(points);
+        if low.to_bits() == high.to_bits() {
+            item.record.layer = Layer::Constant(Constant { electric_friction_n: low });
             left_out.push(LeftOut::Flat { layer: item.title.clone() });
         }
     }
@@ -57,7 +52,7 @@ fn drop_covered(items: &mut Vec<Item>, header: &Header, left_out: &mut Vec<LeftO
     let mut number = 0;
     while let Some(item) = items.get(number) {
         let hides = |above: &&Item| {
-            let always = !above.live && !matches!(above.record.layer, Layer::Stream { .. });
+            let always = !above.live && !above.record.layer.is_streamed();
             always && above.record.blend == Blend::Replace && covers(above.record.region, item.record.region, header)
         };
         match items.iter().skip(number + 1).find(hides) {
@@ -97,7 +92,7 @@ fn drop_idle(items: &mut Vec<Item>, left_out: &mut Vec<LeftOut>) {
     let mut bare = true;
     items.retain(|item| {
         let own = match item.record.layer {
-            Layer::Constant { electric_friction_n } => Some(item.record.gain * electric_friction_n),
+            Layer::Constant(Constant { electric_friction_n }) => Some(item.record.gain * electric_friction_n),
             _ => None,
         };
         let is = |value: f32| own.is_some_and(|own| own.to_bits() == value.to_bits());
@@ -121,7 +116,9 @@ fn fold(items: &mut Vec<Item>, left_out: &mut Vec<LeftOut>) {
     let mut number = 0;
     while let (Some(below), Some(above)) = (items.get(number), items.get(number + 1)) {
         let constant = |item: &Item| match item.record.layer {
-            Layer::Constant { electric_friction_n } if !item.live => Some(item.record.gain * electric_friction_n),
+            Layer::Constant(Constant { electric_friction_n }) if !item.live => {
+                Some(item.record.gain * electric_friction_n)
+            }
             _ => None,
         };
         let together = below.record.region == above.record.region && below.record.blend == Blend::Replace;
@@ -139,7 +136,7 @@ fn fold(items: &mut Vec<Item>, left_out: &mut Vec<LeftOut>) {
         items.remove(number + 1);
         if let Some(below) = items.get_mut(number) {
             below.record.gain = 1.0;
-            below.record.layer = Layer::Constant { electric_friction_n };
+            below.record.layer = Layer::Constant(Constant { electric_friction_n });
         }
     }
 }
@@ -161,7 +158,7 @@ fn compact_points(program: &mut Program) {
         if let Region::Polygon { first, count } = &mut record.region {
             moved(first, *count);
         }
-        if let Layer::Speed { first, count } = &mut record.layer {
+        if let Layer::Speed(Speed { first, count }) = &mut record.layer {
             moved(first, *count);
         }
     }
@@ -169,14 +166,7 @@ fn compact_points(program: &mut Program) {
 }
 
 fn drop_bitmaps(program: &mut Program) {
-    let named: BTreeSet<u32> = program
-        .records
-        .iter()
-        .filter_map(|record| match record.layer {
-            Layer::Bitmap { crc32, .. } => Some(crc32),
-            _ => None,
-        })
-        .collect();
+    let named: BTreeSet<u32> = program.records.iter().filter_map(|record| record.layer.bitmap_crc32()).collect();
     let left_out = &mut program.left_out;
     program.bitmaps.retain(|bitmap| {
         let keeps = named.contains(&bitmap.crc32);

@@ -1,6 +1,6 @@
 //! Scenes: a TOML file that a person writes, checked and compiled to the program that a board plays.
 //!
-//! `docs/scene.md` is the reference of the file. [`Scene::load`] reads it, [`compile`] checks what needs the board or
+//! `docs/scene.md` is the reference of the file. [`Scene::parse`] reads it, [`compile`] checks what needs the board or
 //! other layers, and makes a [`Program`]. Both tell every mistake at once, each with line and column.
 //!
 //! - [`reference`]: the friction that a program means, in `f64`, independently of the firmware.
@@ -15,6 +15,7 @@ mod excess;
 mod fields;
 mod file;
 mod grammar;
+mod kinds;
 mod layer;
 mod layer_map;
 mod leave_out;
@@ -26,6 +27,7 @@ mod mistake;
 mod nearest;
 mod outside;
 mod picture;
+mod pictures;
 mod pool;
 mod program;
 mod reach;
@@ -47,6 +49,7 @@ pub use left_out::LeftOut;
 pub use mistake::Mistake;
 pub use nearest::Nearest;
 pub use outside::{Asked, Outside};
+pub use pictures::{PictureUnavailable, Pictures};
 pub use program::{Bitmap, Program};
 pub use reach::{ROUNDING, Reach, carrier};
 pub use schema::json_schema;

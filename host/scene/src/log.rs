@@ -48,7 +48,7 @@ impl<'s> Log<'s> {
             Some(value) if self.mistakes.is_empty() => Ok(value),
             _ => {
                 self.mistakes.sort_by_key(|mistake| (mistake.line, mistake.column));
-                Err(CompileError::Mistakes { file: self.source.name().to_owned(), mistakes: self.mistakes })
+                Err(CompileError { file: self.source.name().to_owned(), mistakes: self.mistakes })
             }
         }
     }

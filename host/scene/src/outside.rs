@@ -1,9 +1,9 @@
 //! What a scene asks for over its screen, and how much of that is out of reach.
 
-use frixel_wire::scene::Blend;
+use frixel_layers::{Blend, Interval};
 use serde::Serialize;
 
-use super::cover::{Span, span_at};
+use super::cover::{ZERO, interval_at};
 use super::program::Program;
 use super::reach::ROUNDING;
 use crate::reference::{Piece, Reference};
@@ -41,19 +41,19 @@ impl Asked {
         let reach = &program.reach;
         let slack_n = ROUNDING * reach.electric_friction_max_n;
         let places = Places::of(program);
-        let mut range: Option<Span> = None;
+        let mut range: Option<Interval<f64>> = None;
         let mut above = Counted::new(pieces.len());
         let mut below = Counted::new(pieces.len());
         for (x_m, y_m) in places.iter() {
-            let span = span_at(pieces.iter(), x_m, y_m);
-            range = Some(range.map_or(span, |range| range.hull(span)));
-            above.count(span.high_n > reach.electric_friction_max_n + slack_n, pieces, x_m, y_m);
-            below.count(span.low_n < -slack_n, pieces, x_m, y_m);
+            let interval = interval_at(pieces.iter(), x_m, y_m);
+            range = Some(range.map_or(interval, |range| range.hull(interval)));
+            above.count(interval.high > reach.electric_friction_max_n + slack_n, pieces, x_m, y_m);
+            below.count(interval.low < -slack_n, pieces, x_m, y_m);
         }
-        let Span { low_n, high_n } = range.unwrap_or(Span::ZERO);
+        let Interval { low, high } = range.unwrap_or(ZERO);
         Self {
-            least_n: reach.natural_friction_n + low_n,
-            most_n: reach.natural_friction_n + high_n,
+            least_n: reach.natural_friction_n + low,
+            most_n: reach.natural_friction_n + high,
             above: above.outside(program, places.count()),
             below: below.outside(program, places.count()),
         }

@@ -1,14 +1,14 @@
 //! Pictures: PNG files of any colour type, read as grey.
 
-use std::fs::{self, File};
-use std::io::BufReader;
-use std::path::Path;
+use std::io::Cursor;
 
 use png::{BitDepth, ColorType, Decoder, DecodingError, Limits, OutputInfo, Transformations};
 use thiserror::Error;
 
 /// Most pixels that a picture may have: 64 million, as many as keep its grey values within 256 MiB.
 const PIXELS_MAX: u64 = 1 << 26;
+/// The first eight bytes of every PNG file (W3C PNG specification, section 5.2).
+const PNG_SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 /// Weights of red, green and blue in grey (luma of ITU-R BT.709).
 const LUMA: [f32; 3] = [0.2126, 0.7152, 0.0722];
 
@@ -31,25 +31,19 @@ pub(super) enum PictureError {
     Damaged(DecodingError),
     #[error("it has {width} x {height} pixels, and at most {PIXELS_MAX} are read: make it smaller")]
     TooLarge { width: u32, height: u32 },
-    #[error("it cannot be read ({0})")]
-    Unreadable(std::io::Error),
 }
 
 impl Picture {
-    /// Reads a PNG file.
-    pub(super) fn read(path: &Path) -> Result<Self, PictureError> {
-        let file = File::open(path).map_err(PictureError::Unreadable)?;
+    /// Decodes the bytes of a PNG file.
+    pub(super) fn decode(png: &[u8]) -> Result<Self, PictureError> {
+        if !png.starts_with(PNG_SIGNATURE) {
+            return Err(PictureError::NotPng);
+        }
         let limits = Limits { bytes: 8 * PIXELS_MAX as usize };
-        let mut decoder = Decoder::new_with_limits(BufReader::new(file), limits);
+        let mut decoder = Decoder::new_with_limits(Cursor::new(png), limits);
         // Palettes become colours, few bits become eight, a transparent colour becomes an alpha channel.
         decoder.set_transformations(Transformations::EXPAND);
-        let mut reader = decoder.read_info().map_err(|error| match error {
-            DecodingError::Format(_) if !starts_as_png(path) => PictureError::NotPng,
-            DecodingError::IoError(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => {
-                PictureError::Unreadable(error)
-            }
-            error => PictureError::Damaged(error),
-        })?;
+        let mut reader = decoder.read_info().map_err(PictureError::Damaged)?;
         let (width, height) = reader.info().size();
         let too_large = PictureError::TooLarge { width, height };
         if u64::from(width) * u64::from(height) > PIXELS_MAX {
@@ -59,11 +53,6 @@ impl Picture {
         let frame = reader.next_frame(&mut bytes).map_err(PictureError::Damaged)?;
         Ok(grey(&bytes, &frame))
     }
-}
-
-fn starts_as_png(path: &Path) -> bool {
-    const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
-    fs::read(path).is_ok_and(|bytes| bytes.starts_with(SIGNATURE))
 }
 
 fn grey(bytes: &[u8], frame: &OutputInfo) -> Picture {

@@ -1,37 +1,41 @@
 //! Pictures on their way into the board's bitmap pool.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::collections::BTreeMap;
 
-use super::layer::{Bitmap as BitmapLayer, Layer, Rectangle, Region};
+use super::kinds::Bitmap as BitmapLayer;
+use super::layer::{Layer, Rectangle, Region};
 use super::left_out::LeftOut;
 use super::log::Log;
 use super::mistake::Mistake;
 use super::nearest::Nearest;
 use super::picture::Picture;
+use super::pictures::{PictureUnavailable, file_name};
 use super::program::Bitmap;
 use super::resample::{Axis, resample};
 
-/// Gathers the bitmaps of a scene, each one once, and sees that they fit.
-pub(super) struct Pool {
-    folder: PathBuf,
+/// The bytes of each picture that a scene names, or why they are not there.
+pub(super) type PictureBytes = BTreeMap<String, Result<Vec<u8>, PictureUnavailable>>;
+
+/// Gathers the bitmaps of a scene, each one once, and checks that they fit.
+pub(super) struct Pool<'s> {
+    pictures: &'s PictureBytes,
     size_bytes: u32,
     bitmaps: Vec<Bitmap>,
     left_out: Vec<LeftOut>,
 }
 
 /// Where a picture's samples lie.
-pub(super) struct Placed {
+pub(crate) struct Placed {
     /// Name of the bitmap.
-    pub(super) crc32: u32,
+    pub(crate) crc32: u32,
     /// The corner that its first sample begins at.
-    pub(super) corner_mm: (f64, f64),
+    pub(crate) corner_mm: (f64, f64),
     /// Distance of samples in a row, and of rows.
-    pub(super) pitches_mm: (f64, f64),
-    pub(super) angle_turns: f32,
-    pub(super) tiled: bool,
+    pub(crate) pitches_mm: (f64, f64),
+    pub(crate) angle_turns: f32,
+    pub(crate) tiled: bool,
     /// The picture's own outline; `None` when it is everywhere.
-    pub(super) outline: Option<Region>,
+    pub(crate) outline: Option<Region>,
 }
 
 impl Placed {
@@ -118,9 +122,9 @@ fn axes(
     )
 }
 
-impl Pool {
-    pub(super) fn new(folder: PathBuf, size_bytes: u32) -> Self {
-        Self { folder, size_bytes, bitmaps: Vec::new(), left_out: Vec::new() }
+impl<'s> Pool<'s> {
+    pub(super) fn new(pictures: &'s PictureBytes, size_bytes: u32) -> Self {
+        Self { pictures, size_bytes, bitmaps: Vec::new(), left_out: Vec::new() }
     }
 
     /// The bitmaps, and what was left out of them.
@@ -153,7 +157,7 @@ impl Pool {
         };
         let compiled = Bitmap::new(width, height, resample(&picture.grey, picture.width, across, down));
         let crc32 = compiled.crc32;
-        let (picture_name, kept) = (file_name(bitmap), across.samples * down.samples);
+        let (picture_name, kept) = (file_name(&bitmap.picture).to_owned(), across.samples * down.samples);
         if kept < across.whole * down.whole {
             let whole = across.whole * down.whole;
             self.left_out.push(LeftOut::Cropped { picture: picture_name.clone(), whole, kept });
@@ -172,26 +176,19 @@ impl Pool {
     }
 
     fn read(&self, layer: &Layer, bitmap: &BitmapLayer, log: &mut Log) -> Option<Picture> {
-        let path = self.folder.join(&bitmap.picture);
-        let offset = layer.places.field("picture");
-        if !path.is_file() {
-            let folder = path.parent().unwrap_or(&self.folder);
-            let mistake = Mistake::PictureMissing {
-                picture: bitmap.picture.clone(),
-                folder: if folder.as_os_str().is_empty() { ".".to_owned() } else { folder.display().to_string() },
-                nearest: nearest_file(folder, &path),
-            };
-            log.add(offset, mistake);
-            return None;
-        }
-        match Picture::read(&path) {
-            Ok(picture) => Some(picture),
-            Err(error) => {
-                let picture = bitmap.picture.clone();
-                log.add(offset, Mistake::PictureUnusable { picture, reason: error.to_string() });
-                None
-            }
-        }
+        let name = &bitmap.picture;
+        let unusable = |reason: String| Mistake::PictureUnusable { picture: name.clone(), reason };
+        // `Scene::parse` has read every picture that a layer names.
+        let decoded = match self.pictures.get(name)? {
+            Ok(png) => Picture::decode(png).map_err(|error| unusable(error.to_string())),
+            Err(PictureUnavailable::Unreadable { reason }) => Err(unusable(format!("it cannot be read ({reason})"))),
+            Err(PictureUnavailable::Missing { place, files }) => Err(Mistake::PictureMissing {
+                picture: name.clone(),
+                folder: place.clone(),
+                nearest: Nearest::new(file_name(name), files.iter().map(String::as_str)).suggestion,
+            }),
+        };
+        decoded.map_err(|mistake| log.add(layer.places.field("picture"), mistake)).ok()
     }
 
     fn fits(&self, layer: &Layer, bitmap: &BitmapLayer, needed_bytes: u64, log: &mut Log) -> bool {
@@ -220,22 +217,5 @@ fn note(picture: &Picture, bitmap: &BitmapLayer, across: Axis, down: Axis) -> Op
             picture.width, picture.height, across.whole, down.whole, bitmap.pitch_mm
         ));
     }
-    (!done.is_empty()).then(|| format!("{}: {}", file_name(bitmap), done.join(", ")))
-}
-
-fn file_name(bitmap: &BitmapLayer) -> String {
-    Path::new(&bitmap.picture).file_name().unwrap_or(bitmap.picture.as_ref()).to_string_lossy().into_owned()
-}
-
-/// The file in a folder whose name is nearest to a path's, where one is near enough.
-fn nearest_file(folder: &Path, path: &Path) -> Option<String> {
-    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let mut names: Vec<String> = fs::read_dir(folder)
-        .into_iter()
-        .flatten()
-        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
-        .collect();
-    names.sort();
-    let wanted = path.file_name().unwrap_or_default().to_string_lossy();
-    Nearest::new(&wanted, names.iter().map(String::as_str)).suggestion
+    (!done.is_empty()).then(|| format!("{}: {}", file_name(&bitmap.picture), done.join(", ")))
 }

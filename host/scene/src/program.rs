@@ -1,7 +1,8 @@
 //! What a scene compiles to.
 
+use frixel_layers::{Carrier, Header, Point, Record, Region};
 use frixel_wire::hello::{PROTOCOL_MAJOR, PROTOCOL_MINOR, feature};
-use frixel_wire::scene::{Carrier, Header, Layer, Point, Record, Region, bitmap_crc32};
+use frixel_wire::scene::bitmap_crc32;
 
 use super::layer_map::LayerMap;
 use super::left_out::LeftOut;
@@ -9,6 +10,8 @@ use super::reach::Reach;
 
 /// The protocol that knows [`Header::layers_fixed`].
 const LAYERS_FIXED_SINCE: (u8, u8) = (1, 2);
+/// The protocol that knows [`Header::electric_friction_max_n`].
+const ELECTRIC_FRICTION_MAX_SINCE: (u8, u8) = (1, 3);
 
 /// A scene as a board plays it, with the pictures that it names.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,7 +48,9 @@ impl Program {
     /// without the flags that came later.
     pub fn scene_bytes_for(&self, protocol: (u8, u8)) -> Vec<u8> {
         let layers_fixed = self.header.layers_fixed && protocol >= LAYERS_FIXED_SINCE;
-        let header = Header { layers_fixed, ..self.header };
+        let electric_friction_max_n =
+            self.header.electric_friction_max_n.filter(|_| protocol >= ELECTRIC_FRICTION_MAX_SINCE);
+        let header = Header { layers_fixed, electric_friction_max_n, ..self.header };
         // At most 64 records and 128 points were compiled.
         let mut bytes = header.write(self.records.len() as u8, self.points.len() as u8).to_vec();
         bytes.extend(self.records.iter().flat_map(Record::write));
@@ -57,27 +62,14 @@ impl Program {
     pub fn features(&self) -> u32 {
         let carrier = if self.header.carrier == Carrier::Sine { feature::SINE_CARRIER } else { 0 };
         self.records.iter().fold(carrier, |features, record| {
-            let kind = match record.layer {
-                Layer::Constant { .. } => 0,
-                Layer::Grating { .. } => feature::GRATING,
-                Layer::Bitmap { .. } => feature::BITMAP,
-                Layer::Noise { .. } => feature::NOISE,
-                Layer::Edge { .. } | Layer::Button { .. } => feature::EDGE,
-                Layer::Vibration { .. } => feature::VIBRATION,
-                Layer::Speed { .. } => feature::SPEED,
-                Layer::Stream { .. } => feature::STREAM,
-            };
             let region = if matches!(record.region, Region::Polygon { .. }) { feature::POLYGON } else { 0 };
-            features | kind | region
+            features | record.layer.feature() | region
         })
     }
 
     /// Whether the friction at a place depends on what happened before, beside the time: on a click, or on a stream.
     pub fn has_history(&self) -> bool {
-        self.records.iter().any(|record| match record.layer {
-            Layer::Edge { click, .. } | Layer::Button { click, .. } => click.height_n.abs() > 0.0,
-            layer => matches!(layer, Layer::Stream { .. }),
-        })
+        self.records.iter().any(|record| record.layer.click().is_some() || record.layer.is_streamed())
     }
 
     /// The bitmap that a record names.

@@ -1,8 +1,8 @@
 //! What friction a drive can give to a finger.
 
+use frixel_layers::{Carrier as Shape, Header};
 use frixel_model::{Carrier, Contact, Finger, InverseTable, ParameterError, TableError, Waveform};
 use frixel_wire::hello::BoardLimits;
-use frixel_wire::scene::{Carrier as Shape, Header};
 use thiserror::Error;
 
 /// Friction this little out of reach, relative to the reach, comes from rounding to `f32`.

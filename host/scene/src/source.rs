@@ -1,28 +1,20 @@
 //! The text of a scene file, and where in it something stands.
 
-use std::path::PathBuf;
-
-/// Name, folder and line starts of a scene file: all that a message about it needs.
+/// Name and text of a scene file: all that a message about it needs.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Source {
     name: String,
-    folder: PathBuf,
     text: String,
 }
 
 impl Source {
-    pub(super) fn new(name: &str, folder: impl Into<PathBuf>, text: &str) -> Self {
-        Self { name: name.to_owned(), folder: folder.into(), text: text.to_owned() }
+    pub(super) fn new(name: &str, text: &str) -> Self {
+        Self { name: name.to_owned(), text: text.to_owned() }
     }
 
     /// The file as messages call it.
     pub(super) fn name(&self) -> &str {
         &self.name
-    }
-
-    /// The folder that paths in the file start from.
-    pub(super) fn folder(&self) -> &PathBuf {
-        &self.folder
     }
 
     /// Line and column of a byte, both from one; the column counts characters.

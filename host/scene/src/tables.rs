@@ -1,49 +1,50 @@
-//! The table of all fields of a scene file. The parser checks them, [`super::json_schema`] and `docs/scene.md` show
-//! them.
+//! The tables of fields that belong to no kind of layer, and what the tables of the kinds share. The parser checks the
+//! fields, [`super::json_schema`] and `docs/scene.md` show them.
 #![allow(clippy::wildcard_imports, reason = "every table is written with the same few words")]
 
-use Absence::{Flag, Means, Mistake, Number};
+use frixel_layers::range;
 
+use super::grammar::Absence::{Flag, Means, Mistake, Number};
 use super::grammar::{Absence, AmountFields, FieldSpec, Holds, Range};
 
-const fn number(name: &'static str, range: Range, absence: Absence, meaning: &'static str) -> FieldSpec {
+/// A number.
+pub(crate) const fn number(name: &'static str, range: Range, absence: Absence, meaning: &'static str) -> FieldSpec {
     FieldSpec::new(name, Holds::Number(range), absence, meaning)
 }
 
-const fn flag(name: &'static str, default: bool, meaning: &'static str) -> FieldSpec {
+/// `true` or `false`.
+pub(crate) const fn flag(name: &'static str, default: bool, meaning: &'static str) -> FieldSpec {
     FieldSpec::new(name, Holds::Flag, Flag(default), meaning)
 }
 
-const fn word(name: &'static str, absence: Absence, meaning: &'static str) -> FieldSpec {
+/// One of some words.
+pub(crate) const fn word(name: &'static str, absence: Absence, meaning: &'static str) -> FieldSpec {
     FieldSpec::new(name, Holds::Word, absence, meaning)
 }
 
 /// The fields of an amount that is called by a stem.
 macro_rules! amount {
     ($stem:literal, $absence:expr, $meaning:expr) => {
-        AmountFields {
-            newtons: number(concat!($stem, "_n"), FRICTION_N, $absence, $meaning),
-            fraction: number(concat!($stem, "_fraction"), FRACTION, $absence, $meaning),
-            factor: number(concat!($stem, "_factor"), FACTOR, $absence, $meaning),
+        $crate::grammar::AmountFields {
+            newtons: $crate::tables::number(concat!($stem, "_n"), $crate::tables::FRICTION_N, $absence, $meaning),
+            fraction: $crate::tables::number(concat!($stem, "_fraction"), $crate::tables::FRACTION, $absence, $meaning),
+            factor: $crate::tables::number(concat!($stem, "_factor"), $crate::tables::FACTOR, $absence, $meaning),
         }
     };
 }
+pub(crate) use amount;
 
-const FRICTION_N: Range = Range::new(-100.0, 100.0, " N");
-const FRACTION: Range = Range::new(-1.0, 1.0, "");
-const FACTOR: Range = Range::new(-100.0, 100.0, "");
-const PLACE_MM: Range = Range::new(-2_000.0, 2_000.0, " mm");
-const SIZE_MM: Range = Range::new(0.01, 2_000.0, " mm");
-const WAVELENGTH_MM: Range = Range::new(0.05, 2_000.0, " mm");
-const ANGLE_DEG: Range = Range::new(-360.0, 360.0, " degrees");
-const CLICK: AmountFields = amount!("click", Means("no click"), "what is added when the finger crosses");
-/// Of an edge and of a button.
-pub(super) const CLICK_MS: FieldSpec = number(
-    "click_ms",
-    Range::new(0.1, 1_000.0, " ms"),
-    Number(20.0),
-    "how long a click takes to fall off: `(1 - t / click_ms)^2` of it are left after `t`",
-);
+pub(crate) const FRICTION_N: Range = Range::new(range::FRICTION_N.min, range::FRICTION_N.max, " N");
+pub(crate) const FRACTION: Range = Range::new(-1.0, 1.0, "");
+pub(crate) const FACTOR: Range = Range::new(range::FRICTION_N.min, range::FRICTION_N.max, "");
+pub(crate) const PLACE_MM: Range = Range::new(-2_000.0, 2_000.0, " mm");
+pub(crate) const SIZE_MM: Range = Range::new(0.01, 2_000.0, " mm");
+pub(crate) const WAVELENGTH_MM: Range = Range::new(0.05, 2_000.0, " mm");
+pub(crate) const ANGLE_DEG: Range = Range::new(-360.0, 360.0, " degrees");
+
+/// The two amounts that most kinds lie between.
+pub(crate) const LOW: AmountFields = amount!("low", Mistake, "least friction");
+pub(crate) const HIGH: AmountFields = amount!("high", Mistake, "largest friction");
 
 /// The file itself.
 pub(super) mod scene {
@@ -181,7 +182,7 @@ pub(super) mod layer {
     );
     pub(crate) const GAIN: FieldSpec = number(
         "gain",
-        FACTOR,
+        Range::new(range::GAIN.min, range::GAIN.max, ""),
         Number(1.0),
         "factor on what the layer asks for above natural friction; on the factor, where it multiplies",
     );
@@ -220,185 +221,4 @@ pub(super) mod region {
          one finger. Where its lines cross, what they go around twice is outside. Of two polygons with a common edge, \
          each place is in one",
     );
-}
-
-/// `constant`
-pub(super) mod constant {
-    use super::*;
-
-    pub(crate) const FRICTION: AmountFields = amount!("friction", Mistake, "the same friction everywhere");
-}
-
-/// `grating`
-pub(super) mod grating {
-    use super::*;
-
-    pub(crate) const WAVE: FieldSpec = word(
-        "wave",
-        Means("`\"sine\"`"),
-        "`\"sine\"`; `\"square\"`; `\"triangle\"`, which rises and falls; `\"saw\"`, which rises and drops",
-    );
-    pub(crate) const DUTY: FieldSpec =
-        number("duty", Range::new(0.01, 0.99, ""), Number(0.5), "the part of a square's wavelength that is high");
-    pub(crate) const WAVELENGTH_MM: FieldSpec =
-        number("wavelength_mm", super::WAVELENGTH_MM, Mistake, "from stripe to stripe");
-    pub(crate) const ANGLE_DEG: FieldSpec =
-        number("angle_deg", super::ANGLE_DEG, Number(0.0), "direction across the stripes");
-    pub(crate) const PHASE_DEG: FieldSpec = number(
-        "phase_deg",
-        super::ANGLE_DEG,
-        Number(0.0),
-        "at the screen's corner, without a phase, a sine is in its middle and rises, a square's high part begins, \
-         triangle and saw are low and rise. A phase is how much later in the wave it starts",
-    );
-    pub(crate) const LOW: AmountFields = amount!("low", Mistake, "least friction");
-    pub(crate) const HIGH: AmountFields = amount!("high", Mistake, "largest friction");
-}
-
-/// `bitmap`
-pub(super) mod bitmap {
-    use super::*;
-
-    pub(crate) const PICTURE: FieldSpec =
-        FieldSpec::new("picture", Holds::Text, Mistake, "a PNG file, found from the scene file's folder");
-    pub(crate) const X_MM: FieldSpec = number("x_mm", PLACE_MM, Means("the region's"), "left side of the picture");
-    pub(crate) const Y_MM: FieldSpec = number("y_mm", PLACE_MM, Means("the region's"), "top side of the picture");
-    pub(crate) const WIDTH_MM: FieldSpec = number("width_mm", SIZE_MM, Means("the region's"), "its width");
-    pub(crate) const HEIGHT_MM: FieldSpec = number(
-        "height_mm",
-        SIZE_MM,
-        Means("as the picture's sides demand; the region's, when `width_mm` is the region's too"),
-        "its height",
-    );
-    pub(crate) const ANGLE_DEG: FieldSpec =
-        number("angle_deg", super::ANGLE_DEG, Number(0.0), "how far it is turned about its middle");
-    pub(crate) const TILED: FieldSpec =
-        flag("tiled", false, "`true`: it is repeated in both directions, over the region or the screen");
-    pub(crate) const PITCH_MM: FieldSpec =
-        number("pitch_mm", Range::new(0.02, 10.0, " mm"), Number(0.25), "distance of the samples that the board plays");
-    pub(crate) const BLACK: AmountFields = amount!("black", Means("0"), "friction of black");
-    pub(crate) const WHITE: AmountFields =
-        amount!("white", Means("all that can be reached; a factor of 1"), "friction of white");
-}
-
-/// `noise`
-pub(super) mod noise {
-    use super::*;
-
-    pub(crate) const SEED: FieldSpec = FieldSpec::new(
-        "seed",
-        Holds::Whole(Range::new(0.0, 4_294_967_295.0, "")),
-        Number(0.0),
-        "the number that the waves are drawn with",
-    );
-    pub(crate) const WAVELENGTH_MIN_MM: FieldSpec =
-        number("wavelength_min_mm", WAVELENGTH_MM, Mistake, "nothing is finer than this");
-    pub(crate) const WAVELENGTH_MAX_MM: FieldSpec =
-        number("wavelength_max_mm", WAVELENGTH_MM, Mistake, "nothing is coarser than this");
-    pub(crate) const LOW: AmountFields = amount!("low", Mistake, "least friction, below which it never falls");
-    pub(crate) const HIGH: AmountFields = amount!(
-        "high",
-        Mistake,
-        "largest friction, above which it never rises. It is near the middle most of the time: its standard deviation \
-         is an eighth of the range"
-    );
-}
-
-/// `edge`
-pub(super) mod edge {
-    use super::*;
-
-    pub(crate) const X_MM: FieldSpec = number("x_mm", PLACE_MM, Mistake, "x of a place on the line");
-    pub(crate) const Y_MM: FieldSpec = number("y_mm", PLACE_MM, Mistake, "y of the same place");
-    pub(crate) const ANGLE_DEG: FieldSpec =
-        number("angle_deg", super::ANGLE_DEG, Number(0.0), "direction across the line: 0 is a line along y");
-    pub(crate) const WIDTH_MM: FieldSpec =
-        number("width_mm", SIZE_MM, Mistake, "from one foot of the ridge to the other");
-    pub(crate) const RIDGE: AmountFields = amount!(
-        "ridge",
-        Mistake,
-        "friction on the line, falling off as a raised cosine; beside the ridge nothing is added, and what lies below \
-         is multiplied by 1"
-    );
-    pub(crate) const CLICK: AmountFields = super::CLICK;
-}
-
-/// `button`
-pub(super) mod button {
-    use super::*;
-
-    pub(crate) const RIM_WIDTH_MM: FieldSpec = number(
-        "rim_width_mm",
-        SIZE_MM,
-        Mistake,
-        "width of the rim, inside the outline; an ellipse's along its shorter axis",
-    );
-    pub(crate) const RIM: AmountFields = amount!(
-        "rim",
-        Mistake,
-        "friction in the middle of the rim, from where it falls off to that of the face on both sides as a raised cosine"
-    );
-    pub(crate) const FACE: AmountFields = amount!("face", Mistake, "friction on the face");
-    pub(crate) const CLICK: AmountFields =
-        amount!("click", Means("no click"), "what is added when the finger slides in");
-}
-
-/// `vibration`
-pub(super) mod vibration {
-    use super::*;
-
-    pub(crate) const WAVE: FieldSpec = word("wave", Means("`\"sine\"`"), "`\"sine\"` or `\"square\"`");
-    pub(crate) const FREQUENCY_HZ: FieldSpec =
-        number("frequency_hz", Range::new(0.01, 1_000.0, " Hz"), Mistake, "how often a second");
-    pub(crate) const LOW: AmountFields = amount!("low", Mistake, "least friction");
-    pub(crate) const HIGH: AmountFields =
-        amount!("high", Mistake, "largest friction; a sine starts in the middle and rises, a square starts high");
-    pub(crate) const BURST: FieldSpec = FieldSpec::new(
-        "burst",
-        Holds::Table,
-        Means("it goes on"),
-        "it comes and goes: `{ period_ms, on_ms, ramp_ms }`, see [bursts](#bursts)",
-    );
-}
-
-/// `burst` of a vibration.
-pub(super) mod burst {
-    use super::*;
-
-    const TIME: Range = Range::new(1.0, 60_000.0, " ms");
-    pub(crate) const PERIOD_MS: FieldSpec =
-        number("period_ms", TIME, Mistake, "from the start of a burst to the next one");
-    pub(crate) const ON_MS: FieldSpec = number("on_ms", TIME, Mistake, "how long a burst lasts; at most the period");
-    pub(crate) const RAMP_MS: FieldSpec = number(
-        "ramp_ms",
-        Range::new(0.0, 30_000.0, " ms"),
-        Number(0.0),
-        "how long it rises and falls at its two ends; at most half of a burst each",
-    );
-}
-
-/// `speed`
-pub(super) mod speed {
-    use super::*;
-
-    pub(crate) const SPEEDS_MM_PER_S: FieldSpec = FieldSpec::new(
-        "speeds_mm_per_s",
-        Holds::Numbers(Range::new(0.0, 10_000.0, " mm/s")),
-        Mistake,
-        "2 to 16 speeds, rising",
-    );
-    pub(crate) const FACTORS: FieldSpec = FieldSpec::new(
-        "factors",
-        Holds::Numbers(FACTOR),
-        Mistake,
-        "the factor at each of them, straight between, held outside",
-    );
-}
-
-/// `stream`
-pub(super) mod stream {
-    use super::*;
-
-    pub(crate) const LOW: AmountFields = amount!("low", Mistake, "friction of sample 0");
-    pub(crate) const HIGH: AmountFields = amount!("high", Mistake, "friction of the largest sample");
 }

@@ -1,7 +1,7 @@
 //! Refuses a scene whose tick takes too long at some place, as the board would.
 
-use frixel_wire::scene::Cell;
-use frixel_wire::scene::cost::{Worst, worst_of_scene};
+use frixel_layers::Cell;
+use frixel_layers::cost::{Worst, worst_of_scene};
 
 use super::file::Scene;
 use super::log::Log;
@@ -43,7 +43,7 @@ pub fn middle_mm(cell: &Cell) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tests::{HEAD, compile_text, scenes};
+    use crate::tests::{HEAD, PICTURES, compile_text};
 
     #[test]
     fn the_longest_tick_is_refused_with_its_place_and_number() {
@@ -55,7 +55,7 @@ mod tests {
         };
         let text = format!("{HEAD}{}{}{}", layer(0), layer(90), layer(95));
         let program = compile_text(&text).expect("it compiles");
-        let scene = Scene::parse(&text, "test.toml", scenes()).expect("it reads");
+        let scene = Scene::parse(&text, "test.toml", &*PICTURES).expect("it reads");
         let Worst { instructions, cell } = program.worst_tick();
         assert_eq!(cell.layers, [0b110, 0]);
         for (max, refused) in [(instructions - 1, true), (instructions, false)] {

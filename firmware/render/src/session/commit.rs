@@ -1,7 +1,8 @@
 //! The uploaded scene becomes the one that plays.
 
+use frixel_layers::{Scene, disabled_record};
 use frixel_wire::message::{Accepted, Refusal};
-use frixel_wire::scene::{Layer, RECORDS_MAX, Scene, SceneError};
+use frixel_wire::scene::{RECORDS_MAX, SceneError};
 use heapless::Vec;
 
 use super::dialogue::Dialogue;
@@ -58,18 +59,11 @@ fn bitmaps_of(scene: &Scene) -> BitmapNames {
     if !cfg!(feature = "bitmap") {
         return BitmapNames::new();
     }
-    scene
-        .records()
-        .filter_map(|record| match record.layer {
-            Layer::Bitmap { crc32, .. } => Some(crc32),
-            _ => None,
-        })
-        .take(RECORDS_MAX)
-        .collect()
+    scene.records().filter_map(|record| record.layer.bitmap_crc32()).take(RECORDS_MAX).collect()
 }
 
 /// Tells what this firmware was built without from what nobody knows.
 #[inline]
 fn not_a_scene(error: SceneError) -> Refusal {
-    error.left_out().map_or(Refusal::Scene(error), |layer| Refusal::LeftOut { layer })
+    disabled_record(&error).map_or(Refusal::Scene(error), |layer| Refusal::LeftOut { layer })
 }

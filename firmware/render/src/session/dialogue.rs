@@ -17,9 +17,10 @@ use super::live::Stream;
 use super::outbox::Outbox;
 use super::states::ORDERS_MAX;
 use super::upload::{Staging, Upload};
-use crate::bitmap_pool::Directory;
+use crate::bitmap_directory::Directory;
 use crate::order::Status;
-use crate::{Active, BitmapPool, Board, Order, Touch};
+use crate::{Active, Board, Order, Touch};
+use frixel_layers::BitmapPool;
 
 /// The board's side of what is said.
 pub(super) struct Dialogue<'a> {

@@ -1,12 +1,12 @@
 //! Which of several fingers leads. One electrode gives one effect, so one finger at a time is followed.
 
+use frixel_layers::range::LENGTH_MAX_M;
+use frixel_layers::{Leader, within};
 use frixel_wire::fault::Flags;
 use frixel_wire::message::{Accepted, ConfigField, ConfigRefusal, Refusal};
-use frixel_wire::scene::Leader;
 use heapless::Vec;
 
 use super::dialogue::Dialogue;
-use crate::config::{self, LENGTH_MAX_M};
 use crate::{Status, Touch};
 
 /// The finger of a host that has one.
@@ -108,7 +108,7 @@ impl Dialogue<'_> {
         }
         for place_m in [x_m, y_m] {
             let field = ConfigField::TouchPlace;
-            config::within(field, place_m, -LENGTH_MAX_M, LENGTH_MAX_M, ConfigRefusal::WHOLE_SCENE)
+            within(field, place_m, -LENGTH_MAX_M as f32, LENGTH_MAX_M as f32, ConfigRefusal::WHOLE_SCENE)
                 .map_err(Refusal::Config)?;
         }
         let place = Touch::Down { x_m, y_m, age_ticks: u32::from(age_ticks) };

@@ -28,17 +28,11 @@ const fn features(board: &Board, has_stream: bool) -> u32 {
     const fn bit(present: bool, bit: u32) -> u32 {
         if present { bit } else { 0 }
     }
-    bit(cfg!(feature = "grating"), feature::GRATING)
-        | bit(cfg!(feature = "bitmap"), feature::BITMAP)
+    (frixel_layers::FEATURES & !feature::STREAM)
+        | bit(has_stream, feature::STREAM)
         | bit(cfg!(feature = "sine-carrier"), feature::SINE_CARRIER)
         | bit(cfg!(feature = "telemetry"), feature::TELEMETRY)
         | bit(board.touch_from_host, feature::HOST_TOUCH)
-        | bit(cfg!(feature = "noise"), feature::NOISE)
-        | bit(cfg!(feature = "edge"), feature::EDGE)
-        | bit(cfg!(feature = "vibration"), feature::VIBRATION)
-        | bit(cfg!(feature = "speed"), feature::SPEED)
-        | bit(has_stream, feature::STREAM)
-        | bit(cfg!(feature = "polygon"), feature::POLYGON)
 }
 
 impl Dialogue<'_> {

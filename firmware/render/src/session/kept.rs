@@ -5,13 +5,13 @@
 
 use frixel_wire::fault::State;
 use frixel_wire::frame::crc32;
-use frixel_wire::scene::{RECORDS_MAX, SCENE_MAX_LEN, bitmap_digest};
+use frixel_wire::scene::{RECORDS_MAX, bitmap_digest};
 use heapless::Vec;
 
 use super::commit::BitmapNames;
 use super::dialogue::Dialogue;
-use crate::bitmap_pool::{Bitmap, BitmapPool};
 use crate::store::WORD_LEN;
+use frixel_layers::{BitmapPool, SCENE_MAX_LEN, StoredBitmap as Bitmap};
 
 /// The committed scene with its bitmaps.
 pub struct KeptScene<'s> {

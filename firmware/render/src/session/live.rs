@@ -1,15 +1,14 @@
 //! What a host changes while a scene plays: layers, and the samples of a stream.
 
+use frixel_layers::{Header, Leader, Scene, range, within};
 use frixel_wire::fault::State;
 use frixel_wire::message::{Accepted, Command, ConfigField, Refusal};
 #[cfg(feature = "stream")]
 use frixel_wire::message::{ConfigRefusal, FromBoard, STREAM_START_LEVEL_MAX};
-use frixel_wire::scene::{Header, Leader, Scene};
 
 use super::dialogue::Dialogue;
 #[cfg(feature = "stream")]
 use super::outbox::Outbox;
-use crate::config::{self, GAIN_MAX};
 use crate::order::{Order, Status};
 #[cfg(feature = "stream")]
 use crate::stream::{Intake, StreamBuffer};
@@ -37,7 +36,7 @@ impl Playing {
             // A scene has no more records than that.
             layers: scene.record_count() as u8,
             #[cfg(feature = "stream")]
-            has_stream: scene.records().any(|record| crate::layer::is_stream(&record)),
+            has_stream: scene.records().any(|record| record.layer.is_streamed()),
         }
     }
 }
@@ -96,7 +95,7 @@ impl Dialogue<'_> {
         if layer >= layers {
             return Err(Refusal::NoSuchLayer { layer, layers });
         }
-        config::within(ConfigField::Gain, gain, -GAIN_MAX, GAIN_MAX, layer).map_err(Refusal::Config)?;
+        range::GAIN.check(gain, layer).map_err(Refusal::Config)?;
         self.send_order(Order::SetLayer { layer, on, gain })?;
         Ok(Accepted::Done)
     }
@@ -120,7 +119,7 @@ impl<'a> Dialogue<'a> {
             (ConfigField::SampleRate, sample_hz as f32, tick_hz as f32),
             (ConfigField::StartLevel, f32::from(start_level), f32::from(STREAM_START_LEVEL_MAX)),
         ] {
-            config::within(field, found, 1.0, max, ConfigRefusal::WHOLE_SCENE).map_err(Refusal::Config)?;
+            within(field, found, 1.0, max, ConfigRefusal::WHOLE_SCENE).map_err(Refusal::Config)?;
         }
         self.room_for_order()?;
         let Some(stream) = &mut self.stream else { return Err(Refusal::UnknownCommand) };
@@ -170,18 +169,22 @@ impl<'a> Dialogue<'a> {
         let Some((next_index, room)) = stream.intake.progress() else { return };
         let now_tick = status.telemetry.tick;
         let period_over = now_tick.wrapping_sub(stream.reported_at_tick) >= self.board.ticks(PROGRESS_PERIOD_S);
-        if (stream.report_due || period_over) && outbox.is_mostly_free() {
+        if !stream.report_due && !period_over {
+            return;
+        }
+        let progress = FromBoard::StreamProgress {
+            next_index,
+            room,
+            underruns: status.counters.stream_underruns,
+            gaps: status.counters.stream_gaps,
+            received_bytes: self.credit.received(),
+        };
+        // When the line is behind, the next call tries again.
+        if outbox.send_unasked(&progress) {
+            self.credit.reported();
             stream.report_due = false;
             stream.frames = 0;
             stream.reported_at_tick = now_tick;
-            let progress = FromBoard::StreamProgress {
-                next_index,
-                room,
-                underruns: status.counters.stream_underruns,
-                gaps: status.counters.stream_gaps,
-                received_bytes: self.credit.received(),
-            };
-            self.report(&progress, outbox);
         }
     }
 }

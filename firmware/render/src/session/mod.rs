@@ -17,17 +17,18 @@ mod states;
 mod storing;
 mod upload;
 
+use frixel_layers::Header;
 use frixel_wire::fault::State;
 use frixel_wire::frame::Decoder;
-use frixel_wire::message::{FromBoard, Telemetry};
+use frixel_wire::message::FromBoard;
 use frixel_wire::payload::Payload;
-use frixel_wire::scene::Header;
 
 use crate::order::Status;
 #[cfg(feature = "stream")]
 use crate::stream::StreamBuffer;
-use crate::{Active, BitmapPool, Board, Order, Touch};
+use crate::{Active, Board, Order, Touch};
 use dialogue::Dialogue;
+use frixel_layers::BitmapPool;
 #[cfg(feature = "store")]
 pub use kept::KeptScene;
 use outbox::Outbox;
@@ -101,7 +102,7 @@ impl<'a> Session<'a> {
             && status.telemetry.tick.wrapping_sub(self.telemetry_sent_at_tick) >= period_ticks
         {
             self.telemetry_sent_at_tick = status.telemetry.tick;
-            self.send_telemetry(status.telemetry);
+            self.outbox.send_unasked(&FromBoard::Telemetry(status.telemetry));
         }
     }
 
@@ -180,13 +181,5 @@ impl<'a> Session<'a> {
     pub fn frame_counts(&self) -> (u32, u32) {
         let discarded = self.frames_discarded;
         (self.decoder.frames().wrapping_sub(discarded), self.decoder.rejected().wrapping_add(discarded))
-    }
-
-    /// Telemetry gives way to answers: it is left out when the line is behind.
-    #[inline]
-    fn send_telemetry(&mut self, telemetry: Telemetry) {
-        if self.outbox.is_mostly_free() {
-            self.outbox.send(&FromBoard::Telemetry(telemetry));
-        }
     }
 }

@@ -6,9 +6,18 @@ use frixel_wire::message::FromBoard;
 use frixel_wire::payload;
 use heapless::Deque;
 
-/// Room for the answers to 64 requests, or to fewer with telemetry between them. A host waits for its answers, so that it
-/// has one or two outstanding.
-const OUTBOX_LEN: usize = 2048;
+/// Answers that may be outstanding (`PROTOCOL.md`, section 5). A host waits for its answers, so that it has one or two.
+const ANSWERS_MAX: usize = 64;
+/// The longest frame of an answer, that a scene is too costly, with a sequence number and a count of the longest form.
+/// A piece of a fault's text is longer, 52 bytes; a text has seven of them at most.
+const ANSWER_MAX_LEN: usize = 37;
+/// Frames that nobody waits for are left out while more than this is queued, 2.5 ms of a line of 2 Mbaud. So they leave
+/// room for all answers, and what comes of them is not old.
+const UNASKED_MAX_LEN: usize = 512;
+/// Room for all of them, and for what tells how an upload goes and what the board's state is.
+const OUTBOX_LEN: usize = 3072;
+
+const _: () = assert!(ANSWERS_MAX * ANSWER_MAX_LEN + UNASKED_MAX_LEN + FRAME_MAX_LEN <= OUTBOX_LEN);
 
 /// A queue of whole frames, the first of which may have left in part.
 pub(super) struct Outbox {
@@ -22,18 +31,26 @@ impl Outbox {
         Self { bytes: Deque::new(), is_inside_frame: false }
     }
 
-    #[inline]
-    pub(super) fn is_mostly_free(&self) -> bool {
-        self.bytes.len() < OUTBOX_LEN / 2
-    }
-
-    // Code of its own, as what it calls: many lines call it.
     /// Queues a message, and returns whether there was room. One that does not fit is left out whole, and the host asks
     /// again after its deadline.
-    #[inline(never)]
+    #[inline]
     pub(super) fn send(&mut self, message: &FromBoard) -> bool {
+        self.send_within(OUTBOX_LEN, message)
+    }
+
+    /// Queues a message that no request asked for, such as telemetry, unless the line is behind.
+    #[inline]
+    pub(super) fn send_unasked(&mut self, message: &FromBoard) -> bool {
+        self.send_within(UNASKED_MAX_LEN, message)
+    }
+
+    /// Queues a message when no more than `len_max` bytes are queued then.
+    // Code of its own: many lines call it.
+    #[inline(never)]
+    fn send_within(&mut self, len_max: usize, message: &FromBoard) -> bool {
         let mut frame = [0; FRAME_MAX_LEN];
-        payload::from_board_frame(message, &mut frame).is_ok_and(|frame| self.push(frame))
+        payload::from_board_frame(message, &mut frame)
+            .is_ok_and(|frame| self.bytes.len() + frame.len() <= len_max && self.push(frame))
     }
 
     /// Queues a hello in the place of all that waits: that was meant for the client before.

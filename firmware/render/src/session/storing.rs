@@ -1,15 +1,15 @@
 //! What is uploaded, and the room for it.
 
+use frixel_layers::{HEADER_LEN, POINT_LEN, RECORD_LEN, SCENE_MAX_LEN, StoredBitmap as Bitmap};
 use frixel_wire::fault::State;
 use frixel_wire::message::{Accepted, FromBoard, Refusal};
-use frixel_wire::scene::{HEADER_LEN, POINT_LEN, POINTS_MAX, RECORD_LEN, SCENE_MAX_LEN};
+use frixel_wire::scene::POINTS_MAX;
 
 use super::dialogue::Dialogue;
 use super::live::Playing;
 use super::outbox::Outbox;
 use super::upload::{Destination, Report, Upload};
 use crate::Order;
-use crate::bitmap_pool::Bitmap;
 
 impl Dialogue<'_> {
     #[inline]

@@ -3,9 +3,9 @@
 use frixel_wire::frame::Crc32;
 use frixel_wire::message::Refusal;
 use frixel_wire::payload::CHUNK_LEN;
-use frixel_wire::scene::{SCENE_MAX_LEN, bitmap_digest};
+use frixel_wire::scene::bitmap_digest;
 
-use crate::bitmap_pool::{Bitmap, BitmapPool};
+use frixel_layers::{BitmapPool, SCENE_MAX_LEN, StoredBitmap};
 
 /// Chunks after which the host hears how far an upload has come: less than 1 KiB, a quarter of the smallest window.
 const PROGRESS_CHUNKS: u16 = 5;
@@ -14,7 +14,7 @@ const PROGRESS_CHUNKS: u16 = 5;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Destination {
     Scene,
-    Bitmap(Bitmap),
+    Bitmap(StoredBitmap),
 }
 
 /// An upload under way.
@@ -43,7 +43,7 @@ impl Upload {
 
     /// Starts with the bitmap's shape, which its name covers.
     #[inline]
-    pub(super) fn of_bitmap(bitmap: Bitmap) -> Self {
+    pub(super) fn of_bitmap(bitmap: StoredBitmap) -> Self {
         let digest = bitmap_digest(bitmap.width, bitmap.height);
         Self::new(Destination::Bitmap(bitmap), bitmap.len(), bitmap.crc32, digest)
     }

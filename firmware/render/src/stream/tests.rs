@@ -31,12 +31,12 @@ impl<'a> Ends<'a> {
         self.player.end(last);
     }
 
-    fn advance(&mut self) -> StreamNow {
+    fn advance(&mut self) -> StreamSample {
         self.player.advance();
         self.player.now()
     }
 
-    fn run(&mut self, ticks: u32) -> Vec<StreamNow> {
+    fn run(&mut self, ticks: u32) -> Vec<StreamSample> {
         (0..ticks).map(|_| self.advance()).collect()
     }
 }
@@ -132,7 +132,7 @@ proptest! {
         let buffer = buffer_before_wrap(before_wrap);
         let mut ends = Ends::new(&buffer);
         let (mut stream, mut shown) = (0_u16, None);
-        let mut before = StreamNow::default();
+        let mut before = StreamSample::default();
         for (call, index, count) in calls {
             match call {
                 0 => {
@@ -229,7 +229,7 @@ fn the_end_is_no_underrun_and_needs_no_start_level() {
         assert_eq!(ends.player.is_dry(), count < 100);
         ends.end();
         ends.take(count, &samples(count, 50));
-        let rest: Vec<StreamNow> = (0..1_000)
+        let rest: Vec<StreamSample> = (0..1_000)
             .map(|_| {
                 let now = ends.advance();
                 assert!(!ends.player.is_dry(), "what ends does not run dry");

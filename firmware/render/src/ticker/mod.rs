@@ -10,12 +10,14 @@ use crate::carrier::Carrier;
 use crate::deadline::{earlier, is_past};
 use crate::envelope::Envelope;
 use crate::finger::{Finger, FingerTiming};
-use crate::layer::{Clicks, Moment};
 use crate::order::Counters;
 #[cfg(feature = "stream")]
-use crate::stream::{Player, StreamBuffer, StreamNow};
+use crate::stream::{Player, StreamBuffer};
 use crate::supervisor::{self, Supervisor};
-use crate::{Active, BitmapPool, Board, Drive, Sense, Touch};
+use crate::{Active, Board, Drive, Sense, Touch};
+#[cfg(feature = "stream")]
+use frixel_layers::StreamSample;
+use frixel_layers::{BitmapPool, Clicks, Inputs};
 
 /// Ticks until the next look at what has no deadline: far less than the tick counter takes to wrap.
 const LOOK_AFTER_TICKS: u32 = 1 << 30;
@@ -50,7 +52,7 @@ pub struct Ticker<'a> {
     dac_code: i16,
     last: LastTicks,
     /// What layers depend on besides the place.
-    moment: Moment,
+    inputs: Inputs,
     asked_electric_friction_n: f32,
     target_v_rms: f32,
     counters: Counters,
@@ -103,7 +105,7 @@ impl<'a> Ticker<'a> {
             arm_switch: false,
             dac_code: 0,
             last: LastTicks::default(),
-            moment: Moment::default(),
+            inputs: Inputs::default(),
             asked_electric_friction_n: 0.0,
             target_v_rms: 0.0,
             counters: Counters::default(),
@@ -215,7 +217,7 @@ impl<'a> Ticker<'a> {
         };
         #[cfg(feature = "speed")]
         {
-            self.moment.velocity_m_per_s = self.finger.velocity_m_per_s();
+            self.inputs.velocity_m_per_s = self.finger.velocity_m_per_s();
         }
         let may_be_live = self.may_be_live();
         if may_be_live != self.live {
@@ -238,7 +240,7 @@ impl<'a> Ticker<'a> {
     fn play_stream(&mut self) {
         if let Some(stream) = &mut self.stream {
             stream.advance();
-            self.moment.stream = stream.now();
+            self.inputs.stream = stream.now();
             self.streaming = !stream.is_over();
         }
     }
@@ -247,7 +249,7 @@ impl<'a> Ticker<'a> {
     fn stop_stream(&mut self) {
         if let Some(stream) = &mut self.stream {
             stream.stop();
-            self.moment.stream = StreamNow::default();
+            self.inputs.stream = StreamSample::default();
             self.streaming = false;
         }
     }
@@ -257,12 +259,8 @@ impl<'a> Ticker<'a> {
     fn ask(&mut self) {
         let Some(table) = self.active.table() else { return };
         let place_m = self.finger.place_m();
-        let friction_n = if let Some(sole) = self.active.sole() {
-            sole.electric_friction_n(place_m, self.pool)
-        } else {
-            self.moment.meet(place_m, self.tick);
-            self.active.electric_friction_n(&self.moment, self.pool, &mut self.clicks)
-        };
+        self.inputs.set_place(place_m, self.tick);
+        let friction_n = self.active.electric_friction_n(&self.inputs, self.pool, &mut self.clicks);
         self.asked_tick = self.tick;
         let electric_friction_n = self.finger.gain() * friction_n;
         self.asked_electric_friction_n = electric_friction_n;

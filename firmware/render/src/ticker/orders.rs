@@ -19,7 +19,7 @@ impl<'a> Ticker<'a> {
                 self.carrier.retime(&self.active.carrier);
                 self.envelope.limit(self.active.voltage_max_v_rms);
                 self.target_v_rms = self.target_v_rms.min(self.active.voltage_max_v_rms);
-                self.clicks.forget();
+                self.clicks.reset();
                 #[cfg(feature = "stream")]
                 if !self.active.has_stream() {
                     self.stop_stream();

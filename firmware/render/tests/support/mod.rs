@@ -12,14 +12,16 @@
 #[cfg(feature = "store")]
 pub mod flash;
 
+use frixel_layers::{Bitmap, BitmapPool, Constant};
+use frixel_layers::{Blend, Carrier, Header, Layer, Leader, Point, Record, Region};
 #[cfg(feature = "stream")]
 use frixel_render::StreamBuffer;
-use frixel_render::{Active, BitmapPool, Board, Drive, Sense, Session, Status, Ticker, Touch};
+use frixel_render::{Active, Board, Drive, Sense, Session, Status, Ticker, Touch};
 use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, crc32};
 use frixel_wire::hello::Hello;
 use frixel_wire::message::{Accepted, Answer, Command, FromBoard, Refusal, Request};
 use frixel_wire::payload::{self, CHUNK_LEN, Payload};
-use frixel_wire::scene::{Blend, Carrier, Header, Layer, Leader, Point, Record, Region, bitmap_crc32};
+use frixel_wire::scene::bitmap_crc32;
 
 /// What the two halves of a board share; lives longer than the [`Desk`].
 pub struct Memory {
@@ -272,6 +274,7 @@ pub const HEADER: Header = Header {
     prediction: true,
     leader: Leader::First,
     layers_fixed: false,
+    electric_friction_max_n: None,
 };
 
 pub fn record(layer: Layer) -> Record {
@@ -280,7 +283,7 @@ pub fn record(layer: Layer) -> Record {
 
 /// A picture with a millimetre from sample to sample.
 pub fn bitmap(crc32: u32) -> Layer {
-    Layer::Bitmap {
+    Layer::Bitmap(Bitmap {
         crc32,
         x_m: 0.0,
         y_m: 0.0,
@@ -290,12 +293,12 @@ pub fn bitmap(crc32: u32) -> Layer {
         pitch_y_m: 1e-3,
         angle_turns: 0.0,
         tiled: false,
-    }
+    })
 }
 
 /// A friction that is the same everywhere.
 pub fn constant(electric_friction_n: f32) -> Vec<u8> {
-    scene(&HEADER, &[record(Layer::Constant { electric_friction_n })])
+    scene(&HEADER, &[record(Layer::Constant(Constant { electric_friction_n }))])
 }
 
 pub fn scene(header: &Header, records: &[Record]) -> Vec<u8> {

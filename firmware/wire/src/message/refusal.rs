@@ -79,7 +79,7 @@ pub enum Refusal {
     },
     /// No layer of the playing scene is a stream.
     NoStreamLayer,
-    /// The scene would make a tick too long ([`crate::scene::cost`]).
+    /// The scene would make a tick too long (`frixel_layers::cost`).
     TooCostly {
         /// Instructions of the longest tick.
         instructions: u32,
@@ -90,7 +90,7 @@ pub enum Refusal {
         /// And from its top edge, m.
         y_m: f32,
     },
-    /// The playing scene says that no layer of it is changed ([`crate::scene::Header::layers_fixed`]).
+    /// The playing scene says that no layer of it is changed (`frixel_layers::Header::layers_fixed`).
     LayersFixed,
 }
 
@@ -185,6 +185,8 @@ pub enum ConfigField {
     NoiseLayers,
     /// Edges and buttons up to this one.
     ClickLayers,
+    /// The largest electric friction that the scene says it asks for, N. Since protocol 1.3.
+    ElectricFrictionMax,
 }
 
 impl ConfigField {
@@ -225,6 +227,7 @@ impl ConfigField {
             Self::CurveSpeed => ("speed", " m/s"),
             Self::NoiseLayers => ("number of noise layers", ""),
             Self::ClickLayers => ("number of edges and buttons", ""),
+            Self::ElectricFrictionMax => ("largest electric friction", " N"),
         }
     }
 }

@@ -3,9 +3,9 @@
 use std::time::Duration;
 
 use frixel_driver::{Device, DeviceError, Event, Link, Upload};
+use frixel_layers::{Carrier, Header, Leader};
 use frixel_wire::fault::State;
 use frixel_wire::message::{Command, Refusal};
-use frixel_wire::scene::{Carrier, Header, Leader};
 
 use crate::fake_board::FakeBoard;
 use crate::virtual_link::{Fate, VirtualLink};
@@ -38,6 +38,7 @@ pub(crate) fn scene(host_timeout_s: f32) -> Vec<u8> {
         prediction: true,
         leader: Leader::First,
         layers_fixed: false,
+        electric_friction_max_n: None,
     };
     header.write(0, 0).to_vec()
 }

@@ -1,9 +1,8 @@
 //! The smallest firmware that plays a scene.
 
-use frixel_wire::scene::{Carrier, Layer, Region};
-use serde::Serialize;
-
 use frixel_scene::Program;
+use frixel_wire::hello::feature;
+use serde::Serialize;
 
 /// Folder of the board's firmware.
 const FOLDER: &str = "firmware/board-nucleo-g474re";
@@ -19,24 +18,10 @@ pub struct BoardImage {
 
 impl BoardImage {
     pub(super) fn of(program: &Program) -> Self {
-        let asks = |layer: fn(&Layer) -> bool| program.records.iter().any(|record| layer(&record.layer));
-        let polygon = |region: Region| matches!(region, Region::Polygon { .. });
-        let features: Vec<&str> = [
-            ("grating", asks(|layer| matches!(layer, Layer::Grating { .. }))),
-            ("bitmap", asks(|layer| matches!(layer, Layer::Bitmap { .. }))),
-            ("noise", asks(|layer| matches!(layer, Layer::Noise { .. }))),
-            ("edge", asks(|layer| matches!(layer, Layer::Edge { .. } | Layer::Button { .. }))),
-            ("vibration", asks(|layer| matches!(layer, Layer::Vibration { .. }))),
-            ("speed", asks(|layer| matches!(layer, Layer::Speed { .. }))),
-            ("stream", asks(|layer| matches!(layer, Layer::Stream { .. }))),
-            ("polygon", program.records.iter().any(|record| polygon(record.region))),
-            ("sine-carrier", program.header.carrier == Carrier::Sine),
-            // `frixel play` follows what a board does.
-            ("telemetry", true),
-        ]
-        .into_iter()
-        .filter_map(|(feature, asked)| asked.then_some(feature))
-        .collect();
+        // `frixel play` follows what a board does.
+        let needed = program.features() | feature::TELEMETRY;
+        let features: Vec<&str> =
+            feature::NAMES.iter().filter(|(bit, _)| needed & bit != 0).map(|(_, name)| *name).collect();
         let list = if features.is_empty() { String::new() } else { format!(" --features {}", features.join(",")) };
         let command = format!("cd {FOLDER} && cargo build --release --no-default-features{list}");
         Self { features, command }

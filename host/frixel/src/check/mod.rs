@@ -5,9 +5,9 @@ mod rehearsal;
 mod text;
 
 use frixel_hil_sim::{BoardMemory, RigConfig, TableRows};
+use frixel_layers::Scene as WireScene;
+use frixel_layers::cost::{TICK_INSTRUCTIONS_MAX, Worst};
 use frixel_model::InverseTable;
-use frixel_wire::scene::Scene as WireScene;
-use frixel_wire::scene::cost::{TICK_INSTRUCTIONS_MAX, Worst};
 use serde::Serialize;
 
 pub use board::BoardImage;

@@ -9,6 +9,7 @@ use frixel::output::OutputError;
 use frixel::player::PlayError;
 use frixel::report::ReportError;
 use frixel::rigs::{ServerError, StopReason};
+use frixel::scene_file::SceneFileError;
 use frixel::stream::FeedError;
 use frixel_driver::{DeviceError, PortError};
 use frixel_hil_sim::emulated::EmulatorError;
@@ -19,6 +20,8 @@ use thiserror::Error;
 
 #[derive(Debug, Error)]
 pub(crate) enum CommandError {
+    #[error(transparent)]
+    SceneFile(#[from] SceneFileError),
     #[error(transparent)]
     Compile(#[from] CompileError),
     #[error(transparent)]
@@ -66,10 +69,10 @@ pub(crate) enum CommandError {
         "--stroke moves the finger of --port sim and --port qemu only; a board at {port} has its own: leave it out"
     )]
     StrokeOnBoard { port: String },
-    #[error("{port} sends telemetry at most {max} times a second, --csv-hz {asked} is more; ask for {max} or less")]
-    CsvTooFast { port: String, asked: u32, max: u32 },
-    #[error("--csv-hz {asked} does not divide the board's {tick_hz} ticks a second; ask for {nearest}")]
-    CsvUneven { asked: u32, tick_hz: u32, nearest: String },
+    #[error("{port} sends telemetry at most {max} times a second, --csv-hz {found} is more; give {max} or less")]
+    CsvTooFast { port: String, found: u32, max: u32 },
+    #[error("--csv-hz {found} does not divide the board's {tick_hz} ticks a second; give {nearest}")]
+    CsvUneven { found: u32, tick_hz: u32, nearest: String },
     #[error("{seconds} s is shorter than one tick of the board, {tick_s} s: play for longer")]
     TooShort { seconds: f64, tick_s: f64 },
     #[error(

@@ -14,7 +14,7 @@ mod saved_file;
 use std::path::PathBuf;
 
 use frixel::output::Report;
-use frixel_scene::Scene;
+use frixel::scene_file;
 
 use super::PlayArgs;
 use super::error::CommandError;
@@ -35,7 +35,7 @@ pub(super) fn run(args: &PlayArgs) -> Result<(), CommandError> {
     plan::check_options(args, target)?;
     // Before the file is read for the first time, so that no change is missed.
     let live_scene = args.watch.then(|| LiveScene::new(&args.scene));
-    let scene = Scene::load(&args.scene)?;
+    let scene = scene_file::load(&args.scene)?;
     let interrupt = Interrupt::watch()?;
     let played = match target {
         Target::Simulator => rigs::play_on_simulator(args, &scene, &interrupt),

@@ -12,7 +12,7 @@ use super::error::CommandError;
 pub(super) enum SceneCommand {
     /// Say what a scene costs and what of it can be felt.
     ///
-    /// Every mistake is told, with line and column. A scene that no board can play is refused by the number that is
+    /// Every mistake is reported, with line and column. A scene that no board can play is refused by the number that is
     /// exceeded.
     Check(check::CheckArgs),
     /// Draw the friction map of a scene: a PNG with rulers, and a colour scale in newtons.

@@ -7,14 +7,14 @@ use frixel_hil_sim::Stroke;
 
 use super::error::CommandError;
 
-/// Length of a stroke that nobody asked to be longer or shorter, in s.
+/// Length of a stroke without `--seconds`, s.
 const NATURAL_STROKE_S: f64 = 3.0;
 /// Longest stroke of a file: a day, in s.
 const FILE_STROKE_MAX_S: f64 = 86_400.0;
-/// Time between two looks at where a stroke is, in s.
-const LOOK_PERIOD_S: f64 = 1e-3;
-/// Most looks at a stroke.
-const LOOKS_MAX: f64 = 1e6;
+/// Time between two places of a stroke that are checked, s.
+const CHECK_PERIOD_S: f64 = 1e-3;
+/// Most places of a stroke that are checked.
+const CHECKS_MAX: f64 = 1e6;
 
 /// The stroke of a file, or a natural one over a screen of these sides.
 pub(super) fn stroke(
@@ -43,7 +43,7 @@ fn from_file(path: &Path) -> Result<Stroke, CommandError> {
     Ok(stroke)
 }
 
-/// Refuses the stroke of a file that is nowhere on a screen of these sides in its first `seconds`, and says it of one
+/// Refuses the stroke of a file that is nowhere on a screen of these sides in its first `seconds`. Prints a note about one
 /// that is partly off.
 pub(super) fn check_on_screen(
     path: &Path,
@@ -53,9 +53,9 @@ pub(super) fn check_on_screen(
     seconds: f64,
 ) -> Result<(), CommandError> {
     let end_s = seconds.min(stroke.duration_s());
-    let looks = (end_s / LOOK_PERIOD_S).ceil().clamp(1.0, LOOKS_MAX);
+    let checks = (end_s / CHECK_PERIOD_S).ceil().clamp(1.0, CHECKS_MAX);
     let (mut on, mut off) = (0_u32, 0_u32);
-    for finger in (0..=looks as u32).filter_map(|look| stroke.at(end_s * f64::from(look) / looks)) {
+    for finger in (0..=checks as u32).filter_map(|check| stroke.at(end_s * f64::from(check) / checks)) {
         if (0.0..=screen_width_m).contains(&finger.x_m) && (0.0..=screen_height_m).contains(&finger.y_m) {
             on += 1;
         } else {

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use frixel_wire::scene::Layer;
+use frixel_layers::{Button, Edge, Layer};
 
 use super::OutputError;
 use super::map::Frame;
@@ -110,15 +110,15 @@ fn caption(program: &Program, preview: &Preview, map: &Map) -> Vec<String> {
         rounded(voltage_max_v_rms)
     )];
     let any = |wanted: fn(&Layer) -> bool| program.records.iter().any(|record| wanted(&record.layer));
-    let clicks = |layer: &Layer| matches!(layer, Layer::Edge { click, .. } | Layer::Button { click, .. } if click.height_n.abs() > 0.0);
+    let clicks = |layer: &Layer| matches!(layer, Layer::Edge(Edge { click, .. }) | Layer::Button(Button { click, .. }) if click.height_n.abs() > 0.0);
     let at_most: Vec<&str> = [
-        (any(|layer| matches!(layer, Layer::Vibration { .. })), "vibration"),
-        (any(|layer| matches!(layer, Layer::Stream { .. })), "stream"),
+        (any(|layer| matches!(layer, Layer::Vibration(_))), "vibration"),
+        (any(|layer| matches!(layer, Layer::Stream(_))), "stream"),
     ]
     .into_iter()
     .filter_map(|(found, name)| found.then_some(name))
     .collect();
-    if any(|layer| matches!(layer, Layer::Speed { .. })) {
+    if any(|layer| matches!(layer, Layer::Speed(_))) {
         sentences.push(format!("Sliding at {} mm/s.", rounded(1e3 * preview.speed_m_per_s)));
     }
     if !at_most.is_empty() {

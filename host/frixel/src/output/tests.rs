@@ -10,11 +10,12 @@ use proptest::prelude::*;
 use super::trace::Extremes;
 use super::*;
 use crate::chart::{RGBColor, colour};
+use crate::scene_file;
 use frixel_driver::Counters;
 use frixel_scene::metrics::{ErrorSize, MetricsSummary};
 use frixel_scene::recorder::FeltRow;
 use frixel_scene::reference::Reference;
-use frixel_scene::{Program, Scene, compile};
+use frixel_scene::{Program, compile};
 
 const LIMITS: BoardLimits = BoardLimits {
     bitmap_pool_bytes: 64 * 1024,
@@ -31,7 +32,7 @@ const LIMITS: BoardLimits = BoardLimits {
 
 fn brick() -> Program {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/brick.toml"));
-    compile(&Scene::load(path).expect("it reads"), &LIMITS, 40_000).expect("it compiles")
+    compile(&scene_file::load(path).expect("it reads"), &LIMITS, 40_000).expect("it compiles")
 }
 
 /// Rows of a stroke along a slanted line, every millisecond; what is felt lags behind a little.

@@ -10,14 +10,14 @@ use thiserror::Error;
 use super::server_log::ServerLog;
 use crate::output::OutputError;
 
-/// How long the server sleeps between two looks at the clock.
+/// Time that the server sleeps between two readings of the clock.
 const NAP: Duration = Duration::from_millis(1);
-/// Most virtual time between two looks at the terminal, so that what a client sends meanwhile is not late.
+/// Most virtual time between two reads of the terminal: what a client sends is late by no more than this.
 const BATCH_MAX_S: f64 = 5e-3;
 /// Most reads of 4 KiB between two batches of ticks: more than a terminal holds, and an end for a client that writes as fast
 /// as it is read.
 const READS_MAX: usize = 16;
-/// When the wall clock is this far ahead, the machine was busy elsewhere: virtual time lets it go.
+/// Largest lag of virtual time behind the wall clock, after the machine was busy elsewhere. A larger one is not caught up.
 const LAG_MAX_S: f64 = 50e-3;
 
 /// Why a virtual board ended.

@@ -13,7 +13,7 @@ use thiserror::Error;
 use frixel_driver::{Device, DeviceError, Link, StreamSettings};
 use pipe::Pipe;
 
-/// Samples that are fetched ahead of what the board has room for.
+/// Samples that are read from their source before the board has room for them.
 const AHEAD: usize = 2048;
 
 /// Samples on their way to a board.
@@ -62,7 +62,7 @@ pub enum FeedError {
         "a stream of {sample_hz} samples a second cannot be played: give 1 to {tick_hz}, the board's ticks a second"
     )]
     Rate {
-        /// Samples a second that were asked for.
+        /// Samples a second that were requested.
         sample_hz: u32,
         /// The board's ticks a second.
         tick_hz: u32,
@@ -87,8 +87,7 @@ impl Feed {
 
     /// Raw samples, two bytes each, little-endian, from a pipe that is read by a thread of its own.
     ///
-    /// A pipe that has nothing to give is waited for when `waits`, as suits a board in virtual time. Otherwise the board is
-    /// left to run dry.
+    /// With `waits`, an empty pipe is waited for, as suits a board in virtual time. Otherwise the board runs dry.
     pub fn raw(
         input: impl Read + Send + 'static,
         sample_hz: u32,
@@ -102,7 +101,7 @@ impl Feed {
         Ok(Self { settings: StreamSettings::new(sample_hz), source, pending: Vec::new(), ended: false })
     }
 
-    /// Samples that are all there.
+    /// Samples that are all in memory.
     pub fn of(samples: Vec<u16>, sample_hz: u32) -> Self {
         let settings = StreamSettings::new(sample_hz);
         Self { settings, source: Source::Samples(samples, 0), pending: Vec::new(), ended: false }
@@ -136,7 +135,7 @@ impl Feed {
         Ok(())
     }
 
-    /// Fetches samples ahead; returns whether there may be more.
+    /// Reads samples from the source until [`AHEAD`] are pending. Returns whether there may be more.
     fn fetch(&mut self) -> Result<bool, FeedError> {
         let wanted = AHEAD.saturating_sub(self.pending.len());
         match &mut self.source {

@@ -6,10 +6,10 @@ use std::thread;
 
 /// Bytes that are read at a time.
 const PIECE_LEN: usize = 1024;
-/// Pieces that wait; beyond that the pipe's writer does.
+/// Pieces in the queue. When it is full, the writer of the pipe waits.
 const PIECES: usize = 4;
 
-/// A pipe that a thread reads: a read may take for ever, and a board must not wait for it.
+/// A pipe that a thread reads: a read may block for ever, and the board must hear from its host meanwhile.
 pub(super) struct Pipe {
     pieces: Receiver<io::Result<Vec<u8>>>,
     /// The first byte of a sample whose second has not come.

@@ -72,15 +72,15 @@ fn more_samples_than_ticks_are_brought_below_them() {
 #[test]
 fn what_is_no_stream_is_told_in_a_sentence() {
     let folder = tempdir().unwrap();
-    let told = |path: &Path| Feed::wav(path, TICK_HZ).err().unwrap().to_string();
+    let message = |path: &Path| Feed::wav(path, TICK_HZ).err().unwrap().to_string();
     let path = folder.path().join("none.wav");
-    assert!(told(&path).contains("none.wav cannot be streamed"));
+    assert!(message(&path).contains("none.wav cannot be streamed"));
     std::fs::write(&path, "no RIFF").unwrap();
-    assert!(told(&path).contains("give a WAV file"));
+    assert!(message(&path).contains("give a WAV file"));
     write::<i32>(&path, spec(1, 8_000, 16, SampleFormat::Int), &[]);
-    assert!(told(&path).contains("has no samples"));
+    assert!(message(&path).contains("has no samples"));
     write(&path, spec(1, 8_000, 32, SampleFormat::Float), &[0.0, f32::NAN]);
-    assert!(told(&path).contains("sample 1 of"));
+    assert!(message(&path).contains("sample 1 of"));
     for sample_hz in [0, 40_001] {
         let error = Feed::raw(Cursor::new([]), sample_hz, TICK_HZ, true).err().unwrap();
         let expected = format!("a stream of {sample_hz} samples a second cannot be played: give 1 to {TICK_HZ}, ");

@@ -5,13 +5,14 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::sleep;
 use std::time::Duration;
 
+use frixel::scene_file;
 use frixel_driver::{Device, Link};
 use frixel_exchange::BOARD;
 use frixel_hil_sim::emulated::{Image, LinkBoard, LinkRecord};
 use frixel_hil_sim::{Stroke, World, WorldConfig};
-use frixel_scene::{Program, Scene, compile};
+use frixel_scene::{Program, compile};
 
-/// Wall time between two looks at what is waited for.
+/// Wall time between two checks of what is waited for.
 const NAP: Duration = Duration::from_millis(2);
 /// Two minutes of naps: whatever is waited for longer has hung.
 const NAPS_MAX: u32 = 60_000;
@@ -86,7 +87,7 @@ pub(crate) const HOST_TIMEOUT_TICKS: u32 = 40_000;
 /// One of the bundled scenes, for the emulated board.
 pub(crate) fn program(name: &str) -> Program {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name);
-    let mut program = compile(&Scene::load(&path).unwrap(), &BOARD.limits, BOARD.tick_hz).unwrap();
+    let mut program = compile(&scene_file::load(&path).unwrap(), &BOARD.limits, BOARD.tick_hz).unwrap();
     program.header.host_timeout_s = HOST_TIMEOUT_TICKS as f32 / BOARD.tick_hz as f32;
     program
 }

@@ -26,6 +26,7 @@ fn play(folder: &Path) -> Command {
     command
 }
 
+/// What holds however busy the machine is. How many frames had to be sent again depends on it.
 #[test]
 fn a_scene_plays_on_the_emulated_board() {
     if emulator::image().is_none() {
@@ -38,8 +39,7 @@ fn a_scene_plays_on_the_emulated_board() {
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(json["rig"], "qemu");
     assert_eq!(json["ticks"], 20_000);
-    assert_eq!(json["frames_rejected"], 0);
-    // What only a look at every tick could tell.
+    // Both need what the board reports of every tick.
     assert!(json["saturated_ticks"].is_null() && json["inversion_error_rms_n"].is_null());
     // The first strokes of the brick are within 3 mN on every rig; with the output at zero it would be 10.
     let error_n = json["friction_error_rms_n"].as_f64().unwrap();

@@ -10,7 +10,7 @@ use crate::bench::{Bench, HOST_TIMEOUT_TICKS, program};
 use crate::cable::Cable;
 use crate::emulator;
 
-/// From the last byte of a frame to the tick that knows of it: the session looks at every tick.
+/// Ticks from the last byte of a frame to the tick that acts on it: the session is polled at every tick.
 const HEARD_WITHIN_TICKS: u32 = 4;
 
 #[test]

@@ -7,6 +7,7 @@
 mod bench;
 mod cable;
 mod command;
+mod credit;
 #[path = "../../../../hil-sim/tests/emulator/mod.rs"]
 mod emulator;
 mod link;

@@ -1,6 +1,6 @@
 //! Every kind of layer, region and blend, from the scene file to the finger.
 //!
-//! What is wanted is evaluated in `f64` beside each scene, from the file's own numbers and the words of `docs/scene.md`.
+//! The expected friction stands in `f64` beside each scene, from the file's own numbers and the words of `docs/scene.md`.
 //! The library's evaluation has to agree with it, and what the simulated finger felt has to be near it: all lags
 //! included, over means of a carrier period, within a bound that was measured and set a fifth above. A drive without
 //! voltage must miss the same bound.
@@ -15,6 +15,7 @@ use std::path::Path;
 use cases::{Case, Path as StrokePath};
 use expected::{At, Expected};
 use frixel::player::{Simulation, simulate};
+use frixel::scene_file::PictureFolder;
 use frixel_hil_sim::{Point, RigConfig, Stroke};
 use frixel_scene::recorder::FeltRow;
 use frixel_scene::{Program, Scene, compile};
@@ -42,7 +43,7 @@ const SLIDING_MM_S: f64 = 8.0;
 
 fn compiled(layers: &str) -> Program {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
-    let scene = Scene::parse(&format!("{HEAD}{layers}"), "test.toml", &scenes).unwrap();
+    let scene = Scene::parse(&format!("{HEAD}{layers}"), "test.toml", &PictureFolder(scenes)).unwrap();
     let board = RigConfig::default().board;
     compile(&scene, &board.limits, board.tick_hz).unwrap_or_else(|error| panic!("{error}"))
 }

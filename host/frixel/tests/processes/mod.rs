@@ -4,7 +4,7 @@ use std::process::Command;
 use std::thread::sleep;
 use std::time::Duration;
 
-pub(crate) const NAP: Duration = Duration::from_millis(5);
+const NAP: Duration = Duration::from_millis(5);
 /// A minute of naps: whatever is waited for longer has hung.
 const NAPS_MAX: u32 = 12_000;
 

@@ -4,11 +4,11 @@ use crate::reference::{Shape, edges};
 
 /// A rectangle of the screen, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in super::super) struct Cell {
-    pub(in super::super) left_m: f64,
-    pub(in super::super) top_m: f64,
-    pub(in super::super) right_m: f64,
-    pub(in super::super) bottom_m: f64,
+pub(crate) struct Cell {
+    pub(crate) left_m: f64,
+    pub(crate) top_m: f64,
+    pub(crate) right_m: f64,
+    pub(crate) bottom_m: f64,
 }
 
 /// How much of a cell a layer covers.
@@ -20,12 +20,12 @@ pub(super) enum Coverage {
 }
 
 impl Cell {
-    pub(super) fn corners(self) -> [(f64, f64); 4] {
+    pub(crate) fn corners(self) -> [(f64, f64); 4] {
         let Self { left_m, top_m, right_m, bottom_m } = self;
         [(left_m, top_m), (right_m, top_m), (left_m, bottom_m), (right_m, bottom_m)]
     }
 
-    pub(super) fn middle(self) -> (f64, f64) {
+    pub(crate) fn middle(self) -> (f64, f64) {
         (f64::midpoint(self.left_m, self.right_m), f64::midpoint(self.top_m, self.bottom_m))
     }
 

@@ -5,17 +5,15 @@
 //! there is a bound that need not be reached, so it is also searched for a place that is out of reach.
 
 mod cell;
-mod span;
 
 use std::collections::BTreeMap;
 
-use frixel_wire::scene::Blend;
+use frixel_layers::{Blend, Interval};
 
-pub(super) use cell::Cell;
+pub(crate) use cell::Cell;
 use cell::Coverage;
-pub(super) use span::Span;
 
-use crate::reference::{Field, Piece};
+use crate::reference::Piece;
 
 /// Cells narrower than this come from rounding, m.
 const CELL_MIN_M: f64 = 1e-6;
@@ -26,6 +24,9 @@ const PLACES_PER_OUTLINE: f64 = 64.0;
 /// Most places that are looked at in a scene.
 const PLACES_MAX: usize = 1_000_000;
 
+/// Bare glass.
+pub(super) const ZERO: Interval<f64> = Interval { low: 0.0, high: 0.0 };
+
 /// Layers whose friction leaves the reach somewhere, or may.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Excess {
@@ -34,23 +35,23 @@ pub(super) struct Excess {
     /// A cell where they go furthest.
     pub(super) cell: Cell,
     /// Friction that a finger finds there.
-    pub(super) found: Span,
+    pub(super) found: Interval<f64>,
     /// Friction that it cannot leave there.
-    pub(super) bound: Span,
+    pub(super) bound: Interval<f64>,
 }
 
 /// The layers that count in a cell.
 struct Stack {
     /// From the last that replaces all below.
     layers: Vec<usize>,
-    bound: Span,
+    bound: Interval<f64>,
     /// 0 when the bound is reached; 1 when one layer's is; more when it has to be searched.
     doubts: usize,
     outlined: bool,
 }
 
 /// Every set of layers that leaves `reach` somewhere on a screen of this size, or may leave it.
-pub(super) fn excesses(pieces: &[Piece], width_m: f64, height_m: f64, reach: Span) -> Vec<Excess> {
+pub(super) fn excesses(pieces: &[Piece], width_m: f64, height_m: f64, reach: Interval<f64>) -> Vec<Excess> {
     let bounds: Vec<[f64; 4]> = pieces.iter().map(|piece| piece.shape.bounds_m()).collect();
     let columns = edges(width_m, bounds.iter().flat_map(|[left_m, _, right_m, _]| [*left_m, *right_m]));
     let rows = edges(height_m, bounds.iter().flat_map(|[_, top_m, _, bottom_m]| [*top_m, *bottom_m]));
@@ -60,14 +61,14 @@ pub(super) fn excesses(pieces: &[Piece], width_m: f64, height_m: f64, reach: Spa
         for column in columns.windows(2) {
             let cell = Cell { left_m: column[0], top_m: row[0], right_m: column[1], bottom_m: row[1] };
             let stack = Stack::of(pieces, cell);
-            if stack.bound.beyond(reach) <= 0.0 {
+            if beyond(stack.bound, reach) <= 0.0 {
                 continue;
             }
             let found = if stack.doubts > 1 { search(pieces, &stack, cell, &mut places_left) } else { stack.bound };
             let excess = Excess { layers: stack.layers.clone(), cell, found, bound: stack.bound };
             let further = |other: &Excess| {
-                (found.beyond(reach), stack.bound.beyond(reach))
-                    > (other.found.beyond(reach), other.bound.beyond(reach))
+                (beyond(found, reach), beyond(stack.bound, reach))
+                    > (beyond(other.found, reach), beyond(other.bound, reach))
             };
             if worst.get(&stack.layers).is_none_or(further) {
                 worst.insert(stack.layers, excess);
@@ -88,16 +89,16 @@ fn edges(screen_m: f64, layers: impl Iterator<Item = f64>) -> Vec<f64> {
 
 impl Stack {
     fn of(pieces: &[Piece], cell: Cell) -> Self {
-        let mut stack = Self { layers: Vec::new(), bound: Span::ZERO, doubts: 0, outlined: false };
+        let mut stack = Self { layers: Vec::new(), bound: ZERO, doubts: 0, outlined: false };
         for (number, piece) in pieces.iter().enumerate() {
             let coverage = Coverage::of(&piece.shape, cell);
             if coverage == Coverage::None {
                 continue;
             }
-            let own = Span::in_cell(&piece.field, cell).times(piece.gain);
+            let own = piece.field.interval_in(cell).times(Interval::of([piece.gain]));
             // What is streamed may not be there.
-            let always = !matches!(piece.field, Field::Stream { .. });
-            let blended = stack.bound.blended(own, piece.blend);
+            let always = !piece.is_streamed;
+            let blended = piece.blend.of_intervals(stack.bound, own);
             let blended = if always { blended } else { stack.bound.hull(blended) };
             if coverage == Coverage::Whole && piece.blend == Blend::Replace && always {
                 stack = Self { layers: Vec::new(), bound: own, doubts: 0, outlined: false };
@@ -109,38 +110,44 @@ impl Stack {
                 stack.outlined = true;
             }
             stack.layers.push(number);
-            stack.doubts += Span::doubts_in_cell(piece, cell);
+            stack.doubts += piece.field.doubts_in(cell, piece.shape.bounds_m());
         }
         stack
     }
 }
 
 /// What a finger finds at many places of a cell; nothing when there were too many.
-fn search(pieces: &[Piece], stack: &Stack, cell: Cell, places_left: &mut usize) -> Span {
+fn search(pieces: &[Piece], stack: &Stack, cell: Cell, places_left: &mut usize) -> Interval<f64> {
     let layers: Vec<&Piece> = stack.layers.iter().filter_map(|layer| pieces.get(*layer)).collect();
-    let detail_m = layers.iter().filter_map(|piece| Span::detail_m(&piece.field)).fold(f64::INFINITY, f64::min);
+    let detail_m = layers.iter().filter_map(|piece| piece.field.detail_m()).fold(f64::INFINITY, f64::min);
     let least = if stack.outlined { PLACES_PER_OUTLINE } else { 8.0 };
     let places = |length_m: f64| (length_m / detail_m).ceil().clamp(least, PLACES_PER_SIDE_MAX) as usize;
     let (across, down) = (places(cell.right_m - cell.left_m), places(cell.bottom_m - cell.top_m));
     *places_left = places_left.saturating_sub(across * down);
     if *places_left == 0 {
-        return Span::ZERO;
+        return ZERO;
     }
     let at = |start: f64, end: f64, place: usize, places: usize| {
         start + (end - start) * (place as f64 + 0.5) / places as f64
     };
-    let spans = (0..across * down).map(|place| {
+    let intervals = (0..across * down).map(|place| {
         let x_m = at(cell.left_m, cell.right_m, place % across, across);
         let y_m = at(cell.top_m, cell.bottom_m, place / across, down);
-        span_at(layers.iter().copied(), x_m, y_m)
+        interval_at(layers.iter().copied(), x_m, y_m)
     });
-    spans.reduce(Span::hull).unwrap_or(Span::ZERO)
+    intervals.reduce(Interval::hull).unwrap_or(ZERO)
 }
 
 /// What layers ask for together at a place, at any time and speed.
-pub(super) fn span_at<'p>(layers: impl Iterator<Item = &'p Piece>, x_m: f64, y_m: f64) -> Span {
-    layers.filter(|piece| piece.shape.covers(x_m, y_m)).fold(Span::ZERO, |below, piece| {
-        let blended = below.blended(Span::at_place(&piece.field, x_m, y_m).times(piece.gain), piece.blend);
-        if matches!(piece.field, Field::Stream { .. }) { below.hull(blended) } else { blended }
+pub(super) fn interval_at<'p>(layers: impl Iterator<Item = &'p Piece>, x_m: f64, y_m: f64) -> Interval<f64> {
+    layers.filter(|piece| piece.shape.covers(x_m, y_m)).fold(ZERO, |below, piece| {
+        let own = piece.field.interval_at(x_m, y_m).times(Interval::of([piece.gain]));
+        let blended = piece.blend.of_intervals(below, own);
+        if piece.is_streamed { below.hull(blended) } else { blended }
     })
+}
+
+/// How far an interval leaves the reach.
+fn beyond(interval: Interval<f64>, reach: Interval<f64>) -> f64 {
+    (reach.low - interval.low).max(interval.high - reach.high).max(0.0)
 }

@@ -4,10 +4,12 @@ use super::super::fields::Fields;
 use super::super::grammar::{Absence, AmountFields, FieldSpec};
 use super::super::log::Log;
 use super::super::mistake::Mistake;
+use super::super::source::Places;
+use super::super::tables::{HIGH, LOW};
 
 /// What a layer asks for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in super::super) enum Amount {
+pub(crate) enum Amount {
     /// Friction, N.
     Newtons(f64),
     /// A fraction of the most that the drive can add here.
@@ -18,7 +20,7 @@ pub(in super::super) enum Amount {
 
 /// What the amounts of a layer may be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Unit {
+pub(crate) enum Unit {
     /// Newtons or fractions.
     Friction,
     /// Factors.
@@ -27,7 +29,7 @@ pub(super) enum Unit {
 
 impl Amount {
     /// Reads an amount, in the unit that the layer's amounts have.
-    pub(super) fn read(fields: &mut Fields, amount: &AmountFields, unit: Unit, log: &mut Log) -> Option<Self> {
+    pub(crate) fn read(fields: &mut Fields, amount: &AmountFields, unit: Unit, log: &mut Log) -> Option<Self> {
         let AmountFields { newtons, fraction, factor } = amount;
         if unit == Unit::Factor {
             return fields.number(log, factor).map(Self::Factor);
@@ -49,7 +51,7 @@ impl Amount {
     }
 
     /// Whether it is more than another amount, where that can be told.
-    pub(super) fn is_above(self, other: Self) -> bool {
+    pub(crate) fn is_above(self, other: Self) -> bool {
         match (self, other) {
             (Self::Newtons(one), Self::Newtons(other))
             | (Self::Fraction(one), Self::Fraction(other))
@@ -58,9 +60,44 @@ impl Amount {
         }
     }
 
-    pub(super) fn number(self) -> f64 {
+    pub(crate) fn number(self) -> f64 {
         match self {
             Self::Newtons(number) | Self::Fraction(number) | Self::Factor(number) => number,
         }
+    }
+}
+
+/// The least and the largest amount of a layer that varies between two.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LowHigh {
+    pub(crate) low: Amount,
+    pub(crate) high: Amount,
+}
+
+impl LowHigh {
+    /// Reads both.
+    pub(crate) fn read(
+        fields: &mut Fields,
+        [low, high]: [&AmountFields; 2],
+        unit: Unit,
+        log: &mut Log,
+    ) -> Option<Self> {
+        let low = Amount::read(fields, low, unit, log);
+        let high = Amount::read(fields, high, unit, log);
+        Some(Self { low: low?, high: high? })
+    }
+
+    /// Finds a least amount that is above the largest.
+    pub(crate) fn check(self, places: &Places, log: &mut Log) {
+        if self.low.is_above(self.high) {
+            let (low_name, high_name) = (places.first_of(LOW.names()), places.first_of(HIGH.names()));
+            let (low, high) = (self.low.number(), self.high.number());
+            log.add(places.field(low_name), Mistake::LowAboveHigh { low_name, low, high_name, high });
+        }
+    }
+
+    /// The field of the largest amount, or of the least.
+    pub(crate) fn extreme(most: bool, places: &Places) -> &'static str {
+        places.first_of(if most { HIGH } else { LOW }.names())
     }
 }

@@ -1,42 +1,39 @@
 //! `[[layer]]`: what a person writes for one layer.
 
 mod amount;
-mod kind;
 mod region;
 
-use frixel_wire::scene::Blend;
+use frixel_layers::Blend;
 
-pub(super) use amount::Amount;
-use amount::Unit;
-pub(super) use kind::{Bitmap, Burst, Click, Kind};
-pub(super) use region::{Rectangle, Region};
+pub(crate) use amount::{Amount, LowHigh, Unit};
+pub(crate) use region::{Rectangle, Region};
 
 use super::fields::Fields;
+use super::kinds::{Kind, KindName};
 use super::log::Log;
 use super::mistake::Mistake;
 use super::source::Places;
 use super::tables;
-use kind::KindName;
 
 /// One layer as written.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Layer {
+pub(crate) struct Layer {
     /// How messages call it: its number from one, and its name or kind.
-    pub(super) title: String,
-    pub(super) name: Option<String>,
-    pub(super) region: Option<Region>,
-    pub(super) blend: Blend,
-    pub(super) gain: f64,
-    pub(super) above: Above,
+    pub(crate) title: String,
+    pub(crate) name: Option<String>,
+    pub(crate) region: Option<Region>,
+    pub(crate) blend: Blend,
+    pub(crate) gain: f64,
+    pub(crate) above: Above,
     /// The host changes it while it plays.
-    pub(super) live: bool,
-    pub(super) kind: Kind,
-    pub(super) places: Places,
+    pub(crate) live: bool,
+    pub(crate) kind: Kind,
+    pub(crate) places: Places,
 }
 
 /// What a layer's frictions in newtons count from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Above {
+pub(crate) enum Above {
     /// From the finger's friction at no voltage.
     Natural,
     /// From zero: they are totals.
@@ -45,11 +42,10 @@ pub(super) enum Above {
 
 impl Layer {
     /// Reads layer `number`, counted from one.
-    pub(super) fn read(mut fields: Fields, number: usize, log: &mut Log) -> Option<Self> {
+    pub(crate) fn read(mut fields: Fields, number: usize, log: &mut Log) -> Option<Self> {
         fields.rename(format!("layer {number}"));
         let name = fields.text(log, &tables::layer::NAME);
-        let kinds = KindName::ALL.map(|kind| (kind.word(), kind));
-        let Some(kind_name) = fields.choice_or_nearest(log, &tables::layer::KIND, &kinds) else {
+        let Some(kind_name) = fields.choice_or_nearest(log, &tables::layer::KIND, KindName::ALL) else {
             // Nobody knows what else the layer should have; these every kind has.
             let _ = Common::read(&mut fields, KindName::Constant, log);
             fields.give_up_without(log, "kind");
@@ -66,10 +62,8 @@ impl Layer {
         if blend == Blend::Add && above == Some(Above::Zero) {
             log.add(places.field("above"), Mistake::AddedTotal { layer: title.clone() });
         }
-        let above = above.unwrap_or(match (kind_name, blend) {
-            (KindName::Constant, Blend::Replace) => Above::Zero,
-            _ => Above::Natural,
-        });
+        let is_total = kind_name.has_totals() && blend == Blend::Replace;
+        let above = above.unwrap_or(if is_total { Above::Zero } else { Above::Natural });
         let region = region.ok()?;
         let kind = kind?;
         kind.check(&places, log);
@@ -90,7 +84,8 @@ struct Common {
 impl Common {
     fn read(fields: &mut Fields, kind: KindName, log: &mut Log) -> Self {
         let region = region::read(fields, kind, log);
-        let blend = blend(fields, kind, log);
+        let (blends, blend) = kind.blends();
+        let blend = fields.choice(log, &tables::layer::BLEND, blends).unwrap_or(blend);
         let gain = fields.number_or_default(log, &tables::layer::GAIN);
         let live = fields.flag(log, &tables::layer::LIVE);
         let unit = if blend == Blend::Multiply { Unit::Factor } else { Unit::Friction };
@@ -102,17 +97,5 @@ impl Common {
             Unit::Factor => None,
         };
         Self { region, blend, gain, live, unit, above }
-    }
-}
-
-/// A curve of speed is a factor on what lies below it, and an edge most often a ridge on it.
-fn blend(fields: &mut Fields, kind: KindName, log: &mut Log) -> Blend {
-    let all = [("replace", Blend::Replace), ("add", Blend::Add), ("multiply", Blend::Multiply), ("max", Blend::Max)];
-    match kind {
-        KindName::Speed => {
-            fields.choice(log, &tables::layer::BLEND, &[("multiply", Blend::Multiply)]).unwrap_or(Blend::Multiply)
-        }
-        KindName::Edge => fields.choice(log, &tables::layer::BLEND, &all).unwrap_or(Blend::Add),
-        _ => fields.choice(log, &tables::layer::BLEND, &all).unwrap_or_default(),
     }
 }

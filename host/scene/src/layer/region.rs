@@ -4,14 +4,14 @@ use super::super::fields::Fields;
 use super::super::log::Log;
 use super::super::mistake::Mistake;
 use super::super::tables;
-use super::kind::KindName;
+use crate::kinds::KindName;
 
 /// Vertices that a polygon may have.
 const VERTICES: (usize, usize) = (3, frixel_wire::scene::POLYGON_POINTS_MAX);
 
 /// Where a layer acts.
 #[derive(Clone, Debug, PartialEq)]
-pub(in super::super) enum Region {
+pub(crate) enum Region {
     Rectangle(Rectangle),
     /// Inside of a rectangle.
     Ellipse(Rectangle),
@@ -21,11 +21,11 @@ pub(in super::super) enum Region {
 
 /// A rectangle on the screen, from its top left corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in super::super) struct Rectangle {
-    pub(in super::super) x_mm: f64,
-    pub(in super::super) y_mm: f64,
-    pub(in super::super) width_mm: f64,
-    pub(in super::super) height_mm: f64,
+pub(crate) struct Rectangle {
+    pub(crate) x_mm: f64,
+    pub(crate) y_mm: f64,
+    pub(crate) width_mm: f64,
+    pub(crate) height_mm: f64,
 }
 
 #[derive(Clone, Copy)]
@@ -37,7 +37,7 @@ enum Shape {
 
 impl Region {
     /// The smallest rectangle around it.
-    pub(in super::super) fn bounds(&self) -> Rectangle {
+    pub(crate) fn bounds(&self) -> Rectangle {
         match self {
             Self::Rectangle(rectangle) | Self::Ellipse(rectangle) => *rectangle,
             Self::Polygon(vertices) => Rectangle::around(vertices),
@@ -47,7 +47,7 @@ impl Region {
 
 impl Rectangle {
     /// The smallest rectangle around some places, mm.
-    pub(in super::super) fn around(places: &[(f64, f64)]) -> Self {
+    pub(crate) fn around(places: &[(f64, f64)]) -> Self {
         let limits = |of: fn(&(f64, f64)) -> f64| {
             let (least, most) = (f64::INFINITY, f64::NEG_INFINITY);
             places.iter().map(of).fold((least, most), |(least, most), place| (least.min(place), most.max(place)))
@@ -58,11 +58,11 @@ impl Rectangle {
 }
 
 /// A region that cannot be understood; why has been noted.
-pub(super) struct Misread;
+pub(crate) struct Misread;
 
 /// The region of a layer, `None` for the screen. A button needs one that has a rim.
-pub(super) fn read(layer: &mut Fields, kind: KindName, log: &mut Log) -> Result<Option<Region>, Misread> {
-    let button = kind == KindName::Button;
+pub(crate) fn read(layer: &mut Fields, kind: KindName, log: &mut Log) -> Result<Option<Region>, Misread> {
+    let button = kind.needs_rim();
     if button {
         layer.require(&tables::layer::REGION);
     }

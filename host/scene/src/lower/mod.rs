@@ -1,14 +1,13 @@
 //! From a layer as written to a record of the wire.
 
-mod place;
+pub(crate) mod place;
 
-use frixel_wire::scene::{
-    Blend, Burst as WireBurst, Click as WireClick, Header, Layer as WireLayer, POINTS_MAX, Point, Record,
-    Region as WireRegion,
-};
+use frixel_layers::{Header, Layer as RecordLayer, Point, Record, Region as RecordRegion};
+use frixel_wire::scene::POINTS_MAX;
 
 use super::file::Scene;
-use super::layer::{Above, Amount, Burst, Click, Kind, Layer, Region};
+use super::kinds::{Bitmap as BitmapWords, Lowered};
+use super::layer::{Above, Amount, Layer, Rectangle, Region};
 use super::left_out::LeftOut;
 use super::log::Log;
 use super::mistake::Mistake;
@@ -18,28 +17,24 @@ use super::reach::Reach;
 
 /// Total friction this close to natural, relative to it, is natural: `mu F_N` rounds.
 const NATURAL_ROUNDING: f64 = 1e-6;
-/// Most layers of noise that a board takes.
-const NOISES_MAX: usize = 8;
-/// Most edges and buttons with a click that a board takes.
-const CLICKS_MAX: usize = 16;
-const MM: f64 = 1e-3;
+pub(crate) const MM: f64 = 1e-3;
 
 /// Turns layers to records, and gathers what they name.
-pub(super) struct Lowering<'a, 's> {
+pub(crate) struct Lowering<'a, 's> {
     scene: &'a Scene,
     header: &'a Header,
     reach: &'a Reach,
-    tick_hz: u32,
-    pool: Pool,
+    pub(crate) tick_hz: u32,
+    pool: Pool<'a>,
     points: Vec<Point>,
-    noises: usize,
-    clicks: usize,
+    pub(crate) noises: usize,
+    pub(crate) clicks: usize,
     log: &'a mut Log<'s>,
     notes: Vec<String>,
 }
 
 /// What records name, and what was done to it.
-pub(super) struct Lowered {
+pub(super) struct Gathered {
     pub(super) points: Vec<Point>,
     pub(super) bitmaps: Vec<Bitmap>,
     pub(super) notes: Vec<String>,
@@ -52,117 +47,44 @@ impl<'a, 's> Lowering<'a, 's> {
         header: &'a Header,
         reach: &'a Reach,
         tick_hz: u32,
-        pool: Pool,
+        pool: Pool<'a>,
         log: &'a mut Log<'s>,
     ) -> Self {
         let (points, notes) = (Vec::new(), Vec::new());
         Self { scene, header, reach, tick_hz, pool, points, noises: 0, clicks: 0, log, notes }
     }
 
-    pub(super) fn finish(self) -> Lowered {
+    pub(super) fn finish(self) -> Gathered {
         let (bitmaps, left_out) = self.pool.finish();
-        Lowered { points: self.points, bitmaps, notes: self.notes, left_out }
+        Gathered { points: self.points, bitmaps, notes: self.notes, left_out }
     }
 
     /// The record of a layer; `None` when something is wrong with it.
     pub(super) fn record(&mut self, layer: &Layer) -> Option<Record> {
-        let (wire_layer, placed) = match &layer.kind {
-            Kind::Bitmap(bitmap) => {
-                let visible = layer.region.as_ref().map(Region::bounds);
-                let screen = (self.scene.screen.width_mm, self.scene.screen.height_mm);
-                let placed = self.pool.place(layer, bitmap, visible, screen, self.log, &mut self.notes)?;
-                let record = self.bitmap(layer, &placed, bitmap.black, bitmap.white);
-                (record, placed.outline)
-            }
-            kind => (self.kind(layer, kind)?, None),
-        };
-        let region = match layer.region.clone().or(placed) {
+        let Lowered { layer: record_layer, outline } = layer.kind.lower(layer, self)?;
+        let region = match layer.region.clone().or(outline) {
             Some(region) => {
                 place::check_on_screen(self.scene, layer, region.bounds(), self.log);
-                self.region(layer, &region)?
+                self.region(layer, &region, &record_layer)?
             }
-            None => WireRegion::Screen,
+            None => RecordRegion::Screen,
         };
-        Some(Record { region, blend: layer.blend, gain: layer.gain as f32, layer: wire_layer })
+        Some(Record { region, blend: layer.blend, gain: layer.gain as f32, layer: record_layer })
     }
 
-    fn kind(&mut self, layer: &Layer, kind: &Kind) -> Option<WireLayer> {
-        let amount = |amount| self.amount(layer, amount);
-        Some(match kind {
-            Kind::Constant { friction } => WireLayer::Constant { electric_friction_n: amount(*friction) },
-            Kind::Grating { wave, wavelength_mm, angle_deg, phase_deg, low, high } => {
-                let (cycles_per_m_x, cycles_per_m_y) = place::wave_vector(*wavelength_mm, *angle_deg);
-                WireLayer::Grating {
-                    wave: *wave,
-                    cycles_per_m_x,
-                    cycles_per_m_y,
-                    phase_turns: (phase_deg / 360.0).rem_euclid(1.0) as f32,
-                    trough_n: amount(*low),
-                    crest_n: amount(*high),
-                }
-            }
-            Kind::Noise { seed, wavelength_min_mm, wavelength_max_mm, low, high } => {
-                let noise = WireLayer::Noise {
-                    seed: *seed,
-                    wavelength_min_m: (wavelength_min_mm * MM) as f32,
-                    wavelength_max_m: (wavelength_max_mm * MM) as f32,
-                    low_n: amount(*low),
-                    high_n: amount(*high),
-                };
-                self.noises += 1;
-                self.limit(layer, "layers of noise", self.noises, NOISES_MAX)?;
-                noise
-            }
-            Kind::Edge { x_mm, y_mm, angle_deg, width_mm, ridge, click } => WireLayer::Edge {
-                x_m: (x_mm * MM) as f32,
-                y_m: (y_mm * MM) as f32,
-                angle_turns: place::turns(*angle_deg),
-                width_m: (width_mm * MM) as f32,
-                level_n: if layer.blend == Blend::Multiply { 1.0 } else { 0.0 },
-                ridge_n: amount(*ridge),
-                click: self.click(layer, *click)?,
-            },
-            Kind::Button { rim_width_mm, rim, face, click } => WireLayer::Button {
-                rim_width_m: (rim_width_mm * MM) as f32,
-                rim_n: amount(*rim),
-                face_n: amount(*face),
-                click: self.click(layer, *click)?,
-            },
-            Kind::Vibration { beat, frequency_hz, low, high, burst } => WireLayer::Vibration {
-                beat: *beat,
-                frequency_hz: *frequency_hz as f32,
-                low_n: amount(*low),
-                high_n: amount(*high),
-                burst: burst.map_or(WireBurst::default(), |burst| self.burst(burst)),
-            },
-            Kind::Speed { speeds_mm_per_s, factors } => {
-                let pairs = speeds_mm_per_s.iter().zip(factors);
-                let points = pairs.map(|(speed, factor)| Point { x: (speed * MM) as f32, y: *factor as f32 });
-                let (first, count) = self.points(layer, points.collect())?;
-                WireLayer::Speed { first, count }
-            }
-            Kind::Stream { low, high } => WireLayer::Stream { low_n: amount(*low), high_n: amount(*high) },
-            // It is placed apart.
-            Kind::Bitmap(_) => return None,
-        })
-    }
-
-    fn bitmap(&self, layer: &Layer, placed: &Placed, black: Amount, white: Amount) -> WireLayer {
-        WireLayer::Bitmap {
-            crc32: placed.crc32,
-            x_m: (placed.corner_mm.0 * MM) as f32,
-            y_m: (placed.corner_mm.1 * MM) as f32,
-            pitch_m: (placed.pitches_mm.0 * MM) as f32,
-            black_n: self.amount(layer, black),
-            white_n: self.amount(layer, white),
-            pitch_y_m: (placed.pitches_mm.1 * MM) as f32,
-            angle_turns: placed.angle_turns,
-            tiled: placed.tiled,
-        }
+    /// Puts the picture of a layer into the pool; `visible` is the rectangle that is seen of it.
+    pub(crate) fn place_bitmap(
+        &mut self,
+        layer: &Layer,
+        bitmap: &BitmapWords,
+        visible: Option<Rectangle>,
+    ) -> Option<Placed> {
+        let screen = (self.scene.screen.width_mm, self.scene.screen.height_mm);
+        self.pool.place(layer, bitmap, visible, screen, self.log, &mut self.notes)
     }
 
     /// An amount as the wire has it: electric friction in newtons, or a factor.
-    fn amount(&self, layer: &Layer, amount: Amount) -> f32 {
+    pub(crate) fn amount(&self, layer: &Layer, amount: Amount) -> f32 {
         match amount {
             Amount::Newtons(friction_n) => electric_n(layer.above, friction_n, self.reach.natural_friction_n),
             Amount::Fraction(fraction) => (fraction * self.reach.electric_friction_max_n) as f32,
@@ -170,42 +92,23 @@ impl<'a, 's> Lowering<'a, 's> {
         }
     }
 
-    /// A click is added, so that it counts from what it is added to.
-    fn click(&mut self, layer: &Layer, click: Option<Click>) -> Option<WireClick> {
-        let Some(Click { height, decay_ms }) = click else { return Some(WireClick::default()) };
-        self.clicks += 1;
-        self.limit(layer, "edges and buttons with a click", self.clicks, CLICKS_MAX)?;
-        let height_n = match height {
-            Amount::Newtons(friction_n) => friction_n as f32,
-            other => self.amount(layer, other),
-        };
-        Some(WireClick { height_n, decay_s: (decay_ms * MM) as f32 })
-    }
-
-    /// In whole ticks, as the board has it, so that a period is the same to both.
-    fn burst(&self, burst: Burst) -> WireBurst {
-        let tick_hz = f64::from(self.tick_hz);
-        let whole = |time_ms: f64| ((time_ms * MM * tick_hz).round() / tick_hz) as f32;
-        WireBurst { period_s: whole(burst.period_ms), on_s: whole(burst.on_ms), ramp_s: whole(burst.ramp_ms) }
-    }
-
-    fn region(&mut self, layer: &Layer, region: &Region) -> Option<WireRegion> {
+    fn region(&mut self, layer: &Layer, region: &Region, record_layer: &RecordLayer) -> Option<RecordRegion> {
         Some(match region {
             Region::Rectangle(rectangle) => {
-                let button = matches!(layer.kind, Kind::Button { .. });
+                let button = matches!(record_layer, RecordLayer::Button(_));
                 place::rectangle(*rectangle, self.header, button)
             }
             Region::Ellipse(rectangle) => place::ellipse(*rectangle, self.header),
             Region::Polygon(vertices) => {
                 let point = |(x_mm, y_mm): &(f64, f64)| Point { x: (x_mm * MM) as f32, y: (y_mm * MM) as f32 };
                 let (first, count) = self.points(layer, vertices.iter().map(point).collect())?;
-                WireRegion::Polygon { first, count }
+                RecordRegion::Polygon { first, count }
             }
         })
     }
 
     /// Keeps points, or finds them where another layer has the same.
-    fn points(&mut self, layer: &Layer, points: Vec<Point>) -> Option<(u8, u8)> {
+    pub(crate) fn points(&mut self, layer: &Layer, points: Vec<Point>) -> Option<(u8, u8)> {
         let count = points.len();
         let first = self.points.windows(count).position(|held| held == points).unwrap_or(self.points.len());
         if first == self.points.len() {
@@ -215,7 +118,7 @@ impl<'a, 's> Lowering<'a, 's> {
         Some((first as u8, count as u8))
     }
 
-    fn limit(&mut self, layer: &Layer, what: &'static str, number: usize, max: usize) -> Option<()> {
+    pub(crate) fn limit(&mut self, layer: &Layer, what: &'static str, number: usize, max: usize) -> Option<()> {
         if number > max {
             self.log.add(layer.places.table(), Mistake::TooMany { what, number, max });
             return None;

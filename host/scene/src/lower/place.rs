@@ -1,6 +1,6 @@
 //! Places on the screen: from millimetres and degrees to metres and turns.
 
-use frixel_wire::scene::{Header, Region as WireRegion};
+use frixel_layers::{Header, Region as WireRegion};
 
 use super::super::file::Scene;
 use super::super::layer::{Layer, Rectangle};
@@ -12,7 +12,7 @@ use super::MM;
 const OFF_SCREEN_MM: f64 = 1e-6;
 
 /// Cycles per metre along x and y. Right angles are exact.
-pub(super) fn wave_vector(wavelength_mm: f64, angle_deg: f64) -> (f32, f32) {
+pub(crate) fn wave_vector(wavelength_mm: f64, angle_deg: f64) -> (f32, f32) {
     let cycles_per_m = 1.0 / (wavelength_mm * MM);
     let angle = angle_deg.to_radians();
     let exact = |part: f64| if part.abs() < 1e-12 { 0.0 } else { part };
@@ -20,12 +20,12 @@ pub(super) fn wave_vector(wavelength_mm: f64, angle_deg: f64) -> (f32, f32) {
 }
 
 /// An angle in turns.
-pub(super) fn turns(angle_deg: f64) -> f32 {
+pub(crate) fn turns(angle_deg: f64) -> f32 {
     (angle_deg / 360.0) as f32
 }
 
 /// Refuses a layer that leaves the screen.
-pub(super) fn check_on_screen(scene: &Scene, layer: &Layer, rectangle: Rectangle, log: &mut Log) {
+pub(crate) fn check_on_screen(scene: &Scene, layer: &Layer, rectangle: Rectangle, log: &mut Log) {
     let (screen_width_mm, screen_height_mm) = (scene.screen.width_mm, scene.screen.height_mm);
     let past = [
         ("left", -rectangle.x_mm),
@@ -47,13 +47,13 @@ pub(super) fn check_on_screen(scene: &Scene, layer: &Layer, rectangle: Rectangle
 }
 
 /// The whole screen where the rectangle covers it, which costs the board nothing; a button keeps its sides.
-pub(super) fn rectangle(rectangle: Rectangle, header: &Header, button: bool) -> WireRegion {
+pub(crate) fn rectangle(rectangle: Rectangle, header: &Header, button: bool) -> WireRegion {
     let [x_m, y_m, width_m, height_m] = stretches(rectangle, header);
     let everywhere = x_m <= 0.0 && y_m <= 0.0 && width_m >= header.screen_width_m && height_m >= header.screen_height_m;
     if everywhere && !button { WireRegion::Screen } else { WireRegion::Rectangle { x_m, y_m, width_m, height_m } }
 }
 
-pub(super) fn ellipse(rectangle: Rectangle, header: &Header) -> WireRegion {
+pub(crate) fn ellipse(rectangle: Rectangle, header: &Header) -> WireRegion {
     let [x_m, y_m, width_m, height_m] = stretches(rectangle, header);
     WireRegion::Ellipse { x_m, y_m, width_m, height_m }
 }

@@ -87,7 +87,7 @@ impl HostStream {
         let before = self.dry;
         self.dry = dry.unwrap_or(before);
         if self.phase == Phase::Over && self.weight <= 0.0 {
-            return (self.value(), 0.0);
+            return (0.0, 0.0);
         }
         for tick in 0..ticks {
             self.tick(if tick < ticks / 2 { before } else { self.dry });

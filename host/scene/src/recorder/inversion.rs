@@ -1,8 +1,8 @@
 //! What a commanded voltage is worth without the errors of amplifier and finger.
 
+use frixel_layers::Carrier;
 use frixel_model::{Contact, Finger, LoadedContact, ParameterError};
 use frixel_wire::hello::BoardLimits;
-use frixel_wire::scene::Carrier;
 
 use crate::{Program, carrier};
 

@@ -90,11 +90,6 @@ impl Recorder {
         self.last_tick = u64::from(tick);
     }
 
-    /// Ends the record: later observations are ignored.
-    pub fn end(&mut self) {
-        self.ticks_max = self.ticks();
-    }
-
     /// Compares with another program from now on, as when a scene is replaced while it plays. A recorder without a
     /// reference stays without one.
     pub fn replace(&mut self, program: &Program, limits: &BoardLimits, tick_hz: u32) -> Result<(), ParameterError> {

@@ -59,8 +59,8 @@ impl Frictions {
 pub(super) struct RowMaker {
     tick_period_s: f64,
     ticks_per_row: u64,
-    /// Number of the row under way: row `n` ends `n * ticks_per_row` ticks after time zero.
-    number: u64,
+    /// Where the row under way ends, in ticks after time zero.
+    row_end: u64,
     row: FeltRow,
     wanted: Mean,
     asked: Mean,
@@ -72,7 +72,7 @@ impl RowMaker {
         Self {
             tick_period_s: 1.0 / f64::from(tick_hz),
             ticks_per_row: u64::from(ticks_per_row.max(1)),
-            number: 0,
+            row_end: 0,
             row: FeltRow::default(),
             wanted: Mean::default(),
             asked: Mean::default(),
@@ -84,9 +84,8 @@ impl RowMaker {
     ///
     /// A row whose last tick was not observed is left out.
     pub(super) fn add(&mut self, observation: &Observation, ticks: u64, frictions: &Frictions) -> Option<FeltRow> {
-        let number = ticks.div_ceil(self.ticks_per_row);
-        if number != self.number {
-            self.begin(number);
+        if ticks > self.row_end {
+            self.begin(ticks.div_ceil(self.ticks_per_row) * self.ticks_per_row);
         }
         self.row.dac_code = observation.dac_code.or(self.row.dac_code);
         if let Some(telemetry) = &observation.telemetry {
@@ -98,11 +97,11 @@ impl RowMaker {
             self.asked.add(frictions.asked_n);
             self.felt.add(frictions.felt_n);
         }
-        (ticks == number * self.ticks_per_row).then(|| self.finish(observation, ticks))
+        (ticks == self.row_end).then(|| self.finish(observation, ticks))
     }
 
-    fn begin(&mut self, number: u64) {
-        self.number = number;
+    fn begin(&mut self, row_end: u64) {
+        self.row_end = row_end;
         self.row = FeltRow::default();
         (self.wanted, self.asked, self.felt) = (Mean::default(), Mean::default(), Mean::default());
     }

@@ -1,4 +1,4 @@
-use std::path::Path;
+use std::collections::BTreeMap;
 
 use frixel_wire::fault::State;
 use frixel_wire::frame::FRAME_MAX_LEN;
@@ -11,7 +11,7 @@ use crate::{Scene, compile};
 
 fn program(layers: &str) -> Program {
     let text = format!("{HEAD}{layers}");
-    let scene = Scene::parse(&text, "test.toml", Path::new("")).unwrap();
+    let scene = Scene::parse(&text, "test.toml", &BTreeMap::new()).unwrap();
     compile(&scene, &LIMITS, TICK_HZ).unwrap()
 }
 

@@ -1,18 +1,17 @@
 //! The reference: the friction that a program means, evaluated in `f64` and independently of the firmware.
 
-mod field;
-mod samples;
 mod shape;
 mod stroke;
 
-use frixel_wire::scene::{Blend, Record};
+use std::sync::Arc;
 
-pub(crate) use field::{Edge, Field, Grating};
-pub(crate) use samples::Samples;
+use frixel_layers::{Blend, Record};
+
 pub(crate) use shape::{Shape, edges};
 pub use stroke::{Context, StrokeReference};
 
 use crate::Program;
+use crate::kinds::{self, Field};
 
 /// Evaluates the friction that a program means at a place on the screen.
 ///
@@ -30,7 +29,9 @@ pub(crate) struct Piece {
     pub(crate) shape: Shape,
     pub(crate) blend: Blend,
     pub(crate) gain: f64,
-    pub(crate) field: Field,
+    pub(crate) field: Arc<dyn Field>,
+    /// The layer fades with the host's stream.
+    pub(crate) is_streamed: bool,
 }
 
 impl Reference {
@@ -64,8 +65,8 @@ impl Reference {
     #[must_use]
     pub fn with_vibrations_held(mut self) -> Self {
         for piece in &mut self.pieces {
-            if let Field::Vibration(vibration) = &piece.field {
-                piece.field = Field::Constant(vibration.high_n);
+            if let Some(largest_n) = piece.field.largest_over_time_n() {
+                piece.field = kinds::constant_field(largest_n);
             }
         }
         self
@@ -80,7 +81,7 @@ impl Reference {
     fn at(&self, context: &Context, click_n: impl Fn(usize) -> f64) -> f64 {
         let covers = |piece: &Piece| piece.shape.covers(context.x_m, context.y_m);
         // Nothing below a layer that replaces has to be evaluated.
-        let hides = |piece: &Piece| piece.blend == Blend::Replace && !matches!(piece.field, Field::Stream { .. });
+        let hides = |piece: &Piece| piece.blend == Blend::Replace && !piece.is_streamed;
         let lowest = self.pieces.iter().rposition(|piece| hides(piece) && covers(piece)).unwrap_or(0);
         let above = self.pieces.iter().enumerate().skip(lowest).filter(|(_, piece)| covers(piece));
         above.fold(0.0, |below_n, (number, piece)| {
@@ -91,10 +92,7 @@ impl Reference {
                 Blend::Multiply => below_n * own_n,
                 Blend::Max => own_n.max(below_n),
             };
-            match piece.field {
-                Field::Stream { .. } => below_n + context.stream_weight * (blended_n - below_n),
-                _ => blended_n,
-            }
+            if piece.is_streamed { below_n + context.stream_weight * (blended_n - below_n) } else { blended_n }
         })
     }
 
@@ -107,7 +105,8 @@ impl Reference {
 impl Piece {
     fn new(record: &Record, program: &Program) -> Self {
         let shape = Shape::new(record.region, &program.points);
-        let field = Field::new(record, program);
-        Self { shape, blend: record.blend, gain: f64::from(record.gain), field }
+        let field = kinds::field(&record.layer, record.region, program);
+        let is_streamed = record.layer.is_streamed();
+        Self { shape, blend: record.blend, gain: f64::from(record.gain), field, is_streamed }
     }
 }

@@ -1,6 +1,6 @@
 //! Where a layer acts.
 
-use frixel_wire::scene::{Point, Region};
+use frixel_layers::{Point, Region};
 
 /// Where a layer acts, m.
 #[derive(Clone, Debug)]

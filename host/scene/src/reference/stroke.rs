@@ -1,7 +1,6 @@
 //! The reference along a stroke: clicks depend on where the finger was before.
 
 use super::Reference;
-use super::field::Field;
 
 /// Where the finger is, when, how fast, and what is streamed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -79,14 +78,12 @@ impl ClickingLayer {
     /// Notes where the finger is, and begins a click when it has crossed an edge, or entered a button while it touched.
     fn follow(&mut self, reference: &Reference, context: &Context, touching: bool) {
         let Some(piece) = reference.pieces.get(self.layer) else { return };
-        let side = piece.shape.covers(context.x_m, context.y_m).then(|| match &piece.field {
-            Field::Edge(edge) => edge.distance_m(context.x_m, context.y_m) >= 0.0,
-            _ => true,
-        });
-        let clicks = match (&piece.field, self.side, side) {
-            (Field::Edge(_), Some(before), Some(now)) => before != now,
-            (Field::Button(_), None, Some(_)) => touching,
-            _ => false,
+        let (x_m, y_m) = (context.x_m, context.y_m);
+        let side = piece.shape.covers(x_m, y_m).then(|| piece.field.is_beyond(x_m, y_m));
+        let clicks = match (self.side, side) {
+            (Some(before), Some(now)) => before != now,
+            (None, Some(_)) => touching && piece.field.clicks_on_entry(),
+            (_, None) => false,
         };
         if clicks {
             self.clicked_at_s = Some(context.t_s);

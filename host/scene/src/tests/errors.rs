@@ -1,7 +1,5 @@
 //! Every mistake, its sentence and its line.
 
-use std::fs;
-
 use proptest::prelude::*;
 
 use super::*;
@@ -638,16 +636,13 @@ fn pictures() {
              pitch_mm = {pitch_mm}\nblack_n = 0\nwhite_n = 0.01\n"
         )
     };
-    let folder = scenes().join("textures").display().to_string();
     check_layers(
         &layer("textures/brik.png", "0.5"),
         &[(
             3,
             11,
-            &format!(
-                "picture \"textures/brik.png\" was not found in {folder}, which has \"brick.png\": paths start from the \
-                 scene file's folder"
-            ),
+            "picture \"textures/brik.png\" was not found in the scene's set of pictures, which has \"brick.png\": paths \
+             start from the scene file's folder",
         )],
     );
     check_layers(
@@ -684,31 +679,25 @@ fn pictures() {
 
 #[test]
 fn damaged_pictures() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let whole = fs::read(scenes().join("textures/brick.png")).expect("the picture");
-    fs::write(folder.path().join("cut.png"), &whole[..whole.len() / 2]).expect("a file");
+    let whole = &PICTURES["textures/brick.png"];
+    let pictures = BTreeMap::from([("cut.png".to_owned(), whole[..whole.len() / 2].to_vec())]);
     let layer = "[[layer]]\nkind = \"bitmap\"\npicture = \"cut.png\"\nx_mm = 0\ny_mm = 0\nwidth_mm = 50\nblack_n = 0\nwhite_n = 0";
-    let scene = Scene::parse(&format!("{HEAD}{layer}"), "test.toml", folder.path()).expect("it reads");
+    let scene = Scene::parse(&format!("{HEAD}{layer}"), "test.toml", &pictures).expect("it reads");
     let error = compile(&scene, &LIMITS, TICK_HZ).expect_err("it is cut").to_string();
     assert!(error.starts_with("test.toml:21:11: picture \"cut.png\" cannot be used: it is damaged ("), "{error}");
 }
 
 #[test]
-fn files_that_cannot_be_read() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("scene.toml");
-    let name = path.display().to_string();
-    let error = Scene::load(&path).expect_err("there is none").to_string();
-    assert!(error.starts_with(&format!("{name}: this scene file cannot be read (")), "{error}");
-    fs::write(&path, b"version = 1\nname = \"\xff\"").expect("a file");
-    let error = Scene::load(&path).expect_err("it is not text").to_string();
-    assert_eq!(error, format!("{name}:2:9: this byte is not UTF-8 text: save the file as UTF-8"));
+fn bytes_that_are_not_text() {
+    let error =
+        Scene::parse_bytes(b"version = 1\nname = \"\xff\"", "test.toml", &*PICTURES).expect_err("it is not text");
+    assert_eq!(error.to_string(), "test.toml:2:9: this byte is not UTF-8 text: save the file as UTF-8");
 }
 
 proptest! {
     #[test]
     fn no_text_makes_the_parser_panic(text in ".*") {
-        if let Err(error) = Scene::parse(&text, "test.toml", scenes()) {
+        if let Err(error) = Scene::parse(&text, "test.toml", &*PICTURES) {
             prop_assert!(error.to_string().starts_with("test.toml:"));
         }
     }

@@ -1,6 +1,6 @@
 //! What layers compile to, and what the program then wants, against evaluations written here from the file's numbers.
 
-use frixel_wire::scene::{Carrier, Layer, Leader, Region, Scene as WireScene};
+use frixel_layers::{Carrier, Constant, Grating, Layer, Leader, Region, Scene as WireScene};
 
 use super::super::{picture::Picture, resample};
 use super::*;
@@ -141,7 +141,7 @@ fn natural_friction_in_total_is_no_drive() {
     let text = text.replace("normal_load_n = 0.5", "normal_load_n = 0.7");
     let program = compile_text(&format!("{text}[[layer]]\nlive = true\nkind = \"constant\"\nfriction_n = 0.21"))
         .expect("it compiles");
-    assert_eq!(program.records[0].layer, Layer::Constant { electric_friction_n: 0.0 });
+    assert_eq!(program.records[0].layer, Layer::Constant(Constant { electric_friction_n: 0.0 }));
 }
 
 #[test]
@@ -168,7 +168,9 @@ fn gratings_against_their_formula() {
 fn right_angles_have_no_slant() {
     let program =
         compile_layers("[[layer]]\nkind = \"grating\"\nwavelength_mm = 2\nangle_deg = 90\nlow_n = 0\nhigh_n = 0.01");
-    let Layer::Grating { cycles_per_m_x, cycles_per_m_y, .. } = program.records[0].layer else { panic!("a grating") };
+    let Layer::Grating(Grating { cycles_per_m_x, cycles_per_m_y, .. }) = program.records[0].layer else {
+        panic!("a grating")
+    };
     assert_eq!((cycles_per_m_x, cycles_per_m_y), (0.0, 500.0));
 }
 
@@ -197,29 +199,25 @@ fn regions_never_round_past_the_screen() {
     }
 }
 
-/// Writes a PNG file of 8 or 16 bits a sample.
-fn write_png(path: &Path, width: u32, colour: png::ColorType, depth: png::BitDepth, data: &[u8]) {
+/// A PNG file of 8 or 16 bits a sample.
+fn png_of(width: u32, colour: png::ColorType, depth: png::BitDepth, data: &[u8]) -> Vec<u8> {
+    let mut bytes = Vec::new();
     let bytes_per_pixel = colour.samples() * if depth == png::BitDepth::Sixteen { 2 } else { 1 };
     let height = data.len() / bytes_per_pixel / width as usize;
-    let mut encoder = png::Encoder::new(std::fs::File::create(path).expect("a file"), width, height as u32);
+    let mut encoder = png::Encoder::new(&mut bytes, width, height as u32);
     encoder.set_color(colour);
     encoder.set_depth(depth);
     encoder.write_header().expect("a header").write_image_data(data).expect("samples");
+    bytes
 }
 
 #[test]
 fn a_picture_is_placed_and_held_at_its_border() {
-    let folder = tempfile::tempdir().expect("a folder");
-    write_png(
-        &folder.path().join("p.png"),
-        3,
-        png::ColorType::Grayscale,
-        png::BitDepth::Eight,
-        &[0, 51, 102, 255, 204, 153],
-    );
+    let png = png_of(3, png::ColorType::Grayscale, png::BitDepth::Eight, &[0, 51, 102, 255, 204, 153]);
+    let pictures = BTreeMap::from([("p.png".to_owned(), png)]);
     let layer = "[[layer]]\nkind = \"bitmap\"\npicture = \"p.png\"\nx_mm = 20\ny_mm = 30\nwidth_mm = 6\npitch_mm = 2\n\
                  black_n = 0.001\nwhite_n = 0.026";
-    let scene = Scene::parse(&format!("{HEAD}{layer}"), "test.toml", folder.path()).expect("it reads");
+    let scene = Scene::parse(&format!("{HEAD}{layer}"), "test.toml", &pictures).expect("it reads");
     let program = compile(&scene, &LIMITS, TICK_HZ).expect("it compiles");
     assert!(program.notes.is_empty(), "{:?}", program.notes);
     assert_eq!((program.bitmaps[0].width, program.bitmaps[0].height), (3, 2));
@@ -253,10 +251,7 @@ fn one_picture_twice_is_sent_once() {
 }
 
 fn read_png(colour: png::ColorType, depth: png::BitDepth, data: &[u8]) -> Picture {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("p.png");
-    write_png(&path, 2, colour, depth, data);
-    Picture::read(&path).expect("a picture")
+    Picture::decode(&png_of(2, colour, depth, data)).expect("a picture")
 }
 
 #[test]
@@ -312,7 +307,7 @@ fn a_ramp_stays_a_ramp() {
 
 #[test]
 fn shrinking_keeps_the_mean() {
-    let picture = Picture::read(&scenes().join("textures/brick.png")).expect("the picture");
+    let picture = Picture::decode(&PICTURES["textures/brick.png"]).expect("the picture");
     let axis = resample::Axis::covering(100.0, 0.4, picture.width);
     assert_eq!(axis.samples, 250);
     let samples = resample::resample(&picture.grey, picture.width, axis, axis);
@@ -330,7 +325,7 @@ fn pitches_that_do_not_divide_the_picture_reach_past_its_end() {
 #[test]
 fn bundled_scenes_compile() {
     for name in ["brick.toml", "grating.toml", "constant.toml"] {
-        let program = compile(&Scene::load(&scenes().join(name)).expect(name), &LIMITS, TICK_HZ).expect(name);
+        let program = compile(&bundled(name), &LIMITS, TICK_HZ).expect(name);
         assert!(!program.records.is_empty());
     }
 }

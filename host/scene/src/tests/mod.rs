@@ -1,4 +1,7 @@
+use std::collections::BTreeMap;
+use std::fs;
 use std::path::Path;
+use std::sync::LazyLock;
 
 use frixel_wire::hello::BoardLimits;
 
@@ -49,16 +52,29 @@ normal_load_n = 0.5
 
 ";
 
+/// The pictures of the bundled scenes, and a file that is none.
+pub(super) static PICTURES: LazyLock<BTreeMap<String, Vec<u8>>> = LazyLock::new(|| {
+    let files = fs::read_dir(scenes().join("textures")).expect("a folder").map(|entry| entry.expect("a file").path());
+    let name = |path: &Path| format!("textures/{}", path.file_name().expect("a name").to_string_lossy());
+    files.map(|path| (name(&path), fs::read(&path).expect("bytes"))).collect()
+});
+
 pub(super) fn scenes() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes"))
 }
 
 /// Compiles a text, and sees that the schema for editors thinks of it as the parser does.
 pub(super) fn compile_text(text: &str) -> Result<Program, CompileError> {
-    let scene = Scene::parse(text, "test.toml", scenes());
+    let scene = Scene::parse(text, "test.toml", &*PICTURES);
     schema::check_agrees(text, scene.as_ref().err());
     // What a tick takes has tests of its own; others may pile up layers.
     compile::compile_within(&scene?, &LIMITS, TICK_HZ, u32::MAX)
+}
+
+/// A scene of the repository.
+fn bundled(name: &str) -> Scene {
+    let text = fs::read_to_string(scenes().join(name)).expect(name);
+    Scene::parse(&text, name, &*PICTURES).expect(name)
 }
 
 fn compile_layers(layers: &str) -> Program {

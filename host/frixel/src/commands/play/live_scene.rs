@@ -6,8 +6,9 @@ use std::thread::{self, JoinHandle};
 
 use frixel::player::{PlayError, Player};
 use frixel::rigs::RecordedLink;
+use frixel::scene_file::{self, SceneFileError};
 use frixel_driver::DeviceError;
-use frixel_scene::{CompileError, Program, Scene, compile};
+use frixel_scene::{Program, compile};
 use frixel_wire::hello::Hello;
 use frixel_wire::message::Refusal;
 
@@ -19,7 +20,7 @@ pub(super) struct LiveScene {
     path: PathBuf,
     file: SavedFile,
     /// The saved scene is compiled in a thread of its own: the board has to hear from its host meanwhile.
-    compiling: Option<JoinHandle<Result<Program, CompileError>>>,
+    compiling: Option<JoinHandle<Result<Program, SceneFileError>>>,
 }
 
 impl LiveScene {
@@ -36,7 +37,7 @@ impl LiveScene {
         }
         if self.compiling.is_none() && self.file.is_saved() {
             let (path, Hello { limits, tick_hz, .. }) = (self.path.clone(), *player.device().hello());
-            let compile = move || Scene::load(&path).and_then(|scene| compile(&scene, &limits, tick_hz));
+            let compile = move || scene_file::load(&path).and_then(|scene| Ok(compile(&scene, &limits, tick_hz)?));
             self.compiling = Some(thread::spawn(compile));
         }
         Ok(None)
@@ -46,7 +47,7 @@ impl LiveScene {
 /// Plays what was compiled. Its mistakes, or the board's refusal, are printed, and the scene before plays on.
 fn replace<L: RecordedLink>(
     path: &Path,
-    compiled: Result<Program, CompileError>,
+    compiled: Result<Program, SceneFileError>,
     player: &mut Player<L>,
 ) -> Result<Option<Program>, PlayError> {
     let program = match compiled {

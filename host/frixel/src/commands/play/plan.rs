@@ -24,9 +24,9 @@ pub(super) struct Plan {
     pub(super) target: Target,
     pub(super) program: Program,
     pub(super) feed: Option<Feed>,
+    ticks_per_row: u32,
     /// Ticks between two telemetry messages; 0 where every tick can be seen from outside.
     pub(super) telemetry_period_ticks: u32,
-    ticks_per_row: u32,
     limits: BoardLimits,
     tick_hz: u32,
     /// `None` without an end.
@@ -41,7 +41,7 @@ pub(super) fn check_options(args: &PlayArgs, target: Target) -> Result<(), Comma
         Target::Emulator if args.stream.is_some() => Err(CommandError::StreamOnEmulated),
         Target::Port if args.stroke.is_some() => Err(CommandError::StrokeOnBoard { port: port() }),
         Target::Port if args.csv_hz > TELEMETRY_MAX_HZ => {
-            Err(CommandError::CsvTooFast { port: port(), asked: args.csv_hz, max: TELEMETRY_MAX_HZ })
+            Err(CommandError::CsvTooFast { port: port(), found: args.csv_hz, max: TELEMETRY_MAX_HZ })
         }
         Target::Port if args.watch && args.stream.is_some() => Err(CommandError::WatchWithStream),
         _ => Ok(()),
@@ -70,9 +70,9 @@ impl Plan {
         Ok(Self { target, program, feed, ticks_per_row, telemetry_period_ticks, limits, tick_hz, seconds })
     }
 
-    /// Where a simulated finger goes over the scene's screen. The play lasts as long as the stroke, unless a time was
-    /// given.
-    pub(super) fn take_stroke(&mut self, args: &PlayArgs) -> Result<Stroke, CommandError> {
+    /// Chooses where a simulated finger goes over the scene's screen. The play lasts as long as that stroke, unless
+    /// `--seconds` says otherwise.
+    pub(super) fn choose_stroke(&mut self, args: &PlayArgs) -> Result<Stroke, CommandError> {
         let header = &self.program.header;
         let (width_m, height_m) = (header.screen_width_m.into(), header.screen_height_m.into());
         let stroke = stroke(args.stroke.as_deref(), width_m, height_m, args.seconds)?;
@@ -123,7 +123,7 @@ fn ticks_per_row(csv_hz: u32, tick_hz: u32) -> Result<u32, CommandError> {
     let below = (1..csv_hz.min(tick_hz)).rev().find(divides);
     let above = (csv_hz..=tick_hz).find(divides);
     let nearest: Vec<String> = [below, above].iter().flatten().map(u32::to_string).collect();
-    Err(CommandError::CsvUneven { asked: csv_hz, tick_hz, nearest: nearest.join(" or ") })
+    Err(CommandError::CsvUneven { found: csv_hz, tick_hz, nearest: nearest.join(" or ") })
 }
 
 /// A message a row. A reference that depends on what happened before needs as many as the board sends: the row then is

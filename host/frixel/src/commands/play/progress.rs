@@ -1,11 +1,11 @@
-//! Progress on standard error, where a person looks at it.
+//! Progress bars on standard error, where that is a terminal.
 
 use std::io::{IsTerminal, stderr};
 
 use frixel_driver::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// One bar after the other: the upload's, then the play's.
+/// The bar of the upload, then that of the play.
 #[derive(Default)]
 pub(super) struct Bars {
     name: &'static str,

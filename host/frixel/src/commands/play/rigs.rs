@@ -55,7 +55,7 @@ pub(super) fn play_on_simulator(args: &PlayArgs, scene: &Scene, interrupt: &Inte
     let config = RigConfig::default();
     let board = (&config.board.limits, config.board.tick_hz);
     let mut plan = Plan::new(args, scene, Target::Simulator, board)?;
-    let stroke = plan.take_stroke(args)?;
+    let stroke = plan.choose_stroke(args)?;
     let mut memory = BoardMemory::new();
     let rig = Rig::new(&mut memory, &config, stroke, args.seed)?;
     let device = Device::connect(SimLink::new(rig, Recorder::idle()))?;
@@ -65,7 +65,7 @@ pub(super) fn play_on_simulator(args: &PlayArgs, scene: &Scene, interrupt: &Inte
 /// Plays on the firmware in an emulator, under a simulated finger.
 pub(super) fn play_on_emulator(args: &PlayArgs, scene: &Scene, interrupt: &Interrupt) -> Result<Played, CommandError> {
     let mut plan = Plan::new(args, scene, Target::Emulator, (&BOARD.limits, BOARD.tick_hz))?;
-    let stroke = plan.take_stroke(args)?;
+    let stroke = plan.choose_stroke(args)?;
     let world = world(&plan.program, stroke, args.seed)?;
     let image = Image::build()?;
     let (sender, records) = mpsc::channel();

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 use frixel::check::SceneCheck;
+use frixel::scene_file;
 use frixel_hil_sim::RigConfig;
-use frixel_scene::{Scene, compile};
+use frixel_scene::compile;
 
 use super::super::error::CommandError;
 
@@ -24,7 +25,8 @@ pub(in super::super) struct CheckArgs {
 pub(super) fn run(args: &CheckArgs) -> Result<(), CommandError> {
     // The simulated board has the limits of the smallest one.
     let rig = RigConfig::default();
-    let compiled = Scene::load(&args.scene).and_then(|scene| compile(&scene, &rig.board.limits, rig.board.tick_hz));
+    let compiled =
+        scene_file::load(&args.scene).and_then(|scene| Ok(compile(&scene, &rig.board.limits, rig.board.tick_hz)?));
     let program = match compiled {
         Err(error) if args.json => {
             println!("{}", error.to_json());

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 use frixel::output::{Preview, write_preview_png};
+use frixel::scene_file;
 use frixel_hil_sim::RigConfig;
-use frixel_scene::{Scene, compile};
+use frixel_scene::compile;
 
 use super::super::error::CommandError;
 
@@ -29,7 +30,7 @@ pub(super) fn run(args: &PreviewArgs) -> Result<(), CommandError> {
         return Err(CommandError::NotPng { path: args.output.clone() });
     }
     let board = RigConfig::default().board;
-    let program = compile(&Scene::load(&args.scene)?, &board.limits, board.tick_hz)?;
+    let program = compile(&scene_file::load(&args.scene)?, &board.limits, board.tick_hz)?;
     let title = args.scene.file_name().unwrap_or_default().to_string_lossy();
     let map_max = (args.map_width, args.map_width * 4 / 5);
     let preview = Preview { speed_m_per_s: 1e-3 * args.speed_mm_per_s, map_max };

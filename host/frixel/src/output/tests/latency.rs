@@ -9,8 +9,9 @@ use std::path::{Path, PathBuf};
 
 use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};
 use crate::player::{Simulation, simulate};
+use crate::scene_file;
 use frixel_hil_sim::{Point, RigConfig, Stroke};
-use frixel_scene::{Program, Scene, compile};
+use frixel_scene::{Program, compile};
 
 const LATENCIES_MS: [u32; 10] = [5, 10, 15, 20, 25, 30, 35, 40, 45, 50];
 const SEEDS: [u64; 5] = [1, 2, 3, 4, 5];
@@ -63,7 +64,7 @@ fn errors(program: &Program, name: &str, latency_ms: u32) -> Errors {
 
 fn curves() -> Vec<Vec<Errors>> {
     let rig = RigConfig::default();
-    let scene = Scene::load(&path("../scenes/brick.toml")).unwrap();
+    let scene = scene_file::load(&path("../scenes/brick.toml")).unwrap();
     let mut program = compile(&scene, &rig.board.limits, rig.board.tick_hz).unwrap();
     CURVES
         .iter()
@@ -111,7 +112,7 @@ fn the_error_over_latency_in_the_docs_is_the_one_that_is_simulated() {
             fs::write(&path, text).unwrap();
         } else {
             let held = fs::read_to_string(&path).unwrap();
-            assert!(held == text, "{} is not what is simulated; look at it, then bless it", path.display());
+            assert!(held == text, "{} is not what is simulated; inspect it, then bless it", path.display());
         }
     }
 }

@@ -7,13 +7,15 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 
 use frixel_hil_sim::{BoardMemory, RigConfig};
+use frixel_layers::Scene as WireScene;
 use frixel_model::InverseTable;
-use frixel_wire::scene::{POINTS_MAX, POLYGON_POINTS_MAX, RECORDS_MAX, Scene as WireScene};
+use frixel_wire::scene::{POINTS_MAX, POLYGON_POINTS_MAX, RECORDS_MAX};
 
 use super::{Figure, ReportError};
 use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};
 use crate::report::data::Data;
 use crate::report::wire::OnTheWire;
+use crate::scene_file::PictureFolder;
 use frixel_scene::{CompileError, Program, Scene, compile};
 
 /// What every scene begins with.
@@ -101,7 +103,11 @@ fn write_picture(folder: &Path) -> Result<(), ReportError> {
 
 fn compiled(text: &str, folder: &Path) -> Result<Program, CompileError> {
     let board = RigConfig::default().board;
-    compile(&Scene::parse(text, "a scene of the report", folder)?, &board.limits, board.tick_hz)
+    compile(
+        &Scene::parse(text, "a scene of the report", &PictureFolder(folder.to_owned()))?,
+        &board.limits,
+        board.tick_hz,
+    )
 }
 
 /// The most vertices of a polygon that a tick has time for.

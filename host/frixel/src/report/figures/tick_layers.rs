@@ -1,6 +1,6 @@
 //! The cost of a tick against the number of layers in the scene.
 
-use frixel_wire::scene::cost::TICK_INSTRUCTIONS_MAX;
+use frixel_layers::cost::TICK_INSTRUCTIONS_MAX;
 
 use super::{Figure, ReportError};
 use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};

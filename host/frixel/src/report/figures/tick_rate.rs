@@ -1,6 +1,6 @@
 //! Error against the rate of ticks: what a finger feels of a texture.
 
-use std::path::Path;
+use std::collections::BTreeMap;
 
 use frixel_hil_sim::{Point, RigConfig, Stroke, TouchConfig};
 
@@ -86,7 +86,7 @@ fn felt(case: &Case, tick_hz: u32, rows_hz: u32, seed: u64) -> Result<Felt, Repo
     rig.world.tick_hz = tick_hz;
     rig.world.touch = case.touch;
     let text = scene(case.wavelength_mm, carrier_hz(tick_hz));
-    let scene = Scene::parse(&text, "the report's texture", Path::new(""))?;
+    let scene = Scene::parse(&text, "the report's texture", &BTreeMap::new())?;
     let program = compile(&scene, &rig.board.limits, tick_hz)?;
     let stroke = Stroke::constant_speed(Point { x_m: 0.01, y_m: 0.04 }, Point { x_m: 0.11, y_m: 0.04 }, SPEED_M_PER_S)?;
     let simulation =

@@ -1,6 +1,6 @@
 //! The model's tables, in f32 and in integers, of every order and several sizes, and the one that a board has.
 
-use frixel_model::{InverseTable, Precision, TableBuilder};
+use frixel_model::{InverseTable, Precision, TableBuilder, U0F32, U1F31};
 
 use super::{Bench, Kind, RANGE_V_RMS, ReportError, Way};
 
@@ -56,8 +56,11 @@ fn fixed<const C: usize>(
     let shape = builder.shape(Precision::Fixed, C)?;
     let mut rows = vec![[0; C]; shape.rows];
     let table = builder.build_fixed(&mut rows)?;
-    let units = (table.friction_unit_n(), table.voltage_unit_v_rms());
+    let units = (
+        table.friction_max_n() * U0F32::DELTA.to_num::<f64>(),
+        table.voltage_max_v_rms() * U1F31::DELTA.to_num::<f64>(),
+    );
     let size = format!("{} rows", shape.rows);
-    ways.push(bench.in_codes(kind, size, shape.bytes(), units, |code| table.voltage_code(code)));
+    ways.push(bench.in_codes(kind, size, shape.bytes(), units, |code| table.voltage(U0F32::from_bits(code)).to_bits()));
     Ok(())
 }

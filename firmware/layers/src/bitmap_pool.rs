@@ -1,0 +1,73 @@
+//! Memory for the samples of bitmaps.
+
+use core::sync::atomic::{AtomicU8, Ordering};
+
+/// Bytes for bitmaps on the smallest board, those being uploaded included; 0 without the feature `bitmap`.
+pub const BITMAP_POOL_LEN: usize = if cfg!(feature = "bitmap") { 64 * 1024 } else { 0 };
+
+/// Samples of bitmaps, shared between the session, which writes, and the tick, which reads.
+///
+/// Every byte is an atomic of its own, which costs nothing on a Cortex-M and keeps the sharing free of `unsafe`.
+/// The session writes only to bytes that no playing scene reads.
+pub struct BitmapPool {
+    bytes: [AtomicU8; BITMAP_POOL_LEN],
+}
+
+impl BitmapPool {
+    /// An empty pool.
+    #[allow(
+        clippy::new_without_default,
+        clippy::large_stack_arrays,
+        reason = "64 KiB belong in a static or a box, not into a value made in passing"
+    )]
+    pub const fn new() -> Self {
+        Self { bytes: [const { AtomicU8::new(0) }; BITMAP_POOL_LEN] }
+    }
+
+    /// The sample at an offset. No bitmap reaches beyond the end, where the pool begins again: a power of two needs no
+    /// other bound.
+    #[inline]
+    pub fn sample(&self, offset: usize) -> u8 {
+        const { assert!(BITMAP_POOL_LEN == 0 || BITMAP_POOL_LEN.is_power_of_two()) };
+        self.bytes.get(offset & BITMAP_POOL_LEN.wrapping_sub(1)).map_or(0, |byte| byte.load(Ordering::Relaxed))
+    }
+
+    /// Moves `len` samples from one offset to a lower one.
+    pub fn move_down(&self, from: u32, to: u32, len: u32) {
+        for index in 0..len as usize {
+            if let Some(byte) = self.bytes.get(to as usize + index) {
+                byte.store(self.sample(from as usize + index), Ordering::Relaxed);
+            }
+        }
+    }
+
+    /// Writes samples from an offset on; what goes beyond the end is ignored.
+    pub fn write(&self, offset: usize, samples: &[u8]) {
+        if let Some(bytes) = self.bytes.get(offset..) {
+            for (byte, sample) in bytes.iter().zip(samples) {
+                byte.store(*sample, Ordering::Relaxed);
+            }
+        }
+    }
+}
+
+/// Where a bitmap lies in the pool.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StoredBitmap {
+    /// CRC-32 of the samples: the bitmap's name.
+    pub crc32: u32,
+    /// Offset of the first sample in the pool.
+    pub offset: u32,
+    /// Samples in a row.
+    pub width: u16,
+    /// Rows.
+    pub height: u16,
+}
+
+impl StoredBitmap {
+    /// Bytes of the samples.
+    #[allow(clippy::len_without_is_empty, reason = "a bitmap has samples")]
+    pub fn len(&self) -> u32 {
+        u32::from(self.width) * u32::from(self.height)
+    }
+}

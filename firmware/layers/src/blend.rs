@@ -1,0 +1,66 @@
+//! How a layer joins the layers before it.
+
+use crate::interval::{Interval, Number};
+
+/// How a layer joins the layers before it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Blend {
+    /// It takes their place.
+    #[default]
+    Replace,
+    /// It is added to them.
+    Add,
+    /// They are multiplied by it: its numbers are plain factors.
+    Multiply,
+    /// The larger of the two counts.
+    Max,
+}
+
+impl Blend {
+    /// The number in records.
+    pub(crate) const fn number(self) -> u8 {
+        match self {
+            Self::Replace => 0,
+            Self::Add => 1,
+            Self::Multiply => 2,
+            Self::Max => 3,
+        }
+    }
+
+    pub(crate) const fn from_number(number: u8) -> Option<Self> {
+        match number {
+            0 => Some(Self::Replace),
+            1 => Some(Self::Add),
+            2 => Some(Self::Multiply),
+            3 => Some(Self::Max),
+            _ => None,
+        }
+    }
+
+    /// A layer's friction joined to that of the layers below.
+    #[inline]
+    pub(crate) fn of(self, below_n: f32, own_n: f32) -> f32 {
+        match self {
+            Self::Replace => own_n,
+            Self::Add => below_n + own_n,
+            Self::Multiply => below_n * own_n,
+            Self::Max => {
+                if own_n > below_n {
+                    own_n
+                } else {
+                    below_n
+                }
+            }
+        }
+    }
+
+    /// The interval of [`Blend::of`] over two intervals.
+    pub fn of_intervals<T: Number>(self, below: Interval<T>, own: Interval<T>) -> Interval<T> {
+        match self {
+            Self::Replace => own,
+            Self::Add => below.plus(own),
+            Self::Multiply => below.times(own),
+            Self::Max => below.max(own),
+        }
+    }
+}

@@ -1,0 +1,39 @@
+//! Instructions on a Cortex-M4F at the worst input. Written by `cargo xtask bench --bless`; `cargo xtask test` measures
+//! again and fails when it finds others.
+#![allow(dead_code, reason = "a kind whose feature is off costs nothing")]
+
+// A tick that looks at layers and finds none.
+pub(crate) const EMPTY: u32 = 270;
+
+// What a sine carrier adds.
+pub(crate) const SINE_CARRIER: u32 = 23;
+
+// Layers, in a rectangle.
+pub(crate) const CONSTANT: u32 = 38;
+pub(crate) const SINE: u32 = 82;
+pub(crate) const SQUARE: u32 = 89;
+pub(crate) const TRIANGLE: u32 = 83;
+pub(crate) const SAW: u32 = 72;
+pub(crate) const BITMAP: u32 = 149;
+pub(crate) const BITMAP_TILED: u32 = 167;
+pub(crate) const NOISE: u32 = 232;
+pub(crate) const EDGE: u32 = 164;
+pub(crate) const BUTTON: u32 = 170;
+pub(crate) const VIBRATION_SINE: u32 = 113;
+pub(crate) const VIBRATION_SQUARE: u32 = 97;
+
+// A curve, and each of its points.
+pub(crate) const SPEED: u32 = 105;
+pub(crate) const SPEED_POINT: u32 = 7;
+pub(crate) const STREAM: u32 = 75;
+
+// The stream's own work, wherever the finger is.
+pub(crate) const STREAM_ELSEWHERE: u32 = 126;
+
+// What other regions add to a rectangle.
+pub(crate) const ELLIPSE: u32 = 5;
+
+// A polygon, each of its edges, and what each of those adds that are level with the finger.
+pub(crate) const POLYGON: u32 = 40;
+pub(crate) const POLYGON_EDGE: u32 = 16;
+pub(crate) const POLYGON_EDGE_LEVEL: u32 = 22;

@@ -1,0 +1,113 @@
+//! Which layers may act where: a coarse grid over the screen with a bit for each layer, so that a tick looks only at
+//! layers near the finger, and compiler and board alike find where a scene costs most.
+
+use core::ops::RangeInclusive;
+
+use crate::point::{Point, points_of};
+use crate::region::Region;
+
+/// Columns of the grid; as many rows.
+const SIDE: usize = 16;
+
+/// A set of layers, a bit for each: the first 32, and the others.
+pub type LayerSet = [u32; 2];
+
+/// For every cell of the screen, the layers that may act there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grid {
+    columns_per_m: f32,
+    rows_per_m: f32,
+    cells: [LayerSet; SIDE * SIDE],
+}
+
+/// A cell of the grid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cell {
+    /// Its middle, in m from the screen's left edge.
+    pub x_m: f32,
+    /// Its middle, in m from the screen's top edge.
+    pub y_m: f32,
+    /// The layers that may act there.
+    pub layers: LayerSet,
+}
+
+impl Cell {
+    /// Whether layer number `layer` may act there.
+    pub fn has(&self, layer: u8) -> bool {
+        let [first, others] = self.layers;
+        let layers = u64::from(first) | u64::from(others) << u32::BITS;
+        layers.checked_shr(u32::from(layer)).is_some_and(|from_it_on| from_it_on & 1 != 0)
+    }
+}
+
+impl Grid {
+    /// A grid without layers, on a screen without size.
+    pub const EMPTY: Self = Self { columns_per_m: 0.0, rows_per_m: 0.0, cells: [[0; 2]; SIDE * SIDE] };
+
+    /// Forgets all layers, and takes the size of another screen, in m.
+    pub fn reset(&mut self, screen_width_m: f32, screen_height_m: f32) {
+        self.columns_per_m = SIDE as f32 / screen_width_m;
+        self.rows_per_m = SIDE as f32 / screen_height_m;
+        self.cells.fill([0; 2]);
+    }
+
+    /// Adds layer number `layer`, below 64, wherever its region may be; `points` are the scene's. What is off the screen
+    /// belongs to the cells at its border.
+    pub fn add(&mut self, layer: u8, region: &Region, points: &[Point]) {
+        let bit = 1_u64.checked_shl(u32::from(layer)).unwrap_or(0);
+        let bits = [bit as u32, (bit >> 32) as u32];
+        let (columns, rows) = match *region {
+            Region::Polygon { first, count } => {
+                let vertices = points_of(points, first, count).iter();
+                (
+                    ends(vertices.clone().map(|vertex| index(vertex.x * self.columns_per_m))),
+                    ends(vertices.map(|vertex| index(vertex.y * self.rows_per_m))),
+                )
+            }
+            Region::Rectangle { x_m, y_m, width_m, height_m } | Region::Ellipse { x_m, y_m, width_m, height_m } => (
+                // Both ends are found as the finger's cell is, so that rounding never loses one.
+                index(x_m * self.columns_per_m)..=index((x_m + width_m) * self.columns_per_m),
+                index(y_m * self.rows_per_m)..=index((y_m + height_m) * self.rows_per_m),
+            ),
+            Region::Screen => (0..=SIDE - 1, 0..=SIDE - 1),
+        };
+        for row in rows {
+            for column in columns.clone() {
+                if let Some(cell) = self.cells.get_mut(row * SIDE + column) {
+                    *cell = join(*cell, bits);
+                }
+            }
+        }
+    }
+
+    /// The layers that may act at a place, in m.
+    #[inline]
+    pub fn at(&self, x_m: f32, y_m: f32) -> LayerSet {
+        let cell = index(y_m * self.rows_per_m) * SIDE + index(x_m * self.columns_per_m);
+        self.cells.get(cell).copied().unwrap_or_default()
+    }
+
+    /// All cells, row by row.
+    pub fn cells(&self) -> impl Iterator<Item = Cell> {
+        self.cells.iter().enumerate().map(|(number, &layers)| Cell {
+            x_m: ((number % SIDE) as f32 + 0.5) / self.columns_per_m,
+            y_m: ((number / SIDE) as f32 + 0.5) / self.rows_per_m,
+            layers,
+        })
+    }
+}
+
+fn join([first, others]: LayerSet, [more_first, more_others]: LayerSet) -> LayerSet {
+    [first | more_first, others | more_others]
+}
+
+/// From the least of some indices to the largest.
+fn ends(indices: impl Iterator<Item = usize> + Clone) -> RangeInclusive<usize> {
+    indices.clone().min().unwrap_or_default()..=indices.max().unwrap_or_default()
+}
+
+/// Column or row of a place in cells, held at the border.
+#[inline]
+fn index(place_cells: f32) -> usize {
+    (place_cells as i32).clamp(0, SIDE as i32 - 1) as usize
+}

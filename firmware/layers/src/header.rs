@@ -1,0 +1,249 @@
+//! The header of a scene: what holds for all its layers.
+
+use frixel_wire::bytes::{first_difference, get_at, put_at};
+use frixel_wire::hello::BoardLimits;
+use frixel_wire::message::{ConfigField, ConfigRefusal};
+use frixel_wire::scene::{POINTS_MAX, RECORDS_MAX, SceneError};
+
+use crate::parameters::{range, within};
+
+/// Version of the layout of scenes.
+pub const SCENE_VERSION: u16 = 2;
+/// Bytes of the header.
+pub const HEADER_LEN: usize = 56;
+
+/// Fewest ticks in a half period of the carrier.
+pub const HALF_PERIOD_MIN_TICKS: u32 = 4;
+/// Lowest carrier frequency, Hz: charge leaks through skin below about 250 Hz (arXiv 2409.18725); at less than half of
+/// that the drive is no alternating carrier any more.
+const CARRIER_MIN_HZ: f32 = 125.0;
+
+/// Offsets of the header's fields; those of `f32` are in [`Header::numbers`].
+mod field {
+    pub(super) const VERSION: usize = 0;
+    pub(super) const RECORDS: usize = 2;
+    pub(super) const FLAGS: usize = 3;
+    pub(super) const NUMBERS: usize = 4;
+    pub(super) const CARRIER: usize = 52;
+    pub(super) const POINTS: usize = 53;
+    pub(super) const ELECTRIC_FRICTION_MAX: usize = 54;
+}
+
+/// Bits of the flags.
+mod flag {
+    pub(super) const AUTONOMOUS: u8 = 1;
+    pub(super) const PREDICTION: u8 = 1 << 1;
+    pub(super) const LEADER_LATEST: u8 = 1 << 2;
+    pub(super) const LAYERS_FIXED: u8 = 1 << 3;
+    pub(super) const ELECTRIC_FRICTION_MAX: u8 = 1 << 4;
+    pub(super) const ALL: u8 = AUTONOMOUS | PREDICTION | LEADER_LATEST | LAYERS_FIXED | ELECTRIC_FRICTION_MAX;
+}
+
+/// What holds for the whole scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Header {
+    /// Width of the screen, m.
+    pub screen_width_m: f32,
+    /// Height of the screen, m.
+    pub screen_height_m: f32,
+    /// Finger radius `R`, m.
+    pub finger_radius_m: f32,
+    /// Winkler-Fuss stiffness `k`, Pa/m.
+    pub stiffness_pa_per_m: f32,
+    /// Friction coefficient `mu`.
+    pub friction_coefficient: f32,
+    /// Normal load `F_N` at which the scene is meant, N.
+    pub normal_load_n: f32,
+    /// Effective gap `h0/eps` of the coating, m.
+    pub effective_gap_m: f32,
+    /// Largest rms voltage, V.
+    pub voltage_max_v_rms: f32,
+    /// Largest peak voltage, V.
+    pub voltage_max_v_peak: f32,
+    /// Fastest change of the envelope, V/s.
+    pub slew_v_per_s: f32,
+    /// Carrier frequency, Hz.
+    pub carrier_hz: f32,
+    /// Time without a word from the host after which the output goes to zero, s.
+    pub host_timeout_s: f32,
+    /// Shape of the carrier.
+    pub carrier: Carrier,
+    /// The scene goes on without a host.
+    pub autonomous: bool,
+    /// The tick estimates where the finger is now from late samples; without it, it takes the last sample as it is.
+    pub prediction: bool,
+    /// Which finger is followed when the host reports several.
+    pub leader: Leader,
+    /// The host may not change the layers while the scene plays; the board refuses a change.
+    pub layers_fixed: bool,
+    /// The largest electric friction that the scene can ask for, N: the board's table ends there, and friction above it
+    /// is counted as saturated. `None`: the table covers what the largest voltage gives. Since protocol 1.3.
+    ///
+    /// A scene stores the upper half of the number's bits, rounded up: up to 1 % more.
+    pub electric_friction_max_n: Option<f32>,
+}
+
+/// Shape of the carrier.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Carrier {
+    /// Plus and minus the envelope: the square of the voltage has no ripple.
+    #[default]
+    Square,
+    /// A sine whose rms is the envelope.
+    Sine,
+}
+
+/// Which of several fingers is followed, since one electrode gives one effect.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Leader {
+    /// The one that came first of those that are on the screen.
+    #[default]
+    First,
+    /// The one that came last.
+    Latest,
+}
+
+impl Header {
+    /// The header's bytes in front of `records` records and `points` points.
+    pub fn write(&self, records: u8, points: u8) -> [u8; HEADER_LEN] {
+        let mut bytes = [0; HEADER_LEN];
+        let flags = [
+            (self.autonomous, flag::AUTONOMOUS),
+            (self.prediction, flag::PREDICTION),
+            (self.leader == Leader::Latest, flag::LEADER_LATEST),
+            (self.layers_fixed, flag::LAYERS_FIXED),
+            (self.electric_friction_max_n.is_some(), flag::ELECTRIC_FRICTION_MAX),
+        ];
+        let flags = flags.into_iter().filter(|(is_set, _)| *is_set).fold(0, |flags, (_, flag)| flags | flag);
+        let carrier = match self.carrier {
+            Carrier::Square => 0,
+            Carrier::Sine => 1,
+        };
+        put_at(&mut bytes, field::VERSION, SCENE_VERSION.to_le_bytes());
+        put_at(&mut bytes, field::RECORDS, [records]);
+        put_at(&mut bytes, field::FLAGS, [flags]);
+        let mut header = *self;
+        for (number, value) in header.numbers().into_iter().enumerate() {
+            put_at(&mut bytes, field::NUMBERS + 4 * number, value.to_le_bytes());
+        }
+        put_at(&mut bytes, field::CARRIER, [carrier]);
+        put_at(&mut bytes, field::POINTS, [points]);
+        let max = self.electric_friction_max_n.map_or(0, upper_half_rounded_up);
+        put_at(&mut bytes, field::ELECTRIC_FRICTION_MAX, max.to_le_bytes());
+        bytes
+    }
+
+    /// The header, and how many records and points follow it.
+    pub fn parse(bytes: &[u8; HEADER_LEN]) -> Result<(Self, u8, u8), SceneError> {
+        let version = u16::from_le_bytes(get_at(bytes, field::VERSION));
+        if version != SCENE_VERSION {
+            return Err(SceneError::Version { found: version });
+        }
+        let [records] = get_at(bytes, field::RECORDS);
+        if usize::from(records) > RECORDS_MAX {
+            return Err(SceneError::TooManyRecords { found: records });
+        }
+        let [points] = get_at(bytes, field::POINTS);
+        if usize::from(points) > POINTS_MAX {
+            return Err(SceneError::TooManyPoints { found: points });
+        }
+        let [flags] = get_at(bytes, field::FLAGS);
+        if flags & !flag::ALL != 0 {
+            return Err(SceneError::UnknownFlags(flags));
+        }
+        let carrier = match get_at(bytes, field::CARRIER) {
+            [0] => Carrier::Square,
+            [1] => Carrier::Sine,
+            [other] => return Err(SceneError::UnknownCarrier(other)),
+        };
+        let is_set = |flag| flags & flag != 0;
+        let max = u16::from_le_bytes(get_at(bytes, field::ELECTRIC_FRICTION_MAX));
+        let mut header = Self {
+            carrier,
+            autonomous: is_set(flag::AUTONOMOUS),
+            prediction: is_set(flag::PREDICTION),
+            leader: if is_set(flag::LEADER_LATEST) { Leader::Latest } else { Leader::First },
+            layers_fixed: is_set(flag::LAYERS_FIXED),
+            electric_friction_max_n: is_set(flag::ELECTRIC_FRICTION_MAX)
+                .then(|| f32::from_bits(u32::from(max) << u16::BITS)),
+            ..Self::ZERO
+        };
+        for (number, value) in header.numbers().into_iter().enumerate() {
+            *value = f32::from_le_bytes(get_at(bytes, field::NUMBERS + 4 * number));
+        }
+        match first_difference(bytes, &header.write(records, points)) {
+            None => Ok((header, records, points)),
+            Some(offset) => Err(SceneError::NotZero { record: SceneError::HEADER, offset }),
+        }
+    }
+
+    const ZERO: Self = Self {
+        screen_width_m: 0.0,
+        screen_height_m: 0.0,
+        finger_radius_m: 0.0,
+        stiffness_pa_per_m: 0.0,
+        friction_coefficient: 0.0,
+        normal_load_n: 0.0,
+        effective_gap_m: 0.0,
+        voltage_max_v_rms: 0.0,
+        voltage_max_v_peak: 0.0,
+        slew_v_per_s: 0.0,
+        carrier_hz: 0.0,
+        host_timeout_s: 0.0,
+        carrier: Carrier::Square,
+        autonomous: false,
+        prediction: false,
+        leader: Leader::First,
+        layers_fixed: false,
+        electric_friction_max_n: None,
+    };
+
+    /// The numbers of type `f32`, in the order of the layout.
+    fn numbers(&mut self) -> [&mut f32; 12] {
+        [
+            &mut self.screen_width_m,
+            &mut self.screen_height_m,
+            &mut self.finger_radius_m,
+            &mut self.stiffness_pa_per_m,
+            &mut self.friction_coefficient,
+            &mut self.normal_load_n,
+            &mut self.effective_gap_m,
+            &mut self.voltage_max_v_rms,
+            &mut self.voltage_max_v_peak,
+            &mut self.slew_v_per_s,
+            &mut self.carrier_hz,
+            &mut self.host_timeout_s,
+        ]
+    }
+
+    /// Checks every number against what a board with these limits and `tick_hz` ticks a second takes.
+    pub fn check(&self, limits: &BoardLimits, tick_hz: u32) -> Result<(), ConfigRefusal> {
+        let carrier_max_hz = tick_hz as f32 / (2.0 * HALF_PERIOD_MIN_TICKS as f32);
+        let voltage_max_v_peak = limits.voltage_max_v_peak;
+        for (field, found, min, max) in [
+            (ConfigField::ScreenWidth, self.screen_width_m, 1e-3, range::LENGTH_MAX_M as f32),
+            (ConfigField::ScreenHeight, self.screen_height_m, 1e-3, range::LENGTH_MAX_M as f32),
+            (ConfigField::FingerRadius, self.finger_radius_m, 1e-4, 1.0),
+            (ConfigField::Stiffness, self.stiffness_pa_per_m, 1e3, 1e14),
+            (ConfigField::FrictionCoefficient, self.friction_coefficient, 1e-3, 100.0),
+            (ConfigField::NormalLoad, self.normal_load_n, 0.0, 50.0),
+            (ConfigField::EffectiveGap, self.effective_gap_m, 1e-12, 1e-2),
+            (ConfigField::VoltageRms, self.voltage_max_v_rms, 1.0, voltage_max_v_peak),
+            (ConfigField::VoltagePeak, self.voltage_max_v_peak, 1.0, voltage_max_v_peak),
+            (ConfigField::Slew, self.slew_v_per_s, 1.0, 1e9),
+            (ConfigField::CarrierFrequency, self.carrier_hz, CARRIER_MIN_HZ, carrier_max_hz),
+            (ConfigField::HostTimeout, self.host_timeout_s, 0.02, 1.0),
+            (ConfigField::ElectricFrictionMax, self.electric_friction_max_n.unwrap_or(0.0), 0.0, f32::MAX),
+        ] {
+            within(field, found, min, max, ConfigRefusal::WHOLE_SCENE)?;
+        }
+        Ok(())
+    }
+}
+
+/// The upper half of a number's bits, rounded away from zero.
+pub(crate) fn upper_half_rounded_up(number: f32) -> u16 {
+    let bits = number.to_bits();
+    let upper = (bits >> u16::BITS) as u16;
+    if bits & u32::from(u16::MAX) == 0 { upper } else { upper.saturating_add(1) }
+}

@@ -1,0 +1,289 @@
+//! The kinds of layer: what each has to say, and the one list that everything else is derived from.
+
+#[cfg(feature = "bitmap")]
+pub(crate) mod bitmap;
+#[cfg(feature = "edge")]
+pub(crate) mod button;
+pub(crate) mod constant;
+#[cfg(feature = "edge")]
+pub(crate) mod edge;
+#[cfg(feature = "grating")]
+pub(crate) mod grating;
+#[cfg(feature = "noise")]
+pub(crate) mod noise;
+#[cfg(feature = "speed")]
+pub(crate) mod speed;
+#[cfg(feature = "stream")]
+pub(crate) mod stream;
+#[cfg(feature = "vibration")]
+pub(crate) mod vibration;
+
+#[cfg_attr(not(feature = "bitmap"), allow(unused_imports, reason = "constant layers have no bit"))]
+use frixel_wire::hello::feature;
+use frixel_wire::message::{ConfigRefusal, Refusal};
+use frixel_wire::scene::SceneError;
+
+use crate::click::Click;
+use crate::context::Context;
+use crate::interval::Interval;
+use crate::parameters::{Parameters, RecordBytes, UnknownForm};
+use crate::point::Point;
+use crate::prepare::Preparation;
+use crate::record::FORM_AT;
+use crate::region::{ActiveRegion, Region};
+
+/// A kind of layer, on the type of its parameters: what it costs, what it can give, and how it becomes coefficients.
+pub(crate) trait Kind: Parameters + Copy {
+    /// What the tick evaluates.
+    type Coefficients: Evaluate;
+    /// Instructions that the kind adds to every tick of a scene that has it, wherever the finger is, once for all its
+    /// layers.
+    const COST_ELSEWHERE: u32 = 0;
+    /// The layer plays what the host streams, and fades with the stream.
+    const STREAMED: bool = false;
+
+    /// Checks what the kind needs of its region, and of the number of points that the scene has.
+    fn check_structure(&self, region: &Region, point_count: u8, record: u8) -> Result<(), SceneError> {
+        let _ = (region, point_count, record);
+        Ok(())
+    }
+
+    /// Checks the parameters that depend on one another, and the points that the layer names. Each parameter alone is
+    /// within its range.
+    fn check_relations(&self, points: &[Point], layer: u8) -> Result<(), ConfigRefusal> {
+        let _ = (points, layer);
+        Ok(())
+    }
+
+    /// Most instructions of an evaluation.
+    fn cost(&self) -> u32;
+
+    /// The interval that the layer's friction never leaves, before its gain, in N, or as a factor.
+    fn bounds(&self, points: &[Point]) -> Interval<f32>;
+
+    /// The bitmap that the layer names.
+    fn bitmap_crc32(&self) -> Option<u32> {
+        None
+    }
+
+    /// The click that the layer has, if it has one.
+    fn click(&self) -> Option<Click> {
+        None
+    }
+
+    /// Bytes that the layer takes in the scene's tables.
+    fn table_bytes(&self) -> usize {
+        0
+    }
+
+    /// Computes the coefficients of layer number `layer`, whose parameters were checked.
+    fn prepare(&self, layer: u8, preparation: &mut Preparation) -> Result<Self::Coefficients, Refusal>;
+}
+
+/// Coefficients of a layer, as the tick evaluates them.
+pub(crate) trait Evaluate: Copy {
+    /// The kind is so small that a call would cost more than it does.
+    const IN_LINE: bool = false;
+
+    /// Electric friction, in N, before the gain; or a factor. The finger is inside `region`.
+    fn electric_friction_n(&self, region: &ActiveRegion, context: &mut Context) -> f32;
+}
+
+/// Evaluates one kind, as a call of its own: a loop over layers would else begin with the constants of all kinds.
+///
+/// It is generic, so that it is compiled with the crate that evaluates.
+#[inline(never)]
+fn call<C: Evaluate>(coefficients: &C, region: &ActiveRegion, context: &mut Context) -> f32 {
+    coefficients.electric_friction_n(region, context)
+}
+
+#[inline]
+fn evaluate<C: Evaluate>(coefficients: &C, region: &ActiveRegion, context: &mut Context) -> f32 {
+    if C::IN_LINE { coefficients.electric_friction_n(region, context) } else { call(coefficients, region, context) }
+}
+
+/// Makes the types of all kinds, and what dispatches over them, from one list.
+macro_rules! kinds {
+    ($( $(#[doc = $doc:literal])* $(#[cfg($cfg:meta)])? $number:literal => $kind:ident in $module:ident, $bit:expr; )*) => {
+        $( $(#[cfg($cfg)])? pub use $module::$kind; )*
+
+        /// What a layer is. Frictions are electric, in newtons, before the gain; plain factors in a layer that is
+        /// multiplied.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub enum Layer {
+            $( $(#[doc = $doc])* $(#[cfg($cfg)])? $kind($kind), )*
+        }
+
+        /// Coefficients of a layer. Its tag is a byte of its own, so that the tick finds the kind at once.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[repr(u8)]
+        pub(crate) enum Coefficients {
+            $( $(#[cfg($cfg)])? $kind(<$kind as Kind>::Coefficients), )*
+        }
+
+        /// Whether a kind with this number is known to this crate, with its feature or without.
+        pub(crate) const fn is_known(number: u8) -> bool {
+            let mut known = false;
+            $( known |= number == $number; )*
+            known
+        }
+
+        /// Bits of [`frixel_wire::hello::feature`] of the kinds whose features are on.
+        pub(crate) const KIND_FEATURES: u32 = {
+            let mut bits = 0;
+            $( $(#[cfg($cfg)])? { bits |= $bit; } )*
+            bits
+        };
+
+        impl Layer {
+            /// The kind's number in records.
+            pub const fn number(&self) -> u8 {
+                match self { $( $(#[cfg($cfg)])? Self::$kind(_) => $number, )* }
+            }
+
+            /// The bit of [`frixel_wire::hello::feature`] that a board needs to play the layer, or 0.
+            pub const fn feature(&self) -> u32 {
+                match self { $( $(#[cfg($cfg)])? Self::$kind(_) => $bit, )* }
+            }
+
+            /// The layer plays what the host streams, and fades with the stream.
+            pub const fn is_streamed(&self) -> bool {
+                match self { $( $(#[cfg($cfg)])? Self::$kind(_) => <$kind as Kind>::STREAMED, )* }
+            }
+
+            pub(crate) fn read(number: u8, bytes: &RecordBytes, record: u8) -> Result<Self, SceneError> {
+                match number {
+                    $( $(#[cfg($cfg)])? $number => Parameters::read(bytes).map(Self::$kind), )*
+                    kind => return Err(SceneError::UnknownKind { record, kind }),
+                }
+                .map_err(|UnknownForm(value)| SceneError::UnknownChoice { record, offset: FORM_AT as u8, value })
+            }
+
+            pub(crate) const fn cost_elsewhere(&self) -> u32 {
+                match self { $( $(#[cfg($cfg)])? Self::$kind(_) => <$kind as Kind>::COST_ELSEWHERE, )* }
+            }
+
+            pub(crate) fn prepare(
+                &self,
+                layer: u8,
+                preparation: &mut Preparation,
+            ) -> Result<Coefficients, Refusal> {
+                match self {
+                    $( $(#[cfg($cfg)])? Self::$kind(kind) => {
+                        Kind::prepare(kind, layer, preparation).map(Coefficients::$kind)
+                    } )*
+                }
+            }
+        }
+
+        impl Coefficients {
+            /// Electric friction, in N, before the gain; or a factor. The finger is inside `region`.
+            #[inline]
+            pub(crate) fn electric_friction_n(&self, region: &ActiveRegion, context: &mut Context) -> f32 {
+                match self { $( $(#[cfg($cfg)])? Self::$kind(kind) => evaluate(kind, region, context), )* }
+            }
+        }
+
+        /// Name of each kind, with its parameters' names, offsets and lengths.
+        #[cfg(test)]
+        const LAYOUTS: &[(&str, &[(&str, usize, usize)])] =
+            &[$( $(#[cfg($cfg)])? (stringify!($kind), <$kind as Parameters>::LAYOUT), )*];
+
+        /// Calls a function of whichever kind a layer is.
+        macro_rules! of_kind {
+            ($layer:expr, $named:ident => $call:expr) => {
+                match $layer { $( $(#[cfg($cfg)])? Layer::$kind($named) => $call, )* }
+            };
+        }
+    };
+}
+
+kinds! {
+    /// The same friction everywhere.
+    1 => Constant in constant, 0;
+    /// Parallel stripes.
+    #[cfg(feature = "grating")]
+    2 => Grating in grating, feature::GRATING;
+    /// A picture.
+    #[cfg(feature = "bitmap")]
+    3 => Bitmap in bitmap, feature::BITMAP;
+    /// Band-limited noise.
+    #[cfg(feature = "noise")]
+    4 => Noise in noise, feature::NOISE;
+    /// A line with a ridge or a well along it, and a click when the finger crosses it.
+    #[cfg(feature = "edge")]
+    5 => Edge in edge, feature::EDGE;
+    /// A button that fills its region, and a click when the finger slides in.
+    #[cfg(feature = "edge")]
+    6 => Button in button, feature::EDGE;
+    /// Friction that changes with time.
+    #[cfg(feature = "vibration")]
+    7 => Vibration in vibration, feature::VIBRATION;
+    /// A curve over sliding speed.
+    #[cfg(feature = "speed")]
+    8 => Speed in speed, feature::SPEED;
+    /// What the host sends while the scene plays.
+    #[cfg(feature = "stream")]
+    9 => Stream in stream, feature::STREAM;
+}
+
+impl Layer {
+    /// The bitmap that the layer names.
+    pub fn bitmap_crc32(&self) -> Option<u32> {
+        of_kind!(self, kind => Kind::bitmap_crc32(kind))
+    }
+
+    /// The click that the layer has, if its height is not zero.
+    pub fn click(&self) -> Option<Click> {
+        of_kind!(self, kind => Kind::click(kind)).filter(Click::is_felt)
+    }
+
+    /// The interval that the layer's friction never leaves, before its gain and but for rounding, in N, or as a factor;
+    /// `points` are the scene's.
+    pub fn bounds(&self, points: &[Point]) -> Interval<f32> {
+        of_kind!(self, kind => Kind::bounds(kind, points))
+    }
+
+    pub(crate) fn write(&self, bytes: &mut RecordBytes) {
+        of_kind!(self, kind => Parameters::write(kind, bytes));
+    }
+
+    pub(crate) fn check_structure(&self, region: &Region, point_count: u8, record: u8) -> Result<(), SceneError> {
+        of_kind!(self, kind => Kind::check_structure(kind, region, point_count, record))
+    }
+
+    pub(crate) fn check(&self, points: &[Point], layer: u8) -> Result<(), ConfigRefusal> {
+        of_kind!(self, kind => {
+            Parameters::check(kind, layer)?;
+            Kind::check_relations(kind, points, layer)
+        })
+    }
+
+    pub(crate) fn cost(&self) -> u32 {
+        of_kind!(self, kind => Kind::cost(kind))
+    }
+
+    pub(crate) fn table_bytes(&self) -> usize {
+        of_kind!(self, kind => Kind::table_bytes(kind))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::{GAIN_AT, RECORD_LEN};
+
+    #[test]
+    fn parameters_do_not_overlap() {
+        for (kind, layout) in LAYOUTS {
+            let mut owners = [""; RECORD_LEN];
+            for (name, offset, len) in *layout {
+                // Behind what all records have in common, or the form byte.
+                assert!(*offset >= GAIN_AT + 4 || (*offset, *len) == (FORM_AT, 1), "{kind}: {name}");
+                for owner in &mut owners[*offset..offset + len] {
+                    assert_eq!(std::mem::replace(owner, *name), "", "{kind}: {name}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! Parallel stripes: `trough + (crest - trough) w(kx x + ky y + phase)`, with the wave `w` from 0 to 1.
+
+use frixel_wire::message::Refusal;
+
+use super::{Evaluate, Kind};
+use crate::context::Context;
+use crate::cost::measured;
+use crate::interval::Interval;
+use crate::parameters::{parameters, range};
+use crate::point::Point;
+use crate::prepare::Preparation;
+use crate::region::ActiveRegion;
+use crate::wave::{CentredWave, Wave};
+
+parameters! {
+    /// Stripes: `trough + (crest - trough) w(kx x + ky y + phase)`, with `w` between 0 and 1 and one period a turn.
+    pub struct Grating {
+        /// Shape of the stripes.
+        wave: Wave = 44,
+        /// Cycles per metre along x.
+        cycles_per_m_x: f32 = 24 in range::CYCLES_PER_M,
+        /// Cycles per metre along y.
+        cycles_per_m_y: f32 = 28 in range::CYCLES_PER_M,
+        /// Phase, in turns.
+        phase_turns: f32 = 32 in range::PHASE_TURNS,
+        /// Electric friction where the wave is 0, N.
+        trough_n: f32 = 36 in range::FRICTION_N,
+        /// Electric friction where the wave is 1, N.
+        crest_n: f32 = 40 in range::FRICTION_N,
+    }
+}
+
+impl Kind for Grating {
+    type Coefficients = GratingCoefficients;
+
+    fn cost(&self) -> u32 {
+        match self.wave {
+            Wave::Sine => measured::SINE,
+            Wave::Square { .. } => measured::SQUARE,
+            Wave::Triangle => measured::TRIANGLE,
+            Wave::Saw => measured::SAW,
+        }
+    }
+
+    fn bounds(&self, _points: &[Point]) -> Interval<f32> {
+        Interval::of([self.trough_n, self.crest_n])
+    }
+
+    fn prepare(&self, _layer: u8, _preparation: &mut Preparation) -> Result<GratingCoefficients, Refusal> {
+        let (wave, zero_turns) = CentredWave::new(self.wave);
+        Ok(GratingCoefficients {
+            wave,
+            cycles_per_m_x: self.cycles_per_m_x,
+            cycles_per_m_y: self.cycles_per_m_y,
+            phase_turns: self.phase_turns + zero_turns,
+            middle_n: 0.5 * (self.crest_n + self.trough_n),
+            swing_n: 0.5 * (self.crest_n - self.trough_n),
+        })
+    }
+}
+
+/// `middle + swing w(kx x + ky y + phase)`, with `w` from -1 to 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct GratingCoefficients {
+    wave: CentredWave,
+    cycles_per_m_x: f32,
+    cycles_per_m_y: f32,
+    phase_turns: f32,
+    middle_n: f32,
+    swing_n: f32,
+}
+
+impl Evaluate for GratingCoefficients {
+    #[inline]
+    fn electric_friction_n(&self, _region: &ActiveRegion, context: &mut Context) -> f32 {
+        let [x_m, y_m] = context.inputs.place_m;
+        let turns = x_m * self.cycles_per_m_x + y_m * self.cycles_per_m_y + self.phase_turns;
+        self.middle_n + self.swing_n * self.wave.at(turns)
+    }
+}

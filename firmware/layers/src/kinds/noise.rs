@@ -1,0 +1,132 @@
+//! Band-limited noise: the mean of eight cosine waves over the screen, which a seed chooses.
+
+use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
+
+use super::{Evaluate, Kind};
+use crate::context::Context;
+use crate::cosine::{cosine, direction};
+use crate::cost::measured;
+use crate::interval::Interval;
+use crate::parameters::{parameters, range, within};
+use crate::point::Point;
+use crate::prepare::{Preparation, no_room};
+use crate::region::ActiveRegion;
+use crate::tables::NOISES_MAX;
+
+/// Waves that a layer of noise is made of.
+const WAVES: usize = 8;
+/// Keeps the sum within its range although a cosine may be a millionth larger than 1.
+const WITHIN: f32 = 1.0 - 1e-6;
+
+parameters! {
+    /// The mean of eight cosine waves over the screen, `low + (high - low) (1 + mean) / 2`: `PROTOCOL.md` says which.
+    pub struct Noise {
+        /// Chooses the waves.
+        seed: u32 = 52,
+        /// Shortest wavelength, m.
+        wavelength_min_m: f32 = 24 in range::WAVELENGTH_M,
+        /// Longest wavelength, m.
+        wavelength_max_m: f32 = 28 in range::WAVELENGTH_M,
+        /// Least electric friction, N.
+        low_n: f32 = 32 in range::FRICTION_N,
+        /// Largest electric friction, N.
+        high_n: f32 = 36 in range::FRICTION_N,
+    }
+}
+
+impl Kind for Noise {
+    type Coefficients = NoiseCoefficients;
+
+    fn check_relations(&self, _points: &[Point], layer: u8) -> Result<(), ConfigRefusal> {
+        let min_m = range::WAVELENGTH_M.min as f32;
+        within(ConfigField::Wavelength, self.wavelength_min_m, min_m, self.wavelength_max_m, layer)
+    }
+
+    fn cost(&self) -> u32 {
+        measured::NOISE
+    }
+
+    fn bounds(&self, _points: &[Point]) -> Interval<f32> {
+        Interval::of([self.low_n, self.high_n])
+    }
+
+    fn table_bytes(&self) -> usize {
+        size_of::<Waves>()
+    }
+
+    fn prepare(&self, layer: u8, preparation: &mut Preparation) -> Result<NoiseCoefficients, Refusal> {
+        let waves = Waves::new(self.seed, self.wavelength_min_m, self.wavelength_max_m);
+        let number = preparation.tables.add_noise(waves);
+        let number = number.map_err(|_| no_room(ConfigField::NoiseLayers, NOISES_MAX, layer))?;
+        Ok(NoiseCoefficients {
+            waves: number,
+            middle_n: 0.5 * (self.high_n + self.low_n),
+            swing_n: 0.5 * (self.high_n - self.low_n) * (WITHIN / WAVES as f32),
+        })
+    }
+}
+
+/// `middle + swing` times the sum of the cosines of a table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct NoiseCoefficients {
+    /// Number of its waves in the scene's tables.
+    waves: u8,
+    middle_n: f32,
+    swing_n: f32,
+}
+
+impl Evaluate for NoiseCoefficients {
+    #[inline]
+    fn electric_friction_n(&self, _region: &ActiveRegion, context: &mut Context) -> f32 {
+        let [x_m, y_m] = context.inputs.place_m;
+        let Some(Waves(waves)) = context.tables.noises().get(usize::from(self.waves)) else { return 0.0 };
+        let mut sum = 0.0;
+        for wave in waves {
+            sum += cosine(x_m * wave.cycles_per_m_x + y_m * wave.cycles_per_m_y + wave.phase_turns);
+        }
+        self.middle_n + self.swing_n * sum
+    }
+}
+
+/// The waves of one layer, in the scene's tables.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Waves([PlaneWave; WAVES]);
+
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct PlaneWave {
+    cycles_per_m_x: f32,
+    cycles_per_m_y: f32,
+    phase_turns: f32,
+}
+
+impl Waves {
+    /// Directions are spread over half a turn and wave numbers over the band, each in eight parts of which every wave has
+    /// one: no seed leaves a part of them empty.
+    fn new(seed: u32, wavelength_min_m: f32, wavelength_max_m: f32) -> Self {
+        let (least, largest) = (1.0 / wavelength_max_m, 1.0 / wavelength_min_m);
+        let mut waves = [PlaneWave::default(); WAVES];
+        for (number, wave) in (0..).zip(&mut waves) {
+            let (x, y) = direction((number as f32 + fraction(seed, number, 1)) / 16.0);
+            let part = ((5 * number % 8) as f32 + fraction(seed, number, 2)) / 8.0;
+            let cycles_per_m = least + (largest - least) * part;
+            *wave = PlaneWave {
+                cycles_per_m_x: cycles_per_m * x,
+                cycles_per_m_y: cycles_per_m * y,
+                phase_turns: fraction(seed, number, 3),
+            };
+        }
+        Self(waves)
+    }
+}
+
+/// The fraction, from 0 to 1, that a seed has for a wave: `draw` is 1 to 3. The hash is "lowbias32" of C. Wellons'
+/// hash-prospector.
+fn fraction(seed: u32, wave: u32, draw: u32) -> f32 {
+    let mut v = seed.wrapping_add(0x9e37_79b9_u32.wrapping_mul(3 * wave + draw));
+    v ^= v >> 16;
+    v = v.wrapping_mul(0x7feb_352d);
+    v ^= v >> 15;
+    v = v.wrapping_mul(0x846c_a68b);
+    v ^= v >> 16;
+    (v >> 8) as f32 / (1 << 24) as f32
+}

@@ -1,0 +1,181 @@
+//! Friction that changes with time: `low + (high - low) e w(f t)`, with the burst's envelope `e`.
+
+use core::num::NonZeroU32;
+
+use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
+
+use super::{Evaluate, Kind};
+use crate::context::Context;
+use crate::cosine::cosine;
+use crate::cost::measured;
+use crate::interval::Interval;
+use crate::parameters::{Parameter, RecordBytes, UnknownForm, form, parameters, put_form, range, within};
+use crate::point::Point;
+use crate::prepare::{Preparation, ticks};
+use crate::region::ActiveRegion;
+
+/// 2^-32: a phase in whole steps to turns.
+const TURNS_PER_STEP: f32 = 1.0 / (1u64 << 32) as f32;
+
+parameters! {
+    /// Friction that changes with time: `low + (high - low) e w(f t)`, with the burst's envelope `e`.
+    pub struct Vibration {
+        /// Shape over a period.
+        beat: Beat = 3,
+        /// Frequency, Hz.
+        frequency_hz: f32 = 24 in range::FREQUENCY_HZ,
+        /// Electric friction between bursts, and the least within, N.
+        low_n: f32 = 28 in range::FRICTION_N,
+        /// Largest electric friction, N.
+        high_n: f32 = 32 in range::FRICTION_N,
+        /// How it comes and goes.
+        burst: Burst = 36,
+    }
+}
+
+/// Shape of a vibration over its period.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Beat {
+    /// `(1 + sin(2 pi turns)) / 2`.
+    #[default]
+    Sine,
+    /// 1 in the first half of each turn, 0 in the second.
+    Square,
+}
+
+impl Parameter for Beat {
+    const LEN: usize = 1;
+
+    fn read(record: &RecordBytes, _offset: usize) -> Result<Self, UnknownForm> {
+        match form(record) {
+            0 => Ok(Self::Sine),
+            1 => Ok(Self::Square),
+            other => Err(UnknownForm(other)),
+        }
+    }
+
+    fn write(&self, record: &mut RecordBytes, _offset: usize) {
+        put_form(record, *self as u8);
+    }
+}
+
+/// How a vibration comes and goes: within each period it rises over the ramp, is on, and falls over the ramp.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Burst {
+    /// From one beginning to the next, s; 0 for a vibration that goes on.
+    pub period_s: f32,
+    /// How long it is on, both ramps included, s; at most the period.
+    pub on_s: f32,
+    /// How long it rises, and how long it falls, s; at most half of the time that it is on.
+    pub ramp_s: f32,
+}
+
+impl Parameter for Burst {
+    const LEN: usize = 3 * f32::LEN;
+
+    fn read(record: &RecordBytes, offset: usize) -> Result<Self, UnknownForm> {
+        let number = |number| f32::read(record, offset + number * f32::LEN);
+        Ok(Self { period_s: number(0)?, on_s: number(1)?, ramp_s: number(2)? })
+    }
+
+    fn write(&self, record: &mut RecordBytes, offset: usize) {
+        for (number, time_s) in [self.period_s, self.on_s, self.ramp_s].into_iter().enumerate() {
+            time_s.write(record, offset + number * f32::LEN);
+        }
+    }
+
+    fn check(&self, layer: u8) -> Result<(), ConfigRefusal> {
+        range::BURST_S.check(self.period_s, layer)?;
+        within(ConfigField::Duration, self.on_s, 0.0, self.period_s, layer)?;
+        within(ConfigField::Duration, self.ramp_s, 0.0, 0.5 * self.on_s, layer)
+    }
+}
+
+impl Kind for Vibration {
+    type Coefficients = VibrationCoefficients;
+
+    fn cost(&self) -> u32 {
+        match self.beat {
+            Beat::Sine => measured::VIBRATION_SINE,
+            Beat::Square => measured::VIBRATION_SQUARE,
+        }
+    }
+
+    fn bounds(&self, _points: &[Point]) -> Interval<f32> {
+        Interval::of([self.low_n, self.high_n])
+    }
+
+    fn prepare(&self, _layer: u8, preparation: &mut Preparation) -> Result<VibrationCoefficients, Refusal> {
+        let turns_per_tick = f64::from(self.frequency_hz) / f64::from(preparation.tick_hz);
+        Ok(VibrationCoefficients {
+            beat: self.beat,
+            step: (turns_per_tick * (1u64 << 32) as f64 + 0.5) as u32,
+            low_n: self.low_n,
+            half_span_n: 0.5 * (self.high_n - self.low_n),
+            burst: BurstCoefficients::new(&self.burst, preparation.tick_hz),
+        })
+    }
+}
+
+/// `low + half_span e (1 + w)`. The phase is a tick number times a step, modulo a turn, so that it never drifts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct VibrationCoefficients {
+    beat: Beat,
+    step: u32,
+    low_n: f32,
+    half_span_n: f32,
+    burst: Option<BurstCoefficients>,
+}
+
+/// The envelope: the smaller of `offset + per_tick` times the ticks since it began and until it ends, and 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct BurstCoefficients {
+    period_ticks: NonZeroU32,
+    on_ticks: u32,
+    per_tick: f32,
+    offset: f32,
+}
+
+impl Evaluate for VibrationCoefficients {
+    #[inline]
+    fn electric_friction_n(&self, _region: &ActiveRegion, context: &mut Context) -> f32 {
+        let tick = context.inputs.tick;
+        let phase = tick.wrapping_mul(self.step);
+        // As a signed number, the phase is between -1/2 and 1/2 turn.
+        let height = match self.beat {
+            Beat::Sine => cosine(phase.wrapping_sub(1 << 30) as i32 as f32 * TURNS_PER_STEP),
+            Beat::Square => {
+                if phase < 1 << 31 {
+                    1.0
+                } else {
+                    -1.0
+                }
+            }
+        };
+        let span_n = match &self.burst {
+            Some(burst) => self.half_span_n * burst.envelope(tick),
+            None => self.half_span_n,
+        };
+        self.low_n + span_n * (1.0 + height)
+    }
+}
+
+impl BurstCoefficients {
+    fn new(burst: &Burst, tick_hz: u32) -> Option<Self> {
+        let ramp_ticks = ticks(burst.ramp_s, tick_hz);
+        let (per_tick, offset) = if ramp_ticks > 0 { (1.0 / ramp_ticks as f32, 0.0) } else { (0.0, 1.0) };
+        let period_ticks = NonZeroU32::new(ticks(burst.period_s, tick_hz))?;
+        Some(Self { period_ticks, on_ticks: ticks(burst.on_s, tick_hz), per_tick, offset })
+    }
+
+    #[inline]
+    fn envelope(&self, tick: u32) -> f32 {
+        let since_ticks = tick % self.period_ticks;
+        if since_ticks >= self.on_ticks {
+            return 0.0;
+        }
+        let until_ticks = self.on_ticks - since_ticks;
+        let envelope = self.offset + self.per_tick * since_ticks.min(until_ticks) as f32;
+        if envelope < 1.0 { envelope } else { 1.0 }
+    }
+}

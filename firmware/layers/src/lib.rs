@@ -1,0 +1,93 @@
+//! A compiled scene: its bytes, its checks, its cost, and its evaluation under a finger.
+//!
+//! # What goes in and out
+//!
+//! The host's compiler makes a [`Header`], [`Record`]s and [`Point`]s, and writes them to the bytes that are uploaded; it
+//! asks this crate what they cost ([`cost`]) and the largest electric friction that they can ask for
+//! ([`electric_friction_max_n`]).
+//!
+//! A board reads the bytes ([`Scene::parse`]) and turns records into [`ActiveLayers`] when the scene is committed: checked
+//! against the ranges that a board takes, with everything computed that does not change from tick to tick. At every tick
+//! [`ActiveLayers::electric_friction_n`] takes the [`Inputs`] (place and velocity of the finger, the time, the host's
+//! stream), the samples of bitmaps ([`BitmapPool`]) and the state of clicks ([`Clicks`]), and returns the electric friction
+//! under the finger, in newtons.
+//!
+//! Every friction in a scene is **electric friction**: what the drive adds above `mu F_N`, in newtons; in a layer that is
+//! multiplied, the same numbers are plain factors. Lengths are in metres from the screen's top left corner, x to the right,
+//! y down. Angles are in turns, from x towards y.
+//!
+//! # How a kind of layer is described
+//!
+//! A kind is one file in `kinds/`. It declares
+//!
+//! - its parameters, with `parameters!`: for each one the type, the offset in the record, the range that a board takes, and
+//!   the meaning with its unit. Reading, writing and checking follow from this;
+//! - its `Kind`: the most instructions that its evaluation takes, the interval that its friction never leaves, and how the
+//!   parameters become coefficients;
+//! - its coefficients, with `Evaluate`: the friction at the finger's place.
+//!
+//! The list at the end of `kinds.rs` gives it its number in records and its Cargo feature; everything that has to know all
+//! kinds is derived from that list. What several kinds use has a module of its own: waves, clicks, regions, blends, points.
+//!
+//! # Features
+//!
+//! Every Cargo feature is a kind of layer or of region, and all are on by default. A board without one of them is smaller,
+//! and refuses a scene that needs it ([`disabled_record`]). [`FEATURES`] are the bits that its hello says. Constant layers,
+//! rectangles, ellipses and all blends are always there.
+//!
+//! # Fast and small
+//!
+//! What the tick calls is `#[inline]`, so that the crate of the tick, which a board builds for speed, compiles it. The rest
+//! is built for size.
+#![cfg_attr(not(test), no_std)]
+#![forbid(unsafe_code)]
+
+mod active;
+mod bitmap_pool;
+mod blend;
+mod click;
+mod context;
+mod cosine;
+pub mod cost;
+mod grid;
+mod header;
+mod interval;
+mod kinds;
+mod parameters;
+mod point;
+mod prepare;
+mod record;
+mod region;
+mod scene;
+mod square_root;
+mod tables;
+#[cfg(test)]
+mod tests;
+mod wave;
+
+pub use active::{ActiveLayers, active_bytes};
+pub use bitmap_pool::{BITMAP_POOL_LEN, BitmapPool, StoredBitmap};
+pub use blend::Blend;
+pub use click::{Click, Clicks};
+pub use context::{Inputs, StreamSample};
+pub use cosine::cosine;
+pub use grid::{Cell, Grid, LayerSet};
+pub use header::{Carrier, HALF_PERIOD_MIN_TICKS, HEADER_LEN, Header, Leader, SCENE_VERSION};
+pub use interval::{Interval, Number, electric_friction_max_n};
+#[cfg(feature = "vibration")]
+pub use kinds::vibration::{Beat, Burst};
+pub use kinds::*;
+pub use parameters::{Range, range, within};
+pub use point::{POINT_LEN, Point};
+pub use prepare::ticks;
+pub use record::{RECORD_LEN, Record, disabled_record};
+pub use region::Region;
+pub use scene::{SCENE_MAX_LEN, Scene};
+pub use square_root::square_root;
+pub use tables::{CLICKS_MAX, NOISES_MAX};
+pub use wave::Wave;
+
+use frixel_wire::hello::feature;
+
+/// Bits of [`frixel_wire::hello::feature`] of the kinds of layers and regions whose Cargo features are on.
+pub const FEATURES: u32 = kinds::KIND_FEATURES | if cfg!(feature = "polygon") { feature::POLYGON } else { 0 };

@@ -1,0 +1,246 @@
+//! How the parameters of a kind of layer are described: each one once, with its type, its place in the record, the range
+//! that a board takes, and its meaning.
+
+use frixel_wire::bytes::{get_at, put_at};
+use frixel_wire::message::{ConfigField, ConfigRefusal};
+
+use crate::record::{FORM_AT, RECORD_LEN};
+
+/// The bytes of a record.
+pub(crate) type RecordBytes = [u8; RECORD_LEN];
+
+/// The form byte of a record, where the kind does not know it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct UnknownForm(pub(crate) u8);
+
+/// A type that a parameter can have.
+pub(crate) trait Parameter: Sized {
+    /// Bytes that it takes in a record, the form byte apart.
+    const LEN: usize;
+
+    /// Reads the parameter at an offset of a record.
+    fn read(record: &RecordBytes, offset: usize) -> Result<Self, UnknownForm>;
+
+    /// Writes the parameter at an offset of a record.
+    fn write(&self, record: &mut RecordBytes, offset: usize);
+
+    /// Checks the ranges that belong to the type; `layer` is the number that a refusal names.
+    fn check(&self, layer: u8) -> Result<(), ConfigRefusal> {
+        let _ = layer;
+        Ok(())
+    }
+}
+
+/// The parameters of a kind. [`parameters!`] implements it.
+pub(crate) trait Parameters: Sized {
+    /// Name, offset and length of each.
+    #[cfg(test)]
+    const LAYOUT: &[(&str, usize, usize)];
+
+    /// Reads them from a record.
+    fn read(record: &RecordBytes) -> Result<Self, UnknownForm>;
+
+    /// Writes them to a record.
+    fn write(&self, record: &mut RecordBytes);
+
+    /// Checks the range of each; `layer` is the number that a refusal names.
+    fn check(&self, layer: u8) -> Result<(), ConfigRefusal>;
+}
+
+/// Declares the parameters of a kind of layer: `name: type = offset in range`, with its meaning above it. The range is a
+/// [`Range`], for parameters of type `f32`; other types bring their own.
+macro_rules! parameters {
+    (
+        $(#[$meta:meta])*
+        pub struct $kind:ident {
+            $( $(#[$parameter_meta:meta])* $parameter:ident: $type:ty = $offset:literal $(in $range:expr)?, )*
+        }
+    ) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct $kind {
+            $( $(#[$parameter_meta])* pub $parameter: $type, )*
+        }
+
+        $( const _: () = assert!(
+            $offset + <$type as $crate::parameters::Parameter>::LEN <= $crate::record::RECORD_LEN,
+            "the parameter lies outside the record"
+        ); )*
+
+        impl $crate::parameters::Parameters for $kind {
+            #[cfg(test)]
+            const LAYOUT: &[(&str, usize, usize)] = &[
+                $( (stringify!($parameter), $offset, <$type as $crate::parameters::Parameter>::LEN), )*
+            ];
+
+            fn read(
+                record: &$crate::parameters::RecordBytes,
+            ) -> Result<Self, $crate::parameters::UnknownForm> {
+                Ok(Self { $( $parameter: $crate::parameters::Parameter::read(record, $offset)?, )* })
+            }
+
+            fn write(&self, record: &mut $crate::parameters::RecordBytes) {
+                $( $crate::parameters::Parameter::write(&self.$parameter, record, $offset); )*
+            }
+
+            fn check(&self, layer: u8) -> Result<(), ::frixel_wire::message::ConfigRefusal> {
+                $(
+                    $crate::parameters::Parameter::check(&self.$parameter, layer)?;
+                    $( $range.check(self.$parameter, layer)?; )?
+                )*
+                Ok(())
+            }
+        }
+    };
+}
+pub(crate) use parameters;
+
+impl Parameter for f32 {
+    const LEN: usize = 4;
+
+    fn read(record: &RecordBytes, offset: usize) -> Result<Self, UnknownForm> {
+        Ok(Self::from_le_bytes(get_at(record, offset)))
+    }
+
+    fn write(&self, record: &mut RecordBytes, offset: usize) {
+        put_at(record, offset, self.to_le_bytes());
+    }
+}
+
+impl Parameter for u32 {
+    const LEN: usize = 4;
+
+    fn read(record: &RecordBytes, offset: usize) -> Result<Self, UnknownForm> {
+        Ok(Self::from_le_bytes(get_at(record, offset)))
+    }
+
+    fn write(&self, record: &mut RecordBytes, offset: usize) {
+        put_at(record, offset, self.to_le_bytes());
+    }
+}
+
+impl Parameter for u8 {
+    const LEN: usize = 1;
+
+    fn read(record: &RecordBytes, offset: usize) -> Result<Self, UnknownForm> {
+        let [byte] = get_at(record, offset);
+        Ok(byte)
+    }
+
+    fn write(&self, record: &mut RecordBytes, offset: usize) {
+        put_at(record, offset, [*self]);
+    }
+}
+
+/// A form byte of 0 or 1.
+impl Parameter for bool {
+    const LEN: usize = 1;
+
+    fn read(record: &RecordBytes, _offset: usize) -> Result<Self, UnknownForm> {
+        match form(record) {
+            0 => Ok(false),
+            1 => Ok(true),
+            other => Err(UnknownForm(other)),
+        }
+    }
+
+    fn write(&self, record: &mut RecordBytes, _offset: usize) {
+        put_form(record, u8::from(*self));
+    }
+}
+
+/// The form byte of a record, which a choice between a few forms is written to.
+pub(crate) fn form(record: &RecordBytes) -> u8 {
+    let [form] = get_at(record, FORM_AT);
+    form
+}
+
+/// Writes the form byte of a record.
+pub(crate) fn put_form(record: &mut RecordBytes, form: u8) {
+    put_at(record, FORM_AT, [form]);
+}
+
+/// The numbers that a board takes for a parameter. What is outside is refused, never silently clamped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Range {
+    /// How a refusal names the parameter.
+    pub field: ConfigField,
+    /// Least number.
+    pub min: f64,
+    /// Largest number.
+    pub max: f64,
+}
+
+impl Range {
+    const fn new(field: ConfigField, min: f64, max: f64) -> Self {
+        Self { field, min, max }
+    }
+
+    /// Refuses a number outside the range, and not-a-number; `layer` is the number that the refusal names.
+    pub fn check(&self, found: f32, layer: u8) -> Result<(), ConfigRefusal> {
+        within(self.field, found, self.min as f32, self.max as f32, layer)
+    }
+
+    /// The same range under another name.
+    pub(crate) const fn named(self, field: ConfigField) -> Self {
+        Self { field, ..self }
+    }
+}
+
+/// Accepts a number from `min` to `max`, and refuses not-a-number; `layer` is the number that a refusal names.
+// One copy: nearly every check calls it.
+#[inline(never)]
+pub fn within(field: ConfigField, found: f32, min: f32, max: f32, layer: u8) -> Result<(), ConfigRefusal> {
+    if found >= min && found <= max { Ok(()) } else { Err(ConfigRefusal { field, found, min, max, layer }) }
+}
+
+/// The ranges that boards take, in SI units. The host's compiler reads the same.
+pub mod range {
+    use frixel_wire::message::ConfigField;
+
+    use super::Range;
+
+    /// Farthest that anything may be from the screen's corner, m.
+    pub const LENGTH_MAX_M: f64 = 2.0;
+    /// Finest stripes and noise, cycles per metre.
+    const CYCLES_PER_M_MAX: f64 = 2e4;
+
+    /// Gain of a layer.
+    pub const GAIN: Range = Range::new(ConfigField::Gain, -100.0, 100.0);
+    /// Electric friction that a layer may name, N; or a factor.
+    pub const FRICTION_N: Range = Range::new(ConfigField::Friction, -100.0, 100.0);
+    /// Left or top end of a region, m.
+    pub const REGION_PLACE_M: Range = Range::new(ConfigField::Region, -LENGTH_MAX_M, LENGTH_MAX_M);
+    /// Width or height of a region, m: the inverse is finite, and a rectangle is at least a step wide.
+    pub const REGION_SIZE_M: Range = Range::new(ConfigField::Region, 4e-9, LENGTH_MAX_M);
+    /// Coordinate of a polygon's vertex, m.
+    pub const VERTEX_M: Range = REGION_PLACE_M.named(ConfigField::Vertex);
+    /// Cycles per metre along an axis.
+    pub const CYCLES_PER_M: Range = Range::new(ConfigField::WaveVector, -CYCLES_PER_M_MAX, CYCLES_PER_M_MAX);
+    /// Phase, turns.
+    pub const PHASE_TURNS: Range = Range::new(ConfigField::Phase, -1000.0, 1000.0);
+    /// Part of a turn in which a square wave is high.
+    pub const DUTY: Range = Range::new(ConfigField::Duty, 0.01, 0.99);
+    /// Angle, turns.
+    pub const ANGLE_TURNS: Range = Range::new(ConfigField::Angle, -1.0, 1.0);
+    /// Corner of a bitmap, m.
+    pub const BITMAP_PLACE_M: Range = REGION_PLACE_M.named(ConfigField::BitmapPlacement);
+    /// Distance of a bitmap's samples, m.
+    pub const PITCH_M: Range = Range::new(ConfigField::BitmapPlacement, 1e-5, 0.1);
+    /// Wavelength, m.
+    pub const WAVELENGTH_M: Range = Range::new(ConfigField::Wavelength, 1.0 / CYCLES_PER_M_MAX, LENGTH_MAX_M);
+    /// Place of a line, m.
+    pub const SHAPE_PLACE_M: Range = REGION_PLACE_M.named(ConfigField::Shape);
+    /// Width of a ridge or a rim, m.
+    pub const SHAPE_WIDTH_M: Range = Range::new(ConfigField::Shape, 1e-5, LENGTH_MAX_M);
+    /// Decay of a click, s.
+    pub const CLICK_S: Range = Range::new(ConfigField::Duration, 0.0, 1.0);
+    /// Period of a burst, s.
+    pub const BURST_S: Range = Range::new(ConfigField::Duration, 0.0, 60.0);
+    /// Frequency of a vibration, Hz.
+    pub const FREQUENCY_HZ: Range = Range::new(ConfigField::VibrationFrequency, 0.01, 1000.0);
+    /// Sliding speed of a curve's point, m/s.
+    pub const SPEED_M_PER_S: Range = Range::new(ConfigField::CurveSpeed, 0.0, 10.0);
+    /// Least distance of a curve's speeds, m/s.
+    pub const SPEED_STEP_MIN_M_PER_S: f64 = 1e-5;
+}

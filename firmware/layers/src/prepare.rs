@@ -1,0 +1,28 @@
+//! From parameters to coefficients, when a scene is committed.
+
+use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
+
+use crate::bitmap_pool::StoredBitmap;
+use crate::tables::Tables;
+
+/// What layers need besides their parameters when their coefficients are computed.
+pub(crate) struct Preparation<'a> {
+    /// Ticks a second.
+    pub(crate) tick_hz: u32,
+    #[cfg_attr(not(feature = "bitmap"), allow(dead_code, reason = "only bitmaps lie in the pool"))]
+    /// Finds a bitmap in the pool by its CRC-32.
+    pub(crate) find_bitmap: &'a dyn Fn(u32) -> Option<StoredBitmap>,
+    /// The scene's tables, which layers add to.
+    pub(crate) tables: &'a mut Tables,
+}
+
+/// The number of ticks nearest to a time of at least 0 s.
+pub fn ticks(time_s: f32, tick_hz: u32) -> u32 {
+    (time_s * tick_hz as f32 + 0.5) as u32
+}
+
+/// The refusal of a layer when the scene has as many of its kind already as a board takes.
+pub(crate) fn no_room(field: ConfigField, max: usize, layer: u8) -> Refusal {
+    let max = max as f32;
+    Refusal::Config(ConfigRefusal { field, found: max + 1.0, min: 0.0, max, layer })
+}

@@ -1,0 +1,89 @@
+//! A record: one layer of a scene, 56 bytes. All kinds have region, blend and gain in common.
+//!
+//! A record has one form for each value: what a kind does not use is zero. Reading writes the value again and compares.
+
+use frixel_wire::bytes::{first_difference, get_at, put_at};
+use frixel_wire::message::ConfigRefusal;
+use frixel_wire::scene::SceneError;
+
+use crate::blend::Blend;
+use crate::kinds::{self, Layer};
+use crate::parameters::{Parameter, range};
+use crate::point::Point;
+use crate::region::{POLYGON, Region};
+
+/// Bytes of a record.
+pub const RECORD_LEN: usize = 56;
+
+const KIND_AT: usize = 0;
+pub(crate) const REGION_AT: usize = 1;
+const BLEND_AT: usize = 2;
+/// A choice between the forms of a kind: the wave of a grating, whether a bitmap is tiled.
+pub(crate) const FORM_AT: usize = 3;
+pub(crate) const GAIN_AT: usize = 20;
+
+/// One layer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Record {
+    /// Where the layer acts.
+    pub region: Region,
+    /// How it joins the layers before it.
+    pub blend: Blend,
+    /// Factor on what the layer gives.
+    pub gain: f32,
+    /// What the layer is.
+    pub layer: Layer,
+}
+
+impl Record {
+    /// The record's bytes.
+    pub fn write(&self) -> [u8; RECORD_LEN] {
+        let mut bytes = [0; RECORD_LEN];
+        put_at(&mut bytes, KIND_AT, [self.layer.number()]);
+        put_at(&mut bytes, BLEND_AT, [self.blend.number()]);
+        self.gain.write(&mut bytes, GAIN_AT);
+        self.region.write(&mut bytes);
+        self.layer.write(&mut bytes);
+        bytes
+    }
+
+    /// Reads a record; `number` is its place in the scene, which errors repeat.
+    pub fn parse(bytes: &[u8; RECORD_LEN], number: u8) -> Result<Self, SceneError> {
+        let [kind] = get_at(bytes, KIND_AT);
+        let [blend] = get_at(bytes, BLEND_AT);
+        let layer = Layer::read(kind, bytes, number)?;
+        let blend = Blend::from_number(blend).ok_or(SceneError::UnknownChoice {
+            record: number,
+            offset: BLEND_AT as u8,
+            value: blend,
+        })?;
+        let gain = f32::from_le_bytes(get_at(bytes, GAIN_AT));
+        let record = Self { region: Region::read(bytes, number)?, blend, gain, layer };
+        match first_difference(bytes, &record.write()) {
+            None => Ok(record),
+            Some(offset) => Err(SceneError::NotZero { record: number, offset }),
+        }
+    }
+
+    /// Checks what the record needs of the scene's points, and its kind of its region.
+    pub(crate) fn check_structure(&self, point_count: u8, record: u8) -> Result<(), SceneError> {
+        self.region.check_structure(point_count, record)?;
+        self.layer.check_structure(&self.region, point_count, record)
+    }
+
+    /// Checks the ranges of all numbers of layer number `layer`; `points` are the scene's.
+    pub fn check(&self, points: &[Point], layer: u8) -> Result<(), ConfigRefusal> {
+        range::GAIN.check(self.gain, layer)?;
+        self.region.check(points, layer)?;
+        self.layer.check(points, layer)
+    }
+}
+
+/// Number of the record that is unknown only because a feature of this crate is off.
+pub const fn disabled_record(error: &SceneError) -> Option<u8> {
+    match *error {
+        SceneError::UnknownKind { record, kind } if kinds::is_known(kind) => Some(record),
+        SceneError::UnknownChoice { record, offset, value: POLYGON } if offset as usize == REGION_AT => Some(record),
+        _ => None,
+    }
+}

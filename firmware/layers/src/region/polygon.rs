@@ -1,0 +1,28 @@
+//! Whether a place is inside a polygon.
+
+use crate::context::Context;
+use crate::point::points_of;
+
+/// The even-odd rule: whether a line towards larger x crosses the edges an odd number of times.
+///
+/// Where an edge lies is computed from its upper end to its lower end, whichever is the first, so that two polygons
+/// with a common edge agree on it to the bit.
+// Code of its own, as the evaluation of a kind is.
+#[inline]
+pub(super) fn contains(first: u8, count: u8, context: &Context) -> bool {
+    let vertices = points_of(context.tables.points(), first, count);
+    let [x_m, y_m] = context.inputs.place_m;
+    let Some(mut before) = vertices.last() else { return false };
+    let mut inside = false;
+    for vertex in vertices {
+        let down = vertex.y > y_m;
+        if down != (before.y > y_m) {
+            let (upper, lower) = if down { (before, vertex) } else { (vertex, before) };
+            if (x_m - upper.x) * (lower.y - upper.y) < (y_m - upper.y) * (lower.x - upper.x) {
+                inside = !inside;
+            }
+        }
+        before = vertex;
+    }
+    inside
+}

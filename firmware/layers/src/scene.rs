@@ -1,0 +1,77 @@
+//! A scene read from its bytes.
+
+use frixel_wire::scene::{POINTS_MAX, RECORDS_MAX, SceneError};
+
+use crate::header::{HEADER_LEN, Header, SCENE_VERSION};
+use crate::point::{POINT_LEN, Point};
+use crate::record::{RECORD_LEN, Record};
+
+/// Bytes of the largest scene.
+pub const SCENE_MAX_LEN: usize = HEADER_LEN + RECORDS_MAX * RECORD_LEN + POINTS_MAX * POINT_LEN;
+
+/// A whole scene, every byte of it checked; only what its numbers mean is left to the board.
+#[derive(Clone, Copy, Debug)]
+pub struct Scene<'a> {
+    header: Header,
+    records: &'a [[u8; RECORD_LEN]],
+    points: &'a [[u8; POINT_LEN]],
+}
+
+impl<'a> Scene<'a> {
+    /// Checks version, length, header and every record.
+    #[inline(never)]
+    pub fn parse(bytes: &'a [u8]) -> Result<Self, SceneError> {
+        // The version comes first: a scene of another version may be of any length.
+        if let Some(version) = bytes.first_chunk::<2>() {
+            let found = u16::from_le_bytes(*version);
+            if found != SCENE_VERSION {
+                return Err(SceneError::Version { found });
+            }
+        }
+        let found = u32::try_from(bytes.len()).unwrap_or(u32::MAX);
+        let Some((header, rest)) = bytes.split_first_chunk::<HEADER_LEN>() else {
+            return Err(SceneError::Length { found, expected: HEADER_LEN as u32 });
+        };
+        let (header, record_count, point_count) = Header::parse(header)?;
+        let records_len = usize::from(record_count) * RECORD_LEN;
+        let points_len = usize::from(point_count) * POINT_LEN;
+        let expected = (HEADER_LEN + records_len + points_len) as u32;
+        let Some((records, points)) = rest.split_at_checked(records_len) else {
+            return Err(SceneError::Length { found, expected });
+        };
+        if points.len() != points_len {
+            return Err(SceneError::Length { found, expected });
+        }
+        let (records, _) = records.as_chunks::<RECORD_LEN>();
+        let (points, _) = points.as_chunks::<POINT_LEN>();
+        for (number, record) in (0..).zip(records) {
+            Record::parse(record, number)?.check_structure(point_count, number)?;
+        }
+        Ok(Self { header, records, points })
+    }
+
+    /// What holds for the whole scene.
+    pub const fn header(&self) -> &Header {
+        &self.header
+    }
+
+    /// The layers, the first one at the bottom.
+    pub fn records(&self) -> impl Iterator<Item = Record> + use<'a> {
+        (0..).zip(self.records).filter_map(|(number, record)| Record::parse(record, number).ok())
+    }
+
+    /// How many records there are.
+    pub const fn record_count(&self) -> usize {
+        self.records.len()
+    }
+
+    /// The points that polygons and curves of speed name.
+    pub fn points(&self) -> impl ExactSizeIterator<Item = Point> + use<'a> {
+        self.points.iter().map(Point::parse)
+    }
+
+    /// How many points there are.
+    pub const fn point_count(&self) -> usize {
+        self.points.len()
+    }
+}

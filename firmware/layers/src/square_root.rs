@@ -1,0 +1,46 @@
+//! A fast square root: `libm::sqrtf` takes 150 instructions or so on a Cortex-M4F, this takes 20.
+
+/// Half of the exponent and a first guess at the rest of `1/sqrt(x)`, within 3.5 % (C. Lomont, "Fast inverse square
+/// root", Purdue University, 2003).
+const GUESS: u32 = 0x5f37_59df;
+/// What is less has the root 0: (1e-15)^2.
+const LEAST: f32 = 1e-30;
+
+/// Square root, within 3e-7 of itself for what is from 1e-30 to 1e30; 0 for what is less and for not-a-number.
+#[inline]
+pub fn square_root(x: f32) -> f32 {
+    if !(x > LEAST) {
+        return 0.0;
+    }
+    let half = 0.5 * x;
+    let mut inverse = f32::from_bits(GUESS.wrapping_sub(x.to_bits() >> 1));
+    // Newton's steps for 1/sqrt(x) need no division; three take 3.5 % below the rounding.
+    inverse *= 1.5 - half * inverse * inverse;
+    inverse *= 1.5 - half * inverse * inverse;
+    inverse *= 1.5 - half * inverse * inverse;
+    x * inverse
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_root_is_within_its_bound() {
+        let worst = (0..2_000_000)
+            .map(|i| {
+                let x = f32::from_bits(LEAST.to_bits() + 1 + 837 * i);
+                (f64::from(square_root(x)) / libm::sqrt(f64::from(x)) - 1.0).abs()
+            })
+            .fold(0.0, f64::max);
+        assert!(worst < 3e-7, "{worst:e}");
+        assert!(f32::from_bits(LEAST.to_bits() + 1 + 837 * 1_999_999) > 1e30);
+    }
+
+    #[test]
+    fn what_has_no_root_has_none() {
+        for x in [0.0, -0.0, -1.0, f32::NAN, f32::NEG_INFINITY, 1e-31, f32::MIN_POSITIVE] {
+            assert_eq!(square_root(x).to_bits(), 0, "{x}");
+        }
+    }
+}

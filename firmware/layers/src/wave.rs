@@ -1,0 +1,102 @@
+//! Periodic waves over an angle in turns, for kinds that repeat over the screen.
+#![cfg_attr(not(feature = "grating"), allow(dead_code, reason = "no kind that is on repeats over the screen"))]
+
+use frixel_wire::message::ConfigRefusal;
+
+use crate::cosine::{centred, cosine};
+use crate::parameters::{Parameter, RecordBytes, UnknownForm, form, put_form, range};
+
+const SINE: u8 = 0;
+const SQUARE: u8 = 1;
+const TRIANGLE: u8 = 2;
+const SAW: u8 = 3;
+
+/// Shape of stripes over a turn, from 0 to 1.
+///
+/// In a record it is the form byte, and the duty at the parameter's offset, which is zero for other shapes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Wave {
+    /// `(1 + sin(2 pi turns)) / 2`.
+    #[default]
+    Sine,
+    /// 1 in the first part of each turn, 0 in the rest.
+    Square {
+        /// How large the first part is, from 0.01 to 0.99.
+        duty: f32,
+    },
+    /// Rises from 0 to 1 in the first half of each turn, and falls in the second.
+    Triangle,
+    /// Rises from 0 to 1 in each turn.
+    Saw,
+}
+
+impl Parameter for Wave {
+    const LEN: usize = f32::LEN;
+
+    fn read(record: &RecordBytes, offset: usize) -> Result<Self, UnknownForm> {
+        match form(record) {
+            SINE => Ok(Self::Sine),
+            SQUARE => Ok(Self::Square { duty: f32::read(record, offset)? }),
+            TRIANGLE => Ok(Self::Triangle),
+            SAW => Ok(Self::Saw),
+            other => Err(UnknownForm(other)),
+        }
+    }
+
+    fn write(&self, record: &mut RecordBytes, offset: usize) {
+        match self {
+            Self::Sine => put_form(record, SINE),
+            Self::Square { duty } => {
+                put_form(record, SQUARE);
+                duty.write(record, offset);
+            }
+            Self::Triangle => put_form(record, TRIANGLE),
+            Self::Saw => put_form(record, SAW),
+        }
+    }
+
+    fn check(&self, layer: u8) -> Result<(), ConfigRefusal> {
+        match self {
+            Self::Square { duty } => range::DUTY.check(*duty, layer),
+            Self::Sine | Self::Triangle | Self::Saw => Ok(()),
+        }
+    }
+}
+
+/// A wave from -1 to 1 whose middle, of its high part or of its rise, lies at phase 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum CentredWave {
+    Cosine,
+    /// 1 up to half the duty on both sides.
+    Square {
+        half_duty_turns: f32,
+    },
+    Triangle,
+    Saw,
+}
+
+impl CentredWave {
+    /// The wave, and its phase in turns where `wave` has phase 0.
+    pub(crate) fn new(wave: Wave) -> (Self, f32) {
+        match wave {
+            Wave::Sine => (Self::Cosine, -0.25),
+            Wave::Square { duty } => (Self::Square { half_duty_turns: 0.5 * duty }, -0.5 * duty),
+            Wave::Triangle => (Self::Triangle, -0.5),
+            Wave::Saw => (Self::Saw, -0.5),
+        }
+    }
+
+    /// The wave at a phase, from -1 to 1, but for a millionth.
+    #[inline]
+    pub(crate) fn at(&self, turns: f32) -> f32 {
+        match *self {
+            Self::Cosine => cosine(turns),
+            Self::Square { half_duty_turns } => {
+                let turns = centred(turns);
+                if turns >= -half_duty_turns && turns < half_duty_turns { 1.0 } else { -1.0 }
+            }
+            Self::Triangle => 1.0 - 4.0 * centred(turns).abs(),
+            Self::Saw => 2.0 * centred(turns),
+        }
+    }
+}

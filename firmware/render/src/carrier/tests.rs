@@ -1,0 +1,197 @@
+//! No direct current, whatever the envelope does (DESIGN section 3).
+
+use super::*;
+use proptest::prelude::*;
+
+fn timing(shape: Shape, half_period_ticks: u32) -> CarrierTiming {
+    CarrierTiming::new(shape, half_period_ticks, 100.0, 20_000)
+}
+
+#[test]
+fn a_steady_square_alternates_without_early_edges() {
+    let timing = timing(Shape::Square, 20);
+    let mut carrier = Carrier::new(&timing);
+    let codes: Vec<i16> = (0..400).map(|tick| carrier.next(200.0, &timing, tick)).collect();
+    assert_eq!(carrier.early_edges(), 0);
+    for (i, code) in codes.iter().enumerate() {
+        let positive = (i + 10) % 40 < 20;
+        assert_eq!(*code, if positive { 20_000 } else { -20_000 }, "{i}");
+    }
+}
+
+#[cfg(feature = "sine-carrier")]
+#[test]
+fn a_sine_has_the_rms_of_its_envelope() {
+    let timing = timing(Shape::Sine, 20);
+    let mut carrier = Carrier::new(&timing);
+    let sum: f64 = (0..4000).map(|_| f64::from(carrier.next(100.0, &timing, 0)).powi(2)).sum();
+    let rms = (sum / 4000.0).sqrt();
+    assert!((rms * 2.0_f64.sqrt() - 10_000.0).abs() < 1.0, "{rms}");
+}
+
+proptest! {
+    /// Amplitudes that move with the carrier are the worst: every half wave of one sign large, of the other small.
+    #[test]
+    fn the_integral_stays_within_a_half_period_at_full_voltage(
+        sine in any::<bool>(),
+        half_period_ticks in 4_u32..80,
+        seed_amplitudes in proptest::collection::vec(0.0_f32..200.0, 1..200),
+        resonant in any::<bool>(),
+    ) {
+        let timing = timing(if sine { Shape::Sine } else { Shape::Square }, half_period_ticks);
+        let mut carrier = Carrier::new(&timing);
+        let mut integral = 0_i64;
+        let full = i64::from(timing.integral_max);
+        for i in 0..4000_usize {
+            let half = i as u32 / half_period_ticks;
+            let amplitude = if resonant { if half.is_multiple_of(2) { 200.0 } else { 3.0 } }
+                else { seed_amplitudes[i % seed_amplitudes.len()] };
+            if i % 1013 == 0 { carrier.rest(&timing); }
+            integral += i64::from(carrier.next(amplitude, &timing, 0));
+            prop_assert!(integral.abs() <= full, "{integral} after {i} ticks, {full} allowed");
+        }
+    }
+}
+
+/// Runs a carrier, and returns its codes.
+fn codes(carrier: &mut Carrier, timing: &CarrierTiming, envelope_v_rms: f32, ticks: u32) -> Vec<i32> {
+    (0..ticks).map(|tick| i32::from(carrier.next(envelope_v_rms, timing, tick))).collect()
+}
+
+#[test]
+fn the_integral_may_reach_one_half_wave_at_full_voltage() {
+    for half_period_ticks in [4, 5, 20, 80] {
+        let square = timing(Shape::Square, half_period_ticks);
+        assert_eq!(square.integral_max, 20_000 * half_period_ticks as i32);
+        let sine = timing(Shape::Sine, half_period_ticks);
+        let half_wave: f64 = (0..1000).map(|i| ((f64::from(i) + 0.5) / 1000.0 * core::f64::consts::PI).sin()).sum();
+        let expected = 20.0 * f64::from(half_period_ticks) * half_wave;
+        assert!((f64::from(sine.integral_max) - expected).abs() < 2.0, "{} is not {expected}", sine.integral_max);
+    }
+}
+
+#[test]
+fn a_carrier_starts_a_quarter_period_before_an_edge() {
+    for (half_period_ticks, first_edge) in [(20, 10), (21, 11), (5, 3), (4, 2)] {
+        let timing = timing(Shape::Square, half_period_ticks);
+        let codes = codes(&mut Carrier::new(&timing), &timing, 1.0, 2 * half_period_ticks);
+        assert_eq!(codes.iter().position(|code| *code < 0), Some(first_edge), "{half_period_ticks}");
+    }
+}
+
+/// Whatever was driven before, a drive that begins anew takes the charge back that is left.
+#[test]
+fn a_carrier_that_rested_begins_on_the_side_that_takes_the_integral_back() {
+    let timing = timing(Shape::Square, 20);
+    for (ticks, first_sign) in [(0, 1), (7, -1), (10, -1), (20, 1), (25, 1), (40, 1)] {
+        let mut carrier = Carrier::new(&timing);
+        let before: i32 = codes(&mut carrier, &timing, 50.0, ticks).iter().sum();
+        assert_eq!(first_sign, if before > 0 { -1 } else { 1 }, "the integral is {before} after {ticks} ticks");
+        carrier.rest(&timing);
+        let after = codes(&mut carrier, &timing, 50.0, 20);
+        let first_edge = after.iter().position(|code| code.signum() != first_sign);
+        assert_eq!(first_edge, Some(10), "{ticks}: a quarter period from the edge");
+    }
+}
+
+#[test]
+fn a_faster_carrier_takes_its_edge_no_later_than_its_own_half_period() {
+    let slow = timing(Shape::Square, 20);
+    let fast = timing(Shape::Square, 4);
+    let mut carrier = Carrier::new(&slow);
+    codes(&mut carrier, &slow, 1.0, 11); // one tick behind an edge, 19 before the next
+    carrier.retime(&fast);
+    let after = codes(&mut carrier, &fast, 1.0, 12);
+    assert_eq!(
+        after.iter().map(|code| code.signum()).collect::<Vec<_>>(),
+        [-1, -1, -1, -1, 1, 1, 1, 1, -1, -1, -1, -1]
+    );
+}
+
+#[test]
+fn a_slower_carrier_finishes_the_half_period_under_way() {
+    let slow = timing(Shape::Square, 20);
+    let fast = timing(Shape::Square, 4);
+    let mut carrier = Carrier::new(&fast);
+    codes(&mut carrier, &fast, 1.0, 3); // one tick behind an edge, 3 before the next
+    carrier.retime(&slow);
+    let after = codes(&mut carrier, &slow, 1.0, 24);
+    let positive = after.iter().filter(|code| **code > 0).count();
+    assert_eq!((after.iter().position(|code| *code > 0), positive), (Some(3), 20));
+}
+
+/// Every positive half wave is large and every negative one small, so that the integral drifts to its limit: there a code
+/// comes with the other sign, and that is counted.
+#[test]
+fn an_early_edge_is_counted_with_its_tick() {
+    let timing = timing(Shape::Square, 20);
+    let mut carrier = Carrier::new(&timing);
+    let (mut integral, mut early_edges, mut last_early_tick, mut left_ticks, mut sign) = (0, 0, 0, 10, 1);
+    for tick in 0..4000 {
+        let envelope_v_rms = if sign > 0 { 200.0 } else { 3.0 };
+        let wanted = sign * (100.0 * envelope_v_rms) as i32;
+        let code = i32::from(carrier.next(envelope_v_rms, &timing, tick));
+        if (integral + wanted).abs() > 20 * 20_000 {
+            assert_eq!(code, -wanted, "tick {tick}: the integral is {integral}");
+            sign = -sign;
+            early_edges += 1;
+            last_early_tick = tick;
+        } else {
+            assert_eq!(code, wanted, "tick {tick}: the integral is {integral}");
+        }
+        integral += code;
+        left_ticks -= 1;
+        if left_ticks == 0 {
+            (sign, left_ticks) = (-sign, 20);
+        }
+        assert_eq!((carrier.early_edges(), carrier.last_early_tick()), (early_edges, last_early_tick));
+    }
+    assert!(early_edges > 10, "{early_edges}");
+}
+
+/// A new scene may allow less than what has gathered: every code then takes the integral towards zero.
+#[test]
+fn an_integral_beyond_a_new_limit_only_falls() {
+    for start_ticks in [10, 30] {
+        let wide = timing(Shape::Square, 20);
+        let narrow = CarrierTiming::new(Shape::Square, 4, 100.0, 2_000);
+        let mut carrier = Carrier::new(&wide);
+        let mut integral: i32 = codes(&mut carrier, &wide, 200.0, start_ticks).iter().sum();
+        assert!(integral.abs() > 10 * narrow.integral_max, "{integral}");
+        carrier.retime(&narrow);
+        let mut edges = 0;
+        let mut last_sign = 0;
+        for tick in 0..200 {
+            let code = i32::from(carrier.next(20.0, &narrow, tick));
+            assert!(code.abs() == 2_000, "a code is put out, with one sign or the other: {code}");
+            if integral.abs() > narrow.integral_max {
+                assert!((integral + code).abs() < integral.abs(), "{integral} and {code}");
+            }
+            integral += code;
+            edges += u32::from(code.signum() != last_sign && last_sign != 0);
+            last_sign = code.signum();
+        }
+        assert!(integral.abs() <= narrow.integral_max, "{integral}");
+        assert!(edges > 10, "it alternates again");
+    }
+}
+
+#[test]
+fn no_code_is_larger_than_the_largest() {
+    let timing = timing(Shape::Square, 20);
+    assert!(codes(&mut Carrier::new(&timing), &timing, 1e6, 100).iter().all(|code| code.abs() == 20_000));
+    assert!(
+        codes(&mut Carrier::new(&CarrierTiming::SILENT), &CarrierTiming::SILENT, 1e6, 100)
+            .iter()
+            .all(|code| *code == 0)
+    );
+}
+
+/// To the nearest code, so that a small voltage is not lost.
+#[test]
+fn codes_are_rounded_to_the_nearest() {
+    let timing = timing(Shape::Square, 20);
+    for (envelope_v_rms, expected) in [(0.004, 0), (0.006, 1), (0.014, 1), (0.016, 2), (123.456, 12_346)] {
+        assert_eq!(codes(&mut Carrier::new(&timing), &timing, envelope_v_rms, 1), [expected]);
+    }
+}

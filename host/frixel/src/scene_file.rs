@@ -1,0 +1,106 @@
+//! Scene files and their pictures, read from a folder.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use frixel_scene::{CompileError, PictureUnavailable, Pictures, Scene};
+use thiserror::Error;
+
+/// Why a scene file does not become a program.
+#[derive(Debug, Error)]
+pub enum SceneFileError {
+    /// The scene file itself cannot be read.
+    #[error("{file}: this scene file cannot be read ({source}): check the path")]
+    Unreadable {
+        /// The file as it was named.
+        file: String,
+        /// The operating system's reason.
+        source: io::Error,
+    },
+    /// The file was read, and something in it is wrong.
+    #[error(transparent)]
+    Compile(#[from] CompileError),
+}
+
+impl SceneFileError {
+    /// As [`CompileError::to_json`]; `unreadable` is the operating system's reason when the file could not be read.
+    pub fn to_json(&self) -> String {
+        match self {
+            Self::Unreadable { file, source } => {
+                serde_json::json!({ "file": file, "unreadable": source.to_string(), "mistakes": [] }).to_string()
+            }
+            Self::Compile(error) => error.to_json(),
+        }
+    }
+}
+
+/// Reads a scene file. The names of its pictures are paths from its folder.
+pub fn load(path: &Path) -> Result<Scene, SceneFileError> {
+    let file = path.display().to_string();
+    match fs::read(path) {
+        Ok(bytes) => {
+            let folder = PictureFolder(path.parent().unwrap_or(Path::new("")).to_owned());
+            Ok(Scene::parse_bytes(&bytes, &file, &folder)?)
+        }
+        Err(source) => Err(SceneFileError::Unreadable { file, source }),
+    }
+}
+
+/// The folder that the names of pictures start from.
+#[derive(Clone, Debug)]
+pub struct PictureFolder(pub PathBuf);
+
+impl Pictures for PictureFolder {
+    fn png(&self, name: &str) -> Result<Vec<u8>, PictureUnavailable> {
+        let path = self.0.join(name);
+        if path.is_file() {
+            return fs::read(&path).map_err(|error| PictureUnavailable::Unreadable { reason: error.to_string() });
+        }
+        let folder = match path.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder,
+            _ => Path::new("."),
+        };
+        Err(PictureUnavailable::Missing { place: folder.display().to_string(), files: files_in(folder) })
+    }
+}
+
+/// The names of what is in a folder, sorted; none when the folder cannot be read.
+fn files_in(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).into_iter().flatten();
+    let mut names: Vec<String> = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect();
+    names.sort();
+    names
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_that_cannot_be_read_is_reported_with_its_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.toml");
+        let name = path.display().to_string();
+        let error = load(&path).unwrap_err().to_string();
+        assert!(error.starts_with(&format!("{name}: this scene file cannot be read (")), "{error}");
+        fs::write(&path, b"version = 1\nname = \"\xff\"").unwrap();
+        let error = load(&path).unwrap_err().to_string();
+        assert_eq!(error, format!("{name}:2:9: this byte is not UTF-8 text: save the file as UTF-8"));
+    }
+
+    #[test]
+    fn a_missing_picture_is_looked_for_in_its_own_folder() {
+        let folder = tempfile::tempdir().unwrap();
+        let textures = folder.path().join("textures");
+        fs::create_dir(&textures).unwrap();
+        fs::write(textures.join("brick.png"), b"bytes").unwrap();
+        let pictures = PictureFolder(folder.path().to_owned());
+        assert_eq!(pictures.png("textures/brick.png"), Ok(b"bytes".to_vec()));
+        let missing =
+            PictureUnavailable::Missing { place: textures.display().to_string(), files: vec!["brick.png".to_owned()] };
+        assert_eq!(pictures.png("textures/brik.png"), Err(missing.clone()));
+        let PictureUnavailable::Missing { files, .. } = pictures.png("textures").unwrap_err() else { panic!() };
+        assert_eq!(files, ["textures"]);
+    }
+}

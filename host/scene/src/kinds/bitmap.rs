@@ -1,0 +1,159 @@
+//! A picture.
+
+use std::ops::RangeInclusive;
+use std::sync::Arc;
+
+use frixel_layers::{Bitmap as Record, Interval, Layer as RecordLayer, Region as RecordRegion};
+
+use super::constant::ConstantField;
+use super::samples::Samples;
+use super::{Field, Lowered, Words};
+use crate::cover::Cell;
+use crate::fields::Fields;
+use crate::grammar::Absence::{Means, Mistake, Number};
+use crate::grammar::{AmountFields, FieldSpec, Holds, Range};
+use crate::layer::{Amount, Layer, Region, Unit};
+use crate::log::Log;
+use crate::lower::{Lowering, MM};
+use crate::program::Program;
+use crate::reference::Context;
+use crate::source::Places;
+use crate::tables::{ANGLE_DEG, PLACE_MM, SIZE_MM, amount, flag, layer::REGION, number};
+
+const PICTURE: FieldSpec =
+    FieldSpec::new("picture", Holds::Text, Mistake, "a PNG file, found from the scene file's folder");
+const X: FieldSpec = number("x_mm", PLACE_MM, Means("the region's"), "left side of the picture");
+const Y: FieldSpec = number("y_mm", PLACE_MM, Means("the region's"), "top side of the picture");
+const WIDTH: FieldSpec = number("width_mm", SIZE_MM, Means("the region's"), "its width");
+const HEIGHT: FieldSpec = number(
+    "height_mm",
+    SIZE_MM,
+    Means("as the picture's sides demand; the region's, when `width_mm` is the region's too"),
+    "its height",
+);
+const ANGLE: FieldSpec = number("angle_deg", ANGLE_DEG, Number(0.0), "how far it is turned about its middle");
+const TILED: FieldSpec =
+    flag("tiled", false, "`true`: it is repeated in both directions, over the region or the screen");
+const PITCH: FieldSpec =
+    number("pitch_mm", Range::new(0.02, 10.0, " mm"), Number(0.25), "distance of the samples that the board plays");
+const BLACK: AmountFields = amount!("black", Means("0"), "friction of black");
+const WHITE: AmountFields = amount!("white", Means("all that can be reached; a factor of 1"), "friction of white");
+
+/// `kind = "bitmap"`.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Bitmap {
+    pub(crate) picture: String,
+    /// Place and width; `None` for those of the region.
+    pub(crate) x_mm: Option<f64>,
+    pub(crate) y_mm: Option<f64>,
+    pub(crate) width_mm: Option<f64>,
+    pub(crate) height_mm: Option<f64>,
+    pub(crate) pitch_mm: f64,
+    pub(crate) angle_deg: f64,
+    pub(crate) tiled: bool,
+    black: Amount,
+    white: Amount,
+}
+
+impl Words for Bitmap {
+    const WORD: &'static str = "bitmap";
+
+    fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
+        // What a region says need not be said again.
+        let mut place = |field: &FieldSpec| {
+            if !fields.has_been_read(REGION.name) {
+                fields.require(field);
+            }
+            fields.number(log, field)
+        };
+        let (x_mm, y_mm, width_mm) = (place(&X), place(&Y), place(&WIDTH));
+        let picture = fields.text(log, &PICTURE);
+        let height_mm = fields.number(log, &HEIGHT);
+        let pitch_mm = fields.number_or_default(log, &PITCH);
+        let angle_deg = fields.number_or_default(log, &ANGLE);
+        let tiled = fields.flag(log, &TILED);
+        // Bare glass, and the most that the drive gives: what a friction image without numbers means.
+        let (black, white) = match unit {
+            Unit::Friction => (Amount::Fraction(0.0), Amount::Fraction(1.0)),
+            Unit::Factor => (Amount::Factor(0.0), Amount::Factor(1.0)),
+        };
+        let black = Amount::read(fields, &BLACK, unit, log).unwrap_or(black);
+        let white = Amount::read(fields, &WHITE, unit, log).unwrap_or(white);
+        let picture = picture?;
+        Some(Self { picture, x_mm, y_mm, width_mm, height_mm, pitch_mm, angle_deg, tiled, black, white })
+    }
+
+    fn extreme(&self, most: bool, places: &Places) -> &'static str {
+        let white_is_most = !self.black.is_above(self.white);
+        let amount = if most == white_is_most { WHITE } else { BLACK };
+        places.first_of(amount.names())
+    }
+
+    fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {
+        let visible = layer.region.as_ref().map(Region::bounds);
+        let placed = lowering.place_bitmap(layer, self, visible)?;
+        let record = Record {
+            crc32: placed.crc32,
+            x_m: (placed.corner_mm.0 * MM) as f32,
+            y_m: (placed.corner_mm.1 * MM) as f32,
+            pitch_m: (placed.pitches_mm.0 * MM) as f32,
+            black_n: lowering.amount(layer, self.black),
+            white_n: lowering.amount(layer, self.white),
+            pitch_y_m: (placed.pitches_mm.1 * MM) as f32,
+            angle_turns: placed.angle_turns,
+            tiled: placed.tiled,
+        };
+        Some(Lowered { layer: RecordLayer::Bitmap(record), outline: placed.outline })
+    }
+}
+
+/// Not-a-number everywhere when the program does not have the bitmap.
+pub(super) fn field(record: &Record, _region: RecordRegion, program: &Program) -> Arc<dyn Field> {
+    let bitmap = program.bitmap(record.crc32).filter(|bitmap| bitmap.width > 0 && bitmap.height > 0);
+    match bitmap {
+        Some(bitmap) => Arc::new(Samples::new(bitmap, record)),
+        None => Arc::new(ConstantField(f64::NAN)),
+    }
+}
+
+impl Field for Samples {
+    fn at(&self, context: &Context) -> f64 {
+        self.at_place(context.x_m, context.y_m)
+    }
+
+    /// A bilinear patch has its extremes at its corners: samples' centres, and where the cell cuts it. Of a picture
+    /// that is turned, all samples count that are in reach.
+    fn interval_in(&self, cell: Cell) -> Interval<f64> {
+        let positions = cell.corners().map(|(x_m, y_m)| self.position(x_m, y_m));
+        let u = Interval::of(positions.iter().map(|(u, _)| *u));
+        let v = Interval::of(positions.iter().map(|(_, v)| *v));
+        if self.is_turned() {
+            return Interval::of(self.frictions(around(u, self.width), around(v, self.height)));
+        }
+        let stretch = |start_m: f64, end_m: f64, first_m: f64, pitch_m: f64, samples: RangeInclusive<i64>| {
+            let centres = samples.map(move |n| first_m + (n as f64 + 0.5) * pitch_m);
+            let mut stretch = vec![start_m, end_m];
+            stretch.extend(centres.filter(|centre_m| (start_m..=end_m).contains(centre_m)));
+            stretch
+        };
+        let columns = stretch(cell.left_m, cell.right_m, self.x_m, self.pitch_m, around(u, self.width));
+        let rows = stretch(cell.top_m, cell.bottom_m, self.y_m, self.pitch_y_m, around(v, self.height));
+        let places = rows.iter().flat_map(|y_m| columns.iter().map(|x_m| (*x_m, *y_m)));
+        Interval::of(places.map(|(x_m, y_m)| self.at_place(x_m, y_m)))
+    }
+
+    fn doubts_in(&self, _cell: Cell, _outline_m: [f64; 4]) -> usize {
+        if self.is_turned() { 2 } else { 1 }
+    }
+
+    fn detail_m(&self) -> Option<f64> {
+        Some(self.pitch_m.min(self.pitch_y_m))
+    }
+}
+
+/// The samples that positions in an interval lie between. Twice as many as there are show all that tiling repeats.
+fn around(positions: Interval<f64>, samples: usize) -> RangeInclusive<i64> {
+    let first = libm::floor(positions.low).max(-1e6) as i64;
+    let last = libm::ceil(positions.high).min(1e6) as i64;
+    first..=last.min(first + 2 * samples as i64)
+}

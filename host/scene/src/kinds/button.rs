@@ -1,0 +1,135 @@
+//! A button: a face with a rim around it, which fills its region, and a click when the finger slides in.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use frixel_layers::{Button as Record, Click as RecordClick, Interval, Layer as RecordLayer, Region as RecordRegion};
+
+use super::click::Click;
+use super::{Field, Lowered, Words, click_interval};
+use crate::cover::Cell;
+use crate::fields::Fields;
+use crate::grammar::Absence::{Means, Mistake};
+use crate::grammar::{AmountFields, FieldSpec};
+use crate::layer::{Amount, Layer, Unit};
+use crate::log::Log;
+use crate::lower::{Lowering, MM};
+use crate::program::Program;
+use crate::reference::Context;
+use crate::source::Places;
+use crate::tables::{SIZE_MM, amount, number};
+
+const RIM_WIDTH: FieldSpec = number(
+    "rim_width_mm",
+    SIZE_MM,
+    Mistake,
+    "width of the rim, inside the outline; an ellipse's along its shorter axis",
+);
+const RIM: AmountFields = amount!(
+    "rim",
+    Mistake,
+    "friction in the middle of the rim, from where it falls off to that of the face on both sides as a raised cosine"
+);
+const FACE: AmountFields = amount!("face", Mistake, "friction on the face");
+const CLICK: AmountFields = amount!("click", Means("no click"), "what is added when the finger slides in");
+
+/// `kind = "button"`.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Button {
+    rim_width_mm: f64,
+    rim: Amount,
+    face: Amount,
+    click: Option<Click>,
+}
+
+impl Words for Button {
+    const WORD: &'static str = "button";
+    const NEEDS_RIM: bool = true;
+
+    fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
+        let rim_width_mm = fields.number(log, &RIM_WIDTH);
+        let rim = Amount::read(fields, &RIM, unit, log);
+        let face = Amount::read(fields, &FACE, unit, log);
+        let click = Click::read(fields, &CLICK, unit, log);
+        Some(Self { rim_width_mm: rim_width_mm?, rim: rim?, face: face?, click })
+    }
+
+    fn extreme(&self, most: bool, places: &Places) -> &'static str {
+        let rim_is_most = !self.face.is_above(self.rim);
+        let amount = if most == rim_is_most { RIM } else { FACE };
+        places.first_of(amount.names())
+    }
+
+    fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {
+        let record = Record {
+            rim_width_m: (self.rim_width_mm * MM) as f32,
+            rim_n: lowering.amount(layer, self.rim),
+            face_n: lowering.amount(layer, self.face),
+            click: Click::lower(self.click, layer, lowering)?,
+        };
+        Some(RecordLayer::Button(record).into())
+    }
+}
+
+pub(super) fn field(record: &Record, region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
+    let (x_m, y_m, width_m, height_m, is_ellipse) = match region {
+        RecordRegion::Rectangle { x_m, y_m, width_m, height_m } => (x_m, y_m, width_m, height_m, false),
+        RecordRegion::Ellipse { x_m, y_m, width_m, height_m } => (x_m, y_m, width_m, height_m, true),
+        RecordRegion::Screen | RecordRegion::Polygon { .. } => (f32::NAN, f32::NAN, f32::NAN, f32::NAN, false),
+    };
+    let half_m = (0.5 * f64::from(width_m), 0.5 * f64::from(height_m));
+    Arc::new(ButtonField {
+        middle_m: (f64::from(x_m) + half_m.0, f64::from(y_m) + half_m.1),
+        half_m,
+        is_ellipse,
+        rim_width_m: f64::from(record.rim_width_m),
+        rim_n: f64::from(record.rim_n),
+        face_n: f64::from(record.face_n),
+        click: record.click,
+    })
+}
+
+#[derive(Debug)]
+struct ButtonField {
+    middle_m: (f64, f64),
+    half_m: (f64, f64),
+    is_ellipse: bool,
+    rim_width_m: f64,
+    rim_n: f64,
+    face_n: f64,
+    click: RecordClick,
+}
+
+impl Field for ButtonField {
+    fn at(&self, context: &Context) -> f64 {
+        let (x_m, y_m) = ((context.x_m - self.middle_m.0).abs(), (context.y_m - self.middle_m.1).abs());
+        let depth_m = if self.is_ellipse {
+            (1.0 - libm::hypot(x_m / self.half_m.0, y_m / self.half_m.1)) * self.half_m.0.min(self.half_m.1)
+        } else {
+            (self.half_m.0 - x_m).min(self.half_m.1 - y_m)
+        };
+        let height = libm::sin(0.5 * TAU * (depth_m / self.rim_width_m).clamp(0.0, 1.0));
+        self.face_n + (self.rim_n - self.face_n) * height * height
+    }
+
+    fn interval_in(&self, _cell: Cell) -> Interval<f64> {
+        Interval::of([self.rim_n, self.face_n]).plus(click_interval(self.click()))
+    }
+
+    fn doubts_in(&self, cell: Cell, outline_m: [f64; 4]) -> usize {
+        let [left_m, top_m, right_m, bottom_m] = outline_m;
+        if (Cell { left_m, top_m, right_m, bottom_m }) == cell { 1 } else { 2 }
+    }
+
+    fn detail_m(&self) -> Option<f64> {
+        Some(0.1 * self.rim_width_m)
+    }
+
+    fn click(&self) -> Option<RecordClick> {
+        Some(self.click).filter(RecordClick::is_felt)
+    }
+
+    fn clicks_on_entry(&self) -> bool {
+        true
+    }
+}

@@ -1,0 +1,45 @@
+//! The words for a click, and how it is lowered.
+
+use frixel_layers::{CLICKS_MAX, Click as Record, range};
+
+use crate::fields::Fields;
+use crate::grammar::Absence::Number;
+use crate::grammar::{AmountFields, FieldSpec, Range};
+use crate::layer::{Amount, Layer, Unit};
+use crate::log::Log;
+use crate::lower::{Lowering, MM};
+use crate::tables::number;
+
+const CLICK_MS: FieldSpec = number(
+    "click_ms",
+    Range::new(0.1, range::CLICK_S.max / MM, " ms"),
+    Number(20.0),
+    "how long a click takes to fall off: `(1 - t / click_ms)^2` of it are left after `t`",
+);
+
+/// A short pulse when the finger crosses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Click {
+    height: Amount,
+    decay_ms: f64,
+}
+
+impl Click {
+    /// Reads the click of a layer, if it has one.
+    pub(super) fn read(fields: &mut Fields, height: &AmountFields, unit: Unit, log: &mut Log) -> Option<Self> {
+        let decay_ms = fields.number_or_default(log, &CLICK_MS);
+        Some(Self { height: Amount::read(fields, height, unit, log)?, decay_ms })
+    }
+
+    /// A click is added, so that it counts from what it is added to. `None` when there are too many.
+    pub(super) fn lower(click: Option<Self>, layer: &Layer, lowering: &mut Lowering) -> Option<Record> {
+        let Some(Self { height, decay_ms }) = click else { return Some(Record::default()) };
+        lowering.clicks += 1;
+        lowering.limit(layer, "edges and buttons with a click", lowering.clicks, CLICKS_MAX)?;
+        let height_n = match height {
+            Amount::Newtons(friction_n) => friction_n as f32,
+            other => lowering.amount(layer, other),
+        };
+        Some(Record { height_n, decay_s: (decay_ms * MM) as f32 })
+    }
+}

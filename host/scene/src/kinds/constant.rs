@@ -1,0 +1,66 @@
+//! The same friction everywhere.
+
+use std::sync::Arc;
+
+use frixel_layers::{Constant as Record, Interval, Layer as RecordLayer, Region as RecordRegion};
+
+use super::{Field, Lowered, Words};
+use crate::cover::Cell;
+use crate::fields::Fields;
+use crate::grammar::Absence::Mistake;
+use crate::grammar::AmountFields;
+use crate::layer::{Amount, Layer, Unit};
+use crate::log::Log;
+use crate::lower::Lowering;
+use crate::program::Program;
+use crate::reference::Context;
+use crate::source::Places;
+use crate::tables::amount;
+
+const FRICTION: AmountFields = amount!("friction", Mistake, "the same friction everywhere");
+
+/// `kind = "constant"`.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Constant {
+    friction: Amount,
+}
+
+impl Words for Constant {
+    const WORD: &'static str = "constant";
+    const TOTALS: bool = true;
+
+    fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
+        Some(Self { friction: Amount::read(fields, &FRICTION, unit, log)? })
+    }
+
+    fn extreme(&self, _most: bool, places: &Places) -> &'static str {
+        places.first_of(FRICTION.names())
+    }
+
+    fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {
+        let electric_friction_n = lowering.amount(layer, self.friction);
+        Some(RecordLayer::Constant(Record { electric_friction_n }).into())
+    }
+}
+
+pub(super) fn field(record: &Record, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
+    Arc::new(ConstantField(f64::from(record.electric_friction_n)))
+}
+
+/// The same friction everywhere, N.
+#[derive(Debug)]
+pub(crate) struct ConstantField(pub(crate) f64);
+
+impl Field for ConstantField {
+    fn at(&self, _context: &Context) -> f64 {
+        self.0
+    }
+
+    fn interval_in(&self, _cell: Cell) -> Interval<f64> {
+        Interval::of([self.0])
+    }
+
+    fn doubts_in(&self, _cell: Cell, _outline_m: [f64; 4]) -> usize {
+        0
+    }
+}

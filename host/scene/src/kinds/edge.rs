@@ -1,0 +1,141 @@
+//! A line with a ridge or a well along it, and a click when the finger crosses it.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use frixel_layers::{
+    Blend, Click as RecordClick, Edge as Record, Interval, Layer as RecordLayer, Region as RecordRegion,
+};
+
+use super::click::Click;
+use super::{Field, Lowered, Words, click_interval};
+use crate::cover::Cell;
+use crate::fields::Fields;
+use crate::grammar::Absence::{Means, Mistake, Number};
+use crate::grammar::{AmountFields, FieldSpec};
+use crate::layer::{Amount, Layer, Unit};
+use crate::log::Log;
+use crate::lower::{Lowering, MM, place};
+use crate::program::Program;
+use crate::reference::Context;
+use crate::source::Places;
+use crate::tables::{ANGLE_DEG, PLACE_MM, SIZE_MM, amount, number};
+
+const X: FieldSpec = number("x_mm", PLACE_MM, Mistake, "x of a place on the line");
+const Y: FieldSpec = number("y_mm", PLACE_MM, Mistake, "y of the same place");
+const ANGLE: FieldSpec = number("angle_deg", ANGLE_DEG, Number(0.0), "direction across the line: 0 is a line along y");
+const WIDTH: FieldSpec = number("width_mm", SIZE_MM, Mistake, "from one foot of the ridge to the other");
+const RIDGE: AmountFields = amount!(
+    "ridge",
+    Mistake,
+    "friction on the line, falling off as a raised cosine; beside the ridge nothing is added, and what lies below is \
+     multiplied by 1"
+);
+const CLICK: AmountFields = amount!("click", Means("no click"), "what is added when the finger crosses");
+
+/// `kind = "edge"`.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Edge {
+    x_mm: f64,
+    y_mm: f64,
+    angle_deg: f64,
+    width_mm: f64,
+    ridge: Amount,
+    click: Option<Click>,
+}
+
+impl Words for Edge {
+    const WORD: &'static str = "edge";
+    /// An edge is most often a ridge on what lies below it.
+    const BLEND: Blend = Blend::Add;
+
+    fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
+        let x_mm = fields.number(log, &X);
+        let y_mm = fields.number(log, &Y);
+        let angle_deg = fields.number_or_default(log, &ANGLE);
+        let width_mm = fields.number(log, &WIDTH);
+        let ridge = Amount::read(fields, &RIDGE, unit, log);
+        let click = Click::read(fields, &CLICK, unit, log);
+        Some(Self { x_mm: x_mm?, y_mm: y_mm?, angle_deg, width_mm: width_mm?, ridge: ridge?, click })
+    }
+
+    fn extreme(&self, _most: bool, places: &Places) -> &'static str {
+        places.first_of(RIDGE.names())
+    }
+
+    fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {
+        let record = Record {
+            x_m: (self.x_mm * MM) as f32,
+            y_m: (self.y_mm * MM) as f32,
+            angle_turns: place::turns(self.angle_deg),
+            width_m: (self.width_mm * MM) as f32,
+            level_n: if layer.blend == Blend::Multiply { 1.0 } else { 0.0 },
+            ridge_n: lowering.amount(layer, self.ridge),
+            click: Click::lower(self.click, layer, lowering)?,
+        };
+        Some(RecordLayer::Edge(record).into())
+    }
+}
+
+pub(super) fn field(record: &Record, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
+    Arc::new(EdgeField {
+        place_m: (f64::from(record.x_m), f64::from(record.y_m)),
+        angle_turns: f64::from(record.angle_turns),
+        width_m: f64::from(record.width_m),
+        level_n: f64::from(record.level_n),
+        ridge_n: f64::from(record.ridge_n),
+        click: record.click,
+    })
+}
+
+#[derive(Debug)]
+struct EdgeField {
+    place_m: (f64, f64),
+    angle_turns: f64,
+    width_m: f64,
+    level_n: f64,
+    ridge_n: f64,
+    click: RecordClick,
+}
+
+impl EdgeField {
+    /// How far beyond the line a place is, m.
+    fn distance_m(&self, x_m: f64, y_m: f64) -> f64 {
+        let (across_x, across_y) = (libm::cos(TAU * self.angle_turns), libm::sin(TAU * self.angle_turns));
+        (x_m - self.place_m.0) * across_x + (y_m - self.place_m.1) * across_y
+    }
+
+    fn at_distance(&self, distance_m: f64) -> f64 {
+        let part = (distance_m / self.width_m).clamp(-0.5, 0.5);
+        let height = libm::cos(0.5 * TAU * part);
+        self.level_n + (self.ridge_n - self.level_n) * height * height
+    }
+}
+
+impl Field for EdgeField {
+    fn at(&self, context: &Context) -> f64 {
+        self.at_distance(self.distance_m(context.x_m, context.y_m))
+    }
+
+    /// The ridge falls off on both sides.
+    fn interval_in(&self, cell: Cell) -> Interval<f64> {
+        let distances = Interval::of(cell.corners().into_iter().map(|(x_m, y_m)| self.distance_m(x_m, y_m)));
+        let nearest_m = 0.0_f64.clamp(distances.low, distances.high);
+        let ends = [distances.low, distances.high, nearest_m];
+        let still = Interval::of(ends.into_iter().map(|distance_m| self.at_distance(distance_m)));
+        let is_crossed = distances.low < 0.0 && distances.high > 0.0;
+        still.plus(click_interval(self.click().filter(|_| is_crossed)))
+    }
+
+    fn detail_m(&self) -> Option<f64> {
+        Some(0.1 * self.width_m)
+    }
+
+    fn click(&self) -> Option<RecordClick> {
+        Some(self.click).filter(RecordClick::is_felt)
+    }
+
+    fn is_beyond(&self, x_m: f64, y_m: f64) -> bool {
+        self.distance_m(x_m, y_m) >= 0.0
+    }
+}

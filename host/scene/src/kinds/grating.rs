@@ -1,0 +1,112 @@
+//! Parallel stripes.
+
+use std::sync::Arc;
+
+use frixel_layers::{Grating as Record, Interval, Layer as RecordLayer, Region as RecordRegion, Wave};
+
+use super::wave::{self, WaveField};
+use super::{Field, Lowered, Words};
+use crate::cover::Cell;
+use crate::fields::Fields;
+use crate::grammar::Absence::{Mistake, Number};
+use crate::grammar::FieldSpec;
+use crate::layer::{Layer, LowHigh, Unit};
+use crate::log::Log;
+use crate::lower::{Lowering, place};
+use crate::program::Program;
+use crate::reference::Context;
+use crate::source::Places;
+use crate::tables::{ANGLE_DEG, HIGH, LOW, WAVELENGTH_MM, number};
+
+const WAVELENGTH: FieldSpec = number("wavelength_mm", WAVELENGTH_MM, Mistake, "from stripe to stripe");
+const ANGLE: FieldSpec = number("angle_deg", ANGLE_DEG, Number(0.0), "direction across the stripes");
+const PHASE: FieldSpec = number(
+    "phase_deg",
+    ANGLE_DEG,
+    Number(0.0),
+    "at the screen's corner, without a phase, a sine is in its middle and rises, a square's high part begins, triangle \
+     and saw are low and rise. A phase is how much later in the wave it starts",
+);
+
+/// `kind = "grating"`.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Grating {
+    wave: Wave,
+    wavelength_mm: f64,
+    angle_deg: f64,
+    phase_deg: f64,
+    amounts: LowHigh,
+}
+
+impl Words for Grating {
+    const WORD: &'static str = "grating";
+
+    fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
+        let wave = wave::read(fields, log);
+        let wavelength_mm = fields.number(log, &WAVELENGTH);
+        let angle_deg = fields.number_or_default(log, &ANGLE);
+        let phase_deg = fields.number_or_default(log, &PHASE);
+        let amounts = LowHigh::read(fields, [&LOW, &HIGH], unit, log);
+        Some(Self { wave, wavelength_mm: wavelength_mm?, angle_deg, phase_deg, amounts: amounts? })
+    }
+
+    fn check(&self, places: &Places, log: &mut Log) {
+        self.amounts.check(places, log);
+    }
+
+    fn extreme(&self, most: bool, places: &Places) -> &'static str {
+        LowHigh::extreme(most, places)
+    }
+
+    fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {
+        let (cycles_per_m_x, cycles_per_m_y) = place::wave_vector(self.wavelength_mm, self.angle_deg);
+        let record = Record {
+            wave: self.wave,
+            cycles_per_m_x,
+            cycles_per_m_y,
+            phase_turns: (self.phase_deg / 360.0).rem_euclid(1.0) as f32,
+            trough_n: lowering.amount(layer, self.amounts.low),
+            crest_n: lowering.amount(layer, self.amounts.high),
+        };
+        Some(RecordLayer::Grating(record).into())
+    }
+}
+
+pub(super) fn field(record: &Record, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
+    Arc::new(GratingField {
+        cycles_per_m_x: f64::from(record.cycles_per_m_x),
+        cycles_per_m_y: f64::from(record.cycles_per_m_y),
+        phase_turns: f64::from(record.phase_turns),
+        wave: WaveField { wave: record.wave, trough_n: f64::from(record.trough_n), crest_n: f64::from(record.crest_n) },
+    })
+}
+
+#[derive(Debug)]
+struct GratingField {
+    cycles_per_m_x: f64,
+    cycles_per_m_y: f64,
+    phase_turns: f64,
+    wave: WaveField,
+}
+
+impl GratingField {
+    /// Phase at a place, in turns.
+    fn turns(&self, x_m: f64, y_m: f64) -> f64 {
+        self.cycles_per_m_x * x_m + self.cycles_per_m_y * y_m + self.phase_turns
+    }
+}
+
+impl Field for GratingField {
+    fn at(&self, context: &Context) -> f64 {
+        self.wave.at_turns(self.turns(context.x_m, context.y_m))
+    }
+
+    /// Over a rectangle the phase takes every value between its least and its largest.
+    fn interval_in(&self, cell: Cell) -> Interval<f64> {
+        self.wave.interval(Interval::of(cell.corners().into_iter().map(|(x_m, y_m)| self.turns(x_m, y_m))))
+    }
+
+    fn detail_m(&self) -> Option<f64> {
+        Some(0.1 / libm::hypot(self.cycles_per_m_x, self.cycles_per_m_y))
+    }
+}

@@ -1,0 +1,209 @@
+//! The kinds of layer, a file each: the words for it in a scene file, its way into a record, and its reference, which
+//! is written from the kind's meaning in `docs/scene.md` and `PROTOCOL.md` and shares no code with the board.
+
+mod bitmap;
+mod button;
+mod click;
+mod constant;
+mod edge;
+mod grating;
+mod noise;
+mod samples;
+mod speed;
+mod stream;
+mod vibration;
+mod wave;
+
+use std::fmt::Debug;
+use std::sync::Arc;
+
+use frixel_layers::{Blend, Click, Interval, Layer as Record, Region as RecordRegion};
+
+use crate::cover::Cell;
+use crate::fields::Fields;
+use crate::layer::{Layer, Region, Unit};
+use crate::log::Log;
+use crate::lower::Lowering;
+use crate::program::Program;
+use crate::reference::Context;
+use crate::source::Places;
+
+pub(crate) use bitmap::Bitmap;
+
+/// What a person writes for a kind of layer.
+pub(crate) trait Words: Sized {
+    /// The word after `kind`.
+    const WORD: &'static str;
+    /// The blends that the kind can have.
+    const BLENDS: &'static [(&'static str, Blend)] =
+        &[("replace", Blend::Replace), ("add", Blend::Add), ("multiply", Blend::Multiply), ("max", Blend::Max)];
+    /// The blend where the file says nothing.
+    const BLEND: Blend = Blend::Replace;
+    /// The layer has to have a region with a rim: a rectangle or an ellipse.
+    const NEEDS_RIM: bool = false;
+    /// Where the file says nothing, frictions of a layer that replaces others are totals.
+    const TOTALS: bool = false;
+
+    /// Reads the fields of the kind.
+    fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self>;
+
+    /// Finds mistakes between fields.
+    fn check(&self, places: &Places, log: &mut Log) {
+        let _ = (places, log);
+    }
+
+    /// The field that asks for the most friction, or for the least.
+    fn extreme(&self, most: bool, places: &Places) -> &'static str;
+
+    /// The layer of a record; `None` when something is wrong with it, which has been logged.
+    fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered>;
+}
+
+/// What a layer's words become.
+pub(crate) struct Lowered {
+    pub(crate) layer: Record,
+    /// Where the layer acts if the file names no region: `None` for the whole screen.
+    pub(crate) outline: Option<Region>,
+}
+
+impl From<Record> for Lowered {
+    fn from(layer: Record) -> Self {
+        Self { layer, outline: None }
+    }
+}
+
+/// The reference of a layer over plane and time, in `f64`, before its gain: electric friction in newtons, or a factor.
+pub(crate) trait Field: Debug + Send + Sync {
+    /// The friction in a context, without a click.
+    fn at(&self, context: &Context) -> f64;
+
+    /// The interval of the friction at a place, at any time and speed, and with its click.
+    fn interval_at(&self, x_m: f64, y_m: f64) -> Interval<f64> {
+        let friction_n = self.at(&Context { x_m, y_m, ..Context::default() });
+        Interval::of([friction_n]).plus(click_interval(self.click()))
+    }
+
+    /// The interval of the friction in a cell: exactly, or larger than that.
+    fn interval_in(&self, cell: Cell) -> Interval<f64> {
+        let (x_m, y_m) = cell.middle();
+        self.interval_at(x_m, y_m)
+    }
+
+    /// 0 when the friction is the same all over the cell, 1 when [`Field::interval_in`] is exact, 2 when it may be
+    /// larger than what is there. `outline_m` is the layer's own rectangle: left, top, right, bottom.
+    fn doubts_in(&self, cell: Cell, outline_m: [f64; 4]) -> usize {
+        let _ = (cell, outline_m);
+        1
+    }
+
+    /// Length over which the friction varies little, m; `None` when it is the same everywhere.
+    fn detail_m(&self) -> Option<f64> {
+        None
+    }
+
+    /// The click, if it can be felt.
+    fn click(&self) -> Option<Click> {
+        None
+    }
+
+    /// On which side of a line a place is, which the finger crosses to click.
+    fn is_beyond(&self, x_m: f64, y_m: f64) -> bool {
+        let _ = (x_m, y_m);
+        true
+    }
+
+    /// A finger that slides into the region clicks.
+    fn clicks_on_entry(&self) -> bool {
+        false
+    }
+
+    /// The largest friction of a layer that changes with time alone.
+    fn largest_over_time_n(&self) -> Option<f64> {
+        None
+    }
+}
+
+/// The reference of the same friction everywhere, N.
+pub(crate) fn constant_field(friction_n: f64) -> Arc<dyn Field> {
+    Arc::new(constant::ConstantField(friction_n))
+}
+
+/// What a click adds, at any time.
+fn click_interval(click: Option<Click>) -> Interval<f64> {
+    Interval::of([0.0, click.map_or(0.0, |click| f64::from(click.height_n))])
+}
+
+/// Makes the types of all kinds from one list.
+macro_rules! kinds {
+    ($( $kind:ident in $module:ident, )*) => {
+        /// What a layer is, as a person wrote it.
+        #[derive(Clone, Debug, PartialEq)]
+        pub(crate) enum Kind {
+            $( $kind($module::$kind), )*
+        }
+
+        /// A word after `kind`.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub(crate) enum KindName {
+            $( $kind, )*
+        }
+
+        impl KindName {
+            pub(crate) const ALL: &[(&str, Self)] = &[$( (<$module::$kind as Words>::WORD, Self::$kind), )*];
+
+            pub(crate) fn word(self) -> &'static str {
+                match self { $( Self::$kind => <$module::$kind as Words>::WORD, )* }
+            }
+
+            pub(crate) fn blends(self) -> (&'static [(&'static str, Blend)], Blend) {
+                match self { $( Self::$kind => (<$module::$kind>::BLENDS, <$module::$kind>::BLEND), )* }
+            }
+
+            pub(crate) fn needs_rim(self) -> bool {
+                match self { $( Self::$kind => <$module::$kind>::NEEDS_RIM, )* }
+            }
+
+            pub(crate) fn has_totals(self) -> bool {
+                match self { $( Self::$kind => <$module::$kind>::TOTALS, )* }
+            }
+
+            pub(crate) fn read(self, fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Kind> {
+                match self { $( Self::$kind => Words::read(fields, unit, log).map(Kind::$kind), )* }
+            }
+        }
+
+        impl Kind {
+            /// Finds mistakes between fields.
+            pub(crate) fn check(&self, places: &Places, log: &mut Log) {
+                match self { $( Self::$kind(kind) => Words::check(kind, places, log), )* }
+            }
+
+            /// The field that asks for the most friction, or for the least.
+            pub(crate) fn extreme(&self, most: bool, places: &Places) -> &'static str {
+                match self { $( Self::$kind(kind) => Words::extreme(kind, most, places), )* }
+            }
+
+            /// The layer of a record; `None` when something is wrong with it, which has been logged.
+            pub(crate) fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {
+                match self { $( Self::$kind(kind) => Words::lower(kind, layer, lowering), )* }
+            }
+        }
+
+        /// The reference of a record's layer.
+        pub(crate) fn field(layer: &Record, region: RecordRegion, program: &Program) -> Arc<dyn Field> {
+            match layer { $( Record::$kind(layer) => $module::field(layer, region, program), )* }
+        }
+    };
+}
+
+kinds! {
+    Constant in constant,
+    Grating in grating,
+    Bitmap in bitmap,
+    Noise in noise,
+    Edge in edge,
+    Button in button,
+    Vibration in vibration,
+    Speed in speed,
+    Stream in stream,
+}

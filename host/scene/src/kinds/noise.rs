@@ -1,0 +1,135 @@
+//! Band-limited noise: the mean of eight cosine waves that a seed chooses.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use frixel_layers::{Interval, Layer as RecordLayer, NOISES_MAX, Noise as Record, Region as RecordRegion};
+
+use super::{Field, Lowered, Words};
+use crate::cover::Cell;
+use crate::fields::Fields;
+use crate::grammar::Absence::{Mistake as Required, Number};
+use crate::grammar::{AmountFields, FieldSpec, Holds, Range};
+use crate::layer::{Layer, LowHigh, Unit};
+use crate::log::Log;
+use crate::lower::{Lowering, MM};
+use crate::mistake::Mistake;
+use crate::program::Program;
+use crate::reference::Context;
+use crate::source::Places;
+use crate::tables::{WAVELENGTH_MM, amount, number};
+
+const SEED: FieldSpec = FieldSpec::new(
+    "seed",
+    Holds::Whole(Range::new(0.0, 4_294_967_295.0, "")),
+    Number(0.0),
+    "the number that the waves are drawn with",
+);
+const MIN: FieldSpec = number("wavelength_min_mm", WAVELENGTH_MM, Required, "nothing is finer than this");
+const MAX: FieldSpec = number("wavelength_max_mm", WAVELENGTH_MM, Required, "nothing is coarser than this");
+const LOW: AmountFields = amount!("low", Required, "least friction, below which it never falls");
+const HIGH: AmountFields = amount!(
+    "high",
+    Required,
+    "largest friction, above which it never rises. It is near the middle most of the time: its standard deviation is \
+     an eighth of the range"
+);
+
+/// `kind = "noise"`.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Noise {
+    seed: u32,
+    wavelength_min_mm: f64,
+    wavelength_max_mm: f64,
+    amounts: LowHigh,
+}
+
+impl Words for Noise {
+    const WORD: &'static str = "noise";
+
+    fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
+        let seed = fields.number_or_default(log, &SEED) as u32;
+        let wavelength_min_mm = fields.number(log, &MIN);
+        let wavelength_max_mm = fields.number(log, &MAX);
+        let amounts = LowHigh::read(fields, [&LOW, &HIGH], unit, log);
+        Some(Self {
+            seed,
+            wavelength_min_mm: wavelength_min_mm?,
+            wavelength_max_mm: wavelength_max_mm?,
+            amounts: amounts?,
+        })
+    }
+
+    fn check(&self, places: &Places, log: &mut Log) {
+        self.amounts.check(places, log);
+        let (low, high) = (self.wavelength_min_mm, self.wavelength_max_mm);
+        if low > high {
+            let (low_name, high_name) = (MIN.name, MAX.name);
+            log.add(places.field(low_name), Mistake::LowAboveHigh { low_name, low, high_name, high });
+        }
+    }
+
+    fn extreme(&self, most: bool, places: &Places) -> &'static str {
+        LowHigh::extreme(most, places)
+    }
+
+    fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {
+        let record = Record {
+            seed: self.seed,
+            wavelength_min_m: (self.wavelength_min_mm * MM) as f32,
+            wavelength_max_m: (self.wavelength_max_mm * MM) as f32,
+            low_n: lowering.amount(layer, self.amounts.low),
+            high_n: lowering.amount(layer, self.amounts.high),
+        };
+        lowering.noises += 1;
+        lowering.limit(layer, "layers of noise", lowering.noises, NOISES_MAX)?;
+        Some(RecordLayer::Noise(record).into())
+    }
+}
+
+pub(super) fn field(record: &Record, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
+    let (wavelength_min_m, wavelength_max_m) = (f64::from(record.wavelength_min_m), f64::from(record.wavelength_max_m));
+    let waves = (0..8).map(|wave| {
+        let draw = |number: u32| drawn(record.seed.wrapping_add(0x9e37_79b9_u32.wrapping_mul(3 * wave + number)));
+        let direction = TAU * (f64::from(wave) + draw(1)) / 16.0;
+        let part = (f64::from(5 * wave % 8) + draw(2)) / 8.0;
+        let cycles_per_m = (1.0 - part) / wavelength_max_m + part / wavelength_min_m;
+        [cycles_per_m * libm::cos(direction), cycles_per_m * libm::sin(direction), draw(3)]
+    });
+    let (low_n, high_n) = (f64::from(record.low_n), f64::from(record.high_n));
+    Arc::new(NoiseField { waves: waves.collect(), wavelength_min_m, low_n, high_n })
+}
+
+#[derive(Debug)]
+struct NoiseField {
+    /// Cycles per metre along x and y, and a phase in turns.
+    waves: Vec<[f64; 3]>,
+    wavelength_min_m: f64,
+    low_n: f64,
+    high_n: f64,
+}
+
+impl Field for NoiseField {
+    fn at(&self, context: &Context) -> f64 {
+        let wave = |[x, y, phase]: &[f64; 3]| libm::cos(TAU * (x * context.x_m + y * context.y_m + phase));
+        let mean = self.waves.iter().map(wave).sum::<f64>() / self.waves.len() as f64;
+        f64::midpoint(self.low_n, self.high_n) + 0.5 * (self.high_n - self.low_n) * mean
+    }
+
+    fn interval_in(&self, _cell: Cell) -> Interval<f64> {
+        Interval { low: self.low_n, high: self.high_n }
+    }
+
+    fn detail_m(&self) -> Option<f64> {
+        Some(0.1 * self.wavelength_min_m)
+    }
+}
+
+/// The fraction that the hash of `PROTOCOL.md` has for a number.
+fn drawn(number: u32) -> f64 {
+    let mut v = u64::from(number);
+    for (shift, factor) in [(16, 0x7feb_352d), (15, 0x846c_a68b), (16, 1)] {
+        v = ((v ^ (v >> shift)) * factor) & 0xffff_ffff;
+    }
+    (v / 256) as f64 / 16_777_216.0
+}

@@ -1,0 +1,105 @@
+//! A picture's samples.
+
+use std::f64::consts::TAU;
+
+use frixel_layers::Bitmap as Record;
+
+use crate::Bitmap;
+
+/// A picture's samples, bilinear between their centres, turned about their corner, held at the border or tiled.
+#[derive(Debug)]
+pub(super) struct Samples {
+    pub(super) x_m: f64,
+    pub(super) y_m: f64,
+    pub(super) pitch_m: f64,
+    pub(super) pitch_y_m: f64,
+    angle_turns: f64,
+    tiled: bool,
+    pub(super) width: usize,
+    pub(super) height: usize,
+    along_x: f64,
+    along_y: f64,
+    black_n: f64,
+    step_n: f64,
+    bytes: Vec<u8>,
+}
+
+impl Samples {
+    pub(super) fn new(bitmap: &Bitmap, record: &Record) -> Self {
+        let angle_turns = f64::from(record.angle_turns);
+        let (black_n, white_n) = (f64::from(record.black_n), f64::from(record.white_n));
+        Self {
+            x_m: f64::from(record.x_m),
+            y_m: f64::from(record.y_m),
+            pitch_m: f64::from(record.pitch_m),
+            pitch_y_m: f64::from(record.pitch_y_m),
+            angle_turns,
+            tiled: record.tiled,
+            width: usize::from(bitmap.width),
+            height: usize::from(bitmap.height),
+            along_x: libm::cos(TAU * angle_turns),
+            along_y: libm::sin(TAU * angle_turns),
+            black_n,
+            step_n: (white_n - black_n) / 255.0,
+            bytes: bitmap.samples.clone(),
+        }
+    }
+
+    pub(super) fn is_turned(&self) -> bool {
+        self.angle_turns.abs() > 0.0
+    }
+
+    /// Friction at a place, N.
+    pub(super) fn at_place(&self, x_m: f64, y_m: f64) -> f64 {
+        let (u, v) = self.position(x_m, y_m);
+        let (column, next_column, right) = self.between(u, self.width);
+        let (row, next_row, below) = self.between(v, self.height);
+        let upper = mix(self.sample(column, row), self.sample(next_column, row), right);
+        let lower = mix(self.sample(column, next_row), self.sample(next_column, next_row), right);
+        self.black_n + self.step_n * mix(upper, lower, below)
+    }
+
+    /// A place in samples from the first one's centre, along a row and across the rows.
+    pub(super) fn position(&self, x_m: f64, y_m: f64) -> (f64, f64) {
+        let (x_m, y_m) = (x_m - self.x_m, y_m - self.y_m);
+        let along_m = self.along_x * x_m + self.along_y * y_m;
+        let across_m = self.along_x * y_m - self.along_y * x_m;
+        (along_m / self.pitch_m - 0.5, across_m / self.pitch_y_m - 0.5)
+    }
+
+    /// Friction of the samples in these columns and rows, which go on beyond the picture as it is held or tiled.
+    pub(super) fn frictions(
+        &self,
+        columns: std::ops::RangeInclusive<i64>,
+        rows: std::ops::RangeInclusive<i64>,
+    ) -> impl Iterator<Item = f64> {
+        let index = |number: i64, count: usize| {
+            let count = count as i64;
+            (if self.tiled { number.rem_euclid(count) } else { number.clamp(0, count - 1) }) as usize
+        };
+        rows.flat_map(move |row| columns.clone().map(move |column| (column, row))).map(move |(column, row)| {
+            self.black_n + self.step_n * self.sample(index(column, self.width), index(row, self.height))
+        })
+    }
+
+    /// The samples before and behind a position, and how far the position lies behind the one before.
+    fn between(&self, position: f64, samples: usize) -> (usize, usize, f64) {
+        let last = samples - 1;
+        if self.tiled {
+            let place = position.rem_euclid(samples as f64);
+            let before = (place as usize).min(last);
+            return (before, if before == last { 0 } else { before + 1 }, place - before as f64);
+        }
+        let held = position.clamp(0.0, last as f64);
+        let before = held as usize;
+        (before, (before + 1).min(last), held - before as f64)
+    }
+
+    fn sample(&self, column: usize, row: usize) -> f64 {
+        self.bytes.get(row * self.width + column).map_or(f64::NAN, |sample| f64::from(*sample))
+    }
+}
+
+fn mix(one: f64, other: f64, part: f64) -> f64 {
+    one + (other - one) * part
+}

@@ -1,0 +1,70 @@
+//! What the host streams while the scene plays.
+
+use std::sync::Arc;
+
+use frixel_layers::{Interval, Layer as RecordLayer, Region as RecordRegion, Stream as Record};
+
+use super::{Field, Lowered, Words};
+use crate::fields::Fields;
+use crate::grammar::Absence::Mistake;
+use crate::grammar::AmountFields;
+use crate::layer::{Layer, LowHigh, Unit};
+use crate::log::Log;
+use crate::lower::Lowering;
+use crate::program::Program;
+use crate::reference::Context;
+use crate::source::Places;
+use crate::tables::amount;
+
+const LOW: AmountFields = amount!("low", Mistake, "friction of sample 0");
+const HIGH: AmountFields = amount!("high", Mistake, "friction of the largest sample");
+
+/// `kind = "stream"`.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Stream {
+    amounts: LowHigh,
+}
+
+impl Words for Stream {
+    const WORD: &'static str = "stream";
+
+    fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
+        Some(Self { amounts: LowHigh::read(fields, [&LOW, &HIGH], unit, log)? })
+    }
+
+    fn check(&self, places: &Places, log: &mut Log) {
+        self.amounts.check(places, log);
+    }
+
+    fn extreme(&self, most: bool, places: &Places) -> &'static str {
+        LowHigh::extreme(most, places)
+    }
+
+    fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {
+        let record = Record {
+            low_n: lowering.amount(layer, self.amounts.low),
+            high_n: lowering.amount(layer, self.amounts.high),
+        };
+        Some(RecordLayer::Stream(record).into())
+    }
+}
+
+pub(super) fn field(record: &Record, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
+    Arc::new(StreamField { low_n: f64::from(record.low_n), high_n: f64::from(record.high_n) })
+}
+
+#[derive(Debug)]
+struct StreamField {
+    low_n: f64,
+    high_n: f64,
+}
+
+impl Field for StreamField {
+    fn at(&self, context: &Context) -> f64 {
+        self.low_n + (self.high_n - self.low_n) * context.stream
+    }
+
+    fn interval_at(&self, _x_m: f64, _y_m: f64) -> Interval<f64> {
+        Interval::of([self.low_n, self.high_n])
+    }
+}
