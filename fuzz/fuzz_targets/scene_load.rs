@@ -8,15 +8,15 @@ use frixel::rigs::SimLink;
 use frixel_driver::{Device, DeviceError, Upload};
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
 use frixel_layers::Scene as WireScene;
-use frixel_layers::cost::{TICK_INSTRUCTIONS_MAX, worst_of_scene};
+use frixel_layers::cost::worst_of_scene;
 use frixel_scene::recorder::Recorder;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
-    let rig = RigConfig::default();
+    let rig_config = RigConfig::default();
     let mut memory = BoardMemory::new();
     let stroke = Stroke::natural(0.12, 0.08, 1.0).expect("a stroke");
-    let rig = Rig::new(&mut memory, &rig, stroke, 1).expect("a rig");
+    let rig = Rig::new(&mut memory, &rig_config, stroke, 1).expect("a rig");
     let mut device = Device::connect(SimLink::new(rig, Recorder::idle())).expect("a board");
     let upload = Upload { scene: bytes, bitmaps: Vec::new() };
     let taken = device.upload(&upload, &mut |_| {}).and_then(|()| device.commit(upload.scene_crc32()));
@@ -25,7 +25,7 @@ fuzz_target!(|bytes: &[u8]| {
             let scene = WireScene::parse(bytes).expect("the board has read it");
             let (records, points): (Vec<_>, Vec<_>) = (scene.records().collect(), scene.points().collect());
             let worst = worst_of_scene(scene.header(), &records, &points);
-            assert!(worst.instructions <= TICK_INSTRUCTIONS_MAX, "{worst:?}");
+            assert!(worst.cycles() <= rig_config.board.limits.tick_cycles_max, "{worst:?}");
         }
         Err(DeviceError::Refused { .. }) => return,
         Err(error) => panic!("{error}"),

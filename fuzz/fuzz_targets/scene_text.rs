@@ -6,7 +6,6 @@ use std::collections::BTreeMap;
 use frixel::check::SceneCheck;
 use frixel_scene::{Scene, compile};
 use frixel_hil_sim::RigConfig;
-use frixel_layers::cost::TICK_INSTRUCTIONS_MAX;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {
@@ -14,7 +13,7 @@ fuzz_target!(|text: &str| {
     // No pictures: the text is under test.
     let Ok(scene) = Scene::parse(text, "fuzz.toml", &BTreeMap::new()) else { return };
     let Ok(program) = compile(&scene, &rig.board.limits, rig.board.tick_hz) else { return };
-    assert!(program.worst_tick().instructions <= TICK_INSTRUCTIONS_MAX);
+    assert!(program.worst_tick().cycles() <= rig.board.limits.tick_cycles_max);
     if let Err(error) = SceneCheck::of(&program, &rig) {
         panic!("it compiles, and the board does not take it: {error}");
     }

@@ -9,6 +9,7 @@ use std::time::Instant;
 
 use frixel_hil_sim::{Point, Stroke, World, WorldConfig};
 use frixel_render::Drive;
+use frixel_wire::dac_code::DacCode;
 
 const SECONDS: f64 = 60.0;
 
@@ -30,7 +31,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         for tick in 0..ticks {
             black_box(world.sense());
             let dac_code = if (tick / 20).is_multiple_of(2) { 25_000 } else { -25_000 };
-            friction_n += world.apply(black_box(Drive { dac_code, amplifier_enable: true })).friction_n;
+            friction_n += world
+                .apply(black_box(Drive { dac_code: DacCode::from_bits(dac_code), amplifier_enable: true }))
+                .friction_n;
         }
         let wall_s = begin.elapsed().as_secs_f64();
         println!(

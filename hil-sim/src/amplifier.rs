@@ -75,7 +75,7 @@ impl Amplifier {
     /// With target `u`, start `v0` and `d = v0 - u` the output is `u + d e^(-t/tau)`; the mean of its square is the
     /// square of its mean plus its variance, which cannot cancel.
     pub(crate) fn tick(&mut self, drive: Drive) -> Output {
-        let asked_v = if drive.amplifier_enable { f64::from(drive.dac_code) * self.volts_per_code } else { 0.0 };
+        let asked_v = if drive.amplifier_enable { f64::from(drive.dac_code.bits()) * self.volts_per_code } else { 0.0 };
         let target_v = asked_v.clamp(-self.saturation_v_peak, self.saturation_v_peak);
         let distance_v = self.output_v - target_v;
         if distance_v.abs() < SETTLED_V {
@@ -101,6 +101,7 @@ mod tests {
     #![allow(clippy::float_cmp, reason = "what has to be exact is tested as exact")]
 
     use frixel_render::Drive;
+    use frixel_wire::dac_code::DacCode;
     use proptest::prelude::*;
 
     use super::{Amplifier, AmplifierConfig};
@@ -113,7 +114,7 @@ mod tests {
     }
 
     fn drive(dac_code: i16) -> Drive {
-        Drive { dac_code, amplifier_enable: true }
+        Drive { dac_code: DacCode::from_bits(dac_code), amplifier_enable: true }
     }
 
     /// Voltage and mean square by Simpson's rule over the lag's differential equation, solved from its definition.
@@ -206,7 +207,7 @@ mod tests {
         for _ in 0..100 {
             amplifier.tick(drive(32_767));
         }
-        let off = Drive { dac_code: 32_767, amplifier_enable: false };
+        let off = Drive { dac_code: DacCode::MAX, amplifier_enable: false };
         let first_v = amplifier.tick(off).end_v;
         assert!((first_v - 200.0 * libm::exp(-1.25)).abs() < 1e-6, "{first_v}");
         let last = (0..40).map(|_| amplifier.tick(off)).last().unwrap();

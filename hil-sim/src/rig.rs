@@ -1,6 +1,6 @@
 //! The in-process rig: session, ticker and world, tick by tick, on one thread.
 
-use frixel_exchange::{Done, Given, TICK_BYTES_MAX, TickBytes};
+use frixel_exchange::{TICK_BYTES_MAX, TickBytes, TickInput, TickOutput};
 use frixel_layers::BitmapPool;
 use frixel_layers::{Header, Scene};
 use frixel_model::{Contact, Finger, LoadedContact, ParameterError};
@@ -190,8 +190,13 @@ impl<'a> Rig<'a> {
         if !arrived.is_empty() {
             self.session.receive(arrived, &self.status);
         }
+        let touch = self.world.touch();
+        if let Some(touch) = touch {
+            self.session.touch(touch, self.status.telemetry.tick.wrapping_add(1));
+        }
         self.obey();
-        let sense: Sense = self.world.sense();
+        let arm_switch = !self.ticker.waits_for_release();
+        let sense = Sense { arm_switch, ..self.world.sense() };
         let drive = self.ticker.tick(&sense);
         let felt = self.world.apply(drive);
         self.status = self.ticker.status();
@@ -201,20 +206,20 @@ impl<'a> Rig<'a> {
         self.tick += 1;
         if let (Some(journal), Some(received)) = (&mut self.journal, received) {
             let tick = self.tick as u32;
-            journal.push(&Given { tick, received, room, sense }, &Done { tick, drive, sent });
+            journal.push(&TickInput { tick, received, room, touch, sense }, &TickOutput { tick, drive, sent });
         }
         TickRecord { tick: self.tick, status: self.status, felt }
     }
 
+    /// Hands the session's next order to the ticker, which takes one before each tick.
     fn obey(&mut self) {
-        while let Some(order) = self.session.next_order() {
-            let is_new_scene = matches!(order, Order::Load(_));
-            if let Some(spare) = self.ticker.apply(order) {
-                self.session.take_back(spare);
-            }
-            if is_new_scene {
-                self.put_scenes_finger_on();
-            }
+        let Some(order) = self.session.next_order() else { return };
+        let is_new_scene = matches!(order, Order::Load(_));
+        if let Some(spare) = self.ticker.apply(order) {
+            self.session.take_back(spare);
+        }
+        if is_new_scene {
+            self.put_scenes_finger_on();
         }
     }
 

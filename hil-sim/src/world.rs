@@ -3,7 +3,7 @@
 use core::ops::Range;
 
 use frixel_model::LoadedContact;
-use frixel_render::{Drive, Sense};
+use frixel_render::{Drive, Sense, Touch};
 
 use crate::amplifier::{Amplifier, AmplifierConfig};
 use crate::error::{OutOfRange, WorldError};
@@ -67,7 +67,7 @@ pub struct Felt {
 /// world.start_stroke();
 /// let sense = world.sense();
 /// assert!(!sense.amplifier_fault);
-/// let felt = world.apply(Drive { dac_code: 0, amplifier_enable: true });
+/// let felt = world.apply(Drive { amplifier_enable: true, ..Drive::default() });
 /// assert_eq!(felt.friction_n, 0.25);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -80,8 +80,18 @@ pub struct World {
     fingertip: Fingertip,
     touch_source: TouchSource,
     stroke: Stroke,
-    /// Tick at which the stroke started, once it has.
-    stroke_start: Option<u64>,
+    motion: Motion,
+}
+
+/// What moves the finger.
+#[derive(Clone, Copy, Debug)]
+enum Motion {
+    /// Nothing: the finger is off the screen.
+    Lifted,
+    /// The stroke, which started at this tick.
+    Stroke { start_tick: u64 },
+    /// The caller, who has placed it here.
+    Placed(FingerState),
 }
 
 impl World {
@@ -101,7 +111,7 @@ impl World {
             fingertip: Fingertip::new(example_finger().map_err(WorldError::Finger)?, tick_hz),
             touch_source,
             stroke,
-            stroke_start: None,
+            motion: Motion::Lifted,
         })
     }
 
@@ -112,7 +122,20 @@ impl World {
 
     /// Starts the stroke, or starts it again: its time zero is the current tick.
     pub fn start_stroke(&mut self) {
-        self.stroke_start = Some(self.tick);
+        self.motion = Motion::Stroke { start_tick: self.tick };
+    }
+
+    /// Places the finger from outside, in place of the stroke: [`Self::apply`] finds it there from the next tick on,
+    /// until it is placed elsewhere or lifted.
+    ///
+    /// A caller who moves a finger does so at every tick, with its speed: the world derives no speed from two places.
+    pub fn place_finger(&mut self, finger: FingerState) {
+        self.motion = Motion::Placed(finger);
+    }
+
+    /// Lifts the finger off the screen from outside, and ends a stroke.
+    pub fn lift_finger(&mut self) {
+        self.motion = Motion::Lifted;
     }
 
     /// Raises the amplifier's fault line for a range of ticks. The amplifier itself works on: to switch it off is up to
@@ -128,18 +151,25 @@ impl World {
 
     /// The finger at the current tick, if it is on the screen.
     pub fn finger(&self) -> Option<FingerState> {
-        let ticks = self.tick - self.stroke_start?;
-        self.stroke.at(ticks as f64 / f64::from(self.tick_hz))
+        match self.motion {
+            Motion::Lifted => None,
+            Motion::Stroke { start_tick } => self.stroke.at((self.tick - start_tick) as f64 / f64::from(self.tick_hz)),
+            Motion::Placed(finger) => Some(finger),
+        }
     }
 
-    /// What the board sees at the current tick. Asking twice gives the same answer.
+    /// What the board's tick sees at the current tick. Asking twice gives the same answer.
     pub fn sense(&self) -> Sense {
         Sense {
-            touch: self.touch_source.arrived(),
             amplifier_fault: self.amplifier_faults.iter().any(|ticks| ticks.contains(&self.tick)),
             monitor_v: self.amplifier.output_v() as f32,
             arm_switch: true,
         }
+    }
+
+    /// The report of the touch source that arrived at the current tick.
+    pub fn touch(&self) -> Option<Touch> {
+        self.touch_source.arrived()
     }
 
     /// Holds what the board puts out for one tick, and goes to the next.

@@ -18,6 +18,7 @@ use frixel_drivers::zforce::{self, Touch, ZForce};
 use frixel_hil_sim::chips::{
     Ad5761rChip, BouncingContact, BusFault, ChipDelay, ChipSpi, PolledDelay, TouchEvent, ZForceModule,
 };
+use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::State;
 
 /// A step of the DAC, in volts.
@@ -29,7 +30,7 @@ fn dac(chip: &Ad5761rChip) -> Ad5761r<ChipSpi, ChipDelay> {
 
 /// A frame that the tick sends by hardware of its own.
 fn tick_frame(chip: &Ad5761rChip, code: i16) {
-    chip.spi().write(&ad5761r::output(code)).unwrap();
+    chip.spi().write(&ad5761r::output(DacCode::from_bits(code))).unwrap();
 }
 
 #[test]

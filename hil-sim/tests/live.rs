@@ -114,6 +114,10 @@ fn a_layer_goes_off_and_comes_back_as_its_record_has_it_with_the_next_commit() {
     }
     let commit = script.upload(&both);
     script.command(commit);
+    // The board computes the scene meanwhile.
+    for _ in 0..40 {
+        script.step();
+    }
     let back: Vec<f32> = (0..1_000).map(|_| asked(&mut script)).collect();
     assert!(back.iter().all(|asked_n| *asked_n > 0.0109) && back.iter().any(|asked_n| *asked_n > 0.0155));
 }
@@ -197,7 +201,8 @@ fn a_scene_takes_anothers_place_between_two_ticks() {
     // Every phase of the touch source: the tick of the swap may take a report, too.
     for delay in 0..5 {
         let Swap { swap, before, after, swapped } = swap(&before, &after, delay);
-        assert!((1_000..1_020).contains(&swap), "{swap}");
+        // The commit advances by a step a tick: 20 for these scenes.
+        assert!((1_000..1_040).contains(&swap), "{swap}");
         assert_eq!(asked_bits(&swapped[..swap]), asked_bits(&before[..swap]), "delay {delay}");
         assert_eq!(amplitudes(&swapped[..swap]), amplitudes(&before[..swap]), "delay {delay}");
         let asked_n = |record: &TickRecord| record.status.telemetry.asked_electric_friction_n;

@@ -6,6 +6,7 @@ use frixel_hil_sim::{
 };
 use frixel_model::{Contact, Finger};
 use frixel_render::{Drive, Sense, Touch};
+use frixel_wire::dac_code::DacCode;
 use proptest::prelude::*;
 
 const LEFT: Point = Point { x_m: 0.01, y_m: 0.03 };
@@ -29,7 +30,7 @@ fn ideal_amplifier() -> WorldConfig {
 /// A square carrier of 1 kHz.
 fn square(tick: u64, dac_code: i16) -> Drive {
     let positive = (tick / 20).is_multiple_of(2);
-    Drive { dac_code: if positive { dac_code } else { -dac_code }, amplifier_enable: true }
+    Drive { dac_code: DacCode::from_bits(if positive { dac_code } else { -dac_code }), amplifier_enable: true }
 }
 
 #[test]
@@ -37,9 +38,45 @@ fn without_drive_the_finger_feels_exactly_its_natural_friction() {
     let mut world = world(WorldConfig::default());
     world.start_stroke();
     for _ in 0..1000 {
-        let felt = world.apply(Drive { dac_code: 0, amplifier_enable: true });
+        let felt = world.apply(Drive { amplifier_enable: true, ..Drive::default() });
         assert_eq!((felt.friction_n, felt.electric_friction_n, felt.mean_square_v2), (0.25, 0.0, 0.0));
     }
+}
+
+/// Whatever moves the finger, the world is the same: felt friction and touch reports, bit for bit.
+#[test]
+fn a_finger_that_is_placed_at_every_tick_is_the_finger_of_the_stroke() {
+    let stroke = sliding();
+    let mut by_stroke = world(WorldConfig::default());
+    let mut placed = by_stroke.clone();
+    by_stroke.start_stroke();
+    // Beyond the end of the stroke, where the finger is lifted.
+    for tick in 1..=40_000_u64 {
+        match stroke.at(tick as f64 / 40_000.0) {
+            Some(finger) => placed.place_finger(finger),
+            None => placed.lift_finger(),
+        }
+        let drive = square(tick, 20_000);
+        assert_eq!(placed.apply(drive), by_stroke.apply(drive), "tick {tick}");
+        assert_eq!(placed.sense(), by_stroke.sense(), "tick {tick}");
+    }
+    assert_eq!(placed.finger(), None, "the stroke ended");
+}
+
+#[test]
+fn a_finger_stays_where_it_was_placed_until_it_is_lifted_or_a_stroke_starts() {
+    let mut world = world(WorldConfig::default());
+    let finger = FingerState { x_m: 0.04, y_m: 0.05, speed_m_per_s: 0.0 };
+    world.place_finger(finger);
+    let drive = Drive { dac_code: DacCode::ZERO, amplifier_enable: true };
+    for _ in 0..100 {
+        assert_eq!(world.apply(drive).finger, Some(finger));
+    }
+    world.lift_finger();
+    assert_eq!(world.apply(drive).finger, None);
+    world.place_finger(finger);
+    world.start_stroke();
+    assert_ne!(world.apply(drive).finger, Some(finger));
 }
 
 #[test]
@@ -133,7 +170,7 @@ fn the_board_sees_the_finger_where_it_was_a_latency_ago() {
     let mut lifts = 0;
     for tick in 0..40_000_u64 {
         assert_eq!(world.sense(), world.sense());
-        match world.sense().touch {
+        match world.touch() {
             Some(Touch::Down { x_m, y_m, age_ticks }) => {
                 let sampled = tick - u64::from(age_ticks);
                 let expected = sliding().at(sampled as f64 / 40_000.0).unwrap();
@@ -186,7 +223,7 @@ proptest! {
             world.start_stroke();
             // Each code is held for 40 ticks, so that touch reports come in between.
             codes.iter().flat_map(|code| [code; 40]).map(|&(dac_code, amplifier_enable)| {
-                (world.sense(), world.apply(Drive { dac_code, amplifier_enable }))
+                (world.sense(), world.apply(Drive { dac_code: DacCode::from_bits(dac_code), amplifier_enable }))
             }).collect::<Vec<(Sense, Felt)>>()
         };
         let first = run(seed);
@@ -200,7 +237,7 @@ fn seeds_differ_in_what_the_board_sees_and_not_in_what_is_felt() {
     let run = |seed| {
         let mut world = World::new(WorldConfig::default(), sliding(), seed).unwrap();
         world.start_stroke();
-        (0..8000).map(|tick| (world.sense().touch, world.apply(square(tick, 20_000)))).unzip()
+        (0..8000).map(|tick| (world.touch(), world.apply(square(tick, 20_000)))).unzip()
     };
     let (first, second): ((Vec<_>, Vec<_>), (Vec<_>, Vec<_>)) = (run(1), run(2));
     assert_ne!(first.0, second.0);

@@ -124,4 +124,6 @@ pub use real::Real;
 pub use shear::{ShearOnset, TissueSpring};
 pub use soft::{PowerLawShape, SoftContact, SoftFinger, SoftLoadedContact, SoftLowerBound, contact_exponent};
 pub use state::{ContactModel, ContactState, Sensitivity};
-pub use table::{FixedTable, InverseTable, Precision, SizedTable, TableBuilder, TableError, TableShape};
+pub use table::{
+    FixedTable, InverseTable, InverseTableFilling, Precision, SizedTable, TableBuilder, TableError, TableShape,
+};

@@ -20,7 +20,7 @@ cargo xtask bench    instructions and estimated cycles on emulated processors, a
 cargo xtask budgets  the same, held against budgets.toml, and random scenes against what the loader reckons for them
 cargo xtask soak     what takes too long for every change: every f32 through the tables, thousands of random scenes
 cargo xtask programs PACE FIRST COUNT
-                     random scenes from seed FIRST on, under touch sources of a PACE that is usual or hasty
+                     random scenes from seed FIRST on, under touch sources of a PACE that is usual or fast
 ";
 
 fn main() -> ExitCode {

@@ -2,7 +2,7 @@
 
 use core::array;
 
-use frixel_render::{Session, Ticker};
+use frixel_render::{Drive, Order, Sense, Session, Ticker, Touch};
 use frixel_wire::frame::{FRAME_MAX_LEN, crc32};
 use frixel_wire::message::{Command, Request};
 use frixel_wire::payload::{self, CHUNK_LEN};
@@ -19,17 +19,47 @@ pub const STREAM_FRAME: usize = 64;
 pub struct Host<'a> {
     pub session: Session<'a>,
     pub ticker: Ticker<'a>,
+    /// The order that the next tick takes.
+    order: Option<Order<'a>>,
     sequence: u16,
 }
 
 impl<'a> Host<'a> {
     /// A host for a board that has just started.
     pub fn new(session: Session<'a>, ticker: Ticker<'a>) -> Self {
-        Self { session, ticker, sequence: 0 }
+        Self { session, ticker, order: None, sequence: 0 }
     }
 
-    /// Sends a command.
+    /// Does what the main loop of a board does before a tick: gives the session a report of the touch source, and takes the
+    /// session's next order.
+    pub fn before_tick(&mut self, touch: Option<Touch>) {
+        if let Some(touch) = touch {
+            self.session.touch(touch, self.ticker.status().telemetry.tick.wrapping_add(1));
+        }
+        self.order = self.session.next_order();
+    }
+
+    /// Applies the order that waits, and ticks.
+    pub fn tick(&mut self, sense: &Sense) -> Drive {
+        if let Some(order) = self.order.take() {
+            // The commands below hand scenes over by themselves.
+            let _ = self.ticker.apply(order);
+        }
+        self.ticker.tick(sense)
+    }
+
+    /// Says that the host is there; the next tick takes the order.
+    pub fn ping(&mut self) {
+        self.send_without_orders(Command::Ping);
+    }
+
+    /// Sends a command, and hands over the orders that come of it.
     pub fn command(&mut self, command: Command) {
+        self.send_without_orders(command);
+        self.hand_over();
+    }
+
+    fn send_without_orders(&mut self, command: Command) {
         self.sequence += 1;
         let request = Request { sequence: self.sequence, command };
         let mut frame = [0; FRAME_MAX_LEN];
@@ -80,12 +110,15 @@ impl<'a> Host<'a> {
         let status = self.ticker.status();
         self.session.receive(bytes, &status);
         self.session.poll(&status);
+        // Nobody reads the answers: what went wrong shows in the state.
+        self.session.transmit(&mut [0; 2048]);
+    }
+
+    fn hand_over(&mut self) {
         while let Some(order) = self.session.next_order() {
             if let Some(spare) = self.ticker.apply(order) {
                 self.session.take_back(spare);
             }
         }
-        // Nobody reads the answers: what went wrong shows in the state.
-        self.session.transmit(&mut [0; 2048]);
     }
 }

@@ -2,10 +2,14 @@
 
 use core::array;
 
+use frixel_layers::cost;
+use frixel_layers::{
+    Beat, Bitmap, Blend, Burst, Button, Carrier, Click, Constant, Edge, Grating, Header, Layer, Noise, Point, Record,
+    Region, Speed, Stream, Vibration, Wave,
+};
+use frixel_wire::hello::BoardLimits;
 use frixel_wire::message::Command;
-use frixel_layers::cost::{self, TICK_INSTRUCTIONS_MAX};
-use frixel_layers::{Beat, Bitmap, Blend, Burst, Button, Carrier, Click, Constant, Edge, Grating, Header, Layer, Noise, Point, Record, Region, Speed, Stream, Vibration, Wave};
-use frixel_wire::scene::{RECORDS_MAX};
+use frixel_wire::scene::RECORDS_MAX;
 
 use crate::count::Counter;
 use crate::host::STREAM_HZ;
@@ -191,7 +195,8 @@ impl Bench {
         let header = Header { carrier: Carrier::Sine, ..HEADER };
         let mut records = [under(AROUND, CONSTANT); RECORDS_MAX];
         let mut count = 0;
-        let mut left = TICK_INSTRUCTIONS_MAX.saturating_sub(cost::of_empty_scene(&header));
+        let core_cycles_max = BoardLimits::SMALLEST_TICK_CYCLES_MAX * 100 / cost::FLASH_WAIT_PERCENT;
+        let mut left = core_cycles_max.saturating_sub(cost::of_empty_scene(&header));
         for layer in [bitmap(crc32), GRATING, CONSTANT] {
             let record = under(AROUND, layer);
             let cost = cost::of_record(&record, &[]).max(1);

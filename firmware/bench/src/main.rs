@@ -32,7 +32,7 @@ fn main() -> ! {
         let mut counter = Counter::new(peripherals.SYST);
         let mut line = [0; COMMAND_LINE_MAX_LEN];
         if let Some(seeds) = Seeds::of_command_line(command_line(&mut line)) {
-            programs::run(&seeds);
+            programs::run(&seeds, &mut counter);
             debug::exit(debug::EXIT_SUCCESS);
         }
         inverse::run(&mut counter);

@@ -1,18 +1,17 @@
-//! Random scenes that a board accepts, each played under a random finger: no tick may take more than the loader reckoned.
+//! Random scenes that a board accepts, each played under a random finger: no tick may take more than the loader estimates.
 //!
 //! The emulator's command line says `programs`, the pace of the touch source (`usual` or
-//! `hasty`), the first seed and how many follow. Every line that is written is a seed,
-//! the instructions of the longest tick, those that the loader reckoned, and the number of that tick.
+//! `fast`), the first seed and how many follow. Every line that is written is a seed,
+//! the instructions of the longest tick, the core cycles that the loader estimates, and the number of that tick.
 
 use core::str;
 
 use cortex_m_semihosting::hprintln;
+use frixel_layers::{Layer, SCENE_MAX_LEN};
 use frixel_random_scenes::{Pace, RandomFinger, RandomScene, Report};
 use frixel_render::Touch;
-use frixel_wire::message::Command;
-use frixel_layers::{Layer, SCENE_MAX_LEN};
 
-use crate::count::Case;
+use crate::count::{Case, Counter};
 use crate::tick::{Bench, PING_TICKS, STREAM_TICKS};
 
 /// Ticks counted of each scene.
@@ -32,7 +31,7 @@ impl Seeds {
         let mut words = line.split_ascii_whitespace().skip_while(|word| *word != "programs").skip(1);
         let pace = match words.next()? {
             "usual" => Pace::Usual,
-            "hasty" => Pace::Hasty,
+            "fast" => Pace::Fast,
             _ => return None,
         };
         let mut number = || words.next()?.parse().ok();
@@ -41,30 +40,29 @@ impl Seeds {
 }
 
 /// Plays the scenes of all seeds.
-pub fn run(seeds: &Seeds) {
+pub fn run(seeds: &Seeds, counter: &mut Counter) {
     let mut bench = Bench::new();
     let crc32 = bench.picture();
-    // The board sees that its arm switch is held.
-    bench.tick(None);
     for seed in seeds.first..seeds.first + seeds.count {
-        bench.play_random(seed, seeds.pace, crc32);
+        // A debugger follows a scene that is played alone.
+        let case = if seeds.count == 1 { counter.case("") } else { Case::unfollowed() };
+        bench.play_random(seed, seeds.pace, crc32, case);
     }
 }
 
 impl Bench {
-    fn play_random(&mut self, seed: u64, pace: Pace, crc32: u32) {
+    fn play_random(&mut self, seed: u64, pace: Pace, crc32: u32, mut case: Case) {
         let scene = RandomScene::new(seed, crc32);
-        let reckoned = scene.worst_tick().instructions;
+        let estimated_core_cycles = scene.worst_tick().core_cycles;
         self.play_bytes(scene.write(&mut [0; SCENE_MAX_LEN]));
         if scene.records.iter().any(|record| matches!(record.layer, Layer::Stream(_))) {
             self.start_stream();
         }
         let mut finger = RandomFinger::new(seed, &scene.header, pace);
-        let mut case = Case::unfollowed();
         self.tick(Some(Touch::Up));
         for tick in 0..TICKS {
             if tick.is_multiple_of(PING_TICKS / 2) {
-                self.host.command(Command::Ping);
+                self.host.ping();
             }
             if tick.is_multiple_of(STREAM_TICKS) {
                 self.host.stream(tick / STREAM_TICKS);
@@ -76,6 +74,6 @@ impl Bench {
             self.count(&mut case, touch);
         }
         let (instructions, tick) = case.worst();
-        hprintln!("{} {} {} {}", seed, instructions, reckoned, tick);
+        hprintln!("{} {} {} {}", seed, instructions, estimated_core_cycles, tick);
     }
 }

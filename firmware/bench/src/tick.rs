@@ -1,11 +1,12 @@
 //! Whole ticks, by scene.
 
 use cortex_m::singleton;
-use frixel_layers::{BitmapPool};
+use frixel_layers::BitmapPool;
+use frixel_layers::{Carrier, HEADER_LEN, Header, Leader, POINT_LEN, Point, RECORD_LEN, Record, SCENE_MAX_LEN};
 use frixel_render::{Active, Board, Drive, Sense, Session, StreamBuffer, Ticker, Touch};
+use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::State;
 use frixel_wire::message::Command;
-use frixel_layers::{Carrier, HEADER_LEN, Header, Leader, POINT_LEN, Point, RECORD_LEN, Record, SCENE_MAX_LEN};
 
 use crate::count::{Case, Counter};
 use crate::host::{Host, STREAM_FRAME, STREAM_TICKS_PER_SAMPLE};
@@ -82,7 +83,7 @@ impl Monitor {
     }
 
     fn follow(&mut self, drive: Drive) {
-        self.voltage_v += self.step * (f32::from(drive.dac_code) * self.volts_per_code - self.voltage_v);
+        self.voltage_v += self.step * (f32::from(drive.dac_code.bits()) * self.volts_per_code - self.voltage_v);
     }
 }
 
@@ -133,6 +134,9 @@ impl Bench {
     /// Plays a compiled scene, which the board has to take.
     pub(crate) fn play_bytes(&mut self, scene: &[u8]) {
         self.host.command(Command::Disarm);
+        // The arm switch is released in the first tick after that, and held in the second.
+        self.tick(None);
+        self.tick(None);
         self.host.play(scene);
         self.tick(None);
         assert!(self.host.session.scene() == Some(scene), "the scene is refused");
@@ -151,14 +155,14 @@ impl Bench {
     /// A finger that comes down, slides, rests for a while and slides on.
     pub(crate) fn slide(&mut self, mut case: Case) {
         self.tick(Some(Touch::Up));
-        // Every case begins at the same place among the errands, so that they meet the same things in the same ticks.
+        // Every case begins at the same distance from a report, so that they meet the same things in the same ticks.
         while !self.host.ticker.status().telemetry.tick.is_multiple_of(REPORT_TICKS) {
             self.tick(None);
         }
         let mut driven = 0;
         for tick in 0..TICKS {
             if tick.is_multiple_of(PING_TICKS) {
-                self.host.command(Command::Ping);
+                self.host.ping();
             }
             if tick.is_multiple_of(STREAM_TICKS) {
                 self.host.stream(tick / STREAM_TICKS);
@@ -169,32 +173,36 @@ impl Bench {
                 let along_m = 1e-5 * tick.min(TICKS / 3).max(tick.saturating_sub(TICKS / 3)) as f32;
                 Touch::Down { x_m: 0.02 + along_m, y_m: 0.03 + 0.3 * along_m, age_ticks: REPORT_TICKS }
             });
-            driven += u32::from(self.count(&mut case, touch).dac_code != 0);
+            driven += u32::from(self.count(&mut case, touch).dac_code != DacCode::ZERO);
         }
         assert!(driven > TICKS / 2, "the board does not drive");
         case.report();
     }
 
     pub(crate) fn tick(&mut self, touch: Option<Touch>) -> Drive {
-        let sense = self.sense(touch);
-        let drive = tick(&mut self.host.ticker, &sense);
+        self.host.before_tick(touch);
+        let sense = self.sense();
+        let drive = tick(&mut self.host, &sense);
         self.monitor.follow(drive);
         drive
     }
 
     pub(crate) fn count(&mut self, case: &mut Case, touch: Option<Touch>) -> Drive {
-        let sense = self.sense(touch);
-        let drive = case.take(tick, &mut self.host.ticker, &sense);
+        self.host.before_tick(touch);
+        let sense = self.sense();
+        let drive = case.take(tick, &mut self.host, &sense);
         self.monitor.follow(drive);
         drive
     }
 
-    fn sense(&self, touch: Option<Touch>) -> Sense {
-        Sense { touch, amplifier_fault: false, monitor_v: self.monitor.voltage_v, arm_switch: true }
+    fn sense(&self) -> Sense {
+        let arm_switch = !self.host.ticker.waits_for_release();
+        Sense { amplifier_fault: false, monitor_v: self.monitor.voltage_v, arm_switch }
     }
 }
 
+/// A tick with the order before it.
 #[inline(never)]
-fn tick(ticker: &mut Ticker, sense: &Sense) -> Drive {
-    ticker.tick(sense)
+fn tick(host: &mut Host<'static>, sense: &Sense) -> Drive {
+    host.tick(sense)
 }

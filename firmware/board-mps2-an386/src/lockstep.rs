@@ -2,7 +2,7 @@
 
 use core::sync::atomic::{Ordering, fence};
 
-use frixel_exchange::{Done, Given, TICK_BYTES_MAX, layout};
+use frixel_exchange::{TICK_BYTES_MAX, TickInput, TickOutput, layout};
 use frixel_render::{Session, Status, Ticker};
 
 use crate::shared::{self, Cursor};
@@ -15,32 +15,39 @@ pub fn run(session: &mut Session<'static>, mut ticker: Ticker<'static>) -> ! {
         batch = batch.wrapping_add(1);
         while shared::get(layout::BATCH_GIVEN) != batch {}
         fence(Ordering::Acquire);
-        let (mut given, mut done) = (Cursor::at(layout::GIVEN), Cursor::at(layout::DONE));
+        let (mut inputs, mut outputs) = (Cursor::at(layout::INPUTS), Cursor::at(layout::OUTPUTS));
         for _ in 0..shared::get(layout::BATCH_TICKS) {
-            let given = Given::read(|| given.get());
-            tick(session, &mut ticker, &mut status, &given).write(|word| done.set(word));
+            let input = TickInput::read(|| inputs.get());
+            tick(session, &mut ticker, &mut status, &input).write(|word| outputs.set(word));
         }
         shared::publish(layout::BATCH_DONE, batch);
     }
 }
 
-/// One tick, in the order of the in-process rig: bytes, orders, tick, answers.
-fn tick(session: &mut Session<'static>, ticker: &mut Ticker<'static>, status: &mut Status, given: &Given) -> Done {
-    if !given.received.is_empty() {
-        session.receive(&given.received, status);
+/// One tick, in the order of the in-process rig: bytes, touch, one order, tick, answers.
+fn tick(
+    session: &mut Session<'static>,
+    ticker: &mut Ticker<'static>,
+    status: &mut Status,
+    input: &TickInput,
+) -> TickOutput {
+    if !input.received.is_empty() {
+        session.receive(&input.received, status);
     }
-    // That of a commit comes a tick after its bytes.
-    while let Some(order) = session.next_order() {
-        if let Some(spare) = ticker.apply(order) {
-            session.take_back(spare);
-        }
+    if let Some(touch) = input.touch {
+        session.touch(touch, status.telemetry.tick.wrapping_add(1));
     }
-    let drive = ticker.tick(&given.sense);
+    if let Some(order) = session.next_order()
+        && let Some(spare) = ticker.apply(order)
+    {
+        session.take_back(spare);
+    }
+    let drive = ticker.tick(&input.sense);
     *status = ticker.status();
     session.poll(status);
     let mut bytes = [0; TICK_BYTES_MAX];
-    let room = bytes.get_mut(..usize::from(given.room)).unwrap_or_default();
+    let room = bytes.get_mut(..usize::from(input.room)).unwrap_or_default();
     let count = session.transmit(room);
     let sent = bytes.into_iter().take(count).collect();
-    Done { tick: status.telemetry.tick, drive, sent }
+    TickOutput { tick: status.telemetry.tick, drive, sent }
 }

@@ -21,7 +21,7 @@ use cortex_m::singleton;
 use cortex_m_rt::entry;
 use frixel_drivers::fault_record::Text;
 use frixel_exchange::{BOARD, layout};
-use frixel_layers::{BitmapPool};
+use frixel_layers::BitmapPool;
 use frixel_render::{Active, Board, Session, StreamBuffer, Ticker};
 use frixel_wire::hello::ResetCause;
 use frixel_wire::message::FAULT_TEXT_MAX_LEN;

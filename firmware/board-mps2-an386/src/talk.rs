@@ -8,10 +8,10 @@ use heapless::spsc::{Consumer, Producer, Queue};
 
 use crate::tick::{self, Monitor, Tick};
 use crate::uart::{Queues, Uart};
-use crate::{fault, provoke};
+use crate::{fault, provoke, shared};
 
-/// Orders that may wait for the tick, one place left free: as many as the session keeps.
-const ORDERS_LEN: usize = 9;
+/// Orders that may wait for the tick, one place left free. The session keeps the others.
+const ORDERS_LEN: usize = 5;
 
 /// The session's ends of the queues to and from the tick.
 struct Talk {
@@ -61,8 +61,14 @@ impl Talk {
     fn once(&mut self) {
         let status = self.status();
         let Ok(()) = self.serial.receive(|bytes| self.session.receive(bytes, &status));
-        while let Some(order) = self.session.next_order() {
-            self.order(order);
+        if let Some(touch) = shared::touch(status.telemetry.tick) {
+            self.session.touch(touch, status.telemetry.tick);
+        }
+        while self.orders.ready()
+            && let Some(order) = self.session.next_order()
+        {
+            // There is room: the condition of the loop says so.
+            let _ = self.orders.enqueue(order);
         }
         while let Some(spare) = self.spares.dequeue() {
             self.session.take_back(spare);
@@ -81,13 +87,6 @@ impl Talk {
             if let Some(status) = self.statuses.dequeue() {
                 return status;
             }
-        }
-    }
-
-    /// Hands an order to the tick, which makes room at once when there is none.
-    fn order(&mut self, mut order: Order<'static>) {
-        while let Err(refused) = self.orders.enqueue(order) {
-            order = refused;
         }
     }
 }

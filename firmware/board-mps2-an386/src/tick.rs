@@ -7,6 +7,7 @@ use cortex_m::peripheral::{SCB, SYST};
 use cortex_m_rt::exception;
 use frixel_exchange::layout;
 use frixel_render::{Active, Board, Order, Sense, Status, Ticker};
+use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::Fault;
 use heapless::spsc::{Consumer, Producer};
 
@@ -53,8 +54,8 @@ impl Monitor {
         }
     }
 
-    fn follow(&mut self, dac_code: i16) {
-        self.voltage_v += self.step * (f32::from(dac_code) * self.volts_per_code - self.voltage_v);
+    fn follow(&mut self, dac_code: DacCode) {
+        self.voltage_v += self.step * (f32::from(dac_code.bits()) * self.volts_per_code - self.voltage_v);
     }
 }
 
@@ -90,17 +91,16 @@ fn SysTick() {
 impl Tick {
     fn run(&mut self) {
         self.count = self.count.wrapping_add(1);
-        while let Some(order) = self.orders.dequeue() {
-            if let Some(spare) = self.ticker.apply(order) {
-                // There are two of them, and room for both.
-                let _ = self.spares.enqueue(spare);
-            }
+        if let Some(order) = self.orders.dequeue()
+            && let Some(spare) = self.ticker.apply(order)
+        {
+            // There are two of them, and room for both.
+            let _ = self.spares.enqueue(spare);
         }
         let sense = Sense {
-            touch: shared::touch(self.count),
             amplifier_fault: shared::get(layout::AMPLIFIER_FAULT) != 0,
             monitor_v: self.monitor.voltage_v,
-            arm_switch: true,
+            arm_switch: !self.ticker.waits_for_release(),
         };
         let drive = self.ticker.tick(&sense);
         shared::drive(self.count, drive);

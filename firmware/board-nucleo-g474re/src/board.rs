@@ -2,9 +2,9 @@
 //! amplifier or electrode has other numbers.
 
 use frixel_drivers::monitor::MonitorScale;
+use frixel_layers::BITMAP_POOL_LEN;
+use frixel_render::Board;
 use frixel_render::store::{Flash, LIMITS_LEN, Slot, read_limits};
-use frixel_layers::{BITMAP_POOL_LEN};
-use frixel_render::{Board};
 use frixel_wire::hello::{BoardKind, BoardLimits};
 use frixel_wire::scene::RECORDS_MAX;
 use stm32_metapac::UID;
@@ -39,6 +39,7 @@ pub const LIMITS: BoardLimits = BoardLimits {
     // What the series resistor lets through when an edge goes from 50 V to -50 V, 1.47 mA, and a fifth more.
     current_max_a_peak: 1.8e-3,
     touch_report_period_s: 10e-3,
+    tick_cycles_max: BoardLimits::SMALLEST_TICK_CYCLES_MAX,
 };
 
 /// Where the limits are kept: the first two pages of bank 2.

@@ -14,6 +14,7 @@ use core::sync::atomic::{AtomicU8, Ordering};
 use embedded_hal::delay::DelayNs;
 use embedded_hal::spi::{self, ErrorKind, ErrorType, Operation, SpiDevice};
 use frixel_drivers::ad5761r::{self, Ad5761r, FRAME_LEN};
+use frixel_wire::dac_code::DacCode;
 use stm32_metapac::bdma::vals::{Dir, Pl};
 use stm32_metapac::spi::vals::{Br, Cpha, Cpol, Ds, Frxth, Mstr};
 use stm32_metapac::{GPIOB, SPI2};
@@ -78,7 +79,7 @@ impl DacFrames {
     /// the frame before is still under way; then nothing is sent.
     #[inline]
     #[must_use]
-    pub fn send(&mut self, code: i16) -> bool {
+    pub fn send(&mut self, code: DacCode) -> bool {
         if period::cycles() > period::DEADLINE_CYCLES || dma::remaining(dma::DAC) > 0 {
             return false;
         }

@@ -23,11 +23,11 @@ use cortex_m_rt::entry;
 use defmt_rtt as _;
 use frixel_drivers::fault_record::Text;
 use frixel_drivers::serial::SerialLink;
+use frixel_layers::BitmapPool;
 #[cfg(feature = "stream")]
 use frixel_render::StreamBuffer;
 #[cfg(feature = "store")]
 use frixel_render::store::SceneKeeper;
-use frixel_layers::{BitmapPool};
 use frixel_render::{Active, Board, Session, Ticker};
 use frixel_wire::message::FAULT_TEXT_MAX_LEN;
 

@@ -4,7 +4,7 @@ use frixel_drivers::serial::SerialLink;
 use frixel_drivers::state_light::StateLight;
 #[cfg(feature = "store")]
 use frixel_render::store::SceneKeeper;
-use frixel_render::{Active, Order, Session, Status, Touch};
+use frixel_render::{Active, Order, Session, Status};
 use frixel_wire::fault::State;
 use heapless::spsc::{Consumer, Producer, Queue};
 
@@ -19,14 +19,13 @@ use crate::tick::{self, Queues};
 use crate::watchdog::Watchdog;
 use crate::{arming, clock};
 
-/// Orders that may wait for the tick, one place left free: as many as the session keeps.
-const ORDERS_LEN: usize = 9;
+/// Orders that may wait for the tick, one place left free. The session keeps the others.
+const ORDERS_LEN: usize = 5;
 
 /// The main loop's ends of the queues.
 pub struct Ends {
     orders: Producer<'static, Order<'static>>,
     spares: Consumer<'static, &'static mut Active>,
-    touches: Producer<'static, Touch>,
     statuses: Consumer<'static, Status>,
 }
 
@@ -34,26 +33,21 @@ pub struct Ends {
 pub struct QueuePairs {
     orders: Queue<Order<'static>, ORDERS_LEN>,
     spares: Queue<&'static mut Active, 3>,
-    touches: Queue<Touch, 4>,
     statuses: Queue<Status, 2>,
 }
 
 impl QueuePairs {
     /// Empty queues.
     pub const fn new() -> Self {
-        Self { orders: Queue::new(), spares: Queue::new(), touches: Queue::new(), statuses: Queue::new() }
+        Self { orders: Queue::new(), spares: Queue::new(), statuses: Queue::new() }
     }
 
     /// The main loop's ends, and the tick's.
     pub fn split(&'static mut self) -> (Ends, Queues) {
         let (orders, orders_end) = self.orders.split();
         let (spares_end, spares) = self.spares.split();
-        let (touches, touches_end) = self.touches.split();
         let (statuses_end, statuses) = self.statuses.split();
-        (
-            Ends { orders, spares, touches, statuses },
-            Queues { orders: orders_end, spares: spares_end, touches: touches_end, statuses: statuses_end },
-        )
+        (Ends { orders, spares, statuses }, Queues { orders: orders_end, spares: spares_end, statuses: statuses_end })
     }
 }
 
@@ -86,17 +80,11 @@ impl Talk {
             self.follow_status();
             let (serial, session, status) = (&mut self.serial, &mut self.session, &self.status);
             let Ok(()) = serial.receive(|bytes| session.receive(bytes, status));
-            self.hand_over();
-            // The queue is full when the tick is late.
-            if self.ends.touches.ready() {
-                #[cfg(feature = "optical-frame")]
-                let touch = touch_source.next_touch();
-                #[cfg(not(feature = "optical-frame"))]
-                let touch = self.session.next_touch();
-                if let Some(touch) = touch {
-                    let _ = self.ends.touches.enqueue(touch);
-                }
+            #[cfg(feature = "optical-frame")]
+            if let Some(touch) = touch_source.next_touch() {
+                self.session.touch(touch, tick::count());
             }
+            self.hand_over();
             self.session.poll(&self.status);
             let Ok(()) = self.serial.transmit(|bytes| self.session.transmit(bytes));
             let now_tick = tick::count();
@@ -122,18 +110,17 @@ impl Talk {
         }
     }
 
-    /// Hands the session's orders to the tick, and takes back the coefficients that the tick no longer uses.
+    /// Hands orders to the tick, as many as there is room for, and takes back the coefficients that the tick no longer uses.
     fn hand_over(&mut self) {
-        while let Some(order) = self.session.next_order() {
+        while self.ends.orders.ready()
+            && let Some(order) = self.session.next_order()
+        {
             if matches!(order, Order::Arm) {
                 self.watchdog.freeze_with_debugger(false);
                 arming::prepare(&mut self.dac);
             }
-            let mut order = order;
-            // The next tick makes room.
-            while let Err(refused) = self.ends.orders.enqueue(order) {
-                order = refused;
-            }
+            // There is room: the condition of the loop says so.
+            let _ = self.ends.orders.enqueue(order);
         }
         while let Some(spare) = self.ends.spares.dequeue() {
             self.session.take_back(spare);

@@ -12,7 +12,7 @@ use cortex_m::peripheral::NVIC;
 use frixel_drivers::amplifier::Amplifier;
 use frixel_drivers::arm_switch::ArmSwitch;
 use frixel_drivers::bus_handover::BusHandover;
-use frixel_render::{Active, Order, Sense, Status, Ticker, Touch};
+use frixel_render::{Active, Order, Sense, Status, Ticker};
 use frixel_wire::fault::Fault;
 use heapless::spsc::{Consumer, Producer};
 use stm32_metapac::{GPIOC, Interrupt, interrupt};
@@ -62,8 +62,6 @@ pub struct Queues {
     pub orders: Consumer<'static, Order<'static>>,
     /// Coefficients that go back to the session.
     pub spares: Producer<'static, &'static mut Active>,
-    /// Reports of where the finger is.
-    pub touches: Consumer<'static, Touch>,
     /// A status for the session, when it asked for one.
     pub statuses: Producer<'static, Status>,
 }
@@ -129,11 +127,11 @@ fn TIM3() {
 impl Tick {
     fn run(&mut self) {
         COUNT.store(count().wrapping_add(1), Ordering::Relaxed);
-        while let Some(order) = self.queues.orders.dequeue() {
-            if let Some(spare) = self.ticker.apply(order) {
-                // There are two of them, and room for both.
-                let _ = self.queues.spares.enqueue(spare);
-            }
+        if let Some(order) = self.queues.orders.dequeue()
+            && let Some(spare) = self.ticker.apply(order)
+        {
+            // There are two of them, and room for both.
+            let _ = self.queues.spares.enqueue(spare);
         }
         let found = FAULT.load(Ordering::Acquire);
         if found != 0 {
@@ -161,7 +159,6 @@ impl Tick {
 
     fn sense(&mut self) -> Sense {
         Sense {
-            touch: self.queues.touches.dequeue(),
             amplifier_fault: self.amplifier.has_fault(),
             monitor_v: self.adc.monitor_v(),
             arm_switch: self.arm_switch.is_held(),

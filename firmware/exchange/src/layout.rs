@@ -70,12 +70,12 @@ pub const DRIVES: usize = 0x1000;
 /// Drives that the ring holds, 13 s at 40 kHz.
 pub const DRIVES_LEN: usize = 1 << 19;
 
-/// What is given in [`MODE_LOCKSTEP`]: the [`crate::Given`]s of a batch, one after the other.
-pub const GIVEN: usize = DRIVES + 2 * DRIVES_LEN;
-/// What is done in [`MODE_LOCKSTEP`]: the [`crate::Done`]s of a batch, one after the other.
-pub const DONE: usize = GIVEN + BATCH_TICKS_MAX * crate::GIVEN_WORDS_MAX;
+/// What is given in [`MODE_LOCKSTEP`]: the [`crate::TickInput`]s of a batch, one after the other.
+pub const INPUTS: usize = DRIVES + 2 * DRIVES_LEN;
+/// What is done in [`MODE_LOCKSTEP`]: the [`crate::TickOutput`]s of a batch, one after the other.
+pub const OUTPUTS: usize = INPUTS + BATCH_TICKS_MAX * crate::INPUT_WORDS_MAX;
 /// Most ticks in a batch.
 pub const BATCH_TICKS_MAX: usize = 1 << 15;
 
 const _: () = assert!(TOUCHES + TOUCHES_LEN * crate::STAMPED_TOUCH_WORDS <= DRIVES);
-const _: () = assert!(4 * (DONE + BATCH_TICKS_MAX * crate::DONE_WORDS_MAX) <= SHARED_LEN);
+const _: () = assert!(4 * (OUTPUTS + BATCH_TICKS_MAX * crate::OUTPUT_WORDS_MAX) <= SHARED_LEN);

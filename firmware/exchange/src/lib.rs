@@ -1,6 +1,6 @@
 //! What the emulated board and the simulator tell each other through shared memory: the board's pins, as it were.
 //!
-//! The memory is an array of little-endian 32-bit words. [`layout`] says which word is what; [`Given`] and [`Done`] are
+//! The memory is an array of little-endian 32-bit words. [`layout`] says which word is what; [`TickInput`] and [`TickOutput`] are
 //! what goes into a tick and what comes out of it, `touch` a report of the touch source, each as words. Both sides
 //! compile this one crate.
 #![cfg_attr(not(test), no_std)]
@@ -11,7 +11,9 @@ mod tick;
 mod touch;
 mod words;
 
-pub use tick::{DONE_WORDS_MAX, Done, GIVEN_WORDS_MAX, Given, TICK_BYTES_MAX, TickBytes, drive_of, word_of};
+pub use tick::{
+    INPUT_WORDS_MAX, OUTPUT_WORDS_MAX, TICK_BYTES_MAX, TickBytes, TickInput, TickOutput, drive_of, word_of,
+};
 pub use touch::{STAMPED_TOUCH_WORDS, StampedTouch};
 
 use frixel_render::Board;

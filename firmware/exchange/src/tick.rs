@@ -1,6 +1,7 @@
 //! What goes into a tick and what comes out of it.
 
-use frixel_render::{Drive, Sense};
+use frixel_render::{Drive, Sense, Touch};
+use frixel_wire::dac_code::DacCode;
 
 use crate::words::{TOUCH_MASK, put_bytes, put_touch, take_bytes, take_touch, touch_kind};
 
@@ -8,10 +9,10 @@ use crate::words::{TOUCH_MASK, put_bytes, put_touch, take_bytes, take_touch, tou
 pub const TICK_BYTES_MAX: usize = 64;
 /// Bytes on the serial line in one tick.
 pub type TickBytes = heapless::Vec<u8, TICK_BYTES_MAX>;
-/// Most words of a [`Given`].
-pub const GIVEN_WORDS_MAX: usize = 6 + TICK_BYTES_MAX / 4;
-/// Most words of a [`Done`].
-pub const DONE_WORDS_MAX: usize = 2 + TICK_BYTES_MAX / 4;
+/// Most words of a [`TickInput`].
+pub const INPUT_WORDS_MAX: usize = 6 + TICK_BYTES_MAX / 4;
+/// Most words of a [`TickOutput`].
+pub const OUTPUT_WORDS_MAX: usize = 2 + TICK_BYTES_MAX / 4;
 
 const AMPLIFIER_FAULT: u32 = 1 << 2;
 const ARM_SWITCH: u32 = 1 << 3;
@@ -23,22 +24,24 @@ const SENT_SHIFT: u32 = 24;
 
 /// What goes into a tick.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Given {
+pub struct TickInput {
     /// The tick, counted from 1 at reset.
     pub tick: u32,
     /// Bytes that have come on the serial line.
     pub received: TickBytes,
     /// Bytes that the serial line has room for, [`TICK_BYTES_MAX`] at most.
     pub room: u8,
-    /// What the board sees.
+    /// A report of the touch source.
+    pub touch: Option<Touch>,
+    /// What the tick sees.
     pub sense: Sense,
 }
 
-impl Given {
-    /// Puts its words, [`GIVEN_WORDS_MAX`] at most.
+impl TickInput {
+    /// Puts its words, [`INPUT_WORDS_MAX`] at most.
     pub fn write(&self, mut put: impl FnMut(u32)) {
         let sense = &self.sense;
-        let mut kind = touch_kind(sense.touch);
+        let mut kind = touch_kind(self.touch);
         kind |= (self.received.len() as u32) << BYTES_SHIFT | u32::from(self.room) << ROOM_SHIFT;
         if sense.amplifier_fault {
             kind |= AMPLIFIER_FAULT;
@@ -49,7 +52,7 @@ impl Given {
         put(self.tick);
         put(kind);
         put(sense.monitor_v.to_bits());
-        put_touch(sense.touch, &mut put);
+        put_touch(self.touch, &mut put);
         put_bytes(&self.received, &mut put);
     }
 
@@ -59,20 +62,16 @@ impl Given {
         let kind = take();
         let monitor_v = f32::from_bits(take());
         let touch = take_touch(kind & TOUCH_MASK, &mut take);
-        let sense = Sense {
-            touch,
-            amplifier_fault: kind & AMPLIFIER_FAULT != 0,
-            monitor_v,
-            arm_switch: kind & ARM_SWITCH != 0,
-        };
+        let sense =
+            Sense { amplifier_fault: kind & AMPLIFIER_FAULT != 0, monitor_v, arm_switch: kind & ARM_SWITCH != 0 };
         let received = take_bytes(usize::from((kind >> BYTES_SHIFT) as u8), &mut take);
-        Self { tick, received, room: (kind >> ROOM_SHIFT) as u8, sense }
+        Self { tick, received, room: (kind >> ROOM_SHIFT) as u8, touch, sense }
     }
 }
 
 /// What comes out of a tick.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Done {
+pub struct TickOutput {
     /// The tick, counted from 1 at reset.
     pub tick: u32,
     /// What the board drives.
@@ -81,8 +80,8 @@ pub struct Done {
     pub sent: TickBytes,
 }
 
-impl Done {
-    /// Puts its words, [`DONE_WORDS_MAX`] at most.
+impl TickOutput {
+    /// Puts its words, [`OUTPUT_WORDS_MAX`] at most.
     pub fn write(&self, mut put: impl FnMut(u32)) {
         put(self.tick);
         put(word_of(self.drive) | (self.sent.len() as u32) << SENT_SHIFT);
@@ -99,18 +98,17 @@ impl Done {
 
 /// A drive as a word: the DAC code below, the amplifier's enable in bit 16.
 pub const fn word_of(drive: Drive) -> u32 {
-    let code = drive.dac_code as u16 as u32;
+    let code = drive.dac_code.bits() as u16 as u32;
     if drive.amplifier_enable { code | AMPLIFIER_ENABLE } else { code }
 }
 
 /// The drive of a word.
 pub const fn drive_of(word: u32) -> Drive {
-    Drive { dac_code: word as u16 as i16, amplifier_enable: word & AMPLIFIER_ENABLE != 0 }
+    Drive { dac_code: DacCode::from_bits(word as u16 as i16), amplifier_enable: word & AMPLIFIER_ENABLE != 0 }
 }
 
 #[cfg(test)]
 mod tests {
-    use frixel_render::Touch;
     use proptest::prelude::*;
 
     use super::*;
@@ -130,22 +128,23 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_given_and_done_comes_back_from_its_words(
+        fn inputs_and_outputs_come_back_from_their_words(
             (tick, received, room, sent) in (any::<u32>(), bytes(), any::<u8>(), bytes()),
             (touch, amplifier_fault, monitor_v, arm_switch) in (touch(), any::<bool>(), -300.0_f32..300.0, any::<bool>()),
             (dac_code, amplifier_enable) in (any::<i16>(), any::<bool>()),
         ) {
-            let given = Given { tick, received, room, sense: Sense { touch, amplifier_fault, monitor_v, arm_switch } };
-            let done = Done { tick, drive: Drive { dac_code, amplifier_enable }, sent };
+            let sense = Sense { amplifier_fault, monitor_v, arm_switch };
+            let input = TickInput { tick, received, room, touch, sense };
+            let output = TickOutput { tick, drive: Drive { dac_code: DacCode::from_bits(dac_code), amplifier_enable }, sent };
             let mut words = std::vec::Vec::new();
-            given.write(|word| words.push(word));
-            prop_assert!(words.len() <= GIVEN_WORDS_MAX);
-            let given_len = words.len();
-            done.write(|word| words.push(word));
-            prop_assert!(words.len() - given_len <= DONE_WORDS_MAX);
+            input.write(|word| words.push(word));
+            prop_assert!(words.len() <= INPUT_WORDS_MAX);
+            let input_len = words.len();
+            output.write(|word| words.push(word));
+            prop_assert!(words.len() - input_len <= OUTPUT_WORDS_MAX);
             let mut words = words.into_iter();
-            prop_assert_eq!(Given::read(|| words.next().unwrap()), given);
-            prop_assert_eq!(Done::read(|| words.next().unwrap()), done);
+            prop_assert_eq!(TickInput::read(|| words.next().unwrap()), input);
+            prop_assert_eq!(TickOutput::read(|| words.next().unwrap()), output);
             prop_assert_eq!(words.next(), None);
         }
     }

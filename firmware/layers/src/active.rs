@@ -1,5 +1,7 @@
 //! The layers of a scene as the tick evaluates them.
 
+use core::ops::Range;
+
 use frixel_wire::message::Refusal;
 use frixel_wire::scene::RECORDS_MAX;
 use heapless::Vec;
@@ -8,7 +10,7 @@ use crate::bitmap_pool::{BitmapPool, StoredBitmap};
 use crate::blend::Blend;
 use crate::click::Clicks;
 use crate::context::{Context, Inputs};
-use crate::cost::{self, LayerCosts, TICK_INSTRUCTIONS_MAX, Worst};
+use crate::cost::{self, LayerCosts, Worst};
 use crate::grid::{Grid, LayerSet};
 use crate::header::Header;
 use crate::kinds::Coefficients;
@@ -16,12 +18,13 @@ use crate::point::Point;
 use crate::prepare::Preparation;
 use crate::record::Record;
 use crate::region::ActiveRegion;
+use crate::scene::Scene;
 use crate::tables::Tables;
 
 /// The layers of one scene, with everything computed that does not change from tick to tick.
 ///
 /// [`ActiveLayers::begin`] starts a scene, [`ActiveLayers::push`] adds its layers one by one, and
-/// [`ActiveLayers::check_cost`] ends it.
+/// [`ActiveLayers::worst`] finds what they cost.
 #[repr(C)]
 pub struct ActiveLayers {
     /// The layers that are on.
@@ -57,7 +60,6 @@ impl ActiveLayers {
         record: &Record,
         tick_hz: u32,
         find_bitmap: &dyn Fn(u32) -> Option<StoredBitmap>,
-        costs: &mut LayerCosts,
     ) -> Result<(), Refusal> {
         let number = self.layers.len() as u8;
         record.check(self.tables.points(), number).map_err(Refusal::Config)?;
@@ -65,20 +67,20 @@ impl ActiveLayers {
         let layer = ActiveLayer::new(record, number, &mut preparation)?;
         // There is room for every record that a scene can have.
         let _ = self.layers.push(layer);
-        costs.add(number, record, self.tables.points());
         self.grid.add(number, &record.region, self.tables.points());
         self.put(number, true);
         Ok(())
     }
 
-    /// Refuses a scene whose longest tick takes too long.
-    pub fn check_cost(&self, header: &Header, costs: &LayerCosts) -> Result<(), Refusal> {
-        let Worst { instructions, cell } = cost::worst(header, &self.grid, costs);
-        let max = TICK_INSTRUCTIONS_MAX;
-        if instructions <= max {
-            return Ok(());
+    /// The place at which a tick of `scene`, whose layers these are, takes most, of some cells of the grid and of those
+    /// before, whose worst is `so_far`.
+    pub fn worst(&self, scene: &Scene, cells: Range<usize>, so_far: Worst) -> Worst {
+        let mut costs = LayerCosts::NONE;
+        for (number, record) in (0..).zip(scene.records()) {
+            costs.add(number, &record, self.tables.points());
         }
-        Err(Refusal::TooCostly { instructions, max, x_m: cell.x_m, y_m: cell.y_m })
+        let cells = self.grid.cells().skip(cells.start).take(cells.len());
+        cost::worst_of_cells(scene.header(), cells, &costs, so_far)
     }
 
     /// Some layer plays what the host streams.

@@ -1,10 +1,14 @@
-//! What a scene costs the tick, in instructions on a Cortex-M4F. Compiler and board use the same numbers, so that the
-//! board takes what the compiler accepts.
+//! What a scene costs the tick, as an estimate in processor cycles of a Cortex-M4F. Compiler and board use the same
+//! numbers, so that the board takes what the compiler accepts: the most that a tick may take is
+//! [`BoardLimits::tick_cycles_max`](frixel_wire::hello::BoardLimits::tick_cycles_max).
 //!
-//! [`measured`] has the number of every kind and region; the file of each kind says which of them count for it.
+//! [`measured`] has the number of every kind and region in **core cycles**: the cycles of each instruction by its class
+//! (Cortex-M4 technical reference, Arm 100166, tables 3-1 and 7-1), with a memory that does not wait. The file of each
+//! kind says which of them count for it. [`FLASH_WAIT_PERCENT`] turns core cycles into cycles.
 
 pub(crate) mod measured;
 
+use frixel_wire::message::Refusal;
 use frixel_wire::scene::RECORDS_MAX;
 
 use crate::grid::{Cell, Grid};
@@ -12,19 +16,45 @@ use crate::header::{Carrier, Header};
 use crate::point::Point;
 use crate::record::Record;
 
-/// Most instructions that a tick may take. A scene that would take more at any place is refused.
-pub const TICK_INSTRUCTIONS_MAX: u32 = 600;
+/// Cycles for 100 core cycles when the tick runs from flash. **Assumed** until a board has measured it.
+///
+/// An STM32G474 at 170 MHz reads flash with 4 wait states, behind a cache of 1 KiB for instructions. Code that stays in the
+/// cache does not wait; code that runs through once is prefetched, and waits for up to one cycle an instruction. A tick is
+/// both: its loop over layers stays in the cache, the rest runs through once.
+pub const FLASH_WAIT_PERCENT: u32 = 125;
 
 /// The place of a scene at which a tick takes most.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Worst {
-    /// Instructions of the longest tick: no tick there takes more.
-    pub instructions: u32,
+    /// Core cycles of the longest tick.
+    pub core_cycles: u32,
     /// A cell of the grid that it is in.
     pub cell: Cell,
 }
 
-/// Instructions that the layers of a scene add to a tick.
+impl Worst {
+    /// No place: where a search begins.
+    pub const NOWHERE: Self = Self { core_cycles: 0, cell: Cell { x_m: 0.0, y_m: 0.0, layers: [0; 2] } };
+
+    /// Cycles of the longest tick, flash wait states included.
+    pub const fn cycles(&self) -> u32 {
+        cycles(self.core_cycles)
+    }
+
+    /// Refuses a scene whose longest tick is estimated at more than `cycles_max`.
+    pub fn check(&self, cycles_max: u32) -> Result<(), Refusal> {
+        let Cell { x_m, y_m, .. } = self.cell;
+        let cycles = self.cycles();
+        if cycles <= cycles_max { Ok(()) } else { Err(Refusal::TooCostly { cycles, cycles_max, x_m, y_m }) }
+    }
+}
+
+/// Cycles of so many core cycles when they run from flash, rounded up.
+pub const fn cycles(core_cycles: u32) -> u32 {
+    core_cycles.saturating_mul(FLASH_WAIT_PERCENT).div_ceil(100)
+}
+
+/// Core cycles that the layers of a scene add to a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LayerCosts {
     layers: [u32; RECORDS_MAX],
@@ -46,12 +76,12 @@ impl LayerCosts {
     }
 }
 
-/// Instructions that a layer adds to a tick with the finger in its region, or near it; `points` are the scene's.
+/// Core cycles that a layer adds to a tick with the finger in its region, or near it; `points` are the scene's.
 pub fn of_record(record: &Record, points: &[Point]) -> u32 {
     record.region.cost(points) + record.layer.cost()
 }
 
-/// Instructions of a tick with no layer near the finger.
+/// Core cycles of a tick with no layer near the finger.
 pub const fn of_empty_scene(header: &Header) -> u32 {
     match header.carrier {
         Carrier::Square => measured::EMPTY,
@@ -61,11 +91,15 @@ pub const fn of_empty_scene(header: &Header) -> u32 {
 
 /// Where a scene takes most, from its grid and the costs of its layers.
 pub fn worst(header: &Header, grid: &Grid, costs: &LayerCosts) -> Worst {
-    let empty = Worst { instructions: 0, cell: Cell { x_m: 0.0, y_m: 0.0, layers: [0; 2] } };
-    grid.cells().fold(empty, |worst, cell| {
+    worst_of_cells(header, grid.cells(), costs, Worst::NOWHERE)
+}
+
+/// [`worst`] of some cells of the grid and of those before, whose worst is `so_far`.
+pub fn worst_of_cells(header: &Header, cells: impl Iterator<Item = Cell>, costs: &LayerCosts, so_far: Worst) -> Worst {
+    cells.fold(so_far, |worst, cell| {
         let here = (0..).zip(&costs.layers).filter(|(number, _)| cell.has(*number)).map(|(_, cost)| cost);
-        let instructions = of_empty_scene(header) + costs.everywhere + here.sum::<u32>();
-        if instructions > worst.instructions { Worst { instructions, cell } } else { worst }
+        let core_cycles = of_empty_scene(header) + costs.everywhere + here.sum::<u32>();
+        if core_cycles > worst.core_cycles { Worst { core_cycles, cell } } else { worst }
     })
 }
 

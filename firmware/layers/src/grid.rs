@@ -41,6 +41,9 @@ impl Cell {
 }
 
 impl Grid {
+    /// Number of cells.
+    pub const CELLS: usize = SIDE * SIDE;
+
     /// A grid without layers, on a screen without size.
     pub const EMPTY: Self = Self { columns_per_m: 0.0, rows_per_m: 0.0, cells: [[0; 2]; SIDE * SIDE] };
 

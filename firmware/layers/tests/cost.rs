@@ -1,4 +1,4 @@
-//! What a scene is reckoned to cost.
+//! What a scene is estimated to cost.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
 mod support;
@@ -33,7 +33,7 @@ fn a_stream_costs_at_every_place() {
         }),
         ..CONSTANT
     };
-    let of = |records: &[Record]| worst_of_scene(&header(), records, &[]).instructions;
+    let of = |records: &[Record]| worst_of_scene(&header(), records, &[]).core_cycles;
     let empty = of_empty_scene(&header());
     assert_eq!(of(&[noise]), empty + of_record(&noise, &[]));
     let with_stream = of(&[noise, stream(0.0)]);

@@ -45,7 +45,7 @@ pub enum Pace {
     /// As chips and screens do: every 20 to 400 ticks, 0.5 to 10 ms.
     Usual,
     /// Every 1 to 6 ticks, which no chip does, but a host may.
-    Hasty,
+    Fast,
 }
 
 impl RandomFinger {
@@ -55,7 +55,7 @@ impl RandomFinger {
         let size_m = [header.screen_width_m, header.screen_height_m];
         let report_ticks = match pace {
             Pace::Usual => dice.pick([400, 400, 80, 80, 20, 20]),
-            Pace::Hasty => dice.pick([1, 2, 3, 4, 5, 6]),
+            Pace::Fast => dice.pick([1, 2, 3, 4, 5, 6]),
         };
         let age_ticks = dice.pick([0, 0, 40, 400]);
         Self {

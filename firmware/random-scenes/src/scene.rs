@@ -1,10 +1,11 @@
 //! A scene that a board accepts.
 
-use frixel_layers::cost::{TICK_INSTRUCTIONS_MAX, Worst, worst_of_scene};
+use frixel_layers::cost::{Worst, worst_of_scene};
 use frixel_layers::{
     Button, Carrier, Click, Edge, HEADER_LEN, Header, Layer, Leader, POINT_LEN, Point, RECORD_LEN, Record,
     SCENE_MAX_LEN, electric_friction_max_n,
 };
+use frixel_wire::hello::BoardLimits;
 use frixel_wire::scene::{POINTS_MAX, RECORDS_MAX};
 use heapless::Vec;
 
@@ -50,7 +51,7 @@ impl RandomScene {
         scene
     }
 
-    /// The longest tick, as compiler and loader reckon it.
+    /// The longest tick, as compiler and loader estimate it.
     pub fn worst_tick(&self) -> Worst {
         worst_of_scene(&self.header, &self.records, &self.points)
     }
@@ -90,7 +91,7 @@ impl RandomScene {
         let number = |is: fn(&Layer) -> bool| self.records.iter().filter(|record| is(&record.layer)).count();
         number(|layer| matches!(layer, Layer::Noise(_))) <= NOISES_MAX
             && number(clicks) <= CLICKS_MAX
-            && self.worst_tick().instructions <= TICK_INSTRUCTIONS_MAX
+            && self.worst_tick().cycles() <= BoardLimits::SMALLEST_TICK_CYCLES_MAX
     }
 }
 

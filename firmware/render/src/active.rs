@@ -2,16 +2,52 @@
 
 use core::borrow::Borrow;
 
-use frixel_layers::cost::LayerCosts;
+use frixel_layers::cost::Worst;
 use frixel_layers::{
-    ActiveLayers, BitmapPool, Carrier as Shape, Clicks, Header, Inputs, Point, Scene, active_bytes, within,
+    ActiveLayers, BitmapPool, Carrier as Shape, Clicks, Grid, Header, Inputs, Point, Scene, active_bytes, within,
 };
-use frixel_model::{Carrier, Finger, InverseTable, TableError, Waveform};
+use frixel_model::{Carrier, Finger, InverseTable, InverseTableFilling, TableError, Waveform};
+use frixel_wire::dac_code::DacCode;
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
 
 use crate::Board;
 use crate::bitmap_directory::Directory;
 use crate::carrier::CarrierTiming;
+
+/// Layers that a step of loading takes.
+const LAYERS_PER_STEP: usize = 8;
+/// Cells of the grid whose cost a step of loading finds.
+const CELLS_PER_STEP: usize = 64;
+/// Rows of the inverse table that a step of loading computes.
+const ROWS_PER_STEP: usize = 8;
+
+/// How far a scene is loaded: the next step.
+#[derive(Clone, Debug)]
+pub(crate) enum Loading {
+    /// What holds for the whole scene.
+    Drive,
+    /// Layers from a number on.
+    Layers {
+        /// Number of the first.
+        next: usize,
+    },
+    /// The cost of a tick, from a cell of the grid on.
+    Cost {
+        /// Number of the first.
+        next_cell: usize,
+        /// The worst cell before it.
+        worst: Worst,
+    },
+    /// The layout of the inverse table.
+    Table,
+    /// Rows of the inverse table.
+    Rows(InverseTableFilling),
+}
+
+impl Loading {
+    /// The cost of a tick, from the first cell on.
+    const COST: Self = Self::Cost { next_cell: 0, worst: Worst::NOWHERE };
+}
 
 /// Coefficients of one scene. A board has two of them: one that plays and one that the next scene is built in.
 ///
@@ -56,7 +92,7 @@ impl Active {
         let header = scene.header();
         let (_, voltage_max_v_rms) = carrier(header, board).map_err(Refusal::Config)?;
         let rows = |header: &Header| {
-            table(header, voltage_max_v_rms).map(|table| table.rows_filled()).map_err(Refusal::Config)
+            begin_table(header, voltage_max_v_rms).map(|(_, filling)| filling.rows()).map_err(Refusal::Config)
         };
         let whole = Header { electric_friction_max_n: None, ..*header };
         Ok(TableRows { filled: rows(header)?, whole: rows(&whole)? })
@@ -88,7 +124,7 @@ impl Active {
     }
 
     /// Electric friction of all layers that are on, in N.
-    #[inline(never)]
+    #[inline]
     pub(crate) fn electric_friction_n(&self, inputs: &Inputs, pool: &BitmapPool, clicks: &mut Clicks) -> f32 {
         self.layers.electric_friction_n(inputs, pool, clicks)
     }
@@ -99,40 +135,82 @@ impl Active {
         self.layers.set(number, on, gain);
     }
 
-    /// Makes these the coefficients of `scene`. When it is refused, they are those of no scene.
-    // One copy, which the board builds: see "Fast and small" in the crate's documentation.
-    #[inline(never)]
-    pub(crate) fn load<D: Borrow<Directory>>(
+    /// Does the next step of making these the coefficients of `scene`, each well below a millisecond of a board's time.
+    /// Returns whether it was the last. When the scene is refused, these are the coefficients of no scene; before the last
+    /// step they are of no use.
+    pub(crate) fn load_step<D: Borrow<Directory>>(
         &mut self,
+        loading: &mut Loading,
         scene: &Scene,
         board: &Board,
         directory: &D,
-    ) -> Result<(), Refusal> {
+    ) -> Result<bool, Refusal> {
+        let stepped = self.try_load_step(loading, scene, board, directory.borrow());
+        if stepped.is_err() {
+            self.unload();
+        }
+        stepped
+    }
+
+    fn try_load_step(
+        &mut self,
+        loading: &mut Loading,
+        scene: &Scene,
+        board: &Board,
+        directory: &Directory,
+    ) -> Result<bool, Refusal> {
+        let header = scene.header();
+        *loading = match loading {
+            Loading::Drive => {
+                self.load_drive(scene, board)?;
+                Loading::Layers { next: 0 }
+            }
+            Loading::Layers { next } => {
+                for record in scene.records().skip(*next).take(LAYERS_PER_STEP) {
+                    self.layers.push(&record, board.tick_hz, &|crc32| directory.find(crc32))?;
+                }
+                let next = *next + LAYERS_PER_STEP;
+                if next < scene.record_count() { Loading::Layers { next } } else { Loading::COST }
+            }
+            Loading::Cost { next_cell, worst } => {
+                let end_cell = *next_cell + CELLS_PER_STEP;
+                let worst = self.layers.worst(scene, *next_cell..end_cell, *worst);
+                if end_cell < Grid::CELLS {
+                    Loading::Cost { next_cell: end_cell, worst }
+                } else {
+                    worst.check(board.limits.tick_cycles_max)?;
+                    Loading::Table
+                }
+            }
+            Loading::Table => {
+                let (table, filling) = begin_table(header, self.voltage_max_v_rms).map_err(Refusal::Config)?;
+                self.table = Some(table);
+                Loading::Rows(filling)
+            }
+            Loading::Rows(filling) => {
+                let Some(table) = &mut self.table else { return Ok(true) };
+                return filling
+                    .fill(table, ROWS_PER_STEP)
+                    .map_err(|error| Refusal::Config(no_table(&error, header, self.voltage_max_v_rms)));
+            }
+        };
+        Ok(false)
+    }
+
+    /// Loads what holds for the whole scene, the inverse table left out.
+    fn load_drive(&mut self, scene: &Scene, board: &Board) -> Result<(), Refusal> {
         self.unload();
         let header = scene.header();
         if header.carrier == Shape::Sine && !cfg!(feature = "sine-carrier") {
             return Err(Refusal::LeftOut { layer: ConfigRefusal::WHOLE_SCENE });
         }
         header.check(&board.limits, board.tick_hz).map_err(Refusal::Config)?;
-        let (carrier, voltage_max_v_rms) = carrier(header, board).map_err(Refusal::Config)?;
-        self.load_layers(scene, board, directory.borrow())?;
-        self.carrier = carrier;
-        self.voltage_max_v_rms = voltage_max_v_rms;
+        (self.carrier, self.voltage_max_v_rms) = carrier(header, board).map_err(Refusal::Config)?;
         self.slew_step_v = header.slew_v_per_s * board.tick_period_s();
         self.host_timeout_ticks = (!header.autonomous).then(|| board.ticks(header.host_timeout_s));
         self.prediction = header.prediction;
-        self.table = Some(table(header, voltage_max_v_rms).map_err(Refusal::Config)?);
+        self.layers.begin(header, scene.points());
         Ok(())
-    }
-
-    #[inline]
-    fn load_layers(&mut self, scene: &Scene, board: &Board, directory: &Directory) -> Result<(), Refusal> {
-        self.layers.begin(scene.header(), scene.points());
-        let mut costs = LayerCosts::NONE;
-        for record in scene.records() {
-            self.layers.push(&record, board.tick_hz, &|crc32| directory.find(crc32), &mut costs)?;
-        }
-        self.layers.check_cost(scene.header(), &costs)
     }
 }
 
@@ -163,7 +241,7 @@ fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), Confi
 
     let codes_per_v = f32::from(i16::MAX) / limits.full_scale_v_peak;
     let code_max = (header.voltage_max_v_peak * codes_per_v) as i32;
-    let code_max = code_max.min(i32::from(i16::MAX));
+    let code_max = DacCode::from_bits(code_max.min(i32::from(i16::MAX)) as i16);
     let timing = CarrierTiming::new(header.carrier, half_period_ticks, peak_per_rms * codes_per_v, code_max);
     Ok((timing, voltage_max_v_rms))
 }
@@ -177,12 +255,11 @@ pub struct TableRows {
     pub whole: usize,
 }
 
-/// The inverse table of a scene's finger, coating and load, up to the largest friction that the scene asks for.
-#[inline]
-fn table(header: &Header, voltage_max_v_rms: f32) -> Result<InverseTable, ConfigRefusal> {
+/// Begins the inverse table of a scene's finger, coating and load, up to the largest friction that the scene asks for.
+fn begin_table(header: &Header, voltage_max_v_rms: f32) -> Result<(InverseTable, InverseTableFilling), ConfigRefusal> {
     let Header { effective_gap_m, normal_load_n, .. } = *header;
     let max_n = header.electric_friction_max_n.unwrap_or(f32::INFINITY);
-    InverseTable::of_finger(&finger(header), effective_gap_m, normal_load_n, voltage_max_v_rms, max_n)
+    InverseTable::begin(&finger(header), effective_gap_m, normal_load_n, voltage_max_v_rms, max_n)
         .map_err(|error| no_table(&error, header, voltage_max_v_rms))
 }
 

@@ -48,6 +48,7 @@ impl Board {
             current_max_a_rms: 3e-3,
             current_max_a_peak: 15e-3,
             touch_report_period_s: 10e-3,
+            tick_cycles_max: BoardLimits::SMALLEST_TICK_CYCLES_MAX,
         },
         reset_cause: ResetCause::PowerOn,
         reset_fault: None,

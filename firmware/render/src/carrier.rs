@@ -1,10 +1,12 @@
 //! The carrier: alternates the envelope's sign, so that no charge leaks through the skin and no direct current flows.
 //!
-//! The running integral of the DAC code, exact in integers, never leaves plus or minus one half period at full
+//! The running integral of the DAC code, exact in fixed point, never leaves plus or minus one half period at full
 //! voltage, however the amplitude moves: a code that would take it out is put out with the other sign, as an early
 //! edge.
 
+use fixed::types::{I1F15, I17F15};
 use frixel_layers::Carrier as Shape;
+use frixel_wire::dac_code::DacCode;
 
 #[cfg(feature = "sine-carrier")]
 use frixel_layers::cosine;
@@ -17,23 +19,23 @@ pub(crate) struct CarrierTiming {
     /// DAC codes for a volt rms of envelope: crest factor and loss in the edges included.
     pub(crate) codes_per_v_rms: f32,
     /// Largest DAC code.
-    pub(crate) code_max: i32,
-    /// Largest magnitude of the running integral, in code ticks.
-    integral_max: i32,
+    pub(crate) code_max: DacCode,
+    /// Largest magnitude of the running integral, in ticks at full scale.
+    integral_max: I17F15,
     turns_per_tick: f32,
 }
 
 impl CarrierTiming {
     /// Output zero.
-    pub(crate) const SILENT: Self = Self::new(Shape::Square, 20, 0.0, 0);
+    pub(crate) const SILENT: Self = Self::new(Shape::Square, 20, 0.0, DacCode::ZERO);
 
     /// A carrier whose integral stays within one half period at full voltage.
-    pub(crate) const fn new(shape: Shape, half_period_ticks: u32, codes_per_v_rms: f32, code_max: i32) -> Self {
+    pub(crate) const fn new(shape: Shape, half_period_ticks: u32, codes_per_v_rms: f32, code_max: DacCode) -> Self {
         let mean = match shape {
             Shape::Square => 1.0,
             Shape::Sine => core::f32::consts::FRAC_2_PI,
         };
-        let integral_max = (code_max as f32 * (half_period_ticks as f32 * mean)) as i32;
+        let integral_max = I17F15::from_bits((code_max.bits() as f32 * (half_period_ticks as f32 * mean)) as i32);
         let turns_per_tick = 0.5 / half_period_ticks as f32;
         Self { shape, half_period_ticks, codes_per_v_rms, code_max, integral_max, turns_per_tick }
     }
@@ -51,7 +53,8 @@ pub(crate) struct Carrier {
     sign: i32,
     /// Ticks until the next edge, this one included.
     left_ticks: u32,
-    integral: i32,
+    /// Volt-seconds so far, in ticks at full scale.
+    integral: I17F15,
     /// Edges that came early to keep direct current away, modulo 2^32, and the tick of the last.
     early_edges: u32,
     last_early_tick: u32,
@@ -60,7 +63,13 @@ pub(crate) struct Carrier {
 impl Carrier {
     /// Starts a quarter period in, so that the integral swings evenly about zero.
     pub(crate) fn new(timing: &CarrierTiming) -> Self {
-        Self { sign: 1, left_ticks: timing.ticks_from_crest(), integral: 0, early_edges: 0, last_early_tick: 0 }
+        Self {
+            sign: 1,
+            left_ticks: timing.ticks_from_crest(),
+            integral: I17F15::ZERO,
+            early_edges: 0,
+            last_early_tick: 0,
+        }
     }
 
     /// Goes on with the timing of another scene. The integral is the electrode's, and stays.
@@ -71,7 +80,7 @@ impl Carrier {
     /// Waits at zero output. It will start again a quarter period before an edge, on the side that takes the integral
     /// back.
     pub(crate) fn rest(&mut self, timing: &CarrierTiming) {
-        self.sign = if self.integral > 0 { -1 } else { 1 };
+        self.sign = if self.integral.is_positive() { -1 } else { 1 };
         self.left_ticks = timing.ticks_from_crest();
     }
 
@@ -87,10 +96,11 @@ impl Carrier {
 
     /// The code for this tick.
     #[inline]
-    pub(crate) fn next(&mut self, envelope_v_rms: f32, timing: &CarrierTiming, tick: u32) -> i16 {
-        let mut code = self.sign * self.magnitude(envelope_v_rms, timing);
+    pub(crate) fn next(&mut self, envelope_v_rms: f32, timing: &CarrierTiming, tick: u32) -> DacCode {
+        let mut code = self.magnitude(envelope_v_rms, timing) * self.sign;
         // Beyond the largest on either side: both are far from overflowing.
-        if (self.integral + code + timing.integral_max) as u32 > 2 * timing.integral_max as u32 {
+        let above_least = (self.integral + code + timing.integral_max).to_bits().cast_unsigned();
+        if above_least > 2 * timing.integral_max.to_bits().cast_unsigned() {
             code = self.within_balance(code, tick);
         }
         self.integral += code;
@@ -99,13 +109,14 @@ impl Carrier {
         } else {
             self.turn(timing);
         }
-        code as i16
+        // It fits: no larger than the largest code.
+        DacCode(I1F15::wrapping_from_num(code))
     }
 
     /// A code that would take the integral too far, or what is put out in its place: if it takes the integral away from
     /// zero, the same with the other sign, as an early edge.
     #[cold]
-    fn within_balance(&mut self, code: i32, tick: u32) -> i32 {
+    fn within_balance(&mut self, code: I17F15, tick: u32) -> I17F15 {
         if (self.integral + code).abs() <= self.integral.abs() {
             return code;
         }
@@ -123,7 +134,7 @@ impl Carrier {
     }
 
     #[inline]
-    fn magnitude(&self, envelope_v_rms: f32, timing: &CarrierTiming) -> i32 {
+    fn magnitude(&self, envelope_v_rms: f32, timing: &CarrierTiming) -> I17F15 {
         let amplitude = envelope_v_rms * timing.codes_per_v_rms;
         let code = match timing.shape {
             Shape::Square => amplitude,
@@ -135,7 +146,7 @@ impl Carrier {
             #[cfg(not(feature = "sine-carrier"))]
             Shape::Sine => 0.0,
         };
-        ((code + 0.5) as i32).min(timing.code_max)
+        I17F15::from_bits((code + 0.5) as i32).min(timing.code_max.0.into())
     }
 }
 

@@ -24,9 +24,15 @@ impl Envelope {
     /// Moves towards `target_v_rms` by at most `step_max_v`. Returns whether that was too far for one tick.
     #[inline]
     pub(crate) fn follow(&mut self, target_v_rms: f32, step_max_v: f32) -> bool {
-        let step_v = target_v_rms - self.voltage_v_rms;
-        let too_far = step_v.abs() > step_max_v;
-        self.voltage_v_rms = if too_far { self.voltage_v_rms + step_max_v.copysign(step_v) } else { target_v_rms };
+        let (lowest_v_rms, highest_v_rms) = (self.voltage_v_rms - step_max_v, self.voltage_v_rms + step_max_v);
+        let (voltage_v_rms, too_far) = if target_v_rms > highest_v_rms {
+            (highest_v_rms, true)
+        } else if target_v_rms < lowest_v_rms {
+            (lowest_v_rms, true)
+        } else {
+            (target_v_rms, false)
+        };
+        self.voltage_v_rms = voltage_v_rms;
         too_far
     }
 }

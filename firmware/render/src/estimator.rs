@@ -30,6 +30,20 @@ struct Gains {
     half_acceleration: f32,
 }
 
+impl Gains {
+    /// The first sample is the place.
+    const OF_FIRST_SAMPLE: Self = Self { position: 1.0, velocity: 0.0, half_acceleration: 0.0 };
+
+    /// The same gains in 1, 1/s and 1/s^2, for so many steps a second.
+    fn per_step(&self, per_s: f32) -> Self {
+        Self {
+            position: self.position,
+            velocity: self.velocity * per_s,
+            half_acceleration: self.half_acceleration * per_s * per_s,
+        }
+    }
+}
+
 impl Axis {
     const ZERO: Self = Self { position: 0.0, velocity: 0.0, half_acceleration: 0.0 };
 
@@ -51,88 +65,63 @@ impl Axis {
     }
 }
 
-/// A finger as estimated at a tick, along one axis, in m, m/s and m/s^2.
+/// Place, velocity and half the acceleration of the finger, in m, m/s and m/s^2 along x and y.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Estimate {
-    pub(crate) place_m: f32,
-    pub(crate) velocity_m_per_s: f32,
-    pub(crate) half_acceleration_m_per_s2: f32,
+    pub(crate) place_m: [f32; 2],
+    pub(crate) velocity_m_per_s: [f32; 2],
+    pub(crate) half_acceleration_m_per_s2: [f32; 2],
 }
 
-/// One of the two axes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Along {
-    X,
-    Y,
-}
-
-/// The filter's state. A sample is taken in by [`Estimator::weigh`], then by [`Estimator::update`] along each axis.
+/// The filter's state.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Estimator {
-    x: Axis,
-    y: Axis,
+    axes: [Axis; 2],
     samples: u32,
     sampled_at_tick: u32,
-    /// Time from the sample before the last one to the last, and what the last one weighs.
-    step_s: f32,
-    gains: Gains,
 }
 
 impl Estimator {
     /// Knows nothing yet.
-    pub(crate) const NEW: Self = Self {
-        x: Axis::ZERO,
-        y: Axis::ZERO,
-        samples: 0,
-        sampled_at_tick: 0,
-        step_s: 0.0,
-        gains: Gains { position: 1.0, velocity: 0.0, half_acceleration: 0.0 },
-    };
+    pub(crate) const NEW: Self = Self { axes: [Axis::ZERO; 2], samples: 0, sampled_at_tick: 0 };
 
-    /// Finds what a sample that was true at a tick weighs. Returns whether it says anything: one that is not newer than
-    /// the last does not. No velocity is made of a time shorter than `step_min_s`: samples that bunch on the way were
-    /// not taken so close together.
-    pub(crate) fn weigh(&mut self, sampled_at_tick: u32, tick_period_s: f32, step_min_s: f32) -> bool {
-        // The first sample is the place, by the gains of an estimator that knows nothing.
+    /// Takes a place in m that was measured at a tick, and estimates the finger at that tick. `None` for a sample that is
+    /// not newer than the last one, which changes nothing.
+    ///
+    /// No velocity is made of a time shorter than `step_min_s`: samples that bunch on the way were not taken so close
+    /// together.
+    pub(crate) fn take(
+        &mut self,
+        place_m: [f32; 2],
+        at_tick: u32,
+        tick_period_s: f32,
+        step_min_s: f32,
+    ) -> Option<Estimate> {
+        let (mut step_s, mut weights) = (0.0, Gains::OF_FIRST_SAMPLE);
         if self.samples > 0 {
-            let step_ticks = sampled_at_tick.wrapping_sub(self.sampled_at_tick) as i32;
+            let step_ticks = at_tick.wrapping_sub(self.sampled_at_tick) as i32;
             if step_ticks <= 0 {
-                return false;
+                return None;
             }
-            let step_s = step_ticks as f32 * tick_period_s;
+            step_s = step_ticks as f32 * tick_period_s;
             let per_s = 1.0 / if step_s > step_min_s { step_s } else { step_min_s };
-            let gains = gains(self.samples);
-            self.step_s = step_s;
-            self.gains = Gains {
-                position: gains.position,
-                velocity: gains.velocity * per_s,
-                half_acceleration: gains.half_acceleration * per_s * per_s,
-            };
+            weights = gains(self.samples).per_step(per_s);
         }
         self.samples = self.samples.saturating_add(1);
-        self.sampled_at_tick = sampled_at_tick;
-        true
+        self.sampled_at_tick = at_tick;
+        for (axis, place_m) in self.axes.iter_mut().zip(place_m) {
+            axis.update(place_m, step_s, &weights);
+        }
+        Some(self.estimate())
     }
 
-    /// Takes the place of the sample that was weighed, along one axis, in m.
-    #[inline(never)]
-    pub(crate) fn update(&mut self, along: Along, place_m: f32) {
-        let axis = match along {
-            Along::X => &mut self.x,
-            Along::Y => &mut self.y,
-        };
-        axis.update(place_m, self.step_s, &self.gains);
-    }
-
-    /// The estimate for `now_tick`. Before the first sample it means nothing.
-    pub(crate) fn at(&self, along: Along, now_tick: u32, tick_period_s: f32) -> Estimate {
-        let axis = match along {
-            Along::X => &self.x,
-            Along::Y => &self.y,
-        };
-        let time_s = now_tick.wrapping_sub(self.sampled_at_tick) as f32 * tick_period_s;
-        let (place_m, velocity_m_per_s) = axis.at(time_s);
-        Estimate { place_m, velocity_m_per_s, half_acceleration_m_per_s2: axis.half_acceleration }
+    /// The finger at the time of the last sample.
+    fn estimate(&self) -> Estimate {
+        Estimate {
+            place_m: self.axes.map(|axis| axis.position),
+            velocity_m_per_s: self.axes.map(|axis| axis.velocity),
+            half_acceleration_m_per_s2: self.axes.map(|axis| axis.half_acceleration),
+        }
     }
 }
 
@@ -141,7 +130,7 @@ fn gains(samples: u32) -> &'static Gains {
     GAINS.get(samples as usize).unwrap_or(&FADING_GAINS)
 }
 
-/// Gains for the first samples, by how many came before: computed beforehand, for divisions are dear in a tick.
+/// Gains for the first samples, by how many came before.
 static GAINS: [Gains; FADING_SAMPLES] = {
     let mut gains = [FADING_GAINS; FADING_SAMPLES];
     let mut samples = 0;
@@ -193,15 +182,14 @@ mod tests {
     const TICK_S: f32 = 25e-6;
     const STEP_MIN_S: f32 = 2.5e-3;
 
-    fn take(estimator: &mut Estimator, tick: u32, [x_m, y_m]: [f32; 2]) {
-        if estimator.weigh(tick, TICK_S, STEP_MIN_S) {
-            estimator.update(Along::X, x_m);
-            estimator.update(Along::Y, y_m);
-        }
+    fn take(estimator: &mut Estimator, tick: u32, place_m: [f32; 2]) -> Option<Estimate> {
+        estimator.take(place_m, tick, TICK_S, STEP_MIN_S)
     }
 
-    fn x_m(estimator: &Estimator, tick: u32) -> f32 {
-        estimator.at(Along::X, tick, TICK_S).place_m
+    /// Place and velocity along x at a tick.
+    fn x(estimator: &Estimator, tick: u32) -> (f32, f32) {
+        let [x, _] = estimator.axes;
+        x.at(tick.wrapping_sub(estimator.sampled_at_tick) as f32 * TICK_S)
     }
 
     /// Feeds exact samples of `path` at 100 Hz, 400 ticks late, and returns the error at the end.
@@ -212,7 +200,7 @@ mod tests {
             take(&mut estimator, tick, [path(tick as f32 * TICK_S), 0.0]);
         }
         let now = 1000 + 400 * samples + 300;
-        (x_m(&estimator, now) - path(now as f32 * TICK_S)).abs()
+        (x(&estimator, now).0 - path(now as f32 * TICK_S)).abs()
     }
 
     #[test]
@@ -230,13 +218,11 @@ mod tests {
     #[test]
     fn repeated_and_backward_samples_change_nothing() {
         let mut estimator = Estimator::NEW;
-        let both = |estimator: &Estimator| [Along::X, Along::Y].map(|along| estimator.at(along, 1500, TICK_S));
         take(&mut estimator, 1000, [0.01, 0.01]);
-        take(&mut estimator, 1400, [0.02, 0.01]);
-        let before = both(&estimator);
-        take(&mut estimator, 1400, [0.5, 0.5]);
-        take(&mut estimator, 1399, [0.5, 0.5]);
-        assert_eq!(both(&estimator), before);
+        let before = take(&mut estimator, 1400, [0.02, 0.01]);
+        assert_eq!(take(&mut estimator, 1400, [0.5, 0.5]), None);
+        assert_eq!(take(&mut estimator, 1399, [0.5, 0.5]), None);
+        assert_eq!(Some(estimator.estimate()), before);
     }
 
     #[test]
@@ -246,9 +232,9 @@ mod tests {
         for i in 0..4 {
             take(&mut estimator, start.wrapping_add(400 * i), [0.001 * i as f32, 0.0]);
         }
-        let estimate = estimator.at(Along::X, start.wrapping_add(1600), TICK_S);
-        assert!((estimate.place_m - 0.004).abs() < 1e-6);
-        assert!((estimate.velocity_m_per_s - 0.1).abs() < 1e-4);
+        let (place_m, velocity_m_per_s) = x(&estimator, start.wrapping_add(1600));
+        assert!((place_m - 0.004).abs() < 1e-6);
+        assert!((velocity_m_per_s - 0.1).abs() < 1e-4);
     }
 
     /// One report that is late by nearly a period and then bunched with the next one.
@@ -264,7 +250,7 @@ mod tests {
             take(&mut estimator, said, [at(tick), 0.0]);
             for later in [0, 200, 399] {
                 let now = tick + 400 + later;
-                worst_m = worst_m.max((x_m(&estimator, now) - at(now)).abs());
+                worst_m = worst_m.max((x(&estimator, now).0 - at(now)).abs());
             }
         }
         assert!(worst_m < 5e-3, "{worst_m}");

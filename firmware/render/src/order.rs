@@ -3,14 +3,20 @@
 use frixel_wire::fault::Fault;
 use frixel_wire::message::Telemetry;
 
-use crate::Active;
 #[cfg(feature = "stream")]
 use crate::stream::StreamStart;
+use crate::{Active, Track};
 
-/// What the session asks of the ticker. `'a` is the life of the two [`Active`] buffers.
+/// What the session asks of the ticker, which takes one before each tick. `'a` is the life of the two [`Active`] buffers.
+// A tag of a whole word: an order is then copied word by word.
+#[repr(u32)]
 pub enum Order<'a> {
     /// The host has said something.
     HostHeard,
+    /// The finger follows this track from now on.
+    Track(Track),
+    /// The finger has been lifted.
+    Lift,
     /// Play by these coefficients from now on, and hand back the others.
     Load(&'a mut Active),
     /// Forget the scene: its bitmaps are about to be overwritten.
@@ -45,16 +51,28 @@ pub enum Order<'a> {
     },
 }
 
-/// What the ticker tells the session. Made when asked for, not at every tick.
+impl Order<'_> {
+    /// Whether the order carries out a command of the host, and so says that there is one.
+    pub(crate) fn is_sign_of_life(&self) -> bool {
+        !matches!(self, Self::Track(_) | Self::Lift | Self::Load(_) | Self::Unload)
+    }
+
+    /// Whether [`Status::orders_applied`] counts it.
+    pub(crate) fn is_counted(&self) -> bool {
+        !matches!(self, Self::HostHeard | Self::Track(_) | Self::Lift)
+    }
+}
+
+/// What the ticker reports to the session. Made when needed, not at every tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Status {
     /// State, flags, place, friction and voltage at the last tick.
     pub telemetry: Telemetry,
     /// The last hard fault with a number that belongs to it; it is latched while the state is Faulted.
     pub fault: Option<(Fault, u32)>,
-    /// Orders that were applied since power-on, modulo 2^32, but for [`Order::HostHeard`].
+    /// Orders that were applied since power-on, modulo 2^32. Signs of life, tracks and lifts are not counted.
     pub orders_applied: u32,
-    /// The arm switch was held at the last tick.
+    /// The arm switch was held at the last tick, and has been pressed since the reset or the last disarming.
     pub arm_switch: bool,
     /// What was counted since power-on.
     pub counters: Counters,

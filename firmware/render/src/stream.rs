@@ -239,6 +239,7 @@ impl<'a> Player<'a> {
         }
     }
 
+    #[inline(never)]
     fn go_on(&mut self) {
         match self.phase {
             Phase::Over => {}

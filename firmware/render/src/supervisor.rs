@@ -1,5 +1,6 @@
 //! The one owner of the output: Disarmed, Armed, Active, Faulted (DESIGN section 5).
 
+use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::{Fault, State};
 
 use crate::deadline::is_past;
@@ -22,6 +23,8 @@ pub(crate) struct Supervisor {
     /// `None` for a scene that goes on without a host.
     host_timeout_ticks: Option<u32>,
     host_silent: bool,
+    /// The arm switch was open at some tick since the reset or the last disarming: to hold it now means to have pressed it.
+    switch_was_released: bool,
     monitor: Monitor,
 }
 
@@ -99,6 +102,7 @@ impl Supervisor {
             host_heard_at_tick: 0,
             host_timeout_ticks: Some(host_timeout_default_ticks(board)),
             host_silent: false,
+            switch_was_released: false,
             monitor: Monitor::new(board),
         }
     }
@@ -118,19 +122,33 @@ impl Supervisor {
 
     /// Takes the orders that concern the state. Those that do not go with the state change nothing.
     pub(crate) fn apply(&mut self, order: &Order, now_tick: u32) {
+        if order.is_sign_of_life() {
+            self.host_heard_at_tick = now_tick;
+        }
         match (order, self.state) {
-            (Order::HostHeard, _) => self.host_heard_at_tick = now_tick,
-            (Order::Arm, State::Disarmed) => {
+            // A host that has not seen yet that the switch must be pressed again is ignored.
+            (Order::Arm, State::Disarmed) if self.switch_was_released => {
                 self.state = State::Armed;
                 self.host_silent = false;
             }
             (Order::Play, State::Armed) => self.state = State::Active,
             (Order::Stop, State::Active) => self.state = State::Armed,
             (Order::Disarm, State::Armed | State::Active) | (Order::ClearFault, State::Faulted) => {
-                self.state = State::Disarmed;
+                self.disarm();
             }
             _ => {}
         }
+    }
+
+    /// Whoever wants to arm presses the switch anew.
+    fn disarm(&mut self) {
+        self.state = State::Disarmed;
+        self.switch_was_released = false;
+    }
+
+    /// Whether the arm switch, held now, was pressed since the reset or the last disarming.
+    pub(crate) fn switch_was_released(&self) -> bool {
+        self.switch_was_released
     }
 
     /// Latches a hard fault, unless one is latched.
@@ -146,38 +164,36 @@ impl Supervisor {
         self.host_timeout_ticks = ticks;
     }
 
-    /// Looks after the output at every tick. `dac_code` is what went to the amplifier in the tick before. Returns
-    /// whether something has changed.
+    /// Faults when the amplifier, its monitor or the arm switch say so. `dac_code` is what went to the amplifier in the tick
+    /// before.
     #[inline]
-    pub(crate) fn check(&mut self, sense: &Sense, dac_code: i16) -> bool {
-        let driven_v = f32::from(dac_code) * self.monitor.volts_per_code;
+    pub(crate) fn check(&mut self, sense: &Sense, dac_code: DacCode) {
+        let driven_v = f32::from(dac_code.bits()) * self.monitor.volts_per_code;
         if self.monitor.advance(driven_v, sense.monitor_v) || sense.amplifier_fault || !sense.arm_switch {
-            return self.act(sense, driven_v);
+            self.judge(sense, driven_v);
         }
-        false
     }
 
-    /// Does what one of the things that [`Self::check`] looks after asks for. Of several the first here counts.
+    /// Latches the fault that an input of [`Self::check`] means; of several the first here.
     #[cold]
     #[inline(never)]
-    fn act(&mut self, sense: &Sense, driven_v: f32) -> bool {
+    fn judge(&mut self, sense: &Sense, driven_v: f32) {
         let monitor_wrong = self.monitor.count(driven_v, sense.monitor_v);
-        let before = self.state;
-        if before == State::Faulted {
-            return false;
+        self.switch_was_released |= !sense.arm_switch;
+        if self.state == State::Faulted {
+            return;
         }
         if monitor_wrong {
             self.raise(Fault::Monitor, sense.monitor_v as i32 as u32);
         } else if sense.amplifier_fault {
             self.raise(Fault::Amplifier, 0);
-        } else if before != State::Disarmed && !sense.arm_switch {
+        } else if self.state != State::Disarmed && !sense.arm_switch {
             self.raise(Fault::ArmSwitch, 0);
         }
-        self.state != before
     }
 
-    /// The tick at which the host has been silent for too long, if it has to be there.
-    pub(crate) fn silent_at_tick(&self) -> Option<u32> {
+    /// The tick at which the host has been silent for too long; `None` when it need not be there.
+    pub(crate) fn host_deadline_tick(&self) -> Option<u32> {
         let needed = matches!(self.state, State::Armed | State::Active);
         let timeout_ticks = self.host_timeout_ticks.filter(|_| needed)?;
         Some(self.host_heard_at_tick.wrapping_add(timeout_ticks).wrapping_add(1))
@@ -185,10 +201,10 @@ impl Supervisor {
 
     /// Disarms when the host has been silent for too long.
     pub(crate) fn expire(&mut self, now_tick: u32) {
-        if let Some(tick) = self.silent_at_tick()
+        if let Some(tick) = self.host_deadline_tick()
             && is_past(tick, now_tick)
         {
-            self.state = State::Disarmed;
+            self.disarm();
             self.host_silent = true;
         }
     }

@@ -3,11 +3,12 @@
 mod support;
 
 use frixel_render::{Board, Drive, Order, Touch};
+use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::State;
 use frixel_wire::message::{Command, FromBoard};
 use support::{Desk, Memory, constant, request};
 
-const OFF: Drive = Drive { dac_code: 0, amplifier_enable: false };
+const OFF: Drive = Drive { dac_code: DacCode::ZERO, amplifier_enable: false };
 /// Host timeout of the scenes here, in ticks.
 const HOST_TIMEOUT_TICKS: u32 = 10_000;
 const WINDOW: usize = Board::SIMULATOR.limits.receive_window_bytes as usize;
@@ -75,11 +76,9 @@ fn a_frame_beyond_the_credit_is_no_touch() {
     let mut desk = Desk::of(Board { touch_from_host: true, ..Board::SIMULATOR }, &mut memory);
     desk.greet();
     desk.reads = false;
-    desk.session.receive(&window_of(Command::Lift), &desk.status());
-    assert_eq!(desk.session.next_touch(), Some(Touch::Up));
+    assert_eq!(orders(&mut desk, &window_of(Command::Lift)), (true, 1));
     let touch = Command::Touch { x_m: 0.02, y_m: 0.03, age_ticks: 0 };
-    desk.session.receive(&requests(touch, WINDOW), &desk.status());
-    assert_eq!(desk.session.next_touch(), None);
+    assert_eq!(orders(&mut desk, &requests(touch, WINDOW)), (false, 0));
 }
 
 /// What a client has left behind, however much it is, keeps nothing playing.
@@ -94,7 +93,7 @@ fn a_client_that_ignores_credit_and_reads_nothing_is_silent_after_its_window() {
     let mut last_on = 0;
     for tick in 0..window_ticks + 2 * HOST_TIMEOUT_TICKS {
         if tick % 400 == 0 {
-            desk.sense.touch = Some(Touch::Down { x_m: 0.03 + 2.5e-6 * tick as f32, y_m: 0.03, age_ticks: 0 });
+            desk.touch = Some(Touch::Down { x_m: 0.03 + 2.5e-6 * tick as f32, y_m: 0.03, age_ticks: 0 });
         }
         desk.session.receive(bytes.next().unwrap(), &desk.status());
         desk.obey();

@@ -4,8 +4,8 @@
 mod support;
 
 use frixel_layers::{Blend, Constant, Header, Layer, Leader, Record};
-use frixel_render::{Board, Touch};
-use frixel_wire::fault::{Fault, State};
+use frixel_render::{Board, Drive};
+use frixel_wire::fault::{Fault, Flags, State};
 use frixel_wire::message::{Accepted, Command, ConfigField, Refusal};
 use support::{Desk, HEADER, Memory, constant, record, scene};
 
@@ -119,10 +119,7 @@ fn the_scene_says_which_of_two_fingers_is_followed() {
             if report > 20 {
                 desk.command(Command::TouchFinger { finger: 9, x_m, y_m: 0.05, age_ticks: 0 }).unwrap();
             }
-            for _ in 0..200 {
-                desk.sense.touch = desk.session.next_touch();
-                desk.tick();
-            }
+            desk.ticks(200);
             seen.push(desk.status().telemetry.finger_y_m);
         }
         let close = |found: f32, expected: f32| (found - expected).abs() < 1e-4;
@@ -133,7 +130,7 @@ fn the_scene_says_which_of_two_fingers_is_followed() {
             "{leader:?}: nothing is made of the way between {seen:?}"
         );
         desk.command(Command::LiftFinger { finger: if second_leads { 9 } else { 4 } }).unwrap();
-        assert_eq!(desk.session.next_touch(), Some(Touch::Up));
-        assert_eq!(desk.session.next_touch(), None);
+        assert_eq!(desk.tick(), Drive::default());
+        assert!(desk.status().telemetry.flags.contains(Flags::NO_FINGER));
     }
 }

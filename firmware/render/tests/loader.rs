@@ -136,8 +136,9 @@ mod whole {
         // One after another: all of them under one finger are refused, for what a tick would take.
         for record in records() {
             desk.play(&scene_with_points(&HEADER, &on_a_ground(record), &points()));
-            assert!(desk.slide(8_000)[400..].iter().all(|drive| drive.dac_code != 0), "{record:?}");
+            assert!(desk.slide(8_000)[400..].iter().all(|drive| drive.dac_code.bits() != 0), "{record:?}");
             desk.command(Command::Disarm).unwrap();
+            desk.press_switch();
         }
     }
 

@@ -212,7 +212,7 @@ fn the_last_scene_plays_after_power_off() {
     settle(&mut keeper, &mut flash, &desk, 0);
     assert_eq!((keeper.settled_crc32(), keeper.failures()), (Some(crc32(&scene)), 0));
     let before = played(&mut desk);
-    assert!(before.iter().any(|drive| drive.dac_code != 0));
+    assert!(before.iter().any(|drive| drive.dac_code.bits() != 0));
 
     let mut memory = Memory::new();
     let mut desk = Desk::new(&mut memory);
@@ -266,6 +266,7 @@ fn nothing_is_written_unless_the_board_is_disarmed() {
 
     // Armed in the middle of a write: it ends there, and the copy before is still the one.
     desk.command(Command::Disarm).unwrap();
+    desk.press_switch();
     keeper.step(&mut flash, &desk.session, 0);
     while flash.done < done + PAGE_LEN + 40 {
         keeper.step(&mut flash, &desk.session, SETTLED_TICKS);

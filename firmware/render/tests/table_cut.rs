@@ -60,7 +60,7 @@ fn played(header: &Header, random: &RandomScene, seed: u64) -> Vec<Played> {
     desk.command(Command::Arm).unwrap();
     desk.command(Command::Play).unwrap();
     let _ = desk.command(Command::StartStream { sample_hz: STREAM_HZ, start_level: 20 });
-    let pace = if seed.is_multiple_of(4) { Pace::Hasty } else { Pace::Usual };
+    let pace = if seed.is_multiple_of(4) { Pace::Fast } else { Pace::Usual };
     let mut finger = RandomFinger::new(seed, header, pace);
     (0..TICKS)
         .map(|tick| {
@@ -71,11 +71,11 @@ fn played(header: &Header, random: &RandomScene, seed: u64) -> Vec<Played> {
                 desk.send(&frame);
                 desk.command(Command::Ping).unwrap();
             }
-            desk.sense.touch = finger.tick().map(|report| match report {
+            desk.touch = finger.tick().map(|report| match report {
                 Report::Down { x_m, y_m, age_ticks } => Touch::Down { x_m, y_m, age_ticks },
                 Report::Up => Touch::Up,
             });
-            let dac_code = desk.tick().dac_code;
+            let dac_code = desk.tick().dac_code.bits();
             let telemetry = desk.status().telemetry;
             Played { asked_bits: telemetry.asked_electric_friction_n.to_bits(), dac_code, flags: telemetry.flags }
         })
@@ -102,7 +102,7 @@ proptest! {
 #[test]
 fn many_random_scenes_have_a_table_that_is_cut_and_drive() {
     let crc32 = bitmap_crc32(3, 2, &SAMPLES);
-    let scenes: Vec<(u64, RandomScene)> = (0..400).map(|seed| (seed, RandomScene::new(seed, crc32))).collect();
+    let scenes: Vec<(u64, RandomScene)> = (0..500).map(|seed| (seed, RandomScene::new(seed, crc32))).collect();
     let cut: Vec<&(u64, RandomScene)> = scenes
         .iter()
         .filter(|(_, random)| {

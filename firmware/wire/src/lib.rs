@@ -7,6 +7,7 @@
 #![forbid(unsafe_code)]
 
 pub mod bytes;
+pub mod dac_code;
 pub mod fault;
 pub mod frame;
 pub mod hello;

@@ -96,9 +96,9 @@ fn numbers(refusal: Refusal) -> Vec<String> {
         Refusal::Scene(error) => scene_numbers(error),
         Refusal::LeftOut { layer: ConfigRefusal::WHOLE_SCENE } => vec!["carrier".into()],
         Refusal::LeftOut { layer } => vec![format!("layer {layer}")],
-        Refusal::TooCostly { instructions, max, x_m, y_m } => {
+        Refusal::TooCostly { cycles, cycles_max, x_m, y_m } => {
             let place = format!("{:.1} mm, {:.1} mm", 1e3 * x_m, 1e3 * y_m);
-            vec![instructions.to_string(), max.to_string(), place]
+            vec![cycles.to_string(), cycles_max.to_string(), place]
         }
         Refusal::NoSuchLayer { layer, layers } => vec![format!("layer {layer}"), layers.to_string()],
         Refusal::UnknownCommand

@@ -3,7 +3,7 @@
 use std::thread;
 use std::time::{Duration, Instant};
 
-use frixel_exchange::{DONE_WORDS_MAX, Done, layout};
+use frixel_exchange::{OUTPUT_WORDS_MAX, TickOutput, layout};
 use thiserror::Error;
 
 use super::machine::Machine;
@@ -21,9 +21,9 @@ const PATIENCE: Duration = Duration::from_mins(2);
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mismatch {
     /// What the journal says.
-    pub expected: Done,
+    pub expected: TickOutput,
     /// What the emulated board did.
-    pub found: Done,
+    pub found: TickOutput,
 }
 
 /// Why a journal could not be replayed.
@@ -46,7 +46,7 @@ pub fn replay(image: &Image, journal: &Journal) -> Result<(), ReplayError> {
         if ticks == 0 {
             break;
         }
-        run(&mut machine, batch, journal.given_words(from_tick, ticks), ticks)?;
+        run(&mut machine, batch, journal.input_words(from_tick, ticks), ticks)?;
         compare(&machine, journal, from_tick, ticks)?;
         from_tick += ticks;
     }
@@ -54,8 +54,8 @@ pub fn replay(image: &Image, journal: &Journal) -> Result<(), ReplayError> {
 }
 
 /// Has one batch done.
-fn run(machine: &mut Machine, batch: u32, given: &[u32], ticks: usize) -> Result<(), EmulatorError> {
-    machine.memory.set_all(layout::GIVEN, given)?;
+fn run(machine: &mut Machine, batch: u32, inputs: &[u32], ticks: usize) -> Result<(), EmulatorError> {
+    machine.memory.set_all(layout::INPUTS, inputs)?;
     machine.memory.set(layout::BATCH_TICKS, ticks as u32)?;
     machine.memory.set(layout::BATCH_GIVEN, batch)?;
     let begin = Instant::now();
@@ -71,15 +71,15 @@ fn run(machine: &mut Machine, batch: u32, given: &[u32], ticks: usize) -> Result
 
 /// Compares one batch.
 fn compare(machine: &Machine, journal: &Journal, from_tick: usize, ticks: usize) -> Result<(), ReplayError> {
-    let expected = journal.done_words(from_tick, ticks);
-    if machine.memory.get_all(layout::DONE, expected.len())? == expected {
+    let expected = journal.output_words(from_tick, ticks);
+    if machine.memory.get_all(layout::OUTPUTS, expected.len())? == expected {
         return Ok(());
     }
-    let found = machine.memory.get_all(layout::DONE, ticks * DONE_WORDS_MAX)?;
+    let found = machine.memory.get_all(layout::OUTPUTS, ticks * OUTPUT_WORDS_MAX)?;
     let (mut expected, mut found) = (expected.iter().copied(), found.into_iter());
     for _ in 0..ticks {
-        let expected = Done::read(|| expected.next().unwrap_or_default());
-        let found = Done::read(|| found.next().unwrap_or_default());
+        let expected = TickOutput::read(|| expected.next().unwrap_or_default());
+        let found = TickOutput::read(|| found.next().unwrap_or_default());
         if expected != found {
             return Err(ReplayError::Mismatch(Box::new(Mismatch { expected, found })));
         }

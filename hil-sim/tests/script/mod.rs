@@ -95,6 +95,8 @@ impl<'a> Script<'a> {
         for (number, chunk) in bytes.chunks(CHUNK_LEN).enumerate() {
             let mut frame = [0; FRAME_MAX_LEN];
             self.rig.send(payload::chunk_frame(number as u16, chunk, &mut frame).unwrap());
+            // The line takes no more than the board's credit.
+            self.drain();
         }
         self.command(Command::UploadEnd);
     }

@@ -1,4 +1,4 @@
-//! Commands: their frames, their names for a person, what they lead to.
+//! Commands: their frames, their names in messages, and the states that they lead to.
 
 use frixel_wire::fault::State;
 use frixel_wire::frame::FRAME_MAX_LEN;
@@ -11,7 +11,7 @@ pub(super) fn frame_of(sequence: u16, command: Command) -> Result<Vec<u8>, Write
     request_frame(&Request { sequence, command }, &mut buffer).map(<[u8]>::to_vec)
 }
 
-/// What a command does, as error messages have it.
+/// The name of a command in error messages.
 pub(super) fn name_of(command: &Command) -> &'static str {
     match command {
         Command::Ping => "ping",
@@ -36,7 +36,7 @@ pub(super) fn name_of(command: &Command) -> &'static str {
     }
 }
 
-/// The state that a command leads to, for those whose work is to change it.
+/// The state that a command leads to, if its purpose is to change the state.
 pub(super) fn state_after(command: &Command) -> Option<State> {
     match command {
         Command::Arm | Command::Stop => Some(State::Armed),

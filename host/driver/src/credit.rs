@@ -1,31 +1,31 @@
-//! Credit: how much the host may send before the board has said that it got what was sent before.
+//! Credit: how many bytes the host may have under way to the board.
 
-/// Counts bytes on the way to the board.
+/// Counts the bytes on the way to the board.
 ///
-/// Positions count the bytes that the host wrote since the link was opened. The board counts what it received since the hello; the two counts
-/// drift apart by what the line loses or adds.
+/// Positions count the bytes that the host has written since the link was opened. The board counts the bytes that it
+/// has received since the hello. The two counts drift apart by what the line loses or adds.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Credit {
     window: u64,
     /// Position up to which bytes have reached the board or are lost.
     settled: u64,
-    /// Position of the host's count less that of the board's, with both at the same place on the line.
+    /// The host's count minus the board's, at the same place on the line.
     offset: i64,
     /// Bytes that the board received since the hello.
     received: u64,
 }
 
-/// The board's count went backwards, which only a restart does.
+/// The board's count went backwards, which only a restart or another host's hello causes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct CountRestarted;
 
 impl Credit {
-    /// The board answered a hello and counts from zero; the host has written `written` bytes.
+    /// The board has answered a hello and counts from zero; the host has written `written` bytes.
     pub(super) fn new(window: u16, written: u64) -> Self {
         Self { window: window.into(), settled: written, offset: written as i64, received: 0 }
     }
 
-    /// Takes the board's count, modulo 2^32.
+    /// Updates the board's count, which it sends modulo 2^32.
     pub(super) fn received(&mut self, received_bytes: u32, written: u64) -> Result<(), CountRestarted> {
         let step = received_bytes.wrapping_sub(self.received as u32);
         if step > u32::MAX / 2 {
@@ -36,10 +36,11 @@ impl Credit {
         Ok(())
     }
 
-    /// Takes the answer to a request, whose count [`Self::received`] was given just before.
+    /// Uses the answer to a request that ended at position `request_end`. Its count went to [`Self::received`] before.
     ///
-    /// The line keeps the order, so everything before the end of the request is off the line. If nothing was written after it, the board's
-    /// count stands for exactly that position; otherwise it may run ahead of it, and only a loss is certain.
+    /// The line keeps the order, so everything before the end of the request has left the line. If nothing was written
+    /// after the request, the board's count stands for exactly that position. Otherwise it may be ahead of it, and only
+    /// a loss is certain.
     pub(super) fn answered(&mut self, request_end: u64, written: u64) {
         let offset = request_end as i64 - self.received as i64;
         if request_end == written || offset > self.offset {
@@ -58,8 +59,8 @@ impl Credit {
         self.settled
     }
 
-    /// Whether `len` more bytes keep what is on the way within the window, with `reserve` bytes left over. A window too small for that takes
-    /// one frame at a time.
+    /// Whether the window has room for `len` more bytes, and `reserve` bytes beyond them. A window too small for both
+    /// takes one frame at a time.
     pub(super) fn allows(&self, len: usize, reserve: usize, written: u64) -> bool {
         let under_way = written.saturating_sub(self.settled);
         let reserve = if under_way == 0 { 0 } else { reserve as u64 };

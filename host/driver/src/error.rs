@@ -1,4 +1,4 @@
-//! What can go wrong between a caller and a board. The message of each says what was found and what to do.
+//! What can go wrong between a caller and a board. Each message says what was found and what to do.
 
 use std::time::Duration;
 
@@ -7,77 +7,32 @@ use frixel_wire::message::Refusal;
 use frixel_wire::payload::WriteError;
 use thiserror::Error;
 
-/// A port could not be opened.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum PortError {
-    /// There is no such port.
-    #[error("there is no port {port}; {}", port_list(.ports))]
-    NotThere {
-        /// Path that was asked for.
-        port: String,
-        /// Paths of the ports that there are.
-        ports: Vec<String>,
-    },
-    /// Another program has the port open.
-    #[error("{port} is in use by another program; close that one (a serial monitor, or a second frixel) and try again")]
-    Busy {
-        /// Path of the port.
-        port: String,
-    },
-    /// The operating system does not let this user open the port.
-    #[error(
-        "no permission to open {port}; on Linux its group may, usually `dialout` or `uucp`: add yourself with \
-         `sudo usermod -aG dialout $USER` and log in again"
-    )]
-    NoPermission {
-        /// Path of the port.
-        port: String,
-    },
-    /// The operating system refuses for another reason; a file that is not a serial port is one.
-    #[error("{port} does not open as a serial port: {reason}; check the path, and plug the board in again")]
-    NotOpened {
-        /// Path of the port.
-        port: String,
-        /// In the operating system's words.
-        reason: String,
-    },
-    /// The ports of this machine could not be listed.
-    #[error("the serial ports of this machine cannot be listed: {reason}; name the port by its path")]
-    NoList {
-        /// In the operating system's words.
-        reason: String,
-    },
-}
-
-/// A link that was open is no more.
+/// An open link has closed.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("the port {port} vanished ({reason})")]
 pub struct LinkClosed {
     /// Path of the port.
     pub port: String,
-    /// In the operating system's words.
+    /// The reason, in the operating system's words.
     pub reason: String,
 }
 
 /// A call to a board failed.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum DeviceError {
-    /// The port could not be opened.
-    #[error(transparent)]
-    Port(#[from] PortError),
-    /// Nothing that answers a hello is on the line.
+    /// No board answered the hello.
     #[error(
-        "no frixel board answered on {port} within {} ms{}; check that it is the right port and that frixel firmware runs on the board, \
-         then reset the board and try again",
+        "no frixel board answered on {port} within {} ms{}; check that it is the right port and that frixel firmware runs on \
+         the board, then reset the board and try again",
         .waited.as_millis(),
         if *.heard_bytes > 0 { ", though something else talks there" } else { "" }
     )]
     NoHello {
         /// Name of the link.
         port: String,
-        /// How long it was waited for, in the link's time.
+        /// How long the host waited, on the link's clock.
         waited: Duration,
-        /// Bytes that came meanwhile.
+        /// Bytes that arrived meanwhile.
         heard_bytes: usize,
     },
     /// The board speaks another protocol.
@@ -90,47 +45,48 @@ pub enum DeviceError {
     },
     /// The board did not answer.
     #[error(
-        "{command} was not answered by the board on {port} for {} ms; its output goes to zero by itself; check cable and power, then start again",
+        "{command} was not answered by the board on {port} for {} ms; its output goes to zero by itself; \
+         check cable and power, then start again",
         .waited.as_millis()
     )]
     Silent {
         /// Name of the link.
         port: String,
-        /// What was not answered.
+        /// The command that was not answered.
         command: &'static str,
-        /// How long it was waited for, in the link's time.
+        /// How long the host waited, on the link's clock.
         waited: Duration,
     },
-    /// The board answered that it will not.
+    /// The board refused a command.
     #[error("{command} was refused by the board on {port}: {refusal}")]
     Refused {
         /// Name of the link.
         port: String,
-        /// What was refused.
+        /// The command that was refused.
         command: &'static str,
-        /// Why.
+        /// The board's reason.
         refusal: Refusal,
     },
     /// The cable was pulled, or the other end closed the line.
     #[error("{closed} during: {command}; the board's output goes to zero by itself; plug the cable in and start again")]
     Vanished {
-        /// What was under way.
+        /// The command that was under way.
         command: &'static str,
-        /// The link's own words.
+        /// What the link reported.
         closed: LinkClosed,
     },
-    /// The board's count of bytes began anew: it was reset, or another host said hello to it.
+    /// The board's count of received bytes started again: it was reset, or another host connected to it.
     #[error("the board on {port} restarted during: {command}; connect again and upload the scene again")]
     Restarted {
         /// Name of the link.
         port: String,
-        /// What was under way.
+        /// The command that was under way.
         command: &'static str,
     },
-    /// The board answers, but an upload does not get on however often it is sent again.
+    /// The board answers, but an upload makes no progress however often it is sent again.
     #[error(
-        "the upload to {port} does not get past {arrived_bytes} of {total_bytes} bytes; the line damages what is sent: try another cable \
-         or a lower line rate"
+        "the upload to {port} does not get past {arrived_bytes} of {total_bytes} bytes; the line damages what is sent: \
+         try another cable or a lower line rate"
     )]
     UploadStalled {
         /// Name of the link.
@@ -140,7 +96,7 @@ pub enum DeviceError {
         /// Bytes of the whole scene or bitmap.
         total_bytes: usize,
     },
-    /// A bitmap to be uploaded has not one sample for each of its places.
+    /// A bitmap does not have width times height samples.
     #[error("bitmap {crc32:#010x} is {width} by {height}, but has {found} samples; it needs one for each place")]
     BitmapSize {
         /// CRC-32 of the samples.
@@ -149,18 +105,10 @@ pub enum DeviceError {
         width: u16,
         /// Rows.
         height: u16,
-        /// Samples that there are.
+        /// Samples that it has.
         found: usize,
     },
-    /// A frame cannot be written: an upload that is longer than any may be.
+    /// A frame cannot be encoded: the upload is longer than the protocol allows.
     #[error(transparent)]
     Frame(#[from] WriteError),
-}
-
-fn port_list(ports: &[String]) -> String {
-    match ports {
-        [] => "this machine has none: plug the board in".into(),
-        [only] => format!("the only one is {only}"),
-        [..] => format!("those that are there: {}", ports.join(", ")),
-    }
 }

@@ -1,4 +1,4 @@
-//! Requests and their answers, over any [`Link`].
+//! Requests and their answers, over a [`Link`].
 
 mod incoming;
 
@@ -16,43 +16,43 @@ use super::error::{DeviceError, LinkClosed};
 use super::link::Link;
 pub(super) use incoming::StreamReport;
 
-/// Sequence number of requests whose answer nobody waits for.
+/// Sequence number of requests whose answer is ignored.
 const UNAWAITED: u16 = 0;
-/// How long a command may take to be answered. A full window ahead of it takes 355 ms at 115,200 baud.
+/// Longest time to an answer. A full window ahead of the request takes 355 ms at 115,200 baud.
 pub(super) const ANSWER_TIMEOUT: Duration = Duration::from_millis(750);
-/// A command that is not answered is sent again after this time: a frame may have been damaged.
+/// Time after which a request without an answer is sent again: its frame may have been damaged.
 const REPEAT_AFTER: Duration = Duration::from_millis(250);
-/// Time to the next try when the board was busy.
+/// Time to the next try when the board is busy.
 const BUSY_RETRY_AFTER: Duration = Duration::from_millis(5);
-/// Credit kept free for commands.
+/// Credit that uploads leave for commands, bytes.
 const COMMAND_RESERVE_LEN: usize = 64;
 
-/// A board that has said hello, and what is under way to and from it.
+/// A board that has answered the hello, and what is under way to and from it.
 pub(super) struct Exchange<L> {
     link: L,
     decoder: Decoder,
-    /// Frames the decoder had rejected before the hello: leftovers of whoever talked before.
+    /// Frames that the decoder rejected before the hello: remains of an earlier connection.
     rejected_before: u32,
     incoming: Vec<u8>,
     credit: Credit,
-    /// Credit that uploads leave free.
+    /// Credit that uploads leave free for commands and pings, bytes.
     reserve: usize,
     sequence: u16,
     awaited: Vec<Awaited>,
     answer: Option<Answer>,
     next_chunk: Option<u16>,
     stream: Option<StreamReport>,
-    /// What is said of a stream before the next answer is of another one.
+    /// The next answer starts a new stream, so that reports before it belong to the old one.
     stream_begins: bool,
     events: VecDeque<Event>,
-    /// Time listened since anything came.
+    /// Time spent reading since anything arrived.
     quiet: Duration,
 }
 
-/// A request on its way.
+/// A request that waits for its answer.
 struct Awaited {
     sequence: u16,
-    /// Position on the line of its last byte.
+    /// Position of the end of its frame.
     end: u64,
 }
 
@@ -102,7 +102,7 @@ impl<L: Link> Exchange<L> {
         self.link.now()
     }
 
-    /// Lets the link ping the board whenever nothing was sent for `period`, and keeps credit for those pings.
+    /// Makes the link ping the board whenever nothing was sent for `period`, and reserves credit for those pings.
     pub(super) fn ping_every(&mut self, period: Duration) -> Result<(), DeviceError> {
         let ping = frame_of(UNAWAITED, Command::Ping)?;
         let pings = ANSWER_TIMEOUT.as_micros().div_ceil(period.as_micros().max(1)) as usize;
@@ -111,16 +111,16 @@ impl<L: Link> Exchange<L> {
         Ok(())
     }
 
-    /// Sets the commands that are sent when the link is dropped.
-    pub(super) fn say_farewell_with(&mut self, commands: &[Command]) -> Result<(), DeviceError> {
+    /// Sets the commands that the link sends when it is dropped.
+    pub(super) fn set_shutdown_commands(&mut self, commands: &[Command]) -> Result<(), DeviceError> {
         let frames: Result<Vec<_>, _> = commands.iter().map(|command| frame_of(UNAWAITED, *command)).collect();
-        self.link.farewell(frames?.concat());
+        self.link.set_shutdown_frames(frames?.concat());
         Ok(())
     }
 
-    /// Sends a command and waits for the board to take it; tries again while it is busy.
+    /// Sends a command and waits until the board accepts it. A refusal is an error.
     pub(super) fn request(&mut self, command: Command) -> Result<Accepted, DeviceError> {
-        match self.ask(command)? {
+        match self.try_request(command)? {
             Ok(accepted) => Ok(accepted),
             Err(refusal) => Err(self.refused(&command, refusal)),
         }
@@ -134,11 +134,11 @@ impl<L: Link> Exchange<L> {
         DeviceError::UploadStalled { port: self.link.name().into(), arrived_bytes, total_bytes }
     }
 
-    /// Sends a command and waits for its outcome; tries again while the board is busy.
-    pub(super) fn ask(&mut self, command: Command) -> Result<Result<Accepted, Refusal>, DeviceError> {
+    /// Sends a command and waits for its outcome. Tries again while the board is busy.
+    pub(super) fn try_request(&mut self, command: Command) -> Result<Result<Accepted, Refusal>, DeviceError> {
         let deadline = self.link.now() + ANSWER_TIMEOUT;
         loop {
-            let outcome = self.ask_once(command, deadline)?;
+            let outcome = self.try_request_once(command, deadline)?;
             let now = self.link.now();
             if outcome != Err(Refusal::Busy) || now + BUSY_RETRY_AFTER >= deadline {
                 return Ok(outcome);
@@ -147,7 +147,11 @@ impl<L: Link> Exchange<L> {
         }
     }
 
-    fn ask_once(&mut self, command: Command, deadline: Duration) -> Result<Result<Accepted, Refusal>, DeviceError> {
+    fn try_request_once(
+        &mut self,
+        command: Command,
+        deadline: Duration,
+    ) -> Result<Result<Accepted, Refusal>, DeviceError> {
         let started = self.link.now();
         let mut send_at = started;
         self.awaited.clear();
@@ -168,7 +172,7 @@ impl<L: Link> Exchange<L> {
         }
     }
 
-    /// Sends a request when there is credit for it.
+    /// Sends a request if there is credit for it.
     fn send(&mut self, command: Command) -> Result<bool, DeviceError> {
         let sequence = self.sequence.checked_add(1).unwrap_or(UNAWAITED + 1);
         let frame = frame_of(sequence, command)?;
@@ -181,12 +185,13 @@ impl<L: Link> Exchange<L> {
         Ok(true)
     }
 
-    /// Whether the command that was answered last had been sent more than once, so that the board may have done it before.
+    /// Whether the command that was answered last was sent more than once, so that the board may have executed it
+    /// twice.
     pub(super) fn repeated(&self) -> bool {
         self.awaited.len() > 1
     }
 
-    /// A command that was sent twice may be refused because the first one did its work and only the answer was lost.
+    /// A repeated command may be refused because the first one was executed and only its answer was lost.
     fn outcome(&self, command: Command, answer: &Answer) -> Result<Accepted, Refusal> {
         match answer.outcome {
             Err(Refusal::WrongState(state)) if self.repeated() && state_after(&command) == Some(state) => {
@@ -196,7 +201,7 @@ impl<L: Link> Exchange<L> {
         }
     }
 
-    /// Sends a frame of an upload when there is credit for it; returns the position of its end.
+    /// Sends a bulk frame if there is credit for it, and returns the position of its end.
     pub(super) fn send_bulk(&mut self, frame: &[u8], doing: &'static str) -> Result<Option<u64>, DeviceError> {
         if !self.credit.allows(frame.len(), self.reserve, self.link.written().bytes) {
             return Ok(None);
@@ -204,22 +209,22 @@ impl<L: Link> Exchange<L> {
         self.write(frame, doing).map(Some)
     }
 
-    /// Position on the line up to which bytes have reached the board or are lost.
+    /// Position up to which bytes have reached the board or are lost.
     pub(super) fn settled(&self) -> u64 {
         self.credit.settled()
     }
 
-    /// Number of the chunk that the board said last it wants next.
+    /// The number of the chunk that the board expects next, if it has reported one since the last call.
     pub(super) fn take_next_chunk(&mut self) -> Option<u16> {
         self.next_chunk.take()
     }
 
-    /// What the board said last of the stream under way.
+    /// The board's last report on the stream.
     pub(super) fn stream(&self) -> Option<StreamReport> {
         self.stream
     }
 
-    /// The next request starts a stream.
+    /// Announces that the next request starts a stream.
     pub(super) fn begin_stream(&mut self) {
         self.stream_begins = true;
     }

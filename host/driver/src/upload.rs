@@ -1,4 +1,4 @@
-//! Bulk uploads: chunks under credit, sent again from where one was lost.
+//! Uploads: chunks under credit, sent again from the first one that was lost.
 
 use std::time::Duration;
 
@@ -11,24 +11,24 @@ use super::error::DeviceError;
 use super::exchange::Exchange;
 use super::link::Link;
 
-/// An upload that has not got on for this long is looked after.
+/// Time without progress after which the board's next chunk is requested.
 const STALL_AFTER: Duration = Duration::from_millis(150);
-/// How often in a row an upload is sent again from the same chunk.
+/// How often in a row an upload restarts from the same chunk.
 const TRIES: u32 = 3;
-/// How often an upload is started when its end stays unclear.
+/// How often an upload is started when its outcome stays unknown.
 const STARTS: u32 = 3;
 
-/// What is to play: a compiled scene, and the bitmaps that it names.
+/// A compiled scene, and the bitmaps that it names.
 #[derive(Clone, Debug)]
 pub struct Upload<'a> {
     /// The scene's bytes, as `frixel-layers` lays them out.
     pub scene: &'a [u8],
-    /// The bitmaps. Those that the board holds already are not sent.
+    /// The bitmaps. Those that the board holds are not sent.
     pub bitmaps: Vec<Bitmap<'a>>,
 }
 
 impl Upload<'_> {
-    /// CRC-32 of the scene, which [`super::Device::commit`] names it by.
+    /// CRC-32 of the scene, by which [`super::Device::commit`] identifies it.
     pub fn scene_crc32(&self) -> u32 {
         crc32(self.scene)
     }
@@ -38,7 +38,7 @@ impl Upload<'_> {
         self.scene.len() + self.bitmaps.iter().map(|bitmap| bitmap.samples.len()).sum::<usize>()
     }
 
-    /// Refuses bitmaps that have not one sample for each of their places.
+    /// Refuses bitmaps that do not have width times height samples.
     pub(super) fn check(&self) -> Result<(), DeviceError> {
         self.bitmaps.iter().try_for_each(Bitmap::check)
     }
@@ -57,10 +57,10 @@ pub struct Bitmap<'a> {
     pub samples: &'a [u8],
 }
 
-/// How far an upload has come.
+/// Progress of an upload.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {
-    /// Bytes of scene and bitmaps that the board has, those that it held before included.
+    /// Bytes of scene and bitmaps that the board has, including those that it held before.
     pub done_bytes: usize,
     /// Bytes of scene and bitmaps together.
     pub total_bytes: usize,
@@ -69,13 +69,13 @@ pub struct Progress {
 /// Counts of uploads since the hello.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct UploadCounts {
-    /// Bytes of scenes and bitmaps that were sent and have arrived whole.
+    /// Bytes of scenes and bitmaps that have arrived.
     pub(super) payload_bytes: u64,
-    /// Chunks that the board asked for again.
+    /// Chunks that the board requested again.
     pub(super) chunks_lost: u64,
 }
 
-/// Uploads all that the board does not hold yet. Nothing plays before it is committed.
+/// Uploads what the board does not hold. Nothing of it plays before a commit.
 pub(super) fn send<L: Link>(
     exchange: &mut Exchange<L>,
     upload: &Upload,
@@ -97,7 +97,7 @@ pub(super) fn send<L: Link>(
     Ok(())
 }
 
-/// Uploads one scene or bitmap, unless the board holds it.
+/// Uploads one scene or bitmap, unless the board holds it already.
 fn send_one<L: Link>(
     exchange: &mut Exchange<L>,
     start: Command,
@@ -143,22 +143,22 @@ impl Bitmap<'_> {
 enum End {
     /// The board has all of it.
     Arrived,
-    /// The answer to the end was lost, and the next one cannot tell an upload that is complete from one that was never started.
-    Unclear,
+    /// The answer to the end of the upload was lost, and the next one is the same for a complete upload and for none.
+    Unknown,
 }
 
-/// One scene or bitmap on its way.
+/// The transfer of one scene or bitmap.
 struct Transfer<'a, L> {
     exchange: &'a mut Exchange<L>,
     doing: &'static str,
     bytes: &'a [u8],
-    /// The chunk that the board wants next, as far as is known.
-    wanted: usize,
+    /// The chunk that the board expects next, as of its last report.
+    expected: usize,
     /// The chunk to send next.
     next: usize,
-    /// For each chunk, the position on the line at which its last sending ended.
+    /// For each chunk, the position at which it was last sent to its end.
     sent_to: Vec<u64>,
-    /// Times in a row that chunks were sent again without the board wanting a later one.
+    /// Times in a row that chunks were sent again without progress.
     tries: u32,
     lost: u64,
 }
@@ -166,24 +166,25 @@ struct Transfer<'a, L> {
 impl<'a, L: Link> Transfer<'a, L> {
     fn new(exchange: &'a mut Exchange<L>, doing: &'static str, bytes: &'a [u8]) -> Self {
         exchange.take_next_chunk();
-        Self { exchange, doing, bytes, wanted: 0, next: 0, sent_to: Vec::new(), tries: 0, lost: 0 }
+        Self { exchange, doing, bytes, expected: 0, next: 0, sent_to: Vec::new(), tries: 0, lost: 0 }
     }
 
     fn run(&mut self, report: &mut dyn FnMut(usize)) -> Result<End, DeviceError> {
         loop {
             self.send_chunks(report)?;
-            match self.exchange.ask(Command::UploadEnd)? {
+            match self.exchange.try_request(Command::UploadEnd)? {
                 Ok(_) => return Ok(End::Arrived),
-                Err(Refusal::UploadIncomplete { .. }) if self.exchange.repeated() => return Ok(End::Unclear),
+                Err(Refusal::UploadIncomplete { .. }) if self.exchange.repeated() => return Ok(End::Unknown),
                 Err(Refusal::UploadIncomplete { next_chunk }) => self.send_again_from(next_chunk)?,
                 Err(refusal) => return Err(self.exchange.refused(&Command::UploadEnd, refusal)),
             }
         }
     }
 
-    /// Sends from `next` to the end, and goes back when the board says that it has to. Gives up when there is no credit for long: it may be
-    /// lost together with bytes. Then, as after the last chunk, the end of the upload is asked for; it does no harm when it comes too early,
-    /// its refusal says which chunk the board wants, and its answer settles the credit.
+    /// Sends chunks from `next` to the last one, and goes back when the board reports a loss. Returns early when there
+    /// is no credit for [`STALL_AFTER`]: credit is lost together with bytes. The caller then requests the end of the
+    /// upload, as after the last chunk. Too early, that is refused with the chunk that the board expects, and any
+    /// answer corrects the credit.
     fn send_chunks(&mut self, report: &mut dyn FnMut(usize)) -> Result<(), DeviceError> {
         let mut sent_at = self.exchange.now();
         while self.next < self.chunk_count() && self.exchange.now().saturating_sub(sent_at) < STALL_AFTER {
@@ -194,7 +195,7 @@ impl<'a, L: Link> Transfer<'a, L> {
                 STALL_AFTER
             };
             self.exchange.receive(wait, self.doing)?;
-            self.take_progress(report)?;
+            self.handle_progress(report)?;
         }
         Ok(())
     }
@@ -203,12 +204,12 @@ impl<'a, L: Link> Transfer<'a, L> {
         self.bytes.len().div_ceil(CHUNK_LEN)
     }
 
-    /// Bytes that the board has said it has.
+    /// Bytes that the board has reported.
     fn arrived_bytes(&self) -> usize {
-        self.bytes.len().min(self.wanted * CHUNK_LEN)
+        self.bytes.len().min(self.expected * CHUNK_LEN)
     }
 
-    /// Sends the next chunk, if there is credit for it.
+    /// Sends the next chunk if there is credit for it, and returns whether it did.
     fn send_next(&mut self) -> Result<bool, DeviceError> {
         let start = self.next * CHUNK_LEN;
         let end = self.bytes.len().min(start + CHUNK_LEN);
@@ -226,36 +227,36 @@ impl<'a, L: Link> Transfer<'a, L> {
         Ok(true)
     }
 
-    /// Takes what the board said last. It lacks a chunk that it wants although all of it is off the line.
-    fn take_progress(&mut self, report: &mut dyn FnMut(usize)) -> Result<(), DeviceError> {
-        let Some(wanted) = self.exchange.take_next_chunk() else {
+    /// Handles the board's last report. A chunk that it expects, and that has left the line, was lost.
+    fn handle_progress(&mut self, report: &mut dyn FnMut(usize)) -> Result<(), DeviceError> {
+        let Some(expected) = self.exchange.take_next_chunk() else {
             return Ok(());
         };
-        self.board_wants(wanted);
+        self.set_expected(expected);
         report(self.arrived_bytes());
         let off_the_line = |sent_to: &u64| *sent_to <= self.exchange.settled();
-        if self.wanted < self.next && self.sent_to.get(self.wanted).is_some_and(off_the_line) {
-            self.send_again_from(wanted)?;
+        if self.expected < self.next && self.sent_to.get(self.expected).is_some_and(off_the_line) {
+            self.send_again_from(expected)?;
         }
         Ok(())
     }
 
-    fn board_wants(&mut self, chunk: u16) {
+    fn set_expected(&mut self, chunk: u16) {
         let chunk = usize::from(chunk).min(self.chunk_count());
-        if chunk > self.wanted {
+        if chunk > self.expected {
             self.tries = 0;
         }
-        self.wanted = chunk;
+        self.expected = chunk;
     }
 
     fn send_again_from(&mut self, chunk: u16) -> Result<(), DeviceError> {
-        self.board_wants(chunk);
+        self.set_expected(chunk);
         self.tries += 1;
         if self.tries > TRIES {
             return Err(self.exchange.stalled(self.arrived_bytes(), self.bytes.len()));
         }
-        if self.wanted < self.next {
-            self.next = self.wanted;
+        if self.expected < self.next {
+            self.next = self.expected;
             self.lost += 1;
         }
         Ok(())

@@ -1,6 +1,5 @@
 //! From a scene as written to a program as played: checks that need the board, other layers, or pictures.
 
-use frixel_layers::cost::TICK_INSTRUCTIONS_MAX;
 use frixel_layers::{Header, Record, electric_friction_max_n};
 use frixel_wire::hello::BoardLimits;
 use frixel_wire::scene::RECORDS_MAX;
@@ -44,20 +43,10 @@ const MM: f64 = 1e-3;
 /// # }
 /// ```
 pub fn compile(scene: &Scene, limits: &BoardLimits, tick_hz: u32) -> Result<Program, CompileError> {
-    compile_within(scene, limits, tick_hz, TICK_INSTRUCTIONS_MAX)
-}
-
-/// [`compile`] for boards whose tick has time for this many instructions.
-pub(super) fn compile_within(
-    scene: &Scene,
-    limits: &BoardLimits,
-    tick_hz: u32,
-    instructions_max: u32,
-) -> Result<Program, CompileError> {
     let mut log = Log::new(&scene.source);
     let program = assemble(scene, limits, tick_hz, &mut log);
     if let Some(program) = program.as_ref().filter(|_| log.is_empty()) {
-        tick_cost::check(scene, program, instructions_max, &mut log);
+        tick_cost::check(scene, program, limits.tick_cycles_max, &mut log);
     }
     log.finish(program)
 }

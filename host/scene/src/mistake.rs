@@ -226,16 +226,19 @@ pub enum Mistake {
     },
     /// A place where the tick takes too long.
     #[error(
-        "a tick takes up to {instructions} instructions near x {x_mm} mm, y {y_mm} mm, for {layers}, and the board has time for \
-         {max}: move layers apart, or leave some out"
+        "{layers} {} at x {x_mm} mm, y {y_mm} mm: a tick there is estimated at {cycles} cycles, and the board has time for \
+         {cycles_max}: move layers apart, or leave some out",
+        if *.meet { "meet" } else { "are in one cell of the board's grid, though they do not meet," }
     )]
     TickTooLong {
-        /// Instructions of the longest tick.
-        instructions: u32,
-        /// Most instructions.
-        max: u32,
-        /// The layers that may act there.
+        /// Cycles that the longest tick is estimated at.
+        cycles: u32,
+        /// Most cycles.
+        cycles_max: u32,
+        /// The layers that the tick evaluates there.
         layers: String,
+        /// Those layers alone exceed the limit at this place. Otherwise layers only share a cell of the grid.
+        meet: bool,
         /// The place, mm.
         x_mm: f64,
         /// The place, mm.

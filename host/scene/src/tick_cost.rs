@@ -1,43 +1,111 @@
 //! Refuses a scene whose tick takes too long at some place, as the board would.
 
-use frixel_layers::Cell;
-use frixel_layers::cost::{Worst, worst_of_scene};
+use frixel_layers::cost::{self, Worst, worst_of_scene};
+use frixel_layers::{Cell, Record};
 
 use super::file::Scene;
 use super::log::Log;
 use super::mistake::Mistake;
 use super::program::Program;
+use super::reference::Shape;
 
-/// Refuses a program whose longest tick takes more than `max` instructions. The mistake stands at the topmost layer of the
-/// place.
-pub(super) fn check(scene: &Scene, program: &Program, max: u32, log: &mut Log) {
-    let Worst { instructions, cell } = program.worst_tick();
-    if instructions <= max {
+/// Refuses a program whose longest tick is estimated at more than `cycles_max`. The mistake stands at the topmost layer of
+/// the place.
+///
+/// The board adds up all layers of a cell of its grid. The message names the layers that meet at one place of that cell, and
+/// only when they are too many; otherwise all layers of the cell.
+pub(super) fn check(scene: &Scene, program: &Program, cycles_max: u32, log: &mut Log) {
+    let worst = program.worst_tick();
+    if worst.cycles() <= cycles_max {
         return;
     }
-    let titles = program.titles_in(&cell);
+    let meeting = program.dearest_meeting(&worst.cell);
+    let meet = meeting.as_ref().is_some_and(|meeting| meeting.cycles > cycles_max);
+    let (layers, (x_mm, y_mm)) = match meeting {
+        Some(Meeting { layers, place_m, .. }) if meet => (layers, rounded_mm(place_m)),
+        _ => (program.layers_in(&worst.cell).collect(), middle_mm(&worst.cell)),
+    };
+    let titles: Vec<&str> =
+        layers.iter().filter_map(|number| program.titles.get(*number)).map(String::as_str).collect();
     let topmost = scene.layers.iter().rfind(|layer| titles.last().is_some_and(|title| *title == layer.title));
-    let (x_mm, y_mm) = middle_mm(&cell);
-    let mistake = Mistake::TickTooLong { instructions, max, layers: titles.join(" and "), x_mm, y_mm };
+    let cycles = worst.cycles();
+    let mistake = Mistake::TickTooLong { cycles, cycles_max, layers: titles.join(" and "), meet, x_mm, y_mm };
     log.add(topmost.map_or(0, |layer| layer.places.table()), mistake);
 }
 
+/// Layers that are all under a finger at one place.
+struct Meeting {
+    place_m: (f64, f64),
+    /// Numbers of the layers, from bottom to top.
+    layers: Vec<usize>,
+    /// Cycles that they and an empty scene are estimated at.
+    cycles: u32,
+}
+
 impl Program {
-    /// Where a tick takes most on a Cortex-M4F, and how many instructions.
+    /// Where a tick takes most, as the board estimates it.
     pub fn worst_tick(&self) -> Worst {
         worst_of_scene(&self.header, &self.records, &self.points)
     }
 
     /// How messages call the layers that may act in a cell, from bottom to top.
     pub fn titles_in(&self, cell: &Cell) -> Vec<&str> {
-        (0..).zip(&self.titles).filter(|(number, _)| cell.has(*number)).map(|(_, title)| title.as_str()).collect()
+        self.layers_in(cell).filter_map(|number| self.titles.get(number)).map(String::as_str).collect()
+    }
+
+    /// Numbers of the layers that may act in a cell, from bottom to top.
+    fn layers_in(&self, cell: &Cell) -> impl Iterator<Item = usize> {
+        let cell = *cell;
+        (0..self.records.len()).filter(move |number| cell.has(*number as u8))
+    }
+
+    /// The place at which those layers of a cell meet that take most together.
+    ///
+    /// Tries every pair of a left and a top edge, moved inside by a micrometre, of which rectangles that overlap have one
+    /// within all of them; and middles, for ellipses and polygons.
+    fn dearest_meeting(&self, cell: &Cell) -> Option<Meeting> {
+        let regions: Vec<(usize, &Record, Shape)> = self
+            .layers_in(cell)
+            .filter_map(|number| self.records.get(number).map(|record| (number, record)))
+            .map(|(number, record)| (number, record, Shape::new(record.region, &self.points)))
+            .collect();
+        let boxes: Vec<[(f64, f64); 2]> = regions.iter().filter_map(|(.., shape)| shape.corners_m()).collect();
+        let candidates = |along: fn((f64, f64)) -> f64, middle_m: f32| -> Vec<f64> {
+            let of_box = |corners: &[(f64, f64); 2]| {
+                let [from_m, to_m] = corners.map(along);
+                [from_m + INSIDE_M, 0.5 * (from_m + to_m)]
+            };
+            boxes.iter().flat_map(of_box).chain([f64::from(middle_m)]).collect()
+        };
+        let (xs, ys) = (candidates(|(x_m, _)| x_m, cell.x_m), candidates(|(_, y_m)| y_m, cell.y_m));
+        xs.iter()
+            .flat_map(|x_m| ys.iter().map(|y_m| (*x_m, *y_m)))
+            .map(|place_m| self.meeting_at(place_m, &regions))
+            .max_by_key(|meeting| meeting.cycles)
+    }
+
+    fn meeting_at(&self, place_m: (f64, f64), regions: &[(usize, &Record, Shape)]) -> Meeting {
+        let here = regions.iter().filter(|(.., shape)| shape.covers(place_m.0, place_m.1));
+        let core_cycles = here.clone().map(|(_, record, _)| cost::of_record(record, &self.points)).sum::<u32>();
+        Meeting {
+            place_m,
+            layers: here.map(|(number, ..)| *number).collect(),
+            cycles: cost::cycles(core_cycles + cost::of_empty_scene(&self.header)),
+        }
     }
 }
 
+/// How far inside of a region's edges a meeting is looked for, m: beyond rounding, and far below what a finger notices.
+const INSIDE_M: f64 = 1e-6;
+
 /// The middle of a cell, to a tenth of a millimetre: the grid is coarse.
 pub fn middle_mm(cell: &Cell) -> (f64, f64) {
-    let mm = |metres: f32| (1e4 * f64::from(metres)).round() / 10.0;
-    (mm(cell.x_m), mm(cell.y_m))
+    rounded_mm((f64::from(cell.x_m), f64::from(cell.y_m)))
+}
+
+fn rounded_mm((x_m, y_m): (f64, f64)) -> (f64, f64) {
+    let mm = |metres: f64| (1e4 * metres).round() / 10.0;
+    (mm(x_m), mm(y_m))
 }
 
 #[cfg(test)]
@@ -45,31 +113,46 @@ mod tests {
     use super::*;
     use crate::tests::{HEAD, PICTURES, compile_text};
 
+    fn layer(x_mm: u32) -> String {
+        format!(
+            "[[layer]]\nkind = \"grating\"\nwavelength_mm = 2\nlow_n = 0\nhigh_n = 0.001\nblend = \"add\"\n\
+             region = {{ x_mm = {x_mm}, y_mm = 0, width_mm = 20, height_mm = 20 }}\n"
+        )
+    }
+
+    /// What a board says that has time for so many cycles more or less than the scene takes.
+    fn message(text: &str, more_cycles: i32) -> Option<String> {
+        let program = compile_text(text).expect("it compiles");
+        let scene = Scene::parse(text, "test.toml", &*PICTURES).expect("it reads");
+        let mut log = Log::new(&scene.source);
+        check(&scene, &program, program.worst_tick().cycles().saturating_add_signed(more_cycles), &mut log);
+        log.finish(Some(())).err().map(|error| error.to_string())
+    }
+
     #[test]
-    fn the_longest_tick_is_refused_with_its_place_and_number() {
-        let layer = |x_mm: u32| {
-            format!(
-                "[[layer]]\nkind = \"grating\"\nwavelength_mm = 2\nlow_n = 0\nhigh_n = 0.001\nblend = \"add\"\n\
-                 region = {{ x_mm = {x_mm}, y_mm = 0, width_mm = 20, height_mm = 20 }}\n"
-            )
-        };
+    fn layers_that_meet_are_named_with_their_place_and_number() {
         let text = format!("{HEAD}{}{}{}", layer(0), layer(90), layer(95));
         let program = compile_text(&text).expect("it compiles");
-        let scene = Scene::parse(&text, "test.toml", &*PICTURES).expect("it reads");
-        let Worst { instructions, cell } = program.worst_tick();
-        assert_eq!(cell.layers, [0b110, 0]);
-        for (max, refused) in [(instructions - 1, true), (instructions, false)] {
-            let mut log = Log::new(&scene.source);
-            check(&scene, &program, max, &mut log);
-            let told = log.finish(Some(())).err().map(|error| error.to_string());
-            let line = 2 * 7 + HEAD.lines().count() + 1;
-            let expected = format!(
-                "test.toml:{line}:1: a tick takes up to {instructions} instructions near x {} mm, y {} mm, for layer 2 (grating) and \
-                 layer 3 (grating), and the board has time for {max}: move layers apart, or leave some out",
-                (1e4 * f64::from(cell.x_m)).round() / 10.0,
-                (1e4 * f64::from(cell.y_m)).round() / 10.0
-            );
-            assert_eq!(told, refused.then_some(expected));
-        }
+        assert_eq!(program.worst_tick().cell.layers, [0b110, 0]);
+        let cycles = program.worst_tick().cycles();
+        let line = 2 * 7 + HEAD.lines().count() + 1;
+        let expected = format!(
+            "test.toml:{line}:1: layer 2 (grating) and layer 3 (grating) meet at x 95 mm, y 0 mm: a tick there is estimated at \
+             {cycles} cycles, and the board has time for {}: move layers apart, or leave some out",
+            cycles - 1
+        );
+        assert_eq!(message(&text, -1), Some(expected));
+        assert_eq!(message(&text, 0), None);
+    }
+
+    /// Their edges touch, so that they share a cell of the grid.
+    #[test]
+    fn layers_that_only_share_a_cell_are_not_said_to_meet() {
+        let text = format!("{HEAD}{}{}", layer(0), layer(20));
+        let message = message(&text, -1).expect("it is refused");
+        assert!(
+            message.contains("layer 1 (grating) and layer 2 (grating) are in one cell of the board's grid"),
+            "{message}"
+        );
     }
 }

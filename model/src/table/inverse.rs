@@ -1,6 +1,7 @@
 //! The table of a microcontroller with an FPU: of fixed size, built where it is used.
 
 use core::num::NonZeroU32;
+use core::ops::Range;
 
 use super::TableError;
 use super::float::{Grid, round_down};
@@ -69,12 +70,11 @@ impl InverseTable {
             return Err(TableError::Voltage);
         }
         let voltage_max_v_rms = DoubleSingle::from_f64(voltage_max_v_rms);
-        Self::in_double_single(&contact.in_double_single(), voltage_max_v_rms, asked_max_n)
+        Self::in_double_single(contact.in_double_single(), voltage_max_v_rms, asked_max_n)
     }
 
     /// The same from what a board is told: finger, coating (its effective gap in metres), normal load in newtons and largest
     /// voltage in volts rms. Nothing of it needs `f64`.
-    #[inline(never)]
     pub fn of_finger(
         finger: &Finger<f32>,
         gap_m: f32,
@@ -82,18 +82,43 @@ impl InverseTable {
         voltage_max_v_rms: f32,
         asked_max_n: f32,
     ) -> Result<Self, TableError> {
+        let (mut table, mut filling) = Self::begin(finger, gap_m, normal_load_n, voltage_max_v_rms, asked_max_n)?;
+        filling.fill(&mut table, ROWS)?;
+        Ok(table)
+    }
+
+    /// The same in steps, for a board that has other things to do meanwhile. The table is of no use until
+    /// [`InverseTableFilling::fill`] has finished.
+    #[inline(never)]
+    pub fn begin(
+        finger: &Finger<f32>,
+        gap_m: f32,
+        normal_load_n: f32,
+        voltage_max_v_rms: f32,
+        asked_max_n: f32,
+    ) -> Result<(Self, InverseTableFilling), TableError> {
         if !(voltage_max_v_rms.is_finite() && voltage_max_v_rms > 0.0) {
             return Err(TableError::Voltage);
         }
         let contact = LoadedContact::of_finger(finger, gap_m, normal_load_n).ok_or(TableError::Contact)?;
-        Self::in_double_single(&contact, DoubleSingle::from(voltage_max_v_rms), asked_max_n)
+        Self::begin_in_double_single(contact, DoubleSingle::from(voltage_max_v_rms), asked_max_n)
     }
 
     fn in_double_single(
-        contact: &LoadedContact<DoubleSingle>,
+        contact: LoadedContact<DoubleSingle>,
         voltage_max_v_rms: DoubleSingle,
         asked_max_n: f32,
     ) -> Result<Self, TableError> {
+        let (mut table, mut filling) = Self::begin_in_double_single(contact, voltage_max_v_rms, asked_max_n)?;
+        filling.fill(&mut table, ROWS)?;
+        Ok(table)
+    }
+
+    fn begin_in_double_single(
+        contact: LoadedContact<DoubleSingle>,
+        voltage_max_v_rms: DoubleSingle,
+        asked_max_n: f32,
+    ) -> Result<(Self, InverseTableFilling), TableError> {
         let largest = round_down(voltage_max_v_rms);
         let knee_v_rms = KNEE_V_RMS.min(largest * KNEE_PART);
         let knee_n = round_down(contact.electric_friction_n(DoubleSingle::from(knee_v_rms)));
@@ -101,7 +126,7 @@ impl InverseTable {
         if !(knee_n >= f32::MIN_POSITIVE && friction_max_n < f32::MAX) {
             return Err(TableError::Unrepresentable);
         }
-        let mut grid = Grid::new(ROWS, DENSITY, friction_max_n, largest)?;
+        let grid = Grid::new(ROWS, DENSITY, friction_max_n, largest)?;
         let knee_row = grid.row(knee_n);
         if knee_row >= ROWS {
             return Err(TableError::TooManySegments);
@@ -109,12 +134,7 @@ impl InverseTable {
         let end = if asked_max_n < friction_max_n { grid.row(asked_max_n.max(knee_n)) + 1 } else { ROWS };
         let knee_start = DoubleSingle::from(grid.start_n(knee_row));
         let line = [0.0, (contact.voltage_v_rms(knee_start) / knee_start).to_f32(), 0.0, 0.0];
-        let mut rows = [line; ROWS];
-        grid.fill(contact, &mut rows, knee_row..end)?;
-        if let Some((cut, end)) = rows.get_mut(end..).zip(grid.cut_at(end, contact)) {
-            cut.fill([end, 0.0, 0.0, 0.0]);
-        }
-        Ok(Self { grid, rows })
+        Ok((Self { grid, rows: [line; ROWS] }, InverseTableFilling { contact, rows: knee_row..end }))
     }
 
     /// Rows with a piece of the curve. The others cost no evaluation of the closed form.
@@ -141,5 +161,35 @@ impl InverseTable {
     /// The largest voltage, in volts rms, rounded down; of a table that is cut, that where it ends.
     pub fn voltage_max_v_rms(&self) -> f32 {
         self.grid.voltage_max_v_rms()
+    }
+}
+
+/// The part of an [`InverseTable`] that is still to be computed: from [`InverseTable::begin`].
+#[derive(Clone, Debug)]
+pub struct InverseTableFilling {
+    contact: LoadedContact<DoubleSingle>,
+    rows: Range<usize>,
+}
+
+impl InverseTableFilling {
+    /// Rows that are still to be computed.
+    pub fn rows(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Computes the next `rows_max` rows of the table that this was begun with, three evaluations of the closed form each.
+    /// Returns whether the table is finished.
+    pub fn fill(&mut self, table: &mut InverseTable, rows_max: usize) -> Result<bool, TableError> {
+        let Range { start, end } = self.rows;
+        let next = end.min(start.saturating_add(rows_max));
+        table.grid.fill(&self.contact, &mut table.rows, start..next)?;
+        self.rows.start = next;
+        if next < end {
+            return Ok(false);
+        }
+        if let Some((cut, end_v_rms)) = table.rows.get_mut(end..).zip(table.grid.cut_at(end, &self.contact)) {
+            cut.fill([end_v_rms, 0.0, 0.0, 0.0]);
+        }
+        Ok(true)
     }
 }

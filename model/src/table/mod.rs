@@ -26,7 +26,7 @@ use core::fmt::{Display, Formatter, Result as FmtResult};
 pub use builder::{Precision, TableBuilder, TableShape};
 pub use fixed::FixedTable;
 pub use float::SizedTable;
-pub use inverse::InverseTable;
+pub use inverse::{InverseTable, InverseTableFilling};
 
 /// Why a table cannot be built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

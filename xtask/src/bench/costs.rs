@@ -5,6 +5,7 @@ use std::fmt::Write;
 use std::fs;
 
 use super::Figures;
+use super::figures::CYCLES;
 use crate::command::root;
 
 const PATH: &str = "firmware/layers/src/cost/measured.rs";
@@ -17,11 +18,11 @@ const POLYGON_EDGES_LEVEL: u64 = 2;
 /// Vertices of the polygon all of whose edges are.
 const LEVEL_POLYGON_POINTS: u64 = 6;
 
-/// Instructions that several rare things in one tick take beyond the longest case: a report under a hasty source, an edge
+/// Core cycles that several rare things in one tick take beyond the longest case: a report under a fast source, an edge
 /// of the carrier, a limit that acts. `cargo xtask soak` plays thousands of random scenes to find one that takes more.
-const RARE: u64 = 16;
+const RARE: u64 = 32;
 
-/// The name of a cost, what it is, and its instructions.
+/// The name of a cost, what it is, and its core cycles.
 type Cost = (&'static str, &'static str, u64);
 
 /// Writes the file anew.
@@ -40,7 +41,7 @@ pub(crate) fn check(figures: &Figures) -> Result<(), String> {
     let drifted: Vec<String> = costs(figures)?
         .into_iter()
         .filter(|cost| !found.contains(&line(cost)))
-        .map(|(name, _, instructions)| format!("{name} is {instructions}"))
+        .map(|(name, _, core_cycles)| format!("{name} is {core_cycles}"))
         .collect();
     Err(format!("{PATH} is not what was measured; `cargo xtask bench --bless` writes it anew: {}", drifted.join(", ")))
 }
@@ -48,13 +49,13 @@ pub(crate) fn check(figures: &Figures) -> Result<(), String> {
 /// Costs from ticks of one constant, of two, and of one layer of another kind.
 fn costs(figures: &Figures) -> Result<Vec<Cost>, String> {
     let tick = |name: &str| {
-        let name = format!("m4f.tick_{name}");
+        let name = format!("m4f.tick_{name}{CYCLES}");
         figures.get(&name).ok_or_else(|| format!("{name} was not measured"))
     };
     let two = tick("two_constants")?;
     let constant = two.saturating_sub(tick("constant_alone")?);
     let base = two.saturating_sub(2 * constant);
-    let alone = |name: &str| tick(&format!("{name}_alone")).map(|instructions| instructions.saturating_sub(base));
+    let alone = |name: &str| tick(&format!("{name}_alone")).map(|core_cycles| core_cycles.saturating_sub(base));
     // The longest: a tick in which the envelope is at its slew limit is longer than one that is not, as is one that asks
     // for more than there is.
     let longest =
@@ -103,13 +104,13 @@ fn line_through((few, many): (u64, u64), at_few: u64, at_many: u64) -> (u64, u64
     (at_few.saturating_sub(few * each).max(at_many.saturating_sub(many * each)), each)
 }
 
-fn line((name, _, instructions): &Cost) -> String {
-    format!("pub(crate) const {name}: u32 = {instructions};")
+fn line((name, _, core_cycles): &Cost) -> String {
+    format!("pub(crate) const {name}: u32 = {core_cycles};")
 }
 
 fn text(costs: &[Cost]) -> String {
     let mut text = String::from(
-        "//! Instructions on a Cortex-M4F at the worst input. Written by `cargo xtask bench --bless`; `cargo xtask test` measures\n\
+        "//! Core cycles on a Cortex-M4F at the worst input, estimated. Written by `cargo xtask bench --bless`; `cargo xtask test` measures\n\
          //! again and fails when it finds others.\n#![allow(dead_code, reason = \"a kind whose feature is off costs nothing\")]\n",
     );
     for cost in costs {

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 use super::figures::{CYCLES, Figures, MEAN};
-use super::{Core, EMULATOR, follow};
+use super::follow::{self, Seen};
+use super::{Core, EMULATOR};
 use crate::command::{cargo_in, root, run};
 
 /// An instruction takes 1,024 ns of virtual time, and nothing else takes any.
@@ -69,7 +70,7 @@ impl<'a> Image<'a> {
     pub(super) fn measure(&self, figures: &mut Figures) -> Result<(), String> {
         let counts = self.count(figures)?;
         let inputs: Vec<u32> = counts.iter().map(|count| count.worst_input).collect();
-        let followed = follow::follow(self.emulator(&[]), &self.path, &inputs)?;
+        let followed = self.follow(&[], &inputs)?;
         for (count, seen) in counts.iter().zip(followed) {
             if seen.instructions != count.instructions {
                 return Err(format!(
@@ -82,6 +83,11 @@ impl<'a> Image<'a> {
             figures.put(self.name(count) + CYCLES, seen.cycles);
         }
         Ok(())
+    }
+
+    /// Runs the image with these words on its command line, and follows the given input of every case in turn.
+    pub(super) fn follow(&self, words: &[String], inputs: &[u32]) -> Result<Vec<Seen>, String> {
+        follow::follow(self.emulator(words), &self.path, inputs)
     }
 
     fn name(&self, count: &Count) -> String {

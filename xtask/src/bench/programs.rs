@@ -1,7 +1,12 @@
-//! Random scenes in the emulator: no tick may take more instructions than the loader reckoned.
+//! Random scenes in the emulator: no tick may take more cycles than the loader estimates.
+//!
+//! The emulator counts instructions, not cycles. So every scene is played and counted, and a debugger then follows the
+//! longest tick of those scenes that come nearest to their estimate, to see what cycles its instructions take.
 
+use std::cmp::Reverse;
 use std::fmt;
 
+use super::follow::Seen;
 use super::image::Image;
 use super::{EMULATOR, M4F_CORE};
 use crate::command::add_target;
@@ -10,6 +15,8 @@ use crate::command::add_target;
 pub(crate) const FEW: u64 = 500;
 /// Scenes of a pace that are played in `cargo xtask soak`: some two minutes.
 pub(crate) const MANY: u64 = 6_000;
+/// Scenes of those that a debugger follows.
+const FOLLOWED: usize = 12;
 
 /// How often the touch source of a random scene reports, as the image calls it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,12 +24,12 @@ pub(crate) enum Pace {
     /// As chips and screens do.
     Usual,
     /// As fast as a host may.
-    Hasty,
+    Fast,
 }
 
 impl Pace {
     /// Every pace.
-    pub(crate) const ALL: [Self; 2] = [Self::Usual, Self::Hasty];
+    pub(crate) const ALL: [Self; 2] = [Self::Usual, Self::Fast];
 
     /// The pace of this name.
     pub(crate) fn named(name: &str) -> Option<Self> {
@@ -34,7 +41,7 @@ impl fmt::Display for Pace {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Usual => "usual",
-            Self::Hasty => "hasty",
+            Self::Fast => "fast",
         })
     }
 }
@@ -43,61 +50,94 @@ impl fmt::Display for Pace {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Played {
     seed: u64,
-    /// Instructions of its longest tick, and those that the loader reckoned.
-    counted: u64,
-    reckoned: u64,
+    /// Instructions of its longest tick.
+    instructions: u64,
+    /// Cycles that the loader estimates for it, without flash wait states.
+    estimated_cycles: u64,
     /// Number of that tick, from 1.
-    tick: u64,
+    tick: u32,
 }
 
-/// Plays the scenes of `count` seeds from `first` on. Says which of them have a tick that is longer than reckoned.
+/// Plays the scenes of `count` seeds from `first` on. Fails when one of them has a tick that takes more than its estimate.
 pub(crate) fn check(pace: Pace, first: u64, count: u64) -> Result<(), String> {
     super::emulator()?;
     add_target(M4F_CORE.target)?;
     let image = Image::build(&M4F_CORE, false)?;
-    let words = ["programs".to_owned(), pace.to_string(), first.to_string(), count.to_string()];
-    let text = image.run(&words)?;
-    let played: Vec<Played> = text.lines().map(parse).collect::<Result<_, _>>()?;
-    let told = judge(&played, first, count)?;
-    eprintln!("random scenes, touch source {pace}: {told}");
+    let mut played = play(&image, pace, first, count)?;
+    played.sort_by_key(|played| Reverse(played.share()));
+    let followed: Vec<(Played, Seen)> = played
+        .iter()
+        .take(FOLLOWED)
+        .map(|played| play_and_follow(&image, pace, played.seed))
+        .collect::<Result<_, _>>()?;
+    eprintln!("random scenes, touch source {pace}: {count} played; {}", judge(&followed)?);
     Ok(())
 }
 
-/// A sentence on all scenes, or on those that took too long.
-fn judge(played: &[Played], first: u64, count: u64) -> Result<String, String> {
-    if !played.iter().map(|played| played.seed).eq(first..first + count) {
+/// Plays the scenes of `count` seeds from `first` on, one after another.
+fn play(image: &Image, pace: Pace, first: u64, count: u64) -> Result<Vec<Played>, String> {
+    let played: Vec<Played> = image.run(&words(pace, first, count))?.lines().map(parse).collect::<Result<_, _>>()?;
+    if played.iter().map(|played| played.seed).eq(first..first + count) {
+        Ok(played)
+    } else {
+        Err(format!("{EMULATOR} played {} scenes of {count} from seed {first} on", played.len()))
+    }
+}
+
+/// Plays one scene on a board that has just started, and follows its longest tick.
+fn play_and_follow(image: &Image, pace: Pace, seed: u64) -> Result<(Played, Seen), String> {
+    let played = play(image, pace, seed, 1)?;
+    let [played] = played.as_slice() else { return Err(format!("seed {seed} was not played")) };
+    let seen = image.follow(&words(pace, seed, 1), &[played.tick])?;
+    let [seen] = seen.as_slice() else { return Err(format!("seed {seed} was not followed")) };
+    Ok((*played, *seen))
+}
+
+/// Words on the emulator's command line that have the image play random scenes.
+fn words(pace: Pace, first: u64, count: u64) -> [String; 4] {
+    ["programs".to_owned(), pace.to_string(), first.to_string(), count.to_string()]
+}
+
+/// A sentence on the scene that came nearest to its estimate, or on those that took more.
+fn judge(followed: &[(Played, Seen)]) -> Result<String, String> {
+    let describe = |(played, seen): &(Played, Seen)| {
+        let Played { seed, estimated_cycles, tick, .. } = played;
+        let Seen { cycles, instructions } = seen;
+        format!("seed {seed}, {cycles} of {estimated_cycles} cycles ({instructions} instructions) at tick {tick}")
+    };
+    if let Some((played, seen)) = followed.iter().find(|(played, seen)| played.instructions != seen.instructions) {
+        let Played { seed, instructions, .. } = played;
         return Err(format!(
-            "{EMULATOR} played {} scenes, and was asked for {count} from seed {first} on",
-            played.len()
+            "seed {seed}: the timer counts {instructions} instructions, the debugger {}",
+            seen.instructions
         ));
     }
-    let dearer: Vec<String> =
-        played.iter().filter(|played| played.counted > played.reckoned).map(Played::told).collect();
-    if !dearer.is_empty() {
-        return Err(format!(
-            "{} of {count} scenes take longer than reckoned:\n  {}",
-            dearer.len(),
-            dearer.join("\n  ")
-        ));
+    let longer: Vec<String> =
+        followed.iter().filter(|(played, seen)| seen.cycles > played.estimated_cycles).map(describe).collect();
+    if !longer.is_empty() {
+        return Err(format!("scenes that take longer than estimated:\n  {}", longer.join("\n  ")));
     }
-    let longest = played.iter().max_by_key(|played| played.counted).map(Played::told).unwrap_or_default();
-    let nearest =
-        played.iter().min_by_key(|played| played.reckoned - played.counted).map(Played::told).unwrap_or_default();
-    Ok(format!("{count} played. The longest: {longest}. The nearest to what was reckoned: {nearest}"))
+    let nearest = followed.iter().max_by_key(|(played, seen)| 1_000_000 * seen.cycles / played.estimated_cycles.max(1));
+    nearest
+        .map(describe)
+        .map(|nearest| format!("the nearest to its estimate: {nearest}"))
+        .ok_or("no scene was played".to_owned())
 }
 
 impl Played {
-    fn told(&self) -> String {
-        let Self { seed, counted, reckoned, tick } = self;
-        format!("seed {seed}, {counted} of {reckoned} instructions at tick {tick}")
+    /// Millionths of its estimated cycles that its instructions are.
+    fn share(&self) -> u64 {
+        1_000_000 * self.instructions / self.estimated_cycles.max(1)
     }
 }
 
 fn parse(line: &str) -> Result<Played, String> {
     let numbers: Vec<u64> = line.split(' ').map_while(|word| word.parse().ok()).collect();
     match numbers.as_slice() {
-        &[seed, counted, reckoned, tick] => Ok(Played { seed, counted, reckoned, tick }),
-        _ => Err(format!("the benchmark wrote `{line}`: expected seed, instructions, those reckoned, and tick")),
+        &[seed, instructions, estimated_cycles, tick] => {
+            Ok(Played { seed, instructions, estimated_cycles, tick: tick as u32 })
+        }
+        _ => Err(format!("the benchmark wrote `{line}`: expected seed, instructions, estimated cycles, and tick")),
     }
 }
 
@@ -106,17 +146,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_scene_that_takes_longer_or_was_not_played_is_noticed() {
-        let played = |lines: &str| lines.lines().map(parse).collect::<Result<Vec<_>, _>>().unwrap();
-        let told = judge(&played("7 300 400 12\n8 399 400 1"), 7, 2).unwrap();
-        assert!(told.contains("seed 8, 399 of 400 instructions at tick 1"), "{told}");
-        let error = judge(&played("7 300 400 12\n8 401 400 3"), 7, 2).unwrap_err();
-        assert!(
-            error.contains("1 of 2") && error.contains("seed 8, 401 of 400") && !error.contains("seed 7"),
-            "{error}"
-        );
-        assert!(judge(&played("7 300 400 12"), 7, 2).is_err() && judge(&[], 7, 2).is_err());
-        assert!(judge(&played("7 300 400 12\n9 300 400 1"), 7, 2).is_err());
-        assert!(parse("the scene is refused").is_err());
+    fn a_scene_that_takes_longer_than_estimated_is_noticed() {
+        let followed = |line: &str, instructions, cycles| (parse(line).unwrap(), Seen { instructions, cycles });
+        let sentence = judge(&[followed("7 300 400 12", 300, 380), followed("8 299 400 1", 299, 400)]).unwrap();
+        assert!(sentence.contains("seed 8, 400 of 400 cycles (299 instructions) at tick 1"), "{sentence}");
+        let error = judge(&[followed("7 300 400 12", 300, 380), followed("8 299 400 1", 299, 401)]).unwrap_err();
+        assert!(error.contains("seed 8, 401 of 400") && !error.contains("seed 7"), "{error}");
+        assert!(judge(&[followed("7 300 400 12", 301, 380)]).unwrap_err().contains("the debugger 301"));
+        assert!(judge(&[]).is_err() && parse("the scene is refused").is_err());
     }
 }

@@ -5,6 +5,8 @@
 //! every falling edge of SCLK while SYNC is low, and executes the frame at the rising edge of SYNC. It ignores a frame
 //! that is cut short.
 
+use frixel_wire::dac_code::DacCode;
+
 /// Bytes of a frame.
 pub const FRAME_LEN: usize = 3;
 /// A frame as it goes over the bus.
@@ -51,9 +53,9 @@ pub const READ_CONTROL: Frame = frame(READ_CONTROL_ADDRESS, 0);
 /// Changes nothing. It clocks out the answer to [`READ_CONTROL`].
 pub const NO_OPERATION: Frame = frame(0, 0);
 
-/// Sets the output to a code in two's complement: 32,767 is one step below 10 V, 0 is 0 V.
-pub const fn output(code: i16) -> Frame {
-    frame(WRITE_DAC, code.cast_unsigned())
+/// Sets the output: a code is a fraction of 10 V.
+pub const fn output(code: DacCode) -> Frame {
+    frame(WRITE_DAC, code.bits().cast_unsigned())
 }
 
 const fn frame(address: u8, data: u16) -> Frame {
@@ -111,11 +113,12 @@ mod tests {
 
     #[test]
     fn codes_are_twos_complement_behind_the_address() {
-        assert_eq!(output(0), [0x03, 0x00, 0x00]);
-        assert_eq!(output(1), [0x03, 0x00, 0x01]);
-        assert_eq!(output(-1), [0x03, 0xff, 0xff]);
-        assert_eq!(output(i16::MAX), [0x03, 0x7f, 0xff]);
-        assert_eq!(output(-i16::MAX), [0x03, 0x80, 0x01]);
+        let frame = |steps| output(DacCode::from_bits(steps));
+        assert_eq!(frame(0), [0x03, 0x00, 0x00]);
+        assert_eq!(frame(1), [0x03, 0x00, 0x01]);
+        assert_eq!(frame(-1), [0x03, 0xff, 0xff]);
+        assert_eq!(frame(i16::MAX), [0x03, 0x7f, 0xff]);
+        assert_eq!(frame(-i16::MAX), [0x03, 0x80, 0x01]);
     }
 
     #[test]

@@ -10,6 +10,7 @@ use core::fmt;
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::spi::SpiDevice;
+use frixel_wire::dac_code::DacCode;
 
 pub use frame::{CONFIGURE, Control, FRAME_LEN, Frame, NO_OPERATION, READ_CONTROL, RESET, output};
 
@@ -88,7 +89,7 @@ impl<S: SpiDevice, D: DelayNs> Ad5761r<S, D> {
     pub fn prepare(&mut self) -> Result<(), Error<S::Error>> {
         self.reset()?;
         self.configure()?;
-        self.write(0)?;
+        self.write(DacCode::ZERO)?;
         self.check()
     }
 
@@ -104,8 +105,8 @@ impl<S: SpiDevice, D: DelayNs> Ad5761r<S, D> {
         Ok(self.spi.write(&CONFIGURE)?)
     }
 
-    /// Sets the output: 32,767 is one step below 10 V.
-    pub fn write(&mut self, code: i16) -> Result<(), Error<S::Error>> {
+    /// Sets the output: a code is a fraction of 10 V.
+    pub fn write(&mut self, code: DacCode) -> Result<(), Error<S::Error>> {
         Ok(self.spi.write(&output(code))?)
     }
 

@@ -4,14 +4,14 @@ use super::*;
 use proptest::prelude::*;
 
 fn timing(shape: Shape, half_period_ticks: u32) -> CarrierTiming {
-    CarrierTiming::new(shape, half_period_ticks, 100.0, 20_000)
+    CarrierTiming::new(shape, half_period_ticks, 100.0, DacCode::from_bits(20_000))
 }
 
 #[test]
 fn a_steady_square_alternates_without_early_edges() {
     let timing = timing(Shape::Square, 20);
     let mut carrier = Carrier::new(&timing);
-    let codes: Vec<i16> = (0..400).map(|tick| carrier.next(200.0, &timing, tick)).collect();
+    let codes: Vec<i16> = (0..400).map(|tick| carrier.next(200.0, &timing, tick).bits()).collect();
     assert_eq!(carrier.early_edges(), 0);
     for (i, code) in codes.iter().enumerate() {
         let positive = (i + 10) % 40 < 20;
@@ -24,7 +24,7 @@ fn a_steady_square_alternates_without_early_edges() {
 fn a_sine_has_the_rms_of_its_envelope() {
     let timing = timing(Shape::Sine, 20);
     let mut carrier = Carrier::new(&timing);
-    let sum: f64 = (0..4000).map(|_| f64::from(carrier.next(100.0, &timing, 0)).powi(2)).sum();
+    let sum: f64 = (0..4000).map(|_| f64::from(carrier.next(100.0, &timing, 0).bits()).powi(2)).sum();
     let rms = (sum / 4000.0).sqrt();
     assert!((rms * 2.0_f64.sqrt() - 10_000.0).abs() < 1.0, "{rms}");
 }
@@ -41,13 +41,13 @@ proptest! {
         let timing = timing(if sine { Shape::Sine } else { Shape::Square }, half_period_ticks);
         let mut carrier = Carrier::new(&timing);
         let mut integral = 0_i64;
-        let full = i64::from(timing.integral_max);
+        let full = i64::from(timing.integral_max.to_bits());
         for i in 0..4000_usize {
             let half = i as u32 / half_period_ticks;
             let amplitude = if resonant { if half.is_multiple_of(2) { 200.0 } else { 3.0 } }
                 else { seed_amplitudes[i % seed_amplitudes.len()] };
             if i % 1013 == 0 { carrier.rest(&timing); }
-            integral += i64::from(carrier.next(amplitude, &timing, 0));
+            integral += i64::from(carrier.next(amplitude, &timing, 0).bits());
             prop_assert!(integral.abs() <= full, "{integral} after {i} ticks, {full} allowed");
         }
     }
@@ -55,18 +55,22 @@ proptest! {
 
 /// Runs a carrier, and returns its codes.
 fn codes(carrier: &mut Carrier, timing: &CarrierTiming, envelope_v_rms: f32, ticks: u32) -> Vec<i32> {
-    (0..ticks).map(|tick| i32::from(carrier.next(envelope_v_rms, timing, tick))).collect()
+    (0..ticks).map(|tick| i32::from(carrier.next(envelope_v_rms, timing, tick).bits())).collect()
 }
 
 #[test]
 fn the_integral_may_reach_one_half_wave_at_full_voltage() {
     for half_period_ticks in [4, 5, 20, 80] {
         let square = timing(Shape::Square, half_period_ticks);
-        assert_eq!(square.integral_max, 20_000 * half_period_ticks as i32);
+        assert_eq!(square.integral_max.to_bits(), 20_000 * half_period_ticks as i32);
         let sine = timing(Shape::Sine, half_period_ticks);
         let half_wave: f64 = (0..1000).map(|i| ((f64::from(i) + 0.5) / 1000.0 * core::f64::consts::PI).sin()).sum();
         let expected = 20.0 * f64::from(half_period_ticks) * half_wave;
-        assert!((f64::from(sine.integral_max) - expected).abs() < 2.0, "{} is not {expected}", sine.integral_max);
+        assert!(
+            (f64::from(sine.integral_max.to_bits()) - expected).abs() < 2.0,
+            "{} is not {expected}",
+            sine.integral_max
+        );
     }
 }
 
@@ -130,7 +134,7 @@ fn an_early_edge_is_counted_with_its_tick() {
     for tick in 0..4000 {
         let envelope_v_rms = if sign > 0 { 200.0 } else { 3.0 };
         let wanted = sign * (100.0 * envelope_v_rms) as i32;
-        let code = i32::from(carrier.next(envelope_v_rms, &timing, tick));
+        let code = i32::from(carrier.next(envelope_v_rms, &timing, tick).bits());
         if (integral + wanted).abs() > 20 * 20_000 {
             assert_eq!(code, -wanted, "tick {tick}: the integral is {integral}");
             sign = -sign;
@@ -154,24 +158,24 @@ fn an_early_edge_is_counted_with_its_tick() {
 fn an_integral_beyond_a_new_limit_only_falls() {
     for start_ticks in [10, 30] {
         let wide = timing(Shape::Square, 20);
-        let narrow = CarrierTiming::new(Shape::Square, 4, 100.0, 2_000);
+        let narrow = CarrierTiming::new(Shape::Square, 4, 100.0, DacCode::from_bits(2_000));
         let mut carrier = Carrier::new(&wide);
         let mut integral: i32 = codes(&mut carrier, &wide, 200.0, start_ticks).iter().sum();
-        assert!(integral.abs() > 10 * narrow.integral_max, "{integral}");
+        assert!(integral.abs() > 10 * narrow.integral_max.to_bits(), "{integral}");
         carrier.retime(&narrow);
         let mut edges = 0;
         let mut last_sign = 0;
         for tick in 0..200 {
-            let code = i32::from(carrier.next(20.0, &narrow, tick));
+            let code = i32::from(carrier.next(20.0, &narrow, tick).bits());
             assert!(code.abs() == 2_000, "a code is put out, with one sign or the other: {code}");
-            if integral.abs() > narrow.integral_max {
+            if integral.abs() > narrow.integral_max.to_bits() {
                 assert!((integral + code).abs() < integral.abs(), "{integral} and {code}");
             }
             integral += code;
             edges += u32::from(code.signum() != last_sign && last_sign != 0);
             last_sign = code.signum();
         }
-        assert!(integral.abs() <= narrow.integral_max, "{integral}");
+        assert!(integral.abs() <= narrow.integral_max.to_bits(), "{integral}");
         assert!(edges > 10, "it alternates again");
     }
 }

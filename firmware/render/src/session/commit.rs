@@ -1,4 +1,7 @@
 //! The uploaded scene becomes the one that plays.
+//!
+//! A commit takes a board the time of hundreds of ticks. [`Dialogue::step_commit`] advances it by one step of at most a
+//! millisecond, so that touches, signs of life and stops are served in between.
 
 use frixel_layers::{Scene, disabled_record};
 use frixel_wire::message::{Accepted, Refusal};
@@ -7,51 +10,141 @@ use heapless::Vec;
 
 use super::dialogue::Dialogue;
 use super::live::Playing;
+use super::outbox::Outbox;
 use super::upload::Upload;
 use crate::Order;
+use crate::active::Loading;
 
 /// CRC-32 names of bitmaps.
 pub(super) type BitmapNames = Vec<u32, RECORDS_MAX>;
 
+/// A commit under way.
+pub(super) struct Commit {
+    /// Sequence number of the request.
+    sequence: u16,
+    crc32: u32,
+    step: Step,
+}
+
+/// What a commit does next.
+enum Step {
+    /// Checks that the scene is there, whole and readable.
+    Check,
+    /// Computes its coefficients.
+    Load(Loading),
+    /// Hands them to the ticker.
+    HandOver,
+}
+
+impl Commit {
+    /// A commit that was requested.
+    pub(super) fn new(sequence: u16, crc32: u32) -> Self {
+        Self { sequence, crc32, step: Step::Check }
+    }
+}
+
 impl Dialogue<'_> {
-    /// Commits the uploaded scene, which takes the time of many ticks.
+    /// Does the next step of the commit, if one is under way, and answers after the last.
     #[inline]
-    pub(super) fn commit(&mut self, crc32: u32) -> Result<Accepted, Refusal> {
-        if self.upload.is_some() {
-            return self.end_upload_first();
+    pub(super) fn step_commit(&mut self, outbox: &mut Outbox) {
+        let Some(mut commit) = self.commit.take() else { return };
+        match self.step(&mut commit) {
+            Ok(false) => self.commit = Some(commit),
+            Ok(true) => self.answer(commit.sequence, Ok(Accepted::Done), outbox),
+            Err(refusal) => self.answer(commit.sequence, Err(refusal), outbox),
         }
-        let (bytes, found) = self.staging.scene().ok_or(Refusal::NoScene)?;
+    }
+
+    /// Does all that is left of the commit, for a request that has to know how it ended.
+    #[inline]
+    pub(super) fn finish_commit(&mut self, outbox: &mut Outbox) {
+        while self.commit.is_some() {
+            self.step_commit(outbox);
+        }
+    }
+
+    /// Commits the uploaded scene at once.
+    #[cfg(feature = "store")]
+    pub(super) fn commit_at_once(&mut self, crc32: u32) -> Result<(), Refusal> {
+        let mut commit = Commit::new(0, crc32);
+        while !self.step(&mut commit)? {}
+        Ok(())
+    }
+
+    /// Returns whether the step was the last.
+    #[inline(never)]
+    fn step(&mut self, commit: &mut Commit) -> Result<bool, Refusal> {
+        let crc32 = commit.crc32;
+        match &mut commit.step {
+            Step::Check => {
+                self.check_upload(crc32)?;
+                commit.step = Step::Load(Loading::Drive);
+            }
+            Step::Load(loading) => {
+                if self.load_step(loading)? {
+                    commit.step = Step::HandOver;
+                }
+            }
+            Step::HandOver => return self.hand_scene_over(crc32).map(|()| true),
+        }
+        Ok(false)
+    }
+
+    #[inline]
+    fn check_upload(&self, crc32: u32) -> Result<(), Refusal> {
+        if let Some(upload) = &self.upload {
+            return Err(end_upload_first(upload));
+        }
+        let (_, found) = self.staging.scene().ok_or(Refusal::NoScene)?;
         if found != crc32 {
             return Err(Refusal::CrcMismatch { expected: crc32, found });
         }
         self.room_for_order()?;
-        let scene = Scene::parse(bytes).map_err(not_a_scene)?;
+        let scene = self.uploaded_scene()?;
         if scene.record_count() > usize::from(self.board.limits.records_max) {
             // A scene has no more records than a byte counts.
             return Err(Refusal::Scene(SceneError::TooManyRecords { found: scene.record_count() as u8 }));
         }
-        let spare = self.spare.take().ok_or(Refusal::Busy)?;
-        if let Err(refusal) = spare.load(&scene, &self.board, &self.directory) {
-            self.spare = Some(spare);
+        if self.spare.is_none() { Err(Refusal::Busy) } else { Ok(()) }
+    }
+
+    fn uploaded_scene(&self) -> Result<Scene<'_>, Refusal> {
+        let (bytes, _) = self.staging.scene().ok_or(Refusal::NoScene)?;
+        Scene::parse(bytes).map_err(not_a_scene)
+    }
+
+    #[inline]
+    fn load_step(&mut self, loading: &mut Loading) -> Result<bool, Refusal> {
+        let (bytes, _) = self.staging.scene().ok_or(Refusal::NoScene)?;
+        let scene = Scene::parse(bytes).map_err(not_a_scene)?;
+        let spare = self.spare.as_mut().ok_or(Refusal::Busy)?;
+        let stepped = spare.load_step(loading, &scene, &self.board, &self.directory);
+        if stepped.is_err() {
             self.announced_bitmaps.clear();
-            return Err(refusal);
         }
-        self.committed_bitmaps = bitmaps_of(&scene);
-        self.playing = Playing::new(&scene);
+        stepped
+    }
+
+    #[inline]
+    fn hand_scene_over(&mut self, crc32: u32) -> Result<(), Refusal> {
+        self.room_for_order()?;
+        let scene = self.uploaded_scene()?;
+        let (bitmaps, playing) = (bitmaps_of(&scene), Playing::new(&scene));
+        let spare = self.spare.take().ok_or(Refusal::Busy)?;
+        self.committed_bitmaps = bitmaps;
+        self.playing = playing;
         #[cfg(feature = "stream")]
         self.drop_stream_without_layer();
         self.committed_crc32 = crc32;
         self.announced_bitmaps.clear();
-        self.send_order(Order::Load(spare))?;
-        Ok(Accepted::Done)
+        self.send_order(Order::Load(spare))
     }
+}
 
-    /// A commit while an upload is under way says how far that has come.
-    #[inline]
-    fn end_upload_first(&self) -> Result<Accepted, Refusal> {
-        let check = self.upload.as_ref().map_or(Ok(()), Upload::check);
-        Err(check.err().unwrap_or(Refusal::UploadIncomplete { next_chunk: 0 }))
-    }
+/// A commit while an upload is under way is refused with how far that has come.
+#[inline]
+fn end_upload_first(upload: &Upload) -> Refusal {
+    upload.check().err().unwrap_or(Refusal::UploadIncomplete { next_chunk: 0 })
 }
 
 #[inline]

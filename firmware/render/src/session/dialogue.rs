@@ -8,7 +8,7 @@ use frixel_wire::message::{
 use frixel_wire::payload::{ParseError, Payload};
 use heapless::{Deque, Vec};
 
-use super::commit::BitmapNames;
+use super::commit::{BitmapNames, Commit};
 use super::credit::Credit;
 use super::fingers::{Fingers, ONLY_FINGER};
 use super::live::Playing;
@@ -19,7 +19,8 @@ use super::states::ORDERS_MAX;
 use super::upload::{Staging, Upload};
 use crate::bitmap_directory::Directory;
 use crate::order::Status;
-use crate::{Active, Board, Order, Touch};
+use crate::tracker::Tracker;
+use crate::{Active, Board, Order};
 use frixel_layers::BitmapPool;
 
 /// The board's side of what is said.
@@ -40,10 +41,12 @@ pub(super) struct Dialogue<'a> {
     pub(super) orders: Deque<Order<'a>, ORDERS_MAX>,
     pub(super) orders_sent: u32,
     pub(super) host_heard: bool,
+    /// A sign of life has waited for an order of the finger.
+    pub(super) sign_of_life_waited: bool,
     /// State once the ticker has applied every order.
     pub(super) state: State,
-    /// A commit that is done when the bytes that are there have been taken.
-    waiting_commit: Option<Request>,
+    /// The commit under way.
+    pub(super) commit: Option<Commit>,
     pub(super) credit: Credit,
     pub(super) telemetry_period_ticks: u32,
     /// What has to be known of the committed scene beside its bytes, which the next upload takes the place of.
@@ -51,8 +54,9 @@ pub(super) struct Dialogue<'a> {
     /// What the host streams; `None` on a board that has no buffer for it.
     #[cfg(feature = "stream")]
     pub(super) stream: Option<Stream<'a>>,
-    /// Fingers that the host told of.
+    /// Fingers that the host reported.
     pub(super) fingers: Fingers,
+    pub(super) tracker: Tracker,
 }
 
 impl<'a> Dialogue<'a> {
@@ -70,25 +74,22 @@ impl<'a> Dialogue<'a> {
             orders: Deque::new(),
             orders_sent: 0,
             host_heard: false,
+            sign_of_life_waited: false,
             state: State::Disarmed,
-            waiting_commit: None,
+            commit: None,
             credit: Credit::new(board.limits.receive_window_bytes),
             telemetry_period_ticks: 0,
             playing: Playing::default(),
             #[cfg(feature = "stream")]
             stream: None,
             fingers: Fingers::new(),
+            tracker: Tracker::new(&board),
         }
     }
 
     #[inline]
     pub(super) fn telemetry_period_ticks(&self) -> Option<u32> {
         (self.telemetry_period_ticks > 0).then_some(self.telemetry_period_ticks)
-    }
-
-    #[inline]
-    pub(super) fn next_touch(&mut self) -> Option<Touch> {
-        self.fingers.next()
     }
 
     #[inline]
@@ -107,14 +108,14 @@ impl<'a> Dialogue<'a> {
     pub(super) fn take(&mut self, payload: Result<Payload, ParseError>, status: &Status, outbox: &mut Outbox) {
         self.report_state(status, outbox);
         if !may_overtake_a_commit(&payload) {
-            self.finish_commit(status, outbox);
+            self.finish_commit(outbox);
         }
         match payload {
             Ok(Payload::HelloRequest { .. }) => self.greet(status, outbox),
             Ok(Payload::Request(request)) => {
                 self.host_heard = true;
-                if matches!(request.command, Command::Commit { .. }) {
-                    self.waiting_commit = Some(request);
+                if let Command::Commit { crc32 } = request.command {
+                    self.commit = Some(Commit::new(request.sequence, crc32));
                 } else {
                     self.serve(request, status, outbox);
                 }
@@ -142,14 +143,6 @@ impl<'a> Dialogue<'a> {
         }
     }
 
-    /// Does the commit that waits, if one does, and answers it.
-    #[inline]
-    pub(super) fn finish_commit(&mut self, status: &Status, outbox: &mut Outbox) {
-        if let Some(request) = self.waiting_commit.take() {
-            self.serve(request, status, outbox);
-        }
-    }
-
     #[inline]
     fn serve(&mut self, Request { sequence, command }: Request, status: &Status, outbox: &mut Outbox) {
         let outcome = self.obey(command, status);
@@ -157,7 +150,7 @@ impl<'a> Dialogue<'a> {
     }
 
     #[inline]
-    fn answer(&mut self, sequence: u16, outcome: Result<Accepted, Refusal>, outbox: &mut Outbox) {
+    pub(super) fn answer(&mut self, sequence: u16, outcome: Result<Accepted, Refusal>, outbox: &mut Outbox) {
         let answer = Answer { sequence, received_bytes: self.credit.received(), state: self.state, outcome };
         self.report(&FromBoard::Answer(answer), outbox);
     }
@@ -182,11 +175,12 @@ impl<'a> Dialogue<'a> {
                 Err(Refusal::BitmapPoolFull { len: u32::from(width) * u32::from(height), free: 0 })
             }
             Command::UploadEnd => self.end_upload(),
-            Command::Commit { crc32 } => self.commit(crc32),
+            // A commit begins where its request is taken, and not here.
+            Command::Commit { .. } => Err(Refusal::Busy),
             Command::Subscribe { period_ticks } if cfg!(feature = "telemetry") => self.subscribe(period_ticks),
             Command::Subscribe { .. } => Err(Refusal::UnknownCommand),
             Command::Touch { x_m, y_m, age_ticks } => self.touch(ONLY_FINGER, (x_m, y_m), age_ticks, status),
-            Command::Lift => self.lift(ONLY_FINGER),
+            Command::Lift => self.lift(ONLY_FINGER, status),
             Command::FaultText { offset } => Ok(fault_text(self.board.reset_text, offset)),
             Command::SetLayer { .. } => self.change_playing(command, status),
             #[cfg(feature = "stream")]
@@ -196,7 +190,7 @@ impl<'a> Dialogue<'a> {
             #[cfg(not(feature = "stream"))]
             Command::StartStream { .. } | Command::EndStream => Err(Refusal::UnknownCommand),
             Command::TouchFinger { finger, x_m, y_m, age_ticks } => self.touch(finger, (x_m, y_m), age_ticks, status),
-            Command::LiftFinger { finger } => self.lift(finger),
+            Command::LiftFinger { finger } => self.lift(finger, status),
             Command::ClearFault => self.change_state(Order::ClearFault, &[State::Faulted], State::Disarmed),
             Command::Arm | Command::Disarm | Command::Play | Command::Stop => self.drive(command, status),
         }

@@ -15,15 +15,15 @@ pub(super) const ONLY_FINGER: u8 = 0;
 /// Fingers that are told apart, as many as a person has. One more is not there.
 const FINGERS_MAX: usize = 10;
 
-/// The fingers that the host has on the screen, and what the ticker has to be told of the one that leads.
+/// The fingers that the host has on the screen, and what there is to report of the one that leads.
 pub(super) struct Fingers {
     /// In the order of their coming.
     down: Vec<u8, FINGERS_MAX>,
-    /// The finger that the ticker follows.
+    /// The finger that leads.
     followed: Option<u8>,
-    /// The ticker has to be told that the finger it follows is gone.
+    /// The finger that led is gone, which is not reported yet.
     gone: bool,
-    /// Where the finger that leads was last, if the ticker has not been told.
+    /// Where the finger that leads was last, if that is not reported yet.
     place: Option<Touch>,
 }
 
@@ -44,7 +44,7 @@ impl Fingers {
         }
     }
 
-    /// Takes that a finger has left. One that was never there is told, too: the ticker may know it from before.
+    /// Records a lift. That of a finger that was never there is reported, too: the tracker may know it from before.
     #[inline]
     pub(super) fn lift(&mut self, finger: u8, rule: Leader) {
         self.down.retain(|other| *other != finger);
@@ -54,7 +54,7 @@ impl Fingers {
         self.follow(rule);
     }
 
-    /// Forgets all fingers: another host has come.
+    /// Forgets all fingers.
     #[inline]
     pub(super) fn forget(&mut self) {
         if self.followed.is_some() {
@@ -63,8 +63,8 @@ impl Fingers {
         self.down.clear();
     }
 
-    /// What the ticker has to be told next. A finger that takes another's place comes after the other has gone, so that
-    /// nothing is made of the way between them.
+    /// The next report. A finger that takes another's place comes after the other has gone, so that nothing is made of the
+    /// way between them.
     #[inline]
     pub(super) fn next(&mut self) -> Option<Touch> {
         if core::mem::take(&mut self.gone) { Some(Touch::Up) } else { self.place.take() }
@@ -117,16 +117,32 @@ impl Dialogue<'_> {
             self.fingers.forget();
         }
         self.fingers.touch(finger, place, self.playing.leader());
+        self.report_fingers(status);
         Ok(Accepted::Done)
     }
 
     #[inline]
-    pub(super) fn lift(&mut self, finger: u8) -> Result<Accepted, Refusal> {
+    pub(super) fn lift(&mut self, finger: u8, status: &Status) -> Result<Accepted, Refusal> {
         if !self.board.touch_from_host {
             return Err(Refusal::TouchSource);
         }
         self.fingers.lift(finger, self.playing.leader());
+        self.report_fingers(status);
         Ok(Accepted::Done)
+    }
+
+    /// Forgets all fingers: another host has come.
+    #[inline]
+    pub(super) fn forget_fingers(&mut self, status: &Status) {
+        self.fingers.forget();
+        self.report_fingers(status);
+    }
+
+    /// Gives the tracker what there is to report of the finger that leads, as of the next tick.
+    fn report_fingers(&mut self, status: &Status) {
+        while let Some(touch) = self.fingers.next() {
+            self.tracker.report(touch, status.telemetry.tick.wrapping_add(1));
+        }
     }
 }
 

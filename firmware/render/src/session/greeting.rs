@@ -48,7 +48,7 @@ impl Dialogue<'_> {
         self.telemetry_period_ticks = 0;
         self.drop_upload();
         self.announced_bitmaps.clear();
-        self.fingers.forget();
+        self.forget_fingers(status);
         // Should there be no room for the order, the stream runs dry instead.
         #[cfg(feature = "stream")]
         let _ = self.end_stream();

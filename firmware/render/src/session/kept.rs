@@ -115,7 +115,7 @@ impl Dialogue<'_> {
             offset = offset.checked_add(whole_words(bitmap.len()))?;
         }
         let crc32 = self.restore_scene(read, scene_offset(count), scene_len)?;
-        self.commit(crc32).ok().map(|_| ())
+        self.commit_at_once(crc32).ok()
     }
 
     fn restore_samples(&mut self, read: &impl Fn(u32, &mut [u8]) -> bool, from: u32, bitmap: &Bitmap) -> Option<()> {

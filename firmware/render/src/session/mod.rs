@@ -66,8 +66,9 @@ impl<'a> Session<'a> {
     }
 
     /// Takes bytes from the serial line. Answers wait in [`Session::transmit`], orders in [`Session::next_order`]. A commit
-    /// waits for [`Session::poll`], so that it does not hold up the signs of life, touches and stops that came with it, unless
-    /// something behind it has to know how it ended.
+    /// is left to [`Session::poll`], which does it step by step, so that it does not hold up the signs of life, touches and
+    /// stops that come meanwhile. A request that has to know how the commit ended finishes it at once: a host that does not
+    /// wait for the answer to a commit makes the board spend the time of many ticks here.
     ///
     /// Frames beyond the host's credit are discarded: they are no sign of life, no touch and no order. Only a hello
     /// request needs no credit.
@@ -88,12 +89,13 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Does a commit that has come, which takes the time of many ticks; and sends what is due without being
-    /// asked: telemetry, and changes of state. To be called after every tick or, when there is no time for that, at least
-    /// once a telemetry period; the orders of [`Session::receive`] before, those of a commit after it.
+    /// Advances a commit by one step of at most a millisecond, and sends what the host did not request: telemetry, and
+    /// changes of state. To be called after every tick or, when there is no time for that, at least once a telemetry
+    /// period, and with touch reports, orders and bytes handed over in between.
     #[inline]
     pub fn poll(&mut self, status: &Status) {
-        self.dialogue.finish_commit(status, &mut self.outbox);
+        self.dialogue.tracker.expire(status.telemetry.tick);
+        self.dialogue.step_commit(&mut self.outbox);
         self.dialogue.report_state(status, &mut self.outbox);
         #[cfg(feature = "stream")]
         self.dialogue.report_stream(status, &mut self.outbox);
@@ -106,16 +108,16 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// The next order for the ticker.
+    /// Takes a report of the board's touch source that arrived at a tick.
+    #[inline]
+    pub fn touch(&mut self, touch: Touch, tick: u32) {
+        self.dialogue.tracker.report(touch, tick);
+    }
+
+    /// The next order for the ticker, which takes one before each tick.
     #[inline]
     pub fn next_order(&mut self) -> Option<Order<'a>> {
         self.dialogue.next_order()
-    }
-
-    /// The last place of the finger that the host has told, once; for a board with [`Board::touch_from_host`].
-    #[inline]
-    pub fn next_touch(&mut self) -> Option<Touch> {
-        self.dialogue.next_touch()
     }
 
     /// Takes back the coefficients that the ticker has let go.

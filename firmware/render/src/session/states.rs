@@ -94,8 +94,21 @@ impl<'a> Dialogue<'a> {
         Ok(())
     }
 
+    /// Commands of the host come first: they are few, so that they hold up a lift by some ticks only. A sign of life waits
+    /// for one order of the finger, so that a host that pings does not move the finger's tracks in time, and for no more,
+    /// so that a touch source that reports at every tick does not silence the host.
     #[inline]
     pub(super) fn next_order(&mut self) -> Option<Order<'a>> {
-        if core::mem::take(&mut self.host_heard) { Some(Order::HostHeard) } else { self.orders.pop_front() }
+        if let Some(order) = self.orders.pop_front() {
+            self.host_heard &= !order.is_sign_of_life();
+            return Some(order);
+        }
+        if !self.host_heard {
+            return self.tracker.next_order();
+        }
+        let finger_first = if self.sign_of_life_waited { None } else { self.tracker.next_order() };
+        self.sign_of_life_waited = finger_first.is_some();
+        self.host_heard = finger_first.is_some();
+        finger_first.or(Some(Order::HostHeard))
     }
 }

@@ -1,5 +1,6 @@
 //! What the supervisor owes to the person at the electrode (DESIGN section 5).
 
+use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::{Fault, State};
 use proptest::prelude::*;
 
@@ -18,8 +19,16 @@ fn reading(monitor_v: f32) -> Sense {
     Sense { monitor_v, arm_switch: true, ..Sense::default() }
 }
 
+/// The person at the arm switch releases it and presses it again.
+fn press_switch(supervisor: &mut Supervisor) {
+    for arm_switch in [false, true] {
+        supervisor.check(&Sense { arm_switch, ..reading(0.0) }, DacCode::ZERO);
+    }
+}
+
 fn in_state(state: State) -> Supervisor {
     let mut supervisor = Supervisor::new(&BOARD);
+    press_switch(&mut supervisor);
     match state {
         State::Disarmed => {}
         State::Armed => supervisor.apply(&Order::Arm, 0),
@@ -40,7 +49,7 @@ fn driving(dac_code: i16) -> Supervisor {
     let mut monitor_v = 0.0;
     for _ in 0..40 {
         monitor_v += step * (driven_v(dac_code) - monitor_v);
-        supervisor.check(&reading(monitor_v), dac_code);
+        supervisor.check(&reading(monitor_v), DacCode::from_bits(dac_code));
     }
     assert_eq!(supervisor.state(), State::Active);
     supervisor
@@ -53,7 +62,7 @@ fn driven_v(dac_code: i16) -> f32 {
 /// Ticks with this reading until the supervisor faults, `limit` at most.
 fn ticks_to_fault(supervisor: &mut Supervisor, monitor_v: f32, dac_code: i16, limit: u32) -> Option<u32> {
     (1..=limit).find(|_| {
-        supervisor.check(&reading(monitor_v), dac_code);
+        supervisor.check(&reading(monitor_v), DacCode::from_bits(dac_code));
         supervisor.state() == State::Faulted
     })
 }
@@ -80,7 +89,7 @@ fn an_ideal_amplifier_is_never_wrong_however_it_is_driven() {
     let step = 1.0 - (-25e-6_f32 / BOARD.limits.edge_time_constant_s).exp();
     for tick in 0..4000_i32 {
         monitor_v += step * (driven_v(dac_code) - monitor_v);
-        supervisor.check(&reading(monitor_v), dac_code);
+        supervisor.check(&reading(monitor_v), DacCode::from_bits(dac_code));
         assert_eq!(supervisor.state(), State::Active, "tick {tick}");
         dac_code = if tick / (1 + tick / 400) % 2 == 0 { 32_767 } else { -32_767 };
     }
@@ -142,7 +151,7 @@ fn the_number_of_a_monitors_fault_is_what_it_read_in_volts() {
 fn a_cleared_monitor_fault_stays_away_when_the_monitor_reads_right() {
     let mut supervisor = driving(0);
     for _ in 0..400_000 {
-        supervisor.check(&reading(60.0), 0);
+        supervisor.check(&reading(60.0), DacCode::ZERO);
     }
     assert_eq!(ticks_to_fault(&mut supervisor, 0.0, 0, 1), Some(1), "a fault latches");
     supervisor.apply(&Order::ClearFault, 0);
@@ -154,7 +163,7 @@ fn a_cleared_monitor_fault_stays_away_when_the_monitor_reads_right() {
 fn a_cleared_monitor_fault_comes_again_when_its_cause_is_still_there() {
     let mut supervisor = driving(0);
     for _ in 0..1000 {
-        supervisor.check(&reading(60.0), 0);
+        supervisor.check(&reading(60.0), DacCode::ZERO);
     }
     supervisor.apply(&Order::ClearFault, 0);
     let ticks = ticks_to_fault(&mut supervisor, 60.0, 0, 1000);
@@ -171,7 +180,7 @@ fn the_arm_switch_counts_only_while_it_has_to_be_held() {
         (State::Faulted, Some((Fault::Deadline, 1))),
     ] {
         let mut supervisor = in_state(state);
-        supervisor.check(&let_go, 0);
+        supervisor.check(&let_go, DacCode::ZERO);
         assert_eq!(supervisor.fault(), fault, "{state:?}");
     }
 }
@@ -181,7 +190,7 @@ fn an_amplifiers_fault_counts_in_every_state() {
     let faulty = Sense { amplifier_fault: true, ..reading(0.0) };
     for state in [State::Disarmed, State::Armed, State::Active] {
         let mut supervisor = in_state(state);
-        supervisor.check(&faulty, 0);
+        supervisor.check(&faulty, DacCode::ZERO);
         assert_eq!(supervisor.fault(), Some((Fault::Amplifier, 0)), "{state:?}");
         assert_eq!(supervisor.state(), State::Faulted);
     }
@@ -254,6 +263,7 @@ fn a_host_that_arms_again_is_not_silent_any_more() {
     assert!(supervisor.host_silent());
     supervisor.apply(&Order::HostHeard, 10_002);
     assert!(supervisor.host_silent(), "it is heard, and has not armed");
+    press_switch(&mut supervisor);
     supervisor.apply(&Order::Arm, 10_002);
     assert!(!supervisor.host_silent());
 }
@@ -267,7 +277,7 @@ proptest! {
         let mut supervisor = in_state(State::Disarmed);
         for (tick, (amplifier_fault, arm_switch, monitor_v, dac_code)) in inputs.into_iter().enumerate() {
             let before = supervisor.state();
-            supervisor.check(&Sense { amplifier_fault, arm_switch, monitor_v, ..Sense::default() }, dac_code);
+            supervisor.check(&Sense { amplifier_fault, arm_switch, monitor_v, ..Sense::default() }, DacCode::from_bits(dac_code));
             supervisor.expire(tick as u32);
             prop_assert!(matches!(supervisor.state(), State::Disarmed | State::Faulted));
             prop_assert!(before != State::Faulted || supervisor.state() == State::Faulted);

@@ -1,73 +1,80 @@
-//! What the session wants of the ticker, and the faults that the board finds.
+//! What the session orders, and the faults that the board finds.
 
 use frixel_wire::fault::{Fault, State};
 
-use super::{ORDERED_TICKS, Ticker};
+use super::Ticker;
+use crate::finger::Finger;
 use crate::{Active, Order};
 
 impl<'a> Ticker<'a> {
-    /// Takes an order of the session, between two ticks. Hands back the coefficients that a [`Order::Load`] replaced.
-    #[inline]
+    /// Takes an order of the session, before a tick. Returns the coefficients that a [`Order::Load`] replaced.
+    #[inline(never)]
     pub fn apply(&mut self, order: Order<'a>) -> Option<&'a mut Active> {
-        if !matches!(order, Order::HostHeard) {
+        let spare = match order {
+            Order::Track(track) => {
+                self.was_lifted |= self.finger.follow(&track, self.tick, self.timing.track_ticks_max);
+                None
+            }
+            Order::Lift => {
+                self.finger = Finger::Up;
+                self.was_lifted = true;
+                None
+            }
+            order => self.apply_host_order(order),
+        };
+        self.find_deadline();
+        spare
+    }
+
+    /// Takes an order that carries out a command of the host.
+    #[inline(never)]
+    fn apply_host_order(&mut self, order: Order<'a>) -> Option<&'a mut Active> {
+        if order.is_counted() {
             self.orders_applied = self.orders_applied.wrapping_add(1);
         }
         self.supervisor.apply(&order, self.tick);
-        let spare = match order {
-            Order::Load(next) => {
-                let spare = core::mem::replace(&mut self.active, next);
-                self.carrier.retime(&self.active.carrier);
-                self.envelope.limit(self.active.voltage_max_v_rms);
-                self.target_v_rms = self.target_v_rms.min(self.active.voltage_max_v_rms);
-                self.clicks.reset();
-                #[cfg(feature = "stream")]
-                if !self.active.has_stream() {
-                    self.stop_stream();
-                }
-                if self.active.prediction != spare.prediction {
-                    self.finger.locate(self.tick, self.active.prediction, &self.timing.finger);
-                }
-                self.ask_at_once();
-                Some(spare)
-            }
-            Order::Unload => {
-                self.active.unload();
-                None
-            }
+        let mut spare = None;
+        match order {
+            Order::Load(next) => spare = Some(self.load(next)),
+            Order::Unload => self.active.unload(),
             Order::SetLayer { layer, on, gain } => {
                 self.active.set_layer(layer, on, gain);
                 // Nobody slid into a layer that is put on under the finger.
-                #[cfg(feature = "edge")]
                 self.clicks.lift();
-                self.ask_at_once();
-                None
             }
             #[cfg(feature = "stream")]
             Order::StartStream(start) => {
                 if let Some(stream) = &mut self.stream {
                     stream.start(start);
-                    self.streaming = true;
                 }
-                None
             }
             #[cfg(feature = "stream")]
             Order::EndStream { last } => {
                 if let Some(stream) = &mut self.stream {
                     stream.end(last);
                 }
-                None
             }
-            _ => None,
-        };
+            // The supervisor has taken them.
+            Order::HostHeard | Order::Arm | Order::Disarm | Order::Play | Order::Stop | Order::ClearFault => {}
+            // The finger's, not the host's.
+            Order::Track(_) | Order::Lift => {}
+        }
         self.supervisor.set_host_timeout(self.host_timeout_ticks());
-        self.look();
         spare
     }
 
-    /// What was asked for last is asked for no longer: the next tick asks anew, unless a deadline or a lift is in it.
+    /// Swaps the scene, and returns the coefficients of the one before. The new scene's voltage limit holds at once.
     #[inline]
-    fn ask_at_once(&mut self) {
-        self.asked_tick = self.tick.wrapping_sub(ORDERED_TICKS);
+    fn load(&mut self, next: &'a mut Active) -> &'a mut Active {
+        let spare = core::mem::replace(&mut self.active, next);
+        self.carrier.retime(&self.active.carrier);
+        self.envelope.limit(self.active.voltage_max_v_rms);
+        self.clicks.reset();
+        #[cfg(feature = "stream")]
+        if !self.active.has_stream() {
+            self.stop_stream();
+        }
+        spare
     }
 
     /// The timeout that holds now. Only a playing scene may go on without a host.
@@ -81,13 +88,12 @@ impl<'a> Ticker<'a> {
     }
 
     /// Latches a hard fault that the board has found: the output is zero from the next tick on. A fault that is latched
-    /// already stays the one that is told, since it came first.
+    /// already stays the one that is reported, since it came first.
     #[inline]
     pub fn raise(&mut self, fault: Fault, detail: u32) {
         if fault == Fault::Deadline {
             self.counters.missed_deadlines = self.counters.missed_deadlines.wrapping_add(1);
         }
         self.supervisor.raise(fault, detail);
-        self.look();
     }
 }

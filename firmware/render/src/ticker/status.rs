@@ -1,19 +1,30 @@
-//! What the ticker tells.
+//! What the ticker reports.
 
-use frixel_wire::fault::Flags;
+use frixel_wire::fault::{Flags, State};
 use frixel_wire::message::Telemetry;
 
-use super::Ticker;
+use super::{Ticker, is_out_of_reach};
 use crate::Status;
-use crate::finger::Presence;
+use crate::finger::Finger;
 use crate::order::Counters;
 #[cfg(feature = "stream")]
 use crate::stream::Player;
 
 impl Ticker<'_> {
+    /// The state of the supervisor.
+    pub fn state(&self) -> State {
+        self.supervisor.state()
+    }
+
+    /// Whether the arm switch has to be released, and then pressed, before the board arms. Where no person stands at a
+    /// switch, as on a simulated board, the switch is held whenever this is not so: then the host alone decides.
+    pub fn waits_for_release(&self) -> bool {
+        self.supervisor.state() == State::Disarmed && !self.supervisor.switch_was_released()
+    }
+
     /// What the board does now.
     pub fn status(&self) -> Status {
-        let [finger_x_m, finger_y_m] = self.finger.place_m();
+        let [finger_x_m, finger_y_m] = self.place_m();
         Status {
             telemetry: Telemetry {
                 tick: self.tick,
@@ -21,32 +32,44 @@ impl Ticker<'_> {
                 flags: self.flags(),
                 finger_x_m,
                 finger_y_m,
-                speed_m_per_s: self.finger.speed_m_per_s(),
-                asked_electric_friction_n: self.asked_electric_friction_n,
+                speed_m_per_s: self.speed_m_per_s(),
+                asked_electric_friction_n: self.electric_friction_n,
                 voltage_v_rms: self.envelope.voltage_v_rms(),
-                dac_code: self.dac_code,
+                dac_code: self.dac_code.bits(),
             },
             fault: self.supervisor.fault(),
             orders_applied: self.orders_applied,
-            arm_switch: self.arm_switch,
+            arm_switch: self.arm_switch && self.supervisor.switch_was_released(),
             counters: self.counters(),
         }
     }
 
+    /// Where the finger was at the last tick; zero without one.
+    fn place_m(&self) -> [f32; 2] {
+        self.finger.track().map_or([0.0; 2], |track| track.place_m(self.elapsed_s(track)))
+    }
+
+    fn speed_m_per_s(&self) -> f32 {
+        let [x, y] = self.finger.track().map_or([0.0; 2], |track| track.velocity_m_per_s(self.elapsed_s(track)));
+        frixel_layers::square_root(x * x + y * y)
+    }
+
     fn flags(&self) -> Flags {
-        let Counters { saturated_ticks, slewed_ticks, .. } = self.counters;
-        let now = |count, tick| count > 0 && tick == self.tick;
+        let saturated = self.active.table().is_some_and(|table| is_out_of_reach(self.electric_friction_n, table));
+        let slewed = self.envelope.voltage_v_rms().to_bits() != self.target_v_rms.to_bits();
+        let balanced = self.carrier.early_edges() > 0 && self.carrier.last_early_tick() == self.tick;
+        let still = self.finger.track().is_some_and(|track| track.ramp.gain_at(self.tick) < 1.0);
         #[cfg(feature = "stream")]
         let is_dry = self.stream.as_ref().is_some_and(Player::is_dry);
         #[cfg(not(feature = "stream"))]
         let is_dry = false;
         [
-            (Flags::NO_FINGER, !self.finger.is_there()),
-            (Flags::TOUCH_STALE, self.finger.presence() == Presence::Stale),
-            (Flags::STILL, self.finger.gain() < 1.0),
-            (Flags::SATURATED, now(saturated_ticks, self.last.saturated_tick)),
-            (Flags::SLEWED, now(slewed_ticks, self.last.slewed_tick)),
-            (Flags::CARRIER_BALANCED, now(self.carrier.early_edges(), self.carrier.last_early_tick())),
+            (Flags::NO_FINGER, self.finger.track().is_none()),
+            (Flags::TOUCH_STALE, self.finger == Finger::Stale),
+            (Flags::STILL, still),
+            (Flags::SATURATED, saturated),
+            (Flags::SLEWED, slewed),
+            (Flags::CARRIER_BALANCED, balanced),
             (Flags::HOST_SILENT, self.supervisor.host_silent()),
             (Flags::STREAM_DRY, is_dry),
         ]

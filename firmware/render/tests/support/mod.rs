@@ -23,6 +23,9 @@ use frixel_wire::message::{Accepted, Answer, Command, FromBoard, Refusal, Reques
 use frixel_wire::payload::{self, CHUNK_LEN, Payload};
 use frixel_wire::scene::bitmap_crc32;
 
+/// Most polls that a commit takes.
+pub const COMMIT_POLLS_MAX: u32 = 64;
+
 /// What the two halves of a board share; lives longer than the [`Desk`].
 pub struct Memory {
     pool: BitmapPool,
@@ -45,8 +48,10 @@ impl Memory {
 pub struct Desk<'a> {
     pub session: Session<'a>,
     pub ticker: Ticker<'a>,
-    /// What the board sees when a test says nothing else: switch held, no finger, and a monitor that reads right.
+    /// What the board sees when a test says nothing else: switch held, and a monitor that reads right.
     pub sense: Sense,
+    /// A report of the board's touch source, which the next tick uses up.
+    pub touch: Option<Touch>,
     pub messages: Vec<FromBoard>,
     pub hello: Option<Hello>,
     /// The monitor reads zero, whatever is driven.
@@ -94,6 +99,7 @@ impl<'a> Desk<'a> {
             ticker,
             session,
             sense: Sense { arm_switch: true, ..Sense::default() },
+            touch: None,
             messages: Vec::new(),
             hello: None,
             amplifier_dead: false,
@@ -106,7 +112,8 @@ impl<'a> Desk<'a> {
             decoder: Decoder::new(),
             sequence: 0,
         };
-        desk.tick();
+        // The arm switch is released at the first tick and held from the second on.
+        desk.ticks(2);
         desk
     }
 
@@ -114,13 +121,17 @@ impl<'a> Desk<'a> {
         self.ticker.status()
     }
 
-    /// One tick with [`Desk::sense`], whose touch report is used up.
+    /// One tick with [`Desk::touch`] and [`Desk::sense`], in the order of the rigs: touch, one order, tick, answers.
     pub fn tick(&mut self) -> Drive {
+        if let Some(touch) = self.touch.take() {
+            self.session.touch(touch, self.status().telemetry.tick.wrapping_add(1));
+        }
+        self.obey_one();
         let monitor_v = if self.amplifier_dead { 0.0 } else { self.monitor.voltage_v };
-        let sense = Sense { monitor_v: self.sense.monitor_v + monitor_v, ..self.sense };
-        self.sense.touch = None;
+        let arm_switch = self.sense.arm_switch && !self.ticker.waits_for_release();
+        let sense = Sense { monitor_v: self.sense.monitor_v + monitor_v, arm_switch, ..self.sense };
         let drive = self.ticker.tick(&sense);
-        let target_v = f32::from(drive.dac_code) * self.monitor.volts_per_code;
+        let target_v = f32::from(drive.dac_code.bits()) * self.monitor.volts_per_code;
         self.monitor.voltage_v += self.monitor.step * (target_v - self.monitor.voltage_v);
         self.session.poll(&self.ticker.status());
         self.collect();
@@ -138,7 +149,7 @@ impl<'a> Desk<'a> {
             .map(|i| {
                 if i % 400 == 0 {
                     let x_m = 0.01 + 0.1 * 25e-6 * (start + i) as f32;
-                    self.sense.touch = Some(Touch::Down { x_m, y_m: 0.03, age_ticks: 0 });
+                    self.touch = Some(Touch::Down { x_m, y_m: 0.03, age_ticks: 0 });
                 }
                 if i % 2000 == 0 {
                     self.command(Command::Ping).unwrap();
@@ -152,18 +163,27 @@ impl<'a> Desk<'a> {
     pub fn send(&mut self, bytes: &[u8]) {
         self.session.receive(bytes, &self.ticker.status());
         self.obey();
+        self.poll();
+    }
+
+    fn poll(&mut self) {
         self.session.poll(&self.ticker.status());
         self.obey();
         self.collect();
     }
 
-    /// Hands the session's orders to the ticker.
+    /// Hands all of the session's orders to the ticker, as if there had been as many ticks.
     pub fn obey(&mut self) {
-        while let Some(order) = self.session.next_order() {
-            if let Some(spare) = self.ticker.apply(order) {
-                self.session.take_back(spare);
-            }
+        while self.obey_one() {}
+    }
+
+    /// Hands the session's next order to the ticker. Returns whether there was one.
+    fn obey_one(&mut self) -> bool {
+        let Some(order) = self.session.next_order() else { return false };
+        if let Some(spare) = self.ticker.apply(order) {
+            self.session.take_back(spare);
         }
+        true
     }
 
     pub fn greet(&mut self) -> Hello {
@@ -176,14 +196,22 @@ impl<'a> Desk<'a> {
     pub fn answer(&mut self, command: Command) -> Answer {
         self.sequence += 1;
         self.send(&request(self.sequence, command));
-        let sequence = self.sequence;
-        let place = self
-            .messages
-            .iter()
-            .position(|message| matches!(message, FromBoard::Answer(answer) if answer.sequence == sequence))
-            .expect("an answer");
+        // A commit is answered after some rounds of the main loop.
+        for _ in 0..COMMIT_POLLS_MAX {
+            if let Some(answer) = self.take_answer(self.sequence) {
+                return answer;
+            }
+            self.poll();
+        }
+        panic!("no answer to {command:?}");
+    }
+
+    /// The answer to a request, if it has come.
+    pub fn take_answer(&mut self, sequence: u16) -> Option<Answer> {
+        let is_it = |message: &FromBoard| matches!(message, FromBoard::Answer(answer) if answer.sequence == sequence);
+        let place = self.messages.iter().position(is_it)?;
         let FromBoard::Answer(answer) = self.messages.remove(place) else { unreachable!() };
-        answer
+        Some(answer)
     }
 
     pub fn command(&mut self, command: Command) -> Result<Accepted, Refusal> {
@@ -221,6 +249,11 @@ impl<'a> Desk<'a> {
     pub fn load(&mut self, scene: &[u8]) -> Result<Accepted, Refusal> {
         self.upload_scene(scene)?;
         self.command(Command::Commit { crc32: crc32(scene) })
+    }
+
+    /// Lets the person at the arm switch release it and press it again, as it takes after a disarming.
+    pub fn press_switch(&mut self) {
+        self.ticks(2);
     }
 
     /// From power-on to a playing scene.

@@ -8,8 +8,8 @@ use crate::fault::{Fault, State};
 
 /// Bytes in front of the limits.
 pub(super) const FIXED_LEN: usize = 44;
-/// Bytes of all the limits that this crate knows, tags and lengths included: one of 1 byte, one of 2, eight of 4.
-pub(super) const LIMITS_LEN: usize = 10 * 2 + 1 + 2 + 8 * 4;
+/// Bytes of all the limits that this crate knows, tags and lengths included: one of 1 byte, one of 2, nine of 4.
+pub(super) const LIMITS_LEN: usize = 11 * 2 + 1 + 2 + 9 * 4;
 
 const TAG_BITMAP_POOL_BYTES: u8 = 1;
 const TAG_RECORDS_MAX: u8 = 2;
@@ -21,6 +21,7 @@ const TAG_ELECTRODE_CAPACITANCE_MAX_F: u8 = 7;
 const TAG_CURRENT_MAX_A_RMS: u8 = 8;
 const TAG_CURRENT_MAX_A_PEAK: u8 = 9;
 const TAG_TOUCH_REPORT_PERIOD_S: u8 = 10;
+const TAG_TICK_CYCLES_MAX: u8 = 11;
 
 /// Why bytes are not a hello of any protocol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -115,6 +116,7 @@ impl BoardLimits {
         limit::<37, 4>(&mut b, TAG_CURRENT_MAX_A_RMS, self.current_max_a_rms.to_le_bytes());
         limit::<43, 4>(&mut b, TAG_CURRENT_MAX_A_PEAK, self.current_max_a_peak.to_le_bytes());
         limit::<49, 4>(&mut b, TAG_TOUCH_REPORT_PERIOD_S, self.touch_report_period_s.to_le_bytes());
+        limit::<55, 4>(&mut b, TAG_TICK_CYCLES_MAX, self.tick_cycles_max.to_le_bytes());
         b
     }
 
@@ -136,6 +138,7 @@ impl BoardLimits {
             (TAG_RECORDS_MAX, &[a]) => self.records_max = a,
             (TAG_RECEIVE_WINDOW_BYTES, &[a, b]) => self.receive_window_bytes = u16::from_le_bytes([a, b]),
             (TAG_BITMAP_POOL_BYTES, &[a, b, c, d]) => self.bitmap_pool_bytes = u32::from_le_bytes([a, b, c, d]),
+            (TAG_TICK_CYCLES_MAX, &[a, b, c, d]) => self.tick_cycles_max = u32::from_le_bytes([a, b, c, d]),
             (_, &[a, b, c, d]) => {
                 if let Some(limit) = self.real(tag) {
                     *limit = f32::from_le_bytes([a, b, c, d]);

@@ -61,7 +61,7 @@ pub enum Refusal {
         /// Shortest period in ticks.
         period_min_ticks: u32,
     },
-    /// The arm switch on the board is not held.
+    /// The arm switch on the board is not held, or was not pressed since the board was reset or last disarmed.
     ArmSwitch,
     /// The firmware was built without what the scene asks for ([`crate::hello::feature`]).
     LeftOut {
@@ -81,10 +81,10 @@ pub enum Refusal {
     NoStreamLayer,
     /// The scene would make a tick too long (`frixel_layers::cost`).
     TooCostly {
-        /// Instructions of the longest tick.
-        instructions: u32,
-        /// Most that it may take.
-        max: u32,
+        /// Cycles that the longest tick is estimated at; instructions before protocol 1.3.
+        cycles: u32,
+        /// Most that it may be estimated at.
+        cycles_max: u32,
         /// A place where that would be, from the left edge of the screen, m.
         x_m: f32,
         /// And from its top edge, m.
@@ -301,7 +301,7 @@ impl fmt::Display for Refusal {
                 f,
                 "the board sends telemetry every {period_min_ticks} ticks at most: ask for a longer period, or for zero to end it"
             ),
-            Self::ArmSwitch => f.write_str("the arm switch on the board is not held: hold it and arm again"),
+            Self::ArmSwitch => f.write_str("the arm switch was not pressed since the board was last disarmed: release it, press and hold it, and arm again"),
             Self::LeftOut { layer: ConfigRefusal::WHOLE_SCENE } => {
                 f.write_str("the firmware was built without the carrier of the scene: flash one that has it")
             }
@@ -319,9 +319,9 @@ impl fmt::Display for Refusal {
             Self::NoStreamLayer => {
                 f.write_str("no layer of the playing scene is a stream: add one to the scene, or send no samples")
             }
-            Self::TooCostly { instructions, max, x_m, y_m } => write!(
+            Self::TooCostly { cycles, cycles_max, x_m, y_m } => write!(
                 f,
-                "a tick would take {instructions} instructions at {:.1} mm, {:.1} mm, and may take {max}: let fewer layers meet there",
+                "a tick would take about {cycles} cycles at {:.1} mm, {:.1} mm, and may take {cycles_max}: let fewer layers meet there",
                 1e3 * x_m,
                 1e3 * y_m
             ),

@@ -95,6 +95,7 @@ pub fn hello() -> Hello {
             current_max_a_rms: 0.005,
             current_max_a_peak: 0.1,
             touch_report_period_s: 0.01,
+            tick_cycles_max: 2_000,
         },
     }
 }
@@ -200,7 +201,7 @@ pub fn refusals() -> Vec<Refusal> {
         Refusal::TouchSource,
         Refusal::NoSuchLayer { layer: 9, layers: 4 },
         Refusal::NoStreamLayer,
-        Refusal::TooCostly { instructions: 812, max: 600, x_m: 0.0125, y_m: 0.25 },
+        Refusal::TooCostly { cycles: 812, cycles_max: 600, x_m: 0.0125, y_m: 0.25 },
         Refusal::LayersFixed,
     ]);
     refusals

@@ -74,7 +74,7 @@ impl<W: FnMut(&LinkRecord)> Follower<W> {
     fn tick(&mut self, tick: u32, drive: Drive) -> Result<(), EmulatorError> {
         let felt = self.world.apply(drive);
         (self.watch)(&LinkRecord { tick, drive, felt });
-        match self.world.sense().touch {
+        match self.world.touch() {
             Some(touch) => self.report(StampedTouch { tick: tick.wrapping_add(1), touch }),
             None => Ok(()),
         }

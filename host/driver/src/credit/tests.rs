@@ -49,7 +49,8 @@ fn steps() -> impl Strategy<Value = Vec<Step>> {
 }
 
 proptest! {
-    /// Whatever the line loses, and wherever the board's count stands, credit never lets more go than there is room for.
+    /// Whatever the line loses, and wherever the board's count stands, credit never lets more go than there is room
+    /// for.
     #[test]
     fn what_is_under_way_is_never_taken_for_less(steps in steps(), start in any::<u32>()) {
         let mut line = Line { written: u64::from(start), ..Line::default() };

@@ -1,4 +1,4 @@
-//! What a board says: answers, progress, events, and its silence.
+//! What a board sends: answers, progress, events. And its silence.
 
 use std::time::Duration;
 
@@ -11,25 +11,27 @@ use super::super::error::DeviceError;
 use super::super::link::Link;
 use super::{ANSWER_TIMEOUT, Exchange, vanished};
 
-/// Most that one listening adds to the silence of a board, so that a host that was itself suspended does not take that for silence.
+/// Most that one read adds to the silence of a board, so that a host that was suspended does not take its own pause for
+/// silence.
 const LISTEN_MAX: Duration = Duration::from_millis(100);
-/// What is under way while nothing is asked.
+/// What is under way when no command is.
 const WAITING: &str = "wait";
-/// Events kept for a caller who does not fetch them; the oldest go first.
+/// Events stored for a caller who does not fetch them; the oldest are dropped first.
 const EVENTS_MAX: usize = 4096;
 
-/// What the board said last of a stream.
+/// A board's report on its stream.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct StreamReport {
     /// Index behind the last sample that the board has room for.
     pub(in super::super) limit: u32,
-    /// Times that a stream ran dry, and gaps in one, since the board's power-on.
+    /// Times that a stream ran out of samples, since the board's power-on.
     pub(in super::super) underruns: u32,
+    /// Runs of samples that were lost, since the board's power-on.
     pub(in super::super) gaps: u32,
 }
 
 impl<L: Link> Exchange<L> {
-    /// Takes the first that comes within `wait`, or less. An error when the pings have not been answered for too long.
+    /// Receives for at most `wait`, or less. An error when the board has not answered pings for too long.
     pub(in super::super) fn listen(&mut self, wait: Duration) -> Result<(), DeviceError> {
         self.receive(wait.min(LISTEN_MAX), WAITING)?;
         if self.quiet >= ANSWER_TIMEOUT {
@@ -38,7 +40,7 @@ impl<L: Link> Exchange<L> {
         Ok(())
     }
 
-    /// Takes what comes until `until`.
+    /// Receives until `until`.
     pub(super) fn receive_until(&mut self, until: Duration, doing: &'static str) -> Result<(), DeviceError> {
         loop {
             let now = self.link.now();
@@ -49,7 +51,7 @@ impl<L: Link> Exchange<L> {
         }
     }
 
-    /// Takes what has come, or the first that comes within `wait`.
+    /// Handles the messages that have arrived, or the first that arrive within `wait`.
     pub(in super::super) fn receive(&mut self, wait: Duration, doing: &'static str) -> Result<(), DeviceError> {
         let mut incoming = std::mem::take(&mut self.incoming);
         incoming.clear();
@@ -62,19 +64,19 @@ impl<L: Link> Exchange<L> {
         }
         let mut input = incoming.as_slice();
         while let Some(payload) = self.decoder.next_frame(&mut input) {
-            // Hellos and what this version does not know are none of a caller's business.
+            // Hellos, and messages that this version does not know, are ignored.
             if let Ok(Payload::FromBoard(message)) = Payload::parse_from_board(payload) {
-                self.take(message, doing)?;
+                self.handle(message, doing)?;
             }
         }
         self.incoming = incoming;
         Ok(())
     }
 
-    fn take(&mut self, message: FromBoard, doing: &'static str) -> Result<(), DeviceError> {
+    fn handle(&mut self, message: FromBoard, doing: &'static str) -> Result<(), DeviceError> {
         match message {
             FromBoard::Answer(answer) => {
-                self.take_count(answer.received_bytes, doing)?;
+                self.update_credit(answer.received_bytes, doing)?;
                 let awaited = self.awaited.iter().find(|one| one.sequence == answer.sequence);
                 if let Some(awaited) = awaited {
                     self.credit.answered(awaited.end, self.link.written().bytes);
@@ -85,28 +87,30 @@ impl<L: Link> Exchange<L> {
                 }
             }
             FromBoard::Progress { next_chunk, received_bytes } => {
-                self.take_count(received_bytes, doing)?;
+                self.update_credit(received_bytes, doing)?;
                 self.next_chunk = Some(next_chunk);
             }
             FromBoard::StreamProgress { next_index, room, underruns, gaps, received_bytes } => {
-                self.take_count(received_bytes, doing)?;
+                self.update_credit(received_bytes, doing)?;
                 let limit = next_index.wrapping_add(u32::from(room));
                 self.stream = Some(StreamReport { limit, underruns, gaps });
             }
-            FromBoard::Telemetry(telemetry) => self.keep(Event::Telemetry(telemetry)),
-            FromBoard::StateChanged { state, fault, flags } => self.keep(Event::StateChanged { state, fault, flags }),
+            FromBoard::Telemetry(telemetry) => self.push_event(Event::Telemetry(telemetry)),
+            FromBoard::StateChanged { state, fault, flags } => {
+                self.push_event(Event::StateChanged { state, fault, flags })
+            }
         }
         Ok(())
     }
 
-    fn take_count(&mut self, received_bytes: u32, doing: &'static str) -> Result<(), DeviceError> {
+    fn update_credit(&mut self, received_bytes: u32, doing: &'static str) -> Result<(), DeviceError> {
         let written = self.link.written().bytes;
         self.credit
             .received(received_bytes, written)
             .map_err(|_| DeviceError::Restarted { port: self.link.name().into(), command: doing })
     }
 
-    fn keep(&mut self, event: Event) {
+    fn push_event(&mut self, event: Event) {
         if self.events.len() == EVENTS_MAX {
             self.events.pop_front();
         }

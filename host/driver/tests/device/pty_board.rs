@@ -35,8 +35,8 @@ impl Link for Patient {
         self.0.keep_alive(frame, period);
     }
 
-    fn farewell(&mut self, frames: Vec<u8>) {
-        self.0.farewell(frames);
+    fn set_shutdown_frames(&mut self, frames: Vec<u8>) {
+        self.0.set_shutdown_frames(frames);
     }
 
     fn written(&self) -> Written {

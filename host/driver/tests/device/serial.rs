@@ -3,7 +3,9 @@
 use std::io::Write;
 use std::time::Duration;
 
-use frixel_driver::{Bitmap, DEFAULT_BAUD, Device, DeviceError, LEASH, Link, PortError, SerialLink, Upload};
+use frixel_driver::{
+    Bitmap, DEFAULT_BAUD, Device, DeviceError, KEEP_ALIVE_TIMEOUT, Link, PortError, SerialLink, Upload,
+};
 use frixel_wire::fault::State;
 use frixel_wire::frame::{FRAME_MAX_LEN, crc32};
 use frixel_wire::message::{Command, Request};
@@ -63,7 +65,7 @@ fn a_scene_plays_over_a_serial_port() {
 fn pings_go_out_while_nobody_calls() {
     let board = PtyBoard::start(FakeBoard::new());
     let mut device = connect(&board);
-    // Then a ping is due every 5 ms, some 200 before the leash ends.
+    // Then a ping is due every 5 ms, some 200 before the keep-alive timeout.
     device.arm().unwrap();
     let before = board.board.lock().unwrap().pings;
     board.until(|board| board.pings > before + 5);
@@ -76,11 +78,11 @@ fn pings_end_when_the_application_hangs_and_go_on_when_it_calls_again() {
     let mut device = connect(&board);
     device.arm().unwrap();
     let sent = |device: &Device<Patient>| device.counters().frames_sent;
-    std::thread::sleep(LEASH);
+    std::thread::sleep(KEEP_ALIVE_TIMEOUT);
     let at_the_end = sent(&device);
     std::thread::sleep(Duration::from_millis(200));
     assert_eq!(sent(&device), at_the_end, "pings of 5 ms went on without the application");
-    device.still_here().unwrap();
+    device.keep_alive().unwrap();
     board.until(|_| sent(&device) > at_the_end + 5);
 }
 

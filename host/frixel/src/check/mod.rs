@@ -6,7 +6,6 @@ mod text;
 
 use frixel_hil_sim::{BoardMemory, RigConfig, TableRows};
 use frixel_layers::Scene as WireScene;
-use frixel_layers::cost::{TICK_INSTRUCTIONS_MAX, Worst};
 use frixel_model::InverseTable;
 use serde::Serialize;
 
@@ -72,10 +71,10 @@ pub struct RamBytes {
 /// The longest tick on a Cortex-M4F.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LongestTick {
-    /// Instructions that it takes at most.
-    pub instructions: u32,
-    /// Most that a tick may take.
-    pub instructions_limit: u32,
+    /// Processor cycles that it is estimated at.
+    pub cycles: u32,
+    /// Most that a tick may be estimated at.
+    pub cycles_limit: u32,
     /// A place where it may take so many, mm from the screen's left edge.
     pub x_mm: f64,
     /// The same from the screen's top edge.
@@ -85,12 +84,13 @@ pub struct LongestTick {
 }
 
 impl LongestTick {
-    fn of(program: &Program) -> Self {
-        let Worst { instructions, cell } = program.worst_tick();
+    fn of(program: &Program, cycles_limit: u32) -> Self {
+        let worst = program.worst_tick();
+        let cell = worst.cell;
         let (x_mm, y_mm) = middle_mm(&cell);
         Self {
-            instructions,
-            instructions_limit: TICK_INSTRUCTIONS_MAX,
+            cycles: worst.cycles(),
+            cycles_limit,
             x_mm,
             y_mm,
             layers: program.titles_in(&cell).into_iter().map(str::to_owned).collect(),
@@ -139,7 +139,7 @@ impl SceneCheck {
                 table_whole_bytes: table_bytes(|table| table.whole),
                 table_room_bytes: size_of::<InverseTable>(),
             },
-            tick: LongestTick::of(program),
+            tick: LongestTick::of(program, rig.board.limits.tick_cycles_max),
             reach: ReachableFriction {
                 natural_n: reach.natural_friction_n,
                 electric_max_n: reach.electric_friction_max_n,

@@ -35,9 +35,9 @@ impl SceneCheck {
         line(
             "tick",
             format!(
-                "at most {} of {} instructions, near x {} mm, y {} mm{}",
-                tick.instructions,
-                tick.instructions_limit,
+                "about {} of {} cycles at most, near x {} mm, y {} mm{}",
+                tick.cycles,
+                tick.cycles_limit,
                 tick.x_mm,
                 tick.y_mm,
                 if tick.layers.is_empty() { String::new() } else { format!(": {}", tick.layers.join(", ")) }

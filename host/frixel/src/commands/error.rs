@@ -8,10 +8,13 @@ use frixel::model_csv::CsvError;
 use frixel::output::OutputError;
 use frixel::player::PlayError;
 use frixel::report::ReportError;
-use frixel::rigs::{ServerError, StopReason};
+#[cfg(unix)]
+use frixel::rigs::ServerError;
+use frixel::rigs::StopReason;
 use frixel::scene_file::SceneFileError;
 use frixel::stream::FeedError;
 use frixel_driver::{DeviceError, PortError};
+#[cfg(unix)]
 use frixel_hil_sim::emulated::EmulatorError;
 use frixel_hil_sim::{StrokeError, WorldError};
 use frixel_model::ParameterError;
@@ -30,6 +33,7 @@ pub(crate) enum CommandError {
     Rehearsal(#[from] RehearsalError),
     #[error(transparent)]
     Port(#[from] PortError),
+    #[cfg(unix)]
     #[error(transparent)]
     Server(#[from] ServerError),
     #[error(transparent)]
@@ -40,8 +44,15 @@ pub(crate) enum CommandError {
     World(#[from] WorldError),
     #[error(transparent)]
     Play(PlayError),
+    #[cfg(unix)]
     #[error(transparent)]
     Emulator(#[from] EmulatorError),
+    #[cfg(not(unix))]
+    #[error(
+        "{what} needs a pseudo-terminal, which this operating system does not have: use Linux, macOS or WSL, or play on \
+         --port sim"
+    )]
+    NoPseudoTerminal { what: &'static str },
     #[error("the contact model refuses the scene's finger: {0:?}")]
     Finger(ParameterError),
     #[error("{}: {source}", path.display())]

@@ -9,6 +9,7 @@ mod play;
 mod ports;
 mod report;
 mod scene;
+#[cfg(unix)]
 mod sim;
 mod stroke;
 
@@ -126,7 +127,10 @@ impl Cli {
             Some(Command::Demo(args)) => demo::run(&args),
             Some(Command::Play(args)) => play::run(&args),
             Some(Command::Scene(command)) => scene::run(&command),
+            #[cfg(unix)]
             Some(Command::Sim(args)) => sim::run(&args),
+            #[cfg(not(unix))]
+            Some(Command::Sim(_)) => Err(CommandError::NoPseudoTerminal { what: "frixel sim" }),
             Some(Command::Ports) => ports::run(),
             Some(Command::Info(args)) => info::run(&args),
             Some(Command::Model(command)) => model::run(&command),

@@ -3,6 +3,8 @@
 //! [`Plan`] says what is to be played, [`rigs`] opens the board that `--port` names, [`follow`] plays and records, and
 //! [`Outputs`] writes the files. This module prints what came of it.
 
+#[cfg(unix)]
+mod emulator;
 mod follow;
 mod live_scene;
 mod outputs;

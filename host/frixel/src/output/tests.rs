@@ -28,6 +28,7 @@ const LIMITS: BoardLimits = BoardLimits {
     current_max_a_rms: 3e-3,
     current_max_a_peak: 15e-3,
     touch_report_period_s: 0.01,
+    tick_cycles_max: 2_550,
 };
 
 fn brick() -> Program {

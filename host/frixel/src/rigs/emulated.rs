@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant};
 
-use frixel_driver::{DEFAULT_BAUD, DeviceError, Link, LinkClosed, SerialLink, Written};
+use frixel_driver::{DEFAULT_BAUD, Link, LinkClosed, PortError, SerialLink, Written};
 use frixel_hil_sim::emulated::{BOARD, EmulatorError, LinkBoard, LinkRecord};
 use frixel_scene::recorder::{Observation, Recorder};
 use frixel_wire::message::Telemetry;
@@ -45,11 +45,13 @@ pub struct EmulatedLink<'b> {
 
 impl<'b> EmulatedLink<'b> {
     /// Opens the board's serial port. `records` are what [`LinkBoard::start`] shows of each tick.
-    pub fn open(board: &'b LinkBoard, records: Receiver<LinkRecord>) -> Result<Self, DeviceError> {
+    pub fn open(board: &'b LinkBoard, records: Receiver<LinkRecord>) -> Result<Self, PortError> {
         let serial = SerialLink::open(board.serial_path(), DEFAULT_BAUD)?;
         let counts = board.received_bytes().and_then(|received| Ok((received, board.ticks()?)));
-        let (received_before, ticks) =
-            counts.map_err(|error| DeviceError::Vanished { command: "open", closed: closed(board, &error) })?;
+        let (received_before, ticks) = counts.map_err(|error| PortError::NotOpened {
+            port: board.serial_path().to_owned(),
+            reason: error.to_string(),
+        })?;
         Ok(Self {
             serial,
             board,
@@ -83,7 +85,7 @@ impl<'b> EmulatedLink<'b> {
         for record in self.held.drain(..count) {
             let telemetry = telemetry_of(record.tick, &mut self.telemetry);
             let (finger, felt) = finger_and_felt(&record.felt);
-            let dac_code = Some(record.drive.dac_code);
+            let dac_code = Some(record.drive.dac_code.bits());
             self.recorder.record(&Observation { tick: record.tick, finger, felt, dac_code, telemetry });
         }
     }
@@ -153,8 +155,8 @@ impl Link for EmulatedLink<'_> {
         self.serial.keep_alive(frame, period);
     }
 
-    fn farewell(&mut self, frames: Vec<u8>) {
-        self.serial.farewell(frames);
+    fn set_shutdown_frames(&mut self, frames: Vec<u8>) {
+        self.serial.set_shutdown_frames(frames);
     }
 
     fn written(&self) -> Written {

@@ -4,18 +4,25 @@
 //! - [`EmulatedLink`]: the firmware in an emulator, on the emulator's clock.
 //! - [`PortLink`]: a board at a serial port.
 //! - [`Server`]: a virtual board behind a pseudo-terminal, paced by the wall clock, for other programs to play on.
+//!
+//! The emulated and the virtual board need pseudo-terminals, which Unix systems have.
 
+#[cfg(unix)]
 mod emulated;
 mod event_log;
 mod port;
 mod recorded;
+#[cfg(unix)]
 mod server;
+#[cfg(unix)]
 mod server_log;
 mod sim_link;
 
+#[cfg(unix)]
 pub use emulated::EmulatedLink;
 pub use event_log::{BoardEvent, EventKind, EventLog, StopReason};
 pub use port::PortLink;
 pub use recorded::RecordedLink;
+#[cfg(unix)]
 pub use server::{Server, ServerError};
 pub use sim_link::SimLink;

@@ -52,8 +52,8 @@ impl Link for PortLink {
         self.serial.keep_alive(frame, period);
     }
 
-    fn farewell(&mut self, frames: Vec<u8>) {
-        self.serial.farewell(frames);
+    fn set_shutdown_frames(&mut self, frames: Vec<u8>) {
+        self.serial.set_shutdown_frames(frames);
     }
 
     fn written(&self) -> Written {

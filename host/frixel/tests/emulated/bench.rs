@@ -66,8 +66,20 @@ impl Bench {
     /// Waits until the board drives, for a host that is there all the time.
     pub(crate) fn until_driven<L: Link>(&self, device: &mut Device<L>) {
         self.until("the board drives", |board| {
-            device.still_here().unwrap();
-            board.output().unwrap().dac_code != 0
+            device.keep_alive().unwrap();
+            board.output().unwrap().dac_code.bits() != 0
+        });
+    }
+
+    /// Waits until the finger has felt so much electric friction, for a host that is there all the time.
+    pub(crate) fn until_felt<L: Link>(&self, device: &mut Device<L>, electric_friction_n: f64) {
+        let mut checked = 0;
+        self.until("the finger feels the scene", |_| {
+            device.keep_alive().unwrap();
+            let records = self.records.lock().unwrap();
+            let new = &records[checked..];
+            checked = records.len();
+            new.iter().any(|record| record.felt.electric_friction_n >= electric_friction_n)
         });
     }
 
@@ -75,7 +87,7 @@ impl Bench {
     pub(crate) fn pass<L: Link>(&self, device: &mut Device<L>, ticks: u32) {
         let start = self.board.ticks().unwrap();
         self.until("ticks pass", |board| {
-            device.still_here().unwrap();
+            device.keep_alive().unwrap();
             board.ticks().unwrap().wrapping_sub(start) >= ticks
         });
     }

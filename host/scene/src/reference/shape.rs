@@ -23,7 +23,7 @@ pub(crate) enum Shape {
 }
 
 impl Shape {
-    pub(super) fn new(region: Region, points: &[Point]) -> Self {
+    pub(crate) fn new(region: Region, points: &[Point]) -> Self {
         match region {
             Region::Screen => Self::Everywhere,
             Region::Rectangle { x_m, y_m, width_m, height_m } => {
@@ -45,6 +45,23 @@ impl Shape {
             Region::Polygon { first, count } => {
                 let own = points.iter().skip(usize::from(first)).take(usize::from(count));
                 Self::Polygon(own.map(|point| (f64::from(point.x), f64::from(point.y))).collect())
+            }
+        }
+    }
+
+    /// Left top and right bottom corner of the rectangle around it; `None` for everywhere.
+    pub(crate) fn corners_m(&self) -> Option<[(f64, f64); 2]> {
+        match self {
+            Self::Everywhere => None,
+            Self::Rectangle { left_m, top_m, right_m, bottom_m } => Some([(*left_m, *top_m), (*right_m, *bottom_m)]),
+            Self::Ellipse { middle_m: (x_m, y_m), half_axes_m: (a_m, b_m) } => {
+                Some([(x_m - a_m, y_m - b_m), (x_m + a_m, y_m + b_m)])
+            }
+            Self::Polygon(vertices) => {
+                let first = *vertices.first()?;
+                Some(vertices.iter().fold([first, first], |[from, to], (x_m, y_m)| {
+                    [(from.0.min(*x_m), from.1.min(*y_m)), (to.0.max(*x_m), to.1.max(*y_m))]
+                }))
             }
         }
     }

@@ -26,6 +26,7 @@ pub(super) const LIMITS: BoardLimits = BoardLimits {
     current_max_a_rms: 3e-3,
     current_max_a_peak: 15e-3,
     touch_report_period_s: 0.01,
+    tick_cycles_max: 2_550,
 };
 pub(super) const TICK_HZ: u32 = 40_000;
 
@@ -68,7 +69,7 @@ pub(super) fn compile_text(text: &str) -> Result<Program, CompileError> {
     let scene = Scene::parse(text, "test.toml", &*PICTURES);
     schema::check_agrees(text, scene.as_ref().err());
     // What a tick takes has tests of its own; others may pile up layers.
-    compile::compile_within(&scene?, &LIMITS, TICK_HZ, u32::MAX)
+    compile::compile(&scene?, &BoardLimits { tick_cycles_max: u32::MAX, ..LIMITS }, TICK_HZ)
 }
 
 /// A scene of the repository.

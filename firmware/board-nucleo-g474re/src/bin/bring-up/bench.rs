@@ -8,6 +8,7 @@ use board_nucleo_g474re::output::{LIFE_US, Output};
 use board_nucleo_g474re::{period, tick};
 use cortex_m::peripheral::DWT;
 use defmt::{error, info, println, warn};
+use frixel_wire::dac_code::DacCode;
 use stm32_metapac::GPIOC;
 
 /// The blue button, PC13. Which level means pressed is told by the one that it has when nobody presses.
@@ -196,7 +197,7 @@ impl Bench {
 
     /// Puts a code out at the end of this period, and keeps the output alive.
     fn put(&mut self, code: i16) {
-        if self.frames.send(code) {
+        if self.frames.send(DacCode::from_bits(code)) {
             self.output.kick();
         } else {
             self.output.zero();

@@ -1,14 +1,13 @@
 //! The boards that `--port` can name, and how each is opened.
 
-use std::sync::mpsc;
-
-use frixel::rigs::{EmulatedLink, PortLink, SimLink};
+use frixel::rigs::{PortLink, SimLink};
 use frixel_driver::{DEFAULT_BAUD, Device, SerialLink};
-use frixel_hil_sim::emulated::{BOARD, Image, LinkBoard};
-use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, World, WorldConfig, contact_of};
+use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
+use frixel_scene::Scene;
 use frixel_scene::recorder::Recorder;
-use frixel_scene::{Program, Scene};
 
+#[cfg(unix)]
+pub(super) use super::emulator::play_on_emulator;
 use super::follow::follow;
 use super::live_scene::LiveScene;
 use super::plan::Plan;
@@ -62,23 +61,10 @@ pub(super) fn play_on_simulator(args: &PlayArgs, scene: &Scene, interrupt: &Inte
     follow(args, plan, device, None, interrupt)
 }
 
-/// Plays on the firmware in an emulator, under a simulated finger.
-pub(super) fn play_on_emulator(args: &PlayArgs, scene: &Scene, interrupt: &Interrupt) -> Result<Played, CommandError> {
-    let mut plan = Plan::new(args, scene, Target::Emulator, (&BOARD.limits, BOARD.tick_hz))?;
-    let stroke = plan.choose_stroke(args)?;
-    let world = world(&plan.program, stroke, args.seed)?;
-    let image = Image::build()?;
-    let (sender, records) = mpsc::channel();
-    let mut board = LinkBoard::start(&image, world, move |record| {
-        // Nobody receives any more when the play has ended.
-        let _ = sender.send(*record);
-    })?;
-    let device = Device::connect(EmulatedLink::open(&board, records)?)?;
-    let mut played = follow(args, plan, device, None, interrupt)?;
-    if !interrupt.is_requested() {
-        played.failure = played.failure.or(board.check().err().map(CommandError::from));
-    }
-    Ok(played)
+/// Refuses the emulator, whose serial port is a pseudo-terminal.
+#[cfg(not(unix))]
+pub(super) fn play_on_emulator(_: &PlayArgs, _: &Scene, _: &Interrupt) -> Result<Played, CommandError> {
+    Err(CommandError::NoPseudoTerminal { what: "--port qemu" })
 }
 
 /// Plays on the board at a serial port. The scene is compiled for what that board is.
@@ -95,16 +81,4 @@ pub(super) fn play_on_port(
     }
     let plan = Plan::new(args, scene, Target::Port, (&hello.limits, hello.tick_hz))?;
     follow(args, plan, device, live_scene, interrupt)
-}
-
-/// The world around the emulated board, with the finger that the scene is meant for.
-fn world(program: &Program, stroke: Stroke, seed: u64) -> Result<World, CommandError> {
-    let config = WorldConfig {
-        tick_hz: BOARD.tick_hz,
-        full_scale_v_peak: f64::from(BOARD.limits.full_scale_v_peak),
-        ..WorldConfig::default()
-    };
-    let mut world = World::new(config, stroke, seed)?;
-    world.set_finger(contact_of(&program.header).map_err(CommandError::Finger)?);
-    Ok(world)
 }

@@ -1,4 +1,4 @@
-//! The first exchange with a board.
+//! The hello: which board is at the other end, and which protocol it speaks.
 
 use std::time::Duration;
 
@@ -9,20 +9,20 @@ use frixel_wire::payload::{Payload, hello_request_frame};
 use super::error::{DeviceError, LinkClosed};
 use super::link::Link;
 
-/// Hello requests sent before the board counts as absent.
+/// Hello requests that are sent before the board counts as absent.
 const TRIES: u32 = 5;
-/// Time to wait for the answer to each.
+/// Time to wait for the answer to each of them.
 const TRY_TIMEOUT: Duration = Duration::from_millis(150);
 
-/// Asks who is there, and refuses a board that speaks another protocol.
-pub(super) fn greet<L: Link>(link: &mut L, decoder: &mut Decoder) -> Result<Hello, DeviceError> {
+/// Requests the hello, and refuses a board that speaks another version of the protocol.
+pub(super) fn request_hello<L: Link>(link: &mut L, decoder: &mut Decoder) -> Result<Hello, DeviceError> {
     let mut buffer = [0; FRAME_MAX_LEN];
-    // The zero byte in front ends whatever half a frame an earlier host has left in the board.
+    // The zero byte ends the part of a frame that an earlier host may have left in the board.
     let request = [&[0], hello_request_frame(&mut buffer)?].concat();
     let started = link.now();
     let mut heard_bytes = 0;
     for attempt in 1..=TRIES {
-        link.write(&request).map_err(gone)?;
+        link.write(&request).map_err(vanished)?;
         let deadline = started + TRY_TIMEOUT * attempt;
         if let Some(hello) = await_hello(link, decoder, deadline, &mut heard_bytes)? {
             let port = link.name().into();
@@ -44,11 +44,11 @@ fn await_hello<L: Link>(
     let mut incoming = Vec::new();
     while link.now() < deadline {
         incoming.clear();
-        link.read(&mut incoming, deadline.saturating_sub(link.now())).map_err(gone)?;
+        link.read(&mut incoming, deadline.saturating_sub(link.now())).map_err(vanished)?;
         *heard_bytes += incoming.len();
         let mut input = incoming.as_slice();
         while let Some(payload) = decoder.next_frame(&mut input) {
-            // Telemetry and answers that were meant for an earlier host come first.
+            // Telemetry and answers for an earlier host may arrive first.
             if let Ok(Payload::Hello(hello)) = Payload::parse_from_board(payload) {
                 return Ok(Some(hello));
             }
@@ -57,6 +57,6 @@ fn await_hello<L: Link>(
     Ok(None)
 }
 
-fn gone(closed: LinkClosed) -> DeviceError {
+fn vanished(closed: LinkClosed) -> DeviceError {
     DeviceError::Vanished { command: "hello", closed }
 }

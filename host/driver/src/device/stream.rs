@@ -1,4 +1,4 @@
-//! Streams: samples for the stream layers of the scene that plays, as fast as the board plays them.
+//! Streams: samples for the stream layers of the playing scene, sent as fast as the board plays them.
 
 use std::time::Duration;
 
@@ -6,12 +6,14 @@ use frixel_wire::frame::FRAME_MAX_LEN;
 use frixel_wire::message::{Command, STREAM_START_LEVEL_MAX};
 use frixel_wire::payload::{SAMPLES_MAX, samples_frame};
 
-use super::exchange::StreamReport;
-use super::{Device, DeviceError, Link};
+use super::Device;
+use crate::error::DeviceError;
+use crate::exchange::StreamReport;
+use crate::link::Link;
 
-/// What is under way while samples are sent.
+/// What is under way while samples are sent, for error messages.
 const STREAMING: &str = "stream";
-/// Time that a start level stands for, unless a caller wants another: what an operating system may keep a host waiting.
+/// Duration of the default start level, s: how long an operating system may delay a host.
 const START_S: f64 = 0.05;
 
 /// How a stream is played.
@@ -19,42 +21,42 @@ const START_S: f64 = 0.05;
 pub struct StreamSettings {
     /// Samples a second, from 1 to the board's ticks a second.
     pub sample_hz: u32,
-    /// Samples that the board waits for before it plays, 1 to 800. So many samples are the stream's latency, and how long the host may
-    /// pause without an underrun.
+    /// Samples that the board waits for before it plays, 1 to 800. Their duration is the stream's latency, and the
+    /// longest pause of the host without an underrun.
     pub start_level: u16,
 }
 
 impl StreamSettings {
-    /// A start level of 50 ms, or as much of that as the board's buffer allows.
+    /// A start level of 50 ms, or the largest if the board's buffer is shorter than that.
     pub fn new(sample_hz: u32) -> Self {
         let level = (START_S * f64::from(sample_hz)).ceil();
         Self { sample_hz, start_level: level.clamp(1.0, f64::from(STREAM_START_LEVEL_MAX)) as u16 }
     }
 }
 
-/// How a stream is doing, as the board said last.
+/// The state of a stream, as of the board's last report.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StreamStatus {
-    /// Samples that were sent.
+    /// Samples sent.
     pub sent: u64,
-    /// Times that the board ran out of samples, and faded the stream out.
+    /// Times that the board ran out of samples and faded the stream out.
     pub underruns: u32,
     /// Runs of samples that the line lost.
     pub gaps: u32,
 }
 
-/// A stream under way.
+/// How far a stream has come.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Sent {
+pub(super) struct StreamProgress {
     samples: u64,
-    /// The board's first report: its counts run from power-on.
+    /// The board's first report, since its counts run from power-on.
     first: Option<StreamReport>,
 }
 
 impl<L: Link> Device<L> {
-    /// Starts a stream for the stream layers of the scene that plays. One under way is forgotten.
+    /// Starts a stream for the stream layers of the playing scene. It replaces a stream under way.
     ///
-    /// Samples follow with [`Self::send_samples`]; between two calls a program lets time pass with [`Self::wait`].
+    /// Samples follow by [`Self::send_samples`], with [`Self::wait`] between two calls.
     ///
     /// ```no_run
     /// # use std::time::Duration;
@@ -73,13 +75,14 @@ impl<L: Link> Device<L> {
         let StreamSettings { sample_hz, start_level } = settings;
         self.exchange.begin_stream();
         self.request(Command::StartStream { sample_hz, start_level })?;
-        self.stream = Some(Sent::default());
+        self.stream = Some(StreamProgress::default());
         Ok(())
     }
 
-    /// Sends as many samples as the board has room for, 65,535 for 1, and returns how many. Does not wait.
+    /// Sends as many samples as the board has room for, and returns how many. A sample of 0 is the layer's low
+    /// friction, 65,535 its high one. Does not wait.
     ///
-    /// The board plays those that it has at their own rate. Without a stream under way nothing is sent.
+    /// Without a stream under way nothing is sent.
     pub fn send_samples(&mut self, samples: &[u16]) -> Result<usize, DeviceError> {
         self.exchange.receive(Duration::ZERO, STREAMING)?;
         let (Some(mut sent), Some(report)) = (self.stream, self.exchange.stream()) else { return Ok(0) };
@@ -103,14 +106,14 @@ impl<L: Link> Device<L> {
         Ok(done)
     }
 
-    /// Says that no more samples come: the board plays those that it has, and fades the stream out. That is no underrun.
+    /// Ends the stream: the board plays the samples that it has, and fades out. That is no underrun.
     pub fn end_stream(&mut self) -> Result<(), DeviceError> {
         self.request(Command::EndStream)
     }
 
-    /// How the stream is doing that was started last; `None` before the first one.
+    /// The state of the stream that was started last; `None` before the first one.
     pub fn stream_status(&self) -> Option<StreamStatus> {
-        let Sent { samples, first } = self.stream?;
+        let StreamProgress { samples, first } = self.stream?;
         let (Some(first), Some(now)) = (first, self.exchange.stream()) else {
             return Some(StreamStatus { sent: samples, ..StreamStatus::default() });
         };

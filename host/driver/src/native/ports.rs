@@ -6,29 +6,29 @@ use std::path::Path;
 
 use serialport::SerialPortType;
 
-use super::error::PortError;
+use super::port_error::PortError;
 
-/// A serial port and what is known about what hangs on it.
+/// A serial port and the USB device behind it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PortInfo {
-    /// What [`super::SerialLink::open`] takes.
+    /// The path, for [`SerialLink::open`](super::SerialLink::open).
     pub path: String,
     /// The USB device behind the port, if there is one.
     pub usb: Option<UsbDevice>,
 }
 
-/// What a USB device says of itself.
+/// The descriptor of a USB device.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UsbDevice {
-    /// Number of the vendor.
+    /// The vendor's number.
     pub vendor_id: u16,
-    /// The vendor's number of the product.
+    /// The product's number.
     pub product_id: u16,
-    /// Name of the vendor.
+    /// The vendor's name.
     pub manufacturer: Option<String>,
-    /// Name of the product.
+    /// The product's name.
     pub product: Option<String>,
-    /// Serial number.
+    /// The device's serial number.
     pub serial_number: Option<String>,
 }
 
@@ -47,7 +47,7 @@ impl fmt::Display for PortInfo {
     }
 }
 
-/// The serial ports of this machine, by path. Pseudo-terminals are not among them.
+/// The serial ports of this machine, sorted by path. Pseudo-terminals are not among them.
 ///
 /// ```
 /// for port in frixel_driver::ports()? {
@@ -56,7 +56,7 @@ impl fmt::Display for PortInfo {
 /// # Ok::<(), frixel_driver::PortError>(())
 /// ```
 pub fn ports() -> Result<Vec<PortInfo>, PortError> {
-    // The serialport crate panics on a Linux without sysfs, a bare container for one.
+    // The serialport crate panics on a Linux without sysfs, as in a bare container.
     if cfg!(target_os = "linux") && !Path::new("/sys/class/tty").is_dir() {
         return Ok(Vec::new());
     }
@@ -80,14 +80,14 @@ fn port_info(port: serialport::SerialPortInfo) -> PortInfo {
     PortInfo { path: port.port_name, usb }
 }
 
-/// Says what is behind an error of the serialport crate when `port` was opened.
+/// What an error of the serialport crate means that opening `port` has returned.
 pub(super) fn why_not_opened(port: &str, error: serialport::Error) -> PortError {
     use serialport::ErrorKind as Kind;
 
-    let port_there = || Path::new(port).exists() || port_paths().iter().any(|path| path == port);
+    let port_exists = || Path::new(port).exists() || port_paths().iter().any(|path| path == port);
     match error.kind {
-        // On Windows the same kind says that the port is not there.
-        Kind::NoDevice if port_there() => PortError::Busy { port: port.into() },
+        // On Windows the same kind means that the port does not exist.
+        Kind::NoDevice if port_exists() => PortError::Busy { port: port.into() },
         Kind::NoDevice | Kind::Io(ErrorKind::NotFound) => not_there(port),
         Kind::Io(ErrorKind::PermissionDenied) => PortError::NoPermission { port: port.into() },
         _ => PortError::NotOpened { port: port.into(), reason: error.description },
@@ -108,7 +108,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_port_says_what_is_known_of_it() {
+    fn a_port_is_shown_with_its_usb_device() {
         let mut port = PortInfo { path: "/dev/ttyS0".into(), usb: None };
         assert_eq!(port.to_string(), "/dev/ttyS0");
         port.usb = Some(UsbDevice {
@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_operating_system_says_becomes_advice() {
+    fn an_error_of_the_operating_system_becomes_advice() {
         let error = |kind| serialport::Error::new(kind, "reason");
         let why = |port, kind| why_not_opened(port, error(kind));
         let io = serialport::ErrorKind::Io;

@@ -1,8 +1,9 @@
 //! A serial port as a [`Link`].
 //!
-//! Two threads stand behind it. One reads. The other writes, one frame after the other, and sends the keep-alive frame when there was nothing
-//! to write for its period and the application has not been away for longer than the leash. No call waits for the operating system to take bytes: a port whose other end has stopped reading can block a write
-//! for ever, and then only the writing thread stands still.
+//! It has two threads. One reads. The other writes, one frame after the other, and sends the keep-alive frame when
+//! nothing was written for its period and the application has made a call within the keep-alive timeout. No call waits
+//! for the operating system to take bytes: a port whose other end does not read can block a write for ever, and then
+//! only the writing thread waits.
 
 mod shared;
 
@@ -12,38 +13,41 @@ use std::time::{Duration, Instant};
 
 use serialport::ClearBuffer;
 
-use super::error::{LinkClosed, PortError};
-use super::link::{Link, Written};
+use super::port_error::PortError;
 use super::ports::why_not_opened;
+use crate::error::LinkClosed;
+use crate::link::{Link, Written};
 use shared::{Shared, State};
 
-/// Line rate in bits a second, unless a board says otherwise. Pseudo-terminals and native USB ignore it.
+/// Default line rate, in bits a second. Pseudo-terminals and native USB ignore it.
 pub const DEFAULT_BAUD: u32 = 2_000_000;
 
-/// How long a port may still belong to a program that has just ended: a pseudo-terminal stays exclusive until its server sees that the client is gone.
+/// How long opening waits for a port that is in use: a pseudo-terminal stays exclusive until its server notices that
+/// the client before has gone.
 const BUSY_PATIENCE: Duration = Duration::from_millis(700);
 /// Time between two tries to open a port that is in use.
 const BUSY_RETRY_AFTER: Duration = Duration::from_millis(20);
-/// How often the reading thread looks whether it is to end.
+/// How often the reading thread checks whether the link is being dropped.
 const READ_POLL: Duration = Duration::from_millis(20);
-/// How long the operating system may refuse bytes before the link counts as broken.
+/// How long the operating system may accept no bytes before the link closes.
 const WRITE_TIMEOUT: Duration = Duration::from_millis(500);
-/// How long a drop waits for the last frames to go out and the port to close.
+/// How long a drop waits for the last frames to be written and the port to close.
 const DROP_WAIT: Duration = Duration::from_millis(50);
 
-/// A serial port. Exclusive: a second program that opens it is told that it is in use.
+/// A serial port, opened for exclusive use: a second program that opens it gets [`PortError::Busy`].
 ///
-/// When the cable is pulled the link closes, and every later call says so. The port closes when the link is dropped.
+/// When the cable is pulled, the link closes, and every later call returns [`LinkClosed`]. The port closes when the
+/// link is dropped.
 pub struct SerialLink {
     path: String,
     opened: Instant,
     shared: Arc<Shared>,
-    farewell: Vec<u8>,
+    shutdown_frames: Vec<u8>,
 }
 
 impl SerialLink {
-    /// Opens the port at `path` with `baud` bits a second, and throws away what had arrived there before. Takes at most 0.7 s when the port is in
-    /// use.
+    /// Opens the port at `path` with `baud` bits a second, and discards the bytes that it had received before. Waits up
+    /// to 0.7 s for a port that is in use.
     pub fn open(path: &str, baud: u32) -> Result<Self, PortError> {
         let started = Instant::now();
         loop {
@@ -56,14 +60,19 @@ impl SerialLink {
 
     fn open_once(path: &str, baud: u32) -> Result<Self, PortError> {
         let not_opened = |error| why_not_opened(path, error);
-        let mut reader = serialport::new(path, baud).timeout(READ_POLL).exclusive(true).open().map_err(not_opened)?;
+        let builder = serialport::new(path, baud).timeout(READ_POLL);
+        // Windows opens every serial port for exclusive use.
+        #[cfg(unix)]
+        let builder = builder.exclusive(true);
+        let mut reader = builder.open().map_err(not_opened)?;
         reader.set_timeout(READ_POLL).map_err(not_opened)?;
         let mut writer = reader.try_clone().map_err(not_opened)?;
         writer.set_timeout(WRITE_TIMEOUT).map_err(not_opened)?;
         reader.clear(ClearBuffer::Input).map_err(not_opened)?;
 
         let opened = Instant::now();
-        let link = Self { path: path.into(), opened, shared: Arc::new(Shared::new(opened)), farewell: Vec::new() };
+        let link =
+            Self { path: path.into(), opened, shared: Arc::new(Shared::new(opened)), shutdown_frames: Vec::new() };
         link.spawn("frixel-read", move |shared| shared.read_from(reader))?;
         link.spawn("frixel-write", move |shared| shared.write_to(writer))?;
         Ok(link)
@@ -109,19 +118,19 @@ impl Link for SerialLink {
     fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed> {
         let mut state = self.shared.lock();
         state.enter_call();
-        // The keep-alive may have been at the end of its leash.
+        // The writing thread may have stopped the keep-alive.
         self.shared.queued.notify_one();
         let (mut state, _) = self
             .shared
             .arrived
-            .wait_timeout_while(state, wait, |state| state.inbox.is_empty() && state.closed.is_none())
+            .wait_timeout_while(state, wait, |state| state.receive_buffer.is_empty() && state.closed.is_none())
             .unwrap_or_else(PoisonError::into_inner);
         state.leave_call(Instant::now());
-        // What came before the cable was pulled still counts.
-        if state.inbox.is_empty() {
+        // Bytes that arrived before the link closed are still delivered.
+        if state.receive_buffer.is_empty() {
             self.check_open(&state)?;
         }
-        buffer.append(&mut state.inbox);
+        buffer.append(&mut state.receive_buffer);
         Ok(())
     }
 
@@ -134,8 +143,8 @@ impl Link for SerialLink {
         self.shared.queued.notify_one();
     }
 
-    fn farewell(&mut self, frames: Vec<u8>) {
-        self.farewell = frames;
+    fn set_shutdown_frames(&mut self, frames: Vec<u8>) {
+        self.shutdown_frames = frames;
     }
 
     fn written(&self) -> Written {
@@ -150,12 +159,12 @@ impl Link for SerialLink {
 impl Drop for SerialLink {
     fn drop(&mut self) {
         let mut state = self.shared.lock();
-        if !self.farewell.is_empty() {
-            state.queue(&self.farewell);
+        if !self.shutdown_frames.is_empty() {
+            state.queue(&self.shutdown_frames);
         }
         state.closing = true;
         self.shared.queued.notify_one();
-        // A thread that the operating system does not let go ends by itself later, and the port closes then.
+        // A thread that is blocked in the operating system ends later, and the port closes then.
         let _ = self.shared.ended.wait_timeout_while(state, DROP_WAIT, |state| state.threads > 0);
     }
 }

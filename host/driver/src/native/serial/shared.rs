@@ -1,4 +1,4 @@
-//! What the two threads behind a serial port do, and what they share with the link.
+//! The state that a serial link shares with its two threads, and the work of those threads.
 
 use std::io::{self, Read, Write};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
@@ -6,31 +6,32 @@ use std::time::{Duration, Instant};
 
 use serialport::SerialPort;
 
-use super::super::link::{LEASH, Written};
+use crate::link::{KEEP_ALIVE_TIMEOUT, Written};
 
-/// Bytes kept for a caller who does not read: 20 seconds of telemetry at 1 kHz. What comes on top is lost.
-const INBOX_MAX_LEN: usize = 1 << 20;
+/// Received bytes that are stored for a caller who does not read: 20 s of telemetry at 1 kHz. Further bytes are
+/// dropped.
+const RECEIVE_BUFFER_MAX_LEN: usize = 1 << 20;
 
-/// The port's buffers, and the two threads' work on them.
+/// The shared state, and signals for its changes.
 pub(super) struct Shared {
     state: Mutex<State>,
-    /// Bytes arrived, or the link closed.
+    /// Signals that bytes have arrived, or that the link has closed.
     pub(super) arrived: Condvar,
-    /// There is something to write, or the keep-alive changed, or the link is closing.
+    /// Signals that bytes were queued, the keep-alive has changed, or the link is closing.
     pub(super) queued: Condvar,
-    /// A thread has ended and let go of the port.
+    /// Signals that a thread has ended and closed its side of the port.
     pub(super) ended: Condvar,
 }
 
 pub(super) struct State {
-    pub(super) inbox: Vec<u8>,
-    outbox: Vec<u8>,
+    pub(super) receive_buffer: Vec<u8>,
+    transmit_queue: Vec<u8>,
     pub(super) written: Written,
     last_write: Instant,
     keep_alive: Option<(Vec<u8>, Duration)>,
-    /// When the application last came out of a call; `None` while it is in one that waits.
+    /// When the application's last call returned; `None` during a call that waits.
     last_call: Option<Instant>,
-    /// Why no more bytes come or go.
+    /// Why the link has closed.
     pub(super) closed: Option<String>,
     /// The link is being dropped.
     pub(super) closing: bool,
@@ -41,8 +42,8 @@ impl Shared {
     pub(super) fn new(opened: Instant) -> Self {
         Self {
             state: Mutex::new(State {
-                inbox: Vec::new(),
-                outbox: Vec::new(),
+                receive_buffer: Vec::new(),
+                transmit_queue: Vec::new(),
                 written: Written::default(),
                 last_write: opened,
                 keep_alive: None,
@@ -72,11 +73,11 @@ impl Shared {
             match outcome {
                 Ok(0) => return self.close(state, "the other end hung up".into()),
                 Ok(len) => {
-                    let room = INBOX_MAX_LEN - state.inbox.len();
-                    state.inbox.extend(bytes.iter().take(len.min(room)));
+                    let room = RECEIVE_BUFFER_MAX_LEN - state.receive_buffer.len();
+                    state.receive_buffer.extend(bytes.iter().take(len.min(room)));
                     self.arrived.notify_one();
                 }
-                Err(error) if is_passing(&error) => {}
+                Err(error) if is_temporary(&error) => {}
                 Err(error) => return self.close(state, error.to_string()),
             }
         }
@@ -90,15 +91,15 @@ impl Shared {
         }
     }
 
-    /// Waits for bytes to write, those of the keep-alive among them. `None` when all is written and the link closes.
+    /// Waits for bytes to write, keep-alive frames included. `None` when the link closes and all is written.
     fn next_to_write(&self) -> Option<Vec<u8>> {
         let mut state = self.lock();
         loop {
             if state.closed.is_some() {
                 return None;
             }
-            if !state.outbox.is_empty() {
-                return Some(std::mem::take(&mut state.outbox));
+            if !state.transmit_queue.is_empty() {
+                return Some(std::mem::take(&mut state.transmit_queue));
             }
             if state.closing {
                 return None;
@@ -131,7 +132,7 @@ impl Shared {
 
 impl State {
     pub(super) fn queue(&mut self, frame: &[u8]) {
-        self.outbox.extend_from_slice(frame);
+        self.transmit_queue.extend_from_slice(frame);
         self.written.add(frame);
         self.last_write = Instant::now();
     }
@@ -140,12 +141,12 @@ impl State {
         self.keep_alive = Some((frame, period));
     }
 
-    /// The application is in a call that waits.
+    /// Records that the application is in a call that waits.
     pub(super) fn enter_call(&mut self) {
         self.last_call = None;
     }
 
-    /// The application is in no call from now on.
+    /// Records that the application's call returns now.
     pub(super) fn leave_call(&mut self, now: Instant) {
         self.last_call = Some(now);
     }
@@ -157,15 +158,17 @@ impl State {
         }
     }
 
-    /// Time until the keep-alive frame is to be sent; `None` when it is not, until the application calls again.
+    /// Time until the keep-alive frame is due; `None` if there is none, or the application has not called within
+    /// [`KEEP_ALIVE_TIMEOUT`].
     fn keep_alive_due_in(&self, now: Instant) -> Option<Duration> {
         let (_, period) = self.keep_alive.as_ref()?;
-        let on_leash = self.last_call.is_none_or(|last_call| now.saturating_duration_since(last_call) < LEASH);
-        on_leash.then(|| period.saturating_sub(now.saturating_duration_since(self.last_write)))
+        let is_application_active =
+            self.last_call.is_none_or(|last_call| now.saturating_duration_since(last_call) < KEEP_ALIVE_TIMEOUT);
+        is_application_active.then(|| period.saturating_sub(now.saturating_duration_since(self.last_write)))
     }
 }
 
-fn is_passing(error: &io::Error) -> bool {
+fn is_temporary(error: &io::Error) -> bool {
     use io::ErrorKind::{Interrupted, TimedOut, WouldBlock};
     matches!(error.kind(), Interrupted | TimedOut | WouldBlock)
 }
@@ -176,7 +179,7 @@ mod tests {
 
     const PERIOD: Duration = Duration::from_millis(5);
 
-    /// A link that wrote and was called last at the time that is given with it.
+    /// A link whose last write and last call were at the returned time.
     fn pinging() -> (Shared, Instant) {
         let opened = Instant::now();
         let shared = Shared::new(opened);
@@ -185,24 +188,27 @@ mod tests {
     }
 
     #[test]
-    fn the_keep_alive_ends_a_leash_after_the_last_call() {
+    fn the_keep_alive_ends_when_its_timeout_has_passed_since_the_last_call() {
         let (shared, opened) = pinging();
         let state = shared.lock();
         assert_eq!(state.keep_alive_due_in(opened), Some(PERIOD));
-        assert_eq!(state.keep_alive_due_in(opened + LEASH.saturating_sub(PERIOD)), Some(Duration::ZERO));
-        for late in [LEASH, LEASH + PERIOD, 1000 * LEASH] {
+        assert_eq!(state.keep_alive_due_in(opened + KEEP_ALIVE_TIMEOUT.saturating_sub(PERIOD)), Some(Duration::ZERO));
+        for late in [KEEP_ALIVE_TIMEOUT, KEEP_ALIVE_TIMEOUT + PERIOD, 1000 * KEEP_ALIVE_TIMEOUT] {
             assert_eq!(state.keep_alive_due_in(opened + late), None, "{late:?} after the last call");
         }
     }
 
     #[test]
-    fn a_call_that_waits_is_no_silence_and_the_next_one_begins_anew() {
+    fn a_call_that_waits_keeps_the_board_alive_and_its_end_restarts_the_timeout() {
         let (shared, opened) = pinging();
         let mut state = shared.lock();
         state.enter_call();
-        assert_eq!(state.keep_alive_due_in(opened + 1000 * LEASH), Some(Duration::ZERO));
-        state.leave_call(opened + 1000 * LEASH);
-        assert_eq!(state.keep_alive_due_in(opened + (1001 * LEASH).saturating_sub(PERIOD)), Some(Duration::ZERO));
-        assert_eq!(state.keep_alive_due_in(opened + 1001 * LEASH), None);
+        assert_eq!(state.keep_alive_due_in(opened + 1000 * KEEP_ALIVE_TIMEOUT), Some(Duration::ZERO));
+        state.leave_call(opened + 1000 * KEEP_ALIVE_TIMEOUT);
+        assert_eq!(
+            state.keep_alive_due_in(opened + (1001 * KEEP_ALIVE_TIMEOUT).saturating_sub(PERIOD)),
+            Some(Duration::ZERO)
+        );
+        assert_eq!(state.keep_alive_due_in(opened + 1001 * KEEP_ALIVE_TIMEOUT), None);
     }
 }

@@ -1,0 +1,260 @@
+//! A board at the other end of a link, call by call.
+
+mod stream;
+
+use std::time::Duration;
+
+use frixel_layers::Scene;
+use frixel_wire::fault::{Fault, Flags, State};
+use frixel_wire::frame::Decoder;
+use frixel_wire::hello::Hello;
+use frixel_wire::message::{Command, Telemetry};
+
+use super::command::name_of;
+use super::error::DeviceError;
+use super::exchange::{ANSWER_TIMEOUT, Exchange};
+use super::handshake::request_hello;
+use super::link::Link;
+use super::upload::{self, Progress, Upload, UploadCounts};
+use stream::StreamProgress;
+
+pub use stream::{StreamSettings, StreamStatus};
+
+/// Longest time between pings when nothing else is sent: a quarter of a scene's default host timeout, 250 ms.
+const PING_PERIOD_MAX: Duration = Duration::from_millis(60);
+/// Shortest time between pings: a quarter of the shortest host timeout, 20 ms. Safe for every scene.
+const PING_PERIOD_MIN: Duration = Duration::from_millis(5);
+
+/// A board that has answered the hello.
+///
+/// **Pings.** An armed board disarms itself, output zero, when it has received nothing for the scene's host timeout.
+/// The link pings it often enough for every host timeout, or for that of the scene that this value has committed, as
+/// long as the application makes calls: [`KEEP_ALIVE_TIMEOUT`](crate::KEEP_ALIVE_TIMEOUT) after the last call that
+/// sends or receives, the pings end and the board disarms itself. So an application that hangs does not keep a board
+/// playing. A call that waits counts for as long as it waits. An application that plays one scene for long calls
+/// [`Self::wait`], or in a loop of its own [`Self::keep_alive`], several times a second: from the loop that notices
+/// that it is to stop, never from a thread or timer that would go on without it.
+///
+/// Dropping a value that has armed the board stops and disarms it, as far as the link still carries anything. The
+/// board sets its output to zero in any case once the pings have stopped.
+pub struct Device<L: Link> {
+    exchange: Exchange<L>,
+    hello: Hello,
+    uploads: UploadCounts,
+    /// CRC-32 of the scene uploaded last, and the time between pings that its host timeout needs.
+    uploaded: Option<(u32, Duration)>,
+    /// Time between pings that the committed scene needs, if this value has committed it.
+    committed: Option<Duration>,
+    /// The board may be armed or active, because of this value or of a scene that plays without a host.
+    armed: bool,
+    /// The stream that was started last.
+    stream: Option<StreamProgress>,
+}
+
+/// What a board reports without a request.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Event {
+    /// What the board did at one tick; see [`Device::subscribe`].
+    Telemetry(Telemetry),
+    /// The board changed its state without a command.
+    StateChanged {
+        /// The new state.
+        state: State,
+        /// The latched fault, if there is one.
+        fault: Option<Fault>,
+        /// The reason, where it is not a fault.
+        flags: Flags,
+    },
+}
+
+/// What was sent and received since the link was opened.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Frames sent, pings included.
+    pub frames_sent: u64,
+    /// Frames that arrived damaged: frames of the board, and chunks that the board requested again.
+    pub frames_rejected: u64,
+    /// Uploaded bytes of scenes and bitmaps, each counted once.
+    pub payload_bytes: u64,
+    /// All bytes sent.
+    pub wire_bytes: u64,
+}
+
+impl<L: Link> Device<L> {
+    /// Says hello, checks that both sides speak the same protocol, and starts the pings. Takes at most 0.75 s when
+    /// nobody answers.
+    ///
+    /// The hello disarms what another client had armed or played, but for a scene that plays without a host.
+    pub fn connect(mut link: L) -> Result<Self, DeviceError> {
+        let mut decoder = Decoder::new();
+        let hello = request_hello(&mut link, &mut decoder)?;
+        let mut exchange = Exchange::new(link, decoder, &hello);
+        // Its answer corrects the credit, should one of several hello requests have been lost.
+        exchange.request(Command::Ping)?;
+        let armed = matches!(hello.state, State::Armed | State::Active);
+        let uploads = UploadCounts::default();
+        let mut device = Self { exchange, hello, uploads, uploaded: None, committed: None, armed, stream: None };
+        device.pace_pings()?;
+        Ok(device)
+    }
+
+    /// The hello that the board answered with.
+    pub fn hello(&self) -> &Hello {
+        &self.hello
+    }
+
+    /// Uploads the scene, and those of its bitmaps that the board does not hold. The playing scene does not change
+    /// before [`Self::commit`].
+    pub fn upload(&mut self, upload: &Upload, progress: &mut dyn FnMut(Progress)) -> Result<(), DeviceError> {
+        upload.check()?;
+        // The board refuses bytes that are no scene, and says why.
+        let scene = Scene::parse(upload.scene).ok();
+        self.uploaded = scene.map(|scene| (upload.scene_crc32(), ping_period(scene.header().host_timeout_s)));
+        upload::send(&mut self.exchange, upload, &mut self.uploads, progress)
+    }
+
+    /// Makes the uploaded scene the committed one, which plays or will play. `scene_crc32` is [`Upload::scene_crc32`].
+    ///
+    /// From then on the pings follow its host timeout.
+    pub fn commit(&mut self, scene_crc32: u32) -> Result<(), DeviceError> {
+        // Until the board has answered, the host timeout of either scene may apply.
+        self.committed = None;
+        self.pace_pings()?;
+        self.request(Command::Commit { crc32: scene_crc32 })?;
+        self.committed = self.uploaded.filter(|(crc32, _)| *crc32 == scene_crc32).map(|(_, period)| period);
+        self.pace_pings()
+    }
+
+    /// Disarmed to armed: ready to play, output zero.
+    pub fn arm(&mut self) -> Result<(), DeviceError> {
+        self.before_arming()?;
+        self.request(Command::Arm)
+    }
+
+    /// Output to zero, from any state.
+    pub fn disarm(&mut self) -> Result<(), DeviceError> {
+        self.request(Command::Disarm)?;
+        self.armed = false;
+        self.pace_pings()
+    }
+
+    /// Armed to active: the committed scene plays.
+    pub fn play(&mut self) -> Result<(), DeviceError> {
+        self.before_arming()?;
+        self.request(Command::Play)
+    }
+
+    /// Active to armed: output zero.
+    pub fn stop(&mut self) -> Result<(), DeviceError> {
+        self.request(Command::Stop)
+    }
+
+    /// While playing: switches a layer of the committed scene on or off, and sets the factor on its friction, -100 to
+    /// 100, in place of its gain in the scene. It acts at the next tick, and holds until the next commit.
+    ///
+    /// `layer` is the number of the layer's record, from zero. Friction out of reach is clamped, and telemetry has a
+    /// flag for it.
+    pub fn set_layer(&mut self, layer: u8, on: bool, gain: f32) -> Result<(), DeviceError> {
+        self.request(Command::SetLayer { layer, on, gain })
+    }
+
+    /// Faulted to disarmed, if the cause of the fault is gone.
+    pub fn clear_fault(&mut self) -> Result<(), DeviceError> {
+        self.request(Command::ClearFault)
+    }
+
+    /// Checks that the board answers.
+    pub fn ping(&mut self) -> Result<(), DeviceError> {
+        self.request(Command::Ping)
+    }
+
+    /// Requests telemetry once every `period_ticks` ticks of the board; zero ends it. [`Self::wait`] hands it over.
+    pub fn subscribe(&mut self, period_ticks: u32) -> Result<(), DeviceError> {
+        self.request(Command::Subscribe { period_ticks })
+    }
+
+    /// Waits for `duration` on the link's clock, and hands over the events that arrive meanwhile and those that arrived
+    /// before.
+    ///
+    /// Ends early with [`DeviceError::Silent`] when the board does not even answer pings.
+    pub fn wait(&mut self, duration: Duration, on_event: &mut dyn FnMut(Event)) -> Result<(), DeviceError> {
+        let end = self.exchange.now() + duration;
+        loop {
+            while let Some(event) = self.exchange.next_event() {
+                on_event(event);
+            }
+            let now = self.exchange.now();
+            if now >= end {
+                return Ok(());
+            }
+            self.exchange.listen(end.saturating_sub(now))?;
+        }
+    }
+
+    /// Keeps the pings going for another [`KEEP_ALIVE_TIMEOUT`](crate::KEEP_ALIVE_TIMEOUT), and stores the events that
+    /// have arrived for the next [`Self::wait`]. Does not wait itself, and so does not report a board that has fallen
+    /// silent.
+    ///
+    /// For a program with a loop of its own that plays a scene and has no other call to make.
+    ///
+    /// ```no_run
+    /// # use frixel_driver::{Device, DeviceError, Link};
+    /// # fn draw_a_frame() -> bool { false }
+    /// # fn run<L: Link>(board: &mut Device<L>) -> Result<(), DeviceError> {
+    /// while draw_a_frame() {
+    ///     board.keep_alive()?;
+    /// }
+    /// board.stop()
+    /// # }
+    /// ```
+    pub fn keep_alive(&mut self) -> Result<(), DeviceError> {
+        self.exchange.receive(Duration::ZERO, name_of(&Command::Ping))
+    }
+
+    /// Frames and bytes so far.
+    pub fn counters(&self) -> Counters {
+        let written = self.exchange.link().written();
+        Counters {
+            frames_sent: written.frames,
+            frames_rejected: u64::from(self.exchange.frames_rejected()) + self.uploads.chunks_lost,
+            payload_bytes: self.uploads.payload_bytes,
+            wire_bytes: written.bytes,
+        }
+    }
+
+    /// The link below, for what its own type can do. [`Device`] goes on using it.
+    pub fn link_mut(&mut self) -> &mut L {
+        self.exchange.link_mut()
+    }
+
+    /// Returns the link as it is: it goes on pinging until its keep-alive timeout, and after [`Self::arm`] or
+    /// [`Self::play`] it stops and disarms the board when it is dropped.
+    pub fn into_link(self) -> L {
+        self.exchange.into_link()
+    }
+
+    /// If this value arms the board, the link pings it, and stops and disarms it when it is dropped.
+    fn before_arming(&mut self) -> Result<(), DeviceError> {
+        self.exchange.set_shutdown_commands(&[Command::Stop, Command::Disarm])?;
+        self.armed = true;
+        self.pace_pings()
+    }
+
+    /// An armed board whose scene was committed elsewhere, or is being committed, may have the shortest host timeout.
+    fn pace_pings(&mut self) -> Result<(), DeviceError> {
+        let period = if self.armed { self.committed.unwrap_or(PING_PERIOD_MIN) } else { PING_PERIOD_MAX };
+        self.exchange.ping_every(period)
+    }
+
+    fn request(&mut self, command: Command) -> Result<(), DeviceError> {
+        self.exchange.request(command).map(|_| ())
+    }
+}
+
+/// A quarter of the host timeout, between the two limits.
+fn ping_period(host_timeout_s: f32) -> Duration {
+    let quarter = Duration::try_from_secs_f32(host_timeout_s / 4.0).unwrap_or(PING_PERIOD_MAX);
+    quarter.clamp(PING_PERIOD_MIN, PING_PERIOD_MAX)
+}
+
+const _: () = assert!(ANSWER_TIMEOUT.as_millis() < 1000);

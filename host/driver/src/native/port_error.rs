@@ -1,0 +1,53 @@
+//! Why a serial port could not be opened. Each message says what was found and what to do.
+
+use thiserror::Error;
+
+/// A port could not be opened.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum PortError {
+    /// There is no such port.
+    #[error("there is no port {port}; {}", port_list(.ports))]
+    NotThere {
+        /// The path that was given.
+        port: String,
+        /// Paths of the ports of this machine.
+        ports: Vec<String>,
+    },
+    /// Another program has the port open.
+    #[error("{port} is in use by another program; close that one (a serial monitor, or a second frixel) and try again")]
+    Busy {
+        /// Path of the port.
+        port: String,
+    },
+    /// This user may not open the port.
+    #[error(
+        "no permission to open {port}; on Linux its group may, usually `dialout` or `uucp`: add yourself with \
+         `sudo usermod -aG dialout $USER` and log in again"
+    )]
+    NoPermission {
+        /// Path of the port.
+        port: String,
+    },
+    /// The operating system refuses for another reason: the path names no serial port, for one.
+    #[error("{port} does not open as a serial port: {reason}; check the path, and plug the board in again")]
+    NotOpened {
+        /// Path of the port.
+        port: String,
+        /// The operating system's reason.
+        reason: String,
+    },
+    /// The ports of this machine could not be listed.
+    #[error("the serial ports of this machine cannot be listed: {reason}; name the port by its path")]
+    NoList {
+        /// The operating system's reason.
+        reason: String,
+    },
+}
+
+fn port_list(ports: &[String]) -> String {
+    match ports {
+        [] => "this machine has none: plug the board in".into(),
+        [only] => format!("the only one is {only}"),
+        [..] => format!("the ports of this machine are {}", ports.join(", ")),
+    }
+}

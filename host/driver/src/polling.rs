@@ -1,0 +1,239 @@
+//! A [`Link`] over any byte stream, without a thread.
+
+use std::time::Duration;
+
+use super::error::LinkClosed;
+use super::link::{Link, Written};
+
+/// A byte stream to one board, with the clock that deadlines are measured on.
+///
+/// Examples: a TCP connection, a WebSocket, a browser's serial port behind an import that waits, a simulated line
+/// whose clock is virtual.
+pub trait ByteStream {
+    /// Queues bytes for sending, without waiting for the other end to take them.
+    fn write(&mut self, bytes: &[u8]) -> Result<(), LinkClosed>;
+
+    /// Appends the bytes that have arrived to `buffer`. Returns as soon as there are any, or without any once `wait`
+    /// has passed on [`Self::now`].
+    fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed>;
+
+    /// Time since any fixed moment. It never goes back.
+    fn now(&self) -> Duration;
+
+    /// The stream's name in messages.
+    fn name(&self) -> &str;
+}
+
+/// Shortest period of the keep-alive frame, so that a period of zero cannot hold up a call for ever.
+const PERIOD_MIN: Duration = Duration::from_millis(1);
+
+/// A [`Link`] that sends its keep-alive frames while it is read, and at no other time.
+///
+/// An application over such a link calls [`Device::wait`](crate::Device::wait), or
+/// [`Device::keep_alive`](crate::Device::keep_alive), at least as often as the board's host timeout demands: it ends
+/// by itself when the application stops calling, and needs no [`KEEP_ALIVE_TIMEOUT`](crate::KEEP_ALIVE_TIMEOUT).
+///
+/// ```
+/// use std::time::Duration;
+/// use frixel_driver::{ByteStream, Device, DeviceError, LinkClosed, PollingLink};
+///
+/// /// A line with nobody at its other end. Each wait passes at once, on the line's own clock.
+/// struct DeadLine(Duration);
+///
+/// impl ByteStream for DeadLine {
+///     fn write(&mut self, _: &[u8]) -> Result<(), LinkClosed> {
+///         Ok(())
+///     }
+///     fn read(&mut self, _: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed> {
+///         self.0 += wait;
+///         Ok(())
+///     }
+///     fn now(&self) -> Duration {
+///         self.0
+///     }
+///     fn name(&self) -> &str {
+///         "a dead line"
+///     }
+/// }
+///
+/// let error = Device::connect(PollingLink::new(DeadLine(Duration::ZERO))).err();
+/// assert!(matches!(error, Some(DeviceError::NoHello { .. })));
+/// ```
+pub struct PollingLink<S: ByteStream> {
+    stream: S,
+    written: Written,
+    last_write: Duration,
+    keep_alive: Option<(Vec<u8>, Duration)>,
+    shutdown_frames: Vec<u8>,
+}
+
+impl<S: ByteStream> PollingLink<S> {
+    /// A link over `stream`, which sends nothing by itself yet.
+    pub fn new(stream: S) -> Self {
+        let last_write = stream.now();
+        Self { stream, written: Written::default(), last_write, keep_alive: None, shutdown_frames: Vec::new() }
+    }
+
+    /// The stream below the link.
+    pub fn stream_mut(&mut self) -> &mut S {
+        &mut self.stream
+    }
+
+    fn send(&mut self, frame: &[u8]) -> Result<(), LinkClosed> {
+        self.stream.write(frame)?;
+        self.written.add(frame);
+        self.last_write = self.stream.now();
+        Ok(())
+    }
+
+    /// Sends the keep-alive frame if its period has passed, and returns the time at which the next one is due.
+    fn keep_board_alive(&mut self) -> Result<Option<Duration>, LinkClosed> {
+        let Some((frame, period)) = self.keep_alive.take() else { return Ok(None) };
+        let due = self.stream.now() >= self.last_write + period;
+        let sent = if due { self.send(&frame) } else { Ok(()) };
+        self.keep_alive = Some((frame, period));
+        sent.map(|()| Some(self.last_write + period))
+    }
+}
+
+impl<S: ByteStream> Link for PollingLink<S> {
+    fn write(&mut self, frame: &[u8]) -> Result<u64, LinkClosed> {
+        self.send(frame)?;
+        Ok(self.written.bytes)
+    }
+
+    fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed> {
+        let deadline = self.stream.now() + wait;
+        let len_before = buffer.len();
+        loop {
+            let next_frame = self.keep_board_alive()?;
+            let wake_at = next_frame.map_or(deadline, |next_frame| next_frame.min(deadline));
+            self.stream.read(buffer, wake_at.saturating_sub(self.stream.now()))?;
+            if buffer.len() > len_before || self.stream.now() >= deadline {
+                return Ok(());
+            }
+        }
+    }
+
+    fn now(&self) -> Duration {
+        self.stream.now()
+    }
+
+    fn keep_alive(&mut self, frame: Vec<u8>, period: Duration) {
+        self.keep_alive = Some((frame, period.max(PERIOD_MIN)));
+    }
+
+    fn set_shutdown_frames(&mut self, frames: Vec<u8>) {
+        self.shutdown_frames = frames;
+    }
+
+    fn written(&self) -> Written {
+        self.written
+    }
+
+    fn name(&self) -> &str {
+        self.stream.name()
+    }
+}
+
+impl<S: ByteStream> Drop for PollingLink<S> {
+    fn drop(&mut self) {
+        if !self.shutdown_frames.is_empty() {
+            // Nobody is left to report an error to; the board's host timeout sets the output to zero.
+            let _ = self.stream.write(&self.shutdown_frames);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::RefCell;
+    use std::rc::Rc;
+
+    use super::*;
+
+    const MS: Duration = Duration::from_millis(1);
+
+    /// A stream in virtual time: when what was written, and when which bytes arrive.
+    #[derive(Default)]
+    struct Script {
+        now: Duration,
+        written: Rc<RefCell<Vec<(Duration, Vec<u8>)>>>,
+        arrivals: Vec<(Duration, u8)>,
+    }
+
+    impl ByteStream for Script {
+        fn write(&mut self, bytes: &[u8]) -> Result<(), LinkClosed> {
+            self.written.borrow_mut().push((self.now, bytes.to_vec()));
+            Ok(())
+        }
+
+        fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed> {
+            let end = self.now + wait;
+            match self.arrivals.first().copied().filter(|(at, _)| *at <= end) {
+                Some((at, byte)) => {
+                    self.now = self.now.max(at);
+                    self.arrivals.remove(0);
+                    buffer.push(byte);
+                }
+                None => self.now = end,
+            }
+            Ok(())
+        }
+
+        fn now(&self) -> Duration {
+            self.now
+        }
+
+        fn name(&self) -> &str {
+            "script"
+        }
+    }
+
+    #[test]
+    fn keep_alive_frames_follow_the_last_write_by_their_period() {
+        let script = Script::default();
+        let written = Rc::clone(&script.written);
+        let mut link = PollingLink::new(script);
+        link.keep_alive(vec![7], 10 * MS);
+        let mut buffer = Vec::new();
+        link.read(&mut buffer, 4 * MS).unwrap();
+        assert_eq!(link.write(&[1, 2]), Ok(2));
+        link.read(&mut buffer, 25 * MS).unwrap();
+        assert!(buffer.is_empty());
+        assert_eq!(*written.borrow(), [(4 * MS, vec![1, 2]), (14 * MS, vec![7]), (24 * MS, vec![7])]);
+        assert_eq!(link.written(), Written { frames: 3, bytes: 4 });
+        assert_eq!(link.now(), 29 * MS);
+    }
+
+    #[test]
+    fn a_read_returns_with_the_first_bytes() {
+        let script = Script { arrivals: vec![(3 * MS, 9), (50 * MS, 8)], ..Script::default() };
+        let mut link = PollingLink::new(script);
+        link.keep_alive(vec![7], 10 * MS);
+        let mut buffer = vec![1];
+        link.read(&mut buffer, 20 * MS).unwrap();
+        assert_eq!((buffer.as_slice(), link.now()), ([1, 9].as_slice(), 3 * MS));
+        link.read(&mut buffer, 20 * MS).unwrap();
+        assert_eq!((buffer.as_slice(), link.now()), ([1, 9].as_slice(), 23 * MS));
+    }
+
+    #[test]
+    fn a_period_of_zero_does_not_hold_up_a_read() {
+        let mut link = PollingLink::new(Script::default());
+        link.keep_alive(vec![7], Duration::ZERO);
+        link.read(&mut Vec::new(), 10 * MS).unwrap();
+        assert_eq!(link.now(), 10 * MS);
+    }
+
+    #[test]
+    fn the_shutdown_frames_are_the_last_ones() {
+        let script = Script::default();
+        let written = Rc::clone(&script.written);
+        let mut link = PollingLink::new(script);
+        link.set_shutdown_frames(vec![5, 0]);
+        link.write(&[1, 0]).unwrap();
+        drop(link);
+        assert_eq!(*written.borrow(), [(Duration::ZERO, vec![1, 0]), (Duration::ZERO, vec![5, 0])]);
+    }
+}

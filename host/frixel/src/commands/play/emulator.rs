@@ -1,0 +1,45 @@
+//! Playing on the firmware in an emulator.
+
+use std::sync::mpsc;
+
+use frixel::rigs::EmulatedLink;
+use frixel_driver::Device;
+use frixel_hil_sim::emulated::{BOARD, Image, LinkBoard};
+use frixel_hil_sim::{Stroke, World, WorldConfig, contact_of};
+use frixel_scene::{Program, Scene};
+
+use super::follow::follow;
+use super::plan::Plan;
+use super::rigs::Target;
+use super::{CommandError, Interrupt, PlayArgs, Played};
+
+/// Plays on the firmware in an emulator, under a simulated finger.
+pub(super) fn play_on_emulator(args: &PlayArgs, scene: &Scene, interrupt: &Interrupt) -> Result<Played, CommandError> {
+    let mut plan = Plan::new(args, scene, Target::Emulator, (&BOARD.limits, BOARD.tick_hz))?;
+    let stroke = plan.choose_stroke(args)?;
+    let world = world(&plan.program, stroke, args.seed)?;
+    let image = Image::build()?;
+    let (sender, records) = mpsc::channel();
+    let mut board = LinkBoard::start(&image, world, move |record| {
+        // Nobody receives any more when the play has ended.
+        let _ = sender.send(*record);
+    })?;
+    let device = Device::connect(EmulatedLink::open(&board, records)?)?;
+    let mut played = follow(args, plan, device, None, interrupt)?;
+    if !interrupt.is_requested() {
+        played.failure = played.failure.or(board.check().err().map(CommandError::from));
+    }
+    Ok(played)
+}
+
+/// The world around the emulated board, with the finger that the scene is meant for.
+fn world(program: &Program, stroke: Stroke, seed: u64) -> Result<World, CommandError> {
+    let config = WorldConfig {
+        tick_hz: BOARD.tick_hz,
+        full_scale_v_peak: f64::from(BOARD.limits.full_scale_v_peak),
+        ..WorldConfig::default()
+    };
+    let mut world = World::new(config, stroke, seed)?;
+    world.set_finger(contact_of(&program.header).map_err(CommandError::Finger)?);
+    Ok(world)
+}
