@@ -32,9 +32,12 @@ fn a_switch_held_since_the_reset_does_not_arm() {
     assert_eq!(ticker.state(), State::Armed);
 }
 
+/// A name, and what disarms.
+type Disarming = (&'static str, fn(&mut Ticker));
+
 #[test]
 fn after_every_disarming_the_switch_is_pressed_anew() {
-    let disarm: [(&str, fn(&mut Ticker)); 3] = [
+    let disarm: [Disarming; 3] = [
         ("by the host", |ticker| {
             ticker.apply(Order::Disarm);
         }),
