@@ -12,7 +12,7 @@ use frixel_wire::fault::Fault;
 use heapless::spsc::{Consumer, Producer};
 
 use crate::owned::Owned;
-use crate::{provoke, shared};
+use crate::{fault_injection, shared};
 
 /// Clock of `SysTick` on this machine.
 const CLOCK_HZ: u32 = 25_000_000;
@@ -110,6 +110,6 @@ impl Tick {
             // The session asks for the next one when it has taken this one.
             let _ = self.statuses.enqueue(self.ticker.status());
         }
-        provoke::in_tick();
+        fault_injection::in_tick();
     }
 }

@@ -4,7 +4,7 @@
 #![no_main]
 
 mod bench;
-mod provoke;
+mod fault_injection;
 mod store;
 
 use board_nucleo_g474re::fault::{self, LastReset};
@@ -35,8 +35,8 @@ fn main() -> ! {
     period::start();
 
     let mut bench = Bench::new(output);
-    if provoke::go_on(&last_reset) {
-        provoke::next();
+    if fault_injection::continues_after(&last_reset) {
+        fault_injection::next();
     }
     println!("");
     println!("frixel bring-up. Read docs/hardware.md first: this board drives hundreds of volts.");
@@ -60,8 +60,8 @@ fn main() -> ! {
     bench.edge();
 
     bench.ask("6. Switch the amplifier's supply off. The board will panic, fault and hang, and restart each time.");
-    if !provoke::are_done() {
-        provoke::next();
+    if !fault_injection::are_done() {
+        fault_injection::next();
     }
 
     bench.ask("7. The limits that were built in are stored.");
