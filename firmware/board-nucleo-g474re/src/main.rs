@@ -60,7 +60,7 @@ fn start(text: &'static mut Text, queue_pairs: &'static mut QueuePairs) -> MainL
     let Some(mut core) = Peripherals::take() else { fault::never() };
     guard::start(&mut core.MPU);
     let last_reset = LastReset::take(text);
-    // First of all, so that a board that fails while it starts tells why.
+    // First of all, so that a board that fails while it starts has logged why it was reset.
     log_reset(&last_reset);
     clock::start();
     clock::start_peripherals();

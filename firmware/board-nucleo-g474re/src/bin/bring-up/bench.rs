@@ -11,7 +11,7 @@ use defmt::{error, info, println, warn};
 use frixel_wire::dac_code::DacCode;
 use stm32_metapac::GPIOC;
 
-/// The blue button, PC13. Which level means pressed is told by the one that it has when nobody presses.
+/// The blue button, PC13. Its level at rest shows which level means pressed.
 const BUTTON: usize = 13;
 /// Half a period of the square wave: 500 us.
 const HALF_PERIOD_TICKS: u32 = TICK_HZ / 2000;
@@ -96,7 +96,7 @@ impl Bench {
                 bench.put(code);
             });
         }
-        println!("now CLEAR: the voltmeter shows 0 V, though the DAC was last told 5 V; the button goes on");
+        println!("now CLEAR: the voltmeter shows 0 V, though the last code was 5 V; the button goes on");
         for _ in 0..TICK_HZ {
             next_period();
             self.put(16_384);
