@@ -1,6 +1,7 @@
 //! The drivers of `frixel-drivers` against models of their chips.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
+use std::cell::Cell;
 use std::collections::VecDeque;
 use std::convert::Infallible;
 use std::pin::pin;
@@ -11,6 +12,7 @@ use embedded_io::{ErrorType, Read, ReadReady, Write, WriteReady};
 use frixel_drivers::ad5761r::{self, Ad5761r};
 use frixel_drivers::amplifier::Amplifier;
 use frixel_drivers::arm_switch::ArmSwitch;
+use frixel_drivers::bus_handover::BusHandover;
 use frixel_drivers::polling::poll_once;
 use frixel_drivers::serial::SerialLink;
 use frixel_drivers::state_light::StateLight;
@@ -115,6 +117,43 @@ fn a_short_circuit_is_reported_as_long_as_it_lasts() {
     assert!(matches!(dac.prepare(), Err(ad5761r::Error::ShortCircuit(_))));
     chip.short_circuit(false);
     dac.prepare().unwrap();
+}
+
+/// Before it arms, the main loop configures the DAC and reads it back in the middle of the tick's frames.
+#[test]
+fn the_dac_is_prepared_between_the_frames_of_the_tick() {
+    let chip = Ad5761rChip::new();
+    let mut dac = dac(&chip);
+    let bus = BusHandover::new();
+    let frames = Cell::new(0);
+    let tick = || {
+        if bus.tick_sends(true) {
+            tick_frame(&chip, 0);
+            frames.set(frames.get() + 1);
+        }
+    };
+    let wait_until = |condition: &dyn Fn() -> bool| {
+        tick();
+        assert!((0..10).any(|_| {
+            tick();
+            condition()
+        }));
+    };
+    let prepared = bus.while_frames_rest(wait_until, || {
+        let before = frames.get();
+        tick();
+        dac.read_control().unwrap();
+        tick();
+        let prepared = dac.prepare();
+        assert_eq!(frames.get(), before, "the tick sent a frame in between");
+        prepared
+    });
+    assert_eq!(prepared, Ok(()));
+    let before = frames.get();
+    tick();
+    assert_eq!(frames.get(), before + 1);
+    tick_frame(&chip, 16_384);
+    assert!((chip.output_v() - 5.0).abs() < 1e-9);
 }
 
 /// Polls until the future is ready, at most so many times.

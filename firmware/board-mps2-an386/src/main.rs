@@ -1,18 +1,18 @@
 //! The firmware on an emulated Cortex-M4F: `qemu-system-arm -M mps2-an386`.
 //!
-//! [`tick`] runs in the `SysTick` interrupt, above everything; [`talk`] runs the session in the main loop, between
-//! [`uart`] and the tick. Amplifier and touch source are words of memory that the simulator looks at ([`shared`]).
-//! Instead of all that, [`lockstep`] ticks whenever the simulator gives it a tick. [`fault`] keeps the reason of a
-//! reset for the next hello, and [`provoke`] gives a reason.
+//! [`tick`] runs in the `SysTick` interrupt, above everything; [`main_loop`] runs the session in the main loop, between
+//! [`uart`] and the tick. Amplifier and touch source are words of memory that it shares with the simulator ([`shared`]).
+//! Instead of all that, [`lockstep`] ticks whenever the simulator sends it a tick. [`fault`] stores a fault for the next
+//! hello, and [`fault_injection`] causes one on demand.
 #![no_std]
 #![no_main]
 
 mod fault;
+mod fault_injection;
 mod lockstep;
+mod main_loop;
 mod owned;
-mod provoke;
 mod shared;
-mod talk;
 mod tick;
 mod uart;
 
@@ -49,7 +49,7 @@ fn main() -> ! {
     let Some(session) = session(board, second) else { fault::never() };
     session.attach_stream(&STREAM);
     match (shared::get(layout::MODE), Peripherals::take()) {
-        (layout::MODE_LINK, Some(peripherals)) => talk::run(&board, session, ticker, peripherals),
+        (layout::MODE_LINK, Some(peripherals)) => main_loop::run(&board, session, ticker, peripherals),
         _ => lockstep::run(session, ticker),
     }
 }

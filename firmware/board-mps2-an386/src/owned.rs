@@ -20,7 +20,7 @@ impl<T> Owned<T> {
     /// # Safety
     /// The handler's interrupt has not been enabled yet.
     pub unsafe fn give(&self, value: T) {
-        // SAFETY: nobody else looks, says the caller.
+        // SAFETY: the caller guarantees that nobody else has a reference.
         unsafe { *self.0.get() = Some(value) }
     }
 

@@ -12,7 +12,7 @@ use frixel_wire::fault::Fault;
 use heapless::spsc::{Consumer, Producer};
 
 use crate::owned::Owned;
-use crate::{provoke, shared};
+use crate::{fault_injection, shared};
 
 /// Clock of `SysTick` on this machine.
 const CLOCK_HZ: u32 = 25_000_000;
@@ -28,7 +28,7 @@ pub struct Tick {
     pub orders: Consumer<'static, Order<'static>>,
     /// Coefficients that go back to the session.
     pub spares: Producer<'static, &'static mut Active>,
-    /// A status for the session, when it asked for one.
+    /// A status for the session, when it has requested one.
     pub statuses: Producer<'static, Status>,
     /// What the amplifier's monitor reads.
     pub monitor: Monitor,
@@ -110,6 +110,6 @@ impl Tick {
             // The session asks for the next one when it has taken this one.
             let _ = self.statuses.enqueue(self.ticker.status());
         }
-        provoke::in_tick();
+        fault_injection::in_tick();
     }
 }

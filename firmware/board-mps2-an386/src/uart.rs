@@ -154,8 +154,7 @@ extern "C" fn receive() {
     // SAFETY: this is the handler that owns it.
     let Some(receiver) = (unsafe { RECEIVER.get() }) else { return };
     while read(STATE) & STATE_RX_FULL != 0 {
-        // A host that keeps to its credit never fills the queue; from one that does not, bytes are lost, and a CRC
-        // tells.
+        // A host that keeps to its credit never fills the queue. Bytes beyond it are lost, and the frame's CRC fails.
         let _ = receiver.enqueue(read(DATA) as u8);
         shared::set(layout::RECEIVED_AT_TICK, shared::get(layout::TICK));
         shared::set(layout::RECEIVED_BYTES, shared::get(layout::RECEIVED_BYTES).wrapping_add(1));

@@ -10,11 +10,8 @@ use crate::{tick, wait_until};
 ///
 /// It takes some 0.2 ms, five frames and the hand-over. The output is zero and the amplifier off meanwhile.
 pub fn prepare(dac: &mut Dac) {
-    tick::DAC_BUS.request();
-    wait_until(|| tick::DAC_BUS.is_granted(), "the tick to rest");
-    let prepared = dac.prepare();
-    tick::DAC_BUS.release();
-    wait_until(|| !tick::DAC_BUS.is_granted(), "the tick to go on");
+    let wait = |condition: &dyn Fn() -> bool| wait_until(condition, "the tick");
+    let prepared = tick::DAC_BUS.while_frames_rest(wait, || dac.prepare());
     if let Err(error) = prepared {
         #[cfg(feature = "log")]
         defmt::error!("not armed: {}", error);

@@ -60,7 +60,7 @@ pub(crate) fn begin(channel: usize, len: u16) {
     let ch = DMA1.ch(channel);
     stop(ch);
     ch.ndtr().write(|w| w.set_ndt(len));
-    // What was stored before is in memory when DMA looks.
+    // Stores before this reach memory before DMA reads it.
     fence(Ordering::SeqCst);
     ch.cr().modify(|w| w.set_en(true));
 }

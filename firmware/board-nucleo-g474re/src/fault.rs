@@ -38,7 +38,7 @@ pub struct LastReset {
 }
 
 impl LastReset {
-    /// Looks why the processor started. It is told once.
+    /// Reads the reset cause and the stored fault, and clears both.
     pub fn take(text: &'static mut Text) -> Self {
         let flags = RCC.csr().read().0;
         RCC.csr().modify(|w| w.set_rmvf(true));
@@ -77,7 +77,7 @@ fn panic(info: &PanicInfo) -> ! {
     })
 }
 
-/// A panic; the number that goes with it is the line. Nobody looks at the message, and the linker leaves it out.
+/// A panic; the number that goes with it is the line. The message is not used, so the linker drops it.
 #[cfg(not(feature = "panic-message"))]
 #[panic_handler]
 fn panic(info: &PanicInfo) -> ! {

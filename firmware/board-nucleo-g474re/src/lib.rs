@@ -2,7 +2,7 @@
 //! the reference manual of the STM32G4, DS12288 the data sheet of the STM32G474, and what stands in quotes behind them are
 //! headings there.
 //!
-//! One interrupt, [`tick`], runs above everything, 40,000 times a second. All else is the main loop, [`talk`]: serial
+//! One interrupt, [`tick`], runs above everything, 40,000 times a second. All else is the main loop, [`main_loop`]: serial
 //! port, session, stores, optical frame, watchdog. Between them go the lock-free queues of `heapless`; no critical section
 //! masks the tick ([`critical`]). None of it has run on hardware in this repository's CI: what can be tested without is in
 //! `firmware/control`, `firmware/session` and `firmware/drivers`.
@@ -19,6 +19,7 @@ pub mod fault;
 pub mod flash;
 pub mod guard;
 pub mod indicator;
+pub mod main_loop;
 #[cfg(feature = "optical-frame")]
 pub mod optical_frame;
 pub mod output;
@@ -26,7 +27,6 @@ mod owned;
 pub mod period;
 pub mod pins;
 pub mod serial;
-pub mod talk;
 pub mod tick;
 pub mod watchdog;
 

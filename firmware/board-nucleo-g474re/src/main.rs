@@ -9,11 +9,11 @@ use board_nucleo_g474re::adc::Adc;
 use board_nucleo_g474re::dac::DacError;
 use board_nucleo_g474re::fault::{self, LastReset};
 use board_nucleo_g474re::flash::BankTwo;
+use board_nucleo_g474re::main_loop::{MainLoop, QueuePairs};
 #[cfg(feature = "optical-frame")]
 use board_nucleo_g474re::optical_frame::{self, OpticalFrame, Reports};
 use board_nucleo_g474re::output::Output;
 use board_nucleo_g474re::serial::Serial;
-use board_nucleo_g474re::talk::{QueuePairs, Talk};
 use board_nucleo_g474re::tick::{self, Tick};
 use board_nucleo_g474re::watchdog::Watchdog;
 use board_nucleo_g474re::{board, clock, dac, guard, indicator, period};
@@ -43,25 +43,25 @@ fn main() -> ! {
     static mut TEXT: Text = [0; FAULT_TEXT_MAX_LEN];
     static mut QUEUES: QueuePairs = QueuePairs::new();
 
-    let talk = start(TEXT, QUEUES);
+    let main_loop = start(TEXT, QUEUES);
     #[cfg(feature = "optical-frame")]
     {
         let reports = Reports::new(None);
         let reading = pin!(optical_frame::read(&reports));
-        talk.run(OpticalFrame::new(reading, &reports))
+        main_loop.run(OpticalFrame::new(reading, &reports))
     }
     #[cfg(not(feature = "optical-frame"))]
-    talk.run()
+    main_loop.run()
 }
 
 /// Starts everything. Apart from the main function, so that what it needs of the stack is free again afterwards.
 #[inline(never)]
-fn start(text: &'static mut Text, queue_pairs: &'static mut QueuePairs) -> Talk {
+fn start(text: &'static mut Text, queue_pairs: &'static mut QueuePairs) -> MainLoop {
     let output = Output::new();
     let Some(mut core) = Peripherals::take() else { fault::never() };
     guard::start(&mut core.MPU);
     let last_reset = LastReset::take(text);
-    // First of all, so that a board that fails while it starts tells why.
+    // First of all, so that a board that fails while it starts has logged why it was reset.
     log_reset(&last_reset);
     clock::start();
     clock::start_peripherals();
@@ -86,7 +86,7 @@ fn start(text: &'static mut Text, queue_pairs: &'static mut QueuePairs) -> Talk 
     let serial = SerialLink::new(Serial::new());
     tick::start(tick);
     let watchdog = Watchdog::start();
-    Talk {
+    MainLoop {
         ends,
         session,
         status,

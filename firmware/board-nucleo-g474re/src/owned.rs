@@ -25,7 +25,7 @@ impl<T> Owned<T> {
     /// # Safety
     /// The handler's interrupt has not been enabled yet.
     pub(crate) unsafe fn give(&self, value: T) {
-        // SAFETY: nobody else looks, says the caller.
+        // SAFETY: the caller guarantees that nobody else has a reference.
         unsafe { (*self.value.get()).write(value) };
         self.given.store(true, Ordering::Release);
     }

@@ -43,7 +43,7 @@ pub(crate) fn start_interrupts() {
     TIM3.dier().write(|w| w.set_uie(true));
 }
 
-/// Whether a period has begun since this was last asked.
+/// Whether a period has begun since the last call.
 #[inline]
 pub fn has_begun() -> bool {
     let begun = TIM3.sr().read().uif();

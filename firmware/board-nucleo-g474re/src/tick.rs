@@ -62,7 +62,7 @@ pub struct Queues {
     pub orders: Consumer<'static, Order<'static>>,
     /// Coefficients that go back to the session.
     pub spares: Producer<'static, &'static mut Active>,
-    /// A status for the session, when it asked for one.
+    /// A status for the session, when it has requested one.
     pub statuses: Producer<'static, Status>,
 }
 

@@ -5,8 +5,8 @@ use core::sync::atomic::{AtomicBool, Ordering};
 
 /// Whose turn it is on the bus. One of the two sides is an interrupt that the other cannot delay.
 ///
-/// The main loop [requests](Self::request) the bus and waits until it [has](Self::is_granted) it; [releases](Self::release) it,
-/// and waits until it has it no longer: from then on the tick sends frames again.
+/// The main loop uses the bus in [`while_frames_rest`](Self::while_frames_rest). The tick asks
+/// [`tick_sends`](Self::tick_sends) before it sends its frame.
 #[derive(Debug, Default)]
 pub struct BusHandover {
     requested: AtomicBool,
@@ -28,19 +28,19 @@ impl BusHandover {
         !granted
     }
 
-    /// In the main loop: requests the bus from the next tick on.
-    pub fn request(&self) {
+    /// In the main loop: does `work` on the bus, and returns when the tick sends frames again. `wait_until` waits for a
+    /// condition that changes in a tick.
+    pub fn while_frames_rest<R>(&self, wait_until: impl Fn(&dyn Fn() -> bool), work: impl FnOnce() -> R) -> R {
         self.requested.store(true, Ordering::Release);
-    }
-
-    /// In the main loop: whether it has the bus.
-    pub fn is_granted(&self) -> bool {
-        self.granted.load(Ordering::Acquire)
-    }
-
-    /// In the main loop: gives the bus back at the next tick.
-    pub fn release(&self) {
+        wait_until(&|| self.is_granted());
+        let result = work();
         self.requested.store(false, Ordering::Release);
+        wait_until(&|| !self.is_granted());
+        result
+    }
+
+    fn is_granted(&self) -> bool {
+        self.granted.load(Ordering::Acquire)
     }
 }
 
@@ -48,24 +48,31 @@ impl BusHandover {
 mod tests {
     use super::*;
 
+    /// Ticks with zero output until a condition holds, ten times at most.
+    fn tick_until(bus: &BusHandover, condition: &dyn Fn() -> bool) {
+        assert!((0..10).any(|_| {
+            bus.tick_sends(true);
+            condition()
+        }));
+    }
+
     #[test]
-    fn the_tick_rests_from_the_request_to_the_release() {
+    fn the_tick_rests_during_the_work_only() {
         let bus = BusHandover::new();
-        assert!(bus.tick_sends(true) && !bus.is_granted());
-        bus.request();
-        assert!(!bus.is_granted(), "not before the tick has agreed");
-        assert!(!bus.tick_sends(true) && bus.is_granted());
-        bus.release();
-        assert!(bus.is_granted(), "until the tick sends again");
-        assert!(bus.tick_sends(true) && !bus.is_granted());
+        assert!(bus.tick_sends(true));
+        let rested = bus.while_frames_rest(|condition| tick_until(&bus, condition), || !bus.tick_sends(true));
+        assert!(rested, "the tick sent a frame during the work");
+        assert!(bus.tick_sends(true));
     }
 
     #[test]
     fn an_output_that_is_not_zero_keeps_the_bus() {
         let bus = BusHandover::new();
-        bus.request();
-        assert!(bus.tick_sends(false) && !bus.is_granted());
-        assert!(!bus.tick_sends(true) && bus.is_granted());
-        assert!(bus.tick_sends(false) && !bus.is_granted());
+        let wait = |condition: &dyn Fn() -> bool| {
+            assert!(bus.tick_sends(false));
+            assert!(!bus.is_granted());
+            tick_until(&bus, condition);
+        };
+        bus.while_frames_rest(wait, || assert!(!bus.tick_sends(true)));
     }
 }

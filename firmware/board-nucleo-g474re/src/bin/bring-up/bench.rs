@@ -11,7 +11,7 @@ use defmt::{error, info, println, warn};
 use frixel_wire::dac_code::DacCode;
 use stm32_metapac::GPIOC;
 
-/// The blue button, PC13. Which level means pressed is told by the one that it has when nobody presses.
+/// The blue button, PC13. Its level at rest shows which level means pressed.
 const BUTTON: usize = 13;
 /// Half a period of the square wave: 500 us.
 const HALF_PERIOD_TICKS: u32 = TICK_HZ / 2000;
@@ -56,10 +56,12 @@ impl Bench {
         self.output.zero();
     }
 
-    /// How long the output lives after a kick.
-    pub(crate) fn one_shot(&mut self) {
+    /// Measures how long the output stays enabled after a kick. Returns whether it is off in time.
+    pub(crate) fn one_shot(&mut self) -> bool {
+        let mut passed = true;
         if self.output.pins() != (false, false) {
             error!("amplifier enable (PB6) or DAC clear (PB7) is high without a kick");
+            passed = false;
         }
         for _ in 0..3 {
             let start = DWT::cycle_count();
@@ -68,41 +70,47 @@ impl Bench {
             while us() < 10 {}
             if self.output.pins() != (true, true) {
                 error!("a kick does not put both pins high: is one shorted?");
+                passed = false;
             }
             while self.output.pins() != (false, false) && us() < 10_000 {}
             match us() {
                 us if us <= 1000 => info!("output off {=u32} us after the last kick ({=u16} expected)", us, LIFE_US),
-                us => error!("output still on {=u32} us after the last kick: stop here", us),
+                us => {
+                    error!("output still on {=u32} us after the last kick", us);
+                    passed = false;
+                }
             }
         }
         self.output.kick();
         self.output.zero();
         if self.output.pins() != (false, false) {
-            error!("the output does not go off at once: stop here");
+            error!("the output does not go off at once");
+            passed = false;
         }
+        passed
     }
 
-    /// What the DAC puts out.
-    pub(crate) fn dac(&mut self) {
-        match self.dac.prepare() {
-            Ok(()) => info!("the DAC answers with its configuration"),
-            Err(error) => {
-                error!("the DAC does not answer on PB14: check supply, SPI2 (PB13, PB15), SYNC (PC6): {}", error);
-            }
+    /// Configures the DAC and puts out some voltages. Returns whether the DAC has answered.
+    pub(crate) fn dac(&mut self) -> bool {
+        if let Err(error) = self.dac.prepare() {
+            error!("the DAC does not answer on PB14: check supply, SPI2 (PB13, PB15), SYNC (PC6): {}", error);
+            return false;
         }
+        info!("the DAC answers with its configuration");
         for (code, volts) in [(0, 0), (16_384, 5), (-16_384, -5)] {
             println!("the voltmeter shows {=i32} V; the button goes on", volts);
             self.wait_for_button(|bench| {
                 bench.put(code);
             });
         }
-        println!("now CLEAR: the voltmeter shows 0 V, though the DAC was last told 5 V; the button goes on");
+        println!("now CLEAR: the voltmeter shows 0 V, though the last code was 5 V; the button goes on");
         for _ in 0..TICK_HZ {
             next_period();
             self.put(16_384);
         }
         self.output.zero();
         self.wait_for_button(|_| ());
+        true
     }
 
     /// What the inputs say, whenever it changes.
@@ -119,7 +127,9 @@ impl Bench {
     }
 
     /// A square wave of 1 kHz while the arm switch is held, for two seconds, and what the monitor makes of it.
-    pub(crate) fn square(&mut self, peak_v: f32) {
+    ///
+    /// Returns whether the monitor is within a fifth of the wave.
+    pub(crate) fn square(&mut self, peak_v: f32) -> bool {
         let code = (peak_v / LIMITS.full_scale_v_peak * f32::from(i16::MAX)) as i16;
         println!("hold the arm switch: a square wave of {=f32} V peak follows", peak_v);
         wait_for_switch();
@@ -129,8 +139,8 @@ impl Bench {
             let positive = (period / HALF_PERIOD_TICKS).is_multiple_of(2);
             if !tick::inputs().1 {
                 self.output.zero();
-                warn!("the arm switch was let go");
-                return;
+                warn!("the arm switch was released");
+                return false;
             }
             self.put(if positive { code } else { -code });
             // The last reading of each half wave, when it has settled.
@@ -152,13 +162,17 @@ impl Bench {
             low_v,
             0.5 * (high_v - low_v) / peak_v * LIMITS.full_scale_v_peak
         );
-        if 0.5 * (high_v - low_v) < 0.8 * peak_v || 0.5 * (high_v - low_v) > 1.2 * peak_v {
+        let passed = (0.8 * peak_v..=1.2 * peak_v).contains(&(0.5 * (high_v - low_v)));
+        if !passed {
             error!("that is more than a fifth off: check the amplifier's gain and the monitor's level shifter");
         }
+        passed
     }
 
     /// Time constant of an edge from -20 V to 20 V: the monitor every 2.5 us, until it has come 63 % of the way.
-    pub(crate) fn edge(&mut self) {
+    ///
+    /// Returns whether an edge was seen.
+    pub(crate) fn edge(&mut self) -> bool {
         let code = (20.0 / LIMITS.full_scale_v_peak * f32::from(i16::MAX)) as i16;
         println!("hold the arm switch: edges of 40 V follow");
         wait_for_switch();
@@ -188,11 +202,12 @@ impl Bench {
             }
         }
         self.output.zero();
-        if let Some(us) = sum_us.checked_div(edges) {
-            info!("an edge takes {=u32} us to 63 %, mean of {=u32} edges", us, edges);
-        } else {
+        let Some(us) = sum_us.checked_div(edges) else {
             error!("no edge was seen on the monitor");
-        }
+            return false;
+        };
+        info!("an edge takes {=u32} us to 63 %, mean of {=u32} edges", us, edges);
+        true
     }
 
     /// Puts a code out at the end of this period, and keeps the output alive.

@@ -4,15 +4,15 @@
 #![no_main]
 
 mod bench;
-mod provoke;
+mod fault_injection;
 mod store;
 
 use board_nucleo_g474re::fault::{self, LastReset};
 use board_nucleo_g474re::output::Output;
-use board_nucleo_g474re::{clock, guard, indicator, period};
+use board_nucleo_g474re::{clock, guard, indicator, output, period};
 use cortex_m::Peripherals;
 use cortex_m_rt::entry;
-use defmt::{info, println};
+use defmt::{error, info, println};
 use defmt_rtt as _;
 use frixel_drivers::fault_record::Text;
 use frixel_wire::message::FAULT_TEXT_MAX_LEN;
@@ -35,17 +35,17 @@ fn main() -> ! {
     period::start();
 
     let mut bench = Bench::new(output);
-    if provoke::go_on(&last_reset) {
-        provoke::next();
+    if fault_injection::continues_after(&last_reset) {
+        fault_injection::next();
     }
     println!("");
     println!("frixel bring-up. Read docs/hardware.md first: this board drives hundreds of volts.");
 
     bench.ask("1. Nothing is connected but USB.");
-    bench.one_shot();
+    stop_unless(bench.one_shot());
 
     bench.ask("2. Connect the DAC, and a voltmeter to its output. The amplifier stays disconnected.");
-    bench.dac();
+    stop_unless(bench.dac());
 
     bench.ask("3. Connect amplifier and arm switch, supply off. The electrode stays disconnected.");
     bench.inputs();
@@ -53,20 +53,32 @@ fn main() -> ! {
     bench
         .ask("4. Switch the amplifier's supply on, a high-voltage probe on its output. Hold the arm switch meanwhile.");
     for peak_v in [10.0, 25.0, 50.0] {
-        bench.square(peak_v);
+        stop_unless(bench.square(peak_v));
     }
 
     bench.ask("5. Connect series resistor and a capacitor of the electrode's worst case instead of the electrode.");
-    bench.edge();
+    stop_unless(bench.edge());
 
     bench.ask("6. Switch the amplifier's supply off. The board will panic, fault and hang, and restart each time.");
-    if !provoke::are_done() {
-        provoke::next();
+    if !fault_injection::are_done() {
+        fault_injection::next();
     }
 
     bench.ask("7. The limits that were built in are stored.");
     store::limits();
     info!("done: flash the firmware with `cargo run --release`");
+    loop {
+        cortex_m::asm::wfi();
+    }
+}
+
+/// Ends bring-up at a step that has failed, with the output at zero: no later step drives a board that failed an earlier one.
+fn stop_unless(passed: bool) {
+    if passed {
+        return;
+    }
+    output::zero_for_good();
+    error!("the step has failed and bring-up stops here: mend it, and reset the board to begin again");
     loop {
         cortex_m::asm::wfi();
     }

@@ -14,7 +14,7 @@ pub(crate) fn limits() {
     };
     match built_in() {
         Some(limits) => write(&mut flash, &limits),
-        None => println!("no limits were built in: docs/hardware.md tells how; the ones that hold stay"),
+        None => println!("no limits were built in (docs/hardware.md says how); the stored ones stay"),
     }
     let limits = stored_limits(&flash).unwrap_or(LIMITS);
     info!(

@@ -53,7 +53,7 @@ impl QueuePairs {
 }
 
 /// All that runs in the main loop.
-pub struct Talk {
+pub struct MainLoop {
     /// Its ends of the queues.
     pub ends: Ends,
     /// The host's partner.
@@ -73,7 +73,7 @@ pub struct Talk {
     pub watchdog: Watchdog,
 }
 
-impl Talk {
+impl MainLoop {
     /// Runs for ever.
     pub fn run(mut self, #[cfg(feature = "optical-frame")] mut touch_source: OpticalFrame<'_>) -> ! {
         tick::want_status();

@@ -9,13 +9,13 @@ use heapless::spsc::{Consumer, Producer, Queue};
 
 use crate::tick::{self, Monitor, Tick};
 use crate::uart::{Queues, Uart};
-use crate::{fault, provoke, shared};
+use crate::{fault, fault_injection, shared};
 
 /// Orders that may wait for the tick, one place left free. The session keeps the others.
 const ORDERS_LEN: usize = 5;
 
 /// The session's ends of the queues to and from the tick.
-struct Talk {
+struct MainLoop {
     session: &'static mut Session<'static>,
     orders: Producer<'static, Order<'static>>,
     spares: Consumer<'static, &'static mut Active>,
@@ -23,7 +23,7 @@ struct Talk {
     serial: SerialLink<Uart>,
 }
 
-/// Ticks on the board's own timer, and talks to the host on the serial port.
+/// Starts the tick on the board's own timer, and runs the main loop with the host on the serial port.
 pub fn run(
     board: &Board,
     session: &'static mut Session<'static>,
@@ -51,14 +51,15 @@ pub fn run(
     };
     tick::start(tick, board.tick_hz, peripherals.SYST);
     let serial = SerialLink::new(Uart::start(queues, &mut peripherals.NVIC));
-    let mut talk = Talk { session, orders: order_producer, spares: spare_consumer, statuses: status_consumer, serial };
+    let mut main_loop =
+        MainLoop { session, orders: order_producer, spares: spare_consumer, statuses: status_consumer, serial };
     loop {
-        talk.once();
-        provoke::in_main();
+        main_loop.once();
+        fault_injection::in_main();
     }
 }
 
-impl Talk {
+impl MainLoop {
     fn once(&mut self) {
         let status = self.status();
         let Ok(()) = self.serial.receive(|bytes| self.session.receive(bytes, &status));

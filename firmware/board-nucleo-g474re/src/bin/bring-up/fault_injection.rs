@@ -1,4 +1,4 @@
-//! Faults on purpose, one after the other: each restarts the board, and the next start sees whether its reason was kept.
+//! Injects one fault after the other. Each restarts the board, and the next start checks that the fault was stored.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
@@ -7,37 +7,37 @@ use board_nucleo_g474re::watchdog::Watchdog;
 use defmt::{error, info};
 use frixel_wire::fault::Fault;
 
-/// What is provoked, in this order.
+/// The faults, in this order.
 const FAULTS: [Fault; 4] = [Fault::Panic, Fault::HardFault, Fault::StackOverflow, Fault::Watchdog];
-/// Above the number of the fault that was provoked last.
+/// Marks the memory below as valid; the number of injected faults stands in its lowest byte.
 const MARK: u32 = 0x7072_6f00;
 
-/// Kept over the restarts: [`MARK`] and how many faults were provoked.
-#[unsafe(link_section = ".uninit.PROVOKED")]
-static PROVOKED: AtomicU32 = AtomicU32::new(0);
+/// Kept over the restarts: [`MARK`] and the number of faults that were injected.
+#[unsafe(link_section = ".uninit.INJECTED")]
+static INJECTED: AtomicU32 = AtomicU32::new(0);
 
-fn provoked() -> usize {
-    let provoked = PROVOKED.load(Ordering::Relaxed);
-    if provoked & !0xff == MARK { (provoked & 0xff) as usize } else { 0 }
+fn injected() -> usize {
+    let injected = INJECTED.load(Ordering::Relaxed);
+    if injected & !0xff == MARK { (injected & 0xff) as usize } else { 0 }
 }
 
-/// Whether all were.
+/// Whether all faults have been injected.
 pub(crate) fn are_done() -> bool {
-    provoked() >= FAULTS.len()
+    injected() >= FAULTS.len()
 }
 
-/// After a restart that was provoked: says what was kept, and whether there is more to provoke.
-pub(crate) fn go_on(last_reset: &LastReset) -> bool {
-    let Some(expected) = provoked().checked_sub(1).and_then(|index| FAULTS.get(index)) else { return false };
+/// After a restart by an injected fault: logs whether it was stored, and returns whether another one follows.
+pub(crate) fn continues_after(last_reset: &LastReset) -> bool {
+    let Some(expected) = injected().checked_sub(1).and_then(|index| FAULTS.get(index)) else { return false };
     let found = last_reset.fault.map(|(fault, _)| fault);
     if found == Some(*expected) {
-        info!("fault {=u8}, as provoked: {=[u8]:a}", expected.number(), last_reset.text);
+        info!("fault {=u8}, as injected: {=[u8]:a}", expected.number(), last_reset.text);
     } else if found.is_none() {
         // Power-on, or the button: somebody begins again.
-        PROVOKED.store(0, Ordering::Relaxed);
+        INJECTED.store(0, Ordering::Relaxed);
         return false;
     } else {
-        error!("fault {=u8} was provoked, {=u8} was kept", expected.number(), found.map_or(0, Fault::number));
+        error!("fault {=u8} was injected, {=u8} was stored", expected.number(), found.map_or(0, Fault::number));
     }
     if are_done() {
         info!("all faults were kept; begin again, and go on with step 7 after step 6");
@@ -46,10 +46,10 @@ pub(crate) fn go_on(last_reset: &LastReset) -> bool {
     true
 }
 
-/// Provokes the next one.
+/// Injects the next fault.
 pub(crate) fn next() -> ! {
-    let index = provoked();
-    PROVOKED.store(MARK | (index + 1) as u32, Ordering::Relaxed);
+    let index = injected();
+    INJECTED.store(MARK | (index + 1) as u32, Ordering::Relaxed);
     match FAULTS.get(index) {
         Some(Fault::HardFault) => hard_fault(),
         Some(Fault::StackOverflow) => {
@@ -62,7 +62,7 @@ pub(crate) fn next() -> ! {
                 cortex_m::asm::nop();
             }
         }
-        _ => panic!("provoked, with a number: {index}"),
+        _ => panic!("injected, with a number: {index}"),
     }
 }
 

@@ -1,4 +1,4 @@
-//! Mishaps on demand, for the tests of what becomes of them.
+//! Faults on demand, for the tests of what the board does about them.
 
 use core::hint::black_box;
 
@@ -9,19 +9,19 @@ use crate::shared;
 /// More loops than there are in two ticks.
 const OVERRUN_LOOPS: u32 = 10_000;
 
-/// Where there is no memory.
+/// An address without memory.
 const NOWHERE: *const u32 = 0x6000_0000 as *const u32;
 
-/// Brings about what the main program can be made to do.
+/// In the main loop: injects the fault that the simulator asks for.
 pub fn in_main() {
     match shared::get(layout::PROVOKE) {
         layout::PROVOKE_PANIC => {
             shared::set(layout::PROVOKE, layout::PROVOKE_NOTHING);
-            panic!("provoked");
+            panic!("injected");
         }
         layout::PROVOKE_HARD_FAULT => {
             shared::set(layout::PROVOKE, layout::PROVOKE_NOTHING);
-            // SAFETY: it is not; that is the point.
+            // SAFETY: nothing is read: there is no memory, and the bus fault that follows is the purpose.
             black_box(unsafe { NOWHERE.read_volatile() });
         }
         layout::PROVOKE_STACK_OVERFLOW => {
@@ -32,7 +32,7 @@ pub fn in_main() {
     }
 }
 
-/// Brings about what the tick can be made to do.
+/// In the tick: overruns it, if the simulator asks for that.
 #[inline]
 pub fn in_tick() {
     if shared::get(layout::PROVOKE) == layout::PROVOKE_OVERRUN {
