@@ -14,6 +14,7 @@ pub(crate) const SINE: u32 = 82;
 pub(crate) const SQUARE: u32 = 89;
 pub(crate) const TRIANGLE: u32 = 83;
 pub(crate) const SAW: u32 = 72;
+pub(crate) const RINGS: u32 = 40;
 pub(crate) const BITMAP: u32 = 149;
 pub(crate) const BITMAP_TILED: u32 = 167;
 pub(crate) const NOISE: u32 = 232;

@@ -2,9 +2,13 @@
 
 use super::*;
 use crate::Mistake;
+use crate::kinds::KindName;
 
-const KINDS: [&str; 9] = ["constant", "grating", "bitmap", "noise", "edge", "button", "vibration", "speed", "stream"];
 const DOCS: &str = include_str!("../../../../docs/scene.md");
+
+fn kinds() -> impl Iterator<Item = &'static str> {
+    KindName::ALL.iter().map(|(word, _)| *word)
+}
 
 /// The TOML examples.
 fn examples() -> Vec<&'static str> {
@@ -32,7 +36,7 @@ fn every_example_compiles() {
             panic!("{error}\n{text}");
         }
     }
-    for kind in KINDS {
+    for kind in kinds() {
         assert!(rest.iter().any(|example| example.contains(&format!("kind = \"{kind}\""))), "{kind}");
     }
 }
@@ -42,8 +46,8 @@ fn every_field_is_named() {
     let head = examples()[0];
     let layer = |kind: &str| format!("[[layer]]\nkind = \"{kind}\"");
     let tables = ["[screen]", "[coating]", "[finger]", "[drive]", "[carrier]", "[touch]"].map(str::to_owned);
-    let layers = KINDS.map(layer);
-    let factors = KINDS.map(|kind| format!("{}\nblend = \"multiply\"", layer(kind)));
+    let layers = kinds().map(layer);
+    let factors = kinds().map(|kind| format!("{}\nblend = \"multiply\"", layer(kind)));
     for table in tables.into_iter().chain(layers).chain(factors) {
         let text = format!("{}\n{table}\nzzz = 1", head_for(head, &table));
         let Err(CompileError { mistakes, .. }) = compile_text(&text) else { panic!("{table} takes anything") };
