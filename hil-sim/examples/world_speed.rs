@@ -2,13 +2,14 @@
 //!
 //! A square carrier of 1 kHz drives the default world for a minute of virtual time. The sum of the friction is printed
 //! so that the work cannot be left out.
+#![allow(clippy::disallowed_types, clippy::disallowed_methods, reason = "it measures wall time")]
 
 use std::error::Error;
 use std::hint::black_box;
 use std::time::Instant;
 
+use frixel_control::Drive;
 use frixel_hil_sim::{Point, Stroke, World, WorldConfig};
-use frixel_render::Drive;
 use frixel_wire::dac_code::DacCode;
 
 const SECONDS: f64 = 60.0;

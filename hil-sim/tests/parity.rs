@@ -1,10 +1,12 @@
 //! The emulated board does what the in-process board does, bit for bit: drives and bytes on the serial line.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+#![allow(clippy::disallowed_types, clippy::disallowed_methods, reason = "the test runs an emulator")]
 
 mod emulator;
 mod script;
 
+use frixel_control::Board;
 use frixel_exchange::BOARD;
 use frixel_hil_sim::emulated::{Image, ReplayError, replay};
 use frixel_hil_sim::{BoardMemory, Journal, LineFault, Point, Rig, RigConfig, Stroke};
@@ -12,7 +14,6 @@ use frixel_layers::{
     Beat, Bitmap, Blend, Burst, Button, Carrier, Click, Constant, Edge, Grating, Header, Layer, Noise, Point as Corner,
     Record, Region, Rings, Speed, Stream, Vibration, Wave,
 };
-use frixel_render::Board;
 use frixel_wire::fault::State;
 use frixel_wire::message::Command;
 use script::{HEADER, Script, record, samples, scene, scene_with_points};

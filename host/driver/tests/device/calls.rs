@@ -3,7 +3,8 @@
 use std::time::Duration;
 
 use frixel_driver::{Device, DeviceError, Event, Link, Upload};
-use frixel_layers::{Blend, Carrier, Header, Layer, Leader, Record, Region, Stream};
+use frixel_layers::{Blend, Header, Layer, Record, Region, Stream};
+use frixel_testkit::HEADER;
 use frixel_wire::fault::State;
 use frixel_wire::hello::feature;
 use frixel_wire::message::{Command, Refusal};
@@ -21,27 +22,7 @@ fn virtual_board() -> Device<VirtualLink> {
 
 /// A scene without layers.
 pub(crate) fn scene(host_timeout_s: f32) -> Vec<u8> {
-    let header = Header {
-        screen_width_m: 0.1,
-        screen_height_m: 0.1,
-        finger_radius_m: 0.01,
-        stiffness_pa_per_m: 1e9,
-        friction_coefficient: 0.5,
-        normal_load_n: 0.5,
-        effective_gap_m: 1e-6,
-        voltage_max_v_rms: 100.0,
-        voltage_max_v_peak: 150.0,
-        slew_v_per_s: 1e6,
-        carrier_hz: 1000.0,
-        host_timeout_s,
-        carrier: Carrier::Square,
-        autonomous: false,
-        prediction: true,
-        leader: Leader::First,
-        layers_fixed: false,
-        electric_friction_max_n: None,
-    };
-    header.write(0, 0).to_vec()
+    frixel_testkit::scene(&Header { host_timeout_s, ..HEADER }, &[])
 }
 
 fn nothing(_: Event) {}
