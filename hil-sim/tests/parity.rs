@@ -12,7 +12,7 @@ use frixel_hil_sim::emulated::{Image, ReplayError, replay};
 use frixel_hil_sim::{BoardMemory, Journal, LineFault, Point, Rig, RigConfig, Stroke};
 use frixel_layers::{
     Beat, Bitmap, Blend, Burst, Button, Carrier, Click, Constant, Edge, Grating, Header, Layer, Noise, Point as Corner,
-    Record, Region, Speed, Stream, Vibration, Wave,
+    Record, Region, Rings, Speed, Stream, Vibration, Wave,
 };
 use frixel_wire::fault::State;
 use frixel_wire::message::Command;
@@ -245,6 +245,8 @@ fn every_kind(crc32: u32) -> (Vec<Record>, Vec<Corner>) {
         click,
     });
     let button = Layer::Button(Button { rim_width_m: 0.004, rim_n: 0.012, face_n: 0.002, click });
+    let rings =
+        |wave| Layer::Rings(Rings { wave, x_m: 0.055, y_m: 0.045, cycles_per_m: 310.0, trough_n: 0.0, crest_n: 0.004 });
     let records = [
         (Region::Screen, Blend::Replace, Layer::Constant(Constant { electric_friction_n: 0.003 })),
         (polygon, Blend::Add, grating(Wave::Sine, 0.0, 0.004)),
@@ -261,7 +263,12 @@ fn every_kind(crc32: u32) -> (Vec<Record>, Vec<Corner>) {
         (ellipse, Blend::Add, vibration(Beat::Square, Burst::default())),
         (polygon, Blend::Add, Layer::Stream(Stream { low_n: 0.001, high_n: 0.02 })),
         (Region::Screen, Blend::Multiply, Layer::Speed(Speed { first: 0, count: 3 })),
+        (ellipse, Blend::Add, rings(Wave::Sine)),
+        (Region::Screen, Blend::Max, rings(Wave::Square { duty: 0.4 })),
     ];
+    for kind in Layer::NUMBERS {
+        assert!(records.iter().any(|(_, _, layer)| layer.number() == *kind), "kind {kind} is not among them");
+    }
     let points =
         [(0.02, 0.4), (0.09, 1.1), (0.2, 0.8), (0.01, 0.01), (0.11, 0.015), (0.06, 0.04), (0.1, 0.07), (0.02, 0.06)];
     (

@@ -5,7 +5,7 @@ use core::array;
 use frixel_layers::cost;
 use frixel_layers::{
     Beat, Bitmap, Blend, Burst, Button, Carrier, Click, Constant, Edge, Grating, Header, Layer, Noise, Point, Record,
-    Region, Speed, Stream, Vibration, Wave,
+    Region, Rings, Speed, Stream, Vibration, Wave,
 };
 use frixel_wire::hello::BoardLimits;
 use frixel_wire::message::Command;
@@ -20,6 +20,14 @@ use crate::tick::Bench;
 pub(crate) const GRATING: Layer = grating(Wave::Sine);
 
 const AROUND: Region = Region::Rectangle { x_m: 0.0, y_m: 0.0, width_m: 0.12, height_m: 0.11 };
+const RINGS: Layer = Layer::Rings(Rings {
+    wave: Wave::Sine,
+    x_m: 0.06,
+    y_m: 0.05,
+    cycles_per_m: 500.0,
+    trough_n: 0.0,
+    crest_n: 0.026,
+});
 const STREAM: Layer = Layer::Stream(Stream { low_n: 0.001, high_n: 0.02 });
 /// The part of the screen where the finger is, and no layer that is elsewhere.
 const UPPER_PART: Region = Region::Rectangle { x_m: 0.0, y_m: 0.0, width_m: 0.12, height_m: 0.06 };
@@ -105,6 +113,7 @@ impl Bench {
             ("tick_square_alone", AROUND, grating(Wave::Square { duty: 0.5 })),
             ("tick_triangle_alone", AROUND, grating(Wave::Triangle)),
             ("tick_saw_alone", AROUND, grating(Wave::Saw)),
+            ("tick_rings_alone", AROUND, RINGS),
             ("tick_bitmap_alone", AROUND, bitmap(crc32)),
             ("tick_bitmap_tiled_alone", AROUND, picture(crc32, true)),
             ("tick_noise_alone", AROUND, noise),

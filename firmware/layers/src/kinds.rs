@@ -11,6 +11,8 @@ pub(crate) mod edge;
 pub(crate) mod grating;
 #[cfg(feature = "noise")]
 pub(crate) mod noise;
+#[cfg(feature = "rings")]
+pub(crate) mod rings;
 #[cfg(feature = "speed")]
 pub(crate) mod speed;
 #[cfg(feature = "stream")]
@@ -136,6 +138,9 @@ macro_rules! kinds {
         };
 
         impl Layer {
+            /// Numbers in records of the kinds whose features are on.
+            pub const NUMBERS: &'static [u8] = &[$( $(#[cfg($cfg)])? $number, )*];
+
             /// The kind's number in records.
             pub const fn number(&self) -> u8 {
                 match self { $( $(#[cfg($cfg)])? Self::$kind(_) => $number, )* }
@@ -225,6 +230,9 @@ kinds! {
     /// What the host sends while the scene plays.
     #[cfg(feature = "stream")]
     9 => Stream in stream, feature::STREAM;
+    /// Rings around a middle.
+    #[cfg(feature = "rings")]
+    10 => Rings in rings, feature::RINGS;
 }
 
 impl Layer {

@@ -1,9 +1,13 @@
 //! Periodic waves over an angle in turns, for kinds that repeat over the screen.
-#![cfg_attr(not(feature = "grating"), allow(dead_code, reason = "no kind that is on repeats over the screen"))]
+#![cfg_attr(
+    not(any(feature = "grating", feature = "rings")),
+    allow(dead_code, reason = "no kind that is on repeats over the screen")
+)]
 
 use frixel_wire::message::ConfigRefusal;
 
 use crate::cosine::{centred, cosine};
+use crate::cost::measured;
 use crate::parameters::{Parameter, RecordBytes, UnknownForm, form, put_form, range};
 
 const SINE: u8 = 0;
@@ -28,6 +32,18 @@ pub enum Wave {
     Triangle,
     /// Rises from 0 to 1 in each turn.
     Saw,
+}
+
+impl Wave {
+    /// Most instructions of a grating of this shape.
+    pub(crate) fn cost(&self) -> u32 {
+        match self {
+            Self::Sine => measured::SINE,
+            Self::Square { .. } => measured::SQUARE,
+            Self::Triangle => measured::TRIANGLE,
+            Self::Saw => measured::SAW,
+        }
+    }
 }
 
 impl Parameter for Wave {

@@ -25,6 +25,7 @@ fn a_kind_is_read_or_known_to_be_disabled() {
         feature::VIBRATION,
         feature::SPEED,
         feature::STREAM,
+        feature::RINGS,
     ]) {
         let mut bytes = RECORD.write();
         bytes[0] = kind;

@@ -6,8 +6,8 @@ mod support;
 use std::collections::BTreeSet;
 
 use frixel_layers::{
-    Blend, Constant, Grating, HEADER_LEN, Header, Layer, POINT_LEN, Point, RECORD_LEN, Record, Region, SCENE_MAX_LEN,
-    Scene, Speed, Wave,
+    Blend, Constant, Grating, HEADER_LEN, Header, Layer, POINT_LEN, Point, RECORD_LEN, Record, Region, Rings,
+    SCENE_MAX_LEN, Scene, Speed, Wave,
 };
 use frixel_wire::scene::{POINTS_MAX, RECORDS_MAX, SceneError};
 
@@ -168,10 +168,12 @@ fn used(record: &Record) -> BTreeSet<usize> {
     }
     match record.layer {
         Layer::Constant(_) => used.extend(24..28),
-        Layer::Grating(Grating { wave: Wave::Square { .. }, .. }) | Layer::Vibration(_) => {
+        Layer::Grating(Grating { wave: Wave::Square { .. }, .. })
+        | Layer::Rings(Rings { wave: Wave::Square { .. }, .. })
+        | Layer::Vibration(_) => {
             used.extend([3].into_iter().chain(24..48));
         }
-        Layer::Grating(_) => used.extend([3].into_iter().chain(24..44)),
+        Layer::Grating(_) | Layer::Rings(_) => used.extend([3].into_iter().chain(24..44)),
         Layer::Bitmap(_) => used.extend([3].into_iter().chain(24..56)),
         Layer::Noise(_) => used.extend((24..40).chain(52..56)),
         Layer::Edge(_) => used.extend(24..56),

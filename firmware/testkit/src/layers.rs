@@ -4,7 +4,7 @@ use core::ops::Range;
 
 use frixel_layers::{
     Beat, Bitmap, Blend, Burst, Button, Click, Constant, Edge, Grating, Header, Layer, Noise, Point, Record, Region,
-    Speed, Stream, Vibration, Wave,
+    Rings, Speed, Stream, Vibration, Wave,
 };
 use frixel_wire::scene::{CURVE_POINTS_MAX, POLYGON_POINTS_MAX};
 
@@ -72,7 +72,7 @@ fn layer(random: &mut Random, header: &Header, amounts: Amounts, picture: u32, p
     let [one, other] = [amounts.draw(random), amounts.draw(random)];
     let click = Click { height_n: random.pick([0.0, one, other]), decay_s: random.pick([0.0, 1e-4, 0.02, 1.0]) };
     let turned = random.between(-1.0, 1.0);
-    match random.below(9) {
+    match random.below(10) {
         0 => Layer::Constant(Constant { electric_friction_n: one }),
         1 => Layer::Grating(Grating {
             wave: random.pick([Wave::Sine, Wave::Square { duty: 0.3 }, Wave::Triangle, Wave::Saw]),
@@ -124,6 +124,14 @@ fn layer(random: &mut Random, header: &Header, amounts: Amounts, picture: u32, p
             let added = points.add(curve);
             Layer::Speed(Speed { first: added.start, count: added.len() as u8 })
         }
+        8 => Layer::Rings(Rings {
+            wave: random.pick([Wave::Sine, Wave::Square { duty: 0.3 }, Wave::Triangle, Wave::Saw]),
+            x_m: random.between(-0.2, 1.2) * width_m,
+            y_m: random.between(-0.2, 1.2) * height_m,
+            cycles_per_m: random.between(0.0, 2e3),
+            trough_n: one,
+            crest_n: other,
+        }),
         _ => Layer::Stream(Stream { low_n: one, high_n: other }),
     }
 }
@@ -158,5 +166,20 @@ fn box_region(random: &mut Random, header: &Header) -> Region {
         Region::Ellipse { x_m, y_m, width_m, height_m }
     } else {
         Region::Rectangle { x_m, y_m, width_m, height_m }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use frixel_layers::Layer;
+
+    use crate::RandomScene;
+
+    #[test]
+    fn every_kind_is_drawn() {
+        for kind in Layer::NUMBERS {
+            let has_kind = |seed| RandomScene::new(seed, 7).records.iter().any(|record| record.layer.number() == *kind);
+            assert!((0..500).any(has_kind), "no random scene has a layer of kind {kind}");
+        }
     }
 }

@@ -81,8 +81,11 @@ pub mod feature {
     /// Polygons as regions.
     pub const POLYGON: u32 = 1 << 10;
 
+    /// Rings layers. Since protocol 1.3.
+    pub const RINGS: u32 = 1 << 11;
+
     /// The name of each, as the board's Cargo features have it where there is one.
-    pub const NAMES: [(u32, &str); 11] = [
+    pub const NAMES: [(u32, &str); 12] = [
         (GRATING, "grating"),
         (BITMAP, "bitmap"),
         (SINE_CARRIER, "sine-carrier"),
@@ -94,6 +97,7 @@ pub mod feature {
         (SPEED, "speed"),
         (STREAM, "stream"),
         (POLYGON, "polygon"),
+        (RINGS, "rings"),
     ];
 }
 

@@ -115,6 +115,7 @@ fn features_have_the_bits_that_the_table_says() {
         (feature::SPEED, "SPEED"),
         (feature::STREAM, "STREAM"),
         (feature::POLYGON, "POLYGON"),
+        (feature::RINGS, "RINGS"),
     ];
     assert_eq!(page, code);
 }

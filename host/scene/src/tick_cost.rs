@@ -74,7 +74,7 @@ impl Program {
         let boxes: Vec<[(f64, f64); 2]> = regions.iter().filter_map(|(.., shape)| shape.corners_m()).collect();
         let candidates = |along: fn((f64, f64)) -> f64, middle_m: f32| -> Vec<f64> {
             let edges = boxes.iter().map(|corners| along(corners[0]) + INSIDE_M);
-            let middles = boxes.iter().map(|corners| 0.5 * (along(corners[0]) + along(corners[1])));
+            let middles = boxes.iter().map(|corners| f64::midpoint(along(corners[0]), along(corners[1])));
             edges.chain(middles).chain([f64::from(middle_m)]).collect()
         };
         let (xs, ys) = (candidates(|(x_m, _)| x_m, cell.x_m), candidates(|(_, y_m)| y_m, cell.y_m));

@@ -76,6 +76,7 @@ fn costs(figures: &Figures) -> Result<Vec<Cost>, String> {
         ("SQUARE", "", alone("square")?),
         ("TRIANGLE", "", alone("triangle")?),
         ("SAW", "", alone("saw")?),
+        ("RINGS", "", alone("rings")?.saturating_sub(alone("sine")?)),
         ("BITMAP", "", alone("bitmap")?),
         ("BITMAP_TILED", "", alone("bitmap_tiled")?),
         ("NOISE", "", alone("noise")?),

@@ -14,6 +14,7 @@ pub(crate) const SINE: u32 = 139;
 pub(crate) const SQUARE: u32 = 150;
 pub(crate) const TRIANGLE: u32 = 150;
 pub(crate) const SAW: u32 = 145;
+pub(crate) const RINGS: u32 = 70;
 pub(crate) const BITMAP: u32 = 245;
 pub(crate) const BITMAP_TILED: u32 = 296;
 pub(crate) const NOISE: u32 = 422;

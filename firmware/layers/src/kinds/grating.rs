@@ -4,7 +4,6 @@ use frixel_wire::message::Refusal;
 
 use super::{Evaluate, Kind};
 use crate::context::Context;
-use crate::cost::measured;
 use crate::interval::Interval;
 use crate::parameters::{parameters, range};
 use crate::point::Point;
@@ -34,12 +33,7 @@ impl Kind for Grating {
     type Coefficients = GratingCoefficients;
 
     fn cost(&self) -> u32 {
-        match self.wave {
-            Wave::Sine => measured::SINE,
-            Wave::Square { .. } => measured::SQUARE,
-            Wave::Triangle => measured::TRIANGLE,
-            Wave::Saw => measured::SAW,
-        }
+        self.wave.cost()
     }
 
     fn bounds(&self, _points: &[Point]) -> Interval<f32> {

@@ -3,7 +3,7 @@
 
 use frixel_layers::{
     Beat, Bitmap, Blend, Burst, Button, Carrier, Click, Constant, Edge, Grating, Header, Layer, Leader, Noise, Point,
-    Record, Region, Speed, Stream, Vibration, Wave,
+    Record, Region, Rings, Speed, Stream, Vibration, Wave,
 };
 
 pub fn header() -> Header {
@@ -79,6 +79,8 @@ pub fn records() -> Vec<Record> {
     });
     let vibration =
         |beat, burst| Layer::Vibration(Vibration { beat, frequency_hz: 80.0, low_n: 0.001, high_n: 0.02, burst });
+    let rings =
+        |wave| Layer::Rings(Rings { wave, x_m: 0.05, y_m: 0.03, cycles_per_m: 400.0, trough_n: 0.002, crest_n: 0.02 });
     let burst = Burst { period_s: 0.5, on_s: 0.25, ramp_s: 0.0625 };
     let layers = [
         (Region::Screen, Blend::Replace, 1.0, Layer::Constant(Constant { electric_friction_n: 0.01 })),
@@ -106,6 +108,8 @@ pub fn records() -> Vec<Record> {
         (Region::Screen, Blend::Add, 1.0, vibration(Beat::Square, burst)),
         (Region::Screen, Blend::Multiply, 1.0, Layer::Speed(Speed { first: 0, count: 2 })),
         (rectangle, Blend::Replace, 1.0, Layer::Stream(Stream { low_n: 0.002, high_n: 0.02 })),
+        (ellipse, Blend::Add, 1.0, rings(Wave::Sine)),
+        (Region::Screen, Blend::Replace, 0.5, rings(Wave::Square { duty: 0.25 })),
     ];
     layers.map(|(region, blend, gain, layer)| Record { region, blend, gain, layer }).to_vec()
 }

@@ -80,6 +80,21 @@ fn spatial() -> Vec<Case> {
             ..CASE
         },
         Case {
+            name: "rings",
+            layers: "[[layer]]\nkind = \"rings\"\nx_mm = 50\ny_mm = 20\nwavelength_mm = 6\nlow_n = 0.002\nhigh_n = 0.022",
+            expected: |_, at| 2.0 + 20.0 * sine((at.x - 50.0).hypot(at.y - 20.0) / 6.0),
+            bound: 0.0272,
+            ..CASE
+        },
+        Case {
+            name: "square rings",
+            layers: "[[layer]]\nkind = \"rings\"\nwave = \"square\"\nduty = 0.3\nx_mm = 50\ny_mm = 20\nwavelength_mm = 10\nlow_n = 0.002\nhigh_n = 0.022",
+            expected: |_, at| if turn((at.x - 50.0).hypot(at.y - 20.0) / 10.0) < 0.3 { 22.0 } else { 2.0 },
+            jumps: true,
+            bound: 0.074,
+            ..CASE
+        },
+        Case {
             name: "saw grating",
             layers: "[[layer]]\nkind = \"grating\"\nwave = \"saw\"\nwavelength_mm = 12\nlow_n = 0.002\n\
                      high_n = 0.022",

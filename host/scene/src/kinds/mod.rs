@@ -8,6 +8,7 @@ mod constant;
 mod edge;
 mod grating;
 mod noise;
+mod rings;
 mod samples;
 mod speed;
 mod stream;
@@ -206,4 +207,5 @@ kinds! {
     Vibration in vibration,
     Speed in speed,
     Stream in stream,
+    Rings in rings,
 }

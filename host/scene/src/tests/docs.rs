@@ -7,11 +7,15 @@ use std::path::PathBuf;
 
 use super::*;
 use crate::grammar::{Absence, FieldSpec, Holds, KnownField, Range};
+use crate::kinds::KindName;
 use crate::schema::variant::{Tables, variants};
 use crate::tables::layer::{ABOVE, BLEND, GAIN, KIND, LIVE, NAME, REGION};
 
-const KINDS: [&str; 9] = ["constant", "grating", "bitmap", "noise", "edge", "button", "vibration", "speed", "stream"];
 const DOCS: &str = include_str!("../../../../docs/scene.md");
+
+fn kinds() -> impl Iterator<Item = &'static str> {
+    KindName::ALL.iter().map(|(word, _)| *word)
+}
 
 /// The TOML examples.
 fn examples() -> Vec<&'static str> {
@@ -39,7 +43,7 @@ fn every_example_compiles() {
             panic!("{error}\n{text}");
         }
     }
-    for kind in KINDS {
+    for kind in kinds() {
         assert!(rest.iter().any(|example| example.contains(&format!("kind = \"{kind}\""))), "{kind}");
     }
 }
@@ -72,9 +76,9 @@ fn documented() -> Vec<(String, Vec<KnownField>)> {
     }
     let is_common = |known: &KnownField| COMMON.iter().any(|common| common.name == known.field.name);
     let layer = |kind: &str| known(&format!("layer = [{{ kind = \"{kind}\""), "}]", "layer");
-    all.push(("## Layers".to_owned(), layer(KINDS[0]).into_iter().filter(is_common).collect()));
+    all.push(("## Layers".to_owned(), layer("constant").into_iter().filter(is_common).collect()));
     all.push(("### Regions".to_owned(), known("layer = [{ kind = \"constant\", region = {", "} }]", "region")));
-    for kind in KINDS {
+    for kind in kinds() {
         let own = layer(kind).into_iter().filter(|known| !is_common(known)).collect();
         all.push((format!("### `{kind}`"), own));
     }

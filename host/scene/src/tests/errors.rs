@@ -120,7 +120,7 @@ fn an_unknown_kind_does_not_hide_what_else_is_wrong() {
                 2,
                 8,
                 "`kind = \"xyzzy\"` is not known; expected one of `constant`, `grating`, `bitmap`, `noise`, `edge`, \
-                 `button`, `vibration`, `speed`, `stream`",
+                 `button`, `vibration`, `speed`, `stream`, `rings`",
             ),
             (4, 8, "`live` has to be `true` or `false`, and this is a number"),
             (5, 9, "`blend = \"ad\"` is not known; did you mean `add`?"),

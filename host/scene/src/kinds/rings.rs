@@ -1,0 +1,107 @@
+//! Rings around a middle.
+
+use std::sync::Arc;
+
+use frixel_layers::{Interval, Layer as RecordLayer, Region as RecordRegion, Rings as Record, Wave};
+
+use super::wave::{self, WaveField};
+use super::{Field, Lowered, Words};
+use crate::cover::Cell;
+use crate::fields::Fields;
+use crate::grammar::Absence::Mistake;
+use crate::grammar::FieldSpec;
+use crate::layer::{Layer, LowHigh, Unit};
+use crate::log::Log;
+use crate::lower::{Lowering, MM};
+use crate::program::Program;
+use crate::reference::Context;
+use crate::source::Places;
+use crate::tables::{HIGH, LOW, PLACE_MM, WAVELENGTH_MM, number};
+
+const X: FieldSpec = number("x_mm", PLACE_MM, Mistake, "the middle");
+const Y: FieldSpec = number("y_mm", PLACE_MM, Mistake, "the middle");
+const WAVELENGTH: FieldSpec = number("wavelength_mm", WAVELENGTH_MM, Mistake, "from ring to ring");
+
+/// `kind = "rings"`.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Rings {
+    wave: Wave,
+    x_mm: f64,
+    y_mm: f64,
+    wavelength_mm: f64,
+    amounts: LowHigh,
+}
+
+impl Words for Rings {
+    const WORD: &'static str = "rings";
+
+    fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
+        let wave = wave::read(fields, log);
+        let x_mm = fields.number(log, &X);
+        let y_mm = fields.number(log, &Y);
+        let wavelength_mm = fields.number(log, &WAVELENGTH);
+        let amounts = LowHigh::read(fields, [&LOW, &HIGH], unit, log);
+        Some(Self { wave, x_mm: x_mm?, y_mm: y_mm?, wavelength_mm: wavelength_mm?, amounts: amounts? })
+    }
+
+    fn check(&self, places: &Places, log: &mut Log) {
+        self.amounts.check(places, log);
+    }
+
+    fn extreme(&self, most: bool, places: &Places) -> &'static str {
+        LowHigh::extreme(most, places)
+    }
+
+    fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {
+        let record = Record {
+            wave: self.wave,
+            x_m: (self.x_mm * MM) as f32,
+            y_m: (self.y_mm * MM) as f32,
+            cycles_per_m: (1.0 / (self.wavelength_mm * MM)) as f32,
+            trough_n: lowering.amount(layer, self.amounts.low),
+            crest_n: lowering.amount(layer, self.amounts.high),
+        };
+        Some(RecordLayer::Rings(record).into())
+    }
+}
+
+pub(super) fn field(record: &Record, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
+    Arc::new(RingsField {
+        middle_m: (f64::from(record.x_m), f64::from(record.y_m)),
+        cycles_per_m: f64::from(record.cycles_per_m),
+        wave: WaveField { wave: record.wave, trough_n: f64::from(record.trough_n), crest_n: f64::from(record.crest_n) },
+    })
+}
+
+#[derive(Debug)]
+struct RingsField {
+    middle_m: (f64, f64),
+    cycles_per_m: f64,
+    wave: WaveField,
+}
+
+impl RingsField {
+    /// Phase at a place, in turns.
+    fn turns(&self, x_m: f64, y_m: f64) -> f64 {
+        self.cycles_per_m * libm::hypot(x_m - self.middle_m.0, y_m - self.middle_m.1)
+    }
+}
+
+impl Field for RingsField {
+    fn at(&self, context: &Context) -> f64 {
+        self.wave.at_turns(self.turns(context.x_m, context.y_m))
+    }
+
+    /// The nearest place of a cell is the middle or on its border, the farthest a corner; between them the distance takes
+    /// every value.
+    fn interval_in(&self, cell: Cell) -> Interval<f64> {
+        let nearest =
+            (self.middle_m.0.clamp(cell.left_m, cell.right_m), self.middle_m.1.clamp(cell.top_m, cell.bottom_m));
+        let places = cell.corners().into_iter().chain([nearest]);
+        self.wave.interval(Interval::of(places.map(|(x_m, y_m)| self.turns(x_m, y_m))))
+    }
+
+    fn detail_m(&self) -> Option<f64> {
+        Some(0.1 / self.cycles_per_m)
+    }
+}
