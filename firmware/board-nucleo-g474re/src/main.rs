@@ -99,23 +99,39 @@ fn start(text: &'static mut Text, queue_pairs: &'static mut QueuePairs) -> Talk 
     }
 }
 
-/// Makes both halves of the firmware. What is large is made in passing, so that no image of it lies in flash, and the
-/// stack that this takes is free again afterwards.
+/// Makes both halves of the firmware.
+///
+/// What is large is made in passing, so that no image of it lies in flash. Each such value has a function of its own, so
+/// that the stack holds one of them at a time.
 #[inline(never)]
 fn make(board: Board) -> (Ticker<'static>, &'static mut Session<'static>) {
-    let (Some(first), Some(second)) = (singleton!(: Active = Active::new()), singleton!(: Active = Active::new()))
-    else {
-        fault::never()
-    };
+    let (Some(playing), Some(next)) = (playing_active(), next_active()) else { fault::never() };
     #[cfg_attr(not(feature = "stream"), allow(unused_mut, reason = "a stream is attached to it"))]
-    let mut ticker = Ticker::new(&board, &POOL, first);
-    let Some(session) = singleton!(: Session<'static> = Session::new(board, &POOL, second)) else { fault::never() };
+    let mut ticker = Ticker::new(&board, &POOL, playing);
+    let Some(session) = session(board, next) else { fault::never() };
     #[cfg(feature = "stream")]
     {
         ticker.attach_stream(&STREAM);
         session.attach_stream(&STREAM);
     }
     (ticker, session)
+}
+
+/// Coefficients of the scene that plays.
+#[inline(never)]
+fn playing_active() -> Option<&'static mut Active> {
+    singleton!(: Active = Active::new())
+}
+
+/// Coefficients that the session computes the next scene in.
+#[inline(never)]
+fn next_active() -> Option<&'static mut Active> {
+    singleton!(: Active = Active::new())
+}
+
+#[inline(never)]
+fn session(board: Board, next: &'static mut Active) -> Option<&'static mut Session<'static>> {
+    singleton!(: Session<'static> = Session::new(board, &POOL, next))
 }
 
 #[cfg(feature = "log")]
