@@ -2,6 +2,7 @@
 //!
 //! A square carrier of 1 kHz drives the default world for a minute of virtual time. The sum of the friction is printed
 //! so that the work cannot be left out.
+#![allow(clippy::disallowed_types, clippy::disallowed_methods, reason = "it measures wall time")]
 
 use std::error::Error;
 use std::hint::black_box;

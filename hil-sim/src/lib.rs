@@ -16,12 +16,14 @@
 mod amplifier;
 pub mod chips;
 #[cfg(unix)]
+#[allow(clippy::disallowed_types, clippy::disallowed_methods, reason = "an emulator is a process with files")]
 pub mod emulated;
 mod error;
 mod fingertip;
 mod journal;
 mod line;
 #[cfg(unix)]
+#[allow(clippy::disallowed_types, clippy::disallowed_methods, reason = "a pseudo-terminal is a file")]
 mod pseudo_terminal;
 mod random;
 mod rig;

@@ -1,6 +1,7 @@
 //! The inverse table in integers on an emulated processor without an FPU, compared with the same table on the desktop.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
+#![allow(clippy::disallowed_types, clippy::disallowed_methods, reason = "the test runs an emulator")]
 
 use std::env;
 use std::path::Path;

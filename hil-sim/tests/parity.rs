@@ -1,6 +1,7 @@
 //! The emulated board does what the in-process board does, bit for bit: drives and bytes on the serial line.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+#![allow(clippy::disallowed_types, clippy::disallowed_methods, reason = "the test runs an emulator")]
 
 mod emulator;
 mod script;

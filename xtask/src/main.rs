@@ -4,6 +4,7 @@ mod bench;
 mod budgets;
 mod check;
 mod command;
+mod portability;
 mod stages;
 mod stamps;
 mod test_programs;
@@ -16,8 +17,10 @@ use bench::programs::{self, Pace};
 const USAGE: &str = "\
 cargo xtask test     format, lints, cross-builds, all tests, docs, budgets: what CI runs
 cargo xtask bench    instructions and estimated cycles on emulated processors, and image sizes
-         --bless     and writes down what each kind of layer costs, which compiler and board go by
-cargo xtask budgets  the same, held against budgets.toml, and random scenes against what the loader reckons for them
+         --bless     and writes down what each kind of layer costs, which compiler and board use
+cargo xtask budgets  the same, held against budgets.toml, and random scenes against the loader's estimate for them
+cargo xtask portability
+                     the crates of a page in WebAssembly, where scenes are played; the command on Windows and macOS
 cargo xtask soak     what takes too long for every change: every f32 through the tables, thousands of random scenes
 cargo xtask programs PACE FIRST COUNT
                      random scenes from seed FIRST on, under touch sources of a PACE that is usual or fast
@@ -29,6 +32,7 @@ fn main() -> ExitCode {
     let result = match arguments.as_slice() {
         ["test"] => check::test(),
         ["budgets"] => check::budgets(),
+        ["portability"] => portability::check(),
         ["soak"] => check::soak(),
         ["bench", "--bless"] => bench::bench().and_then(|figures| {
             print!("{}", figures.table());

@@ -10,8 +10,11 @@ use crate::command::{cargo_in, root, run, text_of};
 use crate::stamps;
 
 /// What tests read or build besides the folders of their package and of the packages that it depends on.
-const MORE_INPUTS: [(&str, &[&str]); 2] =
-    [("frixel", &["README.md", "docs", "firmware", "scenes"]), ("frixel-hil-sim", &["firmware", "scenes"])];
+const MORE_INPUTS: [(&str, &[&str]); 3] = [
+    ("frixel", &["README.md", "docs", "firmware", "scenes"]),
+    ("frixel-scene", &["docs", "scenes"]),
+    ("frixel-hil-sim", &["firmware", "scenes"]),
+];
 
 /// A package of the workspace.
 struct Package {

@@ -100,15 +100,12 @@ fn start(text: &'static mut Text, queue_pairs: &'static mut QueuePairs) -> Talk 
 }
 
 /// Makes both halves of the firmware.
-///
-/// What is large is made in passing, so that no image of it lies in flash. Each such value has a function of its own, so
-/// that the stack holds one of them at a time.
 #[inline(never)]
 fn make(board: Board) -> (Ticker<'static>, &'static mut Session<'static>) {
-    let (Some(playing), Some(next)) = (playing_active(), next_active()) else { fault::never() };
+    let (Some(first), Some(second)) = (first_coefficients(), second_coefficients()) else { fault::never() };
     #[cfg_attr(not(feature = "stream"), allow(unused_mut, reason = "a stream is attached to it"))]
-    let mut ticker = Ticker::new(&board, &POOL, playing);
-    let Some(session) = session(board, next) else { fault::never() };
+    let mut ticker = Ticker::new(&board, &POOL, first);
+    let Some(session) = session(board, second) else { fault::never() };
     #[cfg(feature = "stream")]
     {
         ticker.attach_stream(&STREAM);
@@ -117,21 +114,22 @@ fn make(board: Board) -> (Ticker<'static>, &'static mut Session<'static>) {
     (ticker, session)
 }
 
-/// Coefficients of the scene that plays.
-#[inline(never)]
-fn playing_active() -> Option<&'static mut Active> {
-    singleton!(: Active = Active::new())
-}
+// What is large is made on the stack, so that no image of it lies in flash. Each has a function of its own, so that the
+// stack holds one of them at a time.
 
-/// Coefficients that the session computes the next scene in.
 #[inline(never)]
-fn next_active() -> Option<&'static mut Active> {
+fn first_coefficients() -> Option<&'static mut Active> {
     singleton!(: Active = Active::new())
 }
 
 #[inline(never)]
-fn session(board: Board, next: &'static mut Active) -> Option<&'static mut Session<'static>> {
-    singleton!(: Session<'static> = Session::new(board, &POOL, next))
+fn second_coefficients() -> Option<&'static mut Active> {
+    singleton!(: Active = Active::new())
+}
+
+#[inline(never)]
+fn session(board: Board, spare: &'static mut Active) -> Option<&'static mut Session<'static>> {
+    singleton!(: Session<'static> = Session::new(board, &POOL, spare))
 }
 
 #[cfg(feature = "log")]

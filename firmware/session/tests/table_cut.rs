@@ -16,8 +16,8 @@ mod support;
 
 use frixel_control::Board;
 use frixel_layers::{Blend, Constant, Header, Layer, Record, Region, Scene, electric_friction_max_n};
-use frixel_random_scenes::{Pace, RandomFinger, RandomScene, Report};
 use frixel_session::{TableRows, Touch, table_rows};
+use frixel_testkit::{Pace, RandomFinger, RandomScene, Report};
 use frixel_wire::fault::Flags;
 use frixel_wire::frame::FRAME_MAX_LEN;
 use frixel_wire::message::{Command, ConfigField, Refusal};

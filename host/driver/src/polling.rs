@@ -154,11 +154,14 @@ mod tests {
 
     const MS: Duration = Duration::from_millis(1);
 
-    /// A stream in virtual time: when what was written, and when which bytes arrive.
+    /// What was written, and when.
+    type Writes = Rc<RefCell<Vec<(Duration, Vec<u8>)>>>;
+
+    /// A stream in virtual time, to which bytes arrive at given times.
     #[derive(Default)]
     struct Script {
         now: Duration,
-        written: Rc<RefCell<Vec<(Duration, Vec<u8>)>>>,
+        written: Writes,
         arrivals: Vec<(Duration, u8)>,
     }
 
@@ -185,7 +188,7 @@ mod tests {
             self.now
         }
 
-        fn name(&self) -> &str {
+        fn name(&self) -> &'static str {
             "script"
         }
     }

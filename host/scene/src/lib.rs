@@ -3,18 +3,18 @@
 //! `docs/scene.md` is the reference of the file. [`Scene::parse`] reads it, [`compile`] checks what needs the board or
 //! other layers, and makes a [`Program`]. Both tell every mistake at once, each with line and column.
 //!
-//! - [`reference`]: the friction that a program means, in `f64`, independently of the firmware.
+//! - [`mod@reference`]: the friction that a program means, in `f64`, independently of the firmware.
 //! - [`recorder`]: what a board did and what its finger felt, compared with that.
 //! - [`metrics`]: the size of the errors.
 #![forbid(unsafe_code)]
 
-mod asked;
 mod compile;
 mod compile_error;
 mod cover;
 mod excess;
 mod fields;
 mod file;
+mod grammar;
 mod kinds;
 mod layer;
 mod layer_map;
@@ -36,7 +36,9 @@ pub mod reference;
 mod resample;
 mod schema;
 mod source;
+mod tables;
 #[cfg(test)]
+#[allow(clippy::disallowed_methods, reason = "the tests read the bundled scenes")]
 mod tests;
 mod tick_cost;
 

@@ -115,8 +115,8 @@ fn the_monitor_may_be_off_by_its_tolerance_and_no_more() {
 }
 
 #[test]
-fn a_monitor_that_is_not_a_number_is_wrong() {
-    for monitor_v in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+fn a_monitor_at_its_tolerance_or_not_a_number_is_wrong() {
+    for monitor_v in [0.04 * FULL_SCALE_V, f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         assert_eq!(ticks_to_fault(&mut driving(0), monitor_v, 0, 100), Some(WRONG_TICKS));
     }
 }
@@ -266,6 +266,30 @@ fn a_host_that_arms_again_is_not_silent_any_more() {
     press_switch(&mut supervisor);
     supervisor.apply(&Order::Arm, 10_002);
     assert!(!supervisor.host_silent());
+}
+
+/// A switch that is held all the time, or stuck, arms nothing.
+#[test]
+fn arming_takes_a_switch_that_was_open_since_the_reset_or_the_last_disarming() {
+    let armed = |supervisor: &mut Supervisor, now_tick| {
+        supervisor.check(&reading(0.0), DacCode::ZERO);
+        supervisor.apply(&Order::Arm, now_tick);
+        supervisor.state() == State::Armed
+    };
+    let mut supervisor = Supervisor::new(&BOARD);
+    assert!(!armed(&mut supervisor, 1), "held since the reset");
+    press_switch(&mut supervisor);
+    assert!(armed(&mut supervisor, 2));
+    supervisor.apply(&Order::Disarm, 3);
+    assert!(!armed(&mut supervisor, 3), "held since it was disarmed");
+    press_switch(&mut supervisor);
+    assert!(armed(&mut supervisor, 4));
+    supervisor.expire(4 + 10_001);
+    assert!(!armed(&mut supervisor, 4 + 10_001), "held since the host fell silent");
+    supervisor.raise(Fault::Deadline, 1);
+    press_switch(&mut supervisor);
+    supervisor.apply(&Order::ClearFault, 0);
+    assert!(!armed(&mut supervisor, 0), "held since the fault was cleared");
 }
 
 proptest! {

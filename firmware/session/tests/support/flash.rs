@@ -1,6 +1,7 @@
 //! Flash that can lose its power at any byte of what it does.
 
 use frixel_session::store::{Flash, Operation, WORD_LEN};
+use frixel_testkit::Random;
 
 pub const PAGE_LEN: usize = 512;
 
@@ -23,7 +24,7 @@ pub struct SimulatedFlash {
     failed: bool,
     /// What a torn word reads as: nothing, or something.
     torn_words_read: bool,
-    noise: u32,
+    noise: Random,
 }
 
 impl SimulatedFlash {
@@ -38,7 +39,7 @@ impl SimulatedFlash {
             operations_fail: false,
             failed: false,
             torn_words_read,
-            noise: 0x1234_5678,
+            noise: Random::new(1),
         }
     }
 
@@ -54,11 +55,6 @@ impl SimulatedFlash {
     /// The same flash once the power has come back.
     pub fn after_power_on(&self) -> Self {
         Self { power_left: None, done: 0, busy: 0, ..self.clone() }
-    }
-
-    fn noise(&mut self) -> u8 {
-        self.noise = self.noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        (self.noise >> 24) as u8
     }
 
     /// Does one byte of an operation; `false` when the power went before it.
@@ -100,7 +96,7 @@ impl Flash for SimulatedFlash {
                 }
                 // What is left of the page is anything between what it was and erased.
                 for at in start..start + PAGE_LEN {
-                    self.bytes[at] |= self.noise();
+                    self.bytes[at] |= self.noise.byte();
                     self.torn[at / WORD_LEN] = true;
                 }
                 return;
@@ -119,7 +115,7 @@ impl Flash for SimulatedFlash {
         for (at, byte) in (start..).zip(word) {
             if !self.spend() {
                 if at > start {
-                    self.bytes[at] &= self.noise();
+                    self.bytes[at] &= self.noise.byte();
                     self.torn[at / WORD_LEN] = true;
                 }
                 return;

@@ -5,6 +5,7 @@
     clippy::panic,
     clippy::large_stack_arrays,
     dead_code,
+    unused_imports,
     unreachable_pub,
     reason = "a test uses its part, and may fail"
 )]
@@ -15,9 +16,10 @@ pub mod flash;
 #[cfg(feature = "stream")]
 use frixel_control::StreamBuffer;
 use frixel_control::{Active, Board, Drive, Sense, Status, Ticker};
-use frixel_layers::{Bitmap, BitmapPool, Constant};
-use frixel_layers::{Blend, Carrier, Header, Layer, Leader, Point, Record, Region};
+use frixel_layers::{Bitmap, BitmapPool, Layer};
 use frixel_session::{Session, Touch};
+use frixel_testkit::IdealMonitor;
+pub use frixel_testkit::{HEADER, record, scene, scene_with_points};
 use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, crc32};
 use frixel_wire::hello::Hello;
 use frixel_wire::message::{Accepted, Answer, Command, FromBoard, Refusal, Request};
@@ -59,16 +61,9 @@ pub struct Desk<'a> {
     pub amplifier_dead: bool,
     /// The host reads what the board sends.
     pub reads: bool,
-    monitor: Monitor,
+    monitor: IdealMonitor,
     decoder: Decoder,
     sequence: u16,
-}
-
-/// An ideal amplifier with the board's edges.
-struct Monitor {
-    volts_per_code: f32,
-    step: f32,
-    voltage_v: f32,
 }
 
 impl<'a> Desk<'a> {
@@ -105,11 +100,7 @@ impl<'a> Desk<'a> {
             hello: None,
             amplifier_dead: false,
             reads: true,
-            monitor: Monitor {
-                volts_per_code: board.limits.full_scale_v_peak / 32_767.0,
-                step: 1.0 - (-25e-6_f32 / board.limits.edge_time_constant_s).exp(),
-                voltage_v: 0.0,
-            },
+            monitor: IdealMonitor::new(&board.limits, board.tick_hz),
             decoder: Decoder::new(),
             sequence: 0,
         };
@@ -128,12 +119,11 @@ impl<'a> Desk<'a> {
             self.session.touch(touch, self.status().telemetry.tick.wrapping_add(1));
         }
         self.obey_one();
-        let monitor_v = if self.amplifier_dead { 0.0 } else { self.monitor.voltage_v };
+        let monitor_v = if self.amplifier_dead { 0.0 } else { self.monitor.voltage_v() };
         let arm_switch = self.sense.arm_switch && !self.ticker.waits_for_release();
         let sense = Sense { monitor_v: self.sense.monitor_v + monitor_v, arm_switch, ..self.sense };
         let drive = self.ticker.tick(&sense);
-        let target_v = f32::from(drive.dac_code.bits()) * self.monitor.volts_per_code;
-        self.monitor.voltage_v += self.monitor.step * (target_v - self.monitor.voltage_v);
+        self.monitor.follow(drive.dac_code);
         self.session.poll(&self.ticker.status());
         self.collect();
         drive
@@ -289,32 +279,6 @@ pub fn request(sequence: u16, command: Command) -> Vec<u8> {
     payload::request_frame(&Request { sequence, command }, &mut frame).unwrap().to_vec()
 }
 
-/// The example finger at 0.5 N under at most 150 V rms.
-pub const HEADER: Header = Header {
-    screen_width_m: 0.12,
-    screen_height_m: 0.11,
-    finger_radius_m: 8e-3,
-    stiffness_pa_per_m: 1.8e7,
-    friction_coefficient: 0.5,
-    normal_load_n: 0.5,
-    effective_gap_m: 1e-5,
-    voltage_max_v_rms: 150.0,
-    voltage_max_v_peak: 200.0,
-    slew_v_per_s: 5e6,
-    carrier_hz: 1000.0,
-    host_timeout_s: 0.25,
-    carrier: Carrier::Square,
-    autonomous: false,
-    prediction: true,
-    leader: Leader::First,
-    layers_fixed: false,
-    electric_friction_max_n: None,
-};
-
-pub fn record(layer: Layer) -> Record {
-    Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer }
-}
-
 /// A picture with a millimetre from sample to sample.
 pub fn bitmap(crc32: u32) -> Layer {
     Layer::Bitmap(Bitmap {
@@ -330,18 +294,7 @@ pub fn bitmap(crc32: u32) -> Layer {
     })
 }
 
-/// A friction that is the same everywhere.
+/// A scene of a friction that is the same everywhere.
 pub fn constant(electric_friction_n: f32) -> Vec<u8> {
-    scene(&HEADER, &[record(Layer::Constant(Constant { electric_friction_n }))])
-}
-
-pub fn scene(header: &Header, records: &[Record]) -> Vec<u8> {
-    scene_with_points(header, records, &[])
-}
-
-pub fn scene_with_points(header: &Header, records: &[Record], points: &[Point]) -> Vec<u8> {
-    let mut bytes = header.write(records.len() as u8, points.len() as u8).to_vec();
-    bytes.extend(records.iter().flat_map(Record::write));
-    bytes.extend(points.iter().flat_map(Point::write));
-    bytes
+    scene(&HEADER, &[frixel_testkit::constant(electric_friction_n)])
 }

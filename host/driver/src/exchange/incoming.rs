@@ -97,7 +97,7 @@ impl<L: Link> Exchange<L> {
             }
             FromBoard::Telemetry(telemetry) => self.push_event(Event::Telemetry(telemetry)),
             FromBoard::StateChanged { state, fault, flags } => {
-                self.push_event(Event::StateChanged { state, fault, flags })
+                self.push_event(Event::StateChanged { state, fault, flags });
             }
         }
         Ok(())

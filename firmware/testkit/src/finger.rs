@@ -2,7 +2,7 @@
 
 use frixel_layers::Header;
 
-use crate::dice::Dice;
+use crate::random::Random;
 
 /// What a touch source reports.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,7 +27,7 @@ const TICK_S: f32 = 25e-6;
 
 /// A finger and its touch source, tick by tick.
 pub struct RandomFinger {
-    dice: Dice,
+    random: Random,
     size_m: [f32; 2],
     place_m: [f32; 2],
     step_m: [f32; 2],
@@ -51,16 +51,16 @@ pub enum Pace {
 impl RandomFinger {
     /// The finger of a seed over the screen of a header.
     pub fn new(seed: u64, header: &Header, pace: Pace) -> Self {
-        let mut dice = Dice::new(!seed);
+        let mut random = Random::new(!seed);
         let size_m = [header.screen_width_m, header.screen_height_m];
         let report_ticks = match pace {
-            Pace::Usual => dice.pick([400, 400, 80, 80, 20, 20]),
-            Pace::Fast => dice.pick([1, 2, 3, 4, 5, 6]),
+            Pace::Usual => random.pick([400, 400, 80, 80, 20, 20]),
+            Pace::Fast => random.pick([1, 2, 3, 4, 5, 6]),
         };
-        let age_ticks = dice.pick([0, 0, 40, 400]);
+        let age_ticks = random.pick([0, 0, 40, 400]);
         Self {
-            place_m: size_m.map(|size_m| dice.between(0.0, size_m)),
-            dice,
+            place_m: size_m.map(|size_m| random.between(0.0, size_m)),
+            random,
             size_m,
             step_m: [0.0; 2],
             left_ticks: 0,
@@ -96,23 +96,23 @@ impl RandomFinger {
 
     /// Begins another movement.
     fn turn(&mut self) {
-        let dice = &mut self.dice;
-        let longest_ticks = dice.pick([500, 500, 500, 2_800]);
-        self.left_ticks = 100 + dice.below(longest_ticks);
-        let speed_m_per_s = match dice.below(6) {
+        let random = &mut self.random;
+        let longest_ticks = random.pick([500, 500, 500, 2_800]);
+        self.left_ticks = 100 + random.below(longest_ticks);
+        let speed_m_per_s = match random.below(6) {
             0 => 0.0,
-            1 => dice.between(0.0, 2e-3),
-            2 => dice.between(2e-3, 2e-2),
-            3 | 4 => dice.between(0.02, 0.3),
-            _ => dice.between(0.3, 2.0),
+            1 => random.between(0.0, 2e-3),
+            2 => random.between(2e-3, 2e-2),
+            3 | 4 => random.between(0.02, 0.3),
+            _ => random.between(0.3, 2.0),
         };
-        self.step_m = [0.0; 2].map(|_: f32| dice.between(-1.0, 1.0) * speed_m_per_s * TICK_S);
-        if dice.once_in(2) {
-            self.place_m = self.size_m.map(|size_m| dice.between(0.0, size_m));
+        self.step_m = [0.0; 2].map(|_: f32| random.between(-1.0, 1.0) * speed_m_per_s * TICK_S);
+        if random.once_in(2) {
+            self.place_m = self.size_m.map(|size_m| random.between(0.0, size_m));
         }
-        self.lifted = dice.once_in(8);
+        self.lifted = random.once_in(8);
         if self.lifted {
-            self.left_ticks = self.report_ticks + dice.below(50);
+            self.left_ticks = self.report_ticks + random.below(50);
         }
     }
 }

@@ -1,16 +1,14 @@
 //! A scene that a board accepts.
 
 use frixel_layers::cost::{Worst, worst_of_scene};
-use frixel_layers::{
-    Button, Carrier, Click, Edge, HEADER_LEN, Header, Layer, Leader, POINT_LEN, Point, RECORD_LEN, Record,
-    SCENE_MAX_LEN, electric_friction_max_n,
-};
+use frixel_layers::{Button, Carrier, Click, Edge, Header, Layer, Leader, Point, Record, electric_friction_max_n};
 use frixel_wire::hello::BoardLimits;
 use frixel_wire::scene::{POINTS_MAX, RECORDS_MAX};
 use heapless::Vec;
 
-use crate::dice::Dice;
 use crate::layers::{NewPoints, ground, record};
+use crate::random::Random;
+use crate::scenes::{HEADER, SceneBytes, scene_with_points};
 
 /// Draws after which no further layer is looked for: what is left of a tick may be too short for most.
 const MISSES_MAX: u32 = 6;
@@ -31,16 +29,16 @@ pub struct RandomScene {
 impl RandomScene {
     /// The scene of a seed; its pictures, if it has any, are all of this name.
     pub fn new(seed: u64, picture: u32) -> Self {
-        let dice = &mut Dice::new(seed);
-        let mut scene = Self { header: header(dice), records: Vec::new(), points: Vec::new() };
-        let wanted = dice.pick([1, 2, 3, 6, 12, RECORDS_MAX]);
-        if !dice.once_in(3) {
+        let random = &mut Random::new(seed);
+        let mut scene = Self { header: header(random), records: Vec::new(), points: Vec::new() };
+        let wanted = random.pick([1, 2, 3, 6, 12, RECORDS_MAX]);
+        if !random.once_in(3) {
             // An empty list has room.
-            let _ = scene.records.push(ground(dice));
+            let _ = scene.records.push(ground(random));
         }
         let mut misses = 0;
         while scene.records.len() < wanted && misses < MISSES_MAX {
-            if !scene.add(dice, picture) {
+            if !scene.add(random, picture) {
                 misses += 1;
             }
         }
@@ -57,24 +55,14 @@ impl RandomScene {
     }
 
     /// The scene's bytes.
-    pub fn write<'b>(&self, bytes: &'b mut [u8; SCENE_MAX_LEN]) -> &'b [u8] {
-        let (head, rest) = bytes.split_at_mut(HEADER_LEN);
-        head.copy_from_slice(&self.header.write(self.records.len() as u8, self.points.len() as u8));
-        let (body, tail) = rest.split_at_mut(RECORD_LEN * self.records.len());
-        for (place, record) in body.chunks_exact_mut(RECORD_LEN).zip(&self.records) {
-            place.copy_from_slice(&record.write());
-        }
-        for (place, point) in tail.chunks_exact_mut(POINT_LEN).zip(&self.points) {
-            place.copy_from_slice(&point.write());
-        }
-        let len = HEADER_LEN + RECORD_LEN * self.records.len() + POINT_LEN * self.points.len();
-        bytes.get(..len).unwrap_or_default()
+    pub fn bytes(&self) -> SceneBytes {
+        scene_with_points(&self.header, &self.records, &self.points)
     }
 
     /// Draws a layer, and keeps it when a board takes the scene with it.
-    fn add(&mut self, dice: &mut Dice, picture: u32) -> bool {
+    fn add(&mut self, random: &mut Random, picture: u32) -> bool {
         let mut new = NewPoints { first: self.points.len() as u8, points: Vec::new() };
-        let record = record(dice, &self.header, picture, &mut new);
+        let record = record(random, &self.header, picture, &mut new);
         let points_before = self.points.len();
         let fits = self.points.extend_from_slice(&new.points).is_ok() && self.records.push(record).is_ok();
         if fits && self.is_accepted() {
@@ -104,25 +92,20 @@ fn clicks(layer: &Layer) -> bool {
     height_n.abs() > 0.0
 }
 
-fn header(dice: &mut Dice) -> Header {
+fn header(random: &mut Random) -> Header {
     Header {
-        screen_width_m: dice.between(0.02, 0.3),
-        screen_height_m: dice.between(0.02, 0.2),
-        finger_radius_m: 8e-3,
-        stiffness_pa_per_m: 1.8e7,
-        friction_coefficient: 0.5,
-        normal_load_n: dice.pick([0.0, 0.5]),
-        effective_gap_m: 1e-5,
-        voltage_max_v_rms: dice.pick([50.0, 150.0, 150.0]),
+        screen_width_m: random.between(0.02, 0.3),
+        screen_height_m: random.between(0.02, 0.2),
+        normal_load_n: random.pick([0.0, 0.5]),
+        voltage_max_v_rms: random.pick([50.0, 150.0, 150.0]),
         voltage_max_v_peak: 220.0,
-        slew_v_per_s: dice.pick([1e4, 1e6, 5e6]),
-        carrier_hz: dice.pick([250.0, 1000.0, 1700.0]),
-        host_timeout_s: 0.25,
-        carrier: dice.pick([Carrier::Square, Carrier::Sine]),
-        autonomous: dice.once_in(4),
-        prediction: !dice.once_in(4),
-        leader: dice.pick([Leader::First, Leader::Latest]),
-        layers_fixed: dice.once_in(2),
-        electric_friction_max_n: None,
+        slew_v_per_s: random.pick([1e4, 1e6, 5e6]),
+        carrier_hz: random.pick([250.0, 1000.0, 1700.0]),
+        carrier: random.pick([Carrier::Square, Carrier::Sine]),
+        autonomous: random.once_in(4),
+        prediction: !random.once_in(4),
+        leader: random.pick([Leader::First, Leader::Latest]),
+        layers_fixed: random.once_in(2),
+        ..HEADER
     }
 }

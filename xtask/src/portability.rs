@@ -1,0 +1,65 @@
+//! Where else the crates have to compile and run: WebAssembly, Windows, macOS.
+
+use std::env;
+use std::process::Command;
+
+use crate::check::is_ci;
+use crate::command::{add_target, cargo_in, root, run, text_of};
+
+const WASM: &str = "wasm32-unknown-unknown";
+/// Where the whole command compiles. What needs a pseudo-terminal is refused there when it runs.
+const COMMAND_TARGETS: [&str; 2] = ["x86_64-pc-windows-gnu", "aarch64-apple-darwin"];
+/// The crates that a page uses: no clocks, files, threads or processes. The `clippy.toml` of each names what it must not
+/// use.
+const PAGE_CRATES: [&str; 3] = ["frixel-scene", "frixel-driver", "frixel-hil-sim"];
+/// Plays scenes with those three crates, natively or in WebAssembly.
+const WASM_CHECK: &str = "frixel-wasm-check";
+
+/// Runs all checks of this module.
+pub(crate) fn check() -> Result<(), String> {
+    page_crates()?;
+    for target in COMMAND_TARGETS {
+        add_target(target)?;
+        run(&format!("command for {target}"), &mut cargo(&["check", "--package", "frixel", "--target", target]))?;
+    }
+    same_bits_in_wasm()
+}
+
+/// Compiles the crates of the page for WebAssembly, with clippy's disallowed types and methods as errors.
+fn page_crates() -> Result<(), String> {
+    add_target(WASM)?;
+    let mut arguments = vec!["clippy", "--target", WASM, "--no-default-features", "--lib"];
+    arguments.extend(PAGE_CRATES.iter().flat_map(|name| ["--package", name]));
+    arguments.extend(["--", "-D", "warnings"]);
+    run("crates of the page for WebAssembly", &mut cargo(&arguments))
+}
+
+/// Plays bundled scenes under node and natively: every friction, voltage and DAC code has to be the same.
+fn same_bits_in_wasm() -> Result<(), String> {
+    if Command::new("node").arg("--version").output().is_err() {
+        let missing = "node is not installed (Debian: `apt-get install nodejs`)";
+        if is_ci() {
+            return Err(missing.to_owned());
+        }
+        eprintln!("SKIPPED: no scene is played in WebAssembly: {missing}");
+        return Ok(());
+    }
+    run("scenes for WebAssembly", &mut cargo(&["build", "--package", WASM_CHECK, "--lib", "--target", WASM]))?;
+    let target_folder = env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), Into::into);
+    let module = target_folder.join(WASM).join("debug/frixel_wasm_check.wasm");
+    let native = text_of(&mut cargo(&["run", "--quiet", "--package", WASM_CHECK]))?;
+    let wasm = text_of(Command::new("node").arg(root().join("host/wasm-check/run.mjs")).arg(module))?;
+    eprintln!("hash of the scenes: {} natively, {} in WebAssembly", native.trim(), wasm.trim());
+    if native == wasm {
+        Ok(())
+    } else {
+        Err("what a finger feels in WebAssembly differs from what it feels natively".into())
+    }
+}
+
+fn cargo(arguments: &[&str]) -> Command {
+    let mut command = cargo_in(".");
+    let (subcommand, rest) = arguments.split_first().unwrap_or((&"", &[]));
+    command.args([subcommand, "--locked"]).args(rest);
+    command
+}
