@@ -108,15 +108,17 @@ impl ActiveLayers {
         if !self.tables.clicks().is_empty() {
             context.clicks.begin();
         }
+        let (mut first, mut set, mut others) = (0, on & near, others_on & others_near);
         let mut electric_friction_n = 0.0;
-        // In one place, so that the compiler puts it into the tick instead of calling it.
-        for (first, mut set) in [(0, on & near), (u32::BITS, others_on & others_near)] {
-            while set != 0 {
-                let number = set.trailing_zeros();
-                set &= set - 1;
-                if let Some(layer) = self.layers.get((first + number) as usize) {
-                    electric_friction_n = layer.blend_over(electric_friction_n, context);
-                }
+        // One loop over both words, so that the compiler puts it into the tick instead of calling it twice.
+        while set | others != 0 {
+            if set == 0 {
+                (first, set, others) = (u32::BITS, others, 0);
+            }
+            let number = set.trailing_zeros();
+            set &= set - 1;
+            if let Some(layer) = self.layers.get((first + number) as usize) {
+                electric_friction_n = layer.blend_over(electric_friction_n, context);
             }
         }
         electric_friction_n

@@ -1,10 +1,12 @@
 //! What a host changes while a scene plays: layers, and the samples of a stream.
 
-use frixel_layers::{Header, Leader, Scene, range, within};
-use frixel_wire::fault::State;
-use frixel_wire::message::{Accepted, Command, ConfigField, Refusal};
 #[cfg(feature = "stream")]
-use frixel_wire::message::{ConfigRefusal, FromBoard, STREAM_START_LEVEL_MAX};
+use frixel_layers::within;
+use frixel_layers::{Header, Leader, Scene, range};
+use frixel_wire::fault::State;
+use frixel_wire::message::{Accepted, Command, Refusal};
+#[cfg(feature = "stream")]
+use frixel_wire::message::{ConfigField, ConfigRefusal, FromBoard, STREAM_START_LEVEL_MAX};
 
 use crate::commands::Commands;
 #[cfg(feature = "stream")]
