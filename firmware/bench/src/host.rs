@@ -116,10 +116,6 @@ impl<'a> Host<'a> {
     }
 
     fn hand_over(&mut self) {
-        while let Some(order) = self.session.next_order() {
-            if let Some(spare) = self.ticker.apply(order) {
-                self.session.take_back(spare);
-            }
-        }
+        while self.session.hand_order_to(&mut self.ticker) {}
     }
 }

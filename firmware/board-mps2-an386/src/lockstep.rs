@@ -38,11 +38,7 @@ fn tick(
     if let Some(touch) = input.touch {
         session.touch(touch, status.telemetry.tick.wrapping_add(1));
     }
-    if let Some(order) = session.next_order()
-        && let Some(spare) = ticker.apply(order)
-    {
-        session.take_back(spare);
-    }
+    session.hand_order_to(ticker);
     let drive = ticker.tick(&input.sense);
     *status = ticker.status();
     session.poll(status);

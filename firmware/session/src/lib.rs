@@ -24,11 +24,7 @@
 //!
 //! session.receive(&[0, 0, 0], &ticker.status()); // bytes from the serial line
 //! session.touch(Touch::Down { x_m: 0.02, y_m: 0.03, age_ticks: 0 }, 1); // from the touch source
-//! if let Some(order) = session.next_order() {
-//!     if let Some(spare) = ticker.apply(order) {
-//!         session.take_back(spare);
-//!     }
-//! }
+//! session.hand_order_to(&mut ticker); // at most one before a tick
 //! let drive = ticker.tick(&Sense::default()); // 40,000 times a second
 //! session.poll(&ticker.status());
 //! assert_eq!(drive.dac_code.bits(), 0);

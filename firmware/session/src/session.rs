@@ -14,7 +14,7 @@ use crate::transmit_queue::TransmitQueue;
 use frixel_control::Status;
 #[cfg(feature = "stream")]
 use frixel_control::StreamBuffer;
-use frixel_control::{Active, Board, Order};
+use frixel_control::{Active, Board, Order, Ticker};
 use frixel_layers::BitmapPool;
 
 /// One board's end of the serial line.
@@ -102,6 +102,16 @@ impl<'a> Session<'a> {
     /// Takes back the coefficients that the ticker has let go.
     pub fn take_back(&mut self, spare: &'a mut Active) {
         self.commands.take_back(spare);
+    }
+
+    /// Hands the next order to a ticker on the same thread, and takes back what it lets go. Returns whether there was an
+    /// order. A board whose tick is an interrupt has a queue between [`Session::next_order`] and [`Ticker::apply`].
+    pub fn hand_order_to(&mut self, ticker: &mut Ticker<'a>) -> bool {
+        let Some(order) = self.next_order() else { return false };
+        if let Some(spare) = ticker.apply(order) {
+            self.take_back(spare);
+        }
+        true
     }
 
     /// Moves bytes for the serial line into `bytes`, and returns how many.

@@ -118,7 +118,7 @@ impl<'a> Desk<'a> {
         if let Some(touch) = self.touch.take() {
             self.session.touch(touch, self.status().telemetry.tick.wrapping_add(1));
         }
-        self.obey_one();
+        self.session.hand_order_to(&mut self.ticker);
         let monitor_v = if self.amplifier_dead { 0.0 } else { self.monitor.voltage_v() };
         let arm_switch = self.sense.arm_switch && !self.ticker.waits_for_release();
         let sense = Sense { monitor_v: self.sense.monitor_v + monitor_v, arm_switch, ..self.sense };
@@ -165,16 +165,7 @@ impl<'a> Desk<'a> {
 
     /// Hands all of the session's orders to the ticker, as if there had been as many ticks.
     pub fn obey(&mut self) {
-        while self.obey_one() {}
-    }
-
-    /// Hands the session's next order to the ticker. Returns whether there was one.
-    fn obey_one(&mut self) -> bool {
-        let Some(order) = self.session.next_order() else { return false };
-        if let Some(spare) = self.ticker.apply(order) {
-            self.session.take_back(spare);
-        }
-        true
+        while self.session.hand_order_to(&mut self.ticker) {}
     }
 
     pub fn greet(&mut self) -> Hello {

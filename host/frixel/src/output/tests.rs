@@ -11,25 +11,14 @@ use super::trace::Extremes;
 use super::*;
 use crate::chart::{RGBColor, colour};
 use crate::scene_file;
+use frixel_control::Board;
 use frixel_driver::Counters;
 use frixel_scene::metrics::{ErrorSize, MetricsSummary};
 use frixel_scene::recorder::FeltRow;
 use frixel_scene::reference::Reference;
 use frixel_scene::{Program, compile};
 
-const LIMITS: BoardLimits = BoardLimits {
-    bitmap_pool_bytes: 64 * 1024,
-    records_max: 64,
-    receive_window_bytes: 4096,
-    voltage_max_v_peak: 220.0,
-    full_scale_v_peak: 250.0,
-    edge_time_constant_s: 20e-6,
-    electrode_capacitance_max_f: 0.53e-9,
-    current_max_a_rms: 3e-3,
-    current_max_a_peak: 15e-3,
-    touch_report_period_s: 0.01,
-    tick_cycles_max: 2_550,
-};
+const LIMITS: BoardLimits = Board::SIMULATOR.limits;
 
 fn brick() -> Program {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/brick.toml"));

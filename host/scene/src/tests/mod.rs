@@ -3,6 +3,7 @@ use std::fs;
 use std::path::Path;
 use std::sync::LazyLock;
 
+use frixel_control::Board;
 use frixel_wire::hello::BoardLimits;
 
 use super::{CompileError, Program, Scene, compile};
@@ -14,20 +15,7 @@ mod layers;
 mod left_out;
 mod schema;
 
-/// A board like the simulated one.
-pub(super) const LIMITS: BoardLimits = BoardLimits {
-    bitmap_pool_bytes: 64 * 1024,
-    records_max: 64,
-    receive_window_bytes: 4096,
-    voltage_max_v_peak: 220.0,
-    full_scale_v_peak: 250.0,
-    edge_time_constant_s: 20e-6,
-    electrode_capacitance_max_f: 0.53e-9,
-    current_max_a_rms: 3e-3,
-    current_max_a_peak: 15e-3,
-    touch_report_period_s: 0.01,
-    tick_cycles_max: 2_550,
-};
+pub(super) const LIMITS: BoardLimits = Board::SIMULATOR.limits;
 pub(super) const TICK_HZ: u32 = 40_000;
 
 /// Everything a scene needs but its layers; eighteen lines. The natural friction is 0.25 N, and the drive adds at
