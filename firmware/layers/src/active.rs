@@ -108,13 +108,16 @@ impl ActiveLayers {
         if !self.tables.clicks().is_empty() {
             context.clicks.begin();
         }
-        let (mut first, mut set, mut others) = (0, on & near, others_on & others_near);
-        let mut electric_friction_n = 0.0;
-        // One loop over both words, so that the compiler puts it into the tick instead of calling it twice.
-        while set | others != 0 {
-            if set == 0 {
-                (first, set, others) = (u32::BITS, others, 0);
-            }
+        let below_n = self.blend(0, on & near, 0.0, context);
+        let others = others_on & others_near;
+        if others == 0 { below_n } else { self.blend(u32::BITS, others, below_n, context) }
+    }
+
+    /// Blends those of the 32 layers from number `first` on that are in `set`, over what is below them.
+    #[inline]
+    fn blend(&self, first: u32, mut set: u32, below_n: f32, context: &mut Context) -> f32 {
+        let mut electric_friction_n = below_n;
+        while set != 0 {
             let number = set.trailing_zeros();
             set &= set - 1;
             if let Some(layer) = self.layers.get((first + number) as usize) {
