@@ -75,7 +75,7 @@ pub struct StreamStart {
     pub(crate) start_level: u32,
 }
 
-/// Where the session puts what the host sends.
+/// Where the session puts the samples that the host sends.
 pub struct StreamIntake<'a> {
     buffer: &'a StreamBuffer,
     /// Position of the stream's first sample, while one is under way.
@@ -83,6 +83,7 @@ pub struct StreamIntake<'a> {
 }
 
 impl<'a> StreamIntake<'a> {
+    /// An intake into `buffer`, without a stream.
     pub fn new(buffer: &'a StreamBuffer) -> Self {
         Self { buffer, first: None }
     }
