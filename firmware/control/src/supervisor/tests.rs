@@ -301,7 +301,7 @@ proptest! {
         let mut supervisor = in_state(State::Disarmed);
         for (tick, (amplifier_fault, arm_switch, monitor_v, dac_code)) in inputs.into_iter().enumerate() {
             let before = supervisor.state();
-            supervisor.check(&Sense { amplifier_fault, arm_switch, monitor_v, ..Sense::default() }, DacCode::from_bits(dac_code));
+            supervisor.check(&Sense { amplifier_fault, monitor_v, arm_switch }, DacCode::from_bits(dac_code));
             supervisor.expire(tick as u32);
             prop_assert!(matches!(supervisor.state(), State::Disarmed | State::Faulted));
             prop_assert!(before != State::Faulted || supervisor.state() == State::Faulted);
