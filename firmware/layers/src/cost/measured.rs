@@ -14,19 +14,19 @@ pub(crate) const SINE: u32 = 139;
 pub(crate) const SQUARE: u32 = 150;
 pub(crate) const TRIANGLE: u32 = 150;
 pub(crate) const SAW: u32 = 145;
-pub(crate) const RINGS: u32 = 70;
-pub(crate) const BITMAP: u32 = 245;
-pub(crate) const BITMAP_TILED: u32 = 296;
-pub(crate) const NOISE: u32 = 422;
-pub(crate) const EDGE: u32 = 281;
+pub(crate) const RINGS: u32 = 40;
+pub(crate) const BITMAP: u32 = 218;
+pub(crate) const BITMAP_TILED: u32 = 269;
+pub(crate) const NOISE: u32 = 403;
+pub(crate) const EDGE: u32 = 254;
 pub(crate) const BUTTON: u32 = 263;
-pub(crate) const VIBRATION_SINE: u32 = 199;
-pub(crate) const VIBRATION_SQUARE: u32 = 166;
+pub(crate) const VIBRATION_SINE: u32 = 180;
+pub(crate) const VIBRATION_SQUARE: u32 = 174;
 
 // A curve, and each of its points.
 pub(crate) const SPEED: u32 = 154;
 pub(crate) const SPEED_POINT: u32 = 8;
-pub(crate) const STREAM: u32 = 113;
+pub(crate) const STREAM: u32 = 91;
 
 // The stream's own work, wherever the finger is.
 pub(crate) const STREAM_ELSEWHERE: u32 = 140;
