@@ -191,17 +191,20 @@ fn a_tick_costs_what_was_counted_and_no_more_than_it_may() {
     for said in [
         "with one under the finger they add 2 instructions on average",
         "with eight under the finger they add 1 instructions on average",
-        "most that a tick may take: 600",
+        "is refused when a tick at some place is estimated at more cycles than the board states",
     ] {
         assert!(section.contains(said), "{said}");
     }
     assert!(report()["index.html"].contains("What a tick takes on a board is in the figure before this one."));
+    // The caption's claim: the board's own limit is what refuses.
     let constants = |count| {
         let layer = "[[layer]]\nkind = \"constant\"\nblend = \"max\"\nlive = true\nfriction_n = 0.001\n";
         compiled(&layer.repeat(count)).map(|_| ()).map_err(|error| error.to_string())
     };
-    assert_eq!(constants(8), Ok(()));
-    assert!(constants(12).unwrap_err().contains("the board has time for 600"));
+    let refused = (8..=64).find_map(|count| constants(count).err().map(|message| (count, message)));
+    let (count, message) = refused.unwrap();
+    let limit = RigConfig::default().board.limits.tick_cycles_max;
+    assert!(count > 8 && message.contains(&format!("the board has time for {limit}")), "{count}: {message}");
 }
 
 /// What the page has of a figure.
@@ -390,20 +393,20 @@ fn maps_stay_below_the_goals_and_are_not_empty() {
     }
 }
 
-/// Errors of a way in the order of its sizes.
-fn errors(way: &str, load: &str) -> Vec<f64> {
+/// Errors of a method in the order of its sizes.
+fn errors(method: &str, load: &str) -> Vec<f64> {
     let rows = rows(MEASURED);
-    let of_way = rows.iter().filter(|row| row["way"] == way && row["normal_force_n"] == load);
-    of_way.map(|row| number(row, "largest_relative_error")).collect()
+    let of_method = rows.iter().filter(|row| row["method"] == method && row["normal_force_n"] == load);
+    of_method.map(|row| number(row, "largest_relative_error")).collect()
 }
 
 #[test]
 fn every_way_is_as_far_off_as_it_has_to_be() {
     for load in ["0", "0.5"] {
-        for (way, goal) in
+        for (method, goal) in
             [("closed form, f64", 4e-15), ("closed form, f32", 1e-6), ("the board's table, cubic, f32", 1e-5)]
         {
-            assert!(errors(way, load).iter().all(|error| *error <= goal && *error > 0.0), "{way} {load}");
+            assert!(errors(method, load).iter().all(|error| *error <= goal && *error > 0.0), "{method} {load}");
         }
         for order in ["linear", "quadratic", "cubic"] {
             for precision in ["f32", "integers"] {
@@ -414,9 +417,9 @@ fn every_way_is_as_far_off_as_it_has_to_be() {
                 assert_eq!(errors.len(), 5);
             }
         }
-        for way in ["bisection, f64", "forward table, binary search, f32"] {
-            let errors = errors(way, load);
-            assert!(errors.len() >= 4 && errors.windows(2).all(|pair| pair[1] < pair[0] / 3.0), "{way} {errors:?}");
+        for method in ["bisection, f64", "forward table, binary search, f32"] {
+            let errors = errors(method, load);
+            assert!(errors.len() >= 4 && errors.windows(2).all(|pair| pair[1] < pair[0] / 3.0), "{method} {errors:?}");
         }
     }
     // Friction in total cannot resolve the electric part in f32.
@@ -435,8 +438,13 @@ fn fewer_ticks_make_a_larger_error() {
         let [slowest, slower, slow] = [errors[0].1, errors[1].1, errors[2].1];
         // At 1 and 2 kHz the touch source reports every 2 and 4 ticks, and ticks that take reports in are most of them.
         assert!(slowest > slower && slower > 1.05 * slow, "{stripes}: {errors:?}");
-        // Beyond, ticks help less and less, and what they cannot help remains.
-        assert!(errors[3..].iter().all(|error| error.1 < slow && error.1 > 0.01), "{stripes}: {errors:?}");
+        // Beyond, ticks help less and less, and what they cannot help remains: of a real touch source, all of it.
+        let rest = errors[3..].iter().map(|error| error.1);
+        let most = if stripes.ends_with("touch source") { 1.02 * slow } else { slow };
+        assert!(rest.clone().all(|error| error < most && error > 0.01), "{stripes}: {errors:?}");
+        if stripes.ends_with("touch source") {
+            assert!(rest.clone().all(|error| error > 0.95 * slow), "{stripes}: {errors:?}");
+        }
     }
     for row in rows.iter().filter(|row| !row["rms_error_over_reachable_range"].is_empty()) {
         let (ticks, carrier) = (number(row, "tick_hz"), number(row, "carrier_hz"));

@@ -19,7 +19,7 @@ pub struct Report {
     pub friction_error_rms_n: Option<f64>,
     /// The same, largest magnitude, N.
     pub friction_error_max_n: Option<f64>,
-    /// What the model gives for the commanded voltage minus what was asked for: root mean square, N.
+    /// What the model gives for the commanded voltage minus the command: root mean square, N.
     pub inversion_error_rms_n: Option<f64>,
     /// The same, largest magnitude, N.
     pub inversion_error_max_n: Option<f64>,
@@ -33,7 +33,7 @@ pub struct Report {
     pub wanted_min_n: Option<f64>,
     /// Largest friction that was wanted, in total, N.
     pub wanted_max_n: Option<f64>,
-    /// Ticks in which the board clamped what it asked for.
+    /// Ticks in which the board clamped its command.
     pub saturated_ticks: Option<u64>,
     /// Frames that the host sent.
     pub frames_sent: u64,

@@ -2,11 +2,11 @@
 
 use frixel_scene::recorder::FeltRow;
 
-/// Most spans of time that are told apart.
+/// Largest number of spans of time.
 const SPANS_MAX: usize = 1_600;
-/// Most places of the stroke that are told apart.
+/// Largest number of places of the stroke.
 const PLACES_MAX: usize = 8_000;
-/// The stroke is told apart to this distance, mm.
+/// Least distance of two places of the stroke, mm.
 const PLACE_STEP_MM: f64 = 0.2;
 
 /// Friction, voltage and stroke of a run. Where there are many rows, it keeps least and largest of each span of time.

@@ -10,7 +10,7 @@ pub(super) struct Data<const COLUMNS: usize> {
 /// A cell.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Value {
-    /// Written with as many digits as reading it back takes; an empty cell where it is none.
+    /// Written with as many digits as reading it back takes; an empty cell where it is not a number.
     Number(f64),
     /// Written as it is.
     Text(String),

@@ -30,7 +30,7 @@ pub enum ReportError {
         /// What the system said.
         source: io::Error,
     },
-    /// The file with instruction counts is none.
+    /// The file with instruction counts is not one.
     #[error("{}: expected a JSON object of numbers as `cargo xtask bench` writes it, found {source}", .path.display())]
     Bench {
         /// The file.

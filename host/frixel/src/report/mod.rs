@@ -8,9 +8,9 @@ mod counts;
 mod data;
 mod error;
 mod figures;
+mod methods;
 mod page;
 mod reference;
-mod ways;
 mod wire;
 
 use std::fs;

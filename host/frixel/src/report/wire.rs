@@ -6,7 +6,7 @@ use frixel_wire::payload::{CHUNK_LEN, WriteError, chunk_frame, request_frame};
 
 use frixel_scene::Program;
 
-/// Bytes of a program and of its way to the board.
+/// Bytes of a program and of its upload to the board.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct OnTheWire {
     /// Header, records and points.

@@ -11,7 +11,7 @@ pub(super) enum Boards {
 }
 
 impl Boards {
-    /// `shown` is the figure; it is none when the file does not have what it takes.
+    /// `shown` is the figure; it is `None` when the file lacks the counts for it.
     pub(super) fn new<T>(shown: Option<&T>, counts: Option<&Counts>) -> Self {
         match (shown, counts) {
             (Some(_), _) => Self::Shown,

@@ -1,4 +1,4 @@
-//! Error against run time and against size, for every way to invert.
+//! Error against run time and against size, for every method of inversion.
 
 use core::f64::consts::LOG10_2;
 
@@ -9,7 +9,7 @@ use super::{EXAMPLE, Figure, GAP_M, LOAD_N, ReportError, example, example_finger
 use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};
 use crate::report::counts::Counts;
 use crate::report::data::{Data, Value};
-use crate::report::ways::{Bench, Kind, Parameters, RANGE_V_RMS, Way};
+use crate::report::methods::{Bench, Kind, Method, Parameters, RANGE_V_RMS};
 
 /// Kinds in the order of legends: what they are called and how they look.
 const KINDS: [(Kind, &str, Look); 12] = [
@@ -40,10 +40,10 @@ const fn dashed(colour: RGBColor, mark: Mark) -> Look {
     Look { colour, line: Line::Dashed, mark }
 }
 
-/// All ways, measured for the example finger under one load.
+/// All methods, measured for the example finger under one load.
 pub(super) struct Measured {
     load_n: f64,
-    ways: Vec<Way>,
+    methods: Vec<Method>,
 }
 
 impl Measured {
@@ -53,18 +53,19 @@ impl Measured {
 
     /// Run times count in that of the f64 closed form.
     fn unit_seconds(&self) -> f64 {
-        self.of(Kind::ClosedF64).map(|way| way.seconds).next().unwrap_or(f64::NAN)
+        self.of(Kind::ClosedF64).map(|method| method.seconds).next().unwrap_or(f64::NAN)
     }
 
-    fn of(&self, kind: Kind) -> impl Iterator<Item = &Way> {
-        self.ways.iter().filter(move |way| way.kind == kind)
+    fn of(&self, kind: Kind) -> impl Iterator<Item = &Method> {
+        self.methods.iter().filter(move |method| method.kind == kind)
     }
 
-    /// A panel of errors over something that a way has.
-    fn panel(&self, x: Axis, cost: impl Fn(&Way) -> Option<f64>) -> Panel {
+    /// A panel of errors over something that a method has.
+    fn panel(&self, x: Axis, cost: impl Fn(&Method) -> Option<f64>) -> Panel {
         let mut panel = Panel::new(&self.title(), x, Axis::log(ERROR, 1e-16..1e1));
         for (kind, name, look) in KINDS {
-            let points: Vec<_> = self.of(kind).filter_map(|way| Some((cost(way)?, way.error.max(1e-16)))).collect();
+            let points: Vec<_> =
+                self.of(kind).filter_map(|method| Some((cost(method)?, method.error.max(1e-16)))).collect();
             if !points.is_empty() {
                 panel.add(name, look, points);
             }
@@ -73,7 +74,7 @@ impl Measured {
     }
 }
 
-/// Measures all ways without a load and under the example finger's.
+/// Measures all methods without a load and under the example finger's.
 pub(super) fn measure() -> Result<[Measured; 2], ReportError> {
     let finger = example_finger();
     let measured = |load_n: f64| {
@@ -88,7 +89,7 @@ pub(super) fn measure() -> Result<[Measured; 2], ReportError> {
                 normal_load_n: load_n,
             },
         };
-        Ok::<_, ReportError>(Measured { load_n, ways: bench.all()? })
+        Ok::<_, ReportError>(Measured { load_n, methods: bench.all()? })
     };
     Ok([measured(0.0)?, measured(LOAD_N)?])
 }
@@ -96,37 +97,37 @@ pub(super) fn measure() -> Result<[Measured; 2], ReportError> {
 /// Error over run time on this computer.
 pub(super) fn against_time(measured: &[Measured; 2], boards: Boards) -> Result<Figure, ReportError> {
     let time = || Axis::log("MEASURED run time / the f64 closed form's", 0.05..200.0);
-    let panels = measured.each_ref().map(|one| one.panel(time(), |way| Some(way.seconds / one.unit_seconds())));
+    let panels = measured.each_ref().map(|one| one.panel(time(), |method| Some(method.seconds / one.unit_seconds())));
     let mut data = Data::new([
         "normal_force_n",
-        "way",
+        "method",
         "size",
         "largest_relative_error",
         "measured_run_time_over_f64_closed_form",
         "measured_nanoseconds",
     ]);
     for one in measured {
-        for way in &one.ways {
+        for method in &one.methods {
             data.row([
                 one.load_n.into(),
-                name(way.kind).into(),
-                way.size.as_str().into(),
-                way.error.into(),
-                (way.seconds / one.unit_seconds()).into(),
-                (1e9 * way.seconds).into(),
+                name(method.kind).into(),
+                method.size.as_str().into(),
+                method.error.into(),
+                (method.seconds / one.unit_seconds()).into(),
+                (1e9 * method.seconds).into(),
             ]);
         }
     }
     let (low, high) = RANGE_V_RMS;
     Ok(Figure {
         name: "error-against-run-time",
-        title: "Error against run time, for every way to invert".to_owned(),
+        title: "Error against run time, for every method of inversion".to_owned(),
         caption: vec![
             format!(
                 "Down and to the left is better. The error is the largest of |x(V) − x|/x over all electric frictions \
-                 x from x({low} V) to x({high} V), V being the voltage that a way gives for x, and x(V) what the model \
-                 makes of it in f64, right to 4e-15. Each kind comes in several sizes, joined by a line: steps of the \
-                 bisection, entries of the forward table, rows of the direct tables."
+                 x from x({low} V) to x({high} V), V being the voltage that a method gives for x, and x(V) what the \
+                 model makes of it in f64, right to 4e-15. Each kind comes in several sizes, joined by a line: steps \
+                 of the bisection, entries of the forward table, rows of the direct tables."
             ),
             format!(
                 "Run times were measured on the computer that made this page, in one run, as a ratio to the f64 closed \
@@ -135,8 +136,8 @@ pub(super) fn against_time(measured: &[Measured; 2], boards: Boards) -> Result<F
                 nanoseconds(measured)
             ),
             boards.sentence("an inversion"),
-            "Bisection is the straightforward way: it halves the range of voltages on Eqs. (36), (34), with a load on \
-             Eqs. (43), (21), which give friction in total. In f32 and under a load the total cannot resolve the \
+            "Bisection is the straightforward method: it halves the range of voltages on Eqs. (36), (34), with a load \
+             on Eqs. (43), (21), which give friction in total. In f32 and under a load the total cannot resolve the \
              electric part. The textbook's forward table holds friction at even steps of voltage; below the first step \
              it knows nothing. Direct tables find their row from the bits of the friction and evaluate a polynomial. \
              Integers have codes of 32 bits for friction, and their error is that against the code."
@@ -152,15 +153,21 @@ pub(super) fn against_time(measured: &[Measured; 2], boards: Boards) -> Result<F
 pub(super) fn against_size(measured: &[Measured; 2]) -> Result<Figure, ReportError> {
     let size = || Axis::log("size of the table, bytes", 1e2..1e5);
     let panels = measured.each_ref().map(|one| {
-        let mut panel = one.panel(size(), |way| way.bytes.map(|bytes| bytes as f64));
+        let mut panel = one.panel(size(), |method| method.bytes.map(|bytes| bytes as f64));
         panel.y = Axis::log(ERROR, 1e-7..1e1);
         panel
     });
-    let mut data = Data::new(["normal_force_n", "way", "size", "bytes", "largest_relative_error"]);
+    let mut data = Data::new(["normal_force_n", "method", "size", "bytes", "largest_relative_error"]);
     for one in measured {
-        for way in one.ways.iter().filter(|way| way.bytes.is_some()) {
-            let bytes = way.bytes.map_or(Value::Text(String::new()), Value::from);
-            data.row([one.load_n.into(), name(way.kind).into(), way.size.as_str().into(), bytes, way.error.into()]);
+        for method in one.methods.iter().filter(|method| method.bytes.is_some()) {
+            let bytes = method.bytes.map_or(Value::Text(String::new()), Value::from);
+            data.row([
+                one.load_n.into(),
+                name(method.kind).into(),
+                method.size.as_str().into(),
+                bytes,
+                method.error.into(),
+            ]);
         }
     }
     Ok(Figure {
@@ -182,9 +189,9 @@ pub(super) fn against_size(measured: &[Measured; 2]) -> Result<Figure, ReportErr
     })
 }
 
-/// Error over instructions on boards; none without a count that belongs to a way.
+/// Error over instructions on boards; `None` without a count that belongs to a method.
 pub(super) fn against_instructions(measured: &[Measured; 2], counts: &Counts) -> Result<Option<Figure>, ReportError> {
-    let mut data = Data::new(["core", "way", "instructions", "estimated_cycles", "largest_relative_error"]);
+    let mut data = Data::new(["core", "method", "instructions", "estimated_cycles", "largest_relative_error"]);
     let mut panels = Vec::new();
     for (core, core_name) in CORES {
         let mut panel = Panel::new(
@@ -193,12 +200,13 @@ pub(super) fn against_instructions(measured: &[Measured; 2], counts: &Counts) ->
             counted_errors(measured),
         );
         for (kind, name, look) in KINDS {
-            let counted = measured.iter().flat_map(|one| one.of(kind)).filter_map(|way| Some((way, way.counted?)));
+            let counted =
+                measured.iter().flat_map(|one| one.of(kind)).filter_map(|method| Some((method, method.counted?)));
             // With and without a load: the larger error counts, as the larger number of instructions does.
             let worst = counted.max_by(|one, other| one.0.error.total_cmp(&other.0.error));
-            let Some((way, what)) = worst else { continue };
+            let Some((method, what)) = worst else { continue };
             let Some(instructions) = counts.instructions(core, what) else { continue };
-            let (cycles, error) = (counts.cycles(core, what), way.error.max(1e-16));
+            let (cycles, error) = (counts.cycles(core, what), method.error.max(1e-16));
             data.row([core.into(), name.into(), instructions.into(), cycles.into(), error.into()]);
             panel.add(name, Look { line: Line::None, ..look }, vec![(instructions, error)]);
             let estimate = cycles.map_or(String::new(), |cycles| format!(" (about {cycles} cycles)"));
@@ -229,10 +237,10 @@ pub(super) fn against_instructions(measured: &[Measured; 2], counts: &Counts) ->
     }))
 }
 
-/// An axis of the errors of all ways that are counted, with a decade to spare.
+/// An axis of the errors of all methods that are counted, with a decade to spare.
 fn counted_errors(measured: &[Measured; 2]) -> Axis {
-    let counted = measured.iter().flat_map(|one| &one.ways).filter(|way| way.counted.is_some());
-    let powers = counted.map(|way| way.error.max(1e-16).log10());
+    let counted = measured.iter().flat_map(|one| &one.methods).filter(|method| method.counted.is_some());
+    let powers = counted.map(|method| method.error.max(1e-16).log10());
     let (low, high) = powers.fold((0.0_f64, -16.0_f64), |(low, high), power| (low.min(power), high.max(power)));
     Axis::log(ERROR, 10_f64.powf(low.floor() - 1.0)..10_f64.powf(high.ceil() + 1.0))
 }

@@ -31,7 +31,7 @@ const VERTICES_MIN: usize = 3;
 const SIDES: [usize; 9] = [50, 75, 100, 125, 150, 175, 200, 225, 250];
 const PITCH_MM: f64 = 0.25;
 const PICTURE: &str = "picture.png";
-/// Frictions that are asked for, in percent of what can be reached.
+/// Largest frictions of scenes, in percent of what can be reached.
 const PERCENTS: RangeInclusive<usize> = 1..=100;
 /// Bits that a byte takes on a serial line.
 const BITS_PER_BYTE: f64 = 10.0;
@@ -85,7 +85,7 @@ fn one_friction(percent: usize) -> String {
     format!("{HEAD}[[layer]]\nkind = \"constant\"\nfriction_fraction = {}\n", percent as f64 / 100.0)
 }
 
-/// A picture of all greys, which goes by its own number of samples whatever is asked.
+/// A picture of all greys, which is resampled to the number of samples of each scene.
 fn write_picture(folder: &Path) -> Result<(), ReportError> {
     const SIDE: u8 = 64;
     let path = folder.join(PICTURE);

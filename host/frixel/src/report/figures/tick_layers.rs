@@ -38,7 +38,7 @@ fn added(curve: &[Counted]) -> Option<f64> {
     others.iter().filter_map(|counted| Some(counted.mean? - fewest)).reduce(f64::max)
 }
 
-/// None without a count of such a tick.
+/// `None` without a count of such a tick.
 pub(super) fn figure(counts: &Counts) -> Result<Option<Figure>, ReportError> {
     let curves = UNDER.map(|(under, colour, name)| (under, colour, name, counted(counts, under)));
     let worst = curves.iter().flat_map(|(.., curve)| curve).map(|counted| counted.worst).reduce(f64::max);
@@ -74,9 +74,9 @@ pub(super) fn figure(counts: &Counts) -> Result<Option<Figure>, ReportError> {
                  the finger, so that layers elsewhere hardly count{elsewhere}. The longest ticks differ by what else \
                  falls into them, such as an early edge of the carrier."
             ),
-            "A scene is refused when a tick at some place is estimated at more cycles than the board states in its hello; \
-             the estimate adds up cycles by class of instruction. Counts come from the file given with --bench, which cargo \
-             xtask bench writes: they were counted in an emulator."
+            "A scene is refused when a tick at some place is estimated at more cycles than the board states in its \
+             hello; the estimate adds up cycles by class of instruction. Counts come from the file given with --bench, \
+             which cargo xtask bench writes: they were counted in an emulator."
                 .to_owned(),
         ],
         chart: Chart::new(vec![panel], 1),

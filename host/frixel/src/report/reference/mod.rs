@@ -97,7 +97,7 @@ macro_rules! answers {
 answers!(PlaneRow);
 answers!(SoftRow);
 
-/// All places of the plane: loads from small to large, then none.
+/// All places of the plane: loads from small to large, then no load.
 pub(super) fn plane() -> Result<Vec<PlaneRow>, csv::Error> {
     rows(PLANE)
 }

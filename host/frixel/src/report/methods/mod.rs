@@ -1,4 +1,4 @@
-//! Every way to turn electric friction into voltage, with its error and what it costs.
+//! Every method of turning electric friction into voltage, with its error and what it costs.
 
 mod bisection;
 mod direct;
@@ -20,7 +20,7 @@ const TIMED_POINTS: usize = 1_024;
 /// with their count.
 const STRIDE: usize = 389;
 
-/// A kind of way, that may come in several sizes.
+/// A kind of method, that may come in several sizes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Kind {
     ClosedF64,
@@ -37,9 +37,9 @@ pub(super) enum Kind {
     FixedCubic,
 }
 
-/// One way, measured.
+/// One method, measured.
 #[derive(Clone, Debug)]
-pub(super) struct Way {
+pub(super) struct Method {
     pub(super) kind: Kind,
     /// What makes it one of its kind: steps, entries, rows.
     pub(super) size: String,
@@ -60,7 +60,7 @@ pub(super) struct Bench<'a> {
     pub(super) parameters: Parameters,
 }
 
-/// What the straightforward ways compute with.
+/// What the straightforward methods compute with.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Parameters {
     pub(super) radius_m: f64,
@@ -72,16 +72,16 @@ pub(super) struct Parameters {
 
 impl Bench<'_> {
     /// Everything.
-    pub(super) fn all(&self) -> Result<Vec<Way>, ReportError> {
+    pub(super) fn all(&self) -> Result<Vec<Method>, ReportError> {
         let single = self.in_f32(Kind::ClosedF32, String::new(), None, |x| self.single.voltage_v_rms(x));
-        let mut ways = vec![
+        let mut methods = vec![
             self.in_f64(Kind::ClosedF64, String::new(), |x| self.contact.voltage_v_rms(x)),
-            Way { counted: Some("inverse_closed_form"), ..single },
+            Method { counted: Some("inverse_closed_form"), ..single },
         ];
-        bisection::measure(self, &mut ways);
-        forward_table::measure(self, &mut ways);
-        direct::measure(self, &mut ways)?;
-        Ok(ways)
+        bisection::measure(self, &mut methods);
+        forward_table::measure(self, &mut methods);
+        direct::measure(self, &mut methods)?;
+        Ok(methods)
     }
 
     /// Frictions from the one at the least voltage to the one at the largest, evenly in their logarithms.
@@ -93,10 +93,10 @@ impl Bench<'_> {
         (0..count).map(move |index| low * (high / low).powf(index as f64 / (count - 1) as f64))
     }
 
-    fn in_f64(&self, kind: Kind, size: String, invert: impl Fn(f64) -> f64) -> Way {
+    fn in_f64(&self, kind: Kind, size: String, invert: impl Fn(f64) -> f64) -> Method {
         let error = |x: f64| (self.contact.electric_friction_n(invert(x)) / x - 1.0).abs();
         let worst = largest(self.frictions(ERROR_POINTS).map(error));
-        Way {
+        Method {
             kind,
             size,
             counted: None,
@@ -106,13 +106,13 @@ impl Bench<'_> {
         }
     }
 
-    fn in_f32(&self, kind: Kind, size: String, bytes: Option<usize>, invert: impl Fn(f32) -> f32) -> Way {
+    fn in_f32(&self, kind: Kind, size: String, bytes: Option<usize>, invert: impl Fn(f32) -> f32) -> Method {
         let error = |x: f64| {
             let x = x as f32;
             (self.contact.electric_friction_n(f64::from(invert(x))) / f64::from(x) - 1.0).abs()
         };
         let worst = largest(self.frictions(ERROR_POINTS).map(error));
-        Way {
+        Method {
             kind,
             size,
             counted: None,
@@ -123,7 +123,14 @@ impl Bench<'_> {
     }
 
     /// Friction and voltage are codes, with their units; the error is that against the code's friction.
-    fn in_codes(&self, kind: Kind, size: String, bytes: usize, units: (f64, f64), invert: impl Fn(u32) -> u32) -> Way {
+    fn in_codes(
+        &self,
+        kind: Kind,
+        size: String,
+        bytes: usize,
+        units: (f64, f64),
+        invert: impl Fn(u32) -> u32,
+    ) -> Method {
         let code = |x: f64| (x / units.0).round() as u32;
         let error = |x: f64| {
             let code = code(x);
@@ -131,7 +138,7 @@ impl Bench<'_> {
             (self.contact.electric_friction_n(voltage_v_rms) / (f64::from(code) * units.0) - 1.0).abs()
         };
         let worst = largest(self.frictions(ERROR_POINTS).map(error));
-        Way {
+        Method {
             kind,
             size,
             counted: None,

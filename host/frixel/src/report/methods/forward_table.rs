@@ -1,7 +1,7 @@
-//! The textbook's way: a table of friction at even steps of voltage, a binary search, a straight line between two
+//! The textbook's method: a table of friction at even steps of voltage, a binary search, a straight line between two
 //! entries.
 
-use super::{Bench, Kind, RANGE_V_RMS, Way};
+use super::{Bench, Kind, Method, RANGE_V_RMS};
 
 const ENTRIES: [usize; 4] = [64, 256, 1024, 4096];
 
@@ -20,13 +20,13 @@ impl ForwardTable {
     }
 }
 
-pub(super) fn measure(bench: &Bench, ways: &mut Vec<Way>) {
+pub(super) fn measure(bench: &Bench, methods: &mut Vec<Method>) {
     for entries in ENTRIES {
         let step = RANGE_V_RMS.1 / (entries - 1) as f64;
         let friction_n = |entry: usize| bench.contact.electric_friction_n(step * entry as f64) as f32;
         let table = ForwardTable { frictions_n: (0..entries).map(friction_n).collect(), step_v_rms: step as f32 };
         let bytes = 4 * entries;
-        ways.push(
+        methods.push(
             bench.in_f32(Kind::ForwardTable, format!("{entries} entries"), Some(bytes), |x| table.voltage_v_rms(x)),
         );
     }

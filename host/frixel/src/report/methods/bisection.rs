@@ -1,10 +1,11 @@
-//! The straightforward way: halve a range of voltages until friction by Eqs. (36), (34), with a load (43), (21), fits.
+//! The straightforward method: halve a range of voltages until friction by Eqs. (36), (34), with a load (43), (21),
+//! fits.
 
 use core::f64::consts::PI;
 
 use frixel_model::{Real, VACUUM_PERMITTIVITY_F_PER_M};
 
-use super::{Bench, Kind, Parameters, RANGE_V_RMS, Way};
+use super::{Bench, Kind, Method, Parameters, RANGE_V_RMS};
 
 const STEPS_F64: [usize; 5] = [8, 12, 20, 32, 53];
 const STEPS_F32: [usize; 3] = [8, 12, 24];
@@ -49,15 +50,15 @@ impl<T: Real> Equation<T> {
     }
 }
 
-pub(super) fn measure(bench: &Bench, ways: &mut Vec<Way>) {
+pub(super) fn measure(bench: &Bench, methods: &mut Vec<Method>) {
     let double = Equation::<f64>::new(&bench.parameters);
     for steps in STEPS_F64 {
         let invert = |x| double.voltage_v_rms(x, steps);
-        ways.push(bench.in_f64(Kind::Bisection, format!("{steps} steps"), invert));
+        methods.push(bench.in_f64(Kind::Bisection, format!("{steps} steps"), invert));
     }
     let single = Equation::<f32>::new(&bench.parameters);
     for steps in STEPS_F32 {
         let invert = |x| single.voltage_v_rms(x, steps);
-        ways.push(bench.in_f32(Kind::BisectionF32, format!("{steps} steps"), None, invert));
+        methods.push(bench.in_f32(Kind::BisectionF32, format!("{steps} steps"), None, invert));
     }
 }
