@@ -8,13 +8,13 @@ use std::fs::{self, File};
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-use frixel::output::{Preview, write_preview_png};
+use frixel::output::write_preview_png;
 use frixel::player::{Simulation, simulate};
 use frixel::scene_file;
 use frixel_hil_sim::{BoardMemory, RigConfig, Stroke};
 use frixel_layers::{Header, Scene as WireScene};
 use frixel_scene::recorder::FeltRow;
-use frixel_scene::{Asked, Program, compile};
+use frixel_scene::{Asked, Preview, Program, compile};
 use frixel_wire::fault::Flags;
 
 const PICTURE_BYTES_MAX: u64 = 40 * 1024;
