@@ -8,8 +8,8 @@ use std::error::Error;
 use std::hint::black_box;
 use std::time::Instant;
 
+use frixel_control::Drive;
 use frixel_hil_sim::{Point, Stroke, World, WorldConfig};
-use frixel_render::Drive;
 use frixel_wire::dac_code::DacCode;
 
 const SECONDS: f64 = 60.0;

@@ -1,6 +1,6 @@
 //! The amplifier: DAC code in, electrode voltage out, with gain error, saturation and a first-order lag.
 
-use frixel_render::Drive;
+use frixel_control::Drive;
 
 use crate::error::{OutOfRange, above_zero, zero_to_ten};
 
@@ -100,7 +100,7 @@ impl Amplifier {
 mod tests {
     #![allow(clippy::float_cmp, reason = "what has to be exact is tested as exact")]
 
-    use frixel_render::Drive;
+    use frixel_control::Drive;
     use frixel_wire::dac_code::DacCode;
     use proptest::prelude::*;
 

@@ -1,7 +1,7 @@
 //! A simulator that stands in for amplifier, screen and finger, in virtual time.
 //!
-//! - [`World`]: what is on the other side of the board's pins. It gives a [`Sense`](frixel_render::Sense) and takes a
-//!   [`Drive`](frixel_render::Drive) at every tick, and tells what the finger [felt](Felt).
+//! - [`World`]: what is on the other side of the board's pins. It gives a [`Sense`](frixel_control::Sense) and takes a
+//!   [`Drive`](frixel_control::Drive) at every tick, and tells what the finger [felt](Felt).
 //! - [`Stroke`]: where the finger is at a time.
 //! - [`Rig`]: a board and its world on one thread.
 //! - [`chips`]: models of the chips on a board, for their drivers to run against.
@@ -34,7 +34,7 @@ mod world;
 pub use amplifier::AmplifierConfig;
 pub use error::{OutOfRange, WorldError};
 pub use fingertip::example_finger;
-pub use frixel_render::TableRows;
+pub use frixel_session::TableRows;
 pub use journal::Journal;
 pub use line::{Line, LineCounts, LineFault};
 #[cfg(unix)]

@@ -1,10 +1,11 @@
 //! The in-process rig: session, ticker and world, tick by tick, on one thread.
 
+use frixel_control::{Active, Board, Order, Sense, Status, StreamBuffer, Ticker};
 use frixel_exchange::{TICK_BYTES_MAX, TickBytes, TickInput, TickOutput};
 use frixel_layers::BitmapPool;
 use frixel_layers::{Header, Scene};
 use frixel_model::{Contact, Finger, LoadedContact, ParameterError};
-use frixel_render::{Active, Board, Order, Sense, Session, Status, StreamBuffer, TableRows, Ticker};
+use frixel_session::{Session, TableRows, active_bytes_filled, table_rows};
 use frixel_wire::message::Refusal;
 
 use crate::{Felt, Journal, Line, Stroke, World, WorldConfig, WorldError};
@@ -32,12 +33,12 @@ impl BoardMemory {
     /// scene is built.
     #[must_use]
     pub fn bytes_filled(scene: &Scene) -> usize {
-        Active::bytes_filled(scene)
+        active_bytes_filled(scene)
     }
 
     /// Rows of the inverse table that a board computes for a scene.
     pub fn table_rows(scene: &Scene, board: &Board) -> Result<TableRows, Refusal> {
-        Active::table_rows(scene, board)
+        table_rows(scene, board)
     }
 }
 

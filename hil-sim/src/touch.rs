@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use frixel_render::Touch;
+use frixel_session::Touch;
 
 use crate::error::{OutOfRange, above_zero, zero_to_ten};
 use crate::random::{Purpose, Random};

@@ -2,8 +2,9 @@
 
 use core::ops::Range;
 
+use frixel_control::{Drive, Sense};
 use frixel_model::LoadedContact;
-use frixel_render::{Drive, Sense, Touch};
+use frixel_session::Touch;
 
 use crate::amplifier::{Amplifier, AmplifierConfig};
 use crate::error::{OutOfRange, WorldError};
@@ -58,7 +59,7 @@ pub struct Felt {
 ///
 /// ```
 /// use frixel_hil_sim::{Point, Stroke, World, WorldConfig};
-/// use frixel_render::Drive;
+/// use frixel_control::Drive;
 ///
 /// let left = Point { x_m: 0.01, y_m: 0.03 };
 /// let right = Point { x_m: 0.09, y_m: 0.03 };

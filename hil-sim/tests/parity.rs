@@ -6,6 +6,7 @@
 mod emulator;
 mod script;
 
+use frixel_control::Board;
 use frixel_exchange::BOARD;
 use frixel_hil_sim::emulated::{Image, ReplayError, replay};
 use frixel_hil_sim::{BoardMemory, Journal, LineFault, Point, Rig, RigConfig, Stroke};
@@ -13,7 +14,6 @@ use frixel_layers::{
     Beat, Bitmap, Blend, Burst, Button, Carrier, Click, Constant, Edge, Grating, Header, Layer, Noise, Point as Corner,
     Record, Region, Speed, Stream, Vibration, Wave,
 };
-use frixel_render::Board;
 use frixel_wire::fault::State;
 use frixel_wire::message::Command;
 use script::{HEADER, Script, record, samples, scene, scene_with_points};

@@ -2,37 +2,18 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use frixel_hil_sim::{BoardMemory, LineFault, Point, Rig, RigConfig, Stroke, TickRecord, contact_of};
-use frixel_layers::{Blend, Carrier, Constant, Header, Layer, Leader, Record, Region};
+use frixel_layers::{Carrier, Header};
 use frixel_wire::fault::State;
 use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, crc32};
 use frixel_wire::message::{Command, FromBoard, Request};
 use frixel_wire::payload::{self, Payload};
 
-const HEADER: Header = Header {
-    screen_width_m: 0.12,
-    screen_height_m: 0.11,
-    finger_radius_m: 8e-3,
-    stiffness_pa_per_m: 1.8e7,
-    friction_coefficient: 0.5,
-    normal_load_n: 0.5,
-    effective_gap_m: 1e-5,
-    voltage_max_v_rms: 150.0,
-    voltage_max_v_peak: 220.0,
-    slew_v_per_s: 5e6,
-    carrier_hz: 1000.0,
-    host_timeout_s: 1.0,
-    carrier: Carrier::Square,
-    autonomous: true,
-    prediction: true,
-    leader: Leader::First,
-    layers_fixed: false,
-    electric_friction_max_n: None,
-};
+/// A scene that needs no host.
+const HEADER: Header =
+    Header { voltage_max_v_peak: 220.0, host_timeout_s: 1.0, autonomous: true, ..frixel_testkit::HEADER };
 
 fn constant(header: &Header, electric_friction_n: f32) -> Vec<u8> {
-    let layer = Layer::Constant(Constant { electric_friction_n });
-    let record = Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer };
-    [header.write(1, 0).as_slice(), record.write().as_slice()].concat()
+    frixel_testkit::scene(header, &[frixel_testkit::constant(electric_friction_n)])
 }
 
 /// Sends one frame and returns the payload bytes of what comes back, with the ticks that it took.

@@ -1,11 +1,12 @@
 //! The world as a board sees it, tick by tick.
 #![allow(clippy::unwrap_used, reason = "these are tests, which clippy does not see in the helpers")]
 
+use frixel_control::{Drive, Sense};
 use frixel_hil_sim::{
     AmplifierConfig, Felt, FingerState, Point, Stroke, TouchConfig, World, WorldConfig, example_finger,
 };
 use frixel_model::{Contact, Finger};
-use frixel_render::{Drive, Sense, Touch};
+use frixel_session::Touch;
 use frixel_wire::dac_code::DacCode;
 use proptest::prelude::*;
 

@@ -11,7 +11,7 @@ use crate::{bench, budgets, stamps, test_programs};
 /// What the images and the budgets depend on.
 const FIRMWARE_INPUTS: [&str; 6] = ["budgets.toml", "Cargo.lock", "Cargo.toml", "firmware", "model", "xtask"];
 /// The crate whose features an image chooses from.
-const RENDER: &str = "firmware/render";
+const SESSION: &str = "firmware/session";
 
 /// An image outside the workspace.
 struct Image {
@@ -74,7 +74,7 @@ fn unless_firmware_unchanged(name: &str, check: impl FnOnce() -> Result<(), Stri
 /// Checks that the renderer goes without any of its features, and with each of them alone, with warnings as errors.
 fn feature_sets() -> Result<(), String> {
     add_target(M4F)?;
-    let path = root().join(RENDER).join("Cargo.toml");
+    let path = root().join(SESSION).join("Cargo.toml");
     let text = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
     let manifest: toml::Table = toml::from_str(&text).map_err(|error| format!("{}: {error}", path.display()))?;
     let features = manifest.get("features").and_then(toml::Value::as_table);
@@ -82,11 +82,11 @@ fn feature_sets() -> Result<(), String> {
     let all = ["check", "--quiet", "--locked", "--target", M4F, "--target-dir", "../../target/cross"];
     let none = [&all[..], &["--no-default-features"]].concat();
     let flags = [("RUSTFLAGS", "-D warnings")];
-    cargo("renderer with all features", RENDER, &all, &flags)?;
-    cargo("renderer without features", RENDER, &none, &flags)?;
+    cargo("session with all features", SESSION, &all, &flags)?;
+    cargo("session without features", SESSION, &none, &flags)?;
     for feature in features.keys().filter(|feature| *feature != "default") {
         let alone = [&none[..], &["--features", feature]].concat();
-        cargo(&format!("renderer with {feature}"), RENDER, &alone, &flags)?;
+        cargo(&format!("session with {feature}"), SESSION, &alone, &flags)?;
     }
     Ok(())
 }

@@ -2,7 +2,8 @@
 
 use core::array;
 
-use frixel_render::{Drive, Order, Sense, Session, Ticker, Touch};
+use frixel_control::{Drive, Order, Sense, Ticker};
+use frixel_session::{Session, Touch};
 use frixel_wire::frame::{FRAME_MAX_LEN, crc32};
 use frixel_wire::message::{Command, Request};
 use frixel_wire::payload::{self, CHUNK_LEN};

@@ -13,7 +13,9 @@ use frixel_wire::scene::RECORDS_MAX;
 
 use crate::count::Counter;
 use crate::host::STREAM_HZ;
-use crate::tick::{Bench, HEADER};
+use frixel_testkit::HEADER;
+
+use crate::tick::Bench;
 
 pub(crate) const GRATING: Layer = grating(Wave::Sine);
 
@@ -69,10 +71,6 @@ const fn vibration(beat: Beat) -> Layer {
 }
 
 /// A layer on the whole screen.
-pub(crate) const fn record(layer: Layer) -> Record {
-    Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer }
-}
-
 /// A layer in a region under the finger, with the dearest of blends.
 const fn under(region: Region, layer: Layer) -> Record {
     Record { region, blend: Blend::Max, gain: 1.0, layer }

@@ -7,9 +7,9 @@
 use core::str;
 
 use cortex_m_semihosting::hprintln;
-use frixel_layers::{Layer, SCENE_MAX_LEN};
-use frixel_random_scenes::{Pace, RandomFinger, RandomScene, Report};
-use frixel_render::Touch;
+use frixel_layers::Layer;
+use frixel_session::Touch;
+use frixel_testkit::{Pace, RandomFinger, RandomScene, Report};
 
 use crate::count::{Case, Counter};
 use crate::tick::{Bench, PING_TICKS, STREAM_TICKS};
@@ -54,7 +54,7 @@ impl Bench {
     fn play_random(&mut self, seed: u64, pace: Pace, crc32: u32, mut case: Case) {
         let scene = RandomScene::new(seed, crc32);
         let estimated_core_cycles = scene.worst_tick().core_cycles;
-        self.play_bytes(scene.write(&mut [0; SCENE_MAX_LEN]));
+        self.play_bytes(&scene.bytes());
         if scene.records.iter().any(|record| matches!(record.layer, Layer::Stream(_))) {
             self.start_stream();
         }

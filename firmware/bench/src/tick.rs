@@ -1,16 +1,17 @@
 //! Whole ticks, by scene.
 
 use cortex_m::singleton;
-use frixel_layers::BitmapPool;
-use frixel_layers::{Carrier, HEADER_LEN, Header, Leader, POINT_LEN, Point, RECORD_LEN, Record, SCENE_MAX_LEN};
-use frixel_render::{Active, Board, Drive, Sense, Session, StreamBuffer, Ticker, Touch};
+use frixel_control::{Active, Board, Drive, Sense, StreamBuffer, Ticker};
+use frixel_layers::{BitmapPool, Header, Point, Record};
+use frixel_session::{Session, Touch};
+use frixel_testkit::{HEADER, IdealMonitor, record, scene_with_points};
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::State;
 use frixel_wire::message::Command;
 
 use crate::count::{Case, Counter};
 use crate::host::{Host, STREAM_FRAME, STREAM_TICKS_PER_SAMPLE};
-use crate::layers::{GRATING, bitmap, record};
+use crate::layers::{GRATING, bitmap};
 
 /// Ticks counted of each scene: a stroke across the screen.
 const TICKS: u32 = 8_000;
@@ -22,27 +23,6 @@ pub(crate) const PING_TICKS: u32 = 2_000;
 pub(crate) const STREAM_TICKS: u32 = STREAM_FRAME as u32 * STREAM_TICKS_PER_SAMPLE;
 /// Side of the square picture, in samples.
 const PICTURE: u16 = 100;
-
-pub(crate) const HEADER: Header = Header {
-    screen_width_m: 0.12,
-    screen_height_m: 0.11,
-    finger_radius_m: 8e-3,
-    stiffness_pa_per_m: 1.8e7,
-    friction_coefficient: 0.5,
-    normal_load_n: 0.5,
-    effective_gap_m: 1e-5,
-    voltage_max_v_rms: 150.0,
-    voltage_max_v_peak: 200.0,
-    slew_v_per_s: 5e6,
-    carrier_hz: 1000.0,
-    host_timeout_s: 0.25,
-    carrier: Carrier::Square,
-    autonomous: false,
-    prediction: true,
-    leader: Leader::First,
-    layers_fixed: false,
-    electric_friction_max_n: None,
-};
 
 /// Counts the ticks of every scene.
 pub fn run(counter: &mut Counter) {
@@ -62,29 +42,7 @@ pub fn run(counter: &mut Counter) {
 /// A playing board.
 pub(crate) struct Bench {
     pub(crate) host: Host<'static>,
-    monitor: Monitor,
-}
-
-/// An ideal amplifier with the board's edges.
-struct Monitor {
-    voltage_v: f32,
-    volts_per_code: f32,
-    step: f32,
-}
-
-impl Monitor {
-    fn new(board: &Board) -> Self {
-        let tick_period_s = 1.0 / board.tick_hz as f32;
-        Self {
-            voltage_v: 0.0,
-            volts_per_code: board.limits.full_scale_v_peak / f32::from(i16::MAX),
-            step: 1.0 - libm::expf(-tick_period_s / board.limits.edge_time_constant_s),
-        }
-    }
-
-    fn follow(&mut self, drive: Drive) {
-        self.voltage_v += self.step * (f32::from(drive.dac_code.bits()) * self.volts_per_code - self.voltage_v);
-    }
+    monitor: IdealMonitor,
 }
 
 impl Bench {
@@ -101,7 +59,7 @@ impl Bench {
         let mut session = Session::new(board, &POOL, second);
         ticker.attach_stream(&STREAM);
         session.attach_stream(&STREAM);
-        Self { host: Host::new(session, ticker), monitor: Monitor::new(&board) }
+        Self { host: Host::new(session, ticker), monitor: IdealMonitor::new(&board.limits, board.tick_hz) }
     }
 
     /// Sends the board a picture, and returns its name.
@@ -118,17 +76,7 @@ impl Bench {
     }
 
     pub(crate) fn play_with_points(&mut self, header: &Header, records: &[Record], points: &[Point]) {
-        let mut scene = [0; SCENE_MAX_LEN];
-        let (head, rest) = scene.split_at_mut(HEADER_LEN);
-        head.copy_from_slice(&header.write(records.len() as u8, points.len() as u8));
-        let (body, tail) = rest.split_at_mut(RECORD_LEN * records.len());
-        for (place, record) in body.chunks_exact_mut(RECORD_LEN).zip(records) {
-            place.copy_from_slice(&record.write());
-        }
-        for (place, point) in tail.chunks_exact_mut(POINT_LEN).zip(points) {
-            place.copy_from_slice(&point.write());
-        }
-        self.play_bytes(&scene[..HEADER_LEN + RECORD_LEN * records.len() + POINT_LEN * points.len()]);
+        self.play_bytes(&scene_with_points(header, records, points));
     }
 
     /// Plays a compiled scene, which the board has to take.
@@ -183,7 +131,7 @@ impl Bench {
         self.host.before_tick(touch);
         let sense = self.sense();
         let drive = tick(&mut self.host, &sense);
-        self.monitor.follow(drive);
+        self.monitor.follow(drive.dac_code);
         drive
     }
 
@@ -191,13 +139,13 @@ impl Bench {
         self.host.before_tick(touch);
         let sense = self.sense();
         let drive = case.take(tick, &mut self.host, &sense);
-        self.monitor.follow(drive);
+        self.monitor.follow(drive.dac_code);
         drive
     }
 
     fn sense(&self) -> Sense {
         let arm_switch = !self.host.ticker.waits_for_release();
-        Sense { amplifier_fault: false, monitor_v: self.monitor.voltage_v, arm_switch }
+        Sense { amplifier_fault: false, monitor_v: self.monitor.voltage_v(), arm_switch }
     }
 }
 

@@ -2,8 +2,9 @@
 
 use core::sync::atomic::{Ordering, fence};
 
+use frixel_control::{Status, Ticker};
 use frixel_exchange::{TICK_BYTES_MAX, TickInput, TickOutput, layout};
-use frixel_render::{Session, Status, Ticker};
+use frixel_session::Session;
 
 use crate::shared::{self, Cursor};
 

@@ -19,10 +19,11 @@ mod uart;
 use cortex_m::Peripherals;
 use cortex_m::singleton;
 use cortex_m_rt::entry;
+use frixel_control::{Active, Board, StreamBuffer, Ticker};
 use frixel_drivers::fault_record::Text;
 use frixel_exchange::{BOARD, layout};
 use frixel_layers::BitmapPool;
-use frixel_render::{Active, Board, Session, StreamBuffer, Ticker};
+use frixel_session::Session;
 use frixel_wire::hello::ResetCause;
 use frixel_wire::message::FAULT_TEXT_MAX_LEN;
 

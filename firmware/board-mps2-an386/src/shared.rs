@@ -3,8 +3,9 @@
 
 use core::sync::atomic::{Ordering, fence};
 
+use frixel_control::Drive;
 use frixel_exchange::{STAMPED_TOUCH_WORDS, StampedTouch, layout, word_of};
-use frixel_render::{Drive, Touch};
+use frixel_session::Touch;
 
 /// Where the PSRAM is mapped (Arm DAI0386, MPS2 FPGA image AN386).
 const BASE: *mut u32 = 0x2100_0000 as *mut u32;

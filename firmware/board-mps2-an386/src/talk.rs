@@ -2,8 +2,9 @@
 
 use cortex_m::Peripherals;
 use cortex_m::singleton;
+use frixel_control::{Active, Board, Order, Status, Ticker};
 use frixel_drivers::serial::SerialLink;
-use frixel_render::{Active, Board, Order, Session, Status, Ticker};
+use frixel_session::Session;
 use heapless::spsc::{Consumer, Producer, Queue};
 
 use crate::tick::{self, Monitor, Tick};

@@ -5,8 +5,8 @@ use core::convert::Infallible;
 use cortex_m::interrupt::InterruptNumber;
 use cortex_m::peripheral::NVIC;
 use embedded_io::{ErrorType, Read, ReadReady, Write, WriteReady};
+use frixel_control::Board;
 use frixel_exchange::layout;
-use frixel_render::Board;
 use heapless::spsc::{Consumer, Producer, Queue};
 
 use crate::owned::Owned;

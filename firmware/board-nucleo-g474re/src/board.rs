@@ -1,10 +1,10 @@
 //! Who this board is, and what it can bear. What is here belongs to the parts that `docs/hardware.md` lists: another
 //! amplifier or electrode has other numbers.
 
+use frixel_control::Board;
 use frixel_drivers::monitor::MonitorScale;
 use frixel_layers::BITMAP_POOL_LEN;
-use frixel_render::Board;
-use frixel_render::store::{Flash, LIMITS_LEN, Slot, read_limits};
+use frixel_session::store::{Flash, LIMITS_LEN, Slot, read_limits};
 use frixel_wire::hello::{BoardKind, BoardLimits};
 use frixel_wire::scene::RECORDS_MAX;
 use stm32_metapac::UID;

@@ -5,7 +5,7 @@
 use core::ptr;
 use core::sync::atomic::{AtomicBool, Ordering};
 
-use frixel_render::store::{Flash, Operation, WORD_LEN};
+use frixel_session::store::{Flash, Operation, WORD_LEN};
 use stm32_metapac::FLASH;
 
 /// First byte of bank 2.

@@ -5,7 +5,7 @@
 //! One interrupt, [`tick`], runs above everything, 40,000 times a second. All else is the main loop, [`talk`]: serial
 //! port, session, stores, optical frame, watchdog. Between them go the lock-free queues of `heapless`; no critical section
 //! masks the tick ([`critical`]). None of it has run on hardware in this repository's CI: what can be tested without is in
-//! `firmware/render` and `firmware/drivers`.
+//! `firmware/control`, `firmware/session` and `firmware/drivers`.
 #![no_std]
 
 pub mod adc;

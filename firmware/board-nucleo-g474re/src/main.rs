@@ -21,14 +21,15 @@ use cortex_m::{Peripherals, singleton};
 use cortex_m_rt::entry;
 #[cfg(feature = "log")]
 use defmt_rtt as _;
+#[cfg(feature = "stream")]
+use frixel_control::StreamBuffer;
+use frixel_control::{Active, Board, Ticker};
 use frixel_drivers::fault_record::Text;
 use frixel_drivers::serial::SerialLink;
 use frixel_layers::BitmapPool;
-#[cfg(feature = "stream")]
-use frixel_render::StreamBuffer;
+use frixel_session::Session;
 #[cfg(feature = "store")]
-use frixel_render::store::SceneKeeper;
-use frixel_render::{Active, Board, Session, Ticker};
+use frixel_session::store::SceneKeeper;
 use frixel_wire::message::FAULT_TEXT_MAX_LEN;
 
 /// Memory for bitmaps, written by the session and read by the tick.
@@ -98,23 +99,37 @@ fn start(text: &'static mut Text, queue_pairs: &'static mut QueuePairs) -> Talk 
     }
 }
 
-/// Makes both halves of the firmware. What is large is made in passing, so that no image of it lies in flash, and the
-/// stack that this takes is free again afterwards.
+/// Makes both halves of the firmware.
 #[inline(never)]
 fn make(board: Board) -> (Ticker<'static>, &'static mut Session<'static>) {
-    let (Some(first), Some(second)) = (singleton!(: Active = Active::new()), singleton!(: Active = Active::new()))
-    else {
-        fault::never()
-    };
+    let (Some(first), Some(second)) = (first_coefficients(), second_coefficients()) else { fault::never() };
     #[cfg_attr(not(feature = "stream"), allow(unused_mut, reason = "a stream is attached to it"))]
     let mut ticker = Ticker::new(&board, &POOL, first);
-    let Some(session) = singleton!(: Session<'static> = Session::new(board, &POOL, second)) else { fault::never() };
+    let Some(session) = session(board, second) else { fault::never() };
     #[cfg(feature = "stream")]
     {
         ticker.attach_stream(&STREAM);
         session.attach_stream(&STREAM);
     }
     (ticker, session)
+}
+
+// What is large is made on the stack, so that no image of it lies in flash. Each has a function of its own, so that the
+// stack holds one of them at a time.
+
+#[inline(never)]
+fn first_coefficients() -> Option<&'static mut Active> {
+    singleton!(: Active = Active::new())
+}
+
+#[inline(never)]
+fn second_coefficients() -> Option<&'static mut Active> {
+    singleton!(: Active = Active::new())
+}
+
+#[inline(never)]
+fn session(board: Board, spare: &'static mut Active) -> Option<&'static mut Session<'static>> {
+    singleton!(: Session<'static> = Session::new(board, &POOL, spare))
 }
 
 #[cfg(feature = "log")]

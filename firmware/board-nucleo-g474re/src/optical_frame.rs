@@ -19,7 +19,7 @@ use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::i2c::{self, ErrorKind, ErrorType, I2c, NoAcknowledgeSource, Operation};
 use frixel_drivers::polling::{poll_once, yield_now};
 use frixel_drivers::zforce::{self, MESSAGE_MAX_LEN, ZForce};
-use frixel_render::Touch;
+use frixel_session::Touch;
 use stm32_metapac::bdma::vals::{Dir as DmaDir, Pl};
 use stm32_metapac::i2c::vals::{Autoend, Dir};
 use stm32_metapac::rcc::vals::I2csel;

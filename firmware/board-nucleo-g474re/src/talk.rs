@@ -1,10 +1,11 @@
 //! The main loop: the session between serial port and tick, and all that has time.
 
+use frixel_control::{Active, Order, Status};
 use frixel_drivers::serial::SerialLink;
 use frixel_drivers::state_light::StateLight;
+use frixel_session::Session;
 #[cfg(feature = "store")]
-use frixel_render::store::SceneKeeper;
-use frixel_render::{Active, Order, Session, Status};
+use frixel_session::store::SceneKeeper;
 use frixel_wire::fault::State;
 use heapless::spsc::{Consumer, Producer, Queue};
 

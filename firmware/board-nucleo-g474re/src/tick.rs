@@ -9,10 +9,10 @@
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use cortex_m::peripheral::NVIC;
+use frixel_control::{Active, Order, Sense, Status, Ticker};
 use frixel_drivers::amplifier::Amplifier;
 use frixel_drivers::arm_switch::ArmSwitch;
 use frixel_drivers::bus_handover::BusHandover;
-use frixel_render::{Active, Order, Sense, Status, Ticker};
 use frixel_wire::fault::Fault;
 use heapless::spsc::{Consumer, Producer};
 use stm32_metapac::{GPIOC, Interrupt, interrupt};

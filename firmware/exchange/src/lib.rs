@@ -16,7 +16,7 @@ pub use tick::{
 };
 pub use touch::{STAMPED_TOUCH_WORDS, StampedTouch};
 
-use frixel_render::Board;
+use frixel_control::Board;
 use frixel_wire::hello::{BoardKind, BoardLimits};
 
 /// The emulated board: the limits of the smallest real one, like the simulated board.

@@ -1,6 +1,7 @@
 //! What goes into a tick and what comes out of it.
 
-use frixel_render::{Drive, Sense, Touch};
+use frixel_control::{Drive, Sense};
+use frixel_session::Touch;
 use frixel_wire::dac_code::DacCode;
 
 use crate::words::{TOUCH_MASK, put_bytes, put_touch, take_bytes, take_touch, touch_kind};

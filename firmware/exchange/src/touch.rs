@@ -1,6 +1,6 @@
 //! Reports of the touch source to a board that ticks on its own timer.
 
-use frixel_render::Touch;
+use frixel_session::Touch;
 
 use crate::words::{put_touch, take_touch, touch_kind};
 

@@ -1,7 +1,7 @@
 //! Values to and from words.
 
 use crate::{TICK_BYTES_MAX, TickBytes};
-use frixel_render::Touch;
+use frixel_session::Touch;
 
 const TOUCH_NONE: u32 = 0;
 const TOUCH_UP: u32 = 1;

@@ -108,20 +108,15 @@ impl ActiveLayers {
         if !self.tables.clicks().is_empty() {
             context.clicks.begin();
         }
-        let below_n = self.blend(0, on & near, 0.0, context);
-        let others = others_on & others_near;
-        if others == 0 { below_n } else { self.blend(u32::BITS, others, below_n, context) }
-    }
-
-    /// Blends those of the 32 layers from number `first` on that are in `set`, over what is below them.
-    #[inline]
-    fn blend(&self, first: u32, mut set: u32, below_n: f32, context: &mut Context) -> f32 {
-        let mut electric_friction_n = below_n;
-        while set != 0 {
-            let number = set.trailing_zeros();
-            set &= set - 1;
-            if let Some(layer) = self.layers.get((first + number) as usize) {
-                electric_friction_n = layer.blend_over(electric_friction_n, context);
+        let mut electric_friction_n = 0.0;
+        // In one place, so that the compiler puts it into the tick instead of calling it.
+        for (first, mut set) in [(0, on & near), (u32::BITS, others_on & others_near)] {
+            while set != 0 {
+                let number = set.trailing_zeros();
+                set &= set - 1;
+                if let Some(layer) = self.layers.get((first + number) as usize) {
+                    electric_friction_n = layer.blend_over(electric_friction_n, context);
+                }
             }
         }
         electric_friction_n

@@ -82,7 +82,7 @@ pub use point::{POINT_LEN, Point};
 pub use prepare::ticks;
 pub use record::{RECORD_LEN, Record, disabled_record};
 pub use region::Region;
-pub use scene::{SCENE_MAX_LEN, Scene};
+pub use scene::{SCENE_MAX_LEN, Scene, features_of};
 pub use square_root::square_root;
 pub use tables::{CLICKS_MAX, NOISES_MAX};
 pub use wave::Wave;

@@ -4,6 +4,7 @@
 mod polygon;
 
 use frixel_wire::bytes::{get_at, put_at};
+use frixel_wire::hello::feature;
 use frixel_wire::message::ConfigRefusal;
 use frixel_wire::scene::{POLYGON_POINTS_MAX, SceneError};
 
@@ -96,6 +97,11 @@ impl Region {
             [POLYGON] if cfg!(feature = "polygon") => Ok(Self::Polygon { first, count }),
             [value] => Err(SceneError::UnknownChoice { record: number, offset: REGION_AT as u8, value }),
         }
+    }
+
+    /// The bit of [`feature`] that a board needs for the region, or 0.
+    pub(crate) fn feature(&self) -> u32 {
+        if matches!(self, Self::Polygon { .. }) { feature::POLYGON } else { 0 }
     }
 
     /// Checks that a polygon's points are in the scene.

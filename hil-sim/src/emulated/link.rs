@@ -8,8 +8,8 @@ use std::sync::atomic::Ordering;
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
+use frixel_control::Drive;
 use frixel_exchange::{drive_of, layout};
-use frixel_render::Drive;
 
 use super::machine::Machine;
 use super::{EmulatorError, Image};

@@ -1,4 +1,4 @@
-use frixel_render::Touch;
+use frixel_session::Touch;
 
 use super::{TouchConfig, TouchSource};
 use crate::stroke::FingerState;

@@ -1,9 +1,17 @@
 //! A host in virtual time for the in-process rig, and scenes to play.
-#![allow(dead_code, unreachable_pub, clippy::unwrap_used, reason = "a test uses its part, and may fail")]
+#![allow(
+    dead_code,
+    unused_imports,
+    unreachable_pub,
+    clippy::unwrap_used,
+    reason = "a test uses its part, and may fail"
+)]
 
+use frixel_control::Status;
 use frixel_hil_sim::{Rig, TickRecord};
-use frixel_layers::{Blend, Carrier, Header, Layer, Leader, Point, Record, Region};
-use frixel_render::Status;
+use frixel_layers::Header;
+use frixel_testkit::Random;
+pub use frixel_testkit::{record, scene, scene_with_points};
 use frixel_wire::frame::{FRAME_MAX_LEN, crc32};
 use frixel_wire::message::{Command, Request};
 use frixel_wire::payload::{self, CHUNK_LEN};
@@ -115,52 +123,11 @@ impl<'a> Script<'a> {
     }
 }
 
-/// The example finger at 0.5 N under at most 150 V rms.
-pub const HEADER: Header = Header {
-    screen_width_m: 0.12,
-    screen_height_m: 0.08,
-    finger_radius_m: 8e-3,
-    stiffness_pa_per_m: 1.8e7,
-    friction_coefficient: 0.5,
-    normal_load_n: 0.5,
-    effective_gap_m: 1e-5,
-    voltage_max_v_rms: 150.0,
-    voltage_max_v_peak: 200.0,
-    slew_v_per_s: 5e6,
-    carrier_hz: 1000.0,
-    host_timeout_s: 0.25,
-    carrier: Carrier::Square,
-    autonomous: false,
-    prediction: true,
-    leader: Leader::First,
-    layers_fixed: false,
-    electric_friction_max_n: None,
-};
+/// The example finger on a lower screen.
+pub const HEADER: Header = Header { screen_height_m: 0.08, ..frixel_testkit::HEADER };
 
-pub fn record(layer: Layer) -> Record {
-    Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer }
-}
-
-pub fn scene(header: &Header, records: &[Record]) -> Vec<u8> {
-    scene_with_points(header, records, &[])
-}
-
-pub fn scene_with_points(header: &Header, records: &[Record], points: &[Point]) -> Vec<u8> {
-    let mut bytes = header.write(records.len() as u8, points.len() as u8).to_vec();
-    bytes.extend(records.iter().flat_map(Record::write));
-    bytes.extend(points.iter().flat_map(Point::write));
-    bytes
-}
-
-/// Bytes that look random and are the same every time (xorshift, Marsaglia 2003, doi:10.18637/jss.v008.i14).
-pub fn samples(count: usize, seed: u32) -> Vec<u8> {
-    let mut state = seed;
-    (0..count)
-        .map(|_| {
-            state ^= state << 13;
-            state ^= state >> 17;
-            state ^= state << 5;
-            state as u8
-        })
-        .collect()
+/// Bytes that look random and are the same every time.
+pub fn samples(count: usize, seed: u64) -> Vec<u8> {
+    let mut random = Random::new(seed);
+    (0..count).map(|_| random.byte()).collect()
 }

@@ -4,10 +4,10 @@ mod stream;
 
 use std::time::Duration;
 
-use frixel_layers::Scene;
+use frixel_layers::{Scene, features_of};
 use frixel_wire::fault::{Fault, Flags, State};
 use frixel_wire::frame::Decoder;
-use frixel_wire::hello::Hello;
+use frixel_wire::hello::{Hello, feature};
 use frixel_wire::message::{Command, Telemetry};
 
 use super::command::name_of;
@@ -109,8 +109,21 @@ impl<L: Link> Device<L> {
         upload.check()?;
         // The board refuses bytes that are no scene, and says why.
         let scene = Scene::parse(upload.scene).ok();
+        self.check_features(scene.map_or(0, |scene| features_of(scene.header(), scene.records())))?;
         self.uploaded = scene.map(|scene| (upload.scene_crc32(), ping_period(scene.header().host_timeout_s)));
         upload::send(&mut self.exchange, upload, &mut self.uploads, progress)
+    }
+
+    /// Refuses a scene that needs features which the board does not have.
+    fn check_features(&self, needed: u32) -> Result<(), DeviceError> {
+        let Hello { features, firmware, protocol, .. } = self.hello;
+        let missing = feature::NAMES.iter().filter(|(bit, _)| needed & !features & bit != 0);
+        let missing: Vec<&str> = missing.map(|(_, name)| *name).collect();
+        if missing.is_empty() {
+            return Ok(());
+        }
+        let port = self.exchange.link().name().into();
+        Err(DeviceError::MissingFeatures { port, missing: missing.join(" and "), firmware, protocol })
     }
 
     /// Makes the uploaded scene the committed one, which plays or will play. `scene_crc32` is [`Upload::scene_crc32`].

@@ -57,6 +57,22 @@ pub enum DeviceError {
         /// How long the host waited, on the link's clock.
         waited: Duration,
     },
+    /// The firmware does not have what the scene needs. Nothing was uploaded.
+    #[error(
+        "the scene needs {missing}, which the firmware of the board on {port} does not have (firmware {}.{}.{}, protocol {}.{}): \
+         flash newer firmware, or firmware that is built with it",
+        .firmware.0, .firmware.1, .firmware.2, .protocol.0, .protocol.1
+    )]
+    MissingFeatures {
+        /// Name of the link.
+        port: String,
+        /// Names of the features.
+        missing: String,
+        /// Version of the board's firmware.
+        firmware: (u8, u8, u8),
+        /// Protocol that the board speaks.
+        protocol: (u8, u8),
+    },
     /// The board refused a command.
     #[error("{command} was refused by the board on {port}: {refusal}")]
     Refused {

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use frixel_driver::{Bitmap, Counters, Device, DeviceError, Event, Link, LinkClosed, Progress, StreamStatus, Upload};
+use frixel_driver::{Bitmap, Counters, Device, DeviceError, Event, Link, Progress, StreamStatus, Upload};
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, WorldError};
 use frixel_model::ParameterError;
 use frixel_scene::Program;
@@ -85,7 +85,7 @@ pub enum PlayError {
 
 /// A play: a scene on a board, the record of it, and the samples that are streamed meanwhile.
 ///
-/// Call [`Self::start`], then [`Self::step`] until [`Self::ticks_left`] is zero or somebody has had enough, then
+/// Call [`Self::start`], then [`Self::step`] until [`Recorder::ticks_left`] is zero or the play is to end early, then
 /// [`Self::stop`]. Dropping a player stops the board, too.
 pub struct Player<L: RecordedLink> {
     device: Device<L>,
@@ -111,7 +111,7 @@ impl<L: RecordedLink> Player<L> {
     ) -> Result<(), PlayError> {
         start(&mut self.device, program, progress)?;
         let begun = self.device.link_mut().begin();
-        begun.map_err(vanished)?;
+        begun.map_err(|closed| DeviceError::Vanished { command: "play", closed })?;
         if telemetry_period_ticks > 0 {
             self.device.subscribe(telemetry_period_ticks)?;
         }
@@ -184,14 +184,10 @@ impl<L: RecordedLink> Player<L> {
             Event::Telemetry(message) => telemetry.push(message),
             Event::StateChanged { state, fault, flags } => events.observe(t_s, state, fault, flags),
         });
-        device.link_mut().record(telemetry).map_err(vanished)?;
+        device.link_mut().record(telemetry);
         telemetry.clear();
         Ok(waited?)
     }
-}
-
-fn vanished(closed: LinkClosed) -> PlayError {
-    DeviceError::Vanished { command: "play", closed }.into()
 }
 
 /// How to play on the simulator.

@@ -1,7 +1,7 @@
 //! The brick scene, from its file to the finger: the goals that README names.
 //!
-//! The reference is evaluated here a second time, from the picture as the compiler resampled it, and compared with that of
-//! the recorder, so that the errors below are errors against the picture.
+//! The reference is evaluated here a second time, from the picture as the compiler resampled it, and compared with that
+//! of the recorder, so that the errors below are errors against the picture.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::path::Path;

@@ -234,7 +234,7 @@ fn the_smallest_firmware_has_what_the_scene_asks_for() {
     found.dedup();
     // All that a scene can ask for, as both manifests have it.
     for (manifest, others) in [
-        ("firmware/render/Cargo.toml", ["store"].as_slice()),
+        ("firmware/session/Cargo.toml", ["store"].as_slice()),
         ("firmware/board-nucleo-g474re/Cargo.toml", &["store", "panic-message", "log"]),
     ] {
         let text = fs::read_to_string(repository().join(manifest)).unwrap();

@@ -1,6 +1,7 @@
 //! A stream from a WAV file through driver, line, board and amplifier to the finger, in virtual time.
 //!
-//! The friction that the board commands is compared, tick by tick, with straight lines between the file's samples in f64.
+//! The friction that the board commands is compared, tick by tick, with straight lines between the file's samples in
+//! f64.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::f64::consts::TAU;
@@ -242,7 +243,8 @@ low_n = 0.002
 high_n = 0.018
 "#;
 
-    /// A second and a half of the scene above, with its samples from a file or from standard input: the JSON and felt.csv.
+    /// A second and a half of the scene above, with its samples from a file or from standard input: the JSON and
+    /// felt.csv.
     fn stream(folder: &Path, out: &str, arguments: &[&str], input: File) -> (serde_json::Value, Vec<u8>) {
         let output = Command::new(env!("CARGO_BIN_EXE_frixel"))
             .args(["play", "scene.toml", "--seconds", "1.5", "--json", "--out", out])

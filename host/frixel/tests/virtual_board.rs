@@ -18,6 +18,7 @@ use frixel::player;
 use frixel::scene_file;
 use frixel_driver::{DEFAULT_BAUD, Device, DeviceError, SerialLink};
 use frixel_scene::compile;
+use frixel_testkit::Random;
 use hound::{SampleFormat, WavSpec, WavWriter};
 use processes::{frixel, until};
 use serialport::{SerialPort, TTYPort};
@@ -266,8 +267,8 @@ fn write_tone(path: &Path) {
     writer.finalize().unwrap();
 }
 
-/// The board's command is the stream as it is seen from outside. The reference, made from what the host has sent, has to
-/// follow it.
+/// The board's command is the stream as it is seen from outside. The reference, made from what the host has sent, has
+/// to follow it.
 #[test]
 fn the_reference_of_a_board_at_a_port_has_what_is_streamed() {
     let _turn = turn();
@@ -335,18 +336,12 @@ impl Tap {
     }
 }
 
-/// Numbers that look random and are the same in every run.
-fn lcg(state: &mut u64) -> usize {
-    *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-    (*state >> 33) as usize
-}
-
 #[test]
 fn a_client_killed_at_any_byte_leaves_the_output_at_zero_and_the_next_one_welcome() {
     let _turn = turn();
     let board = VirtualBoard::start();
     let folder = TempDir::new().unwrap();
-    let mut random = 1;
+    let mut random = Random::new(1);
     let mut killed_while_playing = 0;
     for kill in 0..KILLS {
         if kill == UPLOADS_KILLED {
@@ -354,7 +349,7 @@ fn a_client_killed_at_any_byte_leaves_the_output_at_zero_and_the_next_one_welcom
             board.play_to_the_end("0.1", folder.path());
         }
         // Once the board holds the picture, some 300 bytes lead to playing, and pings follow.
-        let count = if kill < UPLOADS_KILLED { lcg(&mut random) % 66_000 } else { 300 + lcg(&mut random) % 300 };
+        let count = if kill < UPLOADS_KILLED { random.below(66_000) } else { 300 + random.below(300) } as usize;
         tries("a client lives until it is killed", || board.kill_client_after(count, folder.path()));
     }
     board.play_to_the_end("0.3", folder.path());

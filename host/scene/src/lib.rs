@@ -3,7 +3,7 @@
 //! `docs/scene.md` is the reference of the file. [`Scene::parse`] reads it, [`compile`] checks what needs the board or
 //! other layers, and makes a [`Program`]. Both tell every mistake at once, each with line and column.
 //!
-//! - [`reference`]: the friction that a program means, in `f64`, independently of the firmware.
+//! - [`mod@reference`]: the friction that a program means, in `f64`, independently of the firmware.
 //! - [`recorder`]: what a board did and what its finger felt, compared with that.
 //! - [`metrics`]: the size of the errors.
 #![forbid(unsafe_code)]

@@ -1,7 +1,7 @@
 //! What a scene compiles to.
 
-use frixel_layers::{Carrier, Header, Point, Record, Region};
-use frixel_wire::hello::{PROTOCOL_MAJOR, PROTOCOL_MINOR, feature};
+use frixel_layers::{Header, Point, Record, features_of};
+use frixel_wire::hello::{PROTOCOL_MAJOR, PROTOCOL_MINOR};
 use frixel_wire::scene::bitmap_crc32;
 
 use super::layer_map::LayerMap;
@@ -60,11 +60,7 @@ impl Program {
 
     /// The bits of [`frixel_wire::hello::feature`] that a board needs to play it.
     pub fn features(&self) -> u32 {
-        let carrier = if self.header.carrier == Carrier::Sine { feature::SINE_CARRIER } else { 0 };
-        self.records.iter().fold(carrier, |features, record| {
-            let region = if matches!(record.region, Region::Polygon { .. }) { feature::POLYGON } else { 0 };
-            features | record.layer.feature() | region
-        })
+        features_of(&self.header, self.records.iter().copied())
     }
 
     /// Whether the friction at a place depends on what happened before, beside the time: on a click, or on a stream.

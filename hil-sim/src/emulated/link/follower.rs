@@ -4,8 +4,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 
+use frixel_control::Drive;
 use frixel_exchange::{STAMPED_TOUCH_WORDS, StampedTouch, drive_of, layout};
-use frixel_render::Drive;
 
 use super::serial::Serial;
 use super::{LOOK_EVERY, LinkRecord};

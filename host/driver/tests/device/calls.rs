@@ -3,8 +3,10 @@
 use std::time::Duration;
 
 use frixel_driver::{Device, DeviceError, Event, Link, Upload};
-use frixel_layers::{Carrier, Header, Leader};
+use frixel_layers::{Blend, Header, Layer, Record, Region, Stream};
+use frixel_testkit::HEADER;
 use frixel_wire::fault::State;
+use frixel_wire::hello::feature;
 use frixel_wire::message::{Command, Refusal};
 
 use crate::fake_board::FakeBoard;
@@ -20,27 +22,7 @@ fn virtual_board() -> Device<VirtualLink> {
 
 /// A scene without layers.
 pub(crate) fn scene(host_timeout_s: f32) -> Vec<u8> {
-    let header = Header {
-        screen_width_m: 0.1,
-        screen_height_m: 0.1,
-        finger_radius_m: 0.01,
-        stiffness_pa_per_m: 1e9,
-        friction_coefficient: 0.5,
-        normal_load_n: 0.5,
-        effective_gap_m: 1e-6,
-        voltage_max_v_rms: 100.0,
-        voltage_max_v_peak: 150.0,
-        slew_v_per_s: 1e6,
-        carrier_hz: 1000.0,
-        host_timeout_s,
-        carrier: Carrier::Square,
-        autonomous: false,
-        prediction: true,
-        leader: Leader::First,
-        layers_fixed: false,
-        electric_friction_max_n: None,
-    };
-    header.write(0, 0).to_vec()
+    frixel_testkit::scene(&Header { host_timeout_s, ..HEADER }, &[])
 }
 
 fn nothing(_: Event) {}
@@ -73,6 +55,30 @@ fn a_scene_goes_from_upload_to_play_and_back() {
             Command::Disarm,
         ]
     );
+}
+
+/// As with a board whose protocol is older than the kind.
+#[test]
+fn a_scene_that_the_firmware_cannot_play_is_refused_before_it_is_uploaded() {
+    let stream = Layer::Stream(Stream { low_n: 0.0, high_n: 0.01 });
+    let region = Region::Polygon { first: 0, count: 3 };
+    let record = Record { region, blend: Blend::Replace, gain: 1.0, layer: stream };
+    let mut scene = scene(0.25);
+    scene[2] = 1;
+    scene[53] = 3;
+    scene.extend(record.write());
+    scene.extend([0; 24]);
+    for (features, refused) in [(feature::GRATING, true), (feature::STREAM | feature::POLYGON, false)] {
+        let mut board = FakeBoard::new();
+        board.hello.features = features;
+        board.hello.protocol = (1, 2);
+        let mut device = connected(VirtualLink::new(board));
+        let error = device.upload(&Upload { scene: &scene, bitmaps: Vec::new() }, &mut |_| {}).err();
+        let said = error.map(|error| error.to_string());
+        assert_eq!(said.is_some(), refused, "{said:?}");
+        assert!(said.is_none_or(|said| said.contains("needs stream and polygon") && said.contains("protocol 1.2")));
+        assert_eq!(device.into_link().board.commands.is_empty(), refused);
+    }
 }
 
 #[test]

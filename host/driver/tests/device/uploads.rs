@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::time::Duration;
 
 use frixel_driver::{Bitmap, Device, DeviceError, Link, Upload};
+use frixel_testkit::Random;
 use frixel_wire::frame::crc32;
 use frixel_wire::message::{Command, Refusal};
 
@@ -15,24 +16,12 @@ const WIDTH: u16 = 250;
 
 /// Samples that look like nothing in particular.
 fn samples(len: usize) -> Vec<u8> {
-    let mut random = Random(1);
-    (0..len).map(|_| random.next() as u8).collect()
+    let mut random = Random::new(1);
+    (0..len).map(|_| random.byte()).collect()
 }
 
 fn bitmap(samples: &[u8]) -> Bitmap<'_> {
     Bitmap { crc32: crc32(samples), width: WIDTH, height: (samples.len() / usize::from(WIDTH)) as u16, samples }
-}
-
-/// Xorshift: the same weather in every run.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        self.0 >> 16
-    }
 }
 
 fn is_chunk(frame: &[u8]) -> bool {
@@ -206,17 +195,17 @@ fn any_weather_in_which_no_frame_is_hit_twice_lets_an_upload_through() {
 
 /// Hits one frame in thirty, each frame at most once, and no control frame's neighbour through its last byte.
 fn storm(seed: u64) -> Weather {
-    let mut random = Random(seed * 7919);
+    let mut random = Random::new(seed);
     let mut hit = BTreeSet::new();
     Box::new(move |_, frame| {
-        let (dice, place) = (random.next() % 30, random.next() as usize);
-        if dice > 0 || !hit.insert(frame.to_vec()) {
+        if !random.once_in(30) || !hit.insert(frame.to_vec()) {
             return Fate::Arrives;
         }
-        match place % 3 {
+        let len = frame.len() as u32;
+        match random.below(3) {
             0 => Fate::Lost,
-            1 => Fate::Tail(place % frame.len()),
-            _ => Fate::Damaged(place % (frame.len() - 1)),
+            1 => Fate::Tail(random.below(len) as usize),
+            _ => Fate::Damaged(random.below(len - 1) as usize),
         }
     })
 }

@@ -10,7 +10,7 @@ const FOLDER: &str = "firmware/board-nucleo-g474re";
 /// An image with what a scene asks for and nothing else.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct BoardImage {
-    /// Features of `firmware/render`, and of a board's firmware.
+    /// Features of `firmware/session`, and of a board's firmware.
     pub features: Vec<&'static str>,
     /// Builds the image, from the repository's root.
     pub command: String,

@@ -111,10 +111,9 @@ impl RecordedLink for EmulatedLink<'_> {
         Ok(())
     }
 
-    fn record(&mut self, telemetry: &[Telemetry]) -> Result<(), LinkClosed> {
+    fn record(&mut self, telemetry: &[Telemetry]) {
         self.telemetry.extend(telemetry);
         self.record_ticks(HELD_TICKS);
-        Ok(())
     }
 
     fn record_rest(&mut self) {

@@ -26,11 +26,10 @@ impl RecordedLink for PortLink {
         &mut self.recorder
     }
 
-    fn record(&mut self, telemetry: &[Telemetry]) -> Result<(), LinkClosed> {
-        for telemetry in telemetry {
-            self.recorder.record(&Observation::from_telemetry(telemetry));
+    fn record(&mut self, telemetry: &[Telemetry]) {
+        for message in telemetry {
+            self.recorder.record(&Observation::from_telemetry(message));
         }
-        Ok(())
     }
 }
 

@@ -17,7 +17,7 @@ pub trait RecordedLink: Link {
     }
 
     /// Records what has been seen of the board since the last call, with the telemetry that it has sent meanwhile.
-    fn record(&mut self, telemetry: &[Telemetry]) -> Result<(), LinkClosed>;
+    fn record(&mut self, telemetry: &[Telemetry]);
 
     /// Records the ticks that still wait for telemetry. To be called when no more telemetry comes.
     fn record_rest(&mut self) {}

@@ -14,10 +14,11 @@ use crate::output::OutputError;
 const NAP: Duration = Duration::from_millis(1);
 /// Most virtual time between two reads of the terminal: what a client sends is late by no more than this.
 const BATCH_MAX_S: f64 = 5e-3;
-/// Most reads of 4 KiB between two batches of ticks: more than a terminal holds, and an end for a client that writes as fast
-/// as it is read.
+/// Most reads of 4 KiB between two batches of ticks: more than a terminal holds, and an end for a client that writes as
+/// fast as it is read.
 const READS_MAX: usize = 16;
-/// Largest lag of virtual time behind the wall clock, after the machine was busy elsewhere. A larger one is not caught up.
+/// Largest lag of virtual time behind the wall clock, after the machine was busy elsewhere. A larger one is not caught
+/// up.
 const LAG_MAX_S: f64 = 50e-3;
 
 /// Why a virtual board ended.
@@ -84,9 +85,9 @@ impl Server {
 
     /// Moves bytes between client and board.
     ///
-    /// All that the client has written is taken at once, and the rig drops what is beyond its credit: what waited in the
-    /// terminal would reach the board after the client has gone. A client that does not read holds up the board's line, but
-    /// not the board.
+    /// All that the client has written is taken at once, and the rig drops what is beyond its credit: what waited in
+    /// the terminal would reach the board after the client has gone. A client that does not read holds up the board's
+    /// line, but not the board.
     fn exchange(&mut self, rig: &mut Rig) -> io::Result<()> {
         if self.terminal.client_has_gone()? {
             self.unwritten.clear();

@@ -88,9 +88,7 @@ impl RecordedLink for SimLink<'_> {
     }
 
     /// Every tick has been recorded as it happened, with what telemetry would say of it.
-    fn record(&mut self, _telemetry: &[Telemetry]) -> Result<(), LinkClosed> {
-        Ok(())
-    }
+    fn record(&mut self, _telemetry: &[Telemetry]) {}
 }
 
 impl Link for SimLink<'_> {

@@ -36,7 +36,10 @@ enum Source {
 #[derive(Debug, Error)]
 pub enum FeedError {
     /// The file is not there, or is no WAV file that can be read.
-    #[error("{} cannot be streamed ({source}): give a WAV file of 8, 16, 24 or 32 bits, or of 32-bit floats", path.display())]
+    #[error(
+        "{} cannot be streamed ({source}): give a WAV file of 8, 16, 24 or 32 bits, or of 32-bit floats",
+        path.display()
+    )]
     Wav {
         /// The file.
         path: PathBuf,
@@ -76,7 +79,8 @@ pub enum FeedError {
 }
 
 impl Feed {
-    /// The first channel of a WAV file, lowest value to highest on 0 to 65,535: silence is half way between low and high.
+    /// The first channel of a WAV file, with its lowest value at 0 and its highest at 65,535: silence is half way
+    /// between low and high friction.
     ///
     /// A file of more samples a second than the board has ticks is brought below that, each sample then the mean of two
     /// or more; [`Self::settings`] says what came out.
@@ -118,7 +122,7 @@ impl Feed {
         self.pump(device)
     }
 
-    /// Sends what the board has room for, and ends the stream behind the last sample. To be called every few milliseconds.
+    /// Sends what the board has room for, and ends the stream behind the last sample. Call this every few milliseconds.
     pub fn pump<L: Link>(&mut self, device: &mut Device<L>) -> Result<(), FeedError> {
         while !self.ended {
             let more = self.fetch()?;

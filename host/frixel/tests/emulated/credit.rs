@@ -4,8 +4,8 @@ use std::fs::OpenOptions;
 use std::io::Write;
 
 use frixel::player;
+use frixel_control::Drive;
 use frixel_driver::Device;
-use frixel_render::Drive;
 use frixel_wire::frame::FRAME_MAX_LEN;
 use frixel_wire::message::{Command, Request};
 use frixel_wire::payload;

@@ -1,8 +1,8 @@
 //! The link: hello, upload, play and stop over the emulated serial port, rubbish in between, and a cable that is cut.
 
 use frixel::player;
+use frixel_control::Drive;
 use frixel_driver::Device;
-use frixel_render::Drive;
 use frixel_wire::fault::State;
 use frixel_wire::hello::{BoardKind, ResetCause};
 

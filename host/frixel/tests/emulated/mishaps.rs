@@ -1,9 +1,9 @@
 //! What ends the firmware leaves the output at zero, and the next hello says why.
 
 use frixel::player;
+use frixel_control::Drive;
 use frixel_driver::Device;
 use frixel_hil_sim::emulated::Mishap;
-use frixel_render::Drive;
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::hello::{Hello, ResetCause};
 

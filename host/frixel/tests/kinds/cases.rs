@@ -55,14 +55,16 @@ fn spatial() -> Vec<Case> {
         },
         Case {
             name: "sine grating",
-            layers: "[[layer]]\nkind = \"grating\"\nwavelength_mm = 5\nangle_deg = 30\nphase_deg = 45\nlow_n = 0.002\nhigh_n = 0.022",
+            layers: "[[layer]]\nkind = \"grating\"\nwavelength_mm = 5\nangle_deg = 30\nphase_deg = 45\n\
+                     low_n = 0.002\nhigh_n = 0.022",
             expected: |_, at| 2.0 + 20.0 * sine(along(at.x, at.y, 30.0) / 5.0 + 0.125),
             bound: 0.0272,
             ..CASE
         },
         Case {
             name: "square grating",
-            layers: "[[layer]]\nkind = \"grating\"\nwave = \"square\"\nduty = 0.3\nwavelength_mm = 10\nlow_n = 0.002\nhigh_n = 0.022",
+            layers: "[[layer]]\nkind = \"grating\"\nwave = \"square\"\nduty = 0.3\nwavelength_mm = 10\n\
+                     low_n = 0.002\nhigh_n = 0.022",
             expected: |_, at| if turn(at.x / 10.0) < 0.3 { 22.0 } else { 2.0 },
             jumps: true,
             bound: 0.074,
@@ -70,7 +72,8 @@ fn spatial() -> Vec<Case> {
         },
         Case {
             name: "triangle grating",
-            layers: "[[layer]]\nkind = \"grating\"\nwave = \"triangle\"\nwavelength_mm = 6\nangle_deg = 90\nlow_n = 0.002\nhigh_n = 0.022",
+            layers: "[[layer]]\nkind = \"grating\"\nwave = \"triangle\"\nwavelength_mm = 6\nangle_deg = 90\n\
+                     low_n = 0.002\nhigh_n = 0.022",
             path: Path::Steady((20.0, 5.0), (60.0, 75.0)),
             expected: |_, at| 2.0 + 20.0 * (1.0 - (2.0 * turn(at.y / 6.0) - 1.0).abs()),
             bound: 0.0212,
@@ -78,7 +81,8 @@ fn spatial() -> Vec<Case> {
         },
         Case {
             name: "saw grating",
-            layers: "[[layer]]\nkind = \"grating\"\nwave = \"saw\"\nwavelength_mm = 12\nlow_n = 0.002\nhigh_n = 0.022",
+            layers: "[[layer]]\nkind = \"grating\"\nwave = \"saw\"\nwavelength_mm = 12\nlow_n = 0.002\n\
+                     high_n = 0.022",
             expected: |_, at| 2.0 + 20.0 * turn(at.x / 12.0),
             jumps: true,
             bound: 0.0516,
@@ -86,7 +90,8 @@ fn spatial() -> Vec<Case> {
         },
         Case {
             name: "noise",
-            layers: "[[layer]]\nkind = \"noise\"\nseed = 20260\nwavelength_min_mm = 4\nwavelength_max_mm = 12\nlow_n = 0.002\nhigh_n = 0.026",
+            layers: "[[layer]]\nkind = \"noise\"\nseed = 20260\nwavelength_min_mm = 4\nwavelength_max_mm = 12\n\
+                     low_n = 0.002\nhigh_n = 0.026",
             expected: |_, at| 2.0 + 24.0 * noise(20260, 4.0, 12.0, at.x, at.y),
             bound: 0.0085,
             ..CASE
@@ -98,8 +103,10 @@ fn pictures() -> Vec<Case> {
     vec![
         Case {
             name: "bitmap, held",
-            layers: "[[layer]]\nkind = \"bitmap\"\npicture = \"textures/brick.png\"\nx_mm = 40\ny_mm = 10\nwidth_mm = 40\n\
-                     pitch_mm = 2\nblack_n = 0.026\nwhite_n = 0.002\nregion = { x_mm = 20, y_mm = 0, width_mm = 80, height_mm = 80 }",
+            layers: "[[layer]]\nkind = \"bitmap\"\npicture = \"textures/brick.png\"\nx_mm = 40\ny_mm = 10\n\
+                     width_mm = 40\n\
+                     pitch_mm = 2\nblack_n = 0.026\nwhite_n = 0.002\n\
+                     region = { x_mm = 20, y_mm = 0, width_mm = 80, height_mm = 80 }",
             expected: |scene, at| {
                 let level = scene.level((at.x - 40.0) / 2.0, (at.y - 10.0) / 2.0, false);
                 if (20.0..100.0).contains(&at.x) { 26.0 - 24.0 * level } else { 0.0 }
@@ -118,7 +125,8 @@ fn pictures() -> Vec<Case> {
         },
         Case {
             name: "bitmap, tiled and turned",
-            layers: "[[layer]]\nkind = \"bitmap\"\npicture = \"textures/brick.png\"\nx_mm = 20\ny_mm = 0\nwidth_mm = 61\nheight_mm = 66\n\
+            layers: "[[layer]]\nkind = \"bitmap\"\npicture = \"textures/brick.png\"\nx_mm = 20\ny_mm = 0\n\
+                     width_mm = 61\nheight_mm = 66\n\
                      pitch_mm = 2\nangle_deg = 20\ntiled = true\nwhite_n = 0.026",
             expected: |scene, at| {
                 // 31 (30.5, rounded) by 33 samples, turned about the middle.
@@ -131,7 +139,8 @@ fn pictures() -> Vec<Case> {
         },
         Case {
             name: "bitmap, turned",
-            layers: "[[layer]]\nkind = \"bitmap\"\npicture = \"textures/brick.png\"\nx_mm = 35\ny_mm = 15\nwidth_mm = 50\nheight_mm = 50\n\
+            layers: "[[layer]]\nkind = \"bitmap\"\npicture = \"textures/brick.png\"\nx_mm = 35\ny_mm = 15\n\
+                     width_mm = 50\nheight_mm = 50\n\
                      pitch_mm = 2\nangle_deg = -15\nwhite_n = 0.026",
             expected: |scene, at| {
                 let (x, y) = (at.x - 60.0, at.y - 40.0);
@@ -150,7 +159,8 @@ fn borders() -> Vec<Case> {
     vec![
         Case {
             name: "edge",
-            layers: "[[layer]]\nkind = \"edge\"\nx_mm = 60\ny_mm = 40\nangle_deg = 20\nwidth_mm = 12\nridge_n = 0.015\nclick_n = 0.01\nclick_ms = 60",
+            layers: "[[layer]]\nkind = \"edge\"\nx_mm = 60\ny_mm = 40\nangle_deg = 20\nwidth_mm = 12\n\
+                     ridge_n = 0.015\nclick_n = 0.01\nclick_ms = 60",
             expected: |scene, at| {
                 let away = along(at.x - 60.0, at.y - 40.0, 20.0);
                 15.0 * hill(away, 12.0) + scene.click_on_change(away >= 0.0, at, 10.0, 0.06)
@@ -160,14 +170,16 @@ fn borders() -> Vec<Case> {
         },
         Case {
             name: "edge, a well",
-            layers: "[[layer]]\nkind = \"constant\"\nabove = \"natural\"\nfriction_n = 0.02\n[[layer]]\nkind = \"edge\"\nx_mm = 50\ny_mm = 0\nwidth_mm = 20\nridge_n = -0.015",
+            layers: "[[layer]]\nkind = \"constant\"\nabove = \"natural\"\nfriction_n = 0.02\n[[layer]]\n\
+                     kind = \"edge\"\nx_mm = 50\ny_mm = 0\nwidth_mm = 20\nridge_n = -0.015",
             expected: |_, at| 20.0 - 15.0 * hill(at.x - 50.0, 20.0),
             bound: 0.0033,
             ..CASE
         },
         Case {
             name: "button, rectangle",
-            layers: "[[layer]]\nkind = \"button\"\nrim_width_mm = 8\nrim_n = 0.02\nface_n = 0.005\nclick_n = 0.006\nclick_ms = 100\n\
+            layers: "[[layer]]\nkind = \"button\"\nrim_width_mm = 8\nrim_n = 0.02\nface_n = 0.005\nclick_n = 0.006\n\
+                     click_ms = 100\n\
                      region = { x_mm = 40, y_mm = 15, width_mm = 40, height_mm = 40 }",
             expected: |scene, at| {
                 let depth = (20.0 - (at.x - 60.0).abs()).min(20.0 - (at.y - 35.0).abs());
@@ -219,7 +231,8 @@ fn in_time() -> Vec<Case> {
         },
         Case {
             name: "square vibration",
-            layers: "[[layer]]\nkind = \"vibration\"\nwave = \"square\"\nfrequency_hz = 50\nlow_n = 0.002\nhigh_n = 0.022",
+            layers: "[[layer]]\nkind = \"vibration\"\nwave = \"square\"\nfrequency_hz = 50\nlow_n = 0.002\n\
+                     high_n = 0.022",
             expected: |_, at| if turn(50.0 * at.t) < 0.5 { 22.0 } else { 2.0 },
             jumps: true,
             bound: 0.0452,
@@ -228,7 +241,8 @@ fn in_time() -> Vec<Case> {
         },
         Case {
             name: "speed",
-            layers: "[[layer]]\nkind = \"constant\"\nabove = \"natural\"\nfriction_n = 0.02\n[[layer]]\nkind = \"speed\"\n\
+            layers: "[[layer]]\nkind = \"constant\"\nabove = \"natural\"\nfriction_n = 0.02\n[[layer]]\n\
+                     kind = \"speed\"\n\
                      speeds_mm_per_s = [20, 80, 140]\nfactors = [0.2, 1.2, 0.7]",
             path: Path::Person((5.0, 30.0), (115.0, 45.0)),
             expected: |_, at| {
@@ -259,7 +273,8 @@ fn regions() -> Vec<Case> {
     vec![
         Case {
             name: "rectangle, fraction",
-            layers: "[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.75\nregion = { x_mm = 30, y_mm = 20, width_mm = 50, height_mm = 30 }",
+            layers: "[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.75\n\
+                     region = { x_mm = 30, y_mm = 20, width_mm = 50, height_mm = 30 }",
             expected: |scene, at| if (30.0..80.0).contains(&at.x) { 0.75 * scene.range } else { 0.0 },
             jumps: true,
             bound: 0.0172,
@@ -291,7 +306,8 @@ fn regions() -> Vec<Case> {
             // And the right part.
             name: "polygon beside it",
             layers: "[[layer]]\nkind = \"constant\"\nblend = \"add\"\nfriction_n = 0.01\n\
-                     region = { shape = \"polygon\", points_mm = [[90, 10], [110, 10], [110, 70], [70, 70], [60, 40]] }",
+                     region = { shape = \"polygon\", points_mm = [[90, 10], [110, 10], [110, 70], [70, 70], \
+                     [60, 40]] }",
             expected: |_, at| if (polygon_cut(at.y)..110.0).contains(&at.x) { 10.0 } else { 0.0 },
             jumps: true,
             bound: 0.0207,
@@ -305,7 +321,8 @@ fn blends() -> Vec<Case> {
         Case {
             name: "add",
             layers: "[[layer]]\nkind = \"grating\"\nwavelength_mm = 12\nlow_n = 0\nhigh_n = 0.012\n\
-                     [[layer]]\nkind = \"grating\"\nblend = \"add\"\nwavelength_mm = 7\nlow_n = 0\nhigh_n = 0.006\ngain = 2",
+                     [[layer]]\nkind = \"grating\"\nblend = \"add\"\nwavelength_mm = 7\nlow_n = 0\nhigh_n = 0.006\n\
+                     gain = 2",
             expected: |_, at| 12.0 * sine(at.x / 12.0) + 12.0 * sine(at.x / 7.0),
             bound: 0.0148,
             ..CASE
@@ -321,7 +338,8 @@ fn blends() -> Vec<Case> {
         Case {
             name: "multiply",
             layers: "[[layer]]\nkind = \"grating\"\nwavelength_mm = 12\nlow_n = 0.01\nhigh_n = 0.02\n\
-                     [[layer]]\nkind = \"grating\"\nblend = \"multiply\"\nwavelength_mm = 30\nlow_factor = 0.5\nhigh_factor = 1.25\ngain = 1.1",
+                     [[layer]]\nkind = \"grating\"\nblend = \"multiply\"\nwavelength_mm = 30\nlow_factor = 0.5\n\
+                     high_factor = 1.25\ngain = 1.1",
             expected: |_, at| (10.0 + 10.0 * sine(at.x / 12.0)) * 1.1 * (0.5 + 0.75 * sine(at.x / 30.0)),
             bound: 0.0066,
             ..CASE
@@ -329,7 +347,8 @@ fn blends() -> Vec<Case> {
         Case {
             name: "multiply by an edge",
             layers: "[[layer]]\nkind = \"constant\"\nabove = \"natural\"\nfriction_n = 0.012\n\
-                     [[layer]]\nkind = \"edge\"\nblend = \"multiply\"\nx_mm = 60\ny_mm = 0\nwidth_mm = 20\nridge_factor = 2",
+                     [[layer]]\nkind = \"edge\"\nblend = \"multiply\"\nx_mm = 60\ny_mm = 0\nwidth_mm = 20\n\
+                     ridge_factor = 2",
             expected: |_, at| 12.0 * (1.0 + hill(at.x - 60.0, 20.0)),
             bound: 0.0027,
             ..CASE

@@ -1,4 +1,4 @@
-//! What a board did and what its finger felt, recorded and compared with the [reference](crate::reference).
+//! What a board did and what its finger felt, recorded and compared with the [reference](mod@crate::reference).
 //!
 //! One [`Recorder`] serves every rig. [`Observation`]s go in: one for every tick where the board or its world is
 //! simulated, one for every telemetry message of a board at a port. [`FeltRow`]s and a [`MetricsSummary`] come out.

@@ -3,7 +3,7 @@
 use board_nucleo_g474re::board::{LIMITS, LIMITS_SLOT, stored_limits};
 use board_nucleo_g474re::flash::BankTwo;
 use defmt::{error, info, println};
-use frixel_render::store::{LIMITS_LEN, WORD_LEN, Writer, Writing, read_limits, write_limits};
+use frixel_session::store::{LIMITS_LEN, WORD_LEN, Writer, Writing, read_limits, write_limits};
 use frixel_wire::hello::BoardLimits;
 
 /// Stores the limits that stood in the environment when this was built, and shows which hold.

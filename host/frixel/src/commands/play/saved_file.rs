@@ -50,8 +50,8 @@ impl SavedFile {
         Self { path: path.to_owned(), checked_at: Instant::now(), read: now, checked: now }
     }
 
-    /// Whether the file has changed since this last returned true. Between two checks, and while there is no file, it has
-    /// not.
+    /// Whether the file has changed since this last returned true. Between two checks, and while there is no file, this
+    /// returns false.
     pub(super) fn is_saved(&mut self) -> bool {
         if self.checked_at.elapsed() < CHECK_PERIOD {
             return false;

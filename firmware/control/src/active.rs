@@ -1,0 +1,80 @@
+//! The coefficients that the tick reads. What can be computed when a scene is committed is never computed in the tick.
+
+use frixel_layers::{ActiveLayers, BitmapPool, Clicks, Inputs};
+use frixel_model::InverseTable;
+
+use crate::carrier::CarrierTiming;
+
+/// Coefficients of one scene. A board has two of them: one that plays, and one in which the session
+/// computes the next scene.
+///
+/// In this order: what lies near the beginning is reached in one instruction.
+#[repr(C)]
+pub struct Active {
+    /// The carrier, and how the envelope becomes DAC codes.
+    pub carrier: CarrierTiming,
+    /// Most that the envelope moves in a tick, in V rms.
+    pub slew_step_v: f32,
+    /// Largest rms voltage within all limits, in V.
+    pub voltage_max_v_rms: f32,
+    /// Ticks of silence after which the host counts as gone; `None` for a scene that goes on without a host.
+    pub host_timeout_ticks: Option<u32>,
+    /// The finger is taken to move on along its track, not to stay where it was seen.
+    pub prediction: bool,
+    /// From electric friction to voltage; `None` without a scene.
+    pub table: Option<InverseTable>,
+    /// The layers.
+    pub layers: ActiveLayers,
+}
+
+impl Active {
+    /// Coefficients of no scene.
+    #[allow(clippy::new_without_default, reason = "it belongs in a static, not into a value made in passing")]
+    pub const fn new() -> Self {
+        Self {
+            layers: ActiveLayers::EMPTY,
+            table: None,
+            carrier: CarrierTiming::SILENT,
+            slew_step_v: 0.0,
+            voltage_max_v_rms: 0.0,
+            host_timeout_ticks: None,
+            prediction: true,
+        }
+    }
+
+    /// Forgets the scene.
+    pub fn unload(&mut self) {
+        self.layers.clear();
+        self.table = None;
+        self.carrier = CarrierTiming::SILENT;
+        self.slew_step_v = 0.0;
+        self.voltage_max_v_rms = 0.0;
+        self.host_timeout_ticks = None;
+        self.prediction = true;
+    }
+
+    /// The inverse table; `None` without a scene.
+    #[inline]
+    pub(crate) fn table(&self) -> Option<&InverseTable> {
+        self.table.as_ref()
+    }
+
+    /// Some layer plays what the host streams.
+    #[cfg(feature = "stream")]
+    #[inline]
+    pub(crate) fn has_stream(&self) -> bool {
+        self.layers.has_stream()
+    }
+
+    /// Electric friction of all layers that are on, in N.
+    #[inline]
+    pub(crate) fn electric_friction_n(&self, inputs: &Inputs, pool: &BitmapPool, clicks: &mut Clicks) -> f32 {
+        self.layers.electric_friction_n(inputs, pool, clicks)
+    }
+
+    /// Puts a layer on or off and sets its gain while the scene plays. Unknown layer numbers are ignored.
+    #[inline]
+    pub(crate) fn set_layer(&mut self, number: u8, on: bool, gain: f32) {
+        self.layers.set(number, on, gain);
+    }
+}

@@ -1,0 +1,68 @@
+//! What holds for a board, whatever scene it plays.
+
+use frixel_wire::fault::Fault;
+use frixel_wire::hello::{BoardKind, BoardLimits, ResetCause};
+use frixel_wire::scene::RECORDS_MAX;
+
+use frixel_layers::{BITMAP_POOL_LEN, ticks};
+
+/// A board: who it is, how fast it ticks, what it can bear. It does not change while the firmware runs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Board {
+    /// Kind of board.
+    pub kind: BoardKind,
+    /// Unique number of the board.
+    pub id: [u8; 12],
+    /// Ticks a second.
+    pub tick_hz: u32,
+    /// Limits that scenes have to keep.
+    pub limits: BoardLimits,
+    /// Why the processor started.
+    pub reset_cause: ResetCause,
+    /// The fault that led to the reset, with a number that belongs to it.
+    pub reset_fault: Option<(Fault, u32)>,
+    /// What the firmware said of that fault, in UTF-8; empty without one.
+    pub reset_text: &'static [u8],
+    /// The host says where the finger is; without this the board has a touch source of its own.
+    pub touch_from_host: bool,
+}
+
+impl Board {
+    /// The simulated board: the limits of the smallest real one, on an electrode that nobody touches.
+    ///
+    /// The electrode is 2 cm^2 of bare 10 um polymer (relative permittivity 3), 0.53 nF, behind edges of 20 us. The
+    /// current limits are what a 150 V rms square carrier needs there, with a margin; they are not a statement about
+    /// what is safe for a person.
+    pub const SIMULATOR: Self = Self {
+        kind: BoardKind::Simulator,
+        id: *b"frixel-sim\0\0",
+        tick_hz: 40_000,
+        limits: BoardLimits {
+            bitmap_pool_bytes: BITMAP_POOL_LEN as u32,
+            records_max: RECORDS_MAX as u8,
+            receive_window_bytes: 4096,
+            voltage_max_v_peak: 220.0,
+            full_scale_v_peak: 250.0,
+            edge_time_constant_s: 20e-6,
+            electrode_capacitance_max_f: 0.53e-9,
+            current_max_a_rms: 3e-3,
+            current_max_a_peak: 15e-3,
+            touch_report_period_s: 10e-3,
+            tick_cycles_max: BoardLimits::SMALLEST_TICK_CYCLES_MAX,
+        },
+        reset_cause: ResetCause::PowerOn,
+        reset_fault: None,
+        reset_text: b"",
+        touch_from_host: false,
+    };
+
+    /// Seconds between two ticks.
+    pub fn tick_period_s(&self) -> f32 {
+        1.0 / self.tick_hz as f32
+    }
+
+    /// The number of ticks nearest to a time.
+    pub fn ticks(&self, time_s: f32) -> u32 {
+        ticks(time_s, self.tick_hz)
+    }
+}

@@ -1,0 +1,154 @@
+//! The carrier: alternates the envelope's sign, so that no charge leaks through the skin and no direct current flows.
+//!
+//! The running integral of the DAC code, exact in fixed point, never leaves plus or minus one half period at full
+//! voltage, however the amplitude moves: a code that would take it out is put out with the other sign, as an early
+//! edge.
+
+use fixed::types::{I1F15, I17F15};
+use frixel_layers::Carrier as Shape;
+use frixel_wire::dac_code::DacCode;
+
+#[cfg(feature = "sine-carrier")]
+use frixel_layers::cosine;
+
+/// What a carrier is made of; part of `Active`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CarrierTiming {
+    pub(crate) shape: Shape,
+    pub(crate) half_period_ticks: u32,
+    /// DAC codes for a volt rms of envelope: crest factor and loss in the edges included.
+    pub(crate) codes_per_v_rms: f32,
+    /// Largest DAC code.
+    pub(crate) code_max: DacCode,
+    /// Largest magnitude of the running integral, in ticks at full scale.
+    integral_max: I17F15,
+    turns_per_tick: f32,
+}
+
+impl CarrierTiming {
+    /// Output zero.
+    pub const SILENT: Self = Self::new(Shape::Square, 20, 0.0, DacCode::ZERO);
+
+    /// A carrier whose integral stays within one half period at full voltage.
+    pub const fn new(shape: Shape, half_period_ticks: u32, codes_per_v_rms: f32, code_max: DacCode) -> Self {
+        let mean = match shape {
+            Shape::Square => 1.0,
+            Shape::Sine => core::f32::consts::FRAC_2_PI,
+        };
+        let integral_max = I17F15::from_bits((code_max.bits() as f32 * (half_period_ticks as f32 * mean)) as i32);
+        let turns_per_tick = 0.5 / half_period_ticks as f32;
+        Self { shape, half_period_ticks, codes_per_v_rms, code_max, integral_max, turns_per_tick }
+    }
+
+    /// From the middle of a half period to its edge.
+    fn ticks_from_crest(&self) -> u32 {
+        self.half_period_ticks - self.half_period_ticks / 2
+    }
+}
+
+/// The carrier's state.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Carrier {
+    /// 1 in the first half of a period, -1 in the second.
+    sign: i32,
+    /// Ticks until the next edge, this one included.
+    left_ticks: u32,
+    /// Volt-seconds so far, in ticks at full scale.
+    integral: I17F15,
+    /// Edges that came early to keep direct current away, modulo 2^32, and the tick of the last.
+    early_edges: u32,
+    last_early_tick: u32,
+}
+
+impl Carrier {
+    /// Starts a quarter period in, so that the integral swings evenly about zero.
+    pub(crate) fn new(timing: &CarrierTiming) -> Self {
+        Self {
+            sign: 1,
+            left_ticks: timing.ticks_from_crest(),
+            integral: I17F15::ZERO,
+            early_edges: 0,
+            last_early_tick: 0,
+        }
+    }
+
+    /// Goes on with the timing of another scene. The integral is the electrode's, and stays.
+    pub(crate) fn retime(&mut self, timing: &CarrierTiming) {
+        self.left_ticks = self.left_ticks.min(timing.half_period_ticks);
+    }
+
+    /// Waits at zero output. It will start again a quarter period before an edge, on the side that takes the integral
+    /// back.
+    pub(crate) fn rest(&mut self, timing: &CarrierTiming) {
+        self.sign = if self.integral.is_positive() { -1 } else { 1 };
+        self.left_ticks = timing.ticks_from_crest();
+    }
+
+    /// Early edges since power-on, modulo 2^32.
+    pub(crate) fn early_edges(&self) -> u32 {
+        self.early_edges
+    }
+
+    /// When the last of them was.
+    pub(crate) fn last_early_tick(&self) -> u32 {
+        self.last_early_tick
+    }
+
+    /// The code for this tick.
+    #[inline]
+    pub(crate) fn next(&mut self, envelope_v_rms: f32, timing: &CarrierTiming, tick: u32) -> DacCode {
+        let mut code = self.magnitude(envelope_v_rms, timing) * self.sign;
+        // Beyond the largest on either side: both are far from overflowing.
+        let above_least = (self.integral + code + timing.integral_max).to_bits().cast_unsigned();
+        if above_least > 2 * timing.integral_max.to_bits().cast_unsigned() {
+            code = self.within_balance(code, tick);
+        }
+        self.integral += code;
+        if self.left_ticks > 1 {
+            self.left_ticks -= 1;
+        } else {
+            self.turn(timing);
+        }
+        // It fits: no larger than the largest code.
+        DacCode(I1F15::wrapping_from_num(code))
+    }
+
+    /// A code that would take the integral too far, or what is put out in its place: if it takes the integral away from
+    /// zero, the same with the other sign, as an early edge.
+    #[cold]
+    fn within_balance(&mut self, code: I17F15, tick: u32) -> I17F15 {
+        if (self.integral + code).abs() <= self.integral.abs() {
+            return code;
+        }
+        self.sign = -self.sign;
+        self.early_edges = self.early_edges.wrapping_add(1);
+        self.last_early_tick = tick;
+        -code
+    }
+
+    /// An edge.
+    #[cold]
+    fn turn(&mut self, timing: &CarrierTiming) {
+        self.sign = -self.sign;
+        self.left_ticks = timing.half_period_ticks;
+    }
+
+    #[inline]
+    fn magnitude(&self, envelope_v_rms: f32, timing: &CarrierTiming) -> I17F15 {
+        let amplitude = envelope_v_rms * timing.codes_per_v_rms;
+        let code = match timing.shape {
+            Shape::Square => amplitude,
+            #[cfg(feature = "sine-carrier")]
+            Shape::Sine => {
+                // The crest, where the cosine has no angle, is a quarter of a turn before the edge.
+                amplitude * cosine(self.left_ticks as f32 * timing.turns_per_tick - 0.25)
+            }
+            #[cfg(not(feature = "sine-carrier"))]
+            Shape::Sine => 0.0,
+        };
+        I17F15::from_bits((code + 0.5) as i32).min(timing.code_max.0.into())
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,53 @@
+//! The finger as the tick knows it: the track that it follows, if there is one.
+
+use crate::Track;
+use crate::deadline::is_past;
+
+/// Touch data is too old to use after this many report periods without a report.
+pub const STALE_AFTER_PERIODS: f32 = 3.0;
+
+/// Whether there is a finger, and its track.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Finger {
+    /// The touch source says that there is none.
+    Up,
+    /// The touch source has said nothing new for too long.
+    Stale,
+    /// The finger follows a track.
+    Down(Track),
+}
+
+impl Finger {
+    /// The track that the finger follows, if there is a finger.
+    #[inline]
+    pub(crate) fn track(&self) -> Option<&Track> {
+        match self {
+            Self::Down(track) => Some(track),
+            Self::Up | Self::Stale => None,
+        }
+    }
+
+    /// When the track ends, if there is one.
+    pub(crate) fn until_tick(&self) -> Option<u32> {
+        self.track().map(|track| track.until_tick)
+    }
+
+    /// Follows another track, for `ticks_max` at most, whatever it says. Returns whether the finger was lifted in between.
+    pub(crate) fn follow(&mut self, track: &Track, now_tick: u32, ticks_max: u32) -> bool {
+        let was_lifted = self.track().is_some_and(|before| before.contact != track.contact);
+        *self = if is_past(track.until_tick, now_tick) {
+            Self::Stale
+        } else {
+            let ticks = track.until_tick.wrapping_sub(now_tick).min(ticks_max);
+            Self::Down(Track { until_tick: now_tick.wrapping_add(ticks), ..*track })
+        };
+        was_lifted
+    }
+
+    /// Replaces a track that has ended. One that is only compared would be valid again when the tick counter has wrapped.
+    pub(crate) fn expire(&mut self, now_tick: u32) {
+        if self.until_tick().is_some_and(|tick| is_past(tick, now_tick)) {
+            *self = Self::Stale;
+        }
+    }
+}

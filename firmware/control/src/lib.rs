@@ -1,0 +1,47 @@
+//! The tick: a finger's track and the board's inputs in, a DAC code out, 40,000 times a second.
+//!
+//! [`Ticker::tick`] is one straight page. It reads the coefficients of a scene, [`Active`], and takes one [`Order`] of the
+//! session before each tick: a [`Track`] of the finger, a scene, a change of state. What it reports is a [`Status`]. It does
+//! not allocate, wait or panic, and knows neither bytes nor clocks.
+//!
+//! ```
+//! use frixel_control::{Active, Board, Drive, Sense, Ticker};
+//! use frixel_layers::BitmapPool;
+//!
+//! let pool = BitmapPool::new();
+//! let mut active = Active::new(); // no scene
+//! let mut ticker = Ticker::new(&Board::SIMULATOR, &pool, &mut active);
+//! assert_eq!(ticker.tick(&Sense::default()), Drive::default());
+//! ```
+//!
+//! A board builds this crate for speed, and all others for size.
+//!
+//! The Cargo features `stream` and `sine-carrier` are what a scene may ask for; the session's crate names them all.
+#![cfg_attr(not(test), no_std)]
+#![forbid(unsafe_code)]
+
+mod active;
+mod board;
+mod carrier;
+mod deadline;
+mod envelope;
+mod finger;
+mod io;
+mod order;
+#[cfg(feature = "stream")]
+mod stream;
+mod supervisor;
+mod ticker;
+mod track;
+
+pub use active::Active;
+pub use board::Board;
+pub use carrier::CarrierTiming;
+pub use deadline::is_past;
+pub use finger::STALE_AFTER_PERIODS;
+pub use io::{Drive, Sense};
+pub use order::{Counters, Order, Status};
+#[cfg(feature = "stream")]
+pub use stream::{STREAM_LEN, StreamBuffer, StreamIntake, StreamStart};
+pub use ticker::Ticker;
+pub use track::{StandstillRamp, Track};

@@ -1,0 +1,310 @@
+//! What the supervisor owes to the person at the electrode (DESIGN section 5).
+
+use frixel_wire::dac_code::DacCode;
+use frixel_wire::fault::{Fault, State};
+use proptest::prelude::*;
+
+use super::{Supervisor, lag_step};
+use crate::{Board, Order, Sense};
+
+const BOARD: Board = Board::SIMULATOR;
+/// Of the simulated board, in V: 4 % of 250 V.
+const FLOOR_V: f32 = 10.0;
+const FULL_SCALE_V: f32 = 250.0;
+/// Wrong ticks that are a fault.
+const WRONG_TICKS: u32 = 20;
+
+/// A monitor voltage, with nothing else to remark.
+fn reading(monitor_v: f32) -> Sense {
+    Sense { monitor_v, arm_switch: true, ..Sense::default() }
+}
+
+/// The person at the arm switch releases it and presses it again.
+fn press_switch(supervisor: &mut Supervisor) {
+    for arm_switch in [false, true] {
+        supervisor.check(&Sense { arm_switch, ..reading(0.0) }, DacCode::ZERO);
+    }
+}
+
+fn in_state(state: State) -> Supervisor {
+    let mut supervisor = Supervisor::new(&BOARD);
+    press_switch(&mut supervisor);
+    match state {
+        State::Disarmed => {}
+        State::Armed => supervisor.apply(&Order::Arm, 0),
+        State::Active => {
+            supervisor.apply(&Order::Arm, 0);
+            supervisor.apply(&Order::Play, 0);
+        }
+        State::Faulted => supervisor.raise(Fault::Deadline, 1),
+    }
+    assert_eq!(supervisor.state(), state);
+    supervisor
+}
+
+/// An active supervisor, with `dac_code` on the amplifier for long.
+fn driving(dac_code: i16) -> Supervisor {
+    let mut supervisor = in_state(State::Active);
+    let step = lag_step(1.25);
+    let mut monitor_v = 0.0;
+    for _ in 0..40 {
+        monitor_v += step * (driven_v(dac_code) - monitor_v);
+        supervisor.check(&reading(monitor_v), DacCode::from_bits(dac_code));
+    }
+    assert_eq!(supervisor.state(), State::Active);
+    supervisor
+}
+
+fn driven_v(dac_code: i16) -> f32 {
+    f32::from(dac_code) * FULL_SCALE_V / 32_767.0
+}
+
+/// Ticks with this reading until the supervisor faults, `limit` at most.
+fn ticks_to_fault(supervisor: &mut Supervisor, monitor_v: f32, dac_code: i16, limit: u32) -> Option<u32> {
+    (1..=limit).find(|_| {
+        supervisor.check(&reading(monitor_v), DacCode::from_bits(dac_code));
+        supervisor.state() == State::Faulted
+    })
+}
+
+#[test]
+fn a_lag_is_followed_as_an_exponential() {
+    for i in 1..=1000 {
+        let x = i as f32 * 1e-3;
+        let exact = 1.0 - (-f64::from(x)).exp();
+        assert!((f64::from(lag_step(x)) - exact).abs() < 1e-5, "{x}");
+    }
+    for i in 1..2000 {
+        let x = i as f32 * 0.25;
+        let exact = 1.0 - (-f64::from(x)).exp();
+        assert!((f64::from(lag_step(x)) - exact).abs() < 1e-3, "{x}");
+    }
+}
+
+/// The electrode follows behind the amplifier's edges, and the monitor with it.
+#[test]
+fn an_ideal_amplifier_is_never_wrong_however_it_is_driven() {
+    let mut supervisor = in_state(State::Active);
+    let (mut monitor_v, mut dac_code) = (0.0, 0);
+    let step = 1.0 - (-25e-6_f32 / BOARD.limits.edge_time_constant_s).exp();
+    for tick in 0..4000_i32 {
+        monitor_v += step * (driven_v(dac_code) - monitor_v);
+        supervisor.check(&reading(monitor_v), DacCode::from_bits(dac_code));
+        assert_eq!(supervisor.state(), State::Active, "tick {tick}");
+        dac_code = if tick / (1 + tick / 400) % 2 == 0 { 32_767 } else { -32_767 };
+    }
+}
+
+/// A quarter of what is driven and a twenty-fifth of full scale, to both sides of both signs.
+#[test]
+fn the_monitor_may_be_off_by_its_tolerance_and_no_more() {
+    for dac_code in [0, 6_553, -6_553, 26_213, -26_213] {
+        let tolerance_v = FLOOR_V + 0.25 * driven_v(dac_code).abs();
+        for side in [-1.0, 1.0] {
+            let inside_v = driven_v(dac_code) + side * (tolerance_v - 0.05);
+            assert_eq!(
+                ticks_to_fault(&mut driving(dac_code), inside_v, dac_code, 1000),
+                None,
+                "{dac_code}: {inside_v}"
+            );
+            let outside_v = driven_v(dac_code) + side * (tolerance_v + 0.05);
+            let ticks = ticks_to_fault(&mut driving(dac_code), outside_v, dac_code, 1000);
+            assert_eq!(ticks, Some(WRONG_TICKS), "{dac_code}: {outside_v}");
+        }
+    }
+}
+
+#[test]
+fn a_monitor_that_is_not_a_number_is_wrong() {
+    for monitor_v in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        assert_eq!(ticks_to_fault(&mut driving(0), monitor_v, 0, 100), Some(WRONG_TICKS));
+    }
+}
+
+#[test]
+fn a_right_tick_makes_up_for_a_wrong_one() {
+    let mut supervisor = driving(0);
+    assert_eq!(ticks_to_fault(&mut supervisor, 60.0, 0, WRONG_TICKS - 1), None);
+    assert_eq!(ticks_to_fault(&mut supervisor, 0.0, 0, 5), None);
+    assert_eq!(ticks_to_fault(&mut supervisor, 60.0, 0, 100), Some(6), "five were made up for");
+}
+
+#[test]
+fn right_ticks_do_not_count_beforehand() {
+    let mut supervisor = driving(0);
+    assert_eq!(ticks_to_fault(&mut supervisor, 60.0, 0, 3), None);
+    assert_eq!(ticks_to_fault(&mut supervisor, 0.0, 0, 10_000), None);
+    assert_eq!(ticks_to_fault(&mut supervisor, 60.0, 0, 100), Some(WRONG_TICKS));
+}
+
+#[test]
+fn the_number_of_a_monitors_fault_is_what_it_read_in_volts() {
+    for (monitor_v, detail) in [(60.9, 60), (-60.9, -60_i32 as u32)] {
+        let mut supervisor = driving(0);
+        ticks_to_fault(&mut supervisor, monitor_v, 0, 100);
+        assert_eq!(supervisor.fault(), Some((Fault::Monitor, detail)));
+    }
+}
+
+/// However long it lasted.
+#[test]
+fn a_cleared_monitor_fault_stays_away_when_the_monitor_reads_right() {
+    let mut supervisor = driving(0);
+    for _ in 0..400_000 {
+        supervisor.check(&reading(60.0), DacCode::ZERO);
+    }
+    assert_eq!(ticks_to_fault(&mut supervisor, 0.0, 0, 1), Some(1), "a fault latches");
+    supervisor.apply(&Order::ClearFault, 0);
+    assert_eq!(ticks_to_fault(&mut supervisor, 0.0, 0, 1000), None);
+    assert_eq!(supervisor.state(), State::Disarmed);
+}
+
+#[test]
+fn a_cleared_monitor_fault_comes_again_when_its_cause_is_still_there() {
+    let mut supervisor = driving(0);
+    for _ in 0..1000 {
+        supervisor.check(&reading(60.0), DacCode::ZERO);
+    }
+    supervisor.apply(&Order::ClearFault, 0);
+    let ticks = ticks_to_fault(&mut supervisor, 60.0, 0, 1000);
+    assert!(ticks.is_some_and(|ticks| ticks <= WRONG_TICKS), "{ticks:?}");
+}
+
+#[test]
+fn the_arm_switch_counts_only_while_it_has_to_be_held() {
+    let let_go = Sense { arm_switch: false, ..Sense::default() };
+    for (state, fault) in [
+        (State::Disarmed, None),
+        (State::Armed, Some((Fault::ArmSwitch, 0))),
+        (State::Active, Some((Fault::ArmSwitch, 0))),
+        (State::Faulted, Some((Fault::Deadline, 1))),
+    ] {
+        let mut supervisor = in_state(state);
+        supervisor.check(&let_go, DacCode::ZERO);
+        assert_eq!(supervisor.fault(), fault, "{state:?}");
+    }
+}
+
+#[test]
+fn an_amplifiers_fault_counts_in_every_state() {
+    let faulty = Sense { amplifier_fault: true, ..reading(0.0) };
+    for state in [State::Disarmed, State::Armed, State::Active] {
+        let mut supervisor = in_state(state);
+        supervisor.check(&faulty, DacCode::ZERO);
+        assert_eq!(supervisor.fault(), Some((Fault::Amplifier, 0)), "{state:?}");
+        assert_eq!(supervisor.state(), State::Faulted);
+    }
+}
+
+/// Every order in every state: what is not in this table changes nothing.
+#[test]
+fn orders_change_the_state_as_the_table_says() {
+    let changes = [
+        (Order::Arm, State::Disarmed, State::Armed),
+        (Order::Play, State::Armed, State::Active),
+        (Order::Stop, State::Active, State::Armed),
+        (Order::Disarm, State::Armed, State::Disarmed),
+        (Order::Disarm, State::Active, State::Disarmed),
+        (Order::ClearFault, State::Faulted, State::Disarmed),
+    ];
+    let orders =
+        [Order::HostHeard, Order::Arm, Order::Play, Order::Stop, Order::Disarm, Order::ClearFault, Order::Unload];
+    for order in &orders {
+        for before in [State::Disarmed, State::Armed, State::Active, State::Faulted] {
+            let mut supervisor = in_state(before);
+            supervisor.apply(order, 0);
+            let same = |other: &Order| core::mem::discriminant(other) == core::mem::discriminant(order);
+            let change = changes.iter().find(|(changing, from, _)| same(changing) && *from == before);
+            assert_eq!(supervisor.state(), change.map_or(before, |(_, _, to)| *to), "{before:?}");
+        }
+    }
+}
+
+/// Ticks after the last sign of life, at `heard_at_tick`, until the supervisor disarms.
+fn ticks_to_silence(mut supervisor: Supervisor, heard_at_tick: u32, limit: u32) -> Option<u32> {
+    supervisor.apply(&Order::HostHeard, heard_at_tick);
+    (1..=limit).find(|ticks| {
+        supervisor.expire(heard_at_tick.wrapping_add(*ticks));
+        assert_eq!(supervisor.host_silent(), supervisor.state() == State::Disarmed);
+        supervisor.state() == State::Disarmed
+    })
+}
+
+/// A quarter of a second before a scene has said otherwise, also where the tick counter wraps.
+#[test]
+fn a_silent_host_disarms_after_its_timeout() {
+    for heard_at_tick in [0, 7, u32::MAX - 10_000, u32::MAX - 5, u32::MAX] {
+        for state in [State::Armed, State::Active] {
+            assert_eq!(ticks_to_silence(in_state(state), heard_at_tick, 20_000), Some(10_001), "{heard_at_tick}");
+            let mut supervisor = in_state(state);
+            supervisor.set_host_timeout(Some(800));
+            assert_eq!(ticks_to_silence(supervisor, heard_at_tick, 20_000), Some(801), "{heard_at_tick}");
+            let mut autonomous = in_state(state);
+            autonomous.set_host_timeout(None);
+            assert_eq!(ticks_to_silence(autonomous, heard_at_tick, 20_000), None);
+        }
+    }
+}
+
+#[test]
+fn nobody_has_to_be_heard_where_nothing_can_be_driven() {
+    let mut supervisor = in_state(State::Faulted);
+    supervisor.expire(1_000_000);
+    assert_eq!((supervisor.state(), supervisor.host_silent()), (State::Faulted, false));
+    let mut supervisor = in_state(State::Disarmed);
+    supervisor.expire(1_000_000);
+    assert!(!supervisor.host_silent());
+}
+
+#[test]
+fn a_host_that_arms_again_is_not_silent_any_more() {
+    let mut supervisor = in_state(State::Armed);
+    supervisor.expire(10_001);
+    assert!(supervisor.host_silent());
+    supervisor.apply(&Order::HostHeard, 10_002);
+    assert!(supervisor.host_silent(), "it is heard, and has not armed");
+    press_switch(&mut supervisor);
+    supervisor.apply(&Order::Arm, 10_002);
+    assert!(!supervisor.host_silent());
+}
+
+/// A switch that is held all the time, or stuck, arms nothing.
+#[test]
+fn arming_takes_a_switch_that_was_open_since_the_reset_or_the_last_disarming() {
+    let armed = |supervisor: &mut Supervisor, now_tick| {
+        supervisor.check(&reading(0.0), DacCode::ZERO);
+        supervisor.apply(&Order::Arm, now_tick);
+        supervisor.state() == State::Armed
+    };
+    let mut supervisor = Supervisor::new(&BOARD);
+    assert!(!armed(&mut supervisor, 1), "held since the reset");
+    press_switch(&mut supervisor);
+    assert!(armed(&mut supervisor, 2));
+    supervisor.apply(&Order::Disarm, 3);
+    assert!(!armed(&mut supervisor, 3), "held since it was disarmed");
+    press_switch(&mut supervisor);
+    assert!(armed(&mut supervisor, 4));
+    supervisor.expire(4 + 10_001);
+    assert!(!armed(&mut supervisor, 4 + 10_001), "held since the host fell silent");
+    supervisor.raise(Fault::Deadline, 1);
+    press_switch(&mut supervisor);
+    supervisor.apply(&Order::ClearFault, 0);
+    assert!(!armed(&mut supervisor, 0), "held since the fault was cleared");
+}
+
+proptest! {
+    /// Whatever happens, a fault is left only by clearing it, and nothing but an order leads to more than Disarmed.
+    #[test]
+    fn only_orders_lead_to_a_state_that_drives(
+        inputs in proptest::collection::vec((any::<bool>(), any::<bool>(), -300.0_f32..300.0, any::<i16>()), 1..200),
+    ) {
+        let mut supervisor = in_state(State::Disarmed);
+        for (tick, (amplifier_fault, arm_switch, monitor_v, dac_code)) in inputs.into_iter().enumerate() {
+            let before = supervisor.state();
+            supervisor.check(&Sense { amplifier_fault, arm_switch, monitor_v, ..Sense::default() }, DacCode::from_bits(dac_code));
+            supervisor.expire(tick as u32);
+            prop_assert!(matches!(supervisor.state(), State::Disarmed | State::Faulted));
+            prop_assert!(before != State::Faulted || supervisor.state() == State::Faulted);
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! Where the finger is between two touch reports: a parabola in time, and a ramp of the friction under a still finger.
+
+/// The path that a finger is taken to follow from one touch report to the next.
+///
+/// The tracker makes one of every report that says something new; the tick only reads it. Place and gain at a tick are
+/// computed from the ticks since [`Self::from_tick`], so that nothing accumulates and a track that is handed over late is
+/// as good as one in time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Track {
+    /// Number of the contact between finger and screen. Another number than before means that the finger was lifted in
+    /// between.
+    pub contact: u32,
+    /// Tick at which the place was measured.
+    pub from_tick: u32,
+    /// The track is void from this tick on.
+    pub until_tick: u32,
+    /// Place at `from_tick`, in m from the screen's left and top edge.
+    pub place_m: [f32; 2],
+    /// Velocity at `from_tick`, in m/s.
+    pub velocity_m_per_s: [f32; 2],
+    /// Half the acceleration, in m/s^2.
+    pub half_acceleration_m_per_s2: [f32; 2],
+    /// Gain on the friction under a finger that stands still.
+    pub ramp: StandstillRamp,
+}
+
+impl Track {
+    /// Seconds from `from_tick` to a tick, `tick_period_s` apart.
+    #[inline]
+    pub fn elapsed_s(&self, tick: u32, tick_period_s: f32) -> f32 {
+        tick.wrapping_sub(self.from_tick) as i32 as f32 * tick_period_s
+    }
+
+    /// Place after a time, in m.
+    #[inline]
+    pub fn place_m(&self, elapsed_s: f32) -> [f32; 2] {
+        let ([x, y], [vx, vy], [ax, ay]) = (self.place_m, self.velocity_m_per_s, self.half_acceleration_m_per_s2);
+        [x + elapsed_s * (vx + elapsed_s * ax), y + elapsed_s * (vy + elapsed_s * ay)]
+    }
+
+    /// Velocity after a time, in m/s.
+    #[inline]
+    pub fn velocity_m_per_s(&self, elapsed_s: f32) -> [f32; 2] {
+        let ([vx, vy], [ax, ay]) = (self.velocity_m_per_s, self.half_acceleration_m_per_s2);
+        let twice_s = elapsed_s + elapsed_s;
+        [vx + twice_s * ax, vy + twice_s * ay]
+    }
+}
+
+/// A gain that changes by the same step every tick, within 0 and 1.
+///
+/// A ramp may begin in the future: before it, a gain of 1 that falls, or of 0 that rises, stays what it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StandstillRamp {
+    /// Tick at which the gain is `gain`.
+    pub from_tick: u32,
+    /// From 0 to 1.
+    pub gain: f32,
+    /// Change of the gain in a tick.
+    pub slope_per_tick: f32,
+}
+
+impl StandstillRamp {
+    /// The gain of a finger that moves.
+    pub const MOVING: Self = Self { from_tick: 0, gain: 1.0, slope_per_tick: 0.0 };
+
+    /// The gain at a tick, from 0 to 1.
+    #[inline]
+    pub fn gain_at(&self, tick: u32) -> f32 {
+        let ticks = tick.wrapping_sub(self.from_tick) as i32;
+        let gain = self.gain + self.slope_per_tick * ticks as f32;
+        if gain > 1.0 {
+            1.0
+        } else if gain > 0.0 {
+            gain
+        } else {
+            0.0
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TRACK: Track = Track {
+        contact: 1,
+        from_tick: u32::MAX - 100,
+        until_tick: 1_100,
+        place_m: [0.01, 0.02],
+        velocity_m_per_s: [0.1, -0.2],
+        half_acceleration_m_per_s2: [0.5, 1.0],
+        ramp: StandstillRamp::MOVING,
+    };
+
+    fn close(found: f32, expected: f32) {
+        assert!((found - expected).abs() < 1e-6, "{found} is not {expected}");
+    }
+
+    #[test]
+    fn place_and_velocity_follow_a_parabola_while_the_tick_counter_wraps() {
+        let elapsed_s = TRACK.elapsed_s(TRACK.from_tick.wrapping_add(400), 25e-6);
+        close(elapsed_s, 0.01);
+        let [x_m, y_m] = TRACK.place_m(elapsed_s);
+        close(x_m, 0.01 + 0.1 * 0.01 + 0.5 * 1e-4);
+        close(y_m, 0.02 - 0.2 * 0.01 + 1.0 * 1e-4);
+        let [vx, vy] = TRACK.velocity_m_per_s(elapsed_s);
+        close(vx, 0.1 + 2.0 * 0.5 * 0.01);
+        close(vy, -0.2 + 2.0 * 0.01);
+        close(TRACK.elapsed_s(TRACK.from_tick.wrapping_sub(40), 25e-6), -1e-3);
+    }
+
+    #[test]
+    fn a_ramp_stays_within_0_and_1_on_both_sides_of_its_beginning() {
+        let from_tick = u32::MAX - 10;
+        let down = StandstillRamp { from_tick, gain: 1.0, slope_per_tick: -0.01 };
+        let up = StandstillRamp { from_tick, gain: 0.25, slope_per_tick: 0.01 };
+        for (ticks, expected_down, expected_up) in
+            [(-5000, 1.0, 0.0), (-1, 1.0, 0.24), (0, 1.0, 0.25), (50, 0.5, 0.75), (99, 0.01, 1.0), (5000, 0.0, 1.0)]
+        {
+            let tick = from_tick.wrapping_add_signed(ticks);
+            close(down.gain_at(tick), expected_down);
+            close(up.gain_at(tick), expected_up);
+        }
+        close(StandstillRamp::MOVING.gain_at(from_tick), 1.0);
+    }
+}

@@ -1,0 +1,228 @@
+//! The command handler: dispatches the frames of the host, and answers them.
+
+use frixel_wire::fault::State;
+use frixel_wire::message::{
+    Accepted, Answer, Command, FAULT_TEXT_MAX_LEN, FAULT_TEXT_PIECE_LEN, FromBoard, Refusal, Request,
+    TELEMETRY_PERIOD_MIN_TICKS,
+};
+use frixel_wire::payload::{ParseError, Payload};
+use heapless::{Deque, Vec};
+
+use crate::bitmap_directory::Directory;
+use crate::commit::{BitmapNames, Commit};
+use crate::credit::Credit;
+use crate::fingers::{Fingers, ONLY_FINGER};
+use crate::live::Playing;
+#[cfg(feature = "stream")]
+use crate::live::Stream;
+use crate::states::ORDERS_MAX;
+use crate::tracker::Tracker;
+use crate::transmit_queue::TransmitQueue;
+use crate::upload::{Staging, Upload};
+use frixel_control::Status;
+use frixel_control::{Active, Board, Order};
+use frixel_layers::BitmapPool;
+
+/// Handles the commands of the host: state of the session, and of the scene and finger that it has handed to the ticker.
+pub(crate) struct Commands<'a> {
+    pub(crate) board: Board,
+    pub(crate) pool: &'a BitmapPool,
+    pub(crate) directory: Directory,
+    pub(crate) upload: Option<Upload>,
+    pub(crate) staging: Staging,
+    /// CRC-32 of the scene that the ticker has, zero without one.
+    pub(crate) committed_crc32: u32,
+    /// Bitmaps of the scene that the ticker has.
+    pub(crate) committed_bitmaps: BitmapNames,
+    /// Bitmaps that were announced since the last commit: the next scene's.
+    pub(crate) announced_bitmaps: BitmapNames,
+    /// Coefficients for the next scene; `None` while the ticker has not handed back those of the scene before.
+    pub(crate) spare: Option<&'a mut Active>,
+    pub(crate) orders: Deque<Order<'a>, ORDERS_MAX>,
+    pub(crate) orders_sent: u32,
+    pub(crate) host_heard: bool,
+    /// A sign of life has waited for an order of the finger.
+    pub(crate) sign_of_life_waited: bool,
+    /// State once the ticker has applied every order.
+    pub(crate) state: State,
+    /// The commit under way.
+    pub(crate) commit: Option<Commit>,
+    pub(crate) credit: Credit,
+    pub(crate) telemetry_period_ticks: u32,
+    /// What has to be known of the committed scene beside its bytes, which the next upload takes the place of.
+    pub(crate) playing: Playing,
+    /// What the host streams; `None` on a board that has no buffer for it.
+    #[cfg(feature = "stream")]
+    pub(crate) stream: Option<Stream<'a>>,
+    /// Fingers that the host reported.
+    pub(crate) fingers: Fingers,
+    pub(crate) tracker: Tracker,
+}
+
+impl<'a> Commands<'a> {
+    pub(crate) fn new(board: Board, pool: &'a BitmapPool, spare: &'a mut Active) -> Self {
+        Self {
+            board,
+            pool,
+            directory: Directory::default(),
+            upload: None,
+            staging: Staging::new(),
+            committed_crc32: 0,
+            committed_bitmaps: Vec::new(),
+            announced_bitmaps: Vec::new(),
+            spare: Some(spare),
+            orders: Deque::new(),
+            orders_sent: 0,
+            host_heard: false,
+            sign_of_life_waited: false,
+            state: State::Disarmed,
+            commit: None,
+            credit: Credit::new(board.limits.receive_window_bytes),
+            telemetry_period_ticks: 0,
+            playing: Playing::default(),
+            #[cfg(feature = "stream")]
+            stream: None,
+            fingers: Fingers::new(),
+            tracker: Tracker::new(&board),
+        }
+    }
+
+    pub(crate) fn telemetry_period_ticks(&self) -> Option<u32> {
+        (self.telemetry_period_ticks > 0).then_some(self.telemetry_period_ticks)
+    }
+
+    pub(crate) fn take_back(&mut self, spare: &'a mut Active) {
+        self.spare = Some(spare);
+    }
+
+    pub(crate) fn scene(&self) -> Option<&[u8]> {
+        let (bytes, crc32) = self.staging.scene()?;
+        (crc32 == self.committed_crc32).then_some(bytes)
+    }
+
+    /// Takes one frame's payload.
+    pub(crate) fn take(&mut self, payload: Result<Payload, ParseError>, status: &Status, queue: &mut TransmitQueue) {
+        self.report_state(status, queue);
+        if !may_overtake_a_commit(&payload) {
+            self.finish_commit(queue);
+        }
+        match payload {
+            Ok(Payload::HelloRequest { .. }) => self.handle_hello(status, queue),
+            Ok(Payload::Request(request)) => {
+                self.host_heard = true;
+                if let Command::Commit { crc32 } = request.command {
+                    self.commit = Some(Commit::new(request.sequence, crc32));
+                } else {
+                    self.serve(request, status, queue);
+                }
+            }
+            Ok(Payload::Chunk { number, bytes }) => {
+                self.host_heard = true;
+                self.take_chunk(number, bytes, queue);
+            }
+            #[cfg(feature = "stream")]
+            Ok(Payload::Samples { first_index, samples }) => {
+                self.host_heard = true;
+                self.take_samples(first_index, samples);
+                self.report_stream(status, queue);
+            }
+            // Without the feature, samples are not looked at, but a host is there.
+            #[cfg(not(feature = "stream"))]
+            Ok(Payload::Samples { .. }) => self.host_heard = true,
+            // A request whose command is not known still says which answer it waits for.
+            Err(ParseError::UnknownCommand { sequence }) => {
+                self.host_heard = true;
+                self.answer(sequence, Err(Refusal::UnknownCommand), queue);
+            }
+            // What a board sends, and what cannot be read, is not for a board.
+            Ok(Payload::Hello(_) | Payload::FromBoard(_)) | Err(_) => {}
+        }
+    }
+
+    fn serve(&mut self, Request { sequence, command }: Request, status: &Status, queue: &mut TransmitQueue) {
+        let outcome = self.dispatch(command, status);
+        self.answer(sequence, outcome, queue);
+    }
+
+    pub(crate) fn answer(&mut self, sequence: u16, outcome: Result<Accepted, Refusal>, queue: &mut TransmitQueue) {
+        let answer = Answer { sequence, received_bytes: self.credit.received(), state: self.state, outcome };
+        self.report(&FromBoard::Answer(answer), queue);
+    }
+
+    /// Sends a message that tells how many bytes were received.
+    pub(crate) fn report(&mut self, message: &FromBoard, queue: &mut TransmitQueue) {
+        if queue.send(message) {
+            self.credit.reported();
+        }
+    }
+
+    fn dispatch(&mut self, command: Command, status: &Status) -> Result<Accepted, Refusal> {
+        match command {
+            Command::Ping => Ok(Accepted::Done),
+            Command::UploadScene { len, crc32 } => self.begin_scene(len, crc32),
+            Command::UploadBitmap { width, height, crc32 } if cfg!(feature = "bitmap") => {
+                self.begin_bitmap(width, height, crc32, self.is_settled(status))
+            }
+            Command::UploadBitmap { width, height, .. } => {
+                Err(Refusal::BitmapPoolFull { len: u32::from(width) * u32::from(height), free: 0 })
+            }
+            Command::UploadEnd => self.end_upload(),
+            // A commit begins where its request is taken, and not here.
+            Command::Commit { .. } => Err(Refusal::Busy),
+            Command::Subscribe { period_ticks } if cfg!(feature = "telemetry") => self.subscribe(period_ticks),
+            Command::Subscribe { .. } => Err(Refusal::UnknownCommand),
+            Command::Touch { x_m, y_m, age_ticks } => self.touch(ONLY_FINGER, (x_m, y_m), age_ticks, status),
+            Command::Lift => self.lift(ONLY_FINGER, status),
+            Command::FaultText { offset } => Ok(fault_text(self.board.reset_text, offset)),
+            Command::SetLayer { .. } => self.change_playing(command, status),
+            #[cfg(feature = "stream")]
+            Command::StartStream { .. } => self.change_playing(command, status),
+            #[cfg(feature = "stream")]
+            Command::EndStream => self.end_stream(),
+            #[cfg(not(feature = "stream"))]
+            Command::StartStream { .. } | Command::EndStream => Err(Refusal::UnknownCommand),
+            Command::TouchFinger { finger, x_m, y_m, age_ticks } => self.touch(finger, (x_m, y_m), age_ticks, status),
+            Command::LiftFinger { finger } => self.lift(finger, status),
+            Command::ClearFault => self.change_state(Order::ClearFault, &[State::Faulted], State::Disarmed),
+            Command::Arm | Command::Disarm | Command::Play | Command::Stop => self.drive(command, status),
+        }
+    }
+
+    fn subscribe(&mut self, period_ticks: u32) -> Result<Accepted, Refusal> {
+        if period_ticks != 0 && period_ticks < TELEMETRY_PERIOD_MIN_TICKS {
+            return Err(Refusal::TelemetryTooFast { period_min_ticks: TELEMETRY_PERIOD_MIN_TICKS });
+        }
+        self.telemetry_period_ticks = period_ticks;
+        Ok(Accepted::Done)
+    }
+}
+
+/// What may be done before a commit that came earlier: what neither asks for its outcome nor touches what it reads.
+fn may_overtake_a_commit(payload: &Result<Payload, ParseError>) -> bool {
+    match payload {
+        Ok(Payload::Samples { .. }) => true,
+        Ok(Payload::Request(request)) => matches!(
+            request.command,
+            Command::Ping
+                | Command::Stop
+                | Command::Disarm
+                | Command::Touch { .. }
+                | Command::Lift
+                | Command::TouchFinger { .. }
+                | Command::LiftFinger { .. }
+        ),
+        _ => false,
+    }
+}
+
+/// The piece of a fault's text that begins at `offset`.
+fn fault_text(text: &[u8], offset: u8) -> Accepted {
+    let rest = text.get(..text.len().min(FAULT_TEXT_MAX_LEN)).and_then(|text| text.get(usize::from(offset)..));
+    let mut bytes = [0; FAULT_TEXT_PIECE_LEN];
+    let mut len = 0;
+    for (to, from) in bytes.iter_mut().zip(rest.unwrap_or_default()) {
+        *to = *from;
+        len += 1;
+    }
+    Accepted::FaultText { len, bytes }
+}

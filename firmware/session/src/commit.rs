@@ -1,0 +1,154 @@
+//! The uploaded scene becomes the one that plays.
+//!
+//! A commit takes a board the time of hundreds of ticks. [`Commands::step_commit`] advances it by one step of at most a
+//! millisecond, so that touches, signs of life and stops are served in between.
+
+use frixel_layers::{Scene, disabled_record};
+use frixel_wire::message::{Accepted, Refusal};
+use frixel_wire::scene::{RECORDS_MAX, SceneError};
+use heapless::Vec;
+
+use crate::commands::Commands;
+use crate::live::Playing;
+use crate::loading::Loading;
+use crate::transmit_queue::TransmitQueue;
+use crate::upload::Upload;
+use frixel_control::Order;
+
+/// CRC-32 names of bitmaps.
+pub(crate) type BitmapNames = Vec<u32, RECORDS_MAX>;
+
+/// A commit under way.
+pub(crate) struct Commit {
+    /// Sequence number of the request.
+    sequence: u16,
+    crc32: u32,
+    step: Step,
+}
+
+/// What a commit does next.
+enum Step {
+    /// Checks that the scene is there, whole and readable.
+    Check,
+    /// Computes its coefficients.
+    Load(Loading),
+    /// Hands them to the ticker.
+    HandOver,
+}
+
+impl Commit {
+    /// A commit that was requested.
+    pub(crate) fn new(sequence: u16, crc32: u32) -> Self {
+        Self { sequence, crc32, step: Step::Check }
+    }
+}
+
+impl Commands<'_> {
+    /// Does the next step of the commit, if one is under way, and answers after the last.
+    pub(crate) fn step_commit(&mut self, queue: &mut TransmitQueue) {
+        let Some(mut commit) = self.commit.take() else { return };
+        match self.step(&mut commit) {
+            Ok(false) => self.commit = Some(commit),
+            Ok(true) => self.answer(commit.sequence, Ok(Accepted::Done), queue),
+            Err(refusal) => self.answer(commit.sequence, Err(refusal), queue),
+        }
+    }
+
+    /// Does all that is left of the commit, for a request that has to know how it ended.
+    pub(crate) fn finish_commit(&mut self, queue: &mut TransmitQueue) {
+        while self.commit.is_some() {
+            self.step_commit(queue);
+        }
+    }
+
+    /// Commits the uploaded scene at once.
+    #[cfg(feature = "store")]
+    pub(crate) fn commit_at_once(&mut self, crc32: u32) -> Result<(), Refusal> {
+        let mut commit = Commit::new(0, crc32);
+        while !self.step(&mut commit)? {}
+        Ok(())
+    }
+
+    /// Returns whether the step was the last.
+    #[inline(never)]
+    fn step(&mut self, commit: &mut Commit) -> Result<bool, Refusal> {
+        let crc32 = commit.crc32;
+        match &mut commit.step {
+            Step::Check => {
+                self.check_upload(crc32)?;
+                commit.step = Step::Load(Loading::Drive);
+            }
+            Step::Load(loading) => {
+                if self.load_step(loading)? {
+                    commit.step = Step::HandOver;
+                }
+            }
+            Step::HandOver => return self.hand_scene_over(crc32).map(|()| true),
+        }
+        Ok(false)
+    }
+
+    fn check_upload(&self, crc32: u32) -> Result<(), Refusal> {
+        if let Some(upload) = &self.upload {
+            return Err(end_upload_first(upload));
+        }
+        let (_, found) = self.staging.scene().ok_or(Refusal::NoScene)?;
+        if found != crc32 {
+            return Err(Refusal::CrcMismatch { expected: crc32, found });
+        }
+        self.room_for_order()?;
+        let scene = self.uploaded_scene()?;
+        if scene.record_count() > usize::from(self.board.limits.records_max) {
+            // A scene has no more records than a byte counts.
+            return Err(Refusal::Scene(SceneError::TooManyRecords { found: scene.record_count() as u8 }));
+        }
+        if self.spare.is_none() { Err(Refusal::Busy) } else { Ok(()) }
+    }
+
+    fn uploaded_scene(&self) -> Result<Scene<'_>, Refusal> {
+        let (bytes, _) = self.staging.scene().ok_or(Refusal::NoScene)?;
+        Scene::parse(bytes).map_err(not_a_scene)
+    }
+
+    fn load_step(&mut self, loading: &mut Loading) -> Result<bool, Refusal> {
+        let (bytes, _) = self.staging.scene().ok_or(Refusal::NoScene)?;
+        let scene = Scene::parse(bytes).map_err(not_a_scene)?;
+        let spare = self.spare.as_mut().ok_or(Refusal::Busy)?;
+        let stepped = loading.step(spare, &scene, &self.board, &self.directory);
+        if stepped.is_err() {
+            self.announced_bitmaps.clear();
+        }
+        stepped
+    }
+
+    fn hand_scene_over(&mut self, crc32: u32) -> Result<(), Refusal> {
+        self.room_for_order()?;
+        let scene = self.uploaded_scene()?;
+        let (bitmaps, playing) = (bitmaps_of(&scene), Playing::new(&scene));
+        let spare = self.spare.take().ok_or(Refusal::Busy)?;
+        self.committed_bitmaps = bitmaps;
+        self.playing = playing;
+        #[cfg(feature = "stream")]
+        self.drop_stream_without_layer();
+        self.committed_crc32 = crc32;
+        self.announced_bitmaps.clear();
+        self.send_order(Order::Load(spare))
+    }
+}
+
+/// A commit while an upload is under way is refused with how far that has come.
+fn end_upload_first(upload: &Upload) -> Refusal {
+    upload.check().err().unwrap_or(Refusal::UploadIncomplete { next_chunk: 0 })
+}
+
+fn bitmaps_of(scene: &Scene) -> BitmapNames {
+    if !cfg!(feature = "bitmap") {
+        return BitmapNames::new();
+    }
+    scene.records().filter_map(|record| record.layer.bitmap_crc32()).take(RECORDS_MAX).collect()
+}
+
+/// Tells what this firmware was built without from what nobody knows.
+fn not_a_scene(error: SceneError) -> Refusal {
+    disabled_record(&error).map_or(Refusal::Scene(error), |layer| Refusal::LeftOut { layer })
+}

@@ -1,0 +1,224 @@
+//! Which of several fingers leads. One electrode gives one effect, so one finger at a time is followed.
+
+use frixel_layers::range::LENGTH_MAX_M;
+use frixel_layers::{Leader, within};
+use frixel_wire::fault::Flags;
+use frixel_wire::message::{Accepted, ConfigField, ConfigRefusal, Refusal};
+use heapless::Vec;
+
+use crate::Touch;
+use crate::commands::Commands;
+use frixel_control::Status;
+
+/// The finger of a host that has one.
+pub(crate) const ONLY_FINGER: u8 = 0;
+
+/// Fingers that are told apart, as many as a person has. One more is not there.
+const FINGERS_MAX: usize = 10;
+
+/// The fingers that the host has on the screen, and what there is to report of the one that leads.
+pub(crate) struct Fingers {
+    /// In the order of their coming.
+    down: Vec<u8, FINGERS_MAX>,
+    /// The finger that leads.
+    followed: Option<u8>,
+    /// The finger that led is gone, which is not reported yet.
+    gone: bool,
+    /// Where the finger that leads was last, if that is not reported yet.
+    place: Option<Touch>,
+}
+
+impl Fingers {
+    pub(crate) const fn new() -> Self {
+        Self { down: Vec::new(), followed: None, gone: false, place: None }
+    }
+
+    /// Takes a finger's place.
+    pub(crate) fn touch(&mut self, finger: u8, place: Touch, rule: Leader) {
+        if !self.down.contains(&finger) && self.down.push(finger).is_err() {
+            return;
+        }
+        self.follow(rule);
+        if self.followed == Some(finger) {
+            self.place = Some(place);
+        }
+    }
+
+    /// Records a lift. That of a finger that was never there is reported, too: the tracker may know it from before.
+    pub(crate) fn lift(&mut self, finger: u8, rule: Leader) {
+        self.down.retain(|other| *other != finger);
+        if self.down.is_empty() {
+            self.let_go();
+        }
+        self.follow(rule);
+    }
+
+    /// Forgets all fingers.
+    pub(crate) fn forget(&mut self) {
+        if self.followed.is_some() {
+            self.let_go();
+        }
+        self.down.clear();
+    }
+
+    /// The next report. A finger that takes another's place comes after the other has gone, so that nothing is made of the
+    /// way between them.
+    pub(crate) fn next(&mut self) -> Option<Touch> {
+        if core::mem::take(&mut self.gone) { Some(Touch::Up) } else { self.place.take() }
+    }
+
+    /// Follows the finger that leads.
+    fn follow(&mut self, rule: Leader) {
+        let leader = match rule {
+            Leader::First => self.down.first(),
+            Leader::Latest => self.down.last(),
+        };
+        let leader = leader.copied();
+        if leader != self.followed {
+            if self.followed.is_some() {
+                self.let_go();
+            }
+            self.followed = leader;
+        }
+    }
+
+    fn let_go(&mut self) {
+        self.gone = true;
+        self.place = None;
+        self.followed = None;
+    }
+}
+
+impl Commands<'_> {
+    pub(crate) fn touch(
+        &mut self,
+        finger: u8,
+        (x_m, y_m): (f32, f32),
+        age_ticks: u16,
+        status: &Status,
+    ) -> Result<Accepted, Refusal> {
+        if !self.board.touch_from_host {
+            return Err(Refusal::TouchSource);
+        }
+        for place_m in [x_m, y_m] {
+            let field = ConfigField::TouchPlace;
+            within(field, place_m, -LENGTH_MAX_M as f32, LENGTH_MAX_M as f32, ConfigRefusal::WHOLE_SCENE)
+                .map_err(Refusal::Config)?;
+        }
+        let place = Touch::Down { x_m, y_m, age_ticks: u32::from(age_ticks) };
+        if status.telemetry.flags.contains(Flags::TOUCH_STALE) {
+            // Nobody has said anything for a while: a finger whose lift was lost is not there any more.
+            self.fingers.forget();
+        }
+        self.fingers.touch(finger, place, self.playing.leader());
+        self.report_fingers(status);
+        Ok(Accepted::Done)
+    }
+
+    pub(crate) fn lift(&mut self, finger: u8, status: &Status) -> Result<Accepted, Refusal> {
+        if !self.board.touch_from_host {
+            return Err(Refusal::TouchSource);
+        }
+        self.fingers.lift(finger, self.playing.leader());
+        self.report_fingers(status);
+        Ok(Accepted::Done)
+    }
+
+    /// Forgets all fingers: another host has come.
+    pub(crate) fn forget_fingers(&mut self, status: &Status) {
+        self.fingers.forget();
+        self.report_fingers(status);
+    }
+
+    /// Gives the tracker what there is to report of the finger that leads, as of the next tick.
+    fn report_fingers(&mut self, status: &Status) {
+        while let Some(touch) = self.fingers.next() {
+            self.tracker.report(touch, status.telemetry.tick.wrapping_add(1));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn place(finger: u8, step: u32) -> Touch {
+        Touch::Down { x_m: 0.01 * f32::from(finger), y_m: 0.02, age_ticks: step }
+    }
+
+    fn told(fingers: &mut Fingers) -> std::vec::Vec<Touch> {
+        core::iter::from_fn(|| fingers.next()).collect()
+    }
+
+    #[test]
+    fn the_first_leads_until_it_lifts() {
+        let mut fingers = Fingers::new();
+        for step in 0..3 {
+            fingers.touch(7, place(7, step), Leader::First);
+            fingers.touch(2, place(2, step), Leader::First);
+            assert_eq!(told(&mut fingers), [place(7, step)]);
+        }
+        fingers.lift(7, Leader::First);
+        assert_eq!(told(&mut fingers), [Touch::Up]);
+        fingers.touch(2, place(2, 9), Leader::First);
+        assert_eq!(told(&mut fingers), [place(2, 9)]);
+        fingers.lift(2, Leader::First);
+        assert_eq!(told(&mut fingers), [Touch::Up]);
+    }
+
+    #[test]
+    fn the_latest_leads_and_gives_back_what_it_took() {
+        let mut fingers = Fingers::new();
+        fingers.touch(1, place(1, 0), Leader::Latest);
+        assert_eq!(told(&mut fingers), [place(1, 0)]);
+        fingers.touch(5, place(5, 0), Leader::Latest);
+        assert_eq!(told(&mut fingers), [Touch::Up, place(5, 0)], "the way between them is nobody's");
+        fingers.touch(1, place(1, 1), Leader::Latest);
+        assert_eq!(told(&mut fingers), []);
+        fingers.lift(5, Leader::Latest);
+        fingers.touch(1, place(1, 2), Leader::Latest);
+        assert_eq!(told(&mut fingers), [Touch::Up, place(1, 2)]);
+    }
+
+    #[test]
+    fn a_finger_that_does_not_lead_lifts_unnoticed() {
+        let mut fingers = Fingers::new();
+        fingers.touch(1, place(1, 0), Leader::First);
+        fingers.touch(2, place(2, 0), Leader::First);
+        fingers.lift(2, Leader::First);
+        assert_eq!(told(&mut fingers), [place(1, 0)]);
+    }
+
+    #[test]
+    fn a_finger_that_comes_down_again_in_one_batch_begins_anew() {
+        let mut fingers = Fingers::new();
+        fingers.touch(0, place(0, 0), Leader::First);
+        assert_eq!(told(&mut fingers), [place(0, 0)]);
+        fingers.lift(0, Leader::First);
+        fingers.touch(0, place(9, 0), Leader::First);
+        assert_eq!(told(&mut fingers), [Touch::Up, place(9, 0)]);
+    }
+
+    #[test]
+    fn another_rule_another_leader() {
+        let mut fingers = Fingers::new();
+        fingers.touch(1, place(1, 0), Leader::First);
+        fingers.touch(2, place(2, 0), Leader::First);
+        told(&mut fingers);
+        fingers.touch(2, place(2, 1), Leader::Latest);
+        assert_eq!(told(&mut fingers), [Touch::Up, place(2, 1)]);
+    }
+
+    #[test]
+    fn one_finger_too_many_is_not_there_and_a_new_host_has_none() {
+        let mut fingers = Fingers::new();
+        for finger in 0..20 {
+            fingers.touch(finger, place(finger, 0), Leader::Latest);
+        }
+        assert_eq!(told(&mut fingers), [Touch::Up, place(9, 0)]);
+        fingers.forget();
+        assert_eq!(told(&mut fingers), [Touch::Up]);
+        fingers.touch(15, place(15, 0), Leader::First);
+        assert_eq!(told(&mut fingers), [place(15, 0)]);
+    }
+}

@@ -1,0 +1,190 @@
+//! What a host changes while a scene plays: layers, and the samples of a stream.
+
+use frixel_layers::{Header, Leader, Scene, range, within};
+use frixel_wire::fault::State;
+use frixel_wire::message::{Accepted, Command, ConfigField, Refusal};
+#[cfg(feature = "stream")]
+use frixel_wire::message::{ConfigRefusal, FromBoard, STREAM_START_LEVEL_MAX};
+
+use crate::commands::Commands;
+#[cfg(feature = "stream")]
+use crate::transmit_queue::TransmitQueue;
+use frixel_control::{Order, Status};
+#[cfg(feature = "stream")]
+use frixel_control::{StreamBuffer, StreamIntake};
+
+/// Frames of samples after which the host hears how the stream is doing: less than 1 KiB, as with uploads.
+#[cfg(feature = "stream")]
+const PROGRESS_FRAMES: u32 = 4;
+/// Time after which it hears so in any case, in s.
+#[cfg(feature = "stream")]
+const PROGRESS_PERIOD_S: f32 = 0.02;
+
+/// What has to be known of the scene that the ticker has, when its bytes are gone.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Playing {
+    pub(crate) header: Option<Header>,
+    layers: u8,
+    #[cfg(feature = "stream")]
+    has_stream: bool,
+}
+
+impl Playing {
+    pub(crate) fn new(scene: &Scene) -> Self {
+        Self {
+            header: Some(*scene.header()),
+            // A scene has no more records than that.
+            layers: scene.record_count() as u8,
+            #[cfg(feature = "stream")]
+            has_stream: scene.records().any(|record| record.layer.is_streamed()),
+        }
+    }
+}
+
+/// The stream that the host sends.
+#[cfg(feature = "stream")]
+pub(crate) struct Stream<'a> {
+    intake: StreamIntake<'a>,
+    /// Frames of samples since the host last heard how the stream is doing.
+    frames: u32,
+    reported_at_tick: u32,
+    /// Something has to be told as soon as there is room.
+    report_due: bool,
+}
+
+#[cfg(feature = "stream")]
+impl<'a> Stream<'a> {
+    pub(crate) fn new(buffer: &'a StreamBuffer) -> Self {
+        Self { intake: StreamIntake::new(buffer), frames: 0, reported_at_tick: 0, report_due: false }
+    }
+}
+
+impl Playing {
+    /// The scene goes on without a host.
+    pub(crate) fn is_autonomous(&self) -> bool {
+        self.header.is_some_and(|header| header.autonomous)
+    }
+
+    /// Which of several fingers leads; the first one before any scene.
+    pub(crate) fn leader(&self) -> Leader {
+        self.header.map_or(Leader::First, |header| header.leader)
+    }
+}
+
+impl Commands<'_> {
+    /// Commands that only a playing scene takes.
+    pub(crate) fn change_playing(&mut self, command: Command, status: &Status) -> Result<Accepted, Refusal> {
+        match (self.state, status.fault) {
+            (State::Active, _) => {}
+            (State::Faulted, Some((fault, _))) => return Err(Refusal::Faulted(fault)),
+            (state, _) => return Err(Refusal::WrongState(state)),
+        }
+        match command {
+            Command::SetLayer { layer, on, gain } => self.set_layer(layer, on, gain),
+            #[cfg(feature = "stream")]
+            Command::StartStream { sample_hz, start_level } => self.start_stream(sample_hz, start_level),
+            _ => Err(Refusal::UnknownCommand),
+        }
+    }
+
+    fn set_layer(&mut self, layer: u8, on: bool, gain: f32) -> Result<Accepted, Refusal> {
+        if self.playing.header.is_some_and(|header| header.layers_fixed) {
+            return Err(Refusal::LayersFixed);
+        }
+        let layers = self.playing.layers;
+        if layer >= layers {
+            return Err(Refusal::NoSuchLayer { layer, layers });
+        }
+        range::GAIN.check(gain, layer).map_err(Refusal::Config)?;
+        self.send_order(Order::SetLayer { layer, on, gain })?;
+        Ok(Accepted::Done)
+    }
+}
+
+#[cfg(feature = "stream")]
+impl<'a> Commands<'a> {
+    pub(crate) fn attach_stream(&mut self, buffer: &'a StreamBuffer) {
+        self.stream = Some(Stream::new(buffer));
+    }
+
+    fn start_stream(&mut self, sample_hz: u32, start_level: u16) -> Result<Accepted, Refusal> {
+        let tick_hz = self.board.tick_hz;
+        if self.stream.is_none() {
+            return Err(Refusal::UnknownCommand);
+        }
+        if !self.playing.has_stream {
+            return Err(Refusal::NoStreamLayer);
+        }
+        for (field, found, max) in [
+            (ConfigField::SampleRate, sample_hz as f32, tick_hz as f32),
+            (ConfigField::StartLevel, f32::from(start_level), f32::from(STREAM_START_LEVEL_MAX)),
+        ] {
+            within(field, found, 1.0, max, ConfigRefusal::WHOLE_SCENE).map_err(Refusal::Config)?;
+        }
+        self.room_for_order()?;
+        let Some(stream) = &mut self.stream else { return Err(Refusal::UnknownCommand) };
+        let start = stream.intake.start(sample_hz, tick_hz, start_level);
+        stream.report_due = true;
+        self.send_order(Order::StartStream(start))?;
+        Ok(Accepted::Done)
+    }
+
+    /// A stream is not for a scene that has no layer for it; the ticker stops it by itself.
+    pub(crate) fn drop_stream_without_layer(&mut self) {
+        if let Some(stream) = self.stream.as_mut().filter(|_| !self.playing.has_stream) {
+            stream.intake.end();
+        }
+    }
+
+    /// Takes no more samples, and lets the ticker play those that are there.
+    pub(crate) fn end_stream(&mut self) -> Result<Accepted, Refusal> {
+        if self.stream.is_none() {
+            return Err(Refusal::UnknownCommand);
+        }
+        self.room_for_order()?;
+        if let Some(last) = self.stream.as_mut().and_then(|stream| stream.intake.end()) {
+            self.send_order(Order::EndStream { last })?;
+        }
+        Ok(Accepted::Done)
+    }
+
+    /// Takes no more samples. The ticker has forgotten the stream, or will: it does not play.
+    pub(crate) fn forget_stream(&mut self) {
+        if let Some(stream) = &mut self.stream {
+            stream.intake.end();
+        }
+    }
+
+    pub(crate) fn take_samples(&mut self, first_index: u32, samples: &[[u8; 2]]) {
+        if let Some(stream) = &mut self.stream {
+            stream.intake.take(first_index, samples);
+            stream.frames += 1;
+            stream.report_due |= stream.frames >= PROGRESS_FRAMES;
+        }
+    }
+
+    /// Tells the host how the stream is doing, when that is due and the line is not behind.
+    pub(crate) fn report_stream(&mut self, status: &Status, queue: &mut TransmitQueue) {
+        let Some(stream) = &mut self.stream else { return };
+        let Some((next_index, room)) = stream.intake.progress() else { return };
+        let now_tick = status.telemetry.tick;
+        let period_over = now_tick.wrapping_sub(stream.reported_at_tick) >= self.board.ticks(PROGRESS_PERIOD_S);
+        if !stream.report_due && !period_over {
+            return;
+        }
+        let progress = FromBoard::StreamProgress {
+            next_index,
+            room,
+            underruns: status.counters.stream_underruns,
+            gaps: status.counters.stream_gaps,
+            received_bytes: self.credit.received(),
+        };
+        // When the line is behind, the next call tries again.
+        if queue.send_unasked(&progress) {
+            self.credit.reported();
+            stream.report_due = false;
+            stream.frames = 0;
+            stream.reported_at_tick = now_tick;
+        }
+    }
+}

@@ -1,0 +1,206 @@
+//! From a scene's configuration to the coefficients that the tick reads: checked, then computed, in steps.
+
+use frixel_control::{Active, Board, CarrierTiming};
+use frixel_layers::cost::Worst;
+use frixel_layers::{Carrier as Shape, Grid, Header, Point, Scene, active_bytes, within};
+use frixel_model::{Carrier, Finger, InverseTable, InverseTableFilling, TableError, Waveform};
+use frixel_wire::dac_code::DacCode;
+use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
+
+use crate::bitmap_directory::Directory;
+
+/// Layers that a step of loading takes.
+const LAYERS_PER_STEP: usize = 8;
+/// Cells of the grid whose cost a step of loading finds.
+const CELLS_PER_STEP: usize = 64;
+/// Rows of the inverse table that a step of loading computes.
+const ROWS_PER_STEP: usize = 8;
+
+/// How far a scene is loaded: the next step.
+#[derive(Clone, Debug)]
+pub(crate) enum Loading {
+    /// What holds for the whole scene.
+    Drive,
+    /// Layers from a number on.
+    Layers {
+        /// Number of the first.
+        next: usize,
+    },
+    /// The cost of a tick, from a cell of the grid on.
+    Cost {
+        /// Number of the first.
+        next_cell: usize,
+        /// The worst cell before it.
+        worst: Worst,
+    },
+    /// The layout of the inverse table.
+    Table,
+    /// Rows of the inverse table.
+    Rows(InverseTableFilling),
+}
+
+impl Loading {
+    /// The cost of a tick, from the first cell on.
+    const COST: Self = Self::Cost { next_cell: 0, worst: Worst::NOWHERE };
+
+    /// Does the next step of making `active` the coefficients of `scene`, each well below a millisecond of a board's time.
+    /// Returns whether it was the last. When the scene is refused, `active` holds no scene; before the last step it is of
+    /// no use.
+    pub(crate) fn step(
+        &mut self,
+        active: &mut Active,
+        scene: &Scene,
+        board: &Board,
+        directory: &Directory,
+    ) -> Result<bool, Refusal> {
+        let stepped = self.try_step(active, scene, board, directory);
+        if stepped.is_err() {
+            active.unload();
+        }
+        stepped
+    }
+
+    fn try_step(
+        &mut self,
+        active: &mut Active,
+        scene: &Scene,
+        board: &Board,
+        directory: &Directory,
+    ) -> Result<bool, Refusal> {
+        let header = scene.header();
+        *self = match self {
+            Self::Drive => {
+                load_drive(active, scene, board)?;
+                Self::Layers { next: 0 }
+            }
+            Self::Layers { next } => {
+                for record in scene.records().skip(*next).take(LAYERS_PER_STEP) {
+                    active.layers.push(&record, board.tick_hz, &|crc32| directory.find(crc32))?;
+                }
+                let next = *next + LAYERS_PER_STEP;
+                if next < scene.record_count() { Self::Layers { next } } else { Self::COST }
+            }
+            Self::Cost { next_cell, worst } => {
+                let end_cell = *next_cell + CELLS_PER_STEP;
+                let worst = active.layers.worst(scene, *next_cell..end_cell, *worst);
+                if end_cell < Grid::CELLS {
+                    Self::Cost { next_cell: end_cell, worst }
+                } else {
+                    worst.check(board.limits.tick_cycles_max)?;
+                    Self::Table
+                }
+            }
+            Self::Table => {
+                let (table, filling) = begin_table(header, active.voltage_max_v_rms).map_err(Refusal::Config)?;
+                active.table = Some(table);
+                Self::Rows(filling)
+            }
+            Self::Rows(filling) => {
+                let Some(table) = &mut active.table else { return Ok(true) };
+                return filling
+                    .fill(table, ROWS_PER_STEP)
+                    .map_err(|error| Refusal::Config(no_table(&error, header, active.voltage_max_v_rms)));
+            }
+        };
+        Ok(false)
+    }
+}
+
+/// Loads what holds for the whole scene, the inverse table left out.
+fn load_drive(active: &mut Active, scene: &Scene, board: &Board) -> Result<(), Refusal> {
+    active.unload();
+    let header = scene.header();
+    if header.carrier == Shape::Sine && !cfg!(feature = "sine-carrier") {
+        return Err(Refusal::LeftOut { layer: ConfigRefusal::WHOLE_SCENE });
+    }
+    header.check(&board.limits, board.tick_hz).map_err(Refusal::Config)?;
+    (active.carrier, active.voltage_max_v_rms) = carrier(header, board).map_err(Refusal::Config)?;
+    active.slew_step_v = header.slew_v_per_s * board.tick_period_s();
+    active.host_timeout_ticks = (!header.autonomous).then(|| board.ticks(header.host_timeout_s));
+    active.prediction = header.prediction;
+    active.layers.begin(header, scene.points());
+    Ok(())
+}
+
+/// The carrier of a scene, and the largest rms voltage that it carries within all limits.
+fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), ConfigRefusal> {
+    let limits = &board.limits;
+    let half_period_ticks = board.ticks(0.5 / header.carrier_hz);
+    let carrier = Carrier {
+        waveform: match header.carrier {
+            Shape::Sine if cfg!(feature = "sine-carrier") => Waveform::Sine,
+            _ => Waveform::Square,
+        },
+        half_period_s: half_period_ticks as f32 * board.tick_period_s(),
+        edge_time_constant_s: limits.edge_time_constant_s,
+    };
+    let peak_per_rms = carrier.peak_per_rms();
+    let voltage_max_v_rms = header.voltage_max_v_rms.min(header.voltage_max_v_peak / peak_per_rms);
+
+    let drive_v_peak = voltage_max_v_rms * peak_per_rms;
+    let current = carrier.electrode_current(limits.electrode_capacitance_max_f, drive_v_peak);
+    for (field, found_a, max_a) in [
+        (ConfigField::CurrentRms, current.a_rms, limits.current_max_a_rms),
+        (ConfigField::CurrentPeak, current.a_peak, limits.current_max_a_peak),
+    ] {
+        within(field, found_a, 0.0, max_a, ConfigRefusal::WHOLE_SCENE)?;
+    }
+
+    let codes_per_v = f32::from(i16::MAX) / limits.full_scale_v_peak;
+    let code_max = (header.voltage_max_v_peak * codes_per_v) as i32;
+    let code_max = DacCode::from_bits(code_max.min(i32::from(i16::MAX)) as i16);
+    let timing = CarrierTiming::new(header.carrier, half_period_ticks, peak_per_rms * codes_per_v, code_max);
+    Ok((timing, voltage_max_v_rms))
+}
+
+/// Rows of a scene's inverse table with a piece of the curve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TableRows {
+    /// Those that the board computes.
+    pub filled: usize,
+    /// Those that it would compute if the scene asked for all that the drive can give.
+    pub whole: usize,
+}
+
+/// Begins the inverse table of a scene's finger, coating and load, up to the largest friction that the scene asks for.
+fn begin_table(header: &Header, voltage_max_v_rms: f32) -> Result<(InverseTable, InverseTableFilling), ConfigRefusal> {
+    let Header { effective_gap_m, normal_load_n, .. } = *header;
+    let max_n = header.electric_friction_max_n.unwrap_or(f32::INFINITY);
+    InverseTable::begin(&finger(header), effective_gap_m, normal_load_n, voltage_max_v_rms, max_n)
+        .map_err(|error| no_table(&error, header, voltage_max_v_rms))
+}
+
+fn no_table(error: &TableError, header: &Header, voltage_max_v_rms: f32) -> ConfigRefusal {
+    let (field, found) = match error {
+        TableError::Contact => (ConfigField::EffectiveGap, header.effective_gap_m),
+        _ => (ConfigField::TableRange, voltage_max_v_rms),
+    };
+    ConfigRefusal { field, found, min: 0.0, max: f32::INFINITY, layer: ConfigRefusal::WHOLE_SCENE }
+}
+
+/// A scene's finger.
+fn finger(header: &Header) -> Finger<f32> {
+    Finger {
+        radius_m: header.finger_radius_m,
+        stiffness_pa_per_m: header.stiffness_pa_per_m,
+        friction_coefficient: header.friction_coefficient,
+    }
+}
+
+/// Bytes of an [`Active`] that a scene fills, for each of the two: its layers, points, waves and clicks. The rest
+/// is the same for every scene. No pointer is among them, so that they are as many on every target.
+pub fn active_bytes_filled(scene: &Scene) -> usize {
+    scene.records().map(|record| active_bytes(&record)).sum::<usize>() + scene.points().len() * size_of::<Point>()
+}
+
+/// How much of the inverse table the board computes for a scene, whose numbers a board takes. The table's room in RAM
+/// is the same for every scene; the rows that it does without save time at a commit.
+pub fn table_rows(scene: &Scene, board: &Board) -> Result<TableRows, Refusal> {
+    let header = scene.header();
+    let (_, voltage_max_v_rms) = carrier(header, board).map_err(Refusal::Config)?;
+    let rows = |header: &Header| {
+        begin_table(header, voltage_max_v_rms).map(|(_, filling)| filling.rows()).map_err(Refusal::Config)
+    };
+    let whole = Header { electric_friction_max_n: None, ..*header };
+    Ok(TableRows { filled: rows(header)?, whole: rows(&whole)? })
+}

@@ -1,0 +1,157 @@
+//! One board's end of the serial line: bytes into frames and back.
+
+use frixel_layers::Header;
+use frixel_wire::fault::State;
+use frixel_wire::frame::Decoder;
+use frixel_wire::message::FromBoard;
+use frixel_wire::payload::Payload;
+
+use crate::Touch;
+use crate::commands::Commands;
+#[cfg(feature = "store")]
+use crate::stored::StoredScene;
+use crate::transmit_queue::TransmitQueue;
+use frixel_control::Status;
+#[cfg(feature = "stream")]
+use frixel_control::StreamBuffer;
+use frixel_control::{Active, Board, Order};
+use frixel_layers::BitmapPool;
+
+/// One board's end of the serial line.
+pub struct Session<'a> {
+    decoder: Decoder,
+    commands: Commands<'a>,
+    queue: TransmitQueue,
+    telemetry_sent_at_tick: u32,
+    /// A byte of the frame that is being received was beyond the host's credit.
+    beyond_credit: bool,
+    /// Frames that were discarded because they were beyond the host's credit, modulo 2^32.
+    frames_discarded: u32,
+}
+
+impl<'a> Session<'a> {
+    /// A session that stores bitmaps in `pool` and builds the next scene in `spare`.
+    pub fn new(board: Board, pool: &'a BitmapPool, spare: &'a mut Active) -> Self {
+        Self {
+            decoder: Decoder::new(),
+            commands: Commands::new(board, pool, spare),
+            queue: TransmitQueue::new(),
+            telemetry_sent_at_tick: 0,
+            beyond_credit: false,
+            frames_discarded: 0,
+        }
+    }
+
+    /// From now on, takes the samples of streams into `buffer`, from which the ticker plays them.
+    #[cfg(feature = "stream")]
+    pub fn attach_stream(&mut self, buffer: &'a StreamBuffer) {
+        self.commands.attach_stream(buffer);
+    }
+
+    /// Takes bytes from the serial line. Answers wait in [`Session::transmit`], orders in [`Session::next_order`]. A commit
+    /// is left to [`Session::poll`], which does it step by step, so that it does not hold up the signs of life, touches and
+    /// stops that come meanwhile. A request that has to know how the commit ended finishes it at once: a host that does not
+    /// wait for the answer to a commit makes the board spend the time of many ticks here.
+    ///
+    /// Frames beyond the host's credit are discarded: they are no sign of life, no touch and no order. Only a hello
+    /// request needs no credit.
+    pub fn receive(&mut self, mut bytes: &[u8], status: &Status) {
+        while !bytes.is_empty() {
+            let before = bytes.len();
+            let frame = self.decoder.next_frame(&mut bytes);
+            self.beyond_credit |= !self.commands.credit.take(before - bytes.len());
+            let Some(frame) = frame else { continue };
+            let payload = Payload::parse_from_host(frame);
+            let beyond_credit = core::mem::take(&mut self.beyond_credit);
+            if beyond_credit && !matches!(payload, Ok(Payload::HelloRequest { .. })) {
+                self.frames_discarded = self.frames_discarded.wrapping_add(1);
+            } else {
+                self.commands.take(payload, status, &mut self.queue);
+            }
+        }
+    }
+
+    /// Advances a commit by one step of at most a millisecond, and sends what the host did not request: telemetry, and
+    /// changes of state. To be called after every tick or, when there is no time for that, at least once a telemetry
+    /// period, and with touch reports, orders and bytes handed over in between.
+    pub fn poll(&mut self, status: &Status) {
+        self.commands.tracker.expire(status.telemetry.tick);
+        self.commands.step_commit(&mut self.queue);
+        self.commands.report_state(status, &mut self.queue);
+        #[cfg(feature = "stream")]
+        self.commands.report_stream(status, &mut self.queue);
+        if cfg!(feature = "telemetry")
+            && let Some(period_ticks) = self.commands.telemetry_period_ticks()
+            && status.telemetry.tick.wrapping_sub(self.telemetry_sent_at_tick) >= period_ticks
+        {
+            self.telemetry_sent_at_tick = status.telemetry.tick;
+            self.queue.send_unasked(&FromBoard::Telemetry(status.telemetry));
+        }
+    }
+
+    /// Takes a report of the board's touch source that arrived at a tick.
+    pub fn touch(&mut self, touch: Touch, tick: u32) {
+        self.commands.tracker.report(touch, tick);
+    }
+
+    /// The next order for the ticker, which takes one before each tick.
+    pub fn next_order(&mut self) -> Option<Order<'a>> {
+        self.commands.next_order()
+    }
+
+    /// Takes back the coefficients that the ticker has let go.
+    pub fn take_back(&mut self, spare: &'a mut Active) {
+        self.commands.take_back(spare);
+    }
+
+    /// Moves bytes for the serial line into `bytes`, and returns how many.
+    pub fn transmit(&mut self, bytes: &mut [u8]) -> usize {
+        let count = self.queue.drain(bytes);
+        if count > 0 {
+            self.commands.credit.grant_reported();
+        }
+        count
+    }
+
+    /// The supervisor's state once the ticker has applied every order that was given out.
+    pub fn state(&self) -> State {
+        self.commands.state
+    }
+
+    /// The committed scene, as it was sent; `None` without one, and when the upload of another has begun.
+    pub fn scene(&self) -> Option<&[u8]> {
+        self.commands.scene()
+    }
+
+    /// Header of the committed scene; `None` without one. Other than [`Session::scene`], it outlives the upload of the
+    /// next scene.
+    pub fn scene_header(&self) -> Option<&Header> {
+        self.commands.playing.header.as_ref()
+    }
+
+    /// CRC-32 of what [`Session::kept`] would give.
+    #[cfg(feature = "store")]
+    pub fn kept_crc32(&self) -> Option<u32> {
+        self.commands.kept_crc32()
+    }
+
+    /// The committed scene with its bitmaps as bytes to keep; `None` without one, and unless the board is disarmed.
+    #[cfg(feature = "store")]
+    pub fn kept(&self) -> Option<StoredScene<'_>> {
+        self.commands.kept()
+    }
+
+    /// Commits a scene from bytes that were kept: `read` gives those at an offset, and `false` beyond their end. Returns
+    /// whether there is a scene that this firmware can play; what is not is as if it had never been kept.
+    #[cfg(feature = "store")]
+    pub fn restore(&mut self, read: impl Fn(u32, &mut [u8]) -> bool) -> bool {
+        self.commands.restore(read).is_some()
+    }
+
+    /// Frames that were received whole and within the host's credit, and those that were discarded: bad ones, and those
+    /// beyond the credit.
+    pub fn frame_counts(&self) -> (u32, u32) {
+        let discarded = self.frames_discarded;
+        (self.decoder.frames().wrapping_sub(discarded), self.decoder.rejected().wrapping_add(discarded))
+    }
+}

@@ -1,0 +1,124 @@
+//! What comes in chunks: staged, checked whole, and only then of use.
+
+use frixel_wire::frame::Crc32;
+use frixel_wire::message::Refusal;
+use frixel_wire::payload::CHUNK_LEN;
+use frixel_wire::scene::bitmap_digest;
+
+use frixel_layers::{BitmapPool, SCENE_MAX_LEN, StoredBitmap};
+
+/// Chunks after which the host hears how far an upload has come: less than 1 KiB, a quarter of the smallest window.
+const PROGRESS_CHUNKS: u16 = 5;
+
+/// Where the bytes of an upload go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Destination {
+    Scene,
+    Bitmap(StoredBitmap),
+}
+
+/// An upload under way.
+pub(crate) struct Upload {
+    pub(crate) destination: Destination,
+    len: u32,
+    crc32: u32,
+    received: u32,
+    digest: Crc32,
+    next_chunk: u16,
+    gap_reported: bool,
+}
+
+/// What to tell the host of a chunk.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Report {
+    Nothing,
+    Progress { next_chunk: u16 },
+}
+
+impl Upload {
+    pub(crate) fn of_scene(len: u32, crc32: u32) -> Self {
+        Self::new(Destination::Scene, len, crc32, Crc32::new())
+    }
+
+    /// Starts with the bitmap's shape, which its name covers.
+    pub(crate) fn of_bitmap(bitmap: StoredBitmap) -> Self {
+        let digest = bitmap_digest(bitmap.width, bitmap.height);
+        Self::new(Destination::Bitmap(bitmap), bitmap.len(), bitmap.crc32, digest)
+    }
+
+    fn new(destination: Destination, len: u32, crc32: u32, digest: Crc32) -> Self {
+        Self { destination, len, crc32, received: 0, digest, next_chunk: 0, gap_reported: false }
+    }
+
+    /// Takes a chunk. One that was there already does no harm; one that comes too early is left out, and the host is
+    /// told, once, which one is wanted.
+    pub(crate) fn take(&mut self, number: u16, bytes: &[u8], staging: &mut Staging, pool: &BitmapPool) -> Report {
+        let wanted_len = (self.len - self.received).min(CHUNK_LEN as u32);
+        if number != self.next_chunk || bytes.len() as u32 != wanted_len || wanted_len == 0 {
+            let early = number > self.next_chunk && !self.gap_reported;
+            self.gap_reported |= early;
+            return if early { Report::Progress { next_chunk: self.next_chunk } } else { Report::Nothing };
+        }
+        match self.destination {
+            Destination::Scene => staging.write(self.received as usize, bytes),
+            Destination::Bitmap(bitmap) => pool.write((bitmap.offset + self.received) as usize, bytes),
+        }
+        self.digest.update(bytes);
+        self.received += wanted_len;
+        self.next_chunk += 1;
+        self.gap_reported = false;
+        if self.received == self.len || self.next_chunk.is_multiple_of(PROGRESS_CHUNKS) {
+            Report::Progress { next_chunk: self.next_chunk }
+        } else {
+            Report::Nothing
+        }
+    }
+
+    /// Whether all bytes came, and as they were announced.
+    pub(crate) fn check(&self) -> Result<(), Refusal> {
+        if self.received < self.len {
+            return Err(Refusal::UploadIncomplete { next_chunk: self.next_chunk });
+        }
+        let found = self.digest.finish();
+        if found == self.crc32 { Ok(()) } else { Err(Refusal::CrcMismatch { expected: self.crc32, found }) }
+    }
+
+    pub(crate) fn len_and_crc32(&self) -> (u32, u32) {
+        (self.len, self.crc32)
+    }
+}
+
+/// The bytes of a scene that was or is being uploaded.
+pub(crate) struct Staging {
+    bytes: [u8; SCENE_MAX_LEN],
+    /// Length and CRC-32 of a scene that is whole.
+    whole: Option<(u32, u32)>,
+}
+
+impl Staging {
+    pub(crate) const fn new() -> Self {
+        Self { bytes: [0; SCENE_MAX_LEN], whole: None }
+    }
+
+    /// Gives up the scene: another begins to take its place.
+    pub(crate) fn begin(&mut self) {
+        self.whole = None;
+    }
+
+    /// The scene is all there.
+    pub(crate) fn finish(&mut self, len: u32, crc32: u32) {
+        self.whole = Some((len, crc32));
+    }
+
+    pub(crate) fn write(&mut self, offset: usize, bytes: &[u8]) {
+        if let Some(target) = self.bytes.get_mut(offset..offset + bytes.len()) {
+            target.copy_from_slice(bytes);
+        }
+    }
+
+    /// The whole scene with its CRC-32.
+    pub(crate) fn scene(&self) -> Option<(&[u8], u32)> {
+        let (len, crc32) = self.whole?;
+        Some((self.bytes.get(..len as usize)?, crc32))
+    }
+}

@@ -1,0 +1,521 @@
+//! What a host can say to a board, and what the board answers.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
+
+mod support;
+
+use frixel_control::{Board, Order};
+use frixel_layers::{Constant, Grating, Header, Layer, Record, Region};
+use frixel_session::Touch;
+use frixel_wire::fault::{Fault, State};
+use frixel_wire::frame::crc32;
+use frixel_wire::hello::feature;
+use frixel_wire::message::{Accepted, Command, ConfigField, FromBoard, Refusal};
+use frixel_wire::payload::CHUNK_LEN;
+use frixel_wire::scene::SceneError;
+#[cfg(feature = "bitmap")]
+use frixel_wire::scene::bitmap_crc32;
+use proptest::prelude::*;
+#[cfg(feature = "bitmap")]
+use support::bitmap;
+use support::{COMMIT_POLLS_MAX, Desk, HEADER, Memory, constant, record, request, scene};
+
+#[test]
+fn a_board_says_who_it_is_and_what_it_holds() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    let hello = desk.greet();
+    assert_eq!((hello.tick_hz, hello.state, hello.scene_crc32), (40_000, State::Disarmed, 0));
+    let scene = constant(0.01);
+    desk.load(&scene).unwrap();
+    assert_eq!(desk.greet().scene_crc32, crc32(&scene));
+}
+
+#[test]
+fn a_scene_is_used_whole_or_not_at_all() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    let first = constant(0.01);
+    desk.load(&first).unwrap();
+
+    let mut second = constant(0.02);
+    second.resize(second.len() * 4, 0);
+    desk.command(Command::UploadScene { len: second.len() as u32, crc32: crc32(&second) }).unwrap();
+    desk.chunk(0, &second[..CHUNK_LEN]);
+    assert_eq!(
+        desk.command(Command::Commit { crc32: crc32(&second) }),
+        Err(Refusal::UploadIncomplete { next_chunk: 1 })
+    );
+    assert_eq!(desk.command(Command::UploadEnd), Err(Refusal::UploadIncomplete { next_chunk: 1 }));
+    assert_eq!(desk.greet().scene_crc32, crc32(&first));
+}
+
+#[cfg(feature = "bitmap")]
+#[test]
+fn chunks_may_repeat_and_a_gap_is_told_once() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    let samples: Vec<u8> = (0..1000_u32).map(|i| (i * 7) as u8).collect();
+    desk.command(Command::UploadBitmap { width: 100, height: 10, crc32: bitmap_crc32(100, 10, &samples) }).unwrap();
+    let chunks: Vec<&[u8]> = samples.chunks(CHUNK_LEN).collect();
+    desk.chunk(0, chunks[0]);
+    desk.chunk(0, chunks[0]);
+    desk.chunk(2, chunks[2]);
+    desk.chunk(3, chunks[3]);
+    let gaps: Vec<FromBoard> = desk.messages.drain(..).collect();
+    assert!(matches!(gaps[..], [FromBoard::Progress { next_chunk: 1, .. }]), "{gaps:?}");
+    for (number, chunk) in chunks.iter().enumerate().skip(1) {
+        desk.chunk(number as u16, chunk);
+    }
+    assert_eq!(desk.command(Command::UploadEnd), Ok(Accepted::Done));
+    assert_eq!(desk.upload_bitmap(100, 10, &samples), Ok(Accepted::AlreadyHeld));
+}
+
+#[cfg(feature = "bitmap")]
+#[test]
+fn a_bitmap_with_a_wrong_byte_is_refused_and_forgotten() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    let samples = vec![3; 400];
+    let expected = bitmap_crc32(20, 20, &samples);
+    desk.command(Command::UploadBitmap { width: 20, height: 20, crc32: expected }).unwrap();
+    let mut wrong = samples.clone();
+    wrong[200] ^= 1;
+    desk.chunks(&wrong);
+    let found = bitmap_crc32(20, 20, &wrong);
+    assert_eq!(desk.command(Command::UploadEnd), Err(Refusal::CrcMismatch { expected, found }));
+    assert_eq!(desk.upload_bitmap(20, 20, &samples), Ok(Accepted::Done), "not already held");
+}
+
+#[cfg(feature = "bitmap")]
+#[test]
+fn the_pool_keeps_what_plays_and_gives_way_when_nothing_does() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    let first = vec![1; 250 * 250];
+    let second = vec![2; 250 * 250];
+    desk.upload_bitmap(250, 250, &first).unwrap();
+    desk.play(&scene(&HEADER, &[record(bitmap(bitmap_crc32(250, 250, &first)))]));
+    let full = desk.upload_bitmap(250, 250, &second);
+    assert_eq!(full, Err(Refusal::BitmapPoolFull { len: 62_500, free: 65_536 - 62_500 }));
+    desk.command(Command::Stop).unwrap();
+    assert_eq!(desk.upload_bitmap(250, 250, &second), Ok(Accepted::Done));
+    assert_eq!(desk.command(Command::Play), Err(Refusal::NoScene), "its bitmap is overwritten");
+    assert_eq!(
+        desk.load(&scene(&HEADER, &[record(bitmap(bitmap_crc32(250, 250, &first)))])),
+        Err(Refusal::BitmapMissing { crc32: bitmap_crc32(250, 250, &first) })
+    );
+    desk.load(&scene(&HEADER, &[record(bitmap(bitmap_crc32(250, 250, &second)))])).unwrap();
+}
+
+#[test]
+fn numbers_that_the_board_cannot_play_are_refused_by_name() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    let field = |desk: &mut Desk, header: Header, layer| match desk.load(&scene(&header, &[record(layer)])) {
+        Err(Refusal::Config(refusal)) => Some(refusal.field),
+        other => panic!("{other:?}"),
+    };
+    let fine = Layer::Constant(Constant { electric_friction_n: 0.01 });
+    for (header, expected) in [
+        (Header { finger_radius_m: f32::NAN, ..HEADER }, ConfigField::FingerRadius),
+        (Header { stiffness_pa_per_m: -1.0, ..HEADER }, ConfigField::Stiffness),
+        (Header { friction_coefficient: 0.0, ..HEADER }, ConfigField::FrictionCoefficient),
+        (Header { normal_load_n: -0.1, ..HEADER }, ConfigField::NormalLoad),
+        (Header { effective_gap_m: f32::INFINITY, ..HEADER }, ConfigField::EffectiveGap),
+        (Header { voltage_max_v_peak: 1000.0, ..HEADER }, ConfigField::VoltagePeak),
+        (Header { carrier_hz: 20_000.0, ..HEADER }, ConfigField::CarrierFrequency),
+        (Header { host_timeout_s: 5.0, ..HEADER }, ConfigField::HostTimeout),
+        (Header { carrier_hz: 5_000.0, ..HEADER }, ConfigField::CurrentRms),
+    ] {
+        assert_eq!(field(&mut desk, header, fine), Some(expected));
+    }
+    assert_eq!(
+        field(&mut desk, HEADER, Layer::Constant(Constant { electric_friction_n: f32::NAN })),
+        Some(ConfigField::Friction)
+    );
+}
+
+#[test]
+fn what_is_no_scene_is_refused() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    let mut unknown = constant(0.01);
+    unknown[56] = 99;
+    assert_eq!(desk.load(&unknown), Err(Refusal::Scene(SceneError::UnknownKind { record: 0, kind: 99 })));
+    assert!(matches!(
+        desk.command(Command::UploadScene { len: 1 << 20, crc32: 0 }),
+        Err(Refusal::SceneTooLarge { len: 1_048_576, max: 4664 })
+    ));
+    assert_eq!(
+        desk.command(Command::Commit { crc32: 1 }),
+        Err(Refusal::CrcMismatch { expected: 1, found: crc32(&unknown) })
+    );
+}
+
+/// The bytes of a scene with few points and many records are no more than those of one with many points.
+#[test]
+fn a_scene_of_more_records_than_the_board_says_is_refused() {
+    let mut memory = Memory::new();
+    let mut board = Board::SIMULATOR;
+    board.limits.records_max = 2;
+    let mut desk = Desk::of(board, &mut memory);
+    desk.greet();
+    let of = |count: usize| {
+        let beside = |number| {
+            let region = Region::Rectangle { x_m: 0.01 * number as f32, y_m: 0.0, width_m: 0.01, height_m: 0.1 };
+            Record { region, ..record(Layer::Constant(Constant { electric_friction_n: 0.01 })) }
+        };
+        scene(&HEADER, &(0..count).map(beside).collect::<Vec<_>>())
+    };
+    desk.load(&of(2)).unwrap();
+    assert_eq!(desk.load(&of(3)), Err(Refusal::Scene(SceneError::TooManyRecords { found: 3 })));
+}
+
+fn answered(desk: &mut Desk) -> Vec<u16> {
+    desk.collect();
+    let sequence = |message| match message {
+        FromBoard::Answer(answer) => Some(answer.sequence),
+        _ => None,
+    };
+    desk.messages.drain(..).filter_map(sequence).collect()
+}
+
+/// What a host must be able to say at any time does not wait for the work of a commit that came before it.
+#[test]
+fn a_commit_holds_up_no_sign_of_life_and_nothing_that_puts_the_output_to_zero() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.play(&constant(0.01));
+    let next = constant(0.015);
+    desk.upload_scene(&next).unwrap();
+    desk.messages.clear();
+    let bytes = [
+        request(901, Command::Commit { crc32: crc32(&next) }),
+        request(902, Command::Ping),
+        request(903, Command::Stop),
+        request(904, Command::Disarm),
+    ];
+    desk.session.receive(&bytes.concat(), &desk.status());
+    assert_eq!(answered(&mut desk), [902, 903, 904]);
+    let mut orders = 0;
+    while let Some(order) = desk.session.next_order() {
+        assert!(matches!(order, Order::Stop | Order::Disarm));
+        desk.ticker.apply(order);
+        orders += 1;
+    }
+    assert_eq!(orders, 2, "each is a sign of life");
+    let committed = (0..COMMIT_POLLS_MAX).any(|_| {
+        desk.session.poll(&desk.status());
+        answered(&mut desk) == [901]
+    });
+    assert!(committed);
+    desk.obey();
+    assert_eq!(desk.greet().scene_crc32, crc32(&next));
+}
+
+#[test]
+fn what_asks_for_the_scene_comes_after_the_commit_before_it() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    let scene = constant(0.01);
+    desk.upload_scene(&scene).unwrap();
+    desk.messages.clear();
+    let bytes = [
+        request(901, Command::Commit { crc32: crc32(&scene) }),
+        request(902, Command::Arm),
+        request(903, Command::Play),
+    ];
+    desk.session.receive(&bytes.concat(), &desk.status());
+    assert_eq!(answered(&mut desk), [901, 902, 903]);
+    desk.obey();
+    desk.tick();
+    assert_eq!(desk.status().telemetry.state, State::Active);
+}
+
+#[cfg(feature = "telemetry")]
+#[test]
+fn telemetry_comes_at_its_period_and_ends() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    assert!(matches!(
+        desk.command(Command::Subscribe { period_ticks: 39 }),
+        Err(Refusal::TelemetryTooFast { period_min_ticks: 40 })
+    ));
+    desk.command(Command::Subscribe { period_ticks: 40 }).unwrap();
+    desk.ticks(400);
+    let count = desk.messages.iter().filter(|m| matches!(m, FromBoard::Telemetry(_))).count();
+    assert_eq!(count, 10);
+    desk.command(Command::Subscribe { period_ticks: 0 }).unwrap();
+    desk.messages.clear();
+    desk.ticks(400);
+    assert!(desk.messages.is_empty());
+}
+
+#[test]
+fn answers_give_credit_for_every_byte_since_the_hello() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.send(&[1, 2, 3, 0]);
+    desk.greet();
+    let first = desk.answer(Command::Ping).received_bytes;
+    desk.send(&[9, 9, 9, 0]);
+    let second = desk.answer(Command::Ping).received_bytes;
+    assert_eq!(second, 2 * first + 4);
+}
+
+#[test]
+fn a_scene_is_replaced_while_it_plays() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.play(&constant(0.005));
+    desk.slide(2000);
+    let before = desk.status().telemetry;
+    desk.load(&constant(0.01)).unwrap();
+    desk.slide(400);
+    let after = desk.status().telemetry;
+    assert_eq!((before.state, after.state), (State::Active, State::Active));
+    assert!((before.asked_electric_friction_n - 0.005).abs() < 1e-6);
+    assert!((after.asked_electric_friction_n - 0.01).abs() < 1e-6);
+    desk.load(&constant(0.015)).unwrap();
+}
+
+#[test]
+fn what_puts_the_output_to_zero_always_has_room() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    desk.load(&constant(0.01)).unwrap();
+    // All in one piece, before the ticker has looked.
+    let mut bytes = Vec::new();
+    let commands = [Command::Arm, Command::Play, Command::Stop, Command::Play, Command::Stop, Command::Play];
+    for (sequence, command) in
+        commands.into_iter().cycle().take(40).chain([Command::Disarm, Command::Disarm]).enumerate()
+    {
+        bytes.extend(request(900 + sequence as u16, command));
+    }
+    desk.send(&bytes);
+    let refused = desk.messages.iter().filter(
+        |message| matches!(message, FromBoard::Answer(answer) if answer.sequence >= 940 && answer.outcome.is_err()),
+    );
+    assert_eq!(refused.count(), 0, "{:?}", desk.messages);
+    desk.touch = Some(Touch::Down { x_m: 0.05, y_m: 0.05, age_ticks: 0 });
+    assert_eq!(desk.tick(), frixel_control::Drive::default());
+    assert_eq!(desk.status().telemetry.state, State::Disarmed);
+}
+
+#[cfg(feature = "bitmap")]
+#[test]
+fn the_same_bytes_in_another_shape_are_another_bitmap() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    let samples = vec![7; 800];
+    assert_eq!(desk.upload_bitmap(40, 20, &samples), Ok(Accepted::Done));
+    assert_eq!(desk.upload_bitmap(20, 40, &samples), Ok(Accepted::Done));
+    assert_eq!(desk.upload_bitmap(40, 20, &samples), Ok(Accepted::AlreadyHeld));
+}
+
+/// Two pictures that are never under the finger at once, which would take too long.
+#[cfg(feature = "bitmap")]
+fn side_by_side([left, right]: [u32; 2]) -> [Record; 2] {
+    let beside = |x_m, crc32| {
+        let region = Region::Rectangle { x_m, y_m: 0.0, width_m: 0.04, height_m: 0.1 };
+        Record { region, ..record(bitmap(crc32)) }
+    };
+    [beside(0.0, left), beside(0.06, right)]
+}
+
+#[cfg(feature = "bitmap")]
+#[test]
+fn free_space_in_pieces_is_moved_together_when_nothing_plays() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    let (first, second, third) = (vec![1; 30_000], vec![2; 30_000], vec![3; 33_000]);
+    desk.upload_bitmap(300, 100, &first).unwrap();
+    desk.upload_bitmap(300, 100, &second).unwrap();
+    let both = side_by_side([bitmap_crc32(300, 100, &first), bitmap_crc32(300, 100, &second)]);
+    desk.load(&scene(&HEADER, &both)).unwrap();
+    assert_eq!(desk.upload_bitmap(300, 100, &second), Ok(Accepted::AlreadyHeld));
+    assert_eq!(desk.upload_bitmap(330, 100, &third), Ok(Accepted::Done));
+    desk.play(&scene(&HEADER, &[record(bitmap(bitmap_crc32(300, 100, &second)))]));
+    desk.slide(800);
+    let asked_n = desk.status().telemetry.asked_electric_friction_n;
+    assert!((asked_n - 0.02 * 2.0 / 255.0).abs() < 1e-9, "the bitmap that stayed was moved whole: {asked_n}");
+}
+
+#[cfg(feature = "bitmap")]
+#[test]
+fn announced_bitmaps_stay_however_often_they_are_named() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    let (first, second, third) = (vec![1; 30_000], vec![2; 30_000], vec![3; 30_000]);
+    desk.upload_bitmap(300, 100, &first).unwrap();
+    desk.upload_bitmap(300, 100, &second).unwrap();
+    for _ in 0..70 {
+        assert_eq!(desk.upload_bitmap(300, 100, &second), Ok(Accepted::AlreadyHeld));
+    }
+    assert!(matches!(desk.upload_bitmap(300, 100, &third), Err(Refusal::BitmapPoolFull { .. })));
+    let both = side_by_side([bitmap_crc32(300, 100, &first), bitmap_crc32(300, 100, &second)]);
+    desk.load(&scene(&HEADER, &both)).unwrap();
+}
+
+/// A scene that does not fit leaves the pool to the next.
+#[cfg(feature = "bitmap")]
+#[test]
+fn bitmaps_of_a_scene_that_was_refused_give_way() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    let playing = vec![1; 20_000];
+    desk.upload_bitmap(200, 100, &playing).unwrap();
+    desk.play(&scene(&HEADER, &[record(bitmap(bitmap_crc32(200, 100, &playing)))]));
+    for sample in 2..4 {
+        desk.upload_bitmap(200, 100, &vec![sample; 20_000]).unwrap();
+    }
+    assert!(matches!(desk.upload_bitmap(200, 100, &vec![4; 20_000]), Err(Refusal::BitmapPoolFull { .. })));
+    assert_eq!(desk.upload_bitmap(200, 100, &vec![5; 20_000]), Ok(Accepted::Done));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Bytes that nobody meant never reach the output and never stop the board.
+    #[test]
+    fn arbitrary_bytes_leave_the_board_disarmed_and_listening(bytes in proptest::collection::vec(any::<u8>(), 0..2000)) {
+        let mut memory = Memory::new();
+        let mut desk = Desk::new(&mut memory);
+        desk.send(&bytes);
+        desk.send(&[0]);
+        desk.touch = Some(Touch::Down { x_m: 0.05, y_m: 0.05, age_ticks: 0 });
+        let drive = desk.ticks(10);
+        prop_assert_eq!(drive, frixel_control::Drive::default());
+        prop_assert_eq!(desk.greet().state, State::Disarmed);
+    }
+
+    /// A scene of arbitrary numbers is refused or loaded, and whatever it asks for stays within the limits.
+    #[test]
+    fn arbitrary_scenes_never_drive_beyond_the_limits(
+        floats in proptest::collection::vec(prop_oneof![any::<f32>(), -1.0_f32..200.0], 12),
+        layer in proptest::collection::vec(any::<f32>(), 6),
+    ) {
+        let mut memory = Memory::new();
+        let mut desk = Desk::new(&mut memory);
+        desk.greet();
+        let header = Header {
+            finger_radius_m: floats[0].abs() * 1e-3,
+            stiffness_pa_per_m: floats[1].abs() * 1e6,
+            friction_coefficient: floats[2].abs(),
+            normal_load_n: floats[3].abs() * 0.1,
+            effective_gap_m: floats[4].abs() * 1e-6,
+            voltage_max_v_rms: floats[5],
+            voltage_max_v_peak: floats[6],
+            slew_v_per_s: floats[7].abs() * 1e6,
+            carrier_hz: floats[8] * 20.0,
+            ..HEADER
+        };
+        let layer = Layer::Grating(Grating {
+            wave: frixel_layers::Wave::Sine,
+            cycles_per_m_x: layer[0],
+            cycles_per_m_y: layer[1],
+            phase_turns: layer[2],
+            trough_n: layer[3],
+            crest_n: layer[4],
+        });
+        if desk.load(&scene(&header, &[record(layer)])).is_ok() {
+            desk.command(Command::Arm).unwrap();
+            desk.command(Command::Play).unwrap();
+            let code_max = (header.voltage_max_v_peak * 32_767.0 / 250.0) as i32;
+            for drive in desk.slide(500) {
+                prop_assert!(i32::from(drive.dac_code.bits()).abs() <= code_max, "{drive:?}");
+            }
+        }
+    }
+}
+
+/// What a command makes the session order, signs of life left out.
+fn orders_for<'a>(desk: &mut Desk<'a>, command: Command) -> Vec<Order<'a>> {
+    desk.session.receive(&request(7, command), &desk.ticker.status());
+    std::iter::from_fn(|| desk.session.next_order()).filter(|order| !matches!(order, Order::HostHeard)).collect()
+}
+
+#[test]
+fn a_touch_of_the_host_goes_to_the_ticker_once() {
+    let mut memory = Memory::new();
+    let board = Board { touch_from_host: true, ..Board::SIMULATOR };
+    let mut desk = Desk::of(board, &mut memory);
+    desk.greet();
+    desk.tick();
+    assert!(orders_for(&mut desk, Command::Ping).is_empty());
+    let touched = orders_for(&mut desk, Command::Touch { x_m: 0.02, y_m: 0.03, age_ticks: 1 });
+    let [Order::Track(track)] = &touched[..] else { panic!("{} orders", touched.len()) };
+    assert_eq!(track.place_m.map(f32::to_bits), [0.02_f32, 0.03].map(f32::to_bits));
+    assert!(orders_for(&mut desk, Command::Ping).is_empty());
+    assert!(matches!(orders_for(&mut desk, Command::Lift)[..], [Order::Lift]));
+    assert!(orders_for(&mut desk, Command::Ping).is_empty());
+    for x_m in [f32::NAN, f32::INFINITY, -2.1] {
+        assert!(orders_for(&mut desk, Command::Touch { x_m, y_m: 0.03, age_ticks: 0 }).is_empty());
+        let refused = desk.command(Command::Touch { x_m, y_m: 0.03, age_ticks: 0 });
+        assert!(
+            matches!(refused, Err(Refusal::Config(refusal)) if refusal.field == ConfigField::TouchPlace),
+            "{refused:?}"
+        );
+        desk.tick();
+    }
+}
+
+#[test]
+fn a_board_with_a_touch_source_takes_none_from_the_host() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    let hello = desk.greet();
+    assert_eq!(hello.features & feature::HOST_TOUCH, 0);
+    for command in [Command::Touch { x_m: 0.02, y_m: 0.03, age_ticks: 0 }, Command::Lift] {
+        assert_eq!(desk.command(command), Err(Refusal::TouchSource));
+    }
+    assert!(desk.session.next_order().is_none());
+}
+
+/// The text as a host puts it together.
+fn fault_text(desk: &mut Desk) -> String {
+    let mut text = Vec::new();
+    loop {
+        let Ok(Accepted::FaultText { len, bytes }) = desk.command(Command::FaultText { offset: text.len() as u8 })
+        else {
+            panic!("no text")
+        };
+        text.extend(&bytes[..usize::from(len)]);
+        if usize::from(len) < bytes.len() {
+            return String::from_utf8(text).unwrap();
+        }
+    }
+}
+
+#[test]
+fn the_text_of_a_fault_is_told_whole() {
+    for len in [0, 1, 31, 32, 33, 64, 191, 192, 250] {
+        let mut memory = Memory::new();
+        let reset_text: &'static str = "stack overflow at 0x1fff_fff8; ".repeat(9).leak().get(..len).unwrap();
+        let board = Board {
+            reset_fault: Some((Fault::StackOverflow, 7)),
+            reset_text: reset_text.as_bytes(),
+            ..Board::SIMULATOR
+        };
+        let mut desk = Desk::of(board, &mut memory);
+        let hello = desk.greet();
+        assert_eq!((hello.last_fault, hello.fault_detail), (Some(Fault::StackOverflow), 7));
+        assert_eq!(fault_text(&mut desk), reset_text[..len.min(192)]);
+        let beyond = desk.command(Command::FaultText { offset: 255 });
+        assert!(matches!(beyond, Ok(Accepted::FaultText { len: 0, .. })));
+    }
+}

@@ -1,0 +1,135 @@
+//! Flash that can lose its power at any byte of what it does.
+
+use frixel_session::store::{Flash, Operation, WORD_LEN};
+use frixel_testkit::Random;
+
+pub const PAGE_LEN: usize = 512;
+
+/// The flash of a board.
+#[derive(Clone)]
+#[allow(clippy::struct_excessive_bools, reason = "two of them are for the test to set, two are flash's own")]
+pub struct SimulatedFlash {
+    pub bytes: Vec<u8>,
+    /// Words that cannot be read, because they were half written when the power went, or half erased.
+    torn: Vec<bool>,
+    /// Bytes of operations until the power goes; `None` for power that stays.
+    pub power_left: Option<usize>,
+    /// Bytes of operations that were done.
+    pub done: usize,
+    /// Calls of `operation` for which an operation is busy.
+    busy: u32,
+    /// `operation` has told that the last one ended.
+    seen_to_end: bool,
+    pub operations_fail: bool,
+    failed: bool,
+    /// What a torn word reads as: nothing, or something.
+    torn_words_read: bool,
+    noise: Random,
+}
+
+impl SimulatedFlash {
+    pub fn new(pages: usize, torn_words_read: bool) -> Self {
+        Self {
+            bytes: vec![0xff; pages * PAGE_LEN],
+            torn: vec![false; pages * PAGE_LEN / WORD_LEN],
+            power_left: None,
+            done: 0,
+            busy: 0,
+            seen_to_end: true,
+            operations_fail: false,
+            failed: false,
+            torn_words_read,
+            noise: Random::new(1),
+        }
+    }
+
+    pub fn has_power(&self) -> bool {
+        self.power_left != Some(0)
+    }
+
+    /// Whether nothing is under way, and the last operation was seen to end.
+    pub fn is_at_rest(&self) -> bool {
+        self.seen_to_end
+    }
+
+    /// The same flash once the power has come back.
+    pub fn after_power_on(&self) -> Self {
+        Self { power_left: None, done: 0, busy: 0, ..self.clone() }
+    }
+
+    /// Does one byte of an operation; `false` when the power went before it.
+    fn spend(&mut self) -> bool {
+        match &mut self.power_left {
+            Some(0) => false,
+            Some(left) => {
+                *left -= 1;
+                self.done += 1;
+                true
+            }
+            None => {
+                self.done += 1;
+                true
+            }
+        }
+    }
+}
+
+impl Flash for SimulatedFlash {
+    const PAGE_LEN: u32 = PAGE_LEN as u32;
+
+    fn read(&self, offset: u32, bytes: &mut [u8]) -> bool {
+        assert!(self.busy == 0 || !self.has_power(), "the bank is read while it is written");
+        let offset = offset as usize;
+        bytes.copy_from_slice(&self.bytes[offset..offset + bytes.len()]);
+        let torn = self.torn[offset / WORD_LEN..(offset + bytes.len()).div_ceil(WORD_LEN)].iter().any(|torn| *torn);
+        self.torn_words_read || !torn
+    }
+
+    fn begin_erase(&mut self, page: u32) {
+        assert_eq!(self.busy, 0, "one operation at a time");
+        (self.busy, self.failed, self.seen_to_end) = (3, self.operations_fail, false);
+        let start = page as usize * PAGE_LEN;
+        for at in start..start + PAGE_LEN {
+            if !self.spend() {
+                if at == start {
+                    return;
+                }
+                // What is left of the page is anything between what it was and erased.
+                for at in start..start + PAGE_LEN {
+                    self.bytes[at] |= self.noise.byte();
+                    self.torn[at / WORD_LEN] = true;
+                }
+                return;
+            }
+            self.bytes[at] = 0xff;
+            self.torn[at / WORD_LEN] = false;
+        }
+    }
+
+    fn begin_write(&mut self, offset: u32, word: [u8; WORD_LEN]) {
+        assert_eq!(self.busy, 0, "one operation at a time");
+        (self.busy, self.failed, self.seen_to_end) = (2, self.operations_fail, false);
+        let start = offset as usize;
+        assert_eq!(start % WORD_LEN, 0);
+        assert!(self.bytes[start..start + WORD_LEN].iter().all(|byte| *byte == 0xff), "{start} is not erased");
+        for (at, byte) in (start..).zip(word) {
+            if !self.spend() {
+                if at > start {
+                    self.bytes[at] &= self.noise.byte();
+                    self.torn[at / WORD_LEN] = true;
+                }
+                return;
+            }
+            self.bytes[at] = byte;
+        }
+    }
+
+    fn operation(&mut self) -> Operation {
+        if self.busy > 0 {
+            self.busy -= 1;
+            return Operation::Busy;
+        }
+        self.seen_to_end = true;
+        if core::mem::take(&mut self.failed) { Operation::Failed } else { Operation::Done }
+    }
+}

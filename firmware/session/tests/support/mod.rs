@@ -1,0 +1,300 @@
+//! A board on the desk: session and ticker, spoken to in frames.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::large_stack_arrays,
+    dead_code,
+    unused_imports,
+    unreachable_pub,
+    reason = "a test uses its part, and may fail"
+)]
+
+#[cfg(feature = "store")]
+pub mod flash;
+
+#[cfg(feature = "stream")]
+use frixel_control::StreamBuffer;
+use frixel_control::{Active, Board, Drive, Sense, Status, Ticker};
+use frixel_layers::{Bitmap, BitmapPool, Layer};
+use frixel_session::{Session, Touch};
+use frixel_testkit::IdealMonitor;
+pub use frixel_testkit::{HEADER, record, scene, scene_with_points};
+use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, crc32};
+use frixel_wire::hello::Hello;
+use frixel_wire::message::{Accepted, Answer, Command, FromBoard, Refusal, Request};
+use frixel_wire::payload::{self, CHUNK_LEN, Payload};
+use frixel_wire::scene::bitmap_crc32;
+
+/// Most polls that a commit takes.
+pub const COMMIT_POLLS_MAX: u32 = 64;
+
+/// What the two halves of a board share; lives longer than the [`Desk`].
+pub struct Memory {
+    pool: BitmapPool,
+    actives: [Active; 2],
+    #[cfg(feature = "stream")]
+    stream: StreamBuffer,
+}
+
+impl Memory {
+    pub fn new() -> Box<Self> {
+        Box::new(Self {
+            pool: BitmapPool::new(),
+            actives: [Active::new(), Active::new()],
+            #[cfg(feature = "stream")]
+            stream: StreamBuffer::new(),
+        })
+    }
+}
+
+pub struct Desk<'a> {
+    pub session: Session<'a>,
+    pub ticker: Ticker<'a>,
+    /// What the board sees when a test says nothing else: switch held, and a monitor that reads right.
+    pub sense: Sense,
+    /// A report of the board's touch source, which the next tick uses up.
+    pub touch: Option<Touch>,
+    pub messages: Vec<FromBoard>,
+    pub hello: Option<Hello>,
+    /// The monitor reads zero, whatever is driven.
+    pub amplifier_dead: bool,
+    /// The host reads what the board sends.
+    pub reads: bool,
+    monitor: IdealMonitor,
+    decoder: Decoder,
+    sequence: u16,
+}
+
+impl<'a> Desk<'a> {
+    pub fn new(memory: &'a mut Memory) -> Self {
+        Self::of(Board::SIMULATOR, memory)
+    }
+
+    pub fn of(board: Board, memory: &'a mut Memory) -> Self {
+        Self::made_of(board, memory, true)
+    }
+
+    /// A board that has no buffer for a stream.
+    pub fn without_stream(memory: &'a mut Memory) -> Self {
+        Self::made_of(Board::SIMULATOR, memory, false)
+    }
+
+    fn made_of(board: Board, memory: &'a mut Memory, with_stream: bool) -> Self {
+        let _ = with_stream;
+        let pool = &memory.pool;
+        let [first, second] = &mut memory.actives;
+        #[cfg_attr(not(feature = "stream"), allow(unused_mut, reason = "there is nothing to attach"))]
+        let (mut ticker, mut session) = (Ticker::new(&board, pool, first), Session::new(board, pool, second));
+        #[cfg(feature = "stream")]
+        if with_stream {
+            ticker.attach_stream(&memory.stream);
+            session.attach_stream(&memory.stream);
+        }
+        let mut desk = Self {
+            ticker,
+            session,
+            sense: Sense { arm_switch: true, ..Sense::default() },
+            touch: None,
+            messages: Vec::new(),
+            hello: None,
+            amplifier_dead: false,
+            reads: true,
+            monitor: IdealMonitor::new(&board.limits, board.tick_hz),
+            decoder: Decoder::new(),
+            sequence: 0,
+        };
+        // The arm switch is released at the first tick and held from the second on.
+        desk.ticks(2);
+        desk
+    }
+
+    pub fn status(&self) -> Status {
+        self.ticker.status()
+    }
+
+    /// One tick with [`Desk::touch`] and [`Desk::sense`], in the order of the rigs: touch, one order, tick, answers.
+    pub fn tick(&mut self) -> Drive {
+        if let Some(touch) = self.touch.take() {
+            self.session.touch(touch, self.status().telemetry.tick.wrapping_add(1));
+        }
+        self.obey_one();
+        let monitor_v = if self.amplifier_dead { 0.0 } else { self.monitor.voltage_v() };
+        let arm_switch = self.sense.arm_switch && !self.ticker.waits_for_release();
+        let sense = Sense { monitor_v: self.sense.monitor_v + monitor_v, arm_switch, ..self.sense };
+        let drive = self.ticker.tick(&sense);
+        self.monitor.follow(drive.dac_code);
+        self.session.poll(&self.ticker.status());
+        self.collect();
+        drive
+    }
+
+    pub fn ticks(&mut self, count: u32) -> Drive {
+        (0..count).map(|_| self.tick()).last().unwrap()
+    }
+
+    /// Ticks with a finger that slides at 100 mm/s along x and is reported every 10 ms, and a host that pings.
+    pub fn slide(&mut self, ticks: u32) -> Vec<Drive> {
+        let start = self.status().telemetry.tick;
+        (0..ticks)
+            .map(|i| {
+                if i % 400 == 0 {
+                    let x_m = 0.01 + 0.1 * 25e-6 * (start + i) as f32;
+                    self.touch = Some(Touch::Down { x_m, y_m: 0.03, age_ticks: 0 });
+                }
+                if i % 2000 == 0 {
+                    self.command(Command::Ping).unwrap();
+                }
+                self.tick()
+            })
+            .collect()
+    }
+
+    /// Bytes in, and a round of the main loop.
+    pub fn send(&mut self, bytes: &[u8]) {
+        self.session.receive(bytes, &self.ticker.status());
+        self.obey();
+        self.poll();
+    }
+
+    fn poll(&mut self) {
+        self.session.poll(&self.ticker.status());
+        self.obey();
+        self.collect();
+    }
+
+    /// Hands all of the session's orders to the ticker, as if there had been as many ticks.
+    pub fn obey(&mut self) {
+        while self.obey_one() {}
+    }
+
+    /// Hands the session's next order to the ticker. Returns whether there was one.
+    fn obey_one(&mut self) -> bool {
+        let Some(order) = self.session.next_order() else { return false };
+        if let Some(spare) = self.ticker.apply(order) {
+            self.session.take_back(spare);
+        }
+        true
+    }
+
+    pub fn greet(&mut self) -> Hello {
+        let mut frame = [0; FRAME_MAX_LEN];
+        let frame = payload::hello_request_frame(&mut frame).unwrap().to_vec();
+        self.send(&frame);
+        self.hello.take().expect("a hello")
+    }
+
+    pub fn answer(&mut self, command: Command) -> Answer {
+        self.sequence += 1;
+        self.send(&request(self.sequence, command));
+        // A commit is answered after some rounds of the main loop.
+        for _ in 0..COMMIT_POLLS_MAX {
+            if let Some(answer) = self.take_answer(self.sequence) {
+                return answer;
+            }
+            self.poll();
+        }
+        panic!("no answer to {command:?}");
+    }
+
+    /// The answer to a request, if it has come.
+    pub fn take_answer(&mut self, sequence: u16) -> Option<Answer> {
+        let is_it = |message: &FromBoard| matches!(message, FromBoard::Answer(answer) if answer.sequence == sequence);
+        let place = self.messages.iter().position(is_it)?;
+        let FromBoard::Answer(answer) = self.messages.remove(place) else { unreachable!() };
+        Some(answer)
+    }
+
+    pub fn command(&mut self, command: Command) -> Result<Accepted, Refusal> {
+        self.answer(command).outcome
+    }
+
+    pub fn chunk(&mut self, number: u16, bytes: &[u8]) {
+        let mut frame = [0; FRAME_MAX_LEN];
+        let frame = payload::chunk_frame(number, bytes, &mut frame).unwrap().to_vec();
+        self.send(&frame);
+    }
+
+    pub fn chunks(&mut self, bytes: &[u8]) {
+        for (number, chunk) in bytes.chunks(CHUNK_LEN).enumerate() {
+            self.chunk(number as u16, chunk);
+        }
+    }
+
+    pub fn upload_bitmap(&mut self, width: u16, height: u16, samples: &[u8]) -> Result<Accepted, Refusal> {
+        let accepted =
+            self.command(Command::UploadBitmap { width, height, crc32: bitmap_crc32(width, height, samples) })?;
+        if accepted == Accepted::Done {
+            self.chunks(samples);
+            self.command(Command::UploadEnd)?;
+        }
+        Ok(accepted)
+    }
+
+    pub fn upload_scene(&mut self, scene: &[u8]) -> Result<Accepted, Refusal> {
+        self.command(Command::UploadScene { len: scene.len() as u32, crc32: crc32(scene) })?;
+        self.chunks(scene);
+        self.command(Command::UploadEnd)
+    }
+
+    pub fn load(&mut self, scene: &[u8]) -> Result<Accepted, Refusal> {
+        self.upload_scene(scene)?;
+        self.command(Command::Commit { crc32: crc32(scene) })
+    }
+
+    /// Lets the person at the arm switch release it and press it again, as it takes after a disarming.
+    pub fn press_switch(&mut self) {
+        self.ticks(2);
+    }
+
+    /// From power-on to a playing scene.
+    pub fn play(&mut self, scene: &[u8]) {
+        self.greet();
+        self.load(scene).unwrap();
+        self.command(Command::Arm).unwrap();
+        self.command(Command::Play).unwrap();
+    }
+
+    /// Takes what the board has to say, while the host [reads](Self::reads).
+    pub fn collect(&mut self) {
+        if !self.reads {
+            return;
+        }
+        let mut bytes = [0; 4096];
+        let count = self.session.transmit(&mut bytes);
+        for byte in &bytes[..count] {
+            if let Some(frame) = self.decoder.push(*byte) {
+                match Payload::parse_from_board(frame).unwrap() {
+                    Payload::Hello(hello) => self.hello = Some(hello),
+                    Payload::FromBoard(message) => self.messages.push(message),
+                    other => panic!("not from a board: {other:?}"),
+                }
+            }
+        }
+    }
+}
+
+pub fn request(sequence: u16, command: Command) -> Vec<u8> {
+    let mut frame = [0; FRAME_MAX_LEN];
+    payload::request_frame(&Request { sequence, command }, &mut frame).unwrap().to_vec()
+}
+
+/// A picture with a millimetre from sample to sample.
+pub fn bitmap(crc32: u32) -> Layer {
+    Layer::Bitmap(Bitmap {
+        crc32,
+        x_m: 0.0,
+        y_m: 0.0,
+        pitch_m: 1e-3,
+        black_n: 0.0,
+        white_n: 0.02,
+        pitch_y_m: 1e-3,
+        angle_turns: 0.0,
+        tiled: false,
+    })
+}
+
+/// A scene of a friction that is the same everywhere.
+pub fn constant(electric_friction_n: f32) -> Vec<u8> {
+    scene(&HEADER, &[frixel_testkit::constant(electric_friction_n)])
+}

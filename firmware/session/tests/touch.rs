@@ -1,0 +1,265 @@
+//! From touch reports to the drive: lifts, late tracks, and a tick count that wraps.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
+
+mod support;
+
+use frixel_control::{Drive, Order, Track};
+use frixel_layers::{Constant, Header, Layer, Record, Region};
+use frixel_session::Touch;
+use frixel_wire::dac_code::DacCode;
+use frixel_wire::fault::{Flags, State};
+use frixel_wire::frame::crc32;
+use frixel_wire::message::{Answer, Command};
+use frixel_wire::scene::RECORDS_MAX;
+use support::{COMMIT_POLLS_MAX, Desk, HEADER, Memory, constant, record, request, scene};
+
+const OFF: Drive = Drive { dac_code: DacCode::ZERO, amplifier_enable: false };
+const REPORT_TICKS: u32 = 400;
+/// 2 ms.
+const LIFT_TICKS_MAX: u32 = 80;
+/// 10 ms, as `STALE_AFTER_PERIODS` makes three of them.
+const STALE_TICKS: u32 = 3 * REPORT_TICKS;
+
+/// The finger slides at 100 mm/s.
+fn report(tick: u32) -> Touch {
+    Touch::Down { x_m: 0.01 + 2.5e-6 * tick as f32, y_m: 0.03, age_ticks: 0 }
+}
+
+/// A board that plays a constant under a finger, `ticks` after the first report; the next report is due then.
+fn playing(memory: &mut Memory) -> Desk<'_> {
+    let mut desk = Desk::new(memory);
+    desk.play(&constant(0.02));
+    for tick in 0..4 * REPORT_TICKS {
+        slide(&mut desk, tick);
+    }
+    assert!(desk.status().telemetry.dac_code != 0);
+    desk
+}
+
+/// One tick, with a report every 10 ms.
+fn slide(desk: &mut Desk, tick: u32) -> Drive {
+    if tick.is_multiple_of(REPORT_TICKS) {
+        desk.touch = Some(report(tick));
+    }
+    desk.tick()
+}
+
+/// As many records as a scene has.
+fn largest_scene() -> Vec<u8> {
+    let beside = |number: usize| {
+        let region = Region::Rectangle { x_m: 0.0015 * number as f32, y_m: 0.0, width_m: 0.0015, height_m: 0.1 };
+        Record { region, ..record(Layer::Constant(Constant { electric_friction_n: 0.01 })) }
+    };
+    scene(&HEADER, &(0..RECORDS_MAX).map(beside).collect::<Vec<_>>())
+}
+
+#[test]
+fn a_lift_during_the_largest_commit_acts_within_2_ms() {
+    let scene = largest_scene();
+    let mut lifted_at_poll = 0;
+    loop {
+        let mut memory = Memory::new();
+        let mut desk = playing(&mut memory);
+        desk.upload_scene(&scene).unwrap();
+        let commit = request(999, Command::Commit { crc32: crc32(&scene) });
+        desk.session.receive(&commit, &desk.ticker.status());
+        for poll in 0..lifted_at_poll {
+            assert_ne!(slide(&mut desk, 1600 + poll), OFF);
+        }
+        let finished = desk.take_answer(999).is_some();
+        desk.touch = Some(Touch::Up);
+        let ticks_to_off = (1..=LIFT_TICKS_MAX).find(|_| desk.tick() == OFF);
+        // One for the host's sign of life, one for the scene that may be handed over, one for the lift.
+        assert!(
+            ticks_to_off.is_some_and(|ticks| ticks <= 3),
+            "{lifted_at_poll} polls into the commit: {ticks_to_off:?}"
+        );
+        if finished {
+            break;
+        }
+        lifted_at_poll += 1;
+    }
+    assert!(lifted_at_poll > 20, "the largest commit took {lifted_at_poll} steps: each is longer than it may be");
+}
+
+#[test]
+fn a_commit_goes_on_while_other_commands_are_answered() {
+    let mut memory = Memory::new();
+    let mut desk = playing(&mut memory);
+    let scene = largest_scene();
+    desk.upload_scene(&scene).unwrap();
+    desk.session.receive(&request(999, Command::Commit { crc32: crc32(&scene) }), &desk.ticker.status());
+    let mut pings = 0;
+    let committed: Answer = (0..COMMIT_POLLS_MAX)
+        .find_map(|_| {
+            desk.command(Command::Ping).unwrap();
+            pings += 1;
+            desk.take_answer(999)
+        })
+        .unwrap();
+    assert!(committed.outcome.is_ok() && pings > 20, "{pings}");
+    assert_eq!(desk.greet().scene_crc32, crc32(&scene));
+}
+
+#[test]
+fn a_lift_and_a_touch_down_in_one_tick_are_zero_output_for_a_tick() {
+    let mut memory = Memory::new();
+    let mut desk = playing(&mut memory);
+    let tick = desk.status().telemetry.tick + 1;
+    desk.session.touch(Touch::Up, tick);
+    desk.session.touch(report(1_600), tick);
+    assert_eq!(desk.tick(), OFF);
+    assert_ne!(desk.tick(), OFF, "the finger is there again");
+}
+
+/// A lift that a track does not report, but its contact number does.
+#[test]
+fn another_contact_is_a_lift_first() {
+    let mut memory = Memory::new();
+    let header = Header { slew_v_per_s: 1e5, ..HEADER };
+    let mut desk = Desk::new(&mut memory);
+    desk.play(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.02 }))]));
+    for tick in 0..1_600 {
+        slide(&mut desk, tick);
+    }
+    let before_v_rms = desk.status().telemetry.voltage_v_rms;
+    let track = next_track(&mut desk, report(1_600));
+    desk.ticker.apply(Order::Track(Track { contact: track.contact.wrapping_add(1), ..track }));
+    assert_eq!(desk.tick(), OFF);
+    assert_ne!(desk.tick(), OFF);
+    let after_v_rms = desk.status().telemetry.voltage_v_rms;
+    assert!(before_v_rms > 100.0 && (after_v_rms - 2.5).abs() < 1e-3, "the envelope begins anew: {after_v_rms} V");
+}
+
+/// The track that the session makes of a report, and does not hand over.
+fn next_track(desk: &mut Desk, touch: Touch) -> Track {
+    desk.session.touch(touch, desk.ticker.status().telemetry.tick + 1);
+    loop {
+        match desk.session.next_order() {
+            Some(Order::Track(track)) => return track,
+            Some(_) => {}
+            None => panic!("the report says nothing new"),
+        }
+    }
+}
+
+#[test]
+fn a_track_that_is_handed_over_late_is_the_same_track() {
+    for delay_ticks in [0, 1, 7, 80] {
+        let mut memory = Memory::new();
+        let mut desk = playing(&mut memory);
+        let track = next_track(&mut desk, report(4 * REPORT_TICKS));
+        desk.ticks(delay_ticks.max(1));
+        desk.ticker.apply(Order::Track(track));
+        desk.ticks(100 - delay_ticks.max(1));
+        let x_m = desk.status().telemetry.finger_x_m;
+        assert!((x_m - (0.01 + 2.5e-6 * 1_700.0)).abs() < 1e-5, "{delay_ticks}: {x_m}");
+        // It ends when it would have ended: 100 ticks are gone.
+        let on = (0..2 * STALE_TICKS).take_while(|_| desk.tick() != OFF).count() as u32;
+        assert!((STALE_TICKS - 102..=STALE_TICKS - 99).contains(&on), "{delay_ticks}: {on}");
+    }
+}
+
+#[test]
+fn a_track_that_is_handed_over_after_its_end_drives_nothing() {
+    let mut memory = Memory::new();
+    let mut desk = playing(&mut memory);
+    let track = next_track(&mut desk, report(4 * REPORT_TICKS));
+    desk.ticks(STALE_TICKS + 10);
+    desk.ticker.apply(Order::Track(track));
+    assert!((0..100).all(|_| desk.tick() == OFF));
+    assert!(desk.status().telemetry.flags.contains(Flags::TOUCH_STALE));
+}
+
+/// Whatever a track says, the tick follows it for three report periods at most.
+#[test]
+fn a_track_without_end_is_ended() {
+    let mut memory = Memory::new();
+    let mut desk = playing(&mut memory);
+    let track = next_track(&mut desk, report(4 * REPORT_TICKS));
+    for endless in [track.until_tick + 1_000_000, track.from_tick.wrapping_add(i32::MAX as u32)] {
+        desk.ticker.apply(Order::Track(Track { until_tick: endless, ..track }));
+        let on = (0..2 * STALE_TICKS).take_while(|_| desk.tick() != OFF).count() as u32;
+        assert!((STALE_TICKS - 2..=STALE_TICKS + 2).contains(&on), "{on}");
+    }
+}
+
+#[test]
+fn a_track_that_ended_long_ago_never_comes_back() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    let header = Header { autonomous: true, ..HEADER };
+    desk.play(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.02 }))]));
+    let first_tick = desk.status().telemetry.tick;
+    for tick in 0..400 {
+        slide(&mut desk, tick);
+    }
+    desk.ticks(2 * STALE_TICKS);
+    assert_eq!(desk.tick(), OFF);
+    // The tick count comes round.
+    desk.ticker.set_tick(first_tick);
+    assert!((0..1_000).all(|_| desk.tick() == OFF));
+    assert_eq!(desk.status().telemetry.state, State::Active);
+}
+
+/// A board whose tick count wraps in `ticks`.
+fn playing_until_wrap(memory: &mut Memory, ticks: u32) -> Desk<'_> {
+    let mut desk = Desk::new(memory);
+    desk.ticker.set_tick(0_u32.wrapping_sub(ticks));
+    desk.play(&constant(0.02));
+    desk
+}
+
+#[test]
+fn the_finger_is_followed_while_the_tick_count_wraps() {
+    for ticks in [10, 390, 399, 401, 1_000] {
+        let mut memory = Memory::new();
+        let mut desk = playing_until_wrap(&mut memory, ticks);
+        for tick in 0..4_000 {
+            let drive = slide(&mut desk, tick);
+            assert_ne!(drive, OFF, "wraps in {ticks}, tick {tick}");
+            let expected_m = 0.01 + 2.5e-6 * tick as f32;
+            let x_m = desk.status().telemetry.finger_x_m;
+            assert!(tick < REPORT_TICKS || (x_m - expected_m).abs() < 1e-5, "wraps in {ticks}, tick {tick}: {x_m}");
+        }
+        assert!(desk.status().telemetry.tick < 4_000, "it has wrapped");
+    }
+}
+
+#[test]
+fn lost_reports_and_a_silent_host_end_the_drive_while_the_tick_count_wraps() {
+    for ticks in [1, 500, 1_199, 1_200, 1_201] {
+        let mut memory = Memory::new();
+        let mut desk = playing_until_wrap(&mut memory, ticks);
+        desk.touch = Some(report(0));
+        let on = (0..2 * STALE_TICKS).take_while(|_| desk.tick() != OFF).count() as u32;
+        assert!((STALE_TICKS - 1..=STALE_TICKS + 1).contains(&on), "wraps in {ticks}: on for {on}");
+    }
+    for ticks in [5, 5_000, 9_999, 10_001] {
+        let mut memory = Memory::new();
+        let mut desk = playing_until_wrap(&mut memory, ticks);
+        let on = (0..20_000).take_while(|tick| slide(&mut desk, *tick) != OFF).count();
+        assert!((9_998..=10_001).contains(&on), "wraps in {ticks}: on for {on}");
+        assert!(desk.status().telemetry.flags.contains(Flags::HOST_SILENT));
+    }
+}
+
+#[test]
+fn a_still_finger_is_ramped_away_while_the_tick_count_wraps() {
+    for ticks in [100, 2_100, 2_300, 2_500] {
+        let mut memory = Memory::new();
+        let mut desk = playing_until_wrap(&mut memory, ticks);
+        let mut volts = Vec::new();
+        for tick in 0..4_000_u32 {
+            if tick.is_multiple_of(REPORT_TICKS) {
+                desk.touch = Some(Touch::Down { x_m: 0.05, y_m: 0.03, age_ticks: 0 });
+            }
+            desk.tick();
+            volts.push(desk.status().telemetry.voltage_v_rms);
+        }
+        assert!(volts[1_990] > 100.0, "slow for less than 50 ms");
+        assert!(volts[2_410] <= 0.0, "wraps in {ticks}: {} V 10 ms later", volts[2_410]);
+        // Downward only, and without a jump.
+        assert!(volts[2_000..2_380].windows(2).all(|pair| pair[1] <= pair[0] && pair[0] - pair[1] < 2.0), "{ticks}");
+    }
+}

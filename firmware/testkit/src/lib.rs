@@ -1,0 +1,32 @@
+//! What tests of several crates share, on desktop and chip. No image of a board has any of it.
+//!
+//! - [`HEADER`], [`record`], [`scene`]: scenes to begin with.
+//! - [`IdealMonitor`]: what a board reads of an amplifier that does what it is told.
+//! - [`Random`]: random numbers, the same from a seed everywhere.
+//! - [`RandomScene`], [`RandomFinger`]: scenes that a board accepts, and fingers to play them under.
+//!
+//! ```
+//! use frixel_testkit::{Pace, RandomFinger, RandomScene};
+//!
+//! let scene = RandomScene::new(7, 0x1234_5678);
+//! assert!(frixel_layers::Scene::parse(&scene.bytes()).is_ok());
+//!
+//! let mut finger = RandomFinger::new(7, &scene.header, Pace::Usual);
+//! let reports = (0..1_000).filter_map(|_| finger.tick()).count();
+//! assert!(reports > 0);
+//! ```
+#![cfg_attr(not(feature = "std"), no_std)]
+#![forbid(unsafe_code)]
+
+mod finger;
+mod layers;
+mod monitor;
+mod random;
+mod random_scene;
+mod scenes;
+
+pub use finger::{Pace, RandomFinger, Report};
+pub use monitor::IdealMonitor;
+pub use random::Random;
+pub use random_scene::RandomScene;
+pub use scenes::{HEADER, SceneBytes, constant, record, scene, scene_with_points};
