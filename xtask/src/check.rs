@@ -6,10 +6,13 @@ use std::fs;
 use crate::bench::programs::{self, Pace};
 use crate::command::{M4F, add_target, cargo_in, root, run};
 use crate::stages::Stages;
-use crate::{bench, budgets, stamps, test_programs};
+use crate::{bench, budgets, portability, stamps, test_programs};
 
 /// What the images and the budgets depend on.
 const FIRMWARE_INPUTS: [&str; 6] = ["budgets.toml", "Cargo.lock", "Cargo.toml", "firmware", "model", "xtask"];
+/// What compiles and runs elsewhere depends on.
+const PORTABILITY_INPUTS: [&str; 8] =
+    ["Cargo.lock", "Cargo.toml", "firmware", "hil-sim", "host", "model", "scenes", "xtask/src/portability.rs"];
 /// The crate whose features an image chooses from.
 const SESSION: &str = "firmware/session";
 
@@ -47,6 +50,9 @@ pub(crate) fn test() -> Result<(), String> {
     stages.run("feature sets", || unless_firmware_unchanged("feature-sets", feature_sets))?;
     stages.run("images", || unless_firmware_unchanged("images", images))?;
     stages.run("tests", test_programs::run_all)?;
+    stages.run("portability", || {
+        stamps::unless_unchanged("portability", &PORTABILITY_INPUTS.map(str::to_owned), portability::check)
+    })?;
     stages.run("documentation tests", test_programs::run_documentation)?;
     let docs = ["doc", "--workspace", "--no-deps", "--locked"];
     stages.run("documentation", || cargo("documentation", ".", &docs, &[("RUSTDOCFLAGS", "-D warnings")]))?;

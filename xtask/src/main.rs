@@ -17,8 +17,8 @@ use bench::programs::{self, Pace};
 const USAGE: &str = "\
 cargo xtask test     format, lints, cross-builds, all tests, docs, budgets: what CI runs
 cargo xtask bench    instructions and estimated cycles on emulated processors, and image sizes
-         --bless     and writes down what each kind of layer costs, which compiler and board go by
-cargo xtask budgets  the same, held against budgets.toml, and random scenes against what the loader reckons for them
+         --bless     and writes down what each kind of layer costs, which compiler and board use
+cargo xtask budgets  the same, held against budgets.toml, and random scenes against the loader's estimate for them
 cargo xtask portability
                      the crates of a page in WebAssembly, where scenes are played; the command on Windows and macOS
 cargo xtask soak     what takes too long for every change: every f32 through the tables, thousands of random scenes

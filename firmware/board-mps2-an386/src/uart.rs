@@ -5,15 +5,14 @@ use core::convert::Infallible;
 use cortex_m::interrupt::InterruptNumber;
 use cortex_m::peripheral::NVIC;
 use embedded_io::{ErrorType, Read, ReadReady, Write, WriteReady};
-use frixel_control::Board;
-use frixel_exchange::layout;
+use frixel_exchange::{BOARD, layout};
 use heapless::spsc::{Consumer, Producer, Queue};
 
 use crate::owned::Owned;
 use crate::shared;
 
 /// Room for the host's credit, and for hello requests and noise, which need none.
-const RECEIVE_LEN: usize = Board::SIMULATOR.limits.receive_window_bytes as usize + 512;
+const RECEIVE_LEN: usize = BOARD.limits.receive_window_bytes as usize + 512;
 const TRANSMIT_LEN: usize = 256;
 
 const BASE: usize = 0x4000_4000;

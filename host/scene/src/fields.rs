@@ -1,37 +1,22 @@
-//! Reads the fields of a TOML table by name, type and range, and finds those that nobody asked for.
+//! Reads the fields of a TOML table by name, type and range, and finds those that are unknown.
 
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
-use super::asked::{Asked, AskedTable, Holds};
+use super::grammar::{Absence, FieldSpec, Holds, KnownField, KnownTable, Range};
 use super::log::Log;
 use super::mistake::Mistake;
 use super::nearest::Nearest;
 use super::source::Places;
 
-/// What a number may be.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Range {
-    pub(super) min: f64,
-    pub(super) max: f64,
-    /// With a space before it.
-    pub(super) unit: &'static str,
-}
-
-impl Range {
-    pub(super) const fn new(min: f64, max: f64, unit: &'static str) -> Self {
-        Self { min, max, unit }
-    }
-}
-
-/// A table that is being read. Every field that is asked for becomes known; [`Fields::close`] reports the rest.
+/// A table that is being read. Every field that the parser looks for becomes known; [`Fields::close`] reports the rest.
 pub(super) struct Fields<'i> {
     table: String,
     /// The field that the table stands in.
     key: &'static str,
     values: DeTable<'i>,
     places: Places,
-    asked: Vec<Asked>,
+    known: Vec<KnownField>,
     required: Vec<&'static str>,
     either: Vec<[&'static str; 2]>,
 }
@@ -44,7 +29,7 @@ impl<'i> Fields<'i> {
             key: "",
             values,
             places: Places::new(offset),
-            asked: Vec::new(),
+            known: Vec::new(),
             required: Vec::new(),
             either: Vec::new(),
         }
@@ -60,38 +45,38 @@ impl<'i> Fields<'i> {
         self.table = table;
     }
 
-    /// A number that has to be there.
-    pub(super) fn number(&mut self, log: &mut Log, field: &'static str, range: Range) -> Option<f64> {
-        self.require(field);
-        self.optional_number(log, field, range)
+    /// A number, or `None` where the file leaves it out or it is wrong.
+    pub(super) fn number(&mut self, log: &mut Log, field: &FieldSpec) -> Option<f64> {
+        let (Holds::Number(range) | Holds::Whole(range)) = field.holds else { return None };
+        let value = self.take(field)?;
+        let found = number(log, field.name, range, &value)?;
+        if matches!(field.holds, Holds::Whole(_)) && found.fract().abs() > 0.0 {
+            log.add(self.places.field(field.name), Mistake::NotWhole { field: field.name, found });
+            return None;
+        }
+        Some(found)
     }
 
-    /// A number that may be left out.
-    pub(super) fn optional_number(&mut self, log: &mut Log, field: &'static str, range: Range) -> Option<f64> {
-        let value = self.take(field, Holds::Number(range))?;
-        number(log, field, range, &value)
+    /// A number, or its default where the file leaves it out or it is wrong.
+    pub(super) fn number_or_default(&mut self, log: &mut Log, field: &FieldSpec) -> f64 {
+        self.number(log, field).unwrap_or(field.default_number())
     }
 
-    /// `true` or `false`, or `default` where it is left out.
-    pub(super) fn flag(&mut self, log: &mut Log, field: &'static str, default: bool) -> bool {
-        let Some(value) = self.take(field, Holds::Flag) else { return default };
+    /// `true` or `false`, or the default where the file leaves it out.
+    pub(super) fn flag(&mut self, log: &mut Log, field: &FieldSpec) -> bool {
+        let default = field.absence == Absence::Flag(true);
+        let Some(value) = self.take(field) else { return default };
         if let DeValue::Boolean(flag) = value.get_ref() {
             return *flag;
         }
-        log.add(value.span().start, wrong_type(field, "`true` or `false`", value.get_ref()));
+        log.add(value.span().start, wrong_type(field.name, "`true` or `false`", value.get_ref()));
         default
     }
 
-    /// A text that has to be there.
-    pub(super) fn text(&mut self, log: &mut Log, field: &'static str) -> Option<String> {
-        self.require(field);
-        self.optional_text(log, field)
-    }
-
-    /// A text that may be left out.
-    pub(super) fn optional_text(&mut self, log: &mut Log, field: &'static str) -> Option<String> {
-        let value = self.take(field, Holds::Text)?;
-        Self::text_of(log, field, &value)
+    /// A text.
+    pub(super) fn text(&mut self, log: &mut Log, field: &FieldSpec) -> Option<String> {
+        let value = self.take(field)?;
+        Self::text_of(log, field.name, &value)
     }
 
     fn text_of(log: &mut Log, field: &'static str, value: &Spanned<DeValue>) -> Option<String> {
@@ -102,15 +87,14 @@ impl<'i> Fields<'i> {
         None
     }
 
-    /// One of some words that has to be there. One that is not known is noted, and read as the one that may have been meant,
-    /// so that what depends on it can be looked at.
+    /// One of some words. For one that is unknown, which is a mistake, the word that may have been meant, so that the
+    /// fields that depend on it can be read.
     pub(super) fn choice_or_nearest<T: Copy>(
         &mut self,
         log: &mut Log,
-        field: &'static str,
+        field: &FieldSpec,
         choices: &[(&'static str, T)],
     ) -> Option<T> {
-        self.require(field);
         match self.word(log, field, choices)? {
             Ok(choice) => Some(choice),
             Err(nearest) => {
@@ -120,64 +104,59 @@ impl<'i> Fields<'i> {
         }
     }
 
-    /// One of some words, that may be left out.
-    pub(super) fn optional_choice<T: Copy>(
+    /// One of some words.
+    pub(super) fn choice<T: Copy>(
         &mut self,
         log: &mut Log,
-        field: &'static str,
+        field: &FieldSpec,
         choices: &[(&'static str, T)],
     ) -> Option<T> {
         self.word(log, field, choices)?.ok()
     }
 
-    /// One of some words, or, when that was noted, what may have been meant.
+    /// One of some words; after a mistake, the nearest ones.
     fn word<T: Copy>(
         &mut self,
         log: &mut Log,
-        field: &'static str,
+        field: &FieldSpec,
         choices: &[(&'static str, T)],
     ) -> Option<Result<T, Nearest>> {
         let words = choices.iter().map(|(word, _)| *word).collect();
-        let value = self.take(field, Holds::Choice(words))?;
-        let found = Self::text_of(log, field, &value)?;
+        let value = self.take_word(field, words)?;
+        let name = field.name;
+        let found = Self::text_of(log, name, &value)?;
         if let Some((_, choice)) = choices.iter().find(|(word, _)| *word == found) {
             return Some(Ok(*choice));
         }
         let nearest = Nearest::new(&found, choices.iter().map(|(word, _)| *word));
-        log.add(self.places.field(field), Mistake::UnknownChoice { field, found, nearest: nearest.clone() });
+        log.add(self.places.field(name), Mistake::UnknownChoice { field: name, found, nearest: nearest.clone() });
         Some(Err(nearest))
     }
 
-    /// A table that has to be there.
-    pub(super) fn table(&mut self, log: &mut Log, field: &'static str) -> Option<Fields<'i>> {
-        self.require(field);
-        self.optional_table(log, field)
-    }
-
-    /// A table that may be left out.
-    pub(super) fn optional_table(&mut self, log: &mut Log, field: &'static str) -> Option<Fields<'i>> {
-        let value = self.take(field, Holds::Table)?;
-        let offset = value.span().start;
+    /// A table.
+    pub(super) fn table(&mut self, log: &mut Log, field: &FieldSpec) -> Option<Fields<'i>> {
+        let value = self.take(field)?;
+        let (name, offset) = (field.name, value.span().start);
         match value.into_inner() {
-            DeValue::Table(values) => Some(Fields::of_field(&format!("[{field}]"), field, offset, values)),
+            DeValue::Table(values) => Some(Fields::of_field(&format!("[{name}]"), name, offset, values)),
             other => {
-                log.add(offset, wrong_type(field, "a table", &other));
+                log.add(offset, wrong_type(name, "a table", &other));
                 None
             }
         }
     }
 
-    /// Any number of tables, `[[field]]`; with `one`, `[field]` is a list of one. Nothing where there is no such list.
-    pub(super) fn tables(&mut self, log: &mut Log, field: &'static str, one: bool) -> Option<Vec<Fields<'i>>> {
-        let value = self.take(field, Holds::Tables { one })?;
-        let offset = value.span().start;
+    /// Any number of tables, `[[field]]`; where the field holds a table as well, `[field]` is a list of one.
+    pub(super) fn tables(&mut self, log: &mut Log, field: &FieldSpec) -> Option<Vec<Fields<'i>>> {
+        let value = self.take(field)?;
+        let (name, offset) = (field.name, value.span().start);
         let values = match value.into_inner() {
             DeValue::Array(values) => values,
-            DeValue::Table(values) if one => {
-                return Some(vec![Fields::of_field(&format!("[{field}]"), field, offset, values)]);
+            DeValue::Table(values) if field.holds == Holds::TableOrTables => {
+                return Some(vec![Fields::of_field(&format!("[{name}]"), name, offset, values)]);
             }
             other => {
-                log.add(offset, wrong_type(field, "a list of tables, each with its name in double brackets", &other));
+                log.add(offset, wrong_type(name, "a list of tables, each with its name in double brackets", &other));
                 return None;
             }
         };
@@ -186,9 +165,9 @@ impl<'i> Fields<'i> {
             let offset = value.span().start;
             match value.into_inner() {
                 DeValue::Table(values) => {
-                    tables.push(Fields::of_field(&format!("[[{field}]]"), field, offset, values));
+                    tables.push(Fields::of_field(&format!("[[{name}]]"), name, offset, values));
                 }
-                other => log.add(offset, wrong_type(field, "a list of tables", &other)),
+                other => log.add(offset, wrong_type(name, "a list of tables", &other)),
             }
         }
         Some(tables)
@@ -200,7 +179,7 @@ impl<'i> Fields<'i> {
         log.describe(|| self.described());
         let mut misspelt = Vec::new();
         for (name, _) in &self.values {
-            let absent = self.asked.iter().map(|asked| asked.field).filter(|known| !self.places.has(known));
+            let absent = self.known.iter().map(|known| known.field.name).filter(|known| !self.places.has(known));
             let nearest = Nearest::new(name.get_ref(), absent);
             misspelt.extend(nearest.suggestion.clone());
             let field = name.get_ref().clone().into_owned();
@@ -235,39 +214,28 @@ impl<'i> Fields<'i> {
         }
     }
 
-    /// A whole number that may be left out.
-    pub(super) fn optional_whole(&mut self, log: &mut Log, field: &'static str, range: Range) -> Option<f64> {
-        let value = self.take(field, Holds::Whole(range))?;
-        let found = number(log, field, range, &value)?;
-        if found.fract().abs() > 0.0 {
-            log.add(self.places.field(field), Mistake::NotWhole { field, found });
-            return None;
-        }
-        Some(found)
-    }
-
-    /// A list of numbers that has to be there.
-    pub(super) fn numbers(&mut self, log: &mut Log, field: &'static str, range: Range) -> Option<Vec<f64>> {
-        self.require(field);
-        let list = self.list(log, field, Holds::Numbers(range), "a list of numbers in square brackets")?;
-        let numbers: Vec<_> = list.iter().map(|value| number(log, field, range, value)).collect();
+    /// A list of numbers.
+    pub(super) fn numbers(&mut self, log: &mut Log, field: &FieldSpec) -> Option<Vec<f64>> {
+        let Holds::Numbers(range) = field.holds else { return None };
+        let list = self.list(log, field, "a list of numbers in square brackets")?;
+        let numbers: Vec<_> = list.iter().map(|value| number(log, field.name, range, value)).collect();
         numbers.into_iter().collect()
     }
 
-    /// A list of pairs of numbers that has to be there.
-    pub(super) fn pairs(&mut self, log: &mut Log, field: &'static str, range: Range) -> Option<Vec<(f64, f64)>> {
+    /// A list of pairs of numbers.
+    pub(super) fn pairs(&mut self, log: &mut Log, field: &FieldSpec) -> Option<Vec<(f64, f64)>> {
         const EXPECTED: &str = "a list of pairs, [[x, y], [x, y]]";
-        self.require(field);
-        let list = self.list(log, field, Holds::Pairs(range), EXPECTED)?;
+        let Holds::Pairs(range) = field.holds else { return None };
+        let list = self.list(log, field, EXPECTED)?;
         let pairs: Vec<_> = list
             .iter()
             .map(|value| match value.get_ref() {
                 DeValue::Array(pair) if pair.len() == 2 => {
-                    let mut numbers = pair.iter().map(|value| number(log, field, range, value));
+                    let mut numbers = pair.iter().map(|value| number(log, field.name, range, value));
                     numbers.next()?.zip(numbers.next()?)
                 }
                 other => {
-                    log.add(value.span().start, wrong_type(field, EXPECTED, other));
+                    log.add(value.span().start, wrong_type(field.name, EXPECTED, other));
                     None
                 }
             })
@@ -275,19 +243,13 @@ impl<'i> Fields<'i> {
         pairs.into_iter().collect()
     }
 
-    fn list(
-        &mut self,
-        log: &mut Log,
-        field: &'static str,
-        holds: Holds,
-        expected: &'static str,
-    ) -> Option<DeArray<'i>> {
-        let value = self.take(field, holds)?;
+    fn list(&mut self, log: &mut Log, field: &FieldSpec, expected: &'static str) -> Option<DeArray<'i>> {
+        let value = self.take(field)?;
         let offset = value.span().start;
         match value.into_inner() {
             DeValue::Array(list) => Some(list),
             other => {
-                log.add(offset, wrong_type(field, expected, &other));
+                log.add(offset, wrong_type(field.name, expected, &other));
                 None
             }
         }
@@ -308,25 +270,33 @@ impl<'i> Fields<'i> {
         self.values.get(field).map_or(self.places.table(), |value| value.span().start)
     }
 
-    /// A missing field is a mistake. To be said before the field is read.
-    pub(super) fn require(&mut self, field: &'static str) {
-        self.required.push(field);
+    /// Makes it a mistake when the file leaves a field out.
+    pub(super) fn require(&mut self, field: &FieldSpec) {
+        self.required.push(field.name);
     }
 
-    /// Two fields say the same, so that only one of them is to be there.
-    pub(super) fn either(&mut self, one: &'static str, other: &'static str) {
-        self.either.push([one, other]);
+    /// Two fields say the same, so that only one of them may be there.
+    pub(super) fn either(&mut self, one: &FieldSpec, other: &FieldSpec) {
+        self.either.push([one.name, other.name]);
     }
 
-    fn described(&self) -> AskedTable {
-        let Self { key, asked, required, either, .. } = self;
-        AskedTable { key, asked: asked.clone(), required: required.clone(), either: either.clone() }
+    fn described(&self) -> KnownTable {
+        let Self { key, known, required, either, .. } = self;
+        KnownTable { key, fields: known.clone(), required: required.clone(), either: either.clone() }
     }
 
-    fn take(&mut self, field: &'static str, holds: Holds) -> Option<Spanned<DeValue<'i>>> {
-        self.asked.push(Asked { field, holds });
-        let value = self.values.remove(field)?;
-        self.places.add(field, value.span().start);
+    fn take(&mut self, field: &FieldSpec) -> Option<Spanned<DeValue<'i>>> {
+        self.take_word(field, Vec::new())
+    }
+
+    /// Takes a field out of the table, and notes that it is known, with the words that it may be.
+    fn take_word(&mut self, field: &FieldSpec, words: Vec<&'static str>) -> Option<Spanned<DeValue<'i>>> {
+        if field.absence == Absence::Mistake {
+            self.require(field);
+        }
+        self.known.push(KnownField { field: *field, words });
+        let value = self.values.remove(field.name)?;
+        self.places.add(field.name, value.span().start);
         Some(value)
     }
 }

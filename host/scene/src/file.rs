@@ -3,9 +3,9 @@
 use frixel_layers::Leader;
 use toml::de::DeTable;
 
-use super::asked::AskedTable;
 use super::compile_error::CompileError;
-use super::fields::{Fields, Range};
+use super::fields::Fields;
+use super::grammar::KnownTable;
 use super::kinds::Kind;
 use super::layer::Layer;
 use super::log::Log;
@@ -13,27 +13,16 @@ use super::mistake::Mistake;
 use super::pictures::Pictures;
 use super::pool::PictureBytes;
 use super::source::{Places, Source};
+use super::tables;
 
 /// Version of the file format.
 pub(super) const VERSION: u32 = 1;
 
-const SCREEN_MM: Range = Range::new(5.0, 2_000.0, " mm");
-const COATING_UM: Range = Range::new(0.01, 1_000.0, " um");
 /// Largest effective gap that a board takes.
 const EFFECTIVE_GAP_MAX_UM: f64 = 10_000.0;
-const PERMITTIVITY: Range = Range::new(1.0, 10_000.0, "");
-const RADIUS_MM: Range = Range::new(0.1, 100.0, " mm");
-const STIFFNESS_PA_PER_M: Range = Range::new(1e3, 1e14, " Pa/m");
-const FRICTION_COEFFICIENT: Range = Range::new(0.001, 10.0, "");
-const LOAD_N: Range = Range::new(0.0, 50.0, " N");
-const VOLTAGE_V_RMS: Range = Range::new(1.0, 1_000.0, " V rms");
-const VOLTAGE_V_PEAK: Range = Range::new(2.0, 2_000.0, " V peak");
-const SLEW_V_PER_US: Range = Range::new(0.001, 1_000.0, " V/us");
-const HOST_TIMEOUT_MS: Range = Range::new(20.0, 1_000.0, " ms");
-/// Below this the drive is no alternating carrier any more; how fast it may be is a matter of the board's ticks.
-const CARRIER_HZ: Range = Range::new(125.0, 100_000.0, " Hz");
 
-/// A scene file that was read: its fields are known, of the right type and in range. [`super::compile`] checks the rest.
+/// A scene file that was read: its fields are known, of the right type and in range. [`super::compile`] checks the
+/// rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     pub(super) source: Source,
@@ -137,8 +126,8 @@ impl Scene {
     }
 }
 
-/// What is asked of the tables of a text.
-pub(super) fn describe(text: &str) -> Vec<AskedTable> {
+/// The known fields of the tables of a text.
+pub(super) fn describe(text: &str) -> Vec<KnownTable> {
     let source = Source::new("", text);
     let mut log = Log::describing(&source);
     if let Ok(table) = DeTable::parse(text) {
@@ -149,14 +138,14 @@ pub(super) fn describe(text: &str) -> Vec<AskedTable> {
 }
 
 fn read(mut fields: Fields, log: &mut Log, source: &Source) -> Option<Scene> {
-    let version = fields.number(log, "version", Range::new(f64::MIN, f64::MAX, ""));
-    let screen = fields.table(log, "screen").and_then(|fields| screen(fields, log));
+    let version = fields.number(log, &tables::scene::VERSION);
+    let screen = fields.table(log, &tables::scene::SCREEN).and_then(|fields| screen(fields, log));
     let coating = coating(&mut fields, log);
-    let finger = fields.table(log, "finger").and_then(|fields| finger(fields, log));
-    let drive = drive(fields.optional_table(log, "drive").unwrap_or_else(|| absent("[drive]")), log);
-    let carrier = carrier(fields.optional_table(log, "carrier").unwrap_or_else(|| absent("[carrier]")), log);
-    let touch = touch(fields.optional_table(log, "touch").unwrap_or_else(|| absent("[touch]")), log);
-    let tables = fields.tables(log, "layer", false).unwrap_or_default();
+    let finger = fields.table(log, &tables::scene::FINGER).and_then(|fields| finger(fields, log));
+    let drive = drive(fields.table(log, &tables::scene::DRIVE).unwrap_or_else(|| absent("[drive]")), log);
+    let carrier = carrier(fields.table(log, &tables::scene::CARRIER).unwrap_or_else(|| absent("[carrier]")), log);
+    let touch = touch(fields.table(log, &tables::scene::TOUCH).unwrap_or_else(|| absent("[touch]")), log);
+    let tables = fields.tables(log, &tables::scene::LAYER).unwrap_or_default();
     // All are read, so that the mistakes of all are told.
     let layers: Vec<Option<Layer>> = (1..).zip(tables).map(|(number, table)| Layer::read(table, number, log)).collect();
     let places = fields.close(log);
@@ -182,24 +171,23 @@ fn absent(name: &str) -> Fields<'static> {
 }
 
 fn screen(mut fields: Fields, log: &mut Log) -> Option<Screen> {
-    let width_mm = fields.number(log, "width_mm", SCREEN_MM);
-    let height_mm = fields.number(log, "height_mm", SCREEN_MM);
+    let width_mm = fields.number(log, &tables::screen::WIDTH_MM);
+    let height_mm = fields.number(log, &tables::screen::HEIGHT_MM);
     fields.close(log);
     Some(Screen { width_mm: width_mm?, height_mm: height_mm? })
 }
 
 /// Slabs in series add their thickness over permittivity.
 fn coating(scene: &mut Fields, log: &mut Log) -> Option<Coating> {
-    scene.require("coating");
-    let slabs = scene.tables(log, "coating", true)?;
+    let slabs = scene.tables(log, &tables::scene::COATING)?;
     if slabs.is_empty() {
         log.add(0, Mistake::MissingField { field: "coating", table: "the scene".to_owned() });
     }
     let mut effective_gap_um = Some(0.0);
     let mut first = None;
     for mut slab in slabs {
-        let thickness_um = slab.number(log, "thickness_um", COATING_UM);
-        let permittivity = slab.number(log, "permittivity", PERMITTIVITY);
+        let thickness_um = slab.number(log, &tables::coating::THICKNESS_UM);
+        let permittivity = slab.number(log, &tables::coating::PERMITTIVITY);
         let gap_um = thickness_um.zip(permittivity).map(|(thickness_um, permittivity)| thickness_um / permittivity);
         effective_gap_um = effective_gap_um.zip(gap_um).map(|(sum, gap)| sum + gap);
         let places = slab.close(log);
@@ -215,10 +203,10 @@ fn coating(scene: &mut Fields, log: &mut Log) -> Option<Coating> {
 }
 
 fn finger(mut fields: Fields, log: &mut Log) -> Option<Finger> {
-    let radius_mm = fields.number(log, "radius_mm", RADIUS_MM);
-    let stiffness_pa_per_m = fields.number(log, "stiffness_pa_per_m", STIFFNESS_PA_PER_M);
-    let friction_coefficient = fields.number(log, "friction_coefficient", FRICTION_COEFFICIENT);
-    let normal_load_n = fields.number(log, "normal_load_n", LOAD_N);
+    let radius_mm = fields.number(log, &tables::finger::RADIUS_MM);
+    let stiffness_pa_per_m = fields.number(log, &tables::finger::STIFFNESS_PA_PER_M);
+    let friction_coefficient = fields.number(log, &tables::finger::FRICTION_COEFFICIENT);
+    let normal_load_n = fields.number(log, &tables::finger::NORMAL_LOAD_N);
     fields.close(log);
     Some(Finger {
         radius_mm: radius_mm?,
@@ -229,28 +217,28 @@ fn finger(mut fields: Fields, log: &mut Log) -> Option<Finger> {
 }
 
 fn drive(mut fields: Fields, log: &mut Log) -> Drive {
-    let voltage_max_v_rms = fields.optional_number(log, "voltage_max_v_rms", VOLTAGE_V_RMS).unwrap_or(150.0);
-    let voltage_max_v_peak = fields.optional_number(log, "voltage_max_v_peak", VOLTAGE_V_PEAK);
-    let slew_v_per_us = fields.optional_number(log, "slew_v_per_us", SLEW_V_PER_US).unwrap_or(5.0);
-    let host_timeout_ms = fields.optional_number(log, "host_timeout_ms", HOST_TIMEOUT_MS).unwrap_or(250.0);
-    let autonomous = fields.flag(log, "autonomous", false);
-    let saturate = fields.flag(log, "saturate", false);
+    let voltage_max_v_rms = fields.number_or_default(log, &tables::drive::VOLTAGE_MAX_V_RMS);
+    let voltage_max_v_peak = fields.number(log, &tables::drive::VOLTAGE_MAX_V_PEAK);
+    let slew_v_per_us = fields.number_or_default(log, &tables::drive::SLEW_V_PER_US);
+    let host_timeout_ms = fields.number_or_default(log, &tables::drive::HOST_TIMEOUT_MS);
+    let autonomous = fields.flag(log, &tables::drive::AUTONOMOUS);
+    let saturate = fields.flag(log, &tables::drive::SATURATE);
     let places = fields.close(log);
     Drive { voltage_max_v_rms, voltage_max_v_peak, slew_v_per_us, host_timeout_ms, autonomous, saturate, places }
 }
 
 fn carrier(mut fields: Fields, log: &mut Log) -> Carrier {
     use frixel_layers::Carrier::{Sine, Square};
-    let shape = fields.optional_choice(log, "shape", &[("square", Square), ("sine", Sine)]).unwrap_or(Square);
-    let frequency_hz = fields.optional_number(log, "frequency_hz", CARRIER_HZ).unwrap_or(1_000.0);
+    let shape = fields.choice(log, &tables::carrier::SHAPE, &[("square", Square), ("sine", Sine)]).unwrap_or(Square);
+    let frequency_hz = fields.number_or_default(log, &tables::carrier::FREQUENCY_HZ);
     let places = fields.close(log);
     Carrier { shape, frequency_hz, places }
 }
 
 fn touch(mut fields: Fields, log: &mut Log) -> Touch {
-    let prediction = fields.flag(log, "prediction", true);
+    let prediction = fields.flag(log, &tables::touch::PREDICTION);
     let rules = [("first", Leader::First), ("latest", Leader::Latest)];
-    let leader = fields.optional_choice(log, "leader", &rules).unwrap_or_default();
+    let leader = fields.choice(log, &tables::touch::LEADER, &rules).unwrap_or_default();
     fields.close(log);
     Touch { prediction, leader }
 }

@@ -8,13 +8,13 @@
 //! - [`metrics`]: the size of the errors.
 #![forbid(unsafe_code)]
 
-mod asked;
 mod compile;
 mod compile_error;
 mod cover;
 mod excess;
 mod fields;
 mod file;
+mod grammar;
 mod kinds;
 mod layer;
 mod layer_map;
@@ -37,6 +37,7 @@ pub mod reference;
 mod resample;
 mod schema;
 mod source;
+mod tables;
 #[cfg(test)]
 #[allow(clippy::disallowed_methods, reason = "the tests read the bundled scenes")]
 mod tests;

@@ -1,7 +1,7 @@
 //! Gathers mistakes while a scene is read and compiled.
 
-use super::asked::AskedTable;
 use super::compile_error::{CompileError, Located};
+use super::grammar::KnownTable;
 use super::mistake::Mistake;
 use super::source::Source;
 
@@ -9,8 +9,8 @@ use super::source::Source;
 pub(super) struct Log<'s> {
     source: &'s Source,
     mistakes: Vec<Located>,
-    /// What was asked of each table, in the order in which they were closed; nothing when nobody wants to know.
-    described: Option<Vec<AskedTable>>,
+    /// The known fields of each table, in the order in which tables were closed; `None` unless a schema is made.
+    described: Option<Vec<KnownTable>>,
 }
 
 impl<'s> Log<'s> {
@@ -18,20 +18,20 @@ impl<'s> Log<'s> {
         Self { source, mistakes: Vec::new(), described: None }
     }
 
-    /// One that keeps what is asked of each table.
+    /// A log that keeps the known fields of each table.
     pub(super) fn describing(source: &'s Source) -> Self {
         Self { described: Some(Vec::new()), ..Self::new(source) }
     }
 
-    /// Keeps what was asked of a table, if that is wanted.
-    pub(super) fn describe(&mut self, table: impl FnOnce() -> AskedTable) {
+    /// Keeps the known fields of a table, if this log keeps them.
+    pub(super) fn describe(&mut self, table: impl FnOnce() -> KnownTable) {
         if let Some(described) = &mut self.described {
             described.push(table());
         }
     }
 
-    /// What was asked of each table.
-    pub(super) fn into_described(self) -> Vec<AskedTable> {
+    /// The known fields of each table.
+    pub(super) fn into_described(self) -> Vec<KnownTable> {
         self.described.unwrap_or_default()
     }
 

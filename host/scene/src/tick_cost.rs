@@ -1,5 +1,7 @@
 //! Refuses a scene whose tick takes too long at some place, as the board would.
 
+use std::cmp::Reverse;
+
 use frixel_layers::cost::{self, Worst, worst_of_scene};
 use frixel_layers::{Cell, Record};
 
@@ -71,17 +73,16 @@ impl Program {
             .collect();
         let boxes: Vec<[(f64, f64); 2]> = regions.iter().filter_map(|(.., shape)| shape.corners_m()).collect();
         let candidates = |along: fn((f64, f64)) -> f64, middle_m: f32| -> Vec<f64> {
-            let of_box = |corners: &[(f64, f64); 2]| {
-                let [from_m, to_m] = corners.map(along);
-                [from_m + INSIDE_M, 0.5 * (from_m + to_m)]
-            };
-            boxes.iter().flat_map(of_box).chain([f64::from(middle_m)]).collect()
+            let edges = boxes.iter().map(|corners| along(corners[0]) + INSIDE_M);
+            let middles = boxes.iter().map(|corners| 0.5 * (along(corners[0]) + along(corners[1])));
+            edges.chain(middles).chain([f64::from(middle_m)]).collect()
         };
         let (xs, ys) = (candidates(|(x_m, _)| x_m, cell.x_m), candidates(|(_, y_m)| y_m, cell.y_m));
         xs.iter()
             .flat_map(|x_m| ys.iter().map(|y_m| (*x_m, *y_m)))
             .map(|place_m| self.meeting_at(place_m, &regions))
-            .max_by_key(|meeting| meeting.cycles)
+            // The first of the places that take most: a corner where there is one.
+            .min_by_key(|meeting| Reverse(meeting.cycles))
     }
 
     fn meeting_at(&self, place_m: (f64, f64), regions: &[(usize, &Record, Shape)]) -> Meeting {

@@ -199,3 +199,16 @@ fn codes_are_rounded_to_the_nearest() {
         assert_eq!(codes(&mut Carrier::new(&timing), &timing, envelope_v_rms, 1), [expected]);
     }
 }
+
+/// One crest in a half period, in its middle, and no code at an edge.
+#[cfg(feature = "sine-carrier")]
+#[test]
+fn a_sine_is_a_sine() {
+    let timing = timing(Shape::Sine, 20);
+    let codes = codes(&mut Carrier::new(&timing), &timing, 100.0, 80);
+    for (tick, code) in codes.iter().enumerate() {
+        let turns = (tick as f64 - 10.0 + 20.0) / 40.0;
+        let expected = 10_000.0 * (turns * core::f64::consts::TAU).sin();
+        assert!((f64::from(*code) - expected).abs() <= 1.0, "tick {tick}: {code} is not {expected}");
+    }
+}

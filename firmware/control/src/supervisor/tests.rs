@@ -115,8 +115,8 @@ fn the_monitor_may_be_off_by_its_tolerance_and_no_more() {
 }
 
 #[test]
-fn a_monitor_that_is_not_a_number_is_wrong() {
-    for monitor_v in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+fn a_monitor_at_its_tolerance_or_not_a_number_is_wrong() {
+    for monitor_v in [0.04 * FULL_SCALE_V, f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         assert_eq!(ticks_to_fault(&mut driving(0), monitor_v, 0, 100), Some(WRONG_TICKS));
     }
 }

@@ -7,20 +7,37 @@ use frixel_layers::{Bitmap as Record, Interval, Layer as RecordLayer, Region as 
 
 use super::constant::ConstantField;
 use super::samples::Samples;
-use super::wave::ANGLE_DEG;
 use super::{Field, Lowered, Words};
 use crate::cover::Cell;
-use crate::fields::{Fields, Range};
-use crate::layer::{Amount, Layer, Names, PLACE_MM, Region, SIZE_MM, Unit};
+use crate::fields::Fields;
+use crate::grammar::Absence::{Means, Mistake, Number};
+use crate::grammar::{AmountFields, FieldSpec, Holds, Range};
+use crate::layer::{Amount, Layer, Region, Unit};
 use crate::log::Log;
 use crate::lower::{Lowering, MM};
 use crate::program::Program;
 use crate::reference::Context;
 use crate::source::Places;
+use crate::tables::{ANGLE_DEG, PLACE_MM, SIZE_MM, amount, flag, layer::REGION, number};
 
-const PITCH_MM: Range = Range::new(0.02, 10.0, " mm");
-/// Distance of a picture's samples where the file names none.
-const PITCH_DEFAULT_MM: f64 = 0.25;
+const PICTURE: FieldSpec =
+    FieldSpec::new("picture", Holds::Text, Mistake, "a PNG file, found from the scene file's folder");
+const X: FieldSpec = number("x_mm", PLACE_MM, Means("the region's"), "left side of the picture");
+const Y: FieldSpec = number("y_mm", PLACE_MM, Means("the region's"), "top side of the picture");
+const WIDTH: FieldSpec = number("width_mm", SIZE_MM, Means("the region's"), "its width");
+const HEIGHT: FieldSpec = number(
+    "height_mm",
+    SIZE_MM,
+    Means("as the picture's sides demand; the region's, when `width_mm` is the region's too"),
+    "its height",
+);
+const ANGLE: FieldSpec = number("angle_deg", ANGLE_DEG, Number(0.0), "how far it is turned about its middle");
+const TILED: FieldSpec =
+    flag("tiled", false, "`true`: it is repeated in both directions, over the region or the screen");
+const PITCH: FieldSpec =
+    number("pitch_mm", Range::new(0.02, 10.0, " mm"), Number(0.25), "distance of the samples that the board plays");
+const BLACK: AmountFields = amount!("black", Means("0"), "friction of black");
+const WHITE: AmountFields = amount!("white", Means("all that can be reached; a factor of 1"), "friction of white");
 
 /// `kind = "bitmap"`.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,33 +60,33 @@ impl Words for Bitmap {
 
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
         // What a region says need not be said again.
-        let mut place = |field, range| {
-            if !fields.has_been_read("region") {
+        let mut place = |field: &FieldSpec| {
+            if !fields.has_been_read(REGION.name) {
                 fields.require(field);
             }
-            fields.optional_number(log, field, range)
+            fields.number(log, field)
         };
-        let (x_mm, y_mm, width_mm) = (place("x_mm", PLACE_MM), place("y_mm", PLACE_MM), place("width_mm", SIZE_MM));
-        let picture = fields.text(log, "picture");
-        let height_mm = fields.optional_number(log, "height_mm", SIZE_MM);
-        let pitch_mm = fields.optional_number(log, "pitch_mm", PITCH_MM).unwrap_or(PITCH_DEFAULT_MM);
-        let angle_deg = fields.optional_number(log, "angle_deg", ANGLE_DEG).unwrap_or(0.0);
-        let tiled = fields.flag(log, "tiled", false);
+        let (x_mm, y_mm, width_mm) = (place(&X), place(&Y), place(&WIDTH));
+        let picture = fields.text(log, &PICTURE);
+        let height_mm = fields.number(log, &HEIGHT);
+        let pitch_mm = fields.number_or_default(log, &PITCH);
+        let angle_deg = fields.number_or_default(log, &ANGLE);
+        let tiled = fields.flag(log, &TILED);
         // Bare glass, and the most that the drive gives: what a friction image without numbers means.
         let (black, white) = match unit {
             Unit::Friction => (Amount::Fraction(0.0), Amount::Fraction(1.0)),
             Unit::Factor => (Amount::Factor(0.0), Amount::Factor(1.0)),
         };
-        let black = Amount::optional(fields, Names::BLACK, unit, log).unwrap_or(black);
-        let white = Amount::optional(fields, Names::WHITE, unit, log).unwrap_or(white);
+        let black = Amount::read(fields, &BLACK, unit, log).unwrap_or(black);
+        let white = Amount::read(fields, &WHITE, unit, log).unwrap_or(white);
         let picture = picture?;
         Some(Self { picture, x_mm, y_mm, width_mm, height_mm, pitch_mm, angle_deg, tiled, black, white })
     }
 
     fn extreme(&self, most: bool, places: &Places) -> &'static str {
         let white_is_most = !self.black.is_above(self.white);
-        let names = if most == white_is_most { Names::WHITE } else { Names::BLACK };
-        places.first_of(names.all())
+        let amount = if most == white_is_most { WHITE } else { BLACK };
+        places.first_of(amount.names())
     }
 
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {
@@ -104,8 +121,8 @@ impl Field for Samples {
         self.at_place(context.x_m, context.y_m)
     }
 
-    /// A bilinear patch has its extremes at its corners: samples' centres, and where the cell cuts it. Of a picture that
-    /// is turned, all samples count that are in reach.
+    /// A bilinear patch has its extremes at its corners: samples' centres, and where the cell cuts it. Of a picture
+    /// that is turned, all samples count that are in reach.
     fn interval_in(&self, cell: Cell) -> Interval<f64> {
         let positions = cell.corners().map(|(x_m, y_m)| self.position(x_m, y_m));
         let u = Interval::of(positions.iter().map(|(u, _)| *u));

@@ -9,12 +9,29 @@ use super::click::Click;
 use super::{Field, Lowered, Words, click_interval};
 use crate::cover::Cell;
 use crate::fields::Fields;
-use crate::layer::{Amount, Layer, Names, SIZE_MM, Unit};
+use crate::grammar::Absence::{Means, Mistake};
+use crate::grammar::{AmountFields, FieldSpec};
+use crate::layer::{Amount, Layer, Unit};
 use crate::log::Log;
 use crate::lower::{Lowering, MM};
 use crate::program::Program;
 use crate::reference::Context;
 use crate::source::Places;
+use crate::tables::{SIZE_MM, amount, number};
+
+const RIM_WIDTH: FieldSpec = number(
+    "rim_width_mm",
+    SIZE_MM,
+    Mistake,
+    "width of the rim, inside the outline; an ellipse's along its shorter axis",
+);
+const RIM: AmountFields = amount!(
+    "rim",
+    Mistake,
+    "friction in the middle of the rim, from where it falls off to that of the face on both sides as a raised cosine"
+);
+const FACE: AmountFields = amount!("face", Mistake, "friction on the face");
+const CLICK: AmountFields = amount!("click", Means("no click"), "what is added when the finger slides in");
 
 /// `kind = "button"`.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,17 +47,17 @@ impl Words for Button {
     const NEEDS_RIM: bool = true;
 
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
-        let rim_width_mm = fields.number(log, "rim_width_mm", SIZE_MM);
-        let rim = Amount::read(fields, Names::RIM, unit, log);
-        let face = Amount::read(fields, Names::FACE, unit, log);
-        let click = Click::read(fields, unit, log);
+        let rim_width_mm = fields.number(log, &RIM_WIDTH);
+        let rim = Amount::read(fields, &RIM, unit, log);
+        let face = Amount::read(fields, &FACE, unit, log);
+        let click = Click::read(fields, &CLICK, unit, log);
         Some(Self { rim_width_mm: rim_width_mm?, rim: rim?, face: face?, click })
     }
 
     fn extreme(&self, most: bool, places: &Places) -> &'static str {
         let rim_is_most = !self.face.is_above(self.rim);
-        let names = if most == rim_is_most { Names::RIM } else { Names::FACE };
-        places.first_of(names.all())
+        let amount = if most == rim_is_most { RIM } else { FACE };
+        places.first_of(amount.names())
     }
 
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {

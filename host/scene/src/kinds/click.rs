@@ -2,14 +2,20 @@
 
 use frixel_layers::{CLICKS_MAX, Click as Record, range};
 
-use crate::fields::{Fields, Range};
-use crate::layer::{Amount, Layer, Names, Unit};
+use crate::fields::Fields;
+use crate::grammar::Absence::Number;
+use crate::grammar::{AmountFields, FieldSpec, Range};
+use crate::layer::{Amount, Layer, Unit};
 use crate::log::Log;
 use crate::lower::{Lowering, MM};
+use crate::tables::number;
 
-const CLICK_MS: Range = Range::new(0.1, range::CLICK_S.max / MM, " ms");
-/// How long a click takes where the file says nothing.
-const CLICK_DEFAULT_MS: f64 = 20.0;
+const CLICK_MS: FieldSpec = number(
+    "click_ms",
+    Range::new(0.1, range::CLICK_S.max / MM, " ms"),
+    Number(20.0),
+    "how long a click takes to fall off: `(1 - t / click_ms)^2` of it are left after `t`",
+);
 
 /// A short pulse when the finger crosses.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,9 +26,9 @@ pub(super) struct Click {
 
 impl Click {
     /// Reads the click of a layer, if it has one.
-    pub(super) fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
-        let decay_ms = fields.optional_number(log, "click_ms", CLICK_MS).unwrap_or(CLICK_DEFAULT_MS);
-        Some(Self { height: Amount::optional(fields, Names::CLICK, unit, log)?, decay_ms })
+    pub(super) fn read(fields: &mut Fields, height: &AmountFields, unit: Unit, log: &mut Log) -> Option<Self> {
+        let decay_ms = fields.number_or_default(log, &CLICK_MS);
+        Some(Self { height: Amount::read(fields, height, unit, log)?, decay_ms })
     }
 
     /// A click is added, so that it counts from what it is added to. `None` when there are too many.

@@ -7,12 +7,17 @@ use frixel_layers::{Constant as Record, Interval, Layer as RecordLayer, Region a
 use super::{Field, Lowered, Words};
 use crate::cover::Cell;
 use crate::fields::Fields;
-use crate::layer::{Amount, Layer, Names, Unit};
+use crate::grammar::Absence::Mistake;
+use crate::grammar::AmountFields;
+use crate::layer::{Amount, Layer, Unit};
 use crate::log::Log;
 use crate::lower::Lowering;
 use crate::program::Program;
 use crate::reference::Context;
 use crate::source::Places;
+use crate::tables::amount;
+
+const FRICTION: AmountFields = amount!("friction", Mistake, "the same friction everywhere");
 
 /// `kind = "constant"`.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,11 +30,11 @@ impl Words for Constant {
     const TOTALS: bool = true;
 
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
-        Some(Self { friction: Amount::read(fields, Names::FRICTION, unit, log)? })
+        Some(Self { friction: Amount::read(fields, &FRICTION, unit, log)? })
     }
 
     fn extreme(&self, _most: bool, places: &Places) -> &'static str {
-        places.first_of(Names::FRICTION.all())
+        places.first_of(FRICTION.names())
     }
 
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {

@@ -8,16 +8,30 @@ use frixel_layers::{
 };
 
 use super::click::Click;
-use super::wave::ANGLE_DEG;
 use super::{Field, Lowered, Words, click_interval};
 use crate::cover::Cell;
 use crate::fields::Fields;
-use crate::layer::{Amount, Layer, Names, PLACE_MM, SIZE_MM, Unit};
+use crate::grammar::Absence::{Means, Mistake, Number};
+use crate::grammar::{AmountFields, FieldSpec};
+use crate::layer::{Amount, Layer, Unit};
 use crate::log::Log;
 use crate::lower::{Lowering, MM, place};
 use crate::program::Program;
 use crate::reference::Context;
 use crate::source::Places;
+use crate::tables::{ANGLE_DEG, PLACE_MM, SIZE_MM, amount, number};
+
+const X: FieldSpec = number("x_mm", PLACE_MM, Mistake, "x of a place on the line");
+const Y: FieldSpec = number("y_mm", PLACE_MM, Mistake, "y of the same place");
+const ANGLE: FieldSpec = number("angle_deg", ANGLE_DEG, Number(0.0), "direction across the line: 0 is a line along y");
+const WIDTH: FieldSpec = number("width_mm", SIZE_MM, Mistake, "from one foot of the ridge to the other");
+const RIDGE: AmountFields = amount!(
+    "ridge",
+    Mistake,
+    "friction on the line, falling off as a raised cosine; beside the ridge nothing is added, and what lies below is \
+     multiplied by 1"
+);
+const CLICK: AmountFields = amount!("click", Means("no click"), "what is added when the finger crosses");
 
 /// `kind = "edge"`.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,17 +50,17 @@ impl Words for Edge {
     const BLEND: Blend = Blend::Add;
 
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
-        let x_mm = fields.number(log, "x_mm", PLACE_MM);
-        let y_mm = fields.number(log, "y_mm", PLACE_MM);
-        let angle_deg = fields.optional_number(log, "angle_deg", ANGLE_DEG).unwrap_or(0.0);
-        let width_mm = fields.number(log, "width_mm", SIZE_MM);
-        let ridge = Amount::read(fields, Names::RIDGE, unit, log);
-        let click = Click::read(fields, unit, log);
+        let x_mm = fields.number(log, &X);
+        let y_mm = fields.number(log, &Y);
+        let angle_deg = fields.number_or_default(log, &ANGLE);
+        let width_mm = fields.number(log, &WIDTH);
+        let ridge = Amount::read(fields, &RIDGE, unit, log);
+        let click = Click::read(fields, &CLICK, unit, log);
         Some(Self { x_mm: x_mm?, y_mm: y_mm?, angle_deg, width_mm: width_mm?, ridge: ridge?, click })
     }
 
     fn extreme(&self, _most: bool, places: &Places) -> &'static str {
-        places.first_of(Names::RIDGE.all())
+        places.first_of(RIDGE.names())
     }
 
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {

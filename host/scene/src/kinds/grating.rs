@@ -4,16 +4,29 @@ use std::sync::Arc;
 
 use frixel_layers::{Grating as Record, Interval, Layer as RecordLayer, Region as RecordRegion, Wave};
 
-use super::wave::{self, ANGLE_DEG, WAVELENGTH_MM, WaveField};
+use super::wave::{self, WaveField};
 use super::{Field, Lowered, Words};
 use crate::cover::Cell;
 use crate::fields::Fields;
+use crate::grammar::Absence::{Mistake, Number};
+use crate::grammar::FieldSpec;
 use crate::layer::{Layer, LowHigh, Unit};
 use crate::log::Log;
 use crate::lower::{Lowering, place};
 use crate::program::Program;
 use crate::reference::Context;
 use crate::source::Places;
+use crate::tables::{ANGLE_DEG, HIGH, LOW, WAVELENGTH_MM, number};
+
+const WAVELENGTH: FieldSpec = number("wavelength_mm", WAVELENGTH_MM, Mistake, "from stripe to stripe");
+const ANGLE: FieldSpec = number("angle_deg", ANGLE_DEG, Number(0.0), "direction across the stripes");
+const PHASE: FieldSpec = number(
+    "phase_deg",
+    ANGLE_DEG,
+    Number(0.0),
+    "at the screen's corner, without a phase, a sine is in its middle and rises, a square's high part begins, triangle \
+     and saw are low and rise. A phase is how much later in the wave it starts",
+);
 
 /// `kind = "grating"`.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,10 +43,10 @@ impl Words for Grating {
 
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
         let wave = wave::read(fields, log);
-        let wavelength_mm = fields.number(log, "wavelength_mm", WAVELENGTH_MM);
-        let angle_deg = fields.optional_number(log, "angle_deg", ANGLE_DEG).unwrap_or(0.0);
-        let phase_deg = fields.optional_number(log, "phase_deg", ANGLE_DEG).unwrap_or(0.0);
-        let amounts = LowHigh::read(fields, unit, log);
+        let wavelength_mm = fields.number(log, &WAVELENGTH);
+        let angle_deg = fields.number_or_default(log, &ANGLE);
+        let phase_deg = fields.number_or_default(log, &PHASE);
+        let amounts = LowHigh::read(fields, [&LOW, &HIGH], unit, log);
         Some(Self { wave, wavelength_mm: wavelength_mm?, angle_deg, phase_deg, amounts: amounts? })
     }
 

@@ -1,5 +1,5 @@
-//! The kinds of layer, a file each: the words for it in a scene file, its way into a record, and its reference, which is
-//! written from the kind's meaning in `docs/scene.md` and `PROTOCOL.md` and shares no code with the board.
+//! The kinds of layer, a file each: the words for it in a scene file, its way into a record, and its reference, which
+//! is written from the kind's meaning in `docs/scene.md` and `PROTOCOL.md` and shares no code with the board.
 
 mod bitmap;
 mod button;
@@ -89,8 +89,8 @@ pub(crate) trait Field: Debug + Send + Sync {
         self.interval_at(x_m, y_m)
     }
 
-    /// 0 when the friction is the same all over the cell, 1 when [`Field::interval_in`] is exact, 2 when it may be larger
-    /// than what is there. `outline_m` is the layer's own rectangle: left, top, right, bottom.
+    /// 0 when the friction is the same all over the cell, 1 when [`Field::interval_in`] is exact, 2 when it may be
+    /// larger than what is there. `outline_m` is the layer's own rectangle: left, top, right, bottom.
     fn doubts_in(&self, cell: Cell, outline_m: [f64; 4]) -> usize {
         let _ = (cell, outline_m);
         1

@@ -5,10 +5,11 @@ use std::sync::Arc;
 
 use frixel_layers::{Interval, Layer as RecordLayer, NOISES_MAX, Noise as Record, Region as RecordRegion};
 
-use super::wave::WAVELENGTH_MM;
 use super::{Field, Lowered, Words};
 use crate::cover::Cell;
-use crate::fields::{Fields, Range};
+use crate::fields::Fields;
+use crate::grammar::Absence::{Mistake as Required, Number};
+use crate::grammar::{AmountFields, FieldSpec, Holds, Range};
 use crate::layer::{Layer, LowHigh, Unit};
 use crate::log::Log;
 use crate::lower::{Lowering, MM};
@@ -16,10 +17,23 @@ use crate::mistake::Mistake;
 use crate::program::Program;
 use crate::reference::Context;
 use crate::source::Places;
+use crate::tables::{WAVELENGTH_MM, amount, number};
 
-const SEED: Range = Range::new(0.0, 4_294_967_295.0, "");
-const MIN: &str = "wavelength_min_mm";
-const MAX: &str = "wavelength_max_mm";
+const SEED: FieldSpec = FieldSpec::new(
+    "seed",
+    Holds::Whole(Range::new(0.0, 4_294_967_295.0, "")),
+    Number(0.0),
+    "the number that the waves are drawn with",
+);
+const MIN: FieldSpec = number("wavelength_min_mm", WAVELENGTH_MM, Required, "nothing is finer than this");
+const MAX: FieldSpec = number("wavelength_max_mm", WAVELENGTH_MM, Required, "nothing is coarser than this");
+const LOW: AmountFields = amount!("low", Required, "least friction, below which it never falls");
+const HIGH: AmountFields = amount!(
+    "high",
+    Required,
+    "largest friction, above which it never rises. It is near the middle most of the time: its standard deviation is \
+     an eighth of the range"
+);
 
 /// `kind = "noise"`.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,10 +48,10 @@ impl Words for Noise {
     const WORD: &'static str = "noise";
 
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
-        let seed = fields.optional_whole(log, "seed", SEED).unwrap_or(0.0) as u32;
-        let wavelength_min_mm = fields.number(log, MIN, WAVELENGTH_MM);
-        let wavelength_max_mm = fields.number(log, MAX, WAVELENGTH_MM);
-        let amounts = LowHigh::read(fields, unit, log);
+        let seed = fields.number_or_default(log, &SEED) as u32;
+        let wavelength_min_mm = fields.number(log, &MIN);
+        let wavelength_max_mm = fields.number(log, &MAX);
+        let amounts = LowHigh::read(fields, [&LOW, &HIGH], unit, log);
         Some(Self {
             seed,
             wavelength_min_mm: wavelength_min_mm?,
@@ -50,7 +64,8 @@ impl Words for Noise {
         self.amounts.check(places, log);
         let (low, high) = (self.wavelength_min_mm, self.wavelength_max_mm);
         if low > high {
-            log.add(places.field(MIN), Mistake::LowAboveHigh { low_name: MIN, low, high_name: MAX, high });
+            let (low_name, high_name) = (MIN.name, MAX.name);
+            log.add(places.field(low_name), Mistake::LowAboveHigh { low_name, low, high_name, high });
         }
     }
 

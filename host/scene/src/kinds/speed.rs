@@ -6,16 +6,30 @@ use frixel_layers::{Blend, Interval, Layer as RecordLayer, Point, Region as Reco
 use frixel_wire::scene::CURVE_POINTS_MAX;
 
 use super::{Field, Lowered, Words};
-use crate::fields::{Fields, Range};
-use crate::layer::{FACTOR, Layer, Unit};
+use crate::fields::Fields;
+use crate::grammar::Absence::Mistake as Required;
+use crate::grammar::{FieldSpec, Holds, Range};
+use crate::layer::{Layer, Unit};
 use crate::log::Log;
 use crate::lower::{Lowering, MM};
 use crate::mistake::Mistake;
 use crate::program::Program;
 use crate::reference::Context;
 use crate::source::Places;
+use crate::tables::FACTOR;
 
-const SPEED_MM_PER_S: Range = Range::new(range::SPEED_M_PER_S.min, range::SPEED_M_PER_S.max / MM, " mm/s");
+const SPEEDS: FieldSpec = FieldSpec::new(
+    "speeds_mm_per_s",
+    Holds::Numbers(Range::new(range::SPEED_M_PER_S.min, range::SPEED_M_PER_S.max / MM, " mm/s")),
+    Required,
+    "2 to 16 speeds, rising",
+);
+const FACTORS: FieldSpec = FieldSpec::new(
+    "factors",
+    Holds::Numbers(FACTOR),
+    Required,
+    "the factor at each of them, straight between, held outside",
+);
 /// Least distance of two speeds: twice what a board tells apart, so that rounding never brings them too close.
 const STEP_MIN_MM_PER_S: f64 = 2.0 * range::SPEED_STEP_MIN_M_PER_S / MM;
 
@@ -32,15 +46,15 @@ impl Words for Speed {
     const BLEND: Blend = Blend::Multiply;
 
     fn read(fields: &mut Fields, _unit: Unit, log: &mut Log) -> Option<Self> {
-        let (offset, factors_offset) = (fields.place("speeds_mm_per_s"), fields.place("factors"));
-        let speeds_mm_per_s = fields.numbers(log, "speeds_mm_per_s", SPEED_MM_PER_S);
-        let factors = fields.numbers(log, "factors", FACTOR);
+        let (offset, factors_offset) = (fields.place(SPEEDS.name), fields.place(FACTORS.name));
+        let speeds_mm_per_s = fields.numbers(log, &SPEEDS);
+        let factors = fields.numbers(log, &FACTORS);
         let (speeds_mm_per_s, factors) = (speeds_mm_per_s?, factors?);
         let (found, min, max) = (speeds_mm_per_s.len(), 2, CURVE_POINTS_MAX);
         if !(min..=max).contains(&found) {
-            log.add(offset, Mistake::Count { field: "speeds_mm_per_s", found, min, max });
+            log.add(offset, Mistake::Count { field: SPEEDS.name, found, min, max });
         } else if factors.len() != found {
-            let mistake = Mistake::Count { field: "factors", found: factors.len(), min: found, max: found };
+            let mistake = Mistake::Count { field: FACTORS.name, found: factors.len(), min: found, max: found };
             log.add(factors_offset, mistake);
         }
         let is_close = |[before, after]: &&[f64; 2]| after - before < STEP_MIN_MM_PER_S;
@@ -51,7 +65,7 @@ impl Words for Speed {
     }
 
     fn extreme(&self, _most: bool, _places: &Places) -> &'static str {
-        "factors"
+        FACTORS.name
     }
 
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {

@@ -6,12 +6,18 @@ use frixel_layers::{Interval, Layer as RecordLayer, Region as RecordRegion, Stre
 
 use super::{Field, Lowered, Words};
 use crate::fields::Fields;
+use crate::grammar::Absence::Mistake;
+use crate::grammar::AmountFields;
 use crate::layer::{Layer, LowHigh, Unit};
 use crate::log::Log;
 use crate::lower::Lowering;
 use crate::program::Program;
 use crate::reference::Context;
 use crate::source::Places;
+use crate::tables::amount;
+
+const LOW: AmountFields = amount!("low", Mistake, "friction of sample 0");
+const HIGH: AmountFields = amount!("high", Mistake, "friction of the largest sample");
 
 /// `kind = "stream"`.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,7 +29,7 @@ impl Words for Stream {
     const WORD: &'static str = "stream";
 
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
-        Some(Self { amounts: LowHigh::read(fields, unit, log)? })
+        Some(Self { amounts: LowHigh::read(fields, [&LOW, &HIGH], unit, log)? })
     }
 
     fn check(&self, places: &Places, log: &mut Log) {

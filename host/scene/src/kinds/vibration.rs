@@ -8,7 +8,9 @@ use frixel_layers::{
 };
 
 use super::{Field, Lowered, Words};
-use crate::fields::{Fields, Range};
+use crate::fields::Fields;
+use crate::grammar::Absence::{Means, Mistake as Required, Number};
+use crate::grammar::{AmountFields, FieldSpec, Holds, Range};
 use crate::layer::{Layer, LowHigh, Unit};
 use crate::log::Log;
 use crate::lower::{Lowering, MM};
@@ -16,10 +18,32 @@ use crate::mistake::Mistake;
 use crate::program::Program;
 use crate::reference::Context;
 use crate::source::Places;
+use crate::tables::{LOW, amount, number, word};
 
-const FREQUENCY_HZ: Range = Range::new(range::FREQUENCY_HZ.min, range::FREQUENCY_HZ.max, " Hz");
+const WAVE: FieldSpec = word("wave", Means("`\"sine\"`"), "`\"sine\"` or `\"square\"`");
+const FREQUENCY: FieldSpec = number(
+    "frequency_hz",
+    Range::new(range::FREQUENCY_HZ.min, range::FREQUENCY_HZ.max, " Hz"),
+    Required,
+    "how often a second",
+);
+const HIGH: AmountFields =
+    amount!("high", Required, "largest friction; a sine starts in the middle and rises, a square starts high");
+const BURST: FieldSpec = FieldSpec::new(
+    "burst",
+    Holds::Table,
+    Means("it goes on"),
+    "it comes and goes: `{ period_ms, on_ms, ramp_ms }`, see [bursts](#bursts)",
+);
 const BURST_MS: Range = Range::new(1.0, range::BURST_S.max / MM, " ms");
-const RAMP_MS: Range = Range::new(0.0, 0.5 * BURST_MS.max, " ms");
+const PERIOD: FieldSpec = number("period_ms", BURST_MS, Required, "from the start of a burst to the next one");
+const ON: FieldSpec = number("on_ms", BURST_MS, Required, "how long a burst lasts; at most the period");
+const RAMP: FieldSpec = number(
+    "ramp_ms",
+    Range::new(0.0, 0.5 * BURST_MS.max, " ms"),
+    Number(0.0),
+    "how long it rises and falls at its two ends; at most half of a burst each",
+);
 
 /// `kind = "vibration"`.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,11 +67,11 @@ impl Words for Vibration {
 
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
         let beats = [("sine", Beat::Sine), ("square", Beat::Square)];
-        let beat = fields.optional_choice(log, "wave", &beats).unwrap_or_default();
-        let frequency_hz = fields.number(log, "frequency_hz", FREQUENCY_HZ);
-        let amounts = LowHigh::read(fields, unit, log);
-        let has_burst = fields.has("burst");
-        let burst = fields.optional_table(log, "burst").and_then(|fields| Burst::read(fields, log));
+        let beat = fields.choice(log, &WAVE, &beats).unwrap_or_default();
+        let frequency_hz = fields.number(log, &FREQUENCY);
+        let amounts = LowHigh::read(fields, [&LOW, &HIGH], unit, log);
+        let has_burst = fields.has(BURST.name);
+        let burst = fields.table(log, &BURST).and_then(|fields| Burst::read(fields, log));
         if has_burst && burst.is_none() {
             return None;
         }
@@ -77,12 +101,12 @@ impl Words for Vibration {
 impl Burst {
     fn read(mut fields: Fields, log: &mut Log) -> Option<Self> {
         fields.rename("this burst".to_owned());
-        let period_ms = fields.number(log, "period_ms", BURST_MS);
-        let on_ms = fields.number(log, "on_ms", BURST_MS);
-        let ramp_ms = fields.optional_number(log, "ramp_ms", RAMP_MS).unwrap_or(0.0);
+        let period_ms = fields.number(log, &PERIOD);
+        let on_ms = fields.number(log, &ON);
+        let ramp_ms = fields.number_or_default(log, &RAMP);
         let places = fields.close(log);
         let (period_ms, on_ms) = (period_ms?, on_ms?);
-        for (field, found, max) in [("on_ms", on_ms, period_ms), ("ramp_ms", ramp_ms, 0.5 * on_ms)] {
+        for (field, found, max) in [(ON.name, on_ms, period_ms), (RAMP.name, ramp_ms, 0.5 * on_ms)] {
             if found > max {
                 log.add(places.field(field), Mistake::OutOfRange { field, found, min: 0.0, max, unit: " ms" });
             }

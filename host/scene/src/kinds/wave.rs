@@ -4,19 +4,30 @@ use std::f64::consts::TAU;
 
 use frixel_layers::{Interval, Wave, range};
 
-use crate::fields::{Fields, Range};
+use crate::fields::Fields;
+use crate::grammar::Absence::{Means, Number};
+use crate::grammar::{FieldSpec, Range};
 use crate::log::Log;
+use crate::tables::{number, word};
 
-pub(super) const WAVELENGTH_MM: Range = Range::new(0.05, 2_000.0, " mm");
-pub(super) const ANGLE_DEG: Range = Range::new(-360.0, 360.0, " degrees");
-const DUTY: Range = Range::new(range::DUTY.min, range::DUTY.max, "");
+const WAVE: FieldSpec = word(
+    "wave",
+    Means("`\"sine\"`"),
+    "`\"sine\"`; `\"square\"`; `\"triangle\"`, which rises and falls; `\"saw\"`, which rises and drops",
+);
+const DUTY: FieldSpec = number(
+    "duty",
+    Range::new(range::DUTY.min, range::DUTY.max, ""),
+    Number(0.5),
+    "the part of a square's wavelength that is high",
+);
 
 /// Reads `wave`, and `duty` of a square one.
 pub(super) fn read(fields: &mut Fields, log: &mut Log) -> Wave {
     let square = Wave::Square { duty: 0.5 };
     let waves = [("sine", Wave::Sine), ("square", square), ("triangle", Wave::Triangle), ("saw", Wave::Saw)];
-    match fields.optional_choice(log, "wave", &waves).unwrap_or_default() {
-        Wave::Square { .. } => Wave::Square { duty: fields.optional_number(log, "duty", DUTY).unwrap_or(0.5) as f32 },
+    match fields.choice(log, &WAVE, &waves).unwrap_or_default() {
+        Wave::Square { .. } => Wave::Square { duty: fields.number_or_default(log, &DUTY) as f32 },
         other => other,
     }
 }

@@ -1,15 +1,11 @@
 //! What a layer asks for, in one of three units that stand in the field's name.
 
-use frixel_layers::range;
-
-use super::super::fields::{Fields, Range};
+use super::super::fields::Fields;
+use super::super::grammar::{Absence, AmountFields, FieldSpec};
 use super::super::log::Log;
 use super::super::mistake::Mistake;
 use super::super::source::Places;
-
-const FRICTION_N: Range = Range::new(range::FRICTION_N.min, range::FRICTION_N.max, " N");
-const FRACTION: Range = Range::new(-1.0, 1.0, "");
-pub(crate) const FACTOR: Range = Range::new(range::FRICTION_N.min, range::FRICTION_N.max, "");
+use super::super::tables::{HIGH, LOW};
 
 /// What a layer asks for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,64 +27,26 @@ pub(crate) enum Unit {
     Factor,
 }
 
-/// The fields that an amount may stand in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Names {
-    pub(crate) newtons: &'static str,
-    pub(crate) fraction: &'static str,
-    pub(crate) factor: &'static str,
-}
-
-macro_rules! names {
-    ($stem:literal) => {
-        Names {
-            newtons: concat!($stem, "_n"),
-            fraction: concat!($stem, "_fraction"),
-            factor: concat!($stem, "_factor"),
-        }
-    };
-}
-
-impl Names {
-    pub(crate) const FRICTION: Self = names!("friction");
-    pub(crate) const LOW: Self = names!("low");
-    pub(crate) const HIGH: Self = names!("high");
-    pub(crate) const BLACK: Self = names!("black");
-    pub(crate) const WHITE: Self = names!("white");
-    pub(crate) const RIDGE: Self = names!("ridge");
-    pub(crate) const RIM: Self = names!("rim");
-    pub(crate) const FACE: Self = names!("face");
-    pub(crate) const CLICK: Self = names!("click");
-
-    /// All names, so that the one in use can be found among a layer's fields.
-    pub(crate) fn all(self) -> [&'static str; 3] {
-        [self.newtons, self.fraction, self.factor]
-    }
-}
-
 impl Amount {
-    /// Reads an amount that has to be there.
-    pub(crate) fn read(fields: &mut Fields, names: Names, unit: Unit, log: &mut Log) -> Option<Self> {
-        match unit {
-            Unit::Factor => fields.require(names.factor),
-            Unit::Friction if !fields.has(names.fraction) => fields.require(names.newtons),
-            Unit::Friction => {}
-        }
-        Self::optional(fields, names, unit, log)
-    }
-
-    /// Reads an amount that may be left out.
-    pub(crate) fn optional(fields: &mut Fields, names: Names, unit: Unit, log: &mut Log) -> Option<Self> {
+    /// Reads an amount, in the unit that the layer's amounts have.
+    pub(crate) fn read(fields: &mut Fields, amount: &AmountFields, unit: Unit, log: &mut Log) -> Option<Self> {
+        let AmountFields { newtons, fraction, factor } = amount;
         if unit == Unit::Factor {
-            return fields.optional_number(log, names.factor, FACTOR).map(Self::Factor);
+            return fields.number(log, factor).map(Self::Factor);
         }
-        fields.either(names.newtons, names.fraction);
-        if fields.has(names.newtons) && fields.has(names.fraction) {
-            let mistake = Mistake::TwoUnits { one: names.newtons, other: names.fraction };
-            log.add(fields.place(names.fraction), mistake);
+        fields.either(newtons, fraction);
+        let (has_newtons, has_fraction) = (fields.has(newtons.name), fields.has(fraction.name));
+        if has_newtons && has_fraction {
+            let mistake = Mistake::TwoUnits { one: newtons.name, other: fraction.name };
+            log.add(fields.place(fraction.name), mistake);
         }
-        let newtons = fields.optional_number(log, names.newtons, FRICTION_N).map(Self::Newtons);
-        let fraction = fields.optional_number(log, names.fraction, FRACTION).map(Self::Fraction);
+        // Either of the two will do, so that neither is required by itself.
+        let absence = Absence::Means("");
+        if newtons.absence == Absence::Mistake && !has_fraction {
+            fields.require(newtons);
+        }
+        let newtons = fields.number(log, &FieldSpec { absence, ..*newtons }).map(Self::Newtons);
+        let fraction = fields.number(log, &FieldSpec { absence, ..*fraction }).map(Self::Fraction);
         newtons.or(fraction)
     }
 
@@ -117,16 +75,22 @@ pub(crate) struct LowHigh {
 }
 
 impl LowHigh {
-    pub(crate) fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
-        let low = Amount::read(fields, Names::LOW, unit, log);
-        let high = Amount::read(fields, Names::HIGH, unit, log);
+    /// Reads both.
+    pub(crate) fn read(
+        fields: &mut Fields,
+        [low, high]: [&AmountFields; 2],
+        unit: Unit,
+        log: &mut Log,
+    ) -> Option<Self> {
+        let low = Amount::read(fields, low, unit, log);
+        let high = Amount::read(fields, high, unit, log);
         Some(Self { low: low?, high: high? })
     }
 
     /// Finds a least amount that is above the largest.
     pub(crate) fn check(self, places: &Places, log: &mut Log) {
         if self.low.is_above(self.high) {
-            let (low_name, high_name) = (places.first_of(Names::LOW.all()), places.first_of(Names::HIGH.all()));
+            let (low_name, high_name) = (places.first_of(LOW.names()), places.first_of(HIGH.names()));
             let (low, high) = (self.low.number(), self.high.number());
             log.add(places.field(low_name), Mistake::LowAboveHigh { low_name, low, high_name, high });
         }
@@ -134,6 +98,6 @@ impl LowHigh {
 
     /// The field of the largest amount, or of the least.
     pub(crate) fn extreme(most: bool, places: &Places) -> &'static str {
-        places.first_of(if most { Names::HIGH } else { Names::LOW }.all())
+        places.first_of(if most { HIGH } else { LOW }.names())
     }
 }

@@ -3,18 +3,17 @@
 mod amount;
 mod region;
 
-use frixel_layers::{Blend, range};
+use frixel_layers::Blend;
 
-pub(crate) use amount::{Amount, FACTOR, LowHigh, Names, Unit};
-pub(crate) use region::{PLACE_MM, Rectangle, Region, SIZE_MM};
+pub(crate) use amount::{Amount, LowHigh, Unit};
+pub(crate) use region::{Rectangle, Region};
 
-use super::fields::{Fields, Range};
+use super::fields::Fields;
 use super::kinds::{Kind, KindName};
 use super::log::Log;
 use super::mistake::Mistake;
 use super::source::Places;
-
-const GAIN: Range = Range::new(range::GAIN.min, range::GAIN.max, "");
+use super::tables;
 
 /// One layer as written.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,8 +44,8 @@ impl Layer {
     /// Reads layer `number`, counted from one.
     pub(crate) fn read(mut fields: Fields, number: usize, log: &mut Log) -> Option<Self> {
         fields.rename(format!("layer {number}"));
-        let name = fields.optional_text(log, "name");
-        let Some(kind_name) = fields.choice_or_nearest(log, "kind", KindName::ALL) else {
+        let name = fields.text(log, &tables::layer::NAME);
+        let Some(kind_name) = fields.choice_or_nearest(log, &tables::layer::KIND, KindName::ALL) else {
             // Nobody knows what else the layer should have; these every kind has.
             let _ = Common::read(&mut fields, KindName::Constant, log);
             fields.give_up_without(log, "kind");
@@ -86,14 +85,14 @@ impl Common {
     fn read(fields: &mut Fields, kind: KindName, log: &mut Log) -> Self {
         let region = region::read(fields, kind, log);
         let (blends, blend) = kind.blends();
-        let blend = fields.optional_choice(log, "blend", blends).unwrap_or(blend);
-        let gain = fields.optional_number(log, "gain", GAIN).unwrap_or(1.0);
-        let live = fields.flag(log, "live", false);
+        let blend = fields.choice(log, &tables::layer::BLEND, blends).unwrap_or(blend);
+        let gain = fields.number_or_default(log, &tables::layer::GAIN);
+        let live = fields.flag(log, &tables::layer::LIVE);
         let unit = if blend == Blend::Multiply { Unit::Factor } else { Unit::Friction };
         // What is multiplied counts from nothing.
         let above = match unit {
             Unit::Friction => {
-                fields.optional_choice(log, "above", &[("natural", Above::Natural), ("zero", Above::Zero)])
+                fields.choice(log, &tables::layer::ABOVE, &[("natural", Above::Natural), ("zero", Above::Zero)])
             }
             Unit::Factor => None,
         };

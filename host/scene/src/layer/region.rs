@@ -1,12 +1,11 @@
 //! `region`: where a layer acts.
 
-use super::super::fields::{Fields, Range};
+use super::super::fields::Fields;
 use super::super::log::Log;
 use super::super::mistake::Mistake;
+use super::super::tables;
 use crate::kinds::KindName;
 
-pub(crate) const PLACE_MM: Range = Range::new(-2_000.0, 2_000.0, " mm");
-pub(crate) const SIZE_MM: Range = Range::new(0.01, 2_000.0, " mm");
 /// Vertices that a polygon may have.
 const VERTICES: (usize, usize) = (3, frixel_wire::scene::POLYGON_POINTS_MAX);
 
@@ -65,10 +64,10 @@ pub(crate) struct Misread;
 pub(crate) fn read(layer: &mut Fields, kind: KindName, log: &mut Log) -> Result<Option<Region>, Misread> {
     let button = kind.needs_rim();
     if button {
-        layer.require("region");
+        layer.require(&tables::layer::REGION);
     }
     let (there, offset) = (layer.has("region"), layer.place("region"));
-    let Some(fields) = layer.optional_table(log, "region") else {
+    let Some(fields) = layer.table(log, &tables::layer::REGION) else {
         return if there || button { Err(Misread) } else { Ok(None) };
     };
     let region = region(fields, log).ok_or(Misread)?;
@@ -83,7 +82,7 @@ fn region(mut fields: Fields, log: &mut Log) -> Option<Region> {
     fields.rename("this region".to_owned());
     let shapes = [("rectangle", Shape::Rectangle), ("ellipse", Shape::Ellipse), ("polygon", Shape::Polygon)];
     let named = fields.has("shape");
-    let shape = match fields.optional_choice(log, "shape", &shapes) {
+    let shape = match fields.choice(log, &tables::region::SHAPE, &shapes) {
         None if named => return None,
         shape => shape.unwrap_or(Shape::Rectangle),
     };
@@ -97,16 +96,16 @@ fn region(mut fields: Fields, log: &mut Log) -> Option<Region> {
 }
 
 fn rectangle(fields: &mut Fields, log: &mut Log) -> Option<Rectangle> {
-    let x_mm = fields.number(log, "x_mm", PLACE_MM);
-    let y_mm = fields.number(log, "y_mm", PLACE_MM);
-    let width_mm = fields.number(log, "width_mm", SIZE_MM);
-    let height_mm = fields.number(log, "height_mm", SIZE_MM);
+    let x_mm = fields.number(log, &tables::region::X_MM);
+    let y_mm = fields.number(log, &tables::region::Y_MM);
+    let width_mm = fields.number(log, &tables::region::WIDTH_MM);
+    let height_mm = fields.number(log, &tables::region::HEIGHT_MM);
     Some(Rectangle { x_mm: x_mm?, y_mm: y_mm?, width_mm: width_mm?, height_mm: height_mm? })
 }
 
 fn polygon(fields: &mut Fields, log: &mut Log) -> Option<Vec<(f64, f64)>> {
     let offset = fields.place("points_mm");
-    let vertices = fields.pairs(log, "points_mm", PLACE_MM)?;
+    let vertices = fields.pairs(log, &tables::region::POINTS_MM)?;
     let (min, max) = VERTICES;
     if !(min..=max).contains(&vertices.len()) {
         log.add(offset, Mistake::Count { field: "points_mm", found: vertices.len(), min, max });

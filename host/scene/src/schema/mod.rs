@@ -1,41 +1,38 @@
-//! A JSON schema of the scene file, for editors. It is made by asking the parser what it would read: texts that leave out
-//! everything but what decides on the fields of a table.
+//! A JSON schema of the scene file, for editors. It is made from the fields that the parser looks for: it reads texts
+//! that have nothing but the fields that other fields depend on.
 
-mod meaning;
-mod variant;
+pub(super) mod variant;
 
 use serde_json::{Map, Value, json};
 
-use super::asked::{Asked, AskedTable, Holds};
-use super::fields::Range;
 use super::file::{VERSION, describe};
-use meaning::Meanings;
+use super::grammar::{Holds, KnownField, KnownTable, Range};
+use super::tables::layer::KIND;
 use variant::{Tables, Variant, variants};
 
-/// The tables of a scene, empty, so that the parser asks for their fields.
+/// The tables of a scene, empty, so that the parser looks for their fields.
 const EMPTY: &str = "coating = [{}]\nscreen = {}\nfinger = {}\ndrive = {}\ncarrier = {}\ntouch = {}\n";
 
 /// The schema (draft 7, which editors know), as a text that ends in a line feed.
 pub fn json_schema() -> String {
-    let meanings = Meanings::of_docs();
     let mut properties = Map::new();
     let tables = describe(EMPTY);
     let Some(root) = tables.iter().find(|table| table.key.is_empty()) else { return String::new() };
-    for Asked { field, holds } in &root.asked {
-        let inner = || match tables.iter().find(|table| table.key == *field) {
-            Some(table) => object(table, &Map::new(), &meanings.section(field)),
-            None => json!({ "oneOf": layers(&meanings) }),
+    for KnownField { field, .. } in &root.fields {
+        let inner = || match tables.iter().find(|table| table.key == field.name) {
+            Some(table) => object(table, &Map::new()),
+            None => json!({ "oneOf": layers() }),
         };
-        let value = match holds {
+        let value = match field.holds {
             Holds::Table => inner(),
-            Holds::Tables { one: true } => {
+            Holds::TableOrTables => {
                 let table = inner();
                 json!({ "oneOf": [table, { "type": "array", "minItems": 1, "items": table }] })
             }
-            Holds::Tables { one: false } => json!({ "type": "array", "items": inner() }),
+            Holds::Tables => json!({ "type": "array", "items": inner() }),
             _ => json!({ "const": VERSION }),
         };
-        properties.insert((*field).to_owned(), value);
+        properties.insert(field.name.to_owned(), value);
     }
     let schema = json!({
         "$schema": "http://json-schema.org/draft-07/schema#",
@@ -45,29 +42,24 @@ pub fn json_schema() -> String {
         "properties": properties,
         "required": root.required,
         "additionalProperties": false,
-        "definitions": { "region": { "oneOf": regions(&meanings) } },
+        "definitions": { "region": { "oneOf": regions() } },
     });
     // A value that was just made always has a text.
     serde_json::to_string_pretty(&schema).unwrap_or_default() + "\n"
 }
 
 /// What a region may be, one for each shape.
-fn regions(meanings: &Meanings) -> Vec<Value> {
+fn regions() -> Vec<Value> {
     let tables = Tables { before: "layer = [{ kind = \"constant\", region = {", after: "} }]", key: "region" };
-    let section = meanings.section("regions");
-    variants(&tables).iter().map(|variant| variant_object(variant, &Map::new(), &section)).collect()
+    variants(&tables).iter().map(|variant| variant_object(variant, &Map::new())).collect()
 }
 
 /// What a layer may be, one for each set of fields that goes together.
-fn layers(meanings: &Meanings) -> Vec<Value> {
+fn layers() -> Vec<Value> {
     let none = describe("layer = [{}]");
-    let kinds = none.iter().find(|table| table.key == "layer").into_iter().flat_map(|table| &table.asked);
-    let kinds = kinds.filter_map(|asked| match &asked.holds {
-        Holds::Choice(words) if asked.field == "kind" => Some(words.clone()),
-        _ => None,
-    });
-    let layers = kinds.flatten().flat_map(|kind| {
-        let section = meanings.layer(kind);
+    let known = none.iter().find(|table| table.key == "layer").into_iter().flat_map(|table| &table.fields);
+    let kinds = known.filter(|known| known.field == KIND).flat_map(|known| &known.words);
+    let layers = kinds.flat_map(|kind| {
         let before = format!("layer = [{{ kind = \"{kind}\"");
         let tables = Tables { before: &before, after: "}]", key: "layer" };
         let burst = describe(&format!("{before}, burst = {{}} }}]"));
@@ -76,20 +68,20 @@ fn layers(meanings: &Meanings) -> Vec<Value> {
         inner.insert("kind".to_owned(), json!({ "const": kind }));
         inner.insert("region".to_owned(), json!({ "$ref": "#/definitions/region" }));
         if let Some(burst) = burst {
-            inner.insert("burst".to_owned(), object(burst, &Map::new(), &section));
+            inner.insert("burst".to_owned(), object(burst, &Map::new()));
         }
-        variants(&tables).iter().map(|variant| variant_object(variant, &inner, &section)).collect::<Vec<_>>()
+        variants(&tables).iter().map(|variant| variant_object(variant, &inner)).collect::<Vec<_>>()
     });
     layers.collect()
 }
 
 /// A table with the choices made that a variant stands for.
-fn variant_object(variant: &Variant, inner: &Map<String, Value>, meanings: &meaning::Section) -> Value {
+fn variant_object(variant: &Variant, inner: &Map<String, Value>) -> Value {
     let mut inner = inner.clone();
     let mut table = variant.table.clone();
     for part in &variant.parts {
         if part.table && part.absent {
-            table.asked.retain(|asked| asked.field != part.field);
+            table.fields.retain(|known| known.field.name != part.field);
         }
         if !part.words.is_empty() {
             inner.insert(part.field.to_owned(), json!({ "enum": part.words }));
@@ -100,18 +92,20 @@ fn variant_object(variant: &Variant, inner: &Map<String, Value>, meanings: &mean
     }
     table.required.sort_unstable();
     table.required.dedup();
-    object(&table, &inner, meanings)
+    object(&table, &inner)
 }
 
-/// A table; `inner` are fields that are known better than from what was asked.
-fn object(table: &AskedTable, inner: &Map<String, Value>, meanings: &meaning::Section) -> Value {
+/// A table; `inner` has fields that are known better than from the table of fields.
+fn object(table: &KnownTable, inner: &Map<String, Value>) -> Value {
     let mut properties = Map::new();
-    for Asked { field, holds } in &table.asked {
-        let mut value = inner.get(*field).cloned().unwrap_or_else(|| holds_value(holds));
-        if let (Some(object), Some(meaning)) = (value.as_object_mut(), meanings.of(field)) {
-            object.insert("description".to_owned(), Value::from(meaning));
+    for known in &table.fields {
+        let name = known.field.name;
+        let mut value = inner.get(name).cloned().unwrap_or_else(|| value(known));
+        // A reference has no room for more.
+        if let Some(object) = value.as_object_mut().filter(|object| !object.contains_key("$ref")) {
+            object.insert("description".to_owned(), Value::from(plain(known.field.meaning)));
         }
-        properties.insert((*field).to_owned(), value);
+        properties.insert(name.to_owned(), value);
     }
     let mut required = table.required.clone();
     let mut rules = Vec::new();
@@ -135,15 +129,15 @@ fn object(table: &AskedTable, inner: &Map<String, Value>, meanings: &meaning::Se
     object
 }
 
-fn holds_value(holds: &Holds) -> Value {
-    match holds {
+fn value(known: &KnownField) -> Value {
+    match known.field.holds {
         Holds::Number(range) => number("number", range),
         Holds::Whole(range) => number("integer", range),
         Holds::Flag => json!({ "type": "boolean" }),
         Holds::Text => json!({ "type": "string" }),
-        Holds::Choice(words) => json!({ "enum": words }),
+        Holds::Word => json!({ "enum": known.words }),
         Holds::Table => json!({ "type": "object" }),
-        Holds::Tables { .. } => json!({ "type": "array", "items": { "type": "object" } }),
+        Holds::Tables | Holds::TableOrTables => json!({ "type": "array", "items": { "type": "object" } }),
         Holds::Numbers(range) => json!({ "type": "array", "items": number("number", range) }),
         Holds::Pairs(range) => {
             let pair = json!({ "type": "array", "items": number("number", range), "minItems": 2, "maxItems": 2 });
@@ -152,6 +146,16 @@ fn holds_value(holds: &Holds) -> Value {
     }
 }
 
-fn number(kind: &str, range: &Range) -> Value {
+fn number(kind: &str, range: Range) -> Value {
     json!({ "type": kind, "minimum": range.min, "maximum": range.max })
+}
+
+/// Markdown without its links.
+fn plain(markdown: &str) -> String {
+    let mut text = String::new();
+    for (number, part) in markdown.split("](").enumerate() {
+        let rest = if number == 0 { part } else { part.split_once(')').map_or("", |(_, rest)| rest) };
+        text.push_str(rest);
+    }
+    text.replace('[', "")
 }

@@ -1,7 +1,14 @@
-//! `docs/scene.md`: its examples compile, and it names every field.
+//! `docs/scene.md`: its examples compile, and its tables of fields are those of the parser.
+//!
+//! `FRIXEL_BLESS=1 cargo test -p frixel-scene --lib docs` writes the tables anew.
+
+use std::fs;
+use std::path::PathBuf;
 
 use super::*;
-use crate::Mistake;
+use crate::grammar::{Absence, FieldSpec, Holds, KnownField, Range};
+use crate::schema::variant::{Tables, variants};
+use crate::tables::layer::{ABOVE, BLEND, GAIN, KIND, LIVE, NAME, REGION};
 
 const KINDS: [&str; 9] = ["constant", "grating", "bitmap", "noise", "edge", "button", "vibration", "speed", "stream"];
 const DOCS: &str = include_str!("../../../../docs/scene.md");
@@ -37,24 +44,181 @@ fn every_example_compiles() {
     }
 }
 
-#[test]
-fn every_field_is_named() {
-    let head = examples()[0];
-    let layer = |kind: &str| format!("[[layer]]\nkind = \"{kind}\"");
-    let tables = ["[screen]", "[coating]", "[finger]", "[drive]", "[carrier]", "[touch]"].map(str::to_owned);
-    let layers = KINDS.map(layer);
-    let factors = KINDS.map(|kind| format!("{}\nblend = \"multiply\"", layer(kind)));
-    for table in tables.into_iter().chain(layers).chain(factors) {
-        let text = format!("{}\n{table}\nzzz = 1", head_for(head, &table));
-        let Err(CompileError { mistakes, .. }) = compile_text(&text) else { panic!("{table} takes anything") };
-        let known = mistakes.iter().find_map(|located| match &located.mistake {
-            Mistake::UnknownField { field, nearest, .. } if field == "zzz" => Some(&nearest.known),
-            _ => None,
-        });
-        for field in known.expect("zzz is unknown") {
-            assert!(DOCS.contains(&format!("`{field}`")), "{table} {field}");
+/// The fields of every layer.
+const COMMON: [FieldSpec; 7] = [KIND, NAME, REGION, BLEND, GAIN, ABOVE, LIVE];
+
+/// All fields that the parser knows in a table, whatever its other fields are, in the order in which it reads them.
+fn known(before: &str, after: &str, key: &str) -> Vec<KnownField> {
+    let mut all: Vec<KnownField> = Vec::new();
+    for variant in variants(&Tables { before, after, key }) {
+        let fields = variant.table.fields;
+        for (number, known) in fields.iter().enumerate() {
+            let place = |name: &str| all.iter().position(|other| other.field.name == name);
+            if place(known.field.name).is_none() {
+                let next = fields[number..].iter().find_map(|later| place(later.field.name));
+                all.insert(next.unwrap_or(all.len()), known.clone());
+            }
         }
     }
+    all
+}
+
+/// The headings with a table of fields below them, and the fields.
+fn documented() -> Vec<(String, Vec<KnownField>)> {
+    let mut all = Vec::new();
+    for table in ["screen", "coating", "finger", "drive", "carrier", "touch"] {
+        let (before, after) = if table == "coating" { ("[{", "}]") } else { ("{", "}") };
+        all.push((format!("### `[{table}]`"), known(&format!("{table} = {before}"), after, table)));
+    }
+    let is_common = |known: &KnownField| COMMON.iter().any(|common| common.name == known.field.name);
+    let layer = |kind: &str| known(&format!("layer = [{{ kind = \"{kind}\""), "}]", "layer");
+    all.push(("## Layers".to_owned(), layer(KINDS[0]).into_iter().filter(is_common).collect()));
+    all.push(("### Regions".to_owned(), known("layer = [{ kind = \"constant\", region = {", "} }]", "region")));
+    for kind in KINDS {
+        let own = layer(kind).into_iter().filter(|known| !is_common(known)).collect();
+        all.push((format!("### `{kind}`"), own));
+    }
+    all.push(("#### Bursts".to_owned(), known("layer = [{ kind = \"vibration\", burst = {", "} }]", "burst")));
+    all
+}
+
+/// A table in Markdown; the columns of defaults and ranges stand where they have something to say.
+fn markdown(fields: &[KnownField]) -> String {
+    let mut rows: Vec<[String; 4]> = vec![["field", "meaning", "default", "range"].map(str::to_owned)];
+    let mut fields: Vec<FieldSpec> = fields.iter().map(|known| known.field).collect();
+    while let Some(first) = fields.first().copied() {
+        // The three units of an amount stand on one line.
+        let (mut alike, others): (Vec<_>, Vec<_>) =
+            fields.into_iter().partition(|field| field.meaning == first.meaning);
+        fields = others;
+        alike.sort_by_key(|field| ["_n", "_fraction", "_factor"].map(|unit| !field.name.ends_with(unit)));
+        let names: Vec<_> = alike.iter().map(|field| format!("`{}`", field.name)).collect();
+        let default = alike.iter().map(default).find(|default| !default.is_empty()).unwrap_or_default();
+        let range = if alike.len() == 1 { range(&first) } else { String::new() };
+        rows.push([names.join(", or "), first.meaning.to_owned(), default, range]);
+    }
+    let shown: Vec<usize> = (0..4).filter(|column| rows.iter().skip(1).any(|row| !row[*column].is_empty())).collect();
+    let line = |row: &[String; 4]| {
+        let cells = shown
+            .iter()
+            .map(|column| if row[*column].is_empty() { " ".to_owned() } else { format!(" {} ", row[*column]) });
+        format!("|{}|\n", cells.collect::<Vec<_>>().join("|"))
+    };
+    let mut lines: Vec<String> = rows.iter().map(line).collect();
+    lines.insert(1, format!("|{}\n", "---|".repeat(shown.len())));
+    lines.concat()
+}
+
+fn default(field: &FieldSpec) -> String {
+    match field.absence {
+        Absence::Mistake => String::new(),
+        Absence::Number(number) => written(number),
+        Absence::Flag(flag) => format!("`{flag}`"),
+        Absence::Means(meaning) => meaning.to_owned(),
+    }
+}
+
+fn range(field: &FieldSpec) -> String {
+    let (Holds::Number(range) | Holds::Whole(range) | Holds::Numbers(range) | Holds::Pairs(range)) = field.holds else {
+        return String::new();
+    };
+    let Range { min, max, unit } = range;
+    let whole = if matches!(field.holds, Holds::Whole(_)) { ", whole" } else { "" };
+    format!("{} to {}{unit}{whole}", written(min), written(max))
+}
+
+/// A number, with commas between thousands from 10,000 on, and as a power from 1e6 on.
+fn written(number: f64) -> String {
+    if number.abs() >= 1e6 && number.fract() == 0.0 && number % 1e6 == 0.0 {
+        return format!("{number:e}");
+    }
+    let text = number.to_string();
+    match text.len() {
+        5..=9 if number >= 1e4 => format!("{},{}", &text[..text.len() - 3], &text[text.len() - 3..]),
+        _ => text,
+    }
+}
+
+/// The documentation with the tables of fields made anew.
+fn with_tables(docs: &str) -> String {
+    let mut tables = documented();
+    let mut text = String::new();
+    let mut heading = String::new();
+    let mut lines = docs.lines().peekable();
+    while let Some(line) = lines.next() {
+        if line.starts_with('#') {
+            line.clone_into(&mut heading);
+        }
+        let found = tables.iter().position(|(below, _)| *below == heading);
+        match found.filter(|_| line.starts_with("| field |")) {
+            Some(place) => {
+                text.push_str(&markdown(&tables.remove(place).1));
+                while lines.next_if(|line| line.starts_with('|')).is_some() {}
+            }
+            None => text.extend([line, "\n"]),
+        }
+    }
+    let missing: Vec<_> = tables.iter().map(|(heading, _)| heading).collect();
+    assert!(missing.is_empty(), "no table of fields is below {missing:?}");
+    text
+}
+
+#[test]
+fn the_tables_of_fields_are_those_of_the_parser() {
+    let path: PathBuf = scenes().join("../docs/scene.md");
+    let held = fs::read_to_string(&path).expect("it is there");
+    let made = with_tables(&held);
+    if std::env::var_os("FRIXEL_BLESS").is_some() {
+        fs::write(&path, &made).expect("it is written");
+    } else {
+        assert!(held == made, "bless it: FRIXEL_BLESS=1 cargo test -p frixel-scene --lib docs");
+    }
+}
+
+#[test]
+fn a_default_is_what_a_file_without_the_field_means() {
+    let mut compared = 0;
+    for (heading, fields) in documented() {
+        let Some(kind) = heading.strip_prefix("### `").and_then(|rest| rest.strip_suffix('`')) else { continue };
+        let table = kind.trim_matches(['[', ']']);
+        for known in fields {
+            let FieldSpec { name, absence, .. } = known.field;
+            let value = match absence {
+                Absence::Number(number) => number.to_string(),
+                Absence::Flag(flag) => flag.to_string(),
+                Absence::Means(_) | Absence::Mistake => continue,
+            };
+            let Some(example) = example_of(table, kind.starts_with('[')) else { continue };
+            let assigned = format!("{name} =");
+            let lines = example.lines().filter(|line| !line.starts_with(&assigned));
+            let without: String = lines.flat_map(|line| [line, "\n"]).collect();
+            let with = format!("{without}{name} = {value}\n");
+            let [without, with] = [without, with].map(|text| compile_text(&text).map(|program| program.scene_bytes()));
+            // A field that belongs to another choice cannot be added.
+            if let (Ok(without), Ok(with)) = (without, with) {
+                assert_eq!(without, with, "{name} = {value} of {kind}");
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared >= 12, "{compared}");
+}
+
+/// The last example of a table or of a kind of layer, as a scene whose last table it is.
+fn example_of(table: &str, top: bool) -> Option<String> {
+    let head = examples()[0];
+    let is_of = |example: &&str| {
+        if top { example.starts_with(&format!("[{table}]")) } else { example.contains(&format!("kind = \"{table}\"")) }
+    };
+    let layer = "[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.1\n";
+    let example = examples().into_iter().skip(1).find(is_of)?;
+    let own = if top {
+        example.to_owned()
+    } else {
+        example.split("[[layer]]").find(|layer| layer.contains(&format!("kind = \"{table}\"")))?.to_owned()
+    };
+    let head = head_for(head, example);
+    Some(if top { format!("{head}\n{layer}\n{own}") } else { format!("{head}\n[[layer]]{own}") })
 }
 
 #[test]

@@ -9,6 +9,7 @@ use super::{CompileError, Program, Scene, compile};
 
 mod docs;
 mod errors;
+mod json_schema;
 mod layers;
 mod left_out;
 mod schema;

@@ -1,0 +1,224 @@
+//! The tables of fields that belong to no kind of layer, and what the tables of the kinds share. The parser checks the
+//! fields, [`super::json_schema`] and `docs/scene.md` show them.
+#![allow(clippy::wildcard_imports, reason = "every table is written with the same few words")]
+
+use frixel_layers::range;
+
+use super::grammar::Absence::{Flag, Means, Mistake, Number};
+use super::grammar::{Absence, AmountFields, FieldSpec, Holds, Range};
+
+/// A number.
+pub(crate) const fn number(name: &'static str, range: Range, absence: Absence, meaning: &'static str) -> FieldSpec {
+    FieldSpec::new(name, Holds::Number(range), absence, meaning)
+}
+
+/// `true` or `false`.
+pub(crate) const fn flag(name: &'static str, default: bool, meaning: &'static str) -> FieldSpec {
+    FieldSpec::new(name, Holds::Flag, Flag(default), meaning)
+}
+
+/// One of some words.
+pub(crate) const fn word(name: &'static str, absence: Absence, meaning: &'static str) -> FieldSpec {
+    FieldSpec::new(name, Holds::Word, absence, meaning)
+}
+
+/// The fields of an amount that is called by a stem.
+macro_rules! amount {
+    ($stem:literal, $absence:expr, $meaning:expr) => {
+        $crate::grammar::AmountFields {
+            newtons: $crate::tables::number(concat!($stem, "_n"), $crate::tables::FRICTION_N, $absence, $meaning),
+            fraction: $crate::tables::number(concat!($stem, "_fraction"), $crate::tables::FRACTION, $absence, $meaning),
+            factor: $crate::tables::number(concat!($stem, "_factor"), $crate::tables::FACTOR, $absence, $meaning),
+        }
+    };
+}
+pub(crate) use amount;
+
+pub(crate) const FRICTION_N: Range = Range::new(range::FRICTION_N.min, range::FRICTION_N.max, " N");
+pub(crate) const FRACTION: Range = Range::new(-1.0, 1.0, "");
+pub(crate) const FACTOR: Range = Range::new(range::FRICTION_N.min, range::FRICTION_N.max, "");
+pub(crate) const PLACE_MM: Range = Range::new(-2_000.0, 2_000.0, " mm");
+pub(crate) const SIZE_MM: Range = Range::new(0.01, 2_000.0, " mm");
+pub(crate) const WAVELENGTH_MM: Range = Range::new(0.05, 2_000.0, " mm");
+pub(crate) const ANGLE_DEG: Range = Range::new(-360.0, 360.0, " degrees");
+
+/// The two amounts that most kinds lie between.
+pub(crate) const LOW: AmountFields = amount!("low", Mistake, "least friction");
+pub(crate) const HIGH: AmountFields = amount!("high", Mistake, "largest friction");
+
+/// The file itself.
+pub(super) mod scene {
+    use super::*;
+
+    pub(crate) const VERSION: FieldSpec =
+        number("version", Range::new(f64::MIN, f64::MAX, ""), Mistake, "version of the file format");
+    pub(crate) const SCREEN: FieldSpec = FieldSpec::new("screen", Holds::Table, Mistake, "the screen");
+    pub(crate) const COATING: FieldSpec =
+        FieldSpec::new("coating", Holds::TableOrTables, Mistake, "the insulator between electrode and finger");
+    pub(crate) const FINGER: FieldSpec =
+        FieldSpec::new("finger", Holds::Table, Mistake, "the finger that the scene is meant for");
+    pub(crate) const DRIVE: FieldSpec =
+        FieldSpec::new("drive", Holds::Table, Means("all defaults"), "limits of the drive");
+    pub(crate) const CARRIER: FieldSpec =
+        FieldSpec::new("carrier", Holds::Table, Means("all defaults"), "the alternating voltage");
+    pub(crate) const TOUCH: FieldSpec =
+        FieldSpec::new("touch", Holds::Table, Means("all defaults"), "how touch reports are used");
+    pub(crate) const LAYER: FieldSpec =
+        FieldSpec::new("layer", Holds::Tables, Means("bare glass"), "the layers of friction");
+}
+
+/// `[screen]`
+pub(super) mod screen {
+    use super::*;
+
+    const SIZE: Range = Range::new(5.0, 2_000.0, " mm");
+    pub(crate) const WIDTH_MM: FieldSpec = number("width_mm", SIZE, Mistake, "width of the screen, along x");
+    pub(crate) const HEIGHT_MM: FieldSpec = number("height_mm", SIZE, Mistake, "height of the screen, along y");
+}
+
+/// `[coating]`
+pub(super) mod coating {
+    use super::*;
+
+    pub(crate) const THICKNESS_UM: FieldSpec = number(
+        "thickness_um",
+        Range::new(0.01, 1_000.0, " um"),
+        Mistake,
+        "thickness of the insulator between electrode and finger",
+    );
+    pub(crate) const PERMITTIVITY: FieldSpec =
+        number("permittivity", Range::new(1.0, 10_000.0, ""), Mistake, "its relative permittivity");
+}
+
+/// `[finger]`
+pub(super) mod finger {
+    use super::*;
+
+    pub(crate) const RADIUS_MM: FieldSpec =
+        number("radius_mm", Range::new(0.1, 100.0, " mm"), Mistake, "radius of curvature at the contact");
+    pub(crate) const STIFFNESS_PA_PER_M: FieldSpec =
+        number("stiffness_pa_per_m", Range::new(1e3, 1e14, " Pa/m"), Mistake, "Winkler-Fuss stiffness");
+    pub(crate) const FRICTION_COEFFICIENT: FieldSpec =
+        number("friction_coefficient", Range::new(0.001, 10.0, ""), Mistake, "friction coefficient on the bare screen");
+    pub(crate) const NORMAL_LOAD_N: FieldSpec =
+        number("normal_load_n", Range::new(0.0, 50.0, " N"), Mistake, "how hard the finger presses");
+}
+
+/// `[drive]`
+pub(super) mod drive {
+    use super::*;
+
+    pub(crate) const VOLTAGE_MAX_V_RMS: FieldSpec = number(
+        "voltage_max_v_rms",
+        Range::new(1.0, 1_000.0, " V rms"),
+        Number(150.0),
+        "largest rms voltage over a carrier period",
+    );
+    pub(crate) const VOLTAGE_MAX_V_PEAK: FieldSpec = number(
+        "voltage_max_v_peak",
+        Range::new(2.0, 2_000.0, " V peak"),
+        Means("what the rms voltage needs, within the board's limit"),
+        "largest peak voltage; at most the board's limit",
+    );
+    pub(crate) const SLEW_V_PER_US: FieldSpec =
+        number("slew_v_per_us", Range::new(0.001, 1_000.0, " V/us"), Number(5.0), "fastest change of the envelope");
+    pub(crate) const HOST_TIMEOUT_MS: FieldSpec = number(
+        "host_timeout_ms",
+        Range::new(20.0, 1_000.0, " ms"),
+        Number(250.0),
+        "the output goes to zero when the host is silent for so long",
+    );
+    pub(crate) const AUTONOMOUS: FieldSpec = flag("autonomous", false, "the scene goes on without a host");
+    pub(crate) const SATURATE: FieldSpec =
+        flag("saturate", false, "friction out of reach is clamped and flagged, not refused");
+}
+
+/// `[carrier]`
+pub(super) mod carrier {
+    use super::*;
+
+    pub(crate) const SHAPE: FieldSpec =
+        word("shape", Means("`\"square\"`"), "`\"square\"`, whose square has no ripple, or `\"sine\"`");
+    /// Below this the drive is no alternating carrier; how fast it may be depends on the board's ticks.
+    pub(crate) const FREQUENCY_HZ: FieldSpec = number(
+        "frequency_hz",
+        Range::new(125.0, 100_000.0, " Hz"),
+        Number(1_000.0),
+        "rounded to whole ticks for each half period, which is reported; at most an eighth of the board's ticks a second",
+    );
+}
+
+/// `[touch]`
+pub(super) mod touch {
+    use super::*;
+
+    pub(crate) const PREDICTION: FieldSpec =
+        flag("prediction", true, "the board estimates where the finger is now from touch reports that are late");
+    pub(crate) const LEADER: FieldSpec = word(
+        "leader",
+        Means("`\"first\"`"),
+        "which of several fingers is followed, since one electrode gives one effect: the one that came `\"first\"` of \
+         those on the screen, or the `\"latest\"`; when it lifts, the rule finds the next",
+    );
+}
+
+/// `[[layer]]`: what every kind has.
+pub(super) mod layer {
+    use super::*;
+
+    pub(crate) const KIND: FieldSpec = word("kind", Mistake, "what the layer is: one of the kinds below");
+    pub(crate) const NAME: FieldSpec =
+        FieldSpec::new("name", Holds::Text, Means("its number and kind"), "what messages call it");
+    pub(crate) const REGION: FieldSpec = FieldSpec::new(
+        "region",
+        Holds::Table,
+        Means("the screen; for a bitmap, the picture; a button needs one"),
+        "where it acts, see [regions](#regions)",
+    );
+    pub(crate) const BLEND: FieldSpec = word(
+        "blend",
+        Means("`\"replace\"`; for an edge `\"add\"`, for a curve of speed `\"multiply\"`"),
+        "how it joins the layers below, see [blends](#blends)",
+    );
+    pub(crate) const GAIN: FieldSpec = number(
+        "gain",
+        Range::new(range::GAIN.min, range::GAIN.max, ""),
+        Number(1.0),
+        "factor on what the layer asks for above natural friction; on the factor, where it multiplies",
+    );
+    pub(crate) const ABOVE: FieldSpec = word(
+        "above",
+        Means("see there"),
+        "see [what can be reached](#what-can-be-reached); a layer that is added is a difference, and cannot be `\"zero\"`",
+    );
+    pub(crate) const LIVE: FieldSpec = flag(
+        "live",
+        false,
+        "`true`: the host puts it on and off or changes its gain while it plays, so that it is never \
+         [left out](#what-is-left-out), and hides nothing for good",
+    );
+}
+
+/// `region` of a layer.
+pub(super) mod region {
+    use super::*;
+
+    pub(crate) const SHAPE: FieldSpec = word(
+        "shape",
+        Means("`\"rectangle\"`"),
+        "`\"rectangle\"`: left and top edge belong to it, right and bottom do not; `\"ellipse\"`: it touches the \
+         rectangle's sides, and its border belongs to it; or `\"polygon\"`",
+    );
+    pub(crate) const X_MM: FieldSpec = number("x_mm", PLACE_MM, Mistake, "left side of rectangle or ellipse");
+    pub(crate) const Y_MM: FieldSpec = number("y_mm", PLACE_MM, Mistake, "top side of rectangle or ellipse");
+    pub(crate) const WIDTH_MM: FieldSpec = number("width_mm", SIZE_MM, Mistake, "width of rectangle or ellipse");
+    pub(crate) const HEIGHT_MM: FieldSpec = number("height_mm", SIZE_MM, Mistake, "height of rectangle or ellipse");
+    pub(crate) const POINTS_MM: FieldSpec = FieldSpec::new(
+        "points_mm",
+        Holds::Pairs(PLACE_MM),
+        Mistake,
+        "3 to 32 vertices of a polygon, `[[x, y], [x, y], [x, y]]`; the time of a tick allows some ten of them under \
+         one finger. Where its lines cross, what they go around twice is outside. Of two polygons with a common edge, \
+         each place is in one",
+    );
+}
