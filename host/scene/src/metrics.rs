@@ -4,8 +4,8 @@
 //!   the carrier does within a period is no error. It counts wherever the finger is down. In the first period after the
 //!   finger came down, the mean is over the samples since then, so nothing is left out; when the finger goes up, the
 //!   window is emptied.
-//! - The **inversion error** is what the model gives for the commanded voltage minus what the board asked for. It counts
-//!   where the finger is down and the wanted friction is in reach.
+//! - The **inversion error** is what the model gives for the commanded voltage minus what the board asked for. It
+//!   counts where the finger is down and the wanted friction is in reach.
 //! - The **carrier ripple** is felt minus its mean over the carrier period around it, half a period on either side, so
 //!   that a friction that moves steadily has none. It counts where that period lies wholly within a touch.
 //!

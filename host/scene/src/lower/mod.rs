@@ -8,9 +8,9 @@ use frixel_wire::scene::POINTS_MAX;
 use super::file::Scene;
 use super::kinds::{Bitmap as BitmapWords, Lowered};
 use super::layer::{Above, Amount, Layer, Rectangle, Region};
-use super::left_out::LeftOut;
 use super::log::Log;
 use super::mistake::Mistake;
+use super::optimisation::Optimisation;
 use super::pool::{Placed, Pool};
 use super::program::Bitmap;
 use super::reach::Reach;
@@ -38,7 +38,7 @@ pub(super) struct Gathered {
     pub(super) points: Vec<Point>,
     pub(super) bitmaps: Vec<Bitmap>,
     pub(super) notes: Vec<String>,
-    pub(super) left_out: Vec<LeftOut>,
+    pub(super) optimisations: Vec<Optimisation>,
 }
 
 impl<'a, 's> Lowering<'a, 's> {
@@ -55,8 +55,8 @@ impl<'a, 's> Lowering<'a, 's> {
     }
 
     pub(super) fn finish(self) -> Gathered {
-        let (bitmaps, left_out) = self.pool.finish();
-        Gathered { points: self.points, bitmaps, notes: self.notes, left_out }
+        let (bitmaps, optimisations) = self.pool.finish();
+        Gathered { points: self.points, bitmaps, notes: self.notes, optimisations }
     }
 
     /// The record of a layer; `None` when something is wrong with it.

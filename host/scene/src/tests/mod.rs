@@ -11,7 +11,7 @@ mod docs;
 mod errors;
 mod json_schema;
 mod layers;
-mod left_out;
+mod optimise;
 mod schema;
 
 /// A board like the simulated one.
