@@ -8,13 +8,13 @@ use std::fs::{self, File};
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-use frixel::output::{Preview, write_preview_png};
+use frixel::output::write_preview_png;
 use frixel::player::{Simulation, simulate};
 use frixel::scene_file;
 use frixel_hil_sim::{BoardMemory, RigConfig, Stroke};
 use frixel_layers::{Header, Scene as WireScene};
 use frixel_scene::recorder::FeltRow;
-use frixel_scene::{Asked, Program, compile};
+use frixel_scene::{Preview, Program, TargetRange, compile};
 use frixel_wire::fault::Flags;
 
 const PICTURE_BYTES_MAX: u64 = 40 * 1024;
@@ -73,7 +73,7 @@ fn every_scene_is_felt_without_a_fault_and_within_reach() {
         let flags = rows.iter().filter_map(|row| row.flags);
         assert!(flags.clone().count() > 1_000, "{name}");
         if !text.contains("saturate = true") {
-            let Asked { above, below, most_n, .. } = Asked::of(program);
+            let TargetRange { above, below, most_n, .. } = TargetRange::of(program);
             assert_eq!((above.screen_percent, below.screen_percent), (0.0, 0.0), "{name}");
             // One that asks for all of the reach may round to a last bit more.
             let all = most_n > (1.0 - 1e-6) * program.reach.friction_max_n();

@@ -1,4 +1,4 @@
-//! From a scene as written to a program as played: checks that need the board, other layers, or pictures.
+//! Compiles a scene to a program: the checks that need the board's limits, other layers, or pictures.
 
 use frixel_layers::{Header, Record, electric_friction_max_n};
 use frixel_wire::hello::BoardLimits;
@@ -8,10 +8,10 @@ use super::compile_error::CompileError;
 use super::excess;
 use super::file::Scene;
 use super::layer_map::LayerMap;
-use super::leave_out::leave_out;
 use super::log::Log;
 use super::lower::Lowering;
 use super::mistake::Mistake;
+use super::optimise::optimise;
 use super::pool::Pool;
 use super::program::Program;
 use super::reach::{Reach, carrier};
@@ -19,14 +19,14 @@ use super::tick_cost;
 
 /// Fewest ticks of half a carrier period that a board takes.
 const HALF_PERIOD_MIN_TICKS: f64 = 4.0;
-/// Below this charge leaks through skin and the felt friction falls (arXiv 2409.18725), Hz.
+/// Carrier frequency below which charge leaks through skin and felt friction falls, Hz (arXiv 2409.18725).
 const LEAKAGE_HZ: f64 = 250.0;
-/// What a default peak limit allows above the peak that the rms limit needs, so that rounding never makes it the
-/// tighter one.
+/// The default peak limit over the peak that the rms limit needs. Above 1, so that rounding never makes the peak limit
+/// the tighter one.
 const PEAK_MARGIN: f64 = 1.001;
 const MM: f64 = 1e-3;
 
-/// Compiles a scene for boards with these limits and this many ticks a second.
+/// Compiles a scene for boards with these limits and tick rate, Hz.
 ///
 /// # Example
 ///
@@ -34,7 +34,8 @@ const MM: f64 = 1e-3;
 /// use std::collections::BTreeMap;
 ///
 /// use frixel_scene::{Scene, compile};
-/// # fn play(text: &str, png: Vec<u8>, limits: &frixel_wire::hello::BoardLimits) -> Result<(), frixel_scene::CompileError> {
+/// # use frixel_wire::hello::BoardLimits;
+/// # fn play(text: &str, png: Vec<u8>, limits: &BoardLimits) -> Result<(), frixel_scene::CompileError> {
 /// let pictures = BTreeMap::from([("textures/brick.png".to_owned(), png)]);
 /// let scene = Scene::parse(text, "brick.toml", &pictures)?;
 /// let program = compile(&scene, limits, 40_000)?;
@@ -70,7 +71,7 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
     }
     let pool = Pool::new(&scene.pictures, limits.bitmap_pool_bytes);
     let mut lowering = Lowering::new(scene, &header, &reach, tick_hz, pool, log);
-    // All of them, so that the mistakes of all are told.
+    // Lower every layer, so that the mistakes of all are reported.
     let records: Vec<Option<Record>> = scene.layers.iter().map(|layer| lowering.record(layer)).collect();
     let lowered = lowering.finish();
     notes.extend(lowered.notes);
@@ -85,12 +86,12 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
         reach,
         half_period_ticks,
         notes,
-        left_out: lowered.left_out,
+        optimisations: lowered.optimisations,
     };
     if log.is_empty() {
         excess::check(scene, &mut program, log);
         let live: Vec<bool> = scene.layers.iter().map(|layer| layer.live).collect();
-        leave_out(&mut program, &live);
+        optimise(&mut program, &live);
         let Program { header, records, points, .. } = &mut program;
         if header.layers_fixed {
             header.electric_friction_max_n = electric_friction_max_n(header, records, points);
@@ -100,7 +101,7 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
     Some(program)
 }
 
-/// A layer that the host may change is a record of its own; others may have been reckoned together.
+/// A layer that the host may change has a record of its own; others may have been merged.
 fn layer_map(scene: &Scene, titles: &[String]) -> LayerMap {
     let record = |title: &String| (0..).zip(titles).find_map(|(record, other)| (other == title).then_some(record));
     let records = scene.layers.iter().map(|layer| record(&layer.title).filter(|_| layer.live));

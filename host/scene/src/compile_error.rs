@@ -28,9 +28,9 @@ pub struct Located {
     pub line: usize,
     /// Column in characters, from one.
     pub column: usize,
-    /// What stands there; empty at the end of the file.
+    /// The text there; empty at the end of the file.
     pub text: String,
-    /// What is wrong.
+    /// The mistake.
     pub mistake: Mistake,
 }
 

@@ -1,4 +1,4 @@
-//! Says which layers ask for friction that cannot be given.
+//! Finds layers that want friction out of reach.
 
 use frixel_layers::Interval;
 
@@ -11,7 +11,7 @@ use super::program::Program;
 use super::reach::{ROUNDING, Reach};
 use crate::reference::Reference;
 
-/// Refuses layers that leave the reach; with `saturate`, or where that is not certain, notes it.
+/// Refuses layers that exceed the reach. With `saturate`, or where it is not certain, adds a note instead.
 pub(super) fn check(scene: &Scene, program: &mut Program, log: &mut Log) {
     let reach = program.reach;
     let slack_n = ROUNDING * reach.electric_friction_max_n;
@@ -35,7 +35,7 @@ pub(super) fn check(scene: &Scene, program: &mut Program, log: &mut Log) {
     }
 }
 
-/// A side of the reach that layers leave, and where in the file to change that.
+/// One side of the reach that layers exceed, and the place in the file to change.
 struct Side {
     offset: usize,
     mistake: Mistake,
@@ -86,7 +86,7 @@ fn note(side: &Side, ending: &str) -> String {
     }
 }
 
-/// Which layers ask, and where.
+/// Names the layers, and the place if there are several.
 fn asking(layers: &[&Layer], cell: Cell) -> String {
     if let [layer] = layers {
         let gained = layer.places.has("gain");
@@ -105,7 +105,7 @@ fn asking(layers: &[&Layer], cell: Cell) -> String {
     )
 }
 
-/// The field that asks for the most, or the least; of several layers, the topmost one.
+/// Offset of the field that wants the most, or the least; with several layers, of the topmost layer.
 fn place(layers: &[&Layer], most: bool) -> usize {
     let Some(layer) = layers.last() else { return 0 };
     let most = most == (layer.gain >= 0.0);
@@ -115,23 +115,23 @@ fn place(layers: &[&Layer], most: bool) -> usize {
     layer.places.field(layer.kind.extreme(most, &layer.places))
 }
 
-/// Four significant digits, rounded as told.
+/// Four significant digits, rounded by `to_whole`.
 fn digits(value: f64, to_whole: fn(f64) -> f64) -> f64 {
     if !(value.abs() > 0.0) {
         return 0.0;
     }
     let digits = 3 - value.abs().log10().floor() as i32;
-    // Powers of ten that are whole numbers, so that the result prints in its few digits.
+    // A power of ten that is a whole number is exact, so the result prints with few digits.
     let scale = 10f64.powi(digits.abs());
     if digits >= 0 { to_whole(value * scale) / scale } else { to_whole(value / scale) * scale }
 }
 
-/// The next whole number above; what `f32` may have added to four digits does not count.
+/// The next whole number above, but for what rounding to `f32` may have added to the fourth digit.
 fn up(value: f64) -> f64 {
     (value - 0.002).ceil()
 }
 
-/// The next whole number below; what `f32` may have taken from four digits does not count.
+/// The next whole number below, but for what rounding to `f32` may have taken from the fourth digit.
 fn down(value: f64) -> f64 {
     (value + 0.002).floor()
 }

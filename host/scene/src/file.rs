@@ -131,7 +131,7 @@ pub(super) fn describe(text: &str) -> Vec<KnownTable> {
     let source = Source::new("", text);
     let mut log = Log::describing(&source);
     if let Ok(table) = DeTable::parse(text) {
-        // What is wrong with the text is of no interest.
+        // Mistakes in the text do not matter here.
         let _ = read(Fields::new("the scene", 0, table.into_inner()), &mut log, &source);
     }
     log.into_described()
@@ -146,7 +146,7 @@ fn read(mut fields: Fields, log: &mut Log, source: &Source) -> Option<Scene> {
     let carrier = carrier(fields.table(log, &tables::scene::CARRIER).unwrap_or_else(|| absent("[carrier]")), log);
     let touch = touch(fields.table(log, &tables::scene::TOUCH).unwrap_or_else(|| absent("[touch]")), log);
     let tables = fields.tables(log, &tables::scene::LAYER).unwrap_or_default();
-    // All are read, so that the mistakes of all are told.
+    // Read every layer, so that the mistakes of all are reported.
     let layers: Vec<Option<Layer>> = (1..).zip(tables).map(|(number, table)| Layer::read(table, number, log)).collect();
     let places = fields.close(log);
     if let Some(found) = version.filter(|found| found.total_cmp(&f64::from(VERSION)).is_ne()) {
@@ -165,7 +165,7 @@ fn read(mut fields: Fields, log: &mut Log, source: &Source) -> Option<Scene> {
     })
 }
 
-/// A table that the file leaves out: every field has its default.
+/// A table that the file does not have: every field has its default.
 fn absent(name: &str) -> Fields<'static> {
     Fields::new(name, 0, DeTable::new())
 }
@@ -177,7 +177,7 @@ fn screen(mut fields: Fields, log: &mut Log) -> Option<Screen> {
     Some(Screen { width_mm: width_mm?, height_mm: height_mm? })
 }
 
-/// Slabs in series add their thickness over permittivity.
+/// The effective gap of slabs in series: the sum of thickness over permittivity.
 fn coating(scene: &mut Fields, log: &mut Log) -> Option<Coating> {
     let slabs = scene.tables(log, &tables::scene::COATING)?;
     if slabs.is_empty() {

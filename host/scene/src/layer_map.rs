@@ -1,4 +1,4 @@
-//! Which record a layer of the file became: what a host names when it changes a layer while it plays.
+//! Which record each layer of the file has become, for a host that changes layers while they play.
 
 use thiserror::Error;
 
@@ -18,21 +18,22 @@ struct Entry {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum LayerError {
     /// No layer has this name or number.
-    #[error("the scene has no layer {found:?}{}: name one of its {count}, or give its number from 1", suggested(.suggestion.as_deref()))]
+    #[error(
+        "the scene has no layer {found:?}{}: name one of its {count}, or give its number from 1",
+        suggested(.suggestion.as_deref())
+    )]
     Unknown {
-        /// What was asked for.
+        /// The name or number that was given.
         found: String,
-        /// The nearest name, where one is near enough.
+        /// The nearest name, if one is near enough.
         suggestion: Option<String>,
-        /// Layers of the scene.
+        /// How many layers the scene has.
         count: usize,
     },
     /// The layer may have no record of its own.
-    #[error(
-        "layer {layer:?} may be reckoned together with others: say `live = true` in the file to change it while it plays"
-    )]
+    #[error("layer {layer:?} may be merged with others: write `live = true` in the file to change it while it plays")]
     NotLive {
-        /// What was asked for.
+        /// The name or number that was given.
         layer: String,
     },
 }
@@ -42,13 +43,13 @@ fn suggested(suggestion: Option<&str>) -> String {
 }
 
 impl LayerMap {
-    /// The layers from bottom to top: the name, if it has one, and the record, if it is one that may be changed.
+    /// The layers from bottom to top: name, if any, and record, if the host may change it.
     pub(super) fn new(layers: impl IntoIterator<Item = (Option<String>, Option<u8>)>) -> Self {
         Self(layers.into_iter().map(|(name, record)| Entry { name, record }).collect())
     }
 
-    /// Number of the record, from zero, of a layer that is named as in the file, or by its number from one; the first one
-    /// of those that have the same name. It is what `Device::set_layer` of the driver takes.
+    /// Number of the record, from zero, of the layer with a name, or with a number from one. Of several layers with the
+    /// same name it is the first. `Device::set_layer` of the driver takes this number.
     pub fn record(&self, layer: &str) -> Result<u8, LayerError> {
         let named = self.0.iter().find(|entry| entry.name.as_deref() == Some(layer));
         let numbered = || self.0.get(layer.parse::<usize>().ok()?.checked_sub(1)?);

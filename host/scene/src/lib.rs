@@ -1,8 +1,30 @@
 //! Scenes: a TOML file that a person writes, checked and compiled to the program that a board plays.
 //!
 //! `docs/scene.md` is the reference of the file. [`Scene::parse`] reads it, [`compile`] checks what needs the board or
-//! other layers, and makes a [`Program`]. Both tell every mistake at once, each with line and column.
+//! other layers, and makes a [`Program`]. Both report every mistake at once, each with line and column.
 //!
+//! What goes in: the text of a scene file, the bytes of its pictures ([`Pictures`]), and the limits of a board. What
+//! comes out: the bytes that a board plays, and what a designer wants to know of them.
+//!
+//! ```
+//! # fn run(limits: &frixel_wire::hello::BoardLimits) -> Result<(), frixel_scene::CompileError> {
+//! use std::collections::BTreeMap;
+//! use frixel_scene::{Scene, TargetRange, compile};
+//!
+//! let text = "version = 1\nscreen = { width_mm = 120, height_mm = 80 }\n\
+//!     coating = { thickness_um = 10, permittivity = 1 }\n\
+//!     finger = { radius_mm = 8, stiffness_pa_per_m = 1.8e7, friction_coefficient = 0.5, normal_load_n = 0.5 }\n\
+//!     [[layer]]\nkind = \"constant\"\nfriction_n = 0.26\n";
+//! let scene = Scene::parse(text, "flat.toml", &BTreeMap::new())?;
+//! let program = compile(&scene, limits, 40_000)?;
+//! println!("{} bytes, up to {} N", program.scene_bytes().len(), TargetRange::of(&program).most_n);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! Nothing here opens a file or reads a clock, and the crate compiles for `wasm32-unknown-unknown`.
+//!
+//! - [`TargetRange`] and [`FrictionMap`]: the friction that a program wants over its screen.
 //! - [`mod@reference`]: the friction that a program means, in `f64`, independently of the firmware.
 //! - [`recorder`]: what a board did and what its finger felt, compared with that.
 //! - [`metrics`]: the size of the errors.
@@ -18,17 +40,17 @@ mod grammar;
 mod kinds;
 mod layer;
 mod layer_map;
-mod leave_out;
-mod left_out;
 mod log;
 mod lower;
 pub mod metrics;
 mod mistake;
 mod nearest;
-mod outside;
+mod optimisation;
+mod optimise;
 mod picture;
 mod pictures;
 mod pool;
+mod preview;
 mod program;
 mod reach;
 pub mod recorder;
@@ -37,6 +59,7 @@ mod resample;
 mod schema;
 mod source;
 mod tables;
+mod target_range;
 #[cfg(test)]
 #[allow(clippy::disallowed_methods, reason = "the tests read the bundled scenes")]
 mod tests;
@@ -46,12 +69,13 @@ pub use compile::compile;
 pub use compile_error::{CompileError, Located};
 pub use file::Scene;
 pub use layer_map::{LayerError, LayerMap};
-pub use left_out::LeftOut;
 pub use mistake::Mistake;
 pub use nearest::Nearest;
-pub use outside::{Asked, Outside};
+pub use optimisation::Optimisation;
 pub use pictures::{PictureUnavailable, Pictures};
+pub use preview::{FrictionMap, MapGrid, Preview, ReachSide};
 pub use program::{Bitmap, Program};
 pub use reach::{ROUNDING, Reach, carrier};
 pub use schema::json_schema;
+pub use target_range::{OutOfReach, TargetRange};
 pub use tick_cost::middle_mm;

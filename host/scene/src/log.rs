@@ -1,11 +1,11 @@
-//! Gathers mistakes while a scene is read and compiled.
+//! Collects mistakes while a scene is read and compiled.
 
 use super::compile_error::{CompileError, Located};
 use super::grammar::KnownTable;
 use super::mistake::Mistake;
 use super::source::Source;
 
-/// Gathers mistakes, so that a person sees all of them at once.
+/// Collects mistakes, so that a person sees all of them at once.
 pub(super) struct Log<'s> {
     source: &'s Source,
     mistakes: Vec<Located>,
@@ -35,14 +35,14 @@ impl<'s> Log<'s> {
         self.described.unwrap_or_default()
     }
 
-    /// Notes a mistake that stands at a byte of the file.
+    /// Adds a mistake at a byte offset of the file.
     pub(super) fn add(&mut self, offset: usize, mistake: Mistake) {
         let (line, column) = self.source.line_and_column(offset);
         let text = self.source.word_at(offset).to_owned();
         self.mistakes.push(Located { line, column, text, mistake });
     }
 
-    /// The value, if nothing was wrong.
+    /// The value if there are no mistakes, otherwise the mistakes.
     pub(super) fn finish<T>(mut self, value: Option<T>) -> Result<T, CompileError> {
         match value {
             Some(value) if self.mistakes.is_empty() => Ok(value),
@@ -53,7 +53,7 @@ impl<'s> Log<'s> {
         }
     }
 
-    /// Whether nothing was wrong so far.
+    /// Whether there are no mistakes so far.
     pub(super) fn is_empty(&self) -> bool {
         self.mistakes.is_empty()
     }

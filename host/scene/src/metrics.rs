@@ -1,35 +1,35 @@
-//! The size of the errors of what was felt, gathered sample by sample.
+//! The size of the errors of the felt friction, collected sample by sample.
 //!
 //! - The **friction error** is felt minus wanted, both as means over one carrier period that ends at the sample: what
 //!   the carrier does within a period is no error. It counts wherever the finger is down. In the first period after the
-//!   finger came down, the mean is over the samples since then, so nothing is left out; when the finger goes up, the
-//!   window is emptied.
-//! - The **inversion error** is what the model gives for the commanded voltage minus what the board asked for. It counts
-//!   where the finger is down and the wanted friction is in reach.
+//!   finger came down, the mean is over the samples since then, so that no sample is skipped; when the finger goes up,
+//!   the window is emptied.
+//! - The **inversion error** is what the model gives for the commanded voltage minus the board's target. It
+//!   counts where the finger is down and the wanted friction is in reach.
 //! - The **carrier ripple** is felt minus its mean over the carrier period around it, half a period on either side, so
 //!   that a friction that moves steadily has none. It counts where that period lies wholly within a touch.
 //!
 //! All but the wanted friction needs a sample for every tick; a number that would need what was not seen is absent.
 
-/// What is known of one tick. Frictions are totals, in newtons.
+/// The known values of one tick. Frictions are totals, in newtons.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sample {
     /// The finger is on the screen.
     pub finger_down: bool,
     /// The reference at the finger's place.
     pub wanted_n: Option<f64>,
-    /// What the board asked its inverse for.
+    /// The board's target, the input of its inverse.
     pub asked_n: Option<f64>,
     /// What the finger felt.
     pub felt_n: Option<f64>,
     /// What the full model gives for the commanded rms voltage, the DAC's step included, through an ideal amplifier;
     /// absent where the wanted friction is out of reach.
     pub inversion_n: Option<f64>,
-    /// The board clamped what it asked for; absent where the board did not report.
+    /// The board clamped its target; absent if the board did not report.
     pub saturated: Option<bool>,
 }
 
-/// Gathers errors, sample by sample.
+/// Collects errors, sample by sample.
 #[derive(Clone, Debug)]
 pub struct Metrics {
     error: PeriodMean,
@@ -51,11 +51,11 @@ pub struct MetricsSummary {
     pub ticks: u64,
     /// Ticks that were seen with the finger on the screen.
     pub finger_down_ticks: u64,
-    /// Ticks in which the board clamped what it asked for.
+    /// Ticks in which the board clamped its target.
     pub saturated_ticks: Option<u64>,
     /// Felt minus wanted, as means over a carrier period.
     pub friction_error: Option<ErrorSize>,
-    /// What the model gives for the commanded voltage minus what was asked for.
+    /// What the model gives for the commanded voltage, minus the board's target.
     pub inversion_error: Option<ErrorSize>,
     /// Root mean square of felt minus its mean over the carrier period around it, N.
     pub carrier_ripple_rms_n: Option<f64>,
@@ -73,7 +73,7 @@ pub struct ErrorSize {
 }
 
 impl Metrics {
-    /// Nothing gathered yet, on a carrier of twice `half_period_ticks` a period.
+    /// No errors yet, for a carrier of twice `half_period_ticks` a period.
     pub fn new(half_period_ticks: u32) -> Self {
         let half = half_period_ticks.max(1) as usize;
         Self {

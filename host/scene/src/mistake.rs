@@ -1,10 +1,10 @@
-//! What can be wrong with a scene, each in one sentence: what was found, what was expected, what to do.
+//! The mistakes that a scene file can have. Each message says what was found, what is expected, and what to do.
 
 use thiserror::Error;
 
 use super::nearest::Nearest;
 
-/// Something wrong in a scene file. Its text is one sentence for the person who wrote the file.
+/// A mistake in a scene file. Its text is one sentence for the person who wrote the file.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Mistake {
@@ -14,56 +14,56 @@ pub enum Mistake {
     /// The text is not TOML.
     #[error("this is not TOML: {0}")]
     Syntax(String),
-    /// A field that the table does not have.
+    /// The table has no field of this name.
     #[error("unknown field `{field}` in {table}; {nearest}")]
     UnknownField {
         /// As written.
         field: String,
-        /// The table it stands in.
+        /// The table that it stands in.
         table: String,
-        /// What may have been meant.
+        /// The known names, and the nearest one.
         nearest: Nearest,
     },
-    /// A field that the table must have.
+    /// A required field is missing.
     #[error("{table} has no `{field}`: add it")]
     MissingField {
-        /// The field that is missing.
+        /// The missing field.
         field: &'static str,
-        /// The table it is missing from.
+        /// The table.
         table: String,
     },
-    /// A value of another type.
+    /// A value has another type than expected.
     #[error("`{field}` has to be {expected}, and this is {found}")]
     WrongType {
         /// The field.
         field: &'static str,
-        /// What it should be.
+        /// The expected type.
         expected: &'static str,
-        /// What it is.
+        /// The type that was found.
         found: &'static str,
     },
-    /// A number that is too small, too large, or none.
+    /// A number is out of range, or not a number.
     #[error("`{field} = {found}` is out of range: expected {min} to {max}{unit}")]
     OutOfRange {
         /// The field.
         field: &'static str,
         /// Its value.
         found: f64,
-        /// Least value.
+        /// Smallest value.
         min: f64,
         /// Largest value.
         max: f64,
-        /// The unit, with a space before it, or nothing.
+        /// The unit, with a space before it; empty for none.
         unit: &'static str,
     },
-    /// A word that is none of the choices.
+    /// A word is not one of the choices.
     #[error("`{field} = \"{found}\"` is not known; {nearest}")]
     UnknownChoice {
         /// The field.
         field: &'static str,
         /// As written.
         found: String,
-        /// What may have been meant.
+        /// The known names, and the nearest one.
         nearest: Nearest,
     },
     /// A scene file of another version.
@@ -73,30 +73,30 @@ pub enum Mistake {
     Version {
         /// As written.
         found: f64,
-        /// What this crate reads.
+        /// The version that this crate reads.
         expected: u32,
     },
-    /// Low above high.
+    /// A lower limit is above its upper limit.
     #[error("`{low_name} = {low}` is above `{high_name} = {high}`: swap them")]
     LowAboveHigh {
-        /// The field that is to be the lower one.
+        /// The field of the lower limit.
         low_name: &'static str,
         /// Its value.
         low: f64,
-        /// The field that is to be the higher one.
+        /// The field of the upper limit.
         high_name: &'static str,
         /// Its value.
         high: f64,
     },
-    /// One amount in two units.
+    /// One amount is given in two units.
     #[error("`{one}` and `{other}` say the same in two units: leave one of them out")]
     TwoUnits {
         /// A field.
         one: &'static str,
-        /// Another that says the same.
+        /// Another field for the same amount.
         other: &'static str,
     },
-    /// A number with a fraction where there can be none.
+    /// A number has a fraction and must not.
     #[error("`{field} = {found}` has to be a whole number: round it")]
     NotWhole {
         /// The field.
@@ -116,7 +116,7 @@ pub enum Mistake {
         /// Most entries.
         max: usize,
     },
-    /// Speeds of a curve that do not rise.
+    /// The speeds of a curve do not rise.
     #[error(
         "the speeds of a curve have to rise, by 0.02 mm/s or more from each to the next, and {after} comes after \
          {before}: sort them"
@@ -127,20 +127,20 @@ pub enum Mistake {
         /// The one after it, mm/s.
         after: f64,
     },
-    /// A button that is a polygon.
+    /// The region of a button is a polygon.
     #[error("a button is a rectangle or an ellipse, and this region is a polygon: change its `shape`")]
     ButtonPolygon,
-    /// More of something than a board has room for.
+    /// The scene has more of something than a board has room for.
     #[error("this is number {number} of the scene's {what}, and a board takes {max}: leave some out")]
     TooMany {
-        /// What there are too many of.
+        /// What it has too many of.
         what: &'static str,
         /// The number of this one, from one.
         number: usize,
         /// Most of them.
         max: usize,
     },
-    /// A layer that is added, in total newtons.
+    /// The friction of a layer with `blend = "add"` is given in total.
     #[error(
         "{layer} is added to what lies below it, so its friction is a difference and cannot be given in total: \
          write `above = \"natural\"` or leave `above` out"
@@ -149,25 +149,28 @@ pub enum Mistake {
         /// The layer.
         layer: String,
     },
-    /// A picture that is not there.
-    #[error("picture \"{picture}\" was not found in {folder}{}: paths start from the scene file's folder", which_has(.nearest.as_deref()))]
+    /// There is no picture of this name.
+    #[error(
+        "picture \"{picture}\" was not found in {folder}{}: paths start from the scene file's folder",
+        which_has(.nearest.as_deref())
+    )]
     PictureMissing {
         /// As written.
         picture: String,
-        /// Where it was looked for.
+        /// The place that was searched.
         folder: String,
-        /// The file there whose name is nearest, where one is near enough.
+        /// The name there that is nearest, if one is near enough.
         nearest: Option<String>,
     },
-    /// A picture that cannot be used.
+    /// A picture cannot be used.
     #[error("picture \"{picture}\" cannot be used: {reason}")]
     PictureUnusable {
         /// As written.
         picture: String,
-        /// Why, and what to do.
+        /// The reason, and what to do.
         reason: String,
     },
-    /// A region that leaves the screen.
+    /// A region extends past the screen.
     #[error(
         "{layer} reaches {beyond_mm} mm past the {edge} edge of the {screen_width_mm} mm x {screen_height_mm} mm screen: \
          move it or make it smaller"
@@ -175,7 +178,7 @@ pub enum Mistake {
     OffScreen {
         /// The layer.
         layer: String,
-        /// Which edge.
+        /// The edge of the screen.
         edge: &'static str,
         /// How far, mm.
         beyond_mm: f64,
@@ -184,42 +187,42 @@ pub enum Mistake {
         /// The screen, mm.
         screen_height_mm: f64,
     },
-    /// More friction than the drive can give.
+    /// A layer wants more friction than the drive can give.
     #[error(
         "{asking} up to {asked_n} N {reference}, and at {voltage_v_rms} V rms this finger feels at most {reach_n} N \
          {reference}: lower it, raise `voltage_max_v_rms`, or write `saturate = true` under [drive] to have it clamped"
     )]
     AboveReach {
-        /// Which layer or layers ask, with the verb.
+        /// The layer or layers, with the verb.
         asking: String,
-        /// What is asked for, N.
+        /// The friction that they want, N.
         asked_n: f64,
         /// `in total` or `above natural friction`.
         reference: &'static str,
         /// Largest rms voltage, V.
         voltage_v_rms: f64,
-        /// The most that can be reached, rounded down, N.
+        /// The largest friction that can be reached, rounded down, N.
         reach_n: f64,
     },
-    /// Less friction than the finger has at no voltage.
+    /// A layer wants less friction than there is at no voltage.
     #[error(
         "{asking} down to {asked_n} N {reference}, and a drive can only add to the finger's natural friction of \
          {natural_n} N: raise it, lower `normal_load_n`, or write `saturate = true` under [drive] to have it clamped"
     )]
     BelowNatural {
-        /// Which layer or layers ask, with the verb.
+        /// The layer or layers, with the verb.
         asking: String,
-        /// What is asked for, N.
+        /// The friction that they want, N.
         asked_n: f64,
         /// `in total` or `above natural friction`.
         reference: &'static str,
         /// Friction at no voltage, N.
         natural_n: f64,
     },
-    /// More layers than a scene may have.
+    /// The scene has more layers than the board takes.
     #[error("this is layer {number}, and the board takes {max}: leave some out or draw them into one picture")]
     TooManyLayers {
-        /// Number of the first layer that is too many.
+        /// Number of the first layer beyond the limit.
         number: usize,
         /// Most layers.
         max: usize,
@@ -244,7 +247,7 @@ pub enum Mistake {
         /// The place, mm.
         y_mm: f64,
     },
-    /// Pictures that need more memory than the board has for them.
+    /// The pictures need more memory than the board has for them.
     #[error(
         "the pictures up to this one need {needed_bytes} bytes, and the board has {pool_bytes}: \
          a pitch_mm of {pitch_mm} would fit"
@@ -257,7 +260,7 @@ pub enum Mistake {
         /// A pitch that fits, mm.
         pitch_mm: f64,
     },
-    /// A peak voltage above the board's.
+    /// The peak voltage is above the board's limit.
     #[error("`voltage_max_v_peak = {found}` is above the board's limit of {board} V peak: lower it or leave it out")]
     PeakAboveBoard {
         /// As written, V.
@@ -265,7 +268,7 @@ pub enum Mistake {
         /// The board's limit, V.
         board: f64,
     },
-    /// A carrier that the tick cannot make.
+    /// The carrier is too fast for the board's tick.
     #[error("`frequency_hz = {found}` is too fast for {tick_hz} ticks a second: expected at most {max} Hz")]
     CarrierTooFast {
         /// As written, Hz.
@@ -275,7 +278,7 @@ pub enum Mistake {
         /// Fastest carrier, Hz.
         max: f64,
     },
-    /// More current into the electrode than the board allows.
+    /// The current into the electrode is above the board's limit.
     #[error(
         "this carrier drives {found_ma:.2} mA {kind} into the board's worst-case electrode, and its limit is \
          {board_ma:.2} mA: lower {cure}"
@@ -287,21 +290,21 @@ pub enum Mistake {
         found_ma: f64,
         /// The board's limit, mA.
         board_ma: f64,
-        /// What to lower.
+        /// The field to lower.
         cure: &'static str,
     },
-    /// Numbers that are each in range and that the contact model or its table refuses together.
+    /// The numbers are each in range, and the contact model or its table refuses their combination.
     #[error(
         "this finger on this coating cannot be played ({reason}): check [finger], [coating] and `voltage_max_v_rms`"
     )]
     Model {
-        /// What it was refused for.
+        /// The reason.
         reason: String,
     },
 }
 
 impl Mistake {
-    /// The valid name that may have been meant, where a name is not known and one is near enough.
+    /// The nearest valid name to an unknown one, if one is near enough.
     pub fn nearest(&self) -> Option<&str> {
         match self {
             Self::UnknownField { nearest, .. } | Self::UnknownChoice { nearest, .. } => nearest.suggestion.as_deref(),

@@ -1,13 +1,13 @@
-//! What may have been meant by a word that is not known.
+//! The nearest known word to an unknown one.
 
 use std::fmt::{self, Display};
 
-/// What a misspelt word may have been.
+/// The known words that an unknown word may stand for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nearest {
-    /// The nearest word, where one is near enough.
+    /// The nearest word, if one is near enough.
     pub suggestion: Option<String>,
-    /// All words that would do.
+    /// All known words.
     pub known: Vec<String>,
 }
 

@@ -5,7 +5,7 @@ use std::io::Cursor;
 use png::{BitDepth, ColorType, Decoder, DecodingError, Limits, OutputInfo, Transformations};
 use thiserror::Error;
 
-/// Most pixels that a picture may have: 64 million, as many as keep its grey values within 256 MiB.
+/// Most pixels of a picture: 64 million, so that its grey values take at most 256 MiB.
 const PIXELS_MAX: u64 = 1 << 26;
 /// The first eight bytes of every PNG file (W3C PNG specification, section 5.2).
 const PNG_SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
@@ -18,7 +18,7 @@ pub(super) struct Picture {
     pub(super) width: usize,
     pub(super) height: usize,
     pub(super) grey: Vec<f32>,
-    /// What had to be done to make it grey, for a person.
+    /// The conversions to grey, in words for a person.
     pub(super) conversions: Vec<&'static str>,
 }
 
@@ -41,7 +41,7 @@ impl Picture {
         }
         let limits = Limits { bytes: 8 * PIXELS_MAX as usize };
         let mut decoder = Decoder::new_with_limits(Cursor::new(png), limits);
-        // Palettes become colours, few bits become eight, a transparent colour becomes an alpha channel.
+        // Expands palettes to colours, fewer bits than eight to eight, and a transparent colour to an alpha channel.
         decoder.set_transformations(Transformations::EXPAND);
         let mut reader = decoder.read_info().map_err(PictureError::Damaged)?;
         let (width, height) = reader.info().size();
@@ -97,7 +97,7 @@ fn sample(pixel: &[u8], channel: usize, wide: bool) -> u16 {
     }
 }
 
-/// Grey keeps its value to the last bit.
+/// The luma of a colour. Grey keeps its value to the last bit.
 fn luma(colour: [u16; 3]) -> f32 {
     let [red, green, blue] = colour;
     if red == green && green == blue {

@@ -1,13 +1,13 @@
-//! Pictures on their way into the board's bitmap pool.
+//! Compiles pictures to the bitmaps of the board's pool.
 
 use std::collections::BTreeMap;
 
 use super::kinds::Bitmap as BitmapLayer;
 use super::layer::{Layer, Rectangle, Region};
-use super::left_out::LeftOut;
 use super::log::Log;
 use super::mistake::Mistake;
 use super::nearest::Nearest;
+use super::optimisation::Optimisation;
 use super::picture::Picture;
 use super::pictures::{PictureUnavailable, file_name};
 use super::program::Bitmap;
@@ -21,26 +21,26 @@ pub(super) struct Pool<'s> {
     pictures: &'s PictureBytes,
     size_bytes: u32,
     bitmaps: Vec<Bitmap>,
-    left_out: Vec<LeftOut>,
+    optimisations: Vec<Optimisation>,
 }
 
-/// Where a picture's samples lie.
+/// A bitmap on the screen.
 pub(crate) struct Placed {
     /// Name of the bitmap.
     pub(crate) crc32: u32,
-    /// The corner that its first sample begins at.
+    /// The corner of its first sample, x and y.
     pub(crate) corner_mm: (f64, f64),
-    /// Distance of samples in a row, and of rows.
+    /// Distance between samples in a row, and between rows.
     pub(crate) pitches_mm: (f64, f64),
     pub(crate) angle_turns: f32,
     pub(crate) tiled: bool,
-    /// The picture's own outline; `None` when it is everywhere.
+    /// The picture's outline; `None` for a tiled picture, which has none.
     pub(crate) outline: Option<Region>,
 }
 
 impl Placed {
     fn new(bitmap: &BitmapLayer, whole: Rectangle, across: Axis, down: Axis, crc32: u32) -> Self {
-        // It is turned about its middle.
+        // A picture is turned about its middle.
         let (half_width_mm, half_height_mm) = (0.5 * whole.width_mm, 0.5 * whole.height_mm);
         let (middle_x_mm, middle_y_mm) = (whole.x_mm + half_width_mm, whole.y_mm + half_height_mm);
         let (cos, sin) = direction(bitmap.angle_deg);
@@ -72,13 +72,13 @@ impl Placed {
     }
 }
 
-/// Cosine and sine of an angle; right angles are exact.
+/// Cosine and sine of an angle. Those of right angles are exact.
 fn direction(angle_deg: f64) -> (f64, f64) {
     let exact = |part: f64| if part.abs() < 1e-12 { 0.0 } else { part };
     (exact(libm::cos(angle_deg.to_radians())), exact(libm::sin(angle_deg.to_radians())))
 }
 
-/// The picture's rectangle before it is turned: what it does not say is its region's.
+/// The picture's rectangle before it is turned. A place or size that the layer lacks is that of its region.
 fn rectangle(bitmap: &BitmapLayer, region: Option<Rectangle>, height_per_width: f64) -> Option<Rectangle> {
     let width_mm = bitmap.width_mm.or(region.map(|region| region.width_mm))?;
     let height_mm = bitmap.height_mm.or(match (bitmap.width_mm, region) {
@@ -93,7 +93,8 @@ fn rectangle(bitmap: &BitmapLayer, region: Option<Rectangle>, height_per_width: 
     })
 }
 
-/// The samples along a row and down the rows: all of a picture that is turned or tiled, else those that can be seen.
+/// The samples along a row and down the rows: all of a picture that is turned or tiled, otherwise those inside its
+/// region and the screen.
 fn axes(
     bitmap: &BitmapLayer,
     picture: &Picture,
@@ -124,15 +125,15 @@ fn axes(
 
 impl<'s> Pool<'s> {
     pub(super) fn new(pictures: &'s PictureBytes, size_bytes: u32) -> Self {
-        Self { pictures, size_bytes, bitmaps: Vec::new(), left_out: Vec::new() }
+        Self { pictures, size_bytes, bitmaps: Vec::new(), optimisations: Vec::new() }
     }
 
-    /// The bitmaps, and what was left out of them.
-    pub(super) fn finish(self) -> (Vec<Bitmap>, Vec<LeftOut>) {
-        (self.bitmaps, self.left_out)
+    /// The bitmaps, and what was optimised away.
+    pub(super) fn finish(self) -> (Vec<Bitmap>, Vec<Optimisation>) {
+        (self.bitmaps, self.optimisations)
     }
 
-    /// Reads and resamples a layer's picture. `region` is around the layer's own region, if it has one.
+    /// Decodes and resamples a layer's picture. `region` bounds the layer's region, if it has one.
     pub(super) fn place(
         &mut self,
         layer: &Layer,
@@ -145,12 +146,12 @@ impl<'s> Pool<'s> {
         let picture = self.read(layer, bitmap, log)?;
         let whole = rectangle(bitmap, region, picture.height as f64 / picture.width as f64)?;
         let (across, down) = axes(bitmap, &picture, whole, region, screen_mm);
-        // Before resampling, so that a pitch far too fine asks for no memory.
+        // Check before resampling, so that a pitch far too fine allocates no memory.
         let bytes = across.samples as u64 * down.samples as u64;
         if !self.fits(layer, bitmap, bytes, log) {
             return None;
         }
-        // The pool is smaller than 2^32 bytes, yet one side might be longer than the wire can say.
+        // One side may still be longer than the protocol's 16 bits.
         let (Ok(width), Ok(height)) = (u16::try_from(across.samples), u16::try_from(down.samples)) else {
             self.too_small(layer, bitmap, bytes, log);
             return None;
@@ -160,10 +161,10 @@ impl<'s> Pool<'s> {
         let (picture_name, kept) = (file_name(&bitmap.picture).to_owned(), across.samples * down.samples);
         if kept < across.whole * down.whole {
             let whole = across.whole * down.whole;
-            self.left_out.push(LeftOut::Cropped { picture: picture_name.clone(), whole, kept });
+            self.optimisations.push(Optimisation::Cropped { picture: picture_name.clone(), whole, kept });
         }
         if self.bitmaps.contains(&compiled) {
-            self.left_out.push(LeftOut::Shared { picture: picture_name, bytes: kept });
+            self.optimisations.push(Optimisation::Shared { picture: picture_name, bytes: kept });
         } else {
             let held: u64 = self.bitmaps.iter().map(|bitmap| bitmap.samples.len() as u64).sum();
             if !self.fits(layer, bitmap, held + bytes, log) {
@@ -200,7 +201,7 @@ impl<'s> Pool<'s> {
     }
 
     fn too_small(&self, layer: &Layer, bitmap: &BitmapLayer, needed_bytes: u64, log: &mut Log) {
-        // All pictures coarsened alike, a hundredth on top for the samples at the edges, up to the next 0.01 mm.
+        // The pitch if all pictures are coarsened alike: with 1 % more for samples at the edges, rounded up to 0.01 mm.
         let coarser = 1.01 * (needed_bytes as f64 / f64::from(self.size_bytes)).sqrt();
         let pitch_mm = (bitmap.pitch_mm * coarser * 100.0).ceil() / 100.0;
         let offset = layer.places.field(if layer.places.has("pitch_mm") { "pitch_mm" } else { "picture" });
@@ -208,7 +209,7 @@ impl<'s> Pool<'s> {
     }
 }
 
-/// What was done to a picture, if anything.
+/// The conversions of a picture, if there were any.
 fn note(picture: &Picture, bitmap: &BitmapLayer, across: Axis, down: Axis) -> Option<String> {
     let mut done: Vec<String> = picture.conversions.iter().map(ToString::to_string).collect();
     if (across.whole, down.whole) != (picture.width, picture.height) {

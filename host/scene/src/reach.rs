@@ -1,14 +1,15 @@
-//! What friction a drive can give to a finger.
+//! The friction that a drive can give to a finger.
 
 use frixel_layers::{Carrier as Shape, Header};
 use frixel_model::{Carrier, Contact, Finger, InverseTable, ParameterError, TableError, Waveform};
 use frixel_wire::hello::BoardLimits;
 use thiserror::Error;
 
-/// Friction this little out of reach, relative to the reach, comes from rounding to `f32`.
+/// Friction out of reach by less than this, relative to the reach, is an effect of rounding to `f32`.
 pub const ROUNDING: f64 = 1e-6;
 
-/// The frictions that a finger can be given: from natural, `mu F_N`, to natural plus the most that the drive adds.
+/// The range of friction that a finger can be given: from natural friction, `mu F_N`, to that plus the largest electric
+/// friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reach {
     /// Friction at no voltage, `mu F_N`, in newtons.
@@ -19,7 +20,7 @@ pub struct Reach {
     pub voltage_max_v_rms: f64,
 }
 
-/// Why a finger and a coating have no reach that a board can play.
+/// Why a board cannot play for a finger and a coating.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub(super) enum ReachError {
     #[error("the contact model refuses it: {0:?}")]
@@ -29,7 +30,7 @@ pub(super) enum ReachError {
 }
 
 impl Reach {
-    /// Reach under the finger, coating and rms voltage of a header, whose `f32` numbers are what the board has.
+    /// Reach for the finger, coating and rms voltage of a header, from the `f32` numbers that the board has.
     pub(super) fn of(header: &Header) -> Result<Self, ReachError> {
         let finger = Finger {
             radius_m: f64::from(header.finger_radius_m),
@@ -39,7 +40,7 @@ impl Reach {
         let contact = Contact::new(&finger, f64::from(header.effective_gap_m)).map_err(ReachError::Contact)?;
         let loaded = contact.under_load(f64::from(header.normal_load_n)).map_err(ReachError::Contact)?;
         let voltage_max_v_rms = f64::from(header.voltage_max_v_rms);
-        // The board makes the same table when the scene is committed.
+        // The board computes the same table when the scene is committed.
         let finger = Finger {
             radius_m: header.finger_radius_m,
             stiffness_pa_per_m: header.stiffness_pa_per_m,
@@ -66,7 +67,7 @@ impl Reach {
     }
 }
 
-/// The carrier of a scene on a board, in the board's precision.
+/// The carrier of a scene on a board, in the board's arithmetic.
 pub fn carrier(shape: Shape, half_period_s: f64, limits: &BoardLimits) -> Carrier {
     let waveform = match shape {
         Shape::Square => Waveform::Square,

@@ -1,11 +1,11 @@
-//! Brings a picture to the pitch that a board plays.
+//! Resamples pictures to the pitch that a board plays.
 
-/// One axis of the grid that a picture is brought to.
+/// One axis of the grid that a picture is resampled to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Axis {
     /// Samples of the whole picture.
     pub(super) whole: usize,
-    /// Samples that are cut off before the first one.
+    /// Samples that are cropped before the first one.
     pub(super) skipped: usize,
     /// Samples along it.
     pub(super) samples: usize,
@@ -14,31 +14,32 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    /// Whole samples that cover `length_mm`; the last may reach past the picture's end by less than a pitch.
+    /// The samples that cover `length_mm`. The last one may reach past the picture's end by less than a pitch.
     pub(super) fn covering(length_mm: f64, pitch_mm: f64, pixels: usize) -> Self {
-        // A millionth of a sample is rounding of the millimetres, not one sample more.
+        // A millionth of a sample is an effect of rounding, not one more sample.
         let samples = (length_mm / pitch_mm - 1e-6).ceil().max(1.0) as usize;
         Self { whole: samples, skipped: 0, samples, pixels_per_sample: pixels as f64 * pitch_mm / length_mm }
     }
 
-    /// Whole samples that divide a length, at about this pitch, so that it can be repeated.
+    /// The samples that divide a length evenly, at about this pitch, so that it can be tiled.
     pub(super) fn dividing(length_mm: f64, pitch_mm: f64, pixels: usize) -> Self {
         let samples = (length_mm / pitch_mm).round().max(1.0);
         let whole = samples as usize;
         Self { whole, skipped: 0, samples: whole, pixels_per_sample: pixels as f64 / samples }
     }
 
-    /// Only the samples that count between two places, in samples from the axis' start.
+    /// Only the samples that matter between two places, in samples from the start of the axis.
     pub(super) fn cropped(self, from: f64, to: f64) -> Self {
         let last = (self.samples - 1) as f64;
-        // Samples lie at their centres; those around a place count there. A millionth of a sample is rounding.
+        // A place depends on the samples whose centres are around it. A millionth of a sample is an effect of rounding.
         let skipped = (from - 0.5 + 1e-6).floor().clamp(0.0, last) as usize;
         let end = (to - 0.5 - 1e-6).ceil().clamp(skipped as f64, last) as usize;
         Self { skipped, samples: end - skipped + 1, ..self }
     }
 
-    /// Which pixels make a sample, and with what weights, which sum to one. A sample of one pixel or more is the mean
-    /// over its area; a smaller one is interpolated between pixel centres and held at the border.
+    /// The first pixel of a sample, and the weights of that pixel and those after it, which sum to one. A sample of one
+    /// pixel or more is the mean over its area. A smaller one is interpolated between pixel centres, and constant
+    /// beyond the outermost ones.
     fn weights(self, sample: usize, pixels: usize) -> (usize, Vec<f64>) {
         let last = pixels.saturating_sub(1);
         let start = (self.skipped + sample) as f64 * self.pixels_per_sample;
@@ -63,7 +64,7 @@ impl Axis {
     }
 }
 
-/// Resamples rows of `width` grey values from 0 to 255 to the grid of `across` and `down`, rounded to whole steps.
+/// Resamples rows of `width` grey values from 0 to 255 to the grid of `across` and `down`, rounded to whole numbers.
 pub(super) fn resample(grey: &[f32], width: usize, across: Axis, down: Axis) -> Vec<u8> {
     if width == 0 || grey.is_empty() {
         return Vec::new();

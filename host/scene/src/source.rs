@@ -1,6 +1,6 @@
-//! The text of a scene file, and where in it something stands.
+//! The text of a scene file, and places in it.
 
-/// Name and text of a scene file: all that a message about it needs.
+/// Name and text of a scene file, for messages about it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Source {
     name: String,
@@ -12,12 +12,12 @@ impl Source {
         Self { name: name.to_owned(), text: text.to_owned() }
     }
 
-    /// The file as messages call it.
+    /// The name of the file in messages.
     pub(super) fn name(&self) -> &str {
         &self.name
     }
 
-    /// Line and column of a byte, both from one; the column counts characters.
+    /// Line and column of a byte offset, both from one. The column counts characters.
     pub(super) fn line_and_column(&self, offset: usize) -> (usize, usize) {
         let before = self.text.get(..offset).unwrap_or(&self.text);
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
@@ -26,7 +26,7 @@ impl Source {
         (line, column)
     }
 
-    /// The key, value or table head that begins at a byte; of one that goes over several lines, the first.
+    /// The key, value or table header at a byte offset; the first line of one that has several.
     pub(super) fn word_at(&self, offset: usize) -> &str {
         let line = self.text.get(offset..).and_then(|rest| rest.lines().next()).unwrap_or_default();
         let end = match line.chars().next() {
@@ -39,7 +39,7 @@ impl Source {
     }
 }
 
-/// Where a table and its fields stand in the file, as byte offsets.
+/// Byte offsets of a table and its fields.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Places {
     table: usize,
@@ -55,17 +55,17 @@ impl Places {
         self.fields.push((field, offset));
     }
 
-    /// Where the table starts.
+    /// Offset of the table.
     pub(super) fn table(&self) -> usize {
         self.table
     }
 
-    /// Where a field's value stands, or the table where the file leaves the field out.
+    /// Offset of a field's value, or of the table if the file does not have the field.
     pub(super) fn field(&self, field: &str) -> usize {
         self.fields.iter().find(|(name, _)| *name == field).map_or(self.table, |(_, offset)| *offset)
     }
 
-    /// The first of some fields that the file has, or the first of all where it has none.
+    /// The first of these fields that the file has, or the first one if it has none of them.
     pub(super) fn first_of(&self, fields: [&'static str; 3]) -> &'static str {
         let [first, ..] = fields;
         fields.into_iter().find(|field| self.has(field)).unwrap_or(first)

@@ -12,7 +12,7 @@ use serde::Serialize;
 pub use board::BoardImage;
 pub use rehearsal::RehearsalError;
 
-use frixel_scene::{Asked, Program, middle_mm};
+use frixel_scene::{Program, TargetRange, middle_mm};
 
 /// The numbers of a scene; its fields are the keys of `--json`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -28,7 +28,7 @@ pub struct SceneCheck {
     /// What this finger can be given.
     pub reach: ReachableFriction,
     /// What the scene asks for.
-    pub asked: Asked,
+    pub asked: TargetRange,
     /// What the compiler rounded, converted and clamped, a sentence each.
     pub notes: Vec<String>,
     /// What it left out and why, a sentence each.
@@ -146,9 +146,9 @@ impl SceneCheck {
                 total_max_n: reach.friction_max_n(),
                 voltage_max_v_rms: reach.voltage_max_v_rms,
             },
-            asked: Asked::of(program),
+            asked: TargetRange::of(program),
             notes: program.notes.clone(),
-            left_out: program.left_out.iter().map(ToString::to_string).collect(),
+            left_out: program.optimisations.iter().map(ToString::to_string).collect(),
             board: None,
         })
     }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use frixel_model::InverseTable;
 
 use super::{RamBytes, SceneCheck};
-use frixel_scene::Outside;
+use frixel_scene::OutOfReach;
 
 impl SceneCheck {
     /// A few lines, each ending in a line feed.
@@ -80,9 +80,9 @@ fn table(ram: &RamBytes) -> String {
     )
 }
 
-fn out_of_reach(above: &Outside, below: &Outside) -> String {
-    let part = |outside: &Outside, what: &str| {
-        let Outside { screen_percent, layers } = outside;
+fn out_of_reach(above: &OutOfReach, below: &OutOfReach) -> String {
+    let part = |outside: &OutOfReach, what: &str| {
+        let OutOfReach { screen_percent, layers } = outside;
         let percent = if *screen_percent < 0.1 { "less than 0.1".to_owned() } else { format!("{screen_percent:.1}") };
         (*screen_percent > 0.0).then(|| format!("{percent} % of the screen {what}, by {}", layers.join(", ")))
     };

@@ -26,7 +26,7 @@ use thiserror::Error;
 
 pub use csv::{CsvFile, CsvRow, EventCsv, EventRow, FeltCsv};
 pub use felt_svg::write_felt_svg;
-pub use preview_png::{Preview, write_preview_png};
+pub use preview_png::write_preview_png;
 pub use report::Report;
 pub use scene_png::write_scene_png;
 pub use trace::Trace;

@@ -3,26 +3,26 @@
 use std::fs;
 use std::path::Path;
 
-use super::map::Frame;
+use super::map::chart;
 use super::trace::Trace;
 use super::{OutputError, Subject};
 use crate::chart::{Line, Look, Mark, RGBColor, colour};
-use frixel_scene::Program;
 use frixel_scene::reference::Reference;
+use frixel_scene::{MapGrid, Program};
 
 /// Largest size of the map, in pixels.
-const MAP_MAX: (f64, f64) = (1_000.0, 800.0);
+const MAP_MAX: (u32, u32) = (1_000, 800);
 const STROKE: RGBColor = RGBColor(255, 59, 48);
 const CASING: RGBColor = RGBColor(255, 255, 255);
 
 /// Writes the friction that a program wants all over the screen, and the stroke of a run. The colours span the reach;
 /// what is beyond has the colour of its end.
 pub fn write_scene_png(path: &Path, subject: &Subject, program: &Program, trace: &Trace) -> Result<(), OutputError> {
-    let frame = Frame::of(program, MAP_MAX);
+    let grid = MapGrid::new(program, MAP_MAX);
     let reference = Reference::new(program);
     let colour_at =
         |(x_m, y_m)| colour(reference.electric_friction_n(x_m, y_m) / program.reach.electric_friction_max_n);
-    let mut chart = frame.chart(frame.pixels().map(|(_, place)| colour_at(place)).collect(), &program.reach);
+    let mut chart = chart(&grid, grid.places_m().map(colour_at).collect(), &program.reach);
     chart.title = subject.title();
     let strokes: Vec<Vec<(f64, f64)>> = trace.strokes().collect();
     let start = strokes.first().and_then(|stroke| stroke.first()).copied();

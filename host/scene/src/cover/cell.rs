@@ -29,9 +29,9 @@ impl Cell {
         (f64::midpoint(self.left_m, self.right_m), f64::midpoint(self.top_m, self.bottom_m))
     }
 
-    /// Whether a line from one place to another goes through the inside of the cell.
+    /// Whether the line from one place to another crosses the inside of the cell.
     fn is_crossed(self, (x1_m, y1_m): (f64, f64), (x2_m, y2_m): (f64, f64)) -> bool {
-        // The part of the line that lies between each two sides.
+        // The part of the line, from 0 to 1, that lies between opposite sides.
         let (mut from, mut to) = (0.0_f64, 1.0_f64);
         for (start, end, low, high) in
             [(x1_m, x2_m, self.left_m, self.right_m), (y1_m, y2_m, self.top_m, self.bottom_m)]
@@ -54,7 +54,7 @@ impl Coverage {
         let (x_m, y_m) = cell.middle();
         let middle = shape.covers(x_m, y_m);
         match shape {
-            // No edge of a rectangle goes through a cell.
+            // Cells are cut along the edges of rectangles, so none crosses a cell.
             Shape::Everywhere | Shape::Rectangle { .. } => {
                 if middle {
                     Self::Whole

@@ -1,8 +1,9 @@
-//! Where layers lie over each other, and what friction they can ask for there.
+//! Where layers overlap, and what friction they can want there.
 //!
-//! The edges of all layers cut the screen into cells; in each cell the same rectangles count everywhere. What one layer
-//! asks for in a cell is known exactly, or nearly. Of several that vary, and of what has another outline than the cell,
-//! there is a bound that need not be reached, so it is also searched for a place that is out of reach.
+//! The edges of all layers cut the screen into cells; within a cell the same rectangles apply everywhere. The friction
+//! of a single layer in a cell is known exactly, or nearly. For several layers that vary, and for a layer whose outline
+//! crosses the cell, there is only a bound, which need not be reached: the cell is also searched for a place that is
+//! out of reach.
 
 mod cell;
 
@@ -15,42 +16,42 @@ use cell::Coverage;
 
 use crate::reference::Piece;
 
-/// Cells narrower than this come from rounding, m.
+/// Width below which a cell is an effect of rounding, m.
 const CELL_MIN_M: f64 = 1e-6;
-/// Most places that are looked at along each side of a cell.
+/// Most places that are evaluated along each side of a cell.
 const PLACES_PER_SIDE_MAX: f64 = 256.0;
-/// Places that are looked at along each side of a cell that an outline goes through.
+/// Places that are evaluated along each side of a cell that an outline crosses.
 const PLACES_PER_OUTLINE: f64 = 64.0;
-/// Most places that are looked at in a scene.
+/// Most places that are evaluated in a scene.
 const PLACES_MAX: usize = 1_000_000;
 
 /// Bare glass.
 pub(super) const ZERO: Interval<f64> = Interval { low: 0.0, high: 0.0 };
 
-/// Layers whose friction leaves the reach somewhere, or may.
+/// Layers whose friction is out of reach somewhere, or may be.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Excess {
-    /// Numbers of the layers that count there, from zero, the first one at the bottom.
+    /// Numbers of the layers that apply there, from zero, from bottom to top.
     pub(super) layers: Vec<usize>,
-    /// A cell where they go furthest.
+    /// The cell in which they exceed the reach most.
     pub(super) cell: Cell,
-    /// Friction that a finger finds there.
+    /// Friction that was found at places of the cell.
     pub(super) found: Interval<f64>,
-    /// Friction that it cannot leave there.
+    /// Bound on the friction in the cell.
     pub(super) bound: Interval<f64>,
 }
 
-/// The layers that count in a cell.
+/// The layers that apply in a cell.
 struct Stack {
-    /// From the last that replaces all below.
+    /// Numbers of the layers, from the last one that replaces all below it.
     layers: Vec<usize>,
     bound: Interval<f64>,
-    /// 0 when the bound is reached; 1 when one layer's is; more when it has to be searched.
+    /// How many layers make the bound inexact: with up to one it is reached; with more the cell is searched.
     doubts: usize,
     outlined: bool,
 }
 
-/// Every set of layers that leaves `reach` somewhere on a screen of this size, or may leave it.
+/// Every set of layers that exceeds `reach` somewhere on a screen of this size, or may exceed it.
 pub(super) fn excesses(pieces: &[Piece], width_m: f64, height_m: f64, reach: Interval<f64>) -> Vec<Excess> {
     let bounds: Vec<[f64; 4]> = pieces.iter().map(|piece| piece.shape.bounds_m()).collect();
     let columns = edges(width_m, bounds.iter().flat_map(|[left_m, _, right_m, _]| [*left_m, *right_m]));
@@ -78,7 +79,7 @@ pub(super) fn excesses(pieces: &[Piece], width_m: f64, height_m: f64, reach: Int
     worst.into_values().collect()
 }
 
-/// Edges within the screen, in order, and the screen's own.
+/// The edges of layers within the screen, and those of the screen, sorted.
 fn edges(screen_m: f64, layers: impl Iterator<Item = f64>) -> Vec<f64> {
     let mut edges: Vec<f64> = layers.filter(|edge| *edge > 0.0 && *edge < screen_m).collect();
     edges.extend([0.0, screen_m]);
@@ -96,7 +97,7 @@ impl Stack {
                 continue;
             }
             let own = piece.field.interval_in(cell).times(Interval::of([piece.gain]));
-            // What is streamed may not be there.
+            // Nothing may be streamed.
             let always = !piece.is_streamed;
             let blended = piece.blend.of_intervals(stack.bound, own);
             let blended = if always { blended } else { stack.bound.hull(blended) };
@@ -116,7 +117,7 @@ impl Stack {
     }
 }
 
-/// What a finger finds at many places of a cell; nothing when there were too many.
+/// Friction at places of a cell; zero when the scene has had too many places.
 fn search(pieces: &[Piece], stack: &Stack, cell: Cell, places_left: &mut usize) -> Interval<f64> {
     let layers: Vec<&Piece> = stack.layers.iter().filter_map(|layer| pieces.get(*layer)).collect();
     let detail_m = layers.iter().filter_map(|piece| piece.field.detail_m()).fold(f64::INFINITY, f64::min);
@@ -138,7 +139,7 @@ fn search(pieces: &[Piece], stack: &Stack, cell: Cell, places_left: &mut usize) 
     intervals.reduce(Interval::hull).unwrap_or(ZERO)
 }
 
-/// What layers ask for together at a place, at any time and speed.
+/// The friction that layers want together at a place, at any time and speed.
 pub(super) fn interval_at<'p>(layers: impl Iterator<Item = &'p Piece>, x_m: f64, y_m: f64) -> Interval<f64> {
     layers.filter(|piece| piece.shape.covers(x_m, y_m)).fold(ZERO, |below, piece| {
         let own = piece.field.interval_at(x_m, y_m).times(Interval::of([piece.gain]));
@@ -147,7 +148,7 @@ pub(super) fn interval_at<'p>(layers: impl Iterator<Item = &'p Piece>, x_m: f64,
     })
 }
 
-/// How far an interval leaves the reach.
+/// How far an interval exceeds the reach; zero within it.
 fn beyond(interval: Interval<f64>, reach: Interval<f64>) -> f64 {
     (reach.low - interval.low).max(interval.high - reach.high).max(0.0)
 }

@@ -1,4 +1,4 @@
-//! From a layer as written to a record of the wire.
+//! Compiles layers to records of the compiled scene.
 
 pub(crate) mod place;
 
@@ -8,18 +8,19 @@ use frixel_wire::scene::POINTS_MAX;
 use super::file::Scene;
 use super::kinds::{Bitmap as BitmapWords, Lowered};
 use super::layer::{Above, Amount, Layer, Rectangle, Region};
-use super::left_out::LeftOut;
 use super::log::Log;
 use super::mistake::Mistake;
+use super::optimisation::Optimisation;
 use super::pool::{Placed, Pool};
 use super::program::Bitmap;
 use super::reach::Reach;
 
-/// Total friction this close to natural, relative to it, is natural: `mu F_N` rounds.
+/// Total friction that differs from natural friction by less than this, relative to it, is natural friction, which is
+/// rounded to `f32`.
 const NATURAL_ROUNDING: f64 = 1e-6;
 pub(crate) const MM: f64 = 1e-3;
 
-/// Turns layers to records, and gathers what they name.
+/// Compiles layers to records, and collects the points and bitmaps that they name.
 pub(crate) struct Lowering<'a, 's> {
     scene: &'a Scene,
     header: &'a Header,
@@ -33,12 +34,12 @@ pub(crate) struct Lowering<'a, 's> {
     notes: Vec<String>,
 }
 
-/// What records name, and what was done to it.
+/// The points and bitmaps that records name, with notes on their conversion.
 pub(super) struct Gathered {
     pub(super) points: Vec<Point>,
     pub(super) bitmaps: Vec<Bitmap>,
     pub(super) notes: Vec<String>,
-    pub(super) left_out: Vec<LeftOut>,
+    pub(super) optimisations: Vec<Optimisation>,
 }
 
 impl<'a, 's> Lowering<'a, 's> {
@@ -55,11 +56,11 @@ impl<'a, 's> Lowering<'a, 's> {
     }
 
     pub(super) fn finish(self) -> Gathered {
-        let (bitmaps, left_out) = self.pool.finish();
-        Gathered { points: self.points, bitmaps, notes: self.notes, left_out }
+        let (bitmaps, optimisations) = self.pool.finish();
+        Gathered { points: self.points, bitmaps, notes: self.notes, optimisations }
     }
 
-    /// The record of a layer; `None` when something is wrong with it.
+    /// The record of a layer; `None` if it has a mistake.
     pub(super) fn record(&mut self, layer: &Layer) -> Option<Record> {
         let Lowered { layer: record_layer, outline } = layer.kind.lower(layer, self)?;
         let region = match layer.region.clone().or(outline) {
@@ -72,7 +73,7 @@ impl<'a, 's> Lowering<'a, 's> {
         Some(Record { region, blend: layer.blend, gain: layer.gain as f32, layer: record_layer })
     }
 
-    /// Puts the picture of a layer into the pool; `visible` is the rectangle that is seen of it.
+    /// Adds the picture of a layer to the pool. `visible` is the rectangle in which it is seen.
     pub(crate) fn place_bitmap(
         &mut self,
         layer: &Layer,
@@ -83,7 +84,7 @@ impl<'a, 's> Lowering<'a, 's> {
         self.pool.place(layer, bitmap, visible, screen, self.log, &mut self.notes)
     }
 
-    /// An amount as the wire has it: electric friction in newtons, or a factor.
+    /// An amount of the compiled scene: electric friction in newtons, or a factor.
     pub(crate) fn amount(&self, layer: &Layer, amount: Amount) -> f32 {
         match amount {
             Amount::Newtons(friction_n) => electric_n(layer.above, friction_n, self.reach.natural_friction_n),
@@ -107,7 +108,7 @@ impl<'a, 's> Lowering<'a, 's> {
         })
     }
 
-    /// Keeps points, or finds them where another layer has the same.
+    /// Stores points, unless another layer has the same ones.
     pub(crate) fn points(&mut self, layer: &Layer, points: Vec<Point>) -> Option<(u8, u8)> {
         let count = points.len();
         let first = self.points.windows(count).position(|held| held == points).unwrap_or(self.points.len());
@@ -127,7 +128,7 @@ impl<'a, 's> Lowering<'a, 's> {
     }
 }
 
-/// Friction above natural, as the wire has it.
+/// Friction above natural friction.
 fn electric_n(above: Above, friction_n: f64, natural_friction_n: f64) -> f32 {
     let electric_n = match above {
         Above::Natural => friction_n,

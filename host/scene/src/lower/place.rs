@@ -8,7 +8,7 @@ use super::super::log::Log;
 use super::super::mistake::Mistake;
 use super::MM;
 
-/// A layer may leave the screen by this much before it is refused: millimetres round, mm.
+/// How far a layer may extend past the screen, since millimetres are rounded, mm.
 const OFF_SCREEN_MM: f64 = 1e-6;
 
 /// Cycles per metre along x and y. Right angles are exact.
@@ -24,7 +24,7 @@ pub(crate) fn turns(angle_deg: f64) -> f32 {
     (angle_deg / 360.0) as f32
 }
 
-/// Refuses a layer that leaves the screen.
+/// Refuses a layer that extends past the screen.
 pub(crate) fn check_on_screen(scene: &Scene, layer: &Layer, rectangle: Rectangle, log: &mut Log) {
     let (screen_width_mm, screen_height_mm) = (scene.screen.width_mm, scene.screen.height_mm);
     let past = [
@@ -36,7 +36,7 @@ pub(crate) fn check_on_screen(scene: &Scene, layer: &Layer, rectangle: Rectangle
     let furthest = past.into_iter().max_by(|(_, one), (_, other)| one.total_cmp(other));
     if let Some((edge, beyond_mm)) = furthest.filter(|(_, beyond_mm)| *beyond_mm > OFF_SCREEN_MM) {
         let field = if layer.region.is_some() { "region" } else { "x_mm" };
-        // Rounded to a micrometre, upwards, so that it is enough.
+        // Rounded up to a micrometre, so that moving by it is enough.
         let beyond_mm = (beyond_mm * 1e3 - 1e-6).ceil() / 1e3;
         let layer_title = layer.title.clone();
         log.add(
@@ -46,7 +46,8 @@ pub(crate) fn check_on_screen(scene: &Scene, layer: &Layer, rectangle: Rectangle
     }
 }
 
-/// The whole screen where the rectangle covers it, which costs the board nothing; a button keeps its sides.
+/// The region of a rectangle: the whole screen if it covers that, which costs the board nothing. A button keeps its
+/// sides.
 pub(crate) fn rectangle(rectangle: Rectangle, header: &Header, button: bool) -> WireRegion {
     let [x_m, y_m, width_m, height_m] = stretches(rectangle, header);
     let everywhere = x_m <= 0.0 && y_m <= 0.0 && width_m >= header.screen_width_m && height_m >= header.screen_height_m;
@@ -64,7 +65,7 @@ fn stretches(rectangle: Rectangle, header: &Header) -> [f32; 4] {
     [x_m, y_m, width_m, height_m]
 }
 
-/// Start and length of a stretch in metres, shortened by the few bits that rounding would put past the screen's end.
+/// Start and length of a side in metres, shortened by the bits that rounding would extend past the screen.
 fn stretch(start_mm: f64, length_mm: f64, screen_m: f32) -> (f32, f32) {
     let start_m = ((start_mm * MM) as f32).max(0.0);
     let room_m = f64::from(screen_m) - f64::from(start_m);

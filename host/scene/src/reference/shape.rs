@@ -1,8 +1,8 @@
-//! Where a layer acts.
+//! The shapes of regions.
 
 use frixel_layers::{Point, Region};
 
-/// Where a layer acts, m.
+/// The shape of a layer's region, m.
 #[derive(Clone, Debug)]
 pub(crate) enum Shape {
     Everywhere,
@@ -77,7 +77,7 @@ impl Shape {
                 x * x + y * y <= 1.0
             }
             Self::Polygon(vertices) => {
-                // Edges that pass the place on its right.
+                // Count the edges to the right of the place.
                 let passed = edges(vertices).filter(|((x1_m, y1_m), (x2_m, y2_m))| {
                     let between = (*y1_m > y_m) != (*y2_m > y_m);
                     between && x_m < x1_m + (y_m - y1_m) / (y2_m - y1_m) * (x2_m - x1_m)

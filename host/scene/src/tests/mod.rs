@@ -12,7 +12,7 @@ mod docs;
 mod errors;
 mod json_schema;
 mod layers;
-mod left_out;
+mod optimise;
 mod schema;
 
 pub(super) const LIMITS: BoardLimits = Board::SIMULATOR.limits;

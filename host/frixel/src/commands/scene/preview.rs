@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use frixel::output::{Preview, write_preview_png};
+use frixel::output::write_preview_png;
 use frixel::scene_file;
 use frixel_hil_sim::RigConfig;
-use frixel_scene::compile;
+use frixel_scene::{Preview, compile};
 
 use super::super::error::CommandError;
 

@@ -1,4 +1,4 @@
-//! What is left out, and that nobody feels it.
+//! What is optimised away, and that nobody feels it.
 
 use super::*;
 use crate::reference::{Context, Reference};
@@ -8,11 +8,11 @@ fn small_and_whole(layers: &str) -> (Program, Program) {
     (compile_layers(layers), compile_layers(&layers.replace("[[layer]]", "[[layer]]\nlive = true")))
 }
 
-/// Checks what is left out, and that the two programs want the same, to the bits of `f32` sums.
+/// Checks what is optimised away, and that the two programs want the same, to the bits of `f32` sums.
 #[track_caller]
 fn check(layers: &str, expected: &[&str], records: usize) {
     let (small, whole) = small_and_whole(layers);
-    let found: Vec<String> = small.left_out.iter().map(ToString::to_string).collect();
+    let found: Vec<String> = small.optimisations.iter().map(ToString::to_string).collect();
     assert_eq!(found, expected);
     assert_eq!((small.records.len(), small.titles.len()), (records, records));
     assert_eq!(whole.records.len(), layers.matches("[[layer]]").count());
@@ -38,14 +38,14 @@ const STRIPES: &str = "[[layer]]\nkind = \"grating\"\nwavelength_mm = 4\nlow_n =
 fn what_another_covers_is_dropped() {
     check(
         &format!("{STRIPES}[[layer]]\nkind = \"constant\"\nfriction_n = 0.26"),
-        &["layer 1 (grating) is left out: layer 2 (constant) takes its place everywhere"],
+        &["layer 1 (grating) is optimised away: layer 2 (constant) replaces it everywhere"],
         1,
     );
     let inside = "region = { shape = \"ellipse\", x_mm = 30, y_mm = 30, width_mm = 20, height_mm = 20 }\n";
     let around = "region = { x_mm = 30, y_mm = 30, width_mm = 20, height_mm = 20 }\n";
     check(
         &format!("{STRIPES}{inside}[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\n{around}"),
-        &["layer 1 (grating) is left out: layer 2 (constant) takes its place everywhere"],
+        &["layer 1 (grating) is optimised away: layer 2 (constant) replaces it everywhere"],
         1,
     );
     check(&format!("{STRIPES}{around}[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\n{inside}"), &[], 2);
@@ -63,10 +63,10 @@ fn what_changes_nothing_is_dropped() {
              [[layer]]\nname = \"nothing\"\nkind = \"grating\"\nblend = \"add\"\nwavelength_mm = 4\nlow_n = 0\nhigh_n = 0"
         ),
         &[
-            "layer 4 \"nothing\" is played as a constant: it asks for the same everywhere",
-            "layer 1 (constant) is left out: it changes nothing",
-            "layer 3 (constant) is left out: it changes nothing",
-            "layer 4 \"nothing\" is left out: it changes nothing",
+            "layer 4 \"nothing\" is played as a constant: it wants the same friction everywhere",
+            "layer 1 (constant) is optimised away: it changes nothing",
+            "layer 3 (constant) is optimised away: it changes nothing",
+            "layer 4 \"nothing\" is optimised away: it changes nothing",
         ],
         1,
     );
@@ -80,9 +80,9 @@ fn constants_become_one() {
          [[layer]]\nkind = \"constant\"\nblend = \"multiply\"\nfriction_factor = 0.5\n\
          [[layer]]\nkind = \"constant\"\nblend = \"max\"\nfriction_n = 0.009",
         &[
-            "layer 2 (constant) is left out: it is reckoned into layer 1 (constant)",
-            "layer 3 (constant) is left out: it is reckoned into layer 1 (constant)",
-            "layer 4 (constant) is left out: it is reckoned into layer 1 (constant)",
+            "layer 2 (constant) is optimised away: it is merged into layer 1 (constant)",
+            "layer 3 (constant) is optimised away: it is merged into layer 1 (constant)",
+            "layer 4 (constant) is optimised away: it is merged into layer 1 (constant)",
         ],
         1,
     );
@@ -100,9 +100,9 @@ fn points_and_pictures_that_nothing_names_go() {
     check(
         &layers,
         &[
-            "layer 1 (bitmap) is left out: layer 3 (constant) takes its place everywhere",
-            "layer 2 (constant) is left out: layer 3 (constant) takes its place everywhere",
-            "a picture of 400 bytes is left out: no layer that is left shows it",
+            "layer 1 (bitmap) is optimised away: layer 3 (constant) replaces it everywhere",
+            "layer 2 (constant) is optimised away: layer 3 (constant) replaces it everywhere",
+            "a picture of 400 bytes is optimised away: no remaining layer shows it",
         ],
         2,
     );
@@ -119,10 +119,11 @@ fn pictures_are_cropped_to_what_can_be_found_and_shared() {
         )
     };
     let part = "region = { x_mm = 20.5, y_mm = 30, width_mm = 40, height_mm = 10.2 }\n";
-    // 42 columns, from the one whose centre is at 20.5 mm to the one at 60.5 mm, and the 11 or 12 rows around 30 to 40.2 mm.
+    // 42 columns, from the one whose centre is at 20.5 mm to the one at 60.5 mm, and the 11 or 12 rows around 30 to
+    // 40.2 mm.
     let program = compile_layers(&picture(part));
     assert_eq!((program.bitmaps[0].width, program.bitmaps[0].height), (41, 12));
-    check(&picture(part), &["brick.png: 10000 samples are cropped to the 492 that can be found"], 1);
+    check(&picture(part), &["brick.png: 10000 samples are cropped to the 492 inside its region and the screen"], 1);
     check(
         &format!("{}{}", picture(""), picture("blend = \"add\"\ngain = 0.1\n")),
         &["brick.png is sent once for several layers: 10000 bytes less"],
@@ -139,7 +140,7 @@ fn pictures_are_cropped_to_what_can_be_found_and_shared() {
     }
 }
 
-/// What is left out needs no feature of the firmware either.
+/// What is optimised away needs no feature of the firmware either.
 #[test]
 fn a_program_needs_the_features_of_what_is_left() {
     use frixel_wire::hello::feature;

@@ -1,14 +1,14 @@
-//! Makes a program smaller without changing what is felt: layers that nobody can find are dropped, layers that ask for
-//! the same everywhere become constants, constants over constants become one, and what nothing names any more goes.
+//! Makes a program smaller without changing what is felt: covered layers are dropped, layers of one friction become
+//! constants, constants over constants are merged, and points and pictures that no layer names are dropped.
 
 use std::collections::BTreeSet;
 
 use frixel_layers::{Blend, Constant, Header, Interval, Layer, Point, Record, Region, Speed};
 
-use super::left_out::LeftOut;
+use super::optimisation::Optimisation;
 use super::program::Program;
 
-/// A record on its way, with what is said about it.
+/// A record with its title in messages.
 struct Item {
     title: String,
     record: Record,
@@ -17,23 +17,23 @@ struct Item {
 }
 
 /// Makes a program smaller. `live` says which layers the host may change while it plays.
-pub(super) fn leave_out(program: &mut Program, live: &[bool]) {
+pub(super) fn optimise(program: &mut Program, live: &[bool]) {
     let titles = std::mem::take(&mut program.titles);
     let records = std::mem::take(&mut program.records);
     let together = titles.into_iter().zip(records).zip(live);
     let mut items: Vec<Item> = together.map(|((title, record), live)| Item { title, record, live: *live }).collect();
-    let left_out = &mut program.left_out;
-    flatten(&mut items, &program.points, left_out);
-    drop_covered(&mut items, &program.header, left_out);
-    drop_idle(&mut items, left_out);
-    fold(&mut items, left_out);
+    let optimisations = &mut program.optimisations;
+    flatten(&mut items, &program.points, optimisations);
+    drop_covered(&mut items, &program.header, optimisations);
+    drop_idle(&mut items, optimisations);
+    fold(&mut items, optimisations);
     (program.titles, program.records) = items.into_iter().map(|item| (item.title, item.record)).unzip();
     compact_points(program);
     drop_bitmaps(program);
 }
 
-/// What asks for the same everywhere and always is a constant.
-fn flatten(items: &mut [Item], points: &[Point], left_out: &mut Vec<LeftOut>) {
+/// Replaces layers that want the same friction everywhere and always by constants.
+fn flatten(items: &mut [Item], points: &[Point], optimisations: &mut Vec<Optimisation>) {
     for item in items.iter_mut().filter(|item| !item.live) {
         let layer = &item.record.layer;
         if layer.is_streamed() || matches!(layer, Layer::Constant(_)) {
@@ -42,13 +42,13 @@ fn flatten(items: &mut [Item], points: &[Point], left_out: &mut Vec<LeftOut>) {
         let Interval { low, high } = layer.bounds(points);
         if low.to_bits() == high.to_bits() {
             item.record.layer = Layer::Constant(Constant { electric_friction_n: low });
-            left_out.push(LeftOut::Flat { layer: item.title.clone() });
+            optimisations.push(Optimisation::Flat { layer: item.title.clone() });
         }
     }
 }
 
-/// Whatever lies below a layer that takes its place wherever it acts.
-fn drop_covered(items: &mut Vec<Item>, header: &Header, left_out: &mut Vec<LeftOut>) {
+/// Drops layers that a layer above replaces wherever they apply.
+fn drop_covered(items: &mut Vec<Item>, header: &Header, optimisations: &mut Vec<Optimisation>) {
     let mut number = 0;
     while let Some(item) = items.get(number) {
         let hides = |above: &&Item| {
@@ -57,7 +57,7 @@ fn drop_covered(items: &mut Vec<Item>, header: &Header, left_out: &mut Vec<LeftO
         };
         match items.iter().skip(number + 1).find(hides) {
             Some(by) if !item.live => {
-                left_out.push(LeftOut::Covered { layer: item.title.clone(), by: by.title.clone() });
+                optimisations.push(Optimisation::Covered { layer: item.title.clone(), by: by.title.clone() });
                 items.remove(number);
             }
             _ => number += 1,
@@ -65,7 +65,7 @@ fn drop_covered(items: &mut Vec<Item>, header: &Header, left_out: &mut Vec<LeftO
     }
 }
 
-/// Whether a region acts wherever another does on the screen.
+/// Whether a region covers another one on the screen.
 fn covers(region: Region, other: Region, header: &Header) -> bool {
     let screen = [0.0, 0.0, header.screen_width_m, header.screen_height_m];
     let sides = |region| match region {
@@ -78,7 +78,7 @@ fn covers(region: Region, other: Region, header: &Header) -> bool {
     if region == other || region == Region::Screen {
         return true;
     }
-    // Of the others, only a rectangle is known to fill its sides.
+    // Of the other shapes, only a rectangle fills its bounds.
     match (region, sides(region), sides(other)) {
         (Region::Rectangle { .. }, Some([left, top, right, bottom]), Some([x1, y1, x2, y2])) => {
             left <= x1 && top <= y1 && right >= x2 && bottom >= y2
@@ -87,8 +87,8 @@ fn covers(region: Region, other: Region, header: &Header) -> bool {
     }
 }
 
-/// Constants that change nothing: nothing added, multiplied by one, and bare glass on bare glass.
-fn drop_idle(items: &mut Vec<Item>, left_out: &mut Vec<LeftOut>) {
+/// Drops constants that change nothing: zero added, a factor of one, and zero on a bare screen.
+fn drop_idle(items: &mut Vec<Item>, optimisations: &mut Vec<Optimisation>) {
     let mut bare = true;
     items.retain(|item| {
         let own = match item.record.layer {
@@ -103,7 +103,7 @@ fn drop_idle(items: &mut Vec<Item>, left_out: &mut Vec<LeftOut>) {
         };
         let goes = idle && !item.live;
         if goes {
-            left_out.push(LeftOut::Idle { layer: item.title.clone() });
+            optimisations.push(Optimisation::Idle { layer: item.title.clone() });
         } else {
             bare = false;
         }
@@ -111,8 +111,9 @@ fn drop_idle(items: &mut Vec<Item>, left_out: &mut Vec<LeftOut>) {
     });
 }
 
-/// A constant that joins the constant right below it, everywhere that one acts. The board would compute the same bits.
-fn fold(items: &mut Vec<Item>, left_out: &mut Vec<LeftOut>) {
+/// Merges a constant into the constant right below it, if both have the same region. The board would compute the same
+/// bits.
+fn fold(items: &mut Vec<Item>, optimisations: &mut Vec<Optimisation>) {
     let mut number = 0;
     while let (Some(below), Some(above)) = (items.get(number), items.get(number + 1)) {
         let constant = |item: &Item| match item.record.layer {
@@ -132,7 +133,7 @@ fn fold(items: &mut Vec<Item>, left_out: &mut Vec<LeftOut>) {
             number += 1;
             continue;
         };
-        left_out.push(LeftOut::Folded { layer: above.title.clone(), into: below.title.clone() });
+        optimisations.push(Optimisation::Folded { layer: above.title.clone(), into: below.title.clone() });
         items.remove(number + 1);
         if let Some(below) = items.get_mut(number) {
             below.record.gain = 1.0;
@@ -141,7 +142,7 @@ fn fold(items: &mut Vec<Item>, left_out: &mut Vec<LeftOut>) {
     }
 }
 
-/// Keeps the points that records still name, and numbers them anew.
+/// Keeps the points that records name, and renumbers them.
 fn compact_points(program: &mut Program) {
     let all = std::mem::take(&mut program.points);
     let mut kept: Vec<Point> = Vec::new();
@@ -151,7 +152,7 @@ fn compact_points(program: &mut Program) {
         if place == kept.len() {
             kept.extend(own);
         }
-        // There are no more than before.
+        // The number fits: there are no more points than before.
         *first = place as u8;
     };
     for record in &mut program.records {
@@ -167,11 +168,11 @@ fn compact_points(program: &mut Program) {
 
 fn drop_bitmaps(program: &mut Program) {
     let named: BTreeSet<u32> = program.records.iter().filter_map(|record| record.layer.bitmap_crc32()).collect();
-    let left_out = &mut program.left_out;
+    let optimisations = &mut program.optimisations;
     program.bitmaps.retain(|bitmap| {
         let keeps = named.contains(&bitmap.crc32);
         if !keeps {
-            left_out.push(LeftOut::Bitmap { bytes: bitmap.samples.len() });
+            optimisations.push(Optimisation::Bitmap { bytes: bitmap.samples.len() });
         }
         keeps
     });

@@ -1,4 +1,4 @@
-//! What a scene asks for over its screen, and how much of that is out of reach.
+//! The range of friction that a program wants over its screen, and how much of it is out of reach.
 
 use frixel_layers::{Blend, Interval};
 use serde::Serialize;
@@ -8,33 +8,34 @@ use super::program::Program;
 use super::reach::ROUNDING;
 use crate::reference::{Piece, Reference};
 
-/// Places that are looked at along the longer side of the screen.
+/// Places that are evaluated along the longer side of the screen.
 const PLACES: f64 = 600.0;
 
-/// What a scene asks for anywhere on its screen, at any time and speed, clicks and streams at their most.
+/// The friction that a program wants anywhere on its screen, at any time and speed, with clicks and streams at their
+/// largest.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Asked {
+pub struct TargetRange {
     /// Least friction, in total, N.
     pub least_n: f64,
     /// Largest friction, in total, N.
     pub most_n: f64,
-    /// What is more than the drive can give; it is clamped.
-    pub above: Outside,
-    /// What is less than the finger has at no voltage; it is clamped.
-    pub below: Outside,
+    /// Where it wants more than the drive can give, and is clamped.
+    pub above: OutOfReach,
+    /// Where it wants less than the friction at no voltage, and is clamped.
+    pub below: OutOfReach,
 }
 
-/// The part of a scene on one side of the reach.
+/// The part of a screen on one side of the reach.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Outside {
-    /// How much of the screen's area it is, in percent.
+pub struct OutOfReach {
+    /// Its area, in percent of the screen.
     pub screen_percent: f64,
-    /// The layers that count there.
+    /// The layers that apply there.
     pub layers: Vec<String>,
 }
 
-impl Asked {
-    /// Looks at a grid of places all over the screen of a program.
+impl TargetRange {
+    /// Evaluates a grid of places all over the screen.
     pub fn of(program: &Program) -> Self {
         let reference = Reference::new(program);
         let pieces = reference.pieces();
@@ -54,13 +55,13 @@ impl Asked {
         Self {
             least_n: reach.natural_friction_n + low,
             most_n: reach.natural_friction_n + high,
-            above: above.outside(program, places.count()),
-            below: below.outside(program, places.count()),
+            above: above.share(program, places.count()),
+            below: below.share(program, places.count()),
         }
     }
 }
 
-/// Places in the middle of the fields of a grid.
+/// A grid of places: the middles of its fields.
 struct Places {
     pitch_m: (f64, f64),
     count: (usize, usize),
@@ -88,7 +89,7 @@ impl Places {
     }
 }
 
-/// Places on one side of the reach, and the layers that count there.
+/// Counts places on one side of the reach, and marks the layers that apply there.
 struct Counted {
     places: usize,
     layers: Vec<bool>,
@@ -99,14 +100,14 @@ impl Counted {
         Self { places: 0, layers: vec![false; layers] }
     }
 
-    fn count(&mut self, outside: bool, pieces: &[Piece], x_m: f64, y_m: f64) {
-        if !outside {
+    fn count(&mut self, is_outside: bool, pieces: &[Piece], x_m: f64, y_m: f64) {
+        if !is_outside {
             return;
         }
         self.places += 1;
-        for (piece, counts) in pieces.iter().zip(&mut self.layers).rev() {
+        for (piece, applies) in pieces.iter().zip(&mut self.layers).rev() {
             if piece.shape.covers(x_m, y_m) {
-                *counts = true;
+                *applies = true;
                 if piece.blend == Blend::Replace {
                     break;
                 }
@@ -114,11 +115,11 @@ impl Counted {
         }
     }
 
-    fn outside(self, program: &Program, places: usize) -> Outside {
+    fn share(self, program: &Program, places: usize) -> OutOfReach {
         let titles = program.titles.iter().zip(self.layers);
-        Outside {
+        OutOfReach {
             screen_percent: 100.0 * self.places as f64 / places.max(1) as f64,
-            layers: titles.filter(|(_, counts)| *counts).map(|(title, _)| title.clone()).collect(),
+            layers: titles.filter(|(_, applies)| *applies).map(|(title, _)| title.clone()).collect(),
         }
     }
 }

@@ -1,0 +1,61 @@
+//! What the compiler has optimised away, and why.
+
+use thiserror::Error;
+
+/// Part of a scene file that its program does not need. Its text is a sentence for a person.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum Optimisation {
+    /// A layer that another one replaces wherever it applies.
+    #[error("{layer} is optimised away: {by} replaces it everywhere")]
+    Covered {
+        /// The layer.
+        layer: String,
+        /// The layer that replaces it.
+        by: String,
+    },
+    /// A layer that changes nothing.
+    #[error("{layer} is optimised away: it changes nothing")]
+    Idle {
+        /// The layer.
+        layer: String,
+    },
+    /// A layer that wants the same friction everywhere and always.
+    #[error("{layer} is played as a constant: it wants the same friction everywhere")]
+    Flat {
+        /// The layer.
+        layer: String,
+    },
+    /// A constant that was merged into the one below it.
+    #[error("{layer} is optimised away: it is merged into {into}")]
+    Folded {
+        /// The layer.
+        layer: String,
+        /// The layer below it.
+        into: String,
+    },
+    /// Part of a picture that lies outside its region or the screen.
+    #[error("{picture}: {whole} samples are cropped to the {kept} inside its region and the screen")]
+    Cropped {
+        /// The picture's file.
+        picture: String,
+        /// Samples of the whole picture.
+        whole: usize,
+        /// Samples that are kept.
+        kept: usize,
+    },
+    /// A picture that is equal to another one.
+    #[error("{picture} is sent once for several layers: {bytes} bytes less")]
+    Shared {
+        /// The picture's file.
+        picture: String,
+        /// Its size, one byte a sample.
+        bytes: usize,
+    },
+    /// A picture that no remaining layer shows.
+    #[error("a picture of {bytes} bytes is optimised away: no remaining layer shows it")]
+    Bitmap {
+        /// Its size, one byte a sample.
+        bytes: usize,
+    },
+}
