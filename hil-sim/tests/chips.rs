@@ -132,14 +132,14 @@ fn the_dac_is_prepared_between_the_frames_of_the_tick() {
             frames.set(frames.get() + 1);
         }
     };
-    let wait_until = |condition: &dyn Fn() -> bool| {
+    tick();
+    let mut polls = 0;
+    let poll = || {
         tick();
-        assert!((0..10).any(|_| {
-            tick();
-            condition()
-        }));
+        polls += 1;
+        assert!(polls < 10, "the main loop waits in vain");
     };
-    let prepared = bus.while_frames_rest(wait_until, || {
+    let prepared = bus.while_frames_rest(poll, || {
         let before = frames.get();
         tick();
         dac.read_control().unwrap();

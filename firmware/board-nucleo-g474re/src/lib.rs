@@ -36,10 +36,17 @@ const ROUNDS_MAX: u32 = 5_000_000;
 /// Waits until a part of the processor is ready. When it never is, the panic that says so puts the output to zero and
 /// resets.
 pub(crate) fn wait_until(ready: impl Fn() -> bool, what: &str) {
-    for _ in 0..ROUNDS_MAX {
-        if ready() {
-            return;
-        }
+    let mut poll = limited_polls(what);
+    while !ready() {
+        poll();
     }
-    panic!("waited in vain for {what}");
+}
+
+/// To be called in every round of a loop that waits. The panic after the last round puts the output to zero and resets.
+pub(crate) fn limited_polls(what: &str) -> impl FnMut() {
+    let mut rounds = 0;
+    move || {
+        rounds += 1;
+        assert!(rounds < ROUNDS_MAX, "waited in vain for {what}");
+    }
 }

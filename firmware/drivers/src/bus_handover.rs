@@ -28,14 +28,18 @@ impl BusHandover {
         !granted
     }
 
-    /// In the main loop: does `work` on the bus, and returns when the tick sends frames again. `wait_until` waits for a
-    /// condition that changes in a tick.
-    pub fn while_frames_rest<R>(&self, wait_until: impl Fn(&dyn Fn() -> bool), work: impl FnOnce() -> R) -> R {
+    /// In the main loop: does `work` on the bus, and returns when the tick sends frames again. Calls `poll` while it waits
+    /// for the tick.
+    pub fn while_frames_rest<R>(&self, mut poll: impl FnMut(), work: impl FnOnce() -> R) -> R {
         self.requested.store(true, Ordering::Release);
-        wait_until(&|| self.is_granted());
+        while !self.is_granted() {
+            poll();
+        }
         let result = work();
         self.requested.store(false, Ordering::Release);
-        wait_until(&|| !self.is_granted());
+        while self.is_granted() {
+            poll();
+        }
         result
     }
 
@@ -48,19 +52,25 @@ impl BusHandover {
 mod tests {
     use super::*;
 
-    /// Ticks with zero output until a condition holds, ten times at most.
-    fn tick_until(bus: &BusHandover, condition: &dyn Fn() -> bool) {
-        assert!((0..10).any(|_| {
-            bus.tick_sends(true);
-            condition()
-        }));
+    /// Ticks that find the output at zero from tick number `zero_from` on; ten at most.
+    fn ticks(bus: &BusHandover, zero_from: u32) -> impl FnMut() {
+        let mut tick = 0;
+        move || {
+            let output_is_zero = tick >= zero_from;
+            assert!(
+                bus.tick_sends(output_is_zero) || output_is_zero,
+                "the main loop got the bus from a tick that drives"
+            );
+            tick += 1;
+            assert!(tick < 10, "the main loop waits in vain");
+        }
     }
 
     #[test]
     fn the_tick_rests_during_the_work_only() {
         let bus = BusHandover::new();
         assert!(bus.tick_sends(true));
-        let rested = bus.while_frames_rest(|condition| tick_until(&bus, condition), || !bus.tick_sends(true));
+        let rested = bus.while_frames_rest(ticks(&bus, 0), || !bus.tick_sends(true));
         assert!(rested, "the tick sent a frame during the work");
         assert!(bus.tick_sends(true));
     }
@@ -68,11 +78,6 @@ mod tests {
     #[test]
     fn an_output_that_is_not_zero_keeps_the_bus() {
         let bus = BusHandover::new();
-        let wait = |condition: &dyn Fn() -> bool| {
-            assert!(bus.tick_sends(false));
-            assert!(!bus.is_granted());
-            tick_until(&bus, condition);
-        };
-        bus.while_frames_rest(wait, || assert!(!bus.tick_sends(true)));
+        bus.while_frames_rest(ticks(&bus, 5), || assert!(!bus.tick_sends(true)));
     }
 }
