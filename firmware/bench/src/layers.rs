@@ -20,14 +20,8 @@ use crate::tick::Bench;
 pub(crate) const GRATING: Layer = grating(Wave::Sine);
 
 const AROUND: Region = Region::Rectangle { x_m: 0.0, y_m: 0.0, width_m: 0.12, height_m: 0.11 };
-const RINGS: Layer = Layer::Rings(Rings {
-    wave: Wave::Sine,
-    x_m: 0.06,
-    y_m: 0.05,
-    cycles_per_m: 500.0,
-    trough_n: 0.0,
-    crest_n: 0.026,
-});
+const RINGS: Layer =
+    Layer::Rings(Rings { wave: Wave::Sine, x_m: 0.06, y_m: 0.05, cycles_per_m: 500.0, trough_n: 0.0, crest_n: 0.026 });
 const STREAM: Layer = Layer::Stream(Stream { low_n: 0.001, high_n: 0.02 });
 /// The part of the screen where the finger is, and no layer that is elsewhere.
 const UPPER_PART: Region = Region::Rectangle { x_m: 0.0, y_m: 0.0, width_m: 0.12, height_m: 0.06 };
