@@ -40,7 +40,8 @@ impl Grid {
     /// The row of a friction, or a number past the last row when the friction is outside.
     #[inline]
     pub(super) fn row(&self, friction_n: f32) -> usize {
-        // Below the range the subtraction wraps to a large number; negative numbers and not-a-number have large patterns.
+        // Below the range the subtraction wraps to a large number; the bits of negative numbers and not-a-number are
+        // large themselves.
         let patterns = friction_n.to_bits().wrapping_sub(self.first_bits);
         ((u64::from(patterns) * u64::from(self.density.get())) >> 32) as usize
     }
