@@ -19,7 +19,7 @@ pub enum SceneError {
     Length {
         /// The value found.
         found: u32,
-        /// As the header says.
+        /// Length that follows from the header.
         expected: u32,
     },
     /// The carrier's shape is unknown.
@@ -42,7 +42,7 @@ pub enum SceneError {
     },
     /// More records than the layout ([`RECORDS_MAX`]) or the board allows.
     TooManyRecords {
-        /// As the header says.
+        /// Number of records stated in the header.
         found: u8,
     },
     /// At least one of these header flags is unknown.
@@ -56,7 +56,7 @@ pub enum SceneError {
     },
     /// More points than the layout allows ([`POINTS_MAX`]).
     TooManyPoints {
-        /// As the header says.
+        /// Number of points stated in the header.
         found: u8,
     },
     /// A polygon or a curve has too few or too many points, or refers to points outside the scene.
