@@ -1,4 +1,5 @@
-//! The carrier between the DAC and the electrode: what it loses in its edges, and the current that it drives.
+//! The carrier between the DAC and the electrode: the rms voltage lost in its edges, and the current through the
+//! electrode.
 
 use core::f64::consts::PI;
 
@@ -8,20 +9,20 @@ use crate::double_single::DoubleSingle;
 /// Shape of a carrier.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Waveform {
-    /// Plus and minus its peak.
+    /// A square wave between plus and minus its peak.
     Square,
-    /// A sine.
+    /// A sine wave.
     Sine,
 }
 
-/// A carrier that a DAC puts out tick by tick, behind the first-order lag of amplifier and series resistor.
+/// A carrier that the DAC outputs tick by tick, followed by the first-order lag of amplifier and series resistor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Carrier {
-    /// Its shape.
+    /// Shape of the carrier.
     pub waveform: Waveform,
     /// Half a period `T`, in seconds.
     pub half_period_s: f32,
-    /// Time constant `tau` of the lag, in seconds; zero for none.
+    /// Time constant `tau` of the lag, in seconds; zero if there is no lag.
     pub edge_time_constant_s: f32,
 }
 
@@ -30,12 +31,12 @@ pub struct Carrier {
 pub struct ElectrodeCurrent {
     /// Root mean square over a period, in amperes.
     pub a_rms: f32,
-    /// Largest, in amperes.
+    /// Peak, in amperes.
     pub a_peak: f32,
 }
 
 impl Carrier {
-    /// Peak at the DAC for an rms of one on the electrode: crest factor, and loss in the edges.
+    /// Ratio of the peak at the DAC to the rms on the electrode: the crest factor, corrected for the loss in the edges.
     ///
     /// The lag leaves `1 - (2 tau/T) tanh(T/(2 tau))` of a square wave's mean square: the steady response goes from
     /// minus to plus its peak along `1 - 2 exp(-t/tau)/(1 + exp(-T/tau))`. It leaves `1/(1 + (w tau)^2)` of a sine's,
@@ -68,9 +69,10 @@ impl Carrier {
     /// Largest current into a capacitance of `capacitance_f` farads at a peak `U` of `drive_v_peak` volts at the DAC, for
     /// any scene. Infinite without lag.
     ///
-    /// A full swing moves the charge `2 U C` along an exponential: peak `2 U C/tau`, and with two swings a period an rms
-    /// of `2 U C sqrt(f/tau)`. That is a square wave at full voltage. It is the budget of a sine, too: a sine is smooth
-    /// only while its envelope is, and edges in a texture, or early edges that keep direct current away, step it.
+    /// A full swing moves the charge `2 U C` along an exponential: the peak is `2 U C/tau` and, with two swings per
+    /// period, the rms is `2 U C sqrt(f/tau)`. These are the values of a square wave at full voltage. They also bound a
+    /// sine: it is smooth only while its envelope is, and edges in a texture, or early carrier edges that prevent
+    /// direct current, make it jump.
     pub fn electrode_current(&self, capacitance_f: f32, drive_v_peak: f32) -> ElectrodeCurrent {
         let swing_c = 2.0 * capacitance_f * drive_v_peak;
         let carrier_hz = 0.5 / self.half_period_s;

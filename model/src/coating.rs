@@ -1,4 +1,4 @@
-//! What lies between electrode and finger, and the stress that pulls through it.
+//! The layers between electrode and finger, and the electrostatic stress across them.
 
 use crate::error::{ParameterError, not_negative, positive, representable};
 use crate::{Expected, Real};
@@ -17,8 +17,9 @@ pub struct Slab<T> {
 
 /// Effective gap of slabs in series, in metres: the sum of thickness over relative permittivity.
 ///
-/// Coatings enter every equation of the paper only as this number, `h0/eps`; in series the voltage divides as it does
-/// over one air gap of this width. Summed in f64, so within one rounding of `T`. An empty stack is refused.
+/// A coating enters every equation of the paper only through this number, `h0/eps`. Slabs in series have the same
+/// capacitance as one air gap of this width. The sum is computed in f64, so its error is at most one rounding of `T`.
+/// An empty stack is refused.
 ///
 /// ```
 /// use frixel_model::{Slab, effective_gap_m};

@@ -1,5 +1,5 @@
-//! Numbers of some 44 bits as sums of two `f32`: what a board computes with where `f32` is not enough, since its FPU has no
-//! `f64`. In software, `f64` would cost an image its routines.
+//! Double-single arithmetic: numbers of about 44 bits as sums of two `f32`. A board uses it where `f32` is not precise
+//! enough, since its FPU does not support `f64` and software `f64` would add its routines to the firmware image.
 
 use core::cmp::Ordering;
 use core::fmt::{Display, Formatter, Result as FmtResult};
@@ -46,7 +46,7 @@ fn two_product(a: f32, b: f32) -> DoubleSingle {
     DoubleSingle { high, low: ((a_high * b_high - high) + a_high * b_low + a_low * b_high) + a_low * b_low }
 }
 
-// Each operation is code of its own, called from wherever it is needed.
+// Operations are not inlined, to save code size.
 
 impl Add for DoubleSingle {
     type Output = Self;
@@ -128,7 +128,7 @@ impl Display for DoubleSingle {
     }
 }
 
-/// Powers, logarithms and arcs go through `f64`: no board needs them.
+/// Powers, logarithms and arc tangents are computed in `f64`; no board uses them.
 impl Real for DoubleSingle {
     const ZERO: Self = Self { high: 0.0, low: 0.0 };
     const ONE: Self = Self { high: 1.0, low: 0.0 };
@@ -146,7 +146,7 @@ impl Real for DoubleSingle {
     fn to_f32(self) -> f32 {
         self.high
     }
-    /// Zero of what is below the smallest normal number.
+    /// Returns zero for arguments below the smallest normal number.
     #[inline(never)]
     fn sqrt(self) -> Self {
         /// A first guess at `1/sqrt(x)`, within 3.5 % (C. Lomont, "Fast inverse square root", Purdue University, 2003).
@@ -163,7 +163,7 @@ impl Real for DoubleSingle {
         for _ in 0..3 {
             inverse *= 1.5 - half * inverse * inverse;
         }
-        // And one for the root, with what the product leaves.
+        // A last step for the root itself, with the residual of the product.
         let root = self.high * inverse;
         let square = two_product(root, root);
         let rest = ((self.high - square.high) - square.low) + self.low;

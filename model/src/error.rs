@@ -1,11 +1,11 @@
-//! What the model refuses, and why.
+//! Errors of the model.
 
 use core::error::Error;
 use core::fmt::{Display, Formatter, Result as FmtResult};
 
 use crate::Real;
 
-/// What a parameter must be.
+/// The requirement on a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Expected {
     /// Finite and above zero.
@@ -18,18 +18,18 @@ pub enum Expected {
     StressExponent,
     /// Finite and at least one.
     AtLeastOne,
-    /// Between the precision's smallest and largest normal numbers, with what follows from it.
+    /// The parameter and the scales derived from it are in the normal range of the precision.
     Representable,
     /// Not beyond the outer radius.
     WithinOuterRadius,
 }
 
-/// A parameter that the model refuses, by name.
+/// A parameter that the model refuses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParameterError {
-    /// The parameter's name, as its field or argument is called.
+    /// The name of the field or argument.
     pub parameter: &'static str,
-    /// What was expected of it.
+    /// The requirement that it violates.
     pub expected: Expected,
     /// Its value.
     pub found: f64,
@@ -63,13 +63,13 @@ impl Error for ParameterError {}
 pub enum StateError {
     /// The finger is pulled off the screen: there is no contact, and no friction.
     NoContact,
-    /// The contact would pass the outer radius.
+    /// The contact would extend beyond the outer radius.
     PassesOuterRadius,
-    /// The answer is too large or too small for the precision.
+    /// The result is too large or too small for the precision.
     OutOfRange,
     /// The root-finder did not close its bracket.
     NotConverged,
-    /// An argument is refused.
+    /// An argument is invalid.
     Parameter(ParameterError),
 }
 
@@ -90,17 +90,17 @@ impl Error for StateError {}
 /// Why there is no voltage for a friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum InverseError {
-    /// The friction is less than the finger has at no voltage.
+    /// The friction is below the friction at zero voltage.
     BelowNatural,
-    /// The contact of this friction is on the branch below pull-off, where it does not hold.
+    /// The contact at this friction is on the unstable branch, below pull-off.
     Unstable,
-    /// The contact of this friction would pass the outer radius.
+    /// The contact at this friction would extend beyond the outer radius.
     PassesOuterRadius,
-    /// The answer is too large or too small for the precision.
+    /// The result is too large or too small for the precision.
     OutOfRange,
     /// The root-finder did not close its bracket.
     NotConverged,
-    /// An argument is refused.
+    /// An argument is invalid.
     Parameter(ParameterError),
 }
 
@@ -159,7 +159,7 @@ pub(crate) fn at_least_one<T: Real>(parameter: &'static str, value: T) -> Result
     require(value >= T::ONE, parameter, value, Expected::AtLeastOne)
 }
 
-/// `value`, computed from `found` in the precision of the model: refused when it is no number any more.
+/// Returns `value`, which was computed from the parameter `found`, or an error if it is not finite.
 pub(crate) fn representable<T: Real>(parameter: &'static str, found: T, value: T) -> Result<T, ParameterError> {
     if value.is_finite() {
         Ok(value)
@@ -168,7 +168,7 @@ pub(crate) fn representable<T: Real>(parameter: &'static str, found: T, value: T
     }
 }
 
-/// The electric friction that is wanted of a contact under a load of zero or more.
+/// Checks the target electric friction of a contact under a load of zero or more.
 pub(crate) fn wanted_electric_friction_n<T: Real>(electric_friction_n: T) -> Result<T, InverseError> {
     if finite("electric_friction_n", electric_friction_n)? < T::ZERO {
         Err(InverseError::BelowNatural)
@@ -177,12 +177,12 @@ pub(crate) fn wanted_electric_friction_n<T: Real>(electric_friction_n: T) -> Res
     }
 }
 
-/// The voltage that was found, unless it left the range.
+/// Returns the computed voltage, or an error if it is not finite.
 pub(crate) fn found_voltage_v_rms<T: Real>(voltage_v_rms: T) -> Result<T, InverseError> {
     if voltage_v_rms.is_finite() { Ok(voltage_v_rms) } else { Err(InverseError::OutOfRange) }
 }
 
-/// `value`, computed in f64 from `parameter` and others, in the precision of the model.
+/// Rounds `value`, which was computed in f64 from `parameter` and others, to the precision of the model.
 pub(crate) fn scale<T: Real>(parameter: &'static str, found: T, value: f64) -> Result<T, ParameterError> {
     let scale = T::from_f64(value);
     if scale >= T::MIN_POSITIVE && scale.is_finite() {

@@ -1,15 +1,16 @@
-//! Contact model of an electrovibration touchscreen: what friction a voltage gives to a finger, and what voltage gives a
-//! friction.
+//! Contact model of an electrovibration touchscreen: computes the friction on a finger from the voltage, and the
+//! voltage from the friction.
 //!
 //! The model is that of I.I. Argatov and F.M. Borodich, "A macro model for electroadhesive contact of a soft finger with a
 //! touchscreen"; equation numbers are theirs. It is `no_std`, does not allocate, does not panic, and gives the same bits
-//! on a desktop and on a microcontroller. Units are SI and stand in the names; a voltage is the root mean square of the
+//! on a desktop and on a microcontroller. Units are SI and part of the names; a voltage is the root mean square of the
 //! drive.
 //!
-//! Start at [`Contact`]: a finger and a coating, then a load, then a voltage or a friction. On a device, [`InverseTable`]
-//! answers without root or division. The **electric friction** `F_T - mu F_N` is the quantity throughout: under a load the
-//! drive adds a little to much, and the difference of totals would lose it.
-//! [`Carrier`], which is not of the paper, has what the drive loses on its way to the electrode.
+//! Start at [`Contact`]: create it from a finger and a coating, apply a load, then evaluate it at a voltage or a
+//! friction. On a device, [`InverseTable`] computes the voltage without root or division. The crate works with the
+//! **electric friction** `F_T - mu F_N` throughout: under a load it is small compared to the total friction, and
+//! computing it as a difference of totals would lose its digits. [`Carrier`], which is not part of the paper, models
+//! the losses between the DAC and the electrode.
 //!
 //! # Where each equation is
 //!
@@ -39,9 +40,10 @@
 //!
 //! # Accuracy
 //!
-//! Held in the tests against 80-digit arithmetic on the paper's dimensional equations (`reference/`), each test also seen
-//! to fail with its output forced to zero. How much of each bound is used stands in `docs/model.md`. Relative to the answer,
-//! for every input that keeps answers in the precision's normal range, and with them `F_T/(mu B E R^2)` of a soft finger:
+//! The tests compare the results with 80-digit arithmetic on the paper's dimensional equations (`reference/`); each
+//! test is also shown to fail when the output is forced to zero. `docs/model.md` lists how much of each bound is used.
+//! The bounds are relative to the result. They hold for every input for which the results, and for a soft finger also
+//! `F_T/(mu B E R^2)`, are in the normal range of the precision:
 //!
 //! | | f64 | f32 |
 //! |---|---|---|
@@ -51,16 +53,16 @@
 //! | [`Sensitivity`] of all of them, with the square of the factor below | 4e-14 | 1e-5 |
 //! | capacitance, pull-off, onset of slip | 4e-15 | 1e-6 |
 //!
-//! An answer that is ill-conditioned has its bound multiplied by `max(1, c/12)`, with the condition number `c`: the sum of
-//! its relative changes over those of voltage or friction, load, stiffness, coating, radius and outer radius. Without a
-//! pull `c` is at most 10. Under a pull it grows as `q/(y - q)` towards pull-off; a voltage from a *total* friction
-//! has `c = 12 F_T/(F_T - mu F_N)`.
+//! The bound of an ill-conditioned result is multiplied by `max(1, c/12)`. The condition number `c` is the sum of the
+//! relative sensitivities of the result to voltage or friction, load, stiffness, coating, radius and outer radius.
+//! Without a pull `c` is at most 10. Under a pull it grows as `q/(y - q)` towards pull-off; a voltage computed from a
+//! *total* friction has `c = 12 F_T/(F_T - mu F_N)`.
 //!
-//! # Where the paper's text and its equations part
+//! # Where the paper's text and its equations differ
 //!
-//! - Section VI.A compares lower bounds, and says that Eq. (34) gives `F_T ~ sigma0^2` as `sigma0 -> 0`. It is Eq. (42) that
-//!   does. Eqs. (34), (36) begin with `F_T = 2 pi mu R g sigma0`, slope 1, because the attraction around the contact comes
-//!   first; with an outer radius the same times `beta/(1 + beta)`:
+//! - Section VI.A compares lower bounds, and states that Eq. (34) gives `F_T ~ sigma0^2` as `sigma0 -> 0`. This is true
+//!   of Eq. (42) instead. Eqs. (34), (36) begin with `F_T = 2 pi mu R g sigma0`, slope 1, because the attraction around
+//!   the contact dominates at low voltage; with an outer radius this is multiplied by `beta/(1 + beta)`:
 //!
 //!   | `q` | slope of (34), (36) in `sigma0` | slope of (42) | (34), (36) over (42) |
 //!   |---|---|---|---|
@@ -70,23 +72,26 @@
 //!   | 1 | 1.561 | 2 | 1.457 |
 //!   | 10 | 1.983 | 2 | 1.009 |
 //!   | 1e3 | 1.999998 | 2 | 1.000001 |
-//! - "The solution to Eqs. (21) and (44)", under Eq. (44), is that to Eqs. (21) and (43): (44) only defines a group.
+//! - "The solution to Eqs. (21) and (44)", under Eq. (44), should read Eqs. (21) and (43): (44) only defines a
+//!   dimensionless group.
 //! - Eq. (44) scales the load by `k R h0^2`. On the one core line it is `pi k R (h0/eps)^2`: `f_N = n pi/eps^2`.
-//! - Eq. (22) allows the stress exponent 0; Eq. (24) has its reciprocal. Zero is refused.
+//! - Eq. (22) allows a stress exponent of 0, but Eq. (24) contains its reciprocal. This crate refuses zero.
 //!
-//! These figures, and those of the next section: `cargo test -p frixel-model --test documented -- --nocapture`.
+//! Print these figures and those of the next section with
+//! `cargo test -p frixel-model --test documented -- --nocapture`.
 //!
 //! # What friction can and cannot identify
 //!
-//! Friction over voltage and load depends on the coefficient of friction `mu`, the friction scale `F* = mu pi k R g^2` and
-//! the voltage scale `V* = sqrt(2 k g^3/eps0)`, and on nothing else: twice the gap and the radius with an eighth of the
-//! stiffness is the same friction everywhere, over a contact of twice the radius. A measured contact radius adds the product
-//! `R g`, a measured capacitance the outer radius and `R`.
+//! Friction as a function of voltage and load depends only on the coefficient of friction `mu`, the friction scale
+//! `F* = mu pi k R g^2` and the voltage scale `V* = sqrt(2 k g^3/eps0)`. Twice the gap and twice the radius with an
+//! eighth of the stiffness give the same friction at every voltage and load, over a contact of twice the radius. A
+//! measured contact radius also identifies the product `R g`; a measured capacitance, the outer radius and `R`.
 //!
-//! Where the load dominates, `x = 2 F* sqrt(n) (V/V*)^2` and data give `mu` and `F* sqrt(n)/V*^2` only; the scales part in
-//! the departure from that square law. For the example finger (8 mm, 1.8e7 Pa/m, 10 um, 0.5 N: `n` is 11,052) it is 1 % at
-//! 1 V, 5.6 % at 150 V, 9.9 % at 200 V: the first 1 % is there at any small voltage and still a square law; data noisier than
-//! the rest tell one number, and a fit must say so.
+//! Where the load dominates, the electric friction is `2 F* sqrt(n) (V/V*)^2`, and data identify only `mu` and
+//! `F* sqrt(n)/V*^2`; only the departure from that square law separates the two scales. For the example finger
+//! (8 mm, 1.8e7 Pa/m, 10 um, 0.5 N: `n` is 11,052) it is 1 % at 1 V, 5.6 % at 150 V, 9.9 % at 200 V: the first 1 % is
+//! present at any small voltage and is itself a square law. If the noise exceeds the rest of the departure, the data
+//! identify only the one ratio, and a fit must report that.
 //!
 //! ```
 //! use frixel_model::{Contact, ContactModel, Finger};

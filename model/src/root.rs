@@ -1,28 +1,29 @@
-//! Bracketed root-finding with a proven bound on its steps.
+//! Bracketed root-finding with a proven bound on the number of steps.
 
 use crate::Real;
 
-/// Newton steps taken on trust before every other step halves the bracket.
+/// Number of Newton steps before every second step halves the bracket instead.
 const TRUSTED_STEPS: u32 = 12;
-/// No more than this: between two numbers of zero or more there are fewer than 2^63 others, and every second step after
-/// the trusted ones leaves at most half of them.
+/// Maximum number of steps: between two numbers of zero or more there are fewer than 2^63 others, and after the trusted
+/// steps every second step at least halves their number.
 const STEPS: u32 = TRUSTED_STEPS + 2 * 64 + 2;
 
-/// One evaluation: on which side of the root, and where to look next.
+/// One evaluation of the function: its sign, and Newton's next point.
 pub(crate) struct Step<T> {
-    /// Below zero left of the root, above zero right of it.
+    /// Negative to the left of the root, positive to the right of it.
     pub(crate) residual: T,
-    /// Newton's next point. It is tried when it falls into the bracket, and believed when it stays where it is.
+    /// Newton's next point. It is evaluated if it is inside the bracket, and returned as the root if it equals the
+    /// current point within rounding.
     pub(crate) next: T,
 }
 
-/// The root-finder met a not-a-number.
+/// The function returned not-a-number, or the step limit was reached.
 #[derive(Debug, PartialEq)]
 pub(crate) struct NotConverged;
 
 /// The root of a function that rises through zero between `low >= 0` and `high`, within the rounding of `step`.
 ///
-/// At most 142 evaluations; five or six where Newton's method does well.
+/// Takes at most 142 evaluations; five or six where Newton's method converges well.
 pub(crate) fn rising_root<T: Real>(low: T, high: T, start: T, step: impl Fn(T) -> Step<T>) -> Result<T, NotConverged> {
     let (mut low, mut high) = (low, high);
     let mut x = start.max(low).min(high);
@@ -57,7 +58,7 @@ mod tests {
 
     use super::*;
 
-    /// The root that `step` leads to, and how often it was asked.
+    /// The root of `step`, and the number of evaluations.
     fn counted(low: f64, high: f64, step: impl Fn(f64) -> Step<f64>) -> (Result<f64, NotConverged>, u32) {
         let count = Cell::new(0);
         let root = rising_root(low, high, high, |x| {
@@ -74,7 +75,8 @@ mod tests {
         assert!(count <= 8, "{count}");
     }
 
-    /// Whatever Newton proposes (outside, nowhere, or a crawl within the bracket), the bound on the steps holds.
+    /// The bound on the steps holds for any Newton proposal: outside the bracket, not-a-number, or slow progress
+    /// inside.
     #[test]
     fn bad_proposals_are_bisected_within_the_bound() {
         let proposals: [fn(f64) -> f64; 5] = [|_| -1.0, |_| f64::NAN, |x| x * (1.0 - 1e-9), |x| x * 0.999, |x| x * 2.0];

@@ -1,4 +1,4 @@
-//! Why contact shrinks when sliding begins: the sheared spring of Section VI.B, Eq. (48).
+//! The sheared spring of Section VI.B, Eq. (48), which explains why the contact shrinks when sliding begins.
 
 use crate::Real;
 use crate::error::{Expected, ParameterError, StateError, positive};
@@ -17,14 +17,14 @@ pub struct TissueSpring<T> {
     pub friction_coefficient: T,
 }
 
-/// The spring on the point of slipping.
+/// The spring at the onset of slip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShearOnset<T> {
     /// Angle `phi` between spring and vertical, in radians, Eq. (48).
     pub angle_rad: T,
     /// Displacement `v = h (1 + l/h) tan(phi)`, in metres.
     pub displacement_m: T,
-    /// Support reaction `N` left then, in newtons.
+    /// Support reaction `N` at the onset, in newtons.
     pub normal_reaction_n: T,
     /// Tangential force `F_x = mu N`, in newtons.
     pub tangential_force_n: T,

@@ -1,4 +1,4 @@
-//! What every variant of the model answers.
+//! The results that every variant of the model provides.
 
 use crate::Real;
 use crate::error::{InverseError, StateError};
@@ -8,12 +8,12 @@ use crate::error::{InverseError, StateError};
 pub struct ContactState<T> {
     /// Contact radius `a`, in metres. Beyond the finger's radius the paraboloid no longer resembles it.
     pub contact_radius_m: T,
-    /// Winkler-Fuss stiffness `k` in Pa/m: the finger's own, or the one that a soft finger has at this friction. Zero
-    /// for a soft finger that nothing presses.
+    /// Winkler-Fuss stiffness `k` in Pa/m: the finger's own, or that of a soft finger at this friction. Zero for a soft
+    /// finger without any force on it.
     pub stiffness_pa_per_m: T,
     /// Friction `F_T` while sliding, in newtons, Eq. (21).
     pub friction_n: T,
-    /// What the voltage adds, `F_T - mu F_N`, in newtons, without cancellation.
+    /// Electric friction `F_T - mu F_N`, the friction that the voltage adds, in newtons; computed without cancellation.
     pub electric_friction_n: T,
 }
 
@@ -27,7 +27,7 @@ impl<T: Real> ContactState<T> {
     }
 }
 
-/// How friction answers to voltage and load.
+/// Derivatives of friction with respect to voltage and load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensitivity<T> {
     /// `dF_T/dV`, in N/V.
@@ -43,12 +43,13 @@ impl<T: Real> Sensitivity<T> {
     }
 }
 
-/// A contact under a fixed load, with the voltage left open: what all variants of the model have in common.
+/// A contact under a fixed load, as a function of voltage. Every variant of the model implements it.
 pub trait ContactModel<T: Real> {
-    /// Friction at no voltage, `mu F_N`, in newtons. One rounding.
+    /// Friction at zero voltage, `mu F_N`, in newtons. One rounding.
     fn natural_friction_n(&self) -> T;
 
-    /// The contact at an rms voltage of zero or more. The implementing type has the equations and the error bound.
+    /// The contact at an rms voltage of zero or more. The implementing type documents the equations and the error
+    /// bound.
     fn state(&self, voltage_v_rms: T) -> Result<ContactState<T>, StateError>;
 
     /// The rms voltage at which the electric friction `F_T - mu F_N` is `electric_friction_n`, in volts. The implementing
@@ -57,14 +58,14 @@ pub trait ContactModel<T: Real> {
 
     /// The rms voltage at which the friction `F_T` is `friction_n`, in volts.
     ///
-    /// Takes the electric part from the difference to natural friction, so that a relative error of the argument grows
-    /// by `F_T/(F_T - mu F_N)`. A negative friction is below natural.
+    /// The default implementation subtracts the natural friction, which amplifies a relative error of the argument by
+    /// `F_T/(F_T - mu F_N)`. A negative friction is below natural.
     fn voltage_for_friction(&self, friction_n: T) -> Result<T, InverseError> {
         let friction_n = crate::error::finite("friction_n", friction_n)?;
         self.voltage_for_electric_friction(friction_n - self.natural_friction_n())
     }
 
-    /// How friction answers to small changes of voltage and load: relative error at most 4e-14 in f64, 1e-5 in f32.
+    /// The derivatives of friction with respect to voltage and load: relative error at most 4e-14 in f64, 1e-5 in f32.
     fn sensitivity(&self, voltage_v_rms: T) -> Result<Sensitivity<T>, StateError>;
 
     /// The least and the largest friction from no voltage to `voltage_max_v_rms`, in newtons; for a contact that needs a

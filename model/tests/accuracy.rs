@@ -11,7 +11,7 @@ use frixel_model::{ContactState, InverseError, Real, StateError, VACUUM_PERMITTI
 const FORWARD: &str = include_str!("fixtures/forward.csv");
 const INVERSE: &str = include_str!("fixtures/inverse.csv");
 
-/// The bounds: closed forms, and what needs a root-finder or a power.
+/// The bounds on the error: one for closed forms, one for variants that need a root-finder or a power.
 fn bound<T: Real>(variant: &str) -> f64 {
     let single = T::EPSILON > T::from_f64(1e-10);
     match (variant, single) {
@@ -50,7 +50,7 @@ fn inverse_status(error: InverseError) -> &'static str {
     }
 }
 
-/// Every forward row; `distort` stands between the model and the comparison.
+/// Compares every forward row; `distort` is applied to the model's result before the comparison.
 fn forward<T: Real + 'static>(distort: impl Fn(ContactState<T>) -> ContactState<T>) -> Worst {
     let mut worst = Worst::new();
     for row in rows(FORWARD).iter().filter(|row| row.in_f32() || T::EPSILON < T::from_f64(1e-10)) {
@@ -77,7 +77,7 @@ fn forward<T: Real + 'static>(distort: impl Fn(ContactState<T>) -> ContactState<
     worst
 }
 
-/// Every inverse row; `distort` stands between the model and the comparison.
+/// Compares every inverse row; `distort` is applied to the model's result before the comparison.
 fn inverse<T: Real + 'static>(distort: impl Fn(T) -> T) -> Worst {
     let mut worst = Worst::new();
     for row in rows(INVERSE).iter().filter(|row| row.in_f32() || T::EPSILON < T::from_f64(1e-10)) {
@@ -99,7 +99,7 @@ fn inverse<T: Real + 'static>(distort: impl Fn(T) -> T) -> Worst {
     worst
 }
 
-/// Holds the bound for every variant, and fails for every variant when the output is forced to zero.
+/// Asserts that every variant keeps its bound, and that every variant exceeds it when the output is forced to zero.
 fn hold(what: &str, found: &Worst, zeroed: &Worst) {
     assert_eq!(found.len(), 7);
     for (variant, (share, place)) in found {
@@ -140,7 +140,7 @@ fn named_rows_are_there() {
     }
 }
 
-/// What a name says of its rows is so: the dimensionless groups, from the rows' own numbers.
+/// The dimensionless groups computed from a row agree with the row's name.
 #[test]
 fn named_rows_are_what_they_are_called() {
     let groups = |row: &Row| {

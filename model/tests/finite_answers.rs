@@ -1,4 +1,4 @@
-//! Whatever is asked, in either precision: an answer is a number, or there is none.
+//! For arbitrary arguments, in either precision, every function returns a finite number or an error.
 #![allow(clippy::panic, reason = "a test may fail")]
 
 use std::fmt::Debug;
@@ -9,7 +9,7 @@ use frixel_model::{
 };
 use proptest::prelude::*;
 
-/// Numbers of every size and sign, most of them of a size that a finger may have.
+/// Numbers of every magnitude and sign, most of them of a magnitude that is realistic for a finger.
 fn number() -> impl Strategy<Value = f64> {
     let special = [0.0, -0.0, 1.0, f64::MIN_POSITIVE, f64::MAX, -f64::MAX, 5e-324, f64::INFINITY, f64::NAN];
     prop_oneof![
@@ -43,7 +43,7 @@ fn contact_answers<T: Real>(model: &dyn ContactModel<T>, voltage: T, friction: T
     finite(reachable.map(|(_, largest)| largest));
 }
 
-/// Every function that can refuse, with `x` as its arguments.
+/// Calls every function that returns a `Result`, with `x` as its arguments.
 fn everything<T: Real>(x: &[T]) {
     let &[radius, k, mu, gap, load, voltage, friction, outer, modulus, s, b, y] = x else { panic!("twelve numbers") };
     finite(attraction_pa(voltage, gap, outer));
@@ -110,7 +110,7 @@ proptest! {
     #[test]
     fn no_answer_is_other_than_a_number(numbers in prop::collection::vec(number(), 12), exponent in 0.0..1.0_f64) {
         let mut numbers = numbers;
-        // Half the stress exponents are ones.
+        // Half of the stress exponents are one.
         if exponent > 0.5 {
             numbers[9] = 2.0 * (exponent - 0.5);
         }

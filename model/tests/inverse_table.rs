@@ -129,7 +129,7 @@ fn what_cannot_be_built_says_why() {
     assert_eq!(InverseTable::build(&far, 1.0), Err(TableError::Unrepresentable));
 }
 
-/// Up to what is asked for, a table that is cut gives the same bits as the whole one; above, the voltage where it ends.
+/// Up to the largest target, a truncated table returns the same bits as the whole one; above, the voltage at its end.
 #[test]
 fn a_cut_table_is_the_whole_one_up_to_what_is_asked_for() {
     for (normal_load_n, voltage_max_v_rms) in [(0.0, 0.3), (0.0, 150.0), (0.5, 150.0), (0.5, 200.0)] {
@@ -144,7 +144,7 @@ fn a_cut_table_is_the_whole_one_up_to_what_is_asked_for() {
             let table = InverseTable::build_up_to(&contact, voltage_max_v_rms, asked_max_n).unwrap();
             let end_n = table.electric_friction_max_n();
             assert!(end_n >= asked_max_n.min(largest_n) && end_n <= largest_n);
-            // No row is wider than a quarter of its beginning.
+            // No row is wider than a quarter of the friction at its start.
             assert!(end_n <= 1.26 * asked_max_n.max(knee_n), "{asked_max_n:e} ends at {end_n:e}");
             let frictions = (0..=u32::MAX).step_by(100_003).map(f32::from_bits);
             for x in frictions.chain([asked_max_n, end_n, end_n.next_up(), f32::NAN, f32::INFINITY]) {

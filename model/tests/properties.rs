@@ -1,4 +1,4 @@
-//! What must hold for every finger, coating, load and voltage.
+//! Properties that hold for every finger, coating, load and voltage.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use frixel_model::{
@@ -44,7 +44,7 @@ fn narrow((finger, gap_m): &(Finger<f64>, f64)) -> (Finger<f32>, f32) {
     )
 }
 
-/// All that a model answers at a voltage is a number, and its inverse finds the voltage again.
+/// Asserts that all results of a model at a voltage are finite, and that its inverse returns the voltage.
 fn answers<T: Real>(model: &dyn ContactModel<T>, voltage_v_rms: T, tolerance: f64) {
     let state = match model.state(voltage_v_rms) {
         Ok(state) => state,
@@ -109,7 +109,7 @@ proptest! {
         prop_assert!((2.0 - 1e-9..=2.0 + 4.0 * s + 1e-9).contains(&power(&upper)));
     }
 
-    /// More attraction around the contact, more friction: none, up to an outer radius, to any distance.
+    /// Friction rises with the attraction around the contact: none, up to an outer radius, to any distance.
     #[test]
     fn bounds_enclose_the_finite_finger(finger in fingers(), load_n in loads(), voltage in log_range(1e-3, 1e3), beyond in log_range(1.001, 1e6)) {
         let contact = Contact::new(&finger.0, finger.1).unwrap();
@@ -120,7 +120,7 @@ proptest! {
         prop_assert!(finite.electric_friction_n <= upper.electric_friction_n * (1.0 + 1e-13));
     }
 
-    /// A contact may reach the outer radius, where nothing is left around it, but not pass it.
+    /// A contact may reach the outer radius, but not extend beyond it.
     #[test]
     fn contact_may_reach_the_outer_radius(finger in fingers(), load_n in loads(), voltage in log_range(1e-3, 1e3)) {
         fn reaches<T: Real>(contact: Contact<T>, load_n: T, voltage: T) {
@@ -138,7 +138,7 @@ proptest! {
         reaches(Contact::new(&finger.0, finger.1).unwrap(), load_n, voltage);
         let (finger, gap_m) = narrow(&finger);
         let contact = Contact::new(&finger, gap_m).unwrap();
-        // In f32 only where no answer leaves the range.
+        // In f32 only where no result leaves the range.
         let friction_n = contact.lower_bound(load_n as f32).unwrap().state(voltage as f32).map_or(0.0, |s| s.electric_friction_n);
         if friction_n > 1e-30 {
             reaches(contact, load_n as f32, voltage as f32);
@@ -335,7 +335,7 @@ fn friction_does_not_identify_radius_stiffness_and_gap() {
     }
 }
 
-/// The universal curve is every contact's, in its scales.
+/// In its own scales, every contact is the universal curve.
 #[test]
 fn universal_curve_is_every_contacts() {
     let contact = Contact::new(&Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 }, 1e-5);

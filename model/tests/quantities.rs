@@ -1,5 +1,5 @@
-//! What follows from the contact, against the paper's dimensional equations: sensitivities, capacitance, the load from a
-//! measured contact, pull-off, the onset of slip. Each also with its output forced to zero.
+//! Quantities that follow from the contact, against the paper's dimensional equations: sensitivities, capacitance, the
+//! load from a measured contact, pull-off, the onset of slip. Each test is also shown to fail with a zero output.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod common;
@@ -11,10 +11,10 @@ const FORWARD: &str = include_str!("fixtures/forward.csv");
 const PULL_OFF: &str = include_str!("fixtures/pull_off.csv");
 const SHEAR: &str = include_str!("fixtures/shear.csv");
 
-/// A number that a row has the answer for; `None` when the model refuses to give it.
+/// Computes a quantity that a row has the reference value for; `None` if the model returns an error.
 type Quantity<T> = fn(&Row) -> Option<T>;
 
-/// Holds `quantity` against `column` within `bound` times the row's `widening`, and sees it fail when it is zero.
+/// Asserts that `quantity` agrees with `column` within `bound` times the row's `widening`, and that zero does not.
 fn hold<T: Real>(rows: &[Row], column: &str, quantity: Quantity<T>, bound: f64, widening: fn(&Row) -> f64) {
     let single = T::EPSILON > T::from_f64(1e-10);
     let (mut worst, mut count, mut zeroed) = (0.0_f64, 0, 0.0_f64);

@@ -1,4 +1,4 @@
-//! What the model refuses, and that it says what and why.
+//! Invalid parameters, and the errors that the model returns for them.
 #![allow(clippy::unwrap_used)]
 
 use frixel_model::{
@@ -99,7 +99,7 @@ fn loads_voltages_and_frictions_are_refused_by_name() {
         refused(contact.capacitance_f(bad, 1.0, 6e-3), "contact_radius_m");
     }
     refused(contact.lower_bound(f64::NAN), "normal_load_n");
-    // What is wrong is named as it was given, and not as what became of it.
+    // The error names the argument as it was given, not a value derived from it.
     let thin = Contact::new(&FINGER, 1e-9).unwrap();
     let error = thin.under_load(1e308).unwrap_err();
     assert_eq!(error.to_string(), "normal_load_n of 1e308 leads to numbers too large or too small for this precision");

@@ -1,4 +1,4 @@
-//! Error bounds that the docs count in roundings: f32 against f64, from the same inputs.
+//! Error bounds that the docs state in roundings: f32 against f64, from the same inputs.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 use frixel_model::{
@@ -14,7 +14,7 @@ fn log_range(low: f64, high: f64) -> impl Strategy<Value = f32> {
     (low.ln()..high.ln()).prop_map(|logarithm| logarithm.exp() as f32)
 }
 
-/// What is asked, by name.
+/// The arguments, by name.
 struct Inputs {
     radius_m: f32,
     stiffness_pa_per_m: f32,
@@ -26,7 +26,7 @@ struct Inputs {
     shape_exponent: f32,
 }
 
-/// Answers with the roundings that their docs allow.
+/// Results, with the number of roundings that their docs allow.
 fn answers<T: Real>(inputs: &Inputs) -> Vec<(&'static str, T, f64)> {
     let [radius_m, stiffness_pa_per_m, gap_m, voltage_v_rms, force_n, approach_m, s, lambda] = [
         inputs.radius_m,

@@ -1,4 +1,4 @@
-//! Tables of every order and both precisions against the closed form: the bound that they prove, and how sharp it is.
+//! Tables of every order and both precisions against the closed form: the proven bound, and how sharp it is.
 #![allow(clippy::unwrap_used)]
 
 use frixel_model::{Contact, Finger, LoadedContact, Precision, TableBuilder, TableError, U0F32, U1F31};
@@ -9,12 +9,12 @@ fn contact(gap_m: f64, normal_load_n: f64) -> LoadedContact<f64> {
     Contact::new(&FINGER, gap_m).unwrap().under_load(normal_load_n).unwrap()
 }
 
-/// The contacts that are tried: the example finger with and without load, and where friction grows fastest.
+/// The contacts under test: the example finger with and without load, and one for which friction grows fastest.
 fn contacts() -> [LoadedContact<f64>; 3] {
     [contact(1e-5, 0.0), contact(1e-5, 0.5), contact(2.5e-7, 1e-3)]
 }
 
-/// Relative error in friction of a voltage that answers `friction_n`.
+/// Relative error in friction of a voltage that a table returned for `friction_n`.
 fn error(contact: &LoadedContact<f64>, friction_n: f64, voltage_v_rms: f64) -> f64 {
     (contact.electric_friction_n(voltage_v_rms) / friction_n - 1.0).abs()
 }

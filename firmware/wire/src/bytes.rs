@@ -1,6 +1,7 @@
-//! Fields at fixed places of fixed layouts, little-endian.
+//! Access to little-endian fields at given offsets of fixed layouts.
 //!
-//! With a constant offset, a field outside its layout does not compile. With another, it reads as zeros and is not written.
+//! With a constant offset, a field outside the layout is a compile error. With a runtime offset, such a field reads as
+//! zeros, and writing it has no effect.
 
 /// The `N` bytes at `AT`.
 pub fn get<const AT: usize, const N: usize, const LEN: usize>(bytes: &[u8; LEN]) -> [u8; N] {
@@ -8,7 +9,7 @@ pub fn get<const AT: usize, const N: usize, const LEN: usize>(bytes: &[u8; LEN])
     bytes.get(AT..).and_then(<[u8]>::first_chunk).copied().unwrap_or([0; N])
 }
 
-/// Puts `N` bytes at `AT`.
+/// Writes `N` bytes at `AT`.
 pub fn put<const AT: usize, const N: usize, const LEN: usize>(bytes: &mut [u8; LEN], field: [u8; N]) {
     const { assert!(AT + N <= LEN, "the field lies outside the layout") };
     if let Some(place) = bytes.get_mut(AT..).and_then(<[u8]>::first_chunk_mut) {
@@ -16,19 +17,19 @@ pub fn put<const AT: usize, const N: usize, const LEN: usize>(bytes: &mut [u8; L
     }
 }
 
-/// The `N` bytes at an offset; zeros where the layout ends before them.
+/// The `N` bytes at an offset; zeros if they are not entirely inside the layout.
 pub fn get_at<const N: usize, const LEN: usize>(bytes: &[u8; LEN], offset: usize) -> [u8; N] {
     bytes.get(offset..).and_then(<[u8]>::first_chunk).copied().unwrap_or([0; N])
 }
 
-/// Puts `N` bytes at an offset, if the layout has them.
+/// Writes `N` bytes at an offset; does nothing if they are not entirely inside the layout.
 pub fn put_at<const N: usize, const LEN: usize>(bytes: &mut [u8; LEN], offset: usize, field: [u8; N]) {
     if let Some(place) = bytes.get_mut(offset..).and_then(<[u8]>::first_chunk_mut) {
         *place = field;
     }
 }
 
-/// Offset of the first byte in which two layouts differ.
+/// Offset of the first byte in which `found` and `canonical` differ.
 pub fn first_difference<const LEN: usize>(found: &[u8; LEN], canonical: &[u8; LEN]) -> Option<u8> {
     found.iter().zip(canonical).position(|(a, b)| a != b).map(|offset| offset as u8)
 }
@@ -38,7 +39,7 @@ pub fn get_u32<const AT: usize, const LEN: usize>(bytes: &[u8; LEN]) -> u32 {
     u32::from_le_bytes(get::<AT, 4, LEN>(bytes))
 }
 
-/// Puts a little-endian `u32` at `AT`.
+/// Writes a little-endian `u32` at `AT`.
 pub fn put_u32<const AT: usize, const LEN: usize>(bytes: &mut [u8; LEN], field: u32) {
     put::<AT, 4, LEN>(bytes, field.to_le_bytes());
 }
@@ -48,7 +49,7 @@ pub fn get_u16<const AT: usize, const LEN: usize>(bytes: &[u8; LEN]) -> u16 {
     u16::from_le_bytes(get::<AT, 2, LEN>(bytes))
 }
 
-/// Puts a little-endian `u16` at `AT`.
+/// Writes a little-endian `u16` at `AT`.
 pub fn put_u16<const AT: usize, const LEN: usize>(bytes: &mut [u8; LEN], field: u16) {
     put::<AT, 2, LEN>(bytes, field.to_le_bytes());
 }
@@ -59,7 +60,7 @@ pub fn get_u8<const AT: usize, const LEN: usize>(bytes: &[u8; LEN]) -> u8 {
     byte
 }
 
-/// Puts a byte at `AT`.
+/// Writes a byte at `AT`.
 pub fn put_u8<const AT: usize, const LEN: usize>(bytes: &mut [u8; LEN], field: u8) {
     put::<AT, 1, LEN>(bytes, [field]);
 }

@@ -21,12 +21,12 @@ impl DacCode {
     /// The full-scale voltage.
     pub const MAX: Self = Self(I1F15::MAX);
 
-    /// The code of these steps, in two's complement.
+    /// Creates a code from its number of steps, in two's complement.
     pub const fn from_bits(steps: i16) -> Self {
         Self(I1F15::from_bits(steps))
     }
 
-    /// The steps of this code, in two's complement: what goes to the DAC and over the wire.
+    /// The number of steps, in two's complement: the value written to the DAC and sent over the wire.
     pub const fn bits(self) -> i16 {
         self.0.to_bits()
     }

@@ -1,22 +1,22 @@
-//! Stable numbers of what goes wrong, and of what merely limits, each with a sentence for a person.
+//! Supervisor states, hard faults and limit flags: their stable numbers, each with a human-readable sentence.
 
 use core::fmt;
 
 use postcard::experimental::max_size::MaxSize;
 use serde::{Deserialize, Serialize};
 
-/// State of the supervisor that owns the output. Numbers never change.
+/// State of the supervisor that controls the output. Numbers never change.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, MaxSize)]
 #[repr(u8)]
 pub enum State {
-    /// Output zero, amplifier off. Every reset lands here.
+    /// Output zero, amplifier off. The state after every reset.
     #[default]
     Disarmed = 0,
     /// Output zero, ready to play.
     Armed = 1,
     /// The scene is playing.
     Active = 2,
-    /// A hard fault is latched: output zero, amplifier off, until it is cleared.
+    /// A hard fault is latched: output zero and amplifier off until the fault is cleared.
     Faulted = 3,
 }
 
@@ -52,14 +52,14 @@ impl fmt::Display for State {
     }
 }
 
-/// A hard fault. It latches, puts the output to zero and the amplifier off. Numbers never change, and stand for the
-/// fault on the wire.
+/// A hard fault. It is latched, sets the output to zero and switches the amplifier off. On the wire a fault is its
+/// number, which never changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "u8", into = "u8")]
 pub enum Fault {
     /// The amplifier reports a fault.
     Amplifier,
-    /// The monitor voltage is not the voltage that was driven.
+    /// The voltage at the monitor input differs from the driven voltage.
     Monitor,
     /// A tick missed its deadline.
     Deadline,
@@ -71,10 +71,10 @@ pub enum Fault {
     StackOverflow,
     /// The independent watchdog was not fed.
     Watchdog,
-    /// The arm switch was let go while armed or playing.
+    /// The arm switch was released while armed or playing.
     ArmSwitch,
-    /// The DAC did not hold its configuration when it was read back before arming. From protocol 1.3 on; the detail is the
-    /// control register as it was read.
+    /// The configuration read back from the DAC before arming was wrong. Since protocol 1.3; the fault's detail is the
+    /// control register as read.
     Dac,
     /// A fault of newer firmware that this crate does not know, by number.
     Other(u8),
@@ -101,7 +101,7 @@ impl Fault {
 impl TryFrom<u8> for Fault {
     type Error = UnknownNumber;
 
-    /// Every number but zero, which stands for no fault, is one.
+    /// Accepts every number except zero, which means no fault.
     fn try_from(number: u8) -> Result<Self, UnknownNumber> {
         match number {
             0 => Err(UnknownNumber(number)),
@@ -159,29 +159,29 @@ impl MaxSize for Fault {
     const POSTCARD_MAX_SIZE: usize = u8::POSTCARD_MAX_SIZE;
 }
 
-/// Limits that act without stopping the scene, one bit each; and what the finger does.
+/// Limits in effect that do not stop the scene, and the state of the finger and of the host; one bit each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, MaxSize)]
 pub struct Flags(pub u16);
 
 impl Flags {
-    /// The friction asked for was out of reach, and was clamped to what can be reached.
+    /// The target friction was out of reach and was clamped to the reachable range.
     pub const SATURATED: Self = Self(1);
-    /// The envelope moved slower than asked, at its slew limit.
+    /// The envelope is at its slew limit and lags behind its target.
     pub const SLEWED: Self = Self(1 << 1);
-    /// The finger is still: the envelope is ramped down, or is ramping.
+    /// The finger is at a standstill: the envelope is ramping down or is at zero.
     pub const STILL: Self = Self(1 << 2);
-    /// No finger touches the screen, or none was reported yet.
+    /// No finger touches the screen, or no touch has been reported yet.
     pub const NO_FINGER: Self = Self(1 << 3);
     /// Touch data is too old to be used.
     pub const TOUCH_STALE: Self = Self(1 << 4);
-    /// A carrier edge came early, to keep direct current off the electrode.
+    /// A carrier edge came early, to keep the electrode free of direct current.
     pub const CARRIER_BALANCED: Self = Self(1 << 5);
-    /// The host has gone silent, and the output was put to zero.
+    /// The host's keep-alive timed out, and the output was set to zero.
     pub const HOST_SILENT: Self = Self(1 << 6);
-    /// A stream has no samples to play: its layers fade out, or have faded.
+    /// The stream ran out of samples: its layers are fading out, or have faded out.
     pub const STREAM_DRY: Self = Self(1 << 7);
 
-    /// These flags and those.
+    /// The union of both sets of flags.
     #[must_use]
     pub const fn with(self, other: Self) -> Self {
         Self(self.0 | other.0)
@@ -204,14 +204,14 @@ impl Flags {
         FLAGS.into_iter().filter(move |(flag, ..)| self.contains(*flag)).map(|(_, name, _)| name)
     }
 
-    /// The flags that this crate has no name for.
+    /// The flags that this crate does not know.
     #[must_use]
     pub fn unnamed(self) -> Self {
         Self(FLAGS.into_iter().fold(self.0, |left, (flag, ..)| left & !flag.0))
     }
 }
 
-/// The name of each flag, for tables, and what it says.
+/// Each flag with its name, for tables, and its sentence.
 const FLAGS: [(Flags, &str, &str); 8] = [
     (Flags::SATURATED, "saturated", "friction out of reach was clamped"),
     (Flags::SLEWED, "slewed", "the envelope is at its slew limit"),
@@ -223,7 +223,7 @@ const FLAGS: [(Flags, &str, &str); 8] = [
     (Flags::STREAM_DRY, "stream-dry", "the stream has no samples to play"),
 ];
 
-/// What the flags that are set say, with a semicolon between.
+/// Writes the sentences of the flags that are set, separated by semicolons.
 impl fmt::Display for Flags {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut separator = "";
@@ -239,7 +239,7 @@ impl fmt::Display for Flags {
     }
 }
 
-/// A number that stands for nothing.
+/// A number without an assigned state or fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnknownNumber(pub u8);
 

@@ -19,17 +19,18 @@ use crc::{CRC_32_ISO_HDLC, Crc, Digest, NoTable};
 
 use crate::payload::PAYLOAD_MAX_LEN;
 
-/// Largest frame in bytes, zero byte included.
+/// Largest frame in bytes, including the zero byte.
 pub const FRAME_MAX_LEN: usize = 192;
 
 /// Bytes of the CRC-32.
 const CRC_LEN: usize = 4;
-/// Largest frame once decoded: payload and CRC.
+/// Largest frame after COBS decoding, in bytes: payload and CRC.
 const DECODED_MAX_LEN: usize = PAYLOAD_MAX_LEN + CRC_LEN;
 
 const _: () = assert!(cobs::max_encoding_length(DECODED_MAX_LEN) + 1 == FRAME_MAX_LEN);
 
-/// Bit by bit, without a table of 1 KiB: some 40 instructions a byte, 5 % of a board's processor at 2 Mbaud.
+/// Computed bit by bit, without a table of 1 KiB: about 40 instructions per byte, 5 % of a board's processor time at
+/// 2 Mbaud.
 static CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 
 /// CRC-32/ISO-HDLC: the CRC of Ethernet, zlib and PNG.
@@ -37,7 +38,7 @@ pub fn crc32(bytes: &[u8]) -> u32 {
     CRC.checksum(bytes)
 }
 
-/// [`crc32`] of bytes that come piece by piece.
+/// [`crc32`] of bytes that arrive in pieces.
 ///
 /// ```
 /// use frixel_wire::frame::{Crc32, crc32};
@@ -47,19 +48,19 @@ pub fn crc32(bytes: &[u8]) -> u32 {
 pub struct Crc32(Digest<'static, u32, NoTable>);
 
 impl Crc32 {
-    /// Of nothing yet.
+    /// Creates the CRC-32 of an empty byte string.
     #[must_use]
     pub const fn new() -> Self {
         Self(CRC.digest())
     }
 
-    /// With these bytes after those before.
+    /// Appends bytes.
     pub fn update(&mut self, bytes: &[u8]) -> &mut Self {
         self.0.update(bytes);
         self
     }
 
-    /// The CRC-32 of all bytes so far.
+    /// The CRC-32 of all bytes appended so far.
     pub fn finish(&self) -> u32 {
         self.0.clone().finalize()
     }
@@ -77,7 +78,7 @@ impl fmt::Debug for Crc32 {
     }
 }
 
-/// A payload of more than [`PAYLOAD_MAX_LEN`] bytes.
+/// The payload is longer than [`PAYLOAD_MAX_LEN`] bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PayloadTooLong {
     /// Bytes of the payload.
@@ -92,7 +93,7 @@ impl fmt::Display for PayloadTooLong {
 
 impl core::error::Error for PayloadTooLong {}
 
-/// Makes a frame of a payload; returns the frame's bytes, zero byte included.
+/// Encodes a payload as a frame and returns the frame's bytes, including the zero byte.
 pub fn encode<'f>(payload: &[u8], frame: &'f mut [u8; FRAME_MAX_LEN]) -> Result<&'f [u8], PayloadTooLong> {
     let too_long = PayloadTooLong { len: payload.len() };
     if payload.len() > PAYLOAD_MAX_LEN {
@@ -106,10 +107,11 @@ pub fn encode<'f>(payload: &[u8], frame: &'f mut [u8; FRAME_MAX_LEN]) -> Result<
     frame.get(..=len).ok_or(too_long)
 }
 
-/// Finds good frames in a stream of bytes.
+/// Finds valid frames in a stream of bytes.
 ///
-/// A frame goes from one zero byte to the next. One that is not COBS, has a wrong CRC, or is too short or too long is
-/// dropped whole and counted; the next one starts after the next zero byte. Zero bytes one after the other are no error.
+/// A frame extends from one zero byte to the next. The decoder drops and counts a frame that is not valid COBS, has a
+/// wrong CRC, or is too short or too long; the next frame starts after the next zero byte. Consecutive zero bytes are
+/// not an error.
 #[derive(Debug)]
 pub struct Decoder {
     decoded: [u8; DECODED_MAX_LEN],
@@ -121,7 +123,7 @@ pub struct Decoder {
 }
 
 impl Decoder {
-    /// Takes the first byte for the start of a frame.
+    /// Creates a decoder that treats the first byte as the start of a frame.
     #[must_use]
     pub const fn new() -> Self {
         Self {
@@ -134,23 +136,23 @@ impl Decoder {
         }
     }
 
-    /// Good frames so far, modulo 2^32.
+    /// Number of valid frames so far, modulo 2^32.
     pub const fn frames(&self) -> u32 {
         self.frames
     }
 
-    /// Bad frames so far, modulo 2^32.
+    /// Number of dropped frames so far, modulo 2^32.
     pub const fn rejected(&self) -> u32 {
         self.rejected
     }
 
-    /// Takes one byte; returns the payload when it ended a good frame.
+    /// Decodes one byte; returns the payload if the byte ends a valid frame.
     pub fn push(&mut self, byte: u8) -> Option<&[u8]> {
         if self.take(byte) { self.decoded.get(..self.len) } else { None }
     }
 
-    /// Takes bytes off the front of `input` until one has ended a good frame, and returns its payload; `None` once
-    /// `input` is empty.
+    /// Consumes bytes from the front of `input` up to the end of the next valid frame and returns its payload; returns
+    /// `None` when `input` is empty.
     pub fn next_frame(&mut self, input: &mut &[u8]) -> Option<&[u8]> {
         while let Some((&byte, rest)) = input.split_first() {
             *input = rest;
@@ -161,7 +163,8 @@ impl Decoder {
         None
     }
 
-    /// Whether this byte ended a good frame, whose payload then is the first `len` bytes of `decoded`.
+    /// Decodes one byte; returns whether it ends a valid frame. The frame's payload is the first `len` bytes of
+    /// `decoded`.
     fn take(&mut self, byte: u8) -> bool {
         if byte != 0 {
             self.take_inside(byte);
@@ -196,7 +199,7 @@ impl Decoder {
         }
     }
 
-    /// Leaves the payload when the CRC after it is right.
+    /// Removes the CRC behind the payload; returns whether the CRC is correct.
     fn strip_crc(&mut self) -> bool {
         let decoded = self.decoded.get(..self.len).unwrap_or_default();
         let Some((payload, crc)) = decoded.split_last_chunk::<CRC_LEN>() else { return false };

@@ -1,4 +1,5 @@
-//! The hello: frozen for ever, hand-laid little-endian, so that a newer host can always tell an older board what to do.
+//! The hello: a fixed little-endian layout that never changes, so that a host can always identify a board of another
+//! protocol version and name the side to update.
 
 mod codec;
 mod compatibility;
@@ -14,49 +15,50 @@ pub use compatibility::Mismatch;
 
 /// First four bytes of a hello.
 pub const MAGIC: [u8; 4] = *b"FRXL";
-/// Protocol of this crate, major: raised when an older peer can no longer be talked to.
+/// Major protocol version of this crate, incremented by incompatible changes.
 pub const PROTOCOL_MAJOR: u8 = 1;
-/// Protocol of this crate, minor: raised when something was added that an older peer may ignore.
+/// Minor protocol version of this crate, incremented by additions that an older peer may ignore.
 pub const PROTOCOL_MINOR: u8 = 3;
-/// Most bytes that a hello of any protocol may have.
+/// Maximum length of a hello of any protocol, in bytes.
 pub const HELLO_MAX_LEN: usize = 128;
-/// Bytes of a hello that this crate writes.
+/// Length of the hello that this crate writes, in bytes.
 pub const HELLO_LEN: usize = codec::FIXED_LEN + codec::LIMITS_LEN;
 
 const _: () = assert!(HELLO_LEN <= HELLO_MAX_LEN && HELLO_MAX_LEN < PAYLOAD_MAX_LEN);
 
-/// What a board says of itself.
+/// A board's description of itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hello {
-    /// Protocol that the board speaks: major, minor.
+    /// Protocol version of the board: major, minor.
     pub protocol: (u8, u8),
     /// Version of the firmware: major, minor, patch.
     pub firmware: (u8, u8, u8),
     /// Kind of board.
     pub board: BoardKind,
-    /// Unique number of the board.
+    /// Unique identifier of the board.
     pub id: [u8; 12],
-    /// Ticks a second.
+    /// Tick rate, Hz.
     pub tick_hz: u32,
-    /// Largest frame in bytes that the board takes.
+    /// Largest frame that the board accepts, in bytes.
     pub frame_max_len: u16,
-    /// Bits of what the firmware can do ([`feature`]).
+    /// Feature bits of the firmware build ([`feature`]).
     pub features: u32,
-    /// CRC-32 of the committed scene, zero without one.
+    /// CRC-32 of the committed scene; zero if there is none.
     pub scene_crc32: u32,
     /// Why the processor last started.
     pub reset_cause: ResetCause,
-    /// The last hard fault, if there was one since power-on.
+    /// The last hard fault since power-on, if any.
     pub last_fault: Option<Fault>,
-    /// A number that belongs to the last fault.
+    /// Additional information on the last fault; its interpretation depends on the fault.
     pub fault_detail: u32,
-    /// State of the supervisor; read as [`State::Faulted`] when the board tells one that this crate does not know.
+    /// State of the supervisor. A state that this crate does not know is read as [`State::Faulted`].
     pub state: State,
-    /// Limits of the board, sent as tag-length-value.
+    /// Limits of the board, encoded as tag-length-value.
     pub limits: BoardLimits,
 }
 
-/// Bits of [`Hello::features`]: what the firmware was built with beyond constant layers and the square carrier.
+/// Bits of [`Hello::features`]: the features enabled in the firmware build, in addition to constant layers and the
+/// square carrier, which every build has.
 pub mod feature {
     /// Grating layers.
     pub const GRATING: u32 = 1;
@@ -66,7 +68,7 @@ pub mod feature {
     pub const SINE_CARRIER: u32 = 1 << 2;
     /// Telemetry.
     pub const TELEMETRY: u32 = 1 << 3;
-    /// The host says where the finger is.
+    /// Touch reported by the host.
     pub const HOST_TOUCH: u32 = 1 << 4;
     /// Noise layers.
     pub const NOISE: u32 = 1 << 5;
@@ -76,7 +78,7 @@ pub mod feature {
     pub const VIBRATION: u32 = 1 << 7;
     /// Speed layers.
     pub const SPEED: u32 = 1 << 8;
-    /// Stream layers, and the samples that the host streams for them while a scene plays.
+    /// Stream layers, and receiving their samples while a scene plays.
     pub const STREAM: u32 = 1 << 9;
     /// Polygons as regions.
     pub const POLYGON: u32 = 1 << 10;
@@ -84,7 +86,7 @@ pub mod feature {
     /// Rings layers. Since protocol 1.3.
     pub const RINGS: u32 = 1 << 11;
 
-    /// The name of each, as the board's Cargo features have it where there is one.
+    /// The name of each feature: that of the board's Cargo feature, where there is one.
     pub const NAMES: [(u32, &str); 12] = [
         (GRATING, "grating"),
         (BITMAP, "bitmap"),
@@ -101,7 +103,7 @@ pub mod feature {
     ];
 }
 
-/// Kind of board. Numbers never change.
+/// Kind of board. The numbers on the wire never change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BoardKind {
     /// Simulated in a process on a desktop.
@@ -115,7 +117,7 @@ pub enum BoardKind {
 }
 
 impl BoardKind {
-    /// Whether no electrode hangs on the board, so that nobody can be hurt.
+    /// Whether the board is simulated or emulated. Such a board has no electrode, so it cannot harm anyone.
     pub const fn is_simulated(self) -> bool {
         matches!(self, Self::Simulator | Self::Mps2An386)
     }
@@ -153,18 +155,18 @@ impl fmt::Display for BoardKind {
     }
 }
 
-/// Why the processor last started. Numbers never change.
+/// Why the processor last started. The numbers on the wire never change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ResetCause {
-    /// Power came on.
+    /// Power-on.
     PowerOn,
     /// The reset pin.
     Pin,
-    /// Asked for by software, after a panic or a fault among others.
+    /// A software reset, for example after a panic or a fault.
     Software,
     /// The independent watchdog.
     Watchdog,
-    /// Supply voltage fell too low.
+    /// The supply voltage fell too low.
     BrownOut,
     /// A cause that this crate does not know, by number.
     Other(u8),
@@ -210,22 +212,22 @@ impl fmt::Display for ResetCause {
     }
 }
 
-/// Limits of a board that a scene has to keep; refused, never silently clamped, when exceeded by command.
+/// Limits of a board. The board refuses a command that exceeds a limit; it never clamps the value silently.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoardLimits {
-    /// Bytes for bitmaps, those being uploaded included.
+    /// Size of the bitmap pool in bytes, including bitmaps being uploaded.
     pub bitmap_pool_bytes: u32,
-    /// Most records that a scene may have.
+    /// Maximum number of records in a scene.
     pub records_max: u8,
-    /// Bytes that the host may have sent and the board not yet acknowledged.
+    /// Maximum number of sent bytes that the board has not yet acknowledged.
     pub receive_window_bytes: u16,
     /// Largest peak voltage on the electrode, in volts.
     pub voltage_max_v_peak: f32,
-    /// Voltage on the electrode at the largest DAC code, in volts, peak.
+    /// Electrode voltage at the largest DAC code, in volts peak.
     pub full_scale_v_peak: f32,
     /// Time constant of the carrier's edges (amplifier and series resistor), in seconds.
     pub edge_time_constant_s: f32,
-    /// Worst-case electrode capacitance: bare coating, gap lost, largest contact; in farads.
+    /// Worst-case electrode capacitance, in farads: the coating alone, without an air gap, at the largest contact.
     pub electrode_capacitance_max_f: f32,
     /// Largest rms current through the electrode, in amperes.
     pub current_max_a_rms: f32,
@@ -233,18 +235,19 @@ pub struct BoardLimits {
     pub current_max_a_peak: f32,
     /// Time between two reports of the touch source, in seconds.
     pub touch_report_period_s: f32,
-    /// Most processor cycles that a scene's longest tick may be estimated at. A scene that may take more at some place is
-    /// refused.
+    /// Limit on the estimated processor cycles of a scene's longest tick. The board refuses a scene whose estimate
+    /// exceeds it at any position.
     pub tick_cycles_max: u32,
 }
 
 impl BoardLimits {
-    /// [`Self::tick_cycles_max`] of the smallest board: 60 % of the 4,250 cycles that an STM32G474 at 170 MHz has between two
-    /// ticks at 40 kHz. The rest is for interrupts that delay the tick, and for what the estimate does not know.
+    /// [`Self::tick_cycles_max`] of the smallest board: 60 % of the 4,250 cycles that an STM32G474 at 170 MHz has
+    /// between two ticks at 40 kHz. The rest is reserved for interrupts that delay the tick and for the error of the
+    /// estimate.
     pub const SMALLEST_TICK_CYCLES_MAX: u32 = 2_550;
 
-    /// What holds for limits that a hello leaves out: nothing can be played, and one frame at a time may be sent. Boards of
-    /// protocols before 1.3 do not state [`Self::tick_cycles_max`]: the smallest board's is taken for theirs.
+    /// Defaults for limits that a hello omits: no scene can be played, and the host may send one frame at a time.
+    /// Boards of protocols before 1.3 omit [`Self::tick_cycles_max`]; its default is the smallest board's.
     pub const UNSTATED: Self = Self {
         bitmap_pool_bytes: 0,
         records_max: 0,

@@ -1,4 +1,4 @@
-//! Messages in postcard. Enums are append-only: a variant keeps its place for ever.
+//! Messages, serialized with postcard. Enums are append-only: a variant never changes its position.
 
 mod refusal;
 
@@ -9,29 +9,29 @@ use crate::fault::{Fault, Flags, State};
 
 pub use refusal::{ConfigField, ConfigRefusal, Refusal};
 
-/// What the host sends: a command with a sequence number that comes back in its answer.
+/// A command from the host, with a sequence number that the board repeats in its answer.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize)]
 pub struct Request {
     /// Chosen by the host; repeated in the answer.
     pub sequence: u16,
-    /// What the board is to do.
+    /// The command to carry out.
     pub command: Command,
 }
 
-/// What the host asks of the board. Every command is answered by one [`Answer`].
+/// A command from the host to the board. The board answers every command with one [`Answer`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize)]
 pub enum Command {
-    /// Says that the host is there.
+    /// Keep-alive: shows that the host is still connected.
     Ping,
-    /// Starts the upload of a scene ([`crate::scene`]), and drops any upload that was under way.
+    /// Starts the upload of a scene ([`crate::scene`]) and discards an unfinished upload.
     UploadScene {
         /// Bytes of the whole scene.
         len: u32,
         /// CRC-32 of the whole scene.
         crc32: u32,
     },
-    /// Starts the upload of a bitmap, one byte a sample, row after row from the top left; answered
-    /// [`Accepted::AlreadyHeld`] when the pool has it.
+    /// Starts the upload of a bitmap: one byte per sample, row by row from the top left. The board answers
+    /// [`Accepted::AlreadyHeld`] if its pool already contains the bitmap.
     UploadBitmap {
         /// Samples in a row.
         width: u16,
@@ -40,74 +40,75 @@ pub enum Command {
         /// The bitmap's name in scene records: [`crate::scene::bitmap_crc32`].
         crc32: u32,
     },
-    /// Ends an upload: the board checks its CRC.
+    /// Ends an upload; the board then checks its CRC-32.
     UploadEnd,
-    /// Makes the uploaded scene the one that plays, whole, at a tick boundary.
+    /// Replaces the playing scene with the uploaded one, atomically, at a tick boundary.
     Commit {
-        /// CRC-32 of the scene that is meant.
+        /// CRC-32 of the scene to commit.
         crc32: u32,
     },
-    /// Disarmed to Armed.
+    /// Changes the state from Disarmed to Armed.
     Arm,
-    /// Any state but Faulted to Disarmed; always puts the output to zero.
+    /// Changes any state but Faulted to Disarmed; sets the output to zero in every state.
     Disarm,
-    /// Armed to Active.
+    /// Changes the state from Armed to Active.
     Play,
-    /// Active to Armed.
+    /// Changes the state from Active to Armed.
     Stop,
-    /// Faulted to Disarmed, when the cause is gone.
+    /// Changes the state from Faulted to Disarmed, if the cause of the fault is gone.
     ClearFault,
-    /// Asks for telemetry, one message every so many ticks; zero ends it.
+    /// Starts periodic telemetry, or stops it if the period is zero.
     Subscribe {
-        /// Ticks between two telemetry messages; at least [`TELEMETRY_PERIOD_MIN_TICKS`], or zero.
+        /// Ticks between two telemetry messages: at least [`TELEMETRY_PERIOD_MIN_TICKS`], or zero.
         period_ticks: u32,
     },
-    /// Tells where the host's pointer has the finger; for a board that takes touch from the host.
+    /// Reports the position of the finger, for a board that takes touch from the host.
     Touch {
-        /// From the left edge of the screen, m.
+        /// Distance from the left edge of the screen, m.
         x_m: f32,
-        /// From the top edge of the screen, m.
+        /// Distance from the top edge of the screen, m.
         y_m: f32,
-        /// Ticks since the finger was there.
+        /// Age of the position, in ticks.
         age_ticks: u16,
     },
-    /// Tells that the finger has left the screen; for a board that takes touch from the host.
+    /// Reports that the finger has left the screen, for a board that takes touch from the host.
     Lift,
-    /// Asks what the firmware said of the fault that led to the last reset; answered [`Accepted::FaultText`].
+    /// Reads the text that the firmware stored about the fault that led to the last reset. The board answers
+    /// [`Accepted::FaultText`].
     FaultText {
-        /// Bytes of the text that the host has already.
+        /// Offset in the text, in bytes: how much of it the host already has.
         offset: u8,
     },
-    /// Switches a layer of the playing scene on or off and sets its gain, at a tick boundary. A commit brings back
-    /// what the scene says.
+    /// Enables or disables a layer of the playing scene and sets its gain, at a tick boundary. A commit restores the
+    /// values of the scene.
     SetLayer {
-        /// The layer: its record's place in the scene, from zero.
+        /// The layer: index of its record in the scene, from zero.
         layer: u8,
-        /// Whether the layer acts.
+        /// Whether the layer is enabled.
         on: bool,
-        /// Factor on the layer's friction from now on, in place of its record's.
+        /// Factor on the layer's friction; replaces the gain in the layer's record.
         gain: f32,
     },
-    /// Starts a stream of samples for the `stream` layers of the playing scene; one under way is forgotten. Its samples
-    /// count from zero.
+    /// Starts a stream of samples for the `stream` layers of the playing scene and discards any current stream. Sample
+    /// indices start at zero.
     StartStream {
-        /// Samples a second; at most the board's ticks a second.
+        /// Samples per second; at most the board's tick rate.
         sample_hz: u32,
-        /// Samples that have to be there before the stream begins to play, and again after it ran dry;
+        /// Samples that must be buffered before the stream starts to play, and before it resumes after an underrun;
         /// 1 to [`STREAM_START_LEVEL_MAX`].
         start_level: u16,
     },
-    /// Says that no more samples come: the stream ends after the last one, which is no underrun.
+    /// Marks the end of the stream: the board plays the samples it has, and does not count an underrun after the last.
     EndStream,
-    /// As [`Self::Touch`], for one of several fingers. The scene's rule says which of them leads.
+    /// As [`Self::Touch`], for one of several fingers. A rule in the scene selects the finger that is rendered.
     TouchFinger {
-        /// The finger's number; the same from touch to lift.
+        /// Number of the finger; constant from touch to lift.
         finger: u8,
-        /// From the left edge of the screen, m.
+        /// Distance from the left edge of the screen, m.
         x_m: f32,
-        /// From the top edge of the screen, m.
+        /// Distance from the top edge of the screen, m.
         y_m: f32,
-        /// Ticks since the finger was there.
+        /// Age of the position, in ticks.
         age_ticks: u16,
     },
     /// As [`Self::Lift`], for one of several fingers.
@@ -117,51 +118,52 @@ pub enum Command {
     },
 }
 
-/// Largest start level of a stream, in samples: what leaves room in the smallest buffer for two frames more.
+/// Largest start level of a stream, in samples: it leaves room for two more frames in the smallest buffer.
 pub const STREAM_START_LEVEL_MAX: u16 = 800;
 
-/// Bytes of a fault's text that one answer carries.
+/// Bytes of the fault text in one answer.
 pub const FAULT_TEXT_PIECE_LEN: usize = 32;
-/// Most bytes that a fault's text has.
+/// Maximum length of the fault text, in bytes.
 pub const FAULT_TEXT_MAX_LEN: usize = 192;
 
-/// Shortest period of telemetry, in ticks: 1 kHz at 40 kHz ticks.
+/// Shortest telemetry period, in ticks: 1 kHz at a tick rate of 40 kHz.
 pub const TELEMETRY_PERIOD_MIN_TICKS: u32 = 40;
 
-/// What the board sends.
+/// A message from the board.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize)]
 pub enum FromBoard {
     /// Answers one request.
     Answer(Answer),
-    /// How far an upload has come; gives credit back while chunks flow.
+    /// Progress of an upload; returns credit while the host sends chunks.
     Progress {
-        /// Number of the chunk that the board wants next; the host goes back to it when it is lower than expected.
+        /// Number of the chunk that the board expects next. If it is lower than the host's next chunk, the host resends
+        /// from there.
         next_chunk: u16,
-        /// Bytes received since the hello, garbage included, modulo 2^32.
+        /// Bytes received since the hello, including invalid ones, modulo 2^32.
         received_bytes: u32,
     },
-    /// What the board does now.
+    /// The current tick's values, as subscribed to by [`Command::Subscribe`].
     Telemetry(Telemetry),
-    /// The state changed without a command: a fault, or the host was silent.
+    /// The state changed without a command, because of a fault or of the keep-alive timeout.
     StateChanged {
-        /// The state now.
+        /// The new state.
         state: State,
         /// The fault, if one is latched.
         fault: Option<Fault>,
-        /// Why, where it is not a fault ([`Flags::HOST_SILENT`]).
+        /// The reason, if it is not a fault ([`Flags::HOST_SILENT`]).
         flags: Flags,
     },
-    /// How a stream is doing; gives credit back while samples flow, in bytes and in samples.
+    /// Progress of a stream; returns credit, in bytes and in samples, while the host sends samples.
     StreamProgress {
-        /// Index of the sample behind the last one that the board has.
+        /// Index after that of the last sample the board received.
         next_index: u32,
-        /// Samples from `next_index` on that the board has room for. What goes beyond is dropped.
+        /// Free space in samples, counted from `next_index`. The board drops samples beyond it.
         room: u16,
-        /// Times that the stream ran dry since power-on, modulo 2^32.
+        /// Underruns since power-on, modulo 2^32.
         underruns: u32,
-        /// Runs of samples that never came, though later ones did, since power-on, modulo 2^32.
+        /// Runs of lost samples that were followed by later ones, since power-on, modulo 2^32.
         gaps: u32,
-        /// Bytes received since the hello, garbage included, modulo 2^32.
+        /// Bytes received since the hello, including invalid ones, modulo 2^32.
         received_bytes: u32,
     },
 }
@@ -171,49 +173,50 @@ pub enum FromBoard {
 pub struct Answer {
     /// The request's sequence number.
     pub sequence: u16,
-    /// Bytes received since the hello, garbage included, modulo 2^32: the credit.
+    /// Bytes received since the hello, including invalid ones, modulo 2^32; the host computes its credit from it.
     pub received_bytes: u32,
-    /// State of the supervisor once the command is carried out.
+    /// State of the supervisor after the command.
     pub state: State,
-    /// Whether it was done.
+    /// Whether the command was accepted or refused.
     pub outcome: Result<Accepted, Refusal>,
 }
 
-/// How a command was accepted.
+/// The result of an accepted command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, MaxSize)]
 pub enum Accepted {
-    /// Done.
+    /// The command was carried out.
     Done,
-    /// The bitmap is in the pool already: do not send it.
+    /// The bitmap is already in the pool; the host does not send it.
     AlreadyHeld,
-    /// A piece of the fault's text, UTF-8; the last one has fewer than [`FAULT_TEXT_PIECE_LEN`] bytes, or none.
+    /// A piece of the fault text, in UTF-8. The last piece is shorter than [`FAULT_TEXT_PIECE_LEN`] bytes, possibly
+    /// empty.
     FaultText {
         /// Bytes of the text in this piece.
         len: u8,
-        /// The text, and zeros behind it.
+        /// The text, padded with zeros.
         bytes: [u8; FAULT_TEXT_PIECE_LEN],
     },
 }
 
-/// What the board does at one tick.
+/// The state of the output at one tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, MaxSize)]
 pub struct Telemetry {
     /// Ticks since power-on, modulo 2^32.
     pub tick: u32,
     /// State of the supervisor.
     pub state: State,
-    /// Limits that act.
+    /// Limits in effect, and the state of the finger.
     pub flags: Flags,
-    /// Where the board takes the finger to be, m from the left edge of the screen.
+    /// Estimated position of the finger, m from the left edge of the screen.
     pub finger_x_m: f32,
-    /// Where the board takes the finger to be, m from the top edge of the screen.
+    /// Estimated position of the finger, m from the top edge of the screen.
     pub finger_y_m: f32,
-    /// Sliding speed, m/s.
+    /// Estimated sliding speed, m/s.
     pub speed_m_per_s: f32,
-    /// Friction that the inverse was asked for, above natural, N.
+    /// Target electric friction, the friction above the natural one: the input of the inverse model, N.
     pub asked_electric_friction_n: f32,
     /// Rms voltage of the envelope, V.
     pub voltage_v_rms: f32,
-    /// Code that went to the DAC.
+    /// Code written to the DAC.
     pub dac_code: i16,
 }

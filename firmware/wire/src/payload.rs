@@ -1,4 +1,4 @@
-//! The first byte of a frame's payload says what the rest is.
+//! Payloads of frames. The first byte is the kind of the payload and determines the layout of the rest.
 //!
 //! | first byte | from | rest |
 //! |---|---|---|
@@ -11,7 +11,7 @@
 //!
 //! A host sends with [`hello_request_frame`], [`request_frame`], [`chunk_frame`] and [`samples_frame`] and reads with
 //! [`Payload::parse_from_board`]. A board sends with [`hello_frame`] and [`from_board_frame`] and reads with
-//! [`Payload::parse_from_host`], so that its image holds no code for the other direction.
+//! [`Payload::parse_from_host`]. Separate functions keep the code for the other direction out of the firmware image.
 
 mod error;
 
@@ -24,16 +24,16 @@ use crate::message::{Command, FromBoard, Request};
 
 pub use error::{ParseError, WriteError};
 
-/// Largest payload of a frame in bytes, first byte included: 192 less zero byte, COBS overhead byte and CRC-32.
+/// Largest payload of a frame in bytes, including the first byte: 192 less zero byte, COBS overhead byte and CRC-32.
 pub const PAYLOAD_MAX_LEN: usize = 186;
 
-/// Bytes that every chunk of an upload carries, but for the last, which may be shorter.
+/// Bytes in a chunk of an upload; only the last chunk may be shorter.
 pub const CHUNK_LEN: usize = PAYLOAD_MAX_LEN - 2;
 
-/// Most samples of a stream that a frame carries.
+/// Maximum number of stream samples in a frame.
 pub const SAMPLES_MAX: usize = (PAYLOAD_MAX_LEN - 5) / 2;
 
-/// Largest number that a chunk can have.
+/// Largest chunk number.
 pub const CHUNK_NUMBER_MAX: u16 = 0x7fff;
 
 const HELLO_REQUEST: u8 = 0x00;
@@ -46,32 +46,32 @@ const CHUNK: u8 = 0x80;
 const _: () = assert!(Request::POSTCARD_MAX_SIZE < PAYLOAD_MAX_LEN);
 const _: () = assert!(FromBoard::POSTCARD_MAX_SIZE < PAYLOAD_MAX_LEN);
 
-/// What a frame carries.
+/// The payload of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Payload<'a> {
-    /// The host asks who is there.
+    /// The host requests the board's [`Hello`].
     HelloRequest {
-        /// Protocol that the host speaks: major, minor.
+        /// Protocol version of the host: major, minor.
         protocol: (u8, u8),
     },
-    /// The board says who it is.
+    /// The board identifies itself.
     Hello(Hello),
-    /// The host asks for something.
+    /// The host sends a command.
     Request(Request),
-    /// The board answers or reports.
+    /// The board answers a command or reports an event.
     FromBoard(FromBoard),
-    /// A piece of the upload that is under way.
+    /// A chunk of the current upload.
     Chunk {
         /// The chunk's number, from zero.
         number: u16,
-        /// Its bytes: [`CHUNK_LEN`] of them, fewer in the last chunk, never none.
+        /// The chunk's bytes: [`CHUNK_LEN`] of them, or at least one in the last chunk.
         bytes: &'a [u8],
     },
-    /// Samples of the stream that is under way.
+    /// Samples of the current stream.
     Samples {
         /// Index of the first sample, counted from the start of the stream.
         first_index: u32,
-        /// The samples, each little-endian, 65,535 for 1; up to [`SAMPLES_MAX`] of them, never none.
+        /// The samples, 1 to [`SAMPLES_MAX`], each little-endian; 65,535 represents 1.
         samples: &'a [[u8; 2]],
     },
 }
@@ -112,7 +112,7 @@ impl<'a> Payload<'a> {
         }
     }
 
-    /// Writes the payload; returns its bytes.
+    /// Writes the payload to `buffer` and returns the bytes written.
     pub fn write<'b>(&self, buffer: &'b mut [u8; PAYLOAD_MAX_LEN]) -> Result<&'b [u8], WriteError> {
         match self {
             Self::HelloRequest { protocol: (major, minor) } => join(buffer, &[HELLO_REQUEST], &[*major, *minor]),
@@ -124,45 +124,45 @@ impl<'a> Payload<'a> {
         }
     }
 
-    /// Writes a whole frame; returns its bytes.
+    /// Writes a complete frame and returns the bytes written.
     pub fn write_frame<'f>(&self, frame: &'f mut [u8; FRAME_MAX_LEN]) -> Result<&'f [u8], WriteError> {
         let mut buffer = [0; PAYLOAD_MAX_LEN];
         Ok(frame::encode(self.write(&mut buffer)?, frame)?)
     }
 }
 
-/// Frame of a hello request in the protocol of this crate.
+/// Writes the frame of a hello request with the protocol version of this crate.
 pub fn hello_request_frame(frame: &mut [u8; FRAME_MAX_LEN]) -> Result<&[u8], WriteError> {
     Ok(frame::encode(&[HELLO_REQUEST, PROTOCOL_MAJOR, PROTOCOL_MINOR], frame)?)
 }
 
-/// Frame of a hello.
+/// Writes the frame of a hello.
 #[inline(never)]
 pub fn hello_frame<'f>(hello: &Hello, frame: &'f mut [u8; FRAME_MAX_LEN]) -> Result<&'f [u8], WriteError> {
     let mut buffer = [0; PAYLOAD_MAX_LEN];
     Ok(frame::encode(join(&mut buffer, &[HELLO], &hello.write())?, frame)?)
 }
 
-/// Frame of a request.
+/// Writes the frame of a request.
 pub fn request_frame<'f>(request: &Request, frame: &'f mut [u8; FRAME_MAX_LEN]) -> Result<&'f [u8], WriteError> {
     let mut buffer = [0; PAYLOAD_MAX_LEN];
     Ok(frame::encode(write_postcard(&mut buffer, REQUEST, request)?, frame)?)
 }
 
-/// Frame of a message of the board.
+/// Writes the frame of a message from the board.
 #[inline(never)]
 pub fn from_board_frame<'f>(message: &FromBoard, frame: &'f mut [u8; FRAME_MAX_LEN]) -> Result<&'f [u8], WriteError> {
     let mut buffer = [0; PAYLOAD_MAX_LEN];
     Ok(frame::encode(write_postcard(&mut buffer, FROM_BOARD, message)?, frame)?)
 }
 
-/// Frame of an upload's chunk: its number from zero, and [`CHUNK_LEN`] bytes, or fewer in the last one.
+/// Writes the frame of an upload chunk: its number, from zero, and [`CHUNK_LEN`] bytes, or fewer in the last chunk.
 pub fn chunk_frame<'f>(number: u16, bytes: &[u8], frame: &'f mut [u8; FRAME_MAX_LEN]) -> Result<&'f [u8], WriteError> {
     let mut buffer = [0; PAYLOAD_MAX_LEN];
     Ok(frame::encode(write_chunk(&mut buffer, number, bytes)?, frame)?)
 }
 
-/// Frame of samples of a stream: the index of the first one, and 1 to [`SAMPLES_MAX`] of them, 65,535 for 1.
+/// Writes the frame of stream samples: the index of the first, and 1 to [`SAMPLES_MAX`] samples; 65,535 represents 1.
 pub fn samples_frame<'f>(
     first_index: u32,
     samples: &[u16],
@@ -229,7 +229,7 @@ fn join<'b>(buffer: &'b mut [u8; PAYLOAD_MAX_LEN], head: &[u8], tail: &[u8]) -> 
     Ok(joined)
 }
 
-/// The sequence number comes first, so that a command that cannot be read can still be refused by number.
+/// Reads the sequence number first, so that an unreadable command can still be refused by its number.
 fn parse_request(bytes: &[u8]) -> Result<Request, ParseError> {
     let (sequence, command) =
         postcard::take_from_bytes::<u16>(bytes).map_err(|_| ParseError::Malformed { kind: REQUEST })?;
@@ -237,7 +237,7 @@ fn parse_request(bytes: &[u8]) -> Result<Request, ParseError> {
     Ok(Request { sequence, command })
 }
 
-/// The postcard value that these bytes are, to the last byte.
+/// Deserializes a postcard value that must take up all of the bytes.
 fn whole<'a, T: Deserialize<'a>>(bytes: &'a [u8]) -> Option<T> {
     match postcard::take_from_bytes(bytes) {
         Ok((value, [])) => Some(value),

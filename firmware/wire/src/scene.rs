@@ -1,5 +1,5 @@
-//! What messages say of scenes and bitmaps: limits of the layout, why bytes are not a scene, and the name of a bitmap.
-//! The layout itself is in `frixel-layers`.
+//! Definitions for messages about scenes and bitmaps: limits of the scene layout, errors in a scene, and the CRC-32
+//! that identifies a bitmap. The layout itself is in `frixel-layers`.
 
 mod error;
 
@@ -7,22 +7,22 @@ pub use error::SceneError;
 
 use crate::frame::Crc32;
 
-/// Most records that the layout allows.
+/// Maximum number of records in a scene.
 pub const RECORDS_MAX: usize = 64;
-/// Most points that the layout allows, those of all polygons and curves together.
+/// Maximum number of points in a scene, over all polygons and curves.
 pub const POINTS_MAX: usize = 128;
-/// Most vertices of a polygon.
+/// Maximum number of vertices of a polygon.
 pub const POLYGON_POINTS_MAX: usize = 32;
-/// Most points of a curve of speed.
+/// Maximum number of points of a speed curve.
 pub const CURVE_POINTS_MAX: usize = 16;
 
-/// CRC-32 that names a bitmap: of its width and height, each little-endian in two bytes, and its samples. The shape is
-/// part of the name, since the same bytes in another shape are another picture.
+/// CRC-32 that identifies a bitmap, computed over its width and height, each two bytes little-endian, and its samples.
+/// It includes the dimensions because the same samples with other dimensions are another bitmap.
 pub fn bitmap_crc32(width: u16, height: u16, samples: &[u8]) -> u32 {
     bitmap_digest(width, height).update(samples).finish()
 }
 
-/// [`bitmap_crc32`] of samples that come piece by piece.
+/// Starts a [`bitmap_crc32`] for samples that arrive in pieces.
 pub fn bitmap_digest(width: u16, height: u16) -> Crc32 {
     let mut digest = Crc32::new();
     digest.update(&width.to_le_bytes()).update(&height.to_le_bytes());

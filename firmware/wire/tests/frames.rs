@@ -21,7 +21,7 @@ fn decode(bytes: &[u8]) -> (Vec<Vec<u8>>, Decoder) {
     (payloads, decoder)
 }
 
-/// COBS as its paper has it, written apart from the crate under test; `None` when the bytes are not COBS.
+/// COBS as in its paper, implemented independently of the crate under test; `None` if the bytes are not valid COBS.
 fn reference_uncobs(mut encoded: &[u8]) -> Option<Vec<u8>> {
     let mut decoded = Vec::new();
     while let Some((&code, rest)) = encoded.split_first() {
@@ -35,14 +35,14 @@ fn reference_uncobs(mut encoded: &[u8]) -> Option<Vec<u8>> {
     Some(decoded)
 }
 
-/// CRC-32 bit by bit, written apart from the crate under test.
+/// CRC-32 bit by bit, implemented independently of the crate under test.
 fn reference_crc32(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(u32::MAX, |crc, byte| {
         (0..8).fold(crc ^ u32::from(*byte), |crc, _| if crc & 1 == 1 { (crc >> 1) ^ 0xedb8_8320 } else { crc >> 1 })
     })
 }
 
-/// What a stream holds, by reference: good payloads, and how many frames were bad.
+/// Reference decoder for a stream: the valid payloads, and the number of invalid frames.
 fn reference_decode(bytes: &[u8]) -> (Vec<Vec<u8>>, u32) {
     let mut frames: Vec<&[u8]> = bytes.split(|byte| *byte == 0).collect();
     frames.pop();
@@ -59,7 +59,7 @@ fn reference_decode(bytes: &[u8]) -> (Vec<Vec<u8>>, u32) {
     (payloads, rejected)
 }
 
-/// What a line does to bytes.
+/// A disturbance of the bytes on a serial line.
 #[derive(Clone, Debug)]
 enum Noise {
     Flip { at: prop::sample::Index, bit: u8 },
@@ -97,7 +97,7 @@ fn disturb(line: &mut Vec<u8>, noise: &Noise) {
 }
 
 fn payload() -> impl Strategy<Value = Vec<u8>> {
-    // Zeros and full runs are what COBS turns on: make them frequent.
+    // Zeros and full runs are the special cases of COBS: make them frequent.
     let byte = prop_oneof![Just(0u8), Just(1), Just(0xff), any::<u8>()];
     prop::collection::vec(byte, 0..=PAYLOAD_MAX_LEN)
 }
@@ -187,7 +187,8 @@ proptest! {
         prop_assert_eq!(reference_uncobs(&frame[..frame.len() - 1]), Some(body));
     }
 
-    /// Whatever the line did, no payload comes out that did not go in, and the frame after the next zero is found.
+    /// Under any disturbance, the decoder returns only payloads that were sent, and finds the frame after the next
+    /// zero.
     #[test]
     fn a_noisy_line_loses_frames_but_never_invents_one(
         payloads in prop::collection::vec(payload(), 1..6),
@@ -212,7 +213,7 @@ proptest! {
         prop_assert_eq!(found.last(), Some(&last));
     }
 
-    /// Bytes that no one meant as frames.
+    /// Arbitrary bytes.
     #[test]
     fn garbage_is_read_as_the_reference_reads_it(garbage in prop::collection::vec(0..20u8, 0..2_000)) {
         let (expected, rejected) = reference_decode(&garbage);
@@ -221,7 +222,7 @@ proptest! {
         prop_assert_eq!(decoder.rejected(), rejected);
     }
 
-    /// Byte by byte and all at once are the same.
+    /// Decoding byte by byte and all at once gives the same result.
     #[test]
     fn pushing_bytes_is_reading_a_slice(garbage in prop::collection::vec(any::<u8>(), 0..300), payload in payload()) {
         let line = [garbage.as_slice(), &[0], &frame(&payload)].concat();

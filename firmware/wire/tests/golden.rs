@@ -73,7 +73,7 @@ fn what_a_board_sends_is_golden() {
     hold_frames("board.hex", &samples::from_board());
 }
 
-/// Of these values, there is one for every variant of their enum.
+/// Asserts that the values include every variant of their enum.
 fn assert_all<'de, T: serde::Deserialize<'de> + std::fmt::Debug>(values: impl IntoIterator<Item = T>) {
     let found: BTreeSet<String> = values.into_iter().map(|value| variants::name(&value)).collect();
     let all: BTreeSet<String> = variants::all::<T>().into_iter().map(String::from).collect();
@@ -116,7 +116,7 @@ fn every_message_has_golden_bytes() {
     assert_all::<ConfigField>(fields);
 }
 
-/// What has a number of its own rather than a place in an enum: every number with a name, and one without.
+/// Types with explicit numbers instead of postcard discriminants: every named number, and one without a name.
 #[test]
 fn every_number_has_golden_bytes() {
     let hellos: Vec<_> = samples::from_board()
@@ -141,7 +141,7 @@ fn every_number_has_golden_bytes() {
     }
 }
 
-/// The direct ways to a frame give the frames of [`Payload::write_frame`].
+/// The functions that write a frame directly give the same frames as [`Payload::write_frame`].
 #[test]
 fn one_call_frames_are_the_same() {
     use frixel_wire::payload::{

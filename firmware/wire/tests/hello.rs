@@ -1,4 +1,4 @@
-//! The frozen hello, and hellos of boards that do not exist yet.
+//! The frozen hello, and hellos of future protocol versions.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
 mod support;
@@ -14,8 +14,8 @@ use support::samples::hello;
 const LIMITS_LEN_AT: usize = 43;
 const LIMITS_AT: usize = 44;
 
-/// A hello of protocol 1.2 by hand, field by field as `PROTOCOL.md` lays them out: its bytes never change. What later
-/// protocols add comes behind them.
+/// A hello of protocol 1.2, written by hand field by field as in `PROTOCOL.md`: its bytes never change. Later protocols
+/// add fields after them.
 #[test]
 fn the_layout_is_frozen() {
     let bytes = from_hex(
@@ -59,7 +59,7 @@ fn the_layout_is_frozen() {
     assert_eq!(hello.write().as_slice(), expected);
 }
 
-/// Another protocol, numbers and limits that nobody has heard of, a known limit of another length, bytes after the end.
+/// Another protocol, unknown numbers and limits, a known limit of another length, bytes after the end.
 #[test]
 fn a_hello_of_the_future_is_read() {
     let now = hello();
@@ -87,7 +87,7 @@ fn a_hello_of_the_future_is_read() {
     assert!(!read.board.is_simulated());
 }
 
-/// What a board does not state lets nothing be played.
+/// With the defaults for limits that a board omits, no scene can be played.
 #[test]
 fn limits_that_are_left_out_allow_nothing() {
     let mut bytes = hello().write()[..LIMITS_AT].to_vec();
@@ -102,7 +102,7 @@ fn limits_that_are_left_out_allow_nothing() {
     assert_eq!(limits.tick_cycles_max, BoardLimits::SMALLEST_TICK_CYCLES_MAX);
 }
 
-/// One limit left out is at its default, and the others are not.
+/// An omitted limit has its default value; the others have the values sent.
 #[test]
 fn each_limit_is_read_by_its_tag() {
     let whole = hello().write();
@@ -132,7 +132,7 @@ fn each_limit_is_read_by_its_tag() {
     assert_eq!(tags, 11);
 }
 
-/// Cut anywhere, a hello is an error and not another hello.
+/// A hello truncated at any byte is an error.
 #[test]
 fn truncated_hellos_are_refused() {
     let bytes = hello().write();
@@ -151,7 +151,7 @@ fn other_magic_is_refused() {
     assert_eq!(Hello::parse(&bytes), Err(HelloError::Magic { found: *b"FRXl" }));
 }
 
-/// Only the major version counts, and the sentence names the side to change.
+/// Only the major version decides on compatibility, and the sentence names the side to update.
 #[test]
 fn mismatch_says_which_side_to_change() {
     assert_eq!(hello().compatibility(), Ok(()));

@@ -16,7 +16,7 @@ fn written(payload: &Payload) -> Vec<u8> {
     payload.write(&mut [0; PAYLOAD_MAX_LEN]).unwrap().to_vec()
 }
 
-/// Payloads that are nearly right: good ones with a few bytes changed and the end cut off or grown.
+/// Nearly valid payloads: valid ones with a few bytes changed and the end truncated or extended.
 fn nearly() -> impl Strategy<Value = Vec<u8>> {
     let good: Vec<Vec<u8>> = samples::from_host().iter().chain(&samples::from_board()).map(written).collect();
     let change = (any::<prop::sample::Index>(), any::<u8>());
@@ -34,7 +34,7 @@ fn nearly() -> impl Strategy<Value = Vec<u8>> {
     )
 }
 
-/// What can be read can be written, and is then read as the same.
+/// Asserts that a payload that can be read can be written, and that reading it back gives the same payload.
 fn assert_stable(bytes: &[u8]) -> Result<(), TestCaseError> {
     if let Ok(payload) = Payload::parse(bytes) {
         let once = written(&payload);
@@ -60,7 +60,8 @@ proptest! {
         assert_stable(&bytes)?;
     }
 
-    /// What one side may send, the other side's parser reads as [`Payload::parse`] does, and its own refuses.
+    /// The receiver's parser reads the payloads that the sender may send as [`Payload::parse`] does; the sender's own
+    /// parser refuses them.
     #[test]
     fn each_side_reads_only_the_other(bytes in nearly()) {
         let (host, board) = (Payload::parse_from_host(&bytes), Payload::parse_from_board(&bytes));
@@ -115,7 +116,7 @@ fn payloads_that_are_not_right_are_refused() {
     assert_eq!(Payload::parse(&[0x80, 0x00]), Err(ParseError::Malformed { kind: 0x80 }));
 }
 
-/// A command of a newer protocol, and one with bytes too many, can still be answered by number.
+/// An unreadable command, of a newer protocol or with excess bytes, can still be answered by its sequence number.
 #[test]
 fn unknown_commands_keep_their_sequence_number() {
     let unknown = Err(ParseError::UnknownCommand { sequence: 300 });

@@ -1,4 +1,4 @@
-//! `PROTOCOL.md` says what the code does: its tables and its examples are read and compared.
+//! `PROTOCOL.md` agrees with the code: these tests read its tables and examples and compare them.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
 mod support;
@@ -175,7 +175,7 @@ fn layouts_have_no_gap() {
     }
 }
 
-/// The limits of the table: tags in order, lengths, and what holds when one is left out.
+/// The table of limits: tags in order, lengths, and the defaults of omitted limits.
 #[test]
 fn limits_are_those_of_the_table() {
     let (_, after) = PROTOCOL.split_once("\n| tag | bytes |").unwrap();

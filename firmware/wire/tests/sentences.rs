@@ -1,4 +1,4 @@
-//! Sentences for a person: each says what was found, and what to do.
+//! Human-readable sentences: each states what was found and what to do.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
 mod support;
@@ -42,7 +42,7 @@ fn states_begin_with_their_name() {
     }
 }
 
-/// Every flag has a sentence, any two stand beside one another, and bits without a name are not passed over.
+/// Every flag has a sentence, any two are combined into one text, and unknown bits are reported.
 #[test]
 fn flags_say_all_that_is_set() {
     assert_eq!(Flags::default().to_string(), "nothing limits the output");
@@ -64,7 +64,7 @@ fn flags_say_all_that_is_set() {
     assert_eq!(Flags(0x8201).to_string(), format!("{}; flags 0x8200, which this program does not know", named[0]));
 }
 
-/// All the numbers that a refusal carries are in its sentence, after which it says what to do.
+/// The sentence of a refusal contains all its numbers and ends with the remedy.
 #[test]
 fn refusals_tell_numbers_and_a_cure() {
     let mut sentences = BTreeSet::new();

@@ -1,4 +1,4 @@
-//! The one dimensionless curve of a paraboloid on Winkler-Fuss springs.
+//! The dimensionless curve of a paraboloid on Winkler-Fuss springs.
 //!
 //! With `q = sigma0/(g k) = (V/V*)^2`, `y = a^2/(2 R g)` and `n = F_N/(pi k R g^2)`, Eq. (43) is
 //! `y^2 - 2 q y - 2 q w - n = 0`, with `w = 1/(1 + q)` for the attraction around the contact. Without it, Eq. (37),
@@ -9,7 +9,7 @@ use crate::Real;
 /// A point of the curve.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Point<T> {
-    /// `V/V*`, whose square is `q`. It keeps its precision where `q` and `y^2` leave the range of `f32`.
+    /// `V/V*`, the square root of `q`. It keeps its precision where `q` and `y^2` leave the range of `f32`.
     pub(crate) v: T,
     /// The attraction around the contact, `w`.
     pub(crate) around: T,
@@ -19,14 +19,14 @@ pub(crate) struct Point<T> {
 }
 
 impl<T: Real> Point<T> {
-    /// With the attraction around the contact, Eqs. (36), (43). None where there is no contact.
+    /// The point with the attraction around the contact, Eqs. (36), (43). `None` if there is no contact.
     #[inline]
     pub(crate) fn upper(v: T, n: T) -> Option<Self> {
         let q = v * v;
         Self::new(v, q, T::ONE / (T::ONE + q), n)
     }
 
-    /// Without the attraction around the contact, Eqs. (37), (38). None where there is no contact.
+    /// The point without the attraction around the contact, Eqs. (37), (38). `None` if there is no contact.
     #[inline]
     pub(crate) fn lower(v: T, n: T) -> Option<Self> {
         Self::new(v, v * v, T::ZERO, n)
@@ -35,7 +35,7 @@ impl<T: Real> Point<T> {
     #[inline]
     fn new(v: T, q: T, around: T, n: T) -> Option<Self> {
         let margin = if q < T::from(1e-15) && n >= T::ZERO {
-            // The square would leave the range: take the root of each part first.
+            // The square would overflow or underflow: take the root of each part first.
             hypotenuse(v * (q + T::TWO * around).sqrt(), n.sqrt())
         } else if q > T::from(1e18) {
             q * (T::ONE + (T::TWO * q * around + n) / q / q).sqrt()
@@ -49,7 +49,7 @@ impl<T: Real> Point<T> {
         (margin >= T::ZERO).then_some(Self { v, around, margin, y: q + margin })
     }
 
-    /// Electric friction over the friction scale is `(y^2 - n)`: this is `scale (y^2 - n)`, without cancellation.
+    /// The electric friction `scale (y^2 - n)`, computed without cancellation; `scale` is the friction scale.
     #[inline]
     pub(crate) fn electric_friction(&self, scale: T) -> T {
         scale * self.v * self.v * (T::TWO * (self.y + self.around))
@@ -66,7 +66,7 @@ impl<T: Real> Point<T> {
     }
 }
 
-/// `y` of a friction: the root of a quotient that may itself leave the range.
+/// `y` of a friction: the root of a quotient that may itself overflow or underflow.
 #[inline]
 pub(crate) fn root_of_quotient<T: Real>(numerator: T, denominator: T) -> T {
     let quotient = numerator / denominator;

@@ -26,7 +26,7 @@ pub struct FiniteContact<T> {
     beta: T,
 }
 
-/// How far, relative to `beta`, rounding may carry a contact that reaches the outer radius.
+/// Tolerance for rounding, relative to `beta`, of a contact that reaches the outer radius.
 const SLACK: f32 = 8.0;
 
 impl<T: Real> FiniteContact<T> {
@@ -66,7 +66,7 @@ impl<T: Real> FiniteContact<T> {
         let root = rising_root(low, high, high, |y| {
             let rest = beta - y;
             let beyond = T::ONE / (T::ONE + q + rest);
-            // Two factors below one: the product of q and what is left of beta may leave the range.
+            // Both factors are below one; the product of q and the remaining part of beta may overflow.
             let residual = y - T::TWO * q - (n + T::TWO * (q * around) * (rest * beyond)) / y;
             let slope = T::TWO * (T::ONE - q / y + q * beyond * beyond / y);
             Step { residual, next: y - residual / slope }
@@ -107,7 +107,7 @@ impl<T: Real> ContactModel<T> for FiniteContact<T> {
         }
         let rest = (self.beta - y).max(T::ZERO);
         let r = electric_friction_n / (scale * y);
-        // More attraction around the contact needs less voltage, none around it the most.
+        // The required voltage falls with the attraction around the contact: it is largest without any.
         let least_v = upper_inverse(y, r);
         let (low, high) = (least_v * least_v, r / T::TWO);
         let root = rising_root(low.min(high), high, low, |q| {

@@ -45,17 +45,17 @@ impl<T: Real> LoadedContact<T> {
 
     /// Electric friction `x = F_T - mu F_N` in newtons at a finite rms voltage of zero or more, Eqs. (43), (21).
     ///
-    /// [`ContactModel::state`] is the same with its argument and its answer checked.
+    /// [`ContactModel::state`] computes the same value and checks its argument and result.
     #[inline]
     pub fn electric_friction_n(&self, voltage_v_rms: T) -> T {
         let point = Point::upper(voltage_v_rms / self.contact.voltage_scale_v_rms, self.n);
         point.map_or(T::ZERO, |point| point.electric_friction(self.contact.friction_scale_n))
     }
 
-    /// The rms voltage that gives a finite electric friction, in volts; zero for a friction of zero or less and for
+    /// The rms voltage for a finite electric friction, in volts; zero for a friction of zero or less and for
     /// not-a-number.
     ///
-    /// [`ContactModel::voltage_for_electric_friction`] is the same with its argument and its answer checked.
+    /// [`ContactModel::voltage_for_electric_friction`] computes the same value and checks its argument and result.
     #[inline]
     pub fn voltage_v_rms(&self, electric_friction_n: T) -> T {
         if !(electric_friction_n > T::ZERO) {
@@ -68,7 +68,7 @@ impl<T: Real> LoadedContact<T> {
 }
 
 impl LoadedContact<f64> {
-    /// The same in numbers of fewer bits, for a table.
+    /// Converts the contact to [`DoubleSingle`], for building a table.
     pub(crate) fn in_double_single(&self) -> LoadedContact<DoubleSingle> {
         let number = DoubleSingle::from_f64;
         let Contact { voltage_scale_v_rms, friction_scale_n, load_scale_n, area_scale_m2, .. } = self.contact;
@@ -89,7 +89,8 @@ impl LoadedContact<f64> {
 }
 
 impl LoadedContact<DoubleSingle> {
-    /// As [`Contact::new`] and [`Contact::under_load`] make it, from numbers that a board is told; `None` where they refuse.
+    /// Creates the contact as [`Contact::new`] and [`Contact::under_load`] do, from `f32` parameters sent to a board;
+    /// `None` if they are out of range.
     pub(crate) fn of_finger(finger: &Finger<f32>, gap_m: f32, normal_load_n: f32) -> Option<Self> {
         let Finger { radius_m, stiffness_pa_per_m, friction_coefficient } = *finger;
         let in_range = |value: f32| (f32::MIN_POSITIVE..=f32::MAX).contains(&value);
@@ -99,7 +100,7 @@ impl LoadedContact<DoubleSingle> {
         }
         let [radius_m, stiffness_pa_per_m, friction_coefficient, g] = given.map(DoubleSingle::from);
         let normal_load_n = DoubleSingle::from(normal_load_n);
-        // From the left, each product stays far from the least number.
+        // Multiplied from the left, no intermediate product comes close to the smallest number.
         let load_scale_n = DoubleSingle::from_f64(PI) * stiffness_pa_per_m * radius_m * g * g;
         let square = stiffness_pa_per_m * g * DoubleSingle::from_f64(2.0 / VACUUM_PERMITTIVITY_F_PER_M);
         let contact = Contact {

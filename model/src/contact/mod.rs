@@ -1,4 +1,4 @@
-//! A Winkler-Fuss finger on a coating: the model's scales, and what follows from them in closed form.
+//! A Winkler-Fuss finger on a coating: the model's scales, and the quantities that follow from them in closed form.
 
 pub(crate) mod curve;
 mod finite;
@@ -20,9 +20,9 @@ use curve::Point;
 
 /// A Winkler-Fuss finger on a coating, reduced to the four scales that its equations need.
 ///
-/// Scaled by them, voltage, load, contact and friction fall on one curve, as the paper hints under Eq. (36):
-/// `q = sigma0/(g k) = (V/V*)^2`, `n = F_N/(pi k R g^2)`, `y = a^2/(2 R g)`, `u = F_T/F* - n`. The scales are computed in
-/// f64 and rounded once, whatever `T` is.
+/// In these scales all fingers and coatings share one relation of voltage, load, contact and friction, as the paper
+/// indicates under Eq. (36): `q = sigma0/(g k) = (V/V*)^2`, `n = F_N/(pi k R g^2)`, `y = a^2/(2 R g)`,
+/// `u = F_T/F* - n`. The scales are computed in f64 and rounded once, for every `T`.
 ///
 /// ```
 /// use frixel_model::{Contact, ContactModel, Finger};
@@ -66,8 +66,8 @@ impl<T: Real> Contact<T> {
         })
     }
 
-    /// The universal curve: every scale is one, so that voltage is `V/V*`, load `n`, friction `F_T/F*` and contact radius
-    /// `sqrt(y)`. A table of it serves every finger and coating under the same `n`.
+    /// The universal curve: every scale is one, so that voltage is `V/V*`, load `n`, friction `F_T/F*` and contact
+    /// radius `sqrt(y)`. A table of it is valid for every finger and coating under the same `n`.
     pub fn universal() -> Self {
         Self {
             voltage_scale_v_rms: T::ONE,
@@ -119,7 +119,7 @@ impl<T: Real> Contact<T> {
     }
 
     /// Dimensionless attraction `q = sigma0/(g k) = (V/V*)^2` of a voltage. Relative error at most 5
-    /// roundings in f32 and 10 in f64, whose scales have roundings of their own.
+    /// roundings in f32 and 10 in f64, which includes the roundings of the scales.
     pub fn attraction(&self, voltage_v_rms: T) -> T {
         let v = voltage_v_rms / self.voltage_scale_v_rms;
         v * v
@@ -146,12 +146,12 @@ impl<T: Real> Contact<T> {
 
     /// Normal load in newtons from a measured contact radius and the voltage, Eq. (43).
     ///
-    /// Relative error at most 2e-15 in f64, 1e-6 in f32, times one plus the ratio of spring force to load: where spring force
-    /// and attraction nearly cancel, the radius tells little of the load.
+    /// Relative error at most 2e-15 in f64, 1e-6 in f32, times one plus the ratio of spring force to load: where spring
+    /// force and attraction nearly cancel, the load is ill-conditioned in the radius.
     pub fn normal_load_n(&self, contact_radius_m: T, voltage_v_rms: T) -> Result<T, ParameterError> {
         let y = self.area(not_negative("contact_radius_m", contact_radius_m)?);
         let q = self.attraction(not_negative("voltage_v_rms", voltage_v_rms)?);
-        // The scale first: squares of y and q may leave the range where the load does not.
+        // Multiply by the scale first: squares of y and q may overflow or underflow where the load does not.
         let inside_n = self.load_scale_n * y * (y - T::TWO * q);
         let load_n = inside_n - self.load_scale_n * T::TWO * (q / (T::ONE + q));
         representable("contact_radius_m", contact_radius_m, load_n)
@@ -160,8 +160,8 @@ impl<T: Real> Contact<T> {
     /// Capacitance in farads between electrode and finger, out to `outer_radius_m`:
     /// `eps0 pi a^2/g + 2 pi eps0 R ln(1 + (beta - y)/(1 + q))`, the gap around the contact being that of Eqs. (11), (17).
     ///
-    /// The contact radius, at most the outer one, is what the model gave for this voltage. Relative error at most 4e-15 in
-    /// f64, 1e-6 in f32.
+    /// `contact_radius_m` must be the model's contact radius at this voltage, at most the outer radius. Relative error
+    /// at most 4e-15 in f64, 1e-6 in f32.
     pub fn capacitance_f(&self, contact_radius_m: T, voltage_v_rms: T, outer_radius_m: T) -> Result<T, ParameterError> {
         let y = self.area(not_negative("contact_radius_m", contact_radius_m)?);
         let q = self.attraction(not_negative("voltage_v_rms", voltage_v_rms)?);
@@ -203,7 +203,7 @@ impl<T: Real> Contact<T> {
         self.sensitivity_of(point.v, by_voltage, by_load)
     }
 
-    /// From `d(y^2)/dv / (4 v)` and `d(y^2)/dn`.
+    /// The sensitivity from `d(y^2)/dv / (4 v)` and `d(y^2)/dn`.
     fn sensitivity_of(&self, v: T, by_voltage: T, by_load: T) -> Result<Sensitivity<T>, StateError> {
         let friction_per_volt_n_per_v =
             T::from(4.0) * self.friction_scale_n / self.voltage_scale_v_rms * v * by_voltage;

@@ -8,8 +8,8 @@ use crate::{ContactModel, ContactState, Real, Sensitivity};
 
 /// A contact that a fixed force pulls off the screen (variant `wf-loaded` with a negative load).
 ///
-/// It exists while `q^2 + 2 q/(1 + q) + n >= 0` and holds while `y > q`; at pull-off both become equalities. An inverse
-/// refuses the branch below.
+/// It exists while `q^2 + 2 q/(1 + q) + n >= 0` and is stable while `y > q`; at pull-off both become equalities. The
+/// inverse refuses the unstable branch below pull-off.
 ///
 /// Error bounds: those of [`LoadedContact`](crate::LoadedContact) times `max(1, c/12)`, with the condition number `c` the
 /// sum of the relative changes of the answer over those of voltage (or friction), load, stiffness, gap and radius. Near
@@ -42,8 +42,8 @@ impl<T: Real> PulledContact<T> {
         finite_answer(self.contact.voltage_scale_v_rms * self.pull_off_attraction()?.sqrt())
     }
 
-    /// Friction at pull-off, the least that this contact can have, in newtons: `F* q^2`. Error as for the
-    /// voltage.
+    /// Friction at pull-off, the smallest friction of this contact, in newtons: `F* q^2`. The error bound is that of
+    /// the pull-off voltage.
     pub fn pull_off_friction_n(&self) -> Result<T, StateError> {
         let q = self.pull_off_attraction()?;
         finite_answer(self.contact.friction_scale_n * q * q)
@@ -87,7 +87,7 @@ impl<T: Real> PulledContact<T> {
 }
 
 impl<T: Real> ContactModel<T> for PulledContact<T> {
-    /// `mu F_N`, below zero: not a friction, but where electric friction is counted from.
+    /// `mu F_N`, below zero: not a physical friction, but the zero point of electric friction.
     fn natural_friction_n(&self) -> T {
         self.natural_friction_n
     }
@@ -101,7 +101,7 @@ impl<T: Real> ContactModel<T> for PulledContact<T> {
         self.inverse(friction_n, electric_friction_n)
     }
 
-    /// Without the detour over the electric part, which would lose a friction far below `mu |F_N|`.
+    /// Computed directly, since the difference from natural friction would lose a friction far below `mu |F_N|`.
     fn voltage_for_friction(&self, friction_n: T) -> Result<T, InverseError> {
         let friction_n = finite("friction_n", friction_n)?;
         self.inverse(friction_n, friction_n - self.natural_friction_n)
@@ -111,7 +111,7 @@ impl<T: Real> ContactModel<T> for PulledContact<T> {
         self.contact.sensitivity_at(&self.point(voltage_v_rms)?)
     }
 
-    /// From the friction at pull-off.
+    /// The range begins at the friction at pull-off.
     fn reachable_friction_n(&self, voltage_max_v_rms: T) -> Result<(T, T), StateError> {
         Ok((self.pull_off_friction_n()?, self.state(voltage_max_v_rms)?.friction_n))
     }

@@ -47,7 +47,8 @@ impl<T: Real> SoftContact<T> {
         Ok(Self { finger: *finger, gap_m, forces, voltage_scale_v_rms: scale("gap_m", gap_m, libm::sqrt(square))? })
     }
 
-    /// The contact under a normal load of zero or more newtons. A pull is refused: up to three contacts would answer it.
+    /// The contact under a normal load of zero or more newtons. A pull is refused, since up to three contacts satisfy
+    /// the equations under a pull.
     pub fn under_load(self, normal_load_n: T) -> Result<SoftLoadedContact<T>, ParameterError> {
         SoftLoadedContact::new(self, normal_load_n)
     }

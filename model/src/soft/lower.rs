@@ -30,7 +30,7 @@ impl<T: Real> ContactModel<T> for SoftLowerBound<T> {
     fn state(&self, voltage_v_rms: T) -> Result<ContactState<T>, StateError> {
         let double_tau = T::TWO * self.contact.stress(voltage_v_rms)?;
         let area = double_tau.pow(self.contact.forces.two_s);
-        // The scale first: without it the product may leave the range where friction does not.
+        // Multiply by the scale first: without it the product may overflow or underflow where the friction does not.
         let friction_n = self.friction_scale_n * double_tau * area;
         let stiffness_pa_per_m =
             if double_tau > T::ZERO { self.contact.forces.lower_stiffness_pa_per_m(double_tau) } else { T::ZERO };
@@ -50,7 +50,7 @@ impl<T: Real> ContactModel<T> for SoftLowerBound<T> {
         found_voltage_v_rms(self.contact.voltage_scale_v_rms * (double_tau / T::TWO).sqrt())
     }
 
-    /// The load's part is that of this bound under a vanishing load.
+    /// The derivative with respect to load is the limit for a vanishing load.
     fn sensitivity(&self, voltage_v_rms: T) -> Result<Sensitivity<T>, StateError> {
         let exponent = T::ONE + self.contact.forces.two_s;
         let friction_n = self.state(voltage_v_rms)?.friction_n;

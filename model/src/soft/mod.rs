@@ -1,4 +1,4 @@
-//! The soft finger of Xydas and Kao: a stiffness that follows from the force it carries.
+//! The soft finger of Xydas and Kao, whose stiffness depends on the force on it.
 
 mod contact;
 mod finger;

@@ -1,4 +1,4 @@
-//! The error that a table proves, in friction and relative to it.
+//! The proven bound on a table's relative error in friction.
 
 /// Supremum of `s |x^C V^(C)|/(C! V)` for `C` = 2, 3, 4 coefficients, rounded up: from `reference/table_constants.py`.
 const CURVATURE: [f64; 3] = [0.425, 0.264, 0.189];

@@ -6,19 +6,20 @@ use super::bound::{ROUNDING, TOP_SHARE, half_width, interpolation_error};
 use super::{FixedTable, SizedTable, TableError};
 use crate::LoadedContact;
 
-/// The arithmetic of a table.
+/// The number format of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Precision {
-    /// `f32`, for cores with an FPU.
+    /// `f32`, for processor cores with an FPU.
     F32,
-    /// 32-bit integers, for cores without.
+    /// 32-bit integers, for processor cores without an FPU.
     Fixed,
 }
 
-/// What a table is asked for: a contact, a range of electric friction, an error target.
+/// The requirements on a table: a contact, a range of electric friction, an error target.
 ///
-/// The contact may be that of the universal curve, [`Contact::universal`](crate::Contact::universal): such a table takes
-/// friction over `F*` and gives voltage over `V*`, and serves every finger and coating under the same `n`.
+/// The contact may be that of the universal curve, [`Contact::universal`](crate::Contact::universal). Such a table
+/// maps `F/F*` to `V/V*`, with the electric friction `F`, and is valid for every finger and coating under the same
+/// `n`.
 ///
 /// ```
 /// use frixel_model::{Contact, Finger, Precision, TableBuilder};
@@ -41,21 +42,21 @@ pub struct TableBuilder<'contact> {
     relative_error: f64,
 }
 
-/// The size of a table, and the error that it proves over its whole range.
+/// The size of a table, and the proven bound on its error over the whole range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TableShape {
-    /// Its arithmetic.
+    /// Number format of the rows.
     pub precision: Precision,
-    /// Coefficients in a row: 2, 3 or 4.
+    /// Coefficients per row: 2, 3 or 4.
     pub coefficients: usize,
-    /// Rows.
+    /// Number of rows.
     pub rows: usize,
     /// The proven bound on the relative error in electric friction.
     pub relative_error: f64,
 }
 
 impl TableShape {
-    /// Bytes of its rows.
+    /// Size of the rows in bytes.
     pub fn bytes(&self) -> usize {
         4 * self.coefficients * self.rows
     }
@@ -75,8 +76,8 @@ pub(super) struct FixedLayout {
 }
 
 impl<'contact> TableBuilder<'contact> {
-    /// A request for electric frictions from `friction_min_n`, above zero, to `friction_max_n`, both in newtons, within
-    /// `relative_error` of the friction asked for.
+    /// Requires a table for electric frictions from `friction_min_n`, above zero, to `friction_max_n`, both in newtons,
+    /// whose relative error in friction is at most `relative_error`.
     pub fn new(
         contact: &'contact LoadedContact<f64>,
         friction_min_n: f64,
@@ -92,7 +93,7 @@ impl<'contact> TableBuilder<'contact> {
         Ok(Self { contact, friction_min_n, friction_max_n, relative_error })
     }
 
-    /// The shape of the smallest table with this many coefficients a row, 2, 3 or 4.
+    /// The shape of the smallest table with this many coefficients per row: 2, 3 or 4.
     pub fn shape(&self, precision: Precision, coefficients: usize) -> Result<TableShape, TableError> {
         let (rows, relative_error) = match precision {
             Precision::F32 => self.float_layout(coefficients).map(|layout| (layout.rows, layout.relative_error))?,
@@ -101,7 +102,7 @@ impl<'contact> TableBuilder<'contact> {
         Ok(TableShape { precision, coefficients, rows, relative_error })
     }
 
-    /// The shape of the smallest table of any order.
+    /// The shape of the smallest table with any number of coefficients.
     pub fn smallest(&self, precision: Precision) -> Result<TableShape, TableError> {
         let mut smallest = self.shape(precision, 4)?;
         for coefficients in [3, 2] {
@@ -114,7 +115,7 @@ impl<'contact> TableBuilder<'contact> {
         Ok(smallest)
     }
 
-    /// The table in f32 in the first rows of `storage`, as many as [`Self::shape`] says.
+    /// Builds the table in f32, in the first rows of `storage`; [`Self::shape`] returns how many rows it needs.
     pub fn build_f32<'rows, const C: usize>(
         &self,
         storage: &'rows mut [[f32; C]],
@@ -122,7 +123,7 @@ impl<'contact> TableBuilder<'contact> {
         SizedTable::fill(self, storage)
     }
 
-    /// The table in integers in the first rows of `storage`, as many as [`Self::shape`] says.
+    /// Builds the table in integers, in the first rows of `storage`; [`Self::shape`] returns how many rows it needs.
     pub fn build_fixed<'rows, const C: usize>(
         &self,
         storage: &'rows mut [[i32; C]],
@@ -142,7 +143,7 @@ impl<'contact> TableBuilder<'contact> {
         if !(density <= f64::from(1 << 24)) {
             return Err(TableError::TooManySegments);
         }
-        // From the pattern below the least friction to the one behind the largest.
+        // From the bit pattern before the smallest friction to the one after the largest.
         let patterns = u64::from(high.to_bits() - low.to_bits()) + 2;
         let rows = ((patterns * density as u64) >> 32) + 1;
         let relative_error = rest + interpolation_error(coefficients, 256.0 / density).ok_or(TableError::Range)?;
@@ -175,7 +176,7 @@ impl<'contact> TableBuilder<'contact> {
         })
     }
 
-    /// What is left of the target for interpolation.
+    /// The part of the error target that remains for interpolation.
     fn budget(&self, rest: f64) -> Result<f64, TableError> {
         let budget = self.relative_error - rest;
         if budget > 0.1 * rest { Ok(budget) } else { Err(TableError::Target) }

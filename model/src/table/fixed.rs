@@ -1,4 +1,4 @@
-//! The evaluator in integers, for cores without an FPU.
+//! Table evaluation in integers, for processor cores without an FPU.
 
 use fixed::types::{U0F32, U1F31};
 
@@ -11,12 +11,11 @@ const ONE: f64 = (1_u32 << 31) as f64;
 /// Steps of a [`U0F32`] to the largest friction.
 const FRICTION_STEPS: f64 = (1_u64 << 32) as f64;
 
-/// A table in integers over rows that someone else owns, with `C` coefficients a row: from
-/// [`TableBuilder::build_fixed`].
+/// A table in integers over borrowed rows, with `C` coefficients per row; created by [`TableBuilder::build_fixed`].
 ///
-/// Friction goes in as a fraction of the largest friction, [`U0F32`]; voltage comes out as a fraction of the largest voltage,
-/// [`U1F31`], which holds 1. A row is found by the leading zeros and the bits behind the leading one, and evaluated in Q31:
-/// one 64-bit product for the index and one for each coefficient but the last.
+/// The input is a fraction of the largest friction, [`U0F32`]; the output is a fraction of the largest voltage,
+/// [`U1F31`], which can represent 1. The number of leading zeros and the bits after the leading one select the row,
+/// which is evaluated in Q31: one 64-bit product for the index and one for each coefficient but the last.
 ///
 /// ```
 /// use frixel_model::{Contact, Finger, TableBuilder, U0F32, U1F31};
@@ -60,7 +59,8 @@ impl<'rows, const C: usize> FixedTable<'rows, C> {
                 end.1 *= 1.0 - f64::from(TOP_MARGIN);
             }
             let start = point(octave_n + step_n * f64::from(part));
-            // Each product with the place, in Q31, keeps the upper word only and so halves: the coefficients make up for it.
+            // Each Q31 product with the position keeps only the upper word, which halves it; the coefficients
+            // compensate for that.
             let mut unit = voltage_step_v_rms;
             *row = local_polynomial::<C>(contact, start, end).map(|coefficient| {
                 let code = libm::rint(coefficient / unit) as i32;
@@ -88,7 +88,8 @@ impl<'rows, const C: usize> FixedTable<'rows, C> {
     fn voltage_bits(&self, friction: u32) -> u32 {
         let zeros = friction.leading_zeros();
         let Some(octave) = 31_u32.checked_sub(zeros + self.first_octave) else { return 0 };
-        // What stands behind the leading one, as a fraction of 2^32, times the rows of an octave: row and place in it.
+        // The bits after the leading one, as a fraction of 2^32, times the rows per octave: the row, and the position
+        // in it.
         let product = u64::from((friction << zeros) << 1) * u64::from(self.rows_per_octave);
         let index = octave * self.rows_per_octave + (product >> 32) as u32;
         let place = i64::from(product as u32 >> 1);
@@ -97,12 +98,12 @@ impl<'rows, const C: usize> FixedTable<'rows, C> {
         lower.iter().rev().fold(*highest, step) as u32
     }
 
-    /// The electric friction, in newtons, that would be 1: the largest.
+    /// The largest electric friction, in newtons, which corresponds to a fraction of 1.
     pub fn friction_max_n(&self) -> f64 {
         self.friction_max_n
     }
 
-    /// The voltage that is 1, in volts rms: the largest.
+    /// The largest voltage, in volts rms, which corresponds to a fraction of 1.
     pub fn voltage_max_v_rms(&self) -> f64 {
         self.voltage_max_v_rms
     }

@@ -1,4 +1,4 @@
-//! The evaluator in f32, and the rows it reads.
+//! Table evaluation in f32, and the layout of the rows.
 
 use core::num::NonZeroU32;
 use core::ops::Range;
@@ -8,12 +8,12 @@ use super::interpolation::polynomial;
 use super::{TableBuilder, TableError};
 use crate::{LoadedContact, Real};
 
-/// Where the rows of a table lie among the bit patterns, and what stands beyond them.
+/// The mapping from bit patterns of the friction to rows, and the values outside the rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub(super) struct Grid {
     first_bits: u32,
-    /// Rows to 2^32 bit patterns.
+    /// Number of rows per 2^32 bit patterns.
     density: NonZeroU32,
     friction_max_n: f32,
     voltage_max_v_rms: f32,
@@ -40,7 +40,8 @@ impl Grid {
     /// The row of a friction, or a number past the last row when the friction is outside.
     #[inline]
     pub(super) fn row(&self, friction_n: f32) -> usize {
-        // Whatever is outside, and every negative and not-a-number, wraps to the top.
+        // Below the range the subtraction wraps to a large number; the bits of negative numbers and not-a-number are
+        // large themselves.
         let patterns = friction_n.to_bits().wrapping_sub(self.first_bits);
         ((u64::from(patterns) * u64::from(self.density.get())) >> 32) as usize
     }
@@ -53,7 +54,7 @@ impl Grid {
         self.voltage_max_v_rms
     }
 
-    /// The voltage for a friction: that of its row; without a row, zero below and for not-a-number, the largest above.
+    /// The voltage for a friction, from its row. Outside the rows: zero below and for not-a-number, the largest above.
     #[inline]
     pub(super) fn evaluate<const C: usize>(&self, rows: &[[f32; C]], friction_n: f32) -> f32 {
         match rows.get(self.row(friction_n)) {
@@ -63,7 +64,7 @@ impl Grid {
         }
     }
 
-    /// Ends the table in front of the row `end`, and gives the voltage there; `None` when no row is cut.
+    /// Truncates the table before row `end` and returns the voltage there; `None` if no row is truncated.
     pub(super) fn cut_at<T: Real>(&mut self, end: usize, contact: &LoadedContact<T>) -> Option<f32> {
         let end_n = self.start_n(end);
         let friction_max_n = end_n.next_down();
@@ -125,7 +126,7 @@ pub(super) fn round_down<T: Real>(value: T) -> f32 {
     if T::from(nearest) > value { nearest.next_down() } else { nearest }
 }
 
-/// A table in f32 over rows that someone else owns, with `C` coefficients a row: from [`TableBuilder::build_f32`].
+/// A table in f32 over borrowed rows, with `C` coefficients per row; created by [`TableBuilder::build_f32`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct SizedTable<'rows, const C: usize> {
     grid: Grid,
@@ -143,14 +144,14 @@ impl<'rows, const C: usize> SizedTable<'rows, C> {
         Ok(Self { grid, rows })
     }
 
-    /// The rms voltage for an electric friction in newtons: zero for a negative friction, for not-a-number and below the
-    /// range; the largest voltage, and never more, above the range.
+    /// The rms voltage for an electric friction in newtons. It is zero for a negative friction, for not-a-number and
+    /// below the range; above the range it is the largest voltage, which it never exceeds.
     #[inline]
     pub fn voltage_v_rms(&self, electric_friction_n: f32) -> f32 {
         self.grid.evaluate(self.rows, electric_friction_n)
     }
 
-    /// The electric friction up to which the table goes, in newtons, rounded down.
+    /// The largest electric friction in the table, in newtons, rounded down.
     pub fn electric_friction_max_n(&self) -> f32 {
         self.grid.friction_max_n()
     }

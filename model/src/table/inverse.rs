@@ -1,4 +1,4 @@
-//! The table of a microcontroller with an FPU: of fixed size, built where it is used.
+//! The inverse table for a microcontroller with an FPU. It has a fixed size, and the microcontroller builds it itself.
 
 use core::num::NonZeroU32;
 use core::ops::Range;
@@ -10,17 +10,17 @@ use crate::{Finger, LoadedContact, Real};
 
 /// Rows in a table: 31.5 octaves, enough for 200 V down to 1 V where friction grows as the fourth power of the voltage.
 const ROWS: usize = 126;
-/// Four rows an octave of 2^23 patterns.
+/// Four rows per octave of 2^23 bit patterns.
 const DENSITY: NonZeroU32 = NonZeroU32::new(4 << 9).unwrap();
 /// The table reaches at least down to this voltage.
 const KNEE_V_RMS: f32 = 1.0;
-/// Or to this part of the largest voltage, when that is lower.
+/// Or down to this fraction of the largest voltage, if that is lower.
 const KNEE_PART: f32 = 1.0 / 200.0;
 
 /// Piecewise cubic from electric friction to rms voltage for one contact under one load; 2,032 bytes.
 ///
-/// Rows below the range hold the straight line from zero to the voltage where the range begins. A scene that asks for less
-/// than the drive can give needs fewer of the rows above: [`InverseTable::build_up_to`].
+/// Rows below the range hold the straight line from zero to the voltage at the start of the range. A scene whose
+/// targets stay below the largest reachable friction needs fewer rows: see [`InverseTable::build_up_to`].
 ///
 /// ```
 /// use frixel_model::{Contact, Finger, InverseTable};
@@ -51,16 +51,16 @@ impl InverseTable {
     /// Bytes of a row.
     pub const ROW_BYTES: usize = size_of::<[f32; 4]>();
 
-    /// A table for `contact`, up to `voltage_max_v_rms`: some 250 evaluations of the closed form for the example finger,
-    /// 380 at most, in pairs of `f32`, as a board makes it. They keep 13 digits, far below the rounding of the rows, as
-    /// long as the scales of the contact are above 1e-24.
+    /// Builds the table for `contact`, up to `voltage_max_v_rms`. This takes about 250 evaluations of the closed form
+    /// for the example finger, and at most 380, in double-single arithmetic (pairs of `f32`), as on a board. Its 13
+    /// digits are far more precise than the rounding of the rows, as long as the scales of the contact are above 1e-24.
     pub fn build(contact: &LoadedContact<f64>, voltage_max_v_rms: f64) -> Result<Self, TableError> {
         Self::build_up_to(contact, voltage_max_v_rms, f32::INFINITY)
     }
 
-    /// The same table, cut to the rows that electric frictions up to `asked_max_n` need: up to there it gives the same
-    /// bits. A row that is cut costs no evaluation of the closed form; it holds the voltage where the table ends. What is
-    /// not below the largest friction, not-a-number included, cuts nothing.
+    /// Builds the same table, truncated to the rows for electric frictions up to `asked_max_n`: up to there it returns
+    /// the same bits. A truncated row costs no evaluation of the closed form; it holds the voltage at the end of the
+    /// table. If `asked_max_n` is not below the largest friction, or is not-a-number, no row is truncated.
     pub fn build_up_to(
         contact: &LoadedContact<f64>,
         voltage_max_v_rms: f64,
@@ -73,8 +73,9 @@ impl InverseTable {
         Self::in_double_single(contact.in_double_single(), voltage_max_v_rms, asked_max_n)
     }
 
-    /// The same from what a board is told: finger, coating (its effective gap in metres), normal load in newtons and largest
-    /// voltage in volts rms. Nothing of it needs `f64`.
+    /// Builds the same table from the parameters sent to a board: finger, effective gap of the coating in metres,
+    /// normal load in newtons, largest voltage in volts rms, and the truncation as in [`Self::build_up_to`]. Does not
+    /// use `f64`.
     pub fn of_finger(
         finger: &Finger<f32>,
         gap_m: f32,
@@ -87,8 +88,8 @@ impl InverseTable {
         Ok(table)
     }
 
-    /// The same in steps, for a board that has other things to do meanwhile. The table is of no use until
-    /// [`InverseTableFilling::fill`] has finished.
+    /// Starts building the table of [`Self::of_finger`] in steps, so that a board can do other work in between. The
+    /// table is only valid once [`InverseTableFilling::fill`] has finished.
     #[inline(never)]
     pub fn begin(
         finger: &Finger<f32>,
@@ -137,34 +138,34 @@ impl InverseTable {
         Ok((Self { grid, rows: [line; ROWS] }, InverseTableFilling { contact, rows: knee_row..end }))
     }
 
-    /// Rows with a piece of the curve. The others cost no evaluation of the closed form.
+    /// Number of rows that hold a piece of the curve. The others cost no evaluation of the closed form.
     pub fn rows_filled(&self) -> usize {
-        // The line towards zero and the constant beyond a cut have no curvature; the curve has it everywhere.
+        // The line towards zero and the constant in truncated rows have no curvature; the curve has it everywhere.
         self.rows.iter().filter(|[_, _, curvature, _]| curvature.abs() > 0.0).count()
     }
 
     /// The rms voltage for an electric friction in newtons.
     ///
-    /// Within [`Self::RELATIVE_ERROR`] of the friction asked for; zero for a negative friction and for not-a-number; the
-    /// largest voltage, and never more, above the largest friction. Below the range it falls on a straight line towards
-    /// zero.
+    /// The friction at the returned voltage is within [`Self::RELATIVE_ERROR`] of the target. The voltage is zero for a
+    /// negative friction and for not-a-number. Above the largest friction it is the largest voltage, which it never
+    /// exceeds. Below the range it falls along a straight line to zero.
     #[inline]
     pub fn voltage_v_rms(&self, electric_friction_n: f32) -> f32 {
         self.grid.evaluate(&self.rows, electric_friction_n)
     }
 
-    /// The electric friction at the largest voltage, in newtons, rounded down; of a table that is cut, where it ends.
+    /// The electric friction at the largest voltage, in newtons, rounded down; for a truncated table, that at its end.
     pub fn electric_friction_max_n(&self) -> f32 {
         self.grid.friction_max_n()
     }
 
-    /// The largest voltage, in volts rms, rounded down; of a table that is cut, that where it ends.
+    /// The largest voltage, in volts rms, rounded down; for a truncated table, that at its end.
     pub fn voltage_max_v_rms(&self) -> f32 {
         self.grid.voltage_max_v_rms()
     }
 }
 
-/// The part of an [`InverseTable`] that is still to be computed: from [`InverseTable::begin`].
+/// The remaining computation of an [`InverseTable`]; created by [`InverseTable::begin`].
 #[derive(Clone, Debug)]
 pub struct InverseTableFilling {
     contact: LoadedContact<DoubleSingle>,
@@ -172,13 +173,13 @@ pub struct InverseTableFilling {
 }
 
 impl InverseTableFilling {
-    /// Rows that are still to be computed.
+    /// Number of rows that are still to be computed.
     pub fn rows(&self) -> usize {
         self.rows.len()
     }
 
-    /// Computes the next `rows_max` rows of the table that this was begun with, three evaluations of the closed form each.
-    /// Returns whether the table is finished.
+    /// Computes the next `rows_max` rows, with three evaluations of the closed form each. `table` must be the table
+    /// that [`InverseTable::begin`] returned with `self`. Returns whether the table is finished.
     pub fn fill(&mut self, table: &mut InverseTable, rows_max: usize) -> Result<bool, TableError> {
         let Range { start, end } = self.rows;
         let next = end.min(start.saturating_add(rows_max));

@@ -1,8 +1,8 @@
-//! Tables from electric friction to rms voltage, without root, division or logarithm.
+//! Tables from electric friction to rms voltage. They are evaluated without root, division or logarithm.
 //!
-//! The bits of an `f32` are a piecewise linear logarithm of its value. A row covers equally many successive bit patterns
-//! and holds a polynomial in the friction itself, so that rows need not begin where octaves do; the last one ends exactly
-//! at the largest friction.
+//! The bits of an `f32`, read as an integer, are a piecewise linear logarithm of its value. Each row covers the same
+//! number of successive bit patterns and holds a polynomial in the friction itself. Rows therefore need not be aligned
+//! with octaves, and the last row ends exactly at the largest friction.
 //!
 //! # The error bound
 //!
@@ -38,9 +38,9 @@ pub enum TableError {
     Contact,
     /// The range of frictions is empty, or does not begin above zero.
     Range,
-    /// The error target is below what the precision's rounding leaves.
+    /// The error target is below the rounding error of the precision.
     Target,
-    /// The range needs more rows than there is room for.
+    /// The range needs more rows than the table has.
     TooManySegments,
     /// A friction in the range, or a coefficient, is too large or too small for the precision.
     Unrepresentable,

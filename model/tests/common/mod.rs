@@ -24,7 +24,7 @@ impl Row {
         T::from_f64(self.number(column).unwrap_or(0.0))
     }
 
-    /// By what the bound of an ill-conditioned answer grows.
+    /// Factor on the error bound of an ill-conditioned result.
     pub(crate) fn widening(&self) -> f64 {
         (self.number("condition").unwrap_or(1.0) / 12.0).max(1.0)
     }
@@ -85,7 +85,7 @@ pub(crate) fn rows(text: &str) -> Vec<Row> {
     lines.map(row).collect()
 }
 
-/// Relative error of an answer; infinite where it is not-a-number, or not zero where zero is right.
+/// Relative error of a result; infinite if it is not-a-number, or if it is not zero where zero is correct.
 pub(crate) fn relative_error(found: f64, right: f64) -> f64 {
     let error = if right == 0.0 { if found == 0.0 { 0.0 } else { f64::INFINITY } } else { (found / right - 1.0).abs() };
     if error.is_nan() { f64::INFINITY } else { error }

@@ -1,4 +1,4 @@
-//! The bytes of a hello, frozen for ever.
+//! The byte layout of a hello, which never changes.
 
 use core::fmt;
 
@@ -6,7 +6,7 @@ use super::{BoardKind, BoardLimits, HELLO_LEN, Hello, MAGIC, ResetCause};
 use crate::bytes::{get, get_u8, get_u16, get_u32, put, put_u8, put_u16, put_u32};
 use crate::fault::{Fault, State};
 
-/// Bytes in front of the limits.
+/// Number of bytes before the limits.
 pub(super) const FIXED_LEN: usize = 44;
 /// Bytes of all the limits that this crate knows, tags and lengths included: one of 1 byte, one of 2, nine of 4.
 pub(super) const LIMITS_LEN: usize = 11 * 2 + 1 + 2 + 9 * 4;
@@ -28,12 +28,12 @@ const TAG_TICK_CYCLES_MAX: u8 = 11;
 pub enum HelloError {
     /// The first four bytes are not [`MAGIC`].
     Magic {
-        /// As found.
+        /// The first four bytes.
         found: [u8; 4],
     },
-    /// The bytes end before the hello does.
+    /// The hello is truncated.
     Truncated {
-        /// Bytes that there are.
+        /// Number of bytes received.
         len: usize,
     },
 }
@@ -52,7 +52,7 @@ impl fmt::Display for HelloError {
 impl core::error::Error for HelloError {}
 
 impl Hello {
-    /// The hello's bytes.
+    /// Encodes the hello.
     pub fn write(&self) -> [u8; HELLO_LEN] {
         let mut b = [0; HELLO_LEN];
         put::<0, 4, _>(&mut b, MAGIC);
@@ -76,7 +76,7 @@ impl Hello {
         b
     }
 
-    /// Reads a hello of any protocol: longer ones, and limits that this crate does not know, included.
+    /// Decodes a hello of any protocol. Bytes after the hello and limits that this crate does not know are ignored.
     pub fn parse(bytes: &[u8]) -> Result<Self, HelloError> {
         let truncated = HelloError::Truncated { len: bytes.len() };
         let magic = *bytes.first_chunk().ok_or(truncated)?;
@@ -120,7 +120,7 @@ impl BoardLimits {
         b
     }
 
-    /// `None` when the last limit is cut off.
+    /// `None` if the last limit is truncated.
     fn parse(mut bytes: &[u8]) -> Option<Self> {
         let mut limits = Self::UNSTATED;
         while let Some((&tag, rest)) = bytes.split_first() {
@@ -132,7 +132,7 @@ impl BoardLimits {
         Some(limits)
     }
 
-    /// Takes a limit over; one of unknown tag or unexpected length stays as it is.
+    /// Stores a limit. A limit with an unknown tag or an unexpected length is ignored.
     fn set(&mut self, tag: u8, value: &[u8]) {
         match (tag, value) {
             (TAG_RECORDS_MAX, &[a]) => self.records_max = a,
@@ -163,7 +163,7 @@ impl BoardLimits {
     }
 }
 
-/// Puts tag, length and value of a limit.
+/// Writes tag, length and value of a limit.
 fn limit<const AT: usize, const N: usize>(b: &mut [u8; LIMITS_LEN], tag: u8, value: [u8; N]) {
     const { assert!(AT + 2 + N <= LIMITS_LEN, "the limit lies outside the layout") };
     if let Some([to_tag, to_len, to @ ..]) = b.get_mut(AT..)

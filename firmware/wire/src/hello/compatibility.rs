@@ -1,37 +1,38 @@
-//! Whether board and host can talk, and which of them to change when they cannot.
+//! Protocol compatibility of board and host, and which side to update if they are incompatible.
 
 use core::fmt;
 
 use super::{Hello, PROTOCOL_MAJOR, PROTOCOL_MINOR};
 use crate::frame::FRAME_MAX_LEN;
 
-/// Board and host cannot talk.
+/// Why board and host are incompatible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mismatch {
-    /// The board is the older one.
+    /// The board's protocol is older than the host's.
     BoardOlder {
-        /// Protocol that the board speaks: major, minor.
+        /// Protocol version of the board: major, minor.
         board: (u8, u8),
         /// Version of the board's firmware: major, minor, patch.
         firmware: (u8, u8, u8),
     },
-    /// The board is the newer one.
+    /// The board's protocol is newer than the host's.
     BoardNewer {
-        /// Protocol that the board speaks: major, minor.
+        /// Protocol version of the board: major, minor.
         board: (u8, u8),
         /// Version of the board's firmware: major, minor, patch.
         firmware: (u8, u8, u8),
     },
-    /// The board takes shorter frames than a host sends.
+    /// The board's largest frame is shorter than the host's.
     FramesTooShort {
-        /// Bytes of the largest frame that it takes.
+        /// Largest frame that the board accepts, in bytes.
         max: u16,
     },
 }
 
 impl Hello {
-    /// Whether a host with this crate can talk to the board: the major versions of their protocols are the same. When
-    /// they are not, the host sends nothing but hello requests. The board has to take the largest frame that there is, too.
+    /// Checks that a host with this crate can communicate with the board: the major protocol versions must be equal,
+    /// and the board must accept frames of [`FRAME_MAX_LEN`] bytes. If the versions differ, the host sends only hello
+    /// requests.
     pub const fn compatibility(&self) -> Result<(), Mismatch> {
         let (board, firmware) = (self.protocol, self.firmware);
         if board.0 < PROTOCOL_MAJOR {

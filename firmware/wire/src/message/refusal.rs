@@ -1,4 +1,4 @@
-//! Why a command is refused: what was found, what was expected, what to do.
+//! Reasons for refusing a command, with sentences that state the value found, the limit and the remedy.
 
 use core::fmt;
 
@@ -8,113 +8,113 @@ use serde::{Deserialize, Serialize};
 use crate::fault::{Fault, State};
 use crate::scene::SceneError;
 
-/// Why a command was refused. Numbers say what was found and what the limit is.
+/// Why the board refused a command. The fields hold the value found and the limit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize)]
 pub enum Refusal {
-    /// The frame's postcard could not be read: a command of a newer protocol, most likely.
+    /// The command cannot be deserialized; most likely it belongs to a newer protocol.
     UnknownCommand,
-    /// The command does not go with this state.
+    /// The command is not allowed in this state.
     WrongState(State),
-    /// A fault is latched: clear it first.
+    /// A fault is latched and must be cleared first.
     Faulted(Fault),
     /// No scene was committed.
     NoScene,
-    /// No upload is under way, or it is not complete.
+    /// No upload has been started, or chunks are missing.
     UploadIncomplete {
-        /// Number of the chunk that is wanted next.
+        /// Number of the chunk that the board expects next.
         next_chunk: u16,
     },
-    /// The CRC-32 of what arrived is not the one that was announced.
+    /// The CRC-32 of the received bytes differs from the announced one.
     CrcMismatch {
-        /// As announced.
+        /// The announced CRC-32.
         expected: u32,
-        /// As computed.
+        /// The CRC-32 of the received bytes.
         found: u32,
     },
-    /// A scene larger than the board's buffer.
+    /// The scene is larger than the board's buffer.
     SceneTooLarge {
-        /// Bytes that were asked for.
+        /// Requested size in bytes.
         len: u32,
-        /// Bytes that there are.
+        /// Size of the buffer in bytes.
         max: u32,
     },
     /// The bitmap pool has no room.
     BitmapPoolFull {
-        /// Bytes that were asked for.
+        /// Requested size in bytes.
         len: u32,
-        /// Bytes that are free, after letting go all that the playing scene does not use.
+        /// Free bytes once every bitmap that the playing scene does not use is evicted.
         free: u32,
     },
-    /// The scene names a bitmap that the pool does not hold.
+    /// The scene refers to a bitmap that is not in the pool.
     BitmapMissing {
         /// CRC-32 of the bitmap.
         crc32: u32,
     },
-    /// The scene's bytes are not a scene of this version.
+    /// The bytes are not a valid scene of this layout version.
     Scene(SceneError),
-    /// The scene's numbers are not ones that the board can play.
+    /// A number in the scene is outside the board's limits.
     Config(ConfigRefusal),
-    /// The board has not yet let go of the scene before: try again.
+    /// The board has not yet released the previous scene; the host may retry.
     Busy,
-    /// Telemetry was asked for more often than the board sends it.
+    /// The requested telemetry period is too short.
     TelemetryTooFast {
         /// Shortest period in ticks.
         period_min_ticks: u32,
     },
-    /// The arm switch on the board is not held, or was not pressed since the board was reset or last disarmed.
+    /// The arm switch on the board is not held, or has not been pressed since the last reset or disarm.
     ArmSwitch,
-    /// The firmware was built without what the scene asks for ([`crate::hello::feature`]).
+    /// The scene needs a feature that is disabled in this firmware build ([`crate::hello::feature`]).
     LeftOut {
-        /// The layer that asks for it, counted from zero; [`ConfigRefusal::WHOLE_SCENE`] for the carrier.
+        /// The layer that needs it, counted from zero; [`ConfigRefusal::WHOLE_SCENE`] for the carrier.
         layer: u8,
     },
-    /// The board has a touch source of its own, and takes none from the host.
+    /// The board has its own touch source and does not accept touch from the host.
     TouchSource,
-    /// The playing scene has no such layer.
+    /// The playing scene has no layer of this number.
     NoSuchLayer {
-        /// The layer that was named, counted from zero.
+        /// The layer in the command, counted from zero.
         layer: u8,
-        /// Layers that the scene has.
+        /// Number of layers in the scene.
         layers: u8,
     },
-    /// No layer of the playing scene is a stream.
+    /// The playing scene has no stream layer.
     NoStreamLayer,
-    /// The scene would make a tick too long (`frixel_layers::cost`).
+    /// The estimated cost of the scene's longest tick is above the limit (`frixel_layers::cost`).
     TooCostly {
-        /// Cycles that the longest tick is estimated at; instructions before protocol 1.3.
+        /// Estimated cost of the longest tick, in cycles; in instructions before protocol 1.3.
         cycles: u32,
-        /// Most that it may be estimated at.
+        /// Largest estimate that the board accepts.
         cycles_max: u32,
-        /// A place where that would be, from the left edge of the screen, m.
+        /// A position with this cost: distance from the left edge of the screen, m.
         x_m: f32,
-        /// And from its top edge, m.
+        /// Distance of that position from the top edge, m.
         y_m: f32,
     },
-    /// The playing scene says that no layer of it is changed (`frixel_layers::Header::layers_fixed`).
+    /// The playing scene declares its layers fixed (`frixel_layers::Header::layers_fixed`).
     LayersFixed,
 }
 
-/// A number in a scene that the board cannot play.
+/// A number, in a scene or in a command, that is outside the board's limits.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize)]
 pub struct ConfigRefusal {
-    /// Which number.
+    /// The quantity.
     pub field: ConfigField,
-    /// What was found, in SI units.
+    /// The value found, in SI units.
     pub found: f32,
-    /// Least that is taken.
+    /// Smallest value that the board accepts.
     pub min: f32,
-    /// Most that is taken.
+    /// Largest value that the board accepts.
     pub max: f32,
-    /// The layer it belongs to, counted from zero; [`ConfigRefusal::WHOLE_SCENE`] for the scene as a whole.
+    /// The layer that contains it, counted from zero; [`ConfigRefusal::WHOLE_SCENE`] for the scene as a whole.
     pub layer: u8,
 }
 
 impl ConfigRefusal {
-    /// Stands for the scene as a whole where a layer is told.
+    /// Layer number that denotes the scene as a whole.
     pub const WHOLE_SCENE: u8 = u8::MAX;
 }
 
-/// Names of the numbers that a scene can be refused for.
+/// The quantities for which the board can refuse a scene or a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, MaxSize)]
 pub enum ConfigField {
     /// Screen width, m.
@@ -155,42 +155,42 @@ pub enum ConfigField {
     WaveVector,
     /// A grating's phase, turns.
     Phase,
-    /// A bitmap's place or pitch, m.
+    /// A bitmap's position or pitch, m.
     BitmapPlacement,
-    /// The span of friction between 1 V and the largest rms voltage, which is what is told, is wider than the table.
+    /// The largest rms voltage, V: the friction range from 1 V up to it does not fit into the inverse table.
     TableRange,
-    /// Where the host has the finger, m.
+    /// Finger position reported by the host, m.
     TouchPlace,
-    /// Samples a second of a stream, Hz.
+    /// Sample rate of a stream, Hz.
     SampleRate,
-    /// Samples with which a stream begins.
+    /// Start level of a stream, in samples.
     StartLevel,
-    /// The part of a turn in which a square grating is high.
+    /// Duty cycle of a square grating: the fraction of a period in which it is high.
     Duty,
     /// An angle, turns.
     Angle,
     /// A wavelength of noise, m.
     Wavelength,
-    /// A place or the width of an edge or a rim, m.
+    /// Position or width of an edge or a rim, m.
     Shape,
     /// A vibration's frequency, Hz.
     VibrationFrequency,
-    /// How long a click or a part of a burst takes, s.
+    /// Duration of a click or of a part of a burst, s.
     Duration,
     /// A vertex of a polygon, m.
     Vertex,
-    /// A speed of a curve, m/s, which has to be above the one before.
+    /// A speed of a curve, m/s; the speeds of a curve must increase.
     CurveSpeed,
-    /// Layers of noise up to this one.
+    /// Number of noise layers up to and including this layer.
     NoiseLayers,
-    /// Edges and buttons up to this one.
+    /// Number of edge and button layers up to and including this layer.
     ClickLayers,
-    /// The largest electric friction that the scene says it asks for, N. Since protocol 1.3.
+    /// The largest electric friction that the scene declares as its target, N. Since protocol 1.3.
     ElectricFrictionMax,
 }
 
 impl ConfigField {
-    /// The number's name, and its unit with a space before it, or nothing.
+    /// The quantity's name, and its unit with a leading space; the unit is empty for dimensionless quantities.
     const fn name_and_unit(self) -> (&'static str, &'static str) {
         match self {
             Self::ScreenWidth => ("screen width", " m"),
@@ -232,7 +232,7 @@ impl ConfigField {
     }
 }
 
-/// The number's name.
+/// Writes the quantity's name.
 impl fmt::Display for ConfigField {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name_and_unit().0)

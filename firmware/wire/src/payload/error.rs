@@ -1,4 +1,4 @@
-//! Why a payload cannot be read or written.
+//! Errors in reading and writing payloads.
 
 use core::fmt;
 
@@ -9,20 +9,20 @@ use crate::hello::HelloError;
 /// Why a payload cannot be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ParseError {
-    /// The frame carries nothing.
+    /// The frame's payload is empty.
     Empty,
-    /// The first byte is none that the other side sends.
+    /// The first byte is not a payload kind that the other side sends.
     UnknownKind {
         /// The first byte.
         kind: u8,
     },
-    /// A request whose command cannot be read: a command of a newer protocol, most likely. It is answered with
+    /// The command of a request cannot be read; most likely it belongs to a newer protocol. The board answers
     /// [`crate::message::Refusal::UnknownCommand`].
     UnknownCommand {
         /// The request's sequence number.
         sequence: u16,
     },
-    /// What follows the first byte does not go with it.
+    /// The bytes after the first do not form a payload of this kind.
     Malformed {
         /// The first byte.
         kind: u8,
@@ -54,21 +54,21 @@ impl core::error::Error for ParseError {}
 /// Why a payload cannot be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WriteError {
-    /// It would be longer than [`PAYLOAD_MAX_LEN`].
+    /// The payload would be longer than [`PAYLOAD_MAX_LEN`].
     TooLong,
-    /// A chunk's number beyond [`CHUNK_NUMBER_MAX`].
+    /// The chunk number is above [`CHUNK_NUMBER_MAX`].
     ChunkNumber {
         /// The chunk's number.
         number: u16,
     },
-    /// A chunk without bytes, or with more than [`CHUNK_LEN`].
+    /// The chunk is empty or longer than [`CHUNK_LEN`].
     ChunkLength {
         /// Bytes in the chunk.
         len: usize,
     },
-    /// No samples, or more than [`SAMPLES_MAX`].
+    /// There are no samples, or more than [`SAMPLES_MAX`].
     SampleCount {
-        /// Samples that were given.
+        /// Number of samples.
         count: usize,
     },
 }

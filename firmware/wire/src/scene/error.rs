@@ -1,4 +1,4 @@
-//! Why bytes are not a scene: what was found, what was expected, what to do.
+//! Errors in a scene, with sentences that state the value found, the expected value and the remedy.
 
 use core::fmt;
 
@@ -7,47 +7,47 @@ use serde::{Deserialize, Serialize};
 
 use super::{CURVE_POINTS_MAX, POINTS_MAX, POLYGON_POINTS_MAX, RECORDS_MAX};
 
-/// Why bytes are not a scene.
+/// Why bytes are not a valid scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, MaxSize)]
 pub enum SceneError {
-    /// The layout's version is not this one.
+    /// The layout version is not the supported one.
     Version {
-        /// As found.
+        /// The value found.
         found: u16,
     },
-    /// The length does not go with the numbers of records and points.
+    /// The length does not match the numbers of records and points in the header.
     Length {
-        /// As found.
+        /// The value found.
         found: u32,
-        /// As the header says.
+        /// Length that follows from the header.
         expected: u32,
     },
-    /// A carrier of unknown shape.
+    /// The carrier's shape is unknown.
     UnknownCarrier(u8),
-    /// A record of unknown kind.
+    /// The kind of a record is unknown.
     UnknownKind {
         /// Number of the record, from zero.
         record: u8,
         /// Its kind.
         kind: u8,
     },
-    /// A record with an unknown region, blend or form.
+    /// The region, blend or form of a record is unknown.
     UnknownChoice {
         /// Number of the record, from zero.
         record: u8,
-        /// Offset in the record of the byte that is not known.
+        /// Offset of the unknown byte in the record.
         offset: u8,
         /// The byte.
         value: u8,
     },
-    /// More records than the layout allows ([`RECORDS_MAX`]), or than the limits of the board.
+    /// More records than the layout ([`RECORDS_MAX`]) or the board allows.
     TooManyRecords {
-        /// As the header says.
+        /// Number of records stated in the header.
         found: u8,
     },
-    /// Header flags of which at least one is not known.
+    /// At least one of these header flags is unknown.
     UnknownFlags(u8),
-    /// A byte that its header or record does not use is not zero.
+    /// An unused byte of the header or of a record is not zero.
     NotZero {
         /// Number of the record, from zero; [`SceneError::HEADER`] for the header.
         record: u8,
@@ -56,19 +56,19 @@ pub enum SceneError {
     },
     /// More points than the layout allows ([`POINTS_MAX`]).
     TooManyPoints {
-        /// As the header says.
+        /// Number of points stated in the header.
         found: u8,
     },
-    /// A polygon or a curve whose points are too few, too many, or not in the scene.
+    /// A polygon or a curve has too few or too many points, or refers to points outside the scene.
     Points {
         /// Number of the record, from zero.
         record: u8,
-        /// The first point it names, from zero.
+        /// Index of its first point, from zero.
         first: u8,
-        /// How many it names.
+        /// Number of its points.
         count: u8,
     },
-    /// A button whose region is neither a rectangle nor an ellipse.
+    /// The region of a button is neither a rectangle nor an ellipse.
     ButtonRegion {
         /// Number of the record, from zero.
         record: u8,
@@ -76,11 +76,11 @@ pub enum SceneError {
 }
 
 impl SceneError {
-    /// Stands for the header where a record's number is told.
+    /// Record number that denotes the header.
     pub const HEADER: u8 = u8::MAX;
 }
 
-/// Sentences of the side that read the bytes, which is the board where it refuses a scene.
+/// Sentences from the perspective of the side that reads the bytes: the board, if it refuses a scene.
 impl fmt::Display for SceneError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {

@@ -1,4 +1,4 @@
-//! What several tests share. Not each of them uses all of it.
+//! Helpers shared by several tests, not all of which use all of it.
 #![allow(dead_code, unreachable_pub)]
 
 pub mod hex;

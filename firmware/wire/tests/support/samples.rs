@@ -1,4 +1,4 @@
-//! At least one value of every variant of everything that goes over the wire. `golden.rs` says so.
+//! At least one value of every variant of every message; `golden.rs` checks that none is missing.
 
 use frixel_wire::fault::{Fault, Flags, State};
 use frixel_wire::frame::FRAME_MAX_LEN;
@@ -11,12 +11,12 @@ use frixel_wire::scene::SceneError;
 
 pub const STATES: [State; 4] = [State::Disarmed, State::Armed, State::Active, State::Faulted];
 
-/// All faults that have a name, and one that has none yet.
+/// All named faults, and one unknown number.
 pub fn faults() -> impl Iterator<Item = Fault> {
     (1..=9).map(|number| Fault::try_from(number).unwrap())
 }
 
-/// What a host sends.
+/// Payloads that a host sends.
 pub fn from_host() -> Vec<Payload<'static>> {
     static FULL_CHUNK: [u8; CHUNK_LEN] = [0xa5; CHUNK_LEN];
     static FULL_SAMPLES: [[u8; 2]; SAMPLES_MAX] = [[0x5a, 0xa5]; SAMPLES_MAX];
@@ -63,7 +63,7 @@ fn commands() -> Vec<Command> {
     ]
 }
 
-/// What a board sends.
+/// Payloads that a board sends.
 pub fn from_board() -> Vec<Payload<'static>> {
     let mut payloads: Vec<_> = hellos().into_iter().map(Payload::Hello).collect();
     payloads.extend(messages().into_iter().map(Payload::FromBoard));
@@ -143,7 +143,7 @@ fn messages() -> Vec<FromBoard> {
         fault: Some(fault),
         flags: Flags::default(),
     }));
-    // Since protocol 1.3, behind what has golden bytes.
+    // Since protocol 1.3; appended after the messages that already have golden bytes.
     messages.push(FromBoard::Answer(Answer {
         sequence: 200,
         received_bytes: 200_000,
