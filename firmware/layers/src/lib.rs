@@ -20,8 +20,7 @@
 //! A kind is one file in `kinds/`. It declares
 //!
 //! - its parameters, with `parameters!`: for each one the type, the offset in the record, the range that a board
-//! accepts,
-//!   and the meaning with its unit. Reading, writing and checking are generated from this;
+//!   accepts, and the meaning with its unit. Reading, writing and checking are generated from this;
 //! - its `Kind`: the most instructions that its evaluation takes, the bounds of its friction, and how the
 //!   parameters become coefficients;
 //! - its coefficients, with `Evaluate`: the friction at the finger's place.
