@@ -110,8 +110,8 @@ macro_rules! kinds {
     ($( $(#[doc = $doc:literal])* $(#[cfg($cfg:meta)])? $number:literal => $kind:ident in $module:ident, $bit:expr; )*) => {
         $( $(#[cfg($cfg)])? pub use $module::$kind; )*
 
-        /// What a layer is. Frictions are electric, in newtons, before the gain; plain factors in a layer that is
-        /// multiplied.
+        /// Kind and parameters of a layer. Frictions are electric, in newtons, before the gain; dimensionless factors
+        /// in a layer with multiplicative blend.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub enum Layer {
             $( $(#[doc = $doc])* $(#[cfg($cfg)])? $kind($kind), )*

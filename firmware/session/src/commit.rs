@@ -26,7 +26,7 @@ pub(crate) struct Commit {
     step: Step,
 }
 
-/// What a commit does next.
+/// The next step of a commit.
 enum Step {
     /// Checks that a complete and valid scene was uploaded.
     Check,
