@@ -1,25 +1,26 @@
-//! The coefficients that the tick reads. What can be computed when a scene is committed is never computed in the tick.
+//! The coefficients that the tick reads. Everything that can be precomputed is computed when a scene is committed.
 
 use frixel_layers::{ActiveLayers, BitmapPool, Clicks, Inputs};
 use frixel_model::InverseTable;
 
 use crate::carrier::CarrierTiming;
 
-/// Coefficients of one scene. A board has two of them: one that plays, and one in which the session
-/// computes the next scene.
+/// Coefficients of one scene. A board has two of them: the ticker plays one, while the session computes the next scene
+/// in the other.
 ///
-/// In this order: what lies near the beginning is reached in one instruction.
+/// The order of the fields matters: a field near the beginning can be loaded in one instruction.
 #[repr(C)]
 pub struct Active {
-    /// The carrier, and how the envelope becomes DAC codes.
+    /// The carrier, and the conversion from envelope to DAC codes.
     pub carrier: CarrierTiming,
-    /// Most that the envelope moves in a tick, in V rms.
+    /// Largest change of the envelope in a tick, in V rms.
     pub slew_step_v: f32,
     /// Largest rms voltage within all limits, in V.
     pub voltage_max_v_rms: f32,
-    /// Ticks of silence after which the host counts as gone; `None` for a scene that goes on without a host.
+    /// Ticks without a frame from the host after which the board disarms; `None` for a scene that continues without a
+    /// host.
     pub host_timeout_ticks: Option<u32>,
-    /// The finger is taken to move on along its track, not to stay where it was seen.
+    /// Extrapolate the finger's position along its track. Otherwise the last measured position is used.
     pub prediction: bool,
     /// From electric friction to voltage; `None` without a scene.
     pub table: Option<InverseTable>,
@@ -59,20 +60,20 @@ impl Active {
         self.table.as_ref()
     }
 
-    /// Some layer plays what the host streams.
+    /// Whether a layer plays the host's stream.
     #[cfg(feature = "stream")]
     #[inline]
     pub(crate) fn has_stream(&self) -> bool {
         self.layers.has_stream()
     }
 
-    /// Electric friction of all layers that are on, in N.
+    /// Electric friction of all enabled layers, in N.
     #[inline]
     pub(crate) fn electric_friction_n(&self, inputs: &Inputs, pool: &BitmapPool, clicks: &mut Clicks) -> f32 {
         self.layers.electric_friction_n(inputs, pool, clicks)
     }
 
-    /// Puts a layer on or off and sets its gain while the scene plays. Unknown layer numbers are ignored.
+    /// Enables or disables a layer and sets its gain while the scene plays. Unknown layer numbers are ignored.
     #[inline]
     pub(crate) fn set_layer(&mut self, number: u8, on: bool, gain: f32) {
         self.layers.set(number, on, gain);

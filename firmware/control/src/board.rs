@@ -1,4 +1,4 @@
-//! What holds for a board, whatever scene it plays.
+//! Properties of a board that do not depend on the scene.
 
 use frixel_wire::fault::Fault;
 use frixel_wire::hello::{BoardKind, BoardLimits, ResetCause};
@@ -6,7 +6,7 @@ use frixel_wire::scene::RECORDS_MAX;
 
 use frixel_layers::{BITMAP_POOL_LEN, ticks};
 
-/// A board: who it is, how fast it ticks, what it can bear. It does not change while the firmware runs.
+/// A board's identity, tick rate and limits. They do not change while the firmware runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Board {
     /// Kind of board.
@@ -15,20 +15,20 @@ pub struct Board {
     pub id: [u8; 12],
     /// Ticks a second.
     pub tick_hz: u32,
-    /// Limits that scenes have to keep.
+    /// Limits that every scene must respect.
     pub limits: BoardLimits,
     /// Why the processor started.
     pub reset_cause: ResetCause,
-    /// The fault that led to the reset, with a number that belongs to it.
+    /// The fault that caused the reset, and its detail number.
     pub reset_fault: Option<(Fault, u32)>,
-    /// What the firmware said of that fault, in UTF-8; empty without one.
+    /// Description of that fault by the firmware, in UTF-8; empty without a fault.
     pub reset_text: &'static [u8],
-    /// The host says where the finger is; without this the board has a touch source of its own.
+    /// The host reports the finger's position. Otherwise the board has its own touch source.
     pub touch_from_host: bool,
 }
 
 impl Board {
-    /// The simulated board: the limits of the smallest real one, on an electrode that nobody touches.
+    /// The simulated board: the limits of the smallest real board, with an electrode that is not touched.
     ///
     /// The electrode is 2 cm^2 of bare 10 um polymer (relative permittivity 3), 0.53 nF, behind edges of 20 us. The
     /// current limits are what a 150 V rms square carrier needs there, with a margin; they are not a statement about

@@ -1,8 +1,8 @@
 //! The carrier: alternates the envelope's sign, so that no charge leaks through the skin and no direct current flows.
 //!
 //! The running integral of the DAC code, exact in fixed point, never leaves plus or minus one half period at full
-//! voltage, however the amplitude moves: a code that would take it out is put out with the other sign, as an early
-//! edge.
+//! voltage, however the amplitude changes: a code that would leave this range is output with the opposite sign, as an
+//! early edge.
 
 use fixed::types::{I1F15, I17F15};
 use frixel_layers::Carrier as Shape;
@@ -11,12 +11,12 @@ use frixel_wire::dac_code::DacCode;
 #[cfg(feature = "sine-carrier")]
 use frixel_layers::cosine;
 
-/// What a carrier is made of; part of `Active`.
+/// Parameters of a carrier; part of [`Active`](crate::Active).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CarrierTiming {
     pub(crate) shape: Shape,
     pub(crate) half_period_ticks: u32,
-    /// DAC codes for a volt rms of envelope: crest factor and loss in the edges included.
+    /// DAC codes per volt rms of the envelope, including the crest factor and the loss in the edges.
     pub(crate) codes_per_v_rms: f32,
     /// Largest DAC code.
     pub(crate) code_max: DacCode,
@@ -26,7 +26,7 @@ pub struct CarrierTiming {
 }
 
 impl CarrierTiming {
-    /// Output zero.
+    /// A carrier whose output is zero.
     pub const SILENT: Self = Self::new(Shape::Square, 20, 0.0, DacCode::ZERO);
 
     /// A carrier whose integral stays within one half period at full voltage.
@@ -40,7 +40,7 @@ impl CarrierTiming {
         Self { shape, half_period_ticks, codes_per_v_rms, code_max, integral_max, turns_per_tick }
     }
 
-    /// From the middle of a half period to its edge.
+    /// Ticks from the middle of a half period to its edge.
     fn ticks_from_crest(&self) -> u32 {
         self.half_period_ticks - self.half_period_ticks / 2
     }
@@ -55,13 +55,13 @@ pub(crate) struct Carrier {
     left_ticks: u32,
     /// Volt-seconds so far, in ticks at full scale.
     integral: I17F15,
-    /// Edges that came early to keep direct current away, modulo 2^32, and the tick of the last.
+    /// Early edges since power-on, modulo 2^32.
     early_edges: u32,
     last_early_tick: u32,
 }
 
 impl Carrier {
-    /// Starts a quarter period in, so that the integral swings evenly about zero.
+    /// A carrier that starts a quarter period in, so that the integral is symmetric about zero.
     pub(crate) fn new(timing: &CarrierTiming) -> Self {
         Self {
             sign: 1,
@@ -72,13 +72,13 @@ impl Carrier {
         }
     }
 
-    /// Goes on with the timing of another scene. The integral is the electrode's, and stays.
+    /// Continues with the timing of another scene. The integral belongs to the electrode and is kept.
     pub(crate) fn retime(&mut self, timing: &CarrierTiming) {
         self.left_ticks = self.left_ticks.min(timing.half_period_ticks);
     }
 
-    /// Waits at zero output. It will start again a quarter period before an edge, on the side that takes the integral
-    /// back.
+    /// Prepares the restart from zero output: a quarter period before an edge, with the sign that moves the integral
+    /// towards zero.
     pub(crate) fn rest(&mut self, timing: &CarrierTiming) {
         self.sign = if self.integral.is_positive() { -1 } else { 1 };
         self.left_ticks = timing.ticks_from_crest();
@@ -89,7 +89,7 @@ impl Carrier {
         self.early_edges
     }
 
-    /// When the last of them was.
+    /// Tick of the last early edge.
     pub(crate) fn last_early_tick(&self) -> u32 {
         self.last_early_tick
     }
@@ -98,7 +98,7 @@ impl Carrier {
     #[inline]
     pub(crate) fn next(&mut self, envelope_v_rms: f32, timing: &CarrierTiming, tick: u32) -> DacCode {
         let mut code = self.magnitude(envelope_v_rms, timing) * self.sign;
-        // Beyond the largest on either side: both are far from overflowing.
+        // One unsigned comparison checks both limits. Neither sum can overflow.
         let above_least = (self.integral + code + timing.integral_max).to_bits().cast_unsigned();
         if above_least > 2 * timing.integral_max.to_bits().cast_unsigned() {
             code = self.within_balance(code, tick);
@@ -109,12 +109,12 @@ impl Carrier {
         } else {
             self.turn(timing);
         }
-        // It fits: no larger than the largest code.
+        // This does not wrap: the magnitude is at most `code_max`.
         DacCode(I1F15::wrapping_from_num(code))
     }
 
-    /// A code that would take the integral too far, or what is put out in its place: if it takes the integral away from
-    /// zero, the same with the other sign, as an early edge.
+    /// Handles a code that would take the integral beyond its limit: if the code moves the integral away from zero,
+    /// returns it with the opposite sign, as an early edge.
     #[cold]
     fn within_balance(&mut self, code: I17F15, tick: u32) -> I17F15 {
         if (self.integral + code).abs() <= self.integral.abs() {
@@ -126,7 +126,7 @@ impl Carrier {
         -code
     }
 
-    /// An edge.
+    /// Ends a half period.
     #[cold]
     fn turn(&mut self, timing: &CarrierTiming) {
         self.sign = -self.sign;
@@ -140,7 +140,7 @@ impl Carrier {
             Shape::Square => amplitude,
             #[cfg(feature = "sine-carrier")]
             Shape::Sine => {
-                // The crest, where the cosine has no angle, is a quarter of a turn before the edge.
+                // The crest, at which the cosine's angle is 0, is a quarter of a turn before the edge.
                 amplitude * cosine(self.left_ticks as f32 * timing.turns_per_tick - 0.25)
             }
             #[cfg(not(feature = "sine-carrier"))]

@@ -1,12 +1,12 @@
-//! Ticks as moments: the counter wraps, so that two moments are compared only when they are less than 2^31 ticks apart.
+//! Comparing tick counts. The counter wraps, so two ticks can be compared only if they are less than 2^31 ticks apart.
 
-/// Whether a moment is now, or was before.
+/// Whether `tick` is `now_tick` or earlier.
 #[inline]
 pub fn is_past(tick: u32, now_tick: u32) -> bool {
     tick.wrapping_sub(now_tick) as i32 <= 0
 }
 
-/// The earlier of two moments.
+/// The earlier of two ticks.
 #[inline]
 pub(crate) fn earlier(one_tick: u32, other_tick: u32) -> u32 {
     if (one_tick.wrapping_sub(other_tick) as i32) < 0 { one_tick } else { other_tick }

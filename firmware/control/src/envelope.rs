@@ -11,17 +11,17 @@ impl Envelope {
         self.voltage_v_rms
     }
 
-    /// Zero at once, whatever the slew limit.
+    /// Sets the voltage to zero at once, without the slew limit.
     pub(crate) fn silence(&mut self) {
         self.voltage_v_rms = 0.0;
     }
 
-    /// Comes down at once to what a new scene allows.
+    /// Lowers the voltage at once to the limit of a new scene.
     pub(crate) fn limit(&mut self, voltage_max_v_rms: f32) {
         self.voltage_v_rms = self.voltage_v_rms.min(voltage_max_v_rms);
     }
 
-    /// Moves towards `target_v_rms` by at most `step_max_v`. Returns whether that was too far for one tick.
+    /// Moves towards `target_v_rms` by at most `step_max_v`. Returns whether the target was further away than that.
     #[inline]
     pub(crate) fn follow(&mut self, target_v_rms: f32, step_max_v: f32) -> bool {
         let (lowest_v_rms, highest_v_rms) = (self.voltage_v_rms - step_max_v, self.voltage_v_rms + step_max_v);

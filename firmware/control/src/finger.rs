@@ -1,17 +1,17 @@
-//! The finger as the tick knows it: the track that it follows, if there is one.
+//! The finger's state in the tick: its track, if a finger is on the screen.
 
 use crate::Track;
 use crate::deadline::is_past;
 
-/// Touch data is too old to use after this many report periods without a report.
+/// Touch data is stale after this many report periods without a report.
 pub const STALE_AFTER_PERIODS: f32 = 3.0;
 
 /// Whether there is a finger, and its track.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Finger {
-    /// The touch source says that there is none.
+    /// The touch source has reported that no finger is on the screen.
     Up,
-    /// The touch source has said nothing new for too long.
+    /// The touch source has reported nothing new for too long.
     Stale,
     /// The finger follows a track.
     Down(Track),
@@ -32,7 +32,8 @@ impl Finger {
         self.track().map(|track| track.until_tick)
     }
 
-    /// Follows another track, for `ticks_max` at most, whatever it says. Returns whether the finger was lifted in between.
+    /// Replaces the track, and limits it to `ticks_max` ticks from now. Returns whether the finger was lifted in
+    /// between.
     pub(crate) fn follow(&mut self, track: &Track, now_tick: u32, ticks_max: u32) -> bool {
         let was_lifted = self.track().is_some_and(|before| before.contact != track.contact);
         *self = if is_past(track.until_tick, now_tick) {
@@ -44,7 +45,8 @@ impl Finger {
         was_lifted
     }
 
-    /// Replaces a track that has ended. One that is only compared would be valid again when the tick counter has wrapped.
+    /// Replaces a track that has ended by [`Self::Stale`]. If it were kept, it would become valid again once the tick
+    /// counter has wrapped.
     pub(crate) fn expire(&mut self, now_tick: u32) {
         if self.until_tick().is_some_and(|tick| is_past(tick, now_tick)) {
             *self = Self::Stale;

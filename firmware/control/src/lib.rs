@@ -1,8 +1,9 @@
 //! The tick: a finger's track and the board's inputs in, a DAC code out, 40,000 times a second.
 //!
-//! [`Ticker::tick`] is one straight page. It reads the coefficients of a scene, [`Active`], and takes one [`Order`] of the
-//! session before each tick: a [`Track`] of the finger, a scene, a change of state. What it reports is a [`Status`]. It does
-//! not allocate, wait or panic, and knows neither bytes nor clocks.
+//! [`Ticker::tick`] runs the same steps at every tick. It reads the coefficients of a scene from an [`Active`]. Before
+//! each tick, the ticker takes at most one [`Order`] from the session: a [`Track`] of the finger, a scene, a change of
+//! state. It reports a [`Status`]. It does not allocate, wait or panic, does no I/O, and reads no clock: it counts
+//! ticks.
 //!
 //! ```
 //! use frixel_control::{Active, Board, Drive, Sense, Ticker};
@@ -16,7 +17,8 @@
 //!
 //! A board builds this crate for speed, and all others for size.
 //!
-//! The Cargo features `stream` and `sine-carrier` are what a scene may ask for; the session's crate names them all.
+//! The Cargo features `stream` and `sine-carrier` enable what a scene may use. The documentation of `frixel-session`
+//! lists all features.
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,5 @@
-//! What goes between the session and the ticker: values only, so that a board may hand them over through a queue.
+//! The values that the session and the ticker exchange. They hold no shared state, so a board can pass them through a
+//! queue.
 
 use frixel_wire::fault::Fault;
 use frixel_wire::message::Telemetry;
@@ -7,27 +8,28 @@ use frixel_wire::message::Telemetry;
 use crate::stream::StreamStart;
 use crate::{Active, Track};
 
-/// What the session asks of the ticker, which takes one before each tick. `'a` is the life of the two [`Active`] buffers.
-// A tag of a whole word: an order is then copied word by word.
+/// A command from the session to the ticker, which takes at most one before each tick. `'a` is the lifetime of the two
+/// [`Active`] buffers.
+// With a tag of a whole word, the compiler copies an order word by word.
 #[repr(u32)]
 pub enum Order<'a> {
-    /// The host has said something.
+    /// The host has sent a valid frame: restarts the host timeout.
     HostHeard,
     /// The finger follows this track from now on.
     Track(Track),
     /// The finger has been lifted.
     Lift,
-    /// Play by these coefficients from now on, and hand back the others.
+    /// Use these coefficients from now on, and return the previous ones.
     Load(&'a mut Active),
-    /// Forget the scene: its bitmaps are about to be overwritten.
+    /// Remove the scene, because its bitmaps are about to be overwritten.
     Unload,
-    /// Change a layer of the scene that plays; a layer that it does not have is none.
+    /// Change a layer of the current scene. Unknown layer numbers are ignored.
     SetLayer {
-        /// Its number among the scene's records.
+        /// Number of the layer's record in the scene.
         layer: u8,
-        /// Whether it takes part at all.
+        /// Whether the layer is enabled.
         on: bool,
-        /// Factor on its friction, in place of its record's.
+        /// Factor on the layer's friction; replaces the gain in its record.
         gain: f32,
     },
     /// Disarmed to Armed.
@@ -43,54 +45,54 @@ pub enum Order<'a> {
     /// Begin a stream.
     #[cfg(feature = "stream")]
     StartStream(StreamStart),
-    /// Let the stream end.
+    /// End the stream after its last sample.
     #[cfg(feature = "stream")]
     EndStream {
-        /// Position behind its last sample.
+        /// Position after the last sample.
         last: u32,
     },
 }
 
 impl Order<'_> {
-    /// Whether the order carries out a command of the host, and so says that there is one.
+    /// Whether the order comes from a host command, and so restarts the host timeout.
     pub fn is_sign_of_life(&self) -> bool {
         !matches!(self, Self::Track(_) | Self::Lift | Self::Load(_) | Self::Unload)
     }
 
-    /// Whether [`Status::orders_applied`] counts it.
+    /// Whether [`Status::orders_applied`] counts this order.
     pub(crate) fn is_counted(&self) -> bool {
         !matches!(self, Self::HostHeard | Self::Track(_) | Self::Lift)
     }
 }
 
-/// What the ticker reports to the session. Made when needed, not at every tick.
+/// The ticker's report to the session. It is built on request, not at every tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Status {
-    /// State, flags, place, friction and voltage at the last tick.
+    /// State, flags, finger position, friction and voltage at the last tick.
     pub telemetry: Telemetry,
-    /// The last hard fault with a number that belongs to it; it is latched while the state is Faulted.
+    /// The last hard fault and its detail number. The fault is latched while the state is Faulted.
     pub fault: Option<(Fault, u32)>,
-    /// Orders that were applied since power-on, modulo 2^32. Signs of life, tracks and lifts are not counted.
+    /// Orders applied since power-on, modulo 2^32. [`Order::HostHeard`], tracks and lifts are not counted.
     pub orders_applied: u32,
-    /// The arm switch was held at the last tick, and has been pressed since the reset or the last disarming.
+    /// The arm switch was held at the last tick, and was pressed after the reset or the last disarming.
     pub arm_switch: bool,
-    /// What was counted since power-on.
+    /// The ticker's counters.
     pub counters: Counters,
 }
 
-/// What a ticker counts since power-on.
+/// Events that a ticker has counted since power-on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
-    /// Ticks at which the friction asked for was out of reach.
+    /// Ticks at which the target friction was out of reach.
     pub saturated_ticks: u32,
     /// Ticks at which the envelope was at its slew limit.
     pub slewed_ticks: u32,
-    /// Early edges of the carrier, to keep direct current off the electrode.
+    /// Early edges of the carrier, which keep direct current off the electrode.
     pub balanced_edges: u32,
     /// Ticks whose deadline was missed.
     pub missed_deadlines: u32,
-    /// Times that a stream ran dry; none without the feature `stream`.
+    /// Times that a stream ran dry; 0 without the feature `stream`.
     pub stream_underruns: u32,
-    /// Runs of samples of a stream that never came, though later ones did; none without the feature `stream`.
+    /// Runs of stream samples that never arrived although later samples did; 0 without the feature `stream`.
     pub stream_gaps: u32,
 }

@@ -1,11 +1,11 @@
-//! A stream: samples that the host sends while a scene plays, behind a jitter buffer.
+//! A stream: samples that the host sends while a scene plays, with a jitter buffer.
 //!
-//! The [`StreamBuffer`] is memory that both sides share. The session puts samples into it through an [`StreamIntake`]; the
-//! tick plays them through a [`Player`], and never waits for the other side.
+//! The [`StreamBuffer`] is memory that session and tick share. The session writes samples into it through a
+//! [`StreamIntake`]; the tick plays them through a [`Player`]. Neither waits for the other.
 //!
-//! A sample has a *position*: its index, counted on from all streams before it, modulo 2^32. A slot of the buffer keeps
-//! with its sample the round of the ring that it belongs to, so that a sample of another round is not mistaken for the
-//! one that is due. Rounds have 16 bits: only a slot that was passed over 65,535 times in a row could deceive.
+//! A sample has a *position*: its index, counted through all streams, modulo 2^32. A slot of the buffer stores, with
+//! its sample, the round of the ring that the sample belongs to, so that an old sample is not mistaken for the next
+//! one. The round has 16 bits: the check fails only for a slot that was skipped 65,535 times in a row.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 use frixel_layers::StreamSample;
@@ -14,21 +14,22 @@ use frixel_layers::StreamSample;
 pub const STREAM_LEN: usize = 1024;
 
 const LEN: u32 = STREAM_LEN as u32;
-/// Time in which a stream fades in and out, in s. Short beside a touch, long beside the edge of a carrier.
+/// Time in which a stream fades in and out, in s. Short compared with a touch, long compared with a carrier edge.
 const FADE_S: f32 = 0.01;
-/// One sample, in the player's steps.
+/// One sample, in units of [`StreamStart::step`].
 const ONE: u32 = 1 << 31;
 const VALUE_PER_SAMPLE: f32 = 1.0 / 65_535.0;
 
-/// Samples on their way from the session, which writes, to the tick, which reads.
+/// Samples that the session has written and the tick will read.
 ///
-/// Every slot is an atomic of its own, which costs nothing on a Cortex-M and keeps the sharing free of `unsafe`.
+/// Every slot is an atomic, which costs nothing on a Cortex-M and needs no `unsafe`.
 pub struct StreamBuffer {
-    /// The sample in the low half, its round in the high half; all zeros, so that no image of it lies in flash.
+    /// The sample in the low half, its round in the high half. Initially zero, so that the buffer takes no space in
+    /// flash.
     slots: [AtomicU32; STREAM_LEN],
-    /// Position behind the last sample that came; the session's to write.
+    /// Position after the last sample received; written by the session.
     end: AtomicU32,
-    /// Position of the sample that the player takes next; the tick's to write.
+    /// Position of the sample that the player takes next; written by the tick.
     next: AtomicU32,
 }
 
@@ -52,33 +53,33 @@ impl StreamBuffer {
     }
 }
 
-/// The round of a position, in the high half. The first one is 1, since a slot that was never filled says 0.
+/// The round of a position, in the high half. The first round is 1, because a slot that was never filled holds 0.
 #[inline]
 fn round(position: u32) -> u32 {
     (position / LEN + 1) << 16
 }
 
-/// Samples from `from` to `to`; none when `to` is behind.
+/// Number of samples from `from` to `to`; 0 if `to` is before `from`.
 #[inline]
 fn count(from: u32, to: u32) -> u32 {
     (to.wrapping_sub(from) as i32).max(0) as u32
 }
 
-/// A stream that is to begin.
+/// Start parameters of a stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StreamStart {
     /// Position of its first sample.
     pub(crate) first: u32,
-    /// Part of a sample that a tick goes on by, in 2^-31.
+    /// Samples per tick, in units of 2^-31.
     pub(crate) step: u32,
-    /// Samples that have to be there before it plays.
+    /// Samples that must have arrived before the stream plays.
     pub(crate) start_level: u32,
 }
 
-/// Where the session puts the samples that the host sends.
+/// The session's side of a [`StreamBuffer`]: takes the samples that the host sends.
 pub struct StreamIntake<'a> {
     buffer: &'a StreamBuffer,
-    /// Position of the stream's first sample, while one is under way.
+    /// Position of the current stream's first sample; `None` without a stream.
     first: Option<u32>,
 }
 
@@ -88,7 +89,7 @@ impl<'a> StreamIntake<'a> {
         Self { buffer, first: None }
     }
 
-    /// Begins a stream of so many samples a second, at most the ticks a second, and at least 1.
+    /// Begins a stream of `sample_hz` samples a second, from 1 to `tick_hz`.
     pub fn start(&mut self, sample_hz: u32, tick_hz: u32, start_level: u16) -> StreamStart {
         let first = self.buffer.end.load(Ordering::Relaxed);
         self.first = Some(first);
@@ -96,13 +97,13 @@ impl<'a> StreamIntake<'a> {
         StreamStart { first, step, start_level: u32::from(start_level) }
     }
 
-    /// Ends the stream: no more samples are taken. Returns the position behind the last one; `None` without a stream.
+    /// Ends the stream: no more samples are taken. Returns the position after the last one; `None` without a stream.
     pub fn end(&mut self) -> Option<u32> {
         self.first.take().map(|_| self.buffer.end.load(Ordering::Relaxed))
     }
 
-    /// Takes samples, little-endian, from an index on. What was due before, what there is no room for, and what comes
-    /// without a stream is dropped.
+    /// Takes little-endian samples, the first of which has the index `first_index`. Samples that are too late, that do
+    /// not fit, or that arrive without a stream are dropped.
     pub fn take(&mut self, first_index: u32, samples: &[[u8; 2]]) {
         let Some(first) = self.first else { return };
         let due = self.due(first);
@@ -120,7 +121,7 @@ impl<'a> StreamIntake<'a> {
         self.buffer.end.store(end, Ordering::Release);
     }
 
-    /// Index behind the last sample that came, and for how many from there on there is room; `None` without a stream.
+    /// Index after the last sample received, and the number of further samples that fit; `None` without a stream.
     pub fn progress(&self) -> Option<(u32, u16)> {
         let first = self.first?;
         let end = self.buffer.end.load(Ordering::Relaxed);
@@ -128,7 +129,7 @@ impl<'a> StreamIntake<'a> {
         Some((end.wrapping_sub(first), room as u16))
     }
 
-    /// Position that is due next: the stream's first one until the player has begun with it.
+    /// Position that the player needs next: the stream's first one until the player has begun the stream.
     fn due(&self, first: u32) -> u32 {
         let next = self.buffer.next.load(Ordering::Relaxed);
         if count(first, next) > 0 { next } else { first }
@@ -139,7 +140,7 @@ impl<'a> StreamIntake<'a> {
 enum Phase {
     /// There is no stream, or it is over.
     Over,
-    /// Waits until enough samples are there.
+    /// Waits until enough samples have arrived.
     Filling,
     Playing,
 }
@@ -149,15 +150,15 @@ pub(crate) struct Player<'a> {
     buffer: &'a StreamBuffer,
     phase: Phase,
     start: StreamStart,
-    /// Position behind the last sample, once that is known.
+    /// Position after the last sample, once the host has ended the stream.
     last: Option<u32>,
-    /// Position of the sample behind `to`.
+    /// Position of the sample after `to`.
     next: u32,
-    /// The samples on either side of now, and how far it is from the first to the second.
+    /// The samples before and after the current time, and the fraction of the way from the first to the second.
     from: f32,
     to: f32,
     fraction: u32,
-    /// The sample that is due is not there: `to` is the one before.
+    /// The next sample has not arrived: `to` still holds the one before.
     missing: bool,
     weight: f32,
     fade_step: f32,
@@ -184,7 +185,7 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// Begins another stream; what plays fades out meanwhile.
+    /// Begins another stream. The current value fades out while samples arrive.
     pub(crate) fn start(&mut self, start: StreamStart) {
         let held = self.now().value;
         (self.from, self.to, self.fraction) = (held, held, 0);
@@ -195,18 +196,18 @@ impl<'a> Player<'a> {
         self.go_to(start.first);
     }
 
-    /// No sample comes from position `last` on.
+    /// Ends the stream before position `last`.
     pub(crate) fn end(&mut self, last: u32) {
         self.last = Some(last);
     }
 
-    /// Forgets the stream at once.
+    /// Stops the stream at once, without a fade.
     pub(crate) fn stop(&mut self) {
         self.phase = Phase::Over;
         self.weight = 0.0;
     }
 
-    /// The stream waits for samples, or misses the one that is due.
+    /// Whether the stream waits for samples, or the next one is missing.
     pub(crate) fn is_dry(&self) -> bool {
         match self.phase {
             Phase::Over => false,
@@ -215,24 +216,24 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// Nothing plays, and nothing fades.
+    /// Whether the stream has ended and has faded out.
     pub(crate) fn is_over(&self) -> bool {
         self.phase == Phase::Over && self.weight <= 0.0
     }
 
-    /// Times that the stream ran dry, and runs of samples that never came, since power-on.
+    /// Times that the stream ran dry, and runs of samples that never arrived, since power-on.
     pub(crate) fn counts(&self) -> (u32, u32) {
         (self.underruns, self.gaps)
     }
 
-    /// What the stream is worth now.
+    /// The stream's current value and weight.
     #[inline]
     pub(crate) fn now(&self) -> StreamSample {
         let part = self.fraction as f32 * (1.0 / ONE as f32);
         StreamSample { value: self.from + part * (self.to - self.from), weight: self.weight }
     }
 
-    /// Goes on by a tick.
+    /// Advances by a tick.
     #[inline]
     pub(crate) fn advance(&mut self) {
         if !self.is_over() {
@@ -268,7 +269,7 @@ impl<'a> Player<'a> {
             self.phase = Phase::Playing;
             self.take_next();
             if self.weight <= 0.0 {
-                // The first sample is reached with it: the next tick takes the second.
+                // Start at the first sample: the next tick takes the second.
                 self.fraction = ONE - self.start.step;
             }
         } else if there == 0 && self.last == Some(self.next) {
@@ -276,13 +277,13 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// Takes the next sample into `to`, and begins the way there.
+    /// Takes the next sample into `to`.
     fn take_next(&mut self) {
         if let Some(sample) = self.buffer.get(self.next).filter(|_| self.last != Some(self.next)) {
             self.to = f32::from(sample) * VALUE_PER_SAMPLE;
             self.missing = false;
             if self.weight <= 0.0 {
-                // What was held has faded: it is nothing to go on from.
+                // The previous value has faded out: do not interpolate from it.
                 self.from = self.to;
             }
         } else if self.last == Some(self.next) {
@@ -299,7 +300,7 @@ impl<'a> Player<'a> {
         self.go_to(self.next.wrapping_add(1));
     }
 
-    /// Holds the last sample while it fades.
+    /// Holds the last sample while it fades out.
     fn end_here(&mut self, phase: Phase) {
         self.phase = phase;
         self.missing = false;

@@ -1,4 +1,4 @@
-//! The one owner of the output: Disarmed, Armed, Active, Faulted (DESIGN section 5).
+//! The state machine that decides whether the output is enabled: Disarmed, Armed, Active, Faulted (DESIGN section 5).
 
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::{Fault, State};
@@ -8,10 +8,12 @@ use crate::{Board, Order, Sense};
 
 /// Host timeout before a scene has set one.
 const HOST_TIMEOUT_DEFAULT_S: f32 = 0.25;
-/// The monitor may be off by this part of full scale, and by [`MONITOR_GAIN_TOLERANCE`] of what is driven.
+/// Tolerance of the monitor voltage, as a fraction of full scale; [`MONITOR_GAIN_TOLERANCE`] of the driven voltage is
+/// added to it.
 const MONITOR_FLOOR: f32 = 0.04;
 const MONITOR_GAIN_TOLERANCE: f32 = 0.25;
-/// Ticks of a wrong monitor voltage, less those of a right one, that are a fault.
+/// Count at which the monitor faults: a tick with a wrong voltage adds 1, one with a right voltage subtracts 1, down to
+/// 0.
 const MONITOR_WRONG_TICKS: u32 = 20;
 
 /// State of the supervisor.
@@ -20,24 +22,26 @@ pub(crate) struct Supervisor {
     state: State,
     fault: Option<(Fault, u32)>,
     host_heard_at_tick: u32,
-    /// `None` for a scene that goes on without a host.
+    /// `None` for a scene that continues without a host.
     host_timeout_ticks: Option<u32>,
     host_silent: bool,
-    /// The arm switch was open at some tick since the reset or the last disarming: to hold it now means to have pressed it.
+    /// The arm switch was open at some tick since the reset or the last disarming: if it is held now, it was pressed
+    /// since.
     switch_was_released: bool,
     monitor: Monitor,
 }
 
-/// What the monitor should read, and how long it has not.
+/// The expected monitor voltage, and the count of ticks at which the monitor read something else.
 #[derive(Clone, Copy, Debug)]
 struct Monitor {
     expected_v: f32,
     volts_per_code: f32,
     step: f32,
-    /// [`MONITOR_GAIN_TOLERANCE`], beside the others: as a constant it would keep a register over the whole tick.
+    /// [`MONITOR_GAIN_TOLERANCE`], stored here because the compiler would hold a constant in a register over the whole
+    /// tick.
     gain_tolerance: f32,
     floor_v: f32,
-    /// As `floor_v`; while wrong ticks are counted, less than nothing: every tick is to be looked at then.
+    /// Equal to `floor_v`; minus infinity while `wrong_ticks` is above 0, so that every tick is then counted.
     unnoticed_v: f32,
     wrong_ticks: u32,
 }
@@ -56,22 +60,22 @@ impl Monitor {
         }
     }
 
-    /// Goes on by a tick at whose beginning a voltage was put out. Returns whether what the monitor read at its end is to
-    /// be counted.
+    /// Advances the expected voltage by a tick that began with `driven_v` at the output. Returns whether
+    /// [`Self::count`] has to count the voltage that the monitor read at its end.
     #[inline]
     fn advance(&mut self, driven_v: f32, monitor_v: f32) -> bool {
         self.expected_v += self.step * (driven_v - self.expected_v);
         !self.is_within(self.unnoticed_v, driven_v, monitor_v)
     }
 
-    /// Not so for a monitor that is not a number.
+    /// Whether the monitor voltage is within tolerance; `false` if it is not a number.
     #[inline]
     fn is_within(&self, floor_v: f32, driven_v: f32, monitor_v: f32) -> bool {
         (monitor_v - self.expected_v).abs() < floor_v + self.gain_tolerance * driven_v.abs()
     }
 
-    /// Counts a tick, and returns whether there were too many wrong ones. No more than those are counted, so that a
-    /// monitor that reads right again is soon believed, however long it was wrong.
+    /// Counts a tick, and returns whether there were too many wrong ones. The count is limited to
+    /// [`MONITOR_WRONG_TICKS`], so that it soon falls again however long the monitor was wrong.
     fn count(&mut self, driven_v: f32, monitor_v: f32) -> bool {
         self.wrong_ticks = if self.is_within(self.floor_v, driven_v, monitor_v) {
             self.wrong_ticks.saturating_sub(1)
@@ -83,8 +87,8 @@ impl Monitor {
     }
 }
 
-/// `1 - exp(-x)`, what a first-order lag follows in `x` of its time constants, within 1e-5 for `x` up to one and 1e-3 for any
-/// above zero: 64 steps of the trapezoidal rule. `libm::expf` would cost an image more than it is worth.
+/// `1 - exp(-x)`, the step response of a first-order lag after `x` time constants, within 1e-5 for `x` up to one and
+/// 1e-3 for any above zero: 64 steps of the trapezoidal rule. `libm::expf` would make the image larger.
 fn lag_step(x: f32) -> f32 {
     let half_step = (x / 128.0).min(1.0);
     let mut left = (1.0 - half_step) / (1.0 + half_step);
@@ -115,18 +119,18 @@ impl Supervisor {
         self.fault
     }
 
-    /// The output was put to zero because the host had gone silent, and nobody has armed since.
+    /// The host timeout has disarmed the board, and the board has not been armed since.
     pub(crate) fn host_silent(&self) -> bool {
         self.host_silent
     }
 
-    /// Takes the orders that concern the state. Those that do not go with the state change nothing.
+    /// Applies the orders that change the state. An order that is not allowed in the current state is ignored.
     pub(crate) fn apply(&mut self, order: &Order, now_tick: u32) {
         if order.is_sign_of_life() {
             self.host_heard_at_tick = now_tick;
         }
         match (order, self.state) {
-            // A host that has not seen yet that the switch must be pressed again is ignored.
+            // Ignored until the switch was released: the host may not know yet that it must be pressed again.
             (Order::Arm, State::Disarmed) if self.switch_was_released => {
                 self.state = State::Armed;
                 self.host_silent = false;
@@ -140,7 +144,7 @@ impl Supervisor {
         }
     }
 
-    /// Whoever wants to arm presses the switch anew.
+    /// Disarms. The switch must be released and pressed again before the next arming.
     fn disarm(&mut self) {
         self.state = State::Disarmed;
         self.switch_was_released = false;
@@ -151,7 +155,7 @@ impl Supervisor {
         self.switch_was_released
     }
 
-    /// Latches a hard fault, unless one is latched.
+    /// Latches a hard fault, unless one is already latched.
     pub(crate) fn raise(&mut self, fault: Fault, detail: u32) {
         if self.state != State::Faulted {
             self.state = State::Faulted;
@@ -159,13 +163,13 @@ impl Supervisor {
         }
     }
 
-    /// Sets the timeout that holds from now on; `None` for a scene that goes on without a host.
+    /// Sets the host timeout; `None` for a scene that continues without a host.
     pub(crate) fn set_host_timeout(&mut self, ticks: Option<u32>) {
         self.host_timeout_ticks = ticks;
     }
 
-    /// Faults when the amplifier, its monitor or the arm switch say so. `dac_code` is what went to the amplifier in the tick
-    /// before.
+    /// Latches a fault if the amplifier, its monitor or the arm switch requires it. `dac_code` is the output of the
+    /// previous tick.
     #[inline]
     pub(crate) fn check(&mut self, sense: &Sense, dac_code: DacCode) {
         let driven_v = f32::from(dac_code.bits()) * self.monitor.volts_per_code;
@@ -174,7 +178,7 @@ impl Supervisor {
         }
     }
 
-    /// Latches the fault that an input of [`Self::check`] means; of several the first here.
+    /// Latches the fault that the inputs of [`Self::check`] show; if there are several, the first one below.
     #[cold]
     #[inline(never)]
     fn judge(&mut self, sense: &Sense, driven_v: f32) {
@@ -192,14 +196,14 @@ impl Supervisor {
         }
     }
 
-    /// The tick at which the host has been silent for too long; `None` when it need not be there.
+    /// The tick at which the host timeout passes; `None` if no host is required.
     pub(crate) fn host_deadline_tick(&self) -> Option<u32> {
         let needed = matches!(self.state, State::Armed | State::Active);
         let timeout_ticks = self.host_timeout_ticks.filter(|_| needed)?;
         Some(self.host_heard_at_tick.wrapping_add(timeout_ticks).wrapping_add(1))
     }
 
-    /// Disarms when the host has been silent for too long.
+    /// Disarms if the host timeout has passed.
     pub(crate) fn expire(&mut self, now_tick: u32) {
         if let Some(tick) = self.host_deadline_tick()
             && is_past(tick, now_tick)

@@ -1,18 +1,19 @@
-//! Where the finger is between two touch reports: a parabola in time, and a ramp of the friction under a still finger.
+//! The finger between two touch reports: its position as a parabola in time, and the ramp of the friction at
+//! standstill.
 
-/// The path that a finger is taken to follow from one touch report to the next.
+/// The estimated path of a finger from one touch report to the next.
 ///
-/// The tracker makes one of every report that says something new; the tick only reads it. Place and gain at a tick are
-/// computed from the ticks since [`Self::from_tick`], so that nothing accumulates and a track that is handed over late is
-/// as good as one in time.
+/// The tracker makes a track from every report with new data; the tick only reads it. The tick computes position and
+/// gain from the ticks since [`Self::from_tick`]: no error accumulates, and a track that arrives late is as accurate as
+/// one that arrives in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Track {
-    /// Number of the contact between finger and screen. Another number than before means that the finger was lifted in
-    /// between.
+    /// Number of the contact between finger and screen. If it differs from that of the previous track, the finger was
+    /// lifted in between.
     pub contact: u32,
-    /// Tick at which the place was measured.
+    /// Tick at which the position was measured.
     pub from_tick: u32,
-    /// The track is void from this tick on.
+    /// The track is invalid from this tick on.
     pub until_tick: u32,
     /// Place at `from_tick`, in m from the screen's left and top edge.
     pub place_m: [f32; 2],
@@ -20,12 +21,12 @@ pub struct Track {
     pub velocity_m_per_s: [f32; 2],
     /// Half the acceleration, in m/s^2.
     pub half_acceleration_m_per_s2: [f32; 2],
-    /// Gain on the friction under a finger that stands still.
+    /// Gain on the friction, ramped down while the finger stands still.
     pub ramp: StandstillRamp,
 }
 
 impl Track {
-    /// Seconds from `from_tick` to a tick, `tick_period_s` apart.
+    /// Seconds from `from_tick` to `tick`, given the tick period.
     #[inline]
     pub fn elapsed_s(&self, tick: u32, tick_period_s: f32) -> f32 {
         tick.wrapping_sub(self.from_tick) as i32 as f32 * tick_period_s
@@ -47,9 +48,9 @@ impl Track {
     }
 }
 
-/// A gain that changes by the same step every tick, within 0 and 1.
+/// A gain that changes by the same step every tick and is clamped to the range from 0 to 1.
 ///
-/// A ramp may begin in the future: before it, a gain of 1 that falls, or of 0 that rises, stays what it is.
+/// A ramp may begin in the future: until then, a gain of 1 that will fall, or of 0 that will rise, stays constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StandstillRamp {
     /// Tick at which the gain is `gain`.

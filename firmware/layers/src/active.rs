@@ -21,13 +21,13 @@ use crate::region::ActiveRegion;
 use crate::scene::Scene;
 use crate::tables::Tables;
 
-/// The layers of one scene, with everything computed that does not change from tick to tick.
+/// The layers of one scene. Everything that does not change from tick to tick is precomputed.
 ///
 /// [`ActiveLayers::begin`] starts a scene, [`ActiveLayers::push`] adds its layers one by one, and
-/// [`ActiveLayers::worst`] finds what they cost.
+/// [`ActiveLayers::worst`] computes their cost.
 #[repr(C)]
 pub struct ActiveLayers {
-    /// The layers that are on.
+    /// The enabled layers.
     on: LayerSet,
     grid: Grid,
     layers: Vec<ActiveLayer, RECORDS_MAX>,
@@ -40,7 +40,7 @@ impl ActiveLayers {
 
     /// Removes all layers.
     pub fn clear(&mut self) {
-        // One by one: the whole of it is thousands of bytes, and a tick may be waiting.
+        // Clear each field instead of copying an empty value of thousands of bytes: a tick may be waiting.
         self.layers.clear();
         self.tables.clear();
         self.on = [0; 2];
@@ -53,8 +53,8 @@ impl ActiveLayers {
         self.tables.set_points(points);
     }
 
-    /// Checks the next record, computes its coefficients and puts the layer on. `find_bitmap` finds a bitmap in the pool
-    /// by its CRC-32.
+    /// Checks the next record, computes its coefficients and enables the layer. `find_bitmap` finds a bitmap in the
+    /// pool by its CRC-32.
     pub fn push(
         &mut self,
         record: &Record,
@@ -65,15 +65,15 @@ impl ActiveLayers {
         record.check(self.tables.points(), number).map_err(Refusal::Config)?;
         let mut preparation = Preparation { tick_hz, find_bitmap, tables: &mut self.tables };
         let layer = ActiveLayer::new(record, number, &mut preparation)?;
-        // There is room for every record that a scene can have.
+        // There is room: a scene has at most `RECORDS_MAX` records.
         let _ = self.layers.push(layer);
         self.grid.add(number, &record.region, self.tables.points());
         self.put(number, true);
         Ok(())
     }
 
-    /// The place at which a tick of `scene`, whose layers these are, takes most, of some cells of the grid and of those
-    /// before, whose worst is `so_far`.
+    /// Finds the place at which a tick of `scene` takes the longest, among some cells of the grid. `so_far` is the
+    /// result for the cells before them. The layers must be those of `scene`.
     pub fn worst(&self, scene: &Scene, cells: Range<usize>, so_far: Worst) -> Worst {
         let mut costs = LayerCosts::NONE;
         for (number, record) in (0..).zip(scene.records()) {
@@ -83,13 +83,13 @@ impl ActiveLayers {
         cost::worst_of_cells(scene.header(), cells, &costs, so_far)
     }
 
-    /// Some layer plays what the host streams.
+    /// Whether a layer plays the host's stream.
     #[inline]
     pub fn has_stream(&self) -> bool {
         self.layers.iter().any(ActiveLayer::is_streamed)
     }
 
-    /// Puts a layer on or off, and sets its gain. Unknown layer numbers are ignored.
+    /// Enables or disables a layer, and sets its gain. Unknown layer numbers are ignored.
     pub fn set(&mut self, number: u8, on: bool, gain: f32) {
         if let Some(layer) = self.layers.get_mut(usize::from(number)) {
             layer.gain = gain;
@@ -97,7 +97,7 @@ impl ActiveLayers {
         }
     }
 
-    /// Electric friction of all layers that are on, in N.
+    /// Electric friction of all enabled layers, in N.
     #[inline]
     pub fn electric_friction_n(&self, inputs: &Inputs, pool: &BitmapPool, clicks: &mut Clicks) -> f32 {
         let context = &mut Context { inputs, pool, tables: &self.tables, clicks };
@@ -113,7 +113,8 @@ impl ActiveLayers {
         if others == 0 { below_n } else { self.blend(u32::BITS, others, below_n, context) }
     }
 
-    /// Blends those of the 32 layers from number `first` on that are in `set`, over what is below them.
+    /// Blends the layers in `set` over the friction of those below. `set` has a bit for each of 32 layers, from number
+    /// `first` on.
     #[inline]
     fn blend(&self, first: u32, mut set: u32, below_n: f32, context: &mut Context) -> f32 {
         let mut electric_friction_n = below_n;
@@ -135,7 +136,7 @@ impl ActiveLayers {
     }
 }
 
-/// Bytes that a record becomes: a layer, and what of it lies in the tables; its points apart.
+/// Bytes of memory that a record takes: those of its layer and in the tables, not counting its points.
 pub fn active_bytes(record: &Record) -> usize {
     size_of::<ActiveLayer>() + record.layer.table_bytes()
 }
@@ -149,17 +150,17 @@ pub(crate) struct ActiveLayer {
     coefficients: Coefficients,
 }
 
-/// How a layer joins those below it.
+/// How a layer is combined with those below it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(u8)]
 enum Join {
     Blend(Blend),
-    /// By the weight of the host's stream.
+    /// Faded by the weight of the host's stream.
     Fade(Blend),
 }
 
 impl ActiveLayer {
-    /// The layer of record number `number`, which was checked.
+    /// Computes the layer of record number `number`, which has been checked.
     pub(crate) fn new(record: &Record, number: u8, preparation: &mut Preparation) -> Result<Self, Refusal> {
         let region = ActiveRegion::new(&record.region).ok_or(Refusal::LeftOut { layer: number })?;
         let coefficients = record.layer.prepare(number, preparation)?;
@@ -171,7 +172,7 @@ impl ActiveLayer {
         matches!(self.join, Join::Fade(_))
     }
 
-    /// Joins this layer's electric friction to that of the layers below.
+    /// Combines this layer's electric friction with that of the layers below.
     #[inline]
     pub(crate) fn blend_over(&self, below_n: f32, context: &mut Context) -> f32 {
         if !self.region.contains(context) {

@@ -2,12 +2,12 @@
 
 use core::sync::atomic::{AtomicU8, Ordering};
 
-/// Bytes for bitmaps on the smallest board, those being uploaded included; 0 without the feature `bitmap`.
+/// Bytes for bitmaps on the smallest board, including those being uploaded; 0 without the feature `bitmap`.
 pub const BITMAP_POOL_LEN: usize = if cfg!(feature = "bitmap") { 64 * 1024 } else { 0 };
 
 /// Samples of bitmaps, shared between the session, which writes, and the tick, which reads.
 ///
-/// Every byte is an atomic of its own, which costs nothing on a Cortex-M and keeps the sharing free of `unsafe`.
+/// Every byte is an atomic, which costs nothing on a Cortex-M and needs no `unsafe`.
 /// The session writes only to bytes that no playing scene reads.
 pub struct BitmapPool {
     bytes: [AtomicU8; BITMAP_POOL_LEN],
@@ -24,8 +24,8 @@ impl BitmapPool {
         Self { bytes: [const { AtomicU8::new(0) }; BITMAP_POOL_LEN] }
     }
 
-    /// The sample at an offset. No bitmap reaches beyond the end, where the pool begins again: a power of two needs no
-    /// other bound.
+    /// The sample at an offset. The offset wraps at the pool's length, a power of two, which replaces a bounds check;
+    /// no bitmap reaches beyond the end.
     #[inline]
     pub fn sample(&self, offset: usize) -> u8 {
         const { assert!(BITMAP_POOL_LEN == 0 || BITMAP_POOL_LEN.is_power_of_two()) };
@@ -41,7 +41,7 @@ impl BitmapPool {
         }
     }
 
-    /// Writes samples from an offset on; what goes beyond the end is ignored.
+    /// Writes samples, beginning at an offset; samples beyond the end are ignored.
     pub fn write(&self, offset: usize, samples: &[u8]) {
         if let Some(bytes) = self.bytes.get(offset..) {
             for (byte, sample) in bytes.iter().zip(samples) {
@@ -51,7 +51,7 @@ impl BitmapPool {
     }
 }
 
-/// Where a bitmap lies in the pool.
+/// A bitmap's location in the pool.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StoredBitmap {
     /// CRC-32 of the samples: the bitmap's name.

@@ -1,18 +1,18 @@
-//! How a layer joins the layers before it.
+//! How a layer is combined with the layers before it.
 
 use crate::interval::{Interval, Number};
 
-/// How a layer joins the layers before it.
+/// How a layer is combined with the layers before it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Blend {
-    /// It takes their place.
+    /// It replaces them.
     #[default]
     Replace,
     /// It is added to them.
     Add,
-    /// They are multiplied by it: its numbers are plain factors.
+    /// They are multiplied by it: its numbers are dimensionless factors.
     Multiply,
-    /// The larger of the two counts.
+    /// The larger of the two values is used.
     Max,
 }
 
@@ -37,7 +37,7 @@ impl Blend {
         }
     }
 
-    /// A layer's friction joined to that of the layers below.
+    /// Combines a layer's friction with that of the layers below.
     #[inline]
     pub(crate) fn of(self, below_n: f32, own_n: f32) -> f32 {
         match self {

@@ -14,7 +14,7 @@ use crate::tables::CLICKS_MAX;
 pub struct Click {
     /// Electric friction at its beginning, N; 0 for no click.
     pub height_n: f32,
-    /// How long it takes, s.
+    /// Duration, s.
     pub decay_s: f32,
 }
 
@@ -37,12 +37,12 @@ impl Parameter for Click {
 }
 
 impl Click {
-    /// The click's height is not zero.
+    /// Whether the click's height is not zero.
     pub fn is_felt(&self) -> bool {
         self.height_n.abs() > 0.0
     }
 
-    /// What the click adds to a layer's friction, at any time.
+    /// Bounds of what the click adds to a layer's friction.
     pub(crate) fn bounds(&self) -> Interval<f32> {
         Interval::of([0.0, self.height_n])
     }
@@ -76,14 +76,16 @@ pub(crate) struct ClickCoefficients {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ClickNumber(pub(crate) u8);
 
-/// The state of all clicks: where the finger was before. It belongs to the tick; coefficients do not change.
+/// The state of all clicks: where the finger was at the previous evaluation. It belongs to the tick; coefficients do
+/// not change.
 ///
-/// Time before is counted in evaluations of the scene, so that a tick without one does not break a crossing.
+/// The state counts evaluations of the scene instead of ticks, so that a tick without an evaluation does not hide a
+/// crossing.
 #[derive(Clone, Debug)]
 pub struct Clicks {
     /// Evaluations of the scene, modulo 2^32.
     evaluation: u32,
-    /// The finger was there at the evaluation before this one, and has not been lifted since.
+    /// The finger was on the screen at the previous evaluation, and has not been lifted since.
     unbroken: bool,
     touching: bool,
     slots: [Slot; CLICKS_MAX],
@@ -100,7 +102,7 @@ struct Slot {
 }
 
 impl Clicks {
-    /// No click is under way, and no finger was seen.
+    /// Initial state: no click is under way, and there was no finger.
     pub const NONE: Self = Self {
         evaluation: 0,
         unbroken: false,
@@ -108,12 +110,12 @@ impl Clicks {
         slots: [Slot { evaluation: 0, beyond: false, started_at_tick: None }; CLICKS_MAX],
     };
 
-    /// Forgets everything: another scene plays.
+    /// Resets the state for another scene.
     pub fn reset(&mut self) {
         *self = Self::NONE;
     }
 
-    /// Counts an evaluation of the scene, which follows.
+    /// Counts an evaluation of the scene. Must be called before the evaluation.
     #[inline]
     pub(crate) fn begin(&mut self) {
         self.evaluation = self.evaluation.wrapping_add(1);

@@ -1,16 +1,16 @@
-//! What the evaluation of a layer depends on besides its own coefficients.
+//! The evaluation context: everything besides its own coefficients that the evaluation of a layer depends on.
 
 use crate::bitmap_pool::BitmapPool;
 use crate::click::Clicks;
 use crate::region::place_steps;
 use crate::tables::Tables;
 
-/// What the tick evaluates a scene for: the finger's place and velocity, the time, and the host's stream.
+/// The inputs of an evaluation: the finger's position and velocity, the time, and the host's stream.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Inputs {
-    /// Where the finger is taken to be, from the screen's top left corner, in m.
+    /// Estimated position of the finger, from the screen's top left corner, in m.
     pub(crate) place_m: [f32; 2],
-    /// The same, as rectangles take it.
+    /// The same in the integer steps of rectangles.
     pub(crate) place_steps: [i32; 2],
     /// Ticks since power-on, modulo 2^32.
     pub(crate) tick: u32,
@@ -35,11 +35,11 @@ impl Inputs {
 pub struct StreamSample {
     /// The sample, from 0 to 1.
     pub value: f32,
-    /// How much of the stream's layers there is, from 0 without a stream to 1.
+    /// Weight of the stream's layers while it fades, from 0 (no stream) to 1.
     pub weight: f32,
 }
 
-/// The evaluation context: the tick's inputs, and what the layers of a scene share.
+/// The evaluation context: the tick's inputs, and the data that the layers of a scene share.
 pub(crate) struct Context<'a> {
     pub(crate) inputs: &'a Inputs,
     #[cfg_attr(not(feature = "bitmap"), allow(dead_code, reason = "only bitmaps lie in the pool"))]

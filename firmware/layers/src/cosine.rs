@@ -2,17 +2,17 @@
 //! `sinf` costs about 1,480 instructions on a Cortex-M4F.
 #![allow(dead_code, reason = "which of these is used depends on the features that are on")]
 
-/// Beyond half of this, an `f32` has no fractions; added and taken away again, it leaves whole numbers.
+/// Above half of this, an `f32` has no fraction bits. Adding and then subtracting it rounds to an integer.
 const WHOLE: f32 = 1.5 * (1 << 23) as f32;
 
-/// How far an angle is from the nearest whole turn, from -1/2 to 1/2, for magnitudes below 2^22.
+/// Difference of an angle from the nearest whole turn, from -1/2 to 1/2, for magnitudes below 2^22.
 #[inline]
 pub(crate) fn centred(turns: f32) -> f32 {
     turns - ((turns + WHOLE) - WHOLE)
 }
 
-// Odd polynomial for sin(2 pi x) on [-1/4, 1/4]: least largest error, 6e-7 before rounding, a thousandth of what the DAC
-// resolves. A degree more would cost noise a tenth of its time.
+// Odd polynomial for sin(2 pi x) on [-1/4, 1/4]: least largest error, 6e-7 before rounding, a thousandth of what the
+// DAC resolves. A higher degree would slow down noise by a tenth.
 const C1: f32 = 6.283_164;
 const C3: f32 = -41.337_143;
 const C5: f32 = 81.340_77;
@@ -21,7 +21,7 @@ const C7: f32 = -70.993_42;
 /// `cos(2 pi turns)` for magnitudes below 2^22: within 1e-6 of that of the angle as it is rounded.
 #[inline]
 pub fn cosine(turns: f32) -> f32 {
-    // The sine of what is left to a quarter turn, where an odd polynomial holds.
+    // The cosine is the sine of the rest to a quarter turn, where the odd polynomial is valid.
     let rest = 0.25 - centred(turns).abs();
     let square = rest * rest;
     rest * (C1 + square * (C3 + square * (C5 + square * C7)))

@@ -1,10 +1,10 @@
-//! What a scene costs the tick, as an estimate in processor cycles of a Cortex-M4F. Compiler and board use the same
-//! numbers, so that the board takes what the compiler accepts: the most that a tick may take is
+//! Estimates the cost of a scene in a tick, in processor cycles of a Cortex-M4F. Compiler and board use the same
+//! numbers, so that the board accepts what the compiler accepts. The limit of a tick is
 //! [`BoardLimits::tick_cycles_max`](frixel_wire::hello::BoardLimits::tick_cycles_max).
 //!
-//! [`measured`] has the number of every kind and region in **core cycles**: the cycles of each instruction by its class
-//! (Cortex-M4 technical reference, Arm 100166, tables 3-1 and 7-1), with a memory that does not wait. The file of each
-//! kind says which of them count for it. [`FLASH_WAIT_PERCENT`] turns core cycles into cycles.
+//! [`measured`] holds the cost of every kind and region in **core cycles**: the cycles of each instruction by its class
+//! (Cortex-M4 technical reference, Arm 100166, tables 3-1 and 7-1), with a memory without wait states. The file of
+//! each kind adds up those that apply to it. [`FLASH_WAIT_PERCENT`] turns core cycles into cycles.
 
 pub(crate) mod measured;
 
@@ -16,27 +16,27 @@ use crate::header::{Carrier, Header};
 use crate::point::Point;
 use crate::record::Record;
 
-/// Cycles for 100 core cycles when the tick runs from flash. **Assumed** until a board has measured it.
+/// Cycles for 100 core cycles when the tick runs from flash. **Assumed**; not measured on a board yet.
 ///
-/// An STM32G474 at 170 MHz reads flash with 4 wait states, behind a cache of 1 KiB for instructions. Code that stays in the
-/// cache does not wait; code that runs through once is prefetched, and waits for up to one cycle an instruction. A tick is
-/// both: its loop over layers stays in the cache, the rest runs through once.
+/// An STM32G474 at 170 MHz reads flash with 4 wait states, behind a cache of 1 KiB for instructions. Code that stays in
+/// the cache does not wait; code that runs only once is prefetched, and waits for up to one cycle an instruction. A
+/// tick has both: its loop over layers stays in the cache, the rest runs once.
 pub const FLASH_WAIT_PERCENT: u32 = 125;
 
-/// The place of a scene at which a tick takes most.
+/// The place in a scene at which a tick takes the longest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Worst {
     /// Core cycles of the longest tick.
     pub core_cycles: u32,
-    /// A cell of the grid that it is in.
+    /// The cell of the grid that contains the place.
     pub cell: Cell,
 }
 
 impl Worst {
-    /// No place: where a search begins.
+    /// No place: the initial value of a search.
     pub const NOWHERE: Self = Self { core_cycles: 0, cell: Cell { x_m: 0.0, y_m: 0.0, layers: [0; 2] } };
 
-    /// Cycles of the longest tick, flash wait states included.
+    /// Cycles of the longest tick, including flash wait states.
     pub const fn cycles(&self) -> u32 {
         cycles(self.core_cycles)
     }
@@ -49,7 +49,7 @@ impl Worst {
     }
 }
 
-/// Cycles of so many core cycles when they run from flash, rounded up.
+/// Converts core cycles to cycles of code that runs from flash, rounded up.
 pub const fn cycles(core_cycles: u32) -> u32 {
     core_cycles.saturating_mul(FLASH_WAIT_PERCENT).div_ceil(100)
 }
@@ -58,7 +58,7 @@ pub const fn cycles(core_cycles: u32) -> u32 {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LayerCosts {
     layers: [u32; RECORDS_MAX],
-    /// Wherever the finger is.
+    /// Core cycles that do not depend on where the finger is.
     everywhere: u32,
 }
 
@@ -71,7 +71,7 @@ impl LayerCosts {
         if let Some(cost) = self.layers.get_mut(usize::from(number)) {
             *cost = of_record(record, points);
         }
-        // Once, however many layers of the kind there are.
+        // Counts once for all layers of the kind.
         self.everywhere = self.everywhere.max(record.layer.cost_elsewhere());
     }
 }
@@ -89,12 +89,12 @@ pub const fn of_empty_scene(header: &Header) -> u32 {
     }
 }
 
-/// Where a scene takes most, from its grid and the costs of its layers.
+/// Finds the place at which a tick takes the longest, from a scene's grid and the costs of its layers.
 pub fn worst(header: &Header, grid: &Grid, costs: &LayerCosts) -> Worst {
     worst_of_cells(header, grid.cells(), costs, Worst::NOWHERE)
 }
 
-/// [`worst`] of some cells of the grid and of those before, whose worst is `so_far`.
+/// [`worst`] of some cells of the grid; `so_far` is the result for the cells before them.
 pub fn worst_of_cells(header: &Header, cells: impl Iterator<Item = Cell>, costs: &LayerCosts, so_far: Worst) -> Worst {
     cells.fold(so_far, |worst, cell| {
         let here = (0..).zip(&costs.layers).filter(|(number, _)| cell.has(*number)).map(|(_, cost)| cost);

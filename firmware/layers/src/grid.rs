@@ -1,15 +1,15 @@
-//! Which layers may act where: a coarse grid over the screen with a bit for each layer, so that a tick looks only at
-//! layers near the finger, and compiler and board alike find where a scene costs most.
+//! A coarse grid over the screen: each cell has a bit for each layer that may act there. With it, a tick evaluates only
+//! the layers near the finger, and compiler and board find the place with the highest cost.
 
 use core::ops::RangeInclusive;
 
 use crate::point::{Point, points_of};
 use crate::region::Region;
 
-/// Columns of the grid; as many rows.
+/// Number of columns, and of rows, of the grid.
 const SIDE: usize = 16;
 
-/// A set of layers, a bit for each: the first 32, and the others.
+/// A set of layers with a bit for each: layers 0 to 31, then layers 32 to 63.
 pub type LayerSet = [u32; 2];
 
 /// For every cell of the screen, the layers that may act there.
@@ -23,9 +23,9 @@ pub struct Grid {
 /// A cell of the grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cell {
-    /// Its middle, in m from the screen's left edge.
+    /// Its centre, in m from the screen's left edge.
     pub x_m: f32,
-    /// Its middle, in m from the screen's top edge.
+    /// Its centre, in m from the screen's top edge.
     pub y_m: f32,
     /// The layers that may act there.
     pub layers: LayerSet,
@@ -44,18 +44,18 @@ impl Grid {
     /// Number of cells.
     pub const CELLS: usize = SIDE * SIDE;
 
-    /// A grid without layers, on a screen without size.
+    /// A grid without layers, on a screen of size zero.
     pub const EMPTY: Self = Self { columns_per_m: 0.0, rows_per_m: 0.0, cells: [[0; 2]; SIDE * SIDE] };
 
-    /// Forgets all layers, and takes the size of another screen, in m.
+    /// Removes all layers, and sets the size of the screen, in m.
     pub fn reset(&mut self, screen_width_m: f32, screen_height_m: f32) {
         self.columns_per_m = SIDE as f32 / screen_width_m;
         self.rows_per_m = SIDE as f32 / screen_height_m;
         self.cells.fill([0; 2]);
     }
 
-    /// Adds layer number `layer`, below 64, wherever its region may be; `points` are the scene's. What is off the screen
-    /// belongs to the cells at its border.
+    /// Adds layer number `layer`, below 64, to every cell that its region may touch; `points` are the scene's. Places
+    /// off the screen belong to the cells at its border.
     pub fn add(&mut self, layer: u8, region: &Region, points: &[Point]) {
         let bit = 1_u64.checked_shl(u32::from(layer)).unwrap_or(0);
         let bits = [bit as u32, (bit >> 32) as u32];
@@ -68,7 +68,7 @@ impl Grid {
                 )
             }
             Region::Rectangle { x_m, y_m, width_m, height_m } | Region::Ellipse { x_m, y_m, width_m, height_m } => (
-                // Both ends are found as the finger's cell is, so that rounding never loses one.
+                // Both ends are computed like the finger's cell, so that rounding never misses a cell.
                 index(x_m * self.columns_per_m)..=index((x_m + width_m) * self.columns_per_m),
                 index(y_m * self.rows_per_m)..=index((y_m + height_m) * self.rows_per_m),
             ),
@@ -104,12 +104,12 @@ fn join([first, others]: LayerSet, [more_first, more_others]: LayerSet) -> Layer
     [first | more_first, others | more_others]
 }
 
-/// From the least of some indices to the largest.
+/// The range from the least to the largest of some indices.
 fn ends(indices: impl Iterator<Item = usize> + Clone) -> RangeInclusive<usize> {
     indices.clone().min().unwrap_or_default()..=indices.max().unwrap_or_default()
 }
 
-/// Column or row of a place in cells, held at the border.
+/// Column or row of a place in units of cells, clamped to the grid.
 #[inline]
 fn index(place_cells: f32) -> usize {
     (place_cells as i32).clamp(0, SIDE as i32 - 1) as usize

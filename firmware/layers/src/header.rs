@@ -1,4 +1,4 @@
-//! The header of a scene: what holds for all its layers.
+//! The header of a scene: the settings for all its layers.
 
 use frixel_wire::bytes::{first_difference, get_at, put_at};
 use frixel_wire::hello::BoardLimits;
@@ -15,7 +15,7 @@ pub const HEADER_LEN: usize = 56;
 /// Fewest ticks in a half period of the carrier.
 pub const HALF_PERIOD_MIN_TICKS: u32 = 4;
 /// Lowest carrier frequency, Hz: charge leaks through skin below about 250 Hz (arXiv 2409.18725); at less than half of
-/// that the drive is no alternating carrier any more.
+/// that, the drive has in effect no alternating carrier.
 const CARRIER_MIN_HZ: f32 = 125.0;
 
 /// Offsets of the header's fields; those of `f32` are in [`Header::numbers`].
@@ -39,7 +39,7 @@ mod flag {
     pub(super) const ALL: u8 = AUTONOMOUS | PREDICTION | LEADER_LATEST | LAYERS_FIXED | ELECTRIC_FRICTION_MAX;
 }
 
-/// What holds for the whole scene.
+/// The settings of the whole scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Header {
     /// Width of the screen, m.
@@ -52,7 +52,7 @@ pub struct Header {
     pub stiffness_pa_per_m: f32,
     /// Friction coefficient `mu`.
     pub friction_coefficient: f32,
-    /// Normal load `F_N` at which the scene is meant, N.
+    /// Normal load `F_N` for which the scene is designed, N.
     pub normal_load_n: f32,
     /// Effective gap `h0/eps` of the coating, m.
     pub effective_gap_m: f32,
@@ -64,20 +64,20 @@ pub struct Header {
     pub slew_v_per_s: f32,
     /// Carrier frequency, Hz.
     pub carrier_hz: f32,
-    /// Time without a word from the host after which the output goes to zero, s.
+    /// Host timeout, s: the output goes to zero after this time without a frame from the host.
     pub host_timeout_s: f32,
     /// Shape of the carrier.
     pub carrier: Carrier,
-    /// The scene goes on without a host.
+    /// The scene continues without a host.
     pub autonomous: bool,
-    /// The tick estimates where the finger is now from late samples; without it, it takes the last sample as it is.
+    /// The tick estimates the finger's current position from late samples. Otherwise it uses the last sample unchanged.
     pub prediction: bool,
     /// Which finger is followed when the host reports several.
     pub leader: Leader,
     /// The host may not change the layers while the scene plays; the board refuses a change.
     pub layers_fixed: bool,
-    /// The largest electric friction that the scene can ask for, N: the board's table ends there, and friction above it
-    /// is counted as saturated. `None`: the table covers what the largest voltage gives. Since protocol 1.3.
+    /// The scene's largest target friction (electric friction), N: the board's table ends there, and friction above it
+    /// is counted as saturated. `None`: the table ends at the friction for the largest voltage. Since protocol 1.3.
     ///
     /// A scene stores the upper half of the number's bits, rounded up: up to 1 % more.
     pub electric_friction_max_n: Option<f32>,
@@ -96,15 +96,15 @@ pub enum Carrier {
 /// Which of several fingers is followed, since one electrode gives one effect.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Leader {
-    /// The one that came first of those that are on the screen.
+    /// Of the fingers on the screen, the one that touched it first.
     #[default]
     First,
-    /// The one that came last.
+    /// The one that touched the screen last.
     Latest,
 }
 
 impl Header {
-    /// The header's bytes in front of `records` records and `points` points.
+    /// The bytes of the header of a scene with `records` records and `points` points.
     pub fn write(&self, records: u8, points: u8) -> [u8; HEADER_LEN] {
         let mut bytes = [0; HEADER_LEN];
         let flags = [
@@ -133,7 +133,7 @@ impl Header {
         bytes
     }
 
-    /// The header, and how many records and points follow it.
+    /// Reads the header, and returns it with the number of records and of points that follow it.
     pub fn parse(bytes: &[u8; HEADER_LEN]) -> Result<(Self, u8, u8), SceneError> {
         let version = u16::from_le_bytes(get_at(bytes, field::VERSION));
         if version != SCENE_VERSION {
@@ -216,7 +216,7 @@ impl Header {
         ]
     }
 
-    /// Checks every number against what a board with these limits and `tick_hz` ticks a second takes.
+    /// Checks that every number is within the ranges of a board with these limits and `tick_hz` ticks a second.
     pub fn check(&self, limits: &BoardLimits, tick_hz: u32) -> Result<(), ConfigRefusal> {
         let carrier_max_hz = tick_hz as f32 / (2.0 * HALF_PERIOD_MIN_TICKS as f32);
         let voltage_max_v_peak = limits.voltage_max_v_peak;

@@ -1,9 +1,9 @@
-//! Intervals of friction: what layers can give, and the largest friction that a scene can ask for.
+//! Intervals of friction: bounds of the layers, and the largest target friction of a scene.
 //!
-//! The host's compiler uses this; a board does not. [`electric_friction_max_n`] works cell by cell of the scene's grid, in
-//! the order and in the `f32` operations of the tick: rounding is monotone, so no sum or product of the tick leaves the
-//! interval of the same operation. Only what rounds within a layer needs a margin, [`ROUNDING`]. There is no bound from
-//! below: every ramp takes friction down to zero, and has to be smooth there.
+//! The host's compiler uses this; a board does not. [`electric_friction_max_n`] works cell by cell of the scene's grid,
+//! in the order and in the `f32` operations of the tick: rounding is monotone, so no sum or product of the tick leaves
+//! the interval of the same operation. Only rounding within a layer needs a margin, [`ROUNDING`]. There is no lower
+//! bound: every ramp takes the friction down to zero, and must be smooth there.
 
 use core::ops::{Add, Mul};
 
@@ -13,8 +13,8 @@ use crate::point::Point;
 use crate::record::Record;
 use crate::region::Region;
 
-/// How far a layer may leave the numbers of its record, relative to the larger of them: a cosine may be a millionth above
-/// 1, and a sum is rounded a few times.
+/// How far a layer may exceed the numbers in its record, relative to the larger of them: a cosine may be a millionth
+/// above 1, and a sum is rounded a few times.
 const ROUNDING: f32 = 4e-6;
 
 /// `f32` or `f64`.
@@ -35,7 +35,7 @@ impl Number for f64 {
     const NEG_INFINITY: Self = Self::NEG_INFINITY;
 }
 
-/// Least and largest electric friction, N; or plain factors.
+/// Least and largest electric friction, N; or dimensionless factors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval<T> {
     /// Least value.
@@ -45,13 +45,13 @@ pub struct Interval<T> {
 }
 
 impl<T: Number> Interval<T> {
-    /// The interval of some values.
+    /// The smallest interval that contains all given values.
     pub fn of(values: impl IntoIterator<Item = T>) -> Self {
         let empty = Self { low: T::INFINITY, high: T::NEG_INFINITY };
         values.into_iter().fold(empty, |interval, value| interval.hull(Self { low: value, high: value }))
     }
 
-    /// The interval of what is in either of two.
+    /// The smallest interval that contains both intervals.
     #[must_use]
     pub fn hull(self, other: Self) -> Self {
         Self { low: lesser(self.low, other.low), high: larger(self.high, other.high) }
@@ -85,7 +85,7 @@ impl Interval<f32> {
     }
 }
 
-/// Not-a-number stays not-a-number, unlike with `f32::min`: it must not pass for a bound.
+/// Returns not-a-number if an argument is, unlike `f32::min`: it must not be lost in a bound.
 fn lesser<T: PartialOrd + Copy>(one: T, other: T) -> T {
     if one < other || is_nan(one) { one } else { other }
 }
@@ -99,8 +99,8 @@ fn is_nan<T: PartialOrd + Copy>(value: T) -> bool {
     value != value
 }
 
-/// The largest electric friction that any place of a scene can ask for, N, at any time and speed, rounded up to what a
-/// header stores ([`Header::electric_friction_max_n`]); `None` when no finite number bounds it. The host may not change a
+/// The largest electric friction of a scene at any place, time and speed, N, rounded up to the precision of the header
+/// ([`Header::electric_friction_max_n`]); `None` if it has no finite bound. Only valid if the host does not change a
 /// layer while the scene plays.
 pub fn electric_friction_max_n(header: &Header, records: &[Record], points: &[Point]) -> Option<f32> {
     let mut grid = Grid::EMPTY;
@@ -117,7 +117,8 @@ pub fn electric_friction_max_n(header: &Header, records: &[Record], points: &[Po
     Some(stored_n).filter(|max_n| max_n.is_finite())
 }
 
-/// A layer over what is below it: also without it, where it may not be.
+/// The interval after blending a layer over the interval below it. Includes the case that the layer does not act at the
+/// place.
 fn over(record: &Record, points: &[Point], below: Interval<f32>) -> Interval<f32> {
     let own = Interval::of([record.gain]).times(record.layer.bounds(points).rounded_outward());
     let blended = record.blend.of_intervals(below, own);

@@ -1,4 +1,4 @@
-//! The kinds of layer: what each has to say, and the one list that everything else is derived from.
+//! The kinds of layer: the traits that each kind implements, and the list from which everything else is generated.
 
 #[cfg(feature = "bitmap")]
 pub(crate) mod bitmap;
@@ -34,24 +34,25 @@ use crate::prepare::Preparation;
 use crate::record::FORM_AT;
 use crate::region::{ActiveRegion, Region};
 
-/// A kind of layer, on the type of its parameters: what it costs, what it can give, and how it becomes coefficients.
+/// A kind of layer: its cost, its bounds, and the computation of its coefficients. The type of the kind's parameters
+/// implements it.
 pub(crate) trait Kind: Parameters + Copy {
-    /// What the tick evaluates.
+    /// The coefficients that the tick evaluates.
     type Coefficients: Evaluate;
-    /// Instructions that the kind adds to every tick of a scene that has it, wherever the finger is, once for all its
-    /// layers.
+    /// Instructions that the kind adds to every tick of a scene with at least one such layer, wherever the finger is.
+    /// They count once for all layers of the kind.
     const COST_ELSEWHERE: u32 = 0;
-    /// The layer plays what the host streams, and fades with the stream.
+    /// Whether the layer plays the host's stream, and fades with it.
     const STREAMED: bool = false;
 
-    /// Checks what the kind needs of its region, and of the number of points that the scene has.
+    /// Checks the kind's requirements on its region, and on the number of points in the scene.
     fn check_structure(&self, region: &Region, point_count: u8, record: u8) -> Result<(), SceneError> {
         let _ = (region, point_count, record);
         Ok(())
     }
 
-    /// Checks the parameters that depend on one another, and the points that the layer names. Each parameter alone is
-    /// within its range.
+    /// Checks parameters that depend on one another, and the points that the layer refers to. The range of each
+    /// parameter has already been checked.
     fn check_relations(&self, points: &[Point], layer: u8) -> Result<(), ConfigRefusal> {
         let _ = (points, layer);
         Ok(())
@@ -60,15 +61,15 @@ pub(crate) trait Kind: Parameters + Copy {
     /// Most instructions of an evaluation.
     fn cost(&self) -> u32;
 
-    /// The interval that the layer's friction never leaves, before its gain, in N, or as a factor.
+    /// Bounds of the layer's friction before its gain, in N, or as a factor.
     fn bounds(&self, points: &[Point]) -> Interval<f32>;
 
-    /// The bitmap that the layer names.
+    /// CRC-32 of the bitmap that the layer uses; `None` without a bitmap.
     fn bitmap_crc32(&self) -> Option<u32> {
         None
     }
 
-    /// The click that the layer has, if it has one.
+    /// The layer's click, if it has one.
     fn click(&self) -> Option<Click> {
         None
     }
@@ -78,22 +79,22 @@ pub(crate) trait Kind: Parameters + Copy {
         0
     }
 
-    /// Computes the coefficients of layer number `layer`, whose parameters were checked.
+    /// Computes the coefficients of layer number `layer`. Its parameters have been checked.
     fn prepare(&self, layer: u8, preparation: &mut Preparation) -> Result<Self::Coefficients, Refusal>;
 }
 
 /// Coefficients of a layer, as the tick evaluates them.
 pub(crate) trait Evaluate: Copy {
-    /// The kind is so small that a call would cost more than it does.
+    /// Whether to inline the evaluation, because a call would cost more than the evaluation itself.
     const IN_LINE: bool = false;
 
     /// Electric friction, in N, before the gain; or a factor. The finger is inside `region`.
     fn electric_friction_n(&self, region: &ActiveRegion, context: &mut Context) -> f32;
 }
 
-/// Evaluates one kind, as a call of its own: a loop over layers would else begin with the constants of all kinds.
+/// Evaluates one kind without inlining: otherwise a loop over layers would first load the constants of all kinds.
 ///
-/// It is generic, so that it is compiled with the crate that evaluates.
+/// The function is generic, so that it is compiled with the crate that calls it.
 #[inline(never)]
 fn call<C: Evaluate>(coefficients: &C, region: &ActiveRegion, context: &mut Context) -> f32 {
     coefficients.electric_friction_n(region, context)
@@ -104,13 +105,13 @@ fn evaluate<C: Evaluate>(coefficients: &C, region: &ActiveRegion, context: &mut 
     if C::IN_LINE { coefficients.electric_friction_n(region, context) } else { call(coefficients, region, context) }
 }
 
-/// Makes the types of all kinds, and what dispatches over them, from one list.
+/// Generates the enums of all kinds, and the functions that dispatch on them, from one list.
 macro_rules! kinds {
     ($( $(#[doc = $doc:literal])* $(#[cfg($cfg:meta)])? $number:literal => $kind:ident in $module:ident, $bit:expr; )*) => {
         $( $(#[cfg($cfg)])? pub use $module::$kind; )*
 
-        /// What a layer is. Frictions are electric, in newtons, before the gain; plain factors in a layer that is
-        /// multiplied.
+        /// Kind and parameters of a layer. Frictions are electric, in newtons, before the gain; dimensionless factors
+        /// in a layer with multiplicative blend.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub enum Layer {
             $( $(#[doc = $doc])* $(#[cfg($cfg)])? $kind($kind), )*
@@ -123,14 +124,14 @@ macro_rules! kinds {
             $( $(#[cfg($cfg)])? $kind(<$kind as Kind>::Coefficients), )*
         }
 
-        /// Whether a kind with this number is known to this crate, with its feature or without.
+        /// Whether this crate knows a kind with this number, whether or not its feature is enabled.
         pub(crate) const fn is_known(number: u8) -> bool {
             let mut known = false;
             $( known |= number == $number; )*
             known
         }
 
-        /// Bits of [`frixel_wire::hello::feature`] of the kinds whose features are on.
+        /// Bits of [`frixel_wire::hello::feature`] of the kinds whose features are enabled.
         pub(crate) const KIND_FEATURES: u32 = {
             let mut bits = 0;
             $( $(#[cfg($cfg)])? { bits |= $bit; } )*
@@ -138,7 +139,7 @@ macro_rules! kinds {
         };
 
         impl Layer {
-            /// Numbers in records of the kinds whose features are on.
+            /// Numbers in records of the kinds whose features are enabled.
             pub const NUMBERS: &'static [u8] = &[$( $(#[cfg($cfg)])? $number, )*];
 
             /// The kind's number in records.
@@ -151,7 +152,7 @@ macro_rules! kinds {
                 match self { $( $(#[cfg($cfg)])? Self::$kind(_) => $bit, )* }
             }
 
-            /// The layer plays what the host streams, and fades with the stream.
+            /// Whether the layer plays the host's stream, and fades with it.
             pub const fn is_streamed(&self) -> bool {
                 match self { $( $(#[cfg($cfg)])? Self::$kind(_) => <$kind as Kind>::STREAMED, )* }
             }
@@ -236,18 +237,18 @@ kinds! {
 }
 
 impl Layer {
-    /// The bitmap that the layer names.
+    /// CRC-32 of the bitmap that the layer uses; `None` without a bitmap.
     pub fn bitmap_crc32(&self) -> Option<u32> {
         of_kind!(self, kind => Kind::bitmap_crc32(kind))
     }
 
-    /// The click that the layer has, if its height is not zero.
+    /// The layer's click, if its height is not zero.
     pub fn click(&self) -> Option<Click> {
         of_kind!(self, kind => Kind::click(kind)).filter(Click::is_felt)
     }
 
-    /// The interval that the layer's friction never leaves, before its gain and but for rounding, in N, or as a factor;
-    /// `points` are the scene's.
+    /// Bounds of the layer's friction before its gain and apart from rounding, in N, or as a factor; `points` are the
+    /// scene's.
     pub fn bounds(&self, points: &[Point]) -> Interval<f32> {
         of_kind!(self, kind => Kind::bounds(kind, points))
     }
@@ -286,7 +287,7 @@ mod tests {
         for (kind, layout) in LAYOUTS {
             let mut owners = [""; RECORD_LEN];
             for (name, offset, len) in *layout {
-                // Behind what all records have in common, or the form byte.
+                // After the fields that all records have in common, or the form byte.
                 assert!(*offset >= GAIN_AT + 4 || (*offset, *len) == (FORM_AT, 1), "{kind}: {name}");
                 for owner in &mut owners[*offset..offset + len] {
                     assert_eq!(std::mem::replace(owner, *name), "", "{kind}: {name}");

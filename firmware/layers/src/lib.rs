@@ -1,44 +1,44 @@
-//! A compiled scene: its bytes, its checks, its cost, and its evaluation under a finger.
+//! A compiled scene: its bytes, its checks, its cost, and its evaluation at the finger.
 //!
-//! # What goes in and out
+//! # Inputs and outputs
 //!
-//! The host's compiler makes a [`Header`], [`Record`]s and [`Point`]s, and writes them to the bytes that are uploaded; it
-//! asks this crate what they cost ([`cost`]) and the largest electric friction that they can ask for
-//! ([`electric_friction_max_n`]).
+//! The host's compiler makes a [`Header`], [`Record`]s and [`Point`]s, and writes them to the bytes that are uploaded.
+//! It computes their cost with [`cost`], and their largest electric friction with [`electric_friction_max_n`].
 //!
-//! A board reads the bytes ([`Scene::parse`]) and turns records into [`ActiveLayers`] when the scene is committed: checked
-//! against the ranges that a board takes, with everything computed that does not change from tick to tick. At every tick
-//! [`ActiveLayers::electric_friction_n`] takes the [`Inputs`] (place and velocity of the finger, the time, the host's
-//! stream), the samples of bitmaps ([`BitmapPool`]) and the state of clicks ([`Clicks`]), and returns the electric friction
-//! under the finger, in newtons.
+//! A board reads the bytes ([`Scene::parse`]). When the scene is committed, it checks the records against the ranges
+//! that a board accepts, and turns them into [`ActiveLayers`], where everything that does not change from tick to tick
+//! is precomputed. At every tick [`ActiveLayers::electric_friction_n`] takes the [`Inputs`] (place and velocity of the
+//! finger, the time, the host's stream), the samples of bitmaps ([`BitmapPool`]) and the state of clicks ([`Clicks`]),
+//! and returns the electric friction under the finger, in newtons.
 //!
-//! Every friction in a scene is **electric friction**: what the drive adds above `mu F_N`, in newtons; in a layer that is
-//! multiplied, the same numbers are plain factors. Lengths are in metres from the screen's top left corner, x to the right,
-//! y down. Angles are in turns, from x towards y.
+//! Every friction in a scene is **electric friction**: what the drive adds above `mu F_N`, in newtons; in a layer with
+//! multiplicative blend, the same numbers are dimensionless factors. Lengths are in metres from the screen's top left
+//! corner, x to the right, y down. Angles are in turns, from x towards y.
 //!
 //! # How a kind of layer is described
 //!
 //! A kind is one file in `kinds/`. It declares
 //!
-//! - its parameters, with `parameters!`: for each one the type, the offset in the record, the range that a board takes, and
-//!   the meaning with its unit. Reading, writing and checking follow from this;
-//! - its `Kind`: the most instructions that its evaluation takes, the interval that its friction never leaves, and how the
+//! - its parameters, with `parameters!`: for each one the type, the offset in the record, the range that a board
+//!   accepts, and the meaning with its unit. Reading, writing and checking are generated from this;
+//! - its `Kind`: the most instructions that its evaluation takes, the bounds of its friction, and how the
 //!   parameters become coefficients;
 //! - its coefficients, with `Evaluate`: the friction at the finger's place.
 //!
-//! The list at the end of `kinds.rs` gives it its number in records and its Cargo feature; everything that has to know all
-//! kinds is derived from that list. What several kinds use has a module of its own: waves, clicks, regions, blends, points.
+//! The list at the end of `kinds.rs` gives it its number in records and its Cargo feature; everything that
+//! covers all kinds is generated from that list. Whatever several kinds use has its own module: waves, clicks, regions,
+//! blends, points.
 //!
 //! # Features
 //!
-//! Every Cargo feature is a kind of layer or of region, and all are on by default. A board without one of them is smaller,
-//! and refuses a scene that needs it ([`disabled_record`]). [`FEATURES`] are the bits that its hello says. Constant layers,
-//! rectangles, ellipses and all blends are always there.
+//! Every Cargo feature is a kind of layer or of region, and all are enabled by default. A board without one of them is
+//! smaller, and refuses a scene that needs it ([`disabled_record`]). [`FEATURES`] are the feature bits in its hello.
+//! Constant layers, rectangles, ellipses and all blends are always included.
 //!
-//! # Fast and small
+//! # Speed and size
 //!
-//! What the tick calls is `#[inline]`, so that the crate of the tick, which a board builds for speed, compiles it. The rest
-//! is built for size.
+//! Functions that the tick calls are `#[inline]`, so that they are compiled with the crate of the tick, which a board
+//! builds for speed. The rest is built for size.
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 
@@ -89,5 +89,5 @@ pub use wave::Wave;
 
 use frixel_wire::hello::feature;
 
-/// Bits of [`frixel_wire::hello::feature`] of the kinds of layers and regions whose Cargo features are on.
+/// Bits of [`frixel_wire::hello::feature`] of the kinds of layers and regions whose Cargo features are enabled.
 pub const FEATURES: u32 = kinds::KIND_FEATURES | if cfg!(feature = "polygon") { feature::POLYGON } else { 0 };

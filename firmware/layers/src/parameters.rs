@@ -1,5 +1,5 @@
-//! How the parameters of a kind of layer are described: each one once, with its type, its place in the record, the range
-//! that a board takes, and its meaning.
+//! Declarations of the parameters of a kind of layer: each one once, with its type, its offset in the record, the range
+//! that a board accepts, and its meaning.
 
 use frixel_wire::bytes::{get_at, put_at};
 use frixel_wire::message::{ConfigField, ConfigRefusal};
@@ -9,13 +9,13 @@ use crate::record::{FORM_AT, RECORD_LEN};
 /// The bytes of a record.
 pub(crate) type RecordBytes = [u8; RECORD_LEN];
 
-/// The form byte of a record, where the kind does not know it.
+/// A form byte that is unknown to its kind of layer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct UnknownForm(pub(crate) u8);
 
 /// A type that a parameter can have.
 pub(crate) trait Parameter: Sized {
-    /// Bytes that it takes in a record, the form byte apart.
+    /// Bytes that it takes in a record, not counting the form byte.
     const LEN: usize;
 
     /// Reads the parameter at an offset of a record.
@@ -24,7 +24,7 @@ pub(crate) trait Parameter: Sized {
     /// Writes the parameter at an offset of a record.
     fn write(&self, record: &mut RecordBytes, offset: usize);
 
-    /// Checks the ranges that belong to the type; `layer` is the number that a refusal names.
+    /// Checks the ranges that belong to the type; `layer` is the layer number for a refusal.
     fn check(&self, layer: u8) -> Result<(), ConfigRefusal> {
         let _ = layer;
         Ok(())
@@ -43,12 +43,12 @@ pub(crate) trait Parameters: Sized {
     /// Writes them to a record.
     fn write(&self, record: &mut RecordBytes);
 
-    /// Checks the range of each; `layer` is the number that a refusal names.
+    /// Checks the range of each; `layer` is the layer number for a refusal.
     fn check(&self, layer: u8) -> Result<(), ConfigRefusal>;
 }
 
-/// Declares the parameters of a kind of layer: `name: type = offset in range`, with its meaning above it. The range is a
-/// [`Range`], for parameters of type `f32`; other types bring their own.
+/// Declares the parameters of a kind of layer: `name: type = offset in range`, with its meaning above it. The range is
+/// a [`Range`], for parameters of type `f32`; other types bring their own.
 macro_rules! parameters {
     (
         $(#[$meta:meta])*
@@ -149,7 +149,7 @@ impl Parameter for bool {
     }
 }
 
-/// The form byte of a record, which a choice between a few forms is written to.
+/// The form byte of a record: a choice between a few forms of the kind.
 pub(crate) fn form(record: &RecordBytes) -> u8 {
     let [form] = get_at(record, FORM_AT);
     form
@@ -160,10 +160,10 @@ pub(crate) fn put_form(record: &mut RecordBytes, form: u8) {
     put_at(record, FORM_AT, [form]);
 }
 
-/// The numbers that a board takes for a parameter. What is outside is refused, never silently clamped.
+/// The range that a board accepts for a parameter. A number outside is refused, never silently clamped.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
-    /// How a refusal names the parameter.
+    /// Name of the parameter in a refusal.
     pub field: ConfigField,
     /// Least number.
     pub min: f64,
@@ -176,38 +176,38 @@ impl Range {
         Self { field, min, max }
     }
 
-    /// Refuses a number outside the range, and not-a-number; `layer` is the number that the refusal names.
+    /// Refuses a number outside the range, and not-a-number; `layer` is the layer number for the refusal.
     pub fn check(&self, found: f32, layer: u8) -> Result<(), ConfigRefusal> {
         within(self.field, found, self.min as f32, self.max as f32, layer)
     }
 
-    /// The same range under another name.
+    /// The same range for another parameter.
     pub(crate) const fn named(self, field: ConfigField) -> Self {
         Self { field, ..self }
     }
 }
 
 /// Accepts a number from `min` to `max`, and refuses not-a-number; `layer` is the number that a refusal names.
-// One copy: nearly every check calls it.
+// Not inlined, because nearly every check calls it.
 #[inline(never)]
 pub fn within(field: ConfigField, found: f32, min: f32, max: f32, layer: u8) -> Result<(), ConfigRefusal> {
     if found >= min && found <= max { Ok(()) } else { Err(ConfigRefusal { field, found, min, max, layer }) }
 }
 
-/// The ranges that boards take, in SI units. The host's compiler reads the same.
+/// The ranges that boards accept, in SI units. The host's compiler uses the same ranges.
 pub mod range {
     use frixel_wire::message::ConfigField;
 
     use super::Range;
 
-    /// Farthest that anything may be from the screen's corner, m.
+    /// Largest distance from the screen's corner along an axis, m.
     pub const LENGTH_MAX_M: f64 = 2.0;
     /// Finest stripes and noise, cycles per metre.
     const CYCLES_PER_M_MAX: f64 = 2e4;
 
     /// Gain of a layer.
     pub const GAIN: Range = Range::new(ConfigField::Gain, -100.0, 100.0);
-    /// Electric friction that a layer may name, N; or a factor.
+    /// Electric friction in a layer's parameters, N; or a factor.
     pub const FRICTION_N: Range = Range::new(ConfigField::Friction, -100.0, 100.0);
     /// Left or top end of a region, m.
     pub const REGION_PLACE_M: Range = Range::new(ConfigField::Region, -LENGTH_MAX_M, LENGTH_MAX_M);
@@ -219,7 +219,7 @@ pub mod range {
     pub const CYCLES_PER_M: Range = Range::new(ConfigField::WaveVector, -CYCLES_PER_M_MAX, CYCLES_PER_M_MAX);
     /// Phase, turns.
     pub const PHASE_TURNS: Range = Range::new(ConfigField::Phase, -1000.0, 1000.0);
-    /// Part of a turn in which a square wave is high.
+    /// Fraction of a turn in which a square wave is high.
     pub const DUTY: Range = Range::new(ConfigField::Duty, 0.01, 0.99);
     /// Angle, turns.
     pub const ANGLE_TURNS: Range = Range::new(ConfigField::Angle, -1.0, 1.0);

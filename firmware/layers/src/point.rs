@@ -1,4 +1,4 @@
-//! Points of polygons and curves, which stand behind a scene's records.
+//! Points of polygons and curves, stored after a scene's records.
 
 use core::ops::RangeInclusive;
 
@@ -11,12 +11,12 @@ pub const POINT_LEN: usize = 8;
 const X_AT: usize = 0;
 const Y_AT: usize = 4;
 
-/// A point: a polygon's vertex, in m, or a speed in m/s and what a curve has there.
+/// A point: a polygon's vertex, in m, or a speed in m/s and a curve's value at that speed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Point {
     /// Place along x, m, or speed, m/s.
     pub x: f32,
-    /// Place along y, m, or what the curve has there: electric friction in N, or a factor.
+    /// Place along y, m, or the curve's value: electric friction in N, or a factor.
     pub y: f32,
 }
 
@@ -35,14 +35,14 @@ impl Point {
     }
 }
 
-/// The points that a record names among those of a scene; none when it names one that is not there.
+/// The points that a record refers to, among those of a scene; empty if one of them does not exist.
 #[inline]
 pub(crate) fn points_of(points: &[Point], first: u8, count: u8) -> &[Point] {
     let first = usize::from(first);
     points.get(first..first + usize::from(count)).unwrap_or_default()
 }
 
-/// Checks that a record names as many points as its kind takes, and that the scene has them.
+/// Checks that a record refers to as many points as its kind accepts, and that the scene has them.
 pub(crate) fn check_count(
     first: u8,
     count: u8,

@@ -1,11 +1,11 @@
-//! From parameters to coefficients, when a scene is committed.
+//! Computes coefficients from parameters when a scene is committed.
 
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
 
 use crate::bitmap_pool::StoredBitmap;
 use crate::tables::Tables;
 
-/// What layers need besides their parameters when their coefficients are computed.
+/// Inputs and outputs, besides a layer's parameters, of the computation of its coefficients.
 pub(crate) struct Preparation<'a> {
     /// Ticks a second.
     pub(crate) tick_hz: u32,
@@ -21,7 +21,7 @@ pub fn ticks(time_s: f32, tick_hz: u32) -> u32 {
     (time_s * tick_hz as f32 + 0.5) as u32
 }
 
-/// The refusal of a layer when the scene has as many of its kind already as a board takes.
+/// The refusal of a layer if the scene already has the most layers of its kind that a board accepts.
 pub(crate) fn no_room(field: ConfigField, max: usize, layer: u8) -> Refusal {
     let max = max as f32;
     Refusal::Config(ConfigRefusal { field, found: max + 1.0, min: 0.0, max, layer })

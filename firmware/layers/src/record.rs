@@ -1,6 +1,7 @@
 //! A record: one layer of a scene, 56 bytes. All kinds have region, blend and gain in common.
 //!
-//! A record has one form for each value: what a kind does not use is zero. Reading writes the value again and compares.
+//! Every value has exactly one encoding: bytes that a kind does not use are zero. To check this, parsing a record
+//! writes the value again and compares the bytes.
 
 use frixel_wire::bytes::{first_difference, get_at, put_at};
 use frixel_wire::message::ConfigRefusal;
@@ -27,11 +28,11 @@ pub(crate) const GAIN_AT: usize = 20;
 pub struct Record {
     /// Where the layer acts.
     pub region: Region,
-    /// How it joins the layers before it.
+    /// How it is combined with the layers before it.
     pub blend: Blend,
-    /// Factor on what the layer gives.
+    /// Factor on the layer's friction.
     pub gain: f32,
-    /// What the layer is.
+    /// Kind and parameters of the layer.
     pub layer: Layer,
 }
 
@@ -47,7 +48,7 @@ impl Record {
         bytes
     }
 
-    /// Reads a record; `number` is its place in the scene, which errors repeat.
+    /// Reads a record; `number` is its index in the scene, for errors.
     pub fn parse(bytes: &[u8; RECORD_LEN], number: u8) -> Result<Self, SceneError> {
         let [kind] = get_at(bytes, KIND_AT);
         let [blend] = get_at(bytes, BLEND_AT);
@@ -65,7 +66,7 @@ impl Record {
         }
     }
 
-    /// Checks what the record needs of the scene's points, and its kind of its region.
+    /// Checks the record's requirements on the scene's points, and its kind's requirements on the region.
     pub(crate) fn check_structure(&self, point_count: u8, record: u8) -> Result<(), SceneError> {
         self.region.check_structure(point_count, record)?;
         self.layer.check_structure(&self.region, point_count, record)
@@ -79,7 +80,7 @@ impl Record {
     }
 }
 
-/// Number of the record that is unknown only because a feature of this crate is off.
+/// Number of the record that is unknown only because a feature of this crate is disabled.
 pub const fn disabled_record(error: &SceneError) -> Option<u8> {
     match *error {
         SceneError::UnknownKind { record, kind } if kinds::is_known(kind) => Some(record),

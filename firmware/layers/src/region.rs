@@ -19,7 +19,7 @@ const RECTANGLE: u8 = 1;
 const ELLIPSE: u8 = 2;
 pub(crate) const POLYGON: u8 = 3;
 
-/// Where a region's own numbers begin in a record: four `f32` of a rectangle, two bytes of a polygon.
+/// Offset of a region's own numbers in a record: four `f32` of a rectangle, two bytes of a polygon.
 const NUMBERS_AT: usize = 4;
 const POLYGON_FIRST_AT: usize = NUMBERS_AT;
 const POLYGON_COUNT_AT: usize = NUMBERS_AT + 1;
@@ -51,12 +51,12 @@ pub enum Region {
         /// Height, m.
         height_m: f32,
     },
-    /// A polygon, by the even-odd rule. Left and top edges belong to it, right and bottom ones do not, so that of two
-    /// polygons with a common edge each place is in one.
+    /// A polygon, by the even-odd rule. Left and top edges belong to it, right and bottom ones do not, so that a
+    /// place on the common edge of two polygons is in exactly one of them.
     Polygon {
-        /// Its first vertex among the scene's points, m.
+        /// Index of its first vertex among the scene's points, which are in m.
         first: u8,
-        /// How many vertices it has, 3 to [`POLYGON_POINTS_MAX`]; the last is joined to the first.
+        /// Number of vertices, 3 to [`POLYGON_POINTS_MAX`]; the last one is joined to the first.
         count: u8,
     },
 }
@@ -129,7 +129,8 @@ impl Region {
         }
     }
 
-    /// Most instructions that the test for the region takes beyond that for a rectangle; `points` are the scene's.
+    /// Most instructions that the test for the region takes in addition to the test for a rectangle; `points` are the
+    /// scene's.
     pub(crate) fn cost(&self, points: &[Point]) -> u32 {
         match *self {
             Self::Screen | Self::Rectangle { .. } => 0,
@@ -157,11 +158,11 @@ fn edges_level_max(vertices: &[Point]) -> u32 {
     vertices.iter().map(|vertex| level_at(vertex.y)).max().unwrap_or(0) as u32
 }
 
-/// Rectangles are told apart in whole steps of 2^-28 m, 3.7 nm: a tick compares whole numbers sooner than those in `f32`.
-/// Whatever a scene may name is within 4 m.
+/// Rectangles are tested in integer steps of 2^-28 m, 3.7 nm: a tick compares integers faster than `f32`. All
+/// coordinates of a scene are within 4 m.
 const STEPS_PER_M: f32 = (1 << 28) as f32;
 
-/// A coordinate in steps; held at the ends of the numbers.
+/// A coordinate in steps; saturates at the limits of the integer.
 #[inline]
 pub(crate) fn place_steps(place_m: f32) -> i32 {
     (place_m * STEPS_PER_M) as i32
@@ -209,11 +210,11 @@ impl Sides {
     #[inline]
     fn contain(&self, inputs: &Inputs) -> bool {
         let [right, down] = self.inside(inputs);
-        // What is to the left is, without a sign, farther to the right than any width.
+        // A place to the left wraps around to a number larger than any width.
         right < self.width && down < self.height
     }
 
-    /// How far to the right of the left edge, and below the top one, in steps.
+    /// Distance from the left and from the top edge, in steps.
     #[inline]
     fn inside(&self, inputs: &Inputs) -> [u32; 2] {
         let [x, y] = inputs.place_steps;
@@ -222,7 +223,7 @@ impl Sides {
 }
 
 impl ActiveRegion {
-    /// `None` for a region whose feature is off.
+    /// Computes the coefficients; `None` for a region whose feature is disabled.
     #[cfg_attr(feature = "polygon", allow(clippy::unnecessary_wraps, reason = "every region is on"))]
     pub(crate) fn new(region: &Region) -> Option<Self> {
         match *region {
@@ -260,8 +261,8 @@ impl ActiveRegion {
         }
     }
 
-    /// How far inside its border the finger is: from the nearest side of a rectangle, along the shorter half axis of an
-    /// ellipse. Zero in a region that has no such border.
+    /// Distance of the finger from the border, inwards: from the nearest side of a rectangle, along the shorter half
+    /// axis of an ellipse. Zero in a region without such a border.
     #[cfg_attr(not(feature = "edge"), allow(dead_code, reason = "only buttons have a rim"))]
     #[inline]
     pub(crate) fn depth_m(&self, inputs: &Inputs) -> f32 {
@@ -283,7 +284,7 @@ impl ActiveRegion {
             Self::Polygon { .. } => 0.0,
             Self::Screen => 0.0,
         };
-        // On the border rounding may make it less than zero.
+        // On the border, rounding may make the depth negative.
         if depth_m > 0.0 { depth_m } else { 0.0 }
     }
 }

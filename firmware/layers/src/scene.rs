@@ -16,7 +16,8 @@ pub fn features_of(header: &Header, records: impl Iterator<Item = Record>) -> u3
     records.fold(carrier, |features, record| features | record.layer.feature() | record.region.feature())
 }
 
-/// A whole scene, every byte of it checked; only what its numbers mean is left to the board.
+/// A complete scene whose structure has been checked. The ranges of its numbers have not: a board checks them at the
+/// commit.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene<'a> {
     header: Header,
@@ -57,7 +58,7 @@ impl<'a> Scene<'a> {
         Ok(Self { header, records, points })
     }
 
-    /// What holds for the whole scene.
+    /// The settings of the whole scene.
     pub const fn header(&self) -> &Header {
         &self.header
     }
@@ -67,17 +68,17 @@ impl<'a> Scene<'a> {
         (0..).zip(self.records).filter_map(|(number, record)| Record::parse(record, number).ok())
     }
 
-    /// How many records there are.
+    /// Number of records.
     pub const fn record_count(&self) -> usize {
         self.records.len()
     }
 
-    /// The points that polygons and curves of speed name.
+    /// The points that polygons and curves of speed refer to.
     pub fn points(&self) -> impl ExactSizeIterator<Item = Point> + use<'a> {
         self.points.iter().map(Point::parse)
     }
 
-    /// How many points there are.
+    /// Number of points.
     pub const fn point_count(&self) -> usize {
         self.points.len()
     }

@@ -3,10 +3,10 @@
 /// Half of the exponent and a first guess at the rest of `1/sqrt(x)`, within 3.5 % (C. Lomont, "Fast inverse square
 /// root", Purdue University, 2003).
 const GUESS: u32 = 0x5f37_59df;
-/// What is less has the root 0: (1e-15)^2.
+/// Smaller numbers have the root 0: (1e-15)^2.
 const LEAST: f32 = 1e-30;
 
-/// Square root, within 3e-7 of itself for what is from 1e-30 to 1e30; 0 for what is less and for not-a-number.
+/// Square root, with a relative error within 3e-7 from 1e-30 to 1e30; 0 for smaller numbers and for not-a-number.
 #[inline]
 pub fn square_root(x: f32) -> f32 {
     if !(x > LEAST) {
@@ -14,7 +14,7 @@ pub fn square_root(x: f32) -> f32 {
     }
     let half = 0.5 * x;
     let mut inverse = f32::from_bits(GUESS.wrapping_sub(x.to_bits() >> 1));
-    // Newton's steps for 1/sqrt(x) need no division; three take 3.5 % below the rounding.
+    // Newton's steps for 1/sqrt(x) need no division; three reduce an error of 3.5 % to below the rounding error.
     inverse *= 1.5 - half * inverse * inverse;
     inverse *= 1.5 - half * inverse * inverse;
     inverse *= 1.5 - half * inverse * inverse;

@@ -1,5 +1,5 @@
-//! What does not fit into a layer's coefficients, or is shared by layers. It belongs to a scene and does not change while
-//! the scene plays.
+//! Coefficients that do not fit into a layer, or that layers share. They belong to a scene and do not change while it
+//! plays.
 
 use frixel_wire::scene::POINTS_MAX;
 use heapless::Vec;
@@ -13,7 +13,7 @@ use crate::point::Point;
 pub const NOISES_MAX: usize = if cfg!(feature = "noise") { 8 } else { 0 };
 /// Most edges and buttons of a scene that click.
 pub const CLICKS_MAX: usize = if cfg!(feature = "edge") { 16 } else { 0 };
-/// Room for points where there is something that uses them.
+/// Capacity for points; 0 if no enabled feature uses them.
 const POINTS_LEN: usize = if cfg!(any(feature = "polygon", feature = "speed")) { POINTS_MAX } else { 0 };
 
 /// Points of polygons and curves, the waves of noises, and the clicks of edges and buttons.
@@ -41,7 +41,7 @@ impl Tables {
         self.clicks.clear();
     }
 
-    /// Sets the points of a scene, as far as the features that are on use them.
+    /// Sets the points of a scene, if an enabled feature uses them.
     pub(crate) fn set_points(&mut self, points: impl Iterator<Item = Point>) {
         self.points.clear();
         self.points.extend(points.take(POINTS_LEN));
@@ -58,7 +58,7 @@ impl Tables {
         &self.noises
     }
 
-    /// Adds the waves of a noise and returns their number; the waves again when there is no room.
+    /// Adds the waves of a noise and returns their number; returns the waves as an error if there is no room.
     #[cfg(feature = "noise")]
     pub(crate) fn add_noise(&mut self, waves: Waves) -> Result<u8, Waves> {
         let number = self.noises.len() as u8;
@@ -71,7 +71,7 @@ impl Tables {
         &self.clicks
     }
 
-    /// Adds a click and returns its number; the click again when there is no room.
+    /// Adds a click and returns its number; returns the click as an error if there is no room.
     #[cfg_attr(not(feature = "edge"), allow(dead_code, reason = "only edges and buttons click"))]
     pub(crate) fn add_click(&mut self, click: ClickCoefficients) -> Result<ClickNumber, ClickCoefficients> {
         let number = self.clicks.len() as u8;

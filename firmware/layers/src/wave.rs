@@ -25,7 +25,7 @@ pub enum Wave {
     Sine,
     /// 1 in the first part of each turn, 0 in the rest.
     Square {
-        /// How large the first part is, from 0.01 to 0.99.
+        /// Fraction of a turn that the first part takes, from 0.01 to 0.99.
         duty: f32,
     },
     /// Rises from 0 to 1 in the first half of each turn, and falls in the second.

@@ -1,13 +1,13 @@
-//! What lies where in the bitmap pool.
+//! The directory of the bitmap pool.
 
 use frixel_layers::{BitmapPool, StoredBitmap};
 use frixel_wire::scene::RECORDS_MAX;
 use heapless::Vec;
 
-/// Most bitmaps that the pool holds at a time: those of a scene that plays, and those of the next.
+/// Most bitmaps in the pool at a time: those of the scene that plays, and those of the next.
 const ENTRIES_MAX: usize = if cfg!(feature = "bitmap") { 2 * RECORDS_MAX } else { 0 };
 
-/// What lies where in the pool, in order of offset.
+/// The bitmaps in the pool, in order of their offsets.
 #[derive(Debug, Default)]
 pub(crate) struct Directory {
     entries: Vec<StoredBitmap, ENTRIES_MAX>,
@@ -18,12 +18,12 @@ impl Directory {
         self.entries.iter().find(|bitmap| bitmap.crc32 == crc32).copied()
     }
 
-    /// Lets go of every bitmap that `keep` does not want.
+    /// Removes every bitmap for which `keep` returns `false`.
     pub(crate) fn retain(&mut self, keep: impl Fn(&StoredBitmap) -> bool) {
         self.entries.retain(keep);
     }
 
-    /// Moves all bitmaps together, so that what is free is one gap. Nobody may be reading them.
+    /// Moves all bitmaps together, so that the free memory is one gap. The ticker must not be reading any of them.
     pub(crate) fn compact(&mut self, pool: &BitmapPool) {
         let mut next = 0;
         for bitmap in &mut self.entries {
@@ -33,7 +33,7 @@ impl Directory {
         }
     }
 
-    /// Finds room for a bitmap in the first gap that takes it. Without one, returns the largest gap in bytes.
+    /// Allocates a bitmap in the first gap that is large enough. If there is none, returns the largest gap in bytes.
     pub(crate) fn allocate(&mut self, width: u16, height: u16, crc32: u32, pool_len: u32) -> Result<StoredBitmap, u32> {
         let len = u32::from(width) * u32::from(height);
         let mut gap_start = 0;

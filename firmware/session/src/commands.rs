@@ -23,25 +23,25 @@ use frixel_control::Status;
 use frixel_control::{Active, Board, Order};
 use frixel_layers::BitmapPool;
 
-/// Handles the commands of the host: state of the session, and of the scene and finger that it has handed to the ticker.
+/// The command handler: holds the state of the session, and of the scene and finger that it has passed to the ticker.
 pub(crate) struct Commands<'a> {
     pub(crate) board: Board,
     pub(crate) pool: &'a BitmapPool,
     pub(crate) directory: Directory,
     pub(crate) upload: Option<Upload>,
     pub(crate) staging: Staging,
-    /// CRC-32 of the scene that the ticker has, zero without one.
+    /// CRC-32 of the ticker's scene; zero without a scene.
     pub(crate) committed_crc32: u32,
-    /// Bitmaps of the scene that the ticker has.
+    /// Bitmaps of the ticker's scene.
     pub(crate) committed_bitmaps: BitmapNames,
-    /// Bitmaps that were announced since the last commit: the next scene's.
+    /// Bitmaps announced since the last commit: those of the next scene.
     pub(crate) announced_bitmaps: BitmapNames,
-    /// Coefficients for the next scene; `None` while the ticker has not handed back those of the scene before.
+    /// Buffer for the coefficients of the next scene; `None` until the ticker has returned that of the previous scene.
     pub(crate) spare: Option<&'a mut Active>,
     pub(crate) orders: Deque<Order<'a>, ORDERS_MAX>,
     pub(crate) orders_sent: u32,
     pub(crate) host_heard: bool,
-    /// A sign of life has waited for an order of the finger.
+    /// An [`Order::HostHeard`] has already waited for one order of the finger.
     pub(crate) sign_of_life_waited: bool,
     /// State once the ticker has applied every order.
     pub(crate) state: State,
@@ -49,9 +49,9 @@ pub(crate) struct Commands<'a> {
     pub(crate) commit: Option<Commit>,
     pub(crate) credit: Credit,
     pub(crate) telemetry_period_ticks: u32,
-    /// What has to be known of the committed scene beside its bytes, which the next upload takes the place of.
+    /// Facts about the committed scene that are still needed after the next upload has overwritten its bytes.
     pub(crate) playing: Playing,
-    /// What the host streams; `None` on a board that has no buffer for it.
+    /// The host's stream; `None` on a board without a stream buffer.
     #[cfg(feature = "stream")]
     pub(crate) stream: Option<Stream<'a>>,
     /// Fingers that the host reported.
@@ -126,15 +126,15 @@ impl<'a> Commands<'a> {
                 self.take_samples(first_index, samples);
                 self.report_stream(status, queue);
             }
-            // Without the feature, samples are not looked at, but a host is there.
+            // Without the feature, samples are ignored, but they restart the host timeout.
             #[cfg(not(feature = "stream"))]
             Ok(Payload::Samples { .. }) => self.host_heard = true,
-            // A request whose command is not known still says which answer it waits for.
+            // A request with an unknown command is still answered under its sequence number.
             Err(ParseError::UnknownCommand { sequence }) => {
                 self.host_heard = true;
                 self.answer(sequence, Err(Refusal::UnknownCommand), queue);
             }
-            // What a board sends, and what cannot be read, is not for a board.
+            // Ignore frames that only a board sends, and frames that cannot be parsed.
             Ok(Payload::Hello(_) | Payload::FromBoard(_)) | Err(_) => {}
         }
     }
@@ -149,7 +149,7 @@ impl<'a> Commands<'a> {
         self.report(&FromBoard::Answer(answer), queue);
     }
 
-    /// Sends a message that tells how many bytes were received.
+    /// Sends a message that contains the count of received bytes.
     pub(crate) fn report(&mut self, message: &FromBoard, queue: &mut TransmitQueue) {
         if queue.send(message) {
             self.credit.reported();
@@ -167,7 +167,7 @@ impl<'a> Commands<'a> {
                 Err(Refusal::BitmapPoolFull { len: u32::from(width) * u32::from(height), free: 0 })
             }
             Command::UploadEnd => self.end_upload(),
-            // A commit begins where its request is taken, and not here.
+            // `take` handles a commit; it does not get here.
             Command::Commit { .. } => Err(Refusal::Busy),
             Command::Subscribe { period_ticks } if cfg!(feature = "telemetry") => self.subscribe(period_ticks),
             Command::Subscribe { .. } => Err(Refusal::UnknownCommand),
@@ -197,7 +197,8 @@ impl<'a> Commands<'a> {
     }
 }
 
-/// What may be done before a commit that came earlier: what neither asks for its outcome nor touches what it reads.
+/// Whether a frame may be handled while an earlier commit is under way: its answer does not depend on the commit, and
+/// it does not change what the commit reads.
 fn may_overtake_a_commit(payload: &Result<Payload, ParseError>) -> bool {
     match payload {
         Ok(Payload::Samples { .. }) => true,

@@ -1,6 +1,6 @@
-//! The uploaded scene becomes the one that plays.
+//! Commit: passes the uploaded scene to the ticker.
 //!
-//! A commit takes a board the time of hundreds of ticks. [`Commands::step_commit`] advances it by one step of at most a
+//! A commit takes the time of hundreds of ticks. [`Commands::step_commit`] advances it by one step of at most a
 //! millisecond, so that touches, signs of life and stops are served in between.
 
 use frixel_layers::{Scene, disabled_record};
@@ -26,9 +26,9 @@ pub(crate) struct Commit {
     step: Step,
 }
 
-/// What a commit does next.
+/// The next step of a commit.
 enum Step {
-    /// Checks that the scene is there, whole and readable.
+    /// Checks that a complete and valid scene was uploaded.
     Check,
     /// Computes its coefficients.
     Load(Loading),
@@ -54,7 +54,7 @@ impl Commands<'_> {
         }
     }
 
-    /// Does all that is left of the commit, for a request that has to know how it ended.
+    /// Does all remaining steps of the commit, for a request whose answer depends on its outcome.
     pub(crate) fn finish_commit(&mut self, queue: &mut TransmitQueue) {
         while self.commit.is_some() {
             self.step_commit(queue);
@@ -69,7 +69,7 @@ impl Commands<'_> {
         Ok(())
     }
 
-    /// Returns whether the step was the last.
+    /// Does one step. Returns whether it was the last.
     #[inline(never)]
     fn step(&mut self, commit: &mut Commit) -> Result<bool, Refusal> {
         let crc32 = commit.crc32;
@@ -136,7 +136,7 @@ impl Commands<'_> {
     }
 }
 
-/// A commit while an upload is under way is refused with how far that has come.
+/// The refusal of a commit during an upload; it contains the progress of the upload.
 fn end_upload_first(upload: &Upload) -> Refusal {
     upload.check().err().unwrap_or(Refusal::UploadIncomplete { next_chunk: 0 })
 }
@@ -148,7 +148,7 @@ fn bitmaps_of(scene: &Scene) -> BitmapNames {
     scene.records().filter_map(|record| record.layer.bitmap_crc32()).take(RECORDS_MAX).collect()
 }
 
-/// Tells what this firmware was built without from what nobody knows.
+/// Distinguishes a record whose feature is disabled in this firmware from an invalid scene.
 fn not_a_scene(error: SceneError) -> Refusal {
     disabled_record(&error).map_or(Refusal::Scene(error), |layer| Refusal::LeftOut { layer })
 }

@@ -1,16 +1,16 @@
-//! Credit: how many bytes the host may have under way (`PROTOCOL.md`, section 9).
+//! Credit: the number of bytes that the host may have in flight (`PROTOCOL.md`, section 9).
 
-/// Counts the bytes that the host sends, and tells those within its credit from those beyond it.
+/// Counts the bytes that the host sends, and checks whether they are within its credit.
 ///
-/// All counts are modulo 2^32 and start anew with a hello. What is beyond the credit is not counted: to the host, it is
-/// lost on the line, and the next answer puts its own count right.
+/// All counts are modulo 2^32 and start anew with a hello. Bytes beyond the credit are not counted: the host treats
+/// them as lost on the line, and the next answer corrects its count.
 pub(crate) struct Credit {
     window: u32,
-    /// Bytes received within the credit: what reports tell the host.
+    /// Bytes received within the credit: the count that is reported to the host.
     received: u32,
     /// The count in the newest report that was queued.
     reported: u32,
-    /// The largest count that the host can have been told.
+    /// The largest count that may have reached the host.
     granted_from: u32,
 }
 
@@ -19,7 +19,7 @@ impl Credit {
         Self { window: window as u32, received: 0, reported: 0, granted_from: 0 }
     }
 
-    /// A hello request sets the counts of both sides to zero.
+    /// Resets the counts, as a hello request does on both sides.
     pub(crate) fn restart(&mut self) {
         (self.received, self.reported, self.granted_from) = (0, 0, 0);
     }
@@ -37,13 +37,13 @@ impl Credit {
         self.received
     }
 
-    /// A report with the count of now was queued.
+    /// Records that a report with the current count was queued.
     pub(crate) fn reported(&mut self) {
         self.reported = self.received;
     }
 
-    /// The line takes bytes: every report that is queued may be on its way to the host. That is generous by no more than
-    /// the transmit queue holds; while the line takes nothing, no credit is granted.
+    /// Records that bytes were sent: every queued report may now be on its way to the host. This grants at most as much
+    /// too much as the transmit queue holds; while nothing is sent, no credit is granted.
     pub(crate) fn grant_reported(&mut self) {
         self.granted_from = self.reported;
     }

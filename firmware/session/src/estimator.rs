@@ -1,16 +1,17 @@
-//! Where the finger is now, from touch samples that are late, seldom and noisy.
+//! Estimates where the finger is now from touch samples that are late, rare and noisy.
 //!
 //! A fading-memory polynomial filter of second degree (g-h-k filter, Brookner, *Tracking and Kalman Filtering Made
 //! Easy*, 1998, ch. 1): it fits position, velocity and acceleration to the samples so far, each weighted less by
 //! [`FADING`] than the one after it, and is read at any later tick. For the first samples its gains are those of a
 //! growing memory, so that it is right from the second sample on.
 
-/// Weight that a sample keeps at the next one. With samples at 100 Hz, 10 ms late, noise 0.02 mm and jitter 0.5 ms,
-/// values from 0.5 to 0.7 are within a tenth of the best for strokes from constant speed to minimum-jerk.
+/// Factor on the weight of all samples so far when another one arrives. With samples at 100 Hz, 10 ms late, noise 0.02
+/// mm and jitter 0.5 ms, values from 0.5 to 0.7 are within a tenth of the best for strokes from constant speed to
+/// minimum-jerk.
 const FADING: f32 = 0.65;
 
-/// Most samples whose gains are those of a growing memory of first degree: a fit of second degree to so few amplifies
-/// noise too much.
+/// For the first samples, up to this number, the gains are those of a growing memory of first degree: a fit of second
+/// degree to so few samples amplifies noise too much.
 const LINEAR_SAMPLES: u32 = 3;
 
 /// Position, velocity and half the acceleration along one axis, in m, m/s and m/s^2, at the time of the last sample.
@@ -31,7 +32,7 @@ struct Gains {
 }
 
 impl Gains {
-    /// The first sample is the place.
+    /// Gains of the first sample: it sets the position.
     const OF_FIRST_SAMPLE: Self = Self { position: 1.0, velocity: 0.0, half_acceleration: 0.0 };
 
     /// The same gains in 1, 1/s and 1/s^2, for so many steps a second.
@@ -81,14 +82,14 @@ pub(crate) struct Estimator {
 }
 
 impl Estimator {
-    /// Knows nothing yet.
+    /// An estimator without samples.
     pub(crate) const NEW: Self = Self { axes: [Axis::ZERO; 2], samples: 0, sampled_at_tick: 0 };
 
-    /// Takes a place in m that was measured at a tick, and estimates the finger at that tick. `None` for a sample that is
-    /// not newer than the last one, which changes nothing.
+    /// Takes a position in m that was measured at a tick, and estimates the finger at that tick. Ignores a sample that
+    /// is not newer than the last one, and returns `None`.
     ///
-    /// No velocity is made of a time shorter than `step_min_s`: samples that bunch on the way were not taken so close
-    /// together.
+    /// Time steps shorter than `step_min_s` count as `step_min_s`: samples that arrive bunched were not measured so
+    /// close together.
     pub(crate) fn take(
         &mut self,
         place_m: [f32; 2],
@@ -124,12 +125,12 @@ impl Estimator {
     }
 }
 
-/// Gains for the sample that comes after `samples` others.
+/// Gains for the sample after `samples` others.
 fn gains(samples: u32) -> &'static Gains {
     GAINS.get(samples as usize).unwrap_or(&FADING_GAINS)
 }
 
-/// Gains for the first samples, by how many came before.
+/// Gains for the first samples, indexed by the number of samples before.
 static GAINS: [Gains; FADING_SAMPLES] = {
     let mut gains = [FADING_GAINS; FADING_SAMPLES];
     let mut samples = 0;
@@ -140,7 +141,7 @@ static GAINS: [Gains; FADING_SAMPLES] = {
     gains
 };
 
-/// Samples from which on the gains of a growing memory would be below those of a fading one.
+/// Number of samples from which the gains of a growing memory would be below those of a fading one.
 const FADING_SAMPLES: usize = {
     let mut samples = 0;
     while growing_gains(samples as u32).position > FADING_GAINS.position {

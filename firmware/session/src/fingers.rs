@@ -1,4 +1,4 @@
-//! Which of several fingers leads. One electrode gives one effect, so one finger at a time is followed.
+//! Selects the finger to follow if there are several: one electrode can only give the effect for one finger at a time.
 
 use frixel_layers::range::LENGTH_MAX_M;
 use frixel_layers::{Leader, within};
@@ -10,21 +10,21 @@ use crate::Touch;
 use crate::commands::Commands;
 use frixel_control::Status;
 
-/// The finger of a host that has one.
+/// Number of the finger if the host reports only one.
 pub(crate) const ONLY_FINGER: u8 = 0;
 
-/// Fingers that are told apart, as many as a person has. One more is not there.
+/// Largest number of fingers that are tracked. Further fingers are ignored.
 const FINGERS_MAX: usize = 10;
 
-/// The fingers that the host has on the screen, and what there is to report of the one that leads.
+/// The fingers that the host has reported, and the pending reports of the one that is followed.
 pub(crate) struct Fingers {
-    /// In the order of their coming.
+    /// Numbers of the fingers, in the order of their touch-down.
     down: Vec<u8, FINGERS_MAX>,
-    /// The finger that leads.
+    /// The finger that is followed.
     followed: Option<u8>,
-    /// The finger that led is gone, which is not reported yet.
+    /// A lift of the followed finger is to be reported.
     gone: bool,
-    /// Where the finger that leads was last, if that is not reported yet.
+    /// The last position of the followed finger, if it is not reported yet.
     place: Option<Touch>,
 }
 
@@ -33,7 +33,7 @@ impl Fingers {
         Self { down: Vec::new(), followed: None, gone: false, place: None }
     }
 
-    /// Takes a finger's place.
+    /// Takes a finger's position.
     pub(crate) fn touch(&mut self, finger: u8, place: Touch, rule: Leader) {
         if !self.down.contains(&finger) && self.down.push(finger).is_err() {
             return;
@@ -44,7 +44,7 @@ impl Fingers {
         }
     }
 
-    /// Records a lift. That of a finger that was never there is reported, too: the tracker may know it from before.
+    /// Records a lift. The lift of an unknown finger is reported too, because the tracker may still follow it.
     pub(crate) fn lift(&mut self, finger: u8, rule: Leader) {
         self.down.retain(|other| *other != finger);
         if self.down.is_empty() {
@@ -61,13 +61,13 @@ impl Fingers {
         self.down.clear();
     }
 
-    /// The next report. A finger that takes another's place comes after the other has gone, so that nothing is made of the
-    /// way between them.
+    /// The next report. If another finger is to be followed, a lift is reported first, so that the distance between the
+    /// two is not taken for a movement.
     pub(crate) fn next(&mut self) -> Option<Touch> {
         if core::mem::take(&mut self.gone) { Some(Touch::Up) } else { self.place.take() }
     }
 
-    /// Follows the finger that leads.
+    /// Selects the finger to follow by `rule`.
     fn follow(&mut self, rule: Leader) {
         let leader = match rule {
             Leader::First => self.down.first(),
@@ -107,7 +107,7 @@ impl Commands<'_> {
         }
         let place = Touch::Down { x_m, y_m, age_ticks: u32::from(age_ticks) };
         if status.telemetry.flags.contains(Flags::TOUCH_STALE) {
-            // Nobody has said anything for a while: a finger whose lift was lost is not there any more.
+            // There was no report for a while: drop fingers whose lift was lost.
             self.fingers.forget();
         }
         self.fingers.touch(finger, place, self.playing.leader());
@@ -124,13 +124,13 @@ impl Commands<'_> {
         Ok(Accepted::Done)
     }
 
-    /// Forgets all fingers: another host has come.
+    /// Forgets all fingers, because a new client has connected.
     pub(crate) fn forget_fingers(&mut self, status: &Status) {
         self.fingers.forget();
         self.report_fingers(status);
     }
 
-    /// Gives the tracker what there is to report of the finger that leads, as of the next tick.
+    /// Passes the pending reports of the followed finger to the tracker, as of the next tick.
     fn report_fingers(&mut self, status: &Status) {
         while let Some(touch) = self.fingers.next() {
             self.tracker.report(touch, status.telemetry.tick.wrapping_add(1));

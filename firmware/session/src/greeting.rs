@@ -1,4 +1,4 @@
-//! The hello, and the new session that begins with it.
+//! Handles the hello, which begins a new session.
 
 use frixel_wire::fault::State;
 use frixel_wire::hello::{Hello, PROTOCOL_MAJOR, PROTOCOL_MINOR, feature};
@@ -15,7 +15,7 @@ const FIRMWARE: (u8, u8, u8) = (
     part(env!("CARGO_PKG_VERSION_PATCH")),
 );
 
-/// A part of the package's version, read when this is compiled.
+/// Parses a part of the package's version at compile time.
 const fn part(text: &str) -> u8 {
     match u8::from_str_radix(text, 10) {
         Ok(part) => part,
@@ -23,7 +23,7 @@ const fn part(text: &str) -> u8 {
     }
 }
 
-/// What this firmware was built with.
+/// Feature bits of this firmware.
 const fn features(board: &Board, has_stream: bool) -> u32 {
     const fn bit(present: bool, bit: u32) -> u32 {
         if present { bit } else { 0 }
@@ -36,11 +36,11 @@ const fn features(board: &Board, has_stream: bool) -> u32 {
 }
 
 impl Commands<'_> {
-    /// A new client: credit starts anew, nothing of an unfinished upload is left, and what the client before had armed is
-    /// disarmed, for that one is gone. A scene that goes on without a host plays on.
+    /// Begins a session with a new client: resets the credit, drops an unfinished upload, and disarms the board,
+    /// because the previous client is gone. A scene that continues without a host keeps playing.
     pub(crate) fn handle_hello(&mut self, status: &Status, queue: &mut TransmitQueue) {
         if !(self.state == State::Active && self.playing.is_autonomous()) {
-            // Refused when there is nothing to disarm; there is always room for this order.
+            // Ignore a refusal: there was nothing to disarm. There is always room for this order.
             let _ = self.change_state(Order::Disarm, &[State::Armed, State::Active], State::Disarmed);
         }
         self.credit.restart();
@@ -48,7 +48,7 @@ impl Commands<'_> {
         self.drop_upload();
         self.announced_bitmaps.clear();
         self.forget_fingers(status);
-        // Should there be no room for the order, the stream runs dry instead.
+        // Ignore a full order queue: the stream then runs dry instead.
         #[cfg(feature = "stream")]
         let _ = self.end_stream();
         queue.send_hello(&Hello {

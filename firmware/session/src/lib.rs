@@ -1,15 +1,14 @@
-//! All of the firmware that may take its time: a [`Session`] turns bytes from a host into scenes, and touch reports into
-//! [`Track`](frixel_control::Track)s. A [`Ticker`](frixel_control::Ticker) turns the track into voltage, one tick at a time.
+//! The part of the firmware without a hard deadline: a [`Session`] turns bytes from a host into scenes, and touch
+//! reports into [`Track`](frixel_control::Track)s. A [`Ticker`](frixel_control::Ticker) turns the track into voltage,
+//! one tick at a time.
 //!
-//! The two run at different priorities on a board and never share mutable state. What goes between them are values:
+//! The two run at different priorities on a board and never share mutable state. They exchange values:
 //! [`Order`](frixel_control::Order)s from the session to the ticker, one before each tick, a
-//! [`Status`](frixel_control::Status) back, and the two
-//! [`Active`](frixel_control::Active) buffers, which
-//! change hands by reference so that a scene is swapped whole at a tick boundary. The
-//! [`BitmapPool`](frixel_layers::BitmapPool) is shared memory of single bytes: the session writes only where the ticker
-//! does not read.
+//! [`Status`](frixel_control::Status) back, and the two [`Active`](frixel_control::Active) buffers, which are passed by
+//! reference, so that the whole scene is swapped at a tick boundary. The [`BitmapPool`](frixel_layers::BitmapPool) is
+//! memory that both share, made of single bytes: the session writes only bytes that the ticker does not read.
 //!
-//! A board, a simulator and a test all drive them in the same way:
+//! A board, a simulator and a test all call them in the same way:
 //!
 //! ```
 //! use frixel_control::{Active, Board, Sense, Ticker};
@@ -31,20 +30,21 @@
 //! assert_eq!(session.transmit(&mut [0; 64]), 0); // bytes for the serial line
 //! ```
 //!
-//! # Inside
+//! # Modules
 //!
-//! `session` turns bytes into frames and back; `commands` says what the frames mean, and the others do what they ask for:
-//! `greeting` the hello, `states` arming and playing, `storing` uploads, whose bytes `upload` gathers, `commit` the change of
-//! scene, which `loading` computes step by step, `live` what changes while one plays, `fingers` touches of the host.
-//! `tracker` turns touch reports into tracks, with `estimator` and `standstill`.
+//! `session` turns bytes into frames and back. `commands` dispatches the frames to the other modules: `greeting`
+//! handles the hello, `states` arming and playing, `storing` uploads (`upload` collects their bytes), `commit` the
+//! change of scene (`loading` computes its coefficients step by step), `live` changes while a scene plays, and
+//! `fingers` touches reported by the host. `tracker` turns touch reports into tracks, with `estimator` and
+//! `standstill`.
 //!
-//! # Leaving out
+//! # Cargo features
 //!
-//! Every Cargo feature is something that a scene or a host may ask for, and all are on by default: layers of `grating`,
-//! `bitmap`, `noise`, `edge` (with buttons), `vibration`, `speed` and `stream`, `polygon` regions, the `sine-carrier`,
-//! `telemetry`; and the `store` of what a board keeps over power-off. An image without one of them is smaller, says so
-//! in the feature bits of its hello, and refuses what needs it. Constant layers, rectangles, ellipses, all blends and
-//! the square carrier are always there.
+//! Every Cargo feature is something that a scene or a host may use, and all are enabled by default: layers of
+//! `grating`, `bitmap`, `noise`, `edge` (with buttons), `vibration`, `speed` and `stream`, `polygon` regions, the
+//! `sine-carrier`, `telemetry`; and the `store`, which keeps a scene over power-off. An image without one of them is
+//! smaller, clears its feature bit in the hello, and refuses what needs it. Constant layers, rectangles, ellipses, all
+//! blends and the square carrier are always included.
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 

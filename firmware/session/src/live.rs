@@ -1,4 +1,4 @@
-//! What a host changes while a scene plays: layers, and the samples of a stream.
+//! Changes by the host while a scene plays: layers, and the samples of a stream.
 
 #[cfg(feature = "stream")]
 use frixel_layers::within;
@@ -15,14 +15,14 @@ use frixel_control::{Order, Status};
 #[cfg(feature = "stream")]
 use frixel_control::{StreamBuffer, StreamIntake};
 
-/// Frames of samples after which the host hears how the stream is doing: less than 1 KiB, as with uploads.
+/// Frames of samples after which the board reports the progress of the stream: less than 1 KiB, as with uploads.
 #[cfg(feature = "stream")]
 const PROGRESS_FRAMES: u32 = 4;
-/// Time after which it hears so in any case, in s.
+/// Time after which the board reports the progress of the stream in any case, in s.
 #[cfg(feature = "stream")]
 const PROGRESS_PERIOD_S: f32 = 0.02;
 
-/// What has to be known of the scene that the ticker has, when its bytes are gone.
+/// Facts about the ticker's scene that are still needed after its bytes were overwritten.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Playing {
     pub(crate) header: Option<Header>,
@@ -35,7 +35,7 @@ impl Playing {
     pub(crate) fn new(scene: &Scene) -> Self {
         Self {
             header: Some(*scene.header()),
-            // A scene has no more records than that.
+            // This fits: a scene has at most `RECORDS_MAX` records.
             layers: scene.record_count() as u8,
             #[cfg(feature = "stream")]
             has_stream: scene.records().any(|record| record.layer.is_streamed()),
@@ -47,10 +47,10 @@ impl Playing {
 #[cfg(feature = "stream")]
 pub(crate) struct Stream<'a> {
     intake: StreamIntake<'a>,
-    /// Frames of samples since the host last heard how the stream is doing.
+    /// Frames of samples since the last progress report.
     frames: u32,
     reported_at_tick: u32,
-    /// Something has to be told as soon as there is room.
+    /// Send a progress report as soon as there is room.
     report_due: bool,
 }
 
@@ -62,19 +62,19 @@ impl<'a> Stream<'a> {
 }
 
 impl Playing {
-    /// The scene goes on without a host.
+    /// Whether the scene continues without a host.
     pub(crate) fn is_autonomous(&self) -> bool {
         self.header.is_some_and(|header| header.autonomous)
     }
 
-    /// Which of several fingers leads; the first one before any scene.
+    /// The rule for which of several fingers is followed; the earliest one without a scene.
     pub(crate) fn leader(&self) -> Leader {
         self.header.map_or(Leader::First, |header| header.leader)
     }
 }
 
 impl Commands<'_> {
-    /// Commands that only a playing scene takes.
+    /// Handles the commands that need a playing scene.
     pub(crate) fn change_playing(&mut self, command: Command, status: &Status) -> Result<Accepted, Refusal> {
         match (self.state, status.fault) {
             (State::Active, _) => {}
@@ -131,14 +131,14 @@ impl<'a> Commands<'a> {
         Ok(Accepted::Done)
     }
 
-    /// A stream is not for a scene that has no layer for it; the ticker stops it by itself.
+    /// Ends the stream if the new scene has no layer for it. The ticker does the same on its own.
     pub(crate) fn drop_stream_without_layer(&mut self) {
         if let Some(stream) = self.stream.as_mut().filter(|_| !self.playing.has_stream) {
             stream.intake.end();
         }
     }
 
-    /// Takes no more samples, and lets the ticker play those that are there.
+    /// Takes no more samples, and lets the ticker play those that have arrived.
     pub(crate) fn end_stream(&mut self) -> Result<Accepted, Refusal> {
         if self.stream.is_none() {
             return Err(Refusal::UnknownCommand);
@@ -150,7 +150,7 @@ impl<'a> Commands<'a> {
         Ok(Accepted::Done)
     }
 
-    /// Takes no more samples. The ticker has forgotten the stream, or will: it does not play.
+    /// Takes no more samples. No order is needed: the ticker stops the stream itself when it leaves the Active state.
     pub(crate) fn forget_stream(&mut self) {
         if let Some(stream) = &mut self.stream {
             stream.intake.end();
@@ -165,7 +165,7 @@ impl<'a> Commands<'a> {
         }
     }
 
-    /// Tells the host how the stream is doing, when that is due and the line is not behind.
+    /// Reports the progress of the stream, if a report is pending and the transmit queue is not too full.
     pub(crate) fn report_stream(&mut self, status: &Status, queue: &mut TransmitQueue) {
         let Some(stream) = &mut self.stream else { return };
         let Some((next_index, room)) = stream.intake.progress() else { return };
@@ -181,7 +181,7 @@ impl<'a> Commands<'a> {
             gaps: status.counters.stream_gaps,
             received_bytes: self.credit.received(),
         };
-        // When the line is behind, the next call tries again.
+        // If the queue is too full, the next call tries again.
         if queue.send_unasked(&progress) {
             self.credit.reported();
             stream.report_due = false;

@@ -1,4 +1,4 @@
-//! From a scene's configuration to the coefficients that the tick reads: checked, then computed, in steps.
+//! Checks a scene's configuration and computes the coefficients that the tick reads, in steps.
 
 use frixel_control::{Active, Board, CarrierTiming};
 use frixel_layers::cost::Worst;
@@ -16,17 +16,17 @@ const CELLS_PER_STEP: usize = 64;
 /// Rows of the inverse table that a step of loading computes.
 const ROWS_PER_STEP: usize = 8;
 
-/// How far a scene is loaded: the next step.
+/// The next step of loading a scene.
 #[derive(Clone, Debug)]
 pub(crate) enum Loading {
-    /// What holds for the whole scene.
+    /// Carrier, voltage limits and the other properties of the whole scene.
     Drive,
-    /// Layers from a number on.
+    /// Layers, beginning with a number.
     Layers {
         /// Number of the first.
         next: usize,
     },
-    /// The cost of a tick, from a cell of the grid on.
+    /// The cost of a tick, beginning with a cell of the grid.
     Cost {
         /// Number of the first.
         next_cell: usize,
@@ -40,12 +40,12 @@ pub(crate) enum Loading {
 }
 
 impl Loading {
-    /// The cost of a tick, from the first cell on.
+    /// The cost of a tick, beginning with the first cell.
     const COST: Self = Self::Cost { next_cell: 0, worst: Worst::NOWHERE };
 
-    /// Does the next step of making `active` the coefficients of `scene`, each well below a millisecond of a board's time.
-    /// Returns whether it was the last. When the scene is refused, `active` holds no scene; before the last step it is of
-    /// no use.
+    /// Does the next step of computing the coefficients of `scene` into `active`. A step takes a board well below a
+    /// millisecond. Returns whether it was the last. If the scene is refused, `active` holds no scene; before the last
+    /// step, its content must not be used.
     pub(crate) fn step(
         &mut self,
         active: &mut Active,
@@ -106,7 +106,7 @@ impl Loading {
     }
 }
 
-/// Loads what holds for the whole scene, the inverse table left out.
+/// Loads the properties of the whole scene, except the inverse table.
 fn load_drive(active: &mut Active, scene: &Scene, board: &Board) -> Result<(), Refusal> {
     active.unload();
     let header = scene.header();
@@ -153,16 +153,16 @@ fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), Confi
     Ok((timing, voltage_max_v_rms))
 }
 
-/// Rows of a scene's inverse table with a piece of the curve.
+/// Number of rows of a scene's inverse table that hold a piece of the curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TableRows {
-    /// Those that the board computes.
+    /// Rows that the board computes.
     pub filled: usize,
-    /// Those that it would compute if the scene asked for all that the drive can give.
+    /// Rows that the board would compute if the scene used the largest friction that the drive can give.
     pub whole: usize,
 }
 
-/// Begins the inverse table of a scene's finger, coating and load, up to the largest friction that the scene asks for.
+/// Begins the inverse table of a scene's finger, coating and load, up to the scene's largest target friction.
 fn begin_table(header: &Header, voltage_max_v_rms: f32) -> Result<(InverseTable, InverseTableFilling), ConfigRefusal> {
     let Header { effective_gap_m, normal_load_n, .. } = *header;
     let max_n = header.electric_friction_max_n.unwrap_or(f32::INFINITY);
@@ -193,8 +193,8 @@ pub fn active_bytes_filled(scene: &Scene) -> usize {
     scene.records().map(|record| active_bytes(&record)).sum::<usize>() + scene.points().len() * size_of::<Point>()
 }
 
-/// How much of the inverse table the board computes for a scene, whose numbers a board takes. The table's room in RAM
-/// is the same for every scene; the rows that it does without save time at a commit.
+/// How many rows of the inverse table a board computes for a valid scene. The table takes the same RAM for every scene;
+/// omitted rows save time at a commit.
 pub fn table_rows(scene: &Scene, board: &Board) -> Result<TableRows, Refusal> {
     let header = scene.header();
     let (_, voltage_max_v_rms) = carrier(header, board).map_err(Refusal::Config)?;

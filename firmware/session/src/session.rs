@@ -1,4 +1,4 @@
-//! One board's end of the serial line: bytes into frames and back.
+//! The board's end of the serial line: turns bytes into frames and back.
 
 use frixel_layers::Header;
 use frixel_wire::fault::State;
@@ -17,7 +17,7 @@ use frixel_control::StreamBuffer;
 use frixel_control::{Active, Board, Order, Ticker};
 use frixel_layers::BitmapPool;
 
-/// One board's end of the serial line.
+/// The board's end of the serial line.
 pub struct Session<'a> {
     decoder: Decoder,
     commands: Commands<'a>,
@@ -42,19 +42,19 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// From now on, takes the samples of streams into `buffer`, from which the ticker plays them.
+    /// Stores the samples of streams in `buffer` from now on. The ticker plays them from there.
     #[cfg(feature = "stream")]
     pub fn attach_stream(&mut self, buffer: &'a StreamBuffer) {
         self.commands.attach_stream(buffer);
     }
 
-    /// Takes bytes from the serial line. Answers wait in [`Session::transmit`], orders in [`Session::next_order`]. A commit
-    /// is left to [`Session::poll`], which does it step by step, so that it does not hold up the signs of life, touches and
-    /// stops that come meanwhile. A request that has to know how the commit ended finishes it at once: a host that does not
-    /// wait for the answer to a commit makes the board spend the time of many ticks here.
+    /// Takes bytes from the serial line. Fetch answers with [`Session::transmit`] and orders with
+    /// [`Session::next_order`]. [`Session::poll`] carries out a commit step by step, so that pings, touches and stops
+    /// that arrive meanwhile are not delayed. A request whose answer depends on the commit finishes it at once: if the
+    /// host does not wait for the answer to a commit, this call takes the time of many ticks.
     ///
-    /// Frames beyond the host's credit are discarded: they are no sign of life, no touch and no order. Only a hello
-    /// request needs no credit.
+    /// Frames beyond the host's credit are discarded and have no effect; they do not restart the host timeout either.
+    /// Only a hello request needs no credit.
     pub fn receive(&mut self, mut bytes: &[u8], status: &Status) {
         while !bytes.is_empty() {
             let before = bytes.len();
@@ -71,9 +71,9 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Advances a commit by one step of at most a millisecond, and sends what the host did not request: telemetry, and
-    /// changes of state. To be called after every tick or, when there is no time for that, at least once a telemetry
-    /// period, and with touch reports, orders and bytes handed over in between.
+    /// Advances a commit by one step of at most a millisecond, and sends telemetry and unsolicited changes of state.
+    /// Call this after every tick or, if there is no time for that, at least once a telemetry period, and pass on touch
+    /// reports, orders and bytes between two calls.
     pub fn poll(&mut self, status: &Status) {
         self.commands.tracker.expire(status.telemetry.tick);
         self.commands.step_commit(&mut self.queue);
@@ -89,7 +89,7 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Takes a report of the board's touch source that arrived at a tick.
+    /// Takes a report of the board's touch source that arrived at `tick`.
     pub fn touch(&mut self, touch: Touch, tick: u32) {
         self.commands.tracker.report(touch, tick);
     }
@@ -99,13 +99,14 @@ impl<'a> Session<'a> {
         self.commands.next_order()
     }
 
-    /// Takes back the coefficients that the ticker has let go.
+    /// Takes back the coefficients that [`Ticker::apply`] returned.
     pub fn take_back(&mut self, spare: &'a mut Active) {
         self.commands.take_back(spare);
     }
 
-    /// Hands the next order to a ticker on the same thread, and takes back what it lets go. Returns whether there was an
-    /// order. A board whose tick is an interrupt has a queue between [`Session::next_order`] and [`Ticker::apply`].
+    /// Passes the next order to a ticker on the same thread, and takes back the coefficients that it returns. Returns
+    /// whether there was an order. A board whose tick is an interrupt puts a queue between [`Session::next_order`] and
+    /// [`Ticker::apply`].
     pub fn hand_order_to(&mut self, ticker: &mut Ticker<'a>) -> bool {
         let Some(order) = self.next_order() else { return false };
         if let Some(spare) = ticker.apply(order) {
@@ -114,7 +115,7 @@ impl<'a> Session<'a> {
         true
     }
 
-    /// Moves bytes for the serial line into `bytes`, and returns how many.
+    /// Moves bytes for the serial line into `bytes`, and returns their number.
     pub fn transmit(&mut self, bytes: &mut [u8]) -> usize {
         let count = self.queue.drain(bytes);
         if count > 0 {
@@ -123,42 +124,43 @@ impl<'a> Session<'a> {
         count
     }
 
-    /// The supervisor's state once the ticker has applied every order that was given out.
+    /// The supervisor's state once the ticker has applied every order so far.
     pub fn state(&self) -> State {
         self.commands.state
     }
 
-    /// The committed scene, as it was sent; `None` without one, and when the upload of another has begun.
+    /// The bytes of the committed scene; `None` without a scene, or once the upload of another has begun.
     pub fn scene(&self) -> Option<&[u8]> {
         self.commands.scene()
     }
 
-    /// Header of the committed scene; `None` without one. Other than [`Session::scene`], it outlives the upload of the
-    /// next scene.
+    /// Header of the committed scene; `None` without a scene. Unlike [`Session::scene`], it stays available during the
+    /// upload of the next scene.
     pub fn scene_header(&self) -> Option<&Header> {
         self.commands.playing.header.as_ref()
     }
 
-    /// CRC-32 of what [`Session::kept`] would give.
+    /// CRC-32 of the scene that [`Session::kept`] returns; `None` when that returns `None`.
     #[cfg(feature = "store")]
     pub fn kept_crc32(&self) -> Option<u32> {
         self.commands.kept_crc32()
     }
 
-    /// The committed scene with its bitmaps as bytes to keep; `None` without one, and unless the board is disarmed.
+    /// The committed scene with its bitmaps, as bytes to store; `None` without a scene, or if the board is not
+    /// disarmed.
     #[cfg(feature = "store")]
     pub fn kept(&self) -> Option<StoredScene<'_>> {
         self.commands.kept()
     }
 
-    /// Commits a scene from bytes that were kept: `read` gives those at an offset, and `false` beyond their end. Returns
-    /// whether there is a scene that this firmware can play; what is not is as if it had never been kept.
+    /// Commits a stored scene: `read` fills a buffer with the bytes at an offset, and returns `false` beyond the end.
+    /// Returns whether the bytes are a scene that this firmware can play; other bytes are ignored.
     #[cfg(feature = "store")]
     pub fn restore(&mut self, read: impl Fn(u32, &mut [u8]) -> bool) -> bool {
         self.commands.restore(read).is_some()
     }
 
-    /// Frames that were received whole and within the host's credit, and those that were discarded: bad ones, and those
+    /// Number of frames received intact and within the host's credit, and number of frames discarded as corrupt or
     /// beyond the credit.
     pub fn frame_counts(&self) -> (u32, u32) {
         let discarded = self.frames_discarded;

@@ -1,15 +1,15 @@
-//! A still finger feels next to nothing while its current rises: the tracker ramps its friction away, and back when it
-//! moves (DESIGN section 3).
+//! Standstill detector. A still finger feels almost nothing while its current rises, so the tracker ramps the friction
+//! down at standstill, and up again when the finger moves (DESIGN section 3).
 
 use frixel_control::StandstillRamp;
 use frixel_control::is_past;
 
-/// Below this speed the finger counts as slow; it stands still when it was slow for [`STILL_AFTER_S`].
+/// Below this speed the finger counts as slow; after [`STILL_AFTER_S`] of being slow it counts as still.
 const SLOW_BELOW_M_PER_S: f32 = 2e-3;
 /// Above this speed a still finger counts as moving.
 const MOVING_ABOVE_M_PER_S: f32 = 5e-3;
 const STILL_AFTER_S: f32 = 50e-3;
-/// Time of a whole ramp, either way.
+/// Duration of a whole ramp, down or up.
 const RAMP_S: f32 = 10e-3;
 
 /// The detector's timing in ticks.
@@ -26,9 +26,10 @@ impl StandstillTiming {
     }
 }
 
-/// Detects that the finger stands still, from the speed at each touch report: between two reports nothing new is known.
+/// Detects that the finger stands still, from the speed at each touch report.
 ///
-/// The ramp away is planned when the finger becomes slow, and begins in the future; a report of a faster finger cancels it.
+/// The ramp down is scheduled when the finger becomes slow, and begins in the future. A report of a faster finger
+/// cancels it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Standstill {
     ramp: StandstillRamp,
@@ -36,10 +37,10 @@ pub(crate) struct Standstill {
 }
 
 impl Standstill {
-    /// A finger that has just come down is taken to move.
+    /// Initial state: a finger that has just touched the screen counts as moving.
     pub(crate) const MOVING: Self = Self { ramp: StandstillRamp::MOVING, slow_since_tick: None };
 
-    /// Takes the velocity at a tick, in m/s, and returns the ramp that holds from then on.
+    /// Takes the velocity at a tick, in m/s, and returns the ramp from then on.
     pub(crate) fn take(&mut self, [x, y]: [f32; 2], now_tick: u32, timing: &StandstillTiming) -> StandstillRamp {
         let speed_squared = x * x + y * y;
         let gain = self.ramp.gain_at(now_tick);
@@ -53,7 +54,7 @@ impl Standstill {
             let is_slow = speed_squared < SLOW_BELOW_M_PER_S * SLOW_BELOW_M_PER_S;
             self.slow_since_tick = if is_slow { Some(self.slow_since_tick.unwrap_or(now_tick)) } else { None };
             match self.slow_since_tick {
-                // The way back to a gain of 1 comes first; it takes less than a finger needs to be still.
+                // Finish the ramp up first: it is shorter than `STILL_AFTER_S`.
                 _ if gain < 1.0 => now,
                 Some(since_tick) => {
                     let still_tick = since_tick.wrapping_add(timing.still_after_ticks);

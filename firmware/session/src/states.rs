@@ -1,4 +1,4 @@
-//! The board's state: the commands that change it, the orders that carry it out, and what the host hears of it.
+//! The board's state: the commands that change it, the orders to the ticker, and the reports to the host.
 
 use frixel_wire::fault::{Flags, State};
 use frixel_wire::message::{Accepted, Command, FromBoard, Refusal};
@@ -10,11 +10,11 @@ use frixel_control::Status;
 
 /// Orders that may wait for the ticker. A command is refused as busy when there is no room.
 pub(crate) const ORDERS_MAX: usize = 8;
-/// Of which these are kept for Stop and Disarm, so that what puts the output to zero is never refused for want of room.
+/// Number of them that are reserved for Stop and Disarm, so that these are never refused for lack of room.
 const ORDERS_KEPT: usize = 2;
 
 impl<'a> Commands<'a> {
-    /// Tells the host of a change of state that it did not ask for.
+    /// Reports a change of state that the host did not request.
     pub(crate) fn report_state(&mut self, status: &Status, queue: &mut TransmitQueue) {
         let before = self.state;
         self.follow_state(status);
@@ -25,14 +25,14 @@ impl<'a> Commands<'a> {
         }
     }
 
-    /// The ticker's state holds once it has applied every order.
+    /// Adopts the ticker's state once the ticker has applied every order.
     fn follow_state(&mut self, status: &Status) {
         if self.is_settled(status) {
             self.set_state(status.telemetry.state);
         }
     }
 
-    /// A stream lasts no longer than the state in which it plays.
+    /// Sets the state. Leaving the Active state ends the stream.
     fn set_state(&mut self, state: State) {
         self.state = state;
         #[cfg(feature = "stream")]
@@ -45,7 +45,7 @@ impl<'a> Commands<'a> {
         status.orders_applied == self.orders_sent
     }
 
-    /// Commands that a latched fault stands in the way of.
+    /// Handles the commands that are refused while a fault is latched.
     pub(crate) fn drive(&mut self, command: Command, status: &Status) -> Result<Accepted, Refusal> {
         if self.state == State::Faulted
             && let Some((fault, _)) = status.fault
@@ -72,7 +72,7 @@ impl<'a> Commands<'a> {
         Ok(Accepted::Done)
     }
 
-    /// Refuses when there is no room for another order, but for those that put the output to zero.
+    /// Refuses if there is no room for another order, not counting the room reserved for Stop and Disarm.
     pub(crate) fn room_for_order(&self) -> Result<(), Refusal> {
         if self.orders.len() + ORDERS_KEPT >= ORDERS_MAX { Err(Refusal::Busy) } else { Ok(()) }
     }
@@ -87,9 +87,9 @@ impl<'a> Commands<'a> {
         Ok(())
     }
 
-    /// Commands of the host come first: they are few, so that they hold up a lift by some ticks only. A sign of life waits
-    /// for one order of the finger, so that a host that pings does not move the finger's tracks in time, and for no more,
-    /// so that a touch source that reports at every tick does not silence the host.
+    /// The next order. Commands of the host come first: they are few, so they delay a lift by a few ticks only. An
+    /// [`Order::HostHeard`] waits for at most one order of the finger: it waits so that pings do not delay tracks, and
+    /// not longer, so that a touch source that reports at every tick does not cause a host timeout.
     pub(crate) fn next_order(&mut self) -> Option<Order<'a>> {
         if let Some(order) = self.orders.pop_front() {
             self.host_heard &= !order.is_sign_of_life();

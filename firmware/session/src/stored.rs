@@ -1,7 +1,7 @@
-//! The committed scene as bytes to keep over power-off, and back.
+//! Converts the committed scene to bytes that are stored over power-off, and back.
 //!
-//! In words of 8 bytes, little-endian: length of the scene (4 bytes) and number of bitmaps (4); for each bitmap its CRC-32
-//! (4), width (2) and height (2); the scene; the samples of each bitmap, filled up to whole words with zeros.
+//! In words of 8 bytes, little-endian: length of the scene (4 bytes) and number of bitmaps (4); for each bitmap its
+//! CRC-32 (4), width (2) and height (2); the scene; the samples of each bitmap, filled up to whole words with zeros.
 
 use frixel_wire::fault::State;
 use frixel_wire::frame::crc32;
@@ -27,13 +27,13 @@ impl StoredScene<'_> {
         self.crc32
     }
 
-    /// Bytes to keep.
+    /// Number of bytes to store.
     pub fn len_to_keep(&self) -> u32 {
         let samples: u32 = self.bitmaps.iter().map(|bitmap| whole_words(bitmap.len())).sum();
         samples_offset(self.bitmaps.len() as u32, self.scene.len() as u32) + samples
     }
 
-    /// The word at an offset, which is a whole number of words; zeros beyond the end.
+    /// The word at an offset, which must be a multiple of [`WORD_LEN`]; zeros beyond the end.
     pub fn word(&self, offset: u32) -> [u8; WORD_LEN] {
         let (count, scene_len) = (self.bitmaps.len() as u32, self.scene.len() as u32);
         let mut word = [0; WORD_LEN];
@@ -72,7 +72,7 @@ impl StoredScene<'_> {
 }
 
 impl Commands<'_> {
-    /// CRC-32 of the scene that there is to keep: of one that is committed while the board is disarmed.
+    /// CRC-32 of the scene to store: the committed one, if the board is disarmed.
     pub(crate) fn kept_crc32(&self) -> Option<u32> {
         (self.state == State::Disarmed && self.scene().is_some()).then_some(self.committed_crc32)
     }
@@ -88,7 +88,7 @@ impl Commands<'_> {
         Some(StoredScene { scene: self.scene()?, crc32, bitmaps, pool: self.pool })
     }
 
-    /// Commits a scene from the bytes of a [`StoredScene`]. Nothing of one that cannot be committed is left.
+    /// Commits a scene from the bytes of a [`StoredScene`]. If this fails, its bytes and bitmaps are dropped.
     pub(crate) fn restore(&mut self, read: impl Fn(u32, &mut [u8]) -> bool) -> Option<()> {
         let mut names = BitmapNames::new();
         let restored = self.restore_parts(&read, &mut names);
@@ -130,7 +130,7 @@ impl Commands<'_> {
         (digest.finish() == bitmap.crc32).then_some(())
     }
 
-    /// Puts the scene where an upload would have put it, and returns its CRC-32.
+    /// Puts the scene where an upload would put it, and returns its CRC-32.
     fn restore_scene(&mut self, read: &impl Fn(u32, &mut [u8]) -> bool, from: u32, len: u32) -> Option<u32> {
         self.staging.begin();
         for at in (0..len).step_by(WORD_LEN) {
@@ -145,12 +145,12 @@ impl Commands<'_> {
     }
 }
 
-/// Where the scene begins, behind the lengths and the list of bitmaps.
+/// Offset of the scene, after the lengths and the list of bitmaps.
 fn scene_offset(bitmaps: u32) -> u32 {
     (1 + bitmaps) * WORD_LEN as u32
 }
 
-/// Where the samples begin, behind the scene.
+/// Offset of the samples, after the scene.
 fn samples_offset(bitmaps: u32, scene_len: u32) -> u32 {
     scene_offset(bitmaps) + whole_words(scene_len)
 }

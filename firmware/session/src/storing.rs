@@ -1,4 +1,4 @@
-//! What is uploaded, and the room for it.
+//! Handles uploads, and allocates memory for them.
 
 use frixel_layers::{HEADER_LEN, POINT_LEN, RECORD_LEN, SCENE_MAX_LEN, StoredBitmap as Bitmap};
 use frixel_wire::fault::State;
@@ -33,7 +33,7 @@ impl Commands<'_> {
     ) -> Result<Accepted, Refusal> {
         self.drop_upload();
         if self.spare.is_none() {
-            // The ticker may still read the bitmaps of the scene before.
+            // The ticker may still read the bitmaps of the previous scene.
             return Err(Refusal::Busy);
         }
         if !self.announced_bitmaps.contains(&crc32) {
@@ -44,7 +44,7 @@ impl Commands<'_> {
             return Ok(Accepted::AlreadyHeld);
         }
         let bitmap = match self.make_room(width, height, crc32, settled) {
-            // The scene that these were for does not fit: they give way to another.
+            // The bitmaps of this scene do not fit: drop them, so that another scene can be uploaded.
             Err(full @ Refusal::BitmapPoolFull { .. }) => {
                 self.announced_bitmaps.clear();
                 return Err(full);
@@ -55,8 +55,8 @@ impl Commands<'_> {
         Ok(Accepted::Done)
     }
 
-    /// Finds room for a bitmap: beside all others, else in the place of those that no scene wants, else, when nothing
-    /// plays, in the place of the committed scene, those that stay moved together.
+    /// Allocates a bitmap: first without removing any, then after removing those that no scene uses, and then, if
+    /// nothing plays, after removing the committed scene and compacting the others.
     fn make_room(&mut self, width: u16, height: u16, crc32: u32, settled: bool) -> Result<Bitmap, Refusal> {
         let pool_len = self.board.limits.bitmap_pool_bytes;
         if let Ok(bitmap) = self.directory.allocate(width, height, crc32, pool_len) {
@@ -72,7 +72,7 @@ impl Commands<'_> {
             return Err(refused);
         }
         if !settled {
-            // The ticker may not have stopped yet, and still read what would be overwritten.
+            // The ticker may not have stopped yet, and may still read what would be overwritten.
             return Err(Refusal::Busy);
         }
         if self.committed_crc32 != 0 {
@@ -116,7 +116,7 @@ impl Commands<'_> {
         }
     }
 
-    /// Leaves no trace of an upload under way.
+    /// Drops an upload under way.
     pub(crate) fn drop_upload(&mut self) {
         if let Some(Upload { destination: Destination::Bitmap(unfinished), .. }) = self.upload.take()
             && cfg!(feature = "bitmap")

@@ -1,8 +1,8 @@
-//! From touch reports to tracks.
+//! Turns touch reports into tracks.
 //!
-//! Reports are late, rare and noisy; the tick wants a place at any moment. The tracker takes reports in beside the session,
-//! has no clock but the tick counts that it is given, and makes an immutable [`Track`] of each report that says something
-//! new. Tracks and lifts leave it as orders, one after the other.
+//! Reports are late, rare and noisy, but the tick needs a position at any time. The tracker makes an immutable
+//! [`Track`] from each report with new data. Tracks and lifts become orders, one after the other. The tracker reads no
+//! clock: it gets tick counts.
 
 use frixel_layers::range::LENGTH_MAX_M;
 
@@ -21,19 +21,19 @@ pub enum Touch {
         x_m: f32,
         /// From the top edge of the screen, in m.
         y_m: f32,
-        /// Ticks since the finger was there, as far as the source knows.
+        /// Ticks since the position was measured, as far as the source knows.
         age_ticks: u32,
     },
     /// No finger is on the screen.
     Up,
 }
 
-/// A sample older than this says nothing of where the finger is now, in s.
+/// Samples older than this are ignored, in s.
 const SAMPLE_AGE_MAX_S: f32 = 0.1;
-/// Part of the report period that two samples are taken to be apart at least.
+/// Least time between two samples that the estimator assumes, as a fraction of the report period.
 const STEP_MIN_PERIODS: f32 = 0.25;
 
-/// What belongs to the board's touch source and is computed once.
+/// Constants of the board's touch source, computed once.
 #[derive(Clone, Copy, Debug)]
 struct Timing {
     tick_period_s: f32,
@@ -43,28 +43,28 @@ struct Timing {
     standstill: StandstillTiming,
 }
 
-/// A place at which the finger was.
+/// A measured position of the finger.
 #[derive(Clone, Copy, Debug)]
 struct Sample {
     place_m: [f32; 2],
     /// Tick at which the finger was there.
     at_tick: u32,
-    /// Tick at which the report of it arrived.
+    /// Tick at which its report arrived.
     reported_at_tick: u32,
 }
 
 /// Turns touch reports into tracks.
 ///
-/// Reports wait until [`Self::next_order`] takes them. A place gives way to a newer place, a lift to nothing: the lift and
-/// the touch-down behind it are two orders.
+/// Reports wait until [`Self::next_order`] takes them. A newer position replaces a waiting one, but never a waiting
+/// lift: the lift and the touch-down after it are two orders.
 pub(crate) struct Tracker {
     timing: Timing,
-    /// A lift that waits to be handed over.
+    /// A lift waits for [`Self::next_order`].
     lift: bool,
-    /// A place that waits to be handed over, behind the lift.
+    /// A position that waits for [`Self::next_order`], after the lift.
     sample: Option<Sample>,
-    /// Time of the newest place that was reported. It stays when the finger is lost, so that a source that repeats an old
-    /// place for ever does not bring the finger back.
+    /// Time of the newest reported position. It is kept when the finger is lost, so that a source that repeats an old
+    /// position does not bring the finger back.
     newest_at_tick: Option<u32>,
     estimator: Estimator,
     standstill: Standstill,
@@ -75,7 +75,7 @@ pub(crate) struct Tracker {
 }
 
 impl Tracker {
-    /// A tracker that has heard of no finger.
+    /// A tracker without a finger.
     pub(crate) fn new(board: &Board) -> Self {
         Self {
             timing: Timing {
@@ -95,8 +95,8 @@ impl Tracker {
         }
     }
 
-    /// Takes a report that arrived at a tick. One of a place that is too old, not newer than the last one, or not on any
-    /// screen is ignored: it says nothing new, and must not keep the output alive, for the source may be stuck.
+    /// Takes a report that arrived at `now_tick`. A position that is too old, not newer than the last one, or outside
+    /// any screen is ignored: the source may be stuck, and repeated reports must not keep the output enabled.
     pub(crate) fn report(&mut self, touch: Touch, now_tick: u32) {
         match touch {
             Touch::Up => {
@@ -116,7 +116,7 @@ impl Tracker {
         }
     }
 
-    /// Forgets a finger whose last track has ended: the next report begins another contact. To be called at least once
+    /// Drops a finger whose last track has ended: the next report begins another contact. Must be called at least once
     /// before the tick counter wraps.
     pub(crate) fn expire(&mut self, now_tick: u32) {
         if self.until_tick.is_some_and(|tick| is_past(tick, now_tick)) {
@@ -124,7 +124,7 @@ impl Tracker {
         }
     }
 
-    /// What the tick has to know of the reports so far: a lift, or a track.
+    /// The next order that results from the reports so far: a lift or a track.
     pub(crate) fn next_order<'a>(&mut self) -> Option<Order<'a>> {
         if core::mem::take(&mut self.lift) {
             self.until_tick = None;
@@ -158,7 +158,7 @@ impl Tracker {
             half_acceleration_m_per_s2,
             ramp: StandstillRamp::MOVING,
         };
-        // The speed now, not that of the sample, which is late.
+        // Use the current speed, not the speed at the time of the sample, which is late.
         let velocity_now_m_per_s = track.velocity_m_per_s(track.elapsed_s(reported_at_tick, timing.tick_period_s));
         let ramp = self.standstill.take(velocity_now_m_per_s, reported_at_tick, &timing.standstill);
         Some(Track { ramp, ..track })

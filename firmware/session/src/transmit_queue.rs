@@ -1,4 +1,4 @@
-//! Bytes on their way to the host.
+//! The transmit queue: bytes to be sent to the host.
 
 use frixel_wire::frame::FRAME_MAX_LEN;
 use frixel_wire::hello::Hello;
@@ -6,23 +6,23 @@ use frixel_wire::message::FromBoard;
 use frixel_wire::payload;
 use heapless::Deque;
 
-/// Answers that may be outstanding (`PROTOCOL.md`, section 5). A host waits for its answers, so that it has one or two.
+/// Answers that may be outstanding (`PROTOCOL.md`, section 5). A host waits for its answers, so usually one or two are.
 const ANSWERS_MAX: usize = 64;
-/// The longest frame of an answer, that a scene is too costly, with a sequence number and a count of the longest form.
-/// A piece of a fault's text is longer, 52 bytes; a text has seven of them at most.
+/// Length of the longest frame of an answer: the refusal of a scene that is too costly, with a sequence number and a
+/// count of the longest form. A piece of a fault's text is longer, 52 bytes; a text has seven of them at most.
 const ANSWER_MAX_LEN: usize = 37;
-/// Frames that nobody waits for are left out while more than this is queued, 2.5 ms of a line of 2 Mbaud. So they leave
-/// room for all answers, and what comes of them is not old.
+/// Unsolicited frames are dropped while more than this is queued, 2.5 ms of a line of 2 Mbaud. They thus leave room for
+/// all answers, and those that are sent are recent.
 const UNASKED_MAX_LEN: usize = 512;
-/// Room for all of them, and for what tells how an upload goes and what the board's state is.
+/// Bytes of the queue: room for all answers and unsolicited frames, and for reports of progress and state.
 const QUEUE_LEN: usize = 3072;
 
 const _: () = assert!(ANSWERS_MAX * ANSWER_MAX_LEN + UNASKED_MAX_LEN + FRAME_MAX_LEN <= QUEUE_LEN);
 
-/// A queue of whole frames, the first of which may have left in part.
+/// A queue of whole frames; the first may have been sent in part.
 pub(crate) struct TransmitQueue {
     bytes: Deque<u8, QUEUE_LEN>,
-    /// The last byte that left did not end a frame.
+    /// The last byte sent did not end a frame.
     is_inside_frame: bool,
 }
 
@@ -31,19 +31,19 @@ impl TransmitQueue {
         Self { bytes: Deque::new(), is_inside_frame: false }
     }
 
-    /// Queues a message, and returns whether there was room. One that does not fit is left out whole, and the host asks
-    /// again after its deadline.
+    /// Queues a message, and returns whether there was room. A message that does not fit is dropped whole; the host
+    /// repeats its request after a timeout.
     pub(crate) fn send(&mut self, message: &FromBoard) -> bool {
         self.send_within(QUEUE_LEN, message)
     }
 
-    /// Queues a message that no request asked for, such as telemetry, unless the line is behind.
+    /// Queues an unsolicited message, such as telemetry, unless more than [`UNASKED_MAX_LEN`] bytes are queued.
     pub(crate) fn send_unasked(&mut self, message: &FromBoard) -> bool {
         self.send_within(UNASKED_MAX_LEN, message)
     }
 
-    /// Queues a message when no more than `len_max` bytes are queued then.
-    // Code of its own: many lines call it.
+    /// Queues a message if at most `len_max` bytes are then queued.
+    // Not inlined, because it has many callers.
     #[inline(never)]
     fn send_within(&mut self, len_max: usize, message: &FromBoard) -> bool {
         let mut frame = [0; FRAME_MAX_LEN];
@@ -51,7 +51,7 @@ impl TransmitQueue {
             .is_ok_and(|frame| self.bytes.len() + frame.len() <= len_max && self.push(frame))
     }
 
-    /// Queues a hello in the place of all that waits: that was meant for the client before.
+    /// Replaces all waiting frames by a hello: they were meant for the previous client.
     pub(crate) fn send_hello(&mut self, hello: &Hello) {
         self.keep_begun_frame();
         let mut frame = [0; FRAME_MAX_LEN];
@@ -60,7 +60,7 @@ impl TransmitQueue {
         }
     }
 
-    /// Drops all frames but the rest of one that has left in part.
+    /// Drops all frames except the rest of one that has been sent in part.
     fn keep_begun_frame(&mut self) {
         let rest = self.bytes.iter().position(|byte| *byte == 0).map_or(0, |end| end + 1);
         let kept = if self.is_inside_frame { rest } else { 0 };
@@ -74,7 +74,7 @@ impl TransmitQueue {
         let fits = QUEUE_LEN - self.bytes.len() >= frame.len();
         if fits {
             for byte in frame {
-                // There is room: it was looked for above.
+                // There is room: it was checked above.
                 let _ = self.bytes.push_back(*byte);
             }
         }

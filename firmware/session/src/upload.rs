@@ -1,4 +1,4 @@
-//! What comes in chunks: staged, checked whole, and only then of use.
+//! Uploads: chunks are collected, and used only once the whole has been checked.
 
 use frixel_wire::frame::Crc32;
 use frixel_wire::message::Refusal;
@@ -7,7 +7,7 @@ use frixel_wire::scene::bitmap_digest;
 
 use frixel_layers::{BitmapPool, SCENE_MAX_LEN, StoredBitmap};
 
-/// Chunks after which the host hears how far an upload has come: less than 1 KiB, a quarter of the smallest window.
+/// Chunks after which the board reports the progress of an upload: less than 1 KiB, a quarter of the smallest window.
 const PROGRESS_CHUNKS: u16 = 5;
 
 /// Where the bytes of an upload go.
@@ -28,7 +28,7 @@ pub(crate) struct Upload {
     gap_reported: bool,
 }
 
-/// What to tell the host of a chunk.
+/// The report to the host after a chunk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Report {
     Nothing,
@@ -40,7 +40,7 @@ impl Upload {
         Self::new(Destination::Scene, len, crc32, Crc32::new())
     }
 
-    /// Starts with the bitmap's shape, which its name covers.
+    /// An upload of a bitmap. Its CRC-32 covers the bitmap's width and height, too.
     pub(crate) fn of_bitmap(bitmap: StoredBitmap) -> Self {
         let digest = bitmap_digest(bitmap.width, bitmap.height);
         Self::new(Destination::Bitmap(bitmap), bitmap.len(), bitmap.crc32, digest)
@@ -50,8 +50,8 @@ impl Upload {
         Self { destination, len, crc32, received: 0, digest, next_chunk: 0, gap_reported: false }
     }
 
-    /// Takes a chunk. One that was there already does no harm; one that comes too early is left out, and the host is
-    /// told, once, which one is wanted.
+    /// Takes a chunk. A chunk that was received before is ignored. A chunk that comes too early is dropped, and the
+    /// expected chunk is reported once.
     pub(crate) fn take(&mut self, number: u16, bytes: &[u8], staging: &mut Staging, pool: &BitmapPool) -> Report {
         let wanted_len = (self.len - self.received).min(CHUNK_LEN as u32);
         if number != self.next_chunk || bytes.len() as u32 != wanted_len || wanted_len == 0 {
@@ -74,7 +74,7 @@ impl Upload {
         }
     }
 
-    /// Whether all bytes came, and as they were announced.
+    /// Checks that all bytes have arrived, and that their CRC-32 is the announced one.
     pub(crate) fn check(&self) -> Result<(), Refusal> {
         if self.received < self.len {
             return Err(Refusal::UploadIncomplete { next_chunk: self.next_chunk });
@@ -88,10 +88,10 @@ impl Upload {
     }
 }
 
-/// The bytes of a scene that was or is being uploaded.
+/// The bytes of a scene that has been or is being uploaded.
 pub(crate) struct Staging {
     bytes: [u8; SCENE_MAX_LEN],
-    /// Length and CRC-32 of a scene that is whole.
+    /// Length and CRC-32 of a scene that is complete.
     whole: Option<(u32, u32)>,
 }
 
@@ -100,12 +100,12 @@ impl Staging {
         Self { bytes: [0; SCENE_MAX_LEN], whole: None }
     }
 
-    /// Gives up the scene: another begins to take its place.
+    /// Discards the scene, because the upload of another begins.
     pub(crate) fn begin(&mut self) {
         self.whole = None;
     }
 
-    /// The scene is all there.
+    /// Records that the scene is complete.
     pub(crate) fn finish(&mut self, len: u32, crc32: u32) {
         self.whole = Some((len, crc32));
     }
@@ -116,7 +116,7 @@ impl Staging {
         }
     }
 
-    /// The whole scene with its CRC-32.
+    /// The complete scene with its CRC-32.
     pub(crate) fn scene(&self) -> Option<(&[u8], u32)> {
         let (len, crc32) = self.whole?;
         Some((self.bytes.get(..len as usize)?, crc32))

@@ -258,7 +258,7 @@ fn what_there_is_no_room_for_is_dropped_and_what_was_due_comes_too_late() {
     assert_eq!(ends.intake.progress(), Some((1_024, 200)), "repeats take no room");
     let expected = f32::from(sample(198)) * VALUE_PER_SAMPLE;
     assert!((played[199].value - expected).abs() < 1e-6);
-    // Of the 200 zeros, those from the one that is due on took effect, those before it did not.
+    // Of the 200 zeros, those before the player's next position were dropped, the others took effect.
     assert!(ends.run(50)[2..].iter().all(|now| now.value.to_bits() == 0));
     assert!((ends.run(52)[51].value - f32::from(sample(300)) * VALUE_PER_SAMPLE).abs() < 1e-6);
 }
@@ -271,7 +271,7 @@ fn another_stream_is_heard_from_its_first_sample_and_never_before() {
     ends.take(0, &samples(0, 600));
     ends.run(500);
     ends.end();
-    // The session goes ahead: the ticker has not been told of the new stream.
+    // The session is ahead: the ticker has not received the order for the new stream yet.
     let start = ends.intake.start(TICK_HZ, TICK_HZ, 50);
     assert_eq!(ends.intake.progress(), Some((0, 1_024)), "what is left of the old one takes no room");
     ends.take(0, &[7_000; 200]);

@@ -1,4 +1,4 @@
-//! What the supervisor owes to the person at the electrode (DESIGN section 5).
+//! The safety requirements of the supervisor (DESIGN section 5).
 
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::{Fault, State};

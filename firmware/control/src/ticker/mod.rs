@@ -20,29 +20,29 @@ use crate::stream::{Player, StreamBuffer};
 use crate::supervisor::{self, Supervisor};
 use crate::{Active, Board, Drive, Sense, Track};
 
-/// Turns the finger's track into voltage, one tick at a time, and owns the output through its supervisor.
+/// Turns the finger's track into voltage, one tick at a time. Its supervisor decides whether the output is enabled.
 pub struct Ticker<'a> {
     timing: Timing,
     tick: u32,
-    /// What can stop the output.
+    /// Can stop the output.
     supervisor: Supervisor,
     finger: Finger,
-    /// The finger was lifted since the last tick, though another may be there already.
+    /// The finger was lifted since the last tick, even if another has touched the screen since.
     was_lifted: bool,
-    /// The first deadline of the finger's track and of the host; `None` when there is neither.
+    /// The earlier of the end of the finger's track and the host timeout; `None` if neither applies.
     deadline_tick: Option<u32>,
-    /// What drives the output.
+    /// Coefficients of the current scene.
     active: &'a mut Active,
     pool: &'a BitmapPool,
     clicks: Clicks,
-    /// What layers depend on besides the place.
+    /// Inputs of the layers: position and velocity of the finger, tick, stream.
     inputs: Inputs,
-    /// `None` on a board that has no buffer for it.
+    /// `None` on a board without a stream buffer.
     #[cfg(feature = "stream")]
     stream: Option<Player<'a>>,
     envelope: Envelope,
     carrier: Carrier,
-    /// What the last tick did.
+    /// Target friction at the last tick. This and the next fields hold the results of the last tick.
     electric_friction_n: f32,
     target_v_rms: f32,
     dac_code: DacCode,
@@ -51,18 +51,18 @@ pub struct Ticker<'a> {
     orders_applied: u32,
 }
 
-/// What belongs to the board and is computed once.
+/// Constants of the board, computed once.
 #[derive(Clone, Copy)]
 struct Timing {
     tick_period_s: f32,
-    /// Longest that a track is followed, whatever it says.
+    /// Longest time for which a track is followed, even if its own end is later.
     track_ticks_max: u32,
     host_timeout_default_ticks: u32,
 }
 
 impl<'a> Ticker<'a> {
-    /// A ticker with its output at zero, that reads bitmaps from `pool` and starts with `active`, which need not hold
-    /// a scene.
+    /// A ticker whose output is zero. It reads bitmaps from `pool` and starts with `active`, which need not hold a
+    /// scene.
     pub fn new(board: &Board, pool: &'a BitmapPool, active: &'a mut Active) -> Self {
         let carrier = Carrier::new(&active.carrier);
         Self {
@@ -93,32 +93,33 @@ impl<'a> Ticker<'a> {
         }
     }
 
-    /// Sets the tick count, for tests of what happens when it wraps.
+    /// Sets the tick count, for tests of its wrap-around.
     #[doc(hidden)]
     pub fn set_tick(&mut self, tick: u32) {
         self.tick = tick;
     }
 
-    /// From now on, plays streams from `buffer`, into which the session takes their samples.
+    /// Plays streams from `buffer` from now on. The session writes their samples into it.
     #[cfg(feature = "stream")]
     pub fn attach_stream(&mut self, buffer: &'a StreamBuffer) {
         self.stream = Some(Player::new(buffer, self.timing.tick_period_s));
     }
 
-    /// One tick: to be called exactly [`Board::tick_hz`] times a second, after at most one order of
-    /// [`Ticker::apply`].
+    /// Runs one tick. Call this exactly [`Board::tick_hz`] times a second, with at most one call of [`Ticker::apply`]
+    /// before each.
     ///
-    /// Deadline: the drive has to be at the DAC before the next tick begins, 25 us or 4,250 cycles at 40 kHz on the G474.
-    /// A tick that misses it leaves the voltage before on the electrode for another tick: the board then puts the output to
-    /// zero and calls [`Ticker::raise`] with [`Fault::Deadline`](frixel_wire::fault::Fault::Deadline). The tick does not
-    /// allocate, wait or panic, and does the same steps every time; the layers under the finger say how long it takes.
-    // A board that is built for size would make it small, and slow.
+    /// Deadline: the drive must reach the DAC before the next tick begins, 25 us or 4,250 cycles at 40 kHz on the G474.
+    /// A tick that misses it leaves the previous voltage on the electrode for another tick: the board then sets the
+    /// output to zero and calls [`Ticker::raise`] with [`Fault::Deadline`](frixel_wire::fault::Fault::Deadline). The
+    /// tick does not allocate, wait or panic, and runs the same steps every time; its duration depends on the layers
+    /// under the finger.
+    // Not inlined: a caller that is built for size would compile the tick for size too, and make it slow.
     #[inline(never)]
     pub fn tick(&mut self, sense: &Sense) -> Drive {
         self.tick = self.tick.wrapping_add(1);
         self.arm_switch = sense.arm_switch;
 
-        // What can stop the output: a fault, the end of the finger's track, a silent host, a lift.
+        // Check what stops the output: a fault, the end of the finger's track, the host timeout, a lift.
         self.supervisor.check(sense, self.dac_code);
         if self.deadline_tick.is_some_and(|tick| is_past(tick, self.tick)) {
             self.meet_deadline();
@@ -131,7 +132,8 @@ impl<'a> Ticker<'a> {
         };
         let Some(table) = self.active.table() else { return self.zero_output() };
 
-        // What drives it: the finger's place, the scene there, the voltage for its friction, envelope and carrier.
+        // Compute the output: the finger's position, the scene's friction there, its voltage, the envelope, the
+        // carrier.
         let elapsed_s = self.elapsed_s(track);
         self.inputs.set_place(track.place_m(elapsed_s), self.tick);
         self.inputs.velocity_m_per_s = track.velocity_m_per_s(elapsed_s);
@@ -152,13 +154,14 @@ impl<'a> Ticker<'a> {
         Drive { dac_code, amplifier_enable: true }
     }
 
-    /// Seconds from the beginning of the track to this tick. Without prediction the finger stays where it was seen.
+    /// Seconds from the beginning of the track to this tick; 0 without prediction, so that the finger stays where it
+    /// was measured.
     #[inline]
     fn elapsed_s(&self, track: &Track) -> f32 {
         if self.active.prediction { track.elapsed_s(self.tick, self.timing.tick_period_s) } else { 0.0 }
     }
 
-    /// Zero at once, whatever the slew limit.
+    /// Sets the output to zero at once, without the slew limit.
     #[inline(never)]
     fn zero_output(&mut self) -> Drive {
         #[cfg(feature = "stream")]
@@ -174,7 +177,7 @@ impl<'a> Ticker<'a> {
         Drive::default()
     }
 
-    /// Lets go of a finger whose track has ended, and disarms when the host is silent.
+    /// Drops a finger whose track has ended, and disarms if the host timeout has passed.
     #[cold]
     #[inline(never)]
     fn meet_deadline(&mut self) {
@@ -183,7 +186,7 @@ impl<'a> Ticker<'a> {
         self.find_deadline();
     }
 
-    /// Finds the next deadline. To be called after whatever may have changed one.
+    /// Finds the next deadline. Must be called after every change of the track, the state or the host timeout.
     fn find_deadline(&mut self) {
         self.deadline_tick = match (self.finger.until_tick(), self.supervisor.host_deadline_tick()) {
             (Some(finger_tick), Some(host_tick)) => Some(earlier(finger_tick, host_tick)),
@@ -211,8 +214,8 @@ impl<'a> Ticker<'a> {
     }
 }
 
-/// Above the largest friction of the table, below zero, or not a number: bit patterns of the last two are above those of
-/// every positive number. Minus zero is within reach.
+/// Whether a friction is above the table's maximum, negative or not a number. As an unsigned integer, the bit pattern
+/// of a negative number exceeds that of every positive number, and so does not-a-number. Minus zero is within reach.
 #[inline]
 fn is_out_of_reach(electric_friction_n: f32, table: &InverseTable) -> bool {
     electric_friction_n.to_bits() > table.electric_friction_max_n().to_bits() && electric_friction_n != 0.0

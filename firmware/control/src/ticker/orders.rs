@@ -1,4 +1,4 @@
-//! What the session orders, and the faults that the board finds.
+//! Applies the session's orders and the faults that the board raises.
 
 use frixel_wire::fault::{Fault, State};
 
@@ -7,7 +7,7 @@ use crate::finger::Finger;
 use crate::{Active, Order};
 
 impl<'a> Ticker<'a> {
-    /// Takes an order of the session, before a tick. Returns the coefficients that a [`Order::Load`] replaced.
+    /// Applies an order of the session, before a tick. Returns the coefficients that an [`Order::Load`] replaced.
     #[inline(never)]
     pub fn apply(&mut self, order: Order<'a>) -> Option<&'a mut Active> {
         let spare = match order {
@@ -26,7 +26,7 @@ impl<'a> Ticker<'a> {
         spare
     }
 
-    /// Takes an order that carries out a command of the host.
+    /// Applies an order that is not about the finger.
     #[inline(never)]
     fn apply_host_order(&mut self, order: Order<'a>) -> Option<&'a mut Active> {
         if order.is_counted() {
@@ -39,7 +39,7 @@ impl<'a> Ticker<'a> {
             Order::Unload => self.active.unload(),
             Order::SetLayer { layer, on, gain } => {
                 self.active.set_layer(layer, on, gain);
-                // Nobody slid into a layer that is put on under the finger.
+                // A layer that is enabled under the finger must not click: the finger did not slide into it.
                 self.clicks.lift();
             }
             #[cfg(feature = "stream")]
@@ -54,16 +54,16 @@ impl<'a> Ticker<'a> {
                     stream.end(last);
                 }
             }
-            // The supervisor has taken them.
+            // The supervisor has already applied them.
             Order::HostHeard | Order::Arm | Order::Disarm | Order::Play | Order::Stop | Order::ClearFault => {}
-            // The finger's, not the host's.
+            // `apply` has handled them.
             Order::Track(_) | Order::Lift => {}
         }
         self.supervisor.set_host_timeout(self.host_timeout_ticks());
         spare
     }
 
-    /// Swaps the scene, and returns the coefficients of the one before. The new scene's voltage limit holds at once.
+    /// Swaps the scene, and returns the previous coefficients. The new scene's voltage limit applies at once.
     #[inline]
     fn load(&mut self, next: &'a mut Active) -> &'a mut Active {
         let spare = core::mem::replace(&mut self.active, next);
@@ -77,7 +77,7 @@ impl<'a> Ticker<'a> {
         spare
     }
 
-    /// The timeout that holds now. Only a playing scene may go on without a host.
+    /// The host timeout in the current state. Only a playing scene may continue without a host.
     #[inline]
     fn host_timeout_ticks(&self) -> Option<u32> {
         if self.supervisor.state() == State::Active {
@@ -87,8 +87,8 @@ impl<'a> Ticker<'a> {
         }
     }
 
-    /// Latches a hard fault that the board has found: the output is zero from the next tick on. A fault that is latched
-    /// already stays the one that is reported, since it came first.
+    /// Latches a hard fault that the board has detected: the output is zero from the next tick on. If a fault is
+    /// already latched, that one stays reported, because it came first.
     #[inline]
     pub fn raise(&mut self, fault: Fault, detail: u32) {
         if fault == Fault::Deadline {

@@ -1,4 +1,4 @@
-//! What the ticker reports.
+//! The ticker's status report.
 
 use frixel_wire::fault::{Flags, State};
 use frixel_wire::message::Telemetry;
@@ -16,13 +16,14 @@ impl Ticker<'_> {
         self.supervisor.state()
     }
 
-    /// Whether the arm switch has to be released, and then pressed, before the board arms. Where no person stands at a
-    /// switch, as on a simulated board, the switch is held whenever this is not so: then the host alone decides.
+    /// Whether the arm switch must be released, and then pressed, before the board can be armed. A board without a
+    /// person at a switch, such as a simulated one, holds the switch whenever this is `false`, so that the host alone
+    /// decides.
     pub fn waits_for_release(&self) -> bool {
         self.supervisor.state() == State::Disarmed && !self.supervisor.switch_was_released()
     }
 
-    /// What the board does now.
+    /// The board's status after the last tick.
     pub fn status(&self) -> Status {
         let [finger_x_m, finger_y_m] = self.place_m();
         Status {

@@ -1,4 +1,5 @@
-//! A picture of samples at a pitch, bilinear between their centres, turned about its corner, held at its border or tiled.
+//! A picture of samples at a pitch, bilinear between their centres, turned about its corner, held at its border or
+//! tiled.
 
 use frixel_wire::message::Refusal;
 
@@ -31,7 +32,7 @@ parameters! {
         pitch_y_m: f32 = 44 in range::PITCH_M,
         /// How far the rows are turned about that corner, from x towards y, in turns.
         angle_turns: f32 = 48 in range::ANGLE_TURNS,
-        /// The picture is repeated in both directions; else the samples at its border go on for ever.
+        /// The picture is repeated in both directions. Otherwise the samples at its border extend outwards without end.
         tiled: bool = 3,
     }
 }
@@ -72,14 +73,14 @@ impl Kind for Bitmap {
     }
 }
 
-/// Where the samples lie in the pool, and how the screen maps to them.
+/// The location of the samples in the pool, and the mapping from the screen to them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct BitmapCoefficients {
     offset: u32,
     width: u16,
     height: u16,
     tiled: bool,
-    /// Place of the first sample's centre, in m.
+    /// Position of the first sample's centre, in m.
     x_m: f32,
     y_m: f32,
     /// Samples along a row, and rows, for each metre along x and y.
@@ -109,17 +110,18 @@ impl Evaluate for BitmapCoefficients {
     }
 }
 
-/// The two samples on either side of a position, and how far it is from the first to the second. Held at the border.
+/// The samples before and after a position, and the fraction of the way between them. Positions are clamped to the
+/// border.
 #[inline]
 fn neighbours_held(position: f32, count: u16) -> (usize, usize, f32) {
     let last = u32::from(count.saturating_sub(1));
     let position = if position > 0.0 { position } else { 0.0 };
-    // Beyond the last sample both are the last, whatever the distance.
+    // Beyond the last sample, both are the last one, so the fraction has no effect.
     let index = (position as u32).min(last);
     (index as usize, (index + 1).min(last) as usize, position - index as f32)
 }
 
-/// As [`neighbours_held`], with the first sample again behind the last.
+/// As [`neighbours_held`], but the first sample follows the last.
 #[inline]
 fn neighbours_tiled(position: f32, count: u16) -> (usize, usize, f32) {
     let count = u32::from(count);

@@ -13,15 +13,16 @@ use crate::prepare::{Preparation, no_room};
 use crate::region::ActiveRegion;
 use crate::tables::NOISES_MAX;
 
-/// Waves that a layer of noise is made of.
+/// Number of waves in a layer of noise.
 const WAVES: usize = 8;
 /// Keeps the sum within its range although a cosine may be a millionth larger than 1.
 const WITHIN: f32 = 1.0 - 1e-6;
 
 parameters! {
-    /// The mean of eight cosine waves over the screen, `low + (high - low) (1 + mean) / 2`: `PROTOCOL.md` says which.
+    /// The mean of eight cosine waves over the screen, `low + (high - low) (1 + mean) / 2`; `PROTOCOL.md` defines the
+    /// waves.
     pub struct Noise {
-        /// Chooses the waves.
+        /// Seed from which the waves are generated.
         seed: u32 = 52,
         /// Shortest wavelength, m.
         wavelength_min_m: f32 = 24 in range::WAVELENGTH_M,
@@ -100,8 +101,8 @@ struct PlaneWave {
 }
 
 impl Waves {
-    /// Directions are spread over half a turn and wave numbers over the band, each in eight parts of which every wave has
-    /// one: no seed leaves a part of them empty.
+    /// Directions are spread over half a turn and wave numbers over the band, each divided into eight parts, one for
+    /// each wave: no seed leaves a part empty.
     fn new(seed: u32, wavelength_min_m: f32, wavelength_max_m: f32) -> Self {
         let (least, largest) = (1.0 / wavelength_max_m, 1.0 / wavelength_min_m);
         let mut waves = [PlaneWave::default(); WAVES];
@@ -119,8 +120,8 @@ impl Waves {
     }
 }
 
-/// The fraction, from 0 to 1, that a seed has for a wave: `draw` is 1 to 3. The hash is "lowbias32" of C. Wellons'
-/// hash-prospector.
+/// The pseudo-random number, from 0 to 1, of a seed and a wave: `draw` is 1 to 3. The hash is "lowbias32" of C.
+/// Wellons' hash-prospector.
 fn fraction(seed: u32, wave: u32, draw: u32) -> f32 {
     let mut v = seed.wrapping_add(0x9e37_79b9_u32.wrapping_mul(3 * wave + draw));
     v ^= v >> 16;

@@ -14,7 +14,7 @@ use crate::point::Point;
 use crate::prepare::{Preparation, ticks};
 use crate::region::ActiveRegion;
 
-/// 2^-32: a phase in whole steps to turns.
+/// 2^-32: converts a phase in integer steps to turns.
 const TURNS_PER_STEP: f32 = 1.0 / (1u64 << 32) as f32;
 
 parameters! {
@@ -28,7 +28,7 @@ parameters! {
         low_n: f32 = 28 in range::FRICTION_N,
         /// Largest electric friction, N.
         high_n: f32 = 32 in range::FRICTION_N,
-        /// How it comes and goes.
+        /// Bursts of the vibration.
         burst: Burst = 36,
     }
 }
@@ -59,14 +59,14 @@ impl Parameter for Beat {
     }
 }
 
-/// How a vibration comes and goes: within each period it rises over the ramp, is on, and falls over the ramp.
+/// Bursts of a vibration: in each period, its envelope rises over the ramp, stays at 1, and falls over the ramp.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Burst {
-    /// From one beginning to the next, s; 0 for a vibration that goes on.
+    /// Period of the bursts, s; 0 for a continuous vibration.
     pub period_s: f32,
-    /// How long it is on, both ramps included, s; at most the period.
+    /// Duration of a burst including both ramps, s; at most the period.
     pub on_s: f32,
-    /// How long it rises, and how long it falls, s; at most half of the time that it is on.
+    /// Duration of each ramp, s; at most half the duration of the burst.
     pub ramp_s: f32,
 }
 
@@ -117,7 +117,7 @@ impl Kind for Vibration {
     }
 }
 
-/// `low + half_span e (1 + w)`. The phase is a tick number times a step, modulo a turn, so that it never drifts.
+/// `low + half_span e (1 + w)`. The phase is a tick number times a step, modulo a turn, so the phase does not drift.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct VibrationCoefficients {
     beat: Beat,

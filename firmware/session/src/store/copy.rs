@@ -1,18 +1,18 @@
-//! Two copies, and which of them is good.
+//! A slot of two copies, and the search for the newer good one.
 
 use frixel_wire::frame::{Crc32, crc32};
 
 use super::{Flash, WORD_LEN};
 
-/// First bytes of a header. Another layout gets another one.
+/// First bytes of a header. Every change of the layout changes them.
 const MAGIC: u32 = u32::from_le_bytes(*b"fxs1");
-/// Bytes of a header: magic, sequence number, length and CRC-32 of the content, CRC-32 of the header up to here, and four
-/// bytes that fill the last word.
+/// Bytes of a header: magic, sequence number, length and CRC-32 of the content, CRC-32 of the header up to here, and
+/// four bytes that fill the last word.
 pub(super) const HEADER_LEN: usize = 3 * WORD_LEN;
 /// Bytes that are read at once.
 const READ_LEN: usize = 64;
 
-/// Pages of the flash that hold two copies of one thing, the one behind the other.
+/// Pages of the flash that hold two copies of the same kind of content, one after the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Slot {
     /// First page of the first copy.
@@ -34,19 +34,19 @@ pub struct Found {
 }
 
 impl Found {
-    /// The copy whose place a new one takes when this one is the newest, and the new one's sequence number.
+    /// The number and the sequence number of the next copy, if this one is the newest.
     pub(super) fn next(&self) -> (u32, u32) {
         (1 - self.copy, self.sequence.wrapping_add(1))
     }
 }
 
 impl Slot {
-    /// Bytes of the largest content.
+    /// Largest length of the content, in bytes.
     pub const fn capacity<F: Flash>(&self) -> u32 {
         (self.pages * F::PAGE_LEN).saturating_sub(HEADER_LEN as u32)
     }
 
-    /// The newer of the good copies.
+    /// Finds the newer of the good copies.
     pub fn find<F: Flash>(&self, flash: &F) -> Option<Found> {
         let (first, second) = (self.check(flash, 0), self.check(flash, 1));
         match (first, second) {
@@ -58,7 +58,7 @@ impl Slot {
         }
     }
 
-    /// Reads content of a good copy. `false` beyond its end.
+    /// Reads content of a good copy. Returns `false` beyond its end.
     #[must_use]
     pub fn read<F: Flash>(&self, flash: &F, found: &Found, offset: u32, bytes: &mut [u8]) -> bool {
         let inside = offset.checked_add(bytes.len() as u32).is_some_and(|end| end <= found.len);
@@ -75,7 +75,7 @@ impl Slot {
         self.first_page + copy * self.pages
     }
 
-    /// The copy, if it is good.
+    /// Returns the copy if it is good.
     pub(super) fn check<F: Flash>(&self, flash: &F, copy: u32) -> Option<Found> {
         let mut header = [0; HEADER_LEN];
         if !flash.read(self.offset::<F>(copy), &mut header) {

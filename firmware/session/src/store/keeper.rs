@@ -1,11 +1,10 @@
-//! When the last scene is written: while the board is disarmed, and has settled.
+//! Stores the last scene once the board has been disarmed for a while.
 
 use super::{Flash, Found, Slot, Writer, Writing};
 use crate::Session;
 
-/// Time for which the board has been disarmed with a scene that is not kept yet before it is written. A page bears some
-/// 10,000 erasures; a host that commits, arms and plays is not done in this time, and one that tries scene after scene
-/// wears nothing.
+/// A new scene is written after the board has been disarmed with it for this time, in s. A page bears some 10,000
+/// erasures; the delay avoids wear by a host that commits, arms and plays, or that tries one scene after another.
 const SETTLED_AFTER_S: u32 = 2;
 
 /// Keeps the last scene over power-off.
@@ -13,13 +12,13 @@ pub struct SceneKeeper {
     slot: Slot,
     settled_after_ticks: u32,
     found: Option<Found>,
-    /// CRC-32 of the scene that is kept, or that could not be.
+    /// CRC-32 of the scene that is stored, or that could not be stored.
     settled_crc32: Option<u32>,
     pending: Option<Pending>,
     failures: u32,
 }
 
-/// A scene that is not kept yet.
+/// A scene that is not stored yet.
 struct Pending {
     crc32: u32,
     since_tick: u32,
@@ -27,8 +26,8 @@ struct Pending {
 }
 
 impl SceneKeeper {
-    /// Looks for the scene that is kept in `slot`, and commits it in `session`, whose ticker then gets an order to load
-    /// it. It is not armed by that.
+    /// Finds the scene that is stored in `slot`, and commits it in `session`, which then orders the ticker to load it.
+    /// This does not arm the board.
     pub fn new<F: Flash>(slot: Slot, tick_hz: u32, flash: &F, session: &mut Session) -> Self {
         let found = slot.find(flash);
         if let Some(found) = &found {
@@ -39,12 +38,12 @@ impl SceneKeeper {
         Self { slot, settled_after_ticks, found, settled_crc32, pending: None, failures: 0 }
     }
 
-    /// Does the next small thing that there is to do, without waiting: to be called again and again. What is under way
-    /// is given up as soon as the board is armed or the scene is another one.
+    /// Does the next small step without waiting; call it repeatedly. A write under way is abandoned as soon as the
+    /// board is armed or has another scene.
     pub fn step<F: Flash>(&mut self, flash: &mut F, session: &Session, now_tick: u32) {
         let Some(kept) = session.kept().filter(|kept| Some(kept.crc32()) != self.settled_crc32) else {
             self.pending = None;
-            // What was begun before the board was armed ends, and leaves the flash as it was found.
+            // Let an operation that began before arming end: polling it locks the flash again.
             let _ = flash.operation();
             return;
         };
@@ -72,18 +71,18 @@ impl SceneKeeper {
             }
             Writing::Failed => {
                 self.failures = self.failures.wrapping_add(1);
-                // It is not tried again: a page that has failed would only fail once more.
+                // Do not try again: a page that has failed is likely to fail again.
                 self.settled_crc32 = Some(kept.crc32());
             }
         }
     }
 
-    /// CRC-32 of the scene in the newest good copy's place, or that could not be written; `None` when nothing is kept.
+    /// CRC-32 of the scene that is stored, or that could not be stored; `None` if nothing is stored.
     pub fn settled_crc32(&self) -> Option<u32> {
         self.settled_crc32
     }
 
-    /// Times that the flash has failed, or a scene did not fit.
+    /// How often the flash failed or a scene did not fit.
     pub fn failures(&self) -> u32 {
         self.failures
     }

@@ -1,17 +1,17 @@
-//! Limits that bring-up has measured on a board, as they are kept.
+//! Stored form of the limits that were measured on a board during bring-up.
 
 use frixel_wire::hello::BoardLimits;
 
 /// Version of the layout.
 const VERSION: u32 = 1;
-/// Bytes of the limits as they are kept: the version, then six numbers.
+/// Bytes of the stored limits: the version, then six numbers.
 pub const LIMITS_LEN: usize = 28;
-/// Largest voltage that is believed, in V peak; whatever a slot says, no electrovibration screen takes more.
+/// Largest voltage that is accepted, in V peak: no electrovibration screen takes more.
 const VOLTAGE_MAX_V_PEAK: f32 = 500.0;
-/// No board has a number as large, in any unit.
+/// Upper bound of all stored numbers, in any unit.
 const NUMBER_MAX: f32 = 1e9;
 
-/// The bytes to keep of the limits that bring-up measures.
+/// Writes the measured limits as bytes to store.
 pub fn write_limits(limits: &BoardLimits) -> [u8; LIMITS_LEN] {
     let mut bytes = [0; LIMITS_LEN];
     let numbers = measured(limits).map(f32::to_bits);
@@ -21,7 +21,7 @@ pub fn write_limits(limits: &BoardLimits) -> [u8; LIMITS_LEN] {
     bytes
 }
 
-/// `limits` with the numbers that were kept. `None` when they are of another layout, or none that a board can have.
+/// Returns `limits` with the stored numbers; `None` if their layout is unknown or a number is out of range.
 pub fn read_limits(bytes: &[u8; LIMITS_LEN], limits: &BoardLimits) -> Option<BoardLimits> {
     let (words, _) = bytes.as_chunks::<4>();
     let [version, numbers @ ..] = words else { return None };
@@ -41,7 +41,7 @@ pub fn read_limits(bytes: &[u8; LIMITS_LEN], limits: &BoardLimits) -> Option<Boa
     (u32::from_le_bytes(*version) == VERSION && plausible).then_some(kept)
 }
 
-/// The numbers that bring-up measures, in the order in which they are kept.
+/// The numbers that are measured during bring-up, in the order in which they are stored.
 fn measured(limits: &BoardLimits) -> [f32; 6] {
     [
         limits.voltage_max_v_peak,

@@ -1,4 +1,4 @@
-//! Writes one copy, an operation of the flash at a time.
+//! Writes one copy, one operation of the flash at a time.
 
 use frixel_wire::frame::Crc32;
 
@@ -16,7 +16,7 @@ pub struct Writer {
     digest: Crc32,
 }
 
-/// What is to be done next.
+/// The next operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Next {
     Erase { page: u32 },
@@ -25,27 +25,28 @@ enum Next {
     Check,
 }
 
-/// How far the writing has come.
+/// Progress of a write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Writing {
     /// There is more to do.
     UnderWay,
-    /// The copy is there, and was read back.
+    /// The copy was written and verified.
     Done(Found),
-    /// The flash has failed. The copy before is still good.
+    /// The flash has failed. The previous copy is still good.
     Failed,
 }
 
 impl Writer {
-    /// Will write `len` bytes over the older copy of `slot`, whose newer one is `found`. `None` when they do not fit.
+    /// Prepares to write `len` bytes over the older copy of `slot`; `found` is the newer one. `None` if they do not
+    /// fit.
     pub fn new<F: Flash>(slot: Slot, found: Option<&Found>, len: u32) -> Option<Self> {
         let (copy, sequence) = found.map_or((0, 1), Found::next);
         let next = Next::Erase { page: 0 };
         (len <= slot.capacity::<F>()).then(|| Self { slot, copy, sequence, len, next, digest: Crc32::new() })
     }
 
-    /// Begins the next operation, unless the last one is still under way. `content` gives the word of the content at an
-    /// offset, and has to give the same content until all is written.
+    /// Begins the next operation, unless the last one is still under way. `content` returns the word of the content at
+    /// an offset; the content must not change until all of it is written.
     pub fn step<F: Flash>(&mut self, flash: &mut F, content: impl Fn(u32) -> [u8; WORD_LEN]) -> Writing {
         match flash.operation() {
             Operation::Busy => return Writing::UnderWay,
@@ -81,7 +82,7 @@ impl Writer {
         Writing::UnderWay
     }
 
-    /// Pages that the copy takes, one at least.
+    /// Pages that the copy takes, at least one.
     fn pages<F: Flash>(&self) -> u32 {
         (self.len + HEADER_LEN as u32).div_ceil(F::PAGE_LEN)
     }
