@@ -1,4 +1,4 @@
-//! A simulator that stands in for amplifier, screen and finger, in virtual time.
+//! A simulator of amplifier, screen and finger, in virtual time.
 //!
 //! - [`World`]: what is on the other side of the board's pins. It gives a [`Sense`](frixel_control::Sense) and takes a
 //!   [`Drive`](frixel_control::Drive) at every tick, and tells what the finger [felt](Felt).
