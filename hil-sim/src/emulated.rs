@@ -4,9 +4,9 @@
 //! - [`replay`] sends the board the inputs of a [`Journal`](crate::Journal) of the in-process rig and compares its
 //! outputs, bit for bit. The board advances only when it receives a tick; wall time has no influence.
 //! - [`LinkBoard`] lets the board tick by itself, with its serial port behind a pseudo-terminal for a real host, and a
-//!   [`World`](crate::World) that lives on what the board drives. Virtual time is never ahead of wall time.
+//!   [`World`](crate::World) that follows the board's output. Virtual time is never ahead of wall time.
 //!
-//! Simulator and board share the board's PSRAM, which is a file ([`frixel_exchange`] says what stands in it).
+//! Simulator and board share the board's PSRAM, which is a file; [`frixel_exchange`] describes its content.
 
 mod error;
 mod image;

@@ -29,7 +29,7 @@ extern "C" fn follow_begin(_case: usize) {
     naked_asm!("bx lr")
 }
 
-/// A debugger stops tracing here. This function differs from the other, so that the linker does not merge the two.
+/// A debugger stops tracing here. This function differs from the other, so that the two are not merged.
 #[unsafe(no_mangle)]
 #[unsafe(naked)]
 extern "C" fn follow_end() {

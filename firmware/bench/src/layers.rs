@@ -32,7 +32,7 @@ const STREAM: Layer = Layer::Stream(Stream { low_n: 0.001, high_n: 0.02 });
 /// The part of the screen where the finger is. Layers that are away from the finger are outside it.
 const UPPER_PART: Region = Region::Rectangle { x_m: 0.0, y_m: 0.0, width_m: 0.12, height_m: 0.06 };
 const CONSTANT: Layer = Layer::Constant(Constant { electric_friction_n: 0.001 });
-/// More friction than the drive can give; the saturation is counted in every tick.
+/// More friction than the drive can give; every tick counts as saturated.
 const OUT_OF_REACH: Layer = Layer::Constant(Constant { electric_friction_n: 1.0 });
 /// Ends before the still finger and goes on after it, so that both a click and its end are counted.
 const CLICK: Click = Click { height_n: 0.005, decay_s: 0.05 };

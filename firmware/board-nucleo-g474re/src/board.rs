@@ -44,8 +44,8 @@ pub const LIMITS: BoardLimits = BoardLimits {
 
 /// Where the limits are stored: the first two pages of bank 2.
 pub const LIMITS_SLOT: Slot = Slot { first_page: 0, pages: 1 };
-/// Where the last scene is stored: the rest of bank 2, 126 KiB a copy; 64 KiB of bitmaps and the largest scene take
-/// 71.
+/// Where the last scene is stored: the rest of bank 2, 126 KiB a copy. 64 KiB of bitmaps and the largest scene need 71
+/// KiB.
 pub const SCENE_SLOT: Slot = Slot { first_page: 2, pages: (PAGES - 2) / 2 };
 
 const _: () = assert!(
