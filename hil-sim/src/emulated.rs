@@ -2,7 +2,7 @@
 //!
 //! - [`Image::build`] builds the image if necessary.
 //! - [`replay`] sends the board the inputs of a [`Journal`](crate::Journal) of the in-process rig and compares its
-//! outputs, bit for bit. The board advances only when it receives a tick; wall time has no influence.
+//!   outputs, bit for bit. The board advances only when it receives a tick; wall time has no influence.
 //! - [`LinkBoard`] lets the board tick by itself, with its serial port behind a pseudo-terminal for a real host, and a
 //!   [`World`](crate::World) that follows the board's output. Virtual time is never ahead of wall time.
 //!

@@ -1,6 +1,6 @@
 //! A simulator of amplifier, screen and finger, in virtual time.
 //!
-//! - [`World`]: everything outside the board's pins. At every tick it returns a [`Sense`](frixel_control::Sense), takes a
+//! - [`World`]: everything outside the board's pins. Each tick it returns a [`Sense`](frixel_control::Sense), takes a
 //!   [`Drive`](frixel_control::Drive), and returns what the finger [felt](Felt).
 //! - [`Stroke`]: the place of the finger over time.
 //! - [`Rig`]: a board and its world on one thread.
