@@ -4,29 +4,30 @@ use frixel_control::Drive;
 
 use crate::error::{OutOfRange, above_zero, zero_to_ten};
 
-/// Below this distance from its target, in volts, the voltage is taken to be there. It ends the decay before the
-/// numbers become subnormal, which would never reach zero and are slow.
+/// Below this distance from its target, in volts, the voltage is set to the target. Otherwise the decay would reach
+/// subnormal numbers, which are slow and never become zero.
 const SETTLED_V: f64 = 1e-9;
 
-/// What is wrong with the amplifier.
+/// Deviations of the amplifier from an ideal one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AmplifierConfig {
-    /// True gain over the gain that the board believes in: 1 for an ideal amplifier. Above 0.
+    /// True gain over the gain that the board assumes: 1 for an ideal amplifier. Above 0.
     pub gain: f64,
     /// Largest voltage that the output reaches in either direction, in volts, peak. Above 0.
     pub saturation_v_peak: f64,
-    /// Time constant of the output behind its input, in seconds: 0 (no lag) to 10.
+    /// Time constant of the output, in seconds: 0 (no lag) to 10.
     pub time_constant_s: f64,
 }
 
 impl Default for AmplifierConfig {
-    /// Gain exact, edges of 20 us, and 250 V: the simulated board's full scale, above any voltage that it allows.
+    /// Exact gain, a time constant of 20 us, and 250 V: the simulated board's full scale, above any voltage that it
+    /// allows.
     fn default() -> Self {
         Self { gain: 1.0, saturation_v_peak: 250.0, time_constant_s: 20e-6 }
     }
 }
 
-/// What the electrode got during a tick.
+/// The electrode voltage during a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Output {
     /// Mean of the squared voltage over the tick, V^2.
@@ -40,7 +41,7 @@ pub(crate) struct Output {
 pub(crate) struct Amplifier {
     volts_per_code: f64,
     saturation_v_peak: f64,
-    /// `e^(-T/tau)`: what a tick leaves of the distance to the target.
+    /// `e^(-T/tau)`: the share of the distance to the target that remains after a tick.
     remainder: f64,
     /// Mean of `e^(-t/tau)` over a tick.
     mean_remainder: f64,

@@ -1,12 +1,12 @@
-//! The emulated board: the firmware's image for `qemu-system-arm -M mps2-an386`, and the simulator around it.
+//! The emulated board: the firmware image for `qemu-system-arm -M mps2-an386`, and the simulator around it.
 //!
-//! - [`Image::build`] builds the image when it is not there yet.
-//! - [`replay`] gives the board a [`Journal`](crate::Journal) of the in-process rig and compares all that it does, bit
-//!   for bit. The board ticks when it is given a tick; nothing knows wall time.
+//! - [`Image::build`] builds the image if necessary.
+//! - [`replay`] sends the board the inputs of a [`Journal`](crate::Journal) of the in-process rig and compares its
+//!   outputs, bit for bit. The board advances only when it receives a tick; wall time has no influence.
 //! - [`LinkBoard`] lets the board tick by itself, with its serial port behind a pseudo-terminal for a real host, and a
-//!   [`World`](crate::World) that lives on what the board drives. Virtual time is never ahead of wall time.
+//!   [`World`](crate::World) that follows the board's output. Virtual time is never ahead of wall time.
 //!
-//! Simulator and board share the board's PSRAM, which is a file ([`frixel_exchange`] says what stands in it).
+//! Simulator and board share the board's PSRAM, which is a file; [`frixel_exchange`] describes its content.
 
 mod error;
 mod image;

@@ -1,15 +1,15 @@
-//! What the world refuses.
+//! Errors in the configuration of the world.
 
 use frixel_model::ParameterError;
 use thiserror::Error;
 
-/// A number that lies outside the range in which it means something.
+/// A number outside its valid range.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[error("{name} must be {expected}, found {found}")]
 pub struct OutOfRange {
     /// Name of the parameter, with its unit.
     pub name: &'static str,
-    /// The range that was expected.
+    /// The valid range.
     pub expected: &'static str,
     /// The number that was found.
     pub found: f64,
@@ -21,12 +21,12 @@ pub enum WorldError {
     /// A number of the configuration is out of range.
     #[error("simulated world: {0}")]
     OutOfRange(#[from] OutOfRange),
-    /// The contact model refuses the example finger.
+    /// The contact model rejects the example finger.
     #[error("simulated world: the contact model refuses the example finger: {0:?}")]
     Finger(ParameterError),
 }
 
-/// `found`, when it is finite and above zero.
+/// Returns `found` if it is finite and above zero.
 pub(crate) fn above_zero(name: &'static str, found: f64) -> Result<f64, OutOfRange> {
     if found.is_finite() && found > 0.0 {
         Ok(found)
@@ -35,9 +35,10 @@ pub(crate) fn above_zero(name: &'static str, found: f64) -> Result<f64, OutOfRan
     }
 }
 
-/// `found`, when it is from zero to ten.
+/// Returns `found` if it is from zero to ten.
 ///
-/// Ten seconds bounds every delay of the world: beyond it a unit has been mistaken, and queues would grow for nothing.
+/// Ten seconds is the limit of every delay in the world: a longer one is probably a mistaken unit, and would make the
+/// queues grow.
 pub(crate) fn zero_to_ten(name: &'static str, found: f64) -> Result<f64, OutOfRange> {
     if (0.0..=10.0).contains(&found) { Ok(found) } else { Err(OutOfRange { name, expected: "from 0 to 10", found }) }
 }

@@ -1,26 +1,26 @@
-//! The fingertip: the voltage on the electrode becomes the friction that is felt.
+//! The fingertip: converts the voltage on the electrode to friction.
 //!
-//! The contact model gives the friction that a voltage leads to, and skin follows with a first-order lag whose cutoff
-//! grows with sliding speed.
+//! The contact model gives the steady friction at a voltage. The skin follows it with a first-order lag whose cutoff
+//! frequency grows with sliding speed.
 
 use core::f64::consts::TAU;
 
 use frixel_model::{Contact, Finger, LoadedContact, ParameterError};
 
-/// Cutoff of the friction lag over sliding speed, in Hz per m/s: 13.8 Hz per mm/s, arXiv 2505.11162.
+/// Cutoff frequency of the friction lag over sliding speed, in Hz per m/s: 13.8 Hz per mm/s, arXiv 2505.11162.
 ///
-/// Measured at 20 to 100 mm/s and 0.2 to 0.6 N. It is used as a straight line through zero at every speed: a still finger
-/// keeps the friction it has.
+/// Measured at 20 to 100 mm/s and 0.2 to 0.6 N. The simulator uses it as a straight line through zero at every speed,
+/// so the friction of a still finger does not change.
 const CUTOFF_HZ_PER_M_PER_S: f64 = 13.8e3;
 
-/// Below this distance from its target, in newtons, friction is taken to be there. It ends the decay before the numbers
-/// become subnormal, which would never reach zero and are slow.
+/// Below this distance from its target, in newtons, the friction is set to the target. Otherwise the decay would reach
+/// subnormal numbers, which are slow and never become zero.
 const SETTLED_N: f64 = 1e-15;
 
 /// The example finger: 0.25 N at no voltage and 28 mN more at 150 V rms, under a load of 0.5 N.
 ///
-/// Radius 8 mm, stiffness 18 MPa/m, friction coefficient 0.5, effective gap 10 um: computed from Eqs. (43), (21) to give
-/// friction of the size that is measured. A real finger's profile is fitted.
+/// Radius 8 mm, stiffness 18 MPa/m, friction coefficient 0.5, effective gap 10 um: computed from Eqs. (43), (21) to
+/// give friction of the size that is measured. The profile of a real finger is fitted to measurements.
 pub fn example_finger() -> Result<LoadedContact<f64>, ParameterError> {
     let finger = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };
     Contact::new(&finger, 10e-6)?.under_load(0.5)
@@ -31,9 +31,9 @@ pub fn example_finger() -> Result<LoadedContact<f64>, ParameterError> {
 struct FrictionLag {
     /// `2 pi f_c T` over sliding speed.
     exponent_per_m_per_s: f64,
-    /// Speed that `share` was computed for: an exponential costs as much as the rest of the tick.
+    /// Speed that `share` was computed for. It is stored because an exponential costs as much as the rest of the tick.
     speed_m_per_s: f64,
-    /// Share of the distance to the target that a tick takes away, `1 - e^(-2 pi f_c T)`.
+    /// Share of the distance to the target that is covered in a tick, `1 - e^(-2 pi f_c T)`.
     share: f64,
     electric_friction_n: f64,
 }
@@ -48,7 +48,7 @@ impl FrictionLag {
         }
     }
 
-    /// The exact step of the lag over one tick, in which target and speed are held.
+    /// Advances the lag by one tick, exactly, with constant target and speed.
     fn tick(&mut self, target_n: f64, speed_m_per_s: f64) -> f64 {
         if speed_m_per_s.to_bits() != self.speed_m_per_s.to_bits() {
             self.speed_m_per_s = speed_m_per_s;
@@ -64,13 +64,13 @@ impl FrictionLag {
 /// Friction under the finger, in newtons.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Friction {
-    /// All of it: `mu F_N` and the electric part.
+    /// Total friction: `mu F_N` and the electric part.
     pub(crate) friction_n: f64,
-    /// What the voltage adds, behind the lag.
+    /// Friction that the voltage adds, after the lag.
     pub(crate) electric_friction_n: f64,
 }
 
-/// A finger's contact with the screen, and the friction it feels.
+/// A finger's contact with the screen, and the friction on it.
 #[derive(Clone, Debug)]
 pub(crate) struct Fingertip {
     contact: LoadedContact<f64>,
@@ -82,21 +82,21 @@ impl Fingertip {
         Self { contact, lag: FrictionLag::new(tick_hz) }
     }
 
-    /// Another finger, profile or load; the friction felt moves there with the lag.
+    /// Changes finger, profile or load; the friction follows with the lag.
     pub(crate) fn set_contact(&mut self, contact: LoadedContact<f64>) {
         self.contact = contact;
     }
 
-    /// Friction at the end of a tick on a screen under a mean square voltage, sliding at a speed.
+    /// Returns the friction at the end of a tick, for the mean square voltage and the sliding speed during the tick.
     ///
-    /// The electrostatic pressure follows the squared voltage, Eq. (8), so its mean over the tick is what counts.
+    /// The electrostatic pressure follows the squared voltage, Eq. (8), so only its mean over the tick matters.
     pub(crate) fn slide(&mut self, mean_square_v2: f64, speed_m_per_s: f64) -> Friction {
         let target_n = self.contact.electric_friction_n(mean_square_v2.sqrt());
         let electric_friction_n = self.lag.tick(target_n, speed_m_per_s);
         Friction { friction_n: self.contact.natural_friction_n() + electric_friction_n, electric_friction_n }
     }
 
-    /// The finger is off the screen: no friction, and none left over for the next touch.
+    /// Lifts the finger: there is no friction, and the next touch starts without electric friction.
     pub(crate) fn lift(&mut self) -> Friction {
         self.lag.electric_friction_n = 0.0;
         Friction { friction_n: 0.0, electric_friction_n: 0.0 }

@@ -1,8 +1,8 @@
-//! A simulator that stands in for amplifier, screen and finger, in virtual time.
+//! A simulator of amplifier, screen and finger, in virtual time.
 //!
-//! - [`World`]: what is on the other side of the board's pins. It gives a [`Sense`](frixel_control::Sense) and takes a
-//!   [`Drive`](frixel_control::Drive) at every tick, and tells what the finger [felt](Felt).
-//! - [`Stroke`]: where the finger is at a time.
+//! - [`World`]: everything outside the board's pins. Each tick it returns a [`Sense`](frixel_control::Sense), takes a
+//!   [`Drive`](frixel_control::Drive), and returns what the finger [felt](Felt).
+//! - [`Stroke`]: the place of the finger over time.
 //! - [`Rig`]: a board and its world on one thread.
 //! - [`chips`]: models of the chips on a board, for their drivers to run against.
 //! - [`emulated`]: the firmware's image for an emulated board, and what the in-process board is compared with.

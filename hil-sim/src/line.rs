@@ -1,4 +1,4 @@
-//! A serial line in virtual time, one direction.
+//! One direction of a serial line, in virtual time.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -7,36 +7,36 @@ use crate::error::OutOfRange;
 /// Start bit, eight data bits, stop bit.
 const BITS_PER_BYTE: u64 = 10;
 
-/// What happens to a byte on the line.
+/// A fault of the line at one byte.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LineFault {
     /// The byte is lost.
     Drop,
-    /// The bits that are set here arrive inverted.
+    /// The bits that are set here are inverted.
     Flip(u8),
     /// The cable is cut: this byte and all that follow are lost.
     Cut,
 }
 
-/// Bytes that went into a line, and what became of them.
+/// Numbers of bytes by their fate on the line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LineCounts {
-    /// Given to the line to send.
+    /// Bytes passed to [`Line::send`], overruns included.
     pub sent: u64,
-    /// Arrived at the other end, those with flipped bits included.
+    /// Bytes that arrived, including those with flipped bits.
     pub delivered: u64,
-    /// Lost on the way.
+    /// Bytes lost on the line.
     pub lost: u64,
-    /// Arrived with flipped bits.
+    /// Bytes that arrived with flipped bits.
     pub flipped: u64,
-    /// Given to the line when its queue was full: they never went out, and have no number.
+    /// Bytes rejected because the queue was full. They are not sent, and have no number.
     pub overrun: u64,
 }
 
 /// One direction of a serial line: a byte takes ten bit times, in virtual ticks.
 ///
-/// Time is kept in whole numbers, so the rate is exact for every pair of baud rate and tick rate. The sender has an
-/// endless buffer unless [`limit_queue`](Self::limit_queue) says otherwise; [`queued`](Self::queued) says how full it is.
+/// Time is counted in integers, so the rate is exact for every pair of baud rate and tick rate. The transmit queue is
+/// unlimited unless [`limit_queue`](Self::limit_queue) is called; [`queued`](Self::queued) returns its length.
 ///
 /// ```
 /// use frixel_hil_sim::Line;
@@ -52,7 +52,7 @@ pub struct LineCounts {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Line {
-    /// Progress on the byte on the line that a tick makes; a byte is done at `byte_cost`.
+    /// Progress of the current byte per tick; the byte is complete at `byte_cost`.
     progress_per_tick: u64,
     byte_cost: u64,
     progress: u64,
@@ -65,7 +65,7 @@ pub struct Line {
 }
 
 impl Line {
-    /// A line of `baud` bits a second, seen `tick_hz` times a second; both above 0.
+    /// A line of `baud` bits a second, advanced `tick_hz` times a second; both above 0.
     pub fn new(baud: u32, tick_hz: u32) -> Result<Self, OutOfRange> {
         for (name, value) in [("baud", baud), ("tick_hz", tick_hz)] {
             if value == 0 {
@@ -85,18 +85,18 @@ impl Line {
         })
     }
 
-    /// Lets `fault` happen to the byte number `byte`, counted from 0 when the line was made. A byte has one fault; a
-    /// later one takes the place of an earlier. A byte that has left the line already is not changed.
+    /// Schedules `fault` for byte number `byte`, counted from 0 when the line was made. A later fault of the same byte
+    /// replaces an earlier one. A byte that has left the line already is not changed.
     pub fn schedule_fault(&mut self, byte: u64, fault: LineFault) {
         self.faults.insert(byte, fault);
     }
 
-    /// From now on, no more than `len` bytes wait on the line; what is sent beyond that is lost.
+    /// From now on, limits the queue to `len` bytes. Bytes sent beyond that are lost.
     pub fn limit_queue(&mut self, len: usize) {
         self.queue_max_len = len;
     }
 
-    /// Queues bytes behind those that are under way. On an idle line the first of them starts now, at the tick boundary.
+    /// Queues bytes. On an idle line the first of them starts now, at the tick boundary.
     pub fn send(&mut self, bytes: &[u8]) {
         let room = self.queue_max_len.saturating_sub(self.queue.len());
         let (queued, overrun) = bytes.split_at(room.min(bytes.len()));
@@ -105,7 +105,7 @@ impl Line {
         self.counts.overrun += overrun.len() as u64;
     }
 
-    /// Advances one tick, and gives the bytes that arrived in it.
+    /// Advances one tick, and returns the bytes that arrived in it.
     pub fn tick(&mut self) -> &[u8] {
         self.delivered.clear();
         if self.queue.is_empty() {
@@ -118,7 +118,7 @@ impl Line {
             self.arrive(byte);
         }
         if self.queue.is_empty() {
-            // The next byte cannot start before it is sent.
+            // The next byte cannot start before `send` queues it.
             self.progress = 0;
         }
         &self.delivered
@@ -138,7 +138,7 @@ impl Line {
         self.delivered.push(byte ^ flips);
     }
 
-    /// Bytes that are queued or on the line.
+    /// Number of bytes that are queued or on the line.
     pub fn queued(&self) -> usize {
         self.queue.len()
     }
@@ -148,7 +148,7 @@ impl Line {
         self.is_cut
     }
 
-    /// Bytes so far.
+    /// Byte counts so far.
     pub fn bytes(&self) -> LineCounts {
         self.counts
     }
@@ -162,7 +162,7 @@ mod tests {
 
     const TICK_HZ: u32 = 40_000;
 
-    /// The tick in which each of `count` bytes arrives that are sent at once; the first tick is 1.
+    /// Returns the tick in which each of `count` bytes arrives, all sent at once; the first tick is 1.
     fn arrivals(line: &mut Line, count: usize) -> Vec<u64> {
         let bytes: Vec<u8> = (0..count).map(|number| number as u8).collect();
         line.send(&bytes);

@@ -1,4 +1,4 @@
-//! A serial port for clients in other processes: a pseudo-terminal whose other end a simulated board has.
+//! A serial port for clients in other processes: a pseudo-terminal with a simulated board at its other end.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Write};
@@ -10,20 +10,20 @@ use rustix::termios::{OptionalActions, QueueSelector, tcflush, tcgetattr, tcseta
 
 use self::presence::Presence;
 
-/// A pseudo-terminal. Nothing here blocks: a client that does not read must not stop the board.
+/// A pseudo-terminal. No method blocks, so a client that does not read cannot stop the board.
 #[derive(Debug)]
 pub struct PseudoTerminal {
     board_end: File,
-    /// Held open, so that clients may come and go.
+    /// Held open, so that clients may connect and disconnect.
     client_end: File,
     path: String,
     presence: Presence,
-    /// Bytes have come since it was last asked whether the client has gone.
+    /// Bytes have arrived since [`Self::client_has_gone`] was last called.
     heard: bool,
 }
 
 impl PseudoTerminal {
-    /// Makes a pseudo-terminal through which bytes go as they are.
+    /// Makes a pseudo-terminal in raw mode: bytes pass unchanged.
     pub fn open() -> io::Result<Self> {
         let board_end = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY)?;
         grantpt(&board_end)?;
@@ -40,38 +40,38 @@ impl PseudoTerminal {
         Ok(Self { board_end: File::from(board_end), client_end, path, presence, heard: false })
     }
 
-    /// What a client opens.
+    /// The path that a client opens.
     pub fn path(&self) -> &str {
         &self.path
     }
 
-    /// Reads what a client has written, and returns how many bytes; 0 when there are none now.
+    /// Reads bytes that a client has written, and returns their number; 0 when there are none.
     pub fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
         let count = now((&self.board_end).read(bytes))?;
         self.heard |= count > 0;
         Ok(count)
     }
 
-    /// Writes to the client what the terminal has room for, and returns how many bytes that is; 0 when it is full.
+    /// Writes as many bytes as the terminal has room for, and returns their number; 0 when it is full.
     pub fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         if bytes.is_empty() { Ok(0) } else { now((&self.board_end).write(bytes)) }
     }
 
-    /// Returns `true` once after the last client has gone. What was written to it and it has not read is dropped, and the
-    /// next client may open the terminal. What it had written itself may still be read: the commands that end its session
-    /// are the last of it.
+    /// Returns `true` once after the last client has closed the terminal. Bytes that it has not read are dropped, and
+    /// the next client may open the terminal. Bytes that the client has written can still be read, because they
+    /// include the commands that end its session.
     pub fn client_has_gone(&mut self) -> io::Result<bool> {
         if !self.presence.has_ended(std::mem::take(&mut self.heard))? {
             return Ok(false);
         }
         tcflush(&self.client_end, QueueSelector::IFlush)?;
-        // A client that was killed leaves the terminal in exclusive mode, which lasts for as long as anybody has it open.
+        // A killed client leaves the terminal in exclusive mode, which lasts as long as any process has it open.
         rustix::termios::ioctl_tiocnxcl(&self.client_end)?;
         Ok(true)
     }
 }
 
-/// What was done now, which is nothing where a wait would be.
+/// Converts the result of a non-blocking call: an operation that would block has transferred zero bytes.
 fn now(done: io::Result<usize>) -> io::Result<usize> {
     match done {
         Err(error) if error.kind() == io::ErrorKind::WouldBlock => Ok(0),
@@ -79,7 +79,7 @@ fn now(done: io::Result<usize>) -> io::Result<usize> {
     }
 }
 
-/// The system tells when the terminal is opened and closed.
+/// Linux reports when the terminal is opened and closed.
 #[cfg(target_os = "linux")]
 mod presence {
     use std::io;
@@ -89,7 +89,7 @@ mod presence {
     use rustix::fs::inotify::{self, CreateFlags, ReadFlags, WatchFlags};
     use rustix::io::Errno;
 
-    /// Whether a client has the terminal open.
+    /// Tracks whether a client has the terminal open.
     #[derive(Debug)]
     pub(super) struct Presence {
         events: OwnedFd,
@@ -103,7 +103,7 @@ mod presence {
             Ok(Self { events, clients: 0 })
         }
 
-        /// Whether the last client has closed the terminal since this was last asked.
+        /// Returns whether the last client has closed the terminal since the previous call.
         pub(super) fn has_ended(&mut self, _heard: bool) -> io::Result<bool> {
             let clients_before = self.clients;
             let mut opened = false;
@@ -125,16 +125,16 @@ mod presence {
     }
 }
 
-/// Nothing tells when a client closes the terminal: one that was silent for long is gone, or idle.
+/// Other systems do not report when a client closes the terminal. A client that is silent for long counts as gone.
 #[cfg(not(target_os = "linux"))]
 mod presence {
     use std::io;
     use std::time::{Duration, Instant};
 
-    /// Pings come several times as often.
+    /// Clients send pings several times as often.
     const CLIENT_GONE_AFTER: Duration = Duration::from_millis(500);
 
-    /// Whether a client was heard lately.
+    /// Tracks when bytes from a client last arrived.
     #[derive(Debug)]
     pub(super) struct Presence {
         heard_at: Instant,
@@ -178,7 +178,7 @@ mod tests {
         }
     }
 
-    /// A write that waits for its reader would hang here for ever.
+    /// A write that waits for its reader would block here for ever.
     #[test]
     fn a_client_that_does_not_read_does_not_stop_the_board() {
         let mut terminal = PseudoTerminal::open().unwrap();

@@ -3,7 +3,8 @@
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 
-/// What random numbers are for. Each purpose has numbers of its own, so that a new consumer changes none of the others.
+/// The purpose of a stream of random numbers. Each purpose has a stream of its own, so that a new use changes no
+/// others.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Purpose {
     ReportPhase = 1,

@@ -10,10 +10,10 @@ use frixel_wire::message::Refusal;
 
 use crate::{Felt, Journal, Line, Stroke, World, WorldConfig, WorldError};
 
-/// Room in a board's receive buffer beyond the host's credit: for hello requests, which need none, and for noise.
+/// Room in a board's receive buffer beyond the host's credit: for hello requests, which need no credit, and for noise.
 const RECEIVE_MARGIN_LEN: usize = 512;
 
-/// Memory of a simulated board: what stands in statics on a real one. Much of it, so it lives in a box.
+/// Memory of a simulated board, which a real board has in statics. It is large, so it is boxed.
 pub struct BoardMemory {
     pool: BitmapPool,
     actives: [Active; 2],
@@ -29,20 +29,20 @@ impl BoardMemory {
         Box::new(Self { pool: BitmapPool::new(), actives, stream: StreamBuffer::new() })
     }
 
-    /// Bytes of coefficients that a scene fills in a board's RAM: in the ones that play, and as many where the next
-    /// scene is built.
+    /// Bytes of coefficients that a scene fills in a board's RAM, in the active buffer and in the buffer in which the
+    /// next scene is built.
     #[must_use]
     pub fn bytes_filled(scene: &Scene) -> usize {
         active_bytes_filled(scene)
     }
 
-    /// Rows of the inverse table that a board computes for a scene.
+    /// Number of rows of the inverse table that a board computes for a scene.
     pub fn table_rows(scene: &Scene, board: &Board) -> Result<TableRows, Refusal> {
         table_rows(scene, board)
     }
 }
 
-/// What a rig is made of.
+/// Configuration of a [`Rig`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigConfig {
     /// The simulated board.
@@ -65,12 +65,12 @@ impl Default for RigConfig {
     }
 }
 
-/// What happened at one tick.
+/// Result of one tick.
 #[derive(Clone, Copy, Debug)]
 pub struct TickRecord {
     /// Ticks since power-on, this one included.
     pub tick: u64,
-    /// What the board says of itself.
+    /// Status reported by the board.
     pub status: Status,
     /// What the finger felt.
     pub felt: Felt,
@@ -93,7 +93,7 @@ pub struct Rig<'a> {
 }
 
 impl<'a> Rig<'a> {
-    /// A board that has just been reset, in a world whose finger will make `stroke`.
+    /// A board after reset, in a world whose finger will make `stroke`.
     pub fn new(memory: &'a mut BoardMemory, config: &RigConfig, stroke: Stroke, seed: u64) -> Result<Self, WorldError> {
         let BoardMemory { pool, actives: [first, second], stream } = memory;
         let tick_hz = config.board.tick_hz;
@@ -129,56 +129,56 @@ impl<'a> Rig<'a> {
         self.tick_hz
     }
 
-    /// The world, for faults and for the finger.
+    /// The world, to inject faults and to move the finger.
     pub fn world_mut(&mut self) -> &mut World {
         &mut self.world
     }
 
-    /// The line from the host to the board, for faults.
+    /// The line from the host to the board, to inject faults.
     pub fn line_to_board_mut(&mut self) -> &mut Line {
         &mut self.to_board
     }
 
-    /// The scene that plays or would play; `None` before one was committed.
+    /// The last committed scene; `None` before one was committed.
     pub fn scene(&self) -> Option<&Header> {
         self.scene.as_ref()
     }
 
-    /// Frames that the board received whole, and bad ones that it skipped.
+    /// Numbers of complete frames that the board received, and of bad frames that it skipped.
     pub fn frame_counts(&self) -> (u32, u32) {
         self.session.frame_counts()
     }
 
-    /// Gives bytes to the host's end of the line. More than a host's credit and a margin for what needs none are lost, as
-    /// on a board whose receive buffer is full: nothing is delivered later than a host that keeps to its credit could
-    /// have sent it.
+    /// Sends bytes from the host. Bytes beyond a host's credit and a margin for messages without credit are lost, as
+    /// on a board whose receive buffer is full. So no byte arrives later than it could from a host that respects its
+    /// credit.
     pub fn send(&mut self, bytes: &[u8]) {
         self.to_board.send(bytes);
     }
 
-    /// Says whether the host reads what the board sends. While it does not, the line takes nothing from the board, as a
-    /// port that a full buffer holds up: what the board has to say waits in its own transmit queue.
+    /// Sets whether the host has stopped reading. Meanwhile the line takes no bytes from the board, like a port whose
+    /// buffer is full, and the board's output waits in its transmit queue.
     pub fn set_host_away(&mut self, is_away: bool) {
         self.host_is_away = is_away;
     }
 
-    /// Moves what has arrived at the host's end of the line to `bytes`.
+    /// Appends the bytes that have arrived at the host to `bytes`.
     pub fn receive(&mut self, bytes: &mut Vec<u8>) {
         bytes.append(&mut self.at_host);
     }
 
-    /// Whether anything has arrived at the host's end of the line.
+    /// Whether any bytes have arrived at the host.
     pub fn has_received(&self) -> bool {
         !self.at_host.is_empty()
     }
 
-    /// From now on, keeps a journal of all that crosses the board's pins. To be called before the first tick, so that
-    /// another board can be given the same.
+    /// Starts a journal of all input and output of the board. Call this before the first tick, so that the journal can
+    /// be replayed to another board.
     pub fn start_journal(&mut self) {
         self.journal = Some(Journal::new());
     }
 
-    /// The journal so far, which ends with it; `None` when none was started.
+    /// Ends the journal and returns it; `None` when none was started.
     pub fn take_journal(&mut self) -> Option<Journal> {
         self.journal.take()
     }
@@ -212,7 +212,7 @@ impl<'a> Rig<'a> {
         TickRecord { tick: self.tick, status: self.status, felt }
     }
 
-    /// Hands the session's next order to the ticker, which takes one before each tick.
+    /// Passes the session's next order to the ticker, which takes one before each tick.
     fn obey(&mut self) {
         let Some(order) = self.session.next_order() else { return };
         let is_new_scene = matches!(order, Order::Load(_));
@@ -224,7 +224,7 @@ impl<'a> Rig<'a> {
         }
     }
 
-    /// The finger in the world is the scene's, unless a scenario says otherwise.
+    /// Sets the world's finger to the scene's, unless a scenario has set another.
     fn put_scenes_finger_on(&mut self) {
         self.scene = self.session.scene_header().copied();
         if let Some(Ok(contact)) = self.scene.as_ref().map(contact_of) {
@@ -232,13 +232,13 @@ impl<'a> Rig<'a> {
         }
     }
 
-    /// Bytes that the line takes now. It has a queue as a port has one: what is beyond it waits on the board, which
-    /// leaves telemetry out when too much does.
+    /// Number of bytes that the line accepts now. Its queue is limited like that of a port; more bytes wait on the
+    /// board, which omits telemetry when too many do.
     fn room(&self) -> u8 {
         if self.host_is_away { 0 } else { TICK_BYTES_MAX.saturating_sub(self.to_host.queued()) as u8 }
     }
 
-    /// Moves what the board has to say to the line, as far as there is room, and returns it.
+    /// Moves bytes from the board's transmit queue to the line, as far as there is room, and returns them.
     fn transmit(&mut self, room: u8) -> TickBytes {
         let mut bytes = [0; TICK_BYTES_MAX];
         let count = self.session.transmit(bytes.get_mut(..usize::from(room)).unwrap_or_default());
@@ -251,7 +251,7 @@ impl<'a> Rig<'a> {
     }
 }
 
-/// The contact that a scene means, in the full model's arithmetic.
+/// The contact model of a scene's finger, in the precision of the full model.
 pub fn contact_of(header: &Header) -> Result<LoadedContact<f64>, ParameterError> {
     let finger = Finger {
         radius_m: f64::from(header.finger_radius_m),

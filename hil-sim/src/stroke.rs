@@ -1,4 +1,4 @@
-//! Strokes: where the finger is at a time.
+//! Strokes: the place of the finger over time.
 
 mod error;
 mod natural;
@@ -21,14 +21,14 @@ pub struct Point {
     pub y_m: f64,
 }
 
-/// Where a finger that is on the screen is, and how fast it slides.
+/// Place and sliding speed of a finger on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FingerState {
     /// From the left edge of the screen, m.
     pub x_m: f64,
     /// From the top edge of the screen, m.
     pub y_m: f64,
-    /// Sliding speed, whatever its direction, m/s.
+    /// Sliding speed, regardless of direction, m/s.
     pub speed_m_per_s: f64,
 }
 
@@ -51,7 +51,7 @@ pub struct Stroke {
     path: Path,
     /// Time at which the finger leaves the screen, s.
     end_s: f64,
-    /// Time from one round to the next when the stroke is played in a loop, s.
+    /// Time from one round to the next if the stroke is looped, s.
     round_s: Option<f64>,
 }
 
@@ -72,7 +72,7 @@ impl Stroke {
     }
 
     /// A straight stroke of minimum jerk (Flash and Hogan, doi:10.1523/JNEUROSCI.05-07-01688.1985): at rest at both
-    /// ends, and 1.875 times the mean speed in the middle. A hand moves so. `duration_s` is above 0.
+    /// ends, and 1.875 times the mean speed in the middle, as a hand moves. `duration_s` is above 0.
     pub fn minimum_jerk(from: Point, to: Point, duration_s: f64) -> Result<Self, StrokeError> {
         let straight = Straight::lasting(from, to, duration_s)?;
         Ok(Self::once(straight.duration_s(), Path::MinimumJerk(straight)))
@@ -85,16 +85,16 @@ impl Stroke {
     }
 
     /// The stroke of a person who explores a texture: back and forth across the screen in slightly oblique strokes of
-    /// minimum jerk, about 100 mm/s on average, with the finger down all the `duration_s` seconds (above 0).
+    /// minimum jerk, about 100 mm/s on average, with the finger down for all of `duration_s` seconds (above 0).
     ///
-    /// It keeps a tenth of the screen away from every edge and ends at the end of a stroke. A time too short for one
-    /// stroke at that pace gets a shorter stroke.
+    /// It keeps a tenth of the screen away from every edge, and consists of whole strokes. If `duration_s` is too
+    /// short for a full stroke at this speed, the stroke is shorter.
     pub fn natural(screen_width_m: f64, screen_height_m: f64, duration_s: f64) -> Result<Self, StrokeError> {
         let natural = Natural::new(screen_width_m, screen_height_m, duration_s)?;
         Ok(Self::once(duration_s, Path::Natural(natural)))
     }
 
-    /// A stroke from CSV text with the columns `t_s,x_mm,y_mm`, in any order, others ignored.
+    /// Parses a stroke from CSV text with the columns `t_s,x_mm,y_mm`, in any order. Other columns are ignored.
     ///
     /// Time is from the start of the stroke and rises from row to row; the finger touches at the first row and leaves
     /// after the last. Between rows it goes straight and at constant speed (linear interpolation), so the rows should
@@ -104,7 +104,7 @@ impl Stroke {
         Ok(Self::once(rows.end_s(), Path::Rows(rows)))
     }
 
-    /// The same stroke again and again, with the finger off the screen for `pause_s` seconds (0 to 10) between rounds.
+    /// Repeats the stroke, with the finger off the screen for `pause_s` seconds (0 to 10) between rounds.
     ///
     /// Without a pause the finger jumps from the end of the stroke to its start.
     pub fn looped(self, pause_s: f64) -> Result<Self, StrokeError> {
@@ -121,7 +121,7 @@ impl Stroke {
         if self.round_s.is_some() { f64::INFINITY } else { self.end_s }
     }
 
-    /// The finger `t_s` seconds after the start of the stroke, while it is on the screen.
+    /// Returns the finger `t_s` seconds after the start of the stroke; `None` while it is off the screen.
     pub fn at(&self, t_s: f64) -> Option<FingerState> {
         let t_s = match self.round_s {
             Some(round_s) if t_s >= 0.0 => (t_s - libm::trunc(t_s / round_s) * round_s).max(0.0),

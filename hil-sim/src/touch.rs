@@ -1,4 +1,5 @@
-//! The touch source: a touchscreen that samples the finger now and then, and reports late and inexactly.
+//! The touch source: a touchscreen that samples the finger periodically, and reports it with latency, jitter and
+//! noise.
 
 use std::collections::VecDeque;
 
@@ -8,27 +9,27 @@ use crate::error::{OutOfRange, above_zero, zero_to_ten};
 use crate::random::{Purpose, Random};
 use crate::stroke::FingerState;
 
-/// Jitter is cut off at this many standard deviations.
+/// Jitter is truncated at this many standard deviations.
 const JITTER_LIMIT: f64 = 3.0;
 
-/// How a touch source sees the finger.
+/// Configuration of a touch source.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TouchConfig {
     /// Reports a second, above 0 and at most one a tick.
     pub rate_hz: f64,
-    /// Time from the sample to its arrival at the board, as the source states it, in seconds: 0 to 10.
+    /// Time from the sample to its arrival at the board, as stated by the source, in seconds: 0 to 10.
     pub latency_s: f64,
     /// Gaussian noise of the reported place in each axis, root mean square, in metres: 0 to 10.
     pub noise_rms_m: f64,
-    /// Standard deviation of the Gaussian jitter of the arrival, in seconds: 0 to 10. The board is not told of it.
+    /// Standard deviation of the Gaussian jitter of the arrival, in seconds: 0 to 10. It is not reported to the board.
     ///
-    /// Draws beyond three standard deviations are drawn again, which leaves 98.7 % of it. A report never comes before
-    /// its sample nor before the report ahead of it.
+    /// Draws beyond three standard deviations are repeated, which leaves 98.7 % of the deviation. A report never
+    /// arrives before its sample, nor before the previous report.
     pub jitter_rms_s: f64,
 }
 
 impl Default for TouchConfig {
-    /// An infrared frame or a quick touch panel: 100 Hz, 10 ms late, 0.02 mm of noise, 0.5 ms of jitter.
+    /// An infrared frame or a fast touch panel: 100 Hz, 10 ms of latency, 0.02 mm of noise, 0.5 ms of jitter.
     fn default() -> Self {
         Self { rate_hz: 100.0, latency_s: 10e-3, noise_rms_m: 0.02e-3, jitter_rms_s: 0.5e-3 }
     }
@@ -43,8 +44,8 @@ struct Report {
 
 /// The touch source.
 ///
-/// It samples at whole ticks. The finger's lift is reported once, by the first sample that finds no finger; nothing is
-/// reported after that until a finger is there again.
+/// It samples at whole ticks. The first sample without a finger reports the lift; there are no more reports until the
+/// finger touches again.
 #[derive(Clone, Debug)]
 pub(crate) struct TouchSource {
     period_ticks: f64,
@@ -57,7 +58,7 @@ pub(crate) struct TouchSource {
     samples: u64,
     next_sample_tick: u64,
     finger_was_down: bool,
-    /// In the order of their samples: the first has to arrive before the next can.
+    /// Reports in the order of their samples: each arrives before the next.
     under_way: VecDeque<Report>,
     arrived: Option<Touch>,
 }
@@ -92,7 +93,7 @@ impl TouchSource {
         })
     }
 
-    /// Goes to `tick`, at which the finger is where it is said to be. To be called for every tick from 0.
+    /// Advances to `tick`, at which the finger is at `finger`. Must be called for every tick from 0.
     pub(crate) fn tick(&mut self, tick: u64, finger: Option<&FingerState>) {
         if tick >= self.next_sample_tick {
             self.sample(tick, finger);
@@ -103,7 +104,7 @@ impl TouchSource {
         };
     }
 
-    /// The report that arrived at the tick.
+    /// Returns the report that arrived at the current tick.
     pub(crate) fn arrived(&self) -> Option<Touch> {
         self.arrived
     }
@@ -111,7 +112,7 @@ impl TouchSource {
     fn sample(&mut self, tick: u64, finger: Option<&FingerState>) {
         self.samples += 1;
         self.next_sample_tick = (self.phase_ticks + self.samples as f64 * self.period_ticks) as u64;
-        // Drawn for every sample, so that a stroke's lifts do not shift the noise of what follows.
+        // Drawn for every sample, so that lifts do not shift the noise of later samples.
         let x_noise_m = self.noise.gaussian() * self.noise_rms_m;
         let y_noise_m = self.noise.gaussian() * self.noise_rms_m;
         let jitter_ticks = self.jitter.gaussian_within(JITTER_LIMIT) * self.jitter_rms_ticks;

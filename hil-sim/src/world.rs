@@ -1,4 +1,4 @@
-//! The world on the other side of the board's pins.
+//! The simulated world: everything outside the board's pins.
 
 use core::ops::Range;
 
@@ -12,12 +12,12 @@ use crate::fingertip::{Fingertip, Friction, example_finger};
 use crate::stroke::{FingerState, Stroke};
 use crate::touch::{TouchConfig, TouchSource};
 
-/// What the world is made of.
+/// Configuration of a [`World`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WorldConfig {
     /// Ticks a second, above 0.
     pub tick_hz: u32,
-    /// Voltage that the board takes DAC code 32,767 for, in volts, peak. Above 0.
+    /// Voltage on the electrode that the board assumes for DAC code 32,767, in volts, peak. Above 0.
     pub full_scale_v_peak: f64,
     /// The amplifier between DAC and electrode.
     pub amplifier: AmplifierConfig,
@@ -37,14 +37,14 @@ impl Default for WorldConfig {
     }
 }
 
-/// What came of a tick. All but the mean square is as it is at the end of the tick.
+/// The result of a tick. All values but the mean square are those at the end of the tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Felt {
     /// The finger, if it is on the screen.
     pub finger: Option<FingerState>,
     /// Friction under the finger, in newtons: `mu F_N` and the electric part. Zero without a finger.
     pub friction_n: f64,
-    /// Electric part of the friction, behind the friction lag, in newtons.
+    /// Electric part of the friction, after the friction lag, in newtons.
     pub electric_friction_n: f64,
     /// Voltage on the electrode.
     pub electrode_v: f64,
@@ -54,8 +54,8 @@ pub struct Felt {
 
 /// Amplifier, electrode, finger and touch source, in virtual time.
 ///
-/// At every tick the board sees [`sense`](Self::sense), and what it puts out goes to [`apply`](Self::apply), which
-/// holds it for a tick. Before any scene the finger is the [example finger](crate::example_finger).
+/// At every tick the board reads [`sense`](Self::sense), and its output goes to [`apply`](Self::apply), which holds it
+/// for a tick. Until a scene is played the finger is the [example finger](crate::example_finger).
 ///
 /// ```
 /// use frixel_hil_sim::{Point, Stroke, World, WorldConfig};
@@ -84,19 +84,19 @@ pub struct World {
     motion: Motion,
 }
 
-/// What moves the finger.
+/// The source of the finger's motion.
 #[derive(Clone, Copy, Debug)]
 enum Motion {
-    /// Nothing: the finger is off the screen.
+    /// No source: the finger is off the screen.
     Lifted,
     /// The stroke, which started at this tick.
     Stroke { start_tick: u64 },
-    /// The caller, who has placed it here.
+    /// The caller, who has placed the finger here.
     Placed(FingerState),
 }
 
 impl World {
-    /// A world at rest at tick 0, with the finger up and everything random drawn from `seed`.
+    /// A world at rest at tick 0, with the finger lifted. All random numbers are drawn from `seed`.
     pub fn new(config: WorldConfig, stroke: Stroke, seed: u64) -> Result<Self, WorldError> {
         let WorldConfig { tick_hz, full_scale_v_peak, amplifier, touch } = config;
         if tick_hz == 0 {
@@ -116,36 +116,37 @@ impl World {
         })
     }
 
-    /// Puts another finger on the screen from now on: the contact of a scene's profile under its load.
+    /// Replaces the finger from now on by the contact of a scene's profile under its load.
     pub fn set_finger(&mut self, contact: LoadedContact<f64>) {
         self.fingertip.set_contact(contact);
     }
 
-    /// Starts the stroke, or starts it again: its time zero is the current tick.
+    /// Starts or restarts the stroke: its time zero is the current tick.
     pub fn start_stroke(&mut self) {
         self.motion = Motion::Stroke { start_tick: self.tick };
     }
 
-    /// Places the finger from outside, in place of the stroke: [`Self::apply`] finds it there from the next tick on,
-    /// until it is placed elsewhere or lifted.
+    /// Places the finger, which ends a stroke. From the next tick on [`Self::apply`] uses this place, until the finger
+    /// is placed elsewhere or lifted.
     ///
-    /// A caller who moves a finger does so at every tick, with its speed: the world derives no speed from two places.
+    /// A caller who moves the finger calls this at every tick and states its speed: the world does not derive a speed
+    /// from two places.
     pub fn place_finger(&mut self, finger: FingerState) {
         self.motion = Motion::Placed(finger);
     }
 
-    /// Lifts the finger off the screen from outside, and ends a stroke.
+    /// Lifts the finger off the screen, and ends a stroke.
     pub fn lift_finger(&mut self) {
         self.motion = Motion::Lifted;
     }
 
-    /// Raises the amplifier's fault line for a range of ticks. The amplifier itself works on: to switch it off is up to
-    /// the board.
+    /// Raises the amplifier's fault line for a range of ticks. The amplifier itself keeps working: the board must
+    /// disable it.
     pub fn schedule_amplifier_fault(&mut self, ticks: Range<u64>) {
         self.amplifier_faults.push(ticks);
     }
 
-    /// Ticks since the beginning.
+    /// Number of ticks since the start.
     pub fn tick(&self) -> u64 {
         self.tick
     }
@@ -159,7 +160,7 @@ impl World {
         }
     }
 
-    /// What the board's tick sees at the current tick. Asking twice gives the same answer.
+    /// Returns the board's input at the current tick. Repeated calls return the same value.
     pub fn sense(&self) -> Sense {
         Sense {
             amplifier_fault: self.amplifier_faults.iter().any(|ticks| ticks.contains(&self.tick)),
@@ -168,12 +169,12 @@ impl World {
         }
     }
 
-    /// The report of the touch source that arrived at the current tick.
+    /// Returns the touch report that arrived at the current tick.
     pub fn touch(&self) -> Option<Touch> {
         self.touch_source.arrived()
     }
 
-    /// Holds what the board puts out for one tick, and goes to the next.
+    /// Holds the board's output for one tick, and advances to the next.
     pub fn apply(&mut self, drive: Drive) -> Felt {
         let output = self.amplifier.tick(drive);
         self.tick += 1;

@@ -13,23 +13,23 @@ const COUNTS_OF_FIVE_INSTRUCTIONS: u32 = 128;
 /// `SysTick` is 24 bits wide.
 const WRAP: u32 = 1 << 24;
 
-/// Most cases.
+/// Largest number of cases.
 const CASES_MAX: usize = 64;
 
-/// For every case, by number, the input that a debugger wants to follow, counted from 1; zero for none. The debugger
-/// writes it before the image starts, so the start-up code must not clear it.
+/// For every case, by number, the input that a debugger traces, counted from 1; zero for no input. The debugger writes
+/// it before the image starts, so the start-up code must not clear it.
 #[unsafe(no_mangle)]
 #[unsafe(link_section = ".uninit.FOLLOWED")]
 static mut FOLLOWED: MaybeUninit<[u32; CASES_MAX]> = MaybeUninit::uninit();
 
-/// A debugger follows this case from here.
+/// A debugger starts to trace the case here.
 #[unsafe(no_mangle)]
 #[unsafe(naked)]
 extern "C" fn follow_begin(_case: usize) {
     naked_asm!("bx lr")
 }
 
-/// A debugger follows to here. The two differ, so that they are not made one.
+/// A debugger stops tracing here. This function differs from the other, so that the two are not merged.
 #[unsafe(no_mangle)]
 #[unsafe(naked)]
 extern "C" fn follow_end() {
@@ -42,7 +42,7 @@ pub struct Counter {
     cases: usize,
 }
 
-/// One thing that is counted for many inputs.
+/// One operation, counted for many inputs.
 pub struct Case {
     name: &'static str,
     number: usize,
@@ -66,7 +66,7 @@ impl Counter {
     /// Begins the next case.
     pub fn case(&mut self, name: &'static str) -> Case {
         assert!(self.cases < CASES_MAX, "more cases than a debugger can tell inputs for");
-        // SAFETY: in bounds, and any bits are a number; nobody writes while the image runs.
+        // SAFETY: in bounds, and any bits are a valid number; nothing writes while the image runs.
         let followed = unsafe { (&raw const FOLLOWED).cast::<u32>().add(self.cases).read_volatile() };
         let number = self.cases;
         self.cases += 1;
@@ -75,17 +75,17 @@ impl Counter {
 }
 
 impl Case {
-    /// A case that no debugger follows, of which there may be any number.
+    /// A case that a debugger cannot trace. There may be any number of them.
     pub fn unfollowed() -> Self {
         Self { name: "", number: 0, followed: 0, inputs: 0, instructions: 0, worst_input: 0, sum: 0 }
     }
 
-    /// The largest count, and its input.
+    /// Returns the largest count, and its input.
     pub fn worst(&self) -> (u32, u32) {
         (self.instructions, self.worst_input)
     }
 
-    /// Counts a call of `function`, less a call of [`nothing`]: call and return are left out.
+    /// Counts a call of `function`, minus a call of [`nothing`]: the instructions of call and return are not counted.
     pub fn take<S, T: Copy, R>(&mut self, function: fn(&mut S, T) -> R, state: &mut S, input: T) -> R {
         self.inputs += 1;
         let followed = (self.inputs == self.followed).then_some(self.number);
@@ -102,25 +102,25 @@ impl Case {
         result
     }
 
-    /// Tells the largest count, its input, and the mean of all.
+    /// Writes the largest count, its input, and the mean of all.
     pub fn report(self) {
         let inputs = u64::from(self.inputs).max(1);
         hprintln!("{} {} {} {}", self.name, self.instructions, self.worst_input, self.sum.div_ceil(inputs));
     }
 }
 
-/// Instructions that [`nothing`] takes beside call, frame and return.
+/// Number of instructions of [`nothing`] without call, frame and return.
 const NOTHING: u32 = 2;
 
-/// A function that is called like any other, sets up its frame like any other, and returns zero. A result in a
-/// floating-point register is the first argument in one.
+/// An empty function with an ordinary call and an ordinary frame that returns zero. A result in a floating-point
+/// register is its first floating-point argument.
 #[unsafe(naked)]
 extern "C" fn nothing() {
     naked_asm!("push {{r7, lr}}", "mov r7, sp", "movs r0, #0", "movs r1, #0", "pop {{r7, pc}}")
 }
 
-/// Instructions of a call, with those of reading the timer. One function for all that is called, so that these are the
-/// same.
+/// Number of instructions of a call, including those that read the timer. All calls go through this one function, so
+/// that its own instructions are the same for all.
 #[inline(never)]
 fn count<S, T, R>(function: fn(&mut S, T) -> R, state: &mut S, input: T, followed: Option<usize>) -> (u32, R) {
     if let Some(case) = followed {

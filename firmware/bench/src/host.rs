@@ -1,4 +1,4 @@
-//! A host on the same processor: puts a scene on the board and plays it.
+//! A host on the same processor that uploads a scene to the board and plays it.
 
 use core::array;
 
@@ -9,14 +9,14 @@ use frixel_wire::message::{Command, Request};
 use frixel_wire::payload::{self, CHUNK_LEN};
 use frixel_wire::scene::bitmap_crc32;
 
-/// Samples a second of the stream.
+/// Sample rate of the stream, in Hz.
 pub const STREAM_HZ: u32 = 40_000 / STREAM_TICKS_PER_SAMPLE;
-/// Ticks for a sample of the stream.
+/// Ticks per sample of the stream.
 pub const STREAM_TICKS_PER_SAMPLE: u32 = 2;
-/// Samples that are sent at a time.
+/// Samples in a frame of the stream.
 pub const STREAM_FRAME: usize = 64;
 
-/// A session and the ticker that it gives orders to.
+/// A session, and the ticker that receives its orders.
 pub struct Host<'a> {
     pub session: Session<'a>,
     pub ticker: Ticker<'a>,
@@ -31,7 +31,7 @@ impl<'a> Host<'a> {
         Self { session, ticker, order: None, sequence: 0 }
     }
 
-    /// Does what the main loop of a board does before a tick: gives the session a report of the touch source, and takes the
+    /// Does the main loop's work before a tick: passes a report of the touch source to the session, and takes the
     /// session's next order.
     pub fn before_tick(&mut self, touch: Option<Touch>) {
         if let Some(touch) = touch {
@@ -40,21 +40,21 @@ impl<'a> Host<'a> {
         self.order = self.session.next_order();
     }
 
-    /// Applies the order that waits, and ticks.
+    /// Applies the waiting order, and runs the tick.
     pub fn tick(&mut self, sense: &Sense) -> Drive {
         if let Some(order) = self.order.take() {
-            // The commands below hand scenes over by themselves.
+            // `command` hands scenes over itself, so the result is not needed here.
             let _ = self.ticker.apply(order);
         }
         self.ticker.tick(sense)
     }
 
-    /// Says that the host is there; the next tick takes the order.
+    /// Sends a ping; the next tick takes the order.
     pub fn ping(&mut self) {
         self.send_without_orders(Command::Ping);
     }
 
-    /// Sends a command, and hands over the orders that come of it.
+    /// Sends a command, and applies the orders that result from it.
     pub fn command(&mut self, command: Command) {
         self.send_without_orders(command);
         self.hand_over();
@@ -86,7 +86,7 @@ impl<'a> Host<'a> {
         self.command(Command::Play);
     }
 
-    /// Sends frame number `frame` of a stream. A board whose scene has none drops it.
+    /// Sends frame number `frame` of a stream. A board whose scene has no stream drops it.
     pub fn stream(&mut self, frame: u32) {
         let samples: [u16; STREAM_FRAME] = array::from_fn(|index| if index % 2 == 0 { 0x4000 } else { 0xc000 });
         let mut bytes = [0; FRAME_MAX_LEN];
@@ -111,7 +111,7 @@ impl<'a> Host<'a> {
         let status = self.ticker.status();
         self.session.receive(bytes, &status);
         self.session.poll(&status);
-        // Nobody reads the answers: what went wrong shows in the state.
+        // Discards the answers: an error shows in the state.
         self.session.transmit(&mut [0; 2048]);
     }
 

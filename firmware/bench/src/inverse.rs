@@ -12,16 +12,16 @@ const EFFECTIVE_GAP_M: f64 = 1e-5;
 const NORMAL_LOADS_N: [f64; 2] = [0.0, 0.5];
 const VOLTAGE_MAX_V_RMS: f64 = 200.0;
 
-/// One positive `f32` in so many is looked up, by bit pattern.
+/// Every `STEP`-th positive `f32` is looked up, by bit pattern.
 const STEP: usize = 0x1_0003;
 const SPECIALS: [f32; 6] = [0.0, -0.0, -1.0, f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
 
-/// Least voltage and error of the table in integers, which is made for a range.
+/// Lowest voltage and relative error of the integer table, which covers a limited range.
 const VOLTAGE_MIN_V_RMS: f64 = 1.0;
 const RELATIVE_ERROR: f64 = 1e-5;
-/// Rows that it may need.
+/// Largest number of rows of the table.
 const FIXED_ROWS: usize = 512;
-/// One code in so many is looked up.
+/// Every `CODE_STEP`-th code is looked up.
 const CODE_STEP: usize = 0x2_0003;
 
 /// Counts all of them, without and with a load.

@@ -1,4 +1,4 @@
-//! What layers cost, by kind and by number.
+//! Cost of layers, by kind and by number.
 
 use core::array;
 
@@ -23,15 +23,15 @@ const AROUND: Region = Region::Rectangle { x_m: 0.0, y_m: 0.0, width_m: 0.12, he
 const RINGS: Layer =
     Layer::Rings(Rings { wave: Wave::Sine, x_m: 0.06, y_m: 0.05, cycles_per_m: 500.0, trough_n: 0.0, crest_n: 0.026 });
 const STREAM: Layer = Layer::Stream(Stream { low_n: 0.001, high_n: 0.02 });
-/// The part of the screen where the finger is, and no layer that is elsewhere.
+/// The part of the screen where the finger is. Layers that are away from the finger are outside it.
 const UPPER_PART: Region = Region::Rectangle { x_m: 0.0, y_m: 0.0, width_m: 0.12, height_m: 0.06 };
 const CONSTANT: Layer = Layer::Constant(Constant { electric_friction_n: 0.001 });
-/// More than the drive gives, which is counted in every tick.
+/// More friction than the drive can give; every tick counts as saturated.
 const OUT_OF_REACH: Layer = Layer::Constant(Constant { electric_friction_n: 1.0 });
 /// Ends before the still finger and goes on after it, so that both a click and its end are counted.
 const CLICK: Click = Click { height_n: 0.005, decay_s: 0.05 };
 
-/// One of many places where the finger never is, most of them in a cell of the grid of their own.
+/// One of many regions that the finger never touches, most of them in a grid cell of their own.
 fn away(number: usize) -> Region {
     let (column, row) = ((number % 16) as f32, (number / 16) as f32);
     Region::Rectangle { x_m: 0.001 + 0.0075 * column, y_m: 0.063 + 0.006_875 * row, width_m: 5e-3, height_m: 4e-3 }
@@ -72,15 +72,14 @@ const fn vibration(beat: Beat) -> Layer {
     Layer::Vibration(Vibration { beat, frequency_hz: 90.0, low_n: 0.001, high_n: 0.02, burst })
 }
 
-/// A layer on the whole screen.
-/// A layer in a region under the finger, with the dearest of blends.
+/// A layer in a region under the finger, with the most expensive blend.
 const fn under(region: Region, layer: Layer) -> Record {
     Record { region, blend: Blend::Max, gain: 1.0, layer }
 }
 
 impl Bench {
-    /// What a layer of each kind takes: scenes of a constant, of two, and of one layer of each other kind alone. In a
-    /// region, so that it is found through the grid.
+    /// Counts layers of each kind: scenes of one constant, of two constants, and of one layer of each other kind
+    /// alone. Each layer is in a region, so that it is found through the grid.
     pub(crate) fn costs(&mut self, counter: &mut Counter, crc32: u32) {
         let two = [under(AROUND, CONSTANT); 2];
         self.play(&HEADER, &two);
@@ -159,7 +158,7 @@ impl Bench {
         self.alone(counter, "tick_polygon_6_level_alone", under(region, CONSTANT), &points);
     }
 
-    /// Curves whose last piece is the one that holds.
+    /// Curves in which the last piece applies.
     fn curves(&mut self, counter: &mut Counter) {
         for (name, count) in [("tick_speed_2_alone", 2), ("tick_speed_8_alone", 8)] {
             let points: [Point; 8] =
@@ -169,7 +168,7 @@ impl Bench {
         }
     }
 
-    /// What a tick costs by the number of layers in the scene, with one and with eight of them under the finger.
+    /// Counts a tick by the number of layers in the scene, with one and with eight of them under the finger.
     pub(crate) fn numbers_of_layers(&mut self, counter: &mut Counter) {
         for (name, there, count) in [
             ("tick_1_of_1", 1, 1),
@@ -191,7 +190,7 @@ impl Bench {
         }
     }
 
-    /// As much under the finger as is accepted: pictures, then stripes, then constants, on a sine carrier.
+    /// As many layers under the finger as a board accepts: pictures, then stripes, then constants, on a sine carrier.
     pub(crate) fn worst_scene(&mut self, counter: &mut Counter, crc32: u32) {
         let header = Header { carrier: Carrier::Sine, ..HEADER };
         let mut records = [under(AROUND, CONSTANT); RECORDS_MAX];

@@ -1,9 +1,9 @@
 //! Counts the instructions that the firmware takes.
 //!
-//! `cargo xtask bench` runs this image in the emulator with `-icount shift=10,sleep=off`, where an instruction takes
-//! 1,024 ns of virtual time and nothing else takes any. Every line that it writes is a name, the largest count over all
-//! inputs, the number of that input, and the mean count. Then a debugger follows that one input ([`count`]), to see which instructions
-//! they are.
+//! `cargo xtask bench` runs this image in the emulator with `-icount shift=10,sleep=off`, where every instruction
+//! takes 1,024 ns of virtual time and nothing else takes any. Every line of output is a name, the largest count over
+//! all inputs, the number of that input, and the mean count. Then a debugger traces that one input ([`count`]), to
+//! list the instructions.
 #![no_std]
 #![no_main]
 
@@ -44,7 +44,7 @@ fn main() -> ! {
     panic!("the emulator goes on after the end")
 }
 
-/// The words that the emulator was given for the image; none when it has nothing to tell.
+/// Returns the command line that the emulator passes to the image; empty when there is none.
 fn command_line(buffer: &mut [u8; COMMAND_LINE_MAX_LEN]) -> &[u8] {
     let mut block = [buffer.as_mut_ptr() as usize, buffer.len()];
     // SAFETY: the block is a pointer and the length behind it, as `SYS_GET_CMDLINE` of the semihosting specification takes

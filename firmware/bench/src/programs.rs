@@ -1,8 +1,8 @@
-//! Random scenes that a board accepts, each played under a random finger: no tick may take more than the loader estimates.
+//! Random scenes that a board accepts, each played under a random finger: no tick may exceed the loader's estimate.
 //!
-//! The emulator's command line says `programs`, the pace of the touch source (`usual` or
-//! `fast`), the first seed and how many follow. Every line that is written is a seed,
-//! the instructions of the longest tick, the core cycles that the loader estimates, and the number of that tick.
+//! The emulator's command line consists of `programs`, the pace of the touch source (`usual` or `fast`), the first
+//! seed and the number of seeds. Every line of output is a seed, the instructions of the longest tick, the core cycles
+//! that the loader estimates, and the number of that tick.
 
 use core::str;
 
@@ -14,10 +14,10 @@ use frixel_testkit::{Pace, RandomFinger, RandomScene, Report};
 use crate::count::{Case, Counter};
 use crate::tick::{Bench, PING_TICKS, STREAM_TICKS};
 
-/// Ticks counted of each scene.
+/// Number of ticks counted for each scene.
 const TICKS: u32 = 2_000;
 
-/// Seeds that were asked for.
+/// The requested seeds.
 pub struct Seeds {
     pace: Pace,
     first: u64,
@@ -25,7 +25,7 @@ pub struct Seeds {
 }
 
 impl Seeds {
-    /// Reads the emulator's command line; `None` when it asks for something else.
+    /// Parses the emulator's command line; `None` when it requests something else.
     pub fn of_command_line(line: &[u8]) -> Option<Self> {
         let line = str::from_utf8(line).ok()?;
         let mut words = line.split_ascii_whitespace().skip_while(|word| *word != "programs").skip(1);
@@ -44,7 +44,7 @@ pub fn run(seeds: &Seeds, counter: &mut Counter) {
     let mut bench = Bench::new();
     let crc32 = bench.picture();
     for seed in seeds.first..seeds.first + seeds.count {
-        // A debugger follows a scene that is played alone.
+        // A debugger can trace a scene that is played alone.
         let case = if seeds.count == 1 { counter.case("") } else { Case::unfollowed() };
         bench.play_random(seed, seeds.pace, crc32, case);
     }

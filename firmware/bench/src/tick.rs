@@ -13,7 +13,7 @@ use crate::count::{Case, Counter};
 use crate::host::{Host, STREAM_FRAME, STREAM_TICKS_PER_SAMPLE};
 use crate::layers::{GRATING, bitmap};
 
-/// Ticks counted of each scene: a stroke across the screen.
+/// Number of ticks counted for each scene: a stroke across the screen.
 const TICKS: u32 = 8_000;
 /// Ticks between two reports of the touch source.
 const REPORT_TICKS: u32 = 400;
@@ -46,7 +46,7 @@ pub(crate) struct Bench {
 }
 
 impl Bench {
-    /// A board that has just started. There is one.
+    /// A board that has just started. Can be called only once.
     pub(crate) fn new() -> Self {
         static POOL: BitmapPool = BitmapPool::new();
         static STREAM: StreamBuffer = StreamBuffer::new();
@@ -79,7 +79,7 @@ impl Bench {
         self.play_bytes(&scene_with_points(header, records, points));
     }
 
-    /// Plays a compiled scene, which the board has to take.
+    /// Plays a compiled scene, which the board must accept.
     pub(crate) fn play_bytes(&mut self, scene: &[u8]) {
         self.host.command(Command::Disarm);
         // The arm switch is released in the first tick after that, and held in the second.
@@ -91,7 +91,7 @@ impl Bench {
         assert!(self.host.ticker.status().telemetry.state == State::Active, "the scene does not play");
     }
 
-    /// Nothing to drive.
+    /// Counts ticks without output.
     fn idle(&mut self, mut case: Case, first_touch: Option<Touch>) {
         for tick in 0..TICKS {
             let touch = if tick == 0 { first_touch } else { None };
@@ -100,10 +100,11 @@ impl Bench {
         case.report();
     }
 
-    /// A finger that comes down, slides, rests for a while and slides on.
+    /// Counts ticks under a finger that touches down, slides, rests for a while and slides again.
     pub(crate) fn slide(&mut self, mut case: Case) {
         self.tick(Some(Touch::Up));
-        // Every case begins at the same distance from a report, so that they meet the same things in the same ticks.
+        // Every case begins at the same distance from a report, so that all cases have the same events in the same
+        // ticks.
         while !self.host.ticker.status().telemetry.tick.is_multiple_of(REPORT_TICKS) {
             self.tick(None);
         }
@@ -115,7 +116,7 @@ impl Bench {
             if tick.is_multiple_of(STREAM_TICKS) {
                 self.host.stream(tick / STREAM_TICKS);
             }
-            // In the end, as often as there are ticks: no tick may take longer for it.
+            // At the end a report comes in every tick; this must not make any tick longer.
             let report_ticks = if tick < TICKS / 6 * 5 { REPORT_TICKS } else { 1 };
             let touch = tick.is_multiple_of(report_ticks).then(|| {
                 let along_m = 1e-5 * tick.min(TICKS / 3).max(tick.saturating_sub(TICKS / 3)) as f32;
@@ -149,7 +150,7 @@ impl Bench {
     }
 }
 
-/// A tick with the order before it.
+/// Runs a tick and the order before it.
 #[inline(never)]
 fn tick(host: &mut Host<'static>, sense: &Sense) -> Drive {
     host.tick(sense)

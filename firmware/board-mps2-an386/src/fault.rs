@@ -1,4 +1,4 @@
-//! Panics and faults: output to zero first, then the fault stored for the next start, then the reset.
+//! Panics and faults: they set the output to zero, store the fault for the next start, and reset.
 
 use core::arch::naked_asm;
 use core::panic::PanicInfo;
@@ -11,16 +11,17 @@ use frixel_wire::fault::Fault;
 
 use crate::shared;
 
-/// Outside of what the start-up code clears.
+/// In memory that the start-up code does not clear.
 #[unsafe(link_section = ".uninit.RECORD")]
 static RECORD: FaultRecord = FaultRecord::new();
 
-/// The fault that led to the reset with its detail, if it was one, and its text in `text`. It is returned once.
+/// Removes and returns the fault that led to the reset, with its detail and its text; the text is stored in `text`.
+/// `None` without a fault.
 pub fn take(text: &'static mut Text) -> Option<(Fault, u32, &'static [u8])> {
     RECORD.take(text)
 }
 
-/// Puts the output to zero, stores the fault and resets.
+/// Sets the output to zero, stores the fault and resets.
 fn end(fault: Fault, detail: u32, say: &mut dyn FnMut(&mut Writer)) -> ! {
     interrupt::disable();
     shared::output_off();
@@ -28,7 +29,7 @@ fn end(fault: Fault, detail: u32, say: &mut dyn FnMut(&mut Writer)) -> ! {
     SCB::sys_reset()
 }
 
-/// A panic; the number that goes with it is the line.
+/// A panic; the fault's detail is the line number.
 #[panic_handler]
 fn panic(info: &PanicInfo) -> ! {
     let (file, line) = info.location().map_or(("", 0), |place| (place.file(), place.line()));
@@ -37,7 +38,7 @@ fn panic(info: &PanicInfo) -> ! {
     })
 }
 
-/// An exception that nobody handles.
+/// An exception without a handler.
 #[exception]
 unsafe fn DefaultHandler(number: i16) {
     end(Fault::HardFault, u32::from(number.unsigned_abs()), &mut |text| {
@@ -45,7 +46,7 @@ unsafe fn DefaultHandler(number: i16) {
     });
 }
 
-/// What an exception puts on the stack.
+/// The stack frame of an exception.
 #[repr(C)]
 struct Frame {
     registers: [u32; 6],
@@ -58,7 +59,7 @@ unsafe extern "C" {
     static _stack_end: u32;
 }
 
-/// Hard fault, bus fault included. The stack may be used up: this goes to one of its own before anything else.
+/// Hard fault, bus fault included. The stack may be exhausted, so the handler first switches to a stack of its own.
 ///
 /// # Safety
 /// Called by the processor.
@@ -80,7 +81,7 @@ unsafe extern "C" {
     static _fault_stack_start: u32;
 }
 
-/// The number that goes with a hard fault is the program counter; with a stack overflow, the address that was out.
+/// The detail of a hard fault is the program counter; of a stack overflow, the address outside the stack.
 extern "C" fn on_hard_fault(frame: *const Frame) -> ! {
     let bottom = (&raw const _stack_end) as usize;
     if (frame as usize) < bottom {
@@ -88,14 +89,14 @@ extern "C" fn on_hard_fault(frame: *const Frame) -> ! {
             text.text("the stack overflowed");
         });
     }
-    // SAFETY: the processor has put a frame there, and it lies in the stack.
+    // SAFETY: the processor has stored a frame there, and it lies in the stack.
     let program_counter = unsafe { (&raw const (*frame).program_counter).read() };
     end(Fault::HardFault, program_counter, &mut |text| {
         text.text("pc ").hex(program_counter);
     })
 }
 
-/// For what cannot happen.
+/// Panics where a static would be taken twice, which cannot happen.
 pub fn never() -> ! {
     panic!("a static was taken twice")
 }

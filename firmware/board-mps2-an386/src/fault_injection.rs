@@ -1,4 +1,4 @@
-//! Faults on demand, for the tests of what the board does about them.
+//! Fault injection, for tests of the board's reaction to faults.
 
 use core::hint::black_box;
 
@@ -6,13 +6,13 @@ use frixel_exchange::layout;
 
 use crate::shared;
 
-/// More loops than there are in two ticks.
+/// Number of loops that takes more than two ticks.
 const OVERRUN_LOOPS: u32 = 10_000;
 
 /// An address without memory.
 const NOWHERE: *const u32 = 0x6000_0000 as *const u32;
 
-/// In the main loop: injects the fault that the simulator asks for.
+/// Called by the main loop: injects the fault that the simulator requests.
 pub fn in_main() {
     match shared::get(layout::PROVOKE) {
         layout::PROVOKE_PANIC => {
@@ -21,7 +21,7 @@ pub fn in_main() {
         }
         layout::PROVOKE_HARD_FAULT => {
             shared::set(layout::PROVOKE, layout::PROVOKE_NOTHING);
-            // SAFETY: nothing is read: there is no memory, and the bus fault that follows is the purpose.
+            // SAFETY: the read returns no value: there is no memory, and it causes the bus fault that is intended.
             black_box(unsafe { NOWHERE.read_volatile() });
         }
         layout::PROVOKE_STACK_OVERFLOW => {
@@ -32,7 +32,7 @@ pub fn in_main() {
     }
 }
 
-/// In the tick: overruns it, if the simulator asks for that.
+/// Called by the tick: overruns it if the simulator requests that.
 #[inline]
 pub fn in_tick() {
     if shared::get(layout::PROVOKE) == layout::PROVOKE_OVERRUN {

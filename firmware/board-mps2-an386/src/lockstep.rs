@@ -1,4 +1,4 @@
-//! Ticks that the simulator gives, and that answer to it: the same code with no timer and no serial port.
+//! Lockstep mode: the simulator sends ticks and reads the results. The same code runs without timer and serial port.
 
 use core::sync::atomic::{Ordering, fence};
 
@@ -8,7 +8,7 @@ use frixel_session::Session;
 
 use crate::shared::{self, Cursor};
 
-/// Does one batch of ticks after the other.
+/// Runs one batch of ticks after the other.
 pub fn run(session: &mut Session<'static>, mut ticker: Ticker<'static>) -> ! {
     let mut status = ticker.status();
     let mut batch = 0_u32;
@@ -25,7 +25,7 @@ pub fn run(session: &mut Session<'static>, mut ticker: Ticker<'static>) -> ! {
     }
 }
 
-/// One tick, in the order of the in-process rig: bytes, touch, one order, tick, answers.
+/// Runs one tick, in the order of the in-process rig: bytes, touch, one order, tick, answers.
 fn tick(
     session: &mut Session<'static>,
     ticker: &mut Ticker<'static>,

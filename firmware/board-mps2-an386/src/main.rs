@@ -39,7 +39,7 @@ fn main() -> ! {
     shared::set(layout::OUTPUT_AT_START, shared::get(layout::OUTPUT));
     shared::set(layout::STARTS, shared::get(layout::STARTS).wrapping_add(1));
     let board = started(TEXT);
-    // Made in passing, so that no image of them lies in flash.
+    // Built in place, so that no copy of them lies in flash.
     let (Some(first), Some(second)) = (singleton!(: Active = Active::new()), singleton!(: Active = Active::new()))
     else {
         fault::never()
@@ -54,13 +54,13 @@ fn main() -> ! {
     }
 }
 
-/// Makes the session. Not in `main`, on whose stack the room that it takes to make one would stay for good.
+/// Makes the session. Not in `main`, whose stack would keep the space for it for ever.
 #[inline(never)]
 fn session(board: Board, spare: &'static mut Active) -> Option<&'static mut Session<'static>> {
     singleton!(: Session<'static> = Session::new(board, &POOL, spare))
 }
 
-/// The board as it started: the fault before a reset was the reset's cause.
+/// The board's description at the start. A stored fault is the cause of the reset.
 fn started(text: &'static mut Text) -> Board {
     match fault::take(text) {
         Some((fault, detail, reset_text)) => {

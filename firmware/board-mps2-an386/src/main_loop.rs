@@ -11,7 +11,7 @@ use crate::tick::{self, Monitor, Tick};
 use crate::uart::{Queues, Uart};
 use crate::{fault, fault_injection, shared};
 
-/// Orders that may wait for the tick, one place left free. The session keeps the others.
+/// Length of the queue of orders for the tick; the queue keeps one place free. Further orders wait in the session.
 const ORDERS_LEN: usize = 5;
 
 /// The session's ends of the queues to and from the tick.
@@ -69,7 +69,7 @@ impl MainLoop {
         while self.orders.ready()
             && let Some(order) = self.session.next_order()
         {
-            // There is room: the condition of the loop says so.
+            // Cannot fail: the condition of the loop ensures room.
             let _ = self.orders.enqueue(order);
         }
         while let Some(spare) = self.spares.dequeue() {
@@ -79,10 +79,10 @@ impl MainLoop {
         let Ok(()) = self.serial.transmit(|bytes| self.session.transmit(bytes));
     }
 
-    /// What the board does now, as the next tick has it.
+    /// Requests the board's status from the next tick, and waits for it.
     ///
-    /// This waits without sleep: an emulator whose processor sleeps until the next tick wakes it late, by several ticks
-    /// at times, and the tick takes that for a missed deadline.
+    /// This waits without sleep: an emulator whose processor sleeps until the next tick wakes it late, sometimes by
+    /// several ticks, which the tick treats as a missed deadline.
     fn status(&mut self) -> Status {
         tick::want_status();
         loop {

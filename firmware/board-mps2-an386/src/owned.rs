@@ -1,16 +1,16 @@
-//! What belongs to an interrupt handler.
+//! Values that an interrupt handler owns.
 
 use core::cell::UnsafeCell;
 
-/// A place for a value that the main program gives to one interrupt handler before it enables the interrupt.
+/// Holds a value that the main program gives to one interrupt handler before it enables the interrupt.
 pub struct Owned<T>(UnsafeCell<Option<T>>);
 
-// SAFETY: the value is given once, before the interrupt is enabled, and from then on only its handler touches it; so
+// SAFETY: the value is given once, before the interrupt is enabled, and from then on only its handler accesses it; so
 // there is never more than one reference to it, and it changes context once, which `Send` allows.
 unsafe impl<T: Send> Sync for Owned<T> {}
 
 impl<T> Owned<T> {
-    /// Nothing was given yet.
+    /// An empty place.
     pub const fn new() -> Self {
         Self(UnsafeCell::new(None))
     }
@@ -20,11 +20,11 @@ impl<T> Owned<T> {
     /// # Safety
     /// The handler's interrupt has not been enabled yet.
     pub unsafe fn give(&self, value: T) {
-        // SAFETY: the caller guarantees that nobody else has a reference.
+        // SAFETY: the caller guarantees that there is no other reference.
         unsafe { *self.0.get() = Some(value) }
     }
 
-    /// The value, for the handler; `None` before it was given.
+    /// Returns the value to the handler; `None` before it was given.
     ///
     /// # Safety
     /// Only the handler that owns the value calls this, once in each run.

@@ -1,5 +1,5 @@
-//! The memory that the board shares with the simulator: the PSRAM, an ordinary file to the latter. Without a simulator
-//! it is just memory, in which nobody ever puts a finger on the screen.
+//! The memory that the board shares with the simulator: the PSRAM, which the simulator sees as an ordinary file.
+//! Without a simulator it is ordinary memory, and no finger ever touches the screen.
 
 use core::sync::atomic::{Ordering, fence};
 
@@ -27,13 +27,13 @@ pub fn set(word: usize, value: u32) {
     unsafe { BASE.add(word).write_volatile(value) }
 }
 
-/// Sets a word that says that others have been written.
+/// Sets a word that marks other words as written.
 pub fn publish(word: usize, value: u32) {
     fence(Ordering::Release);
     set(word, value);
 }
 
-/// Words one after the other.
+/// A position in a sequence of words.
 pub struct Cursor(usize);
 
 impl Cursor {
@@ -42,21 +42,21 @@ impl Cursor {
         Self(word)
     }
 
-    /// The word here; goes on to the next.
+    /// Returns the current word and advances to the next.
     pub fn get(&mut self) -> u32 {
         let value = get(self.0);
         self.0 += 1;
         value
     }
 
-    /// Sets the word here; goes on to the next.
+    /// Sets the current word and advances to the next.
     pub fn set(&mut self, value: u32) {
         set(self.0, value);
         self.0 += 1;
     }
 }
 
-/// Puts out a drive: what the DAC and the amplifier's enable would get.
+/// Puts out a drive: the values of the DAC and of the amplifier's enable.
 #[inline]
 pub fn drive(tick: u32, drive: Drive) {
     let word = word_of(drive);
@@ -69,12 +69,12 @@ pub fn drive(tick: u32, drive: Drive) {
     publish(layout::DRIVES_WRITTEN, written.wrapping_add(1));
 }
 
-/// Puts the output to zero and the amplifier off, whatever else goes on.
+/// Sets the output to zero and disables the amplifier, in any state.
 pub fn output_off() {
     set(layout::OUTPUT, word_of(Drive::default()));
 }
 
-/// The next report of the touch source, if one has come.
+/// Returns the next report of the touch source, if one has arrived.
 #[inline]
 pub fn touch(now_tick: u32) -> Option<Touch> {
     let read = get(layout::TOUCHES_READ);

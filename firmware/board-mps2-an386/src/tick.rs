@@ -22,21 +22,22 @@ static STATUS_WANTED: AtomicBool = AtomicBool::new(false);
 
 /// What the tick owns: the ticker and its ends of the queues.
 pub struct Tick {
-    /// Turns touch into voltage.
+    /// Computes the voltage from touch and scene.
     pub ticker: Ticker<'static>,
     /// Orders from the session.
     pub orders: Consumer<'static, Order<'static>>,
-    /// Coefficients that go back to the session.
+    /// Coefficients to return to the session.
     pub spares: Producer<'static, &'static mut Active>,
-    /// A status for the session, when it has requested one.
+    /// A status for the session, if requested.
     pub statuses: Producer<'static, Status>,
-    /// What the amplifier's monitor reads.
+    /// The amplifier's monitor.
     pub monitor: Monitor,
     /// Ticks since reset.
     pub count: u32,
 }
 
-/// The amplifier's monitor. There is no amplifier: it reads what was driven, behind the edges that the board promises.
+/// The amplifier's monitor. There is no amplifier: the monitor follows the driven voltage, with the edges that the
+/// board specifies.
 pub struct Monitor {
     voltage_v: f32,
     volts_per_code: f32,
@@ -44,7 +45,7 @@ pub struct Monitor {
 }
 
 impl Monitor {
-    /// The monitor of a board at rest.
+    /// The monitor of a board at 0 V.
     pub fn new(board: &Board) -> Self {
         let tick_period_s = 1.0 / board.tick_hz as f32;
         Self {
@@ -59,7 +60,7 @@ impl Monitor {
     }
 }
 
-/// Starts to tick.
+/// Starts the tick.
 pub fn start(tick: Tick, tick_hz: u32, mut systick: SYST) {
     // SAFETY: SysTick is enabled below.
     unsafe { TICK.give(tick) };
@@ -70,16 +71,16 @@ pub fn start(tick: Tick, tick_hz: u32, mut systick: SYST) {
     systick.enable_counter();
 }
 
-/// Asks the tick for a status.
+/// Requests a status from the tick.
 pub fn want_status() {
     STATUS_WANTED.store(true, Ordering::Release);
 }
 
-/// Deadline: the drive has to be put out before the next tick begins, 25 us. When it is not, the next `SysTick` is
-/// pending already, and the ticker faults; the number that goes with it is the time taken, in counts of 40 ns.
+/// Deadline: the drive must be put out before the next tick begins, 25 us. If it is late, the next `SysTick` is
+/// pending already, and the ticker raises a fault whose detail is the time taken, in counts of 40 ns.
 #[exception]
 fn SysTick() {
-    // SAFETY: this is the handler that owns it.
+    // SAFETY: this is the handler that owns the value.
     let Some(tick) = (unsafe { TICK.get() }) else { return };
     tick.run();
     if SCB::is_pendst_pending() {
@@ -94,7 +95,7 @@ impl Tick {
         if let Some(order) = self.orders.dequeue()
             && let Some(spare) = self.ticker.apply(order)
         {
-            // There are two of them, and room for both.
+            // Cannot fail: there are two of them, and room for both.
             let _ = self.spares.enqueue(spare);
         }
         let sense = Sense {
@@ -107,7 +108,7 @@ impl Tick {
         self.monitor.follow(drive.dac_code);
         if STATUS_WANTED.load(Ordering::Acquire) {
             STATUS_WANTED.store(false, Ordering::Relaxed);
-            // The session asks for the next one when it has taken this one.
+            // Cannot fail: the session requests the next status only after it has taken this one.
             let _ = self.statuses.enqueue(self.ticker.status());
         }
         fault_injection::in_tick();

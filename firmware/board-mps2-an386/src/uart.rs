@@ -1,4 +1,4 @@
-//! Serial port: UART0 of the CMSDK (Arm DDI0479, section 4.3), one byte deep, interrupt-driven both ways.
+//! Serial port: UART0 of the CMSDK (Arm DDI0479, section 4.3), one byte deep, interrupt-driven in both directions.
 
 use core::convert::Infallible;
 
@@ -11,7 +11,7 @@ use heapless::spsc::{Consumer, Producer, Queue};
 use crate::owned::Owned;
 use crate::shared;
 
-/// Room for the host's credit, and for hello requests and noise, which need none.
+/// Room for the host's credit, and for hello requests and noise, which need no credit.
 const RECEIVE_LEN: usize = BOARD.limits.receive_window_bytes as usize + 512;
 const TRANSMIT_LEN: usize = 256;
 
@@ -31,10 +31,10 @@ const CTRL_RX_INTERRUPT: u32 = 1 << 3;
 const INT_TX: u32 = 1;
 const INT_RX: u32 = 1 << 1;
 
-/// Divider of the 25 MHz clock for 2 Mbaud, as near as it goes with the least that the UART takes.
+/// Divider of the 25 MHz clock for about 2 Mbaud: the smallest divider that the UART accepts.
 const DIVIDER: u32 = 16;
 
-/// Below the tick.
+/// Priority below the tick.
 const PRIORITY: u8 = 0xc0;
 
 static RECEIVER: Owned<Producer<'static, u8>> = Owned::new();
@@ -55,7 +55,7 @@ unsafe impl InterruptNumber for Interrupt {
     }
 }
 
-/// Vectors after those of the processor itself.
+/// Interrupt vectors after those of the processor itself.
 #[unsafe(link_section = ".vector_table.interrupts")]
 #[unsafe(no_mangle)]
 static __INTERRUPTS: [extern "C" fn(); 2] = [receive, transmit];
@@ -80,7 +80,8 @@ impl Queues {
 }
 
 impl Uart {
-    /// Enables the port. `SysTick` should run by now: on an idle emulator without a timer the first byte takes a second.
+    /// Enables the port. `SysTick` should run already: on an idle emulator without a timer the first byte takes a
+    /// second.
     pub fn start(queues: &'static mut Queues, nvic: &mut NVIC) -> Self {
         let (receiver, received) = queues.receive.split();
         let (to_transmit, transmitter) = queues.transmit.split();
@@ -92,7 +93,7 @@ impl Uart {
         write(BAUDDIV, DIVIDER);
         write(CTRL, CTRL_TX_ENABLE | CTRL_RX_ENABLE | CTRL_TX_INTERRUPT | CTRL_RX_INTERRUPT);
         for interrupt in [Interrupt::Receive, Interrupt::Transmit] {
-            // SAFETY: no critical section counts on these priorities or on these interrupts being off.
+            // SAFETY: no critical section relies on these priorities or on these interrupts being disabled.
             unsafe {
                 nvic.set_priority(interrupt, PRIORITY);
                 NVIC::unmask(interrupt);
@@ -137,7 +138,7 @@ impl Write for Uart {
         while count == 0 && !bytes.is_empty() {
             count = bytes.iter().take_while(|byte| self.to_transmit.enqueue(**byte).is_ok()).count();
         }
-        // The interrupt comes by itself only after a byte has gone out; this starts the first.
+        // The interrupt occurs by itself only after a byte was sent; this sends the first one.
         NVIC::pend(Interrupt::Transmit);
         Ok(count)
     }
@@ -148,23 +149,23 @@ impl Write for Uart {
     }
 }
 
-/// A byte has come.
+/// Handles a received byte.
 extern "C" fn receive() {
     write(INTCLEAR, INT_RX);
-    // SAFETY: this is the handler that owns it.
+    // SAFETY: this is the handler that owns the value.
     let Some(receiver) = (unsafe { RECEIVER.get() }) else { return };
     while read(STATE) & STATE_RX_FULL != 0 {
-        // A host that keeps to its credit never fills the queue. Bytes beyond it are lost, and the frame's CRC fails.
+        // A host that respects its credit never fills the queue. Bytes beyond it are lost, and the frame's CRC fails.
         let _ = receiver.enqueue(read(DATA) as u8);
         shared::set(layout::RECEIVED_AT_TICK, shared::get(layout::TICK));
         shared::set(layout::RECEIVED_BYTES, shared::get(layout::RECEIVED_BYTES).wrapping_add(1));
     }
 }
 
-/// A byte has gone out, or there is one to send.
+/// Sends bytes from the queue while the UART has room. Runs after each sent byte, and when software pends it.
 extern "C" fn transmit() {
     write(INTCLEAR, INT_TX);
-    // SAFETY: this is the handler that owns it.
+    // SAFETY: this is the handler that owns the value.
     let Some(transmitter) = (unsafe { TRANSMITTER.get() }) else { return };
     while read(STATE) & STATE_TX_FULL == 0 {
         let Some(byte) = transmitter.dequeue() else { break };
@@ -173,11 +174,11 @@ extern "C" fn transmit() {
 }
 
 fn read(register: usize) -> u32 {
-    // SAFETY: a register of UART0, which only this module touches.
+    // SAFETY: a register of UART0, which only this module accesses.
     unsafe { (register as *const u32).read_volatile() }
 }
 
 fn write(register: usize, value: u32) {
-    // SAFETY: a register of UART0, which only this module touches.
+    // SAFETY: a register of UART0, which only this module accesses.
     unsafe { (register as *mut u32).write_volatile(value) }
 }

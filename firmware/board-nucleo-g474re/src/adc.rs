@@ -1,4 +1,4 @@
-//! The amplifier's monitor on ADC1, which converts all the time; the tick takes what was converted last.
+//! The amplifier's monitor on ADC1, which converts continuously; the tick reads the last conversion.
 //!
 //! | pin | function | |
 //! |---|---|---|
@@ -22,10 +22,10 @@ pub struct Adc {
 }
 
 impl Adc {
-    /// Calibrates and starts to convert (RM0440, "ADC": "ADC deep-power-down mode and ADC voltage regulator", "Calibration",
-    /// "ADC on-off control").
+    /// Calibrates the ADC and starts conversion (RM0440, "ADC": "ADC deep-power-down mode and ADC voltage regulator",
+    /// "Calibration", "ADC on-off control").
     pub fn new() -> Self {
-        // 42.5 MHz of the 60 that it takes.
+        // 42.5 MHz; the ADC allows 60.
         ADC12_COMMON.ccr().modify(|w| w.set_ckmode(Ckmode::SYNC_DIV4));
         ADC1.cr().modify(|w| w.set_deeppwd(false));
         ADC1.cr().modify(|w| w.set_advregen(true));
@@ -36,7 +36,7 @@ impl Adc {
             w.set_adcal(true);
         });
         wait_until(|| !ADC1.cr().read().adcal(), "the calibration of ADC1");
-        // Enabling within four of its clocks after the calibration is not seen (RM0440, "ADC on-off control").
+        // The ADC ignores an enable within four of its clocks after the calibration (RM0440, "ADC on-off control").
         asm::delay(64);
         ADC1.isr().write(|w| w.set_adrdy(true));
         ADC1.cr().modify(|w| w.set_aden(true));
@@ -46,7 +46,7 @@ impl Adc {
             w.set_cont(true);
             w.set_ovrmod(Ovrmod::OVERWRITE);
         });
-        // 92.5 + 12.5 clocks, 2.5 us: time enough for the level shifter's 10 kOhm.
+        // 92.5 + 12.5 clocks, 2.5 us: enough for the level shifter's 10 kOhm.
         ADC1.smpr().modify(|w| w.set_smp(usize::from(CHANNEL), SampleTime::CYCLES92_5));
         ADC1.sqr1().modify(|w| {
             w.set_l(0);

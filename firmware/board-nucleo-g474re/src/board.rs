@@ -1,5 +1,5 @@
-//! Who this board is, and what it can bear. What is here belongs to the parts that `docs/hardware.md` lists: another
-//! amplifier or electrode has other numbers.
+//! Identity and limits of this board. The numbers here belong to the parts that `docs/hardware.md` lists: another
+//! amplifier or electrode needs other numbers.
 
 use frixel_control::Board;
 use frixel_drivers::monitor::MonitorScale;
@@ -14,19 +14,19 @@ use crate::flash::{BankTwo, PAGES};
 
 /// Ticks a second.
 pub const TICK_HZ: u32 = 40_000;
-/// Bytes that the host may have under way.
+/// Number of bytes that the host may have under way.
 pub const RECEIVE_WINDOW: usize = 4096;
 
-/// The monitor's ADC: 12 bits of 3.3 V. The amplifier's monitor gives 1 V for 100 V, of which the level shifter makes
-/// 0.75 V about 1.65 V, so that 220 V fill the span.
+/// The monitor's ADC: 12 bits of 3.3 V. The amplifier's monitor gives 1 V for 100 V, which the level shifter converts
+/// to 0.75 V around 1.65 V, so that 220 V use the full range.
 pub const MONITOR: MonitorScale = MonitorScale::new(12, 3.3, 0.75 / 100.0);
 
-/// Limits before bring-up has stored others.
+/// Limits until bring-up has stored others.
 pub const LIMITS: BoardLimits = BoardLimits {
     bitmap_pool_bytes: BITMAP_POOL_LEN as u32,
     records_max: RECORDS_MAX as u8,
     receive_window_bytes: RECEIVE_WINDOW as u16,
-    // Until somebody has measured what this board does.
+    // Until the board has been measured.
     voltage_max_v_peak: 50.0,
     // 10 V of the DAC behind an amplifier of gain 20.
     full_scale_v_peak: 200.0,
@@ -36,15 +36,16 @@ pub const LIMITS: BoardLimits = BoardLimits {
     electrode_capacitance_max_f: 0.53e-9,
     // The limit for touch currents in normal use of IEC 61010-1, without its weighting by frequency.
     current_max_a_rms: 0.5e-3,
-    // What the series resistor lets through when an edge goes from 50 V to -50 V, 1.47 mA, and a fifth more.
+    // The current through the series resistor when an edge goes from 50 V to -50 V, 1.47 mA, and a fifth more.
     current_max_a_peak: 1.8e-3,
     touch_report_period_s: 10e-3,
     tick_cycles_max: BoardLimits::SMALLEST_TICK_CYCLES_MAX,
 };
 
-/// Where the limits are kept: the first two pages of bank 2.
+/// Where the limits are stored: the first two pages of bank 2.
 pub const LIMITS_SLOT: Slot = Slot { first_page: 0, pages: 1 };
-/// Where the last scene is kept: the rest of bank 2, 126 KiB a copy; 64 KiB of bitmaps and the largest scene take 71.
+/// Where the last scene is stored: the rest of bank 2, 126 KiB a copy. 64 KiB of bitmaps and the largest scene need 71
+/// KiB.
 pub const SCENE_SLOT: Slot = Slot { first_page: 2, pages: (PAGES - 2) / 2 };
 
 const _: () = assert!(
@@ -52,7 +53,7 @@ const _: () = assert!(
         >= frixel_layers::BITMAP_POOL_LEN + frixel_layers::SCENE_MAX_LEN + (1 + RECORDS_MAX) * 16
 );
 
-/// The board as it started.
+/// The board's description, with the cause of the last reset.
 pub fn board(last_reset: &LastReset, flash: Option<&BankTwo>) -> Board {
     Board {
         kind: BoardKind::NucleoG474re,

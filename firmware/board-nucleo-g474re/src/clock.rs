@@ -1,5 +1,5 @@
-//! The processor's clock: 170 MHz from the internal oscillator, which needs no crystal and cannot fall off the board. Its
-//! 1 % is well within what a serial port bears (5.9 % for one frame of ten bits, halved for either side).
+//! The processor's clock: 170 MHz from the internal oscillator, which needs no crystal. Its accuracy of 1 % is well
+//! within the tolerance of a serial port (5.9 % for one frame of ten bits, halved for either side).
 
 use cortex_m::asm;
 use cortex_m::peripheral::{DCB, DWT};
@@ -17,7 +17,8 @@ pub const CORE_HZ: u32 = 170_000_000;
 pub fn start() {
     RCC.apb1enr1().modify(|w| w.set_pwren(true));
     let _ = RCC.apb1enr1().read();
-    // Else PB6, amplifier enable, is pulled down by 5 kOhm meant for USB-C (RM0440, "PWR_CR3"): good in reset, and no more.
+    // Otherwise PB6, amplifier enable, is pulled down by 5 kOhm for USB-C (RM0440, "PWR_CR3"), which is useful only in
+    // reset.
     PWR.cr3().modify(|w| w.set_ucpd1_dbdis(true));
 
     FLASH.acr().modify(|w| {
@@ -40,7 +41,7 @@ pub fn start() {
     RCC.cr().modify(|w| w.set_pllon(true));
     wait_until(|| RCC.cr().read().pllrdy(), "the PLL");
 
-    // Above 80 MHz, half the frequency comes first, for at least 1 us (RM0440, "System clock (SYSCLK)").
+    // Above 80 MHz, the core must first run at half the frequency for at least 1 us (RM0440, "System clock (SYSCLK)").
     RCC.cfgr().modify(|w| w.set_hpre(Hpre::DIV2));
     RCC.cfgr().modify(|w| w.set_sw(Sw::PLL1_R));
     wait_until(|| RCC.cfgr().read().sws() == Sw::PLL1_R, "the PLL as system clock");
@@ -52,7 +53,7 @@ pub fn start() {
     });
 }
 
-/// Switches on what the board uses, but for the pins.
+/// Enables the peripherals that the board uses, except the pins.
 pub fn start_peripherals() {
     RCC.ahb1enr().modify(|w| {
         w.set_dma1en(true);
@@ -65,11 +66,12 @@ pub fn start_peripherals() {
         w.set_usart2en(true);
         w.set_i2c3en(cfg!(feature = "optical-frame"));
     });
-    // A peripheral is there two clocks after its enable (RM0440, "Peripheral clock enable register"); the read takes them.
+    // A peripheral is accessible two clocks after its enable (RM0440, "Peripheral clock enable register"); the read
+    // takes them.
     let _ = RCC.apb1enr1().read();
 }
 
-/// Waits by counting cycles; longer when interrupts come in between.
+/// A delay that counts cycles; longer when interrupts occur meanwhile.
 pub struct CycleDelay;
 
 impl DelayNs for CycleDelay {
@@ -78,8 +80,8 @@ impl DelayNs for CycleDelay {
     }
 }
 
-/// Starts the cycle counter and sees that it counts: an emulator's does not, and what is measured with one that stands
-/// still would pass whatever it takes.
+/// Starts the cycle counter and checks that it counts. The counter of an emulator stands still, and every time limit
+/// measured with it would be met.
 pub fn start_cycle_counter(dcb: &mut DCB, dwt: &mut DWT) {
     dcb.enable_trace();
     dwt.enable_cycle_counter();
@@ -89,8 +91,8 @@ pub fn start_cycle_counter(dcb: &mut DCB, dwt: &mut DWT) {
     assert!(counted >= 100, "the cycle counter does not count");
 }
 
-/// While a debugger halts the core, time goes on for the one-shot, so that the output goes to zero (RM0440, "Debug support for
-/// timers"). To be called again and again: a debugger may want it otherwise.
+/// Keeps the one-shot timer running while a debugger halts the core, so that the output goes to zero (RM0440, "Debug
+/// support for timers"). To be called repeatedly, because a debugger may change the setting.
 pub fn keep_timers_running_in_debug() {
     let frozen = DBGMCU.apb1lfzr().read();
     if frozen.tim3() || frozen.tim4() {

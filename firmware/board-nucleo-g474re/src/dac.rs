@@ -1,4 +1,5 @@
-//! The DAC, an AD5761R on SPI2. Two halves share the bus in turns ([`BusHandover`](frixel_drivers::bus_handover::BusHandover)):
+//! The DAC, an AD5761R on SPI2. Two halves take turns on the bus
+//! ([`BusHandover`](frixel_drivers::bus_handover::BusHandover)):
 //!
 //! - [`DacFrames`], in the tick: one output frame a period by DMA, latched by a timer's edge ([`crate::period`]);
 //! - [`DacBus`], in the main loop: an `SpiDevice` for the driver that configures the DAC and reads it back.
@@ -26,21 +27,21 @@ const SCK: u32 = 13;
 const MISO: u32 = 14;
 const MOSI: u32 = 15;
 const SPI2_FUNCTION: u8 = 5;
-/// Clock of the tick's frames: 170 MHz / 8 is 21.25 MHz of the DAC's 50.
+/// Clock of the tick's frames: 170 MHz / 8 = 21.25 MHz; the DAC allows 50.
 const FRAME_CLOCK: Br = Br::DIV8;
 /// Clock of the driver, 5.3 MHz. SDO follows an edge by up to 40 ns, more than half a period at 21.25 MHz.
 const DRIVER_CLOCK: Br = Br::DIV32;
 
-/// Bytes on their way to the DAC, in the memory for DMA (`memory.x`); they are written before DMA reads them.
+/// Bytes for the DAC, in the memory for DMA (`memory.x`). They are written before DMA reads them.
 #[unsafe(link_section = ".dma.FRAME")]
 static FRAME: [AtomicU8; FRAME_LEN] = [const { AtomicU8::new(0) }; FRAME_LEN];
 
 /// The driver of this board's DAC.
 pub type Dac = Ad5761r<DacBus, CycleDelay>;
-/// What it reports.
+/// Errors of the DAC's driver.
 pub type DacError = ad5761r::Error<SpiError>;
 
-/// Starts SPI2 and returns its two halves. [`period::start`] comes before. The DAC has not been configured yet.
+/// Starts SPI2 and returns its two halves. Call [`period::start`] first. The DAC is not configured yet.
 pub fn start() -> (DacFrames, Dac) {
     // SCLK is high between frames, and the DAC samples at falling edges: mode 2.
     SPI2.cr1().write(|w| {
@@ -75,8 +76,8 @@ pub fn start() -> (DacFrames, Dac) {
 pub struct DacFrames(());
 
 impl DacFrames {
-    /// Begins to send a code, which the DAC puts out at the end of the period. `false` when it is too late for that, or
-    /// the frame before is still under way; then nothing is sent.
+    /// Begins to send a code, which the DAC puts out at the end of the period. Returns `false`, and sends nothing,
+    /// when it is too late for that or the previous frame is still under way.
     #[inline]
     #[must_use]
     pub fn send(&mut self, code: DacCode) -> bool {
@@ -92,7 +93,7 @@ impl DacFrames {
     }
 }
 
-/// The main loop's half of the DAC: polled, while the tick sends nothing.
+/// The main loop's half of the DAC. It polls, while the tick sends nothing.
 pub struct DacBus(());
 
 /// Why a transfer failed.
@@ -114,10 +115,10 @@ impl ErrorType for DacBus {
 }
 
 impl SpiDevice for DacBus {
-    /// SYNC is low for the whole transaction. The tick may interrupt it at any place: the bus then stands still.
+    /// SYNC is low for the whole transaction. The tick may interrupt it at any point; the bus then pauses.
     fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), SpiError> {
         configure(DRIVER_CLOCK, false)?;
-        // Bytes that came while the tick sent, and the overrun that they led to.
+        // Discard the bytes that were received during the tick's frames, and the overrun that they caused.
         while SPI2.sr().read().rxne() {
             let _ = SPI2.dr8().read();
         }
@@ -159,7 +160,7 @@ fn run(operation: &mut Operation<'_, u8>) -> Result<(), SpiError> {
     Ok(())
 }
 
-/// Sends a byte, and returns the one that came meanwhile.
+/// Sends a byte, and returns the byte received meanwhile.
 fn exchange(byte: u8) -> Result<u8, SpiError> {
     SPI2.dr8().write_value(byte);
     wait_until(|| SPI2.sr().read().rxne())?;

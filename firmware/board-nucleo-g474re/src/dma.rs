@@ -16,7 +16,7 @@ pub(crate) const TRANSMIT: usize = 2;
 #[cfg(feature = "optical-frame")]
 pub(crate) const OPTICAL_FRAME: usize = 3;
 
-/// Who asks for transfers: inputs of DMAMUX1 (RM0440, "DMAMUX1 mapping").
+/// Peripherals that request transfers: inputs of DMAMUX1 (RM0440, "DMAMUX1 mapping").
 #[derive(Clone, Copy)]
 pub(crate) enum Request {
     Spi2Tx = 13,
@@ -28,25 +28,25 @@ pub(crate) enum Request {
     Usart2Tx = 27,
 }
 
-/// Bytes between memory and a peripheral's data register.
+/// Transfers of bytes between memory and a peripheral's data register.
 pub(crate) struct Transfer {
     pub(crate) request: Request,
     pub(crate) direction: Dir,
     pub(crate) priority: Pl,
-    /// Begins anew when it has come to the end.
+    /// Restarts from the beginning after the last byte.
     pub(crate) circular: bool,
     /// The peripheral's data register.
     pub(crate) register: *mut (),
 }
 
-/// Readies a channel for transfers between `memory` and the register. They begin with [`begin`].
+/// Configures a channel for transfers between `memory` and the register. [`begin`] starts them.
 pub(crate) fn set_up(channel: usize, transfer: &Transfer, memory: &'static [AtomicU8]) {
     let ch = DMA1.ch(channel);
     stop(ch);
     DMAMUX1.ccr(channel).write(|w| w.set_dmareq_id(transfer.request as u8));
     ch.par().write_value(transfer.register as u32);
     ch.mar().write_value(memory.as_ptr() as u32);
-    // Bytes on both sides, which is what zero stands for.
+    // Byte size on both sides, which is encoded as zero.
     ch.cr().write(|w| {
         w.set_dir(transfer.direction);
         w.set_pl(transfer.priority);
@@ -55,12 +55,12 @@ pub(crate) fn set_up(channel: usize, transfer: &Transfer, memory: &'static [Atom
     });
 }
 
-/// Begins to transfer `len` bytes, from the start of the memory on. What was under way is given up.
+/// Begins to transfer `len` bytes, from the start of the memory. Aborts a transfer that is under way.
 pub(crate) fn begin(channel: usize, len: u16) {
     let ch = DMA1.ch(channel);
     stop(ch);
     ch.ndtr().write(|w| w.set_ndt(len));
-    // Stores before this reach memory before DMA reads it.
+    // Stores before this fence reach memory before DMA reads it.
     fence(Ordering::SeqCst);
     ch.cr().modify(|w| w.set_en(true));
 }

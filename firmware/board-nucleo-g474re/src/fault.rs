@@ -1,5 +1,4 @@
-//! What ends the firmware, and what is known of it after the reset: output to zero first, then the reason kept, then the
-//! reset.
+//! Panics and faults: they set the output to zero, store the reason, and reset. The next start reports the reason.
 
 use core::arch::naked_asm;
 #[cfg(feature = "panic-message")]
@@ -18,22 +17,22 @@ use stm32_metapac::RCC;
 
 use crate::{flash, output};
 
-/// Outside of what the start-up code clears.
+/// In memory that the start-up code does not clear.
 #[unsafe(link_section = ".uninit.RECORD")]
 static RECORD: FaultRecord = FaultRecord::new();
 
-/// Is [`MARK`] as long as RAM has had power.
+/// Holds [`MARK`] as long as RAM has had power.
 #[unsafe(link_section = ".uninit.MARKED")]
 static MARKED: AtomicU32 = AtomicU32::new(0);
 const MARK: u32 = 0x6672_786c;
 
-/// Why the processor started.
+/// The last reset.
 pub struct LastReset {
     /// Its cause.
     pub cause: ResetCause,
-    /// The fault that led to it, with a number that belongs to the fault.
+    /// The fault that led to it, with its detail.
     pub fault: Option<(Fault, u32)>,
-    /// What was said of the fault.
+    /// The text stored with the fault.
     pub text: &'static [u8],
 }
 
@@ -54,19 +53,19 @@ impl LastReset {
     }
 }
 
-/// Puts the output to zero, keeps the reason and resets.
+/// Sets the output to zero, stores the reason and resets.
 fn end(fault: Fault, detail: u32, say: &mut dyn FnMut(&mut Writer)) -> ! {
     static ENDING: AtomicBool = AtomicBool::new(false);
     interrupt::disable();
     output::zero_for_good();
-    // A fault in what follows resets without more ado.
+    // A second fault during the following code resets at once.
     if !ENDING.swap(true, Ordering::Relaxed) {
         RECORD.save(fault, detail, say);
     }
     SCB::sys_reset()
 }
 
-/// A panic; the number that goes with it is the line.
+/// A panic; the fault's detail is the line number.
 #[cfg(feature = "panic-message")]
 #[panic_handler]
 fn panic(info: &PanicInfo) -> ! {
@@ -77,7 +76,7 @@ fn panic(info: &PanicInfo) -> ! {
     })
 }
 
-/// A panic; the number that goes with it is the line. The message is not used, so the linker drops it.
+/// A panic; the fault's detail is the line number. The message is not used, so the linker drops it.
 #[cfg(not(feature = "panic-message"))]
 #[panic_handler]
 fn panic(info: &PanicInfo) -> ! {
@@ -87,7 +86,7 @@ fn panic(info: &PanicInfo) -> ! {
     })
 }
 
-/// An interrupt that nobody handles.
+/// An interrupt without a handler.
 #[exception]
 unsafe fn DefaultHandler(number: i16) {
     end(Fault::HardFault, u32::from(number.unsigned_abs()), &mut |text| {
@@ -95,7 +94,7 @@ unsafe fn DefaultHandler(number: i16) {
     })
 }
 
-/// Flash that cannot be read, or RAM, or the clock.
+/// Non-maskable interrupt: an error of the flash, the RAM or the clock.
 #[exception]
 unsafe fn NonMaskableInt() {
     if !flash::take_unreadable() {
@@ -105,7 +104,7 @@ unsafe fn NonMaskableInt() {
     }
 }
 
-/// What an exception puts on the stack.
+/// The stack frame of an exception.
 #[repr(C)]
 struct Frame {
     registers: [u32; 5],
@@ -123,7 +122,7 @@ unsafe extern "C" {
     static _fault_stack_start: u32;
 }
 
-/// Hard fault, bus fault included. The stack may be used up: this goes to one of its own before anything else.
+/// Hard fault, bus fault included. The stack may be exhausted, so the handler first switches to a stack of its own.
 ///
 /// # Safety
 /// Called by the processor.
@@ -140,8 +139,8 @@ unsafe extern "C" fn hard_fault() -> ! {
     )
 }
 
-/// The number that goes with a hard fault is the program counter; with a stack overflow, the address that was out; with a
-/// stack pointer that was lost, where it was.
+/// The detail of a hard fault is the program counter; of a stack overflow, the address outside the stack; of an
+/// invalid stack pointer, its value.
 extern "C" fn on_hard_fault(frame: *const Frame) -> ! {
     output::zero_for_good();
     let address = frame.addr();
@@ -155,7 +154,7 @@ extern "C" fn on_hard_fault(frame: *const Frame) -> ! {
             text.text("the stack pointer was outside the stack");
         })
     }
-    // SAFETY: the processor has put a frame there, and it lies in the stack. The registers of the fault can be read.
+    // SAFETY: the processor has stored a frame there, and it lies in the stack. The fault registers are readable.
     let (program_counter, link, status, fault_address) = unsafe {
         let scb = &*SCB::PTR;
         ((*frame).program_counter, (*frame).link, scb.cfsr.read(), scb.bfar.read())
@@ -166,7 +165,7 @@ extern "C" fn on_hard_fault(frame: *const Frame) -> ! {
     })
 }
 
-/// For what cannot happen.
+/// Panics where a static would be taken twice, which cannot happen.
 pub fn never() -> ! {
     panic!("a static was taken twice")
 }

@@ -1,5 +1,5 @@
-//! Bank 2 of the flash, where the stores are. The image runs from bank 1 and is not held up by what bank 2 does, as long as
-//! nobody reads there meanwhile (RM0440, "Embedded flash memory": "Read-while-write", "Flash program and erase
+//! Bank 2 of the flash, which holds the stores. The image runs from bank 1, and operations on bank 2 do not stall it
+//! unless bank 2 is read meanwhile (RM0440, "Embedded flash memory": "Read-while-write", "Flash program and erase
 //! operations").
 
 use core::ptr;
@@ -10,13 +10,13 @@ use stm32_metapac::FLASH;
 
 /// First byte of bank 2.
 const START: u32 = 0x0804_0000;
-/// Pages of bank 2.
+/// Number of pages of bank 2.
 pub const PAGES: u32 = 128;
 const LEN: u32 = PAGES * BankTwo::PAGE_LEN;
-/// Unlocks the control register, one after the other.
+/// Keys that unlock the control register, in this order.
 const KEYS: [u32; 2] = [0x4567_0123, 0xcdef_89ab];
 
-/// A word that was read could not be corrected.
+/// A word that was read had an error that cannot be corrected.
 static UNREADABLE: AtomicBool = AtomicBool::new(false);
 
 /// Bank 2.
@@ -25,7 +25,7 @@ pub struct BankTwo {
 }
 
 impl BankTwo {
-    /// Takes bank 2. `None` when the option bytes have made one bank of the two, or swapped them.
+    /// Takes bank 2. `None` when the option bytes configure a single bank, or swap the banks.
     pub fn new() -> Option<Self> {
         let options = FLASH.optr().read();
         (options.dbank() && !options.bfb2()).then_some(Self { under_way: false })
@@ -38,7 +38,8 @@ impl BankTwo {
             }
         }
         clear_flags();
-        // The flash reports an operation error only with its interrupt enabled (RM0440, "FLASH_SR": OPERR). Nobody unmasks it.
+        // The flash reports an operation error only with its interrupt enabled (RM0440, "FLASH_SR": OPERR). The
+        // interrupt stays masked.
         FLASH.cr().modify(|w| w.set_errie(true));
         // Errata ES0430: the data cache may be corrupted while the other bank is written.
         FLASH.acr().modify(|w| w.set_dcen(false));
@@ -56,10 +57,10 @@ impl Flash for BankTwo {
         }
         UNREADABLE.store(false, Ordering::Relaxed);
         for (address, byte) in (START + offset..).zip(bytes) {
-            // SAFETY: the address lies in bank 2, as was looked for above, and every byte there is a byte.
+            // SAFETY: the address lies in bank 2, as checked above, and any byte there is valid.
             *byte = unsafe { ptr::with_exposed_provenance::<u8>(address as usize).read_volatile() };
         }
-        // The exception comes before anything that is after this.
+        // The exception occurs before anything after this.
         cortex_m::asm::dsb();
         cortex_m::asm::isb();
         !UNREADABLE.load(Ordering::Relaxed)
@@ -86,7 +87,8 @@ impl Flash for BankTwo {
         FLASH.cr().modify(|w| w.set_pg(true));
         let word = u64::from_le_bytes(word);
         for (address, half) in [(START + offset, word as u32), (START + offset + 4, (word >> 32) as u32)] {
-            // SAFETY: the address lies in bank 2 and is a multiple of four, as was looked for above; nothing else is there.
+            // SAFETY: the address lies in bank 2 and is a multiple of four, as checked above; no Rust object lies
+            // there.
             unsafe { ptr::with_exposed_provenance_mut::<u32>(address as usize).write_volatile(half) };
             // The halves reach the flash one after the other.
             cortex_m::asm::isb();
@@ -107,7 +109,7 @@ impl Flash for BankTwo {
             w.set_lock(true);
         });
         clear_flags();
-        // What the cache has of this bank is no more.
+        // The cached content of this bank is invalid now.
         FLASH.acr().modify(|w| w.set_dcrst(true));
         FLASH.acr().modify(|w| w.set_dcrst(false));
         FLASH.acr().modify(|w| w.set_dcen(true));
@@ -117,13 +119,13 @@ impl Flash for BankTwo {
     }
 }
 
-/// Clears what is set: writing ones does.
+/// Clears all flags that are set, by writing ones.
 fn clear_flags() {
     FLASH.sr().modify(|_| {});
 }
 
-/// Whether a non-maskable interrupt came from a word of bank 2 that cannot be corrected: one that was half written when the
-/// power went. The read that met it then says so (RM0440, "Error code correction (ECC)").
+/// Returns whether a non-maskable interrupt has reported a word of bank 2 that cannot be corrected, as when power
+/// failed during a write. The read that met the word then reports it (RM0440, "Error code correction (ECC)").
 pub(crate) fn take_unreadable() -> bool {
     let status = FLASH.eccr().read();
     let ours = status.eccd() && status.bk_ecc();

@@ -1,11 +1,11 @@
-//! The firmware on a NUCLEO-G474RE: registers and wiring. `docs/hardware.md` has the pins and the parts; RM0440 is
-//! the reference manual of the STM32G4, DS12288 the data sheet of the STM32G474, and what stands in quotes behind them are
-//! headings there.
+//! The firmware on a NUCLEO-G474RE: registers and wiring. `docs/hardware.md` lists the pins and the parts. RM0440 is
+//! the reference manual of the STM32G4, DS12288 the data sheet of the STM32G474; text in quotes after them refers to
+//! headings in these documents.
 //!
-//! One interrupt, [`tick`], runs above everything, 40,000 times a second. All else is the main loop, [`main_loop`]: serial
-//! port, session, stores, optical frame, watchdog. Between them go the lock-free queues of `heapless`; no critical section
-//! masks the tick ([`critical`]). None of it has run on hardware in this repository's CI: what can be tested without is in
-//! `firmware/control`, `firmware/session` and `firmware/drivers`.
+//! One interrupt, [`tick`], runs above everything, 40,000 times a second. Everything else runs in the main loop,
+//! [`main_loop`]: serial port, session, stores, optical frame, watchdog. The lock-free queues of `heapless` connect
+//! the two; no critical section masks the tick ([`critical`]). This repository's CI runs none of it on hardware. The
+//! code that can be tested without hardware is in `firmware/control`, `firmware/session` and `firmware/drivers`.
 #![no_std]
 
 pub mod adc;
@@ -30,10 +30,10 @@ pub mod serial;
 pub mod tick;
 pub mod watchdog;
 
-/// Polls that a part of the processor may take to become ready; more than a tenth of a second.
+/// Largest number of polls until a part of the processor is ready; more than a tenth of a second.
 const ROUNDS_MAX: u32 = 5_000_000;
 
-/// Waits until a part of the processor is ready. When it never is, the panic that says so puts the output to zero and
+/// Waits until a part of the processor is ready. If it never is, this panics, which sets the output to zero and
 /// resets.
 pub(crate) fn wait_until(ready: impl Fn() -> bool, what: &str) {
     let mut poll = limited_polls(what);
@@ -42,7 +42,8 @@ pub(crate) fn wait_until(ready: impl Fn() -> bool, what: &str) {
     }
 }
 
-/// To be called in every round of a loop that waits. The panic after the last round puts the output to zero and resets.
+/// Returns a function to be called in every round of a loop that waits. It panics after the last round, which sets the
+/// output to zero and resets.
 pub(crate) fn limited_polls(what: &str) -> impl FnMut() {
     let mut rounds = 0;
     move || {

@@ -1,4 +1,4 @@
-//! The firmware on a NUCLEO-G474RE: puts together what is in the library beside it.
+//! The firmware on a NUCLEO-G474RE: assembles the parts from the library.
 #![no_std]
 #![no_main]
 
@@ -54,14 +54,14 @@ fn main() -> ! {
     main_loop.run()
 }
 
-/// Starts everything. Apart from the main function, so that what it needs of the stack is free again afterwards.
+/// Starts everything. A function of its own, so that its stack is free again afterwards.
 #[inline(never)]
 fn start(text: &'static mut Text, queue_pairs: &'static mut QueuePairs) -> MainLoop {
     let output = Output::new();
     let Some(mut core) = Peripherals::take() else { fault::never() };
     guard::start(&mut core.MPU);
     let last_reset = LastReset::take(text);
-    // First of all, so that a board that fails while it starts has logged why it was reset.
+    // First, so that a board that fails during start-up has logged the cause of its last reset.
     log_reset(&last_reset);
     clock::start();
     clock::start_peripherals();
@@ -99,7 +99,7 @@ fn start(text: &'static mut Text, queue_pairs: &'static mut QueuePairs) -> MainL
     }
 }
 
-/// Makes both halves of the firmware.
+/// Makes the tick and the main loop.
 #[inline(never)]
 fn make(board: Board) -> (Ticker<'static>, &'static mut Session<'static>) {
     let (Some(first), Some(second)) = (first_coefficients(), second_coefficients()) else { fault::never() };
@@ -114,8 +114,8 @@ fn make(board: Board) -> (Ticker<'static>, &'static mut Session<'static>) {
     (ticker, session)
 }
 
-// What is large is made on the stack, so that no image of it lies in flash. Each has a function of its own, so that the
-// stack holds one of them at a time.
+// Large values are made on the stack, so that no copy of them lies in flash. Each has a function of its own, so that
+// the stack holds only one at a time.
 
 #[inline(never)]
 fn first_coefficients() -> Option<&'static mut Active> {
@@ -152,7 +152,7 @@ fn log(board: &Board, bank: bool) {
     }
 }
 
-/// A DAC that is not there yet is no fault: it is checked again before the board arms.
+/// A missing DAC is not a fault yet: it is checked again before the board arms.
 #[cfg(feature = "log")]
 fn log_dac(prepared: Result<(), DacError>) {
     if let Err(error) = prepared {

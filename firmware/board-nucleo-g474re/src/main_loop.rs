@@ -1,4 +1,4 @@
-//! The main loop: the session between serial port and tick, and all that has time.
+//! The main loop: runs the session between serial port and tick, and all work that is not urgent.
 
 use frixel_control::{Active, Order, Status};
 use frixel_drivers::serial::SerialLink;
@@ -20,7 +20,7 @@ use crate::tick::{self, Queues};
 use crate::watchdog::Watchdog;
 use crate::{arming, clock};
 
-/// Orders that may wait for the tick, one place left free. The session keeps the others.
+/// Length of the queue of orders for the tick; the queue keeps one place free. Further orders wait in the session.
 const ORDERS_LEN: usize = 5;
 
 /// The main loop's ends of the queues.
@@ -56,25 +56,25 @@ impl QueuePairs {
 pub struct MainLoop {
     /// Its ends of the queues.
     pub ends: Ends,
-    /// The host's partner.
+    /// The session with the host.
     pub session: &'static mut Session<'static>,
-    /// What the tick said last.
+    /// The last status from the tick.
     pub status: Status,
-    /// The host's line.
+    /// The serial link to the host.
     pub serial: SerialLink<Serial>,
     /// The DAC, while the board is not armed.
     pub dac: Dac,
     /// The light that shows the state.
     pub light: StateLight<Pin>,
     #[cfg(feature = "store")]
-    /// The last scene, and where it is kept; `None` without a bank for it.
+    /// The last scene and its storage; `None` without a usable flash bank.
     pub store: Option<(SceneKeeper, BankTwo)>,
-    /// Resets when this loop stands still.
+    /// Resets the processor when this loop stops.
     pub watchdog: Watchdog,
 }
 
 impl MainLoop {
-    /// Runs for ever.
+    /// Runs the loop for ever.
     pub fn run(mut self, #[cfg(feature = "optical-frame")] mut touch_source: OpticalFrame<'_>) -> ! {
         tick::want_status();
         loop {
@@ -98,20 +98,20 @@ impl MainLoop {
         }
     }
 
-    /// Takes a status, as soon as there is a new one.
+    /// Takes a new status, if there is one.
     fn follow_status(&mut self) {
         if let Some(status) = self.ends.statuses.dequeue() {
             log_change(&self.status, &status);
             self.status = status;
             tick::want_status();
-            // An order to arm may be on its way behind this status.
+            // An order to arm may still be queued behind this status.
             let disarmed = [self.status.telemetry.state, self.session.state()] == [State::Disarmed; 2];
             self.watchdog.freeze_with_debugger(disarmed);
             clock::keep_timers_running_in_debug();
         }
     }
 
-    /// Hands orders to the tick, as many as there is room for, and takes back the coefficients that the tick no longer uses.
+    /// Passes orders to the tick while there is room, and takes back the coefficients that the tick no longer uses.
     fn hand_over(&mut self) {
         while self.ends.orders.ready()
             && let Some(order) = self.session.next_order()
@@ -120,7 +120,7 @@ impl MainLoop {
                 self.watchdog.freeze_with_debugger(false);
                 arming::prepare(&mut self.dac);
             }
-            // There is room: the condition of the loop says so.
+            // Cannot fail: the condition of the loop ensures room.
             let _ = self.ends.orders.enqueue(order);
         }
         while let Some(spare) = self.ends.spares.dequeue() {

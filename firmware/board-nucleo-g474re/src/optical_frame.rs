@@ -1,7 +1,7 @@
-//! The optical touch frame, a Neonode zForce module on I2C3. Transfers go by DMA, so that the main loop waits for none of
+//! The optical touch frame, a Neonode zForce module on I2C3. Transfers use DMA, so that the main loop never waits for
 //! them (RM0440, "I2C": "I2C master mode", "DMA requests").
 //!
-//! The module lies along the top edge of the screen, its corner at the screen's.
+//! The module lies along the top edge of the screen, with its corner at the screen's corner.
 //!
 //! | pin | function | |
 //! |---|---|---|
@@ -34,39 +34,39 @@ const SDA: u32 = 9;
 const DATA_READY: u32 = 2;
 const I2C3_FUNCTION: u8 = 8;
 
-/// Longest that a transfer may take: the longest message is 2.9 ms on the bus, and the module may stretch the clock.
+/// Time limit of a transfer: the longest message takes 2.9 ms on the bus, and the module may stretch the clock.
 const TRANSFER_TICKS: u32 = TICK_HZ / 1000 * 6;
-/// Age of a place when it is read: two scans at 200 Hz, one that sees the finger and one that is reported. To be measured
-/// at bring-up.
+/// Age of a place when it is read: two scans at 200 Hz, one that sees the finger and one that is reported. Must be
+/// measured at bring-up.
 const AGE_TICKS: u32 = TICK_HZ / 100;
 
-/// In the memory for DMA (`memory.x`); what DMA has not written is written before it is read.
+/// In the memory for DMA (`memory.x`). Bytes that DMA has not written are written before they are read.
 #[unsafe(link_section = ".dma.BYTES")]
 static BYTES: [AtomicU8; MESSAGE_MAX_LEN] = [const { AtomicU8::new(0) }; MESSAGE_MAX_LEN];
 
-/// The report that the frame has read last, until somebody takes it.
+/// The last report that the frame has read, until it is taken.
 pub type Reports = Cell<Option<Touch>>;
 
-/// The frame as a touch source: a future that reads reports, and the place where it puts them.
+/// The frame as a touch source: a future that reads reports, and the cell in which it stores them.
 pub struct OpticalFrame<'a> {
     reading: Pinned<&'a mut dyn Future<Output = ()>>,
     reports: &'a Reports,
 }
 
 impl<'a> OpticalFrame<'a> {
-    /// A source from [`read`] and the place that it was given.
+    /// A source from the future of [`read`] and the cell that was passed to it.
     pub fn new(reading: Pinned<&'a mut dyn Future<Output = ()>>, reports: &'a Reports) -> Self {
         Self { reading, reports }
     }
 
-    /// Continues to read without waiting, and returns a report when one is complete. To be called again and again.
+    /// Continues to read without waiting, and returns a report when one is complete. To be called repeatedly.
     pub fn next_touch(&mut self) -> Option<Touch> {
         let _ = poll_once(self.reading.as_mut());
         self.reports.take()
     }
 }
 
-/// Takes the bus, and reads one report after the other into `reports`. It never ends.
+/// Takes the bus, and stores one report after the other in `reports`. Never returns.
 pub async fn read(reports: &Reports) {
     let mut frame = ZForce::new(Bus::new(), Pin::input_pulled_down(GPIOD, DATA_READY), TickDelay);
     loop {
@@ -77,7 +77,7 @@ pub async fn read(reports: &Reports) {
             Ok(zforce::Touch::Up) => reports.set(Some(Touch::Up)),
             Err(error) => log(error),
         }
-        // The report is taken before the next is read.
+        // Waits until the report is taken before it reads the next.
         while reports.get().is_some() {
             yield_now().await;
         }
@@ -92,7 +92,7 @@ fn log(error: zforce::Error<Error>) {
 #[cfg(not(feature = "log"))]
 fn log(_: zforce::Error<Error>) {}
 
-/// Waits by counting ticks.
+/// A delay that counts ticks.
 struct TickDelay;
 
 impl DelayNs for TickDelay {
@@ -113,11 +113,11 @@ struct Bus(());
 pub enum Error {
     /// The module did not acknowledge.
     NoAcknowledge,
-    /// The bus was lost to another master, or shorted.
+    /// Arbitration was lost to another master, or the bus is shorted.
     ArbitrationLoss,
     /// The transfer took longer than 6 ms.
     Timeout,
-    /// A transaction of several transfers, or of more than 127 bytes: the module needs neither.
+    /// A transaction of several transfers, or of more than 127 bytes, which the module never needs.
     Unsupported,
 }
 
@@ -176,7 +176,7 @@ impl Bus {
 fn poll_transfer(from_tick: u32) -> Poll<Result<(), Error>> {
     let status = I2C3.isr().read();
     if status.berr() {
-        // Errata ES0430, 2.15.2: spurious in master mode, and the transfer goes on.
+        // Errata ES0430, 2.15.2: a spurious bus error in master mode; the transfer continues.
         I2C3.icr().write(|w| w.set_berrcf(true));
     }
     if status.nackf() {
@@ -193,7 +193,7 @@ fn poll_transfer(from_tick: u32) -> Poll<Result<(), Error>> {
     }
 }
 
-/// Lets go of the bus and clears all flags: off for three clocks (RM0440, "Software reset" of I2C).
+/// Releases the bus and clears all flags: the peripheral is off for three clocks (RM0440, "Software reset" of I2C).
 fn release() {
     I2C3.cr1().write(|w| w.set_pe(false));
     for _ in 0..3 {

@@ -1,8 +1,9 @@
-//! Whether there may be any output: DAC clear and amplifier enable, by a one-shot.
+//! The output enable: DAC clear and amplifier enable, held by a one-shot timer.
 //!
-//! Both pins are channels of TIM4 in one-pulse mode. A kick puts them high, and they fall by themselves [`LIFE_US`] after
-//! the last one, whatever the core does (RM0440, "General-purpose timers": "One-pulse mode", "PWM mode"). They are low while the counter stands at zero, which
-//! is where it stops. Outside, resistors pull both wires down, so that they are low in reset, too.
+//! Both pins are channels of TIM4 in one-pulse mode. A kick sets them high, and they go low by themselves [`LIFE_US`]
+//! after the last kick, whatever the core does (RM0440, "General-purpose timers": "One-pulse mode", "PWM mode"). They
+//! are low while the counter is zero, which is where it stops. External resistors pull both wires down, so that
+//! they are low in reset, too.
 //!
 //! | pin | function | |
 //! |---|---|---|
@@ -18,18 +19,18 @@ use stm32_metapac::{GPIOB, RCC, TIM4};
 use crate::clock::CORE_HZ;
 use crate::pins;
 
-/// Time from the last kick to zero, in us. A millisecond is promised.
+/// Time from the last kick until the output is zero, in us. The specification is 1 ms.
 pub const LIFE_US: u16 = 900;
 
 const AMPLIFIER_ENABLE: u32 = 6;
 const DAC_CLEAR: u32 = 7;
 const TIM4_FUNCTION: u8 = 2;
 
-/// The one-shot.
+/// The one-shot timer.
 pub struct Output(());
 
 impl Output {
-    /// Takes the pins, both low.
+    /// Takes the pins and sets both low.
     pub fn new() -> Self {
         zero_for_good();
         RCC.apb1enr1().modify(|w| w.set_tim4en(true));
@@ -52,21 +53,22 @@ impl Output {
         output
     }
 
-    /// Lets the output be for another [`LIFE_US`].
+    /// Kicks the timer: enables the output for another [`LIFE_US`].
     #[inline]
     pub fn kick(&mut self) {
         if TIM4.cr1().read().cen() && TIM4.cnt().read().cnt() >= 1 {
             TIM4.cnt().write(|w| w.set_cnt(1));
         } else {
-            // From zero on: the pins rise when the counter passes 1, since a comparison that changes is what moves them.
+            // Start from zero: the pins rise when the counter passes 1, because only a change of the comparison moves
+            // them.
             TIM4.cnt().write(|w| w.set_cnt(0));
             mode(Ocm::PWM_MODE2);
         }
-        // Either way: should the counter have come to its end and stopped just now, it must not stay at 1 with the pins high.
+        // Always: if the counter has just reached its end and stopped, it must not stay at 1 with the pins high.
         TIM4.cr1().modify(|w| w.set_cen(true));
     }
 
-    /// Zero at once.
+    /// Sets the output to zero at once.
     #[inline]
     pub fn zero(&mut self) {
         mode(Ocm::FORCE_INACTIVE);
@@ -74,7 +76,7 @@ impl Output {
         TIM4.cnt().write(|w| w.set_cnt(0));
     }
 
-    /// Whether the pins are high: amplifier enable, DAC clear.
+    /// Levels of the pins: amplifier enable, DAC clear.
     pub fn pins(&self) -> (bool, bool) {
         (pins::is_high(GPIOB, AMPLIFIER_ENABLE), pins::is_high(GPIOB, DAC_CLEAR))
     }
@@ -99,7 +101,7 @@ impl OutputPin for Output {
     }
 }
 
-/// Sets what both channels do.
+/// Sets the output mode of both channels.
 fn mode(mode: Ocm) {
     TIM4.ccmr_output(0).write(|w| {
         w.set_ocm(0, mode);
@@ -107,7 +109,7 @@ fn mode(mode: Ocm) {
     });
 }
 
-/// Zero at once, from wherever the processor is, until the next reset: the pins are taken away from the timer.
+/// Sets the output to zero until the next reset, from any context: disconnects the pins from the timer.
 pub fn zero_for_good() {
     pins::start();
     pins::output_low(GPIOB, AMPLIFIER_ENABLE);

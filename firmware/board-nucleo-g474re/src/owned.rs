@@ -1,21 +1,21 @@
-//! What belongs to an interrupt handler.
+//! Values that an interrupt handler owns.
 
 use core::cell::UnsafeCell;
 use core::mem::MaybeUninit;
 use core::sync::atomic::{AtomicBool, Ordering};
 
-/// A place for a value that the main program gives to one interrupt handler before it enables the interrupt.
+/// Holds a value that the main program gives to one interrupt handler before it enables the interrupt.
 pub(crate) struct Owned<T> {
     given: AtomicBool,
     value: UnsafeCell<MaybeUninit<T>>,
 }
 
-// SAFETY: the value is given once, before the interrupt is enabled, and from then on only its handler touches it; so
+// SAFETY: the value is given once, before the interrupt is enabled, and from then on only its handler accesses it; so
 // there is never more than one reference to it, and it changes context once, which `Send` allows.
 unsafe impl<T: Send> Sync for Owned<T> {}
 
 impl<T> Owned<T> {
-    /// Nothing was given yet.
+    /// An empty place.
     pub(crate) const fn new() -> Self {
         Self { given: AtomicBool::new(false), value: UnsafeCell::new(MaybeUninit::uninit()) }
     }
@@ -25,12 +25,12 @@ impl<T> Owned<T> {
     /// # Safety
     /// The handler's interrupt has not been enabled yet.
     pub(crate) unsafe fn give(&self, value: T) {
-        // SAFETY: the caller guarantees that nobody else has a reference.
+        // SAFETY: the caller guarantees that there is no other reference.
         unsafe { (*self.value.get()).write(value) };
         self.given.store(true, Ordering::Release);
     }
 
-    /// The value, for the handler; `None` before it was given.
+    /// Returns the value to the handler; `None` before it was given.
     ///
     /// # Safety
     /// Only the handler that owns the value calls this, once in each run.

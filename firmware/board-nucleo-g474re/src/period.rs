@@ -1,9 +1,9 @@
-//! The period of a tick: TIM3 counts the core's clock round in 25 us. It interrupts at the start, and its channel 1 is
-//! SYNC of the DAC, whose rising edge, [`LATCH_CYCLES`] into the period, puts the code out. So the instant is the timer's,
-//! and no software is in it (RM0440, "General-purpose timers": "Forced output mode", "Output compare
-//! mode").
+//! The period of the tick: TIM3 divides the core's clock into periods of 25 us. It interrupts at the start of each,
+//! and its channel 1 is SYNC of the DAC, whose rising edge, [`LATCH_CYCLES`] into the period, updates the DAC's
+//! output. So the timer alone sets the instant of the update, without software (RM0440, "General-purpose timers":
+//! "Forced output mode", "Output compare mode").
 //!
-//! A frame is only latched when the tick has begun it with [`begin_frame`]: when the ticks end, so do the edges.
+//! A frame is latched only if the tick has begun it with [`begin_frame`]: without ticks there are no edges.
 //!
 //! | pin | function | |
 //! |---|---|---|
@@ -15,11 +15,11 @@ use stm32_metapac::{GPIOC, TIM3};
 use crate::clock::CORE_HZ;
 use crate::pins;
 
-/// Cycles of a period.
+/// Length of a period, in cycles.
 pub const PERIOD_CYCLES: u32 = CORE_HZ / crate::board::TICK_HZ;
-/// Where in the period SYNC rises. The rest is the least time that SYNC is high, 0.9 us.
+/// Cycle of the period at which SYNC rises. The rest of the period is the least time that SYNC is high, 0.9 us.
 pub const LATCH_CYCLES: u32 = PERIOD_CYCLES - 150;
-/// The latest that a frame may be begun: 24 bits at 21.25 MHz are 192 cycles, doubled for DMA and the first byte.
+/// Latest cycle at which a frame may begin: 24 bits at 21.25 MHz are 192 cycles, doubled for DMA and the first byte.
 pub const DEADLINE_CYCLES: u32 = LATCH_CYCLES - 400;
 
 const SYNC: u32 = 6;
@@ -27,7 +27,7 @@ const TIM3_FUNCTION: u8 = 2;
 
 const _: () = assert!(CORE_HZ.is_multiple_of(crate::board::TICK_HZ) && PERIOD_CYCLES <= 1 << 16);
 
-/// Starts to count, SYNC high, without interrupts.
+/// Starts the timer, with SYNC high and without interrupts.
 pub fn start() {
     TIM3.arr().write(|w| w.set_arr((PERIOD_CYCLES - 1) as u16));
     TIM3.ccr(0).write(|w| w.set_ccr(LATCH_CYCLES as u16));
@@ -37,7 +37,7 @@ pub fn start() {
     TIM3.cr1().modify(|w| w.set_cen(true));
 }
 
-/// Interrupts at the start of every period from the next one on.
+/// Enables the interrupt at the start of every period, from the next one on.
 pub(crate) fn start_interrupts() {
     TIM3.sr().write(|w| w.set_uif(false));
     TIM3.dier().write(|w| w.set_uie(true));
@@ -48,7 +48,7 @@ pub(crate) fn start_interrupts() {
 pub fn has_begun() -> bool {
     let begun = TIM3.sr().read().uif();
     if begun {
-        // Flags are cleared by zeros, and ones leave them: none of the others is looked at.
+        // Zeros clear flags, and ones leave them unchanged: the other flags are not affected.
         TIM3.sr().write(|w| w.set_uif(false));
     }
     begun
@@ -60,19 +60,19 @@ pub fn cycles() -> u32 {
     u32::from(TIM3.cnt().read().cnt())
 }
 
-/// Puts SYNC low until the timer raises it.
+/// Sets SYNC low until the timer raises it.
 #[inline]
 pub(crate) fn begin_frame() {
     TIM3.ccmr_output(0).write(|w| w.set_ocm(0, Ocm::FORCE_INACTIVE));
     TIM3.ccmr_output(0).write(|w| w.set_ocm(0, Ocm::ACTIVE_ON_MATCH));
 }
 
-/// Puts SYNC low until [`end_frame`].
+/// Sets SYNC low until [`end_frame`].
 pub(crate) fn hold_sync_low() {
     TIM3.ccmr_output(0).write(|w| w.set_ocm(0, Ocm::FORCE_INACTIVE));
 }
 
-/// Puts SYNC high at once.
+/// Sets SYNC high at once.
 pub(crate) fn end_frame() {
     TIM3.ccmr_output(0).write(|w| w.set_ocm(0, Ocm::FORCE_ACTIVE));
 }

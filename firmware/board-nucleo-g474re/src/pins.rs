@@ -1,5 +1,5 @@
-//! Pins. Which of them does what is in the modules that use them, and in the table of `docs/hardware.md`; alternate
-//! functions are those of DS12288, "Alternate functions".
+//! Pins. The modules that use them and the table of `docs/hardware.md` state their functions; alternate functions are
+//! those of DS12288, "Alternate functions".
 
 use core::convert::Infallible;
 
@@ -8,7 +8,7 @@ use stm32_metapac::RCC;
 use stm32_metapac::gpio::Gpio;
 use stm32_metapac::gpio::vals::{Moder, Ospeedr, Pupdr};
 
-/// Switches the ports on.
+/// Enables the ports.
 pub fn start() {
     RCC.ahb2enr().modify(|w| {
         w.set_gpioaen(true);
@@ -16,7 +16,8 @@ pub fn start() {
         w.set_gpiocen(true);
         w.set_gpioden(true);
     });
-    // A peripheral is there two clocks after its enable (RM0440, "Peripheral clock enable register"); the read takes them.
+    // A peripheral is accessible two clocks after its enable (RM0440, "Peripheral clock enable register"); the read
+    // takes them.
     let _ = RCC.ahb2enr().read();
 }
 
@@ -33,7 +34,7 @@ impl Pin {
         Self { port, number }
     }
 
-    /// An input that is pulled down: a wire that has come off reads as low.
+    /// An input that is pulled down: a disconnected wire reads as low.
     pub(crate) fn input_pulled_down(port: Gpio, number: u32) -> Self {
         input_pulled_down(port, number);
         Self { port, number }
@@ -68,14 +69,14 @@ impl OutputPin for Pin {
     }
 }
 
-/// Gives a pin to a peripheral.
+/// Connects a pin to a peripheral.
 pub(crate) fn alternate(port: Gpio, pin: u32, function: u8) {
     port.ospeedr().modify(|w| w.0 = field(w.0, 2, pin, Ospeedr::HIGH_SPEED as u32));
     port.afr(usize::from(pin >= 8)).modify(|w| w.0 = field(w.0, 4, pin % 8, u32::from(function)));
     mode(port, pin, Moder::ALTERNATE);
 }
 
-/// Gives a pin to a peripheral that only ever pulls it down.
+/// Connects a pin to a peripheral as open-drain output.
 #[cfg_attr(not(feature = "optical-frame"), allow(dead_code, reason = "only the optical frame is on such a bus"))]
 pub(crate) fn alternate_open_drain(port: Gpio, pin: u32, function: u8) {
     port.otyper().modify(|w| w.0 |= 1 << pin);
@@ -88,13 +89,13 @@ pub(crate) fn output_low(port: Gpio, pin: u32) {
     mode(port, pin, Moder::OUTPUT);
 }
 
-/// Makes a pin an input that is pulled down: a wire that has come off reads as low.
+/// Makes a pin an input that is pulled down: a disconnected wire reads as low.
 pub(crate) fn input_pulled_down(port: Gpio, pin: u32) {
     port.pupdr().modify(|w| w.0 = field(w.0, 2, pin, Pupdr::PULL_DOWN as u32));
     mode(port, pin, Moder::INPUT);
 }
 
-/// Makes a pin an input that something outside drives.
+/// Makes a pin an input that an external circuit drives.
 pub(crate) fn input(port: Gpio, pin: u32) {
     mode(port, pin, Moder::INPUT);
 }
@@ -104,9 +105,9 @@ pub(crate) fn is_high(port: Gpio, pin: u32) -> bool {
     port.idr().read().0 & 1 << pin != 0
 }
 
-/// Puts an output high or low.
+/// Sets an output high or low.
 pub(crate) fn set(port: Gpio, pin: u32, high: bool) {
-    // Bits that set are in the lower half, those that reset in the upper.
+    // The lower half of the register sets pins, the upper half resets them.
     port.bsrr().write(|w| w.0 = 1 << if high { pin } else { pin + 16 });
 }
 
@@ -114,7 +115,7 @@ fn mode(port: Gpio, pin: u32, mode: Moder) {
     port.moder().modify(|w| w.0 = field(w.0, 2, pin, mode as u32));
 }
 
-/// `register` with `value` in field number `index` of those of `bits` bits that it is made of.
+/// Returns `register` with `value` in field number `index`, where all fields have `bits` bits.
 fn field(register: u32, bits: u32, index: u32, value: u32) -> u32 {
     let shift = bits * index;
     register & !(((1 << bits) - 1) << shift) | value << shift

@@ -1,5 +1,5 @@
-//! The host, through the virtual port of the on-board ST-Link: USART2 at 2 Mbaud, by DMA both ways, so that no interrupt
-//! stands beside the tick and no byte waits for software.
+//! The serial port to the host, through the virtual port of the on-board ST-Link: USART2 at 2 Mbaud, by DMA in both
+//! directions. So no interrupt competes with the tick, and no byte waits for software.
 //!
 //! | pin | function | |
 //! |---|---|---|
@@ -23,15 +23,15 @@ const TX: u32 = 2;
 const RX: u32 = 3;
 const USART2_FUNCTION: u8 = 7;
 
-/// Bytes of the ring: those that the host may have under way, and those of a hello and some noise without credit.
+/// Length of the ring: the host's credit, and room for a hello and some noise, which need no credit.
 const RING_LEN: usize = RECEIVE_WINDOW + 512;
-/// Most bytes that DMA sends at a time: 1.3 ms of the line.
+/// Largest number of bytes that DMA sends at a time: 1.3 ms on the line.
 const TRANSMIT_LEN: usize = 256;
 
-/// In the memory for DMA (`memory.x`); it is read where DMA has written.
+/// In the memory for DMA (`memory.x`). It is read only where DMA has written.
 #[unsafe(link_section = ".dma.RECEIVED")]
 static RECEIVED: [AtomicU8; RING_LEN] = [const { AtomicU8::new(0) }; RING_LEN];
-/// In the memory for DMA; it is written before DMA reads it.
+/// In the memory for DMA. It is written before DMA reads it.
 #[unsafe(link_section = ".dma.TRANSMITTED")]
 static TRANSMITTED: [AtomicU8; TRANSMIT_LEN] = [const { AtomicU8::new(0) }; TRANSMIT_LEN];
 
@@ -41,14 +41,14 @@ pub struct Serial {
 }
 
 impl Serial {
-    /// Starts to receive: 8 data bits, no parity, 1 stop bit (RM0440, "USART").
+    /// Starts reception: 8 data bits, no parity, 1 stop bit (RM0440, "USART").
     pub fn new() -> Self {
         const { assert!(CORE_HZ.is_multiple_of(BAUD), "the rate is exact") };
         USART2.brr().write(|w| w.set_brr((CORE_HZ / BAUD) as u16));
         USART2.cr3().write(|w| {
             w.set_dmar(true);
             w.set_dmat(true);
-            // A byte too many is a bad frame and no more; reception goes on.
+            // An overrun only damages a frame; reception continues.
             w.set_ovrdis(true);
         });
         let receive = dma::Transfer {
@@ -70,7 +70,7 @@ impl Serial {
         dma::begin(dma::RECEIVE, RING_LEN as u16);
         pins::alternate(GPIOA, TX, USART2_FUNCTION);
         pins::alternate(GPIOA, RX, USART2_FUNCTION);
-        // The FIFO can only be switched on before the rest is.
+        // The FIFO can only be enabled while the USART is disabled.
         USART2.cr1().write(|w| w.set_fifoen(true));
         USART2.cr1().modify(|w| w.set_ue(true));
         USART2.cr1().modify(|w| {
@@ -117,7 +117,7 @@ impl WriteReady for Serial {
 }
 
 impl Write for Serial {
-    /// Starts to send, once the bytes before have gone.
+    /// Starts to send, once the previous bytes have been sent.
     fn write(&mut self, bytes: &[u8]) -> Result<usize, Infallible> {
         if bytes.is_empty() {
             return Ok(0);

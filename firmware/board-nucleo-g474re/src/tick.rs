@@ -1,5 +1,5 @@
-//! The tick: the interrupt of TIM3, 40,000 times a second, at priority 0, above every other interrupt and every critical
-//! section. It logs nothing and waits for nothing.
+//! The tick: the interrupt of TIM3, 40,000 times a second, at priority 0, above every other interrupt and every
+//! critical section. It never logs and never waits.
 //!
 //! | pin | function | |
 //! |---|---|---|
@@ -31,9 +31,9 @@ const BUTTON: u32 = 13;
 static TICK: Owned<Tick> = Owned::new();
 static STATUS_WANTED: AtomicBool = AtomicBool::new(false);
 static COUNT: AtomicU32 = AtomicU32::new(0);
-/// The main loop's turn on the DAC's bus, before it arms.
+/// Arbitrates the DAC's bus between the tick and the main loop, which checks the DAC before it arms the board.
 pub static DAC_BUS: BusHandover = BusHandover::new();
-/// A fault that the main loop has found: its number above [`FAULT_SHIFT`], its detail below; zero for none.
+/// A fault that the main loop has found: its number above [`FAULT_SHIFT`], its detail below; zero without a fault.
 static FAULT: AtomicU32 = AtomicU32::new(0);
 const FAULT_SHIFT: u32 = 24;
 
@@ -42,7 +42,7 @@ defmt::timestamp!("tick {=u32}", count());
 
 /// What the tick owns.
 pub struct Tick {
-    /// Turns touch into voltage.
+    /// Computes the voltage from touch and scene.
     pub ticker: Ticker<'static>,
     /// Its ends of the queues.
     pub queues: Queues,
@@ -50,7 +50,7 @@ pub struct Tick {
     pub adc: Adc,
     /// The DAC.
     pub dac: DacFrames,
-    /// The amplifier, whose enable clears the DAC too while it is low.
+    /// The amplifier. While its enable is low, the DAC is cleared, too.
     pub amplifier: Amplifier<Output, Pin>,
     /// The switch that a person holds.
     pub arm_switch: ArmSwitch<Pin>,
@@ -60,13 +60,13 @@ pub struct Tick {
 pub struct Queues {
     /// Orders from the session.
     pub orders: Consumer<'static, Order<'static>>,
-    /// Coefficients that go back to the session.
+    /// Coefficients to return to the session.
     pub spares: Producer<'static, &'static mut Active>,
-    /// A status for the session, when it has requested one.
+    /// A status for the session, if requested.
     pub statuses: Producer<'static, Status>,
 }
 
-/// Starts to tick.
+/// Starts the tick.
 pub fn start(tick: Tick) {
     // SAFETY: TIM3 is unmasked below.
     unsafe { TICK.give(tick) };
@@ -97,7 +97,7 @@ pub fn count() -> u32 {
     COUNT.load(Ordering::Relaxed)
 }
 
-/// Asks the tick for a status.
+/// Requests a status from the tick.
 pub fn want_status() {
     STATUS_WANTED.store(true, Ordering::Release);
 }
@@ -112,13 +112,13 @@ pub fn inputs() -> (bool, bool) {
     (pins::is_high(GPIOC, AMPLIFIER_WELL), pins::is_high(GPIOC, ARM_SWITCH))
 }
 
-/// Deadline: the frame for the DAC has to be begun [`period::DEADLINE_CYCLES`] into the period, 21.8 us. A tick that is too
-/// late puts the output to zero and faults, and so does one that has not ended when the next begins; the number that goes
-/// with the fault is the time taken, in cycles.
+/// Deadline: the frame for the DAC must begin within [`period::DEADLINE_CYCLES`] of the period, 21.8 us. A tick that
+/// misses it sets the output to zero and raises a fault, and so does a tick that has not ended when the next begins.
+/// The fault's detail is the time taken, in cycles.
 #[interrupt]
 fn TIM3() {
     let _ = period::has_begun();
-    // SAFETY: this is the handler that owns it.
+    // SAFETY: this is the handler that owns the value.
     if let Some(tick) = unsafe { TICK.get() } {
         tick.run();
     }
@@ -130,7 +130,7 @@ impl Tick {
         if let Some(order) = self.queues.orders.dequeue()
             && let Some(spare) = self.ticker.apply(order)
         {
-            // There are two of them, and room for both.
+            // Cannot fail: there are two of them, and room for both.
             let _ = self.queues.spares.enqueue(spare);
         }
         let found = FAULT.load(Ordering::Acquire);
@@ -149,7 +149,7 @@ impl Tick {
         }
         if STATUS_WANTED.load(Ordering::Acquire) {
             STATUS_WANTED.store(false, Ordering::Relaxed);
-            // The session asks for the next one when it has taken this one.
+            // Cannot fail: the session requests the next status only after it has taken this one.
             let _ = self.queues.statuses.enqueue(self.ticker.status());
         }
         if period::has_begun() {

@@ -1,13 +1,14 @@
-//! The independent watchdog: resets when main loop or tick stand still (RM0440, "Independent watchdog").
+//! The independent watchdog: resets the processor when the main loop or the tick stops (RM0440, "Independent
+//! watchdog").
 
 use stm32_metapac::iwdg::vals::{Key, Pr};
 use stm32_metapac::{DBGMCU, IWDG};
 
 use crate::{tick, wait_until};
 
-/// Counts until it resets, of 4 clocks of its oscillator, 32 kHz: 100 ms. The longest that the main loop does in one go: the table of a
-/// scene that is committed, 14 ms when it was measured on the emulated board (2026-11-20), and the check of a scene that was written, 85 KiB through a CRC
-/// without a table, some 30 ms.
+/// Reload value, in counts of 4 clocks of the 32 kHz oscillator: 100 ms. The longest operations of the main loop are
+/// the table of a committed scene, 14 ms as measured on the emulated board (2026-11-20), and the check of a written
+/// scene, 85 KiB through a CRC without a table, some 30 ms.
 const RELOAD: u16 = 800;
 
 /// The watchdog.
@@ -16,7 +17,7 @@ pub struct Watchdog {
 }
 
 impl Watchdog {
-    /// Starts it. It cannot be stopped again.
+    /// Starts the watchdog. It cannot be stopped again.
     pub fn start() -> Self {
         IWDG.kr().write(|w| w.set_key(Key::START));
         IWDG.kr().write(|w| w.set_key(Key::ENABLE));
@@ -29,7 +30,7 @@ impl Watchdog {
         watchdog
     }
 
-    /// Feeds it, if there was a tick since.
+    /// Feeds the watchdog if there was a tick since the last call.
     pub fn feed(&mut self) {
         let now_tick = tick::count();
         if now_tick != self.fed_at_tick {
@@ -38,7 +39,7 @@ impl Watchdog {
         }
     }
 
-    /// Whether it waits while a debugger halts the core: only when the board is disarmed.
+    /// Sets whether the watchdog stops while a debugger halts the core. It may do so only while the board is disarmed.
     pub fn freeze_with_debugger(&mut self, freeze: bool) {
         if DBGMCU.apb1lfzr().read().iwdg() != freeze {
             DBGMCU.apb1lfzr().modify(|w| w.set_iwdg(freeze));

@@ -1,23 +1,23 @@
-//! The switch that a person holds while the board may play.
+//! The switch that a person holds to allow output.
 
 use embedded_hal::digital::InputPin;
 
 /// Ticks that the contact must be closed before the switch counts as held: 20 ms at 40 kHz, longer than a contact bounces
 /// (a few milliseconds).
 const HELD_AFTER_TICKS: u32 = 800;
-/// Ticks that it must be open before the switch counts as released: 1 ms at 40 kHz. It bridges what a moving hand does to
-/// a contact, and is short beside a person's reaction.
+/// Ticks that the contact must be open before the switch counts as released: 1 ms at 40 kHz. This bridges contact
+/// breaks from a moving hand, and is short compared with a person's reaction time.
 const RELEASED_AFTER_TICKS: u32 = 40;
 
 /// A normally open contact, closed while the pin is high.
 ///
-/// A contact that is closed from the start on never counts as held until it has opened once: a welded or taped switch
-/// does not arm the board.
+/// The switch never counts as held before its contact has been open once: a welded or taped switch does not arm the
+/// board.
 #[derive(Debug)]
 pub struct ArmSwitch<P> {
     contact: P,
     state: State,
-    /// Ticks in a row for which the contact has contradicted the state.
+    /// Number of consecutive ticks in which the contact has contradicted the state.
     contrary_ticks: u32,
 }
 
@@ -30,12 +30,13 @@ enum State {
 }
 
 impl<P: InputPin> ArmSwitch<P> {
-    /// A switch that nobody has pressed.
+    /// A switch whose contact has not been read yet.
     pub const fn new(contact: P) -> Self {
         Self { contact, state: State::NeverReleased, contrary_ticks: 0 }
     }
 
-    /// Reads the contact, once a tick, and returns whether the switch is held. A pin that cannot be read is open.
+    /// Reads the contact, once a tick, and returns whether the switch is held. A pin that cannot be read counts as
+    /// open.
     #[inline]
     pub fn is_held(&mut self) -> bool {
         let closed = matches!(self.contact.is_high(), Ok(true));

@@ -3,9 +3,9 @@
 
 use core::sync::atomic::{AtomicBool, Ordering};
 
-/// Whose turn it is on the bus. One of the two sides is an interrupt that the other cannot delay.
+/// Arbitrates the bus between the tick and the main loop. The tick is an interrupt that the main loop cannot delay.
 ///
-/// The main loop uses the bus in [`while_frames_rest`](Self::while_frames_rest). The tick asks
+/// The main loop uses the bus in [`while_frames_rest`](Self::while_frames_rest). The tick calls
 /// [`tick_sends`](Self::tick_sends) before it sends its frame.
 #[derive(Debug, Default)]
 pub struct BusHandover {
@@ -14,13 +14,14 @@ pub struct BusHandover {
 }
 
 impl BusHandover {
-    /// The tick has the bus.
+    /// A bus that belongs to the tick.
     pub const fn new() -> Self {
         Self { requested: AtomicBool::new(false), granted: AtomicBool::new(false) }
     }
 
-    /// In the tick, once: returns whether the tick sends its frame. It does not while the main loop has the bus, which it
-    /// only gets while the output is zero (`output_is_zero`) and no order waits that could change that.
+    /// Called once by each tick: returns whether the tick sends its frame. It does not while the main loop has the
+    /// bus. The main loop gets the bus only while the output is zero and no waiting order could change that
+    /// (`output_is_zero`).
     #[inline]
     pub fn tick_sends(&self, output_is_zero: bool) -> bool {
         let granted = output_is_zero && self.requested.load(Ordering::Acquire);
@@ -28,8 +29,8 @@ impl BusHandover {
         !granted
     }
 
-    /// In the main loop: does `work` on the bus, and returns when the tick sends frames again. Calls `poll` while it waits
-    /// for the tick.
+    /// Called by the main loop: runs `work` while the tick sends no frames, and returns when the tick sends them
+    /// again. Calls `poll` while it waits for the tick.
     pub fn while_frames_rest<R>(&self, mut poll: impl FnMut(), work: impl FnOnce() -> R) -> R {
         self.requested.store(true, Ordering::Release);
         while !self.is_granted() {
@@ -52,7 +53,7 @@ impl BusHandover {
 mod tests {
     use super::*;
 
-    /// Ticks that find the output at zero from tick number `zero_from` on; ten at most.
+    /// Simulates ticks whose output is zero from tick number `zero_from` on; ten at most.
     fn ticks(bus: &BusHandover, zero_from: u32) -> impl FnMut() {
         let mut tick = 0;
         move || {

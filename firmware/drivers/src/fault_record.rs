@@ -1,4 +1,4 @@
-//! The last fault, kept in RAM over a reset.
+//! The last fault, kept in RAM across a reset.
 //!
 //! A board places one [`FaultRecord`] in memory that the start-up code does not clear. A panic or a fault
 //! [saves](FaultRecord::save) into it and resets; the next start [takes](FaultRecord::take) the record, once. After
@@ -205,7 +205,7 @@ mod tests {
     }
 
     proptest! {
-        /// Of any text in any pieces, the beginning is kept, in whole characters.
+        /// The record keeps the beginning of any text, in whole characters, however the text is divided into pieces.
         #[test]
         fn the_beginning_of_a_text_is_kept(pieces in proptest::collection::vec("\\PC{0,60}", 0..8)) {
             let whole = pieces.concat();

@@ -1,4 +1,4 @@
-//! The amplifier's monitor output, as an ADC behind a level shifter reads it.
+//! The amplifier's monitor output, read by an ADC through a level shifter.
 
 /// Conversion of ADC codes to volts on the electrode.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,8 +9,8 @@ pub struct MonitorScale {
 }
 
 impl MonitorScale {
-    /// An ADC of `bits` that spans `reference_v`. 0 V on the electrode is the middle of the span, and each volt there moves the
-    /// ADC's input by `input_v_per_v`.
+    /// An ADC of `bits` bits with the range 0 to `reference_v`. 0 V on the electrode is the middle of the range, and
+    /// each volt on the electrode changes the ADC's input by `input_v_per_v`.
     pub const fn new(bits: u32, reference_v: f32, input_v_per_v: f32) -> Self {
         let codes = (1_u32 << bits) as f32;
         Self { zero_code: 0.5 * codes, volts_per_code: reference_v / codes / input_v_per_v }

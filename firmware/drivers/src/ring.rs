@@ -4,7 +4,7 @@ use core::ops::Range;
 
 /// The read position in a ring of `LEN` bytes that DMA fills in circular mode.
 ///
-/// DMA does not report how often it has wrapped, so no byte is lost only as long as fewer than `LEN` wait to be read. On a
+/// DMA does not report how often it has wrapped, so bytes are lost unless fewer than `LEN` wait to be read. On a
 /// frixel board the host's credit ensures that.
 #[derive(Debug, Default)]
 pub struct RingReader<const LEN: usize> {
@@ -17,12 +17,13 @@ impl<const LEN: usize> RingReader<LEN> {
         Self { next: 0 }
     }
 
-    /// Whether nothing waits to be read, when DMA has `remaining` transfers to go before it wraps.
+    /// Whether no byte waits to be read. `remaining` is the number of transfers before DMA wraps.
     pub fn is_empty(&self, remaining: usize) -> bool {
         Self::write_position(remaining) == self.next
     }
 
-    /// Takes the next bytes that lie in one piece, at most `max_len`: their places in the ring. Empty when all are taken.
+    /// Takes the next contiguous bytes, at most `max_len`, and returns their range in the ring. Empty when all are
+    /// taken.
     pub fn take(&mut self, remaining: usize, max_len: usize) -> Range<usize> {
         let write = Self::write_position(remaining);
         let end = if write < self.next { LEN } else { write };

@@ -2,15 +2,15 @@
 
 use embedded_io::{Read, ReadReady, Write, WriteReady};
 
-/// Bytes that are moved at a time: a frame of the protocol and some.
+/// Number of bytes that are moved at a time: more than a frame of the protocol.
 const CHUNK_LEN: usize = 256;
 
-/// A port, and the bytes that it could not take yet.
+/// A port, and the bytes that it has not accepted yet.
 #[derive(Debug)]
 pub struct SerialLink<P> {
     port: P,
     transmitting: [u8; CHUNK_LEN],
-    /// Bytes of `transmitting` that the port has taken, and bytes that are there.
+    /// Number of bytes of `transmitting` that the port has accepted, and number of bytes in it.
     taken: usize,
     len: usize,
 }
@@ -21,7 +21,7 @@ impl<P: Read + ReadReady + Write + WriteReady> SerialLink<P> {
         Self { port, transmitting: [0; CHUNK_LEN], taken: 0, len: 0 }
     }
 
-    /// Passes received bytes to `take`, at most 256 of them: the caller has other things to do between two pieces.
+    /// Passes received bytes to `take`, at most 256 of them, so that the caller can do other work between two calls.
     pub fn receive(&mut self, take: impl FnOnce(&[u8])) -> Result<(), P::Error> {
         if self.port.read_ready()? {
             let mut bytes = [0; CHUNK_LEN];
@@ -31,8 +31,8 @@ impl<P: Read + ReadReady + Write + WriteReady> SerialLink<P> {
         Ok(())
     }
 
-    /// Sends as much as the port takes of what `fill` writes; `fill` returns how many bytes it has written, 0 when there is
-    /// nothing to send.
+    /// Sends bytes from `fill` until the port accepts no more. `fill` writes bytes and returns their number, 0 when
+    /// there is nothing to send.
     pub fn transmit(&mut self, mut fill: impl FnMut(&mut [u8]) -> usize) -> Result<(), P::Error> {
         while self.port.write_ready()? {
             if self.taken == self.len {

@@ -1,8 +1,8 @@
-//! What the emulated board and the simulator tell each other through shared memory: the board's pins, as it were.
+//! The shared memory through which the emulated board and the simulator exchange the signals of the board's pins.
 //!
-//! The memory is an array of little-endian 32-bit words. [`layout`] says which word is what; [`TickInput`] and [`TickOutput`] are
-//! what goes into a tick and what comes out of it, `touch` a report of the touch source, each as words. Both sides
-//! compile this one crate.
+//! The memory is an array of little-endian 32-bit words. [`layout`] assigns the words. [`TickInput`] and
+//! [`TickOutput`] are the input and output of a tick, `touch` is a report of the touch source, each encoded as words.
+//! Both sides compile this crate.
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 
@@ -22,7 +22,7 @@ use frixel_wire::hello::{BoardKind, BoardLimits};
 /// The emulated board: the limits of the smallest real one, like the simulated board.
 ///
 /// Its receive window is a quarter of theirs: the emulator moves 20 kB/s over its serial port, and 8 kB/s on a busy
-/// machine, where a real one moves 200. An answer must not wait behind a full window for longer than a host does.
+/// machine, where a real board moves 200. A full window must not delay an answer beyond the host's timeout.
 pub const BOARD: Board = Board {
     kind: BoardKind::Mps2An386,
     id: *b"frixel-qemu\0",

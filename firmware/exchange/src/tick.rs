@@ -1,4 +1,4 @@
-//! What goes into a tick and what comes out of it.
+//! Input and output of a tick.
 
 use frixel_control::{Drive, Sense};
 use frixel_session::Touch;
@@ -6,13 +6,13 @@ use frixel_wire::dac_code::DacCode;
 
 use crate::words::{TOUCH_MASK, put_bytes, put_touch, take_bytes, take_touch, touch_kind};
 
-/// Most bytes on the serial line in one tick, either way.
+/// Largest number of bytes on the serial line in one tick, in either direction.
 pub const TICK_BYTES_MAX: usize = 64;
 /// Bytes on the serial line in one tick.
 pub type TickBytes = heapless::Vec<u8, TICK_BYTES_MAX>;
-/// Most words of a [`TickInput`].
+/// Largest number of words of a [`TickInput`].
 pub const INPUT_WORDS_MAX: usize = 6 + TICK_BYTES_MAX / 4;
-/// Most words of a [`TickOutput`].
+/// Largest number of words of a [`TickOutput`].
 pub const OUTPUT_WORDS_MAX: usize = 2 + TICK_BYTES_MAX / 4;
 
 const AMPLIFIER_FAULT: u32 = 1 << 2;
@@ -23,23 +23,23 @@ const ROOM_SHIFT: u32 = 16;
 const AMPLIFIER_ENABLE: u32 = 1 << 16;
 const SENT_SHIFT: u32 = 24;
 
-/// What goes into a tick.
+/// Input of a tick.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TickInput {
     /// The tick, counted from 1 at reset.
     pub tick: u32,
-    /// Bytes that have come on the serial line.
+    /// Bytes that have arrived on the serial line.
     pub received: TickBytes,
-    /// Bytes that the serial line has room for, [`TICK_BYTES_MAX`] at most.
+    /// Number of bytes that the serial line accepts, [`TICK_BYTES_MAX`] at most.
     pub room: u8,
-    /// A report of the touch source.
+    /// A report of the touch source, if one has arrived.
     pub touch: Option<Touch>,
-    /// What the tick sees.
+    /// The inputs that the tick reads.
     pub sense: Sense,
 }
 
 impl TickInput {
-    /// Puts its words, [`INPUT_WORDS_MAX`] at most.
+    /// Encodes `self`: calls `put` for each word, [`INPUT_WORDS_MAX`] times at most.
     pub fn write(&self, mut put: impl FnMut(u32)) {
         let sense = &self.sense;
         let mut kind = touch_kind(self.touch);
@@ -57,7 +57,7 @@ impl TickInput {
         put_bytes(&self.received, &mut put);
     }
 
-    /// Takes its words.
+    /// Decodes an input: calls `take` for each word.
     pub fn read(mut take: impl FnMut() -> u32) -> Self {
         let tick = take();
         let kind = take();
@@ -70,26 +70,26 @@ impl TickInput {
     }
 }
 
-/// What comes out of a tick.
+/// Output of a tick.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TickOutput {
     /// The tick, counted from 1 at reset.
     pub tick: u32,
-    /// What the board drives.
+    /// The board's output.
     pub drive: Drive,
-    /// Bytes that go out on the serial line.
+    /// Bytes to send on the serial line.
     pub sent: TickBytes,
 }
 
 impl TickOutput {
-    /// Puts its words, [`OUTPUT_WORDS_MAX`] at most.
+    /// Encodes `self`: calls `put` for each word, [`OUTPUT_WORDS_MAX`] times at most.
     pub fn write(&self, mut put: impl FnMut(u32)) {
         put(self.tick);
         put(word_of(self.drive) | (self.sent.len() as u32) << SENT_SHIFT);
         put_bytes(&self.sent, &mut put);
     }
 
-    /// Takes its words.
+    /// Decodes an output: calls `take` for each word.
     pub fn read(mut take: impl FnMut() -> u32) -> Self {
         let tick = take();
         let word = take();
@@ -97,13 +97,13 @@ impl TickOutput {
     }
 }
 
-/// A drive as a word: the DAC code below, the amplifier's enable in bit 16.
+/// Encodes a drive as a word: the DAC code in the lower half, the amplifier's enable in bit 16.
 pub const fn word_of(drive: Drive) -> u32 {
     let code = drive.dac_code.bits() as u16 as u32;
     if drive.amplifier_enable { code | AMPLIFIER_ENABLE } else { code }
 }
 
-/// The drive of a word.
+/// Decodes the drive from a word.
 pub const fn drive_of(word: u32) -> Drive {
     Drive { dac_code: DacCode::from_bits(word as u16 as i16), amplifier_enable: word & AMPLIFIER_ENABLE != 0 }
 }

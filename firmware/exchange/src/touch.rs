@@ -4,10 +4,10 @@ use frixel_session::Touch;
 
 use crate::words::{put_touch, take_touch, touch_kind};
 
-/// Words of a [`StampedTouch`], of which a lifted finger leaves the last three unused.
+/// Number of words of a [`StampedTouch`]. A lift leaves the last three unused.
 pub const STAMPED_TOUCH_WORDS: usize = 5;
 
-/// A report, and the tick for which its age was right.
+/// A report, and the tick to which its age refers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StampedTouch {
     /// Tick at which the report should have arrived.
@@ -17,14 +17,14 @@ pub struct StampedTouch {
 }
 
 impl StampedTouch {
-    /// Puts its words.
+    /// Encodes `self`: calls `put` for each word.
     pub fn write(&self, mut put: impl FnMut(u32)) {
         put(self.tick);
         put(touch_kind(Some(self.touch)));
         put_touch(Some(self.touch), &mut put);
     }
 
-    /// Takes its words; `None` when they are no report.
+    /// Decodes a report: calls `take` for each word. `None` when the words are not a valid report.
     pub fn read(mut take: impl FnMut() -> u32) -> Option<Self> {
         let tick = take();
         let kind = take();

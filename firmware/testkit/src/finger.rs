@@ -1,13 +1,13 @@
-//! A finger that slides, rests, jumps and lifts, under touch sources of every pace.
+//! A finger that slides, rests, jumps and lifts, and touch sources of different report rates.
 
 use frixel_layers::Header;
 
 use crate::random::Random;
 
-/// What a touch source reports.
+/// A report of the touch source.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Report {
-    /// The finger was at a place, in m, so many ticks ago.
+    /// The finger was at this place `age_ticks` ticks ago.
     Down {
         /// From the left edge of the screen, m.
         x_m: f32,
@@ -16,13 +16,13 @@ pub enum Report {
         /// Ticks since it was there.
         age_ticks: u32,
     },
-    /// There is none.
+    /// There is no finger.
     Up,
 }
 
-/// How far off the screen the finger goes, m.
+/// How far beyond the edges of the screen the finger moves, m.
 const OFF_SCREEN_M: f32 = 5e-3;
-/// A tick of the boards that these scenes are for, s.
+/// Tick period of the boards that these scenes are for, s.
 const TICK_S: f32 = 25e-6;
 
 /// A finger and its touch source, tick by tick.
@@ -31,7 +31,7 @@ pub struct RandomFinger {
     size_m: [f32; 2],
     place_m: [f32; 2],
     step_m: [f32; 2],
-    /// Ticks for which it goes on as it does.
+    /// Ticks until the next movement begins.
     left_ticks: u32,
     report_ticks: u32,
     until_report_ticks: u32,
@@ -42,14 +42,14 @@ pub struct RandomFinger {
 /// How often a touch source reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pace {
-    /// As chips and screens do: every 20 to 400 ticks, 0.5 to 10 ms.
+    /// Like touch chips and screens: every 20 to 400 ticks, 0.5 to 10 ms.
     Usual,
-    /// Every 1 to 6 ticks, which no chip does, but a host may.
+    /// Every 1 to 6 ticks: faster than any chip, but possible for a host.
     Fast,
 }
 
 impl RandomFinger {
-    /// The finger of a seed over the screen of a header.
+    /// A finger with random movements from `seed`, over the screen of `header`.
     pub fn new(seed: u64, header: &Header, pace: Pace) -> Self {
         let mut random = Random::new(!seed);
         let size_m = [header.screen_width_m, header.screen_height_m];
@@ -71,7 +71,7 @@ impl RandomFinger {
         }
     }
 
-    /// Goes on by a tick, and tells what the touch source reports at it.
+    /// Advances one tick, and returns the touch source's report at that tick.
     pub fn tick(&mut self) -> Option<Report> {
         if self.left_ticks == 0 {
             self.turn();

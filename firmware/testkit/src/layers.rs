@@ -1,4 +1,4 @@
-//! Layers of every kind and form, in regions of every shape.
+//! Random layers of every kind and form, in regions of every shape.
 
 use core::ops::Range;
 
@@ -10,10 +10,10 @@ use frixel_wire::scene::{CURVE_POINTS_MAX, POLYGON_POINTS_MAX};
 
 use crate::random::Random;
 
-/// Most that a drive adds for the finger of these scenes, N.
+/// Largest electric friction for the finger of these scenes, N.
 const REACH_N: f32 = 0.027;
 
-/// Points that a record needs, and the first number that is free for them.
+/// Points that a record needs, and the first free point number.
 pub(crate) struct NewPoints {
     pub(crate) first: u8,
     pub(crate) points: heapless::Vec<Point, { POLYGON_POINTS_MAX + CURVE_POINTS_MAX }>,
@@ -27,13 +27,13 @@ impl NewPoints {
     }
 }
 
-/// The same friction everywhere, for layers above to act on.
+/// Constant friction on the whole screen, for layers above to act on.
 pub(crate) fn ground(random: &mut Random) -> Record {
     let layer = Layer::Constant(Constant { electric_friction_n: REACH_N * random.between(0.02, 0.6) });
     Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer }
 }
 
-/// A layer over others; its points are added to `points`.
+/// A random layer above others; its points are added to `points`.
 pub(crate) fn record(random: &mut Random, header: &Header, picture: u32, points: &mut NewPoints) -> Record {
     let blend = random.pick([Blend::Replace, Blend::Add, Blend::Add, Blend::Multiply, Blend::Max]);
     let amounts = if blend == Blend::Multiply { Amounts::Factors } else { Amounts::Frictions };
@@ -51,7 +51,7 @@ enum Amounts {
 }
 
 impl Amounts {
-    /// Within reach for the most part, and now and then far beyond, below zero, or next to nothing.
+    /// Mostly within reach, and occasionally far beyond, below zero, or tiny.
     fn draw(self, random: &mut Random) -> f32 {
         let part = match random.below(30) {
             0 => 0.0,
@@ -142,7 +142,7 @@ fn region(random: &mut Random, header: &Header, points: &mut NewPoints) -> Regio
         1 => {
             let count = random.pick([3, 4, 5, 7, 10, 16, POLYGON_POINTS_MAX as u32]);
             let [width_m, height_m] = [header.screen_width_m, header.screen_height_m];
-            // Anywhere, so that lines cross; some of them level with one another.
+            // At any height, so that edges cross; some points are level with one another.
             let level_m = random.between(0.0, 1.0) * height_m;
             let vertices = (0..count).map(|_| Point {
                 x: random.between(-0.2, 1.2) * width_m,
@@ -155,7 +155,7 @@ fn region(random: &mut Random, header: &Header, points: &mut NewPoints) -> Regio
     }
 }
 
-/// From a hundredth of the screen to more than all of it, over its edges too.
+/// From a hundredth of the screen to more than all of it, also beyond its edges.
 fn box_region(random: &mut Random, header: &Header) -> Region {
     let mut along = |screen_m: f32| {
         let size_m = screen_m * random.pick([0.01, 0.1, 0.5, 0.9, 1.5]);

@@ -1,8 +1,8 @@
-//! What tests of several crates share, on desktop and chip. No image of a board has any of it.
+//! Test support that several crates share, on desktop and chip. No board image contains it.
 //!
 //! - [`HEADER`], [`record`], [`scene`]: scenes to begin with.
-//! - [`IdealMonitor`]: what a board reads of an amplifier that does what it is told.
-//! - [`Random`]: random numbers, the same from a seed everywhere.
+//! - [`IdealMonitor`]: the monitor readings of an ideal amplifier.
+//! - [`Random`]: random numbers that depend on the seed only, not on the platform.
 //! - [`RandomScene`], [`RandomFinger`]: scenes that a board accepts, and fingers to play them under.
 //!
 //! ```

@@ -1,19 +1,19 @@
-//! An amplifier that does what it is told, and its monitor.
+//! An ideal amplifier and its monitor.
 
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::hello::BoardLimits;
 
-/// What the monitor of an ideal amplifier reads, behind the edges that a board promises.
+/// The monitor of an ideal amplifier, with the edges that a board specifies.
 #[derive(Clone, Copy, Debug)]
 pub struct IdealMonitor {
     voltage_v: f32,
     volts_per_code: f32,
-    /// Part of the way to the driven voltage that the electrode goes in a tick.
+    /// Share of the distance to the driven voltage that the electrode covers in a tick.
     step: f32,
 }
 
 impl IdealMonitor {
-    /// The monitor of a board at rest, that ticks `tick_hz` times a second.
+    /// The monitor of a board at 0 V that ticks `tick_hz` times a second.
     #[must_use]
     pub fn new(limits: &BoardLimits, tick_hz: u32) -> Self {
         let tick_period_s = 1.0 / tick_hz as f32;
@@ -30,7 +30,7 @@ impl IdealMonitor {
         self.voltage_v
     }
 
-    /// Goes on by a tick at whose beginning this DAC code was put out.
+    /// Advances one tick, with this DAC code put out at its start.
     pub fn follow(&mut self, dac_code: DacCode) {
         self.voltage_v += self.step * (f32::from(dac_code.bits()) * self.volts_per_code - self.voltage_v);
     }

@@ -1,4 +1,4 @@
-//! Numbers that look random and are the same from the same seed everywhere.
+//! Pseudorandom numbers that depend on the seed only, not on the platform.
 
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::{Rng, SeedableRng};
@@ -8,7 +8,7 @@ use rand_pcg::rand_core::{Rng, SeedableRng};
 pub struct Random(Pcg32);
 
 impl Random {
-    /// The stream of a seed.
+    /// The stream of `seed`.
     #[must_use]
     pub fn new(seed: u64) -> Self {
         Self(Pcg32::seed_from_u64(seed))
@@ -24,12 +24,12 @@ impl Random {
         (self.bits() >> 24) as u8
     }
 
-    /// A whole number from 0 to below `end`.
+    /// A whole number from 0 up to but excluding `end`.
     pub fn below(&mut self, end: u32) -> u32 {
         ((u64::from(self.bits()) * u64::from(end)) >> 32) as u32
     }
 
-    /// True once in `times`.
+    /// Returns `true` with a probability of 1 in `times`.
     pub fn once_in(&mut self, times: u32) -> bool {
         self.below(times) == 0
     }
@@ -39,11 +39,11 @@ impl Random {
         low + (high - low) * ((self.bits() >> 8) as f32 / (1 << 24) as f32)
     }
 
-    /// One of some.
+    /// Returns a random element.
     ///
     /// # Panics
     ///
-    /// When there are none.
+    /// If the array is empty.
     pub fn pick<T: Copy, const N: usize>(&mut self, of: [T; N]) -> T {
         of[self.below(N as u32) as usize]
     }

@@ -1,4 +1,4 @@
-//! A scene that a board accepts.
+//! Random scenes that a board accepts.
 
 use frixel_layers::cost::{Worst, worst_of_scene};
 use frixel_layers::{Button, Carrier, Click, Edge, Header, Layer, Leader, Point, Record, electric_friction_max_n};
@@ -10,30 +10,30 @@ use crate::layers::{NewPoints, ground, record};
 use crate::random::Random;
 use crate::scenes::{HEADER, SceneBytes, scene_with_points};
 
-/// Draws after which no further layer is looked for: what is left of a tick may be too short for most.
+/// Rejected draws after which no further layer is tried: the time that remains in a tick is too short for most layers.
 const MISSES_MAX: u32 = 6;
-/// What a board has room for.
+/// Number of noise layers that a board has room for.
 const NOISES_MAX: usize = 8;
 const CLICKS_MAX: usize = 16;
 
 /// A scene of random layers whose longest tick is within the limit.
 pub struct RandomScene {
-    /// What holds for the whole scene.
+    /// The header of the scene.
     pub header: Header,
     /// Its layers, the first one at the bottom.
     pub records: Vec<Record, RECORDS_MAX>,
-    /// The points that records name.
+    /// The points that records refer to.
     pub points: Vec<Point, POINTS_MAX>,
 }
 
 impl RandomScene {
-    /// The scene of a seed; its pictures, if it has any, are all of this name.
+    /// The scene of `seed`. All of its pictures have the name `picture`.
     pub fn new(seed: u64, picture: u32) -> Self {
         let random = &mut Random::new(seed);
         let mut scene = Self { header: header(random), records: Vec::new(), points: Vec::new() };
         let wanted = random.pick([1, 2, 3, 6, 12, RECORDS_MAX]);
         if !random.once_in(3) {
-            // An empty list has room.
+            // Cannot fail: the list is empty.
             let _ = scene.records.push(ground(random));
         }
         let mut misses = 0;
@@ -59,7 +59,7 @@ impl RandomScene {
         scene_with_points(&self.header, &self.records, &self.points)
     }
 
-    /// Draws a layer, and keeps it when a board takes the scene with it.
+    /// Draws a layer, and keeps it if a board accepts the scene with it.
     fn add(&mut self, random: &mut Random, picture: u32) -> bool {
         let mut new = NewPoints { first: self.points.len() as u8, points: Vec::new() };
         let record = record(random, &self.header, picture, &mut new);

@@ -1,11 +1,11 @@
-//! The scene that tests begin with, and a scene's bytes.
+//! The basic scene for tests, and the bytes of a scene.
 
 use frixel_layers::{
     Blend, Carrier, Constant, HEADER_LEN, Header, Layer, Leader, POINT_LEN, Point, RECORD_LEN, Record, Region,
     SCENE_MAX_LEN,
 };
 
-/// The example finger at 0.5 N under at most 150 V rms.
+/// The example finger under a load of 0.5 N, with at most 150 V rms.
 pub const HEADER: Header = Header {
     screen_width_m: 0.12,
     screen_height_m: 0.11,
@@ -27,13 +27,13 @@ pub const HEADER: Header = Header {
     electric_friction_max_n: None,
 };
 
-/// A layer all over the screen, in the place of those below.
+/// A layer on the whole screen that replaces those below.
 #[must_use]
 pub const fn record(layer: Layer) -> Record {
     Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer }
 }
 
-/// A friction that is the same everywhere.
+/// Constant friction on the whole screen.
 #[must_use]
 pub const fn constant(electric_friction_n: f32) -> Record {
     record(Layer::Constant(Constant { electric_friction_n }))
@@ -56,7 +56,7 @@ pub fn scene(header: &Header, records: &[Record]) -> SceneBytes {
 ///
 /// # Panics
 ///
-/// When a scene cannot have so many records and points.
+/// If a scene cannot have this many records and points.
 #[must_use]
 pub fn scene_with_points(header: &Header, records: &[Record], points: &[Point]) -> SceneBytes {
     let len = HEADER_LEN + RECORD_LEN * records.len() + POINT_LEN * points.len();

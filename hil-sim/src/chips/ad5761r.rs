@@ -32,9 +32,9 @@ struct Chip {
     control: u16,
     input: u16,
     output: u16,
-    /// The output is tied to ground: from a reset to the first write to the control register.
+    /// The output is clamped to ground, from a reset until the first write to the control register.
     is_clamped: bool,
-    /// What the chip shifts out with the next frame.
+    /// The bytes that the chip shifts out with the next frame.
     shifting_out: [u8; 3],
     now_ns: u64,
     ready_at_ns: u64,
@@ -48,7 +48,7 @@ pub struct Ad5761rChip(Rc<RefCell<Chip>>);
 #[derive(Debug)]
 pub struct ChipSpi(Rc<RefCell<Chip>>);
 
-/// The time in which the chip lives.
+/// A delay that advances the chip's virtual time.
 #[derive(Debug)]
 pub struct ChipDelay(Rc<RefCell<Chip>>);
 
@@ -79,7 +79,7 @@ impl Ad5761rChip {
         ChipSpi(Rc::clone(&self.0))
     }
 
-    /// A delay that lets the chip's time pass.
+    /// A delay that advances the chip's virtual time.
     pub fn delay(&self) -> ChipDelay {
         ChipDelay(Rc::clone(&self.0))
     }
@@ -91,7 +91,7 @@ impl Ad5761rChip {
         chip.reset();
     }
 
-    /// A dip of the supply that the chip notices, and that leaves its registers.
+    /// Simulates a dip of the supply that the chip detects and that leaves its registers unchanged.
     pub fn brown_out(&self) {
         self.0.borrow_mut().control |= BROWN_OUT;
     }
@@ -106,7 +106,7 @@ impl Ad5761rChip {
         self.0.borrow_mut().has_sdo = connected;
     }
 
-    /// Sets the level of CLEAR. Its falling edge sets the DAC register to what the control register says.
+    /// Sets the level of CLEAR. Its falling edge sets the DAC register to the value that the control register selects.
     pub fn set_clear(&self, high: bool) {
         let mut chip = self.0.borrow_mut();
         if chip.clear_is_high && !high {
@@ -139,7 +139,7 @@ impl Chip {
         self.control & 1 << 7 != 0 && matches!(self.control & 7, 0 | 2 | 5)
     }
 
-    /// A code in straight binary, as the register holds it.
+    /// Encodes a straight-binary code in the format that the DAC register uses.
     fn coded(&self, straight: u16) -> u16 {
         if self.is_twos_complement() { straight ^ 0x8000 } else { straight }
     }
@@ -229,7 +229,7 @@ impl SpiDevice for ChipSpi {
                 Operation::DelayNs(ns) => chip.now_ns += u64::from(*ns),
             }
         }
-        // The last 24 bits count; a frame that is cut short does nothing.
+        // Only the last 24 bits count; a frame that is too short is ignored.
         let is_ready = chip.is_supplied && chip.now_ns >= chip.ready_at_ns;
         if let Some(frame) = received.last_chunk::<3>().filter(|_| is_ready) {
             chip.execute(*frame);

@@ -25,9 +25,9 @@ struct Module {
     is_connected: bool,
     is_enabled: bool,
     frequency_hz: Option<u16>,
-    /// Messages that wait, with their two bytes in front; the first may have been read in part.
+    /// Messages that wait to be read, each with its two bytes in front. The first may have been read in part.
     waiting: VecDeque<VecDeque<u8>>,
-    /// Polls that each transfer takes.
+    /// Number of polls that each transfer takes.
     transfer_polls: u32,
     corrupted_lengths: u32,
 }
@@ -48,15 +48,15 @@ pub struct DataReadyPin(Rc<RefCell<Module>>);
 #[derive(Debug)]
 pub struct PolledDelay;
 
-/// What the module sees of a finger.
+/// State of a touch, as the module reports it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum TouchEvent {
-    /// It has come.
+    /// The finger has touched down.
     Down = 0,
-    /// It is still there.
+    /// The finger is still on the screen.
     Move = 1,
-    /// It has gone.
+    /// The finger has lifted.
     Up = 2,
     /// The module does not trust its measurement.
     Invalid = 3,
@@ -65,12 +65,12 @@ pub enum TouchEvent {
 /// Why a transfer failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BusFault {
-    /// Nobody has this address, or the module is not connected.
+    /// No device acknowledged the address, or the module is not connected.
     NoAcknowledge,
 }
 
 impl ZForceModule {
-    /// A module that has just been switched on. Each transfer takes some polls.
+    /// A module that has just been switched on. Each transfer takes `transfer_polls` polls.
     #[must_use]
     pub fn new(transfer_polls: u32) -> Self {
         let module = Self(Rc::new(RefCell::new(Module {
@@ -97,7 +97,7 @@ impl ZForceModule {
         DataReadyPin(Rc::clone(&self.0))
     }
 
-    /// Forgets what the module was set to, and what waits, as a short dip of its supply does.
+    /// Discards the settings and the waiting messages, as a short dip of the supply does.
     pub fn forget_settings(&self) {
         let mut module = self.0.borrow_mut();
         module.is_enabled = false;
@@ -116,18 +116,18 @@ impl ZForceModule {
         self.0.borrow_mut().is_connected = connected;
     }
 
-    /// Replaces the next message by a header with a length that no message has.
+    /// Replaces the next message by a header with an invalid length.
     pub fn corrupt_length(&self) {
         self.0.borrow_mut().corrupted_lengths += 1;
     }
 
-    /// Scans a second, once they were set.
+    /// Returns the scan rate in Hz; `None` before the host has set it.
     #[must_use]
     pub fn frequency_hz(&self) -> Option<u16> {
         self.0.borrow().frequency_hz
     }
 
-    /// A finger, in tenths of a millimetre. Only a module that is enabled reports it.
+    /// Reports a finger at a place, in tenths of a millimetre. Does nothing unless the module is enabled.
     pub fn touch(&self, event: TouchEvent, x: u16, y: u16) {
         let mut module = self.0.borrow_mut();
         if !module.is_enabled {
@@ -151,7 +151,7 @@ impl Module {
         self.waiting.push_back([TRANSPORT, message.len() as u8].into_iter().chain(message.iter().copied()).collect());
     }
 
-    /// Takes a request, and answers it.
+    /// Receives a request and queues the answer.
     fn write(&mut self, bytes: &[u8]) {
         let [TRANSPORT, len, request @ ..] = bytes else { return };
         let [REQUEST, content_len, content @ ..] = request else { return };

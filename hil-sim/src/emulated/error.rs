@@ -1,10 +1,10 @@
-//! What can be missing or go wrong around an emulator.
+//! Errors of the emulated board.
 
 use std::io;
 
 use thiserror::Error;
 
-/// Why there is no emulated board, or none any more.
+/// Why there is no emulated board, or why it has stopped.
 #[derive(Debug, Error)]
 pub enum EmulatorError {
     /// The emulator is not installed.
@@ -29,38 +29,38 @@ pub enum EmulatorError {
     /// The image does not compile.
     #[error("the emulated board's image does not compile:\n{output}")]
     NotBuilt {
-        /// What the compiler says.
+        /// The compiler's output.
         output: String,
     },
     /// The operating system refuses something.
     #[error("emulated board: {action}: {reason}")]
     System {
-        /// What was tried.
+        /// The action that failed.
         action: &'static str,
-        /// What the operating system says.
+        /// The operating system's error.
         reason: io::Error,
     },
     /// The emulator has ended.
     #[error("the emulator has ended:\n{output}")]
     Ended {
-        /// What it says.
+        /// The emulator's output.
         output: String,
     },
     /// The emulator has made no serial port.
     #[error("the emulator does not say where its serial port is:\n{output}")]
     NoSerialPort {
-        /// What it says.
+        /// The emulator's output.
         output: String,
     },
-    /// The board does not come to an end.
+    /// The board did not finish in time.
     #[error("the emulated board owes {what} since {seconds} s: is its image stuck, or the machine overloaded?")]
     Silent {
-        /// What it owes.
+        /// The missing result.
         what: &'static str,
-        /// Wall time since it was asked.
+        /// Wall time since the request.
         seconds: u64,
     },
-    /// The simulator was too slow for what the board drives.
+    /// The simulator was too slow to follow the board's output.
     #[error(
         "the simulated world is behind the emulated board by more than its memory holds: is the machine overloaded?"
     )]
@@ -68,7 +68,7 @@ pub enum EmulatorError {
 }
 
 impl EmulatorError {
-    /// For `map_err` on what the operating system does.
+    /// Wraps an error of the operating system, for `map_err`.
     pub(crate) fn system(action: &'static str) -> impl Fn(io::Error) -> Self {
         move |reason| Self::System { action, reason }
     }

@@ -1,4 +1,4 @@
-//! The board's image, and what it takes to build and run it.
+//! The board's image: building it, and the tools that are required.
 
 use std::env;
 use std::io::{self, ErrorKind};
@@ -9,11 +9,11 @@ use super::EmulatorError;
 
 /// Name of the emulator.
 pub(super) const EMULATOR: &str = "qemu-system-arm";
-/// The compiler's name of the board's processor.
+/// The compiler's name for the board's processor.
 const TARGET: &str = "thumbv7em-none-eabihf";
 const BOARD: &str = "board-mps2-an386";
 
-/// Names the checkout to build from, where it is not the one around the working directory.
+/// Environment variable with the checkout to build from, if it is not the one around the working directory.
 const CHECKOUT: &str = "FRIXEL_CHECKOUT";
 
 /// An image to run.
@@ -21,7 +21,7 @@ const CHECKOUT: &str = "FRIXEL_CHECKOUT";
 pub struct Image(PathBuf);
 
 impl Image {
-    /// Builds the image of the emulated board, as far as it is not built yet.
+    /// Builds the image of the emulated board if it is not up to date.
     ///
     /// It is built from the checkout that the environment's `FRIXEL_CHECKOUT` names, or else the one around the working
     /// directory, or else the one that this program was built in.
@@ -48,7 +48,7 @@ impl Image {
     }
 }
 
-/// Says what is missing to build and run the emulated board, but for its sources.
+/// Returns an error that names what is missing to build and run the emulated board. It does not check for the sources.
 pub fn available() -> Result<(), EmulatorError> {
     match Command::new(EMULATOR).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status() {
         Ok(_) => {}

@@ -21,12 +21,12 @@ use serial::Serial;
 /// time when it is ahead.
 const ARGUMENTS: [&str; 4] = ["-icount", "shift=3,align=on", "-serial", "pty"];
 
-/// Wall time between two looks at what the board has driven.
+/// Wall time between two checks of the board's output.
 const LOOK_EVERY: Duration = Duration::from_millis(1);
 /// Wall time that the emulator may take to start, on a machine that is busy with other things.
 const PATIENCE: Duration = Duration::from_mins(2);
 
-/// What an emulated board can be made to suffer.
+/// Faults that can be injected into an emulated board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mishap {
     /// The firmware panics.
@@ -39,12 +39,12 @@ pub enum Mishap {
     StackOverflow,
 }
 
-/// What happened at one tick.
+/// Result of one tick.
 #[derive(Clone, Copy, Debug)]
 pub struct LinkRecord {
     /// Ticks since the board's last reset, this one included.
     pub tick: u32,
-    /// What the board drove.
+    /// The board's output.
     pub drive: Drive,
     /// What the finger felt.
     pub felt: Felt,
@@ -52,9 +52,9 @@ pub struct LinkRecord {
 
 /// An emulated board with a host's end of its serial line, and its world.
 ///
-/// The board ticks on its own timer in virtual time that is never ahead of wall time, and may fall behind it. The world
-/// follows what the board drives and reports touch back within some milliseconds, with the age that it then has; the
-/// amplifier's monitor is the board's own.
+/// The board ticks on its own timer in virtual time, which is never ahead of wall time and may fall behind it. The
+/// world follows the board's output and sends touch reports back within some milliseconds, each with its age then. The
+/// amplifier's monitor is simulated on the board itself.
 #[derive(Debug)]
 pub struct LinkBoard {
     machine: Machine,
@@ -64,8 +64,8 @@ pub struct LinkBoard {
 }
 
 impl LinkBoard {
-    /// Starts the board in a world whose finger is up until [`Self::start_stroke`]. Every tick is shown to `watch`, in
-    /// the world's own thread.
+    /// Starts the board in a world whose finger is up until [`Self::start_stroke`]. The world's own thread passes
+    /// every tick to `watch`.
     pub fn start(
         image: &Image,
         world: World,
@@ -91,42 +91,44 @@ impl LinkBoard {
         &self.serial_path
     }
 
-    /// Puts the finger on the screen: its stroke begins now.
+    /// Starts the finger's stroke.
     pub fn start_stroke(&self) {
         self.wishes.stroke.store(true, Ordering::Release);
     }
 
-    /// What the board drives now.
+    /// Returns the board's current output.
     pub fn output(&self) -> Result<Drive, EmulatorError> {
         self.machine.memory.get(layout::OUTPUT).map(drive_of)
     }
 
-    /// What the board drove when its firmware last started.
+    /// Returns the board's output at the last start of its firmware.
     pub fn output_at_start(&self) -> Result<Drive, EmulatorError> {
         self.machine.memory.get(layout::OUTPUT_AT_START).map(drive_of)
     }
 
-    /// Ticks since power-on, modulo 2^32: the board's virtual time, resets left out.
+    /// Returns the number of ticks since power-on, modulo 2^32. This is the board's virtual time, except for the time
+    /// in reset.
     pub fn ticks(&self) -> Result<u32, EmulatorError> {
         self.machine.memory.get(layout::DRIVES_WRITTEN)
     }
 
-    /// Ticks since the board's last reset.
+    /// Returns the number of ticks since the board's last reset.
     pub fn tick(&self) -> Result<u32, EmulatorError> {
         self.machine.memory.get(layout::TICK)
     }
 
-    /// Tick at which the last byte came on the serial port.
+    /// Returns the tick at which the last byte arrived on the serial port.
     pub fn received_at_tick(&self) -> Result<u32, EmulatorError> {
         self.machine.memory.get(layout::RECEIVED_AT_TICK)
     }
 
-    /// Bytes that have come on the serial port since power-on, modulo 2^32; the first one is the simulator's own.
+    /// Returns the number of bytes that have arrived on the serial port since power-on, modulo 2^32. The first one
+    /// comes from the simulator itself.
     pub fn received_bytes(&self) -> Result<u32, EmulatorError> {
         self.machine.memory.get(layout::RECEIVED_BYTES)
     }
 
-    /// Times that the firmware has started.
+    /// Returns how often the firmware has started.
     pub fn starts(&self) -> Result<u32, EmulatorError> {
         self.machine.memory.get(layout::STARTS)
     }
@@ -136,7 +138,7 @@ impl LinkBoard {
         self.machine.memory.set(layout::AMPLIFIER_FAULT, u32::from(raised))
     }
 
-    /// Lets something happen to the firmware.
+    /// Injects a fault into the firmware.
     pub fn provoke(&self, mishap: Mishap) -> Result<(), EmulatorError> {
         let number = match mishap {
             Mishap::Panic => layout::PROVOKE_PANIC,
@@ -147,7 +149,7 @@ impl LinkBoard {
         self.machine.memory.set(layout::PROVOKE, number)
     }
 
-    /// An error when the emulator or the world has ended.
+    /// Returns an error when the emulator or the world has ended.
     pub fn check(&mut self) -> Result<(), EmulatorError> {
         self.machine.check()?;
         match self.world.take_if(|world| world.is_finished()).map(JoinHandle::join) {
@@ -161,13 +163,13 @@ impl Drop for LinkBoard {
     fn drop(&mut self) {
         self.wishes.end.store(true, Ordering::Release);
         if let Some(world) = self.world.take() {
-            // Nobody is left who could be told how it ended.
+            // The result cannot be returned from `drop`.
             let _ = world.join();
         }
     }
 }
 
-/// Waits until a word is not zero.
+/// Waits until a word is non-zero.
 fn wait_for(machine: &mut Machine, word: usize, what: &'static str) -> Result<(), EmulatorError> {
     let begin = Instant::now();
     while machine.memory.get(word)? == 0 {

@@ -1,4 +1,4 @@
-//! An emulator that runs an image.
+//! Runs an image in the emulator.
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -11,21 +11,21 @@ use super::image::EMULATOR;
 use super::memory::Memory;
 use super::{EmulatorError, Image};
 
-/// Memory disk, where there is one: nothing of this is worth a disk's time.
+/// Directory in memory, if the system has one: the files here need no disk.
 const MEMORY_DISK: &str = "/dev/shm";
 
-/// A running emulator; it ends when this is dropped.
+/// A running emulator. Dropping this ends it.
 #[derive(Debug)]
 pub(super) struct Machine {
     process: Child,
     pub(super) memory: Memory,
-    /// What the emulator says, in a file: nobody has to read it in time.
+    /// File with the emulator's output, so that the emulator never waits for a reader.
     output: PathBuf,
     _folder: TempDir,
 }
 
 impl Machine {
-    /// Starts the image in one of [`layout`]'s modes, with more arguments for the emulator.
+    /// Starts the image in one of [`layout`]'s modes, with additional arguments for the emulator.
     pub(super) fn start(image: &Image, mode: u32, arguments: &[&str]) -> Result<Self, EmulatorError> {
         let disk = Path::new(MEMORY_DISK);
         let folder = if disk.is_dir() { tempfile::tempdir_in(disk) } else { tempfile::tempdir() };
@@ -52,12 +52,12 @@ impl Machine {
         Ok(Self { process, memory, output, _folder: folder })
     }
 
-    /// What the emulator has said so far.
+    /// Returns the emulator's output so far.
     pub(super) fn output(&self) -> Result<String, EmulatorError> {
         fs::read_to_string(&self.output).map_err(EmulatorError::system("reading what the emulator says"))
     }
 
-    /// An error when the emulator has ended.
+    /// Returns an error when the emulator has ended.
     pub(super) fn check(&mut self) -> Result<(), EmulatorError> {
         match self.process.try_wait().map_err(EmulatorError::system("looking after the emulator"))? {
             None => Ok(()),
@@ -68,7 +68,7 @@ impl Machine {
 
 impl Drop for Machine {
     fn drop(&mut self) {
-        // It may have ended by itself.
+        // It may have ended already.
         let _ = self.process.kill();
         let _ = self.process.wait();
     }

@@ -39,14 +39,14 @@ impl Memory {
         self.write(word, &value.to_le_bytes())
     }
 
-    /// Words from one on.
+    /// Returns `count` words from `word` on.
     pub(super) fn get_all(&self, word: usize, count: usize) -> Result<Vec<u32>, EmulatorError> {
         let mut bytes = vec![0; 4 * count];
         self.read(word, &mut bytes)?;
         Ok(bytes.as_chunks().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect())
     }
 
-    /// Sets words from one on.
+    /// Sets words from `word` on.
     pub(super) fn set_all(&self, word: usize, values: &[u32]) -> Result<(), EmulatorError> {
         let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
         self.write(word, &bytes)

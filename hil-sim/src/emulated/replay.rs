@@ -1,4 +1,4 @@
-//! Whether the emulated board does what the in-process board did, bit for bit.
+//! Compares the emulated board with the in-process board, bit for bit.
 
 use std::thread;
 use std::time::{Duration, Instant};
@@ -10,9 +10,9 @@ use super::machine::Machine;
 use super::{EmulatorError, Image};
 use crate::Journal;
 
-/// Ticks that the board is given at a time.
+/// Number of ticks sent to the board at a time.
 const BATCH_TICKS: usize = layout::BATCH_TICKS_MAX;
-/// Wall time between two looks at whether a batch is done.
+/// Wall time between two checks whether a batch is done.
 const LOOK_EVERY: Duration = Duration::from_micros(200);
 /// Wall time that a batch may take. It takes well under a second.
 const PATIENCE: Duration = Duration::from_mins(2);
@@ -20,9 +20,9 @@ const PATIENCE: Duration = Duration::from_mins(2);
 /// The first tick at which the boards differ.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mismatch {
-    /// What the journal says.
+    /// The output in the journal.
     pub expected: TickOutput,
-    /// What the emulated board did.
+    /// The output of the emulated board.
     pub found: TickOutput,
 }
 
@@ -32,12 +32,13 @@ pub enum ReplayError {
     /// There is no emulated board.
     #[error(transparent)]
     Emulator(#[from] EmulatorError),
-    /// The emulated board does something else.
+    /// The outputs of the boards differ.
     #[error("at tick {} the emulated board does something else: expected {:?}, found {:?}", .0.expected.tick, .0.expected, .0.found)]
     Mismatch(Box<Mismatch>),
 }
 
-/// Starts the image, gives it what the journal says, and compares what it does: drive, and bytes on the serial line.
+/// Starts the image, sends it the inputs of the journal, and compares its outputs: drive, and bytes on the serial
+/// line.
 pub fn replay(image: &Image, journal: &Journal) -> Result<(), ReplayError> {
     let mut machine = Machine::start(image, layout::MODE_LOCKSTEP, &["-serial", "null"])?;
     let mut from_tick = 0;
@@ -53,7 +54,7 @@ pub fn replay(image: &Image, journal: &Journal) -> Result<(), ReplayError> {
     Ok(())
 }
 
-/// Has one batch done.
+/// Runs one batch on the board and waits until it is done.
 fn run(machine: &mut Machine, batch: u32, inputs: &[u32], ticks: usize) -> Result<(), EmulatorError> {
     machine.memory.set_all(layout::INPUTS, inputs)?;
     machine.memory.set(layout::BATCH_TICKS, ticks as u32)?;

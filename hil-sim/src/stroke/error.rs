@@ -1,4 +1,4 @@
-//! What makes a stroke unplayable.
+//! Errors in the description of a stroke.
 
 use thiserror::Error;
 
@@ -13,7 +13,7 @@ pub enum StrokeError {
     /// The text has no rows.
     #[error("the stroke is empty: expected a header `t_s,x_mm,y_mm` and at least two rows below it")]
     Empty,
-    /// The text has one row, which is no motion.
+    /// The text has only one row.
     #[error("line {line}: the stroke has one row only: expected at least two, so that the finger moves in time")]
     OneRow {
         /// Line of the row.
@@ -26,7 +26,7 @@ pub enum StrokeError {
         line: u64,
         /// The column that is missing.
         column: &'static str,
-        /// The header as it stands.
+        /// The header that was found.
         found: String,
     },
     /// A row is too short or has an empty cell.
@@ -37,14 +37,14 @@ pub enum StrokeError {
         /// Column of the cell.
         column: &'static str,
     },
-    /// A cell is no number.
+    /// A cell is not a number.
     #[error("line {line}, column `{column}`: `{found}` is no number: expected one such as `12.5`")]
     NotANumber {
         /// Line of the row.
         line: u64,
         /// Column of the cell.
         column: &'static str,
-        /// The cell as it stands.
+        /// The content of the cell.
         found: String,
     },
     /// A number is infinite or not a number.
@@ -54,10 +54,10 @@ pub enum StrokeError {
         line: u64,
         /// Column of the cell.
         column: &'static str,
-        /// The cell as it stands.
+        /// The content of the cell.
         found: String,
     },
-    /// A row lies before the start of the stroke.
+    /// A row has a negative time.
     #[error("line {line}, column `t_s`: {found_s} is below 0: expected time from the start of the stroke")]
     BeforeStart {
         /// Line of the row.
@@ -65,14 +65,14 @@ pub enum StrokeError {
         /// Time of the row, s.
         found_s: f64,
     },
-    /// Time stands still or runs backwards.
+    /// The time of a row is not later than that of the previous row.
     #[error("line {line}, column `t_s`: {found_s} comes after {previous_s}: expected time to rise from row to row")]
     NotRising {
         /// Line of the row.
         line: u64,
         /// Time of the row, s.
         found_s: f64,
-        /// Time of the row before, s.
+        /// Time of the previous row, s.
         previous_s: f64,
     },
     /// Two rows are so far apart, in so little time, that the speed between them is not finite.
@@ -84,7 +84,7 @@ pub enum StrokeError {
     /// The text cannot be read as comma-separated values.
     #[error("the stroke is no CSV text: {reason}")]
     Malformed {
-        /// What the reader says.
+        /// The message of the CSV reader.
         reason: String,
     },
 }

@@ -4,14 +4,15 @@ use super::straight::minimum_jerk;
 use super::{FingerState, StrokeError};
 use crate::error::above_zero;
 
-/// Mean speed of a stroke, in m/s. A choice in the middle of how people slide over textures; the middle of a stroke is
-/// at 188 mm/s, and the friction lag was measured up to 100 mm/s.
+/// Mean speed of a stroke, in m/s, chosen in the middle of the range in which people slide over textures. The middle
+/// of a stroke is at 188 mm/s, and the friction lag was measured up to 100 mm/s.
 const PACE_M_PER_S: f64 = 0.1;
-/// Share of the screen that the finger leaves free at each edge.
+/// Margin at each edge of the screen, as a share of its size.
 const MARGIN: f64 = 0.1;
 /// Steepest slope of a stroke: about 10 degrees.
 const SLOPE_MAX: f64 = 0.18;
-/// Most strokes in a sweep from top to bottom. Only a screen thousands of times higher than wide would want more.
+/// Largest number of strokes in a sweep from top to bottom. Only a screen thousands of times higher than wide reaches
+/// it.
 const SWEEP_STROKES_MAX: f64 = 10_000.0;
 
 /// Back and forth across the screen, and slowly down and up again.
@@ -19,9 +20,9 @@ const SWEEP_STROKES_MAX: f64 = 10_000.0;
 pub(super) struct Natural {
     left_m: f64,
     top_m: f64,
-    /// How far a stroke goes to the right or to the left.
+    /// Length of a stroke along x.
     x_step_m: f64,
-    /// How far a stroke goes down or up.
+    /// Length of a stroke along y.
     y_step_m: f64,
     /// Strokes from the top of the screen to its bottom.
     sweep_strokes: u64,
@@ -54,7 +55,7 @@ impl Natural {
         })
     }
 
-    /// The finger at a time from 0 to the duration, at which it rests where the next stroke would start.
+    /// Returns the finger at a time from 0 to the duration. At the duration it rests at the start of the next stroke.
     pub(super) fn at(&self, t_s: f64) -> FingerState {
         let done = t_s / self.stroke_s;
         let stroke = done as u64;

@@ -2,14 +2,14 @@
 
 use super::{FingerState, Point};
 
-/// A place at a time.
+/// A point in time and the finger's place then.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Row {
     pub(super) t_s: f64,
     pub(super) place: Point,
 }
 
-/// From a row to the next, straight and at constant speed.
+/// The motion from one row to the next: straight, at constant speed.
 #[derive(Clone, Copy, Debug)]
 struct Piece {
     start: Row,
@@ -18,22 +18,22 @@ struct Piece {
     speed_m_per_s: f64,
 }
 
-/// Rows, ready to be looked up at any time.
+/// Rows, prepared for look-ups by time.
 #[derive(Clone, Debug)]
 pub(super) struct Rows {
     pieces: Vec<Piece>,
     end_s: f64,
-    /// Time is cut into as many equal slots as there are pieces; this is how many pieces start before each slot, so
-    /// that a look-up searches one slot only.
+    /// The duration is divided into as many equal slots as there are pieces. This is the number of pieces that start
+    /// before each slot, so that a look-up searches only one slot.
     before_slot: Vec<usize>,
     slots_per_s: f64,
 }
 
 impl Rows {
-    /// Motion through `rows`, whose times rise.
+    /// Makes a motion through `rows`, whose times rise.
     ///
-    /// The number of the row that cannot be reached at a finite speed is returned as an error; fewer than two rows are
-    /// a motion that never touches the screen.
+    /// The error is the index of a row that the finger cannot reach at a finite speed. A motion of fewer than two rows
+    /// never touches the screen.
     pub(super) fn new(rows: &[Row]) -> Result<Self, usize> {
         let mut pieces = Vec::with_capacity(rows.len());
         for (number, (start, end)) in rows.iter().zip(rows.iter().skip(1)).enumerate() {
@@ -56,7 +56,8 @@ impl Rows {
         self.end_s
     }
 
-    /// Slot of a time. Never falls as time rises, however the product is rounded; the search rests on that alone.
+    /// Returns the slot of a time. It never decreases with time, however the product is rounded; the search relies on
+    /// that.
     fn slot(&self, t_s: f64) -> usize {
         ((t_s * self.slots_per_s) as usize).min(self.pieces.len())
     }
@@ -76,7 +77,7 @@ impl Rows {
         before_slot
     }
 
-    /// The finger at a time up to the end; none before the first row.
+    /// Returns the finger at a time up to the end; `None` before the first row.
     pub(super) fn at(&self, t_s: f64) -> Option<FingerState> {
         let slot = self.slot(t_s);
         let (first, last) = (*self.before_slot.get(slot)?, *self.before_slot.get(slot + 1)?);

@@ -3,7 +3,7 @@
 use super::{FingerState, Point, StrokeError};
 use crate::error::{OutOfRange, above_zero};
 
-/// A straight way, and the time it takes.
+/// A straight path, and the time that the finger takes for it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Straight {
     from: Point,
@@ -14,7 +14,7 @@ pub(super) struct Straight {
 }
 
 impl Straight {
-    /// The way from one point to another in `duration_s` seconds.
+    /// The path from one point to another in `duration_s` seconds.
     pub(super) fn lasting(from: Point, to: Point, duration_s: f64) -> Result<Self, StrokeError> {
         let duration_s = above_zero("duration_s", duration_s)?;
         let length_m = length_m(from, to)?;
@@ -27,7 +27,7 @@ impl Straight {
         })
     }
 
-    /// The way from one point to another at a mean speed.
+    /// The path from one point to another at a mean speed.
     pub(super) fn at_speed(from: Point, to: Point, speed_m_per_s: f64) -> Result<Self, StrokeError> {
         let length_m = above_zero("length of the stroke in m", length_m(from, to)?)?;
         let straight = Self::lasting(from, to, length_m / speed_m_per_s)?;

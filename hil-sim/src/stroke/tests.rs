@@ -21,7 +21,7 @@ fn assert_close(found: f64, expected: f64) {
     assert!((found - expected).abs() < 1e-12, "{found}, expected {expected}");
 }
 
-/// The speed that the stroke reports is the way it goes over the time it takes, and it never jumps.
+/// Asserts that the reported speed is the distance covered over the time it takes, and that the speed never jumps.
 fn assert_speed_is_the_rate_of_the_place(stroke: &Stroke, from_s: f64, to_s: f64) {
     const STEPS: u32 = 20_000;
     let step_s = (to_s - from_s) / f64::from(STEPS);

@@ -8,7 +8,7 @@ use super::{Point, StrokeError};
 const COLUMNS: [&str; 3] = ["t_s", "x_mm", "y_mm"];
 const MM_PER_M: f64 = 1e3;
 
-/// The motion that CSV text describes.
+/// Parses CSV text into a motion.
 pub(super) fn rows(text: &str) -> Result<Rows, StrokeError> {
     let mut reader = ReaderBuilder::new().flexible(true).trim(Trim::All).from_reader(text.as_bytes());
     let malformed = |error: csv::Error| StrokeError::Malformed { reason: error.to_string() };
@@ -40,7 +40,7 @@ pub(super) fn rows(text: &str) -> Result<Rows, StrokeError> {
     }
 }
 
-/// Where each of [`COLUMNS`] stands.
+/// Returns the index of each of [`COLUMNS`] in the header.
 fn find_columns(header: &StringRecord, line: u64) -> Result<[usize; 3], StrokeError> {
     let mut places = [0; 3];
     for (place, column) in places.iter_mut().zip(COLUMNS) {
@@ -71,7 +71,8 @@ fn number(cell: &str, line: u64, column: &'static str) -> Result<f64, StrokeErro
     if value.is_finite() { Ok(value) } else { Err(StrokeError::NotFinite { line, column, found: found() }) }
 }
 
-/// Line of a record in `text`. The reader's own number is that of the first of the empty lines that it skipped.
+/// Returns the line number of a record in `text`. The reader itself reports the first of the empty lines that it
+/// skipped.
 fn line_of(record: &StringRecord, text: &str) -> u64 {
     let Some(position) = record.position() else { return 1 };
     let skipped = text.bytes().skip(position.byte() as usize).take_while(|byte| matches!(byte, b'\r' | b'\n'));

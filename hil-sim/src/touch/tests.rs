@@ -4,7 +4,7 @@ use super::{TouchConfig, TouchSource};
 use crate::stroke::FingerState;
 
 const TICK_HZ: u32 = 40_000;
-/// The finger of these tests moves by this much every tick, so that a report without noise tells when it was sampled.
+/// The finger of these tests moves this far every tick, so that a noiseless report shows when it was sampled.
 const STEP_M: f64 = 1e-6;
 const SECONDS: u64 = 200;
 
@@ -12,7 +12,7 @@ fn finger(tick: u64) -> FingerState {
     FingerState { x_m: tick as f64 * STEP_M, y_m: 0.05, speed_m_per_s: STEP_M * f64::from(TICK_HZ) }
 }
 
-/// Every report of a source that watches the finger for a while, with the tick of its arrival.
+/// Returns every report of a source in `seconds` seconds, with the tick of its arrival.
 fn reports(config: TouchConfig, seed: u64, seconds: u64) -> Vec<(u64, Touch)> {
     let mut source = TouchSource::new(&config, TICK_HZ, seed).unwrap();
     (0..seconds * u64::from(TICK_HZ))
@@ -36,7 +36,7 @@ fn mean_and_deviation(values: &[f64]) -> (f64, f64) {
     (mean, variance.sqrt())
 }
 
-/// Without noise: for every report, the tick of its sample and its delay.
+/// Returns the tick of the sample and the delay of every report of a source without noise.
 fn samples_and_delays(config: TouchConfig, seconds: u64) -> Vec<(f64, f64)> {
     reports(TouchConfig { noise_rms_m: 0.0, ..config }, 5, seconds)
         .into_iter()
@@ -49,7 +49,7 @@ fn samples_and_delays(config: TouchConfig, seconds: u64) -> Vec<(f64, f64)> {
 
 #[test]
 fn reports_come_at_the_rate_with_the_latency_and_the_jitter() {
-    // Short enough for a place in f32 to tell the tick within a fifth.
+    // Short enough for a place in `f32` to resolve the tick within a fifth.
     const SHORT_S: u64 = 40;
     let config = TouchConfig::default();
     let samples_and_delays = samples_and_delays(config, SHORT_S);
@@ -111,7 +111,7 @@ fn an_odd_rate_is_kept_without_drift() {
 
 #[test]
 fn reports_keep_their_order_and_never_precede_their_sample() {
-    // Jitter of five periods on a latency of none: half of the draws would come too early, and most out of order.
+    // Jitter of five periods with zero latency: half of the draws would come too early, and most out of order.
     let config = TouchConfig { latency_s: 0.0, jitter_rms_s: 50e-3, ..TouchConfig::default() };
     let samples_and_delays = samples_and_delays(config, 20);
     assert!(samples_and_delays.len() > 1900);

@@ -50,7 +50,7 @@ pub const RESET: Frame = frame(RESET_ADDRESS, 0);
 pub const CONFIGURE: Frame = frame(WRITE_CONTROL, CONFIGURATION);
 /// Requests the control register, which the DAC shifts out with the next frame.
 pub const READ_CONTROL: Frame = frame(READ_CONTROL_ADDRESS, 0);
-/// Changes nothing. It clocks out the answer to [`READ_CONTROL`].
+/// Has no effect. It clocks out the answer to [`READ_CONTROL`].
 pub const NO_OPERATION: Frame = frame(0, 0);
 
 /// Sets the output: a code is a fraction of 10 V.

@@ -14,7 +14,7 @@ use frixel_wire::dac_code::DacCode;
 
 pub use frame::{CONFIGURE, Control, FRAME_LEN, Frame, NO_OPERATION, READ_CONTROL, RESET, output};
 
-/// Time for a software reset, in microseconds. The data sheet gives none for it; 10 us is the longest of its other times.
+/// Time for a software reset, in microseconds. The data sheet states none; 10 us is the longest of its other times.
 const RESET_US: u32 = 10;
 
 /// The DAC on an SPI bus: mode 2 (clock idle high, sampled at the falling edge), at most 50 MHz to write, and 12 MHz to read, because
@@ -43,7 +43,7 @@ pub enum Error<E> {
 pub const DETAIL_SPI: u32 = 1 << 16;
 
 impl<E> Error<E> {
-    /// The number that goes with fault `Dac`: the control register as it was read, or [`DETAIL_SPI`].
+    /// The detail of fault `Dac`: the control register that was read, or [`DETAIL_SPI`].
     pub fn detail(&self) -> u32 {
         match self {
             Self::Spi(_) => DETAIL_SPI,
@@ -84,8 +84,8 @@ impl<S: SpiDevice, D: DelayNs> Ad5761r<S, D> {
         Self { spi, delay }
     }
 
-    /// Resets and configures the DAC, sets its output to 0 V, and reads the configuration back. Afterwards the range is -10 V to
-    /// 10 V and codes are two's complement, or the error says what is wrong.
+    /// Resets and configures the DAC, sets its output to 0 V, and reads the configuration back. On success the range
+    /// is -10 V to 10 V and codes are two's complement.
     pub fn prepare(&mut self) -> Result<(), Error<S::Error>> {
         self.reset()?;
         self.configure()?;

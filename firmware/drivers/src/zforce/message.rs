@@ -10,7 +10,7 @@ pub const I2C_ADDRESS: u8 = 0x50;
 const TRANSPORT: u8 = 0xee;
 /// Bytes in front of a message.
 pub const LENGTH_LEN: usize = 2;
-/// Most bytes of a message that is read: a notification of up to eight touches.
+/// Largest length of a message that is read: a notification of up to eight touches.
 pub const MESSAGE_MAX_LEN: usize = 127;
 
 /// Request: 200 scans a second, with a finger and without.
@@ -46,18 +46,18 @@ pub enum Touch {
     Up,
 }
 
-/// What a message says.
+/// A parsed message.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Message {
     /// A report of a finger.
     Touch(Touch),
     /// The module has started and waits for its requests.
     Started,
-    /// A message that does not matter here: an answer, another notification, an invalid touch.
+    /// An ignored message: an answer, another notification, an invalid touch.
     Other,
 }
 
-/// Length of the message that follows these two bytes; `None` when they cannot stand in front of a message.
+/// Length of the message after this header; `None` when the header is invalid.
 pub fn message_len(length: [u8; LENGTH_LEN]) -> Option<usize> {
     let [transport, len] = length;
     (transport == TRANSPORT && len > 0 && usize::from(len) <= MESSAGE_MAX_LEN).then_some(usize::from(len))
@@ -88,7 +88,8 @@ fn parse_touch(touch: &[u8]) -> Message {
     }
 }
 
-/// The first element of these bytes: its tag, its content, and what follows it. Lengths above 127 do not occur.
+/// Splits the first element off these bytes: its tag, its content, and the remaining bytes. Lengths above 127 do not
+/// occur.
 fn element(bytes: &[u8]) -> Option<(u8, &[u8], &[u8])> {
     let ([tag, len], rest) = bytes.split_first_chunk()?;
     let (content, rest) = rest.split_at_checked(usize::from(*len))?;

@@ -21,7 +21,7 @@ use crate::polling::yield_now;
 /// Pause after a transfer that failed, before the module is set up again.
 const PAUSE_MS: u32 = 100;
 
-/// The module: its bus, its data-ready pin (high while a message waits), and time to pause.
+/// The module: its bus, its data-ready pin (high while a message waits), and a delay.
 #[derive(Debug)]
 pub struct ZForce<B, R, D> {
     bus: B,
@@ -38,7 +38,7 @@ pub enum Error<E> {
     I2c(E),
     /// The data-ready pin could not be read.
     DataReady,
-    /// These two bytes came in front of a message: expected `ee` and a length from 1 to 127.
+    /// Invalid header: expected `ee` and a length from 1 to 127.
     Length([u8; LENGTH_LEN]),
 }
 
@@ -68,7 +68,8 @@ impl<B: I2c, R: InputPin, D: DelayNs> ZForce<B, R, D> {
         Self { bus, data_ready, delay, is_set_up: false }
     }
 
-    /// Waits for the next report of a finger. Sets the module up when that has not been done, or the module has restarted.
+    /// Waits for the next report of a finger. Sets the module up at the first call, and again after the module has
+    /// restarted.
     ///
     /// After an error it pauses for 0.1 s and returns it; the next call sets the module up again.
     pub async fn next_touch(&mut self) -> Result<Touch, Error<B::Error>> {

@@ -1,4 +1,4 @@
-//! The world of a board that ticks by itself: it follows what the board drives.
+//! The world of a board that ticks by itself: it follows the board's output.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -13,22 +13,22 @@ use crate::World;
 use crate::emulated::EmulatorError;
 use crate::emulated::memory::Memory;
 
-/// What the board's owner wants of the world's thread.
+/// Requests from the board's owner to the world's thread.
 #[derive(Debug, Default)]
 pub(super) struct Wishes {
     pub(super) end: AtomicBool,
     pub(super) stroke: AtomicBool,
 }
 
-/// The world that follows what the board drives.
+/// A world that follows the board's output.
 pub(super) struct Follower<W> {
     memory: Memory,
     serial: Serial,
     world: World,
     watch: W,
-    /// Drives that were seen.
+    /// Number of drives that have been processed.
     seen: u32,
-    /// Touch reports that were written.
+    /// Number of touch reports that have been written.
     reports: u32,
     wishes: Arc<Wishes>,
 }
@@ -38,7 +38,7 @@ impl<W: FnMut(&LinkRecord)> Follower<W> {
         Self { memory, serial, world, watch, seen: 0, reports: 0, wishes }
     }
 
-    /// Follows until the end is wished for.
+    /// Follows the board until the owner requests the end.
     pub(super) fn run(mut self) -> Result<(), EmulatorError> {
         while !self.wishes.end.load(Ordering::Acquire) {
             if self.wishes.stroke.swap(false, Ordering::AcqRel) {
@@ -51,7 +51,7 @@ impl<W: FnMut(&LinkRecord)> Follower<W> {
         Ok(())
     }
 
-    /// Brings the world to where the board is.
+    /// Advances the world to the board's current tick.
     fn follow(&mut self) -> Result<(), EmulatorError> {
         let mut waiting = self.memory.get(layout::DRIVES_WRITTEN)?.wrapping_sub(self.seen) as usize;
         if waiting > layout::DRIVES_LEN / 2 {
@@ -70,7 +70,7 @@ impl<W: FnMut(&LinkRecord)> Follower<W> {
         Ok(())
     }
 
-    /// One tick of the world; what it has to report goes to the board.
+    /// Advances the world by one tick, and sends its touch report to the board.
     fn tick(&mut self, tick: u32, drive: Drive) -> Result<(), EmulatorError> {
         let felt = self.world.apply(drive);
         (self.watch)(&LinkRecord { tick, drive, felt });
@@ -80,7 +80,7 @@ impl<W: FnMut(&LinkRecord)> Follower<W> {
         }
     }
 
-    /// Gives a report to the board; one for which there is no room is lost, as on a bus.
+    /// Sends a report to the board. The report is lost when there is no room for it, as on a bus.
     fn report(&mut self, report: StampedTouch) -> Result<(), EmulatorError> {
         let waiting = self.reports.wrapping_sub(self.memory.get(layout::TOUCHES_READ)?);
         if waiting as usize >= layout::TOUCHES_LEN {

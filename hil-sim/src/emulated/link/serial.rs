@@ -8,8 +8,8 @@ use rustix::fs::OFlags;
 
 use crate::emulated::EmulatorError;
 
-/// The host's end of the pseudo-terminal, held open: the emulator looks only once a second whether somebody has opened
-/// it.
+/// The host's end of the pseudo-terminal. It is held open because the emulator checks only once a second whether a
+/// client has opened it.
 pub(super) struct Serial(File);
 
 impl Serial {
@@ -23,13 +23,13 @@ impl Serial {
             .map_err(EmulatorError::system("opening the emulator's serial port"))
     }
 
-    /// A zero byte alone means nothing to a board.
+    /// Writes a single zero byte, which a board ignores.
     pub(super) fn write_zero(&self) -> Result<(), EmulatorError> {
         (&self.0).write_all(&[0]).map_err(EmulatorError::system("writing to the emulator's serial port"))
     }
 
-    /// A host may open the port for itself alone. That lasts until everybody has closed it, so it would keep the next
-    /// host out.
+    /// Ends exclusive mode, so that the next host can open the port. A host may have opened it exclusively, which
+    /// lasts as long as any process has it open.
     pub(super) fn let_the_next_host_in(&self) -> Result<(), EmulatorError> {
         let refused =
             |error: rustix::io::Errno| EmulatorError::system("freeing the emulator's serial port")(error.into());

@@ -1,4 +1,4 @@
-//! What is measured.
+//! The measurements of bring-up.
 
 use board_nucleo_g474re::adc::Adc;
 use board_nucleo_g474re::board::{LIMITS, TICK_HZ};
@@ -27,14 +27,14 @@ pub(crate) struct Bench {
 }
 
 impl Bench {
-    /// Takes the board.
+    /// Takes the board's peripherals.
     pub(crate) fn new(output: Output) -> Self {
         tick::start_inputs();
         let (frames, dac) = dac::start();
         Self { output, frames, dac, adc: Adc::new(), button_rests_high: button_is_high() }
     }
 
-    /// Says what to do, and waits for the button, output at zero.
+    /// Logs what to do, and waits for the button with the output at zero.
     pub(crate) fn ask(&mut self, what: &str) {
         self.output.zero();
         println!("");
@@ -42,10 +42,10 @@ impl Bench {
         self.wait_for_button(|_| ());
     }
 
-    /// Does something every period until the button is pressed and let go.
+    /// Calls `meanwhile` every period until the button is pressed and released.
     fn wait_for_button(&mut self, mut meanwhile: impl FnMut(&mut Self)) {
         for pressed in [true, false] {
-            // 50 ms in a row, so that a bounce is no press.
+            // Pressed for 50 ms without a break, so that a bounce does not count.
             let mut periods = 0;
             while periods < TICK_HZ / 20 {
                 next_period();
@@ -90,7 +90,7 @@ impl Bench {
         passed
     }
 
-    /// Configures the DAC and puts out some voltages. Returns whether the DAC has answered.
+    /// Configures the DAC and puts out some voltages. Returns whether the DAC answered.
     pub(crate) fn dac(&mut self) -> bool {
         if let Err(error) = self.dac.prepare() {
             error!("the DAC does not answer on PB14: check supply, SPI2 (PB13, PB15), SYNC (PC6): {}", error);
@@ -113,7 +113,7 @@ impl Bench {
         true
     }
 
-    /// What the inputs say, whenever it changes.
+    /// Logs the inputs whenever they change.
     pub(crate) fn inputs(&mut self) {
         println!("let the amplifier report a fault, hold the arm switch, pull each wire; the button goes on");
         let mut last = None;
@@ -126,7 +126,7 @@ impl Bench {
         });
     }
 
-    /// A square wave of 1 kHz while the arm switch is held, for two seconds, and what the monitor makes of it.
+    /// Puts out a square wave of 1 kHz for two seconds while the arm switch is held, and logs the monitor's readings.
     ///
     /// Returns whether the monitor is within a fifth of the wave.
     pub(crate) fn square(&mut self, peak_v: f32) -> bool {
@@ -143,7 +143,7 @@ impl Bench {
                 return false;
             }
             self.put(if positive { code } else { -code });
-            // The last reading of each half wave, when it has settled.
+            // The last reading of each half wave, when the voltage has settled.
             if (period + 1).is_multiple_of(HALF_PERIOD_TICKS) {
                 let volts = self.adc.monitor_v();
                 if positive {
@@ -169,7 +169,8 @@ impl Bench {
         passed
     }
 
-    /// Time constant of an edge from -20 V to 20 V: the monitor every 2.5 us, until it has come 63 % of the way.
+    /// Measures the time constant of an edge from -20 V to 20 V: reads the monitor every 2.5 us, until it has covered
+    /// 63 % of the edge.
     ///
     /// Returns whether an edge was seen.
     pub(crate) fn edge(&mut self) -> bool {
@@ -210,7 +211,7 @@ impl Bench {
         true
     }
 
-    /// Puts a code out at the end of this period, and keeps the output alive.
+    /// Puts a code out at the end of this period, and keeps the output enabled.
     fn put(&mut self, code: i16) {
         if self.frames.send(DacCode::from_bits(code)) {
             self.output.kick();

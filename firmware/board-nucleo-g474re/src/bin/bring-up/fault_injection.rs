@@ -12,7 +12,7 @@ const FAULTS: [Fault; 4] = [Fault::Panic, Fault::HardFault, Fault::StackOverflow
 /// Marks the memory below as valid; the number of injected faults stands in its lowest byte.
 const MARK: u32 = 0x7072_6f00;
 
-/// Kept over the restarts: [`MARK`] and the number of faults that were injected.
+/// Kept across restarts: [`MARK`] and the number of injected faults.
 #[unsafe(link_section = ".uninit.INJECTED")]
 static INJECTED: AtomicU32 = AtomicU32::new(0);
 
@@ -33,7 +33,7 @@ pub(crate) fn continues_after(last_reset: &LastReset) -> bool {
     if found == Some(*expected) {
         info!("fault {=u8}, as injected: {=[u8]:a}", expected.number(), last_reset.text);
     } else if found.is_none() {
-        // Power-on, or the button: somebody begins again.
+        // Power-on, or the reset button: bring-up starts from the beginning.
         INJECTED.store(0, Ordering::Relaxed);
         return false;
     } else {

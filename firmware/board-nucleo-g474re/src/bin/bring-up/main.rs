@@ -1,5 +1,5 @@
-//! Brings a new board up, step by step, with the output disconnected first: `cargo run --release --bin bring-up`, and
-//! `docs/hardware.md` beside it. Every step says over RTT what to do; the blue button goes on.
+//! Brings up a new board, step by step, with the output disconnected first: `cargo run --release --bin bring-up`,
+//! described in `docs/hardware.md`. Every step states over RTT what to do; the blue button continues.
 #![no_std]
 #![no_main]
 

@@ -1,4 +1,4 @@
-//! The board's limits, as measured, into flash.
+//! Stores the board's measured limits in flash.
 
 use board_nucleo_g474re::board::{LIMITS, LIMITS_SLOT, stored_limits};
 use board_nucleo_g474re::flash::BankTwo;
@@ -6,7 +6,7 @@ use defmt::{error, info, println};
 use frixel_session::store::{LIMITS_LEN, WORD_LEN, Writer, Writing, read_limits, write_limits};
 use frixel_wire::hello::BoardLimits;
 
-/// Stores the limits that stood in the environment when this was built, and shows which hold.
+/// Stores the limits that were set in the environment at build time, and logs the limits in effect.
 pub(crate) fn limits() {
     let Some(mut flash) = BankTwo::new() else {
         error!("the flash is not in two banks: set the option byte DBANK, which ST's programmer does");
@@ -56,7 +56,8 @@ fn write(flash: &mut BankTwo, limits: &BoardLimits) {
     }
 }
 
-/// The limits of the environment; `None` without a voltage. What is not there stays as it is in `src/board.rs`.
+/// Returns the limits from the environment; `None` without a voltage. Other missing limits keep their values from
+/// `src/board.rs`.
 fn built_in() -> Option<BoardLimits> {
     let number = |text: Option<&str>, unit: f32, default: f32| match text {
         None => Some(default),
