@@ -9,8 +9,8 @@ use frixel_wire::payload::Payload;
 
 /// Time in which a stream fades in and out, s (PROTOCOL, section 15).
 const FADE_S: f64 = 0.01;
-/// Time that a board may have had samples without a report that it waits for more, s. After it, a report is taken to
-/// have been lost between two telemetry messages, and the stream to play.
+/// How long a board may have had samples without reporting that it waits for more, s. After this time the recorder
+/// assumes that a report was lost between two telemetry messages, and that the stream plays.
 const START_MISSED_AFTER_S: f64 = 0.05;
 
 /// A stream under way. The board decides when it plays and when it waits for samples, and reports this by a flag. While
