@@ -61,7 +61,7 @@ pub enum Mistake {
     UnknownChoice {
         /// The field.
         field: &'static str,
-        /// As written.
+        /// The word, as written.
         found: String,
         /// The known names, and the nearest one.
         nearest: Nearest,
@@ -137,7 +137,7 @@ pub enum Mistake {
         what: &'static str,
         /// The number of this one, from one.
         number: usize,
-        /// Most of them.
+        /// The board's limit.
         max: usize,
     },
     /// The friction of a layer with `blend = "add"` is given in total.

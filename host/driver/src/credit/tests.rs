@@ -4,7 +4,7 @@ use super::{CountRestarted, Credit};
 
 const WINDOW: u16 = 4096;
 
-/// A line that keeps the order and may lose bytes, with both counts as they are.
+/// A line that keeps the order of frames and may lose bytes, with the actual counts of both ends.
 #[derive(Default)]
 struct Line {
     written: u64,
