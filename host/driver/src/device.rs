@@ -52,10 +52,10 @@ pub struct Device<L: Link> {
     stream: Option<StreamProgress>,
 }
 
-/// What a board reports without a request.
+/// A message that a board sends without a request.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event {
-    /// What the board did at one tick; see [`Device::subscribe`].
+    /// The board's output and state at one tick; see [`Device::subscribe`].
     Telemetry(Telemetry),
     /// The board changed its state without a command.
     StateChanged {
@@ -68,7 +68,7 @@ pub enum Event {
     },
 }
 
-/// What was sent and received since the link was opened.
+/// Counts of frames and bytes since the link was opened.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
     /// Frames sent, pings included.

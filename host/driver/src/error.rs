@@ -88,7 +88,7 @@ pub enum DeviceError {
     Vanished {
         /// The command that was under way.
         command: &'static str,
-        /// What the link reported.
+        /// The error that the link reported.
         closed: LinkClosed,
     },
     /// The board's count of received bytes started again: it was reset, or another host connected to it.
