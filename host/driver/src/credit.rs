@@ -3,7 +3,7 @@
 /// Counts the bytes on the way to the board.
 ///
 /// Positions count the bytes that the host has written since the link was opened. The board counts the bytes that it
-/// has received since the hello. The two counts drift apart by what the line loses or adds.
+/// has received since the hello. The two counts differ by the bytes that the line loses or adds.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Credit {
     window: u64,
@@ -15,12 +15,12 @@ pub(super) struct Credit {
     received: u64,
 }
 
-/// The board's count went backwards, which only a restart or another host's hello causes.
+/// The board's count decreased. Only a restart of the board or another host's hello causes this.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct CountRestarted;
 
 impl Credit {
-    /// The board has answered a hello and counts from zero; the host has written `written` bytes.
+    /// Starts after a hello: the board counts from zero, and the host has written `written` bytes.
     pub(super) fn new(window: u16, written: u64) -> Self {
         Self { window: window.into(), settled: written, offset: written as i64, received: 0 }
     }
@@ -36,11 +36,12 @@ impl Credit {
         Ok(())
     }
 
-    /// Uses the answer to a request that ended at position `request_end`. Its count went to [`Self::received`] before.
+    /// Corrects the credit with the answer to a request that ended at position `request_end`. The caller passes the
+    /// count in the answer to [`Self::received`] first.
     ///
     /// The line keeps the order, so everything before the end of the request has left the line. If nothing was written
-    /// after the request, the board's count stands for exactly that position. Otherwise it may be ahead of it, and only
-    /// a loss is certain.
+    /// after the request, the board's count corresponds to exactly that position. Otherwise the count may include later
+    /// bytes, and only a loss is certain.
     pub(super) fn answered(&mut self, request_end: u64, written: u64) {
         let offset = request_end as i64 - self.received as i64;
         if request_end == written || offset > self.offset {
@@ -59,8 +60,8 @@ impl Credit {
         self.settled
     }
 
-    /// Whether the window has room for `len` more bytes, and `reserve` bytes beyond them. A window too small for both
-    /// takes one frame at a time.
+    /// Whether the window has room for `len` bytes and `reserve` bytes beyond them. A window too small for both takes
+    /// one frame at a time.
     pub(super) fn allows(&self, len: usize, reserve: usize, written: u64) -> bool {
         let under_way = written.saturating_sub(self.settled);
         let reserve = if under_way == 0 { 0 } else { reserve as u64 };

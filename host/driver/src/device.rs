@@ -1,4 +1,4 @@
-//! A board at the other end of a link, call by call.
+//! The [`Device`]: a board at the other end of a link, with one method for each command.
 
 mod stream;
 
@@ -27,16 +27,17 @@ const PING_PERIOD_MIN: Duration = Duration::from_millis(5);
 
 /// A board that has answered the hello.
 ///
-/// **Pings.** An armed board disarms itself, output zero, when it has received nothing for the scene's host timeout.
-/// The link pings it often enough for every host timeout, or for that of the scene that this value has committed, as
-/// long as the application makes calls: [`KEEP_ALIVE_TIMEOUT`](crate::KEEP_ALIVE_TIMEOUT) after the last call that
-/// sends or receives, the pings end and the board disarms itself. So an application that hangs does not keep a board
-/// playing. A call that waits counts for as long as it waits. An application that plays one scene for long calls
-/// [`Self::wait`], or in a loop of its own [`Self::keep_alive`], several times a second: from the loop that notices
-/// that it is to stop, never from a thread or timer that would go on without it.
+/// **Pings.** An armed board that receives nothing for the scene's host timeout disarms itself and sets its output to
+/// zero. The link therefore pings the board: often enough for the host timeout of the scene that this value has
+/// committed, or for every host timeout if it has committed none. The pings end
+/// [`KEEP_ALIVE_TIMEOUT`](crate::KEEP_ALIVE_TIMEOUT) after the application's last call that sends or receives, and the
+/// board then disarms itself, so an application that hangs does not keep a board playing. A call that waits keeps the
+/// pings going while it waits. An application that plays one scene for a long time calls [`Self::wait`] or
+/// [`Self::keep_alive`] several times a second. It makes these calls in the loop that reacts to a request to stop,
+/// never in a thread or timer that would continue without that loop.
 ///
-/// Dropping a value that has armed the board stops and disarms it, as far as the link still carries anything. The
-/// board sets its output to zero in any case once the pings have stopped.
+/// Dropping a value that has armed the board stops and disarms the board if the link still works. In any case the board
+/// sets its output to zero once the pings have stopped.
 pub struct Device<L: Link> {
     exchange: Exchange<L>,
     hello: Hello,
@@ -51,10 +52,10 @@ pub struct Device<L: Link> {
     stream: Option<StreamProgress>,
 }
 
-/// What a board reports without a request.
+/// A message that a board sends without a request.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event {
-    /// What the board did at one tick; see [`Device::subscribe`].
+    /// The board's output and state at one tick; see [`Device::subscribe`].
     Telemetry(Telemetry),
     /// The board changed its state without a command.
     StateChanged {
@@ -67,7 +68,7 @@ pub enum Event {
     },
 }
 
-/// What was sent and received since the link was opened.
+/// Counts of frames and bytes since the link was opened.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
     /// Frames sent, pings included.
@@ -81,15 +82,16 @@ pub struct Counters {
 }
 
 impl<L: Link> Device<L> {
-    /// Says hello, checks that both sides speak the same protocol, and starts the pings. Takes at most 0.75 s when
-    /// nobody answers.
+    /// Exchanges the hello with the board, checks that both sides speak the same protocol, and starts the pings. Takes
+    /// at most 0.75 s if no board answers.
     ///
-    /// The hello disarms what another client had armed or played, but for a scene that plays without a host.
+    /// The hello disarms a board that another client has armed or set playing, except for a scene that plays without a
+    /// host.
     pub fn connect(mut link: L) -> Result<Self, DeviceError> {
         let mut decoder = Decoder::new();
         let hello = request_hello(&mut link, &mut decoder)?;
         let mut exchange = Exchange::new(link, decoder, &hello);
-        // Its answer corrects the credit, should one of several hello requests have been lost.
+        // The answer corrects the credit if one of several hello requests was lost.
         exchange.request(Command::Ping)?;
         let armed = matches!(hello.state, State::Armed | State::Active);
         let uploads = UploadCounts::default();
@@ -107,7 +109,7 @@ impl<L: Link> Device<L> {
     /// before [`Self::commit`].
     pub fn upload(&mut self, upload: &Upload, progress: &mut dyn FnMut(Progress)) -> Result<(), DeviceError> {
         upload.check()?;
-        // The board refuses bytes that are no scene, and says why.
+        // The board refuses bytes that are not a scene, and reports the reason.
         let scene = Scene::parse(upload.scene).ok();
         self.check_features(scene.map_or(0, |scene| features_of(scene.header(), scene.records())))?;
         self.uploaded = scene.map(|scene| (upload.scene_crc32(), ping_period(scene.header().host_timeout_s)));
@@ -138,40 +140,41 @@ impl<L: Link> Device<L> {
         self.pace_pings()
     }
 
-    /// Disarmed to armed: ready to play, output zero.
+    /// Changes the state from disarmed to armed: ready to play, output zero.
     pub fn arm(&mut self) -> Result<(), DeviceError> {
         self.before_arming()?;
         self.request(Command::Arm)
     }
 
-    /// Output to zero, from any state.
+    /// Disarms the board from any state, and sets its output to zero.
     pub fn disarm(&mut self) -> Result<(), DeviceError> {
         self.request(Command::Disarm)?;
         self.armed = false;
         self.pace_pings()
     }
 
-    /// Armed to active: the committed scene plays.
+    /// Changes the state from armed to active: the committed scene plays.
     pub fn play(&mut self) -> Result<(), DeviceError> {
         self.before_arming()?;
         self.request(Command::Play)
     }
 
-    /// Active to armed: output zero.
+    /// Changes the state from active to armed, and sets the output to zero.
     pub fn stop(&mut self) -> Result<(), DeviceError> {
         self.request(Command::Stop)
     }
 
-    /// While playing: switches a layer of the committed scene on or off, and sets the factor on its friction, -100 to
-    /// 100, in place of its gain in the scene. It acts at the next tick, and holds until the next commit.
+    /// Switches a layer of the committed scene on or off while it plays, and sets the factor on the layer's friction,
+    /// -100 to 100, which replaces its gain in the scene. The change takes effect at the next tick and holds until the
+    /// next commit.
     ///
-    /// `layer` is the number of the layer's record, from zero. Friction out of reach is clamped, and telemetry has a
-    /// flag for it.
+    /// `layer` is the number of the layer's record, from zero. The board clamps friction out of reach and sets a flag
+    /// in its telemetry.
     pub fn set_layer(&mut self, layer: u8, on: bool, gain: f32) -> Result<(), DeviceError> {
         self.request(Command::SetLayer { layer, on, gain })
     }
 
-    /// Faulted to disarmed, if the cause of the fault is gone.
+    /// Changes the state from faulted to disarmed, if the cause of the fault is gone.
     pub fn clear_fault(&mut self) -> Result<(), DeviceError> {
         self.request(Command::ClearFault)
     }
@@ -181,15 +184,16 @@ impl<L: Link> Device<L> {
         self.request(Command::Ping)
     }
 
-    /// Requests telemetry once every `period_ticks` ticks of the board; zero ends it. [`Self::wait`] hands it over.
+    /// Requests telemetry once every `period_ticks` ticks of the board; zero ends it. [`Self::wait`] passes it to the
+    /// caller.
     pub fn subscribe(&mut self, period_ticks: u32) -> Result<(), DeviceError> {
         self.request(Command::Subscribe { period_ticks })
     }
 
-    /// Waits for `duration` on the link's clock, and hands over the events that arrive meanwhile and those that arrived
-    /// before.
+    /// Waits for `duration` on the link's clock, and passes `on_event` the events that arrive meanwhile and those that
+    /// arrived before.
     ///
-    /// Ends early with [`DeviceError::Silent`] when the board does not even answer pings.
+    /// Returns early with [`DeviceError::Silent`] if the board no longer answers pings.
     pub fn wait(&mut self, duration: Duration, on_event: &mut dyn FnMut(Event)) -> Result<(), DeviceError> {
         let end = self.exchange.now() + duration;
         loop {
@@ -205,10 +209,10 @@ impl<L: Link> Device<L> {
     }
 
     /// Keeps the pings going for another [`KEEP_ALIVE_TIMEOUT`](crate::KEEP_ALIVE_TIMEOUT), and stores the events that
-    /// have arrived for the next [`Self::wait`]. Does not wait itself, and so does not report a board that has fallen
-    /// silent.
+    /// have arrived for the next [`Self::wait`]. Does not wait, and therefore does not report a board that has stopped
+    /// answering.
     ///
-    /// For a program with a loop of its own that plays a scene and has no other call to make.
+    /// For a program that runs its own loop while a scene plays and has no other call to make.
     ///
     /// ```no_run
     /// # use frixel_driver::{Device, DeviceError, Link};
@@ -224,7 +228,7 @@ impl<L: Link> Device<L> {
         self.exchange.receive(Duration::ZERO, name_of(&Command::Ping))
     }
 
-    /// Frames and bytes so far.
+    /// Counts of frames and bytes since the link was opened.
     pub fn counters(&self) -> Counters {
         let written = self.exchange.link().written();
         Counters {
@@ -235,13 +239,13 @@ impl<L: Link> Device<L> {
         }
     }
 
-    /// The link below, for what its own type can do. [`Device`] goes on using it.
+    /// The underlying link, for the methods of its own type. [`Device`] continues to use it.
     pub fn link_mut(&mut self) -> &mut L {
         self.exchange.link_mut()
     }
 
-    /// Returns the link as it is: it goes on pinging until its keep-alive timeout, and after [`Self::arm`] or
-    /// [`Self::play`] it stops and disarms the board when it is dropped.
+    /// Returns the link without disarming the board. The link continues to ping until its keep-alive timeout. After
+    /// [`Self::arm`] or [`Self::play`] it stops and disarms the board when it is dropped.
     pub fn into_link(self) -> L {
         self.exchange.into_link()
     }
@@ -253,7 +257,8 @@ impl<L: Link> Device<L> {
         self.pace_pings()
     }
 
-    /// An armed board whose scene was committed elsewhere, or is being committed, may have the shortest host timeout.
+    /// Sets the time between pings. If the scene of an armed board was committed elsewhere, or a commit is under way,
+    /// its host timeout may be the shortest one.
     fn pace_pings(&mut self) -> Result<(), DeviceError> {
         let period = if self.armed { self.committed.unwrap_or(PING_PERIOD_MIN) } else { PING_PERIOD_MAX };
         self.exchange.ping_every(period)

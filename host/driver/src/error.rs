@@ -1,4 +1,4 @@
-//! What can go wrong between a caller and a board. Each message says what was found and what to do.
+//! Errors between a caller and a board. Each message states what was found and what to do.
 
 use std::time::Duration;
 
@@ -57,7 +57,7 @@ pub enum DeviceError {
         /// How long the host waited, on the link's clock.
         waited: Duration,
     },
-    /// The firmware does not have what the scene needs. Nothing was uploaded.
+    /// The firmware lacks a feature that the scene needs. Nothing was uploaded.
     #[error(
         "the scene needs {missing}, which the firmware of the board on {port} does not have (firmware {}.{}.{}, protocol {}.{}): \
          flash newer firmware, or firmware that is built with it",
@@ -88,7 +88,7 @@ pub enum DeviceError {
     Vanished {
         /// The command that was under way.
         command: &'static str,
-        /// What the link reported.
+        /// The error that the link reported.
         closed: LinkClosed,
     },
     /// The board's count of received bytes started again: it was reset, or another host connected to it.
@@ -99,7 +99,7 @@ pub enum DeviceError {
         /// The command that was under way.
         command: &'static str,
     },
-    /// The board answers, but an upload makes no progress however often it is sent again.
+    /// The board answers, but an upload makes no progress although its chunks were sent again.
     #[error(
         "the upload to {port} does not get past {arrived_bytes} of {total_bytes} bytes; the line damages what is sent: \
          try another cable or a lower line rate"
@@ -121,7 +121,7 @@ pub enum DeviceError {
         width: u16,
         /// Rows.
         height: u16,
-        /// Samples that it has.
+        /// Samples that the bitmap has.
         found: usize,
     },
     /// A frame cannot be encoded: the upload is longer than the protocol allows.

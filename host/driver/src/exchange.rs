@@ -27,11 +27,11 @@ const BUSY_RETRY_AFTER: Duration = Duration::from_millis(5);
 /// Credit that uploads leave for commands, bytes.
 const COMMAND_RESERVE_LEN: usize = 64;
 
-/// A board that has answered the hello, and what is under way to and from it.
+/// The connection to a board that has answered the hello, with everything in transit in both directions.
 pub(super) struct Exchange<L> {
     link: L,
     decoder: Decoder,
-    /// Frames that the decoder rejected before the hello: remains of an earlier connection.
+    /// Frames that the decoder rejected before the hello. They were left over from an earlier connection.
     rejected_before: u32,
     incoming: Vec<u8>,
     credit: Credit,
@@ -42,10 +42,10 @@ pub(super) struct Exchange<L> {
     answer: Option<Answer>,
     next_chunk: Option<u16>,
     stream: Option<StreamReport>,
-    /// The next answer starts a new stream, so that reports before it belong to the old one.
+    /// The next answer starts a new stream; reports before it belong to the old one.
     stream_begins: bool,
     events: VecDeque<Event>,
-    /// Time spent reading since anything arrived.
+    /// Time spent reading since bytes last arrived.
     quiet: Duration,
 }
 
@@ -185,13 +185,13 @@ impl<L: Link> Exchange<L> {
         Ok(true)
     }
 
-    /// Whether the command that was answered last was sent more than once, so that the board may have executed it
-    /// twice.
+    /// Whether the last answered command was sent more than once. The board may then have executed it twice.
     pub(super) fn repeated(&self) -> bool {
         self.awaited.len() > 1
     }
 
-    /// A repeated command may be refused because the first one was executed and only its answer was lost.
+    /// The outcome of a command. A repeated command may be refused because the board executed the first copy and only
+    /// the answer to it was lost.
     fn outcome(&self, command: Command, answer: &Answer) -> Result<Accepted, Refusal> {
         match answer.outcome {
             Err(Refusal::WrongState(state)) if self.repeated() && state_after(&command) == Some(state) => {

@@ -1,4 +1,4 @@
-//! The hello: which board is at the other end, and which protocol it speaks.
+//! The hello: identifies the board and the protocol that it speaks.
 
 use std::time::Duration;
 
@@ -9,15 +9,15 @@ use frixel_wire::payload::{Payload, hello_request_frame};
 use super::error::{DeviceError, LinkClosed};
 use super::link::Link;
 
-/// Hello requests that are sent before the board counts as absent.
+/// Number of hello requests before the board counts as absent.
 const TRIES: u32 = 5;
 /// Time to wait for the answer to each of them.
 const TRY_TIMEOUT: Duration = Duration::from_millis(150);
 
-/// Requests the hello, and refuses a board that speaks another version of the protocol.
+/// Requests the hello. Returns an error if the board speaks another version of the protocol.
 pub(super) fn request_hello<L: Link>(link: &mut L, decoder: &mut Decoder) -> Result<Hello, DeviceError> {
     let mut buffer = [0; FRAME_MAX_LEN];
-    // The zero byte ends the part of a frame that an earlier host may have left in the board.
+    // The zero byte ends a partial frame that an earlier host may have left in the board.
     let request = [&[0], hello_request_frame(&mut buffer)?].concat();
     let started = link.now();
     let mut heard_bytes = 0;

@@ -1,7 +1,7 @@
-//! Driver library for frixel boards: say hello, upload a scene, play it, stream samples, receive telemetry.
+//! Driver library for frixel boards: connect, upload a scene, play it, stream samples, receive telemetry.
 //!
-//! What goes in: the bytes of a compiled scene and of its bitmaps ([`Upload`]), samples of a stream, and a [`Link`]
-//! that carries bytes to one board. What comes out: the board's answers as `Result`s, and its telemetry as [`Event`]s.
+//! The input is the bytes of a compiled scene and of its bitmaps ([`Upload`]), the samples of a stream, and a [`Link`]
+//! that carries bytes to one board. The output is the board's answers as `Result`s, and its telemetry as [`Event`]s.
 //!
 //! - [`Device`] runs the protocol. Each call has a deadline on the link's clock and returns the board's answer or an
 //!   error. An absent, silent or unplugged board is reported within a second.
@@ -10,7 +10,7 @@
 //! - With the feature `native` (on by default) `SerialLink` is a serial port of the operating system, with a thread
 //!   that keeps the board alive, and `ports` lists the ports of this machine.
 //!
-//! Without that feature nothing here reads a clock, opens a file or starts a thread, and the crate compiles for
+//! Without that feature the crate reads no clock, opens no file and starts no thread, and it compiles for
 //! `wasm32-unknown-unknown`.
 //!
 //! ```no_run

@@ -1,18 +1,18 @@
-//! What carries bytes to a board and back.
+//! The [`Link`], which carries bytes to a board and back.
 
 use std::time::Duration;
 
 use super::error::LinkClosed;
 
-/// How long a link keeps the board alive for an application that does not call it. After this the board receives
-/// nothing more, and sets its output to zero when its host timeout has passed.
+/// How long a link keeps the board alive after the application's last call. The link then sends nothing more, and the
+/// board sets its output to zero when its host timeout has passed.
 pub const KEEP_ALIVE_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// A connection to one board, with its own clock.
 ///
 /// [`Device`](crate::Device) runs the protocol over it. [`PollingLink`](crate::PollingLink) implements it over any byte
-/// stream; with the feature `native`, `SerialLink` is a serial port. The clock may be virtual: a deadline of a second
-/// on a simulated board then passes in no time.
+/// stream; with the feature `native`, `SerialLink` is a serial port. The clock may be virtual: a simulated board can
+/// then pass a deadline of a second at once.
 pub trait Link {
     /// Queues one frame for sending, without waiting for the line to take it.
     ///
@@ -26,15 +26,15 @@ pub trait Link {
     /// Time on the link's clock: wall time for a serial port, virtual time for a simulated board.
     fn now(&self) -> Duration;
 
-    /// From now on, sends `frame` whenever nothing was written for `period`. Replaces the frame and period before.
+    /// Sends `frame` from now on whenever nothing was written for `period`. Replaces the previous frame and period.
     ///
-    /// The frame tells the board that the application is running, so it must not be sent for one that hangs: sending
-    /// ends [`KEEP_ALIVE_TIMEOUT`] after the last [`Self::write`] or [`Self::read`], until the next of these. A link
-    /// that sends only inside of these calls needs no timeout.
+    /// The frame reports to the board that the application is running, so a link must not send it for an application
+    /// that hangs: sending ends [`KEEP_ALIVE_TIMEOUT`] after the last [`Self::write`] or [`Self::read`], and resumes
+    /// with the next of these calls. A link that sends only inside these calls needs no timeout.
     fn keep_alive(&mut self, frame: Vec<u8>, period: Duration);
 
-    /// Sets the frames that are sent when the link is dropped, as far as that is possible without waiting. The default
-    /// sends nothing, which suits a link whose board ends with it.
+    /// Sets the frames that the link sends when it is dropped, as far as that is possible without waiting. The default
+    /// implementation sends nothing, which suits a link whose board ends with it.
     fn set_shutdown_frames(&mut self, frames: Vec<u8>) {
         drop(frames);
     }
@@ -49,14 +49,14 @@ pub trait Link {
 /// Frames and bytes that were written to a link.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Written {
-    /// Frames.
+    /// Number of frames.
     pub frames: u64,
-    /// Bytes, those of encoding and checksums included.
+    /// Number of bytes, encoding and checksums included.
     pub bytes: u64,
 }
 
 impl Written {
-    /// Adds one frame.
+    /// Counts one frame.
     pub fn add(&mut self, frame: &[u8]) {
         self.frames += 1;
         self.bytes += frame.len() as u64;

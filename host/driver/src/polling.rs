@@ -7,8 +7,8 @@ use super::link::{Link, Written};
 
 /// A byte stream to one board, with the clock that deadlines are measured on.
 ///
-/// Examples: a TCP connection, a WebSocket, a browser's serial port behind an import that waits, a simulated line
-/// whose clock is virtual.
+/// For example a TCP connection, a WebSocket, a browser's serial port behind an import that waits, or a simulated line
+/// with a virtual clock.
 pub trait ByteStream {
     /// Queues bytes for sending, without waiting for the other end to take them.
     fn write(&mut self, bytes: &[u8]) -> Result<(), LinkClosed>;
@@ -17,21 +17,22 @@ pub trait ByteStream {
     /// has passed on [`Self::now`].
     fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed>;
 
-    /// Time since any fixed moment. It never goes back.
+    /// Time since a fixed moment. It never decreases.
     fn now(&self) -> Duration;
 
     /// The stream's name in messages.
     fn name(&self) -> &str;
 }
 
-/// Shortest period of the keep-alive frame, so that a period of zero cannot hold up a call for ever.
+/// Shortest period of the keep-alive frame. Without it, a period of zero could block a call for ever.
 const PERIOD_MIN: Duration = Duration::from_millis(1);
 
-/// A [`Link`] that sends its keep-alive frames while it is read, and at no other time.
+/// A [`Link`] that sends its keep-alive frames only while it is read.
 ///
-/// An application over such a link calls [`Device::wait`](crate::Device::wait), or
-/// [`Device::keep_alive`](crate::Device::keep_alive), at least as often as the board's host timeout demands: it ends
-/// by itself when the application stops calling, and needs no [`KEEP_ALIVE_TIMEOUT`](crate::KEEP_ALIVE_TIMEOUT).
+/// An application over such a link calls [`Device::wait`](crate::Device::wait) or
+/// [`Device::keep_alive`](crate::Device::keep_alive) at least as often as the board's host timeout demands. The
+/// keep-alive frames end when the application stops calling, so the link needs no
+/// [`KEEP_ALIVE_TIMEOUT`](crate::KEEP_ALIVE_TIMEOUT).
 ///
 /// ```
 /// use std::time::Duration;
@@ -68,13 +69,13 @@ pub struct PollingLink<S: ByteStream> {
 }
 
 impl<S: ByteStream> PollingLink<S> {
-    /// A link over `stream`, which sends nothing by itself yet.
+    /// Creates a link over `stream`, without a keep-alive frame.
     pub fn new(stream: S) -> Self {
         let last_write = stream.now();
         Self { stream, written: Written::default(), last_write, keep_alive: None, shutdown_frames: Vec::new() }
     }
 
-    /// The stream below the link.
+    /// The underlying stream.
     pub fn stream_mut(&mut self) -> &mut S {
         &mut self.stream
     }
@@ -86,7 +87,7 @@ impl<S: ByteStream> PollingLink<S> {
         Ok(())
     }
 
-    /// Sends the keep-alive frame if its period has passed, and returns the time at which the next one is due.
+    /// Sends the keep-alive frame if its period has passed, and returns the time at which to send the next one.
     fn keep_board_alive(&mut self) -> Result<Option<Duration>, LinkClosed> {
         let Some((frame, period)) = self.keep_alive.take() else { return Ok(None) };
         let due = self.stream.now() >= self.last_write + period;
@@ -139,7 +140,7 @@ impl<S: ByteStream> Link for PollingLink<S> {
 impl<S: ByteStream> Drop for PollingLink<S> {
     fn drop(&mut self) {
         if !self.shutdown_frames.is_empty() {
-            // Nobody is left to report an error to; the board's host timeout sets the output to zero.
+            // No caller is left to report an error to; the board's host timeout sets the output to zero.
             let _ = self.stream.write(&self.shutdown_frames);
         }
     }
@@ -154,7 +155,7 @@ mod tests {
 
     const MS: Duration = Duration::from_millis(1);
 
-    /// What was written, and when.
+    /// The bytes of each write, with its time.
     type Writes = Rc<RefCell<Vec<(Duration, Vec<u8>)>>>;
 
     /// A stream in virtual time, to which bytes arrive at given times.

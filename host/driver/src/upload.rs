@@ -1,4 +1,4 @@
-//! Uploads: chunks under credit, sent again from the first one that was lost.
+//! Uploads: chunks sent within the credit, and sent again from the first one that was lost.
 
 use std::time::Duration;
 
@@ -13,17 +13,17 @@ use super::link::Link;
 
 /// Time without progress after which the board's next chunk is requested.
 const STALL_AFTER: Duration = Duration::from_millis(150);
-/// How often in a row an upload restarts from the same chunk.
+/// Most restarts in a row of an upload from the same chunk.
 const TRIES: u32 = 3;
-/// How often an upload is started when its outcome stays unknown.
+/// Most starts of an upload whose outcome stays unknown.
 const STARTS: u32 = 3;
 
 /// A compiled scene, and the bitmaps that it names.
 #[derive(Clone, Debug)]
 pub struct Upload<'a> {
-    /// The scene's bytes, as `frixel-layers` lays them out.
+    /// The scene's bytes, in the layout of `frixel-layers`.
     pub scene: &'a [u8],
-    /// The bitmaps. Those that the board holds are not sent.
+    /// The bitmaps. Those that the board already holds are not sent.
     pub bitmaps: Vec<Bitmap<'a>>,
 }
 
@@ -51,7 +51,7 @@ pub struct Bitmap<'a> {
     pub crc32: u32,
     /// Samples in a row.
     pub width: u16,
-    /// Rows.
+    /// Rows of samples.
     pub height: u16,
     /// One byte a sample, row after row from the top left.
     pub samples: &'a [u8],
@@ -75,7 +75,7 @@ pub(super) struct UploadCounts {
     pub(super) chunks_lost: u64,
 }
 
-/// Uploads what the board does not hold. Nothing of it plays before a commit.
+/// Uploads the scene and bitmaps that the board does not hold. They do not play before a commit.
 pub(super) fn send<L: Link>(
     exchange: &mut Exchange<L>,
     upload: &Upload,
@@ -143,7 +143,8 @@ impl Bitmap<'_> {
 enum End {
     /// The board has all of it.
     Arrived,
-    /// The answer to the end of the upload was lost, and the next one is the same for a complete upload and for none.
+    /// The answer to the end of the upload was lost, and the answer to a second request is the same whether the board
+    /// has the complete upload or nothing.
     Unknown,
 }
 
@@ -156,7 +157,7 @@ struct Transfer<'a, L> {
     expected: usize,
     /// The chunk to send next.
     next: usize,
-    /// For each chunk, the position at which it was last sent to its end.
+    /// For each chunk, the position of its end when it was last sent.
     sent_to: Vec<u64>,
     /// Times in a row that chunks were sent again without progress.
     tries: u32,
@@ -181,10 +182,10 @@ impl<'a, L: Link> Transfer<'a, L> {
         }
     }
 
-    /// Sends chunks from `next` to the last one, and goes back when the board reports a loss. Returns early when there
-    /// is no credit for [`STALL_AFTER`]: credit is lost together with bytes. The caller then requests the end of the
-    /// upload, as after the last chunk. Too early, that is refused with the chunk that the board expects, and any
-    /// answer corrects the credit.
+    /// Sends chunks from `next` to the last one, and goes back when the board reports a loss. Returns early if there is
+    /// no credit for [`STALL_AFTER`], since lost bytes also use up credit. The caller then requests the end of the
+    /// upload, as after the last chunk. If that is too early, the board refuses it with the number of the chunk that it
+    /// expects. Any answer corrects the credit.
     fn send_chunks(&mut self, report: &mut dyn FnMut(usize)) -> Result<(), DeviceError> {
         let mut sent_at = self.exchange.now();
         while self.next < self.chunk_count() && self.exchange.now().saturating_sub(sent_at) < STALL_AFTER {
@@ -204,7 +205,7 @@ impl<'a, L: Link> Transfer<'a, L> {
         self.bytes.len().div_ceil(CHUNK_LEN)
     }
 
-    /// Bytes that the board has reported.
+    /// Bytes that the board has reported as received.
     fn arrived_bytes(&self) -> usize {
         self.bytes.len().min(self.expected * CHUNK_LEN)
     }
@@ -227,7 +228,8 @@ impl<'a, L: Link> Transfer<'a, L> {
         Ok(true)
     }
 
-    /// Handles the board's last report. A chunk that it expects, and that has left the line, was lost.
+    /// Handles the board's last report. If the chunk that the board expects has already left the line, that chunk was
+    /// lost.
     fn handle_progress(&mut self, report: &mut dyn FnMut(usize)) -> Result<(), DeviceError> {
         let Some(expected) = self.exchange.take_next_chunk() else {
             return Ok(());

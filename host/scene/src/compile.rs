@@ -1,4 +1,4 @@
-//! Compiles a scene to a program: the checks that need the board's limits, other layers, or pictures.
+//! Compiles a scene to a program, and makes the checks that need the board's limits, other layers, or pictures.
 
 use frixel_layers::{Header, Record, electric_friction_max_n};
 use frixel_wire::hello::BoardLimits;
@@ -17,16 +17,16 @@ use super::program::Program;
 use super::reach::{Reach, carrier};
 use super::tick_cost;
 
-/// Fewest ticks of half a carrier period that a board takes.
+/// Least number of ticks in half a carrier period that a board accepts.
 const HALF_PERIOD_MIN_TICKS: f64 = 4.0;
 /// Carrier frequency below which charge leaks through skin and felt friction falls, Hz (arXiv 2409.18725).
 const LEAKAGE_HZ: f64 = 250.0;
-/// The default peak limit over the peak that the rms limit needs. Above 1, so that rounding never makes the peak limit
-/// the tighter one.
+/// Ratio of the default peak limit to the peak that the rms limit needs. It is above 1, so that rounding never makes
+/// the peak limit the tighter one.
 const PEAK_MARGIN: f64 = 1.001;
 const MM: f64 = 1e-3;
 
-/// Compiles a scene for boards with these limits and tick rate, Hz.
+/// Compiles a scene for boards with these limits and a tick rate in Hz.
 ///
 /// # Example
 ///
@@ -101,7 +101,8 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
     Some(program)
 }
 
-/// A layer that the host may change has a record of its own; others may have been merged.
+/// Maps layers to records. Only a layer that the host may change is certain to have its own record; others may have
+/// been merged.
 fn layer_map(scene: &Scene, titles: &[String]) -> LayerMap {
     let record = |title: &String| (0..).zip(titles).find_map(|(record, other)| (other == title).then_some(record));
     let records = scene.layers.iter().map(|layer| record(&layer.title).filter(|_| layer.live));
@@ -172,7 +173,7 @@ fn header(scene: &Scene, limits: &BoardLimits, half_period_s: f64, log: &mut Log
     }
 }
 
-/// The current into the worst-case electrode at the largest voltage, as the board budgets it.
+/// Checks the current into the worst-case electrode at the largest voltage against the board's limit.
 fn check_current(scene: &Scene, limits: &BoardLimits, header: &Header, log: &mut Log) {
     let carrier = carrier(header.carrier, 0.5 / f64::from(header.carrier_hz), limits);
     let drive_v_peak = header.voltage_max_v_rms * carrier.peak_per_rms();

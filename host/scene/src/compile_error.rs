@@ -1,17 +1,17 @@
-//! Why a scene file does not become a program, for a person and for a program.
+//! The errors of reading and compiling a scene file, as text for a person and as JSON for a program.
 
 use serde::Serialize;
 use thiserror::Error;
 
 use super::mistake::Mistake;
 
-/// Why a scene file does not become a program. The message has a line for each mistake.
+/// A scene file cannot be read or compiled. The message has a line for each mistake.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("{}", list(.file, .mistakes))]
 pub struct CompileError {
     /// The file's name, as it was given.
     pub file: String,
-    /// Every mistake that was found, in the order of the file; at least one.
+    /// All mistakes, in the order of the file; at least one.
     pub mistakes: Vec<Located>,
 }
 
@@ -28,7 +28,7 @@ pub struct Located {
     pub line: usize,
     /// Column in characters, from one.
     pub column: usize,
-    /// The text there; empty at the end of the file.
+    /// The text at that position; empty at the end of the file.
     pub text: String,
     /// The mistake.
     pub mistake: Mistake,
@@ -36,8 +36,8 @@ pub struct Located {
 
 impl CompileError {
     /// One JSON object on one line: `file`; `unreadable`, null; `mistakes`, a list of objects with `line` and `column`,
-    /// both from one, `text`, what stands there, `nearest`, the valid name that may have been meant, or null, and
-    /// `message`, a sentence. A caller that reads files gives `unreadable` a text when it could not.
+    /// both from one, `text`, the text at that position, `nearest`, the nearest valid name or null, and `message`, a
+    /// sentence. A caller that reads files sets `unreadable` to a text if it could not read the file.
     pub fn to_json(&self) -> String {
         let mistakes = self.mistakes.iter().map(MistakeJson::of).collect();
         // Plain numbers and texts always have a JSON form.

@@ -1,4 +1,4 @@
-//! Finds layers that want friction out of reach.
+//! Finds layers whose target friction is out of reach.
 
 use frixel_layers::Interval;
 
@@ -11,7 +11,8 @@ use super::program::Program;
 use super::reach::{ROUNDING, Reach};
 use crate::reference::Reference;
 
-/// Refuses layers that exceed the reach. With `saturate`, or where it is not certain, adds a note instead.
+/// Reports a mistake for layers that exceed the reach. With `saturate`, or if the excess is not certain, adds a note
+/// instead.
 pub(super) fn check(scene: &Scene, program: &mut Program, log: &mut Log) {
     let reach = program.reach;
     let slack_n = ROUNDING * reach.electric_friction_max_n;
@@ -86,7 +87,7 @@ fn note(side: &Side, ending: &str) -> String {
     }
 }
 
-/// Names the layers, and the place if there are several.
+/// The layers' names, and the place if there are several layers.
 fn asking(layers: &[&Layer], cell: Cell) -> String {
     if let [layer] = layers {
         let gained = layer.places.has("gain");
@@ -105,7 +106,7 @@ fn asking(layers: &[&Layer], cell: Cell) -> String {
     )
 }
 
-/// Offset of the field that wants the most, or the least; with several layers, of the topmost layer.
+/// Offset of the field that sets the largest or least friction; with several layers, of the topmost layer.
 fn place(layers: &[&Layer], most: bool) -> usize {
     let Some(layer) = layers.last() else { return 0 };
     let most = most == (layer.gain >= 0.0);
@@ -121,17 +122,17 @@ fn digits(value: f64, to_whole: fn(f64) -> f64) -> f64 {
         return 0.0;
     }
     let digits = 3 - value.abs().log10().floor() as i32;
-    // A power of ten that is a whole number is exact, so the result prints with few digits.
+    // A power of ten with a whole exponent of zero or more is exact, so the result prints with few digits.
     let scale = 10f64.powi(digits.abs());
     if digits >= 0 { to_whole(value * scale) / scale } else { to_whole(value / scale) * scale }
 }
 
-/// The next whole number above, but for what rounding to `f32` may have added to the fourth digit.
+/// Rounds up to a whole number, but ignores what rounding to `f32` may have added to the fourth digit.
 fn up(value: f64) -> f64 {
     (value - 0.002).ceil()
 }
 
-/// The next whole number below, but for what rounding to `f32` may have taken from the fourth digit.
+/// Rounds down to a whole number, but ignores what rounding to `f32` may have taken from the fourth digit.
 fn down(value: f64) -> f64 {
     (value + 0.002).floor()
 }

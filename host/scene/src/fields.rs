@@ -1,4 +1,4 @@
-//! Reads the fields of a TOML table: which of them are known, missing or unknown. [`values`] reads their values.
+//! Reads the fields of a TOML table, and reports missing and unknown ones. [`values`] reads their values.
 
 mod values;
 
@@ -11,7 +11,7 @@ use super::mistake::Mistake;
 use super::nearest::Nearest;
 use super::source::Places;
 
-/// A table that is being read. Every field that the parser looks for becomes known; [`Fields::close`] reports the rest.
+/// A table that is being read. Every field that the parser reads becomes known; [`Fields::close`] reports the others.
 pub(super) struct Fields<'i> {
     table: String,
     /// The field that the table stands in.
@@ -47,8 +47,8 @@ impl<'i> Fields<'i> {
         self.table = table;
     }
 
-    /// Reports unknown and missing fields, and returns the offsets of those that were read. A missing field whose
-    /// misspelling is reported is not reported again.
+    /// Reports unknown and missing fields, and returns the offsets of those that were read. A missing field is not
+    /// reported if a misspelling of it is.
     pub(super) fn close(self, log: &mut Log) -> Places {
         log.describe(|| self.described());
         let mut misspelt = Vec::new();
@@ -68,8 +68,8 @@ impl<'i> Fields<'i> {
         self.places
     }
 
-    /// Ends the reading of a table that cannot be understood without `field`: when the field is missing, reports that,
-    /// or its misspelling, and nothing else.
+    /// Stops reading a table that cannot be understood without `field`. If the field is missing, reports only that, or
+    /// its misspelling.
     pub(super) fn give_up_without(self, log: &mut Log, field: &'static str) {
         log.describe(|| self.described());
         if !self.required.contains(&field) || self.places.has(field) {
@@ -103,7 +103,7 @@ impl<'i> Fields<'i> {
         self.values.get(field).map_or(self.places.table(), |value| value.span().start)
     }
 
-    /// Makes it a mistake if the file does not have a field.
+    /// Reports a mistake if the file does not have a field.
     pub(super) fn require(&mut self, field: &FieldSpec) {
         self.required.push(field.name);
     }

@@ -21,8 +21,8 @@ pub(super) const VERSION: u32 = 1;
 /// Largest effective gap that a board takes.
 const EFFECTIVE_GAP_MAX_UM: f64 = 10_000.0;
 
-/// A scene file that was read: its fields are known, of the right type and in range. [`super::compile`] checks the
-/// rest.
+/// A scene file that was read: all fields are known, of the right type and in range. [`super::compile`] makes the other
+/// checks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     pub(super) source: Source,
@@ -43,7 +43,7 @@ pub(super) struct Screen {
     pub(super) height_mm: f64,
 }
 
-/// `[coating]` or several `[[coating]]`, already one effective gap.
+/// `[coating]` or several `[[coating]]`, reduced to one effective gap.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Coating {
     pub(super) effective_gap_um: f64,
@@ -87,7 +87,8 @@ pub(super) struct Touch {
 }
 
 impl Scene {
-    /// Reads the text of a scene file. Messages call the file `name`; `pictures` gives the pictures that it names.
+    /// Reads the text of a scene file. Messages call the file `name`; `pictures` provides the pictures that the file
+    /// names.
     pub fn parse(text: &str, name: &str, pictures: &dyn Pictures) -> Result<Self, CompileError> {
         let source = Source::new(name, text);
         let mut log = Log::new(&source);
@@ -103,7 +104,7 @@ impl Scene {
         Ok(scene)
     }
 
-    /// Reads the bytes of a scene file, as [`Self::parse`] reads its text.
+    /// Reads the bytes of a scene file. See [`Self::parse`].
     pub fn parse_bytes(bytes: &[u8], name: &str, pictures: &dyn Pictures) -> Result<Self, CompileError> {
         match std::str::from_utf8(bytes) {
             Ok(text) => Self::parse(text, name, pictures),
@@ -117,7 +118,7 @@ impl Scene {
         }
     }
 
-    /// The names of the pictures that the scene's layers have, as the file writes them.
+    /// The names of the pictures of the scene's layers, as written in the file.
     pub fn picture_names(&self) -> impl Iterator<Item = &str> {
         self.layers.iter().filter_map(|layer| match &layer.kind {
             Kind::Bitmap(bitmap) => Some(bitmap.picture.as_str()),
@@ -131,7 +132,7 @@ pub(super) fn describe(text: &str) -> Vec<KnownTable> {
     let source = Source::new("", text);
     let mut log = Log::describing(&source);
     if let Ok(table) = DeTable::parse(text) {
-        // Mistakes in the text do not matter here.
+        // Ignore mistakes in the text; only the known fields count.
         let _ = read(Fields::new("the scene", 0, table.into_inner()), &mut log, &source);
     }
     log.into_described()
@@ -165,7 +166,7 @@ fn read(mut fields: Fields, log: &mut Log, source: &Source) -> Option<Scene> {
     })
 }
 
-/// A table that the file does not have: every field has its default.
+/// A table that is absent from the file: every field has its default.
 fn absent(name: &str) -> Fields<'static> {
     Fields::new(name, 0, DeTable::new())
 }

@@ -1,16 +1,16 @@
-//! What a scene file may have: fields with their ranges and meanings, and which of them go together.
+//! The grammar of a scene file: fields with their ranges and meanings, and the sets of fields that can occur together.
 
-/// A field of a table: what the parser checks, editors show, and `docs/scene.md` says.
+/// A field of a table, as the parser checks it, editors show it, and `docs/scene.md` documents it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FieldSpec {
     pub(crate) name: &'static str,
     pub(crate) holds: Holds,
     pub(crate) absence: Absence,
-    /// In Markdown.
+    /// The meaning of the field, in Markdown.
     pub(crate) meaning: &'static str,
 }
 
-/// What a field may hold.
+/// The type of a field's value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Holds {
     Number(Range),
@@ -19,7 +19,7 @@ pub(crate) enum Holds {
     /// `true` or `false`.
     Flag,
     Text,
-    /// One of some words, which the parser lists.
+    /// One of several words. The parser lists them.
     Word,
     Table,
     /// A list of tables.
@@ -31,25 +31,25 @@ pub(crate) enum Holds {
     Pairs(Range),
 }
 
-/// What it means when a file leaves a field out.
+/// The effect of omitting a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Absence {
-    /// It is a mistake.
+    /// Omitting the field is a mistake.
     Mistake,
-    /// The field is this number.
+    /// The field defaults to this number.
     Number(f64),
-    /// The field is this.
+    /// The field defaults to this value.
     Flag(bool),
-    /// What the documentation says of it; empty where there is nothing to say.
+    /// The default in the words of the documentation; empty if there is nothing to state.
     Means(&'static str),
 }
 
-/// What a number may be.
+/// The range and unit of a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Range {
     pub(crate) min: f64,
     pub(crate) max: f64,
-    /// With a space before it.
+    /// The unit, with a space before it.
     pub(crate) unit: &'static str,
 }
 
@@ -64,13 +64,13 @@ impl FieldSpec {
         Self { name, holds, absence, meaning }
     }
 
-    /// The number that it is when a file leaves it out, or not-a-number where it has no such number.
+    /// The default of the field, or not-a-number if it has no default number.
     pub(crate) fn default_number(&self) -> f64 {
         if let Absence::Number(number) = self.absence { number } else { f64::NAN }
     }
 }
 
-/// The three fields that an amount may stand in.
+/// The three fields that can hold an amount.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct AmountFields {
     pub(crate) newtons: FieldSpec,
@@ -85,20 +85,20 @@ impl AmountFields {
     }
 }
 
-/// A field that the parser looked for, with the words that it may be.
+/// A field that the parser read, with the words that it may hold.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct KnownField {
     pub(crate) field: FieldSpec,
     pub(crate) words: Vec<&'static str>,
 }
 
-/// All fields that the parser looked for in a table, where the rest of the table was as it was.
+/// All fields that the parser read in a table, with the rest of the table unchanged.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct KnownTable {
     /// The field that the table stands in.
     pub(crate) key: &'static str,
     pub(crate) fields: Vec<KnownField>,
     pub(crate) required: Vec<&'static str>,
-    /// Fields of which only one may be there; where the first is required, either will do.
+    /// Fields of which at most one may be present. If the first is required, either one is enough.
     pub(crate) either: Vec<[&'static str; 2]>,
 }

@@ -1,4 +1,4 @@
-//! Which record each layer of the file has become, for a host that changes layers while they play.
+//! The record of each layer of the file, for a host that changes layers while they play.
 
 use thiserror::Error;
 
@@ -14,7 +14,7 @@ struct Entry {
     record: Option<u8>,
 }
 
-/// Why a layer of the file cannot be changed while it plays.
+/// The reason why a layer of the file cannot be changed while it plays.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum LayerError {
     /// No layer has this name or number.
@@ -48,8 +48,9 @@ impl LayerMap {
         Self(layers.into_iter().map(|(name, record)| Entry { name, record }).collect())
     }
 
-    /// Number of the record, from zero, of the layer with a name, or with a number from one. Of several layers with the
-    /// same name it is the first. `Device::set_layer` of the driver takes this number.
+    /// Number of the record, from zero, of the layer with the name `layer`, or with the number `layer` counted from
+    /// one. If several layers have the same name, the first one counts. `Device::set_layer` of the driver takes this
+    /// number.
     pub fn record(&self, layer: &str) -> Result<u8, LayerError> {
         let named = self.0.iter().find(|entry| entry.name.as_deref() == Some(layer));
         let numbered = || self.0.get(layer.parse::<usize>().ok()?.checked_sub(1)?);

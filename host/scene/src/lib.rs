@@ -1,10 +1,11 @@
-//! Scenes: a TOML file that a person writes, checked and compiled to the program that a board plays.
+//! Scenes: TOML files that a person writes, checked and compiled to the program that a board plays.
 //!
-//! `docs/scene.md` is the reference of the file. [`Scene::parse`] reads it, [`compile`] checks what needs the board or
-//! other layers, and makes a [`Program`]. Both report every mistake at once, each with line and column.
+//! `docs/scene.md` is the reference of the file format. [`Scene::parse`] reads a file. [`compile`] checks it against
+//! the board's limits and checks the layers against each other, and makes a [`Program`]. Both report all mistakes at
+//! once, each with line and column.
 //!
-//! What goes in: the text of a scene file, the bytes of its pictures ([`Pictures`]), and the limits of a board. What
-//! comes out: the bytes that a board plays, and what a designer wants to know of them.
+//! The input is the text of a scene file, the bytes of its pictures ([`Pictures`]), and the limits of a board. The
+//! output is the bytes that a board plays, with information for the scene's designer.
 //!
 //! ```
 //! # fn run(limits: &frixel_wire::hello::BoardLimits) -> Result<(), frixel_scene::CompileError> {
@@ -22,11 +23,11 @@
 //! # }
 //! ```
 //!
-//! Nothing here opens a file or reads a clock, and the crate compiles for `wasm32-unknown-unknown`.
+//! The crate opens no file and reads no clock, and it compiles for `wasm32-unknown-unknown`.
 //!
-//! - [`TargetRange`] and [`FrictionMap`]: the friction that a program wants over its screen.
-//! - [`mod@reference`]: the friction that a program means, in `f64`, independently of the firmware.
-//! - [`recorder`]: what a board did and what its finger felt, compared with that.
+//! - [`TargetRange`] and [`FrictionMap`]: the target friction of a program over its screen.
+//! - [`mod@reference`]: the reference friction of a program, in `f64`, independent of the firmware.
+//! - [`recorder`]: records what a board did and what its finger felt, and compares it with the reference.
 //! - [`metrics`]: the size of the errors.
 #![forbid(unsafe_code)]
 

@@ -9,7 +9,7 @@ use super::source::Source;
 pub(super) struct Log<'s> {
     source: &'s Source,
     mistakes: Vec<Located>,
-    /// The known fields of each table, in the order in which tables were closed; `None` unless a schema is made.
+    /// The known fields of each table, in the order in which tables were closed; `None` except while a schema is made.
     described: Option<Vec<KnownTable>>,
 }
 

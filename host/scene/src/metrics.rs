@@ -1,31 +1,33 @@
-//! The size of the errors of the felt friction, collected sample by sample.
+//! Error metrics of the felt friction, collected sample by sample.
 //!
-//! - The **friction error** is felt minus wanted, both as means over one carrier period that ends at the sample: what
-//!   the carrier does within a period is no error. It counts wherever the finger is down. In the first period after the
-//!   finger came down, the mean is over the samples since then, so that no sample is skipped; when the finger goes up,
-//!   the window is emptied.
-//! - The **inversion error** is what the model gives for the commanded voltage minus the board's target. It
-//!   counts where the finger is down and the wanted friction is in reach.
-//! - The **carrier ripple** is felt minus its mean over the carrier period around it, half a period on either side, so
-//!   that a friction that moves steadily has none. It counts where that period lies wholly within a touch.
+//! - The **friction error** is felt friction minus reference friction. Both are means over one carrier period that ends
+//!   at the sample, so that variation within a carrier period does not count as error. The error counts while the
+//!   finger is down. In the first period after the finger came down, the mean is over the samples since then, so that
+//!   no sample is skipped. When the finger goes up, the window is emptied.
+//! - The **inversion error** is the model's friction at the commanded voltage minus the board's target. It counts while
+//!   the finger is down and the reference friction is in reach.
+//! - The **carrier ripple** is felt friction minus its mean over the carrier period around it, half a period on either
+//!   side, so that a friction that changes at a constant rate has no ripple. It counts where that period lies wholly
+//!   within a touch.
 //!
-//! All but the wanted friction needs a sample for every tick; a number that would need what was not seen is absent.
+//! These numbers, except the reference friction, need a sample for every tick. A number is absent if a sample that it
+//! needs was not observed.
 
 /// The known values of one tick. Frictions are totals, in newtons.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sample {
-    /// The finger is on the screen.
+    /// Whether the finger is on the screen.
     pub finger_down: bool,
-    /// The reference at the finger's place.
+    /// The reference friction at the finger's place.
     pub wanted_n: Option<f64>,
     /// The board's target, the input of its inverse.
     pub asked_n: Option<f64>,
-    /// What the finger felt.
+    /// The friction that the finger felt.
     pub felt_n: Option<f64>,
-    /// What the full model gives for the commanded rms voltage, the DAC's step included, through an ideal amplifier;
-    /// absent where the wanted friction is out of reach.
+    /// The friction that the full model gives for the commanded rms voltage, the DAC's step included, through an ideal
+    /// amplifier; absent where the reference friction is out of reach.
     pub inversion_n: Option<f64>,
-    /// The board clamped its target; absent if the board did not report.
+    /// Whether the board clamped its target; absent if the board did not report.
     pub saturated: Option<bool>,
 }
 
@@ -44,22 +46,22 @@ pub struct Metrics {
     wanted_range_n: Option<(f64, f64)>,
 }
 
-/// The errors of a play. A number for which nothing counted, or which needs ticks that were not seen, is absent.
+/// The errors of a play. A number is absent if no sample counted, or if it needs ticks that were not observed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MetricsSummary {
-    /// Ticks that were played.
+    /// Ticks of the play.
     pub ticks: u64,
-    /// Ticks that were seen with the finger on the screen.
+    /// Observed ticks with the finger on the screen.
     pub finger_down_ticks: u64,
     /// Ticks in which the board clamped its target.
     pub saturated_ticks: Option<u64>,
-    /// Felt minus wanted, as means over a carrier period.
+    /// Felt minus reference friction, as means over a carrier period.
     pub friction_error: Option<ErrorSize>,
-    /// What the model gives for the commanded voltage, minus the board's target.
+    /// The model's friction at the commanded voltage, minus the board's target.
     pub inversion_error: Option<ErrorSize>,
     /// Root mean square of felt minus its mean over the carrier period around it, N.
     pub carrier_ripple_rms_n: Option<f64>,
-    /// Least and largest friction that was wanted under the finger, in total, N.
+    /// Least and largest reference friction under the finger, in total, N.
     pub wanted_range_n: Option<(f64, f64)>,
 }
 
@@ -73,7 +75,7 @@ pub struct ErrorSize {
 }
 
 impl Metrics {
-    /// No errors yet, for a carrier of twice `half_period_ticks` a period.
+    /// Creates metrics without errors, for a carrier period of twice `half_period_ticks`.
     pub fn new(half_period_ticks: u32) -> Self {
         let half = half_period_ticks.max(1) as usize;
         Self {
@@ -89,13 +91,13 @@ impl Metrics {
         }
     }
 
-    /// The carrier has twice `half_period_ticks` a period from now on. The windows are emptied.
+    /// Sets the carrier period to twice `half_period_ticks` from now on, and empties the windows.
     pub fn set_half_period(&mut self, half_period_ticks: u32) {
         let Self { error, felt, .. } = Self::new(half_period_ticks);
         (self.error, self.felt) = (error, felt);
     }
 
-    /// Takes the next sample.
+    /// Adds the next sample.
     pub fn add(&mut self, sample: &Sample) {
         if let Some(saturated) = sample.saturated {
             self.reports += 1;
@@ -122,7 +124,7 @@ impl Metrics {
         }
     }
 
-    /// The errors so far, of a play of so many ticks.
+    /// The errors so far, of a play of `ticks` ticks.
     pub fn summary(&self, ticks: u64) -> MetricsSummary {
         let every_tick_reported = self.reports == ticks;
         MetricsSummary {
@@ -142,7 +144,7 @@ impl Metrics {
 struct Spread {
     count: u64,
     max: f64,
-    /// Sum of squares, and what its last bits lost (Neumaier's summation; squares never shrink the sum).
+    /// Sum of squares, and the compensation for its rounding (Neumaier's summation; squares never shrink the sum).
     squares: f64,
     lost: f64,
 }
@@ -163,8 +165,8 @@ impl Spread {
     }
 }
 
-/// The last so many values and their sum. The sum is made anew each time the ring comes round, so that rounding does
-/// not pile up over hours.
+/// The last values, up to a fixed number, and their sum. The sum is computed anew each time the ring wraps around, so
+/// that rounding errors do not accumulate over hours.
 #[derive(Clone, Debug)]
 struct Ring {
     values: Vec<f64>,
@@ -205,7 +207,7 @@ impl Ring {
     }
 }
 
-/// Mean over a period that ends at the last value, or over what there is of it.
+/// Mean over a period that ends at the last value, or over the values so far if they are fewer.
 #[derive(Clone, Debug)]
 struct PeriodMean(Ring);
 

@@ -1,4 +1,4 @@
-//! The mistakes that a scene file can have. Each message says what was found, what is expected, and what to do.
+//! The mistakes that a scene file can have. Each message states what was found, what is expected, and what to do.
 
 use thiserror::Error;
 
@@ -17,9 +17,9 @@ pub enum Mistake {
     /// The table has no field of this name.
     #[error("unknown field `{field}` in {table}; {nearest}")]
     UnknownField {
-        /// As written.
+        /// The field, as written.
         field: String,
-        /// The table that it stands in.
+        /// The table that contains it.
         table: String,
         /// The known names, and the nearest one.
         nearest: Nearest,
@@ -53,7 +53,7 @@ pub enum Mistake {
         min: f64,
         /// Largest value.
         max: f64,
-        /// The unit, with a space before it; empty for none.
+        /// The unit, with a space before it; empty if there is no unit.
         unit: &'static str,
     },
     /// A word is not one of the choices.
@@ -61,17 +61,17 @@ pub enum Mistake {
     UnknownChoice {
         /// The field.
         field: &'static str,
-        /// As written.
+        /// The word, as written.
         found: String,
         /// The known names, and the nearest one.
         nearest: Nearest,
     },
-    /// A scene file of another version.
+    /// The scene file has another version.
     #[error(
         "this scene file has version {found}, and this frixel reads version {expected}: use a frixel that knows it"
     )]
     Version {
-        /// As written.
+        /// The version, as written.
         found: f64,
         /// The version that this crate reads.
         expected: u32,
@@ -104,7 +104,7 @@ pub enum Mistake {
         /// Its value.
         found: f64,
     },
-    /// A list that is too short or too long.
+    /// A list is too short or too long.
     #[error("`{field}` has {found} entries: expected {}", count(*.min, *.max))]
     Count {
         /// The field.
@@ -133,11 +133,11 @@ pub enum Mistake {
     /// The scene has more of something than a board has room for.
     #[error("this is number {number} of the scene's {what}, and a board takes {max}: leave some out")]
     TooMany {
-        /// What it has too many of.
+        /// The kind of thing that there are too many of.
         what: &'static str,
         /// The number of this one, from one.
         number: usize,
-        /// Most of them.
+        /// The board's limit.
         max: usize,
     },
     /// The friction of a layer with `blend = "add"` is given in total.
@@ -155,17 +155,17 @@ pub enum Mistake {
         which_has(.nearest.as_deref())
     )]
     PictureMissing {
-        /// As written.
+        /// The picture's name, as written.
         picture: String,
         /// The place that was searched.
         folder: String,
-        /// The name there that is nearest, if one is near enough.
+        /// The nearest name in that place, if one is near enough.
         nearest: Option<String>,
     },
     /// A picture cannot be used.
     #[error("picture \"{picture}\" cannot be used: {reason}")]
     PictureUnusable {
-        /// As written.
+        /// The picture's name, as written.
         picture: String,
         /// The reason, and what to do.
         reason: String,
@@ -180,14 +180,14 @@ pub enum Mistake {
         layer: String,
         /// The edge of the screen.
         edge: &'static str,
-        /// How far, mm.
+        /// How far the region extends past the edge, mm.
         beyond_mm: f64,
-        /// The screen, mm.
+        /// Width of the screen, mm.
         screen_width_mm: f64,
-        /// The screen, mm.
+        /// Height of the screen, mm.
         screen_height_mm: f64,
     },
-    /// A layer wants more friction than the drive can give.
+    /// The target friction of a layer is more than the drive can give.
     #[error(
         "{asking} up to {asked_n} N {reference}, and at {voltage_v_rms} V rms this finger feels at most {reach_n} N \
          {reference}: lower it, raise `voltage_max_v_rms`, or write `saturate = true` under [drive] to have it clamped"
@@ -195,7 +195,7 @@ pub enum Mistake {
     AboveReach {
         /// The layer or layers, with the verb.
         asking: String,
-        /// The friction that they want, N.
+        /// The layers' target friction, N.
         asked_n: f64,
         /// `in total` or `above natural friction`.
         reference: &'static str,
@@ -204,7 +204,7 @@ pub enum Mistake {
         /// The largest friction that can be reached, rounded down, N.
         reach_n: f64,
     },
-    /// A layer wants less friction than there is at no voltage.
+    /// The target friction of a layer is less than the friction at no voltage.
     #[error(
         "{asking} down to {asked_n} N {reference}, and a drive can only add to the finger's natural friction of \
          {natural_n} N: raise it, lower `normal_load_n`, or write `saturate = true` under [drive] to have it clamped"
@@ -212,7 +212,7 @@ pub enum Mistake {
     BelowNatural {
         /// The layer or layers, with the verb.
         asking: String,
-        /// The friction that they want, N.
+        /// The layers' target friction, N.
         asked_n: f64,
         /// `in total` or `above natural friction`.
         reference: &'static str,
@@ -224,27 +224,27 @@ pub enum Mistake {
     TooManyLayers {
         /// Number of the first layer beyond the limit.
         number: usize,
-        /// Most layers.
+        /// The board's limit.
         max: usize,
     },
-    /// A place where the tick takes too long.
+    /// A tick takes too long at some place.
     #[error(
         "{layers} {} at x {x_mm} mm, y {y_mm} mm: a tick there is estimated at {cycles} cycles, and the board has time for \
          {cycles_max}: move layers apart, or leave some out",
         if *.meet { "meet" } else { "are in one cell of the board's grid, though they do not meet," }
     )]
     TickTooLong {
-        /// Cycles that the longest tick is estimated at.
+        /// Estimated cycles of the longest tick.
         cycles: u32,
-        /// Most cycles.
+        /// The board's limit.
         cycles_max: u32,
         /// The layers that the tick evaluates there.
         layers: String,
-        /// Those layers alone exceed the limit at this place. Otherwise layers only share a cell of the grid.
+        /// Whether those layers alone exceed the limit at this place. Otherwise they only share a cell of the grid.
         meet: bool,
-        /// The place, mm.
+        /// The place from the left edge of the screen, mm.
         x_mm: f64,
-        /// The place, mm.
+        /// The place from the top edge of the screen, mm.
         y_mm: f64,
     },
     /// The pictures need more memory than the board has for them.
@@ -263,7 +263,7 @@ pub enum Mistake {
     /// The peak voltage is above the board's limit.
     #[error("`voltage_max_v_peak = {found}` is above the board's limit of {board} V peak: lower it or leave it out")]
     PeakAboveBoard {
-        /// As written, V.
+        /// The peak voltage, as written, V.
         found: f64,
         /// The board's limit, V.
         board: f64,
@@ -271,7 +271,7 @@ pub enum Mistake {
     /// The carrier is too fast for the board's tick.
     #[error("`frequency_hz = {found}` is too fast for {tick_hz} ticks a second: expected at most {max} Hz")]
     CarrierTooFast {
-        /// As written, Hz.
+        /// The frequency, as written, Hz.
         found: f64,
         /// Ticks a second.
         tick_hz: u32,
@@ -293,7 +293,7 @@ pub enum Mistake {
         /// The field to lower.
         cure: &'static str,
     },
-    /// The numbers are each in range, and the contact model or its table refuses their combination.
+    /// Each number is in range, but the contact model or its table refuses their combination.
     #[error(
         "this finger on this coating cannot be played ({reason}): check [finger], [coating] and `voltage_max_v_rms`"
     )]

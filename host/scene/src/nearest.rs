@@ -1,4 +1,4 @@
-//! The nearest known word to an unknown one.
+//! Finds the known word that is nearest to an unknown one.
 
 use std::fmt::{self, Display};
 

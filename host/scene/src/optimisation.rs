@@ -1,4 +1,4 @@
-//! What the compiler has optimised away, and why.
+//! The optimisations that the compiler has made, with the reason for each.
 
 use thiserror::Error;
 
@@ -6,7 +6,7 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum Optimisation {
-    /// A layer that another one replaces wherever it applies.
+    /// A layer that another layer replaces wherever it applies.
     #[error("{layer} is optimised away: {by} replaces it everywhere")]
     Covered {
         /// The layer.
@@ -14,19 +14,19 @@ pub enum Optimisation {
         /// The layer that replaces it.
         by: String,
     },
-    /// A layer that changes nothing.
+    /// A layer without effect.
     #[error("{layer} is optimised away: it changes nothing")]
     Idle {
         /// The layer.
         layer: String,
     },
-    /// A layer that wants the same friction everywhere and always.
+    /// A layer whose target friction is the same everywhere and always.
     #[error("{layer} is played as a constant: it wants the same friction everywhere")]
     Flat {
         /// The layer.
         layer: String,
     },
-    /// A constant that was merged into the one below it.
+    /// A constant that was merged into the layer below it.
     #[error("{layer} is optimised away: it is merged into {into}")]
     Folded {
         /// The layer.

@@ -1,5 +1,5 @@
-//! Makes a program smaller without changing what is felt: covered layers are dropped, layers of one friction become
-//! constants, constants over constants are merged, and points and pictures that no layer names are dropped.
+//! Makes a program smaller without changing the felt friction: covered layers are dropped, layers of one friction
+//! become constants, constants over constants are merged, and points and pictures that no layer names are dropped.
 
 use std::collections::BTreeSet;
 
@@ -12,11 +12,11 @@ use super::program::Program;
 struct Item {
     title: String,
     record: Record,
-    /// The host may change it while it plays.
+    /// Whether the host may change the layer while it plays.
     live: bool,
 }
 
-/// Makes a program smaller. `live` says which layers the host may change while it plays.
+/// Makes a program smaller. `live` marks the layers that the host may change while they play.
 pub(super) fn optimise(program: &mut Program, live: &[bool]) {
     let titles = std::mem::take(&mut program.titles);
     let records = std::mem::take(&mut program.records);
@@ -32,7 +32,7 @@ pub(super) fn optimise(program: &mut Program, live: &[bool]) {
     drop_bitmaps(program);
 }
 
-/// Replaces layers that want the same friction everywhere and always by constants.
+/// Replaces layers whose target friction is the same everywhere and always by constants.
 fn flatten(items: &mut [Item], points: &[Point], optimisations: &mut Vec<Optimisation>) {
     for item in items.iter_mut().filter(|item| !item.live) {
         let layer = &item.record.layer;
@@ -65,7 +65,7 @@ fn drop_covered(items: &mut Vec<Item>, header: &Header, optimisations: &mut Vec<
     }
 }
 
-/// Whether a region covers another one on the screen.
+/// Whether a region covers another one within the screen.
 fn covers(region: Region, other: Region, header: &Header) -> bool {
     let screen = [0.0, 0.0, header.screen_width_m, header.screen_height_m];
     let sides = |region| match region {
@@ -78,7 +78,7 @@ fn covers(region: Region, other: Region, header: &Header) -> bool {
     if region == other || region == Region::Screen {
         return true;
     }
-    // Of the other shapes, only a rectangle fills its bounds.
+    // Of the other shapes, only a rectangle fills its bounding box.
     match (region, sides(region), sides(other)) {
         (Region::Rectangle { .. }, Some([left, top, right, bottom]), Some([x1, y1, x2, y2])) => {
             left <= x1 && top <= y1 && right >= x2 && bottom >= y2
@@ -87,7 +87,7 @@ fn covers(region: Region, other: Region, header: &Header) -> bool {
     }
 }
 
-/// Drops constants that change nothing: zero added, a factor of one, and zero on a bare screen.
+/// Drops constants without effect: adding zero, a factor of one, and zero on a bare screen.
 fn drop_idle(items: &mut Vec<Item>, optimisations: &mut Vec<Optimisation>) {
     let mut bare = true;
     items.retain(|item| {
@@ -111,8 +111,8 @@ fn drop_idle(items: &mut Vec<Item>, optimisations: &mut Vec<Optimisation>) {
     });
 }
 
-/// Merges a constant into the constant right below it, if both have the same region. The board would compute the same
-/// bits.
+/// Merges a constant into the constant directly below it, if both have the same region. The result is bit-identical to
+/// the board's.
 fn fold(items: &mut Vec<Item>, optimisations: &mut Vec<Optimisation>) {
     let mut number = 0;
     while let (Some(below), Some(above)) = (items.get(number), items.get(number + 1)) {
@@ -152,7 +152,7 @@ fn compact_points(program: &mut Program) {
         if place == kept.len() {
             kept.extend(own);
         }
-        // The number fits: there are no more points than before.
+        // The number fits, since there are no more points than before.
         *first = place as u8;
     };
     for record in &mut program.records {

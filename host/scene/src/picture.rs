@@ -5,7 +5,7 @@ use std::io::Cursor;
 use png::{BitDepth, ColorType, Decoder, DecodingError, Limits, OutputInfo, Transformations};
 use thiserror::Error;
 
-/// Most pixels of a picture: 64 million, so that its grey values take at most 256 MiB.
+/// Largest number of pixels of a picture: 64 million, so that its grey values take at most 256 MiB.
 const PIXELS_MAX: u64 = 1 << 26;
 /// The first eight bytes of every PNG file (W3C PNG specification, section 5.2).
 const PNG_SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
@@ -18,11 +18,11 @@ pub(super) struct Picture {
     pub(super) width: usize,
     pub(super) height: usize,
     pub(super) grey: Vec<f32>,
-    /// The conversions to grey, in words for a person.
+    /// The conversions to grey, as text for a person.
     pub(super) conversions: Vec<&'static str>,
 }
 
-/// Why a picture cannot be used.
+/// The reason why a picture cannot be used.
 #[derive(Debug, Error)]
 pub(super) enum PictureError {
     #[error("it is not a PNG file: save it as PNG")]
@@ -97,7 +97,7 @@ fn sample(pixel: &[u8], channel: usize, wide: bool) -> u16 {
     }
 }
 
-/// The luma of a colour. Grey keeps its value to the last bit.
+/// The luma of a colour. Grey keeps its exact value.
 fn luma(colour: [u16; 3]) -> f32 {
     let [red, green, blue] = colour;
     if red == green && green == blue {

@@ -1,11 +1,11 @@
-//! Where the pictures come from that a scene names.
+//! The source of the pictures that a scene names.
 
 use std::collections::BTreeMap;
 
-/// Gives the bytes of the pictures that a scene names.
+/// Provides the bytes of the pictures that a scene names.
 ///
-/// [`Scene::parse`](crate::Scene::parse) reads each picture once, so that compiling needs nothing but the scene. A map
-/// from names to bytes is enough where the pictures are in memory already:
+/// [`Scene::parse`](crate::Scene::parse) reads each picture once, so that compiling needs only the scene. Where the
+/// pictures are already in memory, a map from names to bytes implements this trait:
 ///
 /// ```
 /// use std::collections::BTreeMap;
@@ -20,17 +20,17 @@ pub trait Pictures {
     fn png(&self, name: &str) -> Result<Vec<u8>, PictureUnavailable>;
 }
 
-/// Why the bytes of a picture are not there.
+/// The reason why the bytes of a picture are not available.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PictureUnavailable {
     /// No picture has this name.
     Missing {
-        /// Where it was looked for, as a message names the place: the path of a folder, for one.
+        /// The place that was searched, as a message names it: for example the path of a folder.
         place: String,
-        /// Names of the files there, without folders; the nearest one is suggested.
+        /// Names of the files there, without folders; the message suggests the nearest one.
         files: Vec<String>,
     },
-    /// The picture is there, and its bytes cannot be read.
+    /// The picture exists, but its bytes cannot be read.
     Unreadable {
         /// The reason, in the operating system's words.
         reason: String,

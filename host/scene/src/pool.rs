@@ -1,4 +1,4 @@
-//! Compiles pictures to the bitmaps of the board's pool.
+//! Compiles pictures to bitmaps for the board's pool.
 
 use std::collections::BTreeMap;
 
@@ -13,10 +13,10 @@ use super::pictures::{PictureUnavailable, file_name};
 use super::program::Bitmap;
 use super::resample::{Axis, resample};
 
-/// The bytes of each picture that a scene names, or why they are not there.
+/// The bytes of each picture that a scene names, or the reason why they are not available.
 pub(super) type PictureBytes = BTreeMap<String, Result<Vec<u8>, PictureUnavailable>>;
 
-/// Gathers the bitmaps of a scene, each one once, and checks that they fit.
+/// Collects the bitmaps of a scene, each one once, and checks that they fit into the pool.
 pub(super) struct Pool<'s> {
     pictures: &'s PictureBytes,
     size_bytes: u32,
@@ -24,9 +24,9 @@ pub(super) struct Pool<'s> {
     optimisations: Vec<Optimisation>,
 }
 
-/// A bitmap on the screen.
+/// A bitmap and its place on the screen.
 pub(crate) struct Placed {
-    /// Name of the bitmap.
+    /// CRC-32 of the samples: the bitmap's name.
     pub(crate) crc32: u32,
     /// The corner of its first sample, x and y.
     pub(crate) corner_mm: (f64, f64),
@@ -34,13 +34,13 @@ pub(crate) struct Placed {
     pub(crate) pitches_mm: (f64, f64),
     pub(crate) angle_turns: f32,
     pub(crate) tiled: bool,
-    /// The picture's outline; `None` for a tiled picture, which has none.
+    /// The picture's outline; `None` for a tiled picture, which is not bounded.
     pub(crate) outline: Option<Region>,
 }
 
 impl Placed {
     fn new(bitmap: &BitmapLayer, whole: Rectangle, across: Axis, down: Axis, crc32: u32) -> Self {
-        // A picture is turned about its middle.
+        // A picture is turned about its centre.
         let (half_width_mm, half_height_mm) = (0.5 * whole.width_mm, 0.5 * whole.height_mm);
         let (middle_x_mm, middle_y_mm) = (whole.x_mm + half_width_mm, whole.y_mm + half_height_mm);
         let (cos, sin) = direction(bitmap.angle_deg);
@@ -72,13 +72,13 @@ impl Placed {
     }
 }
 
-/// Cosine and sine of an angle. Those of right angles are exact.
+/// Cosine and sine of an angle; exact for right angles.
 fn direction(angle_deg: f64) -> (f64, f64) {
     let exact = |part: f64| if part.abs() < 1e-12 { 0.0 } else { part };
     (exact(libm::cos(angle_deg.to_radians())), exact(libm::sin(angle_deg.to_radians())))
 }
 
-/// The picture's rectangle before it is turned. A place or size that the layer lacks is that of its region.
+/// The picture's rectangle before it is turned. Place and size default to those of the layer's region.
 fn rectangle(bitmap: &BitmapLayer, region: Option<Rectangle>, height_per_width: f64) -> Option<Rectangle> {
     let width_mm = bitmap.width_mm.or(region.map(|region| region.width_mm))?;
     let height_mm = bitmap.height_mm.or(match (bitmap.width_mm, region) {
@@ -93,8 +93,8 @@ fn rectangle(bitmap: &BitmapLayer, region: Option<Rectangle>, height_per_width: 
     })
 }
 
-/// The samples along a row and down the rows: all of a picture that is turned or tiled, otherwise those inside its
-/// region and the screen.
+/// The samples along a row and down the rows: all samples of a picture that is turned or tiled, otherwise those inside
+/// its region and the screen.
 fn axes(
     bitmap: &BitmapLayer,
     picture: &Picture,
@@ -128,7 +128,7 @@ impl<'s> Pool<'s> {
         Self { pictures, size_bytes, bitmaps: Vec::new(), optimisations: Vec::new() }
     }
 
-    /// The bitmaps, and what was optimised away.
+    /// The bitmaps, and the optimisations that were made.
     pub(super) fn finish(self) -> (Vec<Bitmap>, Vec<Optimisation>) {
         (self.bitmaps, self.optimisations)
     }
@@ -146,12 +146,12 @@ impl<'s> Pool<'s> {
         let picture = self.read(layer, bitmap, log)?;
         let whole = rectangle(bitmap, region, picture.height as f64 / picture.width as f64)?;
         let (across, down) = axes(bitmap, &picture, whole, region, screen_mm);
-        // Check before resampling, so that a pitch far too fine allocates no memory.
+        // Check before resampling, so that a pitch that is far too fine allocates no memory.
         let bytes = across.samples as u64 * down.samples as u64;
         if !self.fits(layer, bitmap, bytes, log) {
             return None;
         }
-        // One side may still be longer than the protocol's 16 bits.
+        // One side may still exceed the protocol's 16 bits.
         let (Ok(width), Ok(height)) = (u16::try_from(across.samples), u16::try_from(down.samples)) else {
             self.too_small(layer, bitmap, bytes, log);
             return None;
@@ -201,7 +201,8 @@ impl<'s> Pool<'s> {
     }
 
     fn too_small(&self, layer: &Layer, bitmap: &BitmapLayer, needed_bytes: u64, log: &mut Log) {
-        // The pitch if all pictures are coarsened alike: with 1 % more for samples at the edges, rounded up to 0.01 mm.
+        // The pitch at which all pictures fit if they are coarsened alike: 1 % is added for samples at the edges, and
+        // the result is rounded up to 0.01 mm.
         let coarser = 1.01 * (needed_bytes as f64 / f64::from(self.size_bytes)).sqrt();
         let pitch_mm = (bitmap.pitch_mm * coarser * 100.0).ceil() / 100.0;
         let offset = layer.places.field(if layer.places.has("pitch_mm") { "pitch_mm" } else { "picture" });
@@ -209,7 +210,7 @@ impl<'s> Pool<'s> {
     }
 }
 
-/// The conversions of a picture, if there were any.
+/// Describes the conversions of a picture; `None` if there were none.
 fn note(picture: &Picture, bitmap: &BitmapLayer, across: Axis, down: Axis) -> Option<String> {
     let mut done: Vec<String> = picture.conversions.iter().map(ToString::to_string).collect();
     if (across.whole, down.whole) != (picture.width, picture.height) {

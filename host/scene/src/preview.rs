@@ -1,7 +1,7 @@
-//! The friction that a scene wants, all over its screen, as a picture in memory.
+//! The target friction of a scene over its whole screen, as a picture in memory.
 //!
-//! A program goes in; a value for every pixel comes out, with a caption for a person. Colours, rulers and files are the
-//! caller's.
+//! The input is a program. The output is a value for every pixel, with a caption for a person. The caller adds colours
+//! and rulers and writes files.
 
 use frixel_layers::{Button, Edge, Layer};
 
@@ -9,10 +9,10 @@ use super::program::Program;
 use super::reach::{ROUNDING, Reach};
 use super::reference::{Context, Reference};
 
-/// How a preview is made.
+/// Settings of a preview.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Preview {
-    /// The finger's sliding speed, m/s. Only layers with a curve of speed depend on it.
+    /// The finger's sliding speed, m/s. Only layers with a speed curve depend on it.
     pub speed_m_per_s: f64,
     /// Largest width and height of the map, in pixels.
     pub map_max: (u32, u32),
@@ -30,7 +30,7 @@ impl Default for Preview {
 pub struct MapGrid {
     /// Pixels in a row.
     pub width: usize,
-    /// Rows.
+    /// Number of rows.
     pub height: usize,
     /// Width and height of the screen, mm.
     pub screen_mm: (f64, f64),
@@ -47,27 +47,27 @@ impl MapGrid {
         Self { width: pixels(screen_mm.0), height: pixels(screen_mm.1), screen_mm, pixels_per_mm }
     }
 
-    /// The place of each pixel's middle, x and y in metres, row after row from the top left.
+    /// The centre of each pixel, x and y in metres, row after row from the top left.
     pub fn places_m(&self) -> impl Iterator<Item = (f64, f64)> {
         let metres = |pixel: usize| (pixel as f64 + 0.5) / self.pixels_per_mm * 1e-3;
         (0..self.height).flat_map(move |row| (0..self.width).map(move |column| (metres(column), metres(row))))
     }
 }
 
-/// Where a friction lies relative to what can be reached.
+/// Position of a friction relative to the range that the drive can reach.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReachSide {
-    /// Less than at no voltage.
+    /// Below the friction at no voltage.
     Below,
     /// Within reach.
     Within,
-    /// More than at the largest voltage.
+    /// Above the friction at the largest voltage.
     Above,
 }
 
 impl ReachSide {
-    /// The side of an electric friction that is given as a part of the largest one: 0 to 1 is within reach, and so is
-    /// what lies outside by no more than rounding.
+    /// Classifies an electric friction given as a fraction of the largest one: 0 to 1 is within reach, with a tolerance
+    /// for rounding.
     pub fn of(part_of_reach: f64) -> Self {
         if part_of_reach > 1.0 + ROUNDING {
             Self::Above
@@ -79,22 +79,22 @@ impl ReachSide {
     }
 }
 
-/// The friction that a program wants at every pixel of its screen.
+/// The target friction of a program at every pixel of its screen.
 ///
-/// Vibrations and streams are shown at the most that they can want; the caption says so.
+/// Vibrations and streams are shown at their largest target; the caption states this.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrictionMap {
     /// The pixels.
     pub grid: MapGrid,
-    /// Electric friction at each pixel, as a part of the largest that can be reached; below 0 or above 1 it is out of
-    /// reach. Row after row from the top left.
+    /// Electric friction at each pixel, as a fraction of the largest that the drive can reach; below 0 or above 1 it is
+    /// out of reach. Row after row from the top left.
     pub parts_of_reach: Vec<f64>,
-    /// What a person has to know to read the map, a sentence each.
+    /// Notes that a person needs to read the map, a sentence each.
     pub caption: Vec<String>,
 }
 
 impl FrictionMap {
-    /// The map of a program.
+    /// Computes the map of a program.
     ///
     /// ```
     /// use std::collections::BTreeMap;
@@ -151,7 +151,7 @@ fn caption(program: &Program, preview: &Preview, parts_of_reach: &[f64]) -> Vec<
     sentences
 }
 
-/// What the finger feels at no voltage and at the largest one.
+/// Describes the friction that the finger feels at no voltage and at the largest one.
 fn finger(program: &Program) -> String {
     let Reach { voltage_max_v_rms, .. } = program.reach;
     format!(
@@ -170,7 +170,7 @@ fn has_click(layer: &Layer) -> bool {
     }
 }
 
-/// How much of the map lies on a side of the reach, in percent.
+/// Share of the map on one side of the reach, in percent.
 fn percent(parts_of_reach: &[f64], wanted: ReachSide) -> f64 {
     let found = parts_of_reach.iter().filter(|part| ReachSide::of(**part) == wanted).count();
     100.0 * found as f64 / parts_of_reach.len().max(1) as f64
@@ -178,7 +178,7 @@ fn percent(parts_of_reach: &[f64], wanted: ReachSide) -> f64 {
 
 /// At most four significant digits.
 fn rounded(value: f64) -> f64 {
-    // The text of a number always reads as a number.
+    // The formatted number always parses.
     format!("{value:.3e}").parse().unwrap_or(value)
 }
 

@@ -8,9 +8,9 @@ use super::layer_map::LayerMap;
 use super::optimisation::Optimisation;
 use super::reach::Reach;
 
-/// The protocol that knows [`Header::layers_fixed`].
+/// The first protocol version with [`Header::layers_fixed`].
 const LAYERS_FIXED_SINCE: (u8, u8) = (1, 2);
-/// The protocol that knows [`Header::electric_friction_max_n`].
+/// The first protocol version with [`Header::electric_friction_max_n`].
 const ELECTRIC_FRICTION_MAX_SINCE: (u8, u8) = (1, 3);
 
 /// A compiled scene, with its pictures.
@@ -58,7 +58,7 @@ impl Program {
         bytes
     }
 
-    /// The feature bits ([`frixel_wire::hello::feature`]) that a board needs to play it.
+    /// The feature bits ([`frixel_wire::hello::feature`]) that a board needs to play the program.
     pub fn features(&self) -> u32 {
         features_of(&self.header, self.records.iter().copied())
     }
@@ -81,7 +81,7 @@ pub struct Bitmap {
     pub crc32: u32,
     /// Samples in a row.
     pub width: u16,
-    /// Rows.
+    /// Number of rows.
     pub height: u16,
     /// The samples: 0 is black, 255 white.
     pub samples: Vec<u8>,

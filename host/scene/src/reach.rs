@@ -5,10 +5,10 @@ use frixel_model::{Carrier, Contact, Finger, InverseTable, ParameterError, Table
 use frixel_wire::hello::BoardLimits;
 use thiserror::Error;
 
-/// Friction out of reach by less than this, relative to the reach, is an effect of rounding to `f32`.
+/// Friction out of reach by less than this, relative to the reach, counts as a rounding error of `f32`.
 pub const ROUNDING: f64 = 1e-6;
 
-/// The range of friction that a finger can be given: from natural friction, `mu F_N`, to that plus the largest electric
+/// The range of friction that the drive can give: from natural friction, `mu F_N`, to that plus the largest electric
 /// friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reach {
@@ -20,7 +20,7 @@ pub struct Reach {
     pub voltage_max_v_rms: f64,
 }
 
-/// Why a board cannot play for a finger and a coating.
+/// The reason why a board cannot play for a finger and a coating.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub(super) enum ReachError {
     #[error("the contact model refuses it: {0:?}")]
@@ -30,7 +30,7 @@ pub(super) enum ReachError {
 }
 
 impl Reach {
-    /// Reach for the finger, coating and rms voltage of a header, from the `f32` numbers that the board has.
+    /// Computes the reach for the finger, coating and rms voltage of a header, from the board's `f32` numbers.
     pub(super) fn of(header: &Header) -> Result<Self, ReachError> {
         let finger = Finger {
             radius_m: f64::from(header.finger_radius_m),

@@ -1,4 +1,4 @@
-//! Resamples pictures to the pitch that a board plays.
+//! Resamples pictures to the board's pitch.
 
 /// One axis of the grid that a picture is resampled to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,7 +16,7 @@ pub(super) struct Axis {
 impl Axis {
     /// The samples that cover `length_mm`. The last one may reach past the picture's end by less than a pitch.
     pub(super) fn covering(length_mm: f64, pitch_mm: f64, pixels: usize) -> Self {
-        // A millionth of a sample is an effect of rounding, not one more sample.
+        // A millionth of a sample is a rounding error and does not need one more sample.
         let samples = (length_mm / pitch_mm - 1e-6).ceil().max(1.0) as usize;
         Self { whole: samples, skipped: 0, samples, pixels_per_sample: pixels as f64 * pitch_mm / length_mm }
     }

@@ -26,7 +26,7 @@ impl Source {
         (line, column)
     }
 
-    /// The key, value or table header at a byte offset; the first line of one that has several.
+    /// The key, value or table header at a byte offset; only its first line if it has several.
     pub(super) fn word_at(&self, offset: usize) -> &str {
         let line = self.text.get(offset..).and_then(|rest| rest.lines().next()).unwrap_or_default();
         let end = match line.chars().next() {
@@ -65,7 +65,7 @@ impl Places {
         self.fields.iter().find(|(name, _)| *name == field).map_or(self.table, |(_, offset)| *offset)
     }
 
-    /// The first of these fields that the file has, or the first one if it has none of them.
+    /// The first of these fields that the file has, or the first of the list if the file has none of them.
     pub(super) fn first_of(&self, fields: [&'static str; 3]) -> &'static str {
         let [first, ..] = fields;
         fields.into_iter().find(|field| self.has(field)).unwrap_or(first)

@@ -1,5 +1,5 @@
-//! The tables of fields that belong to no kind of layer, and what the tables of the kinds share. The parser checks the
-//! fields, [`super::json_schema`] and `docs/scene.md` show them.
+//! The tables of fields that belong to no kind of layer, and the parts that the tables of the kinds share. The parser
+//! checks the fields; [`super::json_schema`] and `docs/scene.md` show them.
 #![allow(clippy::wildcard_imports, reason = "every table is written with the same few words")]
 
 use frixel_layers::range;
@@ -22,7 +22,7 @@ pub(crate) const fn word(name: &'static str, absence: Absence, meaning: &'static
     FieldSpec::new(name, Holds::Word, absence, meaning)
 }
 
-/// The fields of an amount that is called by a stem.
+/// The fields of an amount whose names begin with a stem.
 macro_rules! amount {
     ($stem:literal, $absence:expr, $meaning:expr) => {
         $crate::grammar::AmountFields {
@@ -42,7 +42,7 @@ pub(crate) const SIZE_MM: Range = Range::new(0.01, 2_000.0, " mm");
 pub(crate) const WAVELENGTH_MM: Range = Range::new(0.05, 2_000.0, " mm");
 pub(crate) const ANGLE_DEG: Range = Range::new(-360.0, 360.0, " degrees");
 
-/// The two amounts that most kinds lie between.
+/// The two amounts that limit most kinds.
 pub(crate) const LOW: AmountFields = amount!("low", Mistake, "least friction");
 pub(crate) const HIGH: AmountFields = amount!("high", Mistake, "largest friction");
 
@@ -139,7 +139,7 @@ pub(super) mod carrier {
 
     pub(crate) const SHAPE: FieldSpec =
         word("shape", Means("`\"square\"`"), "`\"square\"`, whose square has no ripple, or `\"sine\"`");
-    /// Below this the drive is no alternating carrier; how fast it may be depends on the board's ticks.
+    /// Below this frequency the drive is not an alternating carrier. The upper limit depends on the board's ticks.
     pub(crate) const FREQUENCY_HZ: FieldSpec = number(
         "frequency_hz",
         Range::new(125.0, 100_000.0, " Hz"),
@@ -162,7 +162,7 @@ pub(super) mod touch {
     );
 }
 
-/// `[[layer]]`: what every kind has.
+/// `[[layer]]`: the fields that every kind has.
 pub(super) mod layer {
     use super::*;
 

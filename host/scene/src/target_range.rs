@@ -1,4 +1,4 @@
-//! The range of friction that a program wants over its screen, and how much of it is out of reach.
+//! The range of a program's target friction over its screen, and how much of it is out of reach.
 
 use frixel_layers::{Blend, Interval};
 use serde::Serialize;
@@ -11,17 +11,17 @@ use crate::reference::{Piece, Reference};
 /// Places that are evaluated along the longer side of the screen.
 const PLACES: f64 = 600.0;
 
-/// The friction that a program wants anywhere on its screen, at any time and speed, with clicks and streams at their
-/// largest.
+/// The range of a program's target friction anywhere on its screen, at any time and speed, with clicks and streams at
+/// their largest.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TargetRange {
     /// Least friction, in total, N.
     pub least_n: f64,
     /// Largest friction, in total, N.
     pub most_n: f64,
-    /// Where it wants more than the drive can give, and is clamped.
+    /// Where the target exceeds the friction that the drive can give, and is clamped.
     pub above: OutOfReach,
-    /// Where it wants less than the friction at no voltage, and is clamped.
+    /// Where the target is less than the friction at no voltage, and is clamped.
     pub below: OutOfReach,
 }
 
@@ -61,7 +61,7 @@ impl TargetRange {
     }
 }
 
-/// A grid of places: the middles of its fields.
+/// A grid of places: the centres of its fields.
 struct Places {
     pitch_m: (f64, f64),
     count: (usize, usize),

@@ -1,4 +1,4 @@
-//! Refuses a scene whose tick takes too long at some place, as the board would.
+//! Refuses a scene whose tick takes too long at some place, by the same estimate as the board.
 
 use std::cmp::Reverse;
 
@@ -11,11 +11,11 @@ use super::mistake::Mistake;
 use super::program::Program;
 use super::reference::Shape;
 
-/// Refuses a program whose longest tick is estimated at more than `cycles_max`. The mistake stands at the topmost layer of
-/// the place.
+/// Reports a mistake if the longest tick is estimated at more than `cycles_max`. Its position is that of the topmost
+/// layer at the place.
 ///
-/// The board adds up all layers of a cell of its grid. The message names the layers that meet at one place of that cell, and
-/// only when they are too many; otherwise all layers of the cell.
+/// The board adds up all layers of a cell of its grid. The message names the layers that meet at one place of that cell
+/// if these alone take too long; otherwise it names all layers of the cell.
 pub(super) fn check(scene: &Scene, program: &Program, cycles_max: u32, log: &mut Log) {
     let worst = program.worst_tick();
     if worst.cycles() <= cycles_max {
@@ -35,22 +35,22 @@ pub(super) fn check(scene: &Scene, program: &Program, cycles_max: u32, log: &mut
     log.add(topmost.map_or(0, |layer| layer.places.table()), mistake);
 }
 
-/// Layers that are all under a finger at one place.
+/// Layers that all apply at one place.
 struct Meeting {
     place_m: (f64, f64),
     /// Numbers of the layers, from bottom to top.
     layers: Vec<usize>,
-    /// Cycles that they and an empty scene are estimated at.
+    /// Estimated cycles of these layers and an empty scene.
     cycles: u32,
 }
 
 impl Program {
-    /// Where a tick takes most, as the board estimates it.
+    /// The longest tick, as the board estimates it.
     pub fn worst_tick(&self) -> Worst {
         worst_of_scene(&self.header, &self.records, &self.points)
     }
 
-    /// How messages call the layers that may act in a cell, from bottom to top.
+    /// Titles in messages of the layers that may act in a cell, from bottom to top.
     pub fn titles_in(&self, cell: &Cell) -> Vec<&str> {
         self.layers_in(cell).filter_map(|number| self.titles.get(number)).map(String::as_str).collect()
     }
@@ -61,10 +61,10 @@ impl Program {
         (0..self.records.len()).filter(move |number| cell.has(*number as u8))
     }
 
-    /// The place at which those layers of a cell meet that take most together.
+    /// Finds the place in a cell where the layers that meet take most cycles.
     ///
-    /// Tries every pair of a left and a top edge, moved inside by a micrometre, of which rectangles that overlap have one
-    /// within all of them; and middles, for ellipses and polygons.
+    /// Tries every pair of a left and a top edge, moved inside by a micrometre: if rectangles overlap, one of these
+    /// places lies within all of them. Also tries centres, for ellipses and polygons.
     fn dearest_meeting(&self, cell: &Cell) -> Option<Meeting> {
         let regions: Vec<(usize, &Record, Shape)> = self
             .layers_in(cell)
@@ -81,7 +81,7 @@ impl Program {
         xs.iter()
             .flat_map(|x_m| ys.iter().map(|y_m| (*x_m, *y_m)))
             .map(|place_m| self.meeting_at(place_m, &regions))
-            // The first of the places that take most: a corner where there is one.
+            // The first of the places that take most: a corner if there is one.
             .min_by_key(|meeting| Reverse(meeting.cycles))
     }
 
@@ -96,10 +96,11 @@ impl Program {
     }
 }
 
-/// How far inside of a region's edges a meeting is looked for, m: beyond rounding, and far below what a finger notices.
+/// Distance inside a region's edges at which meetings are tried, m: above rounding errors, and far below what a finger
+/// notices.
 const INSIDE_M: f64 = 1e-6;
 
-/// The middle of a cell, to a tenth of a millimetre: the grid is coarse.
+/// The centre of a cell, to a tenth of a millimetre: the grid is coarse.
 pub fn middle_mm(cell: &Cell) -> (f64, f64) {
     rounded_mm((f64::from(cell.x_m), f64::from(cell.y_m)))
 }
@@ -121,7 +122,7 @@ mod tests {
         )
     }
 
-    /// What a board says that has time for so many cycles more or less than the scene takes.
+    /// The message for a board whose limit is `more_cycles` above the scene's cost, or below it if negative.
     fn message(text: &str, more_cycles: i32) -> Option<String> {
         let program = compile_text(text).expect("it compiles");
         let scene = Scene::parse(text, "test.toml", &*PICTURES).expect("it reads");
@@ -146,7 +147,7 @@ mod tests {
         assert_eq!(message(&text, 0), None);
     }
 
-    /// Their edges touch, so that they share a cell of the grid.
+    /// The edges of the layers touch, so that the layers share a cell of the grid.
     #[test]
     fn layers_that_only_share_a_cell_are_not_said_to_meet() {
         let text = format!("{HEAD}{}{}", layer(0), layer(20));

@@ -4,7 +4,7 @@ use super::{CountRestarted, Credit};
 
 const WINDOW: u16 = 4096;
 
-/// A line that keeps the order and may lose bytes, with both counts as they are.
+/// A line that keeps the order of frames and may lose bytes, with the actual counts of both ends.
 #[derive(Default)]
 struct Line {
     written: u64,
@@ -19,7 +19,7 @@ impl Line {
         self.under_way.push((len, arrives));
     }
 
-    /// The next frame leaves the line.
+    /// Takes the next frame off the line.
     fn deliver(&mut self) {
         if !self.under_way.is_empty() {
             let (len, arrives) = self.under_way.remove(0);
@@ -49,8 +49,7 @@ fn steps() -> impl Strategy<Value = Vec<Step>> {
 }
 
 proptest! {
-    /// Whatever the line loses, and wherever the board's count stands, credit never lets more go than there is room
-    /// for.
+    /// Credit never exceeds the room of the board, whichever bytes the line loses and whatever the board's count is.
     #[test]
     fn what_is_under_way_is_never_taken_for_less(steps in steps(), start in any::<u32>()) {
         let mut line = Line { written: u64::from(start), ..Line::default() };
@@ -65,7 +64,7 @@ proptest! {
         }
     }
 
-    /// An answer with nothing behind it on the line makes good all losses before.
+    /// An answer that nothing follows on the line corrects the credit for all earlier losses.
     #[test]
     fn an_answer_settles_what_was_lost(steps in steps(), later in 1_u64..192) {
         let mut line = Line::default();

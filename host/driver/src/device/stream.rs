@@ -11,9 +11,9 @@ use crate::error::DeviceError;
 use crate::exchange::StreamReport;
 use crate::link::Link;
 
-/// What is under way while samples are sent, for error messages.
+/// Operation that error messages name while samples are sent.
 const STREAMING: &str = "stream";
-/// Duration of the default start level, s: how long an operating system may delay a host.
+/// Duration of the default start level, s. An operating system may delay a host for about this long.
 const START_S: f64 = 0.05;
 
 /// How a stream is played.
@@ -21,13 +21,13 @@ const START_S: f64 = 0.05;
 pub struct StreamSettings {
     /// Samples a second, from 1 to the board's ticks a second.
     pub sample_hz: u32,
-    /// Samples that the board waits for before it plays, 1 to 800. Their duration is the stream's latency, and the
-    /// longest pause of the host without an underrun.
+    /// Samples that the board collects before it plays, 1 to 800. Their duration is the stream's latency, and the
+    /// longest pause of the host that causes no underrun.
     pub start_level: u16,
 }
 
 impl StreamSettings {
-    /// A start level of 50 ms, or the largest if the board's buffer is shorter than that.
+    /// Settings with a start level of 50 ms, or the largest start level if the board's buffer is shorter.
     pub fn new(sample_hz: u32) -> Self {
         let level = (START_S * f64::from(sample_hz)).ceil();
         Self { sample_hz, start_level: level.clamp(1.0, f64::from(STREAM_START_LEVEL_MAX)) as u16 }
@@ -45,18 +45,18 @@ pub struct StreamStatus {
     pub gaps: u32,
 }
 
-/// How far a stream has come.
+/// Progress of a stream.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct StreamProgress {
     samples: u64,
-    /// The board's first report, since its counts run from power-on.
+    /// The board's first report. The board counts from power-on, so later counts are relative to this report.
     first: Option<StreamReport>,
 }
 
 impl<L: Link> Device<L> {
     /// Starts a stream for the stream layers of the playing scene. It replaces a stream under way.
     ///
-    /// Samples follow by [`Self::send_samples`], with [`Self::wait`] between two calls.
+    /// Send the samples with [`Self::send_samples`], and call [`Self::wait`] between two calls.
     ///
     /// ```no_run
     /// # use std::time::Duration;
@@ -79,10 +79,10 @@ impl<L: Link> Device<L> {
         Ok(())
     }
 
-    /// Sends as many samples as the board has room for, and returns how many. A sample of 0 is the layer's low
+    /// Sends as many samples as the board has room for, and returns their number. A sample of 0 is the layer's low
     /// friction, 65,535 its high one. Does not wait.
     ///
-    /// Without a stream under way nothing is sent.
+    /// Sends nothing if no stream is under way.
     pub fn send_samples(&mut self, samples: &[u16]) -> Result<usize, DeviceError> {
         self.exchange.receive(Duration::ZERO, STREAMING)?;
         let (Some(mut sent), Some(report)) = (self.stream, self.exchange.stream()) else { return Ok(0) };
@@ -106,7 +106,7 @@ impl<L: Link> Device<L> {
         Ok(done)
     }
 
-    /// Ends the stream: the board plays the samples that it has, and fades out. That is no underrun.
+    /// Ends the stream: the board plays the samples that it has, and fades out. This does not count as an underrun.
     pub fn end_stream(&mut self) -> Result<(), DeviceError> {
         self.request(Command::EndStream)
     }

@@ -1,4 +1,4 @@
-//! What a board sends: answers, progress, events. And its silence.
+//! Receives the board's messages: answers, progress and events. Detects a board that has stopped answering.
 
 use std::time::Duration;
 
@@ -11,10 +11,10 @@ use super::super::error::DeviceError;
 use super::super::link::Link;
 use super::{ANSWER_TIMEOUT, Exchange, vanished};
 
-/// Most that one read adds to the silence of a board, so that a host that was suspended does not take its own pause for
-/// silence.
+/// Most that one read adds to the measured silence of a board, so that a host that was suspended does not count its own
+/// pause as the board's silence.
 const LISTEN_MAX: Duration = Duration::from_millis(100);
-/// What is under way when no command is.
+/// Operation that error messages name when no command is under way.
 const WAITING: &str = "wait";
 /// Events stored for a caller who does not fetch them; the oldest are dropped first.
 const EVENTS_MAX: usize = 4096;
@@ -22,7 +22,7 @@ const EVENTS_MAX: usize = 4096;
 /// A board's report on its stream.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct StreamReport {
-    /// Index behind the last sample that the board has room for.
+    /// Index after the last sample that the board has room for.
     pub(in super::super) limit: u32,
     /// Times that a stream ran out of samples, since the board's power-on.
     pub(in super::super) underruns: u32,
@@ -31,7 +31,7 @@ pub(in super::super) struct StreamReport {
 }
 
 impl<L: Link> Exchange<L> {
-    /// Receives for at most `wait`, or less. An error when the board has not answered pings for too long.
+    /// Receives for at most `wait`. Returns an error if the board has not answered pings for too long.
     pub(in super::super) fn listen(&mut self, wait: Duration) -> Result<(), DeviceError> {
         self.receive(wait.min(LISTEN_MAX), WAITING)?;
         if self.quiet >= ANSWER_TIMEOUT {
@@ -40,7 +40,7 @@ impl<L: Link> Exchange<L> {
         Ok(())
     }
 
-    /// Receives until `until`.
+    /// Receives until the time `until`.
     pub(super) fn receive_until(&mut self, until: Duration, doing: &'static str) -> Result<(), DeviceError> {
         loop {
             let now = self.link.now();

@@ -1,7 +1,7 @@
-//! What the operating system gives a link: serial ports, waiting, and a thread that keeps the board alive.
+//! The parts of a link that need an operating system: serial ports, waiting, and a thread that keeps the board alive.
 //!
-//! The rest of the crate runs where there is none of these. The types that it must not use are in `clippy.toml`; here
-//! they are what the module is for.
+//! The rest of the crate runs without an operating system. `clippy.toml` lists the types and methods that it must not
+//! use; this module is the exception.
 #![allow(clippy::disallowed_types, clippy::disallowed_methods, reason = "the one module that may use clocks and files")]
 
 mod port_error;

@@ -1,4 +1,4 @@
-//! Why a serial port could not be opened. Each message says what was found and what to do.
+//! Errors of opening and listing serial ports. Each message states what was found and what to do.
 
 use thiserror::Error;
 
@@ -19,7 +19,7 @@ pub enum PortError {
         /// Path of the port.
         port: String,
     },
-    /// This user may not open the port.
+    /// This user lacks the permission to open the port.
     #[error(
         "no permission to open {port}; on Linux its group may, usually `dialout` or `uucp`: add yourself with \
          `sudo usermod -aG dialout $USER` and log in again"
@@ -28,7 +28,7 @@ pub enum PortError {
         /// Path of the port.
         port: String,
     },
-    /// The operating system refuses for another reason: the path names no serial port, for one.
+    /// The operating system refuses for another reason, for example because the path names no serial port.
     #[error("{port} does not open as a serial port: {reason}; check the path, and plug the board in again")]
     NotOpened {
         /// Path of the port.

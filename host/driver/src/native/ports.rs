@@ -20,9 +20,9 @@ pub struct PortInfo {
 /// The descriptor of a USB device.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UsbDevice {
-    /// The vendor's number.
+    /// USB vendor ID.
     pub vendor_id: u16,
-    /// The product's number.
+    /// USB product ID.
     pub product_id: u16,
     /// The vendor's name.
     pub manufacturer: Option<String>,
@@ -47,7 +47,7 @@ impl fmt::Display for PortInfo {
     }
 }
 
-/// The serial ports of this machine, sorted by path. Pseudo-terminals are not among them.
+/// The serial ports of this machine, sorted by path. Pseudo-terminals are not listed.
 ///
 /// ```
 /// for port in frixel_driver::ports()? {
@@ -80,7 +80,7 @@ fn port_info(port: serialport::SerialPortInfo) -> PortInfo {
     PortInfo { path: port.port_name, usb }
 }
 
-/// What an error of the serialport crate means that opening `port` has returned.
+/// Converts the error that the serialport crate returned when opening `port`.
 pub(super) fn why_not_opened(port: &str, error: serialport::Error) -> PortError {
     use serialport::ErrorKind as Kind;
 

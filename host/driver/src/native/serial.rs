@@ -1,9 +1,9 @@
 //! A serial port as a [`Link`].
 //!
-//! It has two threads. One reads. The other writes, one frame after the other, and sends the keep-alive frame when
-//! nothing was written for its period and the application has made a call within the keep-alive timeout. No call waits
-//! for the operating system to take bytes: a port whose other end does not read can block a write for ever, and then
-//! only the writing thread waits.
+//! The link has two threads. One thread reads. The other writes the queued frames in order, and sends the keep-alive
+//! frame if nothing was written for its period and the application has made a call within the keep-alive timeout. No
+//! call waits for the operating system to accept bytes: a port whose other end does not read can block a write for
+//! ever, and then only the writing thread is blocked.
 
 mod shared;
 
@@ -22,10 +22,10 @@ use shared::{Shared, State};
 /// Default line rate, in bits a second. Pseudo-terminals and native USB ignore it.
 pub const DEFAULT_BAUD: u32 = 2_000_000;
 
-/// How long opening waits for a port that is in use: a pseudo-terminal stays exclusive until its server notices that
-/// the client before has gone.
+/// How long opening waits for a port that is in use. A pseudo-terminal stays exclusive until its server notices that
+/// the previous client has gone.
 const BUSY_PATIENCE: Duration = Duration::from_millis(700);
-/// Time between two tries to open a port that is in use.
+/// Time between two attempts to open a port that is in use.
 const BUSY_RETRY_AFTER: Duration = Duration::from_millis(20);
 /// How often the reading thread checks whether the link is being dropped.
 const READ_POLL: Duration = Duration::from_millis(20);
@@ -46,8 +46,8 @@ pub struct SerialLink {
 }
 
 impl SerialLink {
-    /// Opens the port at `path` with `baud` bits a second, and discards the bytes that it had received before. Waits up
-    /// to 0.7 s for a port that is in use.
+    /// Opens the port at `path` with `baud` bits a second, and discards the bytes that the port received before. Waits
+    /// up to 0.7 s for a port that is in use.
     pub fn open(path: &str, baud: u32) -> Result<Self, PortError> {
         let started = Instant::now();
         loop {
@@ -118,7 +118,7 @@ impl Link for SerialLink {
     fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed> {
         let mut state = self.shared.lock();
         state.enter_call();
-        // The writing thread may have stopped the keep-alive.
+        // Wake the writing thread, which may have stopped the keep-alive.
         self.shared.queued.notify_one();
         let (mut state, _) = self
             .shared
@@ -164,7 +164,7 @@ impl Drop for SerialLink {
         }
         state.closing = true;
         self.shared.queued.notify_one();
-        // A thread that is blocked in the operating system ends later, and the port closes then.
+        // A thread that is blocked in the operating system ends later, and closes the port then.
         let _ = self.shared.ended.wait_timeout_while(state, DROP_WAIT, |state| state.threads > 0);
     }
 }

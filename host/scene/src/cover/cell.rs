@@ -1,4 +1,4 @@
-//! Cells of the screen, and how much of one a layer covers.
+//! Cells of the screen, and the part of a cell that a layer covers.
 
 use crate::reference::{Shape, edges};
 
@@ -54,7 +54,7 @@ impl Coverage {
         let (x_m, y_m) = cell.middle();
         let middle = shape.covers(x_m, y_m);
         match shape {
-            // Cells are cut along the edges of rectangles, so none crosses a cell.
+            // Cells are cut along the edges of rectangles, so no rectangle's edge crosses a cell.
             Shape::Everywhere | Shape::Rectangle { .. } => {
                 if middle {
                     Self::Whole

@@ -1,9 +1,9 @@
-//! Where layers overlap, and what friction they can want there.
+//! Finds where layers overlap, and the range of their target friction there.
 //!
-//! The edges of all layers cut the screen into cells; within a cell the same rectangles apply everywhere. The friction
-//! of a single layer in a cell is known exactly, or nearly. For several layers that vary, and for a layer whose outline
-//! crosses the cell, there is only a bound, which need not be reached: the cell is also searched for a place that is
-//! out of reach.
+//! The edges of all layers cut the screen into cells. Within a cell, the same rectangles apply everywhere. The friction
+//! of a single layer in a cell is known exactly, or nearly. For several varying layers, and for a layer whose outline
+//! crosses the cell, only a bound is known, which the friction need not reach. Such a cell is also searched for a place
+//! that is out of reach.
 
 mod cell;
 
@@ -16,7 +16,7 @@ use cell::Coverage;
 
 use crate::reference::Piece;
 
-/// Width below which a cell is an effect of rounding, m.
+/// Width below which a cell is a rounding artefact, m.
 const CELL_MIN_M: f64 = 1e-6;
 /// Most places that are evaluated along each side of a cell.
 const PLACES_PER_SIDE_MAX: f64 = 256.0;
@@ -28,14 +28,14 @@ const PLACES_MAX: usize = 1_000_000;
 /// Bare glass.
 pub(super) const ZERO: Interval<f64> = Interval { low: 0.0, high: 0.0 };
 
-/// Layers whose friction is out of reach somewhere, or may be.
+/// Layers whose friction is out of reach somewhere, or may be out of reach.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Excess {
     /// Numbers of the layers that apply there, from zero, from bottom to top.
     pub(super) layers: Vec<usize>,
     /// The cell in which they exceed the reach most.
     pub(super) cell: Cell,
-    /// Friction that was found at places of the cell.
+    /// Range of the friction that the search found in the cell.
     pub(super) found: Interval<f64>,
     /// Bound on the friction in the cell.
     pub(super) bound: Interval<f64>,
@@ -43,15 +43,16 @@ pub(super) struct Excess {
 
 /// The layers that apply in a cell.
 struct Stack {
-    /// Numbers of the layers, from the last one that replaces all below it.
+    /// Numbers of the layers, starting with the last one that replaces all below it.
     layers: Vec<usize>,
     bound: Interval<f64>,
-    /// How many layers make the bound inexact: with up to one it is reached; with more the cell is searched.
+    /// Number of layers that make the bound inexact. With up to one, the bound is reached; with more, the cell is
+    /// searched.
     doubts: usize,
     outlined: bool,
 }
 
-/// Every set of layers that exceeds `reach` somewhere on a screen of this size, or may exceed it.
+/// All sets of layers that exceed `reach`, or may exceed it, somewhere on a screen of this size.
 pub(super) fn excesses(pieces: &[Piece], width_m: f64, height_m: f64, reach: Interval<f64>) -> Vec<Excess> {
     let bounds: Vec<[f64; 4]> = pieces.iter().map(|piece| piece.shape.bounds_m()).collect();
     let columns = edges(width_m, bounds.iter().flat_map(|[left_m, _, right_m, _]| [*left_m, *right_m]));
@@ -97,7 +98,7 @@ impl Stack {
                 continue;
             }
             let own = piece.field.interval_in(cell).times(Interval::of([piece.gain]));
-            // Nothing may be streamed.
+            // The stream may be absent.
             let always = !piece.is_streamed;
             let blended = piece.blend.of_intervals(stack.bound, own);
             let blended = if always { blended } else { stack.bound.hull(blended) };
@@ -117,7 +118,7 @@ impl Stack {
     }
 }
 
-/// Friction at places of a cell; zero when the scene has had too many places.
+/// Range of the friction at places of a cell; zero once the scene's limit of places is used up.
 fn search(pieces: &[Piece], stack: &Stack, cell: Cell, places_left: &mut usize) -> Interval<f64> {
     let layers: Vec<&Piece> = stack.layers.iter().filter_map(|layer| pieces.get(*layer)).collect();
     let detail_m = layers.iter().filter_map(|piece| piece.field.detail_m()).fold(f64::INFINITY, f64::min);
@@ -139,7 +140,7 @@ fn search(pieces: &[Piece], stack: &Stack, cell: Cell, places_left: &mut usize) 
     intervals.reduce(Interval::hull).unwrap_or(ZERO)
 }
 
-/// The friction that layers want together at a place, at any time and speed.
+/// The range of the layers' combined target friction at a place, at any time and speed.
 pub(super) fn interval_at<'p>(layers: impl Iterator<Item = &'p Piece>, x_m: f64, y_m: f64) -> Interval<f64> {
     layers.filter(|piece| piece.shape.covers(x_m, y_m)).fold(ZERO, |below, piece| {
         let own = piece.field.interval_at(x_m, y_m).times(Interval::of([piece.gain]));

@@ -10,7 +10,7 @@ use crate::mistake::Mistake;
 use crate::nearest::Nearest;
 
 impl<'i> Fields<'i> {
-    /// A number; `None` if the file does not have it or it is wrong.
+    /// A number; `None` if it is absent or invalid.
     pub(crate) fn number(&mut self, log: &mut Log, field: &FieldSpec) -> Option<f64> {
         let (Holds::Number(range) | Holds::Whole(range)) = field.holds else { return None };
         let value = self.take(field)?;
@@ -22,12 +22,12 @@ impl<'i> Fields<'i> {
         Some(found)
     }
 
-    /// A number, or its default if the file does not have it or it is wrong.
+    /// A number, or its default if it is absent or invalid.
     pub(crate) fn number_or_default(&mut self, log: &mut Log, field: &FieldSpec) -> f64 {
         self.number(log, field).unwrap_or(field.default_number())
     }
 
-    /// `true` or `false`, or the default if the file does not have it.
+    /// `true` or `false`, or the default if the field is absent.
     pub(crate) fn flag(&mut self, log: &mut Log, field: &FieldSpec) -> bool {
         let default = field.absence == Absence::Flag(true);
         let Some(value) = self.take(field) else { return default };
@@ -52,7 +52,7 @@ impl<'i> Fields<'i> {
         None
     }
 
-    /// One of some words. An unknown word is a mistake, and the nearest word is returned, so that the fields that
+    /// One of some words. An unknown word is a mistake. The nearest word is then returned, so that the fields that
     /// depend on it can be read.
     pub(crate) fn choice_or_nearest<T: Copy>(
         &mut self,

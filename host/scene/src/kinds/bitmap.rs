@@ -43,7 +43,7 @@ const WHITE: AmountFields = amount!("white", Means("all that can be reached; a f
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Bitmap {
     pub(crate) picture: String,
-    /// Place and width; `None` for those of the region.
+    /// Place and width; `None` to use those of the region.
     pub(crate) x_mm: Option<f64>,
     pub(crate) y_mm: Option<f64>,
     pub(crate) width_mm: Option<f64>,
@@ -59,7 +59,7 @@ impl Words for Bitmap {
     const WORD: &'static str = "bitmap";
 
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
-        // What a region says need not be said again.
+        // Place and width default to those of the region.
         let mut place = |field: &FieldSpec| {
             if !fields.has_been_read(REGION.name) {
                 fields.require(field);
@@ -72,7 +72,8 @@ impl Words for Bitmap {
         let pitch_mm = fields.number_or_default(log, &PITCH);
         let angle_deg = fields.number_or_default(log, &ANGLE);
         let tiled = fields.flag(log, &TILED);
-        // Bare glass, and the most that the drive gives: what a friction image without numbers means.
+        // Default colours of a friction image without numbers: black is bare glass, white the most that the drive
+        // gives.
         let (black, white) = match unit {
             Unit::Friction => (Amount::Fraction(0.0), Amount::Fraction(1.0)),
             Unit::Factor => (Amount::Factor(0.0), Amount::Factor(1.0)),
@@ -107,7 +108,7 @@ impl Words for Bitmap {
     }
 }
 
-/// Not-a-number everywhere when the program does not have the bitmap.
+/// The reference of a bitmap layer; not-a-number everywhere if the program does not have the bitmap.
 pub(super) fn field(record: &Record, _region: RecordRegion, program: &Program) -> Arc<dyn Field> {
     let bitmap = program.bitmap(record.crc32).filter(|bitmap| bitmap.width > 0 && bitmap.height > 0);
     match bitmap {
@@ -121,8 +122,8 @@ impl Field for Samples {
         self.at_place(context.x_m, context.y_m)
     }
 
-    /// A bilinear patch has its extremes at its corners: samples' centres, and where the cell cuts it. Of a picture
-    /// that is turned, all samples count that are in reach.
+    /// A bilinear patch has its extremes at its corners: at the samples' centres, and where the cell cuts it. For a
+    /// turned picture, all samples within reach of the cell count.
     fn interval_in(&self, cell: Cell) -> Interval<f64> {
         let positions = cell.corners().map(|(x_m, y_m)| self.position(x_m, y_m));
         let u = Interval::of(positions.iter().map(|(u, _)| *u));
@@ -151,7 +152,7 @@ impl Field for Samples {
     }
 }
 
-/// The samples that positions in an interval lie between. Twice as many as there are show all that tiling repeats.
+/// The samples around an interval of positions. A range of twice the number of samples covers every tiled position.
 fn around(positions: Interval<f64>, samples: usize) -> RangeInclusive<i64> {
     let first = libm::floor(positions.low).max(-1e6) as i64;
     let last = libm::ceil(positions.high).min(1e6) as i64;

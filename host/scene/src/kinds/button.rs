@@ -1,4 +1,4 @@
-//! A button: a face with a rim around it, which fills its region, and a click when the finger slides in.
+//! A button: a face that fills its region, with a rim around it, and a click when the finger slides in.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! The words for a click, and how it is lowered.
+//! The fields of a click, and its compilation.
 
 use frixel_layers::{CLICKS_MAX, Click as Record, range};
 
@@ -17,7 +17,7 @@ const CLICK_MS: FieldSpec = number(
     "how long a click takes to fall off: `(1 - t / click_ms)^2` of it are left after `t`",
 );
 
-/// A short pulse when the finger crosses.
+/// A short friction pulse when the finger crosses a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Click {
     height: Amount,
@@ -31,7 +31,7 @@ impl Click {
         Some(Self { height: Amount::read(fields, height, unit, log)?, decay_ms })
     }
 
-    /// A click is added, so that it counts from what it is added to. `None` when there are too many.
+    /// Compiles a click. Its friction is relative to the friction that it is added to. `None` if there are too many.
     pub(super) fn lower(click: Option<Self>, layer: &Layer, lowering: &mut Lowering) -> Option<Record> {
         let Some(Self { height, decay_ms }) = click else { return Some(Record::default()) };
         lowering.clicks += 1;

@@ -46,7 +46,7 @@ pub(crate) struct Edge {
 
 impl Words for Edge {
     const WORD: &'static str = "edge";
-    /// An edge is most often a ridge on what lies below it.
+    /// By default an edge adds to the layers below: most edges are ridges.
     const BLEND: Blend = Blend::Add;
 
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
@@ -99,7 +99,7 @@ struct EdgeField {
 }
 
 impl EdgeField {
-    /// How far beyond the line a place is, m.
+    /// Signed distance of a place from the line, m; positive beyond it.
     fn distance_m(&self, x_m: f64, y_m: f64) -> f64 {
         let (across_x, across_y) = (libm::cos(TAU * self.angle_turns), libm::sin(TAU * self.angle_turns));
         (x_m - self.place_m.0) * across_x + (y_m - self.place_m.1) * across_y
@@ -117,7 +117,7 @@ impl Field for EdgeField {
         self.at_distance(self.distance_m(context.x_m, context.y_m))
     }
 
-    /// The ridge falls off on both sides.
+    /// The ridge falls off on both sides of the line.
     fn interval_in(&self, cell: Cell) -> Interval<f64> {
         let distances = Interval::of(cell.corners().into_iter().map(|(x_m, y_m)| self.distance_m(x_m, y_m)));
         let nearest_m = 0.0_f64.clamp(distances.low, distances.high);

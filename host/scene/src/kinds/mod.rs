@@ -1,5 +1,6 @@
-//! The kinds of layer, a file each: the words for it in a scene file, its way into a record, and its reference, which
-//! is written from the kind's meaning in `docs/scene.md` and `PROTOCOL.md` and shares no code with the board.
+//! The kinds of layer, one file each: the fields in a scene file, their conversion to a record, and the kind's
+//! reference, which is written from the kind's definition in `docs/scene.md` and `PROTOCOL.md` and shares no code with
+//! the board.
 
 mod bitmap;
 mod button;
@@ -31,18 +32,18 @@ use crate::source::Places;
 
 pub(crate) use bitmap::Bitmap;
 
-/// What a person writes for a kind of layer.
+/// The fields of a kind of layer, as a person writes them.
 pub(crate) trait Words: Sized {
-    /// The word after `kind`.
+    /// The value of `kind`.
     const WORD: &'static str;
     /// The blends that the kind can have.
     const BLENDS: &'static [(&'static str, Blend)] =
         &[("replace", Blend::Replace), ("add", Blend::Add), ("multiply", Blend::Multiply), ("max", Blend::Max)];
-    /// The blend where the file says nothing.
+    /// The blend if the file does not set one.
     const BLEND: Blend = Blend::Replace;
-    /// The layer has to have a region with a rim: a rectangle or an ellipse.
+    /// Whether the layer needs a region with a rim: a rectangle or an ellipse.
     const NEEDS_RIM: bool = false;
-    /// Where the file says nothing, frictions of a layer that replaces others are totals.
+    /// Whether frictions of a layer that replaces others are totals by default.
     const TOTALS: bool = false;
 
     /// Reads the fields of the kind.
@@ -53,14 +54,14 @@ pub(crate) trait Words: Sized {
         let _ = (places, log);
     }
 
-    /// The field that asks for the most friction, or for the least.
+    /// The name of the field that sets the largest friction, or the least.
     fn extreme(&self, most: bool, places: &Places) -> &'static str;
 
-    /// The layer of a record; `None` when something is wrong with it, which has been logged.
+    /// The layer of a record; `None` after a mistake, which has been logged.
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered>;
 }
 
-/// What a layer's words become.
+/// The compiled form of a layer's fields.
 pub(crate) struct Lowered {
     pub(crate) layer: Record,
     /// Where the layer acts if the file names no region: `None` for the whole screen.
@@ -75,7 +76,7 @@ impl From<Record> for Lowered {
 
 /// The reference of a layer over plane and time, in `f64`, before its gain: electric friction in newtons, or a factor.
 pub(crate) trait Field: Debug + Send + Sync {
-    /// The friction in a context, without a click.
+    /// The friction in a context, without clicks.
     fn at(&self, context: &Context) -> f64;
 
     /// The interval of the friction at a place, at any time and speed, and with its click.
@@ -84,14 +85,14 @@ pub(crate) trait Field: Debug + Send + Sync {
         Interval::of([friction_n]).plus(click_interval(self.click()))
     }
 
-    /// The interval of the friction in a cell: exactly, or larger than that.
+    /// Bounds of the friction in the cell. They may be wider than the actual range.
     fn interval_in(&self, cell: Cell) -> Interval<f64> {
         let (x_m, y_m) = cell.middle();
         self.interval_at(x_m, y_m)
     }
 
-    /// 0 when the friction is the same all over the cell, 1 when [`Field::interval_in`] is exact, 2 when it may be
-    /// larger than what is there. `outline_m` is the layer's own rectangle: left, top, right, bottom.
+    /// 0 if the friction is the same all over the cell, 1 if [`Field::interval_in`] is exact, 2 if it may be wider than
+    /// the actual range. `outline_m` is the layer's own rectangle: left, top, right, bottom.
     fn doubts_in(&self, cell: Cell, outline_m: [f64; 4]) -> usize {
         let _ = (cell, outline_m);
         1
@@ -107,13 +108,13 @@ pub(crate) trait Field: Debug + Send + Sync {
         None
     }
 
-    /// On which side of a line a place is, which the finger crosses to click.
+    /// Whether a place is beyond the line that the finger crosses to click.
     fn is_beyond(&self, x_m: f64, y_m: f64) -> bool {
         let _ = (x_m, y_m);
         true
     }
 
-    /// A finger that slides into the region clicks.
+    /// Whether a finger that slides into the region causes a click.
     fn clicks_on_entry(&self) -> bool {
         false
     }
@@ -129,7 +130,7 @@ pub(crate) fn constant_field(friction_n: f64) -> Arc<dyn Field> {
     Arc::new(constant::ConstantField(friction_n))
 }
 
-/// What a click adds, at any time.
+/// Range of the friction that a click adds, at any time.
 fn click_interval(click: Option<Click>) -> Interval<f64> {
     Interval::of([0.0, click.map_or(0.0, |click| f64::from(click.height_n))])
 }
@@ -137,13 +138,13 @@ fn click_interval(click: Option<Click>) -> Interval<f64> {
 /// Makes the types of all kinds from one list.
 macro_rules! kinds {
     ($( $kind:ident in $module:ident, )*) => {
-        /// What a layer is, as a person wrote it.
+        /// The fields of a layer's kind, as a person wrote them.
         #[derive(Clone, Debug, PartialEq)]
         pub(crate) enum Kind {
             $( $kind($module::$kind), )*
         }
 
-        /// A word after `kind`.
+        /// A value of `kind`.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub(crate) enum KindName {
             $( $kind, )*
@@ -179,12 +180,12 @@ macro_rules! kinds {
                 match self { $( Self::$kind(kind) => Words::check(kind, places, log), )* }
             }
 
-            /// The field that asks for the most friction, or for the least.
+            /// The name of the field that sets the largest friction, or the least.
             pub(crate) fn extreme(&self, most: bool, places: &Places) -> &'static str {
                 match self { $( Self::$kind(kind) => Words::extreme(kind, most, places), )* }
             }
 
-            /// The layer of a record; `None` when something is wrong with it, which has been logged.
+            /// The layer of a record; `None` after a mistake, which has been logged.
             pub(crate) fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {
                 match self { $( Self::$kind(kind) => Words::lower(kind, layer, lowering), )* }
             }

@@ -125,7 +125,7 @@ impl Field for NoiseField {
     }
 }
 
-/// The fraction that the hash of `PROTOCOL.md` has for a number.
+/// The fraction from the hash of `number`, as defined in `PROTOCOL.md`.
 fn drawn(number: u32) -> f64 {
     let mut v = u64::from(number);
     for (shift, factor) in [(16, 0x7feb_352d), (15, 0x846c_a68b), (16, 1)] {

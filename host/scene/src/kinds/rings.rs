@@ -1,4 +1,4 @@
-//! Rings around a middle.
+//! Rings around a centre.
 
 use std::sync::Arc;
 
@@ -92,8 +92,8 @@ impl Field for RingsField {
         self.wave.at_turns(self.turns(context.x_m, context.y_m))
     }
 
-    /// The nearest place of a cell is the middle or on its border, the farthest a corner; between them the distance takes
-    /// every value.
+    /// The nearest place of a cell is the centre or lies on the cell's border, and the farthest is a corner. The
+    /// distance takes every value between the two.
     fn interval_in(&self, cell: Cell) -> Interval<f64> {
         let nearest =
             (self.middle_m.0.clamp(cell.left_m, cell.right_m), self.middle_m.1.clamp(cell.top_m, cell.bottom_m));

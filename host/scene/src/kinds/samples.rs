@@ -59,7 +59,8 @@ impl Samples {
         self.black_n + self.step_n * mix(upper, lower, below)
     }
 
-    /// A place in samples from the first one's centre, along a row and across the rows.
+    /// The position of a place in samples, along a row and across the rows, measured from the centre of the first
+    /// sample.
     pub(super) fn position(&self, x_m: f64, y_m: f64) -> (f64, f64) {
         let (x_m, y_m) = (x_m - self.x_m, y_m - self.y_m);
         let along_m = self.along_x * x_m + self.along_y * y_m;
@@ -67,7 +68,7 @@ impl Samples {
         (along_m / self.pitch_m - 0.5, across_m / self.pitch_y_m - 0.5)
     }
 
-    /// Friction of the samples in these columns and rows, which go on beyond the picture as it is held or tiled.
+    /// Friction of the samples in these columns and rows. Outside the picture, samples are held at the border or tiled.
     pub(super) fn frictions(
         &self,
         columns: std::ops::RangeInclusive<i64>,
@@ -82,7 +83,7 @@ impl Samples {
         })
     }
 
-    /// The samples before and behind a position, and how far the position lies behind the one before.
+    /// The samples before and after a position, and the fraction of the distance between them.
     fn between(&self, position: f64, samples: usize) -> (usize, usize, f64) {
         let last = samples - 1;
         if self.tiled {

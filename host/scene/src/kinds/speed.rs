@@ -1,4 +1,4 @@
-//! A curve over sliding speed, a factor on what lies below it.
+//! A curve over sliding speed: a factor on the friction of the layers below.
 
 use std::sync::Arc;
 
@@ -30,7 +30,7 @@ const FACTORS: FieldSpec = FieldSpec::new(
     Required,
     "the factor at each of them, straight between, held outside",
 );
-/// Least distance of two speeds: twice what a board tells apart, so that rounding never brings them too close.
+/// Least distance of two speeds: twice the board's resolution, so that rounding never makes them too close.
 const STEP_MIN_MM_PER_S: f64 = 2.0 * range::SPEED_STEP_MIN_M_PER_S / MM;
 
 /// `kind = "speed"`.
@@ -81,7 +81,7 @@ pub(super) fn field(record: &Record, _region: RecordRegion, program: &Program) -
     Arc::new(SpeedField(own.map(|point| (f64::from(point.x), f64::from(point.y))).collect()))
 }
 
-/// Speeds in m/s, and what is there.
+/// Speeds in m/s, and the factor at each.
 #[derive(Debug)]
 struct SpeedField(Vec<(f64, f64)>);
 

@@ -1,4 +1,4 @@
-//! What the host streams while the scene plays.
+//! Friction that the host streams while the scene plays.
 
 use std::sync::Arc;
 

@@ -114,7 +114,7 @@ impl Burst {
         Some(Self { period_ms, on_ms, ramp_ms })
     }
 
-    /// In whole ticks, as the board has it, so that a period is the same to both.
+    /// Converts times to whole ticks, as the board does, so that both have the same period.
     fn lower(self, lowering: &Lowering) -> RecordBurst {
         let tick_hz = f64::from(lowering.tick_hz);
         let whole = |time_ms: f64| ((time_ms * MM * tick_hz).round() / tick_hz) as f32;

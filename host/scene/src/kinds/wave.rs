@@ -1,4 +1,4 @@
-//! The words for a periodic wave, and its reference.
+//! The fields of a periodic wave, and its reference.
 
 use std::f64::consts::TAU;
 
@@ -22,7 +22,7 @@ const DUTY: FieldSpec = number(
     "the part of a square's wavelength that is high",
 );
 
-/// Reads `wave`, and `duty` of a square one.
+/// Reads `wave`, and `duty` if it is a square wave.
 pub(super) fn read(fields: &mut Fields, log: &mut Log) -> Wave {
     let square = Wave::Square { duty: 0.5 };
     let waves = [("sine", Wave::Sine), ("square", square), ("triangle", Wave::Triangle), ("saw", Wave::Saw)];
@@ -45,7 +45,7 @@ pub(super) struct WaveField {
 impl WaveField {
     /// Electric friction at a phase, in newtons.
     pub(super) fn at_turns(&self, turns: f64) -> f64 {
-        // Towards zero first: a cast is faster than a floor, and no screen has 2^53 stripes.
+        // Truncate first: a cast is faster than a floor, and no screen has 2^53 stripes.
         let part = turns - (turns as i64) as f64;
         let turn = if part < 0.0 { part + 1.0 } else { part };
         let wave = match self.wave {
@@ -57,7 +57,7 @@ impl WaveField {
         self.trough_n + (self.crest_n - self.trough_n) * wave
     }
 
-    /// The interval of the friction where the phase takes every value between two, in turns.
+    /// The range of the friction while the phase covers an interval, in turns.
     pub(super) fn interval(&self, turns: Interval<f64>) -> Interval<f64> {
         let passes = |turn: f64| libm::floor(turns.high - turn) > libm::floor(turns.low - turn);
         let (trough_n, crest_n) = (self.trough_n, self.crest_n);

@@ -1,4 +1,4 @@
-//! What a layer asks for, in one of three units that stand in the field's name.
+//! The target amount of a layer, in one of three units; the field's name states the unit.
 
 use super::super::fields::Fields;
 use super::super::grammar::{Absence, AmountFields, FieldSpec};
@@ -7,18 +7,18 @@ use super::super::mistake::Mistake;
 use super::super::source::Places;
 use super::super::tables::{HIGH, LOW};
 
-/// What a layer asks for.
+/// The target amount of a layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Amount {
     /// Friction, N.
     Newtons(f64),
-    /// A fraction of the most that the drive can add here.
+    /// A fraction of the largest friction that the drive can add here.
     Fraction(f64),
-    /// A plain factor, of a layer that is multiplied.
+    /// A factor, for a layer that multiplies the layers below it.
     Factor(f64),
 }
 
-/// What the amounts of a layer may be.
+/// The units that the amounts of a layer may have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Unit {
     /// Newtons or fractions.
@@ -40,7 +40,7 @@ impl Amount {
             let mistake = Mistake::TwoUnits { one: newtons.name, other: fraction.name };
             log.add(fields.place(fraction.name), mistake);
         }
-        // Either of the two will do, so that neither is required by itself.
+        // Either of the two fields is enough, so neither is required by itself.
         let absence = Absence::Means("");
         if newtons.absence == Absence::Mistake && !has_fraction {
             fields.require(newtons);
@@ -50,7 +50,7 @@ impl Amount {
         newtons.or(fraction)
     }
 
-    /// Whether it is more than another amount, where that can be told.
+    /// Whether this amount is larger than another one; `false` if the two cannot be compared.
     pub(crate) fn is_above(self, other: Self) -> bool {
         match (self, other) {
             (Self::Newtons(one), Self::Newtons(other))
@@ -87,7 +87,7 @@ impl LowHigh {
         Some(Self { low: low?, high: high? })
     }
 
-    /// Finds a least amount that is above the largest.
+    /// Reports a mistake if the least amount is above the largest.
     pub(crate) fn check(self, places: &Places, log: &mut Log) {
         if self.low.is_above(self.high) {
             let (low_name, high_name) = (places.first_of(LOW.names()), places.first_of(HIGH.names()));
@@ -96,7 +96,7 @@ impl LowHigh {
         }
     }
 
-    /// The field of the largest amount, or of the least.
+    /// The name of the field of the largest amount, or of the least.
     pub(crate) fn extreme(most: bool, places: &Places) -> &'static str {
         places.first_of(if most { HIGH } else { LOW }.names())
     }

@@ -1,4 +1,4 @@
-//! `[[layer]]`: what a person writes for one layer.
+//! `[[layer]]`: the fields of one layer, as a person writes them.
 
 mod amount;
 mod region;
@@ -18,25 +18,25 @@ use super::tables;
 /// One layer as written.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Layer {
-    /// How messages call it: its number from one, and its name or kind.
+    /// The layer's title in messages: its number from one, and its name or kind.
     pub(crate) title: String,
     pub(crate) name: Option<String>,
     pub(crate) region: Option<Region>,
     pub(crate) blend: Blend,
     pub(crate) gain: f64,
     pub(crate) above: Above,
-    /// The host changes it while it plays.
+    /// Whether the host changes the layer while it plays.
     pub(crate) live: bool,
     pub(crate) kind: Kind,
     pub(crate) places: Places,
 }
 
-/// What a layer's frictions in newtons count from.
+/// The zero point of a layer's frictions in newtons.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Above {
-    /// From the finger's friction at no voltage.
+    /// The finger's friction at no voltage.
     Natural,
-    /// From zero: they are totals.
+    /// No friction: the values are totals.
     Zero,
 }
 
@@ -46,7 +46,7 @@ impl Layer {
         fields.rename(format!("layer {number}"));
         let name = fields.text(log, &tables::layer::NAME);
         let Some(kind_name) = fields.choice_or_nearest(log, &tables::layer::KIND, KindName::ALL) else {
-            // Nobody knows what else the layer should have; these every kind has.
+            // The other fields depend on the kind, which is unknown. Read those that every kind has.
             let _ = Common::read(&mut fields, KindName::Constant, log);
             fields.give_up_without(log, "kind");
             return None;
@@ -71,7 +71,7 @@ impl Layer {
     }
 }
 
-/// What every kind of layer has.
+/// The fields that every kind of layer has.
 struct Common {
     region: Result<Option<Region>, region::Misread>,
     blend: Blend,
@@ -89,7 +89,7 @@ impl Common {
         let gain = fields.number_or_default(log, &tables::layer::GAIN);
         let live = fields.flag(log, &tables::layer::LIVE);
         let unit = if blend == Blend::Multiply { Unit::Factor } else { Unit::Friction };
-        // What is multiplied counts from nothing.
+        // The zero point of a layer that multiplies is zero.
         let above = match unit {
             Unit::Friction => {
                 fields.choice(log, &tables::layer::ABOVE, &[("natural", Above::Natural), ("zero", Above::Zero)])

@@ -1,4 +1,4 @@
-//! `region`: where a layer acts.
+//! `region`: the part of the screen where a layer acts.
 
 use super::super::fields::Fields;
 use super::super::log::Log;
@@ -6,14 +6,14 @@ use super::super::mistake::Mistake;
 use super::super::tables;
 use crate::kinds::KindName;
 
-/// Vertices that a polygon may have.
+/// Least and largest number of vertices of a polygon.
 const VERTICES: (usize, usize) = (3, frixel_wire::scene::POLYGON_POINTS_MAX);
 
-/// Where a layer acts.
+/// The part of the screen where a layer acts.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Region {
     Rectangle(Rectangle),
-    /// Inside of a rectangle.
+    /// The ellipse that fits into a rectangle.
     Ellipse(Rectangle),
     /// Vertices, mm.
     Polygon(Vec<(f64, f64)>),
@@ -57,10 +57,10 @@ impl Rectangle {
     }
 }
 
-/// A region that cannot be understood; why has been noted.
+/// A region that cannot be understood. The mistake has been logged.
 pub(crate) struct Misread;
 
-/// The region of a layer, `None` for the screen. A button needs one that has a rim.
+/// The region of a layer, `None` for the whole screen. A button needs a region with a rim.
 pub(crate) fn read(layer: &mut Fields, kind: KindName, log: &mut Log) -> Result<Option<Region>, Misread> {
     let button = kind.needs_rim();
     if button {

@@ -15,8 +15,8 @@ use super::pool::{Placed, Pool};
 use super::program::Bitmap;
 use super::reach::Reach;
 
-/// Total friction that differs from natural friction by less than this, relative to it, is natural friction, which is
-/// rounded to `f32`.
+/// Total friction that differs from natural friction by less than this, relative to it, counts as natural friction,
+/// which is rounded to `f32`.
 const NATURAL_ROUNDING: f64 = 1e-6;
 pub(crate) const MM: f64 = 1e-3;
 
@@ -73,7 +73,7 @@ impl<'a, 's> Lowering<'a, 's> {
         Some(Record { region, blend: layer.blend, gain: layer.gain as f32, layer: record_layer })
     }
 
-    /// Adds the picture of a layer to the pool. `visible` is the rectangle in which it is seen.
+    /// Adds the picture of a layer to the pool. `visible` is the rectangle in which the picture shows.
     pub(crate) fn place_bitmap(
         &mut self,
         layer: &Layer,
@@ -108,7 +108,7 @@ impl<'a, 's> Lowering<'a, 's> {
         })
     }
 
-    /// Stores points, unless another layer has the same ones.
+    /// Stores points, or reuses those of another layer if they are equal.
     pub(crate) fn points(&mut self, layer: &Layer, points: Vec<Point>) -> Option<(u8, u8)> {
         let count = points.len();
         let first = self.points.windows(count).position(|held| held == points).unwrap_or(self.points.len());

@@ -1,4 +1,4 @@
-//! Places on the screen: from millimetres and degrees to metres and turns.
+//! Converts places on the screen from millimetres and degrees to metres and turns.
 
 use frixel_layers::{Header, Region as WireRegion};
 
@@ -8,10 +8,10 @@ use super::super::log::Log;
 use super::super::mistake::Mistake;
 use super::MM;
 
-/// How far a layer may extend past the screen, since millimetres are rounded, mm.
+/// Tolerance for a layer that extends past the screen because millimetres are rounded, mm.
 const OFF_SCREEN_MM: f64 = 1e-6;
 
-/// Cycles per metre along x and y. Right angles are exact.
+/// Cycles per metre along x and y; exact for right angles.
 pub(crate) fn wave_vector(wavelength_mm: f64, angle_deg: f64) -> (f32, f32) {
     let cycles_per_m = 1.0 / (wavelength_mm * MM);
     let angle = angle_deg.to_radians();
@@ -36,7 +36,7 @@ pub(crate) fn check_on_screen(scene: &Scene, layer: &Layer, rectangle: Rectangle
     let furthest = past.into_iter().max_by(|(_, one), (_, other)| one.total_cmp(other));
     if let Some((edge, beyond_mm)) = furthest.filter(|(_, beyond_mm)| *beyond_mm > OFF_SCREEN_MM) {
         let field = if layer.region.is_some() { "region" } else { "x_mm" };
-        // Rounded up to a micrometre, so that moving by it is enough.
+        // Round up to a micrometre, so that a move by this distance is enough.
         let beyond_mm = (beyond_mm * 1e3 - 1e-6).ceil() / 1e3;
         let layer_title = layer.title.clone();
         log.add(
@@ -46,8 +46,8 @@ pub(crate) fn check_on_screen(scene: &Scene, layer: &Layer, rectangle: Rectangle
     }
 }
 
-/// The region of a rectangle: the whole screen if it covers that, which costs the board nothing. A button keeps its
-/// sides.
+/// The region of a rectangle. If it covers the whole screen, the region is the screen, which costs the board nothing. A
+/// button keeps its sides.
 pub(crate) fn rectangle(rectangle: Rectangle, header: &Header, button: bool) -> WireRegion {
     let [x_m, y_m, width_m, height_m] = stretches(rectangle, header);
     let everywhere = x_m <= 0.0 && y_m <= 0.0 && width_m >= header.screen_width_m && height_m >= header.screen_height_m;
@@ -65,7 +65,7 @@ fn stretches(rectangle: Rectangle, header: &Header) -> [f32; 4] {
     [x_m, y_m, width_m, height_m]
 }
 
-/// Start and length of a side in metres, shortened by the bits that rounding would extend past the screen.
+/// Start and length of a side in metres. The length is shortened if rounding would extend it past the screen.
 fn stretch(start_mm: f64, length_mm: f64, screen_m: f32) -> (f32, f32) {
     let start_m = ((start_mm * MM) as f32).max(0.0);
     let room_m = f64::from(screen_m) - f64::from(start_m);

@@ -51,7 +51,7 @@ fn nothing_gathered_is_absent() {
     assert_eq!((summary.carrier_ripple_rms_n, summary.wanted_range_n), (None, None));
 }
 
-/// One tick in forty, as a board's telemetry has them, and no finger that could say what it felt.
+/// One sample in 40 ticks, as in a board's telemetry, without the felt friction.
 #[test]
 fn what_needs_every_tick_is_absent_when_some_were_not_seen() {
     let mut metrics = Metrics::new(HALF_PERIOD_TICKS);
@@ -80,7 +80,7 @@ fn a_carrier_that_averages_out_is_ripple_and_no_error() {
     let samples: Vec<_> = (0..800).map(|tick| sample(0.26, 0.26 + if tick % 8 < 4 { 0.003 } else { -0.003 })).collect();
     let summary = gather(&samples);
     close(summary.carrier_ripple_rms_n.expect("ripple"), 0.003);
-    // Only windows that are not yet a whole period see the carrier.
+    // The carrier shows only in windows shorter than a whole period.
     let first: Vec<f64> =
         [1.0, 1.0, 1.0, 1.0, 3.0 / 5.0, 2.0 / 6.0, 1.0 / 7.0].iter().map(|part| 0.003 * part).collect();
     let expected = (first.iter().map(|error| error * error).sum::<f64>() / 800.0).sqrt();
@@ -118,7 +118,7 @@ fn a_window_starts_anew_with_each_touch() {
 
 #[test]
 fn hours_do_not_wear_the_sums() {
-    // A large value leaves rounding in a running sum, which must not stay there.
+    // A large value leaves a rounding error in a running sum. The error must not persist.
     let mut metrics = Metrics::new(HALF_PERIOD_TICKS);
     for tick in 0..1_000_000_u32 {
         let value = if tick % 1000 == 0 { 1e9 } else { 1e-9 };

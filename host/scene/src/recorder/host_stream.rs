@@ -1,5 +1,5 @@
-//! The stream that a host sends, as a finger should feel it: decoded from the host's frames, and independent of the
-//! firmware that plays it.
+//! Decodes the stream that a host sends and computes how a finger should feel it, independently of the firmware that
+//! plays the stream.
 
 use std::collections::VecDeque;
 
@@ -9,26 +9,26 @@ use frixel_wire::payload::Payload;
 
 /// Time in which a stream fades in and out, s (PROTOCOL, section 15).
 const FADE_S: f64 = 0.01;
-/// Time that a board may have had samples without a report that it waits for more, s. After it, a report is taken to
-/// have been lost between two telemetry messages, and the stream to play.
+/// How long a board may have had samples without reporting that it waits for more, s. After this time the recorder
+/// assumes that a report was lost between two telemetry messages, and that the stream plays.
 const START_MISSED_AFTER_S: f64 = 0.05;
 
-/// A stream under way. The board decides when it plays and when it waits for samples, and reports it by a flag; its
-/// value while it plays is a straight line from each of the host's samples to the next.
+/// A stream under way. The board decides when it plays and when it waits for samples, and reports this by a flag. While
+/// it plays, its value is interpolated linearly between the host's samples.
 #[derive(Debug)]
 pub(super) struct HostStream {
     decoder: Decoder,
     tick_hz: f64,
-    /// Samples from the one that plays on; `first_index` is the index of the first.
+    /// Samples from the one that plays now; `first_index` is the index of the first.
     samples: VecDeque<u16>,
     first_index: u64,
     samples_per_tick: f64,
     phase: Phase,
-    /// Index of the sample that plays, with the part of the way to the next one.
+    /// Index of the sample that plays now, plus the fraction of the interval to the next one.
     place: f64,
     /// The host has sent the end of the stream.
     ended: bool,
-    /// How much of the stream's layers is felt, from 0 to 1.
+    /// Weight of the stream's layers, from 0 to 1.
     weight: f64,
     /// The board last reported that it waits for samples.
     dry: bool,
@@ -38,9 +38,9 @@ pub(super) struct HostStream {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Phase {
-    /// No stream, or one that is over.
+    /// There is no stream, or it is over.
     Over,
-    /// The host has started it, and the board has not reported that it waits for samples.
+    /// The host has started the stream, and the board has not reported that it waits for samples.
     Requested,
     /// The board waits for samples.
     Waiting,
@@ -66,7 +66,7 @@ impl HostStream {
         }
     }
 
-    /// Takes bytes that the host sends.
+    /// Reads bytes that the host sends.
     pub(super) fn receive(&mut self, mut bytes: &[u8]) {
         let mut decoder = std::mem::take(&mut self.decoder);
         while let Some(payload) = decoder.next_frame(&mut bytes) {
@@ -79,10 +79,11 @@ impl HostStream {
         self.decoder = decoder;
     }
 
-    /// Goes on by so many ticks, after the last of which the board reported whether it waits for samples; `None` when
-    /// it reported nothing. Returns the sample, from 0 to 1, and the weight of the stream's layers, from 0 to 1.
+    /// Advances by `ticks` ticks. `dry` is the board's report after the last of them, whether it waits for samples;
+    /// `None` if there was no report. Returns the sample, from 0 to 1, and the weight of the stream's layers, from 0 to
+    /// 1.
     ///
-    /// A change between two reports is placed half way between them.
+    /// A change between two reports is placed halfway between them.
     pub(super) fn advance(&mut self, ticks: u32, dry: Option<bool>) -> (f64, f64) {
         let before = self.dry;
         self.dry = dry.unwrap_or(before);
@@ -109,7 +110,7 @@ impl HostStream {
         }
     }
 
-    /// Appends samples. Those of an index that is there already take the place of what was sent from there on.
+    /// Appends samples. If the index is already in the buffer, the new samples replace those from that index on.
     fn append(&mut self, first_index: u32, samples: &[[u8; 2]]) {
         // Indices on the line are modulo 2^32.
         let offset = first_index.wrapping_sub(self.first_index as u32) as usize;
@@ -126,7 +127,7 @@ impl HostStream {
             (Phase::Requested | Phase::Waiting, true) => Phase::Waiting,
             (Phase::Waiting, false) => self.begin(),
             (Phase::Begun | Phase::Playing, true) => {
-                // The board holds the sample that it has come to while it fades the stream out.
+                // While the board fades the stream out, it holds the sample that it has reached.
                 self.place = self.place.round();
                 Phase::Waiting
             }
@@ -138,15 +139,15 @@ impl HostStream {
         self.weight = if plays { (self.weight + step).min(1.0) } else { (self.weight - step).max(0.0) };
     }
 
-    /// Before a board reports that it waits for samples, the request may be on its way.
+    /// Handles a tick before the board has reported that it waits for samples: the request may still be in transit.
     fn wait_for_report(&mut self) -> Phase {
         self.ticks_with_samples += u32::from(!self.samples.is_empty());
         let missed = f64::from(self.ticks_with_samples) > START_MISSED_AFTER_S * self.tick_hz;
         if missed { self.begin() } else { Phase::Requested }
     }
 
-    /// While the stream still fades out, the board goes on from where it held it. Later it begins with the sample that
-    /// it waited for.
+    /// Begins to play. If the stream still fades out, the board continues from the sample that it held; otherwise it
+    /// begins with the sample that it waited for.
     fn begin(&mut self) -> Phase {
         if self.weight > 0.0 {
             return Phase::Playing;
@@ -169,7 +170,7 @@ impl HostStream {
         if over && self.ended { Phase::Over } else { Phase::Playing }
     }
 
-    /// Drops samples that lie behind, so that a stream of any length fits in memory.
+    /// Drops samples that were played, so that a stream of any length fits in memory.
     fn forget_played(&mut self) {
         while self.first_index < self.place as u64 && self.samples.len() > 1 {
             self.samples.pop_front();

@@ -1,4 +1,4 @@
-//! What a commanded voltage is worth without the errors of amplifier and finger.
+//! Converts a commanded voltage to friction, without the errors of amplifier and finger.
 
 use frixel_layers::Carrier;
 use frixel_model::{Contact, Finger, LoadedContact, ParameterError};
@@ -6,7 +6,7 @@ use frixel_wire::hello::BoardLimits;
 
 use crate::{Program, carrier};
 
-/// The full model behind an ideal amplifier and the DAC's steps.
+/// The full model, driven through an ideal amplifier and a DAC with its steps.
 #[derive(Debug)]
 pub(super) struct Inversion {
     contact: LoadedContact<f64>,
@@ -37,8 +37,8 @@ impl Inversion {
 
     /// Electric friction at a commanded voltage, the DAC's step included, N.
     ///
-    /// The code of a square wave is its amplitude. A sine's is one of many, so its amplitude is rounded as the DAC
-    /// would round it.
+    /// The code of a square wave is its amplitude. The code of a sine wave is only one of many samples, so its
+    /// amplitude is rounded as the DAC would round it.
     pub(super) fn electric_friction_n(&self, voltage_v_rms: f32, dac_code: i16) -> f64 {
         let amplitude_code = match self.carrier {
             Carrier::Square => f64::from(dac_code).abs(),
@@ -58,7 +58,7 @@ impl Inversion {
         (voltage_v_rms * self.codes_per_v_rms).round() as i16
     }
 
-    /// Electric friction at an rms voltage that has no steps, N.
+    /// Electric friction at an rms voltage that is not rounded to DAC steps, N.
     #[cfg(test)]
     pub(super) fn without_steps_n(&self, voltage_v_rms: f64) -> f64 {
         self.contact.electric_friction_n(voltage_v_rms)

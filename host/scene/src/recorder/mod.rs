@@ -1,8 +1,9 @@
-//! What a board did and what its finger felt, recorded and compared with the [reference](mod@crate::reference).
+//! Records what a board did and what its finger felt, and compares it with the [reference](mod@crate::reference).
 //!
-//! One [`Recorder`] serves every rig. [`Observation`]s go in: one for every tick where the board or its world is
-//! simulated, one for every telemetry message of a board at a port. [`FeltRow`]s and a [`MetricsSummary`] come out.
-//! What a source cannot see is `None` in an observation, and an absent cell or number in what comes out.
+//! The same [`Recorder`] serves simulated boards and boards at a port. Its input is [`Observation`]s: one for every
+//! tick if the board or its world is simulated, one for every telemetry message of a board at a port. Its output is
+//! [`FeltRow`]s and a [`MetricsSummary`]. A value that the source cannot observe is `None` in an observation, and an
+//! absent cell or number in the output.
 
 mod host_stream;
 mod inversion;
@@ -24,7 +25,7 @@ use rows::{Frictions, RowMaker};
 
 /// Records one play.
 ///
-/// Time zero is the tick that [`Self::start`] names, or else the first observation.
+/// Time zero is the tick given to [`Self::start`], or else the first observation.
 #[derive(Debug)]
 pub struct Recorder {
     comparison: Option<Comparison>,
@@ -36,7 +37,7 @@ pub struct Recorder {
     last_tick: u64,
 }
 
-/// What a play is compared with, and how far it is from that.
+/// The reference that a play is compared with, and the metrics of the comparison.
 #[derive(Debug)]
 struct Comparison {
     reference: StrokeReference,
@@ -46,10 +47,10 @@ struct Comparison {
 }
 
 impl Recorder {
-    /// Compares with the reference of `program`, on a board of these limits that ticks `tick_hz` times a second.
-    /// Records `ticks_max` ticks at most, with a row for every `ticks_per_row` of them.
+    /// Creates a recorder that compares with the reference of `program`, on a board with these limits and `tick_hz`
+    /// ticks a second. It records at most `ticks_max` ticks, with a row for every `ticks_per_row` of them.
     ///
-    /// The contact model may refuse the program's finger; it does not refuse that of a program that was compiled.
+    /// Returns an error if the contact model refuses the program's finger. This does not happen for a compiled program.
     pub fn new(
         program: &Program,
         limits: &BoardLimits,
@@ -66,7 +67,7 @@ impl Recorder {
         Ok(Self { comparison: Some(comparison), ticks_max, ..Self::without_reference(tick_hz, ticks_per_row) })
     }
 
-    /// Records a board whose program is unknown: no row has `wanted_n`, and the summary has no errors.
+    /// Creates a recorder for a board whose program is unknown: no row has `wanted_n`, and the summary has no errors.
     pub fn without_reference(tick_hz: u32, ticks_per_row: u32) -> Self {
         Self {
             comparison: None,
@@ -79,7 +80,7 @@ impl Recorder {
         }
     }
 
-    /// Records nothing. It stands in until a play has its recorder.
+    /// Creates a placeholder that records nothing, for use until a play has its recorder.
     pub fn idle() -> Self {
         Self { ticks_max: 0, ..Self::without_reference(1, u32::MAX) }
     }
@@ -90,8 +91,8 @@ impl Recorder {
         self.last_tick = u64::from(tick);
     }
 
-    /// Compares with another program from now on, as when a scene is replaced while it plays. A recorder without a
-    /// reference stays without one.
+    /// Compares with another program from now on, for example when a scene is replaced while it plays. A recorder
+    /// without a reference stays without one.
     pub fn replace(&mut self, program: &Program, limits: &BoardLimits, tick_hz: u32) -> Result<(), ParameterError> {
         if let Some(comparison) = &mut self.comparison {
             comparison.reference = Reference::new(program).along_stroke();
@@ -101,15 +102,15 @@ impl Recorder {
         Ok(())
     }
 
-    /// Takes bytes that the host sends to the board: whole frames or parts of them, in order. Samples of a stream are
-    /// part of the reference.
+    /// Reads bytes that the host sends to the board: whole frames or parts of them, in order. The samples of a stream
+    /// in them are part of the reference.
     pub fn record_sent(&mut self, bytes: &[u8]) {
         if let Some(comparison) = &mut self.comparison {
             comparison.stream.receive(bytes);
         }
     }
 
-    /// Takes an observation. One that is not later than the one before, or beyond the end of the record, is ignored.
+    /// Adds an observation. Ignores one that is not later than the one before, or that is beyond the end of the record.
     pub fn record(&mut self, observation: &Observation) {
         let Some(ticks_passed) = self.advance_to(observation.tick) else { return };
         let frictions = match &mut self.comparison {
@@ -129,12 +130,12 @@ impl Recorder {
         self.ticks() as f64 * self.tick_period_s
     }
 
-    /// Ticks that are still to be recorded.
+    /// Ticks that remain to be recorded.
     pub fn ticks_left(&self) -> u64 {
         self.ticks_max - self.ticks()
     }
 
-    /// The rows so far, without those that were taken.
+    /// The rows so far, except those already taken.
     pub fn rows(&self) -> &[FeltRow] {
         &self.rows
     }
@@ -144,7 +145,7 @@ impl Recorder {
         std::mem::take(&mut self.rows)
     }
 
-    /// The numbers so far. Without a reference, only the ticks.
+    /// The metrics so far; only the ticks if there is no reference.
     pub fn summary(&self) -> MetricsSummary {
         let ticks = self.ticks();
         match &self.comparison {
@@ -153,8 +154,8 @@ impl Recorder {
         }
     }
 
-    /// Goes to a tick of the board's counter, which is modulo 2^32, and returns how many ticks have passed since the
-    /// observation before; `None` when the tick is not to be recorded.
+    /// Advances to a tick of the board's counter, which is modulo 2^32, and returns the ticks since the previous
+    /// observation; `None` if the tick is not to be recorded.
     fn advance_to(&mut self, tick: u32) -> Option<u32> {
         if self.start_tick.is_none() && self.ticks_max > 0 {
             self.start(tick);
@@ -171,7 +172,7 @@ impl Recorder {
 }
 
 impl Comparison {
-    /// Adds an observation at a time since power-on, so many ticks after the one before.
+    /// Adds an observation at time `t_s` since power-on, `ticks_passed` ticks after the previous one.
     fn add(&mut self, observation: &Observation, t_s: f64, ticks_passed: u32) -> Frictions {
         let natural_n = self.reference.natural_friction_n();
         let telemetry = observation.telemetry.as_ref();
@@ -193,7 +194,7 @@ impl Comparison {
         Frictions { wanted_n, asked_n, felt_n }
     }
 
-    /// Electric friction of the reference where the finger is; `None` while it is up.
+    /// Electric friction of the reference at the finger's place; `None` while the finger is up.
     fn reference_electric_n(&mut self, observation: &Observation, t_s: f64, ticks_passed: u32) -> Option<f64> {
         let dry = observation.telemetry.map(|telemetry| telemetry.flags.contains(Flags::STREAM_DRY));
         let (stream, stream_weight) = self.stream.advance(ticks_passed, dry);

@@ -1,21 +1,21 @@
-//! What goes into a recorder.
+//! The input of a recorder.
 
 use frixel_wire::fault::Flags;
 use frixel_wire::message::Telemetry;
 
-/// What is known of a board and its finger at one tick. What the source cannot see is `None`.
+/// The known state of a board and its finger at one tick. A value that the source cannot observe is `None`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Observation {
     /// Ticks since the board's power-on, this one included, modulo 2^32.
     pub tick: u32,
-    /// The finger, while it is on the screen: its true place where the finger is simulated, else what the board
-    /// reports.
+    /// The finger, while it is on the screen: its true place if the finger is simulated, otherwise the place that the
+    /// board reports.
     pub finger: Option<FingerState>,
-    /// What the finger felt; only a simulated one can say.
+    /// The friction that the finger felt; known only for a simulated finger.
     pub felt: Option<FeltFriction>,
     /// The code that went to the DAC.
     pub dac_code: Option<i16>,
-    /// What the board reports of this tick.
+    /// The board's telemetry of this tick.
     pub telemetry: Option<Telemetry>,
 }
 
@@ -33,14 +33,14 @@ pub struct FingerState {
 /// Friction that a simulated finger felt, N.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FeltFriction {
-    /// The total.
+    /// Total friction.
     pub friction_n: f64,
-    /// The part that the drive added.
+    /// The part of the friction that the drive added.
     pub electric_friction_n: f64,
 }
 
 impl Observation {
-    /// What a board reports of itself, without anybody who sees its finger from outside.
+    /// An observation of a real board, from its telemetry alone.
     pub fn from_telemetry(telemetry: &Telemetry) -> Self {
         let finger = FingerState {
             x_m: f64::from(telemetry.finger_x_m),

@@ -1,10 +1,10 @@
-//! What comes out of a recorder, a row for so many ticks.
+//! The output of a recorder: one row for a fixed number of ticks.
 
 use frixel_wire::fault::Flags;
 
 use super::Observation;
 
-/// A row of `felt.csv`. What is not known is `None`, an empty cell. Frictions are totals, and means over the row's
+/// A row of `felt.csv`. An unknown value is `None`, an empty cell. Frictions are totals, and means over the row's
 /// ticks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FeltRow {
@@ -16,15 +16,15 @@ pub struct FeltRow {
     pub y_mm: Option<f64>,
     /// The finger's speed at the end of the row, mm/s.
     pub speed_mm_s: Option<f64>,
-    /// The reference: friction that the scene means at the finger's place, N.
+    /// The reference: friction of the scene at the finger's place, N.
     pub wanted_n: Option<f64>,
-    /// The command: friction that the board asked its inverse for, N.
+    /// The board's target, the input of its inverse: friction, N.
     pub asked_n: Option<f64>,
     /// Friction that the finger felt, N.
     pub felt_n: Option<f64>,
-    /// Rms voltage of the envelope, V, as the board reported it last in the row.
+    /// Rms voltage of the envelope, V: the last that the board reported in the row.
     pub voltage_v_rms: Option<f64>,
-    /// Code that went to the DAC last in the row.
+    /// The last code in the row that went to the DAC.
     pub dac_code: Option<i16>,
     /// Every flag that the board reported in the row.
     pub flags: Option<Flags>,
@@ -39,7 +39,7 @@ pub(super) struct Frictions {
 }
 
 impl Frictions {
-    /// What is known without a program: natural friction is then what the simulated finger had.
+    /// The frictions that are known without a program. Natural friction is then that of the simulated finger.
     pub(super) fn without_reference(observation: &Observation) -> Self {
         let natural_n = observation.felt.map(|felt| felt.friction_n - felt.electric_friction_n);
         let electric_n = observation.telemetry.map(|telemetry| f64::from(telemetry.asked_electric_friction_n));
@@ -51,15 +51,15 @@ impl Frictions {
     }
 }
 
-/// Makes a row for every so many ticks.
+/// Makes a row for every fixed number of ticks.
 ///
-/// At a row a millisecond and a carrier of 1 kHz, felt friction is the mean over a carrier period, and does not show
-/// which part of a carrier's edge the row ended on.
+/// With one row a millisecond and a carrier of 1 kHz, felt friction is the mean over a carrier period, so it does not
+/// depend on the carrier's phase at the end of the row.
 #[derive(Debug)]
 pub(super) struct RowMaker {
     tick_period_s: f64,
     ticks_per_row: u64,
-    /// Where the row under way ends, in ticks after time zero.
+    /// End of the current row, in ticks after time zero.
     row_end: u64,
     row: FeltRow,
     wanted: Mean,
@@ -80,9 +80,9 @@ impl RowMaker {
         }
     }
 
-    /// Takes what was observed so many ticks after time zero. Returns the row that it completes.
+    /// Adds an observation `ticks` ticks after time zero. Returns the row that it completes.
     ///
-    /// A row whose last tick was not observed is left out.
+    /// A row whose last tick was not observed is omitted.
     pub(super) fn add(&mut self, observation: &Observation, ticks: u64, frictions: &Frictions) -> Option<FeltRow> {
         if ticks > self.row_end {
             self.begin(ticks.div_ceil(self.ticks_per_row) * self.ticks_per_row);
@@ -120,7 +120,7 @@ impl RowMaker {
     }
 }
 
-/// A mean of the values that are known.
+/// Mean of the known values.
 #[derive(Clone, Copy, Debug, Default)]
 struct Mean {
     sum: f64,

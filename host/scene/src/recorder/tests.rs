@@ -38,7 +38,7 @@ fn telemetry(tick: u32) -> Telemetry {
     }
 }
 
-/// A tick of a simulated world, of which the board says nothing.
+/// An observation of a simulated tick without a board's report.
 fn simulated(tick: u32, friction_n: f64) -> Observation {
     Observation {
         tick,
@@ -79,7 +79,7 @@ fn a_row_has_means_over_its_ticks_and_what_the_board_reported_last() {
     assert_eq!((summary.saturated_ticks, summary.inversion_error), (None, None), "17 of 20 ticks were not reported");
 }
 
-/// The first message is time zero. The counter of the board comes round, and one message is lost.
+/// The first message is time zero. The board's counter wraps around, and one message is lost.
 #[test]
 fn telemetry_alone_is_a_row_a_message() {
     let program = program(CONSTANT);
@@ -128,7 +128,7 @@ fn the_reference_of_telemetry_clicks() {
     let wanted_mn: Vec<f64> = recorder.rows().iter().map(|row| 1e3 * (row.wanted_n.unwrap() - 0.25)).collect();
     let crossed = wanted_mn.iter().position(|wanted_mn| *wanted_mn > 9.0).unwrap();
     assert!((48..=53).contains(&crossed), "it clicks at {crossed} ms");
-    // The click falls with the square of the time that is left of its 60 ms.
+    // The click decreases with the square of the time that remains of its 60 ms.
     for (ms, wanted_mn) in wanted_mn[crossed + 10..crossed + 60].iter().enumerate() {
         let expected_mn = 10.0 * (1.0 - (ms + 10) as f64 / 60.0).powi(2);
         assert!((wanted_mn - expected_mn).abs() < 1e-3, "{ms}: {wanted_mn} mN is not {expected_mn} mN");
@@ -141,7 +141,7 @@ fn request(command: Command) -> Vec<u8> {
     request_frame(&Request { sequence: 1, command }, &mut buffer).unwrap().to_vec()
 }
 
-/// What a host sends to stream a ramp of 4,000 samples in a second.
+/// The bytes that a host sends to stream a ramp of 4,000 samples in a second.
 fn ramp() -> Vec<u8> {
     let samples: Vec<u16> = (0..4_000).map(|index| 16 * index).collect();
     let mut sent = request(Command::StartStream { sample_hz: 4_000, start_level: 200 });
@@ -153,12 +153,12 @@ fn ramp() -> Vec<u8> {
     sent
 }
 
-/// Electric friction of the ramp so many ticks after it began, faded in, N.
+/// Electric friction of the ramp `ticks` ticks after it began, faded in, N.
 fn ramp_n(ticks: f64) -> f64 {
     0.02 * 16.0 * (0.1 * ticks) / 65_535.0
 }
 
-/// A recorder of every tick, or of every 40th, sees the same stream.
+/// A recorder of every tick and one of every 40th compute the same stream.
 #[test]
 fn the_reference_of_telemetry_streams() {
     let program = program(STREAM);
@@ -183,7 +183,7 @@ fn the_reference_of_telemetry_streams() {
     }
 }
 
-/// The board waited for samples for less than the time between two messages, and so never reported it.
+/// The board waited for samples for less than the time between two messages, and so did not report it.
 #[test]
 fn a_stream_that_began_between_two_messages_is_in_the_reference() {
     let program = program(STREAM);

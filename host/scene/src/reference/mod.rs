@@ -1,4 +1,4 @@
-//! The reference: the friction that a program means, evaluated in `f64` and independently of the firmware.
+//! The reference: the friction that a program defines, evaluated in `f64` and independently of the firmware.
 
 mod shape;
 mod stroke;
@@ -13,29 +13,29 @@ pub use stroke::{Context, StrokeReference};
 use crate::Program;
 use crate::kinds::{self, Field};
 
-/// Evaluates the friction that a program means at a place on the screen.
+/// Evaluates the friction that a program defines at a place on the screen.
 ///
-/// The compiled program defines it: frictions as rounded to `f32`, pictures as resampled. It is not clipped to what
-/// can be reached.
+/// It uses the numbers of the compiled program: frictions as rounded to `f32`, pictures as resampled. The result is not
+/// clamped to the range that the drive can reach.
 #[derive(Clone, Debug)]
 pub struct Reference {
     natural_friction_n: f64,
     pieces: Vec<Piece>,
 }
 
-/// A record made ready to be evaluated.
+/// A record prepared for evaluation.
 #[derive(Clone, Debug)]
 pub(crate) struct Piece {
     pub(crate) shape: Shape,
     pub(crate) blend: Blend,
     pub(crate) gain: f64,
     pub(crate) field: Arc<dyn Field>,
-    /// The layer fades with the host's stream.
+    /// Whether the layer fades with the host's stream.
     pub(crate) is_streamed: bool,
 }
 
 impl Reference {
-    /// Makes a program ready to be evaluated.
+    /// Prepares a program for evaluation.
     pub fn new(program: &Program) -> Self {
         let pieces = program.records.iter().map(|record| Piece::new(record, program)).collect();
         let natural_friction_n =
@@ -51,17 +51,17 @@ impl Reference {
     /// Electric friction at a place, in metres from the screen's top left corner, in newtons. It may be out of reach.
     /// It is not-a-number where a record names a bitmap that the program does not have.
     ///
-    /// Time and speed are 0, nothing clicks and nothing is streamed: [`StrokeReference`] has those.
+    /// Time and speed are 0, and there are no clicks and no stream; [`StrokeReference`] includes these.
     pub fn electric_friction_n(&self, x_m: f64, y_m: f64) -> f64 {
         self.at(&Context { x_m, y_m, ..Context::default() }, |_| 0.0)
     }
 
-    /// As [`Self::electric_friction_n`], at a time, a speed and a sample of the stream. Nothing clicks.
+    /// As [`Self::electric_friction_n`], at a time, a speed and a sample of the stream. There are no clicks.
     pub fn electric_friction_at_n(&self, context: &Context) -> f64 {
         self.at(context, |_| 0.0)
     }
 
-    /// The same with every vibration held at its largest friction.
+    /// The same reference with every vibration held at its largest friction.
     #[must_use]
     pub fn with_vibrations_held(mut self) -> Self {
         for piece in &mut self.pieces {
@@ -72,15 +72,15 @@ impl Reference {
         self
     }
 
-    /// The reference along a stroke, which clicks where the finger crosses an edge or enters a button.
+    /// The reference along a stroke, with clicks where the finger crosses an edge or enters a button.
     pub fn along_stroke(self) -> StrokeReference {
         StrokeReference::new(self)
     }
 
-    /// Electric friction in a context, where `click_n` is what a layer's click adds.
+    /// Electric friction in a context. `click_n` returns the friction that a layer's click adds.
     fn at(&self, context: &Context, click_n: impl Fn(usize) -> f64) -> f64 {
         let covers = |piece: &Piece| piece.shape.covers(context.x_m, context.y_m);
-        // Nothing below a layer that replaces has to be evaluated.
+        // Layers below one that replaces them need no evaluation.
         let hides = |piece: &Piece| piece.blend == Blend::Replace && !piece.is_streamed;
         let lowest = self.pieces.iter().rposition(|piece| hides(piece) && covers(piece)).unwrap_or(0);
         let above = self.pieces.iter().enumerate().skip(lowest).filter(|(_, piece)| covers(piece));
@@ -96,7 +96,7 @@ impl Reference {
         })
     }
 
-    /// The layers, the first one at the bottom.
+    /// The layers from bottom to top.
     pub(crate) fn pieces(&self) -> &[Piece] {
         &self.pieces
     }

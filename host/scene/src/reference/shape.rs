@@ -6,19 +6,19 @@ use frixel_layers::{Point, Region};
 #[derive(Clone, Debug)]
 pub(crate) enum Shape {
     Everywhere,
-    /// Left and top edge belong to it, right and bottom do not.
+    /// Includes its left and top edges, excludes its right and bottom edges.
     Rectangle {
         left_m: f64,
         top_m: f64,
         right_m: f64,
         bottom_m: f64,
     },
-    /// Its border belongs to it.
+    /// Includes its border.
     Ellipse {
         middle_m: (f64, f64),
         half_axes_m: (f64, f64),
     },
-    /// Even-odd; left and top edges belong to it, right and bottom ones do not.
+    /// Even-odd rule. Includes left and top edges, excludes right and bottom ones.
     Polygon(Vec<(f64, f64)>),
 }
 
@@ -49,7 +49,7 @@ impl Shape {
         }
     }
 
-    /// Left top and right bottom corner of the rectangle around it; `None` for everywhere.
+    /// Top left and bottom right corner of the bounding rectangle; `None` for everywhere.
     pub(crate) fn corners_m(&self) -> Option<[(f64, f64); 2]> {
         match self {
             Self::Everywhere => None,

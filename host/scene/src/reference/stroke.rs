@@ -1,15 +1,15 @@
-//! The reference along a stroke: clicks depend on where the finger was before.
+//! The reference along a stroke. Clicks depend on the finger's earlier places.
 
 use super::Reference;
 
-/// Where the finger is, when, how fast, and what is streamed.
+/// Evaluation context: the finger's place and speed, the time, and the stream's sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Context {
     /// Place from the screen's left edge, m.
     pub x_m: f64,
     /// Place from the screen's top edge, m.
     pub y_m: f64,
-    /// Time since the board's power-on, s: that of its tick.
+    /// Time of the tick since the board's power-on, s.
     pub t_s: f64,
     /// Sliding speed, m/s.
     pub speed_m_per_s: f64,
@@ -19,10 +19,10 @@ pub struct Context {
     pub stream_weight: f64,
 }
 
-/// The reference along a stroke, context by context in the order of time.
+/// The reference along a stroke, evaluated context by context in the order of time.
 ///
-/// A click begins in the first context on the other side of an edge or inside of a button: with one context a tick, at
-/// the tick in which the board sees the crossing.
+/// A click begins in the first context on the other side of an edge or inside a button. With one context a tick, this
+/// is the tick in which the board detects the crossing.
 #[derive(Clone, Debug)]
 pub struct StrokeReference {
     reference: Reference,
@@ -30,11 +30,11 @@ pub struct StrokeReference {
     touching: bool,
 }
 
-/// The past of a layer that clicks.
+/// The click state of a layer.
 #[derive(Clone, Debug)]
 struct ClickingLayer {
     layer: usize,
-    /// On which side of an edge, or inside of a button, the finger was in the context before; `None` outside.
+    /// The finger's side of an edge, or whether it was inside a button, in the previous context; `None` outside.
     side: Option<bool>,
     clicked_at_s: Option<f64>,
 }
@@ -52,7 +52,7 @@ impl StrokeReference {
         self.reference.natural_friction_n
     }
 
-    /// Electric friction in the next context of the stroke, in newtons, as [`Reference::electric_friction_n`] has it.
+    /// Electric friction in the next context of the stroke, in newtons, as in [`Reference::electric_friction_n`].
     pub fn electric_friction_n(&mut self, context: &Context) -> f64 {
         for layer in &mut self.clicking {
             layer.follow(&self.reference, context, self.touching);
@@ -65,7 +65,7 @@ impl StrokeReference {
         self.reference.at(context, click_n)
     }
 
-    /// The finger leaves the screen.
+    /// Records that the finger leaves the screen.
     pub fn lift(&mut self) {
         self.touching = false;
         for layer in &mut self.clicking {
@@ -75,7 +75,7 @@ impl StrokeReference {
 }
 
 impl ClickingLayer {
-    /// Notes where the finger is, and begins a click when it has crossed an edge, or entered a button while it touched.
+    /// Records the finger's place, and begins a click if it has crossed an edge, or entered a button while touching.
     fn follow(&mut self, reference: &Reference, context: &Context, touching: bool) {
         let Some(piece) = reference.pieces.get(self.layer) else { return };
         let (x_m, y_m) = (context.x_m, context.y_m);
@@ -91,7 +91,7 @@ impl ClickingLayer {
         self.side = side;
     }
 
-    /// What the last click still adds, N; `None` when it is over.
+    /// Friction that the last click still adds, N; `None` when the click is over.
     fn click_n(&self, reference: &Reference, t_s: f64) -> Option<f64> {
         let click = reference.pieces.get(self.layer)?.field.click()?;
         let left = 1.0 - (t_s - self.clicked_at_s?) / f64::from(click.decay_s);

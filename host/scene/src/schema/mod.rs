@@ -1,5 +1,5 @@
-//! A JSON schema of the scene file, for editors. It is made from the fields that the parser looks for: it reads texts
-//! that have nothing but the fields that other fields depend on.
+//! A JSON schema of the scene file, for editors. It is made from the fields that the parser reads: the parser is given
+//! texts with only those fields that determine which other fields are known.
 
 pub(super) mod variant;
 
@@ -10,10 +10,10 @@ use super::grammar::{Holds, KnownField, KnownTable, Range};
 use super::tables::layer::KIND;
 use variant::{Tables, Variant, variants};
 
-/// The tables of a scene, empty, so that the parser looks for their fields.
+/// The tables of a scene, empty, so that the parser reads their fields.
 const EMPTY: &str = "coating = [{}]\nscreen = {}\nfinger = {}\ndrive = {}\ncarrier = {}\ntouch = {}\n";
 
-/// The schema (draft 7, which editors know), as a text that ends in a line feed.
+/// The schema (draft 7, which editors support), as a text that ends in a line feed.
 pub fn json_schema() -> String {
     let mut properties = Map::new();
     let tables = describe(EMPTY);
@@ -44,17 +44,17 @@ pub fn json_schema() -> String {
         "additionalProperties": false,
         "definitions": { "region": { "oneOf": regions() } },
     });
-    // A value that was just made always has a text.
+    // A value that was just built always serializes.
     serde_json::to_string_pretty(&schema).unwrap_or_default() + "\n"
 }
 
-/// What a region may be, one for each shape.
+/// The schemas of a region, one for each shape.
 fn regions() -> Vec<Value> {
     let tables = Tables { before: "layer = [{ kind = \"constant\", region = {", after: "} }]", key: "region" };
     variants(&tables).iter().map(|variant| variant_object(variant, &Map::new())).collect()
 }
 
-/// What a layer may be, one for each set of fields that goes together.
+/// The schemas of a layer, one for each set of fields that can occur together.
 fn layers() -> Vec<Value> {
     let none = describe("layer = [{}]");
     let known = none.iter().find(|table| table.key == "layer").into_iter().flat_map(|table| &table.fields);
@@ -75,7 +75,7 @@ fn layers() -> Vec<Value> {
     layers.collect()
 }
 
-/// A table with the choices made that a variant stands for.
+/// The schema of a table for one variant, with the choices that lead to it.
 fn variant_object(variant: &Variant, inner: &Map<String, Value>) -> Value {
     let mut inner = inner.clone();
     let mut table = variant.table.clone();
@@ -95,13 +95,13 @@ fn variant_object(variant: &Variant, inner: &Map<String, Value>) -> Value {
     object(&table, &inner)
 }
 
-/// A table; `inner` has fields that are known better than from the table of fields.
+/// The schema of a table. `inner` has more precise schemas for some of its fields.
 fn object(table: &KnownTable, inner: &Map<String, Value>) -> Value {
     let mut properties = Map::new();
     for known in &table.fields {
         let name = known.field.name;
         let mut value = inner.get(name).cloned().unwrap_or_else(|| value(known));
-        // A reference has no room for more.
+        // A `$ref` allows no other keys beside it.
         if let Some(object) = value.as_object_mut().filter(|object| !object.contains_key("$ref")) {
             object.insert("description".to_owned(), Value::from(plain(known.field.meaning)));
         }

@@ -1,4 +1,4 @@
-//! Which fields of a table go together: found by giving the parser every choice that the table has.
+//! Finds the fields of a table that can occur together, by giving the parser every choice that the table has.
 
 use super::super::file::describe;
 use super::super::grammar::{Holds, KnownField, KnownTable};
@@ -11,26 +11,26 @@ pub(in super::super) struct Tables<'t> {
     pub(in super::super) key: &'t str,
 }
 
-/// A set of fields that goes together.
+/// A set of fields that can occur together.
 pub(in super::super) struct Variant {
     pub(in super::super) table: KnownTable,
-    /// The choices that lead to it; those that change nothing are left out.
+    /// The choices that lead to this set; choices without effect are omitted.
     pub(in super::super) parts: Vec<Part>,
 }
 
-/// Values of a field that all lead to the same fields.
+/// Values of a field that all lead to the same set of fields.
 #[derive(Clone)]
 pub(in super::super) struct Part {
     pub(in super::super) field: &'static str,
-    /// The field is a table; there are no words.
+    /// Whether the field is a table, without words.
     pub(in super::super) table: bool,
     pub(in super::super) words: Vec<&'static str>,
-    /// It may be left out.
+    /// Whether the field may be absent.
     pub(in super::super) absent: bool,
 }
 
 impl Tables<'_> {
-    /// The fields that the parser looks for when these stand in the table.
+    /// The fields that the parser reads if `fields` are in the table.
     fn known(&self, fields: &[String]) -> Option<KnownTable> {
         let comma = if self.before.ends_with('{') { "" } else { ", " };
         let fields = if fields.is_empty() { String::new() } else { format!("{comma}{}", fields.join(", ")) };
@@ -40,7 +40,7 @@ impl Tables<'_> {
 }
 
 impl Part {
-    /// One of the values, as it is written; nothing where it is left out.
+    /// One of the values, as written in a file; `None` if the field is absent.
     fn written(&self) -> Option<String> {
         match (self.absent, self.table, self.words.first()) {
             (true, ..) => None,
@@ -50,7 +50,7 @@ impl Part {
     }
 }
 
-/// Every set of fields that goes together in a table.
+/// All sets of fields that can occur together in a table.
 pub(in super::super) fn variants(tables: &Tables) -> Vec<Variant> {
     let Some(plain) = tables.known(&[]) else { return Vec::new() };
     let mut chosen: Vec<Vec<Part>> = vec![Vec::new()];
@@ -70,7 +70,7 @@ pub(in super::super) fn variants(tables: &Tables) -> Vec<Variant> {
     chosen.into_iter().filter_map(variant).collect()
 }
 
-/// The values of a field, those together that lead to the same fields.
+/// The values of a field, grouped by the set of fields that they lead to.
 fn parts(tables: &Tables, known: &KnownField, plain: &KnownTable) -> Vec<Part> {
     let KnownField { field, words } = known;
     let name = field.name;

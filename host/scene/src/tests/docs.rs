@@ -1,6 +1,6 @@
-//! `docs/scene.md`: its examples compile, and its tables of fields are those of the parser.
+//! Tests that the examples in `docs/scene.md` compile, and that its tables of fields match the parser.
 //!
-//! `FRIXEL_BLESS=1 cargo test -p frixel-scene --lib docs` writes the tables anew.
+//! `FRIXEL_BLESS=1 cargo test -p frixel-scene --lib docs` rewrites the tables.
 
 use std::fs;
 use std::path::PathBuf;
@@ -22,7 +22,7 @@ fn examples() -> Vec<&'static str> {
     DOCS.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next()).collect()
 }
 
-/// The head without the tables that an example has.
+/// The head, except for the tables that the example contains itself.
 fn head_for(head: &str, example: &str) -> String {
     let tables = head.split("\n\n").filter(|table| {
         let name = table.lines().next().unwrap_or_default().trim_matches(['[', ']']);
@@ -51,7 +51,8 @@ fn every_example_compiles() {
 /// The fields of every layer.
 const COMMON: [FieldSpec; 7] = [KIND, NAME, REGION, BLEND, GAIN, ABOVE, LIVE];
 
-/// All fields that the parser knows in a table, whatever its other fields are, in the order in which it reads them.
+/// All fields that the parser knows in a table, for any values of its other fields, in the order in which it reads
+/// them.
 fn known(before: &str, after: &str, key: &str) -> Vec<KnownField> {
     let mut all: Vec<KnownField> = Vec::new();
     for variant in variants(&Tables { before, after, key }) {
@@ -86,12 +87,12 @@ fn documented() -> Vec<(String, Vec<KnownField>)> {
     all
 }
 
-/// A table in Markdown; the columns of defaults and ranges stand where they have something to say.
+/// A table in Markdown. The columns of defaults and ranges are omitted if they would be empty.
 fn markdown(fields: &[KnownField]) -> String {
     let mut rows: Vec<[String; 4]> = vec![["field", "meaning", "default", "range"].map(str::to_owned)];
     let mut fields: Vec<FieldSpec> = fields.iter().map(|known| known.field).collect();
     while let Some(first) = fields.first().copied() {
-        // The three units of an amount stand on one line.
+        // The three units of an amount share one line.
         let (mut alike, others): (Vec<_>, Vec<_>) =
             fields.into_iter().partition(|field| field.meaning == first.meaning);
         fields = others;
@@ -131,7 +132,7 @@ fn range(field: &FieldSpec) -> String {
     format!("{} to {}{unit}{whole}", written(min), written(max))
 }
 
-/// A number, with commas between thousands from 10,000 on, and as a power from 1e6 on.
+/// A number, with commas between thousands from 10,000 on, and as a power of ten from 1e6 on.
 fn written(number: f64) -> String {
     if number.abs() >= 1e6 && number.fract() == 0.0 && number % 1e6 == 0.0 {
         return format!("{number:e}");
@@ -143,7 +144,7 @@ fn written(number: f64) -> String {
     }
 }
 
-/// The documentation with the tables of fields made anew.
+/// The documentation with its tables of fields rewritten.
 fn with_tables(docs: &str) -> String {
     let mut tables = documented();
     let mut text = String::new();
@@ -208,7 +209,7 @@ fn a_default_is_what_a_file_without_the_field_means() {
     assert!(compared >= 12, "{compared}");
 }
 
-/// The last example of a table or of a kind of layer, as a scene whose last table it is.
+/// The last example of a table or of a kind of layer, as a scene that ends with that table.
 fn example_of(table: &str, top: bool) -> Option<String> {
     let head = examples()[0];
     let is_of = |example: &&str| {

@@ -1,4 +1,4 @@
-//! Every mistake, its sentence and its line.
+//! Tests the message and the line of every mistake.
 
 use proptest::prelude::*;
 
@@ -11,8 +11,8 @@ fn message(text: &str) -> String {
     compile_text(text).expect_err("it is wrong").to_string()
 }
 
-/// Compiles the head and these layers, and compares the message with lines of `line:column: sentence`, lines counted
-/// from the first layer's first line, which is 1.
+/// Compiles the head and these layers, and compares the message with lines of `line:column: sentence`. Lines are
+/// counted from the first line of the first layer, which is 1.
 #[track_caller]
 fn check_layers(layers: &str, expected: &[(usize, usize, &str)]) {
     let expected: Vec<String> = expected
@@ -100,7 +100,8 @@ fn every_mistake_is_told_at_once() {
     );
 }
 
-/// A kind that is nearly right is read as what was meant; of one that is nothing like it, what every kind has.
+/// A misspelt kind is read as the nearest kind. For an unrecognisable one, the parser reads only the fields that every
+/// kind has.
 #[test]
 fn an_unknown_kind_does_not_hide_what_else_is_wrong() {
     check_layers(
@@ -328,7 +329,7 @@ fn the_field_to_change_is_pointed_at() {
         format!("[[layer]]\nkind = \"grating\"\nwavelength_mm = 2\nlow_n = {low_n}\nhigh_n = {high_n}\ngain = {gain}\n")
     };
     assert_eq!([line(&grating(0.0, 0.03, 1.0)), line(&grating(-0.01, 0.02, 1.0))], [5, 4]);
-    // A negative gain turns it around.
+    // A negative gain swaps the two limits.
     assert_eq!([line(&grating(-0.02, 0.01, -1.0)), line(&grating(-0.03, 0.0, -1.0))], [5, 4]);
     let bitmap = |black_n: f64, white_n: f64| {
         format!(
@@ -413,7 +414,7 @@ fn sums_out_of_reach() {
 
 #[test]
 fn sums_are_refused_only_where_a_finger_finds_them() {
-    // In step, crest meets crest; half a turn apart, the two cancel to a constant 0.02 N.
+    // In phase, the crests add up; half a turn apart, the two cancel to a constant 0.02 N.
     let second =
         |phase: i32| format!("{STRIPES}{}blend = \"add\"\nphase_deg = {phase}\n", STRIPES.replace("stripes", "more"));
     let refused = message(&format!("{HEAD}{}", second(0)));
@@ -562,7 +563,7 @@ fn more_than_a_board_has_room_for() {
             "this is number 17 of the scene's edges and buttons with a click, and a board takes 16: leave some out",
         )],
     );
-    // Each with corners of its own.
+    // Each polygon has its own corners.
     let polygon = |number: usize| {
         let side = (0..32).map(|corner| format!("[{}, {}]", corner, number + corner % 2)).collect::<Vec<_>>();
         format!(
@@ -597,7 +598,7 @@ fn what_varies_is_refused_by_what_it_may_be() {
                  [[layer]]\nkind = \"speed\"\nspeeds_mm_per_s = [10, 100]\nfactors = [0.5, 2]";
     let message = message(&format!("{HEAD}{twice}"));
     assert!(message.contains("layer 1 (vibration) and layer 2 (speed) together"), "{message}");
-    // A well in what is there is no less than nothing; one in bare glass is.
+    // A well in existing friction is not below zero; a well in bare glass is.
     let well = "[[layer]]\nkind = \"edge\"\nx_mm = 60\ny_mm = 40\nwidth_mm = 2\nridge_fraction = -0.5";
     compile_layers(&format!("[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.6\n{well}"));
     check_layers(
@@ -610,7 +611,7 @@ fn what_varies_is_refused_by_what_it_may_be() {
     );
 }
 
-/// What lies beside a polygon or an ellipse is not asked for there.
+/// The friction beside a polygon or an ellipse does not count as its target.
 #[test]
 fn outlines_count_as_they_are() {
     let corner = "[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.7\nregion = { shape = \"polygon\", points_mm = [[0, 0], [50, 0], [0, 50]] }\n";
@@ -702,7 +703,7 @@ proptest! {
         }
     }
 
-    /// Valid TOML of known and unknown names and values of any type, and numbers of any size.
+    /// Valid TOML of known and unknown names, values of any type, and numbers of any size.
     #[test]
     fn no_table_makes_the_compiler_panic(
         lines in prop::collection::vec((0..LINES.len(), 0..VALUES.len(), any::<f64>()), 0..24),

@@ -1,13 +1,13 @@
-//! The keywords of JSON Schema (draft 7) that the schema of scenes uses. A library for all of them compiles for
-//! minutes.
+//! Validates the keywords of JSON Schema (draft 7) that the schema of scenes uses. A library for all keywords takes
+//! minutes to compile.
 
 use serde_json::Value;
 
-/// Whether a value is valid under a schema within `root`. Panics on a keyword that is not known here.
+/// Whether a value is valid under a schema within `root`. Panics on a keyword that this module does not implement.
 pub(super) fn is_valid(schema: &Value, root: &Value, value: &Value) -> bool {
     let rules = schema.as_object().expect("a schema is an object");
     if let Some(reference) = rules.get("$ref") {
-        // Draft 7 has nothing beside a reference.
+        // Draft 7 ignores other keywords beside a reference.
         assert_eq!(rules.len(), 1, "{schema}");
         let pointer = reference.as_str().and_then(|text| text.strip_prefix('#')).expect("a place in this document");
         return is_valid(root.pointer(pointer).expect("what is referred to"), root, value);

@@ -1,4 +1,4 @@
-//! What layers compile to, and what the program then wants, against evaluations written here from the file's numbers.
+//! Compares the target friction of compiled layers with evaluations written here from the file's numbers.
 
 use frixel_layers::{Carrier, Constant, Grating, Layer, Leader, Region, Scene as WireScene};
 
@@ -6,7 +6,7 @@ use super::super::{picture::Picture, resample};
 use super::*;
 use crate::reference::Reference;
 
-/// Frictions that a finger finds, in mN above natural, at places in mm.
+/// Frictions under a finger, in mN above natural friction, at places in mm.
 fn frictions_mn(layers: &str, places_mm: &[(f64, f64)]) -> Vec<f64> {
     let reference = Reference::new(&compile_layers(layers));
     places_mm.iter().map(|(x, y)| 1e3 * reference.electric_friction_n(x * 1e-3, y * 1e-3)).collect()
@@ -69,7 +69,7 @@ fn the_largest_voltage_keeps_every_limit() {
         let program = compile_text(&HEAD.replace("# layers follow", drive)).expect("it compiles");
         (f64::from(program.header.voltage_max_v_rms), f64::from(program.header.voltage_max_v_peak), program.notes)
     };
-    // Half a period is 25 time constants long: 1 - (2/25) tanh(12.5) of the mean square is left.
+    // Half a period is 25 time constants long, so 1 - (2/25) tanh(12.5) of the mean square remains.
     let edges = (1.0_f64 - 0.08).sqrt();
     let (rms, peak, notes) = reached("");
     close(&[rms, peak * edges / 1.001], &[150.0, 150.0], 1e-4);
@@ -119,7 +119,7 @@ fn constants_above_zero_and_above_natural() {
 
 #[test]
 fn left_and_top_edge_belong_to_a_region_and_right_and_bottom_do_not() {
-    // Powers of two in metres, which f32 has exactly.
+    // Powers of two in metres, which f32 represents exactly.
     let layers = "[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\n\
                   region = { x_mm = 15.625, y_mm = 31.25, width_mm = 15.625, height_mm = 31.25 }";
     let (left, right, top, bottom) = (15.625, 31.25, 31.25, 62.5);
@@ -136,7 +136,7 @@ fn left_and_top_edge_belong_to_a_region_and_right_and_bottom_do_not() {
 
 #[test]
 fn natural_friction_in_total_is_no_drive() {
-    // 0.3 x 0.7 is not 0.21 in binary, and not in range if the difference counted.
+    // 0.3 x 0.7 differs from 0.21 in binary. The value would be out of range if that difference counted.
     let text = HEAD.replace("friction_coefficient = 0.5", "friction_coefficient = 0.3");
     let text = text.replace("normal_load_n = 0.5", "normal_load_n = 0.7");
     let program = compile_text(&format!("{text}[[layer]]\nlive = true\nkind = \"constant\"\nfriction_n = 0.21"))
@@ -226,7 +226,7 @@ fn a_picture_is_placed_and_held_at_its_border() {
     let reference = Reference::new(&program);
     let at = |x_mm: f64, y_mm: f64| 1e3 * reference.electric_friction_n(x_mm * 1e-3, y_mm * 1e-3);
     let mn = |grey: f64| 1.0 + 25.0 * grey / 255.0;
-    // Centres, halfway between them, a quarter of the way in both directions, and the border.
+    // Centres, points halfway between them, a point at a quarter of the distance in both directions, and the border.
     close(&[at(21.0, 31.0), at(23.0, 31.0), at(25.0, 33.0)], &[mn(0.0), mn(51.0), mn(153.0)], 1e-5);
     close(&[at(22.0, 31.0), at(21.0, 32.0)], &[mn(25.5), mn(127.5)], 1e-5);
     let blend = 0.75 * (0.75 * 51.0 + 0.25 * 102.0) + 0.25 * (0.75 * 204.0 + 0.25 * 153.0);
@@ -297,10 +297,10 @@ fn a_ramp_stays_a_ramp() {
         let expected: Vec<f64> = (0..samples).map(centre).collect();
         close(&ramp(250, samples, pixels_per_sample), &expected, 0.5 + 1e-4);
     }
-    // Enlarged, it is held at the border.
+    // An enlarged picture is held at the border.
     let expected: Vec<f64> = (0..400).map(|sample| ((f64::from(sample) + 0.5) / 4.0 - 0.5).clamp(0.0, 99.0)).collect();
     close(&ramp(100, 400, 0.25), &expected, 0.5 + 1e-4);
-    // A last sample that reaches past the end is the mean of what there is.
+    // A last sample that extends past the end is the mean of the remaining pixels.
     close(&ramp(10, 4, 3.0), &[1.0, 4.0, 7.0, 9.0], 0.0);
     close(&ramp(1, 3, 0.5), &[0.0; 3], 0.0);
 }

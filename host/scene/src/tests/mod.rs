@@ -18,8 +18,8 @@ mod schema;
 pub(super) const LIMITS: BoardLimits = Board::SIMULATOR.limits;
 pub(super) const TICK_HZ: u32 = 40_000;
 
-/// Everything a scene needs but its layers; eighteen lines. The natural friction is 0.25 N, and the drive adds at
-/// most 27.78 mN.
+/// All parts of a scene except its layers; eighteen lines. The natural friction is 0.25 N, and the drive adds at most
+/// 27.78 mN.
 pub(super) const HEAD: &str = "\
 version = 1
 
@@ -41,7 +41,7 @@ normal_load_n = 0.5
 
 ";
 
-/// The pictures of the bundled scenes, and a file that is none.
+/// The pictures of the bundled scenes, and a file that is not a picture.
 pub(super) static PICTURES: LazyLock<BTreeMap<String, Vec<u8>>> = LazyLock::new(|| {
     let files = fs::read_dir(scenes().join("textures")).expect("a folder").map(|entry| entry.expect("a file").path());
     let name = |path: &Path| format!("textures/{}", path.file_name().expect("a name").to_string_lossy());
@@ -52,11 +52,11 @@ pub(super) fn scenes() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes"))
 }
 
-/// Compiles a text, and sees that the schema for editors thinks of it as the parser does.
+/// Compiles a text, and checks that the schema for editors agrees with the parser about it.
 pub(super) fn compile_text(text: &str) -> Result<Program, CompileError> {
     let scene = Scene::parse(text, "test.toml", &*PICTURES);
     schema::check_agrees(text, scene.as_ref().err());
-    // What a tick takes has tests of its own; others may pile up layers.
+    // The cost of a tick has its own tests; other tests may stack many layers.
     compile::compile(&scene?, &BoardLimits { tick_cycles_max: u32::MAX, ..LIMITS }, TICK_HZ)
 }
 

@@ -1,14 +1,14 @@
-//! What is optimised away, and that nobody feels it.
+//! Tests the optimisations, and that they do not change the friction.
 
 use super::*;
 use crate::reference::{Context, Reference};
 
-/// Compiles these layers, and again with every one kept because the host may change it.
+/// Compiles these layers twice: optimised, and with all layers kept because the host may change them.
 fn small_and_whole(layers: &str) -> (Program, Program) {
     (compile_layers(layers), compile_layers(&layers.replace("[[layer]]", "[[layer]]\nlive = true")))
 }
 
-/// Checks what is optimised away, and that the two programs want the same, to the bits of `f32` sums.
+/// Checks the optimisations, and that both programs have the same target friction, up to rounding of `f32` sums.
 #[track_caller]
 fn check(layers: &str, expected: &[&str], records: usize) {
     let (small, whole) = small_and_whole(layers);
@@ -50,7 +50,7 @@ fn what_another_covers_is_dropped() {
     );
     check(&format!("{STRIPES}{around}[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\n{inside}"), &[], 2);
     check(&format!("{STRIPES}[[layer]]\nkind = \"constant\"\nfriction_n = 0.002\nblend = \"add\""), &[], 2);
-    // A stream may be silent.
+    // A stream may be absent.
     check(&format!("{STRIPES}[[layer]]\nkind = \"stream\"\nlow_n = 0\nhigh_n = 0.01"), &[], 2);
 }
 
@@ -129,7 +129,7 @@ fn pictures_are_cropped_to_what_can_be_found_and_shared() {
         &["brick.png is sent once for several layers: 10000 bytes less"],
         2,
     );
-    // What is cropped is what the whole picture has there.
+    // The cropped picture equals that part of the whole picture.
     let whole = compile_layers(&picture("region = { x_mm = 0, y_mm = 0, width_mm = 120, height_mm = 110 }\n"));
     let (part, whole) = (Reference::new(&program), Reference::new(&whole));
     for place in 0..2_000 {
@@ -140,7 +140,7 @@ fn pictures_are_cropped_to_what_can_be_found_and_shared() {
     }
 }
 
-/// What is optimised away needs no feature of the firmware either.
+/// A layer that is optimised away needs no feature of the firmware.
 #[test]
 fn a_program_needs_the_features_of_what_is_left() {
     use frixel_wire::hello::feature;

@@ -1,6 +1,6 @@
-//! The JSON schema says what the parser says, and `docs/scene.schema.json` is the one that is made.
+//! Tests that the JSON schema agrees with the parser, and that `docs/scene.schema.json` is the generated one.
 //!
-//! `FRIXEL_BLESS=1 cargo test -p frixel-scene --lib schema` writes the file anew.
+//! `FRIXEL_BLESS=1 cargo test -p frixel-scene --lib schema` rewrites the file.
 
 use std::fs;
 use std::path::PathBuf;
@@ -18,13 +18,13 @@ fn schema_takes(scene: &Value) -> bool {
     is_valid(&SCHEMA, &SCHEMA, scene)
 }
 
-/// A scene as an editor's schema sees it. What JSON cannot say becomes `null`.
+/// A scene as an editor's schema validates it. Values without a JSON form become `null`.
 fn json(text: &str) -> Option<Value> {
     let table: toml::Table = toml::from_str(text).ok()?;
     serde_json::to_value(table).ok()
 }
 
-/// Whether a mistake is one of grammar, which a schema can see.
+/// Whether a mistake is one of grammar, which a schema can detect.
 fn is_grammar(mistake: &Mistake) -> bool {
     matches!(
         mistake,
@@ -38,7 +38,7 @@ fn is_grammar(mistake: &Mistake) -> bool {
     )
 }
 
-/// Panics where the schema takes what the parser refuses for its grammar, or refuses what the parser takes.
+/// Panics if the schema accepts a text that the parser refuses for its grammar, or refuses one that the parser accepts.
 #[track_caller]
 pub(super) fn check_agrees(text: &str, refused: Option<&CompileError>) {
     let Some(scene) = json(text) else { return };
@@ -76,7 +76,7 @@ fn every_scene_of_the_gallery_is_valid() {
     assert!(found >= 8, "{found}");
 }
 
-/// The field at a path, taken out of a schema's object.
+/// The schema of a field of an object.
 fn field<'v>(object: &'v Value, name: &str) -> &'v Value {
     &object["properties"][name]
 }
@@ -89,7 +89,7 @@ fn every_field_has_a_meaning() {
     let mut described = 0;
     for object in layers.chain(tables) {
         for (name, field) in object["properties"].as_object().expect("fields") {
-            // The kind says itself; a reference has no room for more.
+            // The kind describes itself, and a reference allows no other keys beside it.
             if name != "kind" && field.get("$ref").is_none() {
                 assert!(field["description"].as_str().is_some_and(|text| !text.is_empty()), "{name} in {object}");
                 described += 1;

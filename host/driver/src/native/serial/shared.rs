@@ -8,7 +8,7 @@ use serialport::SerialPort;
 
 use crate::link::{KEEP_ALIVE_TIMEOUT, Written};
 
-/// Received bytes that are stored for a caller who does not read: 20 s of telemetry at 1 kHz. Further bytes are
+/// Most received bytes that are stored for a caller that does not read: 20 s of telemetry at 1 kHz. Further bytes are
 /// dropped.
 const RECEIVE_BUFFER_MAX_LEN: usize = 1 << 20;
 
@@ -91,7 +91,8 @@ impl Shared {
         }
     }
 
-    /// Waits for bytes to write, keep-alive frames included. `None` when the link closes and all is written.
+    /// Waits for bytes to write, keep-alive frames included. Returns `None` when the link closes and everything is
+    /// written.
     fn next_to_write(&self) -> Option<Vec<u8>> {
         let mut state = self.lock();
         loop {
@@ -158,7 +159,7 @@ impl State {
         }
     }
 
-    /// Time until the keep-alive frame is due; `None` if there is none, or the application has not called within
+    /// Time until the next keep-alive frame; `None` if no keep-alive is set, or the application has not called within
     /// [`KEEP_ALIVE_TIMEOUT`].
     fn keep_alive_due_in(&self, now: Instant) -> Option<Duration> {
         let (_, period) = self.keep_alive.as_ref()?;
@@ -179,7 +180,7 @@ mod tests {
 
     const PERIOD: Duration = Duration::from_millis(5);
 
-    /// A link whose last write and last call were at the returned time.
+    /// A link with a keep-alive frame. Its last write and last call were at the returned time.
     fn pinging() -> (Shared, Instant) {
         let opened = Instant::now();
         let shared = Shared::new(opened);
