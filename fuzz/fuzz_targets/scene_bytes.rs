@@ -1,4 +1,4 @@
-//! Any bytes as a compiled scene: they are refused, or every record of them can be read and written again.
+//! Parses arbitrary bytes as a compiled scene. They are rejected, or every record can be read and written back.
 #![no_main]
 
 use frixel_layers::Scene;
@@ -12,6 +12,6 @@ fuzz_target!(|bytes: &[u8]| {
     written.extend(records.iter().flat_map(|record| record.write()));
     written.extend(points.iter().flat_map(|point| point.write()));
     let again = Scene::parse(&written).expect("what was read can be written");
-    // Not-a-number is not equal to itself; its bytes are.
+    // Compare the text, because not-a-number is not equal to itself.
     assert_eq!(format!("{records:?} {points:?}"), format!("{:?} {:?}", again.records().collect::<Vec<_>>(), again.points().collect::<Vec<_>>()));
 });

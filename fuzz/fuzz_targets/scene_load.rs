@@ -1,5 +1,5 @@
-//! Any bytes as a compiled scene on its way to a board: it is refused, or it plays under a finger without a fault, and its
-//! tick is in time.
+//! Uploads arbitrary bytes as a compiled scene. The board rejects them, or estimates their longest tick to be
+//! within its limit and plays them under a finger without a fault.
 #![no_main]
 
 use std::time::Duration;

@@ -1,4 +1,5 @@
-//! Any text as a scene file: it is refused, or it becomes a program that a board takes and whose tick is in time.
+//! Compiles arbitrary text as a scene file. It is rejected, or becomes a program that a board accepts, with ticks in
+//! time.
 #![no_main]
 
 use std::collections::BTreeMap;
@@ -10,7 +11,7 @@ use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {
     let rig = RigConfig::default();
-    // No pictures: the text is under test.
+    // There are no pictures, because only the text is tested.
     let Ok(scene) = Scene::parse(text, "fuzz.toml", &BTreeMap::new()) else { return };
     let Ok(program) = compile(&scene, &rig.board.limits, rig.board.tick_hz) else { return };
     assert!(program.worst_tick().cycles() <= rig.board.limits.tick_cycles_max);

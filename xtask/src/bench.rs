@@ -18,9 +18,9 @@ use crate::command::{M3, M4F, add_target, root};
 pub(crate) use figures::Figures;
 use image::Image;
 
-/// A processor to count on.
+/// A processor on which instructions are counted.
 struct Core {
-    /// In front of the names of its figures.
+    /// Prefix of the names of its figures.
     name: &'static str,
     target: &'static str,
     machine: &'static str,
@@ -29,10 +29,10 @@ struct Core {
 const M4F_CORE: Core = Core { name: "m4f", target: M4F, machine: "mps2-an386" };
 const M3_CORE: Core = Core { name: "m3", target: M3, machine: "mps2-an385" };
 
-/// Name of the emulator.
+/// Name of the emulator's executable.
 const EMULATOR: &str = "qemu-system-arm";
 
-/// Says what is missing, if the emulator is.
+/// Fails if the emulator is not installed.
 pub(crate) fn emulator() -> Result<(), String> {
     match Command::new(EMULATOR).arg("--version").stdout(Stdio::null()).status() {
         Ok(_) => Ok(()),
@@ -56,10 +56,10 @@ pub(crate) fn bench() -> Result<Figures, String> {
     Ok(figures)
 }
 
-/// The figure that [`breach`] is above.
+/// The figure that exceeds its limit in [`breach`].
 pub(crate) const BROKEN: &str = "m4f.inverse_table";
 
-/// Counts an image that is slower on purpose.
+/// Counts the instructions of an image that is deliberately slower.
 pub(crate) fn breach() -> Result<Figures, String> {
     let mut figures = Figures::default();
     Image::build(&M4F_CORE, true)?.count(&mut figures)?;

@@ -1,4 +1,4 @@
-//! `budgets.toml`: the most that each figure may be.
+//! `budgets.toml`: the upper limit of each figure.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -15,13 +15,13 @@ pub(crate) fn read(path: &Path) -> Result<Limits, String> {
     toml::from_str(&text).map_err(|error| format!("{}: {error}", path.display()))
 }
 
-/// The limit of one figure, which has to have one.
+/// The limit of one figure; fails if there is none.
 pub(crate) fn only(limits: &Limits, name: &str) -> Result<Limits, String> {
     let limit = limits.get(name).ok_or_else(|| format!("budgets.toml has no limit for {name}"))?;
     Ok(Limits::from([(name.to_owned(), *limit)]))
 }
 
-/// Says which figures are above their limits, and which limits have no figure.
+/// Fails if a figure exceeds its limit or a limit has no figure. The error lists them.
 pub(crate) fn check(limits: &Limits, figures: &Figures) -> Result<(), String> {
     let breaches: Vec<String> = limits
         .iter()

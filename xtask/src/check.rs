@@ -1,4 +1,4 @@
-//! `cargo xtask test`: everything that has to hold before a change is taken.
+//! `cargo xtask test`: all checks that must pass before a change is merged.
 
 use std::env;
 use std::fs;
@@ -8,20 +8,20 @@ use crate::command::{M4F, add_target, cargo_in, root, run};
 use crate::stages::Stages;
 use crate::{bench, budgets, portability, stamps, test_programs};
 
-/// What the images and the budgets depend on.
+/// Inputs of the images and of the budgets.
 const FIRMWARE_INPUTS: [&str; 6] = ["budgets.toml", "Cargo.lock", "Cargo.toml", "firmware", "model", "xtask"];
-/// What compiles and runs elsewhere depends on.
+/// Inputs of the portability checks.
 const PORTABILITY_INPUTS: [&str; 8] =
     ["Cargo.lock", "Cargo.toml", "firmware", "hil-sim", "host", "model", "scenes", "xtask/src/portability.rs"];
-/// The crate whose features an image chooses from.
+/// The crate whose features an image selects.
 const SESSION: &str = "firmware/session";
 
-/// An image outside the workspace.
+/// A firmware image outside the workspace.
 struct Image {
     folder: &'static str,
-    /// Where it is built: where its size is measured and its emulator looks for it.
+    /// The target folder in which its size is measured and its emulator expects it.
     target_folder: &'static str,
-    /// Features besides the default ones, and sets of features in place of them, that are checked, too.
+    /// Further sets of features to check: additional ones, and replacements of the default ones.
     more: &'static [&'static [&'static str]],
 }
 
@@ -41,7 +41,7 @@ const IMAGES: [Image; 4] = [
     Image { folder: "firmware/table-cortex-m3", target_folder: "target", more: &[] },
 ];
 
-/// Runs every check, and prints the time that each stage took.
+/// Runs every check, and prints the run time of each stage.
 pub(crate) fn test() -> Result<(), String> {
     let mut stages = Stages::new();
     stages.run("format", || cargo("format", ".", &["fmt", "--all", "--check"], &[]))?;
@@ -61,7 +61,7 @@ pub(crate) fn test() -> Result<(), String> {
     Ok(())
 }
 
-/// The tests that take too long for every change, because they go through every number that there is.
+/// Runs the tests that take too long for every change, because they are exhaustive.
 pub(crate) fn soak() -> Result<(), String> {
     let mut stages = Stages::new();
     let sweeps = ["test", "--release", "--locked", "--package", "frixel-model", "--", "--ignored", "--nocapture"];
@@ -77,7 +77,7 @@ fn unless_firmware_unchanged(name: &str, check: impl FnOnce() -> Result<(), Stri
     stamps::unless_unchanged(name, &FIRMWARE_INPUTS.map(str::to_owned), check)
 }
 
-/// Checks that the renderer goes without any of its features, and with each of them alone, with warnings as errors.
+/// Checks the renderer without features, and with each feature alone, with warnings as errors.
 fn feature_sets() -> Result<(), String> {
     add_target(M4F)?;
     let path = root().join(SESSION).join("Cargo.toml");
@@ -97,7 +97,7 @@ fn feature_sets() -> Result<(), String> {
     Ok(())
 }
 
-/// Format, lints and build of every image.
+/// Checks format and lints of every image, and builds it.
 fn images() -> Result<(), String> {
     for Image { folder, target_folder, more } in &IMAGES {
         cargo(&format!("format of {folder}"), folder, &["fmt", "--check"], &[])?;
@@ -112,8 +112,8 @@ fn images() -> Result<(), String> {
     Ok(())
 }
 
-/// Counts instructions and measures sizes, compares them with what they may be, and checks that an image that breaks its
-/// budget on purpose is noticed.
+/// Counts instructions, measures sizes and compares them with their limits. Also checks that an image that
+/// deliberately exceeds its budget is detected.
 pub(crate) fn budgets() -> Result<(), String> {
     if let Err(missing) = bench::emulator() {
         if is_ci() {
@@ -135,7 +135,7 @@ pub(crate) fn budgets() -> Result<(), String> {
     }
 }
 
-/// Whether a skipped rig is a failure.
+/// Whether this runs in continuous integration, where a skipped rig is a failure.
 pub(crate) fn is_ci() -> bool {
     env::var_os("CI").is_some_and(|ci| !ci.is_empty() && ci != "false" && ci != "0")
 }

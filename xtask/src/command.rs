@@ -4,24 +4,24 @@ use std::env;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-/// Target of the boards.
+/// Compiler target of the boards.
 pub(crate) const M4F: &str = "thumbv7em-none-eabihf";
-/// Target of a processor without floating point.
+/// Compiler target of a processor without floating point.
 pub(crate) const M3: &str = "thumbv7m-none-eabi";
 
-/// The repository's root.
+/// The root of the repository.
 pub(crate) fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// A cargo that runs in a folder of the repository.
+/// A `cargo` command that runs in a folder of the repository.
 pub(crate) fn cargo_in(folder: &str) -> Command {
     let mut command = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.current_dir(root().join(folder));
     command
 }
 
-/// Installs a target of the compiler when it is missing.
+/// Installs a compiler target if it is missing.
 pub(crate) fn add_target(target: &str) -> Result<(), String> {
     let libraries = Command::new("rustc").args(["--print", "target-libdir", "--target", target]).output();
     let is_there = |output: Output| Path::new(String::from_utf8_lossy(&output.stdout).trim()).is_dir();
@@ -31,7 +31,7 @@ pub(crate) fn add_target(target: &str) -> Result<(), String> {
     run("rustup target", Command::new("rustup").args(["target", "add", target]))
 }
 
-/// What a command writes to its standard output.
+/// Runs a command and returns its standard output.
 pub(crate) fn text_of(command: &mut Command) -> Result<String, String> {
     let output = command.stderr(Stdio::inherit()).output();
     let output = output.map_err(|error| format!("{command:?} could not be started: {error}"))?;
@@ -41,7 +41,7 @@ pub(crate) fn text_of(command: &mut Command) -> Result<String, String> {
     String::from_utf8(output.stdout).map_err(|_| format!("{command:?} wrote what is not UTF-8"))
 }
 
-/// Runs a command to its end, and says what it is.
+/// Prints the name of a command and runs it; fails if the command fails.
 pub(crate) fn run(name: &str, command: &mut Command) -> Result<(), String> {
     eprintln!("-- {name}");
     match command.status() {

@@ -1,4 +1,4 @@
-//! The developer's commands, through the cargo alias `cargo xtask`.
+//! The commands for developers, run through the cargo alias `cargo xtask`.
 
 mod bench;
 mod budgets;

@@ -1,4 +1,4 @@
-//! Where else the crates have to compile and run: WebAssembly, Windows, macOS.
+//! Checks that the crates compile and run on other platforms: WebAssembly, Windows, macOS.
 
 use std::env;
 use std::process::Command;
@@ -7,12 +7,12 @@ use crate::check::is_ci;
 use crate::command::{add_target, cargo_in, root, run, text_of};
 
 const WASM: &str = "wasm32-unknown-unknown";
-/// Where the whole command compiles. What needs a pseudo-terminal is refused there when it runs.
+/// Targets that the whole command compiles for. Functions that need a pseudo-terminal fail there at run time.
 const COMMAND_TARGETS: [&str; 2] = ["x86_64-pc-windows-gnu", "aarch64-apple-darwin"];
-/// The crates that a page uses: no clocks, files, threads or processes. The `clippy.toml` of each names what it must not
-/// use.
+/// The crates for use in a web page: they use no clocks, files, threads or processes. The `clippy.toml` of each
+/// disallows these.
 const PAGE_CRATES: [&str; 3] = ["frixel-scene", "frixel-driver", "frixel-hil-sim"];
-/// Plays scenes with those three crates, natively or in WebAssembly.
+/// The crate that plays scenes with those three crates, natively or in WebAssembly.
 const WASM_CHECK: &str = "frixel-wasm-check";
 
 /// Runs all checks of this module.
@@ -25,7 +25,7 @@ pub(crate) fn check() -> Result<(), String> {
     same_bits_in_wasm()
 }
 
-/// Compiles the crates of the page for WebAssembly, with clippy's disallowed types and methods as errors.
+/// Compiles the crates for web pages for WebAssembly, with clippy's disallowed types and methods as errors.
 fn page_crates() -> Result<(), String> {
     add_target(WASM)?;
     let mut arguments = vec!["clippy", "--target", WASM, "--no-default-features", "--lib"];
@@ -34,7 +34,7 @@ fn page_crates() -> Result<(), String> {
     run("crates of the page for WebAssembly", &mut cargo(&arguments))
 }
 
-/// Plays bundled scenes under node and natively: every friction, voltage and DAC code has to be the same.
+/// Plays bundled scenes in node and natively: every friction, voltage and DAC code must be equal.
 fn same_bits_in_wasm() -> Result<(), String> {
     if Command::new("node").arg("--version").output().is_err() {
         let missing = "node is not installed (Debian: `apt-get install nodejs`)";

@@ -1,8 +1,8 @@
-//! The stages of a command, each under a heading and with the time that it took.
+//! The stages of a command, each with a heading and its run time.
 
 use std::time::{Duration, Instant};
 
-/// Runs stages one after another and remembers how long each took.
+/// Runs stages one after another and records the time of each.
 pub(crate) struct Stages {
     finished: Vec<(String, Duration)>,
 }
@@ -12,7 +12,7 @@ impl Stages {
         Self { finished: Vec::new() }
     }
 
-    /// Runs a stage under its heading.
+    /// Prints a heading and runs a stage.
     pub(crate) fn run(&mut self, name: &str, stage: impl FnOnce() -> Result<(), String>) -> Result<(), String> {
         eprintln!("== {name}");
         let begin = Instant::now();
@@ -23,7 +23,7 @@ impl Stages {
         Ok(())
     }
 
-    /// A table of all stages and their sum.
+    /// A table with the time of each stage and their sum.
     pub(crate) fn table(&self) -> String {
         let sum = self.finished.iter().map(|(_, time)| *time).sum();
         let lines = self.finished.iter().map(|(name, time)| format!("{:>9}  {name}\n", seconds(*time)));

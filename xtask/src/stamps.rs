@@ -1,4 +1,4 @@
-//! Which checks need not run again, because nothing that they depend on has changed since they passed.
+//! Skips checks whose inputs have not changed since they passed.
 //!
 //! A stamp is a file in `target/stamps` that holds the fingerprint of a check's inputs: the paths and contents of every
 //! file below the folders that it names, as git sees them (tracked, or new and not ignored), and the compiler's version.
@@ -13,8 +13,8 @@ use std::process::Command;
 use crate::bench;
 use crate::command::{root, text_of};
 
-/// Runs `check`, unless it passed before with the same inputs. `name` is a file name; `inputs` are files and folders of the
-/// repository. Without the emulator every check runs, and leaves no stamp: it may have skipped a part of itself.
+/// Runs `check`, unless it passed before with the same inputs. `name` is a file name; `inputs` are files and folders
+/// of the repository. Without the emulator, every check runs and leaves no stamp, because it may have skipped a part.
 pub(crate) fn unless_unchanged(
     name: &str,
     inputs: &[String],
@@ -35,7 +35,7 @@ pub(crate) fn unless_unchanged(
     fs::write(&stamp, found).map_err(|error| format!("{}: {error}", stamp.display()))
 }
 
-/// What the files below `inputs` are, in one number.
+/// A fingerprint of the files below `inputs`.
 fn fingerprint(inputs: &[String]) -> Result<String, String> {
     let mut files = Command::new("git");
     files.current_dir(root()).args(["ls-files", "--cached", "--others", "--exclude-standard", "-z", "--"]).args(inputs);
@@ -49,7 +49,7 @@ fn fingerprint(inputs: &[String]) -> Result<String, String> {
         path.hash(&mut hasher);
         match fs::read(root().join(path)) {
             Ok(bytes) => bytes.hash(&mut hasher),
-            // Git still lists a file that was deleted and not committed.
+            // Git also lists files that were deleted without a commit.
             Err(error) if error.kind() == ErrorKind::NotFound => {}
             Err(error) => return Err(format!("{path}: {error}")),
         }

@@ -1,4 +1,4 @@
-//! The workspace's tests: built once, then run package by package unless nothing that a package depends on has changed.
+//! Builds the workspace's tests once, then runs them package by package, skipping packages whose inputs are unchanged.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use serde_json::Value;
 use crate::command::{cargo_in, root, run, text_of};
 use crate::stamps;
 
-/// What tests read or build besides the folders of their package and of the packages that it depends on.
+/// Inputs of tests besides the folders of their package and of its dependencies.
 const MORE_INPUTS: [(&str, &[&str]); 3] = [
     ("frixel", &["README.md", "docs", "firmware", "scenes"]),
     ("frixel-scene", &["docs", "scenes"]),
@@ -19,7 +19,7 @@ const MORE_INPUTS: [(&str, &[&str]); 3] = [
 /// A package of the workspace.
 struct Package {
     folder: String,
-    /// Names of the packages of the workspace that it depends on, tests included.
+    /// The packages of the workspace that it depends on, including dev-dependencies.
     dependencies: Vec<String>,
 }
 
@@ -29,7 +29,7 @@ struct TestProgram {
     path: PathBuf,
 }
 
-/// Builds and runs all tests but those in documentation.
+/// Builds and runs all tests except documentation tests.
 pub(crate) fn run_all() -> Result<(), String> {
     let packages = packages()?;
     let programs = build()?;
@@ -45,7 +45,7 @@ pub(crate) fn run_all() -> Result<(), String> {
     Ok(())
 }
 
-/// Runs the tests in documentation.
+/// Runs the documentation tests.
 pub(crate) fn run_documentation() -> Result<(), String> {
     let folders: Vec<String> = packages()?.into_values().map(|package| package.folder).collect();
     stamps::unless_unchanged("documentation-tests", &folders, || {
@@ -57,13 +57,13 @@ impl TestProgram {
     fn run(&self, folder: &str) -> Result<(), String> {
         let name = self.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let folder = root().join(folder);
-        // As cargo runs it.
+        // Runs the program in the same way as cargo does.
         let mut command = Command::new(&self.path);
         run(&format!("{}: {name}", self.package), command.current_dir(&folder).env("CARGO_MANIFEST_DIR", &folder))
     }
 }
 
-/// Files and folders that the tests of a package depend on.
+/// The files and folders that the tests of a package depend on.
 fn inputs(name: &str, packages: &BTreeMap<String, Package>) -> Vec<String> {
     let mut found = BTreeSet::new();
     let mut waiting = vec![name];
@@ -80,7 +80,7 @@ fn inputs(name: &str, packages: &BTreeMap<String, Package>) -> Vec<String> {
     folders.chain(more.chain(always).map(|path| (*path).to_owned())).collect()
 }
 
-/// Builds every test program of the workspace, with one set of features for all.
+/// Builds every test program of the workspace, with the same set of features for all.
 fn build() -> Result<Vec<TestProgram>, String> {
     let mut command = cargo_in(".");
     command.args(["test", "--workspace", "--locked", "--no-run", "--message-format", "json-render-diagnostics"]);
@@ -88,7 +88,7 @@ fn build() -> Result<Vec<TestProgram>, String> {
     messages.lines().filter_map(|line| test_program(line).transpose()).collect()
 }
 
-/// The test program that a message of cargo's tells of, if it does.
+/// The test program that a message of cargo announces, if any.
 fn test_program(line: &str) -> Result<Option<TestProgram>, String> {
     let message: Value = serde_json::from_str(line).map_err(|error| format!("cargo wrote `{line}`: {error}"))?;
     let is_test = message.pointer("/profile/test").and_then(Value::as_bool) == Some(true);
@@ -98,7 +98,7 @@ fn test_program(line: &str) -> Result<Option<TestProgram>, String> {
     Ok(Some(TestProgram { package: name_in(Path::new(manifest))?, path: path.into() }))
 }
 
-/// The name of the package with this manifest.
+/// Reads the name of the package from its manifest.
 fn name_in(manifest: &Path) -> Result<String, String> {
     let explain = |error: &dyn std::fmt::Display| format!("{}: {error}", manifest.display());
     let text = std::fs::read_to_string(manifest).map_err(|error| explain(&error))?;
@@ -107,7 +107,7 @@ fn name_in(manifest: &Path) -> Result<String, String> {
     name.map(str::to_owned).ok_or_else(|| explain(&"it has no package name"))
 }
 
-/// The packages of the workspace by name, as cargo knows them.
+/// The packages of the workspace by name, as reported by cargo.
 fn packages() -> Result<BTreeMap<String, Package>, String> {
     let mut command = cargo_in(".");
     command.args(["metadata", "--locked", "--no-deps", "--format-version", "1"]);
@@ -120,7 +120,7 @@ fn packages() -> Result<BTreeMap<String, Package>, String> {
         .collect()
 }
 
-/// A package's name and what there is to know of it, from cargo's description.
+/// Extracts the name and the properties of a package from cargo's metadata.
 fn package_of(package: &Value, root: &Path) -> Option<(String, Package)> {
     let manifest = Path::new(package.get("manifest_path")?.as_str()?);
     let folder = manifest.parent()?.strip_prefix(root).ok()?.to_str()?.to_owned();

@@ -1,4 +1,4 @@
-//! What the `frixel` command is made of: playing, recording, pictures and reports.
+//! The library behind the `frixel` command: playing scenes, recording them, drawing charts and writing reports.
 #![forbid(unsafe_code)]
 
 mod chart;

@@ -1,4 +1,4 @@
-//! The `frixel` command: plays friction textures on a board or on the simulator. `frixel help` says what it can do.
+//! The `frixel` command: plays friction textures on a board or on the simulator. `frixel help` lists the commands.
 #![forbid(unsafe_code)]
 
 mod commands;
@@ -8,7 +8,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use commands::Cli;
 
-/// Exits with 2 where the command line is not understood, with 1 where the command fails.
+/// Exits with 2 when the command line is invalid, and with 1 when the command fails.
 fn main() -> ExitCode {
     match Cli::parse().run() {
         Ok(()) => ExitCode::SUCCESS,

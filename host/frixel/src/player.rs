@@ -1,4 +1,4 @@
-//! Playing a compiled scene on any board through its [`Device`], recorded while it plays.
+//! Plays a compiled scene on any board through its [`Device`], and records the play.
 
 use std::time::Duration;
 
@@ -15,12 +15,12 @@ use crate::stream::{Feed, FeedError};
 
 /// Longest time between two steps of a play.
 const STEP_MAX: Duration = Duration::from_millis(50);
-/// The same while samples flow: a board's buffer lasts 25 ms or more.
+/// Longest time between two steps while samples are streamed: a board's buffer lasts 25 ms or more.
 const STREAM_STEP_MAX: Duration = Duration::from_millis(5);
-/// Time beyond the last tick of the record: the link's clock is rounded.
+/// Extra time beyond the last recorded tick, because the link's clock is rounded.
 const MARGIN: Duration = Duration::from_millis(5);
 
-/// Takes a board from wherever another client left it to a scene that plays.
+/// Disarms a board, whatever state an earlier client left it in, then uploads the scene, arms the board and plays.
 pub fn start<L: Link>(
     device: &mut Device<L>,
     program: &Program,
@@ -31,7 +31,7 @@ pub fn start<L: Link>(
     device.play()
 }
 
-/// Takes a board from wherever another client left it to a scene that could be played.
+/// Disarms a board, whatever state an earlier client left it in, then uploads the scene without playing it.
 pub(crate) fn load<L: Link>(
     device: &mut Device<L>,
     program: &Program,
@@ -41,7 +41,7 @@ pub(crate) fn load<L: Link>(
     upload(device, program, progress)
 }
 
-/// Uploads and commits.
+/// Uploads the scene and commits it.
 fn upload<L: Link>(
     device: &mut Device<L>,
     program: &Program,
@@ -63,30 +63,30 @@ fn upload<L: Link>(
     device.commit(upload.scene_crc32())
 }
 
-/// Why a play did not come to its end.
+/// Why a play ended early.
 #[derive(Debug, Error)]
 pub enum PlayError {
-    /// The simulated world cannot be made.
+    /// The simulated world could not be built.
     #[error(transparent)]
     World(#[from] WorldError),
-    /// The contact model refuses the program's finger.
+    /// The contact model rejects the finger of the program.
     #[error("the contact model refuses the scene's finger: {0:?}")]
     Finger(ParameterError),
-    /// The board refused, or fell silent.
+    /// The board rejected a request, or stopped answering.
     #[error(transparent)]
     Device(#[from] DeviceError),
-    /// There are no samples to stream, or no more of them.
+    /// The samples to stream are missing, or could not be read to their end.
     #[error(transparent)]
     Feed(#[from] FeedError),
-    /// The board stopped without a command.
+    /// The board stopped without a stop command.
     #[error("the board {0}")]
     Stopped(StopReason),
 }
 
-/// A play: a scene on a board, the record of it, and the samples that are streamed meanwhile.
+/// A play: a scene on a board, its recorder, and the feed of streamed samples.
 ///
-/// Call [`Self::start`], then [`Self::step`] until [`Recorder::ticks_left`] is zero or the play is to end early, then
-/// [`Self::stop`]. Dropping a player stops the board, too.
+/// Call [`Self::start`], then [`Self::step`] until [`Recorder::ticks_left`] is zero or the play should end early, then
+/// [`Self::stop`]. Dropping a player also stops the board.
 pub struct Player<L: RecordedLink> {
     device: Device<L>,
     feed: Option<Feed>,
@@ -95,14 +95,15 @@ pub struct Player<L: RecordedLink> {
 }
 
 impl<L: RecordedLink> Player<L> {
-    /// Records on this board with `recorder` from when the scene plays.
+    /// Creates a player for `device` that records into `recorder` from the start of the play.
     pub fn new(mut device: Device<L>, recorder: Recorder) -> Self {
         *device.link_mut().recorder_mut() = recorder;
         let events = EventLog::new(device.hello().state);
         Self { device, feed: None, events, telemetry: Vec::new() }
     }
 
-    /// Uploads the scene and plays it, with a telemetry message every so many ticks; 0 for none.
+    /// Uploads the scene and plays it. The board sends a telemetry message every `telemetry_period_ticks` ticks; 0
+    /// disables telemetry.
     pub fn start(
         &mut self,
         program: &Program,
@@ -118,22 +119,22 @@ impl<L: RecordedLink> Player<L> {
         Ok(())
     }
 
-    /// Streams what `feed` has to the scene that plays.
+    /// Starts streaming the samples of `feed` to the scene that is playing.
     pub fn stream(&mut self, feed: Feed) -> Result<(), PlayError> {
         Ok(self.feed.insert(feed).start(&mut self.device)?)
     }
 
-    /// Puts another scene in the place of the one that plays, between two ticks, and compares with that.
+    /// Replaces the scene that is playing between two ticks, and uses the new one as the reference of the record.
     pub fn replace(&mut self, program: &Program) -> Result<(), PlayError> {
         upload(&mut self.device, program, &mut |_| {})?;
         let hello = *self.device.hello();
         self.recorder_mut().replace(program, &hello.limits, hello.tick_hz).map_err(PlayError::Finger)
     }
 
-    /// Lets some time pass on the board, `time_max` at most: records what happens, and sends samples.
+    /// Lets at most `time_max` pass on the board; records the ticks, and sends samples.
     ///
-    /// Returns how much time has passed. An error when the board is gone or has stopped without a command; what
-    /// happened until then has been recorded.
+    /// Returns how much time has passed. Fails when the connection is lost or when the board stopped without a stop
+    /// command; what happened until then has been recorded.
     pub fn step(&mut self, time_max: Duration) -> Result<Duration, PlayError> {
         let step_max = if self.feed.is_some() { STREAM_STEP_MAX } else { STEP_MAX };
         let time = step_max.min(time_max).min(self.time_left());
@@ -146,37 +147,37 @@ impl<L: RecordedLink> Player<L> {
         Ok(time)
     }
 
-    /// Ends play and record: output zero, disarmed.
+    /// Ends the play and the record: sets the output to zero and disarms the board.
     pub fn stop(&mut self) -> Result<(), PlayError> {
         self.device.stop()?;
         Ok(self.device.disarm()?)
     }
 
-    /// The board.
+    /// The board that the scene plays on.
     pub fn device(&self) -> &Device<L> {
         &self.device
     }
 
-    /// The record.
+    /// The recorder of this play.
     pub fn recorder_mut(&mut self) -> &mut Recorder {
         self.device.link_mut().recorder_mut()
     }
 
-    /// Ends the record with what is known now, and hands over the recorder. The board is stopped when that has not been
-    /// done.
+    /// Ends the record with the data received so far, and returns the recorder. Stops the board first if
+    /// [`Self::stop`] has not been called.
     pub fn into_recorder(mut self) -> Recorder {
         self.device.link_mut().record_rest();
         std::mem::replace(self.recorder_mut(), Recorder::idle())
     }
 
-    /// Time to the end of the record, and a little more.
+    /// Time to the end of the record, plus [`MARGIN`].
     fn time_left(&mut self) -> Duration {
         let tick_hz = self.device.hello().tick_hz;
         let ticks = self.recorder_mut().ticks_left();
         Duration::try_from_secs_f64(ticks as f64 / f64::from(tick_hz)).unwrap_or(Duration::MAX).saturating_add(MARGIN)
     }
 
-    /// Waits, and takes what the board sends meanwhile.
+    /// Waits for `time`, and handles the messages that the board sends meanwhile.
     fn wait(&mut self, time: Duration) -> Result<(), PlayError> {
         let Self { device, telemetry, events, .. } = self;
         let t_s = device.link_mut().recorder_mut().t_s();
@@ -190,33 +191,32 @@ impl<L: RecordedLink> Player<L> {
     }
 }
 
-/// How to play on the simulator.
+/// Settings of a play on the simulator.
 #[derive(Clone, Debug)]
 pub struct Simulation {
-    /// Board, world and line.
+    /// The simulated board, world and serial line.
     pub rig: RigConfig,
-    /// Where the finger goes.
+    /// Path of the simulated finger.
     pub stroke: Stroke,
-    /// For how long, in seconds from the beginning of the stroke.
+    /// Duration, in seconds from the beginning of the stroke.
     pub seconds: f64,
-    /// Seed of all that is random.
+    /// Seed of every random process.
     pub seed: u64,
     /// Ticks between two rows of the record.
     pub ticks_per_row: u32,
 }
 
-/// What came of a simulation.
+/// Results of a simulation.
 pub struct Simulated {
-    /// What was felt, compared with the reference.
+    /// Recorder with the felt friction and its reference.
     pub recorder: Recorder,
-    /// What went over the line.
+    /// Traffic counters of the serial line.
     pub counters: Counters,
-    /// How the stream did, if there was one.
+    /// Final status of the stream; `None` without one.
     pub stream: Option<StreamStatus>,
 }
 
-/// Plays `program` on the simulated board under a simulated finger, with samples for its stream layers if there are
-/// any.
+/// Plays `program` on the simulated board under a simulated finger. `feed` supplies the samples of its stream layers.
 ///
 /// The program must have been compiled for the limits and the tick rate of the simulation's board.
 pub fn simulate(program: &Program, simulation: &Simulation, feed: Option<Feed>) -> Result<Simulated, PlayError> {
@@ -248,7 +248,7 @@ mod tests {
 
     use super::*;
 
-    /// A fault ends a play in virtual time as it does at a port, with what was played until then in the record.
+    /// In virtual time as on a serial port, a fault ends the play, and the record holds everything up to the fault.
     #[test]
     fn a_board_that_stops_by_itself_ends_the_play() {
         let config = RigConfig::default();

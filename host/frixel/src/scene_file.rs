@@ -1,4 +1,4 @@
-//! Scene files and their pictures, read from a folder.
+//! Loading of scene files and of the pictures beside them.
 
 use std::fs;
 use std::io;
@@ -7,24 +7,25 @@ use std::path::{Path, PathBuf};
 use frixel_scene::{CompileError, PictureUnavailable, Pictures, Scene};
 use thiserror::Error;
 
-/// Why a scene file does not become a program.
+/// Why a scene file could not be loaded.
 #[derive(Debug, Error)]
 pub enum SceneFileError {
-    /// The scene file itself cannot be read.
+    /// The scene file itself could not be read.
     #[error("{file}: this scene file cannot be read ({source}): check the path")]
     Unreadable {
-        /// The file as it was named.
+        /// Path of the scene file, as the caller gave it.
         file: String,
-        /// The operating system's reason.
+        /// Error of the operating system.
         source: io::Error,
     },
-    /// The file was read, and something in it is wrong.
+    /// The file was read, but its content is invalid.
     #[error(transparent)]
     Compile(#[from] CompileError),
 }
 
 impl SceneFileError {
-    /// As [`CompileError::to_json`]; `unreadable` is the operating system's reason when the file could not be read.
+    /// The error as JSON, in the form of [`CompileError::to_json`]. The field `unreadable` holds the operating system's
+    /// error message when the file could not be read.
     pub fn to_json(&self) -> String {
         match self {
             Self::Unreadable { file, source } => {
@@ -35,7 +36,7 @@ impl SceneFileError {
     }
 }
 
-/// Reads a scene file. The names of its pictures are paths from its folder.
+/// Reads a scene file. The picture names in it are paths relative to its folder.
 pub fn load(path: &Path) -> Result<Scene, SceneFileError> {
     let file = path.display().to_string();
     match fs::read(path) {
@@ -47,7 +48,7 @@ pub fn load(path: &Path) -> Result<Scene, SceneFileError> {
     }
 }
 
-/// The folder that the names of pictures start from.
+/// The folder that picture names are relative to.
 #[derive(Clone, Debug)]
 pub struct PictureFolder(pub PathBuf);
 
@@ -65,7 +66,7 @@ impl Pictures for PictureFolder {
     }
 }
 
-/// The names of what is in a folder, sorted; none when the folder cannot be read.
+/// The sorted names of the entries of a folder; empty when the folder cannot be read.
 fn files_in(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).into_iter().flatten();
     let mut names: Vec<String> = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect();

@@ -1,8 +1,9 @@
 //! Plays bundled scenes on the in-process rig and hashes what the finger felt.
 //!
-//! Built for `wasm32-unknown-unknown` and run by node (`run.mjs`), and run natively by the program of the same name:
-//! the hashes are equal, or one of the three libraries computes differently there. `cargo xtask portability` runs both.
-//! That the three compile for WebAssembly does not show it: a call to a clock or to a file compiles, and fails when run.
+//! The library is built for `wasm32-unknown-unknown` and run by node (`run.mjs`), and is also run natively by the
+//! program of the same name. If the hashes differ, one of the three libraries computes differently in WebAssembly.
+//! `cargo xtask portability` runs both. Compiling for WebAssembly is not enough: a call to a clock or a file system
+//! compiles, and fails at run time.
 
 use std::collections::BTreeMap;
 use std::fmt::Display;
@@ -12,7 +13,7 @@ use frixel_driver::{Bitmap, ByteStream, Device, LinkClosed, PollingLink, Upload}
 use frixel_hil_sim::{BoardMemory, FingerState, Point, Rig, RigConfig, Stroke, TickRecord};
 use frixel_scene::{Scene, compile};
 
-/// Scenes with a picture, waves, clicks and noise.
+/// Scenes that cover pictures, waves, clicks and noise.
 const SCENES: [(&str, &str); 4] = [
     ("brick.toml", include_str!("../../../scenes/brick.toml")),
     ("grating.toml", include_str!("../../../scenes/grating.toml")),
@@ -21,18 +22,18 @@ const SCENES: [(&str, &str); 4] = [
 ];
 const BRICK_PNG: &[u8] = include_bytes!("../../../scenes/textures/brick.png");
 
-/// How long each scene plays, in virtual time.
+/// Duration of each scene in virtual time.
 const PLAY_TIME: Duration = Duration::from_millis(200);
-/// The finger's stroke, 100 mm long.
+/// Duration of the finger's stroke of 100 mm, s.
 const STROKE_S: f64 = 0.5;
 const ACCELERATION_M_PER_S2: f64 = 0.8;
 const TICK_HZ: f64 = 40_000.0;
 
-/// The hash for WebAssembly, as an export of one plain number.
+/// Returns the hash for WebAssembly, exported as a plain number.
 ///
 /// # Panics
 ///
-/// When a scene does not play. In WebAssembly a panic is a trap, which node reports.
+/// Panics if a scene does not play. In WebAssembly a panic is a trap, which node reports.
 #[allow(unsafe_code, reason = "an export needs a name that the linker keeps, and this crate has no other")]
 #[unsafe(no_mangle)]
 pub extern "C" fn frixel_scenes_hash() -> u64 {
@@ -40,7 +41,7 @@ pub extern "C" fn frixel_scenes_hash() -> u64 {
     scenes_hash().expect("every scene plays")
 }
 
-/// Plays every scene, and returns the hash of friction, electrode voltage and DAC code at every tick.
+/// Plays every scene, and returns a hash of friction, electrode voltage and DAC code at every tick.
 pub fn scenes_hash() -> Result<u64, String> {
     let mut hash = Hash::new();
     for (name, text) in SCENES {
@@ -55,7 +56,7 @@ fn play(name: &str, text: &str, hash: &mut Hash) -> Result<(), String> {
     let scene = Scene::parse(text, name, &pictures).map_err(message)?;
     let program = compile(&scene, &config.board.limits, config.board.tick_hz).map_err(message)?;
 
-    // The finger is placed from outside, as a page does: the stroke never starts.
+    // The finger is positioned from outside, as by a web page; the rig's own stroke never starts.
     let stroke = Stroke::still(Point { x_m: 0.0, y_m: 0.0 }, 1.0).map_err(message)?;
     let mut memory = BoardMemory::new();
     let rig = Rig::new(&mut memory, &config, stroke, 1).map_err(message)?;
@@ -89,7 +90,7 @@ struct RigLine<'a> {
 
 impl RigLine<'_> {
     fn step(&mut self) {
-        // From the left to the right edge, faster and faster, and again.
+        // The finger repeatedly moves from the left to the right edge, accelerating.
         let t_s = (self.rig.tick() as f64 / TICK_HZ) % STROKE_S;
         let way_m = 0.5 * ACCELERATION_M_PER_S2 * t_s * t_s;
         let speed_m_per_s = ACCELERATION_M_PER_S2 * t_s;

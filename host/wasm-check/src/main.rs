@@ -1,4 +1,4 @@
-//! Prints the hash of what a finger feels on bundled scenes, as this machine computes it.
+//! Prints the hash of the friction that a finger feels on bundled scenes, computed natively.
 #![forbid(unsafe_code)]
 
 use std::process::ExitCode;

@@ -1,5 +1,5 @@
-//! The file of what each kind of layer costs, which compiler and board read: made from what was measured, and held
-//! against it.
+//! The file with the cost of each kind of layer, which compiler and board read. It is generated from measurements, and
+//! checked against them.
 
 use std::fmt::Write;
 use std::fs;
@@ -10,28 +10,30 @@ use crate::command::root;
 
 const PATH: &str = "firmware/layers/src/cost/measured.rs";
 
-/// Points of a curve or vertices of a polygon in the shorter and the longer of two measured cases.
+/// Numbers of curve points in the shorter and the longer of the two measured cases; the same for polygon vertices
+/// below.
 const SPEED_POINTS: (u64, u64) = (2, 8);
 const POLYGON_POINTS: (u64, u64) = (4, 12);
-/// Edges of both that are level with the finger.
+/// Number of edges that are level with the finger in both polygons.
 const POLYGON_EDGES_LEVEL: u64 = 2;
-/// Vertices of the polygon all of whose edges are.
+/// Vertices of the polygon whose edges are all level with the finger.
 const LEVEL_POLYGON_POINTS: u64 = 6;
 
-/// Core cycles that several rare things in one tick take beyond the longest case: a report under a fast source, an edge
-/// of the carrier, a limit that acts. `cargo xtask soak` plays thousands of random scenes to find one that takes more.
+/// Core cycles by which a tick with several rare events exceeds the longest measured case: a report of a fast touch
+/// source, an edge of the carrier, an active limit. `cargo xtask soak` plays thousands of random scenes to find one
+/// that takes more.
 const RARE: u64 = 32;
 
-/// The name of a cost, what it is, and its core cycles.
+/// Name, description and core cycles of a cost.
 type Cost = (&'static str, &'static str, u64);
 
-/// Writes the file anew.
+/// Regenerates the file.
 pub(crate) fn bless(figures: &Figures) -> Result<(), String> {
     let path = root().join(PATH);
     fs::write(&path, text(&costs(figures)?)).map_err(|error| format!("{}: {error}", path.display()))
 }
 
-/// Says which costs of the file are not those that were measured.
+/// Fails if a cost in the file differs from the measurement. The error lists the differences.
 pub(crate) fn check(figures: &Figures) -> Result<(), String> {
     let path = root().join(PATH);
     let found = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
@@ -46,7 +48,7 @@ pub(crate) fn check(figures: &Figures) -> Result<(), String> {
     Err(format!("{PATH} is not what was measured; `cargo xtask bench --bless` writes it anew: {}", drifted.join(", ")))
 }
 
-/// Costs from ticks of one constant, of two, and of one layer of another kind.
+/// Computes the costs from measured ticks with one constant layer, two constant layers, or one layer of another kind.
 fn costs(figures: &Figures) -> Result<Vec<Cost>, String> {
     let tick = |name: &str| {
         let name = format!("m4f.tick_{name}{CYCLES}");
@@ -56,8 +58,8 @@ fn costs(figures: &Figures) -> Result<Vec<Cost>, String> {
     let constant = two.saturating_sub(tick("constant_alone")?);
     let base = two.saturating_sub(2 * constant);
     let alone = |name: &str| tick(&format!("{name}_alone")).map(|core_cycles| core_cycles.saturating_sub(base));
-    // The longest: a tick in which the envelope is at its slew limit is longer than one that is not, as is one that asks
-    // for more than there is.
+    // Ticks with the envelope at its slew limit, and ticks whose target exceeds the reachable friction, are longer
+    // than others: take the longest.
     let longest =
         base.max(tick("1_of_64")?.saturating_sub(constant)).max(tick("out_of_reach_alone")?.saturating_sub(constant));
     let empty = longest + RARE;
@@ -99,7 +101,7 @@ fn costs(figures: &Figures) -> Result<Vec<Cost>, String> {
     ])
 }
 
-/// What is there without points, and what each adds, so that neither of the two cases takes more.
+/// Cost without points and cost per point, chosen so that neither of the two measured cases exceeds the line.
 fn line_through((few, many): (u64, u64), at_few: u64, at_many: u64) -> (u64, u64) {
     let each = at_many.saturating_sub(at_few).div_ceil(many - few);
     (at_few.saturating_sub(few * each).max(at_many.saturating_sub(many * each)), each)
@@ -116,7 +118,7 @@ fn text(costs: &[Cost]) -> String {
     );
     for cost in costs {
         let (_, comment, _) = cost;
-        // A string takes what is written to it.
+        // Writing to a string cannot fail.
         let _ = match *comment {
             "" => writeln!(text, "{}", line(cost)),
             comment => writeln!(text, "\n// {comment}\n{}", line(cost)),

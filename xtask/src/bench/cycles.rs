@@ -1,8 +1,8 @@
-//! Cycles of a Thumb-2 instruction, as an estimate.
+//! Estimates the cycles of a Thumb-2 instruction.
 //!
-//! From the Cortex-M4 technical reference (Arm 100166, tables 3-1 and 7-1), without what depends on neighbours: loads do
-//! not overlap, memory does not wait. Where the reference gives a range, the middle of a taken branch (1 to 3 to refill the
-//! pipeline) and the most for an integer division are taken.
+//! The numbers are from the Cortex-M4 technical reference (Arm 100166, tables 3-1 and 7-1), ignoring effects between
+//! instructions: loads do not overlap, and memory has no wait states. Where the reference gives a range, the estimate
+//! uses the middle for a taken branch (1 to 3 to refill the pipeline) and the maximum for an integer division.
 
 /// Cycles to refill the pipeline after a branch.
 const REFILL: u64 = 2;
@@ -13,7 +13,8 @@ const DIVISION: u64 = 12;
 /// A load from memory.
 const LOAD: u64 = 2;
 
-/// Cycles of the instruction of one or two halfwords at `place`, after which the program went on at `next`.
+/// Cycles of the instruction of one or two halfwords at `place`. `next` is the address of the instruction executed
+/// after it.
 pub(super) fn cycles(first: u16, second: u16, place: u32, next: u32) -> u64 {
     let wide = first >= 0xe800;
     let own = if wide { wide_cycles(first, second) } else { narrow_cycles(first) };
@@ -21,7 +22,7 @@ pub(super) fn cycles(first: u16, second: u16, place: u32, next: u32) -> u64 {
     if fell_through { own } else { own + REFILL }
 }
 
-/// Of a 16-bit instruction.
+/// Cycles of a 16-bit instruction.
 fn narrow_cycles(first: u16) -> u64 {
     match first >> 12 {
         // Register offset: stores, then loads from LDRSB on.
@@ -36,7 +37,7 @@ fn narrow_cycles(first: u16) -> u64 {
     }
 }
 
-/// Of a 32-bit instruction.
+/// Cycles of a 32-bit instruction.
 fn wide_cycles(first: u16, second: u16) -> u64 {
     let load = first & 0x0010 != 0;
     match first {
@@ -57,7 +58,7 @@ fn wide_cycles(first: u16, second: u16) -> u64 {
     }
 }
 
-/// Of a floating-point instruction.
+/// Cycles of a floating-point instruction.
 fn float_cycles(first: u16, second: u16) -> u64 {
     match first {
         // Two registers to or from the core.
@@ -84,7 +85,7 @@ fn float_cycles(first: u16, second: u16) -> u64 {
 mod tests {
     use super::*;
 
-    /// Encodings as the assembler has them.
+    /// Encodings as the assembler produces them.
     #[test]
     fn instructions_take_what_the_reference_says() {
         for (name, first, second, expected) in [

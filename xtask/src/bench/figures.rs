@@ -1,42 +1,43 @@
-//! What was measured.
+//! The results of the measurements.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// Figures by name: instructions of `m4f.…` and `m3.…` at the worst input, bytes of images. Names that end in
-/// [`CYCLES`] and [`MEAN`] are the estimate in cycles, at that input too, and the mean over all inputs.
+/// Figures by name: instructions of `m4f.…` and `m3.…` at the worst input, and bytes of images. A name that ends in
+/// [`CYCLES`] is the estimated number of cycles at the same input, and one that ends in [`MEAN`] is the mean over all
+/// inputs.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Figures(BTreeMap<String, u64>);
 
-/// End of the name of an estimate in cycles.
+/// Suffix of the names of cycle estimates.
 pub(crate) const CYCLES: &str = "_cycles";
 
-/// End of the name of a mean.
+/// Suffix of the names of means.
 pub(crate) const MEAN: &str = "_mean";
 
 impl Figures {
-    /// Adds a figure.
+    /// Adds a figure, or replaces the one of this name.
     pub(crate) fn put(&mut self, name: String, value: u64) {
         self.0.insert(name, value);
     }
 
-    /// A figure.
+    /// The figure with this name.
     pub(crate) fn get(&self, name: &str) -> Option<u64> {
         self.0.get(name).copied()
     }
 
-    /// A table for a person.
+    /// The figures as a table of text.
     pub(crate) fn table(&self) -> String {
         let mut table = format!("{:28} {:>8} {:>8} {:>12}\n", "", "worst", "mean", "cycles, est.");
         for (name, value) in self.0.iter().filter(|(name, _)| !name.ends_with(CYCLES) && !name.ends_with(MEAN)) {
             let beside = |end| self.get(&format!("{name}{end}")).map(|value| value.to_string()).unwrap_or_default();
-            // A string takes what is written to it.
+            // Writing to a string cannot fail.
             let _ = writeln!(table, "{name:28} {value:>8} {:>8} {:>12}", beside(MEAN), beside(CYCLES));
         }
         table
     }
 
-    /// All of it for a program.
+    /// The figures as JSON.
     pub(crate) fn json(&self) -> Result<String, String> {
         serde_json::to_string_pretty(&self.0).map(|json| json + "\n").map_err(|error| error.to_string())
     }

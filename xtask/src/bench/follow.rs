@@ -1,4 +1,4 @@
-//! Following the benchmark image instruction by instruction, as a debugger does.
+//! Follows the benchmark image instruction by instruction, in the manner of a debugger.
 
 use std::collections::HashMap;
 use std::fs;
@@ -14,25 +14,25 @@ use super::gdb::Gdb;
 /// Words of the image's `nothing` that are not its frame: they were added to the timer's count.
 const NOTHING: Seen = Seen { instructions: 2, cycles: 2 };
 
-/// What was seen of a case at its worst input: call and return left out.
+/// Instructions and cycles of a case at its worst input, without call and return.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Seen {
     pub(super) instructions: u64,
     pub(super) cycles: u64,
 }
 
-/// Kills the emulator however the following ends.
+/// Kills the emulator on drop.
 struct Emulator(Child);
 
 impl Drop for Emulator {
     fn drop(&mut self) {
-        // It may have ended by itself.
+        // Ignore the error if the emulator has already exited.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }
 }
 
-/// Runs the image in `emulator` and follows, for every case in turn, the given input.
+/// Runs the image in `emulator` and follows each case in order at its given input.
 pub(super) fn follow(mut emulator: Command, image: &Path, inputs: &[u32]) -> Result<Vec<Seen>, String> {
     let code = Code::read(image)?;
     let listener = TcpListener::bind("127.0.0.1:0").map_err(|error| format!("listening to a debugger: {error}"))?;
@@ -61,7 +61,7 @@ pub(super) fn follow(mut emulator: Command, image: &Path, inputs: &[u32]) -> Res
     Ok(seen)
 }
 
-/// Goes on to the next beginning, which says what case it is, and from there step by step to the end.
+/// Continues to the start of the next case, reads its number, and steps through it to the end.
 fn span(gdb: &mut Gdb, code: &Code, end: u32) -> Result<(u32, Seen), String> {
     gdb.go_on()?;
     let case = gdb.register(0)?;
@@ -78,7 +78,7 @@ fn span(gdb: &mut Gdb, code: &Code, end: u32) -> Result<(u32, Seen), String> {
     Ok((case, seen))
 }
 
-/// The image's code and symbols.
+/// The code and the symbols of the image.
 struct Code {
     halfwords: HashMap<u32, u16>,
     symbols: HashMap<String, u32>,
@@ -106,7 +106,7 @@ impl Code {
         self.symbols.get(name).copied().ok_or_else(|| format!("the benchmark image has no symbol {name}"))
     }
 
-    /// The halfwords of the instruction at a place; the second means nothing when it has but one.
+    /// The halfwords of the instruction at an address; the second is undefined if the instruction has only one.
     fn instruction(&self, place: u32) -> Result<(u16, u16), String> {
         let halfword = |place| self.halfwords.get(&place).copied();
         let first =

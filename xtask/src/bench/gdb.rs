@@ -1,4 +1,5 @@
-//! The little of GDB's remote serial protocol that it takes to follow a program: packets `$data#sum`, acknowledged `+`.
+//! The part of GDB's remote serial protocol that is needed to follow a program: packets `$data#sum`, acknowledged by
+//! `+`.
 
 use std::fmt::Write as _;
 use std::io::{ErrorKind, Read, Write};
@@ -7,17 +8,17 @@ use std::process::Child;
 use std::thread;
 use std::time::Duration;
 
-/// Wall time that the emulator may take to come to a breakpoint.
+/// Wall time within which the emulator must reach a breakpoint.
 const PATIENCE: Duration = Duration::from_mins(2);
 
-/// Number of the program counter among the registers.
+/// Index of the program counter among the registers.
 const PROGRAM_COUNTER: usize = 15;
 
-/// A debugger's end of the line to an emulator that stands still.
+/// A connection to the debugger interface of a halted emulator.
 pub(super) struct Gdb(TcpStream);
 
 impl Gdb {
-    /// Takes the connection that the emulator makes.
+    /// Accepts the connection that the emulator opens.
     pub(super) fn accept(listener: &TcpListener, emulator: &mut Child) -> Result<Self, String> {
         listener.set_nonblocking(true).map_err(|error| explain(&error))?;
         loop {
@@ -38,39 +39,39 @@ impl Gdb {
         }
     }
 
-    /// Writes to memory.
+    /// Writes bytes to memory.
     pub(super) fn write(&mut self, place: u32, bytes: &[u8]) -> Result<(), String> {
         let mut packet = format!("M{place:x},{:x}:", bytes.len());
         for byte in bytes {
-            // A string takes what is written to it.
+            // Writing to a string cannot fail.
             let _ = write!(packet, "{byte:02x}");
         }
         self.expect_ok(&packet)
     }
 
-    /// Stops the program whenever it comes to a place.
+    /// Sets a breakpoint at an address.
     pub(super) fn set_breakpoint(&mut self, place: u32) -> Result<(), String> {
         self.expect_ok(&format!("Z0,{place:x},2"))
     }
 
-    /// Runs to the next breakpoint.
+    /// Continues to the next breakpoint.
     pub(super) fn go_on(&mut self) -> Result<(), String> {
         self.expect_stop("c")
     }
 
-    /// Runs one instruction.
+    /// Executes one instruction.
     pub(super) fn step(&mut self) -> Result<(), String> {
         self.expect_stop("s")
     }
 
-    /// Where the program is.
+    /// Reads the program counter.
     pub(super) fn program_counter(&mut self) -> Result<u32, String> {
         self.register(PROGRAM_COUNTER)
     }
 
-    /// A register of the processor, from r0 on.
+    /// Reads a core register, counted from r0.
     pub(super) fn register(&mut self, number: usize) -> Result<u32, String> {
-        // All registers, each of eight digits.
+        // The answer has all registers, each as eight digits.
         let answer = self.ask("g")?;
         let digits = answer.get(8 * number..8 * (number + 1)).unwrap_or_default();
         u32::from_str_radix(digits, 16)
@@ -85,7 +86,8 @@ impl Gdb {
         }
     }
 
-    /// A program that has ended answers with `W`, one that has stopped with `T`.
+    /// Expects that the program stops. The emulator answers `T` when the program has stopped, and `W` when it has
+    /// exited.
     fn expect_stop(&mut self, packet: &str) -> Result<(), String> {
         match self.ask(packet)? {
             answer if answer.starts_with('T') => Ok(()),

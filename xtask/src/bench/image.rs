@@ -8,27 +8,27 @@ use super::follow::{self, Seen};
 use super::{Core, EMULATOR};
 use crate::command::{cargo_in, root, run};
 
-/// An instruction takes 1,024 ns of virtual time, and nothing else takes any.
+/// Each instruction takes 1,024 ns of virtual time, and nothing else takes any.
 const COUNTING: [&str; 2] = ["-icount", "shift=10,sleep=off"];
 
-/// The image for a core.
+/// The benchmark image for a core.
 pub(super) struct Image<'a> {
     core: &'a Core,
     path: PathBuf,
 }
 
-/// One line of what the image writes.
+/// One line of the image's output.
 pub(super) struct Count {
     pub(super) name: String,
     pub(super) instructions: u64,
-    /// Number of the input for which they are the most, from 1.
+    /// Number of the input with the most instructions, from 1.
     pub(super) worst_input: u32,
-    /// Over all inputs, rounded up.
+    /// Mean over all inputs, rounded up.
     pub(super) mean: u64,
 }
 
 impl<'a> Image<'a> {
-    /// Builds the image; one that breaks its budget on purpose when asked for.
+    /// Builds the image. With `breach`, it deliberately exceeds its budget.
     pub(super) fn build(core: &'a Core, breach: bool) -> Result<Self, String> {
         let target_folder = if breach { "target/breach" } else { "target" };
         let mut command = cargo_in("firmware/bench");
@@ -42,7 +42,7 @@ impl<'a> Image<'a> {
         Ok(Self { core, path })
     }
 
-    /// Counts instructions.
+    /// Counts the instructions of every case.
     pub(super) fn count(&self, figures: &mut Figures) -> Result<Vec<Count>, String> {
         let text = self.run(&[])?;
         let counts: Vec<Count> = text.lines().map(parse).collect::<Result<_, _>>()?;
@@ -53,7 +53,7 @@ impl<'a> Image<'a> {
         Ok(counts)
     }
 
-    /// Runs the image with these words on its command line, and gives what it writes.
+    /// Runs the image with these command-line arguments, and returns its output.
     pub(super) fn run(&self, words: &[String]) -> Result<String, String> {
         let output =
             self.emulator(words).output().map_err(|error| format!("{EMULATOR} could not be started: {error}"))?;
@@ -66,7 +66,7 @@ impl<'a> Image<'a> {
         }
     }
 
-    /// Counts instructions, then looks which they are at the worst input and estimates their cycles.
+    /// Counts instructions, then follows every case at its worst input to estimate its cycles.
     pub(super) fn measure(&self, figures: &mut Figures) -> Result<(), String> {
         let counts = self.count(figures)?;
         let inputs: Vec<u32> = counts.iter().map(|count| count.worst_input).collect();
@@ -85,7 +85,7 @@ impl<'a> Image<'a> {
         Ok(())
     }
 
-    /// Runs the image with these words on its command line, and follows the given input of every case in turn.
+    /// Runs the image with these command-line arguments, and follows every case at its given input.
     pub(super) fn follow(&self, words: &[String], inputs: &[u32]) -> Result<Vec<Seen>, String> {
         follow::follow(self.emulator(words), &self.path, inputs)
     }
@@ -94,7 +94,7 @@ impl<'a> Image<'a> {
         format!("{}.{}", self.core.name, count.name)
     }
 
-    /// The emulator with the image, and words for it.
+    /// The command that runs the image in the emulator with these arguments.
     fn emulator(&self, words: &[String]) -> Command {
         let words = [&["bench".to_owned()], words].concat().join(",arg=");
         let mut command = Command::new(EMULATOR);

@@ -1,7 +1,7 @@
 //! Random scenes in the emulator: no tick may take more cycles than the loader estimates.
 //!
-//! The emulator counts instructions, not cycles. So every scene is played and counted, and a debugger then follows the
-//! longest tick of those scenes that come nearest to their estimate, to see what cycles its instructions take.
+//! The emulator counts instructions, not cycles. Therefore every scene is played and its instructions are counted. For
+//! the scenes that come nearest to their estimate, a debugger then follows the longest tick to compute its cycles.
 
 use std::cmp::Reverse;
 use std::fmt;
@@ -11,27 +11,27 @@ use super::image::Image;
 use super::{EMULATOR, M4F_CORE};
 use crate::command::add_target;
 
-/// Scenes of a pace that are played for every change: some ten seconds.
+/// Number of scenes per pace that are played for every change, which takes about ten seconds.
 pub(crate) const FEW: u64 = 500;
-/// Scenes of a pace that are played in `cargo xtask soak`: some two minutes.
+/// Number of scenes per pace that `cargo xtask soak` plays, which takes about two minutes.
 pub(crate) const MANY: u64 = 6_000;
-/// Scenes of those that a debugger follows.
+/// Number of these scenes whose longest tick a debugger follows.
 const FOLLOWED: usize = 12;
 
-/// How often the touch source of a random scene reports, as the image calls it.
+/// How often the touch source of a random scene reports; the image uses the same names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Pace {
-    /// As chips and screens do.
+    /// The usual rate of touch chips and screens.
     Usual,
-    /// As fast as a host may.
+    /// The highest rate that a host may send at.
     Fast,
 }
 
 impl Pace {
-    /// Every pace.
+    /// All paces.
     pub(crate) const ALL: [Self; 2] = [Self::Usual, Self::Fast];
 
-    /// The pace of this name.
+    /// The pace with this name.
     pub(crate) fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|pace| pace.to_string() == name)
     }
@@ -46,19 +46,20 @@ impl fmt::Display for Pace {
     }
 }
 
-/// What was counted of one scene.
+/// The counts of one scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Played {
     seed: u64,
-    /// Instructions of its longest tick.
+    /// Instructions of the scene's longest tick.
     instructions: u64,
-    /// Cycles that the loader estimates for it, without flash wait states.
+    /// Cycles that the loader estimates for the scene, without flash wait states.
     estimated_cycles: u64,
-    /// Number of that tick, from 1.
+    /// Number of the longest tick, from 1.
     tick: u32,
 }
 
-/// Plays the scenes of `count` seeds from `first` on. Fails when one of them has a tick that takes more than its estimate.
+/// Plays the scenes of `count` seeds, starting at `first`. Fails if a scene has a tick that takes more than its
+/// estimate.
 pub(crate) fn check(pace: Pace, first: u64, count: u64) -> Result<(), String> {
     super::emulator()?;
     add_target(M4F_CORE.target)?;
@@ -74,7 +75,7 @@ pub(crate) fn check(pace: Pace, first: u64, count: u64) -> Result<(), String> {
     Ok(())
 }
 
-/// Plays the scenes of `count` seeds from `first` on, one after another.
+/// Plays the scenes of `count` seeds, starting at `first`.
 fn play(image: &Image, pace: Pace, first: u64, count: u64) -> Result<Vec<Played>, String> {
     let played: Vec<Played> = image.run(&words(pace, first, count))?.lines().map(parse).collect::<Result<_, _>>()?;
     if played.iter().map(|played| played.seed).eq(first..first + count) {
@@ -84,7 +85,7 @@ fn play(image: &Image, pace: Pace, first: u64, count: u64) -> Result<Vec<Played>
     }
 }
 
-/// Plays one scene on a board that has just started, and follows its longest tick.
+/// Plays one scene on a freshly started board, and follows its longest tick.
 fn play_and_follow(image: &Image, pace: Pace, seed: u64) -> Result<(Played, Seen), String> {
     let played = play(image, pace, seed, 1)?;
     let [played] = played.as_slice() else { return Err(format!("seed {seed} was not played")) };
@@ -93,12 +94,12 @@ fn play_and_follow(image: &Image, pace: Pace, seed: u64) -> Result<(Played, Seen
     Ok((*played, *seen))
 }
 
-/// Words on the emulator's command line that have the image play random scenes.
+/// Command-line arguments that make the image play random scenes.
 fn words(pace: Pace, first: u64, count: u64) -> [String; 4] {
     ["programs".to_owned(), pace.to_string(), first.to_string(), count.to_string()]
 }
 
-/// A sentence on the scene that came nearest to its estimate, or on those that took more.
+/// Describes the scene that came nearest to its estimate; fails if a scene exceeded it.
 fn judge(followed: &[(Played, Seen)]) -> Result<String, String> {
     let describe = |(played, seen): &(Played, Seen)| {
         let Played { seed, estimated_cycles, tick, .. } = played;
@@ -125,7 +126,7 @@ fn judge(followed: &[(Played, Seen)]) -> Result<String, String> {
 }
 
 impl Played {
-    /// Millionths of its estimated cycles that its instructions are.
+    /// Ratio of the executed instructions to the estimated cycles, in millionths.
     fn share(&self) -> u64 {
         1_000_000 * self.instructions / self.estimated_cycles.max(1)
     }

@@ -1,4 +1,4 @@
-//! Sizes of images, and how deep their stacks get.
+//! Sizes of images, and the depth of their stacks.
 
 use std::fs;
 use std::path::Path;
@@ -11,20 +11,20 @@ use super::figures::Figures;
 use super::stack::Functions;
 use crate::command::{M4F, cargo_in, root, run};
 
-/// A board's image with some of its features.
+/// A set of features that a board's image is built with.
 struct Build {
-    /// In the names of its figures.
+    /// Suffix of the names of its figures.
     name: &'static str,
     features: &'static [&'static str],
 }
 
-/// The real board's folder, and its image's name.
+/// Folder of the real board, and the name of its image.
 const G474: (&str, &str) = ("firmware/board-nucleo-g474re", "board-nucleo-g474re");
 const G474_BUILDS: [Build; 2] = [
     Build { name: "full", features: &[] },
     Build { name: "grating_only", features: &["--no-default-features", "--features", "grating"] },
 ];
-/// The main program, and the exceptions that come on top of each other: the tick, and flash that cannot be read.
+/// The main program and the exceptions that can interrupt each other: the tick, and the fault of unreadable flash.
 const MAIN: &str = "main";
 const TICK: &str = "TIM3";
 const EXCEPTIONS: [&str; 2] = [TICK, "NonMaskableInt"];
@@ -32,7 +32,7 @@ const EXCEPTIONS: [&str; 2] = [TICK, "NonMaskableInt"];
 const RAM: u64 = 0x2000_0000;
 const PERIPHERALS: u64 = 0x4000_0000;
 
-/// Measures the images of the real board, as far as it is there.
+/// Measures the images of the real board, if its folder exists.
 pub(super) fn measure(figures: &mut Figures) -> Result<(), String> {
     let (folder, image) = G474;
     if !root().join(folder).is_dir() {
@@ -50,7 +50,7 @@ pub(super) fn measure(figures: &mut Figures) -> Result<(), String> {
         figures.put(format!("g474.flash_{}", build.name), flash);
         figures.put(format!("g474.ram_{}", build.name), ram);
         let functions = Functions::read(&path)?;
-        // A tick that panics would leave a person with a voltage for as long as the one-shot lives.
+        // If a tick panicked, the voltage would remain on the electrode until the one-shot expires.
         functions.never_ends(TICK)?;
         match functions.depth(MAIN, &EXCEPTIONS) {
             Ok(bytes) => figures.put(format!("g474.stack_{}", build.name), bytes),
@@ -60,7 +60,7 @@ pub(super) fn measure(figures: &mut Figures) -> Result<(), String> {
     Ok(())
 }
 
-/// Bytes of flash and of RAM that an image takes, without its stacks.
+/// Bytes of flash and of RAM in an image, without its stacks.
 fn sizes(path: &Path) -> Result<(u64, u64), String> {
     let explain = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
     let bytes = fs::read(path).map_err(|error| explain(&error))?;

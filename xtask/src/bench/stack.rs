@@ -1,8 +1,8 @@
-//! How deep the stack of a board's image can get, from its instructions: what every function puts on the stack, and whom
-//! it calls.
+//! Computes how deep the stack of a board's image can get, from its machine code: the bytes that every function puts on
+//! the stack, and the functions that it calls.
 //!
-//! What a panic or a fault does comes on top of that: it ends the program, and an overflow then is one fault more, whose
-//! handler has a stack of its own.
+//! The stack of panics and faults is not included: they end the program, and if the stack then overflows, the
+//! resulting fault has a handler with its own stack.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -14,15 +14,16 @@ use object::{Endianness, Object, ObjectSection, ObjectSymbol};
 
 use super::thumb::{Instruction, decode};
 
-/// What an exception puts on the stack, floating point and alignment included (Armv7-M architecture reference, B1.5.6).
+/// Bytes that an exception puts on the stack, with floating-point state and alignment (Armv7-M architecture reference,
+/// B1.5.6).
 const EXCEPTION_BYTES: u64 = 27 * 4;
 /// Parts of the names of functions that end the program.
 const ENDS: [&str; 3] = ["panic", "rust_begin_unwind", "5fault"];
 
-/// How the names begin of what the linker has taken out of several functions.
+/// Prefix of the names of functions that the linker outlined from several functions.
 const OUTLINED: &str = "OUTLINED_FUNCTION";
 
-/// Parts of the names of functions that divide by a number that is never zero: a queue's length.
+/// Parts of the names of functions that divide by a number that is never zero: the length of a queue.
 const DIVIDES: [&str; 1] = ["8heapless4spsc"];
 
 /// A function of the image.
@@ -32,26 +33,26 @@ struct Function {
     len: u32,
     own_bytes: u64,
     calls: Vec<u32>,
-    /// Registers whose contents it calls.
+    /// Registers through which the function calls.
     called_registers: BTreeSet<u8>,
-    /// Where words stand that it loads, and the registers that they go to.
+    /// Registers that the function loads words into, with the addresses of the words.
     loads: Vec<(u8, u32)>,
     calls_register: bool,
     moves_stack: bool,
 }
 
-/// Functions by address.
+/// The functions of an image by address.
 pub(super) struct Functions(BTreeMap<u32, Function>);
 
 impl Functions {
-    /// Reads an image's functions.
+    /// Reads the functions of an image.
     pub(super) fn read(image: &Path) -> Result<Self, String> {
         let explain = |error: &dyn std::fmt::Display| format!("{}: {error}", image.display());
         let bytes = fs::read(image).map_err(|error| explain(&error))?;
         let file = object::read::elf::ElfFile32::<Endianness>::parse(&*bytes).map_err(|error| explain(&error))?;
         let endian = file.elf_header().endian().map_err(|error| explain(&error))?;
         let mut functions = BTreeMap::new();
-        // Where code begins (`$t`) and where it is interrupted by tables and literals (`$d`).
+        // Mapping symbols: code begins at `$t`, and tables and literals begin at `$d`.
         let mut kinds = BTreeMap::new();
         for symbol in file.symbols() {
             let (name, address) = (symbol.name().unwrap_or_default(), symbol.address() as u32);
@@ -86,18 +87,18 @@ impl Functions {
         Ok(Self(functions))
     }
 
-    /// The deepest that the stack gets, in bytes: the main program, and on top of it every exception of `exceptions`, one
-    /// interrupting the other.
+    /// Largest depth of the stack in bytes: the main program, and on top of it all of `exceptions`, each interrupting
+    /// the one before.
     pub(super) fn depth(&self, main: &str, exceptions: &[&str]) -> Result<u64, String> {
         let mut bytes = self.depth_of(main)?;
         for exception in exceptions {
             bytes += EXCEPTION_BYTES + self.depth_of(exception)?;
         }
-        // A hard fault, too, begins with a frame on this stack.
+        // A hard fault also starts with a frame on this stack.
         Ok(bytes + EXCEPTION_BYTES)
     }
 
-    /// Looks whether a function can end the program: an error that says where.
+    /// Fails if a function can end the program. The error states where.
     pub(super) fn never_ends(&self, name: &str) -> Result<(), String> {
         let found = self.0.iter().find(|(_, function)| function.name == name);
         let (address, _) = found.ok_or_else(|| format!("the image has no function {name}"))?;
@@ -122,7 +123,8 @@ impl Functions {
         self.from(*address, &mut Vec::new(), &mut BTreeMap::new())
     }
 
-    /// Depth from a function on. `path` led there; `known` are those that were looked at before.
+    /// Depth of the stack from a function on. `path` is the chain of calls to it; `known` caches the depths computed so
+    /// far.
     fn from(&self, address: u32, path: &mut Vec<u32>, known: &mut BTreeMap<u32, u64>) -> Result<u64, String> {
         if let Some(bytes) = known.get(&address) {
             return Ok(*bytes);
@@ -148,8 +150,8 @@ impl Functions {
     }
 }
 
-/// What the linker has taken out of several functions may end in a call through a register that they have loaded: then
-/// the call is theirs.
+/// An outlined function may end in a call through a register that its caller has loaded. Such a call is attributed
+/// to the caller.
 fn call_for_outlined(functions: &mut BTreeMap<u32, Function>) {
     let mut outlined = BTreeMap::new();
     for (address, function) in functions.iter_mut().filter(|(_, function)| function.name.starts_with(OUTLINED)) {
@@ -166,7 +168,7 @@ fn call_for_outlined(functions: &mut BTreeMap<u32, Function>) {
 }
 
 impl Function {
-    /// Looks at every instruction. What is put on the stack anywhere is added up, whichever way the program takes.
+    /// Decodes every instruction. All stack growth in the function is added up, independent of the path of execution.
     fn scan(&mut self, address: u32, code: &[u8], is_code: &dyn Fn(u32) -> bool) {
         let end = address + self.len;
         let halfwords: Vec<u16> = code.as_chunks().0.iter().map(|bytes| u16::from_le_bytes(*bytes)).collect();
@@ -191,8 +193,9 @@ impl Function {
         }
     }
 
-    /// A function that is called several times is called through a register, where that makes less code: its address is a word
-    /// that was loaded before. `function_at` is the function whose address stands at a place.
+    /// Resolves calls through registers. The compiler calls a function through a register when it calls it several
+    /// times and this makes the code smaller; the address is a word that was loaded before. `function_at` returns the
+    /// function whose address is stored at a place.
     fn look_up_calls(&mut self, function_at: impl Fn(u32) -> Option<u32>) {
         for register in &self.called_registers {
             let loads = self.loads.iter().filter(|(to, _)| to == register);

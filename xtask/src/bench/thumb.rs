@@ -1,21 +1,21 @@
-//! Thumb-2 instructions, as far as stack and calls go (Armv7-M architecture reference, A7.7).
+//! Decoder for the Thumb-2 instructions that affect the stack or call functions (Armv7-M architecture reference, A7.7).
 
-/// What an instruction does.
+/// The effect of an instruction on stack and control flow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Instruction {
-    /// Makes the stack longer by so many bytes.
+    /// Grows the stack by this number of bytes.
     Push(u32),
-    /// Moves the stack pointer by an amount that is not in the instruction.
+    /// Moves the stack pointer by an amount that the instruction does not contain.
     MoveStack,
-    /// Calls the function at an address.
+    /// Calls the function at this address.
     Call(u32),
-    /// Goes on at an address, perhaps.
+    /// Branches to this address, possibly under a condition.
     Branch(u32),
-    /// Calls, or goes on at, the address in a register.
+    /// Calls, or branches to, the address in this register.
     CallRegister(u8),
-    /// Loads a register with the word at an address.
+    /// Loads the word at an address into a register.
     LoadWord(u8, u32),
-    /// Anything else.
+    /// Any other instruction.
     Other,
 }
 
@@ -30,7 +30,7 @@ fn narrow(first: u16, place: u32) -> Instruction {
         _ if first & 0xfe00 == 0xb400 => Instruction::Push(4 * (first & 0x1ff).count_ones()),
         // SUB SP, SP, #imm7.
         _ if first & 0xff80 == 0xb080 => Instruction::Push(4 * u32::from(first & 0x7f)),
-        // BLX, and BX but for BX LR.
+        // BLX, and BX except BX LR.
         _ if first & 0xff07 == 0x4700 && first != 0x4770 => Instruction::CallRegister((first >> 3 & 0xf) as u8),
         // LDR from a literal.
         _ if first & 0xf800 == 0x4800 => literal((first >> 8 & 7) as u8, place, 4 * i32::from(first & 0xff)),
@@ -46,16 +46,16 @@ fn wide(first: u16, second: u16, place: u32) -> Instruction {
     match first {
         // STMDB SP!.
         0xe92d => Instruction::Push(4 * second.count_ones()),
-        // STR in front of SP, which moves.
+        // STR with pre-indexed SP.
         0xf84d if to_sp => Instruction::Push(u32::from(second & 0xff)),
-        // STRD in the same way, and VPUSH.
+        // STRD with pre-indexed SP, and VPUSH.
         0xe96d | 0xed2d | 0xed6d => Instruction::Push(4 * u32::from(second & 0xff)),
         // SUB SP, SP, #const and #imm12.
         0xf1ad | 0xf5ad if to_sp => Instruction::Push(expand(first, second)),
         0xf2ad | 0xf6ad if to_sp => Instruction::Push(immediate(first, second)),
         // SUB SP, SP, register.
         0xebad if to_sp => Instruction::MoveStack,
-        // LDR from a literal behind or before.
+        // LDR from a literal after or before the instruction.
         0xf8df => literal((second >> 12) as u8, place, i32::from(second & 0xfff)),
         0xf85f => literal((second >> 12) as u8, place, -i32::from(second & 0xfff)),
         _ if first & 0xf800 == 0xf000 => far(first, second, place),
@@ -84,19 +84,19 @@ fn far(first: u16, second: u16, place: u32) -> Instruction {
     }
 }
 
-/// To `offset`, of so many bits with its sign, from the instruction after the next.
+/// A branch to `offset`, signed, of `bits` bits, relative to the instruction after the next.
 fn branch(place: u32, offset: u32, bits: u32) -> Instruction {
     let unused = 32 - bits;
     let offset = ((offset << unused) as i32) >> unused;
     Instruction::Branch(place.wrapping_add(4).wrapping_add_signed(offset))
 }
 
-/// A load from `offset` behind the instruction after the next, at a multiple of four.
+/// A load from `offset` relative to the address of the instruction after the next, rounded down to a multiple of four.
 fn literal(register: u8, place: u32, offset: i32) -> Instruction {
     Instruction::LoadWord(register, (place.wrapping_add(4) & !3).wrapping_add_signed(offset))
 }
 
-/// The twelve bits of an immediate.
+/// The twelve bits of an immediate operand.
 fn immediate(first: u16, second: u16) -> u32 {
     u32::from(first >> 10 & 1) << 11 | u32::from(second >> 12 & 7) << 8 | u32::from(second & 0xff)
 }
@@ -118,7 +118,7 @@ fn expand(first: u16, second: u16) -> u32 {
 mod tests {
     use super::*;
 
-    /// Encodings as the assembler has them.
+    /// Encodings as the assembler produces them.
     #[test]
     fn what_moves_the_stack_or_calls_is_seen() {
         use Instruction::{Branch, Call, CallRegister, LoadWord, MoveStack, Other, Push};

@@ -1,17 +1,17 @@
-//! Axes: where values stand, which of them are labelled, and how.
+//! Axes: positions, ticks and tick labels of values.
 
 use std::ops::Range;
 
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 
-/// Largest number of labels along an axis.
+/// Default limit of the number of labels along an axis.
 const LABELS: f64 = 7.0;
 const SUPERSCRIPTS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
 
-/// An axis of a plot, even or logarithmic. It may run backwards.
+/// A linear or logarithmic axis of a plot. It may run backwards.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Axis {
-    /// What it shows, with the unit.
+    /// The quantity and its unit.
     pub(crate) label: String,
     logarithmic: bool,
     /// First and last value, or their decimal logarithms.
@@ -20,30 +20,30 @@ pub(crate) struct Axis {
 }
 
 impl Axis {
-    /// An even axis.
+    /// Creates a linear axis.
     pub(crate) fn linear(label: &str, range: Range<f64>) -> Self {
         Self { label: label.to_owned(), logarithmic: false, range, labels: LABELS }
     }
 
-    /// A logarithmic axis between values above zero.
+    /// Creates a logarithmic axis; both ends must be above zero.
     pub(crate) fn log(label: &str, range: Range<f64>) -> Self {
         let range = range.start.log10()..range.end.log10();
         Self { label: label.to_owned(), logarithmic: true, range, labels: LABELS }
     }
 
-    /// The same axis with at most so many labels.
+    /// Limits the number of labels to `labels`.
     pub(crate) fn with_labels(self, labels: f64) -> Self {
         Self { labels, ..self }
     }
 
-    /// Where a value stands, as a part of the axis from 0 to 1; `None` for one without a logarithm.
+    /// Position of a value as a part of the axis, from 0 to 1; `None` if its logarithm is undefined.
     pub(super) fn part(&self, value: f64) -> Option<f64> {
         let place = if self.logarithmic { value.log10() } else { value };
         let Range { start, end } = self.range;
         place.is_finite().then_some((place - start) / (end - start))
     }
 
-    /// Values that are labelled.
+    /// The values that have a label.
     pub(super) fn ticks(&self) -> Vec<f64> {
         let (start, end) = (self.range.start.min(self.range.end), self.range.end.max(self.range.start));
         if !self.logarithmic {
@@ -59,7 +59,7 @@ impl Axis {
         powers.flat_map(|power| [1.0, 2.0, 5.0].map(|digit| digit * 10_f64.powi(power))).filter(within).collect()
     }
 
-    /// How a labelled value is written.
+    /// The label of a value.
     pub(super) fn tick_label(&self, value: f64) -> String {
         if !self.logarithmic {
             return label(value);
@@ -107,11 +107,11 @@ impl ValueFormatter<f64> for Axis {
     }
 }
 
-/// The least of 1, 2, 5, 10, ... times a power of ten that is not below `least`.
+/// The smallest of 1, 2, 5, 10, ... times a power of ten that is at least `least`.
 fn step(least: f64) -> f64 {
     let power = 10_f64.powi(least.max(1e-300).log10().floor() as i32);
     let steps = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * power);
-    // A millionth below is rounding of the power.
+    // The tolerance of a millionth covers the rounding of the power.
     steps.into_iter().find(|step| *step >= least * (1.0 - 1e-6)).unwrap_or(10.0 * power)
 }
 
@@ -122,7 +122,7 @@ fn multiples(start: f64, end: f64, step: f64) -> impl Iterator<Item = f64> {
     (first..=last).map(move |number| number as f64 * step)
 }
 
-/// A number without digits beyond the sixth decimal, and zero without a sign.
+/// Formats a number with at most six decimals, and zero without a sign.
 fn label(value: f64) -> String {
     let rounded = (value * 1e6).round() / 1e6;
     format!("{}", if rounded.abs() > 0.0 { rounded } else { 0.0 })

@@ -1,4 +1,4 @@
-//! Coloured fields: a value over a plane, with its colour scale.
+//! Coloured fields: a value over a plane, with a colour scale.
 
 use std::ops::Range;
 
@@ -10,31 +10,31 @@ use super::plot::Plane;
 use super::style::{NOTE, Scale, colour};
 use super::{Area, Axis, DrawError, Drawn};
 
-/// Steps of a colour scale as it is drawn.
+/// Number of steps in which a colour scale is drawn.
 const SCALE_STEPS: u32 = 64;
-/// Place of a colour scale from the plot's right edge, its width, and the room that its labels have, in pixels.
+/// Distance of the colour scale from the plot's right edge, its width, and the width of its labels, in pixels.
 const SCALE_GAP: u32 = 20;
 const SCALE_WIDTH: u32 = 18;
 const SCALE_LABELS: u32 = 56;
-/// Height of its title above the plot's top edge, in pixels.
+/// Height of the scale's title above the plot's top edge, in pixels.
 const SCALE_TITLE: u32 = 14;
 
 /// A value over a plane, drawn as a colour.
 #[derive(Clone, Debug)]
 pub(crate) struct Field {
     pub(crate) values: Values,
-    /// What the colours mean: from the first to the last colour of the scale.
+    /// The axis of the values, from the first to the last colour of the scale.
     pub(crate) colours: Axis,
 }
 
-/// What a field is made of.
+/// The geometry of a field.
 #[derive(Clone, Debug)]
 pub(crate) enum Values {
     Cells(Vec<Cell>),
     Raster(Raster),
 }
 
-/// A rectangle of one value.
+/// A rectangle with a single value.
 #[derive(Clone, Debug)]
 pub(crate) struct Cell {
     pub(crate) x: Range<f64>,
@@ -42,7 +42,7 @@ pub(crate) struct Cell {
     pub(crate) value: f64,
 }
 
-/// A colour for every pixel of a plot, in rows from the top. Only a PNG file can show it.
+/// A colour for every pixel of a plot, in rows from the top. Only PNG files support it.
 #[derive(Clone, Debug)]
 pub(crate) struct Raster {
     pub(crate) width: usize,
@@ -51,17 +51,17 @@ pub(crate) struct Raster {
 }
 
 impl Field {
-    /// Rectangles.
+    /// Creates a field of rectangles.
     pub(crate) fn cells(cells: Vec<Cell>, colours: Axis) -> Self {
         Self { values: Values::Cells(cells), colours }
     }
 
-    /// Pixels.
+    /// Creates a field of pixels.
     pub(crate) fn pixels(raster: Raster, colours: Axis) -> Self {
         Self { values: Values::Raster(raster), colours }
     }
 
-    /// The pixels, if it is made of them.
+    /// The pixels, if the field consists of pixels.
     pub(super) fn raster(&self) -> Option<&Raster> {
         match &self.values {
             Values::Raster(raster) => Some(raster),
@@ -77,11 +77,11 @@ impl Field {
                 for cell in cells {
                     let corners = [(cell.x.start, cell.y.end), (cell.x.end, cell.y.start)].map(|one| plane.unit(one));
                     let [Some(start), Some(end)] = corners else { continue };
-                    // A cell reaches under its neighbours to the right and below, so that no background shows between
-                    // them.
+                    // Cells overlap their neighbours to the right and below, so that the background does not show
+                    // between them.
                     let under = scale.px(1) as i32;
                     let end = ((end.0 + under).min(right), (end.1 + under).min(bottom));
-                    // A value without a logarithm is zero: the lowest colour.
+                    // A value whose logarithm is undefined is zero: use the lowest colour.
                     let colour = colour(self.colours.part(cell.value).unwrap_or(0.0));
                     canvas.draw(&Rectangle::new([start, end], colour.filled()))?;
                 }
@@ -90,7 +90,7 @@ impl Field {
         }
     }
 
-    /// Draws the colour scale beside a plot that has its right top corner at a place of the area; all in units.
+    /// Draws the colour scale beside a plot whose top right corner is given; all lengths are in units.
     pub(super) fn draw_scale<DB: DrawingBackend>(
         &self,
         area: &Area<DB>,
@@ -104,7 +104,7 @@ impl Field {
         for step in (0..SCALE_STEPS).rev() {
             let part = |step: f64| step / f64::from(SCALE_STEPS);
             let step = f64::from(step);
-            // Each step reaches under the next one below, so that no background shows between them.
+            // Steps overlap the next one below, so that the background does not show between them.
             let bottom = (level(part(step)) + px(1)).min(level(0.0));
             let corners = [(left, level(part(step + 1.0))), (end, bottom)];
             area.draw(&Rectangle::new(corners, colour(part(step + 0.5)).filled()))?;
@@ -124,7 +124,7 @@ impl Field {
 }
 
 impl Raster {
-    /// Every pixel as a square of units, in a frame.
+    /// Draws every pixel as a square of units, and a frame around all.
     fn draw<DB: DrawingBackend>(&self, canvas: &Area<DB>, scale: Scale) -> Drawn {
         let fine = scale.px(1) as usize;
         let mut bytes = Vec::with_capacity(3 * self.pixels.len() * fine * fine);

@@ -1,4 +1,4 @@
-//! Legends: names of the looks of series.
+//! Legends: the names of series beside samples of their style.
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
@@ -8,25 +8,25 @@ use super::{Area, DrawError, Drawn, Line, Look, Mark, Panel, Series};
 
 /// Height of a line, in pixels.
 const LINE_HEIGHT: u32 = 20;
-/// Width of the sample that stands before a name, of the gap behind it, and of the gap between columns, in pixels.
+/// Width of the sample before a name, of the gap after it, and of the gap between columns, in pixels.
 const SAMPLE: u32 = 30;
 const GAP: u32 = 8;
 const COLUMN_GAP: u32 = 24;
-/// Where a legend begins, from the left, in pixels.
+/// Distance of a legend from the left edge, in pixels.
 const LEFT: u32 = 30;
 
-/// Names and looks, in order.
+/// Names and styles, in order.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Legend(Vec<(String, Look)>);
 
 impl Legend {
-    /// The series that have a name.
+    /// The legend of all series that have a name.
     pub(super) fn of(series: &[Series]) -> Self {
         let named = series.iter().filter(|series| !series.name.is_empty());
         Self(named.map(|series| (series.name.clone(), series.look)).collect())
     }
 
-    /// The series of all panels, each name once.
+    /// The legend of the series of all panels, without duplicate names.
     pub(super) fn of_all(panels: &[Panel]) -> Self {
         let mut all = Self::default();
         for (name, look) in panels.iter().flat_map(|panel| Self::of(&panel.series).0) {
@@ -37,7 +37,7 @@ impl Legend {
         all
     }
 
-    /// Its height within a width, both in pixels.
+    /// Height of the legend for a given width, both in pixels.
     pub(super) fn height(&self, width: u32) -> Result<u32, DrawError> {
         Ok(self.lines(width)? as u32 * LINE_HEIGHT)
     }
@@ -55,7 +55,7 @@ impl Legend {
         Ok(self.0.len().div_ceil(self.columns(width)?))
     }
 
-    /// Draws the legend into a width from a corner in pixels, column after column.
+    /// Draws the legend from a corner in pixels, column by column.
     pub(super) fn draw<DB: DrawingBackend>(
         &self,
         area: &Area<DB>,
@@ -77,7 +77,7 @@ impl Legend {
     }
 }
 
-/// Draws a short piece of a look, from the place to the right.
+/// Draws a short sample of a style, to the right of the point.
 fn draw_sample<DB: DrawingBackend>(area: &Area<DB>, (left, y): (i32, i32), look: &Look, scale: Scale) -> Drawn {
     let right = left + scale.px(SAMPLE) as i32;
     let half = scale.px(6) as i32;

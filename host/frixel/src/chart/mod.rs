@@ -1,7 +1,8 @@
-//! Charts in the one look that all pictures of frixel share, drawn with `plotters`.
+//! Charts in one consistent style, drawn with `plotters`.
 //!
-//! A [`Chart`] is a value: panels with axes, series, coloured fields and legends. [`Chart::svg`] and [`Chart::png`]
-//! draw it. Legends stand beside the plots, never over them. The same chart gives the same bytes.
+//! A [`Chart`] is a value made of panels with axes, series, coloured fields and legends. [`Chart::svg`] and
+//! [`Chart::png`] draw it. Legends are beside or below the plots, never over them. Equal charts give byte-identical
+//! files.
 
 mod axis;
 mod clip;
@@ -23,21 +24,21 @@ use legend::Legend;
 use style::{EDGE, NOTE, Scale, TITLE, WIDTH};
 pub(crate) use style::{Line, Look, Mark, PALETTE, colour, graded, signed};
 
-/// Height of a panel's plot with its title and axes, in pixels, unless the panel says otherwise.
+/// Default height of a panel, including its title and axes, in pixels.
 const PANEL_HEIGHT: u32 = 360;
-/// Height of the line that a chart's title stands in, in pixels.
+/// Height of the chart's title line, in pixels.
 const TITLE_HEIGHT: u32 = 34;
 /// Space below a row of panels, in pixels.
 const SPACING: u32 = 12;
 /// Height of a line of the caption, in pixels.
 const CAPTION_LINE: u32 = 22;
-/// SVG coordinates are whole numbers of this part of a pixel.
+/// Units per pixel in SVG files, whose coordinates are whole numbers of units.
 const SVG_SCALE: Scale = Scale(8);
 
 type Area<DB> = DrawingArea<DB, Shift>;
 type Drawn = Result<(), DrawError>;
 
-/// Why a chart cannot be drawn: what the drawing library reported.
+/// The error that the drawing library reported.
 #[derive(Debug, Error)]
 #[error("{0}")]
 pub(crate) struct DrawError(String);
@@ -54,15 +55,15 @@ impl<E: std::error::Error + Send + Sync> From<DrawingAreaErrorKind<E>> for DrawE
     }
 }
 
-/// Panels side by side, and in several rows.
+/// A picture of one or more panels, side by side and in several rows.
 #[derive(Clone, Debug)]
 pub(crate) struct Chart {
-    /// Stands above all panels; empty for none.
+    /// Title above all panels; empty for no title.
     pub(crate) title: String,
     pub(crate) panels: Vec<Panel>,
-    /// Panels in a row.
+    /// Number of panels in a row.
     pub(crate) columns: u32,
-    /// All panels have the same series: one legend stands below them.
+    /// Whether one legend below all panels replaces the legend of each panel.
     pub(crate) shared_legend: bool,
     /// Sentences below the panels.
     pub(crate) caption: Vec<String>,
@@ -78,7 +79,7 @@ pub(crate) struct Panel {
     pub(crate) y: Axis,
     pub(crate) series: Vec<Series>,
     pub(crate) field: Option<Field>,
-    /// Short texts, each to the right of a place.
+    /// Short texts, each drawn to the right of its point.
     pub(crate) notes: Vec<(f64, f64, String)>,
     /// Height of plot, title and axes, in pixels.
     pub(crate) height: u32,
@@ -94,17 +95,17 @@ pub(crate) struct Margins {
     pub(crate) bottom: u32,
 }
 
-/// Points that are drawn in one look. A series without a name is not in the legend.
+/// Points that are drawn in the same style. A series without a name does not appear in the legend.
 #[derive(Clone, Debug)]
 pub(crate) struct Series {
     pub(crate) name: String,
-    /// Values; a line is cut where one is not a number.
+    /// Pairs of values; a point that is not a number interrupts the line.
     pub(crate) points: Vec<(f64, f64)>,
     pub(crate) look: Look,
 }
 
 impl Panel {
-    /// An empty plot.
+    /// Creates a panel without series.
     pub(crate) fn new(title: &str, x: Axis, y: Axis) -> Self {
         let margins = Margins { left: 80, right: 20, top: 30, bottom: 44 };
         let (title, height) = (title.to_owned(), PANEL_HEIGHT);
@@ -116,7 +117,7 @@ impl Panel {
         self.series.push(Series { name: name.to_owned(), points, look });
     }
 
-    /// Adds a coloured field, with room for its colour scale.
+    /// Adds a coloured field, and makes room for its colour scale.
     pub(crate) fn with_field(mut self, field: Field) -> Self {
         self.field = Some(field);
         self.margins.right = 100;
@@ -125,17 +126,17 @@ impl Panel {
 }
 
 impl Chart {
-    /// Panels without a title, in so many columns, each with its own legend.
+    /// Creates a chart without a title, with `columns` panels in a row, each with its own legend.
     pub(crate) fn new(panels: Vec<Panel>, columns: u32) -> Self {
         Self { title: String::new(), panels, columns, shared_legend: false, caption: Vec::new(), width: WIDTH }
     }
 
-    /// The same with one legend for all panels.
+    /// Uses one legend for all panels.
     pub(crate) fn with_shared_legend(self) -> Self {
         Self { shared_legend: true, ..self }
     }
 
-    /// An SVG document.
+    /// Draws the chart as an SVG document.
     pub(crate) fn svg(&self) -> Result<String, DrawError> {
         let layout = Layout::of(self)?;
         let fine = |pixels| SVG_SCALE.px(pixels);
@@ -149,7 +150,7 @@ impl Chart {
         Ok(text.replacen(&drawn, &size(self.width, layout.height), 1))
     }
 
-    /// A PNG file.
+    /// Draws the chart as a PNG file.
     pub(crate) fn png(&self) -> Result<Vec<u8>, DrawError> {
         let layout = Layout::of(self)?;
         png::encoded((self.width, layout.height), |area, scale| self.draw(area, &layout, scale))
@@ -190,7 +191,7 @@ impl Chart {
     }
 }
 
-/// Where the parts of a chart stand, in pixels.
+/// Positions of the parts of a chart, in pixels.
 struct Layout<'c> {
     title_height: u32,
     panel_width: u32,
@@ -200,7 +201,7 @@ struct Layout<'c> {
     height: u32,
 }
 
-/// A row of panels; their legends stand below the plots.
+/// A row of panels, with their legends below the plots.
 struct Row<'c> {
     panels: &'c [Panel],
     plot_height: u32,
@@ -233,7 +234,7 @@ impl<'c> Layout<'c> {
     }
 }
 
-/// Breaks a sentence between words, so that no line is wider than `room` pixels if its words are not.
+/// Breaks a sentence between words into lines of at most `room` pixels; only a single word can be wider.
 fn wrapped(sentence: &str, room: u32) -> Result<Vec<String>, DrawError> {
     let mut lines: Vec<String> = Vec::new();
     for word in sentence.split(' ') {

@@ -1,4 +1,4 @@
-//! Drawing one panel.
+//! Drawing of one panel.
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
@@ -7,10 +7,10 @@ use super::clip::clipped;
 use super::style::{AXIS_LABEL, EDGE, LABEL, NOTE, Scale, TITLE, grid};
 use super::{Area, Drawn, Line, Mark, Panel, Series};
 
-/// Length of a mark on an axis, in pixels.
+/// Length of a tick mark on an axis, in pixels.
 const TICK: u32 = 5;
 
-/// Where values of a panel stand on the canvas of its plot.
+/// Maps values to positions on the canvas of a plot.
 pub(super) struct Plane<'p> {
     panel: &'p Panel,
     /// Width and height, in units of the drawing area.
@@ -18,13 +18,13 @@ pub(super) struct Plane<'p> {
 }
 
 impl Plane<'_> {
-    /// The place of a pair of values, from the plot's top left corner; nowhere where a value has no place on its axis.
+    /// Position of a pair of values, from the plot's top left corner; `None` if an axis has no position for its value.
     pub(super) fn place(&self, (x, y): (f64, f64)) -> Option<(f64, f64)> {
         let (x, y) = self.panel.x.part(x).zip(self.panel.y.part(y))?;
         Some((x * self.size.0, (1.0 - y) * self.size.1))
     }
 
-    /// The same in whole units.
+    /// Position of a pair of values, rounded to whole units.
     pub(super) fn unit(&self, values: (f64, f64)) -> Option<(i32, i32)> {
         self.place(values).map(rounded)
     }
@@ -34,7 +34,7 @@ fn rounded((x, y): (f64, f64)) -> (i32, i32) {
     (x.round() as i32, y.round() as i32)
 }
 
-/// Draws a panel into the top of an area.
+/// Draws a panel at the top of an area.
 pub(super) fn draw<DB: DrawingBackend>(area: &Area<DB>, panel: &Panel, scale: Scale) -> Drawn {
     let margins = panel.margins;
     let (area, _) = area.split_vertically(scale.px(panel.height));

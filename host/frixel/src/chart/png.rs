@@ -1,4 +1,4 @@
-//! PNG files: drawn finer than they are, and brought to size.
+//! PNG files, drawn at a higher resolution and then reduced.
 
 use std::collections::HashMap;
 
@@ -8,15 +8,15 @@ use plotters_backend::{BackendColor, BackendCoord, BackendTextStyle, DrawingBack
 use super::style::{Scale, load_font};
 use super::{Area, DrawError, Drawn};
 
-/// Each pixel is the mean of this many units in both directions, so that lines and letters have smooth edges.
+/// Each pixel is the mean of this many units in both directions, which smooths the edges of lines and letters.
 const SCALE: Scale = Scale(2);
-/// Steps of grey: enough for the edges of letters, few enough for a palette.
+/// Number of grey levels: enough for the edges of letters, few enough for a palette.
 const GREYS: u32 = 17;
-/// How far plotters places letters too high, as a part of their size: their box ends at 1/1.24 of it, with the baseline
-/// in the middle of the size.
+/// Offset by which plotters places letters too high, as a part of their size: their box ends at 1/1.24 of it, with the
+/// baseline in the middle of the size.
 const TOO_HIGH: f64 = 0.2;
 
-/// Draws a picture of some size in pixels, and encodes it.
+/// Draws a picture of the given size in pixels, and encodes it.
 pub(super) fn encoded(
     (width, height): (u32, u32),
     draw: impl FnOnce(&Area<Bitmap>, Scale) -> Drawn,
@@ -32,7 +32,7 @@ pub(super) fn encoded(
     encode(&pixels, (width, height)).map_err(|error| DrawError::new(&error))
 }
 
-/// The means of squares of units, as pixels.
+/// Averages squares of units into pixels.
 fn reduced(fine: &[u8], width: usize) -> Vec<[u8; 3]> {
     let side = SCALE.px(1) as usize;
     let fine_row = 3 * width * side;
@@ -54,7 +54,7 @@ fn reduced(fine: &[u8], width: usize) -> Vec<[u8; 3]> {
     .collect()
 }
 
-/// A grey is rounded to one of few.
+/// Rounds a grey to one of the [`GREYS`] levels.
 fn few_greys(pixel: [u8; 3]) -> [u8; 3] {
     let [red, green, blue] = pixel;
     if red != green || green != blue {
@@ -64,7 +64,7 @@ fn few_greys(pixel: [u8; 3]) -> [u8; 3] {
     [((u32::from(red) + step / 2) / step * step).min(255) as u8; 3]
 }
 
-/// A PNG file: a byte a pixel where there are few colours.
+/// Encodes a PNG file, with a palette and one byte per pixel if there are few colours.
 fn encode(pixels: &[[u8; 3]], (width, height): (u32, u32)) -> Result<Vec<u8>, png::EncodingError> {
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width, height);
@@ -85,8 +85,7 @@ fn encode(pixels: &[[u8; 3]], (width, height): (u32, u32)) -> Result<Vec<u8>, pn
     Ok(file)
 }
 
-/// The colours in the order in which they appear, and the number of each pixel's; `None` for more colours than a byte
-/// counts.
+/// The palette in order of first appearance, and the palette index of each pixel; `None` for more than 256 colours.
 fn indexed(pixels: &[[u8; 3]]) -> Option<(Vec<[u8; 3]>, Vec<u8>)> {
     let mut palette = Vec::new();
     let mut numbers = HashMap::new();
@@ -105,7 +104,7 @@ fn indexed(pixels: &[[u8; 3]]) -> Option<(Vec<[u8; 3]>, Vec<u8>)> {
     Some((palette, indices))
 }
 
-/// The bitmap backend of plotters with letters at the height at which an SVG viewer places them.
+/// The bitmap backend of plotters, corrected to place letters at the same height as an SVG viewer.
 pub(super) struct Bitmap<'b>(BitMapBackend<'b>);
 
 impl<'b> DrawingBackend for Bitmap<'b> {

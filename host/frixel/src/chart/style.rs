@@ -1,4 +1,4 @@
-//! How a frixel chart looks: sizes, colours, lines, marks, letters.
+//! The style of charts: sizes, colours, lines, marks and fonts.
 
 use std::sync::OnceLock;
 
@@ -9,26 +9,26 @@ use plotters::style::{FontStyle, RGBAColor, ShapeStyle, TextStyle, register_font
 
 use super::{Area, DrawError, Drawn};
 
-/// Width of a chart as it is shown, in pixels.
+/// Default width of a chart, in pixels.
 pub(super) const WIDTH: u32 = 1_000;
-/// Space that is left free to the left of an upright axis label, in pixels.
+/// Space to the left of the label of an upright axis, in pixels.
 pub(super) const EDGE: u32 = 14;
-/// Sizes of letters, in pixels.
+/// Font sizes, in pixels.
 pub(super) const TITLE: u32 = 17;
 pub(super) const AXIS_LABEL: u32 = 16;
 pub(super) const LABEL: u32 = 15;
 pub(super) const NOTE: u32 = 13;
 
-/// What drawings call the font: the viewer of an SVG file takes its own, a PNG file is drawn with [`FONT`].
+/// Font family named in drawings: an SVG viewer uses its own font of this family, and PNG files use [`FONT`].
 pub(super) const FAMILY: &str = "sans-serif";
-/// `DejaVu` Sans with few characters; its licence stands beside it.
+/// A subset of `DejaVu` Sans; its licence is in the same folder.
 static FONT: &[u8] = include_bytes!("font/DejaVuSans-subset.ttf");
 
 /// Half the size of a mark, in pixels.
 const MARK: f64 = 4.2;
-/// Lengths of a dash and of the gap behind it, in pixels.
+/// Lengths of a dash and of the gap after it, in pixels.
 const DASH: (u32, u32) = (7, 5);
-/// Steps of the colour scale; more cannot be told apart, and make picture files large.
+/// Number of colours in the colour scale; more would be indistinguishable and would make picture files large.
 const COLOUR_STEPS: f64 = 32.0;
 
 /// Colours that can be told apart with any kind of colour vision (Okabe and Ito, <https://jfly.uni-koeln.de/color/>).
@@ -43,8 +43,8 @@ pub(crate) const PALETTE: [RGBColor; 7] = [
 ];
 const UNKNOWN: RGBColor = RGBColor(128, 128, 128);
 
-/// The colour of a part of a colour scale, from 0 to 1; beyond it, the colour of its end. Grey where it is not a
-/// number.
+/// The colour at `part` of the colour scale, from 0 to 1. Values outside take the colour of the nearer end, and
+/// not-a-number is grey.
 pub(crate) fn colour(part: f64) -> RGBColor {
     if part.is_nan() {
         return UNKNOWN;
@@ -52,13 +52,13 @@ pub(crate) fn colour(part: f64) -> RGBColor {
     ViridisRGB.get_color((part.clamp(0.0, 1.0) * COLOUR_STEPS).round() / COLOUR_STEPS)
 }
 
-/// The colour of member `index` of a family of `count` curves whose order means something.
+/// The colour of curve `index` in an ordered family of `count` curves.
 pub(crate) fn graded(index: usize, count: usize) -> RGBColor {
     // The bright end of the scale is too pale for a line on white.
     colour(0.85 * index as f64 / (count.max(2) - 1) as f64)
 }
 
-/// The colour of a value between minus one and one: orange below zero, blue above it, stronger the farther.
+/// The colour of a value from -1 to 1: orange for negative and blue for positive values, stronger for larger ones.
 pub(crate) fn signed(part: f64) -> RGBColor {
     let (RGBColor(red, green, blue), strength) = match part {
         part if part < 0.0 => (PALETTE[1], -part),
@@ -69,7 +69,7 @@ pub(crate) fn signed(part: f64) -> RGBColor {
     RGBColor(mixed(red), mixed(green), mixed(blue))
 }
 
-/// How a series looks.
+/// The style of a series.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Look {
     pub(crate) colour: RGBColor,
@@ -77,7 +77,7 @@ pub(crate) struct Look {
     pub(crate) mark: Mark,
 }
 
-/// The line through the points.
+/// How to connect the points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Line {
     None,
@@ -89,12 +89,12 @@ pub(crate) enum Line {
     Filled(f64),
 }
 
-/// What stands at the points.
+/// How to mark the points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Mark {
     None,
     Disc,
-    /// A disc with room for another one of another colour on it.
+    /// A disc that is large enough to be visible around another mark.
     Casing,
     Ring,
     Square,
@@ -114,7 +114,7 @@ impl Look {
         Self { colour, line: Line::None, mark }
     }
 
-    /// Corners of a mark that is a polygon, in units of its size.
+    /// Corners of a polygonal mark, in units of its size.
     fn corners(self) -> Option<&'static [(f64, f64)]> {
         match self.mark {
             Mark::Square => Some(&[(-0.85, -0.85), (0.85, -0.85), (0.85, 0.85), (-0.85, 0.85)]),
@@ -125,32 +125,32 @@ impl Look {
     }
 }
 
-/// Units of a drawing area to a shown pixel. Plotters places everything on whole units: more of them draw finer.
+/// Drawing units per pixel. Plotters rounds positions to whole units, so more units draw finer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Scale(pub(super) u32);
 
 impl Scale {
-    /// A length in pixels, in units.
+    /// Converts a length from pixels to units.
     pub(super) fn px(self, shown: u32) -> u32 {
         shown * self.0
     }
 
-    /// A black line of some width in pixels.
+    /// A black line of this width in pixels.
     pub(super) fn stroke(self, width: u32) -> ShapeStyle {
         BLACK.stroke_width(self.px(width))
     }
 
-    /// Black letters of some size in pixels.
+    /// Black text of this size in pixels.
     pub(super) fn letters(self, size: u32) -> TextStyle<'static> {
         (FAMILY, self.px(size)).into_font().color(&BLACK)
     }
 
-    /// Black letters whose middle line is level with the place, to its right or to its left.
+    /// Black text, vertically centred on its position, to its right or to its left.
     pub(super) fn letters_at(self, size: u32, side: HPos) -> TextStyle<'static> {
         self.letters(size).pos(Pos::new(side, VPos::Center))
     }
 
-    /// Draws the line of a look through units of an area.
+    /// Draws the line of a style through points in units.
     pub(super) fn draw_line<DB: DrawingBackend>(self, area: &Area<DB>, line: &[(i32, i32)], look: &Look) -> Drawn {
         let stroke = |width| look.colour.stroke_width(self.px(width));
         match look.line {
@@ -167,7 +167,7 @@ impl Scale {
         Ok(())
     }
 
-    /// Draws the mark of a look at a place of an area, in units.
+    /// Draws the mark of a style at a point in units.
     pub(super) fn draw_mark<DB: DrawingBackend>(self, area: &Area<DB>, (x, y): (i32, i32), look: &Look) -> Drawn {
         let size = MARK * f64::from(self.0);
         let at = |(dx, dy): &(f64, f64)| (x + (size * dx).round() as i32, y + (size * dy).round() as i32);
@@ -187,22 +187,22 @@ impl Scale {
     }
 }
 
-/// A thin grey line of a grid.
+/// Colour of grid lines.
 pub(super) fn grid() -> RGBAColor {
     BLACK.mix(0.13)
 }
 
-/// Makes the font known to plotters, which measures letters with it.
+/// Registers the font with plotters, which needs it to measure text.
 pub(super) fn load_font() -> Drawn {
     static LOADED: OnceLock<bool> = OnceLock::new();
     let loaded = *LOADED.get_or_init(|| register_font(FAMILY, FontStyle::Normal, FONT).is_ok());
     if loaded { Ok(()) } else { Err(DrawError::new(&"the font is broken")) }
 }
 
-/// Text is measured so many times as large as it is drawn, since plotters rounds to whole units.
+/// Text is measured at a multiple of its size, because plotters rounds its width to whole units.
 const FINE: u32 = 8;
 
-/// Width of a text of some size, in pixels.
+/// Width of a text of this font size, in pixels.
 pub(super) fn text_width(text: &str, size: u32) -> Result<u32, DrawError> {
     load_font()?;
     let ((left, _), (right, _)) =

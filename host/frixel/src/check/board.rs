@@ -1,4 +1,4 @@
-//! The smallest firmware that plays a scene.
+//! The smallest firmware image that plays a scene.
 
 use frixel_scene::Program;
 use frixel_wire::hello::feature;
@@ -7,18 +7,18 @@ use serde::Serialize;
 /// Folder of the board's firmware.
 const FOLDER: &str = "firmware/board-nucleo-g474re";
 
-/// An image with what a scene asks for and nothing else.
+/// A firmware image with only the features that a scene needs.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct BoardImage {
-    /// Features of `firmware/session`, and of a board's firmware.
+    /// Cargo features of `firmware/session` and of the board's firmware.
     pub features: Vec<&'static str>,
-    /// Builds the image, from the repository's root.
+    /// Command that builds the image, to be run in the repository's root.
     pub command: String,
 }
 
 impl BoardImage {
     pub(super) fn of(program: &Program) -> Self {
-        // `frixel play` follows what a board does.
+        // `frixel play` subscribes to telemetry.
         let needed = program.features() | feature::TELEMETRY;
         let features: Vec<&str> =
             feature::NAMES.iter().filter(|(bit, _)| needed & bit != 0).map(|(_, name)| *name).collect();

@@ -1,4 +1,4 @@
-//! What a scene costs and what of it can be felt, before it is played.
+//! The cost of a scene, and the friction that a finger will feel of it, computed before it is played.
 
 mod board;
 mod rehearsal;
@@ -14,72 +14,72 @@ pub use rehearsal::RehearsalError;
 
 use frixel_scene::{Program, TargetRange, middle_mm};
 
-/// The numbers of a scene; its fields are the keys of `--json`.
+/// The costs and limits of a scene; the field names are the keys of `--json`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SceneCheck {
-    /// Layers that are played.
+    /// Number of layers that are played.
     pub layers: usize,
-    /// What goes over the line.
+    /// Bytes of the upload.
     pub wire: WireBytes,
-    /// What it takes of the board's RAM.
+    /// Bytes of the board's RAM.
     pub ram: RamBytes,
     /// The longest tick.
     pub tick: LongestTick,
-    /// What this finger can be given.
+    /// Friction that the drive can reach on this finger.
     pub reach: ReachableFriction,
-    /// What the scene asks for.
+    /// Friction that the scene targets.
     pub asked: TargetRange,
-    /// What the compiler rounded, converted and clamped, a sentence each.
+    /// Values that the compiler rounded, converted or clamped, a sentence each.
     pub notes: Vec<String>,
-    /// What it left out and why, a sentence each.
+    /// Parts of the scene that the compiler omitted and the reasons, a sentence each.
     pub left_out: Vec<String>,
-    /// The smallest image that plays it.
+    /// The smallest firmware image that plays the scene.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub board: Option<BoardImage>,
 }
 
-/// Bytes from host to board, to a board that holds no picture of the scene.
+/// Bytes sent from host to board, if the board does not hold any picture of the scene yet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct WireBytes {
     /// The compiled scene: header, layers, points.
     pub scene_bytes: usize,
-    /// Samples of its pictures.
+    /// Samples of the scene's pictures.
     pub bitmap_bytes: usize,
-    /// What is around them: frames, checks, the commands of the upload, the commit.
+    /// Overhead: framing, checksums, the commands of the upload and the commit.
     pub framing_bytes: usize,
-    /// All of them.
+    /// Sum of the other fields.
     pub total_bytes: usize,
 }
 
 /// Bytes of the board's RAM that depend on the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct RamBytes {
-    /// Pictures in the pool.
+    /// Bytes of the scene's pictures in the bitmap pool.
     pub bitmap_pool_bytes: usize,
-    /// The pool's size. While a scene replaces another one, the pictures of both lie in it.
+    /// Size of the bitmap pool. While one scene replaces another, the pool holds the pictures of both.
     pub bitmap_pool_limit_bytes: u32,
     /// Coefficients of layers, points, waves and clicks.
     pub active_bytes: usize,
-    /// Rows of the inverse table that the board computes.
+    /// Rows of the inverse table that the board computes for this scene.
     pub table_bytes: usize,
-    /// Rows that it would compute for a scene that asks for all that can be reached.
+    /// Rows that the board would compute for a scene that targets the whole reachable range.
     pub table_whole_bytes: usize,
-    /// The table's room, which is the same for every scene: a cut saves time at a commit, and no RAM.
+    /// Memory reserved for the table, equal for every scene: computing fewer rows shortens a commit, but saves no RAM.
     pub table_room_bytes: usize,
 }
 
 /// The longest tick on a Cortex-M4F.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LongestTick {
-    /// Processor cycles that it is estimated at.
+    /// Estimated processor cycles.
     pub cycles: u32,
-    /// Most that a tick may be estimated at.
+    /// Largest estimate that a board accepts.
     pub cycles_limit: u32,
-    /// A place where it may take so many, mm from the screen's left edge.
+    /// A position of the finger at which a tick may take that long, mm from the screen's left edge.
     pub x_mm: f64,
-    /// The same from the screen's top edge.
+    /// The same position, mm from the screen's top edge.
     pub y_mm: f64,
-    /// The layers that may act there.
+    /// Layers that may act at that position.
     pub layers: Vec<String>,
 }
 
@@ -98,26 +98,27 @@ impl LongestTick {
     }
 }
 
-/// What the drive can give to the scene's finger, at its load and on its coating.
+/// Friction that the drive can reach on the scene's finger, at its load and on its coating.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ReachableFriction {
-    /// Friction at no voltage, in total, N.
+    /// Total friction at zero voltage, N.
     pub natural_n: f64,
-    /// The most that the drive adds to that, N.
+    /// Largest friction that the drive can add to that, N.
     pub electric_max_n: f64,
-    /// The most in total, N.
+    /// Largest total friction, N.
     pub total_max_n: f64,
-    /// The rms voltage at which that is, V.
+    /// Rms voltage at the largest friction, V.
     pub voltage_max_v_rms: f64,
 }
 
 impl SceneCheck {
-    /// Gathers the numbers of a program that was compiled for the board of a simulation, which takes it once.
+    /// Computes the costs of a program that was compiled for the board of `rig`, and uploads it once to that simulated
+    /// board.
     pub fn of(program: &Program, rig: &RigConfig) -> Result<Self, RehearsalError> {
         let scene = program.scene_bytes();
         let bitmap_bytes = program.bitmaps.iter().map(|bitmap| bitmap.samples.len()).sum();
         let total_bytes = rehearsal::wire_bytes(program, rig)?;
-        // The board has just read the same bytes.
+        // This parse does not fail: the board has just parsed the same bytes.
         let taken = WireScene::parse(&scene).ok();
         let active_bytes = taken.as_ref().map_or(0, BoardMemory::bytes_filled);
         let table = taken.and_then(|scene| BoardMemory::table_rows(&scene, &rig.board).ok());
@@ -153,15 +154,15 @@ impl SceneCheck {
         })
     }
 
-    /// Adds the smallest image that plays the program.
+    /// Adds the smallest firmware image that plays the program.
     #[must_use]
     pub fn with_board(self, program: &Program) -> Self {
         Self { board: Some(BoardImage::of(program)), ..self }
     }
 
-    /// One JSON object on one line.
+    /// The costs as one JSON object on one line.
     pub fn to_json(&self) -> String {
-        // Plain numbers and texts always have a JSON form.
+        // Numbers and strings always serialise.
         serde_json::to_string(self).unwrap_or_default()
     }
 }

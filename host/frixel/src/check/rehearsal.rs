@@ -1,4 +1,4 @@
-//! A scene goes to a simulated board, which takes it but does not play it.
+//! Uploads a scene to a simulated board without playing it.
 
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, StrokeError, WorldError};
 use thiserror::Error;
@@ -9,21 +9,21 @@ use frixel_driver::{Device, DeviceError};
 use frixel_scene::Program;
 use frixel_scene::recorder::Recorder;
 
-/// Why a simulated board did not take a scene.
+/// Why a simulated board did not accept a scene.
 #[derive(Debug, Error)]
 pub enum RehearsalError {
-    /// The simulated world cannot be made.
+    /// The simulated world could not be built.
     #[error(transparent)]
     World(#[from] WorldError),
-    /// The screen has no room for a stroke.
+    /// The screen is too small for a stroke.
     #[error("a stroke over this scene: {0}")]
     Stroke(#[from] StrokeError),
-    /// The board refused it, with the number that is exceeded.
+    /// The board rejected the scene; the error states the exceeded limit.
     #[error("the board does not take this scene: {0}")]
     Device(#[from] DeviceError),
 }
 
-/// Bytes that the host sends until an empty board has taken a scene, the hello left out.
+/// Bytes that the host sends, without the hello, until an empty board has accepted a scene.
 pub(super) fn wire_bytes(program: &Program, rig: &RigConfig) -> Result<usize, RehearsalError> {
     let mut memory = BoardMemory::new();
     let header = &program.header;

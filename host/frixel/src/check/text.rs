@@ -1,4 +1,4 @@
-//! The numbers of a scene for a person.
+//! The costs of a scene as text.
 
 use std::fmt::Write;
 
@@ -8,11 +8,11 @@ use super::{RamBytes, SceneCheck};
 use frixel_scene::OutOfReach;
 
 impl SceneCheck {
-    /// A few lines, each ending in a line feed.
+    /// The costs as a few lines of text, each ending in a line feed.
     pub fn summary(&self) -> String {
         let mut text = String::new();
         let mut line = |name: &str, value: String| {
-            // Writing to a string does not fail.
+            // Writing to a string cannot fail.
             let _ = writeln!(text, "  {name:<16} {value}");
         };
         let Self { wire, ram, tick, reach, asked, .. } = self;
@@ -67,7 +67,7 @@ impl SceneCheck {
     }
 }
 
-/// What the board computes of the inverse table.
+/// The part of the inverse table that the board computes.
 fn table(ram: &RamBytes) -> String {
     let RamBytes { table_bytes, table_whole_bytes, table_room_bytes, .. } = *ram;
     let cut = match table_whole_bytes.saturating_sub(table_bytes) / InverseTable::ROW_BYTES {

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::error::CommandError;
 use super::{DemoArgs, PlayArgs, play};
 
-/// The scene and its picture travel in the program, so that the demo needs no file.
+/// The scene and its picture are embedded in the executable, so that the demo needs no files.
 const SCENE: &str = include_str!("../../../../scenes/brick.toml");
 const PICTURE: &[u8] = include_bytes!("../../../../scenes/textures/brick.png");
 

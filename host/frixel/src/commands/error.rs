@@ -1,4 +1,4 @@
-//! What a command ends with when it cannot go on: one sentence each.
+//! The error messages of commands, one sentence each.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -119,7 +119,7 @@ pub(crate) enum CommandError {
 }
 
 impl CommandError {
-    /// Why a play on the board that `--port` names did not come to its end.
+    /// Why a play on the board named by `--port` ended early.
     pub(crate) fn of_play(port: &str, error: PlayError) -> Self {
         match error {
             PlayError::Stopped(reason) => Self::Stopped { port: port.to_owned(), reason },
@@ -127,13 +127,13 @@ impl CommandError {
         }
     }
 
-    /// For `map_err` on what is read.
+    /// Converts an error of reading `path`, for use in `map_err`.
     pub(crate) fn reading(path: &Path) -> impl FnOnce(io::Error) -> Self {
         let path = path.to_owned();
         move |source| Self::Read { path, source }
     }
 
-    /// For `map_err` on what is written.
+    /// Converts an error of writing `path`, for use in `map_err`.
     pub(crate) fn writing(path: &Path) -> impl FnOnce(io::Error) -> Self {
         let path = path.to_owned();
         move |source| Self::Write { path, source }

@@ -12,7 +12,7 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CommandError> {
     Ok(())
 }
 
-/// A hello for a person.
+/// Formats a hello message as text.
 fn describe(hello: &Hello) -> String {
     let limits = &hello.limits;
     let id = hello.id.iter().fold(String::new(), |id, byte| id + &format!("{byte:02x}"));
@@ -42,7 +42,7 @@ fn describe(hello: &Hello) -> String {
     lines.iter().fold(String::new(), |text, (name, value)| text + &format!("{name:16} {value}\n"))
 }
 
-/// What the firmware was built with, by name; what this program has no name for, by its bits.
+/// Names of the firmware's features; unknown features are printed as bits.
 fn features(bits: u32) -> String {
     let named = feature::NAMES.iter().filter(|(bit, _)| bits & bit != 0);
     let unnamed = feature::NAMES.iter().fold(bits, |left, (bit, _)| left & !bit);

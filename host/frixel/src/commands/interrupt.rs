@@ -1,14 +1,14 @@
-//! Ctrl-C, and the signal that asks a process to end.
+//! Ctrl-C, and the signal that requests a process to end.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Becomes true when somebody has requested that the command ends.
+/// Becomes true when Ctrl-C or a signal requests the command to end.
 #[derive(Clone)]
 pub(super) struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {
-    /// Watches for it from now on; to be called once.
+    /// Installs the handler; may be called only once.
     pub(super) fn watch() -> Result<Self, ctrlc::Error> {
         let requested = Arc::new(AtomicBool::new(false));
         let handler = Arc::clone(&requested);
@@ -16,7 +16,7 @@ impl Interrupt {
         Ok(Self(requested))
     }
 
-    /// As [`Self::is_requested`], when something else may have been ended by the same Ctrl-C a moment before.
+    /// Like [`Self::is_requested`], for use after a failure that the same Ctrl-C may have caused a moment ago.
     pub(super) fn was_requested(&self) -> bool {
         std::thread::sleep(std::time::Duration::from_millis(50));
         self.is_requested()

@@ -1,4 +1,4 @@
-//! What a person types, one module a command.
+//! The command line: one module per command.
 
 mod demo;
 mod error;
@@ -139,7 +139,7 @@ impl Cli {
     }
 }
 
-/// A time that can be played.
+/// Parses the duration of a play.
 fn seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(seconds) if seconds > 0.0 && seconds <= 86_400.0 => Ok(seconds),

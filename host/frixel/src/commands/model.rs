@@ -1,4 +1,4 @@
-//! `frixel model`: the contact model over rows of CSV.
+//! `frixel model`: evaluates the contact model over rows of CSV.
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Read, Write};
@@ -71,7 +71,7 @@ pub(super) fn run(command: &ModelCommand) -> Result<(), CommandError> {
     let output = create(args)?;
     match transform(args.precision.into(), input, output) {
         Ok(summary) => tell(&summary),
-        // Whoever reads the output has seen enough.
+        // Ignore a closed standard output.
         Err(CsvError::Write(error)) if error.kind() == ErrorKind::BrokenPipe => {}
         Err(source) => {
             let (path, stream) = match source {
@@ -104,7 +104,7 @@ fn create(args: &FileArgs) -> Result<Box<dyn Write>, CommandError> {
     Ok(Box::new(Kept { file: file.map_err(CommandError::writing(path))?, begun: false }))
 }
 
-/// A file that keeps what is in it until there is something to write: input that is refused as a whole destroys nothing.
+/// A file that is truncated only at the first write, so that rejected input does not destroy its contents.
 struct Kept {
     file: File,
     begun: bool,
@@ -113,7 +113,7 @@ struct Kept {
 impl Write for Kept {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         if !self.begun {
-            // A device or a pipe has no length.
+            // Only regular files have a length to truncate; devices and pipes do not.
             if self.file.metadata()?.is_file() {
                 self.file.set_len(0)?;
             }

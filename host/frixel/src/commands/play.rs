@@ -1,7 +1,7 @@
 //! `frixel play`: a scene on a board, real or not.
 //!
-//! [`Plan`] says what is to be played, [`rigs`] opens the board that `--port` names, [`follow`] plays and records, and
-//! [`Outputs`] writes the files. This module prints what came of it.
+//! [`Plan`] is the checked input of a play, [`rigs`] opens the board that `--port` names, [`follow`] plays and records,
+//! and [`Outputs`] writes the files. This module prints the results.
 
 #[cfg(unix)]
 mod emulator;
@@ -24,18 +24,18 @@ use super::interrupt::Interrupt;
 use live_scene::LiveScene;
 use rigs::Target;
 
-/// What came of a play.
+/// Results of a play.
 struct Played {
     report: Report,
     files: Vec<PathBuf>,
-    /// Why it ended before its time, where that is a failure. What was played until then is in the report and the files.
+    /// The failure that ended the play early, if any. The report and the files have what was played until then.
     failure: Option<CommandError>,
 }
 
 pub(super) fn run(args: &PlayArgs) -> Result<(), CommandError> {
     let target = Target::of(&args.port);
     plan::check_options(args, target)?;
-    // Before the file is read for the first time, so that no change is missed.
+    // This comes before the file is read for the first time, so that no change is missed.
     let live_scene = args.watch.then(|| LiveScene::new(&args.scene));
     let scene = scene_file::load(&args.scene)?;
     let interrupt = Interrupt::watch()?;

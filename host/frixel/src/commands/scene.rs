@@ -1,4 +1,4 @@
-//! `frixel scene`: a scene before it is played.
+//! `frixel scene`: checks or draws a scene before it is played.
 
 mod check;
 mod preview;

@@ -10,12 +10,12 @@ use super::error::CommandError;
 use super::interrupt::Interrupt;
 use super::stroke::stroke;
 
-/// The screen that the finger goes over when nobody says otherwise: that of the bundled scenes.
+/// Size of the screen that the generated stroke covers: that of the bundled scenes.
 const SCREEN_WIDTH_M: f64 = 0.12;
 const SCREEN_HEIGHT_M: f64 = 0.11;
-/// Time for which the finger is lifted before it makes its stroke again.
+/// Time for which the finger is lifted before it repeats its stroke.
 const PAUSE_S: f64 = 0.2;
-/// Rows a second in felt.csv.
+/// Rows per second in felt.csv.
 const ROWS_HZ: u32 = 1000;
 
 pub(super) fn run(args: &SimArgs) -> Result<(), CommandError> {

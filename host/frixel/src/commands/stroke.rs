@@ -1,4 +1,4 @@
-//! Where the simulated finger goes.
+//! The path of the simulated finger.
 
 use std::io::ErrorKind;
 use std::path::Path;
@@ -7,16 +7,16 @@ use frixel_hil_sim::Stroke;
 
 use super::error::CommandError;
 
-/// Length of a stroke without `--seconds`, s.
+/// Duration of a generated stroke without `--seconds`, s.
 const NATURAL_STROKE_S: f64 = 3.0;
-/// Longest stroke of a file: a day, in s.
+/// Longest stroke from a file: one day, in s.
 const FILE_STROKE_MAX_S: f64 = 86_400.0;
-/// Time between two places of a stroke that are checked, s.
+/// Time between two positions of a stroke that are checked, s.
 const CHECK_PERIOD_S: f64 = 1e-3;
-/// Most places of a stroke that are checked.
+/// Largest number of positions of a stroke that are checked.
 const CHECKS_MAX: f64 = 1e6;
 
-/// The stroke of a file, or a natural one over a screen of these sides.
+/// The stroke from a file, or a generated natural stroke over a screen of this size.
 pub(super) fn stroke(
     file: Option<&Path>,
     screen_width_m: f64,
@@ -43,8 +43,8 @@ fn from_file(path: &Path) -> Result<Stroke, CommandError> {
     Ok(stroke)
 }
 
-/// Refuses the stroke of a file that is nowhere on a screen of these sides in its first `seconds`. Prints a note about one
-/// that is partly off.
+/// Fails if the stroke from a file is never on the screen in its first `seconds`. Prints a note if it is partly off
+/// the screen.
 pub(super) fn check_on_screen(
     path: &Path,
     stroke: &Stroke,
@@ -62,7 +62,7 @@ pub(super) fn check_on_screen(
             off += 1;
         }
     }
-    // A screen's sides come as f32; a micrometre is as exact as anybody writes them.
+    // The sides are stored as f32; rounding to a micrometre restores the values of the scene file.
     let in_mm = |side_m: f64| (1e6 * side_m).round() / 1e3;
     let (width_mm, height_mm) = (in_mm(screen_width_m), in_mm(screen_height_m));
     if on == 0 && off > 0 {

@@ -1,4 +1,4 @@
-//! The header row: which columns there are, and where.
+//! The header row: the columns and their positions.
 
 use csv::ByteRecord;
 
@@ -16,25 +16,25 @@ pub(super) const OUTER_RADIUS: &str = "outer_radius_m";
 pub(super) const MODULUS: &str = "modulus_pa";
 pub(super) const STRESS_EXPONENT: &str = "stress_exponent";
 pub(super) const SHAPE_CONSTANT: &str = "shape_constant";
-/// The total, and the part that the voltage adds.
+/// Total friction, and the part that the voltage adds.
 pub(super) const FRICTIONS: [&str; 2] = ["friction_n", "electric_friction_n"];
 
-/// Columns that every row needs, whatever its variant.
+/// Columns that every row needs, independent of its variant.
 const COMMON: [&str; 5] = [VARIANT, RADIUS, COATING, PERMITTIVITY, FRICTION_COEFFICIENT];
 /// Columns that some variants need.
 const PARTICULAR: [&str; 6] = [STIFFNESS, NORMAL_FORCE, OUTER_RADIUS, MODULUS, STRESS_EXPONENT, SHAPE_CONSTANT];
 
-/// How alike two names are when one is taken for a slip of the other, as a part of their length.
+/// Similarity from which one name is suggested for another, as a part of their length.
 const LIKENESS: f64 = 0.7;
 
-/// Where the columns that the model reads stand.
+/// Positions of the columns that the model reads.
 pub(super) struct Columns {
     places: Vec<(&'static str, usize)>,
     len: usize,
 }
 
 impl Columns {
-    /// From a header that has all common columns and at least one of `given`, and none of these twice.
+    /// Reads a header. Fails unless it has all common columns and at least one of `given`, each at most once.
     pub(super) fn new(header: &ByteRecord, given: &[&'static str]) -> Result<Self, CsvError> {
         let names: Vec<_> = header.iter().map(|cell| String::from_utf8_lossy(cell).trim().to_owned()).collect();
         let mut places = Vec::new();
@@ -58,7 +58,7 @@ impl Columns {
         Ok(columns)
     }
 
-    /// Columns in the file, those included that the model does not read.
+    /// Number of columns in the file, including those that the model does not read.
     pub(super) fn len(&self) -> usize {
         self.len
     }

@@ -1,4 +1,4 @@
-//! Why a file, or a row of it, is refused.
+//! Why a CSV file, or a row of it, is rejected.
 
 use std::io;
 
@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use super::columns::{COATING, NORMAL_FORCE, PERMITTIVITY, VOLTAGE};
 
-/// Why a file is refused as a whole.
+/// Why a CSV file is rejected as a whole.
 #[derive(Debug, Error)]
 pub enum CsvError {
     /// The header lacks a column that every row needs.
@@ -16,25 +16,25 @@ pub enum CsvError {
         .nearest.as_ref().map(|name| format!("; is `{name}` meant?")).unwrap_or_default()
     )]
     ColumnMissing {
-        /// The column, or those of which one is needed.
+        /// The missing column, or the alternatives of which one is needed.
         column: String,
-        /// A column of nearly this name.
+        /// A column with a similar name.
         nearest: Option<String>,
     },
-    /// The header has a column twice.
+    /// The header has the same column twice.
     #[error("row 1: column `{column}` stands in places {first} and {second}; leave one of them out")]
     ColumnTwice {
-        /// The column.
+        /// Name of the column.
         column: &'static str,
-        /// Its first place, from one.
+        /// Position of its first occurrence, from one.
         first: usize,
-        /// Its second place.
+        /// Position of its second occurrence, from one.
         second: usize,
     },
-    /// The input cannot be read.
+    /// Reading the input failed.
     #[error("the input cannot be read: {0}")]
     Read(io::Error),
-    /// The output cannot be written.
+    /// Writing the output failed.
     #[error("the output cannot be written: {0}")]
     Write(io::Error),
 }
@@ -49,7 +49,7 @@ impl CsvError {
     }
 }
 
-/// With its kind, which the library's own conversion hides.
+/// Converts the error and keeps its kind, which the conversion of the `csv` crate discards.
 fn system_error(error: csv::Error) -> io::Error {
     match error.into_kind() {
         csv::ErrorKind::Io(error) => error,
@@ -57,7 +57,7 @@ fn system_error(error: csv::Error) -> io::Error {
     }
 }
 
-/// Why a row has no answer.
+/// Why a row is invalid.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub(super) enum Refusal {
     #[error("row {row}, column {column}: the header has no such column, and {variant} needs it")]
@@ -87,7 +87,7 @@ pub(super) enum Refusal {
 }
 
 impl From<ParameterError> for Refusal {
-    /// With the parameter called as its column is.
+    /// Replaces the parameter's name by that of its column.
     fn from(error: ParameterError) -> Self {
         let parameter = match error.parameter {
             "thickness_m" => COATING,
@@ -97,7 +97,7 @@ impl From<ParameterError> for Refusal {
             "voltage_v_rms" => VOLTAGE,
             other => other,
         };
-        // A pull is a load below zero.
+        // A pull is a negative load.
         let found = if error.parameter == "pull_n" { -error.found } else { error.found };
         Self::Parameter(ParameterError { parameter, found, ..error })
     }

@@ -1,7 +1,7 @@
-//! The contact model over the rows of a CSV file: what `frixel model eval` and `frixel model invert` do.
+//! The contact model applied to the rows of a CSV file, as in `frixel model eval` and `frixel model invert`.
 //!
-//! The first row names the columns, in any order. A row names a `variant` of the model and has the numbers that the
-//! variant needs, in SI units:
+//! The first row names the columns, in any order. Each row names a `variant` of the model and gives the numbers that
+//! the variant needs, in SI units:
 //!
 //! | variant | equations | needs, besides what every row needs | takes as well |
 //! |---|---|---|---|
@@ -13,23 +13,24 @@
 //! | `soft-lower` | (40), (41) | `modulus_pa`, `stress_exponent`, `shape_constant` | |
 //! | `soft-loaded` | (29), (43) | `modulus_pa`, `stress_exponent`, `shape_constant`, `normal_force_n` | |
 //!
-//! Every row needs `radius_m`, `coating_m`, `permittivity`, `friction_coefficient`, and `voltage_v` (rms) for [`eval`];
-//! for [`invert`] in its place `friction_n` (total) or `electric_friction_n` (what the voltage adds, exact where the total
-//! would cancel), whichever is filled in. A row that fills in both is invalid: it would say one thing twice. A
-//! `normal_force_n` that may be left out counts as zero. Cells that a variant does not need are not read.
+//! Every row needs `radius_m`, `coating_m`, `permittivity` and `friction_coefficient`. For [`eval`], it also needs
+//! `voltage_v` (rms). For [`invert`], it needs either `friction_n` (total) or `electric_friction_n` (the part that the
+//! voltage adds; exact where the difference of totals would cancel). A row with both is invalid. An optional
+//! `normal_force_n` defaults to zero. Cells that a variant does not need are ignored.
 //!
-//! The output has the input's columns, cell for cell, and behind them
+//! The output has the input's columns, unchanged, followed by
 //!
 //! - [`eval`]: `sigma0_pa, contact_radius_m, effective_stiffness_pa_per_m, friction_n, status`,
 //! - [`invert`]: `voltage_v, status`.
 //!
-//! A name that the input has already is written once more: the last one is the answer. Numbers have 17 significant digits,
-//! or 9 in `f32`, which is what reading them back exactly takes.
+//! If the input already has a column of such a name, the output has two; the last one is the answer. Numbers have 17
+//! significant digits, or 9 in `f32`, so that they can be read back exactly.
 //!
-//! `status` is `ok`, `no-contact` (radius and friction are zero), `below-natural` (less than the finger has at no voltage, a
-//! negative friction among it), `unstable`, or `invalid: REASON` with empty cells. One bad row never stops the others. The file as a whole is refused ([`CsvError`]) when its header lacks a
-//! column that every row needs, or has one twice that the model reads; a column that only some variants need is missed in
-//! the rows of those variants. Messages count rows from the header, which is row 1; lines of nothing but blanks do not count.
+//! `status` is `ok`, `no-contact` (radius and friction are zero), `below-natural` (the friction is less than at zero
+//! voltage, possibly negative), `unstable`, or `invalid: REASON` with empty cells. An invalid row does not stop the
+//! others. The file as a whole is rejected ([`CsvError`]) when its header lacks a column that every row needs, or
+//! repeats a column that the model reads. A missing column that only some variants need makes the rows of those
+//! variants invalid. Messages count rows from the header, which is row 1; blank lines do not count.
 
 mod columns;
 mod error;
@@ -51,14 +52,15 @@ use number::Number;
 use row::Row;
 use variant::Model;
 
-/// What was done.
+/// Counts of the rows that were processed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Summary {
-    /// Rows, the header not counted.
+    /// Number of rows, without the header.
     pub rows: u64,
-    /// Rows whose status is `invalid`.
+    /// Number of rows whose status is `invalid`.
     pub invalid_rows: u64,
-    /// Rows with a contact radius above the finger's radius of curvature, where the paraboloid no longer resembles it.
+    /// Number of rows whose contact radius exceeds the finger's radius of curvature, where the paraboloid no longer
+    /// approximates it.
     pub beyond_finger_rows: u64,
 }
 
@@ -89,9 +91,9 @@ pub fn invert(precision: Precision, input: impl Read, output: impl Write) -> Res
     }
 }
 
-/// What one direction reads and writes.
+/// The columns that one direction of the model reads and writes.
 struct Direction {
-    /// At least one of these columns has to be there, besides what every row needs.
+    /// The input needs at least one of these columns, besides the common ones.
     given: &'static [&'static str],
     answers: &'static [&'static str],
 }
@@ -102,9 +104,9 @@ const EVAL: Direction = Direction {
 };
 const INVERT: Direction = Direction { given: &FRICTIONS, answers: &["voltage_v"] };
 
-/// What is written behind a row.
+/// The cells that are appended to a row.
 struct Answer {
-    /// As many as the direction has answers.
+    /// One cell for each of the direction's answers.
     cells: Vec<String>,
     status: &'static str,
     beyond_finger: bool,
@@ -140,7 +142,7 @@ fn transform(
                 (vec![String::new(); direction.answers.len()], format!("invalid: {refusal}"))
             }
         };
-        // A row of the wrong length is refused, and still has its status in the column of that name.
+        // A row of the wrong length is invalid, and is padded or cut so that its status is in the status column.
         let passed = (0..columns.len()).map(|place| record.get(place).unwrap_or_default());
         write(&mut writer, passed.chain(cells.iter().map(String::as_bytes)).chain([status.as_bytes()]))?;
     }
@@ -148,7 +150,7 @@ fn transform(
     Ok(summary)
 }
 
-/// A line of blanks, such as some editors leave at the end of a file.
+/// Whether a line is blank, such as some editors leave at the end of a file.
 fn is_blank(record: &ByteRecord) -> bool {
     record.len() == 1 && record.iter().all(|cell| cell.trim_ascii().is_empty())
 }
@@ -188,7 +190,7 @@ fn inverted<T: Number>(row: &Row) -> Result<Answer, Refusal> {
     Ok(Answer { cells, status, beyond_finger: false })
 }
 
-/// Numbers as text, none of them without being one.
+/// Formats the numbers; fails if one of them is not finite.
 fn cells<T: Number>(numbers: &[T]) -> Result<Vec<String>, Refusal> {
     let all_finite = numbers.iter().all(|number| number.is_finite());
     if all_finite { Ok(numbers.iter().map(|number| number.digits()).collect()) } else { Err(Refusal::OutOfRange) }

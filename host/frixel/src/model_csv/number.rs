@@ -1,23 +1,23 @@
-//! Numbers as cells have them.
+//! Parsing and formatting of numbers in cells.
 
 use std::fmt::LowerExp;
 use std::str::FromStr;
 
 use frixel_model::Real;
 
-/// What the model is computed in.
+/// Floating-point type of the computation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Precision {
     /// 64 bits.
     #[default]
     F64,
-    /// 32 bits: inputs are rounded to them, and so is every step.
+    /// 32 bits: inputs are rounded to 32 bits, and every step computes with 32 bits.
     F32,
 }
 
 /// A number that is read from a cell and written to one.
 pub(super) trait Number: Real + FromStr + LowerExp + 'static {
-    /// Significant digits from which the same number is read again.
+    /// Number of significant digits from which the same number can be read back.
     const DIGITS: usize;
 
     fn digits(self) -> String {

@@ -1,4 +1,4 @@
-//! One row, cell by cell.
+//! Access to the cells of one row.
 
 use std::borrow::Cow;
 
@@ -8,10 +8,10 @@ use super::columns::{Columns, VARIANT};
 use super::error::Refusal;
 use super::number::Number;
 
-/// Characters of a cell that a message repeats.
+/// Number of characters of a cell that a message quotes.
 const QUOTED_CHARS: usize = 40;
 
-/// A row, and where its cells are.
+/// A row with the positions of its columns.
 pub(super) struct Row<'a> {
     number: u64,
     columns: &'a Columns,
@@ -23,18 +23,18 @@ impl<'a> Row<'a> {
         Self { number, columns, cells }
     }
 
-    /// Its number, the header being row 1.
+    /// Number of the row; the header is row 1.
     pub(super) fn number(&self) -> u64 {
         self.number
     }
 
-    /// Refuses a row with more or fewer cells than the header has.
+    /// Fails if the row has more or fewer cells than the header.
     pub(super) fn check_length(&self) -> Result<(), Refusal> {
         let (expected, found) = (self.columns.len(), self.cells.len());
         if found == expected { Ok(()) } else { Err(Refusal::Length { row: self.number, expected, found }) }
     }
 
-    /// A cell without the blanks around it; empty where there is no such column.
+    /// A cell without surrounding blanks; empty if the column does not exist.
     pub(super) fn text(&self, column: &str) -> Cow<'a, str> {
         let cell = self.columns.place(column).and_then(|place| self.cells.get(place)).unwrap_or_default();
         String::from_utf8_lossy(cell.trim_ascii())
@@ -50,12 +50,12 @@ impl<'a> Row<'a> {
         quoted
     }
 
-    /// Whether a cell has anything in it.
+    /// Whether a cell is not blank.
     pub(super) fn is_filled(&self, column: &str) -> bool {
         !self.text(column).is_empty()
     }
 
-    /// The number in a cell that has to have one.
+    /// The number in a required cell.
     pub(super) fn real<T: Number>(&self, column: &'static str) -> Result<T, Refusal> {
         let row = self.number;
         if !self.columns.has(column) {
@@ -76,7 +76,7 @@ impl<'a> Row<'a> {
         Ok(number)
     }
 
-    /// The number in a cell that may be empty, which is zero.
+    /// The number in an optional cell; zero if it is empty.
     pub(super) fn real_or_zero<T: Number>(&self, column: &'static str) -> Result<T, Refusal> {
         if self.is_filled(column) { self.real(column) } else { Ok(T::ZERO) }
     }

@@ -1,4 +1,4 @@
-//! The variants of the model by name, each from the cells that it needs.
+//! The variants of the model by name, each built from the cells of a row.
 
 use frixel_model::{
     Contact, ContactModel, Expected, Finger, ParameterError, Slab, SoftContact, SoftFinger, effective_gap_m,
@@ -12,16 +12,16 @@ use super::error::Refusal;
 use super::number::Number;
 use super::row::Row;
 
-/// All variants.
+/// Names of all variants.
 const VARIANTS: [&str; 7] =
     ["wf-upper", "wf-lower", "wf-loaded", "wf-finite", "soft-upper", "soft-lower", "soft-loaded"];
 
-/// A row's contact.
+/// The contact model of a row.
 pub(super) struct Model<T> {
     pub(super) contact: Box<dyn ContactModel<T>>,
     pub(super) radius_m: T,
     pub(super) gap_m: T,
-    /// Of a Winkler-Fuss finger; zero for a soft one, which has none of its own.
+    /// Stiffness of a Winkler-Fuss finger; zero for a soft finger, whose stiffness is not constant.
     pub(super) stiffness_pa_per_m: T,
 }
 

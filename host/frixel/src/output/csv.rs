@@ -1,4 +1,4 @@
-//! The CSV files of a play: `felt.csv`, what happened under the finger, and `events.csv`, what happened to the board.
+//! The CSV files of a play: `felt.csv` has the friction under the finger, and `events.csv` the events of the board.
 
 use std::fmt::{self, Display};
 use std::fs::File;
@@ -12,12 +12,12 @@ use frixel_wire::fault::Flags;
 use super::OutputError;
 use crate::rigs::BoardEvent;
 
-/// A row of a CSV file. `docs/outputs.md` says what the columns mean.
+/// A row of a CSV file. `docs/outputs.md` describes the columns.
 pub trait CsvRow {
-    /// The names of the columns, with commas between them.
+    /// The column names, separated by commas.
     const HEADER: &'static str;
 
-    /// Writes the cells, with commas between them. What is not known is an empty cell.
+    /// Writes the cells, separated by commas. An unknown value is an empty cell.
     fn write_cells(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result;
 }
 
@@ -31,8 +31,8 @@ pub struct CsvFile<R> {
 
 /// `felt.csv`.
 ///
-/// Numbers have fixed decimals: a microsecond, a tenth of a micrometre, a micrometre a second, a nanonewton, a tenth
-/// of a millivolt. Flags are names joined by `+`, or `none`.
+/// Numbers have a fixed number of decimals; their resolutions are a microsecond, a tenth of a micrometre, a micrometre
+/// per second, a nanonewton and a tenth of a millivolt. Flags are names joined by `+`, or `none`.
 pub type FeltCsv = CsvFile<FeltRow>;
 
 /// `events.csv`.
@@ -41,14 +41,14 @@ pub type EventCsv = CsvFile<EventRow>;
 /// A row of `events.csv`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EventRow {
-    /// What happened, and when.
+    /// The event and its time.
     pub event: BoardEvent,
-    /// When the last whole frame of a host had arrived, s.
+    /// Time at which the board had received the last complete frame from a host, s.
     pub last_frame_t_s: f64,
 }
 
 impl<R: CsvRow> CsvFile<R> {
-    /// Creates the file, or empties it, and writes the header row.
+    /// Creates the file, truncates it if it exists, and writes the header row.
     pub fn create(path: &Path) -> Result<Self, OutputError> {
         let file = File::create(path).map_err(|source| OutputError::File { path: path.to_owned(), source })?;
         let mut csv = Self { path: path.to_owned(), writer: BufWriter::new(file), rows: PhantomData };
@@ -56,17 +56,17 @@ impl<R: CsvRow> CsvFile<R> {
         Ok(csv)
     }
 
-    /// Writes a row.
+    /// Writes one row.
     pub fn write(&mut self, row: &R) -> Result<(), OutputError> {
         self.write_line(Cells(row))
     }
 
-    /// Writes what is buffered so far.
+    /// Writes the buffered rows to the file.
     pub fn flush(&mut self) -> Result<(), OutputError> {
         self.writer.flush().map_err(|source| OutputError::File { path: self.path.clone(), source })
     }
 
-    /// Writes what is still buffered. Dropping the file does it as well, and hides errors.
+    /// Writes the buffered rows and closes the file. Dropping a `CsvFile` writes them too, but ignores errors.
     pub fn finish(mut self) -> Result<(), OutputError> {
         self.flush()
     }
@@ -119,7 +119,7 @@ fn write_flags(formatter: &mut fmt::Formatter<'_>, flags: Flags) -> fmt::Result 
     }
     let unnamed = flags.unnamed().0;
     if unnamed != 0 {
-        // Flags of newer firmware.
+        // Flags without a name, which newer firmware may set.
         write!(formatter, "{joint}0x{unnamed:04x}")?;
     } else if flags.0 == 0 {
         formatter.write_str("none")?;
@@ -127,7 +127,7 @@ fn write_flags(formatter: &mut fmt::Formatter<'_>, flags: Flags) -> fmt::Result 
     Ok(())
 }
 
-/// The cells of a row, for a formatter.
+/// Displays the cells of a row.
 struct Cells<'r, R>(&'r R);
 
 impl<R: CsvRow> Display for Cells<'_, R> {
@@ -136,7 +136,7 @@ impl<R: CsvRow> Display for Cells<'_, R> {
     }
 }
 
-/// A number with fixed decimals, zero never with a minus; or nothing.
+/// Displays a number with a fixed number of decimals and zero without a minus sign, or an empty cell.
 struct Cell {
     value: Option<f64>,
     decimals: usize,

@@ -14,24 +14,24 @@ const VOLTAGE: RGBColor = PALETTE[1];
 const REACH: RGBColor = RGBColor(0x55, 0x88, 0xb0);
 const REACH_OPACITY: f64 = 0.12;
 
-/// Heights of the two panels and width of their plots, in pixels.
+/// Heights of the friction and the voltage panel, in pixels.
 const HEIGHTS: (u32, u32) = (350, 240);
 const PLOT_WIDTH: f64 = 900.0;
-/// Width of a piece of the time axis in which a signal is a line or an envelope, in pixels.
+/// Width of a piece of the time axis, in pixels. Each piece is drawn either as a line or as an envelope.
 const PIECE: f64 = 6.0;
-/// A signal that turns back so many times within five pieces has less than five pixels to a period: it is drawn as its
-/// envelope. A turn counts when it is higher than this part of the axis.
+/// A signal that changes direction this often within five pieces has periods shorter than five pixels, and is drawn as
+/// its envelope. A change of direction counts only when it is larger than this part of the axis.
 const TURNS_MAX: usize = 12;
 const TURN_MIN: f64 = 0.03;
-/// How much an envelope covers of what is behind it.
+/// Opacity of an envelope.
 const OPACITY: f64 = 0.4;
 
-/// One quantity of a span.
+/// Selects one quantity of a span.
 type Part = fn(&Span) -> Option<Extremes>;
 
-/// Writes reference and felt friction, and below them the voltage, over time; the reach is shaded. Where nothing was
-/// felt, as on a real board, the commanded friction stands in its place. What changes too fast to be drawn is drawn as
-/// its envelope.
+/// Draws reference and felt friction over time, and the voltage below them; the reachable range is shaded. Where the
+/// felt friction is unknown, as on a real board, the commanded friction is drawn instead. Signals that change too fast
+/// for a line are drawn as their envelope.
 pub fn write_felt_svg(path: &Path, subject: &Subject, trace: &Trace, reach: &Reach) -> Result<(), OutputError> {
     let text = chart(subject, trace, reach).svg().map_err(OutputError::drawing(path))?;
     fs::write(path, text).map_err(|source| OutputError::File { path: path.to_owned(), source })
@@ -73,7 +73,7 @@ fn voltage(spans: &[Span]) -> Panel {
     panel
 }
 
-/// An empty panel over time, with a twentieth more than the range on either side.
+/// An empty panel over time, whose upright axis extends a twentieth of the range beyond both ends.
 fn panel(label: &str, times: (f64, f64), (low, high): (f64, f64), height: u32) -> Panel {
     let margin = 0.05 * (high - low).max(1e-6);
     let x = Axis::linear("time, s", times.0..times.1).with_labels(12.0);
@@ -81,7 +81,7 @@ fn panel(label: &str, times: (f64, f64), (low, high): (f64, f64), height: u32) -
     Panel { height, margins: Margins { left: 80, right: 20, top: 8, bottom: 44 }, ..Panel::new("", x, y) }
 }
 
-/// From the first time to the last, in seconds; one second where there is no such stretch.
+/// The first and the last time, in seconds; one second apart if there are no spans.
 fn times(spans: &[Span]) -> (f64, f64) {
     match (spans.first(), spans.last()) {
         (Some(first), Some(last)) if last.end_s > first.start_s => (first.start_s, last.end_s),
@@ -90,30 +90,30 @@ fn times(spans: &[Span]) -> (f64, f64) {
     }
 }
 
-/// Least and largest value of all spans.
+/// The extremes over all spans.
 fn extremes(spans: &[Span], part: Part) -> Option<Extremes> {
     spans.iter().filter_map(part).reduce(Extremes::joined)
 }
 
-/// How a quantity of spans is drawn.
+/// How to draw one quantity of the spans.
 struct Signal {
     part: Part,
-    /// From the quantity's unit to the axis' unit.
+    /// Factor from the quantity's unit to the axis' unit.
     scale: f64,
     /// Length of the axis, in its unit.
     range: f64,
 }
 
-/// A stretch of time, shorter than can be seen, with what the signal does in it.
+/// A short interval of time, with the course of the signal in it.
 #[derive(Default)]
 struct Piece {
-    /// Places of the line.
+    /// Points of the line.
     line: Vec<(f64, f64)>,
     turns: usize,
 }
 
 impl Signal {
-    /// Adds the signal to a panel: as a line, and where it is too fast for one as its envelope.
+    /// Adds the signal to a panel: as a line, or as its envelope where it changes too fast for a line.
     fn add_to(&self, panel: &mut Panel, spans: &[Span], name: &str, look: Look) {
         let envelope = Look { line: Line::Filled(OPACITY), ..look };
         let comma = if name.is_empty() { "" } else { ", " };
@@ -132,14 +132,14 @@ impl Signal {
         }
     }
 
-    /// Places through least and largest value of each span; a new stretch begins where a value is not known.
+    /// Lines through least and largest value of each span; a span without a value ends a line.
     fn stretches(&self, spans: &[Span]) -> Vec<Vec<(f64, f64)>> {
         let mut stretches = vec![Vec::new()];
         for span in spans {
             match ((self.part)(span), stretches.last_mut()) {
                 (Some(Extremes { least, largest }), Some(stretch)) => {
                     let (least, largest) = (self.scale * least, self.scale * largest);
-                    // From where the line stands, the nearer of the two comes first.
+                    // The extreme that is nearer to the end of the line comes first.
                     let last = stretch.last().map(|&(_, last): &(f64, f64)| last);
                     let falls = last.is_some_and(|last| (last - largest).abs() < (last - least).abs());
                     let (first, second) = if falls { (largest, least) } else { (least, largest) };
@@ -155,12 +155,12 @@ impl Signal {
         stretches
     }
 
-    /// Cuts a stretch into pieces of time, and counts in each how often the signal turns back.
+    /// Cuts a line into pieces of equal duration, and counts the changes of direction in each.
     fn pieces(&self, stretch: &[(f64, f64)], start_s: f64, piece_s: f64) -> Vec<Piece> {
         let number = |time_s: f64| ((time_s - start_s) / piece_s) as usize;
         let first = stretch.first().map_or(0, |place| number(place.0));
         let mut pieces: Vec<Piece> = Vec::new();
-        // The last turn, and the direction since then.
+        // The value at the last change of direction, and the direction since then.
         let (mut turn, mut rises) = (stretch.first().map_or(0.0, |place| place.1), None);
         for &(time_s, value) in stretch {
             let place = number(time_s) - first;
@@ -179,8 +179,8 @@ impl Signal {
     }
 }
 
-/// Puts pieces together that follow each other and are drawn in the same way: whether that is as an envelope, and the
-/// places, each run beginning where the last one ended.
+/// Joins consecutive pieces that are drawn in the same way. Each run states whether it is drawn as an envelope, and has
+/// the points, beginning at the end of the run before.
 fn runs(pieces: &[Piece]) -> Vec<(bool, Vec<(f64, f64)>)> {
     let turns = |place: usize| -> usize {
         let near = pieces.iter().skip(place.saturating_sub(2)).take(place + 3 - place.saturating_sub(2));
@@ -201,7 +201,7 @@ fn runs(pieces: &[Piece]) -> Vec<(bool, Vec<(f64, f64)>)> {
     runs
 }
 
-/// The polygon around places: largest values from the first time to the last, and least values back.
+/// The polygon around the points: largest values from the first time to the last, then least values back.
 fn envelope_of(places: &[(f64, f64)], piece_s: f64) -> Vec<(f64, f64)> {
     let mut upper: Vec<(f64, f64)> = Vec::new();
     let mut lower: Vec<(f64, f64)> = Vec::new();
@@ -209,7 +209,7 @@ fn envelope_of(places: &[(f64, f64)], piece_s: f64) -> Vec<(f64, f64)> {
     while let Some(&(start_s, _)) = rest.first() {
         let count = rest.iter().take_while(|(time_s, _)| *time_s < start_s + piece_s).count().max(1);
         let (piece, later) = rest.split_at(count);
-        // Both ends of a piece, so that it reaches up to the next one.
+        // Each piece has a point at its start and at its end, so that the envelope is continuous.
         let end_s = later.first().or(piece.last()).map_or(start_s, |place| place.0);
         let (least, largest) = piece.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, largest), (_, value)| {
             (least.min(*value), largest.max(*value))

@@ -5,10 +5,10 @@ use frixel_scene::{MapGrid, Reach};
 
 /// Space around the map, below the title, in pixels.
 const MARGINS: Margins = Margins { left: 84, right: 150, top: 26, bottom: 62 };
-/// Distance of two labels on a ruler, at least, in pixels.
+/// Least distance between two labels on a ruler, in pixels.
 const LABEL_STEP: f64 = 50.0;
 
-/// A chart of pixels whose colours mean a part of the reach. Series over it have millimetres on both axes.
+/// A chart of pixels whose colours stand for parts of the reachable range. Series over it are in millimetres.
 pub(super) fn chart(grid: &MapGrid, pixels: Vec<RGBColor>, reach: &Reach) -> Chart {
     let labels = |pixels: usize| pixels as f64 / LABEL_STEP;
     let (width_mm, height_mm) = grid.screen_mm;

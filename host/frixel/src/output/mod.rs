@@ -1,13 +1,13 @@
-//! The files that a played scene leaves behind.
+//! The output files of a play.
 //!
 //! - [`FeltCsv`] and [`EventCsv`]: `felt.csv` and `events.csv`, row by row while the scene plays.
-//! - [`Trace`]: the same rows thinned out for pictures, in bounded memory.
+//! - [`Trace`]: the same rows, downsampled for pictures, in bounded memory.
 //! - [`write_felt_svg`]: friction and voltage over time.
 //! - [`write_scene_png`]: the friction map of a program with the stroke over it.
 //! - [`write_preview_png`]: the friction map of a program before it is played.
-//! - [`Report`]: the numbers, as JSON and as a short text.
+//! - [`Report`]: the results of a run, as JSON and as a short text.
 //!
-//! The same input gives the same bytes.
+//! Equal inputs give byte-identical files.
 
 mod csv;
 mod felt_svg;
@@ -31,17 +31,17 @@ pub use report::Report;
 pub use scene_png::write_scene_png;
 pub use trace::Trace;
 
-/// What a picture is of: its title.
+/// The subject of a picture, from which its title is made.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Subject {
-    /// The scene.
+    /// Name of the scene.
     pub name: String,
-    /// The finger, or the board as well, is simulated.
+    /// Whether the finger, and possibly the board as well, is simulated.
     pub simulated: bool,
 }
 
 impl Subject {
-    /// The scene's name; what is simulated says so.
+    /// The scene's name, marked as simulated where it is.
     fn title(&self) -> String {
         if self.simulated { format!("{}, simulated", self.name) } else { self.name.clone() }
     }
@@ -50,26 +50,26 @@ impl Subject {
 /// Why a file could not be written.
 #[derive(Debug, Error)]
 pub enum OutputError {
-    /// The system refused it.
+    /// The operating system could not write the file.
     #[error("{} cannot be written ({source}): check the folder and its free space", .path.display())]
     File {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the operating system.
         source: io::Error,
     },
     /// A picture could not be drawn.
     #[error("{} cannot be drawn ({reason})", .path.display())]
     Drawing {
-        /// The file.
+        /// Path of the picture.
         path: PathBuf,
-        /// What the drawing library said.
+        /// Error message of the drawing library.
         reason: String,
     },
 }
 
 impl OutputError {
-    /// For `map_err` on what is drawn.
+    /// Converts an error of the drawing library, for use in `map_err`.
     fn drawing<E: ToString>(path: &Path) -> impl FnOnce(E) -> Self {
         move |error| Self::Drawing { path: path.to_owned(), reason: error.to_string() }
     }

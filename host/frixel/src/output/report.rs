@@ -1,4 +1,4 @@
-//! The numbers of a run, for programs and for people.
+//! The results of a run, for programs and for people.
 
 use std::fmt::Write;
 
@@ -8,53 +8,53 @@ use frixel_driver::{Counters, StreamStatus};
 use frixel_scene::Reach;
 use frixel_scene::metrics::{ErrorSize, MetricsSummary};
 
-/// The numbers of a run; its fields are the keys of `--json`. What is not known is `null` there.
+/// The results of a run; the field names are the keys of `--json`. Unknown values are `null` there.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
-    /// What played: `sim`, `qemu` or `board`.
+    /// The rig that played the scene: `sim`, `qemu` or `board`.
     pub rig: String,
-    /// Ticks that were played.
+    /// Number of ticks played.
     pub ticks: u64,
-    /// Felt minus wanted, as means over a carrier period: root mean square, N.
+    /// Felt minus reference friction, averaged over a carrier period: root mean square, N.
     pub friction_error_rms_n: Option<f64>,
-    /// The same, largest magnitude, N.
+    /// Felt minus reference friction, averaged over a carrier period: largest magnitude, N.
     pub friction_error_max_n: Option<f64>,
-    /// What the model gives for the commanded voltage minus the command: root mean square, N.
+    /// Friction that the model computes for the commanded voltage, minus the commanded friction: root mean square, N.
     pub inversion_error_rms_n: Option<f64>,
-    /// The same, largest magnitude, N.
+    /// Friction that the model computes for the commanded voltage, minus the commanded friction: largest magnitude, N.
     pub inversion_error_max_n: Option<f64>,
-    /// Root mean square of felt minus its carrier-period mean, N.
+    /// Felt friction minus its mean over a carrier period: root mean square, N.
     pub carrier_ripple_rms_n: Option<f64>,
-    /// Friction at no voltage, in total, N.
+    /// Total friction at zero voltage, N.
     pub reachable_min_n: f64,
-    /// Friction at the largest voltage, in total, N.
+    /// Total friction at the largest voltage, N.
     pub reachable_max_n: f64,
-    /// Least friction that was wanted, in total, N.
+    /// Smallest total reference friction, N.
     pub wanted_min_n: Option<f64>,
-    /// Largest friction that was wanted, in total, N.
+    /// Largest total reference friction, N.
     pub wanted_max_n: Option<f64>,
     /// Ticks in which the board clamped its command.
     pub saturated_ticks: Option<u64>,
-    /// Frames that the host sent.
+    /// Number of frames that the host sent.
     pub frames_sent: u64,
-    /// Frames that either side refused because their check failed.
+    /// Number of frames that host or board rejected because their checksum did not match.
     pub frames_rejected: u64,
-    /// Bytes that were meant: payloads of frames.
+    /// Payload bytes of all frames.
     pub payload_bytes: u64,
-    /// Bytes that went over the line.
+    /// Bytes on the line, framing included.
     pub wire_bytes: u64,
-    /// Seconds simulated in a second of wall time, file writing apart.
+    /// Simulated seconds per second of wall time, without the time for writing files.
     pub realtime_factor: Option<f64>,
-    /// Samples that were streamed; `null` without a stream, as the two below.
+    /// Number of streamed samples; this and the two fields below are `null` without a stream.
     pub stream_samples: Option<u64>,
-    /// Times that the board ran out of samples.
+    /// How often the board ran out of samples.
     pub stream_underruns: Option<u32>,
-    /// Runs of samples that the line lost.
+    /// Runs of samples that were lost on the line.
     pub stream_gaps: Option<u32>,
 }
 
 impl Report {
-    /// Puts together what was gathered.
+    /// Computes the report from the results of a play.
     pub fn new(
         rig: &str,
         metrics: &MetricsSummary,
@@ -86,7 +86,7 @@ impl Report {
         }
     }
 
-    /// Adds how the stream did, if there was one.
+    /// Adds the status of the stream, if there was one.
     #[must_use]
     pub fn with_stream(mut self, stream: Option<StreamStatus>) -> Self {
         self.stream_samples = stream.map(|stream| stream.sent);
@@ -95,17 +95,18 @@ impl Report {
         self
     }
 
-    /// One JSON object on one line.
+    /// The report as one JSON object on one line.
     pub fn to_json(&self) -> String {
-        // Plain numbers and texts always have a JSON form; one that is not finite becomes `null`.
+        // Numbers and strings always serialise; a number that is not finite becomes `null`.
         serde_json::to_string(self).unwrap_or_default()
     }
 
-    /// A few lines for a person, each ending in a line feed. Errors stand beside the reachable electric range.
+    /// The report as a few lines of text, each ending in a line feed. Errors are also given relative to the reachable
+    /// electric range.
     pub fn summary(&self) -> String {
         let mut text = String::new();
         let mut line = |name: &str, value: String| {
-            // Writing to a string does not fail.
+            // Writing to a string cannot fail.
             let _ = writeln!(text, "  {name:<16} {value}");
         };
         let range = |least: f64, most: f64| format!("{:.2} to {:.2} mN", 1e3 * least, 1e3 * most);

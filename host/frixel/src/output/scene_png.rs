@@ -15,8 +15,8 @@ const MAP_MAX: (u32, u32) = (1_000, 800);
 const STROKE: RGBColor = RGBColor(255, 59, 48);
 const CASING: RGBColor = RGBColor(255, 255, 255);
 
-/// Writes the friction that a program wants all over the screen, and the stroke of a run. The colours span the reach;
-/// what is beyond has the colour of its end.
+/// Draws the friction that a program targets everywhere on the screen, and the stroke of a run over it. The colours
+/// span the reachable range; targets beyond it have the colour of the nearer end.
 pub fn write_scene_png(path: &Path, subject: &Subject, program: &Program, trace: &Trace) -> Result<(), OutputError> {
     let grid = MapGrid::new(program, MAP_MAX);
     let reference = Reference::new(program);
@@ -27,7 +27,7 @@ pub fn write_scene_png(path: &Path, subject: &Subject, program: &Program, trace:
     let strokes: Vec<Vec<(f64, f64)>> = trace.strokes().collect();
     let start = strokes.first().and_then(|stroke| stroke.first()).copied();
     for panel in &mut chart.panels {
-        // The stroke is cased in white, so that it shows on every colour.
+        // A white outline makes the stroke visible on every colour.
         for (look, mark) in [
             (Look::line(CASING, Line::Thick), Look::mark(CASING, Mark::Casing)),
             (Look::line(STROKE, Line::Solid), Look::mark(STROKE, Mark::Disc)),

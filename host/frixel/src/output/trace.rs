@@ -1,15 +1,15 @@
-//! Rows thinned out for pictures, in bounded memory however long a scene plays.
+//! Downsampling of rows for pictures, in memory that does not grow with the length of a play.
 
 use frixel_scene::recorder::FeltRow;
 
-/// Largest number of spans of time.
+/// Largest number of time spans that are kept.
 const SPANS_MAX: usize = 1_600;
-/// Largest number of places of the stroke.
+/// Largest number of stroke points that are kept.
 const PLACES_MAX: usize = 8_000;
-/// Least distance of two places of the stroke, mm.
+/// Least distance between two stroke points, mm.
 const PLACE_STEP_MM: f64 = 0.2;
 
-/// Friction, voltage and stroke of a run. Where there are many rows, it keeps least and largest of each span of time.
+/// Friction, voltage and stroke of a run. Long runs are reduced to least and largest value of each span of time.
 #[derive(Clone, Debug)]
 pub struct Trace {
     spans: Vec<Span>,
@@ -19,7 +19,7 @@ pub struct Trace {
     place_step_mm: f64,
 }
 
-/// What happened over some rows that follow each other.
+/// The extremes over consecutive rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Span {
     pub(super) start_s: f64,
@@ -30,7 +30,7 @@ pub(super) struct Span {
     pub(super) voltage_v_rms: Option<Extremes>,
 }
 
-/// Least and largest value.
+/// Least and largest value of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Extremes {
     pub(super) least: f64,
@@ -42,7 +42,7 @@ impl Extremes {
         value.filter(|value| value.is_finite()).map(|value| Self { least: value, largest: value })
     }
 
-    /// The extremes of both.
+    /// The extremes of both ranges together.
     pub(super) fn joined(self, other: Self) -> Self {
         Self { least: self.least.min(other.least), largest: self.largest.max(other.largest) }
     }
@@ -86,23 +86,23 @@ impl Default for Trace {
 }
 
 impl Trace {
-    /// Nothing yet.
+    /// Creates an empty trace.
     pub fn new() -> Self {
         Self { spans: Vec::new(), rows_per_span: 1, rows_in_last: 1, stroke: Vec::new(), place_step_mm: PLACE_STEP_MM }
     }
 
-    /// Takes the next row.
+    /// Adds the next row.
     pub fn push(&mut self, row: &FeltRow) {
         self.push_span(Span::of(row));
         self.push_place(row.x_mm.zip(row.y_mm).filter(|(x_mm, y_mm)| x_mm.is_finite() && y_mm.is_finite()));
     }
 
-    /// Spans in the order of time.
+    /// Spans in order of time.
     pub(super) fn spans(&self) -> &[Span] {
         &self.spans
     }
 
-    /// The stroke, mm, cut where the finger was lifted.
+    /// The stroke in mm, as one line per contact of the finger.
     pub(super) fn strokes(&self) -> impl Iterator<Item = Vec<(f64, f64)>> {
         self.stroke
             .split(Option::is_none)

@@ -1,4 +1,4 @@
-//! Instruction counts of emulated boards, as `cargo xtask bench` writes them.
+//! Instruction counts on emulated boards, as written by `cargo xtask bench`.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -6,8 +6,8 @@ use std::path::Path;
 
 use super::error::ReportError;
 
-/// Counts by name: `CORE.WHAT` instructions at most, `CORE.WHAT_mean` on the mean, `CORE.WHAT_cycles` an estimate in
-/// cycles.
+/// Counts by name: `CORE.WHAT` is the largest number of instructions, `CORE.WHAT_mean` their mean, and
+/// `CORE.WHAT_cycles` an estimate in cycles.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Counts(BTreeMap<String, f64>);
 
@@ -20,17 +20,17 @@ impl Counts {
         Ok(Self(counts))
     }
 
-    /// Instructions of one call on a core.
+    /// Largest number of instructions of one call on a core.
     pub(super) fn instructions(&self, core: &str, what: &str) -> Option<f64> {
         self.0.get(&format!("{core}.{what}")).copied()
     }
 
-    /// Instructions on the mean of all calls.
+    /// Mean number of instructions over all calls.
     pub(super) fn mean(&self, core: &str, what: &str) -> Option<f64> {
         self.0.get(&format!("{core}.{what}_mean")).copied()
     }
 
-    /// The estimate in cycles that belongs to it.
+    /// Estimated cycles of the call with the most instructions.
     pub(super) fn cycles(&self, core: &str, what: &str) -> Option<f64> {
         self.0.get(&format!("{core}.{what}_cycles")).copied()
     }

@@ -1,18 +1,18 @@
-//! The numbers behind a picture.
+//! The numbers behind a picture, as a table.
 
-/// Rows under named columns.
+/// A table with named columns.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Data<const COLUMNS: usize> {
     header: [&'static str; COLUMNS],
     rows: Vec<[Value; COLUMNS]>,
 }
 
-/// A cell.
+/// A cell of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Value {
-    /// Written with as many digits as reading it back takes; an empty cell where it is not a number.
+    /// A number, written with enough digits to be read back exactly; not-a-number is an empty cell.
     Number(f64),
-    /// Written as it is.
+    /// A text, written unchanged.
     Text(String),
 }
 
@@ -25,7 +25,7 @@ impl<const COLUMNS: usize> Data<COLUMNS> {
         self.rows.push(cells);
     }
 
-    /// As a CSV file has them.
+    /// The table as a CSV file.
     pub(super) fn csv(&self) -> Result<Vec<u8>, csv::Error> {
         let mut writer = csv::Writer::from_writer(Vec::new());
         writer.write_record(self.header)?;

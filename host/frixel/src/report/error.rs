@@ -1,4 +1,4 @@
-//! Why a report cannot be made.
+//! Why a report could not be written.
 
 use std::io;
 use std::path::PathBuf;
@@ -11,66 +11,66 @@ use thiserror::Error;
 use crate::player::PlayError;
 use frixel_scene::CompileError;
 
-/// Why a report cannot be made.
+/// Why a report could not be written.
 #[derive(Debug, Error)]
 pub enum ReportError {
-    /// The folder or a file in it cannot be written.
+    /// The folder or a file in it could not be written.
     #[error("{} cannot be written ({source}): check the folder and its free space", .path.display())]
     Write {
-        /// The file or folder.
+        /// Path of the file or folder.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the operating system.
         source: io::Error,
     },
-    /// The file with instruction counts cannot be read.
+    /// The file with instruction counts could not be read.
     #[error("{} cannot be read ({source}): `cargo xtask bench` writes such a file", .path.display())]
     ReadBench {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the operating system.
         source: io::Error,
     },
-    /// The file with instruction counts is not one.
+    /// The file with instruction counts has the wrong format.
     #[error("{}: expected a JSON object of numbers as `cargo xtask bench` writes it, found {source}", .path.display())]
     Bench {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// What the parser said.
+        /// Error of the parser.
         source: serde_json::Error,
     },
     /// A picture could not be drawn.
     #[error("{name} cannot be drawn ({reason})")]
     Drawing {
-        /// The picture.
+        /// Name of the picture.
         name: &'static str,
-        /// What the drawing library said.
+        /// Error message of the drawing library.
         reason: String,
     },
     /// The numbers behind a picture could not be written as CSV.
     #[error("the numbers behind a picture: {0}")]
     Numbers(#[from] csv::Error),
-    /// The model refuses a parameter.
+    /// The model rejected a parameter.
     #[error("the contact model: {0}")]
     Parameter(#[from] ParameterError),
-    /// The model has no state.
+    /// The model could not compute a contact state.
     #[error("the contact model: {0}")]
     State(#[from] StateError),
-    /// The model has no voltage.
+    /// The model could not compute a voltage.
     #[error("the contact model: {0}")]
     Inverse(#[from] InverseError),
-    /// A table cannot be built.
+    /// A table could not be built.
     #[error("a table of the contact model: {0}")]
     Table(#[from] TableError),
-    /// A scene cannot be framed.
+    /// A scene could not be encoded into frames.
     #[error("a scene on the wire: {0}")]
     Wire(#[from] WriteError),
-    /// A scene does not compile.
+    /// A scene could not be compiled.
     #[error(transparent)]
     Texture(#[from] CompileError),
-    /// The stroke over the texture cannot be made.
+    /// The stroke over the texture could not be created.
     #[error(transparent)]
     Stroke(#[from] StrokeError),
-    /// The texture cannot be simulated.
+    /// The texture could not be simulated.
     #[error(transparent)]
     Simulation(#[from] PlayError),
 }

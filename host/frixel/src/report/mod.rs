@@ -1,8 +1,8 @@
-//! The report of `frixel report`: the paper's figures from the model, what the model's error and its
-//! inversion cost, and what a scene costs a board and the line.
+//! The report of `frixel report`: the paper's figures computed from the model, the model's error, the cost of its
+//! inversion, and the cost of a scene on a board and on the line.
 //!
-//! [`write()`] puts an `index.html` that needs nothing else into a folder, and beside it the numbers behind each
-//! picture as CSV.
+//! [`write()`] creates a self-contained `index.html` in a folder, with the numbers behind each picture as CSV files
+//! beside it.
 
 mod counts;
 mod data;
@@ -20,10 +20,10 @@ pub use error::ReportError;
 
 use counts::Counts;
 
-/// Writes the report into a folder, which is made when it is not there, and returns the files in it.
+/// Writes the report into a folder, creating it if necessary, and returns the paths of the files.
 ///
-/// `bench` is a file of instruction counts as `cargo xtask bench` writes it, for charts of what an inversion and a tick
-/// take. Run times are measured; all else is the same in every run.
+/// `bench` is a file of instruction counts written by `cargo xtask bench`, for the charts of the cost of an inversion
+/// and of a tick. The run times are measured anew; everything else is equal in every run.
 pub fn write(folder: &Path, bench: Option<&Path>) -> Result<Vec<PathBuf>, ReportError> {
     let counts = bench.map(Counts::read).transpose()?;
     fs::create_dir_all(folder).map_err(|source| ReportError::Write { path: folder.to_owned(), source })?;

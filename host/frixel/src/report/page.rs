@@ -1,4 +1,4 @@
-//! `index.html`: the figures with their captions, on one page that needs nothing else.
+//! `index.html`: the figures with their captions, on one self-contained page.
 
 use std::fmt::Write;
 
@@ -12,10 +12,10 @@ figure { margin: 0; } figure svg { width: 100%; height: auto; } figcaption { max
 figcaption p { margin: 0.5rem 0; } nav li { margin: 0.15rem 0; } a { color: #0072b2; }
 ";
 
-/// The page of figures that were drawn.
+/// The page with all figures that were drawn.
 pub(super) fn html(figures: &[(&Figure, String)]) -> String {
     let mut page = String::new();
-    // Writing to a string does not fail.
+    // Writing to a string cannot fail.
     let _ = write!(
         page,
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
@@ -43,7 +43,7 @@ pub(super) fn html(figures: &[(&Figure, String)]) -> String {
     page
 }
 
-/// A picture with its title for those who do not see it.
+/// Adds a title to a picture, for screen readers.
 fn labelled(svg: &str, title: &str) -> String {
     svg.trim_end().replacen("<svg ", &format!("<svg role=\"img\" aria-label=\"{title}\" "), 1)
 }

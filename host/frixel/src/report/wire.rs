@@ -1,4 +1,4 @@
-//! What a program is on the line: the frames that the driver sends of it when none is lost.
+//! The size of a program on the line: the frames that the driver sends if none is lost.
 
 use frixel_wire::frame::{FRAME_MAX_LEN, crc32};
 use frixel_wire::message::{Command, Request};
@@ -6,21 +6,21 @@ use frixel_wire::payload::{CHUNK_LEN, WriteError, chunk_frame, request_frame};
 
 use frixel_scene::Program;
 
-/// Bytes of a program and of its upload to the board.
+/// Byte and frame counts of a program and of its upload.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct OnTheWire {
     /// Header, records and points.
     pub(super) scene_bytes: usize,
     /// Samples of all pictures.
     pub(super) picture_bytes: usize,
-    /// Frames from the start of the first upload to the commit.
+    /// Number of frames from the start of the first upload to the commit.
     pub(super) frames: usize,
-    /// Their bytes, to the last zero byte.
+    /// Bytes of these frames, including the zero byte at the end of each.
     pub(super) wire_bytes: usize,
 }
 
 impl OnTheWire {
-    /// Makes every frame, and counts them.
+    /// Encodes every frame of the upload, and counts frames and bytes.
     pub(super) fn of(program: &Program) -> Result<Self, WriteError> {
         let scene = program.scene_bytes();
         let mut line = Line::default();
@@ -35,13 +35,13 @@ impl OnTheWire {
         Ok(Self { scene_bytes: scene.len(), picture_bytes, frames: line.frames, wire_bytes: line.bytes })
     }
 
-    /// Without frames, and without the requests around an upload.
+    /// Bytes of scene and pictures, without framing and without the requests around an upload.
     pub(super) fn content_bytes(&self) -> usize {
         self.scene_bytes + self.picture_bytes
     }
 }
 
-/// Counts what is sent.
+/// A sink that counts frames and bytes.
 #[derive(Default)]
 struct Line {
     frames: usize,

@@ -1,4 +1,4 @@
-//! The host's side of an emulated board: its serial port on the board's clock, and the record of what its finger felt.
+//! The host's side of an emulated board: its serial port with the board's clock, and the record of the felt friction.
 
 use std::cell::Cell;
 use std::collections::VecDeque;
@@ -15,36 +15,36 @@ use super::recorded::finger_and_felt;
 
 /// Wall time between two readings of the board's clock.
 const POLL_PERIOD: Duration = Duration::from_millis(2);
-/// Wall time after which a clock that does not move is taken to have stopped.
+/// Wall time after which a clock that does not advance counts as stopped.
 const PATIENCE: Duration = Duration::from_mins(2);
-/// Ticks that wait for the telemetry that belongs to them: 0.2 s.
+/// Number of ticks that are held until their telemetry arrives: 0.2 s.
 const HELD_TICKS: usize = 8_000;
 
-/// A real serial port to an emulated board, on the board's clock.
+/// The serial port of an emulated board, with a clock that follows the board's ticks.
 ///
-/// The clock stands still while bytes are on their way to the board: how fast the emulator moves them depends on what
-/// else the machine does.
+/// The clock stands still while bytes are on their way to the board, because the speed at which the emulator transfers
+/// them depends on the load of the machine.
 ///
-/// The record has every tick of the world. The emulated serial port is too slow for telemetry at every row: what only
-/// the board knows stands in the rows that a telemetry message falls in.
+/// The record has every tick of the world. The emulated serial port is too slow for telemetry in every row: values that
+/// only the board knows are in those rows for which a telemetry message arrived.
 pub struct EmulatedLink<'b> {
     serial: SerialLink,
     board: &'b LinkBoard,
-    /// Bytes that the board had received when the link was opened.
+    /// Bytes that the board had received before the link was opened.
     received_before: u32,
-    /// Ticks of the board when they were last read.
+    /// Tick count of the board when it was last read.
     seen_ticks: Cell<u32>,
     /// Ticks that have passed on the link's clock.
     clock_ticks: Cell<u64>,
     records: Receiver<LinkRecord>,
-    /// Ticks that wait for their telemetry, and telemetry that waits for its tick.
+    /// Ticks without their telemetry yet, and telemetry without its tick yet.
     held: VecDeque<LinkRecord>,
     telemetry: VecDeque<Telemetry>,
     recorder: Recorder,
 }
 
 impl<'b> EmulatedLink<'b> {
-    /// Opens the board's serial port. `records` are what [`LinkBoard::start`] shows of each tick.
+    /// Opens the board's serial port. `records` receives the ticks that [`LinkBoard::start`] reports.
     pub fn open(board: &'b LinkBoard, records: Receiver<LinkRecord>) -> Result<Self, PortError> {
         let serial = SerialLink::open(board.serial_path(), DEFAULT_BAUD)?;
         let counts = board.received_bytes().and_then(|received| Ok((received, board.ticks()?)));
@@ -65,12 +65,12 @@ impl<'b> EmulatedLink<'b> {
         })
     }
 
-    /// Lets the clock follow the board's.
+    /// Advances the clock with the board's.
     fn follow(&self) -> Result<(), EmulatorError> {
         let ticks = self.board.ticks()?;
         let passed = ticks.wrapping_sub(self.seen_ticks.replace(ticks));
         let received = self.board.received_bytes()?.wrapping_sub(self.received_before);
-        // Both counts are modulo 2^32; the difference is never near that.
+        // Both counts wrap at 2^32; their difference always fits in an `i32`.
         let under_way = (self.serial.written().bytes as u32).wrapping_sub(received) as i32;
         if under_way <= 0 {
             self.clock_ticks.update(|clock| clock + u64::from(passed));
@@ -78,7 +78,7 @@ impl<'b> EmulatedLink<'b> {
         Ok(())
     }
 
-    /// Records the ticks so far, but for the last `held` of them.
+    /// Records all ticks so far except the last `held`.
     fn record_ticks(&mut self, held: usize) {
         self.held.extend(self.records.try_iter());
         let count = self.held.len().saturating_sub(held);
@@ -91,7 +91,7 @@ impl<'b> EmulatedLink<'b> {
     }
 }
 
-/// Removes the telemetry up to a tick, and returns that of the tick itself.
+/// Removes the telemetry up to a tick, and returns the message of that tick.
 fn telemetry_of(tick: u32, telemetry: &mut VecDeque<Telemetry>) -> Option<Telemetry> {
     let mut last = None;
     while let Some(earlier) = telemetry.pop_front_if(|telemetry| tick.wrapping_sub(telemetry.tick) as i32 >= 0) {
@@ -145,7 +145,7 @@ impl Link for EmulatedLink<'_> {
     }
 
     fn now(&self) -> Duration {
-        // Should the emulator have ended, the clock stands still, and reading says so.
+        // If the emulator has exited, the clock stands still, and the next read returns the error.
         let _ = self.follow();
         Duration::from_secs(self.clock_ticks.get()) / BOARD.tick_hz
     }

@@ -1,9 +1,9 @@
-//! What happened to a board, apart from the friction: changes of its state, and a host that fell silent.
+//! Log of the events of a board: changes of its state, and a silent host.
 
 use frixel_wire::fault::{Fault, Flags, State};
 use thiserror::Error;
 
-/// Follows a board's state, and keeps what changed, in the order of time.
+/// Tracks the state of a board and keeps its changes in order of time.
 #[derive(Clone, Debug)]
 pub struct EventLog {
     state: State,
@@ -12,37 +12,37 @@ pub struct EventLog {
     events: Vec<BoardEvent>,
 }
 
-/// A change.
+/// A change of the board's state, with its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoardEvent {
-    /// When it was seen, s.
+    /// Time at which the change was observed, s.
     pub t_s: f64,
-    /// What changed.
+    /// Kind of the change.
     pub kind: EventKind,
 }
 
-/// What can change.
+/// Kind of a change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EventKind {
-    /// The board went to this state.
+    /// The board entered this state.
     State(State),
-    /// The board has not heard from its host for the scene's host timeout.
+    /// The board has not received a frame from its host for the scene's host timeout.
     HostSilent,
 }
 
-/// Why a board stopped without a command.
+/// Why a board stopped without a stop command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum StopReason {
     /// A fault is latched.
     #[error("stopped with its output at zero: {0}")]
     Fault(Fault),
-    /// The host was silent for too long.
+    /// The board stopped because of the host timeout.
     #[error("stopped with its output at zero: it had not heard from this host for the scene's host timeout")]
     HostSilent,
 }
 
 impl EventKind {
-    /// A word for a column.
+    /// The name of the kind, for a column of a CSV file.
     pub fn name(self) -> &'static str {
         match self {
             Self::State(State::Disarmed) => "disarmed",
@@ -55,12 +55,12 @@ impl EventKind {
 }
 
 impl EventLog {
-    /// Follows a board from this state on.
+    /// Starts tracking a board that is in this state.
     pub fn new(state: State) -> Self {
         Self { state, host_silent: false, stop_reason: None, events: Vec::new() }
     }
 
-    /// Takes what a board reports at a time, and keeps what differs from the report before.
+    /// Compares a report of the board with the one before, and logs the changes.
     pub fn observe(&mut self, t_s: f64, state: State, fault: Option<Fault>, flags: Flags) {
         let host_silent = flags.contains(Flags::HOST_SILENT);
         let begins_silent = host_silent && !self.host_silent;
@@ -78,12 +78,12 @@ impl EventLog {
         (self.state, self.host_silent) = (state, host_silent);
     }
 
-    /// Why the board stands still, if it stopped without a command.
+    /// Why the board stopped, if it did so without a stop command.
     pub fn stop_reason(&self) -> Option<StopReason> {
         self.stop_reason
     }
 
-    /// Removes the events so far and returns them.
+    /// Removes the logged events and returns them.
     pub fn take_events(&mut self) -> Vec<BoardEvent> {
         std::mem::take(&mut self.events)
     }

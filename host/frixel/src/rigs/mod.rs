@@ -1,11 +1,11 @@
-//! The boards that a scene can play on, each behind a [`Link`](frixel_driver::Link), with the record of the play.
+//! The boards that a scene can play on, each behind a [`Link`](frixel_driver::Link) that records the play.
 //!
-//! - [`SimLink`]: the board in this process, in virtual time.
+//! - [`SimLink`]: a simulated board in this process, in virtual time.
 //! - [`EmulatedLink`]: the firmware in an emulator, on the emulator's clock.
-//! - [`PortLink`]: a board at a serial port.
-//! - [`Server`]: a virtual board behind a pseudo-terminal, paced by the wall clock, for other programs to play on.
+//! - [`PortLink`]: a board on a serial port.
+//! - [`Server`]: a virtual board behind a pseudo-terminal, paced by the wall clock, for use by other programs.
 //!
-//! The emulated and the virtual board need pseudo-terminals, which Unix systems have.
+//! The emulated and the virtual board need pseudo-terminals, which Unix systems provide.
 
 #[cfg(unix)]
 mod emulated;

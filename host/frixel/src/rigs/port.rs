@@ -1,4 +1,4 @@
-//! A board at a serial port, of which telemetry is all that can be seen.
+//! A board on a serial port, which is observed through telemetry alone.
 
 use std::time::Duration;
 
@@ -8,14 +8,14 @@ use frixel_wire::message::Telemetry;
 
 use super::RecordedLink;
 
-/// A serial port, with the record of what the board at it reports.
+/// A serial port, with the record of the telemetry received from it.
 pub struct PortLink {
     serial: SerialLink,
     recorder: Recorder,
 }
 
 impl PortLink {
-    /// Records what the board at `serial` reports.
+    /// Creates a link that records the telemetry of the board on `serial`.
     pub fn new(serial: SerialLink) -> Self {
         Self { serial, recorder: Recorder::idle() }
     }

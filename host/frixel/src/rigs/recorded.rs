@@ -1,29 +1,29 @@
-//! What every rig has in common.
+//! The interface that all rigs have in common.
 
 use frixel_driver::{Link, LinkClosed};
 use frixel_hil_sim::{Felt, FingerState as SimulatedFinger};
 use frixel_scene::recorder::{FeltFriction, FingerState, Recorder};
 use frixel_wire::message::Telemetry;
 
-/// A link to a board that a scene plays on, with the record of that play.
+/// A link to a board that plays a scene, with the record of that play.
 pub trait RecordedLink: Link {
-    /// The recorder. It is idle until somebody puts another in its place.
+    /// The recorder. It is idle until the caller replaces it.
     fn recorder_mut(&mut self) -> &mut Recorder;
 
-    /// Starts the stroke and the record of a finger that is simulated beside the board. To be called when the scene
-    /// plays.
+    /// Starts the record and the stroke of a finger that is simulated beside the board. Call this when the scene
+    /// starts to play.
     fn begin(&mut self) -> Result<(), LinkClosed> {
         Ok(())
     }
 
-    /// Records what has been seen of the board since the last call, with the telemetry that it has sent meanwhile.
+    /// Records what has been observed of the board since the last call, and the telemetry received since then.
     fn record(&mut self, telemetry: &[Telemetry]);
 
-    /// Records the ticks that still wait for telemetry. To be called when no more telemetry comes.
+    /// Records the ticks that still wait for telemetry. Call this after the last telemetry message.
     fn record_rest(&mut self) {}
 }
 
-/// The finger and the friction of a simulated world, as a recorder takes them.
+/// Converts the state of a simulated world into the types of the recorder.
 pub(super) fn finger_and_felt(felt: &Felt) -> (Option<FingerState>, Option<FeltFriction>) {
     let finger = felt.finger.map(|SimulatedFinger { x_m, y_m, speed_m_per_s }| FingerState { x_m, y_m, speed_m_per_s });
     let friction = FeltFriction { friction_n: felt.friction_n, electric_friction_n: felt.electric_friction_n };

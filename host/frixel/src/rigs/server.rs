@@ -12,27 +12,27 @@ use crate::output::OutputError;
 
 /// Time that the server sleeps between two readings of the clock.
 const NAP: Duration = Duration::from_millis(1);
-/// Most virtual time between two reads of the terminal: what a client sends is late by no more than this.
+/// Most virtual time between two reads of the terminal, and so the largest delay of a client's bytes.
 const BATCH_MAX_S: f64 = 5e-3;
-/// Most reads of 4 KiB between two batches of ticks: more than a terminal holds, and an end for a client that writes as
-/// fast as it is read.
+/// Most reads of 4 KiB between two batches of ticks. This is more than a terminal buffers, and bounds the loop when a
+/// client writes as fast as the server reads.
 const READS_MAX: usize = 16;
-/// Largest lag of virtual time behind the wall clock, after the machine was busy elsewhere. A larger one is not caught
-/// up.
+/// Largest lag of virtual time behind the wall clock, for example on a busy machine. The server does not catch up on a
+/// lag beyond that.
 const LAG_MAX_S: f64 = 50e-3;
 
-/// Why a virtual board ended.
+/// Why a virtual board stopped.
 #[derive(Debug, Error)]
 pub enum ServerError {
-    /// No pseudo-terminal could be made.
+    /// The pseudo-terminal could not be created.
     #[error("no pseudo-terminal for the virtual board: {0}; this needs a Unix system with /dev/pts")]
     Terminal(#[from] io::Error),
-    /// The pseudo-terminal broke.
+    /// Reading or writing the pseudo-terminal failed.
     #[error("the virtual board's pseudo-terminal {path} broke: {source}")]
     Line {
         /// Path of the terminal.
         path: String,
-        /// What the system says.
+        /// Error of the operating system.
         source: io::Error,
     },
     /// A file could not be written.
@@ -43,26 +43,26 @@ pub enum ServerError {
 /// A virtual board on a pseudo-terminal.
 pub struct Server {
     terminal: PseudoTerminal,
-    /// What the terminal had no room for: the client has not read what came before.
+    /// Bytes that the terminal had no room for because the client does not read.
     unwritten: Vec<u8>,
     log: ServerLog,
 }
 
 impl Server {
-    /// Creates `felt.csv`, with a row every `ticks_per_row` ticks, and `events.csv` in `folder`; then makes the
+    /// Creates `felt.csv`, with a row every `ticks_per_row` ticks, and `events.csv` in `folder`; then creates the
     /// pseudo-terminal.
     pub fn open(folder: &Path, tick_hz: u32, ticks_per_row: u32) -> Result<Self, ServerError> {
         let log = ServerLog::create(folder, tick_hz, ticks_per_row)?;
         Ok(Self { terminal: PseudoTerminal::open()?, unwritten: Vec::new(), log })
     }
 
-    /// What a client opens.
+    /// Path of the terminal that a client opens.
     pub fn path(&self) -> &str {
         self.terminal.path()
     }
 
-    /// Runs `rig` at the pace of the wall clock until `interrupted`, with the finger on its stroke from the start, and
-    /// writes down what happens.
+    /// Runs `rig` at the pace of the wall clock until `interrupted` returns true. The finger starts its stroke at once.
+    /// Ticks and events are written to the files.
     pub fn run(mut self, rig: &mut Rig, interrupted: &dyn Fn() -> bool) -> Result<(), ServerError> {
         let tick_period_s = 1.0 / f64::from(rig.tick_hz());
         rig.world_mut().start_stroke();
@@ -83,11 +83,11 @@ impl Server {
         Ok(self.log.flush()?)
     }
 
-    /// Moves bytes between client and board.
+    /// Transfers bytes between client and board.
     ///
-    /// All that the client has written is taken at once, and the rig drops what is beyond its credit: what waited in
-    /// the terminal would reach the board after the client has gone. A client that does not read holds up the board's
-    /// line, but not the board.
+    /// Reads all that the client has written, and lets the rig drop bytes beyond its credit: bytes left in the terminal
+    /// would reach the board after the client has gone. A client that does not read blocks the board's line, but not
+    /// the board.
     fn exchange(&mut self, rig: &mut Rig) -> io::Result<()> {
         if self.terminal.client_has_gone()? {
             self.unwritten.clear();

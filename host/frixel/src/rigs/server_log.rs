@@ -1,4 +1,4 @@
-//! The files of a virtual board: what its finger felt, and what happened to it.
+//! The output files of a virtual board: felt friction and events.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -11,10 +11,10 @@ use super::EventLog;
 use super::sim_link::observation;
 use crate::output::{EventCsv, EventRow, FeltCsv, OutputError};
 
-/// Virtual time between two flushes, so that a killed server leaves all but the last moment.
+/// Virtual time between two flushes, which limits how much a killed server loses.
 const FLUSH_PERIOD_S: f64 = 0.1;
 
-/// `felt.csv` and `events.csv` of a virtual board. The reference is unknown: the scene's file is the client's.
+/// `felt.csv` and `events.csv` of a virtual board. The reference is unknown because only the client has the scene file.
 pub(super) struct ServerLog {
     felt_csv: FeltCsv,
     events_csv: EventCsv,
@@ -27,7 +27,7 @@ pub(super) struct ServerLog {
 }
 
 impl ServerLog {
-    /// Creates the two files in `folder`, which is made when it is not there.
+    /// Creates the two files in `folder`. Creates the folder if necessary.
     pub(super) fn create(folder: &Path, tick_hz: u32, ticks_per_row: u32) -> Result<Self, OutputError> {
         std::fs::create_dir_all(folder).map_err(failed(folder))?;
         let mut recorder = Recorder::without_reference(tick_hz, ticks_per_row);
@@ -44,7 +44,7 @@ impl ServerLog {
         })
     }
 
-    /// Takes one tick of `rig`.
+    /// Records one tick of `rig`.
     pub(super) fn take(&mut self, record: &TickRecord, rig: &Rig) -> Result<(), OutputError> {
         let (frames, _) = rig.frame_counts();
         if frames != self.frames {
@@ -65,7 +65,7 @@ impl ServerLog {
         if record.tick.is_multiple_of(self.ticks_per_flush) { self.flush() } else { Ok(()) }
     }
 
-    /// Writes what is buffered so far.
+    /// Writes the buffered rows to the files.
     pub(super) fn flush(&mut self) -> Result<(), OutputError> {
         self.felt_csv.flush()?;
         self.events_csv.flush()

@@ -1,4 +1,4 @@
-//! A link to the in-process rig. Its clock is the rig's: a wait of a second passes in no time.
+//! A link to the in-process rig, with the rig's clock: waiting for a second of virtual time takes no wall time.
 
 use std::time::Duration;
 
@@ -11,15 +11,15 @@ use frixel_wire::message::Telemetry;
 use super::RecordedLink;
 use super::recorded::finger_and_felt;
 
-/// A frame that goes out by itself.
+/// A frame that is sent periodically without a call.
 struct KeepAlive {
     frame: Vec<u8>,
     period_ticks: u64,
 }
 
-/// The host's end of a simulated board's line.
+/// The host's end of the serial line to a simulated board.
 ///
-/// The finger begins its stroke, and the recorder its record, when the scene first plays.
+/// The stroke of the finger and the record start when the scene first plays.
 pub struct SimLink<'a> {
     rig: Rig<'a>,
     recorder: Recorder,
@@ -30,12 +30,12 @@ pub struct SimLink<'a> {
 }
 
 impl<'a> SimLink<'a> {
-    /// A link to `rig`, whose ticks `recorder` records.
+    /// Creates a link to `rig` that records its ticks into `recorder`.
     pub fn new(rig: Rig<'a>, recorder: Recorder) -> Self {
         Self { rig, recorder, recording: false, written: Written::default(), written_at_tick: 0, keep_alive: None }
     }
 
-    /// What was recorded.
+    /// The recorder with all ticks.
     pub fn into_recorder(self) -> Recorder {
         self.recorder
     }
@@ -69,7 +69,7 @@ impl<'a> SimLink<'a> {
     }
 }
 
-/// All that there is to know of a tick: here both board and finger can be seen.
+/// Everything about a tick: on the simulator, both board and finger are observable.
 pub(super) fn observation(record: &TickRecord) -> Observation {
     let telemetry = record.status.telemetry;
     let (finger, felt) = finger_and_felt(&record.felt);
@@ -87,7 +87,7 @@ impl RecordedLink for SimLink<'_> {
         &mut self.recorder
     }
 
-    /// Every tick has been recorded as it happened, with what telemetry would say of it.
+    /// Does nothing: every tick has already been recorded, including the values that telemetry would report.
     fn record(&mut self, _telemetry: &[Telemetry]) {}
 }
 

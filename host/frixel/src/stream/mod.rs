@@ -1,4 +1,4 @@
-//! Samples for stream layers: from a WAV file, or raw from a pipe, and on to a board as fast as it plays them.
+//! Samples for stream layers: reads them from a WAV file or a pipe, and sends them to a board as fast as it plays them.
 
 mod pipe;
 #[cfg(test)]
@@ -13,12 +13,12 @@ use thiserror::Error;
 use frixel_driver::{Device, DeviceError, Link, StreamSettings};
 use pipe::Pipe;
 
-/// Samples that are read from their source before the board has room for them.
+/// Samples that are read ahead, before the board has room for them.
 const AHEAD: usize = 2048;
 
-/// Samples on their way to a board.
+/// A source of samples for a board.
 ///
-/// A sample is a `u16`: 0 is the layer's low friction, 65,535 its high one.
+/// A sample is a `u16`: 0 stands for the layer's low friction, 65,535 for its high friction.
 pub struct Feed {
     settings: StreamSettings,
     source: Source,
@@ -27,71 +27,72 @@ pub struct Feed {
 }
 
 enum Source {
-    /// All samples, and how many of them were taken.
+    /// All samples, and how many of them have been sent.
     Samples(Vec<u16>, usize),
     Pipe(Pipe),
 }
 
-/// Why there are no samples to stream, or no more of them.
+/// Why samples are missing, or could not be streamed to their end.
 #[derive(Debug, Error)]
 pub enum FeedError {
-    /// The file is not there, or is no WAV file that can be read.
+    /// The file does not exist, or is not a supported WAV file.
     #[error(
         "{} cannot be streamed ({source}): give a WAV file of 8, 16, 24 or 32 bits, or of 32-bit floats",
         path.display()
     )]
     Wav {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// What the reader says.
+        /// Error of the WAV reader.
         source: hound::Error,
     },
     /// The file has no samples.
     #[error("{} has no samples: there is nothing to stream", path.display())]
     Empty {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
     },
-    /// A float that is no number.
+    /// A floating-point sample is not a number.
     #[error("sample {index} of {} is not a number: export the file anew", path.display())]
     NotANumber {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Which sample, from zero, counted in the first channel.
+        /// Index of the sample in the first channel, from zero.
         index: usize,
     },
-    /// No samples a second, or more than the board plays.
+    /// The sample rate is zero, or above the tick rate of the board.
     #[error(
         "a stream of {sample_hz} samples a second cannot be played: give 1 to {tick_hz}, the board's ticks a second"
     )]
     Rate {
-        /// Samples a second that were requested.
+        /// Requested sample rate, in samples per second.
         sample_hz: u32,
-        /// The board's ticks a second.
+        /// Tick rate of the board, in ticks per second.
         tick_hz: u32,
     },
-    /// The pipe broke.
+    /// Reading the pipe failed.
     #[error("the samples on standard input cannot be read ({0}): the stream ends here")]
     Pipe(io::Error),
-    /// The board refused, or fell silent.
+    /// The board rejected a request, or stopped answering.
     #[error(transparent)]
     Device(#[from] DeviceError),
 }
 
 impl Feed {
-    /// The first channel of a WAV file, with its lowest value at 0 and its highest at 65,535: silence is half way
+    /// Reads the first channel of a WAV file. Its lowest value becomes 0 and its highest 65,535, so silence is half way
     /// between low and high friction.
     ///
-    /// A file of more samples a second than the board has ticks is brought below that, each sample then the mean of two
-    /// or more; [`Self::settings`] says what came out.
+    /// If the file has more samples per second than the board has ticks, two or more samples are averaged into one;
+    /// [`Self::settings`] returns the resulting rate.
     pub fn wav(path: &Path, tick_hz: u32) -> Result<Self, FeedError> {
         let (sample_hz, samples) = wav::read(path, tick_hz)?;
         Ok(Self::of(samples, sample_hz))
     }
 
-    /// Raw samples, two bytes each, little-endian, from a pipe that is read by a thread of its own.
+    /// Reads raw samples, two bytes each, little-endian, from a pipe in a separate thread.
     ///
-    /// With `waits`, an empty pipe is waited for, as suits a board in virtual time. Otherwise the board runs dry.
+    /// If `waits` is true, an empty pipe blocks the play, which suits a board in virtual time. Otherwise the board runs
+    /// out of samples.
     pub fn raw(
         input: impl Read + Send + 'static,
         sample_hz: u32,
@@ -105,24 +106,25 @@ impl Feed {
         Ok(Self { settings: StreamSettings::new(sample_hz), source, pending: Vec::new(), ended: false })
     }
 
-    /// Samples that are all in memory.
+    /// Creates a feed from samples in memory.
     pub fn of(samples: Vec<u16>, sample_hz: u32) -> Self {
         let settings = StreamSettings::new(sample_hz);
         Self { settings, source: Source::Samples(samples, 0), pending: Vec::new(), ended: false }
     }
 
-    /// Sample rate and start level.
+    /// The sample rate and the start level.
     pub fn settings(&self) -> StreamSettings {
         self.settings
     }
 
-    /// Starts the stream on a board that plays, and sends the first samples.
+    /// Starts the stream on a board that is playing, and sends the first samples.
     pub fn start<L: Link>(&mut self, device: &mut Device<L>) -> Result<(), FeedError> {
         device.start_stream(self.settings)?;
         self.pump(device)
     }
 
-    /// Sends what the board has room for, and ends the stream behind the last sample. Call this every few milliseconds.
+    /// Sends as many samples as the board has room for, and ends the stream after the last one. Call this every few
+    /// milliseconds.
     pub fn pump<L: Link>(&mut self, device: &mut Device<L>) -> Result<(), FeedError> {
         while !self.ended {
             let more = self.fetch()?;

@@ -4,15 +4,15 @@ use std::io::{self, Read};
 use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, sync_channel};
 use std::thread;
 
-/// Bytes that are read at a time.
+/// Bytes per read.
 const PIECE_LEN: usize = 1024;
-/// Pieces in the queue. When it is full, the writer of the pipe waits.
+/// Pieces in the queue. When it is full, the process that writes to the pipe blocks.
 const PIECES: usize = 4;
 
-/// A pipe that a thread reads: a read may block for ever, and the board must hear from its host meanwhile.
+/// A pipe that a separate thread reads: a read may block for ever, and the host must keep sending to the board.
 pub(super) struct Pipe {
     pieces: Receiver<io::Result<Vec<u8>>>,
-    /// The first byte of a sample whose second has not come.
+    /// The first byte of a sample whose second byte has not arrived yet.
     half: Option<u8>,
     waits: bool,
     ended: bool,
@@ -25,8 +25,8 @@ impl Pipe {
         Ok(Self { pieces, half: None, waits, ended: false })
     }
 
-    /// Appends samples until there are `len`, or no more have come; returns whether there may be more. Half a sample at
-    /// the end is dropped.
+    /// Appends samples until there are `len` of them or the pipe is empty; returns false at the end of the pipe. Half a
+    /// sample at the end is dropped.
     pub(super) fn fetch(&mut self, samples: &mut Vec<u16>, len: usize) -> io::Result<bool> {
         while samples.len() < len && !self.ended {
             let piece = if self.waits {

@@ -1,4 +1,4 @@
-//! WAV files as samples.
+//! Reading of WAV files.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use hound::{SampleFormat, WavReader};
 
 use super::FeedError;
 
-/// Samples a second, at most `max_hz`, and the samples of the first channel.
+/// The sample rate, reduced to at most `max_hz`, and the samples of the first channel.
 pub(super) fn read(path: &Path, max_hz: u32) -> Result<(u32, Vec<u16>), FeedError> {
     let failed = |source| FeedError::Wav { path: path.to_owned(), source };
     let mut reader = WavReader::open(path).map_err(failed)?;
@@ -35,13 +35,13 @@ pub(super) fn read(path: &Path, max_hz: u32) -> Result<(u32, Vec<u16>), FeedErro
     Ok((spec.sample_rate / together, means(&samples, together as usize)))
 }
 
-/// How many samples make one, so that there are no more a second than `max_hz`, and a whole number of them.
+/// The least number of samples to average into one such that the rate is at most `max_hz` and an integer.
 fn samples_together(sample_hz: u32, max_hz: u32) -> u32 {
     let least = sample_hz.div_ceil(max_hz.max(1)).max(1);
     (least..=sample_hz).find(|together| sample_hz.is_multiple_of(*together)).unwrap_or(sample_hz)
 }
 
-/// Means of so many samples each, 1 as 65,535.
+/// Means of `together` samples each, where 1 becomes 65,535.
 fn means(samples: &[f64], together: usize) -> Vec<u16> {
     samples
         .chunks(together)

@@ -21,7 +21,7 @@ pub(super) fn play_on_emulator(args: &PlayArgs, scene: &Scene, interrupt: &Inter
     let image = Image::build()?;
     let (sender, records) = mpsc::channel();
     let mut board = LinkBoard::start(&image, world, move |record| {
-        // Nobody receives any more when the play has ended.
+        // The receiver is gone once the play has ended.
         let _ = sender.send(*record);
     })?;
     let device = Device::connect(EmulatedLink::open(&board, records)?)?;
@@ -32,7 +32,7 @@ pub(super) fn play_on_emulator(args: &PlayArgs, scene: &Scene, interrupt: &Inter
     Ok(played)
 }
 
-/// The world around the emulated board, with the finger that the scene is meant for.
+/// Creates the world around the emulated board, with the finger that the scene was made for.
 fn world(program: &Program, stroke: Stroke, seed: u64) -> Result<World, CommandError> {
     let config = WorldConfig {
         tick_hz: BOARD.tick_hz,

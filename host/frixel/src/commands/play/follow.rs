@@ -1,4 +1,4 @@
-//! Plays a plan on a board that is open, from the upload to the files.
+//! Plays a plan on an open board, from the upload to the output files.
 
 use std::time::{Duration, Instant};
 
@@ -13,7 +13,7 @@ use super::plan::Plan;
 use super::progress::Bars;
 use super::{CommandError, Interrupt, PlayArgs, Played};
 
-/// Plays until the plan is over, a person ends it, or the board does. What was played until then has been recorded.
+/// Plays until the plan is complete, the user interrupts it, or the board stops. Everything up to then is recorded.
 pub(super) fn follow<L: RecordedLink>(
     args: &PlayArgs,
     plan: Plan,
@@ -32,7 +32,7 @@ pub(super) fn follow<L: RecordedLink>(
     Ok(play.finish(ended, playing))
 }
 
-/// A play under way.
+/// A play in progress.
 struct Play<'a, L: RecordedLink> {
     args: &'a PlayArgs,
     plan: Plan,
@@ -41,7 +41,7 @@ struct Play<'a, L: RecordedLink> {
     live_scene: Option<LiveScene>,
     interrupt: &'a Interrupt,
     bars: Bars,
-    /// Wall time that writing has taken.
+    /// Wall time spent on writing files.
     writing: Duration,
 }
 
@@ -74,7 +74,7 @@ impl<L: RecordedLink> Play<'_, L> {
         written
     }
 
-    /// Plays the scene's file when it was saved.
+    /// Replaces the scene if its file was saved.
     fn refresh_scene(&mut self) -> Result<(), CommandError> {
         let Some(live_scene) = &mut self.live_scene else { return Ok(()) };
         match live_scene.refresh(&mut self.player) {
@@ -85,7 +85,7 @@ impl<L: RecordedLink> Play<'_, L> {
         Ok(())
     }
 
-    /// Puts the output to zero, then writes what is left to be written.
+    /// Sets the output to zero, then writes the remaining rows.
     fn finish(mut self, ended: Result<(), CommandError>, playing: Duration) -> Played {
         self.bars.finish();
         let (counters, stream) = (self.player.device().counters(), self.player.device().stream_status());
@@ -102,7 +102,7 @@ impl<L: RecordedLink> Play<'_, L> {
             .with_stream(stream);
         let written = self.outputs.write(&recorder.take_rows());
         let finished = written.and_then(|()| self.outputs.finish(program));
-        // Ctrl-C in a terminal ends an emulator, too: that is no failure.
+        // Ctrl-C in a terminal also ends the emulator, which is not a failure.
         let failure = ended.err().filter(|_| !interrupted);
         let (files, failure) = match finished {
             Ok(files) => (files, failure),

@@ -1,4 +1,4 @@
-//! A scene that is played anew whenever its file is saved.
+//! A scene that is replaced whenever its file is saved.
 
 use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
@@ -15,21 +15,21 @@ use frixel_wire::message::Refusal;
 use super::plan::print_notes;
 use super::saved_file::SavedFile;
 
-/// The scene's file, followed while an earlier version of it plays.
+/// Watches the scene's file while an earlier version of it plays.
 pub(super) struct LiveScene {
     path: PathBuf,
     file: SavedFile,
-    /// The saved scene is compiled in a thread of its own: the board has to hear from its host meanwhile.
+    /// The thread that compiles a saved scene, because the host must keep sending to the board meanwhile.
     compiling: Option<JoinHandle<Result<Program, SceneFileError>>>,
 }
 
 impl LiveScene {
-    /// Follows a file from what it is now. Call this before the file is read.
+    /// Watches a file for changes from now on. Call this before the file is read.
     pub(super) fn new(path: &Path) -> Self {
         Self { path: path.to_owned(), file: SavedFile::new(path), compiling: None }
     }
 
-    /// Plays the file if it was saved. Returns the program that plays from now on, if it is another.
+    /// Plays the file if it was saved. Returns the new program if it replaced the one that was playing.
     pub(super) fn refresh<L: RecordedLink>(&mut self, player: &mut Player<L>) -> Result<Option<Program>, PlayError> {
         if let Some(compiling) = self.compiling.take_if(|compiling| compiling.is_finished()) {
             let compiled = compiling.join().unwrap_or_else(|panic| resume_unwind(panic));
@@ -44,7 +44,7 @@ impl LiveScene {
     }
 }
 
-/// Plays what was compiled. Its mistakes, or the board's refusal, are printed, and the scene before plays on.
+/// Plays a compiled scene. If it has errors or the board rejects it, prints why, and keeps the earlier scene playing.
 fn replace<L: RecordedLink>(
     path: &Path,
     compiled: Result<Program, SceneFileError>,

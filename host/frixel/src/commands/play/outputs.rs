@@ -1,4 +1,4 @@
-//! The files of a play.
+//! The output files of a play.
 
 use std::path::PathBuf;
 
@@ -9,7 +9,7 @@ use frixel_scene::recorder::FeltRow;
 use super::rigs::Target;
 use super::{CommandError, PlayArgs};
 
-/// `felt.csv`, written while the scene plays; and, where the finger is simulated, the pictures of it.
+/// Writes `felt.csv` while the scene plays and, if the finger is simulated, the pictures at the end.
 pub(super) struct Outputs {
     folder: PathBuf,
     title: String,
@@ -19,7 +19,7 @@ pub(super) struct Outputs {
 }
 
 impl Outputs {
-    /// Creates `felt.csv`, in a folder that is made when it is not there.
+    /// Creates `felt.csv`, and its folder if necessary.
     pub(super) fn create(args: &PlayArgs, target: Target) -> Result<Self, CommandError> {
         let folder = args.out.clone();
         std::fs::create_dir_all(&folder).map_err(CommandError::writing(&folder))?;
@@ -29,7 +29,7 @@ impl Outputs {
         Ok(Self { folder, title: args.scene.display().to_string(), csv, csv_path, trace })
     }
 
-    /// Writes rows, so that they are in the file when this returns.
+    /// Writes rows and flushes them to the file.
     pub(super) fn write(&mut self, rows: &[FeltRow]) -> Result<(), CommandError> {
         for row in rows {
             self.csv.write(row)?;
@@ -40,7 +40,7 @@ impl Outputs {
         Ok(self.csv.flush()?)
     }
 
-    /// Closes `felt.csv`, and draws `felt.svg` and `scene.png`. Returns the files.
+    /// Closes `felt.csv`, and draws `felt.svg` and `scene.png`. Returns the paths of the files.
     pub(super) fn finish(self, program: &Program) -> Result<Vec<PathBuf>, CommandError> {
         self.csv.finish()?;
         let mut files = vec![self.csv_path];

@@ -1,4 +1,4 @@
-//! What is to be played: checked as a whole before anything is written.
+//! The plan of a play, which is checked as a whole before any file is written.
 
 use std::io::stdin;
 use std::path::Path;
@@ -14,26 +14,26 @@ use super::super::stroke::{check_on_screen, stroke};
 use super::rigs::Target;
 use super::{CommandError, PlayArgs};
 
-/// Most telemetry that a board sends, in messages a second (PROTOCOL, `Subscribe`).
+/// Highest rate of telemetry that a board sends, in messages a second (PROTOCOL, `Subscribe`).
 const TELEMETRY_MAX_HZ: u32 = 1000;
-/// Most telemetry that the emulated serial port has room for, in messages a second.
+/// Highest rate of telemetry that the emulated serial port can transfer, in messages a second.
 const EMULATED_TELEMETRY_HZ: u32 = 100;
 
-/// A compiled scene, with the options that it is played with.
+/// A compiled scene, with the options of its play.
 pub(super) struct Plan {
     pub(super) target: Target,
     pub(super) program: Program,
     pub(super) feed: Option<Feed>,
     ticks_per_row: u32,
-    /// Ticks between two telemetry messages; 0 where every tick can be seen from outside.
+    /// Ticks between two telemetry messages; 0 for rigs whose ticks are observed directly.
     pub(super) telemetry_period_ticks: u32,
     limits: BoardLimits,
     tick_hz: u32,
-    /// `None` without an end.
+    /// Duration in seconds; `None` for a play without an end.
     seconds: Option<f64>,
 }
 
-/// Refuses options that do not go with the board that `--port` names.
+/// Rejects options that the board named by `--port` does not support.
 pub(super) fn check_options(args: &PlayArgs, target: Target) -> Result<(), CommandError> {
     let port = || args.port.clone();
     match target {
@@ -49,7 +49,7 @@ pub(super) fn check_options(args: &PlayArgs, target: Target) -> Result<(), Comma
 }
 
 impl Plan {
-    /// Compiles the scene for a board, and says what the compiler has noted.
+    /// Compiles the scene for a board, and prints the notes of the compiler.
     pub(super) fn new(
         args: &PlayArgs,
         scene: &Scene,
@@ -70,8 +70,8 @@ impl Plan {
         Ok(Self { target, program, feed, ticks_per_row, telemetry_period_ticks, limits, tick_hz, seconds })
     }
 
-    /// Chooses where a simulated finger goes over the scene's screen. The play lasts as long as that stroke, unless
-    /// `--seconds` says otherwise.
+    /// Chooses the path of the simulated finger over the screen. Without `--seconds`, the play lasts as long as the
+    /// stroke.
     pub(super) fn choose_stroke(&mut self, args: &PlayArgs) -> Result<Stroke, CommandError> {
         let header = &self.program.header;
         let (width_m, height_m) = (header.screen_width_m.into(), header.screen_height_m.into());
@@ -85,12 +85,12 @@ impl Plan {
         Ok(stroke)
     }
 
-    /// How long the play lasts, s; without an end, infinity.
+    /// Duration of the play, s; infinity for a play without an end.
     pub(super) fn seconds(&self) -> f64 {
         self.seconds.unwrap_or(f64::INFINITY)
     }
 
-    /// How long it lasts on the clock of the link. In virtual time it ends with the record instead.
+    /// Longest duration on the clock of the link. In virtual time, the play ends with the record instead.
     pub(super) fn time_max(&self) -> Duration {
         if self.target.is_virtual_time() {
             return Duration::MAX;
@@ -98,7 +98,7 @@ impl Plan {
         Duration::try_from_secs_f64(self.seconds()).unwrap_or(Duration::MAX)
     }
 
-    /// A recorder of the play: in virtual time for exactly as many ticks as it lasts.
+    /// Creates the recorder of the play. In virtual time, it ends after exactly the ticks of the play.
     pub(super) fn recorder(&self) -> Result<Recorder, CommandError> {
         let ticks = (self.seconds() * f64::from(self.tick_hz)).round() as u64;
         let ticks_max = if self.target.is_virtual_time() { ticks } else { u64::MAX };
@@ -107,7 +107,7 @@ impl Plan {
     }
 }
 
-/// Prints what the compiler converted, rounded or clamped.
+/// Prints the values that the compiler converted, rounded or clamped.
 pub(super) fn print_notes(program: &Program) {
     for note in &program.notes {
         eprintln!("{note}");
@@ -126,21 +126,21 @@ fn ticks_per_row(csv_hz: u32, tick_hz: u32) -> Result<u32, CommandError> {
     Err(CommandError::CsvUneven { found: csv_hz, tick_hz, nearest: nearest.join(" or ") })
 }
 
-/// A message a row. A reference that depends on what happened before needs as many as the board sends: the row then is
-/// the mean over its messages.
+/// Ticks between two telemetry messages: normally one message per row. If the reference depends on the past, the
+/// board sends as many messages as it can, and each row is their mean.
 fn telemetry_period_ticks(program: &Program, ticks_per_row: u32, tick_hz: u32) -> u32 {
     let least = tick_hz.div_ceil(TELEMETRY_MAX_HZ);
     let divides = |period: &u32| ticks_per_row.is_multiple_of(*period);
     if program.has_history() { (least..=ticks_per_row).find(divides).unwrap_or(ticks_per_row) } else { ticks_per_row }
 }
 
-/// Refuses a time in which not one tick passes.
+/// Rejects a duration that is shorter than a tick.
 fn check_seconds(seconds: f64, tick_hz: u32) -> Result<(), CommandError> {
     let tick_s = 1.0 / f64::from(tick_hz);
     if seconds < tick_s { Err(CommandError::TooShort { seconds, tick_s }) } else { Ok(()) }
 }
 
-/// Opens what `--stream` names. A board in virtual time waits for a pipe that is empty; another runs dry.
+/// Opens the source that `--stream` names. The simulator waits when a pipe is empty; other boards run out of samples.
 fn open_feed(args: &PlayArgs, tick_hz: u32, target: Target) -> Result<Option<Feed>, CommandError> {
     let waits = target == Target::Simulator;
     match (args.stream.as_deref(), args.stream_hz) {

@@ -1,11 +1,11 @@
-//! Progress bars on standard error, where that is a terminal.
+//! Progress bars on standard error, if that is a terminal.
 
 use std::io::{IsTerminal, stderr};
 
 use frixel_driver::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// The bar of the upload, then that of the play.
+/// The progress bar of the upload, and then that of the play.
 #[derive(Default)]
 pub(super) struct Bars {
     name: &'static str,

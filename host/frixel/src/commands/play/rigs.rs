@@ -1,4 +1,4 @@
-//! The boards that `--port` can name, and how each is opened.
+//! The boards that `--port` can name, and how to open them.
 
 use frixel::rigs::{PortLink, SimLink};
 use frixel_driver::{DEFAULT_BAUD, Device, SerialLink};
@@ -13,19 +13,19 @@ use super::live_scene::LiveScene;
 use super::plan::Plan;
 use super::{CommandError, Interrupt, PlayArgs, Played};
 
-/// What kind of board plays.
+/// Kind of the board that plays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Target {
-    /// The board in this process.
+    /// The simulated board in this process.
     Simulator,
     /// The firmware in an emulator.
     Emulator,
-    /// A board at a serial port, real or virtual.
+    /// A board on a serial port, real or virtual.
     Port,
 }
 
 impl Target {
-    /// What `--port` names.
+    /// The kind of board that `--port` names.
     pub(super) fn of(port: &str) -> Self {
         match port {
             "sim" => Self::Simulator,
@@ -34,12 +34,12 @@ impl Target {
         }
     }
 
-    /// Whether the play has the board's own time, and a finger that is simulated beside it.
+    /// Whether the play runs in the board's own time, with a finger that is simulated beside it.
     pub(super) fn is_virtual_time(self) -> bool {
         self != Self::Port
     }
 
-    /// Its name in the report.
+    /// The name of this kind in the report.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Simulator => "sim",
@@ -61,13 +61,13 @@ pub(super) fn play_on_simulator(args: &PlayArgs, scene: &Scene, interrupt: &Inte
     follow(args, plan, device, None, interrupt)
 }
 
-/// Refuses the emulator, whose serial port is a pseudo-terminal.
+/// Rejects the emulator, because its serial port is a pseudo-terminal.
 #[cfg(not(unix))]
 pub(super) fn play_on_emulator(_: &PlayArgs, _: &Scene, _: &Interrupt) -> Result<Played, CommandError> {
     Err(CommandError::NoPseudoTerminal { what: "--port qemu" })
 }
 
-/// Plays on the board at a serial port. The scene is compiled for what that board is.
+/// Plays on the board on a serial port. The scene is compiled for the limits that this board reports.
 pub(super) fn play_on_port(
     args: &PlayArgs,
     scene: &Scene,

@@ -1,24 +1,24 @@
-//! A file that is followed while somebody edits it.
+//! Detects when a file was saved.
 
 use std::fs::{self, Metadata};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime};
 
-/// Time between two checks of the file. A change has to last from one check to the next, so that a file that is being
-/// written is not read half.
+/// Time between two checks of the file. A change must be the same in two consecutive checks, so that a file is not read
+/// while it is being written.
 const CHECK_PERIOD: Duration = Duration::from_millis(100);
 
-/// Notices when a file was saved, in place or by an editor that puts another file in its place.
+/// Detects when a file was saved, in place or by an editor that replaces it by another file.
 pub(super) struct SavedFile {
     path: PathBuf,
     checked_at: Instant,
-    /// What the file was when it was last read.
+    /// State of the file when it was last read.
     read: Option<Fingerprint>,
-    /// What it was at the last check.
+    /// State of the file at the last check.
     checked: Option<Fingerprint>,
 }
 
-/// What changes when a file is saved.
+/// Metadata that changes when a file is saved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Fingerprint {
     modified: Option<SystemTime>,
@@ -44,14 +44,14 @@ fn file_number(_metadata: &Metadata) -> u64 {
 }
 
 impl SavedFile {
-    /// Follows a file from what it is now. Call this before the file is read for the first time.
+    /// Watches a file for changes from now on. Call this before the file is read for the first time.
     pub(super) fn new(path: &Path) -> Self {
         let now = Fingerprint::of(path);
         Self { path: path.to_owned(), checked_at: Instant::now(), read: now, checked: now }
     }
 
-    /// Whether the file has changed since this last returned true. Between two checks, and while there is no file, this
-    /// returns false.
+    /// Whether the file has changed since this method last returned true. Returns false between two checks, and while
+    /// the file does not exist.
     pub(super) fn is_saved(&mut self) -> bool {
         if self.checked_at.elapsed() < CHECK_PERIOD {
             return false;
@@ -75,7 +75,7 @@ impl SavedFile {
 mod tests {
     use super::*;
 
-    /// The two checks that a change has to last for, and one more.
+    /// Results of the two checks that confirm a change, and of one more.
     fn checks(file: &mut SavedFile) -> [bool; 3] {
         [file.check(), file.check(), file.check()]
     }

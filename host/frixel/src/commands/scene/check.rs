@@ -1,4 +1,4 @@
-//! `frixel scene check`: what a scene costs and what of it can be felt.
+//! `frixel scene check`: prints the cost of a scene and the friction that can be felt of it.
 
 use std::path::PathBuf;
 
@@ -23,7 +23,7 @@ pub(in super::super) struct CheckArgs {
 }
 
 pub(super) fn run(args: &CheckArgs) -> Result<(), CommandError> {
-    // The simulated board has the limits of the smallest one.
+    // The simulated board has the limits of the smallest board.
     let rig = RigConfig::default();
     let compiled =
         scene_file::load(&args.scene).and_then(|scene| Ok(compile(&scene, &rig.board.limits, rig.board.tick_hz)?));

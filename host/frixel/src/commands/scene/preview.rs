@@ -1,4 +1,4 @@
-//! `frixel scene preview`: the friction map of a scene.
+//! `frixel scene preview`: draws the friction map of a scene.
 
 use std::path::PathBuf;
 
@@ -39,7 +39,7 @@ pub(super) fn run(args: &PreviewArgs) -> Result<(), CommandError> {
     Ok(())
 }
 
-/// A speed that a finger can have.
+/// Parses the speed of a finger.
 fn speed(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(speed_mm_per_s) if (0.0..=10_000.0).contains(&speed_mm_per_s) => Ok(speed_mm_per_s),

@@ -7,7 +7,7 @@ use super::super::error::CommandError;
 
 pub(super) fn run() -> Result<(), CommandError> {
     match io::stdout().lock().write_all(frixel_scene::json_schema().as_bytes()) {
-        // Whoever reads it has seen enough.
+        // Ignore a closed standard output.
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             Err(CommandError::writing(Path::new("standard output"))(error))
         }

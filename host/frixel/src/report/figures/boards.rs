@@ -1,8 +1,8 @@
-//! What a page without a figure of counts says instead.
+//! The caption sentence about the cost on a board.
 
 use crate::report::counts::Counts;
 
-/// Whether the page has a figure of what something takes on a board.
+/// Whether the page has a figure of a cost on a board, and if not, why.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Boards {
     Shown,
@@ -11,7 +11,7 @@ pub(super) enum Boards {
 }
 
 impl Boards {
-    /// `shown` is the figure; it is `None` when the file lacks the counts for it.
+    /// `shown` is the figure, or `None` if `counts` lacks the numbers for it.
     pub(super) fn new<T>(shown: Option<&T>, counts: Option<&Counts>) -> Self {
         match (shown, counts) {
             (Some(_), _) => Self::Shown,
@@ -20,7 +20,7 @@ impl Boards {
         }
     }
 
-    /// For the caption of the figure behind; `what` takes something on a board.
+    /// A sentence for the caption of the following figure. `what` names the operation whose cost is meant.
     pub(super) fn sentence(self, what: &str) -> String {
         match self {
             Self::Shown => format!("What {what} takes on a board is in the figure before this one."),

@@ -1,4 +1,4 @@
-//! Upper against lower bound, and a finger that ends.
+//! Upper and lower bound of the model, and a finger of finite size.
 
 use frixel_model::ContactModel;
 
@@ -19,7 +19,7 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
     let mut curve = |name: &str, load_n: f64, outer_m: Option<f64>, model: &dyn ContactModel<f64>| {
         let points: Vec<_> = voltages
             .clone()
-            // A contact that would pass the outer radius has no state.
+            // A contact that would exceed the outer radius has no solution.
             .filter_map(|voltage| Some((voltage, model.state(voltage).ok()?.electric_friction_n)))
             .collect();
         for (voltage, friction) in &points {

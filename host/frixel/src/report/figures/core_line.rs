@@ -6,7 +6,7 @@ use super::{EXAMPLE, Figure, GAP_M, ReportError, even, example_finger, geometric
 use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
 use crate::report::data::Data;
 
-/// A finger to put on the line, with how its legend calls it.
+/// A finger to plot on the core line, with its name in the legend.
 struct Example {
     name: &'static str,
     finger: Finger<f64>,
@@ -39,7 +39,7 @@ fn examples() -> [Example; 3] {
     ]
 }
 
-/// A finger's state, in its own units and scaled.
+/// State of a finger, in SI units and scaled.
 struct Point {
     voltage_v_rms: f64,
     contact_radius_m: f64,
@@ -72,7 +72,7 @@ fn points(example: &Example, voltages: impl Iterator<Item = f64>, scaled: bool) 
 const LINE: Look = Look::line(PALETTE[0], Line::Solid);
 const LIMIT: Look = Look::line(PALETTE[6], Line::Dashed);
 
-/// The core lines with their limits, and the fingers on them.
+/// The core lines with their asymptotes, and the fingers as points on them.
 fn scaled_panels(curve: &[Point], data: &mut Data<7>) -> Result<[Panel; 2], ReportError> {
     let voltage = || Axis::log("voltage V / V*", 1e-2..1e2);
     let radius_axis = Axis::log("contact radius a / √(2 R g)", 0.1..200.0);
@@ -89,7 +89,7 @@ fn scaled_panels(curve: &[Point], data: &mut Data<7>) -> Result<[Panel; 2], Repo
     friction.add("", LIMIT, power(4.0, 4.0));
     let examples = examples();
     for (index, example) in examples.iter().enumerate() {
-        // Each finger at voltages of its own, so that none hides another.
+        // Each finger has different voltages, so that no mark hides another.
         let voltages = geometric(1.3e-2, 80.0, 24).skip(index).step_by(examples.len());
         let points = points(example, voltages, true)?;
         radius.add(example.name, example.look, points.iter().map(of_radius).collect());
@@ -101,7 +101,7 @@ fn scaled_panels(curve: &[Point], data: &mut Data<7>) -> Result<[Panel; 2], Repo
     Ok([radius, friction])
 }
 
-/// The example finger in its own units.
+/// The example finger in SI units.
 fn example_panels(curve: &[Point]) -> [Panel; 2] {
     let volts = || Axis::linear("voltage, V rms", 0.0..200.0);
     let millimetres = Axis::linear("contact radius, mm", 0.0..2.0);
@@ -124,7 +124,7 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
     ]);
     let [example, ..] = examples();
     let scaled = points(&example, geometric(1e-2, 1e2, 161), true)?;
-    // Denser where the contact radius begins, which is steep.
+    // Points are denser where the curve of the contact radius begins, because it is steep there.
     let in_volts = points(&example, even(0.0, 1.0, 101).map(|part| 200.0 * part * part), false)?;
     let mut panels: Vec<Panel> = scaled_panels(&scaled, &mut data)?.into();
     panels.extend(example_panels(&in_volts));

@@ -10,16 +10,16 @@ use crate::report::data::Data;
 
 /// The paper's relative normal force `f_N = F_N/(k R h0^2)`, Eq. (44), for a coating of permittivity one.
 const RELATIVE_LOADS: [f64; 9] = [-20.0, -10.0, -5.0, -1.0, 0.0, 1.0, 5.0, 10.0, 20.0];
-/// Loads of a finger on a screen.
+/// Normal loads of a finger on a screen, in newtons.
 const LOADS_N: [f64; 5] = [0.0, 0.1, 0.2, 0.5, 1.0];
 
-/// A curve of one load, from where it begins to hold.
+/// The curve of one load, from the lowest voltage at which the contact holds.
 struct Curve {
     relative_load: f64,
     normal_load_n: f64,
-    /// Voltages with the contact there.
+    /// Voltages with the contact state at each.
     points: Vec<(f64, ContactState<f64>)>,
-    /// Whether the first point is a pull-off.
+    /// Whether the first point is the pull-off.
     pulled: bool,
 }
 
@@ -28,13 +28,13 @@ fn curve(contact: Contact<f64>, relative_load: f64, voltage_max: f64) -> Result<
     let pulled = normal_load_n < 0.0;
     let (model, first): (Box<dyn ContactModel<f64>>, f64) = if pulled {
         let pulled = contact.under_pull(-normal_load_n)?;
-        // Rounded up, so that there is a contact.
+        // Rounded up, so that a contact exists.
         (Box::new(pulled), pulled.pull_off_voltage_v_rms()? * (1.0 + 1e-12))
     } else {
         (Box::new(contact.under_load(normal_load_n)?), 0.0)
     };
     let mut points = Vec::new();
-    // Denser where the curve begins, which is steep.
+    // Points are denser where the curve begins, because it is steep there.
     for part in even(0.0, 1.0, 121) {
         let voltage_v_rms = first + (voltage_max - first) * part * part;
         points.push((voltage_v_rms, model.state(voltage_v_rms)?));
@@ -72,7 +72,7 @@ fn draw(
     }
 }
 
-/// Rows of all curves, each with one quantity in its unit and scaled.
+/// The rows of all curves, each with one quantity in its unit and scaled.
 fn data(
     families: [&[Curve]; 2],
     quantity: [&'static str; 2],

@@ -1,4 +1,4 @@
-//! The figures, one module each.
+//! The figures, one per module.
 
 mod boards;
 mod bounds;
@@ -22,22 +22,22 @@ use crate::chart::Chart;
 
 /// Effective gap of the example finger, in metres.
 const GAP_M: f64 = 1e-5;
-/// Load at which the example finger is meant, in newtons.
+/// Normal load on the example finger, in newtons.
 const LOAD_N: f64 = 0.5;
 
-/// A picture, what it says, and the numbers behind it.
+/// A picture with its caption and the numbers behind it.
 pub(super) struct Figure {
-    /// Name of its CSV file, without the end, and of its place in the page.
+    /// Name of the figure, used for its CSV file (without the extension) and its anchor in the page.
     pub(super) name: &'static str,
     pub(super) title: String,
-    /// What a reader who has nothing but the picture needs to know: paragraphs.
+    /// Paragraphs that explain the picture without any other text.
     pub(super) caption: Vec<String>,
     pub(super) chart: Chart,
-    /// What the CSV file has.
+    /// Content of the CSV file.
     pub(super) csv: Vec<u8>,
 }
 
-/// All figures in the page's order.
+/// All figures in the order of the page.
 pub(super) fn all(counts: Option<&Counts>) -> Result<Vec<Figure>, ReportError> {
     let measured = run_time::measure()?;
     let instructions = counts.map(|counts| run_time::against_instructions(&measured, counts)).transpose()?.flatten();
@@ -63,8 +63,8 @@ pub(super) fn all(counts: Option<&Counts>) -> Result<Vec<Figure>, ReportError> {
     Ok(figures.into_iter().flatten().collect())
 }
 
-/// The example finger: 250 mN at no voltage and 28 mN more at 150 V rms, under 0.5 N. Chosen to give friction of the
-/// size that is measured; a real finger's profile is fitted.
+/// The example finger: 250 mN at zero voltage and 28 mN more at 150 V rms, under 0.5 N. It is chosen to give friction
+/// of the measured magnitude; the profile of a real finger must be fitted.
 fn example_finger() -> Finger<f64> {
     Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 }
 }
@@ -80,16 +80,16 @@ fn example<T: Real>() -> Result<Contact<T>, ParameterError> {
     Contact::new(&finger, T::from_f64(GAP_M))
 }
 
-/// What every caption about the example finger ends with.
+/// Last sentence of every caption about the example finger.
 const EXAMPLE: &str = "Example finger: R = 8 mm, k = 18 MPa/m, µ = 0.5, effective gap 10 µm (250 mN of friction \
                        without voltage under 0.5 N, and 28 mN more at 150 V rms).";
 
-/// `count` values from `start` to `end`, evenly.
+/// `count` evenly spaced values from `start` to `end`.
 fn even(start: f64, end: f64, count: usize) -> impl Iterator<Item = f64> + Clone {
     (0..count).map(move |index| start + (end - start) * index as f64 / (count - 1) as f64)
 }
 
-/// `count` values from `start` to `end`, evenly in their logarithms.
+/// `count` values from `start` to `end`, evenly spaced in their logarithms.
 fn geometric(start: f64, end: f64, count: usize) -> impl Iterator<Item = f64> + Clone {
     even(start.log10(), end.log10(), count).map(|power| 10_f64.powf(power))
 }

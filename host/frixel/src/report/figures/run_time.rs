@@ -1,4 +1,4 @@
-//! Error against run time and against size, for every method of inversion.
+//! Error against run time and against size, for every inversion method.
 
 use core::f64::consts::LOG10_2;
 
@@ -11,7 +11,7 @@ use crate::report::counts::Counts;
 use crate::report::data::{Data, Value};
 use crate::report::methods::{Bench, Kind, Method, Parameters, RANGE_V_RMS};
 
-/// Kinds in the order of legends: what they are called and how they look.
+/// Kinds of methods in the order of the legends, with their names and styles.
 const KINDS: [(Kind, &str, Look); 12] = [
     (Kind::ClosedF64, "closed form, f64", Look::mark(PALETTE[6], Mark::Disc)),
     (Kind::ClosedF32, "closed form, f32", Look::mark(PALETTE[6], Mark::Ring)),
@@ -27,7 +27,7 @@ const KINDS: [(Kind, &str, Look); 12] = [
     (Kind::FixedCubic, "direct table, cubic, integers", dashed(PALETTE[2], Mark::Diamond)),
 ];
 
-/// Processors whose instructions are counted, as the counts and as people call them.
+/// Processors on which instructions are counted: prefix in the counts, and display name.
 const CORES: [(&str, &str); 2] = [("m4f", "Cortex-M4F"), ("m3", "Cortex-M3, no FPU")];
 
 const ERROR: &str = "largest relative error in electric friction";
@@ -51,7 +51,7 @@ impl Measured {
         if self.load_n > 0.0 { format!("Under {} N", self.load_n) } else { "No load".to_owned() }
     }
 
-    /// Run times count in that of the f64 closed form.
+    /// Run time of the f64 closed form, which is the unit of all run times.
     fn unit_seconds(&self) -> f64 {
         self.of(Kind::ClosedF64).map(|method| method.seconds).next().unwrap_or(f64::NAN)
     }
@@ -60,7 +60,7 @@ impl Measured {
         self.methods.iter().filter(move |method| method.kind == kind)
     }
 
-    /// A panel of errors over something that a method has.
+    /// A panel of the errors over one kind of cost.
     fn panel(&self, x: Axis, cost: impl Fn(&Method) -> Option<f64>) -> Panel {
         let mut panel = Panel::new(&self.title(), x, Axis::log(ERROR, 1e-16..1e1));
         for (kind, name, look) in KINDS {
@@ -74,7 +74,7 @@ impl Measured {
     }
 }
 
-/// Measures all methods without a load and under the example finger's.
+/// Measures all methods without a load and under the load of the example finger.
 pub(super) fn measure() -> Result<[Measured; 2], ReportError> {
     let finger = example_finger();
     let measured = |load_n: f64| {
@@ -149,7 +149,7 @@ pub(super) fn against_time(measured: &[Measured; 2], boards: Boards) -> Result<F
     })
 }
 
-/// Error over bytes.
+/// Error over size in bytes.
 pub(super) fn against_size(measured: &[Measured; 2]) -> Result<Figure, ReportError> {
     let size = || Axis::log("size of the table, bytes", 1e2..1e5);
     let panels = measured.each_ref().map(|one| {
@@ -189,7 +189,7 @@ pub(super) fn against_size(measured: &[Measured; 2]) -> Result<Figure, ReportErr
     })
 }
 
-/// Error over instructions on boards; `None` without a count that belongs to a method.
+/// Error over instructions on boards; `None` if `counts` has no method.
 pub(super) fn against_instructions(measured: &[Measured; 2], counts: &Counts) -> Result<Option<Figure>, ReportError> {
     let mut data = Data::new(["core", "method", "instructions", "estimated_cycles", "largest_relative_error"]);
     let mut panels = Vec::new();
@@ -237,7 +237,7 @@ pub(super) fn against_instructions(measured: &[Measured; 2], counts: &Counts) ->
     }))
 }
 
-/// An axis of the errors of all methods that are counted, with a decade to spare.
+/// An error axis for all methods whose instructions are counted, extended by a decade.
 fn counted_errors(measured: &[Measured; 2]) -> Axis {
     let counted = measured.iter().flat_map(|one| &one.methods).filter(|method| method.counted.is_some());
     let powers = counted.map(|method| method.error.max(1e-16).log10());

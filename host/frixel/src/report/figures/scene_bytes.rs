@@ -1,4 +1,4 @@
-//! Bytes on the wire, and of the table, against what is in the scene.
+//! Bytes on the wire, and of the inverse table, against the content of a scene.
 
 use std::fmt::Write;
 use std::fs::File;
@@ -18,12 +18,12 @@ use crate::report::wire::OnTheWire;
 use crate::scene_file::PictureFolder;
 use frixel_scene::{CompileError, Program, Scene, compile};
 
-/// What every scene begins with.
+/// The beginning of every scene.
 const HEAD: &str = "version = 1\n\
                     [screen]\nwidth_mm = 120\nheight_mm = 80\n\
                     [coating]\nthickness_um = 10\npermittivity = 1\n\
                     [finger]\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\nfriction_coefficient = 0.5\nnormal_load_n = 0.5\n";
-/// Layers lie in the places of a lattice, so that no two are in one cell of the board's grid.
+/// Layers are placed on a lattice, so that no two are in the same cell of the board's grid.
 const COLUMNS: usize = 8;
 const LATTICE_MM: (f64, f64) = (15.0, 10.0);
 const VERTICES_MIN: usize = 3;
@@ -31,9 +31,9 @@ const VERTICES_MIN: usize = 3;
 const SIDES: [usize; 9] = [50, 75, 100, 125, 150, 175, 200, 225, 250];
 const PITCH_MM: f64 = 0.25;
 const PICTURE: &str = "picture.png";
-/// Largest frictions of scenes, in percent of what can be reached.
+/// Largest frictions of the scenes, in percent of the reachable friction.
 const PERCENTS: RangeInclusive<usize> = 1..=100;
-/// Bits that a byte takes on a serial line.
+/// Bits per byte on a serial line, with start and stop bit.
 const BITS_PER_BYTE: f64 = 10.0;
 
 fn corner_mm(number: usize) -> (f64, f64) {
@@ -43,7 +43,7 @@ fn corner_mm(number: usize) -> (f64, f64) {
 fn gratings(count: usize) -> String {
     (0..count).fold(HEAD.to_owned(), |mut text, number| {
         let (x_mm, y_mm) = corner_mm(number);
-        // Writing to a string does not fail.
+        // Writing to a string cannot fail.
         let _ = write!(
             text,
             "[[layer]]\nkind = \"grating\"\nwavelength_mm = 2\nlow_n = 0\nhigh_n = 0.02\n\
@@ -80,12 +80,12 @@ fn picture(side: usize) -> String {
     )
 }
 
-/// The same friction everywhere.
+/// A scene with the same friction everywhere.
 fn one_friction(percent: usize) -> String {
     format!("{HEAD}[[layer]]\nkind = \"constant\"\nfriction_fraction = {}\n", percent as f64 / 100.0)
 }
 
-/// A picture of all greys, which is resampled to the number of samples of each scene.
+/// Writes a picture with all grey levels, which each scene resamples to its own size.
 fn write_picture(folder: &Path) -> Result<(), ReportError> {
     const SIDE: u8 = 64;
     let path = folder.join(PICTURE);
@@ -110,13 +110,13 @@ fn compiled(text: &str, folder: &Path) -> Result<Program, CompileError> {
     )
 }
 
-/// The most vertices of a polygon that a tick has time for.
+/// Largest number of polygon vertices that fits into a tick.
 fn vertices_max(folder: &Path) -> usize {
     let fits = |vertices: &usize| compiled(&polygons(1, *vertices), folder).is_ok();
     (VERTICES_MIN..=POLYGON_POINTS_MAX).rev().find(fits).unwrap_or(VERTICES_MIN)
 }
 
-/// Bytes of the inverse table that the board computes for a program.
+/// Bytes of the part of the inverse table that the board computes for a program.
 fn table_bytes(program: &Program) -> usize {
     let scene = program.scene_bytes();
     let rows = WireScene::parse(&scene).ok().and_then(|scene| {
@@ -126,14 +126,14 @@ fn table_bytes(program: &Program) -> usize {
     InverseTable::ROW_BYTES * rows.unwrap_or_default()
 }
 
-/// Scenes of one kind of content.
+/// Scenes with the same kind of content.
 struct Family {
     name: String,
     colour: RGBColor,
     scenes: Vec<Measured>,
 }
 
-/// How much is in a scene, what it is on the wire, and how much of the table it needs.
+/// A scene's amount of content, its bytes on the wire, and its bytes of the inverse table.
 struct Measured {
     amount: usize,
     wire: OnTheWire,
@@ -190,7 +190,7 @@ impl Family {
     }
 }
 
-/// All scenes: gratings, polygons of few and of many vertices, pictures, frictions.
+/// All scenes: gratings, polygons with few and with many vertices, pictures, and uniform frictions.
 fn families() -> Result<[Family; 5], ReportError> {
     let folder = tempfile::tempdir().map_err(|source| ReportError::Write { path: std::env::temp_dir(), source })?;
     let folder = folder.path();
@@ -292,7 +292,7 @@ mod tests {
     use frixel_driver::{Bitmap, Device, Upload};
     use frixel_scene::recorder::Recorder;
 
-    /// What the driver sends to a simulated board: frames and bytes.
+    /// Frames and bytes that the driver sends to a simulated board.
     fn sent(program: &Program) -> (u64, u64) {
         let config = RigConfig::default();
         let mut memory = BoardMemory::new();

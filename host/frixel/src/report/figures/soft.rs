@@ -1,4 +1,4 @@
-//! The soft finger of Xydas and Kao against Winkler-Fuss springs.
+//! The soft finger of Xydas and Kao compared with Winkler-Fuss springs.
 
 use core::f64::consts::PI;
 
@@ -10,10 +10,10 @@ use crate::report::data::Data;
 
 /// Stress exponents; at 0.5 the stiffness is constant.
 const STRESS_EXPONENTS: [f64; 5] = [0.1, 0.3, 0.5, 0.75, 1.0];
-/// The constant `B` of Eq. (24), of the size of a hemisphere's.
+/// The constant `B` of Eq. (24), of the magnitude of a hemisphere's.
 const SHAPE_CONSTANT: f64 = 4.5;
 
-/// A soft finger that is as stiff as the example finger under the example's load: Eq. (26) solved for the modulus.
+/// A soft finger with the stiffness of the example finger at the example load: Eq. (26) solved for the modulus.
 pub(super) fn alike(stress_exponent: f64) -> Result<SoftFinger<f64>, ParameterError> {
     let springs = example_finger();
     let (radius, stiffness) = (springs.radius_m, springs.stiffness_pa_per_m);

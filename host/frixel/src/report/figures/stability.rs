@@ -1,4 +1,4 @@
-//! Stability maps: relative error over the plane of attraction and load.
+//! Maps of numerical stability: relative error over the plane of attraction and load.
 
 use frixel_model::{Contact, Finger, Real};
 
@@ -7,15 +7,16 @@ use crate::chart::{Axis, Cell, Chart, Field, Look, Mark, PALETTE, Panel};
 use crate::report::data::Data;
 use crate::report::reference::{CELLS_PER_DECADE, PlaneRow, Q_DECADES, plane};
 
-/// Powers of two, and so exact in f32: what is measured is the model's rounding, and not that of its parameters.
+/// The parameters are powers of two, and so exact in f32: the error is the model's rounding, not that of its
+/// parameters.
 const FINGER: Finger<f64> =
     Finger { radius_m: 1.0 / 128.0, stiffness_pa_per_m: 16_777_216.0, friction_coefficient: 0.5 };
 const GAP_M: f64 = 1.0 / 131_072.0;
 
-/// Where the strip without a load stands, and the least load of the plane.
+/// Position of the strip for no load, and the least load of the plane.
 const NO_LOAD: (f64, f64) = (1e-8, 1e-7);
 
-/// Where an error was largest.
+/// The largest error so far, and where it occurred.
 #[derive(Clone, Copy, Debug, Default)]
 struct Worst {
     error: f64,
@@ -36,7 +37,7 @@ impl Worst {
     }
 }
 
-/// Errors of both directions over one cell.
+/// Errors of both directions in one cell.
 struct Errors {
     x: (f64, f64),
     y: (f64, f64),
@@ -83,7 +84,7 @@ fn map<T: Real>() -> Result<Map, ReportError> {
     Ok(map)
 }
 
-/// What differs between the two precisions.
+/// The constants that differ between the two precisions.
 struct Precision {
     name: &'static str,
     title: &'static str,
@@ -117,7 +118,7 @@ fn figure(precision: &Precision, map: &Map) -> Result<Figure, ReportError> {
         )
         .with_field(Field::cells(cells.collect(), colours));
         panel.notes.push((1.5e-12, 2.6e-7, "↓ no load, n = 0".to_owned()));
-        // Without a load, in the middle of the strip.
+        // Draw points without a load in the middle of their strip.
         let n = if worst.n > 0.0 { worst.n } else { (NO_LOAD.0 * NO_LOAD.1).sqrt() };
         panel.add(&format!("worst: {}", worst.sentence()), Look::mark(PALETTE[1], Mark::Ring), vec![(worst.q, n)]);
         panel

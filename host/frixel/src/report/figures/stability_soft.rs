@@ -1,4 +1,4 @@
-//! Stability of the soft finger: relative error over its exponent.
+//! Numerical stability of the soft-finger model: relative error over its exponent.
 
 use frixel_model::{Real, SoftFinger, contact_exponent};
 
@@ -7,14 +7,14 @@ use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
 use crate::report::data::Data;
 use crate::report::reference::{SoftRow, soft};
 
-/// Powers of two, and so exact in f32.
+/// The parameters are exact in f32.
 const RADIUS_M: f64 = 1.0 / 128.0;
 const MODULUS_PA: f64 = 131_072.0;
 const SHAPE_CONSTANT: f64 = 4.5;
 const FRICTION_COEFFICIENT: f64 = 0.5;
 const GAP_M: f64 = 1.0 / 131_072.0;
 const LOADS_N: [f64; 2] = [0.0, 0.5];
-/// Where an error was largest.
+/// The largest error so far, and where it occurred.
 #[derive(Clone, Copy, Debug, Default)]
 struct Worst {
     error: f64,
@@ -37,7 +37,7 @@ impl Worst {
     }
 }
 
-/// The worst errors at one exponent and load.
+/// The largest errors at one exponent and load.
 struct Point {
     gamma: f64,
     load_n: f64,
@@ -55,7 +55,7 @@ fn points<T: Real>() -> Result<Vec<Point>, ReportError> {
     rows.chunk_by(alike).map(point::<T>).collect()
 }
 
-/// The worst errors over rows that differ only in their voltage.
+/// The largest errors over rows that differ only in their voltage.
 fn point<T: Real>(rows: &[SoftRow]) -> Result<Point, ReportError> {
     let (mut forward, mut inverse) = (Worst::default(), Worst::default());
     let stress_exponent = rows.first().map_or(f64::NAN, |row| row.stress_exponent);

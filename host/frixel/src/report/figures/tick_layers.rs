@@ -6,15 +6,15 @@ use crate::report::counts::Counts;
 use crate::report::data::Data;
 
 const CORE: &str = "m4f";
-/// Layers in the scene.
+/// Numbers of layers in the scene.
 const LAYERS: [usize; 7] = [1, 2, 4, 8, 16, 32, 64];
-/// The axis of layers, with room for a number beside the last one.
+/// Range of the axis of layers, with room for a note beside the last point.
 const LAYERS_SHOWN: (f64, f64) = (0.9, 80.0);
-/// Layers under the finger: how many, their look, and what they are called.
+/// Numbers of layers under the finger, with their style and name.
 const UNDER: [(usize, RGBColor, &str); 2] =
     [(1, PALETTE[0], "one under the finger"), (8, PALETTE[1], "eight under the finger")];
 
-/// A tick with some layers under the finger, and others elsewhere.
+/// The counts of a tick with some layers under the finger and others elsewhere.
 struct Counted {
     layers: f64,
     worst: f64,
@@ -30,15 +30,15 @@ fn counted(counts: &Counts, under: usize) -> Vec<Counted> {
     LAYERS.into_iter().filter_map(of).collect()
 }
 
-/// What layers that are not under the finger add on average: to the fewest layers, in instructions. The longest ticks
-/// differ by what else falls into them, such as an early edge of the carrier.
+/// Mean number of instructions that layers away from the finger add to the tick with the fewest layers. The longest
+/// ticks also differ by rare events, such as an early edge of the carrier.
 fn added(curve: &[Counted]) -> Option<f64> {
     let (first, others) = curve.split_first()?;
     let fewest = first.mean?;
     others.iter().filter_map(|counted| Some(counted.mean? - fewest)).reduce(f64::max)
 }
 
-/// `None` without a count of such a tick.
+/// Returns `None` if `counts` has no such tick.
 pub(super) fn figure(counts: &Counts) -> Result<Option<Figure>, ReportError> {
     let curves = UNDER.map(|(under, colour, name)| (under, colour, name, counted(counts, under)));
     let worst = curves.iter().flat_map(|(.., curve)| curve).map(|counted| counted.worst).reduce(f64::max);

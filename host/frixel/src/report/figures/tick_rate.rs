@@ -1,4 +1,4 @@
-//! Error against the rate of ticks: what a finger feels of a texture.
+//! Error of the felt friction of a texture against the tick rate.
 
 use std::collections::BTreeMap;
 
@@ -11,22 +11,22 @@ use crate::report::data::Data;
 use frixel_scene::recorder::FeltRow;
 use frixel_scene::{Scene, compile};
 
-/// Ticks a second, all whole numbers of ticks to a window.
+/// Tick rates in Hz, each with a whole number of ticks per window.
 const TICKS_HZ: [u32; 9] = [1_000, 2_000, 4_000, 5_000, 8_000, 10_000, 16_000, 20_000, 40_000];
-/// Ticks of half a carrier period, at least.
+/// Least number of ticks in half a carrier period.
 const HALF_PERIOD_MIN_TICKS: u32 = 4;
-/// The carrier where ticks allow it, in Hz.
+/// Highest frequency of the carrier, in Hz; low tick rates require a lower one.
 const CARRIER_HZ: u32 = 1_000;
-/// Windows a second over which felt and wanted friction are taken as means, whatever the ticks: a period of that
-/// carrier.
+/// Windows per second over which felt and reference friction are averaged, at every tick rate. A window is a period of
+/// the carrier at its highest frequency.
 const WINDOW_HZ: u32 = 1_000;
 const SPEED_M_PER_S: f64 = 0.1;
-/// Each seed has another phase between carrier, touch source and stripes.
+/// Seeds, each with different phases between carrier, touch source and stripes.
 const SEEDS: [u64; 5] = [1, 2, 3, 4, 5];
-/// What is left out at the beginning, in s: the envelope rises, and the estimator finds the finger.
+/// Time omitted at the beginning, in s, in which the envelope rises and the estimator converges on the finger.
 const SETTLING_S: f64 = 0.1;
 
-/// A touch source that is neither late nor inexact.
+/// A touch source without latency and noise.
 const IDEAL_TOUCH: TouchConfig = TouchConfig { rate_hz: 500.0, latency_s: 0.0, noise_rms_m: 0.0, jitter_rms_s: 0.0 };
 
 /// A curve of the chart.
@@ -57,7 +57,7 @@ fn cases() -> [Case; 4] {
     ]
 }
 
-/// The carrier at a rate of ticks: as fast as its half period allows, and no faster than is of use.
+/// The carrier frequency at a tick rate, limited by [`HALF_PERIOD_MIN_TICKS`] and [`CARRIER_HZ`].
 fn carrier_hz(tick_hz: u32) -> u32 {
     (tick_hz / (2 * HALF_PERIOD_MIN_TICKS)).min(CARRIER_HZ)
 }
@@ -73,7 +73,7 @@ fn scene(wavelength_mm: f64, carrier_hz: u32) -> String {
     )
 }
 
-/// What was felt, in rows a window long or a tick long, and the electric range that is reachable.
+/// Recorded rows, one per window or per tick, and the reachable range of electric friction.
 struct Felt {
     rows: Vec<FeltRow>,
     natural_n: f64,
@@ -99,7 +99,7 @@ fn felt(case: &Case, tick_hz: u32, rows_hz: u32, seed: u64) -> Result<Felt, Repo
     })
 }
 
-/// Root mean square of felt less wanted over the windows of all seeds, as a part of the reachable range.
+/// Root mean square of felt minus reference friction over the windows of all seeds, relative to the reachable range.
 fn rms_error(case: &Case, tick_hz: u32) -> Result<f64, ReportError> {
     let (mut sum, mut count) = (0.0, 0.0);
     for seed in SEEDS {
@@ -113,7 +113,7 @@ fn rms_error(case: &Case, tick_hz: u32) -> Result<f64, ReportError> {
     Ok((sum / count).sqrt())
 }
 
-/// What is wanted and felt of the finest stripes over a few of them.
+/// Adds reference and felt friction over a few periods of the finest stripes.
 fn trace(panel: &mut Panel, data: &mut Data<6>, case: &Case) -> Result<(), ReportError> {
     for (index, (tick_hz, look)) in
         (0..).zip([(1_000, Look::line(PALETTE[1], Line::Solid)), (40_000, Look::line(PALETTE[0], Line::Solid))])

@@ -1,5 +1,5 @@
-//! The straightforward method: halve a range of voltages until friction by Eqs. (36), (34), with a load (43), (21),
-//! fits.
+//! The straightforward method: bisect the voltage until the friction by Eqs. (36), (34), or with a load by Eqs. (43),
+//! (21), matches.
 
 use core::f64::consts::PI;
 
@@ -10,7 +10,7 @@ use super::{Bench, Kind, Method, Parameters, RANGE_V_RMS};
 const STEPS_F64: [usize; 5] = [8, 12, 20, 32, 53];
 const STEPS_F32: [usize; 3] = [8, 12, 24];
 
-/// Friction in total at a voltage above zero, as the paper writes it.
+/// Total friction at a voltage above zero, in the form of the paper's equations.
 #[derive(Clone, Copy)]
 struct Equation<T> {
     radius_m: T,

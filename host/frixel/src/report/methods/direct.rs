@@ -1,13 +1,13 @@
-//! The model's tables, in f32 and in integers, of every order and several sizes, and the one that a board has.
+//! The model's inverse tables, in f32 and in integers, of every order and several sizes, and the table of the boards.
 
 use frixel_model::{InverseTable, Precision, TableBuilder, U0F32, U1F31};
 
 use super::{Bench, Kind, Method, RANGE_V_RMS, ReportError};
 
-/// What boards have: this table, and one in integers for this error.
+/// The methods of the boards, by their names in the counts: the table in f32, and an integer table with this error.
 const BOARD: &str = "inverse_table";
 const BOARD_IN_INTEGERS: (&str, f64) = ("inverse_table_fixed", 1e-5);
-/// Errors that tables are built for.
+/// Target errors that tables are built for.
 const TARGETS: [f64; 5] = [1e-2, 1e-3, 1e-4, 1e-5, 4e-6];
 
 pub(super) fn measure(bench: &Bench, methods: &mut Vec<Method>) -> Result<(), ReportError> {

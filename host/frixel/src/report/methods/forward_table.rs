@@ -1,11 +1,11 @@
-//! The textbook's method: a table of friction at even steps of voltage, a binary search, a straight line between two
-//! entries.
+//! The textbook method: a table of friction at equidistant voltages, a binary search, and linear interpolation between
+//! two entries.
 
 use super::{Bench, Kind, Method, RANGE_V_RMS};
 
 const ENTRIES: [usize; 4] = [64, 256, 1024, 4096];
 
-/// Friction at even steps of voltage from zero.
+/// Friction at equidistant voltages from zero.
 struct ForwardTable {
     frictions_n: Vec<f32>,
     step_v_rms: f32,

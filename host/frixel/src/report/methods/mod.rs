@@ -1,4 +1,4 @@
-//! Every method of turning electric friction into voltage, with its error and what it costs.
+//! Every method of computing the voltage for an electric friction, with its error and its cost.
 
 mod bisection;
 mod direct;
@@ -10,17 +10,17 @@ use frixel_model::{LoadedContact, Real};
 use super::error::ReportError;
 use timing::seconds_per_call;
 
-/// Range over which errors are taken, in volts rms.
+/// Range of voltages over which errors are evaluated, in volts rms.
 pub(super) const RANGE_V_RMS: (f64, f64) = (1.0, 200.0);
-/// Frictions at which an error is taken.
+/// Number of frictions at which an error is evaluated.
 const ERROR_POINTS: usize = 20_000;
-/// Frictions that a run time is taken over.
+/// Number of frictions over which a run time is measured.
 const TIMED_POINTS: usize = 1_024;
-/// They are taken in an order in which no processor can guess the next one: by this many places, which shares no factor
-/// with their count.
+/// Step between consecutive frictions of a run-time measurement, so that the processor cannot predict the next one. It
+/// has no common factor with their number.
 const STRIDE: usize = 389;
 
-/// A kind of method, that may come in several sizes.
+/// A kind of method. Some kinds come in several sizes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Kind {
     ClosedF64,
@@ -37,30 +37,30 @@ pub(super) enum Kind {
     FixedCubic,
 }
 
-/// One method, measured.
+/// One measured method.
 #[derive(Clone, Debug)]
 pub(super) struct Method {
     pub(super) kind: Kind,
-    /// What makes it one of its kind: steps, entries, rows.
+    /// Number of steps, entries or rows that distinguishes methods of the same kind.
     pub(super) size: String,
-    /// What `cargo xtask bench` calls it, if it counts its instructions.
+    /// Name of the method in the counts of `cargo xtask bench`, if its instructions are counted.
     pub(super) counted: Option<&'static str>,
-    /// Bytes of its table, if it has one.
+    /// Size of its table in bytes, if it has one.
     pub(super) bytes: Option<usize>,
     /// Largest relative error in electric friction over the range.
     pub(super) error: f64,
-    /// Seconds for one call in a chain of calls, measured.
+    /// Measured seconds per call in a chain of dependent calls.
     pub(super) seconds: f64,
 }
 
-/// A finger under a load, and the frictions to try.
+/// A finger under a load, and the frictions to evaluate.
 pub(super) struct Bench<'a> {
     pub(super) contact: &'a LoadedContact<f64>,
     pub(super) single: &'a LoadedContact<f32>,
     pub(super) parameters: Parameters,
 }
 
-/// What the straightforward methods compute with.
+/// Parameters of the direct and the tabulated textbook methods.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Parameters {
     pub(super) radius_m: f64,
@@ -71,7 +71,7 @@ pub(super) struct Parameters {
 }
 
 impl Bench<'_> {
-    /// Everything.
+    /// Measures all methods.
     pub(super) fn all(&self) -> Result<Vec<Method>, ReportError> {
         let single = self.in_f32(Kind::ClosedF32, String::new(), None, |x| self.single.voltage_v_rms(x));
         let mut methods = vec![
@@ -84,11 +84,11 @@ impl Bench<'_> {
         Ok(methods)
     }
 
-    /// Frictions from the one at the least voltage to the one at the largest, evenly in their logarithms.
+    /// Frictions between those at the least and at the largest voltage, evenly spaced in their logarithms.
     fn frictions(&self, count: usize) -> impl Iterator<Item = f64> {
         let (low, high) =
             (self.contact.electric_friction_n(RANGE_V_RMS.0), self.contact.electric_friction_n(RANGE_V_RMS.1));
-        // Inside the range, so that rounding to f32 does not leave it.
+        // Slightly inside the range, so that rounding to f32 does not leave it.
         let (low, high) = (low * (1.0 + 1e-6), high * (1.0 - 1e-6));
         (0..count).map(move |index| low * (high / low).powf(index as f64 / (count - 1) as f64))
     }
@@ -122,7 +122,8 @@ impl Bench<'_> {
         }
     }
 
-    /// Friction and voltage are codes, with their units; the error is that against the code's friction.
+    /// Measures a method whose friction and voltage are integer codes in the given units. The error is relative to the
+    /// friction of the code.
     fn in_codes(
         &self,
         kind: Kind,
@@ -154,13 +155,13 @@ impl Bench<'_> {
     }
 }
 
-/// The largest error; infinite when one is no number, which a plain maximum would pass over.
+/// The largest error; infinite if one is not a number, which `f64::max` would ignore.
 fn largest(errors: impl Iterator<Item = f64>) -> f64 {
     errors.fold(0.0, |worst, error| if error.is_nan() { f64::INFINITY } else { worst.max(error) })
 }
 
 impl Parameters {
-    /// In either precision.
+    /// The parameters in either precision.
     fn as_reals<T: Real>(&self) -> [T; 5] {
         [self.radius_m, self.stiffness_pa_per_m, self.friction_coefficient, self.gap_m, self.normal_load_n]
             .map(T::from_f64)

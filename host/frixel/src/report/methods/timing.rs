@@ -1,16 +1,16 @@
-//! How long a call takes, on this computer.
+//! Measurement of the time per call on this computer.
 
 use std::hint::black_box;
 use std::ops::{Add, Mul};
 use std::time::Instant;
 
-/// The shortest of so many rounds counts: whatever else the computer does only makes one longer.
+/// Number of measurements, of which the shortest counts: other load on the computer only lengthens a measurement.
 const ROUNDS: usize = 24;
 
-/// A number that a chain of calls can be made of.
+/// A number type whose calls can be chained, so that each call depends on the result of the one before.
 pub(super) trait Sample: Copy + Default {
-    /// This number, computed from the last answer as well: `self + last * nothing`, where `nothing` is zero and nobody
-    /// knows.
+    /// Returns `self + last * nothing`, where `nothing` is zero but hidden from the compiler. The value is `self`, and
+    /// it depends on the previous result.
     fn behind(self, last: Self, nothing: Self) -> Self;
 }
 
@@ -36,11 +36,11 @@ impl Sample for u32 {
     }
 }
 
-/// Seconds from one call's beginning to the next one's, when each waits for the last one's answer as a control loop
-/// does, less the waiting itself.
+/// Seconds per call when each call waits for the result of the one before, as in a control loop. The time of the
+/// chain itself is subtracted.
 pub(super) fn seconds_per_call<T: Sample>(inputs: &[T], call: impl Fn(T) -> T) -> f64 {
     let chain = shortest(inputs, call) - shortest(inputs, |x| x);
-    // Clocks are too coarse to tell a call of a fraction of a nanosecond from none.
+    // Clocks cannot resolve a call of a fraction of a nanosecond.
     (chain / inputs.len() as f64).max(1e-10)
 }
 

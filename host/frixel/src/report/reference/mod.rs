@@ -1,5 +1,5 @@
-//! Answers of the paper's equations in 80 digits, made by `model/reference/report.py`: the report compares the model
-//! with them.
+//! Reference solutions of the paper's equations with 80 digits, computed by `model/reference/report.py`. The report
+//! compares the model with them.
 
 use frixel_model::{ContactModel, Real};
 use serde::Deserialize;
@@ -10,17 +10,17 @@ use super::ReportError;
 const PLANE: &str = include_str!("plane.csv");
 const SOFT: &str = include_str!("soft.csv");
 
-/// Cells to a decade of the plane.
+/// Cells per decade of the plane.
 pub(super) const CELLS_PER_DECADE: i32 = 3;
-/// Decades of attraction `q` that the plane covers.
+/// Range of the attraction `q` in the plane, in decades.
 pub(super) const Q_DECADES: (i32, i32) = (-12, 12);
 
-/// A place in the middle of a cell of the plane of attraction and load.
+/// The centre of a cell of the plane of attraction and load.
 #[derive(Clone, Debug, Deserialize)]
 pub(super) struct PlaneRow {
-    /// The cell's lower end in parts of a decade of `n`; absent without a load.
+    /// Lower end of the cell in `n`, in units of 1/[`CELLS_PER_DECADE`] of a decade; absent without a load.
     pub(super) n_cell: Option<i32>,
-    /// The cell's lower end in parts of a decade of `q`.
+    /// Lower end of the cell in `q`, in units of 1/[`CELLS_PER_DECADE`] of a decade.
     pub(super) q_cell: i32,
     voltage_v: f64,
     normal_force_n: f64,
@@ -31,7 +31,7 @@ pub(super) struct PlaneRow {
     answer_voltage_v_rest: f64,
 }
 
-/// A soft finger at a voltage.
+/// A soft finger at one voltage.
 #[derive(Clone, Debug, Deserialize)]
 pub(super) struct SoftRow {
     pub(super) stress_exponent: f64,
@@ -44,7 +44,7 @@ pub(super) struct SoftRow {
     answer_voltage_v_rest: f64,
 }
 
-/// Inputs that are exact in f32, with their answers.
+/// Inputs that are exact in f32, with their reference solutions.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Answers {
     pub(super) voltage_v_rms: f64,
@@ -54,15 +54,15 @@ pub(super) struct Answers {
     given_voltage_v_rms: Answer,
 }
 
-/// The nearest f64, and the rest.
+/// A reference solution as the nearest f64 and the remainder.
 #[derive(Clone, Copy, Debug)]
 struct Answer(f64, f64);
 
 impl Answer {
-    /// How far `found` is from the answer, relative to it; infinite for what is no number.
+    /// Relative error of `found` against the reference; infinite if `found` is not finite.
     fn relative_error(self, found: f64) -> f64 {
         let Self(nearest, rest) = self;
-        // `found - nearest` is exact where both are near.
+        // `found - nearest` is exact when both are close.
         if found.is_finite() { (((found - nearest) - rest) / nearest).abs() } else { f64::INFINITY }
     }
 }
@@ -80,7 +80,7 @@ impl Answers {
 macro_rules! answers {
     ($row:ty) => {
         impl $row {
-            /// Inputs and answers.
+            /// The inputs and the reference solutions of this row.
             pub(super) fn answers(&self) -> Answers {
                 Answers {
                     voltage_v_rms: self.voltage_v,
@@ -97,12 +97,12 @@ macro_rules! answers {
 answers!(PlaneRow);
 answers!(SoftRow);
 
-/// All places of the plane: loads from small to large, then no load.
+/// All cells of the plane in order of increasing load, followed by those without a load.
 pub(super) fn plane() -> Result<Vec<PlaneRow>, csv::Error> {
     rows(PLANE)
 }
 
-/// The soft finger: without a load, then with one; exponents, then voltages from small to large.
+/// The rows of the soft finger, without a load and then with one, in order of exponent and then of voltage.
 pub(super) fn soft() -> Result<Vec<SoftRow>, csv::Error> {
     rows(SOFT)
 }
