@@ -71,7 +71,7 @@ impl LayerCosts {
         if let Some(cost) = self.layers.get_mut(usize::from(number)) {
             *cost = of_record(record, points);
         }
-        // Counts once for all layers of the kind.
+        // Counts once for all layers of the kind. Only one kind has it: a second one would need a sum over kinds.
         self.everywhere = self.everywhere.max(record.layer.cost_elsewhere());
     }
 }

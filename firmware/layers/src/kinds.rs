@@ -39,7 +39,7 @@ use crate::region::{ActiveRegion, Region};
 pub(crate) trait Kind: Parameters + Copy {
     /// The coefficients that the tick evaluates.
     type Coefficients: Evaluate;
-    /// Instructions that the kind adds to every tick of a scene with at least one such layer, wherever the finger is.
+    /// Core cycles that the kind adds to every tick of a scene with at least one such layer, wherever the finger is.
     /// They count once for all layers of the kind.
     const COST_ELSEWHERE: u32 = 0;
     /// Whether the layer plays the host's stream, and fades with it.
@@ -58,7 +58,7 @@ pub(crate) trait Kind: Parameters + Copy {
         Ok(())
     }
 
-    /// Most instructions of an evaluation.
+    /// Most core cycles of an evaluation.
     fn cost(&self) -> u32;
 
     /// Bounds of the layer's friction before its gain, in N, or as a factor.

@@ -21,7 +21,7 @@
 //!
 //! - its parameters, with `parameters!`: for each one the type, the offset in the record, the range that a board
 //!   accepts, and the meaning with its unit. Reading, writing and checking are generated from this;
-//! - its `Kind`: the most instructions that its evaluation takes, the bounds of its friction, and how the
+//! - its `Kind`: the most core cycles that its evaluation takes, the bounds of its friction, and how the
 //!   parameters become coefficients;
 //! - its coefficients, with `Evaluate`: the friction at the finger's place.
 //!

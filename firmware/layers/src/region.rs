@@ -129,7 +129,7 @@ impl Region {
         }
     }
 
-    /// Most instructions that the test for the region takes in addition to the test for a rectangle; `points` are the
+    /// Most core cycles that the test for the region takes in addition to the test for a rectangle; `points` are the
     /// scene's.
     pub(crate) fn cost(&self, points: &[Point]) -> u32 {
         match *self {

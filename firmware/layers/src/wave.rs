@@ -35,7 +35,7 @@ pub enum Wave {
 }
 
 impl Wave {
-    /// Most instructions of a grating of this shape.
+    /// Most core cycles of a grating of this shape.
     pub(crate) fn cost(&self) -> u32 {
         match self {
             Self::Sine => measured::SINE,

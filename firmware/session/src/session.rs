@@ -57,12 +57,17 @@ impl<'a> Session<'a> {
     /// Only a hello request needs no credit.
     pub fn receive(&mut self, mut bytes: &[u8], status: &Status) {
         while !bytes.is_empty() {
-            let before = bytes.len();
-            let frame = self.decoder.next_frame(&mut bytes);
-            self.beyond_credit |= !self.commands.credit.take(before - bytes.len());
-            let Some(frame) = frame else { continue };
+            // To the end of a frame, good or bad: a zero byte ends both.
+            let piece_len = bytes.iter().position(|byte| *byte == 0).map_or(bytes.len(), |zero| zero + 1);
+            let (mut piece, rest) = bytes.split_at(piece_len);
+            bytes = rest;
+            self.beyond_credit |= !self.commands.credit.take(piece_len);
+            let beyond_credit = self.beyond_credit;
+            if piece.ends_with(&[0]) {
+                self.beyond_credit = false;
+            }
+            let Some(frame) = self.decoder.next_frame(&mut piece) else { continue };
             let payload = Payload::parse_from_host(frame);
-            let beyond_credit = core::mem::take(&mut self.beyond_credit);
             if beyond_credit && !matches!(payload, Ok(Payload::HelloRequest { .. })) {
                 self.frames_discarded = self.frames_discarded.wrapping_add(1);
             } else {

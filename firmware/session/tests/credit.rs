@@ -150,6 +150,19 @@ fn a_frame_that_begins_beyond_the_credit_is_discarded_whole() {
     assert_eq!(orders(&mut desk, &frame), (true, 0));
 }
 
+/// A bad frame that runs beyond the credit ends with its zero byte, and with it what is discarded.
+#[test]
+fn a_good_frame_behind_a_bad_one_that_ran_beyond_the_credit_is_taken() {
+    let mut memory = Memory::new();
+    let mut desk = playing(&mut memory);
+    orders(&mut desk, &window_of(Command::Ping));
+    assert_eq!(orders(&mut desk, &[0x55; 40]), (false, 0));
+    assert_eq!(orders(&mut desk, &[0]), (false, 0));
+    desk.reads = true;
+    desk.collect();
+    assert_eq!(orders(&mut desk, &request(1, Command::Ping)), (true, 0));
+}
+
 /// Bytes that noise adds to the line are taken for bytes of the host: they are told to it, and do not add up.
 #[test]
 fn noise_does_not_use_credit_up() {

@@ -21,7 +21,7 @@ pub(super) fn check(scene: &Scene, program: &Program, cycles_max: u32, log: &mut
     if worst.cycles() <= cycles_max {
         return;
     }
-    let meeting = program.dearest_meeting(&worst.cell);
+    let meeting = program.dearest_meeting(&worst);
     let meet = meeting.as_ref().is_some_and(|meeting| meeting.cycles > cycles_max);
     let (layers, (x_mm, y_mm)) = match meeting {
         Some(Meeting { layers, place_m, .. }) if meet => (layers, rounded_mm(place_m)),
@@ -65,12 +65,15 @@ impl Program {
     ///
     /// Tries every pair of a left and a top edge, moved inside by a micrometre: if rectangles overlap, one of these
     /// places lies within all of them. Also tries centres, for ellipses and polygons.
-    fn dearest_meeting(&self, cell: &Cell) -> Option<Meeting> {
+    fn dearest_meeting(&self, worst: &Worst) -> Option<Meeting> {
+        let cell = &worst.cell;
         let regions: Vec<(usize, &Record, Shape)> = self
             .layers_in(cell)
             .filter_map(|number| self.records.get(number).map(|record| (number, record)))
             .map(|(number, record)| (number, record, Shape::new(record.region, &self.points)))
             .collect();
+        let of_cell: u32 = regions.iter().map(|(_, record, _)| cost::of_record(record, &self.points)).sum();
+        let elsewhere = worst.core_cycles - of_cell;
         let boxes: Vec<[(f64, f64); 2]> = regions.iter().filter_map(|(.., shape)| shape.corners_m()).collect();
         let candidates = |along: fn((f64, f64)) -> f64, middle_m: f32| -> Vec<f64> {
             let edges = boxes.iter().map(|corners| along(corners[0]) + INSIDE_M);
@@ -80,18 +83,19 @@ impl Program {
         let (xs, ys) = (candidates(|(x_m, _)| x_m, cell.x_m), candidates(|(_, y_m)| y_m, cell.y_m));
         xs.iter()
             .flat_map(|x_m| ys.iter().map(|y_m| (*x_m, *y_m)))
-            .map(|place_m| self.meeting_at(place_m, &regions))
+            .map(|place_m| self.meeting_at(place_m, &regions, elsewhere))
             // The first of the places that take most: a corner if there is one.
             .min_by_key(|meeting| Reverse(meeting.cycles))
     }
 
-    fn meeting_at(&self, place_m: (f64, f64), regions: &[(usize, &Record, Shape)]) -> Meeting {
+    /// `elsewhere` are core cycles that a tick takes wherever the finger is, such as those of a stream.
+    fn meeting_at(&self, place_m: (f64, f64), regions: &[(usize, &Record, Shape)], elsewhere: u32) -> Meeting {
         let here = regions.iter().filter(|(.., shape)| shape.covers(place_m.0, place_m.1));
         let core_cycles = here.clone().map(|(_, record, _)| cost::of_record(record, &self.points)).sum::<u32>();
         Meeting {
             place_m,
             layers: here.map(|(number, ..)| *number).collect(),
-            cycles: cost::cycles(core_cycles + cost::of_empty_scene(&self.header)),
+            cycles: cost::cycles(core_cycles + elsewhere),
         }
     }
 }
