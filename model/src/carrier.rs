@@ -66,8 +66,8 @@ impl Carrier {
         square.sqrt().to_f32()
     }
 
-    /// Largest current into a capacitance of `capacitance_f` farads at a peak `U` of `drive_v_peak` volts at the DAC, for
-    /// any scene. Infinite without lag.
+    /// Largest current into a capacitance of `capacitance_f` farads at a peak `U` of `drive_v_peak` volts at the DAC,
+    /// for any scene. Infinite without lag.
     ///
     /// A full swing moves the charge `2 U C` along an exponential: the peak is `2 U C/tau` and, with two swings per
     /// period, the rms is `2 U C sqrt(f/tau)`. These are the values of a square wave at full voltage. They also bound a
@@ -83,8 +83,8 @@ impl Carrier {
     }
 }
 
-/// `1 - tanh(r)/r`: by Lambert's continued fraction `tanh(r) = r/(1 + r^2/(3 + r^2/(5 + ...)))`, which keeps its digits for
-/// small `r` and is a tenth of the code of `tanh`.
+/// `1 - tanh(r)/r`: by Lambert's continued fraction `tanh(r) = r/(1 + r^2/(3 + r^2/(5 + ...)))`, which keeps its digits
+/// for small `r` and is a tenth of the code of `tanh`.
 fn square_left<T: Real>(r: T) -> T {
     /// From here on `tanh` is one to the last bit of `f64`.
     const STEEP: f32 = 20.0;

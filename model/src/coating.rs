@@ -54,8 +54,8 @@ pub fn contact_attraction_pa<T: Real>(voltage_v_rms: T, gap_m: T) -> Result<T, P
 
 /// Attractive stress in pascals where the finger stands `separation_m` above the coating, Eqs. (3), (18).
 ///
-/// `eps0 V^2 / (2 (g + H)^2)`, with the effective gap `g` in `gap_m`: the paper's `h0 + eps H` over `eps`. Relative error
-/// at most 7 roundings of `T`.
+/// `eps0 V^2 / (2 (g + H)^2)`, with the effective gap `g` in `gap_m`: the paper's `h0 + eps H` over `eps`. Relative
+/// error at most 7 roundings of `T`.
 pub fn attraction_pa<T: Real>(voltage_v_rms: T, gap_m: T, separation_m: T) -> Result<T, ParameterError> {
     let field_v_per_m = not_negative("voltage_v_rms", voltage_v_rms)?
         / (positive("gap_m", gap_m)? + not_negative("separation_m", separation_m)?);

@@ -9,10 +9,10 @@ use crate::Real;
 
 /// The unevaluated sum of two `f32`, of which the second is at most half a last bit of the first.
 ///
-/// Relative errors: 1.1e-14 of a sum of like signs, 2.5e-14 of a product, 5.4e-14 of a quotient, 1e-13 of a root, while what
-/// the second part has to hold, 1e-14 of the number, is a normal `f32`; below some 1e-24 they grow to those of `f32`. Factors
-/// are below 8e34. Algorithms 6, 10 and 17 of M. Joldes, J.-M. Muller, V. Popescu, "Tight and rigorous error bounds for basic
-/// building blocks of double-word arithmetic", ACM TOMS 44(2), 2017, doi:10.1145/3121432.
+/// Relative errors: 1.1e-14 of a sum of like signs, 2.5e-14 of a product, 5.4e-14 of a quotient, 1e-13 of a root, while
+/// what the second part has to hold, 1e-14 of the number, is a normal `f32`; below some 1e-24 they grow to those of
+/// `f32`. Factors are below 8e34. Algorithms 6, 10 and 17 of M. Joldes, J.-M. Muller, V. Popescu, "Tight and rigorous
+/// error bounds for basic building blocks of double-word arithmetic", ACM TOMS 44(2), 2017, doi:10.1145/3121432.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DoubleSingle {
     high: f32,

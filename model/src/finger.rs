@@ -24,14 +24,14 @@ impl<T: Real> Finger<T> {
         Ok(())
     }
 
-    /// Height of the undeformed finger above its lowest point, in metres, Eq. (1): `r^2/(2R)`, for any finite distance `r`
-    /// from the axis. Relative error at most 3 roundings of `T`.
+    /// Height of the undeformed finger above its lowest point, in metres, Eq. (1): `r^2/(2R)`, for any finite distance
+    /// `r` from the axis. Relative error at most 3 roundings of `T`.
     pub fn profile_m(&self, radius_from_axis_m: T) -> T {
         radius_from_axis_m * radius_from_axis_m / (T::TWO * self.radius_m)
     }
 
-    /// Normal force at a contact approach of zero or more without voltage, in newtons, Eq. (25): `pi k R delta^2`. Relative
-    /// error at most 6 roundings of `T`.
+    /// Normal force at a contact approach of zero or more without voltage, in newtons, Eq. (25): `pi k R delta^2`.
+    /// Relative error at most 6 roundings of `T`.
     pub fn normal_load_n(&self, approach_m: T) -> Result<T, ParameterError> {
         self.validate()?;
         let approach_m = not_negative("approach_m", approach_m)?;
@@ -48,8 +48,8 @@ impl<T: Real> Finger<T> {
         representable("contact_radius_m", contact_radius_m, self.profile_m(contact_radius_m) - stretch_m)
     }
 
-    /// Contact pressure at a distance from the axis, in pascals, Eqs. (14), (17): `k (a^2 - r^2)/(2R)`; zero outside. Relative
-    /// error at most 6 roundings of `T`.
+    /// Contact pressure at a distance from the axis, in pascals, Eqs. (14), (17): `k (a^2 - r^2)/(2R)`; zero outside.
+    /// Relative error at most 6 roundings of `T`.
     ///
     /// Over the contact it adds up to the friction of Eqs. (20), (21) divided by the coefficient of friction.
     pub fn contact_pressure_pa(&self, contact_radius_m: T, radius_from_axis_m: T) -> Result<T, ParameterError> {

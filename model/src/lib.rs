@@ -1,10 +1,10 @@
 //! Contact model of an electrovibration touchscreen: computes the friction on a finger from the voltage, and the
 //! voltage from the friction.
 //!
-//! The model is that of I.I. Argatov and F.M. Borodich, "A macro model for electroadhesive contact of a soft finger with a
-//! touchscreen"; equation numbers are theirs. It is `no_std`, does not allocate, does not panic, and gives the same bits
-//! on a desktop and on a microcontroller. Units are SI and part of the names; a voltage is the root mean square of the
-//! drive.
+//! The model is that of I.I. Argatov and F.M. Borodich, "A macro model for electroadhesive contact of a soft finger
+//! with a touchscreen"; equation numbers are theirs. It is `no_std`, does not allocate, does not panic, and gives the
+//! same bits on a desktop and on a microcontroller. Units are SI and part of the names; a voltage is the root mean
+//! square of the drive.
 //!
 //! Start at [`Contact`]: create it from a finger and a coating, apply a load, then evaluate it at a voltage or a
 //! friction. On a device, [`InverseTable`] computes the voltage without root or division. The crate works with the

@@ -52,8 +52,8 @@ pub trait ContactModel<T: Real> {
     /// bound.
     fn state(&self, voltage_v_rms: T) -> Result<ContactState<T>, StateError>;
 
-    /// The rms voltage at which the electric friction `F_T - mu F_N` is `electric_friction_n`, in volts. The implementing
-    /// type has the equations and the error bound.
+    /// The rms voltage at which the electric friction `F_T - mu F_N` is `electric_friction_n`, in volts. The
+    /// implementing type has the equations and the error bound.
     fn voltage_for_electric_friction(&self, electric_friction_n: T) -> Result<T, InverseError>;
 
     /// The rms voltage at which the friction `F_T` is `friction_n`, in volts.
@@ -68,8 +68,8 @@ pub trait ContactModel<T: Real> {
     /// The derivatives of friction with respect to voltage and load: relative error at most 4e-14 in f64, 1e-5 in f32.
     fn sensitivity(&self, voltage_v_rms: T) -> Result<Sensitivity<T>, StateError>;
 
-    /// The least and the largest friction from no voltage to `voltage_max_v_rms`, in newtons; for a contact that needs a
-    /// voltage to exist, from the one at which it begins to hold.
+    /// The least and the largest friction from no voltage to `voltage_max_v_rms`, in newtons; for a contact that needs
+    /// a voltage to exist, from the one at which it begins to hold.
     fn reachable_friction_n(&self, voltage_max_v_rms: T) -> Result<(T, T), StateError> {
         Ok((self.state(T::ZERO)?.friction_n, self.state(voltage_max_v_rms)?.friction_n))
     }

@@ -261,8 +261,8 @@ fn limits_of_small_and_large_voltage() {
     assert!((slope(&soft.under_load(0.0).unwrap(), 1e-12) - 1.0).abs() < 1e-4);
 }
 
-/// At the ends of f32 each answer of the lower bound stands for itself: where friction is too small for it, the stiffness is
-/// not, and where friction in its scale is, friction is not.
+/// At the ends of f32 each answer of the lower bound stands for itself: where friction is too small for it, the
+/// stiffness is not, and where friction in its scale is, friction is not.
 #[test]
 fn the_soft_lower_bound_keeps_what_f32_can_hold() {
     let (soft, hard) = (131_072.0, 2_147_483_648.0);
@@ -319,7 +319,8 @@ fn force_laws_agree() {
     }
 }
 
-/// What friction can identify: mu, F* and V*. A second finger with all of R, k and g different, and every friction the same.
+/// What friction can identify: mu, F* and V*. A second finger with all of R, k and g different, and every friction the
+/// same.
 #[test]
 fn friction_does_not_identify_radius_stiffness_and_gap() {
     let one = Contact::new(&Finger { radius_m: 8e-3_f64, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 }, 1e-5);

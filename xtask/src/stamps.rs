@@ -1,8 +1,8 @@
 //! Skips checks whose inputs have not changed since they passed.
 //!
 //! A stamp is a file in `target/stamps` that holds the fingerprint of a check's inputs: the paths and contents of every
-//! file below the folders that it names, as git sees them (tracked, or new and not ignored), and the compiler's version.
-//! A fresh clone has no stamps, so continuous integration runs everything.
+//! file below the folders that it names, as git sees them (tracked, or new and not ignored), and the compiler's
+//! version. A fresh clone has no stamps, so continuous integration runs everything.
 
 use std::collections::hash_map::DefaultHasher;
 use std::fs;

@@ -47,8 +47,8 @@ fn main() -> ! {
 /// Returns the command line that the emulator passes to the image; empty when there is none.
 fn command_line(buffer: &mut [u8; COMMAND_LINE_MAX_LEN]) -> &[u8] {
     let mut block = [buffer.as_mut_ptr() as usize, buffer.len()];
-    // SAFETY: the block is a pointer and the length behind it, as `SYS_GET_CMDLINE` of the semihosting specification takes
-    // them; it writes no more than that, and the length of the text into the block.
+    // SAFETY: the block is a pointer and the length behind it, as `SYS_GET_CMDLINE` of the semihosting specification
+    // takes them; it writes no more than that, and the length of the text into the block.
     let failed = unsafe { syscall1(nr::GET_CMDLINE, block.as_mut_ptr() as usize) } != 0;
     let [_, len] = block;
     if failed { &[] } else { buffer.get(..len).unwrap_or_default() }

@@ -1,9 +1,9 @@
 //! The firmware on an emulated Cortex-M4F: `qemu-system-arm -M mps2-an386`.
 //!
 //! [`tick`] runs in the `SysTick` interrupt, above everything; [`main_loop`] runs the session in the main loop, between
-//! [`uart`] and the tick. Amplifier and touch source are words of memory that it shares with the simulator ([`shared`]).
-//! Instead of all that, [`lockstep`] ticks whenever the simulator sends it a tick. [`fault`] stores a fault for the next
-//! hello, and [`fault_injection`] causes one on demand.
+//! [`uart`] and the tick. Amplifier and touch source are words of memory that it shares with the simulator
+//! ([`shared`]). Instead of all that, [`lockstep`] ticks whenever the simulator sends it a tick. [`fault`] stores a
+//! fault for the next hello, and [`fault_injection`] causes one on demand.
 #![no_std]
 #![no_main]
 

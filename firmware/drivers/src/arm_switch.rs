@@ -2,8 +2,8 @@
 
 use embedded_hal::digital::InputPin;
 
-/// Ticks that the contact must be closed before the switch counts as held: 20 ms at 40 kHz, longer than a contact bounces
-/// (a few milliseconds).
+/// Ticks that the contact must be closed before the switch counts as held: 20 ms at 40 kHz, longer than a contact
+/// bounces (a few milliseconds).
 const HELD_AFTER_TICKS: u32 = 800;
 /// Ticks that the contact must be open before the switch counts as released: 1 ms at 40 kHz. This bridges contact
 /// breaks from a moving hand, and is short compared with a person's reaction time.

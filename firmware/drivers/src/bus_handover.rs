@@ -1,5 +1,5 @@
-//! Sharing the DAC's bus between the tick, which sends a frame every period, and the main loop, which configures and reads
-//! back.
+//! Sharing the DAC's bus between the tick, which sends a frame every period, and the main loop, which configures and
+//! reads back.
 
 use core::sync::atomic::{AtomicBool, Ordering};
 

@@ -1,4 +1,5 @@
-//! The bytes of scenes, held in `golden/`. To accept a change: `FRIXEL_BLESS=1 cargo test -p frixel-layers --test golden`.
+//! The bytes of scenes, held in `golden/`. To accept a change: `FRIXEL_BLESS=1 cargo test -p frixel-layers --test
+//! golden`.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
 #[allow(unreachable_pub, reason = "it is shared with the tests of `frixel-wire`")]

@@ -299,8 +299,8 @@ fn slide_and_rest(desk: &mut Desk, tick: u32) {
     desk.tick();
 }
 
-/// Also in the ticks that have something else to do than to ask the scene: around the one in which a slow finger becomes
-/// still.
+/// Also in the ticks that have something else to do than to ask the scene: around the one in which a slow finger
+/// becomes still.
 #[test]
 fn a_new_scenes_voltage_limit_holds_in_a_tick_with_a_deadline() {
     let mut memory = Memory::new();

@@ -86,7 +86,8 @@ fn played(header: &Header, random: &RandomScene, seed: u64) -> Vec<Played> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 128, ..ProptestConfig::default() })]
 
-    /// The same codes and flags at every tick, so that no tick asks for more than the cut table has: it would be flagged.
+    /// The same codes and flags at every tick, so that no tick asks for more than the cut table has: it would be
+    /// flagged.
     #[test]
     fn no_tick_sees_the_cut(seed in any::<u64>()) {
         let random = RandomScene::new(seed, bitmap_crc32(3, 2, &SAMPLES));

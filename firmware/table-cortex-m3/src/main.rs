@@ -1,9 +1,9 @@
 //! The inverse table in integers on a Cortex-M3, which has no FPU.
 //!
-//! `hil-sim/tests/integer_table.rs` runs this image in the emulator and compares what it writes with the same table on the
-//! desktop. The words on the emulator's command line, all in hexadecimal, are the bits of eight `f64` (the finger's radius in m, its
-//! stiffness in Pa/m, its friction coefficient, the effective gap in m, the normal load in N, the least and the largest
-//! voltage in V rms, the relative error) and the step from one friction to the next, a `u32`.
+//! `hil-sim/tests/integer_table.rs` runs this image in the emulator and compares what it writes with the same table on
+//! the desktop. The words on the emulator's command line, all in hexadecimal, are the bits of eight `f64` (the finger's
+//! radius in m, its stiffness in Pa/m, its friction coefficient, the effective gap in m, the normal load in N, the
+//! least and the largest voltage in V rms, the relative error) and the step from one friction to the next, a `u32`.
 //!
 //! The image writes one line for each row of the table, with its coefficients, then one line for each friction, with
 //! friction and voltage as raw bits, all in hexadecimal.
@@ -67,8 +67,8 @@ fn parse(line: &[u8]) -> Option<([f64; 8], usize)> {
 /// The words that the emulator was given for the image; empty when there are none.
 fn command_line(buffer: &mut [u8; COMMAND_LINE_MAX_LEN]) -> &[u8] {
     let mut block = [buffer.as_mut_ptr() as usize, buffer.len()];
-    // SAFETY: the block is a pointer and the length behind it, as `SYS_GET_CMDLINE` of the semihosting specification takes
-    // them; it writes no more than that, and the length of the text into the block.
+    // SAFETY: the block is a pointer and the length behind it, as `SYS_GET_CMDLINE` of the semihosting specification
+    // takes them; it writes no more than that, and the length of the text into the block.
     let failed = unsafe { syscall1(nr::GET_CMDLINE, block.as_mut_ptr() as usize) } != 0;
     let [_, len] = block;
     if failed { &[] } else { buffer.get(..len).unwrap_or_default() }

@@ -137,8 +137,8 @@ fn zeros_between_frames_are_no_error() {
     assert_eq!((decoder.frames(), decoder.rejected()), (2, 0));
 }
 
-/// Frames that are right but for their length, one whose longest allowed beginning is right; and a frame hidden behind an
-/// overlong one, which must not be found.
+/// Frames that are right but for their length, one whose longest allowed beginning is right; and a frame hidden behind
+/// an overlong one, which must not be found.
 #[test]
 fn overlong_frames_are_dropped_whole() {
     let with_crc = |len| {

@@ -1,6 +1,7 @@
 //! Every scene of `scenes/` plays on the simulator, and `docs/gallery.md` shows it.
 //!
-//! `FRIXEL_BLESS=1 cargo test -p frixel --test gallery` writes page and pictures anew; without it, this test holds them.
+//! `FRIXEL_BLESS=1 cargo test -p frixel --test gallery` writes page and pictures anew; without it, this test holds
+//! them.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::fmt::Write;
@@ -91,8 +92,8 @@ fn every_scene_is_felt_without_a_fault_and_within_reach() {
     }
 }
 
-/// The compiler says the largest friction that the scene asks for, and the board ends its table there. What is felt is the
-/// same to the last bit as with the whole table.
+/// The compiler says the largest friction that the scene asks for, and the board ends its table there. What is felt is
+/// the same to the last bit as with the whole table.
 #[test]
 fn no_scene_is_felt_otherwise_because_its_table_is_cut() {
     let mut cut = 0;
@@ -144,9 +145,9 @@ fn decoded(path: &Path) -> (u32, u32, Vec<u8>) {
 }
 
 fn page(gallery: &[Entry]) -> String {
-    let mut page = "# Gallery\n\nScenes to start from: copy one, change it, look at it with `frixel scene preview`, play it with \
-                    `frixel play`. The pictures are made by\n`FRIXEL_BLESS=1 cargo test -p frixel --test gallery`, and the same test plays every \
-                    scene on the simulator.\n"
+    let mut page = "# Gallery\n\nScenes to start from: copy one, change it, look at it with `frixel scene preview`, \
+                    play it with `frixel play`. The pictures are made by\n`FRIXEL_BLESS=1 cargo test -p frixel --test \
+                    gallery`, and the same test plays every scene on the simulator.\n"
         .to_owned();
     for entry in gallery {
         let name = &entry.name;

@@ -94,8 +94,8 @@ fn relative_error(found: f64, right: f64) -> f64 {
     if found.total_cmp(&right).is_eq() { 0.0 } else { (found / right - 1.0).abs() }
 }
 
-/// Runs the command over a file of references. Compares each status, and each answer after `distort`. Returns the largest
-/// error as a part of its bound.
+/// Runs the command over a file of references. Compares each status, and each answer after `distort`. Returns the
+/// largest error as a part of its bound.
 fn against_references(direction: &str, file: &str, precision: &str, distort: fn(f64) -> f64) -> f64 {
     let folder = tempfile::tempdir().unwrap();
     let output = folder.path().join("out.csv");

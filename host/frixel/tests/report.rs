@@ -222,8 +222,8 @@ fn compiled(layers: &str) -> Result<Program, CompileError> {
     compile(&Scene::parse(&format!("{head}{layers}"), "a scene", &BTreeMap::new())?, &board.limits, board.tick_hz)
 }
 
-/// The bytes and frames of an upload whose content is cut into chunks of 184 bytes: two bytes of number, four of CRC, one of
-/// COBS and the zero byte go with each.
+/// The bytes and frames of an upload whose content is cut into chunks of 184 bytes: two bytes of number, four of CRC,
+/// one of COBS and the zero byte go with each.
 fn in_chunks(bytes: f64) -> (f64, f64) {
     let chunks = (bytes / 184.0).ceil();
     (bytes + 8.0 * chunks, chunks)

@@ -1,4 +1,5 @@
-//! `frixel play --watch` on a virtual board, as processes of their own: a saved file plays, a file with mistakes does not.
+//! `frixel play --watch` on a virtual board, as processes of their own: a saved file plays, a file with mistakes does
+//! not.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
@@ -112,8 +113,8 @@ fn a_saved_scene_plays_and_one_with_mistakes_does_not() {
     assert!(said.contains("scene.toml:"), "where the mistakes are: {said}");
     assert_eq!(said.matches("plays as it was saved").count(), 2, "{said}");
 
-    // Natural friction until the board knows the finger; then one scene after the other, and nothing else: a row is a mean
-    // over a millisecond, so that one row at each change may be of two scenes.
+    // Natural friction until the board knows the finger; then one scene after the other, and nothing else: a row is a
+    // mean over a millisecond, so that one row at each change may be of two scenes.
     let asked = asked_n(&path("board"));
     let begin = asked.iter().position(|asked_n| *asked_n > 0.2501).unwrap();
     let mut others = Vec::new();

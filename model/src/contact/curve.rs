@@ -79,7 +79,8 @@ pub(crate) fn root_of_quotient<T: Real>(numerator: T, denominator: T) -> T {
 
 /// The `v` at which the upper curve passes `y`, with `r = (y^2 - n)/y`.
 ///
-/// The positive root of `2 q^2 + B q - r = 0` with `B = 2 + 2/y - r`, each sign of `B` in the form that does not cancel.
+/// The positive root of `2 q^2 + B q - r = 0` with `B = 2 + 2/y - r`, each sign of `B` in the form that does not
+/// cancel.
 #[inline]
 pub(crate) fn upper_inverse<T: Real>(y: T, r: T) -> T {
     let b = T::TWO + T::TWO / y - r;

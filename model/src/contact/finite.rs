@@ -9,12 +9,12 @@ use crate::error::{
 use crate::root::{Step, rising_root};
 use crate::{ContactModel, ContactState, Real, Sensitivity};
 
-/// A contact under a fixed normal load of zero or more, the attraction around it counted to an outer radius `b` (variant
-/// `wf-finite`).
+/// A contact under a fixed normal load of zero or more, the attraction around it counted to an outer radius `b`
+/// (variant `wf-finite`).
 ///
-/// With `beta = b^2/(2 R g)`, `w = 1/(1 + q)` and `h = 1/(1 + q + beta - y)`, Eq. (19) is
-/// `y^2 - 2 q y - 2 q (w - h) - n = 0`. It has exactly one root up to `beta` when the contact does not pass `b`, and none
-/// otherwise. Both directions find it in a bracket between the two bounds: at most 142 steps, four or five are usual.
+/// With `beta = b^2/(2 R g)`, `w = 1/(1 + q)` and `h = 1/(1 + q + beta - y)`, Eq. (19) is `y^2 - 2 q y - 2 q (w - h) -
+/// n = 0`. It has exactly one root up to `beta` when the contact does not pass `b`, and none otherwise. Both directions
+/// find it in a bracket between the two bounds: at most 142 steps, four or five are usual.
 ///
 /// Error bounds, for `q` from 1e-12 to 1e12: 4e-14 in f64 and 1e-6 in f32.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -47,8 +47,8 @@ pub struct Contact<T> {
 }
 
 impl<T: Real> Contact<T> {
-    /// Scales for `finger` on a coating of effective gap `gap_m` (see [`effective_gap_m`](crate::effective_gap_m)), above
-    /// zero.
+    /// Scales for `finger` on a coating of effective gap `gap_m` (see [`effective_gap_m`](crate::effective_gap_m)),
+    /// above zero.
     pub fn new(finger: &Finger<T>, gap_m: T) -> Result<Self, ParameterError> {
         finger.validate()?;
         let g: f64 = positive("gap_m", gap_m)?.into();
@@ -101,14 +101,14 @@ impl<T: Real> Contact<T> {
         FiniteContact::new(self, outer_radius_m, normal_load_n)
     }
 
-    /// Voltage scale `V* = sqrt(2 k g^3/eps0)`, in volts rms: that of Eq. (36). Relative error at most 1 rounding in f32 and
-    /// 4 in f64.
+    /// Voltage scale `V* = sqrt(2 k g^3/eps0)`, in volts rms: that of Eq. (36). Relative error at most 1 rounding in
+    /// f32 and 4 in f64.
     pub fn voltage_scale_v_rms(&self) -> T {
         self.voltage_scale_v_rms
     }
 
-    /// Friction scale `F* = mu pi k R g^2`, in newtons: that of Eq. (34). Relative error at most 1 rounding in f32 and 6 in
-    /// f64.
+    /// Friction scale `F* = mu pi k R g^2`, in newtons: that of Eq. (34). Relative error at most 1 rounding in f32 and
+    /// 6 in f64.
     pub fn friction_scale_n(&self) -> T {
         self.friction_scale_n
     }
@@ -125,8 +125,8 @@ impl<T: Real> Contact<T> {
         v * v
     }
 
-    /// Dimensionless load `n = F_N/(pi k R g^2)`: the paper's `f_N` of Eq. (44) is `n pi/eps^2`. Relative error at most 2
-    /// roundings in f32 and 6 in f64.
+    /// Dimensionless load `n = F_N/(pi k R g^2)`: the paper's `f_N` of Eq. (44) is `n pi/eps^2`. Relative error at most
+    /// 2 roundings in f32 and 6 in f64.
     pub fn load(&self, normal_load_n: T) -> T {
         normal_load_n / self.load_scale_n
     }
@@ -157,8 +157,8 @@ impl<T: Real> Contact<T> {
         representable("contact_radius_m", contact_radius_m, load_n)
     }
 
-    /// Capacitance in farads between electrode and finger, out to `outer_radius_m`:
-    /// `eps0 pi a^2/g + 2 pi eps0 R ln(1 + (beta - y)/(1 + q))`, the gap around the contact being that of Eqs. (11), (17).
+    /// Capacitance in farads between electrode and finger, out to `outer_radius_m`: `eps0 pi a^2/g + 2 pi eps0 R ln(1 +
+    /// (beta - y)/(1 + q))`, the gap around the contact being that of Eqs. (11), (17).
     ///
     /// `contact_radius_m` must be the model's contact radius at this voltage, at most the outer radius. Relative error
     /// at most 4e-15 in f64, 1e-6 in f32.

@@ -73,10 +73,10 @@ impl<T: Real> SoftContact<T> {
 /// A soft finger under a fixed normal load of zero or more: variants `soft-upper` (no load, Eqs. (27)-(33)) and
 /// `soft-loaded` (Eq. (29) with Eq. (43), beyond the paper).
 ///
-/// With `p = F_T/(mu B E R^2)`, `tau = pi sigma0/(B E)` and `zeta = g/R` the self-consistent balance is
-/// `p = l + 2 tau (p^(2 gamma) + zeta/(1 + q))`, `q = tau/zeta p^(4 gamma - 1)`, `l` being the load in the same scale. Over
-/// `p`, each term of the right side falls, so that the root is unique for every stress exponent; it is found in a bracket,
-/// at most 142 steps, five or six are usual. The inverse takes the stiffness from the friction, Eq. (29), and is then that
+/// With `p = F_T/(mu B E R^2)`, `tau = pi sigma0/(B E)` and `zeta = g/R` the self-consistent balance is `p = l + 2 tau
+/// (p^(2 gamma) + zeta/(1 + q))`, `q = tau/zeta p^(4 gamma - 1)`, `l` being the load in the same scale. Over `p`, each
+/// term of the right side falls, so that the root is unique for every stress exponent; it is found in a bracket, at
+/// most 142 steps, five or six are usual. The inverse takes the stiffness from the friction, Eq. (29), and is then that
 /// of [`LoadedContact`](crate::LoadedContact), in closed form.
 ///
 /// Error bounds, for stress exponents from 0.02 to 1, and held for 1e-6 too: 4e-14 in f64 and 1e-5 in f32.

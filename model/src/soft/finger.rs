@@ -5,8 +5,8 @@ use core::f64::consts::PI;
 use crate::error::{ParameterError, not_negative, positive, representable, stress_exponent};
 use crate::{Real, SoftContact};
 
-/// Exponent `gamma = s/(2 s + 1)` of the contact radius over the force, Eq. (23), for a stress exponent `s` above zero and
-/// at most one: from 0 to 1/3. Relative error at most 3 roundings of `T`.
+/// Exponent `gamma = s/(2 s + 1)` of the contact radius over the force, Eq. (23), for a stress exponent `s` above zero
+/// and at most one: from 0 to 1/3. Relative error at most 3 roundings of `T`.
 pub fn contact_exponent<T: Real>(stress_exponent_s: T) -> Result<T, ParameterError> {
     let s = stress_exponent(stress_exponent_s)?;
     Ok(s / (T::TWO * s + T::ONE))
@@ -40,8 +40,8 @@ impl<T: Real> SoftFinger<T> {
     /// Equivalent Winkler-Fuss stiffness in Pa/m under a spring force above zero, Eqs. (26), (29):
     /// `B^(4 gamma) E/(pi R) (E R^2/P)^(4 gamma - 1)`.
     ///
-    /// The force is the normal load where there is no voltage, and friction over the coefficient of friction where there
-    /// is. Relative error at most `11 + 3 |ln(P/(B E R^2))|` roundings of `T`.
+    /// The force is the normal load where there is no voltage, and friction over the coefficient of friction where
+    /// there is. Relative error at most `11 + 3 |ln(P/(B E R^2))|` roundings of `T`.
     pub fn stiffness_pa_per_m(&self, spring_force_n: T) -> Result<T, ParameterError> {
         let forces = self.forces()?;
         let p = positive("spring_force_n", spring_force_n)? / forces.force_scale_n;

@@ -6,8 +6,8 @@ use crate::{ContactModel, ContactState, Real, Sensitivity};
 
 /// A soft finger without load, attracted only where it touches (variant `soft-lower`).
 ///
-/// `F_T = mu B E R^2 (2 tau)^(2 s + 1)` and `a^2 = 2 R^2 (2 tau)^(2 s)`, with `tau = pi sigma0/(B E)` and the stress exponent
-/// `s`: Eqs. (40), (41). Forward and inverse are in closed form.
+/// `F_T = mu B E R^2 (2 tau)^(2 s + 1)` and `a^2 = 2 R^2 (2 tau)^(2 s)`, with `tau = pi sigma0/(B E)` and the stress
+/// exponent `s`: Eqs. (40), (41). Forward and inverse are in closed form.
 ///
 /// Error bounds, for stress exponents from 0.02 to 1: 4e-14 in f64 and 1e-5 in f32.
 #[derive(Clone, Copy, Debug, PartialEq)]

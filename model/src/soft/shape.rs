@@ -3,7 +3,8 @@
 use crate::Real;
 use crate::error::{ParameterError, at_least_one, not_negative, positive, representable, stress_exponent};
 
-/// A finger of the shape `Lambda r^lambda` and of a power-law material, in Borodich's self-similar contact without voltage.
+/// A finger of the shape `Lambda r^lambda` and of a power-law material, in Borodich's self-similar contact without
+/// voltage.
 ///
 /// With `lambda = 2` and `Lambda = 1/(2 R)` this is the paraboloid of Eq. (1), and Eq. (47) the law of Eq. (24).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,8 +15,8 @@ pub struct PowerLawShape<T> {
 }
 
 impl<T: Real> PowerLawShape<T> {
-    /// A shape with exponent `lambda >= 1`, coefficient `Lambda > 0` in `m^(1 - lambda)`, and the material's stress exponent,
-    /// above zero and at most one.
+    /// A shape with exponent `lambda >= 1`, coefficient `Lambda > 0` in `m^(1 - lambda)`, and the material's stress
+    /// exponent, above zero and at most one.
     pub fn new(exponent: T, coefficient: T, material_stress_exponent: T) -> Result<Self, ParameterError> {
         Ok(Self {
             exponent: at_least_one("exponent", exponent)?,

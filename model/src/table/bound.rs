@@ -6,17 +6,17 @@ const CURVATURE: [f64; 3] = [0.425, 0.264, 0.189];
 /// Greatest product of distances to the interpolation points in a row from -1 to 1, for 2, 3, 4 points.
 const DISTANCES: [f64; 3] = [1.0, 0.384_900_179_459_750_5, 0.171_572_875_253_809_9];
 
-/// Share of rounding in f32: coefficients and Horner's steps weigh the four terms with 2, 4, 6, 7 half-units, which in rows of
-/// a quarter octave is less than 25 half-units of friction for every power law between `V = x^(1/4)` and `x^(1/2)`. In rows of
-/// an octave it is 30; their interpolation error is a thousand times larger.
+/// Share of rounding in f32: coefficients and Horner's steps weigh the four terms with 2, 4, 6, 7 half-units, which in
+/// rows of a quarter octave is less than 25 half-units of friction for every power law between `V = x^(1/4)` and
+/// `x^(1/2)`. In rows of an octave it is 30; their interpolation error is a thousand times larger.
 pub(super) const ROUNDING: f64 = 25.0 / (1 << 24) as f64;
 
-/// The last point is put this far below the curve, relative to it: eight half-units, more than rounding at the end of a row
-/// (7.3 of them), so that no voltage is above the largest.
+/// The last point is put this far below the curve, relative to it: eight half-units, more than rounding at the end of a
+/// row (7.3 of them), so that no voltage is above the largest.
 pub(super) const TOP_MARGIN: f32 = 1.0 / (1 << 21) as f32;
 
-/// Share of the top margin: its polynomial reaches at most 0.5 where the interpolation's error is greatest, and friction grows
-/// at most with the fourth power of the voltage.
+/// Share of the top margin: its polynomial reaches at most 0.5 where the interpolation's error is greatest, and
+/// friction grows at most with the fourth power of the voltage.
 pub(super) const TOP_SHARE: f64 = 0.5 * 4.0 * TOP_MARGIN as f64;
 
 /// The bound on interpolation alone, for rows whose half width is at most `half_width` of where they begin.

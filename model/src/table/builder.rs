@@ -154,7 +154,8 @@ impl<'contact> TableBuilder<'contact> {
     pub(super) fn fixed_layout(&self, coefficients: usize) -> Result<FixedLayout, TableError> {
         let voltage_ratio =
             self.contact.voltage_v_rms(self.friction_max_n) / self.contact.voltage_v_rms(self.friction_min_n);
-        // Half a code for each coefficient, one for each truncated step, one for the place in the row; to the fourth power.
+        // Half a code for each coefficient, one for each truncated step, one for the place in the row; to the fourth
+        // power.
         let codes = 1.5 * coefficients as f64;
         let rest = 4.0 * codes / f64::from(1_u32 << 31) * voltage_ratio + TOP_SHARE;
         let half = half_width(coefficients, self.budget(rest)?).ok_or(TableError::Range)?.min(0.5);

@@ -77,8 +77,8 @@ impl<'rows, const C: usize> FixedTable<'rows, C> {
         })
     }
 
-    /// The voltage, as a fraction of the largest, for an electric friction, as a fraction of the largest; zero below the
-    /// range.
+    /// The voltage, as a fraction of the largest, for an electric friction, as a fraction of the largest; zero below
+    /// the range.
     #[inline]
     pub fn voltage(&self, friction: U0F32) -> U1F31 {
         U1F31::from_bits(self.voltage_bits(friction.to_bits()))
@@ -108,8 +108,8 @@ impl<'rows, const C: usize> FixedTable<'rows, C> {
         self.voltage_max_v_rms
     }
 
-    /// An electric friction in newtons as a fraction of the largest: rounded, zero below zero and for not-a-number, and the
-    /// greatest fraction from the largest friction on.
+    /// An electric friction in newtons as a fraction of the largest: rounded, zero below zero and for not-a-number, and
+    /// the greatest fraction from the largest friction on.
     pub fn friction(&self, electric_friction_n: f64) -> U0F32 {
         U0F32::from_bits(libm::rint(electric_friction_n / self.friction_max_n * FRICTION_STEPS) as u32)
     }

@@ -13,7 +13,8 @@ pub(super) type Point<T> = (T, T);
 /// Coefficients, constant first, of the polynomial in the friction through `start`, `end` and, with more than two
 /// coefficients, one or two points of the curve between them.
 ///
-/// It is made in the friction over `unit`, a power of two near it, so that no product on the way leaves the range of `f32`.
+/// It is made in the friction over `unit`, a power of two near it, so that no product on the way leaves the range of
+/// `f32`.
 pub(super) fn polynomial<T: Real, const C: usize>(
     contact: &LoadedContact<T>,
     start: Point<T>,

@@ -44,8 +44,8 @@ pub struct InverseTable {
 impl InverseTable {
     /// Largest relative error, in electric friction, from the friction at 1 V (or at 1/200 of the largest voltage, when
     /// that is lower) to that at the largest: proven for every finger, coating and load of zero or more (9.9e-6, from
-    /// `reference/table_constants.py`). For the example finger between 1 V and 200 V it is 3.6e-6 without load and 1.8e-6 under
-    /// 0.5 N, over every `f32`: `cargo test --release -p frixel-model -- --ignored --nocapture`.
+    /// `reference/table_constants.py`). For the example finger between 1 V and 200 V it is 3.6e-6 without load and
+    /// 1.8e-6 under 0.5 N, over every `f32`: `cargo test --release -p frixel-model -- --ignored --nocapture`.
     pub const RELATIVE_ERROR: f32 = 1e-5;
 
     /// Bytes of a row.

@@ -7,11 +7,11 @@
 //! # The error bound
 //!
 //! Each polynomial of `C` coefficients passes the curve `V(x)` at `C` points, the two ends of its row among them. With
-//! `s = d ln x/d ln V`, the interpolation's relative error in friction is at most `s |x^C V^(C)|/(C! V)` times the greatest
-//! product of distances to those points, `W (half width/x)^C`. The first factor depends on dimensionless friction and load
-//! only; `reference/table_constants.py` finds its supremum over all frictions and all loads of zero or more, so that the
-//! bound holds for every finger and coating. Rounding adds its share, and so does the distance that the last row keeps
-//! from the largest voltage (`src/table/bound.rs`).
+//! `s = d ln x/d ln V`, the interpolation's relative error in friction is at most `s |x^C V^(C)|/(C! V)` times the
+//! greatest product of distances to those points, `W (half width/x)^C`. The first factor depends on dimensionless
+//! friction and load only; `reference/table_constants.py` finds its supremum over all frictions and all loads of zero
+//! or more, so that the bound holds for every finger and coating. Rounding adds its share, and so does the distance
+//! that the last row keeps from the largest voltage (`src/table/bound.rs`).
 
 mod bound;
 mod builder;
@@ -33,8 +33,8 @@ pub use inverse::{InverseTable, InverseTableFilling};
 pub enum TableError {
     /// The largest voltage is not finite or not above zero.
     Voltage,
-    /// Finger, gap or load are not finite, or not above zero (the load may be zero), or lead to scales that are too large or too
-    /// small for `f32`.
+    /// Finger, gap or load are not finite, or not above zero (the load may be zero), or lead to scales that are too
+    /// large or too small for `f32`.
     Contact,
     /// The range of frictions is empty, or does not begin above zero.
     Range,

@@ -124,8 +124,8 @@ fn a_slower_carrier_finishes_the_half_period_under_way() {
     assert_eq!((after.iter().position(|code| *code > 0), positive), (Some(3), 20));
 }
 
-/// Every positive half wave is large and every negative one small, so that the integral drifts to its limit: there a code
-/// comes with the other sign, and that is counted.
+/// Every positive half wave is large and every negative one small, so that the integral drifts to its limit: there a
+/// code comes with the other sign, and that is counted.
 #[test]
 fn an_early_edge_is_counted_with_its_tick() {
     let timing = timing(Shape::Square, 20);

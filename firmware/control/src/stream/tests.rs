@@ -88,7 +88,8 @@ proptest! {
             }
             let now = ends.advance();
             if ends.player.phase == Phase::Playing {
-                // The first tick takes the first sample, the second takes the one behind it, the third is on the way there.
+                // The first tick takes the first sample, the second takes the one behind it, the third is on the way
+                // there.
                 let expected = reference(sample_hz, played.max(1) - 1);
                 // A step is 2^-31 of a sample too short at most, 4,000 times.
                 prop_assert!((f64::from(now.value) - expected).abs() < 1e-5, "tick {}: {:?} is not {}", played, now, expected);
@@ -122,8 +123,8 @@ proptest! {
         prop_assert_eq!(play(&mixed), play(&in_order));
     }
 
-    /// Under any sequence of calls: values and weights stay within bounds, weights never jump but to zero by `stop`, and
-    /// a stream is never worth a sample of another.
+    /// Under any sequence of calls: values and weights stay within bounds, weights never jump but to zero by `stop`,
+    /// and a stream is never worth a sample of another.
     #[test]
     fn any_order_of_calls_is_safe_and_never_stale(
         calls in prop::collection::vec((0..12_u8, any::<u32>(), 0..120_u32), 1..120),

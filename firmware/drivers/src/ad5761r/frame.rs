@@ -1,9 +1,9 @@
 //! Frames and control register of the AD5761R (Analog Devices data sheet, rev. C, "Input shift register" and
 //! "Control register").
 //!
-//! A frame is 24 bits, the most significant first: four zeros, a 4-bit address, 16 bits of data. The DAC samples a bit at
-//! every falling edge of SCLK while SYNC is low, and executes the frame at the rising edge of SYNC. It ignores a frame
-//! that is cut short.
+//! A frame is 24 bits, the most significant first: four zeros, a 4-bit address, 16 bits of data. The DAC samples a bit
+//! at every falling edge of SCLK while SYNC is low, and executes the frame at the rising edge of SYNC. It ignores a
+//! frame that is cut short.
 
 use frixel_wire::dac_code::DacCode;
 

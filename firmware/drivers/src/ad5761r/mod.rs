@@ -1,7 +1,7 @@
 //! AD5761R: a 16-bit bipolar DAC with an internal reference (Analog Devices data sheet, rev. C).
 //!
-//! [`Ad5761r`] configures and checks the chip over `embedded-hal`. A board that updates the output at a fixed rate sends
-//! [`output`] frames by its own hardware meanwhile; driver and tick share the bus in turns
+//! [`Ad5761r`] configures and checks the chip over `embedded-hal`. A board that updates the output at a fixed rate
+//! sends [`output`] frames by its own hardware meanwhile; driver and tick share the bus in turns
 //! ([`BusHandover`](crate::bus_handover::BusHandover)).
 
 mod frame;
@@ -17,8 +17,8 @@ pub use frame::{CONFIGURE, Control, FRAME_LEN, Frame, NO_OPERATION, READ_CONTROL
 /// Time for a software reset, in microseconds. The data sheet states none; 10 us is the longest of its other times.
 const RESET_US: u32 = 10;
 
-/// The DAC on an SPI bus: mode 2 (clock idle high, sampled at the falling edge), at most 50 MHz to write, and 12 MHz to read, because
-/// SDO follows an edge by up to 40 ns.
+/// The DAC on an SPI bus: mode 2 (clock idle high, sampled at the falling edge), at most 50 MHz to write, and 12 MHz to
+/// read, because SDO follows an edge by up to 40 ns.
 #[derive(Debug)]
 pub struct Ad5761r<S, D> {
     spi: S,

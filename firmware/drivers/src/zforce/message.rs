@@ -1,5 +1,5 @@
-//! Messages of the zForce modules (Neonode Touch Sensor Module User's Guide: serialization protocol quick start, ASN.1 PDU
-//! examples).
+//! Messages of the zForce modules (Neonode Touch Sensor Module User's Guide: serialization protocol quick start, ASN.1
+//! PDU examples).
 //!
 //! On I2C, every message has two bytes in front, `ee` and its length. The module raises its data-ready pin while a
 //! message waits; the host reads the two bytes first, then the message.

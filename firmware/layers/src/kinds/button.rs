@@ -66,7 +66,8 @@ impl Kind for Button {
     }
 }
 
-/// `face + swing (1 - cos(2 pi d / width))` where the depth `d` inside the border is at most the width, `face` elsewhere.
+/// `face + swing (1 - cos(2 pi d / width))` where the depth `d` inside the border is at most the width, `face`
+/// elsewhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ButtonCoefficients {
     rim_width_m: f32,

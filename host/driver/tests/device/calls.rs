@@ -166,7 +166,8 @@ fn pings_follow_the_committed_scenes_host_timeout() {
     }
 }
 
-/// The old scene's timeout counts until the new one is committed, and that of a scene that was there before is not known.
+/// The old scene's timeout counts until the new one is committed, and that of a scene that was there before is not
+/// known.
 #[test]
 fn pings_suit_any_scene_on_an_armed_board_until_the_own_one_is_committed() {
     let scene = scene(1.0);

@@ -1,4 +1,5 @@
-//! The driver library against a fake board: over a line in virtual time, where everything is counted, and over a pseudo-terminal.
+//! The driver library against a fake board: over a line in virtual time, where everything is counted, and over a
+//! pseudo-terminal.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 #![allow(clippy::disallowed_types, clippy::disallowed_methods, reason = "the tests use pseudo-terminals in real time")]
 

@@ -14,8 +14,8 @@ use crate::fake_board::FakeBoard;
 /// How much slower the clock of a [`Patient`] link runs.
 const PATIENCE: u32 = 40;
 
-/// A serial link with a slow clock, so that the driver's deadlines hold on a machine that is busy with other things: the kernel may hand over
-/// a pseudo-terminal's bytes seconds late.
+/// A serial link with a slow clock, so that the driver's deadlines hold on a machine that is busy with other things:
+/// the kernel may hand over a pseudo-terminal's bytes seconds late.
 pub(crate) struct Patient(pub(crate) SerialLink);
 
 impl Link for Patient {

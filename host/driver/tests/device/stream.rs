@@ -36,7 +36,8 @@ fn a_start_level_is_fifty_milliseconds_where_the_buffer_has_that() {
     assert_eq!([level(1), level(1_000), level(8_000), level(40_000)], [1, 50, 400, 800]);
 }
 
-/// The board says that there is room for 1,024, and plays none: that many are sent, in whole frames as long as there are.
+/// The board says that there is room for 1,024, and plays none: that many are sent, in whole frames as long as there
+/// are.
 #[test]
 fn no_more_is_sent_than_the_board_has_room_for() {
     let mut device = streaming(0);

@@ -1,4 +1,5 @@
-//! Boards that are absent, of another version, silent, reset or unplugged. Each is known within a second of virtual time.
+//! Boards that are absent, of another version, silent, reset or unplugged. Each is known within a second of virtual
+//! time.
 
 use std::cell::Cell;
 use std::rc::Rc;

@@ -1,4 +1,5 @@
-//! Bulk uploads: what arrives, what it costs, and that credit is kept. The virtual line itself refuses bytes beyond the credit.
+//! Bulk uploads: what arrives, what it costs, and that credit is kept. The virtual line itself refuses bytes beyond the
+//! credit.
 
 use std::collections::BTreeSet;
 use std::time::Duration;

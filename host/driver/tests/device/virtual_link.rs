@@ -1,4 +1,5 @@
-//! A line to a fake board in virtual time: bytes take the time that the line rate gives them, and can be lost or damaged.
+//! A line to a fake board in virtual time: bytes take the time that the line rate gives them, and can be lost or
+//! damaged.
 
 use std::collections::VecDeque;
 use std::ops::Range;

@@ -62,8 +62,8 @@ struct DemoArgs {
 struct PlayArgs {
     /// The scene, a TOML file (docs/scene.md).
     scene: PathBuf,
-    /// `sim` for the simulator in this process, `qemu` for the firmware on an emulated board, or the path of a board's serial
-    /// port.
+    /// `sim` for the simulator in this process, `qemu` for the firmware on an emulated board, or the path of a board's
+    /// serial port.
     #[arg(long, default_value = "sim")]
     port: String,
     /// Where the simulated finger goes: a CSV file with the columns `t_s,x_mm,y_mm`.

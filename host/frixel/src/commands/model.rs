@@ -15,9 +15,9 @@ pub(super) enum ModelCommand {
     ///
     /// Reads CSV with a header row, columns in any order, SI units. `variant` is one of `wf-upper`, `wf-lower`,
     /// `wf-loaded`, `wf-finite`, `soft-upper`, `soft-lower`, `soft-loaded`. Every row needs `radius_m`, `coating_m`,
-    /// `permittivity`, `friction_coefficient` and `voltage_v` (rms). Fingers on springs (wf) need `stiffness_pa_per_m`; soft
-    /// ones `modulus_pa`, `stress_exponent`, `shape_constant`; the loaded ones `normal_force_n`, which `wf-lower` and
-    /// `wf-finite` take as well; `wf-finite` needs `outer_radius_m`. What a variant does not need is not read.
+    /// `permittivity`, `friction_coefficient` and `voltage_v` (rms). Fingers on springs (wf) need `stiffness_pa_per_m`;
+    /// soft ones `modulus_pa`, `stress_exponent`, `shape_constant`; the loaded ones `normal_force_n`, which `wf-lower`
+    /// and `wf-finite` take as well; `wf-finite` needs `outer_radius_m`. What a variant does not need is not read.
     ///
     /// Writes the same columns, and behind them `sigma0_pa`, `contact_radius_m`, `effective_stiffness_pa_per_m`,
     /// `friction_n` and `status`: `ok`, `no-contact` (pulled off: radius and friction are zero), or `invalid` with the
@@ -25,11 +25,11 @@ pub(super) enum ModelCommand {
     Eval(FileArgs),
     /// Friction to voltage, row by row.
     ///
-    /// Reads what `eval` reads, with `friction_n` (the total) or `electric_friction_n` (what the voltage adds, exact where
-    /// the total would cancel) in place of `voltage_v`: the one that a row fills in.
+    /// Reads what `eval` reads, with `friction_n` (the total) or `electric_friction_n` (what the voltage adds, exact
+    /// where the total would cancel) in place of `voltage_v`: the one that a row fills in.
     ///
-    /// Writes the same columns, and behind them `voltage_v` (rms) and `status`: `ok`, `below-natural` (less than the finger
-    /// has at no voltage), `unstable` (a contact below pull-off), or `invalid` with the reason.
+    /// Writes the same columns, and behind them `voltage_v` (rms) and `status`: `ok`, `below-natural` (less than the
+    /// finger has at no voltage), `unstable` (a contact below pull-off), or `invalid` with the reason.
     Invert(FileArgs),
 }
 

@@ -72,7 +72,8 @@ fn main() -> ! {
     }
 }
 
-/// Ends bring-up at a step that has failed, with the output at zero: no later step drives a board that failed an earlier one.
+/// Ends bring-up at a step that has failed, with the output at zero: no later step drives a board that failed an
+/// earlier one.
 fn stop_unless(passed: bool) {
     if passed {
         return;
