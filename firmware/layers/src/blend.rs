@@ -54,7 +54,7 @@ impl Blend {
         }
     }
 
-    /// The interval of [`Blend::of`] over two intervals.
+    /// The interval of a blend over two intervals.
     pub fn of_intervals<T: Number>(self, below: Interval<T>, own: Interval<T>) -> Interval<T> {
         match self {
             Self::Replace => own,

@@ -2,7 +2,7 @@
 //! numbers, so that the board accepts what the compiler accepts. The limit of a tick is
 //! [`BoardLimits::tick_cycles_max`](frixel_wire::hello::BoardLimits::tick_cycles_max).
 //!
-//! [`measured`] holds the cost of every kind and region in **core cycles**: the cycles of each instruction by its class
+//! `measured` holds the cost of every kind and region in **core cycles**: the cycles of each instruction by its class
 //! (Cortex-M4 technical reference, Arm 100166, tables 3-1 and 7-1), with a memory without wait states. The file of
 //! each kind adds up those that apply to it. [`FLASH_WAIT_PERCENT`] turns core cycles into cycles.
 
