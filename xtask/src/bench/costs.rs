@@ -114,8 +114,7 @@ fn line((name, _, core_cycles): &Cost) -> String {
 fn text(costs: &[Cost]) -> String {
     let mut text = String::from(
         "//! Core cycles on a Cortex-M4F at the worst input, estimated. Written by `cargo xtask bench --bless`; `cargo xtask test` measures\n\
-         //! again and fails when it finds others.\n#![allow(dead_code, reason = \"a kind whose feature is off costs
-         //! nothing\")]\n",
+         //! again and fails when it finds others.\n#![allow(dead_code, reason = \"a kind whose feature is off costs nothing\")]\n",
     );
     for cost in costs {
         let (_, comment, _) = cost;
