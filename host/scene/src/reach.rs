@@ -1,7 +1,7 @@
 //! The friction that a drive can give to a finger.
 
 use frixel_layers::{Carrier as Shape, Header};
-use frixel_model::{Carrier, Contact, Finger, InverseTable, ParameterError, TableError, Waveform};
+use frixel_model::{Carrier, Contact, Finger, InverseTable, LoadedContact, ParameterError, TableError, Waveform};
 use frixel_wire::hello::BoardLimits;
 use thiserror::Error;
 
@@ -32,13 +32,7 @@ pub(super) enum ReachError {
 impl Reach {
     /// Computes the reach for the finger, coating and rms voltage of a header, from the board's `f32` numbers.
     pub(super) fn of(header: &Header) -> Result<Self, ReachError> {
-        let finger = Finger {
-            radius_m: f64::from(header.finger_radius_m),
-            stiffness_pa_per_m: f64::from(header.stiffness_pa_per_m),
-            friction_coefficient: f64::from(header.friction_coefficient),
-        };
-        let contact = Contact::new(&finger, f64::from(header.effective_gap_m)).map_err(ReachError::Contact)?;
-        let loaded = contact.under_load(f64::from(header.normal_load_n)).map_err(ReachError::Contact)?;
+        let loaded = loaded_contact(header).map_err(ReachError::Contact)?;
         let voltage_max_v_rms = f64::from(header.voltage_max_v_rms);
         // The board computes the same table when the scene is committed.
         let finger = Finger {
@@ -65,6 +59,16 @@ impl Reach {
     pub fn friction_max_n(&self) -> f64 {
         self.natural_friction_n + self.electric_friction_max_n
     }
+}
+
+/// The contact of a header's finger with its coating, under its load.
+pub(crate) fn loaded_contact(header: &Header) -> Result<LoadedContact<f64>, ParameterError> {
+    let finger = Finger {
+        radius_m: f64::from(header.finger_radius_m),
+        stiffness_pa_per_m: f64::from(header.stiffness_pa_per_m),
+        friction_coefficient: f64::from(header.friction_coefficient),
+    };
+    Contact::new(&finger, f64::from(header.effective_gap_m))?.under_load(f64::from(header.normal_load_n))
 }
 
 /// The carrier of a scene on a board, in the board's arithmetic.
