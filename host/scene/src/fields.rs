@@ -2,6 +2,8 @@
 
 mod values;
 
+pub(super) use values::TableOrText;
+
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 

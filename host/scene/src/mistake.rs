@@ -104,6 +104,28 @@ pub enum Mistake {
         /// Its value.
         found: f64,
     },
+    /// The first number of an interval is above the second one.
+    #[error("`{field} = [{low}, {high}]` falls: write the smaller number first")]
+    IntervalReversed {
+        /// The field.
+        field: &'static str,
+        /// The first number.
+        low: f64,
+        /// The second number.
+        high: f64,
+    },
+    /// A date is not `YYYY-MM-DD`.
+    #[error("`date = \"{found}\"` is not a day: write it as \"YYYY-MM-DD\"")]
+    Date {
+        /// The date, as written.
+        found: String,
+    },
+    /// A text that has to say something is empty.
+    #[error("`{field}` is empty: say it in a few words")]
+    EmptyText {
+        /// The field.
+        field: &'static str,
+    },
     /// A list is too short or too long.
     #[error("`{field}` has {found} entries: expected {}", count(*.min, *.max))]
     Count {

@@ -22,6 +22,11 @@ pub(crate) const fn word(name: &'static str, absence: Absence, meaning: &'static
     FieldSpec::new(name, Holds::Word, absence, meaning)
 }
 
+/// Two numbers, the second one not below the first.
+pub(crate) const fn interval(name: &'static str, range: Range, meaning: &'static str) -> FieldSpec {
+    FieldSpec::new(name, Holds::Interval(range), Mistake, meaning)
+}
+
 /// The fields of an amount whose names begin with a stem.
 macro_rules! amount {
     ($stem:literal, $absence:expr, $meaning:expr) => {
@@ -90,7 +95,7 @@ pub(super) mod coating {
         number("permittivity", Range::new(1.0, 10_000.0, ""), Mistake, "its relative permittivity");
 }
 
-/// `[finger]`
+/// `[finger]` of a scene of version 1, and a part of `[finger]` of version 2 and of a finger profile.
 pub(super) mod finger {
     use super::*;
 
@@ -98,10 +103,67 @@ pub(super) mod finger {
         number("radius_mm", Range::new(0.1, 100.0, " mm"), Mistake, "radius of curvature at the contact");
     pub(crate) const STIFFNESS_PA_PER_M: FieldSpec =
         number("stiffness_pa_per_m", Range::new(1e3, 1e14, " Pa/m"), Mistake, "Winkler-Fuss stiffness");
+    const COEFFICIENT: Range = Range::new(0.001, 10.0, "");
     pub(crate) const FRICTION_COEFFICIENT: FieldSpec =
-        number("friction_coefficient", Range::new(0.001, 10.0, ""), Mistake, "friction coefficient on the bare screen");
-    pub(crate) const NORMAL_LOAD_N: FieldSpec =
-        number("normal_load_n", Range::new(0.0, 50.0, " N"), Mistake, "how hard the finger presses");
+        number("friction_coefficient", COEFFICIENT, Mistake, "friction coefficient on the bare screen");
+    const LOAD_N: Range = Range::new(0.0, 50.0, " N");
+    pub(crate) const NORMAL_LOAD_N: FieldSpec = number("normal_load_n", LOAD_N, Mistake, "how hard the finger presses");
+    pub(crate) const SKIN_GAP_UM: FieldSpec = number(
+        "skin_gap_um",
+        Range::new(0.0, 10_000.0, " um"),
+        Mistake,
+        "stratum corneum and air between coating and living tissue, as an effective gap: thickness over permittivity",
+    );
+    pub(crate) const MODEL: FieldSpec = word(
+        "model",
+        Means("`\"winkler-fuss\"`"),
+        "`\"winkler-fuss\"`: springs of one stiffness; `\"soft\"`: a material that stiffens under stress, see \
+         [soft fingers](#soft-fingers)",
+    );
+    pub(crate) const MODULUS_PA: FieldSpec =
+        number("modulus_pa", Range::new(1.0, 1e12, " Pa"), Mistake, "modulus `E` of a soft finger");
+    pub(crate) const STRESS_EXPONENT: FieldSpec = number(
+        "stress_exponent",
+        Range::new(0.02, 1.0, ""),
+        Mistake,
+        "stress exponent of a soft finger: strain grows as stress to this power's inverse",
+    );
+    pub(crate) const SHAPE_CONSTANT: FieldSpec =
+        number("shape_constant", Range::new(0.001, 1_000.0, ""), Mistake, "constant `B` of a soft finger, Eq. (24)");
+    pub(crate) const ORIGIN: FieldSpec = word(
+        "origin",
+        Means("`\"assumed\"`"),
+        "what the numbers rest on: `\"assumed\"`; `\"perceptual\"`, a person said what they felt; or `\"measured\"`, with \
+         a force sensor",
+    );
+    pub(crate) const DATE: FieldSpec =
+        FieldSpec::new("date", Holds::Text, Mistake, "day of the experiment, `\"YYYY-MM-DD\"`");
+    pub(crate) const METHOD: FieldSpec = FieldSpec::new("method", Holds::Text, Mistake, "method of the experiment");
+    pub(crate) const SCREEN: FieldSpec = FieldSpec::new(
+        "screen",
+        Holds::Text,
+        Mistake,
+        "`name` of the screen of the experiment; on another screen the profile counts as assumed",
+    );
+    const VOLTAGE: Range = Range::new(0.0, 1_000.0, " V rms");
+    pub(crate) const THRESHOLD_V_RMS: FieldSpec =
+        number("threshold_v_rms", VOLTAGE, Mistake, "rms voltage at the detection threshold");
+    pub(crate) const THRESHOLD_INTERVAL_V_RMS: FieldSpec =
+        interval("threshold_interval_v_rms", VOLTAGE, "95 % interval of the threshold, `[least, largest]`");
+    pub(crate) const FRICTION_COEFFICIENT_INTERVAL: FieldSpec = interval(
+        "friction_coefficient_interval",
+        COEFFICIENT,
+        "95 % interval of the friction coefficient, `[least, largest]`",
+    );
+    pub(crate) const ELECTRIC_FRICTION_INTERVAL_N: FieldSpec = interval(
+        "electric_friction_interval_n",
+        Range::new(0.0, 100.0, " N"),
+        "95 % interval of the electric friction at `measured_voltage_max_v_rms` under `normal_load_n`",
+    );
+    pub(crate) const MEASURED_VOLTAGE_MAX_V_RMS: FieldSpec =
+        number("measured_voltage_max_v_rms", VOLTAGE, Mistake, "largest rms voltage of the measurement");
+    pub(crate) const MEASURED_NORMAL_LOAD_RANGE_N: FieldSpec =
+        interval("measured_normal_load_range_n", LOAD_N, "least and largest normal load of the measurement");
 }
 
 /// `[drive]`

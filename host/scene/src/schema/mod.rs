@@ -137,13 +137,16 @@ fn value(known: &KnownField) -> Value {
         Holds::Text => json!({ "type": "string" }),
         Holds::Word => json!({ "enum": known.words }),
         Holds::Table => json!({ "type": "object" }),
+        Holds::TableOrText => json!({ "type": ["object", "string"] }),
         Holds::Tables | Holds::TableOrTables => json!({ "type": "array", "items": { "type": "object" } }),
         Holds::Numbers(range) => json!({ "type": "array", "items": number("number", range) }),
-        Holds::Pairs(range) => {
-            let pair = json!({ "type": "array", "items": number("number", range), "minItems": 2, "maxItems": 2 });
-            json!({ "type": "array", "items": pair })
-        }
+        Holds::Interval(range) => two_numbers(range),
+        Holds::Pairs(range) => json!({ "type": "array", "items": two_numbers(range) }),
     }
+}
+
+fn two_numbers(range: Range) -> Value {
+    json!({ "type": "array", "items": number("number", range), "minItems": 2, "maxItems": 2 })
 }
 
 fn number(kind: &str, range: Range) -> Value {

@@ -124,7 +124,12 @@ fn default(field: &FieldSpec) -> String {
 }
 
 fn range(field: &FieldSpec) -> String {
-    let (Holds::Number(range) | Holds::Whole(range) | Holds::Numbers(range) | Holds::Pairs(range)) = field.holds else {
+    let (Holds::Number(range)
+    | Holds::Whole(range)
+    | Holds::Numbers(range)
+    | Holds::Interval(range)
+    | Holds::Pairs(range)) = field.holds
+    else {
         return String::new();
     };
     let Range { min, max, unit } = range;
