@@ -9,6 +9,7 @@ use frixel_hil_sim::RigConfig;
 use frixel_scene::{Preview, compile};
 
 use super::super::error::CommandError;
+use super::super::terminal::print_line;
 
 #[derive(Debug, Args)]
 pub(in super::super) struct PreviewArgs {
@@ -35,8 +36,7 @@ pub(super) fn run(args: &PreviewArgs) -> Result<(), CommandError> {
     let map_max = (args.map_width, args.map_width * 4 / 5);
     let preview = Preview { speed_m_per_s: 1e-3 * args.speed_mm_per_s, map_max };
     write_preview_png(&args.output, &title, &program, &preview)?;
-    println!("  {:<16} {}", "wrote", args.output.display());
-    Ok(())
+    print_line(format_args!("  {:<16} {}", "wrote", args.output.display()))
 }
 
 /// Parses the speed of a finger.
