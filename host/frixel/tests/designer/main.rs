@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 mod demo;
+mod pictures;
 #[cfg(unix)]
 mod pipes;
 
