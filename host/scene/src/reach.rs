@@ -82,7 +82,7 @@ impl Reach {
 }
 
 /// The contact of a header's finger with its coating, under its load.
-pub(crate) fn loaded_contact(header: &Header) -> Result<LoadedContact<f64>, ParameterError> {
+fn loaded_contact(header: &Header) -> Result<LoadedContact<f64>, ParameterError> {
     let finger = Finger {
         radius_m: f64::from(header.finger_radius_m),
         stiffness_pa_per_m: f64::from(header.stiffness_pa_per_m),

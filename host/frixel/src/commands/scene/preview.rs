@@ -11,6 +11,7 @@ use frixel_scene::perception::Perception;
 use frixel_scene::{Preview, compile};
 
 use super::super::error::CommandError;
+use super::super::terminal::print_line;
 
 #[derive(Debug, Args)]
 pub(in super::super) struct PreviewArgs {
@@ -38,10 +39,9 @@ pub(super) fn run(args: &PreviewArgs) -> Result<(), CommandError> {
     let preview = Preview { speed_m_per_s: 1e-3 * args.speed_mm_per_s, map_max };
     write_preview_png(&args.output, &title, &program, &preview)?;
     for (name, text) in feel::lines(&Perception::of(&program)) {
-        println!("  {name:<16} {text}");
+        print_line(format_args!("  {name:<16} {text}"))?;
     }
-    println!("  {:<16} {}", "wrote", args.output.display());
-    Ok(())
+    print_line(format_args!("  {:<16} {}", "wrote", args.output.display()))
 }
 
 /// Parses the speed of a finger.
