@@ -30,12 +30,14 @@
 //! - [`mod@reference`]: the reference friction of a program, in `f64`, independent of the firmware.
 //! - [`recorder`]: records what a board did and what its finger felt, and compares it with the reference.
 //! - [`metrics`]: the size of the errors.
+//! - [`fidelity`]: how faithfully friction was felt, in numbers that a person notices.
 #![forbid(unsafe_code)]
 
 mod compile;
 mod compile_error;
 mod cover;
 mod excess;
+pub mod fidelity;
 mod fields;
 mod file;
 mod files;
@@ -65,6 +67,7 @@ mod resample;
 mod schema;
 mod screen;
 mod source;
+mod spectrum;
 mod springs;
 mod tables;
 mod target_range;
