@@ -9,6 +9,7 @@ mod play;
 mod ports;
 mod report;
 mod scene;
+mod score;
 #[cfg(unix)]
 mod sim;
 mod stroke;
@@ -39,6 +40,8 @@ enum Command {
     /// Check a scene, or draw it, before it is played.
     #[command(subcommand)]
     Scene(scene::SceneCommand),
+    /// Score how faithfully simulated fingers feel a scene.
+    Score(score::ScoreArgs),
     /// Serve a virtual board on a pseudo-terminal, for other programs to play to.
     Sim(SimArgs),
     /// List the serial ports.
@@ -148,6 +151,7 @@ impl Cli {
             Some(Command::Demo(args)) => demo::run(&args),
             Some(Command::Play(args)) => play::run(&args),
             Some(Command::Scene(command)) => scene::run(&command),
+            Some(Command::Score(args)) => score::run(&args),
             #[cfg(unix)]
             Some(Command::Sim(args)) => sim::run(&args),
             #[cfg(not(unix))]

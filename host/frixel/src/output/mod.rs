@@ -24,6 +24,8 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
+use crate::chart::Chart;
+
 pub use csv::{CsvFile, CsvRow, EventCsv, EventRow, FeltCsv};
 pub use felt_svg::write_felt_svg;
 pub use preview_png::write_preview_png;
@@ -73,4 +75,10 @@ impl OutputError {
     fn drawing<E: ToString>(path: &Path) -> impl FnOnce(E) -> Self {
         move |error| Self::Drawing { path: path.to_owned(), reason: error.to_string() }
     }
+}
+
+/// Draws a chart into an SVG file.
+pub(crate) fn write_chart(path: &Path, chart: &Chart) -> Result<(), OutputError> {
+    let text = chart.svg().map_err(OutputError::drawing(path))?;
+    std::fs::write(path, text).map_err(|source| OutputError::File { path: path.to_owned(), source })
 }
