@@ -156,7 +156,7 @@ enum Join {
 impl ActiveLayer {
     /// Computes the layer of record number `number`, which has been checked.
     pub(crate) fn new(record: &Record, number: u8, preparation: &mut Preparation) -> Result<Self, Refusal> {
-        let region = ActiveRegion::new(&record.region).ok_or(Refusal::LeftOut { layer: number })?;
+        let region = ActiveRegion::new(&record.region).ok_or(Refusal::FeatureDisabled { layer: number })?;
         let coefficients = record.layer.prepare(number, preparation)?;
         let join = if record.layer.is_streamed() { Join::Fade(record.blend) } else { Join::Blend(record.blend) };
         Ok(Self { region, join, gain: record.gain, coefficients })

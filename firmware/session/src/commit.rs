@@ -169,5 +169,5 @@ fn bitmaps_of(scene: &Scene) -> BitmapNames {
 
 /// Distinguishes a record whose feature is disabled in this firmware from an invalid scene.
 fn not_a_scene(error: SceneError) -> Refusal {
-    disabled_record(&error).map_or(Refusal::Scene(error), |layer| Refusal::LeftOut { layer })
+    disabled_record(&error).map_or(Refusal::Scene(error), |layer| Refusal::FeatureDisabled { layer })
 }

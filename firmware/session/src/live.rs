@@ -183,7 +183,7 @@ impl<'a> Commands<'a> {
             received_bytes: self.credit.received(),
         };
         // If the queue is too full, the next call tries again.
-        if queue.send_unasked(&progress) {
+        if queue.send_unsolicited(&progress) {
             self.credit.reported();
             stream.report_due = false;
             stream.frames = 0;

@@ -111,7 +111,7 @@ fn load_drive(active: &mut Active, scene: &Scene, board: &Board) -> Result<(), R
     active.unload();
     let header = scene.header();
     if header.carrier == Shape::Sine && !cfg!(feature = "sine-carrier") {
-        return Err(Refusal::LeftOut { layer: ConfigRefusal::WHOLE_SCENE });
+        return Err(Refusal::FeatureDisabled { layer: ConfigRefusal::WHOLE_SCENE });
     }
     header.check(&board.limits, board.tick_hz).map_err(Refusal::Config)?;
     (active.carrier, active.voltage_max_v_rms) = carrier(header, board).map_err(Refusal::Config)?;

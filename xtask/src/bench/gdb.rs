@@ -9,7 +9,7 @@ use std::thread;
 use std::time::Duration;
 
 /// Wall time within which the emulator must reach a breakpoint.
-const PATIENCE: Duration = Duration::from_mins(2);
+const WALL_TIMEOUT: Duration = Duration::from_mins(2);
 
 /// Index of the program counter among the registers.
 const PROGRAM_COUNTER: usize = 15;
@@ -26,7 +26,7 @@ impl Gdb {
                 Ok((stream, _)) => {
                     stream.set_nonblocking(false).map_err(|error| explain(&error))?;
                     stream.set_nodelay(true).map_err(|error| explain(&error))?;
-                    stream.set_read_timeout(Some(PATIENCE)).map_err(|error| explain(&error))?;
+                    stream.set_read_timeout(Some(WALL_TIMEOUT)).map_err(|error| explain(&error))?;
                     return Ok(Self(BufReader::new(stream)));
                 }
                 Err(error) if error.kind() != ErrorKind::WouldBlock => return Err(explain(&error)),
@@ -55,7 +55,7 @@ impl Gdb {
     }
 
     /// Continues to the next breakpoint.
-    pub(super) fn go_on(&mut self) -> Result<(), String> {
+    pub(super) fn resume(&mut self) -> Result<(), String> {
         self.expect_stop("c")
     }
 
