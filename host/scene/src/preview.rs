@@ -155,11 +155,12 @@ fn caption(program: &Program, preview: &Preview, parts_of_reach: &[f64]) -> Vec<
 fn finger(program: &Program) -> String {
     let Reach { voltage_max_v_rms, .. } = program.reach;
     format!(
-        "Load {} N: {} mN without voltage, {} mN at {} V rms.",
+        "Load {} N: {} mN without voltage, {} mN at {} V rms{}.",
         rounded(f64::from(program.header.normal_load_n)),
         rounded(1e3 * program.reach.friction_min_n()),
         rounded(1e3 * program.reach.friction_max_n()),
-        rounded(voltage_max_v_rms)
+        rounded(voltage_max_v_rms),
+        program.finger.newtons_suffix()
     )
 }
 

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::error::CommandError;
+use super::profiles::ProfileArgs;
 use super::{DemoArgs, PlayArgs, play};
 
 /// The scene and its picture are embedded in the executable, so that the demo needs no files.
@@ -15,6 +16,7 @@ pub(super) fn run(args: &DemoArgs) -> Result<(), CommandError> {
     write(&args.out.join("textures/brick.png"), PICTURE)?;
     play::run(&PlayArgs {
         scene: scene.clone(),
+        profiles: ProfileArgs::default(),
         port: "sim".into(),
         stroke: None,
         seconds: None,
