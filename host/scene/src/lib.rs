@@ -26,6 +26,7 @@
 //! The crate opens no file and reads no clock, and it compiles for `wasm32-unknown-unknown`.
 //!
 //! - [`TargetRange`] and [`FrictionMap`]: the target friction of a program over its screen.
+//! - [`perception`]: what a person will feel of a program, with its sources.
 //! - [`mod@reference`]: the reference friction of a program, in `f64`, independent of the firmware.
 //! - [`recorder`]: records what a board did and what its finger felt, and compares it with the reference.
 //! - [`metrics`]: the size of the errors.
@@ -51,6 +52,7 @@ mod mistake;
 mod nearest;
 mod optimisation;
 mod optimise;
+pub mod perception;
 mod picture;
 mod played_finger;
 mod pool;

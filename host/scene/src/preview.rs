@@ -122,6 +122,9 @@ impl FrictionMap {
 
 fn caption(program: &Program, preview: &Preview, parts_of_reach: &[f64]) -> Vec<String> {
     let mut sentences = vec![finger(program)];
+    if !program.finger.newtons_suffix().is_empty() {
+        sentences.push("These newtons are assumed: nobody measured the finger.".to_owned());
+    }
     let any = |wanted: fn(&Layer) -> bool| program.records.iter().any(|record| wanted(&record.layer));
     if any(|layer| matches!(layer, Layer::Speed(_))) {
         sentences.push(format!("Sliding at {} mm/s.", rounded(1e3 * preview.speed_m_per_s)));
@@ -155,12 +158,11 @@ fn caption(program: &Program, preview: &Preview, parts_of_reach: &[f64]) -> Vec<
 fn finger(program: &Program) -> String {
     let Reach { voltage_max_v_rms, .. } = program.reach;
     format!(
-        "Load {} N: {} mN without voltage, {} mN at {} V rms{}.",
+        "Load {} N: {} mN without voltage, {} mN at {} V rms.",
         rounded(f64::from(program.header.normal_load_n)),
         rounded(1e3 * program.reach.friction_min_n()),
         rounded(1e3 * program.reach.friction_max_n()),
-        rounded(voltage_max_v_rms),
-        program.finger.newtons_suffix()
+        rounded(voltage_max_v_rms)
     )
 }
 

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use frixel_model::InverseTable;
 
-use super::{RamBytes, SceneCheck};
+use super::{RamBytes, SceneCheck, feel};
 use frixel_scene::{Origin, OutOfReach};
 
 impl SceneCheck {
@@ -56,6 +56,9 @@ impl SceneCheck {
         line("out of reach", out_of_reach(&asked.above, &asked.below));
         for warning in &self.warnings {
             line("warning", warning.clone());
+        }
+        for (name, text) in feel::lines(&self.perception) {
+            line(name, text);
         }
         for note in &self.notes {
             line("note", note.clone());

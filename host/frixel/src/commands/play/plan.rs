@@ -110,10 +110,10 @@ impl Plan {
 /// Prints the warnings of the compiler, and the values that it converted, rounded or clamped.
 pub(super) fn print_notes(program: &Program) {
     for warning in &program.warnings {
-        eprintln!("warning: {warning}");
+        super::note(format_args!("warning: {warning}"));
     }
     for note in &program.notes {
-        eprintln!("{note}");
+        super::note(note);
     }
 }
 
