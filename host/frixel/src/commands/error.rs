@@ -18,7 +18,7 @@ use frixel_driver::{DeviceError, PortError};
 use frixel_hil_sim::emulated::EmulatorError;
 use frixel_hil_sim::{StrokeError, WorldError};
 use frixel_model::ParameterError;
-use frixel_scene::CompileError;
+use frixel_scene::{CompileError, Warning};
 use thiserror::Error;
 
 #[derive(Debug, Error)]
@@ -90,6 +90,8 @@ pub(crate) enum CommandError {
         "{port} is a board with an electrode: put on --arm, and hold the switch on the board, to let it drive hundreds of volts"
     )]
     NotArmed { port: String },
+    #[error("a board with an electrode does not extrapolate: {warning}")]
+    NotMeasured { warning: Warning },
     #[error(transparent)]
     Feed(#[from] FeedError),
     #[error(

@@ -7,6 +7,7 @@ mod interrupt;
 mod model;
 mod play;
 mod ports;
+mod profiles;
 mod report;
 mod scene;
 mod score;
@@ -66,6 +67,8 @@ struct DemoArgs {
 struct PlayArgs {
     /// The scene, a TOML file (docs/scene.md).
     scene: PathBuf,
+    #[command(flatten)]
+    profiles: profiles::ProfileArgs,
     /// `sim` for the simulator in this process, `qemu` for the firmware on an emulated board, or the path of a board's
     /// serial port.
     #[arg(long, default_value = "sim")]
@@ -129,6 +132,7 @@ impl PlayArgs {
     fn of(scene: &Path) -> Self {
         Self {
             scene: scene.to_owned(),
+            profiles: profiles::ProfileArgs::default(),
             port: "sim".into(),
             stroke: None,
             seconds: None,

@@ -6,19 +6,20 @@ use std::thread::{self, JoinHandle};
 
 use frixel::player::{PlayError, Player};
 use frixel::rigs::RecordedLink;
-use frixel::scene_file::{self, SceneFileError};
+use frixel::scene_file::{ProfileNames, SceneFileError};
 use frixel_driver::DeviceError;
 use frixel_scene::{Program, compile};
 use frixel_wire::hello::Hello;
 use frixel_wire::message::Refusal;
 
 use super::note;
-use super::plan::print_notes;
+use super::plan::{check_measured, print_notes};
 use super::saved_file::SavedFile;
 
 /// Watches the scene's file while an earlier version of it plays.
 pub(super) struct LiveScene {
     path: PathBuf,
+    profiles: ProfileNames,
     file: SavedFile,
     /// The thread that compiles a saved scene, because the host must keep sending to the board meanwhile.
     compiling: Option<JoinHandle<Result<Program, SceneFileError>>>,
@@ -26,8 +27,8 @@ pub(super) struct LiveScene {
 
 impl LiveScene {
     /// Watches a file for changes from now on. Call this before the file is read.
-    pub(super) fn new(path: &Path) -> Self {
-        Self { path: path.to_owned(), file: SavedFile::new(path), compiling: None }
+    pub(super) fn new(path: &Path, profiles: ProfileNames) -> Self {
+        Self { path: path.to_owned(), profiles, file: SavedFile::new(path), compiling: None }
     }
 
     /// Plays the file if it was saved. Returns the new program if it replaced the one that was playing.
@@ -38,7 +39,8 @@ impl LiveScene {
         }
         if self.compiling.is_none() && self.file.is_saved() {
             let (path, Hello { limits, tick_hz, .. }) = (self.path.clone(), *player.device().hello());
-            let compile = move || scene_file::load(&path).and_then(|scene| Ok(compile(&scene, &limits, tick_hz)?));
+            let profiles = self.profiles.clone();
+            let compile = move || profiles.load(&path).and_then(|scene| Ok(compile(&scene, &limits, tick_hz)?));
             self.compiling = Some(thread::spawn(compile));
         }
         Ok(None)
@@ -59,6 +61,11 @@ fn replace<L: RecordedLink>(
             return Ok(None);
         }
     };
+    if let Err(error) = check_measured(&program, player.device().hello().board) {
+        note(error);
+        note(format_args!("frixel: {} is not played: the scene before plays on", path.display()));
+        return Ok(None);
+    }
     match player.replace(&program) {
         Ok(()) => {
             print_notes(&program);
