@@ -94,7 +94,8 @@ impl Stroke {
         Ok(Self::once(duration_s, Path::Natural(natural)))
     }
 
-    /// Parses a stroke from CSV text with the columns `t_s,x_mm,y_mm`, in any order. Other columns are ignored.
+    /// Parses a stroke from CSV text with the columns `t_s,x_mm,y_mm`, in any order, and `force_n` if the normal load is
+    /// known, in N and above 0. Other columns are ignored.
     ///
     /// Time is from the start of the stroke and rises from row to row; the finger touches at the first row and leaves
     /// after the last. Between rows it goes straight and at constant speed (linear interpolation), so the rows should
@@ -112,6 +113,24 @@ impl Stroke {
         Ok(Self { round_s: Some(round_s), ..self })
     }
 
+    /// Returns the normal load `t_s` seconds after the start of the stroke, in N; `None` if the stroke does not say it,
+    /// or while the finger is off the screen.
+    pub fn normal_load_n(&self, t_s: f64) -> Option<f64> {
+        match &self.path {
+            Path::Rows(rows) => rows.normal_load_n(self.in_round(t_s)?),
+            Path::ConstantSpeed(_) | Path::MinimumJerk(_) | Path::Natural(_) => None,
+        }
+    }
+
+    /// Time since the start of the round, s; `None` while the finger is off the screen.
+    fn in_round(&self, t_s: f64) -> Option<f64> {
+        let t_s = match self.round_s {
+            Some(round_s) if t_s >= 0.0 => (t_s - libm::trunc(t_s / round_s) * round_s).max(0.0),
+            _ => t_s,
+        };
+        (t_s >= 0.0 && t_s <= self.end_s).then_some(t_s)
+    }
+
     fn once(end_s: f64, path: Path) -> Self {
         Self { path, end_s, round_s: None }
     }
@@ -123,13 +142,7 @@ impl Stroke {
 
     /// Returns the finger `t_s` seconds after the start of the stroke; `None` while it is off the screen.
     pub fn at(&self, t_s: f64) -> Option<FingerState> {
-        let t_s = match self.round_s {
-            Some(round_s) if t_s >= 0.0 => (t_s - libm::trunc(t_s / round_s) * round_s).max(0.0),
-            _ => t_s,
-        };
-        if !(t_s >= 0.0 && t_s <= self.end_s) {
-            return None;
-        }
+        let t_s = self.in_round(t_s)?;
         match &self.path {
             Path::ConstantSpeed(straight) => Some(straight.constant_speed(t_s)),
             Path::MinimumJerk(straight) => Some(straight.minimum_jerk(t_s)),

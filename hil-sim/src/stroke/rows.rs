@@ -7,6 +7,8 @@ use super::{FingerState, Point};
 pub(super) struct Row {
     pub(super) t_s: f64,
     pub(super) place: Point,
+    /// Normal load, in N; not a number if it is unknown.
+    pub(super) load_n: f64,
 }
 
 /// The motion from one row to the next: straight, at constant speed.
@@ -16,6 +18,7 @@ struct Piece {
     x_speed_m_per_s: f64,
     y_speed_m_per_s: f64,
     speed_m_per_s: f64,
+    load_slope_n_per_s: f64,
 }
 
 /// Rows, prepared for look-ups by time.
@@ -27,6 +30,8 @@ pub(super) struct Rows {
     /// before each slot, so that a look-up searches only one slot.
     before_slot: Vec<usize>,
     slots_per_s: f64,
+    /// Whether the rows say the normal load.
+    has_loads: bool,
 }
 
 impl Rows {
@@ -44,10 +49,13 @@ impl Rows {
             if !speed_m_per_s.is_finite() {
                 return Err(number + 1);
             }
-            pieces.push(Piece { start: *start, x_speed_m_per_s, y_speed_m_per_s, speed_m_per_s });
+            let load_slope_n_per_s = (end.load_n - start.load_n) / time_s;
+            pieces.push(Piece { start: *start, x_speed_m_per_s, y_speed_m_per_s, speed_m_per_s, load_slope_n_per_s });
         }
         let end_s = rows.last().map_or(0.0, |row| row.t_s);
-        let mut motion = Self { slots_per_s: pieces.len() as f64 / end_s, before_slot: Vec::new(), pieces, end_s };
+        let has_loads = rows.iter().any(|row| row.load_n.is_finite());
+        let mut motion =
+            Self { slots_per_s: pieces.len() as f64 / end_s, before_slot: Vec::new(), pieces, end_s, has_loads };
         motion.before_slot = motion.count_before_slots();
         Ok(motion)
     }
@@ -77,12 +85,24 @@ impl Rows {
         before_slot
     }
 
-    /// Returns the finger at a time up to the end; `None` before the first row.
-    pub(super) fn at(&self, t_s: f64) -> Option<FingerState> {
+    /// Returns the piece of a time up to the end; `None` before the first row.
+    fn piece(&self, t_s: f64) -> Option<&Piece> {
         let slot = self.slot(t_s);
         let (first, last) = (*self.before_slot.get(slot)?, *self.before_slot.get(slot + 1)?);
         let started = first + self.pieces.get(first..last)?.partition_point(|piece| piece.start.t_s <= t_s);
-        let piece = self.pieces.get(started.checked_sub(1)?)?;
+        self.pieces.get(started.checked_sub(1)?)
+    }
+
+    /// Returns the normal load at a time up to the end, in N, if the rows say it.
+    pub(super) fn normal_load_n(&self, t_s: f64) -> Option<f64> {
+        let piece = if self.has_loads { self.piece(t_s)? } else { return None };
+        let load_n = piece.start.load_n + (t_s - piece.start.t_s) * piece.load_slope_n_per_s;
+        load_n.is_finite().then_some(load_n)
+    }
+
+    /// Returns the finger at a time up to the end; `None` before the first row.
+    pub(super) fn at(&self, t_s: f64) -> Option<FingerState> {
+        let piece = self.piece(t_s)?;
         let time_s = t_s - piece.start.t_s;
         Some(FingerState {
             x_m: piece.start.place.x_m + time_s * piece.x_speed_m_per_s,

@@ -6,6 +6,10 @@ use super::rows::{Row, Rows};
 use super::{Point, StrokeError};
 
 const COLUMNS: [&str; 3] = ["t_s", "x_mm", "y_mm"];
+/// Column of the normal load, which may be left out.
+const FORCE_COLUMN: &str = "force_n";
+/// A load above it is one in another unit.
+const LOAD_MAX_N: f64 = 50.0;
 const MM_PER_M: f64 = 1e3;
 
 /// Parses CSV text into a motion.
@@ -17,12 +21,13 @@ pub(super) fn rows(text: &str) -> Result<Rows, StrokeError> {
         return Err(StrokeError::Empty);
     }
     let columns = find_columns(&header, line_of(&header, text))?;
+    let force_column = header.iter().position(|name| name == FORCE_COLUMN);
     let mut rows: Vec<Row> = Vec::new();
     let mut lines = Vec::new();
     for record in reader.records() {
         let record = record.map_err(malformed)?;
         let line = line_of(&record, text);
-        let row = row(&record, line, columns)?;
+        let row = Row { load_n: load_n(&record, line, force_column)?, ..row(&record, line, columns)? };
         if row.t_s < 0.0 {
             return Err(StrokeError::BeforeStart { line, found_s: row.t_s });
         }
@@ -59,7 +64,14 @@ fn row(record: &StringRecord, line: u64, places: [usize; 3]) -> Result<Row, Stro
         *value = number(record.get(place).unwrap_or_default(), line, column)?;
     }
     let [t_s, x_mm, y_mm] = values;
-    Ok(Row { t_s, place: Point { x_m: x_mm / MM_PER_M, y_m: y_mm / MM_PER_M } })
+    Ok(Row { t_s, place: Point { x_m: x_mm / MM_PER_M, y_m: y_mm / MM_PER_M }, load_n: f64::NAN })
+}
+
+/// The normal load of a row, in N; not a number without a column for it.
+fn load_n(record: &StringRecord, line: u64, column: Option<usize>) -> Result<f64, StrokeError> {
+    let Some(column) = column else { return Ok(f64::NAN) };
+    let found_n = number(record.get(column).unwrap_or_default(), line, FORCE_COLUMN)?;
+    if found_n > 0.0 && found_n <= LOAD_MAX_N { Ok(found_n) } else { Err(StrokeError::NoLoad { line, found_n }) }
 }
 
 fn number(cell: &str, line: u64, column: &'static str) -> Result<f64, StrokeError> {

@@ -13,7 +13,7 @@ fn main() -> ExitCode {
     match Cli::parse().run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("frixel: {error}");
+            commands::report_error(&error);
             ExitCode::FAILURE
         }
     }

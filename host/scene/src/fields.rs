@@ -110,6 +110,16 @@ impl<'i> Fields<'i> {
         self.required.push(field.name);
     }
 
+    /// Offset of the table.
+    pub(super) fn table_place(&self) -> usize {
+        self.places.table()
+    }
+
+    /// The table's name in messages.
+    pub(super) fn table_name(&self) -> &str {
+        &self.table
+    }
+
     /// Records that two fields have the same meaning, so that a file may have only one of them.
     pub(super) fn either(&mut self, one: &FieldSpec, other: &FieldSpec) {
         self.either.push([one.name, other.name]);

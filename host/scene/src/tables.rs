@@ -57,10 +57,22 @@ pub(super) mod scene {
 
     pub(crate) const VERSION: FieldSpec =
         number("version", Range::new(f64::MIN, f64::MAX, ""), Mistake, "version of the file format");
-    pub(crate) const SCREEN: FieldSpec = FieldSpec::new("screen", Holds::Table, Mistake, "the screen");
-    pub(crate) const COATING: FieldSpec =
-        FieldSpec::new("coating", Holds::TableOrTables, Mistake, "the insulator between electrode and finger");
-    pub(crate) const FINGER: FieldSpec =
+    pub(crate) const SCREEN: FieldSpec = FieldSpec::new(
+        "screen",
+        Holds::TableOrText,
+        Means("the example screen"),
+        "the screen: a table, the name of a bundled one, or of a file",
+    );
+    pub(crate) const FINGER: FieldSpec = FieldSpec::new(
+        "finger",
+        Holds::TableOrText,
+        Means("the example finger"),
+        "the finger that the scene is meant for: a table, the name of a bundled one, or of a file",
+    );
+    pub(crate) const SCREEN_V1: FieldSpec = FieldSpec::new("screen", Holds::Table, Mistake, "the screen");
+    pub(crate) const COATING_V1: FieldSpec =
+        FieldSpec::new("coating", Holds::TableOrTables, Mistake, "coating and skin between electrode and finger");
+    pub(crate) const FINGER_V1: FieldSpec =
         FieldSpec::new("finger", Holds::Table, Mistake, "the finger that the scene is meant for");
     pub(crate) const DRIVE: FieldSpec =
         FieldSpec::new("drive", Holds::Table, Means("all defaults"), "limits of the drive");
@@ -72,16 +84,32 @@ pub(super) mod scene {
         FieldSpec::new("layer", Holds::Tables, Means("bare glass"), "the layers of friction");
 }
 
-/// `[screen]`
+/// `[screen]` of a scene, and a screen's file. A scene of version 1 has only the size there.
 pub(super) mod screen {
     use super::*;
+
+    pub(crate) const NAME: FieldSpec =
+        FieldSpec::new("name", Holds::Text, Means("none"), "what finger profiles call it that were measured on it");
 
     const SIZE: Range = Range::new(5.0, 2_000.0, " mm");
     pub(crate) const WIDTH_MM: FieldSpec = number("width_mm", SIZE, Mistake, "width of the screen, along x");
     pub(crate) const HEIGHT_MM: FieldSpec = number("height_mm", SIZE, Mistake, "height of the screen, along y");
+    pub(crate) const COATING: FieldSpec = FieldSpec::new(
+        "coating",
+        Holds::TableOrTables,
+        Means("1 um of silicon dioxide: `{ thickness_um = 1, permittivity = 3.9 }`"),
+        "the insulator between electrode and finger, see [`coating`](#coating)",
+    );
+    const NO_LIMIT: Absence = Means("no limit of its own");
+    pub(crate) const VOLTAGE_MAX_V_RMS: FieldSpec =
+        number("voltage_max_v_rms", super::drive::V_RMS, NO_LIMIT, "largest rms voltage that the screen bears");
+    pub(crate) const VOLTAGE_MAX_V_PEAK: FieldSpec =
+        number("voltage_max_v_peak", super::drive::V_PEAK, NO_LIMIT, "largest peak voltage that the screen bears");
+    pub(crate) const SLEW_V_PER_US: FieldSpec =
+        number("slew_v_per_us", super::drive::SLEW, NO_LIMIT, "fastest change of the envelope");
 }
 
-/// `[coating]`
+/// A slab of the coating.
 pub(super) mod coating {
     use super::*;
 
@@ -170,20 +198,19 @@ pub(super) mod finger {
 pub(super) mod drive {
     use super::*;
 
-    pub(crate) const VOLTAGE_MAX_V_RMS: FieldSpec = number(
-        "voltage_max_v_rms",
-        Range::new(1.0, 1_000.0, " V rms"),
-        Number(150.0),
-        "largest rms voltage over a carrier period",
-    );
+    pub(crate) const V_RMS: Range = Range::new(1.0, 1_000.0, " V rms");
+    pub(crate) const V_PEAK: Range = Range::new(2.0, 2_000.0, " V peak");
+    pub(crate) const SLEW: Range = Range::new(0.001, 1_000.0, " V/us");
+    pub(crate) const VOLTAGE_MAX_V_RMS: FieldSpec =
+        number("voltage_max_v_rms", V_RMS, Number(150.0), "largest rms voltage over a carrier period");
     pub(crate) const VOLTAGE_MAX_V_PEAK: FieldSpec = number(
         "voltage_max_v_peak",
-        Range::new(2.0, 2_000.0, " V peak"),
+        V_PEAK,
         Means("what the rms voltage needs, within the board's limit"),
         "largest peak voltage; at most the board's limit",
     );
     pub(crate) const SLEW_V_PER_US: FieldSpec =
-        number("slew_v_per_us", Range::new(0.001, 1_000.0, " V/us"), Number(5.0), "fastest change of the envelope");
+        number("slew_v_per_us", SLEW, Number(5.0), "fastest change of the envelope");
     pub(crate) const HOST_TIMEOUT_MS: FieldSpec = number(
         "host_timeout_ms",
         Range::new(20.0, 1_000.0, " ms"),

@@ -1,8 +1,10 @@
 //! `frixel demo`: the bundled brick texture on the simulator.
 
+use std::io::ErrorKind;
 use std::path::Path;
 
 use super::error::CommandError;
+use super::terminal::print_line;
 use super::{DemoArgs, PlayArgs, play};
 
 /// The scene and its picture are embedded in the executable, so that the demo needs no files.
@@ -11,29 +13,26 @@ const PICTURE: &[u8] = include_bytes!("../../../../scenes/textures/brick.png");
 
 pub(super) fn run(args: &DemoArgs) -> Result<(), CommandError> {
     let scene = args.out.join("brick.toml");
-    write(&scene, SCENE.as_bytes())?;
-    write(&args.out.join("textures/brick.png"), PICTURE)?;
-    play::run(&PlayArgs {
-        scene: scene.clone(),
-        port: "sim".into(),
-        stroke: None,
-        seconds: None,
-        out: args.out.clone(),
-        json: false,
-        seed: 1,
-        csv_hz: 1000,
-        arm: false,
-        watch: false,
-        stream: None,
-        stream_hz: None,
-    })?;
-    println!("change a copy of {} and play that: frixel play COPY.toml", scene.display());
-    Ok(())
+    create(&args.out.join("textures/brick.png"), PICTURE)?;
+    let place = scene.display();
+    if create(&scene, SCENE.as_bytes())? {
+        print_line(format_args!("{place} is new: a wall of bricks, as a picture of friction"))?;
+    } else {
+        print_line(format_args!("{place} plays as it is in this folder; remove it to get the bundled one back"))?;
+    }
+    play::run(&PlayArgs { out: args.out.clone(), ..PlayArgs::of(&scene) })?;
+    print_line(format_args!("change {place} and play it again: frixel play {place}"))
 }
 
-fn write(path: &Path, bytes: &[u8]) -> Result<(), CommandError> {
+/// Writes a file unless there is one already, and returns whether it did.
+fn create(path: &Path, bytes: &[u8]) -> Result<bool, CommandError> {
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder).map_err(CommandError::writing(folder))?;
     }
-    std::fs::write(path, bytes).map_err(CommandError::writing(path))
+    let created = std::fs::File::create_new(path);
+    match created.and_then(|mut file| std::io::Write::write_all(&mut file, bytes)) {
+        Ok(()) => Ok(true),
+        Err(error) if error.kind() == ErrorKind::AlreadyExists => Ok(false),
+        Err(error) => Err(CommandError::writing(path)(error)),
+    }
 }

@@ -5,11 +5,11 @@ use frixel_wire::hello::{Hello, feature};
 
 use super::InfoArgs;
 use super::error::CommandError;
+use super::terminal::print;
 
 pub(super) fn run(args: &InfoArgs) -> Result<(), CommandError> {
     let device = Device::connect(SerialLink::open(&args.port, DEFAULT_BAUD)?)?;
-    print!("{}", describe(device.hello()));
-    Ok(())
+    print(describe(device.hello()))
 }
 
 /// Formats a hello message as text.

@@ -13,8 +13,9 @@ mod scene;
 #[cfg(unix)]
 mod sim;
 mod stroke;
+mod terminal;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand};
 
@@ -123,6 +124,26 @@ struct InfoArgs {
     port: String,
 }
 
+impl PlayArgs {
+    /// The options of a play on the simulator without any option.
+    fn of(scene: &Path) -> Self {
+        Self {
+            scene: scene.to_owned(),
+            port: "sim".into(),
+            stroke: None,
+            seconds: None,
+            out: "frixel-out".into(),
+            json: false,
+            seed: 1,
+            csv_hz: 1000,
+            arm: false,
+            watch: false,
+            stream: None,
+            stream_hz: None,
+        }
+    }
+}
+
 impl Cli {
     pub(crate) fn run(self) -> Result<(), CommandError> {
         match self.command {
@@ -149,4 +170,9 @@ fn seconds(text: &str) -> Result<f64, String> {
         Ok(seconds) if seconds > 0.0 && seconds <= 86_400.0 => Ok(seconds),
         _ => Err("expected a number of seconds above 0, at most a day".into()),
     }
+}
+
+/// Prints the error that ended a command.
+pub(crate) fn report_error(error: &CommandError) {
+    terminal::note(format_args!("frixel: {error}"));
 }

@@ -21,6 +21,7 @@ use frixel::scene_file;
 use super::PlayArgs;
 use super::error::CommandError;
 use super::interrupt::Interrupt;
+use super::terminal::{self, note, print_line};
 use live_scene::LiveScene;
 use rigs::Target;
 
@@ -44,17 +45,14 @@ pub(super) fn run(args: &PlayArgs) -> Result<(), CommandError> {
         Target::Emulator => rigs::play_on_emulator(args, &scene, &interrupt),
         Target::Port => rigs::play_on_port(args, &scene, live_scene, &interrupt),
     }?;
-    print(args, &played);
+    print(args, &played)?;
     played.failure.map_or(Ok(()), Err)
 }
 
-fn print(args: &PlayArgs, Played { report, files, .. }: &Played) {
+fn print(args: &PlayArgs, Played { report, files, .. }: &Played) -> Result<(), CommandError> {
     if args.json {
-        println!("{}", report.to_json());
-        return;
+        return print_line(report.to_json());
     }
-    print!("{}", report.summary());
-    for file in files {
-        println!("  {:<16} {}", "wrote", file.display());
-    }
+    terminal::print(report.summary())?;
+    files.iter().try_for_each(|file| print_line(format_args!("  {:<16} {}", "wrote", file.display())))
 }

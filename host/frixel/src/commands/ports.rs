@@ -3,14 +3,15 @@
 use frixel_driver::ports;
 
 use super::error::CommandError;
+use super::terminal::print_line;
 
 pub(super) fn run() -> Result<(), CommandError> {
     let found = ports()?;
     if found.is_empty() {
-        println!("no serial port found; plug a board in, or start `frixel sim` and use the port that it prints");
+        print_line("no serial port found; plug a board in, or start `frixel sim` and use the port that it prints")?;
     }
     for port in found {
-        println!("{port}");
+        print_line(port)?;
     }
     Ok(())
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::error::CommandError;
+use super::terminal::print_line;
 
 #[derive(Debug, Args)]
 pub(super) struct ReportArgs {
@@ -18,7 +19,7 @@ pub(super) struct ReportArgs {
 
 pub(super) fn run(args: &ReportArgs) -> Result<(), CommandError> {
     for file in frixel::report::write(&args.out, args.bench.as_deref())? {
-        println!("  {:<16} {}", "wrote", file.display());
+        print_line(format_args!("  {:<16} {}", "wrote", file.display()))?;
     }
     Ok(())
 }

@@ -1,7 +1,5 @@
 //! `frixel sim`.
 
-use std::io::{self, Write};
-
 use frixel::rigs::Server;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
 
@@ -9,6 +7,7 @@ use super::SimArgs;
 use super::error::CommandError;
 use super::interrupt::Interrupt;
 use super::stroke::stroke;
+use super::terminal::{note, print_line};
 
 /// Size of the screen that the generated stroke covers: that of the bundled scenes.
 const SCREEN_WIDTH_M: f64 = 0.12;
@@ -28,10 +27,10 @@ pub(super) fn run(args: &SimArgs) -> Result<(), CommandError> {
     let mut rig = Rig::new(&mut memory, &config, stroke, args.seed)?;
     let tick_hz = config.board.tick_hz;
     let server = Server::open(&args.out, tick_hz, tick_hz / ROWS_HZ)?;
-    println!("port: {}", server.path());
-    io::stdout().flush().map_err(CommandError::writing("standard output".as_ref()))?;
-    eprintln!("a virtual board is there until Ctrl-C; in another terminal: frixel play SCENE --port {}", server.path());
+    print_line(format_args!("port: {}", server.path()))?;
+    let path = server.path();
+    note(format_args!("a virtual board is there until Ctrl-C; in another terminal: frixel play SCENE --port {path}"));
     server.run(&mut rig, &|| interrupt.is_requested())?;
-    eprintln!("wrote {0}/felt.csv and {0}/events.csv", args.out.display());
+    note(format_args!("wrote {0}/felt.csv and {0}/events.csv", args.out.display()));
     Ok(())
 }

@@ -6,6 +6,7 @@ use std::path::Path;
 use frixel_hil_sim::Stroke;
 
 use super::error::CommandError;
+use super::terminal::note;
 
 /// Duration of a generated stroke without `--seconds`, s.
 const NATURAL_STROKE_S: f64 = 3.0;
@@ -71,9 +72,9 @@ pub(super) fn check_on_screen(
     if off > 0 {
         let percent = (100.0 * f64::from(off) / f64::from(on + off)).max(0.1);
         let path = path.display();
-        eprintln!(
+        note(format_args!(
             "{path}: the finger is off the screen ({width_mm} by {height_mm} mm) for {percent:.1} % of the stroke"
-        );
+        ));
     }
     Ok(())
 }

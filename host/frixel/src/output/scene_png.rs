@@ -6,24 +6,27 @@ use std::path::Path;
 use super::map::chart;
 use super::trace::Trace;
 use super::{OutputError, Subject};
-use crate::chart::{Line, Look, Mark, RGBColor, colour};
-use frixel_scene::reference::Reference;
-use frixel_scene::{MapGrid, Program};
+use crate::chart::{Line, Look, Mark, RGBColor};
+use frixel_layers::Layer;
+use frixel_scene::{Preview, Program};
 
-/// Largest size of the map, in pixels.
-const MAP_MAX: (u32, u32) = (1_000, 800);
 const STROKE: RGBColor = RGBColor(255, 59, 48);
 const CASING: RGBColor = RGBColor(255, 255, 255);
 
 /// Draws the friction that a program targets everywhere on the screen, and the stroke of a run over it. The colours
-/// span the reachable range; targets beyond it have the colour of the nearer end.
+/// span the reachable range; targets beyond it have the colour of the nearer end, and are hatched.
+///
+/// Friction that depends on the finger's speed is drawn at the stroke's median speed, and vibrations and streams at
+/// their largest; the caption says so.
 pub fn write_scene_png(path: &Path, subject: &Subject, program: &Program, trace: &Trace) -> Result<(), OutputError> {
-    let grid = MapGrid::new(program, MAP_MAX);
-    let reference = Reference::new(program);
-    let colour_at =
-        |(x_m, y_m)| colour(reference.electric_friction_n(x_m, y_m) / program.reach.electric_friction_max_n);
-    let mut chart = chart(&grid, grid.places_m().map(colour_at).collect(), &program.reach);
-    chart.title = subject.title();
+    let default = Preview::default();
+    let median_m_per_s = trace.median_speed_mm_s().map(|speed_mm_s| 1e-3 * speed_mm_s);
+    let preview = Preview { speed_m_per_s: median_m_per_s.unwrap_or(default.speed_m_per_s), ..default };
+    let mut chart = chart(&subject.title(), program, &preview);
+    let depends_on_speed = program.records.iter().any(|record| matches!(record.layer, Layer::Speed(_)));
+    if median_m_per_s.is_some() && depends_on_speed {
+        chart.caption.push("That is the stroke's median speed.".to_owned());
+    }
     let strokes: Vec<Vec<(f64, f64)>> = trace.strokes().collect();
     let start = strokes.first().and_then(|stroke| stroke.first()).copied();
     for panel in &mut chart.panels {

@@ -9,6 +9,11 @@ const PLACES_MAX: usize = 8_000;
 /// Least distance between two stroke points, mm.
 const PLACE_STEP_MM: f64 = 0.2;
 
+/// Largest number of speeds that are stored for the median.
+const SPEEDS_MAX: usize = 8_192;
+/// A finger slower than this stands still and feels no texture, mm/s.
+const SLIDES_FROM_MM_S: f64 = 2.0;
+
 /// Friction, voltage and stroke of a run. Long runs are reduced to least and largest value of each span of time.
 #[derive(Clone, Debug)]
 pub struct Trace {
@@ -17,6 +22,38 @@ pub struct Trace {
     rows_in_last: usize,
     stroke: Vec<Option<(f64, f64)>>,
     place_step_mm: f64,
+    speeds: Speeds,
+}
+
+/// Every n-th speed of the sliding finger.
+#[derive(Clone, Debug)]
+struct Speeds {
+    mm_s: Vec<f64>,
+    rows_per_speed: usize,
+    rows: usize,
+}
+
+impl Speeds {
+    fn push(&mut self, speed_mm_s: f64) {
+        if self.rows.is_multiple_of(self.rows_per_speed) {
+            self.mm_s.push(speed_mm_s);
+        }
+        self.rows += 1;
+        if self.mm_s.len() > SPEEDS_MAX {
+            let mut index = 0_usize;
+            self.mm_s.retain(|_| {
+                index += 1;
+                index % 2 == 1
+            });
+            self.rows_per_speed *= 2;
+        }
+    }
+
+    fn median_mm_s(&self) -> Option<f64> {
+        let mut sorted = self.mm_s.clone();
+        sorted.sort_by(f64::total_cmp);
+        sorted.get(sorted.len() / 2).copied()
+    }
 }
 
 /// The extremes over consecutive rows.
@@ -88,12 +125,22 @@ impl Default for Trace {
 impl Trace {
     /// Creates an empty trace.
     pub fn new() -> Self {
-        Self { spans: Vec::new(), rows_per_span: 1, rows_in_last: 1, stroke: Vec::new(), place_step_mm: PLACE_STEP_MM }
+        Self {
+            spans: Vec::new(),
+            rows_per_span: 1,
+            rows_in_last: 1,
+            stroke: Vec::new(),
+            place_step_mm: PLACE_STEP_MM,
+            speeds: Speeds { mm_s: Vec::new(), rows_per_speed: 1, rows: 0 },
+        }
     }
 
     /// Adds the next row.
     pub fn push(&mut self, row: &FeltRow) {
         self.push_span(Span::of(row));
+        if let Some(speed_mm_s) = row.speed_mm_s.filter(|speed_mm_s| *speed_mm_s >= SLIDES_FROM_MM_S) {
+            self.speeds.push(speed_mm_s);
+        }
         self.push_place(row.x_mm.zip(row.y_mm).filter(|(x_mm, y_mm)| x_mm.is_finite() && y_mm.is_finite()));
     }
 
@@ -108,6 +155,11 @@ impl Trace {
             .split(Option::is_none)
             .filter(|piece| !piece.is_empty())
             .map(|piece| piece.iter().flatten().copied().collect())
+    }
+
+    /// Median speed of the finger while it slides, mm/s; `None` if it never did.
+    pub(super) fn median_speed_mm_s(&self) -> Option<f64> {
+        self.speeds.median_mm_s()
     }
 
     fn push_span(&mut self, span: Span) {

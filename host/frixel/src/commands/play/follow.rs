@@ -11,7 +11,7 @@ use super::live_scene::LiveScene;
 use super::outputs::Outputs;
 use super::plan::Plan;
 use super::progress::Bars;
-use super::{CommandError, Interrupt, PlayArgs, Played};
+use super::{CommandError, Interrupt, PlayArgs, Played, note};
 
 /// Plays until the plan is complete, the user interrupts it, or the board stops. Everything up to then is recorded.
 pub(super) fn follow<L: RecordedLink>(
@@ -95,7 +95,7 @@ impl<L: RecordedLink> Play<'_, L> {
         let interrupted = is_requested && target.is_virtual_time();
         if interrupted {
             let (played_s, seconds) = (recorder.t_s(), self.plan.seconds());
-            eprintln!("interrupted: what follows is of the first {played_s:.3} s of {seconds:.3} s");
+            note(format_args!("interrupted: what follows is of the first {played_s:.3} s of {seconds:.3} s"));
         }
         let realtime_factor = target.is_virtual_time().then(|| recorder.t_s() / playing.as_secs_f64());
         let report = Report::new(target.name(), &recorder.summary(), &program.reach, &counters, realtime_factor)

@@ -12,6 +12,7 @@ use frixel_scene::{Program, compile};
 use frixel_wire::hello::Hello;
 use frixel_wire::message::Refusal;
 
+use super::note;
 use super::plan::print_notes;
 use super::saved_file::SavedFile;
 
@@ -53,28 +54,28 @@ fn replace<L: RecordedLink>(
     let program = match compiled {
         Ok(program) => program,
         Err(error) => {
-            eprintln!("{error}");
-            eprintln!("frixel: {} has mistakes: the scene before plays on", path.display());
+            note(error);
+            note(format_args!("frixel: {} has mistakes: the scene before plays on", path.display()));
             return Ok(None);
         }
     };
     match player.replace(&program) {
         Ok(()) => {
             print_notes(&program);
-            eprintln!("frixel: {} plays as it was saved", path.display());
+            note(format_args!("frixel: {} plays as it was saved", path.display()));
             Ok(Some(program))
         }
         Err(PlayError::Device(DeviceError::Refused { refusal: Refusal::BitmapPoolFull { len, free }, .. })) => {
-            eprintln!(
+            note(format_args!(
                 "frixel: the pictures of {} and of the scene that plays do not fit on the board together ({len} bytes, \
                  {free} free): the scene before plays on; play the file anew without --watch, or give its pictures a \
                  larger `pitch_mm`",
                 path.display()
-            );
+            ));
             Ok(None)
         }
         Err(PlayError::Device(refused @ DeviceError::Refused { .. })) => {
-            eprintln!("frixel: {refused}: the scene before plays on");
+            note(format_args!("frixel: {refused}: the scene before plays on"));
             Ok(None)
         }
         Err(error) => Err(error),

@@ -110,7 +110,7 @@ impl Plan {
 /// Prints the values that the compiler converted, rounded or clamped.
 pub(super) fn print_notes(program: &Program) {
     for note in &program.notes {
-        eprintln!("{note}");
+        super::note(note);
     }
 }
 

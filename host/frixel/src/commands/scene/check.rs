@@ -9,6 +9,7 @@ use frixel_hil_sim::RigConfig;
 use frixel_scene::compile;
 
 use super::super::error::CommandError;
+use super::super::terminal::{print, print_line};
 
 #[derive(Debug, Args)]
 pub(in super::super) struct CheckArgs {
@@ -29,7 +30,7 @@ pub(super) fn run(args: &CheckArgs) -> Result<(), CommandError> {
         scene_file::load(&args.scene).and_then(|scene| Ok(compile(&scene, &rig.board.limits, rig.board.tick_hz)?));
     let program = match compiled {
         Err(error) if args.json => {
-            println!("{}", error.to_json());
+            print_line(error.to_json())?;
             return Err(error.into());
         }
         compiled => compiled?,
@@ -37,9 +38,8 @@ pub(super) fn run(args: &CheckArgs) -> Result<(), CommandError> {
     let check = SceneCheck::of(&program, &rig)?;
     let check = if args.board { check.with_board(&program) } else { check };
     if args.json {
-        println!("{}", check.to_json());
+        print_line(check.to_json())
     } else {
-        print!("{}", check.summary());
+        print(check.summary())
     }
-    Ok(())
 }

@@ -1,0 +1,30 @@
+//! Text for people, on standard output and standard error. A reader that has closed its end is not an error.
+
+use std::fmt::Display;
+use std::io::{self, ErrorKind, Write, stderr, stdout};
+use std::path::Path;
+
+use super::error::CommandError;
+
+/// Writes text to standard output. Does nothing once its reader has gone, for example `head` at its last line.
+pub(super) fn print(text: impl Display) -> Result<(), CommandError> {
+    let mut output = stdout().lock();
+    write!(output, "{text}").and_then(|()| output.flush()).or_else(unless_closed)
+}
+
+/// Like [`print`], with a line feed at the end.
+pub(super) fn print_line(text: impl Display) -> Result<(), CommandError> {
+    print(format_args!("{text}\n"))
+}
+
+/// Writes a line to standard error. Nothing can be said about a failure to do so.
+pub(super) fn note(text: impl Display) {
+    let _ = writeln!(stderr().lock(), "{text}");
+}
+
+fn unless_closed(error: io::Error) -> Result<(), CommandError> {
+    match error.kind() {
+        ErrorKind::BrokenPipe => Ok(()),
+        _ => Err(CommandError::writing(Path::new("standard output"))(error)),
+    }
+}

@@ -1,0 +1,32 @@
+//! `frixel demo`, twice.
+
+use std::fs;
+
+use tempfile::TempDir;
+
+use super::succeed;
+
+#[test]
+fn the_demo_plays_an_edited_scene_and_never_overwrites_it() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("frixel-out/brick.toml");
+    let (said, _) = succeed(folder.path(), &["demo"]);
+    assert!(said.contains("brick.toml is new"), "{said}");
+    assert!(said.contains("frixel play frixel-out/brick.toml"), "{said}");
+
+    let edited = fs::read_to_string(&path).unwrap().replace("white_n = 0.026", "white_n = 0.013");
+    fs::write(&path, &edited).unwrap();
+    let picture = folder.path().join("frixel-out/textures/brick.png");
+    let mut mine = fs::read(&picture).unwrap();
+    mine.extend(b"after the end");
+    fs::write(&picture, &mine).unwrap();
+
+    let (said, _) = succeed(folder.path(), &["demo"]);
+    assert!(said.contains("brick.toml plays as it is"), "{said}");
+    assert_eq!(fs::read_to_string(&path).unwrap(), edited);
+    assert_eq!(fs::read(&picture).unwrap(), mine);
+    // 13 mN instead of 26 mN above the natural friction of 250 mN.
+    let wanted = said.lines().find(|line| line.trim_start().starts_with("wanted")).unwrap();
+    let most: f64 = wanted.split_whitespace().rev().nth(1).unwrap().parse().unwrap();
+    assert!((255.0..263.01).contains(&most), "{wanted}");
+}

@@ -1,0 +1,41 @@
+//! The pictures of a play.
+
+use std::collections::HashMap;
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+use tempfile::TempDir;
+
+use super::{scene, succeed};
+
+/// Colours of the map that cover more than 200 pixels, without greys.
+fn map_colours(path: &Path) -> usize {
+    let mut decoder = png::Decoder::new(BufReader::new(File::open(path).unwrap()));
+    decoder.set_transformations(png::Transformations::EXPAND);
+    let mut reader = decoder.read_info().unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut bytes).unwrap();
+    let width = reader.info().width as usize;
+    let mut counts: HashMap<[u8; 3], usize> = HashMap::new();
+    // To the right of the map is the colour scale.
+    for row in bytes.chunks_exact(3 * width) {
+        for pixel in row.chunks_exact(3).take(width - 150) {
+            *counts.entry([pixel[0], pixel[1], pixel[2]]).or_default() += 1;
+        }
+    }
+    let coloured = |[red, green, blue]: &[u8; 3]| red != green || green != blue;
+    counts.iter().filter(|(colour, count)| **count > 200 && coloured(colour)).count()
+}
+
+#[test]
+fn the_map_of_a_play_shows_what_only_a_sliding_finger_or_time_brings() {
+    // Corduroy that comes with speed, and a heart that vibrates: the map has the ribs, and the shape of the heart.
+    for (name, colours_min) in [("ribs.toml", 10), ("heartbeat.toml", 2), ("warning.toml", 2)] {
+        let folder = TempDir::new().unwrap();
+        succeed(folder.path(), &["play", &scene(name), "--seconds", "1"]);
+        let colours = map_colours(&folder.path().join("frixel-out/scene.png"));
+        // The stroke itself is red.
+        assert!(colours > colours_min, "{name}: {colours} colours");
+    }
+}

@@ -1,0 +1,42 @@
+//! A reader that goes away, such as `head`, ends a command quietly.
+
+use std::process::{Output, Stdio};
+
+use tempfile::TempDir;
+
+use super::{command, scene};
+
+/// Runs a command whose standard output, or whose both outputs, nobody reads.
+fn unread(arguments: &[&str], both: bool) -> Output {
+    let folder = TempDir::new().unwrap();
+    let closed = || Stdio::from(std::io::pipe().unwrap().1);
+    let mut command = command(folder.path(), arguments);
+    command.stdout(closed()).stderr(if both { closed() } else { Stdio::piped() });
+    command.output().unwrap()
+}
+
+#[test]
+fn a_closed_pipe_ends_a_command_quietly() {
+    let brick = scene("brick.toml");
+    for arguments in [
+        &["play", brick.as_str(), "--seconds", "0.1"][..],
+        &["play", brick.as_str(), "--seconds", "0.1", "--json"],
+        &["demo"],
+        &["scene", "check", brick.as_str()],
+        &["scene", "check", brick.as_str(), "--json"],
+        &["scene", "schema"],
+        &["scene", "preview", brick.as_str(), "-o", "map.png"],
+        &["ports"],
+        &["--help"],
+        &["play", "--help"],
+    ] {
+        let output = unread(arguments, false);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success() && !said.contains("panicked"), "{arguments:?}: {:?}: {said}", output.status);
+        let output = unread(arguments, true);
+        assert!(output.status.success(), "{arguments:?} without any reader: {:?}", output.status);
+    }
+    for arguments in [&["play", "nowhere.toml"][..], &["scene", "check", "nowhere.toml", "--json"]] {
+        assert_eq!(unread(arguments, true).status.code(), Some(1), "{arguments:?}");
+    }
+}
