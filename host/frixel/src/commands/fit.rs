@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use frixel::fit::{self, Settings, Summary};
 use frixel::output::write_fit_svg;
-use frixel_scene::Experiment;
+use frixel_scene::{Experiment, Screen};
 use time::OffsetDateTime;
 
 use super::error::CommandError;
@@ -28,6 +28,10 @@ pub(super) struct FitArgs {
     /// Print one JSON object in place of the summary.
     #[arg(long)]
     json: bool,
+    /// The screen that friction was measured on: a bundled name or a screen file (docs/scene.md); without it, the
+    /// example screen. The profile holds for this screen.
+    #[arg(long, value_name = "SCREEN")]
+    screen: Option<String>,
     /// Voltage at which electric friction is stated, in volts rms.
     #[arg(long, value_name = "V_RMS", default_value_t = 150.0, value_parser = positive)]
     voltage: f64,
@@ -46,11 +50,11 @@ pub(super) struct FitArgs {
 }
 
 pub(super) fn run(args: &FitArgs) -> Result<(), CommandError> {
-    let screen = screen();
+    let (screen_name, screen) = screen(args.screen.as_deref())?;
     let settings = Settings {
         voltage_v_rms: args.voltage,
         normal_load_n: args.load,
-        coating_gap_m: screen.coating_gap_m,
+        coating_gap_m: 1e-6 * screen.coating_gap_um(),
         without: args.without.clone(),
         seed: args.seed,
     };
@@ -58,7 +62,7 @@ pub(super) fn run(args: &FitArgs) -> Result<(), CommandError> {
     let fit = fit::fit(fit::rows(open(&args.data)?).map_err(refused)?, &settings).map_err(refused)?;
     if let Some(output) = &args.output {
         let date = OffsetDateTime::now_utc().date().to_string();
-        let experiment = Experiment { date, method: args.method.clone(), screen: screen.name.clone() };
+        let experiment = Experiment { date, method: args.method.clone(), screen: screen_name.clone() };
         fs::write(output, fit::profile(&fit, experiment).to_toml()).map_err(CommandError::writing(output))?;
         write_fit_svg(&residuals_path(output), &format!("{}, fitted", args.data.display()), &fit)?;
     }
@@ -66,22 +70,26 @@ pub(super) fn run(args: &FitArgs) -> Result<(), CommandError> {
         println!("{}", serde_json::json!(Summary::from(&fit)));
         return Ok(());
     }
-    print!("{}", fit::words(&fit, &screen.name));
+    print!("{}", fit::words(&fit, &screen_name));
     if let Some(output) = &args.output {
         println!("  {:<22} {}, {}", "wrote", output.display(), residuals_path(output).display());
     }
     Ok(())
 }
 
-/// What a fit needs of a screen.
-struct ScreenCoating {
-    name: String,
-    coating_gap_m: f64,
-}
-
-/// The example screen: 1 um of silicon dioxide.
-fn screen() -> ScreenCoating {
-    ScreenCoating { name: "example".to_owned(), coating_gap_m: 1e-6 / 3.9 }
+/// The screen of the experiment and the name by which profiles refer to it.
+pub(super) fn screen(named: Option<&str>) -> Result<(String, Screen), CommandError> {
+    let Some(named) = named else { return Ok(("example".to_owned(), Screen::example())) };
+    if let Some(screen) = Screen::bundled(named) {
+        return Ok((named.to_owned(), screen));
+    }
+    let path = Path::new(named);
+    let text = fs::read_to_string(path).map_err(CommandError::reading(path))?;
+    let screen = Screen::parse(&text, named)?;
+    let name = screen.name.clone().unwrap_or_else(|| {
+        path.file_stem().map_or_else(|| named.to_owned(), |stem| stem.to_string_lossy().into_owned())
+    });
+    Ok((name, screen))
 }
 
 fn open(path: &Path) -> Result<Box<dyn Read>, CommandError> {
