@@ -4,6 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use frixel::check::RehearsalError;
+use frixel::fit::FitError;
 use frixel::model_csv::CsvError;
 use frixel::output::OutputError;
 use frixel::player::PlayError;
@@ -61,6 +62,8 @@ pub(crate) enum CommandError {
     NaturalStroke(StrokeError),
     #[error("{input}: {source}")]
     ModelCsv { input: String, source: CsvError },
+    #[error("{}: {source}", path.display())]
+    Fit { path: PathBuf, source: FitError },
     #[error("{} is the input as well: writing it would destroy it; give --output another name", path.display())]
     OutputIsInput { path: PathBuf },
     #[error("{} cannot be read ({source}): check the path", path.display())]

@@ -2,6 +2,7 @@
 
 mod demo;
 mod error;
+mod fit;
 mod info;
 mod interrupt;
 mod model;
@@ -52,6 +53,8 @@ enum Command {
     /// Evaluate or invert the contact model over rows of CSV.
     #[command(subcommand)]
     Model(model::ModelCommand),
+    /// Fit a finger's profile to measured friction.
+    Fit(fit::FitArgs),
     /// Draw the contact model, its error and its cost on one page.
     Report(report::ReportArgs),
 }
@@ -163,6 +166,7 @@ impl Cli {
             Some(Command::Ports) => ports::run(),
             Some(Command::Info(args)) => info::run(&args),
             Some(Command::Model(command)) => model::run(&command),
+            Some(Command::Fit(args)) => fit::run(&args),
             Some(Command::Report(args)) => report::run(&args),
         }
     }

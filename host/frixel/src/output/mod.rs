@@ -3,6 +3,7 @@
 //! - [`FeltCsv`] and [`EventCsv`]: `felt.csv` and `events.csv`, row by row while the scene plays.
 //! - [`Trace`]: the same rows, downsampled for pictures, in bounded memory.
 //! - [`write_felt_svg`]: friction and voltage over time.
+//! - [`write_fit_svg`]: the residual plots of a fit.
 //! - [`write_scene_png`]: the friction map of a program with the stroke over it.
 //! - [`write_preview_png`]: the friction map of a program before it is played.
 //! - [`Report`]: the results of a run, as JSON and as a short text.
@@ -11,6 +12,7 @@
 
 mod csv;
 mod felt_svg;
+mod fit_svg;
 mod map;
 mod preview_png;
 mod report;
@@ -28,6 +30,7 @@ use crate::chart::Chart;
 
 pub use csv::{CsvFile, CsvRow, EventCsv, EventRow, FeltCsv};
 pub use felt_svg::write_felt_svg;
+pub use fit_svg::write_fit_svg;
 pub use preview_png::write_preview_png;
 pub use report::Report;
 pub use scene_png::write_scene_png;
