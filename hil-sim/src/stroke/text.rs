@@ -54,12 +54,18 @@ fn find_columns(header: &StringRecord, line: u64) -> Result<[usize; 3], StrokeEr
 }
 
 fn row(record: &StringRecord, line: u64, places: [usize; 3]) -> Result<Row, StrokeError> {
+    let cells = places.map(|place| record.get(place).unwrap_or_default());
+    let [t_cell, x_cell, y_cell] = cells;
+    let is_lifted = x_cell.is_empty() && y_cell.is_empty() && places.iter().all(|place| *place < record.len());
+    if is_lifted {
+        return Ok(Row { t_s: number(t_cell, line, COLUMNS[0])?, place: None });
+    }
     let mut values = [0.0; 3];
-    for ((value, place), column) in values.iter_mut().zip(places).zip(COLUMNS) {
-        *value = number(record.get(place).unwrap_or_default(), line, column)?;
+    for ((value, cell), column) in values.iter_mut().zip(cells).zip(COLUMNS) {
+        *value = number(cell, line, column)?;
     }
     let [t_s, x_mm, y_mm] = values;
-    Ok(Row { t_s, place: Point { x_m: x_mm / MM_PER_M, y_m: y_mm / MM_PER_M } })
+    Ok(Row { t_s, place: Some(Point { x_m: x_mm / MM_PER_M, y_m: y_mm / MM_PER_M }) })
 }
 
 fn number(cell: &str, line: u64, column: &'static str) -> Result<f64, StrokeError> {

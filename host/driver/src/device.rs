@@ -228,6 +228,11 @@ impl<L: Link> Device<L> {
         self.exchange.receive(Duration::ZERO, name_of(&Command::Ping))
     }
 
+    /// Time on the link's clock.
+    pub fn now(&self) -> Duration {
+        self.exchange.now()
+    }
+
     /// Counts of frames and bytes since the link was opened.
     pub fn counters(&self) -> Counters {
         let written = self.exchange.link().written();

@@ -124,6 +124,11 @@ impl<L: RecordedLink> Player<L> {
         Ok(self.feed.insert(feed).start(&mut self.device)?)
     }
 
+    /// Whether the stream of [`Self::stream`] has ended and was played.
+    pub fn is_stream_over(&self) -> bool {
+        self.feed.as_ref().is_some_and(|feed| feed.is_over(&self.device))
+    }
+
     /// Replaces the scene that is playing between two ticks, and uses the new one as the reference of the record.
     pub fn replace(&mut self, program: &Program) -> Result<(), PlayError> {
         upload(&mut self.device, program, &mut |_| {})?;

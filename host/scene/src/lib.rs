@@ -65,6 +65,7 @@ mod target_range;
 #[allow(clippy::disallowed_methods, reason = "the tests read the bundled scenes")]
 mod tests;
 mod tick_cost;
+mod touched_layers;
 
 pub use compile::compile;
 pub use compile_error::{CompileError, Located};
@@ -80,3 +81,4 @@ pub use reach::{ROUNDING, Reach, carrier};
 pub use schema::json_schema;
 pub use target_range::{OutOfReach, TargetRange};
 pub use tick_cost::middle_mm;
+pub use touched_layers::TouchedLayers;

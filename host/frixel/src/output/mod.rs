@@ -5,11 +5,13 @@
 //! - [`write_felt_svg`]: friction and voltage over time.
 //! - [`write_scene_png`]: the friction map of a program with the stroke over it.
 //! - [`write_preview_png`]: the friction map of a program before it is played.
+//! - [`FeltLog`]: the log of a virtual board, which joins what its finger felt to the rows of a client.
 //! - [`Report`]: the results of a run, as JSON and as a short text.
 //!
 //! Equal inputs give byte-identical files.
 
 mod csv;
+mod felt_log;
 mod felt_svg;
 mod map;
 mod preview_png;
@@ -25,6 +27,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 pub use csv::{CsvFile, CsvRow, EventCsv, EventRow, FeltCsv};
+pub use felt_log::{FeltLog, FeltLogError};
 pub use felt_svg::write_felt_svg;
 pub use preview_png::write_preview_png;
 pub use report::Report;

@@ -21,7 +21,8 @@ pub(super) fn follow<L: RecordedLink>(
     live_scene: Option<LiveScene>,
     interrupt: &Interrupt,
 ) -> Result<Played, CommandError> {
-    let outputs = Outputs::create(args, plan.target)?;
+    let is_simulated = plan.target.is_virtual_time() || device.hello().board.is_simulated();
+    let outputs = Outputs::create(args, plan.target, is_simulated, &plan.program)?;
     let player = Player::new(device, plan.recorder()?);
     let mut play =
         Play { args, plan, player, outputs, live_scene, interrupt, bars: Bars::default(), writing: Duration::ZERO };
@@ -58,11 +59,14 @@ impl<L: RecordedLink> Play<'_, L> {
         }
         let mut left = self.plan.time_max();
         while !left.is_zero() && self.player.recorder_mut().ticks_left() > 0 && !self.interrupt.is_requested() {
+            if self.plan.ends_with_stream() && self.player.is_stream_over() {
+                break;
+            }
             let stepped = self.player.step(left);
             self.write_rows()?;
             left = left.saturating_sub(stepped.map_err(|error| self.error(error))?);
             self.refresh_scene()?;
-            self.bars.play(self.player.recorder_mut().t_s() / self.plan.seconds());
+            self.bars.play(self.player.recorder_mut().t_s(), self.plan.seconds());
         }
         self.player.stop().map_err(|error| self.error(error))
     }
@@ -78,7 +82,10 @@ impl<L: RecordedLink> Play<'_, L> {
     fn refresh_scene(&mut self) -> Result<(), CommandError> {
         let Some(live_scene) = &mut self.live_scene else { return Ok(()) };
         match live_scene.refresh(&mut self.player) {
-            Ok(Some(program)) => self.plan.program = program,
+            Ok(Some(program)) => {
+                self.outputs.replace(&program);
+                self.plan.program = program;
+            }
             Ok(None) => {}
             Err(error) => return Err(self.error(error)),
         }
@@ -101,7 +108,8 @@ impl<L: RecordedLink> Play<'_, L> {
         let report = Report::new(target.name(), &recorder.summary(), &program.reach, &counters, realtime_factor)
             .with_stream(stream);
         let written = self.outputs.write(&recorder.take_rows());
-        let finished = written.and_then(|()| self.outputs.finish(program));
+        let report = report.with_untouched(self.outputs.untouched_layers());
+        let finished = written.and_then(|()| self.outputs.finish(program, recorder.start_s().unwrap_or(0.0)));
         // Ctrl-C in a terminal also ends the emulator, which is not a failure.
         let failure = ended.err().filter(|_| !interrupted);
         let (files, failure) = match finished {

@@ -37,9 +37,5 @@ pub(super) fn run(args: &CheckArgs) -> Result<(), CommandError> {
     };
     let check = SceneCheck::of(&program, &rig)?;
     let check = if args.board { check.with_board(&program) } else { check };
-    if args.json {
-        print_line(check.to_json())
-    } else {
-        print(check.summary())
-    }
+    if args.json { print_line(check.to_json()) } else { print(check.summary()) }
 }
