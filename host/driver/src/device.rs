@@ -2,6 +2,7 @@
 
 mod stream;
 
+use std::ops::ControlFlow;
 use std::time::Duration;
 
 use frixel_layers::{Scene, features_of};
@@ -108,6 +109,19 @@ impl<L: Link> Device<L> {
     /// Uploads the scene, and those of its bitmaps that the board does not hold. The playing scene does not change
     /// before [`Self::commit`].
     pub fn upload(&mut self, upload: &Upload, progress: &mut dyn FnMut(Progress)) -> Result<(), DeviceError> {
+        self.upload_while(upload, &mut |now| {
+            progress(now);
+            ControlFlow::Continue(())
+        })
+    }
+
+    /// Like [`Self::upload`], until `progress`, which is called several times a second, breaks the upload off with
+    /// [`DeviceError::Interrupted`].
+    pub fn upload_while(
+        &mut self,
+        upload: &Upload,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<(), DeviceError> {
         upload.check()?;
         // The board refuses bytes that are not a scene, and reports the reason.
         let scene = Scene::parse(upload.scene).ok();

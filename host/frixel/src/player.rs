@@ -1,5 +1,6 @@
 //! Plays a compiled scene on any board through its [`Device`], and records the play.
 
+use std::ops::ControlFlow;
 use std::time::Duration;
 
 use frixel_driver::{Bitmap, Counters, Device, DeviceError, Event, Link, Progress, StreamStatus, Upload};
@@ -26,16 +27,24 @@ pub fn start<L: Link>(
     program: &Program,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<(), DeviceError> {
-    load(device, program, progress)?;
+    load(device, program, &mut uninterrupted(progress))?;
     device.arm()?;
     device.play()
+}
+
+/// Continues an upload whatever its progress.
+fn uninterrupted(progress: &mut dyn FnMut(Progress)) -> impl FnMut(Progress) -> ControlFlow<()> {
+    |now| {
+        progress(now);
+        ControlFlow::Continue(())
+    }
 }
 
 /// Disarms a board, whatever state an earlier client left it in, then uploads the scene without playing it.
 pub(crate) fn load<L: Link>(
     device: &mut Device<L>,
     program: &Program,
-    progress: &mut dyn FnMut(Progress),
+    progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<(), DeviceError> {
     device.disarm()?;
     upload(device, program, progress)
@@ -45,7 +54,7 @@ pub(crate) fn load<L: Link>(
 fn upload<L: Link>(
     device: &mut Device<L>,
     program: &Program,
-    progress: &mut dyn FnMut(Progress),
+    progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<(), DeviceError> {
     let scene = program.scene_bytes_for(device.hello().protocol);
     let bitmaps = program
@@ -59,7 +68,7 @@ fn upload<L: Link>(
         })
         .collect();
     let upload = Upload { scene: &scene, bitmaps };
-    device.upload(&upload, progress)?;
+    device.upload_while(&upload, progress)?;
     device.commit(upload.scene_crc32())
 }
 
@@ -103,14 +112,16 @@ impl<L: RecordedLink> Player<L> {
     }
 
     /// Uploads the scene and plays it. The board sends a telemetry message every `telemetry_period_ticks` ticks; 0
-    /// disables telemetry.
+    /// disables telemetry. `progress` may break the upload off.
     pub fn start(
         &mut self,
         program: &Program,
         telemetry_period_ticks: u32,
-        progress: &mut dyn FnMut(Progress),
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<(), PlayError> {
-        start(&mut self.device, program, progress)?;
+        load(&mut self.device, program, progress)?;
+        self.device.arm()?;
+        self.device.play()?;
         let begun = self.device.link_mut().begin();
         begun.map_err(|closed| DeviceError::Vanished { command: "play", closed })?;
         if telemetry_period_ticks > 0 {
@@ -131,7 +142,7 @@ impl<L: RecordedLink> Player<L> {
 
     /// Replaces the scene that is playing between two ticks, and uses the new one as the reference of the record.
     pub fn replace(&mut self, program: &Program) -> Result<(), PlayError> {
-        upload(&mut self.device, program, &mut |_| {})?;
+        upload(&mut self.device, program, &mut |_| ControlFlow::Continue(()))?;
         let hello = *self.device.hello();
         self.recorder_mut().replace(program, &hello.limits, hello.tick_hz).map_err(PlayError::Finger)
     }
@@ -232,7 +243,7 @@ pub fn simulate(program: &Program, simulation: &Simulation, feed: Option<Feed>) 
     let mut memory = BoardMemory::new();
     let rig = Rig::new(&mut memory, &simulation.rig, simulation.stroke.clone(), simulation.seed)?;
     let mut player = Player::new(Device::connect(SimLink::new(rig, Recorder::idle()))?, recorder);
-    player.start(program, 0, &mut |_| {})?;
+    player.start(program, 0, &mut |_| ControlFlow::Continue(()))?;
     if let Some(feed) = feed {
         player.stream(feed)?;
     }
@@ -265,7 +276,7 @@ mod tests {
         rig.world_mut().schedule_amplifier_fault(20_000..u64::MAX);
         let recorder = Recorder::new(&program, &board.limits, board.tick_hz, 400_000, 40).unwrap();
         let mut player = Player::new(Device::connect(SimLink::new(rig, Recorder::idle())).unwrap(), recorder);
-        player.start(&program, 0, &mut |_| {}).unwrap();
+        player.start(&program, 0, &mut |_| ControlFlow::Continue(())).unwrap();
         let error = (0..100).find_map(|_| player.step(Duration::MAX).err()).unwrap();
         assert!(matches!(error, PlayError::Stopped(StopReason::Fault(Fault::Amplifier))), "{error}");
         let recorder = player.into_recorder();

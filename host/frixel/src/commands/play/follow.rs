@@ -1,5 +1,6 @@
 //! Plays a plan on an open board, from the upload to the output files.
 
+use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use frixel::output::Report;
@@ -48,8 +49,11 @@ struct Play<'a, L: RecordedLink> {
 
 impl<L: RecordedLink> Play<'_, L> {
     fn start(&mut self) -> Result<(), CommandError> {
-        let Self { plan, player, bars, .. } = self;
-        let started = player.start(&plan.program, plan.telemetry_period_ticks, &mut |progress| bars.upload(progress));
+        let Self { plan, player, bars, interrupt, .. } = self;
+        let started = player.start(&plan.program, plan.telemetry_period_ticks, &mut |progress| {
+            bars.upload(progress);
+            if interrupt.is_requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
         started.map_err(|error| self.error(error))
     }
 
