@@ -1,7 +1,7 @@
 //! How long a tick of the world takes, by stroke: `cargo run --release -p frixel-hil-sim --example world_speed`.
 //!
-//! A square carrier of 1 kHz drives the default world for a minute of virtual time. The sum of the friction is printed
-//! so that the work cannot be left out.
+//! A square carrier of 1 kHz drives the ideal and the natural world for a minute of virtual time. The sum of the friction
+//! is printed so that the work cannot be left out.
 #![allow(clippy::disallowed_types, clippy::disallowed_methods, reason = "it measures wall time")]
 
 use std::error::Error;
@@ -24,27 +24,31 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("CSV, 1 kHz", Stroke::from_csv(&csv(SECONDS))?),
     ];
     for (name, stroke) in strokes {
-        let mut world = World::new(WorldConfig::default(), stroke, 1)?;
-        world.start_stroke();
-        let ticks = (SECONDS * f64::from(WorldConfig::default().tick_hz)) as u64;
-        let begin = Instant::now();
-        let mut friction_n = 0.0;
-        for tick in 0..ticks {
-            black_box(world.sense());
-            let dac_code = if (tick / 20).is_multiple_of(2) { 25_000 } else { -25_000 };
-            friction_n += world
-                .apply(black_box(Drive { dac_code: DacCode::from_bits(dac_code), amplifier_enable: true }))
-                .friction_n;
+        for (world, config) in [("ideal", WorldConfig::IDEAL), ("natural", WorldConfig::IDEAL.natural())] {
+            measure(&format!("{world}, {name}"), World::new(config, stroke.clone(), 1)?);
         }
-        let wall_s = begin.elapsed().as_secs_f64();
-        println!(
-            "{name:14} {:5.1} ns a tick, {:4.0} times real time, mean friction {:.6} N",
-            1e9 * wall_s / ticks as f64,
-            SECONDS / wall_s,
-            friction_n / ticks as f64
-        );
     }
     Ok(())
+}
+
+fn measure(name: &str, mut world: World) {
+    world.start_stroke();
+    let ticks = (SECONDS * f64::from(WorldConfig::IDEAL.tick_hz)) as u64;
+    let begin = Instant::now();
+    let mut friction_n = 0.0;
+    for tick in 0..ticks {
+        black_box(world.sense());
+        let dac_code = if (tick / 20).is_multiple_of(2) { 25_000 } else { -25_000 };
+        friction_n +=
+            world.apply(black_box(Drive { dac_code: DacCode::from_bits(dac_code), amplifier_enable: true })).friction_n;
+    }
+    let wall_s = begin.elapsed().as_secs_f64();
+    println!(
+        "{name:23} {:5.1} ns a tick, {:4.0} times real time, mean friction {:.6} N",
+        1e9 * wall_s / ticks as f64,
+        SECONDS / wall_s,
+        friction_n / ticks as f64
+    );
 }
 
 /// A finger that goes round in zigzags, a row every millisecond.

@@ -1,4 +1,5 @@
-//! The amplifier: DAC code in, electrode voltage out, with gain error, saturation and a first-order lag.
+//! The amplifier: DAC code in, electrode voltage out, with gain error, offset, saturation, a first-order lag and a
+//! limit on its current.
 
 use frixel_control::Drive;
 
@@ -17,20 +18,44 @@ pub struct AmplifierConfig {
     pub saturation_v_peak: f64,
     /// Time constant of the output, in seconds: 0 (no lag) to 10.
     pub time_constant_s: f64,
+    /// Voltage that is added to the output while the amplifier is enabled, in volts: -10 to 10.
+    pub offset_v: f64,
+    /// Fastest change of the output, in V/s, above 0: the amplifier's current limit over the capacitance that it
+    /// charges.
+    pub slew_v_per_s: f64,
+}
+
+impl AmplifierConfig {
+    /// Exact gain, no offset, no current limit, a time constant of 20 us, and 250 V: the simulated board's full scale,
+    /// above any voltage that it allows.
+    pub const IDEAL: Self = Self {
+        gain: 1.0,
+        saturation_v_peak: 250.0,
+        time_constant_s: 20e-6,
+        offset_v: 0.0,
+        slew_v_per_s: f64::INFINITY,
+    };
+
+    /// An amplifier as `docs/hardware.md` demands it: an offset of 0.5 V (assumed: 25 mV at the input of a gain of 20),
+    /// and a current limit of 5 mA into the simulated board's worst electrode, 0.53 nF.
+    pub const NATURAL: Self = Self { offset_v: 0.5, slew_v_per_s: 5e-3 / 0.53e-9, ..Self::IDEAL };
 }
 
 impl Default for AmplifierConfig {
-    /// Exact gain, a time constant of 20 us, and 250 V: the simulated board's full scale, above any voltage that it
-    /// allows.
+    /// [`Self::IDEAL`].
     fn default() -> Self {
-        Self { gain: 1.0, saturation_v_peak: 250.0, time_constant_s: 20e-6 }
+        Self::IDEAL
     }
 }
 
 /// The electrode voltage during a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Output {
-    /// Mean of the squared voltage over the tick, V^2.
+    /// Mean voltage over the tick, V.
+    pub(crate) mean_v: f64,
+    /// Variance of the voltage over the tick, V^2.
+    pub(crate) variance_v2: f64,
+    /// Mean of the squared voltage over the tick, V^2: the square of its mean plus its variance.
     pub(crate) mean_square_v2: f64,
     /// Voltage at the end of the tick, V.
     pub(crate) end_v: f64,
@@ -48,6 +73,18 @@ pub(crate) struct Amplifier {
     /// Variance of `e^(-t/tau)` over a tick.
     remainder_variance: f64,
     output_v: f64,
+    time_constant_s: f64,
+    offset_v: f64,
+    slew_v_per_s: f64,
+    /// Distance from the target above which the slew rate limits the output, V.
+    slewing_above_v: f64,
+    tick_period_s: f64,
+}
+
+impl Output {
+    fn new(mean_v: f64, variance_v2: f64, end_v: f64) -> Self {
+        Self { mean_v, variance_v2, mean_square_v2: mean_v * mean_v + variance_v2, end_v }
+    }
 }
 
 impl Amplifier {
@@ -56,6 +93,14 @@ impl Amplifier {
         let gain = above_zero("amplifier gain", config.gain)?;
         let saturation_v_peak = above_zero("amplifier saturation_v_peak", config.saturation_v_peak)?;
         let time_constant_s = zero_to_ten("amplifier time_constant_s", config.time_constant_s)?;
+        let slew_v_per_s = match config.slew_v_per_s {
+            unlimited if unlimited == f64::INFINITY => unlimited,
+            limited => above_zero("amplifier slew_v_per_s", limited)?,
+        };
+        let offset_v = config.offset_v;
+        if !(-10.0..=10.0).contains(&offset_v) {
+            return Err(OutOfRange { name: "amplifier offset_v", expected: "from -10 to 10", found: offset_v });
+        }
         let volts_per_code = gain * above_zero("full_scale_v_peak", full_scale_v_peak)? / f64::from(i16::MAX);
         // Infinite without a lag, which leaves remainder, mean and variance at zero.
         let tick_over_tau = 1.0 / (f64::from(tick_hz) * time_constant_s);
@@ -68,6 +113,12 @@ impl Amplifier {
             mean_remainder,
             remainder_variance: (mean_squared_remainder - mean_remainder * mean_remainder).max(0.0),
             output_v: 0.0,
+            time_constant_s,
+            offset_v,
+            slew_v_per_s,
+            // Infinity times zero: without a limit, nothing is above it.
+            slewing_above_v: if slew_v_per_s.is_finite() { slew_v_per_s * time_constant_s } else { f64::INFINITY },
+            tick_period_s: 1.0 / f64::from(tick_hz),
         })
     }
 
@@ -76,19 +127,57 @@ impl Amplifier {
     /// With target `u`, start `v0` and `d = v0 - u` the output is `u + d e^(-t/tau)`; the mean of its square is the
     /// square of its mean plus its variance, which cannot cancel.
     pub(crate) fn tick(&mut self, drive: Drive) -> Output {
-        let asked_v = if drive.amplifier_enable { f64::from(drive.dac_code.bits()) * self.volts_per_code } else { 0.0 };
-        let target_v = asked_v.clamp(-self.saturation_v_peak, self.saturation_v_peak);
+        let commanded_v = if drive.amplifier_enable {
+            f64::from(drive.dac_code.bits()) * self.volts_per_code + self.offset_v
+        } else {
+            0.0
+        };
+        let target_v = commanded_v.clamp(-self.saturation_v_peak, self.saturation_v_peak);
         let distance_v = self.output_v - target_v;
         if distance_v.abs() < SETTLED_V {
             self.output_v = target_v;
-            return Output { mean_square_v2: target_v * target_v, end_v: target_v };
+            return Output::new(target_v, 0.0, target_v);
+        }
+        if distance_v.abs() > self.slewing_above_v {
+            return self.slew(target_v, distance_v);
         }
         let mean_v = target_v + distance_v * self.mean_remainder;
         self.output_v = target_v + distance_v * self.remainder;
-        Output {
-            mean_square_v2: mean_v * mean_v + distance_v * distance_v * self.remainder_variance,
-            end_v: self.output_v,
+        Output::new(mean_v, distance_v * distance_v * self.remainder_variance, self.output_v)
+    }
+
+    /// A tick that begins too far from the target for the amplifier's current: a ramp, and the lag from its end on.
+    fn slew(&mut self, target_v: f64, distance_v: f64) -> Output {
+        let slope_v_per_s = self.slew_v_per_s.copysign(-distance_v);
+        let ramp_s = (distance_v.abs() - self.slewing_above_v) / self.slew_v_per_s;
+        let ramp = |time_s: f64| {
+            let rise_v = slope_v_per_s * time_s;
+            (self.output_v + 0.5 * rise_v, rise_v * rise_v / 12.0)
+        };
+        if ramp_s >= self.tick_period_s {
+            let (mean_v, variance_v2) = ramp(self.tick_period_s);
+            self.output_v += slope_v_per_s * self.tick_period_s;
+            return Output::new(mean_v, variance_v2, self.output_v);
         }
+        let (ramp_mean_v, ramp_variance_v2) = ramp(ramp_s);
+        let lag_s = self.tick_period_s - ramp_s;
+        // The amplifier without lag holds its target instead.
+        let lags = lag_s / self.time_constant_s;
+        let remaining_v = self.slewing_above_v.copysign(distance_v);
+        let mean_remainder = -libm::expm1(-lags) / lags;
+        let mean_squared_remainder = -libm::expm1(-2.0 * lags) / (2.0 * lags);
+        let lag_mean_v = target_v + remaining_v * mean_remainder;
+        let lag_variance_v2 =
+            remaining_v * remaining_v * (mean_squared_remainder - mean_remainder * mean_remainder).max(0.0);
+        let ramp_part = ramp_s / self.tick_period_s;
+        let lag_part = 1.0 - ramp_part;
+        let between_v = ramp_mean_v - lag_mean_v;
+        self.output_v = target_v + remaining_v * libm::exp(-lags);
+        Output::new(
+            ramp_part * ramp_mean_v + lag_part * lag_mean_v,
+            ramp_part * ramp_variance_v2 + lag_part * lag_variance_v2 + ramp_part * lag_part * between_v * between_v,
+            self.output_v,
+        )
     }
 
     /// Voltage on the electrode now, in volts.
@@ -194,12 +283,54 @@ mod tests {
 
     #[test]
     fn gain_scales_and_saturation_holds_in_both_directions() {
-        let config = AmplifierConfig { gain: 1.5, saturation_v_peak: 150.0, time_constant_s: 0.0 };
+        let config =
+            AmplifierConfig { gain: 1.5, saturation_v_peak: 150.0, time_constant_s: 0.0, ..AmplifierConfig::IDEAL };
         let mut amplifier = amplifier(config);
         assert!((amplifier.tick(drive(1000)).end_v - 1.5 * 200.0 * 1000.0 / 32_767.0).abs() < 1e-12);
         assert_eq!(amplifier.tick(drive(32_767)).end_v, 150.0);
         let output = amplifier.tick(drive(-32_767));
         assert_eq!((output.end_v, output.mean_square_v2), (-150.0, 22_500.0));
+    }
+
+    /// The lag's differential equation with a limited slope, in many small steps.
+    #[test]
+    fn a_limited_current_makes_a_ramp_and_then_the_lag() {
+        for (slew_v_per_s, time_constant_s) in [(9.4e6, 20e-6), (1e6, 5e-6), (9.4e6, 0.0), (20e6, 1e-3)] {
+            let config = AmplifierConfig { time_constant_s, slew_v_per_s, ..AmplifierConfig::IDEAL };
+            let mut amplifier = amplifier(config);
+            let mut voltage_v = 0.0;
+            for code in [20_000, -20_000, -20_000, 15_000, 15_100, 0, -32_767, 32_767] {
+                let target_v = f64::from(code) * FULL_SCALE_V_PEAK / 32_767.0;
+                let (mut sum_v, mut sum_v2) = (0.0, 0.0);
+                let steps = 200_000;
+                let step_s = 1.0 / f64::from(TICK_HZ) / f64::from(steps);
+                for _ in 0..steps {
+                    let free_v_per_s = (target_v - voltage_v) / time_constant_s.max(step_s);
+                    let before_v = voltage_v;
+                    voltage_v += step_s * free_v_per_s.clamp(-slew_v_per_s, slew_v_per_s);
+                    let middle_v = 0.5 * (before_v + voltage_v);
+                    (sum_v, sum_v2) = (sum_v + middle_v, sum_v2 + middle_v * middle_v);
+                }
+                let output = amplifier.tick(drive(code));
+                let (mean_v, mean_square_v2) = (sum_v / f64::from(steps), sum_v2 / f64::from(steps));
+                assert!((output.end_v - voltage_v).abs() < 2e-3, "{} {voltage_v}", output.end_v);
+                assert!((output.mean_v - mean_v).abs() < 2e-3, "{} {mean_v}", output.mean_v);
+                assert!(
+                    (output.mean_square_v2 - mean_square_v2).abs() < 0.5,
+                    "{} {mean_square_v2}",
+                    output.mean_square_v2
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn an_offset_is_there_while_the_amplifier_is_enabled() {
+        let config = AmplifierConfig { offset_v: 0.5, time_constant_s: 0.0, ..AmplifierConfig::IDEAL };
+        let mut amplifier = amplifier(config);
+        assert_eq!(amplifier.tick(drive(0)).end_v, 0.5);
+        assert_eq!(amplifier.tick(drive(32_767)).end_v, 200.5);
+        assert_eq!(amplifier.tick(Drive { amplifier_enable: false, ..drive(0) }).end_v, 0.0);
     }
 
     #[test]
@@ -224,6 +355,8 @@ mod tests {
                 "amplifier saturation_v_peak",
             ),
             (AmplifierConfig { time_constant_s: -1e-6, ..AmplifierConfig::default() }, "amplifier time_constant_s"),
+            (AmplifierConfig { offset_v: 11.0, ..AmplifierConfig::default() }, "amplifier offset_v"),
+            (AmplifierConfig { slew_v_per_s: 0.0, ..AmplifierConfig::default() }, "amplifier slew_v_per_s"),
         ] {
             assert_eq!(Amplifier::new(&config, FULL_SCALE_V_PEAK, TICK_HZ).unwrap_err().name, name);
         }

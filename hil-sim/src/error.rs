@@ -42,3 +42,8 @@ pub(crate) fn above_zero(name: &'static str, found: f64) -> Result<f64, OutOfRan
 pub(crate) fn zero_to_ten(name: &'static str, found: f64) -> Result<f64, OutOfRange> {
     if (0.0..=10.0).contains(&found) { Ok(found) } else { Err(OutOfRange { name, expected: "from 0 to 10", found }) }
 }
+
+/// Returns `found` if it is from zero to one.
+pub(crate) fn zero_to_one(name: &'static str, found: f64) -> Result<f64, OutOfRange> {
+    if (0.0..=1.0).contains(&found) { Ok(found) } else { Err(OutOfRange { name, expected: "from 0 to 1", found }) }
+}

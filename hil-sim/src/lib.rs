@@ -22,24 +22,28 @@ mod error;
 mod fingertip;
 mod journal;
 mod line;
+mod person;
 #[cfg(unix)]
 #[allow(clippy::disallowed_types, clippy::disallowed_methods, reason = "a pseudo-terminal is a file")]
 mod pseudo_terminal;
 mod random;
 mod rig;
+#[cfg(test)]
+mod spectrum;
 mod stroke;
 mod touch;
 mod world;
 
 pub use amplifier::AmplifierConfig;
 pub use error::{OutOfRange, WorldError};
-pub use fingertip::example_finger;
+pub use fingertip::{FingertipConfig, RELAXATION_LENGTH_M, SlipStep, example_finger};
 pub use frixel_session::TableRows;
 pub use journal::Journal;
 pub use line::{Line, LineCounts, LineFault};
+pub use person::Person;
 #[cfg(unix)]
 pub use pseudo_terminal::PseudoTerminal;
 pub use rig::{BoardMemory, Rig, RigConfig, TickRecord, contact_of};
 pub use stroke::{FingerState, Point, Stroke, StrokeError};
 pub use touch::TouchConfig;
-pub use world::{Felt, World, WorldConfig};
+pub use world::{Felt, ReferenceFriction, World, WorldConfig};

@@ -11,6 +11,10 @@ pub(crate) enum Purpose {
     PlaceNoise = 2,
     ReportJitter = 3,
     ContactBounce = 4,
+    Load = 5,
+    FrictionNoise = 6,
+    LostReports = 7,
+    Person = 8,
 }
 
 /// A stream of random numbers.

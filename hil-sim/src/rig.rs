@@ -228,7 +228,7 @@ impl<'a> Rig<'a> {
     fn put_scenes_finger_on(&mut self) {
         self.scene = self.session.scene_header().copied();
         if let Some(Ok(contact)) = self.scene.as_ref().map(contact_of) {
-            self.world.set_finger(contact);
+            self.world.set_scenes_finger(contact);
         }
     }
 

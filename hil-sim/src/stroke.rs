@@ -97,7 +97,8 @@ impl Stroke {
     /// A motion through places at times that rise from 0 or later; `None` is a finger off the screen. Between two
     /// places the finger goes straight and at constant speed.
     pub fn through(places: &[(f64, Option<Point>)]) -> Result<Self, StrokeError> {
-        let rows: Vec<Row> = places.iter().map(|(t_s, place)| Row { t_s: *t_s, place: *place }).collect();
+        let rows: Vec<Row> =
+            places.iter().map(|(t_s, place)| Row { t_s: *t_s, place: *place, load_n: f64::NAN }).collect();
         let mut before_s = -f64::MIN_POSITIVE;
         for row in &rows {
             if !(row.t_s > before_s && row.t_s.is_finite()) {
@@ -113,8 +114,9 @@ impl Stroke {
         Ok(Self::once(motion.end_s(), Path::Rows(motion)))
     }
 
-    /// Parses a stroke from CSV text with the columns `t_s,x_mm,y_mm`, in any order. Other columns are ignored. The
-    /// finger is off the screen in a row whose cells `x_mm` and `y_mm` are empty, as in `felt.csv`.
+    /// Parses a stroke from CSV text with the columns `t_s,x_mm,y_mm`, in any order, and `force_n` if the normal load is
+    /// known, in N and above 0. Other columns are ignored. The finger is off the screen in a row whose cells `x_mm` and
+    /// `y_mm` are empty, as in `felt.csv`.
     ///
     /// Time is from the start of the stroke and rises from row to row; the finger touches at the first row and leaves
     /// after the last. Between rows it goes straight and at constant speed (linear interpolation), so the rows should
@@ -132,6 +134,24 @@ impl Stroke {
         Ok(Self { round_s: Some(round_s), ..self })
     }
 
+    /// Returns the normal load `t_s` seconds after the start of the stroke, in N; `None` if the stroke does not say it,
+    /// or while the finger is off the screen.
+    pub fn normal_load_n(&self, t_s: f64) -> Option<f64> {
+        match &self.path {
+            Path::Rows(rows) => rows.normal_load_n(self.in_round(t_s)?),
+            Path::ConstantSpeed(_) | Path::MinimumJerk(_) | Path::Natural(_) => None,
+        }
+    }
+
+    /// Time since the start of the round, s; `None` while the finger is off the screen.
+    fn in_round(&self, t_s: f64) -> Option<f64> {
+        let t_s = match self.round_s {
+            Some(round_s) if t_s >= 0.0 => (t_s - libm::trunc(t_s / round_s) * round_s).max(0.0),
+            _ => t_s,
+        };
+        (t_s >= 0.0 && t_s <= self.end_s).then_some(t_s)
+    }
+
     fn once(end_s: f64, path: Path) -> Self {
         Self { path, end_s, round_s: None }
     }
@@ -143,13 +163,7 @@ impl Stroke {
 
     /// Returns the finger `t_s` seconds after the start of the stroke; `None` while it is off the screen.
     pub fn at(&self, t_s: f64) -> Option<FingerState> {
-        let t_s = match self.round_s {
-            Some(round_s) if t_s >= 0.0 => (t_s - libm::trunc(t_s / round_s) * round_s).max(0.0),
-            _ => t_s,
-        };
-        if !(t_s >= 0.0 && t_s <= self.end_s) {
-            return None;
-        }
+        let t_s = self.in_round(t_s)?;
         match &self.path {
             Path::ConstantSpeed(straight) => Some(straight.constant_speed(t_s)),
             Path::MinimumJerk(straight) => Some(straight.minimum_jerk(t_s)),

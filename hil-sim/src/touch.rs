@@ -1,11 +1,11 @@
 //! The touch source: a touchscreen that samples the finger periodically, and reports it with latency, jitter and
-//! noise.
+//! noise, in steps, with some reports lost and others bunched.
 
 use std::collections::VecDeque;
 
 use frixel_session::Touch;
 
-use crate::error::{OutOfRange, above_zero, zero_to_ten};
+use crate::error::{OutOfRange, above_zero, zero_to_one, zero_to_ten};
 use crate::random::{Purpose, Random};
 use crate::stroke::FingerState;
 
@@ -26,12 +26,102 @@ pub struct TouchConfig {
     /// Draws beyond three standard deviations are repeated, which leaves 98.7 % of the deviation. A report never
     /// arrives before its sample, nor before the previous report.
     pub jitter_rms_s: f64,
+    /// Part of the reports that never arrive, from 0 to 1: 4 to 28 % of the intervals between the reports of a
+    /// surface-haptic tablet were at least double (about 1,300 recorded strokes).
+    pub lost_share: f64,
+    /// Part of the reports that wait for the next one and arrive a tick before it, from 0 to 1.
+    pub bunched_share: f64,
+    /// Pauses a second in which every report is lost, from 0 to 10. They are evenly long up to `pause_max_s`.
+    pub pause_rate_hz: f64,
+    /// Longest pause, in seconds: 0 to 10. The recorded strokes had gaps of up to 140 ms.
+    pub pause_max_s: f64,
+    /// Steps of the reported place in each axis, in metres: 0 (none) to 10. The recorded strokes had 0.18 mm, the pixel
+    /// of the tablet.
+    pub step_m: f64,
+}
+
+impl TouchConfig {
+    /// An infrared frame or a fast touch panel that loses nothing: 100 Hz, 10 ms of latency, 0.02 mm of noise, 0.5 ms of
+    /// jitter.
+    pub const IDEAL: Self = Self {
+        rate_hz: 100.0,
+        latency_s: 10e-3,
+        noise_rms_m: 0.02e-3,
+        jitter_rms_s: 0.5e-3,
+        lost_share: 0.0,
+        bunched_share: 0.0,
+        pause_rate_hz: 0.0,
+        pause_max_s: 0.0,
+        step_m: 0.0,
+    };
+
+    /// The same source with the reports of the recorded strokes: one in eight is lost, one in thirty is bunched with the
+    /// next (both within the 4 to 28 % of double intervals), a pause of up to 120 ms in ten seconds (gaps of up to
+    /// 140 ms with the losses around it), and steps of 0.18 mm.
+    pub const NATURAL: Self = Self {
+        lost_share: 0.12,
+        bunched_share: 0.03,
+        pause_rate_hz: 0.1,
+        pause_max_s: 0.12,
+        step_m: 0.18e-3,
+        ..Self::IDEAL
+    };
 }
 
 impl Default for TouchConfig {
-    /// An infrared frame or a fast touch panel: 100 Hz, 10 ms of latency, 0.02 mm of noise, 0.5 ms of jitter.
+    /// [`Self::IDEAL`].
     fn default() -> Self {
-        Self { rate_hz: 100.0, latency_s: 10e-3, noise_rms_m: 0.02e-3, jitter_rms_s: 0.5e-3 }
+        Self::IDEAL
+    }
+}
+
+/// What the path of the reports does to them.
+#[derive(Clone, Debug)]
+struct Losses {
+    random: Random,
+    lost_share: f64,
+    bunched_share: f64,
+    /// Probability that a pause begins at a report.
+    pause_share: f64,
+    pause_max_ticks: f64,
+    pause_until_tick: f64,
+}
+
+/// What happens to a report.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Fate {
+    Arrives,
+    WaitsForNext,
+    Lost,
+}
+
+impl Losses {
+    fn new(config: &TouchConfig, tick_hz: f64, seed: u64) -> Result<Self, OutOfRange> {
+        let pause_rate_hz = zero_to_ten("touch pause_rate_hz", config.pause_rate_hz)?;
+        Ok(Self {
+            random: Random::new(seed, Purpose::LostReports),
+            lost_share: zero_to_one("touch lost_share", config.lost_share)?,
+            bunched_share: zero_to_one("touch bunched_share", config.bunched_share)?,
+            pause_share: pause_rate_hz / config.rate_hz,
+            pause_max_ticks: zero_to_ten("touch pause_max_s", config.pause_max_s)? * tick_hz,
+            pause_until_tick: 0.0,
+        })
+    }
+
+    /// Draws the fate of the report of a sample. As many numbers are drawn for every sample.
+    fn draw(&mut self, tick: u64) -> Fate {
+        let [lost, bunched, begins, length] = [(); 4].map(|()| self.random.uniform());
+        let tick = tick as f64;
+        if begins < self.pause_share && tick >= self.pause_until_tick {
+            self.pause_until_tick = tick + length * self.pause_max_ticks;
+        }
+        if tick < self.pause_until_tick || lost < self.lost_share {
+            Fate::Lost
+        } else if bunched < self.bunched_share {
+            Fate::WaitsForNext
+        } else {
+            Fate::Arrives
+        }
     }
 }
 
@@ -53,6 +143,8 @@ pub(crate) struct TouchSource {
     latency_ticks: u32,
     jitter_rms_ticks: f64,
     noise_rms_m: f64,
+    step_m: f64,
+    losses: Losses,
     noise: Random,
     jitter: Random,
     samples: u64,
@@ -60,6 +152,8 @@ pub(crate) struct TouchSource {
     finger_was_down: bool,
     /// Reports in the order of their samples: each arrives before the next.
     under_way: VecDeque<Report>,
+    /// A report that waits for the next one.
+    waiting: Option<Touch>,
     arrived: Option<Touch>,
 }
 
@@ -83,12 +177,15 @@ impl TouchSource {
             latency_ticks: latency_ticks as u32,
             jitter_rms_ticks: zero_to_ten("touch jitter_rms_s", config.jitter_rms_s)? * tick_hz,
             noise_rms_m: zero_to_ten("touch noise_rms_m", config.noise_rms_m)?,
+            step_m: zero_to_ten("touch step_m", config.step_m)?,
+            losses: Losses::new(config, tick_hz, seed)?,
             noise: Random::new(seed, Purpose::PlaceNoise),
             jitter: Random::new(seed, Purpose::ReportJitter),
             samples: 0,
             next_sample_tick: phase_ticks as u64,
             finger_was_down: false,
             under_way: VecDeque::new(),
+            waiting: None,
             arrived: None,
         })
     }
@@ -116,10 +213,11 @@ impl TouchSource {
         let x_noise_m = self.noise.gaussian() * self.noise_rms_m;
         let y_noise_m = self.noise.gaussian() * self.noise_rms_m;
         let jitter_ticks = self.jitter.gaussian_within(JITTER_LIMIT) * self.jitter_rms_ticks;
+        let fate = self.losses.draw(tick);
         let touch = match finger {
             Some(finger) => Touch::Down {
-                x_m: (finger.x_m + x_noise_m) as f32,
-                y_m: (finger.y_m + y_noise_m) as f32,
+                x_m: self.in_steps(finger.x_m + x_noise_m) as f32,
+                y_m: self.in_steps(finger.y_m + y_noise_m) as f32,
                 age_ticks: self.latency_ticks,
             },
             None if self.finger_was_down => Touch::Up,
@@ -127,7 +225,25 @@ impl TouchSource {
         };
         self.finger_was_down = finger.is_some();
         let delay_ticks = libm::round(f64::from(self.latency_ticks) + jitter_ticks).max(0.0) as u64;
-        self.under_way.push_back(Report { arrival_tick: tick + delay_ticks, touch });
+        match fate {
+            // A source that knows of a lift goes on saying so until it is heard.
+            Fate::Arrives => self.send(tick + delay_ticks, touch),
+            _ if touch == Touch::Up => self.send(tick + delay_ticks, touch),
+            Fate::WaitsForNext => self.waiting = Some(touch),
+            Fate::Lost => {}
+        }
+    }
+
+    /// Sends a report, after the one that waits for it.
+    fn send(&mut self, arrival_tick: u64, touch: Touch) {
+        if let Some(touch) = self.waiting.take() {
+            self.under_way.push_back(Report { arrival_tick, touch });
+        }
+        self.under_way.push_back(Report { arrival_tick, touch });
+    }
+
+    fn in_steps(&self, place_m: f64) -> f64 {
+        if self.step_m > 0.0 { libm::round(place_m / self.step_m) * self.step_m } else { place_m }
     }
 }
 

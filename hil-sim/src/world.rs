@@ -8,7 +8,7 @@ use frixel_session::Touch;
 
 use crate::amplifier::{Amplifier, AmplifierConfig};
 use crate::error::{OutOfRange, WorldError};
-use crate::fingertip::{Fingertip, Friction, example_finger};
+use crate::fingertip::{Fingertip, FingertipConfig, Friction, SlipStep, example_finger};
 use crate::stroke::{FingerState, Stroke};
 use crate::touch::{TouchConfig, TouchSource};
 
@@ -21,19 +21,39 @@ pub struct WorldConfig {
     pub full_scale_v_peak: f64,
     /// The amplifier between DAC and electrode.
     pub amplifier: AmplifierConfig,
+    /// The finger, beside its contact model.
+    pub fingertip: FingertipConfig,
     /// The touch source.
     pub touch: TouchConfig,
 }
 
-impl Default for WorldConfig {
-    /// 40 kHz and 200 V at full scale.
-    fn default() -> Self {
+impl WorldConfig {
+    /// The ideal plant: an amplifier whose only fault is its edges, a finger in steady sliding under a constant load,
+    /// and a touch source that loses nothing. 40 kHz and 200 V at full scale.
+    pub const IDEAL: Self = Self {
+        tick_hz: 40_000,
+        full_scale_v_peak: 200.0,
+        amplifier: AmplifierConfig::IDEAL,
+        fingertip: FingertipConfig::IDEAL,
+        touch: TouchConfig::IDEAL,
+    };
+
+    /// This world with every effect that was measured on real amplifiers, fingers and touch sources.
+    #[must_use]
+    pub fn natural(self) -> Self {
         Self {
-            tick_hz: 40_000,
-            full_scale_v_peak: 200.0,
-            amplifier: AmplifierConfig::default(),
-            touch: TouchConfig::default(),
+            amplifier: AmplifierConfig::NATURAL,
+            fingertip: FingertipConfig::NATURAL,
+            touch: TouchConfig::NATURAL,
+            ..self
         }
+    }
+}
+
+impl Default for WorldConfig {
+    /// [`Self::IDEAL`].
+    fn default() -> Self {
+        Self::IDEAL
     }
 }
 
@@ -42,14 +62,38 @@ impl Default for WorldConfig {
 pub struct Felt {
     /// The finger, if it is on the screen.
     pub finger: Option<FingerState>,
-    /// Friction under the finger, in newtons: `mu F_N` and the electric part. Zero without a finger.
+    /// Friction under the finger, in newtons: the natural and the electric part. Zero without a finger.
     pub friction_n: f64,
+    /// Friction without the drive, in newtons: `mu F_N` of a finger in steady sliding, with its load and its noise.
+    pub natural_friction_n: f64,
     /// Electric part of the friction, after the friction lag, in newtons.
     pub electric_friction_n: f64,
+    /// What the skin did in this tick.
+    pub slip: SlipStep,
     /// Voltage on the electrode.
     pub electrode_v: f64,
     /// Mean of the squared electrode voltage over the tick, in V^2.
     pub mean_square_v2: f64,
+}
+
+/// A reference under the same finger: the friction that an electric friction without any fault of the display would
+/// give, with the same load, noise and skin.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ReferenceFriction {
+    electric_n: [f64; 2],
+}
+
+impl ReferenceFriction {
+    /// Follows a tick in which the finger felt `felt`, and the scene has `electric_friction_n` at its true place, in N.
+    /// Returns the total friction of the reference.
+    pub fn follow(&mut self, felt: &Felt, electric_friction_n: f64) -> f64 {
+        if felt.finger.is_none() {
+            *self = Self::default();
+            return 0.0;
+        }
+        let steady_n = electric_friction_n * felt.slip.electric_gain;
+        felt.natural_friction_n + felt.slip.advance(&mut self.electric_n, steady_n)
+    }
 }
 
 /// Amplifier, electrode, finger and touch source, in virtual time.
@@ -79,6 +123,8 @@ pub struct World {
     amplifier: Amplifier,
     amplifier_faults: Vec<Range<u64>>,
     fingertip: Fingertip,
+    /// Whether the finger is that of a scenario, and stays when a scene with another profile is loaded.
+    owns_finger: bool,
     touch_source: TouchSource,
     stroke: Stroke,
     motion: Motion,
@@ -98,7 +144,7 @@ enum Motion {
 impl World {
     /// A world at rest at tick 0, with the finger lifted. All random numbers are drawn from `seed`.
     pub fn new(config: WorldConfig, stroke: Stroke, seed: u64) -> Result<Self, WorldError> {
-        let WorldConfig { tick_hz, full_scale_v_peak, amplifier, touch } = config;
+        let WorldConfig { tick_hz, full_scale_v_peak, amplifier, fingertip, touch } = config;
         if tick_hz == 0 {
             return Err(OutOfRange { name: "tick_hz", expected: "above 0", found: 0.0 }.into());
         }
@@ -109,16 +155,31 @@ impl World {
             tick: 0,
             amplifier: Amplifier::new(&amplifier, full_scale_v_peak, tick_hz)?,
             amplifier_faults: Vec::new(),
-            fingertip: Fingertip::new(example_finger().map_err(WorldError::Finger)?, tick_hz),
+            fingertip: Fingertip::new(fingertip, example_finger().map_err(WorldError::Finger)?, tick_hz, seed)?,
+            owns_finger: false,
             touch_source,
             stroke,
             motion: Motion::Lifted,
         })
     }
 
-    /// Replaces the finger from now on by the contact of a scene's profile under its load.
+    /// Replaces the finger from now on by the contact of a profile under its load.
     pub fn set_finger(&mut self, contact: LoadedContact<f64>) {
         self.fingertip.set_contact(contact);
+    }
+
+    /// Replaces the finger from now on by one of its own, whatever profile a scene is meant for. The board does not
+    /// know this finger.
+    pub fn set_own_finger(&mut self, contact: LoadedContact<f64>) {
+        self.owns_finger = true;
+        self.fingertip.set_contact(contact);
+    }
+
+    /// Replaces the finger by that of the scene's profile, unless this world has a finger of its own.
+    pub(crate) fn set_scenes_finger(&mut self, contact: LoadedContact<f64>) {
+        if !self.owns_finger {
+            self.fingertip.set_contact(contact);
+        }
     }
 
     /// Starts or restarts the stroke: its time zero is the current tick.
@@ -155,8 +216,21 @@ impl World {
     pub fn finger(&self) -> Option<FingerState> {
         match self.motion {
             Motion::Lifted => None,
-            Motion::Stroke { start_tick } => self.stroke.at((self.tick - start_tick) as f64 / f64::from(self.tick_hz)),
+            Motion::Stroke { start_tick } => self.stroke.at(self.stroke_s(start_tick)),
             Motion::Placed(finger) => Some(finger),
+        }
+    }
+
+    /// Time since the start of the stroke, s.
+    fn stroke_s(&self, start_tick: u64) -> f64 {
+        (self.tick - start_tick) as f64 / f64::from(self.tick_hz)
+    }
+
+    /// The load that the stroke says, in N.
+    fn measured_load_n(&self) -> Option<f64> {
+        match self.motion {
+            Motion::Stroke { start_tick } => self.stroke.normal_load_n(self.stroke_s(start_tick)),
+            Motion::Lifted | Motion::Placed(_) => None,
         }
     }
 
@@ -179,15 +253,17 @@ impl World {
         let output = self.amplifier.tick(drive);
         self.tick += 1;
         let finger = self.finger();
-        let Friction { friction_n, electric_friction_n } = match &finger {
-            Some(finger) => self.fingertip.slide(output.mean_square_v2, finger.speed_m_per_s),
+        let Friction { natural_friction_n, electric_friction_n, slip } = match &finger {
+            Some(finger) => self.fingertip.slide(&output, finger, self.measured_load_n()),
             None => self.fingertip.lift(),
         };
         self.touch_source.tick(self.tick, finger.as_ref());
         Felt {
             finger,
-            friction_n,
+            friction_n: natural_friction_n + electric_friction_n,
+            natural_friction_n,
             electric_friction_n,
+            slip,
             electrode_v: output.end_v,
             mean_square_v2: output.mean_square_v2,
         }

@@ -14,7 +14,8 @@ use script::{HEADER, Script, record, scene};
 /// A touch source that reports in every fifth tick, so that orders and reports meet in one tick now and then.
 fn config() -> RigConfig {
     let mut config = RigConfig::default();
-    config.world.touch = TouchConfig { rate_hz: 8_000.0, latency_s: 0.0, noise_rms_m: 0.0, jitter_rms_s: 0.0 };
+    config.world.touch =
+        TouchConfig { rate_hz: 8_000.0, latency_s: 0.0, noise_rms_m: 0.0, jitter_rms_s: 0.0, ..TouchConfig::IDEAL };
     config
 }
 

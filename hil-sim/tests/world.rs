@@ -3,7 +3,8 @@
 
 use frixel_control::{Drive, Sense};
 use frixel_hil_sim::{
-    AmplifierConfig, Felt, FingerState, Point, Stroke, TouchConfig, World, WorldConfig, example_finger,
+    AmplifierConfig, Felt, FingerState, FingertipConfig, Person, Point, ReferenceFriction, Stroke, TouchConfig, World,
+    WorldConfig, example_finger,
 };
 use frixel_model::{Contact, Finger};
 use frixel_session::Touch;
@@ -231,6 +232,123 @@ proptest! {
         prop_assert_eq!(&first, &run(seed));
         prop_assert!(first.iter().all(|(_, felt)| felt.friction_n >= 0.25 && felt.friction_n < 0.35));
     }
+}
+
+/// A world with every effect, whose finger slides over a square drive.
+fn natural_run(seed: u64, ticks: u64) -> Vec<Felt> {
+    let mut world = World::new(WorldConfig::default().natural(), sliding(), seed).unwrap();
+    world.start_stroke();
+    (0..ticks).map(|tick| world.apply(square(tick, 20_000))).collect()
+}
+
+#[test]
+fn a_natural_world_is_the_same_for_the_same_seed_and_has_another_finger_for_another() {
+    assert_eq!(natural_run(1, 8000), natural_run(1, 8000));
+    assert_ne!(natural_run(1, 8000), natural_run(2, 8000));
+}
+
+/// Fixed for ever: the same bits on every platform.
+#[test]
+fn the_last_friction_of_a_natural_run_is_the_one_it_was() {
+    let last = *natural_run(1, 20_000).last().unwrap();
+    let bits = [last.friction_n, last.natural_friction_n, last.mean_square_v2].map(f64::to_bits);
+    assert_eq!(bits, [4_598_260_095_951_725_871, 4_597_954_213_826_141_275, 4_669_351_140_877_307_118]);
+}
+
+/// Takes one effect from a world as it is in another.
+type SwitchOff = fn(&mut WorldConfig, &WorldConfig);
+
+#[test]
+fn every_effect_of_the_natural_world_changes_what_is_felt_and_can_be_switched_off() {
+    let natural = WorldConfig::default().natural();
+    let ideal = WorldConfig::default();
+    let run = |config: WorldConfig| {
+        let mut world = World::new(config, sliding(), 1).unwrap();
+        world.start_stroke();
+        (0..30_000)
+            .map(|tick| {
+                let touch = world.touch();
+                (touch, world.apply(square(tick, 20_000)).friction_n)
+            })
+            .collect::<Vec<_>>()
+    };
+    let all = run(natural);
+    let without: [(&str, SwitchOff); 9] = [
+        ("offset", |config, ideal| config.amplifier.offset_v = ideal.amplifier.offset_v),
+        ("current limit", |config, ideal| config.amplifier.slew_v_per_s = ideal.amplifier.slew_v_per_s),
+        ("pre-sliding", |config, ideal| config.fingertip.pre_sliding = ideal.fingertip.pre_sliding),
+        ("load", |config, ideal| config.fingertip.load_sd_n = ideal.fingertip.load_sd_n),
+        ("noise", |config, ideal| config.fingertip.noise_rms_n = ideal.fingertip.noise_rms_n),
+        ("leakage", |config, ideal| config.fingertip.leakage_hz = ideal.fingertip.leakage_hz),
+        ("lost reports", |config, ideal| config.touch.lost_share = ideal.touch.lost_share),
+        ("bunched reports", |config, ideal| config.touch.bunched_share = ideal.touch.bunched_share),
+        ("pixel steps", |config, ideal| config.touch.step_m = ideal.touch.step_m),
+    ];
+    let mut off = natural;
+    for (name, switch_off) in without {
+        let mut config = natural;
+        switch_off(&mut config, &ideal);
+        assert!(run(config) != all, "{name}");
+        switch_off(&mut off, &ideal);
+    }
+    off.touch = TouchConfig { pause_rate_hz: 0.0, pause_max_s: 0.0, ..off.touch };
+    assert_eq!(off, ideal, "these are all effects");
+    assert!(run(off) == run(ideal));
+}
+
+#[test]
+fn the_reference_under_the_same_finger_is_what_a_perfect_display_would_be_felt_as() {
+    // A world whose amplifier is ideal and whose finger is not: without leakage, the drive is what the model says, so a
+    // reference that follows the model's electric friction is what is felt.
+    let mut config = ideal_amplifier();
+    config.amplifier.offset_v = 0.0;
+    config.fingertip = FingertipConfig { leakage_hz: 0.0, ..FingertipConfig::NATURAL };
+    let mut world = World::new(config, sliding(), 1).unwrap();
+    world.start_stroke();
+    let steady_n = example_finger().unwrap().electric_friction_n(200.0 * 20_000.0 / DAC_FULL);
+    let mut reference = ReferenceFriction::default();
+    let mut natural_n = Vec::new();
+    for tick in 0..31_000 {
+        let felt = world.apply(square(tick, 20_000));
+        let reference_n = reference.follow(&felt, steady_n);
+        // The gain is that of the voltage at the last change of the load, a millisecond before at most.
+        assert!((reference_n - felt.friction_n).abs() < 2e-6, "tick {tick}: {reference_n}, {felt:?}");
+        natural_n.push(felt.natural_friction_n);
+    }
+    assert!(natural_n.iter().copied().fold(0.0, f64::max) > 0.26, "the load and the noise are felt");
+    world.lift_finger();
+    assert!(reference.follow(&world.apply(square(0, 20_000)), steady_n) <= 0.0);
+}
+
+#[test]
+fn a_stroke_says_with_which_force_the_finger_presses() {
+    let stroke = Stroke::from_csv("t_s,x_mm,y_mm,force_n\n0,10,30,0.5\n0.5,60,30,0.9\n").unwrap();
+    assert!((stroke.normal_load_n(0.25).unwrap() - 0.7).abs() < 1e-12);
+    assert_eq!(sliding().normal_load_n(0.1), None);
+    let mut world = World::new(WorldConfig::default(), stroke, 1).unwrap();
+    world.start_stroke();
+    for tick in 1..20_000_u32 {
+        let felt = world.apply(Drive::default());
+        let load_n = 0.5 + 0.8 * f64::from(tick) / 40_000.0;
+        // The load is taken every millisecond, in which it rises by 0.8 mN.
+        assert!((felt.friction_n - 0.5 * load_n).abs() < 0.5e-3, "tick {tick}: {}", felt.friction_n);
+    }
+    let refused = Stroke::from_csv("t_s,x_mm,y_mm,force_n\n0,10,30,500\n0.5,60,30,510\n").unwrap_err().to_string();
+    assert_eq!(
+        refused,
+        "line 2, column `force_n`: 500 is no load of a finger: expected newtons, above 0 and at most 50"
+    );
+}
+
+#[test]
+fn a_scenarios_own_finger_stays_and_the_scenes_does_not() {
+    let person = Person::drawn(5);
+    let contact = person.contact(1e-6 / 3.9).unwrap();
+    let mut world = world(ideal_amplifier());
+    world.set_own_finger(contact);
+    world.start_stroke();
+    let felt = (0..4000).map(|tick| world.apply(square(tick, 20_000))).last().unwrap();
+    assert!((felt.natural_friction_n - contact.natural_friction_n()).abs() < 1e-12);
 }
 
 #[test]

@@ -23,6 +23,10 @@ use frixel_control::Status;
 use frixel_control::{Active, Board, Order};
 use frixel_layers::BitmapPool;
 
+/// Requests that may wait for a commit to end; further ones are refused as busy. A host that waits for its answers has
+/// one at most.
+const WAITING_MAX: usize = 8;
+
 /// The command handler: holds the state of the session, and of the scene and finger that it has passed to the ticker.
 pub(crate) struct Commands<'a> {
     pub(crate) board: Board,
@@ -47,6 +51,8 @@ pub(crate) struct Commands<'a> {
     pub(crate) state: State,
     /// The commit under way.
     pub(crate) commit: Option<Commit>,
+    /// Requests that arrived during the commit and must be carried out after it, in the order of arrival.
+    pub(crate) waiting: Deque<Request, WAITING_MAX>,
     pub(crate) credit: Credit,
     pub(crate) telemetry_period_ticks: u32,
     /// Facts about the committed scene that are still needed after the next upload has overwritten its bytes.
@@ -77,6 +83,7 @@ impl<'a> Commands<'a> {
             sign_of_life_waited: false,
             state: State::Disarmed,
             commit: None,
+            waiting: Deque::new(),
             credit: Credit::new(board.limits.receive_window_bytes),
             telemetry_period_ticks: 0,
             playing: Playing::default(),
@@ -103,18 +110,11 @@ impl<'a> Commands<'a> {
     /// Takes one frame's payload.
     pub(crate) fn take(&mut self, payload: Result<Payload, ParseError>, status: &Status, queue: &mut TransmitQueue) {
         self.report_state(status, queue);
-        if !may_overtake_a_commit(&payload) {
-            self.finish_commit(queue);
-        }
         match payload {
             Ok(Payload::HelloRequest { .. }) => self.handle_hello(status, queue),
             Ok(Payload::Request(request)) => {
                 self.host_heard = true;
-                if let Command::Commit { crc32 } = request.command {
-                    self.commit = Some(Commit::new(request.sequence, crc32));
-                } else {
-                    self.serve(request, status, queue);
-                }
+                self.take_request(request, status, queue);
             }
             Ok(Payload::Chunk { number, bytes }) => {
                 self.host_heard = true;
@@ -139,9 +139,35 @@ impl<'a> Commands<'a> {
         }
     }
 
-    fn serve(&mut self, Request { sequence, command }: Request, status: &Status, queue: &mut TransmitQueue) {
-        let outcome = self.dispatch(command, status);
-        self.answer(sequence, outcome, queue);
+    /// Carries a request out, or keeps it until the commit under way has ended. A Stop or a Disarm never waits, and
+    /// refuses the requests that do: an Arm or a Play that was sent before it must not take effect after it.
+    fn take_request(&mut self, request: Request, status: &Status, queue: &mut TransmitQueue) {
+        if matches!(request.command, Command::Stop | Command::Disarm) {
+            while let Some(waiting) = self.waiting.pop_front() {
+                self.answer(waiting.sequence, Err(Refusal::Busy), queue);
+            }
+        }
+        let must_keep_order = self.commit.is_some() || !self.waiting.is_empty();
+        if !must_keep_order || may_overtake_a_commit(request.command) {
+            self.carry_out(request, status, queue);
+        } else if self.waiting.push_back(request).is_err() {
+            self.answer(request.sequence, Err(Refusal::Busy), queue);
+        }
+    }
+
+    /// Carries a request out, and answers it. A commit is only begun.
+    pub(crate) fn carry_out(
+        &mut self,
+        Request { sequence, command }: Request,
+        status: &Status,
+        queue: &mut TransmitQueue,
+    ) {
+        if let Command::Commit { crc32 } = command {
+            self.commit = Some(Commit::new(sequence, crc32));
+        } else {
+            let outcome = self.dispatch(command, status);
+            self.answer(sequence, outcome, queue);
+        }
     }
 
     pub(crate) fn answer(&mut self, sequence: u16, outcome: Result<Accepted, Refusal>, queue: &mut TransmitQueue) {
@@ -167,7 +193,7 @@ impl<'a> Commands<'a> {
                 Err(Refusal::BitmapPoolFull { len: u32::from(width) * u32::from(height), free: 0 })
             }
             Command::UploadEnd => self.end_upload(),
-            // `take` handles a commit; it does not get here.
+            // `carry_out` handles a commit; it does not get here.
             Command::Commit { .. } => Err(Refusal::Busy),
             Command::Subscribe { period_ticks } if cfg!(feature = "telemetry") => self.subscribe(period_ticks),
             Command::Subscribe { .. } => Err(Refusal::UnknownCommand),
@@ -197,23 +223,21 @@ impl<'a> Commands<'a> {
     }
 }
 
-/// Whether a frame may be handled while an earlier commit is under way: its answer does not depend on the commit, and
-/// it does not change what the commit reads.
-fn may_overtake_a_commit(payload: &Result<Payload, ParseError>) -> bool {
-    match payload {
-        Ok(Payload::Samples { .. }) => true,
-        Ok(Payload::Request(request)) => matches!(
-            request.command,
-            Command::Ping
-                | Command::Stop
-                | Command::Disarm
-                | Command::Touch { .. }
-                | Command::Lift
-                | Command::TouchFinger { .. }
-                | Command::LiftFinger { .. }
-        ),
-        _ => false,
-    }
+/// Whether a request may be carried out while an earlier commit is under way, or requests wait behind one: none of their
+/// effects depends on the other's, except that Stop and Disarm end what waits (see [`Commands::take_request`]).
+fn may_overtake_a_commit(command: Command) -> bool {
+    matches!(
+        command,
+        Command::Ping
+            | Command::Stop
+            | Command::Disarm
+            | Command::Subscribe { .. }
+            | Command::Touch { .. }
+            | Command::Lift
+            | Command::FaultText { .. }
+            | Command::TouchFinger { .. }
+            | Command::LiftFinger { .. }
+    )
 }
 
 /// The piece of a fault's text that begins at `offset`.

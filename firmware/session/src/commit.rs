@@ -1,7 +1,8 @@
 //! Commit: passes the uploaded scene to the ticker.
 //!
 //! A commit takes the time of hundreds of ticks. [`Commands::step_commit`] advances it by one step of at most a
-//! millisecond, so that touches, signs of life and stops are served in between.
+//! millisecond, so that touches, signs of life and stops are served in between. Requests whose outcome depends on the
+//! commit wait until it has ended. A hello drops both: the client that would have been answered is gone.
 
 use frixel_layers::{Scene, disabled_record};
 use frixel_wire::message::{Accepted, Refusal};
@@ -13,7 +14,7 @@ use crate::live::Playing;
 use crate::loading::Loading;
 use crate::transmit_queue::TransmitQueue;
 use crate::upload::Upload;
-use frixel_control::Order;
+use frixel_control::{Order, Status};
 
 /// CRC-32 names of bitmaps.
 pub(crate) type BitmapNames = Vec<u32, RECORDS_MAX>;
@@ -44,9 +45,15 @@ impl Commit {
 }
 
 impl Commands<'_> {
-    /// Does the next step of the commit, if one is under way, and answers after the last.
-    pub(crate) fn step_commit(&mut self, queue: &mut TransmitQueue) {
-        let Some(mut commit) = self.commit.take() else { return };
+    /// Does the next step of the commit and answers after the last; without a commit, carries out the first of the
+    /// requests that waited for it.
+    pub(crate) fn step_commit(&mut self, status: &Status, queue: &mut TransmitQueue) {
+        let Some(mut commit) = self.commit.take() else {
+            if let Some(request) = self.waiting.pop_front() {
+                self.carry_out(request, status, queue);
+            }
+            return;
+        };
         match self.step(&mut commit) {
             Ok(false) => self.commit = Some(commit),
             Ok(true) => self.answer(commit.sequence, Ok(Accepted::Done), queue),
@@ -54,11 +61,10 @@ impl Commands<'_> {
         }
     }
 
-    /// Does all remaining steps of the commit, for a request whose answer depends on its outcome.
-    pub(crate) fn finish_commit(&mut self, queue: &mut TransmitQueue) {
-        while self.commit.is_some() {
-            self.step_commit(queue);
-        }
+    /// Drops the commit under way and the requests that wait for it, unanswered. The committed scene stays.
+    pub(crate) fn drop_commit(&mut self) {
+        self.commit = None;
+        self.waiting.clear();
     }
 
     /// Commits the uploaded scene at once.

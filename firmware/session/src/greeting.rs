@@ -36,8 +36,8 @@ const fn features(board: &Board, has_stream: bool) -> u32 {
 }
 
 impl Commands<'_> {
-    /// Begins a session with a new client: resets the credit, drops an unfinished upload, and disarms the board,
-    /// because the previous client is gone. A scene that continues without a host keeps playing.
+    /// Begins a session with a new client: resets the credit, drops an unfinished upload or commit, and disarms the
+    /// board, because the previous client is gone. A scene that continues without a host keeps playing.
     pub(crate) fn handle_hello(&mut self, status: &Status, queue: &mut TransmitQueue) {
         if !(self.state == State::Active && self.playing.is_autonomous()) {
             // Ignore a refusal: there was nothing to disarm. There is always room for this order.
@@ -46,6 +46,7 @@ impl Commands<'_> {
         self.credit.restart();
         self.telemetry_period_ticks = 0;
         self.drop_upload();
+        self.drop_commit();
         self.announced_bitmaps.clear();
         self.forget_fingers(status);
         // Ignore a full order queue: the stream then runs dry instead.

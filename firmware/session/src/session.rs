@@ -49,9 +49,8 @@ impl<'a> Session<'a> {
     }
 
     /// Takes bytes from the serial line. Fetch answers with [`Session::transmit`] and orders with
-    /// [`Session::next_order`]. [`Session::poll`] carries out a commit step by step, so that pings, touches and stops
-    /// that arrive meanwhile are not delayed. A request whose answer depends on the commit finishes it at once: if the
-    /// host does not wait for the answer to a commit, this call takes the time of many ticks.
+    /// [`Session::next_order`]. [`Session::poll`] carries out a commit step by step: pings, touches and stops that
+    /// arrive meanwhile are served at once, and requests that depend on the commit's outcome wait for it in a queue.
     ///
     /// Frames beyond the host's credit are discarded and have no effect; they do not restart the host timeout either.
     /// Only a hello request needs no credit.
@@ -76,12 +75,12 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Advances a commit by one step of at most a millisecond, and sends telemetry and unsolicited changes of state.
+    /// Advances a commit by one step of at most a millisecond or carries out a request that waited for it, and sends telemetry and unsolicited changes of state.
     /// Call this after every tick or, if there is no time for that, at least once a telemetry period, and pass on touch
     /// reports, orders and bytes between two calls.
     pub fn poll(&mut self, status: &Status) {
         self.commands.tracker.expire(status.telemetry.tick);
-        self.commands.step_commit(&mut self.queue);
+        self.commands.step_commit(status, &mut self.queue);
         self.commands.report_state(status, &mut self.queue);
         #[cfg(feature = "stream")]
         self.commands.report_stream(status, &mut self.queue);

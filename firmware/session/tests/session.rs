@@ -220,24 +220,96 @@ fn a_commit_holds_up_no_sign_of_life_and_nothing_that_puts_the_output_to_zero() 
     assert_eq!(desk.greet().scene_crc32, crc32(&next));
 }
 
-#[test]
-fn what_asks_for_the_scene_comes_after_the_commit_before_it() {
-    let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
+/// A board with a scene that was uploaded and is not committed.
+fn with_uploaded_scene<'a>(memory: &'a mut Memory, scene: &[u8]) -> Desk<'a> {
+    let mut desk = Desk::new(memory);
     desk.greet();
-    let scene = constant(0.01);
-    desk.upload_scene(&scene).unwrap();
+    desk.upload_scene(scene).unwrap();
     desk.messages.clear();
+    desk
+}
+
+#[test]
+fn requests_that_depend_on_a_commit_are_carried_out_after_it_in_order() {
+    let mut memory = Memory::new();
+    let scene = constant(0.01);
+    let mut desk = with_uploaded_scene(&mut memory, &scene);
     let bytes = [
         request(901, Command::Commit { crc32: crc32(&scene) }),
         request(902, Command::Arm),
         request(903, Command::Play),
+        request(904, Command::FaultText { offset: 0 }),
     ];
     desk.session.receive(&bytes.concat(), &desk.status());
-    assert_eq!(answered(&mut desk), [901, 902, 903]);
-    desk.obey();
-    desk.tick();
+    assert_eq!(answered(&mut desk), [904], "it depends on no commit");
+    let mut sequences = Vec::new();
+    for _ in 0..COMMIT_POLLS_MAX {
+        desk.tick();
+        sequences.extend(answered(&mut desk));
+    }
+    assert_eq!(sequences, [901, 902, 903]);
     assert_eq!(desk.status().telemetry.state, State::Active);
+}
+
+#[test]
+fn a_stop_or_disarm_refuses_the_requests_that_wait_for_a_commit() {
+    for last in [Command::Stop, Command::Disarm] {
+        let mut memory = Memory::new();
+        let scene = constant(0.01);
+        let mut desk = with_uploaded_scene(&mut memory, &scene);
+        desk.command(Command::Arm).unwrap();
+        let bytes = [
+            request(901, Command::Commit { crc32: crc32(&scene) }),
+            request(902, Command::Play),
+            request(903, Command::Commit { crc32: crc32(&scene) }),
+            request(904, last),
+        ];
+        desk.session.receive(&bytes.concat(), &desk.status());
+        desk.collect();
+        let refused = [902, 903].map(|sequence| desk.take_answer(sequence).unwrap().outcome);
+        assert_eq!(refused, [Err(Refusal::Busy); 2]);
+        let state_after = if last == Command::Stop { State::Armed } else { State::Disarmed };
+        assert_eq!(desk.take_answer(904).unwrap().state, state_after);
+        desk.ticks(COMMIT_POLLS_MAX);
+        assert_eq!(desk.take_answer(901).unwrap().outcome, Ok(Accepted::Done), "the commit goes on");
+        assert_eq!(desk.status().telemetry.state, state_after);
+    }
+}
+
+#[test]
+fn eight_requests_wait_for_a_commit_and_further_ones_are_refused() {
+    let mut memory = Memory::new();
+    let scene = constant(0.01);
+    let mut desk = with_uploaded_scene(&mut memory, &scene);
+    desk.session.receive(&request(901, Command::Commit { crc32: crc32(&scene) }), &desk.status());
+    for sequence in 902..912 {
+        desk.session.receive(&request(sequence, Command::EndStream), &desk.status());
+    }
+    assert_eq!(answered(&mut desk), [910, 911]);
+    let mut sequences = Vec::new();
+    for _ in 0..COMMIT_POLLS_MAX {
+        desk.tick();
+        sequences.extend(answered(&mut desk));
+    }
+    assert_eq!(sequences, (901..910).collect::<Vec<_>>());
+}
+
+#[test]
+fn a_hello_drops_a_commit_and_what_waits_for_it() {
+    let mut memory = Memory::new();
+    let scene = constant(0.01);
+    let mut desk = with_uploaded_scene(&mut memory, &scene);
+    let commit = request(901, Command::Commit { crc32: crc32(&scene) });
+    let bytes = [commit.clone(), request(902, Command::Arm)].concat();
+    desk.session.receive(&bytes, &desk.status());
+    desk.tick();
+    let hello = desk.greet();
+    assert_eq!((hello.scene_crc32, hello.state), (0, State::Disarmed));
+    desk.ticks(COMMIT_POLLS_MAX);
+    assert!(answered(&mut desk).is_empty(), "the client that sent them is gone");
+    assert_eq!(desk.greet().scene_crc32, 0);
+    desk.command(Command::Commit { crc32: crc32(&scene) }).unwrap();
+    assert_eq!(desk.greet().scene_crc32, crc32(&scene));
 }
 
 #[cfg(feature = "telemetry")]

@@ -57,6 +57,16 @@ pub enum StrokeError {
         /// The content of the cell.
         found: String,
     },
+    /// A normal load that no finger has.
+    #[error(
+        "line {line}, column `force_n`: {found_n} is no load of a finger: expected newtons, above 0 and at most 50"
+    )]
+    NoLoad {
+        /// Line of the row.
+        line: u64,
+        /// The load that was found, N.
+        found_n: f64,
+    },
     /// A row has a negative time.
     #[error("line {line}, column `t_s`: {found_s} is below 0: expected time from the start of the stroke")]
     BeforeStart {

@@ -7,6 +7,8 @@ use super::{FingerState, Point};
 pub(super) struct Row {
     pub(super) t_s: f64,
     pub(super) place: Option<Point>,
+    /// Normal load, in N; not a number if it is unknown.
+    pub(super) load_n: f64,
 }
 
 /// The motion from one row to the next: straight, at constant speed.
@@ -15,9 +17,11 @@ struct Piece {
     start_s: f64,
     end_s: f64,
     start: Point,
+    start_load_n: f64,
     x_speed_m_per_s: f64,
     y_speed_m_per_s: f64,
     speed_m_per_s: f64,
+    load_slope_n_per_s: f64,
 }
 
 /// Rows, prepared for look-ups by time.
@@ -29,6 +33,8 @@ pub(super) struct Rows {
     /// before each slot, so that a look-up searches only one slot.
     before_slot: Vec<usize>,
     slots_per_s: f64,
+    /// Whether the rows say the normal load.
+    has_loads: bool,
 }
 
 impl Rows {
@@ -39,7 +45,7 @@ impl Rows {
     pub(super) fn new(rows: &[Row]) -> Result<Self, usize> {
         let mut pieces = Vec::with_capacity(rows.len());
         for (number, (start, end)) in rows.iter().zip(rows.iter().skip(1)).enumerate() {
-            let (start_s, end_s) = (start.t_s, end.t_s);
+            let (start_s, end_s, start_load_n, end_load_n) = (start.t_s, end.t_s, start.load_n, end.load_n);
             let Some((start, end)) = start.place.zip(end.place) else { continue };
             let time_s = end_s - start_s;
             let x_speed_m_per_s = (end.x_m - start.x_m) / time_s;
@@ -48,10 +54,22 @@ impl Rows {
             if !speed_m_per_s.is_finite() {
                 return Err(number + 1);
             }
-            pieces.push(Piece { start_s, end_s, start, x_speed_m_per_s, y_speed_m_per_s, speed_m_per_s });
+            let load_slope_n_per_s = (end_load_n - start_load_n) / time_s;
+            pieces.push(Piece {
+                start_s,
+                end_s,
+                start,
+                start_load_n,
+                x_speed_m_per_s,
+                y_speed_m_per_s,
+                speed_m_per_s,
+                load_slope_n_per_s,
+            });
         }
         let end_s = rows.last().map_or(0.0, |row| row.t_s);
-        let mut motion = Self { slots_per_s: pieces.len() as f64 / end_s, before_slot: Vec::new(), pieces, end_s };
+        let has_loads = rows.iter().any(|row| row.load_n.is_finite());
+        let mut motion =
+            Self { slots_per_s: pieces.len() as f64 / end_s, before_slot: Vec::new(), pieces, end_s, has_loads };
         motion.before_slot = motion.count_before_slots();
         Ok(motion)
     }
@@ -81,14 +99,26 @@ impl Rows {
         before_slot
     }
 
-    /// Returns the finger at a time up to the end; `None` while it is off the screen.
-    pub(super) fn at(&self, t_s: f64) -> Option<FingerState> {
+    /// Returns the piece of a time up to the end; `None` while the finger is off the screen.
+    fn piece(&self, t_s: f64) -> Option<&Piece> {
         let slot = self.slot(t_s);
         let (first, last) = (*self.before_slot.get(slot)?, *self.before_slot.get(slot + 1)?);
         let started = first + self.pieces.get(first..last)?.partition_point(|piece| piece.start_s <= t_s);
-        let piece = self.pieces.get(started.checked_sub(1)?)?;
+        self.pieces.get(started.checked_sub(1)?).filter(|piece| t_s <= piece.end_s)
+    }
+
+    /// Returns the normal load at a time up to the end, in N, if the rows say it.
+    pub(super) fn normal_load_n(&self, t_s: f64) -> Option<f64> {
+        let piece = if self.has_loads { self.piece(t_s)? } else { return None };
+        let load_n = piece.start_load_n + (t_s - piece.start_s) * piece.load_slope_n_per_s;
+        load_n.is_finite().then_some(load_n)
+    }
+
+    /// Returns the finger at a time up to the end; `None` while it is off the screen.
+    pub(super) fn at(&self, t_s: f64) -> Option<FingerState> {
+        let piece = self.piece(t_s)?;
         let time_s = t_s - piece.start_s;
-        (t_s <= piece.end_s).then(|| FingerState {
+        Some(FingerState {
             x_m: piece.start.x_m + time_s * piece.x_speed_m_per_s,
             y_m: piece.start.y_m + time_s * piece.y_speed_m_per_s,
             speed_m_per_s: piece.speed_m_per_s,

@@ -6,6 +6,10 @@ use super::rows::{Row, Rows};
 use super::{Point, StrokeError};
 
 const COLUMNS: [&str; 3] = ["t_s", "x_mm", "y_mm"];
+/// Column of the normal load, which may be left out.
+const FORCE_COLUMN: &str = "force_n";
+/// A load above it is one in another unit.
+const LOAD_MAX_N: f64 = 50.0;
 const MM_PER_M: f64 = 1e3;
 
 /// Parses CSV text into a motion.
@@ -17,12 +21,16 @@ pub(super) fn rows(text: &str) -> Result<Rows, StrokeError> {
         return Err(StrokeError::Empty);
     }
     let columns = find_columns(&header, line_of(&header, text))?;
+    let force_column = header.iter().position(|name| name == FORCE_COLUMN);
     let mut rows: Vec<Row> = Vec::new();
     let mut lines = Vec::new();
     for record in reader.records() {
         let record = record.map_err(malformed)?;
         let line = line_of(&record, text);
-        let row = row(&record, line, columns)?;
+        let mut row = row(&record, line, columns)?;
+        if row.place.is_some() {
+            row.load_n = load_n(&record, line, force_column)?;
+        }
         if row.t_s < 0.0 {
             return Err(StrokeError::BeforeStart { line, found_s: row.t_s });
         }
@@ -58,14 +66,21 @@ fn row(record: &StringRecord, line: u64, places: [usize; 3]) -> Result<Row, Stro
     let [t_cell, x_cell, y_cell] = cells;
     let is_lifted = x_cell.is_empty() && y_cell.is_empty() && places.iter().all(|place| *place < record.len());
     if is_lifted {
-        return Ok(Row { t_s: number(t_cell, line, COLUMNS[0])?, place: None });
+        return Ok(Row { t_s: number(t_cell, line, COLUMNS[0])?, place: None, load_n: f64::NAN });
     }
     let mut values = [0.0; 3];
     for ((value, cell), column) in values.iter_mut().zip(cells).zip(COLUMNS) {
         *value = number(cell, line, column)?;
     }
     let [t_s, x_mm, y_mm] = values;
-    Ok(Row { t_s, place: Some(Point { x_m: x_mm / MM_PER_M, y_m: y_mm / MM_PER_M }) })
+    Ok(Row { t_s, place: Some(Point { x_m: x_mm / MM_PER_M, y_m: y_mm / MM_PER_M }), load_n: f64::NAN })
+}
+
+/// The normal load of a row, in N; not a number without a column for it.
+fn load_n(record: &StringRecord, line: u64, column: Option<usize>) -> Result<f64, StrokeError> {
+    let Some(column) = column else { return Ok(f64::NAN) };
+    let found_n = number(record.get(column).unwrap_or_default(), line, FORCE_COLUMN)?;
+    if found_n > 0.0 && found_n <= LOAD_MAX_N { Ok(found_n) } else { Err(StrokeError::NoLoad { line, found_n }) }
 }
 
 fn number(cell: &str, line: u64, column: &'static str) -> Result<f64, StrokeError> {

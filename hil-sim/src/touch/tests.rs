@@ -165,6 +165,72 @@ fn a_lift_is_reported_once_after_the_latency() {
     assert_eq!(seen.len(), 26);
 }
 
+/// Distances between the arrivals of a natural source's reports, in report periods.
+fn natural_intervals(config: TouchConfig, seed: u64, seconds: u64) -> Vec<f64> {
+    let reports = reports(config, seed, seconds);
+    reports.windows(2).map(|pair| (pair[1].0 - pair[0].0) as f64 / 400.0).collect()
+}
+
+#[test]
+fn a_natural_source_has_the_double_intervals_and_the_gaps_of_the_recorded_strokes() {
+    for seed in 1..=5 {
+        let intervals = natural_intervals(TouchConfig::NATURAL, seed, SECONDS);
+        let at_least_double = intervals.iter().filter(|interval| **interval >= 1.8).count() as f64;
+        let share = at_least_double / intervals.len() as f64;
+        assert!((0.04..=0.28).contains(&share), "{share}");
+        // Both lost and bunched reports make double intervals; those of the bunched ones end with two reports.
+        assert!((share - 0.15).abs() < 0.03, "{share}");
+        let longest = intervals.iter().copied().fold(0.0, f64::max);
+        assert!((5.0..=17.0).contains(&longest), "a gap of {longest} periods");
+    }
+}
+
+#[test]
+fn each_loss_can_be_switched_on_alone() {
+    let lossy = |config| natural_intervals(config, 5, SECONDS);
+    let double = |intervals: &[f64]| {
+        intervals.iter().filter(|interval| **interval >= 1.8).count() as f64 / intervals.len() as f64
+    };
+    let lost = lossy(TouchConfig { lost_share: 0.2, ..TouchConfig::IDEAL });
+    assert!((double(&lost) - 0.2).abs() < 0.02, "{}", double(&lost));
+    assert!(lost.iter().all(|interval| *interval > 0.5), "nothing is bunched");
+    let bunched = lossy(TouchConfig { bunched_share: 0.1, ..TouchConfig::IDEAL });
+    let together = bunched.iter().filter(|interval| **interval < 0.01).count() as f64 / bunched.len() as f64;
+    assert!((together - 0.09).abs() < 0.02, "{together}");
+    let paused = lossy(TouchConfig { pause_rate_hz: 0.5, pause_max_s: 0.14, ..TouchConfig::IDEAL });
+    assert!(paused.iter().all(|interval| *interval < 15.5));
+    let pauses = paused.iter().filter(|interval| **interval > 2.5).count();
+    assert!((50..=120).contains(&pauses), "{pauses} of 100");
+    assert!(lossy(TouchConfig::IDEAL).iter().all(|interval| (interval - 1.0).abs() < 0.4));
+}
+
+#[test]
+fn places_come_in_steps() {
+    let config = TouchConfig { step_m: 0.18e-3, ..TouchConfig::IDEAL };
+    let mut errors_m = Vec::new();
+    for (tick, touch) in reports(config, 5, 20) {
+        let (x_m, ..) = place(touch);
+        let steps = x_m / 0.18e-3;
+        assert!((steps - steps.round()).abs() < 1e-2, "{steps}");
+        errors_m.push(x_m - finger(tick - 400).x_m);
+    }
+    // Noise of 0.02 mm, jitter of 0.02 mm at this speed, and a step's 0.18 mm / sqrt(12).
+    let (_, deviation_m) = mean_and_deviation(&errors_m);
+    assert!((deviation_m - 59e-6).abs() < 4e-6, "{deviation_m}");
+}
+
+#[test]
+fn a_lift_arrives_whatever_is_lost() {
+    let config = TouchConfig { lost_share: 1.0, ..TouchConfig::IDEAL };
+    let mut source = TouchSource::new(&config, TICK_HZ, 5).unwrap();
+    let mut seen = Vec::new();
+    for tick in 0..40_000 {
+        source.tick(tick, (tick < 20_000).then(|| finger(tick)).as_ref());
+        seen.extend(source.arrived());
+    }
+    assert_eq!(seen, [Touch::Up]);
+}
+
 #[test]
 fn what_makes_no_sense_is_refused_by_name() {
     let default = TouchConfig::default();
@@ -173,6 +239,11 @@ fn what_makes_no_sense_is_refused_by_name() {
         (TouchConfig { rate_hz: 50_000.0, ..default }, "touch rate_hz must be at most the tick rate, found 50000"),
         (TouchConfig { latency_s: -0.01, ..default }, "touch latency_s must be from 0 to 10, found -0.01"),
         (TouchConfig { noise_rms_m: f64::NAN, ..default }, "touch noise_rms_m must be from 0 to 10, found NaN"),
+        (TouchConfig { lost_share: 1.1, ..default }, "touch lost_share must be from 0 to 1, found 1.1"),
+        (TouchConfig { bunched_share: -0.1, ..default }, "touch bunched_share must be from 0 to 1, found -0.1"),
+        (TouchConfig { pause_rate_hz: 11.0, ..default }, "touch pause_rate_hz must be from 0 to 10, found 11"),
+        (TouchConfig { pause_max_s: 11.0, ..default }, "touch pause_max_s must be from 0 to 10, found 11"),
+        (TouchConfig { step_m: -1.0, ..default }, "touch step_m must be from 0 to 10, found -1"),
         (TouchConfig { jitter_rms_s: 11.0, ..default }, "touch jitter_rms_s must be from 0 to 10, found 11"),
     ] {
         assert_eq!(TouchSource::new(&config, TICK_HZ, 1).unwrap_err().to_string(), message);

@@ -1,10 +1,10 @@
-//! Loading of scene files and of the pictures beside them.
+//! Loading of scene files and of the files that they name.
 
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use frixel_scene::{CompileError, PictureUnavailable, Pictures, Scene};
+use frixel_scene::{CompileError, FileUnavailable, Files, Scene};
 use thiserror::Error;
 
 /// Why a scene file could not be loaded.
@@ -36,33 +36,33 @@ impl SceneFileError {
     }
 }
 
-/// Reads a scene file. The picture names in it are paths relative to its folder.
+/// Reads a scene file. The names of files in it are paths relative to its folder.
 pub fn load(path: &Path) -> Result<Scene, SceneFileError> {
     let file = path.display().to_string();
     match fs::read(path) {
         Ok(bytes) => {
-            let folder = PictureFolder(path.parent().unwrap_or(Path::new("")).to_owned());
+            let folder = SceneFolder(path.parent().unwrap_or(Path::new("")).to_owned());
             Ok(Scene::parse_bytes(&bytes, &file, &folder)?)
         }
         Err(source) => Err(SceneFileError::Unreadable { file, source }),
     }
 }
 
-/// The folder that picture names are relative to.
+/// The folder that the names of pictures and profiles in a scene are relative to.
 #[derive(Clone, Debug)]
-pub struct PictureFolder(pub PathBuf);
+pub struct SceneFolder(pub PathBuf);
 
-impl Pictures for PictureFolder {
-    fn png(&self, name: &str) -> Result<Vec<u8>, PictureUnavailable> {
+impl Files for SceneFolder {
+    fn bytes(&self, name: &str) -> Result<Vec<u8>, FileUnavailable> {
         let path = self.0.join(name);
         if path.is_file() {
-            return fs::read(&path).map_err(|error| PictureUnavailable::Unreadable { reason: error.to_string() });
+            return fs::read(&path).map_err(|error| FileUnavailable::Unreadable { reason: error.to_string() });
         }
         let folder = match path.parent() {
             Some(folder) if !folder.as_os_str().is_empty() => folder,
             _ => Path::new("."),
         };
-        Err(PictureUnavailable::Missing { place: folder.display().to_string(), files: files_in(folder) })
+        Err(FileUnavailable::Missing { place: folder.display().to_string(), files: files_in(folder) })
     }
 }
 
@@ -96,12 +96,12 @@ mod tests {
         let textures = folder.path().join("textures");
         fs::create_dir(&textures).unwrap();
         fs::write(textures.join("brick.png"), b"bytes").unwrap();
-        let pictures = PictureFolder(folder.path().to_owned());
-        assert_eq!(pictures.png("textures/brick.png"), Ok(b"bytes".to_vec()));
+        let files = SceneFolder(folder.path().to_owned());
+        assert_eq!(files.bytes("textures/brick.png"), Ok(b"bytes".to_vec()));
         let missing =
-            PictureUnavailable::Missing { place: textures.display().to_string(), files: vec!["brick.png".to_owned()] };
-        assert_eq!(pictures.png("textures/brik.png"), Err(missing.clone()));
-        let PictureUnavailable::Missing { files, .. } = pictures.png("textures").unwrap_err() else { panic!() };
+            FileUnavailable::Missing { place: textures.display().to_string(), files: vec!["brick.png".to_owned()] };
+        assert_eq!(files.bytes("textures/brik.png"), Err(missing.clone()));
+        let FileUnavailable::Missing { files, .. } = files.bytes("textures").unwrap_err() else { panic!() };
         assert_eq!(files, ["textures"]);
     }
 }

@@ -326,3 +326,19 @@ fn a_preview_is_a_png_of_the_asked_size() {
     let message = refused(&["scene", "preview", "scenes/ribs.toml", "-o", &files.path("no/map.png")]);
     assert!(message.contains("no/map.png cannot be written"), "{message}");
 }
+
+#[test]
+fn check_and_preview_say_what_a_person_feels() {
+    let files = Files::new();
+    let grating = "[[layer]]\nname = \"ridges\"\nkind = \"grating\"\nwavelength_mm = 1\nlow_n = 0.25\nhigh_n = 0.27\n";
+    let scene = files.scene(&format!("{grating}above = \"zero\"\n"));
+    let text = said(&["scene", "check", &scene]);
+    let feel = text.lines().find(|line| line.trim_start().starts_with("feel ")).unwrap();
+    assert!(feel.contains("layer 1 \"ridges\": 250.0 to 269.7 mN, 0.7 Weber steps (not felt)"), "{feel}");
+    assert!(feel.contains("at 100 mm/s 9.97 mN at 100 Hz, threshold 0.82 (felt)"), "{feel}");
+    assert!(said(&["scene", "preview", &scene, "-o", &files.path("map.png")]).contains(feel));
+    let json: Value = serde_json::from_str(&said(&["scene", "check", &scene, "--json"])).unwrap();
+    let textures = &json["perception"]["layers"][0]["textures"];
+    assert_eq!(textures.as_array().unwrap().len(), 3);
+    assert_eq!(textures[2]["verdict"], "felt");
+}

@@ -12,10 +12,13 @@ use super::log::Log;
 use super::lower::Lowering;
 use super::mistake::Mistake;
 use super::optimise::optimise;
+use super::played_finger::PlayedFinger;
 use super::pool::Pool;
 use super::program::Program;
-use super::reach::{Reach, carrier};
+use super::reach::{Reach, ReachError, carrier};
+use super::springs::Springs;
 use super::tick_cost;
+use super::warning;
 
 /// Least number of ticks in half a carrier period that a board accepts.
 const HALF_PERIOD_MIN_TICKS: f64 = 4.0;
@@ -24,6 +27,8 @@ const LEAKAGE_HZ: f64 = 250.0;
 /// Ratio of the default peak limit to the peak that the rms limit needs. It is above 1, so that rounding never makes
 /// the peak limit the tighter one.
 const PEAK_MARGIN: f64 = 1.001;
+/// Largest effective gap that a board takes, um.
+const EFFECTIVE_GAP_MAX_UM: f64 = 10_000.0;
 const MM: f64 = 1e-3;
 
 /// Compiles a scene for boards with these limits and a tick rate in Hz.
@@ -55,15 +60,22 @@ pub fn compile(scene: &Scene, limits: &BoardLimits, tick_hz: u32) -> Result<Prog
 fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) -> Option<Program> {
     let mut notes = Vec::new();
     let half_period_ticks = half_period_ticks(scene, tick_hz, log, &mut notes)?;
-    let header = header(scene, limits, f64::from(half_period_ticks) / f64::from(tick_hz), log, &mut notes);
+    let half_period_s = f64::from(half_period_ticks) / f64::from(tick_hz);
+    let voltage = Voltage::of(scene, limits, half_period_s, log, &mut notes);
+    let contact = Springs::of(scene.finger(), effective_gap_um(scene, log)? * 1e-6, voltage.max_v_rms);
+    let springs = contact.map_err(|mistake| log.add(scene.profiles.place, mistake)).ok()?;
+    if springs.deviation > 0.0 {
+        notes.push(format!(
+            "finger: played as springs of {:.4e} Pa/m, which differ from the soft finger by at most {:.1} % of the reach",
+            springs.stiffness_pa_per_m,
+            100.0 * springs.deviation
+        ));
+    }
+    let header = header(scene, &voltage, &springs, half_period_s);
     check_current(scene, limits, &header, log);
-    let reach = match Reach::of(&header) {
-        Ok(reach) => reach,
-        Err(error) => {
-            log.add(scene.coating.places.table(), Mistake::Model { reason: error.to_string() });
-            return None;
-        }
-    };
+    let reach = reach(scene, &header, log)?;
+    let (finger, note) = PlayedFinger::of(&scene.profiles);
+    notes.extend(note);
     let layers_max = RECORDS_MAX.min(usize::from(limits.records_max));
     if let Some(layer) = scene.layers.get(layers_max) {
         log.add(layer.places.table(), Mistake::TooManyLayers { number: layers_max + 1, max: layers_max });
@@ -85,11 +97,14 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
         layers: LayerMap::default(),
         reach,
         half_period_ticks,
+        finger,
+        warnings: Vec::new(),
         notes,
         optimisations: lowered.optimisations,
     };
     if log.is_empty() {
         excess::check(scene, &mut program, log);
+        program.warnings = warning::of(scene, &program);
         let live: Vec<bool> = scene.layers.iter().map(|layer| layer.live).collect();
         optimise(&mut program, &live);
         let Program { header, records, points, .. } = &mut program;
@@ -130,41 +145,87 @@ fn half_period_ticks(scene: &Scene, tick_hz: u32, log: &mut Log, notes: &mut Vec
     Some(whole as u32)
 }
 
-fn header(scene: &Scene, limits: &BoardLimits, half_period_s: f64, log: &mut Log, notes: &mut Vec<String>) -> Header {
-    let drive = &scene.drive;
-    let shape = scene.carrier.shape;
-    let board_v_peak = f64::from(limits.voltage_max_v_peak.min(limits.full_scale_v_peak));
-    let peak_per_rms = f64::from(carrier(shape, half_period_s, limits).peak_per_rms());
-    let v_peak = match drive.voltage_max_v_peak {
-        Some(found) if found > board_v_peak => {
-            log.add(drive.places.field("voltage_max_v_peak"), Mistake::PeakAboveBoard { found, board: board_v_peak });
-            board_v_peak
-        }
-        Some(v_peak) => v_peak,
-        None => (PEAK_MARGIN * peak_per_rms * drive.voltage_max_v_rms).min(board_v_peak),
-    };
-    let v_rms = drive.voltage_max_v_rms.min(v_peak / peak_per_rms);
-    if v_rms < drive.voltage_max_v_rms {
-        notes.push(format!(
-            "drive: {} V rms would need {:.1} V peak; the limit of {v_peak} V peak allows {v_rms:.1} V rms",
-            drive.voltage_max_v_rms,
-            peak_per_rms * drive.voltage_max_v_rms
-        ));
+/// Effective gap of coating and skin.
+fn effective_gap_um(scene: &Scene, log: &mut Log) -> Option<f64> {
+    let found = scene.screen().coating_gap_um() + scene.finger().skin_gap_um;
+    if found > EFFECTIVE_GAP_MAX_UM {
+        let (field, max) = ("thickness_um / permittivity + skin_gap_um, summed", EFFECTIVE_GAP_MAX_UM);
+        log.add(scene.profiles.place, Mistake::OutOfRange { field, found, min: 0.0, max, unit: " um" });
+        return None;
     }
+    Some(found)
+}
+
+fn reach(scene: &Scene, header: &Header, log: &mut Log) -> Option<Reach> {
+    let mistake = match Reach::of(header) {
+        Ok(reach) => return Some(reach),
+        Err(ReachError::TooWide { contact_m }) => Mistake::ContactWiderThanFinger {
+            voltage_v_rms: f64::from(header.voltage_max_v_rms),
+            contact_mm: contact_m / MM,
+            radius_mm: scene.finger().radius_mm,
+            gap_um: 1e6 * f64::from(header.effective_gap_m),
+        },
+        Err(error) => Mistake::Model { reason: error.to_string() },
+    };
+    log.add(scene.profiles.place, mistake);
+    None
+}
+
+/// The limits of the drive: the least of those of scene, screen and board.
+struct Voltage {
+    max_v_rms: f64,
+    max_v_peak: f64,
+    slew_v_per_us: f64,
+}
+
+impl Voltage {
+    fn of(scene: &Scene, limits: &BoardLimits, half_period_s: f64, log: &mut Log, notes: &mut Vec<String>) -> Self {
+        let (drive, screen) = (&scene.drive, scene.screen());
+        let board_v_peak = f64::from(limits.voltage_max_v_peak.min(limits.full_scale_v_peak));
+        if let Some(found) = drive.voltage_max_v_peak.filter(|found| *found > board_v_peak) {
+            log.add(drive.places.field("voltage_max_v_peak"), Mistake::PeakAboveBoard { found, board: board_v_peak });
+        }
+        let peak_per_rms = f64::from(carrier(scene.carrier.shape, half_period_s, limits).peak_per_rms());
+        let wanted_v_rms = screen.voltage_max_v_rms.unwrap_or(f64::INFINITY).min(drive.voltage_max_v_rms);
+        if wanted_v_rms < drive.voltage_max_v_rms {
+            notes.push(format!(
+                "drive: the screen bears {wanted_v_rms} V rms, less than the {} V rms of the scene",
+                drive.voltage_max_v_rms
+            ));
+        }
+        let needed_v_peak = PEAK_MARGIN * peak_per_rms * wanted_v_rms;
+        let screen_v_peak = screen.voltage_max_v_peak.unwrap_or(f64::INFINITY);
+        let max_v_peak = drive.voltage_max_v_peak.unwrap_or(needed_v_peak).min(screen_v_peak).min(board_v_peak);
+        let max_v_rms = wanted_v_rms.min(max_v_peak / peak_per_rms);
+        if max_v_rms < wanted_v_rms {
+            notes.push(format!(
+                "drive: {wanted_v_rms} V rms would need {:.1} V peak; the limit of {max_v_peak} V peak allows \
+                 {max_v_rms:.1} V rms",
+                peak_per_rms * wanted_v_rms
+            ));
+        }
+        let slew_v_per_us = screen.slew_v_per_us.unwrap_or(f64::INFINITY).min(drive.slew_v_per_us);
+        Self { max_v_rms, max_v_peak, slew_v_per_us }
+    }
+}
+
+fn header(scene: &Scene, voltage: &Voltage, springs: &Springs, half_period_s: f64) -> Header {
+    let (screen, finger, drive) = (scene.screen(), scene.finger(), &scene.drive);
+    let effective_gap_um = screen.coating_gap_um() + finger.skin_gap_um;
     Header {
-        screen_width_m: (scene.screen.width_mm * MM) as f32,
-        screen_height_m: (scene.screen.height_mm * MM) as f32,
-        finger_radius_m: (scene.finger.radius_mm * MM) as f32,
-        stiffness_pa_per_m: scene.finger.stiffness_pa_per_m as f32,
-        friction_coefficient: scene.finger.friction_coefficient as f32,
-        normal_load_n: scene.finger.normal_load_n as f32,
-        effective_gap_m: (scene.coating.effective_gap_um * 1e-6) as f32,
-        voltage_max_v_rms: v_rms as f32,
-        voltage_max_v_peak: v_peak as f32,
-        slew_v_per_s: (drive.slew_v_per_us * 1e6) as f32,
+        screen_width_m: (screen.width_mm * MM) as f32,
+        screen_height_m: (screen.height_mm * MM) as f32,
+        finger_radius_m: (finger.radius_mm * MM) as f32,
+        stiffness_pa_per_m: springs.stiffness_pa_per_m as f32,
+        friction_coefficient: finger.friction_coefficient as f32,
+        normal_load_n: finger.normal_load_n as f32,
+        effective_gap_m: (effective_gap_um * 1e-6) as f32,
+        voltage_max_v_rms: voltage.max_v_rms as f32,
+        voltage_max_v_peak: voltage.max_v_peak as f32,
+        slew_v_per_s: (voltage.slew_v_per_us * 1e6) as f32,
         carrier_hz: (0.5 / half_period_s) as f32,
         host_timeout_s: (drive.host_timeout_ms * 1e-3) as f32,
-        carrier: shape,
+        carrier: scene.carrier.shape,
         autonomous: drive.autonomous,
         prediction: scene.touch.prediction,
         leader: scene.touch.leader,

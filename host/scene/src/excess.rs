@@ -117,7 +117,7 @@ fn place(layers: &[&Layer], most: bool) -> usize {
 }
 
 /// Four significant digits, rounded by `to_whole`.
-fn digits(value: f64, to_whole: fn(f64) -> f64) -> f64 {
+pub(super) fn digits(value: f64, to_whole: fn(f64) -> f64) -> f64 {
     if !(value.abs() > 0.0) {
         return 0.0;
     }

@@ -2,6 +2,8 @@
 
 mod values;
 
+pub(super) use values::TableOrText;
+
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -106,6 +108,16 @@ impl<'i> Fields<'i> {
     /// Reports a mistake if the file does not have a field.
     pub(super) fn require(&mut self, field: &FieldSpec) {
         self.required.push(field.name);
+    }
+
+    /// Offset of the table.
+    pub(super) fn table_place(&self) -> usize {
+        self.places.table()
+    }
+
+    /// The table's name in messages.
+    pub(super) fn table_name(&self) -> &str {
+        &self.table
     }
 
     /// Records that two fields have the same meaning, so that a file may have only one of them.

@@ -22,11 +22,15 @@ pub(crate) enum Holds {
     /// One of several words. The parser lists them.
     Word,
     Table,
+    /// A table, or the name of a file that contains it.
+    TableOrText,
     /// A list of tables.
     Tables,
     /// A list of tables, or one table in its place.
     TableOrTables,
     Numbers(Range),
+    /// Two numbers in square brackets, the second one not below the first.
+    Interval(Range),
     /// A list of pairs of numbers.
     Pairs(Range),
 }

@@ -4,7 +4,7 @@
 //! the board's limits and checks the layers against each other, and makes a [`Program`]. Both report all mistakes at
 //! once, each with line and column.
 //!
-//! The input is the text of a scene file, the bytes of its pictures ([`Pictures`]), and the limits of a board. The
+//! The input is the text of a scene file, the bytes of the files that it names ([`Files`]), and the limits of a board. The
 //! output is the bytes that a board plays, with information for the scene's designer.
 //!
 //! ```
@@ -26,6 +26,7 @@
 //! The crate opens no file and reads no clock, and it compiles for `wasm32-unknown-unknown`.
 //!
 //! - [`TargetRange`] and [`FrictionMap`]: the target friction of a program over its screen.
+//! - [`perception`]: what a person will feel of a program, with its sources.
 //! - [`mod@reference`]: the reference friction of a program, in `f64`, independent of the firmware.
 //! - [`recorder`]: records what a board did and what its finger felt, and compares it with the reference.
 //! - [`metrics`]: the size of the errors.
@@ -37,6 +38,8 @@ mod cover;
 mod excess;
 mod fields;
 mod file;
+mod files;
+mod finger;
 mod grammar;
 mod kinds;
 mod layer;
@@ -48,17 +51,21 @@ mod mistake;
 mod nearest;
 mod optimisation;
 mod optimise;
+pub mod perception;
 mod picture;
-mod pictures;
+mod played_finger;
 mod pool;
 mod preview;
+mod profiles;
 mod program;
 mod reach;
 pub mod recorder;
 pub mod reference;
 mod resample;
 mod schema;
+mod screen;
 mod source;
+mod springs;
 mod tables;
 mod target_range;
 #[cfg(test)]
@@ -66,19 +73,25 @@ mod target_range;
 mod tests;
 mod tick_cost;
 mod touched_layers;
+mod warning;
 
 pub use compile::compile;
 pub use compile_error::{CompileError, Located};
 pub use file::Scene;
+pub use files::{FileUnavailable, Files};
+pub use finger::{Elasticity, Evidence, Experiment, FingerProfile, Origin};
 pub use layer_map::{LayerError, LayerMap};
 pub use mistake::Mistake;
 pub use nearest::Nearest;
 pub use optimisation::Optimisation;
-pub use pictures::{PictureUnavailable, Pictures};
+pub use played_finger::PlayedFinger;
 pub use preview::{FrictionMap, MapGrid, Preview, ReachSide};
+pub use profiles::ProfileSource;
 pub use program::{Bitmap, Program};
 pub use reach::{ROUNDING, Reach, carrier};
 pub use schema::json_schema;
+pub use screen::{Screen, Slab};
 pub use target_range::{OutOfReach, TargetRange};
 pub use tick_cost::middle_mm;
 pub use touched_layers::TouchedLayers;
+pub use warning::Warning;

@@ -67,14 +67,31 @@ pub enum Mistake {
         nearest: Nearest,
     },
     /// The scene file has another version.
-    #[error(
-        "this scene file has version {found}, and this frixel reads version {expected}: use a frixel that knows it"
-    )]
+    #[error("this scene file has version {found}, and this frixel reads versions 1 and 2: use a frixel that knows it")]
     Version {
         /// The version, as written.
         found: f64,
-        /// The version that this crate reads.
-        expected: u32,
+    },
+    /// Screen or finger of a scene of version 1 cannot be exchanged.
+    #[error(
+        "the coating of a scene of version 1 contains the finger's skin, so that it cannot be played with another {what}: \
+         `frixel scene migrate {file}` writes it as version 2"
+    )]
+    VersionOneProfile {
+        /// `finger` or `screen`.
+        what: &'static str,
+        /// The scene file.
+        file: String,
+    },
+    /// No screen or finger of this name is bundled.
+    #[error("no {what} \"{found}\" is bundled, and the name of a file has an ending such as .toml; {nearest}")]
+    UnknownProfile {
+        /// `finger` or `screen`.
+        what: &'static str,
+        /// The name, as written.
+        found: String,
+        /// The bundled names, and the nearest one.
+        nearest: Nearest,
     },
     /// A lower limit is above its upper limit.
     #[error("`{low_name} = {low}` is above `{high_name} = {high}`: swap them")]
@@ -103,6 +120,28 @@ pub enum Mistake {
         field: &'static str,
         /// Its value.
         found: f64,
+    },
+    /// The first number of an interval is above the second one.
+    #[error("`{field} = [{low}, {high}]` falls: write the smaller number first")]
+    IntervalReversed {
+        /// The field.
+        field: &'static str,
+        /// The first number.
+        low: f64,
+        /// The second number.
+        high: f64,
+    },
+    /// A date is not `YYYY-MM-DD`.
+    #[error("`date = \"{found}\"` is not a day: write it as \"YYYY-MM-DD\"")]
+    Date {
+        /// The date, as written.
+        found: String,
+    },
+    /// A text that has to say something is empty.
+    #[error("`{field}` is empty: say it in a few words")]
+    EmptyText {
+        /// The field.
+        field: &'static str,
     },
     /// A list is too short or too long.
     #[error("`{field}` has {found} entries: expected {}", count(*.min, *.max))]
@@ -149,24 +188,28 @@ pub enum Mistake {
         /// The layer.
         layer: String,
     },
-    /// There is no picture of this name.
+    /// There is no file of this name.
     #[error(
-        "picture \"{picture}\" was not found in {folder}{}: paths start from the scene file's folder",
+        "{what} \"{file}\" was not found in {folder}{}: paths start from the scene file's folder",
         which_has(.nearest.as_deref())
     )]
-    PictureMissing {
-        /// The picture's name, as written.
-        picture: String,
+    FileMissing {
+        /// `picture`, `finger` or `screen`.
+        what: &'static str,
+        /// The file's name, as written.
+        file: String,
         /// The place that was searched.
         folder: String,
         /// The nearest name in that place, if one is near enough.
         nearest: Option<String>,
     },
-    /// A picture cannot be used.
-    #[error("picture \"{picture}\" cannot be used: {reason}")]
-    PictureUnusable {
-        /// The picture's name, as written.
-        picture: String,
+    /// A file cannot be used.
+    #[error("{what} \"{file}\" cannot be used: {reason}")]
+    FileUnusable {
+        /// `picture`, `finger` or `screen`.
+        what: &'static str,
+        /// The file's name, as written.
+        file: String,
         /// The reason, and what to do.
         reason: String,
     },
@@ -293,10 +336,36 @@ pub enum Mistake {
         /// The field to lower.
         cure: &'static str,
     },
-    /// Each number is in range, but the contact model or its table refuses their combination.
+    /// The contact at the largest voltage is wider than the finger.
     #[error(
-        "this finger on this coating cannot be played ({reason}): check [finger], [coating] and `voltage_max_v_rms`"
+        "at {voltage_v_rms:.1} V rms the contact would have a radius of {contact_mm:.1} mm under a finger of {radius_mm} mm, \
+         which the model cannot mean: a skin gap is missing, since {gap_um:.2} um between electrode and finger are too few; \
+         give the finger a `skin_gap_um` of some micrometres (in version 1 another slab of [[coating]]), or lower \
+         `voltage_max_v_rms`"
     )]
+    ContactWiderThanFinger {
+        /// The largest rms voltage, V.
+        voltage_v_rms: f64,
+        /// Contact radius at that voltage, mm.
+        contact_mm: f64,
+        /// The finger's radius, mm.
+        radius_mm: f64,
+        /// Effective gap of coating and skin, um.
+        gap_um: f64,
+    },
+    /// The springs of a board cannot stand in for a soft finger.
+    #[error(
+        "a board plays springs of one stiffness, and those nearest to this soft finger differ from it by {found_percent:.1} % \
+         of the reach, more than {max_percent} %: lower `voltage_max_v_rms`, or give the finger `stiffness_pa_per_m`"
+    )]
+    SoftFinger {
+        /// Largest deviation, in percent of the reachable electric friction.
+        found_percent: f64,
+        /// Largest deviation that is played, in percent.
+        max_percent: f64,
+    },
+    /// Each number is in range, but the contact model or its table refuses their combination.
+    #[error("this finger on this coating cannot be played ({reason}): check finger, coating and `voltage_max_v_rms`")]
     Model {
         /// The reason.
         reason: String,
@@ -307,8 +376,10 @@ impl Mistake {
     /// The nearest valid name to an unknown one, if one is near enough.
     pub fn nearest(&self) -> Option<&str> {
         match self {
-            Self::UnknownField { nearest, .. } | Self::UnknownChoice { nearest, .. } => nearest.suggestion.as_deref(),
-            Self::PictureMissing { nearest, .. } => nearest.as_deref(),
+            Self::UnknownField { nearest, .. }
+            | Self::UnknownChoice { nearest, .. }
+            | Self::UnknownProfile { nearest, .. } => nearest.suggestion.as_deref(),
+            Self::FileMissing { nearest, .. } => nearest.as_deref(),
             _ => None,
         }
     }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::files::{FileUnavailable, file_name};
 use super::kinds::Bitmap as BitmapLayer;
 use super::layer::{Layer, Rectangle, Region};
 use super::log::Log;
@@ -9,12 +10,11 @@ use super::mistake::Mistake;
 use super::nearest::Nearest;
 use super::optimisation::Optimisation;
 use super::picture::Picture;
-use super::pictures::{PictureUnavailable, file_name};
 use super::program::Bitmap;
 use super::resample::{Axis, resample};
 
 /// The bytes of each picture that a scene names, or the reason why they are not available.
-pub(super) type PictureBytes = BTreeMap<String, Result<Vec<u8>, PictureUnavailable>>;
+pub(super) type PictureBytes = BTreeMap<String, Result<Vec<u8>, FileUnavailable>>;
 
 /// Collects the bitmaps of a scene, each one once, and checks that they fit into the pool.
 pub(super) struct Pool<'s> {
@@ -178,13 +178,14 @@ impl<'s> Pool<'s> {
 
     fn read(&self, layer: &Layer, bitmap: &BitmapLayer, log: &mut Log) -> Option<Picture> {
         let name = &bitmap.picture;
-        let unusable = |reason: String| Mistake::PictureUnusable { picture: name.clone(), reason };
+        let unusable = |reason: String| Mistake::FileUnusable { what: "picture", file: name.clone(), reason };
         // `Scene::parse` has read every picture that a layer names.
         let decoded = match self.pictures.get(name)? {
             Ok(png) => Picture::decode(png).map_err(|error| unusable(error.to_string())),
-            Err(PictureUnavailable::Unreadable { reason }) => Err(unusable(format!("it cannot be read ({reason})"))),
-            Err(PictureUnavailable::Missing { place, files }) => Err(Mistake::PictureMissing {
-                picture: name.clone(),
+            Err(FileUnavailable::Unreadable { reason }) => Err(unusable(format!("it cannot be read ({reason})"))),
+            Err(FileUnavailable::Missing { place, files }) => Err(Mistake::FileMissing {
+                what: "picture",
+                file: name.clone(),
                 folder: place.clone(),
                 nearest: Nearest::new(file_name(name), files.iter().map(String::as_str)).suggestion,
             }),

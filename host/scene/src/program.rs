@@ -6,7 +6,9 @@ use frixel_wire::scene::bitmap_crc32;
 
 use super::layer_map::LayerMap;
 use super::optimisation::Optimisation;
+use super::played_finger::PlayedFinger;
 use super::reach::Reach;
+use super::warning::Warning;
 
 /// The first protocol version with [`Header::layers_fixed`].
 const LAYERS_FIXED_SINCE: (u8, u8) = (1, 2);
@@ -32,6 +34,10 @@ pub struct Program {
     pub reach: Reach,
     /// Ticks of half a carrier period.
     pub half_period_ticks: u32,
+    /// The finger that the program is compiled for.
+    pub finger: PlayedFinger,
+    /// Reasons to doubt the program's newtons.
+    pub warnings: Vec<Warning>,
     /// Conversions, roundings and clamps, a sentence each.
     pub notes: Vec<String>,
     /// Parts of the file that the program does not need.

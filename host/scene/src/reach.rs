@@ -1,7 +1,9 @@
 //! The friction that a drive can give to a finger.
 
 use frixel_layers::{Carrier as Shape, Header};
-use frixel_model::{Carrier, Contact, Finger, InverseTable, ParameterError, TableError, Waveform};
+use frixel_model::{
+    Carrier, Contact, ContactModel, Finger, InverseTable, LoadedContact, ParameterError, TableError, Waveform,
+};
 use frixel_wire::hello::BoardLimits;
 use thiserror::Error;
 
@@ -16,8 +18,9 @@ pub struct Reach {
     pub natural_friction_n: f64,
     /// Electric friction at the largest voltage, in newtons, Eqs. (43), (21).
     pub electric_friction_max_n: f64,
-    /// The largest rms voltage, within the scene's rms limit and the peak limits of scene and board, in volts.
+    /// The largest rms voltage, within the limits of scene, screen and board, in volts.
     pub voltage_max_v_rms: f64,
+    contact: LoadedContact<f64>,
 }
 
 /// The reason why a board cannot play for a finger and a coating.
@@ -25,6 +28,8 @@ pub struct Reach {
 pub(super) enum ReachError {
     #[error("the contact model refuses it: {0:?}")]
     Contact(ParameterError),
+    #[error("the contact would be {contact_m} m wide")]
+    TooWide { contact_m: f64 },
     #[error("its friction between 1 V and the largest voltage does not fit the board's table")]
     Table,
 }
@@ -32,14 +37,12 @@ pub(super) enum ReachError {
 impl Reach {
     /// Computes the reach for the finger, coating and rms voltage of a header, from the board's `f32` numbers.
     pub(super) fn of(header: &Header) -> Result<Self, ReachError> {
-        let finger = Finger {
-            radius_m: f64::from(header.finger_radius_m),
-            stiffness_pa_per_m: f64::from(header.stiffness_pa_per_m),
-            friction_coefficient: f64::from(header.friction_coefficient),
-        };
-        let contact = Contact::new(&finger, f64::from(header.effective_gap_m)).map_err(ReachError::Contact)?;
-        let loaded = contact.under_load(f64::from(header.normal_load_n)).map_err(ReachError::Contact)?;
+        let loaded = loaded_contact(header).map_err(ReachError::Contact)?;
         let voltage_max_v_rms = f64::from(header.voltage_max_v_rms);
+        let contact_m = loaded.state(voltage_max_v_rms).map_or(f64::INFINITY, |state| state.contact_radius_m);
+        if contact_m > f64::from(header.finger_radius_m) {
+            return Err(ReachError::TooWide { contact_m });
+        }
         // The board computes the same table when the scene is committed.
         let finger = Finger {
             radius_m: header.finger_radius_m,
@@ -53,7 +56,18 @@ impl Reach {
             natural_friction_n: loaded.natural_friction_n(),
             electric_friction_max_n: loaded.electric_friction_n(voltage_max_v_rms),
             voltage_max_v_rms,
+            contact: loaded,
         })
+    }
+
+    /// Electric friction at a voltage, in newtons, Eqs. (43), (21).
+    pub fn electric_friction_n(&self, voltage_v_rms: f64) -> f64 {
+        self.contact.electric_friction_n(voltage_v_rms)
+    }
+
+    /// Voltage for an electric friction, in volts rms: the inverse of [`Self::electric_friction_n`].
+    pub fn voltage_v_rms(&self, electric_friction_n: f64) -> f64 {
+        self.contact.voltage_v_rms(electric_friction_n)
     }
 
     /// Least friction in total, in newtons.
@@ -65,6 +79,16 @@ impl Reach {
     pub fn friction_max_n(&self) -> f64 {
         self.natural_friction_n + self.electric_friction_max_n
     }
+}
+
+/// The contact of a header's finger with its coating, under its load.
+fn loaded_contact(header: &Header) -> Result<LoadedContact<f64>, ParameterError> {
+    let finger = Finger {
+        radius_m: f64::from(header.finger_radius_m),
+        stiffness_pa_per_m: f64::from(header.stiffness_pa_per_m),
+        friction_coefficient: f64::from(header.friction_coefficient),
+    };
+    Contact::new(&finger, f64::from(header.effective_gap_m))?.under_load(f64::from(header.normal_load_n))
 }
 
 /// The carrier of a scene on a board, in the board's arithmetic.

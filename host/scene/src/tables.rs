@@ -22,6 +22,11 @@ pub(crate) const fn word(name: &'static str, absence: Absence, meaning: &'static
     FieldSpec::new(name, Holds::Word, absence, meaning)
 }
 
+/// Two numbers, the second one not below the first.
+pub(crate) const fn interval(name: &'static str, range: Range, meaning: &'static str) -> FieldSpec {
+    FieldSpec::new(name, Holds::Interval(range), Mistake, meaning)
+}
+
 /// The fields of an amount whose names begin with a stem.
 macro_rules! amount {
     ($stem:literal, $absence:expr, $meaning:expr) => {
@@ -52,10 +57,22 @@ pub(super) mod scene {
 
     pub(crate) const VERSION: FieldSpec =
         number("version", Range::new(f64::MIN, f64::MAX, ""), Mistake, "version of the file format");
-    pub(crate) const SCREEN: FieldSpec = FieldSpec::new("screen", Holds::Table, Mistake, "the screen");
-    pub(crate) const COATING: FieldSpec =
-        FieldSpec::new("coating", Holds::TableOrTables, Mistake, "the insulator between electrode and finger");
-    pub(crate) const FINGER: FieldSpec =
+    pub(crate) const SCREEN: FieldSpec = FieldSpec::new(
+        "screen",
+        Holds::TableOrText,
+        Means("the example screen"),
+        "the screen: a table, the name of a bundled one, or of a file",
+    );
+    pub(crate) const FINGER: FieldSpec = FieldSpec::new(
+        "finger",
+        Holds::TableOrText,
+        Means("the example finger"),
+        "the finger that the scene is meant for: a table, the name of a bundled one, or of a file",
+    );
+    pub(crate) const SCREEN_V1: FieldSpec = FieldSpec::new("screen", Holds::Table, Mistake, "the screen");
+    pub(crate) const COATING_V1: FieldSpec =
+        FieldSpec::new("coating", Holds::TableOrTables, Mistake, "coating and skin between electrode and finger");
+    pub(crate) const FINGER_V1: FieldSpec =
         FieldSpec::new("finger", Holds::Table, Mistake, "the finger that the scene is meant for");
     pub(crate) const DRIVE: FieldSpec =
         FieldSpec::new("drive", Holds::Table, Means("all defaults"), "limits of the drive");
@@ -67,16 +84,32 @@ pub(super) mod scene {
         FieldSpec::new("layer", Holds::Tables, Means("bare glass"), "the layers of friction");
 }
 
-/// `[screen]`
+/// `[screen]` of a scene, and a screen's file. A scene of version 1 has only the size there.
 pub(super) mod screen {
     use super::*;
+
+    pub(crate) const NAME: FieldSpec =
+        FieldSpec::new("name", Holds::Text, Means("none"), "what finger profiles call it that were measured on it");
 
     const SIZE: Range = Range::new(5.0, 2_000.0, " mm");
     pub(crate) const WIDTH_MM: FieldSpec = number("width_mm", SIZE, Mistake, "width of the screen, along x");
     pub(crate) const HEIGHT_MM: FieldSpec = number("height_mm", SIZE, Mistake, "height of the screen, along y");
+    pub(crate) const COATING: FieldSpec = FieldSpec::new(
+        "coating",
+        Holds::TableOrTables,
+        Means("1 um of silicon dioxide: `{ thickness_um = 1, permittivity = 3.9 }`"),
+        "the insulator between electrode and finger, see [`coating`](#coating)",
+    );
+    const NO_LIMIT: Absence = Means("no limit of its own");
+    pub(crate) const VOLTAGE_MAX_V_RMS: FieldSpec =
+        number("voltage_max_v_rms", super::drive::V_RMS, NO_LIMIT, "largest rms voltage that the screen bears");
+    pub(crate) const VOLTAGE_MAX_V_PEAK: FieldSpec =
+        number("voltage_max_v_peak", super::drive::V_PEAK, NO_LIMIT, "largest peak voltage that the screen bears");
+    pub(crate) const SLEW_V_PER_US: FieldSpec =
+        number("slew_v_per_us", super::drive::SLEW, NO_LIMIT, "fastest change of the envelope");
 }
 
-/// `[coating]`
+/// A slab of the coating.
 pub(super) mod coating {
     use super::*;
 
@@ -90,7 +123,7 @@ pub(super) mod coating {
         number("permittivity", Range::new(1.0, 10_000.0, ""), Mistake, "its relative permittivity");
 }
 
-/// `[finger]`
+/// `[finger]` of a scene of version 1, and a part of `[finger]` of version 2 and of a finger profile.
 pub(super) mod finger {
     use super::*;
 
@@ -98,30 +131,86 @@ pub(super) mod finger {
         number("radius_mm", Range::new(0.1, 100.0, " mm"), Mistake, "radius of curvature at the contact");
     pub(crate) const STIFFNESS_PA_PER_M: FieldSpec =
         number("stiffness_pa_per_m", Range::new(1e3, 1e14, " Pa/m"), Mistake, "Winkler-Fuss stiffness");
+    const COEFFICIENT: Range = Range::new(0.001, 10.0, "");
     pub(crate) const FRICTION_COEFFICIENT: FieldSpec =
-        number("friction_coefficient", Range::new(0.001, 10.0, ""), Mistake, "friction coefficient on the bare screen");
-    pub(crate) const NORMAL_LOAD_N: FieldSpec =
-        number("normal_load_n", Range::new(0.0, 50.0, " N"), Mistake, "how hard the finger presses");
+        number("friction_coefficient", COEFFICIENT, Mistake, "friction coefficient on the bare screen");
+    const LOAD_N: Range = Range::new(0.0, 50.0, " N");
+    pub(crate) const NORMAL_LOAD_N: FieldSpec = number("normal_load_n", LOAD_N, Mistake, "how hard the finger presses");
+    pub(crate) const SKIN_GAP_UM: FieldSpec = number(
+        "skin_gap_um",
+        Range::new(0.0, 10_000.0, " um"),
+        Mistake,
+        "stratum corneum and air between coating and living tissue, as an effective gap: thickness over permittivity",
+    );
+    pub(crate) const MODEL: FieldSpec = word(
+        "model",
+        Means("`\"winkler-fuss\"`"),
+        "`\"winkler-fuss\"`: springs of one stiffness; `\"soft\"`: a material that stiffens under stress, see \
+         [soft fingers](#soft-fingers)",
+    );
+    pub(crate) const MODULUS_PA: FieldSpec =
+        number("modulus_pa", Range::new(1.0, 1e12, " Pa"), Mistake, "modulus `E` of a soft finger");
+    pub(crate) const STRESS_EXPONENT: FieldSpec = number(
+        "stress_exponent",
+        Range::new(0.02, 1.0, ""),
+        Mistake,
+        "stress exponent of a soft finger: strain grows as stress to this power's inverse",
+    );
+    pub(crate) const SHAPE_CONSTANT: FieldSpec =
+        number("shape_constant", Range::new(0.001, 1_000.0, ""), Mistake, "constant `B` of a soft finger, Eq. (24)");
+    pub(crate) const ORIGIN: FieldSpec = word(
+        "origin",
+        Means("`\"assumed\"`"),
+        "what the numbers rest on: `\"assumed\"`; `\"perceptual\"`, a person said what they felt; or `\"measured\"`, with \
+         a force sensor",
+    );
+    pub(crate) const DATE: FieldSpec =
+        FieldSpec::new("date", Holds::Text, Mistake, "day of the experiment, `\"YYYY-MM-DD\"`");
+    pub(crate) const METHOD: FieldSpec = FieldSpec::new("method", Holds::Text, Mistake, "method of the experiment");
+    pub(crate) const SCREEN: FieldSpec = FieldSpec::new(
+        "screen",
+        Holds::Text,
+        Mistake,
+        "`name` of the screen of the experiment; on another screen the profile counts as assumed",
+    );
+    const VOLTAGE: Range = Range::new(0.0, 1_000.0, " V rms");
+    pub(crate) const THRESHOLD_V_RMS: FieldSpec =
+        number("threshold_v_rms", VOLTAGE, Mistake, "rms voltage at the detection threshold");
+    pub(crate) const THRESHOLD_INTERVAL_V_RMS: FieldSpec =
+        interval("threshold_interval_v_rms", VOLTAGE, "95 % interval of the threshold, `[least, largest]`");
+    pub(crate) const FRICTION_COEFFICIENT_INTERVAL: FieldSpec = interval(
+        "friction_coefficient_interval",
+        COEFFICIENT,
+        "95 % interval of the friction coefficient, `[least, largest]`",
+    );
+    pub(crate) const ELECTRIC_FRICTION_INTERVAL_N: FieldSpec = interval(
+        "electric_friction_interval_n",
+        Range::new(0.0, 100.0, " N"),
+        "95 % interval of the electric friction at `measured_voltage_max_v_rms` under `normal_load_n`",
+    );
+    pub(crate) const MEASURED_VOLTAGE_MAX_V_RMS: FieldSpec =
+        number("measured_voltage_max_v_rms", VOLTAGE, Mistake, "largest rms voltage of the measurement");
+    pub(crate) const MEASURED_NORMAL_LOAD_RANGE_N: FieldSpec =
+        interval("measured_normal_load_range_n", LOAD_N, "least and largest normal load of the measurement");
 }
 
 /// `[drive]`
 pub(super) mod drive {
     use super::*;
 
-    pub(crate) const VOLTAGE_MAX_V_RMS: FieldSpec = number(
-        "voltage_max_v_rms",
-        Range::new(1.0, 1_000.0, " V rms"),
-        Number(150.0),
-        "largest rms voltage over a carrier period",
-    );
+    pub(crate) const V_RMS: Range = Range::new(1.0, 1_000.0, " V rms");
+    pub(crate) const V_PEAK: Range = Range::new(2.0, 2_000.0, " V peak");
+    pub(crate) const SLEW: Range = Range::new(0.001, 1_000.0, " V/us");
+    pub(crate) const VOLTAGE_MAX_V_RMS: FieldSpec =
+        number("voltage_max_v_rms", V_RMS, Number(150.0), "largest rms voltage over a carrier period");
     pub(crate) const VOLTAGE_MAX_V_PEAK: FieldSpec = number(
         "voltage_max_v_peak",
-        Range::new(2.0, 2_000.0, " V peak"),
+        V_PEAK,
         Means("what the rms voltage needs, within the board's limit"),
         "largest peak voltage; at most the board's limit",
     );
     pub(crate) const SLEW_V_PER_US: FieldSpec =
-        number("slew_v_per_us", Range::new(0.001, 1_000.0, " V/us"), Number(5.0), "fastest change of the envelope");
+        number("slew_v_per_us", SLEW, Number(5.0), "fastest change of the envelope");
     pub(crate) const HOST_TIMEOUT_MS: FieldSpec = number(
         "host_timeout_ms",
         Range::new(20.0, 1_000.0, " ms"),

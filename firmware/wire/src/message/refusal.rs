@@ -54,7 +54,7 @@ pub enum Refusal {
     Scene(SceneError),
     /// A number in the scene is outside the board's limits.
     Config(ConfigRefusal),
-    /// The board has not yet released the previous scene; the host may retry.
+    /// The board has not finished earlier commands or not yet released the previous scene; the host may retry.
     Busy,
     /// The requested telemetry period is too short.
     TelemetryTooFast {
@@ -296,7 +296,7 @@ impl fmt::Display for Refusal {
             }
             Self::Scene(error) => error.fmt(f),
             Self::Config(refusal) => refusal.fmt(f),
-            Self::Busy => f.write_str("the board has not yet let go of the scene before: try again"),
+            Self::Busy => f.write_str("the board has not finished earlier commands, or still plays the previous scene: try again"),
             Self::TelemetryTooFast { period_min_ticks } => write!(
                 f,
                 "the board sends telemetry every {period_min_ticks} ticks at most: ask for a longer period, or for zero to end it"

@@ -1,6 +1,7 @@
 //! The cost of a scene, and the friction that a finger will feel of it, computed before it is played.
 
 mod board;
+pub mod feel;
 mod rehearsal;
 mod text;
 
@@ -12,6 +13,7 @@ use serde::Serialize;
 pub use board::BoardImage;
 pub use rehearsal::RehearsalError;
 
+use frixel_scene::perception::Perception;
 use frixel_scene::{Program, TargetRange, middle_mm};
 
 /// The costs and limits of a scene; the field names are the keys of `--json`.
@@ -29,6 +31,8 @@ pub struct SceneCheck {
     pub reach: ReachableFriction,
     /// Friction that the scene targets.
     pub asked: TargetRange,
+    /// What a person will feel of it.
+    pub perception: Perception,
     /// Values that the compiler rounded, converted or clamped, a sentence each.
     pub notes: Vec<String>,
     /// Parts of the scene that the compiler omitted and the reasons, a sentence each.
@@ -148,6 +152,7 @@ impl SceneCheck {
                 voltage_max_v_rms: reach.voltage_max_v_rms,
             },
             asked: TargetRange::of(program),
+            perception: Perception::of(program),
             notes: program.notes.clone(),
             left_out: program.optimisations.iter().map(ToString::to_string).collect(),
             board: None,

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use frixel_model::InverseTable;
 
-use super::{RamBytes, SceneCheck};
+use super::{RamBytes, SceneCheck, feel};
 use frixel_scene::OutOfReach;
 
 impl SceneCheck {
@@ -52,6 +52,9 @@ impl SceneCheck {
         );
         line("asked for", format!("{:.4} to {:.4} N in total", asked.least_n, asked.most_n));
         line("out of reach", out_of_reach(&asked.above, &asked.below));
+        for (name, text) in feel::lines(&self.perception) {
+            line(name, text);
+        }
         for note in &self.notes {
             line("note", note.clone());
         }

@@ -20,14 +20,26 @@ const CHECK_PERIOD_S: f64 = 1e-3;
 const CHECKS_MAX: f64 = 1e6;
 /// Time between two places of a minimum-jerk stroke that goes back and forth, s.
 const SAMPLE_PERIOD_S: f64 = 1e-3;
-/// Columns of a stroke file, and those of `felt.csv`, which may be played as a stroke.
-const KNOWN_COLUMNS: [&str; 10] =
-    ["t_s", "x_mm", "y_mm", "speed_mm_s", "wanted_n", "asked_n", "felt_n", "voltage_v_rms", "dac_code", "flags"];
+/// Columns of a stroke file, load in N included, and those of `felt.csv`, which may be played as a stroke.
+const KNOWN_COLUMNS: [&str; 11] = [
+    "t_s",
+    "x_mm",
+    "y_mm",
+    "force_n",
+    "speed_mm_s",
+    "wanted_n",
+    "asked_n",
+    "felt_n",
+    "voltage_v_rms",
+    "dac_code",
+    "flags",
+];
 
 /// Options that say where the simulated finger goes.
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct StrokeArgs {
-    /// Where the simulated finger goes: a CSV file with the columns `t_s,x_mm,y_mm`, for example a felt.csv.
+    /// Where the simulated finger goes: a CSV file with the columns `t_s,x_mm,y_mm`, and `force_n` for the
+    /// normal load, for example a felt.csv.
     #[arg(long, value_name = "FILE.csv", conflicts_with = "from")]
     stroke: Option<PathBuf>,
     /// Start of a straight stroke, in mm from the top left corner of the screen.

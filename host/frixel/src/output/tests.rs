@@ -318,8 +318,8 @@ fn what_is_too_fast_to_draw_is_drawn_as_its_envelope() {
 
 fn report(summary: &MetricsSummary) -> Report {
     let link = Counters { frames_sent: 400, frames_rejected: 1, payload_bytes: 63_000, wire_bytes: 65_000 };
-    let reach =
-        frixel_scene::Reach { natural_friction_n: 0.25, electric_friction_max_n: 0.025, voltage_max_v_rms: 150.0 };
+    let mut reach = brick().reach;
+    (reach.natural_friction_n, reach.electric_friction_max_n, reach.voltage_max_v_rms) = (0.25, 0.025, 150.0);
     Report::new("simulator", summary, &reach, &link, Some(123.4))
 }
 

@@ -16,7 +16,7 @@ use std::path::Path;
 use cases::{Case, Path as StrokePath};
 use expected::{At, Expected};
 use frixel::player::{Simulation, simulate};
-use frixel::scene_file::PictureFolder;
+use frixel::scene_file::SceneFolder;
 use frixel_hil_sim::{Point, RigConfig, Stroke};
 use frixel_scene::recorder::FeltRow;
 use frixel_scene::{Program, Scene, compile};
@@ -44,7 +44,7 @@ const SLIDING_MM_S: f64 = 8.0;
 
 fn compiled(layers: &str) -> Program {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
-    let scene = Scene::parse(&format!("{HEAD}{layers}"), "test.toml", &PictureFolder(scenes)).unwrap();
+    let scene = Scene::parse(&format!("{HEAD}{layers}"), "test.toml", &SceneFolder(scenes)).unwrap();
     let board = RigConfig::default().board;
     compile(&scene, &board.limits, board.tick_hz).unwrap_or_else(|error| panic!("{error}"))
 }

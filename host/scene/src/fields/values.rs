@@ -9,6 +9,12 @@ use crate::log::Log;
 use crate::mistake::Mistake;
 use crate::nearest::Nearest;
 
+/// A table, or the name of a file that contains it.
+pub(crate) enum TableOrText<'i> {
+    Table(Fields<'i>),
+    Text(String),
+}
+
 impl<'i> Fields<'i> {
     /// A number; `None` if it is absent or invalid.
     pub(crate) fn number(&mut self, log: &mut Log, field: &FieldSpec) -> Option<f64> {
@@ -111,6 +117,22 @@ impl<'i> Fields<'i> {
         }
     }
 
+    /// A table, or the name of a file that contains it.
+    pub(crate) fn table_or_text(&mut self, log: &mut Log, field: &FieldSpec) -> Option<TableOrText<'i>> {
+        let value = self.take(field)?;
+        let (name, offset) = (field.name, value.span().start);
+        match value.into_inner() {
+            DeValue::Table(values) => {
+                Some(TableOrText::Table(Fields::of_field(&format!("[{name}]"), name, offset, values)))
+            }
+            DeValue::String(text) => Some(TableOrText::Text(text.into_owned())),
+            other => {
+                log.add(offset, wrong_type(name, "a table, or the name of a profile in quotes", &other));
+                None
+            }
+        }
+    }
+
     /// Any number of tables, `[[field]]`. If the field may hold one table, `[field]` is a list of one.
     pub(crate) fn tables(&mut self, log: &mut Log, field: &FieldSpec) -> Option<Vec<Fields<'i>>> {
         let value = self.take(field)?;
@@ -144,6 +166,25 @@ impl<'i> Fields<'i> {
         let list = self.list(log, field, "a list of numbers in square brackets")?;
         let numbers: Vec<_> = list.iter().map(|value| number(log, field.name, range, value)).collect();
         numbers.into_iter().collect()
+    }
+
+    /// Two numbers, the second one not below the first.
+    pub(crate) fn interval(&mut self, log: &mut Log, field: &FieldSpec) -> Option<[f64; 2]> {
+        const EXPECTED: &str = "two numbers in square brackets, [least, largest]";
+        let Holds::Interval(range) = field.holds else { return None };
+        let list = self.list(log, field, EXPECTED)?;
+        let offset = self.places.field(field.name);
+        let [low, high] = &list[..] else {
+            log.add(offset, Mistake::Count { field: field.name, found: list.len(), min: 2, max: 2 });
+            return None;
+        };
+        let (low, high) = (number(log, field.name, range, low), number(log, field.name, range, high));
+        let (low, high) = (low?, high?);
+        if low > high {
+            log.add(offset, Mistake::IntervalReversed { field: field.name, low, high });
+            return None;
+        }
+        Some([low, high])
     }
 
     /// A list of pairs of numbers.

@@ -80,7 +80,7 @@ impl<'a, 's> Lowering<'a, 's> {
         bitmap: &BitmapWords,
         visible: Option<Rectangle>,
     ) -> Option<Placed> {
-        let screen = (self.scene.screen.width_mm, self.scene.screen.height_mm);
+        let screen = (self.scene.screen().width_mm, self.scene.screen().height_mm);
         self.pool.place(layer, bitmap, visible, screen, self.log, &mut self.notes)
     }
 

@@ -26,7 +26,7 @@ pub(crate) fn turns(angle_deg: f64) -> f32 {
 
 /// Refuses a layer that extends past the screen.
 pub(crate) fn check_on_screen(scene: &Scene, layer: &Layer, rectangle: Rectangle, log: &mut Log) {
-    let (screen_width_mm, screen_height_mm) = (scene.screen.width_mm, scene.screen.height_mm);
+    let (screen_width_mm, screen_height_mm) = (scene.screen().width_mm, scene.screen().height_mm);
     let past = [
         ("left", -rectangle.x_mm),
         ("top", -rectangle.y_mm),

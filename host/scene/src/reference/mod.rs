@@ -81,8 +81,7 @@ impl Reference {
     fn at(&self, context: &Context, click_n: impl Fn(usize) -> f64) -> f64 {
         let covers = |piece: &Piece| piece.shape.covers(context.x_m, context.y_m);
         // Layers below one that replaces them need no evaluation.
-        let hides = |piece: &Piece| piece.blend == Blend::Replace && !piece.is_streamed;
-        let lowest = self.pieces.iter().rposition(|piece| hides(piece) && covers(piece)).unwrap_or(0);
+        let lowest = self.pieces.iter().rposition(|piece| piece.hides_below() && covers(piece)).unwrap_or(0);
         let above = self.pieces.iter().enumerate().skip(lowest).filter(|(_, piece)| covers(piece));
         above.fold(0.0, |below_n, (number, piece)| {
             let own_n = piece.gain * (piece.field.at(context) + click_n(number));
@@ -103,6 +102,11 @@ impl Reference {
 }
 
 impl Piece {
+    /// Whether the layers below have no effect where this layer is.
+    pub(crate) fn hides_below(&self) -> bool {
+        self.blend == Blend::Replace && !self.is_streamed
+    }
+
     fn new(record: &Record, program: &Program) -> Self {
         let shape = Shape::new(record.region, &program.points);
         let field = kinds::field(&record.layer, record.region, program);

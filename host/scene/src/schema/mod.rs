@@ -5,47 +5,84 @@ pub(super) mod variant;
 
 use serde_json::{Map, Value, json};
 
-use super::file::{VERSION, describe};
+use super::file::describe;
 use super::grammar::{Holds, KnownField, KnownTable, Range};
 use super::tables::layer::KIND;
 use variant::{Tables, Variant, variants};
 
-/// The tables of a scene, empty, so that the parser reads their fields.
-const EMPTY: &str = "coating = [{}]\nscreen = {}\nfinger = {}\ndrive = {}\ncarrier = {}\ntouch = {}\n";
+/// For each version of the file format, the tables of a scene, empty, so that the parser reads their fields.
+const EMPTY: [(u32, &str); 2] = [
+    (2, "version = 2\nscreen = { coating = [{}] }\nfinger = {}\ndrive = {}\ncarrier = {}\ntouch = {}\n"),
+    (1, "version = 1\ncoating = [{}]\nscreen = {}\nfinger = {}\ndrive = {}\ncarrier = {}\ntouch = {}\n"),
+];
+/// The tables that are the same in all versions.
+const SHARED: [&str; 3] = ["drive", "carrier", "touch"];
 
 /// The schema (draft 7, which editors support), as a text that ends in a line feed.
 pub fn json_schema() -> String {
-    let mut properties = Map::new();
-    let tables = describe(EMPTY);
-    let Some(root) = tables.iter().find(|table| table.key.is_empty()) else { return String::new() };
-    for KnownField { field, .. } in &root.fields {
-        let inner = || match tables.iter().find(|table| table.key == field.name) {
-            Some(table) => object(table, &Map::new()),
-            None => json!({ "oneOf": layers() }),
-        };
-        let value = match field.holds {
-            Holds::Table => inner(),
-            Holds::TableOrTables => {
-                let table = inner();
-                json!({ "oneOf": [table, { "type": "array", "minItems": 1, "items": table }] })
-            }
-            Holds::Tables => json!({ "type": "array", "items": inner() }),
-            _ => json!({ "const": VERSION }),
-        };
-        properties.insert(field.name.to_owned(), value);
+    let mut definitions = Map::new();
+    definitions.insert("layer".to_owned(), json!({ "oneOf": layers() }));
+    definitions.insert("region".to_owned(), json!({ "oneOf": regions() }));
+    let [(_, newest), _] = EMPTY;
+    for table in describe(newest).iter().filter(|table| SHARED.contains(&table.key)) {
+        definitions.insert(table.key.to_owned(), object(table, &Map::new()));
     }
     let schema = json!({
         "$schema": "http://json-schema.org/draft-07/schema#",
         "title": "frixel scene",
         "description": "A scene of friction, in newtons: docs/scene.md",
         "type": "object",
-        "properties": properties,
-        "required": root.required,
-        "additionalProperties": false,
-        "definitions": { "region": { "oneOf": regions() } },
+        "oneOf": EMPTY.map(|(version, empty)| scene(version, empty)),
+        "definitions": definitions,
     });
     // A value that was just built always serializes.
     serde_json::to_string_pretty(&schema).unwrap_or_default() + "\n"
+}
+
+/// The schema of a scene of one version.
+fn scene(version: u32, empty: &str) -> Value {
+    let tables = describe(empty);
+    let Some(root) = tables.iter().find(|table| table.key.is_empty()) else { return Value::Null };
+    let inner = |name: &str| {
+        let mut inner = Map::new();
+        for table in tables.iter().filter(|table| table.key == "coating" && name == "screen") {
+            let slab = object(table, &Map::new());
+            inner.insert("coating".to_owned(), one_or_more(&slab));
+        }
+        tables.iter().find(|table| table.key == name).map_or(Value::Null, |table| object(table, &inner))
+    };
+    let mut properties = Map::new();
+    for KnownField { field, .. } in &root.fields {
+        let name = field.name;
+        let value = match field.holds {
+            Holds::Table if SHARED.contains(&name) => json!({ "$ref": format!("#/definitions/{name}") }),
+            Holds::Table => inner(name),
+            Holds::TableOrText if name == "finger" => with_name(fingers()),
+            Holds::TableOrText => with_name(vec![inner(name)]),
+            Holds::TableOrTables => one_or_more(&inner(name)),
+            Holds::Tables => json!({ "type": "array", "items": { "$ref": format!("#/definitions/{name}") } }),
+            _ => json!({ "const": version }),
+        };
+        properties.insert(name.to_owned(), value);
+    }
+    json!({ "type": "object", "properties": properties, "required": root.required, "additionalProperties": false })
+}
+
+/// The schema of a table or a list of tables.
+fn one_or_more(table: &Value) -> Value {
+    json!({ "oneOf": [table, { "type": "array", "minItems": 1, "items": table }] })
+}
+
+/// The schema of one of several tables, or of the name of a file or bundled profile.
+fn with_name(mut tables: Vec<Value>) -> Value {
+    tables.push(json!({ "type": "string" }));
+    json!({ "oneOf": tables })
+}
+
+/// The schemas of a finger, one for each set of fields that can occur together.
+fn fingers() -> Vec<Value> {
+    let tables = Tables { before: "version = 2\nfinger = {", after: "}", key: "finger" };
+    variants(&tables).iter().map(|variant| variant_object(variant, &Map::new())).collect()
 }
 
 /// The schemas of a region, one for each shape.
@@ -137,13 +174,16 @@ fn value(known: &KnownField) -> Value {
         Holds::Text => json!({ "type": "string" }),
         Holds::Word => json!({ "enum": known.words }),
         Holds::Table => json!({ "type": "object" }),
+        Holds::TableOrText => json!({ "type": ["object", "string"] }),
         Holds::Tables | Holds::TableOrTables => json!({ "type": "array", "items": { "type": "object" } }),
         Holds::Numbers(range) => json!({ "type": "array", "items": number("number", range) }),
-        Holds::Pairs(range) => {
-            let pair = json!({ "type": "array", "items": number("number", range), "minItems": 2, "maxItems": 2 });
-            json!({ "type": "array", "items": pair })
-        }
+        Holds::Interval(range) => two_numbers(range),
+        Holds::Pairs(range) => json!({ "type": "array", "items": two_numbers(range) }),
     }
+}
+
+fn two_numbers(range: Range) -> Value {
+    json!({ "type": "array", "items": number("number", range), "minItems": 2, "maxItems": 2 })
 }
 
 fn number(kind: &str, range: Range) -> Value {

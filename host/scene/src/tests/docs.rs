@@ -71,10 +71,10 @@ fn known(before: &str, after: &str, key: &str) -> Vec<KnownField> {
 /// The headings with a table of fields below them, and the fields.
 fn documented() -> Vec<(String, Vec<KnownField>)> {
     let mut all = Vec::new();
-    for table in ["screen", "coating", "finger", "drive", "carrier", "touch"] {
-        let (before, after) = if table == "coating" { ("[{", "}]") } else { ("{", "}") };
-        all.push((format!("### `[{table}]`"), known(&format!("{table} = {before}"), after, table)));
+    for table in ["screen", "finger", "drive", "carrier", "touch"] {
+        all.push((format!("### `[{table}]`"), known(&format!("version = 2\n{table} = {{"), "}", table)));
     }
+    all.push(("#### `coating`".to_owned(), known("version = 2\nscreen = { coating = [{", "}] }", "coating")));
     let is_common = |known: &KnownField| COMMON.iter().any(|common| common.name == known.field.name);
     let layer = |kind: &str| known(&format!("layer = [{{ kind = \"{kind}\""), "}]", "layer");
     all.push(("## Layers".to_owned(), layer("constant").into_iter().filter(is_common).collect()));
@@ -124,7 +124,12 @@ fn default(field: &FieldSpec) -> String {
 }
 
 fn range(field: &FieldSpec) -> String {
-    let (Holds::Number(range) | Holds::Whole(range) | Holds::Numbers(range) | Holds::Pairs(range)) = field.holds else {
+    let (Holds::Number(range)
+    | Holds::Whole(range)
+    | Holds::Numbers(range)
+    | Holds::Interval(range)
+    | Holds::Pairs(range)) = field.holds
+    else {
         return String::new();
     };
     let Range { min, max, unit } = range;

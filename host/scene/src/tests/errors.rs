@@ -192,8 +192,8 @@ fn numbers_out_of_range() {
     );
     check_head(
         "version = 1",
-        "version = 2",
-        "test.toml:1:11: this scene file has version 2, and this frixel reads version 1: use a frixel that knows it",
+        "version = 3",
+        "test.toml:1:11: this scene file has version 3, and this frixel reads versions 1 and 2: use a frixel that knows it",
     );
 }
 
@@ -233,7 +233,7 @@ fn fingers_and_coatings_that_cannot_be_played() {
     assert_eq!(
         message(&format!("{text}[drive]\nvoltage_max_v_rms = 1")),
         "test.toml:7:1: this finger on this coating cannot be played (its friction between 1 V and the largest voltage does \
-         not fit the board's table): check [finger], [coating] and `voltage_max_v_rms`"
+         not fit the board's table): check finger, coating and `voltage_max_v_rms`"
     );
 }
 
@@ -642,7 +642,7 @@ fn pictures() {
         &[(
             3,
             11,
-            "picture \"textures/brik.png\" was not found in the scene's set of pictures, which has \"brick.png\": paths \
+            "picture \"textures/brik.png\" was not found in the scene's set of files, which has \"brick.png\": paths \
              start from the scene file's folder",
         )],
     );

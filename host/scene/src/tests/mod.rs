@@ -13,6 +13,7 @@ mod errors;
 mod json_schema;
 mod layers;
 mod optimise;
+mod profiles;
 mod schema;
 
 pub(super) const LIMITS: BoardLimits = Board::SIMULATOR.limits;

@@ -1,11 +1,13 @@
-//! `frixel scene preview`: draws the friction map of a scene.
+//! `frixel scene preview`: draws the friction map of a scene, and says what a person will feel.
 
 use std::path::PathBuf;
 
 use clap::Args;
+use frixel::check::feel;
 use frixel::output::write_preview_png;
 use frixel::scene_file;
 use frixel_hil_sim::RigConfig;
+use frixel_scene::perception::Perception;
 use frixel_scene::{Preview, compile};
 
 use super::super::error::CommandError;
@@ -36,6 +38,9 @@ pub(super) fn run(args: &PreviewArgs) -> Result<(), CommandError> {
     let map_max = (args.map_width, args.map_width * 4 / 5);
     let preview = Preview { speed_m_per_s: 1e-3 * args.speed_mm_per_s, map_max };
     write_preview_png(&args.output, &title, &program, &preview)?;
+    for (name, text) in feel::lines(&Perception::of(&program)) {
+        print_line(format_args!("  {name:<16} {text}"))?;
+    }
     print_line(format_args!("  {:<16} {}", "wrote", args.output.display()))
 }
 

@@ -15,7 +15,7 @@ use super::{Figure, ReportError};
 use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};
 use crate::report::data::Data;
 use crate::report::wire::OnTheWire;
-use crate::scene_file::PictureFolder;
+use crate::scene_file::SceneFolder;
 use frixel_scene::{CompileError, Program, Scene, compile};
 
 /// The beginning of every scene.
@@ -104,7 +104,7 @@ fn write_picture(folder: &Path) -> Result<(), ReportError> {
 fn compiled(text: &str, folder: &Path) -> Result<Program, CompileError> {
     let board = RigConfig::default().board;
     compile(
-        &Scene::parse(text, "a scene of the report", &PictureFolder(folder.to_owned()))?,
+        &Scene::parse(text, "a scene of the report", &SceneFolder(folder.to_owned()))?,
         &board.limits,
         board.tick_hz,
     )

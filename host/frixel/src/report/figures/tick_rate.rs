@@ -27,7 +27,8 @@ const SEEDS: [u64; 5] = [1, 2, 3, 4, 5];
 const SETTLING_S: f64 = 0.1;
 
 /// A touch source without latency and noise.
-const IDEAL_TOUCH: TouchConfig = TouchConfig { rate_hz: 500.0, latency_s: 0.0, noise_rms_m: 0.0, jitter_rms_s: 0.0 };
+const IDEAL_TOUCH: TouchConfig =
+    TouchConfig { rate_hz: 500.0, latency_s: 0.0, noise_rms_m: 0.0, jitter_rms_s: 0.0, ..TouchConfig::IDEAL };
 
 /// A curve of the chart.
 struct Case {

@@ -1,0 +1,83 @@
+//! Intervals by bootstrap over strokes: strokes are drawn again and again, with replacement, and each draw is fitted.
+//!
+//! The noise of natural friction is correlated within a stroke, so rows are not independent, and intervals that take
+//! them to be are too narrow. Strokes are the smallest parts that are.
+
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::{Rng, SeedableRng};
+
+use super::contrast::StrokeMeans;
+use super::statistics::{normal_probability, quantile, student_quantile};
+
+/// Gaussian quantile of a two-sided interval of 95 %.
+pub(super) const Z_95: f64 = 1.959_964;
+/// Gaussian quantile of a two-sided interval of 99.9 %.
+pub(super) const Z_999: f64 = 3.290_527;
+
+/// An estimate with its 95 % interval.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// Best value.
+    pub value: f64,
+    /// Lower end of the interval.
+    pub low: f64,
+    /// Upper end of the interval.
+    pub high: f64,
+}
+
+impl Estimate {
+    /// Whether both ends lie within this share of the value.
+    pub(super) fn is_within(&self, share: f64) -> bool {
+        let room = share * self.value.abs();
+        self.high - self.value <= room && self.value - self.low <= room
+    }
+}
+
+/// Strokes in groups of one voltage, from which they are drawn.
+pub(super) struct Draws {
+    groups: Vec<Vec<usize>>,
+    random: Pcg64,
+}
+
+impl Draws {
+    /// Groups strokes by their highest voltage, so that each draw has as many strokes of each voltage as the recording.
+    /// With fewer than three strokes of a voltage, all strokes are one group.
+    pub(super) fn new(strokes: &[StrokeMeans], seed: u64) -> Self {
+        let mut levels: Vec<_> = strokes.iter().map(|stroke| stroke.top_level).collect();
+        levels.sort_unstable();
+        levels.dedup();
+        let members = |level| {
+            let numbered = strokes.iter().enumerate().filter(move |(_, stroke)| stroke.top_level == level);
+            numbered.map(|(index, _)| index).collect::<Vec<_>>()
+        };
+        let mut groups: Vec<_> = levels.into_iter().map(members).collect();
+        if groups.iter().any(|group| group.len() < 3) {
+            groups = vec![(0..strokes.len()).collect()];
+        }
+        Self { groups, random: Pcg64::seed_from_u64(seed) }
+    }
+
+    /// Draws strokes, with replacement.
+    pub(super) fn draw(&mut self) -> Vec<usize> {
+        let Self { groups, random } = self;
+        let mut drawn = Vec::new();
+        for group in groups {
+            // The product with a random number of 32 bits keeps its upper half, evenly spread to 1 in 2^32.
+            let place = |random: &mut Pcg64| ((random.next_u64() >> 32) * group.len() as u64 >> 32) as usize;
+            drawn.extend((0..group.len()).filter_map(|_| group.get(place(random)).copied()));
+        }
+        drawn
+    }
+
+    /// The two-sided interval of the values that the draws gave, for the Gaussian quantile `z`: the expanded percentile
+    /// interval (Hesterberg 2015, doi:10.1080/00031305.2015.1089789), which corrects for the small number of strokes.
+    pub(super) fn interval(&self, values: &mut [f64], z: f64) -> (f64, f64) {
+        values.sort_by(f64::total_cmp);
+        let strokes = self.groups.iter().map(Vec::len).sum::<usize>() as f64;
+        let groups = self.groups.len() as f64;
+        let per_group = strokes / groups;
+        let expanded = (per_group / (per_group - 1.0)).sqrt() * student_quantile(z, strokes - groups);
+        let part = normal_probability(-expanded);
+        (quantile(values, part), quantile(values, 1.0 - part))
+    }
+}

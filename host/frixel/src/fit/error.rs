@@ -1,0 +1,303 @@
+//! Why data are refused: what was found, and what to do about it.
+
+use std::io;
+
+use thiserror::Error;
+
+/// Why data cannot be fitted.
+#[derive(Debug, Error)]
+pub enum FitError {
+    /// The file cannot be read.
+    #[error("the data cannot be read ({0}): give a CSV file with a header row")]
+    Read(io::Error),
+    /// The header has no column that is needed.
+    #[error(
+        "the header has no column {column}{}: name the column so, in {unit}",
+        .nearest.as_ref().map(|name| format!(" (it has {name})")).unwrap_or_default()
+    )]
+    ColumnMissing {
+        /// The column.
+        column: &'static str,
+        /// Its unit.
+        unit: &'static str,
+        /// A column with a similar name.
+        nearest: Option<String>,
+    },
+    /// The header has a column twice.
+    #[error("the header has the column {column} twice: leave one of them out")]
+    ColumnTwice {
+        /// The column.
+        column: &'static str,
+    },
+    /// A cell is not a finite number.
+    #[error("row {row}, column {column}: expected a number, found {found:?}: correct the cell or delete the row")]
+    NotANumber {
+        /// Number of the row; the header is row 1.
+        row: u64,
+        /// The column.
+        column: &'static str,
+        /// What the cell contains.
+        found: String,
+    },
+    /// A voltage is negative.
+    #[error(
+        "row {row}, column voltage_v_rms: {found} V is below zero: give the root mean square of the drive, which has \
+         no sign"
+    )]
+    NegativeVoltage {
+        /// Number of the row.
+        row: u64,
+        /// The voltage.
+        found: f64,
+    },
+    /// A voltage is above what any driver board has.
+    #[error(
+        "row {row}, column voltage_v_rms: {found} V is above 1000 V: give volts rms, not millivolts and not DAC codes"
+    )]
+    VoltageTooHigh {
+        /// Number of the row.
+        row: u64,
+        /// The voltage.
+        found: f64,
+    },
+    /// Time goes backwards.
+    #[error(
+        "row {row}, column time_s: {found} s comes after {before} s, time goes backwards: sort the rows by time, or \
+         number the strokes in a column stroke if each has a clock of its own"
+    )]
+    TimeBackwards {
+        /// Number of the row.
+        row: u64,
+        /// Its time.
+        found: f64,
+        /// Time of the row before it.
+        before: f64,
+    },
+    /// The loads are all zero.
+    #[error("column normal_force_n is zero throughout, there are no loads: record the normal force with a load cell")]
+    NoLoads,
+    /// The load is not that of a finger on a touchscreen.
+    #[error(
+        "the median of normal_force_n is {median}, and a finger on a touchscreen presses with 0.03 to 3 N: the column \
+         {guess}; give newtons"
+    )]
+    LoadUnit {
+        /// Median of the column.
+        median: f64,
+        /// What the numbers probably are.
+        guess: &'static str,
+    },
+    /// The friction does not fit the load.
+    #[error(
+        "friction_n over normal_force_n has a median of {ratio:.3} at no voltage, and that of skin on glass is 0.05 to 5: one of the \
+         columns {guess}; give newtons in both"
+    )]
+    FrictionUnit {
+        /// Friction over load.
+        ratio: f64,
+        /// What the numbers probably are.
+        guess: &'static str,
+    },
+    /// Too few strokes.
+    #[error(
+        "{found} strokes are too few for an interval: record at least {needed}, 60 s of strokes back and forth are \
+         best"
+    )]
+    TooFewStrokes {
+        /// Number of strokes.
+        found: usize,
+        /// Least number of strokes.
+        needed: usize,
+    },
+    /// Too few rows to divide into blocks.
+    #[error(
+        "{found} rows without a column stroke are too few: record at least {needed}, or number the strokes in a \
+         column stroke"
+    )]
+    TooFewRows {
+        /// Number of rows.
+        found: usize,
+        /// Least number of rows.
+        needed: usize,
+    },
+    /// A stroke is too short.
+    #[error("stroke {stroke} is too short, {found}: make each stroke last at least 0.4 s and at least 5 rows")]
+    StrokeTooShort {
+        /// The stroke.
+        stroke: String,
+        /// How short it is.
+        found: String,
+    },
+    /// A stroke's load is not that of the others.
+    #[error(
+        "stroke {stroke}: its load of {load_n:.3} N is {percent:.0} % off the median load of {median_n:.3} N, more than \
+         15 %: record it again, or leave it out with --without {stroke}"
+    )]
+    LoadOff {
+        /// The stroke.
+        stroke: String,
+        /// Its median load.
+        load_n: f64,
+        /// How far it is off, in percent.
+        percent: f64,
+        /// Median load of the recording.
+        median_n: f64,
+    },
+    /// A stroke is too slow or too fast.
+    #[error(
+        "stroke {stroke}: its speed of {speed_mm_s:.3} mm/s is outside 20 to 100 mm/s, where the lag of friction was \
+         measured: record it again, or leave it out with --without {stroke}"
+    )]
+    Speed {
+        /// The stroke.
+        stroke: String,
+        /// Its median speed.
+        speed_mm_s: f64,
+    },
+    /// A stroke did not slip.
+    #[error(
+        "stroke {stroke} did not slip: {found}; record it again with a finger that slides all the way, or leave it \
+         out with --without {stroke}"
+    )]
+    NoSlip {
+        /// The stroke.
+        stroke: String,
+        /// How it shows.
+        found: String,
+    },
+    /// A stroke that is to be left out does not exist.
+    #[error("--without {stroke}: there is no such stroke; the column stroke has {first} to {last}")]
+    NoSuchStroke {
+        /// What was asked for.
+        stroke: String,
+        /// The first stroke.
+        first: String,
+        /// The last stroke.
+        last: String,
+    },
+    /// There is nothing to compare with.
+    #[error(
+        "no row has a voltage of zero, so natural friction is unknown: switch the drive on and off while the finger \
+         slides"
+    )]
+    NoNaturalFriction,
+    /// There is only one voltage.
+    #[error(
+        "one voltage only ({found:.1} V rms besides zero): the model is tested by how friction grows from one voltage \
+         to another; record at least two, for example 75, 106 and 150 V rms"
+    )]
+    OneVoltage {
+        /// The voltage.
+        found: f64,
+    },
+    /// The drive is never on.
+    #[error("the voltage is zero throughout: record with the drive switched on and off")]
+    NoVoltage,
+    /// The voltage makes no friction.
+    #[error(
+        "the voltage adds no friction ({found_n:.2e} N at the highest one): check that the electrode is driven and \
+         that voltage and friction belong to the same time"
+    )]
+    NoElectricFriction {
+        /// Electric friction at the highest voltage.
+        found_n: f64,
+    },
+    /// The stated voltage was not reached.
+    #[error(
+        "the data reach {max:.1} V rms, friction at {stated} V would be extrapolated: record up to {stated} V rms, or \
+         state it lower with --voltage {max:.0}"
+    )]
+    VoltageExtrapolated {
+        /// Highest voltage of the data.
+        max: f64,
+        /// The voltage at which friction is to be stated.
+        stated: f64,
+    },
+    /// The stated load was not measured.
+    #[error(
+        "the data have loads from {low:.3} to {high:.3} N, friction under {stated} N would be extrapolated: record \
+         under that load, or leave out --load"
+    )]
+    LoadExtrapolated {
+        /// Smallest load of the data.
+        low: f64,
+        /// Largest load of the data.
+        high: f64,
+        /// The load at which friction is to be stated.
+        stated: f64,
+    },
+    /// An interval is too wide.
+    #[error(
+        "the 95 % interval of the {quantity} is {low:.4} to {high:.4} around {value:.4}, wider than +-20 %: record \
+         more strokes, more evenly"
+    )]
+    TooUncertain {
+        /// The quantity with its unit.
+        quantity: &'static str,
+        /// Lower end.
+        low: f64,
+        /// Upper end.
+        high: f64,
+        /// Estimate.
+        value: f64,
+    },
+    /// The finger changed during the recording.
+    #[error(
+        "the {quantity} was {first:.4} in the first third and {last:.4} in the last: the finger changed while it was \
+         measured; rest for a minute, wipe finger and screen, and record again"
+    )]
+    Drifted {
+        /// The quantity with its unit.
+        quantity: &'static str,
+        /// Mean of the first third.
+        first: f64,
+        /// Mean of the last third.
+        last: f64,
+    },
+    /// The exponent of voltage or load contradicts the model.
+    #[error(
+        "electric friction grows as {quantity} to the power {value:.2} ({low:.2} to {high:.2}), and the model says \
+         {model:.2}: the contact model does not hold for these data, so no profile is fitted; check for volts peak in \
+         place of rms, and see docs/truth.md"
+    )]
+    LawBroken {
+        /// `voltage` or `load`.
+        quantity: &'static str,
+        /// Measured exponent.
+        value: f64,
+        /// Lower end of its 99.9 % interval.
+        low: f64,
+        /// Upper end of its 99.9 % interval.
+        high: f64,
+        /// The model's exponent.
+        model: f64,
+    },
+    /// The gap of the fit is smaller than the screen's coating.
+    #[error(
+        "the measured attraction needs an effective gap of {gap_um:.3} um, and the coating alone has {coating_um:.3} \
+         um: check the coating, and that voltages are rms and not peak"
+    )]
+    GapInsideCoating {
+        /// Gap of the fit, in micrometres.
+        gap_um: f64,
+        /// Gap of the coating, in micrometres.
+        coating_um: f64,
+    },
+    /// Voltage and friction do not share a clock.
+    #[error(
+        "friction follows the voltage by {shift_ms:.1} ms more {where_}: clocks that differ by more than 1 ms blur each \
+         half-period; align the recording by its start marker"
+    )]
+    Clocks {
+        /// Shift in milliseconds.
+        shift_ms: f64,
+        /// Where or when.
+        where_: &'static str,
+    },
+    /// The search for the best parameters did not converge.
+    #[error(
+        "no finger of the model comes close to these data: check that voltage, load and friction belong to the same \
+         rows"
+    )]
+    NotConverged,
+}

@@ -1,0 +1,184 @@
+//! Divides rows into strokes, and drops what is no steady sliding.
+
+use super::error::FitError;
+use super::statistics::median;
+use super::table::Row;
+
+/// What is dropped at the beginning of a stroke, in seconds: the finger starts to slide.
+const START_S: f64 = 0.15;
+/// What is dropped at the end of a stroke, in seconds: the finger turns.
+const END_S: f64 = 0.05;
+/// Least time that is left of a stroke, in seconds.
+const KEPT_S: f64 = 0.2;
+/// Least number of rows that are left of a stroke.
+const KEPT_ROWS: usize = 5;
+/// Speeds at which the lag of friction was measured, in mm/s (arXiv 2505.11162).
+const SPEEDS_MM_S: core::ops::RangeInclusive<f64> = 20.0..=100.0;
+/// A finger slower than this, in mm/s, turns or stands still.
+const STILL_MM_S: f64 = 5.0;
+/// A gap in time of this many usual intervals, but at least [`GAP_S`], divides two strokes.
+const GAP_INTERVALS: f64 = 10.0;
+/// See [`GAP_INTERVALS`], in seconds.
+const GAP_S: f64 = 0.05;
+/// Number of blocks of rows that stand in for strokes where nothing says where strokes begin.
+const BLOCKS: usize = 24;
+/// Least number of rows in such a block.
+const BLOCK_ROWS: usize = 5;
+
+/// How the rows were divided into strokes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Division {
+    /// By the column `stroke`.
+    Column,
+    /// By direction, standstill and gaps in time.
+    Motion,
+    /// Into blocks of consecutive rows, because neither strokes nor motion are known.
+    Blocks,
+}
+
+/// One stroke: rows of steady sliding in one direction.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Stroke {
+    pub(super) name: String,
+    /// Rows that are used; friction is positive.
+    pub(super) rows: Vec<Row>,
+}
+
+impl Stroke {
+    pub(super) fn median(&self, value: impl Fn(&Row) -> f64) -> f64 {
+        median(self.rows.iter().map(value))
+    }
+}
+
+/// Rows divided into strokes.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Recording {
+    pub(super) strokes: Vec<Stroke>,
+    pub(super) division: Division,
+    pub(super) has_time: bool,
+    pub(super) has_speed: bool,
+}
+
+impl Recording {
+    /// Divides rows into strokes, leaves out those that are named in `without`, and drops starts and turns.
+    pub(super) fn new(rows: Vec<Row>, without: &[String]) -> Result<Self, FitError> {
+        let has_time = rows.iter().all(|row| row.time_s.is_some());
+        let has_speed = rows.iter().all(|row| row.speed_mm_s.is_some());
+        let (division, strokes) = divided(rows, has_time)?;
+        check_time(&strokes)?;
+        let strokes = left(strokes, without)?;
+        let strokes = strokes.into_iter().map(|stroke| trimmed(stroke, division)).collect::<Result<_, _>>()?;
+        Ok(Self { strokes, division, has_time, has_speed })
+    }
+
+    pub(super) fn rows(&self) -> impl Iterator<Item = &Row> {
+        self.strokes.iter().flat_map(|stroke| &stroke.rows)
+    }
+}
+
+fn divided(rows: Vec<Row>, has_time: bool) -> Result<(Division, Vec<Stroke>), FitError> {
+    let count = rows.len();
+    if rows.first().is_some_and(|row| row.stroke.is_some()) {
+        return Ok((Division::Column, by(rows, |before, row| before.stroke != row.stroke)));
+    }
+    let gap_s = if has_time { GAP_S.max(GAP_INTERVALS * usual_interval_s(&rows)) } else { f64::INFINITY };
+    let is_still = |row: &Row| row.speed_mm_s.is_some_and(|speed| speed.abs() < STILL_MM_S);
+    let is_next = |before: &Row, row: &Row| {
+        let turned = before.friction_n * row.friction_n < 0.0
+            || before.speed_mm_s.zip(row.speed_mm_s).is_some_and(|(one, other)| one * other < 0.0);
+        let paused = row.time_s.zip(before.time_s).is_some_and(|(now_s, then_s)| now_s - then_s > gap_s);
+        turned || paused || (is_still(before) && !is_still(row))
+    };
+    let mut strokes = by(rows.clone(), is_next);
+    // A stroke of a few rows is noise around a turn.
+    strokes.retain(|stroke| stroke.rows.len() >= KEPT_ROWS);
+    if strokes.len() > 2 {
+        return Ok((Division::Motion, strokes));
+    }
+    let needed = BLOCKS * BLOCK_ROWS;
+    if count < needed {
+        return Err(FitError::TooFewRows { found: count, needed });
+    }
+    let blocks = rows.chunks(count.div_ceil(BLOCKS)).enumerate();
+    let blocks = blocks.map(|(index, rows)| Stroke { name: (index + 1).to_string(), rows: rows.to_vec() });
+    Ok((Division::Blocks, blocks.collect()))
+}
+
+/// Divides rows where `is_next` finds that a row begins the next stroke.
+fn by(rows: Vec<Row>, is_next: impl Fn(&Row, &Row) -> bool) -> Vec<Stroke> {
+    let mut strokes: Vec<Stroke> = Vec::new();
+    for row in rows {
+        match strokes.last_mut() {
+            Some(stroke) if stroke.rows.last().is_some_and(|before| !is_next(before, &row)) => stroke.rows.push(row),
+            _ => {
+                let name = row.stroke.clone().unwrap_or_else(|| (strokes.len() + 1).to_string());
+                strokes.push(Stroke { name, rows: vec![row] });
+            }
+        }
+    }
+    strokes
+}
+
+fn usual_interval_s(rows: &[Row]) -> f64 {
+    let times = rows.iter().filter_map(|row| row.time_s);
+    median(times.clone().zip(times.skip(1)).map(|(one, other)| (other - one).abs()))
+}
+
+fn check_time(strokes: &[Stroke]) -> Result<(), FitError> {
+    for stroke in strokes {
+        for (before, row) in stroke.rows.iter().zip(stroke.rows.iter().skip(1)) {
+            if let (Some(then_s), Some(now_s)) = (before.time_s, row.time_s)
+                && now_s < then_s
+            {
+                return Err(FitError::TimeBackwards { row: row.number, found: now_s, before: then_s });
+            }
+        }
+    }
+    Ok(())
+}
+
+fn left(strokes: Vec<Stroke>, without: &[String]) -> Result<Vec<Stroke>, FitError> {
+    if let Some(stroke) = without.iter().find(|name| !strokes.iter().any(|stroke| stroke.name == **name)) {
+        let name = |stroke: Option<&Stroke>| stroke.map(|stroke| stroke.name.clone()).unwrap_or_default();
+        let (first, last) = (name(strokes.first()), name(strokes.last()));
+        return Err(FitError::NoSuchStroke { stroke: stroke.clone(), first, last });
+    }
+    Ok(strokes.into_iter().filter(|stroke| !without.contains(&stroke.name)).collect())
+}
+
+/// Drops start, turn, and rows of a wrong speed; gives friction a positive sign.
+fn trimmed(mut stroke: Stroke, division: Division) -> Result<Stroke, FitError> {
+    let too_short = |stroke: &Stroke, found| FitError::StrokeTooShort { stroke: stroke.name.clone(), found };
+    let time_s = |row: Option<&Row>| row.and_then(|row| row.time_s);
+    // A block of rows neither begins nor ends with a turn.
+    if division != Division::Blocks
+        && let (Some(first_s), Some(last_s)) = (time_s(stroke.rows.first()), time_s(stroke.rows.last()))
+    {
+        let duration_s = last_s - first_s;
+        if duration_s < START_S + KEPT_S + END_S {
+            return Err(too_short(&stroke, format!("{duration_s:.3} s")));
+        }
+        let kept_s = first_s + START_S..=last_s - END_S;
+        stroke.rows.retain(|row| row.time_s.is_some_and(|time_s| kept_s.contains(&time_s)));
+    }
+    let count = stroke.rows.len();
+    if count < KEPT_ROWS {
+        return Err(too_short(&stroke, format!("{count} rows of steady sliding")));
+    }
+    if stroke.rows.iter().all(|row| row.speed_mm_s.is_some()) {
+        let speed_mm_s = stroke.median(|row| row.speed_mm_s.unwrap_or_default().abs());
+        if speed_mm_s < STILL_MM_S {
+            let found = format!("its speed is {speed_mm_s:.1} mm/s");
+            return Err(FitError::NoSlip { stroke: stroke.name, found });
+        }
+        if !SPEEDS_MM_S.contains(&speed_mm_s) {
+            return Err(FitError::Speed { stroke: stroke.name, speed_mm_s });
+        }
+        stroke.rows.retain(|row| row.speed_mm_s.is_some_and(|speed| SPEEDS_MM_S.contains(&speed.abs())));
+    }
+    let sign = if stroke.median(|row| row.friction_n) < 0.0 { -1.0 } else { 1.0 };
+    for row in &mut stroke.rows {
+        row.friction_n *= sign;
+    }
+    Ok(stroke)
+}

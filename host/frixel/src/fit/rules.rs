@@ -1,0 +1,144 @@
+//! Rules that data must keep before they are fitted.
+
+use super::Settings;
+use super::contrast::{Levels, StrokeMeans};
+use super::error::FitError;
+use super::least_squares::{Measured, Solution};
+use super::recording::Recording;
+use super::statistics::{mean, median};
+use super::table::Row;
+
+/// Least number of strokes: intervals from fewer are too wide to be of use.
+const STROKES_MIN: usize = 8;
+/// Loads of a finger on a touchscreen, in newtons: 0.1 to 1 N are usual; the margin is a factor of three.
+const LOADS_N: core::ops::RangeInclusive<f64> = 0.03..=3.0;
+/// Friction coefficients of skin on glass: 0.1 to 3 are published, rising as the load falls (Dzidek 2017); with margin.
+const COEFFICIENTS: core::ops::RangeInclusive<f64> = 0.05..=5.0;
+/// How far the load of a stroke may be off the median, as a part of it: the rule of a published rig.
+const LOAD_TOLERANCE: f64 = 0.15;
+/// Least ratio of the highest to the lowest voltage from which an exponent can be told.
+const VOLTAGE_RATIO_MIN: f64 = 1.15;
+/// A voltage or load this far beyond the data is still taken as measured.
+const EXTRAPOLATION: f64 = 1.05;
+/// A stroke with less friction than this part of the median did not slip all the way.
+const SLIP_SHARE: f64 = 0.5;
+/// A stroke with less electric friction than this part of the fit did not slip: the drive acts in full slip only
+/// (Sirin, arXiv 2104.01090).
+const RESPONSE_SHARE: f64 = 0.25;
+
+/// Whether loads are newtons.
+pub(super) fn check_units(rows: &[Row]) -> Result<(), FitError> {
+    if rows.is_empty() {
+        return Err(FitError::TooFewStrokes { found: 0, needed: STROKES_MIN });
+    }
+    if rows.iter().all(|row| row.normal_force_n.abs() < 1e-9) {
+        return Err(FitError::NoLoads);
+    }
+    let median = median(rows.iter().map(|row| row.normal_force_n));
+    if !LOADS_N.contains(&median) {
+        let guess = match median {
+            median if median < 0.0 => "has the wrong sign: count the force of the finger on the screen as positive",
+            median if median <= *LOADS_N.start() => "is too small: in kilonewtons, or without its calibration",
+            median if median <= 30.0 => {
+                "looks like a pressure in kilopascals, which must be multiplied by the contact area"
+            }
+            _ => "looks like millinewtons",
+        };
+        return Err(FitError::LoadUnit { median, guess });
+    }
+    Ok(())
+}
+
+/// Whether there are enough strokes.
+pub(super) fn check_strokes(recording: &Recording) -> Result<(), FitError> {
+    let found = recording.strokes.len();
+    if found < STROKES_MIN { Err(FitError::TooFewStrokes { found, needed: STROKES_MIN }) } else { Ok(()) }
+}
+
+/// Whether there are voltages to compare; returns the lowest and the highest.
+pub(super) fn check_levels(levels: &Levels) -> Result<(f64, f64), FitError> {
+    let Some((low, high)) = levels.range_v_rms() else { return Err(FitError::NoVoltage) };
+    if high < VOLTAGE_RATIO_MIN * low { Err(FitError::OneVoltage { found: high }) } else { Ok((low, high)) }
+}
+
+/// Whether the strokes have like loads; returns their median, and the smallest and the largest.
+pub(super) fn check_loads(recording: &Recording) -> Result<(f64, (f64, f64)), FitError> {
+    let loads: Vec<f64> = recording.strokes.iter().map(|stroke| stroke.median(|row| row.normal_force_n)).collect();
+    let median_n = median(recording.rows().map(|row| row.normal_force_n));
+    for (stroke, load_n) in recording.strokes.iter().zip(&loads) {
+        let off = (load_n / median_n - 1.0).abs();
+        if off > LOAD_TOLERANCE {
+            let (stroke, percent) = (stroke.name.clone(), 100.0 * off);
+            return Err(FitError::LoadOff { stroke, load_n: *load_n, percent, median_n });
+        }
+    }
+    let low = loads.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = loads.iter().copied().fold(0.0, f64::max);
+    Ok((median_n, (low, high)))
+}
+
+/// Whether natural friction is known, is that of skin, and was that of a sliding finger in every stroke.
+pub(super) fn check_natural(strokes: &[StrokeMeans]) -> Result<(), FitError> {
+    let coefficients = || strokes.iter().filter_map(|stroke| stroke.natural_coefficient);
+    let ratio = median(coefficients());
+    if ratio.is_nan() {
+        return Err(FitError::NoNaturalFriction);
+    }
+    if !COEFFICIENTS.contains(&ratio) {
+        let guess = if ratio > *COEFFICIENTS.end() {
+            "is not in newtons; friction looks like millinewtons, or the load like kilonewtons"
+        } else {
+            "is not in newtons; the load looks like millinewtons or kilopascals"
+        };
+        return Err(FitError::FrictionUnit { ratio, guess });
+    }
+    for stroke in strokes {
+        if let Some(coefficient) = stroke.natural_coefficient
+            && coefficient < SLIP_SHARE * ratio
+        {
+            let found = format!("friction over load is {coefficient:.3} with the drive off, and {ratio:.3} in others");
+            return Err(FitError::NoSlip { stroke: stroke.name.clone(), found });
+        }
+    }
+    Ok(())
+}
+
+/// Whether the drive acted in every stroke, as it does on a finger that slips: the strokes whose attraction at a voltage
+/// is far below that of the fit did not.
+pub(super) fn check_slip(strokes: &[StrokeMeans], fitted: &Solution) -> Result<(), FitError> {
+    let ratios: Vec<(&StrokeMeans, f64)> = strokes
+        .iter()
+        .filter_map(|stroke| {
+            let ratio = mean(stroke.observations.iter().filter_map(|one| {
+                let Measured::Attraction(attraction_n) = one.measured else { return None };
+                Some(attraction_n / fitted.attraction.attraction_n(one.voltage_v_rms, one.normal_load_n)?)
+            }));
+            (!ratio.is_nan()).then_some((stroke, ratio))
+        })
+        .collect();
+    let spread = 1.4826 * median(ratios.iter().map(|(_, ratio)| (ratio - 1.0).abs()));
+    // A stroke of little electric friction only says something where strokes agree with each other.
+    let least = RESPONSE_SHARE.min(1.0 - 6.0 * spread);
+    match ratios.iter().find(|(_, ratio)| *ratio < least) {
+        Some((stroke, ratio)) => {
+            let found = format!("the drive added {:.0} % of the friction that it added in others", 100.0 * ratio);
+            Err(FitError::NoSlip { stroke: stroke.name.clone(), found })
+        }
+        None => Ok(()),
+    }
+}
+
+/// Whether friction is stated at a voltage and a load that were measured.
+pub(super) fn check_stated(settings: &Settings, voltages: (f64, f64), loads: (f64, f64)) -> Result<(), FitError> {
+    let (stated, max) = (settings.voltage_v_rms, voltages.1);
+    if stated > EXTRAPOLATION * max {
+        return Err(FitError::VoltageExtrapolated { max, stated });
+    }
+    let (low, high) = loads;
+    match settings.normal_load_n {
+        Some(stated) if !(low / EXTRAPOLATION..=high * EXTRAPOLATION).contains(&stated) => {
+            Err(FitError::LoadExtrapolated { low, high, stated })
+        }
+        _ => Ok(()),
+    }
+}

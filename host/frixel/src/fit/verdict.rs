@@ -1,0 +1,207 @@
+//! What a fit says about the model, and rules that it must keep.
+
+use super::bootstrap::{Draws, Estimate, Z_95, Z_999};
+use super::error::FitError;
+use super::law::{Attraction, Coupling};
+use super::least_squares::{Form, Measured, Observation, Solution, residuals_n, solve};
+use super::statistics::mean;
+use super::{Fit, Replicate, Settings, StrokeResult, coupling_of};
+
+/// Highest voltage of the data below which its exponent says nothing about the model, in volts rms.
+const VERDICT_V_RMS: f64 = 100.0;
+/// Least width of the half-interval of the load's exponent beyond which loads were too alike to tell.
+const LOAD_EXPONENT_WIDTH: f64 = 0.5;
+/// Widest half-interval, as a part of the value.
+const INTERVAL_SHARE: f64 = 0.2;
+/// Largest change from the first to the last third, as a part of the mean.
+const DRIFT_SHARE: f64 = 0.15;
+/// Step of the logarithm of the coupling, for derivatives.
+const STEP: f64 = 0.01;
+
+/// What an exponent says about the model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// The data cannot tell.
+    None,
+    /// The model's exponent lies within the 95 % interval.
+    Kept,
+    /// It lies outside, but within the 99.9 % interval: the interval of friction also covers what a power law says.
+    Doubted,
+}
+
+/// A measured exponent beside the model's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exponent {
+    /// Exponent of a power law that is fitted to the same data.
+    pub measured: Estimate,
+    /// Exponent of a power law that is fitted to what the model says for these data.
+    pub model: f64,
+    /// What the difference says.
+    pub verdict: Verdict,
+}
+
+/// Judges the model by exponents that it does not know.
+pub(super) struct Judge<'f> {
+    pub(super) best: &'f Replicate,
+    pub(super) replicates: &'f [Replicate],
+    pub(super) observations: &'f [Observation],
+    pub(super) draws: &'f Draws,
+}
+
+/// `d ln attraction/d ln F_N` of a law at 150 V under a load.
+pub(super) fn load_exponent_of(solution: &Solution, normal_load_n: f64) -> Option<f64> {
+    let at = |load_n| solution.attraction.attraction_n(super::REFERENCE_V_RMS, load_n).map(libm::log);
+    Some((at(normal_load_n * (1.0 + STEP))? - at(normal_load_n * (1.0 - STEP))?) / (2.0 * STEP))
+}
+
+impl Judge<'_> {
+    /// The exponent of the voltage. Fails if the model's lies outside of the 99.9 % interval.
+    pub(super) fn voltage(&self, reference_load_n: f64, max_v_rms: f64) -> Result<Exponent, FitError> {
+        let load_exponent = load_exponent_of(&self.best.contact, reference_load_n).ok_or(FitError::NotConverged)?;
+        let form = Form::Power { load_exponent, reference_load_n };
+        let voltage_exponent = |solution: &Solution| match solution.attraction {
+            Attraction::Power { voltage_exponent, .. } => Some(voltage_exponent),
+            Attraction::Contact(_) => None,
+        };
+        let of = |replicate: &Replicate| voltage_exponent(&replicate.power);
+        let exponent = self.exponent(form, &of, &voltage_exponent).ok_or(FitError::NotConverged)?;
+        if max_v_rms < VERDICT_V_RMS {
+            return Ok(Exponent { verdict: Verdict::None, ..exponent.0 });
+        }
+        refused("voltage", exponent)
+    }
+
+    /// The exponent of the load. Fails if the model's lies outside of the 99.9 % interval.
+    pub(super) fn load(&self, reference_load_n: f64) -> Result<Exponent, FitError> {
+        let form = Form::PowerOfLoad { reference_load_n };
+        let load_exponent = |solution: &Solution| match solution.attraction {
+            Attraction::Power { load_exponent, .. } => Some(load_exponent),
+            Attraction::Contact(_) => None,
+        };
+        let of = |replicate: &Replicate| replicate.power_of_load.as_ref().and_then(load_exponent);
+        let unknown = || {
+            let measured = Estimate { value: f64::NAN, low: f64::NEG_INFINITY, high: f64::INFINITY };
+            Exponent { measured, model: f64::NAN, verdict: Verdict::None }
+        };
+        match self.exponent(form, &of, &load_exponent) {
+            Some((exponent, _)) if exponent.measured.high - exponent.measured.low > 2.0 * LOAD_EXPONENT_WIDTH => {
+                Ok(Exponent { verdict: Verdict::None, ..exponent })
+            }
+            Some(exponent) => refused("load", exponent),
+            None => Ok(unknown()),
+        }
+    }
+
+    /// An exponent of the data, that of the model, and the standard deviation of their difference.
+    fn exponent(
+        &self,
+        form: Form,
+        of_replicate: &dyn Fn(&Replicate) -> Option<f64>,
+        of_solution: &dyn Fn(&Solution) -> Option<f64>,
+    ) -> Option<(Exponent, f64)> {
+        let value = of_replicate(self.best)?;
+        // What the model says for these data, and how that depends on the coupling.
+        let modelled = |factor: f64| -> Option<f64> {
+            let coupling = Coupling(coupling_of(&self.best.contact)? * factor);
+            let solution = Solution { attraction: Attraction::Contact(coupling), ..self.best.contact };
+            let start = match form {
+                Form::Contact => return None,
+                Form::Power { .. } => &self.best.power,
+                Form::PowerOfLoad { .. } => self.best.power_of_load.as_ref()?,
+            };
+            of_solution(&solve(form, &exact(self.observations, &solution)?, start)?)
+        };
+        let model = modelled(1.0)?;
+        let slope = (modelled(1.0 + STEP)? - modelled(1.0 - STEP)?) / (2.0 * STEP);
+        let best_coupling = coupling_of(&self.best.contact)?;
+        let (mut values, mut differences) = (Vec::new(), Vec::new());
+        for replicate in self.replicates {
+            let (Some(value), Some(coupling)) = (of_replicate(replicate), coupling_of(&replicate.contact)) else {
+                continue;
+            };
+            values.push(value);
+            differences.push(value - model - slope * libm::log(coupling / best_coupling));
+        }
+        let centre = mean(differences.iter().copied());
+        let spread = mean(differences.iter().map(|one| (one - centre) * (one - centre))).sqrt();
+        let (low, high) = self.draws.interval(&mut values, Z_95);
+        let measured = Estimate { value, low: low.min(value), high: high.max(value) };
+        let verdict = if (value - model).abs() <= Z_95 * spread { Verdict::Kept } else { Verdict::Doubted };
+        spread.is_finite().then_some((Exponent { measured, model, verdict }, spread))
+    }
+}
+
+/// Fails if an exponent lies outside of the 99.9 % interval.
+fn refused(quantity: &'static str, (exponent, spread): (Exponent, f64)) -> Result<Exponent, FitError> {
+    let (value, model) = (exponent.measured.value, exponent.model);
+    let room = Z_999 * spread;
+    if (value - model).abs() > room {
+        return Err(FitError::LawBroken { quantity, value, low: value - room, high: value + room, model });
+    }
+    Ok(exponent)
+}
+
+/// The observations as they would be if a law were exact.
+fn exact(observations: &[Observation], solution: &Solution) -> Option<Vec<Observation>> {
+    let residuals = residuals_n(solution, 1.0, observations)?;
+    let exact = observations.iter().zip(residuals).map(|(one, residual)| {
+        let measured = match one.measured {
+            Measured::Friction(friction_n) => Measured::Friction(friction_n - residual),
+            Measured::Attraction(attraction_n) => Measured::Attraction(attraction_n - residual),
+        };
+        Observation { measured, ..*one }
+    });
+    Some(exact.collect())
+}
+
+/// Fails if a fit is too uncertain, if the finger changed while it was measured, or if the gap is inside the coating.
+pub(super) fn check_fit(fit: &Fit, settings: &Settings) -> Result<(), FitError> {
+    for (quantity, estimate) in
+        [("friction coefficient", fit.friction_coefficient), ("electric friction in newtons", fit.electric_friction_n)]
+    {
+        if !estimate.is_within(INTERVAL_SHARE) {
+            let Estimate { value, low, high } = estimate;
+            return Err(FitError::TooUncertain { quantity, low, high, value });
+        }
+    }
+    let third = fit.strokes.len() / 3;
+    let first = fit.strokes.get(..third).unwrap_or_default();
+    let last = fit.strokes.get(fit.strokes.len() - third..).unwrap_or_default();
+    let natural = |stroke: &StrokeResult| stroke.natural_coefficient.map(|coefficient| (coefficient, 1.0));
+    let electric = |stroke: &StrokeResult| {
+        let sum = |of: &dyn Fn(f64, f64) -> f64| -> f64 {
+            stroke.points.iter().map(|point| of(point.measured_n, point.measured_n - point.residual_n)).sum()
+        };
+        let squares = sum(&|_, fitted| fitted * fitted);
+        (squares > 0.0).then(|| (sum(&|measured, fitted| measured * fitted) / squares, squares))
+    };
+    let natural = [weighted_mean(first, natural), weighted_mean(last, natural)];
+    check_drift("friction coefficient", natural, 1.0)?;
+    let electric = [weighted_mean(first, electric), weighted_mean(last, electric)];
+    check_drift("electric friction in newtons", electric, fit.electric_friction_n.value)?;
+    if fit.skin_gap_m <= 0.0 {
+        let (gap_um, coating_um) = (1e6 * fit.gap_m, 1e6 * settings.coating_gap_m);
+        return Err(FitError::GapInsideCoating { gap_um, coating_um });
+    }
+    Ok(())
+}
+
+/// Weighted mean over strokes and its standard error.
+fn weighted_mean(strokes: &[StrokeResult], of: impl Fn(&StrokeResult) -> Option<(f64, f64)>) -> Option<(f64, f64)> {
+    let pairs: Vec<_> = strokes.iter().filter_map(of).collect();
+    let total: f64 = pairs.iter().map(|(_, weight)| weight).sum();
+    let centre = pairs.iter().map(|(value, weight)| value * weight).sum::<f64>() / total;
+    let count = pairs.len() as f64;
+    let square: f64 = pairs.iter().map(|(value, weight)| (weight * (value - centre)).powi(2)).sum();
+    (count >= 2.0).then(|| (centre, (square * count / (count - 1.0)).sqrt() / total))
+}
+
+/// Fails if two means differ by more than 15 % and by more than their noise explains.
+fn check_drift(quantity: &'static str, thirds: [Option<(f64, f64)>; 2], scale: f64) -> Result<(), FitError> {
+    let [Some((first, first_error)), Some((last, last_error))] = thirds else { return Ok(()) };
+    let change = (last - first).abs();
+    if change > DRIFT_SHARE * 0.5 * (first + last) && change > Z_999 * libm::hypot(first_error, last_error) {
+        return Err(FitError::Drifted { quantity, first: scale * first, last: scale * last });
+    }
+    Ok(())
+}

@@ -1,0 +1,187 @@
+//! Finger profiles: the numbers of a finger on a screen, and how they came about.
+//!
+//! A profile is a TOML file of its own, or the table `[finger]` of a scene of version 2; both have the same fields.
+
+mod bundled;
+mod read;
+#[cfg(test)]
+mod tests;
+mod write;
+
+use toml::de::DeTable;
+
+use super::compile_error::CompileError;
+use super::fields::Fields;
+use super::log::Log;
+use super::mistake::Mistake;
+use super::source::Source;
+
+pub(super) use read::read;
+
+/// The numbers of a finger on a screen.
+///
+/// ```
+/// use frixel_scene::{Evidence, FingerProfile};
+///
+/// let dry = FingerProfile::bundled("dry").expect("it is bundled");
+/// assert_eq!(dry.evidence, Evidence::Assumed);
+/// assert_eq!(FingerProfile::parse(&dry.to_toml(), "dry.toml").as_ref(), Ok(&dry));
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct FingerProfile {
+    /// Friction coefficient on the screen without voltage, 0.001 to 10.
+    pub friction_coefficient: f64,
+    /// Normal load for which scenes are compiled, 0 to 50 N.
+    pub normal_load_n: f64,
+    /// Radius of curvature at the contact, 0.1 to 100 mm.
+    pub radius_mm: f64,
+    /// How the finger gives way under a load.
+    pub elasticity: Elasticity,
+    /// Stratum corneum and air between coating and living tissue, as an effective gap (thickness over permittivity), 0
+    /// to 10,000 um. It is added to that of the screen's coating.
+    pub skin_gap_um: f64,
+    /// How the numbers came about.
+    pub evidence: Evidence,
+}
+
+/// How a finger gives way under a load.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Elasticity {
+    /// Springs of one stiffness, Eq. (10).
+    WinklerFuss {
+        /// Stiffness `k`, 1e3 to 1e14 Pa/m.
+        stiffness_pa_per_m: f64,
+    },
+    /// A material whose strain follows a power of the stress, Eqs. (22) to (29).
+    Soft {
+        /// Modulus `E`, 1 to 1e12 Pa.
+        modulus_pa: f64,
+        /// Stress exponent, 0.02 to 1.
+        stress_exponent: f64,
+        /// Dimensionless constant `B` of Eq. (24), 0.001 to 1000.
+        shape_constant: f64,
+    },
+}
+
+/// What a profile rests on. Friction that is computed from it is called *assumed* unless it was measured.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Evidence {
+    /// The numbers are plausible, and nobody measured them.
+    Assumed,
+    /// A person said what they felt: a level relative to that person's threshold is known, but no force.
+    Perceptual {
+        /// Where, when and how.
+        experiment: Experiment,
+        /// Rms voltage at the detection threshold, in volts.
+        threshold_v_rms: f64,
+        /// 95 % interval of the threshold, in volts.
+        threshold_interval_v_rms: [f64; 2],
+    },
+    /// A force sensor measured friction.
+    Measured {
+        /// Where, when and how.
+        experiment: Experiment,
+        /// 95 % interval of the friction coefficient.
+        friction_coefficient_interval: [f64; 2],
+        /// 95 % interval of the electric friction at `voltage_max_v_rms` under the profile's normal load, in newtons.
+        electric_friction_interval_n: [f64; 2],
+        /// Largest rms voltage of the measurement, in volts.
+        voltage_max_v_rms: f64,
+        /// Least and largest normal load of the measurement, in newtons.
+        normal_load_range_n: [f64; 2],
+    },
+}
+
+/// An experiment with a finger.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Experiment {
+    /// Day, `YYYY-MM-DD`.
+    pub date: String,
+    /// Method, in a few words for a person.
+    pub method: String,
+    /// Name of the screen: on another one, the profile counts as assumed.
+    pub screen: String,
+}
+
+/// What a profile rests on, without the numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// Nobody measured it.
+    Assumed,
+    /// A person said what they felt.
+    Perceptual,
+    /// A force sensor measured it.
+    Measured,
+}
+
+impl Origin {
+    /// Its word in a profile.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Assumed => "assumed",
+            Self::Perceptual => "perceptual",
+            Self::Measured => "measured",
+        }
+    }
+}
+
+impl Evidence {
+    /// The kind of evidence.
+    pub fn origin(&self) -> Origin {
+        match self {
+            Self::Assumed => Origin::Assumed,
+            Self::Perceptual { .. } => Origin::Perceptual,
+            Self::Measured { .. } => Origin::Measured,
+        }
+    }
+
+    /// The experiment, if there was one.
+    pub fn experiment(&self) -> Option<&Experiment> {
+        match self {
+            Self::Assumed => None,
+            Self::Perceptual { experiment, .. } | Self::Measured { experiment, .. } => Some(experiment),
+        }
+    }
+}
+
+impl FingerProfile {
+    /// Reads the text of a finger profile. Messages call the file `name`.
+    pub fn parse(text: &str, name: &str) -> Result<Self, CompileError> {
+        let source = Source::new(name, text);
+        let mut log = Log::new(&source);
+        let profile = match DeTable::parse(text) {
+            Ok(table) => read(Fields::new("this finger profile", 0, table.into_inner()), &mut log),
+            Err(error) => {
+                log.add(error.span().map_or(0, |span| span.start), Mistake::Syntax(error.message().to_owned()));
+                None
+            }
+        };
+        log.finish(profile)
+    }
+
+    /// The text of the profile as a file of its own, which [`Self::parse`] reads back to an equal profile.
+    pub fn to_toml(&self) -> String {
+        write::text(self)
+    }
+
+    /// The names of the bundled profiles, the example first.
+    pub fn bundled_names() -> impl Iterator<Item = &'static str> {
+        bundled::TEXTS.iter().map(|(name, _)| *name)
+    }
+
+    /// The bundled profile of a name.
+    pub fn bundled(name: &str) -> Option<Self> {
+        let (name, text) = bundled::TEXTS.iter().find(|(bundled, _)| *bundled == name)?;
+        Self::parse(text, name).ok()
+    }
+
+    /// The text of the bundled profile of a name, with its reasons as comments.
+    pub fn bundled_text(name: &str) -> Option<&'static str> {
+        bundled::TEXTS.iter().find(|(bundled, _)| *bundled == name).map(|(_, text)| *text)
+    }
+
+    /// The finger that a scene gets when it does not say which.
+    pub fn example() -> Self {
+        bundled::EXAMPLE
+    }
+}

@@ -1,0 +1,121 @@
+//! Reads the fields of a finger profile.
+
+use super::{Elasticity, Evidence, Experiment, FingerProfile, Origin};
+use crate::fields::Fields;
+use crate::grammar::FieldSpec;
+use crate::log::Log;
+use crate::mistake::Mistake;
+use crate::tables::finger as table;
+
+const MODELS: [(&str, bool); 2] = [("winkler-fuss", false), ("soft", true)];
+const ORIGINS: [(&str, Origin); 3] = [
+    (Origin::Assumed.word(), Origin::Assumed),
+    (Origin::Perceptual.word(), Origin::Perceptual),
+    (Origin::Measured.word(), Origin::Measured),
+];
+
+/// Reads a whole table, that of a file or `[finger]` of a scene.
+pub(in super::super) fn read(mut fields: Fields, log: &mut Log) -> Option<FingerProfile> {
+    let friction_coefficient = fields.number(log, &table::FRICTION_COEFFICIENT);
+    let normal_load_n = fields.number(log, &table::NORMAL_LOAD_N);
+    let radius_mm = fields.number(log, &table::RADIUS_MM);
+    let elasticity = elasticity(&mut fields, log);
+    let skin_gap_um = fields.number(log, &table::SKIN_GAP_UM);
+    let evidence = evidence(&mut fields, log);
+    fields.close(log);
+    Some(FingerProfile {
+        friction_coefficient: friction_coefficient?,
+        normal_load_n: normal_load_n?,
+        radius_mm: radius_mm?,
+        elasticity: elasticity?,
+        skin_gap_um: skin_gap_um?,
+        evidence: evidence?,
+    })
+}
+
+fn elasticity(fields: &mut Fields, log: &mut Log) -> Option<Elasticity> {
+    let is_soft = fields.choice_or_nearest(log, &table::MODEL, &MODELS).unwrap_or(false);
+    if !is_soft {
+        let stiffness_pa_per_m = fields.number(log, &table::STIFFNESS_PA_PER_M)?;
+        return Some(Elasticity::WinklerFuss { stiffness_pa_per_m });
+    }
+    let modulus_pa = fields.number(log, &table::MODULUS_PA);
+    let stress_exponent = fields.number(log, &table::STRESS_EXPONENT);
+    let shape_constant = fields.number(log, &table::SHAPE_CONSTANT);
+    Some(Elasticity::Soft {
+        modulus_pa: modulus_pa?,
+        stress_exponent: stress_exponent?,
+        shape_constant: shape_constant?,
+    })
+}
+
+fn evidence(fields: &mut Fields, log: &mut Log) -> Option<Evidence> {
+    match fields.choice_or_nearest(log, &table::ORIGIN, &ORIGINS).unwrap_or(Origin::Assumed) {
+        Origin::Assumed => Some(Evidence::Assumed),
+        Origin::Perceptual => {
+            let experiment = experiment(fields, log);
+            let threshold_v_rms = fields.number(log, &table::THRESHOLD_V_RMS);
+            let threshold_interval_v_rms = fields.interval(log, &table::THRESHOLD_INTERVAL_V_RMS);
+            Some(Evidence::Perceptual {
+                experiment: experiment?,
+                threshold_v_rms: threshold_v_rms?,
+                threshold_interval_v_rms: threshold_interval_v_rms?,
+            })
+        }
+        Origin::Measured => {
+            let experiment = experiment(fields, log);
+            let friction_coefficient_interval = fields.interval(log, &table::FRICTION_COEFFICIENT_INTERVAL);
+            let electric_friction_interval_n = fields.interval(log, &table::ELECTRIC_FRICTION_INTERVAL_N);
+            let voltage_max_v_rms = fields.number(log, &table::MEASURED_VOLTAGE_MAX_V_RMS);
+            let normal_load_range_n = fields.interval(log, &table::MEASURED_NORMAL_LOAD_RANGE_N);
+            Some(Evidence::Measured {
+                experiment: experiment?,
+                friction_coefficient_interval: friction_coefficient_interval?,
+                electric_friction_interval_n: electric_friction_interval_n?,
+                voltage_max_v_rms: voltage_max_v_rms?,
+                normal_load_range_n: normal_load_range_n?,
+            })
+        }
+    }
+}
+
+fn experiment(fields: &mut Fields, log: &mut Log) -> Option<Experiment> {
+    let date = date(fields, log);
+    let method = not_empty(fields, &table::METHOD, log);
+    let screen = not_empty(fields, &table::SCREEN, log);
+    Some(Experiment { date: date?, method: method?, screen: screen? })
+}
+
+fn date(fields: &mut Fields, log: &mut Log) -> Option<String> {
+    let offset = fields.place(table::DATE.name);
+    let date = fields.text(log, &table::DATE)?;
+    if !is_date(&date) {
+        log.add(offset, Mistake::Date { found: date });
+        return None;
+    }
+    Some(date)
+}
+
+fn not_empty(fields: &mut Fields, field: &FieldSpec, log: &mut Log) -> Option<String> {
+    let offset = fields.place(field.name);
+    let text = fields.text(log, field)?;
+    if text.trim().is_empty() {
+        log.add(offset, Mistake::EmptyText { field: field.name });
+        return None;
+    }
+    Some(text)
+}
+
+/// Whether a text is a day of the calendar as `YYYY-MM-DD`. Every month may have 31 days.
+fn is_date(text: &str) -> bool {
+    let parts: Vec<&str> = text.split('-').collect();
+    let [year, month, day] = parts.as_slice() else { return false };
+    let number = |part: &str, digits: usize| {
+        let is_plain = part.len() == digits && part.bytes().all(|byte| byte.is_ascii_digit());
+        is_plain.then(|| part.parse::<u16>().ok()).flatten()
+    };
+    let (year, month, day) = (number(year, 4), number(month, 2), number(day, 2));
+    year.is_some()
+        && month.is_some_and(|month| (1..=12).contains(&month))
+        && day.is_some_and(|day| (1..=31).contains(&day))
+}

@@ -1,0 +1,151 @@
+//! Tests of finger profiles: what is read, what is refused, and what is written.
+
+use proptest::prelude::*;
+
+use super::*;
+
+const ASSUMED: &str = "\
+friction_coefficient = 0.4
+normal_load_n = 0.3
+radius_mm = 7
+stiffness_pa_per_m = 1e7
+skin_gap_um = 4
+";
+
+/// Its lines follow those of [`ASSUMED`], so that the first one is line 6.
+const MEASURED: &str = "\
+origin = \"measured\"
+date = \"2026-11-22\"
+method = \"load cell, 60 s of strokes\"
+screen = \"lab/tablet 3\"
+friction_coefficient_interval = [0.38, 0.42]
+electric_friction_interval_n = [0.06, 0.08]
+measured_voltage_max_v_rms = 150
+measured_normal_load_range_n = [0.25, 0.35]
+";
+
+const PERCEPTUAL: &str = "\
+origin = \"perceptual\"
+date = \"2026-11-22\"
+method = \"two-alternative staircase, 40 trials\"
+screen = \"lab/tablet 3\"
+threshold_v_rms = 22
+threshold_interval_v_rms = [19, 26]
+";
+
+#[track_caller]
+fn check(text: &str, expected: &str) {
+    assert_eq!(FingerProfile::parse(text, "finger.toml").expect_err("it is wrong").to_string(), expected);
+}
+
+#[test]
+fn the_three_origins_are_read() {
+    let parse = |text: &str| FingerProfile::parse(text, "finger.toml").expect("it reads");
+    assert_eq!(parse(ASSUMED).evidence.origin(), Origin::Assumed);
+    let measured = parse(&format!("{ASSUMED}{MEASURED}"));
+    assert_eq!(measured.evidence.experiment().map(|experiment| experiment.screen.as_str()), Some("lab/tablet 3"));
+    let Evidence::Measured { voltage_max_v_rms, normal_load_range_n, .. } = measured.evidence else { panic!() };
+    assert_eq!((voltage_max_v_rms.to_bits(), normal_load_range_n), (150.0_f64.to_bits(), [0.25, 0.35]));
+    let perceptual = parse(&format!("{ASSUMED}{PERCEPTUAL}"));
+    let Evidence::Perceptual { threshold_interval_v_rms, .. } = perceptual.evidence else { panic!() };
+    assert_eq!(threshold_interval_v_rms, [19.0, 26.0]);
+}
+
+#[test]
+fn what_is_written_reads_back_the_same() {
+    for evidence in ["", MEASURED, PERCEPTUAL] {
+        for elasticity in [
+            "stiffness_pa_per_m = 1e7",
+            "model = \"soft\"\nmodulus_pa = 1e5\nstress_exponent = 0.5\nshape_constant = 4.5",
+        ] {
+            let text = format!("{ASSUMED}{evidence}").replace("stiffness_pa_per_m = 1e7", elasticity);
+            let profile = FingerProfile::parse(&text, "finger.toml").expect("it reads");
+            assert_eq!(FingerProfile::parse(&profile.to_toml(), "finger.toml"), Ok(profile));
+        }
+    }
+}
+
+proptest! {
+    #[test]
+    fn numbers_and_texts_are_written_without_loss(
+        (friction_coefficient, normal_load_n, radius_mm) in (0.001..10.0, 0.0..50.0, 0.1..100.0),
+        (stiffness_pa_per_m, skin_gap_um) in (1e3..1e14, 0.0..1e4),
+        method in "[ -~\n]{1,40}[a-z]",
+    ) {
+        let experiment = Experiment { date: "2026-11-22".to_owned(), method, screen: "lab\"3\\".to_owned() };
+        let profile = FingerProfile {
+            friction_coefficient,
+            normal_load_n,
+            radius_mm,
+            elasticity: Elasticity::WinklerFuss { stiffness_pa_per_m },
+            skin_gap_um,
+            evidence: Evidence::Perceptual { experiment, threshold_v_rms: 1.0, threshold_interval_v_rms: [0.5, 2.0] },
+        };
+        prop_assert_eq!(FingerProfile::parse(&profile.to_toml(), "finger.toml"), Ok(profile));
+    }
+}
+
+#[test]
+fn mistakes_are_told_with_their_place() {
+    let measured = format!("{ASSUMED}{MEASURED}");
+    for (text, expected) in [
+        (
+            "radius_mm = ".to_owned(),
+            "finger.toml:1:13: this is not TOML: string values must be quoted, expected literal string",
+        ),
+        (ASSUMED.replace("skin_gap_um = 4\n", ""), "finger.toml:1:1: this finger profile has no `skin_gap_um`: add it"),
+        (
+            format!("{ASSUMED}date = \"2026-11-22\"\n"),
+            "finger.toml:6:1: unknown field `date` in this finger profile; expected one of `model`, `origin`",
+        ),
+        (
+            ASSUMED.replace("stiffness", "stifness"),
+            "finger.toml:4:1: unknown field `stifness_pa_per_m` in this finger profile; did you mean `stiffness_pa_per_m`?",
+        ),
+        (
+            format!("{ASSUMED}origin = \"guessed\"\n"),
+            "finger.toml:6:10: `origin = \"guessed\"` is not known; expected one of `assumed`, `perceptual`, `measured`",
+        ),
+        (
+            measured.replace("2026-11-22", "22.11.2026"),
+            "finger.toml:7:8: `date = \"22.11.2026\"` is not a day: write it as \"YYYY-MM-DD\"",
+        ),
+        (measured.replace("lab/tablet 3", " "), "finger.toml:9:10: `screen` is empty: say it in a few words"),
+        (
+            measured.replace("[0.38, 0.42]", "[0.42, 0.38]"),
+            "finger.toml:10:33: `friction_coefficient_interval = [0.42, 0.38]` falls: write the smaller number first",
+        ),
+        (
+            measured.replace("[0.06, 0.08]", "[0.06]"),
+            "finger.toml:11:32: `electric_friction_interval_n` has 1 entries: expected 2",
+        ),
+        (
+            measured.replace("measured_voltage_max_v_rms = 150\n", ""),
+            "finger.toml:1:1: this finger profile has no `measured_voltage_max_v_rms`: add it",
+        ),
+    ] {
+        check(&text, expected);
+    }
+}
+
+#[test]
+fn a_day_is_told_from_what_is_none() {
+    let text = |date: &str| format!("{ASSUMED}{MEASURED}").replace("2026-11-22", date);
+    for (date, right) in
+        [("2026-01-31", true), ("2026-13-01", false), ("2026-1-1", false), ("2026-00-10", false), ("+026-01-01", false)]
+    {
+        assert_eq!(FingerProfile::parse(&text(date), "finger.toml").is_ok(), right, "{date}");
+    }
+}
+
+#[test]
+fn the_bundled_profiles_read_and_are_assumed() {
+    for name in FingerProfile::bundled_names() {
+        let text = FingerProfile::bundled_text(name).expect(name);
+        let profile = FingerProfile::parse(text, name).expect(name);
+        assert_eq!(profile.evidence, Evidence::Assumed, "{name}");
+        assert!(text.starts_with("# "), "{name} does not give its reasons");
+    }
+    assert_eq!(FingerProfile::bundled("example"), Some(FingerProfile::example()));
+    assert_eq!(FingerProfile::bundled("wet"), None);
+}

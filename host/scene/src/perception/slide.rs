@@ -1,0 +1,102 @@
+//! Straight slides over a layer, and the friction along them.
+
+use crate::Program;
+use crate::reference::{Context, Piece, Reference};
+
+/// Rows and columns over the bounding rectangle of a layer.
+const ROWS: usize = 5;
+/// Places of a row at which the layers are determined.
+const PLACES: usize = 400;
+/// Samples of a signal at most.
+const SAMPLES_MAX: usize = 16_384;
+
+/// A straight way over the part of a layer that no other layer replaces, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Slide {
+    from_m: (f64, f64),
+    to_m: (f64, f64),
+}
+
+impl Slide {
+    /// Rows and columns over a layer, each where it is visible for the longest.
+    pub(super) fn over(layer: usize, pieces: &[Piece], screen_m: (f64, f64)) -> Vec<Self> {
+        let Some(piece) = pieces.get(layer) else { return Vec::new() };
+        let [left_m, top_m, right_m, bottom_m] = piece.shape.bounds_m();
+        let (from_x_m, to_x_m) = (left_m.max(0.0), right_m.min(screen_m.0));
+        let (from_y_m, to_y_m) = (top_m.max(0.0), bottom_m.min(screen_m.1));
+        let slides = (0..ROWS).flat_map(|number| {
+            let part = (number as f64 + 0.5) / ROWS as f64;
+            let (x_m, y_m) = (from_x_m + part * (to_x_m - from_x_m), from_y_m + part * (to_y_m - from_y_m));
+            let row = Self { from_m: (from_x_m, y_m), to_m: (to_x_m, y_m) };
+            let column = Self { from_m: (x_m, from_y_m), to_m: (x_m, to_y_m) };
+            [row, column]
+        });
+        slides.filter_map(|slide| slide.longest_visible(layer, pieces)).collect()
+    }
+
+    fn length_m(&self) -> f64 {
+        libm::hypot(self.to_m.0 - self.from_m.0, self.to_m.1 - self.from_m.1)
+    }
+
+    /// The place after a part of the way, from 0 to 1.
+    fn at(&self, part: f64) -> (f64, f64) {
+        let ((from_x_m, from_y_m), (to_x_m, to_y_m)) = (self.from_m, self.to_m);
+        (from_x_m + part * (to_x_m - from_x_m), from_y_m + part * (to_y_m - from_y_m))
+    }
+
+    /// The longest stretch on which the layer is visible.
+    fn longest_visible(&self, layer: usize, pieces: &[Piece]) -> Option<Self> {
+        let part = |number: usize| number as f64 / PLACES as f64;
+        let (mut longest, mut run) = (0..0, 0..0);
+        for number in 0..PLACES {
+            let (x_m, y_m) = self.at(part(number) + 0.5 / PLACES as f64);
+            if visible_layers(pieces, x_m, y_m) >> layer & 1 == 1 {
+                run.end = number + 1;
+                if run.len() > longest.len() {
+                    longest = run.clone();
+                }
+            } else {
+                run = number + 1..number + 1;
+            }
+        }
+        (!longest.is_empty()).then(|| Self { from_m: self.at(part(longest.start)), to_m: self.at(part(longest.end)) })
+    }
+
+    /// Total friction along the way at a constant speed, in newtons, clamped to what the drive can give.
+    pub(super) fn friction_n(
+        &self,
+        reference: &Reference,
+        program: &Program,
+        speed_m_per_s: f64,
+        sample_hz: f64,
+    ) -> Vec<f64> {
+        let step_m = speed_m_per_s / sample_hz;
+        let count = ((self.length_m() / step_m) as usize).min(SAMPLES_MAX);
+        let sample = |number: usize| {
+            let (x_m, y_m) = self.at((number as f64 + 0.5) * step_m / self.length_m());
+            let t_s = number as f64 / sample_hz;
+            total_n(reference, program, &Context { x_m, y_m, t_s, speed_m_per_s, ..Context::default() })
+        };
+        (0..count).map(sample).collect()
+    }
+}
+
+/// Total friction in a context, in newtons, clamped to what the drive can give.
+pub(super) fn total_n(reference: &Reference, program: &Program, context: &Context) -> f64 {
+    let electric_n = reference.electric_friction_at_n(context);
+    program.reach.natural_friction_n + electric_n.clamp(0.0, program.reach.electric_friction_max_n)
+}
+
+/// The layers that have an effect at a place, a bit each: those that cover it and that no layer above replaces.
+pub(super) fn visible_layers(pieces: &[Piece], x_m: f64, y_m: f64) -> u64 {
+    let mut visible = 0;
+    for (number, piece) in pieces.iter().enumerate().rev() {
+        if piece.shape.covers(x_m, y_m) {
+            visible |= 1 << number;
+            if piece.hides_below() {
+                break;
+            }
+        }
+    }
+    visible
+}

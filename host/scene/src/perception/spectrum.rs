@@ -1,0 +1,119 @@
+//! The strongest component of a friction signal.
+
+use std::ops::Range;
+
+use rustfft::FftPlannerScalar;
+use rustfft::num_complex::Complex;
+
+use super::thresholds::{TEXTURE_MIN_HZ, texture_threshold_n};
+
+/// Least number of samples of which a component is sought.
+const SAMPLES_MIN: usize = 64;
+/// Half width of a component, in bins: a Hann window spreads a sine over two bins on either side.
+const SPREAD_BINS: usize = 2;
+/// Half width of a component, as a factor of its frequency: a sixth of an octave on either side.
+const SIXTH_OF_OCTAVE: f64 = 1.122_462_048_309_373;
+
+/// A component of a signal: a sine, or what a third of an octave of noise amounts to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Component {
+    pub(super) frequency_hz: f64,
+    /// Amplitude of a sine of the same power.
+    pub(super) amplitude: f64,
+}
+
+/// The component that exceeds the threshold of touch by the largest factor; where no frequency has a threshold, the
+/// component of the largest amplitude. `None` for a signal that is too short or has nothing above
+/// [`TEXTURE_MIN_HZ`].
+pub(super) fn most_noticeable(samples: &[f64], sample_hz: f64) -> Option<Component> {
+    let power = power(samples)?;
+    let bin_hz = sample_hz / samples.len() as f64;
+    let cumulative: Vec<f64> = std::iter::once(0.0)
+        .chain(power.iter().scan(0.0, |sum, power| {
+            *sum += power;
+            Some(*sum)
+        }))
+        .collect();
+    let first = ((TEXTURE_MIN_HZ / bin_hz).ceil() as usize).max(SPREAD_BINS + 1);
+    let peaks = (first..power.len()).filter(|bin| is_largest(&power, *bin));
+    let components = peaks.map(|bin| {
+        let around = around(bin, power.len());
+        let sum = cumulative.get(around.end).zip(cumulative.get(around.start)).map_or(0.0, |(to, from)| to - from);
+        Component { frequency_hz: bin as f64 * bin_hz, amplitude: (2.0 * sum.max(0.0)).sqrt() }
+    });
+    components.max_by(|one, other| salience(one).total_cmp(&salience(other)))
+}
+
+/// The bins of a component whose largest bin this is.
+fn around(bin: usize, bins: usize) -> Range<usize> {
+    let low = ((bin as f64 / SIXTH_OF_OCTAVE).ceil() as usize).min(bin.saturating_sub(SPREAD_BINS));
+    let high = ((bin as f64 * SIXTH_OF_OCTAVE).floor() as usize).max(bin + SPREAD_BINS);
+    low..(high + 1).min(bins)
+}
+
+/// How far a component is above the threshold; components without a threshold come after all others.
+fn salience(component: &Component) -> f64 {
+    texture_threshold_n(component.frequency_hz)
+        .map_or_else(|| 1e-6 * component.amplitude, |threshold_n| component.amplitude / threshold_n)
+}
+
+/// Whether a bin has the most power of its component.
+fn is_largest(power: &[f64], bin: usize) -> bool {
+    let here = power.get(bin).copied().unwrap_or(0.0);
+    let around = power.get(around(bin, power.len())).unwrap_or_default();
+    here > 0.0 && around.iter().all(|power| *power <= here)
+}
+
+/// Mean power of each frequency from zero to half of the sampling frequency, with the mean taken off.
+fn power(samples: &[f64]) -> Option<Vec<f64>> {
+    let count = samples.len();
+    if count < SAMPLES_MIN {
+        return None;
+    }
+    let mean = samples.iter().sum::<f64>() / count as f64;
+    let window = |number: usize| 0.5 - 0.5 * libm::cos(std::f64::consts::TAU * number as f64 / count as f64);
+    let windowed =
+        samples.iter().enumerate().map(|(number, sample)| Complex::new(window(number) * (sample - mean), 0.0));
+    let mut spectrum: Vec<Complex<f64>> = windowed.collect();
+    FftPlannerScalar::new().plan_fft_forward(count).process(&mut spectrum);
+    // The squares of a Hann window sum to 3/8 of its length; each frequency has a negative twin.
+    let scale = 2.0 / (0.375 * (count * count) as f64);
+    Some(spectrum.iter().take(count / 2).map(|value| scale * value.norm_sqr()).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+
+    const SAMPLE_HZ: f64 = 2000.0;
+
+    fn sines(count: usize, sines: &[(f64, f64)]) -> Vec<f64> {
+        let at = |t_s: f64| sines.iter().map(|(hz, amplitude)| amplitude * libm::sin(TAU * hz * t_s)).sum::<f64>();
+        (0..count).map(|number| 0.3 + at(number as f64 / SAMPLE_HZ)).collect()
+    }
+
+    #[test]
+    fn a_sine_has_its_frequency_and_amplitude() {
+        for (count, hz) in [(4000, 40.0), (1000, 63.0), (700, 211.0)] {
+            let component = most_noticeable(&sines(count, &[(hz, 0.02)]), SAMPLE_HZ).unwrap();
+            assert!((component.frequency_hz - hz).abs() <= SAMPLE_HZ / count as f64, "{component:?}");
+            assert!((component.amplitude / 0.02 - 1.0).abs() < 0.02, "{component:?}");
+        }
+    }
+
+    #[test]
+    fn the_component_that_is_felt_best_wins_over_a_larger_one() {
+        let component = most_noticeable(&sines(4000, &[(12.0, 0.01), (200.0, 0.004)]), SAMPLE_HZ).unwrap();
+        assert!((component.frequency_hz - 200.0).abs() < 1.0, "{component:?}");
+    }
+
+    #[test]
+    fn slow_changes_constants_and_short_signals_have_no_component() {
+        assert_eq!(most_noticeable(&vec![0.25; 4000], SAMPLE_HZ), None);
+        assert_eq!(most_noticeable(&sines(63, &[(200.0, 0.02)]), SAMPLE_HZ), None);
+        let slow = most_noticeable(&sines(4000, &[(2.0, 0.02)]), SAMPLE_HZ);
+        assert!(slow.is_none_or(|component| component.amplitude < 1e-6), "{slow:?}");
+    }
+}

@@ -1,0 +1,54 @@
+//! The finger that a program is compiled for, and what its numbers rest on.
+
+use super::finger::{Evidence, Origin};
+use super::profiles::{ProfileSource, Profiles};
+
+/// The finger that a program is compiled for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PlayedFinger {
+    /// The finger in messages: for example `the example finger`.
+    pub title: String,
+    /// What its newtons rest on, on the screen of the program.
+    pub origin: Origin,
+}
+
+impl PlayedFinger {
+    /// The finger of a scene. A profile of another screen counts as assumed; the note says so.
+    pub(super) fn of(profiles: &Profiles) -> (Self, Option<String>) {
+        let title = match &profiles.finger_source {
+            ProfileSource::Option(name) | ProfileSource::Named(name) => format!("finger \"{name}\""),
+            ProfileSource::Embedded => "the scene's finger".to_owned(),
+            ProfileSource::Example => "the example finger".to_owned(),
+        };
+        let evidence = &profiles.finger.evidence;
+        let other =
+            evidence.experiment().filter(|experiment| profiles.screen.name.as_ref() != Some(&experiment.screen));
+        let Some(experiment) = other else { return (Self { title, origin: evidence.origin() }, None) };
+        let screen = match &profiles.screen.name {
+            Some(name) => format!("\"{name}\""),
+            None => "a screen without a `name`".to_owned(),
+        };
+        let note = format!(
+            "{title} was {} on screen \"{}\" and is played on {screen}: it counts as assumed",
+            verb(evidence),
+            experiment.screen
+        );
+        (Self { title, origin: Origin::Assumed }, Some(note))
+    }
+
+    /// `, assumed`, to be put behind newtons; empty for a measured finger. What a person said gives no newtons, so that
+    /// those of a perceptual profile are assumed too.
+    pub fn newtons_suffix(&self) -> &'static str {
+        match self.origin {
+            Origin::Assumed | Origin::Perceptual => ", assumed",
+            Origin::Measured => "",
+        }
+    }
+}
+
+fn verb(evidence: &Evidence) -> &'static str {
+    match evidence.origin() {
+        Origin::Measured => "measured",
+        Origin::Assumed | Origin::Perceptual => "fitted",
+    }
+}

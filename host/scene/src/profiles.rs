@@ -1,0 +1,153 @@
+//! The screen and the finger of a scene: embedded in its file, named by it, or the examples.
+
+use super::fields::{Fields, TableOrText};
+use super::files::{FileUnavailable, Files, file_name};
+use super::finger::{self, Elasticity, Evidence, FingerProfile};
+use super::grammar::FieldSpec;
+use super::log::Log;
+use super::mistake::Mistake;
+use super::nearest::Nearest;
+use super::screen::{self, Screen};
+use super::tables;
+
+/// Where a scene got its screen or its finger. The first of these that is given counts.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ProfileSource {
+    /// Given beside the scene, from this file or under this bundled name.
+    Option(String),
+    /// The scene names this file or bundled profile.
+    Named(String),
+    /// A table of the scene file.
+    Embedded,
+    /// The scene does not say.
+    Example,
+}
+
+/// Screen and finger of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Profiles {
+    pub(super) screen: Screen,
+    pub(super) screen_source: ProfileSource,
+    pub(super) finger: FingerProfile,
+    pub(super) finger_source: ProfileSource,
+    /// Offset in the scene file for mistakes of the two together.
+    pub(super) place: usize,
+}
+
+/// Reads `[screen]`, `[coating]` and `[finger]` of a scene of version 1. Its coating contains the skin.
+pub(super) fn read_v1(fields: &mut Fields, log: &mut Log) -> Option<Profiles> {
+    let screen = screen::read_v1(fields, log);
+    let finger = fields.table(log, &tables::scene::FINGER_V1).and_then(|fields| finger_v1(fields, log));
+    let ((screen, place), finger) = screen.zip(finger)?;
+    Some(Profiles {
+        screen,
+        screen_source: ProfileSource::Embedded,
+        finger,
+        finger_source: ProfileSource::Embedded,
+        place,
+    })
+}
+
+fn finger_v1(mut fields: Fields, log: &mut Log) -> Option<FingerProfile> {
+    let radius_mm = fields.number(log, &tables::finger::RADIUS_MM);
+    let stiffness_pa_per_m = fields.number(log, &tables::finger::STIFFNESS_PA_PER_M);
+    let friction_coefficient = fields.number(log, &tables::finger::FRICTION_COEFFICIENT);
+    let normal_load_n = fields.number(log, &tables::finger::NORMAL_LOAD_N);
+    fields.close(log);
+    Some(FingerProfile {
+        friction_coefficient: friction_coefficient?,
+        normal_load_n: normal_load_n?,
+        radius_mm: radius_mm?,
+        elasticity: Elasticity::WinklerFuss { stiffness_pa_per_m: stiffness_pa_per_m? },
+        skin_gap_um: 0.0,
+        evidence: Evidence::Assumed,
+    })
+}
+
+/// Reads `screen` and `finger` of a scene of version 2: tables, names, or nothing.
+pub(super) fn read_v2(fields: &mut Fields, files: &dyn Files, log: &mut Log) -> Option<Profiles> {
+    let (screen_place, finger_place) = (fields.place("screen"), fields.place("finger"));
+    let screen_kind = Profile {
+        field: &tables::scene::SCREEN,
+        read: screen::read,
+        bundled_names: Screen::bundled_names().collect(),
+        bundled: Screen::bundled,
+        parse: |text, name| Screen::parse(text, name).map_err(|error| error.to_string()),
+        example: Screen::example,
+    };
+    let finger_kind = Profile {
+        field: &tables::scene::FINGER,
+        read: finger::read,
+        bundled_names: FingerProfile::bundled_names().collect(),
+        bundled: FingerProfile::bundled,
+        parse: |text, name| FingerProfile::parse(text, name).map_err(|error| error.to_string()),
+        example: FingerProfile::example,
+    };
+    let has_finger = fields.has("finger");
+    let screen = screen_kind.read(fields, files, log);
+    let finger = finger_kind.read(fields, files, log);
+    let ((screen, screen_source), (finger, finger_source)) = screen.zip(finger)?;
+    let place = if has_finger { finger_place } else { screen_place };
+    Some(Profiles { screen, screen_source, finger, finger_source, place })
+}
+
+/// How one of the two is read.
+struct Profile<T> {
+    field: &'static FieldSpec,
+    read: fn(Fields, &mut Log) -> Option<T>,
+    bundled_names: Vec<&'static str>,
+    bundled: fn(&str) -> Option<T>,
+    parse: fn(&str, &str) -> Result<T, String>,
+    example: fn() -> T,
+}
+
+impl<T> Profile<T> {
+    fn read(&self, fields: &mut Fields, files: &dyn Files, log: &mut Log) -> Option<(T, ProfileSource)> {
+        if !fields.has(self.field.name) {
+            // The field is known although it is absent.
+            let _ = fields.table_or_text(log, self.field);
+            return Some(((self.example)(), ProfileSource::Example));
+        }
+        let place = fields.place(self.field.name);
+        match fields.table_or_text(log, self.field)? {
+            TableOrText::Table(table) => (self.read)(table, log).map(|profile| (profile, ProfileSource::Embedded)),
+            TableOrText::Text(name) => match self.named(&name, files) {
+                Ok(profile) => Some((profile, ProfileSource::Named(name))),
+                Err(mistake) => {
+                    log.add(place, mistake);
+                    None
+                }
+            },
+        }
+    }
+
+    /// The bundled profile of a name, or the profile in a file.
+    fn named(&self, name: &str, files: &dyn Files) -> Result<T, Mistake> {
+        let what = self.field.name;
+        if !is_file_name(name) {
+            let nearest = || Nearest::new(name, self.bundled_names.iter().copied());
+            return (self.bundled)(name).ok_or_else(|| Mistake::UnknownProfile {
+                what,
+                found: name.to_owned(),
+                nearest: nearest(),
+            });
+        }
+        let unusable = |reason: String| Mistake::FileUnusable { what, file: name.to_owned(), reason };
+        let bytes = files.bytes(name).map_err(|unavailable| match unavailable {
+            FileUnavailable::Unreadable { reason } => unusable(format!("it cannot be read ({reason})")),
+            FileUnavailable::Missing { place, files } => Mistake::FileMissing {
+                what,
+                file: name.to_owned(),
+                folder: place,
+                nearest: Nearest::new(file_name(name), files.iter().map(String::as_str)).suggestion,
+            },
+        })?;
+        let text = String::from_utf8(bytes).map_err(|_| unusable(Mistake::NotUtf8.to_string()))?;
+        (self.parse)(&text, name).map_err(|mistakes| unusable(mistakes.replace('\n', "; ")))
+    }
+}
+
+/// Whether a name is that of a file. Bundled names are plain words.
+pub(super) fn is_file_name(name: &str) -> bool {
+    name.contains(['.', '/', '\\'])
+}

@@ -1,0 +1,104 @@
+//! Screens: size, coating, and the drive that the electrode and its insulator bear.
+//!
+//! A screen is a TOML file of its own, or the table `[screen]` of a scene of version 2; both have the same fields.
+
+mod read;
+#[cfg(test)]
+mod tests;
+
+use toml::de::DeTable;
+
+use super::compile_error::CompileError;
+use super::fields::Fields;
+use super::log::Log;
+use super::mistake::Mistake;
+use super::source::Source;
+
+pub(super) use read::{read, read_v1};
+
+/// The numbers of a screen.
+///
+/// ```
+/// use frixel_scene::Screen;
+///
+/// let screen = Screen::parse("width_mm = 120\nheight_mm = 80\n", "small.toml")?;
+/// assert_eq!(screen.coating, Screen::example().coating);
+/// assert!((screen.coating_gap_um() - 1.0 / 3.9).abs() < 1e-12);
+/// # Ok::<(), frixel_scene::CompileError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Screen {
+    /// Name that finger profiles refer to.
+    pub name: Option<String>,
+    /// Width, along x, 5 to 2,000 mm.
+    pub width_mm: f64,
+    /// Height, along y, 5 to 2,000 mm.
+    pub height_mm: f64,
+    /// The insulator between electrode and finger: one or more slabs in series.
+    pub coating: Vec<Slab>,
+    /// Largest rms voltage, in volts, if the screen limits it.
+    pub voltage_max_v_rms: Option<f64>,
+    /// Largest peak voltage, in volts, if the screen limits it.
+    pub voltage_max_v_peak: Option<f64>,
+    /// Fastest change of the envelope, in volts per microsecond, if the screen limits it.
+    pub slew_v_per_us: Option<f64>,
+}
+
+/// A slab of insulator.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slab {
+    /// Thickness, 0.01 to 1,000 um.
+    pub thickness_um: f64,
+    /// Relative permittivity, 1 to 10,000.
+    pub permittivity: f64,
+}
+
+impl Slab {
+    /// The coating of the example screen: 1 um of silicon dioxide, as laboratory screens have.
+    pub const EXAMPLE: Self = Self { thickness_um: 1.0, permittivity: 3.9 };
+}
+
+impl Screen {
+    /// Reads the text of a screen's file. Messages call the file `name`.
+    pub fn parse(text: &str, name: &str) -> Result<Self, CompileError> {
+        let source = Source::new(name, text);
+        let mut log = Log::new(&source);
+        let screen = match DeTable::parse(text) {
+            Ok(table) => read(Fields::new("this screen", 0, table.into_inner()), &mut log),
+            Err(error) => {
+                log.add(error.span().map_or(0, |span| span.start), Mistake::Syntax(error.message().to_owned()));
+                None
+            }
+        };
+        log.finish(screen)
+    }
+
+    /// The screen that a scene gets when it does not say which: 120 mm by 80 mm, [`Slab::EXAMPLE`], no limits of its
+    /// own.
+    pub fn example() -> Self {
+        Self {
+            name: Some("example".to_owned()),
+            width_mm: 120.0,
+            height_mm: 80.0,
+            coating: vec![Slab::EXAMPLE],
+            voltage_max_v_rms: None,
+            voltage_max_v_peak: None,
+            slew_v_per_us: None,
+        }
+    }
+
+    /// The bundled screen of a name.
+    pub fn bundled(name: &str) -> Option<Self> {
+        Self::bundled_names().find(|bundled| *bundled == name).map(|_| Self::example())
+    }
+
+    /// The names of the bundled screens.
+    pub fn bundled_names() -> impl Iterator<Item = &'static str> {
+        ["example"].into_iter()
+    }
+
+    /// Effective gap of the coating: the sum of thickness over permittivity, in micrometres.
+    pub fn coating_gap_um(&self) -> f64 {
+        self.coating.iter().fold(0.0, |sum, slab| sum + slab.thickness_um / slab.permittivity)
+    }
+}

@@ -1,0 +1,74 @@
+//! Reads the fields of a screen.
+
+use super::{Screen, Slab};
+use crate::fields::Fields;
+use crate::log::Log;
+use crate::mistake::Mistake;
+use crate::tables::{coating, scene, screen};
+
+/// Largest effective gap that a board takes.
+const EFFECTIVE_GAP_MAX_UM: f64 = 10_000.0;
+
+/// Reads a whole table, that of a file or `[screen]` of a scene.
+pub(in super::super) fn read(mut fields: Fields, log: &mut Log) -> Option<Screen> {
+    let name = fields.text(log, &screen::NAME);
+    let width_mm = fields.number(log, &screen::WIDTH_MM);
+    let height_mm = fields.number(log, &screen::HEIGHT_MM);
+    let has_coating = fields.has(screen::COATING.name);
+    let slabs = fields.tables(log, &screen::COATING).and_then(|slabs| coating_of(slabs, &fields, log));
+    let coating = if has_coating { slabs.map(|(slabs, _)| slabs) } else { Some(vec![Slab::EXAMPLE]) };
+    let voltage_max_v_rms = fields.number(log, &screen::VOLTAGE_MAX_V_RMS);
+    let voltage_max_v_peak = fields.number(log, &screen::VOLTAGE_MAX_V_PEAK);
+    let slew_v_per_us = fields.number(log, &screen::SLEW_V_PER_US);
+    fields.close(log);
+    Some(Screen {
+        name,
+        width_mm: width_mm?,
+        height_mm: height_mm?,
+        coating: coating?,
+        voltage_max_v_rms,
+        voltage_max_v_peak,
+        slew_v_per_us,
+    })
+}
+
+/// Reads `[screen]` and `[coating]` of a scene of version 1, whose coating contains the skin. Returns the place of the
+/// coating too.
+pub(in super::super) fn read_v1(scene_fields: &mut Fields, log: &mut Log) -> Option<(Screen, usize)> {
+    let size = scene_fields.table(log, &scene::SCREEN_V1).map(|mut fields| {
+        let width_mm = fields.number(log, &screen::WIDTH_MM);
+        let height_mm = fields.number(log, &screen::HEIGHT_MM);
+        fields.close(log);
+        width_mm.zip(height_mm)
+    });
+    let slabs = scene_fields.tables(log, &scene::COATING_V1);
+    let coating = slabs.and_then(|slabs| coating_of(slabs, scene_fields, log));
+    let ((width_mm, height_mm), (coating, place)) = size.flatten().zip(coating)?;
+    Some((Screen { name: None, width_mm, height_mm, coating, ..Screen::example() }, place))
+}
+
+/// Reads slabs in series. Returns the place of the first one too; an empty list is a mistake of the table around it.
+fn coating_of(slabs: Vec<Fields>, around: &Fields, log: &mut Log) -> Option<(Vec<Slab>, usize)> {
+    if slabs.is_empty() {
+        log.add(
+            around.table_place(),
+            Mistake::MissingField { field: "coating", table: around.table_name().to_owned() },
+        );
+    }
+    let mut places = Vec::new();
+    let read = |mut fields: Fields| {
+        let thickness_um = fields.number(log, &coating::THICKNESS_UM);
+        let permittivity = fields.number(log, &coating::PERMITTIVITY);
+        places.push(fields.close(log).table());
+        Some(Slab { thickness_um: thickness_um?, permittivity: permittivity? })
+    };
+    let slabs: Vec<Option<Slab>> = slabs.into_iter().map(read).collect();
+    let slabs: Vec<Slab> = slabs.into_iter().collect::<Option<_>>()?;
+    let place = *places.first()?;
+    let found = slabs.iter().fold(0.0, |sum, slab| sum + slab.thickness_um / slab.permittivity);
+    if found > EFFECTIVE_GAP_MAX_UM {
+        let (field, max) = ("thickness_um / permittivity, summed", EFFECTIVE_GAP_MAX_UM);
+        log.add(place, Mistake::OutOfRange { field, found, min: 0.0, max, unit: " um" });
+    }
+    Some((slabs, place))
+}

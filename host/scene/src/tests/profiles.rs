@@ -1,0 +1,286 @@
+//! Tests of the screen and finger of a scene: which one counts, what is refused, and what is warned of.
+
+use super::*;
+use crate::{Elasticity, Evidence, FingerProfile, Mistake, Origin, Screen, Warning};
+use frixel_layers::Header;
+
+/// All of a scene of version 2 but its layers: the example screen and finger.
+const SHORT: &str = "version = 2\n";
+const LAYER: &str = "[[layer]]\nkind = \"constant\"\nfriction_n = 0.3\n";
+/// Mixed coefficients of friction tell the fingers apart.
+const EMBEDDED: &str = "finger = { friction_coefficient = 0.4, normal_load_n = 0.5, radius_mm = 8, stiffness_pa_per_m = 1.8e7, \
+                        skin_gap_um = 4.74 }\n";
+
+fn parse(text: &str) -> Result<Scene, CompileError> {
+    let anna = FingerProfile { friction_coefficient: 0.45, ..FingerProfile::example() };
+    let broken = anna.to_toml().replace("radius_mm", "raduis_mm");
+    let large = "width_mm = 300\nheight_mm = 200\nvoltage_max_v_rms = 100\n";
+    let files = BTreeMap::from([
+        ("anna.toml".to_owned(), anna.to_toml().into_bytes()),
+        ("broken.toml".to_owned(), broken.into_bytes()),
+        ("large.toml".to_owned(), large.as_bytes().to_vec()),
+        ("latin.toml".to_owned(), vec![0xff]),
+    ]);
+    let scene = Scene::parse(text, "test.toml", &files);
+    schema::check_agrees(text, scene.as_ref().err());
+    scene
+}
+
+fn program(scene: &Scene) -> Result<Program, CompileError> {
+    compile::compile(scene, &LIMITS, TICK_HZ)
+}
+
+fn natural_n(scene: Result<Scene, CompileError>) -> f64 {
+    program(&scene.expect("it reads")).expect("it compiles").reach.natural_friction_n
+}
+
+#[track_caller]
+fn check_refused(text: &str, expected: &str) {
+    let refused = parse(text).and_then(|scene| program(&scene)).expect_err("it is refused");
+    assert_eq!(refused.to_string(), expected);
+}
+
+#[test]
+fn a_handful_of_lines_is_a_scene_on_the_example_screen_under_the_example_finger() {
+    let scene = parse(&format!("{SHORT}{LAYER}")).expect("it reads");
+    assert_eq!((scene.screen(), scene.finger()), (&Screen::example(), &FingerProfile::example()));
+    let program = program(&scene).expect("it compiles");
+    assert_eq!(program.finger.title, "the example finger");
+    let Program { reach, .. } = program;
+    assert!((reach.electric_friction_max_n - 0.13).abs() < 0.5e-3, "{reach:?}");
+}
+
+#[test]
+fn an_option_counts_before_what_the_scene_says_and_that_before_the_example() {
+    let close = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-6, "{found} and not {expected}");
+    close(natural_n(parse(SHORT)), 0.25);
+    close(natural_n(parse(&format!("{SHORT}{EMBEDDED}"))), 0.2);
+    close(natural_n(parse(&format!("{SHORT}finger = \"anna.toml\""))), 0.225);
+    close(natural_n(parse(&format!("{SHORT}finger = \"dry\""))), 0.175);
+    for text in [SHORT, &format!("{SHORT}{EMBEDDED}"), &format!("{SHORT}finger = \"anna.toml\"")] {
+        let moist = FingerProfile::bundled("moist").expect("it is bundled");
+        close(natural_n(parse(text).and_then(|scene| scene.with_finger(moist, "moist"))), 0.4);
+    }
+}
+
+#[test]
+fn of_the_limits_of_the_drive_the_least_counts() {
+    let limits = |text: &str| {
+        let Header { voltage_max_v_rms, voltage_max_v_peak, slew_v_per_s, .. } =
+            program(&parse(text).expect("it reads")).expect("it compiles").header;
+        (voltage_max_v_rms, voltage_max_v_peak, slew_v_per_s)
+    };
+    let screen = |limits: &str| format!("{SHORT}screen = {{ width_mm = 100, height_mm = 80{limits} }}\n");
+    let rms = |text: &str| limits(text).0;
+    assert_eq!(rms(&screen("")).to_bits(), 150.0_f32.to_bits());
+    assert_eq!(rms(&screen(", voltage_max_v_rms = 120")).to_bits(), 120.0_f32.to_bits());
+    assert_eq!(rms(&screen(", voltage_max_v_rms = 200")).to_bits(), 150.0_f32.to_bits());
+    assert_eq!(rms(&format!("{SHORT}screen = \"large.toml\"")).to_bits(), 100.0_f32.to_bits());
+    let drive = "[drive]\nvoltage_max_v_rms = 90\nvoltage_max_v_peak = 130\nslew_v_per_us = 2\n";
+    assert_eq!(rms(&format!("{}{drive}", screen(", voltage_max_v_rms = 120"))).to_bits(), 90.0_f32.to_bits());
+    let (v_rms, v_peak, _) = limits(&format!("{}{drive}", screen(", voltage_max_v_peak = 60")));
+    assert!(v_peak.to_bits() == 60.0_f32.to_bits() && v_rms < 60.0, "{v_rms} V rms, {v_peak} V peak");
+    let slew = |limit: &str| limits(&format!("{}{drive}", screen(limit))).2;
+    assert_eq!([slew(""), slew(", slew_v_per_us = 1"), slew(", slew_v_per_us = 3")], [2e6, 1e6, 2e6]);
+}
+
+#[test]
+fn names_that_lead_to_nothing() {
+    check_refused(
+        "version = 2\nfinger = \"moost\"",
+        "test.toml:2:10: no finger \"moost\" is bundled, and the name of a file has an ending such as .toml; did you mean \
+         `moist`?",
+    );
+    check_refused(
+        "version = 2\nscreen = \"larg.toml\"",
+        "test.toml:2:10: screen \"larg.toml\" was not found in the scene's set of files, which has \"large.toml\": paths \
+         start from the scene file's folder",
+    );
+    check_refused(
+        "version = 2\nfinger = \"broken.toml\"",
+        "test.toml:2:10: finger \"broken.toml\" cannot be used: broken.toml:3:1: unknown field `raduis_mm` in this finger \
+         profile; did you mean `radius_mm`?",
+    );
+    check_refused(
+        "version = 2\nfinger = \"latin.toml\"",
+        "test.toml:2:10: finger \"latin.toml\" cannot be used: this byte is not UTF-8 text: save the file as UTF-8",
+    );
+    check_refused(
+        "version = 2\nfinger = 3",
+        "test.toml:2:10: `finger` has to be a table, or the name of a profile in quotes, and this is a number",
+    );
+}
+
+#[test]
+fn a_scene_of_version_one_takes_no_other_finger_or_screen() {
+    let scene = || parse(HEAD).expect("it reads");
+    let sentence = |what: &str| {
+        format!(
+            "test.toml:1:11: the coating of a scene of version 1 contains the finger's skin, so that it cannot be played \
+             with another {what}: `frixel scene migrate test.toml` writes it as version 2"
+        )
+    };
+    let refused = scene().with_finger(FingerProfile::example(), "example").expect_err("it is refused");
+    assert_eq!(refused.to_string(), sentence("finger"));
+    let refused = scene().with_screen(Screen::example(), "example").expect_err("it is refused");
+    assert_eq!(refused.to_string(), sentence("screen"));
+}
+
+#[test]
+fn coating_and_skin_together_are_at_most_ten_millimetres() {
+    let finger = EMBEDDED.replace("4.74", "9999.9");
+    check_refused(
+        &format!("{SHORT}{finger}"),
+        "test.toml:2:10: `thickness_um / permittivity + skin_gap_um, summed = 10000.15641025641` is out of range: expected 0 \
+         to 10000 um",
+    );
+}
+
+#[test]
+fn a_contact_wider_than_the_finger_is_refused() {
+    let sentence = |place: &str| {
+        format!(
+            "test.toml:{place}: at 150.0 V rms the contact would have a radius of 51.9 mm under a finger of 8 mm, which \
+             the model cannot mean: a skin gap is missing, since 0.26 um between electrode and finger are too few; give the \
+             finger a `skin_gap_um` of some micrometres (in version 1 another slab of [[coating]]), or lower \
+             `voltage_max_v_rms`"
+        )
+    };
+    check_refused(&format!("{SHORT}{}", EMBEDDED.replace("4.74", "0")), &sentence("2:10"));
+    let thin = HEAD.replace("thickness_um = 10\npermittivity = 1\n", "thickness_um = 1\npermittivity = 3.9\n");
+    check_refused(&thin, &sentence("7:1"));
+    // At a lower voltage the contact stays within the finger.
+    let low = format!("{SHORT}{}[drive]\nvoltage_max_v_rms = 3\n", EMBEDDED.replace("4.74", "0"));
+    parse(&low).and_then(|scene| program(&scene)).expect("it compiles");
+}
+
+fn warnings(text: &str) -> Vec<Warning> {
+    program(&parse(text).expect("it reads")).expect("it compiles").warnings
+}
+
+#[test]
+fn more_electric_than_natural_friction_is_warned_of_with_both_numbers() {
+    // Under 0.1 N the example finger has 50 mN of natural friction, and the drive adds more than that.
+    let light = EMBEDDED.replace("0.4,", "0.5,").replace("normal_load_n = 0.5", "normal_load_n = 0.1");
+    let layer = |high_n: &str| {
+        let layer = "[[layer]]\nkind = \"grating\"\nwavelength_mm = 2\nlow_n = 0\nhigh_n = HIGH\n";
+        format!("{SHORT}{light}{}", layer.replace("HIGH", high_n))
+    };
+    assert_eq!(warnings(&layer("0.049")), []);
+    let [warning] = warnings(&layer("0.06"))[..] else { panic!("one warning") };
+    assert_eq!(
+        warning.to_string(),
+        "the scene asks for up to 0.06 N of electric friction, more than the finger's natural friction of 0.05 N: the model \
+         is not confirmed there"
+    );
+    assert!(!warning.is_refused_by_boards());
+    // The reach itself may be larger, when the scene does not ask for it.
+    assert_eq!(warnings(&format!("{SHORT}{light}")), []);
+}
+
+/// A measured finger, whose largest voltage and range of loads are given.
+fn measured(voltage_max_v_rms: &str, loads: &str, screen: &str) -> String {
+    let evidence = format!(
+        "origin = \"measured\", date = \"2026-11-22\", method = \"load cell\", screen = \"{screen}\", \
+         friction_coefficient_interval = [0.39, 0.41], electric_friction_interval_n = [0.09, 0.11], \
+         measured_voltage_max_v_rms = {voltage_max_v_rms}, measured_normal_load_range_n = {loads} }}"
+    );
+    format!("{SHORT}{}", EMBEDDED.replace(" }", &format!(", {evidence}")))
+}
+
+#[test]
+fn beyond_what_a_finger_was_measured_at_is_warned_of_and_refused_by_boards() {
+    let layer = |high_n: &str| format!("[[layer]]\nkind = \"constant\"\nabove = \"natural\"\nfriction_n = {high_n}\n");
+    let within = measured("150", "[0.4, 0.6]", "example");
+    assert_eq!(warnings(&format!("{within}{}", layer("0.1"))), []);
+    let [warning] = warnings(&format!("{}{}", measured("75", "[0.4, 0.6]", "example"), layer("0.05")))[..] else {
+        panic!("one warning")
+    };
+    assert_eq!(
+        warning.to_string(),
+        "the scene needs up to 109.2 V rms, and its finger was measured up to 75 V rms: lower `voltage_max_v_rms`, or measure \
+         the finger again"
+    );
+    assert!(warning.is_refused_by_boards());
+    // A scene that asks for little stays within 75 V.
+    assert_eq!(warnings(&format!("{}{}", measured("75", "[0.4, 0.6]", "example"), layer("0.01"))), []);
+    // The host may raise the gain of a live layer, so that all of the reach counts.
+    let live = format!("{}{}live = true\n", measured("75", "[0.4, 0.6]", "example"), layer("0.01"));
+    assert!(matches!(warnings(&live)[..], [Warning::BeyondMeasuredVoltage { .. }]));
+    let [warning] = warnings(&measured("150", "[0.1, 0.3]", "example"))[..] else { panic!("one warning") };
+    assert_eq!(
+        warning.to_string(),
+        "the finger's load of 0.5 N lies outside of the 0.1 N to 0.3 N that it was measured at: change `normal_load_n`, or \
+         measure the finger again"
+    );
+    assert!(warning.is_refused_by_boards());
+}
+
+#[test]
+fn a_profile_of_another_screen_counts_as_assumed() {
+    let program = |text: &str| program(&parse(text).expect("it reads")).expect("it compiles");
+    let own = program(&measured("150", "[0.4, 0.6]", "example"));
+    assert_eq!((own.finger.origin, own.finger.newtons_suffix(), own.notes.len()), (Origin::Measured, "", 0));
+    let other = program(&measured("150", "[0.4, 0.6]", "lab/tablet 3"));
+    assert_eq!((other.finger.origin, other.finger.newtons_suffix()), (Origin::Assumed, ", assumed"));
+    assert_eq!(
+        other.notes,
+        [
+            "the scene's finger was measured on screen \"lab/tablet 3\" and is played on \"example\": it counts as assumed"
+        ]
+    );
+    let unnamed = measured("150", "[0.4, 0.6]", "lab/tablet 3") + "\nscreen = { width_mm = 120, height_mm = 80 }";
+    let [note] = &program(&unnamed).notes[..] else { panic!("one note") };
+    assert!(note.ends_with("is played on a screen without a `name`: it counts as assumed"), "{note}");
+}
+
+fn soft(stress_exponent: f64) -> FingerProfile {
+    let elasticity = Elasticity::Soft { modulus_pa: 1e5, stress_exponent, shape_constant: 4.5 };
+    FingerProfile { elasticity, ..FingerProfile::example() }
+}
+
+#[test]
+fn a_soft_finger_plays_on_springs_that_have_its_friction_at_the_largest_voltage() {
+    // With a stress exponent of 1/2 a soft finger has one stiffness, and springs are exact.
+    let same = Scene::parse(SHORT, "test.toml", &BTreeMap::new()).expect("it reads");
+    let program_of =
+        |stress_exponent| program(&same.clone().with_finger(soft(stress_exponent), "soft").expect("it is taken"));
+    let exact = program_of(0.5).expect("it compiles");
+    let [note] = &exact.notes[..] else { panic!("{:?}", exact.notes) };
+    assert!(note.ends_with("differ from the soft finger by at most 0.0 % of the reach"), "{note}");
+    let near = program_of(0.4).expect("it compiles");
+    let finger = frixel_model::SoftFinger {
+        radius_m: 8e-3,
+        modulus_pa: 1e5,
+        stress_exponent: 0.4,
+        shape_constant: 4.5,
+        friction_coefficient: 0.5,
+    };
+    let gap_m = 1e-6 * (1.0 / 3.9 + 4.74);
+    let contact = finger.on_gap(gap_m).and_then(|contact| contact.under_load(0.5)).expect("it is a finger");
+    let expected_n = frixel_model::ContactModel::state(&contact, 150.0).expect("a state").electric_friction_n;
+    let found_n = near.reach.electric_friction_max_n;
+    assert!((found_n / expected_n - 1.0).abs() < 1e-6, "{found_n} and not {expected_n}");
+}
+
+#[test]
+fn a_soft_finger_far_from_springs_is_refused() {
+    let scene = Scene::parse(SHORT, "test.toml", &BTreeMap::new()).expect("it reads");
+    let refused = program(&scene.with_finger(soft(0.02), "soft").expect("it is taken")).expect_err("it is refused");
+    let [mistake] = &refused.mistakes[..] else { panic!("{refused}") };
+    assert!(matches!(mistake.mistake, Mistake::SoftFinger { max_percent, .. } if max_percent < 6.0), "{refused}");
+    assert!(
+        refused.to_string().contains("lower `voltage_max_v_rms`, or give the finger `stiffness_pa_per_m`"),
+        "{refused}"
+    );
+}
+
+#[test]
+fn a_perceptual_profile_reads_in_a_scene() {
+    let evidence = "origin = \"perceptual\", date = \"2026-11-22\", method = \"staircase\", screen = \"example\", \
+                    threshold_v_rms = 20, threshold_interval_v_rms = [15, 25] }";
+    let scene = parse(&format!("{SHORT}{}", EMBEDDED.replace(" }", &format!(", {evidence}")))).expect("it reads");
+    assert!(matches!(scene.finger().evidence, Evidence::Perceptual { .. }));
+    let finger = program(&scene).expect("it compiles").finger;
+    assert_eq!((finger.origin, finger.newtons_suffix()), (Origin::Perceptual, ", assumed"));
+}

@@ -1,0 +1,105 @@
+//! Warnings: a program that can be played, but that asks for what the model or the finger's profile does not cover.
+
+use frixel_layers::Interval;
+use serde::Serialize;
+use thiserror::Error;
+
+use super::cover::excesses;
+use super::excess::digits;
+use super::file::Scene;
+use super::finger::Evidence;
+use super::program::Program;
+use super::reach::{ROUNDING, Reach};
+use super::reference::Reference;
+
+/// A reason to doubt the newtons of a program. Its text is one sentence for the scene's designer.
+#[derive(Clone, Copy, Debug, PartialEq, Error, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Warning {
+    /// The scene asks for more electric friction than the finger has natural friction. The law was compared with
+    /// measurements below that, where the exponent of the voltage is near 2.
+    #[error(
+        "the scene asks for up to {electric_friction_n} N of electric friction, more than the finger's natural friction of \
+         {natural_friction_n} N: the model is not confirmed there"
+    )]
+    ElectricAboveNatural {
+        /// Largest electric friction that the scene asks for, N.
+        electric_friction_n: f64,
+        /// Friction at no voltage, N.
+        natural_friction_n: f64,
+    },
+    /// The scene needs a larger voltage than the finger was measured at.
+    #[error(
+        "the scene needs up to {voltage_v_rms} V rms, and its finger was measured up to {measured_v_rms} V rms: lower \
+         `voltage_max_v_rms`, or measure the finger again"
+    )]
+    BeyondMeasuredVoltage {
+        /// Voltage for the largest friction that the scene asks for, V rms.
+        voltage_v_rms: f64,
+        /// Largest voltage of the measurement, V rms.
+        measured_v_rms: f64,
+    },
+    /// The finger's load lies outside of the loads of the measurement.
+    #[error(
+        "the finger's load of {normal_load_n} N lies outside of the {least_n} N to {largest_n} N that it was measured at: \
+         change `normal_load_n`, or measure the finger again"
+    )]
+    BeyondMeasuredLoad {
+        /// Load for which the scene is compiled, N.
+        normal_load_n: f64,
+        /// Least load of the measurement, N.
+        least_n: f64,
+        /// Largest load of the measurement, N.
+        largest_n: f64,
+    },
+}
+
+impl Warning {
+    /// Whether a board with an electrode refuses the program: it extrapolates from a measurement.
+    pub fn is_refused_by_boards(&self) -> bool {
+        matches!(self, Self::BeyondMeasuredVoltage { .. } | Self::BeyondMeasuredLoad { .. })
+    }
+}
+
+/// The warnings of a program.
+pub(super) fn of(scene: &Scene, program: &Program) -> Vec<Warning> {
+    let reach = &program.reach;
+    let mut warnings = Vec::new();
+    if let Some(largest_n) = demand_above(program, reach.natural_friction_n) {
+        warnings.push(Warning::ElectricAboveNatural {
+            electric_friction_n: digits(largest_n, f64::round),
+            natural_friction_n: digits(reach.natural_friction_n, f64::round),
+        });
+    }
+    let finger = scene.finger();
+    let Evidence::Measured { voltage_max_v_rms, normal_load_range_n: [least_n, largest_n], .. } = finger.evidence
+    else {
+        return warnings;
+    };
+    let measured_n = (1.0 + ROUNDING) * reach.electric_friction_n(voltage_max_v_rms);
+    if let Some(needed_n) = demand_above(program, measured_n) {
+        let voltage_v_rms = digits(reach.voltage_v_rms(needed_n), f64::round);
+        warnings.push(Warning::BeyondMeasuredVoltage { voltage_v_rms, measured_v_rms: voltage_max_v_rms });
+    }
+    let normal_load_n = finger.normal_load_n;
+    if !(least_n..=largest_n).contains(&normal_load_n) {
+        warnings.push(Warning::BeyondMeasuredLoad { normal_load_n, least_n, largest_n });
+    }
+    warnings
+}
+
+/// The largest electric friction that the scene asks for anywhere and the drive reaches, if it is above a limit. A host
+/// that changes layers can ask for all that the drive reaches.
+fn demand_above(program: &Program, limit_n: f64) -> Option<f64> {
+    let Program { header, reach: Reach { electric_friction_max_n, .. }, .. } = program;
+    let largest_n = if header.layers_fixed {
+        let size_m = (f64::from(header.screen_width_m), f64::from(header.screen_height_m));
+        let within = Interval { low: f64::NEG_INFINITY, high: limit_n };
+        let excesses = excesses(Reference::new(program).pieces(), size_m.0, size_m.1, within);
+        excesses.iter().map(|excess| excess.found.high).fold(0.0, f64::max)
+    } else {
+        *electric_friction_max_n
+    };
+    Some(largest_n.min(*electric_friction_max_n)).filter(|largest_n| *largest_n > limit_n)
+}
