@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use frixel_driver::{Bitmap, Counters, Device, DeviceError, Event, Link, Progress, StreamStatus, Upload};
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, WorldError};
+use frixel_layers::Header;
 use frixel_model::ParameterError;
 use frixel_scene::Program;
 use frixel_scene::recorder::Recorder;
@@ -145,6 +146,16 @@ impl<L: RecordedLink> Player<L> {
         upload(&mut self.device, program, &mut |_| ControlFlow::Continue(()))?;
         let hello = *self.device.hello();
         self.recorder_mut().replace(program, &hello.limits, hello.tick_hz).map_err(PlayError::Finger)
+    }
+
+    /// Like [`Self::replace`], for a scene whose bitmaps do not fit on the board beside those of the scene that plays: an
+    /// empty scene plays until the new one is there, so that the output fades out meanwhile.
+    pub fn replace_alone(&mut self, program: &Program) -> Result<(), PlayError> {
+        let header = Header { electric_friction_max_n: None, ..program.header };
+        let (records, points, bitmaps, titles) = Default::default();
+        let empty = Program { header, records, points, bitmaps, titles, ..program.clone() };
+        self.replace(&empty)?;
+        self.replace(program)
     }
 
     /// Lets at most `time_max` pass on the board; records the ticks, and sends samples.

@@ -85,7 +85,7 @@ impl<L: RecordedLink> Play<'_, L> {
     /// Replaces the scene if its file was saved.
     fn refresh_scene(&mut self) -> Result<(), CommandError> {
         let Some(live_scene) = &mut self.live_scene else { return Ok(()) };
-        match live_scene.refresh(&mut self.player) {
+        match live_scene.refresh(&mut self.player, &self.plan.program) {
             Ok(Some(program)) => {
                 self.outputs.replace(&program);
                 self.plan.program = program;
