@@ -80,8 +80,7 @@ impl Fidelity {
             let [low_n, high_n] = [5, 95].map(|percent| percentile(scored.iter().map(value).collect(), percent));
             Some(weber_steps(low_n?, high_n?))
         };
-        let (felt_steps, reference_steps) =
-            (contrast(|sample| sample.felt_n)?, contrast(|sample| sample.reference_n)?);
+        let (felt_steps, reference_steps) = (contrast(|sample| sample.felt_n)?, contrast(|sample| sample.reference_n)?);
         let delay_s = f64::from(powers.delay()) / SAMPLE_HZ;
         Some(Self {
             error_below_40_hz: (powers.error_low / powers.reference_low).sqrt(),
@@ -117,9 +116,8 @@ struct Powers {
 
 impl Powers {
     fn add(&mut self, touch: &[FidelitySample]) {
-        let spectrum = |value: fn(&FidelitySample) -> f64| {
-            Spectrum::of(&touch.iter().map(value).collect::<Vec<f64>>(), SAMPLE_HZ)
-        };
+        let spectrum =
+            |value: fn(&FidelitySample) -> f64| Spectrum::of(&touch.iter().map(value).collect::<Vec<f64>>(), SAMPLE_HZ);
         let reference = spectrum(|sample| sample.reference_n);
         let felt = spectrum(|sample| sample.felt_n);
         let error = spectrum(|sample| sample.felt_n - sample.reference_n);

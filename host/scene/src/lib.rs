@@ -76,6 +76,7 @@ mod target_range;
 #[allow(clippy::disallowed_methods, reason = "the tests read the bundled scenes")]
 mod tests;
 mod tick_cost;
+mod touched_layers;
 mod warning;
 
 pub use compile::compile;
@@ -97,4 +98,5 @@ pub use schema::json_schema;
 pub use screen::{Screen, Slab};
 pub use target_range::{OutOfReach, TargetRange};
 pub use tick_cost::middle_mm;
+pub use touched_layers::TouchedLayers;
 pub use warning::Warning;

@@ -22,6 +22,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Parser, Subcommand};
 
 use error::CommandError;
+use stroke::StrokeArgs;
 
 /// Friction textures on an electrovibration screen, in newtons.
 ///
@@ -76,10 +77,10 @@ struct PlayArgs {
     /// serial port.
     #[arg(long, default_value = "sim")]
     port: String,
-    /// Where the simulated finger goes: a CSV file with the columns `t_s,x_mm,y_mm`.
-    #[arg(long, value_name = "FILE.csv")]
-    stroke: Option<PathBuf>,
-    /// How long to play. Without it, the stroke's length on the simulator, and until Ctrl-C on a board.
+    #[command(flatten)]
+    stroke: StrokeArgs,
+    /// How long to play. Without it, as long as the file of --stream or the stroke lasts; on a board without --stream,
+    /// until Ctrl-C.
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     seconds: Option<f64>,
     /// Folder for what is written.
@@ -101,6 +102,10 @@ struct PlayArgs {
     /// --stream.
     #[arg(long)]
     watch: bool,
+    /// Join what the finger of a virtual board felt: the felt.csv that its `frixel sim` writes, on this machine. With
+    /// it, a play to the port of that board writes felt.svg, and `felt_n` into felt.csv.
+    #[arg(long, value_name = "FILE.csv")]
+    with_log: Option<PathBuf>,
     /// Samples for the scene's stream layers: a WAV file, or `-` for raw ones on standard input, two bytes each,
     /// little-endian.
     #[arg(long, value_name = "FILE.wav")]
@@ -112,9 +117,8 @@ struct PlayArgs {
 
 #[derive(Debug, Args)]
 struct SimArgs {
-    /// Where the finger goes, over and over: a CSV file with the columns `t_s,x_mm,y_mm`.
-    #[arg(long, value_name = "FILE.csv")]
-    stroke: Option<PathBuf>,
+    #[command(flatten)]
+    stroke: StrokeArgs,
     /// Folder for what is written.
     #[arg(long, default_value = "frixel-out")]
     out: PathBuf,
@@ -137,7 +141,7 @@ impl PlayArgs {
             scene: scene.to_owned(),
             profiles: profiles::ProfileArgs::default(),
             port: "sim".into(),
-            stroke: None,
+            stroke: StrokeArgs::default(),
             seconds: None,
             out: "frixel-out".into(),
             json: false,
@@ -145,6 +149,7 @@ impl PlayArgs {
             csv_hz: 1000,
             arm: false,
             watch: false,
+            with_log: None,
             stream: None,
             stream_hz: None,
         }

@@ -3,19 +3,21 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use frixel::scene_file;
 use frixel::score::{Score, Trial, write_score_svg};
 use frixel_hil_sim::{RigConfig, Stroke};
 use frixel_scene::{Program, compile};
 
 use super::error::CommandError;
-use super::stroke::stroke;
+use super::profiles::ProfileArgs;
+use super::stroke;
 use super::terminal::print_line;
 
 #[derive(Debug, Args)]
 pub(super) struct ScoreArgs {
     /// The scene, a TOML file (docs/scene.md).
     scene: PathBuf,
+    #[command(flatten)]
+    profiles: ProfileArgs,
     /// Where the finger goes: `human` for drawn people, `natural` for even strokes, or a CSV file with the columns
     /// `t_s,x_mm,y_mm`.
     #[arg(long, default_value = "human", value_name = "human|natural|FILE.csv")]
@@ -73,7 +75,7 @@ impl TouchSource {
 
 pub(super) fn run(args: &ScoreArgs) -> Result<(), CommandError> {
     let rig = rig(args);
-    let program = compile(&scene_file::load(&args.scene)?, &rig.board.limits, rig.board.tick_hz)?;
+    let program = compile(&args.profiles.names().load(&args.scene)?, &rig.board.limits, rig.board.tick_hz)?;
     let trials = trials(args, &program)?;
     let score = Score::of(&program, &rig, &trials).map_err(|error| CommandError::of_play("sim", error))?;
     std::fs::create_dir_all(&args.out).map_err(CommandError::writing(&args.out))?;
@@ -109,8 +111,11 @@ fn trials(args: &ScoreArgs, program: &Program) -> Result<Vec<Trial>, CommandErro
     let screen_m = (f64::from(program.header.screen_width_m), f64::from(program.header.screen_height_m));
     let strokes: Vec<(String, Stroke)> = match args.stroke.as_str() {
         "human" => (1..=args.strokes).map(|seed| human(args, screen_m, seed)).collect::<Result<_, _>>()?,
-        "natural" => vec![("natural".to_owned(), stroke(None, screen_m.0, screen_m.1, Some(args.seconds))?)],
-        file => vec![("file".to_owned(), stroke(Some(Path::new(file)), screen_m.0, screen_m.1, None)?)],
+        "natural" => {
+            let stroke = Stroke::natural(screen_m.0, screen_m.1, args.seconds).map_err(CommandError::NaturalStroke)?;
+            vec![("natural".to_owned(), stroke)]
+        }
+        file => vec![("file".to_owned(), stroke::from_file(Path::new(file))?)],
     };
     let trials = strokes.into_iter().flat_map(|(stroke_name, stroke)| {
         (1..=args.seeds).map(move |seed| Trial { stroke_name: stroke_name.clone(), stroke: stroke.clone(), seed })

@@ -33,7 +33,15 @@ pub struct SimLink<'a> {
 impl<'a> SimLink<'a> {
     /// Creates a link to `rig` that records its ticks into `recorder`.
     pub fn new(rig: Rig<'a>, recorder: Recorder) -> Self {
-        Self { rig, recorder, recording: false, written: Written::default(), written_at_tick: 0, keep_alive: None, observer: None }
+        Self {
+            rig,
+            recorder,
+            recording: false,
+            written: Written::default(),
+            written_at_tick: 0,
+            keep_alive: None,
+            observer: None,
+        }
     }
 
     /// Calls `observer` with every tick that is recorded.

@@ -147,7 +147,9 @@ pub(super) const METRICS: [Metric; 11] = [
         unit: "mm",
         factor: 1.0,
         value: |fidelity| fidelity.delay_mm,
-        human: || Some(Human { value: 1.0, meaning: "spatial resolution of a fingertip, 1 to 2 mm (Basdogan's review)" }),
+        human: || {
+            Some(Human { value: 1.0, meaning: "spatial resolution of a fingertip, 1 to 2 mm (Basdogan's review)" })
+        },
     },
     Metric {
         key: "peak_rate_kept",

@@ -30,7 +30,8 @@ impl Score {
         let keys: Vec<&str> = METRICS.iter().map(Metric::key).collect();
         let mut text = format!("stroke,seed,{}\n", keys.join(","));
         for play in &self.plays {
-            let value = |metric: &Metric| play.fidelity.map_or(String::new(), |fidelity| metric.of(&fidelity).to_string());
+            let value =
+                |metric: &Metric| play.fidelity.map_or(String::new(), |fidelity| metric.of(&fidelity).to_string());
             let values: Vec<String> = METRICS.iter().map(value).collect();
             // Writing to a string cannot fail.
             let _ = writeln!(text, "{},{},{}", play.stroke, play.seed, values.join(","));
@@ -58,7 +59,11 @@ pub fn write_score_svg(path: &Path, title: &str, score: &Score) -> Result<(), Ou
             panel.add("", interval, vec![(part(low), y), (part(high), y)]);
         }
         let MetricScore { title, unit, mean, .. } = metric;
-        panel.notes.push((0.011, y - 0.35, format!("{title}: {mean:.2} {unit}; {:.1}: {}", human.value, human.meaning)));
+        panel.notes.push((
+            0.011,
+            y - 0.35,
+            format!("{title}: {mean:.2} {unit}; {:.1}: {}", human.value, human.meaning),
+        ));
     }
     panel.add("mean over the plays, simulated", mean, means);
     let mut chart = Chart::new(vec![panel], 1);
