@@ -92,7 +92,7 @@ proptest! {
         answers(&contact.lower_bound(), voltage, 1e-13);
     }
 
-    /// DESIGN, "Sensitivity": between 2 and 4 for every load, and between 2 and 4 s + 2 for a soft finger without.
+    /// The exponent is between 2 and 4 for every load, and between 2 and 4 s + 2 for a soft finger without load.
     #[test]
     fn electric_friction_grows_with_a_power_of_the_voltage(
         finger in fingers(), soft in soft_fingers(), load_n in loads(), voltage in log_range(1e-3, 1e3)
@@ -219,7 +219,7 @@ fn slope(model: &dyn ContactModel<f64>, voltage_v_rms: f64) -> f64 {
     (high.friction_n / low.friction_n).ln() / (1.001_f64 / 0.999).ln() / 2.0
 }
 
-/// DESIGN, "Limits worth a test": Eqs. (34), (36) begin with slope 1 in sigma0, not 2 as Section VI.A has it.
+/// Eqs. (34), (36) begin with slope 1 in sigma0, not with slope 2 as Section VI.A of the paper has it.
 #[test]
 fn limits_of_small_and_large_voltage() {
     let finger = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };

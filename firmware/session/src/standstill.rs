@@ -1,5 +1,5 @@
 //! Standstill detector. A still finger feels almost nothing while its current rises, so the tracker ramps the friction
-//! down at standstill, and up again when the finger moves (DESIGN section 3).
+//! down at standstill, and up again when the finger moves.
 
 use frixel_control::StandstillRamp;
 use frixel_control::is_past;

@@ -1,4 +1,4 @@
-//! The arm switch: to arm, a person presses it and holds it (DESIGN section 5).
+//! The arm switch: to arm, a person presses it and holds it (`PROTOCOL.md` section 10, "States").
 #![allow(clippy::large_stack_arrays, reason = "a test has room for a board's memory")]
 
 use frixel_control::{Active, Board, Order, Sense, Ticker};

@@ -1,4 +1,4 @@
-//! Hundreds of volts next to a person: when the output has to be at zero (DESIGN section 5).
+//! When the output must be zero (`PROTOCOL.md` sections 10 and 11, "States" and "Time").
 
 mod support;
 
@@ -299,10 +299,9 @@ fn slide_and_rest(desk: &mut Desk, tick: u32) {
     desk.tick();
 }
 
-/// Also in the ticks that have something else to do than to ask the scene: around the one in which a slow finger
-/// becomes still.
+/// The scene is swapped around the tick in which the standstill ramp begins.
 #[test]
-fn a_new_scenes_voltage_limit_holds_in_a_tick_with_a_deadline() {
+fn a_new_scenes_voltage_limit_holds_while_the_standstill_ramp_begins() {
     let mut memory = Memory::new();
     let mut desk = playing(&mut memory);
     let still = |desk: &Desk| desk.status().telemetry.flags.contains(Flags::STILL);

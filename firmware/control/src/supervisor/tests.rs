@@ -1,4 +1,4 @@
-//! The safety requirements of the supervisor (DESIGN section 5).
+//! The safety requirements of the supervisor (`PROTOCOL.md` section 10, "States").
 
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::{Fault, State};
