@@ -215,8 +215,8 @@ fn a_scene_takes_anothers_place_between_two_ticks() {
             let (found, expected) = (amplitude(&swapped[tick]), amplitude(&after[tick]));
             assert!(found.abs_diff(expected) < 40, "{delay}, {tick}: code {found} is not {expected}");
             if tick < swap + 4 {
-                assert!((found_n - asked_n(&before[tick])).abs() > 5e-4, "the two can be told apart");
-                assert!(found.abs_diff(amplitude(&before[tick])) > 400, "the two can be told apart");
+                assert!((found_n - asked_n(&before[tick])).abs() > 5e-4, "the two differ");
+                assert!(found.abs_diff(amplitude(&before[tick])) > 400, "the two differ");
             }
         }
         assert!(swapped.iter().all(|record| record.status.telemetry.dac_code != 0), "delay {delay}: never zero");

@@ -22,10 +22,10 @@ pub fn take(text: &'static mut Text) -> Option<(Fault, u32, &'static [u8])> {
 }
 
 /// Sets the output to zero, stores the fault and resets.
-fn end(fault: Fault, detail: u32, say: &mut dyn FnMut(&mut Writer)) -> ! {
+fn end(fault: Fault, detail: u32, write_text: &mut dyn FnMut(&mut Writer)) -> ! {
     interrupt::disable();
     shared::output_off();
-    RECORD.save(fault, detail, say);
+    RECORD.save(fault, detail, write_text);
     SCB::sys_reset()
 }
 

@@ -256,12 +256,12 @@ impl<'a> Player<'a> {
     #[inline]
     pub(crate) fn advance(&mut self) {
         if !self.is_over() {
-            self.go_on();
+            self.step();
         }
     }
 
     #[inline(never)]
-    fn go_on(&mut self) {
+    fn step(&mut self) {
         match self.phase {
             Phase::Over => {}
             Phase::Filling => self.begin_when_filled(),

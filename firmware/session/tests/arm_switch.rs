@@ -32,11 +32,11 @@ fn a_switch_held_since_the_reset_does_not_arm() {
     assert_eq!(ticker.state(), State::Armed);
 }
 
-/// A name, and what disarms.
+/// Name of the case, and the action that disarms the board.
 type Disarming = (&'static str, fn(&mut Ticker));
 
 #[test]
-fn after_every_disarming_the_switch_is_pressed_anew() {
+fn after_every_disarming_the_switch_must_be_pressed_again() {
     let disarm: [Disarming; 3] = [
         ("by the host", |ticker| {
             ticker.apply(Order::Disarm);

@@ -247,7 +247,7 @@ fn a_silent_host_disarms_after_its_timeout() {
 }
 
 #[test]
-fn nobody_has_to_be_heard_where_nothing_can_be_driven() {
+fn the_host_timeout_applies_only_when_armed_or_active() {
     let mut supervisor = in_state(State::Faulted);
     supervisor.expire(1_000_000);
     assert_eq!((supervisor.state(), supervisor.host_silent()), (State::Faulted, false));
