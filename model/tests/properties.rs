@@ -71,7 +71,9 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(3000))]
 
     #[test]
-    fn inverse_undoes_forward(finger in fingers(), load_n in loads(), voltage in log_range(1e-6, 1e4), beyond in log_range(1.0, 1e6)) {
+    fn inverse_undoes_forward(
+        finger in fingers(), load_n in loads(), voltage in log_range(1e-6, 1e4), beyond in log_range(1.0, 1e6)
+    ) {
         let contact = Contact::new(&finger.0, finger.1).unwrap();
         let loaded = contact.under_load(load_n).unwrap();
         answers(&loaded, voltage, 1e-14);
@@ -111,7 +113,9 @@ proptest! {
 
     /// Friction rises with the attraction around the contact: none, up to an outer radius, to any distance.
     #[test]
-    fn bounds_enclose_the_finite_finger(finger in fingers(), load_n in loads(), voltage in log_range(1e-3, 1e3), beyond in log_range(1.001, 1e6)) {
+    fn bounds_enclose_the_finite_finger(
+        finger in fingers(), load_n in loads(), voltage in log_range(1e-3, 1e3), beyond in log_range(1.001, 1e6)
+    ) {
         let contact = Contact::new(&finger.0, finger.1).unwrap();
         let upper = contact.under_load(load_n).unwrap().state(voltage).unwrap();
         let lower = contact.lower_bound(load_n).unwrap().state(voltage).unwrap();
@@ -139,7 +143,8 @@ proptest! {
         let (finger, gap_m) = narrow(&finger);
         let contact = Contact::new(&finger, gap_m).unwrap();
         // In f32 only where no result leaves the range.
-        let friction_n = contact.lower_bound(load_n as f32).unwrap().state(voltage as f32).map_or(0.0, |s| s.electric_friction_n);
+        let lower_bound = contact.lower_bound(load_n as f32).unwrap();
+        let friction_n = lower_bound.state(voltage as f32).map_or(0.0, |state| state.electric_friction_n);
         if friction_n > 1e-30 {
             reaches(contact, load_n as f32, voltage as f32);
         }

@@ -90,7 +90,7 @@ fn panic(info: &PanicInfo) -> ! {
 #[exception]
 unsafe fn DefaultHandler(number: i16) {
     end(Fault::HardFault, u32::from(number.unsigned_abs()), &mut |text| {
-        text.text("an interrupt came that nobody handles");
+        text.text("unhandled interrupt");
     })
 }
 

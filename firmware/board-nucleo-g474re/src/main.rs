@@ -148,7 +148,7 @@ fn log_reset(last_reset: &LastReset) {
 fn log(board: &Board, bank: bool) {
     defmt::info!("at most {=f32} V peak", board.limits.voltage_max_v_peak);
     if !bank {
-        defmt::warn!("the flash is not in two banks (option byte DBANK): nothing is kept over power-off");
+        defmt::warn!("the flash is not in two banks (option byte DBANK): the scene is not stored");
     }
 }
 

@@ -1,9 +1,9 @@
 //! The tick: a finger's track and the board's inputs in, a DAC code out, 40,000 times a second.
 //!
-//! [`Ticker::tick`] runs the same steps in the same order at every tick while the output is enabled. It reads the coefficients of a scene from an [`Active`]. Before
-//! each tick, the ticker takes at most one [`Order`] from the session: a [`Track`] of the finger, a scene, a change of
-//! state. It reports a [`Status`]. It does not allocate, wait or panic, does no I/O, and reads no clock: it counts
-//! ticks.
+//! [`Ticker::tick`] runs the same steps in the same order at every tick while the output is enabled. It reads the
+//! coefficients of a scene from an [`Active`]. Before each tick, the ticker takes at most one [`Order`] from the
+//! session: a [`Track`] of the finger, a scene, a change of state. It reports a [`Status`]. It does not allocate, wait
+//! or panic, does no I/O, and reads no clock: it counts ticks.
 //!
 //! ```
 //! use frixel_control::{Active, Board, Drive, Sense, Ticker};

@@ -113,7 +113,8 @@ impl<'a> TestBoard<'a> {
         self.ticker.status()
     }
 
-    /// One tick with [`TestBoard::touch`] and [`TestBoard::sense`], in the order of the rigs: touch, one order, tick, answers.
+    /// One tick with [`TestBoard::touch`] and [`TestBoard::sense`], in the order of the rigs: touch, one order, tick,
+    /// answers.
     pub fn tick(&mut self) -> Drive {
         if let Some(touch) = self.touch.take() {
             self.session.touch(touch, self.status().telemetry.tick.wrapping_add(1));

@@ -38,7 +38,7 @@ impl Bench {
     pub(crate) fn prompt(&mut self, what: &str) {
         self.output.zero();
         println!("");
-        println!("{=str} Then press the blue button.", what);
+        println!("{=str} Then press the blue button to continue.", what);
         self.wait_for_button(|_| ());
     }
 
