@@ -24,6 +24,7 @@ pub struct SimLink<'a> {
     rig: Rig<'a>,
     recorder: Recorder,
     recording: bool,
+    observer: Option<Box<dyn FnMut(&TickRecord) + 'a>>,
     written: Written,
     written_at_tick: u64,
     keep_alive: Option<KeepAlive>,
@@ -32,7 +33,20 @@ pub struct SimLink<'a> {
 impl<'a> SimLink<'a> {
     /// Creates a link to `rig` that records its ticks into `recorder`.
     pub fn new(rig: Rig<'a>, recorder: Recorder) -> Self {
-        Self { rig, recorder, recording: false, written: Written::default(), written_at_tick: 0, keep_alive: None }
+        Self {
+            rig,
+            recorder,
+            recording: false,
+            observer: None,
+            written: Written::default(),
+            written_at_tick: 0,
+            keep_alive: None,
+        }
+    }
+
+    /// Calls `observer` with every tick from the first one in which the scene plays.
+    pub fn observe(&mut self, observer: impl FnMut(&TickRecord) + 'a) {
+        self.observer = Some(Box::new(observer));
     }
 
     /// The recorder with all ticks.
@@ -54,6 +68,9 @@ impl<'a> SimLink<'a> {
         let record = self.rig.step();
         if self.recording {
             self.recorder.record(&observation(&record));
+            if let Some(observer) = &mut self.observer {
+                observer(&record);
+            }
         } else if record.status.telemetry.state == State::Active {
             self.rig.world_mut().start_stroke();
             self.recorder.start(record.tick as u32);
