@@ -7,10 +7,10 @@ mod rows;
 mod straight;
 mod text;
 
-use crate::error::{above_zero, zero_to_ten};
+use crate::error::{OutOfRange, above_zero, zero_to_ten};
 pub use error::StrokeError;
 use natural::Natural;
-use rows::Rows;
+use rows::{Row, Rows};
 use straight::Straight;
 
 /// A place on the screen.
@@ -122,8 +122,29 @@ impl Stroke {
         Ok(Self::once(rows.end_s(), Path::Rows(rows)))
     }
 
+    /// A motion through places at times that rise from 0 or later; `None` is a finger off the screen. Between two
+    /// places the finger goes straight and at constant speed.
+    pub fn through(places: &[(f64, Option<Point>)]) -> Result<Self, StrokeError> {
+        let rows: Vec<Row> =
+            places.iter().map(|(t_s, place)| Row { t_s: *t_s, place: *place, load_n: f64::NAN }).collect();
+        let mut before_s = -f64::MIN_POSITIVE;
+        for row in &rows {
+            if !(row.t_s > before_s && row.t_s.is_finite()) {
+                let expected = "finite, 0 or later, and rising";
+                return Err(OutOfRange { name: "time of a place in s", expected, found: row.t_s }.into());
+            }
+            before_s = row.t_s;
+        }
+        let motion = Rows::new(&rows).map_err(|_| {
+            let found = f64::INFINITY;
+            StrokeError::OutOfRange(OutOfRange { name: "speed between two places", expected: "finite", found })
+        })?;
+        Ok(Self::once(motion.end_s(), Path::Rows(motion)))
+    }
+
     /// Parses a stroke from CSV text with the columns `t_s,x_mm,y_mm`, in any order, and `force_n` if the normal load is
-    /// known, in N and above 0. Other columns are ignored.
+    /// known, in N and above 0. Other columns are ignored. The finger is off the screen in a row whose cells `x_mm` and
+    /// `y_mm` are empty, as in `felt.csv`.
     ///
     /// Time is from the start of the stroke and rises from row to row; the finger touches at the first row and leaves
     /// after the last. Between rows it goes straight and at constant speed (linear interpolation), so the rows should

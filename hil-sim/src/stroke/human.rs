@@ -84,7 +84,8 @@ pub(super) fn rows(
         .map(|(index, place)| {
             let t_s = ROW_S * index as f64;
             let [x, y] = &tremor;
-            Row { t_s, place: Point { x_m: place.x_m + x.at(t_s), y_m: place.y_m + y.at(t_s) }, load_n: f64::NAN }
+            let place = Some(Point { x_m: place.x_m + x.at(t_s), y_m: place.y_m + y.at(t_s) });
+            Row { t_s, place, load_n: f64::NAN }
         })
         .collect();
     Rows::new(&rows).map_err(|_| {

@@ -335,3 +335,29 @@ fn numbers_that_make_no_stroke_are_refused_by_name() {
         "stroke: screen height in m must be finite and above 0, found -0.1"
     );
 }
+
+#[test]
+fn a_row_without_a_place_lifts_the_finger() {
+    let stroke =
+        Stroke::from_csv("t_s,x_mm,y_mm,felt_n\n0,,,\n1,10,20,0.25\n2,20,20,\n3,,,\n4,,,\n5,30,30,\n6,30,40,\n")
+            .unwrap();
+    assert_eq!(stroke.duration_s(), 6.0);
+    for (t_s, down) in [(0.5, false), (1.0, true), (1.9, true), (2.0, true), (2.5, false), (4.9, false), (5.5, true)] {
+        assert_eq!(stroke.at(t_s).is_some(), down, "{t_s} s");
+    }
+    assert!((stroke.at(1.5).unwrap().x_m - 0.015).abs() < 1e-12);
+}
+
+#[test]
+fn a_motion_goes_through_its_places() {
+    let place = |x_m: f64| Some(Point { x_m, y_m: 0.02 });
+    let stroke =
+        Stroke::through(&[(0.0, place(0.0)), (0.5, place(0.1)), (0.6, None), (0.7, place(0.0)), (1.0, place(0.03))])
+            .unwrap();
+    assert!((stroke.at(0.25).unwrap().x_m - 0.05).abs() < 1e-12);
+    assert!(stroke.at(0.55).is_none() && stroke.at(0.65).is_none());
+    assert!((stroke.at(0.9).unwrap().speed_m_per_s - 0.1).abs() < 1e-12);
+    for wrong in [[(0.0, place(0.0)), (0.0, place(0.1))], [(-1.0, place(0.0)), (0.0, place(0.1))]] {
+        assert!(Stroke::through(&wrong).unwrap_err().to_string().contains("0 or later, and rising"));
+    }
+}

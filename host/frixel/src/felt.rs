@@ -71,8 +71,7 @@ pub fn felt_error(program: &Program, simulation: &Simulation) -> Result<FeltErro
     let rig = Rig::new(&mut memory, &simulation.rig, simulation.stroke.clone(), simulation.seed)?;
     let comparison = RefCell::new(Comparison::new(program, simulation.rig.board.tick_hz));
     {
-        let mut link = SimLink::new(rig, Recorder::idle());
-        link.observe(|record| comparison.borrow_mut().add(record));
+        let link = SimLink::new(rig, Recorder::idle()).observed(|record| comparison.borrow_mut().add(record));
         let mut device = Device::connect(link)?;
         start(&mut device, program, &mut |_| {})?;
         device.wait(Duration::from_secs_f64(simulation.seconds), &mut |_| {})?;

@@ -75,7 +75,7 @@ pub enum Mistake {
     /// Screen or finger of a scene of version 1 cannot be exchanged.
     #[error(
         "the coating of a scene of version 1 contains the finger's skin, so that it cannot be played with another {what}: \
-         `frixel scene migrate {file}` writes it as version 2"
+         `frixel scene migrate {file}` prints it as version 2"
     )]
     VersionOneProfile {
         /// `finger` or `screen`.
@@ -83,6 +83,9 @@ pub enum Mistake {
         /// The scene file.
         file: String,
     },
+    /// The scene to be written as version 2 is of version 2.
+    #[error("this scene has version 2 already: there is nothing to migrate")]
+    NothingToMigrate,
     /// No screen or finger of this name is bundled.
     #[error("no {what} \"{found}\" is bundled, and the name of a file has an ending such as .toml; {nearest}")]
     UnknownProfile {

@@ -132,7 +132,9 @@ fn tell(summary: &Summary) {
     let rows = |count: u64| if count == 1 { "1 row has".to_owned() } else { format!("{count} rows have") };
     if summary.beyond_finger_rows > 0 {
         let rows = rows(summary.beyond_finger_rows);
-        note(format_args!("frixel: {rows} a contact radius above the finger's radius, where it is no paraboloid any more"));
+        note(format_args!(
+            "frixel: {rows} a contact radius above the finger's radius, where it is no paraboloid any more"
+        ));
     }
     if summary.invalid_rows > 0 {
         note(format_args!("frixel: {} no answer; the status says why", rows(summary.invalid_rows)));

@@ -24,10 +24,10 @@ pub struct SimLink<'a> {
     rig: Rig<'a>,
     recorder: Recorder,
     recording: bool,
-    observer: Option<Box<dyn FnMut(&TickRecord) + 'a>>,
     written: Written,
     written_at_tick: u64,
     keep_alive: Option<KeepAlive>,
+    observer: Option<Box<dyn FnMut(&TickRecord) + 'a>>,
 }
 
 impl<'a> SimLink<'a> {
@@ -37,16 +37,17 @@ impl<'a> SimLink<'a> {
             rig,
             recorder,
             recording: false,
-            observer: None,
             written: Written::default(),
             written_at_tick: 0,
             keep_alive: None,
+            observer: None,
         }
     }
 
-    /// Calls `observer` with every tick from the first one in which the scene plays.
-    pub fn observe(&mut self, observer: impl FnMut(&TickRecord) + 'a) {
-        self.observer = Some(Box::new(observer));
+    /// Calls `observer` with every tick that is recorded.
+    #[must_use]
+    pub fn observed(self, observer: impl FnMut(&TickRecord) + 'a) -> Self {
+        Self { observer: Some(Box::new(observer)), ..self }
     }
 
     /// The recorder with all ticks.
