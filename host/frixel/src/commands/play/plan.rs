@@ -82,7 +82,7 @@ impl Plan {
         let header = &self.program.header;
         let (width_m, height_m) = (header.screen_width_m.into(), header.screen_height_m.into());
         let stream_s = self.feed.as_ref().and_then(Feed::duration_s);
-        let given = args.stroke.stroke()?;
+        let given = args.stroke.stroke([width_m, height_m], args.seconds.or(stream_s), args.seed)?;
         let stroke = match &given {
             Some(stroke) => stroke.clone(),
             None => default_stroke(&self.program, args.seconds.or(stream_s)).map_err(CommandError::NaturalStroke)?,
