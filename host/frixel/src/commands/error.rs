@@ -92,6 +92,12 @@ pub(crate) enum CommandError {
         "{port} is a board with an electrode: put on --arm, and hold the switch on the board, to let it drive hundreds of volts"
     )]
     NotArmed { port: String },
+    #[error("{} has no row: the board saw no finger; slide one over its screen while `frixel record` runs", path.display())]
+    NothingRecorded { path: PathBuf },
+    #[error("{failed} of the checks of {port} failed; docs/hardware.md says what each part needs")]
+    SelftestFailed { port: String, failed: usize },
+    #[error("standard input has either the lines of --control or the samples of --stream -: give --stream a file")]
+    ControlAndStream,
     #[error(transparent)]
     FeltLog(#[from] FeltLogError),
     #[error(
