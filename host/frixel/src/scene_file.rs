@@ -1,5 +1,6 @@
 //! Loading of scene files and of the files that they name.
 
+use std::cell::RefCell;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -50,13 +51,33 @@ impl SceneFileError {
 
 /// Reads a scene file. The names of files in it are paths relative to its folder.
 pub fn load(path: &Path) -> Result<Scene, SceneFileError> {
+    load_with_files(path).0
+}
+
+/// Reads a scene file, and returns the paths of the files that it names as well, whether they could be read or not.
+pub fn load_with_files(path: &Path) -> (Result<Scene, SceneFileError>, Vec<PathBuf>) {
     let file = path.display().to_string();
     match fs::read(path) {
         Ok(bytes) => {
             let folder = SceneFolder(path.parent().unwrap_or(Path::new("")).to_owned());
-            Ok(Scene::parse_bytes(&bytes, &file, &folder)?)
+            let files = NamedFiles { folder, paths: RefCell::default() };
+            let scene = Scene::parse_bytes(&bytes, &file, &files).map_err(SceneFileError::from);
+            (scene, files.paths.into_inner())
         }
-        Err(source) => Err(SceneFileError::Unreadable { file, source }),
+        Err(source) => (Err(SceneFileError::Unreadable { file, source }), Vec::new()),
+    }
+}
+
+/// The files that a scene names, and their paths.
+struct NamedFiles {
+    folder: SceneFolder,
+    paths: RefCell<Vec<PathBuf>>,
+}
+
+impl Files for NamedFiles {
+    fn bytes(&self, name: &str) -> Result<Vec<u8>, FileUnavailable> {
+        self.paths.borrow_mut().push(self.folder.0.join(name));
+        self.folder.bytes(name)
     }
 }
 
@@ -86,7 +107,19 @@ pub struct ProfileNames {
 impl ProfileNames {
     /// Reads a scene file, as [`load`] does, with this finger and screen.
     pub fn load(&self, path: &Path) -> Result<Scene, SceneFileError> {
-        let mut scene = load(path)?;
+        self.load_with_files(path).0
+    }
+
+    /// Reads a scene file, as [`load_with_files`] does, with this finger and screen. Their files are among those returned.
+    pub fn load_with_files(&self, path: &Path) -> (Result<Scene, SceneFileError>, Vec<PathBuf>) {
+        let (scene, mut files) = load_with_files(path);
+        let finger = self.finger.as_deref().filter(|name| FingerProfile::bundled(name).is_none());
+        let screen = self.screen.as_deref().filter(|name| Screen::bundled(name).is_none());
+        files.extend([finger, screen].into_iter().flatten().map(PathBuf::from));
+        (scene.and_then(|scene| self.applied_to(scene)), files)
+    }
+
+    fn applied_to(&self, mut scene: Scene) -> Result<Scene, SceneFileError> {
         if let Some(name) = &self.screen {
             let screen = profile("screen", name, Screen::bundled, Screen::bundled_names(), Screen::parse)?;
             scene = scene.with_screen(screen, name)?;

@@ -12,6 +12,7 @@ mod plan;
 mod progress;
 mod rigs;
 mod saved_file;
+mod with_log;
 
 use std::path::PathBuf;
 

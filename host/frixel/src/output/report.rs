@@ -15,6 +15,8 @@ pub struct Report {
     pub rig: String,
     /// Number of ticks played.
     pub ticks: u64,
+    /// Ticks with the finger on the screen before the board knew of it, which have no friction error.
+    pub unreported_ticks: u64,
     /// Felt minus reference friction, averaged over a carrier period: root mean square, N.
     pub friction_error_rms_n: Option<f64>,
     /// Felt minus reference friction, averaged over a carrier period: largest magnitude, N.
@@ -53,6 +55,8 @@ pub struct Report {
     pub stream_underruns: Option<u32>,
     /// Runs of samples that were lost on the line.
     pub stream_gaps: Option<u32>,
+    /// Names of the layers that the finger never touched.
+    pub untouched_layers: Vec<String>,
 }
 
 impl Report {
@@ -67,6 +71,7 @@ impl Report {
         Self {
             rig: rig.to_owned(),
             ticks: metrics.ticks,
+            unreported_ticks: metrics.unreported_ticks,
             friction_error_rms_n: metrics.friction_error.map(|error| error.rms_n),
             friction_error_max_n: metrics.friction_error.map(|error| error.max_n),
             inversion_error_rms_n: metrics.inversion_error.map(|error| error.rms_n),
@@ -86,6 +91,7 @@ impl Report {
             stream_samples: None,
             stream_underruns: None,
             stream_gaps: None,
+            untouched_layers: Vec::new(),
         }
     }
 
@@ -102,6 +108,12 @@ impl Report {
         self.stream_underruns = stream.map(|stream| stream.underruns);
         self.stream_gaps = stream.map(|stream| stream.gaps);
         self
+    }
+
+    /// Adds the names of the layers that the finger never touched.
+    #[must_use]
+    pub fn with_untouched(self, untouched_layers: Vec<String>) -> Self {
+        Self { untouched_layers, ..self }
     }
 
     /// The report as one JSON object on one line.
@@ -139,7 +151,11 @@ impl Report {
             line("carrier ripple", format!("{:.4} mN rms", 1e3 * ripple_n));
         }
         let saturated = self.saturated_ticks.map(|ticks| format!(", of which saturated {ticks}"));
-        line("ticks", format!("{}{}", self.ticks, saturated.unwrap_or_default()));
+        let unreported = match self.unreported_ticks {
+            0 => String::new(),
+            ticks => format!(", before the first touch report {ticks}"),
+        };
+        line("ticks", format!("{}{}{unreported}", self.ticks, saturated.unwrap_or_default()));
         line(
             "link",
             format!(
@@ -151,6 +167,9 @@ impl Report {
             (self.stream_samples, self.stream_underruns, self.stream_gaps)
         {
             line("stream", format!("{samples} samples, {underruns} underruns, {gaps} gaps"));
+        }
+        if !self.untouched_layers.is_empty() {
+            line("never touched", self.untouched_layers.join(", "));
         }
         if let Some(factor) = self.realtime_factor {
             let decimals = if factor < 10.0 { 2 } else { 0 };

@@ -10,10 +10,12 @@ use frixel_scene::recorder::Recorder;
 use frixel_scene::{Program, Scene, compile};
 use frixel_wire::hello::{BoardKind, BoardLimits};
 
-use super::super::stroke::{check_on_screen, stroke};
+use super::super::stroke::{check_on_screen, default_stroke};
 use super::rigs::Target;
-use super::{CommandError, PlayArgs};
+use super::{CommandError, PlayArgs, note};
 
+/// Time for which the finger is lifted before it repeats a stroke that is shorter than the stream, s.
+const PAUSE_S: f64 = 0.2;
 /// Highest rate of telemetry that a board sends, in messages a second (PROTOCOL, `Subscribe`).
 const TELEMETRY_MAX_HZ: u32 = 1000;
 /// Highest rate of telemetry that the emulated serial port can transfer, in messages a second.
@@ -38,8 +40,11 @@ pub(super) fn check_options(args: &PlayArgs, target: Target) -> Result<(), Comma
     let port = || args.port.clone();
     match target {
         Target::Simulator | Target::Emulator if args.watch => Err(CommandError::WatchInVirtualTime { port: port() }),
+        Target::Simulator | Target::Emulator if args.with_log.is_some() => {
+            Err(CommandError::LogInVirtualTime { port: port() })
+        }
         Target::Emulator if args.stream.is_some() => Err(CommandError::StreamOnEmulated),
-        Target::Port if args.stroke.is_some() => Err(CommandError::StrokeOnBoard { port: port() }),
+        Target::Port if args.stroke.is_given() => Err(CommandError::StrokeOnBoard { port: port() }),
         Target::Port if args.csv_hz > TELEMETRY_MAX_HZ => {
             Err(CommandError::CsvTooFast { port: port(), found: args.csv_hz, max: TELEMETRY_MAX_HZ })
         }
@@ -66,23 +71,37 @@ impl Plan {
             Target::Port => telemetry_period_ticks(&program, ticks_per_row, tick_hz),
         };
         let feed = open_feed(args, tick_hz, target)?;
+        note_streams(&program, feed.is_some());
         let (limits, seconds) = (*limits, args.seconds);
         Ok(Self { target, program, feed, ticks_per_row, telemetry_period_ticks, limits, tick_hz, seconds })
     }
 
     /// Chooses the path of the simulated finger over the screen. Without `--seconds`, the play lasts as long as the
-    /// stroke.
+    /// file of `--stream`, while the finger repeats its stroke, or else as long as the stroke.
     pub(super) fn choose_stroke(&mut self, args: &PlayArgs) -> Result<Stroke, CommandError> {
         let header = &self.program.header;
         let (width_m, height_m) = (header.screen_width_m.into(), header.screen_height_m.into());
-        let stroke = stroke(args.stroke.as_deref(), width_m, height_m, args.seconds)?;
-        let seconds = args.seconds.unwrap_or(stroke.duration_s());
+        let stream_s = self.feed.as_ref().and_then(Feed::duration_s);
+        let given = args.stroke.stroke()?;
+        let stroke = match &given {
+            Some(stroke) => stroke.clone(),
+            None => default_stroke(&self.program, args.seconds.or(stream_s)).map_err(CommandError::NaturalStroke)?,
+        };
+        let seconds = args.seconds.or(stream_s).unwrap_or(stroke.duration_s());
         check_seconds(seconds, self.tick_hz)?;
-        if let Some(path) = &args.stroke {
-            check_on_screen(path, &stroke, width_m, height_m, seconds)?;
+        if given.is_some() {
+            check_on_screen(&args.stroke.name(), &stroke, width_m, height_m, seconds)?;
         }
         self.seconds = Some(seconds);
+        if args.seconds.is_none() && stroke.duration_s() < seconds {
+            return stroke.looped(PAUSE_S).map_err(CommandError::NaturalStroke);
+        }
         Ok(stroke)
+    }
+
+    /// Whether the play ends when the stream of a board at a port has ended.
+    pub(super) fn ends_with_stream(&self) -> bool {
+        self.target == Target::Port && self.seconds.is_none()
     }
 
     /// Duration of the play, s; infinity for a play without an end.
@@ -110,10 +129,20 @@ impl Plan {
 /// Prints the warnings of the compiler, and the values that it converted, rounded or clamped.
 pub(super) fn print_notes(program: &Program) {
     for warning in &program.warnings {
-        super::note(format_args!("warning: {warning}"));
+        note(format_args!("warning: {warning}"));
     }
-    for note in &program.notes {
-        super::note(note);
+    for sentence in &program.notes {
+        note(sentence);
+    }
+}
+
+/// Says when layers get no samples. A board refuses a stream that no layer plays.
+fn note_streams(program: &Program, has_feed: bool) {
+    let streamed = program.records.iter().zip(&program.titles).filter(|(record, _)| record.layer.is_streamed());
+    let titles: Vec<&str> = streamed.map(|(_, title)| title.as_str()).collect();
+    if !(titles.is_empty() || has_feed) {
+        let titles = titles.join(" and ");
+        note(format_args!("{titles} plays a stream, and there is no --stream: nothing will be felt there"));
     }
 }
 
