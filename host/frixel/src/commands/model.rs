@@ -133,7 +133,8 @@ fn tell(summary: &Summary) {
     if summary.beyond_finger_rows > 0 {
         let rows = rows(summary.beyond_finger_rows);
         note(format_args!(
-            "frixel: {rows} a contact radius above the finger's radius, where it is no paraboloid any more"
+            "frixel: {rows} a contact radius above the finger's radius, which the model cannot mean: is a skin gap missing \
+             from the coating?"
         ));
     }
     if summary.invalid_rows > 0 {
