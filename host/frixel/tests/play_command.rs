@@ -124,9 +124,9 @@ fn a_wrong_scene_is_refused_with_file_line_and_cure() {
     fs::copy(repository().join("scenes/textures/brick.png"), folder.path().join("textures/brick.png")).unwrap();
     let scene = fs::read_to_string(brick()).unwrap();
     for (from, to, parts) in [
-        ("radius_mm", "raduis_mm", ["wrong.toml:15:1", "raduis_mm", "`radius_mm`"]),
-        ("textures/brick.png", "textures/brik.png", ["wrong.toml:30:", "brik.png", "not found"]),
-        ("white_n = 0.026", "white_n = 0.26", ["layer 1", "\"brick\"", "saturate = true"]),
+        ("height_mm = 110", "heigth_mm = 110", ["wrong.toml:8:1", "heigth_mm", "`height_mm`"]),
+        ("textures/brick.png", "textures/brik.png", ["wrong.toml:20:", "brik.png", "not found"]),
+        ("white_n = 0.166", "white_n = 0.26", ["layer 1", "\"brick\"", "saturate = true"]),
         ("x_mm = 10", "x_mm = 60", ["layer 1", "\"brick\"", "screen"]),
     ] {
         assert!(scene.contains(from));

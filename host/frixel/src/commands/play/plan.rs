@@ -38,6 +38,9 @@ pub(super) struct Plan {
 /// Rejects options that the board named by `--port` does not support.
 pub(super) fn check_options(args: &PlayArgs, target: Target) -> Result<(), CommandError> {
     let port = || args.port.clone();
+    if args.control && args.stream.as_deref() == Some(Path::new("-")) {
+        return Err(CommandError::ControlAndStream);
+    }
     match target {
         Target::Simulator | Target::Emulator if args.watch => Err(CommandError::WatchInVirtualTime { port: port() }),
         Target::Simulator | Target::Emulator if args.with_log.is_some() => {
