@@ -143,6 +143,9 @@ fn textures_are_felt_within_the_goals_on_many_strokes() {
     hold(&(1..=24));
 }
 
+/// Makes a touch source another one.
+type Change = fn(&mut TouchConfig);
+
 /// Prints the tables of `docs/touch.md`.
 #[test]
 #[ignore = "takes minutes: cargo xtask soak"]
@@ -158,7 +161,6 @@ fn tables_of_source_and_feature_size() {
             println!("| {} Hz | {wavelength_mm} mm | {} |", class.rate_hz, cells.join(" | "));
         }
     }
-    type Change = fn(&mut TouchConfig);
     let changes: [(&str, Change); 4] = [
         ("as above", |_| {}),
         ("nothing lost", |touch| (touch.lost_share, touch.bunched_share) = (0.0, 0.0)),
