@@ -17,7 +17,7 @@ use crate::player::{PlayError, Simulation, start};
 use crate::rigs::SimLink;
 
 /// Samples a second of the compared frictions: two in a period of the carrier of 1 kHz, each with one of its edges.
-const SAMPLE_HZ: u32 = 2_000;
+pub(crate) const SAMPLE_HZ: u32 = 2_000;
 /// Up to this frequency, in Hz, a texture is felt as a force in a place; above it, as vibration without a phase.
 const PLACE_BELOW_HZ: f64 = 40.0;
 /// Up to this frequency, in Hz, spurious force counts: from 40 Hz on, skin is most sensitive.
@@ -46,7 +46,7 @@ impl FeltError {
     }
 
     /// Compares electric frictions, in N, in the same samples.
-    fn of(reference_n: &[f64], felt_n: &[f64]) -> Self {
+    pub(crate) fn of(reference_n: &[f64], felt_n: &[f64]) -> Self {
         let differences_n: Vec<f64> =
             reference_n.iter().zip(felt_n).map(|(reference, felt)| felt - reference).collect();
         let low = |samples: &[f64]| band_rms(samples, SAMPLE_HZ, 0.0..PLACE_BELOW_HZ);

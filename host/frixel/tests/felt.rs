@@ -143,6 +143,46 @@ fn textures_are_felt_within_the_goals_on_many_strokes() {
     hold(&(1..=24));
 }
 
+/// Makes a touch source another one.
+type Change = fn(&mut TouchConfig);
+
+/// Prints the tables of `docs/touch.md`.
+#[test]
+#[ignore = "takes minutes: cargo xtask soak"]
+fn tables_of_source_and_feature_size() {
+    for class in [SLOW, MEDIUM, FAST] {
+        for wavelength_mm in [2.0, 5.0, 10.0, 20.0] {
+            let cells = [50.0, 100.0, 200.0].map(|speed_mm_s| {
+                let found = mean(&Class { wavelength_mm, ..class }, speed_mm_s, 1..=6);
+                // A mean over seeds is no better than its worst would be good: every number is one.
+                assert!(found.ratio().is_finite() && found.correlation.abs() <= 1.0, "{found:?}");
+                format!("{:.2} / {:.2}, {:.1} mN", found.ratio(), found.correlation, 1e3 * found.spurious_n)
+            });
+            println!("| {} Hz | {wavelength_mm} mm | {} |", class.rate_hz, cells.join(" | "));
+        }
+    }
+    let changes: [(&str, Change); 4] = [
+        ("as above", |_| {}),
+        ("nothing lost", |touch| (touch.lost_share, touch.bunched_share) = (0.0, 0.0)),
+        ("pixel steps of 0.18 mm", |touch| touch.step_m = 0.18e-3),
+        ("a pause in ten seconds", |touch| (touch.pause_rate_hz, touch.pause_max_s) = (0.1, 0.12)),
+    ];
+    for (name, change) in changes {
+        let ratios = [SLOW, MEDIUM, FAST].map(|class| {
+            let squares = (1..=6).map(|seed| {
+                let mut rig = rig(&class);
+                change(&mut rig.world.touch);
+                let stroke = Stroke::human(0.12, 0.08, SECONDS + 0.5, Some(0.1), seed).unwrap();
+                let program = program(&rig, class.wavelength_mm);
+                let simulation = Simulation { rig, stroke, seconds: SECONDS, seed, ticks_per_row: 40_000 };
+                felt_error(&program, &simulation).unwrap().ratio().powi(2)
+            });
+            format!("{:.2}", (squares.sum::<f64>() / 6.0).sqrt())
+        });
+        println!("| {name} | {} |", ratios.join(" | "));
+    }
+}
+
 /// The checks above see an output that is not there: a volt gives less than a millionth of a newton.
 #[test]
 fn an_output_forced_to_zero_misses_every_goal() {

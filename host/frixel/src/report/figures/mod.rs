@@ -11,6 +11,7 @@ mod stability;
 mod stability_soft;
 mod tick_layers;
 mod tick_rate;
+mod touch_estimators;
 
 use frixel_model::{Contact, Finger, ParameterError, Real};
 
@@ -54,6 +55,7 @@ pub(super) fn all(counts: Option<&Counts>) -> Result<Vec<Figure>, ReportError> {
         Some(run_time::against_time(&measured, inversions)?),
         Some(run_time::against_size(&measured)?),
         Some(tick_rate::figure()?),
+        Some(touch_estimators::figure()?),
         layers,
         Some(scene_bytes::figure(&ticks.sentence("a tick"))?),
         Some(stability::in_f64()?),
