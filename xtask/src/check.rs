@@ -66,6 +66,9 @@ pub(crate) fn soak() -> Result<(), String> {
     let mut stages = Stages::new();
     let sweeps = ["test", "--release", "--locked", "--package", "frixel-model", "--", "--ignored", "--nocapture"];
     stages.run("every f32", || cargo("soak", ".", &sweeps, &[]))?;
+    let people =
+        ["test", "--release", "--locked", "--package", "frixel", "--test", "fit", "--", "--ignored", "--nocapture"];
+    stages.run("fits of 200 people", || cargo("soak", ".", &people, &[]))?;
     stages.run("random scenes", || {
         Pace::ALL.into_iter().try_for_each(|pace| programs::check(pace, programs::FEW, programs::MANY))
     })?;

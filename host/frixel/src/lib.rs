@@ -1,6 +1,7 @@
 //! The library behind the `frixel` command: playing scenes, recording them, drawing charts and writing reports.
 #![forbid(unsafe_code)]
 
+pub mod calibration;
 mod chart;
 pub mod check;
 pub mod fit;
@@ -11,3 +12,4 @@ pub mod report;
 pub mod rigs;
 pub mod scene_file;
 pub mod stream;
+pub mod threshold;

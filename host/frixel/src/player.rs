@@ -158,6 +158,11 @@ impl<L: RecordedLink> Player<L> {
         &self.device
     }
 
+    /// The link to the board.
+    pub fn link_mut(&mut self) -> &mut L {
+        self.device.link_mut()
+    }
+
     /// The recorder of this play.
     pub fn recorder_mut(&mut self) -> &mut Recorder {
         self.device.link_mut().recorder_mut()

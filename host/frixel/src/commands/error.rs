@@ -3,6 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use frixel::calibration::CalibrationError;
 use frixel::check::RehearsalError;
 use frixel::fit::FitError;
 use frixel::model_csv::CsvError;
@@ -64,6 +65,12 @@ pub(crate) enum CommandError {
     ModelCsv { input: String, source: CsvError },
     #[error("{}: {source}", path.display())]
     Fit { path: PathBuf, source: FitError },
+    #[error(transparent)]
+    Calibration(CalibrationError),
+    #[error("the run was interrupted, and nothing is written: start it again for a whole recording")]
+    CalibrationInterrupted,
+    #[error("a board at {port} measures no forces: give those of a sensor with --forces FILE.csv, or --forces -")]
+    NoForces { port: String },
     #[error("{} is the input as well: writing it would destroy it; give --output another name", path.display())]
     OutputIsInput { path: PathBuf },
     #[error("{} cannot be read ({source}): check the path", path.display())]

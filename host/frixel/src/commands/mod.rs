@@ -1,5 +1,6 @@
 //! The command line: one module per command.
 
+mod calibrate;
 mod demo;
 mod error;
 mod fit;
@@ -49,6 +50,8 @@ enum Command {
     /// Evaluate or invert the contact model over rows of CSV.
     #[command(subcommand)]
     Model(model::ModelCommand),
+    /// Record a finger's friction while a board switches its drive on and off, for `frixel fit`.
+    Calibrate(calibrate::CalibrateArgs),
     /// Fit a finger's profile to measured friction.
     Fit(fit::FitArgs),
     /// Draw the contact model, its error and its cost on one page.
@@ -158,6 +161,7 @@ impl Cli {
             Some(Command::Ports) => ports::run(),
             Some(Command::Info(args)) => info::run(&args),
             Some(Command::Model(command)) => model::run(&command),
+            Some(Command::Calibrate(args)) => calibrate::run(&args),
             Some(Command::Fit(args)) => fit::run(&args),
             Some(Command::Report(args)) => report::run(&args),
         }

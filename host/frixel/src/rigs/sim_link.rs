@@ -9,6 +9,7 @@ use frixel_wire::fault::State;
 use frixel_wire::message::Telemetry;
 
 use super::RecordedLink;
+use super::force_sensor::ForceSensor;
 use super::recorded::finger_and_felt;
 
 /// A frame that is sent periodically without a call.
@@ -27,12 +28,32 @@ pub struct SimLink<'a> {
     written: Written,
     written_at_tick: u64,
     keep_alive: Option<KeepAlive>,
+    force_sensor: Option<ForceSensor>,
 }
 
 impl<'a> SimLink<'a> {
     /// Creates a link to `rig` that records its ticks into `recorder`.
     pub fn new(rig: Rig<'a>, recorder: Recorder) -> Self {
-        Self { rig, recorder, recording: false, written: Written::default(), written_at_tick: 0, keep_alive: None }
+        Self {
+            rig,
+            recorder,
+            recording: false,
+            written: Written::default(),
+            written_at_tick: 0,
+            keep_alive: None,
+            force_sensor: None,
+        }
+    }
+
+    /// Puts a force sensor under the screen, which measures from the start of the play.
+    #[must_use]
+    pub fn with_force_sensor(self, force_sensor: ForceSensor) -> Self {
+        Self { force_sensor: Some(force_sensor), ..self }
+    }
+
+    /// The force sensor under the screen.
+    pub fn force_sensor(&self) -> Option<&ForceSensor> {
+        self.force_sensor.as_ref()
     }
 
     /// The recorder with all ticks.
@@ -54,6 +75,9 @@ impl<'a> SimLink<'a> {
         let record = self.rig.step();
         if self.recording {
             self.recorder.record(&observation(&record));
+            if let Some(sensor) = &mut self.force_sensor {
+                sensor.measure(&record);
+            }
         } else if record.status.telemetry.state == State::Active {
             self.rig.world_mut().start_stroke();
             self.recorder.start(record.tick as u32);
