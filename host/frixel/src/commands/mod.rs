@@ -15,6 +15,7 @@ mod scene;
 mod sim;
 mod stroke;
 mod terminal;
+mod threshold;
 
 use std::path::{Path, PathBuf};
 
@@ -52,6 +53,8 @@ enum Command {
     Model(model::ModelCommand),
     /// Record a finger's friction while a board switches its drive on and off, for `frixel fit`.
     Calibrate(calibrate::CalibrateArgs),
+    /// Find what a person just feels, without a force sensor: a staircase of trials, answered by key.
+    Threshold(threshold::ThresholdArgs),
     /// Fit a finger's profile to measured friction.
     Fit(fit::FitArgs),
     /// Draw the contact model, its error and its cost on one page.
@@ -162,6 +165,7 @@ impl Cli {
             Some(Command::Info(args)) => info::run(&args),
             Some(Command::Model(command)) => model::run(&command),
             Some(Command::Calibrate(args)) => calibrate::run(&args),
+            Some(Command::Threshold(args)) => threshold::run(&args),
             Some(Command::Fit(args)) => fit::run(&args),
             Some(Command::Report(args)) => report::run(&args),
         }

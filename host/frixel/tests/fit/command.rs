@@ -1,8 +1,9 @@
 //! From a board to a profile: `frixel calibrate` on the in-process simulator, then `frixel fit` on what it wrote.
 
 use std::fs;
+use std::io::Write;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 use frixel_hil_sim::Person;
 use frixel_scene::{Evidence, FingerProfile};
@@ -94,4 +95,35 @@ fn a_board_at_a_port_needs_forces() {
     fs::write(folder.path().join("forces.csv"), "time_s,normal_force_n,friction_n\n0,0.5,0.2\n1,0.5,0.2\n").unwrap();
     let said = fail(folder.path(), &["calibrate", "-o", "data.csv", "--forces", "forces.csv"]);
     assert!(said.contains("start the sensor before the board"), "{said}");
+}
+
+#[test]
+fn a_threshold_is_found_by_answers_and_is_no_force() {
+    let folder = TempDir::new().unwrap();
+    let run = |answers: &str| {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_frixel"))
+            .args(["threshold", "--port", "sim", "--trials", "12", "-o", "person.toml"])
+            .current_dir(folder.path())
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        child.stdin.take().unwrap().write_all(answers.as_bytes()).unwrap();
+        child.wait_with_output().unwrap()
+    };
+    let short = run("1\n2\n");
+    assert!(String::from_utf8(short.stderr).unwrap().contains("the answers ended at trial 3"));
+    let output = run(&"1\nperhaps\n2\n".repeat(6));
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(said.contains("trial 12 of 12") && said.contains("how many newtons these are, nobody knows"), "{said}");
+    let text = fs::read_to_string(folder.path().join("person.toml")).unwrap();
+    let profile = FingerProfile::parse(&text, "person.toml").unwrap();
+    let Evidence::Perceptual { threshold_v_rms, threshold_interval_v_rms: [low, high], .. } = profile.evidence else {
+        panic!("{text}")
+    };
+    assert!(low < threshold_v_rms && threshold_v_rms < high && high <= 150.0, "{text}");
+    succeed(folder.path(), &["threshold", "--port", "sim", "--noise", "noise.wav"]);
+    assert!(fs::metadata(folder.path().join("noise.wav")).unwrap().len() > 5_000_000);
 }
