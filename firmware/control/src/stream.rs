@@ -9,6 +9,7 @@
 
 use core::sync::atomic::{AtomicU32, Ordering};
 use frixel_layers::StreamSample;
+use frixel_wire::payload::SAMPLES_MAX;
 
 /// Samples that a stream's buffer holds.
 pub const STREAM_LEN: usize = 1024;
@@ -31,13 +32,20 @@ pub struct StreamBuffer {
     end: AtomicU32,
     /// Position of the sample that the player takes next; written by the tick.
     next: AtomicU32,
+    /// Positions of the current stream before `end` whose samples have not arrived; written by the session.
+    holes: AtomicU32,
 }
 
 impl StreamBuffer {
     /// An empty buffer.
     #[allow(clippy::new_without_default, reason = "it belongs in a static, not into a value made in passing")]
     pub const fn new() -> Self {
-        Self { slots: [const { AtomicU32::new(0) }; STREAM_LEN], end: AtomicU32::new(0), next: AtomicU32::new(0) }
+        Self {
+            slots: [const { AtomicU32::new(0) }; STREAM_LEN],
+            end: AtomicU32::new(0),
+            next: AtomicU32::new(0),
+            holes: AtomicU32::new(0),
+        }
     }
 
     fn put(&self, position: u32, sample: u16) {
@@ -93,6 +101,7 @@ impl<'a> StreamIntake<'a> {
     pub fn start(&mut self, sample_hz: u32, tick_hz: u32, start_level: u16) -> StreamStart {
         let first = self.buffer.end.load(Ordering::Relaxed);
         self.first = Some(first);
+        self.buffer.holes.store(0, Ordering::Relaxed);
         let step = (u64::from(ONE) * u64::from(sample_hz) / u64::from(tick_hz)) as u32;
         StreamStart { first, step, start_level: u32::from(start_level) }
     }
@@ -108,16 +117,22 @@ impl<'a> StreamIntake<'a> {
         let Some(first) = self.first else { return };
         let due = self.due(first);
         let mut end = self.buffer.end.load(Ordering::Relaxed);
+        let mut holes = self.buffer.holes.load(Ordering::Relaxed);
         let mut position = first.wrapping_add(first_index);
         for sample in samples {
             if position.wrapping_sub(due) < LEN {
-                self.buffer.put(position, u16::from_le_bytes(*sample));
-                if count(end, position.wrapping_add(1)) > 0 {
-                    end = position.wrapping_add(1);
+                let after = position.wrapping_add(1);
+                if count(end, after) > 0 {
+                    holes = holes.wrapping_add(count(end, position));
+                    end = after;
+                } else if self.buffer.get(position).is_none() {
+                    holes = holes.wrapping_sub(1);
                 }
+                self.buffer.put(position, u16::from_le_bytes(*sample));
             }
             position = position.wrapping_add(1);
         }
+        self.buffer.holes.store(holes, Ordering::Relaxed);
         self.buffer.end.store(end, Ordering::Release);
     }
 
@@ -160,6 +175,8 @@ pub(crate) struct Player<'a> {
     fraction: u32,
     /// The next sample has not arrived: `to` still holds the one before.
     missing: bool,
+    /// Holes of this stream that lie behind `next`: their samples never arrived.
+    skipped: u32,
     weight: f32,
     fade_step: f32,
     underruns: u32,
@@ -178,6 +195,7 @@ impl<'a> Player<'a> {
             to: 0.0,
             fraction: 0,
             missing: false,
+            skipped: 0,
             weight: 0.0,
             fade_step: tick_period_s / FADE_S,
             underruns: 0,
@@ -193,6 +211,7 @@ impl<'a> Player<'a> {
         self.last = None;
         self.phase = Phase::Filling;
         self.missing = false;
+        self.skipped = 0;
         self.go_to(start.first);
     }
 
@@ -264,15 +283,19 @@ impl<'a> Player<'a> {
 
     fn begin_when_filled(&mut self) {
         let end = self.buffer.end.load(Ordering::Acquire);
-        let there = count(self.next, end);
-        if there >= self.start.start_level || (there > 0 && self.last == Some(end)) {
+        let span = count(self.next, end);
+        let holes = count(self.skipped, self.buffer.holes.load(Ordering::Relaxed));
+        let there = span.saturating_sub(holes);
+        // Without room for another frame, no further sample comes.
+        let is_full = span + SAMPLES_MAX as u32 > LEN;
+        if there >= self.start.start_level || is_full || (span > 0 && self.last == Some(end)) {
             self.phase = Phase::Playing;
             self.take_next();
             if self.weight <= 0.0 {
                 // Start at the first sample: the next tick takes the second.
                 self.fraction = ONE - self.start.step;
             }
-        } else if there == 0 && self.last == Some(self.next) {
+        } else if span == 0 && self.last == Some(self.next) {
             self.phase = Phase::Over;
         }
     }
@@ -296,6 +319,7 @@ impl<'a> Player<'a> {
                 self.gaps = self.gaps.wrapping_add(1);
             }
             self.missing = true;
+            self.skipped = self.skipped.wrapping_add(1);
         }
         self.go_to(self.next.wrapping_add(1));
     }

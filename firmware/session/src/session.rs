@@ -75,9 +75,9 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Advances a commit by one step of at most a millisecond or carries out a request that waited for it, and sends telemetry and unsolicited changes of state.
-    /// Call this after every tick or, if there is no time for that, at least once a telemetry period, and pass on touch
-    /// reports, orders and bytes between two calls.
+    /// Advances a commit by one step of about a millisecond at most, or carries out a request that waited for it; also
+    /// sends telemetry and unsolicited changes of state. Call this after every tick or, if there is no time for that,
+    /// at least once a telemetry period, and pass on touch reports, orders and bytes between two calls.
     pub fn poll(&mut self, status: &Status) {
         self.commands.tracker.expire(status.telemetry.tick);
         self.commands.step_commit(status, &mut self.queue);
@@ -89,7 +89,7 @@ impl<'a> Session<'a> {
             && status.telemetry.tick.wrapping_sub(self.telemetry_sent_at_tick) >= period_ticks
         {
             self.telemetry_sent_at_tick = status.telemetry.tick;
-            self.queue.send_unasked(&FromBoard::Telemetry(status.telemetry));
+            self.queue.send_unsolicited(&FromBoard::Telemetry(status.telemetry));
         }
     }
 
@@ -144,17 +144,17 @@ impl<'a> Session<'a> {
         self.commands.playing.header.as_ref()
     }
 
-    /// CRC-32 of the scene that [`Session::kept`] returns; `None` when that returns `None`.
+    /// CRC-32 of the scene that [`Session::scene_to_store`] returns; `None` when that returns `None`.
     #[cfg(feature = "store")]
-    pub fn kept_crc32(&self) -> Option<u32> {
-        self.commands.kept_crc32()
+    pub fn crc32_to_store(&self) -> Option<u32> {
+        self.commands.crc32_to_store()
     }
 
     /// The committed scene with its bitmaps, as bytes to store; `None` without a scene, or if the board is not
     /// disarmed.
     #[cfg(feature = "store")]
-    pub fn kept(&self) -> Option<StoredScene<'_>> {
-        self.commands.kept()
+    pub fn scene_to_store(&self) -> Option<StoredScene<'_>> {
+        self.commands.scene_to_store()
     }
 
     /// Commits a stored scene: `read` fills a buffer with the bytes at an offset, and returns `false` beyond the end.

@@ -2,11 +2,11 @@
 
 use super::{FingerState, Point};
 
-/// A point in time and the finger's place then.
+/// A point in time and the finger's place then; `None` while it is off the screen.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Row {
     pub(super) t_s: f64,
-    pub(super) place: Point,
+    pub(super) place: Option<Point>,
     /// Normal load, in N; not a number if it is unknown.
     pub(super) load_n: f64,
 }
@@ -14,7 +14,10 @@ pub(super) struct Row {
 /// The motion from one row to the next: straight, at constant speed.
 #[derive(Clone, Copy, Debug)]
 struct Piece {
-    start: Row,
+    start_s: f64,
+    end_s: f64,
+    start: Point,
+    start_load_n: f64,
     x_speed_m_per_s: f64,
     y_speed_m_per_s: f64,
     speed_m_per_s: f64,
@@ -37,20 +40,31 @@ pub(super) struct Rows {
 impl Rows {
     /// Makes a motion through `rows`, whose times rise.
     ///
-    /// The error is the index of a row that the finger cannot reach at a finite speed. A motion of fewer than two rows
-    /// never touches the screen.
+    /// The error is the index of a row that the finger cannot reach at a finite speed. The finger touches the screen
+    /// only between two consecutive rows that both have a place.
     pub(super) fn new(rows: &[Row]) -> Result<Self, usize> {
         let mut pieces = Vec::with_capacity(rows.len());
         for (number, (start, end)) in rows.iter().zip(rows.iter().skip(1)).enumerate() {
-            let time_s = end.t_s - start.t_s;
-            let x_speed_m_per_s = (end.place.x_m - start.place.x_m) / time_s;
-            let y_speed_m_per_s = (end.place.y_m - start.place.y_m) / time_s;
+            let (start_s, end_s, start_load_n, end_load_n) = (start.t_s, end.t_s, start.load_n, end.load_n);
+            let Some((start, end)) = start.place.zip(end.place) else { continue };
+            let time_s = end_s - start_s;
+            let x_speed_m_per_s = (end.x_m - start.x_m) / time_s;
+            let y_speed_m_per_s = (end.y_m - start.y_m) / time_s;
             let speed_m_per_s = libm::hypot(x_speed_m_per_s, y_speed_m_per_s);
             if !speed_m_per_s.is_finite() {
                 return Err(number + 1);
             }
-            let load_slope_n_per_s = (end.load_n - start.load_n) / time_s;
-            pieces.push(Piece { start: *start, x_speed_m_per_s, y_speed_m_per_s, speed_m_per_s, load_slope_n_per_s });
+            let load_slope_n_per_s = (end_load_n - start_load_n) / time_s;
+            pieces.push(Piece {
+                start_s,
+                end_s,
+                start,
+                start_load_n,
+                x_speed_m_per_s,
+                y_speed_m_per_s,
+                speed_m_per_s,
+                load_slope_n_per_s,
+            });
         }
         let end_s = rows.last().map_or(0.0, |row| row.t_s);
         let has_loads = rows.iter().any(|row| row.load_n.is_finite());
@@ -73,7 +87,7 @@ impl Rows {
     fn count_before_slots(&self) -> Vec<usize> {
         let mut before_slot = vec![0; self.pieces.len() + 2];
         for piece in &self.pieces {
-            if let Some(count) = before_slot.get_mut(self.slot(piece.start.t_s) + 1) {
+            if let Some(count) = before_slot.get_mut(self.slot(piece.start_s) + 1) {
                 *count += 1;
             }
         }
@@ -85,28 +99,28 @@ impl Rows {
         before_slot
     }
 
-    /// Returns the piece of a time up to the end; `None` before the first row.
+    /// Returns the piece of a time up to the end; `None` while the finger is off the screen.
     fn piece(&self, t_s: f64) -> Option<&Piece> {
         let slot = self.slot(t_s);
         let (first, last) = (*self.before_slot.get(slot)?, *self.before_slot.get(slot + 1)?);
-        let started = first + self.pieces.get(first..last)?.partition_point(|piece| piece.start.t_s <= t_s);
-        self.pieces.get(started.checked_sub(1)?)
+        let started = first + self.pieces.get(first..last)?.partition_point(|piece| piece.start_s <= t_s);
+        self.pieces.get(started.checked_sub(1)?).filter(|piece| t_s <= piece.end_s)
     }
 
     /// Returns the normal load at a time up to the end, in N, if the rows say it.
     pub(super) fn normal_load_n(&self, t_s: f64) -> Option<f64> {
         let piece = if self.has_loads { self.piece(t_s)? } else { return None };
-        let load_n = piece.start.load_n + (t_s - piece.start.t_s) * piece.load_slope_n_per_s;
+        let load_n = piece.start_load_n + (t_s - piece.start_s) * piece.load_slope_n_per_s;
         load_n.is_finite().then_some(load_n)
     }
 
-    /// Returns the finger at a time up to the end; `None` before the first row.
+    /// Returns the finger at a time up to the end; `None` while it is off the screen.
     pub(super) fn at(&self, t_s: f64) -> Option<FingerState> {
         let piece = self.piece(t_s)?;
-        let time_s = t_s - piece.start.t_s;
+        let time_s = t_s - piece.start_s;
         Some(FingerState {
-            x_m: piece.start.place.x_m + time_s * piece.x_speed_m_per_s,
-            y_m: piece.start.place.y_m + time_s * piece.y_speed_m_per_s,
+            x_m: piece.start.x_m + time_s * piece.x_speed_m_per_s,
+            y_m: piece.start.y_m + time_s * piece.y_speed_m_per_s,
             speed_m_per_s: piece.speed_m_per_s,
         })
     }

@@ -3,6 +3,7 @@
 use proptest::prelude::*;
 
 use super::{FingerState, Point, Stroke, StrokeError};
+use crate::spectrum::band_rms;
 
 const LEFT: Point = Point { x_m: 0.01, y_m: 0.02 };
 const RIGHT: Point = Point { x_m: 0.09, y_m: 0.08 };
@@ -169,6 +170,85 @@ proptest! {
     }
 }
 
+const HUMAN_S: f64 = 30.0;
+
+fn human(median_speed_m_per_s: Option<f64>, seed: u64) -> Vec<FingerState> {
+    let stroke = Stroke::human(0.12, 0.08, HUMAN_S, median_speed_m_per_s, seed).unwrap();
+    (0..30_000).map(|ms| at(&stroke, 1e-3 * f64::from(ms))).collect()
+}
+
+fn median_m_per_s(states: &[FingerState]) -> f64 {
+    let mut speeds: Vec<f64> = states.iter().map(|state| state.speed_m_per_s).collect();
+    speeds.sort_by(f64::total_cmp);
+    speeds[speeds.len() / 2]
+}
+
+#[test]
+fn human_strokes_have_the_medians_of_the_recorded_ones() {
+    let medians: Vec<f64> = (0..60).map(|seed| median_m_per_s(&human(None, seed))).collect();
+    let (least, most) = medians.iter().fold((f64::MAX, 0.0_f64), |(a, b), median| (a.min(*median), b.max(*median)));
+    assert!(least > 0.9 * 0.048 && least < 0.070, "{least}");
+    assert!(most < 1.1 * 0.436 && most > 0.35, "{most}");
+    for median in [0.05, 0.1, 0.2, 0.4] {
+        for seed in 0..5 {
+            let found = median_m_per_s(&human(Some(median), seed));
+            assert!((found / median - 1.0).abs() < 0.1, "{found}, expected {median}");
+        }
+    }
+}
+
+#[test]
+fn human_strokes_pause_turn_and_stay_on_the_screen() {
+    for (seed, median) in [(1, 0.05), (2, 0.1), (3, 0.2), (4, 0.4)] {
+        let states = human(Some(median), seed);
+        assert!(states.iter().all(|state| state.x_m > 0.0 && state.x_m < 0.12 && state.y_m > 0.0 && state.y_m < 0.08));
+        let span = |value: fn(&FingerState) -> f64| {
+            let values = states.iter().map(value);
+            values.clone().fold(0.0, f64::max) - values.fold(f64::MAX, f64::min)
+        };
+        assert!(span(|state| state.x_m) > 0.08, "{}", span(|state| state.x_m));
+        assert!(span(|state| state.y_m) > 0.015, "{}", span(|state| state.y_m));
+        // Turns between velocities of half the median, so that tremor is none.
+        let mut turns = 0;
+        let mut direction = 0.0;
+        for pair in states.windows(21) {
+            let velocity = (pair[20].x_m - pair[0].x_m) / 20e-3;
+            if velocity.abs() > 0.5 * median {
+                turns += u32::from(velocity * direction < 0.0);
+                direction = velocity;
+            }
+        }
+        let expected = HUMAN_S * median / 0.08;
+        assert!(f64::from(turns) > 0.5 * expected && f64::from(turns) < 4.0 * expected, "{turns} turns at {median}");
+        // In a pause, 50 ms pass within the tremor's reach.
+        let still = states.windows(51).filter(|pair| distance_m(pair[0], pair[50]) < 0.3e-3).count();
+        let share = still as f64 / states.len() as f64;
+        assert!((0.005..0.3).contains(&share), "{share} of the time at {median}");
+    }
+}
+
+#[test]
+fn human_strokes_have_tremor_at_8_to_12_hz() {
+    let states = human(Some(0.05), 3);
+    let places_m: Vec<f64> = states.iter().map(|state| state.y_m).collect();
+    let rms_m = |from_hz, to_hz| band_rms(&places_m, 1000, from_hz..to_hz);
+    assert!((rms_m(7.5, 12.5) / 0.1e-3 - 1.0).abs() < 0.3, "{}", rms_m(7.5, 12.5));
+    assert!(rms_m(14.0, 100.0) < 0.2 * rms_m(7.5, 12.5), "{}", rms_m(14.0, 100.0));
+}
+
+#[test]
+fn a_human_stroke_comes_from_its_seed_and_has_the_speed_of_its_places() {
+    let stroke = |seed| Stroke::human(0.12, 0.08, 5.0, Some(0.1), seed).unwrap();
+    assert_eq!(at(&stroke(1), 2.345), at(&stroke(1), 2.345));
+    assert_ne!(at(&stroke(1), 2.345), at(&stroke(2), 2.345));
+    let (before, after) = (at(&stroke(1), 2.345_2), at(&stroke(1), 2.345_7));
+    assert!((distance_m(before, after) / 0.5e-3 - before.speed_m_per_s).abs() < 1e-9);
+    let too_long = Stroke::human(0.12, 0.08, 601.0, None, 1).unwrap_err().to_string();
+    assert_eq!(too_long, "stroke: duration_s must be above 0.001 and at most 600 for a human stroke, found 601");
+    let backwards = Stroke::human(0.12, 0.08, 1.0, Some(-0.1), 1).unwrap_err().to_string();
+    assert_eq!(backwards, "stroke: median speed in m/s must be finite and above 0, found -0.1");
+}
+
 #[test]
 fn columns_may_stand_in_any_order_among_others_with_quotes_spaces_and_windows_line_ends() {
     let plain = Stroke::from_csv("t_s,x_mm,y_mm\n0,10,20\n1,30,40\n").unwrap();
@@ -254,4 +334,30 @@ fn numbers_that_make_no_stroke_are_refused_by_name() {
         message(Stroke::natural(0.1, -0.1, 1.0)),
         "stroke: screen height in m must be finite and above 0, found -0.1"
     );
+}
+
+#[test]
+fn a_row_without_a_place_lifts_the_finger() {
+    let stroke =
+        Stroke::from_csv("t_s,x_mm,y_mm,felt_n\n0,,,\n1,10,20,0.25\n2,20,20,\n3,,,\n4,,,\n5,30,30,\n6,30,40,\n")
+            .unwrap();
+    assert_eq!(stroke.duration_s(), 6.0);
+    for (t_s, down) in [(0.5, false), (1.0, true), (1.9, true), (2.0, true), (2.5, false), (4.9, false), (5.5, true)] {
+        assert_eq!(stroke.at(t_s).is_some(), down, "{t_s} s");
+    }
+    assert!((stroke.at(1.5).unwrap().x_m - 0.015).abs() < 1e-12);
+}
+
+#[test]
+fn a_motion_goes_through_its_places() {
+    let place = |x_m: f64| Some(Point { x_m, y_m: 0.02 });
+    let stroke =
+        Stroke::through(&[(0.0, place(0.0)), (0.5, place(0.1)), (0.6, None), (0.7, place(0.0)), (1.0, place(0.03))])
+            .unwrap();
+    assert!((stroke.at(0.25).unwrap().x_m - 0.05).abs() < 1e-12);
+    assert!(stroke.at(0.55).is_none() && stroke.at(0.65).is_none());
+    assert!((stroke.at(0.9).unwrap().speed_m_per_s - 0.1).abs() < 1e-12);
+    for wrong in [[(0.0, place(0.0)), (0.0, place(0.1))], [(-1.0, place(0.0)), (0.0, place(0.1))]] {
+        assert!(Stroke::through(&wrong).unwrap_err().to_string().contains("0 or later, and rising"));
+    }
 }

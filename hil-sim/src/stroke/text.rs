@@ -27,7 +27,10 @@ pub(super) fn rows(text: &str) -> Result<Rows, StrokeError> {
     for record in reader.records() {
         let record = record.map_err(malformed)?;
         let line = line_of(&record, text);
-        let row = Row { load_n: load_n(&record, line, force_column)?, ..row(&record, line, columns)? };
+        let mut row = row(&record, line, columns)?;
+        if row.place.is_some() {
+            row.load_n = load_n(&record, line, force_column)?;
+        }
         if row.t_s < 0.0 {
             return Err(StrokeError::BeforeStart { line, found_s: row.t_s });
         }
@@ -59,12 +62,18 @@ fn find_columns(header: &StringRecord, line: u64) -> Result<[usize; 3], StrokeEr
 }
 
 fn row(record: &StringRecord, line: u64, places: [usize; 3]) -> Result<Row, StrokeError> {
+    let cells = places.map(|place| record.get(place).unwrap_or_default());
+    let [t_cell, x_cell, y_cell] = cells;
+    let is_lifted = x_cell.is_empty() && y_cell.is_empty() && places.iter().all(|place| *place < record.len());
+    if is_lifted {
+        return Ok(Row { t_s: number(t_cell, line, COLUMNS[0])?, place: None, load_n: f64::NAN });
+    }
     let mut values = [0.0; 3];
-    for ((value, place), column) in values.iter_mut().zip(places).zip(COLUMNS) {
-        *value = number(record.get(place).unwrap_or_default(), line, column)?;
+    for ((value, cell), column) in values.iter_mut().zip(cells).zip(COLUMNS) {
+        *value = number(cell, line, column)?;
     }
     let [t_s, x_mm, y_mm] = values;
-    Ok(Row { t_s, place: Point { x_m: x_mm / MM_PER_M, y_m: y_mm / MM_PER_M }, load_n: f64::NAN })
+    Ok(Row { t_s, place: Some(Point { x_m: x_mm / MM_PER_M, y_m: y_mm / MM_PER_M }), load_n: f64::NAN })
 }
 
 /// The normal load of a row, in N; not a number without a column for it.

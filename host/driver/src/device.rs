@@ -2,6 +2,7 @@
 
 mod stream;
 
+use std::ops::ControlFlow;
 use std::time::Duration;
 
 use frixel_layers::{Scene, features_of};
@@ -108,6 +109,19 @@ impl<L: Link> Device<L> {
     /// Uploads the scene, and those of its bitmaps that the board does not hold. The playing scene does not change
     /// before [`Self::commit`].
     pub fn upload(&mut self, upload: &Upload, progress: &mut dyn FnMut(Progress)) -> Result<(), DeviceError> {
+        self.upload_while(upload, &mut |now| {
+            progress(now);
+            ControlFlow::Continue(())
+        })
+    }
+
+    /// Like [`Self::upload`], until `progress`, which is called several times a second, breaks the upload off with
+    /// [`DeviceError::Interrupted`].
+    pub fn upload_while(
+        &mut self,
+        upload: &Upload,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<(), DeviceError> {
         upload.check()?;
         // The board refuses bytes that are not a scene, and reports the reason.
         let scene = Scene::parse(upload.scene).ok();
@@ -226,6 +240,11 @@ impl<L: Link> Device<L> {
     /// ```
     pub fn keep_alive(&mut self) -> Result<(), DeviceError> {
         self.exchange.receive(Duration::ZERO, name_of(&Command::Ping))
+    }
+
+    /// Time on the link's clock.
+    pub fn now(&self) -> Duration {
+        self.exchange.now()
     }
 
     /// Counts of frames and bytes since the link was opened.

@@ -112,6 +112,51 @@ pub enum DeviceError {
         /// Bytes of the whole scene or bitmap.
         total_bytes: usize,
     },
+    /// The board requests an upload from its start again and again, although all of it was sent.
+    #[error(
+        "the board on {port} wants all {total_bytes} bytes of an upload again, although they were sent {times} times: \
+         reset the board; if that does not help, flash its firmware anew"
+    )]
+    UploadForgotten {
+        /// Name of the link.
+        port: String,
+        /// Bytes of the scene or bitmap.
+        total_bytes: usize,
+        /// How many times they were sent.
+        times: u32,
+    },
+    /// The caller ended the upload. The board plays what it played before.
+    #[error("the upload to {port} was interrupted: the board has no new scene")]
+    Interrupted {
+        /// Name of the link.
+        port: String,
+    },
+    /// The hello states a limit that cannot be one.
+    #[error(
+        "the board on {port} states {limit} = {found} in its hello, which is no limit: flash its firmware anew; nothing was \
+         sent to it"
+    )]
+    Limit {
+        /// Name of the link.
+        port: String,
+        /// Name of the limit.
+        limit: &'static str,
+        /// The number that was found.
+        found: f64,
+    },
+    /// The ticks of telemetry went back: two boards answer on one line, or the firmware is faulty.
+    #[error(
+        "the telemetry of the board on {port} went back from tick {last_tick} to {tick}: its firmware is faulty, or another \
+         board answers on the same line; disconnect it, and start again"
+    )]
+    TelemetryBackwards {
+        /// Name of the link.
+        port: String,
+        /// The latest tick before.
+        last_tick: u32,
+        /// The earlier tick that came after it.
+        tick: u32,
+    },
     /// A bitmap does not have width times height samples.
     #[error("bitmap {crc32:#010x} is {width} by {height}, but has {found} samples; it needs one for each place")]
     BitmapSize {

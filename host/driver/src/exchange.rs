@@ -18,9 +18,11 @@ pub(super) use incoming::StreamReport;
 
 /// Sequence number of requests whose answer is ignored.
 const UNAWAITED: u16 = 0;
-/// Longest time to an answer. A full window ahead of the request takes 355 ms at 115,200 baud.
+/// Longest time to an answer, from the time at which the request has reached the board, and longest time without any
+/// byte leaving a line on which bytes are under way.
 pub(super) const ANSWER_TIMEOUT: Duration = Duration::from_millis(750);
-/// Time after which a request without an answer is sent again: its frame may have been damaged.
+/// Time after which a request without an answer is sent again, measured as [`ANSWER_TIMEOUT`] is: its frame may have been
+/// damaged.
 const REPEAT_AFTER: Duration = Duration::from_millis(250);
 /// Time to the next try when the board is busy.
 const BUSY_RETRY_AFTER: Duration = Duration::from_millis(5);
@@ -40,11 +42,15 @@ pub(super) struct Exchange<L> {
     sequence: u16,
     awaited: Vec<Awaited>,
     answer: Option<Answer>,
+    /// The last answer was to a request that had been sent before.
+    repeated: bool,
     next_chunk: Option<u16>,
     stream: Option<StreamReport>,
     /// The next answer starts a new stream; reports before it belong to the old one.
     stream_begins: bool,
     events: VecDeque<Event>,
+    /// Tick of the last telemetry message.
+    telemetry_tick: Option<u32>,
     /// Time spent reading since bytes last arrived.
     quiet: Duration,
 }
@@ -70,10 +76,12 @@ impl<L: Link> Exchange<L> {
             sequence: UNAWAITED,
             awaited: Vec::new(),
             answer: None,
+            repeated: false,
             next_chunk: None,
             stream: None,
             stream_begins: false,
             events: VecDeque::new(),
+            telemetry_tick: None,
         }
     }
 
@@ -134,39 +142,54 @@ impl<L: Link> Exchange<L> {
         DeviceError::UploadStalled { port: self.link.name().into(), arrived_bytes, total_bytes }
     }
 
+    pub(super) fn forgotten(&self, total_bytes: usize, times: u32) -> DeviceError {
+        DeviceError::UploadForgotten { port: self.link.name().into(), total_bytes, times }
+    }
+
+    pub(super) fn interrupted(&self) -> DeviceError {
+        DeviceError::Interrupted { port: self.link.name().into() }
+    }
+
     /// Sends a command and waits for its outcome. Tries again while the board is busy.
     pub(super) fn try_request(&mut self, command: Command) -> Result<Result<Accepted, Refusal>, DeviceError> {
-        let deadline = self.link.now() + ANSWER_TIMEOUT;
+        let mut busy_until = None;
         loop {
-            let outcome = self.try_request_once(command, deadline)?;
+            let outcome = self.try_request_once(command)?;
             let now = self.link.now();
-            if outcome != Err(Refusal::Busy) || now + BUSY_RETRY_AFTER >= deadline {
+            let busy_until = *busy_until.get_or_insert(now + ANSWER_TIMEOUT);
+            if outcome != Err(Refusal::Busy) || now + BUSY_RETRY_AFTER >= busy_until {
                 return Ok(outcome);
             }
             self.receive_until(now + BUSY_RETRY_AFTER, name_of(&command))?;
         }
     }
 
-    fn try_request_once(
-        &mut self,
-        command: Command,
-        deadline: Duration,
-    ) -> Result<Result<Accepted, Refusal>, DeviceError> {
+    fn try_request_once(&mut self, command: Command) -> Result<Result<Accepted, Refusal>, DeviceError> {
         let started = self.link.now();
-        let mut send_at = started;
+        // When bytes last left the line towards the board, until the request itself did.
+        let (mut moved_at, mut settled, mut arrived) = (started, self.credit.settled(), false);
+        let mut sent_at = None;
         self.awaited.clear();
         self.answer = None;
         loop {
             let now = self.link.now();
+            if self.credit.settled() > settled && !arrived {
+                (moved_at, settled) = (now, self.credit.settled());
+                arrived = self.awaited.first().is_some_and(|first| first.end <= settled);
+            }
+            let deadline = moved_at + ANSWER_TIMEOUT;
             if now >= deadline {
                 return Err(self.silent(name_of(&command), now.saturating_sub(started)));
             }
+            let send_at = sent_at.map_or(now, |sent_at: Duration| sent_at.max(moved_at) + REPEAT_AFTER);
             if now >= send_at && self.send(command)? {
-                send_at = now + REPEAT_AFTER;
+                sent_at = Some(now);
             }
+            let send_at = sent_at.map_or(deadline, |sent_at| sent_at.max(moved_at) + REPEAT_AFTER);
             let wake_at = if send_at > now { send_at.min(deadline) } else { deadline };
             self.receive(wake_at.saturating_sub(now), name_of(&command))?;
             if let Some(answer) = self.answer.take() {
+                self.repeated = self.awaited.first().is_some_and(|first| first.sequence != answer.sequence);
                 return Ok(self.outcome(command, &answer));
             }
         }
@@ -185,9 +208,9 @@ impl<L: Link> Exchange<L> {
         Ok(true)
     }
 
-    /// Whether the last answered command was sent more than once. The board may then have executed it twice.
+    /// Whether the last answer was to a repetition of its command. The board may then have executed the command before.
     pub(super) fn repeated(&self) -> bool {
-        self.awaited.len() > 1
+        self.repeated
     }
 
     /// The outcome of a command. A repeated command may be refused because the board executed the first copy and only

@@ -27,12 +27,39 @@ pub(super) fn request_hello<L: Link>(link: &mut L, decoder: &mut Decoder) -> Res
         if let Some(hello) = await_hello(link, decoder, deadline, &mut heard_bytes)? {
             let port = link.name().into();
             return match hello.compatibility() {
-                Ok(()) => Ok(hello),
+                Ok(()) => check_limits(&hello, port).map(|()| hello),
                 Err(mismatch) => Err(DeviceError::Version { port, mismatch }),
             };
         }
     }
     Err(DeviceError::NoHello { port: link.name().into(), waited: link.now().saturating_sub(started), heard_bytes })
+}
+
+/// Refuses limits that no scene can be compiled for. A capacitance that is not stated is infinite.
+fn check_limits(hello: &Hello, port: String) -> Result<(), DeviceError> {
+    let limits = &hello.limits;
+    let numbers = [
+        ("tick_hz", f64::from(hello.tick_hz), hello.tick_hz > 0),
+        ("voltage_max_v_peak", limits.voltage_max_v_peak.into(), is_limit(limits.voltage_max_v_peak)),
+        ("full_scale_v_peak", limits.full_scale_v_peak.into(), is_limit(limits.full_scale_v_peak)),
+        ("edge_time_constant_s", limits.edge_time_constant_s.into(), is_limit(limits.edge_time_constant_s)),
+        (
+            "electrode_capacitance_max_f",
+            limits.electrode_capacitance_max_f.into(),
+            limits.electrode_capacitance_max_f >= 0.0,
+        ),
+        ("current_max_a_rms", limits.current_max_a_rms.into(), is_limit(limits.current_max_a_rms)),
+        ("current_max_a_peak", limits.current_max_a_peak.into(), is_limit(limits.current_max_a_peak)),
+        ("touch_report_period_s", limits.touch_report_period_s.into(), is_limit(limits.touch_report_period_s)),
+    ];
+    match numbers.into_iter().find(|(.., is_limit)| !is_limit) {
+        Some((limit, found, _)) => Err(DeviceError::Limit { port, limit, found }),
+        None => Ok(()),
+    }
+}
+
+fn is_limit(value: f32) -> bool {
+    value.is_finite() && value >= 0.0
 }
 
 fn await_hello<L: Link>(

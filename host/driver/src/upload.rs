@@ -1,5 +1,6 @@
 //! Uploads: chunks sent within the credit, and sent again from the first one that was lost.
 
+use std::ops::ControlFlow;
 use std::time::Duration;
 
 use frixel_wire::frame::{FRAME_MAX_LEN, crc32};
@@ -80,18 +81,18 @@ pub(super) fn send<L: Link>(
     exchange: &mut Exchange<L>,
     upload: &Upload,
     counts: &mut UploadCounts,
-    progress: &mut dyn FnMut(Progress),
+    progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<(), DeviceError> {
     let total_bytes = upload.total_bytes();
     let mut done_before = 0;
     let scene_start = Command::UploadScene { len: upload.scene.len() as u32, crc32: upload.scene_crc32() };
     let starts = upload.bitmaps.iter().map(|bitmap| (bitmap.start(), bitmap.samples));
     for (start, bytes) in starts.chain([(scene_start, upload.scene)]) {
-        let mut report = |done_here| {
-            progress(Progress { done_bytes: done_before + done_here, total_bytes });
-        };
+        let mut report = |done_here| progress(Progress { done_bytes: done_before + done_here, total_bytes });
         send_one(exchange, start, bytes, counts, &mut report)?;
-        report(bytes.len());
+        if report(bytes.len()).is_break() {
+            return Err(exchange.interrupted());
+        }
         done_before += bytes.len();
     }
     Ok(())
@@ -103,7 +104,7 @@ fn send_one<L: Link>(
     start: Command,
     bytes: &[u8],
     counts: &mut UploadCounts,
-    report: &mut dyn FnMut(usize),
+    report: &mut dyn FnMut(usize) -> ControlFlow<()>,
 ) -> Result<(), DeviceError> {
     for _ in 0..STARTS {
         if exchange.request(start)? == Accepted::AlreadyHeld {
@@ -159,7 +160,9 @@ struct Transfer<'a, L> {
     next: usize,
     /// For each chunk, the position of its end when it was last sent.
     sent_to: Vec<u64>,
-    /// Times in a row that chunks were sent again without progress.
+    /// The furthest chunk that the board has ever expected.
+    furthest: usize,
+    /// Times in a row that chunks were sent again without the board getting further than before.
     tries: u32,
     lost: u64,
 }
@@ -167,10 +170,10 @@ struct Transfer<'a, L> {
 impl<'a, L: Link> Transfer<'a, L> {
     fn new(exchange: &'a mut Exchange<L>, doing: &'static str, bytes: &'a [u8]) -> Self {
         exchange.take_next_chunk();
-        Self { exchange, doing, bytes, expected: 0, next: 0, sent_to: Vec::new(), tries: 0, lost: 0 }
+        Self { exchange, doing, bytes, expected: 0, next: 0, sent_to: Vec::new(), furthest: 0, tries: 0, lost: 0 }
     }
 
-    fn run(&mut self, report: &mut dyn FnMut(usize)) -> Result<End, DeviceError> {
+    fn run(&mut self, report: &mut dyn FnMut(usize) -> ControlFlow<()>) -> Result<End, DeviceError> {
         loop {
             self.send_chunks(report)?;
             match self.exchange.try_request(Command::UploadEnd)? {
@@ -186,7 +189,7 @@ impl<'a, L: Link> Transfer<'a, L> {
     /// no credit for [`STALL_AFTER`], since lost bytes also use up credit. The caller then requests the end of the
     /// upload, as after the last chunk. If that is too early, the board refuses it with the number of the chunk that it
     /// expects. Any answer corrects the credit.
-    fn send_chunks(&mut self, report: &mut dyn FnMut(usize)) -> Result<(), DeviceError> {
+    fn send_chunks(&mut self, report: &mut dyn FnMut(usize) -> ControlFlow<()>) -> Result<(), DeviceError> {
         let mut sent_at = self.exchange.now();
         while self.next < self.chunk_count() && self.exchange.now().saturating_sub(sent_at) < STALL_AFTER {
             let wait = if self.send_next()? {
@@ -196,9 +199,15 @@ impl<'a, L: Link> Transfer<'a, L> {
                 STALL_AFTER
             };
             self.exchange.receive(wait, self.doing)?;
-            self.handle_progress(report)?;
+            self.handle_progress()?;
+            self.report(report)?;
         }
-        Ok(())
+        self.report(report)
+    }
+
+    /// Reports the progress, and ends the upload if the caller says so.
+    fn report(&self, report: &mut dyn FnMut(usize) -> ControlFlow<()>) -> Result<(), DeviceError> {
+        if report(self.arrived_bytes()).is_break() { Err(self.exchange.interrupted()) } else { Ok(()) }
     }
 
     fn chunk_count(&self) -> usize {
@@ -230,12 +239,11 @@ impl<'a, L: Link> Transfer<'a, L> {
 
     /// Handles the board's last report. If the chunk that the board expects has already left the line, that chunk was
     /// lost.
-    fn handle_progress(&mut self, report: &mut dyn FnMut(usize)) -> Result<(), DeviceError> {
+    fn handle_progress(&mut self) -> Result<(), DeviceError> {
         let Some(expected) = self.exchange.take_next_chunk() else {
             return Ok(());
         };
         self.set_expected(expected);
-        report(self.arrived_bytes());
         let off_the_line = |sent_to: &u64| *sent_to <= self.exchange.settled();
         if self.expected < self.next && self.sent_to.get(self.expected).is_some_and(off_the_line) {
             self.send_again_from(expected)?;
@@ -245,8 +253,8 @@ impl<'a, L: Link> Transfer<'a, L> {
 
     fn set_expected(&mut self, chunk: u16) {
         let chunk = usize::from(chunk).min(self.chunk_count());
-        if chunk > self.expected {
-            self.tries = 0;
+        if chunk > self.furthest {
+            (self.furthest, self.tries) = (chunk, 0);
         }
         self.expected = chunk;
     }
@@ -254,6 +262,9 @@ impl<'a, L: Link> Transfer<'a, L> {
     fn send_again_from(&mut self, chunk: u16) -> Result<(), DeviceError> {
         self.set_expected(chunk);
         self.tries += 1;
+        if self.tries > TRIES && self.expected == 0 && self.furthest > 0 {
+            return Err(self.exchange.forgotten(self.bytes.len(), self.tries));
+        }
         if self.tries > TRIES {
             return Err(self.exchange.stalled(self.arrived_bytes(), self.bytes.len()));
         }

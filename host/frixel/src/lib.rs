@@ -11,5 +11,6 @@ pub mod player;
 pub mod report;
 pub mod rigs;
 pub mod scene_file;
+pub mod score;
 pub mod stream;
 pub mod threshold;

@@ -1,9 +1,11 @@
 //! Plays a compiled scene on any board through its [`Device`], and records the play.
 
+use std::ops::ControlFlow;
 use std::time::Duration;
 
 use frixel_driver::{Bitmap, Counters, Device, DeviceError, Event, Link, Progress, StreamStatus, Upload};
-use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, WorldError};
+use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, TickRecord, WorldError};
+use frixel_layers::Header;
 use frixel_model::ParameterError;
 use frixel_scene::Program;
 use frixel_scene::recorder::Recorder;
@@ -26,16 +28,24 @@ pub fn start<L: Link>(
     program: &Program,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<(), DeviceError> {
-    load(device, program, progress)?;
+    load(device, program, &mut uninterrupted(progress))?;
     device.arm()?;
     device.play()
+}
+
+/// Continues an upload whatever its progress.
+fn uninterrupted(progress: &mut dyn FnMut(Progress)) -> impl FnMut(Progress) -> ControlFlow<()> {
+    |now| {
+        progress(now);
+        ControlFlow::Continue(())
+    }
 }
 
 /// Disarms a board, whatever state an earlier client left it in, then uploads the scene without playing it.
 pub(crate) fn load<L: Link>(
     device: &mut Device<L>,
     program: &Program,
-    progress: &mut dyn FnMut(Progress),
+    progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<(), DeviceError> {
     device.disarm()?;
     upload(device, program, progress)
@@ -45,7 +55,7 @@ pub(crate) fn load<L: Link>(
 fn upload<L: Link>(
     device: &mut Device<L>,
     program: &Program,
-    progress: &mut dyn FnMut(Progress),
+    progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<(), DeviceError> {
     let scene = program.scene_bytes_for(device.hello().protocol);
     let bitmaps = program
@@ -59,7 +69,7 @@ fn upload<L: Link>(
         })
         .collect();
     let upload = Upload { scene: &scene, bitmaps };
-    device.upload(&upload, progress)?;
+    device.upload_while(&upload, progress)?;
     device.commit(upload.scene_crc32())
 }
 
@@ -103,14 +113,16 @@ impl<L: RecordedLink> Player<L> {
     }
 
     /// Uploads the scene and plays it. The board sends a telemetry message every `telemetry_period_ticks` ticks; 0
-    /// disables telemetry.
+    /// disables telemetry. `progress` may break the upload off.
     pub fn start(
         &mut self,
         program: &Program,
         telemetry_period_ticks: u32,
-        progress: &mut dyn FnMut(Progress),
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<(), PlayError> {
-        start(&mut self.device, program, progress)?;
+        load(&mut self.device, program, progress)?;
+        self.device.arm()?;
+        self.device.play()?;
         let begun = self.device.link_mut().begin();
         begun.map_err(|closed| DeviceError::Vanished { command: "play", closed })?;
         if telemetry_period_ticks > 0 {
@@ -124,11 +136,26 @@ impl<L: RecordedLink> Player<L> {
         Ok(self.feed.insert(feed).start(&mut self.device)?)
     }
 
+    /// Whether the stream of [`Self::stream`] has ended and was played.
+    pub fn is_stream_over(&self) -> bool {
+        self.feed.as_ref().is_some_and(|feed| feed.is_over(&self.device))
+    }
+
     /// Replaces the scene that is playing between two ticks, and uses the new one as the reference of the record.
     pub fn replace(&mut self, program: &Program) -> Result<(), PlayError> {
-        upload(&mut self.device, program, &mut |_| {})?;
+        upload(&mut self.device, program, &mut |_| ControlFlow::Continue(()))?;
         let hello = *self.device.hello();
         self.recorder_mut().replace(program, &hello.limits, hello.tick_hz).map_err(PlayError::Finger)
+    }
+
+    /// Like [`Self::replace`], for a scene whose bitmaps do not fit on the board beside those of the scene that plays: an
+    /// empty scene plays until the new one is there, so that the output fades out meanwhile.
+    pub fn replace_alone(&mut self, program: &Program) -> Result<(), PlayError> {
+        let header = Header { electric_friction_max_n: None, ..program.header };
+        let (records, points, bitmaps, titles) = Default::default();
+        let empty = Program { header, records, points, bitmaps, titles, ..program.clone() };
+        self.replace(&empty)?;
+        self.replace(program)
     }
 
     /// Lets at most `time_max` pass on the board; records the ticks, and sends samples.
@@ -156,11 +183,6 @@ impl<L: RecordedLink> Player<L> {
     /// The board that the scene plays on.
     pub fn device(&self) -> &Device<L> {
         &self.device
-    }
-
-    /// The link to the board.
-    pub fn link_mut(&mut self) -> &mut L {
-        self.device.link_mut()
     }
 
     /// The recorder of this play.
@@ -225,14 +247,24 @@ pub struct Simulated {
 ///
 /// The program must have been compiled for the limits and the tick rate of the simulation's board.
 pub fn simulate(program: &Program, simulation: &Simulation, feed: Option<Feed>) -> Result<Simulated, PlayError> {
+    simulate_observed(program, simulation, feed, |_| {})
+}
+
+/// As [`simulate`], and calls `observer` with every tick of the play.
+pub(crate) fn simulate_observed(
+    program: &Program,
+    simulation: &Simulation,
+    feed: Option<Feed>,
+    observer: impl FnMut(&TickRecord),
+) -> Result<Simulated, PlayError> {
     let board = &simulation.rig.board;
     let ticks = (simulation.seconds * f64::from(board.tick_hz)).round() as u64;
     let recorder = Recorder::new(program, &board.limits, board.tick_hz, ticks, simulation.ticks_per_row)
         .map_err(PlayError::Finger)?;
     let mut memory = BoardMemory::new();
     let rig = Rig::new(&mut memory, &simulation.rig, simulation.stroke.clone(), simulation.seed)?;
-    let mut player = Player::new(Device::connect(SimLink::new(rig, Recorder::idle()))?, recorder);
-    player.start(program, 0, &mut |_| {})?;
+    let mut player = Player::new(Device::connect(SimLink::new(rig, Recorder::idle()).observed(observer))?, recorder);
+    player.start(program, 0, &mut |_| ControlFlow::Continue(()))?;
     if let Some(feed) = feed {
         player.stream(feed)?;
     }
@@ -265,7 +297,7 @@ mod tests {
         rig.world_mut().schedule_amplifier_fault(20_000..u64::MAX);
         let recorder = Recorder::new(&program, &board.limits, board.tick_hz, 400_000, 40).unwrap();
         let mut player = Player::new(Device::connect(SimLink::new(rig, Recorder::idle())).unwrap(), recorder);
-        player.start(&program, 0, &mut |_| {}).unwrap();
+        player.start(&program, 0, &mut |_| ControlFlow::Continue(())).unwrap();
         let error = (0..100).find_map(|_| player.step(Duration::MAX).err()).unwrap();
         assert!(matches!(error, PlayError::Stopped(StopReason::Fault(Fault::Amplifier))), "{error}");
         let recorder = player.into_recorder();

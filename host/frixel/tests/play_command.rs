@@ -199,7 +199,7 @@ fn a_wrong_port_is_refused_by_its_name() {
     refuse(
         folder.path(),
         &stroke,
-        &["/dev/frixel-none", "--stroke moves the finger of --port sim and --port qemu only"],
+        &["/dev/frixel-none", "a stroke moves the finger of --port sim and --port qemu only"],
     );
     let rows = ["play", &brick(), "--port", "/dev/frixel-none", "--csv-hz", "4000"];
     refuse(folder.path(), &rows, &["/dev/frixel-none", "1000"]);

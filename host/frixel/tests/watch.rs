@@ -143,34 +143,42 @@ fn write_picture(path: &Path, mirrored: bool) {
     encoder.write_header().unwrap().write_image_data(&grey).unwrap();
 }
 
-/// Each picture fits on the board, and both together do not.
+/// A scene with a picture.
+fn picture_scene(name: &str) -> String {
+    let layer = format!(
+        "kind = \"bitmap\"\npicture = \"{name}\"\nx_mm = 0\ny_mm = 0\nwidth_mm = 50\nblack_n = 0\nwhite_n = 0.02\n"
+    );
+    scene("0.26").replace("kind = \"constant\"\nfriction_n = 0.26\n", &layer)
+}
+
+/// Each picture fits on the board, and both together do not: the one that played goes first.
 #[test]
-fn a_saved_scene_that_has_no_room_beside_the_one_that_plays_is_told_with_what_to_do() {
+fn a_picture_that_has_no_room_beside_the_one_that_plays_replaces_it_and_is_followed_itself() {
     let folder = TempDir::new().unwrap();
     let path = |name: &str| folder.path().join(name);
-    let picture = |name: &str| {
-        scene("0.26").replace(
-            "kind = \"constant\"\nfriction_n = 0.26\n",
-            &format!("kind = \"bitmap\"\npicture = \"{name}\"\nx_mm = 0\ny_mm = 0\nwidth_mm = 50\nblack_n = 0\nwhite_n = 0.02\n"),
-        )
-    };
     write_picture(&path("one.png"), false);
     write_picture(&path("other.png"), true);
-    fs::write(path("scene.toml"), picture("one.png")).unwrap();
+    fs::write(path("scene.toml"), picture_scene("one.png")).unwrap();
     let (mut board, port) = virtual_board(folder.path(), &[]);
     let mut client = watching_client(folder.path(), &port);
     let said = || fs::read_to_string(path("said")).unwrap();
-    let rows = || asked_n(&path("client")).len();
-    until("the first scene plays", || rows() > 0);
-    fs::write(path("scene.toml"), picture("other.png")).unwrap();
-    until("the saved scene is refused", || said().contains("do not fit on the board together"));
-    let before = rows();
-    until("the first scene plays on", || rows() > before + 300);
+    until("the first scene plays", || !asked_n(&path("client")).is_empty());
+    fs::write(path("scene.toml"), picture_scene("other.png")).unwrap();
+    until("the saved scene plays", || said().contains("the output faded out meanwhile"));
+
+    // A picture that is edited is a change, too.
+    write_picture(&path("other.png"), false);
+    until("the edited picture plays", || said().matches("plays as it was saved").count() == 2);
+
+    fs::remove_file(path("scene.toml")).unwrap();
+    until("the file's end is said", || said().contains("scene.toml is gone"));
+    let before = asked_n(&path("client")).len();
+    until("the scene plays on", || asked_n(&path("client")).len() > before + 300);
+    fs::write(path("scene.toml"), scene("0.26")).unwrap();
+    until("the file is there again", || said().matches("plays as it was saved").count() == 3);
     assert!(client.interrupt(), "{}", said());
     assert!(board.interrupt());
-    let said = said();
-    assert!(said.contains("the scene before plays on") && said.contains("`pitch_mm`"), "{said}");
-    assert!(!said.contains("plays as it was saved"), "{said}");
+    assert_eq!(said().matches("is gone").count(), 1, "{}", said());
 }
 
 #[test]

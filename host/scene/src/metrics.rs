@@ -4,6 +4,8 @@
 //!   at the sample, so that variation within a carrier period does not count as error. The error counts while the
 //!   finger is down. In the first period after the finger came down, the mean is over the samples since then, so that
 //!   no sample is skipped. When the finger goes up, the window is emptied.
+//!   The time from the touch to the first report that reaches the board does not count, because nothing can be felt
+//!   before the board knows of the finger; it is counted apart.
 //! - The **inversion error** is the model's friction at the commanded voltage minus the board's target. It counts while
 //!   the finger is down and the reference friction is in reach.
 //! - The **carrier ripple** is felt friction minus its mean over the carrier period around it, half a period on either
@@ -18,6 +20,8 @@
 pub struct Sample {
     /// Whether the finger is on the screen.
     pub finger_down: bool,
+    /// Whether the board knows of a finger; absent if the board did not report.
+    pub board_has_finger: Option<bool>,
     /// The reference friction at the finger's place.
     pub wanted_n: Option<f64>,
     /// The board's target, the input of its inverse.
@@ -37,6 +41,9 @@ pub struct Metrics {
     error: PeriodMean,
     felt: Centred,
     finger_down_samples: u64,
+    /// The board has known of the finger since it came down.
+    is_reported: bool,
+    unreported_samples: u64,
     /// Samples in which the board reported.
     reports: u64,
     saturated_samples: u64,
@@ -53,6 +60,8 @@ pub struct MetricsSummary {
     pub ticks: u64,
     /// Observed ticks with the finger on the screen.
     pub finger_down_ticks: u64,
+    /// Those of them before the first touch report of a touch reached the board. They have no friction error.
+    pub unreported_ticks: u64,
     /// Ticks in which the board clamped its target.
     pub saturated_ticks: Option<u64>,
     /// Felt minus reference friction, as means over a carrier period.
@@ -82,6 +91,8 @@ impl Metrics {
             error: PeriodMean::new(2 * half),
             felt: Centred::new(half),
             finger_down_samples: 0,
+            is_reported: false,
+            unreported_samples: 0,
             reports: 0,
             saturated_samples: 0,
             friction_error: Spread::default(),
@@ -106,10 +117,14 @@ impl Metrics {
         if !sample.finger_down {
             self.error.clear();
             self.felt.clear();
+            self.is_reported = false;
             return;
         }
         self.finger_down_samples += 1;
-        if let Some((felt_n, wanted_n)) = sample.felt_n.zip(sample.wanted_n) {
+        self.is_reported |= sample.board_has_finger == Some(true);
+        self.unreported_samples += u64::from(!self.is_reported);
+        let errors = sample.felt_n.zip(sample.wanted_n).filter(|_| self.is_reported);
+        if let Some((felt_n, wanted_n)) = errors {
             self.friction_error.add(self.error.push(felt_n - wanted_n));
         }
         if let Some((inversion_n, asked_n)) = sample.inversion_n.zip(sample.asked_n) {
@@ -130,6 +145,7 @@ impl Metrics {
         MetricsSummary {
             ticks,
             finger_down_ticks: self.finger_down_samples,
+            unreported_ticks: self.unreported_samples,
             saturated_ticks: every_tick_reported.then_some(self.saturated_samples),
             friction_error: self.friction_error.size(),
             inversion_error: self.inversion_error.size().filter(|_| every_tick_reported),

@@ -75,7 +75,7 @@ pub enum Mistake {
     /// Screen or finger of a scene of version 1 cannot be exchanged.
     #[error(
         "the coating of a scene of version 1 contains the finger's skin, so that it cannot be played with another {what}: \
-         `frixel scene migrate {file}` writes it as version 2"
+         `frixel scene migrate {file}` prints it as version 2"
     )]
     VersionOneProfile {
         /// `finger` or `screen`.
@@ -83,6 +83,9 @@ pub enum Mistake {
         /// The scene file.
         file: String,
     },
+    /// The scene to be written as version 2 is of version 2.
+    #[error("this scene has version 2 already: there is nothing to migrate")]
+    NothingToMigrate,
     /// No screen or finger of this name is bundled.
     #[error("no {what} \"{found}\" is bundled, and the name of a file has an ending such as .toml; {nearest}")]
     UnknownProfile {
@@ -169,6 +172,14 @@ pub enum Mistake {
     /// The region of a button is a polygon.
     #[error("a button is a rectangle or an ellipse, and this region is a polygon: change its `shape`")]
     ButtonPolygon,
+    /// Several copies of a layer would lie at the same place.
+    #[error("the {what} of this repeat would lie on one another: give the distance from one to the next, `{step}`")]
+    RepeatInPlace {
+        /// `columns` or `rows`.
+        what: &'static str,
+        /// The field of their distance.
+        step: &'static str,
+    },
     /// The scene has more of something than a board has room for.
     #[error("this is number {number} of the scene's {what}, and a board takes {max}: leave some out")]
     TooMany {

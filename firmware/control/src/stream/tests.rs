@@ -92,7 +92,8 @@ proptest! {
                 // there.
                 let expected = reference(sample_hz, played.max(1) - 1);
                 // A step is 2^-31 of a sample too short at most, 4,000 times.
-                prop_assert!((f64::from(now.value) - expected).abs() < 1e-5, "tick {}: {:?} is not {}", played, now, expected);
+                let error = f64::from(now.value) - expected;
+                prop_assert!(error.abs() < 1e-5, "tick {}: {:?} is not {}", played, now, expected);
                 played += 1;
                 let weight = (played as f32 / FADE_TICKS as f32).min(1.0);
                 prop_assert!((now.weight - weight).abs() < 1e-4, "tick {}: {:?}", played, now);
@@ -148,7 +149,8 @@ proptest! {
                 _ => for _ in 0..index % 1_000 {
                     let now = ends.advance();
                     prop_assert!((0.0..=1.0).contains(&now.value) && (0.0..=1.0).contains(&now.weight), "{:?}", now);
-                    prop_assert!((now.weight - before.weight).abs() <= 1.01 / FADE_TICKS as f32, "{:?} {:?}", before, now);
+                    let step = (now.weight - before.weight).abs();
+                    prop_assert!(step <= 1.01 / FADE_TICKS as f32, "{:?} {:?}", before, now);
                     // Once there was nothing of it, it is this stream's.
                     if now.weight == 0.0 { shown = Some(stream); }
                     if shown == Some(stream) && now.weight > 0.0 {
@@ -313,4 +315,58 @@ fn the_last_sample_is_held_whatever_the_rate() {
         assert_eq!(ends.player.counts(), (1, 0));
         assert!(played[dry..].iter().all(|now| (now.value - last).abs() < 1e-6), "{sample_hz}");
     }
+}
+
+/// Half of the first frames are lost: the stream starts when the samples that arrived reach its start level.
+#[test]
+fn holes_do_not_count_towards_the_start_level() {
+    for before_wrap in [0, 50, 2_000] {
+        let buffer = buffer_before_wrap(before_wrap);
+        let mut ends = Ends::new(&buffer);
+        ends.start(8_000, 200);
+        // 180 samples of 450: two frames of five.
+        ends.take(90, &samples(90, 90));
+        ends.take(360, &samples(360, 90));
+        ends.take(360, &samples(360, 90));
+        ends.run(10);
+        assert_eq!(ends.player.phase, Phase::Filling, "180 samples are less than 200");
+        // A late frame fills a hole.
+        ends.take(0, &samples(0, 90));
+        ends.run(1);
+        assert_eq!(ends.player.phase, Phase::Playing, "270 samples are more than 200");
+        ends.take(180, &samples(180, 180));
+        ends.run(5 * 400);
+        assert_eq!(ends.player.counts(), (0, 0));
+        ends.run(5 * 60);
+        assert_eq!((ends.player.phase, ends.player.counts()), (Phase::Filling, (1, 0)));
+    }
+}
+
+/// The holes that were played over do not count any more when the stream waits again.
+#[test]
+fn holes_that_were_played_over_do_not_delay_the_stream_again() {
+    let buffer = StreamBuffer::new();
+    let mut ends = Ends::new(&buffer);
+    ends.start(8_000, 90);
+    ends.take(0, &samples(0, 90));
+    ends.take(180, &samples(180, 90));
+    ends.run(5 * 300);
+    assert_eq!((ends.player.phase, ends.player.counts()), (Phase::Filling, (1, 1)));
+    ends.take(270, &samples(270, 89));
+    ends.run(10);
+    assert_eq!(ends.player.phase, Phase::Filling);
+    ends.take(359, &samples(359, 1));
+    ends.run(1);
+    assert_eq!(ends.player.phase, Phase::Playing);
+}
+
+/// A start level that the holes leave no room for: the stream starts when its buffer takes no further frame.
+#[test]
+fn a_buffer_without_room_starts_the_stream() {
+    let buffer = StreamBuffer::new();
+    let mut ends = Ends::new(&buffer);
+    ends.start(8_000, 800);
+    ends.take(900, &samples(900, 90));
+    ends.run(1);
+    assert_eq!(ends.player.phase, Phase::Playing);
 }

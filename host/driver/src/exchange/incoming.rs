@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use frixel_wire::message::{Command, FromBoard};
+use frixel_wire::message::{Command, FromBoard, Telemetry};
 use frixel_wire::payload::Payload;
 
 use super::super::Event;
@@ -95,7 +95,7 @@ impl<L: Link> Exchange<L> {
                 let limit = next_index.wrapping_add(u32::from(room));
                 self.stream = Some(StreamReport { limit, underruns, gaps });
             }
-            FromBoard::Telemetry(telemetry) => self.push_event(Event::Telemetry(telemetry)),
+            FromBoard::Telemetry(telemetry) => self.take_telemetry(telemetry)?,
             FromBoard::StateChanged { state, fault, flags } => {
                 self.push_event(Event::StateChanged { state, fault, flags });
             }
@@ -108,6 +108,22 @@ impl<L: Link> Exchange<L> {
         self.credit
             .received(received_bytes, written)
             .map_err(|_| DeviceError::Restarted { port: self.link.name().into(), command: doing })
+    }
+
+    /// Stores telemetry. Ignores a second message of the same tick.
+    fn take_telemetry(&mut self, telemetry: Telemetry) -> Result<(), DeviceError> {
+        let passed = self.telemetry_tick.map(|last_tick| telemetry.tick.wrapping_sub(last_tick) as i32);
+        match (self.telemetry_tick, passed) {
+            (Some(_), Some(0)) => return Ok(()),
+            (Some(last_tick), Some(passed)) if passed < 0 => {
+                let (port, tick) = (self.link.name().into(), telemetry.tick);
+                return Err(DeviceError::TelemetryBackwards { port, last_tick, tick });
+            }
+            _ => {}
+        }
+        self.telemetry_tick = Some(telemetry.tick);
+        self.push_event(Event::Telemetry(telemetry));
+        Ok(())
     }
 
     fn push_event(&mut self, event: Event) {

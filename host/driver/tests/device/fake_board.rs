@@ -41,6 +41,8 @@ pub(crate) struct FakeBoard {
     pub(crate) reset_at: Option<Duration>,
     /// The state changes at this time, as when the host was silent.
     pub(crate) falls_to: Option<(Duration, State)>,
+    /// Bytes that it sends by itself at this time.
+    pub(crate) says_at: Option<(Duration, Vec<u8>)>,
     /// Samples of the stream under way, and how many of them have been played: so many more at every ping.
     pub(crate) samples: Vec<u16>,
     pub(crate) plays_per_ping: usize,
@@ -79,6 +81,7 @@ impl FakeBoard {
             garbage: Vec::new(),
             reset_at: None,
             falls_to: None,
+            says_at: None,
             samples: Vec::new(),
             plays_per_ping: 0,
             played: 0,
@@ -108,7 +111,8 @@ impl FakeBoard {
     pub(crate) fn next_poll(&self) -> Option<Duration> {
         let telemetry = self.telemetry.map(|(next, _)| next);
         let fall = self.falls_to.map(|(at, _)| at);
-        [telemetry, fall, self.reset_at].into_iter().flatten().min()
+        let says = self.says_at.as_ref().map(|(at, _)| *at);
+        [telemetry, fall, says, self.reset_at].into_iter().flatten().min()
     }
 
     /// What the board sends by itself.
@@ -120,6 +124,9 @@ impl FakeBoard {
         if let Some((_, state)) = self.falls_to.take_if(|(at, _)| *at <= now) {
             self.state = state;
             send(&mut out, &FromBoard::StateChanged { state, fault: None, flags: Flags::HOST_SILENT });
+        }
+        if let Some((_, bytes)) = self.says_at.take_if(|(at, _)| *at <= now) {
+            out.extend(bytes);
         }
         while let Some((next, period)) = self.telemetry
             && next <= now

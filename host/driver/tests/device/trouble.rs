@@ -5,11 +5,12 @@ use std::cell::Cell;
 use std::rc::Rc;
 use std::time::Duration;
 
-use frixel_driver::{Bitmap, Device, DeviceError, Link, Upload};
+use frixel_driver::{Bitmap, Device, DeviceError, Event, Link, Upload};
 use frixel_wire::fault::State;
-use frixel_wire::frame::crc32;
-use frixel_wire::hello::PROTOCOL_MAJOR;
-use frixel_wire::message::Command;
+use frixel_wire::frame::{FRAME_MAX_LEN, crc32};
+use frixel_wire::hello::{Hello, PROTOCOL_MAJOR};
+use frixel_wire::message::{Command, FromBoard, Telemetry};
+use frixel_wire::payload::from_board_frame;
 
 use crate::calls::{connected, scene};
 use crate::fake_board::FakeBoard;
@@ -203,4 +204,43 @@ fn a_pulled_cable_ends_every_call_at_once() {
     assert!(error.to_string().starts_with("the port the virtual line vanished (pulled) during: upload of a bitmap; "));
     let link = device.into_link();
     assert!(!link.board.commands.contains(&Command::UploadEnd));
+}
+
+#[test]
+fn a_hello_whose_limits_are_no_limits_is_refused() {
+    type Spoil = fn(&mut Hello);
+    let spoilt: [(&str, Spoil); 5] = [
+        ("tick_hz", |hello| hello.tick_hz = 0),
+        ("voltage_max_v_peak", |hello| hello.limits.voltage_max_v_peak = f32::NAN),
+        ("electrode_capacitance_max_f", |hello| hello.limits.electrode_capacitance_max_f = f32::NAN),
+        ("current_max_a_rms", |hello| hello.limits.current_max_a_rms = -1.0),
+        ("touch_report_period_s", |hello| hello.limits.touch_report_period_s = f32::INFINITY),
+    ];
+    for (name, spoil) in spoilt {
+        let mut board = FakeBoard::new();
+        spoil(&mut board.hello);
+        board.refuse = Some(Box::new(|command| panic!("{command:?} was sent to a board without limits")));
+        let error = refused_connection(VirtualLink::new(board));
+        assert!(matches!(error, DeviceError::Limit { limit, .. } if limit == name), "{error}");
+        assert!(error.to_string().contains("flash its firmware anew"), "{error}");
+    }
+}
+
+#[test]
+fn telemetry_that_goes_back_in_time_is_an_error() {
+    let mut link = VirtualLink::new(FakeBoard::new());
+    let mut backwards = [0; FRAME_MAX_LEN];
+    let telemetry = Telemetry { tick: 100, state: State::Active, ..Telemetry::default() };
+    let backwards = from_board_frame(&FromBoard::Telemetry(telemetry), &mut backwards).unwrap().to_vec();
+    link.board.says_at = Some((Duration::from_secs(2), backwards));
+    let mut device = connected(link);
+    device.subscribe(4_000).unwrap();
+    let mut ticks = Vec::new();
+    let waited = device.wait(Duration::from_secs(3), &mut |event| {
+        if let Event::Telemetry(telemetry) = event {
+            ticks.push(telemetry.tick);
+        }
+    });
+    assert!(matches!(waited, Err(DeviceError::TelemetryBackwards { tick: 100, .. })), "{waited:?}");
+    assert!(ticks.len() > 10 && ticks.is_sorted(), "{ticks:?}");
 }

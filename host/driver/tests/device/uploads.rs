@@ -2,6 +2,7 @@
 //! credit.
 
 use std::collections::BTreeSet;
+use std::ops::ControlFlow;
 use std::time::Duration;
 
 use frixel_driver::{Bitmap, Device, DeviceError, Link, Upload};
@@ -256,4 +257,63 @@ fn a_bitmap_of_another_size_is_refused_before_anything_is_sent() {
     let error = device.upload(&Upload { scene: &scene, bitmaps: vec![wrong] }, &mut |_| {}).unwrap_err();
     assert!(matches!(error, DeviceError::BitmapSize { found: 62_500, .. }), "{error}");
     assert_eq!(device.counters(), before);
+}
+
+/// A board that has every chunk, and asks for all of them again.
+#[test]
+fn a_board_that_forgets_every_upload_is_given_up() {
+    let mut board = FakeBoard::new();
+    let forgets = |command: &Command| {
+        let forgotten = Refusal::UploadIncomplete { next_chunk: 0 };
+        (*command == Command::UploadEnd).then_some(forgotten)
+    };
+    board.refuse = Some(Box::new(forgets));
+    let mut device = connected(VirtualLink::new(board));
+    let (samples, scene) = (samples(6_250), scene(0.25));
+    let error = device.upload(&Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] }, &mut |_| {}).unwrap_err();
+    assert!(matches!(error, DeviceError::UploadForgotten { total_bytes: 6_250, times: 4, .. }), "{error}");
+    assert!(error.to_string().contains("reset the board"), "{error}");
+    assert!(device.into_link().now() < Duration::from_secs(1));
+}
+
+/// 57,600 baud and less: a full window ahead of a request takes most of a second, or several.
+#[test]
+fn a_slow_line_uploads_in_the_end() {
+    let (samples, scene) = (samples(25_000), scene(0.25));
+    for bytes_per_s in [11_520, 5_760, 2_880, 1_200] {
+        let mut link = VirtualLink::new(FakeBoard::new());
+        link.bytes_per_s = bytes_per_s;
+        let mut device = connected(link);
+        let upload = Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] };
+        device.upload(&upload, &mut |_| {}).unwrap();
+        device.commit(upload.scene_crc32()).unwrap();
+        let written = device.counters().wire_bytes;
+        let link = device.into_link();
+        assert_eq!(link.board.bitmaps.get(&crc32(&samples)), Some(&samples));
+        let line_s = written as f64 / f64::from(bytes_per_s);
+        println!("{bytes_per_s} bytes a second: {:.1} s for {line_s:.1} s of bytes", link.now().as_secs_f64());
+        assert!(written < 40_000, "{written} bytes at {bytes_per_s} a second: nothing is sent twice");
+    }
+}
+
+#[test]
+fn an_upload_ends_when_its_caller_breaks_it_off() {
+    let (samples, scene) = (samples(62_500), scene(0.25));
+    let upload = Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] };
+    let break_off = |link| {
+        let mut device = connected(link);
+        let started = device.now();
+        let deadline = started + Duration::from_millis(100);
+        let mut calls = 0;
+        let error = device.upload_while(&upload, &mut |progress| {
+            calls += 1;
+            let enough = progress.done_bytes > 10_000 || calls > 1_000;
+            if enough { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        assert!(matches!(error, Err(DeviceError::Interrupted { .. })), "{error:?}");
+        assert!(device.now() <= deadline + Duration::from_secs(1));
+        let link = device.into_link();
+        assert_eq!((link.board.bitmaps.len(), &link.board.scene), (0, &None));
+    };
+    break_off(VirtualLink::new(FakeBoard::new()));
 }

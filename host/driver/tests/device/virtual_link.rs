@@ -10,7 +10,7 @@ use frixel_driver::{Link, LinkClosed, Written};
 use crate::fake_board::{FakeBoard, WINDOW};
 
 /// 2 Mbaud, ten bits a byte.
-const BYTES_PER_S: u32 = 200_000;
+pub(crate) const BYTES_PER_S: u32 = 200_000;
 
 /// What becomes of a frame on the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,6 +38,8 @@ pub(crate) struct VirtualLink {
     pub(crate) board_pause: Range<Duration>,
     /// Most bytes that were on the way to the board, or there and not looked at.
     pub(crate) most_under_way: usize,
+    /// Bytes that the line takes in a second, in both directions.
+    pub(crate) bytes_per_s: u32,
     now: Duration,
     to_board: Line,
     to_host: Line,
@@ -56,8 +58,8 @@ struct Line {
 
 impl Line {
     /// Returns when the last byte arrives.
-    fn time_to_send(&mut self, bytes: &[u8], now: Duration) -> Duration {
-        let takes = Duration::from_secs(bytes.len() as u64) / BYTES_PER_S;
+    fn time_to_send(&mut self, bytes: &[u8], now: Duration, bytes_per_s: u32) -> Duration {
+        let takes = Duration::from_secs(bytes.len() as u64) / bytes_per_s;
         self.free_at = self.free_at.max(now) + takes;
         self.free_at
     }
@@ -82,6 +84,7 @@ impl VirtualLink {
             board_delay: Duration::ZERO,
             board_pause: Duration::ZERO..Duration::ZERO,
             most_under_way: 0,
+            bytes_per_s: BYTES_PER_S,
             now: Duration::ZERO,
             to_board: Line::default(),
             to_host: Line::default(),
@@ -97,7 +100,7 @@ impl VirtualLink {
             let fate = (self.to_host_weather)(self.frames_to_host, frame);
             self.frames_to_host += 1;
             let bytes = weathered(frame, fate);
-            let arrives = self.to_host.time_to_send(&bytes, self.now);
+            let arrives = self.to_host.time_to_send(&bytes, self.now, self.bytes_per_s);
             self.to_host.under_way.push_back((arrives, bytes));
         }
     }
@@ -140,7 +143,7 @@ impl Link for VirtualLink {
         self.check_plugged()?;
         let fate = (self.to_board_weather)(self.written.frames, frame);
         let bytes = weathered(frame, fate);
-        let arrives = self.to_board.time_to_send(&bytes, self.now) + self.board_delay;
+        let arrives = self.to_board.time_to_send(&bytes, self.now, self.bytes_per_s) + self.board_delay;
         let seen = if self.board_pause.contains(&arrives) { self.board_pause.end } else { arrives };
         self.to_board.under_way.push_back((seen, bytes));
         self.written.add(frame);

@@ -113,13 +113,8 @@ impl Protocol {
                 let element = (time_s - MARKER_START_S) / MARKER_ELEMENT_S;
                 let marked = if element >= 0.0 { MARKER.get(element as usize).copied() } else { None };
                 match marked {
-                    Some(is_marked) => {
-                        if is_marked {
-                            self.voltage_max_v_rms()
-                        } else {
-                            0.0
-                        }
-                    }
+                    Some(true) => self.voltage_max_v_rms(),
+                    Some(false) => 0.0,
                     None if is_on => {
                         self.voltages_v_rms.get(stroke % self.voltages_v_rms.len()).copied().unwrap_or(0.0)
                     }

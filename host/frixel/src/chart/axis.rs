@@ -44,7 +44,7 @@ impl Axis {
     }
 
     /// The values that have a label.
-    pub(super) fn ticks(&self) -> Vec<f64> {
+    pub(crate) fn ticks(&self) -> Vec<f64> {
         let (start, end) = (self.range.start.min(self.range.end), self.range.end.max(self.range.start));
         if !self.logarithmic {
             return multiples(start, end, step((end - start) / self.labels)).collect();

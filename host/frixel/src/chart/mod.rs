@@ -10,6 +10,7 @@ mod field;
 mod legend;
 mod plot;
 mod png;
+mod strip;
 mod style;
 
 use plotters::coord::Shift;
@@ -21,6 +22,7 @@ use thiserror::Error;
 pub(crate) use axis::Axis;
 pub(crate) use field::{Cell, Field, Raster};
 use legend::Legend;
+pub(crate) use strip::{Strip, StripCell};
 use style::{EDGE, NOTE, Scale, TITLE, WIDTH};
 pub(crate) use style::{Line, Look, Mark, PALETTE, colour, graded, signed};
 
@@ -81,6 +83,8 @@ pub(crate) struct Panel {
     pub(crate) field: Option<Field>,
     /// Short texts, each drawn to the right of its point.
     pub(crate) notes: Vec<(f64, f64, String)>,
+    /// Further values along the axis, below its label.
+    pub(crate) strips: Vec<Strip>,
     /// Height of plot, title and axes, in pixels.
     pub(crate) height: u32,
     pub(crate) margins: Margins,
@@ -109,12 +113,18 @@ impl Panel {
     pub(crate) fn new(title: &str, x: Axis, y: Axis) -> Self {
         let margins = Margins { left: 80, right: 20, top: 30, bottom: 44 };
         let (title, height) = (title.to_owned(), PANEL_HEIGHT);
-        Self { title, x, y, series: Vec::new(), field: None, notes: Vec::new(), height, margins }
+        Self { title, x, y, series: Vec::new(), field: None, notes: Vec::new(), strips: Vec::new(), height, margins }
     }
 
     /// Adds a series.
     pub(crate) fn add(&mut self, name: &str, look: Look, points: Vec<(f64, f64)>) {
         self.series.push(Series { name: name.to_owned(), points, look });
+    }
+
+    /// Adds a strip below the axis, and makes room for it.
+    pub(crate) fn add_strip(&mut self, strip: Strip) {
+        self.strips.push(strip);
+        self.height += strip::STRIP_HEIGHT;
     }
 
     /// Adds a coloured field, and makes room for its colour scale.

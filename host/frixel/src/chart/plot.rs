@@ -4,6 +4,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
 use super::clip::clipped;
+use super::strip::{self, STRIP_HEIGHT};
 use super::style::{AXIS_LABEL, EDGE, LABEL, NOTE, Scale, TITLE, grid};
 use super::{Area, Drawn, Line, Mark, Panel, Series};
 
@@ -42,10 +43,12 @@ pub(super) fn draw<DB: DrawingBackend>(area: &Area<DB>, panel: &Panel, scale: Sc
         let place = (scale.px(margins.left) as i32, scale.px(margins.top / 2 + 2) as i32);
         area.draw(&Text::new(panel.title.as_str(), place, scale.letters_at(TITLE, HPos::Left)))?;
     }
+    let strips_height = panel.strips.len() as u32 * STRIP_HEIGHT;
     let mut chart = ChartBuilder::on(&area)
         .margin_top(scale.px(margins.top))
         .margin_left(scale.px(EDGE))
         .margin_right(scale.px(margins.right))
+        .margin_bottom(scale.px(strips_height))
         .x_label_area_size(scale.px(margins.bottom))
         .y_label_area_size(scale.px(margins.left - EDGE))
         .build_cartesian_2d(panel.x.clone(), panel.y.clone())?;
@@ -64,6 +67,10 @@ pub(super) fn draw<DB: DrawingBackend>(area: &Area<DB>, panel: &Panel, scale: Sc
     let canvas = chart.plotting_area().strip_coord_spec();
     let (width, height) = canvas.dim_in_pixel();
     let plane = Plane { panel, size: (f64::from(width), f64::from(height)) };
+    let (left, _) = canvas.get_base_pixel();
+    let left = left - area.get_base_pixel().0;
+    let plot = left..left + width as i32;
+    strip::draw(&area, &panel.strips, &panel.x, plot, panel.height - strips_height, scale)?;
     if let Some(field) = &panel.field {
         field.draw(&canvas, &plane, scale)?;
         let (left, top) = canvas.get_base_pixel();

@@ -1,5 +1,7 @@
 //! Uploads a scene to a simulated board without playing it.
 
+use std::ops::ControlFlow;
+
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, StrokeError, WorldError};
 use thiserror::Error;
 
@@ -30,6 +32,6 @@ pub(super) fn wire_bytes(program: &Program, rig: &RigConfig) -> Result<usize, Re
     let stroke = Stroke::natural(header.screen_width_m.into(), header.screen_height_m.into(), 1.0)?;
     let mut device = Device::connect(SimLink::new(Rig::new(&mut memory, rig, stroke, 1)?, Recorder::idle()))?;
     let before = device.counters().wire_bytes;
-    load(&mut device, program, &mut |_| {})?;
+    load(&mut device, program, &mut |_| ControlFlow::Continue(()))?;
     Ok((device.counters().wire_bytes - before) as usize)
 }

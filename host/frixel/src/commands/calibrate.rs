@@ -2,6 +2,7 @@
 
 use std::fs::File;
 use std::io::{BufReader, stdin};
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::Duration;
@@ -78,14 +79,14 @@ fn on_simulator(args: &CalibrateArgs, interrupt: &Interrupt) -> Result<Recorded,
     let mut memory = BoardMemory::new();
     let mut rig = Rig::new(&mut memory, &config, stroke, args.seed)?;
     rig.world_mut().set_own_finger(contact);
-    let sensor = ForceSensor::new(ROW_HZ, config.board.tick_hz);
-    let link = SimLink::new(rig, Recorder::idle()).with_force_sensor(sensor);
+    let mut sensor = ForceSensor::new(ROW_HZ, config.board.tick_hz);
+    let link = SimLink::new(rig, Recorder::idle()).observed(|record| sensor.measure(record));
     let mut player = plan.start(Device::connect(link)?, 0)?;
     let board = plan.play(&mut player, interrupt, Duration::MAX)?;
-    let forces = player.link_mut().force_sensor().map(|sensor| sensor.rows().to_vec()).unwrap_or_default();
+    drop(player);
     let forces = match &args.forces {
         Some(path) => read(path)?,
-        None => forces,
+        None => sensor.rows().to_vec(),
     };
     Ok((board, forces))
 }
@@ -167,7 +168,7 @@ impl Plan {
         let ticks = (self.protocol.duration_s() * f64::from(self.tick_hz)) as u64;
         let recorder = Recorder::new(&self.program, &self.limits, self.tick_hz, ticks, self.tick_hz / ROW_HZ);
         let mut player = Player::new(device, recorder.map_err(CommandError::Finger)?);
-        player.start(&self.program, telemetry_ticks, &mut |_| {}).map_err(CommandError::Play)?;
+        player.start(&self.program, telemetry_ticks, &mut |_| ControlFlow::Continue(())).map_err(CommandError::Play)?;
         let samples = self.protocol.samples().map_err(CommandError::Finger)?;
         player.stream(Feed::of(samples, self.protocol.sample_hz())).map_err(CommandError::Play)?;
         Ok(player)

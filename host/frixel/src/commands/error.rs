@@ -7,7 +7,7 @@ use frixel::calibration::CalibrationError;
 use frixel::check::RehearsalError;
 use frixel::fit::FitError;
 use frixel::model_csv::CsvError;
-use frixel::output::OutputError;
+use frixel::output::{FeltLogError, OutputError};
 use frixel::player::PlayError;
 use frixel::report::ReportError;
 #[cfg(unix)]
@@ -20,7 +20,7 @@ use frixel_driver::{DeviceError, PortError};
 use frixel_hil_sim::emulated::EmulatorError;
 use frixel_hil_sim::{StrokeError, WorldError};
 use frixel_model::ParameterError;
-use frixel_scene::CompileError;
+use frixel_scene::{CompileError, Warning};
 use thiserror::Error;
 
 #[derive(Debug, Error)]
@@ -61,6 +61,8 @@ pub(crate) enum CommandError {
     Stroke { path: PathBuf, source: StrokeError },
     #[error("a stroke over this scene: {0}")]
     NaturalStroke(StrokeError),
+    #[error("--from and --to: {0}; give two places that differ")]
+    StraightStroke(StrokeError),
     #[error("{input}: {source}")]
     ModelCsv { input: String, source: CsvError },
     #[error("{}: {source}", path.display())]
@@ -83,15 +85,15 @@ pub(crate) enum CommandError {
     Write { path: PathBuf, source: io::Error },
     #[error("{} is not UTF-8 text: save it as UTF-8, a CSV file with the columns t_s,x_mm,y_mm", path.display())]
     StrokeNotText { path: PathBuf },
-    #[error("{} lasts {seconds} s, longer than a day (86400 s): give a shorter stroke; its times are in seconds", path.display())]
-    StrokeTooLong { path: PathBuf, seconds: f64 },
+    #[error("{name} lasts {seconds} s, longer than a day (86400 s): give a shorter stroke; its times are in seconds")]
+    StrokeTooLong { name: String, seconds: f64 },
     #[error(
-        "{} is nowhere on the screen, which is {width_mm} by {height_mm} mm: give places in mm from its top left corner",
-        path.display()
+        "{name} is nowhere on the screen, which is {width_mm} by {height_mm} mm: give places in mm from its top left corner"
     )]
-    StrokeOffScreen { path: PathBuf, width_mm: f64, height_mm: f64 },
+    StrokeOffScreen { name: String, width_mm: f64, height_mm: f64 },
     #[error(
-        "--stroke moves the finger of --port sim and --port qemu only; a board at {port} has its own: leave it out"
+        "a stroke moves the finger of --port sim and --port qemu only; a board at {port} has its own: leave out --stroke \
+         and --from"
     )]
     StrokeOnBoard { port: String },
     #[error("{port} sends telemetry at most {max} times a second, --csv-hz {found} is more; give {max} or less")]
@@ -104,6 +106,19 @@ pub(crate) enum CommandError {
         "{port} is a board with an electrode: put on --arm, and hold the switch on the board, to let it drive hundreds of volts"
     )]
     NotArmed { port: String },
+    #[error("a board with an electrode does not extrapolate: {warning}")]
+    NotMeasured { warning: Warning },
+    #[error(transparent)]
+    FeltLog(#[from] FeltLogError),
+    #[error(
+        "--with-log joins the log of a virtual board at a port, --port {port} records what is felt itself: leave it out"
+    )]
+    LogInVirtualTime { port: String },
+    #[error(
+        "{} ends {behind_s:.1} s before the play did: give the felt.csv of the `frixel sim` whose port this is",
+        path.display()
+    )]
+    LogTooShort { path: PathBuf, behind_s: f64 },
     #[error(transparent)]
     Feed(#[from] FeedError),
     #[error(

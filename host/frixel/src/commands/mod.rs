@@ -9,8 +9,10 @@ mod interrupt;
 mod model;
 mod play;
 mod ports;
+mod profiles;
 mod report;
 mod scene;
+mod score;
 #[cfg(unix)]
 mod sim;
 mod stroke;
@@ -22,6 +24,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Parser, Subcommand};
 
 use error::CommandError;
+use stroke::StrokeArgs;
 
 /// Friction textures on an electrovibration screen, in newtons.
 ///
@@ -42,6 +45,8 @@ enum Command {
     /// Check a scene, or draw it, before it is played.
     #[command(subcommand)]
     Scene(scene::SceneCommand),
+    /// Score how faithfully simulated fingers feel a scene.
+    Score(score::ScoreArgs),
     /// Serve a virtual board on a pseudo-terminal, for other programs to play to.
     Sim(SimArgs),
     /// List the serial ports.
@@ -72,14 +77,16 @@ struct DemoArgs {
 struct PlayArgs {
     /// The scene, a TOML file (docs/scene.md).
     scene: PathBuf,
+    #[command(flatten)]
+    profiles: profiles::ProfileArgs,
     /// `sim` for the simulator in this process, `qemu` for the firmware on an emulated board, or the path of a board's
     /// serial port.
     #[arg(long, default_value = "sim")]
     port: String,
-    /// Where the simulated finger goes: a CSV file with the columns `t_s,x_mm,y_mm`.
-    #[arg(long, value_name = "FILE.csv")]
-    stroke: Option<PathBuf>,
-    /// How long to play. Without it, the stroke's length on the simulator, and until Ctrl-C on a board.
+    #[command(flatten)]
+    stroke: StrokeArgs,
+    /// How long to play. Without it, as long as the file of --stream or the stroke lasts; on a board without --stream,
+    /// until Ctrl-C.
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     seconds: Option<f64>,
     /// Folder for what is written.
@@ -101,6 +108,10 @@ struct PlayArgs {
     /// --stream.
     #[arg(long)]
     watch: bool,
+    /// Join what the finger of a virtual board felt: the felt.csv that its `frixel sim` writes, on this machine. With
+    /// it, a play to the port of that board writes felt.svg, and `felt_n` into felt.csv.
+    #[arg(long, value_name = "FILE.csv")]
+    with_log: Option<PathBuf>,
     /// Samples for the scene's stream layers: a WAV file, or `-` for raw ones on standard input, two bytes each,
     /// little-endian.
     #[arg(long, value_name = "FILE.wav")]
@@ -112,9 +123,8 @@ struct PlayArgs {
 
 #[derive(Debug, Args)]
 struct SimArgs {
-    /// Where the finger goes, over and over: a CSV file with the columns `t_s,x_mm,y_mm`.
-    #[arg(long, value_name = "FILE.csv")]
-    stroke: Option<PathBuf>,
+    #[command(flatten)]
+    stroke: StrokeArgs,
     /// Folder for what is written.
     #[arg(long, default_value = "frixel-out")]
     out: PathBuf,
@@ -135,8 +145,9 @@ impl PlayArgs {
     fn of(scene: &Path) -> Self {
         Self {
             scene: scene.to_owned(),
+            profiles: profiles::ProfileArgs::default(),
             port: "sim".into(),
-            stroke: None,
+            stroke: StrokeArgs::default(),
             seconds: None,
             out: "frixel-out".into(),
             json: false,
@@ -144,6 +155,7 @@ impl PlayArgs {
             csv_hz: 1000,
             arm: false,
             watch: false,
+            with_log: None,
             stream: None,
             stream_hz: None,
         }
@@ -157,6 +169,7 @@ impl Cli {
             Some(Command::Demo(args)) => demo::run(&args),
             Some(Command::Play(args)) => play::run(&args),
             Some(Command::Scene(command)) => scene::run(&command),
+            Some(Command::Score(args)) => score::run(&args),
             #[cfg(unix)]
             Some(Command::Sim(args)) => sim::run(&args),
             #[cfg(not(unix))]

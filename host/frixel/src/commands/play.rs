@@ -12,11 +12,11 @@ mod plan;
 mod progress;
 mod rigs;
 mod saved_file;
+mod with_log;
 
 use std::path::PathBuf;
 
 use frixel::output::Report;
-use frixel::scene_file;
 
 use super::PlayArgs;
 use super::error::CommandError;
@@ -37,8 +37,8 @@ pub(super) fn run(args: &PlayArgs) -> Result<(), CommandError> {
     let target = Target::of(&args.port);
     plan::check_options(args, target)?;
     // This comes before the file is read for the first time, so that no change is missed.
-    let live_scene = args.watch.then(|| LiveScene::new(&args.scene));
-    let scene = scene_file::load(&args.scene)?;
+    let live_scene = args.watch.then(|| LiveScene::new(&args.scene, args.profiles.names()));
+    let scene = args.profiles.names().load(&args.scene)?;
     let interrupt = Interrupt::watch()?;
     let played = match target {
         Target::Simulator => rigs::play_on_simulator(args, &scene, &interrupt),

@@ -1,17 +1,18 @@
 //! `frixel sim`.
 
 use frixel::rigs::Server;
-use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
+use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
 
 use super::SimArgs;
 use super::error::CommandError;
 use super::interrupt::Interrupt;
-use super::stroke::stroke;
 use super::terminal::{note, print_line};
 
 /// Size of the screen that the generated stroke covers: that of the bundled scenes.
 const SCREEN_WIDTH_M: f64 = 0.12;
 const SCREEN_HEIGHT_M: f64 = 0.11;
+/// Duration of the generated stroke, s.
+const STROKE_S: f64 = 3.0;
 /// Time for which the finger is lifted before it repeats its stroke.
 const PAUSE_S: f64 = 0.2;
 /// Rows per second in felt.csv.
@@ -19,9 +20,11 @@ const ROWS_HZ: u32 = 1000;
 
 pub(super) fn run(args: &SimArgs) -> Result<(), CommandError> {
     let interrupt = Interrupt::watch()?;
-    let stroke = stroke(args.stroke.as_deref(), SCREEN_WIDTH_M, SCREEN_HEIGHT_M, None)?
-        .looped(PAUSE_S)
-        .map_err(CommandError::NaturalStroke)?;
+    let stroke = match args.stroke.stroke()? {
+        Some(stroke) => stroke,
+        None => Stroke::natural(SCREEN_WIDTH_M, SCREEN_HEIGHT_M, STROKE_S).map_err(CommandError::NaturalStroke)?,
+    };
+    let stroke = stroke.looped(PAUSE_S).map_err(CommandError::NaturalStroke)?;
     let config = RigConfig::default();
     let mut memory = BoardMemory::new();
     let mut rig = Rig::new(&mut memory, &config, stroke, args.seed)?;

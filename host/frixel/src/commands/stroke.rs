@@ -1,53 +1,160 @@
 //! The path of the simulated finger.
 
-use std::io::ErrorKind;
-use std::path::Path;
+mod default_stroke;
 
-use frixel_hil_sim::Stroke;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use frixel_hil_sim::{Point, Stroke, StrokeError};
 
 use super::error::CommandError;
 use super::terminal::note;
+pub(super) use default_stroke::default_stroke;
 
-/// Duration of a generated stroke without `--seconds`, s.
-const NATURAL_STROKE_S: f64 = 3.0;
-/// Longest stroke from a file: one day, in s.
-const FILE_STROKE_MAX_S: f64 = 86_400.0;
+/// Longest stroke: one day, in s.
+const STROKE_MAX_S: f64 = 86_400.0;
 /// Time between two positions of a stroke that are checked, s.
 const CHECK_PERIOD_S: f64 = 1e-3;
 /// Largest number of positions of a stroke that are checked.
 const CHECKS_MAX: f64 = 1e6;
+/// Time between two places of a minimum-jerk stroke that goes back and forth, s.
+const SAMPLE_PERIOD_S: f64 = 1e-3;
+/// Columns of a stroke file, load in N included, and those of `felt.csv`, which may be played as a stroke.
+const KNOWN_COLUMNS: [&str; 11] = [
+    "t_s",
+    "x_mm",
+    "y_mm",
+    "force_n",
+    "speed_mm_s",
+    "wanted_n",
+    "asked_n",
+    "felt_n",
+    "voltage_v_rms",
+    "dac_code",
+    "flags",
+];
 
-/// The stroke from a file, or a generated natural stroke over a screen of this size.
-pub(super) fn stroke(
-    file: Option<&Path>,
-    screen_width_m: f64,
-    screen_height_m: f64,
-    seconds: Option<f64>,
-) -> Result<Stroke, CommandError> {
-    match file {
-        Some(path) => from_file(path),
-        None => Stroke::natural(screen_width_m, screen_height_m, seconds.unwrap_or(NATURAL_STROKE_S))
-            .map_err(CommandError::NaturalStroke),
+/// Options that say where the simulated finger goes.
+#[derive(Clone, Debug, Default, Args)]
+pub(super) struct StrokeArgs {
+    /// Where the simulated finger goes: a CSV file with the columns `t_s,x_mm,y_mm`, and `force_n` for the
+    /// normal load, for example a felt.csv.
+    #[arg(long, value_name = "FILE.csv", conflicts_with = "from")]
+    stroke: Option<PathBuf>,
+    /// Start of a straight stroke, in mm from the top left corner of the screen.
+    #[arg(long, value_name = "X,Y", value_parser = place_mm, requires = "to")]
+    from: Option<Point>,
+    /// End of a straight stroke, in mm.
+    #[arg(long, value_name = "X,Y", value_parser = place_mm, requires = "from")]
+    to: Option<Point>,
+    /// Mean speed of a straight stroke, in mm/s; 100 unless you say otherwise.
+    #[arg(long, value_name = "MM_PER_S", value_parser = speed_m_per_s, requires = "from")]
+    speed: Option<f64>,
+    /// How many times the finger goes along a straight stroke, back and forth; once unless you say otherwise.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000), requires = "from")]
+    times: Option<u32>,
+    /// Start and end a straight stroke at rest, as a hand does (minimum jerk), rather than at constant speed.
+    #[arg(long, requires = "from")]
+    natural: bool,
+}
+
+impl StrokeArgs {
+    /// Whether any option is given.
+    pub(super) fn is_given(&self) -> bool {
+        self.stroke.is_some() || self.from.is_some()
+    }
+
+    /// The stroke that the options describe; `None` without options.
+    pub(super) fn stroke(&self) -> Result<Option<Stroke>, CommandError> {
+        match (&self.stroke, self.from, self.to) {
+            (Some(path), ..) => from_file(path).map(Some),
+            (None, Some(from), Some(to)) => self.straight(from, to).map(Some),
+            _ => Ok(None),
+        }
+    }
+
+    /// What the stroke is called in messages.
+    pub(super) fn name(&self) -> String {
+        self.stroke.as_ref().map_or_else(|| "the stroke".to_owned(), |path| path.display().to_string())
+    }
+
+    fn straight(&self, from: Point, to: Point) -> Result<Stroke, CommandError> {
+        let (speed_m_per_s, times) = (self.speed.unwrap_or(0.1), self.times.unwrap_or(1));
+        let once = Stroke::constant_speed(from, to, speed_m_per_s).map_err(straight_error)?;
+        let once_s = once.duration_s();
+        let seconds = f64::from(times) * once_s;
+        if seconds > STROKE_MAX_S {
+            return Err(CommandError::StrokeTooLong { name: self.name(), seconds });
+        }
+        let once = if self.natural { Stroke::minimum_jerk(from, to, once_s).map_err(straight_error)? } else { once };
+        if times == 1 { Ok(once) } else { back_and_forth(&once, times, self.natural).map_err(straight_error) }
     }
 }
 
-fn from_file(path: &Path) -> Result<Stroke, CommandError> {
+/// Goes along a stroke `times` times, back and forth.
+fn back_and_forth(once: &Stroke, times: u32, is_curved_in_time: bool) -> Result<Stroke, StrokeError> {
+    let once_s = once.duration_s();
+    let steps = if is_curved_in_time { (once_s / SAMPLE_PERIOD_S).ceil().max(1.0) as u32 } else { 1 };
+    let place = |number: u32| {
+        let (round, step) = (number / steps, number % steps);
+        let part = f64::from(step) / f64::from(steps);
+        let finger = once.at(once_s * if round.is_multiple_of(2) { part } else { 1.0 - part });
+        let t_s = once_s * (f64::from(round) + part);
+        (t_s, finger.map(|finger| Point { x_m: finger.x_m, y_m: finger.y_m }))
+    };
+    Stroke::through(&(0..=times * steps).map(place).collect::<Vec<_>>())
+}
+
+fn straight_error(source: StrokeError) -> CommandError {
+    CommandError::StraightStroke(source)
+}
+
+pub(super) fn from_file(path: &Path) -> Result<Stroke, CommandError> {
     let text = std::fs::read_to_string(path).map_err(|error| match error.kind() {
         ErrorKind::InvalidData => CommandError::StrokeNotText { path: path.into() },
         _ => CommandError::reading(path)(error),
     })?;
     let stroke = Stroke::from_csv(&text).map_err(|source| CommandError::Stroke { path: path.into(), source })?;
     let seconds = stroke.duration_s();
-    if seconds > FILE_STROKE_MAX_S {
-        return Err(CommandError::StrokeTooLong { path: path.into(), seconds });
+    if seconds > STROKE_MAX_S {
+        return Err(CommandError::StrokeTooLong { name: path.display().to_string(), seconds });
     }
+    note_ignored_columns(path, &text);
     Ok(stroke)
 }
 
-/// Fails if the stroke from a file is never on the screen in its first `seconds`. Prints a note if it is partly off
-/// the screen.
+/// Names the columns of a stroke file that are not read.
+fn note_ignored_columns(path: &Path, text: &str) {
+    let header = text.lines().find(|line| !line.trim().is_empty()).unwrap_or_default();
+    let names = header.split(',').map(|name| name.trim().trim_matches('"'));
+    let ignored: Vec<&str> = names.filter(|name| !KNOWN_COLUMNS.contains(name)).collect();
+    if !ignored.is_empty() {
+        let names = ignored.join(", ");
+        note(format_args!("{}: ignored, not a column of a stroke: {names}", path.display()));
+    }
+}
+
+/// Parses a place in mm, such as `12,34.5`.
+fn place_mm(text: &str) -> Result<Point, String> {
+    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|mm| mm.abs() <= 10_000.0);
+    match text.split_once(',').and_then(|(x, y)| number(x).zip(number(y))) {
+        Some((x_mm, y_mm)) => Ok(Point { x_m: 1e-3 * x_mm, y_m: 1e-3 * y_mm }),
+        None => Err("expected a place in mm from the top left corner of the screen, for example 12,34.5".into()),
+    }
+}
+
+/// Parses a speed in mm/s.
+fn speed_m_per_s(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(speed_mm_s) if speed_mm_s > 0.0 && speed_mm_s <= 10_000.0 => Ok(1e-3 * speed_mm_s),
+        _ => Err("expected a speed above 0, at most 10000 mm/s".into()),
+    }
+}
+
+/// Fails if the stroke is never on the screen in its first `seconds`. Prints a note if it is partly off the screen.
 pub(super) fn check_on_screen(
-    path: &Path,
+    name: &str,
     stroke: &Stroke,
     screen_width_m: f64,
     screen_height_m: f64,
@@ -67,13 +174,12 @@ pub(super) fn check_on_screen(
     let in_mm = |side_m: f64| (1e6 * side_m).round() / 1e3;
     let (width_mm, height_mm) = (in_mm(screen_width_m), in_mm(screen_height_m));
     if on == 0 && off > 0 {
-        return Err(CommandError::StrokeOffScreen { path: path.into(), width_mm, height_mm });
+        return Err(CommandError::StrokeOffScreen { name: name.to_owned(), width_mm, height_mm });
     }
     if off > 0 {
         let percent = (100.0 * f64::from(off) / f64::from(on + off)).max(0.1);
-        let path = path.display();
         note(format_args!(
-            "{path}: the finger is off the screen ({width_mm} by {height_mm} mm) for {percent:.1} % of the stroke"
+            "{name}: the finger is off the screen ({width_mm} by {height_mm} mm) for {percent:.1} % of the stroke"
         ));
     }
     Ok(())

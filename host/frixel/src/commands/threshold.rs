@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::io::{BufRead, stdin};
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::thread;
@@ -107,7 +108,7 @@ fn session<L: RecordedLink>(
     let scene = Scene::parse(&scene, "threshold", &std::collections::BTreeMap::new())?;
     let program = compile(&scene, &hello.limits, hello.tick_hz)?;
     let mut player = Player::new(device, Recorder::idle());
-    player.start(&program, 0, &mut |_| {}).map_err(CommandError::Play)?;
+    player.start(&program, 0, &mut |_| ControlFlow::Continue(())).map_err(CommandError::Play)?;
     print_line("  Slide back and forth over the screen, a stroke of 7 cm in each direction, as evenly as you can.")?;
     print_line("  Type 1 or 2 and Enter: which of the two strokes was rougher? Guess if you are not sure.")?;
     let mut random = Pcg64::seed_from_u64(args.seed);

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::trace::{Extremes, Span, Trace};
 use super::{OutputError, Subject};
-use crate::chart::{Axis, Chart, Line, Look, Margins, PALETTE, Panel, RGBColor};
+use crate::chart::{Axis, Chart, Line, Look, Margins, PALETTE, Panel, RGBColor, Strip, StripCell};
 use frixel_scene::Reach;
 
 const REFERENCE: RGBColor = RGBColor(0xf2, 0xb1, 0x34);
@@ -31,14 +31,18 @@ type Part = fn(&Span) -> Option<Extremes>;
 
 /// Draws reference and felt friction over time, and the voltage below them; the reachable range is shaded. Where the
 /// felt friction is unknown, as on a real board, the commanded friction is drawn instead. Signals that change too fast
-/// for a line are drawn as their envelope.
+/// for a line are drawn as their envelope. The way of the finger and the layer under it stand below the time.
 pub fn write_felt_svg(path: &Path, subject: &Subject, trace: &Trace, reach: &Reach) -> Result<(), OutputError> {
     let text = chart(subject, trace, reach).svg().map_err(OutputError::drawing(path))?;
     fs::write(path, text).map_err(|source| OutputError::File { path: path.to_owned(), source })
 }
 
 fn chart(subject: &Subject, trace: &Trace, reach: &Reach) -> Chart {
-    let mut chart = Chart::new(vec![friction(trace.spans(), reach), voltage(trace.spans())], 1);
+    let mut below = voltage(trace.spans());
+    for strip in [way(trace.spans(), &below.x), layers(trace)].into_iter().flatten() {
+        below.add_strip(strip);
+    }
+    let mut chart = Chart::new(vec![friction(trace.spans(), reach), below], 1);
     chart.title = subject.title();
     chart
 }
@@ -71,6 +75,35 @@ fn voltage(spans: &[Span]) -> Panel {
     let mut panel = panel("voltage, V rms", times(spans), (0.0, largest), HEIGHTS.1);
     Signal { part, scale: 1.0, range: largest }.add_to(&mut panel, spans, "", Look::line(VOLTAGE, Line::Solid));
     panel
+}
+
+/// The length of the finger's way at the times that have a label; `None` without a finger.
+fn way(spans: &[Span], time: &Axis) -> Option<Strip> {
+    let total_mm = spans.last().map(|span| span.way_mm).filter(|way_mm| *way_mm > 0.0)?;
+    let decimals = usize::from(total_mm < 20.0);
+    let at = |t_s: f64| spans.iter().find(|span| span.end_s >= t_s).map_or(total_mm, |span| span.way_mm);
+    let cell = |t_s: f64| StripCell { x: t_s..t_s, text: format!("{:.decimals$}", at(t_s)), colour: None };
+    Some(Strip { label: "way, mm".to_owned(), cells: time.ticks().into_iter().map(cell).collect() })
+}
+
+/// The topmost layer under the finger over time; `None` if no layer is known.
+fn layers(trace: &Trace) -> Option<Strip> {
+    let mut cells: Vec<StripCell> = Vec::new();
+    let mut last: Option<usize> = None;
+    for span in trace.spans() {
+        match (span.layer, cells.last_mut()) {
+            (Some(layer), Some(cell)) if last == Some(layer) => cell.x.end = span.end_s,
+            (Some(layer), before) => {
+                // Cells that follow each other touch.
+                let start_s = before.filter(|_| last.is_some()).map_or(span.start_s, |before| before.x.end);
+                let colour = PALETTE.get(layer % PALETTE.len()).copied();
+                cells.push(StripCell { x: start_s..span.end_s, text: trace.layer_name(layer).to_owned(), colour });
+            }
+            (None, _) => {}
+        }
+        last = span.layer;
+    }
+    (!cells.is_empty()).then(|| Strip { label: "layer".to_owned(), cells })
 }
 
 /// An empty panel over time, whose upright axis extends a twentieth of the range beyond both ends.

@@ -6,11 +6,13 @@
 //! - [`write_fit_svg`]: the residual plots of a fit.
 //! - [`write_scene_png`]: the friction map of a program with the stroke over it.
 //! - [`write_preview_png`]: the friction map of a program before it is played.
+//! - [`FeltLog`]: the log of a virtual board, which joins what its finger felt to the rows of a client.
 //! - [`Report`]: the results of a run, as JSON and as a short text.
 //!
 //! Equal inputs give byte-identical files.
 
 mod csv;
+mod felt_log;
 mod felt_svg;
 mod fit_svg;
 mod map;
@@ -26,7 +28,10 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
+use crate::chart::Chart;
+
 pub use csv::{CsvFile, CsvRow, EventCsv, EventRow, FeltCsv};
+pub use felt_log::{FeltLog, FeltLogError};
 pub use felt_svg::write_felt_svg;
 pub use fit_svg::write_fit_svg;
 pub use preview_png::write_preview_png;
@@ -76,4 +81,10 @@ impl OutputError {
     fn drawing<E: ToString>(path: &Path) -> impl FnOnce(E) -> Self {
         move |error| Self::Drawing { path: path.to_owned(), reason: error.to_string() }
     }
+}
+
+/// Draws a chart into an SVG file.
+pub(crate) fn write_chart(path: &Path, chart: &Chart) -> Result<(), OutputError> {
+    let text = chart.svg().map_err(OutputError::drawing(path))?;
+    std::fs::write(path, text).map_err(|source| OutputError::File { path: path.to_owned(), source })
 }

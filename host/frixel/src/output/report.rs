@@ -5,8 +5,8 @@ use std::fmt::Write;
 use serde::Serialize;
 
 use frixel_driver::{Counters, StreamStatus};
-use frixel_scene::Reach;
 use frixel_scene::metrics::{ErrorSize, MetricsSummary};
+use frixel_scene::{Origin, Reach};
 
 /// The results of a run; the field names are the keys of `--json`. Unknown values are `null` there.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -15,6 +15,8 @@ pub struct Report {
     pub rig: String,
     /// Number of ticks played.
     pub ticks: u64,
+    /// Ticks with the finger on the screen before the board knew of it, which have no friction error.
+    pub unreported_ticks: u64,
     /// Felt minus reference friction, averaged over a carrier period: root mean square, N.
     pub friction_error_rms_n: Option<f64>,
     /// Felt minus reference friction, averaged over a carrier period: largest magnitude, N.
@@ -25,6 +27,8 @@ pub struct Report {
     pub inversion_error_max_n: Option<f64>,
     /// Felt friction minus its mean over a carrier period: root mean square, N.
     pub carrier_ripple_rms_n: Option<f64>,
+    /// What the newtons rest on: `assumed`, `perceptual` or `measured`.
+    pub finger_origin: &'static str,
     /// Total friction at zero voltage, N.
     pub reachable_min_n: f64,
     /// Total friction at the largest voltage, N.
@@ -51,6 +55,8 @@ pub struct Report {
     pub stream_underruns: Option<u32>,
     /// Runs of samples that were lost on the line.
     pub stream_gaps: Option<u32>,
+    /// Names of the layers that the finger never touched.
+    pub untouched_layers: Vec<String>,
 }
 
 impl Report {
@@ -65,11 +71,13 @@ impl Report {
         Self {
             rig: rig.to_owned(),
             ticks: metrics.ticks,
+            unreported_ticks: metrics.unreported_ticks,
             friction_error_rms_n: metrics.friction_error.map(|error| error.rms_n),
             friction_error_max_n: metrics.friction_error.map(|error| error.max_n),
             inversion_error_rms_n: metrics.inversion_error.map(|error| error.rms_n),
             inversion_error_max_n: metrics.inversion_error.map(|error| error.max_n),
             carrier_ripple_rms_n: metrics.carrier_ripple_rms_n,
+            finger_origin: Origin::Assumed.word(),
             reachable_min_n: reach.friction_min_n(),
             reachable_max_n: reach.friction_max_n(),
             wanted_min_n: metrics.wanted_range_n.map(|(least_n, _)| least_n),
@@ -83,7 +91,14 @@ impl Report {
             stream_samples: None,
             stream_underruns: None,
             stream_gaps: None,
+            untouched_layers: Vec::new(),
         }
+    }
+
+    /// Says what the newtons rest on; without this, they are assumed.
+    #[must_use]
+    pub fn with_origin(self, origin: Origin) -> Self {
+        Self { finger_origin: origin.word(), ..self }
     }
 
     /// Adds the status of the stream, if there was one.
@@ -93,6 +108,12 @@ impl Report {
         self.stream_underruns = stream.map(|stream| stream.underruns);
         self.stream_gaps = stream.map(|stream| stream.gaps);
         self
+    }
+
+    /// Adds the names of the layers that the finger never touched.
+    #[must_use]
+    pub fn with_untouched(self, untouched_layers: Vec<String>) -> Self {
+        Self { untouched_layers, ..self }
     }
 
     /// The report as one JSON object on one line.
@@ -109,7 +130,8 @@ impl Report {
             // Writing to a string cannot fail.
             let _ = writeln!(text, "  {name:<16} {value}");
         };
-        let range = |least: f64, most: f64| format!("{:.2} to {:.2} mN", 1e3 * least, 1e3 * most);
+        let suffix = if self.finger_origin == Origin::Measured.word() { "" } else { ", assumed" };
+        let range = |least: f64, most: f64| format!("{:.2} to {:.2} mN{suffix}", 1e3 * least, 1e3 * most);
         line("reachable", range(self.reachable_min_n, self.reachable_max_n));
         if let Some((least, most)) = self.wanted_min_n.zip(self.wanted_max_n) {
             line("wanted", range(least, most));
@@ -129,7 +151,11 @@ impl Report {
             line("carrier ripple", format!("{:.4} mN rms", 1e3 * ripple_n));
         }
         let saturated = self.saturated_ticks.map(|ticks| format!(", of which saturated {ticks}"));
-        line("ticks", format!("{}{}", self.ticks, saturated.unwrap_or_default()));
+        let unreported = match self.unreported_ticks {
+            0 => String::new(),
+            ticks => format!(", before the first touch report {ticks}"),
+        };
+        line("ticks", format!("{}{}{unreported}", self.ticks, saturated.unwrap_or_default()));
         line(
             "link",
             format!(
@@ -141,6 +167,9 @@ impl Report {
             (self.stream_samples, self.stream_underruns, self.stream_gaps)
         {
             line("stream", format!("{samples} samples, {underruns} underruns, {gaps} gaps"));
+        }
+        if !self.untouched_layers.is_empty() {
+            line("never touched", self.untouched_layers.join(", "));
         }
         if let Some(factor) = self.realtime_factor {
             let decimals = if factor < 10.0 { 2 } else { 0 };

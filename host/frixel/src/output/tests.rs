@@ -62,7 +62,7 @@ fn subject(name: &str) -> Subject {
 fn trace(rows: &[FeltRow]) -> Trace {
     let mut trace = Trace::new();
     for row in rows {
-        trace.push(row);
+        trace.push(row, None);
     }
     trace
 }
@@ -138,7 +138,7 @@ fn a_long_trace_stays_small_and_keeps_its_extremes() {
         if number == 123_457 {
             row.felt_n = Some(0.9);
         }
-        trace.push(&row);
+        trace.push(&row, None);
     }
     assert!((800..1_600).contains(&trace.spans().len()), "{}", trace.spans().len());
     assert!(trace.strokes().map(|stroke| stroke.len()).sum::<usize>() < 8_000);
@@ -179,10 +179,10 @@ proptest! {
         for (number, piece) in pieces.iter().enumerate() {
             for step in 0..*piece {
                 let place = (Some(step as f64), Some(number as f64));
-                trace.push(&FeltRow { x_mm: place.0, y_mm: place.1, ..FeltRow::default() });
+                trace.push(&FeltRow { x_mm: place.0, y_mm: place.1, ..FeltRow::default() }, None);
             }
-            trace.push(&FeltRow::default());
-            trace.push(&FeltRow::default());
+            trace.push(&FeltRow::default(), None);
+            trace.push(&FeltRow::default(), None);
         }
         let strokes: Vec<Vec<(f64, f64)>> = trace.strokes().collect();
         prop_assert_eq!(strokes.iter().map(Vec::len).collect::<Vec<_>>(), pieces);
@@ -326,6 +326,7 @@ fn report(summary: &MetricsSummary) -> Report {
 const NOTHING: MetricsSummary = MetricsSummary {
     ticks: 0,
     finger_down_ticks: 0,
+    unreported_ticks: 0,
     saturated_ticks: None,
     friction_error: None,
     inversion_error: None,
@@ -338,6 +339,7 @@ fn report_as_json() {
     let known = MetricsSummary {
         ticks: 120_000,
         finger_down_ticks: 100_000,
+        unreported_ticks: 480,
         saturated_ticks: Some(7),
         friction_error: Some(ErrorSize { rms_n: 0.001, max_n: 0.005 }),
         inversion_error: Some(ErrorSize { rms_n: 1e-6, max_n: 0.00002 }),
@@ -346,20 +348,20 @@ fn report_as_json() {
     };
     assert_eq!(
         report(&known).to_json(),
-        "{\"rig\":\"simulator\",\"ticks\":120000,\"friction_error_rms_n\":0.001,\"friction_error_max_n\":0.005,\
+        "{\"rig\":\"simulator\",\"ticks\":120000,\"unreported_ticks\":480,\"friction_error_rms_n\":0.001,\"friction_error_max_n\":0.005,\
          \"inversion_error_rms_n\":1e-6,\"inversion_error_max_n\":0.00002,\"carrier_ripple_rms_n\":0.0005,\
-         \"reachable_min_n\":0.25,\"reachable_max_n\":0.275,\"wanted_min_n\":0.25,\"wanted_max_n\":0.27,\
+         \"finger_origin\":\"assumed\",\"reachable_min_n\":0.25,\"reachable_max_n\":0.275,\"wanted_min_n\":0.25,\"wanted_max_n\":0.27,\
          \"saturated_ticks\":7,\"frames_sent\":400,\"frames_rejected\":1,\"payload_bytes\":63000,\"wire_bytes\":65000,\
-         \"realtime_factor\":123.4,\"stream_samples\":null,\"stream_underruns\":null,\"stream_gaps\":null}"
+         \"realtime_factor\":123.4,\"stream_samples\":null,\"stream_underruns\":null,\"stream_gaps\":null,\"untouched_layers\":[]}"
     );
     assert_eq!(
         report(&known).summary(),
-        "  reachable        250.00 to 275.00 mN\n\
-         \x20 wanted           250.00 to 270.00 mN\n\
+        "  reachable        250.00 to 275.00 mN, assumed\n\
+         \x20 wanted           250.00 to 270.00 mN, assumed\n\
          \x20 friction error   1.0000 mN rms, 5.0000 mN at most (4.000 % and 20.000 % of the range)\n\
          \x20 inversion error  0.0010 mN rms, 0.0200 mN at most (0.004 % and 0.080 % of the range)\n\
          \x20 carrier ripple   0.5000 mN rms\n\
-         \x20 ticks            120000, of which saturated 7\n\
+         \x20 ticks            120000, of which saturated 7, before the first touch report 480\n\
          \x20 link             400 frames sent, 1 rejected, 63000 payload bytes in 65000\n\
          \x20 speed            123 times real time\n"
     );

@@ -23,6 +23,10 @@ pub struct Trace {
     stroke: Vec<Option<(f64, f64)>>,
     place_step_mm: f64,
     speeds: Speeds,
+    /// Length of the finger's way so far, mm, and its last place.
+    way_mm: f64,
+    last_place_mm: Option<(f64, f64)>,
+    layers: Vec<String>,
 }
 
 /// Every n-th speed of the sliding finger.
@@ -65,6 +69,10 @@ pub(super) struct Span {
     pub(super) asked_n: Option<Extremes>,
     pub(super) felt_n: Option<Extremes>,
     pub(super) voltage_v_rms: Option<Extremes>,
+    /// Length of the finger's way at the end of the span, mm.
+    pub(super) way_mm: f64,
+    /// The topmost layer under the finger at the end of the span, as an index for [`Trace::layer_name`].
+    pub(super) layer: Option<usize>,
 }
 
 /// Least and largest value of a quantity.
@@ -93,8 +101,10 @@ impl Extremes {
 }
 
 impl Span {
-    fn of(row: &FeltRow) -> Self {
+    fn of(row: &FeltRow, way_mm: f64, layer: Option<usize>) -> Self {
         Self {
+            way_mm,
+            layer,
             start_s: row.t_s,
             end_s: row.t_s,
             wanted_n: Extremes::of(row.wanted_n),
@@ -111,6 +121,8 @@ impl Span {
             wanted_n: Extremes::join(self.wanted_n, later.wanted_n),
             asked_n: Extremes::join(self.asked_n, later.asked_n),
             felt_n: Extremes::join(self.felt_n, later.felt_n),
+            way_mm: later.way_mm,
+            layer: later.layer,
             voltage_v_rms: Extremes::join(self.voltage_v_rms, later.voltage_v_rms),
         }
     }
@@ -132,16 +144,39 @@ impl Trace {
             stroke: Vec::new(),
             place_step_mm: PLACE_STEP_MM,
             speeds: Speeds { mm_s: Vec::new(), rows_per_speed: 1, rows: 0 },
+            way_mm: 0.0,
+            last_place_mm: None,
+            layers: Vec::new(),
         }
     }
 
-    /// Adds the next row.
-    pub fn push(&mut self, row: &FeltRow) {
-        self.push_span(Span::of(row));
+    /// Adds the next row, with the name of the topmost layer under the finger.
+    pub fn push(&mut self, row: &FeltRow, layer: Option<&str>) {
+        let place_mm = row.x_mm.zip(row.y_mm);
+        if let (Some(from), Some(to)) = (self.last_place_mm, place_mm) {
+            let step_mm = (to.0 - from.0).hypot(to.1 - from.1);
+            self.way_mm += if step_mm.is_finite() { step_mm } else { 0.0 };
+        }
+        self.last_place_mm = place_mm;
+        let layer = layer.map(|name| self.layer_index(name));
+        self.push_span(Span::of(row, self.way_mm, layer));
         if let Some(speed_mm_s) = row.speed_mm_s.filter(|speed_mm_s| *speed_mm_s >= SLIDES_FROM_MM_S) {
             self.speeds.push(speed_mm_s);
         }
         self.push_place(row.x_mm.zip(row.y_mm).filter(|(x_mm, y_mm)| x_mm.is_finite() && y_mm.is_finite()));
+    }
+
+    /// The name of a span's layer.
+    pub(super) fn layer_name(&self, layer: usize) -> &str {
+        self.layers.get(layer).map_or("", String::as_str)
+    }
+
+    fn layer_index(&mut self, name: &str) -> usize {
+        let known = self.layers.iter().position(|known| known == name);
+        known.unwrap_or_else(|| {
+            self.layers.push(name.to_owned());
+            self.layers.len() - 1
+        })
     }
 
     /// Spans in order of time.

@@ -33,7 +33,8 @@ impl ForceSensor {
         &self.rows
     }
 
-    pub(super) fn measure(&mut self, record: &TickRecord) {
+    /// Measures during a tick.
+    pub fn measure(&mut self, record: &TickRecord) {
         self.normal_force_n += record.felt.normal_load_n;
         self.friction_n += record.felt.friction_n;
         self.ticks += 1;

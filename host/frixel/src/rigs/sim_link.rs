@@ -9,7 +9,6 @@ use frixel_wire::fault::State;
 use frixel_wire::message::Telemetry;
 
 use super::RecordedLink;
-use super::force_sensor::ForceSensor;
 use super::recorded::finger_and_felt;
 
 /// A frame that is sent periodically without a call.
@@ -28,7 +27,7 @@ pub struct SimLink<'a> {
     written: Written,
     written_at_tick: u64,
     keep_alive: Option<KeepAlive>,
-    force_sensor: Option<ForceSensor>,
+    observer: Option<Box<dyn FnMut(&TickRecord) + 'a>>,
 }
 
 impl<'a> SimLink<'a> {
@@ -41,19 +40,14 @@ impl<'a> SimLink<'a> {
             written: Written::default(),
             written_at_tick: 0,
             keep_alive: None,
-            force_sensor: None,
+            observer: None,
         }
     }
 
-    /// Puts a force sensor under the screen, which measures from the start of the play.
+    /// Calls `observer` with every tick that is recorded.
     #[must_use]
-    pub fn with_force_sensor(self, force_sensor: ForceSensor) -> Self {
-        Self { force_sensor: Some(force_sensor), ..self }
-    }
-
-    /// The force sensor under the screen.
-    pub fn force_sensor(&self) -> Option<&ForceSensor> {
-        self.force_sensor.as_ref()
+    pub fn observed(self, observer: impl FnMut(&TickRecord) + 'a) -> Self {
+        Self { observer: Some(Box::new(observer)), ..self }
     }
 
     /// The recorder with all ticks.
@@ -75,8 +69,8 @@ impl<'a> SimLink<'a> {
         let record = self.rig.step();
         if self.recording {
             self.recorder.record(&observation(&record));
-            if let Some(sensor) = &mut self.force_sensor {
-                sensor.measure(&record);
+            if let Some(observer) = &mut self.observer {
+                observer(&record);
             }
         } else if record.status.telemetry.state == State::Active {
             self.rig.world_mut().start_stroke();

@@ -7,14 +7,17 @@ mod wav;
 
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use thiserror::Error;
 
-use frixel_driver::{Device, DeviceError, Link, StreamSettings};
+use frixel_driver::{Device, DeviceError, Link, StreamSettings, StreamStatus};
 use pipe::Pipe;
 
 /// Samples that are read ahead, before the board has room for them.
 const AHEAD: usize = 2048;
+/// Time for requests at the start of a stream, and for its fade, s.
+const END_S: f64 = 0.05;
 
 /// A source of samples for a board.
 ///
@@ -23,7 +26,10 @@ pub struct Feed {
     settings: StreamSettings,
     source: Source,
     pending: Vec<u16>,
-    ended: bool,
+    /// Time on the link's clock when the stream started.
+    started_at: Option<Duration>,
+    /// Time on the link's clock when the last sample was sent.
+    ended_at: Option<Duration>,
 }
 
 enum Source {
@@ -103,13 +109,19 @@ impl Feed {
             return Err(FeedError::Rate { sample_hz, tick_hz });
         }
         let source = Source::Pipe(Pipe::open(input, waits).map_err(FeedError::Pipe)?);
-        Ok(Self { settings: StreamSettings::new(sample_hz), source, pending: Vec::new(), ended: false })
+        Ok(Self {
+            settings: StreamSettings::new(sample_hz),
+            source,
+            pending: Vec::new(),
+            started_at: None,
+            ended_at: None,
+        })
     }
 
     /// Creates a feed from samples in memory.
     pub fn of(samples: Vec<u16>, sample_hz: u32) -> Self {
         let settings = StreamSettings::new(sample_hz);
-        Self { settings, source: Source::Samples(samples, 0), pending: Vec::new(), ended: false }
+        Self { settings, source: Source::Samples(samples, 0), pending: Vec::new(), started_at: None, ended_at: None }
     }
 
     /// The sample rate and the start level.
@@ -120,18 +132,19 @@ impl Feed {
     /// Starts the stream on a board that is playing, and sends the first samples.
     pub fn start<L: Link>(&mut self, device: &mut Device<L>) -> Result<(), FeedError> {
         device.start_stream(self.settings)?;
+        self.started_at = Some(device.now());
         self.pump(device)
     }
 
     /// Sends as many samples as the board has room for, and ends the stream after the last one. Call this every few
     /// milliseconds.
     pub fn pump<L: Link>(&mut self, device: &mut Device<L>) -> Result<(), FeedError> {
-        while !self.ended {
+        while self.ended_at.is_none() {
             let more = self.fetch()?;
             let sent = device.send_samples(&self.pending)?;
             self.pending.drain(..sent);
             if !more && self.pending.is_empty() {
-                self.ended = true;
+                self.ended_at = Some(device.now());
                 device.end_stream()?;
             }
             if sent == 0 {
@@ -139,6 +152,29 @@ impl Feed {
             }
         }
         Ok(())
+    }
+
+    /// Time that the stream takes from its start until it has faded out, if nothing delays it, in s; `None` for a pipe.
+    pub fn duration_s(&self) -> Option<f64> {
+        match &self.source {
+            Source::Samples(samples, _) => Some(self.playing_s(samples.len() as u64, 0)),
+            Source::Pipe(_) => None,
+        }
+    }
+
+    /// Whether the board has played the last sample and has faded out.
+    pub fn is_over<L: Link>(&self, device: &Device<L>) -> bool {
+        let (Some(started_at), Some(ended_at)) = (self.started_at, self.ended_at) else { return false };
+        let StreamStatus { sent, underruns, .. } = device.stream_status().unwrap_or_default();
+        let since = |from: Duration| device.now().saturating_sub(from).as_secs_f64();
+        since(started_at) >= self.playing_s(sent, underruns) && since(ended_at) >= self.playing_s(0, 0)
+    }
+
+    /// Time to play so many samples: the board fills its buffer to the start level first, and again after an underrun.
+    fn playing_s(&self, samples: u64, underruns: u32) -> f64 {
+        let StreamSettings { sample_hz, start_level } = self.settings;
+        let filled = f64::from(start_level) * (1.0 + f64::from(underruns));
+        (samples as f64 + filled) / f64::from(sample_hz) + END_S
     }
 
     /// Reads samples from the source until [`AHEAD`] are pending. Returns whether there may be more.

@@ -124,6 +124,8 @@ mod tests {
     use super::super::Observer;
     use super::{Staircase, Threshold, psychometric};
 
+    const OBSERVERS: u64 = 400;
+
     fn run(threshold_db: f64, trials: usize, seed: u64) -> Threshold {
         let (mut staircase, mut observer) = (Staircase::new(trials).unwrap(), Observer::new(threshold_db, seed));
         while let Some(level_db) = staircase.next_level_db() {
@@ -137,7 +139,6 @@ mod tests {
     /// with thresholds of -36 to -8 dB.
     fn errors(trials: usize) -> (f64, f64) {
         let (mut square, mut inside) = (0.0, 0);
-        const OBSERVERS: u64 = 400;
         for seed in 0..OBSERVERS {
             let threshold_db = -36.0 + 28.0 * seed as f64 / OBSERVERS as f64;
             let found = run(threshold_db, trials, seed);

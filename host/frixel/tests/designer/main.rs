@@ -5,6 +5,10 @@ mod demo;
 mod pictures;
 #[cfg(unix)]
 mod pipes;
+#[cfg(unix)]
+mod ports;
+mod streams;
+mod strokes;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

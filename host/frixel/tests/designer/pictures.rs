@@ -29,6 +29,19 @@ fn map_colours(path: &Path) -> usize {
 }
 
 #[test]
+fn time_stands_above_the_way_and_the_layers() {
+    let folder = TempDir::new().unwrap();
+    let stroke = ["--from", "20,40", "--to", "100,40", "--speed", "100"];
+    succeed(folder.path(), &[&["play", scene("brick.toml").as_str()], &stroke[..]].concat());
+    let svg = std::fs::read_to_string(folder.path().join("frixel-out/felt.svg")).unwrap();
+    let has = |text: &str| svg.lines().any(|line| line == text);
+    assert!(has("time, s") && has("way, mm") && has("layer"), "names of the strips");
+    // 0.4 s at 100 mm/s, 0.8 s at the end, and the name of the only layer.
+    assert!(has("40") && has("80") && svg.lines().any(|line| line.contains("brick") && !line.contains("toml")));
+    assert!(svg.lines().any(|line| line.ends_with("brick.toml, simulated")));
+}
+
+#[test]
 fn the_map_of_a_play_shows_what_only_a_sliding_finger_or_time_brings() {
     // Corduroy that comes with speed, and a heart that vibrates: the map has the ribs, and the shape of the heart.
     for (name, colours_min) in [("ribs.toml", 10), ("heartbeat.toml", 2), ("warning.toml", 2)] {

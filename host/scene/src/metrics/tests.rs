@@ -8,6 +8,7 @@ const PERIOD: usize = 8;
 fn sample(wanted_n: f64, felt_n: f64) -> Sample {
     Sample {
         finger_down: true,
+        board_has_finger: Some(true),
         wanted_n: Some(wanted_n),
         asked_n: Some(wanted_n),
         felt_n: Some(felt_n),
@@ -18,6 +19,7 @@ fn sample(wanted_n: f64, felt_n: f64) -> Sample {
 
 const UP: Sample = Sample {
     finger_down: false,
+    board_has_finger: Some(false),
     wanted_n: None,
     asked_n: None,
     felt_n: None,
@@ -152,4 +154,17 @@ proptest! {
             None => prop_assert!(ripples.is_empty()),
         }
     }
+}
+
+#[test]
+fn friction_before_the_first_touch_report_is_no_error_and_is_counted_apart() {
+    let unreported = |wanted_n| Sample { board_has_finger: Some(false), ..sample(wanted_n, 0.25) };
+    let touch = [unreported(0.4), unreported(0.4), sample(0.25, 0.25), unreported(0.251), sample(0.25, 0.25)];
+    let summary = gather(&[&touch[..], &[UP], &touch[..2]].concat());
+    assert_eq!(summary.unreported_ticks, 4);
+    // A board that loses the finger later in the touch makes errors.
+    let error = summary.friction_error.unwrap();
+    assert!((0.0..0.002).contains(&error.max_n) && error.max_n > 0.0, "{error:?}");
+    let unknown = Sample { board_has_finger: None, ..sample(0.4, 0.25) };
+    assert_eq!(gather(&[unknown]).friction_error, None);
 }

@@ -130,6 +130,11 @@ impl Recorder {
         self.ticks() as f64 * self.tick_period_s
     }
 
+    /// Time from the power-on of the board to time zero of the record, s; `None` before the first observation.
+    pub fn start_s(&self) -> Option<f64> {
+        Some(self.start_tick? as f64 * self.tick_period_s)
+    }
+
     /// Ticks that remain to be recorded.
     pub fn ticks_left(&self) -> u64 {
         self.ticks_max - self.ticks()
@@ -183,6 +188,7 @@ impl Comparison {
         let in_reach = wanted_n.is_some_and(|wanted_n| self.inversion.reaches(wanted_n - natural_n));
         self.metrics.add(&Sample {
             finger_down: observation.finger.is_some(),
+            board_has_finger: telemetry.map(|telemetry| !telemetry.flags.contains(Flags::NO_FINGER)),
             wanted_n,
             asked_n,
             felt_n,

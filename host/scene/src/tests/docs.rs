@@ -6,10 +6,11 @@ use std::fs;
 use std::path::PathBuf;
 
 use super::*;
+use crate::FingerProfile;
 use crate::grammar::{Absence, FieldSpec, Holds, KnownField, Range};
 use crate::kinds::KindName;
 use crate::schema::variant::{Tables, variants};
-use crate::tables::layer::{ABOVE, BLEND, GAIN, KIND, LIVE, NAME, REGION};
+use crate::tables::layer::{ABOVE, BLEND, GAIN, KIND, LIVE, NAME, REGION, REPEAT};
 
 const DOCS: &str = include_str!("../../../../docs/scene.md");
 
@@ -49,7 +50,7 @@ fn every_example_compiles() {
 }
 
 /// The fields of every layer.
-const COMMON: [FieldSpec; 7] = [KIND, NAME, REGION, BLEND, GAIN, ABOVE, LIVE];
+const COMMON: [FieldSpec; 8] = [KIND, NAME, REGION, REPEAT, BLEND, GAIN, ABOVE, LIVE];
 
 /// All fields that the parser knows in a table, for any values of its other fields, in the order in which it reads
 /// them.
@@ -79,6 +80,7 @@ fn documented() -> Vec<(String, Vec<KnownField>)> {
     let layer = |kind: &str| known(&format!("layer = [{{ kind = \"{kind}\""), "}]", "layer");
     all.push(("## Layers".to_owned(), layer("constant").into_iter().filter(is_common).collect()));
     all.push(("### Regions".to_owned(), known("layer = [{ kind = \"constant\", region = {", "} }]", "region")));
+    all.push(("### Repeats".to_owned(), known("layer = [{ kind = \"constant\", repeat = {", "} }]", "repeat")));
     for kind in kinds() {
         let own = layer(kind).into_iter().filter(|known| !is_common(known)).collect();
         all.push((format!("### `{kind}`"), own));
@@ -238,4 +240,22 @@ fn numbers_in_the_text_are_right() {
     assert!(DOCS.contains(&format!("At 150 V rms it feels {:.2} mN more", 1e3 * reach.electric_friction_max_n)));
     assert!(DOCS.contains(&format!("{} N. At 150 V", reach.natural_friction_n)));
     assert_eq!(LIMITS.bitmap_pool_bytes, 65_536);
+}
+
+/// The table of bundled fingers is computed here: on the example screen, at the default limit of the drive.
+#[test]
+fn the_table_of_bundled_fingers_is_right() {
+    for (number, name) in FingerProfile::bundled_names().enumerate() {
+        let Program { reach, header, .. } =
+            compile_text(&format!("version = 2\nfinger = \"{name}\"")).expect("it compiles");
+        let steps = libm::log(reach.friction_max_n() / reach.natural_friction_n) / libm::log(1.11);
+        let row = format!(
+            "| `{name}` | {} N | {:.0} mN | {:.0} mN | {steps:.1}{} |",
+            header.normal_load_n,
+            1e3 * reach.natural_friction_n,
+            1e3 * reach.electric_friction_max_n,
+            if number == 0 { " Weber steps" } else { "" }
+        );
+        assert!(DOCS.contains(&row), "{row}");
+    }
 }

@@ -1,5 +1,6 @@
 //! Plays a plan on an open board, from the upload to the output files.
 
+use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use frixel::output::Report;
@@ -21,7 +22,8 @@ pub(super) fn follow<L: RecordedLink>(
     live_scene: Option<LiveScene>,
     interrupt: &Interrupt,
 ) -> Result<Played, CommandError> {
-    let outputs = Outputs::create(args, plan.target)?;
+    let is_simulated = plan.target.is_virtual_time() || device.hello().board.is_simulated();
+    let outputs = Outputs::create(args, plan.target, is_simulated, &plan.program)?;
     let player = Player::new(device, plan.recorder()?);
     let mut play =
         Play { args, plan, player, outputs, live_scene, interrupt, bars: Bars::default(), writing: Duration::ZERO };
@@ -47,8 +49,11 @@ struct Play<'a, L: RecordedLink> {
 
 impl<L: RecordedLink> Play<'_, L> {
     fn start(&mut self) -> Result<(), CommandError> {
-        let Self { plan, player, bars, .. } = self;
-        let started = player.start(&plan.program, plan.telemetry_period_ticks, &mut |progress| bars.upload(progress));
+        let Self { plan, player, bars, interrupt, .. } = self;
+        let started = player.start(&plan.program, plan.telemetry_period_ticks, &mut |progress| {
+            bars.upload(progress);
+            if interrupt.is_requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
         started.map_err(|error| self.error(error))
     }
 
@@ -58,11 +63,14 @@ impl<L: RecordedLink> Play<'_, L> {
         }
         let mut left = self.plan.time_max();
         while !left.is_zero() && self.player.recorder_mut().ticks_left() > 0 && !self.interrupt.is_requested() {
+            if self.plan.ends_with_stream() && self.player.is_stream_over() {
+                break;
+            }
             let stepped = self.player.step(left);
             self.write_rows()?;
             left = left.saturating_sub(stepped.map_err(|error| self.error(error))?);
             self.refresh_scene()?;
-            self.bars.play(self.player.recorder_mut().t_s() / self.plan.seconds());
+            self.bars.play(self.player.recorder_mut().t_s(), self.plan.seconds());
         }
         self.player.stop().map_err(|error| self.error(error))
     }
@@ -77,8 +85,11 @@ impl<L: RecordedLink> Play<'_, L> {
     /// Replaces the scene if its file was saved.
     fn refresh_scene(&mut self) -> Result<(), CommandError> {
         let Some(live_scene) = &mut self.live_scene else { return Ok(()) };
-        match live_scene.refresh(&mut self.player) {
-            Ok(Some(program)) => self.plan.program = program,
+        match live_scene.refresh(&mut self.player, &self.plan.program) {
+            Ok(Some(program)) => {
+                self.outputs.replace(&program);
+                self.plan.program = program;
+            }
             Ok(None) => {}
             Err(error) => return Err(self.error(error)),
         }
@@ -99,9 +110,11 @@ impl<L: RecordedLink> Play<'_, L> {
         }
         let realtime_factor = target.is_virtual_time().then(|| recorder.t_s() / playing.as_secs_f64());
         let report = Report::new(target.name(), &recorder.summary(), &program.reach, &counters, realtime_factor)
+            .with_origin(program.finger.origin)
             .with_stream(stream);
         let written = self.outputs.write(&recorder.take_rows());
-        let finished = written.and_then(|()| self.outputs.finish(program));
+        let report = report.with_untouched(self.outputs.untouched_layers());
+        let finished = written.and_then(|()| self.outputs.finish(program, recorder.start_s().unwrap_or(0.0)));
         // Ctrl-C in a terminal also ends the emulator, which is not a failure.
         let failure = ended.err().filter(|_| !interrupted);
         let (files, failure) = match finished {

@@ -1,4 +1,4 @@
-//! A scene that is replaced whenever its file is saved.
+//! A scene that is replaced whenever its file, or a file that it names, is saved.
 
 use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
@@ -6,43 +6,72 @@ use std::thread::{self, JoinHandle};
 
 use frixel::player::{PlayError, Player};
 use frixel::rigs::RecordedLink;
-use frixel::scene_file::{self, SceneFileError};
+use frixel::scene_file::{ProfileNames, SceneFileError};
 use frixel_driver::DeviceError;
 use frixel_scene::{Program, compile};
 use frixel_wire::hello::Hello;
 use frixel_wire::message::Refusal;
 
 use super::note;
-use super::plan::print_notes;
+use super::plan::{check_measured, print_notes};
 use super::saved_file::SavedFile;
 
-/// Watches the scene's file while an earlier version of it plays.
+/// Watches the scene's file, and the files that it names, while an earlier version of it plays.
 pub(super) struct LiveScene {
-    path: PathBuf,
+    profiles: ProfileNames,
     file: SavedFile,
+    named_files: Vec<SavedFile>,
     /// The thread that compiles a saved scene, because the host must keep sending to the board meanwhile.
-    compiling: Option<JoinHandle<Result<Program, SceneFileError>>>,
+    compiling: Option<JoinHandle<Compiled>>,
+}
+
+/// A compiled scene, and the files that it names, as they were before they were read.
+struct Compiled {
+    program: Result<Program, SceneFileError>,
+    named_files: Vec<SavedFile>,
 }
 
 impl LiveScene {
-    /// Watches a file for changes from now on. Call this before the file is read.
-    pub(super) fn new(path: &Path) -> Self {
-        Self { path: path.to_owned(), file: SavedFile::new(path), compiling: None }
+    /// Watches a file, and the files that it names, for changes from now on. Call this before the file is read.
+    pub(super) fn new(path: &Path, profiles: ProfileNames) -> Self {
+        let file = SavedFile::new(path);
+        let (_, named_files) = profiles.load_with_files(path);
+        Self { profiles, file, named_files: watched(named_files), compiling: None }
     }
 
-    /// Plays the file if it was saved. Returns the new program if it replaced the one that was playing.
-    pub(super) fn refresh<L: RecordedLink>(&mut self, player: &mut Player<L>) -> Result<Option<Program>, PlayError> {
+    /// Plays the file if it was saved, or if a file that it names was. Returns the new program if it replaced
+    /// `playing`.
+    pub(super) fn refresh<L: RecordedLink>(
+        &mut self,
+        player: &mut Player<L>,
+        playing: &Program,
+    ) -> Result<Option<Program>, PlayError> {
         if let Some(compiling) = self.compiling.take_if(|compiling| compiling.is_finished()) {
-            let compiled = compiling.join().unwrap_or_else(|panic| resume_unwind(panic));
-            return replace(&self.path, compiled, player);
+            let Compiled { program, named_files } = compiling.join().unwrap_or_else(|panic| resume_unwind(panic));
+            self.named_files = named_files;
+            return replace(self.file.path(), program, player, playing);
         }
-        if self.compiling.is_none() && self.file.is_saved() {
-            let (path, Hello { limits, tick_hz, .. }) = (self.path.clone(), *player.device().hello());
-            let compile = move || scene_file::load(&path).and_then(|scene| Ok(compile(&scene, &limits, tick_hz)?));
-            self.compiling = Some(thread::spawn(compile));
+        if self.file.has_vanished() {
+            let path = self.file.path().display();
+            note(format_args!("frixel: {path} is gone: the scene before plays on, until the file is there again"));
+        }
+        // Every file is checked, so that several that are saved together are one change.
+        let is_saved = self.named_files.iter_mut().fold(self.file.is_saved(), |saved, file| file.is_saved() || saved);
+        if self.compiling.is_none() && is_saved {
+            let (path, Hello { limits, tick_hz, .. }) = (self.file.path().to_owned(), *player.device().hello());
+            let profiles = self.profiles.clone();
+            self.compiling = Some(thread::spawn(move || {
+                let (scene, named_files) = profiles.load_with_files(&path);
+                let program = scene.and_then(|scene| Ok(compile(&scene, &limits, tick_hz)?));
+                Compiled { program, named_files: watched(named_files) }
+            }));
         }
         Ok(None)
     }
+}
+
+fn watched(paths: Vec<PathBuf>) -> Vec<SavedFile> {
+    paths.iter().map(|path| SavedFile::new(path)).collect()
 }
 
 /// Plays a compiled scene. If it has errors or the board rejects it, prints why, and keeps the earlier scene playing.
@@ -50,29 +79,35 @@ fn replace<L: RecordedLink>(
     path: &Path,
     compiled: Result<Program, SceneFileError>,
     player: &mut Player<L>,
+    playing: &Program,
 ) -> Result<Option<Program>, PlayError> {
+    let path = path.display();
     let program = match compiled {
         Ok(program) => program,
         Err(error) => {
             note(error);
-            note(format_args!("frixel: {} has mistakes: the scene before plays on", path.display()));
+            note(format_args!("frixel: {path} has mistakes: the scene before plays on"));
             return Ok(None);
         }
     };
-    match player.replace(&program) {
+    if let Err(error) = check_measured(&program, player.device().hello().board) {
+        note(error);
+        note(format_args!("frixel: {} is not played: the scene before plays on", path));
+        return Ok(None);
+    }
+    let mut how = "";
+    let replaced = match player.replace(&program) {
+        Err(PlayError::Device(DeviceError::Refused { refusal: Refusal::BitmapPoolFull { .. }, .. })) => {
+            how = "; its pictures and those before it do not fit on the board together: the output faded out meanwhile";
+            replace_alone(&program, player, playing)
+        }
+        replaced => replaced,
+    };
+    match replaced {
         Ok(()) => {
             print_notes(&program);
-            note(format_args!("frixel: {} plays as it was saved", path.display()));
+            note(format_args!("frixel: {path} plays as it was saved{how}"));
             Ok(Some(program))
-        }
-        Err(PlayError::Device(DeviceError::Refused { refusal: Refusal::BitmapPoolFull { len, free }, .. })) => {
-            note(format_args!(
-                "frixel: the pictures of {} and of the scene that plays do not fit on the board together ({len} bytes, \
-                 {free} free): the scene before plays on; play the file anew without --watch, or give its pictures a \
-                 larger `pitch_mm`",
-                path.display()
-            ));
-            Ok(None)
         }
         Err(PlayError::Device(refused @ DeviceError::Refused { .. })) => {
             note(format_args!("frixel: {refused}: the scene before plays on"));
@@ -80,4 +115,17 @@ fn replace<L: RecordedLink>(
         }
         Err(error) => Err(error),
     }
+}
+
+/// Replaces `playing` after its pictures were removed from the board. Puts it back if the board refuses the program.
+fn replace_alone<L: RecordedLink>(
+    program: &Program,
+    player: &mut Player<L>,
+    playing: &Program,
+) -> Result<(), PlayError> {
+    let replaced = player.replace_alone(program);
+    if let Err(PlayError::Device(DeviceError::Refused { .. })) = replaced {
+        player.replace(playing)?;
+    }
+    replaced
 }

@@ -3,54 +3,105 @@
 use std::path::PathBuf;
 
 use frixel::output::{FeltCsv, Subject, Trace, write_felt_svg, write_scene_png};
-use frixel_scene::Program;
 use frixel_scene::recorder::FeltRow;
+use frixel_scene::{Program, TouchedLayers};
 
 use super::rigs::Target;
+use super::with_log::joined;
 use super::{CommandError, PlayArgs};
 
-/// Writes `felt.csv` while the scene plays and, if the finger is simulated, the pictures at the end.
+/// Writes `felt.csv` while the scene plays, and the pictures at the end.
 pub(super) struct Outputs {
     folder: PathBuf,
     title: String,
     csv: FeltCsv,
     csv_path: PathBuf,
-    trace: Option<Trace>,
+    trace: Trace,
+    target: Target,
+    /// Whether finger or board is simulated.
+    is_simulated: bool,
+    touched: TouchedLayers,
+    log: Option<PathBuf>,
+    /// The rows so far, if they will be joined with a log.
+    rows: Vec<FeltRow>,
 }
 
 impl Outputs {
     /// Creates `felt.csv`, and its folder if necessary.
-    pub(super) fn create(args: &PlayArgs, target: Target) -> Result<Self, CommandError> {
+    pub(super) fn create(
+        args: &PlayArgs,
+        target: Target,
+        is_simulated: bool,
+        program: &Program,
+    ) -> Result<Self, CommandError> {
         let folder = args.out.clone();
         std::fs::create_dir_all(&folder).map_err(CommandError::writing(&folder))?;
         let csv_path = folder.join("felt.csv");
         let csv = FeltCsv::create(&csv_path)?;
-        let trace = target.is_virtual_time().then(Trace::new);
-        Ok(Self { folder, title: args.scene.display().to_string(), csv, csv_path, trace })
+        let log = args.with_log.clone();
+        let (title, touched) = (args.scene.display().to_string(), TouchedLayers::new(program));
+        Ok(Self {
+            folder,
+            title,
+            csv,
+            csv_path,
+            trace: Trace::new(),
+            target,
+            is_simulated,
+            touched,
+            log,
+            rows: Vec::new(),
+        })
     }
 
     /// Writes rows and flushes them to the file.
     pub(super) fn write(&mut self, rows: &[FeltRow]) -> Result<(), CommandError> {
         for row in rows {
             self.csv.write(row)?;
-            if let Some(trace) = &mut self.trace {
-                trace.push(row);
+            if self.log.is_some() {
+                self.rows.push(*row);
             }
+            let place_mm = row.x_mm.zip(row.y_mm);
+            let layer = place_mm.and_then(|(x_mm, y_mm)| self.touched.add(1e-3 * x_mm, 1e-3 * y_mm));
+            self.trace.push(row, layer.map(|layer| self.touched.title(layer)));
         }
         Ok(self.csv.flush()?)
     }
 
-    /// Closes `felt.csv`, and draws `felt.svg` and `scene.png`. Returns the paths of the files.
-    pub(super) fn finish(self, program: &Program) -> Result<Vec<PathBuf>, CommandError> {
+    /// Continues with another program, whose layers nobody has touched yet.
+    pub(super) fn replace(&mut self, program: &Program) {
+        self.touched = TouchedLayers::new(program);
+    }
+
+    /// Names of the layers that the finger never touched.
+    pub(super) fn untouched_layers(&self) -> Vec<String> {
+        self.touched.untouched().map(|layer| self.touched.title(layer).to_owned()).collect()
+    }
+
+    /// Writes `felt.csv` and the trace anew with rows that are joined with a log.
+    fn write_joined(&mut self, rows: &[FeltRow]) -> Result<(), CommandError> {
+        self.csv = FeltCsv::create(&self.csv_path)?;
+        self.trace = Trace::new();
+        self.write(rows)
+    }
+
+    /// Closes `felt.csv`, and draws `felt.svg`, or `commanded.svg` for a board at a port, and `scene.png`. Returns the paths of the files.
+    ///
+    /// `start_s` is the time from the power-on of the board to time zero of the rows.
+    pub(super) fn finish(mut self, program: &Program, start_s: f64) -> Result<Vec<PathBuf>, CommandError> {
+        let is_felt = self.target.is_virtual_time() || self.log.is_some();
+        if let Some(log) = self.log.take() {
+            self.write_joined(&joined(&log, &self.rows, start_s)?)?;
+        }
         self.csv.finish()?;
         let mut files = vec![self.csv_path];
-        if let Some(trace) = &self.trace {
-            let (svg, png) = (self.folder.join("felt.svg"), self.folder.join("scene.png"));
-            let subject = Subject { name: self.title, simulated: true };
-            write_felt_svg(&svg, &subject, trace, &program.reach)?;
-            write_scene_png(&png, &subject, program, trace)?;
-            files.extend([svg, png]);
-        }
+        // Without a finger that is simulated beside the board, what was felt is unknown.
+        let name = if is_felt { "felt.svg" } else { "commanded.svg" };
+        let (svg, png) = (self.folder.join(name), self.folder.join("scene.png"));
+        let subject = Subject { name: self.title, simulated: self.is_simulated };
+        write_felt_svg(&svg, &subject, &self.trace, &program.reach)?;
+        write_scene_png(&png, &subject, program, &self.trace)?;
+        files.extend([svg, png]);
         Ok(files)
     }
 }

@@ -8,12 +8,14 @@ use frixel::stream::Feed;
 use frixel_hil_sim::Stroke;
 use frixel_scene::recorder::Recorder;
 use frixel_scene::{Program, Scene, compile};
-use frixel_wire::hello::BoardLimits;
+use frixel_wire::hello::{BoardKind, BoardLimits};
 
-use super::super::stroke::{check_on_screen, stroke};
+use super::super::stroke::{check_on_screen, default_stroke};
 use super::rigs::Target;
-use super::{CommandError, PlayArgs};
+use super::{CommandError, PlayArgs, note};
 
+/// Time for which the finger is lifted before it repeats a stroke that is shorter than the stream, s.
+const PAUSE_S: f64 = 0.2;
 /// Highest rate of telemetry that a board sends, in messages a second (PROTOCOL, `Subscribe`).
 const TELEMETRY_MAX_HZ: u32 = 1000;
 /// Highest rate of telemetry that the emulated serial port can transfer, in messages a second.
@@ -38,8 +40,11 @@ pub(super) fn check_options(args: &PlayArgs, target: Target) -> Result<(), Comma
     let port = || args.port.clone();
     match target {
         Target::Simulator | Target::Emulator if args.watch => Err(CommandError::WatchInVirtualTime { port: port() }),
+        Target::Simulator | Target::Emulator if args.with_log.is_some() => {
+            Err(CommandError::LogInVirtualTime { port: port() })
+        }
         Target::Emulator if args.stream.is_some() => Err(CommandError::StreamOnEmulated),
-        Target::Port if args.stroke.is_some() => Err(CommandError::StrokeOnBoard { port: port() }),
+        Target::Port if args.stroke.is_given() => Err(CommandError::StrokeOnBoard { port: port() }),
         Target::Port if args.csv_hz > TELEMETRY_MAX_HZ => {
             Err(CommandError::CsvTooFast { port: port(), found: args.csv_hz, max: TELEMETRY_MAX_HZ })
         }
@@ -66,23 +71,37 @@ impl Plan {
             Target::Port => telemetry_period_ticks(&program, ticks_per_row, tick_hz),
         };
         let feed = open_feed(args, tick_hz, target)?;
+        note_streams(&program, feed.is_some());
         let (limits, seconds) = (*limits, args.seconds);
         Ok(Self { target, program, feed, ticks_per_row, telemetry_period_ticks, limits, tick_hz, seconds })
     }
 
     /// Chooses the path of the simulated finger over the screen. Without `--seconds`, the play lasts as long as the
-    /// stroke.
+    /// file of `--stream`, while the finger repeats its stroke, or else as long as the stroke.
     pub(super) fn choose_stroke(&mut self, args: &PlayArgs) -> Result<Stroke, CommandError> {
         let header = &self.program.header;
         let (width_m, height_m) = (header.screen_width_m.into(), header.screen_height_m.into());
-        let stroke = stroke(args.stroke.as_deref(), width_m, height_m, args.seconds)?;
-        let seconds = args.seconds.unwrap_or(stroke.duration_s());
+        let stream_s = self.feed.as_ref().and_then(Feed::duration_s);
+        let given = args.stroke.stroke()?;
+        let stroke = match &given {
+            Some(stroke) => stroke.clone(),
+            None => default_stroke(&self.program, args.seconds.or(stream_s)).map_err(CommandError::NaturalStroke)?,
+        };
+        let seconds = args.seconds.or(stream_s).unwrap_or(stroke.duration_s());
         check_seconds(seconds, self.tick_hz)?;
-        if let Some(path) = &args.stroke {
-            check_on_screen(path, &stroke, width_m, height_m, seconds)?;
+        if given.is_some() {
+            check_on_screen(&args.stroke.name(), &stroke, width_m, height_m, seconds)?;
         }
         self.seconds = Some(seconds);
+        if args.seconds.is_none() && stroke.duration_s() < seconds {
+            return stroke.looped(PAUSE_S).map_err(CommandError::NaturalStroke);
+        }
         Ok(stroke)
+    }
+
+    /// Whether the play ends when the stream of a board at a port has ended.
+    pub(super) fn ends_with_stream(&self) -> bool {
+        self.target == Target::Port && self.seconds.is_none()
     }
 
     /// Duration of the play, s; infinity for a play without an end.
@@ -107,10 +126,31 @@ impl Plan {
     }
 }
 
-/// Prints the values that the compiler converted, rounded or clamped.
+/// Prints the warnings of the compiler, and the values that it converted, rounded or clamped.
 pub(super) fn print_notes(program: &Program) {
-    for note in &program.notes {
-        super::note(note);
+    for warning in &program.warnings {
+        note(format_args!("warning: {warning}"));
+    }
+    for sentence in &program.notes {
+        note(sentence);
+    }
+}
+
+/// Says when layers get no samples. A board refuses a stream that no layer plays.
+fn note_streams(program: &Program, has_feed: bool) {
+    let streamed = program.records.iter().zip(&program.titles).filter(|(record, _)| record.layer.is_streamed());
+    let titles: Vec<&str> = streamed.map(|(_, title)| title.as_str()).collect();
+    if !(titles.is_empty() || has_feed) {
+        let titles = titles.join(" and ");
+        note(format_args!("{titles} plays a stream, and there is no --stream: nothing will be felt there"));
+    }
+}
+
+/// Rejects a program for a board with an electrode if its finger was not measured at the voltage or load that it needs.
+pub(super) fn check_measured(program: &Program, board: BoardKind) -> Result<(), CommandError> {
+    match program.warnings.iter().find(|warning| warning.is_refused_by_boards()) {
+        Some(warning) if !board.is_simulated() => Err(CommandError::NotMeasured { warning: *warning }),
+        _ => Ok(()),
     }
 }
 
@@ -152,5 +192,34 @@ fn open_feed(args: &PlayArgs, tick_hz: u32, target: Target) -> Result<Option<Fee
         (Some(path), None) if path == Path::new("-") => Err(CommandError::StreamRateMissing),
         (Some(path), Some(_)) => Err(CommandError::StreamRateOfFile { path: path.to_owned() }),
         (Some(path), None) => Ok(Some(Feed::wav(path, tick_hz)?)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use frixel_hil_sim::RigConfig;
+
+    use super::*;
+
+    #[test]
+    fn only_a_simulator_plays_beyond_what_a_finger_was_measured_at() {
+        let text = "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n[finger]\n\
+                    friction_coefficient = 0.5\nnormal_load_n = 0.5\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\n\
+                    skin_gap_um = 4.74\norigin = \"measured\"\ndate = \"2026-11-22\"\nmethod = \"load cell\"\n\
+                    screen = \"example\"\nfriction_coefficient_interval = [0.49, 0.51]\n\
+                    electric_friction_interval_n = [0.02, 0.03]\nmeasured_voltage_max_v_rms = 75\n\
+                    measured_normal_load_range_n = [0.4, 0.6]\n";
+        let board = RigConfig::default().board;
+        let scene = Scene::parse(text, "test.toml", &BTreeMap::new()).unwrap();
+        let program = compile(&scene, &board.limits, board.tick_hz).unwrap();
+        assert_eq!(program.warnings.len(), 1);
+        check_measured(&program, BoardKind::Simulator).unwrap();
+        let refused = check_measured(&program, BoardKind::NucleoG474re).unwrap_err().to_string();
+        assert!(
+            refused.starts_with("a board with an electrode does not extrapolate: the scene needs up to "),
+            "{refused}"
+        );
     }
 }

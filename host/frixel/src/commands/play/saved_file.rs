@@ -8,6 +8,9 @@ use std::time::{Duration, Instant, SystemTime};
 /// while it is being written.
 const CHECK_PERIOD: Duration = Duration::from_millis(100);
 
+/// Checks after which a file that is not there counts as gone: half a second, longer than an editor takes to replace it.
+const CHECKS_GONE: u32 = 5;
+
 /// Detects when a file was saved, in place or by an editor that replaces it by another file.
 pub(super) struct SavedFile {
     path: PathBuf,
@@ -16,6 +19,8 @@ pub(super) struct SavedFile {
     read: Option<Fingerprint>,
     /// State of the file at the last check.
     checked: Option<Fingerprint>,
+    /// Checks in a row at which the file was not there.
+    missed: u32,
 }
 
 /// Metadata that changes when a file is saved.
@@ -47,7 +52,20 @@ impl SavedFile {
     /// Watches a file for changes from now on. Call this before the file is read for the first time.
     pub(super) fn new(path: &Path) -> Self {
         let now = Fingerprint::of(path);
-        Self { path: path.to_owned(), checked_at: Instant::now(), read: now, checked: now }
+        Self { path: path.to_owned(), checked_at: Instant::now(), read: now, checked: now, missed: 0 }
+    }
+
+    /// The path of the file.
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Whether the file is gone, once after it was there.
+    pub(super) fn has_vanished(&mut self) -> bool {
+        let has_vanished = self.missed == CHECKS_GONE;
+        // Reported only once, although there may be several calls between two checks.
+        self.missed += u32::from(has_vanished);
+        has_vanished
     }
 
     /// Whether the file has changed since this method last returned true. Returns false between two checks, and while
@@ -62,6 +80,7 @@ impl SavedFile {
 
     fn check(&mut self) -> bool {
         let now = Fingerprint::of(&self.path);
+        self.missed = if now.is_some() { 0 } else { self.missed.saturating_add(1) };
         let is_settled = now == std::mem::replace(&mut self.checked, now);
         let saved = is_settled && now.is_some() && now != self.read;
         if saved {
@@ -95,6 +114,10 @@ mod tests {
         assert_eq!(checks(&mut file), [false, true, false]);
         fs::remove_file(&path).unwrap();
         assert_eq!(checks(&mut file), [false; 3], "a file that was removed was not saved");
+        assert!(!file.has_vanished(), "an editor may be replacing it");
+        assert_eq!(checks(&mut file), [false; 3]);
+        file.missed = CHECKS_GONE;
+        assert_eq!([file.has_vanished(), file.has_vanished()], [true, false]);
         fs::write(&path, "again").unwrap();
         assert_eq!(checks(&mut file), [false, true, false]);
     }

@@ -1,0 +1,65 @@
+//! Strips under the axis of a plot: further values along it, such as the way of a finger over its time.
+
+use std::ops::Range;
+
+use plotters::prelude::*;
+use plotters::style::text_anchor::HPos;
+
+use super::style::{NOTE, Scale, text_width};
+use super::{Area, Axis, Drawn, RGBColor};
+
+/// Height of a strip, in pixels.
+pub(super) const STRIP_HEIGHT: u32 = 20;
+/// Space between a strip's name and the plot's left edge, and on both sides of a text, in pixels.
+const GAP: u32 = 8;
+/// Opacity of a cell's colour.
+const OPACITY: f64 = 0.3;
+
+/// A row of texts under the axis of a plot.
+#[derive(Clone, Debug)]
+pub(crate) struct Strip {
+    /// Name of the strip, to the left of the plot.
+    pub(crate) label: String,
+    pub(crate) cells: Vec<StripCell>,
+}
+
+/// A text under a part of the axis. It is left out where the part is too narrow for it, except for a part without any
+/// width, at which the text is centred.
+#[derive(Clone, Debug)]
+pub(crate) struct StripCell {
+    pub(crate) x: Range<f64>,
+    pub(crate) text: String,
+    pub(crate) colour: Option<RGBColor>,
+}
+
+/// Draws strips below one another. `plot` has the left and right edge of the plot, in units; `top` is in pixels.
+pub(super) fn draw<DB: DrawingBackend>(
+    area: &Area<DB>,
+    strips: &[Strip],
+    x: &Axis,
+    plot: Range<i32>,
+    top: u32,
+    scale: Scale,
+) -> Drawn {
+    let width = f64::from(plot.end - plot.start);
+    let place = |value: f64| plot.start + (x.part(value).unwrap_or(0.0).clamp(0.0, 1.0) * width).round() as i32;
+    for (number, strip) in (0..).zip(strips) {
+        let top = top + number * STRIP_HEIGHT;
+        let middle = scale.px(top + STRIP_HEIGHT / 2) as i32;
+        let name = (plot.start - scale.px(GAP) as i32, middle);
+        area.draw(&Text::new(strip.label.as_str(), name, scale.letters_at(NOTE, HPos::Right)))?;
+        for cell in &strip.cells {
+            let (left, right) = (place(cell.x.start), place(cell.x.end));
+            if let Some(colour) = cell.colour {
+                let corners = [(left, scale.px(top + 2) as i32), (right, scale.px(top + STRIP_HEIGHT - 2) as i32)];
+                area.draw(&Rectangle::new(corners, colour.mix(OPACITY).filled()))?;
+            }
+            let needed = scale.px(text_width(&cell.text, NOTE)? + 2 * GAP) as i32;
+            if left == right || right - left >= needed {
+                let centre = (left.midpoint(right), middle);
+                area.draw(&Text::new(cell.text.as_str(), centre, scale.letters_at(NOTE, HPos::Center)))?;
+            }
+        }
+    }
+    Ok(())
+}

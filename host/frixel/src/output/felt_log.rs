@@ -1,0 +1,69 @@
+//! The log of a virtual board: what its finger felt, by the board's own time.
+
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use thiserror::Error;
+
+use frixel_scene::recorder::FeltRow;
+
+/// Why a log cannot be read.
+#[derive(Debug, Error)]
+#[error("{}: {reason}: give the felt.csv that `frixel sim` writes", path.display())]
+pub struct FeltLogError {
+    path: PathBuf,
+    reason: String,
+}
+
+/// The rows of a `felt.csv`, in order of time.
+#[derive(Clone, Debug)]
+pub struct FeltLog(Vec<LogRow>);
+
+/// The columns that are joined.
+#[derive(Clone, Copy, Debug, Deserialize)]
+struct LogRow {
+    t_s: f64,
+    x_mm: Option<f64>,
+    y_mm: Option<f64>,
+    speed_mm_s: Option<f64>,
+    felt_n: Option<f64>,
+}
+
+impl FeltLog {
+    /// Reads the file that `frixel sim` writes. A last row that is not complete is left out.
+    pub fn read(path: &Path) -> Result<Self, FeltLogError> {
+        let error = |reason: String| FeltLogError { path: path.to_owned(), reason };
+        let text = std::fs::read_to_string(path).map_err(|source| error(source.to_string()))?;
+        let whole = text.rsplit_once('\n').map_or("", |(whole, _)| whole);
+        let mut reader = csv::Reader::from_reader(whole.as_bytes());
+        let rows: Result<Vec<LogRow>, csv::Error> = reader.deserialize().collect();
+        Ok(Self(rows.map_err(|source| error(source.to_string()))?))
+    }
+
+    /// Time of the last row since the power-on of the board, s.
+    pub fn end_s(&self) -> f64 {
+        self.0.last().map_or(0.0, |row| row.t_s)
+    }
+
+    /// Adds to a row of a client what the log has at the same time: the felt friction, and the true place and speed of
+    /// the finger. `start_s` is the time between the power-on of the board and the client's time zero.
+    pub fn join(&self, row: &FeltRow, start_s: f64) -> FeltRow {
+        let t_s = start_s + row.t_s;
+        let after = self.0.partition_point(|logged| logged.t_s < t_s);
+        let nearest = [after.checked_sub(1), Some(after)].into_iter().flatten().filter_map(|index| self.0.get(index));
+        let nearest = nearest.min_by(|one, other| (one.t_s - t_s).abs().total_cmp(&(other.t_s - t_s).abs()));
+        match nearest.filter(|logged| (logged.t_s - t_s).abs() <= APART_MAX_S) {
+            Some(logged) => FeltRow {
+                x_mm: logged.x_mm,
+                y_mm: logged.y_mm,
+                speed_mm_s: logged.speed_mm_s,
+                felt_n: logged.felt_n,
+                ..*row
+            },
+            None => *row,
+        }
+    }
+}
+
+/// Longest time between a client's row and the row of the log that belongs to it, s. The log has a row a millisecond.
+const APART_MAX_S: f64 = 1e-3;

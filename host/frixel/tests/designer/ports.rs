@@ -1,0 +1,88 @@
+//! Playing to the port of a virtual board.
+
+use std::fs;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+use std::process::{Child, Stdio};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use tempfile::TempDir;
+
+use super::{command, frixel, scene, succeed};
+
+/// One virtual board at a time: on a busy machine a second one is late.
+static TURN: Mutex<()> = Mutex::new(());
+
+/// `frixel sim`, which writes into `board` of a folder.
+pub(crate) struct VirtualBoard {
+    process: Child,
+    pub(crate) port: String,
+    _turn: MutexGuard<'static, ()>,
+}
+
+impl VirtualBoard {
+    pub(crate) fn start(folder: &Path, arguments: &[&str]) -> Self {
+        let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut command = command(folder, &[&["sim", "--out", "board"], arguments].concat());
+        let mut process = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+        let mut line = String::new();
+        BufReader::new(process.stdout.take().unwrap()).read_line(&mut line).unwrap();
+        let port = line.trim().strip_prefix("port: ").unwrap().to_owned();
+        Self { process, port, _turn: turn }
+    }
+}
+
+impl Drop for VirtualBoard {
+    fn drop(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+/// The longest host timeout that there is: on a busy machine pings are late.
+pub(crate) fn write_patient_scene(path: &Path) {
+    let text = fs::read_to_string(scene("keyboard.toml")).unwrap();
+    assert!(!text.contains("[drive]"));
+    fs::write(path, text.replacen("[[layer]]", "[drive]\nhost_timeout_ms = 1000\n\n[[layer]]", 1)).unwrap();
+}
+
+fn felt(folder: &Path) -> (usize, usize) {
+    let text = fs::read_to_string(folder.join("frixel-out/felt.csv")).unwrap();
+    let felt = |line: &&str| !line.split(',').nth(6).unwrap().is_empty();
+    (text.lines().count() - 1, text.lines().skip(1).filter(felt).count())
+}
+
+#[test]
+fn a_play_to_a_port_draws_what_the_board_commanded_and_joins_what_was_felt() {
+    let folder = TempDir::new().unwrap();
+    write_patient_scene(&folder.path().join("scene.toml"));
+    let board = VirtualBoard::start(folder.path(), &[]);
+    let play = ["play", "scene.toml", "--port", &board.port, "--seconds", "2"];
+    let (said, notes) = succeed(folder.path(), &play);
+    assert!(said.contains("commanded.svg") && said.contains("scene.png"), "{said}");
+    assert!(!notes.contains("left"), "no progress bar off a terminal: {notes}");
+    let svg = fs::read_to_string(folder.path().join("frixel-out/commanded.svg")).unwrap();
+    let has = |text: &str| svg.lines().any(|line| line == text);
+    assert!(has("commanded") && has("scene.toml, simulated") && has("way, mm") && !has("felt"));
+    assert!(fs::metadata(folder.path().join("frixel-out/scene.png")).unwrap().len() > 10_000);
+    let (rows, felt_rows) = felt(folder.path());
+    assert!(rows > 500 && felt_rows == 0, "{rows} rows, {felt_rows} felt");
+
+    let (said, _) = succeed(folder.path(), &[&play[..], &["--with-log", "board/felt.csv"]].concat());
+    assert!(said.contains("felt.svg") && !said.contains("commanded.svg"), "{said}");
+    let (rows, felt_rows) = felt(folder.path());
+    assert!(rows > 500 && felt_rows > rows / 2, "{rows} rows, {felt_rows} felt");
+    // A log of something else.
+    fs::write(folder.path().join("old.csv"), "t_s,x_mm,y_mm,speed_mm_s,felt_n\n0.001,,,,\n").unwrap();
+    let output = frixel(folder.path(), &[&play[..], &["--with-log", "old.csv"]].concat());
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(!output.status.success() && said.contains("whose port this is"), "{said}");
+}
+
+#[test]
+fn a_log_is_not_joined_where_what_is_felt_is_recorded() {
+    let folder = TempDir::new().unwrap();
+    let output = frixel(folder.path(), &["play", &scene("brick.toml"), "--with-log", "felt.csv"]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(!output.status.success() && said.contains("leave it out"), "{said}");
+}

@@ -1,0 +1,87 @@
+//! Which layers of a program a finger has touched.
+
+use frixel_layers::Blend;
+
+use super::program::Program;
+use crate::reference::{Piece, Reference};
+
+/// Places that are tried along each side of a layer's region.
+const PLACES: u32 = 40;
+
+/// Records which layers a finger has touched on its way. A layer under one that replaces it is not touched there.
+#[derive(Clone, Debug)]
+pub struct TouchedLayers {
+    pieces: Vec<Piece>,
+    screen_m: (f64, f64),
+    titles: Vec<String>,
+    touched: Vec<bool>,
+}
+
+impl TouchedLayers {
+    /// Creates a record in which no layer of the program is touched.
+    pub fn new(program: &Program) -> Self {
+        let pieces = Reference::new(program).pieces().to_vec();
+        let screen_m = (f64::from(program.header.screen_width_m), f64::from(program.header.screen_height_m));
+        Self { touched: vec![false; pieces.len()], pieces, screen_m, titles: program.titles.clone() }
+    }
+
+    /// Adds a place of the finger, from the top left corner of the screen, m. Returns the topmost layer there, by its
+    /// index from the bottom.
+    pub fn add(&mut self, x_m: f64, y_m: f64) -> Option<usize> {
+        let layers = self.layers_at(x_m, y_m);
+        for index in &layers {
+            if let Some(touched) = self.touched.get_mut(*index) {
+                *touched = true;
+            }
+        }
+        layers.first().copied()
+    }
+
+    /// The name of a layer in messages.
+    pub fn title(&self, index: usize) -> &str {
+        self.titles.get(index).map_or("", String::as_str)
+    }
+
+    /// The layers that were never touched, by their index from the bottom.
+    pub fn untouched(&self) -> impl Iterator<Item = usize> {
+        self.touched.iter().enumerate().filter(|(_, touched)| !**touched).map(|(index, _)| index)
+    }
+
+    /// A place where a finger touches a layer, in its middle if possible, in metres from the top left corner of the
+    /// screen; `None` if there is none.
+    pub fn place_in(&self, index: usize) -> Option<(f64, f64)> {
+        let [left_m, top_m, right_m, bottom_m] = self.pieces.get(index)?.shape.bounds_m();
+        let (left_m, right_m) = (left_m.max(0.0), right_m.min(self.screen_m.0));
+        let (top_m, bottom_m) = (top_m.max(0.0), bottom_m.min(self.screen_m.1));
+        let part = |number: u32| (f64::from(number) + 0.5) / f64::from(PLACES);
+        let mut places: Vec<(f64, f64)> =
+            (0..PLACES * PLACES).map(|number| (part(number % PLACES), part(number / PLACES))).collect();
+        places.sort_by(|one, other| off_middle(*one).total_cmp(&off_middle(*other)));
+        places
+            .into_iter()
+            .map(|(x, y)| (left_m + x * (right_m - left_m), top_m + y * (bottom_m - top_m)))
+            .find(|(x_m, y_m)| self.layers_at(*x_m, *y_m).contains(&index))
+    }
+
+    /// The layers that a finger touches at a place, from the topmost down.
+    fn layers_at(&self, x_m: f64, y_m: f64) -> Vec<usize> {
+        let mut layers = Vec::new();
+        if !((0.0..=self.screen_m.0).contains(&x_m) && (0.0..=self.screen_m.1).contains(&y_m)) {
+            return layers;
+        }
+        for (index, piece) in self.pieces.iter().enumerate().rev() {
+            if piece.shape.covers(x_m, y_m) {
+                layers.push(index);
+                if piece.blend == Blend::Replace && !piece.is_streamed {
+                    break;
+                }
+            }
+        }
+        layers
+    }
+}
+
+/// Distance of a place, given in parts of both sides, from the middle.
+fn off_middle((x, y): (f64, f64)) -> f64 {
+    (x - 0.5).abs().max((y - 0.5).abs())
+}
