@@ -1,5 +1,6 @@
 //! The command line: one module per command.
 
+mod calibrate;
 mod completions;
 mod demo;
 mod error;
@@ -20,6 +21,7 @@ mod selftest;
 mod sim;
 mod stroke;
 mod terminal;
+mod threshold;
 
 use std::path::{Path, PathBuf};
 
@@ -70,6 +72,10 @@ enum Command {
     /// Evaluate or invert the contact model over rows of CSV.
     #[command(subcommand)]
     Model(model::ModelCommand),
+    /// Record a finger's friction while a board switches its drive on and off, for `frixel fit`.
+    Calibrate(calibrate::CalibrateArgs),
+    /// Find what a person just feels, without a force sensor: a staircase of trials, answered by key.
+    Threshold(threshold::ThresholdArgs),
     /// Fit a finger's profile to measured friction.
     Fit(fit::FitArgs),
     /// Draw the contact model, its error and its cost on one page.
@@ -197,6 +203,8 @@ impl Cli {
             Some(Command::Selftest(args)) => selftest::run(&args),
             Some(Command::Completions(args)) => completions::run(&args),
             Some(Command::Model(command)) => model::run(&command),
+            Some(Command::Calibrate(args)) => calibrate::run(&args),
+            Some(Command::Threshold(args)) => threshold::run(&args),
             Some(Command::Fit(args)) => fit::run(&args),
             Some(Command::Report(args)) => report::run(&args),
         }
