@@ -18,5 +18,5 @@ mod replay;
 pub use error::EmulatorError;
 pub use frixel_exchange::BOARD;
 pub use image::{Image, available};
-pub use link::{LinkBoard, LinkRecord, Mishap};
+pub use link::{InjectedFault, LinkBoard, LinkRecord};
 pub use replay::{Mismatch, ReplayError, replay};

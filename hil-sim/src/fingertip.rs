@@ -41,6 +41,7 @@ pub(crate) struct Friction {
     pub(crate) natural_friction_n: f64,
     /// Friction that the voltage adds.
     pub(crate) electric_friction_n: f64,
+    pub(crate) normal_load_n: f64,
     pub(crate) slip: SlipStep,
 }
 
@@ -54,6 +55,8 @@ pub(crate) struct Fingertip {
     profile_load_n: f64,
     /// The contact under the load of this tick.
     contact: LoadedContact<f64>,
+    /// The load of this tick, in N.
+    load_n: f64,
     /// Friction coefficient at the load of this tick over that of the profile.
     coefficient_gain: f64,
     electric_gain: f64,
@@ -79,6 +82,7 @@ impl Fingertip {
             profile: contact,
             profile_load_n: load_n(&contact),
             contact,
+            load_n: load_n(&contact),
             coefficient_gain: 1.0,
             electric_gain: 1.0,
             wander: LoadWander::new(config.load_sd_n, tick_hz, seed),
@@ -96,6 +100,7 @@ impl Fingertip {
         self.profile = contact;
         self.profile_load_n = load_n(&contact);
         self.contact = contact;
+        self.load_n = self.profile_load_n;
         (self.coefficient_gain, self.electric_gain) = (1.0, 1.0);
     }
 
@@ -114,6 +119,7 @@ impl Fingertip {
         Friction {
             natural_friction_n: self.natural_friction_n(&slip, finger.speed_m_per_s),
             electric_friction_n: slip.advance(&mut self.electric_n, steady_electric_n),
+            normal_load_n: self.load_n,
             slip,
         }
     }
@@ -123,7 +129,7 @@ impl Fingertip {
         self.leakage.lift();
         self.sliding.lift();
         (self.natural_n, self.electric_n) = ([0.0; 2], [0.0; 2]);
-        Friction { natural_friction_n: 0.0, electric_friction_n: 0.0, slip: SlipStep::REST }
+        Friction { natural_friction_n: 0.0, electric_friction_n: 0.0, normal_load_n: 0.0, slip: SlipStep::REST }
     }
 
     fn natural_friction_n(&mut self, slip: &SlipStep, speed_m_per_s: f64) -> f64 {
@@ -143,6 +149,7 @@ impl Fingertip {
             return;
         }
         self.contact = contact;
+        self.load_n = load_n;
         let exponent = self.config.load_exponent;
         self.coefficient_gain = if exponent == 0.0 || self.profile_load_n <= 0.0 {
             1.0

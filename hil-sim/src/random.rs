@@ -15,6 +15,7 @@ pub(crate) enum Purpose {
     FrictionNoise = 6,
     LostReports = 7,
     Person = 8,
+    HumanStroke = 9,
 }
 
 /// A stream of random numbers.

@@ -1,6 +1,7 @@
 //! Strokes: the place of the finger over time.
 
 mod error;
+mod human;
 mod natural;
 mod rows;
 mod straight;
@@ -92,6 +93,33 @@ impl Stroke {
     pub fn natural(screen_width_m: f64, screen_height_m: f64, duration_s: f64) -> Result<Self, StrokeError> {
         let natural = Natural::new(screen_width_m, screen_height_m, duration_s)?;
         Ok(Self::once(duration_s, Path::Natural(natural)))
+    }
+
+    /// A stroke with the statistics of people recorded on a surface-haptic tablet, with the finger down for all of
+    /// `duration_s` seconds, 0.001 to 600: minimum-jerk submovements that overlap, reversals, pauses, and tremor at 8 to
+    /// 12 Hz. Without a median speed it has that of the seed's person, 48 to 436 mm/s.
+    ///
+    /// It was made to match the medians of about 1,300 strokes, whose recordings cannot be shipped; the shape of the
+    /// motion is that of the literature. Between milliseconds the finger goes straight.
+    ///
+    /// [`Self::natural`] is the even stroke of the same kind: it has no random part, and goes on for any time.
+    ///
+    /// ```
+    /// use frixel_hil_sim::Stroke;
+    ///
+    /// let stroke = Stroke::human(0.12, 0.08, 10.0, Some(0.1), 1)?;
+    /// assert!(stroke.at(9.9).is_some());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn human(
+        screen_width_m: f64,
+        screen_height_m: f64,
+        duration_s: f64,
+        median_speed_m_per_s: Option<f64>,
+        seed: u64,
+    ) -> Result<Self, StrokeError> {
+        let rows = human::rows([screen_width_m, screen_height_m], duration_s, median_speed_m_per_s, seed)?;
+        Ok(Self::once(rows.end_s(), Path::Rows(rows)))
     }
 
     /// A motion through places at times that rise from 0 or later; `None` is a finger off the screen. Between two

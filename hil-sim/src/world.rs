@@ -68,6 +68,8 @@ pub struct Felt {
     pub natural_friction_n: f64,
     /// Electric part of the friction, after the friction lag, in newtons.
     pub electric_friction_n: f64,
+    /// Normal load of the finger, in newtons. Zero without a finger.
+    pub normal_load_n: f64,
     /// What the skin did in this tick.
     pub slip: SlipStep,
     /// Voltage on the electrode.
@@ -253,7 +255,7 @@ impl World {
         let output = self.amplifier.tick(drive);
         self.tick += 1;
         let finger = self.finger();
-        let Friction { natural_friction_n, electric_friction_n, slip } = match &finger {
+        let Friction { natural_friction_n, electric_friction_n, normal_load_n, slip } = match &finger {
             Some(finger) => self.fingertip.slide(&output, finger, self.measured_load_n()),
             None => self.fingertip.lift(),
         };
@@ -263,6 +265,7 @@ impl World {
             friction_n: natural_friction_n + electric_friction_n,
             natural_friction_n,
             electric_friction_n,
+            normal_load_n,
             slip,
             electrode_v: output.end_v,
             mean_square_v2: output.mean_square_v2,

@@ -3,8 +3,8 @@
 use std::env;
 use std::process::Command;
 
-use crate::check::is_ci;
 use crate::command::{add_target, cargo_in, root, run, text_of};
+use crate::outcome::{Outcome, skip};
 
 const WASM: &str = "wasm32-unknown-unknown";
 /// Targets that the whole command compiles for. Functions that need a pseudo-terminal fail there at run time.
@@ -16,7 +16,7 @@ const PAGE_CRATES: [&str; 3] = ["frixel-scene", "frixel-driver", "frixel-hil-sim
 const WASM_CHECK: &str = "frixel-wasm-check";
 
 /// Runs all checks of this module.
-pub(crate) fn check() -> Result<(), String> {
+pub(crate) fn check() -> Result<Outcome, String> {
     page_crates()?;
     for target in COMMAND_TARGETS {
         add_target(target)?;
@@ -35,14 +35,9 @@ fn page_crates() -> Result<(), String> {
 }
 
 /// Plays bundled scenes in node and natively: every friction, voltage and DAC code must be equal.
-fn same_bits_in_wasm() -> Result<(), String> {
+fn same_bits_in_wasm() -> Result<Outcome, String> {
     if Command::new("node").arg("--version").output().is_err() {
-        let missing = "node is not installed (Debian: `apt-get install nodejs`)";
-        if is_ci() {
-            return Err(missing.to_owned());
-        }
-        eprintln!("SKIPPED: no scene is played in WebAssembly: {missing}");
-        return Ok(());
+        return skip("scenes in WebAssembly", "node is not installed (Debian: `apt-get install nodejs`)".to_owned());
     }
     run("scenes for WebAssembly", &mut cargo(&["build", "--package", WASM_CHECK, "--lib", "--target", WASM]))?;
     let target_folder = env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), Into::into);
@@ -51,7 +46,7 @@ fn same_bits_in_wasm() -> Result<(), String> {
     let wasm = text_of(Command::new("node").arg(root().join("host/wasm-check/run.mjs")).arg(module))?;
     eprintln!("hash of the scenes: {} natively, {} in WebAssembly", native.trim(), wasm.trim());
     if native == wasm {
-        Ok(())
+        Ok(Outcome::Passed)
     } else {
         Err("what a finger feels in WebAssembly differs from what it feels natively".into())
     }

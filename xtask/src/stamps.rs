@@ -8,31 +8,39 @@ use std::collections::hash_map::DefaultHasher;
 use std::fs;
 use std::hash::{Hash, Hasher};
 use std::io::ErrorKind;
+use std::path::Path;
 use std::process::Command;
 
-use crate::bench;
 use crate::command::{root, text_of};
+use crate::outcome::Outcome;
 
 /// Runs `check`, unless it passed before with the same inputs. `name` is a file name; `inputs` are files and folders
-/// of the repository. Without the emulator, every check runs and leaves no stamp, because it may have skipped a part.
+/// of the repository. A check that skipped a part leaves no stamp, and runs again the next time.
 pub(crate) fn unless_unchanged(
     name: &str,
     inputs: &[String],
-    check: impl FnOnce() -> Result<(), String>,
-) -> Result<(), String> {
-    if bench::emulator().is_err() {
-        return check();
-    }
-    let folder = root().join("target/stamps");
-    fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    check: impl FnOnce() -> Result<Outcome, String>,
+) -> Result<Outcome, String> {
+    run_unless_stamped(&root().join("target/stamps"), name, &fingerprint(inputs)?, check)
+}
+
+fn run_unless_stamped(
+    folder: &Path,
+    name: &str,
+    fingerprint: &str,
+    check: impl FnOnce() -> Result<Outcome, String>,
+) -> Result<Outcome, String> {
+    fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let stamp = folder.join(name);
-    let found = fingerprint(inputs)?;
-    if fs::read_to_string(&stamp).is_ok_and(|passed| passed == found) {
+    if fs::read_to_string(&stamp).is_ok_and(|passed| passed == fingerprint) {
         eprintln!("UNCHANGED since it passed: {name} (delete target/stamps to run it again)");
-        return Ok(());
+        return Ok(Outcome::Passed);
     }
-    check()?;
-    fs::write(&stamp, found).map_err(|error| format!("{}: {error}", stamp.display()))
+    let outcome = check()?;
+    if outcome == Outcome::Passed {
+        fs::write(&stamp, fingerprint).map_err(|error| format!("{}: {error}", stamp.display()))?;
+    }
+    Ok(outcome)
 }
 
 /// A fingerprint of the files below `inputs`.
@@ -55,4 +63,28 @@ fn fingerprint(inputs: &[String]) -> Result<String, String> {
         }
     }
     Ok(format!("{:016x}", hasher.finish()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_a_check_that_ran_completely_leaves_a_stamp() {
+        let folder = root().join(format!("target/stamps-of-test-{}", std::process::id()));
+        let mut runs = 0;
+        let mut check = |fingerprint: &str, outcome: Result<Outcome, String>| {
+            run_unless_stamped(&folder, "check", fingerprint, || {
+                runs += 1;
+                outcome
+            })
+        };
+        assert_eq!(check("a", Err("broken".to_owned())), Err("broken".to_owned()));
+        assert_eq!(check("a", Ok(Outcome::Skipped)), Ok(Outcome::Skipped));
+        assert_eq!(check("a", Ok(Outcome::Passed)), Ok(Outcome::Passed), "it runs again");
+        assert_eq!(check("a", Err("not run".to_owned())), Ok(Outcome::Passed));
+        assert_eq!(check("b", Ok(Outcome::Passed)), Ok(Outcome::Passed));
+        assert_eq!(runs, 4);
+        fs::remove_dir_all(&folder).unwrap();
+    }
 }

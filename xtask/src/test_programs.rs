@@ -6,8 +6,12 @@ use std::process::Command;
 
 use serde_json::Value;
 
-use crate::command::{cargo_in, root, run, text_of};
-use crate::stamps;
+use crate::command::{M3, M4F, add_target, cargo_in, root, run, text_of};
+use crate::outcome::{Outcome, skip};
+use crate::{bench, stamps};
+
+/// The packages whose tests use the emulator.
+const WITH_EMULATOR: [&str; 2] = ["frixel", "frixel-hil-sim"];
 
 /// Inputs of tests besides the folders of their package and of its dependencies.
 const MORE_INPUTS: [(&str, &[&str]); 3] = [
@@ -29,27 +33,35 @@ struct TestProgram {
     path: PathBuf,
 }
 
-/// Builds and runs all tests except documentation tests.
-pub(crate) fn run_all() -> Result<(), String> {
+/// Builds and runs all tests except documentation tests. The tests of [`WITH_EMULATOR`] skip a part without the emulator
+/// or its targets.
+pub(crate) fn run_all() -> Result<Outcome, String> {
     let packages = packages()?;
     let programs = build()?;
+    let emulated = match bench::emulator().and_then(|()| add_target(M4F)).and_then(|()| add_target(M3)) {
+        Ok(()) => Outcome::Passed,
+        Err(missing) => skip("tests on emulated processors", missing)?,
+    };
+    let mut all = Outcome::Passed;
     for (name, package) in &packages {
         let programs: Vec<&TestProgram> = programs.iter().filter(|program| program.package == *name).collect();
         if !programs.is_empty() {
             let inputs = inputs(name, &packages);
-            stamps::unless_unchanged(&format!("tests-{name}"), &inputs, || {
-                programs.iter().try_for_each(|program| program.run(&package.folder))
-            })?;
+            all = all.and(stamps::unless_unchanged(&format!("tests-{name}"), &inputs, || {
+                programs.iter().try_for_each(|program| program.run(&package.folder))?;
+                Ok(if WITH_EMULATOR.contains(&name.as_str()) { emulated } else { Outcome::Passed })
+            })?);
         }
     }
-    Ok(())
+    Ok(all)
 }
 
 /// Runs the documentation tests.
-pub(crate) fn run_documentation() -> Result<(), String> {
+pub(crate) fn run_documentation() -> Result<Outcome, String> {
     let folders: Vec<String> = packages()?.into_values().map(|package| package.folder).collect();
     stamps::unless_unchanged("documentation-tests", &folders, || {
-        run("documentation tests", cargo_in(".").args(["test", "--workspace", "--locked", "--doc"]))
+        run("documentation tests", cargo_in(".").args(["test", "--workspace", "--locked", "--doc"]))?;
+        Ok(Outcome::Passed)
     })
 }
 

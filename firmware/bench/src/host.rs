@@ -16,6 +16,9 @@ pub const STREAM_TICKS_PER_SAMPLE: u32 = 2;
 /// Samples in a frame of the stream.
 pub const STREAM_FRAME: usize = 64;
 
+/// Most steps that a commit takes.
+const COMMIT_STEPS_MAX: u32 = 128;
+
 /// A session, and the ticker that receives its orders.
 pub struct Host<'a> {
     pub session: Session<'a>,
@@ -61,11 +64,17 @@ impl<'a> Host<'a> {
     }
 
     fn send_without_orders(&mut self, command: Command) {
+        self.receive(command);
+        self.poll();
+    }
+
+    /// Passes the bytes of a command to the session.
+    fn receive(&mut self, command: Command) {
         self.sequence += 1;
         let request = Request { sequence: self.sequence, command };
         let mut frame = [0; FRAME_MAX_LEN];
         let Ok(frame) = payload::request_frame(&request, &mut frame) else { panic!("a command does not fit a frame") };
-        self.send(frame);
+        self.receive_bytes(frame);
     }
 
     /// Sends a picture, and returns its name.
@@ -76,12 +85,30 @@ impl<'a> Host<'a> {
         crc32
     }
 
+    /// Sends a scene.
+    pub fn upload(&mut self, scene: &[u8]) {
+        self.command(Command::UploadScene { len: scene.len() as u32, crc32: crc32(scene) });
+        self.chunks(scene);
+    }
+
+    /// Requests the commit of a scene, and passes every one of its steps to `step`, which calls [`Host::poll`].
+    pub fn commit(&mut self, scene: &[u8], mut step: impl FnMut(&mut Self)) {
+        self.receive(Command::Commit { crc32: crc32(scene) });
+        for _ in 0..COMMIT_STEPS_MAX {
+            step(self);
+            self.hand_over();
+        }
+    }
+
+    /// Does the main loop's work besides touches and orders: a step of a commit that is under way.
+    pub fn poll(&mut self) {
+        self.session.poll(&self.ticker.status());
+    }
+
     /// Sends a scene and plays it.
     pub fn play(&mut self, scene: &[u8]) {
-        let crc32 = crc32(scene);
-        self.command(Command::UploadScene { len: scene.len() as u32, crc32 });
-        self.chunks(scene);
-        self.command(Command::Commit { crc32 });
+        self.upload(scene);
+        self.commit(scene, Self::poll);
         self.command(Command::Arm);
         self.command(Command::Play);
     }
@@ -93,7 +120,8 @@ impl<'a> Host<'a> {
         let Ok(bytes) = payload::samples_frame(frame * STREAM_FRAME as u32, &samples, &mut bytes) else {
             panic!("samples do not fit a frame")
         };
-        self.send(bytes);
+        self.receive_bytes(bytes);
+        self.poll();
     }
 
     fn chunks(&mut self, bytes: &[u8]) {
@@ -102,15 +130,13 @@ impl<'a> Host<'a> {
             let Ok(frame) = payload::chunk_frame(number, chunk, &mut frame) else {
                 panic!("a chunk does not fit a frame")
             };
-            self.send(frame);
+            self.receive_bytes(frame);
         }
         self.command(Command::UploadEnd);
     }
 
-    fn send(&mut self, bytes: &[u8]) {
-        let status = self.ticker.status();
-        self.session.receive(bytes, &status);
-        self.session.poll(&status);
+    fn receive_bytes(&mut self, bytes: &[u8]) {
+        self.session.receive(bytes, &self.ticker.status());
         // Discards the answers: an error shows in the state.
         self.session.transmit(&mut [0; 2048]);
     }

@@ -9,11 +9,11 @@ use frixel_layers::{
 };
 use frixel_wire::hello::BoardLimits;
 use frixel_wire::message::Command;
-use frixel_wire::scene::RECORDS_MAX;
+use frixel_wire::scene::{POINTS_MAX, POLYGON_POINTS_MAX, RECORDS_MAX};
 
 use crate::count::Counter;
 use crate::host::STREAM_HZ;
-use frixel_testkit::HEADER;
+use frixel_testkit::{HEADER, SceneBytes, scene_with_points};
 
 use crate::tick::Bench;
 
@@ -35,6 +35,26 @@ const CLICK: Click = Click { height_n: 0.005, decay_s: 0.05 };
 fn away(number: usize) -> Region {
     let (column, row) = ((number % 16) as f32, (number / 16) as f32);
     Region::Rectangle { x_m: 0.001 + 0.0075 * column, y_m: 0.063 + 0.006_875 * row, width_m: 5e-3, height_m: 4e-3 }
+}
+
+/// The most layers that a scene has, each in a region of its own, and the most points, in polygons.
+pub(crate) fn largest_scene() -> SceneBytes {
+    let points: [Point; POINTS_MAX] = array::from_fn(|number| {
+        let turns = number as f32 / POLYGON_POINTS_MAX as f32;
+        let (sine, cosine) = libm::sincosf(core::f32::consts::TAU * turns);
+        let middle_m = 0.015 + 0.03 * (number / POLYGON_POINTS_MAX) as f32;
+        Point { x: middle_m + 0.01 * cosine, y: 0.03 + 0.01 * sine }
+    });
+    let records: [Record; RECORDS_MAX] = array::from_fn(|number| {
+        let first = number * POLYGON_POINTS_MAX;
+        let region = if first < POINTS_MAX {
+            Region::Polygon { first: first as u8, count: POLYGON_POINTS_MAX as u8 }
+        } else {
+            away(number)
+        };
+        under(region, GRATING)
+    });
+    scene_with_points(&HEADER, &records, &points)
 }
 
 const fn grating(wave: Wave) -> Layer {
@@ -124,9 +144,13 @@ impl Bench {
         self.slide(counter.case("tick_stream_elsewhere"));
         self.polygons(counter);
         self.curves(counter);
+        for kind in Layer::NUMBERS {
+            assert!(self.kinds_counted & 1 << kind != 0, "the cost of layer kind {kind} is not counted: add a case");
+        }
     }
 
     fn alone(&mut self, counter: &mut Counter, name: &'static str, record: Record, points: &[Point]) {
+        self.kinds_counted |= 1 << record.layer.number();
         self.play_with_points(&HEADER, &[record], points);
         if matches!(record.layer, Layer::Stream(_)) {
             self.start_stream();

@@ -4,14 +4,14 @@ use cortex_m::singleton;
 use frixel_control::{Active, Board, Drive, Sense, StreamBuffer, Ticker};
 use frixel_layers::{BitmapPool, Header, Point, Record};
 use frixel_session::{Session, Touch};
-use frixel_testkit::{HEADER, IdealMonitor, record, scene_with_points};
+use frixel_testkit::{HEADER, IdealMonitor, RandomScene, record, scene_with_points};
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::State;
 use frixel_wire::message::Command;
 
 use crate::count::{Case, Counter};
 use crate::host::{Host, STREAM_FRAME, STREAM_TICKS_PER_SAMPLE};
-use crate::layers::{GRATING, bitmap};
+use crate::layers::{GRATING, bitmap, largest_scene};
 
 /// Number of ticks counted for each scene: a stroke across the screen.
 const TICKS: u32 = 8_000;
@@ -21,6 +21,8 @@ const REPORT_TICKS: u32 = 400;
 pub(crate) const PING_TICKS: u32 = 2_000;
 /// Ticks between two frames of the stream.
 pub(crate) const STREAM_TICKS: u32 = STREAM_FRAME as u32 * STREAM_TICKS_PER_SAMPLE;
+/// Number of random scenes whose commits are counted.
+const COMMITTED_RANDOM_SCENES: u64 = 30;
 /// Side of the square picture, in samples.
 const PICTURE: u16 = 100;
 
@@ -37,11 +39,14 @@ pub fn run(counter: &mut Counter) {
     bench.costs(counter, crc32);
     bench.numbers_of_layers(counter);
     bench.worst_scene(counter, crc32);
+    bench.commit_steps(counter, crc32);
 }
 
 /// A playing board.
 pub(crate) struct Bench {
     pub(crate) host: Host<'static>,
+    /// A bit for each kind of layer whose cost was counted, by the kind's number.
+    pub(crate) kinds_counted: u32,
     monitor: IdealMonitor,
 }
 
@@ -59,7 +64,11 @@ impl Bench {
         let mut session = Session::new(board, &POOL, second);
         ticker.attach_stream(&STREAM);
         session.attach_stream(&STREAM);
-        Self { host: Host::new(session, ticker), monitor: IdealMonitor::new(&board.limits, board.tick_hz) }
+        Self {
+            host: Host::new(session, ticker),
+            kinds_counted: 0,
+            monitor: IdealMonitor::new(&board.limits, board.tick_hz),
+        }
     }
 
     /// Sends the board a picture, and returns its name.
@@ -89,6 +98,21 @@ impl Bench {
         self.tick(None);
         assert!(self.host.session.scene() == Some(scene), "the scene is refused");
         assert!(self.host.ticker.status().telemetry.state == State::Active, "the scene does not play");
+    }
+
+    /// Counts the steps of the commits of random scenes, and of one with the most layers and points.
+    fn commit_steps(&mut self, counter: &mut Counter, crc32: u32) {
+        let mut case = counter.case("commit_step");
+        let mut commit = |scene: &[u8]| {
+            self.host.upload(scene);
+            self.host.commit(scene, |host| case.take(|host: &mut Host, ()| host.poll(), host, ()));
+            assert!(self.host.session.scene() == Some(scene), "the scene is refused");
+        };
+        commit(&largest_scene());
+        for seed in 0..COMMITTED_RANDOM_SCENES {
+            commit(&RandomScene::new(seed, crc32).bytes());
+        }
+        case.report();
     }
 
     /// Counts ticks without output.

@@ -14,18 +14,18 @@ const NOWHERE: *const u32 = 0x6000_0000 as *const u32;
 
 /// Called by the main loop: injects the fault that the simulator requests.
 pub fn in_main() {
-    match shared::get(layout::PROVOKE) {
-        layout::PROVOKE_PANIC => {
-            shared::set(layout::PROVOKE, layout::PROVOKE_NOTHING);
+    match shared::get(layout::INJECTED_FAULT) {
+        layout::INJECT_PANIC => {
+            shared::set(layout::INJECTED_FAULT, layout::INJECT_NOTHING);
             panic!("injected");
         }
-        layout::PROVOKE_HARD_FAULT => {
-            shared::set(layout::PROVOKE, layout::PROVOKE_NOTHING);
+        layout::INJECT_HARD_FAULT => {
+            shared::set(layout::INJECTED_FAULT, layout::INJECT_NOTHING);
             // SAFETY: the read returns no value: there is no memory, and it causes the bus fault that is intended.
             black_box(unsafe { NOWHERE.read_volatile() });
         }
-        layout::PROVOKE_STACK_OVERFLOW => {
-            shared::set(layout::PROVOKE, layout::PROVOKE_NOTHING);
+        layout::INJECT_STACK_OVERFLOW => {
+            shared::set(layout::INJECTED_FAULT, layout::INJECT_NOTHING);
             black_box(without_end(0));
         }
         _ => {}
@@ -35,8 +35,8 @@ pub fn in_main() {
 /// Called by the tick: overruns it if the simulator requests that.
 #[inline]
 pub fn in_tick() {
-    if shared::get(layout::PROVOKE) == layout::PROVOKE_OVERRUN {
-        shared::set(layout::PROVOKE, layout::PROVOKE_NOTHING);
+    if shared::get(layout::INJECTED_FAULT) == layout::INJECT_OVERRUN {
+        shared::set(layout::INJECTED_FAULT, layout::INJECT_NOTHING);
         for i in 0..OVERRUN_LOOPS {
             black_box(i);
         }

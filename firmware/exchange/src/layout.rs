@@ -17,18 +17,18 @@ pub const MODE_LINK: u32 = 0;
 /// The board advances when the simulator sends a tick, which carries the serial bytes, too.
 pub const MODE_LOCKSTEP: u32 = 1;
 
-/// The fault that the board must inject, one of those below. The board sets it back to [`PROVOKE_NOTHING`].
-pub const PROVOKE: usize = 2;
+/// The fault that the board must inject, one of those below. The board sets it back to [`INJECT_NOTHING`].
+pub const INJECTED_FAULT: usize = 2;
 /// No fault.
-pub const PROVOKE_NOTHING: u32 = 0;
+pub const INJECT_NOTHING: u32 = 0;
 /// The firmware panics.
-pub const PROVOKE_PANIC: u32 = 1;
+pub const INJECT_PANIC: u32 = 1;
 /// The processor reads where there is no memory.
-pub const PROVOKE_HARD_FAULT: u32 = 2;
+pub const INJECT_HARD_FAULT: u32 = 2;
 /// A tick takes longer than the tick period.
-pub const PROVOKE_OVERRUN: u32 = 3;
+pub const INJECT_OVERRUN: u32 = 3;
 /// A function calls itself without end.
-pub const PROVOKE_STACK_OVERFLOW: u32 = 4;
+pub const INJECT_STACK_OVERFLOW: u32 = 4;
 
 /// The amplifier's fault line: raised when non-zero.
 pub const AMPLIFIER_FAULT: usize = 3;

@@ -1,7 +1,5 @@
 //! The layers of a scene as the tick evaluates them.
 
-use core::ops::Range;
-
 use frixel_wire::message::Refusal;
 use frixel_wire::scene::RECORDS_MAX;
 use heapless::Vec;
@@ -10,21 +8,18 @@ use crate::bitmap_pool::{BitmapPool, StoredBitmap};
 use crate::blend::Blend;
 use crate::click::Clicks;
 use crate::context::{Context, Inputs};
-use crate::cost::{self, LayerCosts, Worst};
-use crate::grid::{Grid, LayerSet};
+use crate::grid::{Cell, Grid, LayerSet};
 use crate::header::Header;
 use crate::kinds::Coefficients;
 use crate::point::Point;
 use crate::prepare::Preparation;
 use crate::record::Record;
 use crate::region::ActiveRegion;
-use crate::scene::Scene;
 use crate::tables::Tables;
 
 /// The layers of one scene. Everything that does not change from tick to tick is precomputed.
 ///
-/// [`ActiveLayers::begin`] starts a scene, [`ActiveLayers::push`] adds its layers one by one, and
-/// [`ActiveLayers::worst`] computes their cost.
+/// [`ActiveLayers::begin`] starts a scene, and [`ActiveLayers::push`] adds its layers one by one.
 #[repr(C)]
 pub struct ActiveLayers {
     /// The enabled layers.
@@ -72,15 +67,14 @@ impl ActiveLayers {
         Ok(())
     }
 
-    /// Finds the place at which a tick of `scene` takes the longest, among some cells of the grid. `so_far` is the
-    /// result for the cells before them. The layers must be those of `scene`.
-    pub fn worst(&self, scene: &Scene, cells: Range<usize>, so_far: Worst) -> Worst {
-        let mut costs = LayerCosts::NONE;
-        for (number, record) in (0..).zip(scene.records()) {
-            costs.add(number, &record, self.tables.points());
-        }
-        let cells = self.grid.cells().skip(cells.start).take(cells.len());
-        cost::worst_of_cells(scene.header(), cells, &costs, so_far)
+    /// The points of polygons and curves.
+    pub fn points(&self) -> &[Point] {
+        self.tables.points()
+    }
+
+    /// The cells of the screen, row by row, with the layers that may act in each.
+    pub fn cells(&self) -> impl Iterator<Item = Cell> {
+        self.grid.cells()
     }
 
     /// Whether a layer plays the host's stream.
@@ -162,7 +156,7 @@ enum Join {
 impl ActiveLayer {
     /// Computes the layer of record number `number`, which has been checked.
     pub(crate) fn new(record: &Record, number: u8, preparation: &mut Preparation) -> Result<Self, Refusal> {
-        let region = ActiveRegion::new(&record.region).ok_or(Refusal::LeftOut { layer: number })?;
+        let region = ActiveRegion::new(&record.region).ok_or(Refusal::FeatureDisabled { layer: number })?;
         let coefficients = record.layer.prepare(number, preparation)?;
         let join = if record.layer.is_streamed() { Join::Fade(record.blend) } else { Join::Blend(record.blend) };
         Ok(Self { region, join, gain: record.gain, coefficients })

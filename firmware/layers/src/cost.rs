@@ -11,7 +11,7 @@ pub(crate) mod measured;
 use frixel_wire::message::Refusal;
 use frixel_wire::scene::RECORDS_MAX;
 
-use crate::grid::{Cell, Grid};
+use crate::grid::{Cell, Grid, LayerSet, layer_numbers};
 use crate::header::{Carrier, Header};
 use crate::point::Point;
 use crate::record::Record;
@@ -54,25 +54,44 @@ pub const fn cycles(core_cycles: u32) -> u32 {
     core_cycles.saturating_mul(FLASH_WAIT_PERCENT).div_ceil(100)
 }
 
-/// Core cycles that the layers of a scene add to a tick.
+/// The costs of a scene's layers, from which the cost of a tick at any place follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LayerCosts {
-    layers: [u32; RECORDS_MAX],
-    /// Core cycles that do not depend on where the finger is.
-    everywhere: u32,
+    /// Core cycles of a tick with no layer near the finger, apart from `elsewhere`.
+    empty: u32,
+    /// Core cycles that layers add wherever the finger is.
+    elsewhere: u32,
+    /// Core cycles that each layer adds near the finger: far fewer than 65,536 each.
+    layers: [u16; RECORDS_MAX],
 }
 
 impl LayerCosts {
-    /// No layer.
-    pub const NONE: Self = Self { layers: [0; RECORDS_MAX], everywhere: 0 };
+    /// A scene with this header and without layers.
+    pub const fn new(header: &Header) -> Self {
+        Self { empty: of_empty_scene(header), elsewhere: 0, layers: [0; RECORDS_MAX] }
+    }
 
     /// Adds layer number `number`; `points` are the scene's.
     pub fn add(&mut self, number: u8, record: &Record, points: &[Point]) {
         if let Some(cost) = self.layers.get_mut(usize::from(number)) {
-            *cost = of_record(record, points);
+            *cost = u16::try_from(of_record(record, points)).unwrap_or(u16::MAX);
         }
         // Counts once for all layers of the kind. Only one kind has it: a second one would need a sum over kinds.
-        self.everywhere = self.everywhere.max(record.layer.cost_elsewhere());
+        self.elsewhere = self.elsewhere.max(record.layer.cost_elsewhere());
+    }
+
+    /// Core cycles of a tick that evaluates these layers.
+    pub fn of_tick(&self, layers: LayerSet) -> u32 {
+        let near = layer_numbers(layers).filter_map(|number| self.layers.get(number));
+        self.empty + self.elsewhere + near.map(|cost| u32::from(*cost)).sum::<u32>()
+    }
+
+    /// Finds the cell in which a tick takes the longest; `so_far` is the result for the cells before these.
+    pub fn worst(&self, cells: impl Iterator<Item = Cell>, so_far: Worst) -> Worst {
+        cells.fold(so_far, |worst, cell| {
+            let core_cycles = self.of_tick(cell.layers);
+            if core_cycles > worst.core_cycles { Worst { core_cycles, cell } } else { worst }
+        })
     }
 }
 
@@ -89,28 +108,14 @@ pub const fn of_empty_scene(header: &Header) -> u32 {
     }
 }
 
-/// Finds the place at which a tick takes the longest, from a scene's grid and the costs of its layers.
-pub fn worst(header: &Header, grid: &Grid, costs: &LayerCosts) -> Worst {
-    worst_of_cells(header, grid.cells(), costs, Worst::NOWHERE)
-}
-
-/// [`worst`] of some cells of the grid; `so_far` is the result for the cells before them.
-pub fn worst_of_cells(header: &Header, cells: impl Iterator<Item = Cell>, costs: &LayerCosts, so_far: Worst) -> Worst {
-    cells.fold(so_far, |worst, cell| {
-        let here = (0..).zip(&costs.layers).filter(|(number, _)| cell.has(*number)).map(|(_, cost)| cost);
-        let core_cycles = of_empty_scene(header) + costs.everywhere + here.sum::<u32>();
-        if core_cycles > worst.core_cycles { Worst { core_cycles, cell } } else { worst }
-    })
-}
-
-/// [`worst`] of a whole scene.
+/// Finds the place in a scene at which a tick takes the longest.
 pub fn worst_of_scene(header: &Header, records: &[Record], points: &[Point]) -> Worst {
     let mut grid = Grid::EMPTY;
     grid.reset(header.screen_width_m, header.screen_height_m);
-    let mut costs = LayerCosts::NONE;
+    let mut costs = LayerCosts::new(header);
     for (number, record) in (0..).zip(records) {
         grid.add(number, &record.region, points);
         costs.add(number, record, points);
     }
-    worst(header, &grid, &costs)
+    costs.worst(grid.cells(), Worst::NOWHERE)
 }

@@ -40,6 +40,25 @@ impl Cell {
     }
 }
 
+/// The set of the layers with these numbers. Numbers from 64 on are ignored.
+pub fn layer_set(numbers: impl Iterator<Item = usize>) -> LayerSet {
+    numbers.fold([0; 2], |[first, others], number| match number as u32 {
+        number @ 0..32 => [first | 1 << number, others],
+        number @ 32..64 => [first, others | 1 << (number - u32::BITS)],
+        _ => [first, others],
+    })
+}
+
+/// The numbers of the layers in a set, in ascending order.
+pub fn layer_numbers([first, others]: LayerSet) -> impl Iterator<Item = usize> + Clone {
+    let mut rest = u64::from(first) | u64::from(others) << u32::BITS;
+    core::iter::from_fn(move || {
+        let number = (rest != 0).then_some(rest.trailing_zeros() as usize);
+        rest &= rest.wrapping_sub(1);
+        number
+    })
+}
+
 impl Grid {
     /// Number of cells.
     pub const CELLS: usize = SIDE * SIDE;

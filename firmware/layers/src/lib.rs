@@ -71,7 +71,7 @@ pub use blend::Blend;
 pub use click::{Click, Clicks};
 pub use context::{Inputs, StreamSample};
 pub use cosine::cosine;
-pub use grid::{Cell, Grid, LayerSet};
+pub use grid::{Cell, Grid, LayerSet, layer_numbers, layer_set};
 pub use header::{Carrier, HALF_PERIOD_MIN_TICKS, HEADER_LEN, Header, Leader, SCENE_VERSION};
 pub use interval::{Interval, Number, electric_friction_max_n};
 #[cfg(feature = "vibration")]

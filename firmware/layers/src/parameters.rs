@@ -177,6 +177,10 @@ impl Range {
     }
 
     /// Refuses a number outside the range, and not-a-number; `layer` is the layer number for the refusal.
+    // Every range is a constant: inlined, its limits are converted to `f32` by the compiler and not by the processor,
+    // which has no `f64`.
+    #[allow(clippy::inline_always, reason = "a call would convert both limits in software")]
+    #[inline(always)]
     pub fn check(&self, found: f32, layer: u8) -> Result<(), ConfigRefusal> {
         within(self.field, found, self.min as f32, self.max as f32, layer)
     }

@@ -48,8 +48,17 @@ impl Record {
         bytes
     }
 
-    /// Reads a record; `number` is its index in the scene, for errors.
+    /// Reads a record and checks that it has no other encoding; `number` is its index in the scene, for errors.
     pub fn parse(bytes: &[u8; RECORD_LEN], number: u8) -> Result<Self, SceneError> {
+        let record = Self::read(bytes, number)?;
+        match first_difference(bytes, &record.write()) {
+            None => Ok(record),
+            Some(offset) => Err(SceneError::NotZero { record: number, offset }),
+        }
+    }
+
+    /// [`Record::parse`] of bytes that were parsed before: it does not check the encoding.
+    pub(crate) fn read(bytes: &[u8; RECORD_LEN], number: u8) -> Result<Self, SceneError> {
         let [kind] = get_at(bytes, KIND_AT);
         let [blend] = get_at(bytes, BLEND_AT);
         let layer = Layer::read(kind, bytes, number)?;
@@ -59,11 +68,7 @@ impl Record {
             value: blend,
         })?;
         let gain = f32::from_le_bytes(get_at(bytes, GAIN_AT));
-        let record = Self { region: Region::read(bytes, number)?, blend, gain, layer };
-        match first_difference(bytes, &record.write()) {
-            None => Ok(record),
-            Some(offset) => Err(SceneError::NotZero { record: number, offset }),
-        }
+        Ok(Self { region: Region::read(bytes, number)?, blend, gain, layer })
     }
 
     /// Checks the record's requirements on the scene's points, and its kind's requirements on the region.

@@ -153,9 +153,19 @@ fn put_numbers(record: &mut RecordBytes, numbers: [f32; 4]) {
 
 /// Most edges of a polygon that are level with one place: between two vertices, as many as at the upper of the two.
 fn edges_level_max(vertices: &[Point]) -> u32 {
-    let edges = || vertices.iter().zip(vertices.iter().cycle().skip(1));
-    let level_at = |y: f32| edges().filter(|(from, to)| (from.y > y) != (to.y > y)).count();
-    vertices.iter().map(|vertex| level_at(vertex.y)).max().unwrap_or(0) as u32
+    vertices.iter().map(|vertex| edges_level(vertices, vertex.y)).max().unwrap_or(0)
+}
+
+/// Edges of a polygon that are level with a place: those with one end below it and one not.
+fn edges_level(vertices: &[Point], y_m: f32) -> u32 {
+    let mut was_below = vertices.last().is_some_and(|vertex| vertex.y > y_m);
+    let mut count = 0;
+    for vertex in vertices {
+        let is_below = vertex.y > y_m;
+        count += u32::from(is_below != was_below);
+        was_below = is_below;
+    }
+    count
 }
 
 /// Rectangles are tested in integer steps of 2^-28 m, 3.7 nm: a tick compares integers faster than `f32`. All

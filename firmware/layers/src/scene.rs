@@ -1,5 +1,7 @@
 //! A scene read from its bytes.
 
+use core::ops::Range;
+
 use frixel_wire::hello::feature;
 use frixel_wire::scene::{POINTS_MAX, RECORDS_MAX, SceneError};
 
@@ -29,6 +31,15 @@ impl<'a> Scene<'a> {
     /// Checks version, length, header and every record.
     #[inline(never)]
     pub fn parse(bytes: &'a [u8]) -> Result<Self, SceneError> {
+        let scene = Self::open(bytes)?;
+        scene.check_records(0..scene.record_count())?;
+        Ok(scene)
+    }
+
+    /// Checks version, length and header. The records must also be checked, with [`Scene::check_records`], before the
+    /// scene is used: this takes much less time than [`Scene::parse`].
+    #[inline(never)]
+    pub fn open(bytes: &'a [u8]) -> Result<Self, SceneError> {
         // The version comes first: a scene of another version may be of any length.
         if let Some(version) = bytes.first_chunk::<2>() {
             let found = u16::from_le_bytes(*version);
@@ -52,10 +63,16 @@ impl<'a> Scene<'a> {
         }
         let (records, _) = records.as_chunks::<RECORD_LEN>();
         let (points, _) = points.as_chunks::<POINT_LEN>();
-        for (number, record) in (0..).zip(records) {
-            Record::parse(record, number)?.check_structure(point_count, number)?;
-        }
         Ok(Self { header, records, points })
+    }
+
+    /// Checks the records with these numbers. Numbers without a record are ignored.
+    pub fn check_records(&self, numbers: Range<usize>) -> Result<(), SceneError> {
+        let records = (0_u8..).zip(self.records).skip(numbers.start).take(numbers.len());
+        for (number, record) in records {
+            Record::parse(record, number)?.check_structure(self.points.len() as u8, number)?;
+        }
+        Ok(())
     }
 
     /// The settings of the whole scene.
@@ -65,7 +82,12 @@ impl<'a> Scene<'a> {
 
     /// The layers, the first one at the bottom.
     pub fn records(&self) -> impl Iterator<Item = Record> + use<'a> {
-        (0..).zip(self.records).filter_map(|(number, record)| Record::parse(record, number).ok())
+        (0..).zip(self.records).filter_map(|(number, record)| Record::read(record, number).ok())
+    }
+
+    /// Layer number `number`; `None` if there are fewer.
+    pub fn record(&self, number: usize) -> Option<Record> {
+        self.records.get(number).and_then(|record| Record::read(record, number as u8).ok())
     }
 
     /// Number of records.

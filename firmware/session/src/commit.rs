@@ -16,6 +16,9 @@ use crate::transmit_queue::TransmitQueue;
 use crate::upload::Upload;
 use frixel_control::{Order, Status};
 
+/// Records that a step of a commit checks.
+const RECORDS_PER_STEP: usize = 16;
+
 /// CRC-32 names of bitmaps.
 pub(crate) type BitmapNames = Vec<u32, RECORDS_MAX>;
 
@@ -29,8 +32,10 @@ pub(crate) struct Commit {
 
 /// The next step of a commit.
 enum Step {
-    /// Checks that a complete and valid scene was uploaded.
+    /// Checks that a complete scene was uploaded, except its records.
     Check,
+    /// Checks its records from this one on.
+    CheckRecords(usize),
     /// Computes its coefficients.
     Load(Loading),
     /// Hands them to the ticker.
@@ -82,7 +87,14 @@ impl Commands<'_> {
         match &mut commit.step {
             Step::Check => {
                 self.check_upload(crc32)?;
-                commit.step = Step::Load(Loading::Drive);
+                commit.step = Step::CheckRecords(0);
+            }
+            Step::CheckRecords(first) => {
+                let scene = self.uploaded_scene()?;
+                let end = *first + RECORDS_PER_STEP;
+                scene.check_records(*first..end).map_err(not_a_scene)?;
+                commit.step =
+                    if end < scene.record_count() { Step::CheckRecords(end) } else { Step::Load(Loading::Drive) };
             }
             Step::Load(loading) => {
                 if self.load_step(loading)? {
@@ -113,12 +125,12 @@ impl Commands<'_> {
 
     fn uploaded_scene(&self) -> Result<Scene<'_>, Refusal> {
         let (bytes, _) = self.staging.scene().ok_or(Refusal::NoScene)?;
-        Scene::parse(bytes).map_err(not_a_scene)
+        Scene::open(bytes).map_err(not_a_scene)
     }
 
     fn load_step(&mut self, loading: &mut Loading) -> Result<bool, Refusal> {
         let (bytes, _) = self.staging.scene().ok_or(Refusal::NoScene)?;
-        let scene = Scene::parse(bytes).map_err(not_a_scene)?;
+        let scene = Scene::open(bytes).map_err(not_a_scene)?;
         let spare = self.spare.as_mut().ok_or(Refusal::Busy)?;
         let stepped = loading.step(spare, &scene, &self.board, &self.directory);
         if stepped.is_err() {
@@ -130,7 +142,8 @@ impl Commands<'_> {
     fn hand_scene_over(&mut self, crc32: u32) -> Result<(), Refusal> {
         self.room_for_order()?;
         let scene = self.uploaded_scene()?;
-        let (bitmaps, playing) = (bitmaps_of(&scene), Playing::new(&scene));
+        let active = self.spare.as_deref().ok_or(Refusal::Busy)?;
+        let (bitmaps, playing) = (bitmaps_of(&scene), Playing::new(&scene, &active.layers));
         let spare = self.spare.take().ok_or(Refusal::Busy)?;
         self.committed_bitmaps = bitmaps;
         self.playing = playing;
@@ -156,5 +169,5 @@ fn bitmaps_of(scene: &Scene) -> BitmapNames {
 
 /// Distinguishes a record whose feature is disabled in this firmware from an invalid scene.
 fn not_a_scene(error: SceneError) -> Refusal {
-    disabled_record(&error).map_or(Refusal::Scene(error), |layer| Refusal::LeftOut { layer })
+    disabled_record(&error).map_or(Refusal::Scene(error), |layer| Refusal::FeatureDisabled { layer })
 }

@@ -2,7 +2,7 @@
 
 #[cfg(feature = "stream")]
 use frixel_layers::within;
-use frixel_layers::{Header, Leader, Scene, range};
+use frixel_layers::{ActiveLayers, Header, Leader, Scene, range};
 use frixel_wire::fault::State;
 use frixel_wire::message::{Accepted, Command, Refusal};
 #[cfg(feature = "stream")]
@@ -32,13 +32,14 @@ pub(crate) struct Playing {
 }
 
 impl Playing {
-    pub(crate) fn new(scene: &Scene) -> Self {
+    #[cfg_attr(not(feature = "stream"), allow(unused_variables, reason = "no layer is streamed"))]
+    pub(crate) fn new(scene: &Scene, active: &ActiveLayers) -> Self {
         Self {
             header: Some(*scene.header()),
             // This fits: a scene has at most `RECORDS_MAX` records.
             layers: scene.record_count() as u8,
             #[cfg(feature = "stream")]
-            has_stream: scene.records().any(|record| record.layer.is_streamed()),
+            has_stream: active.has_stream(),
         }
     }
 }
@@ -182,7 +183,7 @@ impl<'a> Commands<'a> {
             received_bytes: self.credit.received(),
         };
         // If the queue is too full, the next call tries again.
-        if queue.send_unasked(&progress) {
+        if queue.send_unsolicited(&progress) {
             self.credit.reported();
             stream.report_due = false;
             stream.frames = 0;

@@ -1,7 +1,7 @@
 //! Checks a scene's configuration and computes the coefficients that the tick reads, in steps.
 
 use frixel_control::{Active, Board, CarrierTiming};
-use frixel_layers::cost::Worst;
+use frixel_layers::cost::{LayerCosts, Worst};
 use frixel_layers::{Carrier as Shape, Grid, Header, Point, Scene, active_bytes, within};
 use frixel_model::{Carrier, Finger, InverseTable, InverseTableFilling, TableError, Waveform};
 use frixel_wire::dac_code::DacCode;
@@ -9,22 +9,21 @@ use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
 
 use crate::bitmap_directory::Directory;
 
-/// Layers that a step of loading takes.
-const LAYERS_PER_STEP: usize = 8;
 /// Cells of the grid whose cost a step of loading finds.
 const CELLS_PER_STEP: usize = 64;
 /// Rows of the inverse table that a step of loading computes.
-const ROWS_PER_STEP: usize = 8;
+const ROWS_PER_STEP: usize = 4;
 
 /// The next step of loading a scene.
 #[derive(Clone, Debug)]
 pub(crate) enum Loading {
     /// Carrier, voltage limits and the other properties of the whole scene.
     Drive,
-    /// Layers, beginning with a number.
-    Layers {
-        /// Number of the first.
-        next: usize,
+    /// The layer with a number.
+    Layer {
+        number: usize,
+        /// Costs of the layers before it.
+        costs: LayerCosts,
     },
     /// The cost of a tick, beginning with a cell of the grid.
     Cost {
@@ -32,6 +31,8 @@ pub(crate) enum Loading {
         next_cell: usize,
         /// The worst cell before it.
         worst: Worst,
+        /// Costs of all layers.
+        costs: LayerCosts,
     },
     /// The layout of the inverse table.
     Table,
@@ -40,9 +41,6 @@ pub(crate) enum Loading {
 }
 
 impl Loading {
-    /// The cost of a tick, beginning with the first cell.
-    const COST: Self = Self::Cost { next_cell: 0, worst: Worst::NOWHERE };
-
     /// Does the next step of computing the coefficients of `scene` into `active`. A step takes a board well below a
     /// millisecond. Returns whether it was the last. If the scene is refused, `active` holds no scene; before the last
     /// step, its content must not be used.
@@ -71,20 +69,22 @@ impl Loading {
         *self = match self {
             Self::Drive => {
                 load_drive(active, scene, board)?;
-                Self::Layers { next: 0 }
+                Self::Layer { number: 0, costs: LayerCosts::new(header) }
             }
-            Self::Layers { next } => {
-                for record in scene.records().skip(*next).take(LAYERS_PER_STEP) {
+            Self::Layer { number, costs } => {
+                if let Some(record) = scene.record(*number) {
                     active.layers.push(&record, board.tick_hz, &|crc32| directory.find(crc32))?;
+                    costs.add(*number as u8, &record, active.layers.points());
+                    Self::Layer { number: *number + 1, costs: *costs }
+                } else {
+                    Self::Cost { next_cell: 0, worst: Worst::NOWHERE, costs: *costs }
                 }
-                let next = *next + LAYERS_PER_STEP;
-                if next < scene.record_count() { Self::Layers { next } } else { Self::COST }
             }
-            Self::Cost { next_cell, worst } => {
-                let end_cell = *next_cell + CELLS_PER_STEP;
-                let worst = active.layers.worst(scene, *next_cell..end_cell, *worst);
-                if end_cell < Grid::CELLS {
-                    Self::Cost { next_cell: end_cell, worst }
+            Self::Cost { next_cell, worst, costs } => {
+                let worst = costs.worst(active.layers.cells().skip(*next_cell).take(CELLS_PER_STEP), *worst);
+                let next_cell = *next_cell + CELLS_PER_STEP;
+                if next_cell < Grid::CELLS {
+                    Self::Cost { next_cell, worst, costs: *costs }
                 } else {
                     worst.check(board.limits.tick_cycles_max)?;
                     Self::Table
@@ -111,7 +111,7 @@ fn load_drive(active: &mut Active, scene: &Scene, board: &Board) -> Result<(), R
     active.unload();
     let header = scene.header();
     if header.carrier == Shape::Sine && !cfg!(feature = "sine-carrier") {
-        return Err(Refusal::LeftOut { layer: ConfigRefusal::WHOLE_SCENE });
+        return Err(Refusal::FeatureDisabled { layer: ConfigRefusal::WHOLE_SCENE });
     }
     header.check(&board.limits, board.tick_hz).map_err(Refusal::Config)?;
     (active.carrier, active.voltage_max_v_rms) = carrier(header, board).map_err(Refusal::Config)?;

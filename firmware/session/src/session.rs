@@ -89,7 +89,7 @@ impl<'a> Session<'a> {
             && status.telemetry.tick.wrapping_sub(self.telemetry_sent_at_tick) >= period_ticks
         {
             self.telemetry_sent_at_tick = status.telemetry.tick;
-            self.queue.send_unasked(&FromBoard::Telemetry(status.telemetry));
+            self.queue.send_unsolicited(&FromBoard::Telemetry(status.telemetry));
         }
     }
 
@@ -144,17 +144,17 @@ impl<'a> Session<'a> {
         self.commands.playing.header.as_ref()
     }
 
-    /// CRC-32 of the scene that [`Session::kept`] returns; `None` when that returns `None`.
+    /// CRC-32 of the scene that [`Session::scene_to_store`] returns; `None` when that returns `None`.
     #[cfg(feature = "store")]
-    pub fn kept_crc32(&self) -> Option<u32> {
-        self.commands.kept_crc32()
+    pub fn crc32_to_store(&self) -> Option<u32> {
+        self.commands.crc32_to_store()
     }
 
     /// The committed scene with its bitmaps, as bytes to store; `None` without a scene, or if the board is not
     /// disarmed.
     #[cfg(feature = "store")]
-    pub fn kept(&self) -> Option<StoredScene<'_>> {
-        self.commands.kept()
+    pub fn scene_to_store(&self) -> Option<StoredScene<'_>> {
+        self.commands.scene_to_store()
     }
 
     /// Commits a stored scene: `read` fills a buffer with the bytes at an offset, and returns `false` beyond the end.

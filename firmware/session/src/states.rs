@@ -11,7 +11,7 @@ use frixel_control::Status;
 /// Orders that may wait for the ticker. A command is refused as busy when there is no room.
 pub(crate) const ORDERS_MAX: usize = 8;
 /// Number of them that are reserved for Stop and Disarm, so that these are never refused for lack of room.
-const ORDERS_KEPT: usize = 2;
+const ORDERS_RESERVED: usize = 2;
 
 impl<'a> Commands<'a> {
     /// Reports a change of state that the host did not request.
@@ -74,7 +74,7 @@ impl<'a> Commands<'a> {
 
     /// Refuses if there is no room for another order, not counting the room reserved for Stop and Disarm.
     pub(crate) fn room_for_order(&self) -> Result<(), Refusal> {
-        if self.orders.len() + ORDERS_KEPT >= ORDERS_MAX { Err(Refusal::Busy) } else { Ok(()) }
+        if self.orders.len() + ORDERS_RESERVED >= ORDERS_MAX { Err(Refusal::Busy) } else { Ok(()) }
     }
 
     #[inline(never)]

@@ -73,12 +73,12 @@ impl StoredScene<'_> {
 
 impl Commands<'_> {
     /// CRC-32 of the scene to store: the committed one, if the board is disarmed.
-    pub(crate) fn kept_crc32(&self) -> Option<u32> {
+    pub(crate) fn crc32_to_store(&self) -> Option<u32> {
         (self.state == State::Disarmed && self.scene().is_some()).then_some(self.committed_crc32)
     }
 
-    pub(crate) fn kept(&self) -> Option<StoredScene<'_>> {
-        let crc32 = self.kept_crc32()?;
+    pub(crate) fn scene_to_store(&self) -> Option<StoredScene<'_>> {
+        let crc32 = self.crc32_to_store()?;
         let mut bitmaps = Vec::new();
         for (index, crc32) in self.committed_bitmaps.iter().enumerate() {
             if !self.committed_bitmaps.iter().take(index).any(|before| before == crc32) {

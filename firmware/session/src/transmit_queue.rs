@@ -13,11 +13,11 @@ const ANSWERS_MAX: usize = 64;
 const ANSWER_MAX_LEN: usize = 37;
 /// Unsolicited frames are dropped while more than this is queued, 2.5 ms of a line of 2 Mbaud. They thus leave room for
 /// all answers, and those that are sent are recent.
-const UNASKED_MAX_LEN: usize = 512;
+const UNSOLICITED_MAX_LEN: usize = 512;
 /// Bytes of the queue: room for all answers and unsolicited frames, and for reports of progress and state.
 const QUEUE_LEN: usize = 3072;
 
-const _: () = assert!(ANSWERS_MAX * ANSWER_MAX_LEN + UNASKED_MAX_LEN + FRAME_MAX_LEN <= QUEUE_LEN);
+const _: () = assert!(ANSWERS_MAX * ANSWER_MAX_LEN + UNSOLICITED_MAX_LEN + FRAME_MAX_LEN <= QUEUE_LEN);
 
 /// A queue of whole frames; the first may have been sent in part.
 pub(crate) struct TransmitQueue {
@@ -37,9 +37,9 @@ impl TransmitQueue {
         self.send_within(QUEUE_LEN, message)
     }
 
-    /// Queues an unsolicited message, such as telemetry, unless more than [`UNASKED_MAX_LEN`] bytes are queued.
-    pub(crate) fn send_unasked(&mut self, message: &FromBoard) -> bool {
-        self.send_within(UNASKED_MAX_LEN, message)
+    /// Queues an unsolicited message, such as telemetry, unless more than [`UNSOLICITED_MAX_LEN`] bytes are queued.
+    pub(crate) fn send_unsolicited(&mut self, message: &FromBoard) -> bool {
+        self.send_within(UNSOLICITED_MAX_LEN, message)
     }
 
     /// Queues a message if at most `len_max` bytes are then queued.

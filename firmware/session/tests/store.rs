@@ -312,7 +312,7 @@ fn a_bitmap_that_is_not_its_name_is_not_held() {
     desk.greet();
     let scene = textured(&mut desk);
     desk.load(&scene).unwrap();
-    let kept = desk.session.kept().unwrap();
+    let kept = desk.session.scene_to_store().unwrap();
     let mut bytes: Vec<u8> = (0..kept.len_to_keep()).step_by(WORD_LEN).flat_map(|offset| kept.word(offset)).collect();
     let sample = bytes.len() - 16 - 100;
     bytes[sample] ^= 1;

@@ -94,8 +94,8 @@ fn numbers(refusal: Refusal) -> Vec<String> {
             vec![config.field.to_string(), config.found.to_string(), config.min.to_string(), config.max.to_string()]
         }
         Refusal::Scene(error) => scene_numbers(error),
-        Refusal::LeftOut { layer: ConfigRefusal::WHOLE_SCENE } => vec!["carrier".into()],
-        Refusal::LeftOut { layer } => vec![format!("layer {layer}")],
+        Refusal::FeatureDisabled { layer: ConfigRefusal::WHOLE_SCENE } => vec!["carrier".into()],
+        Refusal::FeatureDisabled { layer } => vec![format!("layer {layer}")],
         Refusal::TooCostly { cycles, cycles_max, x_m, y_m } => {
             let place = format!("{:.1} mm, {:.1} mm", 1e3 * x_m, 1e3 * y_m);
             vec![cycles.to_string(), cycles_max.to_string(), place]

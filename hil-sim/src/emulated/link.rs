@@ -14,7 +14,7 @@ use frixel_exchange::{drive_of, layout};
 use super::machine::Machine;
 use super::{EmulatorError, Image};
 use crate::{Felt, World};
-use follower::{Follower, Wishes};
+use follower::{ControlFlags, Follower};
 use serial::Serial;
 
 /// An instruction takes 8 ns of virtual time, which resembles a Cortex-M4F near 170 MHz. Virtual time waits for wall
@@ -22,13 +22,13 @@ use serial::Serial;
 const ARGUMENTS: [&str; 4] = ["-icount", "shift=3,align=on", "-serial", "pty"];
 
 /// Wall time between two checks of the board's output.
-const LOOK_EVERY: Duration = Duration::from_millis(1);
+const POLL_PERIOD: Duration = Duration::from_millis(1);
 /// Wall time that the emulator may take to start, on a machine that is busy with other things.
-const PATIENCE: Duration = Duration::from_mins(2);
+const WALL_TIMEOUT: Duration = Duration::from_mins(2);
 
 /// Faults that can be injected into an emulated board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mishap {
+pub enum InjectedFault {
     /// The firmware panics.
     Panic,
     /// The processor takes a hard fault.
@@ -60,7 +60,7 @@ pub struct LinkBoard {
     machine: Machine,
     serial_path: String,
     world: Option<JoinHandle<Result<(), EmulatorError>>>,
-    wishes: Arc<Wishes>,
+    flags: Arc<ControlFlags>,
 }
 
 impl LinkBoard {
@@ -79,11 +79,11 @@ impl LinkBoard {
         let serial = Serial::open(&serial_path)?;
         serial.write_zero()?;
         wait_for(&mut machine, layout::RECEIVED_BYTES, "to take a byte from its serial port")?;
-        let wishes = Arc::new(Wishes::default());
+        let flags = Arc::new(ControlFlags::default());
         let memory = machine.memory.try_clone()?;
-        let follower = Follower::new(memory, serial, world, watch, Arc::clone(&wishes));
+        let follower = Follower::new(memory, serial, world, watch, Arc::clone(&flags));
         let world = thread::spawn(move || follower.run());
-        Ok(Self { machine, serial_path, world: Some(world), wishes })
+        Ok(Self { machine, serial_path, world: Some(world), flags })
     }
 
     /// The pseudo-terminal that a host opens as its serial port.
@@ -93,7 +93,7 @@ impl LinkBoard {
 
     /// Starts the finger's stroke.
     pub fn start_stroke(&self) {
-        self.wishes.stroke.store(true, Ordering::Release);
+        self.flags.stroke.store(true, Ordering::Release);
     }
 
     /// Returns the board's current output.
@@ -139,14 +139,14 @@ impl LinkBoard {
     }
 
     /// Injects a fault into the firmware.
-    pub fn provoke(&self, mishap: Mishap) -> Result<(), EmulatorError> {
-        let number = match mishap {
-            Mishap::Panic => layout::PROVOKE_PANIC,
-            Mishap::HardFault => layout::PROVOKE_HARD_FAULT,
-            Mishap::Overrun => layout::PROVOKE_OVERRUN,
-            Mishap::StackOverflow => layout::PROVOKE_STACK_OVERFLOW,
+    pub fn inject(&self, fault: InjectedFault) -> Result<(), EmulatorError> {
+        let number = match fault {
+            InjectedFault::Panic => layout::INJECT_PANIC,
+            InjectedFault::HardFault => layout::INJECT_HARD_FAULT,
+            InjectedFault::Overrun => layout::INJECT_OVERRUN,
+            InjectedFault::StackOverflow => layout::INJECT_STACK_OVERFLOW,
         };
-        self.machine.memory.set(layout::PROVOKE, number)
+        self.machine.memory.set(layout::INJECTED_FAULT, number)
     }
 
     /// Returns an error when the emulator or the world has ended.
@@ -161,7 +161,7 @@ impl LinkBoard {
 
 impl Drop for LinkBoard {
     fn drop(&mut self) {
-        self.wishes.end.store(true, Ordering::Release);
+        self.flags.end.store(true, Ordering::Release);
         if let Some(world) = self.world.take() {
             // The result cannot be returned from `drop`.
             let _ = world.join();
@@ -174,10 +174,10 @@ fn wait_for(machine: &mut Machine, word: usize, what: &'static str) -> Result<()
     let begin = Instant::now();
     while machine.memory.get(word)? == 0 {
         machine.check()?;
-        if begin.elapsed() > PATIENCE {
-            return Err(EmulatorError::Silent { what, seconds: PATIENCE.as_secs() });
+        if begin.elapsed() > WALL_TIMEOUT {
+            return Err(EmulatorError::Silent { what, seconds: WALL_TIMEOUT.as_secs() });
         }
-        thread::sleep(LOOK_EVERY);
+        thread::sleep(POLL_PERIOD);
     }
     Ok(())
 }

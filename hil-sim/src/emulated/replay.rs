@@ -13,9 +13,9 @@ use crate::Journal;
 /// Number of ticks sent to the board at a time.
 const BATCH_TICKS: usize = layout::BATCH_TICKS_MAX;
 /// Wall time between two checks whether a batch is done.
-const LOOK_EVERY: Duration = Duration::from_micros(200);
+const POLL_PERIOD: Duration = Duration::from_micros(200);
 /// Wall time that a batch may take. It takes well under a second.
-const PATIENCE: Duration = Duration::from_mins(2);
+const WALL_TIMEOUT: Duration = Duration::from_mins(2);
 
 /// The first tick at which the boards differ.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -62,10 +62,10 @@ fn run(machine: &mut Machine, batch: u32, inputs: &[u32], ticks: usize) -> Resul
     let begin = Instant::now();
     while machine.memory.get(layout::BATCH_DONE)? != batch {
         machine.check()?;
-        if begin.elapsed() > PATIENCE {
-            return Err(EmulatorError::Silent { what: "a batch of ticks", seconds: PATIENCE.as_secs() });
+        if begin.elapsed() > WALL_TIMEOUT {
+            return Err(EmulatorError::Silent { what: "a batch of ticks", seconds: WALL_TIMEOUT.as_secs() });
         }
-        thread::sleep(LOOK_EVERY);
+        thread::sleep(POLL_PERIOD);
     }
     Ok(())
 }

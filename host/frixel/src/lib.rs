@@ -10,4 +10,5 @@ pub mod player;
 pub mod report;
 pub mod rigs;
 pub mod scene_file;
+pub mod score;
 pub mod stream;

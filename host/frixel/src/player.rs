@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 use frixel_driver::{Bitmap, Counters, Device, DeviceError, Event, Link, Progress, StreamStatus, Upload};
-use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, WorldError};
+use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, TickRecord, WorldError};
 use frixel_layers::Header;
 use frixel_model::ParameterError;
 use frixel_scene::Program;
@@ -252,13 +252,23 @@ pub struct Simulated {
 ///
 /// The program must have been compiled for the limits and the tick rate of the simulation's board.
 pub fn simulate(program: &Program, simulation: &Simulation, feed: Option<Feed>) -> Result<Simulated, PlayError> {
+    simulate_observed(program, simulation, feed, |_| {})
+}
+
+/// As [`simulate`], and calls `observer` with every tick of the play.
+pub(crate) fn simulate_observed(
+    program: &Program,
+    simulation: &Simulation,
+    feed: Option<Feed>,
+    observer: impl FnMut(&TickRecord),
+) -> Result<Simulated, PlayError> {
     let board = &simulation.rig.board;
     let ticks = (simulation.seconds * f64::from(board.tick_hz)).round() as u64;
     let recorder = Recorder::new(program, &board.limits, board.tick_hz, ticks, simulation.ticks_per_row)
         .map_err(PlayError::Finger)?;
     let mut memory = BoardMemory::new();
     let rig = Rig::new(&mut memory, &simulation.rig, simulation.stroke.clone(), simulation.seed)?;
-    let mut player = Player::new(Device::connect(SimLink::new(rig, Recorder::idle()))?, recorder);
+    let mut player = Player::new(Device::connect(SimLink::new(rig, Recorder::idle()).observed(observer))?, recorder);
     player.start(program, 0, &mut |_| ControlFlow::Continue(()))?;
     if let Some(feed) = feed {
         player.stream(feed)?;

@@ -5,7 +5,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use frixel_scene::{CompileError, FileUnavailable, Files, Scene};
+use frixel_scene::{CompileError, FileUnavailable, Files, FingerProfile, Scene, Screen};
 use thiserror::Error;
 
 /// Why a scene file could not be loaded.
@@ -19,6 +19,18 @@ pub enum SceneFileError {
         /// Error of the operating system.
         source: io::Error,
     },
+    /// The file of a finger or a screen could not be read.
+    #[error("{file}: this {what} cannot be read ({source}): give its file, or a bundled one: {bundled}")]
+    UnreadableProfile {
+        /// `finger` or `screen`.
+        what: &'static str,
+        /// The name, as the caller gave it.
+        file: String,
+        /// The names of the bundled ones.
+        bundled: String,
+        /// Error of the operating system.
+        source: io::Error,
+    },
     /// The file was read, but its content is invalid.
     #[error(transparent)]
     Compile(#[from] CompileError),
@@ -29,7 +41,7 @@ impl SceneFileError {
     /// error message when the file could not be read.
     pub fn to_json(&self) -> String {
         match self {
-            Self::Unreadable { file, source } => {
+            Self::Unreadable { file, source } | Self::UnreadableProfile { file, source, .. } => {
                 serde_json::json!({ "file": file, "unreadable": source.to_string(), "mistakes": [] }).to_string()
             }
             Self::Compile(error) => error.to_json(),
@@ -66,6 +78,80 @@ impl Files for NamedFiles {
     fn bytes(&self, name: &str) -> Result<Vec<u8>, FileUnavailable> {
         self.paths.borrow_mut().push(self.folder.0.join(name));
         self.folder.bytes(name)
+    }
+}
+
+/// Reads a scene file of version 1, and returns it as version 2.
+pub fn migrate(path: &Path) -> Result<String, SceneFileError> {
+    let file = path.display().to_string();
+    let folder = SceneFolder(path.parent().unwrap_or(Path::new("")).to_owned());
+    match fs::read(path) {
+        Ok(bytes) => {
+            // Report bytes that are not text in the same way as everywhere.
+            Scene::parse_bytes(&bytes, &file, &folder)?;
+            Ok(frixel_scene::migrate(&String::from_utf8_lossy(&bytes), &file, &folder)?)
+        }
+        Err(source) => Err(SceneFileError::Unreadable { file, source }),
+    }
+}
+
+/// A finger and a screen to be used in place of a scene's own, each by the name of a file or of a bundled profile.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ProfileNames {
+    /// The finger.
+    pub finger: Option<String>,
+    /// The screen.
+    pub screen: Option<String>,
+}
+
+impl ProfileNames {
+    /// Reads a scene file, as [`load`] does, with this finger and screen.
+    pub fn load(&self, path: &Path) -> Result<Scene, SceneFileError> {
+        self.load_with_files(path).0
+    }
+
+    /// Reads a scene file, as [`load_with_files`] does, with this finger and screen. Their files are among those returned.
+    pub fn load_with_files(&self, path: &Path) -> (Result<Scene, SceneFileError>, Vec<PathBuf>) {
+        let (scene, mut files) = load_with_files(path);
+        let finger = self.finger.as_deref().filter(|name| FingerProfile::bundled(name).is_none());
+        let screen = self.screen.as_deref().filter(|name| Screen::bundled(name).is_none());
+        files.extend([finger, screen].into_iter().flatten().map(PathBuf::from));
+        (scene.and_then(|scene| self.applied_to(scene)), files)
+    }
+
+    fn applied_to(&self, mut scene: Scene) -> Result<Scene, SceneFileError> {
+        if let Some(name) = &self.screen {
+            let screen = profile("screen", name, Screen::bundled, Screen::bundled_names(), Screen::parse)?;
+            scene = scene.with_screen(screen, name)?;
+        }
+        if let Some(name) = &self.finger {
+            let names = FingerProfile::bundled_names();
+            let finger = profile("finger", name, FingerProfile::bundled, names, FingerProfile::parse)?;
+            scene = scene.with_finger(finger, name)?;
+        }
+        Ok(scene)
+    }
+}
+
+/// The bundled profile of a name, or the profile in the file of that name.
+fn profile<T>(
+    what: &'static str,
+    name: &str,
+    bundled: fn(&str) -> Option<T>,
+    bundled_names: impl Iterator<Item = &'static str>,
+    parse: fn(&str, &str) -> Result<T, CompileError>,
+) -> Result<T, SceneFileError> {
+    if let Some(profile) = bundled(name) {
+        return Ok(profile);
+    }
+    match fs::read_to_string(name) {
+        Ok(text) => Ok(parse(&text, name)?),
+        Err(source) => Err(SceneFileError::UnreadableProfile {
+            what,
+            file: name.to_owned(),
+            bundled: bundled_names.collect::<Vec<_>>().join(", "),
+            source,
+        }),
     }
 }
 

@@ -294,9 +294,54 @@ fn wrong_input_is_said_as_play_says_it() {
     let message = refused(&["scene", "check", &wrong]);
     assert!(message.contains(":18:8: `kind = \"gratting\"` is not known; did you mean `grating`?\n"), "{message}");
     assert!(message.contains(":21:1: unknown field `friction_nn` in layer 2 (constant); did you mean `friction_n`?"));
-    assert_eq!(refused(&["scene", "check", &empty]).lines().count(), 4);
+    assert!(refused(&["scene", "check", &empty]).ends_with(":1:1: the scene has no `version`: add it\n"));
     assert!(refused(&["scene", "check", &binary]).contains("not UTF-8"));
     assert!(!Path::new(&files.path("map.png")).exists());
+}
+
+#[test]
+fn a_scene_is_checked_under_the_finger_of_an_option() {
+    let files = Files::new();
+    let short = files.write("short.toml", "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n");
+    let natural_n = |options: &[&str]| {
+        let json = said(&[&["scene", "check", &short, "--json"], options].concat());
+        let check: Value = serde_json::from_str(&json).unwrap();
+        assert_eq!(check["finger"]["origin"], "assumed");
+        (1e6 * check["reach"]["natural_n"].as_f64().unwrap()).round()
+    };
+    assert_eq!([natural_n(&[]), natural_n(&["--finger", "moist"])].map(|micro| micro as u64), [250_000, 400_000]);
+    let anna = "friction_coefficient = 0.42\nnormal_load_n = 0.5\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\nskin_gap_um = 4\n";
+    let anna = files.write("anna.toml", anna);
+    assert_eq!(natural_n(&["--finger", &anna, "--screen", "example"]) as u64, 210_000);
+    let summary = said(&["scene", "check", &short, "--finger", &anna]);
+    assert!(summary.contains(&format!("finger           finger \"{anna}\", assumed\n")), "{summary}");
+    assert!(summary.contains(" V rms), assumed\n"), "{summary}");
+    let message = refused(&["scene", "check", &short, "--finger", "moost"]);
+    assert!(message.starts_with("frixel: moost: this finger cannot be read ("), "{message}");
+    assert!(message.ends_with("): give its file, or a bundled one: example, dry, moist, light\n"), "{message}");
+    let broken = files.write("broken.toml", "friction_coefficient = 42\n");
+    let message = refused(&["scene", "check", &short, "--finger", &broken]);
+    assert!(message.contains("broken.toml:1:24: `friction_coefficient = 42` is out of range: expected 0.001 to 10"));
+    let old = files.scene("");
+    let message = refused(&["scene", "check", &old, "--finger", "dry"]);
+    assert!(message.contains(&format!("`frixel scene migrate {old}` prints it as version 2")), "{message}");
+}
+
+#[test]
+fn a_scene_of_version_one_is_migrated_to_the_same_friction() {
+    let files = Files::new();
+    let old = files.scene(&constant("friction_n = 0.26"));
+    let new = files.write("new.toml", said(&["scene", "migrate", &old]));
+    let written = files.path("written.toml");
+    said(&["scene", "migrate", &old, "-o", &written]);
+    assert_eq!(fs::read(&written).unwrap(), fs::read(&new).unwrap());
+    let reach = |scene: &str| {
+        let check: Value = serde_json::from_str(&said(&["scene", "check", scene, "--json"])).unwrap();
+        check["reach"].clone()
+    };
+    assert_eq!(reach(&old), reach(&new));
+    let message = refused(&["scene", "migrate", &new]);
+    assert!(message.ends_with(":1:11: this scene has version 2 already: there is nothing to migrate\n"), "{message}");
 }
 
 /// Pixels of the rows that a map of 300 by 200 pixels lies in; the caption is below them.
@@ -317,7 +362,8 @@ fn a_preview_is_a_png_of_the_asked_size() {
     assert!(message.contains(&path), "{message}");
     let decoder = png::Decoder::new(std::io::BufReader::new(fs::File::open(&path).unwrap()));
     let reader = decoder.read_info().unwrap();
-    assert_eq!(reader.info().width, 300 + 84 + 150);
+    // The least width: 300 + 84 + 150 would leave too little room for the caption.
+    assert_eq!(reader.info().width, 600);
     let slow = files.path("slow.png");
     said(&["scene", "preview", "scenes/ribs.toml", "-o", &slow, "--map-width", "300", "--speed-mm-per-s", "15"]);
     assert!(map(&slow) != map(&path), "the speed changes nothing");

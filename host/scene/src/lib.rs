@@ -30,12 +30,14 @@
 //! - [`mod@reference`]: the reference friction of a program, in `f64`, independent of the firmware.
 //! - [`recorder`]: records what a board did and what its finger felt, and compares it with the reference.
 //! - [`metrics`]: the size of the errors.
+//! - [`fidelity`]: how faithfully friction was felt, in numbers that a person notices.
 #![forbid(unsafe_code)]
 
 mod compile;
 mod compile_error;
 mod cover;
 mod excess;
+pub mod fidelity;
 mod fields;
 mod file;
 mod files;
@@ -47,6 +49,7 @@ mod layer_map;
 mod log;
 mod lower;
 pub mod metrics;
+mod migrate;
 mod mistake;
 mod nearest;
 mod optimisation;
@@ -65,6 +68,7 @@ mod resample;
 mod schema;
 mod screen;
 mod source;
+mod spectrum;
 mod springs;
 mod tables;
 mod target_range;
@@ -81,6 +85,7 @@ pub use file::Scene;
 pub use files::{FileUnavailable, Files};
 pub use finger::{Elasticity, Evidence, Experiment, FingerProfile, Origin};
 pub use layer_map::{LayerError, LayerMap};
+pub use migrate::migrate;
 pub use mistake::Mistake;
 pub use nearest::Nearest;
 pub use optimisation::Optimisation;

@@ -75,7 +75,7 @@ pub enum Mistake {
     /// Screen or finger of a scene of version 1 cannot be exchanged.
     #[error(
         "the coating of a scene of version 1 contains the finger's skin, so that it cannot be played with another {what}: \
-         `frixel scene migrate {file}` writes it as version 2"
+         `frixel scene migrate {file}` prints it as version 2"
     )]
     VersionOneProfile {
         /// `finger` or `screen`.
@@ -83,6 +83,9 @@ pub enum Mistake {
         /// The scene file.
         file: String,
     },
+    /// The scene to be written as version 2 is of version 2.
+    #[error("this scene has version 2 already: there is nothing to migrate")]
+    NothingToMigrate,
     /// No screen or finger of this name is bundled.
     #[error("no {what} \"{found}\" is bundled, and the name of a file has an ending such as .toml; {nearest}")]
     UnknownProfile {
@@ -233,7 +236,9 @@ pub enum Mistake {
     /// The target friction of a layer is more than the drive can give.
     #[error(
         "{asking} up to {asked_n} N {reference}, and at {voltage_v_rms} V rms this finger feels at most {reach_n} N \
-         {reference}: lower it, raise `voltage_max_v_rms`, or write `saturate = true` under [drive] to have it clamped"
+         {reference}: {}lower it, {}or write `saturate = true` under [drive] to have it clamped",
+        if *.may_be_millinewtons { "were mN meant? 1 mN is 0.001 N; " } else { "" },
+        if *.can_raise_voltage { "raise `voltage_max_v_rms`, " } else { "" },
     )]
     AboveReach {
         /// The layer or layers, with the verb.
@@ -246,6 +251,10 @@ pub enum Mistake {
         voltage_v_rms: f64,
         /// The largest friction that can be reached, rounded down, N.
         reach_n: f64,
+        /// Whether a larger `voltage_max_v_rms` may help. It does not if screen or board limits the voltage already.
+        can_raise_voltage: bool,
+        /// Whether the number is in reach if it was meant in millinewtons.
+        may_be_millinewtons: bool,
     },
     /// The target friction of a layer is less than the friction at no voltage.
     #[error(

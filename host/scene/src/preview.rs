@@ -122,6 +122,9 @@ impl FrictionMap {
 
 fn caption(program: &Program, preview: &Preview, parts_of_reach: &[f64]) -> Vec<String> {
     let mut sentences = vec![finger(program)];
+    if !program.finger.newtons_suffix().is_empty() {
+        sentences.push("These newtons are assumed: nobody measured the finger.".to_owned());
+    }
     let any = |wanted: fn(&Layer) -> bool| program.records.iter().any(|record| wanted(&record.layer));
     if any(|layer| matches!(layer, Layer::Speed(_))) {
         sentences.push(format!("Sliding at {} mm/s.", rounded(1e3 * preview.speed_m_per_s)));

@@ -20,7 +20,6 @@ pub struct Reach {
     pub electric_friction_max_n: f64,
     /// The largest rms voltage, within the limits of scene, screen and board, in volts.
     pub voltage_max_v_rms: f64,
-    contact: LoadedContact<f64>,
 }
 
 /// The reason why a board cannot play for a finger and a coating.
@@ -56,18 +55,7 @@ impl Reach {
             natural_friction_n: loaded.natural_friction_n(),
             electric_friction_max_n: loaded.electric_friction_n(voltage_max_v_rms),
             voltage_max_v_rms,
-            contact: loaded,
         })
-    }
-
-    /// Electric friction at a voltage, in newtons, Eqs. (43), (21).
-    pub fn electric_friction_n(&self, voltage_v_rms: f64) -> f64 {
-        self.contact.electric_friction_n(voltage_v_rms)
-    }
-
-    /// Voltage for an electric friction, in volts rms: the inverse of [`Self::electric_friction_n`].
-    pub fn voltage_v_rms(&self, electric_friction_n: f64) -> f64 {
-        self.contact.voltage_v_rms(electric_friction_n)
     }
 
     /// Least friction in total, in newtons.
@@ -81,8 +69,8 @@ impl Reach {
     }
 }
 
-/// The contact of a header's finger with its coating, under its load.
-fn loaded_contact(header: &Header) -> Result<LoadedContact<f64>, ParameterError> {
+/// The loaded contact of a header's finger and coating, in `f64`, from the board's `f32` numbers.
+pub(super) fn loaded_contact(header: &Header) -> Result<LoadedContact<f64>, ParameterError> {
     let finger = Finger {
         radius_m: f64::from(header.finger_radius_m),
         stiffness_pa_per_m: f64::from(header.stiffness_pa_per_m),

@@ -2,8 +2,8 @@
 
 use std::cmp::Reverse;
 
-use frixel_layers::cost::{self, Worst, worst_of_scene};
-use frixel_layers::{Cell, Record};
+use frixel_layers::cost::{self, LayerCosts, Worst, worst_of_scene};
+use frixel_layers::{Cell, layer_numbers, layer_set};
 
 use super::file::Scene;
 use super::log::Log;
@@ -21,11 +21,11 @@ pub(super) fn check(scene: &Scene, program: &Program, cycles_max: u32, log: &mut
     if worst.cycles() <= cycles_max {
         return;
     }
-    let meeting = program.dearest_meeting(&worst);
+    let meeting = program.dearest_meeting(&worst.cell);
     let meet = meeting.as_ref().is_some_and(|meeting| meeting.cycles > cycles_max);
     let (layers, (x_mm, y_mm)) = match meeting {
         Some(Meeting { layers, place_m, .. }) if meet => (layers, rounded_mm(place_m)),
-        _ => (program.layers_in(&worst.cell).collect(), middle_mm(&worst.cell)),
+        _ => (layer_numbers(worst.cell.layers).collect(), middle_mm(&worst.cell)),
     };
     let titles: Vec<&str> =
         layers.iter().filter_map(|number| program.titles.get(*number)).map(String::as_str).collect();
@@ -40,7 +40,7 @@ struct Meeting {
     place_m: (f64, f64),
     /// Numbers of the layers, from bottom to top.
     layers: Vec<usize>,
-    /// Estimated cycles of these layers and an empty scene.
+    /// Estimated cycles of a tick in which only these layers act.
     cycles: u32,
 }
 
@@ -52,29 +52,23 @@ impl Program {
 
     /// Titles in messages of the layers that may act in a cell, from bottom to top.
     pub fn titles_in(&self, cell: &Cell) -> Vec<&str> {
-        self.layers_in(cell).filter_map(|number| self.titles.get(number)).map(String::as_str).collect()
-    }
-
-    /// Numbers of the layers that may act in a cell, from bottom to top.
-    fn layers_in(&self, cell: &Cell) -> impl Iterator<Item = usize> {
-        let cell = *cell;
-        (0..self.records.len()).filter(move |number| cell.has(*number as u8))
+        layer_numbers(cell.layers).filter_map(|number| self.titles.get(number)).map(String::as_str).collect()
     }
 
     /// Finds the place in a cell where the layers that meet take most cycles.
     ///
     /// Tries every pair of a left and a top edge, moved inside by a micrometre: if rectangles overlap, one of these
     /// places lies within all of them. Also tries centres, for ellipses and polygons.
-    fn dearest_meeting(&self, worst: &Worst) -> Option<Meeting> {
-        let cell = &worst.cell;
-        let regions: Vec<(usize, &Record, Shape)> = self
-            .layers_in(cell)
+    fn dearest_meeting(&self, cell: &Cell) -> Option<Meeting> {
+        let mut costs = LayerCosts::new(&self.header);
+        for (number, record) in (0..).zip(&self.records) {
+            costs.add(number, record, &self.points);
+        }
+        let shapes: Vec<(usize, Shape)> = layer_numbers(cell.layers)
             .filter_map(|number| self.records.get(number).map(|record| (number, record)))
-            .map(|(number, record)| (number, record, Shape::new(record.region, &self.points)))
+            .map(|(number, record)| (number, Shape::new(record.region, &self.points)))
             .collect();
-        let of_cell: u32 = regions.iter().map(|(_, record, _)| cost::of_record(record, &self.points)).sum();
-        let elsewhere = worst.core_cycles - of_cell;
-        let boxes: Vec<[(f64, f64); 2]> = regions.iter().filter_map(|(.., shape)| shape.corners_m()).collect();
+        let boxes: Vec<[(f64, f64); 2]> = shapes.iter().filter_map(|(_, shape)| shape.corners_m()).collect();
         let candidates = |along: fn((f64, f64)) -> f64, middle_m: f32| -> Vec<f64> {
             let edges = boxes.iter().map(|corners| along(corners[0]) + INSIDE_M);
             let middles = boxes.iter().map(|corners| f64::midpoint(along(corners[0]), along(corners[1])));
@@ -83,21 +77,17 @@ impl Program {
         let (xs, ys) = (candidates(|(x_m, _)| x_m, cell.x_m), candidates(|(_, y_m)| y_m, cell.y_m));
         xs.iter()
             .flat_map(|x_m| ys.iter().map(|y_m| (*x_m, *y_m)))
-            .map(|place_m| self.meeting_at(place_m, &regions, elsewhere))
+            .map(|place_m| meeting_at(place_m, &shapes, &costs))
             // The first of the places that take most: a corner if there is one.
             .min_by_key(|meeting| Reverse(meeting.cycles))
     }
+}
 
-    /// `elsewhere` are core cycles that a tick takes wherever the finger is, such as those of a stream.
-    fn meeting_at(&self, place_m: (f64, f64), regions: &[(usize, &Record, Shape)], elsewhere: u32) -> Meeting {
-        let here = regions.iter().filter(|(.., shape)| shape.covers(place_m.0, place_m.1));
-        let core_cycles = here.clone().map(|(_, record, _)| cost::of_record(record, &self.points)).sum::<u32>();
-        Meeting {
-            place_m,
-            layers: here.map(|(number, ..)| *number).collect(),
-            cycles: cost::cycles(core_cycles + elsewhere),
-        }
-    }
+fn meeting_at(place_m: (f64, f64), shapes: &[(usize, Shape)], costs: &LayerCosts) -> Meeting {
+    let here = shapes.iter().filter(|(_, shape)| shape.covers(place_m.0, place_m.1));
+    let layers: Vec<usize> = here.map(|(number, _)| *number).collect();
+    let cycles = cost::cycles(costs.of_tick(layer_set(layers.iter().copied())));
+    Meeting { place_m, layers, cycles }
 }
 
 /// Distance inside a region's edges at which meetings are tried, m: above rounding errors, and far below what a finger

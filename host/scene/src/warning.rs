@@ -9,7 +9,7 @@ use super::excess::digits;
 use super::file::Scene;
 use super::finger::Evidence;
 use super::program::Program;
-use super::reach::{ROUNDING, Reach};
+use super::reach::{ROUNDING, Reach, loaded_contact};
 use super::reference::Reference;
 
 /// A reason to doubt the newtons of a program. Its text is one sentence for the scene's designer.
@@ -77,10 +77,13 @@ pub(super) fn of(scene: &Scene, program: &Program) -> Vec<Warning> {
     else {
         return warnings;
     };
-    let measured_n = (1.0 + ROUNDING) * reach.electric_friction_n(voltage_max_v_rms);
-    if let Some(needed_n) = demand_above(program, measured_n) {
-        let voltage_v_rms = digits(reach.voltage_v_rms(needed_n), f64::round);
-        warnings.push(Warning::BeyondMeasuredVoltage { voltage_v_rms, measured_v_rms: voltage_max_v_rms });
+    // The contact is one: the reach was computed from it.
+    if let Ok(contact) = loaded_contact(&program.header) {
+        let measured_n = (1.0 + ROUNDING) * contact.electric_friction_n(voltage_max_v_rms);
+        if let Some(needed_n) = demand_above(program, measured_n) {
+            let voltage_v_rms = digits(contact.voltage_v_rms(needed_n), f64::round);
+            warnings.push(Warning::BeyondMeasuredVoltage { voltage_v_rms, measured_v_rms: voltage_max_v_rms });
+        }
     }
     let normal_load_n = finger.normal_load_n;
     if !(least_n..=largest_n).contains(&normal_load_n) {

@@ -1,6 +1,8 @@
 //! The file with the cost of each kind of layer, which compiler and board read. It is generated from measurements, and
 //! checked against them.
 
+use std::cell::RefCell;
+use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::fs;
 
@@ -48,16 +50,35 @@ pub(crate) fn check(figures: &Figures) -> Result<(), String> {
     Err(format!("{PATH} is not what was measured; `cargo xtask bench --bless` writes it anew: {}", drifted.join(", ")))
 }
 
+/// Prefix of the names of ticks.
+const TICK: &str = "m4f.tick_";
+/// Suffix of the names of ticks that are counted only to find the cost of a layer.
+const ALONE: &str = "_alone";
+
 /// Computes the costs from measured ticks with one constant layer, two constant layers, or one layer of another kind.
+/// Fails if no cost uses a tick with one layer: a new kind of layer needs a line here.
 fn costs(figures: &Figures) -> Result<Vec<Cost>, String> {
-    let tick = |name: &str| {
-        let name = format!("m4f.tick_{name}{CYCLES}");
-        figures.get(&name).ok_or_else(|| format!("{name} was not measured"))
-    };
+    let used = RefCell::new(BTreeSet::new());
+    let costs = costs_of_ticks(|name| {
+        let name = format!("{TICK}{name}{CYCLES}");
+        let tick = figures.get(&name).ok_or_else(|| format!("{name} was not measured"));
+        used.borrow_mut().insert(name);
+        tick
+    })?;
+    let end = format!("{ALONE}{CYCLES}");
+    let mut alone = figures.names().filter(|name| name.starts_with(TICK) && name.ends_with(&end));
+    match alone.find(|name| !used.borrow().contains(*name)) {
+        Some(name) => Err(format!("{name} was measured, and no cost uses it: add a line to `costs_of_ticks`")),
+        None => Ok(costs),
+    }
+}
+
+/// [`costs`] from a function that finds the core cycles of a tick by its name.
+fn costs_of_ticks(tick: impl Fn(&str) -> Result<u64, String>) -> Result<Vec<Cost>, String> {
     let two = tick("two_constants")?;
     let constant = two.saturating_sub(tick("constant_alone")?);
     let base = two.saturating_sub(2 * constant);
-    let alone = |name: &str| tick(&format!("{name}_alone")).map(|core_cycles| core_cycles.saturating_sub(base));
+    let alone = |name: &str| tick(&format!("{name}{ALONE}")).map(|core_cycles| core_cycles.saturating_sub(base));
     // Ticks with the envelope at its slew limit, and ticks whose target exceeds the reachable friction, are longer
     // than others: take the longest.
     let longest =
@@ -137,5 +158,23 @@ mod tests {
             let (alone, each) = line_through((2, 8), at_few, at_many);
             assert!(alone + 2 * each >= at_few && alone + 8 * each >= at_many, "{alone} + n {each}");
         }
+    }
+
+    /// Figures with which all costs can be computed.
+    fn complete() -> Figures {
+        let mut figures = Figures::default();
+        while let Err(missing) = costs(&figures) {
+            let name = missing.strip_suffix(" was not measured").expect("a figure is missing");
+            figures.put(name.to_owned(), 1_000);
+        }
+        figures
+    }
+
+    #[test]
+    fn a_kind_that_was_counted_must_have_a_cost() {
+        let mut figures = complete();
+        figures.put("m4f.tick_dots_alone_cycles".to_owned(), 1_000);
+        let message = costs(&figures).unwrap_err();
+        assert!(message.contains("m4f.tick_dots_alone_cycles") && message.contains("add a line"), "{message}");
     }
 }

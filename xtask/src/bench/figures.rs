@@ -26,6 +26,11 @@ impl Figures {
         self.0.get(name).copied()
     }
 
+    /// The names of all figures.
+    pub(crate) fn names(&self) -> impl Iterator<Item = &str> {
+        self.0.keys().map(String::as_str)
+    }
+
     /// The figures as a table of text.
     pub(crate) fn table(&self) -> String {
         let mut table = format!("{:28} {:>8} {:>8} {:>12}\n", "", "worst", "mean", "cycles, est.");

@@ -63,7 +63,7 @@ pub(super) fn follow(mut emulator: Command, image: &Path, inputs: &[u32]) -> Res
 
 /// Continues to the start of the next case, reads its number, and steps through it to the end.
 fn span(gdb: &mut Gdb, code: &Code, end: u32) -> Result<(u32, Seen), String> {
-    gdb.go_on()?;
+    gdb.resume()?;
     let case = gdb.register(0)?;
     let mut seen = Seen::default();
     let mut place = gdb.program_counter()?;

@@ -2,20 +2,20 @@
 //! `+`.
 
 use std::fmt::Write as _;
-use std::io::{ErrorKind, Read, Write};
+use std::io::{BufReader, ErrorKind, Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::process::Child;
 use std::thread;
 use std::time::Duration;
 
 /// Wall time within which the emulator must reach a breakpoint.
-const PATIENCE: Duration = Duration::from_mins(2);
+const WALL_TIMEOUT: Duration = Duration::from_mins(2);
 
 /// Index of the program counter among the registers.
 const PROGRAM_COUNTER: usize = 15;
 
 /// A connection to the debugger interface of a halted emulator.
-pub(super) struct Gdb(TcpStream);
+pub(super) struct Gdb(BufReader<TcpStream>);
 
 impl Gdb {
     /// Accepts the connection that the emulator opens.
@@ -26,8 +26,8 @@ impl Gdb {
                 Ok((stream, _)) => {
                     stream.set_nonblocking(false).map_err(|error| explain(&error))?;
                     stream.set_nodelay(true).map_err(|error| explain(&error))?;
-                    stream.set_read_timeout(Some(PATIENCE)).map_err(|error| explain(&error))?;
-                    return Ok(Self(stream));
+                    stream.set_read_timeout(Some(WALL_TIMEOUT)).map_err(|error| explain(&error))?;
+                    return Ok(Self(BufReader::new(stream)));
                 }
                 Err(error) if error.kind() != ErrorKind::WouldBlock => return Err(explain(&error)),
                 Err(_) => {}
@@ -55,7 +55,7 @@ impl Gdb {
     }
 
     /// Continues to the next breakpoint.
-    pub(super) fn go_on(&mut self) -> Result<(), String> {
+    pub(super) fn resume(&mut self) -> Result<(), String> {
         self.expect_stop("c")
     }
 
@@ -97,7 +97,7 @@ impl Gdb {
 
     fn ask(&mut self, packet: &str) -> Result<String, String> {
         let sum = packet.bytes().fold(0_u8, u8::wrapping_add);
-        self.0.write_all(format!("${packet}#{sum:02x}").as_bytes()).map_err(|error| explain(&error))?;
+        self.0.get_mut().write_all(format!("${packet}#{sum:02x}").as_bytes()).map_err(|error| explain(&error))?;
         let mut answer = Vec::new();
         while self.byte()? != b'$' {}
         loop {
@@ -109,7 +109,7 @@ impl Gdb {
         for _ in 0..2 {
             self.byte()?;
         }
-        self.0.write_all(b"+").map_err(|error| explain(&error))?;
+        self.0.get_mut().write_all(b"+").map_err(|error| explain(&error))?;
         Ok(String::from_utf8_lossy(&answer).into_owned())
     }
 

@@ -3,7 +3,7 @@
 #![allow(dead_code, reason = "a kind whose feature is off costs nothing")]
 
 // A tick that looks at layers and finds none.
-pub(crate) const EMPTY: u32 = 719;
+pub(crate) const EMPTY: u32 = 716;
 
 // What a sine carrier adds.
 pub(crate) const SINE_CARRIER: u32 = 36;
@@ -15,26 +15,26 @@ pub(crate) const SQUARE: u32 = 150;
 pub(crate) const TRIANGLE: u32 = 150;
 pub(crate) const SAW: u32 = 145;
 pub(crate) const RINGS: u32 = 40;
-pub(crate) const BITMAP: u32 = 218;
-pub(crate) const BITMAP_TILED: u32 = 269;
-pub(crate) const NOISE: u32 = 403;
-pub(crate) const EDGE: u32 = 254;
-pub(crate) const BUTTON: u32 = 263;
+pub(crate) const BITMAP: u32 = 223;
+pub(crate) const BITMAP_TILED: u32 = 274;
+pub(crate) const NOISE: u32 = 402;
+pub(crate) const EDGE: u32 = 247;
+pub(crate) const BUTTON: u32 = 275;
 pub(crate) const VIBRATION_SINE: u32 = 180;
 pub(crate) const VIBRATION_SQUARE: u32 = 174;
 
 // A curve, and each of its points.
-pub(crate) const SPEED: u32 = 154;
+pub(crate) const SPEED: u32 = 153;
 pub(crate) const SPEED_POINT: u32 = 8;
-pub(crate) const STREAM: u32 = 91;
+pub(crate) const STREAM: u32 = 97;
 
 // The stream's own work, wherever the finger is.
 pub(crate) const STREAM_ELSEWHERE: u32 = 140;
 
 // What other regions add to a rectangle.
-pub(crate) const ELLIPSE: u32 = 7;
+pub(crate) const ELLIPSE: u32 = 8;
 
 // A polygon, each of its edges, and what each of those adds that are level with the finger.
-pub(crate) const POLYGON: u32 = 37;
+pub(crate) const POLYGON: u32 = 33;
 pub(crate) const POLYGON_EDGE: u32 = 19;
-pub(crate) const POLYGON_EDGE_LEVEL: u32 = 25;
+pub(crate) const POLYGON_EDGE_LEVEL: u32 = 26;

@@ -33,7 +33,7 @@ impl SceneKeeper {
         if let Some(found) = &found {
             session.restore(|offset, bytes| slot.read(flash, found, offset, bytes));
         }
-        let settled_crc32 = session.kept_crc32();
+        let settled_crc32 = session.crc32_to_store();
         let settled_after_ticks = SETTLED_AFTER_S * tick_hz;
         Self { slot, settled_after_ticks, found, settled_crc32, pending: None, failures: 0 }
     }
@@ -41,7 +41,7 @@ impl SceneKeeper {
     /// Does the next small step without waiting; call it repeatedly. A write under way is abandoned as soon as the
     /// board is armed or has another scene.
     pub fn step<F: Flash>(&mut self, flash: &mut F, session: &Session, now_tick: u32) {
-        let Some(kept) = session.kept().filter(|kept| Some(kept.crc32()) != self.settled_crc32) else {
+        let Some(kept) = session.scene_to_store().filter(|kept| Some(kept.crc32()) != self.settled_crc32) else {
             self.pending = None;
             // Let an operation that began before arming end: polling it locks the flash again.
             let _ = flash.operation();

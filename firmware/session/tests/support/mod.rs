@@ -27,7 +27,7 @@ use frixel_wire::payload::{self, CHUNK_LEN, Payload};
 use frixel_wire::scene::bitmap_crc32;
 
 /// Most polls that a commit takes.
-pub const COMMIT_POLLS_MAX: u32 = 64;
+pub const COMMIT_POLLS_MAX: u32 = 128;
 
 /// What the two halves of a board share; lives longer than the [`Desk`].
 pub struct Memory {

@@ -64,7 +64,7 @@ pub enum Refusal {
     /// The arm switch on the board is not held, or has not been pressed since the last reset or disarm.
     ArmSwitch,
     /// The scene needs a feature that is disabled in this firmware build ([`crate::hello::feature`]).
-    LeftOut {
+    FeatureDisabled {
         /// The layer that needs it, counted from zero; [`ConfigRefusal::WHOLE_SCENE`] for the carrier.
         layer: u8,
     },
@@ -302,10 +302,10 @@ impl fmt::Display for Refusal {
                 "the board sends telemetry every {period_min_ticks} ticks at most: ask for a longer period, or for zero to end it"
             ),
             Self::ArmSwitch => f.write_str("the arm switch was not pressed since the board was last disarmed: release it, press and hold it, and arm again"),
-            Self::LeftOut { layer: ConfigRefusal::WHOLE_SCENE } => {
+            Self::FeatureDisabled { layer: ConfigRefusal::WHOLE_SCENE } => {
                 f.write_str("the firmware was built without the carrier of the scene: flash one that has it")
             }
-            Self::LeftOut { layer } => write!(
+            Self::FeatureDisabled { layer } => write!(
                 f,
                 "the firmware was built without what layer {layer} (the first is 0) needs: flash one that has it"
             ),

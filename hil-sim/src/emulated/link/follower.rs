@@ -8,14 +8,14 @@ use frixel_control::Drive;
 use frixel_exchange::{STAMPED_TOUCH_WORDS, StampedTouch, drive_of, layout};
 
 use super::serial::Serial;
-use super::{LOOK_EVERY, LinkRecord};
+use super::{LinkRecord, POLL_PERIOD};
 use crate::World;
 use crate::emulated::EmulatorError;
 use crate::emulated::memory::Memory;
 
 /// Requests from the board's owner to the world's thread.
 #[derive(Debug, Default)]
-pub(super) struct Wishes {
+pub(super) struct ControlFlags {
     pub(super) end: AtomicBool,
     pub(super) stroke: AtomicBool,
 }
@@ -30,23 +30,23 @@ pub(super) struct Follower<W> {
     seen: u32,
     /// Number of touch reports that have been written.
     reports: u32,
-    wishes: Arc<Wishes>,
+    flags: Arc<ControlFlags>,
 }
 
 impl<W: FnMut(&LinkRecord)> Follower<W> {
-    pub(super) fn new(memory: Memory, serial: Serial, world: World, watch: W, wishes: Arc<Wishes>) -> Self {
-        Self { memory, serial, world, watch, seen: 0, reports: 0, wishes }
+    pub(super) fn new(memory: Memory, serial: Serial, world: World, watch: W, flags: Arc<ControlFlags>) -> Self {
+        Self { memory, serial, world, watch, seen: 0, reports: 0, flags }
     }
 
     /// Follows the board until the owner requests the end.
     pub(super) fn run(mut self) -> Result<(), EmulatorError> {
-        while !self.wishes.end.load(Ordering::Acquire) {
-            if self.wishes.stroke.swap(false, Ordering::AcqRel) {
+        while !self.flags.end.load(Ordering::Acquire) {
+            if self.flags.stroke.swap(false, Ordering::AcqRel) {
                 self.world.start_stroke();
             }
             self.follow()?;
             self.serial.let_the_next_host_in()?;
-            thread::sleep(LOOK_EVERY);
+            thread::sleep(POLL_PERIOD);
         }
         Ok(())
     }

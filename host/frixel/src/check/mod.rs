@@ -27,10 +27,14 @@ pub struct SceneCheck {
     pub ram: RamBytes,
     /// The longest tick.
     pub tick: LongestTick,
+    /// The finger that the newtons are computed for.
+    pub finger: CheckedFinger,
     /// Friction that the drive can reach on this finger.
     pub reach: ReachableFriction,
     /// Friction that the scene targets.
     pub asked: TargetRange,
+    /// Reasons to doubt these newtons, a sentence each.
+    pub warnings: Vec<String>,
     /// What a person will feel of it.
     pub perception: Perception,
     /// Values that the compiler rounded, converted or clamped, a sentence each.
@@ -102,6 +106,15 @@ impl LongestTick {
     }
 }
 
+/// The finger that a scene is compiled for.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct CheckedFinger {
+    /// The finger, for a person.
+    pub title: String,
+    /// `assumed`, `perceptual` or `measured`, on the screen that the scene is compiled for.
+    pub origin: &'static str,
+}
+
 /// Friction that the drive can reach on the scene's finger, at its load and on its coating.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ReachableFriction {
@@ -145,6 +158,7 @@ impl SceneCheck {
                 table_room_bytes: size_of::<InverseTable>(),
             },
             tick: LongestTick::of(program, rig.board.limits.tick_cycles_max),
+            finger: CheckedFinger { title: program.finger.title.clone(), origin: program.finger.origin.word() },
             reach: ReachableFriction {
                 natural_n: reach.natural_friction_n,
                 electric_max_n: reach.electric_friction_max_n,
@@ -152,6 +166,7 @@ impl SceneCheck {
                 voltage_max_v_rms: reach.voltage_max_v_rms,
             },
             asked: TargetRange::of(program),
+            warnings: program.warnings.iter().map(ToString::to_string).collect(),
             perception: Perception::of(program),
             notes: program.notes.clone(),
             left_out: program.optimisations.iter().map(ToString::to_string).collect(),

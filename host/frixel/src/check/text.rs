@@ -5,7 +5,7 @@ use std::fmt::Write;
 use frixel_model::InverseTable;
 
 use super::{RamBytes, SceneCheck, feel};
-use frixel_scene::OutOfReach;
+use frixel_scene::{Origin, OutOfReach};
 
 impl SceneCheck {
     /// The costs as a few lines of text, each ending in a line feed.
@@ -15,7 +15,7 @@ impl SceneCheck {
             // Writing to a string cannot fail.
             let _ = writeln!(text, "  {name:<16} {value}");
         };
-        let Self { wire, ram, tick, reach, asked, .. } = self;
+        let Self { wire, ram, tick, finger, reach, asked, .. } = self;
         line("layers", self.layers.to_string());
         line(
             "wire",
@@ -43,15 +43,20 @@ impl SceneCheck {
                 if tick.layers.is_empty() { String::new() } else { format!(": {}", tick.layers.join(", ")) }
             ),
         );
+        line("finger", format!("{}, {}", finger.title, finger.origin));
+        let suffix = if finger.origin == Origin::Measured.word() { "" } else { ", assumed" };
         line(
             "reachable",
             format!(
-                "{:.4} to {:.4} N in total, up to {:.4} N above natural (at {:.1} V rms)",
+                "{:.4} to {:.4} N in total, up to {:.4} N above natural (at {:.1} V rms){suffix}",
                 reach.natural_n, reach.total_max_n, reach.electric_max_n, reach.voltage_max_v_rms
             ),
         );
-        line("asked for", format!("{:.4} to {:.4} N in total", asked.least_n, asked.most_n));
+        line("asked for", format!("{:.4} to {:.4} N in total{suffix}", asked.least_n, asked.most_n));
         line("out of reach", out_of_reach(&asked.above, &asked.below));
+        for warning in &self.warnings {
+            line("warning", warning.clone());
+        }
         for (name, text) in feel::lines(&self.perception) {
             line(name, text);
         }

@@ -4,6 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use frixel::check::RehearsalError;
+use frixel::fit::FitError;
 use frixel::model_csv::CsvError;
 use frixel::output::{FeltLogError, OutputError};
 use frixel::player::PlayError;
@@ -18,7 +19,7 @@ use frixel_driver::{DeviceError, PortError};
 use frixel_hil_sim::emulated::EmulatorError;
 use frixel_hil_sim::{StrokeError, WorldError};
 use frixel_model::ParameterError;
-use frixel_scene::CompileError;
+use frixel_scene::{CompileError, Warning};
 use thiserror::Error;
 
 #[derive(Debug, Error)]
@@ -63,6 +64,10 @@ pub(crate) enum CommandError {
     StraightStroke(StrokeError),
     #[error("{input}: {source}")]
     ModelCsv { input: String, source: CsvError },
+    #[error("{}: {source}", path.display())]
+    Fit { path: PathBuf, source: FitError },
+    #[error("{rows} no answer; the status says why")]
+    InvalidRows { rows: String },
     #[error("{} is the input as well: writing it would destroy it; give --output another name", path.display())]
     OutputIsInput { path: PathBuf },
     #[error("{} cannot be read ({source}): check the path", path.display())]
@@ -96,8 +101,12 @@ pub(crate) enum CommandError {
     NothingRecorded { path: PathBuf },
     #[error("{failed} of the checks of {port} failed; docs/hardware.md says what each part needs")]
     SelftestFailed { port: String, failed: usize },
+    #[error("{} is there already, and is not overwritten: give another name, or remove it", path.display())]
+    SceneExists { path: PathBuf },
     #[error("standard input has either the lines of --control or the samples of --stream -: give --stream a file")]
     ControlAndStream,
+    #[error("a board with an electrode does not extrapolate: {warning}")]
+    NotMeasured { warning: Warning },
     #[error(transparent)]
     FeltLog(#[from] FeltLogError),
     #[error(

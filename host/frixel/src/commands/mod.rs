@@ -4,14 +4,18 @@ mod completions;
 mod demo;
 mod error;
 mod faults;
+mod fit;
 mod info;
 mod interrupt;
 mod model;
+mod new;
 mod play;
 mod ports;
+mod profiles;
 mod record;
 mod report;
 mod scene;
+mod score;
 mod selftest;
 #[cfg(unix)]
 mod sim;
@@ -43,11 +47,15 @@ pub(crate) struct Cli {
 enum Command {
     /// Play the bundled brick texture on the simulated board, under a simulated finger.
     Demo(DemoArgs),
+    /// Write a first scene, with comments.
+    New(new::NewArgs),
     /// Play a scene on a board or on the simulator.
     Play(PlayArgs),
     /// Check a scene, or draw it, before it is played.
     #[command(subcommand)]
     Scene(scene::SceneCommand),
+    /// Score how faithfully simulated fingers feel a scene.
+    Score(score::ScoreArgs),
     /// Serve a virtual board on a pseudo-terminal, for other programs to play to.
     Sim(SimArgs),
     /// List the serial ports.
@@ -65,6 +73,8 @@ enum Command {
     /// Evaluate or invert the contact model over rows of CSV.
     #[command(subcommand)]
     Model(model::ModelCommand),
+    /// Fit a finger's profile to measured friction.
+    Fit(fit::FitArgs),
     /// Draw the contact model, its error and its cost on one page.
     Report(report::ReportArgs),
 }
@@ -80,6 +90,8 @@ struct DemoArgs {
 struct PlayArgs {
     /// The scene, a TOML file (docs/scene.md).
     scene: PathBuf,
+    #[command(flatten)]
+    profiles: profiles::ProfileArgs,
     /// `sim` for the simulator in this process, `qemu` for the firmware on an emulated board, or the path of a board's
     /// serial port.
     #[arg(long, default_value = "sim")]
@@ -151,6 +163,7 @@ impl PlayArgs {
     fn of(scene: &Path) -> Self {
         Self {
             scene: scene.to_owned(),
+            profiles: profiles::ProfileArgs::default(),
             port: "sim".into(),
             stroke: StrokeArgs::default(),
             seconds: None,
@@ -173,8 +186,10 @@ impl Cli {
         match self.command {
             None => demo::run(&DemoArgs { out: "frixel-out".into() }),
             Some(Command::Demo(args)) => demo::run(&args),
+            Some(Command::New(args)) => new::run(&args),
             Some(Command::Play(args)) => play::run(&args),
             Some(Command::Scene(command)) => scene::run(&command),
+            Some(Command::Score(args)) => score::run(&args),
             #[cfg(unix)]
             Some(Command::Sim(args)) => sim::run(&args),
             #[cfg(not(unix))]
@@ -186,6 +201,7 @@ impl Cli {
             Some(Command::Selftest(args)) => selftest::run(&args),
             Some(Command::Completions(args)) => completions::run(&args),
             Some(Command::Model(command)) => model::run(&command),
+            Some(Command::Fit(args)) => fit::run(&args),
             Some(Command::Report(args)) => report::run(&args),
         }
     }

@@ -18,7 +18,6 @@ mod with_log;
 use std::path::PathBuf;
 
 use frixel::output::Report;
-use frixel::scene_file;
 
 use super::PlayArgs;
 use super::error::CommandError;
@@ -41,9 +40,9 @@ pub(super) fn run(args: &PlayArgs) -> Result<(), CommandError> {
     // This comes before the file is read for the first time, so that no change is missed.
     let live_scene = (args.watch || args.control).then(|| {
         let waits = target == Target::Simulator;
-        LiveScene::new(&args.scene, args.watch, waits)
+        LiveScene::new(&args.scene, args.profiles.names(), args.watch, waits)
     });
-    let scene = scene_file::load(&args.scene)?;
+    let scene = args.profiles.names().load(&args.scene)?;
     let interrupt = Interrupt::watch()?;
     let played = match target {
         Target::Simulator => rigs::play_on_simulator(args, &scene, live_scene, &interrupt),

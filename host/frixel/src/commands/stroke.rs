@@ -110,7 +110,7 @@ fn straight_error(source: StrokeError) -> CommandError {
     CommandError::StraightStroke(source)
 }
 
-fn from_file(path: &Path) -> Result<Stroke, CommandError> {
+pub(super) fn from_file(path: &Path) -> Result<Stroke, CommandError> {
     let text = std::fs::read_to_string(path).map_err(|error| match error.kind() {
         ErrorKind::InvalidData => CommandError::StrokeNotText { path: path.into() },
         _ => CommandError::reading(path)(error),

@@ -22,9 +22,11 @@ mod contrast;
 mod error;
 mod law;
 mod least_squares;
+mod profile;
 mod recording;
 mod rules;
 mod statistics;
+mod summary;
 mod table;
 mod verdict;
 
@@ -35,9 +37,11 @@ pub use error::FitError;
 use law::{Attraction, Coupling, REFERENCE_V_RMS};
 pub use law::{CONVENTIONAL_RADIUS_M, CONVENTIONAL_STIFFNESS_PA_PER_M};
 use least_squares::{Form, Measured, Observation, Solution, residuals_n, solve};
+pub use profile::profile;
 pub use recording::Division;
 use recording::Recording;
-use statistics::median;
+use statistics::{mean, median, student_quantile};
+pub use summary::{Summary, words};
 pub use table::{Row, rows};
 pub use verdict::{Exponent, Verdict};
 
@@ -45,6 +49,9 @@ pub use verdict::{Exponent, Verdict};
 const DRAWS: usize = 499;
 /// Least share of the draws that must converge.
 const CONVERGED_SHARE: f64 = 0.98;
+
+/// Parts of a recording whose natural friction is compared.
+const SIXTHS: usize = 6;
 
 /// What to fit for.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,6 +82,8 @@ pub struct Fit {
     pub normal_load_n: f64,
     /// What the stated voltage adds to the friction, in newtons.
     pub electric_friction_n: Estimate,
+    /// What the highest voltage of the data adds to the friction, in newtons.
+    pub electric_friction_most_n: Estimate,
     /// Exponent of the voltage, and what it says about the model.
     pub voltage_exponent: Exponent,
     /// Exponent of the load, likewise.
@@ -178,28 +187,33 @@ pub fn fit(rows: Vec<Row>, settings: &Settings) -> Result<Fit, FitError> {
         let (low, high) = draws.interval(&mut values, Z_95);
         Estimate { value, low: low.min(value), high: high.max(value) }
     };
-    let electric_n = |solution: &Solution| {
-        let attraction_n = solution.attraction.attraction_n(settings.voltage_v_rms, normal_load_n)?;
-        Some(solution.friction_coefficient * attraction_n)
-    };
-    let stated_n = electric_n(&best.contact).ok_or(FitError::NotConverged)?;
-    let mut electric_friction_n = estimate(stated_n, &|replicate| electric_n(&replicate.contact));
-    if voltage_exponent.verdict == Verdict::Doubted || load_exponent.verdict == Verdict::Doubted {
+    let is_doubted = voltage_exponent.verdict == Verdict::Doubted || load_exponent.verdict == Verdict::Doubted;
+    let electric = |voltage_v_rms: f64| {
+        let of = |solution: &Solution| {
+            let attraction_n = solution.attraction.attraction_n(voltage_v_rms, normal_load_n)?;
+            Some(solution.friction_coefficient * attraction_n)
+        };
+        let value_n = of(&best.contact).ok_or(FitError::NotConverged)?;
+        let by_model = estimate(value_n, &|replicate| of(&replicate.contact));
+        if !is_doubted {
+            return Ok(by_model);
+        }
         // The law is in doubt: the interval also covers what a power law without any model says.
-        let without_model = estimate(stated_n, &|replicate| electric_n(&replicate.power));
-        electric_friction_n.low = electric_friction_n.low.min(without_model.low);
-        electric_friction_n.high = electric_friction_n.high.max(without_model.high);
-    }
+        let by_power = estimate(value_n, &|replicate| of(&replicate.power));
+        Ok(Estimate { low: by_model.low.min(by_power.low), high: by_model.high.max(by_power.high), ..by_model })
+    };
     let coupling = coupling_of(&best.contact).ok_or(FitError::NotConverged)?;
     let gap_m = Coupling(coupling).gap_m();
     let fit = Fit {
-        friction_coefficient: estimate(best.contact.friction_coefficient, &|replicate| {
-            Some(replicate.contact.friction_coefficient)
-        }),
+        friction_coefficient: wandering(
+            &strokes,
+            estimate(best.contact.friction_coefficient, &|replicate| Some(replicate.contact.friction_coefficient)),
+        ),
         coupling_sqrt_n_per_v2: estimate(coupling, &|replicate| coupling_of(&replicate.contact)),
         stated_voltage_v_rms: settings.voltage_v_rms,
         normal_load_n,
-        electric_friction_n,
+        electric_friction_n: electric(settings.voltage_v_rms)?,
+        electric_friction_most_n: electric(voltage_range_v_rms.1)?,
         voltage_exponent,
         load_exponent,
         gap_m,
@@ -241,6 +255,26 @@ impl Search<'_> {
         let power_of_load = solve(Form::PowerOfLoad { reference_load_n }, observations, &power);
         let power = solve(Form::Power { load_exponent, reference_load_n }, observations, &power)?;
         Some(Replicate { contact, power, power_of_load })
+    }
+}
+
+/// The interval of the friction coefficient, widened to what its slow wander leaves open.
+///
+/// Natural friction wanders for minutes, with a power that rises towards low frequencies, so that strokes beside each
+/// other are not independent. Sixths of the recording show how far it wanders: the interval is at least Student's for
+/// their means.
+fn wandering(strokes: &[StrokeMeans], estimate: Estimate) -> Estimate {
+    let coefficients: Vec<f64> = strokes.iter().filter_map(|stroke| stroke.natural_coefficient).collect();
+    let parts: Vec<f64> =
+        coefficients.chunks(coefficients.len().div_ceil(SIXTHS)).map(|part| mean(part.iter().copied())).collect();
+    let count = parts.len() as f64;
+    let centre = mean(parts.iter().copied());
+    let variance = parts.iter().map(|part| (part - centre) * (part - centre)).sum::<f64>() / (count - 1.0);
+    let room = student_quantile(Z_95, count - 1.0) * (variance / count).sqrt();
+    Estimate {
+        low: estimate.low.min(estimate.value - room),
+        high: estimate.high.max(estimate.value + room),
+        ..estimate
     }
 }
 

@@ -8,8 +8,8 @@ use super::table::Row;
 const START_S: f64 = 0.15;
 /// What is dropped at the end of a stroke, in seconds: the finger turns.
 const END_S: f64 = 0.05;
-/// Least time that is left of a stroke, in seconds.
-const KEPT_S: f64 = 0.2;
+/// Least duration of a stroke, in seconds, of which 0.2 s are left.
+const SHORTEST_S: f64 = START_S + 0.2 + END_S;
 /// Least number of rows that are left of a stroke.
 const KEPT_ROWS: usize = 5;
 /// Speeds at which the lag of friction was measured, in mm/s (arXiv 2505.11162).
@@ -48,6 +48,11 @@ impl Stroke {
     pub(super) fn median(&self, value: impl Fn(&Row) -> f64) -> f64 {
         median(self.rows.iter().map(value))
     }
+
+    /// Time from the first to the last row; `None` without times.
+    fn duration_s(&self) -> Option<f64> {
+        Some(self.rows.last()?.time_s? - self.rows.first()?.time_s?)
+    }
 }
 
 /// Rows divided into strokes.
@@ -64,8 +69,8 @@ impl Recording {
     pub(super) fn new(rows: Vec<Row>, without: &[String]) -> Result<Self, FitError> {
         let has_time = rows.iter().all(|row| row.time_s.is_some());
         let has_speed = rows.iter().all(|row| row.speed_mm_s.is_some());
+        check_time(&rows)?;
         let (division, strokes) = divided(rows, has_time)?;
-        check_time(&strokes)?;
         let strokes = left(strokes, without)?;
         let strokes = strokes.into_iter().map(|stroke| trimmed(stroke, division)).collect::<Result<_, _>>()?;
         Ok(Self { strokes, division, has_time, has_speed })
@@ -90,8 +95,10 @@ fn divided(rows: Vec<Row>, has_time: bool) -> Result<(Division, Vec<Stroke>), Fi
         turned || paused || (is_still(before) && !is_still(row))
     };
     let mut strokes = by(rows.clone(), is_next);
-    // A stroke of a few rows is noise around a turn.
-    strokes.retain(|stroke| stroke.rows.len() >= KEPT_ROWS);
+    // What is short lies around a turn, where speed and friction change sign more than once.
+    strokes.retain(|stroke| {
+        stroke.rows.len() >= KEPT_ROWS && stroke.duration_s().is_none_or(|duration_s| duration_s >= SHORTEST_S)
+    });
     if strokes.len() > 2 {
         return Ok((Division::Motion, strokes));
     }
@@ -124,14 +131,14 @@ fn usual_interval_s(rows: &[Row]) -> f64 {
     median(times.clone().zip(times.skip(1)).map(|(one, other)| (other - one).abs()))
 }
 
-fn check_time(strokes: &[Stroke]) -> Result<(), FitError> {
-    for stroke in strokes {
-        for (before, row) in stroke.rows.iter().zip(stroke.rows.iter().skip(1)) {
-            if let (Some(then_s), Some(now_s)) = (before.time_s, row.time_s)
-                && now_s < then_s
-            {
-                return Err(FitError::TimeBackwards { row: row.number, found: now_s, before: then_s });
-            }
+/// Fails if time goes backwards; where a stroke begins, its clock may begin anew.
+fn check_time(rows: &[Row]) -> Result<(), FitError> {
+    for (before, row) in rows.iter().zip(rows.iter().skip(1)) {
+        if let (Some(then_s), Some(now_s)) = (before.time_s, row.time_s)
+            && now_s < then_s
+            && before.stroke == row.stroke
+        {
+            return Err(FitError::TimeBackwards { row: row.number, found: now_s, before: then_s });
         }
     }
     Ok(())
@@ -149,16 +156,14 @@ fn left(strokes: Vec<Stroke>, without: &[String]) -> Result<Vec<Stroke>, FitErro
 /// Drops start, turn, and rows of a wrong speed; gives friction a positive sign.
 fn trimmed(mut stroke: Stroke, division: Division) -> Result<Stroke, FitError> {
     let too_short = |stroke: &Stroke, found| FitError::StrokeTooShort { stroke: stroke.name.clone(), found };
-    let time_s = |row: Option<&Row>| row.and_then(|row| row.time_s);
     // A block of rows neither begins nor ends with a turn.
     if division != Division::Blocks
-        && let (Some(first_s), Some(last_s)) = (time_s(stroke.rows.first()), time_s(stroke.rows.last()))
+        && let (Some(first_s), Some(duration_s)) = (stroke.rows.first().and_then(|row| row.time_s), stroke.duration_s())
     {
-        let duration_s = last_s - first_s;
-        if duration_s < START_S + KEPT_S + END_S {
+        if duration_s < SHORTEST_S {
             return Err(too_short(&stroke, format!("{duration_s:.3} s")));
         }
-        let kept_s = first_s + START_S..=last_s - END_S;
+        let kept_s = first_s + START_S..=first_s + duration_s - END_S;
         stroke.rows.retain(|row| row.time_s.is_some_and(|time_s| kept_s.contains(&time_s)));
     }
     let count = stroke.rows.len();

@@ -3,6 +3,7 @@
 //! - [`FeltCsv`] and [`EventCsv`]: `felt.csv` and `events.csv`, row by row while the scene plays.
 //! - [`Trace`]: the same rows, downsampled for pictures, in bounded memory.
 //! - [`write_felt_svg`]: friction and voltage over time.
+//! - [`write_fit_svg`]: the residual plots of a fit.
 //! - [`write_scene_png`]: the friction map of a program with the stroke over it.
 //! - [`write_preview_png`]: the friction map of a program before it is played.
 //! - [`FeltLog`]: the log of a virtual board, which joins what its finger felt to the rows of a client.
@@ -13,6 +14,7 @@
 mod csv;
 mod felt_log;
 mod felt_svg;
+mod fit_svg;
 mod map;
 mod preview_png;
 mod report;
@@ -26,9 +28,12 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
+use crate::chart::Chart;
+
 pub use csv::{CsvFile, CsvRow, EventCsv, EventRow, FeltCsv};
 pub use felt_log::{FeltLog, FeltLogError};
 pub use felt_svg::write_felt_svg;
+pub use fit_svg::write_fit_svg;
 pub use preview_png::write_preview_png;
 pub use report::Report;
 pub use scene_png::write_scene_png;
@@ -76,4 +81,10 @@ impl OutputError {
     fn drawing<E: ToString>(path: &Path) -> impl FnOnce(E) -> Self {
         move |error| Self::Drawing { path: path.to_owned(), reason: error.to_string() }
     }
+}
+
+/// Draws a chart into an SVG file.
+pub(crate) fn write_chart(path: &Path, chart: &Chart) -> Result<(), OutputError> {
+    let text = chart.svg().map_err(OutputError::drawing(path))?;
+    std::fs::write(path, text).map_err(|source| OutputError::File { path: path.to_owned(), source })
 }

@@ -5,8 +5,8 @@ use std::fmt::Write;
 use serde::Serialize;
 
 use frixel_driver::{Counters, StreamStatus};
-use frixel_scene::Reach;
 use frixel_scene::metrics::{ErrorSize, MetricsSummary};
+use frixel_scene::{Origin, Reach};
 
 /// The results of a run; the field names are the keys of `--json`. Unknown values are `null` there.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -27,6 +27,8 @@ pub struct Report {
     pub inversion_error_max_n: Option<f64>,
     /// Felt friction minus its mean over a carrier period: root mean square, N.
     pub carrier_ripple_rms_n: Option<f64>,
+    /// What the newtons rest on: `assumed`, `perceptual` or `measured`.
+    pub finger_origin: &'static str,
     /// Total friction at zero voltage, N.
     pub reachable_min_n: f64,
     /// Total friction at the largest voltage, N.
@@ -75,6 +77,7 @@ impl Report {
             inversion_error_rms_n: metrics.inversion_error.map(|error| error.rms_n),
             inversion_error_max_n: metrics.inversion_error.map(|error| error.max_n),
             carrier_ripple_rms_n: metrics.carrier_ripple_rms_n,
+            finger_origin: Origin::Assumed.word(),
             reachable_min_n: reach.friction_min_n(),
             reachable_max_n: reach.friction_max_n(),
             wanted_min_n: metrics.wanted_range_n.map(|(least_n, _)| least_n),
@@ -90,6 +93,12 @@ impl Report {
             stream_gaps: None,
             untouched_layers: Vec::new(),
         }
+    }
+
+    /// Says what the newtons rest on; without this, they are assumed.
+    #[must_use]
+    pub fn with_origin(self, origin: Origin) -> Self {
+        Self { finger_origin: origin.word(), ..self }
     }
 
     /// Adds the status of the stream, if there was one.
@@ -121,7 +130,8 @@ impl Report {
             // Writing to a string cannot fail.
             let _ = writeln!(text, "  {name:<16} {value}");
         };
-        let range = |least: f64, most: f64| format!("{:.2} to {:.2} mN", 1e3 * least, 1e3 * most);
+        let suffix = if self.finger_origin == Origin::Measured.word() { "" } else { ", assumed" };
+        let range = |least: f64, most: f64| format!("{:.2} to {:.2} mN{suffix}", 1e3 * least, 1e3 * most);
         line("reachable", range(self.reachable_min_n, self.reachable_max_n));
         if let Some((least, most)) = self.wanted_min_n.zip(self.wanted_max_n) {
             line("wanted", range(least, most));

@@ -350,14 +350,14 @@ fn report_as_json() {
         report(&known).to_json(),
         "{\"rig\":\"simulator\",\"ticks\":120000,\"unreported_ticks\":480,\"friction_error_rms_n\":0.001,\"friction_error_max_n\":0.005,\
          \"inversion_error_rms_n\":1e-6,\"inversion_error_max_n\":0.00002,\"carrier_ripple_rms_n\":0.0005,\
-         \"reachable_min_n\":0.25,\"reachable_max_n\":0.275,\"wanted_min_n\":0.25,\"wanted_max_n\":0.27,\
+         \"finger_origin\":\"assumed\",\"reachable_min_n\":0.25,\"reachable_max_n\":0.275,\"wanted_min_n\":0.25,\"wanted_max_n\":0.27,\
          \"saturated_ticks\":7,\"frames_sent\":400,\"frames_rejected\":1,\"payload_bytes\":63000,\"wire_bytes\":65000,\
          \"realtime_factor\":123.4,\"stream_samples\":null,\"stream_underruns\":null,\"stream_gaps\":null,\"untouched_layers\":[]}"
     );
     assert_eq!(
         report(&known).summary(),
-        "  reachable        250.00 to 275.00 mN\n\
-         \x20 wanted           250.00 to 270.00 mN\n\
+        "  reachable        250.00 to 275.00 mN, assumed\n\
+         \x20 wanted           250.00 to 270.00 mN, assumed\n\
          \x20 friction error   1.0000 mN rms, 5.0000 mN at most (4.000 % and 20.000 % of the range)\n\
          \x20 inversion error  0.0010 mN rms, 0.0200 mN at most (0.004 % and 0.080 % of the range)\n\
          \x20 carrier ripple   0.5000 mN rms\n\

@@ -27,12 +27,27 @@ pub struct SimLink<'a> {
     written: Written,
     written_at_tick: u64,
     keep_alive: Option<KeepAlive>,
+    observer: Option<Box<dyn FnMut(&TickRecord) + 'a>>,
 }
 
 impl<'a> SimLink<'a> {
     /// Creates a link to `rig` that records its ticks into `recorder`.
     pub fn new(rig: Rig<'a>, recorder: Recorder) -> Self {
-        Self { rig, recorder, recording: false, written: Written::default(), written_at_tick: 0, keep_alive: None }
+        Self {
+            rig,
+            recorder,
+            recording: false,
+            written: Written::default(),
+            written_at_tick: 0,
+            keep_alive: None,
+            observer: None,
+        }
+    }
+
+    /// Calls `observer` with every tick that is recorded.
+    #[must_use]
+    pub fn observed(self, observer: impl FnMut(&TickRecord) + 'a) -> Self {
+        Self { observer: Some(Box::new(observer)), ..self }
     }
 
     /// The recorder with all ticks.
@@ -54,6 +69,9 @@ impl<'a> SimLink<'a> {
         let record = self.rig.step();
         if self.recording {
             self.recorder.record(&observation(&record));
+            if let Some(observer) = &mut self.observer {
+                observer(&record);
+            }
         } else if record.status.telemetry.state == State::Active {
             self.rig.world_mut().start_stroke();
             self.recorder.start(record.tick as u32);

@@ -10,5 +10,5 @@ mod command;
 mod credit;
 #[path = "../../../../hil-sim/tests/emulator/mod.rs"]
 mod emulator;
+mod injected_faults;
 mod link;
-mod mishaps;

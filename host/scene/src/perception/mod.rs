@@ -17,6 +17,7 @@ use frixel_layers::Layer;
 use serde::Serialize;
 
 use crate::Program;
+use crate::reach::loaded_contact;
 use crate::reference::Reference;
 use slide::Slide;
 pub use thresholds::{
@@ -209,6 +210,8 @@ struct Comparable<'a> {
 
 /// Pairs of textures of about the same frequency and voltage. Layers of the same parameters are meant to feel the same.
 fn alike(layers: &[LayerPerception], program: &Program) -> Vec<AlikeTextures> {
+    // The contact is one: the program's reach was computed from it.
+    let Ok(contact) = loaded_contact(&program.header) else { return Vec::new() };
     let comparable = |layer: &LayerPerception| {
         let texture = layer.textures.iter().find(|texture| texture.speed_mm_per_s == 1e3 * USUAL_M_PER_S)?;
         let number = program.titles.iter().position(|title| *title == layer.layer)?;
@@ -217,7 +220,7 @@ fn alike(layers: &[LayerPerception], program: &Program) -> Vec<AlikeTextures> {
             title: program.titles.get(number)?,
             layer: program.records.get(number)?.layer,
             frequency_hz: texture.frequency_hz,
-            voltage_v_rms: program.reach.voltage_v_rms(electric_n),
+            voltage_v_rms: contact.voltage_v_rms(electric_n),
         })
     };
     let textures: Vec<Comparable> = layers.iter().filter_map(comparable).collect();

@@ -2,10 +2,8 @@
 
 use std::ops::Range;
 
-use rustfft::FftPlannerScalar;
-use rustfft::num_complex::Complex;
-
 use super::thresholds::{TEXTURE_MIN_HZ, texture_threshold_n};
+use crate::spectrum::Spectrum;
 
 /// Least number of samples of which a component is sought.
 const SAMPLES_MIN: usize = 64;
@@ -26,8 +24,11 @@ pub(super) struct Component {
 /// component of the largest amplitude. `None` for a signal that is too short or has nothing above
 /// [`TEXTURE_MIN_HZ`].
 pub(super) fn most_noticeable(samples: &[f64], sample_hz: f64) -> Option<Component> {
-    let power = power(samples)?;
-    let bin_hz = sample_hz / samples.len() as f64;
+    if samples.len() < SAMPLES_MIN {
+        return None;
+    }
+    let spectrum = Spectrum::of(samples, sample_hz);
+    let (power, bin_hz) = (spectrum.power(), spectrum.bin_hz);
     let cumulative: Vec<f64> = std::iter::once(0.0)
         .chain(power.iter().scan(0.0, |sum, power| {
             *sum += power;
@@ -62,23 +63,6 @@ fn is_largest(power: &[f64], bin: usize) -> bool {
     let here = power.get(bin).copied().unwrap_or(0.0);
     let around = power.get(around(bin, power.len())).unwrap_or_default();
     here > 0.0 && around.iter().all(|power| *power <= here)
-}
-
-/// Mean power of each frequency from zero to half of the sampling frequency, with the mean taken off.
-fn power(samples: &[f64]) -> Option<Vec<f64>> {
-    let count = samples.len();
-    if count < SAMPLES_MIN {
-        return None;
-    }
-    let mean = samples.iter().sum::<f64>() / count as f64;
-    let window = |number: usize| 0.5 - 0.5 * libm::cos(std::f64::consts::TAU * number as f64 / count as f64);
-    let windowed =
-        samples.iter().enumerate().map(|(number, sample)| Complex::new(window(number) * (sample - mean), 0.0));
-    let mut spectrum: Vec<Complex<f64>> = windowed.collect();
-    FftPlannerScalar::new().plan_fft_forward(count).process(&mut spectrum);
-    // The squares of a Hann window sum to 3/8 of its length; each frequency has a negative twin.
-    let scale = 2.0 / (0.375 * (count * count) as f64);
-    Some(spectrum.iter().take(count / 2).map(|value| scale * value.norm_sqr()).collect())
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use super::*;
+use crate::FingerProfile;
 use crate::grammar::{Absence, FieldSpec, Holds, KnownField, Range};
 use crate::kinds::KindName;
 use crate::schema::variant::{Tables, variants};
@@ -238,4 +239,22 @@ fn numbers_in_the_text_are_right() {
     assert!(DOCS.contains(&format!("At 150 V rms it feels {:.2} mN more", 1e3 * reach.electric_friction_max_n)));
     assert!(DOCS.contains(&format!("{} N. At 150 V", reach.natural_friction_n)));
     assert_eq!(LIMITS.bitmap_pool_bytes, 65_536);
+}
+
+/// The table of bundled fingers is computed here: on the example screen, at the default limit of the drive.
+#[test]
+fn the_table_of_bundled_fingers_is_right() {
+    for (number, name) in FingerProfile::bundled_names().enumerate() {
+        let Program { reach, header, .. } =
+            compile_text(&format!("version = 2\nfinger = \"{name}\"")).expect("it compiles");
+        let steps = libm::log(reach.friction_max_n() / reach.natural_friction_n) / libm::log(1.11);
+        let row = format!(
+            "| `{name}` | {} N | {:.0} mN | {:.0} mN | {steps:.1}{} |",
+            header.normal_load_n,
+            1e3 * reach.natural_friction_n,
+            1e3 * reach.electric_friction_max_n,
+            if number == 0 { " Weber steps" } else { "" }
+        );
+        assert!(DOCS.contains(&row), "{row}");
+    }
 }

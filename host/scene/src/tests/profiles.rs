@@ -1,7 +1,7 @@
 //! Tests of the screen and finger of a scene: which one counts, what is refused, and what is warned of.
 
 use super::*;
-use crate::{Elasticity, Evidence, FingerProfile, Mistake, Origin, Screen, Warning};
+use crate::{Elasticity, Evidence, FingerProfile, Mistake, Origin, Screen, Warning, migrate};
 use frixel_layers::Header;
 
 /// All of a scene of version 2 but its layers: the example screen and finger.
@@ -117,7 +117,7 @@ fn a_scene_of_version_one_takes_no_other_finger_or_screen() {
     let sentence = |what: &str| {
         format!(
             "test.toml:1:11: the coating of a scene of version 1 contains the finger's skin, so that it cannot be played \
-             with another {what}: `frixel scene migrate test.toml` writes it as version 2"
+             with another {what}: `frixel scene migrate test.toml` prints it as version 2"
         )
     };
     let refused = scene().with_finger(FingerProfile::example(), "example").expect_err("it is refused");
@@ -283,4 +283,48 @@ fn a_perceptual_profile_reads_in_a_scene() {
     assert!(matches!(scene.finger().evidence, Evidence::Perceptual { .. }));
     let finger = program(&scene).expect("it compiles").finger;
     assert_eq!((finger.origin, finger.newtons_suffix()), (Origin::Perceptual, ", assumed"));
+}
+
+fn migrated(text: &str) -> String {
+    migrate(text, "test.toml", &*PICTURES).expect("it migrates")
+}
+
+#[test]
+fn a_migrated_scene_has_the_same_bytes_for_a_board() {
+    let layer = "[[layer]]\nkind = \"grating\"\nwavelength_mm = 2\nlow_n = 0\nhigh_n = 0.015\n";
+    let inline = "version = 1 # the first\nscreen = { width_mm = 90, height_mm = 60 }\n\
+                  coating = { thickness_um = 12, permittivity = 1.0 }\nfinger = { radius_mm = 8, stiffness_pa_per_m = 1.8e7, \
+                  friction_coefficient = 0.5, normal_load_n = 0.5 }\n";
+    let slabs =
+        "[[coating]]\nthickness_um = 1.5\npermittivity = 3.9\n\n[[coating]]\nthickness_um = 9.5\npermittivity = 1\n";
+    let two = HEAD.replace("[coating]\nthickness_um = 10\npermittivity = 1\n", slabs);
+    let solid = HEAD.replace("permittivity = 1\n", "permittivity = 2\n");
+    for text in [HEAD, inline, &two, &solid] {
+        let text = format!("{text}{layer}");
+        let [old, new] = [&text, &migrated(&text)].map(|text| compile_text(text).expect("it compiles"));
+        assert_eq!(old.scene_bytes(), new.scene_bytes(), "{text}");
+    }
+}
+
+#[test]
+fn migration_keeps_comments_and_takes_air_for_skin() {
+    let text = migrated(&format!("# a scene\n{HEAD}[[layer]] # a layer\nkind = \"constant\"\nfriction_n = 0.26\n"));
+    assert_eq!(
+        text,
+        "# a scene\nversion = 2\n\n[screen]\nwidth_mm = 120\nheight_mm = 110\n\
+         coating = { thickness_um = 1, permittivity = 3.9 }\n\n[finger]\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\n\
+         friction_coefficient = 0.5\nnormal_load_n = 0.5\nskin_gap_um = 9.743589743589743\n\n# layers follow\n\n[[layer]] # a \
+         layer\nkind = \"constant\"\nfriction_n = 0.26\n"
+    );
+    let refused = migrate(&text, "test.toml", &*PICTURES).expect_err("it is version 2 already");
+    assert_eq!(refused.to_string(), "test.toml:2:11: this scene has version 2 already: there is nothing to migrate");
+}
+
+/// A gap below that of the example coating cannot hold it.
+#[test]
+fn a_thin_coating_of_version_one_stays_the_coating() {
+    let text = HEAD.replace("thickness_um = 10", "thickness_um = 0.2") + "[drive]\nvoltage_max_v_rms = 2\n";
+    let scene = Scene::parse(&migrated(&text), "test.toml", &*PICTURES).expect("it reads");
+    assert_eq!(scene.finger().skin_gap_um.to_bits(), 0.0_f64.to_bits());
+    assert!((scene.screen().coating_gap_um() - 0.2).abs() < 1e-12);
 }

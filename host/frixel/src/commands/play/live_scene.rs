@@ -6,18 +6,19 @@ use std::thread::{self, JoinHandle};
 
 use frixel::player::{PlayError, Player};
 use frixel::rigs::RecordedLink;
-use frixel::scene_file::{self, SceneFileError};
+use frixel::scene_file::{ProfileNames, SceneFileError};
 use frixel_driver::DeviceError;
 use frixel_scene::{Program, compile};
 use frixel_wire::hello::Hello;
 use frixel_wire::message::Refusal;
 
 use super::note;
-use super::plan::print_notes;
+use super::plan::{check_measured, print_notes};
 use super::saved_file::SavedFile;
 
 /// Watches the scene's file, and the files that it names, while an earlier version of it plays.
 pub(super) struct LiveScene {
+    profiles: ProfileNames,
     file: SavedFile,
     named_files: Vec<SavedFile>,
     /// The thread that compiles a saved scene, because the host must keep sending to the board meanwhile.
@@ -37,10 +38,10 @@ struct Compiled {
 impl LiveScene {
     /// Watches a file, and the files that it names, for changes from now on if `watches` is true. Call this before the
     /// file is read.
-    pub(super) fn new(path: &Path, watches: bool, waits: bool) -> Self {
+    pub(super) fn new(path: &Path, profiles: ProfileNames, watches: bool, waits: bool) -> Self {
         let file = SavedFile::new(path);
-        let named_files = if watches { scene_file::load_with_files(path).1 } else { Vec::new() };
-        Self { file, named_files: watched(named_files), compiling: None, watches, waits }
+        let named_files = if watches { profiles.load_with_files(path).1 } else { Vec::new() };
+        Self { profiles, file, named_files: watched(named_files), compiling: None, watches, waits }
     }
 
     /// Plays, and watches, another file from now on.
@@ -78,8 +79,9 @@ impl LiveScene {
 
     fn compile<L: RecordedLink>(&mut self, player: &Player<L>) {
         let (path, Hello { limits, tick_hz, .. }) = (self.file.path().to_owned(), *player.device().hello());
+        let profiles = self.profiles.clone();
         self.compiling = Some(thread::spawn(move || {
-            let (scene, named_files) = scene_file::load_with_files(&path);
+            let (scene, named_files) = profiles.load_with_files(&path);
             let program = scene.and_then(|scene| Ok(compile(&scene, &limits, tick_hz)?));
             Compiled { program, named_files: watched(named_files) }
         }));
@@ -106,6 +108,11 @@ fn replace<L: RecordedLink>(
             return Ok(None);
         }
     };
+    if let Err(error) = check_measured(&program, player.device().hello().board) {
+        note(error);
+        note(format_args!("frixel: {} is not played: the scene before plays on", path));
+        return Ok(None);
+    }
     let mut how = "";
     let replaced = match player.replace(&program) {
         Err(PlayError::Device(DeviceError::Refused { refusal: Refusal::BitmapPoolFull { .. }, .. })) => {

@@ -8,7 +8,7 @@ use frixel::stream::Feed;
 use frixel_hil_sim::Stroke;
 use frixel_scene::recorder::Recorder;
 use frixel_scene::{Program, Scene, compile};
-use frixel_wire::hello::BoardLimits;
+use frixel_wire::hello::{BoardKind, BoardLimits};
 
 use super::super::stroke::{check_on_screen, default_stroke};
 use super::rigs::Target;
@@ -129,8 +129,11 @@ impl Plan {
     }
 }
 
-/// Prints the values that the compiler converted, rounded or clamped.
+/// Prints the warnings of the compiler, and the values that it converted, rounded or clamped.
 pub(super) fn print_notes(program: &Program) {
+    for warning in &program.warnings {
+        note(format_args!("warning: {warning}"));
+    }
     for sentence in &program.notes {
         note(sentence);
     }
@@ -143,6 +146,14 @@ fn note_streams(program: &Program, has_feed: bool) {
     if !(titles.is_empty() || has_feed) {
         let titles = titles.join(" and ");
         note(format_args!("{titles} plays a stream, and there is no --stream: nothing will be felt there"));
+    }
+}
+
+/// Rejects a program for a board with an electrode if its finger was not measured at the voltage or load that it needs.
+pub(super) fn check_measured(program: &Program, board: BoardKind) -> Result<(), CommandError> {
+    match program.warnings.iter().find(|warning| warning.is_refused_by_boards()) {
+        Some(warning) if !board.is_simulated() => Err(CommandError::NotMeasured { warning: *warning }),
+        _ => Ok(()),
     }
 }
 
@@ -184,5 +195,34 @@ fn open_feed(args: &PlayArgs, tick_hz: u32, target: Target) -> Result<Option<Fee
         (Some(path), None) if path == Path::new("-") => Err(CommandError::StreamRateMissing),
         (Some(path), Some(_)) => Err(CommandError::StreamRateOfFile { path: path.to_owned() }),
         (Some(path), None) => Ok(Some(Feed::wav(path, tick_hz)?)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use frixel_hil_sim::RigConfig;
+
+    use super::*;
+
+    #[test]
+    fn only_a_simulator_plays_beyond_what_a_finger_was_measured_at() {
+        let text = "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n[finger]\n\
+                    friction_coefficient = 0.5\nnormal_load_n = 0.5\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\n\
+                    skin_gap_um = 4.74\norigin = \"measured\"\ndate = \"2026-11-22\"\nmethod = \"load cell\"\n\
+                    screen = \"example\"\nfriction_coefficient_interval = [0.49, 0.51]\n\
+                    electric_friction_interval_n = [0.02, 0.03]\nmeasured_voltage_max_v_rms = 75\n\
+                    measured_normal_load_range_n = [0.4, 0.6]\n";
+        let board = RigConfig::default().board;
+        let scene = Scene::parse(text, "test.toml", &BTreeMap::new()).unwrap();
+        let program = compile(&scene, &board.limits, board.tick_hz).unwrap();
+        assert_eq!(program.warnings.len(), 1);
+        check_measured(&program, BoardKind::Simulator).unwrap();
+        let refused = check_measured(&program, BoardKind::NucleoG474re).unwrap_err().to_string();
+        assert!(
+            refused.starts_with("a board with an electrode does not extrapolate: the scene needs up to "),
+            "{refused}"
+        );
     }
 }

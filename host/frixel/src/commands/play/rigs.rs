@@ -10,7 +10,7 @@ use frixel_scene::recorder::Recorder;
 pub(super) use super::emulator::play_on_emulator;
 use super::follow::follow;
 use super::live_scene::LiveScene;
-use super::plan::Plan;
+use super::plan::{Plan, check_measured};
 use super::{CommandError, Interrupt, PlayArgs, Played};
 
 /// Kind of the board that plays.
@@ -90,5 +90,6 @@ pub(super) fn play_on_port(
         return Err(CommandError::NotArmed { port: args.port.clone() });
     }
     let plan = Plan::new(args, scene, Target::Port, (&hello.limits, hello.tick_hz))?;
+    check_measured(&plan.program, hello.board)?;
     follow(args, plan, device, live_scene, interrupt)
 }

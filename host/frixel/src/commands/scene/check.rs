@@ -4,17 +4,19 @@ use std::path::PathBuf;
 
 use clap::Args;
 use frixel::check::SceneCheck;
-use frixel::scene_file;
 use frixel_hil_sim::RigConfig;
 use frixel_scene::compile;
 
 use super::super::error::CommandError;
+use super::super::profiles::ProfileArgs;
 use super::super::terminal::{print, print_line};
 
 #[derive(Debug, Args)]
 pub(in super::super) struct CheckArgs {
     /// The scene, a TOML file (docs/scene.md).
     scene: PathBuf,
+    #[command(flatten)]
+    profiles: ProfileArgs,
     /// Say what the smallest firmware that plays it is built with.
     #[arg(long)]
     board: bool,
@@ -26,8 +28,11 @@ pub(in super::super) struct CheckArgs {
 pub(super) fn run(args: &CheckArgs) -> Result<(), CommandError> {
     // The simulated board has the limits of the smallest board.
     let rig = RigConfig::default();
-    let compiled =
-        scene_file::load(&args.scene).and_then(|scene| Ok(compile(&scene, &rig.board.limits, rig.board.tick_hz)?));
+    let compiled = args
+        .profiles
+        .names()
+        .load(&args.scene)
+        .and_then(|scene| Ok(compile(&scene, &rig.board.limits, rig.board.tick_hz)?));
     let program = match compiled {
         Err(error) if args.json => {
             print_line(error.to_json())?;

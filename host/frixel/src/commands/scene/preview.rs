@@ -5,18 +5,20 @@ use std::path::PathBuf;
 use clap::Args;
 use frixel::check::feel;
 use frixel::output::write_preview_png;
-use frixel::scene_file;
 use frixel_hil_sim::RigConfig;
 use frixel_scene::perception::Perception;
 use frixel_scene::{Preview, compile};
 
 use super::super::error::CommandError;
+use super::super::profiles::ProfileArgs;
 use super::super::terminal::print_line;
 
 #[derive(Debug, Args)]
 pub(in super::super) struct PreviewArgs {
     /// The scene, a TOML file (docs/scene.md).
     scene: PathBuf,
+    #[command(flatten)]
+    profiles: ProfileArgs,
     /// The picture, a PNG file.
     #[arg(short, long, value_name = "FILE.png")]
     output: PathBuf,
@@ -33,7 +35,7 @@ pub(super) fn run(args: &PreviewArgs) -> Result<(), CommandError> {
         return Err(CommandError::NotPng { path: args.output.clone() });
     }
     let board = RigConfig::default().board;
-    let program = compile(&scene_file::load(&args.scene)?, &board.limits, board.tick_hz)?;
+    let program = compile(&args.profiles.names().load(&args.scene)?, &board.limits, board.tick_hz)?;
     let title = args.scene.file_name().unwrap_or_default().to_string_lossy();
     let map_max = (args.map_width, args.map_width * 4 / 5);
     let preview = Preview { speed_m_per_s: 1e-3 * args.speed_mm_per_s, map_max };

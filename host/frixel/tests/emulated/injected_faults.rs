@@ -3,7 +3,7 @@
 use frixel::player;
 use frixel_control::Drive;
 use frixel_driver::Device;
-use frixel_hil_sim::emulated::Mishap;
+use frixel_hil_sim::emulated::InjectedFault;
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::hello::{Hello, ResetCause};
 
@@ -12,14 +12,14 @@ use crate::cable::Cable;
 use crate::emulator;
 
 /// Plays a scene, lets something happen, and returns the next hello.
-fn suffer(mishap: Mishap) -> Option<Hello> {
+fn suffer(fault: InjectedFault) -> Option<Hello> {
     let image = emulator::image()?;
     let bench = Bench::new(&image);
     let mut device = Device::connect(Cable::plug(&bench.board)).unwrap();
     player::start(&mut device, &program("constant.toml"), &mut |_| {}).unwrap();
     bench.until_driven(&mut device);
-    bench.board.provoke(mishap).unwrap();
-    let starts = if mishap == Mishap::Overrun { 1 } else { 2 };
+    bench.board.inject(fault).unwrap();
+    let starts = if fault == InjectedFault::Overrun { 1 } else { 2 };
     bench.until("the output is off", |board| {
         board.starts().unwrap() == starts && board.output().unwrap() == Drive::default()
     });
@@ -40,28 +40,28 @@ fn suffer(mishap: Mishap) -> Option<Hello> {
 
 #[test]
 fn a_panic_ends_the_drive_and_is_told() {
-    let Some(hello) = suffer(Mishap::Panic) else { return };
+    let Some(hello) = suffer(InjectedFault::Panic) else { return };
     assert_eq!((hello.reset_cause, hello.last_fault), (ResetCause::Software, Some(Fault::Panic)));
     assert_ne!(hello.fault_detail, 0, "the line");
 }
 
 #[test]
 fn a_hard_fault_ends_the_drive_and_is_told() {
-    let Some(hello) = suffer(Mishap::HardFault) else { return };
+    let Some(hello) = suffer(InjectedFault::HardFault) else { return };
     assert_eq!((hello.reset_cause, hello.last_fault), (ResetCause::Software, Some(Fault::HardFault)));
     assert!((0x48..0x8_0000).contains(&hello.fault_detail), "{:#x} is no place in the code", hello.fault_detail);
 }
 
 #[test]
 fn a_stack_overflow_ends_the_drive_and_is_told() {
-    let Some(hello) = suffer(Mishap::StackOverflow) else { return };
+    let Some(hello) = suffer(InjectedFault::StackOverflow) else { return };
     assert_eq!((hello.reset_cause, hello.last_fault), (ResetCause::Software, Some(Fault::StackOverflow)));
     assert!(hello.fault_detail < 0x2000_0000, "{:#x} is above the stack's bottom", hello.fault_detail);
 }
 
 #[test]
 fn a_tick_that_takes_too_long_ends_the_drive_and_is_told() {
-    let Some(hello) = suffer(Mishap::Overrun) else { return };
+    let Some(hello) = suffer(InjectedFault::Overrun) else { return };
     assert_eq!((hello.reset_cause, hello.last_fault), (ResetCause::PowerOn, Some(Fault::Deadline)));
     assert_eq!(hello.state, State::Faulted);
     assert!(hello.fault_detail > 625, "{} counts of 40 ns are less than a tick", hello.fault_detail);

@@ -52,11 +52,11 @@ fn a_layer_plays_or_is_refused_by_its_number() {
     desk.greet();
     let records = [record(Layer::Constant(Constant { electric_friction_n: 0.01 })), record(GRATING)];
     let found = desk.load(&scene(&HEADER, &records)).err();
-    assert_eq!(found, (!has(feature::GRATING)).then_some(Refusal::LeftOut { layer: 1 }));
+    assert_eq!(found, (!has(feature::GRATING)).then_some(Refusal::FeatureDisabled { layer: 1 }));
 
     let found = desk.load(&scene(&HEADER, &[record(bitmap(7))])).err();
     let expected =
-        if has(feature::BITMAP) { Refusal::BitmapMissing { crc32: 7 } } else { Refusal::LeftOut { layer: 0 } };
+        if has(feature::BITMAP) { Refusal::BitmapMissing { crc32: 7 } } else { Refusal::FeatureDisabled { layer: 0 } };
     assert_eq!(found, Some(expected));
 }
 
@@ -93,7 +93,7 @@ fn a_kind_plays_or_is_refused() {
         let records = [record(constant), Record { region, ..record(layer) }];
         let points = [(0.0, 0.0), (0.05, 0.0), (0.1, 0.05)].map(|(x, y)| Point { x, y });
         let found = desk.load(&scene_with_points(&HEADER, &records, &points)).err();
-        assert_eq!(found, (!there).then_some(Refusal::LeftOut { layer: 1 }), "{layer:?}");
+        assert_eq!(found, (!there).then_some(Refusal::FeatureDisabled { layer: 1 }), "{layer:?}");
     }
 }
 
@@ -104,7 +104,7 @@ fn a_carrier_plays_or_is_refused() {
     desk.greet();
     let header = Header { carrier: Carrier::Sine, ..HEADER };
     let found = desk.load(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.01 }))])).err();
-    let refused = Refusal::LeftOut { layer: ConfigRefusal::WHOLE_SCENE };
+    let refused = Refusal::FeatureDisabled { layer: ConfigRefusal::WHOLE_SCENE };
     assert_eq!(found, (!cfg!(feature = "sine-carrier")).then_some(refused));
     desk.play(&constant(0.02));
     assert!(desk.slide(2000)[1000..].iter().all(|drive| drive.dac_code.bits() != 0));

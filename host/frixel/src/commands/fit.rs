@@ -1,0 +1,112 @@
+//! `frixel fit`: a finger's profile from measured friction.
+
+use std::fs::{self, File};
+use std::io::{self, BufReader, Read};
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use frixel::fit::{self, Settings, Summary};
+use frixel::output::write_fit_svg;
+use frixel_scene::{Experiment, Screen};
+use time::OffsetDateTime;
+
+use super::error::CommandError;
+
+#[derive(Debug, Args)]
+pub(super) struct FitArgs {
+    /// The recording: CSV with the columns `voltage_v_rms,normal_force_n,friction_n` and, if there are,
+    /// `time_s,stroke,speed_mm_s`, in any order; `-` for standard input.
+    ///
+    /// A row for each sample of a force sensor, while the finger slides in strokes and the drive is switched on and
+    /// off. `stroke` is a number or name for each stroke; without it strokes are divided where direction, speed or
+    /// clock say so, and otherwise rows are taken in 24 blocks.
+    #[arg(value_name = "DATA.csv")]
+    data: PathBuf,
+    /// The finger profile to write. Residual plots stand beside it, in a file of the same name that ends in .svg.
+    #[arg(short, long, value_name = "FINGER.toml")]
+    output: Option<PathBuf>,
+    /// Print one JSON object in place of the summary.
+    #[arg(long)]
+    json: bool,
+    /// The screen that friction was measured on: a bundled name or a screen file (docs/scene.md); without it, the
+    /// example screen. The profile holds for this screen.
+    #[arg(long, value_name = "SCREEN")]
+    screen: Option<String>,
+    /// Voltage at which electric friction is stated, in volts rms.
+    #[arg(long, value_name = "V_RMS", default_value_t = 150.0, value_parser = positive)]
+    voltage: f64,
+    /// Normal load of the profile, in newtons; without it, the median of the data.
+    #[arg(long, value_name = "N", value_parser = positive)]
+    load: Option<f64>,
+    /// Strokes to leave out, by their names in the column `stroke`.
+    #[arg(long, value_name = "STROKE", value_delimiter = ',')]
+    without: Vec<String>,
+    /// How friction was measured, in a few words for the profile.
+    #[arg(long, value_name = "TEXT", default_value = "load cell, strokes with the drive switched on and off")]
+    method: String,
+    /// Seed of the bootstrap that gives the intervals.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+pub(super) fn run(args: &FitArgs) -> Result<(), CommandError> {
+    let (screen_name, screen) = screen(args.screen.as_deref())?;
+    let settings = Settings {
+        voltage_v_rms: args.voltage,
+        normal_load_n: args.load,
+        coating_gap_m: 1e-6 * screen.coating_gap_um(),
+        without: args.without.clone(),
+        seed: args.seed,
+    };
+    let refused = |source| CommandError::Fit { path: args.data.clone(), source };
+    let fit = fit::fit(fit::rows(open(&args.data)?).map_err(refused)?, &settings).map_err(refused)?;
+    if let Some(output) = &args.output {
+        let date = OffsetDateTime::now_utc().date().to_string();
+        let experiment = Experiment { date, method: args.method.clone(), screen: screen_name.clone() };
+        fs::write(output, fit::profile(&fit, experiment).to_toml()).map_err(CommandError::writing(output))?;
+        write_fit_svg(&residuals_path(output), &format!("{}, fitted", args.data.display()), &fit)?;
+    }
+    if args.json {
+        println!("{}", serde_json::json!(Summary::from(&fit)));
+        return Ok(());
+    }
+    print!("{}", fit::words(&fit, &screen_name));
+    if let Some(output) = &args.output {
+        println!("  {:<22} {}, {}", "wrote", output.display(), residuals_path(output).display());
+    }
+    Ok(())
+}
+
+/// The screen of the experiment and the name by which profiles refer to it.
+pub(super) fn screen(named: Option<&str>) -> Result<(String, Screen), CommandError> {
+    let Some(named) = named else { return Ok(("example".to_owned(), Screen::example())) };
+    if let Some(screen) = Screen::bundled(named) {
+        return Ok((named.to_owned(), screen));
+    }
+    let path = Path::new(named);
+    let text = fs::read_to_string(path).map_err(CommandError::reading(path))?;
+    let screen = Screen::parse(&text, named)?;
+    let name = screen.name.clone().unwrap_or_else(|| {
+        path.file_stem().map_or_else(|| named.to_owned(), |stem| stem.to_string_lossy().into_owned())
+    });
+    Ok((name, screen))
+}
+
+fn open(path: &Path) -> Result<Box<dyn Read>, CommandError> {
+    if path == Path::new("-") {
+        return Ok(Box::new(io::stdin().lock()));
+    }
+    Ok(Box::new(BufReader::new(File::open(path).map_err(CommandError::reading(path))?)))
+}
+
+fn residuals_path(output: &Path) -> PathBuf {
+    output.with_extension("svg")
+}
+
+/// Parses a quantity above zero.
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err("expected a number above 0".into()),
+    }
+}

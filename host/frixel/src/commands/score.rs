@@ -1,0 +1,138 @@
+//! `frixel score`: how faithfully simulated fingers feel a scene.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use frixel::score::{Score, Trial, write_score_svg};
+use frixel_hil_sim::{RigConfig, Stroke};
+use frixel_scene::{Program, compile};
+
+use super::error::CommandError;
+use super::profiles::ProfileArgs;
+use super::stroke;
+use super::terminal::print_line;
+
+#[derive(Debug, Args)]
+pub(super) struct ScoreArgs {
+    /// The scene, a TOML file (docs/scene.md).
+    scene: PathBuf,
+    #[command(flatten)]
+    profiles: ProfileArgs,
+    /// Where the finger goes: `human` for drawn people, `natural` for even strokes, or a CSV file with the columns
+    /// `t_s,x_mm,y_mm`.
+    #[arg(long, default_value = "human", value_name = "human|natural|FILE.csv")]
+    stroke: String,
+    /// Number of human strokes.
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    strokes: u64,
+    /// Plays of each stroke, each with other noise.
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    seeds: u64,
+    /// Length of a generated stroke.
+    #[arg(long, value_name = "S", default_value_t = 3.0, value_parser = super::seconds, allow_negative_numbers = true)]
+    seconds: f64,
+    /// Median speed of human strokes. Without it, each person has their own.
+    #[arg(long, value_name = "MM_PER_S", value_parser = median_speed, allow_negative_numbers = true)]
+    median_speed_mm_per_s: Option<f64>,
+    /// The touch source: reports a second.
+    #[arg(long, default_value = "100")]
+    touch: TouchSource,
+    /// Simulate a world without noise, load changes, losses and offsets.
+    #[arg(long)]
+    ideal: bool,
+    /// Folder for score.csv and score.svg.
+    #[arg(long, default_value = "frixel-out")]
+    out: PathBuf,
+    /// Print one JSON object in place of the table.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Classes of touch sources.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum TouchSource {
+    /// 100 reports a second, 10 ms late.
+    #[value(name = "100")]
+    Hz100,
+    /// 200 reports a second, 5 ms late.
+    #[value(name = "200")]
+    Hz200,
+    /// 500 reports a second, 3 ms late.
+    #[value(name = "500")]
+    Hz500,
+}
+
+impl TouchSource {
+    /// Reports a second, and their latency in seconds.
+    fn rate_and_latency(self) -> (f64, f64) {
+        match self {
+            Self::Hz100 => (100.0, 10e-3),
+            Self::Hz200 => (200.0, 5e-3),
+            Self::Hz500 => (500.0, 3e-3),
+        }
+    }
+}
+
+pub(super) fn run(args: &ScoreArgs) -> Result<(), CommandError> {
+    let rig = rig(args);
+    let program = compile(&args.profiles.names().load(&args.scene)?, &rig.board.limits, rig.board.tick_hz)?;
+    let trials = trials(args, &program)?;
+    let score = Score::of(&program, &rig, &trials).map_err(|error| CommandError::of_play("sim", error))?;
+    std::fs::create_dir_all(&args.out).map_err(CommandError::writing(&args.out))?;
+    let (csv, svg) = (args.out.join("score.csv"), args.out.join("score.svg"));
+    std::fs::write(&csv, score.to_csv()).map_err(CommandError::writing(&csv))?;
+    let scene = args.scene.file_name().unwrap_or_default().to_string_lossy();
+    write_score_svg(&svg, &format!("{scene}, simulated: {} plays", trials.len()), &score)?;
+    if args.json {
+        return print_line(format_args!("{}", score.to_json()));
+    }
+    for line in score.summary().lines() {
+        print_line(format_args!("{line}"))?;
+    }
+    for file in [csv, svg] {
+        print_line(format_args!("  {:<30} {}", "wrote", file.display()))?;
+    }
+    Ok(())
+}
+
+/// The simulated board and its world.
+fn rig(args: &ScoreArgs) -> RigConfig {
+    let mut rig = RigConfig::default();
+    if !args.ideal {
+        rig.world = rig.world.natural();
+    }
+    (rig.world.touch.rate_hz, rig.world.touch.latency_s) = args.touch.rate_and_latency();
+    rig.board.limits.touch_report_period_s = (1.0 / rig.world.touch.rate_hz) as f32;
+    rig
+}
+
+/// Every stroke with every seed.
+fn trials(args: &ScoreArgs, program: &Program) -> Result<Vec<Trial>, CommandError> {
+    let screen_m = (f64::from(program.header.screen_width_m), f64::from(program.header.screen_height_m));
+    let strokes: Vec<(String, Stroke)> = match args.stroke.as_str() {
+        "human" => (1..=args.strokes).map(|seed| human(args, screen_m, seed)).collect::<Result<_, _>>()?,
+        "natural" => {
+            let stroke = Stroke::natural(screen_m.0, screen_m.1, args.seconds).map_err(CommandError::NaturalStroke)?;
+            vec![("natural".to_owned(), stroke)]
+        }
+        file => vec![("file".to_owned(), stroke::from_file(Path::new(file))?)],
+    };
+    let trials = strokes.into_iter().flat_map(|(stroke_name, stroke)| {
+        (1..=args.seeds).map(move |seed| Trial { stroke_name: stroke_name.clone(), stroke: stroke.clone(), seed })
+    });
+    Ok(trials.collect())
+}
+
+fn human(args: &ScoreArgs, (width_m, height_m): (f64, f64), seed: u64) -> Result<(String, Stroke), CommandError> {
+    let median_speed_m_per_s = args.median_speed_mm_per_s.map(|speed_mm_per_s| 1e-3 * speed_mm_per_s);
+    let stroke = Stroke::human(width_m, height_m, args.seconds, median_speed_m_per_s, seed);
+    Ok((format!("human {seed}"), stroke.map_err(CommandError::NaturalStroke)?))
+}
+
+/// Parses the median speed of a stroke.
+fn median_speed(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(speed_mm_per_s) if (1.0..=1000.0).contains(&speed_mm_per_s) => Ok(speed_mm_per_s),
+        _ => Err("expected a speed from 1 to 1000 mm/s".into()),
+    }
+}

@@ -1,0 +1,185 @@
+//! A fit for programs and for people.
+
+use std::fmt::Write;
+
+use serde::Serialize;
+
+use super::{Division, Estimate, Exponent, Fit, Verdict};
+
+/// Voltage of the keys that name it, in volts rms.
+const NAMED_V_RMS: f64 = 150.0;
+
+/// A fit; the field names are the keys of `--json`, and an unknown value is `null` there. Intervals are of 95 %.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Summary {
+    /// Friction over load with the drive off.
+    pub friction_coefficient: f64,
+    /// Its interval.
+    pub friction_coefficient_interval: [f64; 2],
+    /// What 150 V rms adds to the friction under the stated load, N; `null` if friction is stated at another voltage.
+    pub electric_friction_150_v_n: Option<f64>,
+    /// Its interval.
+    pub electric_friction_150_v_interval_n: Option<[f64; 2]>,
+    /// Exponent of the voltage in a power law that is fitted to the same data.
+    pub voltage_exponent: f64,
+    /// Its interval.
+    pub voltage_exponent_interval: [f64; 2],
+    /// The exponent that the model has for these data.
+    pub voltage_exponent_of_model: f64,
+    /// `kept`, `doubted` or `none`: what the exponent of the voltage says about the model.
+    pub voltage_verdict: &'static str,
+    /// Exponent of the load; `null` where the loads were too alike to tell.
+    pub load_exponent: Option<f64>,
+    /// Its interval.
+    pub load_exponent_interval: Option<[f64; 2]>,
+    /// The exponent that the model has for these data.
+    pub load_exponent_of_model: Option<f64>,
+    /// `kept`, `doubted` or `none`: what the exponent of the load says about the model.
+    pub load_verdict: &'static str,
+    /// Voltage at which electric friction is stated, V rms.
+    pub stated_voltage_v_rms: f64,
+    /// Load at which electric friction is stated, N.
+    pub normal_load_n: f64,
+    /// What the stated voltage adds to the friction, N.
+    pub electric_friction_n: f64,
+    /// Its interval.
+    pub electric_friction_interval_n: [f64; 2],
+    /// The one number about electrode, skin and gap that friction data give: `eps0/(2 g^2) sqrt(pi R/k)`, sqrt(N)/V^2.
+    pub coupling_sqrt_n_per_v2: f64,
+    /// Its interval.
+    pub coupling_interval_sqrt_n_per_v2: [f64; 2],
+    /// Skin gap of a finger of conventional radius and stiffness on this screen, um.
+    pub skin_gap_um: f64,
+    /// Lowest and highest voltage of the data, V rms.
+    pub voltage_range_v_rms: [f64; 2],
+    /// Smallest and largest load of the strokes, N.
+    pub normal_load_range_n: [f64; 2],
+    /// Number of strokes.
+    pub strokes: usize,
+    /// Number of rows that were used.
+    pub rows: usize,
+    /// How rows were divided into strokes: `column`, `motion` or `blocks`.
+    pub division: &'static str,
+}
+
+impl From<&Fit> for Summary {
+    fn from(fit: &Fit) -> Self {
+        let is_named = (fit.stated_voltage_v_rms - NAMED_V_RMS).abs() < 1e-6;
+        let electric = fit.electric_friction_n;
+        let load = Some(fit.load_exponent).filter(|exponent| exponent.verdict != Verdict::None);
+        Self {
+            friction_coefficient: fit.friction_coefficient.value,
+            friction_coefficient_interval: interval(&fit.friction_coefficient),
+            electric_friction_150_v_n: is_named.then_some(electric.value),
+            electric_friction_150_v_interval_n: is_named.then(|| interval(&electric)),
+            voltage_exponent: fit.voltage_exponent.measured.value,
+            voltage_exponent_interval: interval(&fit.voltage_exponent.measured),
+            voltage_exponent_of_model: fit.voltage_exponent.model,
+            voltage_verdict: verdict(&fit.voltage_exponent),
+            load_exponent: load.map(|exponent| exponent.measured.value),
+            load_exponent_interval: load.map(|exponent| interval(&exponent.measured)),
+            load_exponent_of_model: load.map(|exponent| exponent.model),
+            load_verdict: verdict(&fit.load_exponent),
+            stated_voltage_v_rms: fit.stated_voltage_v_rms,
+            normal_load_n: fit.normal_load_n,
+            electric_friction_n: electric.value,
+            electric_friction_interval_n: interval(&electric),
+            coupling_sqrt_n_per_v2: fit.coupling_sqrt_n_per_v2.value,
+            coupling_interval_sqrt_n_per_v2: interval(&fit.coupling_sqrt_n_per_v2),
+            skin_gap_um: 1e6 * fit.skin_gap_m,
+            voltage_range_v_rms: [fit.voltage_range_v_rms.0, fit.voltage_range_v_rms.1],
+            normal_load_range_n: [fit.load_range_n.0, fit.load_range_n.1],
+            strokes: fit.strokes.len(),
+            rows: fit.rows,
+            division: match fit.division {
+                Division::Column => "column",
+                Division::Motion => "motion",
+                Division::Blocks => "blocks",
+            },
+        }
+    }
+}
+
+fn interval(estimate: &Estimate) -> [f64; 2] {
+    [estimate.low, estimate.high]
+}
+
+fn verdict(exponent: &Exponent) -> &'static str {
+    match exponent.verdict {
+        Verdict::None => "none",
+        Verdict::Kept => "kept",
+        Verdict::Doubted => "doubted",
+    }
+}
+
+/// The fit in words, a line each: the results, what they say about the model, and what the data cannot tell.
+pub fn words(fit: &Fit, screen: &str) -> String {
+    let mut text = String::new();
+    let mut line = |name: &str, value: String| {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "  {name:<22} {value}");
+    };
+    let Estimate { value, low, high } = fit.friction_coefficient;
+    line("friction coefficient", format!("{value:.3} ({low:.3} to {high:.3}), the mean of this recording"));
+    let Estimate { value, low, high } = fit.electric_friction_n;
+    let (voltage, load_n) = (fit.stated_voltage_v_rms, fit.normal_load_n);
+    let [value_mn, low_mn, high_mn] = [value, low, high].map(|newtons| 1e3 * newtons);
+    line(
+        "electric friction",
+        format!("{value_mn:.1} mN ({low_mn:.1} to {high_mn:.1}) at {voltage:.0} V rms under {load_n:.2} N"),
+    );
+    line("exponent of the voltage", exponent_words(&fit.voltage_exponent, NO_VERDICT_OF_VOLTAGE));
+    line("exponent of the load", exponent_words(&fit.load_exponent, NO_VERDICT_OF_LOAD));
+    line("data", format!("{} strokes, {} rows of steady sliding", fit.strokes.len(), fit.rows));
+    let skin_um = 1e6 * fit.skin_gap_m;
+    line(
+        "convention",
+        format!("radius 8 mm, stiffness 18 MPa/m; with them the skin gap is {skin_um:.2} um on the screen {screen}"),
+    );
+    for note in notes(fit) {
+        let _ = writeln!(text, "  note: {note}");
+    }
+    text
+}
+
+const NO_VERDICT_OF_VOLTAGE: &str = "no verdict on the model: below 100 V rms every model grows alike";
+const NO_VERDICT_OF_LOAD: &str = "no verdict on the model: the loads were too alike";
+
+fn exponent_words(exponent: &Exponent, no_verdict: &str) -> String {
+    let Estimate { value, low, high } = exponent.measured;
+    let model = exponent.model;
+    match exponent.verdict {
+        Verdict::None => no_verdict.to_owned(),
+        Verdict::Kept => {
+            format!("{value:.2} ({low:.2} to {high:.2}); the model says {model:.2} and is not contradicted")
+        }
+        Verdict::Doubted => format!(
+            "{value:.2} ({low:.2} to {high:.2}); the model says {model:.2} and is in doubt, so the intervals are wider"
+        ),
+    }
+}
+
+/// What the data cannot tell, in sentences.
+fn notes(fit: &Fit) -> Vec<&'static str> {
+    let mut notes = vec![
+        "friction data cannot tell radius, stiffness and gap apart: they show one coupling number, so radius and \
+         stiffness are a convention, and the profile holds for the screen it was measured on",
+        "the friction coefficient is that of this recording: skin gets moist within minutes, and friction with it",
+    ];
+    if fit.division == Division::Motion {
+        notes.push("without a column stroke, strokes were divided where the direction, the speed or the clock says so");
+    }
+    if fit.division == Division::Blocks {
+        notes.push(
+            "without a column stroke and without turns in the data, consecutive rows were taken as 24 blocks: the \
+             intervals are right only if rows stand in the order in which they were measured",
+        );
+    }
+    if !fit.has_time {
+        notes.push("without a column time_s, starts, turns and the lag of friction could not be left out");
+    }
+    if !fit.has_speed {
+        notes.push("without a column speed_mm_s, nobody checked that the finger slid at 20 to 100 mm/s");
+    }
+    notes
+}

@@ -1,0 +1,173 @@
+//! The numbers of a score, and what a person notices of them.
+
+use frixel_scene::fidelity::Fidelity;
+use frixel_scene::perception::{NATURAL_NOISE_RMS_N, weber_steps_safe};
+use serde::Serialize;
+
+/// Number of standard errors on either side of a mean in its interval: 95 % for many plays.
+const STANDARD_ERRORS: f64 = 1.96;
+
+/// A number of [`Fidelity`].
+pub(super) struct Metric {
+    key: &'static str,
+    title: &'static str,
+    unit: &'static str,
+    /// Factor from SI units to `unit`.
+    factor: f64,
+    value: fn(&Fidelity) -> f64,
+    human: fn() -> Option<Human>,
+}
+
+/// What a person notices.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Human {
+    /// The value from which a person notices it, in the metric's unit.
+    pub value: f64,
+    /// What it is, with its source.
+    pub meaning: &'static str,
+}
+
+/// A number of [`Fidelity`] over all plays.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MetricScore {
+    /// Name in JSON and CSV.
+    pub key: &'static str,
+    /// Name for a person.
+    pub title: &'static str,
+    /// Unit of all values; empty for a ratio.
+    pub unit: &'static str,
+    /// Mean over the plays.
+    pub mean: f64,
+    /// 95 % interval of the mean over plays like these; absent with a single play.
+    pub interval: Option<[f64; 2]>,
+    /// What a person notices; absent where it is not known.
+    pub human: Option<Human>,
+}
+
+impl Metric {
+    /// Name in JSON and CSV.
+    pub(super) fn key(&self) -> &'static str {
+        self.key
+    }
+
+    /// The number of a play, in the metric's unit.
+    pub(super) fn of(&self, fidelity: &Fidelity) -> f64 {
+        self.factor * (self.value)(fidelity)
+    }
+
+    /// The number over plays; `None` without a play in which it exists.
+    pub(super) fn score(&self, plays: &[Fidelity]) -> Option<MetricScore> {
+        let values = plays.iter().map(|play| self.of(play));
+        let values: Vec<f64> = values.filter(|value| value.is_finite()).collect();
+        let count = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / count;
+        let variance = values.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / (count - 1.0);
+        let half = STANDARD_ERRORS * (variance / count).sqrt();
+        (count > 0.0).then(|| MetricScore {
+            key: self.key,
+            title: self.title,
+            unit: self.unit,
+            mean,
+            interval: (count > 1.0).then_some([mean - half, mean + half]),
+            human: (self.human)(),
+        })
+    }
+}
+
+pub(super) const METRICS: [Metric; 11] = [
+    Metric {
+        key: "error_below_40_hz",
+        title: "error below 40 Hz",
+        unit: "",
+        factor: 1.0,
+        value: |fidelity| fidelity.error_below_40_hz,
+        human: || None,
+    },
+    Metric {
+        key: "correlation_below_40_hz",
+        title: "correlation below 40 Hz",
+        unit: "",
+        factor: 1.0,
+        value: |fidelity| fidelity.correlation_below_40_hz,
+        human: || None,
+    },
+    Metric {
+        key: "error_weber",
+        title: "error",
+        unit: "Weber fractions",
+        factor: 1.0,
+        value: |fidelity| fidelity.error_weber,
+        human: || Some(Human { value: 1.0, meaning: "smallest step felt (doi:10.1098/rsif.2017.0641)" }),
+    },
+    Metric {
+        key: "snr_below_40_hz_db",
+        title: "signal to noise below 40 Hz",
+        unit: "dB",
+        factor: 1.0,
+        value: |fidelity| fidelity.snr_below_40_hz_db,
+        human: || None,
+    },
+    Metric {
+        key: "snr_above_40_hz_db",
+        title: "signal to noise, 40 to 400 Hz",
+        unit: "dB",
+        factor: 1.0,
+        value: |fidelity| fidelity.snr_above_40_hz_db,
+        human: || None,
+    },
+    Metric {
+        key: "contrast_weber_steps",
+        title: "contrast felt",
+        unit: "Weber steps",
+        factor: 1.0,
+        value: |fidelity| fidelity.contrast_weber_steps,
+        human: || {
+            Some(Human { value: weber_steps_safe(), meaning: "felt by everyone in the studies (ln 1.27 / ln 1.11)" })
+        },
+    },
+    Metric {
+        key: "contrast_kept",
+        title: "contrast kept",
+        unit: "",
+        factor: 1.0,
+        value: |fidelity| fidelity.contrast_kept,
+        human: || None,
+    },
+    Metric {
+        key: "delay_ms",
+        title: "delay",
+        unit: "ms",
+        factor: 1.0,
+        value: |fidelity| fidelity.delay_ms,
+        human: || Some(Human { value: 50.0, meaning: "largest recommended (doi:10.1145/2611387: 5 to 50 ms)" }),
+    },
+    Metric {
+        key: "delay_mm",
+        title: "delay",
+        unit: "mm",
+        factor: 1.0,
+        value: |fidelity| fidelity.delay_mm,
+        human: || {
+            Some(Human { value: 1.0, meaning: "spatial resolution of a fingertip, 1 to 2 mm (Basdogan's review)" })
+        },
+    },
+    Metric {
+        key: "peak_rate_kept",
+        title: "peak dF/dt kept",
+        unit: "",
+        factor: 1.0,
+        value: |fidelity| fidelity.peak_rate_kept,
+        human: || None,
+    },
+    Metric {
+        key: "spurious_40_to_400_hz_mn",
+        title: "spurious force, 40 to 400 Hz",
+        unit: "mN rms",
+        factor: 1e3,
+        value: |fidelity| fidelity.spurious_40_to_400_hz_n,
+        human: || {
+            let meaning = "a finger's own noise (one finger, romangrigorii/data-driven-playback)";
+            Some(Human { value: 1e3 * NATURAL_NOISE_RMS_N, meaning })
+        },
+    },
+];
