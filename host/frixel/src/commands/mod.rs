@@ -87,6 +87,7 @@ struct DemoArgs {
 }
 
 #[derive(Debug, Args)]
+#[allow(clippy::struct_excessive_bools, reason = "each is an option of its own")]
 struct PlayArgs {
     /// The scene, a TOML file (docs/scene.md).
     scene: PathBuf,
