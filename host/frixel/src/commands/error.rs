@@ -77,6 +77,8 @@ pub(crate) enum CommandError {
     Noise { path: PathBuf, source: hound::Error },
     #[error("a board at {port} measures no forces: give those of a sensor with --forces FILE.csv, or --forces -")]
     NoForces { port: String },
+    #[error("{rows} no answer; the status says why")]
+    InvalidRows { rows: String },
     #[error("{} is the input as well: writing it would destroy it; give --output another name", path.display())]
     OutputIsInput { path: PathBuf },
     #[error("{} cannot be read ({source}): check the path", path.display())]
@@ -112,6 +114,8 @@ pub(crate) enum CommandError {
     NothingRecorded { path: PathBuf },
     #[error("{failed} of the checks of {port} failed; docs/hardware.md says what each part needs")]
     SelftestFailed { port: String, failed: usize },
+    #[error("{} is there already, and is not overwritten: give another name, or remove it", path.display())]
+    SceneExists { path: PathBuf },
     #[error("standard input has either the lines of --control or the samples of --stream -: give --stream a file")]
     ControlAndStream,
     #[error(transparent)]

@@ -21,12 +21,10 @@ pub(super) fn run(args: &FaultsArgs) -> Result<(), CommandError> {
     let mut device = Device::connect(SerialLink::open(&args.port, DEFAULT_BAUD)?)?;
     let hello = *device.hello();
     let line = |name: &str, value: String| print_line(format_args!("{name:16} {value}"));
-    match hello.last_fault {
-        Some(fault) => {
-            line("last fault", format!("{fault} (number {}, detail {})", fault.number(), hello.fault_detail))?
-        }
-        None => line("last fault", "none since power-on".to_owned())?,
-    }
+    let last_fault = hello.last_fault.map_or("none since power-on".to_owned(), |fault| {
+        format!("{fault} (number {}, detail {})", fault.number(), hello.fault_detail)
+    });
+    line("last fault", last_fault)?;
     line("last reset", hello.reset_cause.to_string())?;
     let text = device.fault_text()?;
     line("firmware said", if text.is_empty() { "nothing before its last reset".to_owned() } else { text })?;

@@ -9,6 +9,7 @@ mod fit;
 mod info;
 mod interrupt;
 mod model;
+mod new;
 mod play;
 mod ports;
 mod profiles;
@@ -48,6 +49,8 @@ pub(crate) struct Cli {
 enum Command {
     /// Play the bundled brick texture on the simulated board, under a simulated finger.
     Demo(DemoArgs),
+    /// Write a first scene, with comments.
+    New(new::NewArgs),
     /// Play a scene on a board or on the simulator.
     Play(PlayArgs),
     /// Check a scene, or draw it, before it is played.
@@ -90,6 +93,7 @@ struct DemoArgs {
 }
 
 #[derive(Debug, Args)]
+#[allow(clippy::struct_excessive_bools, reason = "each is an option of its own")]
 struct PlayArgs {
     /// The scene, a TOML file (docs/scene.md).
     scene: PathBuf,
@@ -189,6 +193,7 @@ impl Cli {
         match self.command {
             None => demo::run(&DemoArgs { out: "frixel-out".into() }),
             Some(Command::Demo(args)) => demo::run(&args),
+            Some(Command::New(args)) => new::run(&args),
             Some(Command::Play(args)) => play::run(&args),
             Some(Command::Scene(command)) => scene::run(&command),
             Some(Command::Score(args)) => score::run(&args),

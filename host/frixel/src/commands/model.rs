@@ -71,7 +71,7 @@ pub(super) fn run(command: &ModelCommand) -> Result<(), CommandError> {
     let input = open(args.input.as_deref())?;
     let output = create(args)?;
     match transform(args.precision.into(), input, output) {
-        Ok(summary) => tell(&summary),
+        Ok(summary) => return judge(&summary),
         // Ignore a closed standard output.
         Err(CsvError::Write(error)) if error.kind() == ErrorKind::BrokenPipe => {}
         Err(source) => {
@@ -128,7 +128,8 @@ impl Write for Kept {
     }
 }
 
-fn tell(summary: &Summary) {
+/// Notes what the contact cannot mean. Fails if a row has no answer.
+fn judge(summary: &Summary) -> Result<(), CommandError> {
     let rows = |count: u64| if count == 1 { "1 row has".to_owned() } else { format!("{count} rows have") };
     if summary.beyond_finger_rows > 0 {
         let rows = rows(summary.beyond_finger_rows);
@@ -137,7 +138,8 @@ fn tell(summary: &Summary) {
              from the coating?"
         ));
     }
-    if summary.invalid_rows > 0 {
-        note(format_args!("frixel: {} no answer; the status says why", rows(summary.invalid_rows)));
+    match summary.invalid_rows {
+        0 => Ok(()),
+        invalid => Err(CommandError::InvalidRows { rows: rows(invalid) }),
     }
 }

@@ -3,6 +3,7 @@
 
 mod control;
 mod demo;
+mod first_scene;
 mod pictures;
 #[cfg(unix)]
 mod pipes;

@@ -31,17 +31,15 @@ fn figures_in_the_readme_are_printed_by_their_commands() {
             commands += 1;
         }
         let figure = line.strip_prefix("      ").filter(|_| !printed.is_empty());
-        match figure {
-            Some(figure) => {
-                let line = printed.lines().find(|line| name(line) == name(figure));
-                found += &format!("      {}", line.unwrap_or_else(|| panic!("{figure}: {printed}")).trim_start());
-                figures += 1;
-            }
-            None => {
-                found += line;
-                if !line.starts_with("    $ ") {
-                    printed.clear();
-                }
+        if let Some(figure) = figure {
+            let line = printed.lines().find(|line| name(line) == name(figure));
+            found += "      ";
+            found += line.unwrap_or_else(|| panic!("{figure}: {printed}")).trim_start();
+            figures += 1;
+        } else {
+            found += line;
+            if !line.starts_with("    $ ") {
+                printed.clear();
             }
         }
         found.push('\n');

@@ -41,7 +41,7 @@ impl LiveScene {
     pub(super) fn new(path: &Path, profiles: ProfileNames, watches: bool, waits: bool) -> Self {
         let file = SavedFile::new(path);
         let named_files = if watches { profiles.load_with_files(path).1 } else { Vec::new() };
-        Self { profiles, file, named_files: watched(named_files), compiling: None, watches, waits }
+        Self { profiles, file, named_files: watched(&named_files), compiling: None, watches, waits }
     }
 
     /// Plays, and watches, another file from now on.
@@ -83,12 +83,12 @@ impl LiveScene {
         self.compiling = Some(thread::spawn(move || {
             let (scene, named_files) = profiles.load_with_files(&path);
             let program = scene.and_then(|scene| Ok(compile(&scene, &limits, tick_hz)?));
-            Compiled { program, named_files: watched(named_files) }
+            Compiled { program, named_files: watched(&named_files) }
         }));
     }
 }
 
-fn watched(paths: Vec<PathBuf>) -> Vec<SavedFile> {
+fn watched(paths: &[PathBuf]) -> Vec<SavedFile> {
     paths.iter().map(|path| SavedFile::new(path)).collect()
 }
 
