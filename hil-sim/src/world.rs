@@ -10,7 +10,7 @@ use crate::amplifier::{Amplifier, AmplifierConfig};
 use crate::error::{OutOfRange, WorldError};
 use crate::fingertip::{Fingertip, FingertipConfig, Friction, SlipStep, example_finger};
 use crate::stroke::{FingerState, Stroke};
-use crate::touch::{TouchConfig, TouchSource};
+use crate::touch::{TouchConfig, TouchReport, TouchSource};
 
 /// Configuration of a [`World`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -248,6 +248,18 @@ impl World {
     /// Returns the touch report that arrived at the current tick.
     pub fn touch(&self) -> Option<Touch> {
         self.touch_source.arrived()
+    }
+
+    /// Returns the place that arrived at the current tick, with its times.
+    pub fn touch_report(&self) -> Option<TouchReport> {
+        let Touch::Down { x_m, y_m, age_ticks } = self.touch()? else { return None };
+        let seconds = |tick: f64| tick / f64::from(self.tick_hz);
+        let tick = self.tick as f64;
+        Some(TouchReport {
+            arrived_s: seconds(tick),
+            sampled_s: seconds(tick - f64::from(age_ticks)),
+            place_m: [x_m, y_m].map(f64::from),
+        })
     }
 
     /// Holds the board's output for one tick, and advances to the next.

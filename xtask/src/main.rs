@@ -22,7 +22,8 @@ cargo xtask bench    instructions and estimated cycles on emulated processors, a
 cargo xtask budgets  the same, held against budgets.toml, and random scenes against the loader's estimate for them
 cargo xtask portability
                      the crates of a page in WebAssembly, where scenes are played; the command on Windows and macOS
-cargo xtask soak     what takes too long for every change: every f32 through the tables, thousands of random scenes
+cargo xtask soak     what takes too long for every change: every f32 through the tables, fits of 200
+                     people, thousands of random scenes
 cargo xtask programs PACE FIRST COUNT
                      random scenes from seed FIRST on, under touch sources of a PACE that is usual or fast
 ";

@@ -51,7 +51,7 @@ fn the_example_finger_has_the_friction_that_the_notes_say() {
     let contact = example_finger().unwrap();
     assert_eq!(contact.natural_friction_n(), 0.25);
     let electric_friction_n = contact.electric_friction_n(150.0);
-    assert!((electric_friction_n - 0.0278).abs() < 5e-5, "{electric_friction_n}");
+    assert!((electric_friction_n - 0.13).abs() < 5e-4, "{electric_friction_n}");
 }
 
 /// Amplitude of the electric friction over that of its steady value, in steady sliding.
@@ -264,8 +264,9 @@ fn leaked_charge_costs_a_slow_carrier_its_force() {
         felt_n.skip(32_000).sum::<f64>() / 8000.0
     };
     let whole_n = friction_n(0.0, 20);
-    assert!((friction_n(250.0, 20) / whole_n - 0.95).abs() < 0.01, "1 kHz: {}", friction_n(250.0, 20) / whole_n);
-    assert!((friction_n(250.0, 400) / whole_n - 0.12).abs() < 0.03, "50 Hz: {}", friction_n(250.0, 400) / whole_n);
+    // The mean of the example finger's friction over a half period of `V e^(-t/tau)`, tau being 1/(2 pi 250 Hz).
+    assert!((friction_n(250.0, 20) / whole_n - 0.9648).abs() < 0.002, "1 kHz: {}", friction_n(250.0, 20) / whole_n);
+    assert!((friction_n(250.0, 400) / whole_n - 0.1403).abs() < 0.005, "50 Hz: {}", friction_n(250.0, 400) / whole_n);
 }
 
 #[test]

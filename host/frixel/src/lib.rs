@@ -1,8 +1,10 @@
 //! The library behind the `frixel` command: playing scenes, recording them, drawing charts and writing reports.
 #![forbid(unsafe_code)]
 
+pub mod calibration;
 mod chart;
 pub mod check;
+pub mod felt;
 pub mod fit;
 pub mod model_csv;
 pub mod output;
@@ -12,3 +14,4 @@ pub mod rigs;
 pub mod scene_file;
 pub mod score;
 pub mod stream;
+pub mod threshold;

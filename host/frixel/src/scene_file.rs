@@ -183,6 +183,9 @@ fn files_in(folder: &Path) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
+    use frixel_model::{Contact, Finger};
+    use frixel_scene::Elasticity;
+
     use super::*;
 
     #[test]
@@ -195,6 +198,21 @@ mod tests {
         fs::write(&path, b"version = 1\nname = \"\xff\"").unwrap();
         let error = load(&path).unwrap_err().to_string();
         assert_eq!(error, format!("{name}:2:9: this byte is not UTF-8 text: save the file as UTF-8"));
+    }
+
+    /// The simulator's finger before a scene is played is the bundled one on the bundled screen.
+    #[test]
+    fn the_simulator_has_the_example_finger() {
+        let (finger, screen) = (FingerProfile::example(), Screen::example());
+        let Elasticity::WinklerFuss { stiffness_pa_per_m } = finger.elasticity else { panic!("{finger:?}") };
+        let on_springs = Finger {
+            radius_m: 1e-3 * finger.radius_mm,
+            stiffness_pa_per_m,
+            friction_coefficient: finger.friction_coefficient,
+        };
+        let gap_m = 1e-6 * (screen.coating_gap_um() + finger.skin_gap_um);
+        let contact = Contact::new(&on_springs, gap_m).unwrap().under_load(finger.normal_load_n).unwrap();
+        assert_eq!(frixel_hil_sim::example_finger(), Ok(contact));
     }
 
     #[test]

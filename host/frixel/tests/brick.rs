@@ -56,9 +56,13 @@ fn friction_error(summary: &MetricsSummary) -> f64 {
     summary.friction_error.unwrap().rms_n / brick(true).reach.electric_friction_max_n
 }
 
+/// Friction of black and of white in the scene, N.
+const BLACK_WHITE_N: (f64, f64) = (-0.0985, 0.166);
+
 /// Electric friction of the picture at a place, by the definition in docs/scene.md and nothing else.
 fn picture_n(program: &Program, x_m: f64, y_m: f64) -> f64 {
-    let (left_m, top_m, pitch_m, black_n, white_n) = (0.010, 0.005, 0.4e-3, 0.0, 0.026);
+    let (left_m, top_m, pitch_m) = (0.010, 0.005, 0.4e-3);
+    let (black_n, white_n) = BLACK_WHITE_N;
     let picture = &program.bitmaps[0];
     let (width, height) = (usize::from(picture.width), usize::from(picture.height));
     let (u, v) = ((x_m - left_m) / pitch_m, (y_m - top_m) / pitch_m);
@@ -78,7 +82,8 @@ fn picture_n(program: &Program, x_m: f64, y_m: f64) -> f64 {
             weight += part;
         }
     }
-    black_n + (white_n - black_n) * level / weight / 255.0
+    // The layer counts where it asks for more than bare glass.
+    (black_n + (white_n - black_n) * level / weight / 255.0).max(0.0)
 }
 
 #[test]
@@ -91,10 +96,12 @@ fn what_is_wanted_is_the_resampled_picture() {
     for row in rows.iter().step_by(997) {
         let (Some(x_mm), Some(y_mm), Some(wanted_n)) = (row.x_mm, row.y_mm, row.wanted_n) else { continue };
         let expected_n = 0.25 + picture_n(&program, 1e-3 * x_mm, 1e-3 * y_mm);
-        assert!((wanted_n - expected_n).abs() < 1e-7, "({x_mm}, {y_mm}): {wanted_n} is not {expected_n}");
+        // Four millionths of the range from black to white, for the places that the scene stores as f32.
+        let tolerance_n = 4e-6 * (BLACK_WHITE_N.1 - BLACK_WHITE_N.0);
+        assert!((wanted_n - expected_n).abs() < tolerance_n, "({x_mm}, {y_mm}): {wanted_n} is not {expected_n}");
         span_n = (span_n.0.min(wanted_n), span_n.1.max(wanted_n));
     }
-    assert!(span_n.1 - span_n.0 > 5e-3, "the stroke crosses bricks and mortar: {span_n:?}");
+    assert!(span_n.1 - span_n.0 > 50e-3, "the stroke crosses bricks and mortar: {span_n:?}");
 }
 
 #[test]

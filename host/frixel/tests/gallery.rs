@@ -12,19 +12,25 @@ use std::path::{Path, PathBuf};
 use frixel::output::write_preview_png;
 use frixel::player::{Simulation, simulate};
 use frixel::scene_file;
-use frixel_hil_sim::{BoardMemory, RigConfig, Stroke};
+use frixel_hil_sim::{BoardMemory, FingerState, RigConfig, Stroke};
 use frixel_layers::{Header, Scene as WireScene};
+use frixel_scene::perception::{weber_steps, weber_steps_safe};
 use frixel_scene::recorder::FeltRow;
-use frixel_scene::{Preview, Program, TargetRange, compile};
+use frixel_scene::reference::{Context, Reference};
+use frixel_scene::{FingerProfile, Preview, Program, Scene, TargetRange, compile};
 use frixel_wire::fault::Flags;
 
 const PICTURE_BYTES_MAX: u64 = 40 * 1024;
 /// How much the felt friction has to vary along a stroke over a scene, as a part of what the drive can add.
 const FELT_PART_MIN: f64 = 0.1;
 
+/// Duration of the stroke of `frixel play` without options, s.
+const DEFAULT_STROKE_S: f64 = 3.0;
+
 struct Entry {
     name: String,
     text: String,
+    scene: Scene,
     program: Program,
 }
 
@@ -37,11 +43,14 @@ fn gallery() -> Vec<Entry> {
     let paths = fs::read_dir(repository().join("scenes")).unwrap().map(|entry| entry.unwrap().path());
     let mut scenes: Vec<PathBuf> = paths.filter(|path| path.extension().is_some_and(|end| end == "toml")).collect();
     scenes.sort();
-    let entries = scenes.iter().map(|path| Entry {
-        name: path.file_stem().unwrap().to_string_lossy().into_owned(),
-        text: fs::read_to_string(path).unwrap(),
-        program: compile(&scene_file::load(path).unwrap(), &rig.board.limits, rig.board.tick_hz)
-            .unwrap_or_else(|error| panic!("{error}")),
+    let entries = scenes.iter().map(|path| {
+        let scene = scene_file::load(path).unwrap();
+        Entry {
+            name: path.file_stem().unwrap().to_string_lossy().into_owned(),
+            text: fs::read_to_string(path).unwrap(),
+            program: compile(&scene, &rig.board.limits, rig.board.tick_hz).unwrap_or_else(|error| panic!("{error}")),
+            scene,
+        }
     });
     entries.collect()
 }
@@ -52,13 +61,68 @@ impl Entry {
         let lines = self.text.lines().map_while(|line| line.strip_prefix('#'));
         lines.map(str::trim).collect::<Vec<_>>().join(" ")
     }
+
+    /// Contrast of the reference friction on the default stroke under a bundled finger, from the 5th to the 95th
+    /// percentile while the finger slides, in Weber steps.
+    fn contrast_steps(&self, finger: &str) -> f64 {
+        let rig = RigConfig::default();
+        let scene = self.scene.clone().with_finger(FingerProfile::bundled(finger).unwrap(), finger).unwrap();
+        let program = compile(&scene, &rig.board.limits, rig.board.tick_hz)
+            .unwrap_or_else(|error| panic!("under the {finger} finger: {error}"));
+        let stroke = default_stroke(&program);
+        let simulation = Simulation { rig, seconds: stroke.duration_s(), stroke, seed: 1, ticks_per_row: 40 };
+        let simulated = simulate(&program, &simulation, None).unwrap_or_else(|error| panic!("{}: {error}", self.name));
+        let sliding = simulated.recorder.rows().iter().filter(|row| row.speed_mm_s.is_some_and(|speed| speed > 20.0));
+        let mut wanted_n: Vec<f64> = sliding.filter_map(|row| row.wanted_n).collect();
+        wanted_n.sort_by(f64::total_cmp);
+        let percentile_n = |percent: usize| wanted_n[percent * (wanted_n.len() - 1) / 100];
+        weber_steps(percentile_n(5), percentile_n(95))
+    }
+}
+
+fn default_stroke(program: &Program) -> Stroke {
+    let (width_m, height_m) = (program.header.screen_width_m.into(), program.header.screen_height_m.into());
+    Stroke::natural(width_m, height_m, DEFAULT_STROKE_S).unwrap()
+}
+
+#[test]
+fn every_scene_has_contrast_that_is_felt() {
+    for entry in gallery() {
+        let steps = entry.contrast_steps("example");
+        assert!(steps >= weber_steps_safe(), "{}: {steps} Weber steps", entry.name);
+    }
+}
+
+/// A layer is touched if the reference friction at some place of the stroke is another without it.
+#[test]
+fn the_default_stroke_touches_every_layer() {
+    for Entry { name, program, .. } in &gallery() {
+        let stroke = default_stroke(program);
+        let places: Vec<_> = (0..3000).filter_map(|step| stroke.at(1e-3 * f64::from(step))).collect();
+        let frictions_n = |program: &Program| -> Vec<f64> {
+            let reference = Reference::new(program).with_vibrations_held();
+            let friction_n = |place: &FingerState| {
+                let FingerState { x_m, y_m, speed_m_per_s } = *place;
+                reference.electric_friction_at_n(&Context { x_m, y_m, speed_m_per_s, ..Context::default() })
+            };
+            places.iter().map(friction_n).collect()
+        };
+        let whole_n = frictions_n(program);
+        for (number, title) in program.titles.iter().enumerate() {
+            let mut without = program.clone();
+            without.records.remove(number);
+            let without_n = frictions_n(&without);
+            let largest_n = whole_n.iter().zip(&without_n).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
+            assert!(largest_n > 1e-3, "{name}: {title} is not touched");
+        }
+    }
 }
 
 #[test]
 fn every_scene_is_felt_without_a_fault_and_within_reach() {
     let gallery = gallery();
     assert!(gallery.len() >= 8, "{}", gallery.len());
-    for Entry { name, text, program } in &gallery {
+    for Entry { name, text, program, .. } in &gallery {
         let rig = RigConfig::default();
         let (width_m, height_m) = (program.header.screen_width_m.into(), program.header.screen_height_m.into());
         let stroke = Stroke::natural(width_m, height_m, 2.0).unwrap();
@@ -129,6 +193,8 @@ fn every_scene_says_what_it_feels_like_and_what_is_assumed() {
         let sentences = comment.matches(". ").count() + 1;
         assert!(comment.len() > 80 && sentences >= 2, "{}: {comment}", entry.name);
         assert!(comment.contains("Assumed"), "{} does not say what is assumed", entry.name);
+        assert!(comment.contains(" person "), "{} does not say what a person would feel", entry.name);
+        assert!(comment.to_lowercase().contains("sure: "), "{} does not say how sure that is", entry.name);
     }
 }
 
@@ -149,6 +215,22 @@ fn page(gallery: &[Entry]) -> String {
                     play it with `frixel play`. The pictures are made by\n`FRIXEL_BLESS=1 cargo test -p frixel --test \
                     gallery`, and the same test plays every scene on the simulator.\n"
         .to_owned();
+    page.push_str(
+        "\n## Contrast\n\nFrom the 5th to the 95th percentile of friction on the stroke of `frixel play`, in Weber steps: factors of 1.11, \
+         about the smallest step\nof friction that a finger feels. The goal is 2.3 under the example finger. All four fingers are \
+         assumed; [scene.md](scene.md#fingers-and-screens) has\ntheir numbers.\n\n| scene |",
+    );
+    for finger in FingerProfile::bundled_names() {
+        let _ = write!(page, " {finger} |");
+    }
+    page.push_str("\n|---|---|---|---|---|\n");
+    for entry in gallery {
+        let _ = write!(page, "| [{0}](#{0}) |", entry.name);
+        for finger in FingerProfile::bundled_names() {
+            let _ = write!(page, " {:.1} |", entry.contrast_steps(finger));
+        }
+        page.push('\n');
+    }
     for entry in gallery {
         let name = &entry.name;
         let _ = write!(

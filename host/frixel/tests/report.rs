@@ -19,6 +19,7 @@ const BENCH: &str = r#"{ "m3.inverse_table": 415, "m3.inverse_table_fixed": 61, 
 
 /// What is the same in no two runs.
 const MEASURED: &str = "error-against-run-time";
+const MEASURED_TOO: &str = "touch-estimators";
 
 type Row = HashMap<String, String>;
 
@@ -80,9 +81,9 @@ fn the_page_shows_every_figure_and_needs_nothing_else() {
     let files = report();
     let page = &files["index.html"];
     let figures: Vec<&str> = files.keys().filter_map(|name| name.strip_suffix(".csv")).collect();
-    assert_eq!(figures.len(), 14);
-    assert_eq!(page.matches("<svg ").count(), 14);
-    assert_eq!(page.matches("</svg>").count(), 14);
+    assert_eq!(figures.len(), 15);
+    assert_eq!(page.matches("<svg ").count(), 15);
+    assert_eq!(page.matches("</svg>").count(), 15);
     for figure in figures {
         assert!(page.contains(&format!("<h2 id=\"{figure}\">")), "{figure}");
         assert!(page.contains(&format!("<a href=\"#{figure}\">")), "{figure}");
@@ -116,15 +117,17 @@ fn two_runs_differ_in_what_is_measured_and_in_nothing_else() {
         named.lines().map(|line| line.trim_start().strip_prefix("wrote").unwrap().trim().into()).collect();
     let (first, second) = (report(), files(&paths, &out));
     assert_eq!(first.keys().collect::<Vec<_>>(), second.keys().collect::<Vec<_>>());
-    // Without the section of the measured figure.
+    // Without the sections of the measured figures.
     let constant = |page: &str| {
-        let start = page.find(&format!("<h2 id=\"{MEASURED}\">")).unwrap();
-        let end = start + 1 + page[start + 1..].find("<h2 ").unwrap();
-        page[..start].to_owned() + &page[end..]
+        [MEASURED, MEASURED_TOO].iter().fold(page.to_owned(), |page, name| {
+            let start = page.find(&format!("<h2 id=\"{name}\">")).unwrap();
+            let end = start + 1 + page[start + 1..].find("<h2 ").unwrap();
+            page[..start].to_owned() + &page[end..]
+        })
     };
     assert_eq!(constant(&first["index.html"]), constant(&second["index.html"]));
     for (name, text) in first {
-        if name != "index.html" && *name != format!("{MEASURED}.csv") {
+        if name != "index.html" && ![MEASURED, MEASURED_TOO].map(|name| format!("{name}.csv")).contains(name) {
             assert_eq!(text, &second[name], "{name}");
         }
     }
@@ -156,7 +159,7 @@ fn counts_are_asked_for_and_shown() {
             let sentence = &page[start..start + page[start..].find("</p>").unwrap()];
             assert!(sentence.contains(why) && sentence.contains("cargo xtask bench"), "{what}: {sentence}");
         }
-        assert_eq!(page.matches("<svg ").count(), 12);
+        assert_eq!(page.matches("<svg ").count(), 13);
     }
     fs::write(path("bad.json"), "{ \"m4f.inverse_table\": \"sixteen\" }").unwrap();
     for (file, message) in
@@ -429,6 +432,25 @@ fn every_way_is_as_far_off_as_it_has_to_be() {
     assert!(rows.iter().all(|row| number(row, "measured_run_time_over_f64_closed_form") > 0.0));
 }
 
+/// The board's filter is better than the one before it in every class, within a half of the best tuning that hindsight
+/// finds, and no filter is better than a smoother that sees later reports.
+#[test]
+fn the_boards_touch_estimator_is_near_the_best_and_latency_is_what_remains() {
+    let rows = rows(MEASURED_TOO);
+    for rate_hz in ["100", "200", "500"] {
+        let error = |method: &str| {
+            let of_method = |row: &&Row| row["method"].starts_with(method) && row["report_rate_hz"] == rate_hz;
+            number(rows.iter().find(of_method).unwrap(), "error_over_swing")
+        };
+        let (board, best, smoother) = (error("Kalman, by speed"), error("best of"), error("smoother"));
+        assert!(board < 0.5 * error("g-h-k"), "{rate_hz} Hz: {board}");
+        assert!(board < 1.5 * best, "{rate_hz} Hz: {board}, {best}");
+        assert!(smoother < 0.7 * best, "{rate_hz} Hz: {smoother}, {best}");
+    }
+    let timed = rows.iter().filter(|row| !row["measured_run_time_ns"].is_empty()).count();
+    assert_eq!((timed, rows.len()), (18, 24));
+}
+
 #[test]
 fn fewer_ticks_make_a_larger_error() {
     let rows = rows("error-against-tick-rate");
@@ -437,7 +459,10 @@ fn fewer_ticks_make_a_larger_error() {
         assert_eq!((errors.len(), errors[0].0, errors[8].0), (9, 1000.0, 40_000.0));
         let [slowest, slower, slow] = [errors[0].1, errors[1].1, errors[2].1];
         // At 1 and 2 kHz the touch source reports every 2 and 4 ticks, and ticks that take reports in are most of them.
-        assert!(slowest > slower && slower > 1.05 * slow, "{stripes}: {errors:?}");
+        // With a real touch source, most of the error is that of the estimated place: the filter that follows people
+        // through lost reports has more noise on this even stroke than one that averages longer.
+        let least = if stripes.contains("touch source") { 1.02 } else { 1.05 };
+        assert!(slowest > slower && slower > least * slow, "{stripes}: {errors:?}");
         // Beyond, ticks help less and less, and what they cannot help remains: of a real touch source, all of it.
         let rest = errors[3..].iter().map(|error| error.1);
         let most = if stripes.ends_with("touch source") { 1.02 * slow } else { slow };

@@ -4,12 +4,16 @@ use frixel_layers::Interval;
 
 use super::cover::{Cell, Excess, excesses};
 use super::file::Scene;
+use super::kinds::Kind;
 use super::layer::{Above, Layer};
 use super::log::Log;
 use super::mistake::Mistake;
 use super::program::Program;
-use super::reach::{ROUNDING, Reach};
+use super::reach::ROUNDING;
 use crate::reference::Reference;
+
+/// A friction so many times the reach may have been meant in another unit.
+const MUCH: f64 = 20.0;
 
 /// Reports a mistake for layers that exceed the reach. With `saturate`, or if the excess is not certain, adds a note
 /// instead.
@@ -23,9 +27,10 @@ pub(super) fn check(scene: &Scene, program: &mut Program, log: &mut Log) {
     let mut reported = Vec::new();
     for excess in excesses(reference.pieces(), width_m, height_m, within) {
         let layers: Vec<&Layer> = excess.layers.iter().filter_map(|number| scene.layers.get(*number)).collect();
-        let found = sides(&layers, &excess, excess.found, within, &reach);
+        let sides = |friction: Interval<f64>| sides(&layers, &excess, friction, within, scene, program);
+        let found = sides(excess.found);
         if found.is_empty() {
-            let possible = sides(&layers, &excess, excess.bound, within, &reach);
+            let possible = sides(excess.bound);
             program.notes.extend(possible.iter().map(|side| note(side, "; no place was found where they do")));
         } else if scene.drive.saturate {
             program.notes.extend(found.iter().map(|side| note(side, "; it is clamped there")));
@@ -50,7 +55,15 @@ struct Side {
     mistake: Mistake,
 }
 
-fn sides(layers: &[&Layer], excess: &Excess, asked: Interval<f64>, within: Interval<f64>, reach: &Reach) -> Vec<Side> {
+fn sides(
+    layers: &[&Layer],
+    excess: &Excess,
+    asked: Interval<f64>,
+    within: Interval<f64>,
+    scene: &Scene,
+    program: &Program,
+) -> Vec<Side> {
+    let reach = &program.reach;
     let above = match layers {
         [layer] => layer.above,
         _ => Above::Natural,
@@ -59,7 +72,9 @@ fn sides(layers: &[&Layer], excess: &Excess, asked: Interval<f64>, within: Inter
         Above::Natural => ("above natural friction", 0.0),
         Above::Zero => ("in total", reach.natural_friction_n),
     };
-    let asking = asking(layers, excess.cell);
+    let clicks = excess.layers.iter().filter_map(|number| program.records.get(*number)?.layer.click());
+    let has_click = asked.high > within.high && clicks.map(|click| click.height_n).any(|height_n| height_n > 0.0);
+    let asking = asking(layers, excess.cell, has_click);
     let mut sides = Vec::new();
     if asked.high > within.high {
         let mistake = Mistake::AboveReach {
@@ -68,6 +83,9 @@ fn sides(layers: &[&Layer], excess: &Excess, asked: Interval<f64>, within: Inter
             reference,
             voltage_v_rms: digits(reach.voltage_max_v_rms, f64::round),
             reach_n: digits(reach.electric_friction_max_n + offset_n, f64::floor),
+            can_raise_voltage: reach.voltage_max_v_rms > (1.0 - ROUNDING) * scene.drive.voltage_max_v_rms,
+            may_be_millinewtons: asked.high + offset_n > MUCH * (reach.electric_friction_max_n + offset_n)
+                && 1e-3 * (asked.high + offset_n) <= reach.electric_friction_max_n + offset_n,
         };
         sides.push(Side { offset: place(layers, true), mistake });
     }
@@ -96,10 +114,14 @@ fn note(side: &Side, ending: &str) -> String {
 }
 
 /// The layers' names, and the place if there are several layers.
-fn asking(layers: &[&Layer], cell: Cell) -> String {
+fn asking(layers: &[&Layer], cell: Cell, has_click: bool) -> String {
     if let [layer] = layers {
         let gained = layer.places.has("gain");
         let gain = if gained { format!(", with its gain of {},", layer.gain) } else { String::new() };
+        if has_click {
+            let ridge = if matches!(layer.kind, Kind::Button(_)) { "rim" } else { "ridge" };
+            return format!("{}{gain}, its {ridge} and its click together, asks for", layer.title);
+        }
         return format!("{}{gain} asks for", layer.title);
     }
     let titles: Vec<&str> = layers.iter().map(|layer| layer.title.as_str()).collect();

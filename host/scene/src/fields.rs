@@ -23,6 +23,8 @@ pub(super) struct Fields<'i> {
     known: Vec<KnownField>,
     required: Vec<&'static str>,
     either: Vec<[&'static str; 2]>,
+    /// The fields of the table follow from a word that was misspelt.
+    pub(super) is_guess: bool,
 }
 
 impl<'i> Fields<'i> {
@@ -36,6 +38,7 @@ impl<'i> Fields<'i> {
             known: Vec::new(),
             required: Vec::new(),
             either: Vec::new(),
+            is_guess: false,
         }
     }
 
@@ -50,7 +53,7 @@ impl<'i> Fields<'i> {
     }
 
     /// Reports unknown and missing fields, and returns the offsets of those that were read. A missing field is not
-    /// reported if a misspelling of it is.
+    /// reported if a misspelling of it is, or if the fields of the table were guessed.
     pub(super) fn close(self, log: &mut Log) -> Places {
         log.describe(|| self.described());
         let mut misspelt = Vec::new();
@@ -62,7 +65,7 @@ impl<'i> Fields<'i> {
             log.add(name.span().start, Mistake::UnknownField { field, table: self.table.clone(), nearest });
         }
         for field in self.required {
-            if self.places.has(field) || misspelt.iter().any(|word| word == field) {
+            if self.is_guess || self.places.has(field) || misspelt.iter().any(|word| word == field) {
                 continue;
             }
             log.add(self.places.table(), Mistake::MissingField { field, table: self.table.clone() });

@@ -20,6 +20,12 @@ pub(super) fn run(args: &DemoArgs) -> Result<(), CommandError> {
     } else {
         print_line(format_args!("{place} plays as it is in this folder; remove it to get the bundled one back"))?;
     }
+    let out = args.out.display();
+    print_line(format_args!(
+        "a simulated finger slides over it for three seconds; on mortar its friction rises by a quarter, assumed: more than \
+         two of the smallest steps that a finger feels"
+    ))?;
+    print_line(format_args!("open {out}/scene.png for the path of the finger, {out}/felt.svg for what it felt"))?;
     play::run(&PlayArgs { out: args.out.clone(), ..PlayArgs::of(&scene) })?;
     print_line(format_args!("change {place} and play it again: frixel play {place}"))
 }

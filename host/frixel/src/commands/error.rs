@@ -3,6 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use frixel::calibration::CalibrationError;
 use frixel::check::RehearsalError;
 use frixel::fit::FitError;
 use frixel::model_csv::CsvError;
@@ -66,6 +67,18 @@ pub(crate) enum CommandError {
     ModelCsv { input: String, source: CsvError },
     #[error("{}: {source}", path.display())]
     Fit { path: PathBuf, source: FitError },
+    #[error(transparent)]
+    Calibration(CalibrationError),
+    #[error("the run was interrupted, and nothing is written: start it again for a whole recording")]
+    CalibrationInterrupted,
+    #[error("the answers ended at trial {trial}, and nothing is written: answer each trial with 1 or 2 and Enter")]
+    NoAnswer { trial: usize },
+    #[error("{} cannot be written ({source}): check the folder and its free space", path.display())]
+    Noise { path: PathBuf, source: hound::Error },
+    #[error("a board at {port} measures no forces: give those of a sensor with --forces FILE.csv, or --forces -")]
+    NoForces { port: String },
+    #[error("{rows} no answer; the status says why")]
+    InvalidRows { rows: String },
     #[error("{} is the input as well: writing it would destroy it; give --output another name", path.display())]
     OutputIsInput { path: PathBuf },
     #[error("{} cannot be read ({source}): check the path", path.display())]
@@ -97,6 +110,14 @@ pub(crate) enum CommandError {
     NotArmed { port: String },
     #[error("a board with an electrode does not extrapolate: {warning}")]
     NotMeasured { warning: Warning },
+    #[error("{} has no row: the board saw no finger; slide one over its screen while `frixel record` runs", path.display())]
+    NothingRecorded { path: PathBuf },
+    #[error("{failed} of the checks of {port} failed; docs/hardware.md says what each part needs")]
+    SelftestFailed { port: String, failed: usize },
+    #[error("{} is there already, and is not overwritten: give another name, or remove it", path.display())]
+    SceneExists { path: PathBuf },
+    #[error("standard input has either the lines of --control or the samples of --stream -: give --stream a file")]
+    ControlAndStream,
     #[error(transparent)]
     FeltLog(#[from] FeltLogError),
     #[error(

@@ -71,7 +71,7 @@ pub(super) fn run(command: &ModelCommand) -> Result<(), CommandError> {
     let input = open(args.input.as_deref())?;
     let output = create(args)?;
     match transform(args.precision.into(), input, output) {
-        Ok(summary) => tell(&summary),
+        Ok(summary) => return judge(&summary),
         // Ignore a closed standard output.
         Err(CsvError::Write(error)) if error.kind() == ErrorKind::BrokenPipe => {}
         Err(source) => {
@@ -128,15 +128,18 @@ impl Write for Kept {
     }
 }
 
-fn tell(summary: &Summary) {
+/// Notes what the contact cannot mean. Fails if a row has no answer.
+fn judge(summary: &Summary) -> Result<(), CommandError> {
     let rows = |count: u64| if count == 1 { "1 row has".to_owned() } else { format!("{count} rows have") };
     if summary.beyond_finger_rows > 0 {
         let rows = rows(summary.beyond_finger_rows);
         note(format_args!(
-            "frixel: {rows} a contact radius above the finger's radius, where it is no paraboloid any more"
+            "frixel: {rows} a contact radius above the finger's radius, which the model cannot mean: is a skin gap missing \
+             from the coating?"
         ));
     }
-    if summary.invalid_rows > 0 {
-        note(format_args!("frixel: {} no answer; the status says why", rows(summary.invalid_rows)));
+    match summary.invalid_rows {
+        0 => Ok(()),
+        invalid => Err(CommandError::InvalidRows { rows: rows(invalid) }),
     }
 }

@@ -63,7 +63,7 @@ impl Draws {
         let mut drawn = Vec::new();
         for group in groups {
             // The product with a random number of 32 bits keeps its upper half, evenly spread to 1 in 2^32.
-            let place = |random: &mut Pcg64| ((random.next_u64() >> 32) * group.len() as u64 >> 32) as usize;
+            let place = |random: &mut Pcg64| (((random.next_u64() >> 32) * group.len() as u64) >> 32) as usize;
             drawn.extend((0..group.len()).filter_map(|_| group.get(place(random)).copied()));
         }
         drawn

@@ -77,6 +77,9 @@ struct Segment {
     rows: f64,
 }
 
+/// Rows of a stroke with their places in it.
+type Placed<'r> = Vec<(usize, &'r Row)>;
+
 /// The means of each stroke.
 pub(super) fn stroke_means(recording: &Recording, levels: &Levels) -> Vec<StrokeMeans> {
     recording.strokes.iter().map(|stroke| means_of(stroke, levels)).collect()
@@ -104,7 +107,7 @@ fn means_of(stroke: &Stroke, levels: &Levels) -> StrokeMeans {
 }
 
 fn segments(stroke: &Stroke, levels: &Levels) -> Vec<Segment> {
-    let mut runs: Vec<(Option<usize>, Vec<(usize, &Row)>)> = Vec::new();
+    let mut runs: Vec<(Option<usize>, Placed)> = Vec::new();
     for (index, row) in stroke.rows.iter().enumerate() {
         let level = levels.level(row.voltage_v_rms);
         match runs.last_mut() {

@@ -265,9 +265,9 @@ pub enum FitError {
         quantity: &'static str,
         /// Measured exponent.
         value: f64,
-        /// Lower end of its 99.9 % interval.
+        /// Lower end of its 99.9 % interval, with an allowance for leakage.
         low: f64,
-        /// Upper end of its 99.9 % interval.
+        /// Upper end of its 99.9 % interval, likewise.
         high: f64,
         /// The model's exponent.
         model: f64,
@@ -282,17 +282,6 @@ pub enum FitError {
         gap_um: f64,
         /// Gap of the coating, in micrometres.
         coating_um: f64,
-    },
-    /// Voltage and friction do not share a clock.
-    #[error(
-        "friction follows the voltage by {shift_ms:.1} ms more {where_}: clocks that differ by more than 1 ms blur each \
-         half-period; align the recording by its start marker"
-    )]
-    Clocks {
-        /// Shift in milliseconds.
-        shift_ms: f64,
-        /// Where or when.
-        where_: &'static str,
     },
     /// The search for the best parameters did not converge.
     #[error(

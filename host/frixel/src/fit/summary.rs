@@ -153,9 +153,7 @@ fn exponent_words(exponent: &Exponent, no_verdict: &str) -> String {
         Verdict::Kept => {
             format!("{value:.2} ({low:.2} to {high:.2}); the model says {model:.2} and is not contradicted")
         }
-        Verdict::Doubted => format!(
-            "{value:.2} ({low:.2} to {high:.2}); the model says {model:.2} and is in doubt, so the intervals are wider"
-        ),
+        Verdict::Doubted => format!("{value:.2} ({low:.2} to {high:.2}); the model says {model:.2} and is in doubt"),
     }
 }
 

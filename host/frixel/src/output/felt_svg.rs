@@ -97,13 +97,18 @@ fn layers(trace: &Trace) -> Option<Strip> {
                 // Cells that follow each other touch.
                 let start_s = before.filter(|_| last.is_some()).map_or(span.start_s, |before| before.x.end);
                 let colour = PALETTE.get(layer % PALETTE.len()).copied();
-                cells.push(StripCell { x: start_s..span.end_s, text: trace.layer_name(layer).to_owned(), colour });
+                cells.push(StripCell { x: start_s..span.end_s, text: short(trace.layer_name(layer)), colour });
             }
             (None, _) => {}
         }
         last = span.layer;
     }
     (!cells.is_empty()).then(|| Strip { label: "layer".to_owned(), cells })
+}
+
+/// The name of a layer without its number, if it has a name.
+fn short(title: &str) -> String {
+    title.split('"').nth(1).unwrap_or(title).to_owned()
 }
 
 /// An empty panel over time, whose upright axis extends a twentieth of the range beyond both ends.

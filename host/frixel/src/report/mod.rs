@@ -11,6 +11,7 @@ mod figures;
 mod methods;
 mod page;
 mod reference;
+mod touch;
 mod wire;
 
 use std::fs;

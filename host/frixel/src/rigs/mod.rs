@@ -10,6 +10,7 @@
 #[cfg(unix)]
 mod emulated;
 mod event_log;
+mod force_sensor;
 mod port;
 mod recorded;
 #[cfg(unix)]
@@ -21,6 +22,7 @@ mod sim_link;
 #[cfg(unix)]
 pub use emulated::EmulatedLink;
 pub use event_log::{BoardEvent, EventKind, EventLog, StopReason};
+pub use force_sensor::ForceSensor;
 pub use port::PortLink;
 pub use recorded::RecordedLink;
 #[cfg(unix)]

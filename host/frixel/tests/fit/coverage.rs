@@ -60,7 +60,7 @@ impl Tally {
         let mean = |values: &[f64]| 100.0 * values.iter().sum::<f64>() / values.len() as f64;
         println!(
             "{who}: {} fitted, {} refused; of the 95 % intervals contain the truth: electric friction {:.3}, friction \
-             coefficient {:.3}, exponent {:.3}; the exponent is off by {:+.3}, electric friction by {:+.2} % on average; half-width {:.2} %",
+             coefficient {:.3}; {:.3} of the exponents' contain the model's; the exponent is off by {:+.3}, electric friction by {:+.2} % on average; half-width {:.2} %",
             self.fitted,
             self.reasons.len(),
             self.share(self.electric),

@@ -1,6 +1,7 @@
 //! Fits recover people: what is recovered, how often intervals are right, and what is refused.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
+mod command;
 mod coverage;
 mod person;
 mod refusals;

@@ -84,21 +84,39 @@ pub(super) fn record(person: &Person, protocol: &Protocol, seed: u64) -> Vec<Row
     rows
 }
 
-/// What the person's finger does in steady, full slip under a load that stays, without noise: its friction coefficient,
-/// and what a drive of 150 V rms adds to its friction, in newtons.
-pub(super) fn truth(person: &Person, load_n: f64) -> (f64, f64) {
+/// What a finger does while it slides steadily.
+pub(super) struct Steady {
+    pub(super) friction_coefficient: f64,
+    pub(super) electric_friction_n: f64,
+    /// Voltage on the electrode, behind the amplifier.
+    pub(super) electrode_v_rms: f64,
+}
+
+/// What the person's finger does in full slip under a load that stays, without noise, at a drive.
+pub(super) fn steady(person: &Person, load_n: f64, drive_v_rms: f64) -> Steady {
     let fingertip = FingertipConfig { load_sd_n: 0.0, noise_rms_n: 0.0, ..person.fingertip };
     let mut world = world(person, fingertip, load_n, 1);
-    let (mut natural_n, mut electric_n, mut count) = (0.0, 0.0, 0.0);
+    let (mut natural_n, mut electric_n, mut square_v2, mut count) = (0.0, 0.0, 0.0, 0.0);
     for tick in 0..TICK_HZ {
         let x_m = 0.01 + 0.06 * f64::from(tick) / f64::from(TICK_HZ);
         world.place_finger(FingerState { x_m, y_m: 0.03, speed_m_per_s: 0.06 });
-        let felt = world.apply(drive(tick, 150.0));
+        let felt = world.apply(drive(tick, drive_v_rms));
         if tick >= TICK_HZ / 2 {
             natural_n += felt.natural_friction_n;
             electric_n += felt.electric_friction_n;
+            square_v2 += felt.mean_square_v2;
             count += 1.0;
         }
     }
-    (natural_n / count / load_n, electric_n / count)
+    Steady {
+        friction_coefficient: natural_n / count / load_n,
+        electric_friction_n: electric_n / count,
+        electrode_v_rms: (square_v2 / count).sqrt(),
+    }
+}
+
+/// The person's friction coefficient, and what a drive of 150 V rms adds to its friction, in newtons.
+pub(super) fn truth(person: &Person, load_n: f64) -> (f64, f64) {
+    let steady = steady(person, load_n, 150.0);
+    (steady.friction_coefficient, steady.electric_friction_n)
 }

@@ -70,6 +70,7 @@ impl<'i> Fields<'i> {
             Ok(choice) => Some(choice),
             Err(nearest) => {
                 let meant = nearest.suggestion?;
+                self.is_guess = true;
                 choices.iter().find(|(word, _)| *word == meant).map(|(_, choice)| *choice)
             }
         }

@@ -91,7 +91,6 @@ fn every_mistake_is_told_at_once() {
     check_layers(
         "[[layer]]\nkind = \"constat\"\n[[layer]]\nkind = \"grating\"\nwavelength_mm = 0\nlow_n = \"a\"",
         &[
-            (1, 1, "layer 1 (constant) has no `friction_n`: add it"),
             (2, 8, "`kind = \"constat\"` is not known; did you mean `constant`?"),
             (3, 1, "layer 2 (grating) has no `high_n`: add it"),
             (5, 17, "`wavelength_mm = 0` is out of range: expected 0.05 to 2000 mm"),
@@ -765,3 +764,32 @@ const VALUES: &[&str] = &[
     "1_000",
     "99999999999999999999",
 ];
+
+/// A word that is misspelt is one mistake: what its fields would be is a guess.
+#[test]
+fn an_unknown_kind_is_one_line() {
+    check_layers(
+        "[[layer]]\nkind = \"grateing\"\nlow_n = 0",
+        &[(2, 8, "`kind = \"grateing\"` is not known; did you mean `grating`?")],
+    );
+}
+
+/// Newtons written for millinewtons, and a button's rim with its click.
+#[test]
+fn what_is_out_of_reach_is_answered_by_what_helps() {
+    check_layers(
+        "[[layer]]\nkind = \"grating\"\nwavelength_mm = 2\nlow_n = 0\nhigh_n = 20",
+        &[(
+            5,
+            10,
+            "layer 1 (grating) asks for up to 20 N above natural friction, and at 150 V rms this finger feels at most \
+             0.02778 N above natural friction: were mN meant? 1 mN is 0.001 N; lower it, raise `voltage_max_v_rms`, or write \
+             `saturate = true` under [drive] to have it clamped",
+        )],
+    );
+    let error = message(&format!(
+        "{HEAD}[[layer]]\nname = \"OK\"\nkind = \"button\"\nregion = {{ x_mm = 10, y_mm = 10, width_mm = 20, height_mm = 20 }}\n\
+         rim_width_mm = 2\nrim_n = 0.02\nface_n = 0\nclick_n = 0.02\nclick_ms = 20\nabove = \"natural\""
+    ));
+    assert!(error.contains("layer 1 \"OK\", its rim and its click together, asks for up to 0.04 N"), "{error}");
+}

@@ -328,3 +328,27 @@ fn a_thin_coating_of_version_one_stays_the_coating() {
     assert_eq!(scene.finger().skin_gap_um.to_bits(), 0.0_f64.to_bits());
     assert!((scene.screen().coating_gap_um() - 0.2).abs() < 1e-12);
 }
+
+/// The brick scene of the gallery as it was in version 1. Its numbers reach the board as they stand in the file.
+#[test]
+fn a_scene_of_version_one_plays_as_before() {
+    let program = compile_text(include_str!("data/version-1.toml")).expect("it compiles");
+    let expected = Header {
+        screen_width_m: 0.12,
+        screen_height_m: 0.11,
+        finger_radius_m: 8e-3,
+        stiffness_pa_per_m: 1.8e7,
+        friction_coefficient: 0.5,
+        normal_load_n: 0.5,
+        effective_gap_m: 1e-5,
+        voltage_max_v_rms: 150.0,
+        slew_v_per_s: 5e6,
+        carrier_hz: 1000.0,
+        host_timeout_s: 0.25,
+        ..program.header
+    };
+    assert_eq!(program.header, expected);
+    assert!((program.reach.electric_friction_max_n - 0.02778).abs() < 5e-6, "{:?}", program.reach);
+    assert_eq!(program.finger.origin, Origin::Assumed);
+    assert_eq!(program.records.len(), 1);
+}

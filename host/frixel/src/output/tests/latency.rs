@@ -91,7 +91,7 @@ fn svg(curves: &[Vec<Errors>]) -> String {
     let mut panel = Panel::new(
         "",
         Axis::linear("latency of the touch source, ms (100 Hz, noise 0.02 mm rms, jitter 0.5 ms)", 0.0..52.0),
-        Axis::linear("rms friction error, % of the reachable range", 0.0..20.0),
+        Axis::linear("rms friction error, % of the reachable range", 0.0..30.0),
     );
     for ((name, _, colour), curve) in CURVES.iter().zip(curves) {
         let points = LATENCIES_MS.iter().map(|ms| f64::from(*ms)).zip(curve.iter().map(|errors| errors.friction_rms));

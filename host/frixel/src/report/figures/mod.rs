@@ -11,6 +11,7 @@ mod stability;
 mod stability_soft;
 mod tick_layers;
 mod tick_rate;
+mod touch_estimators;
 
 use frixel_model::{Contact, Finger, ParameterError, Real};
 
@@ -20,7 +21,7 @@ use super::counts::Counts;
 use super::error::ReportError;
 use crate::chart::Chart;
 
-/// Effective gap of the example finger, in metres.
+/// Effective gap of the finger of the charts, in metres.
 const GAP_M: f64 = 1e-5;
 /// Normal load on the example finger, in newtons.
 const LOAD_N: f64 = 0.5;
@@ -54,6 +55,7 @@ pub(super) fn all(counts: Option<&Counts>) -> Result<Vec<Figure>, ReportError> {
         Some(run_time::against_time(&measured, inversions)?),
         Some(run_time::against_size(&measured)?),
         Some(tick_rate::figure()?),
+        Some(touch_estimators::figure()?),
         layers,
         Some(scene_bytes::figure(&ticks.sentence("a tick"))?),
         Some(stability::in_f64()?),
@@ -63,8 +65,8 @@ pub(super) fn all(counts: Option<&Counts>) -> Result<Vec<Figure>, ReportError> {
     Ok(figures.into_iter().flatten().collect())
 }
 
-/// The example finger: 250 mN at zero voltage and 28 mN more at 150 V rms, under 0.5 N. It is chosen to give friction
-/// of the measured magnitude; the profile of a real finger must be fitted.
+/// The finger of the charts: that of `scenes/fingers/example.toml`, on an effective gap of 10 um in place of 5 um. 250 mN
+/// at zero voltage and 28 mN more at 150 V rms, under 0.5 N.
 fn example_finger() -> Finger<f64> {
     Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 }
 }
@@ -81,7 +83,8 @@ fn example<T: Real>() -> Result<Contact<T>, ParameterError> {
 }
 
 /// Last sentence of every caption about the example finger.
-const EXAMPLE: &str = "Example finger: R = 8 mm, k = 18 MPa/m, µ = 0.5, effective gap 10 µm (250 mN of friction \
+const EXAMPLE: &str = "Example finger, assumed: R = 8 mm, k = 18 MPa/m, µ = 0.5, on an effective gap of 10 µm in place of \
+                       the 5 µm of its profile (250 mN of friction \
                        without voltage under 0.5 N, and 28 mN more at 150 V rms).";
 
 /// `count` evenly spaced values from `start` to `end`.

@@ -1,0 +1,203 @@
+//! What is driven when.
+
+use std::fmt::Write;
+
+use frixel_model::{Contact, Finger, ParameterError};
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::{Rng, SeedableRng};
+
+/// Highest voltage of the protocol, in volts rms.
+const VOLTAGE_V_RMS: f64 = 150.0;
+/// The voltages of the protocol as parts of the highest: 75, 106 and 150 V, a factor of two in the square each.
+const PARTS: [f64; 3] = [0.5, core::f64::consts::FRAC_1_SQRT_2, 1.0];
+/// Half-periods of the envelope, in seconds: near 20 Hz natural friction is quiet, and a random length meets neither
+/// tremor nor mains.
+const HALF_PERIOD_S: (f64, f64) = (0.02, 0.03);
+/// The start marker: Barker's code of 13, whose correlation with itself has one peak.
+const MARKER: [bool; 13] = [true, true, true, true, true, false, false, true, true, false, true, false, true];
+/// Duration of an element of the marker, in seconds.
+const MARKER_ELEMENT_S: f64 = 0.04;
+/// When the marker begins in the first stroke, in seconds: the finger slides by then.
+const MARKER_START_S: f64 = 0.3;
+/// Samples of the drive a second.
+const SAMPLE_HZ: u32 = 4_000;
+/// Places of the simulated finger a second.
+const PLACE_HZ: f64 = 250.0;
+/// The finger that the board computes voltages with. Any will do, because only the voltages count.
+const BOARD_FINGER: Finger<f64> = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };
+const BOARD_GAP_M: f64 = 10e-6;
+const BOARD_LOAD_N: f64 = 0.5;
+/// Part of the highest voltage's friction that is asked for, so that rounding stays within reach.
+const REACH: f64 = 0.999;
+
+/// A calibration: strokes back and forth, each at one voltage that is switched on and off.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Protocol {
+    /// Number of strokes.
+    pub strokes: usize,
+    /// Duration of a stroke, in seconds.
+    pub stroke_s: f64,
+    /// Rest between two strokes, in seconds.
+    pub pause_s: f64,
+    /// Length of a stroke, in millimetres.
+    pub length_mm: f64,
+    /// Voltages in volts rms, one stroke each, in turn.
+    pub voltages_v_rms: Vec<f64>,
+    /// Seed of the half-periods.
+    pub seed: u64,
+}
+
+impl Protocol {
+    /// A minute of strokes of 70 mm at 44 mm/s on average, at voltages that a board with this limit can drive.
+    pub fn new(voltage_max_v_rms: f64, seed: u64) -> Self {
+        let highest = VOLTAGE_V_RMS.min(voltage_max_v_rms);
+        let voltages_v_rms = PARTS.iter().map(|part| part * highest).collect();
+        Self { strokes: 36, stroke_s: 1.6, pause_s: 0.2, length_mm: 70.0, voltages_v_rms, seed }
+    }
+
+    /// Highest voltage, in volts rms.
+    pub fn voltage_max_v_rms(&self) -> f64 {
+        self.voltages_v_rms.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// Duration of all strokes, in seconds.
+    pub fn duration_s(&self) -> f64 {
+        self.strokes as f64 * (self.stroke_s + self.pause_s)
+    }
+
+    /// Samples of the drive a second.
+    pub fn sample_hz(&self) -> u32 {
+        SAMPLE_HZ
+    }
+
+    /// The plan in words, a line each.
+    pub fn words(&self) -> String {
+        let voltages: Vec<String> = self.voltages_v_rms.iter().map(|volts| format!("{volts:.0}")).collect();
+        let mut text = format!(
+            "{} strokes of {:.0} mm in {:.1} s each, back and forth, with {:.1} s between: {:.0} s in all\n",
+            self.strokes,
+            self.length_mm,
+            self.stroke_s,
+            self.pause_s,
+            self.duration_s()
+        );
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            text,
+            "{} V rms in turn, switched on and off after 20 to 30 ms, seed {}",
+            voltages.join(", "),
+            self.seed
+        );
+        let _ = writeln!(text, "a start marker of 13 elements of 40 ms in the first stroke");
+        if self.voltage_max_v_rms() < 100.0 {
+            let _ = writeln!(text, "below 100 V rms the recording cannot test the model");
+        }
+        text
+    }
+
+    /// The voltage at each sample, in volts rms.
+    fn voltages(&self) -> Vec<f64> {
+        let mut random = Pcg64::seed_from_u64(self.seed);
+        let mut uniform = || (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
+        let period_s = self.stroke_s + self.pause_s;
+        let count = (self.duration_s() * f64::from(SAMPLE_HZ)) as u32;
+        let (mut is_on, mut change_s) = (false, 0.0);
+        (0..count)
+            .map(|sample| {
+                let time_s = f64::from(sample) / f64::from(SAMPLE_HZ);
+                if time_s >= change_s {
+                    is_on = !is_on;
+                    change_s += HALF_PERIOD_S.0 + (HALF_PERIOD_S.1 - HALF_PERIOD_S.0) * uniform();
+                }
+                let stroke = (time_s / period_s) as usize;
+                let element = (time_s - MARKER_START_S) / MARKER_ELEMENT_S;
+                let marked = if element >= 0.0 { MARKER.get(element as usize).copied() } else { None };
+                match marked {
+                    Some(true) => self.voltage_max_v_rms(),
+                    Some(false) => 0.0,
+                    None if is_on => {
+                        self.voltages_v_rms.get(stroke % self.voltages_v_rms.len()).copied().unwrap_or(0.0)
+                    }
+                    None => 0.0,
+                }
+            })
+            .collect()
+    }
+
+    /// The samples for the stream of [`scene`](Self::scene), with which a board drives these voltages.
+    pub fn samples(&self) -> Result<Vec<u16>, ParameterError> {
+        let contact = Contact::new(&BOARD_FINGER, BOARD_GAP_M)?.under_load(BOARD_LOAD_N)?;
+        let most_n = contact.electric_friction_n(self.voltage_max_v_rms());
+        let sample = |volts: f64| (contact.electric_friction_n(volts) / most_n * f64::from(u16::MAX)).round() as u16;
+        Ok(self.voltages().into_iter().map(sample).collect())
+    }
+
+    /// The voltage that a part of the largest sample drives, in volts rms.
+    pub fn voltage_of_share_v_rms(&self, share: f64) -> Result<f64, ParameterError> {
+        let contact = Contact::new(&BOARD_FINGER, BOARD_GAP_M)?.under_load(BOARD_LOAD_N)?;
+        Ok(contact.voltage_v_rms(share * contact.electric_friction_n(self.voltage_max_v_rms())))
+    }
+
+    /// The scene that plays the samples: a stream over the whole screen.
+    pub fn scene(&self) -> Result<String, ParameterError> {
+        let contact = Contact::new(&BOARD_FINGER, BOARD_GAP_M)?.under_load(BOARD_LOAD_N)?;
+        let highest = self.voltage_max_v_rms();
+        let high_n = REACH * contact.electric_friction_n(highest);
+        Ok(format!(
+            "version = 1\nscreen = {{ width_mm = 120, height_mm = 80 }}\ncoating = {{ thickness_um = 10, permittivity = 1 }}\n\
+             finger = {{ radius_mm = 8, stiffness_pa_per_m = 1.8e7, friction_coefficient = 0.5, normal_load_n = 0.5 }}\n\
+             drive = {{ voltage_max_v_rms = {highest} }}\n\
+             [[layer]]\nname = \"calibration\"\nkind = \"stream\"\nlow_n = 0.0\nhigh_n = {high_n}\n"
+        ))
+    }
+
+    /// Where the simulated finger goes: strokes of minimum jerk, back and forth, as CSV with the columns `t_s,x_mm,y_mm`.
+    pub fn stroke_csv(&self) -> String {
+        let mut text = String::from("t_s,x_mm,y_mm\n");
+        let period_s = self.stroke_s + self.pause_s;
+        for step in 0..=(self.duration_s() * PLACE_HZ) as u32 {
+            let time_s = f64::from(step) / PLACE_HZ;
+            let stroke = (time_s / period_s).floor();
+            let part = ((time_s - stroke * period_s) / self.stroke_s).clamp(0.0, 1.0);
+            let way = part * part * part * (10.0 - 15.0 * part + 6.0 * part * part);
+            let way = if (stroke as u64).is_multiple_of(2) { way } else { 1.0 - way };
+            let _ = writeln!(text, "{time_s},{},40", 25.0 + self.length_mm * way);
+        }
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Protocol, SAMPLE_HZ};
+
+    #[test]
+    fn half_periods_and_voltages_are_those_of_the_plan() {
+        let protocol = Protocol::new(200.0, 1);
+        let voltages = protocol.voltages();
+        assert_eq!(voltages.len(), (protocol.duration_s() * f64::from(SAMPLE_HZ)) as usize);
+        let mut levels: Vec<u32> = voltages.iter().map(|volts| volts.round() as u32).collect();
+        levels.sort_unstable();
+        levels.dedup();
+        assert_eq!(levels, [0, 75, 106, 150]);
+        // After the marker, every run of one state lasts for 20 to 30 ms.
+        let after = &voltages[SAMPLE_HZ as usize * 2..];
+        let mut length = 0_u32;
+        let mut lengths = Vec::new();
+        for pair in after.windows(2) {
+            length += 1;
+            if (pair[0] > 0.0) != (pair[1] > 0.0) {
+                lengths.push(f64::from(std::mem::take(&mut length)) / f64::from(SAMPLE_HZ));
+            }
+        }
+        assert!(lengths[1..].iter().all(|seconds| (0.0195..0.0305).contains(seconds)), "{lengths:?}");
+    }
+
+    #[test]
+    fn a_board_that_drives_less_gets_less() {
+        let protocol = Protocol::new(50.0, 1);
+        assert!((protocol.voltages_v_rms[1] - 35.36).abs() < 0.01);
+        assert!(protocol.words().contains("below 100 V rms the recording cannot test the model"));
+        assert!(!Protocol::new(150.0, 1).words().contains("cannot test"));
+    }
+}

@@ -1,0 +1,38 @@
+//! `frixel faults`: what a board says of its last fault.
+
+use clap::Args;
+use frixel_driver::{DEFAULT_BAUD, Device, SerialLink};
+use frixel_wire::fault::State;
+
+use super::error::CommandError;
+use super::terminal::print_line;
+
+#[derive(Debug, Args)]
+pub(super) struct FaultsArgs {
+    /// Path of the board's serial port.
+    #[arg(long)]
+    port: String,
+    /// Clear a latched fault whose cause is gone.
+    #[arg(long)]
+    clear: bool,
+}
+
+pub(super) fn run(args: &FaultsArgs) -> Result<(), CommandError> {
+    let mut device = Device::connect(SerialLink::open(&args.port, DEFAULT_BAUD)?)?;
+    let hello = *device.hello();
+    let line = |name: &str, value: String| print_line(format_args!("{name:16} {value}"));
+    let last_fault = hello.last_fault.map_or("none since power-on".to_owned(), |fault| {
+        format!("{fault} (number {}, detail {})", fault.number(), hello.fault_detail)
+    });
+    line("last fault", last_fault)?;
+    line("last reset", hello.reset_cause.to_string())?;
+    let text = device.fault_text()?;
+    line("firmware said", if text.is_empty() { "nothing before its last reset".to_owned() } else { text })?;
+    let is_latched = hello.state == State::Faulted;
+    line("latched", if is_latched { "yes: the output is zero until it is cleared" } else { "no" }.to_owned())?;
+    if args.clear && is_latched {
+        device.clear_fault()?;
+        line("cleared", "yes: the board is disarmed".to_owned())?;
+    }
+    Ok(())
+}

@@ -1,0 +1,223 @@
+//! `frixel threshold`: a detection threshold for those who have no force sensor.
+
+use std::fs;
+use std::io::{BufRead, stdin};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::thread;
+use std::time::Duration;
+
+use clap::Args;
+use frixel::calibration::Protocol;
+use frixel::player::Player;
+use frixel::rigs::{PortLink, RecordedLink, SimLink};
+use frixel::stream::Feed;
+use frixel::threshold::{Staircase, Threshold};
+use frixel_driver::{DEFAULT_BAUD, Device, SerialLink};
+use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
+use frixel_scene::recorder::Recorder;
+use frixel_scene::{Evidence, Experiment, FingerProfile, Scene, compile};
+use hound::{SampleFormat, WavSpec, WavWriter};
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::{Rng, SeedableRng};
+use time::OffsetDateTime;
+
+use super::error::CommandError;
+use super::fit::screen;
+use super::terminal::{print, print_line};
+
+/// Duration of each of the two strokes of a trial, in seconds.
+const STROKE_S: f64 = 1.6;
+/// The stimulus: friction that swings at this frequency, in Hz, near which fingers feel best (Vardar 2016; Wijekoon 2012:
+/// 160 Hz of force).
+const STIMULUS_HZ: f64 = 160.0;
+/// Fade of the stimulus at either end of a stroke, in seconds, so that no click gives it away.
+const FADE_S: f64 = 0.2;
+/// Duration of the masking noise, in seconds.
+const NOISE_S: u32 = 60;
+const NOISE_HZ: u32 = 44_100;
+/// Longest time without a word to the board while an answer is awaited.
+const ANSWER_POLL: Duration = Duration::from_millis(50);
+
+#[derive(Debug, Args)]
+pub(super) struct ThresholdArgs {
+    /// `sim` for the simulator in this process, or the path of a board's serial port.
+    #[arg(long)]
+    port: String,
+    /// The finger profile to write: how far a level is above threshold, and no newtons.
+    #[arg(short, long, value_name = "FINGER.toml")]
+    output: Option<PathBuf>,
+    /// Number of trials, 12 to 40: 12 find the threshold to a factor of 1.5 in amplitude, 40 to a factor of 1.2.
+    #[arg(long, value_name = "N", default_value_t = 24, value_parser = clap::value_parser!(u8).range(12..=40))]
+    trials: u8,
+    /// Write a minute of masking noise to this WAV file and end. Play it over and over on closed headphones during the
+    /// trials, so that the electrode is not heard; frixel itself plays no sound.
+    #[arg(long, value_name = "FILE.wav")]
+    noise: Option<PathBuf>,
+    /// Highest voltage, in volts rms; at most 150, and at most what the board allows.
+    #[arg(long, value_name = "V_RMS", default_value_t = 150.0)]
+    voltage: f64,
+    /// The screen under the finger: a bundled name or a screen file.
+    #[arg(long, value_name = "SCREEN")]
+    screen: Option<String>,
+    /// Seed of the order of the strokes.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Let a board that is not a simulator drive its electrode.
+    #[arg(long)]
+    arm: bool,
+}
+
+pub(super) fn run(args: &ThresholdArgs) -> Result<(), CommandError> {
+    if let Some(path) = &args.noise {
+        write_noise(path, args.seed)?;
+        return print_line(format_args!("  {:<16} {}", "wrote", path.display()));
+    }
+    let (screen_name, _) = screen(args.screen.as_deref())?;
+    let (threshold, protocol) = if args.port == "sim" {
+        let config = RigConfig::default();
+        let protocol = Protocol::new(args.voltage, args.seed);
+        let stroke = Stroke::from_csv(&protocol.stroke_csv()).and_then(|stroke| stroke.looped(0.0));
+        let mut memory = BoardMemory::new();
+        let rig = Rig::new(&mut memory, &config, stroke.map_err(CommandError::NaturalStroke)?, args.seed)?;
+        session(args, Device::connect(SimLink::new(rig, Recorder::idle()))?, protocol)?
+    } else {
+        let device = Device::connect(PortLink::new(SerialLink::open(&args.port, DEFAULT_BAUD)?))?;
+        let hello = *device.hello();
+        if !(args.arm || hello.board.is_simulated()) {
+            return Err(CommandError::NotArmed { port: args.port.clone() });
+        }
+        let limit_v_rms = 0.99 * f64::from(hello.limits.voltage_max_v_peak);
+        session(args, device, Protocol::new(args.voltage.min(limit_v_rms), args.seed))?
+    };
+    report(args, &threshold, &protocol, screen_name)
+}
+
+/// Plays all trials, and returns the threshold.
+fn session<L: RecordedLink>(
+    args: &ThresholdArgs,
+    device: Device<L>,
+    protocol: Protocol,
+) -> Result<(Threshold, Protocol), CommandError> {
+    let Some(mut staircase) = Staircase::new(usize::from(args.trials)) else {
+        return Err(CommandError::NoAnswer { trial: 0 });
+    };
+    let hello = *device.hello();
+    let scene = protocol.scene().map_err(CommandError::Finger)?;
+    let scene = Scene::parse(&scene, "threshold", &std::collections::BTreeMap::new())?;
+    let program = compile(&scene, &hello.limits, hello.tick_hz)?;
+    let mut player = Player::new(device, Recorder::idle());
+    player.start(&program, 0, &mut |_| ControlFlow::Continue(())).map_err(CommandError::Play)?;
+    print_line("  Slide back and forth over the screen, a stroke of 7 cm in each direction, as evenly as you can.")?;
+    print_line("  Type 1 or 2 and Enter: which of the two strokes was rougher? Guess if you are not sure.")?;
+    let mut random = Pcg64::seed_from_u64(args.seed);
+    let answers = answers();
+    while let Some(level_db) = staircase.next_level_db() {
+        let (trial, trials) = staircase.progress();
+        let is_second = random.next_u64() >> 63 == 1;
+        let feed = Feed::of(samples(&protocol, level_db, is_second), protocol.sample_hz());
+        player.stream(feed).map_err(CommandError::Play)?;
+        wait(&mut player, 2.0 * STROKE_S + FADE_S)?;
+        print(format_args!("  trial {trial} of {trials}, 1 or 2? "))?;
+        let said_second = loop {
+            match answers.recv_timeout(ANSWER_POLL) {
+                Ok(line) if line.trim() == "1" => break false,
+                Ok(line) if line.trim() == "2" => break true,
+                Ok(_) => print(format_args!("  trial {trial} of {trials}, 1 or 2? "))?,
+                // A board whose host is silent disarms itself: serve it while the person thinks.
+                Err(RecvTimeoutError::Timeout) => wait(&mut player, 0.0)?,
+                Err(RecvTimeoutError::Disconnected) => return Err(CommandError::NoAnswer { trial }),
+            }
+        };
+        staircase.answer(level_db, said_second == is_second);
+    }
+    player.stop().map_err(CommandError::Play)?;
+    Ok((staircase.threshold(), protocol))
+}
+
+/// The lines of standard input, read by a thread of their own.
+fn answers() -> Receiver<String> {
+    let (sender, receiver) = channel();
+    thread::spawn(move || {
+        for line in stdin().lock().lines().map_while(Result::ok) {
+            if sender.send(line).is_err() {
+                return;
+            }
+        }
+    });
+    receiver
+}
+
+fn wait<L: RecordedLink>(player: &mut Player<L>, seconds: f64) -> Result<(), CommandError> {
+    let mut left = Duration::from_secs_f64(seconds);
+    loop {
+        left = left.saturating_sub(player.step(left).map_err(CommandError::Play)?);
+        if left.is_zero() {
+            return Ok(());
+        }
+    }
+}
+
+/// The samples of two strokes, of which one has the stimulus.
+fn samples(protocol: &Protocol, level_db: f64, is_second: bool) -> Vec<u16> {
+    let sample_hz = f64::from(protocol.sample_hz());
+    let amplitude = libm::pow(10.0, level_db / 20.0);
+    (0..(2.0 * STROKE_S * sample_hz) as u32)
+        .map(|sample| {
+            let time_s = f64::from(sample) / sample_hz;
+            let in_stroke_s = time_s % STROKE_S;
+            if (time_s >= STROKE_S) != is_second {
+                return 0;
+            }
+            let fade = (in_stroke_s.min(STROKE_S - in_stroke_s) / FADE_S).min(1.0);
+            let wave = 0.5 - 0.5 * libm::cos(core::f64::consts::TAU * STIMULUS_HZ * in_stroke_s);
+            (fade * amplitude * wave * f64::from(u16::MAX)).round() as u16
+        })
+        .collect()
+}
+
+fn report(
+    args: &ThresholdArgs,
+    threshold: &Threshold,
+    protocol: &Protocol,
+    screen_name: String,
+) -> Result<(), CommandError> {
+    let volts =
+        |level_db: f64| protocol.voltage_of_share_v_rms(libm::pow(10.0, level_db / 20.0)).map_err(CommandError::Finger);
+    let Threshold { level_db, interval_db: (low_db, high_db) } = *threshold;
+    let (threshold_v_rms, interval_v_rms) = (volts(level_db)?, [volts(low_db)?, volts(high_db)?]);
+    let highest = protocol.voltage_max_v_rms();
+    print_line(format_args!(
+        "  {:<16} {threshold_v_rms:.1} V rms ({:.1} to {:.1})",
+        "threshold", interval_v_rms[0], interval_v_rms[1]
+    ))?;
+    print_line(format_args!("  {:<16} {highest:.0} V rms is {:.0} dB above it", "highest", -level_db))?;
+    print_line(format_args!(
+        "  {:<16} how many newtons these are, nobody knows: write scenes in fractions of what can be reached",
+        "note"
+    ))?;
+    let Some(output) = &args.output else { return Ok(()) };
+    let experiment = Experiment {
+        date: OffsetDateTime::now_utc().date().to_string(),
+        method: format!("two-alternative staircase, {} trials, {STIMULUS_HZ} Hz", args.trials),
+        screen: screen_name,
+    };
+    let evidence = Evidence::Perceptual { experiment, threshold_v_rms, threshold_interval_v_rms: interval_v_rms };
+    let profile = FingerProfile { evidence, ..FingerProfile::example() };
+    fs::write(output, profile.to_toml()).map_err(CommandError::writing(output))?;
+    print_line(format_args!("  {:<16} {}", "wrote", output.display()))
+}
+
+/// Writes white noise, which masks what the electrode sounds like.
+fn write_noise(path: &Path, seed: u64) -> Result<(), CommandError> {
+    let failed = |source| CommandError::Noise { path: path.to_owned(), source };
+    let spec = WavSpec { channels: 1, sample_rate: NOISE_HZ, bits_per_sample: 16, sample_format: SampleFormat::Int };
+    let mut writer = WavWriter::create(path, spec).map_err(failed)?;
+    let mut random = Pcg64::seed_from_u64(seed);
+    for _ in 0..NOISE_S * NOISE_HZ {
+        // A quarter of full scale, which leaves room for any player's volume.
+        writer.write_sample((random.next_u64() >> 48) as u16 as i16 / 4).map_err(failed)?;
+    }
+    writer.finalize().map_err(failed)
+}

@@ -1,0 +1,44 @@
+//! `frixel new`, and what a designer does next.
+
+use std::fs;
+
+use tempfile::TempDir;
+
+use super::{frixel, scenes, succeed};
+
+#[test]
+fn a_new_scene_is_checked_and_played_as_it_is() {
+    let folder = TempDir::new().unwrap();
+    let picture = scenes().join("textures/brick.png");
+    fs::copy(&picture, folder.path().join("mine.png")).unwrap();
+    for (name, arguments) in [
+        ("stripes.toml", &["new", "stripes"][..]),
+        ("near.toml", &["new", "near.toml", "--picture", "mine.png"]),
+        ("far.toml", &["new", "far", "--picture", picture.to_str().unwrap()]),
+    ] {
+        let (said, _) = succeed(folder.path(), arguments);
+        assert!(said.contains(&format!("frixel play {name}")), "{said}");
+        succeed(folder.path(), &["scene", "check", name]);
+        let (said, _) = succeed(folder.path(), &["play", name, "--seconds", "0.5"]);
+        assert!(said.contains("wanted"), "{said}");
+    }
+    let text = fs::read_to_string(folder.path().join("near.toml")).unwrap();
+    assert!(text.contains("picture = \"mine.png\"") && text.lines().count() < 20, "{text}");
+}
+
+#[test]
+fn a_new_scene_overwrites_nothing_and_needs_its_picture() {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("mine.toml"), "mine").unwrap();
+    for (arguments, part) in [
+        (&["new", "mine"][..], "mine.toml is there already"),
+        (&["new", "other", "--picture", "none.png"], "none.png cannot be read"),
+        (&["new", "nowhere/mine"], "mine.toml cannot be written"),
+    ] {
+        let output = frixel(folder.path(), arguments);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.code() == Some(1) && said.contains(part), "{arguments:?}: {said}");
+    }
+    assert_eq!(fs::read_to_string(folder.path().join("mine.toml")).unwrap(), "mine");
+    assert!(!folder.path().join("other.toml").exists());
+}
