@@ -1,15 +1,19 @@
-//! The power of a signal in a band of frequencies, for tests.
+//! The power of a signal in a band of frequencies.
 
 use core::f64::consts::TAU;
 use core::ops::Range;
 
-/// Root mean square of a signal between two frequencies, from its Fourier transform under a Hann window. Only the first
-/// `2^n` samples count.
-pub(crate) fn band_rms(samples: &[f64], sample_hz: u32, band_hz: Range<f64>) -> f64 {
+/// Root mean square of a signal between two frequencies, from its Fourier transform under a Hann window and without its
+/// mean. Only the first `2^n` samples count; of fewer than two it is 0.
+pub fn band_rms(samples: &[f64], sample_hz: u32, band_hz: Range<f64>) -> f64 {
+    if samples.len() < 2 {
+        return 0.0;
+    }
     let count = 1_usize << samples.len().ilog2();
-    let mean = samples[..count].iter().sum::<f64>() / count as f64;
-    let mut spectrum: Vec<(f64, f64)> = samples[..count]
+    let mean = samples.iter().take(count).sum::<f64>() / count as f64;
+    let mut spectrum: Vec<(f64, f64)> = samples
         .iter()
+        .take(count)
         .enumerate()
         .map(|(index, sample)| {
             let hann = 1.0 - libm::cos(TAU * index as f64 / count as f64);

@@ -72,6 +72,9 @@ pub(crate) fn soak() -> Result<(), String> {
     let mut stages = Stages::new();
     let sweeps = ["test", "--release", "--locked", "--package", "frixel-model", "--", "--ignored", "--nocapture"];
     stages.run("every f32", || passed(cargo("soak", ".", &sweeps, &[])))?;
+    let felt =
+        ["test", "--release", "--locked", "--package", "frixel", "--test", "felt", "--", "--ignored", "--nocapture"];
+    stages.run("textures on many strokes", || passed(cargo("soak", ".", &felt, &[])))?;
     stages.run("random scenes", || {
         passed(Pace::ALL.into_iter().try_for_each(|pace| programs::check(pace, programs::FEW, programs::MANY)))
     })?;

@@ -33,8 +33,8 @@ struct TestProgram {
     path: PathBuf,
 }
 
-/// Builds and runs all tests except documentation tests. The tests of [`WITH_EMULATOR`] skip a part without the emulator
-/// or its targets.
+/// Builds and runs all tests except documentation tests. The tests of [`WITH_EMULATOR`] skip a part without the
+/// emulator or its targets.
 pub(crate) fn run_all() -> Result<Outcome, String> {
     let packages = packages()?;
     let programs = build()?;

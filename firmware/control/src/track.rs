@@ -11,15 +11,21 @@ pub struct Track {
     /// Number of the contact between finger and screen. If it differs from that of the previous track, the finger was
     /// lifted in between.
     pub contact: u32,
-    /// Tick at which the position was measured.
+    /// Tick at which the track begins: at which its report arrived or, for a scene without prediction, at which the
+    /// position was measured.
     pub from_tick: u32,
     /// The track is invalid from this tick on.
     pub until_tick: u32,
     /// Place at `from_tick`, in m from the screen's left and top edge.
     pub place_m: [f32; 2],
-    /// Velocity at `from_tick`, in m/s.
+    /// Rate of the place at `from_tick`, in m/s. It differs from the finger's velocity by what leads the place from the
+    /// track before to the new estimate, so that the place does not jump at a report.
+    pub path_velocity_m_per_s: [f32; 2],
+    /// Half the rate of that rate, in m/s^2.
+    pub path_half_acceleration_m_per_s2: [f32; 2],
+    /// The finger's velocity at `from_tick`, in m/s.
     pub velocity_m_per_s: [f32; 2],
-    /// Half the acceleration, in m/s^2.
+    /// Half the finger's acceleration, in m/s^2.
     pub half_acceleration_m_per_s2: [f32; 2],
     /// Gain on the friction, ramped down while the finger stands still.
     pub ramp: StandstillRamp,
@@ -35,7 +41,8 @@ impl Track {
     /// Place after a time, in m.
     #[inline]
     pub fn place_m(&self, elapsed_s: f32) -> [f32; 2] {
-        let ([x, y], [vx, vy], [ax, ay]) = (self.place_m, self.velocity_m_per_s, self.half_acceleration_m_per_s2);
+        let ([x, y], [vx, vy], [ax, ay]) =
+            (self.place_m, self.path_velocity_m_per_s, self.path_half_acceleration_m_per_s2);
         [x + elapsed_s * (vx + elapsed_s * ax), y + elapsed_s * (vy + elapsed_s * ay)]
     }
 
@@ -89,8 +96,10 @@ mod tests {
         from_tick: u32::MAX - 100,
         until_tick: 1_100,
         place_m: [0.01, 0.02],
-        velocity_m_per_s: [0.1, -0.2],
-        half_acceleration_m_per_s2: [0.5, 1.0],
+        path_velocity_m_per_s: [0.1, -0.2],
+        path_half_acceleration_m_per_s2: [0.5, 1.0],
+        velocity_m_per_s: [0.3, 0.4],
+        half_acceleration_m_per_s2: [-0.5, 2.0],
         ramp: StandstillRamp::MOVING,
     };
 
@@ -106,8 +115,8 @@ mod tests {
         close(x_m, 0.01 + 0.1 * 0.01 + 0.5 * 1e-4);
         close(y_m, 0.02 - 0.2 * 0.01 + 1.0 * 1e-4);
         let [vx, vy] = TRACK.velocity_m_per_s(elapsed_s);
-        close(vx, 0.1 + 2.0 * 0.5 * 0.01);
-        close(vy, -0.2 + 2.0 * 0.01);
+        close(vx, 0.3 - 2.0 * 0.5 * 0.01);
+        close(vy, 0.4 + 2.0 * 2.0 * 0.01);
         close(TRACK.elapsed_s(TRACK.from_tick.wrapping_sub(40), 25e-6), -1e-3);
     }
 

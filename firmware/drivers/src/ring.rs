@@ -58,7 +58,9 @@ mod tests {
     proptest! {
         /// Every byte comes out once, in order, however writing and reading are interleaved.
         #[test]
-        fn no_byte_is_lost_or_repeated(steps in proptest::collection::vec((0_usize..40, any::<bool>(), 1_usize..40), 1..400)) {
+        fn no_byte_is_lost_or_repeated(
+            steps in proptest::collection::vec((0_usize..40, any::<bool>(), 1_usize..40), 1..400),
+        ) {
             const LEN: usize = 32;
             let mut ring = [0_u32; LEN];
             let mut reader = RingReader::<LEN>::new();

@@ -107,7 +107,11 @@ fn evaluate<C: Evaluate>(coefficients: &C, region: &ActiveRegion, context: &mut 
 
 /// Generates the enums of all kinds, and the functions that dispatch on them, from one list.
 macro_rules! kinds {
-    ($( $(#[doc = $doc:literal])* $(#[cfg($cfg:meta)])? $number:literal => $kind:ident in $module:ident, $bit:expr; )*) => {
+    ($(
+        $(#[doc = $doc:literal])*
+        $(#[cfg($cfg:meta)])?
+        $number:literal => $kind:ident in $module:ident, $bit:expr;
+    )*) => {
         $( $(#[cfg($cfg)])? pub use $module::$kind; )*
 
         /// Kind and parameters of a layer. Frictions are electric, in newtons, before the gain; dimensionless factors

@@ -9,7 +9,12 @@ use proptest::prelude::*;
 proptest! {
     /// A header or record that is accepted has one form only.
     #[test]
-    fn headers_have_one_form(mut bytes in prop::array::uniform32(any::<u8>()), flags in 0..34u8, carrier in 0..4u8, max in prop::array::uniform2(0..3u8)) {
+    fn headers_have_one_form(
+        mut bytes in prop::array::uniform32(any::<u8>()),
+        flags in 0..34u8,
+        carrier in 0..4u8,
+        max in prop::array::uniform2(0..3u8),
+    ) {
         bytes[..4].copy_from_slice(&[2, 0, flags % 3, flags]);
         let mut header = [0; HEADER_LEN];
         header[..32].copy_from_slice(&bytes);
@@ -21,7 +26,11 @@ proptest! {
     }
 
     #[test]
-    fn records_have_one_form(head in prop::array::uniform4(0..11u8), tail in prop::array::uniform32(any::<u8>()), long in any::<bool>()) {
+    fn records_have_one_form(
+        head in prop::array::uniform4(0..11u8),
+        tail in prop::array::uniform32(any::<u8>()),
+        long in any::<bool>(),
+    ) {
         let mut record = [0; RECORD_LEN];
         record[..4].copy_from_slice(&head);
         let at = if long { 24 } else { 12 };

@@ -223,8 +223,8 @@ impl<'a> Commands<'a> {
     }
 }
 
-/// Whether a request may be carried out while an earlier commit is under way, or requests wait behind one: none of their
-/// effects depends on the other's, except that Stop and Disarm end what waits (see [`Commands::take_request`]).
+/// Whether a request may be carried out while an earlier commit is under way, or while requests wait behind one: its
+/// effects do not depend on theirs, except that Stop and Disarm end what waits (see [`Commands::take_request`]).
 fn may_overtake_a_commit(command: Command) -> bool {
     matches!(
         command,

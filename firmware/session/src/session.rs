@@ -75,9 +75,9 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Advances a commit by one step of at most a millisecond or carries out a request that waited for it, and sends telemetry and unsolicited changes of state.
-    /// Call this after every tick or, if there is no time for that, at least once a telemetry period, and pass on touch
-    /// reports, orders and bytes between two calls.
+    /// Advances a commit by one step of about a millisecond at most, or carries out a request that waited for it; also
+    /// sends telemetry and unsolicited changes of state. Call this after every tick or, if there is no time for that,
+    /// at least once a telemetry period, and pass on touch reports, orders and bytes between two calls.
     pub fn poll(&mut self, status: &Status) {
         self.commands.tracker.expire(status.telemetry.tick);
         self.commands.step_commit(status, &mut self.queue);

@@ -95,10 +95,11 @@ impl<'a> Commands<'a> {
             self.host_heard &= !order.is_sign_of_life();
             return Some(order);
         }
+        let predicts = self.playing.header.is_none_or(|header| header.prediction);
         if !self.host_heard {
-            return self.tracker.next_order();
+            return self.tracker.next_order(predicts);
         }
-        let finger_first = if self.sign_of_life_waited { None } else { self.tracker.next_order() };
+        let finger_first = if self.sign_of_life_waited { None } else { self.tracker.next_order(predicts) };
         self.sign_of_life_waited = finger_first.is_some();
         self.host_heard = finger_first.is_some();
         finger_first.or(Some(Order::HostHeard))

@@ -10,7 +10,7 @@ use crate::estimator::{Estimate, Estimator};
 use crate::standstill::{Standstill, StandstillTiming};
 use frixel_control::STALE_AFTER_PERIODS;
 use frixel_control::is_past;
-use frixel_control::{Board, Order, StandstillRamp, Track};
+use frixel_control::{Board, Order, Track};
 
 /// One report of the touch source.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,8 +30,11 @@ pub enum Touch {
 
 /// Samples older than this are ignored, in s.
 const SAMPLE_AGE_MAX_S: f32 = 0.1;
-/// Least time between two samples that the estimator assumes, as a fraction of the report period.
-const STEP_MIN_PERIODS: f32 = 0.25;
+/// Time in which a new track removes its difference to the track before, in intervals between reports. It ends after
+/// the next report is due: a correction that ended there would turn back if that report is lost.
+const BLEND_INTERVALS: f32 = 1.5;
+/// Part of an interval between two reports that goes into their mean.
+const INTERVAL_SHARE: f32 = 0.125;
 
 /// Constants of the board's touch source, computed once.
 #[derive(Clone, Copy, Debug)]
@@ -39,7 +42,7 @@ struct Timing {
     tick_period_s: f32,
     stale_after_ticks: u32,
     sample_age_max_ticks: u32,
-    step_min_s: f32,
+    report_period_s: f32,
     standstill: StandstillTiming,
 }
 
@@ -70,8 +73,12 @@ pub(crate) struct Tracker {
     standstill: Standstill,
     /// Number of the contact that the last track belongs to.
     contact: u32,
-    /// When the last track ends; `None` without a finger.
-    until_tick: Option<u32>,
+    /// The last track; `None` without a finger.
+    track: Option<Track>,
+    /// When the last report was taken.
+    reported_at_tick: u32,
+    /// Mean time between reports, at most the board's report period, in s.
+    interval_s: f32,
 }
 
 impl Tracker {
@@ -82,7 +89,7 @@ impl Tracker {
                 tick_period_s: board.tick_period_s(),
                 stale_after_ticks: board.ticks(STALE_AFTER_PERIODS * board.limits.touch_report_period_s),
                 sample_age_max_ticks: board.ticks(SAMPLE_AGE_MAX_S),
-                step_min_s: STEP_MIN_PERIODS * board.limits.touch_report_period_s,
+                report_period_s: board.limits.touch_report_period_s,
                 standstill: StandstillTiming::new(board.tick_hz),
             },
             lift: false,
@@ -91,7 +98,9 @@ impl Tracker {
             estimator: Estimator::NEW,
             standstill: Standstill::MOVING,
             contact: 0,
-            until_tick: None,
+            track: None,
+            reported_at_tick: 0,
+            interval_s: board.limits.touch_report_period_s,
         }
     }
 
@@ -119,48 +128,169 @@ impl Tracker {
     /// Drops a finger whose last track has ended: the next report begins another contact. Must be called at least once
     /// before the tick counter wraps.
     pub(crate) fn expire(&mut self, now_tick: u32) {
-        if self.until_tick.is_some_and(|tick| is_past(tick, now_tick)) {
-            self.until_tick = None;
+        if self.track.is_some_and(|track| is_past(track.until_tick, now_tick)) {
+            self.track = None;
         }
     }
 
-    /// The next order that results from the reports so far: a lift or a track.
-    pub(crate) fn next_order<'a>(&mut self) -> Option<Order<'a>> {
+    /// The next order that results from the reports so far: a lift or a track. The track is led to where the finger is
+    /// now if the scene `predicts`, and stays where the finger was measured otherwise.
+    pub(crate) fn next_order<'a>(&mut self, predicts: bool) -> Option<Order<'a>> {
         if core::mem::take(&mut self.lift) {
-            self.until_tick = None;
+            self.track = None;
             return Some(Order::Lift);
         }
         let sample = self.sample.take()?;
-        self.track(&sample).map(Order::Track)
+        self.track(&sample, predicts).map(Order::Track)
     }
 
-    fn track(&mut self, sample: &Sample) -> Option<Track> {
+    fn track(&mut self, sample: &Sample, predicts: bool) -> Option<Track> {
         let Sample { place_m, at_tick, reported_at_tick } = *sample;
         let timing = self.timing;
         self.expire(reported_at_tick);
-        if self.until_tick.is_none() {
+        if self.track.is_none() {
             self.contact = self.contact.wrapping_add(1);
             self.estimator = Estimator::NEW;
             self.standstill = Standstill::MOVING;
+            self.interval_s = timing.report_period_s;
+        } else {
+            self.measure_interval(reported_at_tick);
         }
-        let estimate = self.estimator.take(place_m, at_tick, timing.tick_period_s, timing.step_min_s)?;
-        let Estimate { place_m, velocity_m_per_s, half_acceleration_m_per_s2 } = estimate;
+        self.reported_at_tick = reported_at_tick;
+        if !self.estimator.take(place_m, at_tick, timing.tick_period_s, self.interval_s) {
+            return None;
+        }
         let age_ticks = reported_at_tick.wrapping_sub(at_tick);
+        let now = self.estimator.after(age_ticks as f32 * timing.tick_period_s);
+        let (from_tick, estimate) =
+            if predicts { (reported_at_tick, now) } else { (at_tick, self.estimator.after(0.0)) };
+        let leads_on = predicts && self.estimator.expected_last();
+        let before_m = self
+            .track
+            .filter(|_| leads_on)
+            .map(|track| track.place_m(track.elapsed_s(reported_at_tick, timing.tick_period_s)));
+        let path = Path::from(before_m, &estimate, BLEND_INTERVALS * self.interval_s);
         let ticks = timing.stale_after_ticks.min(timing.sample_age_max_ticks - age_ticks) + 1;
-        let until_tick = reported_at_tick.wrapping_add(ticks);
-        self.until_tick = Some(until_tick);
+        // The speed now, not that at the time of the sample, which is late; and that of the finger, not of the path.
+        let ramp = self.standstill.take(now.velocity_m_per_s, reported_at_tick, &timing.standstill);
         let track = Track {
             contact: self.contact,
-            from_tick: at_tick,
-            until_tick,
-            place_m,
-            velocity_m_per_s,
-            half_acceleration_m_per_s2,
-            ramp: StandstillRamp::MOVING,
+            from_tick,
+            until_tick: reported_at_tick.wrapping_add(ticks),
+            place_m: path.place_m,
+            path_velocity_m_per_s: path.velocity_m_per_s,
+            path_half_acceleration_m_per_s2: path.half_acceleration_m_per_s2,
+            velocity_m_per_s: estimate.velocity_m_per_s,
+            half_acceleration_m_per_s2: estimate.half_acceleration_m_per_s2,
+            ramp,
         };
-        // Use the current speed, not the speed at the time of the sample, which is late.
-        let velocity_now_m_per_s = track.velocity_m_per_s(track.elapsed_s(reported_at_tick, timing.tick_period_s));
-        let ramp = self.standstill.take(velocity_now_m_per_s, reported_at_tick, &timing.standstill);
-        Some(Track { ramp, ..track })
+        self.track = Some(track);
+        Some(track)
+    }
+
+    /// Takes the time between two reports into its mean. After a lost report the time counts as one period.
+    fn measure_interval(&mut self, reported_at_tick: u32) {
+        let interval_s = reported_at_tick.wrapping_sub(self.reported_at_tick) as f32 * self.timing.tick_period_s;
+        let period_s = self.timing.report_period_s;
+        let interval_s = if interval_s < period_s { interval_s } else { period_s };
+        self.interval_s += INTERVAL_SHARE * (interval_s - self.interval_s);
+    }
+}
+
+/// Motion along a parabola.
+struct Path {
+    place_m: [f32; 2],
+    velocity_m_per_s: [f32; 2],
+    half_acceleration_m_per_s2: [f32; 2],
+}
+
+impl Path {
+    /// The path from the place `before_m` of the track before to that of an estimate, and along it.
+    ///
+    /// The difference `d` is removed as `d (1 - t/T)^2` over the time `T`, which a parabola can do: the place does not
+    /// jump, nor does its rate at the end of that time. A step of the place at every report would be felt as a buzz at
+    /// the rate of the reports.
+    fn from(before_m: Option<[f32; 2]>, estimate: &Estimate, blend_s: f32) -> Self {
+        let Estimate { place_m, velocity_m_per_s, half_acceleration_m_per_s2 } = *estimate;
+        let mut path = Self { place_m, velocity_m_per_s, half_acceleration_m_per_s2 };
+        let Some([x_m, y_m]) = before_m else { return path };
+        let [to_x_m, to_y_m] = place_m;
+        let differences_m = [x_m - to_x_m, y_m - to_y_m];
+        let per_s = 1.0 / blend_s;
+        for (rate, difference_m) in path.velocity_m_per_s.iter_mut().zip(differences_m) {
+            *rate -= 2.0 * per_s * difference_m;
+        }
+        for (half_rate, difference_m) in path.half_acceleration_m_per_s2.iter_mut().zip(differences_m) {
+            *half_rate += per_s * per_s * difference_m;
+        }
+        Self { place_m: [x_m, y_m], ..path }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const REPORT_TICKS: u32 = 400;
+
+    fn track(tracker: &mut Tracker, x_m: f32, tick: u32, age_ticks: u32, predicts: bool) -> Track {
+        tracker.report(Touch::Down { x_m, y_m: 0.03, age_ticks }, tick);
+        match tracker.next_order(predicts) {
+            Some(Order::Track(track)) => track,
+            _ => panic!("the report says something new"),
+        }
+    }
+
+    fn place_m(track: &Track, tick: u32) -> f32 {
+        track.place_m(track.elapsed_s(tick, 25e-6))[0]
+    }
+
+    /// A finger in minimum-jerk motion and noise: from the third report on, each track goes on where the one before is,
+    /// and has come to the estimate when the next report is due and a half.
+    #[test]
+    fn the_place_does_not_jump_at_a_report() {
+        let mut tracker = Tracker::new(&Board::SIMULATOR);
+        let mut before: Option<Track> = None;
+        let mut jumps_m = 0.0_f32;
+        for report in 0..100_u32 {
+            let (tick, phase) = (report * REPORT_TICKS, (report as f32 * 0.1).sin());
+            let noise_m = if report.is_multiple_of(2) { 2e-5 } else { -2e-5 };
+            let track = track(&mut tracker, 0.05 + 0.02 * phase + noise_m, tick + 400, 400, true);
+            if let Some(before) = before.filter(|_| report > 1) {
+                let difference_m = place_m(&track, tick + 400) - place_m(&before, tick + 400);
+                assert!(difference_m.abs() < 1e-7, "report {report}: {difference_m}");
+                let [estimated_m, _] = tracker.estimator.after(25e-6 * 1_000.0).place_m;
+                let [velocity, _] = track.velocity_m_per_s;
+                let led_m = place_m(&track, tick + 1_000);
+                assert!((led_m - estimated_m).abs() < 2e-4 + 2e-3 * velocity.abs(), "{led_m}, {estimated_m}");
+                let [estimated_now_m, _] = tracker.estimator.after(25e-6 * 400.0).place_m;
+                jumps_m = jumps_m.max((place_m(&before, tick + 400) - estimated_now_m).abs());
+            }
+            before = Some(track);
+        }
+        assert!(jumps_m > 5e-5, "there was something to lead on from: {jumps_m}");
+    }
+
+    #[test]
+    fn without_prediction_the_track_stays_at_the_measured_place() {
+        let mut tracker = Tracker::new(&Board::SIMULATOR);
+        for report in 0..20_u32 {
+            let (tick, x_m) = (report * REPORT_TICKS, 0.01 + 1e-3 * report as f32);
+            let track = track(&mut tracker, x_m, tick + 400, 400, false);
+            assert_eq!(track.from_tick, tick);
+            assert!((track.place_m[0] - x_m).abs() < 2e-4, "{} {x_m}", track.place_m[0]);
+        }
+    }
+
+    /// The path's rate holds what leads from one track to the next; the finger's velocity does not.
+    #[test]
+    fn the_velocity_is_the_fingers() {
+        let mut tracker = Tracker::new(&Board::SIMULATOR);
+        for report in 0..60_u32 {
+            let noise_m = if report.is_multiple_of(2) { 5e-5 } else { -5e-5 };
+            let track = track(&mut tracker, 0.01 + 1e-3 * report as f32 + noise_m, report * REPORT_TICKS, 0, true);
+            let [velocity, _] = track.velocity_m_per_s;
+            assert!(report < 20 || (velocity - 0.1).abs() < 0.01, "report {report}: {velocity}");
+        }
     }
 }

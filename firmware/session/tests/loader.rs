@@ -255,7 +255,11 @@ proptest! {
     }
 
     #[test]
-    fn arbitrary_scenes_do_not_panic(mut scene in prop::collection::vec(any::<u8>(), 0..600), records in 0..8u8, points in 0..9u8) {
+    fn arbitrary_scenes_do_not_panic(
+        mut scene in prop::collection::vec(any::<u8>(), 0..600),
+        records in 0..8u8,
+        points in 0..9u8,
+    ) {
         if let Some(start) = scene.first_chunk_mut::<HEADER_LEN>() {
             *start = HEADER.write(records, points);
             scene.resize(HEADER_LEN + usize::from(records) * RECORD_LEN + usize::from(points) * 8, 0x11);

@@ -5,16 +5,16 @@
 mod support;
 
 use frixel_control::{Board, Order};
-use frixel_layers::{Constant, Grating, Header, Layer, Record, Region};
+use frixel_layers::{Constant, Grating, HEADER_LEN, Header, Layer, RECORD_LEN, Record, Region};
 use frixel_session::Touch;
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::frame::crc32;
 use frixel_wire::hello::feature;
 use frixel_wire::message::{Accepted, Command, ConfigField, FromBoard, Refusal};
 use frixel_wire::payload::CHUNK_LEN;
-use frixel_wire::scene::SceneError;
 #[cfg(feature = "bitmap")]
 use frixel_wire::scene::bitmap_crc32;
+use frixel_wire::scene::{RECORDS_MAX, SceneError};
 use proptest::prelude::*;
 #[cfg(feature = "bitmap")]
 use support::bitmap;
@@ -176,6 +176,22 @@ fn a_scene_of_more_records_than_the_board_says_is_refused() {
     };
     desk.load(&of(2)).unwrap();
     assert_eq!(desk.load(&of(3)), Err(Refusal::Scene(SceneError::TooManyRecords { found: 3 })));
+}
+
+/// A commit checks the records in several steps.
+#[test]
+fn a_scene_is_refused_for_any_malformed_record() {
+    let mut memory = Memory::new();
+    let mut desk = Desk::new(&mut memory);
+    desk.greet();
+    let records = [record(Layer::Constant(Constant { electric_friction_n: 0.01 })); RECORDS_MAX];
+    for record in [0, 15, 16, 40, RECORDS_MAX - 1] {
+        let mut bytes = scene(&HEADER, &records);
+        bytes[HEADER_LEN + (record + 1) * RECORD_LEN - 1] = 1;
+        let offset = RECORD_LEN as u8 - 1;
+        let refusal = Refusal::Scene(SceneError::NotZero { record: record as u8, offset });
+        assert_eq!(desk.load(&bytes), Err(refusal));
+    }
 }
 
 fn answered(desk: &mut Desk) -> Vec<u16> {
@@ -464,7 +480,9 @@ proptest! {
 
     /// Bytes that nobody meant never reach the output and never stop the board.
     #[test]
-    fn arbitrary_bytes_leave_the_board_disarmed_and_listening(bytes in proptest::collection::vec(any::<u8>(), 0..2000)) {
+    fn arbitrary_bytes_leave_the_board_disarmed_and_listening(
+        bytes in proptest::collection::vec(any::<u8>(), 0..2000),
+    ) {
         let mut memory = Memory::new();
         let mut desk = Desk::new(&mut memory);
         desk.send(&bytes);

@@ -130,10 +130,12 @@ impl fmt::Display for Fault {
         write!(f, "fault {}: ", self.number())?;
         f.write_str(match self {
             Self::Amplifier => {
-                "the amplifier reports that something is wrong; check its supply, wiring and temperature, then clear the fault"
+                "the amplifier reports that something is wrong; check its supply, wiring and temperature, then \
+                 clear the fault"
             }
             Self::Monitor => {
-                "the electrode's voltage is not the one that was driven; check amplifier, electrode and monitor, then clear the fault"
+                "the electrode's voltage is not the one that was driven; check amplifier, electrode and \
+                 monitor, then clear the fault"
             }
             Self::Deadline => "a tick missed its deadline; clear the fault and play a scene with fewer layers",
             Self::Panic => "the firmware panicked; report it with what `frixel info` says, then clear the fault",
@@ -144,11 +146,16 @@ impl fmt::Display for Fault {
                 "the firmware's stack overflowed; report it with what `frixel info` says, then clear the fault"
             }
             Self::Watchdog => {
-                "the firmware hung until the watchdog restarted it; report it with what `frixel info` says, then clear the fault"
+                "the firmware hung until the watchdog restarted it; report it with what `frixel info` says, \
+                 then clear the fault"
             }
-            Self::ArmSwitch => "the arm switch was let go while armed or playing; hold it, clear the fault and arm again",
+            Self::ArmSwitch => {
+                "the arm switch was released while armed or playing; hold it, clear the fault and \
+                 arm again"
+            }
             Self::Dac => {
-                "the DAC did not answer with its configuration before arming; check its supplies and wires, clear the fault and arm again"
+                "the DAC did not answer with its configuration before arming; check its supplies and wires, \
+                 clear the fault and arm again"
             }
             Self::Other(_) => "this program does not know it; update the frixel command",
         })

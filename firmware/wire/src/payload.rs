@@ -6,8 +6,8 @@
 //! | `0x01` | board | [`Hello`] |
 //! | `0x02` | host | [`Request`] in postcard |
 //! | `0x03` | board | [`FromBoard`] in postcard |
-//! | `0x04` | host | samples of a stream: index of the first one, 4 bytes; then 1 to [`SAMPLES_MAX`] samples, 2 bytes each; all little-endian |
-//! | `0x80..=0xff` | host | upload chunk: the chunk's number in 15 bits, big-endian, whose top bit is this byte's; then 1 to [`CHUNK_LEN`] bytes |
+//! | `0x04` | host | stream: index of the first sample, 4 bytes; then 1 to [`SAMPLES_MAX`] samples, 2 bytes each |
+//! | `0x80..=0xff` | host | upload: 0x8000 plus the chunk's number, big-endian; then 1 to [`CHUNK_LEN`] bytes |
 //!
 //! A host sends with [`hello_request_frame`], [`request_frame`], [`chunk_frame`] and [`samples_frame`] and reads with
 //! [`Payload::parse_from_board`]. A board sends with [`hello_frame`] and [`from_board_frame`] and reads with

@@ -235,7 +235,10 @@ proptest! {
     }
 
     #[test]
-    fn crc_in_pieces_is_the_crc(bytes in prop::collection::vec(any::<u8>(), 0..500), cut in any::<prop::sample::Index>()) {
+    fn crc_in_pieces_is_the_crc(
+        bytes in prop::collection::vec(any::<u8>(), 0..500),
+        cut in any::<prop::sample::Index>(),
+    ) {
         let (head, tail) = bytes.split_at(cut.index(bytes.len() + 1));
         prop_assert_eq!(Crc32::new().update(head).update(tail).finish(), reference_crc32(&bytes));
         prop_assert_eq!(crc32(&bytes), reference_crc32(&bytes));

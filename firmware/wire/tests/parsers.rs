@@ -79,7 +79,10 @@ proptest! {
     }
 
     #[test]
-    fn chunks_go_there_and_back(number in 0..=CHUNK_NUMBER_MAX, bytes in prop::collection::vec(any::<u8>(), 1..=CHUNK_LEN)) {
+    fn chunks_go_there_and_back(
+        number in 0..=CHUNK_NUMBER_MAX,
+        bytes in prop::collection::vec(any::<u8>(), 1..=CHUNK_LEN),
+    ) {
         let chunk = Payload::Chunk { number, bytes: &bytes };
         let bytes = written(&chunk);
         prop_assert_eq!(Payload::parse(&bytes), Ok(chunk));

@@ -20,6 +20,9 @@ use frixel_wire::scene::bitmap_crc32;
 /// Ticks between two pings.
 const PING_TICKS: u64 = 2_000;
 
+/// Most ticks that a commit takes.
+const COMMIT_TICKS_MAX: u32 = 128;
+
 /// A host that says what it wants and trusts the board.
 pub struct Script<'a> {
     pub rig: Rig<'a>,
@@ -84,6 +87,10 @@ impl<'a> Script<'a> {
     pub fn play(&mut self, scene: &[u8]) {
         let commit = self.upload(scene);
         self.command(commit);
+        // As a host that waits for the answer to its commit: it takes a step a tick.
+        for _ in 0..COMMIT_TICKS_MAX {
+            self.step();
+        }
         self.command(Command::Arm);
         self.command(Command::Play);
         self.rig.world_mut().start_stroke();

@@ -9,7 +9,7 @@ use frixel_layers::{Scene, features_of};
 use frixel_wire::fault::{Fault, Flags, State};
 use frixel_wire::frame::Decoder;
 use frixel_wire::hello::{Hello, feature};
-use frixel_wire::message::{Command, Telemetry};
+use frixel_wire::message::{Accepted, Command, FAULT_TEXT_MAX_LEN, FAULT_TEXT_PIECE_LEN, Telemetry};
 
 use super::command::name_of;
 use super::error::DeviceError;
@@ -191,6 +191,23 @@ impl<L: Link> Device<L> {
     /// Changes the state from faulted to disarmed, if the cause of the fault is gone.
     pub fn clear_fault(&mut self) -> Result<(), DeviceError> {
         self.request(Command::ClearFault)
+    }
+
+    /// What the firmware said of the fault that led to its last reset; empty if there was none.
+    pub fn fault_text(&mut self) -> Result<String, DeviceError> {
+        let mut text = Vec::new();
+        while text.len() < FAULT_TEXT_MAX_LEN {
+            let Accepted::FaultText { len, bytes } =
+                self.exchange.request(Command::FaultText { offset: text.len() as u8 })?
+            else {
+                break;
+            };
+            text.extend(bytes.iter().take(len.into()));
+            if usize::from(len) < FAULT_TEXT_PIECE_LEN {
+                break;
+            }
+        }
+        Ok(String::from_utf8_lossy(&text).into_owned())
     }
 
     /// Checks that the board answers.

@@ -38,6 +38,7 @@
 #![forbid(unsafe_code)]
 
 mod command;
+mod control;
 mod credit;
 mod device;
 mod error;
@@ -49,6 +50,7 @@ mod native;
 mod polling;
 mod upload;
 
+pub use control::{ControlError, ControlLine};
 pub use device::{Counters, Device, Event, StreamSettings, StreamStatus};
 pub use error::{DeviceError, LinkClosed};
 pub use link::{KEEP_ALIVE_TIMEOUT, Link, Written};

@@ -3,6 +3,7 @@
 
 mod chart;
 pub mod check;
+pub mod felt;
 pub mod fit;
 pub mod model_csv;
 pub mod output;

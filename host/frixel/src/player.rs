@@ -158,6 +158,11 @@ impl<L: RecordedLink> Player<L> {
         self.replace(program)
     }
 
+    /// Switches a layer of the playing scene on or off, and sets its gain; see [`Device::set_layer`].
+    pub fn set_layer(&mut self, layer: u8, on: bool, gain: f32) -> Result<(), PlayError> {
+        Ok(self.device.set_layer(layer, on, gain)?)
+    }
+
     /// Lets at most `time_max` pass on the board; records the ticks, and sends samples.
     ///
     /// Returns how much time has passed. Fails when the connection is lost or when the board stopped without a stop

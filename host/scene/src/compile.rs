@@ -7,6 +7,7 @@ use frixel_wire::scene::RECORDS_MAX;
 use super::compile_error::CompileError;
 use super::excess;
 use super::file::Scene;
+use super::layer::Layer;
 use super::layer_map::LayerMap;
 use super::log::Log;
 use super::lower::Lowering;
@@ -84,7 +85,7 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
     let pool = Pool::new(&scene.pictures, limits.bitmap_pool_bytes);
     let mut lowering = Lowering::new(scene, &header, &reach, tick_hz, pool, log);
     // Lower every layer, so that the mistakes of all are reported.
-    let records: Vec<Option<Record>> = scene.layers.iter().map(|layer| lowering.record(layer)).collect();
+    let records = records(scene, &mut lowering);
     let lowered = lowering.finish();
     notes.extend(lowered.notes);
     let titles = scene.layers.iter().map(|layer| layer.title.clone()).collect();
@@ -114,6 +115,24 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
     }
     program.layers = layer_map(scene, &program.titles);
     Some(program)
+}
+
+/// The records of all layers. A mistake that the first copy of a layer has is not reported for the others.
+fn records(scene: &Scene, lowering: &mut Lowering) -> Vec<Option<Record>> {
+    let mut mistaken = None;
+    let record = |layer: &Layer| {
+        let table = layer.places.table();
+        if layer.is_copy && mistaken == Some(table) {
+            return None;
+        }
+        let mistakes = lowering.mistakes();
+        let record = lowering.record(layer);
+        if lowering.mistakes() > mistakes {
+            mistaken = Some(table);
+        }
+        record
+    };
+    scene.layers.iter().map(record).collect()
 }
 
 /// Maps layers to records. Only a layer that the host may change is certain to have its own record; others may have

@@ -20,6 +20,7 @@ pub(super) fn check(scene: &Scene, program: &mut Program, log: &mut Log) {
     let reference = Reference::new(program);
     let width_m = f64::from(program.header.screen_width_m);
     let height_m = f64::from(program.header.screen_height_m);
+    let mut reported = Vec::new();
     for excess in excesses(reference.pieces(), width_m, height_m, within) {
         let layers: Vec<&Layer> = excess.layers.iter().filter_map(|number| scene.layers.get(*number)).collect();
         let found = sides(&layers, &excess, excess.found, within, &reach);
@@ -29,8 +30,15 @@ pub(super) fn check(scene: &Scene, program: &mut Program, log: &mut Log) {
         } else if scene.drive.saturate {
             program.notes.extend(found.iter().map(|side| note(side, "; it is clamped there")));
         } else {
+            // Copies of a layer exceed the reach in the same way.
+            let is_copy = |offset: usize, reported: &[usize]| {
+                layers.iter().any(|layer| layer.is_copy) && reported.contains(&offset)
+            };
             for Side { offset, mistake } in found {
-                log.add(offset, mistake);
+                if !is_copy(offset, &reported) {
+                    log.add(offset, mistake);
+                    reported.push(offset);
+                }
             }
         }
     }

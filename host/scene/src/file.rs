@@ -173,7 +173,8 @@ fn read(mut fields: Fields, files: &dyn Files, log: &mut Log, source: &Source) -
     let touch = touch(fields.table(log, &tables::scene::TOUCH).unwrap_or_else(|| absent("[touch]")), log);
     let tables = fields.tables(log, &tables::scene::LAYER).unwrap_or_default();
     // Read every layer, so that the mistakes of all are reported.
-    let layers: Vec<Option<Layer>> = (1..).zip(tables).map(|(number, table)| Layer::read(table, number, log)).collect();
+    let layers: Vec<Option<Vec<Layer>>> =
+        (1..).zip(tables).map(|(number, table)| Layer::read(table, number, log)).collect();
     fields.close(log);
     Some(Scene {
         source: source.clone(),
@@ -184,7 +185,7 @@ fn read(mut fields: Fields, files: &dyn Files, log: &mut Log, source: &Source) -
         drive,
         carrier,
         touch,
-        layers: layers.into_iter().collect::<Option<_>>()?,
+        layers: layers.into_iter().collect::<Option<Vec<Vec<Layer>>>>()?.concat(),
     })
 }
 

@@ -53,6 +53,11 @@ impl<'s> Log<'s> {
         }
     }
 
+    /// Number of mistakes so far.
+    pub(super) fn mistakes(&self) -> usize {
+        self.mistakes.len()
+    }
+
     /// Whether there are no mistakes so far.
     pub(super) fn is_empty(&self) -> bool {
         self.mistakes.is_empty()

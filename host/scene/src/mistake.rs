@@ -172,6 +172,14 @@ pub enum Mistake {
     /// The region of a button is a polygon.
     #[error("a button is a rectangle or an ellipse, and this region is a polygon: change its `shape`")]
     ButtonPolygon,
+    /// Several copies of a layer would lie at the same place.
+    #[error("the {what} of this repeat would lie on one another: give the distance from one to the next, `{step}`")]
+    RepeatInPlace {
+        /// `columns` or `rows`.
+        what: &'static str,
+        /// The field of their distance.
+        step: &'static str,
+    },
     /// The scene has more of something than a board has room for.
     #[error("this is number {number} of the scene's {what}, and a board takes {max}: leave some out")]
     TooMany {

@@ -264,6 +264,12 @@ pub(super) mod layer {
         Means("the screen; for a bitmap, the picture; a button needs one"),
         "where it acts, see [regions](#regions)",
     );
+    pub(crate) const REPEAT: FieldSpec = FieldSpec::new(
+        "repeat",
+        Holds::Table,
+        Means("once"),
+        "copies of the layer in columns and rows, see [repeats](#repeats)",
+    );
     pub(crate) const BLEND: FieldSpec = word(
         "blend",
         Means("`\"replace\"`; for an edge `\"add\"`, for a curve of speed `\"multiply\"`"),
@@ -286,6 +292,23 @@ pub(super) mod layer {
         "`true`: the host puts it on and off or changes its gain while it plays, so that it is never \
          [left out](#what-is-left-out), and hides nothing for good",
     );
+}
+
+/// `repeat` of a layer.
+pub(super) mod repeat {
+    use super::*;
+
+    const COPIES: Range = Range::new(1.0, 64.0, "");
+    const STEP_MM: Range = Range::new(-1000.0, 1000.0, " mm");
+
+    pub(crate) const COLUMNS: FieldSpec =
+        FieldSpec::new("columns", Holds::Whole(COPIES), Number(1.0), "copies side by side");
+    pub(crate) const ROWS: FieldSpec =
+        FieldSpec::new("rows", Holds::Whole(COPIES), Number(1.0), "copies below one another");
+    pub(crate) const DX_MM: FieldSpec =
+        number("dx_mm", STEP_MM, Number(0.0), "from a column to the next; not 0 with several columns");
+    pub(crate) const DY_MM: FieldSpec =
+        number("dy_mm", STEP_MM, Number(0.0), "from a row to the next; not 0 with several rows");
 }
 
 /// `region` of a layer.

@@ -134,8 +134,10 @@ fn line((name, _, core_cycles): &Cost) -> String {
 
 fn text(costs: &[Cost]) -> String {
     let mut text = String::from(
-        "//! Core cycles on a Cortex-M4F at the worst input, estimated. Written by `cargo xtask bench --bless`; `cargo xtask test` measures\n\
-         //! again and fails when it finds others.\n#![allow(dead_code, reason = \"a kind whose feature is off costs nothing\")]\n",
+        "//! Core cycles on a Cortex-M4F at the worst input, estimated. Written by `cargo xtask bench --bless`; \
+         `cargo xtask\n\
+         //! test` measures again and fails when it finds others.\n\
+         #![allow(dead_code, reason = \"a kind whose feature is off costs nothing\")]\n",
     );
     for cost in costs {
         let (_, comment, _) = cost;

@@ -92,7 +92,8 @@ proptest! {
                 // there.
                 let expected = reference(sample_hz, played.max(1) - 1);
                 // A step is 2^-31 of a sample too short at most, 4,000 times.
-                prop_assert!((f64::from(now.value) - expected).abs() < 1e-5, "tick {}: {:?} is not {}", played, now, expected);
+                let error = f64::from(now.value) - expected;
+                prop_assert!(error.abs() < 1e-5, "tick {}: {:?} is not {}", played, now, expected);
                 played += 1;
                 let weight = (played as f32 / FADE_TICKS as f32).min(1.0);
                 prop_assert!((now.weight - weight).abs() < 1e-4, "tick {}: {:?}", played, now);
@@ -148,7 +149,8 @@ proptest! {
                 _ => for _ in 0..index % 1_000 {
                     let now = ends.advance();
                     prop_assert!((0.0..=1.0).contains(&now.value) && (0.0..=1.0).contains(&now.weight), "{:?}", now);
-                    prop_assert!((now.weight - before.weight).abs() <= 1.01 / FADE_TICKS as f32, "{:?} {:?}", before, now);
+                    let step = (now.weight - before.weight).abs();
+                    prop_assert!(step <= 1.01 / FADE_TICKS as f32, "{:?} {:?}", before, now);
                     // Once there was nothing of it, it is this stream's.
                     if now.weight == 0.0 { shown = Some(stream); }
                     if shown == Some(stream) && now.weight > 0.0 {

@@ -60,7 +60,8 @@ impl<E: fmt::Debug> fmt::Display for Error<E> {
             Self::Spi(error) => write!(f, "the DAC's bus failed: {error:?}"),
             Self::Configuration(Control(found)) => write!(
                 f,
-                "the DAC's control register reads {found:#06x} instead of its configuration; check supply, SCLK, SDI, SDO and SYNC"
+                "the DAC's control register reads {found:#06x} instead of its configuration; \
+                 check supply, SCLK, SDI, SDO and SYNC"
             ),
             Self::BrownOut(_) => f.write_str("the DAC's supply dips; check its supplies of +-15 V and 3.3 V"),
             Self::ShortCircuit(_) => {

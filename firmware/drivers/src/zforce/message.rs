@@ -111,7 +111,8 @@ mod tests {
     }
 
     fn near(message: Message, x_m: f32, y_m: f32) -> bool {
-        matches!(message, Message::Touch(Touch::Down { x_m: x, y_m: y }) if (x - x_m).abs() < 1e-6 && (y - y_m).abs() < 1e-6)
+        let Message::Touch(Touch::Down { x_m: x, y_m: y }) = message else { return false };
+        (x - x_m).abs() < 1e-6 && (y - y_m).abs() < 1e-6
     }
 
     #[test]

@@ -60,7 +60,8 @@ impl fmt::Display for Mismatch {
             }
             Self::FramesTooShort { max } => write!(
                 f,
-                "the board takes frames of {max} bytes at most, this program sends {FRAME_MAX_LEN}: flash newer firmware"
+                "the board takes frames of {max} bytes at most, this program sends {FRAME_MAX_LEN}: flash newer \
+                 firmware"
             ),
         }
     }

@@ -246,7 +246,8 @@ impl fmt::Display for ConfigRefusal {
         if field == ConfigField::TableRange {
             return write!(
                 f,
-                "the scene's friction from 1 V to its largest voltage, {found:?} V rms, spans more than the board's table holds: \
+                "the scene's friction from 1 V to its largest voltage, {found:?} V rms, spans more than the \
+                 board's table holds: \
                  lower that voltage, or raise the normal load"
             );
         }
@@ -279,7 +280,8 @@ impl fmt::Display for Refusal {
             Self::NoScene => f.write_str("the board holds no scene: upload and commit one first"),
             Self::UploadIncomplete { next_chunk } => write!(
                 f,
-                "no upload is complete: the board waits for chunk {next_chunk}, go on from there or start the upload again"
+                "no upload is complete: the board waits for chunk {next_chunk}, go on from there or start the \
+                 upload again"
             ),
             Self::CrcMismatch { expected, found } => {
                 write!(f, "CRC-32 {expected:#010x} was announced, what arrived has {found:#010x}: upload it again")
@@ -296,12 +298,19 @@ impl fmt::Display for Refusal {
             }
             Self::Scene(error) => error.fmt(f),
             Self::Config(refusal) => refusal.fmt(f),
-            Self::Busy => f.write_str("the board has not finished earlier commands, or still plays the previous scene: try again"),
+            Self::Busy => f.write_str(
+                "the board has not finished earlier commands, or still plays the previous \
+                 scene: try again",
+            ),
             Self::TelemetryTooFast { period_min_ticks } => write!(
                 f,
-                "the board sends telemetry every {period_min_ticks} ticks at most: ask for a longer period, or for zero to end it"
+                "the board sends telemetry every {period_min_ticks} ticks at most: ask for a longer period, or \
+                 for zero to end it"
             ),
-            Self::ArmSwitch => f.write_str("the arm switch was not pressed since the board was last disarmed: release it, press and hold it, and arm again"),
+            Self::ArmSwitch => f.write_str(
+                "the arm switch was not pressed since the board was last disarmed: \
+                 release it, press and hold it, and arm again",
+            ),
             Self::FeatureDisabled { layer: ConfigRefusal::WHOLE_SCENE } => {
                 f.write_str("the firmware was built without the carrier of the scene: flash one that has it")
             }
@@ -314,19 +323,22 @@ impl fmt::Display for Refusal {
             }
             Self::NoSuchLayer { layer, layers } => write!(
                 f,
-                "the playing scene has no layer {layer} (the first is 0), it has {layers}: name one of those, or commit the scene that is meant"
+                "the playing scene has no layer {layer} (the first is 0), it has {layers}: name one of those, \
+                 or commit the scene that is meant"
             ),
             Self::NoStreamLayer => {
                 f.write_str("no layer of the playing scene is a stream: add one to the scene, or send no samples")
             }
             Self::TooCostly { cycles, cycles_max, x_m, y_m } => write!(
                 f,
-                "a tick would take about {cycles} cycles at {:.1} mm, {:.1} mm, and may take {cycles_max}: let fewer layers meet there",
+                "a tick would take about {cycles} cycles at {:.1} mm, {:.1} mm, and may take {cycles_max}: let \
+                 fewer layers meet there",
                 1e3 * x_m,
                 1e3 * y_m
             ),
             Self::LayersFixed => f.write_str(
-                "the playing scene says that its layers stay as they are: say `live = true` in those that are to change, and commit it again",
+                "the playing scene says that its layers stay as they are: say `live = true` in those that are \
+                 to change, and commit it again",
             ),
         }
     }

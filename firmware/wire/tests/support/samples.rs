@@ -170,7 +170,7 @@ fn telemetry(state: State) -> Telemetry {
 fn outcomes() -> Vec<Result<Accepted, Refusal>> {
     let mut outcomes = vec![Ok(Accepted::Done), Ok(Accepted::AlreadyHeld)];
     outcomes.extend(refusals().into_iter().map(Err));
-    outcomes.push(Ok(Accepted::FaultText { len: 32, bytes: *b"panicked at firmware/control/src" }));
+    outcomes.push(Ok(Accepted::FaultText { len: 32, bytes: *b"panicked at firmware/render/src/" }));
     outcomes.push(Ok(Accepted::FaultText { len: 0, bytes: [0; 32] }));
     outcomes
 }

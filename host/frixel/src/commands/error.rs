@@ -97,6 +97,12 @@ pub(crate) enum CommandError {
     NotArmed { port: String },
     #[error("a board with an electrode does not extrapolate: {warning}")]
     NotMeasured { warning: Warning },
+    #[error("{} has no row: the board saw no finger; slide one over its screen while `frixel record` runs", path.display())]
+    NothingRecorded { path: PathBuf },
+    #[error("{failed} of the checks of {port} failed; docs/hardware.md says what each part needs")]
+    SelftestFailed { port: String, failed: usize },
+    #[error("standard input has either the lines of --control or the samples of --stream -: give --stream a file")]
+    ControlAndStream,
     #[error(transparent)]
     FeltLog(#[from] FeltLogError),
     #[error(

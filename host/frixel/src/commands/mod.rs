@@ -1,7 +1,9 @@
 //! The command line: one module per command.
 
+mod completions;
 mod demo;
 mod error;
+mod faults;
 mod fit;
 mod info;
 mod interrupt;
@@ -9,9 +11,11 @@ mod model;
 mod play;
 mod ports;
 mod profiles;
+mod record;
 mod report;
 mod scene;
 mod score;
+mod selftest;
 #[cfg(unix)]
 mod sim;
 mod stroke;
@@ -24,11 +28,15 @@ use clap::{Args, Parser, Subcommand};
 use error::CommandError;
 use stroke::StrokeArgs;
 
+const EXIT_CODES: &str = "Exit codes: 0 when the command did what it says, 1 when it failed (its last line on standard \
+                          error says why), 2 when the command line is invalid. Results go to standard output; notes and \
+                          progress go to standard error, progress only if that is a terminal. Nothing is coloured.";
+
 /// Friction textures on an electrovibration screen, in newtons.
 ///
 /// Without a command, plays the demo.
 #[derive(Debug, Parser)]
-#[command(name = "frixel", version, about)]
+#[command(name = "frixel", version, about, after_help = EXIT_CODES)]
 pub(crate) struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
@@ -51,6 +59,14 @@ enum Command {
     Ports,
     /// Say what board is at a port.
     Info(InfoArgs),
+    /// Record the way of a finger on a board, as a stroke.
+    Record(record::RecordArgs),
+    /// Say what a board's last fault was.
+    Faults(faults::FaultsArgs),
+    /// Check link, clock and telemetry of a board, with its output at zero.
+    Selftest(selftest::SelftestArgs),
+    /// Print completions of commands and options for a shell.
+    Completions(completions::CompletionsArgs),
     /// Evaluate or invert the contact model over rows of CSV.
     #[command(subcommand)]
     Model(model::ModelCommand),
@@ -102,6 +118,11 @@ struct PlayArgs {
     /// --stream.
     #[arg(long)]
     watch: bool,
+    /// Change the scene while it plays, by lines on standard input: `layer "OK" off`, `layer 3 gain 0.5`,
+    /// `trigger "click"`, `replace FILE`, `wait SECONDS`, `quit`. On the simulator, time stands still until the next
+    /// line comes, or the input ends.
+    #[arg(long)]
+    control: bool,
     /// Join what the finger of a virtual board felt: the felt.csv that its `frixel sim` writes, on this machine. With
     /// it, a play to the port of that board writes felt.svg, and `felt_n` into felt.csv.
     #[arg(long, value_name = "FILE.csv")]
@@ -150,6 +171,7 @@ impl PlayArgs {
             arm: false,
             watch: false,
             with_log: None,
+            control: false,
             stream: None,
             stream_hz: None,
         }
@@ -170,6 +192,10 @@ impl Cli {
             Some(Command::Sim(_)) => Err(CommandError::NoPseudoTerminal { what: "frixel sim" }),
             Some(Command::Ports) => ports::run(),
             Some(Command::Info(args)) => info::run(&args),
+            Some(Command::Record(args)) => record::run(&args),
+            Some(Command::Faults(args)) => faults::run(&args),
+            Some(Command::Selftest(args)) => selftest::run(&args),
+            Some(Command::Completions(args)) => completions::run(&args),
             Some(Command::Model(command)) => model::run(&command),
             Some(Command::Fit(args)) => fit::run(&args),
             Some(Command::Report(args)) => report::run(&args),

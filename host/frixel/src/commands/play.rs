@@ -3,6 +3,7 @@
 //! [`Plan`] is the checked input of a play, [`rigs`] opens the board that `--port` names, [`follow`] plays and records,
 //! and [`Outputs`] writes the files. This module prints the results.
 
+mod control;
 #[cfg(unix)]
 mod emulator;
 mod follow;
@@ -37,12 +38,15 @@ pub(super) fn run(args: &PlayArgs) -> Result<(), CommandError> {
     let target = Target::of(&args.port);
     plan::check_options(args, target)?;
     // This comes before the file is read for the first time, so that no change is missed.
-    let live_scene = args.watch.then(|| LiveScene::new(&args.scene, args.profiles.names()));
+    let live_scene = (args.watch || args.control).then(|| {
+        let waits = target == Target::Simulator;
+        LiveScene::new(&args.scene, args.profiles.names(), args.watch, waits)
+    });
     let scene = args.profiles.names().load(&args.scene)?;
     let interrupt = Interrupt::watch()?;
     let played = match target {
-        Target::Simulator => rigs::play_on_simulator(args, &scene, &interrupt),
-        Target::Emulator => rigs::play_on_emulator(args, &scene, &interrupt),
+        Target::Simulator => rigs::play_on_simulator(args, &scene, live_scene, &interrupt),
+        Target::Emulator => rigs::play_on_emulator(args, &scene, live_scene, &interrupt),
         Target::Port => rigs::play_on_port(args, &scene, live_scene, &interrupt),
     }?;
     print(args, &played)?;

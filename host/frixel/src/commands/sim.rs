@@ -20,7 +20,7 @@ const ROWS_HZ: u32 = 1000;
 
 pub(super) fn run(args: &SimArgs) -> Result<(), CommandError> {
     let interrupt = Interrupt::watch()?;
-    let stroke = match args.stroke.stroke()? {
+    let stroke = match args.stroke.stroke([SCREEN_WIDTH_M, SCREEN_HEIGHT_M], None, args.seed)? {
         Some(stroke) => stroke,
         None => Stroke::natural(SCREEN_WIDTH_M, SCREEN_HEIGHT_M, STROKE_S).map_err(CommandError::NaturalStroke)?,
     };

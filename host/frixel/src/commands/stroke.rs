@@ -20,6 +20,11 @@ const CHECK_PERIOD_S: f64 = 1e-3;
 const CHECKS_MAX: f64 = 1e6;
 /// Time between two places of a minimum-jerk stroke that goes back and forth, s.
 const SAMPLE_PERIOD_S: f64 = 1e-3;
+/// Name of the stroke of a person in place of a file.
+const HUMAN: &str = "human";
+/// Duration of a person's stroke unless another is given, s, and the longest.
+const HUMAN_S: f64 = 10.0;
+const HUMAN_MAX_S: f64 = 600.0;
 /// Columns of a stroke file, load in N included, and those of `felt.csv`, which may be played as a stroke.
 const KNOWN_COLUMNS: [&str; 11] = [
     "t_s",
@@ -39,7 +44,7 @@ const KNOWN_COLUMNS: [&str; 11] = [
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct StrokeArgs {
     /// Where the simulated finger goes: a CSV file with the columns `t_s,x_mm,y_mm`, and `force_n` for the
-    /// normal load, for example a felt.csv.
+    /// normal load, for example a felt.csv; or `human`: the stroke of a person, another for every --seed.
     #[arg(long, value_name = "FILE.csv", conflicts_with = "from")]
     stroke: Option<PathBuf>,
     /// Start of a straight stroke, in mm from the top left corner of the screen.
@@ -65,9 +70,21 @@ impl StrokeArgs {
         self.stroke.is_some() || self.from.is_some()
     }
 
-    /// The stroke that the options describe; `None` without options.
-    pub(super) fn stroke(&self) -> Result<Option<Stroke>, CommandError> {
+    /// The stroke that the options describe; `None` without options. A person's stroke covers a screen of this width and
+    /// height, in m, for `seconds` seconds.
+    pub(super) fn stroke(
+        &self,
+        screen_m: [f64; 2],
+        seconds: Option<f64>,
+        seed: u64,
+    ) -> Result<Option<Stroke>, CommandError> {
         match (&self.stroke, self.from, self.to) {
+            (Some(path), ..) if path == Path::new(HUMAN) => {
+                let [width_m, height_m] = screen_m;
+                let seconds = seconds.unwrap_or(HUMAN_S).min(HUMAN_MAX_S);
+                let stroke = Stroke::human(width_m, height_m, seconds, None, seed);
+                stroke.map(Some).map_err(CommandError::NaturalStroke)
+            }
             (Some(path), ..) => from_file(path).map(Some),
             (None, Some(from), Some(to)) => self.straight(from, to).map(Some),
             _ => Ok(None),

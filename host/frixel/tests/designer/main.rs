@@ -1,12 +1,14 @@
 //! The command as a scene's designer uses it, as a process of its own.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
+mod control;
 mod demo;
 mod pictures;
 #[cfg(unix)]
 mod pipes;
 #[cfg(unix)]
 mod ports;
+mod readme;
 mod streams;
 mod strokes;
 

@@ -84,6 +84,11 @@ impl Words for Bitmap {
         Some(Self { picture, x_mm, y_mm, width_mm, height_mm, pitch_mm, angle_deg, tiled, black, white })
     }
 
+    fn move_by(&mut self, x_mm: f64, y_mm: f64) {
+        self.x_mm = self.x_mm.map(|place_mm| place_mm + x_mm);
+        self.y_mm = self.y_mm.map(|place_mm| place_mm + y_mm);
+    }
+
     fn extreme(&self, most: bool, places: &Places) -> &'static str {
         let white_is_most = !self.black.is_above(self.white);
         let amount = if most == white_is_most { WHITE } else { BLACK };

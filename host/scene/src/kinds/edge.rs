@@ -59,6 +59,11 @@ impl Words for Edge {
         Some(Self { x_mm: x_mm?, y_mm: y_mm?, angle_deg, width_mm: width_mm?, ridge: ridge?, click })
     }
 
+    fn move_by(&mut self, x_mm: f64, y_mm: f64) {
+        self.x_mm += x_mm;
+        self.y_mm += y_mm;
+    }
+
     fn extreme(&self, _most: bool, places: &Places) -> &'static str {
         places.first_of(RIDGE.names())
     }

@@ -8,15 +8,15 @@ use super::wave::{self, WaveField};
 use super::{Field, Lowered, Words};
 use crate::cover::Cell;
 use crate::fields::Fields;
-use crate::grammar::Absence::{Mistake, Number};
+use crate::grammar::Absence::{Means, Mistake, Number};
 use crate::grammar::FieldSpec;
 use crate::layer::{Layer, LowHigh, Unit};
 use crate::log::Log;
-use crate::lower::{Lowering, place};
+use crate::lower::{Lowering, MM, place};
 use crate::program::Program;
 use crate::reference::Context;
 use crate::source::Places;
-use crate::tables::{ANGLE_DEG, HIGH, LOW, WAVELENGTH_MM, number};
+use crate::tables::{ANGLE_DEG, HIGH, LOW, WAVELENGTH_MM, number, word};
 
 const WAVELENGTH: FieldSpec = number("wavelength_mm", WAVELENGTH_MM, Mistake, "from stripe to stripe");
 const ANGLE: FieldSpec = number("angle_deg", ANGLE_DEG, Number(0.0), "direction across the stripes");
@@ -28,6 +28,20 @@ const PHASE: FieldSpec = number(
      and saw are low and rise. A phase is how much later in the wave it starts",
 );
 
+const ORIGIN: FieldSpec = word(
+    "origin",
+    Means("`\"screen\"`"),
+    "`\"screen\"`: the phase counts from the screen's top left corner; `\"region\"`: from that of the layer's region, so \
+     that the stripes move with it",
+);
+
+/// Where the phase counts from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Origin {
+    Screen,
+    Region,
+}
+
 /// `kind = "grating"`.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Grating {
@@ -35,6 +49,7 @@ pub(crate) struct Grating {
     wavelength_mm: f64,
     angle_deg: f64,
     phase_deg: f64,
+    origin: Origin,
     amounts: LowHigh,
 }
 
@@ -46,8 +61,10 @@ impl Words for Grating {
         let wavelength_mm = fields.number(log, &WAVELENGTH);
         let angle_deg = fields.number_or_default(log, &ANGLE);
         let phase_deg = fields.number_or_default(log, &PHASE);
+        let origins = [("screen", Origin::Screen), ("region", Origin::Region)];
+        let origin = fields.choice(log, &ORIGIN, &origins).unwrap_or(Origin::Screen);
         let amounts = LowHigh::read(fields, [&LOW, &HIGH], unit, log);
-        Some(Self { wave, wavelength_mm: wavelength_mm?, angle_deg, phase_deg, amounts: amounts? })
+        Some(Self { wave, wavelength_mm: wavelength_mm?, angle_deg, phase_deg, origin, amounts: amounts? })
     }
 
     fn check(&self, places: &Places, log: &mut Log) {
@@ -60,11 +77,16 @@ impl Words for Grating {
 
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {
         let (cycles_per_m_x, cycles_per_m_y) = place::wave_vector(self.wavelength_mm, self.angle_deg);
+        let (x_m, y_m) = match (self.origin, &layer.region) {
+            (Origin::Region, Some(region)) => (MM * region.bounds().x_mm, MM * region.bounds().y_mm),
+            _ => (0.0, 0.0),
+        };
+        let origin_turns = f64::from(cycles_per_m_x) * x_m + f64::from(cycles_per_m_y) * y_m;
         let record = Record {
             wave: self.wave,
             cycles_per_m_x,
             cycles_per_m_y,
-            phase_turns: (self.phase_deg / 360.0).rem_euclid(1.0) as f32,
+            phase_turns: (self.phase_deg / 360.0 - origin_turns).rem_euclid(1.0) as f32,
             trough_n: lowering.amount(layer, self.amounts.low),
             crest_n: lowering.amount(layer, self.amounts.high),
         };

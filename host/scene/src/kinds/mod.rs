@@ -57,6 +57,11 @@ pub(crate) trait Words: Sized {
     /// The name of the field that sets the largest friction, or the least.
     fn extreme(&self, most: bool, places: &Places) -> &'static str;
 
+    /// Moves the places that the kind's own fields name, for a copy of the layer.
+    fn move_by(&mut self, x_mm: f64, y_mm: f64) {
+        let _ = (x_mm, y_mm);
+    }
+
     /// The layer of a record; `None` after a mistake, which has been logged.
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered>;
 }
@@ -183,6 +188,11 @@ macro_rules! kinds {
             /// The name of the field that sets the largest friction, or the least.
             pub(crate) fn extreme(&self, most: bool, places: &Places) -> &'static str {
                 match self { $( Self::$kind(kind) => Words::extreme(kind, most, places), )* }
+            }
+
+            /// Moves the places that the kind's own fields name.
+            pub(crate) fn move_by(&mut self, x_mm: f64, y_mm: f64) {
+                match self { $( Self::$kind(kind) => Words::move_by(kind, x_mm, y_mm), )* }
             }
 
             /// The layer of a record; `None` after a mistake, which has been logged.

@@ -48,6 +48,11 @@ impl Words for Rings {
         self.amounts.check(places, log);
     }
 
+    fn move_by(&mut self, x_mm: f64, y_mm: f64) {
+        self.x_mm += x_mm;
+        self.y_mm += y_mm;
+    }
+
     fn extreme(&self, most: bool, places: &Places) -> &'static str {
         LowHigh::extreme(most, places)
     }

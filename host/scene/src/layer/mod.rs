@@ -2,11 +2,13 @@
 
 mod amount;
 mod region;
+mod repeat;
 
 use frixel_layers::Blend;
 
 pub(crate) use amount::{Amount, LowHigh, Unit};
 pub(crate) use region::{Rectangle, Region};
+use repeat::Repeat;
 
 use super::fields::Fields;
 use super::kinds::{Kind, KindName};
@@ -21,6 +23,8 @@ pub(crate) struct Layer {
     /// The layer's title in messages: its number from one, and its name or kind.
     pub(crate) title: String,
     pub(crate) name: Option<String>,
+    /// Whether `repeat` made it from another layer.
+    pub(crate) is_copy: bool,
     pub(crate) region: Option<Region>,
     pub(crate) blend: Blend,
     pub(crate) gain: f64,
@@ -41,8 +45,8 @@ pub(crate) enum Above {
 }
 
 impl Layer {
-    /// Reads layer `number`, counted from one.
-    pub(crate) fn read(mut fields: Fields, number: usize, log: &mut Log) -> Option<Self> {
+    /// Reads layer `number`, counted from one, and returns its copies.
+    pub(crate) fn read(mut fields: Fields, number: usize, log: &mut Log) -> Option<Vec<Self>> {
         fields.rename(format!("layer {number}"));
         let name = fields.text(log, &tables::layer::NAME);
         let Some(kind_name) = fields.choice_or_nearest(log, &tables::layer::KIND, KindName::ALL) else {
@@ -56,7 +60,7 @@ impl Layer {
             |name| format!("layer {number} \"{name}\""),
         );
         fields.rename(title.clone());
-        let Common { region, blend, gain, live, unit, above } = Common::read(&mut fields, kind_name, log);
+        let Common { region, repeat, blend, gain, live, unit, above } = Common::read(&mut fields, kind_name, log);
         let kind = kind_name.read(&mut fields, unit, log);
         let places = fields.close(log);
         if blend == Blend::Add && above == Some(Above::Zero) {
@@ -67,13 +71,14 @@ impl Layer {
         let region = region.ok()?;
         let kind = kind?;
         kind.check(&places, log);
-        Some(Self { title, name, region, blend, gain, above, live, kind, places })
+        Some(repeat.of(&Self { title, name, is_copy: false, region, blend, gain, above, live, kind, places }))
     }
 }
 
 /// The fields that every kind of layer has.
 struct Common {
     region: Result<Option<Region>, region::Misread>,
+    repeat: Repeat,
     blend: Blend,
     gain: f64,
     live: bool,
@@ -84,6 +89,7 @@ struct Common {
 impl Common {
     fn read(fields: &mut Fields, kind: KindName, log: &mut Log) -> Self {
         let region = region::read(fields, kind, log);
+        let repeat = Repeat::read(fields, log);
         let (blends, blend) = kind.blends();
         let blend = fields.choice(log, &tables::layer::BLEND, blends).unwrap_or(blend);
         let gain = fields.number_or_default(log, &tables::layer::GAIN);
@@ -96,6 +102,6 @@ impl Common {
             }
             Unit::Factor => None,
         };
-        Self { region, blend, gain, live, unit, above }
+        Self { region, repeat, blend, gain, live, unit, above }
     }
 }

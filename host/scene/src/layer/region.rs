@@ -36,6 +36,17 @@ enum Shape {
 }
 
 impl Region {
+    /// The same region elsewhere.
+    pub(crate) fn moved_by(self, x_mm: f64, y_mm: f64) -> Self {
+        let moved =
+            |rectangle: Rectangle| Rectangle { x_mm: rectangle.x_mm + x_mm, y_mm: rectangle.y_mm + y_mm, ..rectangle };
+        match self {
+            Self::Rectangle(rectangle) => Self::Rectangle(moved(rectangle)),
+            Self::Ellipse(rectangle) => Self::Ellipse(moved(rectangle)),
+            Self::Polygon(vertices) => Self::Polygon(vertices.into_iter().map(|(x, y)| (x + x_mm, y + y_mm)).collect()),
+        }
+    }
+
     /// The smallest rectangle around it.
     pub(crate) fn bounds(&self) -> Rectangle {
         match self {

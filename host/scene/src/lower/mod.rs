@@ -60,6 +60,11 @@ impl<'a, 's> Lowering<'a, 's> {
         Gathered { points: self.points, bitmaps, notes: self.notes, optimisations }
     }
 
+    /// Number of mistakes so far.
+    pub(super) fn mistakes(&self) -> usize {
+        self.log.mistakes()
+    }
+
     /// The record of a layer; `None` if it has a mistake.
     pub(super) fn record(&mut self, layer: &Layer) -> Option<Record> {
         let Lowered { layer: record_layer, outline } = layer.kind.lower(layer, self)?;

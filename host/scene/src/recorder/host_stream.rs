@@ -34,6 +34,17 @@ pub(super) struct HostStream {
     dry: bool,
     /// Ticks since the board may have begun to play.
     ticks_with_samples: u32,
+    /// Changes of layers that the caller has not taken yet.
+    layer_changes: Vec<LayerChange>,
+}
+
+/// A change of a layer while it plays.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LayerChange {
+    /// Number of the record, from zero.
+    pub(super) layer: u8,
+    pub(super) on: bool,
+    pub(super) gain: f32,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,6 +74,7 @@ impl HostStream {
             weight: 0.0,
             dry: false,
             ticks_with_samples: 0,
+            layer_changes: Vec::new(),
         }
     }
 
@@ -96,6 +108,11 @@ impl HostStream {
         (self.value(), self.weight)
     }
 
+    /// The changes of layers that the host has sent since the last call.
+    pub(super) fn take_layer_changes(&mut self) -> Vec<LayerChange> {
+        std::mem::take(&mut self.layer_changes)
+    }
+
     fn handle(&mut self, command: Command) {
         match command {
             Command::StartStream { sample_hz, .. } => {
@@ -105,6 +122,7 @@ impl HostStream {
                 self.ticks_with_samples = 0;
             }
             Command::EndStream => self.ended = true,
+            Command::SetLayer { layer, on, gain } => self.layer_changes.push(LayerChange { layer, on, gain }),
             Command::Stop | Command::Disarm => (self.phase, self.weight) = (Phase::Over, 0.0),
             _ => {}
         }

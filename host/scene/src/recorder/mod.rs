@@ -17,7 +17,7 @@ use frixel_wire::hello::BoardLimits;
 use crate::Program;
 use crate::metrics::{Metrics, MetricsSummary, Sample};
 use crate::reference::{Context, Reference, StrokeReference};
-use host_stream::HostStream;
+use host_stream::{HostStream, LayerChange};
 use inversion::Inversion;
 pub use observation::{FeltFriction, FingerState, Observation};
 pub use rows::FeltRow;
@@ -103,10 +103,13 @@ impl Recorder {
     }
 
     /// Reads bytes that the host sends to the board: whole frames or parts of them, in order. The samples of a stream
-    /// in them are part of the reference.
+    /// and the changes of layers in them are part of the reference.
     pub fn record_sent(&mut self, bytes: &[u8]) {
         if let Some(comparison) = &mut self.comparison {
             comparison.stream.receive(bytes);
+            for LayerChange { layer, on, gain } in comparison.stream.take_layer_changes() {
+                comparison.reference.set_layer(layer.into(), on, gain.into());
+            }
         }
     }
 

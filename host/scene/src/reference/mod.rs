@@ -29,6 +29,8 @@ pub(crate) struct Piece {
     pub(crate) shape: Shape,
     pub(crate) blend: Blend,
     pub(crate) gain: f64,
+    /// A layer that is off is as if it were not there.
+    pub(crate) is_on: bool,
     pub(crate) field: Arc<dyn Field>,
     /// Whether the layer fades with the host's stream.
     pub(crate) is_streamed: bool,
@@ -79,7 +81,7 @@ impl Reference {
 
     /// Electric friction in a context. `click_n` returns the friction that a layer's click adds.
     fn at(&self, context: &Context, click_n: impl Fn(usize) -> f64) -> f64 {
-        let covers = |piece: &Piece| piece.shape.covers(context.x_m, context.y_m);
+        let covers = |piece: &Piece| piece.is_on && piece.shape.covers(context.x_m, context.y_m);
         // Layers below one that replaces them need no evaluation.
         let lowest = self.pieces.iter().rposition(|piece| piece.hides_below() && covers(piece)).unwrap_or(0);
         let above = self.pieces.iter().enumerate().skip(lowest).filter(|(_, piece)| covers(piece));
@@ -111,6 +113,6 @@ impl Piece {
         let shape = Shape::new(record.region, &program.points);
         let field = kinds::field(&record.layer, record.region, program);
         let is_streamed = record.layer.is_streamed();
-        Self { shape, blend: record.blend, gain: f64::from(record.gain), field, is_streamed }
+        Self { shape, blend: record.blend, gain: f64::from(record.gain), is_on: true, field, is_streamed }
     }
 }

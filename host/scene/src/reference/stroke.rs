@@ -65,6 +65,13 @@ impl StrokeReference {
         self.reference.at(context, click_n)
     }
 
+    /// Switches a layer on or off, by its index from the bottom, and sets its gain.
+    pub fn set_layer(&mut self, layer: usize, on: bool, gain: f64) {
+        if let Some(piece) = self.reference.pieces.get_mut(layer) {
+            (piece.is_on, piece.gain) = (on, gain);
+        }
+    }
+
     /// Records that the finger leaves the screen.
     pub fn lift(&mut self) {
         self.touching = false;

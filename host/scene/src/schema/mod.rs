@@ -23,6 +23,7 @@ pub fn json_schema() -> String {
     let mut definitions = Map::new();
     definitions.insert("layer".to_owned(), json!({ "oneOf": layers() }));
     definitions.insert("region".to_owned(), json!({ "oneOf": regions() }));
+    definitions.insert("repeat".to_owned(), repeat());
     let [(_, newest), _] = EMPTY;
     for table in describe(newest).iter().filter(|table| SHARED.contains(&table.key)) {
         definitions.insert(table.key.to_owned(), object(table, &Map::new()));
@@ -91,6 +92,12 @@ fn regions() -> Vec<Value> {
     variants(&tables).iter().map(|variant| variant_object(variant, &Map::new())).collect()
 }
 
+/// The schema of the copies of a layer.
+fn repeat() -> Value {
+    let tables = describe("layer = [{ kind = \"constant\", repeat = {} }]");
+    tables.iter().find(|table| table.key == "repeat").map_or(Value::Null, |table| object(table, &Map::new()))
+}
+
 /// The schemas of a layer, one for each set of fields that can occur together.
 fn layers() -> Vec<Value> {
     let none = describe("layer = [{}]");
@@ -104,6 +111,7 @@ fn layers() -> Vec<Value> {
         let mut inner = Map::new();
         inner.insert("kind".to_owned(), json!({ "const": kind }));
         inner.insert("region".to_owned(), json!({ "$ref": "#/definitions/region" }));
+        inner.insert("repeat".to_owned(), json!({ "$ref": "#/definitions/repeat" }));
         if let Some(burst) = burst {
             inner.insert("burst".to_owned(), object(burst, &Map::new()));
         }

@@ -10,7 +10,7 @@ use crate::FingerProfile;
 use crate::grammar::{Absence, FieldSpec, Holds, KnownField, Range};
 use crate::kinds::KindName;
 use crate::schema::variant::{Tables, variants};
-use crate::tables::layer::{ABOVE, BLEND, GAIN, KIND, LIVE, NAME, REGION};
+use crate::tables::layer::{ABOVE, BLEND, GAIN, KIND, LIVE, NAME, REGION, REPEAT};
 
 const DOCS: &str = include_str!("../../../../docs/scene.md");
 
@@ -50,7 +50,7 @@ fn every_example_compiles() {
 }
 
 /// The fields of every layer.
-const COMMON: [FieldSpec; 7] = [KIND, NAME, REGION, BLEND, GAIN, ABOVE, LIVE];
+const COMMON: [FieldSpec; 8] = [KIND, NAME, REGION, REPEAT, BLEND, GAIN, ABOVE, LIVE];
 
 /// All fields that the parser knows in a table, for any values of its other fields, in the order in which it reads
 /// them.
@@ -80,6 +80,7 @@ fn documented() -> Vec<(String, Vec<KnownField>)> {
     let layer = |kind: &str| known(&format!("layer = [{{ kind = \"{kind}\""), "}]", "layer");
     all.push(("## Layers".to_owned(), layer("constant").into_iter().filter(is_common).collect()));
     all.push(("### Regions".to_owned(), known("layer = [{ kind = \"constant\", region = {", "} }]", "region")));
+    all.push(("### Repeats".to_owned(), known("layer = [{ kind = \"constant\", repeat = {", "} }]", "repeat")));
     for kind in kinds() {
         let own = layer(kind).into_iter().filter(|known| !is_common(known)).collect();
         all.push((format!("### `{kind}`"), own));

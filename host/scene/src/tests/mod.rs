@@ -14,6 +14,7 @@ mod json_schema;
 mod layers;
 mod optimise;
 mod profiles;
+mod repeat;
 mod schema;
 
 pub(super) const LIMITS: BoardLimits = Board::SIMULATOR.limits;

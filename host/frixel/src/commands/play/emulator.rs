@@ -9,12 +9,18 @@ use frixel_hil_sim::{Stroke, World, WorldConfig, contact_of};
 use frixel_scene::{Program, Scene};
 
 use super::follow::follow;
+use super::live_scene::LiveScene;
 use super::plan::Plan;
 use super::rigs::Target;
 use super::{CommandError, Interrupt, PlayArgs, Played};
 
 /// Plays on the firmware in an emulator, under a simulated finger.
-pub(super) fn play_on_emulator(args: &PlayArgs, scene: &Scene, interrupt: &Interrupt) -> Result<Played, CommandError> {
+pub(super) fn play_on_emulator(
+    args: &PlayArgs,
+    scene: &Scene,
+    live_scene: Option<LiveScene>,
+    interrupt: &Interrupt,
+) -> Result<Played, CommandError> {
     let mut plan = Plan::new(args, scene, Target::Emulator, (&BOARD.limits, BOARD.tick_hz))?;
     let stroke = plan.choose_stroke(args)?;
     let world = world(&plan.program, stroke, args.seed)?;
@@ -25,7 +31,7 @@ pub(super) fn play_on_emulator(args: &PlayArgs, scene: &Scene, interrupt: &Inter
         let _ = sender.send(*record);
     })?;
     let device = Device::connect(EmulatedLink::open(&board, records)?)?;
-    let mut played = follow(args, plan, device, None, interrupt)?;
+    let mut played = follow(args, plan, device, live_scene, interrupt)?;
     if !interrupt.is_requested() {
         played.failure = played.failure.or(board.check().err().map(CommandError::from));
     }

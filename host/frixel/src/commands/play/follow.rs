@@ -8,10 +8,12 @@ use frixel::player::{PlayError, Player};
 use frixel::rigs::RecordedLink;
 use frixel_driver::Device;
 
+use super::control::{Control, Next};
 use super::live_scene::LiveScene;
 use super::outputs::Outputs;
 use super::plan::Plan;
 use super::progress::Bars;
+use super::rigs::Target;
 use super::{CommandError, Interrupt, PlayArgs, Played, note};
 
 /// Plays until the plan is complete, the user interrupts it, or the board stops. Everything up to then is recorded.
@@ -25,8 +27,10 @@ pub(super) fn follow<L: RecordedLink>(
     let is_simulated = plan.target.is_virtual_time() || device.hello().board.is_simulated();
     let outputs = Outputs::create(args, plan.target, is_simulated, &plan.program)?;
     let player = Player::new(device, plan.recorder()?);
-    let mut play =
-        Play { args, plan, player, outputs, live_scene, interrupt, bars: Bars::default(), writing: Duration::ZERO };
+    let waits = plan.target == Target::Simulator;
+    let control = args.control.then(|| Control::start(&plan.program, waits, interrupt)).transpose()?;
+    let (bars, writing) = (Bars::default(), Duration::ZERO);
+    let mut play = Play { args, plan, player, outputs, live_scene, control, interrupt, bars, writing };
     play.start()?;
     let begin = Instant::now();
     let ended = play.until_over();
@@ -41,6 +45,7 @@ struct Play<'a, L: RecordedLink> {
     player: Player<L>,
     outputs: Outputs,
     live_scene: Option<LiveScene>,
+    control: Option<Control>,
     interrupt: &'a Interrupt,
     bars: Bars,
     /// Wall time spent on writing files.
@@ -66,7 +71,8 @@ impl<L: RecordedLink> Play<'_, L> {
             if self.plan.ends_with_stream() && self.player.is_stream_over() {
                 break;
             }
-            let stepped = self.player.step(left);
+            let Some(step_max) = self.control()? else { break };
+            let stepped = self.player.step(left.min(step_max));
             self.write_rows()?;
             left = left.saturating_sub(stepped.map_err(|error| self.error(error))?);
             self.refresh_scene()?;
@@ -82,12 +88,36 @@ impl<L: RecordedLink> Play<'_, L> {
         written
     }
 
+    /// Carries out the lines of `--control`. Returns the longest time until they are looked at again; `None` if they
+    /// end the play.
+    fn control(&mut self) -> Result<Option<Duration>, CommandError> {
+        let Some(control) = &mut self.control else { return Ok(Some(Duration::MAX)) };
+        let t_s = self.player.recorder_mut().t_s();
+        let next = control.step(&mut self.player, &self.plan.program, t_s);
+        let step_max = control.time_max(t_s);
+        match next.map_err(|error| self.error(error))? {
+            Next::GoOn => {}
+            Next::Quit => return Ok(None),
+            Next::Replace(path) => {
+                if let Some(live_scene) = &mut self.live_scene {
+                    live_scene.load(&path, &self.player);
+                    self.refresh_scene()?;
+                    return Ok(Some(Duration::ZERO));
+                }
+            }
+        }
+        Ok(Some(step_max))
+    }
+
     /// Replaces the scene if its file was saved.
     fn refresh_scene(&mut self) -> Result<(), CommandError> {
         let Some(live_scene) = &mut self.live_scene else { return Ok(()) };
         match live_scene.refresh(&mut self.player, &self.plan.program) {
             Ok(Some(program)) => {
                 self.outputs.replace(&program);
+                if let Some(control) = &mut self.control {
+                    control.replace(&program);
+                }
                 self.plan.program = program;
             }
             Ok(None) => {}

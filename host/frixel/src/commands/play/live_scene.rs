@@ -23,6 +23,10 @@ pub(super) struct LiveScene {
     named_files: Vec<SavedFile>,
     /// The thread that compiles a saved scene, because the host must keep sending to the board meanwhile.
     compiling: Option<JoinHandle<Compiled>>,
+    /// Whether changes of the files are played.
+    watches: bool,
+    /// Whether the play waits for the compiler, because time is virtual.
+    waits: bool,
 }
 
 /// A compiled scene, and the files that it names, as they were before they were read.
@@ -32,11 +36,18 @@ struct Compiled {
 }
 
 impl LiveScene {
-    /// Watches a file, and the files that it names, for changes from now on. Call this before the file is read.
-    pub(super) fn new(path: &Path, profiles: ProfileNames) -> Self {
+    /// Watches a file, and the files that it names, for changes from now on if `watches` is true. Call this before the
+    /// file is read.
+    pub(super) fn new(path: &Path, profiles: ProfileNames, watches: bool, waits: bool) -> Self {
         let file = SavedFile::new(path);
-        let (_, named_files) = profiles.load_with_files(path);
-        Self { profiles, file, named_files: watched(named_files), compiling: None }
+        let named_files = if watches { profiles.load_with_files(path).1 } else { Vec::new() };
+        Self { profiles, file, named_files: watched(named_files), compiling: None, watches, waits }
+    }
+
+    /// Plays, and watches, another file from now on.
+    pub(super) fn load<L: RecordedLink>(&mut self, path: &Path, player: &Player<L>) {
+        self.file = SavedFile::new(path);
+        self.compile(player);
     }
 
     /// Plays the file if it was saved, or if a file that it names was. Returns the new program if it replaced
@@ -46,10 +57,13 @@ impl LiveScene {
         player: &mut Player<L>,
         playing: &Program,
     ) -> Result<Option<Program>, PlayError> {
-        if let Some(compiling) = self.compiling.take_if(|compiling| compiling.is_finished()) {
+        if let Some(compiling) = self.compiling.take_if(|compiling| self.waits || compiling.is_finished()) {
             let Compiled { program, named_files } = compiling.join().unwrap_or_else(|panic| resume_unwind(panic));
             self.named_files = named_files;
             return replace(self.file.path(), program, player, playing);
+        }
+        if !self.watches {
+            return Ok(None);
         }
         if self.file.has_vanished() {
             let path = self.file.path().display();
@@ -58,15 +72,19 @@ impl LiveScene {
         // Every file is checked, so that several that are saved together are one change.
         let is_saved = self.named_files.iter_mut().fold(self.file.is_saved(), |saved, file| file.is_saved() || saved);
         if self.compiling.is_none() && is_saved {
-            let (path, Hello { limits, tick_hz, .. }) = (self.file.path().to_owned(), *player.device().hello());
-            let profiles = self.profiles.clone();
-            self.compiling = Some(thread::spawn(move || {
-                let (scene, named_files) = profiles.load_with_files(&path);
-                let program = scene.and_then(|scene| Ok(compile(&scene, &limits, tick_hz)?));
-                Compiled { program, named_files: watched(named_files) }
-            }));
+            self.compile(player);
         }
         Ok(None)
+    }
+
+    fn compile<L: RecordedLink>(&mut self, player: &Player<L>) {
+        let (path, Hello { limits, tick_hz, .. }) = (self.file.path().to_owned(), *player.device().hello());
+        let profiles = self.profiles.clone();
+        self.compiling = Some(thread::spawn(move || {
+            let (scene, named_files) = profiles.load_with_files(&path);
+            let program = scene.and_then(|scene| Ok(compile(&scene, &limits, tick_hz)?));
+            Compiled { program, named_files: watched(named_files) }
+        }));
     }
 }
 
@@ -92,7 +110,7 @@ fn replace<L: RecordedLink>(
     };
     if let Err(error) = check_measured(&program, player.device().hello().board) {
         note(error);
-        note(format_args!("frixel: {} is not played: the scene before plays on", path));
+        note(format_args!("frixel: {path} is not played: the scene before plays on"));
         return Ok(None);
     }
     let mut how = "";

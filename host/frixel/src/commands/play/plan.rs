@@ -38,6 +38,9 @@ pub(super) struct Plan {
 /// Rejects options that the board named by `--port` does not support.
 pub(super) fn check_options(args: &PlayArgs, target: Target) -> Result<(), CommandError> {
     let port = || args.port.clone();
+    if args.control && args.stream.as_deref() == Some(Path::new("-")) {
+        return Err(CommandError::ControlAndStream);
+    }
     match target {
         Target::Simulator | Target::Emulator if args.watch => Err(CommandError::WatchInVirtualTime { port: port() }),
         Target::Simulator | Target::Emulator if args.with_log.is_some() => {
@@ -82,7 +85,7 @@ impl Plan {
         let header = &self.program.header;
         let (width_m, height_m) = (header.screen_width_m.into(), header.screen_height_m.into());
         let stream_s = self.feed.as_ref().and_then(Feed::duration_s);
-        let given = args.stroke.stroke()?;
+        let given = args.stroke.stroke([width_m, height_m], args.seconds.or(stream_s), args.seed)?;
         let stroke = match &given {
             Some(stroke) => stroke.clone(),
             None => default_stroke(&self.program, args.seconds.or(stream_s)).map_err(CommandError::NaturalStroke)?,

@@ -50,7 +50,12 @@ impl Target {
 }
 
 /// Plays on the simulated board, under a simulated finger.
-pub(super) fn play_on_simulator(args: &PlayArgs, scene: &Scene, interrupt: &Interrupt) -> Result<Played, CommandError> {
+pub(super) fn play_on_simulator(
+    args: &PlayArgs,
+    scene: &Scene,
+    live_scene: Option<LiveScene>,
+    interrupt: &Interrupt,
+) -> Result<Played, CommandError> {
     let config = RigConfig::default();
     let board = (&config.board.limits, config.board.tick_hz);
     let mut plan = Plan::new(args, scene, Target::Simulator, board)?;
@@ -58,12 +63,17 @@ pub(super) fn play_on_simulator(args: &PlayArgs, scene: &Scene, interrupt: &Inte
     let mut memory = BoardMemory::new();
     let rig = Rig::new(&mut memory, &config, stroke, args.seed)?;
     let device = Device::connect(SimLink::new(rig, Recorder::idle()))?;
-    follow(args, plan, device, None, interrupt)
+    follow(args, plan, device, live_scene, interrupt)
 }
 
 /// Rejects the emulator, because its serial port is a pseudo-terminal.
 #[cfg(not(unix))]
-pub(super) fn play_on_emulator(_: &PlayArgs, _: &Scene, _: &Interrupt) -> Result<Played, CommandError> {
+pub(super) fn play_on_emulator(
+    _: &PlayArgs,
+    _: &Scene,
+    _: Option<LiveScene>,
+    _: &Interrupt,
+) -> Result<Played, CommandError> {
     Err(CommandError::NoPseudoTerminal { what: "--port qemu" })
 }
 

@@ -1,0 +1,222 @@
+//! The words with which a program changes a scene while it plays. The command, the page and the Python module share
+//! them.
+//!
+//! A line is one of
+//!
+//! - `layer NAME on`, `layer NAME off`, `layer NAME gain X`, or several of these words: changes a layer;
+//! - `trigger NAME [MS]`: switches a layer on, and off again after so many milliseconds, 100 without a number;
+//! - `replace FILE`: plays another scene, or the same one anew;
+//! - `wait S`: carries the lines behind it out so many seconds later;
+//! - `quit`: ends the play.
+//!
+//! A name is that of the layer in the scene, or its number from 1. A name or file with spaces stands in quotation marks.
+//! Empty lines, and what follows `#`, are ignored.
+
+use thiserror::Error;
+
+/// Duration of a trigger without one, s.
+const TRIGGER_S: f64 = 0.1;
+/// Longest duration of a trigger or a wait: one hour, s.
+const DURATION_MAX_S: f64 = 3_600.0;
+/// Largest magnitude of a gain (PROTOCOL, `SetLayer`).
+const GAIN_MAX: f32 = 100.0;
+
+/// A line, parsed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ControlLine {
+    /// Changes a layer.
+    Layer {
+        /// Its name, or its number from 1.
+        layer: String,
+        /// Whether it is on from now on; `None` leaves it as it is.
+        on: Option<bool>,
+        /// The factor on its friction; `None` leaves it as it is.
+        gain: Option<f32>,
+    },
+    /// Switches a layer on for a time.
+    Trigger {
+        /// Its name, or its number from 1.
+        layer: String,
+        /// How long, in s.
+        duration_s: f64,
+    },
+    /// Plays another scene.
+    Replace {
+        /// Path of the scene file.
+        file: String,
+    },
+    /// Delays the following lines.
+    Wait {
+        /// How long, in s.
+        duration_s: f64,
+    },
+    /// Ends the play.
+    Quit,
+}
+
+/// Why a line cannot be carried out.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum ControlError {
+    /// The first word is none of the vocabulary.
+    #[error("`{0}` is no control word: write layer, trigger, replace, wait or quit")]
+    UnknownWord(String),
+    /// A word is missing at the end.
+    #[error("`{line}` ends too early: {expected}")]
+    Incomplete {
+        /// The line.
+        line: String,
+        /// What comes after the last word.
+        expected: &'static str,
+    },
+    /// A word does not belong where it is.
+    #[error("`{found}` is unexpected here: {expected}")]
+    Unexpected {
+        /// The word.
+        found: String,
+        /// What belongs there.
+        expected: &'static str,
+    },
+    /// A quotation mark has no partner.
+    #[error("the quotation mark of `{0}` is not closed: put one behind the name")]
+    OpenQuote(String),
+}
+
+const LAYER: &str = "give the name of a layer, or its number from 1";
+const CHANGE: &str = "write on, off, or gain and a number from -100 to 100";
+const FILE: &str = "give the path of a scene file";
+const MILLISECONDS: &str = "give a number of milliseconds above 0, at most an hour";
+const SECONDS: &str = "give a number of seconds above 0, at most an hour";
+const NOTHING: &str = "nothing belongs behind this line";
+
+impl ControlLine {
+    /// Parses a line; `None` for one without words.
+    ///
+    /// ```
+    /// use frixel_driver::ControlLine;
+    ///
+    /// let line = ControlLine::parse("layer \"OK button\" gain 0.5  # softer")?;
+    /// let softer = ControlLine::Layer { layer: "OK button".into(), on: None, gain: Some(0.5) };
+    /// assert_eq!(line, Some(softer));
+    /// # Ok::<(), frixel_driver::ControlError>(())
+    /// ```
+    pub fn parse(line: &str) -> Result<Option<Self>, ControlError> {
+        let mut words = Words { line: line.trim(), words: words(line)?.into_iter() };
+        let Some(first) = words.words.next() else { return Ok(None) };
+        let parsed = match first.as_str() {
+            "layer" => Self::layer(&mut words)?,
+            "trigger" => {
+                let layer = words.next(LAYER)?;
+                let number = words.words.next();
+                let duration_s = number.map_or(Ok(TRIGGER_S), |found| duration_s(&found, 1e-3, MILLISECONDS))?;
+                Self::Trigger { layer, duration_s }
+            }
+            "replace" => Self::Replace { file: words.next(FILE)? },
+            "wait" => Self::Wait { duration_s: duration_s(&words.next(SECONDS)?, 1.0, SECONDS)? },
+            "quit" => Self::Quit,
+            _ => return Err(ControlError::UnknownWord(first)),
+        };
+        match words.words.next() {
+            Some(found) => Err(ControlError::Unexpected { found, expected: NOTHING }),
+            None => Ok(Some(parsed)),
+        }
+    }
+
+    fn layer(words: &mut Words) -> Result<Self, ControlError> {
+        let layer = words.next(LAYER)?;
+        let (mut on, mut gain) = (None, None);
+        let mut word = words.next(CHANGE)?;
+        loop {
+            match word.as_str() {
+                "on" => on = Some(true),
+                "off" => on = Some(false),
+                "gain" => {
+                    let found = words.next(CHANGE)?;
+                    let number = found.parse().ok().filter(|gain: &f32| gain.abs() <= GAIN_MAX);
+                    gain = Some(number.ok_or(ControlError::Unexpected { found, expected: CHANGE })?);
+                }
+                _ => return Err(ControlError::Unexpected { found: word, expected: CHANGE }),
+            }
+            match words.words.next() {
+                Some(next) => word = next,
+                None => return Ok(Self::Layer { layer, on, gain }),
+            }
+        }
+    }
+}
+
+/// The words of a line that are left.
+struct Words<'l> {
+    line: &'l str,
+    words: std::vec::IntoIter<String>,
+}
+
+impl Words<'_> {
+    fn next(&mut self, expected: &'static str) -> Result<String, ControlError> {
+        self.words.next().ok_or_else(|| ControlError::Incomplete { line: self.line.to_owned(), expected })
+    }
+}
+
+/// Splits a line at spaces outside of quotation marks, up to a `#`.
+fn words(line: &str) -> Result<Vec<String>, ControlError> {
+    let mut words = Vec::new();
+    let mut rest = line.trim_start();
+    while !rest.is_empty() && !rest.starts_with('#') {
+        let (word, behind) = match rest.strip_prefix('"') {
+            Some(quoted) => quoted.split_once('"').ok_or_else(|| ControlError::OpenQuote(rest.to_owned()))?,
+            None => rest.split_at(rest.find(char::is_whitespace).unwrap_or(rest.len())),
+        };
+        words.push(word.to_owned());
+        rest = behind.trim_start();
+    }
+    Ok(words)
+}
+
+fn duration_s(found: &str, unit_s: f64, expected: &'static str) -> Result<f64, ControlError> {
+    let seconds = found.parse::<f64>().ok().map(|number| unit_s * number);
+    let seconds = seconds.filter(|seconds| *seconds > 0.0 && *seconds <= DURATION_MAX_S);
+    seconds.ok_or_else(|| ControlError::Unexpected { found: found.to_owned(), expected })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_word_is_understood() {
+        let layer = |on, gain| Some(ControlLine::Layer { layer: "OK".into(), on, gain });
+        let trigger = |duration_s| Some(ControlLine::Trigger { layer: "OK".into(), duration_s });
+        for (line, expected) in [
+            ("layer OK off", layer(Some(false), None)),
+            ("  layer \"OK\" on gain -0.5", layer(Some(true), Some(-0.5))),
+            ("layer OK gain 2 # louder", layer(None, Some(2.0))),
+            ("trigger OK", trigger(0.1)),
+            ("trigger OK 250", trigger(0.25)),
+            ("replace \"my scene.toml\"", Some(ControlLine::Replace { file: "my scene.toml".into() })),
+            ("wait 1.5", Some(ControlLine::Wait { duration_s: 1.5 })),
+            ("quit", Some(ControlLine::Quit)),
+            ("", None),
+            ("# a comment", None),
+        ] {
+            assert_eq!(ControlLine::parse(line), Ok(expected), "{line}");
+        }
+    }
+
+    #[test]
+    fn what_is_not_understood_is_said_in_a_sentence() {
+        for (line, parts) in [
+            ("leyer OK off", ["`leyer` is no control word", "layer, trigger, replace, wait or quit"]),
+            ("layer", ["`layer` ends too early", "name of a layer"]),
+            ("layer OK", ["ends too early", "write on, off, or gain"]),
+            ("layer OK louder", ["`louder` is unexpected", "write on, off, or gain"]),
+            ("layer OK gain 200", ["`200` is unexpected", "-100 to 100"]),
+            ("layer OK gain nan", ["`nan` is unexpected", "-100 to 100"]),
+            ("layer \"OK off", ["`\"OK off` is not closed", "put one behind"]),
+            ("trigger OK -3", ["`-3` is unexpected", "milliseconds above 0"]),
+            ("wait", ["ends too early", "seconds above 0"]),
+            ("quit now", ["`now` is unexpected", "nothing belongs"]),
+        ] {
+            let sentence = ControlLine::parse(line).unwrap_err().to_string();
+            assert!(parts.iter().all(|part| sentence.contains(part)), "{line}: {sentence}");
+        }
+    }
+}

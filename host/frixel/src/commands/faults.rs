@@ -1,0 +1,40 @@
+//! `frixel faults`: what a board says of its last fault.
+
+use clap::Args;
+use frixel_driver::{DEFAULT_BAUD, Device, SerialLink};
+use frixel_wire::fault::State;
+
+use super::error::CommandError;
+use super::terminal::print_line;
+
+#[derive(Debug, Args)]
+pub(super) struct FaultsArgs {
+    /// Path of the board's serial port.
+    #[arg(long)]
+    port: String,
+    /// Clear a latched fault whose cause is gone.
+    #[arg(long)]
+    clear: bool,
+}
+
+pub(super) fn run(args: &FaultsArgs) -> Result<(), CommandError> {
+    let mut device = Device::connect(SerialLink::open(&args.port, DEFAULT_BAUD)?)?;
+    let hello = *device.hello();
+    let line = |name: &str, value: String| print_line(format_args!("{name:16} {value}"));
+    match hello.last_fault {
+        Some(fault) => {
+            line("last fault", format!("{fault} (number {}, detail {})", fault.number(), hello.fault_detail))?
+        }
+        None => line("last fault", "none since power-on".to_owned())?,
+    }
+    line("last reset", hello.reset_cause.to_string())?;
+    let text = device.fault_text()?;
+    line("firmware said", if text.is_empty() { "nothing before its last reset".to_owned() } else { text })?;
+    let is_latched = hello.state == State::Faulted;
+    line("latched", if is_latched { "yes: the output is zero until it is cleared" } else { "no" }.to_owned())?;
+    if args.clear && is_latched {
+        device.clear_fault()?;
+        line("cleared", "yes: the board is disarmed".to_owned())?;
+    }
+    Ok(())
+}

@@ -1,0 +1,112 @@
+//! `frixel selftest`: whether link, clock and telemetry of a board are in order. The output stays at zero.
+
+use std::time::{Duration, Instant};
+
+use clap::Args;
+use frixel_driver::{DEFAULT_BAUD, Device, Event, SerialLink};
+use frixel_wire::fault::State;
+
+use super::error::CommandError;
+use super::terminal::print_line;
+
+/// Pings whose round trip is measured.
+const PINGS: u32 = 50;
+/// Duration of the telemetry, and messages a second.
+const TELEMETRY: Duration = Duration::from_secs(1);
+const MESSAGES_HZ: u32 = 500;
+/// Largest deviation of the board's clock from this computer's, and largest share of lost messages, in percent. Crystals
+/// are within 0.01 %, a computer's timer is late by some ms.
+const CLOCK_MAX_PERCENT: f64 = 3.0;
+const LOST_MAX_PERCENT: f64 = 5.0;
+/// Longest round trip that leaves room within the shortest host timeout, 20 ms.
+const ROUND_TRIP_MAX: Duration = Duration::from_millis(20);
+
+#[derive(Debug, Args)]
+pub(super) struct SelftestArgs {
+    /// Path of the board's serial port.
+    #[arg(long)]
+    port: String,
+}
+
+/// Result of a check.
+struct Check {
+    name: &'static str,
+    passed: bool,
+    found: String,
+}
+
+pub(super) fn run(args: &SelftestArgs) -> Result<(), CommandError> {
+    let mut device = Device::connect(SerialLink::open(&args.port, DEFAULT_BAUD)?)?;
+    device.disarm()?;
+    let hello = *device.hello();
+    let fault = Check {
+        name: "no fault",
+        passed: hello.state != State::Faulted && hello.last_fault.is_none(),
+        found: hello.last_fault.map_or("none since power-on".to_owned(), |fault| fault.to_string()),
+    };
+    let mut checks = vec![fault, round_trip(&mut device)?];
+    checks.extend(telemetry(&mut device, hello.tick_hz)?);
+    let rejected = device.counters().frames_rejected;
+    checks.push(Check { name: "clean line", passed: rejected == 0, found: format!("{rejected} damaged frames") });
+    for Check { name, passed, found } in &checks {
+        let verdict = if *passed { "ok" } else { "FAILED" };
+        print_line(format_args!("{name:16} {verdict:7} {found}"))?;
+    }
+    let failed = checks.iter().filter(|check| !check.passed).count();
+    if failed > 0 { Err(CommandError::SelftestFailed { port: args.port.clone(), failed }) } else { Ok(()) }
+}
+
+fn round_trip(device: &mut Device<SerialLink>) -> Result<Check, CommandError> {
+    let mut times = Vec::new();
+    for _ in 0..PINGS {
+        let started = Instant::now();
+        device.ping()?;
+        times.push(started.elapsed());
+    }
+    times.sort();
+    let median = times.get(times.len() / 2).copied().unwrap_or_default();
+    let (median_ms, longest_ms) = (in_ms(median), in_ms(times.last().copied().unwrap_or_default()));
+    let found = format!("median {median_ms:.2} ms, at most {longest_ms:.2} ms of {PINGS} pings");
+    Ok(Check { name: "round trip", passed: median < ROUND_TRIP_MAX, found })
+}
+
+/// Checks the board's clock, the rate of its telemetry, and that its output is zero.
+fn telemetry(device: &mut Device<SerialLink>, tick_hz: u32) -> Result<[Check; 3], CommandError> {
+    let mut messages = Vec::new();
+    device.subscribe(tick_hz / MESSAGES_HZ)?;
+    device.wait(TELEMETRY, &mut |event| {
+        if let Event::Telemetry(telemetry) = event {
+            messages.push((Instant::now(), telemetry));
+        }
+    })?;
+    device.subscribe(0)?;
+    let (mut clock_percent, mut lost_percent) = (f64::INFINITY, 100.0);
+    if let (Some((first_at, first)), Some((last_at, last))) = (messages.first(), messages.last()) {
+        let board_s = f64::from(last.tick.wrapping_sub(first.tick)) / f64::from(tick_hz);
+        clock_percent = 100.0 * (board_s / last_at.duration_since(*first_at).as_secs_f64() - 1.0).abs();
+        let expected = board_s * f64::from(MESSAGES_HZ) + 1.0;
+        lost_percent = 100.0 * (1.0 - messages.len() as f64 / expected).max(0.0);
+    }
+    let is_zero = messages.iter().all(|(_, telemetry)| telemetry.dac_code == 0);
+    Ok([
+        Check {
+            name: "clock",
+            passed: clock_percent <= CLOCK_MAX_PERCENT,
+            found: format!("{clock_percent:.2} % off this computer's"),
+        },
+        Check {
+            name: "telemetry",
+            passed: lost_percent <= LOST_MAX_PERCENT,
+            found: format!("{} messages, {lost_percent:.1} % lost", messages.len()),
+        },
+        Check {
+            name: "output zero",
+            passed: is_zero && !messages.is_empty(),
+            found: "DAC codes of a disarmed board".to_owned(),
+        },
+    ])
+}
+
+fn in_ms(time: Duration) -> f64 {
+    1e3 * time.as_secs_f64()
+}

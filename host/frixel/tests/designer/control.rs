@@ -1,0 +1,99 @@
+//! `--control`: a scene that changes while it plays.
+
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+use std::process::{Output, Stdio};
+
+use tempfile::TempDir;
+
+use super::{command, frixel, scene, succeed};
+
+/// A scene of one layer, 10 mN above the natural friction of 250 mN everywhere.
+fn write_scene(path: &Path, friction_n: &str) {
+    let constant = fs::read_to_string(scene("constant.toml")).unwrap();
+    let (head, _) = constant.split_once("[[layer]]").unwrap();
+    let layer = "[[layer]]\nname = \"plate one\"\nkind = \"constant\"\nlive = true\nfriction_n = ";
+    fs::write(path, format!("{head}{layer}{friction_n}\n")).unwrap();
+}
+
+/// Plays a scene for 1.2 s of virtual time with these lines on standard input.
+fn control(folder: &Path, lines: &str) -> Output {
+    let arguments = ["play", "scene.toml", "--control", "--from", "10,30", "--to", "110,30", "--seconds", "1.2"];
+    let mut command = command(folder, &[&arguments[..], &["--speed", "80"]].concat());
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut process = command.spawn().unwrap();
+    process.stdin.take().unwrap().write_all(lines.as_bytes()).unwrap();
+    process.wait_with_output().unwrap()
+}
+
+/// Wanted and felt friction at a time, mN.
+fn friction_mn(folder: &Path, t_ms: usize) -> (f64, f64) {
+    let text = fs::read_to_string(folder.join("frixel-out/felt.csv")).unwrap();
+    let cells: Vec<&str> = text.lines().nth(t_ms).unwrap().split(',').collect();
+    (1e3 * cells[4].parse::<f64>().unwrap(), 1e3 * cells[6].parse::<f64>().unwrap())
+}
+
+#[test]
+fn layers_are_switched_turned_down_and_triggered() {
+    let folder = TempDir::new().unwrap();
+    write_scene(&folder.path().join("scene.toml"), "0.26");
+    let lines = "wait 0.2\nlayer \"plate one\" off\nwait 0.2\nlayer 1 on gain 0.5 # half\nwait 0.2\nlayer 1 off gain 1\n\
+                 wait 0.1\ntrigger \"plate one\" 200\n";
+    let output = control(folder.path(), lines);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    for (t_ms, expected_mn) in [(190, 260.0), (390, 250.0), (590, 255.0), (690, 250.0), (890, 260.0), (1_000, 250.0)] {
+        let (wanted_mn, felt_mn) = friction_mn(folder.path(), t_ms);
+        assert!((wanted_mn - expected_mn).abs() < 0.1, "{t_ms} ms: {wanted_mn} mN wanted");
+        assert!((felt_mn - expected_mn).abs() < 0.5, "{t_ms} ms: {felt_mn} mN felt");
+    }
+}
+
+#[test]
+fn a_scene_is_replaced_and_the_play_ended() {
+    let folder = TempDir::new().unwrap();
+    write_scene(&folder.path().join("scene.toml"), "0.26");
+    write_scene(&folder.path().join("other scene.toml"), "0.27");
+    let output =
+        control(folder.path(), "wait 0.2\nreplace \"other scene.toml\"\nwait 0.4\nlayer 1 gain 0\nwait 0.2\nquit\n");
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success() && said.contains("other scene.toml plays"), "{said}");
+    for (t_ms, expected_mn) in [(190, 260.0), (590, 270.0), (780, 250.0)] {
+        let (wanted_mn, _) = friction_mn(folder.path(), t_ms);
+        assert!((wanted_mn - expected_mn).abs() < 0.1, "{t_ms} ms: {wanted_mn} mN wanted");
+    }
+    let rows = fs::read_to_string(folder.path().join("frixel-out/felt.csv")).unwrap().lines().count();
+    assert!((800..900).contains(&rows), "it ended after 0.8 s: {rows}");
+}
+
+#[test]
+fn a_line_that_makes_no_sense_is_said_and_the_play_goes_on() {
+    let folder = TempDir::new().unwrap();
+    write_scene(&folder.path().join("scene.toml"), "0.26");
+    let output = control(folder.path(), "leyer 1 off\nlayer 7 off\nlayer \"plate on\" off\nreplace nowhere.toml\n");
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{said}");
+    for part in [
+        "line 1 of standard input: `leyer` is no control word",
+        "line 2 of standard input: the scene has no layer \"7\"",
+        "did you mean \"plate one\"?",
+        "nowhere.toml: this scene file cannot be read",
+    ] {
+        assert!(said.contains(part), "{part:?}: {said}");
+    }
+    assert!((friction_mn(folder.path(), 1_000).0 - 260.0).abs() < 0.1, "nothing has changed");
+    let arguments = ["play", "scene.toml", "--control", "--stream", "-", "--stream-hz", "100"];
+    let said = String::from_utf8(frixel(folder.path(), &arguments).stderr).unwrap();
+    assert!(said.contains("give --stream a file"), "{said}");
+}
+
+#[test]
+fn completions_and_exit_codes_are_told() {
+    let folder = TempDir::new().unwrap();
+    for shell in ["bash", "zsh", "fish"] {
+        let (script, _) = succeed(folder.path(), &["completions", shell]);
+        assert!(script.contains("frixel") && script.contains("with-log"), "{shell}");
+    }
+    let (help, _) = succeed(folder.path(), &["--help"]);
+    assert!(help.contains("Exit codes: 0") && !help.contains('\u{1b}'), "{help}");
+}

@@ -1,0 +1,55 @@
+//! Figures in the README are what the command beside them prints.
+//!
+//! A line `    $ frixel ...` is run, and the lines behind it, indented by six, are lines of its output.
+//! `FRIXEL_BLESS=1 cargo test -p frixel --test designer readme` writes them anew.
+
+use std::fs;
+
+use tempfile::TempDir;
+
+use super::{scenes, succeed};
+
+/// The name at the beginning of a line of output.
+fn name(line: &str) -> &str {
+    line.trim_start().split("  ").next().unwrap_or_default()
+}
+
+#[test]
+fn figures_in_the_readme_are_printed_by_their_commands() {
+    let path = scenes().join("../README.md");
+    let text = fs::read_to_string(&path).unwrap();
+    let scenes = scenes().display().to_string();
+    let (mut printed, mut commands, mut figures) = (String::new(), 0, 0);
+    let mut found = String::new();
+    for line in text.lines() {
+        if let Some(command) = line.strip_prefix("    $ frixel ") {
+            let folder = TempDir::new().unwrap();
+            let arguments: Vec<String> =
+                command.split_whitespace().map(|word| word.replacen("scenes/", &format!("{scenes}/"), 1)).collect();
+            let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+            (printed, _) = succeed(folder.path(), &arguments);
+            commands += 1;
+        }
+        let figure = line.strip_prefix("      ").filter(|_| !printed.is_empty());
+        match figure {
+            Some(figure) => {
+                let line = printed.lines().find(|line| name(line) == name(figure));
+                found += &format!("      {}", line.unwrap_or_else(|| panic!("{figure}: {printed}")).trim_start());
+                figures += 1;
+            }
+            None => {
+                found += line;
+                if !line.starts_with("    $ ") {
+                    printed.clear();
+                }
+            }
+        }
+        found.push('\n');
+    }
+    assert!(commands >= 2 && figures >= 4, "{commands} commands, {figures} figures");
+    if std::env::var_os("FRIXEL_BLESS").is_some() {
+        fs::write(&path, found).unwrap();
+    } else {
+        assert!(found == text, "README.md has other figures than its commands print; inspect them, then bless it");
+    }
+}

@@ -1,0 +1,163 @@
+//! What a finger feels of a texture, on strokes of people and with every effect of the plant: the goals for each class of
+//! touch source.
+//!
+//! The reference is the scene at the finger's true place, through the same finger, load and noise. Where a goal is out of
+//! reach, the case says how far.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+use std::collections::BTreeMap;
+
+use frixel::felt::{FeltError, felt_error};
+use frixel::player::Simulation;
+use frixel_hil_sim::{RigConfig, Stroke, TouchConfig};
+use frixel_scene::{Program, Scene, compile};
+
+/// Error below 40 Hz over the reference's swing, correlation, and spurious force between 40 and 400 Hz.
+const GOAL: Held = Held { ratio_max: 0.25, correlation_min: 0.9, spurious_max_n: 4.5e-3 };
+/// 2^14 samples at 2 kHz, and the settling before them.
+const SECONDS: f64 = 8.192 + 0.35;
+/// Swing of the texture: nearly all that the finger below has at 150 V.
+const SWING_N: f64 = 0.11;
+
+#[derive(Clone, Copy)]
+struct Held {
+    ratio_max: f64,
+    correlation_min: f64,
+    spurious_max_n: f64,
+}
+
+impl Held {
+    fn holds(&self, error: &FeltError) -> bool {
+        error.ratio() <= self.ratio_max
+            && error.correlation >= self.correlation_min
+            && error.spurious_n <= self.spurious_max_n
+    }
+}
+
+/// A touch source, and the smallest feature that it is to be good for.
+#[derive(Clone, Copy)]
+struct Class {
+    rate_hz: f64,
+    latency_s: f64,
+    wavelength_mm: f64,
+}
+
+const SLOW: Class = Class { rate_hz: 100.0, latency_s: 10e-3, wavelength_mm: 10.0 };
+const MEDIUM: Class = Class { rate_hz: 200.0, latency_s: 5e-3, wavelength_mm: 5.0 };
+const FAST: Class = Class { rate_hz: 500.0, latency_s: 3e-3, wavelength_mm: 2.0 };
+
+/// Class, median speed of the stroke in mm/s, and what is held: the goal, or how far it is missed.
+///
+/// What misses it is latency: at a median of 200 mm/s a hand turns within 50 ms with accelerations of 3 m/s^2, and
+/// 20 ms of these are 0.6 mm. `docs/touch.md` has the bounds: no causal estimate reaches these goals.
+const CASES: [(Class, f64, Held); 9] = [
+    (SLOW, 50.0, GOAL),
+    (SLOW, 100.0, Held { ratio_max: 0.32, spurious_max_n: 5e-3, ..GOAL }),
+    (SLOW, 200.0, Held { ratio_max: 0.70, correlation_min: 0.74, spurious_max_n: 10e-3 }),
+    (MEDIUM, 50.0, GOAL),
+    (MEDIUM, 100.0, GOAL),
+    (MEDIUM, 200.0, Held { ratio_max: 0.55, correlation_min: 0.84, ..GOAL }),
+    (FAST, 50.0, GOAL),
+    (FAST, 100.0, GOAL),
+    (FAST, 200.0, Held { ratio_max: 0.42, ..GOAL }),
+];
+
+/// Every effect of the plant, with a touch source of a class that loses one report in eight and bunches one in thirty.
+fn rig(class: &Class) -> RigConfig {
+    let mut rig = RigConfig::default();
+    rig.world = rig.world.natural();
+    rig.world.touch = TouchConfig {
+        rate_hz: class.rate_hz,
+        latency_s: class.latency_s,
+        jitter_rms_s: 0.05 / class.rate_hz,
+        step_m: 0.0,
+        pause_rate_hz: 0.0,
+        pause_max_s: 0.0,
+        ..TouchConfig::NATURAL
+    };
+    rig
+}
+
+fn program(rig: &RigConfig, wavelength_mm: f64) -> Program {
+    let text = format!(
+        "version = 1\n\
+         [screen]\nwidth_mm = 120\nheight_mm = 80\n\
+         [coating]\nthickness_um = 5\npermittivity = 1\n\
+         [finger]\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\nfriction_coefficient = 0.5\nnormal_load_n = 0.5\n\
+         [[layer]]\nkind = \"grating\"\nwavelength_mm = {wavelength_mm}\nlow_n = 0.0\nhigh_n = {SWING_N}\n"
+    );
+    let scene = Scene::parse(&text, "the texture", &BTreeMap::new()).unwrap();
+    compile(&scene, &rig.board.limits, rig.board.tick_hz).unwrap()
+}
+
+fn error(class: &Class, speed_mm_s: f64, seed: u64, change: impl FnOnce(&mut Program)) -> FeltError {
+    let rig = rig(class);
+    let mut program = program(&rig, class.wavelength_mm);
+    change(&mut program);
+    let stroke = Stroke::human(0.12, 0.08, SECONDS + 0.5, Some(1e-3 * speed_mm_s), seed).unwrap();
+    felt_error(&program, &Simulation { rig, stroke, seconds: SECONDS, seed, ticks_per_row: 40_000 }).unwrap()
+}
+
+/// Root mean squares and mean correlation over seeds.
+fn mean(class: &Class, speed_mm_s: f64, seeds: std::ops::RangeInclusive<u64>) -> FeltError {
+    let count = seeds.clone().count() as f64;
+    let errors: Vec<FeltError> = seeds.map(|seed| error(class, speed_mm_s, seed, |_| {})).collect();
+    let rms =
+        |value: fn(&FeltError) -> f64| (errors.iter().map(|error| value(error).powi(2)).sum::<f64>() / count).sqrt();
+    FeltError {
+        reference_n: rms(|error| error.reference_n),
+        error_n: rms(|error| error.error_n),
+        correlation: errors.iter().map(|error| error.correlation).sum::<f64>() / count,
+        spurious_n: rms(|error| error.spurious_n),
+    }
+}
+
+fn hold(seeds: &std::ops::RangeInclusive<u64>) {
+    let mut failed = Vec::new();
+    for (class, speed_mm_s, held) in CASES {
+        let found = mean(&class, speed_mm_s, seeds.clone());
+        let line = format!(
+            "{} Hz, {} mm at {speed_mm_s} mm/s: error {:.2}, correlation {:.3}, spurious {:.1} mN",
+            class.rate_hz,
+            class.wavelength_mm,
+            found.ratio(),
+            found.correlation,
+            1e3 * found.spurious_n
+        );
+        println!("{line}");
+        if !held.holds(&found) {
+            failed.push(line);
+        }
+    }
+    assert!(failed.is_empty(), "{failed:#?}");
+}
+
+#[test]
+fn textures_are_felt_within_the_goals() {
+    hold(&(1..=4));
+}
+
+#[test]
+#[ignore = "takes minutes: cargo xtask soak"]
+fn textures_are_felt_within_the_goals_on_many_strokes() {
+    hold(&(1..=24));
+}
+
+/// The checks above see an output that is not there: a volt gives less than a millionth of a newton.
+#[test]
+fn an_output_forced_to_zero_misses_every_goal() {
+    for class in [SLOW, MEDIUM, FAST] {
+        let found = error(&class, 50.0, 1, |program| program.header.voltage_max_v_rms = 1.0);
+        assert!(found.ratio() > 0.9 && !(found.correlation > 0.9), "{found:?}");
+    }
+}
+
+#[test]
+fn without_prediction_every_goal_is_missed() {
+    for class in [SLOW, MEDIUM, FAST] {
+        for speed_mm_s in [50.0, 100.0] {
+            let found = error(&class, speed_mm_s, 1, |program| program.header.prediction = false);
+            assert!(found.ratio() > GOAL.ratio_max && !GOAL.holds(&found), "{found:?}");
+        }
+    }
+}

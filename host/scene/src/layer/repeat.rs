@@ -1,0 +1,59 @@
+//! `repeat`: copies of a layer in columns and rows.
+
+use super::super::fields::Fields;
+use super::super::log::Log;
+use super::super::mistake::Mistake;
+use super::super::tables;
+use super::Layer;
+
+/// The copies of a layer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Repeat {
+    columns: u32,
+    rows: u32,
+    dx_mm: f64,
+    dy_mm: f64,
+}
+
+impl Repeat {
+    const ONCE: Self = Self { columns: 1, rows: 1, dx_mm: 0.0, dy_mm: 0.0 };
+
+    /// Reads the copies of a layer.
+    pub(crate) fn read(layer: &mut Fields, log: &mut Log) -> Self {
+        let Some(mut fields) = layer.table(log, &tables::layer::REPEAT) else { return Self::ONCE };
+        fields.rename("this repeat".to_owned());
+        let columns = fields.number_or_default(log, &tables::repeat::COLUMNS) as u32;
+        let rows = fields.number_or_default(log, &tables::repeat::ROWS) as u32;
+        let dx_mm = fields.number_or_default(log, &tables::repeat::DX_MM);
+        let dy_mm = fields.number_or_default(log, &tables::repeat::DY_MM);
+        let places = fields.close(log);
+        for (what, step, copies, step_mm) in [("columns", "dx_mm", columns, dx_mm), ("rows", "dy_mm", rows, dy_mm)] {
+            if copies > 1 && step_mm.abs() <= 0.0 {
+                log.add(places.field(step), Mistake::RepeatInPlace { what, step });
+            }
+        }
+        Self { columns, rows, dx_mm, dy_mm }
+    }
+
+    /// The copies of a layer, row after row. Copies of a layer with a name have its name and a number from one.
+    pub(crate) fn of(self, layer: &Layer) -> Vec<Layer> {
+        if self.columns * self.rows == 1 {
+            return vec![layer.clone()];
+        }
+        let places = (0..self.rows).flat_map(|row| (0..self.columns).map(move |column| (column, row)));
+        let copies = (1..).zip(places).map(|(copy, (column, row))| {
+            let (x_mm, y_mm) = (f64::from(column) * self.dx_mm, f64::from(row) * self.dy_mm);
+            let mut moved = layer.clone();
+            moved.is_copy = copy > 1;
+            moved.name = layer.name.as_ref().map(|name| format!("{name} {copy}"));
+            moved.title = match &layer.name {
+                Some(name) => layer.title.replacen(&format!("\"{name}\""), &format!("\"{name} {copy}\""), 1),
+                None => format!("{} copy {copy}", layer.title),
+            };
+            moved.region = moved.region.map(|region| region.moved_by(x_mm, y_mm));
+            moved.kind.move_by(x_mm, y_mm);
+            moved
+        });
+        copies.collect()
+    }
+}
