@@ -114,11 +114,10 @@ impl Protocol {
                 let marked = if element >= 0.0 { MARKER.get(element as usize).copied() } else { None };
                 match marked {
                     Some(true) => self.voltage_max_v_rms(),
-                    Some(false) => 0.0,
                     None if is_on => {
                         self.voltages_v_rms.get(stroke % self.voltages_v_rms.len()).copied().unwrap_or(0.0)
                     }
-                    None => 0.0,
+                    Some(false) | None => 0.0,
                 }
             })
             .collect()
