@@ -42,13 +42,13 @@ fn minimum_jerk() -> Stroke {
     Stroke::minimum_jerk(START, END, 1.2).unwrap()
 }
 
-fn play(program: &Program, rig: RigConfig, stroke: Stroke, seed: u64) -> Simulated {
+fn play(program: &Program, rig: &RigConfig, stroke: Stroke, seed: u64) -> Simulated {
     let seconds = stroke.duration_s();
-    simulate(program, &Simulation { rig, stroke, seconds, seed, ticks_per_row: 1 }, None).unwrap()
+    simulate(program, &Simulation { rig: *rig, stroke, seconds, seed, ticks_per_row: 1 }, None).unwrap()
 }
 
 fn errors(prediction: bool, stroke: Stroke, seed: u64) -> MetricsSummary {
-    play(&brick(prediction), rig(), stroke, seed).recorder.summary()
+    play(&brick(prediction), &rig(), stroke, seed).recorder.summary()
 }
 
 /// Rms friction error as a part of the reachable electric range.
@@ -89,7 +89,7 @@ fn picture_n(program: &Program, x_m: f64, y_m: f64) -> f64 {
 #[test]
 fn what_is_wanted_is_the_resampled_picture() {
     let program = brick(true);
-    let simulated = play(&program, rig(), constant_speed(), 1);
+    let simulated = play(&program, &rig(), constant_speed(), 1);
     let rows = simulated.recorder.rows();
     assert!(rows.len() > 44_000);
     let mut span_n = (f64::INFINITY, 0.0_f64);
@@ -132,7 +132,7 @@ fn an_output_forced_to_zero_misses_every_goal() {
     let mut program = brick(true);
     program.header.voltage_max_v_rms = 1.0;
     for (stroke, goal) in [(constant_speed(), 0.05), (minimum_jerk(), 0.10)] {
-        let summary = play(&program, rig(), stroke, 1).recorder.summary();
+        let summary = play(&program, &rig(), stroke, 1).recorder.summary();
         assert!(friction_error(&summary) > goal, "{}", friction_error(&summary));
         let range_n = program.reach.electric_friction_max_n;
         assert!(summary.inversion_error.unwrap().max_n > 1e-3 * range_n);
@@ -143,7 +143,7 @@ fn an_output_forced_to_zero_misses_every_goal() {
 #[test]
 fn the_same_seed_gives_the_same_rows_and_another_does_not() {
     let rows = |seed| {
-        let simulated = play(&brick(true), rig(), minimum_jerk(), seed);
+        let simulated = play(&brick(true), &rig(), minimum_jerk(), seed);
         simulated.recorder.rows().iter().map(|row| row.felt_n.map(f64::to_bits)).collect::<Vec<_>>()
     };
     assert_eq!(rows(1), rows(1));
@@ -153,7 +153,7 @@ fn the_same_seed_gives_the_same_rows_and_another_does_not() {
 #[test]
 fn nine_tenths_and_a_half_of_the_lines_bytes_are_payload() {
     let rig = RigConfig::default();
-    let counters = play(&brick(true), rig, Stroke::still(START, 0.01).unwrap(), 1).counters;
+    let counters = play(&brick(true), &rig, Stroke::still(START, 0.01).unwrap(), 1).counters;
     assert!(counters.payload_bytes > 62_500);
     let share = counters.payload_bytes as f64 / counters.wire_bytes as f64;
     assert!(share >= 0.95, "{share}, hello, commands and pings included");

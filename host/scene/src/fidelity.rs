@@ -5,6 +5,7 @@
 //! for each property that a person notices. Bands are separated at 40 Hz: below, a person feels friction as it changes
 //! along the way; above, as vibration.
 
+use rustfft::num_complex::Complex;
 use serde::Serialize;
 
 use crate::perception::{WEBER_FRACTION, weber_steps};
@@ -125,7 +126,7 @@ impl Powers {
         let border = (BAND_BORDER_HZ / reference.bin_hz) as usize;
         let end = (BAND_END_HZ / reference.bin_hz) as usize;
         let sum = |spectrum: &Spectrum, from: usize, to: usize| {
-            weight * spectrum.bins.get(from..to).unwrap_or_default().iter().map(|bin| bin.norm_sqr()).sum::<f64>()
+            weight * spectrum.bins.get(from..to).unwrap_or_default().iter().map(Complex::norm_sqr).sum::<f64>()
         };
         self.weight += weight;
         self.reference_low += sum(&reference, 0, border);
@@ -139,7 +140,7 @@ impl Powers {
         self.delayed.resize(DELAYS.count(), 0.0);
         for (covariance, delay) in self.delayed.iter_mut().zip(DELAYS) {
             let turn = std::f64::consts::TAU * reference.bin_hz * f64::from(delay) / SAMPLE_HZ;
-            let at = |(bin, cross): (usize, &rustfft::num_complex::Complex<f64>)| {
+            let at = |(bin, cross): (usize, &Complex<f64>)| {
                 let angle = turn * bin as f64;
                 cross.re * libm::cos(angle) - cross.im * libm::sin(angle)
             };

@@ -1,7 +1,8 @@
 //! Records the data that [`fit`](crate::fit) needs: a board switches its drive on and off while a finger slides, and a
 //! force sensor watches.
 //!
-//! [`Protocol`] says what is driven when, [`align`] puts the sensor's clock on the board's, and [`write_csv`] writes the
+//! [`Protocol`] says what is driven when, [`align`] puts the sensor's clock on the board's, and [`write_csv`] writes
+//! the
 //! recording. Ports, progress and options are in `commands::calibrate`.
 
 mod align;
@@ -53,7 +54,8 @@ pub enum CalibrationError {
     },
     /// The sensor did not see the whole protocol.
     #[error(
-        "the forces last {found:.1} s, and the protocol {needed:.1} s: start the sensor before the board, and stop it after"
+        "the forces last {found:.1} s, and the protocol {needed:.1} s: start the sensor before the board, and stop \
+         it after"
     )]
     TooShort {
         /// Duration of the forces.
@@ -63,7 +65,8 @@ pub enum CalibrationError {
     },
     /// Friction does not answer the drive.
     #[error(
-        "friction does not follow the drive (correlation {found:.2}): check that the electrode is driven, that the finger \
+        "friction does not follow the drive (correlation {found:.2}): check that the electrode is driven, that the \
+         finger \
          slides, and that the forces are those of this run"
     )]
     NoAnswer {

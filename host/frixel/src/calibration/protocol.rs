@@ -114,11 +114,10 @@ impl Protocol {
                 let marked = if element >= 0.0 { MARKER.get(element as usize).copied() } else { None };
                 match marked {
                     Some(true) => self.voltage_max_v_rms(),
-                    Some(false) => 0.0,
                     None if is_on => {
                         self.voltages_v_rms.get(stroke % self.voltages_v_rms.len()).copied().unwrap_or(0.0)
                     }
-                    None => 0.0,
+                    Some(false) | None => 0.0,
                 }
             })
             .collect()
@@ -144,14 +143,17 @@ impl Protocol {
         let highest = self.voltage_max_v_rms();
         let high_n = REACH * contact.electric_friction_n(highest);
         Ok(format!(
-            "version = 1\nscreen = {{ width_mm = 120, height_mm = 80 }}\ncoating = {{ thickness_um = 10, permittivity = 1 }}\n\
-             finger = {{ radius_mm = 8, stiffness_pa_per_m = 1.8e7, friction_coefficient = 0.5, normal_load_n = 0.5 }}\n\
+            "version = 1\nscreen = {{ width_mm = 120, height_mm = 80 }}\ncoating = {{ thickness_um = 10, \
+             permittivity = 1 }}\n\
+             finger = {{ radius_mm = 8, stiffness_pa_per_m = 1.8e7, friction_coefficient = 0.5, normal_load_n = 0.5 \
+             }}\n\
              drive = {{ voltage_max_v_rms = {highest} }}\n\
              [[layer]]\nname = \"calibration\"\nkind = \"stream\"\nlow_n = 0.0\nhigh_n = {high_n}\n"
         ))
     }
 
-    /// Where the simulated finger goes: strokes of minimum jerk, back and forth, as CSV with the columns `t_s,x_mm,y_mm`.
+    /// Where the simulated finger goes: strokes of minimum jerk, back and forth, as CSV with the columns
+    /// `t_s,x_mm,y_mm`.
     pub fn stroke_csv(&self) -> String {
         let mut text = String::from("t_s,x_mm,y_mm\n");
         let period_s = self.stroke_s + self.pause_s;

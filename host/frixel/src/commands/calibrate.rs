@@ -36,7 +36,8 @@ pub(super) struct CalibrateArgs {
     /// The recording, for `frixel fit`.
     #[arg(short, long, value_name = "DATA.csv")]
     output: PathBuf,
-    /// Forces of a sensor during the run: CSV with the columns `time_s,normal_force_n,friction_n`, on any clock; `-` for
+    /// Forces of a sensor during the run: CSV with the columns `time_s,normal_force_n,friction_n`, on any clock; `-`
+    /// for
     /// standard input. A file is read when the run is over. The simulator has a sensor of its own.
     #[arg(long, value_name = "FILE.csv")]
     forces: Option<PathBuf>,

@@ -29,7 +29,8 @@ use super::terminal::{print, print_line};
 
 /// Duration of each of the two strokes of a trial, in seconds.
 const STROKE_S: f64 = 1.6;
-/// The stimulus: friction that swings at this frequency, in Hz, near which fingers feel best (Vardar 2016; Wijekoon 2012:
+/// The stimulus: friction that swings at this frequency, in Hz, near which fingers feel best (Vardar 2016; Wijekoon
+/// 2012:
 /// 160 Hz of force).
 const STIMULUS_HZ: f64 = 160.0;
 /// Fade of the stimulus at either end of a stroke, in seconds, so that no click gives it away.

@@ -89,7 +89,8 @@ pub enum FitError {
     },
     /// The friction does not fit the load.
     #[error(
-        "friction_n over normal_force_n has a median of {ratio:.3} at no voltage, and that of skin on glass is 0.05 to 5: one of the \
+        "friction_n over normal_force_n has a median of {ratio:.3} at no voltage, and that of skin on glass is 0.05 \
+         to 5: one of the \
          columns {guess}; give newtons in both"
     )]
     FrictionUnit {
@@ -130,7 +131,8 @@ pub enum FitError {
     },
     /// A stroke's load is not that of the others.
     #[error(
-        "stroke {stroke}: its load of {load_n:.3} N is {percent:.0} % off the median load of {median_n:.3} N, more than \
+        "stroke {stroke}: its load of {load_n:.3} N is {percent:.0} % off the median load of {median_n:.3} N, more \
+         than \
          15 %: record it again, or leave it out with --without {stroke}"
     )]
     LoadOff {

@@ -1,7 +1,8 @@
 //! Fits a finger's profile to measured friction: values in, values out.
 //!
 //! **In**: rows of voltage (rms), normal force and friction, in strokes of a finger that slides while the drive is
-//! switched on and off ([`rows`] reads them from CSV). **Out**: a [`Fit`] with the friction coefficient, the one coupling
+//! switched on and off ([`rows`] reads them from CSV). **Out**: a [`Fit`] with the friction coefficient, the one
+//! coupling
 //! number that friction data identify, friction at a stated voltage, each with an interval, and the exponent of the
 //! voltage, which tests the model; or a [`FitError`] that says in one sentence what was found and what to do.
 //!
@@ -12,10 +13,12 @@
 //!
 //! # What is estimated
 //!
-//! - **Friction coefficient**: friction over normal load with the drive off, the mean over the strokes of the recording.
+//! - **Friction coefficient**: friction over normal load with the drive off, the mean over the strokes of the
+//!   recording.
 //! - **Electric friction**: what the stated voltage adds to the friction of this finger on this screen in full slip,
 //!   under the median load of the recording, at the mean friction coefficient of the recording. Losses between the
-//!   stated voltage and the electrode (charge leakage, amplifier gain) are part of it. Its interval covers what the model
+//!   stated voltage and the electrode (charge leakage, amplifier gain) are part of it. Its interval covers what the
+//!   model
 //!   says and what a power law without any model says.
 
 mod bootstrap;
@@ -193,7 +196,8 @@ pub fn fit(rows: Vec<Row>, settings: &Settings) -> Result<Fit, FitError> {
             Some(solution.friction_coefficient * attraction_n)
         };
         let value_n = of(&best.contact).ok_or(FitError::NotConverged)?;
-        // What the model says less what the data say without it is a systematic error, which no draw of strokes shows: the
+        // What the model says less what the data say without it is a systematic error, which no draw of strokes
+        // shows: the
         // interval covers what both say.
         let by_model = estimate(value_n, &|replicate| of(&replicate.contact));
         let by_power = estimate(value_n, &|replicate| of(&replicate.power));

@@ -103,7 +103,8 @@ pub(super) fn check_natural(strokes: &[StrokeMeans]) -> Result<(), FitError> {
     Ok(())
 }
 
-/// Whether the drive acted in every stroke, as it does on a finger that slips: the strokes whose attraction at a voltage
+/// Whether the drive acted in every stroke, as it does on a finger that slips: the strokes whose attraction at a
+/// voltage
 /// is far below that of the fit did not.
 pub(super) fn check_slip(strokes: &[StrokeMeans], fitted: &Solution) -> Result<(), FitError> {
     let ratios: Vec<(&StrokeMeans, f64)> = strokes

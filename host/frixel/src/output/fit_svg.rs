@@ -21,7 +21,8 @@ fn chart(title: &str, fit: &Fit) -> Chart {
     let mut chart = Chart::new(vec![over_voltage(fit), residuals(fit), over_load(fit), coefficients(fit)], 2);
     title.clone_into(&mut chart.title);
     chart.caption = vec![
-        "Each mark is the mean of one stroke at one voltage, in comparison with the friction while the drive is off just before \
+        "Each mark is the mean of one stroke at one voltage, in comparison with the friction while the drive is off \
+         just before \
          and after. Residuals that depend on voltage, load or time show what the model does not say."
             .to_owned(),
     ];

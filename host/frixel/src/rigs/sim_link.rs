@@ -17,6 +17,9 @@ struct KeepAlive {
     period_ticks: u64,
 }
 
+/// Is called with every tick that is recorded.
+type Observer<'a> = Box<dyn FnMut(&TickRecord) + 'a>;
+
 /// The host's end of the serial line to a simulated board.
 ///
 /// The stroke of the finger and the record start when the scene first plays.
@@ -27,7 +30,7 @@ pub struct SimLink<'a> {
     written: Written,
     written_at_tick: u64,
     keep_alive: Option<KeepAlive>,
-    observer: Option<Box<dyn FnMut(&TickRecord) + 'a>>,
+    observer: Option<Observer<'a>>,
 }
 
 impl<'a> SimLink<'a> {

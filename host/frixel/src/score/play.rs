@@ -13,7 +13,7 @@ use crate::player::{PlayError, Simulation, simulate_observed};
 /// Plays a trial; returns a sample for every quarter of a millisecond.
 pub(super) fn samples(program: &Program, rig: &RigConfig, trial: &Trial) -> Result<Vec<FidelitySample>, PlayError> {
     let simulation = Simulation {
-        rig: rig.clone(),
+        rig: *rig,
         stroke: trial.stroke.clone(),
         seconds: trial.stroke.duration_s(),
         seed: trial.seed,
@@ -74,18 +74,17 @@ impl Sampler {
 
     /// The friction that a display without fault would have given this finger, in total.
     fn reference_n(&mut self, felt: &Felt, tick: u64) -> f64 {
-        let electric_n = match felt.finger {
-            Some(finger) => self.scene.electric_friction_n(&Context {
+        let electric_n = if let Some(finger) = felt.finger {
+            self.scene.electric_friction_n(&Context {
                 x_m: finger.x_m,
                 y_m: finger.y_m,
                 t_s: tick as f64 / self.tick_hz,
                 speed_m_per_s: finger.speed_m_per_s,
                 ..Context::default()
-            }),
-            None => {
-                self.scene.lift();
-                0.0
-            }
+            })
+        } else {
+            self.scene.lift();
+            0.0
         };
         self.reference.follow(felt, electric_n)
     }

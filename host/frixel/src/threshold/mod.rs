@@ -1,6 +1,7 @@
 //! A detection threshold by a two-alternative staircase: values in, values out.
 //!
-//! In each trial the finger makes two strokes, one with the stimulus and one without, in random order, and the person says
+//! In each trial the finger makes two strokes, one with the stimulus and one without, in random order, and the person
+//! says
 //! which one had it. [`Staircase`] chooses the next level and, in the end, states the threshold with its interval.
 //!
 //! The level is the amplitude of the electric friction relative to the board's largest, in decibels. Which newtons that

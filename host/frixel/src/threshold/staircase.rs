@@ -135,7 +135,8 @@ mod tests {
         staircase.threshold()
     }
 
-    /// Root-mean-square error as a factor in force, and the share of intervals that contain the threshold, over observers
+    /// Root-mean-square error as a factor in force, and the share of intervals that contain the threshold, over
+    /// observers
     /// with thresholds of -36 to -8 dB.
     fn errors(trials: usize) -> (f64, f64) {
         let (mut square, mut inside) = (0.0, 0);

@@ -43,7 +43,8 @@ fn a_calibrated_person_is_recovered() {
     };
 
     let person = Person::drawn(5);
-    // Of what the amplifier's edges lose, the board makes up for a part: friction lies between that of a drive of 150 V rms
+    // Of what the amplifier's edges lose, the board makes up for a part: friction lies between that of a drive of 150
+    // V rms
     // and that of 150 V rms on the electrode.
     let load_n = number("normal_load_n");
     let drive = simulated::steady(&person, load_n, 150.0);

@@ -1,6 +1,7 @@
 //! How often the stated intervals contain what they are about.
 //!
-//! The quantity is what a drive of 150 V rms adds to the friction of a finger on its screen, in steady and full slip under
+//! The quantity is what a drive of 150 V rms adds to the friction of a finger on its screen, in steady and full slip
+//! under
 //! the median load of the recording, without noise: the simulator measures it on each person, apart from the recording.
 
 use frixel::fit::{Estimate, Fit, FitError, fit};
@@ -60,7 +61,8 @@ impl Tally {
         let mean = |values: &[f64]| 100.0 * values.iter().sum::<f64>() / values.len() as f64;
         println!(
             "{who}: {} fitted, {} refused; of the 95 % intervals contain the truth: electric friction {:.3}, friction \
-             coefficient {:.3}; {:.3} of the exponents' contain the model's; the exponent is off by {:+.3}, electric friction by {:+.2} % on average; half-width {:.2} %",
+             coefficient {:.3}; {:.3} of the exponents' contain the model's; the exponent is off by {:+.3}, electric \
+             friction by {:+.2} % on average; half-width {:.2} %",
             self.fitted,
             self.reasons.len(),
             self.share(self.electric),

@@ -102,13 +102,13 @@ fn speeds_and_slip() {
     // A finger that sticks: it is pulled with less force than slipping takes, or the drive has no effect.
     let pulled = |row: &mut Row| {
         if is_stroke(row, "6") {
-            row.friction_n *= 0.4
+            row.friction_n *= 0.4;
         }
     };
     refused(pulled, &["stroke 6 did not slip", "friction over load"]);
     let without_effect = |row: &mut Row| {
         if is_stroke(row, "6") {
-            row.friction_n = 0.5 * row.normal_force_n
+            row.friction_n = 0.5 * row.normal_force_n;
         }
     };
     refused(without_effect, &["stroke 6 did not slip", "the drive added"]);
@@ -128,7 +128,9 @@ fn voltages() {
 #[test]
 fn friction_is_stated_where_it_was_measured() {
     let mut rows = example();
-    rows.iter_mut().for_each(|row| row.voltage_v_rms *= 0.6);
+    for row in &mut rows {
+        row.voltage_v_rms *= 0.6;
+    }
     let fit = fit::fit(rows, &Settings { voltage_v_rms: 90.0, ..settings() }).unwrap();
     assert_eq!(fit.voltage_exponent.verdict, Verdict::None, "below 100 V rms there is no verdict");
     let summary = fit::Summary::from(&fit);
@@ -179,7 +181,9 @@ fn a_screen_whose_coating_is_thicker_than_the_fitted_gap() {
 #[test]
 fn without_strokes_rows_are_divided_by_motion_or_in_blocks() {
     let mut rows = example();
-    rows.iter_mut().for_each(|row| row.stroke = None);
+    for row in &mut rows {
+        row.stroke = None;
+    }
     let fit = fit_of(rows.clone()).unwrap();
     assert_eq!((fit.division, fit.strokes.len()), (fit::Division::Motion, 36));
     for row in &mut rows {
@@ -194,7 +198,8 @@ fn without_strokes_rows_are_divided_by_motion_or_in_blocks() {
     let mut rows = example();
     for row in &mut rows {
         row.stroke = None;
-        row.friction_n = if (row.time_s.unwrap() / 1.8) as u32 % 2 == 0 { row.friction_n } else { -row.friction_n };
+        row.friction_n =
+            if ((row.time_s.unwrap() / 1.8) as u32).is_multiple_of(2) { row.friction_n } else { -row.friction_n };
     }
     assert_eq!(fit_of(rows).unwrap().strokes.len(), 36);
 }

@@ -1,4 +1,5 @@
 //! Tests of finger profiles: what is read, what is refused, and what is written.
+#![allow(clippy::float_cmp, reason = "what has to be exact is tested as exact")]
 
 use proptest::prelude::*;
 

@@ -1,4 +1,5 @@
 //! Tests of the screen and finger of a scene: which one counts, what is refused, and what is warned of.
+#![allow(clippy::float_cmp, reason = "what has to be exact is tested as exact")]
 
 use super::*;
 use crate::{Elasticity, Evidence, FingerProfile, Mistake, Origin, Screen, Warning, migrate};
