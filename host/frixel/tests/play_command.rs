@@ -105,6 +105,89 @@ fn json_has_every_number_and_the_same_seed_the_same_bytes() {
     }
 }
 
+/// A scene that adds 2 mN to the example finger's 250 mN everywhere.
+const CONSTANT: &str = "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_n = 0.252\n";
+
+/// The JSON summary of a play of [`CONSTANT`].
+fn play_constant(folder: &Path, options: &[&str]) -> serde_json::Value {
+    fs::write(folder.join("constant.toml"), CONSTANT).unwrap();
+    let play = ["play", "constant.toml", "--from", "10,40", "--to", "110,40", "--speed", "80", "--json"];
+    serde_json::from_str(&succeed(folder, &[&play[..], options].concat())).unwrap()
+}
+
+fn number(json: &serde_json::Value, key: &str) -> f64 {
+    json[key].as_f64().unwrap_or_else(|| panic!("{key}: {}", json[key]))
+}
+
+/// The natural friction of the reference changes by tens of millinewtons, and that of the finger with it. The 2 mN that
+/// the drive adds is the most that the display can be off by.
+#[test]
+fn the_reference_has_the_load_and_the_noise_of_the_finger() {
+    let folder = TempDir::new().unwrap();
+    let natural = play_constant(folder.path(), &[]);
+    assert_eq!(natural["world"], "natural");
+    let range_n = number(&natural, "wanted_max_n") - number(&natural, "wanted_min_n");
+    assert!(range_n > 20e-3, "natural friction changes by {range_n} N");
+    let error_n = number(&natural, "friction_error_rms_n");
+    assert!((1e-5..2e-3).contains(&error_n), "{error_n} N rms");
+    assert!(number(&natural, "inversion_error_max_n") < 1e-5);
+
+    let ideal = play_constant(folder.path(), &["--ideal"]);
+    assert_eq!(ideal["world"], "ideal");
+    let range_n = number(&ideal, "wanted_max_n") - number(&ideal, "wanted_min_n");
+    assert!(range_n.abs() < 1e-9, "an ideal finger's friction changes by {range_n} N");
+    assert!(number(&ideal, "friction_error_rms_n") < error_n);
+}
+
+#[test]
+fn a_drawn_finger_is_felt_and_the_board_does_not_know_it() {
+    let folder = TempDir::new().unwrap();
+    let screen_gap_m = 1e-6 / 3.9;
+    for seed in ["5", "6"] {
+        let person = frixel_hil_sim::Person::drawn(seed.parse().unwrap());
+        let natural_n = person.contact(screen_gap_m).unwrap().natural_friction_n();
+        let json = play_constant(folder.path(), &["--ideal", "--finger-seed", seed]);
+        assert_eq!((&json["finger_seed"].to_string()[..], &json["finger_origin"]), (seed, &"assumed".into()));
+        let wanted_n = number(&json, "wanted_max_n");
+        assert!((wanted_n - natural_n - 2e-3).abs() < 1e-5, "{wanted_n} N is not {natural_n} N and 2 mN");
+        let reachable_n = number(&json, "reachable_min_n");
+        assert!((reachable_n - 0.25).abs() < 1e-9, "the board was told of another finger: {reachable_n} N");
+        let (error_n, table_error_n) = (number(&json, "friction_error_rms_n"), number(&json, "inversion_error_rms_n"));
+        assert!(error_n < 2e-3 && error_n > 10.0 * table_error_n, "{error_n} N rms, of the inverse {table_error_n} N");
+
+        let felt = fs::read_to_string(folder.path().join("frixel-out/felt.csv")).unwrap();
+        let felt_n: f64 = felt.lines().nth(800).unwrap().split(',').nth(6).unwrap().parse().unwrap();
+        assert!((felt_n - natural_n).abs() < 5e-3, "felt {felt_n} N, not about {natural_n} N");
+    }
+}
+
+#[test]
+fn the_summary_says_which_world_was_simulated() {
+    let folder = TempDir::new().unwrap();
+    let play = |options: &[&str]| succeed(folder.path(), &[&["play", &brick(), "--seconds", "0.1"], options].concat());
+    let said = play(&[]);
+    assert!(said.contains("  world            natural: with load changes, noise,"), "{said}");
+    assert!(said.contains("--ideal switches them off") && !said.contains("  finger "), "{said}");
+    let said = play(&["--ideal", "--finger-seed", "7"]);
+    assert!(said.contains("  world            ideal: no load changes, noise,"), "{said}");
+    assert!(said.contains("  finger           drawn person 7, assumed;"), "{said}");
+}
+
+#[test]
+fn a_person_cannot_be_drawn_where_the_finger_is_fixed() {
+    let folder = TempDir::new().unwrap();
+    let scene = "version = 1\n[screen]\nwidth_mm = 120\nheight_mm = 80\n[finger]\nfriction_coefficient = 0.5\n\
+                 normal_load_n = 0.5\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\n\
+                 [coating]\nthickness_um = 5\npermittivity = 1\n[[layer]]\nkind = \"constant\"\nfriction_n = 0.252\n";
+    fs::write(folder.path().join("old.toml"), scene).unwrap();
+    succeed(folder.path(), &["play", "old.toml", "--seconds", "0.1"]);
+    refuse(folder.path(), &["play", "old.toml", "--finger-seed", "1"], &["version 1", "frixel scene migrate"]);
+    for option in [&["--ideal"][..], &["--finger-seed", "1"]] {
+        let play = ["play", &brick(), "--port", "/dev/frixel-none"];
+        refuse(folder.path(), &[&play[..], option].concat(), &["/dev/frixel-none", "has its own: leave them out"]);
+    }
+}
+
 /// One sentence on standard error, with what is wrong, and an exit of one.
 fn refuse(folder: &Path, arguments: &[&str], parts: &[&str]) {
     let output = frixel(folder, arguments);

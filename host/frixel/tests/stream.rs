@@ -247,7 +247,7 @@ high_n = 0.018
     /// felt.csv.
     fn stream(folder: &Path, out: &str, arguments: &[&str], input: File) -> (serde_json::Value, Vec<u8>) {
         let output = Command::new(env!("CARGO_BIN_EXE_frixel"))
-            .args(["play", "scene.toml", "--seconds", "1.5", "--json", "--out", out])
+            .args(["play", "scene.toml", "--seconds", "1.5", "--ideal", "--json", "--out", out])
             .args(arguments)
             .current_dir(folder)
             .stdin(input)

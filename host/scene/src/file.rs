@@ -122,6 +122,13 @@ impl Scene {
         Ok(self)
     }
 
+    /// The screen, for a finger other than the scene's own. A scene of version 1 is refused, because its coating contains
+    /// the skin of its own finger.
+    pub fn screen_without_skin(&self) -> Result<&Screen, CompileError> {
+        self.refuse_version_one("finger")?;
+        Ok(&self.profiles.screen)
+    }
+
     fn refuse_version_one(&self, what: &'static str) -> Result<(), CompileError> {
         let mut log = Log::new(&self.source);
         if self.version == Version::One {

@@ -26,7 +26,7 @@ pub(super) fn run(args: &DemoArgs) -> Result<(), CommandError> {
          two of the smallest steps that a finger feels"
     ))?;
     print_line(format_args!("open {out}/scene.png for the path of the finger, {out}/felt.svg for what it felt"))?;
-    play::run(&PlayArgs { out: args.out.clone(), ..PlayArgs::of(&scene) })?;
+    play::run(&PlayArgs { out: args.out.clone(), ..PlayArgs::ideal(&scene) })?;
     print_line(format_args!("change {place} and play it again: frixel play {place}"))
 }
 

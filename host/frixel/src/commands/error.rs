@@ -98,6 +98,11 @@ pub(crate) enum CommandError {
          and --from"
     )]
     StrokeOnBoard { port: String },
+    #[error(
+        "--ideal and --finger-seed change the world of --port sim and --port qemu only; a board at {port} has its own: \
+         leave them out"
+    )]
+    WorldOnBoard { port: String },
     #[error("{port} sends telemetry at most {max} times a second, --csv-hz {found} is more; give {max} or less")]
     CsvTooFast { port: String, found: u32, max: u32 },
     #[error("--csv-hz {found} does not divide the board's {tick_hz} ticks a second; give {nearest}")]

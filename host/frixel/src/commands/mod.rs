@@ -118,6 +118,14 @@ struct PlayArgs {
     /// Seed of all that is random in the simulator.
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Simulate a world without load changes, noise, pre-sliding, leakage, offsets, and lost touch reports. Without it,
+    /// all of them are simulated.
+    #[arg(long)]
+    ideal: bool,
+    /// Simulated person, whose finger the board does not know: another one for each seed. Without it, the finger is the
+    /// scene's.
+    #[arg(long, value_name = "N")]
+    finger_seed: Option<u64>,
     /// Rows a second in felt.csv; at most 1000 on a board.
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=40_000))]
     csv_hz: u32,
@@ -166,8 +174,8 @@ struct InfoArgs {
 }
 
 impl PlayArgs {
-    /// The options of a play on the simulator without any option.
-    fn of(scene: &Path) -> Self {
+    /// The options of a play on the simulator in an ideal world, without any other option.
+    fn ideal(scene: &Path) -> Self {
         Self {
             scene: scene.to_owned(),
             profiles: profiles::ProfileArgs::default(),
@@ -177,6 +185,8 @@ impl PlayArgs {
             out: "frixel-out".into(),
             json: false,
             seed: 1,
+            ideal: true,
+            finger_seed: None,
             csv_hz: 1000,
             arm: false,
             watch: false,

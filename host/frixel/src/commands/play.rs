@@ -13,6 +13,7 @@ mod plan;
 mod progress;
 mod rigs;
 mod saved_file;
+mod simulated_world;
 mod with_log;
 
 use std::path::PathBuf;

@@ -35,7 +35,7 @@ pub use felt_log::{FeltLog, FeltLogError};
 pub use felt_svg::write_felt_svg;
 pub use fit_svg::write_fit_svg;
 pub use preview_png::write_preview_png;
-pub use report::Report;
+pub use report::{Report, WorldReport};
 pub use scene_png::write_scene_png;
 pub use trace::Trace;
 

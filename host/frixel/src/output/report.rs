@@ -13,6 +13,10 @@ use frixel_scene::{Origin, Reach};
 pub struct Report {
     /// The rig that played the scene: `sim`, `qemu` or `board`.
     pub rig: String,
+    /// The simulated world, `natural` or `ideal`.
+    pub world: Option<&'static str>,
+    /// Seed of the simulated person whose finger the board does not know.
+    pub finger_seed: Option<u64>,
     /// Number of ticks played.
     pub ticks: u64,
     /// Ticks with the finger on the screen before the board knew of it, which have no friction error.
@@ -59,6 +63,28 @@ pub struct Report {
     pub untouched_layers: Vec<String>,
 }
 
+/// The world that was simulated beside a board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WorldReport {
+    /// Whether every effect beside the contact model was switched off.
+    pub is_ideal: bool,
+    /// Seed of the drawn person; `None` if the finger was the scene's.
+    pub finger_seed: Option<u64>,
+}
+
+impl WorldReport {
+    /// The name of the world, for programs.
+    fn name(&self) -> &'static str {
+        if self.is_ideal { IDEAL } else { NATURAL }
+    }
+}
+
+const IDEAL: &str = "ideal";
+const NATURAL: &str = "natural";
+const IDEAL_WORLD: &str = "no load changes, noise, pre-sliding, leakage, offsets or lost touch reports";
+const NATURAL_WORLD: &str =
+    "with load changes, noise, pre-sliding, leakage, offsets and lost touch reports; --ideal switches them off";
+
 impl Report {
     /// Computes the report from the results of a play.
     pub fn new(
@@ -70,6 +96,8 @@ impl Report {
     ) -> Self {
         Self {
             rig: rig.to_owned(),
+            world: None,
+            finger_seed: None,
             ticks: metrics.ticks,
             unreported_ticks: metrics.unreported_ticks,
             friction_error_rms_n: metrics.friction_error.map(|error| error.rms_n),
@@ -101,6 +129,15 @@ impl Report {
         Self { finger_origin: origin.word(), ..self }
     }
 
+    /// Says which world was simulated, if one was. The newtons of a drawn person are assumed, whatever those of the
+    /// scene's finger rest on.
+    #[must_use]
+    pub fn with_world(self, world: Option<WorldReport>) -> Self {
+        let finger_seed = world.and_then(|world| world.finger_seed);
+        let finger_origin = if finger_seed.is_some() { Origin::Assumed.word() } else { self.finger_origin };
+        Self { world: world.map(|world| world.name()), finger_seed, finger_origin, ..self }
+    }
+
     /// Adds the status of the stream, if there was one.
     #[must_use]
     pub fn with_stream(mut self, stream: Option<StreamStatus>) -> Self {
@@ -130,6 +167,13 @@ impl Report {
             // Writing to a string cannot fail.
             let _ = writeln!(text, "  {name:<16} {value}");
         };
+        if let Some(world) = self.world {
+            let what = if world == IDEAL { IDEAL_WORLD } else { NATURAL_WORLD };
+            line("world", format!("{world}: {what}"));
+        }
+        if let Some(seed) = self.finger_seed {
+            line("finger", format!("drawn person {seed}, assumed; the board plays for the scene's finger"));
+        }
         let suffix = if self.finger_origin == Origin::Measured.word() { "" } else { ", assumed" };
         let range = |least: f64, most: f64| format!("{:.2} to {:.2} mN{suffix}", 1e3 * least, 1e3 * most);
         line("reachable", range(self.reachable_min_n, self.reachable_max_n));

@@ -11,7 +11,7 @@ use frixel_scene::recorder::{Observation, Recorder};
 use frixel_wire::message::Telemetry;
 
 use super::RecordedLink;
-use super::recorded::finger_and_felt;
+use super::recorded::{ReferenceFinger, finger_and_felt};
 
 /// Wall time between two readings of the board's clock.
 const POLL_PERIOD: Duration = Duration::from_millis(2);
@@ -41,6 +41,7 @@ pub struct EmulatedLink<'b> {
     held: VecDeque<LinkRecord>,
     telemetry: VecDeque<Telemetry>,
     recorder: Recorder,
+    reference_finger: ReferenceFinger,
 }
 
 impl<'b> EmulatedLink<'b> {
@@ -62,7 +63,15 @@ impl<'b> EmulatedLink<'b> {
             held: VecDeque::new(),
             telemetry: VecDeque::new(),
             recorder: Recorder::idle(),
+            reference_finger: ReferenceFinger::Scene,
         })
+    }
+
+    /// Compares with what the simulated finger would have felt of a display without fault, with its load, noise and
+    /// skin; without this, with the friction of the scene's finger in steady sliding.
+    #[must_use]
+    pub fn referring_to_simulated_finger(self) -> Self {
+        Self { reference_finger: ReferenceFinger::simulated(), ..self }
     }
 
     /// Advances the clock with the board's.
@@ -86,7 +95,8 @@ impl<'b> EmulatedLink<'b> {
             let telemetry = telemetry_of(record.tick, &mut self.telemetry);
             let (finger, felt) = finger_and_felt(&record.felt);
             let dac_code = Some(record.drive.dac_code.bits());
-            self.recorder.record(&Observation { tick: record.tick, finger, felt, dac_code, telemetry });
+            let observation = Observation { tick: record.tick, finger, felt, dac_code, telemetry };
+            self.reference_finger.record(&mut self.recorder, &observation, &record.felt);
         }
     }
 }

@@ -1,8 +1,8 @@
 //! The interface that all rigs have in common.
 
 use frixel_driver::{Link, LinkClosed};
-use frixel_hil_sim::{Felt, FingerState as SimulatedFinger};
-use frixel_scene::recorder::{FeltFriction, FingerState, Recorder};
+use frixel_hil_sim::{Felt, FingerState as SimulatedFinger, ReferenceFriction};
+use frixel_scene::recorder::{FeltFriction, FingerState, Observation, Recorder};
 use frixel_wire::message::Telemetry;
 
 /// A link to a board that plays a scene, with the record of that play.
@@ -21,6 +21,36 @@ pub trait RecordedLink: Link {
 
     /// Records the ticks that still wait for telemetry. Call this after the last telemetry message.
     fn record_rest(&mut self) {}
+}
+
+/// The finger that the reference of a record is meant for.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) enum ReferenceFinger {
+    /// The scene's contact model in steady sliding.
+    #[default]
+    Scene,
+    /// The simulated finger, with its load, noise and skin.
+    Simulated(ReferenceFriction),
+}
+
+impl ReferenceFinger {
+    /// The simulated finger before its first touch.
+    pub(super) fn simulated() -> Self {
+        Self::Simulated(ReferenceFriction::default())
+    }
+
+    /// Records the observation of a tick in which the simulated finger felt `felt`.
+    pub(super) fn record(&mut self, recorder: &mut Recorder, observation: &Observation, felt: &Felt) {
+        match self {
+            Self::Scene => recorder.record(observation),
+            Self::Simulated(reference) => {
+                if felt.finger.is_none() {
+                    *reference = ReferenceFriction::default();
+                }
+                recorder.record_through(observation, &mut |electric_n| reference.follow(felt, electric_n));
+            }
+        }
+    }
 }
 
 /// Converts the state of a simulated world into the types of the recorder.

@@ -9,7 +9,7 @@ use frixel_wire::fault::State;
 use frixel_wire::message::Telemetry;
 
 use super::RecordedLink;
-use super::recorded::finger_and_felt;
+use super::recorded::{ReferenceFinger, finger_and_felt};
 
 /// A frame that is sent periodically without a call.
 struct KeepAlive {
@@ -26,6 +26,7 @@ type Observer<'a> = Box<dyn FnMut(&TickRecord) + 'a>;
 pub struct SimLink<'a> {
     rig: Rig<'a>,
     recorder: Recorder,
+    reference_finger: ReferenceFinger,
     recording: bool,
     written: Written,
     written_at_tick: u64,
@@ -39,6 +40,7 @@ impl<'a> SimLink<'a> {
         Self {
             rig,
             recorder,
+            reference_finger: ReferenceFinger::Scene,
             recording: false,
             written: Written::default(),
             written_at_tick: 0,
@@ -51,6 +53,13 @@ impl<'a> SimLink<'a> {
     #[must_use]
     pub fn observed(self, observer: impl FnMut(&TickRecord) + 'a) -> Self {
         Self { observer: Some(Box::new(observer)), ..self }
+    }
+
+    /// Compares with what the simulated finger would have felt of a display without fault, with its load, noise and
+    /// skin; without this, with the friction of the scene's finger in steady sliding.
+    #[must_use]
+    pub fn referring_to_simulated_finger(self) -> Self {
+        Self { reference_finger: ReferenceFinger::simulated(), ..self }
     }
 
     /// The recorder with all ticks.
@@ -71,7 +80,7 @@ impl<'a> SimLink<'a> {
         }
         let record = self.rig.step();
         if self.recording {
-            self.recorder.record(&observation(&record));
+            self.reference_finger.record(&mut self.recorder, &observation(&record), &record.felt);
             if let Some(observer) = &mut self.observer {
                 observer(&record);
             }

@@ -20,7 +20,7 @@ fn write_scene(path: &Path, friction_n: &str) {
 /// Plays a scene for 1.2 s of virtual time with these lines on standard input.
 fn control(folder: &Path, lines: &str) -> Output {
     let arguments = ["play", "scene.toml", "--control", "--from", "10,30", "--to", "110,30", "--seconds", "1.2"];
-    let mut command = command(folder, &[&arguments[..], &["--speed", "80"]].concat());
+    let mut command = command(folder, &[&arguments[..], &["--speed", "80", "--ideal"]].concat());
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut process = command.spawn().unwrap();
     process.stdin.take().unwrap().write_all(lines.as_bytes()).unwrap();

@@ -31,7 +31,7 @@ fn a_stream_ends_with_its_file_and_counts_as_wanted() {
     let folder = TempDir::new().unwrap();
     write_scene(&folder.path().join("scene.toml"));
     write_ramp(&folder.path().join("ramp.wav"));
-    let (json, notes) = succeed(folder.path(), &["play", "scene.toml", "--stream", "ramp.wav", "--json"]);
+    let (json, notes) = succeed(folder.path(), &["play", "scene.toml", "--stream", "ramp.wav", "--ideal", "--json"]);
     assert!(!notes.contains("nothing will be felt"), "{notes}");
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     let seconds = json["ticks"].as_f64().unwrap() / 40_000.0;

@@ -22,7 +22,7 @@ fn play(folder: &Path) -> Command {
     let scene = folder.join("brick.toml");
     fs::write(&scene, brick.replace("[drive]\n", "[drive]\nhost_timeout_ms = 1000\n")).unwrap();
     let mut command = Command::new(env!("CARGO_BIN_EXE_frixel"));
-    command.arg("play").arg(scene).args(["--port", "qemu", "--json"]).current_dir(folder);
+    command.arg("play").arg(scene).args(["--port", "qemu", "--ideal", "--json"]).current_dir(folder);
     command
 }
 

@@ -115,9 +115,24 @@ impl Recorder {
 
     /// Adds an observation. Ignores one that is not later than the one before, or that is beyond the end of the record.
     pub fn record(&mut self, observation: &Observation) {
+        self.add(observation, None);
+    }
+
+    /// Adds an observation of a simulated finger that is not only the scene's contact model, so that the reference goes
+    /// through the same finger.
+    ///
+    /// `total_friction_n` converts the electric friction of the scene at the finger's true place, in N, to the total
+    /// friction that this finger would have felt from it in this tick, in N. It is called once for each recorded tick
+    /// with a finger.
+    pub fn record_through(&mut self, observation: &Observation, total_friction_n: &mut dyn FnMut(f64) -> f64) {
+        self.add(observation, Some(total_friction_n));
+    }
+
+    fn add(&mut self, observation: &Observation, total_friction_n: Option<&mut dyn FnMut(f64) -> f64>) {
         let Some(ticks_passed) = self.advance_to(observation.tick) else { return };
+        let t_s = self.last_tick as f64 * self.tick_period_s;
         let frictions = match &mut self.comparison {
-            Some(comparison) => comparison.add(observation, self.last_tick as f64 * self.tick_period_s, ticks_passed),
+            Some(comparison) => comparison.add(observation, t_s, ticks_passed, total_friction_n),
             None => Frictions::without_reference(observation),
         };
         self.rows.extend(self.row_maker.add(observation, self.ticks(), &frictions));
@@ -181,14 +196,26 @@ impl Recorder {
 
 impl Comparison {
     /// Adds an observation at time `t_s` since power-on, `ticks_passed` ticks after the previous one.
-    fn add(&mut self, observation: &Observation, t_s: f64, ticks_passed: u32) -> Frictions {
-        let natural_n = self.reference.natural_friction_n();
+    fn add(
+        &mut self,
+        observation: &Observation,
+        t_s: f64,
+        ticks_passed: u32,
+        total_friction_n: Option<&mut dyn FnMut(f64) -> f64>,
+    ) -> Frictions {
+        let scenes_natural_n = self.reference.natural_friction_n();
+        let electric_n = self.reference_electric_n(observation, t_s, ticks_passed);
+        let in_scene_n = electric_n.map(|electric_n| scenes_natural_n + electric_n);
+        let in_reach = in_scene_n.is_some_and(|in_scene_n| self.inversion.reaches(in_scene_n - scenes_natural_n));
+        let (natural_n, wanted_n) = match (total_friction_n, &observation.felt) {
+            (Some(total_friction_n), Some(felt)) => {
+                (felt.friction_n - felt.electric_friction_n, electric_n.map(total_friction_n))
+            }
+            _ => (scenes_natural_n, in_scene_n),
+        };
         let telemetry = observation.telemetry.as_ref();
-        let wanted_n =
-            self.reference_electric_n(observation, t_s, ticks_passed).map(|electric_n| natural_n + electric_n);
         let asked_n = telemetry.map(|telemetry| natural_n + f64::from(telemetry.asked_electric_friction_n));
         let felt_n = observation.felt.map(|felt| felt.friction_n);
-        let in_reach = wanted_n.is_some_and(|wanted_n| self.inversion.reaches(wanted_n - natural_n));
         self.metrics.add(&Sample {
             finger_down: observation.finger.is_some(),
             board_has_finger: telemetry.map(|telemetry| !telemetry.flags.contains(Flags::NO_FINGER)),

@@ -215,6 +215,26 @@ fn another_program_is_compared_with_from_then_on() {
     assert_eq!(wanted, [Some(260_000), Some(270_000)]);
 }
 
+/// A finger with 0.31 N of natural friction, that feels 0.9 of the scene's electric friction.
+#[test]
+fn the_reference_goes_through_the_finger_that_felt() {
+    let mut recorder = recorder(&program(CONSTANT), 1);
+    let felt = Some(FeltFriction { friction_n: 0.32, electric_friction_n: 0.01 });
+    for tick in 1..=3 {
+        let observation = Observation { felt, telemetry: Some(telemetry(tick)), ..simulated(tick, 0.32) };
+        recorder.record_through(&observation, &mut |electric_n| 0.31 + 0.9 * electric_n);
+    }
+    let mut calls = 0;
+    let lifted = Observation { finger: None, ..simulated(4, 0.0) };
+    recorder.record_through(&lifted, &mut |_| f64::from(std::mem::replace(&mut calls, 1)));
+    assert_eq!(calls, 0, "a lifted finger feels nothing");
+    for row in &recorder.rows()[..3] {
+        assert_eq!([in_mn(row.wanted_n), in_mn(row.asked_n), in_mn(row.felt_n)], [319_000, 320_000, 320_000].map(Some));
+    }
+    let error = recorder.summary().friction_error.unwrap();
+    assert!((error.rms_n - 1e-3).abs() < 1e-9, "{} N", error.rms_n);
+}
+
 #[test]
 fn a_code_of_zero_is_no_friction_whatever_voltage_was_commanded() {
     let inversion = Inversion::new(&program(CONSTANT), &LIMITS, TICK_HZ).unwrap();

@@ -12,6 +12,7 @@ use super::follow::follow;
 use super::live_scene::LiveScene;
 use super::plan::Plan;
 use super::rigs::Target;
+use super::simulated_world::SimulatedWorld;
 use super::{CommandError, Interrupt, PlayArgs, Played};
 
 /// Plays on the firmware in an emulator, under a simulated finger.
@@ -23,14 +24,20 @@ pub(super) fn play_on_emulator(
 ) -> Result<Played, CommandError> {
     let mut plan = Plan::new(args, scene, Target::Emulator, (&BOARD.limits, BOARD.tick_hz))?;
     let stroke = plan.choose_stroke(args)?;
-    let world = world(&plan.program, stroke, args.seed)?;
+    let simulated = SimulatedWorld::new(args, scene)?;
+    plan.world = Some(simulated.report());
+    let world = world(&plan.program, &simulated, stroke, args.seed)?;
     let image = Image::build()?;
     let (sender, records) = mpsc::channel();
     let mut board = LinkBoard::start(&image, world, move |record| {
         // The receiver is gone once the play has ended.
         let _ = sender.send(*record);
     })?;
-    let device = Device::connect(EmulatedLink::open(&board, records)?)?;
+    let mut link = EmulatedLink::open(&board, records)?;
+    if simulated.has_own_reference() {
+        link = link.referring_to_simulated_finger();
+    }
+    let device = Device::connect(link)?;
     let mut played = follow(args, plan, device, live_scene, interrupt)?;
     if !interrupt.is_requested() {
         played.failure = played.failure.or(board.check().err().map(CommandError::from));
@@ -38,14 +45,16 @@ pub(super) fn play_on_emulator(
     Ok(played)
 }
 
-/// Creates the world around the emulated board, with the finger that the scene was made for.
-fn world(program: &Program, stroke: Stroke, seed: u64) -> Result<World, CommandError> {
+/// Creates the world around the emulated board, with the drawn person's finger or else the one that the scene was made
+/// for.
+fn world(program: &Program, simulated: &SimulatedWorld, stroke: Stroke, seed: u64) -> Result<World, CommandError> {
     let config = WorldConfig {
         tick_hz: BOARD.tick_hz,
         full_scale_v_peak: f64::from(BOARD.limits.full_scale_v_peak),
         ..WorldConfig::default()
     };
-    let mut world = World::new(config, stroke, seed)?;
+    let mut world = World::new(simulated.config(config), stroke, seed)?;
     world.set_finger(contact_of(&program.header).map_err(CommandError::Finger)?);
+    simulated.set_finger(&mut world);
     Ok(world)
 }

@@ -141,6 +141,7 @@ impl<L: RecordedLink> Play<'_, L> {
         let realtime_factor = target.is_virtual_time().then(|| recorder.t_s() / playing.as_secs_f64());
         let report = Report::new(target.name(), &recorder.summary(), &program.reach, &counters, realtime_factor)
             .with_origin(program.finger.origin)
+            .with_world(self.plan.world)
             .with_stream(stream);
         let written = self.outputs.write(&recorder.take_rows());
         let report = report.with_untouched(self.outputs.untouched_layers());

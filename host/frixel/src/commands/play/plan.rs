@@ -4,6 +4,7 @@ use std::io::stdin;
 use std::path::Path;
 use std::time::Duration;
 
+use frixel::output::WorldReport;
 use frixel::stream::Feed;
 use frixel_hil_sim::Stroke;
 use frixel_scene::recorder::Recorder;
@@ -26,6 +27,8 @@ pub(super) struct Plan {
     pub(super) target: Target,
     pub(super) program: Program,
     pub(super) feed: Option<Feed>,
+    /// The world that is simulated beside the board; `None` for a board at a port.
+    pub(super) world: Option<WorldReport>,
     ticks_per_row: u32,
     /// Ticks between two telemetry messages; 0 for rigs whose ticks are observed directly.
     pub(super) telemetry_period_ticks: u32,
@@ -48,6 +51,7 @@ pub(super) fn check_options(args: &PlayArgs, target: Target) -> Result<(), Comma
         }
         Target::Emulator if args.stream.is_some() => Err(CommandError::StreamOnEmulated),
         Target::Port if args.stroke.is_given() => Err(CommandError::StrokeOnBoard { port: port() }),
+        Target::Port if args.ideal || args.finger_seed.is_some() => Err(CommandError::WorldOnBoard { port: port() }),
         Target::Port if args.csv_hz > TELEMETRY_MAX_HZ => {
             Err(CommandError::CsvTooFast { port: port(), found: args.csv_hz, max: TELEMETRY_MAX_HZ })
         }
@@ -76,7 +80,7 @@ impl Plan {
         let feed = open_feed(args, tick_hz, target)?;
         note_streams(&program, feed.is_some());
         let (limits, seconds) = (*limits, args.seconds);
-        Ok(Self { target, program, feed, ticks_per_row, telemetry_period_ticks, limits, tick_hz, seconds })
+        Ok(Self { target, program, feed, world: None, ticks_per_row, telemetry_period_ticks, limits, tick_hz, seconds })
     }
 
     /// Chooses the path of the simulated finger over the screen. Without `--seconds`, the play lasts as long as the

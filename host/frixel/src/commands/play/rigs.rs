@@ -11,6 +11,7 @@ pub(super) use super::emulator::play_on_emulator;
 use super::follow::follow;
 use super::live_scene::LiveScene;
 use super::plan::{Plan, check_measured};
+use super::simulated_world::SimulatedWorld;
 use super::{CommandError, Interrupt, PlayArgs, Played};
 
 /// Kind of the board that plays.
@@ -56,13 +57,21 @@ pub(super) fn play_on_simulator(
     live_scene: Option<LiveScene>,
     interrupt: &Interrupt,
 ) -> Result<Played, CommandError> {
-    let config = RigConfig::default();
+    let world = SimulatedWorld::new(args, scene)?;
+    let mut config = RigConfig::default();
+    config.world = world.config(config.world);
     let board = (&config.board.limits, config.board.tick_hz);
     let mut plan = Plan::new(args, scene, Target::Simulator, board)?;
     let stroke = plan.choose_stroke(args)?;
     let mut memory = BoardMemory::new();
-    let rig = Rig::new(&mut memory, &config, stroke, args.seed)?;
-    let device = Device::connect(SimLink::new(rig, Recorder::idle()))?;
+    let mut rig = Rig::new(&mut memory, &config, stroke, args.seed)?;
+    world.set_finger(rig.world_mut());
+    let mut link = SimLink::new(rig, Recorder::idle());
+    if world.has_own_reference() {
+        link = link.referring_to_simulated_finger();
+    }
+    plan.world = Some(world.report());
+    let device = Device::connect(link)?;
     follow(args, plan, device, live_scene, interrupt)
 }
 

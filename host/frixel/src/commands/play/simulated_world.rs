@@ -1,0 +1,65 @@
+//! The world around a simulated or emulated board: which effects it has, and whose finger is in it.
+
+use frixel::output::WorldReport;
+use frixel_hil_sim::{Person, World, WorldConfig};
+use frixel_model::LoadedContact;
+use frixel_scene::Scene;
+
+use super::{CommandError, PlayArgs};
+
+/// The world that the options of a play describe.
+#[derive(Clone, Debug)]
+pub(super) struct SimulatedWorld {
+    is_ideal: bool,
+    person: Option<DrawnPerson>,
+}
+
+/// A person drawn from the population, with their contact with the scene's screen.
+#[derive(Clone, Debug)]
+struct DrawnPerson {
+    seed: u64,
+    person: Person,
+    contact: LoadedContact<f64>,
+}
+
+impl SimulatedWorld {
+    /// Reads the options. A person cannot be drawn for a scene of version 1, whose coating contains the skin of its own
+    /// finger.
+    pub(super) fn new(args: &PlayArgs, scene: &Scene) -> Result<Self, CommandError> {
+        let draw = |seed: u64| -> Result<DrawnPerson, CommandError> {
+            let coating_gap_m = 1e-6 * scene.screen_without_skin()?.coating_gap_um();
+            let person = Person::drawn(seed);
+            let contact = person.contact(coating_gap_m).map_err(CommandError::Finger)?;
+            Ok(DrawnPerson { seed, person, contact })
+        };
+        Ok(Self { is_ideal: args.ideal, person: args.finger_seed.map(draw).transpose()? })
+    }
+
+    /// The configuration of this world; `config` has the rates of the board.
+    pub(super) fn config(&self, config: WorldConfig) -> WorldConfig {
+        if self.is_ideal {
+            return config;
+        }
+        let natural = config.natural();
+        let fingertip = self.person.as_ref().map_or(natural.fingertip, |drawn| drawn.person.fingertip);
+        WorldConfig { fingertip, ..natural }
+    }
+
+    /// Puts the drawn person's finger into the world, if there is one.
+    pub(super) fn set_finger(&self, world: &mut World) {
+        if let Some(drawn) = &self.person {
+            world.set_own_finger(drawn.contact);
+        }
+    }
+
+    /// Whether the simulated finger is more than the scene's finger in steady sliding, so that the reference is meant
+    /// for it.
+    pub(super) fn has_own_reference(&self) -> bool {
+        !self.is_ideal || self.person.is_some()
+    }
+
+    /// What the report says about this world.
+    pub(super) fn report(&self) -> WorldReport {
+        WorldReport { is_ideal: self.is_ideal, finger_seed: self.person.as_ref().map(|drawn| drawn.seed) }
+    }
+}
