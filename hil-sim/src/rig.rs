@@ -195,7 +195,7 @@ impl<'a> Rig<'a> {
         if let Some(touch) = touch {
             self.session.touch(touch, self.status.telemetry.tick.wrapping_add(1));
         }
-        self.obey();
+        self.deliver_orders();
         let arm_switch = !self.ticker.waits_for_release();
         let sense = Sense { arm_switch, ..self.world.sense() };
         let drive = self.ticker.tick(&sense);
@@ -213,7 +213,7 @@ impl<'a> Rig<'a> {
     }
 
     /// Passes the session's next order to the ticker, which takes one before each tick.
-    fn obey(&mut self) {
+    fn deliver_orders(&mut self) {
         let Some(order) = self.session.next_order() else { return };
         let is_new_scene = matches!(order, Order::Load(_));
         if let Some(spare) = self.ticker.apply(order) {

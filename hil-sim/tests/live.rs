@@ -208,16 +208,15 @@ fn a_scene_takes_anothers_place_between_two_ticks() {
         assert_eq!(amplitudes(&swapped[..swap]), amplitudes(&before[..swap]), "delay {delay}");
         let asked_n = |record: &TickRecord| record.status.telemetry.asked_electric_friction_n;
         for tick in swap..SWAP_TICKS {
-            // A tick that attends to a report or to the host goes on with what was asked for before, and the two boards
-            // hear from their hosts at other times: what they ask for may be of places a tick or two apart, 2.5 um
-            // each.
             let (found_n, expected_n) = (asked_n(&swapped[tick]), asked_n(&after[tick]));
-            assert!((found_n - expected_n).abs() < 5e-5, "{delay}, {tick}: {found_n} N is not {expected_n} N");
+            // A tick applies one order: the tick that swaps the scene may apply a new track one tick late.
+            let tolerance_n = if tick == swap { 1e-6 } else { 0.0 };
+            assert!((found_n - expected_n).abs() <= tolerance_n, "{delay}, {tick}: {found_n} N is not {expected_n} N");
             let (found, expected) = (amplitude(&swapped[tick]), amplitude(&after[tick]));
             assert!(found.abs_diff(expected) < 40, "{delay}, {tick}: code {found} is not {expected}");
             if tick < swap + 4 {
-                assert!((found_n - asked_n(&before[tick])).abs() > 5e-4, "the two can be told apart");
-                assert!(found.abs_diff(amplitude(&before[tick])) > 400, "the two can be told apart");
+                assert!((found_n - asked_n(&before[tick])).abs() > 5e-4, "the two differ");
+                assert!(found.abs_diff(amplitude(&before[tick])) > 400, "the two differ");
             }
         }
         assert!(swapped.iter().all(|record| record.status.telemetry.dac_code != 0), "delay {delay}: never zero");

@@ -79,7 +79,7 @@ fn a_picture_on_a_sine_carrier_is_the_same() {
     let Some(image) = emulator::image() else { return };
     let stroke = Stroke::minimum_jerk(Point { x_m: 0.0, y_m: 0.01 }, Point { x_m: 0.1, y_m: 0.07 }, 0.8).unwrap();
     let journal = journal(BOARD, stroke.looped(0.05).unwrap(), 2, |script| {
-        script.greet();
+        script.hello();
         let picture = samples(200 * 150, 7);
         let crc32 = script.upload_bitmap(200, 150, &picture);
         let layer = Layer::Bitmap(Bitmap {
@@ -107,7 +107,7 @@ fn a_bad_day_is_the_same() {
     let Some(image) = emulator::image() else { return };
     let path = Stroke::constant_speed(Point { x_m: 0.01, y_m: 0.02 }, Point { x_m: 0.11, y_m: 0.06 }, 0.12).unwrap();
     let journal = journal(BOARD, path.looped(0.02).unwrap(), 3, |script| {
-        script.greet();
+        script.hello();
         let picture = samples(64 * 64, 9);
         let crc32 = script.upload_bitmap(64, 64, &picture);
         let layers = [
@@ -185,7 +185,7 @@ fn every_kind_of_layer_is_the_same() {
     let Some(image) = emulator::image() else { return };
     let path = Stroke::minimum_jerk(Point { x_m: 0.005, y_m: 0.02 }, Point { x_m: 0.115, y_m: 0.06 }, 0.9).unwrap();
     let journal = journal(BOARD, path.looped(0.02).unwrap(), 4, |script| {
-        script.greet();
+        script.hello();
         let picture = samples(40 * 30, 11);
         let crc32 = script.upload_bitmap(40, 30, &picture);
         let (records, points) = every_kind(crc32);

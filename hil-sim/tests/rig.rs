@@ -95,7 +95,7 @@ fn a_constant_friction_is_felt_within_one_per_cent_of_what_can_be_reached() {
             let mut rig = Rig::new(&mut memory, &RigConfig::default(), slide(), 1).unwrap();
             play(&mut rig, &constant(&header, (part * reach_n) as f32));
             let records: Vec<TickRecord> = (0..39_000).map(|_| rig.step()).collect();
-            // A sine's pressure swings about its mean, and friction grows a little faster than pressure (DESIGN 1).
+            // A sine's pressure swings about its mean, and friction grows a little faster than pressure.
             let bound = if carrier == Carrier::Square { 0.01 } else { 0.03 };
             for felt_n in felt_means_n(&records) {
                 let error = (felt_n - wanted_n) / reach_n;

@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_none_and_a_root_of_nothing_is_nothing() {
+    fn overflow_is_not_finite_and_the_root_of_zero_or_less_is_zero() {
         assert_eq!(DoubleSingle::ZERO.sqrt(), DoubleSingle::ZERO);
         assert_eq!(DoubleSingle::from(-1.0).sqrt(), DoubleSingle::ZERO);
         assert_eq!(DoubleSingle::from(f32::INFINITY).sqrt().high.to_bits(), f32::INFINITY.to_bits());

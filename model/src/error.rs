@@ -169,7 +169,7 @@ pub(crate) fn representable<T: Real>(parameter: &'static str, found: T, value: T
 }
 
 /// Checks the target electric friction of a contact under a load of zero or more.
-pub(crate) fn wanted_electric_friction_n<T: Real>(electric_friction_n: T) -> Result<T, InverseError> {
+pub(crate) fn checked_target_n<T: Real>(electric_friction_n: T) -> Result<T, InverseError> {
     if finite("electric_friction_n", electric_friction_n)? < T::ZERO {
         Err(InverseError::BelowNatural)
     } else {
@@ -183,10 +183,10 @@ pub(crate) fn found_voltage_v_rms<T: Real>(voltage_v_rms: T) -> Result<T, Invers
 }
 
 /// Rounds `value`, which was computed in f64 from `parameter` and others, to the precision of the model.
-pub(crate) fn scale<T: Real>(parameter: &'static str, found: T, value: f64) -> Result<T, ParameterError> {
-    let scale = T::from_f64(value);
-    if scale >= T::MIN_POSITIVE && scale.is_finite() {
-        Ok(scale)
+pub(crate) fn round_to_model<T: Real>(parameter: &'static str, found: T, value: f64) -> Result<T, ParameterError> {
+    let rounded = T::from_f64(value);
+    if rounded >= T::MIN_POSITIVE && rounded.is_finite() {
+        Ok(rounded)
     } else {
         Err(ParameterError { parameter, expected: Expected::Representable, found: found.into() })
     }

@@ -31,7 +31,8 @@
 //! | (27), (28), (34)-(36) | [`LoadedContact`] without load, the upper bound |
 //! | (27)-(33) | [`SoftLoadedContact`] without load |
 //! | (29) with (43), beyond the paper | [`SoftLoadedContact`] |
-//! | (30), (44), the groups under (36) | [`Contact::attraction`], [`Contact::load`], [`Contact::area`], [`Contact::universal`] |
+//! | (30), (44), the groups under (36) | [`Contact::attraction`], [`Contact::load`], [`Contact::area`] |
+//! | the curve of (36) in these groups | [`Contact::universal`] |
 //! | (37)-(39), (42) | [`LowerBound`] |
 //! | (40), (41) | [`SoftLowerBound`] |
 //! | (43), (21) | [`LoadedContact`]; [`PulledContact`] for negative loads; [`Contact::normal_load_n`] |

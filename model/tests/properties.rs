@@ -71,7 +71,9 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(3000))]
 
     #[test]
-    fn inverse_undoes_forward(finger in fingers(), load_n in loads(), voltage in log_range(1e-6, 1e4), beyond in log_range(1.0, 1e6)) {
+    fn inverse_undoes_forward(
+        finger in fingers(), load_n in loads(), voltage in log_range(1e-6, 1e4), beyond in log_range(1.0, 1e6)
+    ) {
         let contact = Contact::new(&finger.0, finger.1).unwrap();
         let loaded = contact.under_load(load_n).unwrap();
         answers(&loaded, voltage, 1e-14);
@@ -92,7 +94,7 @@ proptest! {
         answers(&contact.lower_bound(), voltage, 1e-13);
     }
 
-    /// DESIGN, "Sensitivity": between 2 and 4 for every load, and between 2 and 4 s + 2 for a soft finger without.
+    /// The exponent is between 2 and 4 for every load, and between 2 and 4 s + 2 for a soft finger without load.
     #[test]
     fn electric_friction_grows_with_a_power_of_the_voltage(
         finger in fingers(), soft in soft_fingers(), load_n in loads(), voltage in log_range(1e-3, 1e3)
@@ -111,7 +113,9 @@ proptest! {
 
     /// Friction rises with the attraction around the contact: none, up to an outer radius, to any distance.
     #[test]
-    fn bounds_enclose_the_finite_finger(finger in fingers(), load_n in loads(), voltage in log_range(1e-3, 1e3), beyond in log_range(1.001, 1e6)) {
+    fn bounds_enclose_the_finite_finger(
+        finger in fingers(), load_n in loads(), voltage in log_range(1e-3, 1e3), beyond in log_range(1.001, 1e6)
+    ) {
         let contact = Contact::new(&finger.0, finger.1).unwrap();
         let upper = contact.under_load(load_n).unwrap().state(voltage).unwrap();
         let lower = contact.lower_bound(load_n).unwrap().state(voltage).unwrap();
@@ -139,7 +143,8 @@ proptest! {
         let (finger, gap_m) = narrow(&finger);
         let contact = Contact::new(&finger, gap_m).unwrap();
         // In f32 only where no result leaves the range.
-        let friction_n = contact.lower_bound(load_n as f32).unwrap().state(voltage as f32).map_or(0.0, |s| s.electric_friction_n);
+        let lower_bound = contact.lower_bound(load_n as f32).unwrap();
+        let friction_n = lower_bound.state(voltage as f32).map_or(0.0, |state| state.electric_friction_n);
         if friction_n > 1e-30 {
             reaches(contact, load_n as f32, voltage as f32);
         }
@@ -219,7 +224,7 @@ fn slope(model: &dyn ContactModel<f64>, voltage_v_rms: f64) -> f64 {
     (high.friction_n / low.friction_n).ln() / (1.001_f64 / 0.999).ln() / 2.0
 }
 
-/// DESIGN, "Limits worth a test": Eqs. (34), (36) begin with slope 1 in sigma0, not 2 as Section VI.A has it.
+/// Eqs. (34), (36) begin with slope 1 in sigma0, not with slope 2 as Section VI.A of the paper has it.
 #[test]
 fn limits_of_small_and_large_voltage() {
     let finger = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };

@@ -11,7 +11,7 @@ const WASM: &str = "wasm32-unknown-unknown";
 const COMMAND_TARGETS: [&str; 2] = ["x86_64-pc-windows-gnu", "aarch64-apple-darwin"];
 /// The crates for use in a web page: they use no clocks, files, threads or processes. The `clippy.toml` of each
 /// disallows these.
-const PAGE_CRATES: [&str; 3] = ["frixel-scene", "frixel-driver", "frixel-hil-sim"];
+const WASM_CRATES: [&str; 3] = ["frixel-scene", "frixel-driver", "frixel-hil-sim"];
 /// The crate that plays scenes with those three crates, natively or in WebAssembly.
 const WASM_CHECK: &str = "frixel-wasm-check";
 
@@ -29,7 +29,7 @@ pub(crate) fn check() -> Result<Outcome, String> {
 fn page_crates() -> Result<(), String> {
     add_target(WASM)?;
     let mut arguments = vec!["clippy", "--target", WASM, "--no-default-features", "--lib"];
-    arguments.extend(PAGE_CRATES.iter().flat_map(|name| ["--package", name]));
+    arguments.extend(WASM_CRATES.iter().flat_map(|name| ["--package", name]));
     arguments.extend(["--", "-D", "warnings"]);
     run("crates of the page for WebAssembly", &mut cargo(&arguments))
 }

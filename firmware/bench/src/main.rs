@@ -41,7 +41,7 @@ fn main() -> ! {
         }
         debug::exit(debug::EXIT_SUCCESS);
     }
-    panic!("the emulator goes on after the end")
+    panic!("semihosting exit returned")
 }
 
 /// Returns the command line that the emulator passes to the image; empty when there is none.

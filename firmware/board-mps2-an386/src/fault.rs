@@ -22,10 +22,10 @@ pub fn take(text: &'static mut Text) -> Option<(Fault, u32, &'static [u8])> {
 }
 
 /// Sets the output to zero, stores the fault and resets.
-fn end(fault: Fault, detail: u32, say: &mut dyn FnMut(&mut Writer)) -> ! {
+fn end(fault: Fault, detail: u32, write_text: &mut dyn FnMut(&mut Writer)) -> ! {
     interrupt::disable();
     shared::output_off();
-    RECORD.save(fault, detail, say);
+    RECORD.save(fault, detail, write_text);
     SCB::sys_reset()
 }
 
@@ -42,7 +42,7 @@ fn panic(info: &PanicInfo) -> ! {
 #[exception]
 unsafe fn DefaultHandler(number: i16) {
     end(Fault::HardFault, u32::from(number.unsigned_abs()), &mut |text| {
-        text.text("an interrupt came that nobody handles");
+        text.text("unhandled interrupt");
     });
 }
 

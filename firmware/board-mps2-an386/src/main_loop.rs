@@ -84,7 +84,7 @@ impl MainLoop {
     /// This waits without sleep: an emulator whose processor sleeps until the next tick wakes it late, sometimes by
     /// several ticks, which the tick treats as a missed deadline.
     fn status(&mut self) -> Status {
-        tick::want_status();
+        tick::request_status();
         loop {
             if let Some(status) = self.statuses.dequeue() {
                 return status;

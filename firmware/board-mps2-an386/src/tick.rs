@@ -18,7 +18,7 @@ use crate::{fault_injection, shared};
 const CLOCK_HZ: u32 = 25_000_000;
 
 static TICK: Owned<Tick> = Owned::new();
-static STATUS_WANTED: AtomicBool = AtomicBool::new(false);
+static STATUS_REQUESTED: AtomicBool = AtomicBool::new(false);
 
 /// What the tick owns: the ticker and its ends of the queues.
 pub struct Tick {
@@ -72,8 +72,8 @@ pub fn start(tick: Tick, tick_hz: u32, mut systick: SYST) {
 }
 
 /// Requests a status from the tick.
-pub fn want_status() {
-    STATUS_WANTED.store(true, Ordering::Release);
+pub fn request_status() {
+    STATUS_REQUESTED.store(true, Ordering::Release);
 }
 
 /// Deadline: the drive must be put out before the next tick begins, 25 us. If it is late, the next `SysTick` is
@@ -106,8 +106,8 @@ impl Tick {
         let drive = self.ticker.tick(&sense);
         shared::drive(self.count, drive);
         self.monitor.follow(drive.dac_code);
-        if STATUS_WANTED.load(Ordering::Acquire) {
-            STATUS_WANTED.store(false, Ordering::Relaxed);
+        if STATUS_REQUESTED.load(Ordering::Acquire) {
+            STATUS_REQUESTED.store(false, Ordering::Relaxed);
             // Cannot fail: the session requests the next status only after it has taken this one.
             let _ = self.statuses.enqueue(self.ticker.status());
         }

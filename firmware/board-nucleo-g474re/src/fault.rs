@@ -54,13 +54,13 @@ impl LastReset {
 }
 
 /// Sets the output to zero, stores the reason and resets.
-fn end(fault: Fault, detail: u32, say: &mut dyn FnMut(&mut Writer)) -> ! {
+fn end(fault: Fault, detail: u32, write_text: &mut dyn FnMut(&mut Writer)) -> ! {
     static ENDING: AtomicBool = AtomicBool::new(false);
     interrupt::disable();
     output::zero_for_good();
     // A second fault during the following code resets at once.
     if !ENDING.swap(true, Ordering::Relaxed) {
-        RECORD.save(fault, detail, say);
+        RECORD.save(fault, detail, write_text);
     }
     SCB::sys_reset()
 }
@@ -90,7 +90,7 @@ fn panic(info: &PanicInfo) -> ! {
 #[exception]
 unsafe fn DefaultHandler(number: i16) {
     end(Fault::HardFault, u32::from(number.unsigned_abs()), &mut |text| {
-        text.text("an interrupt came that nobody handles");
+        text.text("unhandled interrupt");
     })
 }
 

@@ -29,7 +29,7 @@ use frixel_drivers::serial::SerialLink;
 use frixel_layers::BitmapPool;
 use frixel_session::Session;
 #[cfg(feature = "store")]
-use frixel_session::store::SceneKeeper;
+use frixel_session::store::SceneStore;
 use frixel_wire::message::FAULT_TEXT_MAX_LEN;
 
 /// Memory for bitmaps, written by the session and read by the tick.
@@ -76,7 +76,7 @@ fn start(text: &'static mut Text, queue_pairs: &'static mut QueuePairs) -> MainL
     let (ticker, session) = make(board);
     let status = ticker.status();
     #[cfg(feature = "store")]
-    let store = flash.map(|flash| (SceneKeeper::new(board::SCENE_SLOT, board::TICK_HZ, &flash, session), flash));
+    let store = flash.map(|flash| (SceneStore::new(board::SCENE_SLOT, board::TICK_HZ, &flash, session), flash));
 
     let (ends, queues) = queue_pairs.split();
     let (frames, mut dac) = dac::start();
@@ -148,7 +148,7 @@ fn log_reset(last_reset: &LastReset) {
 fn log(board: &Board, bank: bool) {
     defmt::info!("at most {=f32} V peak", board.limits.voltage_max_v_peak);
     if !bank {
-        defmt::warn!("the flash is not in two banks (option byte DBANK): nothing is kept over power-off");
+        defmt::warn!("the flash is not in two banks (option byte DBANK): the scene is not stored");
     }
 }
 

@@ -5,7 +5,7 @@ use frixel_drivers::serial::SerialLink;
 use frixel_drivers::state_light::StateLight;
 use frixel_session::Session;
 #[cfg(feature = "store")]
-use frixel_session::store::SceneKeeper;
+use frixel_session::store::SceneStore;
 use frixel_wire::fault::State;
 use heapless::spsc::{Consumer, Producer, Queue};
 
@@ -68,7 +68,7 @@ pub struct MainLoop {
     pub light: StateLight<Pin>,
     #[cfg(feature = "store")]
     /// The last scene and its storage; `None` without a usable flash bank.
-    pub store: Option<(SceneKeeper, BankTwo)>,
+    pub store: Option<(SceneStore, BankTwo)>,
     /// Resets the processor when this loop stops.
     pub watchdog: Watchdog,
 }
@@ -76,7 +76,7 @@ pub struct MainLoop {
 impl MainLoop {
     /// Runs the loop for ever.
     pub fn run(mut self, #[cfg(feature = "optical-frame")] mut touch_source: OpticalFrame<'_>) -> ! {
-        tick::want_status();
+        tick::request_status();
         loop {
             self.follow_status();
             let (serial, session, status) = (&mut self.serial, &mut self.session, &self.status);
@@ -90,8 +90,8 @@ impl MainLoop {
             let Ok(()) = self.serial.transmit(|bytes| self.session.transmit(bytes));
             let now_tick = tick::count();
             #[cfg(feature = "store")]
-            if let Some((keeper, flash)) = &mut self.store {
-                keeper.step(flash, self.session, now_tick);
+            if let Some((store, flash)) = &mut self.store {
+                store.step(flash, self.session, now_tick);
             }
             self.light.show(self.status.telemetry.state, now_tick);
             self.watchdog.feed();
@@ -103,7 +103,7 @@ impl MainLoop {
         if let Some(status) = self.ends.statuses.dequeue() {
             log_change(&self.status, &status);
             self.status = status;
-            tick::want_status();
+            tick::request_status();
             // An order to arm may still be queued behind this status.
             let disarmed = [self.status.telemetry.state, self.session.state()] == [State::Disarmed; 2];
             self.watchdog.freeze_with_debugger(disarmed);

@@ -29,7 +29,7 @@ const ARM_SWITCH: u32 = 11;
 const BUTTON: u32 = 13;
 
 static TICK: Owned<Tick> = Owned::new();
-static STATUS_WANTED: AtomicBool = AtomicBool::new(false);
+static STATUS_REQUESTED: AtomicBool = AtomicBool::new(false);
 static COUNT: AtomicU32 = AtomicU32::new(0);
 /// Arbitrates the DAC's bus between the tick and the main loop, which checks the DAC before it arms the board.
 pub static DAC_BUS: BusHandover = BusHandover::new();
@@ -98,8 +98,8 @@ pub fn count() -> u32 {
 }
 
 /// Requests a status from the tick.
-pub fn want_status() {
-    STATUS_WANTED.store(true, Ordering::Release);
+pub fn request_status() {
+    STATUS_REQUESTED.store(true, Ordering::Release);
 }
 
 /// Raises a fault at the next tick. `detail` has 24 bits.
@@ -147,8 +147,8 @@ impl Tick {
         } else {
             self.late(period::cycles());
         }
-        if STATUS_WANTED.load(Ordering::Acquire) {
-            STATUS_WANTED.store(false, Ordering::Relaxed);
+        if STATUS_REQUESTED.load(Ordering::Acquire) {
+            STATUS_REQUESTED.store(false, Ordering::Relaxed);
             // Cannot fail: the session requests the next status only after it has taken this one.
             let _ = self.queues.statuses.enqueue(self.ticker.status());
         }

@@ -35,7 +35,7 @@ impl Active {
         Self {
             layers: ActiveLayers::EMPTY,
             table: None,
-            carrier: CarrierTiming::SILENT,
+            carrier: CarrierTiming::ZERO_OUTPUT,
             slew_step_v: 0.0,
             voltage_max_v_rms: 0.0,
             host_timeout_ticks: None,
@@ -47,7 +47,7 @@ impl Active {
     pub fn unload(&mut self) {
         self.layers.clear();
         self.table = None;
-        self.carrier = CarrierTiming::SILENT;
+        self.carrier = CarrierTiming::ZERO_OUTPUT;
         self.slew_step_v = 0.0;
         self.voltage_max_v_rms = 0.0;
         self.host_timeout_ticks = None;

@@ -27,7 +27,7 @@ pub struct CarrierTiming {
 
 impl CarrierTiming {
     /// A carrier whose output is zero.
-    pub const SILENT: Self = Self::new(Shape::Square, 20, 0.0, DacCode::ZERO);
+    pub const ZERO_OUTPUT: Self = Self::new(Shape::Square, 20, 0.0, DacCode::ZERO);
 
     /// A carrier whose integral stays within one half period at full voltage.
     pub const fn new(shape: Shape, half_period_ticks: u32, codes_per_v_rms: f32, code_max: DacCode) -> Self {
@@ -79,7 +79,7 @@ impl Carrier {
 
     /// Prepares the restart from zero output: a quarter period before an edge, with the sign that moves the integral
     /// towards zero.
-    pub(crate) fn rest(&mut self, timing: &CarrierTiming) {
+    pub(crate) fn reset_to_zero(&mut self, timing: &CarrierTiming) {
         self.sign = if self.integral.is_positive() { -1 } else { 1 };
         self.left_ticks = timing.ticks_from_crest();
     }

@@ -12,7 +12,7 @@ impl Envelope {
     }
 
     /// Sets the voltage to zero at once, without the slew limit.
-    pub(crate) fn silence(&mut self) {
+    pub(crate) fn reset_to_zero(&mut self) {
         self.voltage_v_rms = 0.0;
     }
 
@@ -49,7 +49,7 @@ mod tests {
         assert_eq!(envelope.voltage_v_rms().to_bits(), 7.0_f32.to_bits());
         assert!(envelope.follow(0.0, 2.0));
         assert_eq!(envelope.voltage_v_rms().to_bits(), 5.0_f32.to_bits());
-        envelope.silence();
+        envelope.reset_to_zero();
         assert_eq!(envelope.voltage_v_rms().to_bits(), 0);
     }
 

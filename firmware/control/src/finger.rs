@@ -1,7 +1,7 @@
 //! The finger's state in the tick: its track, if a finger is on the screen.
 
 use crate::Track;
-use crate::deadline::is_past;
+use crate::tick_count::is_past;
 
 /// Touch data is stale after this many report periods without a report.
 pub const STALE_AFTER_PERIODS: f32 = 3.0;

@@ -1,9 +1,9 @@
 //! The tick: a finger's track and the board's inputs in, a DAC code out, 40,000 times a second.
 //!
-//! [`Ticker::tick`] runs the same steps at every tick. It reads the coefficients of a scene from an [`Active`]. Before
-//! each tick, the ticker takes at most one [`Order`] from the session: a [`Track`] of the finger, a scene, a change of
-//! state. It reports a [`Status`]. It does not allocate, wait or panic, does no I/O, and reads no clock: it counts
-//! ticks.
+//! [`Ticker::tick`] runs the same steps in the same order at every tick while the output is enabled. It reads the
+//! coefficients of a scene from an [`Active`]. Before each tick, the ticker takes at most one [`Order`] from the
+//! session: a [`Track`] of the finger, a scene, a change of state. It reports a [`Status`]. It does not allocate, wait
+//! or panic, does no I/O, and reads no clock: it counts ticks.
 //!
 //! ```
 //! use frixel_control::{Active, Board, Drive, Sense, Ticker};
@@ -25,7 +25,6 @@
 mod active;
 mod board;
 mod carrier;
-mod deadline;
 mod envelope;
 mod finger;
 mod io;
@@ -33,17 +32,18 @@ mod order;
 #[cfg(feature = "stream")]
 mod stream;
 mod supervisor;
+mod tick_count;
 mod ticker;
 mod track;
 
 pub use active::Active;
 pub use board::Board;
 pub use carrier::CarrierTiming;
-pub use deadline::is_past;
 pub use finger::STALE_AFTER_PERIODS;
 pub use io::{Drive, Sense};
 pub use order::{Counters, Order, Status};
 #[cfg(feature = "stream")]
 pub use stream::{STREAM_LEN, StreamBuffer, StreamIntake, StreamStart};
+pub use tick_count::is_past;
 pub use ticker::Ticker;
 pub use track::{StandstillRamp, Track};

@@ -115,12 +115,12 @@ impl<'a> StreamIntake<'a> {
     /// not fit, or that arrive without a stream are dropped.
     pub fn take(&mut self, first_index: u32, samples: &[[u8; 2]]) {
         let Some(first) = self.first else { return };
-        let due = self.due(first);
+        let next_position = self.next_position(first);
         let mut end = self.buffer.end.load(Ordering::Relaxed);
         let mut holes = self.buffer.holes.load(Ordering::Relaxed);
         let mut position = first.wrapping_add(first_index);
         for sample in samples {
-            if position.wrapping_sub(due) < LEN {
+            if position.wrapping_sub(next_position) < LEN {
                 let after = position.wrapping_add(1);
                 if count(end, after) > 0 {
                     holes = holes.wrapping_add(count(end, position));
@@ -140,12 +140,12 @@ impl<'a> StreamIntake<'a> {
     pub fn progress(&self) -> Option<(u32, u16)> {
         let first = self.first?;
         let end = self.buffer.end.load(Ordering::Relaxed);
-        let room = LEN.saturating_sub(count(self.due(first), end));
+        let room = LEN.saturating_sub(count(self.next_position(first), end));
         Some((end.wrapping_sub(first), room as u16))
     }
 
     /// Position that the player needs next: the stream's first one until the player has begun the stream.
-    fn due(&self, first: u32) -> u32 {
+    fn next_position(&self, first: u32) -> u32 {
         let next = self.buffer.next.load(Ordering::Relaxed);
         if count(first, next) > 0 { next } else { first }
     }
@@ -256,12 +256,12 @@ impl<'a> Player<'a> {
     #[inline]
     pub(crate) fn advance(&mut self) {
         if !self.is_over() {
-            self.go_on();
+            self.step();
         }
     }
 
     #[inline(never)]
-    fn go_on(&mut self) {
+    fn step(&mut self) {
         match self.phase {
             Phase::Over => {}
             Phase::Filling => self.begin_when_filled(),

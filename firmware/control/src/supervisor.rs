@@ -1,9 +1,10 @@
-//! The state machine that decides whether the output is enabled: Disarmed, Armed, Active, Faulted (DESIGN section 5).
+//! The state machine that decides whether the output is enabled: Disarmed, Armed, Active, Faulted
+//! (`PROTOCOL.md` section 10, "States").
 
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::{Fault, State};
 
-use crate::deadline::is_past;
+use crate::tick_count::is_past;
 use crate::{Board, Order, Sense};
 
 /// Host timeout before a scene has set one.
@@ -42,7 +43,7 @@ struct Monitor {
     gain_tolerance: f32,
     floor_v: f32,
     /// Equal to `floor_v`; minus infinity while `wrong_ticks` is above 0, so that every tick is then counted.
-    unnoticed_v: f32,
+    uncounted_below_v: f32,
     wrong_ticks: u32,
 }
 
@@ -55,7 +56,7 @@ impl Monitor {
             step: lag_step(board.tick_period_s() / board.limits.edge_time_constant_s),
             gain_tolerance: MONITOR_GAIN_TOLERANCE,
             floor_v,
-            unnoticed_v: floor_v,
+            uncounted_below_v: floor_v,
             wrong_ticks: 0,
         }
     }
@@ -65,7 +66,7 @@ impl Monitor {
     #[inline]
     fn advance(&mut self, driven_v: f32, monitor_v: f32) -> bool {
         self.expected_v += self.step * (driven_v - self.expected_v);
-        !self.is_within(self.unnoticed_v, driven_v, monitor_v)
+        !self.is_within(self.uncounted_below_v, driven_v, monitor_v)
     }
 
     /// Whether the monitor voltage is within tolerance; `false` if it is not a number.
@@ -82,7 +83,7 @@ impl Monitor {
         } else {
             (self.wrong_ticks + 1).min(MONITOR_WRONG_TICKS)
         };
-        self.unnoticed_v = if self.wrong_ticks > 0 { f32::NEG_INFINITY } else { self.floor_v };
+        self.uncounted_below_v = if self.wrong_ticks > 0 { f32::NEG_INFINITY } else { self.floor_v };
         self.wrong_ticks == MONITOR_WRONG_TICKS
     }
 }
@@ -163,7 +164,7 @@ impl Supervisor {
         }
     }
 
-    /// Sets the host timeout; `None` for a scene that continues without a host.
+    /// Sets the host timeout; `None` for a scene that plays without a host.
     pub(crate) fn set_host_timeout(&mut self, ticks: Option<u32>) {
         self.host_timeout_ticks = ticks;
     }
@@ -174,14 +175,14 @@ impl Supervisor {
     pub(crate) fn check(&mut self, sense: &Sense, dac_code: DacCode) {
         let driven_v = f32::from(dac_code.bits()) * self.monitor.volts_per_code;
         if self.monitor.advance(driven_v, sense.monitor_v) || sense.amplifier_fault || !sense.arm_switch {
-            self.judge(sense, driven_v);
+            self.latch_first_fault(sense, driven_v);
         }
     }
 
     /// Latches the fault that the inputs of [`Self::check`] show; if there are several, the first one below.
     #[cold]
     #[inline(never)]
-    fn judge(&mut self, sense: &Sense, driven_v: f32) {
+    fn latch_first_fault(&mut self, sense: &Sense, driven_v: f32) {
         let monitor_wrong = self.monitor.count(driven_v, sense.monitor_v);
         self.switch_was_released |= !sense.arm_switch;
         if self.state == State::Faulted {
@@ -197,7 +198,7 @@ impl Supervisor {
     }
 
     /// The tick at which the host timeout passes; `None` if no host is required.
-    pub(crate) fn host_deadline_tick(&self) -> Option<u32> {
+    pub(crate) fn host_expiry_tick(&self) -> Option<u32> {
         let needed = matches!(self.state, State::Armed | State::Active);
         let timeout_ticks = self.host_timeout_ticks.filter(|_| needed)?;
         Some(self.host_heard_at_tick.wrapping_add(timeout_ticks).wrapping_add(1))
@@ -205,7 +206,7 @@ impl Supervisor {
 
     /// Disarms if the host timeout has passed.
     pub(crate) fn expire(&mut self, now_tick: u32) {
-        if let Some(tick) = self.host_deadline_tick()
+        if let Some(tick) = self.host_expiry_tick()
             && is_past(tick, now_tick)
         {
             self.disarm();

@@ -103,21 +103,21 @@ mod tests {
         ramp: StandstillRamp::MOVING,
     };
 
-    fn close(found: f32, expected: f32) {
+    fn assert_close(found: f32, expected: f32) {
         assert!((found - expected).abs() < 1e-6, "{found} is not {expected}");
     }
 
     #[test]
     fn place_and_velocity_follow_a_parabola_while_the_tick_counter_wraps() {
         let elapsed_s = TRACK.elapsed_s(TRACK.from_tick.wrapping_add(400), 25e-6);
-        close(elapsed_s, 0.01);
+        assert_close(elapsed_s, 0.01);
         let [x_m, y_m] = TRACK.place_m(elapsed_s);
-        close(x_m, 0.01 + 0.1 * 0.01 + 0.5 * 1e-4);
-        close(y_m, 0.02 - 0.2 * 0.01 + 1.0 * 1e-4);
+        assert_close(x_m, 0.01 + 0.1 * 0.01 + 0.5 * 1e-4);
+        assert_close(y_m, 0.02 - 0.2 * 0.01 + 1.0 * 1e-4);
         let [vx, vy] = TRACK.velocity_m_per_s(elapsed_s);
-        close(vx, 0.3 - 2.0 * 0.5 * 0.01);
-        close(vy, 0.4 + 2.0 * 2.0 * 0.01);
-        close(TRACK.elapsed_s(TRACK.from_tick.wrapping_sub(40), 25e-6), -1e-3);
+        assert_close(vx, 0.3 - 2.0 * 0.5 * 0.01);
+        assert_close(vy, 0.4 + 2.0 * 2.0 * 0.01);
+        assert_close(TRACK.elapsed_s(TRACK.from_tick.wrapping_sub(40), 25e-6), -1e-3);
     }
 
     #[test]
@@ -129,9 +129,9 @@ mod tests {
             [(-5000, 1.0, 0.0), (-1, 1.0, 0.24), (0, 1.0, 0.25), (50, 0.5, 0.75), (99, 0.01, 1.0), (5000, 0.0, 1.0)]
         {
             let tick = from_tick.wrapping_add_signed(ticks);
-            close(down.gain_at(tick), expected_down);
-            close(up.gain_at(tick), expected_up);
+            assert_close(down.gain_at(tick), expected_down);
+            assert_close(up.gain_at(tick), expected_up);
         }
-        close(StandstillRamp::MOVING.gain_at(from_tick), 1.0);
+        assert_close(StandstillRamp::MOVING.gain_at(from_tick), 1.0);
     }
 }

@@ -36,13 +36,13 @@ impl FaultRecord {
         }
     }
 
-    /// Stores a fault and the text that `say` writes, cut to [`FAULT_TEXT_MAX_LEN`] bytes.
-    pub fn save(&self, fault: Fault, detail: u32, say: &mut dyn FnMut(&mut Writer)) {
+    /// Stores a fault and the text that `write_text` writes, cut to [`FAULT_TEXT_MAX_LEN`] bytes.
+    pub fn save(&self, fault: Fault, detail: u32, write_text: &mut dyn FnMut(&mut Writer)) {
         self.forget();
         self.number.store(u32::from(fault.number()), Ordering::Relaxed);
         self.detail.store(detail, Ordering::Relaxed);
         let mut writer = Writer { record: self, len: 0, full: false };
-        say(&mut writer);
+        write_text(&mut writer);
         self.len.store(writer.len as u32, Ordering::Relaxed);
         self.check.store(self.checksum(), Ordering::Relaxed);
     }

@@ -54,7 +54,7 @@ fn at(x_m: f32, y_m: f32) -> Inputs {
     inputs
 }
 
-fn close(found: f32, expected: f32) {
+fn assert_close(found: f32, expected: f32) {
     assert!((found - expected).abs() <= 1e-6, "{found} is not {expected}");
 }
 
@@ -65,7 +65,7 @@ fn a_region_takes_its_left_and_top_edge_and_leaves_right_and_bottom() {
     for (x_m, y_m, expected) in
         [(0.01, 0.02, 0.5), (0.039, 0.059, 0.5), (0.04, 0.03, 9.0), (0.02, 0.06, 9.0), (0.0099, 0.03, 9.0)]
     {
-        close(bench.over(&layer, 9.0, at(x_m, y_m)), expected);
+        assert_close(bench.over(&layer, 9.0, at(x_m, y_m)), expected);
     }
 }
 
@@ -80,7 +80,7 @@ fn blends_do_what_they_say() {
     ] {
         let mut bench = Bench::new();
         let layer = bench.load(&constant(blend, 1.0, 0.25));
-        close(bench.over(&layer, below_n, at(0.02, 0.03)), expected);
+        assert_close(bench.over(&layer, below_n, at(0.02, 0.03)), expected);
     }
 }
 
@@ -88,7 +88,7 @@ fn blends_do_what_they_say() {
 fn a_gain_is_on_the_friction_of_its_layer_alone() {
     let mut bench = Bench::new();
     let layer = bench.load(&constant(Blend::Add, -2.0, 0.25));
-    close(bench.over(&layer, 0.75, at(0.02, 0.03)), 0.25);
+    assert_close(bench.over(&layer, 0.75, at(0.02, 0.03)), 0.25);
 }
 
 #[test]
@@ -106,7 +106,7 @@ fn an_ellipse_touches_its_rectangle() {
         (0.035, 0.054, true),
         (0.037, 0.056, false),
     ] {
-        close(bench.over(&layer, 9.0, at(x_m, y_m)), if inside { 0.25 } else { 9.0 });
+        assert_close(bench.over(&layer, 9.0, at(x_m, y_m)), if inside { 0.25 } else { 9.0 });
     }
 }
 
@@ -119,7 +119,7 @@ fn polygons_side_by_side_neither_overlap_nor_gap() {
         [(0.03, 0.05), (0.055, 0.04), (0.025, 0.03), (0.06, 0.02)],
         [(0.05, 0.07), (0.07, 0.07)],
     );
-    // The cut is gone along from below in one half and from above in the other.
+    // One half lists the vertices of the cut bottom to top, the other top to bottom.
     let halves =
         [left.iter().chain(&cut).copied().collect(), vec![right[1], right[0], cut[0], cut[1], cut[2], cut[3], left[0]]];
     let mut bench = Bench::new();
@@ -138,10 +138,10 @@ fn polygons_side_by_side_neither_overlap_nor_gap() {
     for (x_m, y_m) in places {
         let inside = layers.iter().fold(0.0, |below_n, layer| bench.over(layer, below_n, at(x_m, y_m)));
         let square = (0.01..0.07).contains(&x_m) && (0.01..0.07).contains(&y_m);
-        close(inside, if square { 1.0 } else { 0.0 });
+        assert_close(inside, if square { 1.0 } else { 0.0 });
     }
-    close(bench.over(&layers[0], 0.0, at(0.05, 0.04)), 1.0);
-    close(bench.over(&layers[0], 0.0, at(0.04, 0.05)), 0.0);
+    assert_close(bench.over(&layers[0], 0.0, at(0.05, 0.04)), 1.0);
+    assert_close(bench.over(&layers[0], 0.0, at(0.04, 0.05)), 0.0);
 }
 
 #[cfg(feature = "bitmap")]
@@ -184,7 +184,7 @@ mod bitmaps {
     }
 
     #[test]
-    fn a_tile_begins_anew_on_every_side() {
+    fn a_tiled_bitmap_repeats_in_both_directions() {
         let Layer::Bitmap(crate::Bitmap { crc32, x_m, y_m, pitch_m, black_n, white_n, angle_turns, .. }) = PICTURE
         else {
             unreachable!()
@@ -250,7 +250,7 @@ fn a_grating_swings_between_trough_and_crest() {
         }));
         for (eighths, height) in expected {
             let y_m = (eighths as f32 / 8.0 - 0.25) / 500.0;
-            close(bench.over(&layer, 0.0, at(0.3, y_m)), 0.25 + height);
+            assert_close(bench.over(&layer, 0.0, at(0.3, y_m)), 0.25 + height);
         }
     }
 }
@@ -287,7 +287,7 @@ fn noise_stays_within_its_range_and_is_its_seeds() {
 #[test]
 fn noise_does_not_leave_its_range_where_all_waves_meet() {
     let mut bench = Bench::new();
-    // A band so narrow and long that the phases alone decide.
+    // All waves have one wavelength of 0.5 m, so only their phases and directions differ.
     for seed in 0..8 {
         let kind =
             Layer::Noise(crate::Noise { seed, wavelength_min_m: 0.5, wavelength_max_m: 0.5, low_n: 0.0, high_n: 1.0 });
@@ -330,12 +330,12 @@ mod clicks {
         let mut bench = Bench::new();
         let layer = edge(&mut bench, 0.0, Click::default());
         for (x_m, expected) in [(0.02, 0.75), (0.021, 0.5), (0.019, 0.5), (0.022, 0.25), (0.0175, 0.25), (0.03, 0.25)] {
-            close(bench.over(&layer, 0.0, at(x_m, 0.05)), expected);
+            assert_close(bench.over(&layer, 0.0, at(x_m, 0.05)), expected);
         }
         let layer = edge(&mut bench, 0.125, Click::default());
         let step = 0.001 / 2.0_f32.sqrt();
         for (x_m, y_m, expected) in [(0.025, 0.035, 0.75), (0.02 + step, 0.04 + step, 0.5), (0.025, 0.045, 0.25)] {
-            close(bench.over(&layer, 0.0, at(x_m, y_m)), expected);
+            assert_close(bench.over(&layer, 0.0, at(x_m, y_m)), expected);
         }
     }
 
@@ -348,11 +348,11 @@ mod clicks {
         let after = slide(&mut bench, &layer, 103, [0.012; 60]);
         for (tick, found) in after.into_iter().enumerate() {
             let left = (1.0 - tick as f32 / 40.0).max(0.0);
-            close(found, 0.25 + left * left);
+            assert_close(found, 0.25 + left * left);
         }
         // Ticks with something else to do lie between.
         let back = slide(&mut bench, &layer, 170, [0.03]);
-        close(back[0], 1.25);
+        assert_close(back[0], 1.25);
     }
 
     #[test]
@@ -361,11 +361,11 @@ mod clicks {
         let layer = edge(&mut bench, 0.0, CLICK);
         slide(&mut bench, &layer, 100, [0.03]);
         // Around the region.
-        close(slide(&mut bench, &layer, 101, [0.06])[0], 0.0);
-        close(slide(&mut bench, &layer, 102, [0.012])[0], 0.25);
+        assert_close(slide(&mut bench, &layer, 101, [0.06])[0], 0.0);
+        assert_close(slide(&mut bench, &layer, 102, [0.012])[0], 0.25);
         // Up, and down again elsewhere.
         bench.clicks.lift();
-        close(slide(&mut bench, &layer, 500, [0.03])[0], 0.25);
+        assert_close(slide(&mut bench, &layer, 500, [0.03])[0], 0.25);
     }
 
     #[test]
@@ -373,13 +373,13 @@ mod clicks {
         let mut bench = Bench::new();
         let button = Layer::Button(crate::Button { rim_width_m: 0.002, rim_n: 0.5, face_n: 0.125, click: CLICK });
         let layer = bench.load(&Record { region: HERE, blend: Blend::Add, gain: 1.0, layer: button });
-        close(slide(&mut bench, &layer, 100, [0.025])[0], 0.125);
+        assert_close(slide(&mut bench, &layer, 100, [0.025])[0], 0.125);
         let found = slide(&mut bench, &layer, 200, [0.005, 0.011, 0.0105, 0.025]);
-        close(found[0], 0.0);
-        close(found[1], 0.5 + 1.0);
-        close(found[3], 0.125 + (38.0 / 40.0_f32).powi(2));
+        assert_close(found[0], 0.0);
+        assert_close(found[1], 0.5 + 1.0);
+        assert_close(found[3], 0.125 + (38.0 / 40.0_f32).powi(2));
         let middle = slide(&mut bench, &layer, 204, [0.025; 60]);
-        close(middle[59], 0.125);
+        assert_close(middle[59], 0.125);
     }
 
     #[test]
@@ -393,7 +393,7 @@ mod clicks {
         for (x_m, y_m, expected) in
             [(0.04, 0.021, 0.5), (0.0115, 0.04, 0.5), (0.04, 0.04, 0.125), (0.04, 0.022, 0.125), (0.04, 0.019, 0.0)]
         {
-            close(bench.over(&layer, 0.0, at(x_m, y_m)), expected);
+            assert_close(bench.over(&layer, 0.0, at(x_m, y_m)), expected);
         }
     }
 }
@@ -416,17 +416,17 @@ fn a_vibration_keeps_time() {
             // The frequency is exact within 2^-33 turns a tick.
             let drift = 3.2 * start as f32 / (1u64 << 33) as f32;
             assert!((found - expected).abs() < 1e-5 + drift, "{tick}: {found} is not {expected}");
-            close(bench.over(&square, 0.0, on(tick + 50)), if tick < 200 { 1.25 } else { 0.25 });
+            assert_close(bench.over(&square, 0.0, on(tick + 50)), if tick < 200 { 1.25 } else { 0.25 });
         }
     }
     let burst = Burst { period_s: 0.1, on_s: 0.05, ramp_s: 0.01 };
     let layer = bench.kind(vibration(Beat::Square, burst));
     for (tick, envelope) in [(0, 0.0), (100, 0.25), (850, 1.0), (1650, 0.875), (2050, 0.0), (3950, 0.0), (4100, 0.25)] {
-        close(bench.over(&layer, 0.0, on(tick)), 0.25 + envelope);
+        assert_close(bench.over(&layer, 0.0, on(tick)), 0.25 + envelope);
     }
     let layer = bench.kind(vibration(Beat::Square, Burst { ramp_s: 0.0, ..burst }));
     for (tick, high) in [(1, 1.0), (250, 0.0), (1999, 0.0), (1650, 1.0), (2050, 0.0), (4001, 1.0)] {
-        close(bench.over(&layer, 0.0, on(tick)), 0.25 + high);
+        assert_close(bench.over(&layer, 0.0, on(tick)), 0.25 + high);
     }
 }
 
@@ -443,7 +443,7 @@ fn a_curve_is_straight_between_its_points_and_held_outside() {
         [(0.0, 0.5), (0.02, 0.5), (0.06, 0.75), (0.1, 1.0), (0.15, 0.625), (0.2, 0.25), (3.0, 0.25)]
     {
         let inputs = Inputs { velocity_m_per_s: [0.6 * speed, -0.8 * speed], ..Inputs::default() };
-        close(bench.over(&layer, 2.0, inputs), 2.0 * expected);
+        assert_close(bench.over(&layer, 2.0, inputs), 2.0 * expected);
     }
 }
 
@@ -454,6 +454,6 @@ fn a_stream_is_between_its_two_frictions() {
     let layer = bench.kind(Layer::Stream(crate::Stream { low_n: 0.25, high_n: -0.75 }));
     for (value, weight, expected) in [(0.0, 1.0, 0.25), (0.5, 1.0, -0.25), (1.0, 1.0, -0.75), (1.0, 0.25, 0.5625)] {
         let stream = crate::StreamSample { value, weight };
-        close(bench.over(&layer, 1.0, Inputs { stream, ..Inputs::default() }), expected);
+        assert_close(bench.over(&layer, 1.0, Inputs { stream, ..Inputs::default() }), expected);
     }
 }

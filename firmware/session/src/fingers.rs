@@ -146,7 +146,7 @@ mod tests {
         Touch::Down { x_m: 0.01 * f32::from(finger), y_m: 0.02, age_ticks: step }
     }
 
-    fn told(fingers: &mut Fingers) -> std::vec::Vec<Touch> {
+    fn reports(fingers: &mut Fingers) -> std::vec::Vec<Touch> {
         core::iter::from_fn(|| fingers.next()).collect()
     }
 
@@ -156,28 +156,28 @@ mod tests {
         for step in 0..3 {
             fingers.touch(7, place(7, step), Leader::First);
             fingers.touch(2, place(2, step), Leader::First);
-            assert_eq!(told(&mut fingers), [place(7, step)]);
+            assert_eq!(reports(&mut fingers), [place(7, step)]);
         }
         fingers.lift(7, Leader::First);
-        assert_eq!(told(&mut fingers), [Touch::Up]);
+        assert_eq!(reports(&mut fingers), [Touch::Up]);
         fingers.touch(2, place(2, 9), Leader::First);
-        assert_eq!(told(&mut fingers), [place(2, 9)]);
+        assert_eq!(reports(&mut fingers), [place(2, 9)]);
         fingers.lift(2, Leader::First);
-        assert_eq!(told(&mut fingers), [Touch::Up]);
+        assert_eq!(reports(&mut fingers), [Touch::Up]);
     }
 
     #[test]
     fn the_latest_leads_and_gives_back_what_it_took() {
         let mut fingers = Fingers::new();
         fingers.touch(1, place(1, 0), Leader::Latest);
-        assert_eq!(told(&mut fingers), [place(1, 0)]);
+        assert_eq!(reports(&mut fingers), [place(1, 0)]);
         fingers.touch(5, place(5, 0), Leader::Latest);
-        assert_eq!(told(&mut fingers), [Touch::Up, place(5, 0)], "the way between them is nobody's");
+        assert_eq!(reports(&mut fingers), [Touch::Up, place(5, 0)], "the way between them is nobody's");
         fingers.touch(1, place(1, 1), Leader::Latest);
-        assert_eq!(told(&mut fingers), []);
+        assert_eq!(reports(&mut fingers), []);
         fingers.lift(5, Leader::Latest);
         fingers.touch(1, place(1, 2), Leader::Latest);
-        assert_eq!(told(&mut fingers), [Touch::Up, place(1, 2)]);
+        assert_eq!(reports(&mut fingers), [Touch::Up, place(1, 2)]);
     }
 
     #[test]
@@ -186,17 +186,17 @@ mod tests {
         fingers.touch(1, place(1, 0), Leader::First);
         fingers.touch(2, place(2, 0), Leader::First);
         fingers.lift(2, Leader::First);
-        assert_eq!(told(&mut fingers), [place(1, 0)]);
+        assert_eq!(reports(&mut fingers), [place(1, 0)]);
     }
 
     #[test]
     fn a_finger_that_comes_down_again_in_one_batch_begins_anew() {
         let mut fingers = Fingers::new();
         fingers.touch(0, place(0, 0), Leader::First);
-        assert_eq!(told(&mut fingers), [place(0, 0)]);
+        assert_eq!(reports(&mut fingers), [place(0, 0)]);
         fingers.lift(0, Leader::First);
         fingers.touch(0, place(9, 0), Leader::First);
-        assert_eq!(told(&mut fingers), [Touch::Up, place(9, 0)]);
+        assert_eq!(reports(&mut fingers), [Touch::Up, place(9, 0)]);
     }
 
     #[test]
@@ -204,9 +204,9 @@ mod tests {
         let mut fingers = Fingers::new();
         fingers.touch(1, place(1, 0), Leader::First);
         fingers.touch(2, place(2, 0), Leader::First);
-        told(&mut fingers);
+        reports(&mut fingers);
         fingers.touch(2, place(2, 1), Leader::Latest);
-        assert_eq!(told(&mut fingers), [Touch::Up, place(2, 1)]);
+        assert_eq!(reports(&mut fingers), [Touch::Up, place(2, 1)]);
     }
 
     #[test]
@@ -215,10 +215,10 @@ mod tests {
         for finger in 0..20 {
             fingers.touch(finger, place(finger, 0), Leader::Latest);
         }
-        assert_eq!(told(&mut fingers), [Touch::Up, place(9, 0)]);
+        assert_eq!(reports(&mut fingers), [Touch::Up, place(9, 0)]);
         fingers.forget();
-        assert_eq!(told(&mut fingers), [Touch::Up]);
+        assert_eq!(reports(&mut fingers), [Touch::Up]);
         fingers.touch(15, place(15, 0), Leader::First);
-        assert_eq!(told(&mut fingers), [place(15, 0)]);
+        assert_eq!(reports(&mut fingers), [place(15, 0)]);
     }
 }

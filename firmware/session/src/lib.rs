@@ -32,7 +32,7 @@
 //!
 //! # Modules
 //!
-//! `session` turns bytes into frames and back. `commands` dispatches the frames to the other modules: `greeting`
+//! `session` turns bytes into frames and back. `commands` dispatches the frames to the other modules: `hello`
 //! handles the hello, `states` arming and playing, `storing` uploads (`upload` collects their bytes), `commit` the
 //! change of scene (`loading` computes its coefficients step by step), `live` changes while a scene plays, and
 //! `fingers` touches reported by the host. `tracker` turns touch reports into tracks, with `estimator` and
@@ -54,7 +54,7 @@ mod commit;
 mod credit;
 mod estimator;
 mod fingers;
-mod greeting;
+mod hello;
 mod live;
 mod loading;
 mod session;

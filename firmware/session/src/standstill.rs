@@ -1,5 +1,5 @@
 //! Standstill detector. A still finger feels almost nothing while its current rises, so the tracker ramps the friction
-//! down at standstill, and up again when the finger moves (DESIGN section 3).
+//! down at standstill, and up again when the finger moves.
 
 use frixel_control::StandstillRamp;
 use frixel_control::is_past;
@@ -88,7 +88,7 @@ mod tests {
         }
 
         /// Reports a speed for some ticks, and returns the gain after them.
-        fn go_on(&mut self, speed_m_per_s: f32, ticks: u32) -> f32 {
+        fn run_for(&mut self, speed_m_per_s: f32, ticks: u32) -> f32 {
             let timing = StandstillTiming::new(40_000);
             let mut gain = 1.0;
             let mut ramp = self.standstill.take([0.0, -speed_m_per_s], self.now_tick, &timing);
@@ -108,12 +108,12 @@ mod tests {
     fn a_finger_slow_for_50_ms_is_ramped_away_in_10_ms_and_back_above_5_mm_per_s() {
         for period_ticks in [1, 2, 5, 80, 400, 4_000] {
             let mut run = Run::new(period_ticks);
-            assert!(run.go_on(1.9e-3, 2000) >= 1.0, "{period_ticks}");
-            let middle = run.go_on(1.9e-3, 200);
+            assert!(run.run_for(1.9e-3, 2000) >= 1.0, "{period_ticks}");
+            let middle = run.run_for(1.9e-3, 200);
             assert!((middle - 0.5).abs() < 0.02, "{period_ticks}: {middle}");
-            assert!(run.go_on(1.9e-3, 205) <= 1e-3, "{period_ticks}");
-            assert!(run.go_on(4.9e-3, 4000) <= 0.0, "between the two speeds a still finger stays still");
-            assert!(run.go_on(5.1e-3, 405) >= 1.0, "{period_ticks}");
+            assert!(run.run_for(1.9e-3, 205) <= 1e-3, "{period_ticks}");
+            assert!(run.run_for(4.9e-3, 4000) <= 0.0, "between the two speeds a still finger stays still");
+            assert!(run.run_for(5.1e-3, 405) >= 1.0, "{period_ticks}");
         }
     }
 
@@ -121,8 +121,8 @@ mod tests {
     fn a_pause_shorter_than_50_ms_is_not_still() {
         let mut run = Run::new(2);
         for _ in 0..10 {
-            assert!(run.go_on(0.0, 1900) >= 1.0);
-            assert!(run.go_on(3e-3, 2) >= 1.0);
+            assert!(run.run_for(0.0, 1900) >= 1.0);
+            assert!(run.run_for(3e-3, 2) >= 1.0);
         }
         assert!(run.least_gain >= 1.0);
     }
@@ -130,9 +130,9 @@ mod tests {
     #[test]
     fn a_finger_that_stops_on_the_way_back_is_ramped_away_50_ms_later() {
         let mut run = Run::new(80);
-        run.go_on(0.0, 2_600);
-        assert!((run.go_on(0.1, 200) - 0.5).abs() < 0.02, "on its way back");
-        assert!(run.go_on(0.0, 1_990) >= 1.0);
-        assert!(run.go_on(0.0, 500) <= 0.0);
+        run.run_for(0.0, 2_600);
+        assert!((run.run_for(0.1, 200) - 0.5).abs() < 0.02, "on its way back");
+        assert!(run.run_for(0.0, 1_990) >= 1.0);
+        assert!(run.run_for(0.0, 500) <= 0.0);
     }
 }

@@ -1,4 +1,4 @@
-//! The arm switch: to arm, a person presses it and holds it (DESIGN section 5).
+//! The arm switch: to arm, a person presses it and holds it (`PROTOCOL.md` section 10, "States").
 #![allow(clippy::large_stack_arrays, reason = "a test has room for a board's memory")]
 
 use frixel_control::{Active, Board, Order, Sense, Ticker};
@@ -32,11 +32,11 @@ fn a_switch_held_since_the_reset_does_not_arm() {
     assert_eq!(ticker.state(), State::Armed);
 }
 
-/// A name, and what disarms.
+/// Name of the case, and the action that disarms the board.
 type Disarming = (&'static str, fn(&mut Ticker));
 
 #[test]
-fn after_every_disarming_the_switch_is_pressed_anew() {
+fn after_every_disarming_the_switch_must_be_pressed_again() {
     let disarm: [Disarming; 3] = [
         ("by the host", |ticker| {
             ticker.apply(Order::Disarm);

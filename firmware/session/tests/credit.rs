@@ -1,4 +1,5 @@
-//! What a host may have under way, and what becomes of a client that sends more (`PROTOCOL.md`, section 9).
+//! Credit: how many bytes a host may have under way, and what happens to a client that sends more (`PROTOCOL.md`,
+//! section 9).
 
 mod support;
 
@@ -7,7 +8,7 @@ use frixel_session::Touch;
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::State;
 use frixel_wire::message::{Command, FromBoard};
-use support::{Desk, Memory, constant, request};
+use support::{Memory, TestBoard, constant, request};
 
 const OFF: Drive = Drive { dac_code: DacCode::ZERO, amplifier_enable: false };
 /// Host timeout of the scenes here, in ticks.
@@ -26,21 +27,21 @@ fn window_of(command: Command) -> Vec<u8> {
     frame.repeat(WINDOW / frame.len())
 }
 
-/// A board that plays, without anything under way, for a client that from now on reads nothing.
-fn playing(memory: &mut Memory) -> Desk<'_> {
-    let mut desk = Desk::new(memory);
-    desk.play(&constant(0.02));
-    desk.slide(2000);
-    desk.messages.clear();
-    desk.reads = false;
-    desk
+/// A playing board with no bytes under way, and a client that stops reading.
+fn playing(memory: &mut Memory) -> TestBoard<'_> {
+    let mut board = TestBoard::new(memory);
+    board.play(&constant(0.02));
+    board.slide(2000);
+    board.messages.clear();
+    board.reads = false;
+    board
 }
 
 /// Whether the host was heard, and the other orders that bytes lead to.
-fn orders(desk: &mut Desk, bytes: &[u8]) -> (bool, usize) {
-    desk.session.receive(bytes, &desk.status());
+fn orders(board: &mut TestBoard, bytes: &[u8]) -> (bool, usize) {
+    board.session.receive(bytes, &board.status());
     let (mut heard, mut others) = (false, 0);
-    while let Some(order) = desk.session.next_order() {
+    while let Some(order) = board.session.next_order() {
         match order {
             Order::HostHeard => heard = true,
             _ => others += 1,
@@ -52,41 +53,41 @@ fn orders(desk: &mut Desk, bytes: &[u8]) -> (bool, usize) {
 #[test]
 fn frames_within_the_window_are_taken_to_the_last_byte() {
     let mut memory = Memory::new();
-    let mut desk = playing(&mut memory);
+    let mut board = playing(&mut memory);
     let window = window_of(Command::Ping);
     let (last, before) = window.split_at(window.len() - 9);
-    assert_eq!(orders(&mut desk, last), (true, 0));
-    assert_eq!(orders(&mut desk, before), (true, 0));
+    assert_eq!(orders(&mut board, last), (true, 0));
+    assert_eq!(orders(&mut board, before), (true, 0));
 }
 
 #[test]
 fn a_frame_beyond_the_credit_is_no_sign_of_life_and_no_order() {
     let mut memory = Memory::new();
-    let mut desk = playing(&mut memory);
-    orders(&mut desk, &window_of(Command::Ping));
-    let (taken, _) = desk.session.frame_counts();
+    let mut board = playing(&mut memory);
+    orders(&mut board, &window_of(Command::Ping));
+    let (taken, _) = board.session.frame_counts();
     for command in [Command::Ping, Command::Stop, Command::Disarm, Command::ClearFault] {
-        assert_eq!(orders(&mut desk, &requests(command, 3 * WINDOW)), (false, 0), "{command:?}");
+        assert_eq!(orders(&mut board, &requests(command, 3 * WINDOW)), (false, 0), "{command:?}");
     }
-    assert_eq!(desk.session.frame_counts().0, taken, "none of them counts as received");
+    assert_eq!(board.session.frame_counts().0, taken, "none of them counts as received");
 }
 
 #[test]
 fn a_frame_beyond_the_credit_is_no_touch() {
     let mut memory = Memory::new();
-    let mut desk = Desk::of(Board { touch_from_host: true, ..Board::SIMULATOR }, &mut memory);
-    desk.greet();
-    desk.reads = false;
-    assert_eq!(orders(&mut desk, &window_of(Command::Lift)), (true, 1));
+    let mut board = TestBoard::of(Board { touch_from_host: true, ..Board::SIMULATOR }, &mut memory);
+    board.hello();
+    board.reads = false;
+    assert_eq!(orders(&mut board, &window_of(Command::Lift)), (true, 1));
     let touch = Command::Touch { x_m: 0.02, y_m: 0.03, age_ticks: 0 };
-    assert_eq!(orders(&mut desk, &requests(touch, WINDOW)), (false, 0));
+    assert_eq!(orders(&mut board, &requests(touch, WINDOW)), (false, 0));
 }
 
 /// What a client has left behind, however much it is, keeps nothing playing.
 #[test]
 fn a_client_that_ignores_credit_and_reads_nothing_is_silent_after_its_window() {
     let mut memory = Memory::new();
-    let mut desk = playing(&mut memory);
+    let mut board = playing(&mut memory);
     let flood = requests(Command::Ping, 1 << 20);
     // 5 bytes a tick are 2 Mbaud.
     let mut bytes = flood.chunks(5);
@@ -94,31 +95,31 @@ fn a_client_that_ignores_credit_and_reads_nothing_is_silent_after_its_window() {
     let mut last_on = 0;
     for tick in 0..window_ticks + 2 * HOST_TIMEOUT_TICKS {
         if tick % 400 == 0 {
-            desk.touch = Some(Touch::Down { x_m: 0.03 + 2.5e-6 * tick as f32, y_m: 0.03, age_ticks: 0 });
+            board.touch = Some(Touch::Down { x_m: 0.03 + 2.5e-6 * tick as f32, y_m: 0.03, age_ticks: 0 });
         }
-        desk.session.receive(bytes.next().unwrap(), &desk.status());
-        desk.obey();
-        if desk.tick() != OFF {
+        board.session.receive(bytes.next().unwrap(), &board.status());
+        board.deliver_orders();
+        if board.tick() != OFF {
             last_on = tick;
         }
     }
     let expected = window_ticks + HOST_TIMEOUT_TICKS;
     assert!(last_on.abs_diff(expected) <= 2, "on until tick {last_on}, not {expected}");
-    assert_eq!(desk.status().telemetry.state, State::Disarmed);
+    assert_eq!(board.status().telemetry.state, State::Disarmed);
 }
 
-/// A client that reads is granted credit again; what it had sent too much is lost to it, as on a bad line.
+/// A client that reads again is granted credit again. The frames that it sent beyond its credit stay lost.
 #[test]
 fn credit_comes_back_when_answers_are_read() {
     let mut memory = Memory::new();
-    let mut desk = playing(&mut memory);
-    orders(&mut desk, &requests(Command::Ping, 2 * WINDOW));
-    assert_eq!(orders(&mut desk, &request(1, Command::Ping)), (false, 0));
-    desk.reads = true;
-    desk.collect();
-    desk.messages.clear();
-    let before = desk.answer(Command::Ping).received_bytes;
-    let after = desk.answer(Command::Ping).received_bytes;
+    let mut board = playing(&mut memory);
+    orders(&mut board, &requests(Command::Ping, 2 * WINDOW));
+    assert_eq!(orders(&mut board, &request(1, Command::Ping)), (false, 0));
+    board.reads = true;
+    board.collect();
+    board.messages.clear();
+    let before = board.answer(Command::Ping).received_bytes;
+    let after = board.answer(Command::Ping).received_bytes;
     assert_eq!((after - before) as usize, request(2, Command::Ping).len());
 }
 
@@ -126,55 +127,56 @@ fn credit_comes_back_when_answers_are_read() {
 #[test]
 fn a_hello_request_needs_no_credit_and_sets_it_anew() {
     let mut memory = Memory::new();
-    let mut desk = playing(&mut memory);
-    orders(&mut desk, &requests(Command::Ping, 2 * WINDOW));
-    desk.reads = true;
-    assert_eq!(desk.greet().state, State::Disarmed);
-    desk.reads = false;
-    assert_eq!(orders(&mut desk, &window_of(Command::Ping)), (true, 0));
-    assert_eq!(orders(&mut desk, &request(1, Command::Ping)), (false, 0));
+    let mut board = playing(&mut memory);
+    orders(&mut board, &requests(Command::Ping, 2 * WINDOW));
+    board.reads = true;
+    assert_eq!(board.hello().state, State::Disarmed);
+    board.reads = false;
+    assert_eq!(orders(&mut board, &window_of(Command::Ping)), (true, 0));
+    assert_eq!(orders(&mut board, &request(1, Command::Ping)), (false, 0));
 }
 
 /// The end of a frame has come when there is credit again, its beginning was beyond it.
 #[test]
 fn a_frame_that_begins_beyond_the_credit_is_discarded_whole() {
     let mut memory = Memory::new();
-    let mut desk = playing(&mut memory);
-    orders(&mut desk, &window_of(Command::Ping));
+    let mut board = playing(&mut memory);
+    orders(&mut board, &window_of(Command::Ping));
     let frame = request(1, Command::Ping);
     let (beginning, end) = frame.split_at(frame.len() - 1);
-    assert_eq!(orders(&mut desk, beginning), (false, 0));
-    desk.reads = true;
-    desk.collect();
-    assert_eq!(orders(&mut desk, end), (false, 0));
-    assert_eq!(orders(&mut desk, &frame), (true, 0));
+    assert_eq!(orders(&mut board, beginning), (false, 0));
+    board.reads = true;
+    board.collect();
+    assert_eq!(orders(&mut board, end), (false, 0));
+    assert_eq!(orders(&mut board, &frame), (true, 0));
 }
 
-/// A bad frame that runs beyond the credit ends with its zero byte, and with it what is discarded.
+/// The board discards a bad frame that runs beyond the credit up to its zero byte, and no further.
 #[test]
 fn a_good_frame_behind_a_bad_one_that_ran_beyond_the_credit_is_taken() {
     let mut memory = Memory::new();
-    let mut desk = playing(&mut memory);
-    orders(&mut desk, &window_of(Command::Ping));
-    assert_eq!(orders(&mut desk, &[0x55; 40]), (false, 0));
-    assert_eq!(orders(&mut desk, &[0]), (false, 0));
-    desk.reads = true;
-    desk.collect();
-    assert_eq!(orders(&mut desk, &request(1, Command::Ping)), (true, 0));
+    let mut board = playing(&mut memory);
+    orders(&mut board, &window_of(Command::Ping));
+    assert_eq!(orders(&mut board, &[0x55; 40]), (false, 0));
+    assert_eq!(orders(&mut board, &[0]), (false, 0));
+    board.reads = true;
+    board.collect();
+    assert_eq!(orders(&mut board, &request(1, Command::Ping)), (true, 0));
 }
 
-/// Bytes that noise adds to the line are taken for bytes of the host: they are told to it, and do not add up.
+/// The board counts bytes that noise adds to the line as the host's. It reports the count, so the loss of credit does
+/// not accumulate.
 #[test]
 fn noise_does_not_use_credit_up() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    desk.greet();
+    let mut board = TestBoard::new(&mut memory);
+    board.hello();
     for _ in 0..100 {
-        desk.send(&[0x55; 400]);
-        desk.send(&[0]);
-        desk.command(Command::Ping).unwrap();
+        board.send(&[0x55; 400]);
+        board.send(&[0]);
+        board.command(Command::Ping).unwrap();
     }
-    assert!(!desk.messages.iter().any(|message| matches!(message, FromBoard::StateChanged { .. })));
+    assert!(!board.messages.iter().any(|message| matches!(message, FromBoard::StateChanged { .. })));
 }
 
 /// The most that may be outstanding, each of them a refusal with all its numbers, behind a host that is away.
@@ -182,25 +184,25 @@ fn noise_does_not_use_credit_up() {
 #[test]
 fn an_answer_always_has_its_place_and_telemetry_is_left_out() {
     let mut memory = Memory::new();
-    let mut desk = Desk::of(Board { touch_from_host: true, ..Board::SIMULATOR }, &mut memory);
-    desk.greet();
-    desk.command(Command::Subscribe { period_ticks: 40 }).unwrap();
-    desk.messages.clear();
-    desk.reads = false;
-    desk.ticks(40_000);
+    let mut board = TestBoard::of(Board { touch_from_host: true, ..Board::SIMULATOR }, &mut memory);
+    board.hello();
+    board.command(Command::Subscribe { period_ticks: 40 }).unwrap();
+    board.messages.clear();
+    board.reads = false;
+    board.ticks(40_000);
     for sequence in 65_000..65_064 {
-        desk.send(&request(sequence, Command::Touch { x_m: f32::NAN, y_m: 0.0, age_ticks: 0 }));
-        desk.ticks(400);
+        board.send(&request(sequence, Command::Touch { x_m: f32::NAN, y_m: 0.0, age_ticks: 0 }));
+        board.ticks(400);
     }
-    desk.reads = true;
-    desk.collect();
-    let answered = desk.messages.iter().filter_map(|message| match message {
+    board.reads = true;
+    board.collect();
+    let answered = board.messages.iter().filter_map(|message| match message {
         FromBoard::Answer(answer) => Some((answer.sequence, answer.outcome.is_err())),
         _ => None,
     });
     assert_eq!(answered.collect::<Vec<_>>(), (65_000..65_064).map(|sequence| (sequence, true)).collect::<Vec<_>>());
-    desk.messages.clear();
-    desk.ticks(400);
-    let telemetry = desk.messages.iter().filter(|message| matches!(message, FromBoard::Telemetry(_)));
+    board.messages.clear();
+    board.ticks(400);
+    let telemetry = board.messages.iter().filter(|message| matches!(message, FromBoard::Telemetry(_)));
     assert_eq!(telemetry.count(), 10, "it goes on");
 }

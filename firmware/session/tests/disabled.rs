@@ -8,7 +8,7 @@ use frixel_layers::{
 };
 use frixel_wire::hello::feature;
 use frixel_wire::message::{Command, ConfigRefusal, Refusal};
-use support::{Desk, HEADER, Memory, bitmap, constant, record, scene, scene_with_points};
+use support::{HEADER, Memory, TestBoard, bitmap, constant, record, scene, scene_with_points};
 
 const GRATING: Layer = Layer::Grating(Grating {
     wave: Wave::Sine,
@@ -27,7 +27,7 @@ fn has(feature: u32) -> bool {
 #[test]
 fn the_hello_tells_what_there_is() {
     let mut memory = Memory::new();
-    let hello = Desk::new(&mut memory).greet();
+    let hello = TestBoard::new(&mut memory).hello();
     for (present, bit) in [
         (has(feature::GRATING), feature::GRATING),
         (has(feature::BITMAP), feature::BITMAP),
@@ -48,13 +48,13 @@ fn the_hello_tells_what_there_is() {
 #[test]
 fn a_layer_plays_or_is_refused_by_its_number() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    desk.greet();
+    let mut board = TestBoard::new(&mut memory);
+    board.hello();
     let records = [record(Layer::Constant(Constant { electric_friction_n: 0.01 })), record(GRATING)];
-    let found = desk.load(&scene(&HEADER, &records)).err();
+    let found = board.load(&scene(&HEADER, &records)).err();
     assert_eq!(found, (!has(feature::GRATING)).then_some(Refusal::FeatureDisabled { layer: 1 }));
 
-    let found = desk.load(&scene(&HEADER, &[record(bitmap(7))])).err();
+    let found = board.load(&scene(&HEADER, &[record(bitmap(7))])).err();
     let expected =
         if has(feature::BITMAP) { Refusal::BitmapMissing { crc32: 7 } } else { Refusal::FeatureDisabled { layer: 0 } };
     assert_eq!(found, Some(expected));
@@ -63,8 +63,8 @@ fn a_layer_plays_or_is_refused_by_its_number() {
 #[test]
 fn a_kind_plays_or_is_refused() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    desk.greet();
+    let mut board = TestBoard::new(&mut memory);
+    board.hello();
     let click = Click { height_n: 0.01, decay_s: 0.02 };
     let noise =
         Layer::Noise(Noise { seed: 1, wavelength_min_m: 1e-3, wavelength_max_m: 4e-3, low_n: 0.0, high_n: 0.02 });
@@ -92,7 +92,7 @@ fn a_kind_plays_or_is_refused() {
     ] {
         let records = [record(constant), Record { region, ..record(layer) }];
         let points = [(0.0, 0.0), (0.05, 0.0), (0.1, 0.05)].map(|(x, y)| Point { x, y });
-        let found = desk.load(&scene_with_points(&HEADER, &records, &points)).err();
+        let found = board.load(&scene_with_points(&HEADER, &records, &points)).err();
         assert_eq!(found, (!there).then_some(Refusal::FeatureDisabled { layer: 1 }), "{layer:?}");
     }
 }
@@ -100,24 +100,24 @@ fn a_kind_plays_or_is_refused() {
 #[test]
 fn a_carrier_plays_or_is_refused() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    desk.greet();
+    let mut board = TestBoard::new(&mut memory);
+    board.hello();
     let header = Header { carrier: Carrier::Sine, ..HEADER };
-    let found = desk.load(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.01 }))])).err();
+    let found = board.load(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.01 }))])).err();
     let refused = Refusal::FeatureDisabled { layer: ConfigRefusal::WHOLE_SCENE };
     assert_eq!(found, (!cfg!(feature = "sine-carrier")).then_some(refused));
-    desk.play(&constant(0.02));
-    assert!(desk.slide(2000)[1000..].iter().all(|drive| drive.dac_code.bits() != 0));
+    board.play(&constant(0.02));
+    assert!(board.slide(2000)[1000..].iter().all(|drive| drive.dac_code.bits() != 0));
 }
 
 #[test]
-fn commands_of_what_there_is_not_are_refused() {
+fn commands_of_disabled_features_are_rejected() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    desk.greet();
-    let found = desk.command(Command::UploadBitmap { width: 20, height: 10, crc32: 7 }).err();
+    let mut board = TestBoard::new(&mut memory);
+    board.hello();
+    let found = board.command(Command::UploadBitmap { width: 20, height: 10, crc32: 7 }).err();
     let full = Refusal::BitmapPoolFull { len: 200, free: 0 };
     assert_eq!(found, (!has(feature::BITMAP)).then_some(full));
-    let found = desk.command(Command::Subscribe { period_ticks: 40 }).err();
+    let found = board.command(Command::Subscribe { period_ticks: 40 }).err();
     assert_eq!(found, (!cfg!(feature = "telemetry")).then_some(Refusal::UnknownCommand));
 }

@@ -1,4 +1,4 @@
-//! What a host may change while a scene plays, and how it is told why not.
+//! What a host may change while a scene plays, and the refusals of the rest.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
 mod support;
@@ -7,69 +7,69 @@ use frixel_control::{Board, Drive};
 use frixel_layers::{Blend, Constant, Header, Layer, Leader, Record};
 use frixel_wire::fault::{Fault, Flags, State};
 use frixel_wire::message::{Accepted, Command, ConfigField, Refusal};
-use support::{Desk, HEADER, Memory, constant, record, scene};
+use support::{HEADER, Memory, TestBoard, constant, record, scene};
 
 const HALF: Command = Command::SetLayer { layer: 0, on: true, gain: 0.5 };
 
 #[test]
 fn a_layer_is_changed_only_while_it_plays() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    desk.greet();
-    assert_eq!(desk.command(HALF), Err(Refusal::WrongState(State::Disarmed)));
-    desk.load(&constant(0.01)).unwrap();
-    desk.command(Command::Arm).unwrap();
-    assert_eq!(desk.command(HALF), Err(Refusal::WrongState(State::Armed)));
-    desk.command(Command::Play).unwrap();
-    assert_eq!(desk.command(HALF), Ok(Accepted::Done));
-    desk.sense.amplifier_fault = true;
-    desk.tick();
-    assert_eq!(desk.command(HALF), Err(Refusal::Faulted(Fault::Amplifier)));
+    let mut board = TestBoard::new(&mut memory);
+    board.hello();
+    assert_eq!(board.command(HALF), Err(Refusal::WrongState(State::Disarmed)));
+    board.load(&constant(0.01)).unwrap();
+    board.command(Command::Arm).unwrap();
+    assert_eq!(board.command(HALF), Err(Refusal::WrongState(State::Armed)));
+    board.command(Command::Play).unwrap();
+    assert_eq!(board.command(HALF), Ok(Accepted::Done));
+    board.sense.amplifier_fault = true;
+    board.tick();
+    assert_eq!(board.command(HALF), Err(Refusal::Faulted(Fault::Amplifier)));
 }
 
 #[test]
 fn a_layer_that_is_not_there_and_a_gain_beyond_its_range_are_refused_by_number() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
+    let mut board = TestBoard::new(&mut memory);
     let layer = record(Layer::Constant(Constant { electric_friction_n: 0.01 }));
-    desk.play(&scene(&HEADER, &[layer, Record { blend: Blend::Add, ..layer }]));
-    desk.slide(1_000);
+    board.play(&scene(&HEADER, &[layer, Record { blend: Blend::Add, ..layer }]));
+    board.slide(1_000);
     for layer in [2, 63, 64, 255] {
-        let refused = desk.command(Command::SetLayer { layer, on: false, gain: 1.0 });
+        let refused = board.command(Command::SetLayer { layer, on: false, gain: 1.0 });
         assert_eq!(refused, Err(Refusal::NoSuchLayer { layer, layers: 2 }));
     }
     for gain in [100.1, -100.1, f32::INFINITY, f32::NAN] {
-        let Err(Refusal::Config(refusal)) = desk.command(Command::SetLayer { layer: 1, on: true, gain }) else {
+        let Err(Refusal::Config(refusal)) = board.command(Command::SetLayer { layer: 1, on: true, gain }) else {
             panic!("{gain} was taken")
         };
         assert_eq!((refusal.field, refusal.min, refusal.max), (ConfigField::Gain, -100.0, 100.0));
         assert_eq!((refusal.found.to_bits(), refusal.layer), (gain.to_bits(), 1));
     }
-    desk.slide(100);
-    let asked_n = desk.status().telemetry.asked_electric_friction_n;
+    board.slide(100);
+    let asked_n = board.status().telemetry.asked_electric_friction_n;
     assert!((asked_n - 0.02).abs() < 1e-7, "what was refused changed nothing: {asked_n}");
-    desk.command(Command::SetLayer { layer: 0, on: false, gain: 1.0 }).unwrap();
-    desk.command(Command::SetLayer { layer: 1, on: true, gain: 0.3 }).unwrap();
-    desk.slide(100);
-    let asked_n = desk.status().telemetry.asked_electric_friction_n;
+    board.command(Command::SetLayer { layer: 0, on: false, gain: 1.0 }).unwrap();
+    board.command(Command::SetLayer { layer: 1, on: true, gain: 0.3 }).unwrap();
+    board.slide(100);
+    let asked_n = board.status().telemetry.asked_electric_friction_n;
     assert!((asked_n - 0.003).abs() < 1e-7, "{asked_n}");
 }
 
 #[test]
 fn a_layers_number_is_of_the_scene_that_was_committed_last() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    desk.play(&constant(0.01));
+    let mut board = TestBoard::new(&mut memory);
+    board.play(&constant(0.01));
     let layer = record(Layer::Constant(Constant { electric_friction_n: 0.002 }));
-    desk.upload_scene(&scene(&HEADER, &[layer, layer, layer])).unwrap();
+    board.upload_scene(&scene(&HEADER, &[layer, layer, layer])).unwrap();
     let last = Command::SetLayer { layer: 2, on: true, gain: 1.0 };
-    assert_eq!(desk.command(last), Err(Refusal::NoSuchLayer { layer: 2, layers: 1 }), "uploaded, not committed");
-    desk.load(&scene(&HEADER, &[layer, layer, layer])).unwrap();
-    assert_eq!(desk.command(last), Ok(Accepted::Done));
+    assert_eq!(board.command(last), Err(Refusal::NoSuchLayer { layer: 2, layers: 1 }), "uploaded, not committed");
+    board.load(&scene(&HEADER, &[layer, layer, layer])).unwrap();
+    assert_eq!(board.command(last), Ok(Accepted::Done));
     // An upload that has begun takes the bytes of the scene, not the scene.
-    desk.command(Command::UploadScene { len: 112, crc32: 7 }).unwrap();
-    assert_eq!(desk.command(last), Ok(Accepted::Done));
-    assert_eq!(desk.session.scene_header(), Some(&HEADER));
+    board.command(Command::UploadScene { len: 112, crc32: 7 }).unwrap();
+    assert_eq!(board.command(last), Ok(Accepted::Done));
+    assert_eq!(board.session.scene_header(), Some(&HEADER));
 }
 
 #[cfg(feature = "stream")]
@@ -80,24 +80,24 @@ mod streams {
     #[test]
     fn a_board_without_a_buffer_takes_no_stream_and_says_so() {
         let mut memory = Memory::new();
-        let mut desk = Desk::without_stream(&mut memory);
-        assert_eq!(desk.greet().features & feature::STREAM, 0);
-        desk.play(&constant(0.01));
+        let mut board = TestBoard::without_stream(&mut memory);
+        assert_eq!(board.hello().features & feature::STREAM, 0);
+        board.play(&constant(0.01));
         for command in [Command::StartStream { sample_hz: 1_000, start_level: 1 }, Command::EndStream] {
-            assert_eq!(desk.command(command), Err(Refusal::UnknownCommand));
+            assert_eq!(board.command(command), Err(Refusal::UnknownCommand));
         }
     }
 
     #[test]
     fn a_scene_without_a_stream_layer_takes_no_stream() {
         let mut memory = Memory::new();
-        let mut desk = Desk::new(&mut memory);
-        assert_ne!(desk.greet().features & feature::STREAM, 0);
+        let mut board = TestBoard::new(&mut memory);
+        assert_ne!(board.hello().features & feature::STREAM, 0);
         let start = Command::StartStream { sample_hz: 1_000, start_level: 1 };
-        assert_eq!(desk.command(start), Err(Refusal::WrongState(State::Disarmed)));
-        desk.play(&constant(0.01));
-        assert_eq!(desk.command(start), Err(Refusal::NoStreamLayer));
-        assert_eq!(desk.command(Command::EndStream), Ok(Accepted::Done), "there is none to end");
+        assert_eq!(board.command(start), Err(Refusal::WrongState(State::Disarmed)));
+        board.play(&constant(0.01));
+        assert_eq!(board.command(start), Err(Refusal::NoStreamLayer));
+        assert_eq!(board.command(Command::EndStream), Ok(Accepted::Done), "there is none to end");
     }
 }
 
@@ -107,20 +107,20 @@ fn the_scene_says_which_of_two_fingers_is_followed() {
     for (leader, second_leads) in [(Leader::First, false), (Leader::Latest, true)] {
         let mut memory = Memory::new();
         let board = Board { touch_from_host: true, ..Board::SIMULATOR };
-        let mut desk = Desk::of(board, &mut memory);
-        desk.play(&scene(
+        let mut board = TestBoard::of(board, &mut memory);
+        board.play(&scene(
             &Header { leader, ..HEADER },
             &[record(Layer::Constant(Constant { electric_friction_n: 0.01 }))],
         ));
         let mut seen = Vec::new();
         for report in 0..60_u8 {
             let x_m = 0.001 * f32::from(report);
-            desk.command(Command::TouchFinger { finger: 4, x_m, y_m: 0.01, age_ticks: 0 }).unwrap();
+            board.command(Command::TouchFinger { finger: 4, x_m, y_m: 0.01, age_ticks: 0 }).unwrap();
             if report > 20 {
-                desk.command(Command::TouchFinger { finger: 9, x_m, y_m: 0.05, age_ticks: 0 }).unwrap();
+                board.command(Command::TouchFinger { finger: 9, x_m, y_m: 0.05, age_ticks: 0 }).unwrap();
             }
-            desk.ticks(200);
-            seen.push(desk.status().telemetry.finger_y_m);
+            board.ticks(200);
+            seen.push(board.status().telemetry.finger_y_m);
         }
         let close = |found: f32, expected: f32| (found - expected).abs() < 1e-4;
         assert!(close(seen[20], 0.01), "{leader:?}: {seen:?}");
@@ -129,8 +129,8 @@ fn the_scene_says_which_of_two_fingers_is_followed() {
             seen[22..].iter().all(|y_m| close(*y_m, then_m)),
             "{leader:?}: nothing is made of the way between {seen:?}"
         );
-        desk.command(Command::LiftFinger { finger: if second_leads { 9 } else { 4 } }).unwrap();
-        assert_eq!(desk.tick(), Drive::default());
-        assert!(desk.status().telemetry.flags.contains(Flags::NO_FINGER));
+        board.command(Command::LiftFinger { finger: if second_leads { 9 } else { 4 } }).unwrap();
+        assert_eq!(board.tick(), Drive::default());
+        assert!(board.status().telemetry.flags.contains(Flags::NO_FINGER));
     }
 }

@@ -9,7 +9,7 @@ use frixel_layers::{
 };
 use frixel_wire::scene::bitmap_crc32;
 use proptest::prelude::*;
-use support::{Desk, HEADER, Memory, scene_with_points};
+use support::{HEADER, Memory, TestBoard, scene_with_points};
 
 const CLICK: Click = Click { height_n: 0.004, decay_s: 0.02 };
 const SAMPLES: [u8; 6] = [0, 50, 100, 150, 200, 250];
@@ -117,10 +117,10 @@ mod whole {
 
     fn refusal(record: Record, points: &[Point]) -> Option<ConfigRefusal> {
         let mut memory = Memory::new();
-        let mut desk = Desk::new(&mut memory);
-        desk.greet();
-        desk.upload_bitmap(3, 2, &SAMPLES).unwrap();
-        match desk.load(&scene_with_points(&HEADER, &[record], points)) {
+        let mut board = TestBoard::new(&mut memory);
+        board.hello();
+        board.upload_bitmap(3, 2, &SAMPLES).unwrap();
+        match board.load(&scene_with_points(&HEADER, &[record], points)) {
             Ok(_) => None,
             Err(Refusal::Config(refusal)) => Some(refusal),
             Err(other) => panic!("{other:?}"),
@@ -130,15 +130,15 @@ mod whole {
     #[test]
     fn every_kind_plays() {
         let mut memory = Memory::new();
-        let mut desk = Desk::new(&mut memory);
-        desk.greet();
-        desk.upload_bitmap(3, 2, &SAMPLES).unwrap();
+        let mut board = TestBoard::new(&mut memory);
+        board.hello();
+        board.upload_bitmap(3, 2, &SAMPLES).unwrap();
         // One after another: all of them under one finger are refused, for what a tick would take.
         for record in records() {
-            desk.play(&scene_with_points(&HEADER, &on_a_ground(record), &points()));
-            assert!(desk.slide(8_000)[400..].iter().all(|drive| drive.dac_code.bits() != 0), "{record:?}");
-            desk.command(Command::Disarm).unwrap();
-            desk.press_switch();
+            board.play(&scene_with_points(&HEADER, &on_a_ground(record), &points()));
+            assert!(board.slide(8_000)[400..].iter().all(|drive| drive.dac_code.bits() != 0), "{record:?}");
+            board.command(Command::Disarm).unwrap();
+            board.press_switch();
         }
     }
 
@@ -189,8 +189,8 @@ mod whole {
     fn side_tables_are_refused_by_what_they_hold() {
         let of = |layer, count: usize| {
             let mut memory = Memory::new();
-            let mut desk = Desk::new(&mut memory);
-            desk.greet();
+            let mut board = TestBoard::new(&mut memory);
+            board.hello();
             // Side by side: one on another they would take too long.
             let beside = |number: usize| {
                 let (x_m, y_m) = (1e-3 + 7.5e-3 * (number % 16) as f32, 0.01 + 0.01 * (number / 16) as f32);
@@ -198,7 +198,7 @@ mod whole {
                 Record { region, ..record(layer) }
             };
             let records: Vec<Record> = (0..count).map(beside).collect();
-            desk.load(&scene_with_points(&HEADER, &records, &[])).err()
+            board.load(&scene_with_points(&HEADER, &records, &[])).err()
         };
         let noise = records()[7].layer;
         assert_eq!(of(noise, 8), None);
@@ -234,15 +234,15 @@ fn nearly() -> impl Strategy<Value = Vec<u8>> {
 /// Loads these bytes and, when they are taken, plays them for a while.
 fn load_and_play(scene: &[u8]) -> bool {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    desk.greet();
-    let _ = desk.upload_bitmap(3, 2, &SAMPLES);
-    if desk.load(scene).is_err() {
+    let mut board = TestBoard::new(&mut memory);
+    board.hello();
+    let _ = board.upload_bitmap(3, 2, &SAMPLES);
+    if board.load(scene).is_err() {
         return false;
     }
-    desk.command(frixel_wire::message::Command::Arm).unwrap();
-    desk.command(frixel_wire::message::Command::Play).unwrap();
-    desk.slide(1_500);
+    board.command(frixel_wire::message::Command::Arm).unwrap();
+    board.command(frixel_wire::message::Command::Play).unwrap();
+    board.slide(1_500);
     true
 }
 

@@ -1,4 +1,4 @@
-//! Hundreds of volts next to a person: when the output has to be at zero (DESIGN section 5).
+//! When the output must be zero (`PROTOCOL.md` sections 10 and 11, "States" and "Time").
 
 mod support;
 
@@ -8,78 +8,77 @@ use frixel_session::Touch;
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::{Fault, Flags, State};
 use frixel_wire::message::{Command, FromBoard, Refusal};
-use support::{Desk, HEADER, Memory, constant, record, scene};
+use support::{HEADER, Memory, TestBoard, constant, record, scene};
 
 const OFF: Drive = Drive { dac_code: DacCode::ZERO, amplifier_enable: false };
 /// Host timeout of the scenes here, in ticks.
 const HOST_TIMEOUT_TICKS: u32 = 10_000;
 
-fn playing(memory: &mut Memory) -> Desk<'_> {
-    let mut desk = Desk::new(memory);
-    desk.play(&constant(0.02));
-    let driven = desk.slide(2000);
+fn playing(memory: &mut Memory) -> TestBoard<'_> {
+    let mut board = TestBoard::new(memory);
+    board.play(&constant(0.02));
+    let driven = board.slide(2000);
     assert!(driven[1000..].iter().all(|drive| drive.dac_code.bits() != 0 && drive.amplifier_enable));
-    desk
+    board
 }
 
-/// Without a touch report, a tick has nothing to do but to drive: it must not, all the same.
 #[test]
-fn a_board_that_nobody_has_spoken_to_rests() {
+fn the_output_is_zero_before_the_first_hello() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    assert!((0..1000).all(|_| desk.tick() == OFF));
+    let mut board = TestBoard::new(&mut memory);
+    assert!((0..1000).all(|_| board.tick() == OFF));
 }
 
 #[test]
 fn a_fault_puts_the_output_to_zero_in_its_own_tick() {
     for ticks in 400..440 {
         let mut memory = Memory::new();
-        let mut desk = playing(&mut memory);
-        assert_ne!(desk.slide(ticks).last(), Some(&OFF));
-        desk.sense.amplifier_fault = true;
-        assert_eq!(desk.tick(), OFF, "{ticks}");
+        let mut board = playing(&mut memory);
+        assert_ne!(board.slide(ticks).last(), Some(&OFF));
+        board.sense.amplifier_fault = true;
+        assert_eq!(board.tick(), OFF, "{ticks}");
     }
 }
 
 #[test]
 fn nothing_is_driven_before_a_host_has_armed_and_played() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    assert!(desk.slide(400).iter().all(|drive| *drive == OFF));
-    desk.greet();
-    assert_eq!(desk.command(Command::Play), Err(Refusal::NoScene));
-    desk.load(&constant(0.02)).unwrap();
-    assert_eq!(desk.command(Command::Play), Err(Refusal::WrongState(State::Disarmed)));
-    desk.command(Command::Arm).unwrap();
-    assert!(desk.slide(400).iter().all(|drive| *drive == OFF));
+    let mut board = TestBoard::new(&mut memory);
+    assert!(board.slide(400).iter().all(|drive| *drive == OFF));
+    board.hello();
+    assert_eq!(board.command(Command::Play), Err(Refusal::NoScene));
+    board.load(&constant(0.02)).unwrap();
+    assert_eq!(board.command(Command::Play), Err(Refusal::WrongState(State::Disarmed)));
+    board.command(Command::Arm).unwrap();
+    assert!(board.slide(400).iter().all(|drive| *drive == OFF));
 }
 
 #[test]
 fn stop_and_disarm_put_the_output_to_zero_at_the_next_tick() {
     for command in [Command::Stop, Command::Disarm] {
         let mut memory = Memory::new();
-        let mut desk = playing(&mut memory);
-        desk.command(command).unwrap();
-        assert_eq!(desk.tick(), OFF);
+        let mut board = playing(&mut memory);
+        board.command(command).unwrap();
+        assert_eq!(board.tick(), OFF);
     }
 }
 
 #[test]
 fn a_lifted_finger_ends_the_drive_at_once() {
     let mut memory = Memory::new();
-    let mut desk = playing(&mut memory);
-    desk.touch = Some(Touch::Up);
-    assert_eq!(desk.tick(), OFF);
-    assert!(desk.status().telemetry.flags.contains(Flags::NO_FINGER));
-    assert_eq!(desk.status().telemetry.state, State::Active, "the scene goes on for the next touch");
+    let mut board = playing(&mut memory);
+    board.touch = Some(Touch::Up);
+    assert_eq!(board.tick(), OFF);
+    assert!(board.status().telemetry.flags.contains(Flags::NO_FINGER));
+    assert_eq!(board.status().telemetry.state, State::Active, "the scene goes on for the next touch");
 }
 
 #[test]
 fn touch_data_older_than_three_report_periods_ends_the_drive() {
     let mut memory = Memory::new();
-    let mut desk = playing(&mut memory);
+    let mut board = playing(&mut memory);
     // The last report came 400 ticks before the first of these.
-    let driven: Vec<Drive> = (0..1000).map(|_| desk.tick()).collect();
+    let driven: Vec<Drive> = (0..1000).map(|_| board.tick()).collect();
     let first_off = driven.iter().position(|drive| *drive == OFF).unwrap();
     assert!((800..=802).contains(&first_off), "{first_off}");
     assert!(driven[first_off..].iter().all(|drive| *drive == OFF));
@@ -88,42 +87,42 @@ fn touch_data_older_than_three_report_periods_ends_the_drive() {
 #[test]
 fn a_silent_host_disarms_within_its_timeout() {
     let mut memory = Memory::new();
-    let mut desk = playing(&mut memory);
-    desk.command(Command::Ping).unwrap();
+    let mut board = playing(&mut memory);
+    board.command(Command::Ping).unwrap();
     let mut on = 0;
     for i in 0..2 * HOST_TIMEOUT_TICKS {
         if i % 400 == 0 {
-            desk.touch = Some(Touch::Down { x_m: 0.03 + 0.1 * 25e-6 * i as f32, y_m: 0.03, age_ticks: 0 });
+            board.touch = Some(Touch::Down { x_m: 0.03 + 0.1 * 25e-6 * i as f32, y_m: 0.03, age_ticks: 0 });
         }
-        on += u32::from(desk.tick() != OFF);
+        on += u32::from(board.tick() != OFF);
     }
     assert!((HOST_TIMEOUT_TICKS - 1..=HOST_TIMEOUT_TICKS).contains(&on), "{on}");
-    let told = desk.messages.iter().any(|message| {
+    let reported = board.messages.iter().any(|message| {
         matches!(message, FromBoard::StateChanged { state: State::Disarmed, fault: None, flags: Flags::HOST_SILENT })
     });
-    assert!(told, "{:?}", desk.messages);
-    desk.play(&constant(0.02));
-    assert!(!desk.status().telemetry.flags.contains(Flags::HOST_SILENT));
+    assert!(reported, "{:?}", board.messages);
+    board.play(&constant(0.02));
+    assert!(!board.status().telemetry.flags.contains(Flags::HOST_SILENT));
 }
 
-/// Nobody but the client that armed keeps a board armed.
+/// A board stays armed only for the client that armed it.
 #[test]
-fn a_new_clients_hello_ends_what_the_client_before_had_armed() {
+fn the_hello_of_a_new_client_disarms_the_board() {
     let mut memory = Memory::new();
-    let mut desk = playing(&mut memory);
-    assert_eq!(desk.greet().state, State::Disarmed);
-    assert_eq!(desk.tick(), OFF);
-    assert_eq!(desk.status().telemetry.state, State::Disarmed);
+    let mut board = playing(&mut memory);
+    assert_eq!(board.hello().state, State::Disarmed);
+    assert_eq!(board.tick(), OFF);
+    assert_eq!(board.status().telemetry.state, State::Disarmed);
 
-    desk.press_switch();
-    desk.command(Command::Arm).unwrap();
-    assert_eq!(desk.greet().state, State::Disarmed);
-    // Whoever has said hello may arm.
-    desk.press_switch();
-    desk.command(Command::Arm).unwrap();
-    desk.command(Command::Play).unwrap();
-    desk.tick();
-    assert_eq!(desk.status().telemetry.state, State::Active);
+    board.press_switch();
+    board.command(Command::Arm).unwrap();
+    assert_eq!(board.hello().state, State::Disarmed);
+    // The new client may arm.
+    board.press_switch();
+    board.command(Command::Arm).unwrap();
+    board.command(Command::Play).unwrap();
+    board.tick();
+    assert_eq!(board.status().telemetry.state, State::Active);
 }
 
 fn autonomous() -> Vec<u8> {
@@ -134,97 +133,97 @@ fn autonomous() -> Vec<u8> {
 #[test]
 fn an_autonomous_scene_goes_on_without_a_host() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    desk.play(&autonomous());
-    desk.ticks(2 * HOST_TIMEOUT_TICKS);
-    assert_eq!(desk.status().telemetry.state, State::Active);
-    assert_eq!(desk.greet().state, State::Active, "a client may look");
-    desk.ticks(2 * HOST_TIMEOUT_TICKS);
-    assert_eq!(desk.status().telemetry.state, State::Active);
+    let mut board = TestBoard::new(&mut memory);
+    board.play(&autonomous());
+    board.ticks(2 * HOST_TIMEOUT_TICKS);
+    assert_eq!(board.status().telemetry.state, State::Active);
+    assert_eq!(board.hello().state, State::Active, "another client may say hello");
+    board.ticks(2 * HOST_TIMEOUT_TICKS);
+    assert_eq!(board.status().telemetry.state, State::Active);
 }
 
-/// Only what plays goes on without a host.
+/// Only a playing scene may continue without a host.
 #[test]
 fn a_board_armed_for_an_autonomous_scene_needs_its_host() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    desk.greet();
-    desk.load(&autonomous()).unwrap();
-    desk.command(Command::Arm).unwrap();
-    desk.ticks(HOST_TIMEOUT_TICKS - 1);
-    assert_eq!(desk.status().telemetry.state, State::Armed);
-    desk.ticks(2);
-    assert_eq!(desk.status().telemetry.state, State::Disarmed);
+    let mut board = TestBoard::new(&mut memory);
+    board.hello();
+    board.load(&autonomous()).unwrap();
+    board.command(Command::Arm).unwrap();
+    board.ticks(HOST_TIMEOUT_TICKS - 1);
+    assert_eq!(board.status().telemetry.state, State::Armed);
+    board.ticks(2);
+    assert_eq!(board.status().telemetry.state, State::Disarmed);
 
-    desk.press_switch();
-    desk.command(Command::Arm).unwrap();
-    desk.tick();
-    assert_eq!(desk.greet().state, State::Disarmed, "nothing plays that a hello would end");
+    board.press_switch();
+    board.command(Command::Arm).unwrap();
+    board.tick();
+    assert_eq!(board.hello().state, State::Disarmed, "nothing plays that a hello would end");
 }
 
-fn assert_faults(desk: &mut Desk, fault: Fault, within_ticks: u32) {
-    let driven = desk.slide(within_ticks + 400);
+fn assert_faults(board: &mut TestBoard, fault: Fault, within_ticks: u32) {
+    let driven = board.slide(within_ticks + 400);
     assert!(driven[within_ticks as usize..].iter().all(|drive| *drive == OFF), "{fault:?}");
-    assert_eq!(desk.status().telemetry.state, State::Faulted);
-    assert_eq!(desk.status().fault.map(|(fault, _)| fault), Some(fault));
+    assert_eq!(board.status().telemetry.state, State::Faulted);
+    assert_eq!(board.status().fault.map(|(fault, _)| fault), Some(fault));
     // The host is not silent, so that no flag is set, whatever flags the tick has.
     let changed = FromBoard::StateChanged { state: State::Faulted, fault: Some(fault), flags: Flags(0) };
-    assert!(desk.messages.contains(&changed), "{:?}", desk.messages);
+    assert!(board.messages.contains(&changed), "{:?}", board.messages);
     for command in [Command::Arm, Command::Play, Command::Stop, Command::Disarm] {
-        assert_eq!(desk.command(command), Err(Refusal::Faulted(fault)));
+        assert_eq!(board.command(command), Err(Refusal::Faulted(fault)));
     }
-    assert_eq!(desk.greet().last_fault, Some(fault));
+    assert_eq!(board.hello().last_fault, Some(fault));
 }
 
 #[test]
 fn an_amplifier_fault_latches() {
     let mut memory = Memory::new();
-    let mut desk = playing(&mut memory);
-    desk.sense.amplifier_fault = true;
-    assert_faults(&mut desk, Fault::Amplifier, 0);
-    desk.command(Command::ClearFault).unwrap();
-    desk.tick();
-    assert_eq!(desk.status().telemetry.state, State::Faulted, "the cause is still there");
-    desk.sense.amplifier_fault = false;
-    desk.command(Command::ClearFault).unwrap();
-    desk.tick();
-    assert_eq!(desk.status().telemetry.state, State::Disarmed);
+    let mut board = playing(&mut memory);
+    board.sense.amplifier_fault = true;
+    assert_faults(&mut board, Fault::Amplifier, 0);
+    board.command(Command::ClearFault).unwrap();
+    board.tick();
+    assert_eq!(board.status().telemetry.state, State::Faulted, "the cause is still there");
+    board.sense.amplifier_fault = false;
+    board.command(Command::ClearFault).unwrap();
+    board.tick();
+    assert_eq!(board.status().telemetry.state, State::Disarmed);
 }
 
 #[test]
 fn a_switch_let_go_faults() {
     let mut memory = Memory::new();
-    let mut desk = playing(&mut memory);
-    desk.sense.arm_switch = false;
-    assert_faults(&mut desk, Fault::ArmSwitch, 0);
-    desk.command(Command::ClearFault).unwrap();
-    assert_eq!(desk.command(Command::Arm), Err(Refusal::ArmSwitch));
+    let mut board = playing(&mut memory);
+    board.sense.arm_switch = false;
+    assert_faults(&mut board, Fault::ArmSwitch, 0);
+    board.command(Command::ClearFault).unwrap();
+    assert_eq!(board.command(Command::Arm), Err(Refusal::ArmSwitch));
 }
 
 #[test]
 fn a_monitor_that_does_not_follow_faults_within_a_millisecond() {
     let mut memory = Memory::new();
-    let mut desk = playing(&mut memory);
-    desk.sense.monitor_v = 60.0; // more than a fifth of 250 V beside what it should read
-    assert_faults(&mut desk, Fault::Monitor, 40);
+    let mut board = playing(&mut memory);
+    board.sense.monitor_v = 60.0; // more than a fifth of 250 V beside what it should read
+    assert_faults(&mut board, Fault::Monitor, 40);
 }
 
 #[test]
 fn a_missed_deadline_faults() {
     let mut memory = Memory::new();
-    let mut desk = playing(&mut memory);
-    desk.ticker.raise(Fault::Deadline, 4300);
-    assert_faults(&mut desk, Fault::Deadline, 0);
+    let mut board = playing(&mut memory);
+    board.ticker.raise(Fault::Deadline, 4300);
+    assert_faults(&mut board, Fault::Deadline, 0);
 }
 
 #[test]
 fn friction_out_of_reach_is_clamped_flagged_and_counted() {
     for electric_friction_n in [0.5, -0.01] {
         let mut memory = Memory::new();
-        let mut desk = Desk::new(&mut memory);
-        desk.play(&constant(electric_friction_n));
-        let driven = desk.slide(1200);
-        let status = desk.status();
+        let mut board = TestBoard::new(&mut memory);
+        board.play(&constant(electric_friction_n));
+        let driven = board.slide(1200);
+        let status = board.status();
         assert!(status.telemetry.flags.contains(Flags::SATURATED));
         assert_eq!(status.counters.saturated_ticks, 1200, "{:?}", status.counters);
         let voltage_v_rms = status.telemetry.voltage_v_rms;
@@ -237,90 +236,89 @@ fn friction_out_of_reach_is_clamped_flagged_and_counted() {
 #[test]
 fn the_envelope_keeps_its_slew_limit() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
+    let mut board = TestBoard::new(&mut memory);
     let header = Header { slew_v_per_s: 2e5, ..HEADER };
-    desk.play(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.02 }))]));
-    desk.command(Command::Ping).unwrap();
+    board.play(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.02 }))]));
+    board.command(Command::Ping).unwrap();
     let mut last_v_rms = 0.0;
     for i in 0..200 {
         if i == 0 {
-            desk.touch = Some(Touch::Down { x_m: 0.05, y_m: 0.05, age_ticks: 0 });
+            board.touch = Some(Touch::Down { x_m: 0.05, y_m: 0.05, age_ticks: 0 });
         }
-        desk.tick();
-        let voltage_v_rms = desk.status().telemetry.voltage_v_rms;
+        board.tick();
+        let voltage_v_rms = board.status().telemetry.voltage_v_rms;
         assert!(voltage_v_rms - last_v_rms <= 5.0 + 1e-3, "2e5 V/s are 5 V a tick");
         last_v_rms = voltage_v_rms;
     }
     assert!(last_v_rms > 100.0);
-    assert_eq!(desk.status().counters.slewed_ticks, 25);
+    assert_eq!(board.status().counters.slewed_ticks, 25);
 }
 
 #[test]
-fn a_touch_source_that_says_the_same_for_ever_ends_the_drive() {
+fn a_touch_source_that_repeats_one_report_stops_the_output() {
     let mut memory = Memory::new();
-    let mut desk = playing(&mut memory);
+    let mut board = playing(&mut memory);
     for i in 0..4000 {
         if i % 400 == 0 {
-            desk.command(Command::Ping).unwrap();
-            desk.touch = Some(Touch::Down { x_m: 0.05, y_m: 0.03, age_ticks: 1000 + i });
+            board.command(Command::Ping).unwrap();
+            board.touch = Some(Touch::Down { x_m: 0.05, y_m: 0.03, age_ticks: 1000 + i });
         }
-        let drive = desk.tick();
+        let drive = board.tick();
         assert!(i < 802 || drive == OFF, "driven {i} ticks after the last news of the finger");
     }
 }
 
 #[test]
-fn a_touch_report_of_no_numbers_changes_nothing() {
+fn a_touch_report_that_is_not_a_number_changes_nothing() {
     let mut memory = Memory::new();
-    let mut desk = playing(&mut memory);
-    desk.touch = Some(Touch::Down { x_m: f32::NAN, y_m: f32::INFINITY, age_ticks: 0 });
-    assert!(desk.tick().dac_code.bits() != 0);
-    assert!(desk.slide(1200).iter().all(|drive| drive.dac_code.bits() != 0));
+    let mut board = playing(&mut memory);
+    board.touch = Some(Touch::Down { x_m: f32::NAN, y_m: f32::INFINITY, age_ticks: 0 });
+    assert!(board.tick().dac_code.bits() != 0);
+    assert!(board.slide(1200).iter().all(|drive| drive.dac_code.bits() != 0));
 }
 
 #[test]
 fn a_new_scenes_voltage_limit_holds_from_its_first_tick() {
     let mut memory = Memory::new();
-    let mut desk = playing(&mut memory);
-    assert!(desk.status().telemetry.voltage_v_rms > 100.0);
+    let mut board = playing(&mut memory);
+    assert!(board.status().telemetry.voltage_v_rms > 100.0);
     let header = Header { voltage_max_v_rms: 20.0, slew_v_per_s: 10.0, ..HEADER };
-    desk.load(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 1e-5 }))])).unwrap();
-    desk.tick();
-    assert!(desk.status().telemetry.voltage_v_rms <= 20.0);
+    board.load(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 1e-5 }))])).unwrap();
+    board.tick();
+    assert!(board.status().telemetry.voltage_v_rms <= 20.0);
 }
 
 /// A tick of a finger that slides, and rests from tick 4,000 on.
-fn slide_and_rest(desk: &mut Desk, tick: u32) {
+fn slide_and_rest(board: &mut TestBoard, tick: u32) {
     if tick.is_multiple_of(400) {
         let x_m = 0.03 + 2.5e-6 * tick.min(4_000) as f32;
-        desk.touch = Some(Touch::Down { x_m, y_m: 0.03, age_ticks: 0 });
-        assert!(desk.command(Command::Ping).is_ok());
+        board.touch = Some(Touch::Down { x_m, y_m: 0.03, age_ticks: 0 });
+        assert!(board.command(Command::Ping).is_ok());
     }
-    desk.tick();
+    board.tick();
 }
 
-/// Also in the ticks that have something else to do than to ask the scene: around the one in which a slow finger
-/// becomes still.
+/// The scene is swapped around the tick in which the standstill ramp begins.
 #[test]
-fn a_new_scenes_voltage_limit_holds_in_a_tick_with_a_deadline() {
+fn a_new_scenes_voltage_limit_holds_while_the_standstill_ramp_begins() {
     let mut memory = Memory::new();
-    let mut desk = playing(&mut memory);
-    let still = |desk: &Desk| desk.status().telemetry.flags.contains(Flags::STILL);
+    let mut board = playing(&mut memory);
+    let still = |board: &TestBoard| board.status().telemetry.flags.contains(Flags::STILL);
     let still_at = (0..20_000).find(|tick| {
-        slide_and_rest(&mut desk, *tick);
-        still(&desk)
+        slide_and_rest(&mut board, *tick);
+        still(&board)
     });
     let still_at = still_at.unwrap();
     for ticks in still_at - 12..still_at + 4 {
         let mut memory = Memory::new();
-        let mut desk = playing(&mut memory);
-        (0..ticks).for_each(|tick| slide_and_rest(&mut desk, tick));
-        assert!(desk.status().telemetry.voltage_v_rms > 100.0, "{ticks}");
+        let mut board = playing(&mut memory);
+        (0..ticks).for_each(|tick| slide_and_rest(&mut board, tick));
+        assert!(board.status().telemetry.voltage_v_rms > 100.0, "{ticks}");
         let header = Header { voltage_max_v_rms: 20.0, slew_v_per_s: 1e9, ..HEADER };
-        desk.load(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 1e-5 }))])).unwrap();
+        board.load(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 1e-5 }))])).unwrap();
         for tick in ticks..ticks + 40 {
-            slide_and_rest(&mut desk, tick);
-            assert!(desk.status().telemetry.voltage_v_rms <= 20.0, "{ticks}, {tick}");
+            slide_and_rest(&mut board, tick);
+            assert!(board.status().telemetry.voltage_v_rms <= 20.0, "{ticks}, {tick}");
         }
     }
 }
@@ -329,24 +327,24 @@ fn a_new_scenes_voltage_limit_holds_in_a_tick_with_a_deadline() {
 fn a_still_finger_is_ramped_away_and_comes_back_however_often_it_is_reported() {
     for period_ticks in (1..=24).chain([40, 400, 667]) {
         let mut memory = Memory::new();
-        let mut desk = playing(&mut memory);
+        let mut board = playing(&mut memory);
         let mut x_m = 0.03;
-        let mut slide = |desk: &mut Desk, step_m: f32| {
+        let mut slide = |board: &mut TestBoard, step_m: f32| {
             for tick in 0..6_000_u32.max(40 * period_ticks) {
                 x_m += step_m;
                 if tick.is_multiple_of(period_ticks) {
-                    desk.touch = Some(Touch::Down { x_m, y_m: 0.03, age_ticks: 0 });
+                    board.touch = Some(Touch::Down { x_m, y_m: 0.03, age_ticks: 0 });
                 }
                 if tick.is_multiple_of(2_000) {
-                    desk.command(Command::Ping).unwrap();
+                    board.command(Command::Ping).unwrap();
                 }
-                desk.tick();
+                board.tick();
             }
-            desk.status().telemetry
+            board.status().telemetry
         };
-        let still = slide(&mut desk, 0.0);
+        let still = slide(&mut board, 0.0);
         assert!(still.flags.contains(Flags::STILL) && still.dac_code == 0, "every {period_ticks}: {still:?}");
-        let moving = slide(&mut desk, 2.5e-6);
+        let moving = slide(&mut board, 2.5e-6);
         assert!(!moving.flags.contains(Flags::STILL) && moving.dac_code != 0, "every {period_ticks}: {moving:?}");
     }
 }
@@ -354,45 +352,45 @@ fn a_still_finger_is_ramped_away_and_comes_back_however_often_it_is_reported() {
 #[test]
 fn a_dead_amplifier_and_a_live_electrode_are_seen_at_50_volts() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
+    let mut board = TestBoard::new(&mut memory);
     let header = Header { voltage_max_v_rms: 45.0, ..HEADER };
-    desk.play(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 1.0 }))]));
-    desk.slide(400);
-    desk.amplifier_dead = true;
-    assert_faults(&mut desk, Fault::Monitor, 40);
+    board.play(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 1.0 }))]));
+    board.slide(400);
+    board.amplifier_dead = true;
+    assert_faults(&mut board, Fault::Monitor, 40);
 
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    desk.sense.monitor_v = 49.0;
-    desk.ticks(40);
-    assert_eq!(desk.status().fault.map(|(fault, _)| fault), Some(Fault::Monitor));
+    let mut board = TestBoard::new(&mut memory);
+    board.sense.monitor_v = 49.0;
+    board.ticks(40);
+    assert_eq!(board.status().fault.map(|(fault, _)| fault), Some(Fault::Monitor));
 }
 
 #[test]
 fn the_first_fault_is_the_one_that_is_reported() {
     let mut memory = Memory::new();
-    let mut desk = playing(&mut memory);
-    desk.ticker.raise(Fault::Deadline, 4300);
-    desk.ticker.raise(Fault::Watchdog, 1);
-    desk.sense.amplifier_fault = true;
-    desk.tick();
-    assert_eq!(desk.status().fault, Some((Fault::Deadline, 4300)));
-    assert_eq!(desk.status().counters.missed_deadlines, 1);
+    let mut board = playing(&mut memory);
+    board.ticker.raise(Fault::Deadline, 4300);
+    board.ticker.raise(Fault::Watchdog, 1);
+    board.sense.amplifier_fault = true;
+    board.tick();
+    assert_eq!(board.status().fault, Some((Fault::Deadline, 4300)));
+    assert_eq!(board.status().counters.missed_deadlines, 1);
 }
 
 #[test]
 fn a_source_that_reports_at_every_tick_is_followed_as_any_other() {
     for period_ticks in 1..6 {
         let mut memory = Memory::new();
-        let mut desk = playing(&mut memory);
+        let mut board = playing(&mut memory);
         for tick in 0..2_000_u32 {
             if tick.is_multiple_of(period_ticks) {
                 let x_m = 0.03 + 0.1 * 25e-6 * tick as f32;
-                desk.touch = Some(Touch::Down { x_m, y_m: 0.03, age_ticks: 0 });
+                board.touch = Some(Touch::Down { x_m, y_m: 0.03, age_ticks: 0 });
             }
-            desk.tick();
+            board.tick();
         }
-        let telemetry = desk.status().telemetry;
+        let telemetry = board.status().telemetry;
         assert!((telemetry.finger_x_m - 0.035).abs() < 5e-5, "every {period_ticks}: {telemetry:?}");
         assert_ne!(telemetry.dac_code, 0, "every {period_ticks}");
     }

@@ -18,106 +18,106 @@ use frixel_wire::scene::{RECORDS_MAX, SceneError};
 use proptest::prelude::*;
 #[cfg(feature = "bitmap")]
 use support::bitmap;
-use support::{COMMIT_POLLS_MAX, Desk, HEADER, Memory, constant, record, request, scene};
+use support::{COMMIT_POLLS_MAX, HEADER, Memory, TestBoard, constant, record, request, scene};
 
 #[test]
 fn a_board_says_who_it_is_and_what_it_holds() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    let hello = desk.greet();
+    let mut board = TestBoard::new(&mut memory);
+    let hello = board.hello();
     assert_eq!((hello.tick_hz, hello.state, hello.scene_crc32), (40_000, State::Disarmed, 0));
     let scene = constant(0.01);
-    desk.load(&scene).unwrap();
-    assert_eq!(desk.greet().scene_crc32, crc32(&scene));
+    board.load(&scene).unwrap();
+    assert_eq!(board.hello().scene_crc32, crc32(&scene));
 }
 
 #[test]
 fn a_scene_is_used_whole_or_not_at_all() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    desk.greet();
+    let mut board = TestBoard::new(&mut memory);
+    board.hello();
     let first = constant(0.01);
-    desk.load(&first).unwrap();
+    board.load(&first).unwrap();
 
     let mut second = constant(0.02);
     second.resize(second.len() * 4, 0);
-    desk.command(Command::UploadScene { len: second.len() as u32, crc32: crc32(&second) }).unwrap();
-    desk.chunk(0, &second[..CHUNK_LEN]);
+    board.command(Command::UploadScene { len: second.len() as u32, crc32: crc32(&second) }).unwrap();
+    board.chunk(0, &second[..CHUNK_LEN]);
     assert_eq!(
-        desk.command(Command::Commit { crc32: crc32(&second) }),
+        board.command(Command::Commit { crc32: crc32(&second) }),
         Err(Refusal::UploadIncomplete { next_chunk: 1 })
     );
-    assert_eq!(desk.command(Command::UploadEnd), Err(Refusal::UploadIncomplete { next_chunk: 1 }));
-    assert_eq!(desk.greet().scene_crc32, crc32(&first));
+    assert_eq!(board.command(Command::UploadEnd), Err(Refusal::UploadIncomplete { next_chunk: 1 }));
+    assert_eq!(board.hello().scene_crc32, crc32(&first));
 }
 
 #[cfg(feature = "bitmap")]
 #[test]
-fn chunks_may_repeat_and_a_gap_is_told_once() {
+fn chunks_may_repeat_and_a_gap_is_reported_once() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    desk.greet();
+    let mut board = TestBoard::new(&mut memory);
+    board.hello();
     let samples: Vec<u8> = (0..1000_u32).map(|i| (i * 7) as u8).collect();
-    desk.command(Command::UploadBitmap { width: 100, height: 10, crc32: bitmap_crc32(100, 10, &samples) }).unwrap();
+    board.command(Command::UploadBitmap { width: 100, height: 10, crc32: bitmap_crc32(100, 10, &samples) }).unwrap();
     let chunks: Vec<&[u8]> = samples.chunks(CHUNK_LEN).collect();
-    desk.chunk(0, chunks[0]);
-    desk.chunk(0, chunks[0]);
-    desk.chunk(2, chunks[2]);
-    desk.chunk(3, chunks[3]);
-    let gaps: Vec<FromBoard> = desk.messages.drain(..).collect();
+    board.chunk(0, chunks[0]);
+    board.chunk(0, chunks[0]);
+    board.chunk(2, chunks[2]);
+    board.chunk(3, chunks[3]);
+    let gaps: Vec<FromBoard> = board.messages.drain(..).collect();
     assert!(matches!(gaps[..], [FromBoard::Progress { next_chunk: 1, .. }]), "{gaps:?}");
     for (number, chunk) in chunks.iter().enumerate().skip(1) {
-        desk.chunk(number as u16, chunk);
+        board.chunk(number as u16, chunk);
     }
-    assert_eq!(desk.command(Command::UploadEnd), Ok(Accepted::Done));
-    assert_eq!(desk.upload_bitmap(100, 10, &samples), Ok(Accepted::AlreadyHeld));
+    assert_eq!(board.command(Command::UploadEnd), Ok(Accepted::Done));
+    assert_eq!(board.upload_bitmap(100, 10, &samples), Ok(Accepted::AlreadyHeld));
 }
 
 #[cfg(feature = "bitmap")]
 #[test]
 fn a_bitmap_with_a_wrong_byte_is_refused_and_forgotten() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    desk.greet();
+    let mut board = TestBoard::new(&mut memory);
+    board.hello();
     let samples = vec![3; 400];
     let expected = bitmap_crc32(20, 20, &samples);
-    desk.command(Command::UploadBitmap { width: 20, height: 20, crc32: expected }).unwrap();
+    board.command(Command::UploadBitmap { width: 20, height: 20, crc32: expected }).unwrap();
     let mut wrong = samples.clone();
     wrong[200] ^= 1;
-    desk.chunks(&wrong);
+    board.chunks(&wrong);
     let found = bitmap_crc32(20, 20, &wrong);
-    assert_eq!(desk.command(Command::UploadEnd), Err(Refusal::CrcMismatch { expected, found }));
-    assert_eq!(desk.upload_bitmap(20, 20, &samples), Ok(Accepted::Done), "not already held");
+    assert_eq!(board.command(Command::UploadEnd), Err(Refusal::CrcMismatch { expected, found }));
+    assert_eq!(board.upload_bitmap(20, 20, &samples), Ok(Accepted::Done), "not already held");
 }
 
 #[cfg(feature = "bitmap")]
 #[test]
 fn the_pool_keeps_what_plays_and_gives_way_when_nothing_does() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    desk.greet();
+    let mut board = TestBoard::new(&mut memory);
+    board.hello();
     let first = vec![1; 250 * 250];
     let second = vec![2; 250 * 250];
-    desk.upload_bitmap(250, 250, &first).unwrap();
-    desk.play(&scene(&HEADER, &[record(bitmap(bitmap_crc32(250, 250, &first)))]));
-    let full = desk.upload_bitmap(250, 250, &second);
+    board.upload_bitmap(250, 250, &first).unwrap();
+    board.play(&scene(&HEADER, &[record(bitmap(bitmap_crc32(250, 250, &first)))]));
+    let full = board.upload_bitmap(250, 250, &second);
     assert_eq!(full, Err(Refusal::BitmapPoolFull { len: 62_500, free: 65_536 - 62_500 }));
-    desk.command(Command::Stop).unwrap();
-    assert_eq!(desk.upload_bitmap(250, 250, &second), Ok(Accepted::Done));
-    assert_eq!(desk.command(Command::Play), Err(Refusal::NoScene), "its bitmap is overwritten");
+    board.command(Command::Stop).unwrap();
+    assert_eq!(board.upload_bitmap(250, 250, &second), Ok(Accepted::Done));
+    assert_eq!(board.command(Command::Play), Err(Refusal::NoScene), "its bitmap is overwritten");
     assert_eq!(
-        desk.load(&scene(&HEADER, &[record(bitmap(bitmap_crc32(250, 250, &first)))])),
+        board.load(&scene(&HEADER, &[record(bitmap(bitmap_crc32(250, 250, &first)))])),
         Err(Refusal::BitmapMissing { crc32: bitmap_crc32(250, 250, &first) })
     );
-    desk.load(&scene(&HEADER, &[record(bitmap(bitmap_crc32(250, 250, &second)))])).unwrap();
+    board.load(&scene(&HEADER, &[record(bitmap(bitmap_crc32(250, 250, &second)))])).unwrap();
 }
 
 #[test]
 fn numbers_that_the_board_cannot_play_are_refused_by_name() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    desk.greet();
-    let field = |desk: &mut Desk, header: Header, layer| match desk.load(&scene(&header, &[record(layer)])) {
+    let mut board = TestBoard::new(&mut memory);
+    board.hello();
+    let field = |board: &mut TestBoard, header: Header, layer| match board.load(&scene(&header, &[record(layer)])) {
         Err(Refusal::Config(refusal)) => Some(refusal.field),
         other => panic!("{other:?}"),
     };
@@ -133,10 +133,10 @@ fn numbers_that_the_board_cannot_play_are_refused_by_name() {
         (Header { host_timeout_s: 5.0, ..HEADER }, ConfigField::HostTimeout),
         (Header { carrier_hz: 5_000.0, ..HEADER }, ConfigField::CurrentRms),
     ] {
-        assert_eq!(field(&mut desk, header, fine), Some(expected));
+        assert_eq!(field(&mut board, header, fine), Some(expected));
     }
     assert_eq!(
-        field(&mut desk, HEADER, Layer::Constant(Constant { electric_friction_n: f32::NAN })),
+        field(&mut board, HEADER, Layer::Constant(Constant { electric_friction_n: f32::NAN })),
         Some(ConfigField::Friction)
     );
 }
@@ -144,17 +144,17 @@ fn numbers_that_the_board_cannot_play_are_refused_by_name() {
 #[test]
 fn what_is_no_scene_is_refused() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    desk.greet();
+    let mut board = TestBoard::new(&mut memory);
+    board.hello();
     let mut unknown = constant(0.01);
     unknown[56] = 99;
-    assert_eq!(desk.load(&unknown), Err(Refusal::Scene(SceneError::UnknownKind { record: 0, kind: 99 })));
+    assert_eq!(board.load(&unknown), Err(Refusal::Scene(SceneError::UnknownKind { record: 0, kind: 99 })));
     assert!(matches!(
-        desk.command(Command::UploadScene { len: 1 << 20, crc32: 0 }),
+        board.command(Command::UploadScene { len: 1 << 20, crc32: 0 }),
         Err(Refusal::SceneTooLarge { len: 1_048_576, max: 4664 })
     ));
     assert_eq!(
-        desk.command(Command::Commit { crc32: 1 }),
+        board.command(Command::Commit { crc32: 1 }),
         Err(Refusal::CrcMismatch { expected: 1, found: crc32(&unknown) })
     );
 }
@@ -165,8 +165,8 @@ fn a_scene_of_more_records_than_the_board_says_is_refused() {
     let mut memory = Memory::new();
     let mut board = Board::SIMULATOR;
     board.limits.records_max = 2;
-    let mut desk = Desk::of(board, &mut memory);
-    desk.greet();
+    let mut board = TestBoard::of(board, &mut memory);
+    board.hello();
     let of = |count: usize| {
         let beside = |number| {
             let region = Region::Rectangle { x_m: 0.01 * number as f32, y_m: 0.0, width_m: 0.01, height_m: 0.1 };
@@ -174,97 +174,97 @@ fn a_scene_of_more_records_than_the_board_says_is_refused() {
         };
         scene(&HEADER, &(0..count).map(beside).collect::<Vec<_>>())
     };
-    desk.load(&of(2)).unwrap();
-    assert_eq!(desk.load(&of(3)), Err(Refusal::Scene(SceneError::TooManyRecords { found: 3 })));
+    board.load(&of(2)).unwrap();
+    assert_eq!(board.load(&of(3)), Err(Refusal::Scene(SceneError::TooManyRecords { found: 3 })));
 }
 
 /// A commit checks the records in several steps.
 #[test]
 fn a_scene_is_refused_for_any_malformed_record() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    desk.greet();
+    let mut board = TestBoard::new(&mut memory);
+    board.hello();
     let records = [record(Layer::Constant(Constant { electric_friction_n: 0.01 })); RECORDS_MAX];
     for record in [0, 15, 16, 40, RECORDS_MAX - 1] {
         let mut bytes = scene(&HEADER, &records);
         bytes[HEADER_LEN + (record + 1) * RECORD_LEN - 1] = 1;
         let offset = RECORD_LEN as u8 - 1;
         let refusal = Refusal::Scene(SceneError::NotZero { record: record as u8, offset });
-        assert_eq!(desk.load(&bytes), Err(refusal));
+        assert_eq!(board.load(&bytes), Err(refusal));
     }
 }
 
-fn answered(desk: &mut Desk) -> Vec<u16> {
-    desk.collect();
+fn answered(board: &mut TestBoard) -> Vec<u16> {
+    board.collect();
     let sequence = |message| match message {
         FromBoard::Answer(answer) => Some(answer.sequence),
         _ => None,
     };
-    desk.messages.drain(..).filter_map(sequence).collect()
+    board.messages.drain(..).filter_map(sequence).collect()
 }
 
 /// What a host must be able to say at any time does not wait for the work of a commit that came before it.
 #[test]
 fn a_commit_holds_up_no_sign_of_life_and_nothing_that_puts_the_output_to_zero() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    desk.play(&constant(0.01));
+    let mut board = TestBoard::new(&mut memory);
+    board.play(&constant(0.01));
     let next = constant(0.015);
-    desk.upload_scene(&next).unwrap();
-    desk.messages.clear();
+    board.upload_scene(&next).unwrap();
+    board.messages.clear();
     let bytes = [
         request(901, Command::Commit { crc32: crc32(&next) }),
         request(902, Command::Ping),
         request(903, Command::Stop),
         request(904, Command::Disarm),
     ];
-    desk.session.receive(&bytes.concat(), &desk.status());
-    assert_eq!(answered(&mut desk), [902, 903, 904]);
+    board.session.receive(&bytes.concat(), &board.status());
+    assert_eq!(answered(&mut board), [902, 903, 904]);
     let mut orders = 0;
-    while let Some(order) = desk.session.next_order() {
+    while let Some(order) = board.session.next_order() {
         assert!(matches!(order, Order::Stop | Order::Disarm));
-        desk.ticker.apply(order);
+        board.ticker.apply(order);
         orders += 1;
     }
     assert_eq!(orders, 2, "each is a sign of life");
     let committed = (0..COMMIT_POLLS_MAX).any(|_| {
-        desk.session.poll(&desk.status());
-        answered(&mut desk) == [901]
+        board.session.poll(&board.status());
+        answered(&mut board) == [901]
     });
     assert!(committed);
-    desk.obey();
-    assert_eq!(desk.greet().scene_crc32, crc32(&next));
+    board.deliver_orders();
+    assert_eq!(board.hello().scene_crc32, crc32(&next));
 }
 
 /// A board with a scene that was uploaded and is not committed.
-fn with_uploaded_scene<'a>(memory: &'a mut Memory, scene: &[u8]) -> Desk<'a> {
-    let mut desk = Desk::new(memory);
-    desk.greet();
-    desk.upload_scene(scene).unwrap();
-    desk.messages.clear();
-    desk
+fn with_uploaded_scene<'a>(memory: &'a mut Memory, scene: &[u8]) -> TestBoard<'a> {
+    let mut board = TestBoard::new(memory);
+    board.hello();
+    board.upload_scene(scene).unwrap();
+    board.messages.clear();
+    board
 }
 
 #[test]
 fn requests_that_depend_on_a_commit_are_carried_out_after_it_in_order() {
     let mut memory = Memory::new();
     let scene = constant(0.01);
-    let mut desk = with_uploaded_scene(&mut memory, &scene);
+    let mut board = with_uploaded_scene(&mut memory, &scene);
     let bytes = [
         request(901, Command::Commit { crc32: crc32(&scene) }),
         request(902, Command::Arm),
         request(903, Command::Play),
         request(904, Command::FaultText { offset: 0 }),
     ];
-    desk.session.receive(&bytes.concat(), &desk.status());
-    assert_eq!(answered(&mut desk), [904], "it depends on no commit");
+    board.session.receive(&bytes.concat(), &board.status());
+    assert_eq!(answered(&mut board), [904], "it depends on no commit");
     let mut sequences = Vec::new();
     for _ in 0..COMMIT_POLLS_MAX {
-        desk.tick();
-        sequences.extend(answered(&mut desk));
+        board.tick();
+        sequences.extend(answered(&mut board));
     }
     assert_eq!(sequences, [901, 902, 903]);
-    assert_eq!(desk.status().telemetry.state, State::Active);
+    assert_eq!(board.status().telemetry.state, State::Active);
 }
 
 #[test]
@@ -272,23 +272,23 @@ fn a_stop_or_disarm_refuses_the_requests_that_wait_for_a_commit() {
     for last in [Command::Stop, Command::Disarm] {
         let mut memory = Memory::new();
         let scene = constant(0.01);
-        let mut desk = with_uploaded_scene(&mut memory, &scene);
-        desk.command(Command::Arm).unwrap();
+        let mut board = with_uploaded_scene(&mut memory, &scene);
+        board.command(Command::Arm).unwrap();
         let bytes = [
             request(901, Command::Commit { crc32: crc32(&scene) }),
             request(902, Command::Play),
             request(903, Command::Commit { crc32: crc32(&scene) }),
             request(904, last),
         ];
-        desk.session.receive(&bytes.concat(), &desk.status());
-        desk.collect();
-        let refused = [902, 903].map(|sequence| desk.take_answer(sequence).unwrap().outcome);
+        board.session.receive(&bytes.concat(), &board.status());
+        board.collect();
+        let refused = [902, 903].map(|sequence| board.take_answer(sequence).unwrap().outcome);
         assert_eq!(refused, [Err(Refusal::Busy); 2]);
         let state_after = if last == Command::Stop { State::Armed } else { State::Disarmed };
-        assert_eq!(desk.take_answer(904).unwrap().state, state_after);
-        desk.ticks(COMMIT_POLLS_MAX);
-        assert_eq!(desk.take_answer(901).unwrap().outcome, Ok(Accepted::Done), "the commit goes on");
-        assert_eq!(desk.status().telemetry.state, state_after);
+        assert_eq!(board.take_answer(904).unwrap().state, state_after);
+        board.ticks(COMMIT_POLLS_MAX);
+        assert_eq!(board.take_answer(901).unwrap().outcome, Ok(Accepted::Done), "the commit goes on");
+        assert_eq!(board.status().telemetry.state, state_after);
     }
 }
 
@@ -296,16 +296,16 @@ fn a_stop_or_disarm_refuses_the_requests_that_wait_for_a_commit() {
 fn eight_requests_wait_for_a_commit_and_further_ones_are_refused() {
     let mut memory = Memory::new();
     let scene = constant(0.01);
-    let mut desk = with_uploaded_scene(&mut memory, &scene);
-    desk.session.receive(&request(901, Command::Commit { crc32: crc32(&scene) }), &desk.status());
+    let mut board = with_uploaded_scene(&mut memory, &scene);
+    board.session.receive(&request(901, Command::Commit { crc32: crc32(&scene) }), &board.status());
     for sequence in 902..912 {
-        desk.session.receive(&request(sequence, Command::EndStream), &desk.status());
+        board.session.receive(&request(sequence, Command::EndStream), &board.status());
     }
-    assert_eq!(answered(&mut desk), [910, 911]);
+    assert_eq!(answered(&mut board), [910, 911]);
     let mut sequences = Vec::new();
     for _ in 0..COMMIT_POLLS_MAX {
-        desk.tick();
-        sequences.extend(answered(&mut desk));
+        board.tick();
+        sequences.extend(answered(&mut board));
     }
     assert_eq!(sequences, (901..910).collect::<Vec<_>>());
 }
@@ -314,74 +314,74 @@ fn eight_requests_wait_for_a_commit_and_further_ones_are_refused() {
 fn a_hello_drops_a_commit_and_what_waits_for_it() {
     let mut memory = Memory::new();
     let scene = constant(0.01);
-    let mut desk = with_uploaded_scene(&mut memory, &scene);
+    let mut board = with_uploaded_scene(&mut memory, &scene);
     let commit = request(901, Command::Commit { crc32: crc32(&scene) });
     let bytes = [commit.clone(), request(902, Command::Arm)].concat();
-    desk.session.receive(&bytes, &desk.status());
-    desk.tick();
-    let hello = desk.greet();
+    board.session.receive(&bytes, &board.status());
+    board.tick();
+    let hello = board.hello();
     assert_eq!((hello.scene_crc32, hello.state), (0, State::Disarmed));
-    desk.ticks(COMMIT_POLLS_MAX);
-    assert!(answered(&mut desk).is_empty(), "the client that sent them is gone");
-    assert_eq!(desk.greet().scene_crc32, 0);
-    desk.command(Command::Commit { crc32: crc32(&scene) }).unwrap();
-    assert_eq!(desk.greet().scene_crc32, crc32(&scene));
+    board.ticks(COMMIT_POLLS_MAX);
+    assert!(answered(&mut board).is_empty(), "the client that sent them is gone");
+    assert_eq!(board.hello().scene_crc32, 0);
+    board.command(Command::Commit { crc32: crc32(&scene) }).unwrap();
+    assert_eq!(board.hello().scene_crc32, crc32(&scene));
 }
 
 #[cfg(feature = "telemetry")]
 #[test]
 fn telemetry_comes_at_its_period_and_ends() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    desk.greet();
+    let mut board = TestBoard::new(&mut memory);
+    board.hello();
     assert!(matches!(
-        desk.command(Command::Subscribe { period_ticks: 39 }),
+        board.command(Command::Subscribe { period_ticks: 39 }),
         Err(Refusal::TelemetryTooFast { period_min_ticks: 40 })
     ));
-    desk.command(Command::Subscribe { period_ticks: 40 }).unwrap();
-    desk.ticks(400);
-    let count = desk.messages.iter().filter(|m| matches!(m, FromBoard::Telemetry(_))).count();
+    board.command(Command::Subscribe { period_ticks: 40 }).unwrap();
+    board.ticks(400);
+    let count = board.messages.iter().filter(|m| matches!(m, FromBoard::Telemetry(_))).count();
     assert_eq!(count, 10);
-    desk.command(Command::Subscribe { period_ticks: 0 }).unwrap();
-    desk.messages.clear();
-    desk.ticks(400);
-    assert!(desk.messages.is_empty());
+    board.command(Command::Subscribe { period_ticks: 0 }).unwrap();
+    board.messages.clear();
+    board.ticks(400);
+    assert!(board.messages.is_empty());
 }
 
 #[test]
 fn answers_give_credit_for_every_byte_since_the_hello() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    desk.send(&[1, 2, 3, 0]);
-    desk.greet();
-    let first = desk.answer(Command::Ping).received_bytes;
-    desk.send(&[9, 9, 9, 0]);
-    let second = desk.answer(Command::Ping).received_bytes;
+    let mut board = TestBoard::new(&mut memory);
+    board.send(&[1, 2, 3, 0]);
+    board.hello();
+    let first = board.answer(Command::Ping).received_bytes;
+    board.send(&[9, 9, 9, 0]);
+    let second = board.answer(Command::Ping).received_bytes;
     assert_eq!(second, 2 * first + 4);
 }
 
 #[test]
 fn a_scene_is_replaced_while_it_plays() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    desk.play(&constant(0.005));
-    desk.slide(2000);
-    let before = desk.status().telemetry;
-    desk.load(&constant(0.01)).unwrap();
-    desk.slide(400);
-    let after = desk.status().telemetry;
+    let mut board = TestBoard::new(&mut memory);
+    board.play(&constant(0.005));
+    board.slide(2000);
+    let before = board.status().telemetry;
+    board.load(&constant(0.01)).unwrap();
+    board.slide(400);
+    let after = board.status().telemetry;
     assert_eq!((before.state, after.state), (State::Active, State::Active));
     assert!((before.asked_electric_friction_n - 0.005).abs() < 1e-6);
     assert!((after.asked_electric_friction_n - 0.01).abs() < 1e-6);
-    desk.load(&constant(0.015)).unwrap();
+    board.load(&constant(0.015)).unwrap();
 }
 
 #[test]
 fn what_puts_the_output_to_zero_always_has_room() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    desk.greet();
-    desk.load(&constant(0.01)).unwrap();
+    let mut board = TestBoard::new(&mut memory);
+    board.hello();
+    board.load(&constant(0.01)).unwrap();
     // All in one piece, before the ticker has looked.
     let mut bytes = Vec::new();
     let commands = [Command::Arm, Command::Play, Command::Stop, Command::Play, Command::Stop, Command::Play];
@@ -390,26 +390,26 @@ fn what_puts_the_output_to_zero_always_has_room() {
     {
         bytes.extend(request(900 + sequence as u16, command));
     }
-    desk.send(&bytes);
-    let refused = desk.messages.iter().filter(
+    board.send(&bytes);
+    let refused = board.messages.iter().filter(
         |message| matches!(message, FromBoard::Answer(answer) if answer.sequence >= 940 && answer.outcome.is_err()),
     );
-    assert_eq!(refused.count(), 0, "{:?}", desk.messages);
-    desk.touch = Some(Touch::Down { x_m: 0.05, y_m: 0.05, age_ticks: 0 });
-    assert_eq!(desk.tick(), frixel_control::Drive::default());
-    assert_eq!(desk.status().telemetry.state, State::Disarmed);
+    assert_eq!(refused.count(), 0, "{:?}", board.messages);
+    board.touch = Some(Touch::Down { x_m: 0.05, y_m: 0.05, age_ticks: 0 });
+    assert_eq!(board.tick(), frixel_control::Drive::default());
+    assert_eq!(board.status().telemetry.state, State::Disarmed);
 }
 
 #[cfg(feature = "bitmap")]
 #[test]
 fn the_same_bytes_in_another_shape_are_another_bitmap() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    desk.greet();
+    let mut board = TestBoard::new(&mut memory);
+    board.hello();
     let samples = vec![7; 800];
-    assert_eq!(desk.upload_bitmap(40, 20, &samples), Ok(Accepted::Done));
-    assert_eq!(desk.upload_bitmap(20, 40, &samples), Ok(Accepted::Done));
-    assert_eq!(desk.upload_bitmap(40, 20, &samples), Ok(Accepted::AlreadyHeld));
+    assert_eq!(board.upload_bitmap(40, 20, &samples), Ok(Accepted::Done));
+    assert_eq!(board.upload_bitmap(20, 40, &samples), Ok(Accepted::Done));
+    assert_eq!(board.upload_bitmap(40, 20, &samples), Ok(Accepted::AlreadyHeld));
 }
 
 /// Two pictures that are never under the finger at once, which would take too long.
@@ -426,18 +426,18 @@ fn side_by_side([left, right]: [u32; 2]) -> [Record; 2] {
 #[test]
 fn free_space_in_pieces_is_moved_together_when_nothing_plays() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    desk.greet();
+    let mut board = TestBoard::new(&mut memory);
+    board.hello();
     let (first, second, third) = (vec![1; 30_000], vec![2; 30_000], vec![3; 33_000]);
-    desk.upload_bitmap(300, 100, &first).unwrap();
-    desk.upload_bitmap(300, 100, &second).unwrap();
+    board.upload_bitmap(300, 100, &first).unwrap();
+    board.upload_bitmap(300, 100, &second).unwrap();
     let both = side_by_side([bitmap_crc32(300, 100, &first), bitmap_crc32(300, 100, &second)]);
-    desk.load(&scene(&HEADER, &both)).unwrap();
-    assert_eq!(desk.upload_bitmap(300, 100, &second), Ok(Accepted::AlreadyHeld));
-    assert_eq!(desk.upload_bitmap(330, 100, &third), Ok(Accepted::Done));
-    desk.play(&scene(&HEADER, &[record(bitmap(bitmap_crc32(300, 100, &second)))]));
-    desk.slide(800);
-    let asked_n = desk.status().telemetry.asked_electric_friction_n;
+    board.load(&scene(&HEADER, &both)).unwrap();
+    assert_eq!(board.upload_bitmap(300, 100, &second), Ok(Accepted::AlreadyHeld));
+    assert_eq!(board.upload_bitmap(330, 100, &third), Ok(Accepted::Done));
+    board.play(&scene(&HEADER, &[record(bitmap(bitmap_crc32(300, 100, &second)))]));
+    board.slide(800);
+    let asked_n = board.status().telemetry.asked_electric_friction_n;
     assert!((asked_n - 0.02 * 2.0 / 255.0).abs() < 1e-9, "the bitmap that stayed was moved whole: {asked_n}");
 }
 
@@ -445,17 +445,17 @@ fn free_space_in_pieces_is_moved_together_when_nothing_plays() {
 #[test]
 fn announced_bitmaps_stay_however_often_they_are_named() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    desk.greet();
+    let mut board = TestBoard::new(&mut memory);
+    board.hello();
     let (first, second, third) = (vec![1; 30_000], vec![2; 30_000], vec![3; 30_000]);
-    desk.upload_bitmap(300, 100, &first).unwrap();
-    desk.upload_bitmap(300, 100, &second).unwrap();
+    board.upload_bitmap(300, 100, &first).unwrap();
+    board.upload_bitmap(300, 100, &second).unwrap();
     for _ in 0..70 {
-        assert_eq!(desk.upload_bitmap(300, 100, &second), Ok(Accepted::AlreadyHeld));
+        assert_eq!(board.upload_bitmap(300, 100, &second), Ok(Accepted::AlreadyHeld));
     }
-    assert!(matches!(desk.upload_bitmap(300, 100, &third), Err(Refusal::BitmapPoolFull { .. })));
+    assert!(matches!(board.upload_bitmap(300, 100, &third), Err(Refusal::BitmapPoolFull { .. })));
     let both = side_by_side([bitmap_crc32(300, 100, &first), bitmap_crc32(300, 100, &second)]);
-    desk.load(&scene(&HEADER, &both)).unwrap();
+    board.load(&scene(&HEADER, &both)).unwrap();
 }
 
 /// A scene that does not fit leaves the pool to the next.
@@ -463,16 +463,16 @@ fn announced_bitmaps_stay_however_often_they_are_named() {
 #[test]
 fn bitmaps_of_a_scene_that_was_refused_give_way() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    desk.greet();
+    let mut board = TestBoard::new(&mut memory);
+    board.hello();
     let playing = vec![1; 20_000];
-    desk.upload_bitmap(200, 100, &playing).unwrap();
-    desk.play(&scene(&HEADER, &[record(bitmap(bitmap_crc32(200, 100, &playing)))]));
+    board.upload_bitmap(200, 100, &playing).unwrap();
+    board.play(&scene(&HEADER, &[record(bitmap(bitmap_crc32(200, 100, &playing)))]));
     for sample in 2..4 {
-        desk.upload_bitmap(200, 100, &vec![sample; 20_000]).unwrap();
+        board.upload_bitmap(200, 100, &vec![sample; 20_000]).unwrap();
     }
-    assert!(matches!(desk.upload_bitmap(200, 100, &vec![4; 20_000]), Err(Refusal::BitmapPoolFull { .. })));
-    assert_eq!(desk.upload_bitmap(200, 100, &vec![5; 20_000]), Ok(Accepted::Done));
+    assert!(matches!(board.upload_bitmap(200, 100, &vec![4; 20_000]), Err(Refusal::BitmapPoolFull { .. })));
+    assert_eq!(board.upload_bitmap(200, 100, &vec![5; 20_000]), Ok(Accepted::Done));
 }
 
 proptest! {
@@ -484,13 +484,13 @@ proptest! {
         bytes in proptest::collection::vec(any::<u8>(), 0..2000),
     ) {
         let mut memory = Memory::new();
-        let mut desk = Desk::new(&mut memory);
-        desk.send(&bytes);
-        desk.send(&[0]);
-        desk.touch = Some(Touch::Down { x_m: 0.05, y_m: 0.05, age_ticks: 0 });
-        let drive = desk.ticks(10);
+        let mut board = TestBoard::new(&mut memory);
+        board.send(&bytes);
+        board.send(&[0]);
+        board.touch = Some(Touch::Down { x_m: 0.05, y_m: 0.05, age_ticks: 0 });
+        let drive = board.ticks(10);
         prop_assert_eq!(drive, frixel_control::Drive::default());
-        prop_assert_eq!(desk.greet().state, State::Disarmed);
+        prop_assert_eq!(board.hello().state, State::Disarmed);
     }
 
     /// A scene of arbitrary numbers is refused or loaded, and whatever it asks for stays within the limits.
@@ -500,8 +500,8 @@ proptest! {
         layer in proptest::collection::vec(any::<f32>(), 6),
     ) {
         let mut memory = Memory::new();
-        let mut desk = Desk::new(&mut memory);
-        desk.greet();
+        let mut board = TestBoard::new(&mut memory);
+        board.hello();
         let header = Header {
             finger_radius_m: floats[0].abs() * 1e-3,
             stiffness_pa_per_m: floats[1].abs() * 1e6,
@@ -522,11 +522,11 @@ proptest! {
             trough_n: layer[3],
             crest_n: layer[4],
         });
-        if desk.load(&scene(&header, &[record(layer)])).is_ok() {
-            desk.command(Command::Arm).unwrap();
-            desk.command(Command::Play).unwrap();
+        if board.load(&scene(&header, &[record(layer)])).is_ok() {
+            board.command(Command::Arm).unwrap();
+            board.command(Command::Play).unwrap();
             let code_max = (header.voltage_max_v_peak * 32_767.0 / 250.0) as i32;
-            for drive in desk.slide(500) {
+            for drive in board.slide(500) {
                 prop_assert!(i32::from(drive.dac_code.bits()).abs() <= code_max, "{drive:?}");
             }
         }
@@ -534,53 +534,53 @@ proptest! {
 }
 
 /// What a command makes the session order, signs of life left out.
-fn orders_for<'a>(desk: &mut Desk<'a>, command: Command) -> Vec<Order<'a>> {
-    desk.session.receive(&request(7, command), &desk.ticker.status());
-    std::iter::from_fn(|| desk.session.next_order()).filter(|order| !matches!(order, Order::HostHeard)).collect()
+fn orders_for<'a>(board: &mut TestBoard<'a>, command: Command) -> Vec<Order<'a>> {
+    board.session.receive(&request(7, command), &board.ticker.status());
+    std::iter::from_fn(|| board.session.next_order()).filter(|order| !matches!(order, Order::HostHeard)).collect()
 }
 
 #[test]
 fn a_touch_of_the_host_goes_to_the_ticker_once() {
     let mut memory = Memory::new();
     let board = Board { touch_from_host: true, ..Board::SIMULATOR };
-    let mut desk = Desk::of(board, &mut memory);
-    desk.greet();
-    desk.tick();
-    assert!(orders_for(&mut desk, Command::Ping).is_empty());
-    let touched = orders_for(&mut desk, Command::Touch { x_m: 0.02, y_m: 0.03, age_ticks: 1 });
+    let mut board = TestBoard::of(board, &mut memory);
+    board.hello();
+    board.tick();
+    assert!(orders_for(&mut board, Command::Ping).is_empty());
+    let touched = orders_for(&mut board, Command::Touch { x_m: 0.02, y_m: 0.03, age_ticks: 1 });
     let [Order::Track(track)] = &touched[..] else { panic!("{} orders", touched.len()) };
     assert_eq!(track.place_m.map(f32::to_bits), [0.02_f32, 0.03].map(f32::to_bits));
-    assert!(orders_for(&mut desk, Command::Ping).is_empty());
-    assert!(matches!(orders_for(&mut desk, Command::Lift)[..], [Order::Lift]));
-    assert!(orders_for(&mut desk, Command::Ping).is_empty());
+    assert!(orders_for(&mut board, Command::Ping).is_empty());
+    assert!(matches!(orders_for(&mut board, Command::Lift)[..], [Order::Lift]));
+    assert!(orders_for(&mut board, Command::Ping).is_empty());
     for x_m in [f32::NAN, f32::INFINITY, -2.1] {
-        assert!(orders_for(&mut desk, Command::Touch { x_m, y_m: 0.03, age_ticks: 0 }).is_empty());
-        let refused = desk.command(Command::Touch { x_m, y_m: 0.03, age_ticks: 0 });
+        assert!(orders_for(&mut board, Command::Touch { x_m, y_m: 0.03, age_ticks: 0 }).is_empty());
+        let refused = board.command(Command::Touch { x_m, y_m: 0.03, age_ticks: 0 });
         assert!(
             matches!(refused, Err(Refusal::Config(refusal)) if refusal.field == ConfigField::TouchPlace),
             "{refused:?}"
         );
-        desk.tick();
+        board.tick();
     }
 }
 
 #[test]
 fn a_board_with_a_touch_source_takes_none_from_the_host() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    let hello = desk.greet();
+    let mut board = TestBoard::new(&mut memory);
+    let hello = board.hello();
     assert_eq!(hello.features & feature::HOST_TOUCH, 0);
     for command in [Command::Touch { x_m: 0.02, y_m: 0.03, age_ticks: 0 }, Command::Lift] {
-        assert_eq!(desk.command(command), Err(Refusal::TouchSource));
+        assert_eq!(board.command(command), Err(Refusal::TouchSource));
     }
-    assert!(desk.session.next_order().is_none());
+    assert!(board.session.next_order().is_none());
 }
 
 /// The text as a host puts it together.
-fn fault_text(desk: &mut Desk) -> String {
+fn fault_text(board: &mut TestBoard) -> String {
     let mut text = Vec::new();
     loop {
-        let Ok(Accepted::FaultText { len, bytes }) = desk.command(Command::FaultText { offset: text.len() as u8 })
+        let Ok(Accepted::FaultText { len, bytes }) = board.command(Command::FaultText { offset: text.len() as u8 })
         else {
             panic!("no text")
         };
@@ -592,7 +592,7 @@ fn fault_text(desk: &mut Desk) -> String {
 }
 
 #[test]
-fn the_text_of_a_fault_is_told_whole() {
+fn the_text_of_a_fault_is_reported_whole() {
     for len in [0, 1, 31, 32, 33, 64, 191, 192, 250] {
         let mut memory = Memory::new();
         let reset_text: &'static str = "stack overflow at 0x1fff_fff8; ".repeat(9).leak().get(..len).unwrap();
@@ -601,11 +601,11 @@ fn the_text_of_a_fault_is_told_whole() {
             reset_text: reset_text.as_bytes(),
             ..Board::SIMULATOR
         };
-        let mut desk = Desk::of(board, &mut memory);
-        let hello = desk.greet();
+        let mut board = TestBoard::of(board, &mut memory);
+        let hello = board.hello();
         assert_eq!((hello.last_fault, hello.fault_detail), (Some(Fault::StackOverflow), 7));
-        assert_eq!(fault_text(&mut desk), reset_text[..len.min(192)]);
-        let beyond = desk.command(Command::FaultText { offset: 255 });
+        assert_eq!(fault_text(&mut board), reset_text[..len.min(192)]);
+        let beyond = board.command(Command::FaultText { offset: 255 });
         assert!(matches!(beyond, Ok(Accepted::FaultText { len: 0, .. })));
     }
 }

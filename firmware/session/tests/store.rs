@@ -1,4 +1,4 @@
-//! What is kept over power-off: whole, whenever the power goes.
+//! The scene store: a stored scene is restored whole, whenever the power fails.
 #![cfg(all(feature = "store", feature = "bitmap"))]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
@@ -6,14 +6,14 @@ mod support;
 
 use frixel_control::{Board, Drive};
 use frixel_layers::{Bitmap, Layer, Record, Region};
-use frixel_session::store::{Found, SceneKeeper, Slot, WORD_LEN, Writer, Writing};
+use frixel_session::store::{Found, SceneStore, Slot, WORD_LEN, Writer, Writing};
 use frixel_wire::frame::crc32;
 use frixel_wire::hello::BoardLimits;
 use frixel_wire::message::{Accepted, Command};
 use frixel_wire::scene::bitmap_crc32;
 use proptest::prelude::*;
 use support::flash::{PAGE_LEN, SimulatedFlash};
-use support::{Desk, HEADER, Memory, constant, record, scene};
+use support::{HEADER, Memory, TestBoard, constant, record, scene};
 
 const SLOT: Slot = Slot { first_page: 1, pages: 3 };
 const PAGES: usize = 8;
@@ -63,7 +63,7 @@ fn flash_with(contents: &[&[u8]], torn_words_read: bool) -> SimulatedFlash {
     flash.after_power_on()
 }
 
-/// Cuts the power at every byte of writing `new`, and looks at what is there when it comes back.
+/// Cuts the power at every byte of writing `new`, and checks the content after each.
 fn cut_everywhere(before: &SimulatedFlash, kept: Option<&[u8]>, new: &[u8]) {
     let mut whole = before.clone();
     written(&mut whole, new);
@@ -151,14 +151,14 @@ fn what_does_not_fit_is_not_begun() {
 }
 
 const SCENE_SLOT: Slot = Slot { first_page: 0, pages: 24 };
-const SETTLED_TICKS: u32 = 80_000;
+const STORE_AFTER_TICKS: u32 = 80_000;
 
 fn scene_flash() -> SimulatedFlash {
     SimulatedFlash::new(48, false)
 }
 
 /// A scene of two bitmaps, one of them used twice.
-fn textured(desk: &mut Desk) -> Vec<u8> {
+fn textured(board: &mut TestBoard) -> Vec<u8> {
     let layer = |crc32, pitch_m| {
         Layer::Bitmap(Bitmap {
             crc32,
@@ -173,8 +173,8 @@ fn textured(desk: &mut Desk) -> Vec<u8> {
         })
     };
     let pictures = [content(7, 61 * 53), content(8, 9)];
-    desk.upload_bitmap(61, 53, &pictures[0]).unwrap();
-    desk.upload_bitmap(3, 3, &pictures[1]).unwrap();
+    board.upload_bitmap(61, 53, &pictures[0]).unwrap();
+    board.upload_bitmap(3, 3, &pictures[1]).unwrap();
     let first = bitmap_crc32(61, 53, &pictures[0]);
     let second = bitmap_crc32(3, 3, &pictures[1]);
     // Side by side: one on another they would take too long.
@@ -186,62 +186,62 @@ fn textured(desk: &mut Desk) -> Vec<u8> {
     scene(&HEADER, &[left, beside(0.04, layer(second, 1e-2)), beside(0.08, layer(first, 7e-4))])
 }
 
-/// Steps the keeper until it has nothing more to do.
-fn settle(keeper: &mut SceneKeeper, flash: &mut SimulatedFlash, desk: &Desk, mut now_tick: u32) {
+/// Steps the scene store 30,000 times, enough to finish any write.
+fn finish_writing(store: &mut SceneStore, flash: &mut SimulatedFlash, board: &TestBoard, mut now_tick: u32) {
     for _ in 0..30_000 {
-        keeper.step(flash, &desk.session, now_tick);
-        now_tick = now_tick.wrapping_add(SETTLED_TICKS / 3);
+        store.step(flash, &board.session, now_tick);
+        now_tick = now_tick.wrapping_add(STORE_AFTER_TICKS / 3);
     }
 }
 
-fn played(desk: &mut Desk) -> Vec<Drive> {
-    desk.command(Command::Arm).unwrap();
-    desk.command(Command::Play).unwrap();
-    desk.slide(4000)
+fn played(board: &mut TestBoard) -> Vec<Drive> {
+    board.command(Command::Arm).unwrap();
+    board.command(Command::Play).unwrap();
+    board.slide(4000)
 }
 
 #[test]
 fn the_last_scene_plays_after_power_off() {
     let mut flash = scene_flash();
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    let mut keeper = SceneKeeper::new(SCENE_SLOT, 40_000, &flash, &mut desk.session);
-    desk.greet();
-    let scene = textured(&mut desk);
-    desk.load(&scene).unwrap();
-    settle(&mut keeper, &mut flash, &desk, 0);
-    assert_eq!((keeper.settled_crc32(), keeper.failures()), (Some(crc32(&scene)), 0));
-    let before = played(&mut desk);
+    let mut board = TestBoard::new(&mut memory);
+    let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
+    board.hello();
+    let scene = textured(&mut board);
+    board.load(&scene).unwrap();
+    finish_writing(&mut store, &mut flash, &board, 0);
+    assert_eq!((store.stored_crc32(), store.failures()), (Some(crc32(&scene)), 0));
+    let before = played(&mut board);
     assert!(before.iter().any(|drive| drive.dac_code.bits() != 0));
 
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    SceneKeeper::new(SCENE_SLOT, 40_000, &flash, &mut desk.session);
-    let hello = desk.greet();
+    let mut board = TestBoard::new(&mut memory);
+    SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
+    let hello = board.hello();
     assert_eq!(hello.scene_crc32, crc32(&scene));
     assert_eq!(hello.state, frixel_wire::fault::State::Disarmed);
-    assert_eq!(desk.session.scene(), Some(scene.as_slice()));
-    assert!(played(&mut desk) == before);
+    assert_eq!(board.session.scene(), Some(scene.as_slice()));
+    assert!(played(&mut board) == before);
 }
 
 #[test]
-fn a_scene_is_written_once_and_only_when_it_has_settled() {
+fn a_scene_is_written_once_and_only_after_the_board_was_disarmed_for_a_while() {
     let mut flash = scene_flash();
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    let mut keeper = SceneKeeper::new(SCENE_SLOT, 40_000, &flash, &mut desk.session);
-    desk.greet();
-    desk.load(&constant(0.01)).unwrap();
+    let mut board = TestBoard::new(&mut memory);
+    let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
+    board.hello();
+    board.load(&constant(0.01)).unwrap();
     let begun = u32::MAX - 1000; // the tick count may wrap
-    for after in [0, 1, SETTLED_TICKS - 1] {
-        keeper.step(&mut flash, &desk.session, begun.wrapping_add(after));
+    for after in [0, 1, STORE_AFTER_TICKS - 1] {
+        store.step(&mut flash, &board.session, begun.wrapping_add(after));
         assert_eq!(flash.done, 0);
     }
-    settle(&mut keeper, &mut flash, &desk, begun.wrapping_add(SETTLED_TICKS));
+    finish_writing(&mut store, &mut flash, &board, begun.wrapping_add(STORE_AFTER_TICKS));
     let done = flash.done;
     assert!(done > 0);
-    desk.load(&constant(0.01)).unwrap();
-    settle(&mut keeper, &mut flash, &desk, 0);
+    board.load(&constant(0.01)).unwrap();
+    finish_writing(&mut store, &mut flash, &board, 0);
     assert_eq!(flash.done, done, "the same scene is not written again");
 }
 
@@ -249,82 +249,82 @@ fn a_scene_is_written_once_and_only_when_it_has_settled() {
 fn nothing_is_written_unless_the_board_is_disarmed() {
     let mut flash = scene_flash();
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    let mut keeper = SceneKeeper::new(SCENE_SLOT, 40_000, &flash, &mut desk.session);
-    desk.greet();
+    let mut board = TestBoard::new(&mut memory);
+    let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
+    board.hello();
     let kept = constant(0.01);
-    desk.load(&kept).unwrap();
-    settle(&mut keeper, &mut flash, &desk, 0);
+    board.load(&kept).unwrap();
+    finish_writing(&mut store, &mut flash, &board, 0);
 
-    desk.load(&constant(0.02)).unwrap();
-    desk.command(Command::Arm).unwrap();
+    board.load(&constant(0.02)).unwrap();
+    board.command(Command::Arm).unwrap();
     let done = flash.done;
-    settle(&mut keeper, &mut flash, &desk, 0);
-    desk.command(Command::Play).unwrap();
-    settle(&mut keeper, &mut flash, &desk, 0);
+    finish_writing(&mut store, &mut flash, &board, 0);
+    board.command(Command::Play).unwrap();
+    finish_writing(&mut store, &mut flash, &board, 0);
     assert_eq!(flash.done, done);
 
     // Armed in the middle of a write: it ends there, and the copy before is still the one.
-    desk.command(Command::Disarm).unwrap();
-    desk.press_switch();
-    keeper.step(&mut flash, &desk.session, 0);
+    board.command(Command::Disarm).unwrap();
+    board.press_switch();
+    store.step(&mut flash, &board.session, 0);
     while flash.done < done + PAGE_LEN + 40 {
-        keeper.step(&mut flash, &desk.session, SETTLED_TICKS);
+        store.step(&mut flash, &board.session, STORE_AFTER_TICKS);
     }
-    desk.command(Command::Arm).unwrap();
+    board.command(Command::Arm).unwrap();
     let done = flash.done;
     assert!(!flash.is_at_rest());
-    settle(&mut keeper, &mut flash, &desk, 0);
+    finish_writing(&mut store, &mut flash, &board, 0);
     assert_eq!(flash.done, done);
     assert!(flash.is_at_rest(), "somebody has to see the operation to its end");
     let mut memory = Memory::new();
-    let mut after = Desk::new(&mut memory);
-    SceneKeeper::new(SCENE_SLOT, 40_000, &flash.after_power_on(), &mut after.session);
-    assert_eq!(after.greet().scene_crc32, crc32(&kept));
+    let mut after = TestBoard::new(&mut memory);
+    SceneStore::new(SCENE_SLOT, 40_000, &flash.after_power_on(), &mut after.session);
+    assert_eq!(after.hello().scene_crc32, crc32(&kept));
 }
 
 #[test]
 fn a_scene_that_the_board_can_no_longer_play_is_left_alone() {
     let mut flash = scene_flash();
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    let mut keeper = SceneKeeper::new(SCENE_SLOT, 40_000, &flash, &mut desk.session);
-    desk.greet();
-    let scene = textured(&mut desk);
-    desk.load(&scene).unwrap();
-    settle(&mut keeper, &mut flash, &desk, 0);
+    let mut board = TestBoard::new(&mut memory);
+    let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
+    board.hello();
+    let scene = textured(&mut board);
+    board.load(&scene).unwrap();
+    finish_writing(&mut store, &mut flash, &board, 0);
 
     let limits = BoardLimits { voltage_max_v_peak: 50.0, ..Board::SIMULATOR.limits };
     let mut memory = Memory::new();
-    let mut desk = Desk::of(Board { limits, ..Board::SIMULATOR }, &mut memory);
-    let keeper = SceneKeeper::new(SCENE_SLOT, 40_000, &flash, &mut desk.session);
-    assert_eq!(keeper.settled_crc32(), None);
-    assert_eq!((desk.greet().scene_crc32, desk.session.scene()), (0, None));
+    let mut board = TestBoard::of(Board { limits, ..Board::SIMULATOR }, &mut memory);
+    let store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
+    assert_eq!(store.stored_crc32(), None);
+    assert_eq!((board.hello().scene_crc32, board.session.scene()), (0, None));
     // The whole pool is free.
-    desk.upload_bitmap(256, 256, &vec![5; 64 * 1024]).unwrap();
+    board.upload_bitmap(256, 256, &vec![5; 64 * 1024]).unwrap();
 }
 
 /// What a good CRC stands over need not be good itself.
 #[test]
 fn a_bitmap_that_is_not_its_name_is_not_held() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    desk.greet();
-    let scene = textured(&mut desk);
-    desk.load(&scene).unwrap();
-    let kept = desk.session.scene_to_store().unwrap();
+    let mut board = TestBoard::new(&mut memory);
+    board.hello();
+    let scene = textured(&mut board);
+    board.load(&scene).unwrap();
+    let kept = board.session.scene_to_store().unwrap();
     let mut bytes: Vec<u8> = (0..kept.len_to_keep()).step_by(WORD_LEN).flat_map(|offset| kept.word(offset)).collect();
     let sample = bytes.len() - 16 - 100;
     bytes[sample] ^= 1;
 
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    assert!(!desk.session.restore(|offset, word| {
+    let mut board = TestBoard::new(&mut memory);
+    assert!(!board.session.restore(|offset, word| {
         word.copy_from_slice(&bytes[offset as usize..][..word.len()]);
         true
     }));
-    desk.greet();
-    assert_eq!(desk.upload_bitmap(61, 53, &content(7, 61 * 53)), Ok(Accepted::Done));
+    board.hello();
+    assert_eq!(board.upload_bitmap(61, 53, &content(7, 61 * 53)), Ok(Accepted::Done));
 }
 
 #[test]
@@ -332,18 +332,18 @@ fn a_flash_that_fails_is_tried_once_for_each_scene() {
     let mut flash = scene_flash();
     flash.operations_fail = true;
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    let mut keeper = SceneKeeper::new(SCENE_SLOT, 40_000, &flash, &mut desk.session);
-    desk.greet();
+    let mut board = TestBoard::new(&mut memory);
+    let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
+    board.hello();
     for (scene, failures) in [(constant(0.01), 1), (constant(0.01), 1), (constant(0.02), 2)] {
-        desk.load(&scene).unwrap();
-        settle(&mut keeper, &mut flash, &desk, 0);
-        assert_eq!(keeper.failures(), failures);
+        board.load(&scene).unwrap();
+        finish_writing(&mut store, &mut flash, &board, 0);
+        assert_eq!(store.failures(), failures);
     }
 }
 
 proptest! {
-    /// Whatever a good CRC stands over: no panic, and no scene but a whole one.
+    /// Arbitrary bytes with a valid CRC neither panic nor restore a scene.
     #[test]
     fn arbitrary_bytes_restore_nothing(
         mut bytes in proptest::collection::vec(any::<u8>(), 0..600),
@@ -356,8 +356,8 @@ proptest! {
             bytes[4..8].copy_from_slice(&bitmaps.to_le_bytes());
         }
         let mut memory = Memory::new();
-        let mut desk = Desk::new(&mut memory);
-        let restored = desk.session.restore(|offset, word| {
+        let mut board = TestBoard::new(&mut memory);
+        let restored = board.session.restore(|offset, word| {
             let offset = offset as usize;
             match bytes.get(offset..offset + word.len()) {
                 Some(found) => { word.copy_from_slice(found); true }
@@ -365,6 +365,6 @@ proptest! {
             }
         });
         prop_assert!(!restored);
-        prop_assert_eq!(desk.greet().scene_crc32, 0);
+        prop_assert_eq!(board.hello().scene_crc32, 0);
     }
 }

@@ -24,7 +24,7 @@ use frixel_wire::message::{Command, ConfigField, Refusal};
 use frixel_wire::payload::samples_frame;
 use frixel_wire::scene::bitmap_crc32;
 use proptest::prelude::*;
-use support::{Desk, HEADER, Memory, scene, scene_with_points};
+use support::{HEADER, Memory, TestBoard, scene, scene_with_points};
 
 const SAMPLES: [u8; 6] = [0, 255, 100, 150, 200, 250];
 const TICKS: u32 = 3_000;
@@ -54,13 +54,13 @@ struct Played {
 /// Plays a scene under the finger of a seed, with a stream if it has a layer for one.
 fn played(header: &Header, random: &RandomScene, seed: u64) -> Vec<Played> {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    desk.greet();
-    desk.upload_bitmap(3, 2, &SAMPLES).unwrap();
-    desk.load(&scene_with_points(header, &random.records, &random.points)).unwrap();
-    desk.command(Command::Arm).unwrap();
-    desk.command(Command::Play).unwrap();
-    let _ = desk.command(Command::StartStream { sample_hz: STREAM_HZ, start_level: 20 });
+    let mut board = TestBoard::new(&mut memory);
+    board.hello();
+    board.upload_bitmap(3, 2, &SAMPLES).unwrap();
+    board.load(&scene_with_points(header, &random.records, &random.points)).unwrap();
+    board.command(Command::Arm).unwrap();
+    board.command(Command::Play).unwrap();
+    let _ = board.command(Command::StartStream { sample_hz: STREAM_HZ, start_level: 20 });
     let pace = if seed.is_multiple_of(4) { Pace::Fast } else { Pace::Usual };
     let mut finger = RandomFinger::new(seed, header, pace);
     (0..TICKS)
@@ -69,15 +69,15 @@ fn played(header: &Header, random: &RandomScene, seed: u64) -> Vec<Played> {
                 let samples: [u16; 50] = std::array::from_fn(|at| if at % 3 == 0 { u16::MAX } else { 977 * at as u16 });
                 let mut frame = [0; FRAME_MAX_LEN];
                 let frame = samples_frame(tick / 4, &samples, &mut frame).unwrap().to_vec();
-                desk.send(&frame);
-                desk.command(Command::Ping).unwrap();
+                board.send(&frame);
+                board.command(Command::Ping).unwrap();
             }
-            desk.touch = finger.tick().map(|report| match report {
+            board.touch = finger.tick().map(|report| match report {
                 Report::Down { x_m, y_m, age_ticks } => Touch::Down { x_m, y_m, age_ticks },
                 Report::Up => Touch::Up,
             });
-            let dac_code = desk.tick().dac_code.bits();
-            let telemetry = desk.status().telemetry;
+            let dac_code = board.tick().dac_code.bits();
+            let telemetry = board.status().telemetry;
             Played { asked_bits: telemetry.asked_electric_friction_n.to_bits(), dac_code, flags: telemetry.flags }
         })
         .collect()
@@ -147,10 +147,10 @@ fn a_table_ends_where_the_header_says() {
 fn what_is_above_the_end_of_the_table_is_counted_as_saturated() {
     for (electric_friction_max_n, saturated) in [(None, false), (Some(0.02), false), (Some(0.005), true)] {
         let mut memory = Memory::new();
-        let mut desk = Desk::new(&mut memory);
-        desk.play(&scene(&Header { electric_friction_max_n, ..HEADER }, &[constant(0.02)]));
-        desk.slide(2_000);
-        let counted = desk.status().counters.saturated_ticks > 0;
+        let mut board = TestBoard::new(&mut memory);
+        board.play(&scene(&Header { electric_friction_max_n, ..HEADER }, &[constant(0.02)]));
+        board.slide(2_000);
+        let counted = board.status().counters.saturated_ticks > 0;
         assert_eq!(counted, saturated, "{electric_friction_max_n:?}");
     }
 }
@@ -160,9 +160,9 @@ fn a_largest_friction_that_is_no_number_is_refused() {
     for electric_friction_max_n in [f32::NAN, f32::INFINITY, -0.01] {
         let header = Header { electric_friction_max_n: Some(electric_friction_max_n), ..HEADER };
         let mut memory = Memory::new();
-        let mut desk = Desk::new(&mut memory);
-        desk.greet();
-        let refused = desk.load(&scene(&header, &[constant(0.01)])).unwrap_err();
+        let mut board = TestBoard::new(&mut memory);
+        board.hello();
+        let refused = board.load(&scene(&header, &[constant(0.01)])).unwrap_err();
         assert!(
             matches!(refused, Refusal::Config(refusal) if refusal.field == ConfigField::ElectricFrictionMax),
             "{refused:?}"
@@ -173,10 +173,10 @@ fn a_largest_friction_that_is_no_number_is_refused() {
 #[test]
 fn a_scene_that_says_that_its_layers_stay_refuses_to_change_them() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
-    desk.play(&scene(&Header { layers_fixed: true, ..HEADER }, &[constant(0.01)]));
+    let mut board = TestBoard::new(&mut memory);
+    board.play(&scene(&Header { layers_fixed: true, ..HEADER }, &[constant(0.01)]));
     let change = Command::SetLayer { layer: 0, on: true, gain: 2.0 };
-    assert_eq!(desk.command(change), Err(Refusal::LayersFixed));
-    desk.load(&scene(&HEADER, &[constant(0.01)])).unwrap();
-    assert!(desk.command(change).is_ok());
+    assert_eq!(board.command(change), Err(Refusal::LayersFixed));
+    board.load(&scene(&HEADER, &[constant(0.01)])).unwrap();
+    assert!(board.command(change).is_ok());
 }

@@ -12,7 +12,7 @@ use frixel_wire::frame::{FRAME_MAX_LEN, crc32, encode};
 use frixel_wire::message::{Answer, Command};
 use frixel_wire::payload::chunk_frame;
 use frixel_wire::scene::RECORDS_MAX;
-use support::{COMMIT_POLLS_MAX, Desk, HEADER, Memory, constant, record, request, scene};
+use support::{COMMIT_POLLS_MAX, HEADER, Memory, TestBoard, constant, record, request, scene};
 
 const OFF: Drive = Drive { dac_code: DacCode::ZERO, amplifier_enable: false };
 const REPORT_TICKS: u32 = 400;
@@ -27,22 +27,22 @@ fn report(tick: u32) -> Touch {
 }
 
 /// A board that plays a constant under a finger, `ticks` after the first report; the next report is due then.
-fn playing(memory: &mut Memory) -> Desk<'_> {
-    let mut desk = Desk::of(Board { touch_from_host: true, ..Board::SIMULATOR }, memory);
-    desk.play(&constant(0.02));
+fn playing(memory: &mut Memory) -> TestBoard<'_> {
+    let mut board = TestBoard::of(Board { touch_from_host: true, ..Board::SIMULATOR }, memory);
+    board.play(&constant(0.02));
     for tick in 0..4 * REPORT_TICKS {
-        slide(&mut desk, tick);
+        slide(&mut board, tick);
     }
-    assert!(desk.status().telemetry.dac_code != 0);
-    desk
+    assert!(board.status().telemetry.dac_code != 0);
+    board
 }
 
 /// One tick, with a report every 10 ms.
-fn slide(desk: &mut Desk, tick: u32) -> Drive {
+fn slide(board: &mut TestBoard, tick: u32) -> Drive {
     if tick.is_multiple_of(REPORT_TICKS) {
-        desk.touch = Some(report(tick));
+        board.touch = Some(report(tick));
     }
-    desk.tick()
+    board.tick()
 }
 
 /// As many records as a scene has.
@@ -77,22 +77,22 @@ fn pipelined() -> Vec<u8> {
 }
 
 /// The finger leaves at each step of the largest commit, and the touch source or the host reports it.
-fn lift_during_the_largest_commit(pipelined: &[u8], lift: impl Fn(&mut Desk)) {
+fn lift_during_the_largest_commit(pipelined: &[u8], lift: impl Fn(&mut TestBoard)) {
     let scene = largest_scene();
     let mut lifted_at_poll = 0;
     loop {
         let mut memory = Memory::new();
-        let mut desk = playing(&mut memory);
-        desk.upload_scene(&scene).unwrap();
+        let mut board = playing(&mut memory);
+        board.upload_scene(&scene).unwrap();
         let commit = request(999, Command::Commit { crc32: crc32(&scene) });
-        desk.session.receive(&[&commit, pipelined].concat(), &desk.ticker.status());
+        board.session.receive(&[&commit, pipelined].concat(), &board.ticker.status());
         for poll in 0..lifted_at_poll {
-            assert_ne!(slide(&mut desk, 1600 + poll), OFF);
+            assert_ne!(slide(&mut board, 1600 + poll), OFF);
         }
-        desk.collect();
-        let finished = desk.take_answer(999).is_some();
-        lift(&mut desk);
-        let ticks_to_off = (1..=LIFT_TICKS_MAX).find(|_| desk.tick() == OFF);
+        board.collect();
+        let finished = board.take_answer(999).is_some();
+        lift(&mut board);
+        let ticks_to_off = (1..=LIFT_TICKS_MAX).find(|_| board.tick() == OFF);
         // One for the host's sign of life, one for the scene that may be handed over, one for the lift.
         assert!(
             ticks_to_off.is_some_and(|ticks| ticks <= 3),
@@ -106,12 +106,12 @@ fn lift_during_the_largest_commit(pipelined: &[u8], lift: impl Fn(&mut Desk)) {
     assert!(lifted_at_poll > 20, "the largest commit took {lifted_at_poll} steps: each is longer than it may be");
 }
 
-fn lift_of_touch_source(desk: &mut Desk) {
-    desk.touch = Some(Touch::Up);
+fn lift_of_touch_source(board: &mut TestBoard) {
+    board.touch = Some(Touch::Up);
 }
 
-fn lift_of_host(desk: &mut Desk) {
-    desk.session.receive(&request(998, Command::Lift), &desk.ticker.status());
+fn lift_of_host(board: &mut TestBoard) {
+    board.session.receive(&request(998, Command::Lift), &board.ticker.status());
 }
 
 #[test]
@@ -130,31 +130,31 @@ fn a_lift_acts_within_2_ms_when_requests_wait_for_the_largest_commit() {
 #[test]
 fn a_commit_goes_on_while_other_commands_are_answered() {
     let mut memory = Memory::new();
-    let mut desk = playing(&mut memory);
+    let mut board = playing(&mut memory);
     let scene = largest_scene();
-    desk.upload_scene(&scene).unwrap();
-    desk.session.receive(&request(999, Command::Commit { crc32: crc32(&scene) }), &desk.ticker.status());
+    board.upload_scene(&scene).unwrap();
+    board.session.receive(&request(999, Command::Commit { crc32: crc32(&scene) }), &board.ticker.status());
     let mut pings = 0;
     let committed: Answer = (0..COMMIT_POLLS_MAX)
         .find_map(|_| {
-            desk.command(Command::Ping).unwrap();
+            board.command(Command::Ping).unwrap();
             pings += 1;
-            desk.take_answer(999)
+            board.take_answer(999)
         })
         .unwrap();
     assert!(committed.outcome.is_ok() && pings > 20, "{pings}");
-    assert_eq!(desk.greet().scene_crc32, crc32(&scene));
+    assert_eq!(board.hello().scene_crc32, crc32(&scene));
 }
 
 #[test]
 fn a_lift_and_a_touch_down_in_one_tick_are_zero_output_for_a_tick() {
     let mut memory = Memory::new();
-    let mut desk = playing(&mut memory);
-    let tick = desk.status().telemetry.tick + 1;
-    desk.session.touch(Touch::Up, tick);
-    desk.session.touch(report(1_600), tick);
-    assert_eq!(desk.tick(), OFF);
-    assert_ne!(desk.tick(), OFF, "the finger is there again");
+    let mut board = playing(&mut memory);
+    let tick = board.status().telemetry.tick + 1;
+    board.session.touch(Touch::Up, tick);
+    board.session.touch(report(1_600), tick);
+    assert_eq!(board.tick(), OFF);
+    assert_ne!(board.tick(), OFF, "the finger is there again");
 }
 
 /// A lift that a track does not report, but its contact number does.
@@ -162,25 +162,25 @@ fn a_lift_and_a_touch_down_in_one_tick_are_zero_output_for_a_tick() {
 fn another_contact_is_a_lift_first() {
     let mut memory = Memory::new();
     let header = Header { slew_v_per_s: 1e5, ..HEADER };
-    let mut desk = Desk::new(&mut memory);
-    desk.play(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.02 }))]));
+    let mut board = TestBoard::new(&mut memory);
+    board.play(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.02 }))]));
     for tick in 0..1_600 {
-        slide(&mut desk, tick);
+        slide(&mut board, tick);
     }
-    let before_v_rms = desk.status().telemetry.voltage_v_rms;
-    let track = next_track(&mut desk, report(1_600));
-    desk.ticker.apply(Order::Track(Track { contact: track.contact.wrapping_add(1), ..track }));
-    assert_eq!(desk.tick(), OFF);
-    assert_ne!(desk.tick(), OFF);
-    let after_v_rms = desk.status().telemetry.voltage_v_rms;
+    let before_v_rms = board.status().telemetry.voltage_v_rms;
+    let track = next_track(&mut board, report(1_600));
+    board.ticker.apply(Order::Track(Track { contact: track.contact.wrapping_add(1), ..track }));
+    assert_eq!(board.tick(), OFF);
+    assert_ne!(board.tick(), OFF);
+    let after_v_rms = board.status().telemetry.voltage_v_rms;
     assert!(before_v_rms > 100.0 && (after_v_rms - 2.5).abs() < 1e-3, "the envelope begins anew: {after_v_rms} V");
 }
 
 /// The track that the session makes of a report, and does not hand over.
-fn next_track(desk: &mut Desk, touch: Touch) -> Track {
-    desk.session.touch(touch, desk.ticker.status().telemetry.tick + 1);
+fn next_track(board: &mut TestBoard, touch: Touch) -> Track {
+    board.session.touch(touch, board.ticker.status().telemetry.tick + 1);
     loop {
-        match desk.session.next_order() {
+        match board.session.next_order() {
             Some(Order::Track(track)) => return track,
             Some(_) => {}
             None => panic!("the report says nothing new"),
@@ -192,15 +192,15 @@ fn next_track(desk: &mut Desk, touch: Touch) -> Track {
 fn a_track_that_is_handed_over_late_is_the_same_track() {
     for delay_ticks in [0, 1, 7, 80] {
         let mut memory = Memory::new();
-        let mut desk = playing(&mut memory);
-        let track = next_track(&mut desk, report(4 * REPORT_TICKS));
-        desk.ticks(delay_ticks.max(1));
-        desk.ticker.apply(Order::Track(track));
-        desk.ticks(100 - delay_ticks.max(1));
-        let x_m = desk.status().telemetry.finger_x_m;
+        let mut board = playing(&mut memory);
+        let track = next_track(&mut board, report(4 * REPORT_TICKS));
+        board.ticks(delay_ticks.max(1));
+        board.ticker.apply(Order::Track(track));
+        board.ticks(100 - delay_ticks.max(1));
+        let x_m = board.status().telemetry.finger_x_m;
         assert!((x_m - (0.01 + 2.5e-6 * 1_700.0)).abs() < 1e-5, "{delay_ticks}: {x_m}");
         // It ends when it would have ended: 100 ticks are gone.
-        let on = (0..2 * STALE_TICKS).take_while(|_| desk.tick() != OFF).count() as u32;
+        let on = (0..2 * STALE_TICKS).take_while(|_| board.tick() != OFF).count() as u32;
         assert!((STALE_TICKS - 102..=STALE_TICKS - 99).contains(&on), "{delay_ticks}: {on}");
     }
 }
@@ -208,23 +208,23 @@ fn a_track_that_is_handed_over_late_is_the_same_track() {
 #[test]
 fn a_track_that_is_handed_over_after_its_end_drives_nothing() {
     let mut memory = Memory::new();
-    let mut desk = playing(&mut memory);
-    let track = next_track(&mut desk, report(4 * REPORT_TICKS));
-    desk.ticks(STALE_TICKS + 10);
-    desk.ticker.apply(Order::Track(track));
-    assert!((0..100).all(|_| desk.tick() == OFF));
-    assert!(desk.status().telemetry.flags.contains(Flags::TOUCH_STALE));
+    let mut board = playing(&mut memory);
+    let track = next_track(&mut board, report(4 * REPORT_TICKS));
+    board.ticks(STALE_TICKS + 10);
+    board.ticker.apply(Order::Track(track));
+    assert!((0..100).all(|_| board.tick() == OFF));
+    assert!(board.status().telemetry.flags.contains(Flags::TOUCH_STALE));
 }
 
-/// Whatever a track says, the tick follows it for three report periods at most.
+/// The tick follows a track for at most three report periods, even if its end is later.
 #[test]
-fn a_track_without_end_is_ended() {
+fn a_track_of_late_end_expires_after_three_report_periods() {
     let mut memory = Memory::new();
-    let mut desk = playing(&mut memory);
-    let track = next_track(&mut desk, report(4 * REPORT_TICKS));
+    let mut board = playing(&mut memory);
+    let track = next_track(&mut board, report(4 * REPORT_TICKS));
     for endless in [track.until_tick + 1_000_000, track.from_tick.wrapping_add(i32::MAX as u32)] {
-        desk.ticker.apply(Order::Track(Track { until_tick: endless, ..track }));
-        let on = (0..2 * STALE_TICKS).take_while(|_| desk.tick() != OFF).count() as u32;
+        board.ticker.apply(Order::Track(Track { until_tick: endless, ..track }));
+        let on = (0..2 * STALE_TICKS).take_while(|_| board.tick() != OFF).count() as u32;
         assert!((STALE_TICKS - 2..=STALE_TICKS + 2).contains(&on), "{on}");
     }
 }
@@ -232,42 +232,42 @@ fn a_track_without_end_is_ended() {
 #[test]
 fn a_track_that_ended_long_ago_never_comes_back() {
     let mut memory = Memory::new();
-    let mut desk = Desk::new(&mut memory);
+    let mut board = TestBoard::new(&mut memory);
     let header = Header { autonomous: true, ..HEADER };
-    desk.play(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.02 }))]));
-    let first_tick = desk.status().telemetry.tick;
+    board.play(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.02 }))]));
+    let first_tick = board.status().telemetry.tick;
     for tick in 0..400 {
-        slide(&mut desk, tick);
+        slide(&mut board, tick);
     }
-    desk.ticks(2 * STALE_TICKS);
-    assert_eq!(desk.tick(), OFF);
+    board.ticks(2 * STALE_TICKS);
+    assert_eq!(board.tick(), OFF);
     // The tick count comes round.
-    desk.ticker.set_tick(first_tick);
-    assert!((0..1_000).all(|_| desk.tick() == OFF));
-    assert_eq!(desk.status().telemetry.state, State::Active);
+    board.ticker.set_tick(first_tick);
+    assert!((0..1_000).all(|_| board.tick() == OFF));
+    assert_eq!(board.status().telemetry.state, State::Active);
 }
 
 /// A board whose tick count wraps in `ticks`.
-fn playing_until_wrap(memory: &mut Memory, ticks: u32) -> Desk<'_> {
-    let mut desk = Desk::new(memory);
-    desk.ticker.set_tick(0_u32.wrapping_sub(ticks));
-    desk.play(&constant(0.02));
-    desk
+fn playing_until_wrap(memory: &mut Memory, ticks: u32) -> TestBoard<'_> {
+    let mut board = TestBoard::new(memory);
+    board.ticker.set_tick(0_u32.wrapping_sub(ticks));
+    board.play(&constant(0.02));
+    board
 }
 
 #[test]
 fn the_finger_is_followed_while_the_tick_count_wraps() {
     for ticks in [10, 390, 399, 401, 1_000] {
         let mut memory = Memory::new();
-        let mut desk = playing_until_wrap(&mut memory, ticks);
+        let mut board = playing_until_wrap(&mut memory, ticks);
         for tick in 0..4_000 {
-            let drive = slide(&mut desk, tick);
+            let drive = slide(&mut board, tick);
             assert_ne!(drive, OFF, "wraps in {ticks}, tick {tick}");
             let expected_m = 0.01 + 2.5e-6 * tick as f32;
-            let x_m = desk.status().telemetry.finger_x_m;
+            let x_m = board.status().telemetry.finger_x_m;
             assert!(tick < REPORT_TICKS || (x_m - expected_m).abs() < 1e-5, "wraps in {ticks}, tick {tick}: {x_m}");
         }
-        assert!(desk.status().telemetry.tick < 4_000, "it has wrapped");
+        assert!(board.status().telemetry.tick < 4_000, "it has wrapped");
     }
 }
 
@@ -275,17 +275,17 @@ fn the_finger_is_followed_while_the_tick_count_wraps() {
 fn lost_reports_and_a_silent_host_end_the_drive_while_the_tick_count_wraps() {
     for ticks in [1, 500, 1_199, 1_200, 1_201] {
         let mut memory = Memory::new();
-        let mut desk = playing_until_wrap(&mut memory, ticks);
-        desk.touch = Some(report(0));
-        let on = (0..2 * STALE_TICKS).take_while(|_| desk.tick() != OFF).count() as u32;
+        let mut board = playing_until_wrap(&mut memory, ticks);
+        board.touch = Some(report(0));
+        let on = (0..2 * STALE_TICKS).take_while(|_| board.tick() != OFF).count() as u32;
         assert!((STALE_TICKS - 1..=STALE_TICKS + 1).contains(&on), "wraps in {ticks}: on for {on}");
     }
     for ticks in [5, 5_000, 9_999, 10_001] {
         let mut memory = Memory::new();
-        let mut desk = playing_until_wrap(&mut memory, ticks);
-        let on = (0..20_000).take_while(|tick| slide(&mut desk, *tick) != OFF).count();
+        let mut board = playing_until_wrap(&mut memory, ticks);
+        let on = (0..20_000).take_while(|tick| slide(&mut board, *tick) != OFF).count();
         assert!((9_998..=10_001).contains(&on), "wraps in {ticks}: on for {on}");
-        assert!(desk.status().telemetry.flags.contains(Flags::HOST_SILENT));
+        assert!(board.status().telemetry.flags.contains(Flags::HOST_SILENT));
     }
 }
 
@@ -293,14 +293,14 @@ fn lost_reports_and_a_silent_host_end_the_drive_while_the_tick_count_wraps() {
 fn a_still_finger_is_ramped_away_while_the_tick_count_wraps() {
     for ticks in [100, 2_100, 2_300, 2_500] {
         let mut memory = Memory::new();
-        let mut desk = playing_until_wrap(&mut memory, ticks);
+        let mut board = playing_until_wrap(&mut memory, ticks);
         let mut volts = Vec::new();
         for tick in 0..4_000_u32 {
             if tick.is_multiple_of(REPORT_TICKS) {
-                desk.touch = Some(Touch::Down { x_m: 0.05, y_m: 0.03, age_ticks: 0 });
+                board.touch = Some(Touch::Down { x_m: 0.05, y_m: 0.03, age_ticks: 0 });
             }
-            desk.tick();
-            volts.push(desk.status().telemetry.voltage_v_rms);
+            board.tick();
+            volts.push(board.status().telemetry.voltage_v_rms);
         }
         assert!(volts[1_990] > 100.0, "slow for less than 50 ms");
         assert!(volts[2_410] <= 0.0, "wraps in {ticks}: {} V 10 ms later", volts[2_410]);

@@ -72,7 +72,7 @@ fn layer(random: &mut Random, header: &Header, amounts: Amounts, picture: u32, p
     let [one, other] = [amounts.draw(random), amounts.draw(random)];
     let click = Click { height_n: random.pick([0.0, one, other]), decay_s: random.pick([0.0, 1e-4, 0.02, 1.0]) };
     let turned = random.between(-1.0, 1.0);
-    match random.below(10) {
+    match random.below(Layer::NUMBERS.len() as u32) {
         0 => Layer::Constant(Constant { electric_friction_n: one }),
         1 => Layer::Grating(Grating {
             wave: random.pick([Wave::Sine, Wave::Square { duty: 0.3 }, Wave::Triangle, Wave::Saw]),

@@ -130,34 +130,33 @@ impl fmt::Display for Fault {
         write!(f, "fault {}: ", self.number())?;
         f.write_str(match self {
             Self::Amplifier => {
-                "the amplifier reports that something is wrong; check its supply, wiring and temperature, then \
-                 clear the fault"
+                "the amplifier signals a fault; check its supply, wiring and temperature, then clear the fault"
             }
             Self::Monitor => {
-                "the electrode's voltage is not the one that was driven; check amplifier, electrode and \
+                "the electrode's voltage differs from the commanded voltage; check amplifier, electrode and \
                  monitor, then clear the fault"
             }
             Self::Deadline => "a tick missed its deadline; clear the fault and play a scene with fewer layers",
-            Self::Panic => "the firmware panicked; report it with what `frixel info` says, then clear the fault",
+            Self::Panic => "the firmware panicked; report it with the output of `frixel info`, then clear the fault",
             Self::HardFault => {
-                "the processor took a hard fault; report it with what `frixel info` says, then clear the fault"
+                "the processor took a hard fault; report it with the output of `frixel info`, then clear the fault"
             }
             Self::StackOverflow => {
-                "the firmware's stack overflowed; report it with what `frixel info` says, then clear the fault"
+                "the firmware's stack overflowed; report it with the output of `frixel info`, then clear the fault"
             }
             Self::Watchdog => {
-                "the firmware hung until the watchdog restarted it; report it with what `frixel info` says, \
+                "the firmware hung until the watchdog restarted it; report it with the output of `frixel info`, \
                  then clear the fault"
             }
             Self::ArmSwitch => {
-                "the arm switch was released while armed or playing; hold it, clear the fault and \
-                 arm again"
+                "the arm switch was released while the board was armed or playing; release it, clear the fault, press \
+                 and hold it, and arm again"
             }
             Self::Dac => {
                 "the DAC did not answer with its configuration before arming; check its supplies and wires, \
                  clear the fault and arm again"
             }
-            Self::Other(_) => "this program does not know it; update the frixel command",
+            Self::Other(_) => "unknown to this version; update the frixel command",
         })
     }
 }
@@ -226,7 +225,7 @@ const FLAGS: [(Flags, &str, &str); 8] = [
     (Flags::NO_FINGER, "no-finger", "no finger touches the screen"),
     (Flags::TOUCH_STALE, "touch-stale", "touch data is too old"),
     (Flags::CARRIER_BALANCED, "carrier-balanced", "a carrier edge came early to keep direct current off the electrode"),
-    (Flags::HOST_SILENT, "host-silent", "the host has gone silent, and the output was put to zero"),
+    (Flags::HOST_SILENT, "host-silent", "the host timed out, and the output was set to zero"),
     (Flags::STREAM_DRY, "stream-dry", "the stream has no samples to play"),
 ];
 

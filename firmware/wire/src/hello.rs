@@ -204,7 +204,7 @@ impl fmt::Display for ResetCause {
         match self {
             Self::PowerOn => f.write_str("power came on"),
             Self::Pin => f.write_str("the reset pin"),
-            Self::Software => f.write_str("software asked for it"),
+            Self::Software => f.write_str("software request"),
             Self::Watchdog => f.write_str("the watchdog was not fed"),
             Self::BrownOut => f.write_str("the supply voltage fell too low"),
             Self::Other(number) => write!(f, "cause {number}, which this program does not know"),

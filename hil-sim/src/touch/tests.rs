@@ -67,7 +67,7 @@ fn reports_come_at_the_rate_with_the_latency_and_the_jitter() {
 }
 
 #[test]
-fn the_board_is_told_the_nominal_latency() {
+fn the_nominal_latency_is_reported_to_the_board() {
     let reports = reports(TouchConfig::default(), 5, 10);
     assert!(reports.iter().all(|&(_, touch)| place(touch).2 == 400));
 }

@@ -36,7 +36,7 @@ impl<'a> Script<'a> {
     }
 
     /// Asks who is there.
-    pub fn greet(&mut self) {
+    pub fn hello(&mut self) {
         let mut frame = [0; FRAME_MAX_LEN];
         self.rig.send(payload::hello_request_frame(&mut frame).unwrap());
         self.drain();

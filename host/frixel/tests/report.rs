@@ -293,7 +293,7 @@ fn without_a_load_all_fingers_stand_on_one_line_of_slope_one_and_two() {
     let rows = rows("fig3-core-line");
     let mut fingers = BTreeMap::new();
     for row in &rows {
-        // DESIGN's dimensionless form of Eqs. (36), (34).
+        // The dimensionless form of Eqs. (36), (34).
         let q = number(row, "voltage_over_scale").powi(2);
         let y = q + (q * q + 2.0 * q / (1.0 + q)).sqrt();
         for (column, right) in [("radius_over_scale", y.sqrt()), ("friction_over_scale", y * y)] {

@@ -3,8 +3,8 @@
 use super::Contact;
 use super::curve::{Point, root_of_quotient, upper_inverse};
 use crate::error::{
-    Expected, InverseError, ParameterError, StateError, found_voltage_v_rms, not_negative, positive, representable,
-    wanted_electric_friction_n,
+    Expected, InverseError, ParameterError, StateError, checked_target_n, found_voltage_v_rms, not_negative, positive,
+    representable,
 };
 use crate::root::{Step, rising_root};
 use crate::{ContactModel, ContactState, Real, Sensitivity};
@@ -96,7 +96,7 @@ impl<T: Real> ContactModel<T> for FiniteContact<T> {
     }
 
     fn voltage_for_electric_friction(&self, electric_friction_n: T) -> Result<T, InverseError> {
-        let electric_friction_n = wanted_electric_friction_n(electric_friction_n)?;
+        let electric_friction_n = checked_target_n(electric_friction_n)?;
         let scale = self.contact.friction_scale_n;
         let y = root_of_quotient(self.natural_friction_n + electric_friction_n, scale);
         if y > self.beta * (T::ONE + T::from(SLACK) * T::EPSILON) {

@@ -7,8 +7,7 @@ use super::curve::{Point, root_of_quotient, upper_inverse};
 use crate::coating::VACUUM_PERMITTIVITY_F_PER_M;
 use crate::double_single::DoubleSingle;
 use crate::error::{
-    InverseError, ParameterError, StateError, found_voltage_v_rms, not_negative, representable,
-    wanted_electric_friction_n,
+    InverseError, ParameterError, StateError, checked_target_n, found_voltage_v_rms, not_negative, representable,
 };
 use crate::{ContactModel, ContactState, Finger, Real, Sensitivity};
 
@@ -133,7 +132,7 @@ impl<T: Real> ContactModel<T> for LoadedContact<T> {
     }
 
     fn voltage_for_electric_friction(&self, electric_friction_n: T) -> Result<T, InverseError> {
-        found_voltage_v_rms(self.voltage_v_rms(wanted_electric_friction_n(electric_friction_n)?))
+        found_voltage_v_rms(self.voltage_v_rms(checked_target_n(electric_friction_n)?))
     }
 
     fn sensitivity(&self, voltage_v_rms: T) -> Result<Sensitivity<T>, StateError> {

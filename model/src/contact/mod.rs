@@ -14,7 +14,7 @@ pub use lower::LowerBound;
 pub use pulled::PulledContact;
 
 use crate::coating::VACUUM_PERMITTIVITY_F_PER_M;
-use crate::error::{Expected, ParameterError, StateError, not_negative, positive, representable, scale};
+use crate::error::{Expected, ParameterError, StateError, not_negative, positive, representable, round_to_model};
 use crate::{ContactState, Finger, Real, Sensitivity};
 use curve::Point;
 
@@ -56,10 +56,14 @@ impl<T: Real> Contact<T> {
             (finger.radius_m.into(), finger.stiffness_pa_per_m.into(), finger.friction_coefficient.into());
         let load_scale_n = PI * k * radius * g * g;
         Ok(Self {
-            voltage_scale_v_rms: scale("gap_m", gap_m, libm::sqrt(2.0 * k * g * g * g / VACUUM_PERMITTIVITY_F_PER_M))?,
-            friction_scale_n: scale("gap_m", gap_m, mu * load_scale_n)?,
-            load_scale_n: scale("gap_m", gap_m, load_scale_n)?,
-            area_scale_m2: scale("gap_m", gap_m, 2.0 * radius * g)?,
+            voltage_scale_v_rms: round_to_model(
+                "gap_m",
+                gap_m,
+                libm::sqrt(2.0 * k * g * g * g / VACUUM_PERMITTIVITY_F_PER_M),
+            )?,
+            friction_scale_n: round_to_model("gap_m", gap_m, mu * load_scale_n)?,
+            load_scale_n: round_to_model("gap_m", gap_m, load_scale_n)?,
+            area_scale_m2: round_to_model("gap_m", gap_m, 2.0 * radius * g)?,
             radius_m: finger.radius_m,
             stiffness_pa_per_m: finger.stiffness_pa_per_m,
             friction_coefficient: finger.friction_coefficient,

@@ -6,7 +6,7 @@ use super::finger::{ForceLaw, SoftFinger};
 use super::lower::SoftLowerBound;
 use crate::coating::VACUUM_PERMITTIVITY_F_PER_M;
 use crate::error::{
-    InverseError, ParameterError, StateError, not_negative, positive, representable, scale, wanted_electric_friction_n,
+    InverseError, ParameterError, StateError, checked_target_n, not_negative, positive, representable, round_to_model,
 };
 use crate::root::{Step, rising_root};
 use crate::{Contact, ContactModel, ContactState, Finger, Real, Sensitivity};
@@ -44,7 +44,12 @@ impl<T: Real> SoftContact<T> {
         let g: f64 = positive("gap_m", gap_m)?.into();
         let (modulus, shape): (f64, f64) = (finger.modulus_pa.into(), finger.shape_constant.into());
         let square = 2.0 * g * g * shape * modulus / (PI * VACUUM_PERMITTIVITY_F_PER_M);
-        Ok(Self { finger: *finger, gap_m, forces, voltage_scale_v_rms: scale("gap_m", gap_m, libm::sqrt(square))? })
+        Ok(Self {
+            finger: *finger,
+            gap_m,
+            forces,
+            voltage_scale_v_rms: round_to_model("gap_m", gap_m, libm::sqrt(square))?,
+        })
     }
 
     /// The contact under a normal load of zero or more newtons. A pull is refused, since up to three contacts satisfy
@@ -188,7 +193,7 @@ impl<T: Real> ContactModel<T> for SoftLoadedContact<T> {
     }
 
     fn voltage_for_electric_friction(&self, electric_friction_n: T) -> Result<T, InverseError> {
-        if !(wanted_electric_friction_n(electric_friction_n)? > T::ZERO) {
+        if !(checked_target_n(electric_friction_n)? > T::ZERO) {
             return Ok(T::ZERO);
         }
         let SoftContact { finger, gap_m, forces, .. } = &self.contact;

@@ -59,7 +59,7 @@ impl<T: Real> SoftFinger<T> {
         let shape: f64 = positive("shape_constant", self.shape_constant)?.into();
         let s: f64 = stress_exponent(self.stress_exponent)?.into();
         positive("friction_coefficient", self.friction_coefficient)?;
-        let scale = |value| crate::error::scale("modulus_pa", self.modulus_pa, value);
+        let scale = |value| crate::error::round_to_model("modulus_pa", self.modulus_pa, value);
         Ok(ForceLaw {
             force_scale_n: scale(shape * modulus * radius * radius)?,
             stiffness_scale_pa_per_m: scale(shape * modulus / (PI * radius))?,

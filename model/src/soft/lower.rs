@@ -1,7 +1,7 @@
 //! The soft finger's lower bound, Eqs. (40), (41).
 
 use super::contact::SoftContact;
-use crate::error::{InverseError, StateError, found_voltage_v_rms, wanted_electric_friction_n};
+use crate::error::{InverseError, StateError, checked_target_n, found_voltage_v_rms};
 use crate::{ContactModel, ContactState, Real, Sensitivity};
 
 /// A soft finger without load, attracted only where it touches (variant `soft-lower`).
@@ -44,7 +44,7 @@ impl<T: Real> ContactModel<T> for SoftLowerBound<T> {
     }
 
     fn voltage_for_electric_friction(&self, electric_friction_n: T) -> Result<T, InverseError> {
-        let p = wanted_electric_friction_n(electric_friction_n)? / self.friction_scale_n;
+        let p = checked_target_n(electric_friction_n)? / self.friction_scale_n;
         // (2 s + 1)(1 - 2 gamma) = 1.
         let double_tau = p.pow(T::ONE - self.contact.forces.two_gamma);
         found_voltage_v_rms(self.contact.voltage_scale_v_rms * (double_tau / T::TWO).sqrt())

@@ -72,7 +72,7 @@ impl Gdb {
     /// Reads a core register, counted from r0.
     pub(super) fn register(&mut self, number: usize) -> Result<u32, String> {
         // The answer has all registers, each as eight digits.
-        let answer = self.ask("g")?;
+        let answer = self.request("g")?;
         let digits = answer.get(8 * number..8 * (number + 1)).unwrap_or_default();
         u32::from_str_radix(digits, 16)
             .map(u32::swap_bytes)
@@ -80,7 +80,7 @@ impl Gdb {
     }
 
     fn expect_ok(&mut self, packet: &str) -> Result<(), String> {
-        match self.ask(packet)?.as_str() {
+        match self.request(packet)?.as_str() {
             "OK" => Ok(()),
             answer => Err(format!("the emulator answers `{packet}` with `{answer}`")),
         }
@@ -89,13 +89,13 @@ impl Gdb {
     /// Expects that the program stops. The emulator answers `T` when the program has stopped, and `W` when it has
     /// exited.
     fn expect_stop(&mut self, packet: &str) -> Result<(), String> {
-        match self.ask(packet)? {
+        match self.request(packet)? {
             answer if answer.starts_with('T') => Ok(()),
             answer => Err(format!("the benchmark image did not come to what was to be followed: `{answer}`")),
         }
     }
 
-    fn ask(&mut self, packet: &str) -> Result<String, String> {
+    fn request(&mut self, packet: &str) -> Result<String, String> {
         let sum = packet.bytes().fold(0_u8, u8::wrapping_add);
         self.0.get_mut().write_all(format!("${packet}#{sum:02x}").as_bytes()).map_err(|error| explain(&error))?;
         let mut answer = Vec::new();

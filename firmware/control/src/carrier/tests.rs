@@ -1,4 +1,4 @@
-//! No direct current, whatever the envelope does (DESIGN section 3).
+//! No direct current, whatever the envelope does.
 
 use super::*;
 use proptest::prelude::*;
@@ -46,7 +46,7 @@ proptest! {
             let half = i as u32 / half_period_ticks;
             let amplitude = if resonant { if half.is_multiple_of(2) { 200.0 } else { 3.0 } }
                 else { seed_amplitudes[i % seed_amplitudes.len()] };
-            if i % 1013 == 0 { carrier.rest(&timing); }
+            if i % 1013 == 0 { carrier.reset_to_zero(&timing); }
             integral += i64::from(carrier.next(amplitude, &timing, 0).bits());
             prop_assert!(integral.abs() <= full, "{integral} after {i} ticks, {full} allowed");
         }
@@ -91,7 +91,7 @@ fn a_carrier_that_rested_begins_on_the_side_that_takes_the_integral_back() {
         let mut carrier = Carrier::new(&timing);
         let before: i32 = codes(&mut carrier, &timing, 50.0, ticks).iter().sum();
         assert_eq!(first_sign, if before > 0 { -1 } else { 1 }, "the integral is {before} after {ticks} ticks");
-        carrier.rest(&timing);
+        carrier.reset_to_zero(&timing);
         let after = codes(&mut carrier, &timing, 50.0, 20);
         let first_edge = after.iter().position(|code| code.signum() != first_sign);
         assert_eq!(first_edge, Some(10), "{ticks}: a quarter period from the edge");
@@ -185,7 +185,7 @@ fn no_code_is_larger_than_the_largest() {
     let timing = timing(Shape::Square, 20);
     assert!(codes(&mut Carrier::new(&timing), &timing, 1e6, 100).iter().all(|code| code.abs() == 20_000));
     assert!(
-        codes(&mut Carrier::new(&CarrierTiming::SILENT), &CarrierTiming::SILENT, 1e6, 100)
+        codes(&mut Carrier::new(&CarrierTiming::ZERO_OUTPUT), &CarrierTiming::ZERO_OUTPUT, 1e6, 100)
             .iter()
             .all(|code| *code == 0)
     );

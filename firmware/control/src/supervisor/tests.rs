@@ -1,4 +1,4 @@
-//! The safety requirements of the supervisor (DESIGN section 5).
+//! The safety requirements of the supervisor (`PROTOCOL.md` section 10, "States").
 
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::{Fault, State};
@@ -247,7 +247,7 @@ fn a_silent_host_disarms_after_its_timeout() {
 }
 
 #[test]
-fn nobody_has_to_be_heard_where_nothing_can_be_driven() {
+fn the_host_timeout_applies_only_when_armed_or_active() {
     let mut supervisor = in_state(State::Faulted);
     supervisor.expire(1_000_000);
     assert_eq!((supervisor.state(), supervisor.host_silent()), (State::Faulted, false));

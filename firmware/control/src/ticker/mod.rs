@@ -1,4 +1,19 @@
 //! The tick: a finger's track and the board's inputs in, a DAC code out.
+//!
+//! # What stops the output
+//!
+//! The output is zero in every tick in which one of these holds:
+//!
+//! - The state is not Active. A fault leaves Active in the tick that detects it: the amplifier's fault line or the arm
+//!   switch ([`Sense`]) at once, the monitor voltage once wrong ticks exceed right ones by 20, and a fault that the
+//!   board detects by [`Ticker::raise`]. [`Order::Stop`], [`Order::Disarm`] and the host timeout leave it too. Only an
+//!   Active scene may continue without a host; an Armed board always needs one.
+//! - No finger has a valid track: after [`Order::Lift`], and when a track expires. A [`Track`] of another contact than
+//!   the previous one counts as a lift: zero in the tick that takes it.
+//! - There is no scene ([`Order::Unload`]). [`Order::Load`] of another scene lowers the envelope to the new voltage
+//!   limit at once.
+//!
+//! A stream that starts while the state is not Active is stopped at the next tick.
 
 mod orders;
 mod status;
@@ -11,13 +26,13 @@ use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::State;
 
 use crate::carrier::Carrier;
-use crate::deadline::{earlier, is_past};
 use crate::envelope::Envelope;
 use crate::finger::{Finger, STALE_AFTER_PERIODS};
 use crate::order::Counters;
 #[cfg(feature = "stream")]
 use crate::stream::{Player, StreamBuffer};
 use crate::supervisor::{self, Supervisor};
+use crate::tick_count::{earlier, is_past};
 use crate::{Active, Board, Drive, Sense, Track};
 
 /// Turns the finger's track into voltage, one tick at a time. Its supervisor decides whether the output is enabled.
@@ -30,7 +45,7 @@ pub struct Ticker<'a> {
     /// The finger was lifted since the last tick, even if another has touched the screen since.
     was_lifted: bool,
     /// The earlier of the end of the finger's track and the host timeout; `None` if neither applies.
-    deadline_tick: Option<u32>,
+    expiry_tick: Option<u32>,
     /// Coefficients of the current scene.
     active: &'a mut Active,
     pool: &'a BitmapPool,
@@ -75,7 +90,7 @@ impl<'a> Ticker<'a> {
             supervisor: Supervisor::new(board),
             finger: Finger::Up,
             was_lifted: false,
-            deadline_tick: None,
+            expiry_tick: None,
             active,
             pool,
             clicks: Clicks::NONE,
@@ -108,21 +123,23 @@ impl<'a> Ticker<'a> {
     /// Runs one tick. Call this exactly [`Board::tick_hz`] times a second, with at most one call of [`Ticker::apply`]
     /// before each.
     ///
-    /// Deadline: the drive must reach the DAC before the next tick begins, 25 us or 4,250 cycles at 40 kHz on the G474.
-    /// A tick that misses it leaves the previous voltage on the electrode for another tick: the board then sets the
-    /// output to zero and calls [`Ticker::raise`] with [`Fault::Deadline`](frixel_wire::fault::Fault::Deadline). The
-    /// tick does not allocate, wait or panic, and runs the same steps every time; its duration depends on the layers
-    /// under the finger.
+    /// Deadline: the drive must reach the DAC at the latest when the board latches the frame. On the G474, the board
+    /// must begin to send the frame 21.8 us into the tick's period of 25 us (4,250 cycles). A tick that misses the
+    /// deadline leaves the previous voltage on the electrode: the board then sets the output to zero and calls
+    /// [`Ticker::raise`] with [`Fault::Deadline`](frixel_wire::fault::Fault::Deadline). The tick does not allocate,
+    /// wait or panic, and runs the same steps in the same order while the output is enabled; its duration depends on
+    /// the layers under the finger.
     // Not inlined: a caller that is built for size would compile the tick for size too, and make it slow.
     #[inline(never)]
     pub fn tick(&mut self, sense: &Sense) -> Drive {
         self.tick = self.tick.wrapping_add(1);
         self.arm_switch = sense.arm_switch;
 
-        // Check what stops the output: a fault, the end of the finger's track, the host timeout, a lift.
+        // Leave if anything stops the output: a fault (amplifier, monitor, arm switch, or raised by the board), no
+        // Active state (Stop, Disarm, host timeout), no track (lift, expiry), no scene.
         self.supervisor.check(sense, self.dac_code);
-        if self.deadline_tick.is_some_and(|tick| is_past(tick, self.tick)) {
-            self.meet_deadline();
+        if self.expiry_tick.is_some_and(|tick| is_past(tick, self.tick)) {
+            self.handle_expiry();
         }
         #[cfg(feature = "stream")]
         self.advance_stream();
@@ -137,8 +154,9 @@ impl<'a> Ticker<'a> {
         let elapsed_s = self.elapsed_s(track);
         self.inputs.set_place(track.place_m(elapsed_s), self.tick);
         self.inputs.velocity_m_per_s = track.velocity_m_per_s(elapsed_s);
-        let gain = track.ramp.gain_at(self.tick);
-        let friction_n = gain * self.active.electric_friction_n(&self.inputs, self.pool, &mut self.clicks);
+        let standstill_gain = track.ramp.gain_at(self.tick);
+        let friction_n = standstill_gain * self.active.electric_friction_n(&self.inputs, self.pool, &mut self.clicks);
+        // Zero for a friction that is not a number.
         let target_v_rms = table.voltage_v_rms(friction_n);
         if is_out_of_reach(friction_n, table) {
             self.counters.saturated_ticks = self.counters.saturated_ticks.wrapping_add(1);
@@ -169,26 +187,27 @@ impl<'a> Ticker<'a> {
             self.stop_stream();
         }
         self.clicks.lift();
-        self.envelope.silence();
-        self.carrier.rest(&self.active.carrier);
+        self.envelope.reset_to_zero();
+        self.carrier.reset_to_zero(&self.active.carrier);
         self.electric_friction_n = 0.0;
         self.target_v_rms = 0.0;
         self.dac_code = DacCode::ZERO;
-        Drive::default()
+        Drive { dac_code: DacCode::ZERO, amplifier_enable: false }
     }
 
-    /// Drops a finger whose track has ended, and disarms if the host timeout has passed.
+    /// Drops a finger whose track has expired, and disarms if the host timeout has passed.
     #[cold]
     #[inline(never)]
-    fn meet_deadline(&mut self) {
+    fn handle_expiry(&mut self) {
         self.finger.expire(self.tick);
         self.supervisor.expire(self.tick);
-        self.find_deadline();
+        self.find_next_expiry();
     }
 
-    /// Finds the next deadline. Must be called after every change of the track, the state or the host timeout.
-    fn find_deadline(&mut self) {
-        self.deadline_tick = match (self.finger.until_tick(), self.supervisor.host_deadline_tick()) {
+    /// Finds the next expiry. Called after every order and every expiry; a fault may leave it early, which costs one
+    /// extra call of [`Self::handle_expiry`].
+    fn find_next_expiry(&mut self) {
+        self.expiry_tick = match (self.finger.until_tick(), self.supervisor.host_expiry_tick()) {
             (Some(finger_tick), Some(host_tick)) => Some(earlier(finger_tick, host_tick)),
             (finger_tick, host_tick) => finger_tick.or(host_tick),
         };

@@ -22,7 +22,7 @@ impl<'a> Ticker<'a> {
             }
             order => self.apply_host_order(order),
         };
-        self.find_deadline();
+        self.find_next_expiry();
         spare
     }
 

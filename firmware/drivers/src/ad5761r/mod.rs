@@ -57,7 +57,7 @@ impl<E> Error<E> {
 impl<E: fmt::Debug> fmt::Display for Error<E> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Spi(error) => write!(f, "the DAC's bus failed: {error:?}"),
+            Self::Spi(error) => write!(f, "the DAC's bus failed: {error:?}; check SCLK, SDI and SDO"),
             Self::Configuration(Control(found)) => write!(
                 f,
                 "the DAC's control register reads {found:#06x} instead of its configuration; \

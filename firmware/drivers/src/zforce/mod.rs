@@ -45,10 +45,14 @@ pub enum Error<E> {
 impl<E: fmt::Debug> fmt::Display for Error<E> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::I2c(error) => write!(f, "the touch frame's bus failed: {error:?}"),
-            Self::DataReady => f.write_str("the touch frame's data-ready pin could not be read"),
+            Self::I2c(error) => write!(f, "the touch frame's bus failed: {error:?}; check its supply, SCL and SDA"),
+            Self::DataReady => f.write_str("the touch frame's data-ready pin could not be read; check its wire"),
             Self::Length([transport, len]) => {
-                write!(f, "the touch frame sent {transport:#04x}, {len} in front of a message: expected 0xee, 1 to 127")
+                write!(
+                    f,
+                    "the touch frame sent {transport:#04x}, {len} in front of a message, expected 0xee, 1 to 127; \
+                     check SCL and SDA, and restart the frame"
+                )
             }
         }
     }

@@ -27,7 +27,7 @@ pub fn read_limits(bytes: &[u8; LIMITS_LEN], limits: &BoardLimits) -> Option<Boa
     let [version, numbers @ ..] = words else { return None };
     let mut numbers = numbers.iter().map(|number| f32::from_le_bytes(*number));
     let plausible = numbers.clone().all(|number| number > 0.0 && number < NUMBER_MAX);
-    let kept = BoardLimits {
+    let limits = BoardLimits {
         voltage_max_v_peak: numbers.next()?,
         full_scale_v_peak: numbers.next()?,
         edge_time_constant_s: numbers.next()?,
@@ -36,9 +36,10 @@ pub fn read_limits(bytes: &[u8; LIMITS_LEN], limits: &BoardLimits) -> Option<Boa
         current_max_a_peak: numbers.next()?,
         ..*limits
     };
-    let plausible =
-        plausible && kept.voltage_max_v_peak <= kept.full_scale_v_peak && kept.voltage_max_v_peak <= VOLTAGE_MAX_V_PEAK;
-    (u32::from_le_bytes(*version) == VERSION && plausible).then_some(kept)
+    let plausible = plausible
+        && limits.voltage_max_v_peak <= limits.full_scale_v_peak
+        && limits.voltage_max_v_peak <= VOLTAGE_MAX_V_PEAK;
+    (u32::from_le_bytes(*version) == VERSION && plausible).then_some(limits)
 }
 
 /// The numbers that are measured during bring-up, in the order in which they are stored.
@@ -62,7 +63,7 @@ mod tests {
 
     #[test]
     fn limits_come_back_as_they_were() {
-        let kept = BoardLimits {
+        let limits = BoardLimits {
             voltage_max_v_peak: 120.0,
             full_scale_v_peak: 201.5,
             edge_time_constant_s: 23e-6,
@@ -71,7 +72,7 @@ mod tests {
             current_max_a_peak: 2e-3,
             ..DEFAULTS
         };
-        assert_eq!(read_limits(&write_limits(&kept), &DEFAULTS), Some(kept));
+        assert_eq!(read_limits(&write_limits(&limits), &DEFAULTS), Some(limits));
     }
 
     #[test]

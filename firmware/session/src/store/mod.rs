@@ -4,18 +4,18 @@
 //! Each is stored in a [`Slot`] of two copies. A new copy replaces the older one: its pages are erased, then its
 //! content is written, and last its header, with CRC-32s over both. A power cut at any byte therefore leaves one good
 //! copy, which [`Slot::find`] finds. No function waits: [`Writer::step`] begins one operation of the flash at a time,
-//! and [`SceneKeeper`] does so only while the board is disarmed.
+//! and [`SceneStore`] does so only while the board is disarmed.
 //!
 //! A board implements the [`Flash`] trait.
 
 mod copy;
-mod keeper;
 mod limits;
+mod scene_store;
 mod writer;
 
 pub use copy::{Found, Slot};
-pub use keeper::SceneKeeper;
 pub use limits::{LIMITS_LEN, read_limits, write_limits};
+pub use scene_store::SceneStore;
 pub use writer::{Writer, Writing};
 
 /// Bytes that the flash writes at once: a double word on the STM32G4 (RM0440, 3.3.7).

@@ -12,13 +12,13 @@ pub struct SimulatedFlash {
     pub bytes: Vec<u8>,
     /// Words that cannot be read, because they were half written when the power went, or half erased.
     torn: Vec<bool>,
-    /// Bytes of operations until the power goes; `None` for power that stays.
+    /// Bytes of operations until the power fails; `None` if it does not.
     pub power_left: Option<usize>,
     /// Bytes of operations that were done.
     pub done: usize,
     /// Calls of `operation` for which an operation is busy.
     busy: u32,
-    /// `operation` has told that the last one ended.
+    /// `operation` has reported the end of the last one.
     seen_to_end: bool,
     pub operations_fail: bool,
     failed: bool,
@@ -57,8 +57,8 @@ impl SimulatedFlash {
         Self { power_left: None, done: 0, busy: 0, ..self.clone() }
     }
 
-    /// Does one byte of an operation; `false` when the power went before it.
-    fn spend(&mut self) -> bool {
+    /// Performs one byte of an operation; returns `false` if power failed first.
+    fn perform_byte(&mut self) -> bool {
         match &mut self.power_left {
             Some(0) => false,
             Some(left) => {
@@ -90,7 +90,7 @@ impl Flash for SimulatedFlash {
         (self.busy, self.failed, self.seen_to_end) = (3, self.operations_fail, false);
         let start = page as usize * PAGE_LEN;
         for at in start..start + PAGE_LEN {
-            if !self.spend() {
+            if !self.perform_byte() {
                 if at == start {
                     return;
                 }
@@ -113,7 +113,7 @@ impl Flash for SimulatedFlash {
         assert_eq!(start % WORD_LEN, 0);
         assert!(self.bytes[start..start + WORD_LEN].iter().all(|byte| *byte == 0xff), "{start} is not erased");
         for (at, byte) in (start..).zip(word) {
-            if !self.spend() {
+            if !self.perform_byte() {
                 if at > start {
                     self.bytes[at] &= self.noise.byte();
                     self.torn[at / WORD_LEN] = true;

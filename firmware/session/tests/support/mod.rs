@@ -1,4 +1,4 @@
-//! A board on the desk: session and ticker, spoken to in frames.
+//! A board of session and ticker, to which tests send frames.
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,
@@ -29,7 +29,7 @@ use frixel_wire::scene::bitmap_crc32;
 /// Most polls that a commit takes.
 pub const COMMIT_POLLS_MAX: u32 = 128;
 
-/// What the two halves of a board share; lives longer than the [`Desk`].
+/// What the two halves of a board share; lives longer than the [`TestBoard`].
 pub struct Memory {
     pool: BitmapPool,
     actives: [Active; 2],
@@ -48,7 +48,7 @@ impl Memory {
     }
 }
 
-pub struct Desk<'a> {
+pub struct TestBoard<'a> {
     pub session: Session<'a>,
     pub ticker: Ticker<'a>,
     /// What the board sees when a test says nothing else: switch held, and a monitor that reads right.
@@ -66,7 +66,7 @@ pub struct Desk<'a> {
     sequence: u16,
 }
 
-impl<'a> Desk<'a> {
+impl<'a> TestBoard<'a> {
     pub fn new(memory: &'a mut Memory) -> Self {
         Self::of(Board::SIMULATOR, memory)
     }
@@ -91,7 +91,7 @@ impl<'a> Desk<'a> {
             ticker.attach_stream(&memory.stream);
             session.attach_stream(&memory.stream);
         }
-        let mut desk = Self {
+        let mut test_board = Self {
             ticker,
             session,
             sense: Sense { arm_switch: true, ..Sense::default() },
@@ -105,15 +105,16 @@ impl<'a> Desk<'a> {
             sequence: 0,
         };
         // The arm switch is released at the first tick and held from the second on.
-        desk.ticks(2);
-        desk
+        test_board.ticks(2);
+        test_board
     }
 
     pub fn status(&self) -> Status {
         self.ticker.status()
     }
 
-    /// One tick with [`Desk::touch`] and [`Desk::sense`], in the order of the rigs: touch, one order, tick, answers.
+    /// One tick with [`TestBoard::touch`] and [`TestBoard::sense`], in the order of the rigs: touch, one order, tick,
+    /// answers.
     pub fn tick(&mut self) -> Drive {
         if let Some(touch) = self.touch.take() {
             self.session.touch(touch, self.status().telemetry.tick.wrapping_add(1));
@@ -153,22 +154,22 @@ impl<'a> Desk<'a> {
     /// Bytes in, and a round of the main loop.
     pub fn send(&mut self, bytes: &[u8]) {
         self.session.receive(bytes, &self.ticker.status());
-        self.obey();
+        self.deliver_orders();
         self.poll();
     }
 
     fn poll(&mut self) {
         self.session.poll(&self.ticker.status());
-        self.obey();
+        self.deliver_orders();
         self.collect();
     }
 
     /// Hands all of the session's orders to the ticker, as if there had been as many ticks.
-    pub fn obey(&mut self) {
+    pub fn deliver_orders(&mut self) {
         while self.session.hand_order_to(&mut self.ticker) {}
     }
 
-    pub fn greet(&mut self) -> Hello {
+    pub fn hello(&mut self) -> Hello {
         let mut frame = [0; FRAME_MAX_LEN];
         let frame = payload::hello_request_frame(&mut frame).unwrap().to_vec();
         self.send(&frame);
@@ -240,7 +241,7 @@ impl<'a> Desk<'a> {
 
     /// From power-on to a playing scene.
     pub fn play(&mut self, scene: &[u8]) {
-        self.greet();
+        self.hello();
         self.load(scene).unwrap();
         self.command(Command::Arm).unwrap();
         self.command(Command::Play).unwrap();

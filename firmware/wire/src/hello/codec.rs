@@ -44,7 +44,7 @@ impl fmt::Display for HelloError {
             Self::Magic { found } => {
                 write!(f, "a hello begins with {MAGIC:02x?}, this one with {found:02x?}: is it a frixel board?")
             }
-            Self::Truncated { len } => write!(f, "the hello ends too early, after {len} bytes: ask again"),
+            Self::Truncated { len } => write!(f, "the hello is truncated after {len} bytes: request it again"),
         }
     }
 }

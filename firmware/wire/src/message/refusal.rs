@@ -270,18 +270,13 @@ impl fmt::Display for Refusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::UnknownCommand => f.write_str("the board does not know this command: flash newer firmware"),
-            Self::WrongState(state) => f.write_str(match state {
-                State::Disarmed => "the board is disarmed: arm it before it is told to play or stop",
-                State::Armed => "the board is armed and does not play: let it play first, or disarm it",
-                State::Active => "the board is playing: stop it first",
-                State::Faulted => "a fault is latched on the board: clear it first",
-            }),
+            Self::WrongState(state) => f.write_str(wrong_state(state)),
             Self::Faulted(fault) => write!(f, "a fault is latched on the board: {fault}"),
             Self::NoScene => f.write_str("the board holds no scene: upload and commit one first"),
             Self::UploadIncomplete { next_chunk } => write!(
                 f,
-                "no upload is complete: the board waits for chunk {next_chunk}, go on from there or start the \
-                 upload again"
+                "no upload is complete: the board waits for chunk {next_chunk}, continue there or start the upload \
+                 again"
             ),
             Self::CrcMismatch { expected, found } => {
                 write!(f, "CRC-32 {expected:#010x} was announced, what arrived has {found:#010x}: upload it again")
@@ -291,57 +286,70 @@ impl fmt::Display for Refusal {
             }
             Self::BitmapPoolFull { len, free } => write!(
                 f,
-                "the bitmap has {len} bytes, the board has {free} to give: use a smaller picture or a coarser pitch"
+                "the bitmap has {len} bytes, the board has {free} free: use a smaller picture or a coarser pitch"
             ),
             Self::BitmapMissing { crc32 } => {
                 write!(f, "the scene uses bitmap {crc32:#010x}, which the board does not hold: upload it first")
             }
             Self::Scene(error) => error.fmt(f),
             Self::Config(refusal) => refusal.fmt(f),
-            Self::Busy => f.write_str(
-                "the board has not finished earlier commands, or still plays the previous \
-                 scene: try again",
-            ),
+            Self::Busy => {
+                f.write_str("the board has not finished earlier commands, or still plays the previous scene: try again")
+            }
             Self::TelemetryTooFast { period_min_ticks } => write!(
                 f,
-                "the board sends telemetry every {period_min_ticks} ticks at most: ask for a longer period, or \
-                 for zero to end it"
+                "the shortest telemetry period is {period_min_ticks} ticks: request a longer one, or 0 to end it"
             ),
             Self::ArmSwitch => f.write_str(
-                "the arm switch was not pressed since the board was last disarmed: \
-                 release it, press and hold it, and arm again",
+                "the arm switch was not pressed since the board was last disarmed: release it, press and hold it, \
+                 and arm again",
             ),
-            Self::FeatureDisabled { layer: ConfigRefusal::WHOLE_SCENE } => {
-                f.write_str("the firmware was built without the carrier of the scene: flash one that has it")
-            }
-            Self::FeatureDisabled { layer } => write!(
-                f,
-                "the firmware was built without what layer {layer} (the first is 0) needs: flash one that has it"
-            ),
-            Self::TouchSource => {
-                f.write_str("the board has a touch source of its own: do not send it where the finger is")
-            }
+            Self::FeatureDisabled { layer } => fmt_feature_disabled(f, layer),
+            Self::TouchSource => f.write_str("the board has a touch source of its own: send it no touch reports"),
             Self::NoSuchLayer { layer, layers } => write!(
                 f,
-                "the playing scene has no layer {layer} (the first is 0), it has {layers}: name one of those, \
-                 or commit the scene that is meant"
+                "the playing scene has no layer {layer} (counted from 0), it has {layers}: name one of those, or \
+                 commit the scene that is meant"
             ),
             Self::NoStreamLayer => {
                 f.write_str("no layer of the playing scene is a stream: add one to the scene, or send no samples")
             }
-            Self::TooCostly { cycles, cycles_max, x_m, y_m } => write!(
-                f,
-                "a tick would take about {cycles} cycles at {:.1} mm, {:.1} mm, and may take {cycles_max}: let \
-                 fewer layers meet there",
-                1e3 * x_m,
-                1e3 * y_m
-            ),
+            Self::TooCostly { cycles, cycles_max, x_m, y_m } => fmt_too_costly(f, cycles, cycles_max, [x_m, y_m]),
             Self::LayersFixed => f.write_str(
-                "the playing scene says that its layers stay as they are: say `live = true` in those that are \
-                 to change, and commit it again",
+                "the playing scene declares its layers fixed: set `live = true` in those that are to change, and \
+                 commit it again",
             ),
         }
     }
+}
+
+fn wrong_state(state: State) -> &'static str {
+    match state {
+        State::Disarmed => "the board is disarmed: arm it before play or stop",
+        State::Armed => "the board is armed and does not play: let it play first, or disarm it",
+        State::Active => "the board is playing: stop it first",
+        State::Faulted => "a fault is latched on the board: clear it first",
+    }
+}
+
+fn fmt_feature_disabled(f: &mut fmt::Formatter<'_>, layer: u8) -> fmt::Result {
+    if layer == ConfigRefusal::WHOLE_SCENE {
+        return f.write_str("the firmware was built without the carrier of the scene: flash one that has it");
+    }
+    write!(
+        f,
+        "the firmware was built without a feature that layer {layer} (counted from 0) needs: flash one that has it"
+    )
+}
+
+fn fmt_too_costly(f: &mut fmt::Formatter<'_>, cycles: u32, cycles_max: u32, [x_m, y_m]: [f32; 2]) -> fmt::Result {
+    write!(
+        f,
+        "a tick would take about {cycles} cycles at {:.1} mm, {:.1} mm, and may take {cycles_max}: let fewer layers \
+         meet there",
+        1e3 * x_m,
+        1e3 * y_m
+    )
 }
 
 impl core::error::Error for ConfigRefusal {}

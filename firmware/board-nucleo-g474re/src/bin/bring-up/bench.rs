@@ -35,10 +35,10 @@ impl Bench {
     }
 
     /// Logs what to do, and waits for the button with the output at zero.
-    pub(crate) fn ask(&mut self, what: &str) {
+    pub(crate) fn prompt(&mut self, what: &str) {
         self.output.zero();
         println!("");
-        println!("{=str} Then press the blue button.", what);
+        println!("{=str} Then press the blue button to continue.", what);
         self.wait_for_button(|_| ());
     }
 

@@ -40,7 +40,7 @@ pub(crate) fn continues_after(last_reset: &LastReset) -> bool {
         error!("fault {=u8} was injected, {=u8} was stored", expected.number(), found.map_or(0, Fault::number));
     }
     if are_done() {
-        info!("all faults were kept; begin again, and go on with step 7 after step 6");
+        info!("all faults were stored; restart, and continue with step 7 after step 6");
         return false;
     }
     true

@@ -41,30 +41,31 @@ fn main() -> ! {
     println!("");
     println!("frixel bring-up. Read docs/hardware.md first: this board drives hundreds of volts.");
 
-    bench.ask("1. Nothing is connected but USB.");
+    bench.prompt("1. Nothing is connected but USB.");
     stop_unless(bench.one_shot());
 
-    bench.ask("2. Connect the DAC, and a voltmeter to its output. The amplifier stays disconnected.");
+    bench.prompt("2. Connect the DAC, and a voltmeter to its output. The amplifier stays disconnected.");
     stop_unless(bench.dac());
 
-    bench.ask("3. Connect amplifier and arm switch, supply off. The electrode stays disconnected.");
+    bench.prompt("3. Connect amplifier and arm switch, supply off. The electrode stays disconnected.");
     bench.inputs();
 
-    bench
-        .ask("4. Switch the amplifier's supply on, a high-voltage probe on its output. Hold the arm switch meanwhile.");
+    bench.prompt(
+        "4. Switch the amplifier's supply on, a high-voltage probe on its output. Hold the arm switch meanwhile.",
+    );
     for peak_v in [10.0, 25.0, 50.0] {
         stop_unless(bench.square(peak_v));
     }
 
-    bench.ask("5. Connect series resistor and a capacitor of the electrode's worst case instead of the electrode.");
+    bench.prompt("5. Connect series resistor and a capacitor of the electrode's worst case instead of the electrode.");
     stop_unless(bench.edge());
 
-    bench.ask("6. Switch the amplifier's supply off. The board will panic, fault and hang, and restart each time.");
+    bench.prompt("6. Switch the amplifier's supply off. The board will panic, fault and hang, and restart each time.");
     if !fault_injection::are_done() {
         fault_injection::next();
     }
 
-    bench.ask("7. The limits that were built in are stored.");
+    bench.prompt("7. The limits that were built in are stored.");
     store::limits();
     info!("done: flash the firmware with `cargo run --release`");
     loop {

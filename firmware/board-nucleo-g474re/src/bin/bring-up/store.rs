@@ -32,7 +32,7 @@ pub(crate) fn limits() {
 fn write(flash: &mut BankTwo, limits: &BoardLimits) {
     let bytes = write_limits(limits);
     if read_limits(&bytes, &LIMITS).is_none() {
-        error!("these limits are none that a board can have, and were not stored");
+        error!("no board can have these limits: they were not stored");
         return;
     }
     let found = LIMITS_SLOT.find(flash);

@@ -5,15 +5,15 @@ use crate::Session;
 
 /// A new scene is written after the board has been disarmed with it for this time, in s. A page bears some 10,000
 /// erasures; the delay avoids wear by a host that commits, arms and plays, or that tries one scene after another.
-const SETTLED_AFTER_S: u32 = 2;
+const STORE_AFTER_S: u32 = 2;
 
 /// Keeps the last scene over power-off.
-pub struct SceneKeeper {
+pub struct SceneStore {
     slot: Slot,
-    settled_after_ticks: u32,
+    store_after_ticks: u32,
     found: Option<Found>,
     /// CRC-32 of the scene that is stored, or that could not be stored.
-    settled_crc32: Option<u32>,
+    stored_crc32: Option<u32>,
     pending: Option<Pending>,
     failures: u32,
 }
@@ -25,7 +25,7 @@ struct Pending {
     writer: Option<Writer>,
 }
 
-impl SceneKeeper {
+impl SceneStore {
     /// Finds the scene that is stored in `slot`, and commits it in `session`, which then orders the ticker to load it.
     /// This does not arm the board.
     pub fn new<F: Flash>(slot: Slot, tick_hz: u32, flash: &F, session: &mut Session) -> Self {
@@ -33,53 +33,53 @@ impl SceneKeeper {
         if let Some(found) = &found {
             session.restore(|offset, bytes| slot.read(flash, found, offset, bytes));
         }
-        let settled_crc32 = session.crc32_to_store();
-        let settled_after_ticks = SETTLED_AFTER_S * tick_hz;
-        Self { slot, settled_after_ticks, found, settled_crc32, pending: None, failures: 0 }
+        let stored_crc32 = session.crc32_to_store();
+        let store_after_ticks = STORE_AFTER_S * tick_hz;
+        Self { slot, store_after_ticks, found, stored_crc32, pending: None, failures: 0 }
     }
 
     /// Does the next small step without waiting; call it repeatedly. A write under way is abandoned as soon as the
     /// board is armed or has another scene.
     pub fn step<F: Flash>(&mut self, flash: &mut F, session: &Session, now_tick: u32) {
-        let Some(kept) = session.scene_to_store().filter(|kept| Some(kept.crc32()) != self.settled_crc32) else {
+        let Some(scene) = session.scene_to_store().filter(|scene| Some(scene.crc32()) != self.stored_crc32) else {
             self.pending = None;
             // Let an operation that began before arming end: polling it locks the flash again.
             let _ = flash.operation();
             return;
         };
-        let begun = Pending { crc32: kept.crc32(), since_tick: now_tick, writer: None };
+        let begun = Pending { crc32: scene.crc32(), since_tick: now_tick, writer: None };
         let pending = match &mut self.pending {
-            Some(pending) if pending.crc32 == kept.crc32() => pending,
+            Some(pending) if pending.crc32 == scene.crc32() => pending,
             other => other.insert(begun),
         };
-        if now_tick.wrapping_sub(pending.since_tick) < self.settled_after_ticks {
+        if now_tick.wrapping_sub(pending.since_tick) < self.store_after_ticks {
             let _ = flash.operation();
             return;
         }
         let writing = match &mut pending.writer {
-            Some(writer) => writer.step(flash, |offset| kept.word(offset)),
-            none => {
-                *none = Writer::new::<F>(self.slot, self.found.as_ref(), kept.len_to_keep());
-                if none.is_some() { Writing::UnderWay } else { Writing::Failed }
+            Some(writer) => writer.step(flash, |offset| scene.word(offset)),
+            writer_slot => {
+                *writer_slot = Writer::new::<F>(self.slot, self.found.as_ref(), scene.len_to_keep());
+                if writer_slot.is_some() { Writing::UnderWay } else { Writing::Failed }
             }
         };
         match writing {
             Writing::UnderWay => {}
             Writing::Done(found) => {
                 self.found = Some(found);
-                self.settled_crc32 = Some(kept.crc32());
+                self.stored_crc32 = Some(scene.crc32());
             }
             Writing::Failed => {
                 self.failures = self.failures.wrapping_add(1);
                 // Do not try again: a page that has failed is likely to fail again.
-                self.settled_crc32 = Some(kept.crc32());
+                self.stored_crc32 = Some(scene.crc32());
             }
         }
     }
 
     /// CRC-32 of the scene that is stored, or that could not be stored; `None` if nothing is stored.
-    pub fn settled_crc32(&self) -> Option<u32> {
-        self.settled_crc32
+    pub fn stored_crc32(&self) -> Option<u32> {
+        self.stored_crc32
     }
 
     /// How often the flash failed or a scene did not fit.

@@ -75,7 +75,7 @@ impl Commands<'_> {
     }
 
     #[cfg(not(feature = "stream"))]
-    #[allow(clippy::unused_self, reason = "with the feature it is asked")]
+    #[allow(clippy::unused_self, reason = "used when the feature is enabled")]
     fn has_stream(&self) -> bool {
         false
     }
