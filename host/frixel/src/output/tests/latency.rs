@@ -16,21 +16,26 @@ use frixel_scene::{Program, compile};
 const LATENCIES_MS: [u32; 10] = [5, 10, 15, 20, 25, 30, 35, 40, 45, 50];
 const SEEDS: [u64; 5] = [1, 2, 3, 4, 5];
 /// Stroke, whether the tick predicts, colour.
-const CURVES: [(&str, bool, RGBColor); 4] = [
+const CURVES: [(&str, bool, RGBColor); 6] = [
     ("constant 100 mm/s", true, PALETTE[0]),
     ("minimum jerk", true, PALETTE[1]),
     ("constant 100 mm/s, no prediction", false, PALETTE[5]),
     ("minimum jerk, no prediction", false, PALETTE[4]),
+    ("people, median 100 mm/s", true, PALETTE[2]),
+    ("people, no prediction", false, PALETTE[3]),
 ];
 
 fn path(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs").join(name)
 }
 
-fn stroke(name: &str) -> Stroke {
+/// The stroke of a curve; people differ from seed to seed.
+fn stroke(name: &str, seed: u64) -> Stroke {
     let (start, end) = (Point { x_m: 0.004, y_m: 0.03 }, Point { x_m: 0.116, y_m: 0.045 });
     if name.starts_with("constant") {
         Stroke::constant_speed(start, end, 0.1).unwrap()
+    } else if name.starts_with("people") {
+        Stroke::human(0.12, 0.11, 1.5, Some(0.1), seed).unwrap()
     } else {
         Stroke::minimum_jerk(start, end, 1.2).unwrap()
     }
@@ -48,7 +53,7 @@ fn errors(program: &Program, name: &str, latency_ms: u32) -> Errors {
     let mut rig = RigConfig::default();
     rig.world.touch.latency_s = 1e-3 * f64::from(latency_ms);
     let summaries = SEEDS.map(|seed| {
-        let stroke = stroke(name);
+        let stroke = stroke(name, seed);
         let seconds = stroke.duration_s();
         let simulation = Simulation { rig, stroke, seconds, seed, ticks_per_row: 40_000 };
         simulate(program, &simulation, None).unwrap().recorder.summary()
