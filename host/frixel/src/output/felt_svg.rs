@@ -269,3 +269,27 @@ fn envelope_of(places: &[(f64, f64)], piece_s: f64) -> Vec<(f64, f64)> {
     upper.extend(lower);
     upper
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_axis_leaves_out_where_a_finger_turns() {
+        let span = |least: f64| Span {
+            start_s: 0.0,
+            end_s: 0.0,
+            wanted_n: None,
+            asked_n: None,
+            felt_n: Some(Extremes { least, largest: least + 0.01 }),
+            voltage_v_rms: None,
+            way_mm: 0.0,
+            layer: None,
+        };
+        let spans = [0.0, 0.25, 0.24, -0.26, 0.26].map(span);
+        let felt: Part = |span| span.felt_n;
+        assert_eq!(extremes(&spans, felt).unwrap().least.to_bits(), (-0.26_f64).to_bits());
+        assert_eq!(while_sliding(&spans, felt), Some(Extremes { least: 0.24, largest: 0.27 }));
+        assert_eq!(while_sliding(&[], felt), None);
+    }
+}
