@@ -230,7 +230,9 @@ proptest! {
         };
         let first = run(seed);
         prop_assert_eq!(&first, &run(seed));
-        prop_assert!(first.iter().all(|(_, felt)| felt.friction_n >= 0.25 && felt.friction_n < 0.35));
+        // The largest code drives 200 V.
+        let most_n = 0.25 + 1.001 * example_finger().unwrap().electric_friction_n(200.0);
+        prop_assert!(first.iter().all(|(_, felt)| felt.friction_n >= 0.25 && felt.friction_n < most_n));
     }
 }
 
@@ -252,7 +254,7 @@ fn a_natural_world_is_the_same_for_the_same_seed_and_has_another_finger_for_anot
 fn the_last_friction_of_a_natural_run_is_the_one_it_was() {
     let last = *natural_run(1, 20_000).last().unwrap();
     let bits = [last.friction_n, last.natural_friction_n, last.mean_square_v2].map(f64::to_bits);
-    assert_eq!(bits, [4_598_260_095_951_725_871, 4_597_954_213_826_141_275, 4_669_351_140_877_307_118]);
+    assert_eq!(bits, [4_598_905_268_221_903_569, 4_597_954_213_826_141_275, 4_669_351_140_877_307_118]);
 }
 
 /// Takes one effect from a world as it is in another.

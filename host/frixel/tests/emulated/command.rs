@@ -41,7 +41,7 @@ fn a_scene_plays_on_the_emulated_board() {
     assert_eq!(json["ticks"], 20_000);
     // Both need what the board reports of every tick.
     assert!(json["saturated_ticks"].is_null() && json["inversion_error_rms_n"].is_null());
-    // The in-process rig has 8 mN on the first strokes of the brick; with the output at zero it would be over 40.
+    // The first strokes of the brick are within 9 mN on every rig; with the output at zero it would be 22.
     let error_n = json["friction_error_rms_n"].as_f64().unwrap();
     assert!((1e-6..15e-3).contains(&error_n), "{error_n} N rms");
 
@@ -49,7 +49,7 @@ fn a_scene_plays_on_the_emulated_board() {
     let rows: Vec<Vec<&str>> = felt.lines().skip(1).map(|line| line.split(',').collect()).collect();
     assert_eq!(rows.len(), 500);
     let largest = |column: usize| rows.iter().filter_map(|row| row[column].parse::<f64>().ok()).fold(0.0, f64::max);
-    assert!((0.30..0.38).contains(&largest(6)), "felt {} N at most", largest(6));
+    assert!((0.33..0.37).contains(&largest(6)), "felt {} N at most", largest(6));
     assert!((50.0..200.0).contains(&largest(7)), "{} V rms at most", largest(7));
     for name in ["felt.svg", "scene.png"] {
         assert!(fs::metadata(folder.path().join("frixel-out").join(name)).unwrap().len() > 10_000);
