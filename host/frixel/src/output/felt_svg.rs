@@ -53,7 +53,7 @@ fn friction(spans: &[Span], reach: &Reach) -> Panel {
         if felt { ("felt", |span| span.felt_n) } else { ("commanded", |span| span.asked_n) };
     let first: Part = |span| span.wanted_n;
     let (natural_mn, most_mn) = (1e3 * reach.friction_min_n(), 1e3 * reach.friction_max_n());
-    let drawn = [extremes(spans, first), extremes(spans, second)].into_iter().flatten();
+    let drawn = [while_sliding(spans, first), while_sliding(spans, second)].into_iter().flatten();
     let (low, high) = drawn
         .fold((natural_mn, most_mn), |(low, high), range| (low.min(1e3 * range.least), high.max(1e3 * range.largest)));
     let (start, end) = times(spans);
@@ -131,6 +131,15 @@ fn times(spans: &[Span]) -> (f64, f64) {
 /// The extremes over all spans.
 fn extremes(spans: &[Span], part: Part) -> Option<Extremes> {
     spans.iter().filter_map(part).reduce(Extremes::joined)
+}
+
+/// The extremes over the spans in which friction is at least half of its median. Where a finger lands or turns, its
+/// friction goes through zero within micrometres, which would leave little of the axis for the scene.
+fn while_sliding(spans: &[Span], part: Part) -> Option<Extremes> {
+    let mut lows: Vec<f64> = spans.iter().filter_map(part).map(|range| range.least).collect();
+    lows.sort_by(f64::total_cmp);
+    let median = lows.get(lows.len() / 2).copied()?;
+    spans.iter().filter_map(part).filter(|range| range.least >= 0.5 * median).reduce(Extremes::joined)
 }
 
 /// How to draw one quantity of the spans.
@@ -259,4 +268,28 @@ fn envelope_of(places: &[(f64, f64)], piece_s: f64) -> Vec<(f64, f64)> {
     lower.reverse();
     upper.extend(lower);
     upper
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_axis_leaves_out_where_a_finger_turns() {
+        let span = |least: f64| Span {
+            start_s: 0.0,
+            end_s: 0.0,
+            wanted_n: None,
+            asked_n: None,
+            felt_n: Some(Extremes { least, largest: least + 0.01 }),
+            voltage_v_rms: None,
+            way_mm: 0.0,
+            layer: None,
+        };
+        let spans = [0.0, 0.25, 0.24, -0.26, 0.26].map(span);
+        let felt: Part = |span| span.felt_n;
+        assert_eq!(extremes(&spans, felt).unwrap().least.to_bits(), (-0.26_f64).to_bits());
+        assert_eq!(while_sliding(&spans, felt), Some(Extremes { least: 0.24, largest: 0.27 }));
+        assert_eq!(while_sliding(&[], felt), None);
+    }
 }
