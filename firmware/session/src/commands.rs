@@ -123,7 +123,11 @@ impl<'a> Commands<'a> {
             #[cfg(feature = "stream")]
             Ok(Payload::Samples { first_index, samples }) => {
                 self.host_heard = true;
-                self.take_samples(first_index, samples);
+                // Samples behind a `StartStream` that waits for a commit belong to a stream that has not begun.
+                let starts = |waiting: &Request| matches!(waiting.command, Command::StartStream { .. });
+                if !self.waiting.iter().any(starts) {
+                    self.take_samples(first_index, samples);
+                }
                 self.report_stream(status, queue);
             }
             // Without the feature, samples are ignored, but they restart the host timeout.
@@ -143,15 +147,20 @@ impl<'a> Commands<'a> {
     /// refuses the requests that do: an Arm or a Play that was sent before it must not take effect after it.
     fn take_request(&mut self, request: Request, status: &Status, queue: &mut TransmitQueue) {
         if matches!(request.command, Command::Stop | Command::Disarm) {
-            while let Some(waiting) = self.waiting.pop_front() {
-                self.answer(waiting.sequence, Err(Refusal::Busy), queue);
-            }
+            self.refuse_waiting(queue);
         }
         let must_keep_order = self.commit.is_some() || !self.waiting.is_empty();
         if !must_keep_order || may_overtake_a_commit(request.command) {
             self.carry_out(request, status, queue);
         } else if self.waiting.push_back(request).is_err() {
             self.answer(request.sequence, Err(Refusal::Busy), queue);
+        }
+    }
+
+    /// Refuses the requests that wait for a commit.
+    pub(crate) fn refuse_waiting(&mut self, queue: &mut TransmitQueue) {
+        while let Some(waiting) = self.waiting.pop_front() {
+            self.answer(waiting.sequence, Err(Refusal::Busy), queue);
         }
     }
 

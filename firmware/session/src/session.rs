@@ -80,8 +80,9 @@ impl<'a> Session<'a> {
     /// at least once a telemetry period, and pass on touch reports, orders and bytes between two calls.
     pub fn poll(&mut self, status: &Status) {
         self.commands.tracker.expire(status.telemetry.tick);
-        self.commands.step_commit(status, &mut self.queue);
+        // First, so that a request that waited for the commit meets the state that the board is in.
         self.commands.report_state(status, &mut self.queue);
+        self.commands.step_commit(status, &mut self.queue);
         #[cfg(feature = "stream")]
         self.commands.report_stream(status, &mut self.queue);
         if cfg!(feature = "telemetry")

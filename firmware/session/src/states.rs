@@ -22,6 +22,10 @@ impl<'a> Commands<'a> {
             let fault = status.fault.filter(|_| self.state == State::Faulted).map(|(fault, _)| fault);
             let flags = Flags(status.telemetry.flags.0 & Flags::HOST_SILENT.0);
             queue.send(&FromBoard::StateChanged { state: self.state, fault, flags });
+            // An Arm or a Play that was sent before the board disarmed itself must not take effect after it.
+            if matches!(self.state, State::Disarmed | State::Faulted) {
+                self.refuse_waiting(queue);
+            }
         }
     }
 

@@ -21,7 +21,7 @@ use stream::StreamProgress;
 
 pub use stream::{StreamSettings, StreamStatus};
 
-/// Longest time between pings when nothing else is sent: a quarter of a scene's default host timeout, 250 ms.
+/// Longest time between pings when nothing else is sent: just under a quarter of the default host timeout of 250 ms.
 const PING_PERIOD_MAX: Duration = Duration::from_millis(60);
 /// Shortest time between pings: a quarter of the shortest host timeout, 20 ms. Safe for every scene.
 const PING_PERIOD_MIN: Duration = Duration::from_millis(5);

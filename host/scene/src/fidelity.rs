@@ -22,6 +22,8 @@ pub const BAND_END_HZ: f64 = 400.0;
 const STRETCH_MIN: usize = 1000;
 /// Delays that are tried, in samples: from 10 ms early to 100 ms late.
 const DELAYS: std::ops::RangeInclusive<i32> = -40..=400;
+/// Correlation at a delay below which it says nothing.
+const CORRELATION_MIN: f64 = 0.1;
 /// Samples of the mean from which rates are taken: a quarter of a period at [`BAND_END_HZ`].
 const RATE_SAMPLES: usize = 10;
 
@@ -40,11 +42,11 @@ pub struct FidelitySample {
 /// How faithfully friction was felt.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Fidelity {
-    /// Rms error below 40 Hz over the rms of the reference without its mean.
+    /// Rms error below 40 Hz over the rms of the reference, both without their means.
     pub error_below_40_hz: f64,
     /// Correlation of felt and reference below 40 Hz.
     pub correlation_below_40_hz: f64,
-    /// Rms error below 40 Hz in Weber fractions of the mean reference.
+    /// Rms error below 40 Hz, its mean included, in Weber fractions of the mean reference.
     pub error_weber: f64,
     /// Power of the reference over that of the error below 40 Hz, dB.
     pub snr_below_40_hz_db: f64,
@@ -82,11 +84,11 @@ impl Fidelity {
             Some(weber_steps(low_n?, high_n?))
         };
         let (felt_steps, reference_steps) = (contrast(|sample| sample.felt_n)?, contrast(|sample| sample.reference_n)?);
-        let delay_s = f64::from(powers.delay()) / SAMPLE_HZ;
+        let delay_s = powers.delay() / SAMPLE_HZ;
         Some(Self {
             error_below_40_hz: (powers.error_low / powers.reference_low).sqrt(),
             correlation_below_40_hz: powers.cross_low / (powers.reference_low * powers.felt_low).sqrt(),
-            error_weber: (powers.error_low / powers.weight).sqrt() / (WEBER_FRACTION * mean_n),
+            error_weber: ((powers.error_low + powers.error_mean) / powers.weight).sqrt() / (WEBER_FRACTION * mean_n),
             snr_below_40_hz_db: 10.0 * libm::log10(powers.reference_low / powers.error_low),
             snr_above_40_hz_db: 10.0 * libm::log10(powers.reference_high / powers.error_high),
             contrast_weber_steps: felt_steps,
@@ -108,6 +110,8 @@ struct Powers {
     reference_high: f64,
     felt_low: f64,
     error_low: f64,
+    /// Square of the mean error, which the spectrum leaves out.
+    error_mean: f64,
     error_high: f64,
     /// Covariance of felt and reference.
     cross_low: f64,
@@ -133,6 +137,8 @@ impl Powers {
         self.reference_high += sum(&reference, border, end);
         self.felt_low += sum(&felt, 0, border);
         self.error_low += sum(&error, 0, border);
+        let mean_n = touch.iter().map(|sample| sample.felt_n - sample.reference_n).sum::<f64>() / weight;
+        self.error_mean += weight * mean_n * mean_n;
         self.error_high += sum(&error, border, end);
         let pairs = reference.bins.iter().zip(&felt.bins).take(border);
         let cross: Vec<_> = pairs.map(|(reference, felt)| felt * reference.conj()).collect();
@@ -148,10 +154,11 @@ impl Powers {
         }
     }
 
-    /// The delay of the largest covariance, in samples.
-    fn delay(&self) -> i32 {
-        let delays = self.delayed.iter().zip(DELAYS);
-        delays.max_by(|(one, _), (other, _)| one.total_cmp(other)).map_or(0, |(_, delay)| delay)
+    /// The delay of the largest covariance, in samples; not-a-number where felt and reference have nothing in common.
+    fn delay(&self) -> f64 {
+        let likeness = CORRELATION_MIN * (self.reference_low * self.felt_low).sqrt();
+        let delays = self.delayed.iter().zip(DELAYS).filter(|(covariance, _)| **covariance > likeness);
+        delays.max_by(|(one, _), (other, _)| one.total_cmp(other)).map_or(f64::NAN, |(_, delay)| f64::from(delay))
     }
 }
 
@@ -235,6 +242,10 @@ mod tests {
     fn a_flat_output_keeps_no_contrast_and_a_short_touch_has_no_score() {
         let flat = scored(|_| 0.25);
         assert!(flat.contrast_kept.abs() < 1e-12 && flat.error_below_40_hz > 0.99, "{flat:?}");
+        assert!(flat.delay_ms.is_nan(), "{flat:?}");
+        // 50 mN too little, and the rms of the grating.
+        let rms_n = 0.05_f64.hypot(0.02 / 2.0_f64.sqrt());
+        assert!((flat.error_weber / (rms_n / 0.033) - 1.0).abs() < 0.01, "{flat:?}");
         assert_eq!(Fidelity::of(&[FidelitySample::default(); 100]), None);
     }
 }

@@ -259,7 +259,7 @@ impl Centred {
         self.ring.clear();
     }
 
-    /// The difference for the value that came half a period before this one, once there is a whole window.
+    /// Adds a value; returns the difference of the value half a period earlier, or `None` until the window is full.
     fn push(&mut self, value: f64) -> Option<f64> {
         self.ring.push(value);
         let ends = 0.5 * (self.ring.ago(0) + self.ring.ago(2 * self.half));

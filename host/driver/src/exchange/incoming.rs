@@ -112,8 +112,9 @@ impl<L: Link> Exchange<L> {
 
     /// Stores telemetry. Ignores a second message of the same tick.
     fn take_telemetry(&mut self, telemetry: Telemetry) -> Result<(), DeviceError> {
-        let passed = self.telemetry_tick.map(|last_tick| telemetry.tick.wrapping_sub(last_tick) as i32);
-        match (self.telemetry_tick, passed) {
+        let before = self.telemetry_tick.replace(telemetry.tick);
+        let passed = before.map(|last_tick| telemetry.tick.wrapping_sub(last_tick) as i32);
+        match (before, passed) {
             (Some(_), Some(0)) => return Ok(()),
             (Some(last_tick), Some(passed)) if passed < 0 => {
                 let (port, tick) = (self.link.name().into(), telemetry.tick);
@@ -121,7 +122,6 @@ impl<L: Link> Exchange<L> {
             }
             _ => {}
         }
-        self.telemetry_tick = Some(telemetry.tick);
         self.push_event(Event::Telemetry(telemetry));
         Ok(())
     }

@@ -41,7 +41,7 @@ pub(crate) struct FakeBoard {
     pub(crate) reset_at: Option<Duration>,
     /// The state changes at this time, as when the host was silent.
     pub(crate) falls_to: Option<(Duration, State)>,
-    /// Bytes that it sends by itself at this time.
+    /// Unsolicited bytes, and when to send them.
     pub(crate) says_at: Option<(Duration, Vec<u8>)>,
     /// Samples of the stream under way, and how many of them have been played: so many more at every ping.
     pub(crate) samples: Vec<u16>,

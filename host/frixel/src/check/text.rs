@@ -52,7 +52,7 @@ impl SceneCheck {
                 reach.natural_n, reach.total_max_n, reach.electric_max_n, reach.voltage_max_v_rms
             ),
         );
-        line("asked for", format!("{:.4} to {:.4} N in total{suffix}", asked.least_n, asked.most_n));
+        line("targets", format!("{:.4} to {:.4} N in total{suffix}", asked.least_n, asked.most_n));
         line("out of reach", out_of_reach(&asked.above, &asked.below));
         for warning in &self.warnings {
             line("warning", warning.clone());
@@ -64,7 +64,7 @@ impl SceneCheck {
             line("note", note.clone());
         }
         for left_out in &self.left_out {
-            line("left out", left_out.clone());
+            line("optimised away", left_out.clone());
         }
         if let Some(board) = &self.board {
             let features = if board.features.is_empty() { "none".to_owned() } else { board.features.join(", ") };

@@ -104,7 +104,7 @@ fn residuals_path(output: &Path) -> PathBuf {
 }
 
 /// Parses a quantity above zero.
-fn positive(text: &str) -> Result<f64, String> {
+pub(super) fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
         _ => Err("expected a number above 0".into()),

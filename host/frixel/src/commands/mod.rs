@@ -62,7 +62,7 @@ enum Command {
     Sim(SimArgs),
     /// List the serial ports.
     Ports,
-    /// Say what board is at a port.
+    /// Identify the board at a port.
     Info(InfoArgs),
     /// Record the way of a finger on a board, as a stroke.
     Record(record::RecordArgs),
@@ -87,7 +87,7 @@ enum Command {
 
 #[derive(Debug, Args)]
 struct DemoArgs {
-    /// Folder for what the demo writes.
+    /// Output folder.
     #[arg(long, default_value = "frixel-out")]
     out: PathBuf,
 }
@@ -109,13 +109,13 @@ struct PlayArgs {
     /// until Ctrl-C.
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     seconds: Option<f64>,
-    /// Folder for what is written.
+    /// Output folder.
     #[arg(long, default_value = "frixel-out")]
     out: PathBuf,
     /// Print one JSON object in place of the summary.
     #[arg(long)]
     json: bool,
-    /// Seed of all that is random in the simulator.
+    /// Seed of the simulator's random numbers.
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Simulate a world without load changes, noise, pre-sliding, leakage, offsets, and lost touch reports. Without it,
@@ -149,7 +149,7 @@ struct PlayArgs {
     /// little-endian.
     #[arg(long, value_name = "FILE.wav")]
     stream: Option<PathBuf>,
-    /// Samples a second on standard input.
+    /// Sample rate of standard input, in Hz.
     #[arg(long, value_name = "HZ")]
     stream_hz: Option<u32>,
 }
@@ -158,10 +158,10 @@ struct PlayArgs {
 struct SimArgs {
     #[command(flatten)]
     stroke: StrokeArgs,
-    /// Folder for what is written.
+    /// Output folder.
     #[arg(long, default_value = "frixel-out")]
     out: PathBuf,
-    /// Seed of all that is random.
+    /// Seed of the simulator's random numbers.
     #[arg(long, default_value_t = 1)]
     seed: u64,
 }

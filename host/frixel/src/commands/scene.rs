@@ -11,7 +11,7 @@ use super::error::CommandError;
 
 #[derive(Debug, Subcommand)]
 pub(super) enum SceneCommand {
-    /// Say what a scene costs and what of it can be felt.
+    /// Report a scene's cost, reach and what can be felt of it.
     ///
     /// Every mistake is reported, with line and column. A scene that no board can play is refused by the number that is
     /// exceeded.

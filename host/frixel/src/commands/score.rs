@@ -18,14 +18,14 @@ pub(super) struct ScoreArgs {
     scene: PathBuf,
     #[command(flatten)]
     profiles: ProfileArgs,
-    /// Where the finger goes: `human` for drawn people, `natural` for even strokes, or a CSV file with the columns
+    /// Where the finger goes: `human` for randomly generated people, `natural` for even strokes, or a CSV file with the columns
     /// `t_s,x_mm,y_mm`.
     #[arg(long, default_value = "human", value_name = "human|natural|FILE.csv")]
     stroke: String,
     /// Number of human strokes.
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u64).range(1..=1000))]
     strokes: u64,
-    /// Plays of each stroke, each with other noise.
+    /// Repetitions of each stroke, each with its own noise seed.
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u64).range(1..=1000))]
     seeds: u64,
     /// Length of a generated stroke.
@@ -34,7 +34,7 @@ pub(super) struct ScoreArgs {
     /// Median speed of human strokes. Without it, each person has their own.
     #[arg(long, value_name = "MM_PER_S", value_parser = median_speed, allow_negative_numbers = true)]
     median_speed_mm_per_s: Option<f64>,
-    /// The touch source: reports a second.
+    /// Report rate of the touch source, in Hz.
     #[arg(long, default_value = "100")]
     touch: TouchSource,
     /// Simulate a world without noise, load changes, losses and offsets.

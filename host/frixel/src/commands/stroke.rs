@@ -53,10 +53,10 @@ pub(super) struct StrokeArgs {
     /// End of a straight stroke, in mm.
     #[arg(long, value_name = "X,Y", value_parser = place_mm, requires = "from")]
     to: Option<Point>,
-    /// Mean speed of a straight stroke, in mm/s; 100 unless you say otherwise.
+    /// Mean speed of a straight stroke, in mm/s. Default: 100.
     #[arg(long, value_name = "MM_PER_S", value_parser = speed_m_per_s, requires = "from")]
     speed: Option<f64>,
-    /// How many times the finger goes along a straight stroke, back and forth; once unless you say otherwise.
+    /// How many times the finger goes along a straight stroke, back and forth. Default: 1.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000), requires = "from")]
     times: Option<u32>,
     /// Start and end a straight stroke at rest, as a hand does (minimum jerk), rather than at constant speed.

@@ -128,7 +128,7 @@ fn times(spans: &[Span]) -> (f64, f64) {
     }
 }
 
-/// The extremes over all spans.
+/// Least and largest value of `part` over all spans; `None` if no span has it.
 fn extremes(spans: &[Span], part: Part) -> Option<Extremes> {
     spans.iter().filter_map(part).reduce(Extremes::joined)
 }

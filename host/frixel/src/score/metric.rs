@@ -1,5 +1,7 @@
 //! The numbers of a score, and what a person notices of them.
 
+use std::f64::consts::FRAC_1_SQRT_2;
+
 use frixel_scene::fidelity::Fidelity;
 use frixel_scene::perception::{NATURAL_NOISE_RMS_N, weber_steps_safe};
 use serde::Serialize;
@@ -166,8 +168,9 @@ pub(super) const METRICS: [Metric; 11] = [
         factor: 1e3,
         value: |fidelity| fidelity.spurious_40_to_400_hz_n,
         human: || {
-            let meaning = "a finger's own noise (one finger, romangrigorii/data-driven-playback)";
-            Some(Human { value: 1e3 * NATURAL_NOISE_RMS_N, meaning })
+            let meaning = "a finger's own noise there (one finger, romangrigorii/data-driven-playback)";
+            // A decade of noise that falls as 1/f has half of the power of the two decades that were measured.
+            Some(Human { value: 1e3 * NATURAL_NOISE_RMS_N * FRAC_1_SQRT_2, meaning })
         },
     },
 ];

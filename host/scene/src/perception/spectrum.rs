@@ -12,7 +12,7 @@ const SPREAD_BINS: usize = 2;
 /// Half width of a component, as a factor of its frequency: a sixth of an octave on either side.
 const SIXTH_OF_OCTAVE: f64 = 1.122_462_048_309_373;
 
-/// A component of a signal: a sine, or what a third of an octave of noise amounts to.
+/// A spectral component: a sine, or the noise of a third of an octave as a sine of the same power.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Component {
     pub(super) frequency_hz: f64,

@@ -4,7 +4,7 @@ use super::super::file::describe;
 use super::super::grammar::{Holds, KnownField, KnownTable};
 use super::super::tables::layer::KIND;
 
-/// A text around the fields of a table, and the field that the table stands in.
+/// Scene text into which fields are inserted, between `before` and `after`; `key` is the field that holds the table.
 pub(in super::super) struct Tables<'t> {
     pub(in super::super) before: &'t str,
     pub(in super::super) after: &'t str,

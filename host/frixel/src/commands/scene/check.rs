@@ -17,7 +17,7 @@ pub(in super::super) struct CheckArgs {
     scene: PathBuf,
     #[command(flatten)]
     profiles: ProfileArgs,
-    /// Say what the smallest firmware that plays it is built with.
+    /// Also report the smallest firmware build that plays it.
     #[arg(long)]
     board: bool,
     /// Print one JSON object in place of the summary; of a scene with mistakes, all of them.

@@ -22,7 +22,7 @@ pub(in super::super) struct PreviewArgs {
     /// The picture, a PNG file.
     #[arg(short, long, value_name = "FILE.png")]
     output: PathBuf,
-    /// How fast the finger slides: only curves of speed ask for it.
+    /// Sliding speed; it only affects `speed` layers.
     #[arg(long, value_name = "MM_PER_S", default_value_t = 100.0, value_parser = speed, allow_negative_numbers = true)]
     speed_mm_per_s: f64,
     /// Largest width of the map, in pixels.
