@@ -293,6 +293,23 @@ fn a_stop_or_disarm_refuses_the_requests_that_wait_for_a_commit() {
 }
 
 #[test]
+fn a_board_that_stops_by_itself_refuses_the_requests_that_wait_for_a_commit() {
+    let mut memory = Memory::new();
+    let scene = constant(0.01);
+    let mut board = with_uploaded_scene(&mut memory, &scene);
+    board.command(Command::Arm).unwrap();
+    let bytes = [request(901, Command::Commit { crc32: crc32(&scene) }), request(902, Command::Play)];
+    board.session.receive(&bytes.concat(), &board.status());
+    board.sense.amplifier_fault = true;
+    board.tick();
+    assert_eq!(board.status().telemetry.state, State::Faulted);
+    assert_eq!(board.take_answer(902).unwrap().outcome, Err(Refusal::Busy));
+    board.sense.amplifier_fault = false;
+    board.ticks(COMMIT_POLLS_MAX);
+    assert_eq!(board.status().telemetry.state, State::Faulted, "nothing that was sent before clears it");
+}
+
+#[test]
 fn eight_requests_wait_for_a_commit_and_further_ones_are_refused() {
     let mut memory = Memory::new();
     let scene = constant(0.01);
