@@ -114,8 +114,7 @@ pub fn weber_steps_safe() -> f64 {
 /// The smallest amplitude of a sinusoidal tangential force that is felt, N; `None` where there is no measurement.
 ///
 /// It is the displacement threshold times the magnitude of the fingertip's tangential impedance, `|k + 2 pi i f c|`,
-/// interpolated in the logarithms of frequency and displacement. It holds within a factor of
-/// [`THRESHOLD_UNCERTAINTY`].
+/// interpolated in the logarithms of frequency and displacement. It holds within a factor of 3.
 pub fn texture_threshold_n(frequency_hz: f64) -> Option<f64> {
     let pair = DISPLACEMENT_THRESHOLD_UM.windows(2).find_map(|pair| match pair {
         [from, to] if (from.0..=to.0).contains(&frequency_hz) => Some((*from, *to)),
