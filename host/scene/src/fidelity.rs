@@ -8,6 +8,7 @@
 use rustfft::num_complex::Complex;
 use serde::Serialize;
 
+use crate::percentile::percentiles;
 use crate::perception::{WEBER_FRACTION, weber_steps};
 use crate::recorder::FingerState;
 use crate::spectrum::Spectrum;
@@ -80,8 +81,8 @@ impl Fidelity {
         let mean_n = mean(|sample| sample.reference_n);
         let speed_m_per_s = mean(|sample| sample.finger.map_or(0.0, |finger| finger.speed_m_per_s));
         let contrast = |value: fn(&FidelitySample) -> f64| {
-            let [low_n, high_n] = [5, 95].map(|percent| percentile(scored.iter().map(value).collect(), percent));
-            Some(weber_steps(low_n?, high_n?))
+            let [low_n, high_n] = percentiles(scored.iter().map(value).collect(), [5, 95])?;
+            Some(weber_steps(low_n, high_n))
         };
         let (felt_steps, reference_steps) = (contrast(|sample| sample.felt_n)?, contrast(|sample| sample.reference_n)?);
         let delay_s = powers.delay() / SAMPLE_HZ;
@@ -169,13 +170,7 @@ fn peak_rate(touches: &[&[FidelitySample]], value: fn(&FidelitySample) -> f64) -
         let later = sums.iter().skip(RATE_SAMPLES);
         sums.iter().zip(later).map(|(from, to)| (to - from).abs()).collect::<Vec<f64>>()
     });
-    percentile(rates.collect(), 99)
-}
-
-/// The value below which this percentage of the values lie.
-fn percentile(mut values: Vec<f64>, percent: usize) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len().checked_sub(1)? * percent / 100).copied()
+    percentiles(rates.collect(), [99]).map(|[rate]| rate)
 }
 
 #[cfg(test)]

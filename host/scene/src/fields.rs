@@ -7,11 +7,12 @@ pub(super) use values::TableOrText;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use super::compile_error::CompileError;
 use super::grammar::{Absence, FieldSpec, KnownField, KnownTable};
 use super::log::Log;
 use super::mistake::Mistake;
 use super::nearest::Nearest;
-use super::source::Places;
+use super::source::{Places, Source};
 
 /// A table that is being read. Every field that the parser reads becomes known; [`Fields::close`] reports the others.
 pub(super) struct Fields<'i> {
@@ -25,6 +26,25 @@ pub(super) struct Fields<'i> {
     either: Vec<[&'static str; 2]>,
     /// The fields of the table follow from a word that was misspelt.
     pub(super) is_guess: bool,
+}
+
+/// Reads the text of a file: `read` gets its fields, and messages call the whole text `table` and the file `name`.
+pub(super) fn read_text<T>(
+    text: &str,
+    name: &str,
+    table: &str,
+    read: impl FnOnce(Fields, &mut Log, &Source) -> Option<T>,
+) -> Result<T, CompileError> {
+    let source = Source::new(name, text);
+    let mut log = Log::new(&source);
+    let value = match DeTable::parse(text) {
+        Ok(values) => read(Fields::new(table, 0, values.into_inner()), &mut log, &source),
+        Err(error) => {
+            log.add(error.span().map_or(0, |span| span.start), Mistake::Syntax(error.message().to_owned()));
+            None
+        }
+    };
+    log.finish(value)
 }
 
 impl<'i> Fields<'i> {

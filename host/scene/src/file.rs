@@ -6,7 +6,7 @@ use frixel_layers::Leader;
 use toml::de::DeTable;
 
 use super::compile_error::CompileError;
-use super::fields::Fields;
+use super::fields::{Fields, read_text};
 use super::files::Files;
 use super::finger::FingerProfile;
 use super::grammar::KnownTable;
@@ -76,16 +76,7 @@ impl Scene {
     /// Reads the text of a scene file. Messages call the file `name`; `files` provides the pictures and profiles that
     /// the file names.
     pub fn parse(text: &str, name: &str, files: &dyn Files) -> Result<Self, CompileError> {
-        let source = Source::new(name, text);
-        let mut log = Log::new(&source);
-        let scene = match DeTable::parse(text) {
-            Ok(table) => read(Fields::new("the scene", 0, table.into_inner()), files, &mut log, &source),
-            Err(error) => {
-                log.add(error.span().map_or(0, |span| span.start), Mistake::Syntax(error.message().to_owned()));
-                None
-            }
-        };
-        let mut scene = log.finish(scene)?;
+        let mut scene = read_text(text, name, "the scene", |fields, log, source| read(fields, files, log, source))?;
         scene.pictures = scene.picture_names().map(|name| (name.to_owned(), files.bytes(name))).collect();
         Ok(scene)
     }

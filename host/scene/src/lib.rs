@@ -54,6 +54,7 @@ mod mistake;
 mod nearest;
 mod optimisation;
 mod optimise;
+mod percentile;
 pub mod perception;
 mod picture;
 mod played_finger;

@@ -8,13 +8,8 @@ mod read;
 mod tests;
 mod write;
 
-use toml::de::DeTable;
-
 use super::compile_error::CompileError;
-use super::fields::Fields;
-use super::log::Log;
-use super::mistake::Mistake;
-use super::source::Source;
+use super::fields::read_text;
 
 pub(super) use read::read;
 
@@ -147,16 +142,7 @@ impl Evidence {
 impl FingerProfile {
     /// Reads the text of a finger profile. Messages call the file `name`.
     pub fn parse(text: &str, name: &str) -> Result<Self, CompileError> {
-        let source = Source::new(name, text);
-        let mut log = Log::new(&source);
-        let profile = match DeTable::parse(text) {
-            Ok(table) => read(Fields::new("this finger profile", 0, table.into_inner()), &mut log),
-            Err(error) => {
-                log.add(error.span().map_or(0, |span| span.start), Mistake::Syntax(error.message().to_owned()));
-                None
-            }
-        };
-        log.finish(profile)
+        read_text(text, name, "this finger profile", |fields, log, _| read(fields, log))
     }
 
     /// The text of the profile as a file of its own, which [`Self::parse`] reads back to an equal profile.

@@ -17,6 +17,7 @@ use frixel_layers::Layer;
 use serde::Serialize;
 
 use crate::Program;
+use crate::percentile::percentiles;
 use crate::reach::loaded_contact;
 use crate::reference::Reference;
 use slide::Slide;
@@ -26,7 +27,7 @@ pub use thresholds::{
 };
 
 /// Sliding speeds at which textures are judged, m/s: slow, usual and fast exploration.
-const SPEEDS_M_PER_S: [f64; 3] = [0.02, 0.05, 0.1];
+const SPEEDS_M_PER_S: [f64; 3] = [0.02, USUAL_M_PER_S, 0.1];
 /// The speed at which contrasts are judged, m/s.
 const USUAL_M_PER_S: f64 = 0.05;
 /// Samples a second of the friction along a slide: four times the highest frequency with a threshold.
@@ -81,10 +82,7 @@ pub struct Step {
 impl Step {
     /// From the 5th to the 95th percentile of frictions, in newtons; `None` without any.
     fn within(friction_n: &[f64]) -> Option<Self> {
-        let mut sorted_n = friction_n.to_vec();
-        sorted_n.sort_by(f64::total_cmp);
-        let percentile_n = |percent: usize| sorted_n.get((sorted_n.len().checked_sub(1)? * percent) / 100).copied();
-        Some(Self::new(percentile_n(5)?, percentile_n(95)?))
+        percentiles(friction_n.to_vec(), [5, 95]).map(|[low_n, high_n]| Self::new(low_n, high_n))
     }
 
     /// The step from one total friction to another, in newtons.
@@ -165,12 +163,12 @@ fn of_layer(layer: usize, reference: &Reference, program: &Program) -> Option<La
     let frictions_n = |speed_m_per_s: f64| -> Vec<Vec<f64>> {
         slides.iter().map(|slide| slide.friction_n(reference, program, speed_m_per_s, SAMPLE_HZ)).collect()
     };
-    let usual_n = frictions_n(USUAL_M_PER_S);
+    let slides_n = SPEEDS_M_PER_S.map(frictions_n);
+    let [_, usual_n, _] = &slides_n;
     let contrasts = usual_n.iter().filter_map(|friction_n| Step::within(friction_n));
     let contrast = contrasts.max_by(|one, other| one.contrast_n.total_cmp(&other.contrast_n))?;
-    let textures = SPEEDS_M_PER_S.into_iter().filter_map(|speed_m_per_s| {
-        let textures = frictions_n(speed_m_per_s).into_iter();
-        let textures = textures.filter_map(|friction_n| Texture::of(&friction_n, speed_m_per_s));
+    let textures = SPEEDS_M_PER_S.into_iter().zip(&slides_n).filter_map(|(speed_m_per_s, frictions_n)| {
+        let textures = frictions_n.iter().filter_map(|friction_n| Texture::of(friction_n, speed_m_per_s));
         textures.max_by(|one, other| one.amplitude_n.total_cmp(&other.amplitude_n))
     });
     let all_n = usual_n.concat();

@@ -6,13 +6,8 @@ mod read;
 #[cfg(test)]
 mod tests;
 
-use toml::de::DeTable;
-
 use super::compile_error::CompileError;
-use super::fields::Fields;
-use super::log::Log;
-use super::mistake::Mistake;
-use super::source::Source;
+use super::fields::read_text;
 
 pub(super) use read::{read, read_v1};
 
@@ -61,16 +56,7 @@ impl Slab {
 impl Screen {
     /// Reads the text of a screen's file. Messages call the file `name`.
     pub fn parse(text: &str, name: &str) -> Result<Self, CompileError> {
-        let source = Source::new(name, text);
-        let mut log = Log::new(&source);
-        let screen = match DeTable::parse(text) {
-            Ok(table) => read(Fields::new("this screen", 0, table.into_inner()), &mut log),
-            Err(error) => {
-                log.add(error.span().map_or(0, |span| span.start), Mistake::Syntax(error.message().to_owned()));
-                None
-            }
-        };
-        log.finish(screen)
+        read_text(text, name, "this screen", |fields, log, _| read(fields, log))
     }
 
     /// The screen that a scene gets when it does not say which: 120 mm by 80 mm, [`Slab::EXAMPLE`], no limits of its
