@@ -7,7 +7,7 @@ pub(super) use values::TableOrText;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::compile_error::CompileError;
+use super::compile_error::{CompileError, Located};
 use super::grammar::{Absence, FieldSpec, KnownField, KnownTable};
 use super::log::Log;
 use super::mistake::Mistake;
@@ -35,6 +35,19 @@ pub(super) fn read_text<T>(
     table: &str,
     read: impl FnOnce(Fields, &mut Log, &Source) -> Option<T>,
 ) -> Result<T, CompileError> {
+    match read_text_partly(text, name, table, read) {
+        (Some(value), mistakes) if mistakes.is_empty() => Ok(value),
+        (_, mistakes) => Err(CompileError { file: name.to_owned(), mistakes }),
+    }
+}
+
+/// Reads the text of a file as [`read_text`] does, and returns what `read` makes of it beside the mistakes.
+pub(super) fn read_text_partly<T>(
+    text: &str,
+    name: &str,
+    table: &str,
+    read: impl FnOnce(Fields, &mut Log, &Source) -> Option<T>,
+) -> (Option<T>, Vec<Located>) {
     let source = Source::new(name, text);
     let mut log = Log::new(&source);
     let value = match DeTable::parse(text) {
@@ -44,7 +57,7 @@ pub(super) fn read_text<T>(
             None
         }
     };
-    log.finish(value)
+    (value, log.into_mistakes())
 }
 
 impl<'i> Fields<'i> {

@@ -80,7 +80,7 @@ mod tick_cost;
 mod touched_layers;
 mod warning;
 
-pub use compile::compile;
+pub use compile::{compile, compile_draft};
 pub use compile_error::{CompileError, Located};
 pub use file::Scene;
 pub use files::{FileUnavailable, Files};

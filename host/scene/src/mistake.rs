@@ -246,7 +246,7 @@ pub enum Mistake {
         "{asking} up to {asked_n} N {reference}, and at {voltage_v_rms} V rms this finger feels at most {reach_n} N \
          {reference}: {}lower it, {}or write `saturate = true` under [drive] to have it clamped",
         if *.may_be_millinewtons { "were mN meant? 1 mN is 0.001 N; " } else { "" },
-        if *.can_raise_voltage { "raise `voltage_max_v_rms`, " } else { "" },
+        if *.voltage_helps { "raise `voltage_max_v_rms`, " } else { "" },
     )]
     AboveReach {
         /// The layer or layers, with the verb.
@@ -259,8 +259,8 @@ pub enum Mistake {
         voltage_v_rms: f64,
         /// The largest friction that can be reached, rounded down, N.
         reach_n: f64,
-        /// Whether a larger `voltage_max_v_rms` may help. It does not if screen or board limits the voltage already.
-        can_raise_voltage: bool,
+        /// Whether a larger `voltage_max_v_rms` would reach the target, within the limits of screen and board.
+        voltage_helps: bool,
         /// Whether the number is in reach if it was meant in millinewtons.
         may_be_millinewtons: bool,
     },

@@ -19,6 +19,8 @@ use super::reach::Reach;
 /// which is rounded to `f32`.
 const NATURAL_ROUNDING: f64 = 1e-6;
 pub(crate) const MM: f64 = 1e-3;
+/// How often the pitch of a draft's picture is doubled until the picture fits.
+const COARSER_MAX: u32 = 5;
 
 /// Compiles layers to records, and collects the points and bitmaps that they name.
 pub(crate) struct Lowering<'a, 's> {
@@ -70,7 +72,9 @@ impl<'a, 's> Lowering<'a, 's> {
         let Lowered { layer: record_layer, outline } = layer.kind.lower(layer, self)?;
         let region = match layer.region.clone().or(outline) {
             Some(region) => {
-                place::check_on_screen(self.scene, layer, region.bounds(), self.log);
+                let is_on_screen = place::check_on_screen(self.scene, layer, region.bounds(), self.log);
+                let screen = self.scene.screen();
+                let region = if is_on_screen { region } else { region.clipped(screen.width_mm, screen.height_mm)? };
                 self.region(layer, &region, &record_layer)?
             }
             None => RecordRegion::Screen,
@@ -86,7 +90,17 @@ impl<'a, 's> Lowering<'a, 's> {
         visible: Option<Rectangle>,
     ) -> Option<Placed> {
         let screen = (self.scene.screen().width_mm, self.scene.screen().height_mm);
-        self.pool.place(layer, bitmap, visible, screen, self.log, &mut self.notes)
+        let placed = self.pool.place(layer, bitmap, visible, screen, self.log, &mut self.notes);
+        let Some(Mistake::PoolTooSmall { pitch_mm, .. }) = self.log.last().filter(|_| placed.is_none()) else {
+            return placed;
+        };
+        // A draft plays it coarser; the mistake stands.
+        let (mut pitch_mm, mut coarser, mut log) = (*pitch_mm, bitmap.clone(), self.log.scratch());
+        (0..COARSER_MAX).find_map(|_| {
+            coarser.pitch_mm = pitch_mm;
+            pitch_mm *= 2.0;
+            self.pool.place(layer, &coarser, visible, screen, &mut log, &mut self.notes)
+        })
     }
 
     /// An amount of the compiled scene: electric friction in newtons, or a factor.
@@ -105,6 +119,8 @@ impl<'a, 's> Lowering<'a, 's> {
                 place::rectangle(*rectangle, self.header, button)
             }
             Region::Ellipse(rectangle) => place::ellipse(*rectangle, self.header),
+            // An elliptic button that the screen's edge cuts has no rim.
+            Region::Polygon(_) if matches!(record_layer, RecordLayer::Button(_)) => return None,
             Region::Polygon(vertices) => {
                 let point = |(x_mm, y_mm): &(f64, f64)| Point { x: (x_mm * MM) as f32, y: (y_mm * MM) as f32 };
                 let (first, count) = self.points(layer, vertices.iter().map(point).collect())?;

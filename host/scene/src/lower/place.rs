@@ -24,8 +24,8 @@ pub(crate) fn turns(angle_deg: f64) -> f32 {
     (angle_deg / 360.0) as f32
 }
 
-/// Refuses a layer that extends past the screen.
-pub(crate) fn check_on_screen(scene: &Scene, layer: &Layer, rectangle: Rectangle, log: &mut Log) {
+/// Refuses a layer that extends past the screen. Returns whether it lies on the screen.
+pub(crate) fn check_on_screen(scene: &Scene, layer: &Layer, rectangle: Rectangle, log: &mut Log) -> bool {
     let (screen_width_mm, screen_height_mm) = (scene.screen().width_mm, scene.screen().height_mm);
     let past = [
         ("left", -rectangle.x_mm),
@@ -34,16 +34,16 @@ pub(crate) fn check_on_screen(scene: &Scene, layer: &Layer, rectangle: Rectangle
         ("bottom", rectangle.y_mm + rectangle.height_mm - screen_height_mm),
     ];
     let furthest = past.into_iter().max_by(|(_, one), (_, other)| one.total_cmp(other));
-    if let Some((edge, beyond_mm)) = furthest.filter(|(_, beyond_mm)| *beyond_mm > OFF_SCREEN_MM) {
-        let field = if layer.region.is_some() { "region" } else { "x_mm" };
-        // Round up to a micrometre, so that a move by this distance is enough.
-        let beyond_mm = (beyond_mm * 1e3 - 1e-6).ceil() / 1e3;
-        let layer_title = layer.title.clone();
-        log.add(
-            layer.places.field(field),
-            Mistake::OffScreen { layer: layer_title, edge, beyond_mm, screen_width_mm, screen_height_mm },
-        );
-    }
+    let Some((edge, beyond_mm)) = furthest.filter(|(_, beyond_mm)| *beyond_mm > OFF_SCREEN_MM) else { return true };
+    let field = if layer.region.is_some() { "region" } else { "x_mm" };
+    // Round up to a micrometre, so that a move by this distance is enough.
+    let beyond_mm = (beyond_mm * 1e3 - 1e-6).ceil() / 1e3;
+    let layer_title = layer.title.clone();
+    log.add(
+        layer.places.field(field),
+        Mistake::OffScreen { layer: layer_title, edge, beyond_mm, screen_width_mm, screen_height_mm },
+    );
+    false
 }
 
 /// The region of a rectangle. If it covers the whole screen, the region is the screen, which costs the board nothing. A

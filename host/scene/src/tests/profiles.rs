@@ -23,7 +23,7 @@ fn parse(text: &str) -> Result<Scene, CompileError> {
         ("latin.toml".to_owned(), vec![0xff]),
     ]);
     let scene = Scene::parse(text, "test.toml", &files);
-    schema::check_agrees(text, scene.as_ref().err());
+    schema::check_agrees(text, mistakes(&scene));
     scene
 }
 
