@@ -149,6 +149,11 @@ pub(crate) enum CommandError {
     )]
     WatchInVirtualTime { port: String },
     #[error(
+        "--watch on the simulator plays anew after each change, and standard input can be read only once: leave out \
+         --control or --stream -, or start `frixel sim` and give its port"
+    )]
+    WatchReadsInputOnce,
+    #[error(
         "--watch sends a saved scene while it plays, and a stream runs dry meanwhile: leave out --watch or --stream"
     )]
     WatchWithStream,

@@ -56,7 +56,7 @@ fn stroke(program: &Program, seconds: f64) -> Vec<FeltRow> {
 }
 
 fn subject(name: &str) -> Subject {
-    Subject { name: name.to_owned(), simulated: true }
+    Subject { name: name.to_owned(), simulated: true, draft: false }
 }
 
 fn trace(rows: &[FeltRow]) -> Trace {
