@@ -162,6 +162,7 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
         excess::check(scene, &layers, raised_n, &mut program, log);
     }
     program.warnings = warning::of(scene, &program);
+    program.warnings.extend(lowered.warnings);
     let live: Vec<bool> = layers.iter().map(|layer| layer.live).collect();
     optimise(&mut program, &live);
     let Program { header, records, points, .. } = &mut program;

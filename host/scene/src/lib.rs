@@ -87,7 +87,7 @@ pub use files::{FileUnavailable, Files};
 pub use finger::{Elasticity, Evidence, Experiment, FingerProfile, Origin};
 pub use layer_map::{LayerError, LayerMap};
 pub use migrate::migrate;
-pub use mistake::Mistake;
+pub use mistake::{Mistake, TILDE_ADVICE};
 pub use nearest::Nearest;
 pub use optimisation::Optimisation;
 pub use played_finger::PlayedFinger;

@@ -4,6 +4,9 @@ use thiserror::Error;
 
 use super::nearest::Nearest;
 
+/// What to do about a path that starts with a tilde.
+pub const TILDE_ADVICE: &str = "only a shell replaces `~` by your folder, so write that folder's path in full";
+
 /// A mistake in a scene file. Its text is one sentence for the person who wrote the file.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
@@ -201,8 +204,9 @@ pub enum Mistake {
     },
     /// There is no file of this name.
     #[error(
-        "{what} \"{file}\" was not found in {folder}{}: paths start from the scene file's folder",
-        which_has(.nearest.as_deref())
+        "{what} \"{file}\" was not found in {folder}{}: {}",
+        which_has(.nearest.as_deref()),
+        if .file.starts_with('~') { TILDE_ADVICE } else { "paths start from the scene file's folder" }
     )]
     FileMissing {
         /// `picture`, `finger` or `screen`.

@@ -36,10 +36,18 @@ pub(crate) struct Placed {
     pub(crate) tiled: bool,
     /// The picture's outline; `None` for a tiled picture, which is not bounded.
     pub(crate) outline: Option<Region>,
+    /// Its height over its width, relative to that of its pixels.
+    pub(crate) height_factor: f64,
 }
 
 impl Placed {
-    fn new(bitmap: &BitmapLayer, whole: Rectangle, across: Axis, down: Axis, crc32: u32) -> Self {
+    fn new(
+        bitmap: &BitmapLayer,
+        picture: &Picture,
+        whole: Rectangle,
+        (across, down): (Axis, Axis),
+        crc32: u32,
+    ) -> Self {
         // A picture is turned about its centre.
         let (half_width_mm, half_height_mm) = (0.5 * whole.width_mm, 0.5 * whole.height_mm);
         let (middle_x_mm, middle_y_mm) = (whole.x_mm + half_width_mm, whole.y_mm + half_height_mm);
@@ -68,7 +76,8 @@ impl Placed {
             ])),
         };
         let angle_turns = (bitmap.angle_deg / 360.0) as f32;
-        Self { crc32, corner_mm, pitches_mm, angle_turns, tiled: bitmap.tiled, outline }
+        let height_factor = whole.height_mm / whole.width_mm * picture.width as f64 / picture.height as f64;
+        Self { crc32, corner_mm, pitches_mm, angle_turns, tiled: bitmap.tiled, outline, height_factor }
     }
 }
 
@@ -173,7 +182,7 @@ impl<'s> Pool<'s> {
             self.bitmaps.push(compiled);
         }
         notes.extend(note(&picture, bitmap, across, down));
-        Some(Placed::new(bitmap, whole, across, down, crc32))
+        Some(Placed::new(bitmap, &picture, whole, (across, down), crc32))
     }
 
     fn read(&self, layer: &Layer, bitmap: &BitmapLayer, log: &mut Log) -> Option<Picture> {

@@ -13,7 +13,7 @@ use frixel::report::ReportError;
 #[cfg(unix)]
 use frixel::rigs::ServerError;
 use frixel::rigs::StopReason;
-use frixel::scene_file::SceneFileError;
+use frixel::scene_file::{SceneFileError, check_path};
 use frixel::stream::FeedError;
 use frixel_driver::{DeviceError, PortError};
 #[cfg(unix)]
@@ -81,9 +81,11 @@ pub(crate) enum CommandError {
     InvalidRows { rows: String },
     #[error("{} is the input as well: writing it would destroy it; give --output another name", path.display())]
     OutputIsInput { path: PathBuf },
-    #[error("{} cannot be read ({source}): check the path", path.display())]
+    #[error("{} cannot be read ({source}): {}", path.display(), check_path(path, "check the path"))]
     Read { path: PathBuf, source: io::Error },
-    #[error("{} cannot be written ({source}): check the folder and its free space", path.display())]
+    #[error(
+        "{} cannot be written ({source}): {}", path.display(), check_path(path, "check the folder and its free space")
+    )]
     Write { path: PathBuf, source: io::Error },
     #[error("{} is not UTF-8 text: save it as UTF-8, a CSV file with the columns t_s,x_mm,y_mm", path.display())]
     StrokeNotText { path: PathBuf },
@@ -119,6 +121,8 @@ pub(crate) enum CommandError {
     NothingRecorded { path: PathBuf },
     #[error("{failed} of the checks of {port} failed; docs/hardware.md says what each part needs")]
     SelftestFailed { port: String, failed: usize },
+    #[error("\"{}\" has no name for a scene: give one such as wood, or scenes/wood.toml", name.display())]
+    SceneName { name: PathBuf },
     #[error("{} is there already, and is not overwritten: give another name, or remove it", path.display())]
     SceneExists { path: PathBuf },
     #[error("standard input has either the lines of --control or the samples of --stream -: give --stream a file")]

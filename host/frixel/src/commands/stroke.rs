@@ -149,7 +149,10 @@ fn note_ignored_columns(path: &Path, text: &str) {
     let ignored: Vec<&str> = names.filter(|name| !KNOWN_COLUMNS.contains(name)).collect();
     if !ignored.is_empty() {
         let names = ignored.join(", ");
-        note(format_args!("{}: ignored, not a column of a stroke: {names}", path.display()));
+        note(format_args!(
+            "warning: {}: ignored column {names}: a stroke has t_s, x_mm, y_mm and force_n",
+            path.display()
+        ));
     }
 }
 

@@ -193,7 +193,7 @@ impl Report {
         let range = |least: f64, most: f64| format!("{:.2} to {:.2} mN{suffix}", 1e3 * least, 1e3 * most);
         line("reachable", range(self.reachable_min_n, self.reachable_max_n));
         if let Some((least, most)) = self.wanted_min_n.zip(self.wanted_max_n) {
-            line("wanted", range(least, most));
+            line("reference", range(least, most));
         }
         let electric_n = self.reachable_max_n - self.reachable_min_n;
         for (name, error) in [

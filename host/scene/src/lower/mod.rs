@@ -14,6 +14,7 @@ use super::optimisation::Optimisation;
 use super::pool::{Placed, Pool};
 use super::program::Bitmap;
 use super::reach::Reach;
+use super::warning::Warning;
 
 /// Total friction that differs from natural friction by less than this, relative to it, counts as natural friction,
 /// which is rounded to `f32`.
@@ -34,6 +35,7 @@ pub(crate) struct Lowering<'a, 's> {
     pub(crate) clicks: usize,
     log: &'a mut Log<'s>,
     notes: Vec<String>,
+    warnings: Vec<Warning>,
 }
 
 /// The points and bitmaps that records name, with notes on their conversion.
@@ -41,6 +43,7 @@ pub(super) struct Gathered {
     pub(super) points: Vec<Point>,
     pub(super) bitmaps: Vec<Bitmap>,
     pub(super) notes: Vec<String>,
+    pub(super) warnings: Vec<Warning>,
     pub(super) optimisations: Vec<Optimisation>,
 }
 
@@ -53,13 +56,13 @@ impl<'a, 's> Lowering<'a, 's> {
         pool: Pool<'a>,
         log: &'a mut Log<'s>,
     ) -> Self {
-        let (points, notes) = (Vec::new(), Vec::new());
-        Self { scene, header, reach, tick_hz, pool, points, noises: 0, clicks: 0, log, notes }
+        let (points, notes, warnings) = Default::default();
+        Self { scene, header, reach, tick_hz, pool, points, noises: 0, clicks: 0, log, notes, warnings }
     }
 
     pub(super) fn finish(self) -> Gathered {
         let (bitmaps, optimisations) = self.pool.finish();
-        Gathered { points: self.points, bitmaps, notes: self.notes, optimisations }
+        Gathered { points: self.points, bitmaps, notes: self.notes, warnings: self.warnings, optimisations }
     }
 
     /// Number of mistakes so far.
@@ -80,6 +83,11 @@ impl<'a, 's> Lowering<'a, 's> {
             None => RecordRegion::Screen,
         };
         Some(Record { region, blend: layer.blend, gain: layer.gain as f32, layer: record_layer })
+    }
+
+    /// Adds a warning, unless the layer is a copy of one that has it already.
+    pub(crate) fn warn(&mut self, layer: &Layer, warning: Option<Warning>) {
+        self.warnings.extend(warning.filter(|_| !layer.is_copy));
     }
 
     /// Adds the picture of a layer to the pool. `visible` is the rectangle in which the picture shows.

@@ -160,7 +160,7 @@ fn note_streams(program: &Program, has_feed: bool) {
 /// Rejects a program for a board with an electrode if its finger was not measured at the voltage or load that it needs.
 pub(super) fn check_measured(program: &Program, board: BoardKind) -> Result<(), CommandError> {
     match program.warnings.iter().find(|warning| warning.is_refused_by_boards()) {
-        Some(warning) if !board.is_simulated() => Err(CommandError::NotMeasured { warning: *warning }),
+        Some(warning) if !board.is_simulated() => Err(CommandError::NotMeasured { warning: warning.clone() }),
         _ => Ok(()),
     }
 }
