@@ -174,7 +174,8 @@ impl Files for SceneFolder {
             Some(folder) if !folder.as_os_str().is_empty() => folder,
             _ => Path::new("."),
         };
-        Err(FileUnavailable::Missing { place: folder.display().to_string(), files: files_in(folder) })
+        let place = if folder == Path::new(".") { "this folder".to_owned() } else { folder.display().to_string() };
+        Err(FileUnavailable::Missing { place, files: files_in(folder) })
     }
 }
 

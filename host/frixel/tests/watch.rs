@@ -100,7 +100,7 @@ fn a_saved_scene_plays_and_one_with_mistakes_does_not() {
     until("the second scene plays", || is(last_n(), 0.27));
 
     fs::write(path("scene.toml"), scene("0.28x").replace("[finger]", "[fingr]")).unwrap();
-    until("the mistakes are reported", || said().contains("has mistakes: the scene before plays on"));
+    until("the mistakes are reported", || said().contains("is not played: the scene before plays on"));
     let rows = asked_n(&path("board")).len();
     until("the second scene plays on", || asked_n(&path("board")).len() > rows + 300);
 

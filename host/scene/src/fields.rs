@@ -53,7 +53,10 @@ pub(super) fn read_text_partly<T>(
     let value = match DeTable::parse(text) {
         Ok(values) => read(Fields::new(table, 0, values.into_inner()), &mut log, &source),
         Err(error) => {
-            log.add(error.span().map_or(0, |span| span.start), Mistake::Syntax(error.message().to_owned()));
+            let offset = error.span().map_or(0, |span| span.start);
+            let has_comma = text.get(offset..).is_some_and(|rest| rest.starts_with(','));
+            let hint = if has_comma { "; a decimal has a point, not a comma" } else { "" };
+            log.add(offset, Mistake::Syntax(format!("{}{hint}", error.message())));
             None
         }
     };

@@ -19,7 +19,7 @@ struct Entry {
 pub enum LayerError {
     /// No layer has this name or number.
     #[error(
-        "the scene has no layer {found:?}{}: name one of its {count}, or give its number from 1",
+        "the scene has no layer {found:?}{}: give the name of a layer, or a number from 1 to {count}",
         suggested(.suggestion.as_deref())
     )]
     Unknown {

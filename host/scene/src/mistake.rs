@@ -28,7 +28,7 @@ pub enum Mistake {
         nearest: Nearest,
     },
     /// A required field is missing.
-    #[error("{table} has no `{field}`: add it")]
+    #[error("{table} has no `{field}`: {}", if *.field == "version" { "write `version = 2` at the top" } else { "add it" })]
     MissingField {
         /// The missing field.
         field: &'static str,
@@ -150,7 +150,7 @@ pub enum Mistake {
         field: &'static str,
     },
     /// A list is too short or too long.
-    #[error("`{field}` has {found} entries: expected {}", count(*.min, *.max))]
+    #[error("`{field}` has {found} {}: expected {}", if *.found == 1 { "entry" } else { "entries" }, count(*.min, *.max))]
     Count {
         /// The field.
         field: &'static str,
@@ -217,6 +217,12 @@ pub enum Mistake {
         folder: String,
         /// The nearest name in that place, if one is near enough.
         nearest: Option<String>,
+    },
+    /// The name of a file is empty.
+    #[error("`{field}` names no file: write its name between the quotation marks")]
+    NoFileName {
+        /// The field.
+        field: &'static str,
     },
     /// A file cannot be used.
     #[error("{what} \"{file}\" cannot be used: {reason}")]

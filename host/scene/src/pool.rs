@@ -187,6 +187,10 @@ impl<'s> Pool<'s> {
 
     fn read(&self, layer: &Layer, bitmap: &BitmapLayer, log: &mut Log) -> Option<Picture> {
         let name = &bitmap.picture;
+        if name.is_empty() {
+            log.add(layer.places.field("picture"), Mistake::NoFileName { field: "picture" });
+            return None;
+        }
         let unusable = |reason: String| Mistake::FileUnusable { what: "picture", file: name.clone(), reason };
         // `Scene::parse` has read every picture that a layer names.
         let decoded = match self.pictures.get(name)? {
@@ -196,7 +200,7 @@ impl<'s> Pool<'s> {
                 what: "picture",
                 file: name.clone(),
                 folder: place.clone(),
-                nearest: Nearest::new(file_name(name), files.iter().map(String::as_str)).suggestion,
+                nearest: Nearest::file(file_name(name), files),
             }),
         };
         decoded.map_err(|mistake| log.add(layer.places.field("picture"), mistake)).ok()

@@ -63,6 +63,10 @@ pub(crate) enum CommandError {
     NaturalStroke(StrokeError),
     #[error("--from and --to: {0}; give two places that differ")]
     StraightStroke(StrokeError),
+    #[error("--from and --to are the same place: give two places that differ")]
+    StrokeInPlace,
+    #[error("{scene} has no layer that plays a stream: add one with `kind = \"stream\"`, or leave --stream out")]
+    NoStreamLayer { scene: String },
     #[error("{input}: {source}")]
     ModelCsv { input: String, source: CsvError },
     #[error("{}: {source}", path.display())]

@@ -98,6 +98,9 @@ impl StrokeArgs {
     }
 
     fn straight(&self, from: Point, to: Point) -> Result<Stroke, CommandError> {
+        if from == to {
+            return Err(CommandError::StrokeInPlace);
+        }
         let (speed_m_per_s, times) = (self.speed.unwrap_or(0.1), self.times.unwrap_or(1));
         let once = Stroke::constant_speed(from, to, speed_m_per_s).map_err(straight_error)?;
         let once_s = once.duration_s();

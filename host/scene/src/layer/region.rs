@@ -56,65 +56,7 @@ impl Region {
     }
 }
 
-/// Vertices of the polygon that takes the place of an ellipse which the screen's edge cuts.
-const ELLIPSE_VERTICES: u32 = 24;
-
-impl Region {
-    /// The part of it on a screen of this size, for a draft; `None` if nothing is left, or too many vertices. An ellipse
-    /// becomes a polygon.
-    pub(crate) fn clipped(self, width_mm: f64, height_mm: f64) -> Option<Self> {
-        let vertices = match self {
-            Self::Rectangle(rectangle) => return rectangle.clipped(width_mm, height_mm).map(Self::Rectangle),
-            Self::Ellipse(Rectangle { x_mm, y_mm, width_mm, height_mm }) => {
-                let vertex = |number: u32| {
-                    let (sin, cos) =
-                        libm::sincos(f64::from(number) * std::f64::consts::TAU / f64::from(ELLIPSE_VERTICES));
-                    (x_mm + 0.5 * width_mm * (1.0 + cos), y_mm + 0.5 * height_mm * (1.0 + sin))
-                };
-                (0..ELLIPSE_VERTICES).map(vertex).collect()
-            }
-            Self::Polygon(vertices) => vertices,
-        };
-        let swapped =
-            |vertices: Vec<(f64, f64)>| -> Vec<(f64, f64)> { vertices.into_iter().map(|(x, y)| (y, x)).collect() };
-        let across = between(&vertices, 0.0, width_mm);
-        let vertices = swapped(between(&swapped(across), 0.0, height_mm));
-        (VERTICES.0..=VERTICES.1).contains(&vertices.len()).then_some(Self::Polygon(vertices))
-    }
-}
-
-/// The part of a polygon between two lines of constant x, by Sutherland and Hodgman's algorithm.
-fn between(vertices: &[(f64, f64)], least: f64, most: f64) -> Vec<(f64, f64)> {
-    let beyond_least = cut(vertices, |(x, _)| x - least);
-    cut(&beyond_least, |(x, _)| most - x)
-}
-
-/// The part of a polygon where a linear function of the place is not negative.
-fn cut(vertices: &[(f64, f64)], inside: impl Fn((f64, f64)) -> f64) -> Vec<(f64, f64)> {
-    let mut kept = Vec::new();
-    let nexts = vertices.iter().cycle().skip(1);
-    for (&from, &to) in vertices.iter().zip(nexts) {
-        let (of_from, of_to) = (inside(from), inside(to));
-        if of_from >= 0.0 {
-            kept.push(from);
-        }
-        if (of_from >= 0.0) != (of_to >= 0.0) {
-            let part = of_from / (of_from - of_to);
-            kept.push((from.0 + part * (to.0 - from.0), from.1 + part * (to.1 - from.1)));
-        }
-    }
-    kept
-}
-
 impl Rectangle {
-    /// The part of it on a screen of this size; `None` if nothing is left.
-    fn clipped(self, screen_width_mm: f64, screen_height_mm: f64) -> Option<Self> {
-        let (x_mm, y_mm) = (self.x_mm.max(0.0), self.y_mm.max(0.0));
-        let width_mm = (self.x_mm + self.width_mm).min(screen_width_mm) - x_mm;
-        let height_mm = (self.y_mm + self.height_mm).min(screen_height_mm) - y_mm;
-        (width_mm > 0.0 && height_mm > 0.0).then_some(Self { x_mm, y_mm, width_mm, height_mm })
-    }
-
     /// The smallest rectangle around some places, mm.
     pub(crate) fn around(places: &[(f64, f64)]) -> Self {
         let limits = |of: fn(&(f64, f64)) -> f64| {

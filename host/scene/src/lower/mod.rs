@@ -75,9 +75,7 @@ impl<'a, 's> Lowering<'a, 's> {
         let Lowered { layer: record_layer, outline } = layer.kind.lower(layer, self)?;
         let region = match layer.region.clone().or(outline) {
             Some(region) => {
-                let is_on_screen = place::check_on_screen(self.scene, layer, region.bounds(), self.log);
-                let screen = self.scene.screen();
-                let region = if is_on_screen { region } else { region.clipped(screen.width_mm, screen.height_mm)? };
+                place::check_on_screen(self.scene, layer, region.bounds(), self.log);
                 self.region(layer, &region, &record_layer)?
             }
             None => RecordRegion::Screen,
@@ -127,8 +125,6 @@ impl<'a, 's> Lowering<'a, 's> {
                 place::rectangle(*rectangle, self.header, button)
             }
             Region::Ellipse(rectangle) => place::ellipse(*rectangle, self.header),
-            // An elliptic button that the screen's edge cuts has no rim.
-            Region::Polygon(_) if matches!(record_layer, RecordLayer::Button(_)) => return None,
             Region::Polygon(vertices) => {
                 let point = |(x_mm, y_mm): &(f64, f64)| Point { x: (x_mm * MM) as f32, y: (y_mm * MM) as f32 };
                 let (first, count) = self.points(layer, vertices.iter().map(point).collect())?;

@@ -59,7 +59,7 @@ fn unknown_and_missing_fields() {
         "test.toml:5:1: unknown field `colour` in [screen]; nothing more is expected here",
     );
     check_head("height_mm = 110\n", "", "test.toml:3:1: [screen] has no `height_mm`: add it");
-    check_head("version = 1\n", "", "test.toml:1:1: the scene has no `version`: add it");
+    check_head("version = 1\n", "", "test.toml:1:1: the scene has no `version`: write `version = 2` at the top");
     check_head(
         "[coating]\nthickness_um = 10\npermittivity = 1\n",
         "",

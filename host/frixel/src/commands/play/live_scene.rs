@@ -105,7 +105,7 @@ fn replace<L: RecordedLink>(
         Ok(program) => program,
         Err(error) => {
             note(error);
-            note(format_args!("frixel: {path} has mistakes: the scene before plays on"));
+            note(format_args!("frixel: {path} is not played: the scene before plays on"));
             return Ok(None);
         }
     };

@@ -82,6 +82,9 @@ impl Plan {
             Target::Port => telemetry_period_ticks(&program, ticks_per_row, tick_hz),
         };
         let feed = open_feed(args, tick_hz, target)?;
+        if feed.is_some() && !program.records.iter().any(|record| record.layer.is_streamed()) {
+            return Err(CommandError::NoStreamLayer { scene: args.scene.display().to_string() });
+        }
         note_streams(&program, feed.is_some());
         let (limits, seconds) = (*limits, args.seconds);
         Ok(Self { target, program, feed, world: None, ticks_per_row, telemetry_period_ticks, limits, tick_hz, seconds })
