@@ -286,7 +286,7 @@ impl Voltage {
         if let Some(found) = drive.voltage_max_v_peak.filter(|found| *found > board_v_peak) {
             log.add(drive.places.field("voltage_max_v_peak"), Mistake::PeakAboveBoard { found, board: board_v_peak });
         }
-        let peak_per_rms = f64::from(carrier(scene.carrier.shape, half_period_s, limits).peak_per_rms());
+        let peak_per_rms = f64::from(carrier(scene.carrier.waveform, half_period_s, limits).peak_per_rms());
         let wanted_v_rms = screen.voltage_max_v_rms.unwrap_or(f64::INFINITY).min(drive.voltage_max_v_rms);
         if wanted_v_rms < drive.voltage_max_v_rms {
             notes.push(format!(
@@ -316,7 +316,7 @@ impl Voltage {
     fn limit_current(&mut self, scene: &Scene, limits: &BoardLimits, half_period_s: f64, log: &mut Log) {
         // The board computes in `f32`, from the carrier's frequency.
         let carrier_hz = (0.5 / half_period_s) as f32;
-        let carrier = carrier(scene.carrier.shape, 0.5 / f64::from(carrier_hz), limits);
+        let carrier = carrier(scene.carrier.waveform, 0.5 / f64::from(carrier_hz), limits);
         let drive_v_peak = self.max_v_rms as f32 * carrier.peak_per_rms();
         let current = carrier.electrode_current(limits.electrode_capacitance_max_f, drive_v_peak);
         let rms_cure = "`frequency_hz` under [carrier], or `voltage_max_v_rms` under [drive]";
@@ -348,7 +348,7 @@ fn header(scene: &Scene, voltage: &Voltage, springs: &Springs, effective_gap_um:
         slew_v_per_s: (voltage.slew_v_per_us * 1e6) as f32,
         carrier_hz: (0.5 / half_period_s) as f32,
         host_timeout_s: (drive.host_timeout_ms * 1e-3) as f32,
-        carrier: scene.carrier.shape,
+        waveform: scene.carrier.waveform,
         autonomous: drive.autonomous,
         prediction: scene.touch.prediction,
         leader: scene.touch.leader,

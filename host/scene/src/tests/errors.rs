@@ -522,12 +522,9 @@ fn kinds_that_do_not_make_sense() {
     let speed = |curve: &str| format!("[[layer]]\nkind = \"speed\"\n{curve}");
     check_layers(
         &speed("speeds_mm_per_s = [10]\nfactors = [1]"),
-        &[(3, 19, "`speeds_mm_per_s` has 1 entries: expected 2 to 16")],
+        &[(3, 19, "`speeds_mm_per_s` has 1 entry: expected 2 to 16")],
     );
-    check_layers(
-        &speed("speeds_mm_per_s = [10, 20]\nfactors = [1]"),
-        &[(4, 11, "`factors` has 1 entries: expected 2")],
-    );
+    check_layers(&speed("speeds_mm_per_s = [10, 20]\nfactors = [1]"), &[(4, 11, "`factors` has 1 entry: expected 2")]);
     check_layers(
         &speed("speeds_mm_per_s = [10, 5]\nfactors = [1, 2]"),
         &[(
