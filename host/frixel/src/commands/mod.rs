@@ -5,6 +5,7 @@ mod calibrate;
 mod completions;
 mod demo;
 mod error;
+mod experiment;
 mod faults;
 mod fit;
 mod info;

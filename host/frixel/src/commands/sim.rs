@@ -34,6 +34,6 @@ pub(super) fn run(args: &SimArgs) -> Result<(), CommandError> {
     let path = server.path();
     note(format_args!("a virtual board is there until Ctrl-C; in another terminal: frixel play SCENE --port {path}"));
     server.run(&mut rig, &|| interrupt.is_requested())?;
-    note(format_args!("wrote {0}/felt.csv and {0}/events.csv", args.out.display()));
+    note(format_args!("wrote {0}/felt.csv, {0}/forces.csv and {0}/events.csv", args.out.display()));
     Ok(())
 }
