@@ -63,11 +63,12 @@ pub(super) fn play_on_simulator(
     let board = (&config.board.limits, config.board.tick_hz);
     let mut plan = Plan::new(args, scene, Target::Simulator, board)?;
     let stroke = plan.choose_stroke(args)?;
+    let has_own_reference = world.has_own_reference(&stroke);
     let mut memory = BoardMemory::new();
     let mut rig = Rig::new(&mut memory, &config, stroke, args.seed)?;
     world.set_finger(rig.world_mut());
     let mut link = SimLink::new(rig, Recorder::idle());
-    if world.has_own_reference() {
+    if has_own_reference {
         link = link.referring_to_simulated_finger();
     }
     plan.world = Some(world.report());
