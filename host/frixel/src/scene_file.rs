@@ -124,7 +124,8 @@ impl ProfileNames {
         (scene.and_then(|scene| self.applied_to(scene)), files)
     }
 
-    fn applied_to(&self, mut scene: Scene) -> Result<Scene, SceneFileError> {
+    /// A scene with this finger and screen.
+    pub fn applied_to(&self, mut scene: Scene) -> Result<Scene, SceneFileError> {
         if let Some(name) = &self.screen {
             let screen = profile("screen", name, Screen::bundled, Screen::bundled_names(), Screen::parse)?;
             scene = scene.with_screen(screen, name)?;

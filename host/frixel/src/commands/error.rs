@@ -73,8 +73,19 @@ pub(crate) enum CommandError {
     Fit { path: PathBuf, source: FitError },
     #[error(transparent)]
     Calibration(CalibrationError),
-    #[error("the run was interrupted, and nothing is written: start it again for a whole recording")]
-    CalibrationInterrupted,
+    #[error("{}: {source}", path.display())]
+    Forces { path: PathBuf, source: CalibrationError },
+    #[error("the run was interrupted, and nothing is written: start it again")]
+    ExperimentInterrupted,
+    #[error(
+        "--voltage {found} is above what this board drives, {limit_v_rms:.0} V rms: give at most that, or leave \
+         --voltage out"
+    )]
+    VoltageAboveBoard { found: f64, limit_v_rms: f64 },
+    #[error(
+        "--finger-seed draws the finger of --port sim only; the finger on {port} is its own: leave --finger-seed out"
+    )]
+    FingerOnBoard { port: String },
     #[error("the answers ended at trial {trial}, and nothing is written: answer each trial with 1 or 2 and Enter")]
     NoAnswer { trial: usize },
     #[error("{} cannot be written ({source}): check the folder and its free space", path.display())]

@@ -5,6 +5,7 @@ mod calibrate;
 mod completions;
 mod demo;
 mod error;
+mod experiment;
 mod faults;
 mod fit;
 mod info;
@@ -159,6 +160,20 @@ struct PlayArgs {
 struct SimArgs {
     #[command(flatten)]
     stroke: StrokeArgs,
+    /// The finger on this board, which its scenes do not change: a profile's file, or `example`, `dry`, `moist` or
+    /// `light`. Without it, the finger is that of the scene that plays.
+    #[arg(long, value_name = "FILE", group = "own_finger")]
+    finger: Option<String>,
+    /// A simulated person in place of --finger: another one for each seed.
+    #[arg(long, value_name = "N", group = "own_finger")]
+    finger_seed: Option<u64>,
+    /// The screen under that finger: a screen's file, or `example`, which it is without this.
+    #[arg(long, value_name = "FILE", requires = "own_finger")]
+    screen: Option<String>,
+    /// Simulate a world without load changes, noise, pre-sliding, leakage, offsets, and lost touch reports. Without it,
+    /// all of them are simulated.
+    #[arg(long)]
+    ideal: bool,
     /// Output folder.
     #[arg(long, default_value = "frixel-out")]
     out: PathBuf,

@@ -1,6 +1,6 @@
 //! The output files of a play.
 //!
-//! - [`FeltCsv`] and [`EventCsv`]: `felt.csv` and `events.csv`, row by row while the scene plays.
+//! - [`FeltCsv`], [`ForcesCsv`] and [`EventCsv`]: `felt.csv`, `forces.csv` and `events.csv`, row by row while the scene plays.
 //! - [`Trace`]: the same rows, downsampled for pictures, in bounded memory.
 //! - [`write_felt_svg`]: friction and voltage over time.
 //! - [`write_fit_svg`]: the residual plots of a fit.
@@ -30,7 +30,7 @@ use thiserror::Error;
 
 use crate::chart::Chart;
 
-pub use csv::{CsvFile, CsvRow, EventCsv, EventRow, FeltCsv};
+pub use csv::{CsvFile, CsvRow, EventCsv, EventRow, FeltCsv, ForcesCsv};
 pub use felt_log::{FeltLog, FeltLogError};
 pub use felt_svg::write_felt_svg;
 pub use fit_svg::write_fit_svg;

@@ -33,6 +33,14 @@ pub struct Report {
     pub inversion_error_rms_n: Option<f64>,
     /// Friction that the model computes for the commanded voltage, minus the commanded friction: largest magnitude, N.
     pub inversion_error_max_n: Option<f64>,
+    /// Ticks in which the envelope was at its slew limit, which have no inversion error.
+    pub slewing_ticks: Option<u64>,
+    /// Friction that is there because the finger presses with another load than the one that the scene is meant for:
+    /// root mean square, N. The reference has it too.
+    pub load_mismatch_rms_n: Option<f64>,
+    /// Friction that is there because the finger presses with another load than the one that the scene is meant for:
+    /// largest magnitude, N.
+    pub load_mismatch_max_n: Option<f64>,
     /// Felt friction minus its mean over a carrier period: root mean square, N.
     pub carrier_ripple_rms_n: Option<f64>,
     /// What the newtons rest on: `assumed`, `perceptual` or `measured`.
@@ -110,6 +118,9 @@ impl Report {
             friction_error_max_n: metrics.friction_error.map(|error| error.max_n),
             inversion_error_rms_n: metrics.inversion_error.map(|error| error.rms_n),
             inversion_error_max_n: metrics.inversion_error.map(|error| error.max_n),
+            slewing_ticks: metrics.slewing_ticks,
+            load_mismatch_rms_n: metrics.load_mismatch.map(|mismatch| mismatch.rms_n),
+            load_mismatch_max_n: metrics.load_mismatch.map(|mismatch| mismatch.max_n),
             carrier_ripple_rms_n: metrics.carrier_ripple_rms_n,
             finger_origin: Origin::Assumed.word(),
             reachable_min_n: reach.friction_min_n(),
@@ -206,6 +217,12 @@ impl Report {
                 line(name, format!("{in_mn} ({:.3} % and {:.3} % of the range)", part(rms_n), part(max_n)));
             }
         }
+        if let Some(ErrorSize { rms_n, max_n }) = size(self.load_mismatch_rms_n, self.load_mismatch_max_n)
+            && max_n > 0.0
+        {
+            let in_mn = format!("{:.4} mN rms, {:.4} mN at most", 1e3 * rms_n, 1e3 * max_n);
+            line("load mismatch", format!("{in_mn}, for another load than the profile's; not in the friction error"));
+        }
         if let Some(ripple_n) = self.carrier_ripple_rms_n {
             line("carrier ripple", format!("{:.4} mN rms", 1e3 * ripple_n));
         }
@@ -214,7 +231,11 @@ impl Report {
             0 => String::new(),
             ticks => format!(", before the first touch report {ticks}"),
         };
-        line("ticks", format!("{}{}{unreported}", self.ticks, saturated.unwrap_or_default()));
+        let slewing = match self.slewing_ticks {
+            None | Some(0) => String::new(),
+            Some(ticks) => format!(", at the slew limit {ticks} (no inversion error)"),
+        };
+        line("ticks", format!("{}{}{slewing}{unreported}", self.ticks, saturated.unwrap_or_default()));
         line(
             "link",
             format!(
