@@ -8,7 +8,8 @@ use super::source::Source;
 /// Collects mistakes, so that a person sees all of them at once.
 pub(super) struct Log<'s> {
     source: &'s Source,
-    mistakes: Vec<Located>,
+    /// Each with the number of its file.
+    mistakes: Vec<(usize, Located)>,
     /// The known fields of each table, in the order in which tables were closed; `None` except while a schema is made.
     described: Option<Vec<KnownTable>>,
 }
@@ -35,11 +36,20 @@ impl<'s> Log<'s> {
         self.described.unwrap_or_default()
     }
 
-    /// Adds a mistake at a byte offset of the file.
+    /// The files that are read.
+    pub(super) fn source(&self) -> &'s Source {
+        self.source
+    }
+
+    /// Adds a mistake at a byte offset of the files. A mistake that is there already is not added again: layers that
+    /// share a field share its mistakes.
     pub(super) fn add(&mut self, offset: usize, mistake: Mistake) {
         let (line, column) = self.source.line_and_column(offset);
-        let text = self.source.word_at(offset).to_owned();
-        self.mistakes.push(Located { line, column, text, mistake });
+        let (file, text) = (self.source.name_at(offset).to_owned(), self.source.word_at(offset).to_owned());
+        let located = (self.source.number_at(offset), Located { file, line, column, text, mistake });
+        if !self.mistakes.contains(&located) {
+            self.mistakes.push(located);
+        }
     }
 
     /// The value if there are no mistakes, otherwise the mistakes.
@@ -47,8 +57,9 @@ impl<'s> Log<'s> {
         match value {
             Some(value) if self.mistakes.is_empty() => Ok(value),
             _ => {
-                self.mistakes.sort_by_key(|mistake| (mistake.line, mistake.column));
-                Err(CompileError { file: self.source.name().to_owned(), mistakes: self.mistakes })
+                self.mistakes.sort_by_key(|(number, mistake)| (*number, mistake.line, mistake.column));
+                let mistakes = self.mistakes.into_iter().map(|(_, mistake)| mistake).collect();
+                Err(CompileError { file: self.source.name().to_owned(), mistakes })
             }
         }
     }

@@ -26,7 +26,7 @@ pub(crate) struct Lowering<'a, 's> {
     header: &'a Header,
     reach: &'a Reach,
     pub(crate) tick_hz: u32,
-    pool: Pool<'a>,
+    pool: Pool,
     points: Vec<Point>,
     pub(crate) noises: usize,
     pub(crate) clicks: usize,
@@ -48,7 +48,7 @@ impl<'a, 's> Lowering<'a, 's> {
         header: &'a Header,
         reach: &'a Reach,
         tick_hz: u32,
-        pool: Pool<'a>,
+        pool: Pool,
         log: &'a mut Log<'s>,
     ) -> Self {
         let (points, notes) = (Vec::new(), Vec::new());

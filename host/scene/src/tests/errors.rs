@@ -642,12 +642,16 @@ fn pictures() {
             3,
             11,
             "picture \"textures/brik.png\" was not found in the scene's set of files, which has \"brick.png\": paths \
-             start from the scene file's folder",
+             start from the folder of the file that names it",
         )],
     );
     check_layers(
         &layer("textures/README.md", "0.5"),
-        &[(3, 11, "picture \"textures/README.md\" cannot be used: it is not a PNG file: save it as PNG")],
+        &[(
+            3,
+            11,
+            "picture \"textures/README.md\" cannot be used: it is neither a PNG nor a JPEG file: save it as PNG",
+        )],
     );
     check_layers(
         &layer("textures/brick.png", "0.25"),

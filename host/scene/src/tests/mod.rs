@@ -10,9 +10,12 @@ use super::{CompileError, Program, Scene, compile};
 
 mod docs;
 mod errors;
+mod files;
 mod json_schema;
 mod layers;
 mod optimise;
+mod pictures;
+mod pixels;
 mod profiles;
 mod repeat;
 mod schema;
