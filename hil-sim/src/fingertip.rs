@@ -27,8 +27,8 @@ const COMPARED_V_RMS: f64 = 1.0;
 
 /// The example finger on the example screen: 0.25 N at no voltage and 130 mN more at 150 V rms, under a load of 0.5 N.
 ///
-/// Radius 8 mm, stiffness 18 MPa/m, friction coefficient 0.5, a coating of 1 um of silicon dioxide and a skin gap of 4.74
-/// um: the profile of `scenes/fingers/example.toml`, which gives the reasons. Nobody was measured.
+/// Radius 8 mm, stiffness 18 MPa/m, friction coefficient 0.5, a coating of 1 um of silicon dioxide and a skin gap of
+/// 4.74 um: the profile of `scenes/fingers/example.toml`, which gives the reasons. The profile is assumed.
 pub fn example_finger() -> Result<LoadedContact<f64>, ParameterError> {
     let finger = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };
     let (coating_gap_um, skin_gap_um) = (1.0 / 3.9, 4.74);

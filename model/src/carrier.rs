@@ -7,9 +7,10 @@ use crate::Real;
 use crate::double_single::DoubleSingle;
 
 /// Shape of a carrier.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Waveform {
-    /// A square wave between plus and minus its peak.
+    /// A square wave between plus and minus its peak: its square has no ripple.
+    #[default]
     Square,
     /// A sine wave.
     Sine,

@@ -205,7 +205,7 @@ impl Voltage {
         if let Some(found) = drive.voltage_max_v_peak.filter(|found| *found > board_v_peak) {
             log.add(drive.places.field("voltage_max_v_peak"), Mistake::PeakAboveBoard { found, board: board_v_peak });
         }
-        let peak_per_rms = f64::from(carrier(scene.carrier.shape, half_period_s, limits).peak_per_rms());
+        let peak_per_rms = f64::from(carrier(scene.carrier.waveform, half_period_s, limits).peak_per_rms());
         let wanted_v_rms = screen.voltage_max_v_rms.unwrap_or(f64::INFINITY).min(drive.voltage_max_v_rms);
         if wanted_v_rms < drive.voltage_max_v_rms {
             notes.push(format!(
@@ -245,7 +245,7 @@ fn header(scene: &Scene, voltage: &Voltage, springs: &Springs, half_period_s: f6
         slew_v_per_s: (voltage.slew_v_per_us * 1e6) as f32,
         carrier_hz: (0.5 / half_period_s) as f32,
         host_timeout_s: (drive.host_timeout_ms * 1e-3) as f32,
-        carrier: scene.carrier.shape,
+        waveform: scene.carrier.waveform,
         autonomous: drive.autonomous,
         prediction: scene.touch.prediction,
         leader: scene.touch.leader,
@@ -256,7 +256,7 @@ fn header(scene: &Scene, voltage: &Voltage, springs: &Springs, half_period_s: f6
 
 /// Checks the current into the worst-case electrode at the largest voltage against the board's limit.
 fn check_current(scene: &Scene, limits: &BoardLimits, header: &Header, log: &mut Log) {
-    let carrier = carrier(header.carrier, 0.5 / f64::from(header.carrier_hz), limits);
+    let carrier = carrier(header.waveform, 0.5 / f64::from(header.carrier_hz), limits);
     let drive_v_peak = header.voltage_max_v_rms * carrier.peak_per_rms();
     let current = carrier.electrode_current(limits.electrode_capacitance_max_f, drive_v_peak);
     for (kind, found_a, board_a, cure) in [

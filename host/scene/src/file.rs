@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use frixel_layers::Leader;
+use frixel_layers::{Leader, Waveform};
 use toml::de::DeTable;
 
 use super::compile_error::CompileError;
@@ -63,7 +63,7 @@ pub(super) struct Drive {
 /// `[carrier]`
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Carrier {
-    pub(super) shape: frixel_layers::Carrier,
+    pub(super) waveform: Waveform,
     pub(super) frequency_hz: f64,
     pub(super) places: Places,
 }
@@ -328,11 +328,11 @@ fn drive(mut fields: Fields, log: &mut Log) -> Drive {
 }
 
 fn carrier(mut fields: Fields, log: &mut Log) -> Carrier {
-    use frixel_layers::Carrier::{Sine, Square};
-    let shape = fields.choice(log, &tables::carrier::SHAPE, &[("square", Square), ("sine", Sine)]).unwrap_or(Square);
+    let waveforms = [("square", Waveform::Square), ("sine", Waveform::Sine)];
+    let waveform = fields.choice(log, &tables::carrier::SHAPE, &waveforms).unwrap_or_default();
     let frequency_hz = fields.number_or_default(log, &tables::carrier::FREQUENCY_HZ);
     let places = fields.close(log);
-    Carrier { shape, frequency_hz, places }
+    Carrier { waveform, frequency_hz, places }
 }
 
 fn touch(mut fields: Fields, log: &mut Log) -> Touch {

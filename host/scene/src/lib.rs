@@ -99,6 +99,7 @@ pub use program::{Bitmap, Program};
 pub use reach::{ROUNDING, Reach, carrier};
 pub use schema::json_schema;
 pub use screen::{Screen, Slab};
+pub use spectrum::band_rms;
 pub use target_range::{OutOfReach, TargetRange};
 pub use tick_cost::middle_mm;
 pub use touched_layers::TouchedLayers;

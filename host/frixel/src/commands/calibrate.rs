@@ -42,7 +42,7 @@ pub(super) struct CalibrateArgs {
     #[arg(long, value_name = "FILE.csv")]
     forces: Option<PathBuf>,
     /// Highest voltage, in volts rms; at most 150, and at most what the board allows.
-    #[arg(long, value_name = "V_RMS", default_value_t = 150.0, value_parser = super::fit::positive)]
+    #[arg(long, value_name = "V_RMS", default_value_t = 150.0, value_parser = super::argument::positive)]
     voltage: f64,
     /// Simulated person: another one for each seed. Without it, the example finger.
     #[arg(long, value_name = "N")]

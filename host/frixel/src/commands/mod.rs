@@ -1,5 +1,6 @@
 //! The command line: one module per command.
 
+mod argument;
 mod calibrate;
 mod completions;
 mod demo;
@@ -107,7 +108,7 @@ struct PlayArgs {
     stroke: StrokeArgs,
     /// How long to play. Without it, as long as the file of --stream or the stroke lasts; on a board without --stream,
     /// until Ctrl-C.
-    #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", value_parser = argument::seconds, allow_negative_numbers = true)]
     seconds: Option<f64>,
     /// Output folder.
     #[arg(long, default_value = "frixel-out")]
@@ -223,14 +224,6 @@ impl Cli {
             Some(Command::Fit(args)) => fit::run(&args),
             Some(Command::Report(args)) => report::run(&args),
         }
-    }
-}
-
-/// Parses the duration of a play.
-fn seconds(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(seconds) if seconds > 0.0 && seconds <= 86_400.0 => Ok(seconds),
-        _ => Err("expected a number of seconds above 0, at most a day".into()),
     }
 }
 

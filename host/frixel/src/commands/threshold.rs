@@ -57,7 +57,7 @@ pub(super) struct ThresholdArgs {
     #[arg(long, value_name = "FILE.wav")]
     noise: Option<PathBuf>,
     /// Highest voltage, in volts rms; at most 150, and at most what the board allows.
-    #[arg(long, value_name = "V_RMS", default_value_t = 150.0, value_parser = super::fit::positive)]
+    #[arg(long, value_name = "V_RMS", default_value_t = 150.0, value_parser = super::argument::positive)]
     voltage: f64,
     /// The screen under the finger: a bundled name or a screen file.
     #[arg(long, value_name = "SCREEN")]

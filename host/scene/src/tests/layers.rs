@@ -1,6 +1,6 @@
 //! Compares the target friction of compiled layers with evaluations written here from the file's numbers.
 
-use frixel_layers::{Carrier, Constant, Grating, Layer, Leader, Region, Scene as WireScene};
+use frixel_layers::{Constant, Grating, Layer, Leader, Region, Scene as WireScene, Waveform};
 
 use super::super::{picture::Picture, resample};
 use super::*;
@@ -46,7 +46,7 @@ fn header_in_si_units() {
     ] {
         assert!((found - expected).abs() <= 1e-6 * expected, "{found} is not {expected}");
     }
-    assert_eq!(header.carrier, Carrier::Sine);
+    assert_eq!(header.waveform, Waveform::Sine);
     assert!(header.autonomous && !header.prediction);
     assert_eq!(header.leader, Leader::Latest);
 }

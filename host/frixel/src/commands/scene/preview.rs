@@ -9,6 +9,7 @@ use frixel_hil_sim::RigConfig;
 use frixel_scene::perception::Perception;
 use frixel_scene::{Preview, compile};
 
+use super::super::argument::number;
 use super::super::error::CommandError;
 use super::super::profiles::ProfileArgs;
 use super::super::terminal::print_line;
@@ -48,8 +49,5 @@ pub(super) fn run(args: &PreviewArgs) -> Result<(), CommandError> {
 
 /// Parses the speed of a finger.
 fn speed(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(speed_mm_per_s) if (0.0..=10_000.0).contains(&speed_mm_per_s) => Ok(speed_mm_per_s),
-        _ => Err("expected a speed from 0 to 10000 mm/s".into()),
-    }
+    number(text, 0.0..=10_000.0, "a speed from 0 to 10000 mm/s")
 }
