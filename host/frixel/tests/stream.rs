@@ -217,7 +217,7 @@ mod command {
         let folder = tempfile::tempdir().unwrap();
         write_wav(&folder.path().join("tones.wav"), &tones());
         for (arguments, part) in [
-            (&["--stream", "tones.wav"][..], "no layer of the playing scene is a stream"),
+            (&["--stream", "tones.wav"][..], "constant.toml has no layer that plays a stream"),
             (&["--stream", "none.wav"], "none.wav cannot be streamed"),
             (&["--stream", "-"], "put --stream-hz beside"),
             (&["--stream-hz", "100"], "put --stream - before it"),

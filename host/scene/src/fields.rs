@@ -71,7 +71,9 @@ pub(super) fn parsed<'i>(file: &'i SourceFile, log: &mut Log) -> Option<DeTable<
         Ok(values) => Some(moved_table(values.into_inner(), file.start)),
         Err(error) => {
             let offset = error.span().map_or(0, |span| span.start);
-            log.add(file.start + offset, Mistake::Syntax(error.message().to_owned()));
+            let has_comma = file.text.get(offset..).is_some_and(|rest| rest.starts_with(','));
+            let hint = if has_comma { "; a decimal has a point, not a comma" } else { "" };
+            log.add(file.start + offset, Mistake::Syntax(format!("{}{hint}", error.message())));
             None
         }
     }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use frixel_layers::{Leader, Waveform};
 use toml::de::DeTable;
 
-use super::compile_error::CompileError;
+use super::compile_error::{CompileError, Located};
 use super::fields::{Fields, PixelSize, parsed};
 use super::files::Files;
 use super::finger::FingerProfile;
@@ -33,9 +33,14 @@ pub(super) enum Version {
 
 /// A scene file that was read: all fields are known, of the right type and in range. [`super::compile`] makes the other
 /// checks.
+///
+/// A layer whose own fields have mistakes is absent, and [`Self::mistakes`] has them, so that the compiler can check the
+/// layers beside it, and report all mistakes at once.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     pub(super) source: Source,
+    /// The mistakes of the layers that are absent.
+    pub(super) mistakes: Vec<Located>,
     pub(super) pictures: PictureBytes,
     pub(super) version: Version,
     /// Offset of the version, or of the file if it is absent.
@@ -109,6 +114,11 @@ impl Design {
 impl Scene {
     /// Reads the text of a scene file. Messages call the file `name`; `files` provides the pictures, the profiles and
     /// the included files that the file names.
+    ///
+    /// # Errors
+    ///
+    /// The text is not TOML, or a part of it outside of the layers has mistakes. Mistakes of layers alone do not fail
+    /// here: [`super::compile`] reports them, with its own.
     pub fn parse(text: &str, name: &str, files: &dyn Files) -> Result<Self, CompileError> {
         let Gathered { source, mistakes } = include::gather(name, text, files);
         let mut log = Log::new(&source);
@@ -116,7 +126,9 @@ impl Scene {
             log.add(offset, mistake);
         }
         let scene = read(files, &mut log);
-        let mut scene = log.finish(scene)?;
+        let mistakes = log.into_mistakes();
+        let Some(mut scene) = scene else { return Err(CompileError { file: name.to_owned(), mistakes }) };
+        scene.mistakes = mistakes;
         scene.pictures = scene.picture_names().map(|name| (name.to_owned(), files.bytes(name))).collect();
         Ok(scene)
     }
@@ -154,9 +166,11 @@ impl Scene {
             // Pixels have another size on this screen.
             let mut log = Log::new(&self.source);
             let pixel_mm = design.pixel_on(&self.profiles.screen);
-            let files = files(&mut log);
-            let layers = files.and_then(|mut files| stack::layers(&mut files, self.version, Some(pixel_mm), &mut log));
-            self.layers = log.finish(layers)?;
+            if let Some(mut files) = files(&mut log) {
+                let layer_tables = stack::layer_tables(&mut files, self.version, &mut log);
+                self.layers = stack::layers(layer_tables, self.version, Some(pixel_mm), &mut log);
+            }
+            self.mistakes = log.into_mistakes();
         }
         Ok(self)
     }
@@ -175,6 +189,11 @@ impl Scene {
             log.add(self.version_place, Mistake::VersionOneProfile { what, file });
         }
         log.finish(Some(()))
+    }
+
+    /// The mistakes of the layers that were not read, in the order of the file.
+    pub fn mistakes(&self) -> &[Located] {
+        &self.mistakes
     }
 
     /// The screen that the scene is compiled for.
@@ -242,23 +261,28 @@ fn read(named: &dyn Files, log: &mut Log) -> Option<Scene> {
         Version::One => None,
         Version::Two => fields.table(log, &tables::scene::DESIGN).and_then(|fields| design(fields, log)),
     };
-    let example = Screen::example();
-    let screen = profiles.as_ref().map_or(&example, |profiles| &profiles.screen);
-    let layers = stack::layers(&mut files, version, design.map(|design| design.pixel_on(screen)), log);
+    let layer_tables = stack::layer_tables(&mut files, version, log);
     for file in files {
         file.close(log);
     }
+    // Mistakes outside of the layers make it impossible to say what the layers ask for.
+    let head_is_valid = log.mistakes() == 0;
+    let example = Screen::example();
+    let screen = profiles.as_ref().map_or(&example, |profiles| &profiles.screen);
+    let layers = stack::layers(layer_tables, version, design.map(|design| design.pixel_on(screen)), log);
+    let profiles = profiles.filter(|_| head_is_valid)?;
     Some(Scene {
         source: log.source().clone(),
+        mistakes: Vec::new(),
         pictures: PictureBytes::new(),
         version,
         version_place,
-        profiles: profiles?,
+        profiles,
         drive,
         carrier,
         touch,
         design,
-        layers: layers?,
+        layers,
     })
 }
 

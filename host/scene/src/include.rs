@@ -31,6 +31,11 @@ impl Gathered {
         let number = chain.last().copied().unwrap_or_default();
         let Some(file) = self.source.files().get(number).cloned() else { return };
         for (offset, name) in included_names(&file.text) {
+            if name.is_empty() {
+                let field = tables::scene::INCLUDE.name;
+                self.mistakes.push((file.start + offset, Mistake::NoFileName { field }));
+                continue;
+            }
             let path = joined(&file.path, &name);
             match self.read(number, &path, chain, files) {
                 Ok(included) => {
@@ -65,7 +70,7 @@ impl Gathered {
             FileUnavailable::Missing { files, .. } => Mistake::IncludedMissing {
                 file: file.clone(),
                 included: included.clone(),
-                nearest: Nearest::new(file_name(path), files.iter().map(String::as_str)).suggestion,
+                nearest: Nearest::file(file_name(path), &files),
             },
         })?;
         let text = String::from_utf8(bytes).map_err(|_| unusable(Mistake::NotUtf8.to_string()))?;

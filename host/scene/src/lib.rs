@@ -82,14 +82,14 @@ mod tick_cost;
 mod touched_layers;
 mod warning;
 
-pub use compile::compile;
+pub use compile::{compile, compile_draft};
 pub use compile_error::{CompileError, Located};
 pub use file::Scene;
 pub use files::{FileUnavailable, Files};
 pub use finger::{Elasticity, Evidence, Experiment, FingerProfile, Origin};
 pub use layer_map::{LayerError, LayerMap};
 pub use migrate::migrate;
-pub use mistake::Mistake;
+pub use mistake::{Mistake, TILDE_ADVICE};
 pub use nearest::Nearest;
 pub use optimisation::Optimisation;
 pub use played_finger::PlayedFinger;

@@ -8,8 +8,7 @@ use super::source::Source;
 /// Collects mistakes, so that a person sees all of them at once.
 pub(super) struct Log<'s> {
     source: &'s Source,
-    /// Each with the number of its file.
-    mistakes: Vec<(usize, Located)>,
+    mistakes: Vec<Located>,
     /// The known fields of each table, in the order in which tables were closed; `None` except while a schema is made.
     described: Option<Vec<KnownTable>>,
 }
@@ -17,6 +16,16 @@ pub(super) struct Log<'s> {
 impl<'s> Log<'s> {
     pub(super) fn new(source: &'s Source) -> Self {
         Self { source, mistakes: Vec::new(), described: None }
+    }
+
+    /// A log that starts with the mistakes that were found before.
+    pub(super) fn resuming(source: &'s Source, mistakes: &[Located]) -> Self {
+        Self { mistakes: mistakes.to_vec(), ..Self::new(source) }
+    }
+
+    /// A log of the same file whose mistakes do not count.
+    pub(super) fn scratch(&self) -> Self {
+        Self::new(self.source)
     }
 
     /// A log that keeps the known fields of each table.
@@ -46,31 +55,38 @@ impl<'s> Log<'s> {
     pub(super) fn add(&mut self, offset: usize, mistake: Mistake) {
         let (line, column) = self.source.line_and_column(offset);
         let (file, text) = (self.source.name_at(offset).to_owned(), self.source.word_at(offset).to_owned());
-        let located = (self.source.number_at(offset), Located { file, line, column, text, mistake });
+        let located = Located { file, line, column, text, mistake };
         if !self.mistakes.contains(&located) {
             self.mistakes.push(located);
         }
     }
 
     /// The value if there are no mistakes, otherwise the mistakes.
-    pub(super) fn finish<T>(mut self, value: Option<T>) -> Result<T, CompileError> {
+    pub(super) fn finish<T>(self, value: Option<T>) -> Result<T, CompileError> {
         match value {
             Some(value) if self.mistakes.is_empty() => Ok(value),
             _ => {
-                self.mistakes.sort_by_key(|(number, mistake)| (*number, mistake.line, mistake.column));
-                let mistakes = self.mistakes.into_iter().map(|(_, mistake)| mistake).collect();
-                Err(CompileError { file: self.source.name().to_owned(), mistakes })
+                let file = self.source.name().to_owned();
+                Err(CompileError { file, mistakes: self.into_mistakes() })
             }
         }
+    }
+
+    /// The mistakes, in the order of the scene file, then of those that it includes.
+    pub(super) fn into_mistakes(mut self) -> Vec<Located> {
+        let files = self.source.files();
+        let number = |mistake: &Located| files.iter().position(|file| file.name == mistake.file);
+        self.mistakes.sort_by_key(|mistake| (number(mistake), mistake.line, mistake.column));
+        self.mistakes
+    }
+
+    /// The mistake that was added last.
+    pub(super) fn last(&self) -> Option<&Mistake> {
+        self.mistakes.last().map(|located| &located.mistake)
     }
 
     /// Number of mistakes so far.
     pub(super) fn mistakes(&self) -> usize {
         self.mistakes.len()
-    }
-
-    /// Whether there are no mistakes so far.
-    pub(super) fn is_empty(&self) -> bool {
-        self.mistakes.is_empty()
     }
 }

@@ -42,10 +42,19 @@ pub(crate) struct Placed {
     pub(crate) tiled: bool,
     /// The picture's outline; `None` for a tiled picture, which is not bounded.
     pub(crate) outline: Option<Region>,
+    /// Its height over its width, relative to that of its pixels.
+    pub(crate) height_factor: f64,
 }
 
 impl Placed {
-    fn new(bitmap: &BitmapLayer, whole: Rectangle, pitch_mm: f64, across: Axis, down: Axis, crc32: u32) -> Self {
+    fn new(
+        bitmap: &BitmapLayer,
+        picture: &Picture,
+        whole: Rectangle,
+        pitch_mm: f64,
+        (across, down): (Axis, Axis),
+        crc32: u32,
+    ) -> Self {
         // A picture is turned about its centre.
         let (half_width_mm, half_height_mm) = (0.5 * whole.width_mm, 0.5 * whole.height_mm);
         let (middle_x_mm, middle_y_mm) = (whole.x_mm + half_width_mm, whole.y_mm + half_height_mm);
@@ -74,7 +83,8 @@ impl Placed {
             ])),
         };
         let angle_turns = (bitmap.angle_deg / 360.0) as f32;
-        Self { crc32, corner_mm, pitches_mm, angle_turns, tiled: bitmap.tiled, outline }
+        let height_factor = whole.height_mm / whole.width_mm * picture.width as f64 / picture.height as f64;
+        Self { crc32, corner_mm, pitches_mm, angle_turns, tiled: bitmap.tiled, outline, height_factor }
     }
 }
 
@@ -201,6 +211,9 @@ fn decoded(scene: &Scene) -> Decoded {
 }
 
 fn picture(name: &str, levels: Levels, bytes: &Result<Vec<u8>, FileUnavailable>) -> Result<Picture, Mistake> {
+    if name.is_empty() {
+        return Err(Mistake::NoFileName { field: "picture" });
+    }
     let unusable = |reason: String| Mistake::FileUnusable { what: "picture", file: name.to_owned(), reason };
     match bytes {
         Ok(bytes) => {
@@ -212,7 +225,7 @@ fn picture(name: &str, levels: Levels, bytes: &Result<Vec<u8>, FileUnavailable>)
             what: "picture",
             file: name.to_owned(),
             folder: place.clone(),
-            nearest: Nearest::new(file_name(name), files.iter().map(String::as_str)).suggestion,
+            nearest: Nearest::file(file_name(name), files),
         }),
     }
 }
@@ -277,7 +290,7 @@ impl Pool {
             self.bitmaps.push(compiled);
         }
         notes.extend(self.note(bitmap, pitch_mm, across, down));
-        Some(Placed::new(bitmap, whole, pitch_mm, across, down, crc32))
+        Some(Placed::new(bitmap, picture, whole, pitch_mm, (across, down), crc32))
     }
 
     fn fits(&self, layer: &Layer, pitch_mm: f64, needed_bytes: u64, log: &mut Log) -> bool {

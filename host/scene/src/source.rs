@@ -74,6 +74,7 @@ impl Source {
     /// own folder.
     pub(super) fn path_at(&self, offset: usize, name: &str) -> String {
         match self.number_at(offset) {
+            _ if name.is_empty() => String::new(),
             0 => name.to_owned(),
             number => joined(self.files.get(number).map_or("", |file| &file.path), name),
         }

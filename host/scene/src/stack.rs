@@ -24,14 +24,9 @@ struct Part<'i> {
     defaults: DeTable<'i>,
 }
 
-/// Reads the layers of all files of a scene, from bottom to top; `files` are their fields, the scene file's first.
-/// `pixel_mm` is the size of a pixel of the scene's design, if it has one.
-pub(super) fn layers<'i>(
-    files: &mut [Fields<'i>],
-    version: Version,
-    pixel_mm: Option<PixelSize>,
-    log: &mut Log,
-) -> Option<Vec<Layer>> {
+/// The tables of the layers of all files of a scene, from bottom to top, with their defaults; `files` are the fields of
+/// the files, the scene file's first.
+pub(super) fn layer_tables<'i>(files: &mut [Fields<'i>], version: Version, log: &mut Log) -> Vec<Fields<'i>> {
     let parts = files.iter_mut().map(|fields| part(fields, version, log)).collect::<Vec<Part<'i>>>();
     let mut stacked = Vec::new();
     stack(0, &parts, log, &mut stacked);
@@ -41,15 +36,24 @@ pub(super) fn layers<'i>(
         let part = parts.get_mut(number).and_then(Option::take);
         tables.extend(part.into_iter().flat_map(|part| part.layers).map(|layer| layer.with_defaults(&defaults)));
     }
+    tables
+}
+
+/// Reads the layers of a scene, from bottom to top, without those that have mistakes. `pixel_mm` is the size of a pixel
+/// of the scene's design, if it has one.
+pub(super) fn layers(tables: Vec<Fields>, version: Version, pixel_mm: Option<PixelSize>, log: &mut Log) -> Vec<Layer> {
     // Read every layer, so that the mistakes of all are reported.
-    let layers: Vec<Option<Vec<Layer>>> =
-        (1..).zip(tables).map(|(number, table)| Layer::read(table.with_pixels(pixel_mm), number, log)).collect();
-    let mut layers = layers.into_iter().collect::<Option<Vec<Vec<Layer>>>>()?.concat();
+    let mut layers = Vec::new();
+    for (number, table) in (1..).zip(tables) {
+        let mistakes = log.mistakes();
+        let copies = Layer::read(table.with_pixels(pixel_mm), number, log);
+        layers.extend(copies.filter(|_| log.mistakes() == mistakes).into_iter().flatten());
+    }
     for layer in &mut layers {
         settle(layer, version, log);
     }
     check_names(&layers, log);
-    Some(layers)
+    layers
 }
 
 fn part<'i>(fields: &mut Fields<'i>, version: Version, log: &mut Log) -> Part<'i> {

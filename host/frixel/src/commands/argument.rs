@@ -17,6 +17,11 @@ pub(super) fn seconds(text: &str) -> Result<f64, String> {
     number(text, above_zero_to(86_400.0), "a number of seconds above 0, at most a day")
 }
 
+/// Parses the seed of random numbers.
+pub(super) fn seed(text: &str) -> Result<u64, String> {
+    text.parse().map_err(|_| format!("expected a whole number from 0 to {}", u64::MAX))
+}
+
 /// The numbers above zero up to `max`.
 pub(super) fn above_zero_to(max: f64) -> impl RangeBounds<f64> {
     (Bound::Excluded(0.0), Bound::Included(max))

@@ -117,7 +117,7 @@ struct PlayArgs {
     #[arg(long)]
     json: bool,
     /// Seed of the simulator's random numbers.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = argument::seed, allow_negative_numbers = true)]
     seed: u64,
     /// Simulate a world without load changes, noise, pre-sliding, leakage, offsets, and lost touch reports. Without it,
     /// all of them are simulated.
@@ -125,7 +125,7 @@ struct PlayArgs {
     ideal: bool,
     /// Simulated person, whose finger the board does not know: another one for each seed. Without it, the finger is the
     /// scene's.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = argument::seed, allow_negative_numbers = true)]
     finger_seed: Option<u64>,
     /// Rows a second in felt.csv; at most 1000 on a board.
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=40_000))]
@@ -163,7 +163,7 @@ struct SimArgs {
     #[arg(long, default_value = "frixel-out")]
     out: PathBuf,
     /// Seed of the simulator's random numbers.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = argument::seed, allow_negative_numbers = true)]
     seed: u64,
 }
 

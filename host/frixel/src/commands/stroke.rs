@@ -98,6 +98,9 @@ impl StrokeArgs {
     }
 
     fn straight(&self, from: Point, to: Point) -> Result<Stroke, CommandError> {
+        if from == to {
+            return Err(CommandError::StrokeInPlace);
+        }
         let (speed_m_per_s, times) = (self.speed.unwrap_or(0.1), self.times.unwrap_or(1));
         let once = Stroke::constant_speed(from, to, speed_m_per_s).map_err(straight_error)?;
         let once_s = once.duration_s();
@@ -149,7 +152,10 @@ fn note_ignored_columns(path: &Path, text: &str) {
     let ignored: Vec<&str> = names.filter(|name| !KNOWN_COLUMNS.contains(name)).collect();
     if !ignored.is_empty() {
         let names = ignored.join(", ");
-        note(format_args!("{}: ignored, not a column of a stroke: {names}", path.display()));
+        note(format_args!(
+            "warning: {}: ignored column {names}: a stroke has t_s, x_mm, y_mm and force_n",
+            path.display()
+        ));
     }
 }
 

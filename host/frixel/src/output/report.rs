@@ -13,6 +13,10 @@ use frixel_scene::{Origin, Reach};
 pub struct Report {
     /// The rig that played the scene: `sim`, `qemu` or `board`.
     pub rig: String,
+    /// Whether the scene is a draft, which a board refuses.
+    pub draft: bool,
+    /// Why a board refuses it, a sentence each with line and column in the scene's file.
+    pub board_refuses: Vec<String>,
     /// The simulated world, `natural` or `ideal`.
     pub world: Option<&'static str>,
     /// Seed of the simulated person whose finger the board does not know.
@@ -96,6 +100,8 @@ impl Report {
     ) -> Self {
         Self {
             rig: rig.to_owned(),
+            draft: false,
+            board_refuses: Vec::new(),
             world: None,
             finger_seed: None,
             ticks: metrics.ticks,
@@ -138,6 +144,12 @@ impl Report {
         Self { world: world.map(|world| world.name()), finger_seed, finger_origin, ..self }
     }
 
+    /// Says why a board refuses the scene. If there is a reason, it is a draft.
+    #[must_use]
+    pub fn with_refusals(self, board_refuses: Vec<String>) -> Self {
+        Self { draft: !board_refuses.is_empty(), board_refuses, ..self }
+    }
+
     /// Adds the status of the stream, if there was one.
     #[must_use]
     pub fn with_stream(mut self, stream: Option<StreamStatus>) -> Self {
@@ -167,6 +179,9 @@ impl Report {
             // Writing to a string cannot fail.
             let _ = writeln!(text, "  {name:<16} {value}");
         };
+        if self.draft {
+            line("draft", draft_line(self.board_refuses.len()));
+        }
         if let Some(world) = self.world {
             let what = if world == IDEAL { IDEAL_WORLD } else { NATURAL_WORLD };
             line("world", format!("{world}: {what}"));
@@ -178,7 +193,7 @@ impl Report {
         let range = |least: f64, most: f64| format!("{:.2} to {:.2} mN{suffix}", 1e3 * least, 1e3 * most);
         line("reachable", range(self.reachable_min_n, self.reachable_max_n));
         if let Some((least, most)) = self.wanted_min_n.zip(self.wanted_max_n) {
-            line("wanted", range(least, most));
+            line("reference", range(least, most));
         }
         let electric_n = self.reachable_max_n - self.reachable_min_n;
         for (name, error) in [
@@ -221,6 +236,12 @@ impl Report {
         }
         text
     }
+}
+
+/// What a summary says of a draft.
+pub fn draft_line(refusals: usize) -> String {
+    let reasons = if refusals == 1 { "1 reason".to_owned() } else { format!("{refusals} reasons") };
+    format!("a board refuses this scene, for {reasons}; what is out of reach is clamped here")
 }
 
 fn size(rms_n: Option<f64>, max_n: Option<f64>) -> Option<ErrorSize> {

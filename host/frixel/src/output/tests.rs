@@ -56,7 +56,7 @@ fn stroke(program: &Program, seconds: f64) -> Vec<FeltRow> {
 }
 
 fn subject(name: &str) -> Subject {
-    Subject { name: name.to_owned(), simulated: true }
+    Subject { name: name.to_owned(), simulated: true, draft: false }
 }
 
 fn trace(rows: &[FeltRow]) -> Trace {
@@ -201,7 +201,7 @@ fn felt_svg_has_axes_units_and_legend() {
     let mut rows = stroke(&program, 1.0);
     let svg = draw("felt.svg", &rows);
     for text in
-        ["a &lt; b &amp; c, simulated", "friction, mN", "voltage, V rms", "time, s", "wanted", "felt", "reachable"]
+        ["a &lt; b &amp; c, simulated", "friction, mN", "voltage, V rms", "time, s", "reference", "felt", "reachable"]
     {
         assert!(svg.lines().any(|line| line == text), "{text}");
     }
@@ -358,7 +358,7 @@ fn report_as_json() {
     assert_eq!(
         report(&known).summary(),
         "  reachable        250.00 to 275.00 mN, assumed\n\
-         \x20 wanted           250.00 to 270.00 mN, assumed\n\
+         \x20 reference        250.00 to 270.00 mN, assumed\n\
          \x20 friction error   1.0000 mN rms, 5.0000 mN at most (4.000 % and 20.000 % of the range)\n\
          \x20 inversion error  0.0010 mN rms, 0.0200 mN at most (0.004 % and 0.080 % of the range)\n\
          \x20 carrier ripple   0.5000 mN rms\n\

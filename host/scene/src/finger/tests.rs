@@ -118,7 +118,7 @@ fn mistakes_are_told_with_their_place() {
         ),
         (
             measured.replace("[0.06, 0.08]", "[0.06]"),
-            "finger.toml:11:32: `electric_friction_interval_n` has 1 entries: expected 2",
+            "finger.toml:11:32: `electric_friction_interval_n` has 1 entry: expected 2",
         ),
         (
             measured.replace("measured_voltage_max_v_rms = 150\n", ""),

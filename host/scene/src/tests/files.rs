@@ -15,7 +15,7 @@ fn scene(text: &str, files: &[(&str, &str)]) -> Result<Scene, CompileError> {
     let mut files: BTreeMap<String, Vec<u8>> = files.collect();
     files.extend(PICTURES.clone());
     let scene = Scene::parse(text, "play/scene.toml", &files);
-    schema::check_agrees(text, scene.as_ref().err());
+    schema::check_agrees(text, mistakes(&scene));
     scene
 }
 
@@ -182,7 +182,8 @@ fn a_mistake_is_reported_in_its_own_file() {
            `voltage_max_v_rms`, or write `saturate = true` under [drive] to have it clamped",
         ],
     );
-    let error = scene(SHORT, &[("common.toml", &broken)]).expect_err("it is refused");
+    let scene = scene(SHORT, &[("common.toml", &broken)]).expect("its layers have mistakes, and nothing else");
+    let error = compile::compile(&scene, &LIMITS, TICK_HZ).expect_err("it is refused");
     assert!(error.to_json().contains("\"file\":\"play/common.toml\",\"line\":4"), "{}", error.to_json());
 }
 
@@ -191,7 +192,7 @@ fn what_an_included_file_may_not_have() {
     check_refused(
         SHORT,
         &[("common.toml", FLAT)],
-        &["play/common.toml:1:1: play/common.toml has no `version`: add it"],
+        &["play/common.toml:1:1: play/common.toml has no `version`: write `version = 2` at the top"],
     );
     check_refused(
         SHORT,

@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use frixel_control::Board;
 use frixel_wire::hello::BoardLimits;
 
-use super::{CompileError, Program, Scene, compile};
+use super::{CompileError, Located, Program, Scene, compile, compile_draft};
 
 mod docs;
 mod errors;
@@ -60,9 +60,31 @@ pub(super) fn scenes() -> &'static Path {
 /// Compiles a text, and checks that the schema for editors agrees with the parser about it.
 pub(super) fn compile_text(text: &str) -> Result<Program, CompileError> {
     let scene = Scene::parse(text, "test.toml", &*PICTURES);
-    schema::check_agrees(text, scene.as_ref().err());
+    schema::check_agrees(text, mistakes(&scene));
     // The cost of a tick has its own tests; other tests may stack many layers.
-    compile::compile(&scene?, &BoardLimits { tick_cycles_max: u32::MAX, ..LIMITS }, TICK_HZ)
+    let limits = BoardLimits { tick_cycles_max: u32::MAX, ..LIMITS };
+    let scene = scene?;
+    let compiled = compile(&scene, &limits, TICK_HZ);
+    check_draft(&compiled, compile_draft(&scene, &limits, TICK_HZ));
+    compiled
+}
+
+/// Panics unless a draft is what a board plays or, of a scene that a board refuses, has the board's reasons.
+#[track_caller]
+fn check_draft(compiled: &Result<Program, CompileError>, draft: Result<Program, CompileError>) {
+    match (compiled, draft) {
+        (Ok(program), draft) => assert_eq!(draft.as_ref(), Ok(program)),
+        // As texts, because a number that was found may be not-a-number.
+        (Err(CompileError { mistakes, .. }), Ok(draft)) => {
+            assert_eq!(format!("{:?}", draft.refusals), format!("{mistakes:?}"));
+        }
+        (Err(refused), Err(error)) => assert_eq!(error.to_string(), refused.to_string()),
+    }
+}
+
+/// The mistakes that were found while a scene was read.
+fn mistakes(scene: &Result<Scene, CompileError>) -> &[Located] {
+    scene.as_ref().map_or_else(|error| error.mistakes.as_slice(), Scene::mistakes)
 }
 
 /// A scene of the repository.

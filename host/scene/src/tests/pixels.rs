@@ -8,7 +8,7 @@ const DESIGN: &str =
 
 fn scene(text: &str) -> Result<Scene, CompileError> {
     let scene = Scene::parse(text, "test.toml", &*PICTURES);
-    schema::check_agrees(text, scene.as_ref().err());
+    schema::check_agrees(text, mistakes(&scene));
     scene
 }
 
