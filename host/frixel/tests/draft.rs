@@ -60,7 +60,8 @@ fn every_output_of_a_draft_says_so() {
     let written: Value = serde_json::from_slice(&fs::read(out.join("summary.json")).unwrap()).unwrap();
     for report in [&printed, &written] {
         assert_eq!(report["draft"], true);
-        assert!(report["board_refuses"][0].as_str().unwrap().starts_with(REFUSAL), "{report}");
+        let refusal = report["board_refuses"][0].as_str().unwrap();
+        assert!(refusal.starts_with(&format!("scene.toml:{REFUSAL}")), "{report}");
     }
     assert!(printed["saturated_ticks"].as_u64().unwrap() > 1000, "the board clamps: {printed}");
     let svg = fs::read_to_string(out.join("felt.svg")).unwrap();

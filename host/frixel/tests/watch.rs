@@ -182,6 +182,30 @@ fn a_picture_that_has_no_room_beside_the_one_that_plays_replaces_it_and_is_follo
 }
 
 #[test]
+fn an_included_file_is_followed() {
+    let folder = TempDir::new().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let part = |friction: &str| format!("version = 2\n[[layer]]\nkind = \"constant\"\nfriction_n = {friction}\n");
+    fs::create_dir(path("parts")).unwrap();
+    fs::write(path("parts/flat.toml"), part("0.26")).unwrap();
+    let text = "version = 2\ninclude = [\"parts/flat.toml\"]\n[drive]\nhost_timeout_ms = 1000\n";
+    fs::write(path("scene.toml"), text).unwrap();
+    let (mut board, port) = virtual_board(folder.path(), &[]);
+    let mut client = watching_client(folder.path(), &port);
+    let said = || fs::read_to_string(path("said")).unwrap();
+    let last_n = || asked_n(&path("client")).last().copied().unwrap_or_default();
+    until("the first scene plays", || is(last_n(), 0.26));
+
+    fs::write(path("parts/flat.toml"), part("0.27")).unwrap();
+    until("the saved part plays", || is(last_n(), 0.27));
+
+    fs::write(path("parts/flat.toml"), part("27")).unwrap();
+    until("the mistake is reported in its file", || said().contains("parts/flat.toml:4:14: "));
+    assert!(client.interrupt(), "{}", said());
+    assert!(board.interrupt());
+}
+
+#[test]
 fn a_stream_is_not_watched() {
     let folder = TempDir::new().unwrap();
     let command = ["play", "scene.toml", "--port", "/dev/frixel-is-not-there", "--watch", "--stream", "tones.wav"];

@@ -130,11 +130,12 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
     let is_reach_known = log.mistakes() == mistakes;
     let (finger, note) = PlayedFinger::of(&scene.profiles);
     notes.extend(note);
+    notes.extend(scene.design.and_then(|design| design.note_on(scene.screen())));
     let layers_max = RECORDS_MAX.min(usize::from(limits.records_max));
     if let Some(layer) = scene.layers.get(layers_max) {
         log.add(layer.places.table(), Mistake::TooManyLayers { number: layers_max + 1, max: layers_max });
     }
-    let pool = Pool::new(&scene.pictures, limits.bitmap_pool_bytes);
+    let pool = Pool::new(scene, limits.bitmap_pool_bytes);
     let mut lowering = Lowering::new(scene, &header, &reach, tick_hz, pool, log);
     // Lower every layer, so that the mistakes of all are reported.
     let (layers, records) = records(scene.layers.iter().take(layers_max), &mut lowering);

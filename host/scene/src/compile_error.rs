@@ -7,23 +7,25 @@ use super::mistake::Mistake;
 
 /// A scene file cannot be read or compiled. The message has a line for each mistake.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[error("{}", list(.file, .mistakes))]
+#[error("{}", list(.mistakes))]
 pub struct CompileError {
-    /// The file's name, as it was given.
+    /// The scene file's name, as it was given.
     pub file: String,
-    /// All mistakes, in the order of the file; at least one.
+    /// All mistakes, in the order of the file, then those of the files that it includes; at least one.
     pub mistakes: Vec<Located>,
 }
 
-fn list(file: &str, mistakes: &[Located]) -> String {
-    let lines: Vec<String> = mistakes.iter().map(|mistake| format!("{file}:{mistake}")).collect();
+fn list(mistakes: &[Located]) -> String {
+    let lines: Vec<String> = mistakes.iter().map(ToString::to_string).collect();
     lines.join("\n")
 }
 
-/// A mistake and where in the file it stands.
+/// A mistake and where it stands.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[error("{line}:{column}: {mistake}")]
+#[error("{file}:{line}:{column}: {mistake}")]
 pub struct Located {
+    /// The name of the file: the scene file, or one that it includes.
+    pub file: String,
     /// Line, from one.
     pub line: usize,
     /// Column in characters, from one.
@@ -35,9 +37,9 @@ pub struct Located {
 }
 
 impl CompileError {
-    /// One JSON object on one line: `file`; `unreadable`, null; `mistakes`, a list of objects with `line` and `column`,
-    /// both from one, `text`, the text at that position, `nearest`, the nearest valid name or null, and `message`, a
-    /// sentence. A caller that reads files sets `unreadable` to a text if it could not read the file.
+    /// One JSON object on one line: `file`; `unreadable`, null; `mistakes`, a list of objects with `file`, `line` and
+    /// `column`, both from one, `text`, the text at that position, `nearest`, the nearest valid name or null, and
+    /// `message`, a sentence. A caller that reads files sets `unreadable` to a text if it could not read the file.
     pub fn to_json(&self) -> String {
         let mistakes = self.mistakes.iter().map(MistakeJson::of).collect();
         // Plain numbers and texts always have a JSON form.
@@ -54,6 +56,7 @@ struct ErrorJson<'e> {
 
 #[derive(Serialize)]
 struct MistakeJson<'e> {
+    file: &'e str,
     line: usize,
     column: usize,
     text: &'e str,
@@ -63,7 +66,7 @@ struct MistakeJson<'e> {
 
 impl<'e> MistakeJson<'e> {
     fn of(located: &'e Located) -> Self {
-        let Located { line, column, text, mistake } = located;
-        Self { line: *line, column: *column, text, nearest: mistake.nearest(), message: mistake.to_string() }
+        let Located { file, line, column, text, mistake } = located;
+        Self { file, line: *line, column: *column, text, nearest: mistake.nearest(), message: mistake.to_string() }
     }
 }

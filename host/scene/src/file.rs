@@ -6,10 +6,11 @@ use frixel_layers::{Leader, Waveform};
 use toml::de::DeTable;
 
 use super::compile_error::{CompileError, Located};
-use super::fields::{Fields, read_text_partly};
+use super::fields::{Fields, PixelSize, parsed};
 use super::files::Files;
 use super::finger::FingerProfile;
 use super::grammar::KnownTable;
+use super::include::{self, Gathered};
 use super::kinds::Kind;
 use super::layer::Layer;
 use super::log::Log;
@@ -18,6 +19,7 @@ use super::pool::PictureBytes;
 use super::profiles::{self, ProfileSource, Profiles};
 use super::screen::Screen;
 use super::source::{Places, Source};
+use super::stack;
 use super::tables;
 
 /// Version of the file format.
@@ -47,6 +49,7 @@ pub struct Scene {
     pub(super) drive: Drive,
     pub(super) carrier: Carrier,
     pub(super) touch: Touch,
+    pub(super) design: Option<Design>,
     pub(super) layers: Vec<Layer>,
 }
 
@@ -77,17 +80,53 @@ pub(super) struct Touch {
     pub(super) leader: Leader,
 }
 
+/// Ratio of a pixel's sides from which on a design counts as stretched.
+const STRETCH_MAX: f64 = 1.01;
+
+/// `[design]`: the size in pixels of a drawing that covers the screen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Design {
+    pub(super) width_px: f64,
+    pub(super) height_px: f64,
+}
+
+impl Design {
+    /// The size of a pixel on a screen.
+    pub(super) fn pixel_on(self, screen: &Screen) -> PixelSize {
+        PixelSize { width_mm: screen.width_mm / self.width_px, height_mm: screen.height_mm / self.height_px }
+    }
+
+    /// What to say of a design that has other proportions than the screen.
+    pub(super) fn note_on(self, screen: &Screen) -> Option<String> {
+        let Self { width_px, height_px } = self;
+        let PixelSize { width_mm, height_mm } = self.pixel_on(screen);
+        let is_stretched = width_mm.max(height_mm) > STRETCH_MAX * width_mm.min(height_mm);
+        is_stretched.then(|| {
+            format!(
+                "design: {width_px} x {height_px} px are stretched to the screen's {} mm x {} mm: a pixel is \
+                 {width_mm:.4} mm wide and {height_mm:.4} mm high",
+                screen.width_mm, screen.height_mm
+            )
+        })
+    }
+}
+
 impl Scene {
-    /// Reads the text of a scene file. Messages call the file `name`; `files` provides the pictures and profiles that
-    /// the file names.
+    /// Reads the text of a scene file. Messages call the file `name`; `files` provides the pictures, the profiles and
+    /// the included files that the file names.
     ///
     /// # Errors
     ///
     /// The text is not TOML, or a part of it outside of the layers has mistakes. Mistakes of layers alone do not fail
     /// here: [`super::compile`] reports them, with its own.
     pub fn parse(text: &str, name: &str, files: &dyn Files) -> Result<Self, CompileError> {
-        let read = |fields: Fields, log: &mut Log, source: &Source| read(fields, files, log, source);
-        let (scene, mistakes) = read_text_partly(text, name, "the scene", read);
+        let Gathered { source, mistakes } = include::gather(name, text, files);
+        let mut log = Log::new(&source);
+        for (offset, mistake) in mistakes {
+            log.add(offset, mistake);
+        }
+        let scene = read(files, &mut log);
+        let mistakes = log.into_mistakes();
         let Some(mut scene) = scene else { return Err(CompileError { file: name.to_owned(), mistakes }) };
         scene.mistakes = mistakes;
         scene.pictures = scene.picture_names().map(|name| (name.to_owned(), files.bytes(name))).collect();
@@ -123,6 +162,16 @@ impl Scene {
         self.refuse_version_one("screen")?;
         self.profiles.screen = screen;
         self.profiles.screen_source = ProfileSource::Option(name.to_owned());
+        if let Some(design) = self.design {
+            // Pixels have another size on this screen.
+            let mut log = Log::new(&self.source);
+            let pixel_mm = design.pixel_on(&self.profiles.screen);
+            if let Some(mut files) = files(&mut log) {
+                let layer_tables = stack::layer_tables(&mut files, self.version, &mut log);
+                self.layers = stack::layers(layer_tables, self.version, Some(pixel_mm), &mut log);
+            }
+            self.mistakes = log.into_mistakes();
+        }
         Ok(self)
     }
 
@@ -170,37 +219,60 @@ impl Scene {
 pub(super) fn describe(text: &str) -> Vec<KnownTable> {
     let source = Source::new("", text);
     let mut log = Log::describing(&source);
-    if let Ok(table) = DeTable::parse(text) {
-        // Ignore mistakes in the text; only the known fields count.
-        let _ = read(Fields::new("the scene", 0, table.into_inner()), &BTreeMap::new(), &mut log, &source);
-    }
+    // Ignore mistakes in the text; only the known fields count.
+    let _ = read(&BTreeMap::new(), &mut log);
     log.into_described()
 }
 
-fn read(mut fields: Fields, files: &dyn Files, log: &mut Log, source: &Source) -> Option<Scene> {
+/// The fields of the scene file and of the files that it includes; `None` if one of them is not TOML.
+fn files<'s>(log: &mut Log<'s>) -> Option<Vec<Fields<'s>>> {
+    let files = log.source().files().iter();
+    let fields = files.map(|file| {
+        let table = if file.start == 0 { "the scene" } else { &file.name };
+        parsed(file, log).map(|values| Fields::new(table, file.start, values))
+    });
+    // Parse every file, so that the mistakes of all are reported.
+    fields.collect::<Vec<Option<Fields>>>().into_iter().collect()
+}
+
+fn read(named: &dyn Files, log: &mut Log) -> Option<Scene> {
+    let mut files = files(log)?;
+    let (fields, included) = files.split_first_mut()?;
     let version_place = fields.place(tables::scene::VERSION.name);
-    let version = version(&mut fields, log);
+    let version = version(fields, log);
+    match version {
+        Version::One => refuse_version_two(fields, log),
+        Version::Two => {
+            // Its files have been read.
+            let _ = fields.texts(log, &tables::scene::INCLUDE);
+        }
+    }
+    for (number, file) in (1..).zip(included) {
+        join(fields, file, number, log);
+    }
     let profiles = match version {
-        Version::One => profiles::read_v1(&mut fields, log),
-        Version::Two => profiles::read_v2(&mut fields, files, log),
+        Version::One => profiles::read_v1(fields, log),
+        Version::Two => profiles::read_v2(fields, named, log),
     };
     let drive = drive(fields.table(log, &tables::scene::DRIVE).unwrap_or_else(|| absent("[drive]")), log);
     let carrier = carrier(fields.table(log, &tables::scene::CARRIER).unwrap_or_else(|| absent("[carrier]")), log);
     let touch = touch(fields.table(log, &tables::scene::TOUCH).unwrap_or_else(|| absent("[touch]")), log);
-    let tables = fields.tables(log, &tables::scene::LAYER).unwrap_or_default();
-    // Mistakes outside of the layers make it impossible to say what the layers ask for.
-    fields.close(log);
-    let head_is_valid = log.mistakes() == 0;
-    // Read every layer, so that the mistakes of all are reported.
-    let mut layers = Vec::new();
-    for (number, table) in (1..).zip(tables) {
-        let mistakes = log.mistakes();
-        let copies = Layer::read(table, number, log);
-        layers.extend(copies.filter(|_| log.mistakes() == mistakes).into_iter().flatten());
+    let design = match version {
+        Version::One => None,
+        Version::Two => fields.table(log, &tables::scene::DESIGN).and_then(|fields| design(fields, log)),
+    };
+    let layer_tables = stack::layer_tables(&mut files, version, log);
+    for file in files {
+        file.close(log);
     }
+    // Mistakes outside of the layers make it impossible to say what the layers ask for.
+    let head_is_valid = log.mistakes() == 0;
+    let example = Screen::example();
+    let screen = profiles.as_ref().map_or(&example, |profiles| &profiles.screen);
+    let layers = stack::layers(layer_tables, version, design.map(|design| design.pixel_on(screen)), log);
     let profiles = profiles.filter(|_| head_is_valid)?;
     Some(Scene {
-        source: source.clone(),
+        source: log.source().clone(),
         mistakes: Vec::new(),
         pictures: PictureBytes::new(),
         version,
@@ -209,8 +281,41 @@ fn read(mut fields: Fields, files: &dyn Files, log: &mut Log, source: &Source) -
         drive,
         carrier,
         touch,
+        design,
         layers,
     })
+}
+
+/// Reports the fields of a scene of version 1 that came with version 2.
+fn refuse_version_two(fields: &mut Fields, log: &mut Log) {
+    for field in [tables::scene::INCLUDE, tables::scene::DEFAULTS, tables::scene::DESIGN] {
+        if fields.has(field.name) {
+            let file = log.source().name().to_owned();
+            log.add(fields.place(field.name), Mistake::SinceVersionTwo { field: field.name, file });
+            fields.ignore(field.name);
+        }
+    }
+}
+
+/// Moves the tables of included file `number` into the scene, which may have each of them only once.
+fn join<'i>(scene: &mut Fields<'i>, file: &mut Fields<'i>, number: usize, log: &mut Log) {
+    use tables::scene::{CARRIER, DESIGN, DRIVE, FINGER, SCREEN, TOUCH};
+    let place = file.place(tables::scene::VERSION.name);
+    if file.number(log, &tables::scene::VERSION).is_some_and(|version| version.to_bits() != 2.0_f64.to_bits()) {
+        let (file, included) = (log.source().includer(number).to_owned(), log.source().name_at(place).to_owned());
+        log.add(place, Mistake::IncludedVersion { file, included });
+    }
+    let _ = file.texts(log, &tables::scene::INCLUDE);
+    for field in [SCREEN, FINGER, DRIVE, CARRIER, TOUCH, DESIGN] {
+        scene.adopt(file, &field, log);
+    }
+}
+
+fn design(mut fields: Fields, log: &mut Log) -> Option<Design> {
+    let width_px = fields.number(log, &tables::design::WIDTH_PX);
+    let height_px = fields.number(log, &tables::design::HEIGHT_PX);
+    fields.close(log);
+    Some(Design { width_px: width_px?, height_px: height_px? })
 }
 
 /// The version of the file. If it is absent or unknown, the version that the file's tables are of, so that the other

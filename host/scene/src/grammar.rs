@@ -29,6 +29,10 @@ pub(crate) enum Holds {
     /// A list of tables, or one table in its place.
     TableOrTables,
     Numbers(Range),
+    /// A number, or `"auto"`.
+    NumberOrAuto(Range),
+    /// A list of texts.
+    Texts,
     /// Two numbers in square brackets, the second one not below the first.
     Interval(Range),
     /// A list of pairs of numbers.
@@ -87,6 +91,28 @@ impl AmountFields {
     pub(crate) fn names(&self) -> [&'static str; 3] {
         [self.newtons.name, self.fraction.name, self.factor.name]
     }
+}
+
+/// The two fields that can hold a place or a size along an axis of the screen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LengthFields {
+    pub(crate) mm: FieldSpec,
+    /// In pixels of the scene's design size.
+    pub(crate) px: FieldSpec,
+    pub(crate) axis: Axis,
+}
+
+/// An axis of the screen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Axis {
+    X,
+    Y,
+}
+
+/// The name of a field without the unit of an amount or a length: fields with the same stem say the same.
+pub(crate) fn stem(name: &str) -> &str {
+    let units = ["_n", "_fraction", "_factor", "_mm", "_px"];
+    units.iter().find_map(|unit| name.strip_suffix(unit)).unwrap_or(name)
 }
 
 /// A field that the parser read, with the words that it may hold.

@@ -43,6 +43,7 @@ mod file;
 mod files;
 mod finger;
 mod grammar;
+mod include;
 mod kinds;
 mod layer;
 mod layer_map;
@@ -71,6 +72,7 @@ mod screen;
 mod source;
 mod spectrum;
 mod springs;
+mod stack;
 mod tables;
 mod target_range;
 #[cfg(test)]

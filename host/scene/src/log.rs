@@ -45,11 +45,20 @@ impl<'s> Log<'s> {
         self.described.unwrap_or_default()
     }
 
-    /// Adds a mistake at a byte offset of the file.
+    /// The files that are read.
+    pub(super) fn source(&self) -> &'s Source {
+        self.source
+    }
+
+    /// Adds a mistake at a byte offset of the files. A mistake that is there already is not added again: layers that
+    /// share a field share its mistakes.
     pub(super) fn add(&mut self, offset: usize, mistake: Mistake) {
         let (line, column) = self.source.line_and_column(offset);
-        let text = self.source.word_at(offset).to_owned();
-        self.mistakes.push(Located { line, column, text, mistake });
+        let (file, text) = (self.source.name_at(offset).to_owned(), self.source.word_at(offset).to_owned());
+        let located = Located { file, line, column, text, mistake };
+        if !self.mistakes.contains(&located) {
+            self.mistakes.push(located);
+        }
     }
 
     /// The value if there are no mistakes, otherwise the mistakes.
@@ -63,9 +72,11 @@ impl<'s> Log<'s> {
         }
     }
 
-    /// The mistakes, in the order of the file.
+    /// The mistakes, in the order of the scene file, then of those that it includes.
     pub(super) fn into_mistakes(mut self) -> Vec<Located> {
-        self.mistakes.sort_by_key(|mistake| (mistake.line, mistake.column));
+        let files = self.source.files();
+        let number = |mistake: &Located| files.iter().position(|file| file.name == mistake.file);
+        self.mistakes.sort_by_key(|mistake| (number(mistake), mistake.line, mistake.column));
         self.mistakes
     }
 

@@ -5,6 +5,7 @@ use toml_edit::{Array, DocumentMut, InlineTable, Item, TableLike, Value};
 use super::compile_error::CompileError;
 use super::file::{Scene, Version};
 use super::files::Files;
+use super::kinds::{Bitmap, PITCH_V1_MM, Words};
 use super::log::Log;
 use super::mistake::Mistake;
 use super::screen::{Screen, Slab};
@@ -13,7 +14,8 @@ use super::screen::{Screen, Slab};
 ///
 /// The friction stays the same, because coating and skin keep their effective gap together. Version 1 does not say which
 /// part of it is skin: slabs of permittivity 1 are taken for air and become the finger's skin gap. If that leaves no
-/// coating, the screen gets [`Slab::EXAMPLE`], whose gap is taken from the skin's. A scene of version 2 is refused.
+/// coating, the screen gets [`Slab::EXAMPLE`], whose gap is taken from the skin's. A picture without a pitch gets the one
+/// that version 1 gives it. A scene of version 2 is refused.
 pub fn migrate(text: &str, name: &str, files: &dyn Files) -> Result<String, CompileError> {
     let scene = Scene::parse(text, name, files)?;
     let mut log = Log::resuming(&scene.source, &scene.mistakes);
@@ -45,9 +47,26 @@ fn rewritten(mut document: DocumentMut, screen: &Screen) -> Option<String> {
         Ok([slab]) => slab,
         Err(slabs) => Value::from(Array::from_iter(slabs)),
     };
+    for layer in layers(&mut document) {
+        let is_bitmap = layer.get("kind").and_then(Item::as_str) == Some(Bitmap::WORD);
+        if is_bitmap && layer.get("pitch_mm").is_none() {
+            layer.insert("pitch_mm", Item::Value(number(PITCH_V1_MM)));
+        }
+    }
     table(&mut document, "screen")?.insert("coating", Item::Value(coating));
     table(&mut document, "finger")?.insert("skin_gap_um", Item::Value(number(skin_gap_um)));
     Some(document.to_string())
+}
+
+fn layers(document: &mut DocumentMut) -> Vec<&mut dyn TableLike> {
+    match document.get_mut("layer") {
+        Some(Item::ArrayOfTables(tables)) => tables.iter_mut().map(|table| table as &mut dyn TableLike).collect(),
+        Some(Item::Value(Value::Array(values))) => {
+            let tables = values.iter_mut().filter_map(Value::as_inline_table_mut);
+            tables.map(|table| table as &mut dyn TableLike).collect()
+        }
+        _ => Vec::new(),
+    }
 }
 
 fn table<'d>(document: &'d mut DocumentMut, name: &str) -> Option<&'d mut dyn TableLike> {

@@ -99,6 +99,99 @@ pub enum Mistake {
         /// The bundled names, and the nearest one.
         nearest: Nearest,
     },
+    /// A scene of version 1 has a field of version 2.
+    #[error("`{field}` came with version 2: `frixel scene migrate {file}` prints a scene of version 1 as version 2")]
+    SinceVersionTwo {
+        /// The field.
+        field: &'static str,
+        /// The scene file.
+        file: String,
+    },
+    /// An included file has another version.
+    #[error(
+        "{file} includes {included}, which has another version than 2: `frixel scene migrate {included}` prints it as 2"
+    )]
+    IncludedVersion {
+        /// The file that includes it.
+        file: String,
+        /// The included file.
+        included: String,
+    },
+    /// Files include one another.
+    #[error("{file} includes {included}, which includes {file} itself: take one of the two out")]
+    IncludedByItself {
+        /// The file with this `include`.
+        file: String,
+        /// The file that it includes.
+        included: String,
+    },
+    /// A file is included by two files, or twice by one.
+    #[error(
+        "{included} is included by {file} and by {other}: a scene includes each file once, so leave one of them out"
+    )]
+    IncludedTwice {
+        /// The file with this `include`.
+        file: String,
+        /// The included file.
+        included: String,
+        /// The file that includes it already.
+        other: String,
+    },
+    /// A file that is to be included is not there.
+    #[error(
+        "{file} includes {included}, which was not found: names start from the folder of {file}{}",
+        did_you_mean(.nearest.as_deref())
+    )]
+    IncludedMissing {
+        /// The file with this `include`.
+        file: String,
+        /// The file that it includes.
+        included: String,
+        /// The nearest name in the place that was searched, if one is near enough.
+        nearest: Option<String>,
+    },
+    /// A file that is to be included cannot be used.
+    #[error("{file} includes {included}, which cannot be used: {reason}")]
+    IncludedUnusable {
+        /// The file with this `include`.
+        file: String,
+        /// The file that it includes.
+        included: String,
+        /// The reason, and what to do.
+        reason: String,
+    },
+    /// Two files of a scene have the same table.
+    #[error("`{field}` stands in {file} and in {other}: a scene has one, so leave one of them out")]
+    TableTwice {
+        /// The table.
+        field: &'static str,
+        /// The file with this table.
+        file: String,
+        /// Another file that has it.
+        other: String,
+    },
+    /// Layers of two files have the same name.
+    #[error("a layer \"{name}\" is in {file} and in {other}: give one of them another name")]
+    NameTwice {
+        /// The name.
+        name: String,
+        /// The file with this layer.
+        file: String,
+        /// Another file that has a layer of this name.
+        other: String,
+    },
+    /// A field differs from layer to layer and has no default.
+    #[error("`{field}` in [defaults] would be the same for every layer: write it in each layer")]
+    NoDefault {
+        /// The field.
+        field: &'static str,
+    },
+    /// A length is in pixels, and the scene does not say how large its design is.
+    #[error("`{field}` is in pixels, and the scene has no design size: add [design] with `width_px` and `height_px`")]
+    NoDesign {
+        /// The field.
+        field: &'static str,
+    },
     /// A lower limit is above its upper limit.
     #[error("`{low_name} = {low}` is above `{high_name} = {high}`: swap them")]
     LowAboveHigh {
@@ -206,7 +299,7 @@ pub enum Mistake {
     #[error(
         "{what} \"{file}\" was not found in {folder}{}: {}",
         which_has(.nearest.as_deref()),
-        if .file.starts_with('~') { TILDE_ADVICE } else { "paths start from the scene file's folder" }
+        if .file.starts_with('~') { TILDE_ADVICE } else { "paths start from the folder of the file that names it" }
     )]
     FileMissing {
         /// `picture`, `finger` or `screen`.
@@ -406,10 +499,14 @@ impl Mistake {
             Self::UnknownField { nearest, .. }
             | Self::UnknownChoice { nearest, .. }
             | Self::UnknownProfile { nearest, .. } => nearest.suggestion.as_deref(),
-            Self::FileMissing { nearest, .. } => nearest.as_deref(),
+            Self::FileMissing { nearest, .. } | Self::IncludedMissing { nearest, .. } => nearest.as_deref(),
             _ => None,
         }
     }
+}
+
+fn did_you_mean(nearest: Option<&str>) -> String {
+    nearest.map_or(String::new(), |name| format!("; did you mean \"{name}\"?"))
 }
 
 fn which_has(nearest: Option<&str>) -> String {

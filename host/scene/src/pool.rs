@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use super::file::Scene;
 use super::files::{FileUnavailable, file_name};
-use super::kinds::Bitmap as BitmapLayer;
+use super::kinds::{Bitmap as BitmapLayer, Kind, Levels, PITCH_MM};
 use super::layer::{Layer, Rectangle, Region};
 use super::log::Log;
 use super::mistake::Mistake;
@@ -17,12 +18,17 @@ use super::resample::{Axis, resample};
 pub(super) type PictureBytes = BTreeMap<String, Result<Vec<u8>, FileUnavailable>>;
 
 /// Collects the bitmaps of a scene, each one once, and checks that they fit into the pool.
-pub(super) struct Pool<'s> {
-    pictures: &'s PictureBytes,
+pub(super) struct Pool {
+    pictures: Decoded,
     size_bytes: u32,
+    /// The pitch of pictures with `pitch_mm = "auto"` that have finer pixels.
+    shared_pitch_mm: f64,
     bitmaps: Vec<Bitmap>,
     optimisations: Vec<Optimisation>,
 }
+
+/// The pictures of a scene at the levels of their layers, each decoded once, or the reason why one cannot be used.
+type Decoded = BTreeMap<(String, Levels), Result<Picture, Mistake>>;
 
 /// A bitmap and its place on the screen.
 pub(crate) struct Placed {
@@ -45,6 +51,7 @@ impl Placed {
         bitmap: &BitmapLayer,
         picture: &Picture,
         whole: Rectangle,
+        pitch_mm: f64,
         (across, down): (Axis, Axis),
         crc32: u32,
     ) -> Self {
@@ -57,7 +64,7 @@ impl Placed {
         let pitches_mm = if bitmap.tiled {
             (whole.width_mm / across.samples as f64, whole.height_mm / down.samples as f64)
         } else {
-            (bitmap.pitch_mm, bitmap.pitch_mm)
+            (pitch_mm, pitch_mm)
         };
         let corner_mm = if bitmap.angle_deg.abs() > 0.0 {
             turned(-half_width_mm, -half_height_mm)
@@ -106,12 +113,12 @@ fn rectangle(bitmap: &BitmapLayer, region: Option<Rectangle>, height_per_width: 
 /// its region and the screen.
 fn axes(
     bitmap: &BitmapLayer,
+    pitch_mm: f64,
     picture: &Picture,
     whole: Rectangle,
     region: Option<Rectangle>,
     (screen_width_mm, screen_height_mm): (f64, f64),
 ) -> (Axis, Axis) {
-    let pitch_mm = bitmap.pitch_mm;
     if bitmap.tiled {
         let across = Axis::dividing(whole.width_mm, pitch_mm, picture.width);
         return (across, Axis::dividing(whole.height_mm, pitch_mm, picture.height));
@@ -132,9 +139,103 @@ fn axes(
     )
 }
 
-impl<'s> Pool<'s> {
-    pub(super) fn new(pictures: &'s PictureBytes, size_bytes: u32) -> Self {
-        Self { pictures, size_bytes, bitmaps: Vec::new(), optimisations: Vec::new() }
+/// The pitch of a picture: its own, or the finest one that its pixels, the range and the shared pitch allow.
+fn pitch_mm(bitmap: &BitmapLayer, picture: &Picture, whole: Rectangle, shared_mm: f64) -> f64 {
+    bitmap.pitch_mm.unwrap_or_else(|| {
+        let pixel_mm = (whole.width_mm / picture.width as f64).min(whole.height_mm / picture.height as f64);
+        pixel_mm.max(shared_mm).clamp(PITCH_MM.min, PITCH_MM.max)
+    })
+}
+
+fn height_per_width(picture: &Picture) -> f64 {
+    picture.height as f64 / picture.width as f64
+}
+
+/// The finest pitch in hundredths of a millimetre at which the bitmaps of a scene fit into the pool, if the layers with
+/// `pitch_mm = "auto"` have it; the coarsest one if none fits.
+fn shared_pitch_mm(scene: &Scene, pictures: &Decoded, size_bytes: u32) -> f64 {
+    let screen_mm = (scene.screen().width_mm, scene.screen().height_mm);
+    let bitmaps = scene.layers.iter().filter_map(|layer| {
+        let Kind::Bitmap(bitmap) = &layer.kind else { return None };
+        let picture = pictures.get(&key(bitmap))?.as_ref().ok()?;
+        let region = layer.region.as_ref().map(Region::bounds);
+        Some((bitmap, picture, region, rectangle(bitmap, region, height_per_width(picture))?))
+    });
+    let bitmaps: Vec<_> = bitmaps.collect();
+    let fits = |hundredths: u32| {
+        let mut grids = Vec::new();
+        for (bitmap, picture, region, whole) in &bitmaps {
+            let pitch_mm = pitch_mm(bitmap, picture, *whole, f64::from(hundredths) / 100.0);
+            let grid = (key(bitmap), axes(bitmap, pitch_mm, picture, *whole, *region, screen_mm));
+            if !grids.contains(&grid) {
+                grids.push(grid);
+            }
+        }
+        let bytes: u64 = grids.iter().map(|(_, (across, down))| across.samples as u64 * down.samples as u64).sum();
+        bytes <= u64::from(size_bytes)
+    };
+    let (finest, coarsest) = ((100.0 * PITCH_MM.min).round() as u32, (100.0 * PITCH_MM.max).round() as u32);
+    if bitmaps.iter().all(|(bitmap, ..)| bitmap.pitch_mm.is_some()) || fits(finest) {
+        return PITCH_MM.min;
+    }
+    // `low` does not fit, and `high` does or is the coarsest.
+    let (mut low, mut high) = (finest, coarsest);
+    while high - low > 1 {
+        let middle = low.midpoint(high);
+        if fits(middle) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    f64::from(high) / 100.0
+}
+
+fn key(bitmap: &BitmapLayer) -> (String, Levels) {
+    (bitmap.picture.clone(), bitmap.levels)
+}
+
+/// Decodes the pictures of a scene, each one once.
+fn decoded(scene: &Scene) -> Decoded {
+    let mut decoded = Decoded::new();
+    for layer in &scene.layers {
+        if let Kind::Bitmap(bitmap) = &layer.kind {
+            // `Scene::parse` has read every picture that a layer names.
+            if let Some(bytes) = scene.pictures.get(&bitmap.picture) {
+                let picture = || picture(&bitmap.picture, bitmap.levels, bytes);
+                decoded.entry(key(bitmap)).or_insert_with(picture);
+            }
+        }
+    }
+    decoded
+}
+
+fn picture(name: &str, levels: Levels, bytes: &Result<Vec<u8>, FileUnavailable>) -> Result<Picture, Mistake> {
+    if name.is_empty() {
+        return Err(Mistake::NoFileName { field: "picture" });
+    }
+    let unusable = |reason: String| Mistake::FileUnusable { what: "picture", file: name.to_owned(), reason };
+    match bytes {
+        Ok(bytes) => {
+            let picture = Picture::decode(bytes).map_err(|error| unusable(error.to_string()))?;
+            Ok(if levels == Levels::Stretch { picture.stretched() } else { picture })
+        }
+        Err(FileUnavailable::Unreadable { reason }) => Err(unusable(format!("it cannot be read ({reason})"))),
+        Err(FileUnavailable::Missing { place, files }) => Err(Mistake::FileMissing {
+            what: "picture",
+            file: name.to_owned(),
+            folder: place.clone(),
+            nearest: Nearest::file(file_name(name), files),
+        }),
+    }
+}
+
+impl Pool {
+    /// Decodes the pictures of a scene, for a pool of this size.
+    pub(super) fn new(scene: &Scene, size_bytes: u32) -> Self {
+        let pictures = decoded(scene);
+        let shared_pitch_mm = shared_pitch_mm(scene, &pictures, size_bytes);
+        Self { pictures, size_bytes, shared_pitch_mm, bitmaps: Vec::new(), optimisations: Vec::new() }
     }
 
     /// The bitmaps, and the optimisations that were made.
@@ -142,7 +243,7 @@ impl<'s> Pool<'s> {
         (self.bitmaps, self.optimisations)
     }
 
-    /// Decodes and resamples a layer's picture. `region` bounds the layer's region, if it has one.
+    /// Resamples a layer's picture. `region` bounds the layer's region, if it has one.
     pub(super) fn place(
         &mut self,
         layer: &Layer,
@@ -152,17 +253,24 @@ impl<'s> Pool<'s> {
         log: &mut Log,
         notes: &mut Vec<String>,
     ) -> Option<Placed> {
-        let picture = self.read(layer, bitmap, log)?;
-        let whole = rectangle(bitmap, region, picture.height as f64 / picture.width as f64)?;
-        let (across, down) = axes(bitmap, &picture, whole, region, screen_mm);
+        let picture = match self.pictures.get(&key(bitmap))? {
+            Ok(picture) => picture,
+            Err(mistake) => {
+                log.add(layer.places.field("picture"), mistake.clone());
+                return None;
+            }
+        };
+        let whole = rectangle(bitmap, region, height_per_width(picture))?;
+        let pitch_mm = pitch_mm(bitmap, picture, whole, self.shared_pitch_mm);
+        let (across, down) = axes(bitmap, pitch_mm, picture, whole, region, screen_mm);
         // Check before resampling, so that a pitch that is far too fine allocates no memory.
         let bytes = across.samples as u64 * down.samples as u64;
-        if !self.fits(layer, bitmap, bytes, log) {
+        if !self.fits(layer, pitch_mm, bytes, log) {
             return None;
         }
         // One side may still exceed the protocol's 16 bits.
         let (Ok(width), Ok(height)) = (u16::try_from(across.samples), u16::try_from(down.samples)) else {
-            self.too_small(layer, bitmap, bytes, log);
+            self.too_small(layer, pitch_mm, bytes, log);
             return None;
         };
         let compiled = Bitmap::new(width, height, resample(&picture.grey, picture.width, across, down));
@@ -176,62 +284,56 @@ impl<'s> Pool<'s> {
             self.optimisations.push(Optimisation::Shared { picture: picture_name, bytes: kept });
         } else {
             let held: u64 = self.bitmaps.iter().map(|bitmap| bitmap.samples.len() as u64).sum();
-            if !self.fits(layer, bitmap, held + bytes, log) {
+            if !self.fits(layer, pitch_mm, held + bytes, log) {
                 return None;
             }
             self.bitmaps.push(compiled);
         }
-        notes.extend(note(&picture, bitmap, across, down));
-        Some(Placed::new(bitmap, &picture, whole, (across, down), crc32))
+        notes.extend(self.note(bitmap, pitch_mm, across, down));
+        Some(Placed::new(bitmap, picture, whole, pitch_mm, (across, down), crc32))
     }
 
-    fn read(&self, layer: &Layer, bitmap: &BitmapLayer, log: &mut Log) -> Option<Picture> {
-        let name = &bitmap.picture;
-        if name.is_empty() {
-            log.add(layer.places.field("picture"), Mistake::NoFileName { field: "picture" });
-            return None;
-        }
-        let unusable = |reason: String| Mistake::FileUnusable { what: "picture", file: name.clone(), reason };
-        // `Scene::parse` has read every picture that a layer names.
-        let decoded = match self.pictures.get(name)? {
-            Ok(png) => Picture::decode(png).map_err(|error| unusable(error.to_string())),
-            Err(FileUnavailable::Unreadable { reason }) => Err(unusable(format!("it cannot be read ({reason})"))),
-            Err(FileUnavailable::Missing { place, files }) => Err(Mistake::FileMissing {
-                what: "picture",
-                file: name.clone(),
-                folder: place.clone(),
-                nearest: Nearest::file(file_name(name), files),
-            }),
-        };
-        decoded.map_err(|mistake| log.add(layer.places.field("picture"), mistake)).ok()
-    }
-
-    fn fits(&self, layer: &Layer, bitmap: &BitmapLayer, needed_bytes: u64, log: &mut Log) -> bool {
+    fn fits(&self, layer: &Layer, pitch_mm: f64, needed_bytes: u64, log: &mut Log) -> bool {
         let fits = needed_bytes <= u64::from(self.size_bytes);
         if !fits {
-            self.too_small(layer, bitmap, needed_bytes, log);
+            self.too_small(layer, pitch_mm, needed_bytes, log);
         }
         fits
     }
 
-    fn too_small(&self, layer: &Layer, bitmap: &BitmapLayer, needed_bytes: u64, log: &mut Log) {
+    fn too_small(&self, layer: &Layer, pitch_mm: f64, needed_bytes: u64, log: &mut Log) {
         // The pitch at which all pictures fit if they are coarsened alike: 1 % is added for samples at the edges, and
         // the result is rounded up to 0.01 mm.
         let coarser = 1.01 * (needed_bytes as f64 / f64::from(self.size_bytes)).sqrt();
-        let pitch_mm = (bitmap.pitch_mm * coarser * 100.0).ceil() / 100.0;
+        let pitch_mm = (pitch_mm * coarser * 100.0).ceil() / 100.0;
         let offset = layer.places.field(if layer.places.has("pitch_mm") { "pitch_mm" } else { "picture" });
         log.add(offset, Mistake::PoolTooSmall { needed_bytes, pool_bytes: self.size_bytes, pitch_mm });
     }
-}
 
-/// Describes the conversions of a picture; `None` if there were none.
-fn note(picture: &Picture, bitmap: &BitmapLayer, across: Axis, down: Axis) -> Option<String> {
-    let mut done: Vec<String> = picture.conversions.iter().map(ToString::to_string).collect();
-    if (across.whole, down.whole) != (picture.width, picture.height) {
-        done.push(format!(
-            "{} x {} resampled to {} x {} at {} mm",
-            picture.width, picture.height, across.whole, down.whole, bitmap.pitch_mm
-        ));
+    /// Describes the conversions of a picture, and a pitch that the scene leaves open; `None` if there is nothing to
+    /// say.
+    fn note(&self, bitmap: &BitmapLayer, pitch_mm: f64, across: Axis, down: Axis) -> Option<String> {
+        let picture = self.pictures.get(&key(bitmap))?.as_ref().ok()?;
+        let mut done = picture.conversions.clone();
+        let is_resampled = (across.whole, down.whole) != (picture.width, picture.height);
+        if is_resampled {
+            done.push(format!(
+                "{} x {} resampled to {} x {} at {} mm",
+                picture.width,
+                picture.height,
+                across.whole,
+                down.whole,
+                (1e4 * pitch_mm).round() / 1e4
+            ));
+        }
+        if bitmap.pitch_mm.is_none() {
+            let is_shared = pitch_mm.to_bits() == self.shared_pitch_mm.to_bits();
+            done.push(match (is_resampled, is_shared) {
+                (_, true) => format!("the finest pitch that fits into the board's {} bytes", self.size_bytes),
+                (true, false) => "a pitch as fine as its pixels".to_owned(),
+                (false, false) => format!("a sample for each pixel, {} mm", (1e4 * pitch_mm).round() / 1e4),
+            });
+        }
+        (!done.is_empty()).then(|| format!("{}: {}", file_name(&bitmap.picture), done.join(", ")))
     }
-    (!done.is_empty()).then(|| format!("{}: {}", file_name(&bitmap.picture), done.join(", ")))
 }

@@ -110,8 +110,8 @@ impl<T> Profile<T> {
         }
         let place = fields.place(self.field.name);
         match fields.table_or_text(log, self.field)? {
-            TableOrText::Table(table) => (self.read)(table, log).map(|profile| (profile, ProfileSource::Embedded)),
-            TableOrText::Text(name) => match self.named(&name, files) {
+            TableOrText::Table(table) => (self.read)(*table, log).map(|profile| (profile, ProfileSource::Embedded)),
+            TableOrText::Text(name) => match self.named(&path_of(&name, place, log), files) {
                 Ok(profile) => Some((profile, ProfileSource::Named(name))),
                 Err(mistake) => {
                     log.add(place, mistake);
@@ -145,6 +145,11 @@ impl<T> Profile<T> {
         let text = String::from_utf8(bytes).map_err(|_| unusable(Mistake::NotUtf8.to_string()))?;
         (self.parse)(&text, name).map_err(|mistakes| unusable(mistakes.replace('\n', "; ")))
     }
+}
+
+/// The path from the scene file's folder of the file that is named at an offset, or the name of a bundled profile.
+fn path_of(name: &str, offset: usize, log: &Log) -> String {
+    if is_file_name(name) { log.source().path_at(offset, name) } else { name.to_owned() }
 }
 
 /// Whether a name is that of a file. Bundled names are plain words.

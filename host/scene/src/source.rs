@@ -1,25 +1,93 @@
-//! The text of a scene file, and places in it.
+//! The texts of a scene file and of the files that it includes, and places in them.
 
-/// Name and text of a scene file, for messages about it.
+use super::files::file_name;
+
+/// The files that a scene is read from, for messages about them. A place is a byte offset from the start of the first
+/// file; each further file begins behind the one before it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Source {
-    name: String,
-    text: String,
+    files: Vec<SourceFile>,
+}
+
+/// A file of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct SourceFile {
+    /// The name of the file in messages.
+    pub(super) name: String,
+    /// The name of the file from the scene file's folder.
+    pub(super) path: String,
+    pub(super) text: String,
+    /// Offset of the file's first byte.
+    pub(super) start: usize,
+    /// Numbers of the files that it includes.
+    pub(super) includes: Vec<usize>,
 }
 
 impl Source {
     pub(super) fn new(name: &str, text: &str) -> Self {
-        Self { name: name.to_owned(), text: text.to_owned() }
+        let mut source = Self { files: Vec::new() };
+        source.add(name.to_owned(), file_name(name).to_owned(), text.to_owned());
+        source
     }
 
-    /// The name of the file in messages.
+    /// Adds a file, and returns its number.
+    pub(super) fn add(&mut self, name: String, path: String, text: String) -> usize {
+        // One more than the text, so that the end of a file is a place of its own.
+        let start = self.files.last().map_or(0, |last| last.start + last.text.len() + 1);
+        self.files.push(SourceFile { name, path, text, start, includes: Vec::new() });
+        self.files.len() - 1
+    }
+
+    /// Records that file `number` includes file `included`.
+    pub(super) fn include(&mut self, number: usize, included: usize) {
+        if let Some(file) = self.files.get_mut(number) {
+            file.includes.push(included);
+        }
+    }
+
+    /// The scene file, and the files that it includes.
+    pub(super) fn files(&self) -> &[SourceFile] {
+        &self.files
+    }
+
+    /// The name in messages of the file that includes file `number`.
+    pub(super) fn includer(&self, number: usize) -> &str {
+        self.files.iter().find(|file| file.includes.contains(&number)).map_or(self.name(), |file| &file.name)
+    }
+
+    /// The name of the scene file in messages.
     pub(super) fn name(&self) -> &str {
-        &self.name
+        self.files.first().map_or("", |file| &file.name)
     }
 
-    /// Line and column of a byte offset, both from one. The column counts characters.
+    /// Number of the file that has a byte offset.
+    pub(super) fn number_at(&self, offset: usize) -> usize {
+        self.files.partition_point(|file| file.start <= offset).saturating_sub(1)
+    }
+
+    /// The name in messages of the file that has a byte offset.
+    pub(super) fn name_at(&self, offset: usize) -> &str {
+        self.files.get(self.number_at(offset)).map_or("", |file| &file.name)
+    }
+
+    /// The path from the scene file's folder to a file that is named at a byte offset: names in a file start from its
+    /// own folder.
+    pub(super) fn path_at(&self, offset: usize, name: &str) -> String {
+        match self.number_at(offset) {
+            _ if name.is_empty() => String::new(),
+            0 => name.to_owned(),
+            number => joined(self.files.get(number).map_or("", |file| &file.path), name),
+        }
+    }
+
+    fn text_at(&self, offset: usize) -> (&str, usize) {
+        self.files.get(self.number_at(offset)).map_or(("", 0), |file| (&file.text, offset - file.start))
+    }
+
+    /// Line and column of a byte offset in its file, both from one. The column counts characters.
     pub(super) fn line_and_column(&self, offset: usize) -> (usize, usize) {
-        let before = self.text.get(..offset).unwrap_or(&self.text);
+        let (text, offset) = self.text_at(offset);
+        let before = text.get(..offset).unwrap_or(text);
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
         let line = before.matches('\n').count() + 1;
         let column = before.get(line_start..).map_or(0, |start| start.chars().count()) + 1;
@@ -28,7 +96,8 @@ impl Source {
 
     /// The key, value or table header at a byte offset; only its first line if it has several.
     pub(super) fn word_at(&self, offset: usize) -> &str {
-        let line = self.text.get(offset..).and_then(|rest| rest.lines().next()).unwrap_or_default();
+        let (text, offset) = self.text_at(offset);
+        let line = text.get(offset..).and_then(|rest| rest.lines().next()).unwrap_or_default();
         let end = match line.chars().next() {
             Some(quote @ ('"' | '\'')) => line.get(1..).and_then(|rest| rest.find(quote)).map(|len| len + 2),
             Some('[') => line.rfind(']').map(|last| last + 1),
@@ -37,6 +106,28 @@ impl Source {
         };
         end.and_then(|end| line.get(..end)).unwrap_or(line).trim_end()
     }
+}
+
+/// The path of a file that the file at `path` calls `name`, without `.` and, where that is possible, without `..`. An
+/// absolute name stays as it is.
+pub(super) fn joined(path: &str, name: &str) -> String {
+    let is_absolute = name.starts_with(['/', '\\']) || name.get(1..2) == Some(":");
+    let folder = path.strip_suffix(file_name(path)).unwrap_or_default();
+    if is_absolute {
+        return name.to_owned();
+    }
+    let mut parts: Vec<&str> = Vec::new();
+    for part in folder.split('/').filter(|part| !part.is_empty()).chain(name.split('/')) {
+        match part {
+            "." => {}
+            ".." if parts.last().is_some_and(|last| *last != "..") => {
+                parts.pop();
+            }
+            part => parts.push(part),
+        }
+    }
+    let root = if folder.starts_with('/') { "/" } else { "" };
+    format!("{root}{}", parts.join("/"))
 }
 
 /// Byte offsets of a table and its fields.

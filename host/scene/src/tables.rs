@@ -5,7 +5,7 @@
 use frixel_layers::range;
 
 use super::grammar::Absence::{Flag, Means, Mistake, Number};
-use super::grammar::{Absence, AmountFields, FieldSpec, Holds, Range};
+use super::grammar::{Absence, AmountFields, FieldSpec, Holds, LengthFields, Range};
 
 /// A number.
 pub(crate) const fn number(name: &'static str, range: Range, absence: Absence, meaning: &'static str) -> FieldSpec {
@@ -39,10 +39,24 @@ macro_rules! amount {
 }
 pub(crate) use amount;
 
+/// The fields of a place or a size along an axis.
+macro_rules! length {
+    ($stem:literal, $axis:ident, $range:expr, $absence:expr, $meaning:expr $(,)?) => {
+        $crate::grammar::LengthFields {
+            mm: $crate::tables::number(concat!($stem, "_mm"), $range, $absence, $meaning),
+            px: $crate::tables::number(concat!($stem, "_px"), $crate::tables::PIXELS, $absence, $meaning),
+            axis: $crate::grammar::Axis::$axis,
+        }
+    };
+}
+pub(crate) use length;
+
 pub(crate) const FRICTION_N: Range = Range::new(range::FRICTION_N.min, range::FRICTION_N.max, " N");
 pub(crate) const FRACTION: Range = Range::new(-1.0, 1.0, "");
 pub(crate) const FACTOR: Range = Range::new(range::FRICTION_N.min, range::FRICTION_N.max, "");
 pub(crate) const PLACE_MM: Range = Range::new(-2_000.0, 2_000.0, " mm");
+/// Pixels of a design; in millimetres they have the range of the field in millimetres.
+pub(crate) const PIXELS: Range = Range::new(-1e6, 1e6, " px");
 pub(crate) const SIZE_MM: Range = Range::new(0.01, 2_000.0, " mm");
 pub(crate) const WAVELENGTH_MM: Range = Range::new(0.05, 2_000.0, " mm");
 pub(crate) const ANGLE_DEG: Range = Range::new(-360.0, 360.0, " degrees");
@@ -80,6 +94,24 @@ pub(super) mod scene {
         FieldSpec::new("carrier", Holds::Table, Means("all defaults"), "the alternating voltage");
     pub(crate) const TOUCH: FieldSpec =
         FieldSpec::new("touch", Holds::Table, Means("all defaults"), "how touch reports are used");
+    pub(crate) const INCLUDE: FieldSpec = FieldSpec::new(
+        "include",
+        Holds::Texts,
+        Means("nothing"),
+        "other scene files whose layers lie below those of this one, see [several files](#several-files)",
+    );
+    pub(crate) const DESIGN: FieldSpec = FieldSpec::new(
+        "design",
+        Holds::Table,
+        Means("no pixels"),
+        "the size of the design in pixels, see [`[design]`](#design)",
+    );
+    pub(crate) const DEFAULTS: FieldSpec = FieldSpec::new(
+        "defaults",
+        Holds::Table,
+        Means("none"),
+        "fields that many layers share, see [`[defaults]`](#defaults)",
+    );
     pub(crate) const LAYER: FieldSpec =
         FieldSpec::new("layer", Holds::Tables, Means("bare glass"), "the layers of friction");
 }
@@ -251,6 +283,17 @@ pub(super) mod touch {
     );
 }
 
+/// `[design]`
+pub(super) mod design {
+    use super::*;
+
+    const SIZE: Range = Range::new(1.0, 100_000.0, " px");
+    pub(crate) const WIDTH_PX: FieldSpec =
+        number("width_px", SIZE, Mistake, "width of the design, which is the width of the screen");
+    pub(crate) const HEIGHT_PX: FieldSpec =
+        number("height_px", SIZE, Mistake, "height of the design, which is the height of the screen");
+}
+
 /// `[[layer]]`: the fields that every kind has.
 pub(super) mod layer {
     use super::*;
@@ -305,10 +348,10 @@ pub(super) mod repeat {
         FieldSpec::new("columns", Holds::Whole(COPIES), Number(1.0), "copies side by side");
     pub(crate) const ROWS: FieldSpec =
         FieldSpec::new("rows", Holds::Whole(COPIES), Number(1.0), "copies below one another");
-    pub(crate) const DX_MM: FieldSpec =
-        number("dx_mm", STEP_MM, Number(0.0), "from a column to the next; not 0 with several columns");
-    pub(crate) const DY_MM: FieldSpec =
-        number("dy_mm", STEP_MM, Number(0.0), "from a row to the next; not 0 with several rows");
+    pub(crate) const DX: LengthFields =
+        length!("dx", X, STEP_MM, Number(0.0), "from a column to the next; not 0 with several columns");
+    pub(crate) const DY: LengthFields =
+        length!("dy", Y, STEP_MM, Number(0.0), "from a row to the next; not 0 with several rows");
 }
 
 /// `region` of a layer.
@@ -321,16 +364,13 @@ pub(super) mod region {
         "`\"rectangle\"`: left and top edge belong to it, right and bottom do not; `\"ellipse\"`: it touches the \
          rectangle's sides, and its border belongs to it; or `\"polygon\"`",
     );
-    pub(crate) const X_MM: FieldSpec = number("x_mm", PLACE_MM, Mistake, "left side of rectangle or ellipse");
-    pub(crate) const Y_MM: FieldSpec = number("y_mm", PLACE_MM, Mistake, "top side of rectangle or ellipse");
-    pub(crate) const WIDTH_MM: FieldSpec = number("width_mm", SIZE_MM, Mistake, "width of rectangle or ellipse");
-    pub(crate) const HEIGHT_MM: FieldSpec = number("height_mm", SIZE_MM, Mistake, "height of rectangle or ellipse");
-    pub(crate) const POINTS_MM: FieldSpec = FieldSpec::new(
-        "points_mm",
-        Holds::Pairs(PLACE_MM),
-        Mistake,
-        "3 to 32 vertices of a polygon, `[[x, y], [x, y], [x, y]]`; the time of a tick allows some ten of them under \
-         one finger. Where its lines cross, what they go around twice is outside. Of two polygons with a common edge, \
-         each place is in one",
-    );
+    pub(crate) const X: LengthFields = length!("x", X, PLACE_MM, Mistake, "left side of rectangle or ellipse");
+    pub(crate) const Y: LengthFields = length!("y", Y, PLACE_MM, Mistake, "top side of rectangle or ellipse");
+    pub(crate) const WIDTH: LengthFields = length!("width", X, SIZE_MM, Mistake, "width of rectangle or ellipse");
+    pub(crate) const HEIGHT: LengthFields = length!("height", Y, SIZE_MM, Mistake, "height of rectangle or ellipse");
+    const POINTS: &str = "3 to 32 vertices of a polygon, `[[x, y], [x, y], [x, y]]`; the time of a tick allows some ten \
+        of them under one finger. Where its lines cross, what they go around twice is outside. Of two polygons with a \
+        common edge, each place is in one";
+    pub(crate) const POINTS_MM: FieldSpec = FieldSpec::new("points_mm", Holds::Pairs(PLACE_MM), Mistake, POINTS);
+    pub(crate) const POINTS_PX: FieldSpec = FieldSpec::new("points_px", Holds::Pairs(PIXELS), Mistake, POINTS);
 }

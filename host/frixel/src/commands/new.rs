@@ -14,8 +14,8 @@ use super::terminal::print_line;
 pub(super) struct NewArgs {
     /// Name of the scene; `NAME.toml` is written.
     name: PathBuf,
-    /// A PNG file that the scene plays as friction: black is low, white is high.
-    #[arg(long, value_name = "FILE.png")]
+    /// A PNG or JPEG file that the scene plays as friction: dark is low, light is high.
+    #[arg(long, value_name = "FILE")]
     picture: Option<PathBuf>,
 }
 
@@ -97,7 +97,7 @@ fn with_picture(picture: &str) -> String {
          kind = \"bitmap\"\n\
          picture = \"{picture}\"\n\
          region = {{ x_mm = {x_mm}, y_mm = {y_mm}, width_mm = {width_mm}, height_mm = {height_mm} }}\n\
-         pitch_mm = 0.4        # distance of the samples that the board plays; larger takes less memory\n\
+         levels = \"stretch\"    # the darkest and the lightest hundredth of the picture are black and white\n\
          black_fraction = 0    # friction where the picture is black\n\
          white_fraction = 0.9  # friction where it is white\n",
         head()

@@ -30,7 +30,7 @@ pub(super) fn note_refusals(scene: &Path, program: &Program) {
         note(format_args!("draft: a board refuses {}:", scene.display()));
     }
     for refusal in &program.refusals {
-        note(format_args!("{}:{refusal}", scene.display()));
+        note(refusal);
     }
 }
 

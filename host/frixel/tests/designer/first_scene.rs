@@ -11,9 +11,11 @@ fn a_new_scene_is_checked_and_played_as_it_is() {
     let folder = TempDir::new().unwrap();
     let picture = scenes().join("textures/brick.png");
     fs::copy(&picture, folder.path().join("mine.png")).unwrap();
+    fs::copy(scenes().join("textures/wood.jpg"), folder.path().join("photo.jpg")).unwrap();
     for (name, arguments) in [
         ("stripes.toml", &["new", "stripes"][..]),
         ("near.toml", &["new", "near.toml", "--picture", "mine.png"]),
+        ("photo.toml", &["new", "photo", "--picture", "photo.jpg"]),
         ("far.toml", &["new", "far", "--picture", picture.to_str().unwrap()]),
     ] {
         let (said, _) = succeed(folder.path(), arguments);
@@ -23,6 +25,12 @@ fn a_new_scene_is_checked_and_played_as_it_is() {
         assert!(said.contains("reference"), "{said}");
     }
     let text = fs::read_to_string(folder.path().join("near.toml")).unwrap();
+    assert!(text.contains("levels = \"stretch\"") && !text.contains("pitch_mm"), "{text}");
+    let (said, _) = succeed(folder.path(), &["scene", "check", "photo.toml"]);
+    assert!(
+        said.contains("colour turned to grey by luminance") && said.contains("the finest pitch that fits"),
+        "{said}"
+    );
     assert!(text.contains("picture = \"mine.png\"") && text.lines().count() < 20, "{text}");
 }
 

@@ -14,6 +14,8 @@ mod ports;
 mod readme;
 mod streams;
 mod strokes;
+#[cfg(unix)]
+mod tutorial;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

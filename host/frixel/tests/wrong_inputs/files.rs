@@ -11,8 +11,8 @@ pub(super) const PICTURES: &[Case] = &[
              x_mm = 0\n\
              y_mm = 0\n\
              width_mm = 40\n",
-        says: "s.toml:4:11: picture \"wood.png\" was not found in this folder: paths start from the scene \
-             file's folder",
+        says: "s.toml:4:11: picture \"wood.png\" was not found in this folder: paths start from the folder of \
+             the file that names it",
         ..CASE
     },
     Case {
@@ -25,7 +25,7 @@ pub(super) const PICTURES: &[Case] = &[
              width_mm = 40\n",
         files: &[("wood.png", Content::Bytes(b"x"))],
         says: "s.toml:4:11: picture \"wod.png\" was not found in this folder, which has \"wood.png\": paths \
-             start from the scene file's folder",
+             start from the folder of the file that names it",
         ..CASE
     },
     Case {
@@ -59,8 +59,8 @@ pub(super) const PICTURES: &[Case] = &[
              x_mm = 0\n\
              y_mm = 0\n\
              width_mm = 40\n",
-        says: "s.toml:4:11: picture \".\" was not found in this folder: paths start from the scene file's \
-             folder",
+        says: "s.toml:4:11: picture \".\" was not found in this folder: paths start from the folder of the \
+             file that names it",
         ..CASE
     },
     Case {
@@ -72,7 +72,7 @@ pub(super) const PICTURES: &[Case] = &[
              y_mm = 0\n\
              width_mm = 40\n",
         files: &[("wood.png", Content::Text("wood"))],
-        says: "s.toml:4:11: picture \"wood.png\" cannot be used: it is not a PNG file: save it as PNG",
+        says: "s.toml:4:11: picture \"wood.png\" cannot be used: it is neither a PNG nor a JPEG file: save it as PNG",
         ..CASE
     },
     Case {
@@ -84,7 +84,7 @@ pub(super) const PICTURES: &[Case] = &[
              y_mm = 0\n\
              width_mm = 40\n",
         files: &[("wood.png", Content::Text(""))],
-        says: "s.toml:4:11: picture \"wood.png\" cannot be used: it is not a PNG file: save it as PNG",
+        says: "s.toml:4:11: picture \"wood.png\" cannot be used: it is neither a PNG nor a JPEG file: save it as PNG",
         ..CASE
     },
     Case {
@@ -147,8 +147,8 @@ pub(super) const PROFILES: &[Case] = &[
     Case {
         what: "no such file of a finger",
         scene: "finger = \"anna.toml\"\n",
-        says: "s.toml:2:10: finger \"anna.toml\" was not found in this folder: paths start from the scene \
-             file's folder",
+        says: "s.toml:2:10: finger \"anna.toml\" was not found in this folder: paths start from the folder of \
+             the file that names it",
         ..CASE
     },
     Case {

@@ -4,14 +4,15 @@ use toml::Spanned;
 use toml::de::{DeArray, DeValue};
 
 use super::Fields;
-use crate::grammar::{Absence, FieldSpec, Holds, Range};
+use crate::excess::digits;
+use crate::grammar::{Absence, Axis, FieldSpec, Holds, LengthFields, Range};
 use crate::log::Log;
 use crate::mistake::Mistake;
 use crate::nearest::Nearest;
 
 /// A table, or the name of a file that contains it.
 pub(crate) enum TableOrText<'i> {
-    Table(Fields<'i>),
+    Table(Box<Fields<'i>>),
     Text(String),
 }
 
@@ -31,6 +32,94 @@ impl<'i> Fields<'i> {
     /// A number, or its default if it is absent or invalid.
     pub(crate) fn number_or_default(&mut self, log: &mut Log, field: &FieldSpec) -> f64 {
         self.number(log, field).unwrap_or(field.default_number())
+    }
+
+    /// A number; `None` for `"auto"`, and if it is absent or invalid.
+    pub(crate) fn number_or_auto(&mut self, log: &mut Log, field: &FieldSpec) -> Option<f64> {
+        const AUTO: &str = "auto";
+        let Holds::NumberOrAuto(range) = field.holds else { return None };
+        let value = self.take(field)?;
+        let found = match value.get_ref() {
+            DeValue::Integer(_) | DeValue::Float(_) => return number(log, field.name, range, &value),
+            DeValue::String(found) if found == AUTO => return None,
+            other => other,
+        };
+        let nearest = found.as_str().map(|found| Nearest::new(found, std::iter::once(AUTO)));
+        let mistake = match nearest.filter(|nearest| nearest.suggestion.is_some()) {
+            Some(nearest) => {
+                let found = found.as_str().unwrap_or_default().to_owned();
+                Mistake::UnknownChoice { field: field.name, found, nearest }
+            }
+            None => wrong_type(field.name, "a number or \"auto\"", found),
+        };
+        log.add(value.span().start, mistake);
+        None
+    }
+
+    /// A place or a size in millimetres, from millimetres or pixels; `None` if it is absent or invalid.
+    pub(crate) fn length_mm(&mut self, log: &mut Log, field: &LengthFields) -> Option<f64> {
+        let Holds::Number(range) = field.mm.holds else { return None };
+        let [mm, px] = self.in_either_unit(log, &field.mm, &field.px);
+        let found_mm = self.number(log, &mm);
+        let place = self.place(px.name);
+        let found_px = self.number(log, &px);
+        let converted = || self.pixels_in_mm(log, px.name, place, range, field.axis, found_px?);
+        found_mm.or_else(converted)
+    }
+
+    /// Places in millimetres, from millimetres or pixels; `None` if they are absent or invalid.
+    pub(crate) fn places_mm(&mut self, log: &mut Log, mm: &FieldSpec, px: &FieldSpec) -> Option<Vec<(f64, f64)>> {
+        let Holds::Pairs(range) = mm.holds else { return None };
+        let [mm, px] = self.in_either_unit(log, mm, px);
+        let found_mm = self.pairs(log, &mm);
+        let place = self.place(px.name);
+        let found_px = self.pairs(log, &px);
+        found_mm.or_else(|| {
+            let mut converted = |axis, found_px| self.pixels_in_mm(log, px.name, place, range, axis, found_px);
+            let places = found_px?.into_iter().map(|(x_px, y_px)| {
+                let (x_mm, y_mm) = (converted(Axis::X, x_px), converted(Axis::Y, y_px));
+                x_mm.zip(y_mm)
+            });
+            places.collect()
+        })
+    }
+
+    /// Two fields that say the same in two units, either of which is enough. A file that has both has a mistake.
+    pub(crate) fn in_either_unit(&mut self, log: &mut Log, one: &FieldSpec, other: &FieldSpec) -> [FieldSpec; 2] {
+        self.either(one, other);
+        let has_other = self.has(other.name);
+        if self.has(one.name) && has_other {
+            log.add(self.place(other.name), Mistake::TwoUnits { one: one.name, other: other.name });
+        }
+        if one.absence == Absence::Mistake && !has_other {
+            self.require(one);
+        }
+        // Either of the two fields is enough, so neither is required by itself.
+        [one, other].map(|field| FieldSpec { absence: Absence::Means(""), ..*field })
+    }
+
+    /// Pixels along an axis in millimetres, which have to be in a range.
+    fn pixels_in_mm(
+        &self,
+        log: &mut Log,
+        field: &'static str,
+        place: usize,
+        range: Range,
+        axis: Axis,
+        found_px: f64,
+    ) -> Option<f64> {
+        let Some(pixel) = self.pixel_mm else {
+            log.add(place, Mistake::NoDesign { field });
+            return None;
+        };
+        let pixel_mm = pixel.along(axis);
+        let found_mm = found_px * pixel_mm;
+        if (range.min..=range.max).contains(&found_mm) {
+            return Some(found_mm);
+        }
+        let (min, max) = (digits(range.min / pixel_mm, f64::ceil), digits(range.max / pixel_mm, f64::floor));
+        log.add(place, Mistake::OutOfRange { field, found: found_px, min, max, unit: " px" });
+        None
     }
 
     /// `true` or `false`, or the default if the field is absent.
@@ -110,7 +199,7 @@ impl<'i> Fields<'i> {
         let value = self.take(field)?;
         let (name, offset) = (field.name, value.span().start);
         match value.into_inner() {
-            DeValue::Table(values) => Some(Fields::of_field(&format!("[{name}]"), name, offset, values)),
+            DeValue::Table(values) => Some(self.of_field(&format!("[{name}]"), name, offset, values)),
             other => {
                 log.add(offset, wrong_type(name, "a table", &other));
                 None
@@ -124,7 +213,7 @@ impl<'i> Fields<'i> {
         let (name, offset) = (field.name, value.span().start);
         match value.into_inner() {
             DeValue::Table(values) => {
-                Some(TableOrText::Table(Fields::of_field(&format!("[{name}]"), name, offset, values)))
+                Some(TableOrText::Table(Box::new(self.of_field(&format!("[{name}]"), name, offset, values))))
             }
             DeValue::String(text) => Some(TableOrText::Text(text.into_owned())),
             other => {
@@ -141,7 +230,7 @@ impl<'i> Fields<'i> {
         let values = match value.into_inner() {
             DeValue::Array(values) => values,
             DeValue::Table(values) if field.holds == Holds::TableOrTables => {
-                return Some(vec![Fields::of_field(&format!("[{name}]"), name, offset, values)]);
+                return Some(vec![self.of_field(&format!("[{name}]"), name, offset, values)]);
             }
             other => {
                 log.add(offset, wrong_type(name, "a list of tables, each with its name in double brackets", &other));
@@ -153,12 +242,22 @@ impl<'i> Fields<'i> {
             let offset = value.span().start;
             match value.into_inner() {
                 DeValue::Table(values) => {
-                    tables.push(Fields::of_field(&format!("[[{name}]]"), name, offset, values));
+                    tables.push(self.of_field(&format!("[[{name}]]"), name, offset, values));
                 }
                 other => log.add(offset, wrong_type(name, "a list of tables", &other)),
             }
         }
         Some(tables)
+    }
+
+    /// A list of texts, each with its offset.
+    pub(crate) fn texts(&mut self, log: &mut Log, field: &FieldSpec) -> Option<Vec<(usize, String)>> {
+        let list = self.list(log, field, "a list of texts in square brackets")?;
+        let texts: Vec<_> = list
+            .iter()
+            .map(|value| Self::text_of(log, field.name, value).map(|text| (value.span().start, text)))
+            .collect();
+        texts.into_iter().collect()
     }
 
     /// A list of numbers.

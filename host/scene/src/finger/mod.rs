@@ -142,7 +142,7 @@ impl Evidence {
 impl FingerProfile {
     /// Reads the text of a finger profile. Messages call the file `name`.
     pub fn parse(text: &str, name: &str) -> Result<Self, CompileError> {
-        read_text(text, name, "this finger profile", |fields, log, _| read(fields, log))
+        read_text(text, name, "this finger profile", read)
     }
 
     /// The text of the profile as a file of its own, which [`Self::parse`] reads back to an equal profile.

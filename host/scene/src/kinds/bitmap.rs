@@ -11,23 +11,28 @@ use super::{Field, Lowered, Words};
 use crate::cover::Cell;
 use crate::fields::Fields;
 use crate::grammar::Absence::{Means, Mistake, Number};
-use crate::grammar::{AmountFields, FieldSpec, Holds, Range};
+use crate::grammar::{AmountFields, FieldSpec, Holds, LengthFields, Range};
 use crate::layer::{Amount, Layer, Region, Unit};
 use crate::log::Log;
 use crate::lower::{Lowering, MM};
 use crate::program::Program;
 use crate::reference::Context;
 use crate::source::Places;
-use crate::tables::{ANGLE_DEG, PLACE_MM, SIZE_MM, amount, flag, layer::REGION, number};
+use crate::tables::{ANGLE_DEG, PLACE_MM, SIZE_MM, amount, flag, layer::REGION, length, number, word};
 use crate::warning::Warning;
 
-const PICTURE: FieldSpec =
-    FieldSpec::new("picture", Holds::Text, Mistake, "a PNG file, found from the scene file's folder");
-const X: FieldSpec = number("x_mm", PLACE_MM, Means("the region's"), "left side of the picture");
-const Y: FieldSpec = number("y_mm", PLACE_MM, Means("the region's"), "top side of the picture");
-const WIDTH: FieldSpec = number("width_mm", SIZE_MM, Means("the region's"), "its width");
-const HEIGHT: FieldSpec = number(
-    "height_mm",
+const PICTURE: FieldSpec = FieldSpec::new(
+    "picture",
+    Holds::Text,
+    Mistake,
+    "a PNG or JPEG file, found from the folder of the file that names it",
+);
+const X: LengthFields = length!("x", X, PLACE_MM, Means("the region's"), "left side of the picture");
+const Y: LengthFields = length!("y", Y, PLACE_MM, Means("the region's"), "top side of the picture");
+const WIDTH: LengthFields = length!("width", X, SIZE_MM, Means("the region's"), "its width");
+const HEIGHT: LengthFields = length!(
+    "height",
+    Y,
     SIZE_MM,
     Means("as the picture's sides demand; the region's, when `width_mm` is the region's too"),
     "its height",
@@ -35,10 +40,33 @@ const HEIGHT: FieldSpec = number(
 const ANGLE: FieldSpec = number("angle_deg", ANGLE_DEG, Number(0.0), "how far it is turned about its middle");
 const TILED: FieldSpec =
     flag("tiled", false, "`true`: it is repeated in both directions, over the region or the screen");
-const PITCH: FieldSpec =
-    number("pitch_mm", Range::new(0.02, 10.0, " mm"), Number(0.25), "distance of the samples that the board plays");
+/// Finest and coarsest pitch.
+pub(crate) const PITCH_MM: Range = Range::new(0.02, 10.0, " mm");
+/// The pitch of pictures that a scene of version 1 gives none.
+pub(crate) const PITCH_V1_MM: f64 = 0.25;
+const PITCH: FieldSpec = FieldSpec::new(
+    "pitch_mm",
+    Holds::NumberOrAuto(PITCH_MM),
+    Means("`\"auto\"`"),
+    "distance of the samples that the board plays; `\"auto\"`: the finest that fits, see below",
+);
+const LEVELS: FieldSpec = word(
+    "levels",
+    Means("`\"full\"`"),
+    "`\"full\"`: black and white are those of the file; `\"stretch\"`: the darkest and the lightest hundredth of the \
+     picture become black and white",
+);
 const BLACK: AmountFields = amount!("black", Means("0"), "friction of black");
 const WHITE: AmountFields = amount!("white", Means("all that can be reached; a factor of 1"), "friction of white");
+
+/// What is black and white in a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Levels {
+    /// Black and white of the file.
+    Full,
+    /// The darkest and the lightest hundredth of the picture.
+    Stretch,
+}
 
 /// `kind = "bitmap"`.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,7 +77,9 @@ pub(crate) struct Bitmap {
     pub(crate) y_mm: Option<f64>,
     pub(crate) width_mm: Option<f64>,
     pub(crate) height_mm: Option<f64>,
-    pub(crate) pitch_mm: f64,
+    /// `None` for the finest pitch that fits.
+    pub(crate) pitch_mm: Option<f64>,
+    pub(crate) levels: Levels,
     pub(crate) angle_deg: f64,
     pub(crate) tiled: bool,
     black: Amount,
@@ -61,16 +91,18 @@ impl Words for Bitmap {
 
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
         // Place and width default to those of the region.
-        let mut place = |field: &FieldSpec| {
-            if !fields.has_been_read(REGION.name) {
-                fields.require(field);
+        let mut place = |field: &LengthFields| {
+            if !fields.has_been_read(REGION.name) && !fields.has(field.px.name) {
+                fields.require(&field.mm);
             }
-            fields.number(log, field)
+            fields.length_mm(log, field)
         };
         let (x_mm, y_mm, width_mm) = (place(&X), place(&Y), place(&WIDTH));
         let picture = fields.text(log, &PICTURE);
-        let height_mm = fields.number(log, &HEIGHT);
-        let pitch_mm = fields.number_or_default(log, &PITCH);
+        let height_mm = fields.length_mm(log, &HEIGHT);
+        let pitch_mm = fields.number_or_auto(log, &PITCH);
+        let levels = [("full", Levels::Full), ("stretch", Levels::Stretch)];
+        let levels = fields.choice(log, &LEVELS, &levels).unwrap_or(Levels::Full);
         let angle_deg = fields.number_or_default(log, &ANGLE);
         let tiled = fields.flag(log, &TILED);
         // Default colours of a friction image without numbers: black is bare glass, white the most that the drive
@@ -82,7 +114,7 @@ impl Words for Bitmap {
         let black = Amount::read(fields, &BLACK, unit, log).unwrap_or(black);
         let white = Amount::read(fields, &WHITE, unit, log).unwrap_or(white);
         let picture = picture?;
-        Some(Self { picture, x_mm, y_mm, width_mm, height_mm, pitch_mm, angle_deg, tiled, black, white })
+        Some(Self { picture, x_mm, y_mm, width_mm, height_mm, pitch_mm, levels, angle_deg, tiled, black, white })
     }
 
     fn move_by(&mut self, x_mm: f64, y_mm: f64) {

@@ -12,17 +12,17 @@ use super::{Field, Lowered, Words, click_interval};
 use crate::cover::Cell;
 use crate::fields::Fields;
 use crate::grammar::Absence::{Means, Mistake, Number};
-use crate::grammar::{AmountFields, FieldSpec};
+use crate::grammar::{AmountFields, FieldSpec, LengthFields};
 use crate::layer::{Amount, Layer, Unit};
 use crate::log::Log;
 use crate::lower::{Lowering, MM, place};
 use crate::program::Program;
 use crate::reference::Context;
 use crate::source::Places;
-use crate::tables::{ANGLE_DEG, PLACE_MM, SIZE_MM, amount, number};
+use crate::tables::{ANGLE_DEG, PLACE_MM, SIZE_MM, amount, length, number};
 
-const X: FieldSpec = number("x_mm", PLACE_MM, Mistake, "x of a place on the line");
-const Y: FieldSpec = number("y_mm", PLACE_MM, Mistake, "y of the same place");
+const X: LengthFields = length!("x", X, PLACE_MM, Mistake, "x of a place on the line");
+const Y: LengthFields = length!("y", Y, PLACE_MM, Mistake, "y of the same place");
 const ANGLE: FieldSpec = number("angle_deg", ANGLE_DEG, Number(0.0), "direction across the line: 0 is a line along y");
 const WIDTH: FieldSpec = number("width_mm", SIZE_MM, Mistake, "from one foot of the ridge to the other");
 const RIDGE: AmountFields = amount!(
@@ -50,8 +50,8 @@ impl Words for Edge {
     const BLEND: Blend = Blend::Add;
 
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
-        let x_mm = fields.number(log, &X);
-        let y_mm = fields.number(log, &Y);
+        let x_mm = fields.length_mm(log, &X);
+        let y_mm = fields.length_mm(log, &Y);
         let angle_deg = fields.number_or_default(log, &ANGLE);
         let width_mm = fields.number(log, &WIDTH);
         let ridge = Amount::read(fields, &RIDGE, unit, log);

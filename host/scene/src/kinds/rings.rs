@@ -9,17 +9,17 @@ use super::{Field, Lowered, Words};
 use crate::cover::Cell;
 use crate::fields::Fields;
 use crate::grammar::Absence::Mistake;
-use crate::grammar::FieldSpec;
+use crate::grammar::{FieldSpec, LengthFields};
 use crate::layer::{Layer, LowHigh, Unit};
 use crate::log::Log;
 use crate::lower::{Lowering, MM};
 use crate::program::Program;
 use crate::reference::Context;
 use crate::source::Places;
-use crate::tables::{HIGH, LOW, PLACE_MM, WAVELENGTH_MM, number};
+use crate::tables::{HIGH, LOW, PLACE_MM, WAVELENGTH_MM, length, number};
 
-const X: FieldSpec = number("x_mm", PLACE_MM, Mistake, "the middle");
-const Y: FieldSpec = number("y_mm", PLACE_MM, Mistake, "the middle");
+const X: LengthFields = length!("x", X, PLACE_MM, Mistake, "x of the middle");
+const Y: LengthFields = length!("y", Y, PLACE_MM, Mistake, "y of the middle");
 const WAVELENGTH: FieldSpec = number("wavelength_mm", WAVELENGTH_MM, Mistake, "from ring to ring");
 
 /// `kind = "rings"`.
@@ -37,8 +37,8 @@ impl Words for Rings {
 
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
         let wave = wave::read(fields, log);
-        let x_mm = fields.number(log, &X);
-        let y_mm = fields.number(log, &Y);
+        let x_mm = fields.length_mm(log, &X);
+        let y_mm = fields.length_mm(log, &Y);
         let wavelength_mm = fields.number(log, &WAVELENGTH);
         let amounts = LowHigh::read(fields, [&LOW, &HIGH], unit, log);
         Some(Self { wave, x_mm: x_mm?, y_mm: y_mm?, wavelength_mm: wavelength_mm?, amounts: amounts? })

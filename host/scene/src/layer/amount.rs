@@ -1,7 +1,7 @@
 //! The target amount of a layer, in one of three units; the field's name states the unit.
 
 use super::super::fields::Fields;
-use super::super::grammar::{Absence, AmountFields, FieldSpec};
+use super::super::grammar::AmountFields;
 use super::super::log::Log;
 use super::super::mistake::Mistake;
 use super::super::source::Places;
@@ -34,19 +34,9 @@ impl Amount {
         if unit == Unit::Factor {
             return fields.number(log, factor).map(Self::Factor);
         }
-        fields.either(newtons, fraction);
-        let (has_newtons, has_fraction) = (fields.has(newtons.name), fields.has(fraction.name));
-        if has_newtons && has_fraction {
-            let mistake = Mistake::TwoUnits { one: newtons.name, other: fraction.name };
-            log.add(fields.place(fraction.name), mistake);
-        }
-        // Either of the two fields is enough, so neither is required by itself.
-        let absence = Absence::Means("");
-        if newtons.absence == Absence::Mistake && !has_fraction {
-            fields.require(newtons);
-        }
-        let newtons = fields.number(log, &FieldSpec { absence, ..*newtons }).map(Self::Newtons);
-        let fraction = fields.number(log, &FieldSpec { absence, ..*fraction }).map(Self::Fraction);
+        let [newtons, fraction] = fields.in_either_unit(log, newtons, fraction);
+        let newtons = fields.number(log, &newtons).map(Self::Newtons);
+        let fraction = fields.number(log, &fraction).map(Self::Fraction);
         newtons.or(fraction)
     }
 

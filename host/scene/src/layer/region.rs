@@ -107,19 +107,21 @@ fn region(mut fields: Fields, log: &mut Log) -> Option<Region> {
 }
 
 fn rectangle(fields: &mut Fields, log: &mut Log) -> Option<Rectangle> {
-    let x_mm = fields.number(log, &tables::region::X_MM);
-    let y_mm = fields.number(log, &tables::region::Y_MM);
-    let width_mm = fields.number(log, &tables::region::WIDTH_MM);
-    let height_mm = fields.number(log, &tables::region::HEIGHT_MM);
+    let x_mm = fields.length_mm(log, &tables::region::X);
+    let y_mm = fields.length_mm(log, &tables::region::Y);
+    let width_mm = fields.length_mm(log, &tables::region::WIDTH);
+    let height_mm = fields.length_mm(log, &tables::region::HEIGHT);
     Some(Rectangle { x_mm: x_mm?, y_mm: y_mm?, width_mm: width_mm?, height_mm: height_mm? })
 }
 
 fn polygon(fields: &mut Fields, log: &mut Log) -> Option<Vec<(f64, f64)>> {
-    let offset = fields.place("points_mm");
-    let vertices = fields.pairs(log, &tables::region::POINTS_MM)?;
+    let (points_mm, points_px) = (&tables::region::POINTS_MM, &tables::region::POINTS_PX);
+    let field = if fields.has(points_px.name) { points_px.name } else { points_mm.name };
+    let offset = fields.place(field);
+    let vertices = fields.places_mm(log, points_mm, points_px)?;
     let (min, max) = VERTICES;
     if !(min..=max).contains(&vertices.len()) {
-        log.add(offset, Mistake::Count { field: "points_mm", found: vertices.len(), min, max });
+        log.add(offset, Mistake::Count { field, found: vertices.len(), min, max });
         return None;
     }
     Some(vertices)

@@ -24,8 +24,8 @@ impl Repeat {
         fields.rename("this repeat".to_owned());
         let columns = fields.number_or_default(log, &tables::repeat::COLUMNS) as u32;
         let rows = fields.number_or_default(log, &tables::repeat::ROWS) as u32;
-        let dx_mm = fields.number_or_default(log, &tables::repeat::DX_MM);
-        let dy_mm = fields.number_or_default(log, &tables::repeat::DY_MM);
+        let dx_mm = fields.length_mm(log, &tables::repeat::DX).unwrap_or_default();
+        let dy_mm = fields.length_mm(log, &tables::repeat::DY).unwrap_or_default();
         let places = fields.close(log);
         for (what, step, copies, step_mm) in [("columns", "dx_mm", columns, dx_mm), ("rows", "dy_mm", rows, dy_mm)] {
             if copies > 1 && step_mm.abs() <= 0.0 {

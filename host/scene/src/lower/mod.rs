@@ -29,7 +29,7 @@ pub(crate) struct Lowering<'a, 's> {
     header: &'a Header,
     reach: &'a Reach,
     pub(crate) tick_hz: u32,
-    pool: Pool<'a>,
+    pool: Pool,
     points: Vec<Point>,
     pub(crate) noises: usize,
     pub(crate) clicks: usize,
@@ -53,7 +53,7 @@ impl<'a, 's> Lowering<'a, 's> {
         header: &'a Header,
         reach: &'a Reach,
         tick_hz: u32,
-        pool: Pool<'a>,
+        pool: Pool,
         log: &'a mut Log<'s>,
     ) -> Self {
         let (points, notes, warnings) = Default::default();
@@ -103,7 +103,7 @@ impl<'a, 's> Lowering<'a, 's> {
         // A draft plays it coarser; the mistake stands.
         let (mut pitch_mm, mut coarser, mut log) = (*pitch_mm, bitmap.clone(), self.log.scratch());
         (0..COARSER_MAX).find_map(|_| {
-            coarser.pitch_mm = pitch_mm;
+            coarser.pitch_mm = Some(pitch_mm);
             pitch_mm *= 2.0;
             self.pool.place(layer, &coarser, visible, screen, &mut log, &mut self.notes)
         })

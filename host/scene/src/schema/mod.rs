@@ -7,21 +7,26 @@ use serde_json::{Map, Value, json};
 
 use super::file::describe;
 use super::grammar::{Holds, KnownField, KnownTable, Range};
-use super::tables::layer::KIND;
+use super::stack::LAYER_FIELDS;
+use super::tables::layer::{KIND, NAME};
 use variant::{Tables, Variant, variants};
 
 /// For each version of the file format, the tables of a scene, empty, so that the parser reads their fields.
 const EMPTY: [(u32, &str); 2] = [
-    (2, "version = 2\nscreen = { coating = [{}] }\nfinger = {}\ndrive = {}\ncarrier = {}\ntouch = {}\n"),
+    (2, "version = 2\nscreen = { coating = [{}] }\nfinger = {}\ndrive = {}\ncarrier = {}\ntouch = {}\ndesign = {}\n"),
     (1, "version = 1\ncoating = [{}]\nscreen = {}\nfinger = {}\ndrive = {}\ncarrier = {}\ntouch = {}\n"),
 ];
 /// The tables that are the same in all versions.
-const SHARED: [&str; 3] = ["drive", "carrier", "touch"];
+const SHARED: [&str; 4] = ["drive", "carrier", "touch", "design"];
+/// The tables that may complete the layers of a scene, which is then of the schema `shared_layer` for each layer.
+const COMPLETING: [&str; 2] = ["defaults", "include"];
 
 /// The schema (draft 7, which editors support), as a text that ends in a line feed.
 pub fn json_schema() -> String {
     let mut definitions = Map::new();
     definitions.insert("layer".to_owned(), json!({ "oneOf": layers() }));
+    definitions.insert("shared_layer".to_owned(), shared_layer(true));
+    definitions.insert("defaults".to_owned(), shared_layer(false));
     definitions.insert("region".to_owned(), json!({ "oneOf": regions() }));
     definitions.insert("repeat".to_owned(), repeat());
     let [(_, newest), _] = EMPTY;
@@ -33,15 +38,47 @@ pub fn json_schema() -> String {
         "title": "frixel scene",
         "description": "A scene of friction, in newtons: docs/scene.md",
         "type": "object",
-        "oneOf": EMPTY.map(|(version, empty)| scene(version, empty)),
+        "oneOf": scenes(),
         "definitions": definitions,
     });
     // A value that was just built always serializes.
     serde_json::to_string_pretty(&schema).unwrap_or_default() + "\n"
 }
 
-/// The schema of a scene of one version.
-fn scene(version: u32, empty: &str) -> Value {
+/// The schemas of a scene: of each version, and of one whose layers may have fields in `[defaults]` or in another file.
+fn scenes() -> Vec<Value> {
+    let [(newest, tables), _] = EMPTY;
+    let mut scenes: Vec<Value> = EMPTY.map(|(version, empty)| scene(version, empty, "layer")).into();
+    let mut shared = scene(newest, tables, "shared_layer");
+    let either = COMPLETING.map(|table| json!({ "required": [table] }));
+    for plain in &mut scenes {
+        if let Some(properties) = plain.pointer_mut("/properties").and_then(Value::as_object_mut) {
+            properties.retain(|name, _| !COMPLETING.contains(&name.as_str()));
+        }
+    }
+    if let Some(shared) = shared.as_object_mut() {
+        shared.insert("anyOf".to_owned(), Value::from(either.to_vec()));
+    }
+    scenes.push(shared);
+    scenes
+}
+
+/// A layer, of which any field may be missing, or the fields that layers share.
+fn shared_layer(is_layer: bool) -> Value {
+    let mut properties = Map::new();
+    for known in LAYER_FIELDS.iter().filter(|known| is_layer || known.field != NAME) {
+        let name = known.field.name;
+        let value = match name {
+            "region" | "repeat" => json!({ "$ref": format!("#/definitions/{name}") }),
+            _ => value(known),
+        };
+        properties.insert(name.to_owned(), value);
+    }
+    json!({ "type": "object", "properties": properties, "additionalProperties": false })
+}
+
+/// The schema of a scene of one version, whose layers are of the schema `layer`.
+fn scene(version: u32, empty: &str, layer: &str) -> Value {
     let tables = describe(empty);
     let Some(root) = tables.iter().find(|table| table.key.is_empty()) else { return Value::Null };
     let inner = |name: &str| {
@@ -56,12 +93,15 @@ fn scene(version: u32, empty: &str) -> Value {
     for KnownField { field, .. } in &root.fields {
         let name = field.name;
         let value = match field.holds {
-            Holds::Table if SHARED.contains(&name) => json!({ "$ref": format!("#/definitions/{name}") }),
+            Holds::Table if SHARED.contains(&name) || name == "defaults" => {
+                json!({ "$ref": format!("#/definitions/{name}") })
+            }
             Holds::Table => inner(name),
             Holds::TableOrText if name == "finger" => with_name(fingers()),
             Holds::TableOrText => with_name(vec![inner(name)]),
             Holds::TableOrTables => one_or_more(&inner(name)),
-            Holds::Tables => json!({ "type": "array", "items": { "$ref": format!("#/definitions/{name}") } }),
+            Holds::Tables => json!({ "type": "array", "items": { "$ref": format!("#/definitions/{layer}") } }),
+            Holds::Texts => value(&KnownField { field: *field, words: Vec::new() }),
             _ => json!({ "const": version }),
         };
         properties.insert(name.to_owned(), value);
@@ -184,6 +224,8 @@ fn value(known: &KnownField) -> Value {
         Holds::Table => json!({ "type": "object" }),
         Holds::TableOrText => json!({ "type": ["object", "string"] }),
         Holds::Tables | Holds::TableOrTables => json!({ "type": "array", "items": { "type": "object" } }),
+        Holds::NumberOrAuto(range) => json!({ "oneOf": [number("number", range), { "const": "auto" }] }),
+        Holds::Texts => json!({ "type": "array", "items": { "type": "string" } }),
         Holds::Numbers(range) => json!({ "type": "array", "items": number("number", range) }),
         Holds::Interval(range) => two_numbers(range),
         Holds::Pairs(range) => json!({ "type": "array", "items": two_numbers(range) }),

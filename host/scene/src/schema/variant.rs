@@ -2,6 +2,7 @@
 
 use super::super::file::describe;
 use super::super::grammar::{Holds, KnownField, KnownTable};
+use super::super::kinds::KindName;
 use super::super::tables::layer::KIND;
 
 /// Scene text into which fields are inserted, between `before` and `after`; `key` is the field that holds the table.
@@ -95,4 +96,24 @@ fn parts(tables: &Tables, known: &KnownField, plain: &KnownTable) -> Vec<Part> {
         }
         _ => Vec::new(),
     }
+}
+
+/// Every field that a layer of any kind can have, with all words that it can hold in any kind.
+pub(in super::super) fn known_layer_fields() -> Vec<KnownField> {
+    let mut all: Vec<KnownField> = Vec::new();
+    for (kind, _) in KindName::ALL {
+        let before = format!("layer = [{{ kind = \"{kind}\"");
+        let variants = variants(&Tables { before: &before, after: "}]", key: "layer" });
+        for known in variants.into_iter().flat_map(|variant| variant.table.fields) {
+            match all.iter_mut().find(|other| other.field.name == known.field.name) {
+                Some(other) => {
+                    let new = known.words.into_iter().filter(|word| !other.words.contains(word));
+                    let new: Vec<_> = new.collect();
+                    other.words.extend(new);
+                }
+                None => all.push(known),
+            }
+        }
+    }
+    all
 }

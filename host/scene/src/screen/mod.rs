@@ -56,7 +56,7 @@ impl Slab {
 impl Screen {
     /// Reads the text of a screen's file. Messages call the file `name`.
     pub fn parse(text: &str, name: &str) -> Result<Self, CompileError> {
-        read_text(text, name, "this screen", |fields, log, _| read(fields, log))
+        read_text(text, name, "this screen", read)
     }
 
     /// The screen that a scene gets when it does not say which: 120 mm by 80 mm, [`Slab::EXAMPLE`], no limits of its

@@ -72,7 +72,7 @@ fn known(before: &str, after: &str, key: &str) -> Vec<KnownField> {
 /// The headings with a table of fields below them, and the fields.
 fn documented() -> Vec<(String, Vec<KnownField>)> {
     let mut all = Vec::new();
-    for table in ["screen", "finger", "drive", "carrier", "touch"] {
+    for table in ["screen", "finger", "drive", "carrier", "touch", "design"] {
         all.push((format!("### `[{table}]`"), known(&format!("version = 2\n{table} = {{"), "}", table)));
     }
     all.push(("#### `coating`".to_owned(), known("version = 2\nscreen = { coating = [{", "}] }", "coating")));
@@ -98,10 +98,13 @@ fn markdown(fields: &[KnownField]) -> String {
         let (mut alike, others): (Vec<_>, Vec<_>) =
             fields.into_iter().partition(|field| field.meaning == first.meaning);
         fields = others;
-        alike.sort_by_key(|field| ["_n", "_fraction", "_factor"].map(|unit| !field.name.ends_with(unit)));
+        alike.sort_by_key(|field| ["_n", "_fraction", "_factor", "_mm"].map(|unit| !field.name.ends_with(unit)));
         let names: Vec<_> = alike.iter().map(|field| format!("`{}`", field.name)).collect();
         let default = alike.iter().map(default).find(|default| !default.is_empty()).unwrap_or_default();
-        let range = if alike.len() == 1 { range(&first) } else { String::new() };
+        // A length in pixels has the range of the same length in millimetres.
+        let lengths = ["_mm", "_px"].map(|unit| alike.iter().filter(|field| field.name.ends_with(unit)).count());
+        let is_one = alike.len() == 1 || (alike.len() == 2 && lengths == [1, 1]);
+        let range = if is_one { range(&alike[0]) } else { String::new() };
         rows.push([names.join(", or "), first.meaning.to_owned(), default, range]);
     }
     let shown: Vec<usize> = (0..4).filter(|column| rows.iter().skip(1).any(|row| !row[*column].is_empty())).collect();
@@ -128,6 +131,7 @@ fn default(field: &FieldSpec) -> String {
 fn range(field: &FieldSpec) -> String {
     let (Holds::Number(range)
     | Holds::Whole(range)
+    | Holds::NumberOrAuto(range)
     | Holds::Numbers(range)
     | Holds::Interval(range)
     | Holds::Pairs(range)) = field.holds

@@ -639,12 +639,16 @@ fn pictures() {
             3,
             11,
             "picture \"textures/brik.png\" was not found in the scene's set of files, which has \"brick.png\": paths \
-             start from the scene file's folder",
+             start from the folder of the file that names it",
         )],
     );
     check_layers(
         &layer("textures/README.md", "0.5"),
-        &[(3, 11, "picture \"textures/README.md\" cannot be used: it is not a PNG file: save it as PNG")],
+        &[(
+            3,
+            11,
+            "picture \"textures/README.md\" cannot be used: it is neither a PNG nor a JPEG file: save it as PNG",
+        )],
     );
     check_layers(
         &layer("textures/brick.png", "0.25"),
@@ -852,7 +856,11 @@ fn drafts() {
     };
     let refusal = |program: &Program| program.refusals[0].to_string();
     let reach = draft("[[layer]]\nkind = \"constant\"\nfriction_n = 0.9\n");
-    assert!(refusal(&reach).starts_with("21:14: layer 1 (constant) asks for up to 0.9 N"), "{}", refusal(&reach));
+    assert!(
+        refusal(&reach).starts_with("test.toml:21:14: layer 1 (constant) asks for up to 0.9 N"),
+        "{}",
+        refusal(&reach)
+    );
     assert_eq!(reach.records.len(), 1);
 
     let bytes = draft(

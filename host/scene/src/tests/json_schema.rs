@@ -40,6 +40,7 @@ pub(super) fn is_valid(schema: &Value, root: &Value, value: &Value) -> bool {
             value.as_object().is_none_or(|fields| fields.keys().all(known))
         }
         "oneOf" => all_of(rule, |valid, _| valid == 1),
+        "anyOf" => all_of(rule, |valid, _| valid > 0),
         "allOf" => all_of(rule, |valid, all| valid == all),
         "not" => !is_valid(rule, root, value),
         other => panic!("the keyword `{other}` is not known here"),

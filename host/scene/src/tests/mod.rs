@@ -10,9 +10,12 @@ use super::{CompileError, Located, Program, Scene, compile, compile_draft};
 
 mod docs;
 mod errors;
+mod files;
 mod json_schema;
 mod layers;
 mod optimise;
+mod pictures;
+mod pixels;
 mod profiles;
 mod repeat;
 mod schema;
@@ -59,7 +62,24 @@ pub(super) fn compile_text(text: &str) -> Result<Program, CompileError> {
     let scene = Scene::parse(text, "test.toml", &*PICTURES);
     schema::check_agrees(text, mistakes(&scene));
     // The cost of a tick has its own tests; other tests may stack many layers.
-    compile::compile(&scene?, &BoardLimits { tick_cycles_max: u32::MAX, ..LIMITS }, TICK_HZ)
+    let limits = BoardLimits { tick_cycles_max: u32::MAX, ..LIMITS };
+    let scene = scene?;
+    let compiled = compile(&scene, &limits, TICK_HZ);
+    check_draft(&compiled, compile_draft(&scene, &limits, TICK_HZ));
+    compiled
+}
+
+/// Panics unless a draft is what a board plays or, of a scene that a board refuses, has the board's reasons.
+#[track_caller]
+fn check_draft(compiled: &Result<Program, CompileError>, draft: Result<Program, CompileError>) {
+    match (compiled, draft) {
+        (Ok(program), draft) => assert_eq!(draft.as_ref(), Ok(program)),
+        // As texts, because a number that was found may be not-a-number.
+        (Err(CompileError { mistakes, .. }), Ok(draft)) => {
+            assert_eq!(format!("{:?}", draft.refusals), format!("{mistakes:?}"));
+        }
+        (Err(refused), Err(error)) => assert_eq!(error.to_string(), refused.to_string()),
+    }
 }
 
 /// The mistakes that were found while a scene was read.

@@ -95,7 +95,7 @@ fn names_that_lead_to_nothing() {
     check_refused(
         "version = 2\nscreen = \"larg.toml\"",
         "test.toml:2:10: screen \"larg.toml\" was not found in the scene's set of files, which has \"large.toml\": paths \
-         start from the scene file's folder",
+         start from the folder of the file that names it",
     );
     check_refused(
         "version = 2\nfinger = \"broken.toml\"",

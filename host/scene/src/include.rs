@@ -1,0 +1,91 @@
+//! `include`: the other scene files that a scene consists of.
+
+use toml::de::{DeTable, DeValue};
+
+use super::files::{FileUnavailable, Files, file_name};
+use super::mistake::Mistake;
+use super::nearest::Nearest;
+use super::source::{Source, joined};
+use super::tables;
+
+/// Largest number of files of a scene.
+const FILES_MAX: usize = 64;
+
+/// The files of a scene, and the mistakes of their `include`s, each with its offset.
+pub(super) struct Gathered {
+    pub(super) source: Source,
+    pub(super) mistakes: Vec<(usize, Mistake)>,
+}
+
+/// Reads the files that a scene file includes, and the files that these include. A text that is not TOML, or of version
+/// 1, includes nothing.
+pub(super) fn gather(name: &str, text: &str, files: &dyn Files) -> Gathered {
+    let mut gathered = Gathered { source: Source::new(name, text), mistakes: Vec::new() };
+    gathered.follow(&mut vec![0], files);
+    gathered
+}
+
+impl Gathered {
+    /// Reads the files that the last file of a chain includes. Each file of the chain includes the next one.
+    fn follow(&mut self, chain: &mut Vec<usize>, files: &dyn Files) {
+        let number = chain.last().copied().unwrap_or_default();
+        let Some(file) = self.source.files().get(number).cloned() else { return };
+        for (offset, name) in included_names(&file.text) {
+            if name.is_empty() {
+                let field = tables::scene::INCLUDE.name;
+                self.mistakes.push((file.start + offset, Mistake::NoFileName { field }));
+                continue;
+            }
+            let path = joined(&file.path, &name);
+            match self.read(number, &path, chain, files) {
+                Ok(included) => {
+                    self.source.include(number, included);
+                    chain.push(included);
+                    self.follow(chain, files);
+                    chain.pop();
+                }
+                Err(mistake) => self.mistakes.push((file.start + offset, mistake)),
+            }
+        }
+    }
+
+    /// Adds the file at `path` from the scene file's folder, which file `number` includes.
+    fn read(&mut self, number: usize, path: &str, chain: &[usize], files: &dyn Files) -> Result<usize, Mistake> {
+        let all = self.source.files();
+        let file = all.get(number).map_or_else(String::new, |file| file.name.clone());
+        let included = joined(self.source.name(), path);
+        if let Some(known) = all.iter().position(|other| other.path == path) {
+            if chain.contains(&known) {
+                return Err(Mistake::IncludedByItself { file, included });
+            }
+            let other = self.source.includer(known).to_owned();
+            return Err(Mistake::IncludedTwice { file, included, other });
+        }
+        if all.len() >= FILES_MAX {
+            return Err(Mistake::TooMany { what: "files", number: all.len() + 1, max: FILES_MAX });
+        }
+        let unusable = |reason| Mistake::IncludedUnusable { file: file.clone(), included: included.clone(), reason };
+        let bytes = files.bytes(path).map_err(|unavailable| match unavailable {
+            FileUnavailable::Unreadable { reason } => unusable(format!("it cannot be read ({reason})")),
+            FileUnavailable::Missing { files, .. } => Mistake::IncludedMissing {
+                file: file.clone(),
+                included: included.clone(),
+                nearest: Nearest::file(file_name(path), &files),
+            },
+        })?;
+        let text = String::from_utf8(bytes).map_err(|_| unusable(Mistake::NotUtf8.to_string()))?;
+        Ok(self.source.add(included, path.to_owned(), text))
+    }
+}
+
+/// The names in `include` of a text, each with its offset.
+fn included_names(text: &str) -> Vec<(usize, String)> {
+    let Ok(table) = DeTable::parse(text) else { return Vec::new() };
+    let version = table.get_ref().get(tables::scene::VERSION.name).and_then(|value| value.get_ref().as_integer());
+    if version.is_some_and(|version| version.as_str() == "1") {
+        return Vec::new();
+    }
+    let names = table.get_ref().get(tables::scene::INCLUDE.name).and_then(|value| value.get_ref().as_array());
+    let name = |value: &toml::Spanned<DeValue>| Some((value.span().start, value.get_ref().as_str()?.to_owned()));
+    names.into_iter().flatten().filter_map(name).collect()
+}

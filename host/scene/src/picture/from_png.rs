@@ -1,0 +1,60 @@
+//! PNG files of any colour type.
+
+use std::io::Cursor;
+
+use png::{BitDepth, ColorType, Decoder, Limits, OutputInfo, Transformations};
+
+use super::{COLOUR, PIXELS_MAX, Picture, PictureError, STEP, WHITE, luma, refuse_too_large};
+
+/// The first eight bytes of every PNG file (W3C PNG specification, section 5.2).
+pub(super) const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
+
+/// Decodes the bytes of a PNG file.
+pub(super) fn decode(png: &[u8]) -> Result<Picture, PictureError> {
+    let damaged = |error: png::DecodingError| PictureError::Damaged(error.to_string());
+    let limits = Limits { bytes: 8 * PIXELS_MAX };
+    let mut decoder = Decoder::new_with_limits(Cursor::new(png), limits);
+    // Expands palettes to colours, fewer bits than eight to eight, and a transparent colour to an alpha channel.
+    decoder.set_transformations(Transformations::EXPAND);
+    let mut reader = decoder.read_info().map_err(damaged)?;
+    let (width, height) = reader.info().size();
+    refuse_too_large(width as usize, height as usize)?;
+    let size = reader.output_buffer_size().ok_or_else(|| PictureError::Damaged("it has no size".to_owned()))?;
+    let mut bytes = vec![0; size];
+    let frame = reader.next_frame(&mut bytes).map_err(damaged)?;
+    Ok(grey(&bytes, &frame))
+}
+
+fn grey(bytes: &[u8], frame: &OutputInfo) -> Picture {
+    let wide = frame.bit_depth == BitDepth::Sixteen;
+    let channels = frame.color_type.samples();
+    let mut coloured = false;
+    let mut transparent = false;
+    let mut grey = Vec::with_capacity(frame.width as usize * frame.height as usize);
+    for pixel in bytes.chunks_exact(if wide { 2 * channels } else { channels }) {
+        let at = |channel: usize| sample(pixel, channel, wide);
+        let (value, alpha) = match frame.color_type {
+            ColorType::Grayscale | ColorType::Indexed => (f32::from(at(0)), WHITE),
+            ColorType::GrayscaleAlpha => (f32::from(at(0)), at(1)),
+            ColorType::Rgb => (luma([at(0), at(1), at(2)]), WHITE),
+            ColorType::Rgba => (luma([at(0), at(1), at(2)]), at(3)),
+        };
+        coloured |= channels > 2 && (at(0) != at(1) || at(1) != at(2));
+        transparent |= alpha < WHITE;
+        grey.push(value / STEP * (f32::from(alpha) / f32::from(WHITE)));
+    }
+    let said =
+        [(coloured, COLOUR), (transparent, "transparency laid over black"), (wide, "16 bits a sample rounded to 8")];
+    let conversions = said.iter().filter(|(done, _)| *done).map(|(_, text)| (*text).to_owned()).collect();
+    Picture { width: frame.width as usize, height: frame.height as usize, grey, conversions }
+}
+
+/// A channel of a pixel, in 16 bits.
+fn sample(pixel: &[u8], channel: usize, wide: bool) -> u16 {
+    let byte = |index: usize| pixel.get(index).copied().unwrap_or_default();
+    if wide {
+        u16::from_be_bytes([byte(2 * channel), byte(2 * channel + 1)])
+    } else {
+        u16::from_be_bytes([byte(channel), byte(channel)])
+    }
+}

@@ -1,0 +1,93 @@
+//! Pictures: PNG and JPEG files, read as grey.
+
+mod from_jpeg;
+mod from_png;
+#[cfg(test)]
+mod tests;
+
+use thiserror::Error;
+
+/// Largest number of pixels of a picture: 64 million, so that its grey values take at most 256 MiB.
+const PIXELS_MAX: usize = 1 << 26;
+/// Weights of red, green and blue in grey (luma of ITU-R BT.709).
+const LUMA: [f32; 3] = [0.2126, 0.7152, 0.0722];
+/// The largest sample of 16 bits.
+const WHITE: u16 = u16::MAX;
+/// A step of 8 bits in steps of 16.
+const STEP: f32 = 257.0;
+/// What is said of a picture whose colours were turned to grey.
+const COLOUR: &str = "colour turned to grey by luminance";
+/// One over the part of a picture's pixels that `levels = "stretch"` leaves darker than black, and lighter than white.
+const STRETCHED_PART: usize = 100;
+
+/// A picture as grey values from 0 (black) to 255 (white), row after row from the top left.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Picture {
+    pub(super) width: usize,
+    pub(super) height: usize,
+    pub(super) grey: Vec<f32>,
+    /// The conversions to grey, as text for a person.
+    pub(super) conversions: Vec<String>,
+}
+
+/// The reason why a picture cannot be used.
+#[derive(Debug, Error)]
+pub(super) enum PictureError {
+    #[error("it is neither a PNG nor a JPEG file: save it as PNG")]
+    UnknownFormat,
+    #[error("it is damaged ({0}): save it again")]
+    Damaged(String),
+    #[error("its colours are inks (CMYK): save it as RGB or grey")]
+    Inks,
+    #[error("it has {width} x {height} pixels, and at most {PIXELS_MAX} are read: make it smaller")]
+    TooLarge { width: usize, height: usize },
+}
+
+impl Picture {
+    /// Decodes the bytes of a PNG or JPEG file.
+    pub(super) fn decode(bytes: &[u8]) -> Result<Self, PictureError> {
+        if bytes.starts_with(from_png::SIGNATURE) {
+            from_png::decode(bytes)
+        } else if bytes.starts_with(from_jpeg::SIGNATURE) {
+            from_jpeg::decode(bytes)
+        } else {
+            Err(PictureError::UnknownFormat)
+        }
+    }
+
+    /// The picture with its levels stretched: a hundredth of the pixels is black or darker, and a hundredth is white or
+    /// lighter. A picture of one grey stays as it is.
+    pub(super) fn stretched(mut self) -> Self {
+        if self.grey.is_empty() {
+            return self;
+        }
+        let mut sorted = self.grey.clone();
+        let last = sorted.len() - 1;
+        let mut at = |place: usize| *sorted.select_nth_unstable_by(place, f32::total_cmp).1;
+        let (black, white) = (at(last / STRETCHED_PART), at(last - last / STRETCHED_PART));
+        if white - black < 1.0 {
+            self.conversions.push("of one grey, so that its levels cannot be stretched".to_owned());
+            return self;
+        }
+        let scale = 255.0 / (white - black);
+        for grey in &mut self.grey {
+            *grey = ((*grey - black) * scale).clamp(0.0, 255.0);
+        }
+        self.conversions.push(format!("levels {black:.0} to {white:.0} stretched to 0 to 255"));
+        self
+    }
+}
+
+fn refuse_too_large(width: usize, height: usize) -> Result<(), PictureError> {
+    let fits = width.checked_mul(height).is_some_and(|pixels| pixels <= PIXELS_MAX);
+    if fits { Ok(()) } else { Err(PictureError::TooLarge { width, height }) }
+}
+
+/// The luma of a colour. Grey keeps its exact value.
+fn luma(colour: [u16; 3]) -> f32 {
+    let [red, green, blue] = colour;
+    if red == green && green == blue {
+        return f32::from(red);
+    }
+    LUMA[0] * f32::from(red) + LUMA[1] * f32::from(green) + LUMA[2] * f32::from(blue)
+}

@@ -1,0 +1,121 @@
+//! The layers of a scene: those of the files that it includes below its own, each with the defaults that it shares.
+
+use std::sync::LazyLock;
+
+use toml::de::DeTable;
+
+use super::fields::{Fields, PixelSize, overlaid};
+use super::file::Version;
+use super::grammar::KnownField;
+use super::kinds::Kind;
+use super::layer::Layer;
+use super::log::Log;
+use super::mistake::Mistake;
+use super::nearest::Nearest;
+use super::schema::variant::known_layer_fields;
+use super::tables;
+
+/// Every field that a layer of any kind can have.
+pub(super) static LAYER_FIELDS: LazyLock<Vec<KnownField>> = LazyLock::new(known_layer_fields);
+
+/// The layer tables and defaults of one file.
+struct Part<'i> {
+    layers: Vec<Fields<'i>>,
+    defaults: DeTable<'i>,
+}
+
+/// The tables of the layers of all files of a scene, from bottom to top, with their defaults; `files` are the fields of
+/// the files, the scene file's first.
+pub(super) fn layer_tables<'i>(files: &mut [Fields<'i>], version: Version, log: &mut Log) -> Vec<Fields<'i>> {
+    let parts = files.iter_mut().map(|fields| part(fields, version, log)).collect::<Vec<Part<'i>>>();
+    let mut stacked = Vec::new();
+    stack(0, &parts, log, &mut stacked);
+    let mut parts: Vec<Option<Part>> = parts.into_iter().map(Some).collect();
+    let mut tables = Vec::new();
+    for (number, defaults) in stacked {
+        let part = parts.get_mut(number).and_then(Option::take);
+        tables.extend(part.into_iter().flat_map(|part| part.layers).map(|layer| layer.with_defaults(&defaults)));
+    }
+    tables
+}
+
+/// Reads the layers of a scene, from bottom to top, without those that have mistakes. `pixel_mm` is the size of a pixel
+/// of the scene's design, if it has one.
+pub(super) fn layers(tables: Vec<Fields>, version: Version, pixel_mm: Option<PixelSize>, log: &mut Log) -> Vec<Layer> {
+    // Read every layer, so that the mistakes of all are reported.
+    let mut layers = Vec::new();
+    for (number, table) in (1..).zip(tables) {
+        let mistakes = log.mistakes();
+        let copies = Layer::read(table.with_pixels(pixel_mm), number, log);
+        layers.extend(copies.filter(|_| log.mistakes() == mistakes).into_iter().flatten());
+    }
+    for layer in &mut layers {
+        settle(layer, version, log);
+    }
+    check_names(&layers, log);
+    layers
+}
+
+fn part<'i>(fields: &mut Fields<'i>, version: Version, log: &mut Log) -> Part<'i> {
+    let defaults = match version {
+        Version::One => None,
+        Version::Two => fields.table(log, &tables::scene::DEFAULTS),
+    };
+    let defaults = defaults.map(Fields::into_values).unwrap_or_default();
+    check_defaults(&defaults, log);
+    Part { layers: fields.tables(log, &tables::scene::LAYER).unwrap_or_default(), defaults }
+}
+
+/// Refuses defaults that no kind of layer has.
+fn check_defaults(defaults: &DeTable, log: &mut Log) {
+    for name in defaults.keys() {
+        let (place, field) = (name.span().start, name.get_ref());
+        if *field == tables::layer::NAME.name {
+            log.add(place, Mistake::NoDefault { field: tables::layer::NAME.name });
+        } else if !LAYER_FIELDS.iter().any(|known| *field == known.field.name) {
+            let nearest = Nearest::new(field, LAYER_FIELDS.iter().map(|known| known.field.name));
+            let field = field.clone().into_owned();
+            log.add(place, Mistake::UnknownField { field, table: "[defaults]".to_owned(), nearest });
+        }
+    }
+}
+
+/// The numbers of the files from bottom to top, from those that file `number` includes to itself, each with the
+/// defaults of its layers: its own before those of the files that it includes, of which the last one counts.
+fn stack<'i>(number: usize, parts: &[Part<'i>], log: &Log, stacked: &mut Vec<(usize, DeTable<'i>)>) -> DeTable<'i> {
+    let mut defaults = DeTable::new();
+    let includes = log.source().files().get(number).map_or(&[][..], |file| &file.includes);
+    for included in includes {
+        defaults = overlaid(&defaults, stack(*included, parts, log, stacked));
+    }
+    if let Some(part) = parts.get(number) {
+        defaults = overlaid(&defaults, part.defaults.clone());
+    }
+    stacked.push((number, defaults.clone()));
+    defaults
+}
+
+/// Gives a picture its path from the scene file's folder, and in version 1 the pitch that it had there by default.
+fn settle(layer: &mut Layer, version: Version, log: &Log) {
+    if let Kind::Bitmap(bitmap) = &mut layer.kind {
+        bitmap.picture = log.source().path_at(layer.places.field("picture"), &bitmap.picture);
+        if version == Version::One && !layer.places.has("pitch_mm") {
+            bitmap.pitch_mm = Some(super::kinds::PITCH_V1_MM);
+        }
+    }
+}
+
+/// Refuses layers of the same name in two files.
+fn check_names(layers: &[Layer], log: &mut Log) {
+    let source = log.source();
+    let place = |layer: &Layer| layer.places.field("name");
+    for (number, layer) in layers.iter().enumerate().filter(|(_, layer)| layer.name.is_some()) {
+        let here = source.number_at(place(layer));
+        let below = layers.iter().take(number);
+        let twin = below.filter(|other| other.name == layer.name).find(|other| source.number_at(place(other)) != here);
+        if let (Some(other), Some(name)) = (twin, layer.name.clone()) {
+            let file = source.name_at(place(layer)).to_owned();
+            log.add(place(layer), Mistake::NameTwice { name, file, other: source.name_at(place(other)).to_owned() });
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! The pitch that a scene leaves open, and the levels of pictures.
+
+use super::*;
+
+const SHORT: &str = "version = 2\n";
+
+/// A layer with a picture at the left border.
+fn layer(picture: &str, y_mm: u32, width_mm: u32, rest: &str) -> String {
+    format!(
+        "[[layer]]\nkind = \"bitmap\"\npicture = \"textures/{picture}\"\nx_mm = 0\ny_mm = {y_mm}\nwidth_mm = {width_mm}\n{rest}\n"
+    )
+}
+
+fn program(layers: &str) -> Program {
+    compile_text(&format!("{SHORT}{layers}")).expect("it compiles")
+}
+
+/// Width and height in samples.
+fn sizes(program: &Program) -> Vec<(u16, u16)> {
+    program.bitmaps.iter().map(|bitmap| (bitmap.width, bitmap.height)).collect()
+}
+
+#[track_caller]
+fn check_note(program: &Program, part: &str) {
+    assert!(program.notes.iter().any(|note| note.contains(part)), "{part}: {:?}", program.notes);
+}
+
+#[test]
+fn a_small_picture_has_a_sample_for_each_pixel() {
+    let found = program(&layer("leather.png", 0, 50, ""));
+    assert_eq!(sizes(&found), [(200, 200)]);
+    check_note(&found, "leather.png: a sample for each pixel, 0.25 mm");
+    assert_eq!(found.scene_bytes(), program(&layer("leather.png", 0, 50, "pitch_mm = \"auto\"")).scene_bytes());
+    // At the pitch of its pixels, the samples are the pixels.
+    assert!(found.bitmaps == program(&layer("leather.png", 0, 50, "pitch_mm = 0.25")).bitmaps);
+}
+
+#[test]
+fn a_large_picture_has_the_finest_pitch_that_fits() {
+    let found = program(&layer("brick.png", 0, 80, ""));
+    // 80 mm at 0.31 mm are 259 samples, 67,081 bytes; at 0.32 mm 250, 62,500 bytes.
+    assert_eq!(sizes(&found), [(250, 250)]);
+    check_note(
+        &found,
+        "brick.png: 512 x 512 resampled to 250 x 250 at 0.32 mm, the finest pitch that fits into the board's 65536 bytes",
+    );
+    let explicit = program(&layer("brick.png", 0, 80, "pitch_mm = 0.32"));
+    assert_eq!(found.scene_bytes(), explicit.scene_bytes());
+    assert!(compile_text(&format!("{SHORT}{}", layer("brick.png", 0, 80, "pitch_mm = 0.31"))).is_err());
+}
+
+#[test]
+fn pictures_share_the_pool() {
+    let bytes = |program: &Program| program.bitmaps.iter().map(|bitmap| bitmap.samples.len()).sum::<usize>();
+    // The same picture twice takes its bytes once.
+    let twice = program(&format!("{}{}", layer("brick.png", 0, 40, ""), layer("brick.png", 40, 40, "")));
+    assert_eq!(sizes(&twice), [(250, 250)]);
+    // Two pictures share what an explicit one leaves.
+    let mixed = format!(
+        "{}{}{}",
+        layer("brick.png", 0, 50, "pitch_mm = 0.25"),
+        layer(
+            "brick.png",
+            0,
+            30,
+            "region = { x_mm = 60, y_mm = 0, width_mm = 30, height_mm = 30 }\nlevels = \"stretch\""
+        )
+        .replace("x_mm = 0\ny_mm = 0\nwidth_mm = 30\n", ""),
+        layer("leather.png", 50, 20, "")
+    );
+    let mixed = program(&mixed);
+    assert_eq!(mixed.bitmaps[0].width, 200);
+    assert!((60_000..=65_536).contains(&bytes(&mixed)), "{}", bytes(&mixed));
+    check_note(&mixed, "leather.png: 200 x 200 resampled to ");
+    // What cannot be seen takes no bytes.
+    let cut = "region = { x_mm = 0, y_mm = 0, width_mm = 20, height_mm = 20 }";
+    let seen = program(&layer("brick.png", 0, 80, cut));
+    assert_eq!(sizes(&seen), [(129, 129)]);
+    check_note(&seen, "a sample for each pixel, 0.1563 mm");
+}
+
+#[test]
+fn a_word_that_is_no_pitch() {
+    for (pitch, part) in [
+        ("\"fine\"", "test.toml:8:12: `pitch_mm` has to be a number or \"auto\", and this is a text"),
+        ("\"atuo\"", "test.toml:8:12: `pitch_mm = \"atuo\"` is not known; did you mean `auto`?"),
+        ("true", "test.toml:8:12: `pitch_mm` has to be a number or \"auto\", and this is `true` or `false`"),
+        ("0.01", "test.toml:8:12: `pitch_mm = 0.01` is out of range: expected 0.02 to 10 mm"),
+    ] {
+        let refused = compile_text(&format!("{SHORT}{}", layer("brick.png", 0, 80, &format!("pitch_mm = {pitch}"))));
+        assert_eq!(refused.expect_err("it is refused").to_string(), part);
+    }
+    let refused = compile_text(&format!("{SHORT}{}", layer("brick.png", 0, 80, "levels = \"strech\"")));
+    assert_eq!(
+        refused.expect_err("it is refused").to_string(),
+        "test.toml:8:10: `levels = \"strech\"` is not known; did you mean `stretch`?"
+    );
+}
+
+#[test]
+fn a_scene_of_version_one_keeps_its_pitch() {
+    let head = HEAD.replace("# layers follow\n", "");
+    let layer = layer("leather.png", 0, 60, "white_n = 0.01\nblack_n = 0");
+    let plain = compile_text(&format!("{head}{layer}")).expect("it compiles");
+    let written = compile_text(&format!("{head}{layer}pitch_mm = 0.25\n")).expect("it compiles");
+    assert_eq!(sizes(&plain), [(240, 240)]);
+    assert_eq!(plain.scene_bytes(), written.scene_bytes());
+    let migrated = crate::migrate(&format!("{head}{layer}"), "test.toml", &*PICTURES).expect("it is migrated");
+    assert!(migrated.contains("pitch_mm = 0.25"), "{migrated}");
+    assert_eq!(sizes(&compile_text(&migrated).expect("it compiles")), sizes(&plain));
+}
+
+#[test]
+fn stretched_levels_use_the_whole_range() {
+    let range = |levels: &str| {
+        let found = program(&layer("wood.jpg", 0, 60, levels));
+        let samples = &found.bitmaps[0].samples;
+        (samples.iter().min().copied().unwrap_or_default(), samples.iter().max().copied().unwrap_or_default())
+    };
+    let (black, white) = range("");
+    assert!(black > 40 && white < 230, "{black} to {white}");
+    assert_eq!(range("levels = \"full\""), (black, white));
+    assert_eq!(range("levels = \"stretch\""), (0, 255));
+    check_note(
+        &program(&layer("wood.jpg", 0, 60, "levels = \"stretch\"")),
+        "wood.jpg: colour turned to grey by luminance, levels ",
+    );
+}
