@@ -348,7 +348,7 @@ fn report_as_json() {
     };
     assert_eq!(
         report(&known).to_json(),
-        "{\"rig\":\"simulator\",\"world\":null,\"finger_seed\":null,\"ticks\":120000,\"unreported_ticks\":480,\
+        "{\"rig\":\"simulator\",\"draft\":false,\"board_refuses\":[],\"world\":null,\"finger_seed\":null,\"ticks\":120000,\"unreported_ticks\":480,\
          \"friction_error_rms_n\":0.001,\"friction_error_max_n\":0.005,\
          \"inversion_error_rms_n\":1e-6,\"inversion_error_max_n\":0.00002,\"carrier_ripple_rms_n\":0.0005,\
          \"finger_origin\":\"assumed\",\"reachable_min_n\":0.25,\"reachable_max_n\":0.275,\"wanted_min_n\":0.25,\"wanted_max_n\":0.27,\
