@@ -236,7 +236,16 @@ fn a_wrong_scene_is_refused_with_file_line_and_cure() {
     ] {
         assert!(scene.contains(from));
         fs::write(folder.path().join("wrong.toml"), scene.replace(from, to)).unwrap();
-        refuse(folder.path(), &["play", "wrong.toml"], &parts);
+        refuse(folder.path(), &["scene", "check", "wrong.toml"], &parts);
+        if from.starts_with("height_mm") {
+            refuse(folder.path(), &["play", "wrong.toml"], &parts);
+            continue;
+        }
+        // What can be read plays as a draft, with the same sentence.
+        let draft = frixel(folder.path(), &["play", "wrong.toml", "--seconds", "0.1", "--out", "draft"]);
+        let said = String::from_utf8(draft.stderr).unwrap();
+        assert!(draft.status.success() && said.starts_with("draft: a board refuses wrong.toml:"), "{said}");
+        assert!(parts.iter().all(|part| said.contains(part)), "{parts:?}: {said}");
     }
     refuse(folder.path(), &["play", "nowhere.toml"], &["nowhere.toml", "cannot be read", "check the path"]);
 }

@@ -294,7 +294,10 @@ fn wrong_input_is_said_as_play_says_it() {
     let message = refused(&["scene", "check", &wrong]);
     assert!(message.contains(":18:8: `kind = \"gratting\"` is not known; did you mean `grating`?\n"), "{message}");
     assert!(message.contains(":21:1: unknown field `friction_nn` in layer 2 (constant); did you mean `friction_n`?"));
-    assert!(refused(&["scene", "check", &empty]).ends_with(":1:1: the scene has no `version`: add it\n"));
+    assert!(
+        refused(&["scene", "check", &empty])
+            .ends_with(":1:1: the scene has no `version`: write `version = 2` at the top\n")
+    );
     assert!(refused(&["scene", "check", &binary]).contains("not UTF-8"));
     assert!(!Path::new(&files.path("map.png")).exists());
 }
