@@ -28,7 +28,7 @@ const UPPER_PART: Region = Region::Rectangle { x_m: 0.0, y_m: 0.0, width_m: 0.12
 const CONSTANT: Layer = Layer::Constant(Constant { electric_friction_n: 0.001 });
 /// More friction than the drive can give; every tick counts as saturated.
 const OUT_OF_REACH: Layer = Layer::Constant(Constant { electric_friction_n: 1.0 });
-/// Ends before the still finger and goes on after it, so that both a click and its end are counted.
+/// Short enough that ticks during the click and ticks after its end are both counted.
 const CLICK: Click = Click { height_n: 0.005, decay_s: 0.05 };
 
 /// One of many regions that the finger never touches, most of them in a grid cell of their own.

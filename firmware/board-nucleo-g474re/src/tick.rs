@@ -3,7 +3,7 @@
 //!
 //! | pin | function | |
 //! |---|---|---|
-//! | PC10 | input, pulled down | amplifier: high while all is well |
+//! | PC10 | input, pulled down | amplifier: high while it is ready |
 //! | PC11 | input, pulled down | arm switch: high while held |
 
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -24,7 +24,7 @@ use crate::owned::Owned;
 use crate::pins::Pin;
 use crate::{period, pins};
 
-const AMPLIFIER_WELL: u32 = 10;
+const AMPLIFIER_READY: u32 = 10;
 const ARM_SWITCH: u32 = 11;
 const BUTTON: u32 = 13;
 
@@ -66,7 +66,7 @@ pub fn start(tick: Tick) {
 
 /// The amplifier behind the one-shot.
 pub fn amplifier(output: Output) -> Amplifier<Output, Pin> {
-    Amplifier::new(output, Pin::input_pulled_down(GPIOC, AMPLIFIER_WELL))
+    Amplifier::new(output, Pin::input_pulled_down(GPIOC, AMPLIFIER_READY))
 }
 
 /// The arm switch.
@@ -76,7 +76,7 @@ pub fn arm_switch() -> ArmSwitch<Pin> {
 
 /// Configures all input pins, and the button of the board, PC13, for bring-up.
 pub fn start_inputs() {
-    pins::input_pulled_down(GPIOC, AMPLIFIER_WELL);
+    pins::input_pulled_down(GPIOC, AMPLIFIER_READY);
     pins::input_pulled_down(GPIOC, ARM_SWITCH);
     pins::input(GPIOC, BUTTON);
 }
@@ -91,9 +91,9 @@ pub fn raise(fault: Fault, detail: u32) {
     FAULT.store(u32::from(fault.number()) << FAULT_SHIFT | detail & ((1 << FAULT_SHIFT) - 1), Ordering::Release);
 }
 
-/// The levels of the inputs: the amplifier is well, and the contact of the arm switch is closed.
+/// The levels of the inputs: the amplifier is ready, and the contact of the arm switch is closed.
 pub fn inputs() -> (bool, bool) {
-    (pins::is_high(GPIOC, AMPLIFIER_WELL), pins::is_high(GPIOC, ARM_SWITCH))
+    (pins::is_high(GPIOC, AMPLIFIER_READY), pins::is_high(GPIOC, ARM_SWITCH))
 }
 
 /// Deadline: the frame for the DAC must begin within [`period::DEADLINE_CYCLES`] of the period, 21.8 us. A tick that

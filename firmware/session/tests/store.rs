@@ -144,7 +144,7 @@ fn a_rotten_copy_gives_way_to_the_older_one_and_is_written_over() {
 }
 
 #[test]
-fn what_does_not_fit_is_not_begun() {
+fn a_scene_larger_than_its_slot_is_not_written() {
     let capacity = SLOT.capacity::<SimulatedFlash>();
     assert!(Writer::new::<SimulatedFlash>(SLOT, None, capacity).is_some());
     assert!(Writer::new::<SimulatedFlash>(SLOT, None, capacity + 1).is_none());

@@ -144,7 +144,7 @@ fn a_table_ends_where_the_header_says() {
 
 /// Above the row that the table ends in, friction is out of reach, and the board says so.
 #[test]
-fn what_is_above_the_end_of_the_table_is_counted_as_saturated() {
+fn friction_above_the_end_of_the_table_is_counted_as_saturated() {
     for (electric_friction_max_n, saturated) in [(None, false), (Some(0.02), false), (Some(0.005), true)] {
         let mut memory = Memory::new();
         let mut board = TestBoard::new(&mut memory);

@@ -16,7 +16,7 @@ pub(super) struct Replicate {
 
 /// A search for the laws that fit observations best.
 pub(super) struct Search<'s> {
-    /// Voltage and load at which friction is stated.
+    /// Operating point at which the profile gives friction.
     pub(super) voltage_v_rms: f64,
     pub(super) normal_load_n: f64,
     pub(super) start: &'s Solution,

@@ -299,7 +299,7 @@ fn vibration(frequency_hz: f64, between_s: std::ops::Range<f64>) -> Vec<FeltRow>
 }
 
 #[test]
-fn what_is_too_fast_to_draw_is_drawn_as_its_envelope() {
+fn a_signal_too_fast_to_draw_is_drawn_as_its_envelope() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("felt.svg");
     let drawn = |frequency_hz: f64| {

@@ -53,7 +53,7 @@ fn the_three_origins_are_read() {
 }
 
 #[test]
-fn what_is_written_reads_back_the_same() {
+fn a_written_profile_reads_back_the_same() {
     for evidence in ["", MEASURED, PERCEPTUAL] {
         for elasticity in [
             "stiffness_pa_per_m = 1e7",

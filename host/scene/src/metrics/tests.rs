@@ -49,7 +49,7 @@ fn rms(values: &[f64]) -> f64 {
 }
 
 #[test]
-fn nothing_gathered_is_absent() {
+fn without_samples_there_is_no_metric() {
     let up = Sample { saturated: Some(true), ..UP };
     let summary = gather(&[up, up]);
     assert_eq!((summary.ticks, summary.finger_down_ticks, summary.saturated_ticks), (2, 0, Some(2)));
@@ -59,7 +59,7 @@ fn nothing_gathered_is_absent() {
 
 /// One sample in 40 ticks, as in a board's telemetry, without the felt friction.
 #[test]
-fn what_needs_every_tick_is_absent_when_some_were_not_seen() {
+fn metrics_that_need_every_tick_are_absent_when_some_are_missing() {
     let mut metrics = Metrics::new(HALF_PERIOD_TICKS);
     for wanted_n in [0.26, 0.27] {
         metrics.add(&Sample { felt_n: None, ..sample(wanted_n, 0.25) });

@@ -152,7 +152,7 @@ fn wrong_types() {
 }
 
 #[test]
-fn coatings_that_are_none() {
+fn invalid_coatings() {
     let slab = "[coating]\nthickness_um = 10\npermittivity = 1\n";
     let first = |coating: &str| HEAD.replace(slab, "").replace("version = 1", &format!("version = 1\n{coating}"));
     assert_eq!(message(&first("coating = []")), "test.toml:1:1: the scene has no `coating`: add it");
@@ -430,7 +430,7 @@ fn sums_are_refused_only_where_a_finger_finds_them() {
 }
 
 #[test]
-fn what_a_layer_hides_is_not_asked_for() {
+fn friction_hidden_by_a_layer_above_needs_no_reach() {
     let cover = "[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\nregion = { x_mm = 10, y_mm = 10, width_mm = 20, height_mm = 20 }";
     let hidden = "[[layer]]\nkind = \"constant\"\nfriction_n = 0.9\nregion = { x_mm = 12, y_mm = 11, width_mm = 3, height_mm = 19 }\n";
     compile_layers(&format!("{hidden}{cover}"));
@@ -584,7 +584,7 @@ fn more_than_a_board_has_room_for() {
 }
 
 #[test]
-fn what_varies_is_refused_by_what_it_may_be() {
+fn a_layer_out_of_reach_is_refused_with_its_range() {
     check_layers(
         "[[layer]]\nkind = \"noise\"\nwavelength_min_mm = 1\nwavelength_max_mm = 2\nlow_n = 0\nhigh_n = 0.03",
         &[(
@@ -776,7 +776,7 @@ fn an_unknown_kind_is_one_line() {
 
 /// Newtons written for millinewtons, and a button's rim with its click.
 #[test]
-fn what_is_out_of_reach_is_answered_by_what_helps() {
+fn messages_about_reach_suggest_the_fix() {
     check_layers(
         "[[layer]]\nkind = \"grating\"\nwavelength_mm = 2\nlow_n = 0\nhigh_n = 20",
         &[(

@@ -104,7 +104,7 @@ fn every_field_has_a_meaning() {
 }
 
 #[test]
-fn what_goes_together_is_told_from_what_does_not() {
+fn the_schema_separates_allowed_from_forbidden_combinations() {
     let layer = |rest: &str| format!("{HEAD}[[layer]]\n{rest}");
     for (text, right) in [
         ("kind = \"grating\"\nwavelength_mm = 2\nlow_n = 0\nhigh_n = 0.01\nwave = \"square\"\nduty = 0.3", true),
