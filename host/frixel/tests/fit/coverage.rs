@@ -137,13 +137,13 @@ fn plants_that_break_the_law_are_refused_or_covered() {
     assert!(caught >= 18, "{caught} of 20");
 }
 
-/// Nine of ten of each law. If 95 % of all are caught, fewer than 90 of 100 are once in 90 sets of seeds; rules that catch
-/// 80 % pass once in 170.
+/// 99 and 100 of 100 are caught. Rules that catch nine of ten plants reach 96 of 100 once in 42 sets of seeds; rules that
+/// catch 99 % miss it once in 290.
 #[test]
 #[ignore = "minutes: cargo xtask soak"]
 fn nine_of_ten_plants_that_break_the_law_are_refused_or_covered() {
     for law in LAWS {
         let caught = caught(law, 100);
-        assert!(caught >= 90, "{law:?}: {caught} of 100");
+        assert!(caught >= 96, "{law:?}: {caught} of 100");
     }
 }
