@@ -4,7 +4,6 @@
 pub mod calibration;
 mod chart;
 pub mod check;
-pub mod felt;
 mod finger_reference;
 pub mod fit;
 pub mod model_csv;

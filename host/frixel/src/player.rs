@@ -6,7 +6,7 @@ use std::time::Duration;
 use frixel_driver::{Bitmap, Counters, Device, DeviceError, Event, Link, Progress, StreamStatus, Upload};
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, TickRecord, WorldError};
 use frixel_layers::Header;
-use frixel_model::ParameterError;
+use frixel_model::{LoadedContact, ParameterError};
 use frixel_scene::Program;
 use frixel_scene::recorder::Recorder;
 use frixel_wire::message::Telemetry;
@@ -252,13 +252,15 @@ pub struct Simulated {
 ///
 /// The program must have been compiled for the limits and the tick rate of the simulation's board.
 pub fn simulate(program: &Program, simulation: &Simulation, feed: Option<Feed>) -> Result<Simulated, PlayError> {
-    simulate_observed(program, simulation, feed, |_| {})
+    simulate_observed(program, simulation, None, feed, |_| {})
 }
 
-/// As [`simulate`], and calls `observer` with every tick of the play.
+/// As [`simulate`], under a finger that is not the program's if there is one, and calls `observer` with every tick of the
+/// play.
 pub(crate) fn simulate_observed(
     program: &Program,
     simulation: &Simulation,
+    own_finger: Option<LoadedContact<f64>>,
     feed: Option<Feed>,
     observer: impl FnMut(&TickRecord),
 ) -> Result<Simulated, PlayError> {
@@ -267,7 +269,10 @@ pub(crate) fn simulate_observed(
     let recorder = Recorder::new(program, &board.limits, board.tick_hz, ticks, simulation.ticks_per_row)
         .map_err(PlayError::Finger)?;
     let mut memory = BoardMemory::new();
-    let rig = Rig::new(&mut memory, &simulation.rig, simulation.stroke.clone(), simulation.seed)?;
+    let mut rig = Rig::new(&mut memory, &simulation.rig, simulation.stroke.clone(), simulation.seed)?;
+    if let Some(contact) = own_finger {
+        rig.world_mut().set_own_finger(contact);
+    }
     let mut player = Player::new(Device::connect(SimLink::new(rig, Recorder::idle()).observed(observer))?, recorder);
     player.start(program, 0, &mut |_| ControlFlow::Continue(()))?;
     if let Some(feed) = feed {

@@ -7,12 +7,14 @@
 
 use std::collections::BTreeMap;
 
-use frixel::felt::{FeltError, felt_error};
-use frixel::player::Simulation;
+use frixel::score::{Trial, fidelity};
 use frixel_hil_sim::{RigConfig, Stroke, TouchConfig};
+use frixel_scene::fidelity::Fidelity;
 use frixel_scene::{Program, Scene, compile};
 
-/// Error below 40 Hz over the reference's swing, correlation, and spurious force between 40 and 400 Hz.
+/// Error below 40 Hz over the reference's swing, correlation, and spurious force between 40 and 400 Hz: a finger's own
+/// noise, measured as 4.5 mN from 10 to 1000 Hz, of which a 1/f spectrum has 3.2 mN from 40 to 400 Hz. The goal is the
+/// larger, until the noise of that band is better known.
 const GOAL: Held = Held { ratio_max: 0.25, correlation_min: 0.9, spurious_max_n: 4.5e-3 };
 const SECONDS: f64 = 8.5;
 /// Swing of the texture: nearly all that the finger below has at 150 V.
@@ -26,10 +28,30 @@ struct Held {
 }
 
 impl Held {
-    fn holds(&self, error: &FeltError) -> bool {
-        error.ratio() <= self.ratio_max
-            && error.correlation >= self.correlation_min
-            && error.spurious_n <= self.spurious_max_n
+    fn holds(&self, felt: &Felt) -> bool {
+        felt.ratio <= self.ratio_max
+            && felt.correlation >= self.correlation_min
+            && felt.spurious_n <= self.spurious_max_n
+    }
+}
+
+/// What was felt on a stroke, or on several: root mean squares and the mean correlation.
+#[derive(Clone, Copy, Debug)]
+struct Felt {
+    ratio: f64,
+    correlation: f64,
+    spurious_n: f64,
+}
+
+impl Felt {
+    fn over(plays: &[Fidelity]) -> Self {
+        let count = plays.len() as f64;
+        let mean = |value: &dyn Fn(&Fidelity) -> f64| plays.iter().map(value).sum::<f64>() / count;
+        Self {
+            ratio: mean(&|play| play.error_below_40_hz.powi(2)).sqrt(),
+            correlation: mean(&|play| play.correlation_below_40_hz),
+            spurious_n: mean(&|play| play.spurious_40_to_400_hz_n.powi(2)).sqrt(),
+        }
     }
 }
 
@@ -47,8 +69,10 @@ const FAST: Class = Class { rate_hz: 500.0, latency_s: 3e-3, wavelength_mm: 2.0 
 
 /// Class, median speed of the stroke in mm/s, and what is held: the goal, or how far it is missed.
 ///
-/// What misses it is latency: at a median of 200 mm/s a hand turns within 50 ms with accelerations of 3 m/s^2, and
-/// 20 ms of these are 0.6 mm. `docs/touch.md` has the bounds: no causal estimate reaches these goals.
+/// What misses it is latency: at a median of 200 mm/s a hand turns within 50 ms with accelerations of 3 m/s^2, and 20 ms
+/// of these are 0.6 mm. At 100 mm/s on an ideal plant, `frixel report` has an error of 0.22 for the board's filter with
+/// 100 reports a second, 0.19 for the best of 15 tunings chosen with hindsight, and 0.06 for a smoother that sees later
+/// reports. No bound has been computed at 200 mm/s.
 const CASES: [(Class, f64, Held); 9] = [
     (SLOW, 50.0, GOAL),
     (SLOW, 100.0, Held { ratio_max: 0.32, spurious_max_n: 5e-3, ..GOAL }),
@@ -89,26 +113,23 @@ fn program(rig: &RigConfig, wavelength_mm: f64) -> Program {
     compile(&scene, &rig.board.limits, rig.board.tick_hz).unwrap()
 }
 
-fn error(class: &Class, speed_mm_s: f64, seed: u64, change: impl FnOnce(&mut Program)) -> FeltError {
+fn play(rig: &RigConfig, program: &Program, speed_mm_s: f64, seed: u64) -> Fidelity {
+    let stroke = Stroke::human(0.12, 0.08, SECONDS, Some(1e-3 * speed_mm_s), seed).unwrap();
+    let trial = Trial { stroke_name: format!("human {seed}"), stroke, seed, finger: None };
+    fidelity(program, rig, &trial).unwrap().unwrap()
+}
+
+fn felt(class: &Class, speed_mm_s: f64, seed: u64, change: impl FnOnce(&mut Program)) -> Felt {
     let rig = rig(class);
     let mut program = program(&rig, class.wavelength_mm);
     change(&mut program);
-    let stroke = Stroke::human(0.12, 0.08, SECONDS + 0.5, Some(1e-3 * speed_mm_s), seed).unwrap();
-    felt_error(&program, &Simulation { rig, stroke, seconds: SECONDS, seed, ticks_per_row: 40_000 }).unwrap()
+    Felt::over(&[play(&rig, &program, speed_mm_s, seed)])
 }
 
-/// Root mean squares and mean correlation over seeds.
-fn mean(class: &Class, speed_mm_s: f64, seeds: std::ops::RangeInclusive<u64>) -> FeltError {
-    let count = seeds.clone().count() as f64;
-    let errors: Vec<FeltError> = seeds.map(|seed| error(class, speed_mm_s, seed, |_| {})).collect();
-    let rms =
-        |value: fn(&FeltError) -> f64| (errors.iter().map(|error| value(error).powi(2)).sum::<f64>() / count).sqrt();
-    FeltError {
-        reference_n: rms(|error| error.reference_n),
-        error_n: rms(|error| error.error_n),
-        correlation: errors.iter().map(|error| error.correlation).sum::<f64>() / count,
-        spurious_n: rms(|error| error.spurious_n),
-    }
+fn mean(class: &Class, speed_mm_s: f64, seeds: std::ops::RangeInclusive<u64>) -> Felt {
+    let rig = rig(class);
+    let program = program(&rig, class.wavelength_mm);
+    Felt::over(&seeds.map(|seed| play(&rig, &program, speed_mm_s, seed)).collect::<Vec<_>>())
 }
 
 fn hold(seeds: &std::ops::RangeInclusive<u64>) {
@@ -119,7 +140,7 @@ fn hold(seeds: &std::ops::RangeInclusive<u64>) {
             "{} Hz, {} mm at {speed_mm_s} mm/s: error {:.2}, correlation {:.3}, spurious {:.1} mN",
             class.rate_hz,
             class.wavelength_mm,
-            found.ratio(),
+            found.ratio,
             found.correlation,
             1e3 * found.spurious_n
         );
@@ -154,8 +175,8 @@ fn tables_of_source_and_feature_size() {
             let cells = [50.0, 100.0, 200.0].map(|speed_mm_s| {
                 let found = mean(&Class { wavelength_mm, ..class }, speed_mm_s, 1..=6);
                 // A mean over seeds is no better than its worst would be good: every number is one.
-                assert!(found.ratio().is_finite() && found.correlation.abs() <= 1.0, "{found:?}");
-                format!("{:.2} / {:.2}, {:.1} mN", found.ratio(), found.correlation, 1e3 * found.spurious_n)
+                assert!(found.ratio.is_finite() && found.correlation.abs() <= 1.0, "{found:?}");
+                format!("{:.2} / {:.2}, {:.1} mN", found.ratio, found.correlation, 1e3 * found.spurious_n)
             });
             println!("| {} Hz | {wavelength_mm} mm | {} |", class.rate_hz, cells.join(" | "));
         }
@@ -168,15 +189,11 @@ fn tables_of_source_and_feature_size() {
     ];
     for (name, change) in changes {
         let ratios = [SLOW, MEDIUM, FAST].map(|class| {
-            let squares = (1..=6).map(|seed| {
-                let mut rig = rig(&class);
-                change(&mut rig.world.touch);
-                let stroke = Stroke::human(0.12, 0.08, SECONDS + 0.5, Some(0.1), seed).unwrap();
-                let program = program(&rig, class.wavelength_mm);
-                let simulation = Simulation { rig, stroke, seconds: SECONDS, seed, ticks_per_row: 40_000 };
-                felt_error(&program, &simulation).unwrap().ratio().powi(2)
-            });
-            format!("{:.2}", (squares.sum::<f64>() / 6.0).sqrt())
+            let mut rig = rig(&class);
+            change(&mut rig.world.touch);
+            let program = program(&rig, class.wavelength_mm);
+            let plays: Vec<Fidelity> = (1..=6).map(|seed| play(&rig, &program, 100.0, seed)).collect();
+            format!("{:.2}", Felt::over(&plays).ratio)
         });
         println!("| {name} | {} |", ratios.join(" | "));
     }
@@ -186,8 +203,8 @@ fn tables_of_source_and_feature_size() {
 #[test]
 fn an_output_forced_to_zero_misses_every_goal() {
     for class in [SLOW, MEDIUM, FAST] {
-        let found = error(&class, 50.0, 1, |program| program.header.voltage_max_v_rms = 1.0);
-        assert!(found.ratio() > 0.9 && !(found.correlation > 0.9), "{found:?}");
+        let found = felt(&class, 50.0, 1, |program| program.header.voltage_max_v_rms = 1.0);
+        assert!(found.ratio > 0.9 && !(found.correlation > 0.9), "{found:?}");
     }
 }
 
@@ -195,8 +212,8 @@ fn an_output_forced_to_zero_misses_every_goal() {
 fn without_prediction_every_goal_is_missed() {
     for class in [SLOW, MEDIUM, FAST] {
         for speed_mm_s in [50.0, 100.0] {
-            let found = error(&class, speed_mm_s, 1, |program| program.header.prediction = false);
-            assert!(found.ratio() > GOAL.ratio_max && !GOAL.holds(&found), "{found:?}");
+            let found = felt(&class, speed_mm_s, 1, |program| program.header.prediction = false);
+            assert!(found.ratio > GOAL.ratio_max && !GOAL.holds(&found), "{found:?}");
         }
     }
 }

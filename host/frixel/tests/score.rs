@@ -24,7 +24,7 @@ fn mean(program: &Program, key: &str) -> f64 {
     let trials: Vec<Trial> = (1..=2)
         .map(|seed| {
             let stroke = Stroke::human(0.12, 0.08, 1.5, Some(0.1), seed).unwrap();
-            Trial { stroke_name: format!("human {seed}"), stroke, seed }
+            Trial { stroke_name: format!("human {seed}"), stroke, seed, finger: None }
         })
         .collect();
     let score = Score::of(program, &RigConfig::default(), &trials).unwrap();
@@ -64,6 +64,30 @@ fn the_command_writes_a_row_for_each_play_and_a_picture() {
     assert_eq!(json["plays"].as_array().unwrap().len(), 4);
     let csv = std::fs::read_to_string(out.path().join("score.csv")).unwrap();
     assert_eq!(csv.lines().count(), 5);
-    assert!(csv.starts_with("stroke,seed,error_below_40_hz,"));
+    assert!(csv.starts_with("person,stroke,seed,error_below_40_hz,"));
     assert!(std::fs::read_to_string(out.path().join("score.svg")).unwrap().contains("simulated"));
+}
+
+/// Each person has a finger and strokes of their own, and the same people come again.
+#[test]
+fn people_differ_and_come_again() {
+    let out = tempfile::tempdir().unwrap();
+    let plays = || {
+        let output = Command::new(env!("CARGO_BIN_EXE_frixel"))
+            .arg("score")
+            .arg(scene())
+            .args(["--people", "3", "--strokes", "1", "--seeds", "2", "--seconds", "0.6", "--json", "--out"])
+            .arg(out.path())
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice::<Value>(&output.stdout).unwrap()
+    };
+    let json = plays();
+    let people: Vec<u64> =
+        json["plays"].as_array().unwrap().iter().filter_map(|play| play["person"].as_u64()).collect();
+    assert_eq!(people, [1, 1, 2, 2, 3, 3]);
+    let contrast = |play: usize| json["plays"][play]["fidelity"]["contrast_weber_steps"].as_f64().unwrap();
+    assert!((contrast(0) - contrast(2)).abs() > 0.05 && (contrast(2) - contrast(4)).abs() > 0.05, "{json}");
+    assert_eq!(json, plays());
 }

@@ -36,7 +36,12 @@ impl Drop for Running {
 /// A virtual board that writes what is felt into `board` of a folder, and its port.
 fn virtual_board(folder: &Path, arguments: &[&str]) -> (Running, String) {
     let mut command = frixel();
-    command.arg("sim").args(arguments).args(["--out", "board"]).current_dir(folder).stdout(Stdio::piped());
+    command
+        .args(["sim", "--ideal"])
+        .args(arguments)
+        .args(["--out", "board"])
+        .current_dir(folder)
+        .stdout(Stdio::piped());
     let mut board = Running(command.spawn().unwrap());
     let mut line = String::new();
     BufReader::new(board.0.stdout.take().unwrap()).read_line(&mut line).unwrap();

@@ -3,7 +3,10 @@
 //! The input is a record of a touch: the friction that the finger felt, and the reference: the friction that a display
 //! without any fault would have given the same finger under the same load, with the same noise. The output is a number
 //! for each property that a person notices. Bands are separated at 40 Hz: below, a person feels friction as it changes
-//! along the way; above, as vibration.
+//! along the way; above, as vibration, whose phase nobody feels.
+//!
+//! Error, correlation, signal to noise, delay, rate and spurious force compare the electric parts of the two: natural
+//! friction is the same in both, and would make any display look faithful. Contrast and Weber fractions are of totals.
 
 use rustfft::num_complex::Complex;
 use serde::Serialize;
@@ -38,10 +41,24 @@ pub struct FidelitySample {
     pub reference_n: f64,
     /// Total friction that the finger felt, N.
     pub felt_n: f64,
+    /// Natural friction, which both have, N.
+    pub natural_n: f64,
+}
+
+impl FidelitySample {
+    /// Electric part of the reference, N.
+    fn reference_electric_n(&self) -> f64 {
+        self.reference_n - self.natural_n
+    }
+
+    /// Electric part of what the finger felt, N.
+    fn felt_electric_n(&self) -> f64 {
+        self.felt_n - self.natural_n
+    }
 }
 
 /// How faithfully friction was felt.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Fidelity {
     /// Rms error below 40 Hz over the rms of the reference, both without their means.
     pub error_below_40_hz: f64,
@@ -63,7 +80,8 @@ pub struct Fidelity {
     pub delay_mm: f64,
     /// 99th percentile of the rate of change of the felt friction over that of the reference.
     pub peak_rate_kept: f64,
-    /// Rms error from 40 to 400 Hz, N: force that the scene does not have.
+    /// What the felt friction has beyond the reference from 40 to 400 Hz, N: the root of the difference of the two
+    /// powers, 0 if it has less. A texture that is out of phase, which nobody feels, is not spurious.
     pub spurious_40_to_400_hz_n: f64,
 }
 
@@ -96,9 +114,9 @@ impl Fidelity {
             contrast_kept: felt_steps / reference_steps,
             delay_ms: 1e3 * delay_s,
             delay_mm: 1e3 * delay_s * speed_m_per_s,
-            peak_rate_kept: peak_rate(&touches, |sample| sample.felt_n)?
-                / peak_rate(&touches, |sample| sample.reference_n)?,
-            spurious_40_to_400_hz_n: (powers.error_high / powers.weight).sqrt(),
+            peak_rate_kept: peak_rate(&touches, FidelitySample::felt_electric_n)?
+                / peak_rate(&touches, FidelitySample::reference_electric_n)?,
+            spurious_40_to_400_hz_n: ((powers.felt_high - powers.reference_high).max(0.0) / powers.weight).sqrt(),
         })
     }
 }
@@ -110,6 +128,7 @@ struct Powers {
     reference_low: f64,
     reference_high: f64,
     felt_low: f64,
+    felt_high: f64,
     error_low: f64,
     /// Square of the mean error, which the spectrum leaves out.
     error_mean: f64,
@@ -124,8 +143,8 @@ impl Powers {
     fn add(&mut self, touch: &[FidelitySample]) {
         let spectrum =
             |value: fn(&FidelitySample) -> f64| Spectrum::of(&touch.iter().map(value).collect::<Vec<f64>>(), SAMPLE_HZ);
-        let reference = spectrum(|sample| sample.reference_n);
-        let felt = spectrum(|sample| sample.felt_n);
+        let reference = spectrum(FidelitySample::reference_electric_n);
+        let felt = spectrum(FidelitySample::felt_electric_n);
         let error = spectrum(|sample| sample.felt_n - sample.reference_n);
         let weight = touch.len() as f64;
         let border = (BAND_BORDER_HZ / reference.bin_hz) as usize;
@@ -137,6 +156,7 @@ impl Powers {
         self.reference_low += sum(&reference, 0, border);
         self.reference_high += sum(&reference, border, end);
         self.felt_low += sum(&felt, 0, border);
+        self.felt_high += sum(&felt, border, end);
         self.error_low += sum(&error, 0, border);
         let mean_n = touch.iter().map(|sample| sample.felt_n - sample.reference_n).sum::<f64>() / weight;
         self.error_mean += weight * mean_n * mean_n;
@@ -186,7 +206,7 @@ mod tests {
         let sample = |number: u32| {
             let t_s = f64::from(number) / SAMPLE_HZ;
             let finger = FingerState { speed_m_per_s: SPEED_M_PER_S, ..FingerState::default() };
-            FidelitySample { finger: Some(finger), reference_n: grating_n(t_s), felt_n: felt_n(t_s) }
+            FidelitySample { finger: Some(finger), reference_n: grating_n(t_s), felt_n: felt_n(t_s), natural_n: 0.3 }
         };
         Fidelity::of(&(0..8000).map(sample).collect::<Vec<_>>()).unwrap()
     }
@@ -231,6 +251,36 @@ mod tests {
         let fidelity = scored(|t_s| grating_n(t_s) + 0.004 * libm::sin(TAU * 150.0 * t_s));
         assert!((fidelity.spurious_40_to_400_hz_n / (0.004 / 2.0_f64.sqrt()) - 1.0).abs() < 0.01, "{fidelity:?}");
         assert!(fidelity.error_below_40_hz < 1e-3, "{fidelity:?}");
+    }
+
+    /// The same texture of 150 Hz, a quarter of a period late: nobody feels its phase.
+    #[test]
+    fn a_texture_out_of_phase_is_an_error_and_not_spurious() {
+        let texture = |number: u32, late: f64| 0.004 * libm::sin(TAU * (150.0 * f64::from(number) / SAMPLE_HZ - late));
+        let sample = |number: u32| FidelitySample {
+            finger: Some(FingerState { speed_m_per_s: SPEED_M_PER_S, ..FingerState::default() }),
+            reference_n: 0.3 + texture(number, 0.0),
+            felt_n: 0.3 + texture(number, 0.25),
+            natural_n: 0.3,
+        };
+        let fidelity = Fidelity::of(&(0..8000).map(sample).collect::<Vec<_>>()).unwrap();
+        assert!(fidelity.spurious_40_to_400_hz_n < 1e-4, "{fidelity:?}");
+        assert!((fidelity.snr_above_40_hz_db + 3.01).abs() < 0.1, "{fidelity:?}");
+    }
+
+    /// Natural friction that changes by more than the grating, which a display without output does not take part in.
+    #[test]
+    fn natural_friction_makes_no_display_look_faithful() {
+        let sample = |number: u32| {
+            let t_s = f64::from(number) / SAMPLE_HZ;
+            let natural_n = 0.3 + 0.1 * libm::sin(TAU * 3.0 * t_s);
+            let finger = FingerState { speed_m_per_s: SPEED_M_PER_S, ..FingerState::default() };
+            let reference_n = natural_n + grating_n(t_s) - 0.3;
+            FidelitySample { finger: Some(finger), reference_n, felt_n: natural_n, natural_n }
+        };
+        let fidelity = Fidelity::of(&(0..8000).map(sample).collect::<Vec<_>>()).unwrap();
+        assert!((fidelity.error_below_40_hz - 1.0).abs() < 1e-9, "{fidelity:?}");
+        assert!(fidelity.correlation_below_40_hz.is_nan(), "{fidelity:?}");
     }
 
     #[test]

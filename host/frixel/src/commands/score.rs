@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use frixel::score::{Score, Trial, write_score_svg};
-use frixel_hil_sim::{RigConfig, Stroke};
-use frixel_scene::{Program, compile};
+use frixel::score::{Score, Trial, TrialFinger, write_score_svg};
+use frixel_hil_sim::{Person, RigConfig, Stroke};
+use frixel_scene::{Program, Scene, compile};
 
 use super::argument::number;
 use super::error::CommandError;
@@ -23,7 +23,11 @@ pub(super) struct ScoreArgs {
     /// `t_s,x_mm,y_mm`.
     #[arg(long, default_value = "human", value_name = "human|natural|FILE.csv")]
     stroke: String,
-    /// Number of human strokes.
+    /// Play under the fingers of so many people, drawn from an assumed population, whom the board does not know; each
+    /// makes strokes of their own. Without it, the finger is the scene's.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
+    people: Option<u64>,
+    /// Number of human strokes, of each person.
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u64).range(1..=1000))]
     strokes: u64,
     /// Repetitions of each stroke, each with its own noise seed.
@@ -76,8 +80,15 @@ impl TouchSource {
 
 pub(super) fn run(args: &ScoreArgs) -> Result<(), CommandError> {
     let rig = rig(args);
-    let program = compile(&args.profiles.names().load(&args.scene)?, &rig.board.limits, rig.board.tick_hz)?;
-    let trials = trials(args, &program)?;
+    let scene = args.profiles.names().load(&args.scene)?;
+    let program = compile(&scene, &rig.board.limits, rig.board.tick_hz)?;
+    let trials = match args.people {
+        None => trials(args, &program, None)?,
+        Some(people) => {
+            let of_person = |person: u64| trials(args, &program, Some(finger(args, &scene, person)?));
+            (1..=people).map(of_person).collect::<Result<Vec<_>, CommandError>>()?.concat()
+        }
+    };
     let score = Score::of(&program, &rig, &trials).map_err(|error| CommandError::of_play("sim", error))?;
     std::fs::create_dir_all(&args.out).map_err(CommandError::writing(&args.out))?;
     let (csv, svg) = (args.out.join("score.csv"), args.out.join("score.svg"));
@@ -103,15 +114,27 @@ fn rig(args: &ScoreArgs) -> RigConfig {
         rig.world = rig.world.natural();
     }
     (rig.world.touch.rate_hz, rig.world.touch.latency_s) = args.touch.rate_and_latency();
-    rig.board.limits.touch_report_period_s = (1.0 / rig.world.touch.rate_hz) as f32;
+    // The board's limit for the time between two reports stays that of the slowest class, 10 ms: a fast source that loses
+    // reports would otherwise turn the output off (docs/touch.md).
     rig
 }
 
-/// Every stroke with every seed.
-fn trials(args: &ScoreArgs, program: &Program) -> Result<Vec<Trial>, CommandError> {
+/// The finger of a person on the screen of a scene. A scene of version 1 has none without its own finger's skin.
+fn finger(args: &ScoreArgs, scene: &Scene, person: u64) -> Result<TrialFinger, CommandError> {
+    let coating_gap_m = 1e-6 * scene.screen_without_skin()?.coating_gap_um();
+    let drawn = Person::drawn(person);
+    let contact = drawn.contact(coating_gap_m).map_err(CommandError::Finger)?;
+    Ok(TrialFinger { person, contact, fingertip: (!args.ideal).then_some(drawn.fingertip) })
+}
+
+/// Every stroke with every seed, by one finger. Each person makes strokes of their own.
+fn trials(args: &ScoreArgs, program: &Program, finger: Option<TrialFinger>) -> Result<Vec<Trial>, CommandError> {
+    let first_stroke = finger.map_or(1, |finger| 1 + (finger.person - 1) * args.strokes);
     let screen_m = (f64::from(program.header.screen_width_m), f64::from(program.header.screen_height_m));
     let strokes: Vec<(String, Stroke)> = match args.stroke.as_str() {
-        "human" => (1..=args.strokes).map(|seed| human(args, screen_m, seed)).collect::<Result<_, _>>()?,
+        "human" => (first_stroke..first_stroke + args.strokes)
+            .map(|seed| human(args, screen_m, seed))
+            .collect::<Result<_, _>>()?,
         "natural" => {
             let stroke = Stroke::natural(screen_m.0, screen_m.1, args.seconds).map_err(CommandError::NaturalStroke)?;
             vec![("natural".to_owned(), stroke)]
@@ -119,7 +142,12 @@ fn trials(args: &ScoreArgs, program: &Program) -> Result<Vec<Trial>, CommandErro
         file => vec![("file".to_owned(), stroke::from_file(Path::new(file))?)],
     };
     let trials = strokes.into_iter().flat_map(|(stroke_name, stroke)| {
-        (1..=args.seeds).map(move |seed| Trial { stroke_name: stroke_name.clone(), stroke: stroke.clone(), seed })
+        (1..=args.seeds).map(move |seed| Trial {
+            stroke_name: stroke_name.clone(),
+            stroke: stroke.clone(),
+            seed,
+            finger,
+        })
     });
     Ok(trials.collect())
 }

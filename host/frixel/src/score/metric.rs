@@ -6,8 +6,9 @@ use frixel_scene::fidelity::Fidelity;
 use frixel_scene::perception::{NATURAL_NOISE_RMS_N, weber_steps_safe};
 use serde::Serialize;
 
-/// Number of standard errors on either side of a mean in its interval: 95 % for many plays.
-const STANDARD_ERRORS: f64 = 1.96;
+/// Number of standard errors on either side of a mean in its 95 % interval, by the number of independent values less one:
+/// Student's t, from 1 to 10.
+const STANDARD_ERRORS: [f64; 10] = [12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228];
 
 /// A number of [`Fidelity`].
 pub(super) struct Metric {
@@ -38,9 +39,9 @@ pub struct MetricScore {
     pub title: &'static str,
     /// Unit of all values; empty for a ratio.
     pub unit: &'static str,
-    /// Mean over the plays.
+    /// Mean over the people, or over the strokes of the scene's finger, of the mean over the plays of each.
     pub mean: f64,
-    /// 95 % interval of the mean over plays like these; absent with a single play.
+    /// 95 % interval of the mean over people, or strokes, like these; absent with a single one.
     pub interval: Option<[f64; 2]>,
     /// What a person notices; absent where it is not known.
     pub human: Option<Human>,
@@ -62,14 +63,17 @@ impl Metric {
         self.factor * (self.value)(fidelity)
     }
 
-    /// The number over plays; `None` without a play in which it exists.
-    pub(super) fn score(&self, plays: &[Fidelity]) -> Option<MetricScore> {
-        let values = plays.iter().map(|play| self.of(play));
-        let values: Vec<f64> = values.filter(|value| value.is_finite()).collect();
+    /// The number over groups of plays, each independent of the others; `None` without a play in which it exists.
+    pub(super) fn score(&self, groups: &[Vec<Fidelity>]) -> Option<MetricScore> {
+        let mean_of = |group: &Vec<Fidelity>| {
+            let values: Vec<f64> = group.iter().map(|play| self.of(play)).filter(|value| value.is_finite()).collect();
+            (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+        };
+        let values: Vec<f64> = groups.iter().filter_map(mean_of).collect();
         let count = values.len() as f64;
         let mean = values.iter().sum::<f64>() / count;
         let variance = values.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / (count - 1.0);
-        let half = STANDARD_ERRORS * (variance / count).sqrt();
+        let half = standard_errors(values.len()) * (variance / count).sqrt();
         (count > 0.0).then(|| MetricScore {
             key: self.key,
             title: self.title,
@@ -79,6 +83,17 @@ impl Metric {
             human: (self.human)(),
         })
     }
+}
+
+/// Half of the 95 % interval of a mean of so many values, in standard errors.
+fn standard_errors(count: usize) -> f64 {
+    let freedom = count.saturating_sub(1);
+    // Beyond the table, the first terms of the expansion about the normal distribution, to 0.2 %.
+    let expanded = |freedom: usize| 1.96 + 2.372 / freedom as f64 + 2.8 / (freedom * freedom) as f64;
+    freedom
+        .checked_sub(1)
+        .and_then(|index| STANDARD_ERRORS.get(index).copied())
+        .unwrap_or_else(|| expanded(freedom.max(1)))
 }
 
 pub(super) const METRICS: [Metric; 11] = [
@@ -131,3 +146,34 @@ pub(super) const METRICS: [Metric; 11] = [
         })
     },
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plays(errors: &[f64]) -> Vec<Fidelity> {
+        let play = |error: &f64| Fidelity { error_below_40_hz: *error, ..Fidelity::default() };
+        errors.iter().map(play).collect()
+    }
+
+    /// Seeds of a stroke that are all alike say as much as one.
+    #[test]
+    fn the_stroke_is_the_unit_of_an_interval() {
+        let score = |groups: &[Vec<Fidelity>]| METRICS[0].score(groups).unwrap();
+        let once = score(&[plays(&[0.1]), plays(&[0.3])]);
+        let often = score(&[plays(&[0.1; 20]), plays(&[0.3; 20])]);
+        assert!((once.mean - 0.2).abs() < 1e-12 && (often.mean - 0.2).abs() < 1e-12);
+        // The mean of two has a standard error of 0.1, and t is 12.7.
+        let [low, high] = often.interval.unwrap();
+        assert!((high - low - 2.0 * 12.706 * 0.1).abs() < 1e-9, "{low} to {high}");
+        assert_eq!(score(&[plays(&[0.1; 20])]).interval, None);
+    }
+
+    #[test]
+    fn students_t_has_no_step_at_the_end_of_its_table() {
+        let true_values = [(12, 2.201), (21, 2.086), (31, 2.042), (101, 1.984)];
+        for (count, t) in true_values {
+            assert!((standard_errors(count) / t - 1.0).abs() < 2e-3, "{count}: {}", standard_errors(count));
+        }
+    }
+}

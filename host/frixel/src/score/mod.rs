@@ -7,7 +7,8 @@ mod metric;
 mod output;
 mod play;
 
-use frixel_hil_sim::{RigConfig, Stroke};
+use frixel_hil_sim::{FingertipConfig, RigConfig, Stroke, WorldConfig};
+use frixel_model::LoadedContact;
 use frixel_scene::Program;
 use frixel_scene::fidelity::Fidelity;
 use serde::Serialize;
@@ -26,11 +27,34 @@ pub struct Trial {
     pub stroke: Stroke,
     /// Seed of all that is random in the world.
     pub seed: u64,
+    /// The finger, if it is not the one that the scene is meant for.
+    pub finger: Option<TrialFinger>,
+}
+
+/// A person's finger on the screen of a scene.
+#[derive(Clone, Copy, Debug)]
+pub struct TrialFinger {
+    /// Number of the person.
+    pub person: u64,
+    /// Contact of the finger with the screen.
+    pub contact: LoadedContact<f64>,
+    /// What the finger does beside the contact model; absent in an ideal world.
+    pub fingertip: Option<FingertipConfig>,
+}
+
+impl Trial {
+    /// The world of this trial.
+    fn world(&self, world: WorldConfig) -> WorldConfig {
+        let fingertip = self.finger.and_then(|finger| finger.fingertip).unwrap_or(world.fingertip);
+        WorldConfig { fingertip, ..world }
+    }
 }
 
 /// The score of one play.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TrialScore {
+    /// Number of the person whose finger it was; absent for the finger that the scene is meant for.
+    pub person: Option<u64>,
     /// Name of the stroke.
     pub stroke: String,
     /// Seed of all that was random.
@@ -52,11 +76,32 @@ impl Score {
     /// Plays a program on a simulated board once for each trial, and scores it.
     pub fn of(program: &Program, rig: &RigConfig, trials: &[Trial]) -> Result<Self, PlayError> {
         let play = |trial: &Trial| {
-            let fidelity = Fidelity::of(&play::samples(program, rig, trial)?);
-            Ok(TrialScore { stroke: trial.stroke_name.clone(), seed: trial.seed, fidelity })
+            let person = trial.finger.map(|finger| finger.person);
+            let fidelity = fidelity(program, rig, trial)?;
+            Ok(TrialScore { person, stroke: trial.stroke_name.clone(), seed: trial.seed, fidelity })
         };
         let plays: Vec<TrialScore> = trials.iter().map(play).collect::<Result<_, PlayError>>()?;
-        let scored: Vec<Fidelity> = plays.iter().filter_map(|play| play.fidelity).collect();
-        Ok(Self { metrics: METRICS.iter().filter_map(|metric| metric.score(&scored)).collect(), plays })
+        let groups = independent(&plays);
+        Ok(Self { metrics: METRICS.iter().filter_map(|metric| metric.score(&groups)).collect(), plays })
     }
+}
+
+/// Plays a program on a simulated board, and scores it; `None` if the finger was down for less than a quarter of a second.
+pub fn fidelity(program: &Program, rig: &RigConfig, trial: &Trial) -> Result<Option<Fidelity>, PlayError> {
+    Ok(Fidelity::of(&play::samples(program, rig, trial)?))
+}
+
+/// The plays in groups that are independent of one another: those of a person, or else those of a stroke. Seeds of the
+/// same stroke, and strokes of the same finger, resemble one another.
+fn independent(plays: &[TrialScore]) -> Vec<Vec<Fidelity>> {
+    let mut groups: Vec<(Option<u64>, Option<&str>, Vec<Fidelity>)> = Vec::new();
+    for play in plays {
+        let Some(fidelity) = play.fidelity else { continue };
+        let stroke = if play.person.is_some() { None } else { Some(play.stroke.as_str()) };
+        match groups.iter_mut().find(|(person, other, _)| (*person, *other) == (play.person, stroke)) {
+            Some((.., group)) => group.push(fidelity),
+            None => groups.push((play.person, stroke, vec![fidelity])),
+        }
+    }
+    groups.into_iter().map(|(.., group)| group).collect()
 }

@@ -28,13 +28,14 @@ impl Score {
     /// A row for each play, with the numbers in the units of the table.
     pub fn to_csv(&self) -> String {
         let keys: Vec<&str> = METRICS.iter().map(Metric::key).collect();
-        let mut text = format!("stroke,seed,{}\n", keys.join(","));
+        let mut text = format!("person,stroke,seed,{}\n", keys.join(","));
         for play in &self.plays {
             let value =
                 |metric: &Metric| play.fidelity.map_or(String::new(), |fidelity| metric.of(&fidelity).to_string());
             let values: Vec<String> = METRICS.iter().map(value).collect();
             // Writing to a string cannot fail.
-            let _ = writeln!(text, "{},{},{}", play.stroke, play.seed, values.join(","));
+            let person = play.person.map_or(String::new(), |person| person.to_string());
+            let _ = writeln!(text, "{person},{},{},{}", play.stroke, play.seed, values.join(","));
         }
         text
     }

@@ -20,7 +20,10 @@ pub(super) fn samples(program: &Program, rig: &RigConfig, trial: &Trial) -> Resu
         ticks_per_row: u32::MAX,
     };
     let mut sampler = Sampler::new(program, rig.board.tick_hz);
-    simulate_observed(program, &simulation, None, |record| sampler.add(record))?;
+    let rig = RigConfig { world: trial.world(rig.world), ..*rig };
+    let simulation = Simulation { rig, ..simulation };
+    let own_finger = trial.finger.map(|finger| finger.contact);
+    simulate_observed(program, &simulation, own_finger, None, |record| sampler.add(record))?;
     Ok(sampler.samples)
 }
 
@@ -54,6 +57,7 @@ impl Sampler {
         self.is_tracked = felt.finger.is_some() && (self.is_tracked || has_finger);
         self.sum.reference_n += reference_n;
         self.sum.felt_n += felt.friction_n;
+        self.sum.natural_n += felt.natural_friction_n;
         self.ticks += 1;
         if self.ticks == self.ticks_per_sample {
             let ticks = f64::from(self.ticks);
@@ -62,8 +66,9 @@ impl Sampler {
                 y_m: finger.y_m,
                 speed_m_per_s: finger.speed_m_per_s,
             });
-            let (reference_n, felt_n) = (self.sum.reference_n / ticks, self.sum.felt_n / ticks);
-            self.samples.push(FidelitySample { finger, reference_n, felt_n });
+            let FidelitySample { reference_n, felt_n, natural_n, .. } = self.sum;
+            let [reference_n, felt_n, natural_n] = [reference_n, felt_n, natural_n].map(|sum_n| sum_n / ticks);
+            self.samples.push(FidelitySample { finger, reference_n, felt_n, natural_n });
             (self.ticks, self.sum) = (0, FidelitySample::default());
         }
     }

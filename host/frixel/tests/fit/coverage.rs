@@ -95,6 +95,8 @@ fn intervals_cover_over_200_people() {
     let tally = people(0..MANY);
     tally.print("200 people");
     assert!((0.90..=0.98).contains(&tally.share(tally.electric)), "{}", tally.share(tally.electric));
+    // Wider than 95 %: it allows for a wander over minutes that this simulator does not have.
+    assert!(tally.share(tally.coefficient) >= 0.90, "{}", tally.share(tally.coefficient));
     assert!(tally.reasons.len() as u64 <= MANY / 5, "{:#?}", tally.reasons);
 }
 
@@ -102,26 +104,46 @@ fn intervals_cover_over_200_people() {
 fn intervals_cover_and_are_not_too_wide() {
     let tally = people(0..FEW);
     tally.print("a few people");
-    // Of 24 intervals of 95 %, fewer than 20 contain the truth once in 170 sets.
-    assert!(tally.electric + tally.reasons.len() >= 20, "{tally:#?}");
     assert!(tally.reasons.len() as u64 <= FEW / 5, "{:#?}", tally.reasons);
+    // Of the people who are fitted, all but four: of 24 intervals of 95 %, five or more miss the truth once in 170 sets.
+    for (what, count) in [("electric friction", tally.electric), ("friction coefficient", tally.coefficient)] {
+        assert!(tally.fitted - count <= 4, "{what}: {count} of {}: {tally:#?}", tally.fitted);
+    }
     // An interval that is always right because it is wide says nothing: half-widths are about twice the errors' rms.
     let rms = (tally.errors.iter().map(|error| error * error).sum::<f64>() / tally.fitted as f64).sqrt();
     let width = tally.widths.iter().sum::<f64>() / tally.fitted as f64;
     assert!((1.3..3.5).contains(&(width / rms)), "{width} over {rms}");
 }
 
+/// Plants whose electric friction is a square of the voltage, with two exponents of the load.
+const LAWS: [Law; 2] = [Law::Power { voltage: 2.0, load: 0.5 }, Law::Power { voltage: 2.0, load: 1.0 }];
+
+/// How many plants that break the law are refused, or have an interval that contains the truth.
+fn caught(law: Law, count: u64) -> usize {
+    let mut tally = Tally::default();
+    for seed in 0..count {
+        let person = person::Person { law, ..person::Person::drawn(seed) };
+        tally.add(fit(person.record(&Protocol::default()), &settings()), |load_n| person.truth(load_n));
+    }
+    tally.print(&format!("{law:?}"));
+    tally.reasons.len() + tally.electric
+}
+
+/// 19 of these 20 are caught. If 95 % of all are, fewer than 18 of 20 are in one set of seeds in 13; rules that catch
+/// 70 % pass once in 28.
 #[test]
 fn plants_that_break_the_law_are_refused_or_covered() {
-    for law in [Law::Power { voltage: 2.0, load: 0.5 }, Law::Power { voltage: 2.0, load: 1.0 }] {
-        let mut tally = Tally::default();
-        for seed in 0..10 {
-            let person = person::Person { law, ..person::Person::drawn(seed) };
-            tally.add(fit(person.record(&Protocol::default()), &settings()), |load_n| person.truth(load_n));
-        }
-        tally.print(&format!("{law:?}"));
-        // Most have enough electric friction to show the law; the others are close to a square law in the model too.
-        assert!(tally.reasons.len() >= 5, "{tally:#?}");
-        assert!(tally.fitted - tally.electric <= 1, "{tally:#?}");
+    let caught: usize = LAWS.into_iter().map(|law| caught(law, 10)).sum();
+    assert!(caught >= 18, "{caught} of 20");
+}
+
+/// 99 and 100 of 100 are caught. Rules that catch nine of ten plants reach 96 of 100 once in 42 sets of seeds; rules that
+/// catch 99 % miss it once in 290.
+#[test]
+#[ignore = "minutes: cargo xtask soak"]
+fn nine_of_ten_plants_that_break_the_law_are_refused_or_covered() {
+    for law in LAWS {
+        let caught = caught(law, 100);
+        assert!(caught >= 96, "{law:?}: {caught} of 100");
     }
 }

@@ -169,7 +169,7 @@ fn of_layer(layer: usize, reference: &Reference, program: &Program) -> Option<La
     let contrast = contrasts.max_by(|one, other| one.contrast_n.total_cmp(&other.contrast_n))?;
     let textures = SPEEDS_M_PER_S.into_iter().zip(&slides_n).filter_map(|(speed_m_per_s, frictions_n)| {
         let textures = frictions_n.iter().filter_map(|friction_n| Texture::of(friction_n, speed_m_per_s));
-        textures.max_by(|one, other| one.amplitude_n.total_cmp(&other.amplitude_n))
+        textures.max_by(|one, other| one.salience().total_cmp(&other.salience()))
     });
     let all_n = usual_n.concat();
     let mean_n = all_n.iter().sum::<f64>() / all_n.len() as f64;
@@ -183,10 +183,16 @@ fn of_layer(layer: usize, reference: &Reference, program: &Program) -> Option<La
 }
 
 impl Texture {
+    /// How far it is above the threshold.
+    fn salience(&self) -> f64 {
+        spectrum::salience_of(self.amplitude_n, self.threshold_n)
+    }
+
     fn of(friction_n: &[f64], speed_m_per_s: f64) -> Option<Self> {
-        let component = spectrum::most_noticeable(friction_n, SAMPLE_HZ)?;
-        let (speed_mm_per_s, frequency_hz) = (1e3 * speed_m_per_s, component.frequency_hz);
-        let amplitude_n = component.amplitude * lag_gain(speed_mm_per_s / frequency_hz);
+        let speed_mm_per_s = 1e3 * speed_m_per_s;
+        let behind_lag = |frequency_hz: f64| lag_gain(speed_mm_per_s / frequency_hz);
+        let component = spectrum::most_noticeable(friction_n, SAMPLE_HZ, behind_lag)?;
+        let (frequency_hz, amplitude_n) = (component.frequency_hz, component.amplitude);
         (amplitude_n >= AMPLITUDE_MIN_N).then(|| Self {
             speed_mm_per_s,
             frequency_hz,

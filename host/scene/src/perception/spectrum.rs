@@ -20,10 +20,10 @@ pub(super) struct Component {
     pub(super) amplitude: f64,
 }
 
-/// The component that exceeds the threshold of touch by the largest factor; where no frequency has a threshold, the
-/// component of the largest amplitude. `None` for a signal that is too short or has nothing above
+/// The component that exceeds the threshold of touch by the largest factor after `gain`, a factor by frequency in Hz,
+/// which its amplitude contains; where no frequency has a threshold, the component of the largest amplitude. `None` for a signal that is too short or has nothing above
 /// [`TEXTURE_MIN_HZ`].
-pub(super) fn most_noticeable(samples: &[f64], sample_hz: f64) -> Option<Component> {
+pub(super) fn most_noticeable(samples: &[f64], sample_hz: f64, gain: impl Fn(f64) -> f64) -> Option<Component> {
     if samples.len() < SAMPLES_MIN {
         return None;
     }
@@ -40,7 +40,8 @@ pub(super) fn most_noticeable(samples: &[f64], sample_hz: f64) -> Option<Compone
     let components = peaks.map(|bin| {
         let around = around(bin, power.len());
         let sum = cumulative.get(around.end).zip(cumulative.get(around.start)).map_or(0.0, |(to, from)| to - from);
-        Component { frequency_hz: bin as f64 * bin_hz, amplitude: (2.0 * sum.max(0.0)).sqrt() }
+        let frequency_hz = bin as f64 * bin_hz;
+        Component { frequency_hz, amplitude: gain(frequency_hz) * (2.0 * sum.max(0.0)).sqrt() }
     });
     components.max_by(|one, other| salience(one).total_cmp(&salience(other)))
 }
@@ -54,8 +55,12 @@ fn around(bin: usize, bins: usize) -> Range<usize> {
 
 /// How far a component is above the threshold; components without a threshold come after all others.
 fn salience(component: &Component) -> f64 {
-    texture_threshold_n(component.frequency_hz)
-        .map_or_else(|| 1e-6 * component.amplitude, |threshold_n| component.amplitude / threshold_n)
+    salience_of(component.amplitude, texture_threshold_n(component.frequency_hz))
+}
+
+/// How far an amplitude is above its threshold, to compare textures by.
+pub(super) fn salience_of(amplitude_n: f64, threshold_n: Option<f64>) -> f64 {
+    threshold_n.map_or_else(|| 1e-6 * amplitude_n, |threshold_n| amplitude_n / threshold_n)
 }
 
 /// Whether a bin has the most power of its component.
@@ -81,7 +86,7 @@ mod tests {
     #[test]
     fn a_sine_has_its_frequency_and_amplitude() {
         for (count, hz) in [(4000, 40.0), (1000, 63.0), (700, 211.0)] {
-            let component = most_noticeable(&sines(count, &[(hz, 0.02)]), SAMPLE_HZ).unwrap();
+            let component = most_noticeable(&sines(count, &[(hz, 0.02)]), SAMPLE_HZ, |_| 1.0).unwrap();
             assert!((component.frequency_hz - hz).abs() <= SAMPLE_HZ / count as f64, "{component:?}");
             assert!((component.amplitude / 0.02 - 1.0).abs() < 0.02, "{component:?}");
         }
@@ -89,15 +94,25 @@ mod tests {
 
     #[test]
     fn the_component_that_is_felt_best_wins_over_a_larger_one() {
-        let component = most_noticeable(&sines(4000, &[(12.0, 0.01), (200.0, 0.004)]), SAMPLE_HZ).unwrap();
+        let component = most_noticeable(&sines(4000, &[(12.0, 0.01), (200.0, 0.004)]), SAMPLE_HZ, |_| 1.0).unwrap();
         assert!((component.frequency_hz - 200.0).abs() < 1.0, "{component:?}");
+    }
+
+    /// The gain takes from 200 Hz what made it more noticeable than 40 Hz.
+    #[test]
+    fn what_is_most_noticeable_is_judged_behind_the_gain() {
+        let both = sines(4000, &[(40.0, 0.02), (200.0, 0.004)]);
+        let ahead = most_noticeable(&both, SAMPLE_HZ, |_| 1.0).unwrap();
+        assert!((ahead.frequency_hz - 200.0).abs() < 1.0, "{ahead:?}");
+        let behind = most_noticeable(&both, SAMPLE_HZ, |hz| if hz > 100.0 { 1e-3 } else { 0.5 }).unwrap();
+        assert!((behind.frequency_hz - 40.0).abs() < 1.0 && (behind.amplitude - 0.01).abs() < 1e-4, "{behind:?}");
     }
 
     #[test]
     fn slow_changes_constants_and_short_signals_have_no_component() {
-        assert_eq!(most_noticeable(&vec![0.25; 4000], SAMPLE_HZ), None);
-        assert_eq!(most_noticeable(&sines(63, &[(200.0, 0.02)]), SAMPLE_HZ), None);
-        let slow = most_noticeable(&sines(4000, &[(2.0, 0.02)]), SAMPLE_HZ);
+        assert_eq!(most_noticeable(&vec![0.25; 4000], SAMPLE_HZ, |_| 1.0), None);
+        assert_eq!(most_noticeable(&sines(63, &[(200.0, 0.02)]), SAMPLE_HZ, |_| 1.0), None);
+        let slow = most_noticeable(&sines(4000, &[(2.0, 0.02)]), SAMPLE_HZ, |_| 1.0);
         assert!(slow.is_none_or(|component| component.amplitude < 1e-6), "{slow:?}");
     }
 }

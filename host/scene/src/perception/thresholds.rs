@@ -1,4 +1,5 @@
-//! Numbers about what fingers feel, with their sources.
+//! Numbers about what fingers feel, with their sources. Those quoted from memory say so, and are to be checked before
+//! anyone builds on them; `docs/truth.md` lists them.
 
 use serde::Serialize;
 
@@ -36,7 +37,7 @@ const DISPLACEMENT_THRESHOLD_UM: [(f64, f64); 8] =
 /// Stiffness of a fingertip against tangential motion, N/m (Wiertlewski and Hayward 2012,
 /// doi:10.1016/j.jbiomech.2012.05.045). Quoted from memory.
 const TANGENTIAL_STIFFNESS_N_PER_M: f64 = 1.0e3;
-/// Damping of a fingertip against tangential motion, N s/m. Same source.
+/// Damping of a fingertip against tangential motion, N s/m. Same source, quoted from memory too.
 const TANGENTIAL_DAMPING_N_S_PER_M: f64 = 1.5;
 
 /// Factor by which the threshold may be wrong in either direction: people differ by a factor of 2, and the thresholds

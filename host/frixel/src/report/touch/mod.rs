@@ -6,15 +6,18 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use frixel_hil_sim::{Stroke, TouchConfig, TouchReport, World, WorldConfig};
+use frixel_scene::fidelity::{self, Fidelity, FidelitySample};
+use frixel_scene::recorder::FingerState;
 
 use super::ReportError;
-use crate::felt::{FeltError, SAMPLE_HZ};
 pub(super) use filters::{Filter, Path, best_of_grid, methods};
 
 /// Ticks a second of the recorded world. A report's time is as exact as a tick.
 const TICK_HZ: u32 = 8_000;
+/// Samples a second.
+const SAMPLE_HZ: u32 = fidelity::SAMPLE_HZ as u32;
 /// Samples that are compared, and time before them.
-const SAMPLES: usize = 1 << 14;
+const SAMPLES: usize = 1 << 15;
 const SETTLING_S: f64 = 0.4;
 /// Swing of the texture, in N.
 const SWING_N: f64 = 0.11;
@@ -69,8 +72,13 @@ impl Recording {
         let texture =
             |[x_m, _]: &[f64; 2]| 0.5 * SWING_N * (core::f64::consts::TAU * x_m / self.class.wavelength_m).sin();
         let skipped = self.places_m.len().saturating_sub(SAMPLES);
-        let friction_n = |places_m: &[[f64; 2]]| places_m.iter().skip(skipped).map(texture).collect::<Vec<f64>>();
-        FeltError::of(&friction_n(&self.places_m), &friction_n(places_m)).ratio()
+        let compared = self.places_m.iter().zip(places_m).skip(skipped).map(|(true_m, place_m)| FidelitySample {
+            finger: Some(FingerState::default()),
+            reference_n: texture(true_m),
+            felt_n: texture(place_m),
+            natural_n: 0.0,
+        });
+        Fidelity::of(&compared.collect::<Vec<_>>()).map_or(f64::NAN, |fidelity| fidelity.error_below_40_hz)
     }
 
     /// The error of a filter that sees each report when it arrives.
