@@ -118,6 +118,17 @@ mod tests {
     }
 
     #[test]
+    fn the_speed_is_that_of_both_axes() {
+        let timing = StandstillTiming::new(40_000);
+        for (velocity_m_per_s, is_slow) in
+            [([1.9e-3, 0.0], true), ([-1.9e-3, 0.0], true), ([2.1e-3, 0.0], false), ([1.5e-3, 1.5e-3], false)]
+        {
+            let ramp = { Standstill::MOVING }.take(velocity_m_per_s, 0, &timing);
+            assert_eq!(ramp.slope_per_tick < 0.0, is_slow, "{velocity_m_per_s:?}");
+        }
+    }
+
+    #[test]
     fn a_pause_shorter_than_50_ms_is_not_still() {
         let mut run = Run::new(2);
         for _ in 0..10 {

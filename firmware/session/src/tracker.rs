@@ -246,6 +246,37 @@ mod tests {
         track.place_m(track.elapsed_s(tick, 25e-6))[0]
     }
 
+    /// The mean interval after reports at these distances.
+    fn interval_ticks(distance_ticks: u32) -> f32 {
+        let mut tracker = Tracker::new(&Board::SIMULATOR);
+        for report in 0..80 {
+            track(&mut tracker, 0.02 + 1e-5 * report as f32, report * distance_ticks, 0, true);
+        }
+        tracker.interval_s * 40_000.0
+    }
+
+    #[test]
+    fn the_interval_follows_a_fast_source_and_is_at_most_the_report_period() {
+        assert!((interval_ticks(80) - 80.0).abs() < 0.1, "{}", interval_ticks(80));
+        assert!((interval_ticks(3 * REPORT_TICKS / 2) - REPORT_TICKS as f32).abs() < 0.1);
+    }
+
+    #[test]
+    fn a_report_after_the_end_of_the_last_track_begins_another_contact() {
+        let mut tracker = Tracker::new(&Board::SIMULATOR);
+        let first = track(&mut tracker, 0.02, 1000, 0, true);
+        let last = track(&mut tracker, 0.02, first.until_tick - 1, 0, true);
+        assert_eq!(last.contact, first.contact);
+        assert_eq!(track(&mut tracker, 0.02, last.until_tick, 0, true).contact, first.contact + 1);
+    }
+
+    #[test]
+    fn a_track_from_an_old_sample_ends_when_the_sample_is_too_old() {
+        let oldest_ticks = Board::SIMULATOR.ticks(SAMPLE_AGE_MAX_S);
+        let track = track(&mut Tracker::new(&Board::SIMULATOR), 0.02, 10_000, oldest_ticks - 10, true);
+        assert_eq!(track.until_tick, 10_000 + 10 + 1);
+    }
+
     /// A finger in minimum-jerk motion and noise: from the third report on, each track goes on where the one before is,
     /// and has come to the estimate when the next report is due and a half.
     #[test]
