@@ -3,12 +3,12 @@
 
 pub mod calibration;
 mod chart;
-pub mod check;
 pub mod felt;
 pub mod fit;
 pub mod model_csv;
 pub mod output;
 pub mod player;
+pub mod rehearsal;
 pub mod report;
 pub mod rigs;
 pub mod scene_file;

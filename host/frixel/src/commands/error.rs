@@ -4,11 +4,11 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use frixel::calibration::CalibrationError;
-use frixel::check::RehearsalError;
 use frixel::fit::FitError;
 use frixel::model_csv::CsvError;
 use frixel::output::{FeltLogError, OutputError};
 use frixel::player::PlayError;
+use frixel::rehearsal::RehearsalError;
 use frixel::report::ReportError;
 #[cfg(unix)]
 use frixel::rigs::ServerError;

@@ -1,6 +1,6 @@
 //! What a person will feel of a scene, as text.
 
-use frixel_scene::perception::{AlikeTextures, BorderStep, LayerPerception, Perception, Step, Texture, Verdict};
+use crate::perception::{AlikeTextures, BorderStep, LayerPerception, Perception, Step, Texture, Verdict};
 
 /// Lines of a name and a text: one for all layers that feel the same, one for all borders with the same step, and one for
 /// each note.

@@ -1,20 +1,34 @@
 //! The cost of a scene, and the friction that a finger will feel of it, computed before it is played.
 
+//!
+//! The input is a program, the limits of the board that it was compiled for, and what that board needs for it
+//! ([`BoardCosts`]). The output is [`SceneCheck`], as text for a person or as JSON.
+
 mod board;
 pub mod feel;
-mod rehearsal;
 mod text;
 
-use frixel_hil_sim::{BoardMemory, RigConfig, TableRows};
-use frixel_layers::Scene as WireScene;
 use frixel_model::InverseTable;
+use frixel_wire::hello::BoardLimits;
 use serde::Serialize;
 
 pub use board::BoardImage;
-pub use rehearsal::RehearsalError;
 
-use frixel_scene::perception::Perception;
-use frixel_scene::{Program, TargetRange, middle_mm};
+use crate::perception::Perception;
+use crate::{Program, TargetRange, middle_mm};
+
+/// What a board needs for a program. The caller measures it on a board, which may be simulated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BoardCosts {
+    /// Bytes that the host sends, without the hello, until a board that holds no picture has accepted the program.
+    pub wire_total_bytes: usize,
+    /// Bytes of coefficients that the program fills in the board's RAM.
+    pub active_bytes: usize,
+    /// Rows of the inverse table that the board computes for the program.
+    pub table_rows: usize,
+    /// Rows that it would compute for a program that targets the whole reachable range.
+    pub table_rows_whole: usize,
+}
 
 /// The costs and limits of a scene; the field names are the keys of `--json`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -129,35 +143,29 @@ pub struct ReachableFriction {
 }
 
 impl SceneCheck {
-    /// Computes the costs of a program that was compiled for the board of `rig`, and uploads it once to that simulated
-    /// board.
-    pub fn of(program: &Program, rig: &RigConfig) -> Result<Self, RehearsalError> {
-        let scene = program.scene_bytes();
+    /// Computes the costs of a program that was compiled for a board with these limits, which needs `costs` for it.
+    pub fn of(program: &Program, limits: &BoardLimits, costs: &BoardCosts) -> Self {
+        let scene_bytes = program.scene_bytes().len();
         let bitmap_bytes = program.bitmaps.iter().map(|bitmap| bitmap.samples.len()).sum();
-        let total_bytes = rehearsal::wire_bytes(program, rig)?;
-        // This parse does not fail: the board has just parsed the same bytes.
-        let taken = WireScene::parse(&scene).ok();
-        let active_bytes = taken.as_ref().map_or(0, BoardMemory::bytes_filled);
-        let table = taken.and_then(|scene| BoardMemory::table_rows(&scene, &rig.board).ok());
-        let table_bytes = |rows: fn(&TableRows) -> usize| InverseTable::ROW_BYTES * table.as_ref().map_or(0, rows);
+        let total_bytes = costs.wire_total_bytes;
         let reach = &program.reach;
-        Ok(Self {
+        Self {
             layers: program.records.len(),
             wire: WireBytes {
-                scene_bytes: scene.len(),
+                scene_bytes,
                 bitmap_bytes,
-                framing_bytes: total_bytes.saturating_sub(scene.len() + bitmap_bytes),
+                framing_bytes: total_bytes.saturating_sub(scene_bytes + bitmap_bytes),
                 total_bytes,
             },
             ram: RamBytes {
                 bitmap_pool_bytes: bitmap_bytes,
-                bitmap_pool_limit_bytes: rig.board.limits.bitmap_pool_bytes,
-                active_bytes,
-                table_bytes: table_bytes(|table| table.filled),
-                table_whole_bytes: table_bytes(|table| table.whole),
+                bitmap_pool_limit_bytes: limits.bitmap_pool_bytes,
+                active_bytes: costs.active_bytes,
+                table_bytes: InverseTable::ROW_BYTES * costs.table_rows,
+                table_whole_bytes: InverseTable::ROW_BYTES * costs.table_rows_whole,
                 table_room_bytes: size_of::<InverseTable>(),
             },
-            tick: LongestTick::of(program, rig.board.limits.tick_cycles_max),
+            tick: LongestTick::of(program, limits.tick_cycles_max),
             finger: CheckedFinger { title: program.finger.title.clone(), origin: program.finger.origin.word() },
             reach: ReachableFriction {
                 natural_n: reach.natural_friction_n,
@@ -171,7 +179,7 @@ impl SceneCheck {
             notes: program.notes.clone(),
             left_out: program.optimisations.iter().map(ToString::to_string).collect(),
             board: None,
-        })
+        }
     }
 
     /// Adds the smallest firmware image that plays the program.
