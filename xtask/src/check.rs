@@ -51,7 +51,7 @@ pub(crate) fn test() -> Result<(), String> {
     stages.run("images", || unless_firmware_unchanged("images", || passed(images())))?;
     stages.run("tests", test_programs::run_all)?;
     stages.run("portability", || {
-        stamps::unless_unchanged("portability", &PORTABILITY_INPUTS.map(str::to_owned), portability::check)
+        stamps::unless_unchanged("portability", &PORTABILITY_INPUTS.map(str::to_owned), || passed(portability::check()))
     })?;
     stages.run("documentation tests", test_programs::run_documentation)?;
     let docs = ["doc", "--workspace", "--no-deps", "--locked"];

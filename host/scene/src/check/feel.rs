@@ -5,7 +5,7 @@ use crate::perception::{AlikeTextures, BorderStep, LayerPerception, Perception, 
 /// Lines of a name and a text: one for all layers that feel the same, one for all borders with the same step, and one for
 /// each note.
 pub fn lines(perception: &Perception) -> Vec<(&'static str, String)> {
-    let layers = perception.layers.iter().map(|layer| (layer.layer.clone(), of_layer(layer)));
+    let layers = perception.layers.iter().map(|layer| (layer.layer.clone(), sentence(layer)));
     let borders = perception.steps.iter().map(|border| (sides(border), step(&border.step)));
     let lines = |name, texts| grouped(texts).into_iter().map(move |text| (name, text));
     let alike = perception.alike.iter().map(|alike| {
@@ -31,7 +31,8 @@ fn grouped(texts: Vec<(String, String)>) -> Vec<String> {
     groups.into_iter().map(|(subjects, text)| format!("{}: {text}", subjects.join(", "))).collect()
 }
 
-fn of_layer(layer: &LayerPerception) -> String {
+/// What a person will feel of a layer, one sentence without its subject.
+pub fn sentence(layer: &LayerPerception) -> String {
     let contrast = &layer.contrast;
     let within = if contrast.contrast_n > 0.0 {
         format!("{} within it", step(contrast))
