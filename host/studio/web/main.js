@@ -35,7 +35,10 @@ async function start() {
   engine.onFailure = ({ error }) =>
     notify(`The simulator has failed: ${error}. Reload the page; save the scene first.`);
   const player = new Player(engine, project);
-  const editor = new Editor(byId("editor"), await schema(), (text) => player.later(text));
+  const editor = new Editor(byId("editor"), await schema(), (text) => {
+    compare.cancel();
+    player.later(text);
+  });
   const map = new FrictionMap();
   const finger = new Finger(engine, map);
   const samples = new Samples();

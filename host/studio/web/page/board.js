@@ -37,6 +37,7 @@ export class Board {
     this.#link = link;
     const board = byId("board");
     board.dataset.state = state;
+    document.documentElement.dataset.state = state;
     board.textContent = `${link === "simulator" ? "Simulator" : driving}: ${WORDS[state] ?? state}${fault ? `, ${fault}` : ""}`;
     const arm = byId("arm");
     arm.hidden = !needsArm;

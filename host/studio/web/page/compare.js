@@ -22,6 +22,14 @@ export class Compare {
     return this.#trial !== undefined;
   }
 
+  /** Ends a comparison without an answer: the scene changes. */
+  cancel() {
+    if (!this.isRunning) return;
+    this.#trial = undefined;
+    document.body.classList.remove("blind");
+    this.#show("The scene has changed: the comparison is over.");
+  }
+
   #show(lastAnswer) {
     const keep = element("button", {}, this.#kept ? "Keep the scene as it is now as A" : "Keep this scene as A");
     keep.onclick = () => {
@@ -32,8 +40,8 @@ export class Compare {
     const start = element("button", { className: "primary", disabled: !this.#kept }, "Compare A with the scene now");
     start.onclick = () => this.#start();
     const said = this.#kept
-      ? "A is kept. Change the scene, which is B, and compare: A and B come as X and Y in random order, without map and text."
-      : "Keep a version, change the scene, and find out by touch alone which is better.";
+      ? "A is kept. Change the scene, which is B, and compare: A and B come as X and Y in random order, without map, trail and text."
+      : "Keep a version, change the scene, and find out, without looking, which is better.";
     const { a, b, same } = this.#tally;
     this.#panel.replaceChildren(element("p", {}, said), element("div", { className: "row" }, keep, start));
     if (lastAnswer) this.#panel.append(element("p", {}, lastAnswer));

@@ -4,6 +4,7 @@ import { byId, colour } from "./dom.js";
 
 /** How long a trail stays, s. */
 const TRAIL_S = 2.5;
+const TRAIL_STEPS = 4;
 /** The drawn finger follows within this time on bare glass, and as much longer at the largest friction, ms. */
 const FOLLOW_MS = 12;
 const DRAG_MS = 160;
@@ -27,6 +28,7 @@ export class Finger {
   #isInside = false;
   #trail = [];
   #lastMs = 0;
+  #isShown = false;
   /** Part of the reach that is felt now, 0 to 1. */
   #friction = 0;
   #speed = 0;
@@ -137,7 +139,7 @@ export class Finger {
   /** What was felt, for the trail and the drag; `reach` is least and largest friction, N. */
   feel(frame, reach) {
     const span = Math.max(reach.highN - reach.lowN, 1e-9);
-    for (let at = 0; at < frame.feltN.length; at += 4) {
+    for (let at = 0; at < frame.feltN.length; at += 8) {
       const felt = Number.isFinite(frame.feltN[at]) ? frame.feltN[at] : frame.referenceN[at];
       if (!Number.isFinite(frame.xMm[at])) this.#trail.push(null);
       else {
@@ -147,7 +149,8 @@ export class Finger {
       }
     }
     const oldest = performance.now() - TRAIL_S * 1000;
-    while (this.#trail.length > 0 && (this.#trail[0]?.ms ?? 0) < oldest) this.#trail.shift();
+    const first = this.#trail.findIndex((point) => point !== null && point.ms >= oldest);
+    this.#trail = first < 0 ? [] : this.#trail.slice(first);
   }
 
   #frame(ms) {
@@ -158,7 +161,9 @@ export class Finger {
     this.#drawn.xMm += part * (this.#target.xMm - this.#drawn.xMm);
     this.#drawn.yMm += part * (this.#target.yMm - this.#drawn.yMm);
     this.#lastMs = ms;
-    this.#draw();
+    const isShown = this.#isInside || this.#isDown || this.#trail.length > 0 || document.activeElement === this.#canvas;
+    if (isShown || this.#isShown) this.#draw();
+    this.#isShown = isShown;
     requestAnimationFrame((next) => this.#frame(next));
   }
 
@@ -184,24 +189,34 @@ export class Finger {
     context.stroke();
   }
 
-  /** The way of the finger, thicker where more friction was felt. */
+  /** The way of the finger, thicker where more friction was felt, and fading in steps, so that few paths are drawn. */
   #drawTrail(context) {
+    // A blind comparison shows nothing of the friction.
+    if (document.body.classList.contains("blind")) return;
     const { scale } = this.#map;
     const now = performance.now();
+    const paths = new Map();
+    for (let at = 1; at < this.#trail.length; at += 1) {
+      const [from, to] = [this.#trail[at - 1], this.#trail[at]];
+      if (!from || !to) continue;
+      const age = Math.min(TRAIL_STEPS - 1, Math.floor((TRAIL_STEPS * (now - to.ms)) / (TRAIL_S * 1000)));
+      const width = Math.round(5 * to.friction);
+      const key = `${age} ${width}`;
+      if (!paths.has(key))
+        paths.set(key, { alpha: 0.9 * (1 - age / TRAIL_STEPS), width: 1.5 + 1.8 * width, path: new Path2D() });
+      const { path } = paths.get(key);
+      path.moveTo(from.xMm * scale, from.yMm * scale);
+      path.lineTo(to.xMm * scale, to.yMm * scale);
+    }
     for (const [extra, ink] of [
       [3, "#000"],
       [0, "#fff"],
     ]) {
       context.strokeStyle = ink;
-      for (let at = 1; at < this.#trail.length; at += 1) {
-        const [from, to] = [this.#trail[at - 1], this.#trail[at]];
-        if (!from || !to) continue;
-        context.globalAlpha = Math.max(0, 1 - (now - to.ms) / (TRAIL_S * 1000)) * 0.85;
-        context.lineWidth = 1.5 + 9 * to.friction + extra;
-        context.beginPath();
-        context.moveTo(from.xMm * scale, from.yMm * scale);
-        context.lineTo(to.xMm * scale, to.yMm * scale);
-        context.stroke();
+      for (const { alpha, width, path } of paths.values()) {
+        context.globalAlpha = alpha;
+        context.lineWidth = width + extra;
+        context.stroke(path);
       }
     }
     context.globalAlpha = 1;

@@ -5,7 +5,7 @@ import { imageOf } from "./colors.js";
 import { byId, element } from "./dom.js";
 import { ENTRY, Project } from "./project.js";
 
-const MAP = { widthPx: 300, heightPx: 200, speedMmPerS: 100 };
+const WIDTH_PX = 300;
 
 export class Gallery {
   #engine;
@@ -42,7 +42,7 @@ export class Gallery {
 
   async #fill(card, name) {
     const text = await sceneText(name);
-    const canvas = element("canvas", { width: MAP.widthPx, height: MAP.heightPx, "aria-hidden": "true" });
+    const canvas = element("canvas", { ...sizeOf(text), "aria-hidden": "true" });
     const open = element("button", { className: "primary" }, `Open ${name}`);
     open.onclick = () => {
       this.#dialog.close();
@@ -57,7 +57,12 @@ export class Gallery {
     card.append(canvas, element("h3", {}, name), element("p", { className: "fine" }, introduction(text)), open, layers);
     const files = { [ENTRY]: text };
     for (const each of Project.namesIn(text)) files[each] = await picture(each);
-    const map = await this.#engine.map(files, ENTRY, {}, MAP);
+    const map = await this.#engine.map(
+      files,
+      ENTRY,
+      {},
+      { widthPx: canvas.width, heightPx: canvas.height, speedMmPerS: 100 },
+    );
     canvas.getContext("2d").putImageData(imageOf(map), 0, 0);
   }
 
@@ -73,6 +78,17 @@ export class Gallery {
       return element("li", {}, title, take);
     });
   }
+}
+
+/** Size of a scene's picture: its screen is the example one where it has none of its own. */
+function sizeOf(text) {
+  const number = (name, usual) =>
+    Number(new RegExp(`^${name}\\s*=\\s*([\\d.]+)`, "m").exec(screen(text))?.[1] ?? usual);
+  return { width: WIDTH_PX, height: Math.round((WIDTH_PX * number("height_mm", 80)) / number("width_mm", 120)) };
+}
+
+function screen(text) {
+  return /^\[screen\]\n((?:[^[].*\n|\n)*)/m.exec(text)?.[1] ?? "";
 }
 
 /** The comment at a scene's head, up to its first two sentences. */

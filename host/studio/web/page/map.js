@@ -46,7 +46,7 @@ export class FrictionMap {
     const { widthMm, heightMm } = this.screen;
     const style = getComputedStyle(this.#box);
     const room = this.#box.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
-    const fitted = Math.min((room - LEFT - RIGHT) / widthMm, Math.max(240, 0.46 * innerHeight) / heightMm);
+    const fitted = Math.min((room - LEFT - RIGHT) / widthMm, Math.max(240, 0.44 * innerHeight) / heightMm);
     this.scale = this.realSize ?? Math.max(0.5, fitted);
     const width = LEFT + RIGHT + widthMm * this.scale;
     const height = TOP + BOTTOM + heightMm * this.scale;
@@ -91,6 +91,7 @@ export class FrictionMap {
     context.strokeStyle = ink.line;
     context.font = "13px system-ui, sans-serif";
     const every = [10, 20, 50, 100, 200, 500].find((step) => step * this.scale >= 44) ?? 1000;
+    context.lineWidth = 1;
     context.beginPath();
     context.textAlign = "center";
     context.textBaseline = "bottom";

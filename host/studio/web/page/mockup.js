@@ -51,9 +51,15 @@ function player(context) {
   rounded(context, 8, 37, 52, 6, 3, "#0b5cad");
   rounded(context, 55, 34, 12, 12, 6, "#0b5cad");
   text(context, "volume", 60, 29, 4);
-  for (const [index, sign] of ["⏮", "▶", "⏭"].entries()) {
-    rounded(context, 34 + 20 * index, 58, 14, 14, 7, index === 1 ? "#0b5cad" : "#d7dbe3");
-    text(context, sign, 41 + 20 * index, 65.3, 6, index === 1 ? "#fff" : "#20242d");
+  for (const [index, side] of [-1, 1, 1].entries()) {
+    const x = 41 + 20 * index;
+    rounded(context, x - 7, 58, 14, 14, 7, index === 1 ? "#0b5cad" : "#d7dbe3");
+    context.beginPath();
+    context.moveTo(x - 2 * side, 61.5);
+    context.lineTo(x - 2 * side, 68.5);
+    context.lineTo(x + 3.4 * side, 65);
+    context.fillStyle = index === 1 ? "#fff" : "#20242d";
+    context.fill();
   }
 }
 

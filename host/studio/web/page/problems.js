@@ -13,11 +13,10 @@ export function showCheck({ ok, problems, report }, editor) {
   editor.mark(problems);
 }
 
-function item({ severity, message, line, help }, editor) {
+function item({ severity, message, line }, editor) {
   const shown = element("li", { className: severity });
   if (line !== undefined) shown.append(element("button", { onclick: () => editor.goToLine(line) }, `line ${line}`));
   else shown.append(element("b", {}, severity === "error" ? "mistake " : "note "));
   shown.append(message);
-  if (help) shown.append(element("p", { className: "fine" }, help));
   return shown;
 }

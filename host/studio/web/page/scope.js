@@ -5,7 +5,9 @@ import { byId, colour, download, element } from "./dom.js";
 
 /** What the scope shows while it runs, s. */
 const WINDOW_S = 3;
-const HEIGHT_PX = 230;
+const HEIGHT_PX = 190;
+/** Least time between two drawings, ms. */
+const FRAME_MS = 30;
 
 export class Scope {
   #samples;
@@ -22,8 +24,12 @@ export class Scope {
     new ResizeObserver(([{ contentRect }]) => {
       this.#plot.setSize({ width: Math.max(200, contentRect.width - 4), height: HEIGHT_PX });
     }).observe(byId("scope"));
-    const frame = () => {
-      if (!this.isPaused && this.#shownNowS !== this.#samples.nowS) this.#draw();
+    let drawnMs = 0;
+    const frame = (ms) => {
+      if (!this.isPaused && this.#shownNowS !== this.#samples.nowS && ms - drawnMs >= FRAME_MS) {
+        this.#draw();
+        drawnMs = ms;
+      }
       requestAnimationFrame(frame);
     };
     requestAnimationFrame(frame);
@@ -44,7 +50,7 @@ export class Scope {
     const options = {
       width: Math.max(200, byId("scope").clientWidth - 4),
       height: HEIGHT_PX,
-      scales: { x: { time: false }, mN: {}, V: { range: (_, low, high) => [0, Math.max(20, high ?? 20)] } },
+      scales: { x: { time: false }, mN: { range: upper }, V: { range: lower } },
       axes: [
         { ...axis, label: "s" },
         { ...axis, scale: "mN", label: "mN", size: 48 },
@@ -77,9 +83,11 @@ export class Scope {
   #draw() {
     const { nowS } = this.#samples;
     this.#shownNowS = nowS;
-    const { timeS, referenceN, feltN, voltageV } = this.#samples.since(nowS - WINDOW_S);
-    const finite = (values, factor) => values.map((value) => (Number.isFinite(value) ? value * factor : null));
-    this.#plot.setData([timeS, finite(referenceN, 1000), finite(feltN, 1000), finite(voltageV, 1)], false);
+    const { timeS, xMm, referenceN, feltN, voltageV } = this.#samples.since(nowS - WINDOW_S);
+    // No friction is drawn while the finger is up, so that the axis serves what is felt.
+    const isDrawn = (value, at) => Number.isFinite(value) && Number.isFinite(xMm[at]);
+    const finite = (values, factor) => values.map((value, at) => (isDrawn(value, at) ? value * factor : null));
+    this.#plot.setData([timeS, finite(referenceN, 1000), finite(feltN, 1000), voltageV], false);
     this.#plot.setScale("x", { min: nowS - WINDOW_S, max: nowS });
   }
 
@@ -104,4 +112,16 @@ export class Scope {
     context.drawImage(chart, 0, 0);
     picture.toBlob((blob) => download("frixel-felt.png", blob, "image/png"));
   }
+}
+
+/** Friction takes the upper part of the chart; */
+function upper(_chart, low, high) {
+  const [least, most] = [low ?? 250, high ?? 380];
+  const span = Math.max(10, most - least);
+  return [least - 0.8 * span, most + 0.05 * span];
+}
+
+/** voltage the lower. */
+function lower(_chart, _low, high) {
+  return [0, 2.4 * Math.max(20, high ?? 0)];
 }

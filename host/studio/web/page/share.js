@@ -33,6 +33,7 @@ export function isLink(fragment) {
 export function sceneOf(fragment) {
   const broken = "The link does not hold a scene: a part of it was lost or changed. The scene you had stays.";
   try {
+    if (fragment.length > LINK_MAX) throw new Error(broken);
     const packed = fromBase64(fragment.slice(START.length));
     const content = JSON.parse(strFromU8(inflateSync(packed, { out: new Uint8Array(CONTENT_MAX) })));
     if (typeof content.text !== "string" || typeof content.name !== "string") throw new Error(broken);
