@@ -52,7 +52,7 @@ export class Scope {
       height: HEIGHT_PX,
       scales: { x: { time: false }, mN: { range: upper }, V: { range: lower } },
       axes: [
-        { ...axis, label: "s" },
+        axis,
         { ...axis, scale: "mN", label: "mN", size: 48 },
         { ...axis, scale: "V", label: "V rms", side: 1, size: 44, grid: { show: false } },
       ],
@@ -114,11 +114,11 @@ export class Scope {
   }
 }
 
-/** Friction takes the upper part of the chart; */
+/** Friction takes the upper part of the chart: what is usual is shown, and more where there is more. */
 function upper(_chart, low, high) {
-  const [least, most] = [low ?? 250, high ?? 380];
-  const span = Math.max(10, most - least);
-  return [least - 0.8 * span, most + 0.05 * span];
+  const least = Math.max(low ?? 230, 0.6 * (high ?? 380));
+  const most = Math.max(high ?? 380, least + 20);
+  return [least - 0.8 * (most - least), most + 0.05 * (most - least)];
 }
 
 /** voltage the lower. */
