@@ -11,8 +11,8 @@ export class Profiles {
   constructor(project, fingers, onChange) {
     this.#project = project;
     this.#onChange = onChange;
-    this.#fill("finger", ["the scene's", ...fingers]);
-    this.#fill("screen", ["the scene's", "example"]);
+    this.#fill("finger", ["scene's", ...fingers]);
+    this.#fill("screen", ["scene's", "example"]);
   }
 
   #fill(kind, names) {
