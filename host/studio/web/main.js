@@ -5,5 +5,5 @@ import { createEngine } from "./engine/engine.js";
 const status = document.getElementById("status");
 const engine = await createEngine();
 globalThis.engine = engine;
-engine.onState = ({ state }) => (status.textContent = state);
+engine.onState = ({ state }) => (status.textContent = document.documentElement.dataset.state = state);
 await engine.play({ "grating.toml": await studio.text("scenes/grating.toml") }, "grating.toml", {});

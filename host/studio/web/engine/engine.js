@@ -103,8 +103,8 @@ class Engine {
   }
 
   /** How many times faster than real time the simulator runs a scene in a worker. */
-  async speed(files, entry, seconds = 5) {
-    return (await this.#host.ask({ type: "speed", scene: { files, entry }, seconds })).timesRealTime;
+  async speed(files, entry, { stretches = 10, stretchMs = 480 } = {}) {
+    return (await this.#host.ask({ type: "speed", scene: { files, entry }, stretches, stretchMs })).timesRealTime;
   }
 
   play(files, entry, profiles) {
