@@ -115,6 +115,18 @@ export async function startVirtualBoard() {
   return { terminal, out, stop };
 }
 
+/** Starts `frixel studio` with the port of a board; returns the page's address. */
+export async function startStudio(terminal) {
+  const port = terminal ? ["--port", terminal] : [];
+  const options = ["studio", "--no-browser", "--page", required("STUDIO_PAGE"), ...port];
+  const server = spawn(required("FRIXEL"), options, { stdio: ["ignore", "pipe", "inherit"] });
+  leftovers.add(() => server.kill("SIGINT"));
+  return new Promise((resolve, reject) => {
+    server.stdout.once("data", (line) => resolve(String(line).trim()));
+    server.on("exit", () => reject(new Error("frixel studio ended")));
+  });
+}
+
 /** The rows of a CSV file, as objects of texts. */
 export function rowsOf(file) {
   const [head, ...lines] = fs.readFileSync(file, "utf8").trim().split("\n").map((line) => line.split(","));

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import path from "node:path";
 import { after, test } from "node:test";
-import { addSerialPort, cleanUp, openEngine, rowsOf, startVirtualBoard } from "./harness.mjs";
+import { addSerialPort, cleanUp, openEngine, rowsOf, startStudio, startVirtualBoard } from "./harness.mjs";
 
 /** Host timeout of the bundled scenes, s. */
 const HOST_TIMEOUT_S = 0.25;
@@ -62,4 +62,24 @@ test("a killed worker: the board is at zero within its host timeout", async () =
   const last = Number(driven.at(-1).t_s);
   assert.ok(last <= Number(silent.t_s) + 1e-3, `driven at ${last} s, silent at ${silent.t_s} s`);
   await close();
+});
+
+test("the page of `frixel studio` plays, and reaches a board through the bridge", async () => {
+  const board = await startVirtualBoard();
+  const { page, errors, close } = await openEngine(await startStudio(board.terminal));
+  await page.waitForFunction(() => document.documentElement.dataset.state === "active", null, { timeout: 10_000 });
+  await page.evaluate(async (name) => {
+    const { bridgeUrl } = await import(await studio.moduleUrl("engine/lines.js"));
+    await engine.connectSocket(bridgeUrl());
+    await engine.play(await sceneFiles(name), name, {});
+  }, "constant.toml");
+  await page.waitForFunction(() => frames.some((frame) => !frame.simulated), null, { timeout: 20_000 });
+  const { link, state } = await page.evaluate(() => states.at(-1));
+  assert.deepEqual([link, state], ["socket", "active"]);
+  assert.deepEqual(errors, []);
+  await close();
+  await board.stop();
+  const events = rowsOf(path.join(board.out, "events.csv")).map((row) => row.event);
+  assert.deepEqual(events.slice(0, 2), ["armed", "active"]);
+  assert.equal(events.at(-1), "host-silent", "a page that is closed leaves the board to its host timeout");
 });

@@ -2,6 +2,8 @@
 
 import { serialLine, socketLine } from "./lines.js";
 
+export { bridgeUrl } from "./lines.js";
+
 /** Creates the engine with the simulator as its board. `seed` is that of the simulated world. */
 export async function createEngine({ seed = 1 } = {}) {
   const module = await WebAssembly.compile(await studio.bytes("engine.wasm"));
