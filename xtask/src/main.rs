@@ -9,6 +9,7 @@ mod portability;
 mod stages;
 mod stamps;
 mod studio;
+mod studio_tests;
 mod test_programs;
 
 use std::env;
@@ -24,6 +25,8 @@ cargo xtask budgets  the same, held against budgets.toml, and random scenes agai
 cargo xtask portability
                      the crates of a page for WebAssembly; the command for Windows and macOS
 cargo xtask studio   the studio as one HTML file; its path is the last line
+cargo xtask studio-test
+                     the studio in a browser: needs node, npm and Chromium
 cargo xtask soak     what takes too long for every change: every f32 through the tables, fits of 200
                      people, thousands of random scenes
 cargo xtask programs PACE FIRST COUNT
@@ -38,6 +41,7 @@ fn main() -> ExitCode {
         ["budgets"] => check::budgets().map(drop),
         ["portability"] => portability::check(),
         ["studio"] => studio::build().map(|path| println!("{}", path.display())),
+        ["studio-test"] => studio_tests::run_all().map(drop),
         ["soak"] => check::soak(),
         ["bench", "--bless"] => bench::bench().and_then(|figures| {
             print!("{}", figures.table());

@@ -4,7 +4,6 @@
 //! as text. `host/studio/web/boot.js` unpacks them in the browser.
 
 use std::collections::BTreeMap;
-use std::env;
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -15,7 +14,7 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use sha2::{Digest, Sha256};
 
-use crate::command::{add_target, cargo_in, root, run};
+use crate::command::{add_target, cargo_in, root, run, target_folder};
 
 const WASM: &str = "wasm32-unknown-unknown";
 /// Cargo profile of the module: small, fast, and without debug information.
@@ -60,10 +59,6 @@ fn module() -> Result<Vec<u8>, String> {
     let build = ["build", "--locked", "--package", "frixel-studio", "--lib", "--profile", PROFILE, "--target", WASM];
     run("studio for WebAssembly", cargo_in(".").args(build))?;
     bytes(&target_folder().join(WASM).join(PROFILE).join("frixel_studio.wasm"))
-}
-
-fn target_folder() -> PathBuf {
-    env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), Into::into)
 }
 
 /// Adds the files of a folder with this ending, and of the folders below if `is_deep`.

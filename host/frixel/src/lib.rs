@@ -14,4 +14,5 @@ pub mod rigs;
 pub mod scene_file;
 pub mod score;
 pub mod stream;
+pub mod studio;
 pub mod threshold;

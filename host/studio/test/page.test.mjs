@@ -10,8 +10,8 @@ import { deflateRawSync } from "node:zlib";
 import { cleanUp, openPage, pageUrl, required } from "./harness.mjs";
 
 /**
- * The goal of DESIGN 8: error of the felt friction below 40 Hz over the reference's own AC rms, and correlation. The page's
- * touch source reports 100 times a second, 10 ms late; for that class the goal is meant for features of 10 mm.
+ * The goal of DESIGN 8: error of the felt friction below 40 Hz over the reference's own AC rms, and correlation. The
+ * page's touch source reports 100 times a second, 10 ms late; for that class the goal is meant for features of 10 mm.
  */
 const GOAL = { error: 0.25, correlation: 0.9 };
 const FEATURES_OF_10_MM = `version = 2
@@ -26,9 +26,9 @@ high_n = 0.1
 const BRICK = { error: 0.6, correlation: 0.8 };
 const CORNER_HZ = 40;
 const SPEED_MM_PER_S = 80;
-/** A finger that stands still is known to after some reports and 50 ms; noise of the touch source can put that off, ms. */
+/** A finger is known to stand still after some reports and 50 ms; noise of the touch source can put that off, ms. */
 const STILL_ZERO_MS = 500;
-/** Noise of the simulated touch source looks like a slide now and then; a finger at rest is driven for less of the time. */
+/** Noise of the simulated touch source looks like a slide now and then: a finger at rest is driven for less than this. */
 const STILL_DRIVEN_MAX = 0.5;
 /** Rms voltage that counts as none: what the carrier's last half period leaves of a mean, V. */
 const ZERO_V = 2;
@@ -58,8 +58,8 @@ function addHelpers() {
     canvas.dispatchEvent(event);
   };
   /**
-   * Slides along x at a constant speed, with an event for each 8 ms, and leaves the finger down. The events are sent ahead
-   * with their times, so that the stroke is even however busy the machine is. Resolves at its end.
+   * Slides along x at a constant speed, with an event for each 8 ms, and leaves the finger down. The events are sent
+   * ahead with their times, so that the stroke is even however busy the machine is. Resolves at its end.
    */
   globalThis.slide = (fromMm, toMm, yMm, speedMmPerS) => {
     const begin = performance.now();
@@ -104,7 +104,7 @@ function lowPass(values) {
 const mean = (values) => values.reduce((sum, value) => sum + value, 0) / values.length;
 const rms = (values) => Math.sqrt(mean(values.map((value) => value * value)));
 
-/** Compares what is felt with its reference at the shift in time, of at most 10 ms, that suits best: registered in place. */
+/** Compares what is felt with its reference, registered in place: at the shift of at most 10 ms that suits best. */
 function compared(felt, reference) {
   const most = 10;
   const swing = (values) => values.map((value) => value - mean(values));

@@ -24,7 +24,7 @@ const { outputFiles, metafile } = await build({
 const made = { "studio-vendor.js": outputFiles[0].text, "LICENCES.txt": licences(Object.keys(metafile.inputs)) };
 const stale = Object.keys(made).filter((name) => made[name] !== committed(name));
 if (isCheck && stale.length > 0) {
-  console.error(`${stale.join(" and ")} differ from what \`npm run build\` makes of package-lock.json: run it, commit both`);
+  console.error(`${stale.join(" and ")}: not what \`npm run build\` makes of package-lock.json; run it, commit both`);
   process.exit(1);
 }
 if (!isCheck) for (const [name, text] of Object.entries(made)) writeFileSync(new URL(name, folder), text);

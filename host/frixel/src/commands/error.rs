@@ -15,6 +15,7 @@ use frixel::rigs::ServerError;
 use frixel::rigs::StopReason;
 use frixel::scene_file::SceneFileError;
 use frixel::stream::FeedError;
+use frixel::studio::StudioError;
 use frixel_driver::{DeviceError, PortError};
 #[cfg(unix)]
 use frixel_hil_sim::emulated::EmulatorError;
@@ -40,6 +41,8 @@ pub(crate) enum CommandError {
     Server(#[from] ServerError),
     #[error(transparent)]
     Output(#[from] OutputError),
+    #[error(transparent)]
+    Studio(#[from] StudioError),
     #[error(transparent)]
     Report(#[from] ReportError),
     #[error(transparent)]

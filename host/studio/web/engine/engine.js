@@ -2,6 +2,8 @@
 
 import { serialLine, socketLine } from "./lines.js";
 
+export { bridgeUrl } from "./lines.js";
+
 /** Creates the engine with the simulator as its board. `seed` is that of the simulated world. */
 export async function createEngine({ seed = 1 } = {}) {
   const module = await WebAssembly.compile(await studio.bytes("engine.wasm"));
@@ -103,8 +105,8 @@ class Engine {
   }
 
   /** How many times faster than real time the simulator runs a scene in a worker. */
-  async speed(files, entry, seconds = 5) {
-    return (await this.#host.ask({ type: "speed", scene: { files, entry }, seconds })).timesRealTime;
+  async speed(files, entry, { stretches = 10, stretchMs = 480 } = {}) {
+    return (await this.#host.ask({ type: "speed", scene: { files, entry }, stretches, stretchMs })).timesRealTime;
   }
 
   play(files, entry, profiles) {

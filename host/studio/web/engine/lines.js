@@ -36,6 +36,12 @@ async function readAll(reader, local) {
   local.postMessage(new Uint8Array());
 }
 
+/** The address of the bridge of `frixel studio`, if it serves this page and has a port; else null. */
+export function bridgeUrl({ protocol, host, hash } = location) {
+  const token = new URLSearchParams(hash.slice(1)).get("bridge");
+  return protocol === "http:" && token ? `ws://${host}/serial?token=${token}` : null;
+}
+
 /** A line over a WebSocket to the bridge of `frixel studio`. */
 export function socketLine(url) {
   return new Promise((resolve, reject) => {

@@ -1,5 +1,6 @@
 // The board that plays: the simulator in the page, or one on a serial port or behind `frixel studio`.
 
+import { bridgeUrl } from "../engine/engine.js";
 import { attempt, byId, element } from "./dom.js";
 
 const WORDS = { active: "playing", armed: "armed", disarmed: "disarmed", faulted: "faulted" };
@@ -8,6 +9,8 @@ export class Board {
   #engine;
   #dialog = byId("board-dialog");
   #link = "simulator";
+  /** The bridge of `frixel studio`, or null; read at the start, since a shared scene takes its place in the address. */
+  #bridge = bridgeUrl();
   /** Another board is connected: the scene is played there. */
   onBoard = () => {};
 
@@ -38,7 +41,8 @@ export class Board {
     const board = byId("board");
     board.dataset.state = state;
     document.documentElement.dataset.state = state;
-    board.textContent = `${link === "simulator" ? "Simulator" : driving}: ${WORDS[state] ?? state}${fault ? `, ${fault}` : ""}`;
+    const name = link === "simulator" ? "Simulator" : driving;
+    board.textContent = `${name}: ${WORDS[state] ?? state}${fault ? `, ${fault}` : ""}`;
     const arm = byId("arm");
     arm.hidden = !needsArm;
     arm.textContent = `Arm: drive ${driving}`;
@@ -72,17 +76,17 @@ export class Board {
       element(
         "p",
         {},
-        "A board with an electrode drives hundreds of volts. It plays only after you press Arm here and hold the switch " +
-          "on the board; it is disarmed when this page is hidden or closed, and before a scene from elsewhere is opened.",
+        "A board with an electrode drives hundreds of volts. It plays only after you press Arm here and hold the " +
+          "switch on the board. It is disarmed when this page is hidden or closed, and before a scene from elsewhere opens.",
       ),
       connect("Simulator", () => this.#engine.simulate(), true, ["the same firmware, in this page"]),
       connect("Board on a USB port…", serial, "serial" in navigator, [
         "over Web Serial",
         "this browser has no Web Serial (Chrome 89 or newer has it)",
       ]),
-      ...(window.frixelBridge
+      ...(this.#bridge
         ? [
-            connect("Board of frixel studio", () => this.#engine.connectSocket(window.frixelBridge), true, [
+            connect("Board of frixel studio", () => this.#engine.connectSocket(this.#bridge), true, [
               "the serial port that the command was given",
             ]),
           ]
