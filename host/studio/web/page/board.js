@@ -77,7 +77,7 @@ export class Board {
         "p",
         {},
         "A board with an electrode drives hundreds of volts. It plays only after you press Arm here and hold the " +
-          "switch on the board. It is disarmed when this page is hidden or closed, and before a scene from elsewhere opens.",
+          "switch on the board. It is disarmed when this page is hidden or closed, and before a foreign scene opens.",
       ),
       connect("Simulator", () => this.#engine.simulate(), true, ["the same firmware, in this page"]),
       connect("Board on a USB port…", serial, "serial" in navigator, [

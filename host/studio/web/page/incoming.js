@@ -8,7 +8,7 @@ const MAX = { toml: 500_000, png: 8_000_000, zip: 16_000_000 };
 const PNG = [0x89, 0x50, 0x4e, 0x47];
 
 export class Incoming {
-  /** `{ scene: { name, text, files, profiles? }, files: [[name, content]], finger, screen }`; what did not come is missing. */
+  /** `{ scene: { name, text, files, profiles? }, files: [[name, content]], finger, screen }`, some missing. */
   onFiles = () => {};
 
   constructor() {
