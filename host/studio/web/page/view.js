@@ -14,8 +14,19 @@ export function makeView({ map, finger, scope, engine }) {
     finger.drags = target.checked;
     byId("map").classList.toggle("no-drag", !target.checked);
   };
+  makeMenu(document.querySelector(".menu"));
   makeScope(scope);
   makeReplay(engine);
+}
+
+/** A press elsewhere, or Escape, closes the menu. */
+function makeMenu(menu) {
+  document.addEventListener("pointerdown", ({ target }) => {
+    if (!menu.contains(target)) menu.open = false;
+  });
+  menu.addEventListener("keydown", ({ key }) => {
+    if (key === "Escape") menu.open = false;
+  });
 }
 
 function makeLook(map) {
