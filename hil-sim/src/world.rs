@@ -142,8 +142,8 @@ enum Motion {
     Lifted,
     /// The stroke, which started at this tick.
     Stroke { start_tick: u64 },
-    /// The caller, who has placed the finger here.
-    Placed(FingerState),
+    /// The caller, who has placed the finger here. It presses with the profile's load, or with this one in newtons.
+    Placed { finger: FingerState, normal_load_n: Option<f64> },
 }
 
 impl World {
@@ -200,7 +200,13 @@ impl World {
     /// A caller who moves the finger calls this at every tick and states its speed: the world does not derive a speed
     /// from two places.
     pub fn place_finger(&mut self, finger: FingerState) {
-        self.motion = Motion::Placed(finger);
+        self.motion = Motion::Placed { finger, normal_load_n: None };
+    }
+
+    /// As [`Self::place_finger`], and the finger presses with `normal_load_n`, in newtons, above 0, in place of the
+    /// load of its profile.
+    pub fn place_pressing_finger(&mut self, finger: FingerState, normal_load_n: f64) {
+        self.motion = Motion::Placed { finger, normal_load_n: Some(normal_load_n) };
     }
 
     /// Lifts the finger off the screen, and ends a stroke.
@@ -224,7 +230,7 @@ impl World {
         match self.motion {
             Motion::Lifted => None,
             Motion::Stroke { start_tick } => self.stroke.at(self.stroke_s(start_tick)),
-            Motion::Placed(finger) => Some(finger),
+            Motion::Placed { finger, .. } => Some(finger),
         }
     }
 
@@ -233,11 +239,12 @@ impl World {
         (self.tick - start_tick) as f64 / f64::from(self.tick_hz)
     }
 
-    /// The load that the stroke says, in N.
-    fn measured_load_n(&self) -> Option<f64> {
+    /// The load that the stroke or the caller says, in N.
+    fn stated_load_n(&self) -> Option<f64> {
         match self.motion {
             Motion::Stroke { start_tick } => self.stroke.normal_load_n(self.stroke_s(start_tick)),
-            Motion::Lifted | Motion::Placed(_) => None,
+            Motion::Placed { normal_load_n, .. } => normal_load_n,
+            Motion::Lifted => None,
         }
     }
 
@@ -273,7 +280,7 @@ impl World {
         self.tick += 1;
         let finger = self.finger();
         let Friction { natural_friction_n, electric_friction_n, normal_load_n, load_mismatch_n, slip } = match &finger {
-            Some(finger) => self.fingertip.slide(&output, finger, self.measured_load_n()),
+            Some(finger) => self.fingertip.slide(&output, finger, self.stated_load_n()),
             None => self.fingertip.lift(),
         };
         self.touch_source.tick(self.tick, finger.as_ref());

@@ -6,13 +6,16 @@ use crate::bench::programs::{self, Pace};
 use crate::command::{M4F, add_target, cargo_in, root, run};
 use crate::outcome::{Outcome, skip};
 use crate::stages::Stages;
-use crate::{bench, budgets, portability, stamps, test_programs};
+use crate::{bench, budgets, portability, stamps, studio_tests, test_programs};
 
 /// Inputs of the images and of the budgets.
 const FIRMWARE_INPUTS: [&str; 6] = ["budgets.toml", "Cargo.lock", "Cargo.toml", "firmware", "model", "xtask"];
 /// Inputs of the portability checks.
 const PORTABILITY_INPUTS: [&str; 8] =
     ["Cargo.lock", "Cargo.toml", "firmware", "hil-sim", "host", "model", "scenes", "xtask/src/portability.rs"];
+/// Inputs of the browser tests of the studio.
+const STUDIO_INPUTS: [&str; 8] =
+    ["Cargo.lock", "Cargo.toml", "firmware", "hil-sim", "host", "model", "scenes", "xtask"];
 /// The crate whose features an image selects.
 const SESSION: &str = "firmware/session";
 
@@ -51,7 +54,10 @@ pub(crate) fn test() -> Result<(), String> {
     stages.run("images", || unless_firmware_unchanged("images", || passed(images())))?;
     stages.run("tests", test_programs::run_all)?;
     stages.run("portability", || {
-        stamps::unless_unchanged("portability", &PORTABILITY_INPUTS.map(str::to_owned), portability::check)
+        stamps::unless_unchanged("portability", &PORTABILITY_INPUTS.map(str::to_owned), || passed(portability::check()))
+    })?;
+    stages.run("studio in a browser", || {
+        stamps::unless_unchanged("studio", &STUDIO_INPUTS.map(str::to_owned), studio_tests::run_all)
     })?;
     stages.run("documentation tests", test_programs::run_documentation)?;
     let docs = ["doc", "--workspace", "--no-deps", "--locked"];

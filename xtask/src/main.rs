@@ -8,6 +8,8 @@ mod outcome;
 mod portability;
 mod stages;
 mod stamps;
+mod studio;
+mod studio_tests;
 mod test_programs;
 
 use std::env;
@@ -21,7 +23,10 @@ cargo xtask bench    instructions and estimated cycles on emulated processors, a
          --bless     and writes down what each kind of layer costs, which compiler and board use
 cargo xtask budgets  the same, held against budgets.toml, and random scenes against the loader's estimate for them
 cargo xtask portability
-                     the crates of a page in WebAssembly, where scenes are played; the command on Windows and macOS
+                     the crates of a page for WebAssembly; the command for Windows and macOS
+cargo xtask studio   the studio as one HTML file; its path is the last line
+cargo xtask studio-test
+                     the studio in a browser: needs node, npm and Chromium
 cargo xtask soak     what takes too long for every change: every f32 through the tables, fits of 200
                      people, thousands of random scenes
 cargo xtask programs PACE FIRST COUNT
@@ -34,7 +39,9 @@ fn main() -> ExitCode {
     let result = match arguments.as_slice() {
         ["test"] => check::test(),
         ["budgets"] => check::budgets().map(drop),
-        ["portability"] => portability::check().map(drop),
+        ["portability"] => portability::check(),
+        ["studio"] => studio::build().map(|path| println!("{}", path.display())),
+        ["studio-test"] => studio_tests::run_all().map(drop),
         ["soak"] => check::soak(),
         ["bench", "--bless"] => bench::bench().and_then(|figures| {
             print!("{}", figures.table());

@@ -3,15 +3,16 @@
 
 pub mod calibration;
 mod chart;
-pub mod check;
 mod finger_reference;
 pub mod fit;
 pub mod model_csv;
 pub mod output;
 pub mod player;
+pub mod rehearsal;
 pub mod report;
 pub mod rigs;
 pub mod scene_file;
 pub mod score;
 pub mod stream;
+pub mod studio;
 pub mod threshold;

@@ -26,6 +26,7 @@
 //! The crate opens no file and reads no clock, and it compiles for `wasm32-unknown-unknown`.
 //!
 //! - [`TargetRange`] and [`FrictionMap`]: the target friction of a program over its screen.
+//! - [`check`]: what a program costs and what will be felt of it, as `frixel scene check` prints it.
 //! - [`perception`]: what a person will feel of a program, with its sources.
 //! - [`mod@reference`]: the reference friction of a program, in `f64`, independent of the firmware.
 //! - [`recorder`]: records what a board did and what its finger felt, and compares it with the reference.
@@ -33,6 +34,7 @@
 //! - [`fidelity`]: how faithfully friction was felt, in numbers that a person notices.
 #![forbid(unsafe_code)]
 
+pub mod check;
 mod compile;
 mod compile_error;
 mod cover;

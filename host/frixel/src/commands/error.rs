@@ -4,17 +4,18 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use frixel::calibration::CalibrationError;
-use frixel::check::RehearsalError;
 use frixel::fit::FitError;
 use frixel::model_csv::CsvError;
 use frixel::output::{FeltLogError, OutputError};
 use frixel::player::PlayError;
+use frixel::rehearsal::RehearsalError;
 use frixel::report::ReportError;
 #[cfg(unix)]
 use frixel::rigs::ServerError;
 use frixel::rigs::StopReason;
 use frixel::scene_file::{SceneFileError, check_path};
 use frixel::stream::FeedError;
+use frixel::studio::StudioError;
 use frixel_driver::{DeviceError, PortError};
 #[cfg(unix)]
 use frixel_hil_sim::emulated::EmulatorError;
@@ -40,6 +41,8 @@ pub(crate) enum CommandError {
     Server(#[from] ServerError),
     #[error(transparent)]
     Output(#[from] OutputError),
+    #[error(transparent)]
+    Studio(#[from] StudioError),
     #[error(transparent)]
     Report(#[from] ReportError),
     #[error(transparent)]

@@ -23,6 +23,7 @@ mod selftest;
 #[cfg(unix)]
 mod sim;
 mod stroke;
+mod studio;
 mod terminal;
 mod threshold;
 
@@ -62,6 +63,8 @@ enum Command {
     Score(score::ScoreArgs),
     /// Serve a virtual board on a pseudo-terminal, for other programs to play to.
     Sim(SimArgs),
+    /// Open the studio, a page in which scenes are made, seen and heard.
+    Studio(studio::StudioArgs),
     /// List the serial ports.
     Ports,
     /// Identify the board at a port.
@@ -227,6 +230,7 @@ impl Cli {
             Some(Command::Sim(args)) => sim::run(&args),
             #[cfg(not(unix))]
             Some(Command::Sim(_)) => Err(CommandError::NoPseudoTerminal { what: "frixel sim" }),
+            Some(Command::Studio(args)) => studio::run(&args),
             Some(Command::Ports) => ports::run(),
             Some(Command::Info(args)) => info::run(&args),
             Some(Command::Record(args)) => record::run(&args),

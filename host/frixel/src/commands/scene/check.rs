@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use frixel::check::SceneCheck;
+use frixel::rehearsal::board_costs;
 use frixel_hil_sim::RigConfig;
+use frixel_scene::check::SceneCheck;
 use frixel_scene::compile;
 
 use super::super::error::CommandError;
@@ -40,7 +41,7 @@ pub(super) fn run(args: &CheckArgs) -> Result<(), CommandError> {
         }
         compiled => compiled?,
     };
-    let check = SceneCheck::of(&program, &rig)?;
+    let check = SceneCheck::of(&program, &rig.board.limits, &board_costs(&program, &rig)?);
     let check = if args.board { check.with_board(&program) } else { check };
     if args.json { print_line(check.to_json()) } else { print(check.summary()) }
 }

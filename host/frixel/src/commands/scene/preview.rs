@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use frixel::check::feel;
 use frixel::output::{draft_line, write_preview_png};
 use frixel_hil_sim::RigConfig;
+use frixel_scene::check::feel;
 use frixel_scene::perception::Perception;
 use frixel_scene::{Preview, compile_draft};
 

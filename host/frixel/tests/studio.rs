@@ -1,0 +1,147 @@
+//! `frixel studio`: who gets the page, who gets the bridge, and what the bridge carries.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by a panic")]
+
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+use frixel::studio::Studio;
+use frixel_hil_sim::PseudoTerminal;
+use tungstenite::client::IntoClientRequest;
+use tungstenite::{Error, Message, WebSocket, client};
+
+const PAGE: &[u8] = b"<!doctype html><title>the page</title>";
+
+/// A studio that runs until it is dropped.
+struct Running {
+    host: String,
+    token: String,
+    is_over: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Running {
+    fn new(serial_port: Option<&str>) -> Self {
+        let studio = Studio::open(0, PAGE.to_vec(), serial_port.map(str::to_owned)).unwrap();
+        let url = studio.url();
+        let (host, fragment) = url.strip_prefix("http://").unwrap().split_once('/').unwrap();
+        let token = fragment.strip_prefix("#bridge=").unwrap_or_default().to_owned();
+        let is_over = Arc::new(AtomicBool::new(false));
+        let over = Arc::clone(&is_over);
+        let thread = thread::spawn(move || studio.run(&|| over.load(Ordering::Relaxed)).unwrap());
+        Self { host: host.to_owned(), token, is_over, thread: Some(thread) }
+    }
+
+    /// The answer to a request with this line and these headers.
+    fn answer(&self, line: &str, headers: &[String]) -> String {
+        let mut stream = TcpStream::connect(&self.host).unwrap();
+        stream.set_read_timeout(Some(Duration::from_secs(5))).unwrap();
+        write!(
+            stream,
+            "{line} HTTP/1.1\r\n{}\r\n",
+            headers.iter().map(|header| format!("{header}\r\n")).collect::<String>()
+        )
+        .unwrap();
+        let mut answer = String::new();
+        stream.read_to_string(&mut answer).unwrap();
+        answer
+    }
+
+    /// Asks for the bridge as the page does, with other headers in place of those of the same name.
+    fn bridge(&self, origin: &str, token: &str) -> Result<WebSocket<TcpStream>, u16> {
+        let url = format!("ws://{}/serial?token={token}", self.host);
+        let mut request = url.into_client_request().unwrap();
+        request.headers_mut().insert("Origin", origin.parse().unwrap());
+        let stream = TcpStream::connect(&self.host).unwrap();
+        stream.set_read_timeout(Some(Duration::from_secs(5))).unwrap();
+        match client(request, stream) {
+            Ok((socket, _)) => Ok(socket),
+            Err(tungstenite::HandshakeError::Failure(Error::Http(response))) => Err(response.status().as_u16()),
+            Err(error) => panic!("{error}"),
+        }
+    }
+
+    fn origin(&self) -> String {
+        format!("http://{}", self.host)
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        self.is_over.store(true, Ordering::Relaxed);
+        let ended = self.thread.take().map(JoinHandle::join);
+        assert!(thread::panicking() || ended.unwrap().is_ok());
+    }
+}
+
+fn status(answer: &str) -> &str {
+    answer.split(' ').nth(1).unwrap_or_default()
+}
+
+#[test]
+fn the_page_is_served_to_its_own_address_only() {
+    let studio = Running::new(None);
+    let own = format!("Host: {}", studio.host);
+    let answer = studio.answer("GET /", &[own.clone()]);
+    assert_eq!(status(&answer), "200", "{answer}");
+    assert_eq!(answer.split_once("\r\n\r\n").unwrap().1.as_bytes(), PAGE);
+    for (line, headers, expected) in [
+        ("GET /", vec!["Host: evil.example".to_owned()], "403"),
+        ("GET /", vec![], "403"),
+        ("GET /", vec![own.clone(), "Host: evil.example".to_owned()], "403"),
+        ("POST /", vec![own.clone()], "405"),
+        ("GET /../Cargo.toml", vec![own.clone()], "404"),
+        ("rubbish", vec![], "400"),
+    ] {
+        let answer = studio.answer(line, &headers);
+        assert_eq!(status(&answer), expected, "{line} {headers:?}: {answer}");
+        assert!(!answer.contains("the page</title>"), "{answer}");
+    }
+}
+
+#[test]
+fn only_the_page_with_its_token_gets_the_bridge() {
+    let terminal = PseudoTerminal::open().unwrap();
+    let studio = Running::new(Some(terminal.path()));
+    assert_eq!(studio.token.len(), 32);
+    assert_ne!(Running::new(Some(terminal.path())).token, studio.token);
+    assert_eq!(studio.bridge("http://evil.example", &studio.token).err(), Some(403));
+    assert_eq!(studio.bridge("null", &studio.token).err(), Some(403));
+    assert_eq!(studio.bridge(&studio.origin(), "").err(), Some(403));
+    assert_eq!(studio.bridge(&studio.origin(), &"0".repeat(32)).err(), Some(403));
+    let first = studio.bridge(&studio.origin(), &studio.token);
+    assert!(first.is_ok());
+    assert_eq!(studio.bridge(&studio.origin(), &studio.token).err(), Some(409), "one page at a time");
+    let without_port = Running::new(None);
+    assert_eq!(without_port.bridge(&without_port.origin(), &without_port.token).err(), Some(404));
+}
+
+#[test]
+fn the_bridge_carries_bytes_both_ways_and_adds_none() {
+    let mut terminal = PseudoTerminal::open().unwrap();
+    let studio = Running::new(Some(terminal.path()));
+    let mut socket = studio.bridge(&studio.origin(), &studio.token).unwrap();
+    let sent: Vec<u8> = (0..=255).collect();
+    socket.send(Message::binary(sent.clone())).unwrap();
+    let mut arrived = Vec::new();
+    let begin = Instant::now();
+    while arrived.len() < sent.len() && begin.elapsed() < Duration::from_secs(5) {
+        let mut buffer = [0; 512];
+        let len = terminal.read(&mut buffer).unwrap();
+        arrived.extend_from_slice(&buffer[..len]);
+    }
+    assert_eq!(arrived, sent);
+    assert_eq!(terminal.write(&sent).unwrap(), sent.len());
+    let mut returned = Vec::new();
+    while returned.len() < sent.len() {
+        returned.extend(socket.read().unwrap().into_data());
+    }
+    assert_eq!(returned, sent);
+    // Silence stays silence: the bridge keeps no board alive.
+    thread::sleep(Duration::from_millis(300));
+    assert_eq!(terminal.read(&mut [0; 512]).unwrap(), 0);
+}

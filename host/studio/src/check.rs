@@ -1,0 +1,75 @@
+//! What `frixel scene check` says of a scene.
+
+use frixel_driver::{Device, DeviceError, PollingLink};
+use frixel_hil_sim::{BoardMemory, RigConfig};
+use frixel_layers::Scene as WireScene;
+use frixel_scene::check::{BoardCosts, SceneCheck};
+use frixel_scene::{Program, Scene};
+use serde_json::{Value, json};
+
+use crate::answer::{Problem, problems};
+use crate::host::{self, HostError};
+use crate::layers::layers;
+use crate::program::compiled;
+use crate::request::Request;
+use crate::rig_stream::RigStream;
+
+/// Checks the scene of a request, as JSON: `ok`, `problems`, and for a scene without mistakes also `screen`, `layers`,
+/// `report` (the text of `frixel scene check`), and in newtons `lowN`, `highN` (what the scene asks for) and `reachN`.
+pub fn check(request: &Request) -> Value {
+    match checked(request) {
+        Ok(answer) => answer,
+        Err(HostError::Program(error)) => json!({ "ok": false, "problems": problems(&error, &request.entry) }),
+        Err(error) => crate::answer::error(&error, &request.entry),
+    }
+}
+
+fn checked(request: &Request) -> Result<Value, HostError> {
+    // The simulated board has the limits of the smallest board.
+    let config = RigConfig::default();
+    let (scene, program) = compiled(request, &config.board.limits, config.board.tick_hz)?;
+    let check = SceneCheck::of(&program, &config.board.limits, &board_costs(&program, &config)?);
+    let text = String::from_utf8_lossy(request.scene().map_err(crate::ProgramError::Request)?);
+    let warnings: Vec<Problem> = check.warnings.iter().cloned().map(Problem::warning).collect();
+    Ok(json!({
+        "ok": true,
+        "problems": warnings,
+        "screen": screen(&scene),
+        "layers": layers(&text, &program, &check.perception),
+        "report": check.summary(),
+        "lowN": check.asked.least_n,
+        "highN": check.asked.most_n,
+        "reachN": check.reach.total_max_n,
+        "naturalN": check.reach.natural_n,
+    }))
+}
+
+fn screen(scene: &Scene) -> Value {
+    json!({ "widthMm": scene.screen().width_mm, "heightMm": scene.screen().height_mm })
+}
+
+/// What a simulated board needs for a program: uploads it once, without playing it.
+fn board_costs(program: &Program, config: &RigConfig) -> Result<BoardCosts, HostError> {
+    let mut memory = BoardMemory::new();
+    let wire_total_bytes = wire_bytes(program, &mut memory, config)?;
+    let scene = program.scene_bytes();
+    // This parse does not fail: the board has just parsed the same bytes.
+    let taken = WireScene::parse(&scene).ok();
+    let active_bytes = taken.as_ref().map_or(0, BoardMemory::bytes_filled);
+    let table = taken.and_then(|scene| BoardMemory::table_rows(&scene, &config.board).ok());
+    let (table_rows, table_rows_whole) = table.map_or((0, 0), |rows| (rows.filled, rows.whole));
+    Ok(BoardCosts { wire_total_bytes, active_bytes, table_rows, table_rows_whole })
+}
+
+/// Bytes that the host sends, without the hello, until an empty board has accepted a scene.
+fn wire_bytes(program: &Program, memory: &mut BoardMemory, config: &RigConfig) -> Result<usize, HostError> {
+    let stream = RigStream::new(memory, config, 1)?;
+    let mut device = Device::connect(PollingLink::new(stream)).map_err(HostError::Device)?;
+    let before = device.counters().wire_bytes;
+    let upload = |device: &mut Device<_>| -> Result<(), DeviceError> {
+        device.disarm()?;
+        host::upload(device, program)
+    };
+    upload(&mut device).map_err(HostError::Refused)?;
+    Ok((device.counters().wire_bytes - before) as usize)
+}

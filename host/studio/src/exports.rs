@@ -1,0 +1,327 @@
+//! The exports of the module: plain numbers in and out, and one buffer in each direction.
+//!
+//! The page calls [`input`] for a buffer of a length, fills it, and calls an export. Afterwards [`output`] and
+//! [`output_len`] say where the answer is. An export returns 0, or 1 when the answer is a JSON text with `error`.
+//! Unless its documentation says otherwise, an export's input is a [`Request`] and its answer JSON.
+//!
+//! The functions are also callable natively; only their names are for the page.
+#![allow(unsafe_code, reason = "an export needs a name that the linker keeps; nothing else in this file is unsafe")]
+
+use std::cell::RefCell;
+use std::time::Duration;
+
+use frixel_wire::fault::{Fault, Flags, State};
+use frixel_wire::message::Telemetry;
+use serde_json::{Value, json};
+
+use crate::answer;
+use crate::host::{Host, HostError};
+use crate::link_stream::LinkStream;
+use crate::pointer::PointerSample;
+use crate::request::Request;
+use crate::simulator::Simulator;
+
+/// Ticks between two telemetry messages of a board outside of the page: 100 a second.
+const TELEMETRY_TICKS: u32 = 400;
+
+thread_local! {
+    static INPUT: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
+    static OUTPUT: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
+    static SIMULATOR: RefCell<Option<Simulator>> = const { RefCell::new(None) };
+    static HOST: RefCell<Option<Host<LinkStream>>> = const { RefCell::new(None) };
+}
+
+/// Makes the input buffer `len` bytes long, and returns its address.
+#[unsafe(no_mangle)]
+pub extern "C" fn input(len: usize) -> *mut u8 {
+    INPUT.with_borrow_mut(|input| {
+        input.clear();
+        input.resize(len, 0);
+        input.as_mut_ptr()
+    })
+}
+
+/// Address of the last answer.
+#[unsafe(no_mangle)]
+pub extern "C" fn output() -> *const u8 {
+    OUTPUT.with_borrow(|output| output.as_ptr())
+}
+
+/// Length of the last answer.
+#[unsafe(no_mangle)]
+pub extern "C" fn output_len() -> usize {
+    OUTPUT.with_borrow(Vec::len)
+}
+
+/// Writes the message of a panic to the output buffer from now on. The module then traps, and is of no more use.
+#[unsafe(no_mangle)]
+pub extern "C" fn report_panics() {
+    std::panic::set_hook(Box::new(|panic| {
+        let text = json!({ "error": format!("the engine failed: {panic}") }).to_string();
+        OUTPUT.with(|output| {
+            if let Ok(mut output) = output.try_borrow_mut() {
+                *output = text.into_bytes();
+            }
+        });
+    }));
+}
+
+/// [`crate::check`].
+#[unsafe(no_mangle)]
+pub extern "C" fn check() -> i32 {
+    respond(|| Ok(crate::check(&request()?)))
+}
+
+/// The friction map; the answer is numbers, as `map.rs` says.
+#[unsafe(no_mangle)]
+pub extern "C" fn map() -> i32 {
+    respond_bytes(|| crate::map::map(&request()?))
+}
+
+/// [`crate::seeded_hash`], as `hash` in hexadecimal digits.
+#[unsafe(no_mangle)]
+pub extern "C" fn seeded_hash() -> i32 {
+    respond(|| crate::seeded_hash(&request()?).map(|hash| json!({ "hash": format!("{hash:016x}") })))
+}
+
+/// Builds the simulator, whose random numbers are drawn from `seed`, in place of the one before.
+#[unsafe(no_mangle)]
+pub extern "C" fn simulator_start(seed: u32) -> i32 {
+    respond(|| {
+        SIMULATOR.set(Some(Simulator::new(seed.into())?));
+        Ok(json!({}))
+    })
+}
+
+/// Compiles a scene and plays it on the simulator.
+#[unsafe(no_mangle)]
+pub extern "C" fn simulator_play() -> i32 {
+    with_simulator(|simulator| simulator.play(&request()?))
+}
+
+/// Stops the simulator.
+#[unsafe(no_mangle)]
+pub extern "C" fn simulator_stop() -> i32 {
+    with_simulator(|simulator| Ok(simulator.stop()?))
+}
+
+/// Plays the simulator's scene again after a stop.
+#[unsafe(no_mangle)]
+pub extern "C" fn simulator_resume() -> i32 {
+    with_simulator(|simulator| Ok(simulator.resume()?))
+}
+
+/// Carries out a control line, which is the input as text, on the simulator.
+#[unsafe(no_mangle)]
+pub extern "C" fn simulator_control() -> i32 {
+    with_simulator(|simulator| simulator.host_mut().control(&line()))
+}
+
+/// Ticks of the simulator since power-on; 0 without one.
+#[unsafe(no_mangle)]
+pub extern "C" fn simulator_tick() -> f64 {
+    SIMULATOR.with_borrow_mut(|simulator| simulator.as_mut().map_or(0.0, |simulator| simulator.tick() as f64))
+}
+
+/// Adds a sample of the pointer: the finger is to be at this place, in mm, at this tick. A load of 0 N stands for that of
+/// the finger's profile.
+#[unsafe(no_mangle)]
+pub extern "C" fn simulator_pointer(tick: f64, x_mm: f64, y_mm: f64, is_down: u32, load_n: f64) {
+    SIMULATOR.with_borrow_mut(|simulator| {
+        if let Some(simulator) = simulator {
+            let place_m = [1e-3 * x_mm, 1e-3 * y_mm];
+            let normal_load_n = (load_n > 0.0).then_some(load_n);
+            simulator.add_pointer_sample(PointerSample { tick, place_m, is_down: is_down != 0, normal_load_n });
+        }
+    });
+}
+
+/// Lifts the finger, and forgets the samples of the pointer that are still ahead.
+#[unsafe(no_mangle)]
+pub extern "C" fn simulator_lift() {
+    SIMULATOR.with_borrow_mut(|simulator| {
+        if let Some(simulator) = simulator {
+            simulator.pointer_mut().clear();
+        }
+    });
+}
+
+/// Lets so many ticks pass; the host lives in them only if `is_alive` is not 0. The answer is what was felt:
+///
+/// - eight 64-bit floats: tick, first tick of the samples, ticks per sample, number of samples, number of sound samples,
+///   state, fault (0 for none), whether the finger is down;
+/// - 32-bit floats, all samples of one quantity after another: place x and y in mm, speed in mm/s, reference and felt
+///   friction in N, voltage in V rms; then the sound in N, one for each tick.
+#[unsafe(no_mangle)]
+pub extern "C" fn simulator_run(ticks: u32, is_alive: u32) -> i32 {
+    respond_bytes(|| {
+        SIMULATOR.with_borrow_mut(|simulator| {
+            let simulator = simulator.as_mut().ok_or(HostError::NoBoard)?;
+            simulator.run(ticks, is_alive != 0)?;
+            Ok(simulator.take_frame())
+        })
+    })
+}
+
+/// Connects to the board at the other end of the stream. Suspends.
+///
+/// The answer has `driving`, a sentence, `isSimulated`, and `voltageMaxV`, the largest peak voltage of the board.
+#[unsafe(no_mangle)]
+pub extern "C" fn host_connect() -> i32 {
+    respond(|| {
+        HOST.set(None);
+        let mut host = Host::connect(LinkStream::new())?;
+        host.subscribe(TELEMETRY_TICKS)?;
+        let answer = driving(&host);
+        HOST.set(Some(host));
+        Ok(answer)
+    })
+}
+
+/// Disconnects, which stops and disarms the board.
+#[unsafe(no_mangle)]
+pub extern "C" fn host_disconnect() {
+    HOST.set(None);
+}
+
+/// Compiles a scene for the board and loads it. Suspends.
+#[unsafe(no_mangle)]
+pub extern "C" fn host_load() -> i32 {
+    with_host(|host| {
+        host.load(&request()?)?;
+        Ok(json!({}))
+    })
+}
+
+/// Arms the board and plays the loaded scene. Suspends.
+#[unsafe(no_mangle)]
+pub extern "C" fn host_play() -> i32 {
+    with_host(|host| {
+        host.arm_and_play()?;
+        Ok(json!({}))
+    })
+}
+
+/// Stops and disarms the board. Suspends.
+#[unsafe(no_mangle)]
+pub extern "C" fn host_stop() -> i32 {
+    with_host(|host| {
+        host.stop()?;
+        Ok(json!({}))
+    })
+}
+
+/// Clears a latched fault whose cause is gone. Suspends.
+#[unsafe(no_mangle)]
+pub extern "C" fn host_clear_fault() -> i32 {
+    with_host(|host| {
+        host.clear_fault()?;
+        Ok(json!({}))
+    })
+}
+
+/// Carries out a control line, which is the input as text. Suspends.
+#[unsafe(no_mangle)]
+pub extern "C" fn host_control() -> i32 {
+    with_host(|host| {
+        host.control(&line())?;
+        Ok(json!({}))
+    })
+}
+
+/// Keeps the board alive for some milliseconds. Suspends. The answer has `state`, `fault` and `telemetry`.
+#[unsafe(no_mangle)]
+pub extern "C" fn host_wait(wait_ms: f64) -> i32 {
+    with_host(|host| {
+        host.wait(Duration::from_secs_f64(1e-3 * wait_ms.max(0.0)))?;
+        let natural_n = host.natural_friction_n();
+        let telemetry: Vec<Value> = host.take_telemetry().iter().map(|message| telemetry(message, natural_n)).collect();
+        let (state, fault) = host.state();
+        Ok(json!({ "state": state_word(state), "fault": fault.map(sentence), "telemetry": telemetry }))
+    })
+}
+
+/// The word and the sentence of a state and a fault by number, for the simulator's numbers.
+#[unsafe(no_mangle)]
+pub extern "C" fn state_words(state: u32, fault: u32) -> i32 {
+    respond(|| {
+        let state = u8::try_from(state).ok().and_then(|state| State::try_from(state).ok());
+        let fault = u8::try_from(fault).ok().and_then(|fault| Fault::try_from(fault).ok());
+        Ok(json!({ "state": state.map(state_word), "fault": fault.map(sentence) }))
+    })
+}
+
+fn driving<S: frixel_driver::ByteStream + crate::host::SceneListener>(host: &Host<S>) -> Value {
+    let hello = host.hello();
+    let voltage_v = hello.limits.voltage_max_v_peak;
+    let is_simulated = hello.board.is_simulated();
+    let board = hello.board;
+    let sentence = if is_simulated {
+        format!("{board}, which has no electrode")
+    } else {
+        format!("{board} with an electrode, up to {voltage_v} V peak")
+    };
+    json!({ "driving": sentence, "isSimulated": is_simulated, "voltageMaxV": voltage_v })
+}
+
+fn state_word(state: State) -> &'static str {
+    match state {
+        State::Disarmed => "disarmed",
+        State::Armed => "armed",
+        State::Active => "active",
+        State::Faulted => "faulted",
+    }
+}
+
+fn sentence(fault: Fault) -> String {
+    fault.to_string()
+}
+
+/// A telemetry message. The board reports the electric part of its target; `natural_n` is the rest.
+fn telemetry(telemetry: &Telemetry, natural_n: f64) -> Value {
+    json!({
+        "tick": telemetry.tick,
+        "xMm": 1e3 * f64::from(telemetry.finger_x_m),
+        "yMm": 1e3 * f64::from(telemetry.finger_y_m),
+        "speedMmPerS": 1e3 * f64::from(telemetry.speed_m_per_s),
+        "isTouched": !telemetry.flags.contains(Flags::NO_FINGER),
+        "referenceN": natural_n + f64::from(telemetry.asked_electric_friction_n),
+        "voltageV": telemetry.voltage_v_rms,
+    })
+}
+
+fn request() -> Result<Request, HostError> {
+    let request = INPUT.with_borrow(|input| Request::parse(input));
+    request.map_err(|error| HostError::Program(error.into()))
+}
+
+fn line() -> String {
+    INPUT.with_borrow(|input| String::from_utf8_lossy(input).into_owned())
+}
+
+fn with_simulator(act: impl FnOnce(&mut Simulator) -> Result<(), HostError>) -> i32 {
+    respond(|| {
+        SIMULATOR.with_borrow_mut(|simulator| act(simulator.as_mut().ok_or(HostError::NoBoard)?))?;
+        Ok(json!({}))
+    })
+}
+
+fn with_host(act: impl FnOnce(&mut Host<LinkStream>) -> Result<Value, HostError>) -> i32 {
+    respond(|| HOST.with_borrow_mut(|host| act(host.as_mut().ok_or(HostError::NoBoard)?)))
+}
+
+fn respond(act: impl FnOnce() -> Result<Value, HostError>) -> i32 {
+    respond_bytes(|| act().map(|answer| answer.to_string().into_bytes()))
+}
+
+fn respond_bytes(act: impl FnOnce() -> Result<Vec<u8>, HostError>) -> i32 {
+    let (bytes, code) = match act() {
+        Ok(bytes) => (bytes, 0),
+        Err(error) => {
+            let entry = request().map_or(String::new(), |request| request.entry);
+            (answer::error(&error, &entry).to_string().into_bytes(), 1)
+        }
+    };
+    OUTPUT.set(bytes);
+    code
+}

@@ -1,0 +1,37 @@
+//! The engine of the studio, frixel's page: compiler, driver and simulator as one WebAssembly module.
+//!
+//! The module's exports take and return plain numbers. Larger values cross in two buffers, one for each direction
+//! ([`exports`] says how). No glue code is generated: `web/engine` has the three JavaScript files that use the exports,
+//! and `web/engine/README.md` says what a page can do with them.
+//!
+//! A page loads the module several times, and each instance does one of these things:
+//!
+//! - it checks scenes and draws their maps (`check`, `map`), which needs no state;
+//! - it is the simulated board (`simulator`): firmware and world in virtual time, with its host in the same instance;
+//! - it is the host of a board at the other end of a byte stream (`host` over `link_stream`). Reading such a stream
+//!   suspends the module until bytes arrive, which needs a browser with JSPI.
+//!
+//! The simulator's host and the host of a real board are the same code; only the [`ByteStream`](frixel_driver::ByteStream)
+//! differs.
+#![deny(unsafe_code)]
+
+mod answer;
+mod check;
+pub mod exports;
+mod felt;
+mod host;
+mod layers;
+mod link_stream;
+mod map;
+mod pointer;
+mod program;
+mod request;
+mod rig_stream;
+mod seeded;
+mod simulator;
+
+pub use check::check;
+pub use host::HostError;
+pub use program::ProgramError;
+pub use request::{Numbers, Request, RequestError};
+pub use seeded::seeded_hash;

@@ -1,0 +1,91 @@
+//! The byte stream to a board outside of the page: `host.js` moves its bytes.
+//!
+//! Reading suspends the whole module until bytes arrive or the time is over (JSPI). Meanwhile no other export of the
+//! instance may be called.
+
+use std::time::Duration;
+
+use frixel_driver::{ByteStream, LinkClosed};
+use frixel_scene::Program;
+
+use crate::host::SceneListener;
+
+/// Bytes that one read takes at most.
+const READ_MAX: usize = 4_096;
+/// What `link_read` returns when the other end has closed the stream.
+const CLOSED: i32 = -1;
+
+/// The stream that `host.js` has connected this instance to.
+pub(crate) struct LinkStream {
+    buffer: Box<[u8; READ_MAX]>,
+}
+
+impl LinkStream {
+    pub(crate) fn new() -> Self {
+        Self { buffer: Box::new([0; READ_MAX]) }
+    }
+}
+
+fn closed() -> LinkClosed {
+    LinkClosed { port: "the port".to_owned(), reason: "the other end closed it".to_owned() }
+}
+
+impl ByteStream for LinkStream {
+    fn write(&mut self, bytes: &[u8]) -> Result<(), LinkClosed> {
+        imports::link_write(bytes.as_ptr(), bytes.len());
+        Ok(())
+    }
+
+    fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed> {
+        let wait_ms = 1e3 * wait.as_secs_f64();
+        let found = imports::link_read(self.buffer.as_mut_ptr(), READ_MAX, wait_ms);
+        if found == CLOSED {
+            return Err(closed());
+        }
+        buffer.extend(self.buffer.iter().take(found as usize));
+        Ok(())
+    }
+
+    fn now(&self) -> Duration {
+        Duration::from_secs_f64(imports::link_now_ms().max(0.0) * 1e-3)
+    }
+
+    fn name(&self) -> &'static str {
+        "the port"
+    }
+}
+
+impl SceneListener for LinkStream {
+    fn scene_replaced(&mut self, _program: &Program) {}
+
+    fn layer_changed(&mut self, _layer: u8, _is_on: bool, _gain: f32) {}
+}
+
+#[cfg(target_family = "wasm")]
+#[allow(unsafe_code, reason = "imports need a declaration; each is safe to call with a buffer of this module")]
+mod imports {
+    #[link(wasm_import_module = "link")]
+    unsafe extern "C" {
+        /// Sends bytes.
+        pub(super) safe fn link_write(bytes: *const u8, len: usize);
+        /// Suspends until bytes have arrived, at most `wait_ms`, and returns how many of them it has put into the
+        /// buffer; -1 when the stream is closed.
+        pub(super) safe fn link_read(buffer: *mut u8, len: usize, wait_ms: f64) -> i32;
+        /// Time since a fixed moment, ms.
+        pub(super) safe fn link_now_ms() -> f64;
+    }
+}
+
+/// Outside of a page there is no stream.
+#[cfg(not(target_family = "wasm"))]
+mod imports {
+    pub(super) fn link_write(_bytes: *const u8, _len: usize) {}
+
+    pub(super) fn link_read(_buffer: *mut u8, _len: usize, _wait_ms: f64) -> i32 {
+        super::CLOSED
+    }
+
+    pub(super) fn link_now_ms() -> f64 {
+        0.0
+    }
+}

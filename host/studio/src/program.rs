@@ -1,0 +1,42 @@
+//! From a request to a compiled scene.
+
+use frixel_scene::{CompileError, FingerProfile, Program, Scene, Screen, compile};
+use frixel_wire::hello::BoardLimits;
+use thiserror::Error;
+
+use crate::request::{Request, RequestError};
+
+/// Why a request gives no program.
+#[derive(Debug, Error)]
+pub enum ProgramError {
+    /// The request itself is wrong.
+    #[error(transparent)]
+    Request(#[from] RequestError),
+    /// The scene or a profile has mistakes.
+    #[error(transparent)]
+    Compile(#[from] CompileError),
+}
+
+/// Compiles the scene of a request for boards with these limits and a tick rate in Hz, for the finger and the screen of
+/// the request. Returns the scene as well.
+pub(crate) fn compiled(
+    request: &Request,
+    limits: &BoardLimits,
+    tick_hz: u32,
+) -> Result<(Scene, Program), ProgramError> {
+    let mut scene = Scene::parse_bytes(request.scene()?, &request.entry, &request.files)?;
+    if let Some(screen) = &request.screen {
+        scene = match Screen::bundled(screen) {
+            Some(profile) => scene.with_screen(profile, screen)?,
+            None => scene.with_screen(Screen::parse(screen, "screen")?, "screen")?,
+        };
+    }
+    if let Some(finger) = &request.finger {
+        scene = match FingerProfile::bundled(finger) {
+            Some(profile) => scene.with_finger(profile, finger)?,
+            None => scene.with_finger(FingerProfile::parse(finger, "finger")?, "finger")?,
+        };
+    }
+    let program = compile(&scene, limits, tick_hz)?;
+    Ok((scene, program))
+}

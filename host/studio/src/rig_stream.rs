@@ -1,0 +1,120 @@
+//! The serial line to the in-process rig, on the rig's clock, with the pointer's finger in its world.
+
+use std::time::Duration;
+
+use frixel_driver::{ByteStream, LinkClosed};
+use frixel_hil_sim::{BoardMemory, FingerState, Point, Rig, RigConfig, Stroke, TickRecord};
+use frixel_scene::Program;
+use frixel_scene::reference::Reference;
+use frixel_wire::fault::{Fault, State};
+
+use crate::felt::FeltRecorder;
+use crate::host::{HostError, SceneListener};
+use crate::pointer::{Finger, Pointer};
+
+/// The line to a simulated board. Each tick of virtual time passes in [`Self::step`].
+pub(crate) struct RigStream<'a> {
+    rig: Rig<'a>,
+    /// The finger on the screen.
+    pub(crate) pointer: Pointer,
+    /// What it felt.
+    pub(crate) felt: FeltRecorder,
+    /// The record of the last tick.
+    last: Option<TickRecord>,
+}
+
+impl<'a> RigStream<'a> {
+    pub(crate) fn new(memory: &'a mut BoardMemory, config: &RigConfig, seed: u64) -> Result<Self, HostError> {
+        // The pointer moves the finger; the world's own stroke never starts.
+        let stroke = Stroke::still(Point { x_m: 0.0, y_m: 0.0 }, 1.0).map_err(HostError::Stroke)?;
+        let rig = Rig::new(memory, config, stroke, seed).map_err(HostError::World)?;
+        let felt = FeltRecorder::new(rig.tick_hz());
+        Ok(Self { rig, pointer: Pointer::default(), felt, last: None })
+    }
+
+    /// Ticks since power-on.
+    pub(crate) fn tick(&self) -> u64 {
+        self.rig.tick()
+    }
+
+    /// Whether the finger was on the screen in the last tick.
+    pub(crate) fn is_touched(&self) -> bool {
+        self.last.is_some_and(|last| last.felt.finger.is_some())
+    }
+
+    /// The board's state and latched fault after the last tick.
+    pub(crate) fn state(&self) -> (State, Option<Fault>) {
+        let Some(TickRecord { status, .. }) = self.last else { return (State::Disarmed, None) };
+        let state = status.telemetry.state;
+        (state, status.fault.map(|(fault, _)| fault).filter(|_| state == State::Faulted))
+    }
+
+    /// Passes one tick.
+    pub(crate) fn step(&mut self) -> TickRecord {
+        let tick_hz = f64::from(self.rig.tick_hz());
+        let finger = self.pointer.at(self.rig.tick() as f64);
+        let world = self.rig.world_mut();
+        match finger {
+            None => world.lift_finger(),
+            Some(Finger { place_m: [x_m, y_m], speed_m_per_tick, normal_load_n }) => {
+                let state = FingerState { x_m, y_m, speed_m_per_s: speed_m_per_tick * tick_hz };
+                match normal_load_n {
+                    Some(load_n) => world.place_pressing_finger(state, load_n),
+                    None => world.place_finger(state),
+                }
+            }
+        }
+        let record = self.rig.step();
+        self.felt.add(&record);
+        self.last = Some(record);
+        record
+    }
+}
+
+impl RigStream<'_> {
+    /// As [`ByteStream::read`], and calls `observer` with every tick that passes.
+    pub(crate) fn read_observed(
+        &mut self,
+        buffer: &mut Vec<u8>,
+        wait: Duration,
+        observer: &mut dyn FnMut(&TickRecord),
+    ) -> Result<(), LinkClosed> {
+        let end = self.now() + wait;
+        while !self.rig.has_received() && self.now() < end {
+            observer(&self.step());
+        }
+        self.rig.receive(buffer);
+        Ok(())
+    }
+}
+
+impl SceneListener for RigStream<'_> {
+    fn scene_replaced(&mut self, program: &Program) {
+        self.felt.set_reference(Reference::new(program).along_stroke());
+    }
+
+    fn layer_changed(&mut self, layer: u8, is_on: bool, gain: f32) {
+        if let Some(reference) = self.felt.reference_mut() {
+            reference.set_layer(usize::from(layer), is_on, f64::from(gain));
+        }
+    }
+}
+
+impl ByteStream for RigStream<'_> {
+    fn write(&mut self, bytes: &[u8]) -> Result<(), LinkClosed> {
+        self.rig.send(bytes);
+        Ok(())
+    }
+
+    fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed> {
+        self.read_observed(buffer, wait, &mut |_| {})
+    }
+
+    fn now(&self) -> Duration {
+        Duration::from_secs(self.rig.tick()) / self.rig.tick_hz()
+    }
+
+    fn name(&self) -> &'static str {
+        "the simulator"
+    }
+}

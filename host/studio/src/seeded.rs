@@ -1,0 +1,112 @@
+//! One seeded stroke over a scene, as a hash: equal in a page and natively, or one of the crates computes differently in
+//! WebAssembly.
+
+use std::time::Duration;
+
+use frixel_driver::{ByteStream, LinkClosed};
+use frixel_hil_sim::{BoardMemory, RigConfig, TickRecord};
+use frixel_layers::Header;
+use frixel_scene::Program;
+
+use crate::host::{Host, HostError, SceneListener};
+use crate::pointer::PointerSample;
+use crate::request::Request;
+use crate::rig_stream::RigStream;
+
+/// Duration of the finger's way over the screen, ms. It repeats.
+const STROKE_MS: u32 = 400;
+/// Time between two samples of the pointer, ms.
+const SAMPLE_MS: u32 = 8;
+
+/// Plays the scene of a request for its duration, in a natural world with its seed, and returns the FNV-1a hash of
+/// friction, electrode voltage and DAC code at every tick.
+///
+/// The finger moves from the left to the right of the screen and accelerates, and begins again.
+pub fn seeded_hash(request: &Request) -> Result<u64, HostError> {
+    let config = RigConfig::default();
+    let config = RigConfig { world: config.world.natural(), ..config };
+    let mut memory = BoardMemory::new();
+    let mut host = Host::connect(Hashing::new(&mut memory, &config, request.numbers.seed)?)?;
+    let header = host.load(request)?.header;
+    host.arm_and_play()?;
+    let tick_hz = f64::from(host.hello().tick_hz);
+    host.stream_mut().slide(&header, request.numbers.duration_ms, tick_hz);
+    host.wait(Duration::from_millis(request.numbers.duration_ms.into()))?;
+    host.stop()?;
+    Ok(host.stream_mut().hash.0)
+}
+
+/// The line to the rig, with a hash of its ticks.
+struct Hashing<'a> {
+    rig: RigStream<'a>,
+    hash: Hash,
+}
+
+impl<'a> Hashing<'a> {
+    fn new(memory: &'a mut BoardMemory, config: &RigConfig, seed: u64) -> Result<Self, HostError> {
+        Ok(Self { rig: RigStream::new(memory, config, seed)?, hash: Hash::new() })
+    }
+
+    /// Samples of the pointer from now on.
+    fn slide(&mut self, header: &Header, duration_ms: u32, tick_hz: f64) {
+        let start_tick = self.rig.tick() as f64;
+        for t_ms in (0..=duration_ms).step_by(SAMPLE_MS as usize) {
+            let part = f64::from(t_ms % STROKE_MS) / f64::from(STROKE_MS);
+            let (width_m, height_m) = (f64::from(header.screen_width_m), f64::from(header.screen_height_m));
+            let place_m = [width_m * (0.05 + 0.9 * part * part), height_m * (0.4 + 0.2 * part)];
+            // The start tick itself has passed.
+            let tick = start_tick + 1.0 + f64::from(t_ms) * 1e-3 * tick_hz;
+            // The finger lifts before it begins again.
+            let is_down = t_ms % STROKE_MS + SAMPLE_MS < STROKE_MS;
+            self.rig.pointer.add(PointerSample { tick, place_m, is_down, normal_load_n: None }, start_tick);
+        }
+    }
+}
+
+impl SceneListener for Hashing<'_> {
+    fn scene_replaced(&mut self, _program: &Program) {}
+
+    fn layer_changed(&mut self, _layer: u8, _is_on: bool, _gain: f32) {}
+}
+
+impl ByteStream for Hashing<'_> {
+    fn write(&mut self, bytes: &[u8]) -> Result<(), LinkClosed> {
+        self.rig.write(bytes)
+    }
+
+    fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed> {
+        self.rig.read_observed(buffer, wait, &mut |record| self.hash.add(record))
+    }
+
+    fn now(&self) -> Duration {
+        self.rig.now()
+    }
+
+    fn name(&self) -> &str {
+        self.rig.name()
+    }
+}
+
+/// FNV-1a with 64 bits (draft-eastlake-fnv), word by word.
+struct Hash(u64);
+
+impl Hash {
+    const OFFSET_BASIS: u64 = 0xcbf2_9ce4_8422_2325;
+    const PRIME: u64 = 0x0000_0100_0000_01b3;
+
+    fn new() -> Self {
+        Self(Self::OFFSET_BASIS)
+    }
+
+    fn add(&mut self, TickRecord { status, felt, .. }: &TickRecord) {
+        self.add_word(felt.friction_n.to_bits());
+        self.add_word(felt.electrode_v.to_bits());
+        self.add_word(u64::from(status.telemetry.dac_code.cast_unsigned()));
+    }
+
+    fn add_word(&mut self, word: u64) {
+        for byte in word.to_le_bytes() {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(Self::PRIME);
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! The simulated board of the page: firmware and world in virtual time, with its host in the same instance.
+
+use std::time::Duration;
+
+use frixel_driver::DeviceError;
+use frixel_hil_sim::{BoardMemory, RigConfig};
+use frixel_wire::fault::{Fault, State};
+
+use crate::felt::{FeltSamples, TICKS_PER_SAMPLE};
+use crate::host::{Host, HostError};
+use crate::pointer::{Pointer, PointerSample};
+use crate::request::Request;
+use crate::rig_stream::RigStream;
+
+/// Line rate of the simulated port, bits a second: as fast as the rig's line takes bytes. A scene that is replaced is
+/// uploaded in virtual time, ahead of the page's clock, so the upload has to be shorter than the pointer's delay.
+const BAUD: u32 = 20_000_000;
+
+/// The simulated board, its world, and its host.
+pub(crate) struct Simulator {
+    host: Host<RigStream<'static>>,
+    /// Whether the page wants the scene to play.
+    is_wanted: bool,
+}
+
+impl Simulator {
+    /// A board after reset, in a natural world whose random numbers are drawn from `seed`, and its host connected.
+    ///
+    /// The board's memory is never freed: like a real board, an instance of the module has one board.
+    pub(crate) fn new(seed: u64) -> Result<Self, HostError> {
+        let config = RigConfig::default();
+        let config = RigConfig { world: config.world.natural(), baud: BAUD, ..config };
+        let stream = RigStream::new(Box::leak(BoardMemory::new()), &config, seed)?;
+        Ok(Self { host: Host::connect(stream)?, is_wanted: false })
+    }
+
+    /// Ticks since power-on.
+    pub(crate) fn tick(&mut self) -> u64 {
+        self.host.stream_mut().tick()
+    }
+
+    /// The board's state and latched fault.
+    pub(crate) fn state(&mut self) -> (State, Option<Fault>) {
+        self.host.stream_mut().state()
+    }
+
+    /// Whether the finger is on the screen.
+    pub(crate) fn is_touched(&mut self) -> bool {
+        self.host.stream_mut().is_touched()
+    }
+
+    /// The board's host, for control lines.
+    pub(crate) fn host_mut(&mut self) -> &mut Host<RigStream<'static>> {
+        &mut self.host
+    }
+
+    /// Compiles a scene and plays it. With mistakes, the one before plays on.
+    pub(crate) fn play(&mut self, request: &Request) -> Result<(), HostError> {
+        self.host.load(request)?;
+        self.resume()?;
+        Ok(())
+    }
+
+    /// Plays the loaded scene from now on, whatever stopped it.
+    pub(crate) fn resume(&mut self) -> Result<(), DeviceError> {
+        self.is_wanted = true;
+        self.host.arm_and_play()
+    }
+
+    /// Sets the output to zero and disarms the board.
+    pub(crate) fn stop(&mut self) -> Result<(), DeviceError> {
+        self.is_wanted = false;
+        self.host.stop()
+    }
+
+    /// The finger, moved by the page.
+    pub(crate) fn pointer_mut(&mut self) -> &mut Pointer {
+        &mut self.host.stream_mut().pointer
+    }
+
+    /// Adds a sample of the pointer.
+    pub(crate) fn add_pointer_sample(&mut self, sample: PointerSample) {
+        let stream = self.host.stream_mut();
+        let now_tick = stream.tick() as f64;
+        stream.pointer.add(sample, now_tick);
+    }
+
+    /// Lets `ticks` of virtual time pass. The host lives only while `is_alive`: without it, the board hears nothing, and
+    /// its own host timeout sets the output to zero. When the host lives again, a scene that is wanted plays on.
+    pub(crate) fn run(&mut self, ticks: u32, is_alive: bool) -> Result<(), DeviceError> {
+        if !is_alive {
+            for _ in 0..ticks {
+                self.host.stream_mut().step();
+            }
+            return Ok(());
+        }
+        let end = self.tick() + u64::from(ticks);
+        if self.is_wanted && self.host.state().0 == State::Disarmed {
+            self.host.arm_and_play()?;
+        }
+        let left = end.saturating_sub(self.tick());
+        let tick_hz = self.host.hello().tick_hz;
+        self.host.wait(Duration::from_secs(left) / tick_hz)
+    }
+
+    /// Takes what was felt since the last call.
+    pub(crate) fn take_felt(&mut self) -> FeltSamples {
+        self.host.stream_mut().felt.take()
+    }
+
+    /// What was felt since the last call, and the board's state, as the bytes that `board.js` reads.
+    pub(crate) fn take_frame(&mut self) -> Vec<u8> {
+        let (state, fault) = self.state();
+        let is_touched = self.is_touched();
+        let tick = self.tick();
+        let FeltSamples { first_tick, columns, sound_n } = self.take_felt();
+        let head = [
+            tick as f64,
+            first_tick as f64,
+            f64::from(TICKS_PER_SAMPLE),
+            columns[0].len() as f64,
+            sound_n.len() as f64,
+            f64::from(state.number()),
+            fault.map_or(0.0, |fault| f64::from(fault.number())),
+            f64::from(u8::from(is_touched)),
+        ];
+        let values = columns.iter().flatten().chain(&sound_n);
+        head.iter()
+            .flat_map(|number| number.to_le_bytes())
+            .chain(values.flat_map(|value| value.to_le_bytes()))
+            .collect()
+    }
+}

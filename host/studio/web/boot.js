@@ -1,0 +1,52 @@
+// The first script of the page: unpacks the files that the page carries, and starts its module.
+//
+// `cargo xtask studio` puts them into one HTML file. `studio` gives the rest of the page their contents:
+//
+//   await studio.bytes("engine.wasm")          Uint8Array
+//   await studio.text("scenes/brick.toml")     string
+//   studio.names("scenes/")                    the names that begin so, sorted
+//
+// Modules import each other by relative paths; here they become blob URLs, because a page from a file has no others.
+"use strict";
+
+globalThis.studio = (() => {
+  const packed = JSON.parse(document.getElementById("studio-files").textContent);
+  const urls = new Map();
+
+  async function bytes(name) {
+    if (!(name in packed)) throw new Error(`this page carries no file ${name}`);
+    const zipped = Uint8Array.from(atob(packed[name]), (character) => character.charCodeAt(0));
+    const stream = new Blob([zipped]).stream().pipeThrough(new DecompressionStream("gzip"));
+    return new Uint8Array(await new Response(stream).arrayBuffer());
+  }
+
+  async function text(name) {
+    return new TextDecoder().decode(await bytes(name));
+  }
+
+  function names(start = "") {
+    return Object.keys(packed).filter((name) => name.startsWith(start)).sort();
+  }
+
+  /** The URL of a module, whose imports are URLs, too. */
+  function moduleUrl(name) {
+    if (!urls.has(name)) urls.set(name, makeUrl(name));
+    return urls.get(name);
+  }
+
+  async function makeUrl(name) {
+    const parts = (await text(name)).split(/(\b(?:from|import)\s*\(?\s*)"(\.{1,2}\/[^"]+)"/);
+    // Each import splits the text into what is before it, its word, and its path.
+    for (let at = 2; at < parts.length; at += 3) parts[at] = JSON.stringify(await moduleUrl(resolved(parts[at], name)));
+    return URL.createObjectURL(new Blob([parts.join("")], { type: "text/javascript" }));
+  }
+
+  /** The name of the file that a module calls `path`. */
+  function resolved(path, module) {
+    return new URL(path, `file:///${module}`).pathname.slice(1);
+  }
+
+  return { bytes, text, names, moduleUrl };
+})();
+
+studio.moduleUrl(document.currentScript.dataset.entry).then((url) => import(url));

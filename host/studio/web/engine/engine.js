@@ -1,0 +1,242 @@
+// The engine of the studio, as the page uses it: README.md has the contract.
+
+import { serialLine, socketLine } from "./lines.js";
+
+export { bridgeUrl } from "./lines.js";
+
+/** Creates the engine with the simulator as its board. `seed` is that of the simulated world. */
+export async function createEngine({ seed = 1 } = {}) {
+  const module = await WebAssembly.compile(await studio.bytes("engine.wasm"));
+  const engine = new Engine(module, seed);
+  await engine.start();
+  return engine;
+}
+
+/** Whether this browser can wait inside of WebAssembly, which a board outside of the page needs. */
+export const canSuspend = typeof WebAssembly.Suspending === "function";
+
+const NO_JSPI =
+  "This browser cannot connect to a board: it lacks JSPI (Chrome 137, Firefox 153, Safari 27 or newer have it). " +
+  "The simulator plays on.";
+
+class Engine {
+  #module;
+  #seed;
+  #board;
+  #host;
+  /** "simulator", "serial", "socket" or "none" */
+  #link = "simulator";
+  #state = { state: "disarmed", fault: undefined, needsArm: false, driving: "the simulator in this page" };
+
+  onFrames = () => {};
+  onAudio = () => {};
+  onState = () => {};
+  /** A worker has failed: `{ error }`, a sentence. */
+  onFailure = ({ error }) => console.error(error);
+
+  constructor(module, seed) {
+    this.#module = module;
+    this.#seed = seed;
+  }
+
+  async start() {
+    [this.#host, this.#board] = await Promise.all([
+      WorkerClient.start("host", { module: this.#module }, (message) => this.#fromHost(message)),
+      this.#newBoard(),
+    ]);
+    keepAlive((type) => {
+      this.#board.send({ type });
+      this.#host.send({ type });
+    });
+  }
+
+  #newBoard() {
+    return WorkerClient.start("board", { module: this.#module, seed: this.#seed }, (message) => this.#fromBoard(message));
+  }
+
+  #fromBoard(message) {
+    if (message.type === "failure") this.onFailure(message);
+    if (this.#link !== "simulator") return;
+    if (message.type === "frame") {
+      this.onFrames({ ...message.frame, state: this.#state.state });
+      this.onAudio(message.sound, message.soundTick, message.frame.slowness);
+    } else if (message.type === "state") {
+      const { state, fault } = message;
+      this.#report({ state, fault: fault ?? undefined, needsArm: false, driving: "the simulator in this page" });
+    }
+  }
+
+  #fromHost(message) {
+    if (message.type === "failure") this.onFailure(message);
+    if (this.#link === "simulator") return;
+    if (message.type === "frame") {
+      this.onFrames({ ...message.frame, state: this.#state.state });
+    } else if (message.type === "state") {
+      const { state, fault, needsArm, driving } = message;
+      this.#report({ state, fault: fault ?? undefined, needsArm, driving });
+    } else if (message.type === "lost") {
+      this.#link = "none";
+      this.#report({ state: "disarmed", fault: message.error, needsArm: false, driving: "no board" });
+    }
+  }
+
+  #report(state) {
+    const before = JSON.stringify(this.#state) + this.#reportedLink;
+    this.#state = state;
+    this.#reportedLink ??= "";
+    if (JSON.stringify(state) + this.#link !== before) {
+      this.#reportedLink = this.#link;
+      this.onState({ link: this.#link, ...state });
+    }
+  }
+  #reportedLink;
+
+  check(files, entry, profiles) {
+    return this.#host.ask({ type: "check", scene: { files, entry, ...profiles } });
+  }
+
+  map(files, entry, profiles, { widthPx = 1000, heightPx = 800, speedMmPerS = 100 } = {}) {
+    return this.#host.ask({ type: "map", scene: { files, entry, ...profiles, widthPx, heightPx, speedMmPerS } });
+  }
+
+  async seeded(files, entry, seed, durationMs, profiles) {
+    const scene = { files, entry, ...profiles, seed, durationMs };
+    return (await this.#host.ask({ type: "seeded", scene })).hash;
+  }
+
+  /** How many times faster than real time the simulator runs a scene in a worker. */
+  async speed(files, entry, { stretches = 10, stretchMs = 480 } = {}) {
+    return (await this.#host.ask({ type: "speed", scene: { files, entry }, stretches, stretchMs })).timesRealTime;
+  }
+
+  play(files, entry, profiles) {
+    return this.#player.ask({ type: "play", scene: { files, entry, ...profiles } });
+  }
+
+  control(line) {
+    return this.#player.ask({ type: "control", line });
+  }
+
+  stop() {
+    return this.#player.ask({ type: "stop" });
+  }
+
+  arm() {
+    return this.#player.ask({ type: this.#link === "simulator" ? "resume" : "arm" });
+  }
+
+  clearFault() {
+    return this.#host.ask({ type: "clearFault" });
+  }
+
+  pointer({ timeMs, xMm, yMm, down, loadN }) {
+    const sample = { epochMs: performance.timeOrigin + timeMs, xMm, yMm, down, loadN };
+    this.#board.send({ type: "pointer", sample });
+  }
+
+  replay({ slowness = 10 } = {}) {
+    return this.#board.ask({ type: "replay", slowness });
+  }
+
+  /** The worker that plays scenes. */
+  get #player() {
+    return this.#link === "simulator" ? this.#board : this.#host;
+  }
+
+  /** Plays on the simulator, as it is after a reset, and disconnects a board. */
+  async simulate() {
+    await this.#host.ask({ type: "disconnect" });
+    this.#board.terminate();
+    this.#link = "simulator";
+    this.#board = await this.#newBoard();
+    this.#report({ state: "disarmed", fault: undefined, needsArm: false, driving: "the simulator in this page" });
+  }
+
+  connectSerial(port) {
+    return this.#connect("serial", () => serialLine(port));
+  }
+
+  connectSocket(url) {
+    return this.#connect("socket", () => socketLine(url));
+  }
+
+  async #connect(link, open) {
+    if (!canSuspend) throw new Error(NO_JSPI);
+    await this.#board.ask({ type: "stop" });
+    const port = await open();
+    const before = this.#link;
+    this.#link = link;
+    try {
+      await this.#host.ask({ type: "connect", port }, [port]);
+    } catch (error) {
+      this.#link = before;
+      port.postMessage?.(new Uint8Array());
+      throw error;
+    }
+  }
+
+  /** Ends both workers. */
+  close() {
+    this.#board.terminate();
+    this.#host.terminate();
+  }
+}
+
+/** A worker, with promises for its answers. */
+class WorkerClient {
+  #worker;
+  #asked = new Map();
+  #lastId = 0;
+
+  /** Starts the worker of a file of this folder. */
+  static async start(name, settings, onMessage) {
+    // One classic script: from a file, a browser starts no worker that imports modules.
+    const source = `${await studio.text("engine/wasm.js")}\n${await studio.text(`engine/${name}.js`)}`;
+    const url = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
+    const worker = new WorkerClient();
+    worker.#worker = new Worker(url, { name });
+    worker.#worker.onmessage = ({ data }) => (data.type === "answer" ? worker.#settle(data) : onMessage(data));
+    worker.#worker.onerror = ({ message }) => onMessage({ type: "failure", error: `the ${name} worker: ${message}` });
+    await worker.ask({ type: "start", ...settings });
+    URL.revokeObjectURL(url);
+    return worker;
+  }
+
+  send(message) {
+    this.#worker.postMessage(message);
+  }
+
+  ask(message, transfer = []) {
+    const id = ++this.#lastId;
+    return new Promise((resolve, reject) => {
+      this.#asked.set(id, { resolve, reject });
+      this.#worker.postMessage({ ...message, id }, transfer);
+    });
+  }
+
+  #settle({ id, value, error, problems }) {
+    const { resolve, reject } = this.#asked.get(id);
+    this.#asked.delete(id);
+    if (error === undefined) resolve(value);
+    else reject(Object.assign(new Error(error), { problems: problems ?? [] }));
+  }
+
+  terminate() {
+    this.#worker.terminate();
+    for (const { reject } of this.#asked.values()) reject(new Error("the board was reset meanwhile"));
+    this.#asked.clear();
+  }
+}
+
+/** Sends a sign of life from each animation frame of a visible page, and a farewell when it is hidden or left. */
+function keepAlive(send) {
+  const frame = () => {
+    if (document.visibilityState === "visible") send("alive");
+    requestAnimationFrame(frame);
+  };
+  requestAnimationFrame(frame);
+  document.addEventListener("visibilitychange", () => {
+    if (document.visibilityState !== "visible") send("gone");
+  });
+  window.addEventListener("pagehide", () => send("gone"));
+}

@@ -1,0 +1,168 @@
+//! `cargo xtask studio`: the studio as one HTML file that opens from a disk.
+//!
+//! The WebAssembly module, the page's modules, the vendored bundle and the bundled scenes are in it, each compressed and
+//! as text. `host/studio/web/boot.js` unpacks them in the browser.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use sha2::{Digest, Sha256};
+
+use crate::command::{add_target, cargo_in, root, run, target_folder};
+
+const WASM: &str = "wasm32-unknown-unknown";
+/// Cargo profile of the module: small, fast, and without debug information.
+const PROFILE: &str = "studio";
+/// Largest size of the page.
+const PAGE_MAX_LEN: usize = 2_000_000;
+/// Files of the repository that the page carries, beside its modules: folder, ending, and folder in the page.
+const CARRIED: [(&str, &str, &str); 7] = [
+    ("host/studio/web", "js", ""),
+    ("host/studio/vendor", "js", "vendor/"),
+    ("docs", "json", "docs/"),
+    ("scenes", "toml", "scenes/"),
+    ("scenes/textures", "png", "scenes/textures/"),
+    ("scenes/fingers", "toml", "scenes/fingers/"),
+    ("scenes/screens", "toml", "scenes/screens/"),
+];
+/// Folders below these that are no part of the page.
+const IGNORED: [&str; 2] = ["node_modules", "src"];
+
+/// Builds the page, and returns its path.
+pub(crate) fn build() -> Result<PathBuf, String> {
+    let mut files = BTreeMap::from([("engine.wasm".to_owned(), module()?)]);
+    for (folder, ending, prefix) in CARRIED {
+        collect(&root().join(folder), ending, prefix, folder == "host/studio/web", &mut files)?;
+    }
+    let web = root().join("host/studio/web");
+    let page = page(&text(&web.join("index.html"))?, &web, &files)?;
+    if page.len() > PAGE_MAX_LEN {
+        return Err(format!("the page has {} bytes, more than the {PAGE_MAX_LEN} that it may have", page.len()));
+    }
+    let path = target_folder().join("studio/frixel-studio.html");
+    let folder = path.parent().unwrap_or(Path::new("."));
+    fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    fs::write(&path, &page).map_err(|error| format!("{}: {error}", path.display()))?;
+    eprintln!("{} bytes", page.len());
+    path.canonicalize().map_err(|error| format!("{}: {error}", path.display()))
+}
+
+/// Compiles the WebAssembly module and reads it.
+fn module() -> Result<Vec<u8>, String> {
+    add_target(WASM)?;
+    let build = ["build", "--locked", "--package", "frixel-studio", "--lib", "--profile", PROFILE, "--target", WASM];
+    run("studio for WebAssembly", cargo_in(".").args(build))?;
+    bytes(&target_folder().join(WASM).join(PROFILE).join("frixel_studio.wasm"))
+}
+
+/// Adds the files of a folder with this ending, and of the folders below if `is_deep`.
+fn collect(
+    folder: &Path,
+    ending: &str,
+    prefix: &str,
+    is_deep: bool,
+    files: &mut BTreeMap<String, Vec<u8>>,
+) -> Result<(), String> {
+    if !folder.is_dir() {
+        return Ok(());
+    }
+    let entries = fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    for entry in entries {
+        let path = entry.map_err(|error| format!("{}: {error}", folder.display()))?.path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        if path.is_dir() && is_deep && !IGNORED.contains(&name.as_str()) {
+            collect(&path, ending, &format!("{prefix}{name}/"), is_deep, files)?;
+        } else if path.is_file() && path.extension().is_some_and(|extension| extension == ending) {
+            files.insert(format!("{prefix}{name}"), bytes(&path)?);
+        }
+    }
+    Ok(())
+}
+
+/// Joins the page: styles in place, the packed files, and the script that unpacks them in place of the page's module.
+fn page(index: &str, web: &Path, files: &BTreeMap<String, Vec<u8>>) -> Result<String, String> {
+    let boot = files.get("boot.js").ok_or("host/studio/web has no boot.js")?;
+    let boot = String::from_utf8_lossy(boot);
+    let carried = files.iter().filter(|(name, _)| *name != "boot.js");
+    let packed: serde_json::Map<String, serde_json::Value> =
+        carried.map(|(name, content)| Ok((name.clone(), packed(content)?.into()))).collect::<Result<_, String>>()?;
+    let packed = serde_json::Value::Object(packed);
+    let index = with_styles(index, web)?;
+    let (before, entry, behind) = around(&index, "<script type=\"module\" src=\"", "\"></script>")
+        .ok_or("index.html has no <script type=\"module\" src=\"...\"></script>")?;
+    let scripts = format!(
+        "<script type=\"application/json\" id=\"studio-files\">{packed}</script>\n    \
+         <script data-entry=\"{entry}\">{boot}</script>"
+    );
+    let page = format!("{before}{scripts}{behind}");
+    let policy = format!("<meta http-equiv=\"Content-Security-Policy\" content=\"{}\" />", policy(&boot));
+    let (before, behind) = page.split_once("<head>").ok_or("index.html has no <head>")?;
+    Ok(format!("{before}<head>\n    {policy}{behind}"))
+}
+
+/// What the page may load: nothing but what it carries, and the bridge of `frixel studio` where it was served by it.
+fn policy(boot: &str) -> String {
+    let boot = STANDARD.encode(Sha256::digest(boot.as_bytes()));
+    format!(
+        "default-src 'none'; script-src 'sha256-{boot}' blob: data: 'wasm-unsafe-eval'; worker-src blob:; \
+         style-src 'unsafe-inline'; img-src blob: data:; connect-src 'self'; form-action 'none'; base-uri 'none'"
+    )
+}
+
+/// Puts the style sheets that a page links into it.
+fn with_styles(index: &str, web: &Path) -> Result<String, String> {
+    let mut page = index.to_owned();
+    while let Some((before, name, behind)) = around(&page, "<link rel=\"stylesheet\" href=\"", "\"") {
+        let behind = behind.split_once('>').map_or("", |(_, behind)| behind);
+        let style = text(&web.join(name))?;
+        page = format!("{before}<style>\n{style}</style>{behind}");
+    }
+    Ok(page)
+}
+
+/// What is before the first `start`, between it and the next `end`, and behind that.
+fn around<'t>(text: &'t str, start: &str, end: &str) -> Option<(&'t str, &'t str, &'t str)> {
+    let (before, rest) = text.split_once(start)?;
+    let (within, behind) = rest.split_once(end)?;
+    Some((before, within, behind))
+}
+
+/// Bytes compressed by gzip, in base64.
+fn packed(content: &[u8]) -> Result<String, String> {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
+    let zipped = encoder.write_all(content).and_then(|()| encoder.finish());
+    zipped.map(|zipped| STANDARD.encode(zipped)).map_err(|error| format!("gzip: {error}"))
+}
+
+fn bytes(path: &Path) -> Result<Vec<u8>, String> {
+    fs::read(path).map_err(|error| format!("{}: {error}", path.display()))
+}
+
+fn text(path: &Path) -> Result<String, String> {
+    fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_page_has_its_files_one_script_and_no_link() {
+        let files = BTreeMap::from([
+            ("boot.js".to_owned(), b"start();".to_vec()),
+            ("main.js".to_owned(), b"import './a.js';".to_vec()),
+        ]);
+        let index = "<html><head></head><body><script type=\"module\" src=\"main.js\"></script></body></html>";
+        let page = page(index, Path::new("."), &files).unwrap();
+        assert!(page.contains("<script data-entry=\"main.js\">start();</script></body>"), "{page}");
+        assert!(page.contains("id=\"studio-files\">{\"main.js\":\""), "{page}");
+        // printf 'start();' | openssl dgst -sha256 -binary | base64
+        assert!(page.contains("'sha256-E6jQvrT2ZivWG9GJ4AAEZf4MhI7l3QkLroW4hgvUT4c='"), "{page}");
+    }
+}

@@ -1,0 +1,76 @@
+//! The browser tests of the studio: `host/studio/test`, in Chromium, driven by node and playwright-core.
+
+use std::env;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use crate::command::{cargo_in, root, run, target_folder, text_of};
+use crate::outcome::{Outcome, skip};
+use crate::studio;
+
+/// Where Debian installs the browser; CHROMIUM names another.
+const CHROMIUM: &str = "/usr/bin/chromium";
+/// Longest time of one test, ms.
+const TEST_TIMEOUT_MS: u32 = 90_000;
+
+/// Compares the vendored bundle with its lock file, builds the page, and runs the tests in it.
+pub(crate) fn run_all() -> Result<Outcome, String> {
+    if let Some(missing) = missing() {
+        return skip("the studio in a browser", missing);
+    }
+    let vendor = root().join("host/studio/vendor");
+    install(&vendor)?;
+    run("vendored bundle", Command::new("npm").current_dir(&vendor).args(["run", "--silent", "check"]))?;
+    let page = studio::build()?;
+    run("command", cargo_in(".").args(["build", "--locked", "--package", "frixel"]))?;
+    let hashes = target_folder().join("studio/hashes.json");
+    let example = ["run", "--quiet", "--locked", "--package", "frixel-studio", "--example", "seeded_hashes"];
+    fs::write(&hashes, text_of(cargo_in(".").args(example))?)
+        .map_err(|error| format!("{}: {error}", hashes.display()))?;
+    let folder = root().join("host/studio/test");
+    install(&folder)?;
+    let mut node = Command::new("node");
+    node.current_dir(&folder).args(["--test", "--test-concurrency=1"]).arg(format!("--test-timeout={TEST_TIMEOUT_MS}"));
+    node.args(tests(&folder)?);
+    node.env("STUDIO_PAGE", page).env("STUDIO_HASHES", absolute(&hashes)?);
+    node.env("FRIXEL", absolute(&target_folder().join("debug/frixel"))?);
+    run("studio in a browser", &mut node)?;
+    Ok(Outcome::Passed)
+}
+
+/// What has to be installed, if anything is missing.
+fn missing() -> Option<String> {
+    if Command::new("node").arg("--version").output().is_err() || Command::new("npm").arg("--version").output().is_err()
+    {
+        return Some(
+            "node or npm is not installed (Debian: `apt-get install nodejs npm`; node 20 or newer)".to_owned(),
+        );
+    }
+    let chromium = env::var_os("CHROMIUM").unwrap_or_else(|| CHROMIUM.into());
+    let is_there = Path::new(&chromium).is_file();
+    (!is_there).then(|| "Chromium is not installed (Debian: `apt-get install chromium`, or set CHROMIUM)".to_owned())
+}
+
+/// Installs the packages of the lock file, unless they are there.
+fn install(folder: &Path) -> Result<(), String> {
+    // npm writes this file last, so it is newer than the lock file that it was made from.
+    let modified = |name: &str| fs::metadata(folder.join(name)).and_then(|metadata| metadata.modified()).ok();
+    if modified("node_modules/.package-lock.json") >= modified("package-lock.json") {
+        return Ok(());
+    }
+    run("node packages", Command::new("npm").current_dir(folder).args(["ci", "--no-audit", "--no-fund"]))
+}
+
+/// The names of the test files, sorted.
+fn tests(folder: &Path) -> Result<Vec<String>, String> {
+    let entries = fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let mut names: Vec<String> = names.filter(|name| name.ends_with(".test.mjs")).collect();
+    names.sort();
+    Ok(names)
+}
+
+fn absolute(path: &Path) -> Result<std::path::PathBuf, String> {
+    path.canonicalize().map_err(|error| format!("{}: {error}", path.display()))
+}
