@@ -22,9 +22,10 @@ const PROFILE: &str = "studio";
 /// Largest size of the page.
 const PAGE_MAX_LEN: usize = 2_000_000;
 /// Files of the repository that the page carries, beside its modules: folder, ending, and folder in the page.
-const CARRIED: [(&str, &str, &str); 6] = [
+const CARRIED: [(&str, &str, &str); 7] = [
     ("host/studio/web", "js", ""),
     ("host/studio/vendor", "js", "vendor/"),
+    ("docs", "json", "docs/"),
     ("scenes", "toml", "scenes/"),
     ("scenes/textures", "png", "scenes/textures/"),
     ("scenes/fingers", "toml", "scenes/fingers/"),

@@ -14,11 +14,14 @@ const CHROMIUM: &str = "/usr/bin/chromium";
 /// Longest time of one test, ms.
 const TEST_TIMEOUT_MS: u32 = 90_000;
 
-/// Builds the page, and runs the tests in it.
+/// Compares the vendored bundle with its lock file, builds the page, and runs the tests in it.
 pub(crate) fn run_all() -> Result<Outcome, String> {
     if let Some(missing) = missing() {
         return skip("the studio in a browser", missing);
     }
+    let vendor = root().join("host/studio/vendor");
+    install(&vendor)?;
+    run("vendored bundle", Command::new("npm").current_dir(&vendor).args(["run", "--silent", "check"]))?;
     let page = studio::build()?;
     run("command", cargo_in(".").args(["build", "--locked", "--package", "frixel"]))?;
     let hashes = target_folder().join("studio/hashes.json");

@@ -1,0 +1,97 @@
+// The board that plays: the simulator in the page, or one on a serial port or behind `frixel studio`.
+
+import { bridgeUrl } from "../engine/engine.js";
+import { attempt, byId, element } from "./dom.js";
+
+const WORDS = { active: "playing", armed: "armed", disarmed: "disarmed", faulted: "faulted" };
+
+export class Board {
+  #engine;
+  #dialog = byId("board-dialog");
+  #link = "simulator";
+  /** The bridge of `frixel studio`, or null; read at the start, since a shared scene takes its place in the address. */
+  #bridge = bridgeUrl();
+  /** Another board is connected: the scene is played there. */
+  onBoard = () => {};
+
+  constructor(engine) {
+    this.#engine = engine;
+    engine.onState = (state) => this.#show(state);
+    this.#show({ link: "simulator", state: "disarmed", needsArm: false, driving: "the simulator in this page" });
+    byId("open-board").onclick = () => this.#open();
+    byId("arm").onclick = () => attempt(() => engine.arm());
+    byId("stop").onclick = () => attempt(() => (byId("stop").dataset.stopped ? this.#resume() : engine.stop()));
+  }
+
+  get isSimulator() {
+    return this.#link === "simulator";
+  }
+
+  /** Takes the drive off a real board before something that nobody here wrote is played. */
+  async disarmBeforeForeignScene() {
+    if (!this.isSimulator) await this.#engine.stop().catch(() => {});
+  }
+
+  #resume() {
+    return this.#engine.arm();
+  }
+
+  #show({ link, state, fault, needsArm, driving }) {
+    this.#link = link;
+    const board = byId("board");
+    board.dataset.state = state;
+    document.documentElement.dataset.state = state;
+    const name = link === "simulator" ? "Simulator" : driving;
+    board.textContent = `${name}: ${WORDS[state] ?? state}${fault ? `, ${fault}` : ""}`;
+    const arm = byId("arm");
+    arm.hidden = !needsArm;
+    arm.textContent = `Arm: drive ${driving}`;
+    const stop = byId("stop");
+    const isStopped = state === "disarmed";
+    stop.textContent = isStopped && link === "simulator" ? "Play" : "Stop";
+    if (isStopped && link === "simulator") stop.dataset.stopped = "true";
+    else delete stop.dataset.stopped;
+  }
+
+  #open() {
+    const close = element("button", { onclick: () => this.#dialog.close() }, "Close");
+    const connect = (words, action, isPossible, why) => {
+      const button = element("button", { disabled: !isPossible }, words);
+      button.onclick = () =>
+        attempt(async () => {
+          this.#dialog.close();
+          await action();
+          this.onBoard();
+        });
+      return element(
+        "p",
+        { className: "row" },
+        button,
+        element("span", { className: "soft" }, isPossible ? why[0] : why[1]),
+      );
+    };
+    const serial = async () => this.#engine.connectSerial(await navigator.serial.requestPort());
+    this.#dialog.replaceChildren(
+      element("div", { className: "head" }, element("h2", {}, "Board"), close),
+      element(
+        "p",
+        {},
+        "A board with an electrode drives hundreds of volts. It plays only after you press Arm here and hold the " +
+          "switch on the board. It is disarmed when this page is hidden or closed, and before a foreign scene opens.",
+      ),
+      connect("Simulator", () => this.#engine.simulate(), true, ["the same firmware, in this page"]),
+      connect("Board on a USB port…", serial, "serial" in navigator, [
+        "over Web Serial",
+        "this browser has no Web Serial (Chrome 89 or newer has it)",
+      ]),
+      ...(this.#bridge
+        ? [
+            connect("Board of frixel studio", () => this.#engine.connectSocket(this.#bridge), true, [
+              "the serial port that the command was given",
+            ]),
+          ]
+        : []),
+    );
+    this.#dialog.showModal();
+  }
+}

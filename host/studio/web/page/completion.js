@@ -1,0 +1,135 @@
+// Completion of scene texts from the JSON schema of scenes.
+
+/** A CodeMirror completion source for this schema. */
+export function completeFrom(schema) {
+  return (context) => {
+    const line = context.state.doc.lineAt(context.pos);
+    const before = line.text.slice(0, context.pos - line.from);
+    if (/^[^"]*#/.test(before)) return null;
+    const value = /([A-Za-z_]+)\s*=\s*("?)([\w-]*)$/.exec(before);
+    const word = /[\w-]*$/.exec(before)[0];
+    if (value)
+      return found(context.pos - value[3].length - value[2].length, values(schema, context, line, before, value[1]));
+    const header = /^\s*\[{1,2}(\w*)$/.exec(before);
+    if (header) return found(context.pos - header[0].trimStart().length, headers(schema));
+    if (!context.explicit && word === "") return null;
+    const isKey = /^\s*[\w-]*$/.test(before) || /[{,]\s*[\w-]*$/.test(before);
+    return isKey ? found(context.pos - word.length, keys(schema, context, line, before)) : null;
+  };
+}
+
+function found(from, options) {
+  return options.length > 0 ? { from, options, validFor: /^[\["\w-]*$/ } : null;
+}
+
+function headers(schema) {
+  const properties = propertiesOf(schema, schema, { version: "2" });
+  return Object.entries(properties)
+    .filter(([, property]) => kindOf(schema, property) !== "plain")
+    .map(([name, property]) => (kindOf(schema, property) === "array" ? `[[${name}]]` : `[${name}]`))
+    .map((label) => ({ label, type: "namespace" }));
+}
+
+function keys(schema, context, line, before) {
+  const { properties, present } = tableAt(schema, context, line, before);
+  return Object.entries(properties)
+    .filter(([name]) => !(name in present))
+    .map(([name, { description, minimum, maximum }]) => ({
+      label: name,
+      apply: `${name} = `,
+      type: "property",
+      detail: minimum === undefined ? "" : `${minimum} to ${maximum}`,
+      info: description,
+    }));
+}
+
+function values(schema, context, line, before, name) {
+  const { all } = tableAt(schema, context, line, before);
+  const property = all[name];
+  if (!property) return [];
+  const words = property.words.map((word) => ({ label: JSON.stringify(word), type: "enum" }));
+  return property.type === "boolean"
+    ? [
+        { label: "true", type: "keyword" },
+        { label: "false", type: "keyword" },
+      ]
+    : words;
+}
+
+/** The table that the cursor is in: fields that fit to what stands in it, all its fields, and what stands in it. */
+function tableAt(schema, context, line, before) {
+  const block = blockAt(context.state.doc, line.number);
+  const root = propertiesOf(schema, schema, { version: "2" });
+  const outer = block.header ? (root[block.header]?.schemas ?? []) : [schema];
+  const inline = /(\w+)\s*=\s*\{[^}]*$/.exec(before);
+  const alternatives = inline ? (merged(schema, outer, {})[inline[1]]?.schemas ?? []) : outer;
+  const present = pairs(inline ? before.slice(inline.index + inline[1].length).replace(/^\s*=\s*\{/, "") : block.text);
+  return { properties: merged(schema, alternatives, present), all: merged(schema, alternatives, {}), present };
+}
+
+/** The lines from the header above a line to the next header. */
+function blockAt(doc, number) {
+  const isHeader = (at) => /^\s*\[{1,2}(\w+)\]/.exec(doc.line(at).text);
+  let first = number;
+  while (first > 1 && !isHeader(first)) first -= 1;
+  let last = number;
+  while (last < doc.lines && !isHeader(last + 1)) last += 1;
+  const lines = [];
+  for (let at = first; at <= last; at += 1) if (at !== number) lines.push(doc.line(at).text);
+  return { header: isHeader(first)?.[1], text: lines.join("\n") };
+}
+
+/** Fields and their values in a text, strings without quotation marks. */
+function pairs(text) {
+  const found = [...text.matchAll(/(?:^|[,\n])\s*(\w+)\s*=\s*("[^"]*"|[^,\n}]*)/g)];
+  return Object.fromEntries(found.map(([, name, value]) => [name, value.replace(/^"|"$/g, "").trim()]));
+}
+
+function propertiesOf(root, schema, present) {
+  return merged(root, [schema], present);
+}
+
+function resolve(root, schema) {
+  if (!schema.$ref) return schema;
+  return schema.$ref
+    .split("/")
+    .slice(1)
+    .reduce((at, name) => at[name], root);
+}
+
+/** All alternatives of a schema that are tables; of an array, those of its items. */
+function tables(root, schema) {
+  const at = resolve(root, schema);
+  if (at.items) return tables(root, at.items);
+  const choices = [...(at.oneOf ?? []), ...(at.anyOf ?? [])];
+  if (choices.length > 0) return choices.flatMap((choice) => tables(root, choice));
+  return at.properties ? [at] : [];
+}
+
+function wordsOf(property) {
+  return property.enum ?? (property.const === undefined ? [] : [property.const]);
+}
+
+/** Fields of the alternatives that do not contradict what stands there. */
+function merged(root, schemas, present) {
+  const fits = (table) =>
+    Object.entries(present).every(([name, value]) => {
+      const words = wordsOf(resolve(root, table.properties[name] ?? {})).map(String);
+      return words.length === 0 || words.includes(value);
+    });
+  const fields = {};
+  for (const table of schemas.flatMap((schema) => tables(root, schema)).filter(fits)) {
+    for (const [name, raw] of Object.entries(table.properties)) {
+      const property = resolve(root, raw);
+      fields[name] ??= { ...property, description: raw.description ?? property.description, words: [], schemas: [] };
+      fields[name].schemas.push(raw);
+      for (const word of wordsOf(property)) if (!fields[name].words.includes(word)) fields[name].words.push(word);
+    }
+  }
+  return fields;
+}
+
+function kindOf(root, { schemas }) {
+  if (schemas.some((schema) => resolve(root, schema).items)) return "array";
+  return schemas.some((schema) => tables(root, schema).length > 0) ? "table" : "plain";
+}

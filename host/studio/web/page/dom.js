@@ -1,0 +1,78 @@
+// Elements of the page. Text goes in as text nodes only, never as HTML.
+
+export function byId(id) {
+  return document.getElementById(id);
+}
+
+/** Creates an element with properties, listeners (`onclick`), attributes (`aria-label`) and children. */
+export function element(tag, properties = {}, ...children) {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(properties)) {
+    if (name.includes("-")) made.setAttribute(name, value);
+    else made[name] = value;
+  }
+  made.append(...children);
+  return made;
+}
+
+/** Offers bytes or text as a file. */
+export function download(name, content, type) {
+  const url = URL.createObjectURL(new Blob([content], { type }));
+  element("a", { href: url, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(url), 10_000);
+}
+
+/** Shows one sentence above the page until it is dismissed or another one comes. */
+export function notify(sentence) {
+  const notice = byId("notice");
+  notice.firstElementChild.textContent = sentence;
+  notice.lastElementChild.onclick = () => (notice.hidden = true);
+  notice.hidden = false;
+}
+
+/** Runs what a person asked for; where it fails, says why. */
+export async function attempt(action) {
+  try {
+    return await action();
+  } catch (error) {
+    notify(error.message);
+    return undefined;
+  }
+}
+
+const colours = new Map();
+
+/** The value of a colour of the style sheets, resolved for the theme. */
+export function colour(name) {
+  if (!colours.has(name)) {
+    const probe = element("span");
+    probe.style.color = `var(--${name})`;
+    document.body.append(probe);
+    colours.set(name, getComputedStyle(probe).color);
+    probe.remove();
+  }
+  return colours.get(name);
+}
+
+/** The theme has changed: colours are resolved anew. */
+export function forgetColours() {
+  colours.clear();
+}
+
+/** A setting that outlives the page, where the browser lets it. */
+export const settings = {
+  get(name) {
+    try {
+      return localStorage.getItem(`frixel.${name}`);
+    } catch {
+      return null;
+    }
+  },
+  set(name, value) {
+    try {
+      localStorage.setItem(`frixel.${name}`, value);
+    } catch {
+      // Private windows have no storage: the setting holds until the page is closed.
+    }
+  },
+};

@@ -1,0 +1,224 @@
+// The finger: pointer events and arrow keys to the engine, and what is drawn of it: trail and finger.
+
+import { byId, colour } from "./dom.js";
+
+/** How long a trail stays, s. */
+const TRAIL_S = 2.5;
+const TRAIL_STEPS = 4;
+/** The drawn finger follows within this time on bare glass, and as much longer at the largest friction, ms. */
+const FOLLOW_MS = 12;
+const DRAG_MS = 160;
+/** Speed of a finger that an arrow key moves, mm/s. */
+const KEY_MM_PER_S = 80;
+/** Load of a pressure of one half, the usual pressure, is that of the finger's profile, N. */
+const LOAD_AT_FULL_PRESSURE_N = 1;
+const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+
+export class Finger {
+  #canvas = byId("map-finger");
+  #engine;
+  #map;
+  #area = { width: 1, height: 1 };
+  #pointerId;
+  #keys = new Set();
+  /** The place of the pointer, and the place where the finger is drawn, mm. */
+  #target = { xMm: 60, yMm: 40 };
+  #drawn = { xMm: 60, yMm: 40 };
+  #isDown = false;
+  #isInside = false;
+  #trail = [];
+  #lastMs = 0;
+  #isShown = false;
+  /** Part of the reach that is felt now, 0 to 1. */
+  #friction = 0;
+  #speed = 0;
+  usesPressure = false;
+  drags = true;
+  /** A stroke begins. */
+  onDown = () => {};
+
+  constructor(engine, map) {
+    this.#engine = engine;
+    this.#map = map;
+    map.onLayout = (area) => this.#place(area);
+    const canvas = this.#canvas;
+    canvas.addEventListener("pointerdown", (event) => this.#down(event));
+    canvas.addEventListener("pointermove", (event) => this.#move(event));
+    for (const type of ["pointerup", "pointercancel"]) canvas.addEventListener(type, (event) => this.#up(event));
+    canvas.addEventListener("pointerleave", () => (this.#isInside = false));
+    canvas.addEventListener("keydown", (event) => this.#key(event, true));
+    canvas.addEventListener("keyup", (event) => this.#key(event, false));
+    canvas.addEventListener("blur", () => this.#releaseKeys());
+    requestAnimationFrame((ms) => this.#frame(ms));
+  }
+
+  #place({ left, top, width, height }) {
+    this.#area = { width, height };
+    Object.assign(this.#canvas, {
+      width: Math.round(width * devicePixelRatio),
+      height: Math.round(height * devicePixelRatio),
+    });
+    Object.assign(this.#canvas.style, {
+      left: `${left}px`,
+      top: `${top}px`,
+      width: `${width}px`,
+      height: `${height}px`,
+    });
+  }
+
+  #send(event, down) {
+    const box = this.#canvas.getBoundingClientRect();
+    const { widthMm, heightMm } = this.#map.screen;
+    this.#target = {
+      xMm: ((event.clientX - box.left) / box.width) * widthMm,
+      yMm: ((event.clientY - box.top) / box.height) * heightMm,
+    };
+    const loadN = this.usesPressure && event.pressure > 0 ? LOAD_AT_FULL_PRESSURE_N * event.pressure : undefined;
+    this.#engine.pointer({ timeMs: event.timeStamp, ...this.#target, down, loadN });
+  }
+
+  #down(event) {
+    if (event.button !== 0 || this.#pointerId !== undefined) return;
+    this.#pointerId = event.pointerId;
+    // A pointer that a test makes cannot be captured.
+    if (event.isTrusted) this.#canvas.setPointerCapture(event.pointerId);
+    this.#isDown = true;
+    this.#send(event, true);
+    this.#drawn = { ...this.#target };
+    this.onDown();
+  }
+
+  #move(event) {
+    this.#isInside = true;
+    if (!this.#isDown) this.#send(event, false);
+    else if (event.pointerId === this.#pointerId) {
+      const events = event.getCoalescedEvents?.() ?? [];
+      for (const each of events.length > 0 ? events : [event]) this.#send(each, true);
+    }
+  }
+
+  #up(event) {
+    if (event.pointerId !== this.#pointerId) return;
+    this.#pointerId = undefined;
+    this.#isDown = false;
+    this.#send(event, false);
+  }
+
+  #key(event, isPressed) {
+    if (!(event.key in ARROWS)) return;
+    event.preventDefault();
+    if (!isPressed) {
+      this.#keys.delete(event.key);
+      if (this.#keys.size === 0) this.#releaseKeys();
+      return;
+    }
+    if (this.#keys.size === 0) this.onDown();
+    this.#keys.add(event.key);
+    this.#isDown = true;
+  }
+
+  #releaseKeys() {
+    if (this.#pointerId !== undefined || !this.#isDown) return;
+    this.#keys.clear();
+    this.#isDown = false;
+    this.#engine.pointer({ timeMs: performance.now(), ...this.#target, down: false });
+  }
+
+  /** Moves the finger by the arrow keys that are held. */
+  #moveByKeys(ms) {
+    const stepMm = (KEY_MM_PER_S * Math.min(ms - this.#lastMs, 50)) / 1000;
+    for (const key of this.#keys) {
+      this.#target.xMm += ARROWS[key][0] * stepMm;
+      this.#target.yMm += ARROWS[key][1] * stepMm;
+    }
+    this.#target.xMm = Math.max(0, Math.min(this.#target.xMm, this.#map.screen.widthMm));
+    this.#target.yMm = Math.max(0, Math.min(this.#target.yMm, this.#map.screen.heightMm));
+    this.#engine.pointer({ timeMs: ms, ...this.#target, down: true });
+  }
+
+  /** What was felt, for the trail and the drag; `reach` is least and largest friction, N. */
+  feel(frame, reach) {
+    const span = Math.max(reach.highN - reach.lowN, 1e-9);
+    for (let at = 0; at < frame.feltN.length; at += 8) {
+      const felt = Number.isFinite(frame.feltN[at]) ? frame.feltN[at] : frame.referenceN[at];
+      if (!Number.isFinite(frame.xMm[at])) this.#trail.push(null);
+      else {
+        this.#friction = Math.max(0, Math.min(1.2, (felt - reach.lowN) / span));
+        this.#speed = frame.speedMmPerS[at];
+        this.#trail.push({ xMm: frame.xMm[at], yMm: frame.yMm[at], friction: this.#friction, ms: performance.now() });
+      }
+    }
+    const oldest = performance.now() - TRAIL_S * 1000;
+    const first = this.#trail.findIndex((point) => point !== null && point.ms >= oldest);
+    this.#trail = first < 0 ? [] : this.#trail.slice(first);
+  }
+
+  #frame(ms) {
+    if (this.#keys.size > 0) this.#moveByKeys(ms);
+    const isDragging = this.drags && this.#isDown;
+    const followMs = isDragging ? FOLLOW_MS + DRAG_MS * this.#friction : 0;
+    const part = followMs === 0 ? 1 : 1 - Math.exp(-(ms - this.#lastMs) / followMs);
+    this.#drawn.xMm += part * (this.#target.xMm - this.#drawn.xMm);
+    this.#drawn.yMm += part * (this.#target.yMm - this.#drawn.yMm);
+    this.#lastMs = ms;
+    const isShown = this.#isInside || this.#isDown || this.#trail.length > 0 || document.activeElement === this.#canvas;
+    if (isShown || this.#isShown) this.#draw();
+    this.#isShown = isShown;
+    requestAnimationFrame((next) => this.#frame(next));
+  }
+
+  #draw() {
+    const context = this.#canvas.getContext("2d");
+    context.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
+    context.clearRect(0, 0, this.#area.width, this.#area.height);
+    this.#drawTrail(context);
+    if (!this.#isInside && !this.#isDown && document.activeElement !== this.#canvas) return;
+    const { scale } = this.#map;
+    const [x, y] = [this.#drawn.xMm * scale, this.#drawn.yMm * scale];
+    context.beginPath();
+    context.arc(x, y, Math.max(9, 4 * scale), 0, 2 * Math.PI);
+    context.fillStyle = this.#isDown ? "#ffffff59" : "#ffffff1f";
+    context.fill();
+    context.lineWidth = this.#isDown ? 2 + 5 * this.#friction : 2;
+    context.strokeStyle = this.#isDown ? colour("felt") : "#fff";
+    context.stroke();
+    context.lineWidth = 1;
+    context.strokeStyle = "#000b";
+    context.beginPath();
+    context.arc(x, y, Math.max(9, 4 * scale) + 4, 0, 2 * Math.PI);
+    context.stroke();
+  }
+
+  /** The way of the finger, thicker where more friction was felt, and fading in steps, so that few paths are drawn. */
+  #drawTrail(context) {
+    // A blind comparison shows nothing of the friction.
+    if (document.body.classList.contains("blind")) return;
+    const { scale } = this.#map;
+    const now = performance.now();
+    const paths = new Map();
+    for (let at = 1; at < this.#trail.length; at += 1) {
+      const [from, to] = [this.#trail[at - 1], this.#trail[at]];
+      if (!from || !to) continue;
+      const age = Math.min(TRAIL_STEPS - 1, Math.floor((TRAIL_STEPS * (now - to.ms)) / (TRAIL_S * 1000)));
+      const width = Math.round(5 * to.friction);
+      const key = `${age} ${width}`;
+      if (!paths.has(key))
+        paths.set(key, { alpha: 0.9 * (1 - age / TRAIL_STEPS), width: 1.5 + 1.8 * width, path: new Path2D() });
+      const { path } = paths.get(key);
+      path.moveTo(from.xMm * scale, from.yMm * scale);
+      path.lineTo(to.xMm * scale, to.yMm * scale);
+    }
+    for (const [extra, ink] of [
+      [3, "#000"],
+      [0, "#fff"],
+    ]) {
+      context.strokeStyle = ink;
+      for (const { alpha, width, path } of paths.values()) {
+        context.globalAlpha = alpha;
+        context.lineWidth = width + extra;
+        context.stroke(path);
+      }
+    }
+    context.globalAlpha = 1;
+  }
+}

@@ -1,0 +1,193 @@
+// The friction map with ruler, scale and names; the finger has a canvas of its own above it (finger.js).
+
+import { SCALE, imageOf } from "./colors.js";
+import { byId, colour } from "./dom.js";
+import { drawMockup } from "./mockup.js";
+
+/** Room for the ruler and the scale around the map, CSS pixels. */
+const LEFT = 40;
+const TOP = 26;
+const RIGHT = 78;
+const BOTTOM = 8;
+
+export class FrictionMap {
+  #canvas = byId("map-picture");
+  #box = byId("map");
+  #map;
+  #check;
+  #picture;
+  /** Screen in mm; CSS pixels per mm. */
+  screen = { widthMm: 120, heightMm: 80 };
+  scale = 5;
+  /** CSS pixels per mm of the real size, or undefined to fit the page. */
+  realSize;
+  look = "map";
+  hasNames = true;
+  mockup = "player";
+  /** The map has another size: finger.js follows. */
+  onLayout = () => {};
+
+  constructor() {
+    new ResizeObserver(() => this.layout()).observe(this.#box);
+  }
+
+  show(map, check) {
+    this.#map = map;
+    this.#check = check;
+    this.screen = check.screen;
+    const picture = new OffscreenCanvas(map.widthPx, map.heightPx);
+    picture.getContext("2d").putImageData(imageOf(map), 0, 0);
+    this.#picture = picture;
+    this.layout();
+  }
+
+  /** Fits the map into its box, or shows it in real size. */
+  layout() {
+    const { widthMm, heightMm } = this.screen;
+    const style = getComputedStyle(this.#box);
+    const room = this.#box.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
+    const fitted = Math.min((room - LEFT - RIGHT) / widthMm, Math.max(240, 0.44 * innerHeight) / heightMm);
+    this.scale = this.realSize ?? Math.max(0.5, fitted);
+    const width = LEFT + RIGHT + widthMm * this.scale;
+    const height = TOP + BOTTOM + heightMm * this.scale;
+    const ratio = devicePixelRatio;
+    Object.assign(this.#canvas, { width: Math.round(width * ratio), height: Math.round(height * ratio) });
+    Object.assign(this.#canvas.style, {
+      width: `${width}px`,
+      height: `${height}px`,
+      marginLeft: `${Math.max(0, (room - width) / 2)}px`,
+    });
+    this.draw();
+    this.onLayout({
+      left: this.#canvas.offsetLeft + LEFT,
+      top: this.#canvas.offsetTop + TOP,
+      width: widthMm * this.scale,
+      height: heightMm * this.scale,
+    });
+  }
+
+  draw() {
+    const context = this.#canvas.getContext("2d");
+    context.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
+    context.clearRect(0, 0, this.#canvas.width, this.#canvas.height);
+    if (!this.#map) return;
+    const { widthMm, heightMm } = this.screen;
+    const area = { x: LEFT, y: TOP, width: widthMm * this.scale, height: heightMm * this.scale };
+    context.save();
+    context.translate(area.x, area.y);
+    if (this.look !== "map") drawMockup(context, this.mockup, area.width, area.height);
+    context.globalAlpha = { map: 1, both: 0.45, mockup: 0 }[this.look];
+    context.imageSmoothingEnabled = this.scale * devicePixelRatio * widthMm < this.#map.widthPx * 2;
+    context.drawImage(this.#picture, 0, 0, area.width, area.height);
+    context.restore();
+    const ink = { line: colour("soft"), text: colour("ink") };
+    this.#drawRuler(context, area, ink);
+    this.#drawScale(context, area, ink);
+    if (this.hasNames && this.look !== "mockup") this.#drawNames(context, area);
+  }
+
+  #drawRuler(context, { x, y, width, height }, ink) {
+    context.fillStyle = ink.text;
+    context.strokeStyle = ink.line;
+    context.font = "13px system-ui, sans-serif";
+    const every = [10, 20, 50, 100, 200, 500].find((step) => step * this.scale >= 44) ?? 1000;
+    context.lineWidth = 1;
+    context.beginPath();
+    context.textAlign = "center";
+    context.textBaseline = "bottom";
+    for (let mm = 0; mm <= this.screen.widthMm; mm += every / 5) {
+      const isLong = Math.round((mm * 5) / every) % 5 === 0;
+      context.moveTo(x + mm * this.scale, y - 2);
+      context.lineTo(x + mm * this.scale, y - (isLong ? 9 : 5));
+      if (isLong) context.fillText(mm === 0 ? "0 mm" : `${Math.round(mm)}`, x + mm * this.scale, y - 10);
+    }
+    context.textAlign = "right";
+    context.textBaseline = "middle";
+    for (let mm = 0; mm <= this.screen.heightMm; mm += every / 5) {
+      const isLong = Math.round((mm * 5) / every) % 5 === 0;
+      context.moveTo(x - 2, y + mm * this.scale);
+      context.lineTo(x - (isLong ? 9 : 5), y + mm * this.scale);
+      if (isLong && mm > 0) context.fillText(`${Math.round(mm)}`, x - 11, y + mm * this.scale);
+    }
+    context.stroke();
+    context.strokeRect(x - 0.5, y - 0.5, width + 1, height + 1);
+  }
+
+  #drawScale(context, { x, y, width, height }, ink) {
+    const { lowN, highN } = this.#map;
+    const left = x + width + 14;
+    const top = y + 18;
+    const length = height - 18;
+    for (let at = 0; at < 256; at += 1) {
+      context.fillStyle = `rgb(${SCALE.subarray(3 * at, 3 * at + 3).join(",")})`;
+      context.fillRect(left, top + (length * (255 - at)) / 256, 14, length / 256 + 1);
+    }
+    context.fillStyle = ink.text;
+    context.font = "13px system-ui, sans-serif";
+    context.textAlign = "left";
+    context.textBaseline = "middle";
+    context.fillText("mN", left, y + 6);
+    const everyMn =
+      [5, 10, 20, 25, 50, 100, 200, 500].find((step) => (length * step) / (1000 * (highN - lowN)) >= 26) ?? 1000;
+    for (let mN = Math.ceil((lowN * 1000) / everyMn) * everyMn; mN <= highN * 1000 + 1e-6; mN += everyMn) {
+      const place = top + length * (1 - (mN / 1000 - lowN) / (highN - lowN));
+      context.fillText(`${mN}`, left + 22, Math.max(top + 5, Math.min(place, top + length - 5)));
+      context.fillRect(left + 14, place - 0.5, 4, 1);
+    }
+  }
+
+  /** Each layer's name near the middle of the part of the map that its friction stands out in: its region. */
+  #drawNames(context, { x, y, width, height }) {
+    context.font = "600 14px system-ui, sans-serif";
+    context.textAlign = "center";
+    context.textBaseline = "middle";
+    context.lineJoin = "round";
+    const taken = [];
+    for (const { name, box } of namedBoxes(this.#check, this.screen)) {
+      const wide = context.measureText(name).width + 8;
+      const centre = Math.max(x + wide / 2, Math.min(x + (box.x + box.width / 2) * this.scale, x + width - wide / 2));
+      let place = Math.max(y + 14, Math.min(y + (box.y + box.height / 2) * this.scale, y + height - 14));
+      const isTaken = () =>
+        taken.some(
+          (other) => Math.abs(other.place - place) < 20 && Math.abs(other.centre - centre) < (other.wide + wide) / 2,
+        );
+      for (let tries = 0; tries < 4 && isTaken(); tries += 1) place += 20;
+      if (place > y + height - 8 || isTaken()) continue;
+      taken.push({ centre, place, wide });
+      context.strokeStyle = "#000c";
+      context.lineWidth = 4;
+      context.strokeText(name, centre, place);
+      context.fillStyle = "#fff";
+      context.fillText(name, centre, place);
+    }
+  }
+}
+
+/** Names of layers with the box of each region; a layer without a region has the whole screen. */
+function namedBoxes({ layers, text }, screen) {
+  const lines = text.split("\n");
+  return layers
+    .filter(({ name }) => name)
+    .map(({ name, from }) => {
+      const block = from ? lines.slice(from[0] - 1, from[1]).join("\n") : "";
+      return { name, box: boxOf(block) ?? { x: 0, y: 0, width: screen.widthMm, height: screen.heightMm } };
+    });
+}
+
+function boxOf(block) {
+  const region = /^\s*region\s*=\s*\{([^}]*)\}/m.exec(block)?.[1];
+  if (region === undefined) return undefined;
+  const points = [...region.matchAll(/\[\s*(-?[\d.]+)\s*,\s*(-?[\d.]+)\s*\]/g)].map(([, x, y]) => [
+    Number(x),
+    Number(y),
+  ]);
+  if (points.length > 0) {
+    const xs = points.map(([x]) => x);
+    const ys = points.map(([, y]) => y);
+    const [x, y] = [Math.min(...xs), Math.min(...ys)];
+    return { x, y, width: Math.max(...xs) - x, height: Math.max(...ys) - y };
+  }
+  const number = (name) => Number(new RegExp(`\\b${name}\\s*=\\s*(-?[\\d.]+)`).exec(region)?.[1] ?? NaN);
+  const box = { x: number("x_mm"), y: number("y_mm"), width: number("width_mm"), height: number("height_mm") };
+  return Object.values(box).some(Number.isNaN) ? undefined : box;
+}

@@ -1,0 +1,46 @@
+// The pictures of the project: a list, with a layer for each at a press.
+
+import { byId, element } from "./dom.js";
+
+export function showPictures(project, editor, onRemove) {
+  const panel = byId("panel-pictures");
+  for (const image of panel.querySelectorAll("img")) URL.revokeObjectURL(image.src);
+  const pictures = [...project.files].filter(([name]) => /\.png$/i.test(name));
+  panel.replaceChildren(...pictures.map(([name, bytes]) => row(name, bytes, editor, onRemove)));
+  panel.append(
+    element(
+      "p",
+      { className: "soft" },
+      pictures.length > 0
+        ? "Black is bare glass, white the most that the drive can add."
+        : "Drop a PNG anywhere on the page, or use Open. Black is bare glass, white the most that the drive can add.",
+    ),
+  );
+}
+
+function row(name, bytes, editor, onRemove) {
+  const url = URL.createObjectURL(new Blob([bytes], { type: "image/png" }));
+  const image = element("img", { src: url, alt: "" });
+  image.onerror = () => (image.hidden = true);
+  const add = element("button", {}, "Add as a layer");
+  add.onclick = () => editor.append(layerOf(name));
+  const remove = element("button", { onclick: () => onRemove(name), "aria-label": `Remove ${name}` }, "Remove");
+  return element(
+    "div",
+    { className: "picture" },
+    image,
+    element("b", {}, name),
+    element("span", { className: "gap" }),
+    add,
+    remove,
+  );
+}
+
+/** A layer that shows a picture on the example screen; 0.4 mm of pitch fits into a board's room. */
+export function layerOf(name) {
+  const title = JSON.stringify(name.replace(/\.png$/i, ""));
+  return (
+    `[[layer]]\nname = ${title}\nkind = "bitmap"\npicture = ${JSON.stringify(name)}\nx_mm = 10\ny_mm = 10\n` +
+    "width_mm = 60\npitch_mm = 0.4\n"
+  );
+}

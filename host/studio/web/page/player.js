@@ -1,0 +1,68 @@
+// From text to play: checks each version of the scene, draws its map and plays it, the newest one last.
+
+import { ENTRY } from "./project.js";
+
+/** A pause in typing that lets a check begin, ms. */
+const PAUSE_MS = 60;
+/** The map's width in pixels. */
+const MAP_WIDTH = 960;
+
+export class Player {
+  #engine;
+  #project;
+  #timer;
+  #isBusy = false;
+  #next;
+
+  /** The check has an answer: `onCheck(check, text)`. */
+  onCheck = () => {};
+  /** The friction map of a scene without mistakes: `onMap(map, check)`. */
+  onMap = () => {};
+  /** The board plays this text: `onPlay(text)`. */
+  onPlay = () => {};
+  /** The board refused, or something failed: `onFailure(sentence)`. */
+  onFailure = () => {};
+
+  constructor(engine, project) {
+    this.#engine = engine;
+    this.#project = project;
+  }
+
+  /** Plays this text once nothing has changed for a moment. */
+  later(text) {
+    clearTimeout(this.#timer);
+    this.#timer = setTimeout(() => this.now(text), PAUSE_MS);
+  }
+
+  /** Plays this text; of texts that come meanwhile, the newest is played after it. */
+  async now(text) {
+    clearTimeout(this.#timer);
+    this.#next = text;
+    if (this.#isBusy) return;
+    this.#isBusy = true;
+    while (this.#next !== undefined) {
+      const newest = this.#next;
+      this.#next = undefined;
+      try {
+        await this.#play(newest);
+      } catch (error) {
+        this.onFailure(error.message);
+      }
+    }
+    this.#isBusy = false;
+  }
+
+  async #play(text) {
+    const files = await this.#project.filesFor(text);
+    const { profiles } = this.#project;
+    const check = await this.#engine.check(files, ENTRY, profiles);
+    this.onCheck(check, text);
+    if (!check.ok || this.#next !== undefined) return;
+    await this.#engine.play(files, ENTRY, profiles);
+    this.onPlay(text);
+    if (this.#next !== undefined) return;
+    const { widthMm, heightMm } = check.screen;
+    const size = { widthPx: MAP_WIDTH, heightPx: Math.max(8, Math.round((MAP_WIDTH * heightMm) / widthMm)) };
+    this.onMap(await this.#engine.map(files, ENTRY, profiles, { ...size, speedMmPerS: 100 }), check);
+  }
+}

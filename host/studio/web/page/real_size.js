@@ -1,0 +1,74 @@
+// Real size: a bank card held to the screen says how many pixels a millimetre has.
+
+import { byId, element, settings } from "./dom.js";
+
+/** A bank card, mm (ISO/IEC 7810 ID-1). */
+const CARD = { widthMm: 85.6, heightMm: 53.98 };
+/** CSS pixels per mm where nobody held a card to the screen: a CSS inch has 96. */
+const NOMINAL = 96 / 25.4;
+
+export class RealSize {
+  #map;
+  #button = byId("real-size");
+  #dialog = byId("size");
+  #pixelsPerMm = Number(settings.get("pixelsPerMm")) || undefined;
+
+  constructor(map) {
+    this.#map = map;
+    this.#button.setAttribute("aria-pressed", "false");
+    this.#button.onclick = () => {
+      if (this.#map.realSize) this.#show(undefined);
+      else this.#ask();
+    };
+  }
+
+  #show(pixelsPerMm) {
+    this.#map.realSize = pixelsPerMm;
+    this.#button.setAttribute("aria-pressed", pixelsPerMm !== undefined);
+    this.#map.layout();
+  }
+
+  #ask() {
+    let scale = this.#pixelsPerMm ?? NOMINAL;
+    const card = element("div", { className: "bank-card" }, "bank card");
+    const size = element("input", {
+      type: "range",
+      min: 1.5,
+      max: 12,
+      step: 0.01,
+      value: scale,
+      "aria-label": "Width of the card",
+    });
+    size.style.width = "100%";
+    const draw = () =>
+      Object.assign(card.style, {
+        width: `${CARD.widthMm * scale}px`,
+        height: `${CARD.heightMm * scale}px`,
+        borderRadius: `${3.18 * scale}px`,
+      });
+    size.oninput = () => {
+      scale = Number(size.value);
+      draw();
+    };
+    draw();
+    const done = element("button", { className: "primary" }, "Show in real size");
+    done.onclick = () => {
+      this.#pixelsPerMm = scale;
+      settings.set("pixelsPerMm", scale);
+      this.#dialog.close();
+      this.#show(scale);
+    };
+    const cancel = element("button", { onclick: () => this.#dialog.close() }, "Cancel");
+    this.#dialog.replaceChildren(
+      element("div", { className: "head" }, element("h2", {}, "Real size"), cancel, done),
+      element(
+        "p",
+        {},
+        "Hold a bank card (85.60 mm wide) to the screen and move the slider until the outline is as wide.",
+      ),
+      size,
+      card,
+    );
+    this.#dialog.showModal();
+  }
+}

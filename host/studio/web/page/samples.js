@@ -1,0 +1,57 @@
+// The last seconds of what was felt, for the scope and for files.
+
+const CAPACITY = 40_000;
+
+export class Samples {
+  #columns = ["timeS", "xMm", "yMm", "speedMmPerS", "referenceN", "feltN", "voltageV"];
+  #data = Object.fromEntries(this.#columns.map((name) => [name, new Float64Array(CAPACITY)]));
+  #next = 0;
+  count = 0;
+  /** Time of the newest sample, s of board time. */
+  nowS = 0;
+
+  add(frame) {
+    const { firstTick, ticksPerSample, feltN } = frame;
+    const startS = firstTick / 40_000;
+    // A board that was reset counts from zero again.
+    if (startS < this.nowS - 0.01) this.clear();
+    for (let at = 0; at < feltN.length; at += 1) {
+      this.nowS = startS + (at * ticksPerSample) / 40_000;
+      this.#data.timeS[this.#next] = this.nowS;
+      for (const name of this.#columns.slice(1)) this.#data[name][this.#next] = frame[name][at];
+      this.#next = (this.#next + 1) % CAPACITY;
+      this.count = Math.min(this.count + 1, CAPACITY);
+    }
+  }
+
+  clear() {
+    this.count = 0;
+    this.#next = 0;
+    this.nowS = 0;
+  }
+
+  /** Columns of the samples since `fromS`, oldest first. */
+  since(fromS) {
+    const step = (index) => (this.#next - this.count + index + CAPACITY) % CAPACITY;
+    let first = this.count;
+    while (first > 0 && this.#data.timeS[step(first - 1)] >= fromS) first -= 1;
+    const made = {};
+    for (const name of this.#columns) {
+      made[name] = Array.from({ length: this.count - first }, (_, index) => this.#data[name][step(first + index)]);
+    }
+    return made;
+  }
+
+  /** Samples of a time as text, a row each. */
+  csv(fromS, toS) {
+    const columns = this.since(fromS);
+    const rows = ["time_s,x_mm,y_mm,speed_mm_per_s,reference_n,felt_n,voltage_v_rms"];
+    for (let at = 0; at < columns.timeS.length && columns.timeS[at] <= toS; at += 1) {
+      const row = this.#columns.map((name) =>
+        Number.isFinite(columns[name][at]) ? Number(columns[name][at].toFixed(6)) : "",
+      );
+      rows.push(row.join(","));
+    }
+    return `${rows.join("\n")}\n`;
+  }
+}

@@ -1,0 +1,59 @@
+// A scene as a link: text and small files of one's own, compressed in the fragment.
+
+import { deflateSync, inflateSync, strFromU8, strToU8 } from "../vendor/studio-vendor.js";
+
+/** Longest link that mail programs and chats take, characters. */
+const LINK_MAX = 32_000;
+/** Largest content of a link, unpacked: a link cannot make the page unpack gigabytes. */
+const CONTENT_MAX = 4_000_000;
+const START = "#scene=";
+
+/** The link of a scene; throws a sentence where it would be too long. */
+export function linkOf(name, text, files) {
+  const content = {
+    name,
+    text,
+    files: Object.fromEntries(files.map(([key, value]) => [key, toBase64(asBytes(value))])),
+  };
+  const link =
+    location.href.split("#")[0] + START + toBase64(deflateSync(strToU8(JSON.stringify(content)), { level: 9 }));
+  if (link.length > LINK_MAX) {
+    throw new Error(
+      `This scene is too big for a link: ${link.length} characters, of ${LINK_MAX}. Save it and send the zip.`,
+    );
+  }
+  return link;
+}
+
+export function isLink(fragment) {
+  return fragment.startsWith(START);
+}
+
+/** What a link carries; throws a sentence where it is no scene. */
+export function sceneOf(fragment) {
+  const broken = "The link does not hold a scene: a part of it was lost or changed. The scene you had stays.";
+  try {
+    if (fragment.length > LINK_MAX) throw new Error(broken);
+    const packed = fromBase64(fragment.slice(START.length));
+    const content = JSON.parse(strFromU8(inflateSync(packed, { out: new Uint8Array(CONTENT_MAX) })));
+    if (typeof content.text !== "string" || typeof content.name !== "string") throw new Error(broken);
+    const files = Object.entries(content.files ?? {}).map(([name, value]) => [name, fromBase64(value)]);
+    return { name: content.name.slice(0, 60), text: content.text, files };
+  } catch {
+    throw new Error(broken);
+  }
+}
+
+function asBytes(value) {
+  return typeof value === "string" ? strToU8(value) : value;
+}
+
+function toBase64(bytes) {
+  let binary = "";
+  for (const byte of bytes) binary += String.fromCharCode(byte);
+  return btoa(binary).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
+}
+
+function fromBase64(text) {
+  return Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), (character) => character.charCodeAt(0));
+}

@@ -1,0 +1,89 @@
+// Sound: the change of felt friction as audio.
+
+import { attempt, byId, element, settings } from "./dom.js";
+
+const MODES = {
+  headphones: "Headphones: the friction's change as it is, 10 Hz and up",
+  pitched: "Small loudspeakers: pitched up four times",
+  noise: "Small loudspeakers: noise that swells with the friction",
+};
+
+export class Sound {
+  #context;
+  #node;
+  #gain;
+  #mode = settings.get("sound") in MODES ? settings.get("sound") : "headphones";
+  #volume = 0.7;
+  #toggle;
+  /** Behind volume, for the tests: an AnalyserNode. */
+  analyser;
+
+  constructor() {
+    this.#toggle = element("button", { className: "primary", "aria-pressed": "false" }, "Sound on");
+    this.#toggle.onclick = () => attempt(() => (this.isOn ? this.stop() : this.start()));
+    const volume = element("input", { type: "range", min: 0, max: 1, step: 0.01, value: this.#volume, id: "volume" });
+    volume.oninput = () => this.setVolume(Number(volume.value));
+    const modes = Object.entries(MODES).map(([mode, label]) => {
+      const choice = element("input", { type: "radio", name: "sound-mode", checked: mode === this.#mode });
+      choice.onchange = () => this.#choose(mode);
+      return element("div", { className: "row" }, element("label", { className: "check" }, choice, ` ${label}`));
+    });
+    byId("panel-sound").append(
+      element("div", { className: "row" }, this.#toggle, element("label", {}, "Volume ", volume)),
+      ...modes,
+      element(
+        "p",
+        { className: "fine" },
+        "The sound shows the frequency of the friction's change, not how it feels to touch.",
+      ),
+    );
+  }
+
+  get isOn() {
+    return this.#context?.state === "running";
+  }
+
+  async start() {
+    if (!this.#context) await this.#build();
+    await this.#context.resume();
+    this.#label();
+  }
+
+  async stop() {
+    await this.#context.suspend();
+    this.#label();
+  }
+
+  async #build() {
+    const context = new AudioContext({ latencyHint: "interactive" });
+    // From a file, a browser takes no blob URL here.
+    const source = await studio.text("page/sound_processor.js");
+    await context.audioWorklet.addModule(`data:text/javascript,${encodeURIComponent(source)}`);
+    this.#node = new AudioWorkletNode(context, "friction-sound", { numberOfInputs: 0, outputChannelCount: [1] });
+    this.#gain = new GainNode(context, { gain: this.#volume });
+    this.analyser = new AnalyserNode(context, { fftSize: 16_384, smoothingTimeConstant: 0 });
+    this.#node.connect(this.#gain).connect(this.analyser).connect(context.destination);
+    this.#context = context;
+    this.#choose(this.#mode);
+  }
+
+  #label() {
+    this.#toggle.textContent = this.isOn ? "Sound off" : "Sound on";
+    this.#toggle.setAttribute("aria-pressed", this.isOn);
+  }
+
+  #choose(mode) {
+    this.#mode = mode;
+    settings.set("sound", mode);
+    this.#node?.port.postMessage({ mode });
+  }
+
+  setVolume(volume) {
+    this.#volume = volume;
+    this.#gain?.gain.setTargetAtTime(volume, this.#context.currentTime, 0.02);
+  }
+
+  feel(samples, slowness) {
+    if (this.isOn) this.#node.port.postMessage({ samples, slowness });
+  }
+}
