@@ -56,14 +56,14 @@ async function msToZeroAfter(page, silence) {
     globalThis.isSliding = true;
     slideUntil(() => !isSliding);
   }, "constant.toml");
-  await page.waitForFunction(() => frames.slice(-10).every((frame) => frame.voltageV.some((voltage) => voltage > 1)));
   return page.evaluate(async (silence) => {
     const drives = (frame) => frame.voltageV.some((voltage) => voltage > 1);
-    if (!drives(frames.at(-1))) throw new Error("the output is zero while the scene plays");
-    const silentAtTick = frames.at(-1).tick;
+    // On a busy machine the samples of the pointer come late, and a finger that stands still feels no drive.
+    while (!felt.length || !drives(felt.at(-1))) await new Promise((resolve) => setTimeout(resolve, 5));
+    const silentAtTick = felt.at(-1).tick;
     await eval(silence)();
-    await new Promise((resolve) => setTimeout(resolve, 700));
-    const after = frames.filter((frame) => frame.tick > silentAtTick);
+    while (felt.at(-1).tick < silentAtTick + 600 * 40) await new Promise((resolve) => setTimeout(resolve, 20));
+    const after = felt.filter((frame) => frame.tick > silentAtTick);
     const zero = after.findIndex((frame) => !drives(frame));
     if (zero < 0) throw new Error("the output is never zero");
     const last = after[zero];
@@ -93,10 +93,10 @@ test("a hidden page: the output is zero within the host timeout, and plays on wh
   assertTimeout(found);
   assert.ok(!found.isBack, "it stays at zero");
   await page.evaluate(() => {
-    frames.length = 0;
+    felt.length = 0;
     Object.defineProperty(document, "visibilityState", { value: "visible", configurable: true });
   });
-  await page.waitForFunction(() => frames.some((frame) => frame.voltageV.some((voltage) => voltage > 1)));
+  await page.waitForFunction(() => felt.some((frame) => frame.voltageV.some((voltage) => voltage > 1)));
   await close();
 });
 

@@ -58,8 +58,8 @@ export async function openEngine(url = pageUrl, options) {
   await opened.page.evaluate(async () => {
     const { createEngine } = await import(await studio.moduleUrl("engine/engine.js"));
     globalThis.engine = await createEngine();
-    globalThis.frames = [];
-    engine.onFrames = (frame) => frames.push(frame);
+    globalThis.felt = [];
+    engine.onFrames = (frame) => felt.push(frame);
     globalThis.states = [];
     engine.onState = (state) => states.push(state);
     globalThis.sceneFiles = async (name) => {

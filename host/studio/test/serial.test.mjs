@@ -21,10 +21,16 @@ async function playOnVirtualBoard(scene) {
   return { ...opened, board };
 }
 
+/** Waits until the board has noticed the silence of its host, in its own time. */
+async function silenceOf(board) {
+  const isSilent = () => rowsOf(path.join(board.out, "events.csv")).some((row) => row.event === "host-silent");
+  for (let tries = 0; tries < 200 && !isSilent(); tries += 1) await new Promise((resolve) => setTimeout(resolve, 50));
+}
+
 test("a scene is played, changed and stopped on a board at a serial port", async () => {
   const { page, board, errors, close } = await playOnVirtualBoard("keyboard.toml");
-  await page.waitForFunction(() => frames.filter((frame) => !frame.simulated).length > 30, null, { timeout: 20_000 });
-  const seen = await page.evaluate(() => ({ frame: frames.at(-1), states: states.map((state) => state.state), link: states.at(-1) }));
+  await page.waitForFunction(() => felt.filter((frame) => !frame.simulated).length > 30, null, { timeout: 40_000 });
+  const seen = await page.evaluate(() => ({ frame: felt.at(-1), states: states.map((state) => state.state), link: states.at(-1) }));
   assert.equal(seen.frame.simulated, false);
   assert.ok(seen.states.includes("active"), seen.states.join());
   assert.equal(seen.link.link, "serial");
@@ -49,9 +55,9 @@ test("a scene is played, changed and stopped on a board at a serial port", async
 
 test("a killed worker: the board is at zero within its host timeout", async () => {
   const { page, board, close } = await playOnVirtualBoard("constant.toml");
-  await page.waitForFunction(() => frames.some((frame) => frame.voltageV.some((voltage) => voltage > 1)), null, { timeout: 20_000 });
+  await page.waitForFunction(() => felt.some((frame) => frame.voltageV.some((voltage) => voltage > 1)), null, { timeout: 40_000 });
   await page.evaluate(() => workersOfPage.host.terminate());
-  await new Promise((resolve) => setTimeout(resolve, 800));
+  await silenceOf(board);
   await board.stop();
   const events = rowsOf(path.join(board.out, "events.csv"));
   const silent = events.find((row) => row.event === "host-silent");
@@ -73,11 +79,12 @@ test("the page of `frixel studio` plays, and reaches a board through the bridge"
     await engine.connectSocket(bridgeUrl());
     await engine.play(await sceneFiles(name), name, {});
   }, "constant.toml");
-  await page.waitForFunction(() => frames.some((frame) => !frame.simulated), null, { timeout: 20_000 });
+  await page.waitForFunction(() => felt.some((frame) => !frame.simulated), null, { timeout: 40_000 });
   const { link, state } = await page.evaluate(() => states.at(-1));
   assert.deepEqual([link, state], ["socket", "active"]);
   assert.deepEqual(errors, []);
   await close();
+  await silenceOf(board);
   await board.stop();
   const events = rowsOf(path.join(board.out, "events.csv")).map((row) => row.event);
   assert.deepEqual(events.slice(0, 2), ["armed", "active"]);
