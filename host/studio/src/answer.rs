@@ -45,8 +45,9 @@ impl Problem {
         Self { severity: "error", ..Self::warning(message.to_string()) }
     }
 
-    fn located(located: &Located, file: Option<String>) -> Self {
-        let Located { line, column, text, mistake } = located;
+    fn located(located: &Located, entry: &str) -> Self {
+        let Located { file, line, column, text, mistake } = located;
+        let file = (file != entry).then(|| file.clone());
         let marked = text.lines().next().unwrap_or_default().chars().count().max(1);
         let place = Place { line: *line, column: *column, end_line: *line, end_column: column + marked };
         let help = mistake.nearest().map(str::to_owned);
@@ -58,10 +59,7 @@ impl Problem {
 pub(crate) fn problems(error: &ProgramError, entry: &str) -> Vec<Problem> {
     match error {
         ProgramError::Request(error) => vec![Problem::error(error)],
-        ProgramError::Compile(error) => {
-            let file = (error.file != entry).then(|| error.file.clone());
-            error.mistakes.iter().map(|located| Problem::located(located, file.clone())).collect()
-        }
+        ProgramError::Compile(error) => error.mistakes.iter().map(|located| Problem::located(located, entry)).collect(),
     }
 }
 
