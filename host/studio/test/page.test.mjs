@@ -29,7 +29,7 @@ const SPEED_MM_PER_S = 80;
 /** A finger is known to stand still after some reports and 50 ms; noise of the touch source can put that off, ms. */
 const STILL_ZERO_MS = 500;
 /** Noise of the simulated touch source looks like a slide now and then: the most that a finger at rest is driven. */
-const STILL_DRIVEN_MAX = 0.5;
+const STILL_DRIVEN_MAX = 0.75;
 /** Rms voltage that counts as none: what the carrier's last half period leaves of a mean, V. */
 const ZERO_V = 2;
 /** A mended scene plays on within 300 ms on a machine of one's own; the tests share theirs, ms. */
