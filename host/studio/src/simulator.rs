@@ -131,3 +131,56 @@ impl Simulator {
             .collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use frixel_wire::fault::State;
+
+    use super::*;
+
+    const SCENE: &str = "version = 2\n[[layer]]\nkind = \"constant\"\nabove = \"natural\"\nfriction_n = 0.11\n";
+
+    fn request() -> Request {
+        let files = [("a.toml".to_owned(), SCENE.as_bytes().to_vec())].into();
+        Request { entry: "a.toml".to_owned(), files, ..Request::default() }
+    }
+
+    /// Whatever the page's life looked like, a scene that was played plays once the page has lived for 100 ms.
+    #[test]
+    fn a_scene_that_is_wanted_plays_whenever_the_page_lives() {
+        let mut random = 1_u64;
+        let mut draw = |below: u64| {
+            random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (random >> 33) % below
+        };
+        for seed in 0..20 {
+            let mut simulator = Simulator::new(seed).unwrap();
+            for round in 0..20 {
+                for _ in 0..draw(6) {
+                    simulator.run(draw(6_000) as u32, draw(2) == 0).unwrap();
+                }
+                if round == 0 || draw(3) == 0 {
+                    simulator.play(&request()).unwrap();
+                }
+                for _ in 0..draw(6) {
+                    simulator.run(draw(6_000) as u32, draw(2) == 0).unwrap();
+                }
+                for _ in 0..12 {
+                    simulator.run(320, true).unwrap();
+                }
+                assert_eq!(simulator.state().0, State::Active, "seed {seed}, round {round}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_silent_host_ends_the_output_within_its_timeout() {
+        let mut simulator = Simulator::new(1).unwrap();
+        simulator.play(&request()).unwrap();
+        simulator.run(40_000, true).unwrap();
+        assert_eq!(simulator.state().0, State::Active);
+        // 250 ms, and a millisecond to act.
+        simulator.run(10_040, false).unwrap();
+        assert_eq!(simulator.state().0, State::Disarmed);
+    }
+}

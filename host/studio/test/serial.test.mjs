@@ -15,29 +15,35 @@ async function playOnVirtualBoard(scene) {
   const opened = await openEngine();
   await addSerialPort(opened.page, board.terminal);
   await opened.page.evaluate(async (name) => {
-    await engine.connectSerial(await navigator.serial.requestPort());
-    await engine.play(await sceneFiles(name), name, {});
+    await tested.connectSerial(await navigator.serial.requestPort());
+    await tested.play(await sceneFiles(name), name, {});
   }, scene);
   return { ...opened, board };
 }
 
+/** Waits until the board has noticed the silence of its host, in its own time. */
+async function silenceOf(board) {
+  const isSilent = () => rowsOf(path.join(board.out, "events.csv")).some((row) => row.event === "host-silent");
+  for (let tries = 0; tries < 200 && !isSilent(); tries += 1) await new Promise((resolve) => setTimeout(resolve, 50));
+}
+
 test("a scene is played, changed and stopped on a board at a serial port", async () => {
   const { page, board, errors, close } = await playOnVirtualBoard("keyboard.toml");
-  await page.waitForFunction(() => frames.filter((frame) => !frame.simulated).length > 30, null, { timeout: 20_000 });
-  const seen = await page.evaluate(() => ({ frame: frames.at(-1), states: states.map((state) => state.state), link: states.at(-1) }));
+  await page.waitForFunction(() => felt.filter((frame) => !frame.simulated).length > 30, null, { timeout: 40_000 });
+  const seen = await page.evaluate(() => ({ frame: felt.at(-1), states: states.map((state) => state.state), link: states.at(-1) }));
   assert.equal(seen.frame.simulated, false);
   assert.ok(seen.states.includes("active"), seen.states.join());
   assert.equal(seen.link.link, "serial");
   assert.equal(seen.link.needsArm, false, "a simulated board needs no press");
-  const refused = await page.evaluate(() => engine.control('layer "nothing" off').catch((error) => error.message));
+  const refused = await page.evaluate(() => tested.control('layer "nothing" off').catch((error) => error.message));
   assert.match(refused, /the scene has no layer "nothing"/);
   const mistake = await page.evaluate(() =>
-    engine.play({ "a.toml": "version = 2\n[[layer]]\nkind = \"gratin\"\n" }, "a.toml", {}).catch((error) => error.problems),
+    tested.play({ "a.toml": "version = 2\n[[layer]]\nkind = \"gratin\"\n" }, "a.toml", {}).catch((error) => error.problems),
   );
   assert.equal(mistake[0].line, 3);
   const state = await page.evaluate(() => states.at(-1).state);
   assert.equal(state, "active", "the scene before plays on");
-  await page.evaluate(() => engine.simulate());
+  await page.evaluate(() => tested.simulate());
   await board.stop();
   assert.deepEqual(errors, []);
   const events = rowsOf(path.join(board.out, "events.csv")).map((row) => row.event);
@@ -49,9 +55,9 @@ test("a scene is played, changed and stopped on a board at a serial port", async
 
 test("a killed worker: the board is at zero within its host timeout", async () => {
   const { page, board, close } = await playOnVirtualBoard("constant.toml");
-  await page.waitForFunction(() => frames.some((frame) => frame.voltageV.some((voltage) => voltage > 1)), null, { timeout: 20_000 });
+  await page.waitForFunction(() => felt.some((frame) => frame.voltageV.some((voltage) => voltage > 1)), null, { timeout: 40_000 });
   await page.evaluate(() => workersOfPage.host.terminate());
-  await new Promise((resolve) => setTimeout(resolve, 800));
+  await silenceOf(board);
   await board.stop();
   const events = rowsOf(path.join(board.out, "events.csv"));
   const silent = events.find((row) => row.event === "host-silent");
@@ -70,14 +76,15 @@ test("the page of `frixel studio` plays, and reaches a board through the bridge"
   await page.waitForFunction(() => document.documentElement.dataset.state === "active", null, { timeout: 10_000 });
   await page.evaluate(async (name) => {
     const { bridgeUrl } = await import(await studio.moduleUrl("engine/lines.js"));
-    await engine.connectSocket(bridgeUrl());
-    await engine.play(await sceneFiles(name), name, {});
+    await tested.connectSocket(bridgeUrl());
+    await tested.play(await sceneFiles(name), name, {});
   }, "constant.toml");
-  await page.waitForFunction(() => frames.some((frame) => !frame.simulated), null, { timeout: 20_000 });
+  await page.waitForFunction(() => felt.some((frame) => !frame.simulated), null, { timeout: 40_000 });
   const { link, state } = await page.evaluate(() => states.at(-1));
   assert.deepEqual([link, state], ["socket", "active"]);
   assert.deepEqual(errors, []);
   await close();
+  await silenceOf(board);
   await board.stop();
   const events = rowsOf(path.join(board.out, "events.csv")).map((row) => row.event);
   assert.deepEqual(events.slice(0, 2), ["armed", "active"]);
