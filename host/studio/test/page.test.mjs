@@ -195,7 +195,8 @@ test("a finger that stands still, or is lifted, gets nothing", async (context) =
   );
   assert.ok(later.length > 1000, `${later.length} samples at rest`);
   assert.ok(driven < STILL_DRIVEN_MAX, `${(100 * driven).toFixed(0)} % of the time`);
-  const { voltageV: lifted } = found.lifted;
+  const { voltageV: lifted, xMm } = found.lifted;
+  assert.ok(xMm.every(Number.isNaN), "the finger is up");
   assert.ok(lifted.length > 20 && lifted.every((voltage) => voltage < ZERO_V), "zero without a finger");
   assert.deepEqual(errors, []);
   await close();
