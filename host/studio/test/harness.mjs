@@ -52,16 +52,16 @@ export async function openPage(url = pageUrl, { init } = {}) {
   return { page, errors, close: () => context.close() };
 }
 
-/** Opens the page, and an engine of the test's own in it, as `engine`, with a function `sceneFiles(name)`. */
+/** Opens the page, and an engine of the test's own in it, as `tested`, with a function `sceneFiles(name)`. */
 export async function openEngine(url = pageUrl, options) {
   const opened = await openPage(url, options);
   await opened.page.evaluate(async () => {
     const { createEngine } = await import(await studio.moduleUrl("engine/engine.js"));
-    globalThis.engine = await createEngine();
+    globalThis.tested = await createEngine();
     globalThis.felt = [];
-    engine.onFrames = (frame) => felt.push(frame);
+    tested.onFrames = (frame) => felt.push(frame);
     globalThis.states = [];
-    engine.onState = (state) => states.push(state);
+    tested.onState = (state) => states.push(state);
     globalThis.sceneFiles = async (name) => {
       const files = { [name]: await studio.text(`scenes/${name}`) };
       for (const texture of studio.names("scenes/textures/")) {
@@ -75,7 +75,7 @@ export async function openEngine(url = pageUrl, options) {
       while (!isOver()) {
         const t = ((performance.now() - begin) / 1000) % 2;
         const xMm = 65 + 30 * Math.abs(t - 1);
-        engine.pointer({ timeMs: performance.now(), xMm, yMm: 30, down: true });
+        tested.pointer({ timeMs: performance.now(), xMm, yMm: 30, down: true });
         await new Promise((resolve) => setTimeout(resolve, 8));
       }
     };

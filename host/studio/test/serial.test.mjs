@@ -15,8 +15,8 @@ async function playOnVirtualBoard(scene) {
   const opened = await openEngine();
   await addSerialPort(opened.page, board.terminal);
   await opened.page.evaluate(async (name) => {
-    await engine.connectSerial(await navigator.serial.requestPort());
-    await engine.play(await sceneFiles(name), name, {});
+    await tested.connectSerial(await navigator.serial.requestPort());
+    await tested.play(await sceneFiles(name), name, {});
   }, scene);
   return { ...opened, board };
 }
@@ -35,15 +35,15 @@ test("a scene is played, changed and stopped on a board at a serial port", async
   assert.ok(seen.states.includes("active"), seen.states.join());
   assert.equal(seen.link.link, "serial");
   assert.equal(seen.link.needsArm, false, "a simulated board needs no press");
-  const refused = await page.evaluate(() => engine.control('layer "nothing" off').catch((error) => error.message));
+  const refused = await page.evaluate(() => tested.control('layer "nothing" off').catch((error) => error.message));
   assert.match(refused, /the scene has no layer "nothing"/);
   const mistake = await page.evaluate(() =>
-    engine.play({ "a.toml": "version = 2\n[[layer]]\nkind = \"gratin\"\n" }, "a.toml", {}).catch((error) => error.problems),
+    tested.play({ "a.toml": "version = 2\n[[layer]]\nkind = \"gratin\"\n" }, "a.toml", {}).catch((error) => error.problems),
   );
   assert.equal(mistake[0].line, 3);
   const state = await page.evaluate(() => states.at(-1).state);
   assert.equal(state, "active", "the scene before plays on");
-  await page.evaluate(() => engine.simulate());
+  await page.evaluate(() => tested.simulate());
   await board.stop();
   assert.deepEqual(errors, []);
   const events = rowsOf(path.join(board.out, "events.csv")).map((row) => row.event);
@@ -76,8 +76,8 @@ test("the page of `frixel studio` plays, and reaches a board through the bridge"
   await page.waitForFunction(() => document.documentElement.dataset.state === "active", null, { timeout: 10_000 });
   await page.evaluate(async (name) => {
     const { bridgeUrl } = await import(await studio.moduleUrl("engine/lines.js"));
-    await engine.connectSocket(bridgeUrl());
-    await engine.play(await sceneFiles(name), name, {});
+    await tested.connectSocket(bridgeUrl());
+    await tested.play(await sceneFiles(name), name, {});
   }, "constant.toml");
   await page.waitForFunction(() => felt.some((frame) => !frame.simulated), null, { timeout: 40_000 });
   const { link, state } = await page.evaluate(() => states.at(-1));

@@ -28,7 +28,7 @@ export class Layers {
 
   #row(layer) {
     const { index, name, kind, felt, from } = layer;
-    const title = element("div", {}, element("b", {}, name || `layer ${index + 1}`), ` ${kind}`);
+    const title = element("div", {}, element("b", {}, name || `layer ${index}`), ` ${kind}`);
     const row = element("div", { className: "layer" }, title, this.#controls(layer));
     if (felt) row.append(element("p", { className: "fine" }, felt));
     if (from) {
@@ -46,7 +46,7 @@ export class Layers {
       return button;
     }
     const state = this.#live.get(index) ?? { on: true, gain: 1 };
-    const label = layer.name || `layer ${index + 1}`;
+    const label = layer.name || `layer ${index}`;
     const isOn = element("input", { type: "checkbox", checked: state.on, "aria-label": `${label} on` });
     const gain = element("input", {
       type: "range",
@@ -68,6 +68,6 @@ export class Layers {
   #change(index, next, state) {
     Object.assign(state, next);
     this.#live.set(index, state);
-    attempt(() => this.#engine.control(`layer ${index + 1} ${state.on ? "on" : "off"} gain ${state.gain}`));
+    attempt(() => this.#engine.control(`layer ${index} ${state.on ? "on" : "off"} gain ${state.gain}`));
   }
 }

@@ -12,6 +12,8 @@ export class Samples {
 
   add(frame) {
     const { firstTick, ticksPerSample, feltN } = frame;
+    // In slow motion there are frames without a sample.
+    if (feltN.length === 0) return;
     const startS = firstTick / 40_000;
     // A board that was reset counts from zero again.
     if (startS < this.nowS - 0.01) this.clear();

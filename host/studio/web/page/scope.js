@@ -84,8 +84,10 @@ export class Scope {
     const { nowS } = this.#samples;
     this.#shownNowS = nowS;
     const { timeS, xMm, referenceN, feltN, voltageV } = this.#samples.since(nowS - WINDOW_S);
-    // No friction is drawn while the finger is up or comes down, so that the axis serves what is felt.
-    const isDrawn = (value, at) => Number.isFinite(value) && Number.isFinite(xMm[at]) && Number.isFinite(xMm[at - 1]);
+    // No friction is drawn while the finger is up, comes down or leaves, so that the axis serves what is felt.
+    const isTouch = (at) => Number.isFinite(xMm[at]);
+    const isDrawn = (value, at) =>
+      Number.isFinite(value) && isTouch(at - 1) && isTouch(Math.min(at + 1, xMm.length - 1));
     const finite = (values, factor) => values.map((value, at) => (isDrawn(value, at) ? value * factor : null));
     this.#plot.setData([timeS, finite(referenceN, 1000), finite(feltN, 1000), voltageV], false);
     this.#plot.setScale("x", { min: nowS - WINDOW_S, max: nowS });
