@@ -1,7 +1,7 @@
 //! How long a tick of the world takes, by stroke: `cargo run --release -p frixel-hil-sim --example world_speed`.
 //!
-//! A square carrier of 1 kHz drives the ideal and the natural world for a minute of virtual time. The sum of the friction
-//! is printed so that the work cannot be left out.
+//! A square carrier of 1 kHz drives the ideal and the natural world for a minute of virtual time. The sum of the
+//! friction is printed so that the compiler cannot remove the work.
 #![allow(clippy::disallowed_types, clippy::disallowed_methods, reason = "it measures wall time")]
 
 use std::error::Error;

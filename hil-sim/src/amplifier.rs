@@ -347,7 +347,7 @@ mod tests {
     }
 
     #[test]
-    fn what_makes_no_sense_is_refused_by_name() {
+    fn values_out_of_range_are_refused_by_name() {
         for (config, name) in [
             (AmplifierConfig { gain: 0.0, ..AmplifierConfig::default() }, "amplifier gain"),
             (

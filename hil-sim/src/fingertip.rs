@@ -27,8 +27,8 @@ const COMPARED_V_RMS: f64 = 1.0;
 
 /// The example finger on the example screen: 0.25 N at no voltage and 130 mN more at 150 V rms, under a load of 0.5 N.
 ///
-/// Radius 8 mm, stiffness 18 MPa/m, friction coefficient 0.5, a coating of 1 um of silicon dioxide and a skin gap of 4.74
-/// um: the profile of `scenes/fingers/example.toml`, which gives the reasons. Nobody was measured.
+/// Radius 8 mm, stiffness 18 MPa/m, friction coefficient 0.5, a coating of 1 um of silicon dioxide and a skin gap of
+/// 4.74 um: the profile of `scenes/fingers/example.toml`, which gives the reasons. The profile is assumed.
 pub fn example_finger() -> Result<LoadedContact<f64>, ParameterError> {
     let finger = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };
     let (coating_gap_um, skin_gap_um) = (1.0 / 3.9, 4.74);
@@ -43,7 +43,18 @@ pub(crate) struct Friction {
     /// Friction that the voltage adds.
     pub(crate) electric_friction_n: f64,
     pub(crate) normal_load_n: f64,
+    /// Part of the friction that is there because the load is not the one that the scene is meant for.
+    pub(crate) load_mismatch_n: f64,
     pub(crate) slip: SlipStep,
+}
+
+/// What it does to the friction that the load is not the one that the scene is meant for.
+#[derive(Clone, Copy, Debug, Default)]
+struct LoadMismatch {
+    /// Natural friction in steady sliding, without noise, beyond that under the load that is meant, in N.
+    natural_n: f64,
+    /// Part of the electric friction beyond that under the load that is meant.
+    electric_share: f64,
 }
 
 /// A finger's contact with the screen, and the friction on it.
@@ -54,6 +65,8 @@ pub(crate) struct Fingertip {
     profile: LoadedContact<f64>,
     /// The load of the profile, in N.
     profile_load_n: f64,
+    /// The load that the scene is meant for, in N.
+    meant_load_n: f64,
     /// The contact under the load of this tick.
     contact: LoadedContact<f64>,
     /// The load of this tick, in N.
@@ -61,6 +74,7 @@ pub(crate) struct Fingertip {
     /// Friction coefficient at the load of this tick over that of the profile.
     coefficient_gain: f64,
     electric_gain: f64,
+    load_mismatch: LoadMismatch,
     wander: LoadWander,
     noise: FrictionNoise,
     leakage: Leakage,
@@ -82,10 +96,12 @@ impl Fingertip {
             config,
             profile: contact,
             profile_load_n: load_n(&contact),
+            meant_load_n: load_n(&contact),
             contact,
             load_n: load_n(&contact),
             coefficient_gain: 1.0,
             electric_gain: 1.0,
+            load_mismatch: LoadMismatch::default(),
             wander: LoadWander::new(config.load_sd_n, tick_hz, seed),
             noise: FrictionNoise::new(config.noise_rms_n, seed),
             leakage: Leakage::new(config.leakage_hz, tick_hz),
@@ -105,6 +121,11 @@ impl Fingertip {
         (self.coefficient_gain, self.electric_gain) = (1.0, 1.0);
     }
 
+    /// Sets the load that the scene is meant for.
+    pub(crate) fn set_meant_load(&mut self, contact: &LoadedContact<f64>) {
+        self.meant_load_n = load_n(contact);
+    }
+
     /// Returns the friction at the end of a tick, in which the finger slid to `finger` over an electrode with the
     /// voltage of `output`. `measured_load_n` replaces the load that wanders, if there is one.
     ///
@@ -117,10 +138,13 @@ impl Fingertip {
         let (share, direction) = self.sliding.to([finger.x_m, finger.y_m], finger.speed_m_per_s);
         let slip = SlipStep { share, direction, electric_gain: self.electric_gain };
         let steady_electric_n = self.coefficient_gain * self.contact.electric_friction_n(voltage_v_rms);
+        let electric_friction_n = slip.advance(&mut self.electric_n, steady_electric_n);
+        let LoadMismatch { natural_n, electric_share } = self.load_mismatch;
         Friction {
             natural_friction_n: self.natural_friction_n(&slip, finger.speed_m_per_s),
-            electric_friction_n: slip.advance(&mut self.electric_n, steady_electric_n),
+            electric_friction_n,
             normal_load_n: self.load_n,
+            load_mismatch_n: natural_n + electric_share * electric_friction_n,
             slip,
         }
     }
@@ -130,7 +154,13 @@ impl Fingertip {
         self.leakage.lift();
         self.sliding.lift();
         (self.natural_n, self.electric_n) = ([0.0; 2], [0.0; 2]);
-        Friction { natural_friction_n: 0.0, electric_friction_n: 0.0, normal_load_n: 0.0, slip: SlipStep::REST }
+        Friction {
+            natural_friction_n: 0.0,
+            electric_friction_n: 0.0,
+            normal_load_n: 0.0,
+            load_mismatch_n: 0.0,
+            slip: SlipStep::REST,
+        }
     }
 
     fn natural_friction_n(&mut self, slip: &SlipStep, speed_m_per_s: f64) -> f64 {
@@ -144,22 +174,43 @@ impl Fingertip {
     /// Presses with the load of this moment.
     fn press(&mut self, measured_load_n: Option<f64>, voltage_v_rms: f64) {
         let load_n = measured_load_n.unwrap_or_else(|| self.wander.load_n(self.profile_load_n));
+        let compared_v_rms = voltage_v_rms.max(COMPARED_V_RMS);
         // A load that the model rejects leaves the one before.
         let Ok(contact) = self.profile.contact().under_load(load_n) else { return };
-        if contact == self.contact {
-            return;
+        if contact != self.contact {
+            self.contact = contact;
+            self.load_n = load_n;
+            self.coefficient_gain = self.coefficient_gain_at(load_n);
+            let in_profile_n = self.profile.electric_friction_n(compared_v_rms);
+            self.electric_gain =
+                self.coefficient_gain * self.contact.electric_friction_n(compared_v_rms) / in_profile_n;
         }
-        self.contact = contact;
-        self.load_n = load_n;
+        self.load_mismatch = self.load_mismatch(compared_v_rms).unwrap_or_default();
+    }
+
+    /// Friction coefficient at a load over that at the load of the profile.
+    fn coefficient_gain_at(&self, load_n: f64) -> f64 {
         let exponent = self.config.load_exponent;
-        self.coefficient_gain = if exponent == 0.0 || self.profile_load_n <= 0.0 {
+        if exponent == 0.0 || self.profile_load_n <= 0.0 {
             1.0
         } else {
             libm::pow(load_n / self.profile_load_n, exponent)
-        };
-        let compared_v_rms = voltage_v_rms.max(COMPARED_V_RMS);
-        let in_profile_n = self.profile.electric_friction_n(compared_v_rms);
-        self.electric_gain = self.coefficient_gain * self.contact.electric_friction_n(compared_v_rms) / in_profile_n;
+        }
+    }
+
+    /// What the load of this moment changes; `None` if it is the one that the scene is meant for.
+    fn load_mismatch(&self, compared_v_rms: f64) -> Option<LoadMismatch> {
+        if (self.load_n - self.meant_load_n).abs() <= f64::EPSILON * self.meant_load_n {
+            return None;
+        }
+        let meant = self.profile.contact().under_load(self.meant_load_n).ok()?;
+        let meant_gain = self.coefficient_gain_at(self.meant_load_n);
+        let natural_n = self.coefficient_gain * self.contact.natural_friction_n();
+        let electric_n = self.coefficient_gain * self.contact.electric_friction_n(compared_v_rms);
+        Some(LoadMismatch {
+            natural_n: natural_n - meant_gain * meant.natural_friction_n(),
+            electric_share: 1.0 - meant_gain * meant.electric_friction_n(compared_v_rms) / electric_n,
+        })
     }
 }
 

@@ -6,7 +6,6 @@
 //! - [`Rig`]: a board and its world on one thread.
 //! - [`chips`]: models of the chips on a board, for their drivers to run against.
 //! - [`emulated`]: the firmware's image for an emulated board, and what the in-process board is compared with.
-//! - [`spectrum`]: the power of a signal in a band.
 //! - [`Line`]: one direction of a serial line, whose bytes take the time that the line rate gives them.
 //!
 //! Nothing here knows wall time, and everything random comes from a seed: the same run gives the same bytes on every
@@ -29,7 +28,6 @@ mod person;
 mod pseudo_terminal;
 mod random;
 mod rig;
-pub mod spectrum;
 mod stroke;
 mod touch;
 mod world;

@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_full_queue_cannot_take_is_lost_at_once() {
+    fn bytes_beyond_a_full_queue_are_lost_at_once() {
         let mut line = Line::new(2_000_000, TICK_HZ).unwrap();
         line.limit_queue(7);
         line.send(&[1, 2, 3, 4, 5, 6]);

@@ -191,7 +191,7 @@ mod tests {
 
     #[cfg(target_os = "linux")]
     #[test]
-    fn nothing_is_kept_for_a_client_that_has_gone() {
+    fn bytes_for_a_closed_client_are_dropped() {
         let mut terminal = PseudoTerminal::open().unwrap();
         assert!(!terminal.client_has_gone().unwrap(), "nobody came yet");
         let mut first = client(&terminal);

@@ -138,7 +138,7 @@ impl Losses {
 
 /// A report on its way to the board.
 #[derive(Clone, Copy, Debug)]
-struct Report {
+struct PendingReport {
     arrival_tick: u64,
     touch: Touch,
 }
@@ -162,7 +162,7 @@ pub(crate) struct TouchSource {
     next_sample_tick: u64,
     finger_was_down: bool,
     /// Reports in the order of their samples: each arrives before the next.
-    under_way: VecDeque<Report>,
+    under_way: VecDeque<PendingReport>,
     /// A report that waits for the next one.
     waiting: Option<Touch>,
     arrived: Option<Touch>,
@@ -248,9 +248,9 @@ impl TouchSource {
     /// Sends a report, after the one that waits for it.
     fn send(&mut self, arrival_tick: u64, touch: Touch) {
         if let Some(touch) = self.waiting.take() {
-            self.under_way.push_back(Report { arrival_tick, touch });
+            self.under_way.push_back(PendingReport { arrival_tick, touch });
         }
-        self.under_way.push_back(Report { arrival_tick, touch });
+        self.under_way.push_back(PendingReport { arrival_tick, touch });
     }
 
     fn in_steps(&self, place_m: f64) -> f64 {

@@ -70,6 +70,9 @@ pub struct Felt {
     pub electric_friction_n: f64,
     /// Normal load of the finger, in newtons. Zero without a finger.
     pub normal_load_n: f64,
+    /// Part of the friction that is there because the load is not the one that the scene is meant for: friction of this
+    /// finger in steady sliding, without noise, less that under the load of the scene's profile, in newtons.
+    pub load_mismatch_n: f64,
     /// What the skin did in this tick.
     pub slip: SlipStep,
     /// Voltage on the electrode.
@@ -168,6 +171,7 @@ impl World {
     /// Replaces the finger from now on by the contact of a profile under its load.
     pub fn set_finger(&mut self, contact: LoadedContact<f64>) {
         self.fingertip.set_contact(contact);
+        self.fingertip.set_meant_load(&contact);
     }
 
     /// Replaces the finger from now on by one of its own, whatever profile a scene is meant for. The board does not
@@ -179,6 +183,7 @@ impl World {
 
     /// Replaces the finger by that of the scene's profile, unless this world has a finger of its own.
     pub(crate) fn set_scenes_finger(&mut self, contact: LoadedContact<f64>) {
+        self.fingertip.set_meant_load(&contact);
         if !self.owns_finger {
             self.fingertip.set_contact(contact);
         }
@@ -274,7 +279,7 @@ impl World {
         let output = self.amplifier.tick(drive);
         self.tick += 1;
         let finger = self.finger();
-        let Friction { natural_friction_n, electric_friction_n, normal_load_n, slip } = match &finger {
+        let Friction { natural_friction_n, electric_friction_n, normal_load_n, load_mismatch_n, slip } = match &finger {
             Some(finger) => self.fingertip.slide(&output, finger, self.stated_load_n()),
             None => self.fingertip.lift(),
         };
@@ -285,6 +290,7 @@ impl World {
             natural_friction_n,
             electric_friction_n,
             normal_load_n,
+            load_mismatch_n,
             slip,
             electrode_v: output.end_v,
             mean_square_v2: output.mean_square_v2,

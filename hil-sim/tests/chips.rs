@@ -290,16 +290,16 @@ impl embedded_hal::digital::OutputPin for &mut OneShot {
 
 #[test]
 fn an_amplifier_whose_wire_is_off_has_a_fault() {
-    let well = BouncingContact::new(true, 0, 1);
+    let ready = BouncingContact::new(true, 0, 1);
     let mut enable = OneShot::default();
-    let mut amplifier = Amplifier::new(&mut enable, well.pin());
+    let mut amplifier = Amplifier::new(&mut enable, ready.pin());
     assert!(!amplifier.has_fault());
     assert!(amplifier.set_enabled(true));
-    well.press(false);
-    well.tick();
+    ready.press(false);
+    ready.tick();
     assert!(amplifier.has_fault());
     assert_eq!(enable.left_ticks, 1);
-    assert!(Amplifier::new(&mut enable, well.pin()).set_enabled(false));
+    assert!(Amplifier::new(&mut enable, ready.pin()).set_enabled(false));
     assert_eq!(enable.left_ticks, 0);
 }
 

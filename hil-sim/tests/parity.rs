@@ -11,8 +11,8 @@ use frixel_exchange::BOARD;
 use frixel_hil_sim::emulated::{Image, ReplayError, replay};
 use frixel_hil_sim::{BoardMemory, Journal, LineFault, Point, Rig, RigConfig, Stroke};
 use frixel_layers::{
-    Beat, Bitmap, Blend, Burst, Button, Carrier, Click, Constant, Edge, Grating, Header, Layer, Noise, Point as Corner,
-    Record, Region, Rings, Speed, Stream, Vibration, Wave,
+    Beat, Bitmap, Blend, Burst, Button, Click, Constant, Edge, Grating, Header, Layer, Noise, Point as Corner, Record,
+    Region, Rings, Speed, Stream, Vibration, Wave, Waveform,
 };
 use frixel_wire::fault::State;
 use frixel_wire::message::Command;
@@ -93,7 +93,7 @@ fn a_picture_on_a_sine_carrier_is_the_same() {
             angle_turns: 0.0,
             tiled: false,
         });
-        let header = Header { carrier: Carrier::Sine, slew_v_per_s: 3e5, ..HEADER };
+        let header = Header { waveform: Waveform::Sine, slew_v_per_s: 3e5, ..HEADER };
         script.play(&scene(&header, &[record(layer)]));
         script.run(TICKS);
     });

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use frixel_hil_sim::{BoardMemory, LineFault, Point, Rig, RigConfig, Stroke, TickRecord, contact_of};
-use frixel_layers::{Carrier, Header};
+use frixel_layers::{Header, Waveform};
 use frixel_wire::fault::State;
 use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, crc32};
 use frixel_wire::message::{Command, FromBoard, Request};
@@ -85,8 +85,8 @@ fn a_hello_takes_the_time_that_its_bytes_take_on_the_line() {
 
 #[test]
 fn a_constant_friction_is_felt_within_one_per_cent_of_what_can_be_reached() {
-    for carrier in [Carrier::Square, Carrier::Sine] {
-        let header = Header { carrier, ..HEADER };
+    for waveform in [Waveform::Square, Waveform::Sine] {
+        let header = Header { waveform, ..HEADER };
         let contact = contact_of(&header).unwrap();
         let reach_n = contact.electric_friction_n(150.0);
         for part in [0.1, 0.5, 0.95] {
@@ -96,10 +96,10 @@ fn a_constant_friction_is_felt_within_one_per_cent_of_what_can_be_reached() {
             play(&mut rig, &constant(&header, (part * reach_n) as f32));
             let records: Vec<TickRecord> = (0..39_000).map(|_| rig.step()).collect();
             // A sine's pressure swings about its mean, and friction grows a little faster than pressure.
-            let bound = if carrier == Carrier::Square { 0.01 } else { 0.03 };
+            let bound = if waveform == Waveform::Square { 0.01 } else { 0.03 };
             for felt_n in felt_means_n(&records) {
                 let error = (felt_n - wanted_n) / reach_n;
-                assert!(error.abs() <= bound, "{carrier:?} at {part} of the range: {error}");
+                assert!(error.abs() <= bound, "{waveform:?} at {part} of the range: {error}");
             }
         }
     }

@@ -7,9 +7,10 @@ use crate::Real;
 use crate::double_single::DoubleSingle;
 
 /// Shape of a carrier.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Waveform {
-    /// A square wave between plus and minus its peak.
+    /// A square wave between plus and minus its peak: its square has no ripple.
+    #[default]
     Square,
     /// A sine wave.
     Sine,
@@ -104,7 +105,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_left_of_a_square_is_exact() {
+    fn the_remaining_mean_square_is_exact() {
         for i in 0..=4000 {
             let r = libm::pow(10.0, f64::from(i) / 1000.0 - 1.0);
             let expected = 1.0 - libm::tanh(r) / r;

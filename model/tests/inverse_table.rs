@@ -118,7 +118,7 @@ fn every_contact_is_within_the_bound() {
 }
 
 #[test]
-fn what_cannot_be_built_says_why() {
+fn a_table_that_cannot_be_built_gives_the_reason() {
     let contact = contact(0.5);
     for voltage_max_v_rms in [f64::NAN, f64::INFINITY, -1.0, 0.0] {
         assert_eq!(InverseTable::build(&contact, voltage_max_v_rms), Err(TableError::Voltage));

@@ -112,7 +112,7 @@ fn loads_voltages_and_frictions_are_refused_by_name() {
 }
 
 #[test]
-fn what_has_no_answer_says_so() {
+fn inputs_without_an_answer_give_an_error() {
     let contact = Contact::new(&FINGER, 1e-5).unwrap();
     let pulled = contact.under_pull(0.01).unwrap();
     assert_eq!(pulled.state(0.0).unwrap_err(), StateError::NoContact);

@@ -213,7 +213,7 @@ fn smallest_is_the_smallest_of_all_orders() {
 }
 
 #[test]
-fn what_cannot_be_built_says_why() {
+fn a_table_that_cannot_be_built_gives_the_reason() {
     let contact = contact(1e-5, 0.5);
     for (low, high) in [(0.0, 1.0), (-1.0, 1.0), (1e-3, 1e-3), (1e-3, f64::INFINITY), (f64::NAN, 1.0), (1e-3, f64::NAN)]
     {

@@ -39,7 +39,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_above_its_limit_or_was_not_measured_is_named() {
+    fn figures_above_their_limit_or_not_measured_are_named() {
         let limits = Limits::from([("a".to_owned(), 10), ("b".to_owned(), 10), ("c".to_owned(), 10)]);
         let figures = Figures::from([("a", 10), ("b", 11)]);
         let message = check(&limits, &figures).unwrap_err();

@@ -4,8 +4,8 @@ use core::array;
 
 use frixel_layers::cost;
 use frixel_layers::{
-    Beat, Bitmap, Blend, Burst, Button, Carrier, Click, Constant, Edge, Grating, Header, Layer, Noise, Point, Record,
-    Region, Rings, Speed, Stream, Vibration, Wave,
+    Beat, Bitmap, Blend, Burst, Button, Click, Constant, Edge, Grating, Header, Layer, Noise, Point, Record,
+    Region, Rings, Speed, Stream, Vibration, Wave, Waveform,
 };
 use frixel_wire::hello::BoardLimits;
 use frixel_wire::message::Command;
@@ -28,7 +28,7 @@ const UPPER_PART: Region = Region::Rectangle { x_m: 0.0, y_m: 0.0, width_m: 0.12
 const CONSTANT: Layer = Layer::Constant(Constant { electric_friction_n: 0.001 });
 /// More friction than the drive can give; every tick counts as saturated.
 const OUT_OF_REACH: Layer = Layer::Constant(Constant { electric_friction_n: 1.0 });
-/// Ends before the still finger and goes on after it, so that both a click and its end are counted.
+/// Short enough that ticks during the click and ticks after its end are both counted.
 const CLICK: Click = Click { height_n: 0.005, decay_s: 0.05 };
 
 /// One of many regions that the finger never touches, most of them in a grid cell of their own.
@@ -104,7 +104,7 @@ impl Bench {
         let two = [under(AROUND, CONSTANT); 2];
         self.play(&HEADER, &two);
         self.slide(counter.case("tick_two_constants"));
-        self.play(&Header { carrier: Carrier::Sine, ..HEADER }, &two);
+        self.play(&Header { waveform: Waveform::Sine, ..HEADER }, &two);
         self.slide(counter.case("tick_two_constants_sine_carrier"));
         let edge = Layer::Edge(Edge {
             x_m: 0.03,
@@ -216,7 +216,7 @@ impl Bench {
 
     /// As many layers under the finger as a board accepts: pictures, then stripes, then constants, on a sine carrier.
     pub(crate) fn worst_scene(&mut self, counter: &mut Counter, crc32: u32) {
-        let header = Header { carrier: Carrier::Sine, ..HEADER };
+        let header = Header { waveform: Waveform::Sine, ..HEADER };
         let mut records = [under(AROUND, CONSTANT); RECORDS_MAX];
         let mut count = 0;
         let core_cycles_max = BoardLimits::SMALLEST_TICK_CYCLES_MAX * 100 / cost::FLASH_WAIT_PERCENT;

@@ -9,7 +9,7 @@ use core::str;
 use cortex_m_semihosting::hprintln;
 use frixel_layers::Layer;
 use frixel_session::Touch;
-use frixel_testkit::{Pace, RandomFinger, RandomScene, Report};
+use frixel_testkit::{Pace, RandomFinger, RandomScene, FingerReport};
 
 use crate::count::{Case, Counter};
 use crate::tick::{Bench, PING_TICKS, STREAM_TICKS};
@@ -68,8 +68,8 @@ impl Bench {
                 self.host.stream(tick / STREAM_TICKS);
             }
             let touch = finger.tick().map(|report| match report {
-                Report::Down { x_m, y_m, age_ticks } => Touch::Down { x_m, y_m, age_ticks },
-                Report::Up => Touch::Up,
+                FingerReport::Down { x_m, y_m, age_ticks } => Touch::Down { x_m, y_m, age_ticks },
+                FingerReport::Up => Touch::Up,
             });
             self.count(&mut case, touch);
         }

@@ -2,24 +2,18 @@
 
 use cortex_m::Peripherals;
 use cortex_m::singleton;
-use frixel_control::{Active, Board, Order, Status, Ticker};
+use frixel_control::{Board, Status, Ticker};
 use frixel_drivers::serial::SerialLink;
-use frixel_session::Session;
-use heapless::spsc::{Consumer, Producer, Queue};
+use frixel_session::{Queues, Session, SessionEnds};
 
-use crate::tick::{self, Monitor, Tick};
-use crate::uart::{Queues, Uart};
+use crate::tick::{self, SimulatedMonitor, Tick};
+use crate::uart::{self, Uart};
 use crate::{fault, fault_injection, shared};
 
-/// Length of the queue of orders for the tick; the queue keeps one place free. Further orders wait in the session.
-const ORDERS_LEN: usize = 5;
-
-/// The session's ends of the queues to and from the tick.
+/// The session between the host and the tick.
 struct MainLoop {
     session: &'static mut Session<'static>,
-    orders: Producer<'static, Order<'static>>,
-    spares: Consumer<'static, &'static mut Active>,
-    statuses: Consumer<'static, Status>,
+    tick: SessionEnds,
     serial: SerialLink<Uart>,
 }
 
@@ -30,29 +24,16 @@ pub fn run(
     ticker: Ticker<'static>,
     mut peripherals: Peripherals,
 ) -> ! {
-    let (Some(orders), Some(spares), Some(statuses), Some(queues)) = (
-        singleton!(: Queue<Order<'static>, ORDERS_LEN> = Queue::new()),
-        singleton!(: Queue<&'static mut Active, 3> = Queue::new()),
-        singleton!(: Queue<Status, 2> = Queue::new()),
-        singleton!(: Queues = Queues::new()),
-    ) else {
+    let (Some(queues), Some(bytes)) =
+        (singleton!(: Queues = Queues::new()), singleton!(: uart::Queues = uart::Queues::new()))
+    else {
         fault::never()
     };
-    let (order_producer, order_consumer) = orders.split();
-    let (spare_producer, spare_consumer) = spares.split();
-    let (status_producer, status_consumer) = statuses.split();
-    let tick = Tick {
-        ticker,
-        orders: order_consumer,
-        spares: spare_producer,
-        statuses: status_producer,
-        monitor: Monitor::new(board),
-        count: 0,
-    };
+    let (session_ends, tick_ends) = queues.split();
+    let tick = Tick { ticker, queues: tick_ends, monitor: SimulatedMonitor::new(board), count: 0 };
     tick::start(tick, board.tick_hz, peripherals.SYST);
-    let serial = SerialLink::new(Uart::start(queues, &mut peripherals.NVIC));
-    let mut main_loop =
-        MainLoop { session, orders: order_producer, spares: spare_consumer, statuses: status_consumer, serial };
+    let serial = SerialLink::new(Uart::start(bytes, &mut peripherals.NVIC));
+    let mut main_loop = MainLoop { session, tick: session_ends, serial };
     loop {
         main_loop.once();
         fault_injection::in_main();
@@ -66,27 +47,20 @@ impl MainLoop {
         if let Some(touch) = shared::touch(status.telemetry.tick) {
             self.session.touch(touch, status.telemetry.tick);
         }
-        while self.orders.ready()
-            && let Some(order) = self.session.next_order()
-        {
-            // Cannot fail: the condition of the loop ensures room.
-            let _ = self.orders.enqueue(order);
-        }
-        while let Some(spare) = self.spares.dequeue() {
-            self.session.take_back(spare);
-        }
+        self.tick.exchange(self.session, |_| {});
         self.session.poll(&status);
         let Ok(()) = self.serial.transmit(|bytes| self.session.transmit(bytes));
     }
 
-    /// Requests the board's status from the next tick, and waits for it.
+    /// Waits for the status of the next tick.
     ///
     /// This waits without sleep: an emulator whose processor sleeps until the next tick wakes it late, sometimes by
     /// several ticks, which the tick treats as a missed deadline.
     fn status(&mut self) -> Status {
-        tick::request_status();
+        // The status in the queue is that of a past tick.
+        self.tick.next_status();
         loop {
-            if let Some(status) = self.statuses.dequeue() {
+            if let Some(status) = self.tick.next_status() {
                 return status;
             }
         }

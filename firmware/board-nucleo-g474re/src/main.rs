@@ -9,7 +9,7 @@ use board_nucleo_g474re::adc::Adc;
 use board_nucleo_g474re::dac::DacError;
 use board_nucleo_g474re::fault::{self, LastReset};
 use board_nucleo_g474re::flash::BankTwo;
-use board_nucleo_g474re::main_loop::{MainLoop, QueuePairs};
+use board_nucleo_g474re::main_loop::MainLoop;
 #[cfg(feature = "optical-frame")]
 use board_nucleo_g474re::optical_frame::{self, OpticalFrame, Reports};
 use board_nucleo_g474re::output::Output;
@@ -27,9 +27,9 @@ use frixel_control::{Active, Board, Ticker};
 use frixel_drivers::fault_record::Text;
 use frixel_drivers::serial::SerialLink;
 use frixel_layers::BitmapPool;
-use frixel_session::Session;
 #[cfg(feature = "store")]
 use frixel_session::store::SceneStore;
+use frixel_session::{Queues, Session};
 use frixel_wire::message::FAULT_TEXT_MAX_LEN;
 
 /// Memory for bitmaps, written by the session and read by the tick.
@@ -41,7 +41,7 @@ static STREAM: StreamBuffer = StreamBuffer::new();
 #[entry]
 fn main() -> ! {
     static mut TEXT: Text = [0; FAULT_TEXT_MAX_LEN];
-    static mut QUEUES: QueuePairs = QueuePairs::new();
+    static mut QUEUES: Queues = Queues::new();
 
     let main_loop = start(TEXT, QUEUES);
     #[cfg(feature = "optical-frame")]
@@ -56,7 +56,7 @@ fn main() -> ! {
 
 /// Starts everything. A function of its own, so that its stack is free again afterwards.
 #[inline(never)]
-fn start(text: &'static mut Text, queue_pairs: &'static mut QueuePairs) -> MainLoop {
+fn start(text: &'static mut Text, queues: &'static mut Queues) -> MainLoop {
     let output = Output::new();
     let Some(mut core) = Peripherals::take() else { fault::never() };
     guard::start(&mut core.MPU);
@@ -78,16 +78,16 @@ fn start(text: &'static mut Text, queue_pairs: &'static mut QueuePairs) -> MainL
     #[cfg(feature = "store")]
     let store = flash.map(|flash| (SceneStore::new(board::SCENE_SLOT, board::TICK_HZ, &flash, session), flash));
 
-    let (ends, queues) = queue_pairs.split();
+    let (session_ends, tick_ends) = queues.split();
     let (frames, mut dac) = dac::start();
     log_dac(dac.prepare());
     let (amplifier, arm_switch) = (tick::amplifier(output), tick::arm_switch());
-    let tick = Tick { ticker, queues, adc: Adc::new(), dac: frames, amplifier, arm_switch };
+    let tick = Tick { ticker, queues: tick_ends, adc: Adc::new(), dac: frames, amplifier, arm_switch };
     let serial = SerialLink::new(Serial::new());
     tick::start(tick);
     let watchdog = Watchdog::start();
     MainLoop {
-        ends,
+        tick: session_ends,
         session,
         status,
         serial,

@@ -1,13 +1,12 @@
 //! The main loop: runs the session between serial port and tick, and all work that is not urgent.
 
-use frixel_control::{Active, Order, Status};
+use frixel_control::{Order, Status};
 use frixel_drivers::serial::SerialLink;
 use frixel_drivers::state_light::StateLight;
-use frixel_session::Session;
 #[cfg(feature = "store")]
 use frixel_session::store::SceneStore;
+use frixel_session::{Session, SessionEnds};
 use frixel_wire::fault::State;
-use heapless::spsc::{Consumer, Producer, Queue};
 
 use crate::dac::Dac;
 #[cfg(feature = "store")]
@@ -16,46 +15,14 @@ use crate::flash::BankTwo;
 use crate::optical_frame::OpticalFrame;
 use crate::pins::Pin;
 use crate::serial::Serial;
-use crate::tick::{self, Queues};
+use crate::tick;
 use crate::watchdog::Watchdog;
 use crate::{arming, clock};
 
-/// Length of the queue of orders for the tick; the queue keeps one place free. Further orders wait in the session.
-const ORDERS_LEN: usize = 5;
-
-/// The main loop's ends of the queues.
-pub struct Ends {
-    orders: Producer<'static, Order<'static>>,
-    spares: Consumer<'static, &'static mut Active>,
-    statuses: Consumer<'static, Status>,
-}
-
-/// The queues between main loop and tick.
-pub struct QueuePairs {
-    orders: Queue<Order<'static>, ORDERS_LEN>,
-    spares: Queue<&'static mut Active, 3>,
-    statuses: Queue<Status, 2>,
-}
-
-impl QueuePairs {
-    /// Empty queues.
-    pub const fn new() -> Self {
-        Self { orders: Queue::new(), spares: Queue::new(), statuses: Queue::new() }
-    }
-
-    /// The main loop's ends, and the tick's.
-    pub fn split(&'static mut self) -> (Ends, Queues) {
-        let (orders, orders_end) = self.orders.split();
-        let (spares_end, spares) = self.spares.split();
-        let (statuses_end, statuses) = self.statuses.split();
-        (Ends { orders, spares, statuses }, Queues { orders: orders_end, spares: spares_end, statuses: statuses_end })
-    }
-}
-
 /// All that runs in the main loop.
 pub struct MainLoop {
-    /// Its ends of the queues.
-    pub ends: Ends,
+    /// Its ends of the queues between it and the tick.
+    pub tick: SessionEnds,
     /// The session with the host.
     pub session: &'static mut Session<'static>,
     /// The last status from the tick.
@@ -76,7 +43,6 @@ pub struct MainLoop {
 impl MainLoop {
     /// Runs the loop for ever.
     pub fn run(mut self, #[cfg(feature = "optical-frame")] mut touch_source: OpticalFrame<'_>) -> ! {
-        tick::request_status();
         loop {
             self.follow_status();
             let (serial, session, status) = (&mut self.serial, &mut self.session, &self.status);
@@ -85,7 +51,7 @@ impl MainLoop {
             if let Some(touch) = touch_source.next_touch() {
                 self.session.touch(touch, tick::count());
             }
-            self.hand_over();
+            self.exchange();
             self.session.poll(&self.status);
             let Ok(()) = self.serial.transmit(|bytes| self.session.transmit(bytes));
             let now_tick = tick::count();
@@ -100,10 +66,9 @@ impl MainLoop {
 
     /// Takes a new status, if there is one.
     fn follow_status(&mut self) {
-        if let Some(status) = self.ends.statuses.dequeue() {
+        if let Some(status) = self.tick.next_status() {
             log_change(&self.status, &status);
             self.status = status;
-            tick::request_status();
             // An order to arm may still be queued behind this status.
             let disarmed = [self.status.telemetry.state, self.session.state()] == [State::Disarmed; 2];
             self.watchdog.freeze_with_debugger(disarmed);
@@ -111,21 +76,15 @@ impl MainLoop {
         }
     }
 
-    /// Passes orders to the tick while there is room, and takes back the coefficients that the tick no longer uses.
-    fn hand_over(&mut self) {
-        while self.ends.orders.ready()
-            && let Some(order) = self.session.next_order()
-        {
+    /// Passes orders to the tick, and takes back the coefficients that the tick no longer uses.
+    fn exchange(&mut self) {
+        let (watchdog, dac) = (&mut self.watchdog, &mut self.dac);
+        self.tick.exchange(self.session, |order| {
             if matches!(order, Order::Arm) {
-                self.watchdog.freeze_with_debugger(false);
-                arming::prepare(&mut self.dac);
+                watchdog.freeze_with_debugger(false);
+                arming::prepare(dac);
             }
-            // Cannot fail: the condition of the loop ensures room.
-            let _ = self.ends.orders.enqueue(order);
-        }
-        while let Some(spare) = self.ends.spares.dequeue() {
-            self.session.take_back(spare);
-        }
+        });
     }
 }
 

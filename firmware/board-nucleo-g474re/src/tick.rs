@@ -3,18 +3,18 @@
 //!
 //! | pin | function | |
 //! |---|---|---|
-//! | PC10 | input, pulled down | amplifier: high while all is well |
+//! | PC10 | input, pulled down | amplifier: high while it is ready |
 //! | PC11 | input, pulled down | arm switch: high while held |
 
-use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use core::sync::atomic::{AtomicU32, Ordering};
 
 use cortex_m::peripheral::NVIC;
-use frixel_control::{Active, Order, Sense, Status, Ticker};
+use frixel_control::{Sense, Ticker};
 use frixel_drivers::amplifier::Amplifier;
 use frixel_drivers::arm_switch::ArmSwitch;
 use frixel_drivers::bus_handover::BusHandover;
+use frixel_session::TickEnds;
 use frixel_wire::fault::Fault;
-use heapless::spsc::{Consumer, Producer};
 use stm32_metapac::{GPIOC, Interrupt, interrupt};
 
 use crate::adc::Adc;
@@ -24,12 +24,11 @@ use crate::owned::Owned;
 use crate::pins::Pin;
 use crate::{period, pins};
 
-const AMPLIFIER_WELL: u32 = 10;
+const AMPLIFIER_READY: u32 = 10;
 const ARM_SWITCH: u32 = 11;
 const BUTTON: u32 = 13;
 
 static TICK: Owned<Tick> = Owned::new();
-static STATUS_REQUESTED: AtomicBool = AtomicBool::new(false);
 static COUNT: AtomicU32 = AtomicU32::new(0);
 /// Arbitrates the DAC's bus between the tick and the main loop, which checks the DAC before it arms the board.
 pub static DAC_BUS: BusHandover = BusHandover::new();
@@ -45,7 +44,7 @@ pub struct Tick {
     /// Computes the voltage from touch and scene.
     pub ticker: Ticker<'static>,
     /// Its ends of the queues.
-    pub queues: Queues,
+    pub queues: TickEnds,
     /// The amplifier's monitor.
     pub adc: Adc,
     /// The DAC.
@@ -54,16 +53,6 @@ pub struct Tick {
     pub amplifier: Amplifier<Output, Pin>,
     /// The switch that a person holds.
     pub arm_switch: ArmSwitch<Pin>,
-}
-
-/// The tick's ends of the queues between it and the main loop.
-pub struct Queues {
-    /// Orders from the session.
-    pub orders: Consumer<'static, Order<'static>>,
-    /// Coefficients to return to the session.
-    pub spares: Producer<'static, &'static mut Active>,
-    /// A status for the session, if requested.
-    pub statuses: Producer<'static, Status>,
 }
 
 /// Starts the tick.
@@ -77,7 +66,7 @@ pub fn start(tick: Tick) {
 
 /// The amplifier behind the one-shot.
 pub fn amplifier(output: Output) -> Amplifier<Output, Pin> {
-    Amplifier::new(output, Pin::input_pulled_down(GPIOC, AMPLIFIER_WELL))
+    Amplifier::new(output, Pin::input_pulled_down(GPIOC, AMPLIFIER_READY))
 }
 
 /// The arm switch.
@@ -87,7 +76,7 @@ pub fn arm_switch() -> ArmSwitch<Pin> {
 
 /// Configures all input pins, and the button of the board, PC13, for bring-up.
 pub fn start_inputs() {
-    pins::input_pulled_down(GPIOC, AMPLIFIER_WELL);
+    pins::input_pulled_down(GPIOC, AMPLIFIER_READY);
     pins::input_pulled_down(GPIOC, ARM_SWITCH);
     pins::input(GPIOC, BUTTON);
 }
@@ -97,19 +86,14 @@ pub fn count() -> u32 {
     COUNT.load(Ordering::Relaxed)
 }
 
-/// Requests a status from the tick.
-pub fn request_status() {
-    STATUS_REQUESTED.store(true, Ordering::Release);
-}
-
 /// Raises a fault at the next tick. `detail` has 24 bits.
 pub fn raise(fault: Fault, detail: u32) {
     FAULT.store(u32::from(fault.number()) << FAULT_SHIFT | detail & ((1 << FAULT_SHIFT) - 1), Ordering::Release);
 }
 
-/// The levels of the inputs: the amplifier is well, and the contact of the arm switch is closed.
+/// The levels of the inputs: the amplifier is ready, and the contact of the arm switch is closed.
 pub fn inputs() -> (bool, bool) {
-    (pins::is_high(GPIOC, AMPLIFIER_WELL), pins::is_high(GPIOC, ARM_SWITCH))
+    (pins::is_high(GPIOC, AMPLIFIER_READY), pins::is_high(GPIOC, ARM_SWITCH))
 }
 
 /// Deadline: the frame for the DAC must begin within [`period::DEADLINE_CYCLES`] of the period, 21.8 us. A tick that
@@ -127,19 +111,14 @@ fn TIM3() {
 impl Tick {
     fn run(&mut self) {
         COUNT.store(count().wrapping_add(1), Ordering::Relaxed);
-        if let Some(order) = self.queues.orders.dequeue()
-            && let Some(spare) = self.ticker.apply(order)
-        {
-            // Cannot fail: there are two of them, and room for both.
-            let _ = self.queues.spares.enqueue(spare);
-        }
+        self.queues.apply_order(&mut self.ticker);
         let found = FAULT.load(Ordering::Acquire);
         if found != 0 {
             self.raise_found(found);
         }
         let sense = self.sense();
         let drive = self.ticker.tick(&sense);
-        let output_is_zero = !drive.amplifier_enable && !self.queues.orders.ready();
+        let output_is_zero = !drive.amplifier_enable && !self.queues.has_order();
         if !DAC_BUS.tick_sends(output_is_zero) {
             self.amplifier.set_enabled(false);
         } else if self.dac.send(drive.dac_code) {
@@ -147,11 +126,7 @@ impl Tick {
         } else {
             self.late(period::cycles());
         }
-        if STATUS_REQUESTED.load(Ordering::Acquire) {
-            STATUS_REQUESTED.store(false, Ordering::Relaxed);
-            // Cannot fail: the session requests the next status only after it has taken this one.
-            let _ = self.queues.statuses.enqueue(self.ticker.status());
-        }
+        self.queues.offer_status(&self.ticker);
         if period::has_begun() {
             self.late(period::PERIOD_CYCLES + period::cycles());
         }

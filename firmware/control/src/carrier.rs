@@ -5,7 +5,7 @@
 //! early edge.
 
 use fixed::types::{I1F15, I17F15};
-use frixel_layers::Carrier as Shape;
+use frixel_layers::Waveform;
 use frixel_wire::dac_code::DacCode;
 
 #[cfg(feature = "sine-carrier")]
@@ -14,7 +14,7 @@ use frixel_layers::cosine;
 /// Parameters of a carrier; part of [`Active`](crate::Active).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CarrierTiming {
-    pub(crate) shape: Shape,
+    pub(crate) waveform: Waveform,
     pub(crate) half_period_ticks: u32,
     /// DAC codes per volt rms of the envelope, including the crest factor and the loss in the edges.
     pub(crate) codes_per_v_rms: f32,
@@ -27,17 +27,17 @@ pub struct CarrierTiming {
 
 impl CarrierTiming {
     /// A carrier whose output is zero.
-    pub const ZERO_OUTPUT: Self = Self::new(Shape::Square, 20, 0.0, DacCode::ZERO);
+    pub const ZERO_OUTPUT: Self = Self::new(Waveform::Square, 20, 0.0, DacCode::ZERO);
 
     /// A carrier whose integral stays within one half period at full voltage.
-    pub const fn new(shape: Shape, half_period_ticks: u32, codes_per_v_rms: f32, code_max: DacCode) -> Self {
-        let mean = match shape {
-            Shape::Square => 1.0,
-            Shape::Sine => core::f32::consts::FRAC_2_PI,
+    pub const fn new(waveform: Waveform, half_period_ticks: u32, codes_per_v_rms: f32, code_max: DacCode) -> Self {
+        let mean = match waveform {
+            Waveform::Square => 1.0,
+            Waveform::Sine => core::f32::consts::FRAC_2_PI,
         };
         let integral_max = I17F15::from_bits((code_max.bits() as f32 * (half_period_ticks as f32 * mean)) as i32);
         let turns_per_tick = 0.5 / half_period_ticks as f32;
-        Self { shape, half_period_ticks, codes_per_v_rms, code_max, integral_max, turns_per_tick }
+        Self { waveform, half_period_ticks, codes_per_v_rms, code_max, integral_max, turns_per_tick }
     }
 
     /// Ticks from the middle of a half period to its edge.
@@ -136,15 +136,15 @@ impl Carrier {
     #[inline]
     fn magnitude(&self, envelope_v_rms: f32, timing: &CarrierTiming) -> I17F15 {
         let amplitude = envelope_v_rms * timing.codes_per_v_rms;
-        let code = match timing.shape {
-            Shape::Square => amplitude,
+        let code = match timing.waveform {
+            Waveform::Square => amplitude,
             #[cfg(feature = "sine-carrier")]
-            Shape::Sine => {
+            Waveform::Sine => {
                 // The crest, at which the cosine's angle is 0, is a quarter of a turn before the edge.
                 amplitude * cosine(self.left_ticks as f32 * timing.turns_per_tick - 0.25)
             }
             #[cfg(not(feature = "sine-carrier"))]
-            Shape::Sine => 0.0,
+            Waveform::Sine => 0.0,
         };
         I17F15::from_bits((code + 0.5) as i32).min(timing.code_max.0.into())
     }

@@ -29,12 +29,12 @@ pub(crate) struct Supervisor {
     /// The arm switch was open at some tick since the reset or the last disarming: if it is held now, it was pressed
     /// since.
     switch_was_released: bool,
-    monitor: Monitor,
+    monitor: MonitorCheck,
 }
 
 /// The expected monitor voltage, and the count of ticks at which the monitor read something else.
 #[derive(Clone, Copy, Debug)]
-struct Monitor {
+struct MonitorCheck {
     expected_v: f32,
     volts_per_code: f32,
     step: f32,
@@ -47,7 +47,7 @@ struct Monitor {
     wrong_ticks: u32,
 }
 
-impl Monitor {
+impl MonitorCheck {
     fn new(board: &Board) -> Self {
         let floor_v = MONITOR_FLOOR * board.limits.full_scale_v_peak;
         Self {
@@ -108,7 +108,7 @@ impl Supervisor {
             host_timeout_ticks: Some(host_timeout_default_ticks(board)),
             host_silent: false,
             switch_was_released: false,
-            monitor: Monitor::new(board),
+            monitor: MonitorCheck::new(board),
         }
     }
 

@@ -97,7 +97,7 @@ mod tests {
         until_tick: 1_100,
         place_m: [0.01, 0.02],
         path_velocity_m_per_s: [0.1, -0.2],
-        path_half_acceleration_m_per_s2: [0.5, 1.0],
+        path_half_acceleration_m_per_s2: [0.5, 0.8],
         velocity_m_per_s: [0.3, 0.4],
         half_acceleration_m_per_s2: [-0.5, 2.0],
         ramp: StandstillRamp::MOVING,
@@ -113,7 +113,7 @@ mod tests {
         assert_close(elapsed_s, 0.01);
         let [x_m, y_m] = TRACK.place_m(elapsed_s);
         assert_close(x_m, 0.01 + 0.1 * 0.01 + 0.5 * 1e-4);
-        assert_close(y_m, 0.02 - 0.2 * 0.01 + 1.0 * 1e-4);
+        assert_close(y_m, 0.02 - 0.2 * 0.01 + 0.8 * 1e-4);
         let [vx, vy] = TRACK.velocity_m_per_s(elapsed_s);
         assert_close(vx, 0.3 - 2.0 * 0.5 * 0.01);
         assert_close(vy, 0.4 + 2.0 * 2.0 * 0.01);

@@ -1,21 +1,21 @@
-//! The logic lines of the high-voltage amplifier: enable out, well in.
+//! The logic lines of the high-voltage amplifier: enable out, ready in.
 
 use embedded_hal::digital::{InputPin, OutputPin};
 
-/// The amplifier's enable input and well output.
+/// The amplifier's enable input and ready output.
 #[derive(Debug)]
 pub struct Amplifier<E, W> {
     enable: E,
-    well: W,
+    ready: W,
 }
 
 impl<E: OutputPin, W: InputPin> Amplifier<E, W> {
-    /// An amplifier that is enabled while `enable` is high, and holds `well` high while it can drive: a disconnected
-    /// wire reads as a fault.
+    /// The driver of an amplifier that is enabled while `enable` is high, and holds `ready` high while it can drive: a
+    /// disconnected wire reads as a fault.
     ///
     /// `enable` may be a one-shot that goes low by itself unless [`Self::set_enabled`] is called again.
-    pub const fn new(enable: E, well: W) -> Self {
-        Self { enable, well }
+    pub const fn new(enable: E, ready: W) -> Self {
+        Self { enable, ready }
     }
 
     /// Enables or disables the output. Returns `false` when the pin could not be set.
@@ -28,7 +28,7 @@ impl<E: OutputPin, W: InputPin> Amplifier<E, W> {
     /// Whether the amplifier reports that it cannot drive. A pin that cannot be read counts as a fault.
     #[inline]
     pub fn has_fault(&mut self) -> bool {
-        !matches!(self.well.is_high(), Ok(true))
+        !matches!(self.ready.is_high(), Ok(true))
     }
 
     /// The enable pin.

@@ -8,7 +8,7 @@
 //! | [`bus_handover`] | sharing the DAC's bus with the tick | |
 //! | [`zforce`] | optical touch frame | asynchronous `I2c` and `DelayNs`, `InputPin` |
 //! | [`polling`] | futures without an executor | |
-//! | [`amplifier`] | enable and well lines of the amplifier | `OutputPin`, `InputPin` |
+//! | [`amplifier`] | enable and ready lines of the amplifier | `OutputPin`, `InputPin` |
 //! | [`monitor`] | the amplifier's monitor output behind an ADC | |
 //! | [`arm_switch`] | switch that a person holds | `InputPin` |
 //! | [`state_light`] | light that shows the state | `OutputPin` |

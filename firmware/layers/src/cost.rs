@@ -12,9 +12,10 @@ use frixel_wire::message::Refusal;
 use frixel_wire::scene::RECORDS_MAX;
 
 use crate::grid::{Cell, Grid, LayerSet, layer_numbers};
-use crate::header::{Carrier, Header};
+use crate::header::Header;
 use crate::point::Point;
 use crate::record::Record;
+use frixel_model::Waveform;
 
 /// Cycles for 100 core cycles when the tick runs from flash. **Assumed**; not measured on a board yet.
 ///
@@ -102,9 +103,9 @@ pub fn of_record(record: &Record, points: &[Point]) -> u32 {
 
 /// Core cycles of a tick with no layer near the finger.
 pub const fn of_empty_scene(header: &Header) -> u32 {
-    match header.carrier {
-        Carrier::Square => measured::EMPTY,
-        Carrier::Sine => measured::EMPTY + measured::SINE_CARRIER,
+    match header.waveform {
+        Waveform::Square => measured::EMPTY,
+        Waveform::Sine => measured::EMPTY + measured::SINE_CARRIER,
     }
 }
 

@@ -1,5 +1,6 @@
 //! The header of a scene: the settings for all its layers.
 
+use frixel_model::Waveform;
 use frixel_wire::bytes::{first_difference, get_at, put_at};
 use frixel_wire::hello::BoardLimits;
 use frixel_wire::message::{ConfigField, ConfigRefusal};
@@ -24,7 +25,7 @@ mod field {
     pub(super) const RECORDS: usize = 2;
     pub(super) const FLAGS: usize = 3;
     pub(super) const NUMBERS: usize = 4;
-    pub(super) const CARRIER: usize = 52;
+    pub(super) const WAVEFORM: usize = 52;
     pub(super) const POINTS: usize = 53;
     pub(super) const ELECTRIC_FRICTION_MAX: usize = 54;
 }
@@ -67,7 +68,7 @@ pub struct Header {
     /// Host timeout, s: the output goes to zero after this time without a frame from the host.
     pub host_timeout_s: f32,
     /// Shape of the carrier.
-    pub carrier: Carrier,
+    pub waveform: Waveform,
     /// The scene continues without a host.
     pub autonomous: bool,
     /// The tick estimates the finger's current position from late samples. Otherwise it uses the last sample unchanged.
@@ -81,16 +82,6 @@ pub struct Header {
     ///
     /// A scene stores the upper half of the number's bits, rounded up: up to 1 % more.
     pub electric_friction_max_n: Option<f32>,
-}
-
-/// Shape of the carrier.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Carrier {
-    /// Plus and minus the envelope: the square of the voltage has no ripple.
-    #[default]
-    Square,
-    /// A sine whose rms is the envelope.
-    Sine,
 }
 
 /// Which of several fingers is followed, since one electrode gives one effect.
@@ -115,9 +106,9 @@ impl Header {
             (self.electric_friction_max_n.is_some(), flag::ELECTRIC_FRICTION_MAX),
         ];
         let flags = flags.into_iter().filter(|(is_set, _)| *is_set).fold(0, |flags, (_, flag)| flags | flag);
-        let carrier = match self.carrier {
-            Carrier::Square => 0,
-            Carrier::Sine => 1,
+        let waveform = match self.waveform {
+            Waveform::Square => 0,
+            Waveform::Sine => 1,
         };
         put_at(&mut bytes, field::VERSION, SCENE_VERSION.to_le_bytes());
         put_at(&mut bytes, field::RECORDS, [records]);
@@ -126,7 +117,7 @@ impl Header {
         for (number, value) in header.numbers().into_iter().enumerate() {
             put_at(&mut bytes, field::NUMBERS + 4 * number, value.to_le_bytes());
         }
-        put_at(&mut bytes, field::CARRIER, [carrier]);
+        put_at(&mut bytes, field::WAVEFORM, [waveform]);
         put_at(&mut bytes, field::POINTS, [points]);
         let max = self.electric_friction_max_n.map_or(0, upper_half_rounded_up);
         put_at(&mut bytes, field::ELECTRIC_FRICTION_MAX, max.to_le_bytes());
@@ -151,15 +142,15 @@ impl Header {
         if flags & !flag::ALL != 0 {
             return Err(SceneError::UnknownFlags(flags));
         }
-        let carrier = match get_at(bytes, field::CARRIER) {
-            [0] => Carrier::Square,
-            [1] => Carrier::Sine,
+        let waveform = match get_at(bytes, field::WAVEFORM) {
+            [0] => Waveform::Square,
+            [1] => Waveform::Sine,
             [other] => return Err(SceneError::UnknownCarrier(other)),
         };
         let is_set = |flag| flags & flag != 0;
         let max = u16::from_le_bytes(get_at(bytes, field::ELECTRIC_FRICTION_MAX));
         let mut header = Self {
-            carrier,
+            waveform,
             autonomous: is_set(flag::AUTONOMOUS),
             prediction: is_set(flag::PREDICTION),
             leader: if is_set(flag::LEADER_LATEST) { Leader::Latest } else { Leader::First },
@@ -190,7 +181,7 @@ impl Header {
         slew_v_per_s: 0.0,
         carrier_hz: 0.0,
         host_timeout_s: 0.0,
-        carrier: Carrier::Square,
+        waveform: Waveform::Square,
         autonomous: false,
         prediction: false,
         leader: Leader::First,

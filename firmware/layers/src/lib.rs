@@ -71,8 +71,9 @@ pub use blend::Blend;
 pub use click::{Click, Clicks};
 pub use context::{Inputs, StreamSample};
 pub use cosine::cosine;
+pub use frixel_model::Waveform;
 pub use grid::{Cell, Grid, LayerSet, layer_numbers, layer_set};
-pub use header::{Carrier, HALF_PERIOD_MIN_TICKS, HEADER_LEN, Header, Leader, SCENE_VERSION};
+pub use header::{HALF_PERIOD_MIN_TICKS, HEADER_LEN, Header, Leader, SCENE_VERSION};
 pub use interval::{Interval, Number, electric_friction_max_n};
 #[cfg(feature = "vibration")]
 pub use kinds::vibration::{Beat, Burst};

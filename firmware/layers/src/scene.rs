@@ -5,16 +5,17 @@ use core::ops::Range;
 use frixel_wire::hello::feature;
 use frixel_wire::scene::{POINTS_MAX, RECORDS_MAX, SceneError};
 
-use crate::header::{Carrier, HEADER_LEN, Header, SCENE_VERSION};
+use crate::header::{HEADER_LEN, Header, SCENE_VERSION};
 use crate::point::{POINT_LEN, Point};
 use crate::record::{RECORD_LEN, Record};
+use frixel_model::Waveform;
 
 /// Bytes of the largest scene.
 pub const SCENE_MAX_LEN: usize = HEADER_LEN + RECORDS_MAX * RECORD_LEN + POINTS_MAX * POINT_LEN;
 
 /// Bits of [`feature`] that a board needs to play a scene.
 pub fn features_of(header: &Header, records: impl Iterator<Item = Record>) -> u32 {
-    let carrier = if header.carrier == Carrier::Sine { feature::SINE_CARRIER } else { 0 };
+    let carrier = if header.waveform == Waveform::Sine { feature::SINE_CARRIER } else { 0 };
     records.fold(carrier, |features, record| features | record.layer.feature() | record.region.feature())
 }
 

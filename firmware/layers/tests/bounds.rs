@@ -95,7 +95,7 @@ fn a_curve_counts_by_its_largest_point() {
 }
 
 #[test]
-fn what_no_number_bounds_has_no_bound() {
+fn unbounded_parameters_give_no_bound() {
     let grating = Grating {
         wave: Wave::Sine,
         cycles_per_m_x: 0.0,

@@ -1,17 +1,18 @@
 //! Estimates where the finger is now from touch samples that are late, rare and noisy.
 //!
-//! A Kalman filter of place, velocity and acceleration along each axis, whose acceleration is random and forgotten with
-//! a time constant (R. A. Singer, IEEE Transactions on Aerospace and Electronic Systems 6(4), 1970, 473). Both axes
-//! share the covariance. The covariance follows the time between samples, so a lost sample costs no accuracy beyond
-//! its own; a filter with gains of its own for every sample loses that (`frixel report`, touch estimators).
+//! A Kalman filter of place, velocity and acceleration along each axis. The acceleration is random and decays with a
+//! time constant (R. A. Singer, IEEE Transactions on Aerospace and Electronic Systems 6(4), 1970, 473). Both axes share
+//! the covariance. It grows with the time between samples, so after a lost sample the filter trusts the next one more;
+//! a filter with constant gains does not (`docs/touch.md` compares both).
 
 /// Time constant of the finger's acceleration, in s. From 0.03 to 0.1 the error on human strokes changes by a tenth.
 const ACCELERATION_S: f32 = 0.04;
 /// Standard deviation of the acceleration of a finger at rest, in m/s^2.
 const ACCELERATION_M_PER_S2: f32 = 0.3;
-/// What the recent speed adds to it, in 1/s: who moves fast turns fast.
+/// Standard deviation of the acceleration per m/s of recent speed, added to that of a finger at rest, in 1/s: a finger
+/// that moves fast also turns fast.
 const ACCELERATION_PER_SPEED_PER_S: f32 = 6.0;
-/// Time in which a past speed is forgotten, in s.
+/// Time constant with which the recent speed decays, in s.
 const RECENT_S: f32 = 0.5;
 /// Standard deviation of a measured place, in m: between the 0.02 mm of an infrared frame and the steps of 0.18 mm of a
 /// screen's pixels (0.18 mm over the root of 12).
@@ -20,7 +21,7 @@ const MEASURED_M: f32 = 0.05e-3;
 const JITTER_INTERVALS: f32 = 0.04;
 /// Standard deviation of the velocity of a finger that has just touched, in m/s.
 const FIRST_VELOCITY_M_PER_S: f32 = 0.3;
-/// A place further than this from where it was expected, in m, begins anew: no finger went there.
+/// A sample further than this from the expected place, in m, restarts the filter: it belongs to another touch.
 const JUMP_M: f32 = 5e-3;
 /// Longest step in [`ACCELERATION_S`] that the transition is computed for. A track ends before.
 const STEP_MAX: f32 = 3.0;
@@ -102,7 +103,7 @@ impl Covariance {
         let Self { pp, pv, pa, vv, va, aa } = *self;
         let pa_before_decay = pa + t * va + b * aa;
         let va_before_decay = va + c * aa;
-        // What the acceleration gains, as white noise over the step: this density times the step.
+        // Process noise: the variance that the acceleration gains in a step, spread evenly over the step.
         let (t2, gained) = (t * t, acceleration_variance * (1.0 - a * a));
         *self = Self {
             pp: pp + t * (2.0 * pv + t * vv) + b * (2.0 * (pa + t * va) + b * aa) + gained * t2 * t2 * (1.0 / 20.0),
@@ -265,8 +266,8 @@ mod tests {
         }
     }
 
-    /// The filter forgets an acceleration, since no hand keeps one. Of 0.4 m/s^2, a filter of velocities has the error of
-    /// the time since the last sample (17.5 ms) and of the half interval before: 0.1 mm.
+    /// The filter lets an acceleration decay, because no hand accelerates for long. Under 0.4 m/s^2 a filter without an
+    /// acceleration would be wrong by 0.1 mm: over the 17.5 ms since the last sample and half an interval before it.
     #[test]
     fn constant_acceleration_leaves_a_small_error() {
         let found_m = error_m(|t| 0.01 + 0.02 * t + 0.2 * t * t, 40);

@@ -36,7 +36,7 @@
 //! handles the hello, `states` arming and playing, `storing` uploads (`upload` collects their bytes), `commit` the
 //! change of scene (`loading` computes its coefficients step by step), `live` changes while a scene plays, and
 //! `fingers` touches reported by the host. `tracker` turns touch reports into tracks, with `estimator` and
-//! `standstill`.
+//! `standstill`. `queues` connects a session in a main loop with a ticker in an interrupt.
 //!
 //! # Cargo features
 //!
@@ -57,6 +57,7 @@ mod fingers;
 mod hello;
 mod live;
 mod loading;
+mod queues;
 mod session;
 mod standstill;
 mod states;
@@ -70,6 +71,7 @@ mod transmit_queue;
 mod upload;
 
 pub use loading::{TableRows, active_bytes_filled, table_rows};
+pub use queues::{Queues, SessionEnds, TickEnds};
 pub use session::Session;
 #[cfg(feature = "store")]
 pub use stored::StoredScene;

@@ -1,4 +1,4 @@
-//! Changes by the host while a scene plays: layers, and the samples of a stream.
+//! Commands that change a scene while it plays: layers on or off, their gains, and the samples of a stream.
 
 #[cfg(feature = "stream")]
 use frixel_layers::within;

@@ -8,7 +8,7 @@ use frixel_wire::scene::POINTS_MAX;
 use crate::commands::Commands;
 use crate::live::Playing;
 use crate::transmit_queue::TransmitQueue;
-use crate::upload::{Destination, Report, Upload};
+use crate::upload::{ChunkReport, Destination, Upload};
 use frixel_control::Order;
 
 impl Commands<'_> {
@@ -89,7 +89,7 @@ impl Commands<'_> {
 
     pub(crate) fn take_chunk(&mut self, number: u16, bytes: &[u8], queue: &mut TransmitQueue) {
         if let Some(upload) = &mut self.upload
-            && let Report::Progress { next_chunk } = upload.take(number, bytes, &mut self.staging, self.pool)
+            && let ChunkReport::Progress { next_chunk } = upload.take(number, bytes, &mut self.staging, self.pool)
         {
             self.report(&FromBoard::Progress { next_chunk, received_bytes: self.credit.received() }, queue);
         }

@@ -30,8 +30,9 @@ pub enum Touch {
 
 /// Samples older than this are ignored, in s.
 const SAMPLE_AGE_MAX_S: f32 = 0.1;
-/// Time in which a new track removes its difference to the track before, in intervals between reports. It ends after
-/// the next report is due: a correction that ended there would turn back if that report is lost.
+/// Time in which a new track approaches the estimate, in intervals between reports. The track is one parabola, which
+/// moves away from the estimate again once it has reached it. So that time is longer than one interval: the next track
+/// then starts before this one turns, even when its report is late.
 const BLEND_INTERVALS: f32 = 1.5;
 /// Part of an interval between two reports that goes into their mean.
 const INTERVAL_SHARE: f32 = 0.125;

@@ -30,7 +30,7 @@ pub(crate) struct Upload {
 
 /// The report to the host after a chunk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Report {
+pub(crate) enum ChunkReport {
     Nothing,
     Progress { next_chunk: u16 },
 }
@@ -52,12 +52,12 @@ impl Upload {
 
     /// Takes a chunk. A chunk that was received before is ignored. A chunk that comes too early is dropped, and the
     /// expected chunk is reported once.
-    pub(crate) fn take(&mut self, number: u16, bytes: &[u8], staging: &mut Staging, pool: &BitmapPool) -> Report {
+    pub(crate) fn take(&mut self, number: u16, bytes: &[u8], staging: &mut Staging, pool: &BitmapPool) -> ChunkReport {
         let wanted_len = (self.len - self.received).min(CHUNK_LEN as u32);
         if number != self.next_chunk || bytes.len() as u32 != wanted_len || wanted_len == 0 {
             let early = number > self.next_chunk && !self.gap_reported;
             self.gap_reported |= early;
-            return if early { Report::Progress { next_chunk: self.next_chunk } } else { Report::Nothing };
+            return if early { ChunkReport::Progress { next_chunk: self.next_chunk } } else { ChunkReport::Nothing };
         }
         match self.destination {
             Destination::Scene => staging.write(self.received as usize, bytes),
@@ -68,9 +68,9 @@ impl Upload {
         self.next_chunk += 1;
         self.gap_reported = false;
         if self.received == self.len || self.next_chunk.is_multiple_of(PROGRESS_CHUNKS) {
-            Report::Progress { next_chunk: self.next_chunk }
+            ChunkReport::Progress { next_chunk: self.next_chunk }
         } else {
-            Report::Nothing
+            ChunkReport::Nothing
         }
     }
 

@@ -37,8 +37,8 @@ fn playing(memory: &mut Memory) -> TestBoard<'_> {
     board
 }
 
-/// Whether the host was heard, and the other orders that bytes lead to.
-fn orders(board: &mut TestBoard, bytes: &[u8]) -> (bool, usize) {
+/// Whether the host was heard, and the number of other orders that these bytes cause.
+fn count_orders(board: &mut TestBoard, bytes: &[u8]) -> (bool, usize) {
     board.session.receive(bytes, &board.status());
     let (mut heard, mut others) = (false, 0);
     while let Some(order) = board.session.next_order() {
@@ -56,18 +56,18 @@ fn frames_within_the_window_are_taken_to_the_last_byte() {
     let mut board = playing(&mut memory);
     let window = window_of(Command::Ping);
     let (last, before) = window.split_at(window.len() - 9);
-    assert_eq!(orders(&mut board, last), (true, 0));
-    assert_eq!(orders(&mut board, before), (true, 0));
+    assert_eq!(count_orders(&mut board, last), (true, 0));
+    assert_eq!(count_orders(&mut board, before), (true, 0));
 }
 
 #[test]
 fn a_frame_beyond_the_credit_is_no_sign_of_life_and_no_order() {
     let mut memory = Memory::new();
     let mut board = playing(&mut memory);
-    orders(&mut board, &window_of(Command::Ping));
+    count_orders(&mut board, &window_of(Command::Ping));
     let (taken, _) = board.session.frame_counts();
     for command in [Command::Ping, Command::Stop, Command::Disarm, Command::ClearFault] {
-        assert_eq!(orders(&mut board, &requests(command, 3 * WINDOW)), (false, 0), "{command:?}");
+        assert_eq!(count_orders(&mut board, &requests(command, 3 * WINDOW)), (false, 0), "{command:?}");
     }
     assert_eq!(board.session.frame_counts().0, taken, "none of them counts as received");
 }
@@ -78,9 +78,9 @@ fn a_frame_beyond_the_credit_is_no_touch() {
     let mut board = TestBoard::of(Board { touch_from_host: true, ..Board::SIMULATOR }, &mut memory);
     board.hello();
     board.reads = false;
-    assert_eq!(orders(&mut board, &window_of(Command::Lift)), (true, 1));
+    assert_eq!(count_orders(&mut board, &window_of(Command::Lift)), (true, 1));
     let touch = Command::Touch { x_m: 0.02, y_m: 0.03, age_ticks: 0 };
-    assert_eq!(orders(&mut board, &requests(touch, WINDOW)), (false, 0));
+    assert_eq!(count_orders(&mut board, &requests(touch, WINDOW)), (false, 0));
 }
 
 /// What a client has left behind, however much it is, keeps nothing playing.
@@ -113,8 +113,8 @@ fn a_client_that_ignores_credit_and_reads_nothing_is_silent_after_its_window() {
 fn credit_comes_back_when_answers_are_read() {
     let mut memory = Memory::new();
     let mut board = playing(&mut memory);
-    orders(&mut board, &requests(Command::Ping, 2 * WINDOW));
-    assert_eq!(orders(&mut board, &request(1, Command::Ping)), (false, 0));
+    count_orders(&mut board, &requests(Command::Ping, 2 * WINDOW));
+    assert_eq!(count_orders(&mut board, &request(1, Command::Ping)), (false, 0));
     board.reads = true;
     board.collect();
     board.messages.clear();
@@ -128,12 +128,12 @@ fn credit_comes_back_when_answers_are_read() {
 fn a_hello_request_needs_no_credit_and_sets_it_anew() {
     let mut memory = Memory::new();
     let mut board = playing(&mut memory);
-    orders(&mut board, &requests(Command::Ping, 2 * WINDOW));
+    count_orders(&mut board, &requests(Command::Ping, 2 * WINDOW));
     board.reads = true;
     assert_eq!(board.hello().state, State::Disarmed);
     board.reads = false;
-    assert_eq!(orders(&mut board, &window_of(Command::Ping)), (true, 0));
-    assert_eq!(orders(&mut board, &request(1, Command::Ping)), (false, 0));
+    assert_eq!(count_orders(&mut board, &window_of(Command::Ping)), (true, 0));
+    assert_eq!(count_orders(&mut board, &request(1, Command::Ping)), (false, 0));
 }
 
 /// The end of a frame has come when there is credit again, its beginning was beyond it.
@@ -141,14 +141,14 @@ fn a_hello_request_needs_no_credit_and_sets_it_anew() {
 fn a_frame_that_begins_beyond_the_credit_is_discarded_whole() {
     let mut memory = Memory::new();
     let mut board = playing(&mut memory);
-    orders(&mut board, &window_of(Command::Ping));
+    count_orders(&mut board, &window_of(Command::Ping));
     let frame = request(1, Command::Ping);
     let (beginning, end) = frame.split_at(frame.len() - 1);
-    assert_eq!(orders(&mut board, beginning), (false, 0));
+    assert_eq!(count_orders(&mut board, beginning), (false, 0));
     board.reads = true;
     board.collect();
-    assert_eq!(orders(&mut board, end), (false, 0));
-    assert_eq!(orders(&mut board, &frame), (true, 0));
+    assert_eq!(count_orders(&mut board, end), (false, 0));
+    assert_eq!(count_orders(&mut board, &frame), (true, 0));
 }
 
 /// The board discards a bad frame that runs beyond the credit up to its zero byte, and no further.
@@ -156,12 +156,12 @@ fn a_frame_that_begins_beyond_the_credit_is_discarded_whole() {
 fn a_good_frame_behind_a_bad_one_that_ran_beyond_the_credit_is_taken() {
     let mut memory = Memory::new();
     let mut board = playing(&mut memory);
-    orders(&mut board, &window_of(Command::Ping));
-    assert_eq!(orders(&mut board, &[0x55; 40]), (false, 0));
-    assert_eq!(orders(&mut board, &[0]), (false, 0));
+    count_orders(&mut board, &window_of(Command::Ping));
+    assert_eq!(count_orders(&mut board, &[0x55; 40]), (false, 0));
+    assert_eq!(count_orders(&mut board, &[0]), (false, 0));
     board.reads = true;
     board.collect();
-    assert_eq!(orders(&mut board, &request(1, Command::Ping)), (true, 0));
+    assert_eq!(count_orders(&mut board, &request(1, Command::Ping)), (true, 0));
 }
 
 /// The board counts bytes that noise adds to the line as the host's. It reports the count, so the loss of credit does

@@ -3,8 +3,8 @@
 mod support;
 
 use frixel_layers::{
-    Beat, Burst, Button, Carrier, Click, Constant, Edge, Grating, Header, Layer, Noise, Point, Record, Region, Speed,
-    Stream, Vibration, Wave,
+    Beat, Burst, Button, Click, Constant, Edge, Grating, Header, Layer, Noise, Point, Record, Region, Speed, Stream,
+    Vibration, Wave, Waveform,
 };
 use frixel_wire::hello::feature;
 use frixel_wire::message::{Command, ConfigRefusal, Refusal};
@@ -102,7 +102,7 @@ fn a_carrier_plays_or_is_refused() {
     let mut memory = Memory::new();
     let mut board = TestBoard::new(&mut memory);
     board.hello();
-    let header = Header { carrier: Carrier::Sine, ..HEADER };
+    let header = Header { waveform: Waveform::Sine, ..HEADER };
     let found = board.load(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.01 }))])).err();
     let refused = Refusal::FeatureDisabled { layer: ConfigRefusal::WHOLE_SCENE };
     assert_eq!(found, (!cfg!(feature = "sine-carrier")).then_some(refused));

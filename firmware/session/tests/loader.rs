@@ -142,9 +142,9 @@ mod whole {
         }
     }
 
-    /// Every number of every kind is judged: a not-a-number in its place is refused, by a field that is there for it.
+    /// Every parameter of every kind is validated: a record with NaN there is refused.
     #[test]
-    fn no_number_goes_unseen() {
+    fn nan_in_any_parameter_is_refused() {
         let parameters = |record: &Record| {
             let bytes = record.write();
             // The bitmap's name and the noise's seed are not numbers, the points of a curve are judged below.

@@ -142,7 +142,7 @@ fn numbers_that_the_board_cannot_play_are_refused_by_name() {
 }
 
 #[test]
-fn what_is_no_scene_is_refused() {
+fn bytes_that_are_not_a_scene_are_refused() {
     let mut memory = Memory::new();
     let mut board = TestBoard::new(&mut memory);
     board.hello();
@@ -394,7 +394,7 @@ fn a_scene_is_replaced_while_it_plays() {
 }
 
 #[test]
-fn what_puts_the_output_to_zero_always_has_room() {
+fn orders_that_zero_the_output_always_have_room() {
     let mut memory = Memory::new();
     let mut board = TestBoard::new(&mut memory);
     board.hello();

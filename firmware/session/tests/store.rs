@@ -144,7 +144,7 @@ fn a_rotten_copy_gives_way_to_the_older_one_and_is_written_over() {
 }
 
 #[test]
-fn what_does_not_fit_is_not_begun() {
+fn a_scene_larger_than_its_slot_is_not_written() {
     let capacity = SLOT.capacity::<SimulatedFlash>();
     assert!(Writer::new::<SimulatedFlash>(SLOT, None, capacity).is_some());
     assert!(Writer::new::<SimulatedFlash>(SLOT, None, capacity + 1).is_none());
@@ -200,17 +200,23 @@ fn played(board: &mut TestBoard) -> Vec<Drive> {
     board.slide(4000)
 }
 
-#[test]
-fn the_last_scene_plays_after_power_off() {
+/// A board that has written a scene with a picture to its flash, the flash and the scene.
+fn with_stored_texture(memory: &mut Memory) -> (TestBoard<'_>, SimulatedFlash, Vec<u8>) {
     let mut flash = scene_flash();
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
+    let mut board = TestBoard::new(memory);
     let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
     board.hello();
     let scene = textured(&mut board);
     board.load(&scene).unwrap();
     finish_writing(&mut store, &mut flash, &board, 0);
     assert_eq!((store.stored_crc32(), store.failures()), (Some(crc32(&scene)), 0));
+    (board, flash, scene)
+}
+
+#[test]
+fn the_last_scene_plays_after_power_off() {
+    let mut memory = Memory::new();
+    let (mut board, flash, scene) = with_stored_texture(&mut memory);
     let before = played(&mut board);
     assert!(before.iter().any(|drive| drive.dac_code.bits() != 0));
 
@@ -285,14 +291,8 @@ fn nothing_is_written_unless_the_board_is_disarmed() {
 
 #[test]
 fn a_scene_that_the_board_can_no_longer_play_is_left_alone() {
-    let mut flash = scene_flash();
     let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
-    board.hello();
-    let scene = textured(&mut board);
-    board.load(&scene).unwrap();
-    finish_writing(&mut store, &mut flash, &board, 0);
+    let (_, flash, _) = with_stored_texture(&mut memory);
 
     let limits = BoardLimits { voltage_max_v_peak: 50.0, ..Board::SIMULATOR.limits };
     let mut memory = Memory::new();

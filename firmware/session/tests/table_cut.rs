@@ -17,7 +17,7 @@ mod support;
 use frixel_control::Board;
 use frixel_layers::{Blend, Constant, Header, Layer, Record, Region, Scene, electric_friction_max_n};
 use frixel_session::{TableRows, Touch, table_rows};
-use frixel_testkit::{Pace, RandomFinger, RandomScene, Report};
+use frixel_testkit::{FingerReport, Pace, RandomFinger, RandomScene};
 use frixel_wire::fault::Flags;
 use frixel_wire::frame::FRAME_MAX_LEN;
 use frixel_wire::message::{Command, ConfigField, Refusal};
@@ -73,8 +73,8 @@ fn played(header: &Header, random: &RandomScene, seed: u64) -> Vec<Played> {
                 board.command(Command::Ping).unwrap();
             }
             board.touch = finger.tick().map(|report| match report {
-                Report::Down { x_m, y_m, age_ticks } => Touch::Down { x_m, y_m, age_ticks },
-                Report::Up => Touch::Up,
+                FingerReport::Down { x_m, y_m, age_ticks } => Touch::Down { x_m, y_m, age_ticks },
+                FingerReport::Up => Touch::Up,
             });
             let dac_code = board.tick().dac_code.bits();
             let telemetry = board.status().telemetry;
@@ -144,7 +144,7 @@ fn a_table_ends_where_the_header_says() {
 
 /// Above the row that the table ends in, friction is out of reach, and the board says so.
 #[test]
-fn what_is_above_the_end_of_the_table_is_counted_as_saturated() {
+fn friction_above_the_end_of_the_table_is_counted_as_saturated() {
     for (electric_friction_max_n, saturated) in [(None, false), (Some(0.02), false), (Some(0.005), true)] {
         let mut memory = Memory::new();
         let mut board = TestBoard::new(&mut memory);

@@ -6,7 +6,7 @@ use crate::random::Random;
 
 /// A report of the touch source.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Report {
+pub enum FingerReport {
     /// The finger was at this place `age_ticks` ticks ago.
     Down {
         /// From the left edge of the screen, m.
@@ -72,7 +72,7 @@ impl RandomFinger {
     }
 
     /// Advances one tick, and returns the touch source's report at that tick.
-    pub fn tick(&mut self) -> Option<Report> {
+    pub fn tick(&mut self) -> Option<FingerReport> {
         if self.left_ticks == 0 {
             self.turn();
         }
@@ -91,7 +91,7 @@ impl RandomFinger {
         }
         self.until_report_ticks = self.report_ticks - 1;
         let [x_m, y_m] = self.place_m;
-        Some(if self.lifted { Report::Up } else { Report::Down { x_m, y_m, age_ticks: self.age_ticks } })
+        Some(if self.lifted { FingerReport::Up } else { FingerReport::Down { x_m, y_m, age_ticks: self.age_ticks } })
     }
 
     /// Begins another movement.

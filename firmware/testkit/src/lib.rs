@@ -25,7 +25,7 @@ mod random;
 mod random_scene;
 mod scenes;
 
-pub use finger::{Pace, RandomFinger, Report};
+pub use finger::{FingerReport, Pace, RandomFinger};
 pub use monitor::IdealMonitor;
 pub use random::Random;
 pub use random_scene::RandomScene;

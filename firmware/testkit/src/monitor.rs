@@ -3,7 +3,7 @@
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::hello::BoardLimits;
 
-/// The monitor of an ideal amplifier, with the edges that a board specifies.
+/// The voltage monitor of an ideal amplifier, which follows the DAC code with the time constant in the board's limits.
 #[derive(Clone, Copy, Debug)]
 pub struct IdealMonitor {
     voltage_v: f32,

@@ -1,7 +1,7 @@
 //! Random scenes that a board accepts.
 
 use frixel_layers::cost::{Worst, worst_of_scene};
-use frixel_layers::{Button, Carrier, Click, Edge, Header, Layer, Leader, Point, Record, electric_friction_max_n};
+use frixel_layers::{Button, Click, Edge, Header, Layer, Leader, Point, Record, Waveform, electric_friction_max_n};
 use frixel_wire::hello::BoardLimits;
 use frixel_wire::scene::{POINTS_MAX, RECORDS_MAX};
 use heapless::Vec;
@@ -101,7 +101,7 @@ fn header(random: &mut Random) -> Header {
         voltage_max_v_peak: 220.0,
         slew_v_per_s: random.pick([1e4, 1e6, 5e6]),
         carrier_hz: random.pick([250.0, 1000.0, 1700.0]),
-        carrier: random.pick([Carrier::Square, Carrier::Sine]),
+        waveform: random.pick([Waveform::Square, Waveform::Sine]),
         autonomous: random.once_in(4),
         prediction: !random.once_in(4),
         leader: random.pick([Leader::First, Leader::Latest]),

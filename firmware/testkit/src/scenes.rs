@@ -1,8 +1,8 @@
 //! The basic scene for tests, and the bytes of a scene.
 
 use frixel_layers::{
-    Blend, Carrier, Constant, HEADER_LEN, Header, Layer, Leader, POINT_LEN, Point, RECORD_LEN, Record, Region,
-    SCENE_MAX_LEN,
+    Blend, Constant, HEADER_LEN, Header, Layer, Leader, POINT_LEN, Point, RECORD_LEN, Record, Region, SCENE_MAX_LEN,
+    Waveform,
 };
 
 /// The example finger under a load of 0.5 N, with at most 150 V rms.
@@ -19,7 +19,7 @@ pub const HEADER: Header = Header {
     slew_v_per_s: 5e6,
     carrier_hz: 1000.0,
     host_timeout_s: 0.25,
-    carrier: Carrier::Square,
+    waveform: Waveform::Square,
     autonomous: false,
     prediction: true,
     leader: Leader::First,

@@ -43,7 +43,7 @@ pub struct Hello {
     pub frame_max_len: u16,
     /// Feature bits of the firmware build ([`feature`]).
     pub features: u32,
-    /// CRC-32 of the committed scene; zero if there is none.
+    /// CRC-32 of the committed scene; zero without one.
     pub scene_crc32: u32,
     /// Why the processor last started.
     pub reset_cause: ResetCause,

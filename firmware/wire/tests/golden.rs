@@ -64,12 +64,12 @@ fn hold_frames(name: &str, samples: &[Payload]) {
 }
 
 #[test]
-fn what_a_host_sends_is_golden() {
+fn messages_of_a_host_have_golden_bytes() {
     hold_frames("host.hex", &samples::from_host());
 }
 
 #[test]
-fn what_a_board_sends_is_golden() {
+fn messages_of_a_board_have_golden_bytes() {
     hold_frames("board.hex", &samples::from_board());
 }
 

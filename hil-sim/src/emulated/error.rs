@@ -23,7 +23,8 @@ pub enum EmulatorError {
     NoCompiler,
     /// The board's sources are not there.
     #[error(
-        "the emulated board's image is built from frixel's sources, which are not here: run this in a checkout of frixel, or set FRIXEL_CHECKOUT to the folder of one"
+        "the emulated board's image is built from frixel's sources, which are not here: run this in a checkout of \
+         frixel, or set FRIXEL_CHECKOUT to the folder of one"
     )]
     NoSources,
     /// The image does not compile.

@@ -33,7 +33,10 @@ pub enum ReplayError {
     #[error(transparent)]
     Emulator(#[from] EmulatorError),
     /// The outputs of the boards differ.
-    #[error("at tick {} the emulated board does something else: expected {:?}, found {:?}", .0.expected.tick, .0.expected, .0.found)]
+    #[error(
+        "at tick {} the emulated board answered otherwise: expected {:?}, found {:?}",
+        .0.expected.tick, .0.expected, .0.found
+    )]
     Mismatch(Box<Mismatch>),
 }
 

@@ -1,4 +1,4 @@
-//! What a finger does that the contact model does not say.
+//! Configuration of what a finger does beyond the contact model: lag, varying load, friction noise, charge leakage.
 
 use core::f64::consts::TAU;
 

@@ -1,4 +1,4 @@
-//! The normal load of a finger, which nobody can hold still.
+//! The normal load of a finger, which varies although the person tries to hold it.
 
 use crate::random::{Purpose, Random};
 

@@ -33,7 +33,6 @@ pub(super) struct Rows {
     /// before each slot, so that a look-up searches only one slot.
     before_slot: Vec<usize>,
     slots_per_s: f64,
-    /// Whether the rows say the normal load.
     has_loads: bool,
 }
 
@@ -105,6 +104,11 @@ impl Rows {
         let (first, last) = (*self.before_slot.get(slot)?, *self.before_slot.get(slot + 1)?);
         let started = first + self.pieces.get(first..last)?.partition_point(|piece| piece.start_s <= t_s);
         self.pieces.get(started.checked_sub(1)?).filter(|piece| t_s <= piece.end_s)
+    }
+
+    /// Whether the rows say the normal load.
+    pub(super) fn has_loads(&self) -> bool {
+        self.has_loads
     }
 
     /// Returns the normal load at a time up to the end, in N, if the rows say it.

@@ -232,7 +232,7 @@ fn a_lift_arrives_whatever_is_lost() {
 }
 
 #[test]
-fn what_makes_no_sense_is_refused_by_name() {
+fn values_out_of_range_are_refused_by_name() {
     let default = TouchConfig::default();
     for (config, message) in [
         (TouchConfig { rate_hz: 0.0, ..default }, "touch rate_hz must be finite and above 0, found 0"),

@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_understood_is_said_in_a_sentence() {
+    fn an_unknown_line_gives_one_sentence() {
         for (line, parts) in [
             ("leyer OK off", ["`leyer` is no control word", "layer, trigger, replace, wait or quit"]),
             ("layer", ["`layer` ends too early", "name of a layer"]),

@@ -7,12 +7,11 @@ use std::cell::RefCell;
 use std::time::Duration;
 
 use frixel_driver::Device;
-use frixel_hil_sim::spectrum::band_rms;
-use frixel_hil_sim::{BoardMemory, ReferenceFriction, Rig, TickRecord};
-use frixel_scene::Program;
+use frixel_hil_sim::{BoardMemory, Rig, TickRecord};
 use frixel_scene::recorder::Recorder;
-use frixel_scene::reference::{Context, Reference, StrokeReference};
+use frixel_scene::{Program, band_rms};
 
+use crate::finger_reference::FingerReference;
 use crate::player::{PlayError, Simulation, start};
 use crate::rigs::SimLink;
 
@@ -64,8 +63,7 @@ impl FeltError {
 
 /// Plays a program, and compares what is felt with the reference.
 ///
-/// `seconds` of the simulation are cut to a power of two of samples, and its rows are not recorded. The program must
-/// have no stream.
+/// The rows of the simulation are not recorded. The program must have no stream.
 pub fn felt_error(program: &Program, simulation: &Simulation) -> Result<FeltError, PlayError> {
     let mut memory = BoardMemory::new();
     let rig = Rig::new(&mut memory, &simulation.rig, simulation.stroke.clone(), simulation.seed)?;
@@ -83,8 +81,7 @@ pub fn felt_error(program: &Program, simulation: &Simulation) -> Result<FeltErro
 
 /// Collects the frictions of a play.
 struct Comparison {
-    reference: StrokeReference,
-    through_finger: ReferenceFriction,
+    reference: FingerReference,
     tick_hz: f64,
     ticks_per_sample: u32,
     ticks: u32,
@@ -97,8 +94,7 @@ struct Comparison {
 impl Comparison {
     fn new(program: &Program, tick_hz: u32) -> Self {
         Self {
-            reference: Reference::new(program).along_stroke(),
-            through_finger: ReferenceFriction::default(),
+            reference: FingerReference::new(program, tick_hz),
             tick_hz: f64::from(tick_hz),
             ticks_per_sample: (tick_hz / SAMPLE_HZ).max(1),
             ticks: 0,
@@ -108,18 +104,14 @@ impl Comparison {
         }
     }
 
-    fn add(&mut self, TickRecord { tick, felt, .. }: &TickRecord) {
-        let Some(finger) = felt.finger else { return };
-        let context = Context {
-            t_s: *tick as f64 / self.tick_hz,
-            x_m: finger.x_m,
-            y_m: finger.y_m,
-            speed_m_per_s: finger.speed_m_per_s,
-            ..Context::default()
-        };
-        let electric_n = self.reference.electric_friction_n(&context);
+    fn add(&mut self, record: &TickRecord) {
+        let felt = &record.felt;
+        let total_n = self.reference.follow(record);
+        if felt.finger.is_none() {
+            return;
+        }
         let [reference_n, felt_n] = &mut self.sums_n;
-        *reference_n += self.through_finger.follow(felt, electric_n) - felt.natural_friction_n;
+        *reference_n += total_n - felt.natural_friction_n;
         *felt_n += felt.electric_friction_n;
         self.ticks += 1;
         if self.ticks.is_multiple_of(self.ticks_per_sample) {

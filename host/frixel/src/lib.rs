@@ -4,6 +4,7 @@
 pub mod calibration;
 mod chart;
 pub mod felt;
+mod finger_reference;
 pub mod fit;
 pub mod model_csv;
 pub mod output;

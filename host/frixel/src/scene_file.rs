@@ -12,7 +12,7 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub enum SceneFileError {
     /// The scene file itself could not be read.
-    #[error("{file}: this scene file cannot be read ({source}): check the path")]
+    #[error("{file}: this scene file cannot be read ({source}): {}", check_path(Path::new(file), "check the path"))]
     Unreadable {
         /// Path of the scene file, as the caller gave it.
         file: String,
@@ -47,6 +47,11 @@ impl SceneFileError {
             Self::Compile(error) => error.to_json(),
         }
     }
+}
+
+/// What to do about a path that cannot be used: `advice`, unless the path starts with a tilde.
+pub fn check_path<'a>(path: &Path, advice: &'a str) -> &'a str {
+    if path.starts_with("~") { frixel_scene::TILDE_ADVICE } else { advice }
 }
 
 /// Reads a scene file. The names of files in it are paths relative to its folder.
@@ -119,7 +124,8 @@ impl ProfileNames {
         (scene.and_then(|scene| self.applied_to(scene)), files)
     }
 
-    fn applied_to(&self, mut scene: Scene) -> Result<Scene, SceneFileError> {
+    /// A scene with this finger and screen.
+    pub fn applied_to(&self, mut scene: Scene) -> Result<Scene, SceneFileError> {
         if let Some(name) = &self.screen {
             let screen = profile("screen", name, Screen::bundled, Screen::bundled_names(), Screen::parse)?;
             scene = scene.with_screen(screen, name)?;
@@ -169,7 +175,8 @@ impl Files for SceneFolder {
             Some(folder) if !folder.as_os_str().is_empty() => folder,
             _ => Path::new("."),
         };
-        Err(FileUnavailable::Missing { place: folder.display().to_string(), files: files_in(folder) })
+        let place = if folder == Path::new(".") { "this folder".to_owned() } else { folder.display().to_string() };
+        Err(FileUnavailable::Missing { place, files: files_in(folder) })
     }
 }
 

@@ -87,7 +87,7 @@ fn picture_n(program: &Program, x_m: f64, y_m: f64) -> f64 {
 }
 
 #[test]
-fn what_is_wanted_is_the_resampled_picture() {
+fn the_reference_is_the_resampled_picture() {
     let program = brick(true);
     let simulated = play(&program, &rig(), constant_speed(), 1);
     let rows = simulated.recorder.rows();

@@ -191,7 +191,7 @@ fn digits_are_enough_to_read_the_same_number_again() {
 }
 
 #[test]
-fn what_eval_writes_invert_takes_back_to_the_voltage() {
+fn invert_returns_the_voltage_that_eval_was_given() {
     let evaluated = frixel(&["eval"], &format!("{HEADER}\n{}\n", GOOD.join("\n")));
     let inverted = frixel(&["invert"], &String::from_utf8(evaluated.stdout).unwrap());
     let rows = rows(&String::from_utf8(inverted.stdout).unwrap());

@@ -86,6 +86,9 @@ fn json_has_every_number_and_the_same_seed_the_same_bytes() {
         "friction_error_max_n",
         "inversion_error_rms_n",
         "inversion_error_max_n",
+        "slewing_ticks",
+        "load_mismatch_rms_n",
+        "load_mismatch_max_n",
         "carrier_ripple_rms_n",
         "reachable_min_n",
         "reachable_max_n",
@@ -117,6 +120,25 @@ fn play_constant(folder: &Path, options: &[&str]) -> serde_json::Value {
 
 fn number(json: &serde_json::Value, key: &str) -> f64 {
     json[key].as_f64().unwrap_or_else(|| panic!("{key}: {}", json[key]))
+}
+
+/// A finger that presses with 0.6 N in place of 0.5 N: 50 mN more natural friction, and the 2 mN that the drive adds grow
+/// with the root of the load.
+#[test]
+fn what_another_load_costs_is_reported_apart() {
+    let folder = TempDir::new().unwrap();
+    let play = |load_n: f64| {
+        let stroke = format!("t_s,x_mm,y_mm,force_n\n0,10,40,{load_n}\n1,110,40,{load_n}\n");
+        fs::write(folder.path().join("stroke.csv"), stroke).unwrap();
+        fs::write(folder.path().join("constant.toml"), CONSTANT).unwrap();
+        succeed(folder.path(), &["play", "constant.toml", "--stroke", "stroke.csv", "--ideal", "--json"])
+    };
+    let json: serde_json::Value = serde_json::from_str(&play(0.6)).unwrap();
+    let mismatch_n = number(&json, "load_mismatch_max_n");
+    assert!((50.1e-3..50.4e-3).contains(&mismatch_n), "{mismatch_n} N");
+    assert!(number(&json, "friction_error_rms_n") < 2e-3, "the reference is under the same load: {json}");
+    let json: serde_json::Value = serde_json::from_str(&play(0.5)).unwrap();
+    assert!(number(&json, "load_mismatch_max_n").abs() < 1e-6, "{json}");
 }
 
 /// The natural friction of the reference changes by tens of millinewtons, and that of the finger with it. The 2 mN that
@@ -308,7 +330,7 @@ fn a_wrong_port_is_refused_by_its_name() {
 }
 
 #[test]
-fn a_folder_that_cannot_be_written_is_said() {
+fn a_folder_that_cannot_be_written_is_reported() {
     let folder = TempDir::new().unwrap();
     fs::write(folder.path().join("taken"), "").unwrap();
     refuse(

@@ -179,7 +179,7 @@ fn the_table_ends_where_the_scene_does_unless_a_layer_may_change() {
 }
 
 #[test]
-fn what_is_out_of_reach_is_measured_and_named() {
+fn friction_out_of_reach_is_measured_and_its_layer_named() {
     let files = Files::new();
     let saturate = "[drive]\nsaturate = true\n";
     let region = "region = { x_mm = 30, y_mm = 0, width_mm = 30, height_mm = 80 }";
@@ -248,7 +248,7 @@ fn the_smallest_firmware_has_what_the_scene_asks_for() {
 }
 
 #[test]
-fn what_does_not_fit_is_refused_by_its_number() {
+fn a_scene_above_a_limit_is_refused_with_the_limit() {
     let files = Files::new();
     fs::copy(repository().join("scenes/textures/brick.png"), files.path("brick.png")).unwrap();
     let bitmap = "[[layer]]\nkind = \"bitmap\"\npicture = \"brick.png\"\nx_mm = 0\ny_mm = 0\nwidth_mm = 80\n";

@@ -107,7 +107,7 @@ fn from_start(rows: &[FeltRow]) -> &[FeltRow] {
 }
 
 #[test]
-fn what_is_asked_for_is_the_file() {
+fn the_board_commands_the_streamed_samples() {
     let samples = tones();
     let (rows, status) = play(0..0);
     assert_eq!(status, StreamStatus { sent: 4_000, underruns: 0, gaps: 0 });
@@ -127,7 +127,7 @@ fn what_is_asked_for_is_the_file() {
 
 /// Means over a carrier period, with all lags of amplifier and friction.
 #[test]
-fn what_is_felt_is_the_file() {
+fn the_finger_feels_the_streamed_samples() {
     let samples = tones();
     let (rows, _) = play(0..0);
     let errors: Vec<f64> = from_start(&rows)[400..39_000]
@@ -213,11 +213,11 @@ mod command {
     }
 
     #[test]
-    fn what_cannot_be_streamed_is_refused_in_a_sentence() {
+    fn a_file_that_cannot_be_streamed_gives_one_sentence() {
         let folder = tempfile::tempdir().unwrap();
         write_wav(&folder.path().join("tones.wav"), &tones());
         for (arguments, part) in [
-            (&["--stream", "tones.wav"][..], "no layer of the playing scene is a stream"),
+            (&["--stream", "tones.wav"][..], "constant.toml has no layer that plays a stream"),
             (&["--stream", "none.wav"], "none.wav cannot be streamed"),
             (&["--stream", "-"], "put --stream-hz beside"),
             (&["--stream-hz", "100"], "put --stream - before it"),

@@ -100,7 +100,7 @@ fn a_saved_scene_plays_and_one_with_mistakes_does_not() {
     until("the second scene plays", || is(last_n(), 0.27));
 
     fs::write(path("scene.toml"), scene("0.28x").replace("[finger]", "[fingr]")).unwrap();
-    until("the mistakes are reported", || said().contains("has mistakes: the scene before plays on"));
+    until("the mistakes are reported", || said().contains("is not played: the scene before plays on"));
     let rows = asked_n(&path("board")).len();
     until("the second scene plays on", || asked_n(&path("board")).len() > rows + 300);
 
@@ -192,11 +192,45 @@ fn a_stream_is_not_watched() {
 }
 
 #[test]
-fn a_simulation_that_runs_ahead_of_time_is_not_watched() {
+fn an_emulated_board_that_does_not_run_in_real_time_is_not_watched() {
     let folder = TempDir::new().unwrap();
     fs::write(folder.path().join("scene.toml"), scene("0.26")).unwrap();
-    let output = frixel().args(["play", "scene.toml", "--watch"]).current_dir(folder.path()).output().unwrap();
+    let arguments = ["play", "scene.toml", "--watch", "--port", "qemu"];
+    let output = frixel().args(arguments).current_dir(folder.path()).output().unwrap();
     assert_eq!(output.status.code(), Some(1));
     let said = String::from_utf8(output.stderr).unwrap();
     assert!(said.contains("--watch") && said.contains("frixel sim"), "{said}");
+}
+
+/// On the simulator, a saved scene plays from the beginning, drafts included. After a mistake, the files of the play before
+/// stay. A virtual board behind a port refuses the draft.
+#[test]
+fn a_saved_scene_plays_anew_on_the_simulator() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("scene.toml");
+    fs::write(&path, scene("0.26")).unwrap();
+    let mut command = frixel();
+    command.args(["play", "scene.toml", "--watch", "--seconds", "0.2", "--out", "out"]).current_dir(folder.path());
+    command.stdout(Stdio::null()).stderr(File::create(folder.path().join("said")).unwrap());
+    let mut play = Running(command.spawn().unwrap());
+    let said = || fs::read_to_string(folder.path().join("said")).unwrap();
+    let summary = || fs::read_to_string(folder.path().join("out/summary.json")).unwrap_or_default();
+    until("the first play", || summary().contains("\"draft\":false") && said().contains("plays anew when it is saved"));
+    fs::write(&path, scene("0.9")).unwrap();
+    until("a draft", || summary().contains("\"draft\":true"));
+    fs::write(&path, "version = 2\n[[layer]]\nkind = \"constat\"\n").unwrap();
+    until("a mistake", || said().contains("scene.toml is not played: the files in out stay"));
+    assert!(said().contains("did you mean `constant`?") && summary().contains("\"draft\":true"), "{}", said());
+    fs::write(&path, scene("0.26")).unwrap();
+    until("the last play", || summary().contains("\"draft\":false"));
+    assert!(play.interrupt());
+
+    fs::write(&path, scene("0.9")).unwrap();
+    let (mut board, port) = virtual_board(folder.path(), &[]);
+    let arguments = ["play", "scene.toml", "--port", &port, "--seconds", "0.2"];
+    let output = frixel().args(arguments).current_dir(folder.path()).output().unwrap();
+    let refused = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{refused}");
+    assert!(refused.contains("asks for up to 0.9 N") && !refused.contains("draft"), "{refused}");
+    assert!(board.interrupt());
 }

@@ -31,6 +31,10 @@ const PEAK_MARGIN: f64 = 1.001;
 /// Largest effective gap that a board takes, um.
 const EFFECTIVE_GAP_MAX_UM: f64 = 10_000.0;
 const MM: f64 = 1e-3;
+/// Factor by which a draft lowers its largest voltage until the contact is narrower than the finger.
+const NARROWER: f32 = 0.98;
+/// Least `voltage_max_v_rms` of a scene, V.
+const VOLTAGE_MIN_V_RMS: f32 = 1.0;
 
 /// Compiles a scene for boards with these limits and a tick rate in Hz.
 ///
@@ -49,22 +53,70 @@ const MM: f64 = 1e-3;
 /// # Ok(())
 /// # }
 /// ```
+///
+/// # Errors
+///
+/// All mistakes for which a board with these limits refuses the scene, those of [`Scene::mistakes`] among them.
 pub fn compile(scene: &Scene, limits: &BoardLimits, tick_hz: u32) -> Result<Program, CompileError> {
-    let mut log = Log::new(&scene.source);
+    let mut log = Log::resuming(&scene.source, &scene.mistakes);
     let program = assemble(scene, limits, tick_hz, &mut log);
-    if let Some(program) = program.as_ref().filter(|_| log.is_empty()) {
-        tick_cost::check(scene, program, limits.tick_cycles_max, &mut log);
-    }
     log.finish(program)
 }
 
+/// Compiles a scene for a preview, or for a simulator, whether a board plays it or not. What a board refuses is in
+/// [`Program::refusals`]; if there is any, the program is a draft.
+///
+/// A draft keeps to what can be reached: friction, voltage, carrier and current are clamped, pictures are made coarser until
+/// they fit the board, regions are cut off at the screen's edge. A layer that cannot be played at all is absent, and a note
+/// says so. A tick may take longer than the board has time for.
+///
+/// # Errors
+///
+/// The file cannot be read: [`Scene::mistakes`] is not empty. Or there is no contact model of finger and coating.
+///
+/// # Example
+///
+/// ```
+/// use std::collections::BTreeMap;
+///
+/// use frixel_scene::{Scene, compile, compile_draft};
+/// # fn draw(limits: &frixel_wire::hello::BoardLimits) -> Result<(), frixel_scene::CompileError> {
+/// let text = "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_n = 0.9\n";
+/// let scene = Scene::parse(text, "heavy.toml", &BTreeMap::new())?;
+/// assert!(compile(&scene, limits, 40_000).is_err());
+/// let draft = compile_draft(&scene, limits, 40_000)?;
+/// assert!(draft.is_draft());
+/// # Ok(())
+/// # }
+/// ```
+pub fn compile_draft(scene: &Scene, limits: &BoardLimits, tick_hz: u32) -> Result<Program, CompileError> {
+    let mut log = Log::resuming(&scene.source, &scene.mistakes);
+    match assemble(scene, limits, tick_hz, &mut log) {
+        Some(program) if scene.mistakes.is_empty() => Ok(Program { refusals: log.into_mistakes(), ..program }),
+        _ => log.finish(None),
+    }
+}
+
+/// Makes a program of all that is valid, and logs all mistakes. `None` if there is no contact model of finger and coating.
 fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) -> Option<Program> {
     let mut notes = Vec::new();
-    let half_period_ticks = half_period_ticks(scene, tick_hz, log, &mut notes)?;
+    // What follows from another mistake is not reported.
+    let mut unreported = log.scratch();
+    let mistakes = log.mistakes();
+    let half_period_ticks = half_period_ticks(scene, tick_hz, log, &mut notes);
     let half_period_s = f64::from(half_period_ticks) / f64::from(tick_hz);
-    let voltage = Voltage::of(scene, limits, half_period_s, log, &mut notes);
-    let contact = Springs::of(scene.finger(), effective_gap_um(scene, log)? * 1e-6, voltage.max_v_rms);
+    let is_carrier_valid = log.mistakes() == mistakes;
+    let mut voltage = Voltage::of(scene, limits, half_period_s, log, &mut notes);
+    let mistakes = log.mistakes();
+    voltage.limit_current(scene, limits, half_period_s, if is_carrier_valid { &mut *log } else { &mut unreported });
+    let effective_gap_um = effective_gap_um(scene, log);
+    let contact = Springs::of(scene.finger(), effective_gap_um * 1e-6, voltage.max_v_rms);
     let springs = contact.map_err(|mistake| log.add(scene.profiles.place, mistake)).ok()?;
+    let spring_mistake = springs.mistake();
+    let are_springs_valid = spring_mistake.is_none();
+    if let Some(mistake) = spring_mistake {
+        log.add(scene.profiles.place, mistake);
+    }
     if springs.deviation > 0.0 {
         notes.push(format!(
             "finger: played as springs of {:.4e} Pa/m, which differ from the soft finger by at most {:.1} % of the reach",
@@ -72,26 +124,27 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
             100.0 * springs.deviation
         ));
     }
-    let header = header(scene, &voltage, &springs, half_period_s);
-    check_current(scene, limits, &header, log);
-    let reach = reach(scene, &header, log)?;
+    let mut header = header(scene, &voltage, &springs, effective_gap_um, half_period_s);
+    let reach = reach(scene, &mut header, if are_springs_valid { &mut *log } else { &mut unreported })?;
+    // With other mistakes of drive, finger or coating, nobody knows what can be reached.
+    let is_reach_known = log.mistakes() == mistakes;
     let (finger, note) = PlayedFinger::of(&scene.profiles);
     notes.extend(note);
     let layers_max = RECORDS_MAX.min(usize::from(limits.records_max));
     if let Some(layer) = scene.layers.get(layers_max) {
         log.add(layer.places.table(), Mistake::TooManyLayers { number: layers_max + 1, max: layers_max });
-        return None;
     }
     let pool = Pool::new(&scene.pictures, limits.bitmap_pool_bytes);
     let mut lowering = Lowering::new(scene, &header, &reach, tick_hz, pool, log);
     // Lower every layer, so that the mistakes of all are reported.
-    let records = records(scene, &mut lowering);
+    let (layers, records) = records(scene.layers.iter().take(layers_max), &mut lowering);
     let lowered = lowering.finish();
     notes.extend(lowered.notes);
-    let titles = scene.layers.iter().map(|layer| layer.title.clone()).collect();
+    notes.extend(absent_layers(scene, &layers));
+    let titles = layers.iter().map(|layer| layer.title.clone()).collect();
     let mut program = Program {
         header,
-        records: records.into_iter().collect::<Option<_>>()?,
+        records,
         points: lowered.points,
         bitmaps: lowered.bitmaps,
         titles,
@@ -99,28 +152,33 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
         reach,
         half_period_ticks,
         finger,
+        refusals: Vec::new(),
         warnings: Vec::new(),
         notes,
         optimisations: lowered.optimisations,
     };
-    if log.is_empty() {
-        excess::check(scene, &mut program, log);
-        program.warnings = warning::of(scene, &program);
-        let live: Vec<bool> = scene.layers.iter().map(|layer| layer.live).collect();
-        optimise(&mut program, &live);
-        let Program { header, records, points, .. } = &mut program;
-        if header.layers_fixed {
-            header.electric_friction_max_n = electric_friction_max_n(header, records, points);
-        }
+    if is_reach_known {
+        let raised_n = raised_reach_n(&program.header, voltage.raised_max_v_rms);
+        excess::check(scene, &layers, raised_n, &mut program, log);
+    }
+    program.warnings = warning::of(scene, &program);
+    program.warnings.extend(lowered.warnings);
+    let live: Vec<bool> = layers.iter().map(|layer| layer.live).collect();
+    optimise(&mut program, &live);
+    let Program { header, records, points, .. } = &mut program;
+    if header.layers_fixed {
+        header.electric_friction_max_n = electric_friction_max_n(header, records, points);
     }
     program.layers = layer_map(scene, &program.titles);
+    tick_cost::check(scene, &program, limits.tick_cycles_max, log);
     Some(program)
 }
 
-/// The records of all layers. A mistake that the first copy of a layer has is not reported for the others.
-fn records(scene: &Scene, lowering: &mut Lowering) -> Vec<Option<Record>> {
+/// The layers that can be played, and their records. A mistake that the first copy of a layer has is not reported for the
+/// others.
+fn records<'s>(layers: impl Iterator<Item = &'s Layer>, lowering: &mut Lowering) -> (Vec<&'s Layer>, Vec<Record>) {
     let mut mistaken = None;
-    let record = |layer: &Layer| {
+    let record = |layer: &'s Layer| {
         let table = layer.places.table();
         if layer.is_copy && mistaken == Some(table) {
             return None;
@@ -130,9 +188,22 @@ fn records(scene: &Scene, lowering: &mut Lowering) -> Vec<Option<Record>> {
         if lowering.mistakes() > mistakes {
             mistaken = Some(table);
         }
-        record
+        record.map(|record| (layer, record))
     };
-    scene.layers.iter().map(record).collect()
+    layers.filter_map(record).unzip()
+}
+
+/// A note that names the layers of the scene that are not played, if there are any.
+fn absent_layers(scene: &Scene, played: &[&Layer]) -> Option<String> {
+    let is_absent = |layer: &&Layer| !played.iter().any(|other| std::ptr::eq(*other, *layer));
+    let absent: Vec<&str> = scene.layers.iter().filter(is_absent).map(|layer| layer.title.as_str()).collect();
+    (!absent.is_empty()).then(|| format!("absent from this draft: {}", absent.join(", ")))
+}
+
+/// The largest electric friction at another largest voltage; 0 if the contact would be wider than the finger.
+fn raised_reach_n(header: &Header, voltage_max_v_rms: f64) -> f64 {
+    let raised = Header { voltage_max_v_rms: voltage_max_v_rms as f32, ..*header };
+    Reach::of(&raised).map_or(0.0, |reach| reach.electric_friction_max_n)
 }
 
 /// Maps layers to records. Only a layer that the host may change is certain to have its own record; others may have
@@ -143,13 +214,14 @@ fn layer_map(scene: &Scene, titles: &[String]) -> LayerMap {
     LayerMap::new(scene.layers.iter().zip(records).map(|(layer, record)| (layer.name.clone(), record)))
 }
 
-fn half_period_ticks(scene: &Scene, tick_hz: u32, log: &mut Log, notes: &mut Vec<String>) -> Option<u32> {
+/// Ticks in half a carrier period, those of the fastest carrier if the scene's is too fast.
+fn half_period_ticks(scene: &Scene, tick_hz: u32, log: &mut Log, notes: &mut Vec<String>) -> u32 {
     let found = scene.carrier.frequency_hz;
     let ticks = f64::from(tick_hz) / (2.0 * found);
     if ticks < HALF_PERIOD_MIN_TICKS {
         let max = f64::from(tick_hz) / (2.0 * HALF_PERIOD_MIN_TICKS);
         log.add(scene.carrier.places.field("frequency_hz"), Mistake::CarrierTooFast { found, tick_hz, max });
-        return None;
+        return HALF_PERIOD_MIN_TICKS as u32;
     }
     let whole = ticks.round();
     let rounded_hz = f64::from(tick_hz) / (2.0 * whole);
@@ -161,33 +233,41 @@ fn half_period_ticks(scene: &Scene, tick_hz: u32, log: &mut Log, notes: &mut Vec
             "carrier: {found} Hz is below {LEAKAGE_HZ} Hz, where charge leaks through skin and less friction is felt"
         ));
     }
-    Some(whole as u32)
+    whole as u32
 }
 
-/// Effective gap of coating and skin.
-fn effective_gap_um(scene: &Scene, log: &mut Log) -> Option<f64> {
+/// Effective gap of coating and skin, at most what a board takes.
+fn effective_gap_um(scene: &Scene, log: &mut Log) -> f64 {
     let found = scene.screen().coating_gap_um() + scene.finger().skin_gap_um;
     if found > EFFECTIVE_GAP_MAX_UM {
         let (field, max) = ("thickness_um / permittivity + skin_gap_um, summed", EFFECTIVE_GAP_MAX_UM);
         log.add(scene.profiles.place, Mistake::OutOfRange { field, found, min: 0.0, max, unit: " um" });
-        return None;
     }
-    Some(found)
+    found.min(EFFECTIVE_GAP_MAX_UM)
 }
 
-fn reach(scene: &Scene, header: &Header, log: &mut Log) -> Option<Reach> {
-    let mistake = match Reach::of(header) {
+/// What can be reached. If the contact would be wider than the finger, the voltage of the header is lowered until it is
+/// not.
+fn reach(scene: &Scene, header: &mut Header, log: &mut Log) -> Option<Reach> {
+    let error = match Reach::of(header) {
         Ok(reach) => return Some(reach),
-        Err(ReachError::TooWide { contact_m }) => Mistake::ContactWiderThanFinger {
+        Err(error) => error,
+    };
+    let mistake = match error {
+        ReachError::TooWide { contact_m } => Mistake::ContactWiderThanFinger {
             voltage_v_rms: f64::from(header.voltage_max_v_rms),
             contact_mm: contact_m / MM,
             radius_mm: scene.finger().radius_mm,
             gap_um: 1e6 * f64::from(header.effective_gap_m),
         },
-        Err(error) => Mistake::Model { reason: error.to_string() },
+        error => Mistake::Model { reason: error.to_string() },
     };
     log.add(scene.profiles.place, mistake);
-    None
+    let voltages_v_rms = std::iter::successors(Some(header.voltage_max_v_rms), |voltage| Some(NARROWER * voltage));
+    voltages_v_rms.take_while(|voltage| *voltage >= VOLTAGE_MIN_V_RMS).find_map(|voltage_max_v_rms| {
+        header.voltage_max_v_rms = voltage_max_v_rms;
+        Reach::of(header).ok()
+    })
 }
 
 /// The limits of the drive: the least of those of scene, screen and board.
@@ -195,6 +275,8 @@ struct Voltage {
     max_v_rms: f64,
     max_v_peak: f64,
     slew_v_per_us: f64,
+    /// The largest rms voltage if `voltage_max_v_rms` of the scene were raised.
+    raised_max_v_rms: f64,
 }
 
 impl Voltage {
@@ -204,7 +286,7 @@ impl Voltage {
         if let Some(found) = drive.voltage_max_v_peak.filter(|found| *found > board_v_peak) {
             log.add(drive.places.field("voltage_max_v_peak"), Mistake::PeakAboveBoard { found, board: board_v_peak });
         }
-        let peak_per_rms = f64::from(carrier(scene.carrier.shape, half_period_s, limits).peak_per_rms());
+        let peak_per_rms = f64::from(carrier(scene.carrier.waveform, half_period_s, limits).peak_per_rms());
         let wanted_v_rms = screen.voltage_max_v_rms.unwrap_or(f64::INFINITY).min(drive.voltage_max_v_rms);
         if wanted_v_rms < drive.voltage_max_v_rms {
             notes.push(format!(
@@ -224,13 +306,35 @@ impl Voltage {
             ));
         }
         let slew_v_per_us = screen.slew_v_per_us.unwrap_or(f64::INFINITY).min(drive.slew_v_per_us);
-        Self { max_v_rms, max_v_peak, slew_v_per_us }
+        let raised_v_peak = drive.voltage_max_v_peak.unwrap_or(f64::INFINITY).min(screen_v_peak).min(board_v_peak);
+        let raised_max_v_rms = (raised_v_peak / peak_per_rms).min(screen.voltage_max_v_rms.unwrap_or(f64::INFINITY));
+        Self { max_v_rms, max_v_peak, slew_v_per_us, raised_max_v_rms }
+    }
+
+    /// Checks the current into the worst-case electrode at the largest voltage against the board's limits, and lowers the
+    /// voltage to them.
+    fn limit_current(&mut self, scene: &Scene, limits: &BoardLimits, half_period_s: f64, log: &mut Log) {
+        // The board computes in `f32`, from the carrier's frequency.
+        let carrier_hz = (0.5 / half_period_s) as f32;
+        let carrier = carrier(scene.carrier.waveform, 0.5 / f64::from(carrier_hz), limits);
+        let drive_v_peak = self.max_v_rms as f32 * carrier.peak_per_rms();
+        let current = carrier.electrode_current(limits.electrode_capacitance_max_f, drive_v_peak);
+        let rms_cure = "`frequency_hz` under [carrier], or `voltage_max_v_rms` under [drive]";
+        for (kind, found_a, board_a, cure) in [
+            ("rms", current.a_rms, limits.current_max_a_rms, rms_cure),
+            ("peak", current.a_peak, limits.current_max_a_peak, "`voltage_max_v_rms` under [drive]"),
+        ] {
+            let (found_ma, board_ma) = (f64::from(found_a) * 1e3, f64::from(board_a) * 1e3);
+            if found_a > board_a {
+                log.add(scene.carrier.places.table(), Mistake::CurrentAboveBoard { kind, found_ma, board_ma, cure });
+                self.max_v_rms *= board_ma / found_ma;
+            }
+        }
     }
 }
 
-fn header(scene: &Scene, voltage: &Voltage, springs: &Springs, half_period_s: f64) -> Header {
+fn header(scene: &Scene, voltage: &Voltage, springs: &Springs, effective_gap_um: f64, half_period_s: f64) -> Header {
     let (screen, finger, drive) = (scene.screen(), scene.finger(), &scene.drive);
-    let effective_gap_um = screen.coating_gap_um() + finger.skin_gap_um;
     Header {
         screen_width_m: (screen.width_mm * MM) as f32,
         screen_height_m: (screen.height_mm * MM) as f32,
@@ -244,37 +348,11 @@ fn header(scene: &Scene, voltage: &Voltage, springs: &Springs, half_period_s: f6
         slew_v_per_s: (voltage.slew_v_per_us * 1e6) as f32,
         carrier_hz: (0.5 / half_period_s) as f32,
         host_timeout_s: (drive.host_timeout_ms * 1e-3) as f32,
-        carrier: scene.carrier.shape,
+        waveform: scene.carrier.waveform,
         autonomous: drive.autonomous,
         prediction: scene.touch.prediction,
         leader: scene.touch.leader,
         layers_fixed: !scene.layers.iter().any(|layer| layer.live),
         electric_friction_max_n: None,
-    }
-}
-
-/// Checks the current into the worst-case electrode at the largest voltage against the board's limit.
-fn check_current(scene: &Scene, limits: &BoardLimits, header: &Header, log: &mut Log) {
-    let carrier = carrier(header.carrier, 0.5 / f64::from(header.carrier_hz), limits);
-    let drive_v_peak = header.voltage_max_v_rms * carrier.peak_per_rms();
-    let current = carrier.electrode_current(limits.electrode_capacitance_max_f, drive_v_peak);
-    for (kind, found_a, board_a, cure) in [
-        (
-            "rms",
-            current.a_rms,
-            limits.current_max_a_rms,
-            "`frequency_hz` under [carrier], or `voltage_max_v_rms` under [drive]",
-        ),
-        ("peak", current.a_peak, limits.current_max_a_peak, "`voltage_max_v_rms` under [drive]"),
-    ] {
-        if found_a > board_a {
-            let mistake = Mistake::CurrentAboveBoard {
-                kind,
-                found_ma: f64::from(found_a) * 1e3,
-                board_ma: f64::from(board_a) * 1e3,
-                cure,
-            };
-            log.add(scene.carrier.places.table(), mistake);
-        }
     }
 }

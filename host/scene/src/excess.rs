@@ -17,7 +17,10 @@ const MUCH: f64 = 20.0;
 
 /// Reports a mistake for layers that exceed the reach. With `saturate`, or if the excess is not certain, adds a note
 /// instead.
-pub(super) fn check(scene: &Scene, program: &mut Program, log: &mut Log) {
+///
+/// `played` are the layers of the program's records. `raised_n` is the largest electric friction if `voltage_max_v_rms` were
+/// raised as far as the other limits of the voltage allow.
+pub(super) fn check(scene: &Scene, played: &[&Layer], raised_n: f64, program: &mut Program, log: &mut Log) {
     let reach = program.reach;
     let slack_n = ROUNDING * reach.electric_friction_max_n;
     let within = Interval { low: -slack_n, high: reach.electric_friction_max_n + slack_n };
@@ -26,8 +29,8 @@ pub(super) fn check(scene: &Scene, program: &mut Program, log: &mut Log) {
     let height_m = f64::from(program.header.screen_height_m);
     let mut reported = Vec::new();
     for excess in excesses(reference.pieces(), width_m, height_m, within) {
-        let layers: Vec<&Layer> = excess.layers.iter().filter_map(|number| scene.layers.get(*number)).collect();
-        let sides = |friction: Interval<f64>| sides(&layers, &excess, friction, within, scene, program);
+        let layers: Vec<&Layer> = excess.layers.iter().filter_map(|number| played.get(*number).copied()).collect();
+        let sides = |friction: Interval<f64>| sides(&layers, &excess, friction, within, raised_n, program);
         let found = sides(excess.found);
         if found.is_empty() {
             let possible = sides(excess.bound);
@@ -60,7 +63,7 @@ fn sides(
     excess: &Excess,
     asked: Interval<f64>,
     within: Interval<f64>,
-    scene: &Scene,
+    raised_n: f64,
     program: &Program,
 ) -> Vec<Side> {
     let reach = &program.reach;
@@ -83,7 +86,7 @@ fn sides(
             reference,
             voltage_v_rms: digits(reach.voltage_max_v_rms, f64::round),
             reach_n: digits(reach.electric_friction_max_n + offset_n, f64::floor),
-            can_raise_voltage: reach.voltage_max_v_rms > (1.0 - ROUNDING) * scene.drive.voltage_max_v_rms,
+            voltage_helps: asked.high <= raised_n,
             may_be_millinewtons: asked.high + offset_n > MUCH * (reach.electric_friction_max_n + offset_n)
                 && 1e-3 * (asked.high + offset_n) <= reach.electric_friction_max_n + offset_n,
         };

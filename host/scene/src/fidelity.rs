@@ -117,7 +117,7 @@ struct Powers {
     /// Covariance of felt and reference.
     cross_low: f64,
     /// Covariance at each of [`DELAYS`].
-    delayed: Vec<f64>,
+    covariance_by_delay: Vec<f64>,
 }
 
 impl Powers {
@@ -144,8 +144,8 @@ impl Powers {
         let pairs = reference.bins.iter().zip(&felt.bins).take(border);
         let cross: Vec<_> = pairs.map(|(reference, felt)| felt * reference.conj()).collect();
         self.cross_low += weight * cross.iter().map(|cross| cross.re).sum::<f64>();
-        self.delayed.resize(DELAYS.count(), 0.0);
-        for (covariance, delay) in self.delayed.iter_mut().zip(DELAYS) {
+        self.covariance_by_delay.resize(DELAYS.count(), 0.0);
+        for (covariance, delay) in self.covariance_by_delay.iter_mut().zip(DELAYS) {
             let turn = std::f64::consts::TAU * reference.bin_hz * f64::from(delay) / SAMPLE_HZ;
             let at = |(bin, cross): (usize, &Complex<f64>)| {
                 let angle = turn * bin as f64;
@@ -158,7 +158,7 @@ impl Powers {
     /// The delay of the largest covariance, in samples; not-a-number where felt and reference have nothing in common.
     fn delay(&self) -> f64 {
         let likeness = CORRELATION_MIN * (self.reference_low * self.felt_low).sqrt();
-        let delays = self.delayed.iter().zip(DELAYS).filter(|(covariance, _)| **covariance > likeness);
+        let delays = self.covariance_by_delay.iter().zip(DELAYS).filter(|(covariance, _)| **covariance > likeness);
         delays.max_by(|(one, _), (other, _)| one.total_cmp(other)).map_or(f64::NAN, |(_, delay)| f64::from(delay))
     }
 }

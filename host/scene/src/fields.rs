@@ -7,7 +7,7 @@ pub(super) use values::TableOrText;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::compile_error::CompileError;
+use super::compile_error::{CompileError, Located};
 use super::grammar::{Absence, FieldSpec, KnownField, KnownTable};
 use super::log::Log;
 use super::mistake::Mistake;
@@ -35,16 +35,32 @@ pub(super) fn read_text<T>(
     table: &str,
     read: impl FnOnce(Fields, &mut Log, &Source) -> Option<T>,
 ) -> Result<T, CompileError> {
+    match read_text_partly(text, name, table, read) {
+        (Some(value), mistakes) if mistakes.is_empty() => Ok(value),
+        (_, mistakes) => Err(CompileError { file: name.to_owned(), mistakes }),
+    }
+}
+
+/// Reads the text of a file as [`read_text`] does, and returns what `read` makes of it beside the mistakes.
+pub(super) fn read_text_partly<T>(
+    text: &str,
+    name: &str,
+    table: &str,
+    read: impl FnOnce(Fields, &mut Log, &Source) -> Option<T>,
+) -> (Option<T>, Vec<Located>) {
     let source = Source::new(name, text);
     let mut log = Log::new(&source);
     let value = match DeTable::parse(text) {
         Ok(values) => read(Fields::new(table, 0, values.into_inner()), &mut log, &source),
         Err(error) => {
-            log.add(error.span().map_or(0, |span| span.start), Mistake::Syntax(error.message().to_owned()));
+            let offset = error.span().map_or(0, |span| span.start);
+            let has_comma = text.get(offset..).is_some_and(|rest| rest.starts_with(','));
+            let hint = if has_comma { "; a decimal has a point, not a comma" } else { "" };
+            log.add(offset, Mistake::Syntax(format!("{}{hint}", error.message())));
             None
         }
     };
-    log.finish(value)
+    (value, log.into_mistakes())
 }
 
 impl<'i> Fields<'i> {

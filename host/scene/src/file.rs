@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use frixel_layers::Leader;
+use frixel_layers::{Leader, Waveform};
 use toml::de::DeTable;
 
-use super::compile_error::CompileError;
-use super::fields::{Fields, read_text};
+use super::compile_error::{CompileError, Located};
+use super::fields::{Fields, read_text_partly};
 use super::files::Files;
 use super::finger::FingerProfile;
 use super::grammar::KnownTable;
@@ -31,9 +31,14 @@ pub(super) enum Version {
 
 /// A scene file that was read: all fields are known, of the right type and in range. [`super::compile`] makes the other
 /// checks.
+///
+/// A layer whose own fields have mistakes is absent, and [`Self::mistakes`] has them, so that the compiler can check the
+/// layers beside it, and report all mistakes at once.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     pub(super) source: Source,
+    /// The mistakes of the layers that are absent.
+    pub(super) mistakes: Vec<Located>,
     pub(super) pictures: PictureBytes,
     pub(super) version: Version,
     /// Offset of the version, or of the file if it is absent.
@@ -60,7 +65,7 @@ pub(super) struct Drive {
 /// `[carrier]`
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Carrier {
-    pub(super) shape: frixel_layers::Carrier,
+    pub(super) waveform: Waveform,
     pub(super) frequency_hz: f64,
     pub(super) places: Places,
 }
@@ -75,8 +80,16 @@ pub(super) struct Touch {
 impl Scene {
     /// Reads the text of a scene file. Messages call the file `name`; `files` provides the pictures and profiles that
     /// the file names.
+    ///
+    /// # Errors
+    ///
+    /// The text is not TOML, or a part of it outside of the layers has mistakes. Mistakes of layers alone do not fail
+    /// here: [`super::compile`] reports them, with its own.
     pub fn parse(text: &str, name: &str, files: &dyn Files) -> Result<Self, CompileError> {
-        let mut scene = read_text(text, name, "the scene", |fields, log, source| read(fields, files, log, source))?;
+        let read = |fields: Fields, log: &mut Log, source: &Source| read(fields, files, log, source);
+        let (scene, mistakes) = read_text_partly(text, name, "the scene", read);
+        let Some(mut scene) = scene else { return Err(CompileError { file: name.to_owned(), mistakes }) };
+        scene.mistakes = mistakes;
         scene.pictures = scene.picture_names().map(|name| (name.to_owned(), files.bytes(name))).collect();
         Ok(scene)
     }
@@ -129,6 +142,11 @@ impl Scene {
         log.finish(Some(()))
     }
 
+    /// The mistakes of the layers that were not read, in the order of the file.
+    pub fn mistakes(&self) -> &[Located] {
+        &self.mistakes
+    }
+
     /// The screen that the scene is compiled for.
     pub fn screen(&self) -> &Screen {
         &self.profiles.screen
@@ -170,20 +188,28 @@ fn read(mut fields: Fields, files: &dyn Files, log: &mut Log, source: &Source) -
     let carrier = carrier(fields.table(log, &tables::scene::CARRIER).unwrap_or_else(|| absent("[carrier]")), log);
     let touch = touch(fields.table(log, &tables::scene::TOUCH).unwrap_or_else(|| absent("[touch]")), log);
     let tables = fields.tables(log, &tables::scene::LAYER).unwrap_or_default();
-    // Read every layer, so that the mistakes of all are reported.
-    let layers: Vec<Option<Vec<Layer>>> =
-        (1..).zip(tables).map(|(number, table)| Layer::read(table, number, log)).collect();
+    // Mistakes outside of the layers make it impossible to say what the layers ask for.
     fields.close(log);
+    let head_is_valid = log.mistakes() == 0;
+    // Read every layer, so that the mistakes of all are reported.
+    let mut layers = Vec::new();
+    for (number, table) in (1..).zip(tables) {
+        let mistakes = log.mistakes();
+        let copies = Layer::read(table, number, log);
+        layers.extend(copies.filter(|_| log.mistakes() == mistakes).into_iter().flatten());
+    }
+    let profiles = profiles.filter(|_| head_is_valid)?;
     Some(Scene {
         source: source.clone(),
+        mistakes: Vec::new(),
         pictures: PictureBytes::new(),
         version,
         version_place,
-        profiles: profiles?,
+        profiles,
         drive,
         carrier,
         touch,
-        layers: layers.into_iter().collect::<Option<Vec<Vec<Layer>>>>()?.concat(),
+        layers,
     })
 }
 
@@ -221,11 +247,11 @@ fn drive(mut fields: Fields, log: &mut Log) -> Drive {
 }
 
 fn carrier(mut fields: Fields, log: &mut Log) -> Carrier {
-    use frixel_layers::Carrier::{Sine, Square};
-    let shape = fields.choice(log, &tables::carrier::SHAPE, &[("square", Square), ("sine", Sine)]).unwrap_or(Square);
+    let waveforms = [("square", Waveform::Square), ("sine", Waveform::Sine)];
+    let waveform = fields.choice(log, &tables::carrier::SHAPE, &waveforms).unwrap_or_default();
     let frequency_hz = fields.number_or_default(log, &tables::carrier::FREQUENCY_HZ);
     let places = fields.close(log);
-    Carrier { shape, frequency_hz, places }
+    Carrier { waveform, frequency_hz, places }
 }
 
 fn touch(mut fields: Fields, log: &mut Log) -> Touch {

@@ -19,7 +19,7 @@ struct Entry {
 pub enum LayerError {
     /// No layer has this name or number.
     #[error(
-        "the scene has no layer {found:?}{}: name one of its {count}, or give its number from 1",
+        "the scene has no layer {found:?}{}: give the name of a layer, or a number from 1 to {count}",
         suggested(.suggestion.as_deref())
     )]
     Unknown {
@@ -80,7 +80,7 @@ mod tests {
         assert_eq!(map.record("bricks"), Err(LayerError::NotLive { layer: "bricks".into() }));
         for wrong in ["0", "5", "brick", ""] {
             let sentence = map.record(wrong).unwrap_err().to_string();
-            assert!(sentence.contains("has no layer") && sentence.contains("one of its 4"), "{sentence}");
+            assert!(sentence.contains("has no layer") && sentence.contains("a number from 1 to 4"), "{sentence}");
             assert_eq!(sentence.contains("did you mean \"bricks\"?"), wrong == "brick", "{sentence}");
         }
     }

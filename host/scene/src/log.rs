@@ -18,6 +18,16 @@ impl<'s> Log<'s> {
         Self { source, mistakes: Vec::new(), described: None }
     }
 
+    /// A log that starts with the mistakes that were found before.
+    pub(super) fn resuming(source: &'s Source, mistakes: &[Located]) -> Self {
+        Self { mistakes: mistakes.to_vec(), ..Self::new(source) }
+    }
+
+    /// A log of the same file whose mistakes do not count.
+    pub(super) fn scratch(&self) -> Self {
+        Self::new(self.source)
+    }
+
     /// A log that keeps the known fields of each table.
     pub(super) fn describing(source: &'s Source) -> Self {
         Self { described: Some(Vec::new()), ..Self::new(source) }
@@ -43,23 +53,29 @@ impl<'s> Log<'s> {
     }
 
     /// The value if there are no mistakes, otherwise the mistakes.
-    pub(super) fn finish<T>(mut self, value: Option<T>) -> Result<T, CompileError> {
+    pub(super) fn finish<T>(self, value: Option<T>) -> Result<T, CompileError> {
         match value {
             Some(value) if self.mistakes.is_empty() => Ok(value),
             _ => {
-                self.mistakes.sort_by_key(|mistake| (mistake.line, mistake.column));
-                Err(CompileError { file: self.source.name().to_owned(), mistakes: self.mistakes })
+                let file = self.source.name().to_owned();
+                Err(CompileError { file, mistakes: self.into_mistakes() })
             }
         }
+    }
+
+    /// The mistakes, in the order of the file.
+    pub(super) fn into_mistakes(mut self) -> Vec<Located> {
+        self.mistakes.sort_by_key(|mistake| (mistake.line, mistake.column));
+        self.mistakes
+    }
+
+    /// The mistake that was added last.
+    pub(super) fn last(&self) -> Option<&Mistake> {
+        self.mistakes.last().map(|located| &located.mistake)
     }
 
     /// Number of mistakes so far.
     pub(super) fn mistakes(&self) -> usize {
         self.mistakes.len()
-    }
-
-    /// Whether there are no mistakes so far.
-    pub(super) fn is_empty(&self) -> bool {
-        self.mistakes.is_empty()
     }
 }

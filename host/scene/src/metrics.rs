@@ -7,7 +7,10 @@
 //!   The time from the touch to the first report that reaches the board does not count, because nothing can be felt
 //!   before the board knows of the finger; it is counted apart.
 //! - The **inversion error** is the model's friction at the commanded voltage minus the board's target. It counts while
-//!   the finger is down and the reference friction is in reach.
+//!   the finger is down, the reference friction is in reach and the envelope is not at its slew limit: a voltage that is
+//!   still on its way to the target is no error of the inverse. Those ticks are counted apart.
+//! - The **load mismatch** is the part of the felt friction that is there because the finger presses with another load
+//!   than the one that the scene is meant for. The reference has it too, so that it is no part of the friction error.
 //! - The **carrier ripple** is felt friction minus its mean over the carrier period around it, half a period on either
 //!   side, so that a friction that changes at a constant rate has no ripple. It counts where that period lies wholly
 //!   within a touch.
@@ -31,6 +34,10 @@ pub struct Sample {
     /// The friction that the full model gives for the commanded rms voltage, the DAC's step included, through an ideal
     /// amplifier; absent where the reference friction is out of reach.
     pub inversion_n: Option<f64>,
+    /// Whether the envelope was at its slew limit.
+    pub slewing: bool,
+    /// The part of the friction that is there because of another load than the one that the scene is meant for.
+    pub load_mismatch_n: Option<f64>,
     /// Whether the board clamped its target; absent if the board did not report.
     pub saturated: Option<bool>,
 }
@@ -47,8 +54,10 @@ pub struct Metrics {
     /// Samples in which the board reported.
     reports: u64,
     saturated_samples: u64,
+    slewing_samples: u64,
     friction_error: Spread,
     inversion_error: Spread,
+    load_mismatch: Spread,
     carrier_ripple: Spread,
     wanted_range_n: Option<(f64, f64)>,
 }
@@ -66,8 +75,12 @@ pub struct MetricsSummary {
     pub saturated_ticks: Option<u64>,
     /// Felt minus reference friction, as means over a carrier period.
     pub friction_error: Option<ErrorSize>,
+    /// Ticks with the finger down in which the envelope was at its slew limit. They have no inversion error.
+    pub slewing_ticks: Option<u64>,
     /// The model's friction at the commanded voltage, minus the board's target.
     pub inversion_error: Option<ErrorSize>,
+    /// Friction that is there because of another load than the one that the scene is meant for.
+    pub load_mismatch: Option<ErrorSize>,
     /// Root mean square of felt minus its mean over the carrier period around it, N.
     pub carrier_ripple_rms_n: Option<f64>,
     /// Least and largest reference friction under the finger, in total, N.
@@ -95,8 +108,10 @@ impl Metrics {
             unreported_samples: 0,
             reports: 0,
             saturated_samples: 0,
+            slewing_samples: 0,
             friction_error: Spread::default(),
             inversion_error: Spread::default(),
+            load_mismatch: Spread::default(),
             carrier_ripple: Spread::default(),
             wanted_range_n: None,
         }
@@ -127,8 +142,12 @@ impl Metrics {
         if let Some((felt_n, wanted_n)) = errors {
             self.friction_error.add(self.error.push(felt_n - wanted_n));
         }
-        if let Some((inversion_n, asked_n)) = sample.inversion_n.zip(sample.asked_n) {
+        self.slewing_samples += u64::from(sample.slewing);
+        if let Some((inversion_n, asked_n)) = sample.inversion_n.zip(sample.asked_n).filter(|_| !sample.slewing) {
             self.inversion_error.add(inversion_n - asked_n);
+        }
+        if let Some(load_mismatch_n) = sample.load_mismatch_n {
+            self.load_mismatch.add(load_mismatch_n);
         }
         if let Some(ripple_n) = sample.felt_n.and_then(|felt_n| self.felt.push(felt_n)) {
             self.carrier_ripple.add(ripple_n);
@@ -148,7 +167,9 @@ impl Metrics {
             unreported_ticks: self.unreported_samples,
             saturated_ticks: every_tick_reported.then_some(self.saturated_samples),
             friction_error: self.friction_error.size(),
+            slewing_ticks: every_tick_reported.then_some(self.slewing_samples),
             inversion_error: self.inversion_error.size().filter(|_| every_tick_reported),
+            load_mismatch: self.load_mismatch.size(),
             carrier_ripple_rms_n: self.carrier_ripple.size().map(|size| size.rms_n),
             wanted_range_n: self.wanted_range_n,
         }

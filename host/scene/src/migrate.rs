@@ -16,7 +16,7 @@ use super::screen::{Screen, Slab};
 /// coating, the screen gets [`Slab::EXAMPLE`], whose gap is taken from the skin's. A scene of version 2 is refused.
 pub fn migrate(text: &str, name: &str, files: &dyn Files) -> Result<String, CompileError> {
     let scene = Scene::parse(text, name, files)?;
-    let mut log = Log::new(&scene.source);
+    let mut log = Log::resuming(&scene.source, &scene.mistakes);
     if scene.version != Version::One {
         log.add(scene.version_place, Mistake::NothingToMigrate);
         return log.finish(None);

@@ -4,6 +4,9 @@ use thiserror::Error;
 
 use super::nearest::Nearest;
 
+/// What to do about a path that starts with a tilde.
+pub const TILDE_ADVICE: &str = "only a shell replaces `~` by your folder, so write that folder's path in full";
+
 /// A mistake in a scene file. Its text is one sentence for the person who wrote the file.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
@@ -25,7 +28,7 @@ pub enum Mistake {
         nearest: Nearest,
     },
     /// A required field is missing.
-    #[error("{table} has no `{field}`: add it")]
+    #[error("{table} has no `{field}`: {}", if *.field == "version" { "write `version = 2` at the top" } else { "add it" })]
     MissingField {
         /// The missing field.
         field: &'static str,
@@ -147,7 +150,7 @@ pub enum Mistake {
         field: &'static str,
     },
     /// A list is too short or too long.
-    #[error("`{field}` has {found} entries: expected {}", count(*.min, *.max))]
+    #[error("`{field}` has {found} {}: expected {}", if *.found == 1 { "entry" } else { "entries" }, count(*.min, *.max))]
     Count {
         /// The field.
         field: &'static str,
@@ -201,8 +204,9 @@ pub enum Mistake {
     },
     /// There is no file of this name.
     #[error(
-        "{what} \"{file}\" was not found in {folder}{}: paths start from the scene file's folder",
-        which_has(.nearest.as_deref())
+        "{what} \"{file}\" was not found in {folder}{}: {}",
+        which_has(.nearest.as_deref()),
+        if .file.starts_with('~') { TILDE_ADVICE } else { "paths start from the scene file's folder" }
     )]
     FileMissing {
         /// `picture`, `finger` or `screen`.
@@ -213,6 +217,12 @@ pub enum Mistake {
         folder: String,
         /// The nearest name in that place, if one is near enough.
         nearest: Option<String>,
+    },
+    /// The name of a file is empty.
+    #[error("`{field}` names no file: write its name between the quotation marks")]
+    NoFileName {
+        /// The field.
+        field: &'static str,
     },
     /// A file cannot be used.
     #[error("{what} \"{file}\" cannot be used: {reason}")]
@@ -246,7 +256,7 @@ pub enum Mistake {
         "{asking} up to {asked_n} N {reference}, and at {voltage_v_rms} V rms this finger feels at most {reach_n} N \
          {reference}: {}lower it, {}or write `saturate = true` under [drive] to have it clamped",
         if *.may_be_millinewtons { "were mN meant? 1 mN is 0.001 N; " } else { "" },
-        if *.can_raise_voltage { "raise `voltage_max_v_rms`, " } else { "" },
+        if *.voltage_helps { "raise `voltage_max_v_rms`, " } else { "" },
     )]
     AboveReach {
         /// The layer or layers, with the verb.
@@ -259,8 +269,8 @@ pub enum Mistake {
         voltage_v_rms: f64,
         /// The largest friction that can be reached, rounded down, N.
         reach_n: f64,
-        /// Whether a larger `voltage_max_v_rms` may help. It does not if screen or board limits the voltage already.
-        can_raise_voltage: bool,
+        /// Whether a larger `voltage_max_v_rms` would reach the target, within the limits of screen and board.
+        voltage_helps: bool,
         /// Whether the number is in reach if it was meant in millinewtons.
         may_be_millinewtons: bool,
     },

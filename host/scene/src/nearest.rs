@@ -25,6 +25,25 @@ impl Nearest {
             .map(|(_, word)| word.clone());
         Self { suggestion, known }
     }
+
+    /// The file that is nearest to the name of another one. Files are alike by what stands before the ending, which is the
+    /// same for many.
+    pub(super) fn file(found: &str, files: &[String]) -> Option<String> {
+        let stem = Self::new(stem(found), files.iter().map(|file| self::stem(file))).suggestion?;
+        let is_alike = |file: &&String| self::stem(file) == stem;
+        let (same_ending, other): (Vec<&String>, _) =
+            files.iter().filter(is_alike).partition(|file| ending(file) == ending(found));
+        same_ending.first().or(other.first()).map(|file| (*file).clone())
+    }
+}
+
+/// What stands before the ending of a file's name.
+fn stem(name: &str) -> &str {
+    name.rsplit_once('.').map_or(name, |(stem, _)| stem)
+}
+
+fn ending(name: &str) -> &str {
+    name.rsplit_once('.').map_or("", |(_, ending)| ending)
 }
 
 impl Display for Nearest {

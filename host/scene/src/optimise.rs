@@ -9,7 +9,7 @@ use super::optimisation::Optimisation;
 use super::program::Program;
 
 /// A record with its title in messages.
-struct Item {
+struct TitledRecord {
     title: String,
     record: Record,
     /// Whether the host may change the layer while it plays.
@@ -21,7 +21,8 @@ pub(super) fn optimise(program: &mut Program, live: &[bool]) {
     let titles = std::mem::take(&mut program.titles);
     let records = std::mem::take(&mut program.records);
     let together = titles.into_iter().zip(records).zip(live);
-    let mut items: Vec<Item> = together.map(|((title, record), live)| Item { title, record, live: *live }).collect();
+    let mut items: Vec<TitledRecord> =
+        together.map(|((title, record), live)| TitledRecord { title, record, live: *live }).collect();
     let optimisations = &mut program.optimisations;
     flatten(&mut items, &program.points, optimisations);
     drop_covered(&mut items, &program.header, optimisations);
@@ -33,7 +34,7 @@ pub(super) fn optimise(program: &mut Program, live: &[bool]) {
 }
 
 /// Replaces layers whose target friction is the same everywhere and always by constants.
-fn flatten(items: &mut [Item], points: &[Point], optimisations: &mut Vec<Optimisation>) {
+fn flatten(items: &mut [TitledRecord], points: &[Point], optimisations: &mut Vec<Optimisation>) {
     for item in items.iter_mut().filter(|item| !item.live) {
         let layer = &item.record.layer;
         if layer.is_streamed() || matches!(layer, Layer::Constant(_)) {
@@ -48,10 +49,10 @@ fn flatten(items: &mut [Item], points: &[Point], optimisations: &mut Vec<Optimis
 }
 
 /// Drops layers that a layer above replaces wherever they apply.
-fn drop_covered(items: &mut Vec<Item>, header: &Header, optimisations: &mut Vec<Optimisation>) {
+fn drop_covered(items: &mut Vec<TitledRecord>, header: &Header, optimisations: &mut Vec<Optimisation>) {
     let mut number = 0;
     while let Some(item) = items.get(number) {
-        let hides = |above: &&Item| {
+        let hides = |above: &&TitledRecord| {
             let always = !above.live && !above.record.layer.is_streamed();
             always && above.record.blend == Blend::Replace && covers(above.record.region, item.record.region, header)
         };
@@ -88,7 +89,7 @@ fn covers(region: Region, other: Region, header: &Header) -> bool {
 }
 
 /// Drops constants without effect: adding zero, a factor of one, and zero on a bare screen.
-fn drop_idle(items: &mut Vec<Item>, optimisations: &mut Vec<Optimisation>) {
+fn drop_idle(items: &mut Vec<TitledRecord>, optimisations: &mut Vec<Optimisation>) {
     let mut bare = true;
     items.retain(|item| {
         let own = match item.record.layer {
@@ -113,10 +114,10 @@ fn drop_idle(items: &mut Vec<Item>, optimisations: &mut Vec<Optimisation>) {
 
 /// Merges a constant into the constant directly below it, if both have the same region. The result is bit-identical to
 /// the board's.
-fn fold(items: &mut Vec<Item>, optimisations: &mut Vec<Optimisation>) {
+fn fold(items: &mut Vec<TitledRecord>, optimisations: &mut Vec<Optimisation>) {
     let mut number = 0;
     while let (Some(below), Some(above)) = (items.get(number), items.get(number + 1)) {
-        let constant = |item: &Item| match item.record.layer {
+        let constant = |item: &TitledRecord| match item.record.layer {
             Layer::Constant(Constant { electric_friction_n }) if !item.live => {
                 Some(item.record.gain * electric_friction_n)
             }

@@ -36,10 +36,18 @@ pub(crate) struct Placed {
     pub(crate) tiled: bool,
     /// The picture's outline; `None` for a tiled picture, which is not bounded.
     pub(crate) outline: Option<Region>,
+    /// Its height over its width, relative to that of its pixels.
+    pub(crate) height_factor: f64,
 }
 
 impl Placed {
-    fn new(bitmap: &BitmapLayer, whole: Rectangle, across: Axis, down: Axis, crc32: u32) -> Self {
+    fn new(
+        bitmap: &BitmapLayer,
+        picture: &Picture,
+        whole: Rectangle,
+        (across, down): (Axis, Axis),
+        crc32: u32,
+    ) -> Self {
         // A picture is turned about its centre.
         let (half_width_mm, half_height_mm) = (0.5 * whole.width_mm, 0.5 * whole.height_mm);
         let (middle_x_mm, middle_y_mm) = (whole.x_mm + half_width_mm, whole.y_mm + half_height_mm);
@@ -68,7 +76,8 @@ impl Placed {
             ])),
         };
         let angle_turns = (bitmap.angle_deg / 360.0) as f32;
-        Self { crc32, corner_mm, pitches_mm, angle_turns, tiled: bitmap.tiled, outline }
+        let height_factor = whole.height_mm / whole.width_mm * picture.width as f64 / picture.height as f64;
+        Self { crc32, corner_mm, pitches_mm, angle_turns, tiled: bitmap.tiled, outline, height_factor }
     }
 }
 
@@ -173,11 +182,15 @@ impl<'s> Pool<'s> {
             self.bitmaps.push(compiled);
         }
         notes.extend(note(&picture, bitmap, across, down));
-        Some(Placed::new(bitmap, whole, across, down, crc32))
+        Some(Placed::new(bitmap, &picture, whole, (across, down), crc32))
     }
 
     fn read(&self, layer: &Layer, bitmap: &BitmapLayer, log: &mut Log) -> Option<Picture> {
         let name = &bitmap.picture;
+        if name.is_empty() {
+            log.add(layer.places.field("picture"), Mistake::NoFileName { field: "picture" });
+            return None;
+        }
         let unusable = |reason: String| Mistake::FileUnusable { what: "picture", file: name.clone(), reason };
         // `Scene::parse` has read every picture that a layer names.
         let decoded = match self.pictures.get(name)? {
@@ -187,7 +200,7 @@ impl<'s> Pool<'s> {
                 what: "picture",
                 file: name.clone(),
                 folder: place.clone(),
-                nearest: Nearest::new(file_name(name), files.iter().map(String::as_str)).suggestion,
+                nearest: Nearest::file(file_name(name), files),
             }),
         };
         decoded.map_err(|mistake| log.add(layer.places.field("picture"), mistake)).ok()

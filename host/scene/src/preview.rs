@@ -197,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_out_of_reach_by_rounding_is_within() {
+    fn a_rounding_error_is_within_reach() {
         let sides = [-0.1, -0.5e-6, 0.0, 0.5, 1.0 + 0.5e-6, 1.1].map(ReachSide::of);
         assert_eq!(sides, [Below, Within, Within, Within, Within, Above]);
     }

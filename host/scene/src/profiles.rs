@@ -139,7 +139,7 @@ impl<T> Profile<T> {
                 what,
                 file: name.to_owned(),
                 folder: place,
-                nearest: Nearest::new(file_name(name), files.iter().map(String::as_str)).suggestion,
+                nearest: Nearest::file(file_name(name), &files),
             },
         })?;
         let text = String::from_utf8(bytes).map_err(|_| unusable(Mistake::NotUtf8.to_string()))?;

@@ -4,6 +4,7 @@ use frixel_layers::{Header, Point, Record, features_of};
 use frixel_wire::hello::{PROTOCOL_MAJOR, PROTOCOL_MINOR};
 use frixel_wire::scene::bitmap_crc32;
 
+use super::compile_error::Located;
 use super::layer_map::LayerMap;
 use super::optimisation::Optimisation;
 use super::played_finger::PlayedFinger;
@@ -36,6 +37,9 @@ pub struct Program {
     pub half_period_ticks: u32,
     /// The finger that the program is compiled for.
     pub finger: PlayedFinger,
+    /// The mistakes for which a board refuses the scene. Empty unless the program is a draft, see
+    /// [`compile_draft`](super::compile_draft).
+    pub refusals: Vec<Located>,
     /// Reasons to doubt the program's newtons.
     pub warnings: Vec<Warning>,
     /// Conversions, roundings and clamps, a sentence each.
@@ -45,6 +49,11 @@ pub struct Program {
 }
 
 impl Program {
+    /// Whether the program is a draft: only previews and the simulator in this process play it, and every output says so.
+    pub fn is_draft(&self) -> bool {
+        !self.refusals.is_empty()
+    }
+
     /// The scene's bytes for a board of this protocol version.
     pub fn scene_bytes(&self) -> Vec<u8> {
         self.scene_bytes_for((PROTOCOL_MAJOR, PROTOCOL_MINOR))

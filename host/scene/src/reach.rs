@@ -1,6 +1,6 @@
 //! The friction that a drive can give to a finger.
 
-use frixel_layers::{Carrier as Shape, Header};
+use frixel_layers::Header;
 use frixel_model::{
     Carrier, Contact, ContactModel, Finger, InverseTable, LoadedContact, ParameterError, TableError, Waveform,
 };
@@ -80,10 +80,6 @@ pub(super) fn loaded_contact(header: &Header) -> Result<LoadedContact<f64>, Para
 }
 
 /// The carrier of a scene on a board, in the board's arithmetic.
-pub fn carrier(shape: Shape, half_period_s: f64, limits: &BoardLimits) -> Carrier {
-    let waveform = match shape {
-        Shape::Square => Waveform::Square,
-        Shape::Sine => Waveform::Sine,
-    };
+pub fn carrier(waveform: Waveform, half_period_s: f64, limits: &BoardLimits) -> Carrier {
     Carrier { waveform, half_period_s: half_period_s as f32, edge_time_constant_s: limits.edge_time_constant_s }
 }

@@ -1,6 +1,7 @@
 //! Spectra of signals.
 
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 use rustfft::FftPlannerScalar;
 use rustfft::num_complex::Complex;
@@ -40,9 +41,26 @@ impl Spectrum {
     }
 }
 
+/// Root mean square of a signal between two frequencies in Hz, without its mean and under a Hann window; 0 without
+/// samples.
+pub fn band_rms(samples: &[f64], sample_hz: u32, band_hz: Range<f64>) -> f64 {
+    let spectrum = Spectrum::of(samples, f64::from(sample_hz));
+    let power = spectrum.power().into_iter().enumerate();
+    let inside = power.filter(|(bin, _)| band_hz.contains(&(*bin as f64 * spectrum.bin_hz)));
+    inside.map(|(_, power)| power).sum::<f64>().sqrt()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_sine_is_in_its_band_alone() {
+        let sine: Vec<f64> = (0..1 << 14).map(|tick| libm::sin(TAU * 100.3 * f64::from(tick) / 8000.0)).collect();
+        assert!((band_rms(&sine, 8000, 90.0..110.0) - 0.5_f64.sqrt()).abs() < 1e-3);
+        assert!(band_rms(&sine, 8000, 130.0..4000.0) < 1e-4);
+        assert_eq!(band_rms(&[], 8000, 0.0..4000.0).abs().to_bits(), 0.0_f64.to_bits());
+    }
 
     #[test]
     fn the_powers_sum_to_the_mean_square() {

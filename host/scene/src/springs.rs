@@ -45,13 +45,16 @@ impl Springs {
                 let springs = fit(profile, &finger, gap_m, voltage_max_v_rms).ok_or_else(|| Mistake::Model {
                     reason: "no springs have the friction of this soft finger at the largest voltage".to_owned(),
                 })?;
-                if springs.deviation > DEVIATION_MAX {
-                    let found_percent = 100.0 * springs.deviation;
-                    return Err(Mistake::SoftFinger { found_percent, max_percent: 100.0 * DEVIATION_MAX });
-                }
                 Ok(springs)
             }
         }
+    }
+
+    /// The mistake of springs that differ too much from their soft finger.
+    pub(super) fn mistake(&self) -> Option<Mistake> {
+        let found_percent = 100.0 * self.deviation;
+        let mistake = Mistake::SoftFinger { found_percent, max_percent: 100.0 * DEVIATION_MAX };
+        (self.deviation > DEVIATION_MAX).then_some(mistake)
     }
 }
 

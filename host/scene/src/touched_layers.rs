@@ -48,7 +48,7 @@ impl TouchedLayers {
     }
 
     /// A place where a finger touches a layer, in its middle if possible, in metres from the top left corner of the
-    /// screen; `None` if there is none.
+    /// screen; `None` if no tried place is inside the layer.
     pub fn place_in(&self, index: usize) -> Option<(f64, f64)> {
         let [left_m, top_m, right_m, bottom_m] = self.pieces.get(index)?.shape.bounds_m();
         let (left_m, right_m) = (left_m.max(0.0), right_m.min(self.screen_m.0));

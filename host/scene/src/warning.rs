@@ -1,4 +1,5 @@
-//! Warnings: a program that can be played, but that asks for what the model or the finger's profile does not cover.
+//! Warnings: a program that can be played, but that asks for what the model or the finger's profile does not cover, or that
+//! is probably not what its author means.
 
 use frixel_layers::Interval;
 use serde::Serialize;
@@ -12,8 +13,8 @@ use super::program::Program;
 use super::reach::{ROUNDING, Reach, loaded_contact};
 use super::reference::Reference;
 
-/// A reason to doubt the newtons of a program. Its text is one sentence for the scene's designer.
-#[derive(Clone, Copy, Debug, PartialEq, Error, Serialize)]
+/// A reason to doubt a program. Its text is one sentence for the scene's designer.
+#[derive(Clone, Debug, PartialEq, Error, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Warning {
@@ -53,9 +54,55 @@ pub enum Warning {
         /// Largest load of the measurement, N.
         largest_n: f64,
     },
+    /// The rim of a button leaves no room for its face.
+    #[error(
+        "{layer}: a rim of {rim_width_mm} mm on both sides leaves no face on a button of {side_mm} mm: make `rim_width_mm` \
+         less than {} mm", 0.5 * .side_mm
+    )]
+    RimWiderThanButton {
+        /// The layer.
+        layer: String,
+        /// Width of the rim, mm.
+        rim_width_mm: f64,
+        /// The shorter side of the button, mm.
+        side_mm: f64,
+    },
+    /// A picture is stretched along one side.
+    #[error(
+        "{layer}: the picture is stretched by {percent} % in {direction}: leave `height_mm` out to keep its sides, or change \
+         the region"
+    )]
+    PictureStretched {
+        /// The layer.
+        layer: String,
+        /// How much longer its side is than its other side demands, in percent.
+        percent: f64,
+        /// `width` or `height`.
+        direction: &'static str,
+    },
 }
 
+/// A picture that is stretched by more than this is warned of.
+const STRETCH_MAX: f64 = 1.05;
+
 impl Warning {
+    /// The warning of a button whose two rims meet, if they do.
+    pub(super) fn of_rim(layer: &str, rim_width_mm: f64, side_mm: f64) -> Option<Self> {
+        (2.0 * rim_width_mm >= side_mm).then(|| Self::RimWiderThanButton {
+            layer: layer.to_owned(),
+            rim_width_mm,
+            side_mm,
+        })
+    }
+
+    /// The warning of a picture that is higher for its width by this factor than its pixels are, if that is much.
+    pub(super) fn of_stretch(layer: &str, height_factor: f64) -> Option<Self> {
+        let (factor, direction) =
+            if height_factor > 1.0 { (height_factor, "height") } else { (1.0 / height_factor, "width") };
+        let percent = (100.0 * (factor - 1.0)).round();
+        (factor > STRETCH_MAX).then(|| Self::PictureStretched { layer: layer.to_owned(), percent, direction })
+    }
+
     /// Whether a board with an electrode refuses the program: it extrapolates from a measurement.
     pub fn is_refused_by_boards(&self) -> bool {
         matches!(self, Self::BeyondMeasuredVoltage { .. } | Self::BeyondMeasuredLoad { .. })

@@ -10,7 +10,7 @@ use crate::{Finger, LoadedContact, Real};
 
 /// Rows in a table: 31.5 octaves, enough for 200 V down to 1 V where friction grows as the fourth power of the voltage.
 const ROWS: usize = 126;
-/// Four rows per octave of 2^23 bit patterns.
+/// Four rows per octave of 2^23 bit patterns. The `unwrap` is evaluated by the compiler.
 const DENSITY: NonZeroU32 = NonZeroU32::new(4 << 9).unwrap();
 /// The table reaches at least down to this voltage.
 const KNEE_V_RMS: f32 = 1.0;

@@ -5,13 +5,13 @@
 //! uses the middle for a taken branch (1 to 3 to refill the pipeline) and the maximum for an integer division.
 
 /// Cycles to refill the pipeline after a branch.
-const REFILL: u64 = 2;
+const REFILL_CYCLES: u64 = 2;
 /// A floating-point division or square root.
-const FLOAT_DIVISION: u64 = 14;
+const FLOAT_DIVISION_CYCLES: u64 = 14;
 /// An integer division: 2 to 12.
-const DIVISION: u64 = 12;
+const DIVISION_CYCLES: u64 = 12;
 /// A load from memory.
-const LOAD: u64 = 2;
+const LOAD_CYCLES: u64 = 2;
 
 /// Cycles of the instruction of one or two halfwords at `place`. `next` is the address of the instruction executed
 /// after it.
@@ -19,16 +19,16 @@ pub(super) fn cycles(first: u16, second: u16, place: u32, next: u32) -> u64 {
     let wide = first >= 0xe800;
     let own = if wide { wide_cycles(first, second) } else { narrow_cycles(first) };
     let fell_through = next == place + if wide { 4 } else { 2 };
-    if fell_through { own } else { own + REFILL }
+    if fell_through { own } else { own + REFILL_CYCLES }
 }
 
 /// Cycles of a 16-bit instruction.
 fn narrow_cycles(first: u16) -> u64 {
     match first >> 12 {
         // Register offset: stores, then loads from LDRSB on.
-        0x5 if first & 0x0e00 >= 0x0600 => LOAD,
+        0x5 if first & 0x0e00 >= 0x0600 => LOAD_CYCLES,
         // From a literal, at an immediate offset, from the stack.
-        0x4 | 0x6..=0x9 if first & 0x0800 != 0 => LOAD,
+        0x4 | 0x6..=0x9 if first & 0x0800 != 0 => LOAD_CYCLES,
         // PUSH and POP, of their registers and LR or PC.
         0xb if first & 0x0600 == 0x0400 => 1 + u64::from((first & 0x01ff).count_ones()),
         // STM and LDM.
@@ -45,13 +45,13 @@ fn wide_cycles(first: u16, second: u16) -> u64 {
         // STM and LDM.
         _ if first & 0xfe40 == 0xe800 => 1 + u64::from(second.count_ones()),
         // Table branch: a load and a branch.
-        _ if first & 0xfff0 == 0xe8d0 && second & 0xfff0 >= 0xf000 => LOAD,
+        _ if first & 0xfff0 == 0xe8d0 && second & 0xfff0 >= 0xf000 => LOAD_CYCLES,
         // STRD and LDRD, exclusive accesses included.
         _ if first & 0xfe40 == 0xe840 => 1 + 2,
         // A load or store of one register.
-        _ if first & 0xfe00 == 0xf800 && load => LOAD,
+        _ if first & 0xfe00 == 0xf800 && load => LOAD_CYCLES,
         // SDIV and UDIV.
-        _ if first & 0xffd0 == 0xfb90 && second & 0x00f0 == 0x00f0 => DIVISION,
+        _ if first & 0xffd0 == 0xfb90 && second & 0x00f0 == 0x00f0 => DIVISION_CYCLES,
         // MLA and MLS.
         _ if first & 0xfff0 == 0xfb00 && second & 0xf000 != 0xf000 => 2,
         _ => 1,
@@ -64,7 +64,7 @@ fn float_cycles(first: u16, second: u16) -> u64 {
         // Two registers to or from the core.
         _ if first & 0xffe0 == 0xec40 => 2,
         // VLDR and VSTR.
-        _ if first & 0xff20 == 0xed00 => LOAD,
+        _ if first & 0xff20 == 0xed00 => LOAD_CYCLES,
         // VLDM and VSTM, VPOP and VPUSH among them.
         _ if first & 0xfe00 == 0xec00 => 1 + u64::from(second & 0x00ff),
         // One register to or from the core, and the flags.
@@ -73,9 +73,9 @@ fn float_cycles(first: u16, second: u16) -> u64 {
             // VMLA, VMLS, VNMLA, VNMLS; VFMA and its like.
             0x0000 | 0x0010 | 0x0090 | 0x00a0 => 3,
             // VDIV.
-            0x0080 => FLOAT_DIVISION,
+            0x0080 => FLOAT_DIVISION_CYCLES,
             // VSQRT.
-            0x00b0 if first & 0x000f == 0x0001 && second & 0x00c0 == 0x00c0 => FLOAT_DIVISION,
+            0x00b0 if first & 0x000f == 0x0001 && second & 0x00c0 == 0x00c0 => FLOAT_DIVISION_CYCLES,
             _ => 1,
         },
     }
@@ -123,7 +123,7 @@ mod tests {
         ] {
             let width = if first >= 0xe800 { 4 } else { 2 };
             assert_eq!(cycles(first, second, 0x100, 0x100 + width), expected, "{name}");
-            assert_eq!(cycles(first, second, 0x100, 0x80), expected + REFILL, "{name}, and a branch");
+            assert_eq!(cycles(first, second, 0x100, 0x80), expected + REFILL_CYCLES, "{name}, and a branch");
         }
     }
 }

@@ -120,7 +120,7 @@ mod tests {
 
     /// Encodings as the assembler produces them.
     #[test]
-    fn what_moves_the_stack_or_calls_is_seen() {
+    fn instructions_that_move_the_stack_or_call_are_recognised() {
         use Instruction::{Branch, Call, CallRegister, LoadWord, MoveStack, Other, Push};
         for (name, first, second, expected) in [
             ("push {r4, r7, lr}", 0xb590, 0, Push(12)),

@@ -3,13 +3,13 @@
 use super::*;
 use proptest::prelude::*;
 
-fn timing(shape: Shape, half_period_ticks: u32) -> CarrierTiming {
-    CarrierTiming::new(shape, half_period_ticks, 100.0, DacCode::from_bits(20_000))
+fn timing(waveform: Waveform, half_period_ticks: u32) -> CarrierTiming {
+    CarrierTiming::new(waveform, half_period_ticks, 100.0, DacCode::from_bits(20_000))
 }
 
 #[test]
 fn a_steady_square_alternates_without_early_edges() {
-    let timing = timing(Shape::Square, 20);
+    let timing = timing(Waveform::Square, 20);
     let mut carrier = Carrier::new(&timing);
     let codes: Vec<i16> = (0..400).map(|tick| carrier.next(200.0, &timing, tick).bits()).collect();
     assert_eq!(carrier.early_edges(), 0);
@@ -22,7 +22,7 @@ fn a_steady_square_alternates_without_early_edges() {
 #[cfg(feature = "sine-carrier")]
 #[test]
 fn a_sine_has_the_rms_of_its_envelope() {
-    let timing = timing(Shape::Sine, 20);
+    let timing = timing(Waveform::Sine, 20);
     let mut carrier = Carrier::new(&timing);
     let sum: f64 = (0..4000).map(|_| f64::from(carrier.next(100.0, &timing, 0).bits()).powi(2)).sum();
     let rms = (sum / 4000.0).sqrt();
@@ -38,7 +38,7 @@ proptest! {
         seed_amplitudes in proptest::collection::vec(0.0_f32..200.0, 1..200),
         resonant in any::<bool>(),
     ) {
-        let timing = timing(if sine { Shape::Sine } else { Shape::Square }, half_period_ticks);
+        let timing = timing(if sine { Waveform::Sine } else { Waveform::Square }, half_period_ticks);
         let mut carrier = Carrier::new(&timing);
         let mut integral = 0_i64;
         let full = i64::from(timing.integral_max.to_bits());
@@ -61,9 +61,9 @@ fn codes(carrier: &mut Carrier, timing: &CarrierTiming, envelope_v_rms: f32, tic
 #[test]
 fn the_integral_may_reach_one_half_wave_at_full_voltage() {
     for half_period_ticks in [4, 5, 20, 80] {
-        let square = timing(Shape::Square, half_period_ticks);
+        let square = timing(Waveform::Square, half_period_ticks);
         assert_eq!(square.integral_max.to_bits(), 20_000 * half_period_ticks as i32);
-        let sine = timing(Shape::Sine, half_period_ticks);
+        let sine = timing(Waveform::Sine, half_period_ticks);
         let half_wave: f64 = (0..1000).map(|i| ((f64::from(i) + 0.5) / 1000.0 * core::f64::consts::PI).sin()).sum();
         let expected = 20.0 * f64::from(half_period_ticks) * half_wave;
         assert!(
@@ -77,7 +77,7 @@ fn the_integral_may_reach_one_half_wave_at_full_voltage() {
 #[test]
 fn a_carrier_starts_a_quarter_period_before_an_edge() {
     for (half_period_ticks, first_edge) in [(20, 10), (21, 11), (5, 3), (4, 2)] {
-        let timing = timing(Shape::Square, half_period_ticks);
+        let timing = timing(Waveform::Square, half_period_ticks);
         let codes = codes(&mut Carrier::new(&timing), &timing, 1.0, 2 * half_period_ticks);
         assert_eq!(codes.iter().position(|code| *code < 0), Some(first_edge), "{half_period_ticks}");
     }
@@ -86,7 +86,7 @@ fn a_carrier_starts_a_quarter_period_before_an_edge() {
 /// Whatever was driven before, a drive that begins anew takes the charge back that is left.
 #[test]
 fn a_carrier_that_rested_begins_on_the_side_that_takes_the_integral_back() {
-    let timing = timing(Shape::Square, 20);
+    let timing = timing(Waveform::Square, 20);
     for (ticks, first_sign) in [(0, 1), (7, -1), (10, -1), (20, 1), (25, 1), (40, 1)] {
         let mut carrier = Carrier::new(&timing);
         let before: i32 = codes(&mut carrier, &timing, 50.0, ticks).iter().sum();
@@ -100,8 +100,8 @@ fn a_carrier_that_rested_begins_on_the_side_that_takes_the_integral_back() {
 
 #[test]
 fn a_faster_carrier_takes_its_edge_no_later_than_its_own_half_period() {
-    let slow = timing(Shape::Square, 20);
-    let fast = timing(Shape::Square, 4);
+    let slow = timing(Waveform::Square, 20);
+    let fast = timing(Waveform::Square, 4);
     let mut carrier = Carrier::new(&slow);
     codes(&mut carrier, &slow, 1.0, 11); // one tick behind an edge, 19 before the next
     carrier.retime(&fast);
@@ -114,8 +114,8 @@ fn a_faster_carrier_takes_its_edge_no_later_than_its_own_half_period() {
 
 #[test]
 fn a_slower_carrier_finishes_the_half_period_under_way() {
-    let slow = timing(Shape::Square, 20);
-    let fast = timing(Shape::Square, 4);
+    let slow = timing(Waveform::Square, 20);
+    let fast = timing(Waveform::Square, 4);
     let mut carrier = Carrier::new(&fast);
     codes(&mut carrier, &fast, 1.0, 3); // one tick behind an edge, 3 before the next
     carrier.retime(&slow);
@@ -128,7 +128,7 @@ fn a_slower_carrier_finishes_the_half_period_under_way() {
 /// code comes with the other sign, and that is counted.
 #[test]
 fn an_early_edge_is_counted_with_its_tick() {
-    let timing = timing(Shape::Square, 20);
+    let timing = timing(Waveform::Square, 20);
     let mut carrier = Carrier::new(&timing);
     let (mut integral, mut early_edges, mut last_early_tick, mut left_ticks, mut sign) = (0, 0, 0, 10, 1);
     for tick in 0..4000 {
@@ -157,8 +157,8 @@ fn an_early_edge_is_counted_with_its_tick() {
 #[test]
 fn an_integral_beyond_a_new_limit_only_falls() {
     for start_ticks in [10, 30] {
-        let wide = timing(Shape::Square, 20);
-        let narrow = CarrierTiming::new(Shape::Square, 4, 100.0, DacCode::from_bits(2_000));
+        let wide = timing(Waveform::Square, 20);
+        let narrow = CarrierTiming::new(Waveform::Square, 4, 100.0, DacCode::from_bits(2_000));
         let mut carrier = Carrier::new(&wide);
         let mut integral: i32 = codes(&mut carrier, &wide, 200.0, start_ticks).iter().sum();
         assert!(integral.abs() > 10 * narrow.integral_max.to_bits(), "{integral}");
@@ -182,7 +182,7 @@ fn an_integral_beyond_a_new_limit_only_falls() {
 
 #[test]
 fn no_code_is_larger_than_the_largest() {
-    let timing = timing(Shape::Square, 20);
+    let timing = timing(Waveform::Square, 20);
     assert!(codes(&mut Carrier::new(&timing), &timing, 1e6, 100).iter().all(|code| code.abs() == 20_000));
     assert!(
         codes(&mut Carrier::new(&CarrierTiming::ZERO_OUTPUT), &CarrierTiming::ZERO_OUTPUT, 1e6, 100)
@@ -194,7 +194,7 @@ fn no_code_is_larger_than_the_largest() {
 /// To the nearest code, so that a small voltage is not lost.
 #[test]
 fn codes_are_rounded_to_the_nearest() {
-    let timing = timing(Shape::Square, 20);
+    let timing = timing(Waveform::Square, 20);
     for (envelope_v_rms, expected) in [(0.004, 0), (0.006, 1), (0.014, 1), (0.016, 2), (123.456, 12_346)] {
         assert_eq!(codes(&mut Carrier::new(&timing), &timing, envelope_v_rms, 1), [expected]);
     }
@@ -204,7 +204,7 @@ fn codes_are_rounded_to_the_nearest() {
 #[cfg(feature = "sine-carrier")]
 #[test]
 fn a_sine_is_a_sine() {
-    let timing = timing(Shape::Sine, 20);
+    let timing = timing(Waveform::Sine, 20);
     let codes = codes(&mut Carrier::new(&timing), &timing, 100.0, 80);
     for (tick, code) in codes.iter().enumerate() {
         let turns = (tick as f64 - 10.0 + 20.0) / 40.0;

@@ -71,7 +71,7 @@ fn reference(sample_hz: u32, ticks: u32) -> f64 {
 }
 
 proptest! {
-    /// Whatever the rate, and wherever positions wrap: straight lines from sample to sample, at their own rate.
+    /// The player interpolates linearly between samples, at any sample rate and across the wrap of positions.
     #[test]
     fn a_steady_stream_is_straight_lines_between_its_samples(sample_hz in 200..=TICK_HZ, before_wrap in 0..3000_u32) {
         let buffer = buffer_before_wrap(before_wrap);
@@ -247,7 +247,7 @@ fn the_end_is_no_underrun_and_needs_no_start_level() {
 }
 
 #[test]
-fn what_there_is_no_room_for_is_dropped_and_what_was_due_comes_too_late() {
+fn samples_beyond_the_buffer_or_already_played_are_dropped() {
     let buffer = StreamBuffer::new();
     let mut ends = Ends::new(&buffer);
     ends.start(TICK_HZ, 100);

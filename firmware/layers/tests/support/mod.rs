@@ -2,8 +2,8 @@
 #![allow(dead_code, unreachable_pub)]
 
 use frixel_layers::{
-    Beat, Bitmap, Blend, Burst, Button, Carrier, Click, Constant, Edge, Grating, Header, Layer, Leader, Noise, Point,
-    Record, Region, Rings, Speed, Stream, Vibration, Wave,
+    Beat, Bitmap, Blend, Burst, Button, Click, Constant, Edge, Grating, Header, Layer, Leader, Noise, Point, Record,
+    Region, Rings, Speed, Stream, Vibration, Wave, Waveform,
 };
 
 pub fn header() -> Header {
@@ -20,7 +20,7 @@ pub fn header() -> Header {
         slew_v_per_s: 100_000.0,
         carrier_hz: 1_000.0,
         host_timeout_s: 0.25,
-        carrier: Carrier::Square,
+        waveform: Waveform::Square,
         autonomous: false,
         prediction: true,
         leader: Leader::First,
@@ -32,7 +32,7 @@ pub fn header() -> Header {
 pub fn headers() -> Vec<Header> {
     vec![
         header(),
-        Header { carrier: Carrier::Sine, prediction: false, ..header() },
+        Header { waveform: Waveform::Sine, prediction: false, ..header() },
         Header { autonomous: true, ..header() },
         Header { leader: Leader::Latest, ..header() },
         Header { layers_fixed: true, ..header() },

@@ -29,7 +29,7 @@ use frixel_wire::scene::bitmap_crc32;
 /// Most polls that a commit takes.
 pub const COMMIT_POLLS_MAX: u32 = 128;
 
-/// What the two halves of a board share; lives longer than the [`TestBoard`].
+/// The memory that session and tick of a board share. It outlives the [`TestBoard`] that borrows it.
 pub struct Memory {
     pool: BitmapPool,
     actives: [Active; 2],

@@ -51,7 +51,7 @@ fn steps() -> impl Strategy<Value = Vec<Step>> {
 proptest! {
     /// Credit never exceeds the room of the board, whichever bytes the line loses and whatever the board's count is.
     #[test]
-    fn what_is_under_way_is_never_taken_for_less(steps in steps(), start in any::<u32>()) {
+    fn bytes_under_way_are_never_underestimated(steps in steps(), start in any::<u32>()) {
         let mut line = Line { written: u64::from(start), ..Line::default() };
         let mut credit = Credit::new(WINDOW, line.written);
         for step in steps {

@@ -111,7 +111,7 @@ fn wait_lets_its_time_pass_and_hands_over_telemetry() {
 }
 
 #[test]
-fn what_the_board_tells_during_a_call_is_kept() {
+fn events_during_a_call_are_delivered_later() {
     let mut board = FakeBoard::new();
     let mut busy = 3;
     board.falls_to = Some((Duration::from_millis(3), State::Disarmed));

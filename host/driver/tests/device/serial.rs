@@ -105,7 +105,7 @@ fn a_device_that_only_looked_leaves_a_playing_board_alone() {
     (playing.state, playing.autonomous) = (State::Active, true);
     let board = PtyBoard::start(playing);
     drop(connect(&board));
-    // By the time that the next host is heard, all that the first one sent has been.
+    // The board reads in order: once it answers the next host, it has processed all that the first one sent.
     let mut next = connect(&board);
     next.subscribe(0).unwrap();
     let board = board.board.lock().unwrap();

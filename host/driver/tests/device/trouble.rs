@@ -35,7 +35,7 @@ fn silenceable() -> (VirtualLink, Rc<Cell<bool>>) {
 }
 
 #[test]
-fn nobody_answers() {
+fn a_silent_port_gives_a_timeout() {
     let mut board = FakeBoard::new();
     board.mute = true;
     let error = refused_connection(VirtualLink::new(board));

@@ -116,7 +116,7 @@ fn a_board_with_room_for_one_frame_takes_an_upload() {
 }
 
 #[test]
-fn nothing_is_committed_by_an_upload() {
+fn an_upload_alone_commits_no_scene() {
     let mut device = connected(VirtualLink::new(FakeBoard::new()));
     let scene = scene(0.25);
     device.upload(&Upload { scene: &scene, bitmaps: Vec::new() }, &mut |_| {}).unwrap();

@@ -88,8 +88,13 @@ pub enum CalibrationError {
 }
 
 /// Reads the forces of a sensor from CSV with the columns `time_s,normal_force_n,friction_n`, in any order.
-pub fn read_forces(input: impl Read) -> Result<Vec<ForceRow>, CalibrationError> {
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(input);
+///
+/// A last line without a line feed is left out: the sensor is still writing it.
+pub fn read_forces(mut input: impl Read) -> Result<Vec<ForceRow>, CalibrationError> {
+    let mut text = String::new();
+    input.read_to_string(&mut text).map_err(|error| CalibrationError::Forces(error.into()))?;
+    let whole = text.rsplit_once('\n').map_or("", |(whole, _)| whole);
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(whole.as_bytes());
     let rows: Vec<ForceRow> = reader.deserialize().collect::<Result<_, _>>().map_err(CalibrationError::Forces)?;
     let mut last_s = f64::NEG_INFINITY;
     for (row, number) in rows.iter().zip(2..) {

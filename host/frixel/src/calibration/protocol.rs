@@ -48,7 +48,7 @@ pub struct Protocol {
 }
 
 impl Protocol {
-    /// A minute of strokes of 70 mm at 44 mm/s on average, at voltages that a board with this limit can drive.
+    /// A minute of strokes of 70 mm at 44 mm/s on average, up to this voltage and 150 V rms.
     pub fn new(voltage_max_v_rms: f64, seed: u64) -> Self {
         let highest = VOLTAGE_V_RMS.min(voltage_max_v_rms);
         let voltages_v_rms = PARTS.iter().map(|part| part * highest).collect();

@@ -1,18 +1,19 @@
 //! `frixel calibrate`: records the data that `frixel fit` needs.
 
 use std::fs::File;
-use std::io::{BufReader, stdin};
+use std::io::{BufReader, Read, stdin};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::thread;
-use std::time::Duration;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
 
 use clap::Args;
 use frixel::calibration::{BoardRow, CalibrationError, ForceRow, Protocol, align, read_forces, write_csv};
 use frixel::player::Player;
-use frixel::rigs::{ForceSensor, PortLink, RecordedLink, SimLink};
+use frixel::rigs::{ForceSensor, RecordedLink, SimLink};
 use frixel::stream::Feed;
-use frixel_driver::{DEFAULT_BAUD, Device, SerialLink};
+use frixel_driver::Device;
 use frixel_hil_sim::{BoardMemory, FingertipConfig, Person, Rig, RigConfig, Stroke};
 use frixel_model::{Contact, Finger, LoadedContact};
 use frixel_scene::recorder::Recorder;
@@ -21,12 +22,15 @@ use frixel_wire::hello::BoardLimits;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::error::CommandError;
+use super::experiment;
 use super::fit::screen;
 use super::interrupt::Interrupt;
 use super::terminal::{note, print_line};
 
 /// Rows a second of the recording.
 const ROW_HZ: u32 = 1_000;
+/// Time after the run in which forces on standard input may still come, behind the sensor's own buffers.
+const FORCES_LATE: Duration = Duration::from_millis(500);
 
 #[derive(Debug, Args)]
 pub(super) struct CalibrateArgs {
@@ -37,13 +41,16 @@ pub(super) struct CalibrateArgs {
     #[arg(short, long, value_name = "DATA.csv")]
     output: PathBuf,
     /// Forces of a sensor during the run: CSV with the columns `time_s,normal_force_n,friction_n`, on any clock; `-`
-    /// for
-    /// standard input. A file is read when the run is over. The simulator has a sensor of its own.
+    /// for standard input. A file is there when the run begins, and is read when it is over. The simulator has a sensor
+    /// of its own, and `frixel sim` writes what one under its screen measures, forces.csv.
     #[arg(long, value_name = "FILE.csv")]
     forces: Option<PathBuf>,
-    /// Highest voltage, in volts rms; at most 150, and at most what the board allows.
-    #[arg(long, value_name = "V_RMS", default_value_t = 150.0, value_parser = super::fit::positive)]
-    voltage: f64,
+    /// Highest voltage, in volts rms, at most 150. Without it, 150 or what the board allows.
+    #[arg(long, value_name = "V_RMS", value_parser = experiment::voltage)]
+    voltage: Option<f64>,
+    /// Number of strokes, 8 to 360. Each takes 1.8 s; the interval narrows with the root of their number.
+    #[arg(long, value_name = "N", default_value_t = 36, value_parser = clap::value_parser!(u16).range(8..=360))]
+    strokes: u16,
     /// Simulated person: another one for each seed. Without it, the example finger.
     #[arg(long, value_name = "N")]
     finger_seed: Option<u64>,
@@ -57,6 +64,11 @@ pub(super) struct CalibrateArgs {
 
 pub(super) fn run(args: &CalibrateArgs) -> Result<(), CommandError> {
     let interrupt = Interrupt::watch()?;
+    experiment::check_writable(&args.output)?;
+    // A file of forces that is missing, or of something else, is found before the run, not after it.
+    if let Some(path) = args.forces.as_deref().filter(|path| *path != Path::new("-")) {
+        read(path)?;
+    }
     let (board, forces) = if args.port == "sim" { on_simulator(args, &interrupt)? } else { on_port(args, &interrupt)? };
     let rows = align(&board, &forces)?;
     let file = File::create(&args.output).map_err(CommandError::writing(&args.output))?;
@@ -117,30 +129,60 @@ fn simulated_finger(seed: Option<u64>) -> Result<(LoadedContact<f64>, FingertipC
 
 fn on_port(args: &CalibrateArgs, interrupt: &Interrupt) -> Result<Recorded, CommandError> {
     let Some(forces) = &args.forces else { return Err(CommandError::NoForces { port: args.port.clone() }) };
-    let device = Device::connect(PortLink::new(SerialLink::open(&args.port, DEFAULT_BAUD)?))?;
-    let hello = *device.hello();
-    if !(args.arm || hello.board.is_simulated()) {
-        return Err(CommandError::NotArmed { port: args.port.clone() });
+    if args.finger_seed.is_some() {
+        return Err(CommandError::FingerOnBoard { port: args.port.clone() });
     }
+    let device = experiment::connect(&args.port, args.arm)?;
+    let hello = *device.hello();
     let plan = Plan::new(args, &hello.limits, hello.tick_hz)?;
-    // Standard input is read while the board plays, so that its writer does not block.
-    let from_stdin = (forces == Path::new("-")).then(|| thread::spawn(|| read_forces(stdin())));
+    let from_stdin = (forces == Path::new("-")).then(StandardInput::read);
     let mut player = plan.start(device, hello.tick_hz / ROW_HZ)?;
     let board = plan.play(&mut player, interrupt, Duration::from_secs_f64(plan.protocol.duration_s()))?;
     let forces = match from_stdin {
-        // A reader that panicked has read nothing.
-        Some(reader) => reader.join().unwrap_or_else(|_| Ok(Vec::new()))?,
+        Some(input) => read_forces(input.after(FORCES_LATE).as_slice())?,
         None => read(forces)?,
     };
     Ok((board, forces))
 }
 
-fn read(path: &Path) -> Result<Vec<ForceRow>, CommandError> {
-    if path == Path::new("-") {
-        return Ok(read_forces(stdin())?);
+/// Standard input, which is read while the board plays, so that its writer does not block.
+struct StandardInput {
+    reader: JoinHandle<()>,
+    bytes: Arc<Mutex<Vec<u8>>>,
+}
+
+impl StandardInput {
+    fn read() -> Self {
+        let bytes = Arc::new(Mutex::new(Vec::new()));
+        let shared = Arc::clone(&bytes);
+        let reader = thread::spawn(move || {
+            let mut chunk = [0; 4096];
+            // A pipe that breaks has ended.
+            while let Ok(count @ 1..) = stdin().read(&mut chunk) {
+                let mut bytes = shared.lock().unwrap_or_else(PoisonError::into_inner);
+                bytes.extend_from_slice(chunk.get(..count).unwrap_or_default());
+            }
+        });
+        Self { reader, bytes }
     }
-    let file = File::open(path).map_err(CommandError::reading(path))?;
-    Ok(read_forces(BufReader::new(file))?)
+
+    /// What has come when the input ends, or when this time has passed: a sensor may go on measuring.
+    fn after(&self, time_max: Duration) -> Vec<u8> {
+        let begun = Instant::now();
+        while !self.reader.is_finished() && begun.elapsed() < time_max {
+            thread::sleep(Duration::from_millis(5));
+        }
+        std::mem::take(&mut self.bytes.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+fn read(path: &Path) -> Result<Vec<ForceRow>, CommandError> {
+    let rows = if path == Path::new("-") {
+        read_forces(stdin())
+    } else {
+        read_forces(BufReader::new(File::open(path).map_err(CommandError::reading(path))?))
+    };
+    rows.map_err(|source| CommandError::Forces { path: path.to_owned(), source })
 }
 
 /// A protocol that is ready to play on a board.
@@ -153,9 +195,8 @@ struct Plan {
 
 impl Plan {
     fn new(args: &CalibrateArgs, limits: &BoardLimits, tick_hz: u32) -> Result<Self, CommandError> {
-        // A square carrier's peak is its rms; its edges need a little more.
-        let voltage_max_v_rms = args.voltage.min(0.99 * f64::from(limits.voltage_max_v_peak));
-        let protocol = Protocol::new(voltage_max_v_rms, args.seed);
+        let voltage_max_v_rms = experiment::highest_voltage(args.voltage, limits)?;
+        let protocol = Protocol { strokes: args.strokes.into(), ..Protocol::new(voltage_max_v_rms, args.seed) };
         for line in protocol.words().lines() {
             print_line(format_args!("  {:<16} {line}", "plan"))?;
         }
@@ -189,7 +230,7 @@ impl Plan {
         while !left.is_zero() && player.recorder_mut().ticks_left() > 0 {
             if interrupt.is_requested() {
                 player.stop().map_err(CommandError::Play)?;
-                return Err(CommandError::CalibrationInterrupted);
+                return Err(CommandError::ExperimentInterrupted);
             }
             left = left.saturating_sub(player.step(left).map_err(CommandError::Play)?);
             let stroke = (player.recorder_mut().t_s() / (self.protocol.stroke_s + self.protocol.pause_s)) as u64;

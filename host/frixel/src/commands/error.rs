@@ -13,7 +13,7 @@ use frixel::report::ReportError;
 #[cfg(unix)]
 use frixel::rigs::ServerError;
 use frixel::rigs::StopReason;
-use frixel::scene_file::SceneFileError;
+use frixel::scene_file::{SceneFileError, check_path};
 use frixel::stream::FeedError;
 use frixel::studio::StudioError;
 use frixel_driver::{DeviceError, PortError};
@@ -66,14 +66,29 @@ pub(crate) enum CommandError {
     NaturalStroke(StrokeError),
     #[error("--from and --to: {0}; give two places that differ")]
     StraightStroke(StrokeError),
+    #[error("--from and --to are the same place: give two places that differ")]
+    StrokeInPlace,
+    #[error("{scene} has no layer that plays a stream: add one with `kind = \"stream\"`, or leave --stream out")]
+    NoStreamLayer { scene: String },
     #[error("{input}: {source}")]
     ModelCsv { input: String, source: CsvError },
     #[error("{}: {source}", path.display())]
     Fit { path: PathBuf, source: FitError },
     #[error(transparent)]
     Calibration(CalibrationError),
-    #[error("the run was interrupted, and nothing is written: start it again for a whole recording")]
-    CalibrationInterrupted,
+    #[error("{}: {source}", path.display())]
+    Forces { path: PathBuf, source: CalibrationError },
+    #[error("the run was interrupted, and nothing is written: start it again")]
+    ExperimentInterrupted,
+    #[error(
+        "--voltage {found} is above what this board drives, {limit_v_rms:.0} V rms: give at most that, or leave \
+         --voltage out"
+    )]
+    VoltageAboveBoard { found: f64, limit_v_rms: f64 },
+    #[error(
+        "--finger-seed draws the finger of --port sim only; the finger on {port} is its own: leave --finger-seed out"
+    )]
+    FingerOnBoard { port: String },
     #[error("the answers ended at trial {trial}, and nothing is written: answer each trial with 1 or 2 and Enter")]
     NoAnswer { trial: usize },
     #[error("{} cannot be written ({source}): check the folder and its free space", path.display())]
@@ -84,9 +99,11 @@ pub(crate) enum CommandError {
     InvalidRows { rows: String },
     #[error("{} is the input as well: writing it would destroy it; give --output another name", path.display())]
     OutputIsInput { path: PathBuf },
-    #[error("{} cannot be read ({source}): check the path", path.display())]
+    #[error("{} cannot be read ({source}): {}", path.display(), check_path(path, "check the path"))]
     Read { path: PathBuf, source: io::Error },
-    #[error("{} cannot be written ({source}): check the folder and its free space", path.display())]
+    #[error(
+        "{} cannot be written ({source}): {}", path.display(), check_path(path, "check the folder and its free space")
+    )]
     Write { path: PathBuf, source: io::Error },
     #[error("{} is not UTF-8 text: save it as UTF-8, a CSV file with the columns t_s,x_mm,y_mm", path.display())]
     StrokeNotText { path: PathBuf },
@@ -122,6 +139,8 @@ pub(crate) enum CommandError {
     NothingRecorded { path: PathBuf },
     #[error("{failed} of the checks of {port} failed; docs/hardware.md says what each part needs")]
     SelftestFailed { port: String, failed: usize },
+    #[error("\"{}\" has no name for a scene: give one such as wood, or scenes/wood.toml", name.display())]
+    SceneName { name: PathBuf },
     #[error("{} is there already, and is not overwritten: give another name, or remove it", path.display())]
     SceneExists { path: PathBuf },
     #[error("standard input has either the lines of --control or the samples of --stream -: give --stream a file")]
@@ -151,6 +170,11 @@ pub(crate) enum CommandError {
         "--watch follows the file while a board plays in real time, --port {port} does not: start `frixel sim` and give its port"
     )]
     WatchInVirtualTime { port: String },
+    #[error(
+        "--watch on the simulator plays anew after each change, and standard input can be read only once: leave out \
+         --control or --stream -, or start `frixel sim` and give its port"
+    )]
+    WatchReadsInputOnce,
     #[error(
         "--watch sends a saved scene while it plays, and a stream runs dry meanwhile: leave out --watch or --stream"
     )]

@@ -10,6 +10,7 @@ use frixel::output::write_fit_svg;
 use frixel_scene::{Experiment, Screen};
 use time::OffsetDateTime;
 
+use super::argument::positive;
 use super::error::CommandError;
 
 #[derive(Debug, Args)]
@@ -101,12 +102,4 @@ fn open(path: &Path) -> Result<Box<dyn Read>, CommandError> {
 
 fn residuals_path(output: &Path) -> PathBuf {
     output.with_extension("svg")
-}
-
-/// Parses a quantity above zero.
-pub(super) fn positive(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
-        _ => Err("expected a number above 0".into()),
-    }
 }

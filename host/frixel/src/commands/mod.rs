@@ -1,9 +1,11 @@
 //! The command line: one module per command.
 
+mod argument;
 mod calibrate;
 mod completions;
 mod demo;
 mod error;
+mod experiment;
 mod faults;
 mod fit;
 mod info;
@@ -110,7 +112,7 @@ struct PlayArgs {
     stroke: StrokeArgs,
     /// How long to play. Without it, as long as the file of --stream or the stroke lasts; on a board without --stream,
     /// until Ctrl-C.
-    #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", value_parser = argument::seconds, allow_negative_numbers = true)]
     seconds: Option<f64>,
     /// Output folder.
     #[arg(long, default_value = "frixel-out")]
@@ -119,7 +121,7 @@ struct PlayArgs {
     #[arg(long)]
     json: bool,
     /// Seed of the simulator's random numbers.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = argument::seed, allow_negative_numbers = true)]
     seed: u64,
     /// Simulate a world without load changes, noise, pre-sliding, leakage, offsets, and lost touch reports. Without it,
     /// all of them are simulated.
@@ -127,7 +129,7 @@ struct PlayArgs {
     ideal: bool,
     /// Simulated person, whose finger the board does not know: another one for each seed. Without it, the finger is the
     /// scene's.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = argument::seed, allow_negative_numbers = true)]
     finger_seed: Option<u64>,
     /// Rows a second in felt.csv; at most 1000 on a board.
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=40_000))]
@@ -161,11 +163,25 @@ struct PlayArgs {
 struct SimArgs {
     #[command(flatten)]
     stroke: StrokeArgs,
+    /// The finger on this board, which its scenes do not change: a profile's file, or `example`, `dry`, `moist` or
+    /// `light`. Without it, the finger is that of the scene that plays.
+    #[arg(long, value_name = "FILE", group = "own_finger")]
+    finger: Option<String>,
+    /// A simulated person in place of --finger: another one for each seed.
+    #[arg(long, value_name = "N", group = "own_finger")]
+    finger_seed: Option<u64>,
+    /// The screen under that finger: a screen's file, or `example`, which it is without this.
+    #[arg(long, value_name = "FILE", requires = "own_finger")]
+    screen: Option<String>,
+    /// Simulate a world without load changes, noise, pre-sliding, leakage, offsets, and lost touch reports. Without it,
+    /// all of them are simulated.
+    #[arg(long)]
+    ideal: bool,
     /// Output folder.
     #[arg(long, default_value = "frixel-out")]
     out: PathBuf,
     /// Seed of the simulator's random numbers.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = argument::seed, allow_negative_numbers = true)]
     seed: u64,
 }
 
@@ -227,14 +243,6 @@ impl Cli {
             Some(Command::Fit(args)) => fit::run(&args),
             Some(Command::Report(args)) => report::run(&args),
         }
-    }
-}
-
-/// Parses the duration of a play.
-fn seconds(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(seconds) if seconds > 0.0 && seconds <= 86_400.0 => Ok(seconds),
-        _ => Err("expected a number of seconds above 0, at most a day".into()),
     }
 }
 

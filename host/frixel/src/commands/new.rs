@@ -20,6 +20,10 @@ pub(super) struct NewArgs {
 }
 
 pub(super) fn run(args: &NewArgs) -> Result<(), CommandError> {
+    let stem = args.name.file_stem().map(|stem| stem.to_string_lossy());
+    if !stem.is_some_and(|stem| !stem.starts_with(['.', '~'])) {
+        return Err(CommandError::SceneName { name: args.name.clone() });
+    }
     let path = args.name.with_extension("toml");
     let text = match &args.picture {
         Some(picture) => with_picture(&name_from(&path, picture)?),
@@ -41,9 +45,8 @@ pub(super) fn run(args: &NewArgs) -> Result<(), CommandError> {
 /// The path of a picture from the folder of the scene.
 fn name_from(scene: &Path, picture: &Path) -> Result<String, CommandError> {
     let absolute = std::path::absolute(picture).map_err(CommandError::reading(picture))?;
-    if !picture.is_file() {
-        return Err(CommandError::reading(picture)(ErrorKind::NotFound.into()));
-    }
+    // It says why the operating system cannot read it.
+    File::open(picture).map_err(CommandError::reading(picture))?;
     let folder = scene.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let folder = std::path::absolute(folder).map_err(CommandError::reading(folder))?;
     let name = absolute.strip_prefix(&folder).unwrap_or(&absolute);

@@ -14,6 +14,7 @@ mod progress;
 mod rigs;
 mod saved_file;
 mod simulated_world;
+mod watch;
 mod with_log;
 
 use std::path::PathBuf;
@@ -23,7 +24,7 @@ use frixel::output::Report;
 use super::PlayArgs;
 use super::error::CommandError;
 use super::interrupt::Interrupt;
-use super::terminal::{self, note, print_line};
+use super::terminal::{self, note, note_refusals, print_line};
 use live_scene::LiveScene;
 use rigs::Target;
 
@@ -38,18 +39,24 @@ struct Played {
 pub(super) fn run(args: &PlayArgs) -> Result<(), CommandError> {
     let target = Target::of(&args.port);
     plan::check_options(args, target)?;
-    // This comes before the file is read for the first time, so that no change is missed.
-    let live_scene = (args.watch || args.control).then(|| {
-        let waits = target == Target::Simulator;
-        LiveScene::new(&args.scene, args.profiles.names(), args.watch, waits)
-    });
-    let scene = args.profiles.names().load(&args.scene)?;
     let interrupt = Interrupt::watch()?;
+    if args.watch && target == Target::Simulator {
+        return watch::play_on_simulator(args, &interrupt);
+    }
+    // This comes before the file is read for the first time, so that no change is missed.
+    let live_scene =
+        (args.watch || args.control).then(|| LiveScene::new(&args.scene, args.profiles.names(), args.watch, target));
+    let scene = args.profiles.names().load(&args.scene)?;
     let played = match target {
         Target::Simulator => rigs::play_on_simulator(args, &scene, live_scene, &interrupt),
         Target::Emulator => rigs::play_on_emulator(args, &scene, live_scene, &interrupt),
         Target::Port => rigs::play_on_port(args, &scene, live_scene, &interrupt),
     }?;
+    finish(args, played)
+}
+
+/// Prints the results of a play, and returns its failure.
+fn finish(args: &PlayArgs, played: Played) -> Result<(), CommandError> {
     print(args, &played)?;
     played.failure.map_or(Ok(()), Err)
 }

@@ -28,7 +28,7 @@ pub(super) struct RecordArgs {
     #[arg(short, long, value_name = "FILE.csv")]
     output: PathBuf,
     /// How long to record. Without it, until Ctrl-C.
-    #[arg(long, value_name = "S", value_parser = super::seconds)]
+    #[arg(long, value_name = "S", value_parser = super::argument::seconds)]
     seconds: Option<f64>,
 }
 

@@ -7,6 +7,7 @@ use frixel::score::{Score, Trial, write_score_svg};
 use frixel_hil_sim::{RigConfig, Stroke};
 use frixel_scene::{Program, compile};
 
+use super::argument::number;
 use super::error::CommandError;
 use super::profiles::ProfileArgs;
 use super::stroke;
@@ -29,7 +30,7 @@ pub(super) struct ScoreArgs {
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u64).range(1..=1000))]
     seeds: u64,
     /// Length of a generated stroke.
-    #[arg(long, value_name = "S", default_value_t = 3.0, value_parser = super::seconds, allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", default_value_t = 3.0, value_parser = super::argument::seconds, allow_negative_numbers = true)]
     seconds: f64,
     /// Median speed of human strokes. Without it, each person has their own.
     #[arg(long, value_name = "MM_PER_S", value_parser = median_speed, allow_negative_numbers = true)]
@@ -131,8 +132,5 @@ fn human(args: &ScoreArgs, (width_m, height_m): (f64, f64), seed: u64) -> Result
 
 /// Parses the median speed of a stroke.
 fn median_speed(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(speed_mm_per_s) if (1.0..=1000.0).contains(&speed_mm_per_s) => Ok(speed_mm_per_s),
-        _ => Err("expected a speed from 1 to 1000 mm/s".into()),
-    }
+    number(text, 1.0..=1000.0, "a speed from 1 to 1000 mm/s")
 }

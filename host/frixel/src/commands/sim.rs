@@ -1,10 +1,16 @@
 //! `frixel sim`.
 
+use std::collections::BTreeMap;
+
 use frixel::rigs::Server;
-use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
+use frixel::scene_file::ProfileNames;
+use frixel_hil_sim::{BoardMemory, Person, Rig, RigConfig, Stroke, contact_of};
+use frixel_model::LoadedContact;
+use frixel_scene::{Scene, compile};
 
 use super::SimArgs;
 use super::error::CommandError;
+use super::fit::screen;
 use super::interrupt::Interrupt;
 use super::terminal::{note, print_line};
 
@@ -17,6 +23,8 @@ const STROKE_S: f64 = 3.0;
 const PAUSE_S: f64 = 0.2;
 /// Rows per second in felt.csv.
 const ROWS_HZ: u32 = 1000;
+/// A scene without friction of its own, from which the contact of a profile is computed.
+const NO_SCENE: &str = "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.0\n";
 
 pub(super) fn run(args: &SimArgs) -> Result<(), CommandError> {
     let interrupt = Interrupt::watch()?;
@@ -25,15 +33,39 @@ pub(super) fn run(args: &SimArgs) -> Result<(), CommandError> {
         None => Stroke::natural(SCREEN_WIDTH_M, SCREEN_HEIGHT_M, STROKE_S).map_err(CommandError::NaturalStroke)?,
     };
     let stroke = stroke.looped(PAUSE_S).map_err(CommandError::NaturalStroke)?;
-    let config = RigConfig::default();
+    let mut config = RigConfig::default();
+    let own_finger = own_finger(args, &mut config)?;
     let mut memory = BoardMemory::new();
     let mut rig = Rig::new(&mut memory, &config, stroke, args.seed)?;
+    if let Some(contact) = own_finger {
+        rig.world_mut().set_own_finger(contact);
+    }
     let tick_hz = config.board.tick_hz;
     let server = Server::open(&args.out, tick_hz, tick_hz / ROWS_HZ)?;
     print_line(format_args!("port: {}", server.path()))?;
     let path = server.path();
     note(format_args!("a virtual board is there until Ctrl-C; in another terminal: frixel play SCENE --port {path}"));
     server.run(&mut rig, &|| interrupt.is_requested())?;
-    note(format_args!("wrote {0}/felt.csv and {0}/events.csv", args.out.display()));
+    note(format_args!("wrote {0}/felt.csv, {0}/forces.csv and {0}/events.csv", args.out.display()));
     Ok(())
+}
+
+/// Sets the effects of the world, and returns the contact of the finger that stays whatever scene plays, if there is one.
+fn own_finger(args: &SimArgs, config: &mut RigConfig) -> Result<Option<LoadedContact<f64>>, CommandError> {
+    if !args.ideal {
+        config.world = config.world.natural();
+    }
+    if let Some(seed) = args.finger_seed {
+        let person = Person::drawn(seed);
+        if !args.ideal {
+            config.world.fingertip = person.fingertip;
+        }
+        let coating_gap_m = 1e-6 * screen(args.screen.as_deref())?.1.coating_gap_um();
+        return person.contact(coating_gap_m).map(Some).map_err(CommandError::Finger);
+    }
+    let Some(finger) = &args.finger else { return Ok(None) };
+    let names = ProfileNames { finger: Some(finger.clone()), screen: args.screen.clone() };
+    let scene = names.applied_to(Scene::parse(NO_SCENE, "the finger", &BTreeMap::new())?)?;
+    let program = compile(&scene, &config.board.limits, config.board.tick_hz)?;
+    contact_of(&program.header).map(Some).map_err(CommandError::Finger)
 }

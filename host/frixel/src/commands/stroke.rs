@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use frixel_hil_sim::{Point, Stroke, StrokeError};
 
+use super::argument::{above_zero_to, number};
 use super::error::CommandError;
 use super::terminal::note;
 pub(super) use default_stroke::default_stroke;
@@ -97,6 +98,9 @@ impl StrokeArgs {
     }
 
     fn straight(&self, from: Point, to: Point) -> Result<Stroke, CommandError> {
+        if from == to {
+            return Err(CommandError::StrokeInPlace);
+        }
         let (speed_m_per_s, times) = (self.speed.unwrap_or(0.1), self.times.unwrap_or(1));
         let once = Stroke::constant_speed(from, to, speed_m_per_s).map_err(straight_error)?;
         let once_s = once.duration_s();
@@ -148,7 +152,10 @@ fn note_ignored_columns(path: &Path, text: &str) {
     let ignored: Vec<&str> = names.filter(|name| !KNOWN_COLUMNS.contains(name)).collect();
     if !ignored.is_empty() {
         let names = ignored.join(", ");
-        note(format_args!("{}: ignored, not a column of a stroke: {names}", path.display()));
+        note(format_args!(
+            "warning: {}: ignored column {names}: a stroke has t_s, x_mm, y_mm and force_n",
+            path.display()
+        ));
     }
 }
 
@@ -163,10 +170,8 @@ fn place_mm(text: &str) -> Result<Point, String> {
 
 /// Parses a speed in mm/s.
 fn speed_m_per_s(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(speed_mm_s) if speed_mm_s > 0.0 && speed_mm_s <= 10_000.0 => Ok(1e-3 * speed_mm_s),
-        _ => Err("expected a speed above 0, at most 10000 mm/s".into()),
-    }
+    let speed_mm_per_s = number(text, above_zero_to(10_000.0), "a speed above 0, at most 10000 mm/s")?;
+    Ok(1e-3 * speed_mm_per_s)
 }
 
 /// Fails if the stroke is never on the screen in its first `seconds`. Prints a note if it is partly off the screen.

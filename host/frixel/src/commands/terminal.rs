@@ -4,6 +4,8 @@ use std::fmt::Display;
 use std::io::{self, ErrorKind, Write, stderr, stdout};
 use std::path::Path;
 
+use frixel_scene::Program;
+
 use super::error::CommandError;
 
 /// Writes text to standard output. Does nothing once its reader has gone, for example `head` at its last line.
@@ -20,6 +22,16 @@ pub(super) fn print_line(text: impl Display) -> Result<(), CommandError> {
 /// Writes a line to standard error. Nothing can be said about a failure to do so.
 pub(super) fn note(text: impl Display) {
     let _ = writeln!(stderr().lock(), "{text}");
+}
+
+/// Says on standard error why a board refuses a draft. Says nothing of other programs.
+pub(super) fn note_refusals(scene: &Path, program: &Program) {
+    if program.is_draft() {
+        note(format_args!("draft: a board refuses {}:", scene.display()));
+    }
+    for refusal in &program.refusals {
+        note(format_args!("{}:{refusal}", scene.display()));
+    }
 }
 
 fn unless_closed(error: io::Error) -> Result<(), CommandError> {

@@ -11,27 +11,31 @@ use std::time::Duration;
 use clap::Args;
 use frixel::calibration::Protocol;
 use frixel::player::Player;
-use frixel::rigs::{PortLink, RecordedLink, SimLink};
+use frixel::rigs::{RecordedLink, SimLink};
 use frixel::stream::Feed;
 use frixel::threshold::{Staircase, Threshold};
-use frixel_driver::{DEFAULT_BAUD, Device, SerialLink};
+use frixel_driver::Device;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
 use frixel_scene::recorder::Recorder;
 use frixel_scene::{Evidence, Experiment, FingerProfile, Scene, compile};
+use frixel_wire::hello::BoardLimits;
 use hound::{SampleFormat, WavSpec, WavWriter};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use time::OffsetDateTime;
 
 use super::error::CommandError;
+use super::experiment;
 use super::fit::screen;
+use super::interrupt::Interrupt;
 use super::terminal::{print, print_line};
 
 /// Duration of each of the two strokes of a trial, in seconds.
 const STROKE_S: f64 = 1.6;
+/// Arrows that show the pace of a stroke.
+const ARROWS: u32 = 8;
 /// The stimulus: friction that swings at this frequency, in Hz, near which fingers feel best (Vardar 2016; Wijekoon
-/// 2012:
-/// 160 Hz of force).
+/// 2012: 160 Hz of force).
 const STIMULUS_HZ: f64 = 160.0;
 /// Fade of the stimulus at either end of a stroke, in seconds, so that no click gives it away.
 const FADE_S: f64 = 0.2;
@@ -44,21 +48,22 @@ const ANSWER_POLL: Duration = Duration::from_millis(50);
 #[derive(Debug, Args)]
 pub(super) struct ThresholdArgs {
     /// `sim` for the simulator in this process, or the path of a board's serial port.
-    #[arg(long)]
-    port: String,
+    #[arg(long, required_unless_present = "noise")]
+    port: Option<String>,
     /// The finger profile to write: how far a level is above threshold, and no newtons.
     #[arg(short, long, value_name = "FINGER.toml")]
     output: Option<PathBuf>,
-    /// Number of trials, 12 to 40: 12 find the threshold to a factor of 1.5 in amplitude, 40 to a factor of 1.2.
+    /// Number of trials, 12 to 40: 12 find the threshold to a factor of 1.7 in amplitude, 40 to a factor of 1.25 (root
+    /// mean square over simulated observers).
     #[arg(long, value_name = "N", default_value_t = 24, value_parser = clap::value_parser!(u8).range(12..=40))]
     trials: u8,
     /// Write a minute of masking noise to this WAV file and end. Play it over and over on closed headphones during the
     /// trials, so that the electrode is not heard; frixel itself plays no sound.
     #[arg(long, value_name = "FILE.wav")]
     noise: Option<PathBuf>,
-    /// Highest voltage, in volts rms; at most 150, and at most what the board allows.
-    #[arg(long, value_name = "V_RMS", default_value_t = 150.0, value_parser = super::fit::positive)]
-    voltage: f64,
+    /// Highest voltage, in volts rms, at most 150. Without it, 150 or what the board allows.
+    #[arg(long, value_name = "V_RMS", value_parser = experiment::voltage)]
+    voltage: Option<f64>,
     /// The screen under the finger: a bundled name or a screen file.
     #[arg(long, value_name = "SCREEN")]
     screen: Option<String>,
@@ -75,29 +80,34 @@ pub(super) fn run(args: &ThresholdArgs) -> Result<(), CommandError> {
         write_noise(path, args.seed)?;
         return print_line(format_args!("  {:<16} {}", "wrote", path.display()));
     }
+    let interrupt = Interrupt::watch()?;
+    // Without a port, there is a file of noise, which ends the command above.
+    let port = args.port.as_deref().unwrap_or("sim");
     let (screen_name, _) = screen(args.screen.as_deref())?;
-    let (threshold, protocol) = if args.port == "sim" {
+    args.output.as_deref().map_or(Ok(()), experiment::check_writable)?;
+    let (threshold, protocol) = if port == "sim" {
         let config = RigConfig::default();
-        let protocol = Protocol::new(args.voltage, args.seed);
+        let protocol = protocol(args, &config.board.limits)?;
         let stroke = Stroke::from_csv(&protocol.stroke_csv()).and_then(|stroke| stroke.looped(0.0));
         let mut memory = BoardMemory::new();
         let rig = Rig::new(&mut memory, &config, stroke.map_err(CommandError::NaturalStroke)?, args.seed)?;
-        session(args, Device::connect(SimLink::new(rig, Recorder::idle()))?, protocol)?
+        session(args, &interrupt, Device::connect(SimLink::new(rig, Recorder::idle()))?, protocol)?
     } else {
-        let device = Device::connect(PortLink::new(SerialLink::open(&args.port, DEFAULT_BAUD)?))?;
-        let hello = *device.hello();
-        if !(args.arm || hello.board.is_simulated()) {
-            return Err(CommandError::NotArmed { port: args.port.clone() });
-        }
-        let limit_v_rms = 0.99 * f64::from(hello.limits.voltage_max_v_peak);
-        session(args, device, Protocol::new(args.voltage.min(limit_v_rms), args.seed))?
+        let device = experiment::connect(port, args.arm)?;
+        let protocol = protocol(args, &device.hello().limits)?;
+        session(args, &interrupt, device, protocol)?
     };
     report(args, &threshold, &protocol, screen_name)
+}
+
+fn protocol(args: &ThresholdArgs, limits: &BoardLimits) -> Result<Protocol, CommandError> {
+    Ok(Protocol::new(experiment::highest_voltage(args.voltage, limits)?, args.seed))
 }
 
 /// Plays all trials, and returns the threshold.
 fn session<L: RecordedLink>(
     args: &ThresholdArgs,
+    interrupt: &Interrupt,
     device: Device<L>,
     protocol: Protocol,
 ) -> Result<(Threshold, Protocol), CommandError> {
@@ -110,7 +120,7 @@ fn session<L: RecordedLink>(
     let program = compile(&scene, &hello.limits, hello.tick_hz)?;
     let mut player = Player::new(device, Recorder::idle());
     player.start(&program, 0, &mut |_| ControlFlow::Continue(())).map_err(CommandError::Play)?;
-    print_line("  Slide back and forth over the screen, a stroke of 7 cm in each direction, as evenly as you can.")?;
+    print_line("  Slide 7 cm to the right while arrows to the right appear, then back with those to the left.")?;
     print_line("  Type 1 or 2 and Enter: which of the two strokes was rougher? Guess if you are not sure.")?;
     let mut random = Pcg64::seed_from_u64(args.seed);
     let answers = answers();
@@ -119,15 +129,15 @@ fn session<L: RecordedLink>(
         let is_second = random.next_u64() >> 63 == 1;
         let feed = Feed::of(samples(&protocol, level_db, is_second), protocol.sample_hz());
         player.stream(feed).map_err(CommandError::Play)?;
-        wait(&mut player, 2.0 * STROKE_S + FADE_S)?;
-        print(format_args!("  trial {trial} of {trials}, 1 or 2? "))?;
+        print(format_args!("  trial {trial} of {trials}: "))?;
+        guide(&mut player, interrupt)?;
         let said_second = loop {
             match answers.recv_timeout(ANSWER_POLL) {
                 Ok(line) if line.trim() == "1" => break false,
                 Ok(line) if line.trim() == "2" => break true,
                 Ok(_) => print(format_args!("  trial {trial} of {trials}, 1 or 2? "))?,
                 // A board whose host is silent disarms itself: serve it while the person thinks.
-                Err(RecvTimeoutError::Timeout) => wait(&mut player, 0.0)?,
+                Err(RecvTimeoutError::Timeout) => wait(&mut player, interrupt, 0.0)?,
                 Err(RecvTimeoutError::Disconnected) => return Err(CommandError::NoAnswer { trial }),
             }
         };
@@ -135,6 +145,19 @@ fn session<L: RecordedLink>(
     }
     player.stop().map_err(CommandError::Play)?;
     Ok((staircase.threshold(), protocol))
+}
+
+/// Plays the two strokes of a trial, and shows their pace: an arrow for each part of the way.
+fn guide<L: RecordedLink>(player: &mut Player<L>, interrupt: &Interrupt) -> Result<(), CommandError> {
+    for (stroke, arrow) in [("1 ", ">"), (" 2 ", "<")] {
+        print(stroke)?;
+        for _ in 0..ARROWS {
+            print(arrow)?;
+            wait(player, interrupt, STROKE_S / f64::from(ARROWS))?;
+        }
+    }
+    wait(player, interrupt, FADE_S)?;
+    print("  1 or 2? ")
 }
 
 /// The lines of standard input, read by a thread of their own.
@@ -150,9 +173,14 @@ fn answers() -> Receiver<String> {
     receiver
 }
 
-fn wait<L: RecordedLink>(player: &mut Player<L>, seconds: f64) -> Result<(), CommandError> {
+/// Lets time pass on the board. Stops it if the person wants to end.
+fn wait<L: RecordedLink>(player: &mut Player<L>, interrupt: &Interrupt, seconds: f64) -> Result<(), CommandError> {
     let mut left = Duration::from_secs_f64(seconds);
     loop {
+        if interrupt.is_requested() {
+            player.stop().map_err(CommandError::Play)?;
+            return Err(CommandError::ExperimentInterrupted);
+        }
         left = left.saturating_sub(player.step(left).map_err(CommandError::Play)?);
         if left.is_zero() {
             return Ok(());

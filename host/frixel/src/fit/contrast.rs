@@ -16,7 +16,7 @@ const OFF_SHARE: f64 = 0.02;
 /// 11.5 um (arXiv 2505.11162), 0.6 ms at 20 mm/s, and clocks may differ by 1 ms.
 const SETTLING_S: f64 = 5e-3;
 /// Least number of rows that are left after settling; with fewer, the rows are too far apart to tell, and all are used.
-const SETTLED_ROWS: usize = 2;
+const SETTLED_ROWS_MIN: usize = 2;
 
 /// The voltages of a recording, as levels that differ by more than 5 %.
 #[derive(Clone, Debug, PartialEq)]
@@ -123,7 +123,7 @@ fn segment(level: Option<usize>, rows: &[(usize, &Row)]) -> Segment {
     let has_settled =
         |row: &Row| row.time_s.zip(start_s).is_none_or(|(time_s, start_s)| time_s >= start_s + SETTLING_S);
     let settled: Vec<_> = rows.iter().filter(|(_, row)| has_settled(row)).copied().collect();
-    let used = if settled.len() >= SETTLED_ROWS { &settled } else { rows };
+    let used = if settled.len() >= SETTLED_ROWS_MIN { &settled } else { rows };
     let over = |value: &dyn Fn(usize, &Row) -> f64| mean(used.iter().map(|(index, row)| value(*index, row)));
     Segment {
         level,

@@ -112,8 +112,9 @@ pub enum FitError {
     },
     /// Too few rows to divide into blocks.
     #[error(
-        "{found} rows without a column stroke are too few: record at least {needed}, or number the strokes in a \
-         column stroke"
+        "{found} {} without a column stroke {} too few: record at least {needed} rows, or number the strokes in a column stroke",
+        if *.found == 1 { "row" } else { "rows" },
+        if *.found == 1 { "is" } else { "are" }
     )]
     TooFewRows {
         /// Number of rows.

@@ -2,14 +2,14 @@
 //!
 //! **In**: rows of voltage (rms), normal force and friction, in strokes of a finger that slides while the drive is
 //! switched on and off ([`rows`] reads them from CSV). **Out**: a [`Fit`] with the friction coefficient, the one
-//! coupling
-//! number that friction data identify, friction at a stated voltage, each with an interval, and the exponent of the
-//! voltage, which tests the model; or a [`FitError`] that says in one sentence what was found and what to do.
+//! coupling number that friction data identify, friction at a stated voltage, each with an interval, and the exponent of
+//! the voltage, which tests the model; or a [`FitError`] that says in one sentence what was found and what to do.
 //!
 //! The steps, a module each: rows become strokes of steady sliding (`recording`), strokes become means that compare the
 //! drive on with the drive off around it (`contrast`), the law of the contact model (`law`) is fitted to the means by
-//! least squares (`least_squares`), intervals come from a bootstrap over strokes (`bootstrap`), and data that cannot be
-//! trusted are refused (`rules` before the fit, `verdict` after it). Files and options are in `commands::fit`.
+//! least squares (`search`, `least_squares`), intervals come from a bootstrap over strokes (`intervals`, `bootstrap`),
+//! and data that cannot be trusted are refused (`rules` before the fit, `verdict` after it). Files and options are in
+//! `commands::fit`.
 //!
 //! # What is estimated
 //!
@@ -18,44 +18,37 @@
 //! - **Electric friction**: what the stated voltage adds to the friction of this finger on this screen in full slip,
 //!   under the median load of the recording, at the mean friction coefficient of the recording. Losses between the
 //!   stated voltage and the electrode (charge leakage, amplifier gain) are part of it. Its interval covers what the
-//!   model
-//!   says and what a power law without any model says.
+//!   model says and what a power law without any model says.
 
 mod bootstrap;
 mod contrast;
 mod error;
+mod intervals;
 mod law;
 mod least_squares;
 mod profile;
 mod recording;
 mod rules;
+mod search;
 mod statistics;
 mod summary;
 mod table;
 mod verdict;
 
 pub use bootstrap::Estimate;
-use bootstrap::{Draws, Z_95};
 use contrast::{Levels, StrokeMeans, stroke_means};
 pub use error::FitError;
-use law::{Attraction, Coupling, REFERENCE_V_RMS};
+use intervals::{Fitted, wandering};
+use law::{Attraction, Coupling};
 pub use law::{CONVENTIONAL_RADIUS_M, CONVENTIONAL_STIFFNESS_PA_PER_M};
-use least_squares::{Form, Measured, Observation, Solution, residuals_n, solve};
+use least_squares::{Observation, Solution, residuals_n};
 pub use profile::profile;
 pub use recording::Division;
 use recording::Recording;
-use statistics::{mean, median, student_quantile};
+use search::{Search, attraction_of, coupling_of, start};
 pub use summary::{Summary, words};
 pub use table::{Row, rows};
 pub use verdict::{Exponent, Verdict};
-
-/// Number of draws of the bootstrap.
-const DRAWS: usize = 499;
-/// Least share of the draws that must converge.
-const CONVERGED_SHARE: f64 = 0.98;
-
-/// Parts of a recording whose natural friction is compared.
-const SIXTHS: usize = 6;
 
 /// What to fit for.
 #[derive(Clone, Debug, PartialEq)]
@@ -144,13 +137,6 @@ impl Fit {
     }
 }
 
-/// One draw of strokes, fitted.
-struct Replicate {
-    contact: Solution,
-    power: Solution,
-    power_of_load: Option<Solution>,
-}
-
 /// Fits a finger to the rows of a recording.
 pub fn fit(rows: Vec<Row>, settings: &Settings) -> Result<Fit, FitError> {
     rules::check_units(&rows)?;
@@ -169,52 +155,21 @@ pub fn fit(rows: Vec<Row>, settings: &Settings) -> Result<Fit, FitError> {
     let search = Search { voltage_v_rms: settings.voltage_v_rms, normal_load_n, start: &start };
     let best = search.run(&observations, &start).ok_or(FitError::NotConverged)?;
     rules::check_slip(&strokes, &best.contact)?;
-
-    let mut draws = Draws::new(&strokes, settings.seed);
-    let replicates: Vec<Replicate> = (0..DRAWS)
-        .filter_map(|_| {
-            let drawn = draws.draw().into_iter().filter_map(|index| strokes.get(index));
-            let drawn: Vec<Observation> = drawn.flat_map(|stroke| &stroke.observations).copied().collect();
-            search.run(&drawn, &best.contact)
-        })
-        .collect();
-    if (replicates.len() as f64) < CONVERGED_SHARE * DRAWS as f64 {
-        return Err(FitError::NotConverged);
-    }
-    let judge = verdict::Judge { best: &best, replicates: &replicates, observations: &observations, draws: &draws };
+    let fitted = Fitted::new(best, &search, &strokes, settings.seed)?;
+    let judge = verdict::Judge { fitted: &fitted, observations: &observations };
     let voltage_exponent = judge.voltage(normal_load_n, voltage_range_v_rms.1)?;
     let load_exponent = judge.load(normal_load_n)?;
 
-    let estimate = |value: f64, of: &dyn Fn(&Replicate) -> Option<f64>| {
-        let mut values: Vec<f64> = replicates.iter().filter_map(of).collect();
-        let (low, high) = draws.interval(&mut values, Z_95);
-        Estimate { value, low: low.min(value), high: high.max(value) }
-    };
-    let electric = |voltage_v_rms: f64| {
-        let of = |solution: &Solution| {
-            let attraction_n = solution.attraction.attraction_n(voltage_v_rms, normal_load_n)?;
-            Some(solution.friction_coefficient * attraction_n)
-        };
-        let value_n = of(&best.contact).ok_or(FitError::NotConverged)?;
-        // What the model says less what the data say without it is a systematic error, which no draw of strokes
-        // shows: the
-        // interval covers what both say.
-        let by_model = estimate(value_n, &|replicate| of(&replicate.contact));
-        let by_power = estimate(value_n, &|replicate| of(&replicate.power));
-        Ok(Estimate { low: by_model.low.min(by_power.low), high: by_model.high.max(by_power.high), ..by_model })
-    };
-    let coupling = coupling_of(&best.contact).ok_or(FitError::NotConverged)?;
-    let gap_m = Coupling(coupling).gap_m();
+    let friction_coefficient = fitted.estimate(|replicate| Some(replicate.contact.friction_coefficient))?;
+    let coupling = fitted.estimate(|replicate| coupling_of(&replicate.contact))?;
+    let gap_m = Coupling(coupling.value).gap_m();
     let fit = Fit {
-        friction_coefficient: wandering(
-            &strokes,
-            estimate(best.contact.friction_coefficient, &|replicate| Some(replicate.contact.friction_coefficient)),
-        ),
-        coupling_sqrt_n_per_v2: estimate(coupling, &|replicate| coupling_of(&replicate.contact)),
+        friction_coefficient: wandering(&strokes, friction_coefficient),
+        coupling_sqrt_n_per_v2: coupling,
         stated_voltage_v_rms: settings.voltage_v_rms,
         normal_load_n,
-        electric_friction_n: electric(settings.voltage_v_rms)?,
-        electric_friction_most_n: electric(voltage_range_v_rms.1)?,
+        electric_friction_n: fitted.electric_friction_n(settings.voltage_v_rms, normal_load_n)?,
+        electric_friction_most_n: fitted.electric_friction_n(voltage_range_v_rms.1, normal_load_n)?,
         voltage_exponent,
         load_exponent,
         gap_m,
@@ -225,99 +180,10 @@ pub fn fit(rows: Vec<Row>, settings: &Settings) -> Result<Fit, FitError> {
         division: recording.division,
         has_time: recording.has_time,
         has_speed: recording.has_speed,
-        strokes: results(&strokes, &best.contact).ok_or(FitError::NotConverged)?,
+        strokes: results(&strokes, &fitted.best.contact).ok_or(FitError::NotConverged)?,
     };
     verdict::check_fit(&fit, settings)?;
     Ok(fit)
-}
-
-/// What all searches share.
-struct Search<'s> {
-    /// Voltage and load at which friction is stated.
-    voltage_v_rms: f64,
-    normal_load_n: f64,
-    start: &'s Solution,
-}
-
-impl Search<'_> {
-    /// Fits the contact model and the power laws to observations.
-    fn run(&self, observations: &[Observation], near: &Solution) -> Option<Replicate> {
-        let weighted: Vec<_> = observations.iter().map(|observation| self.weighted(observation)).collect();
-        let contact = solve(Form::Contact, &weighted, near).or_else(|| solve(Form::Contact, &weighted, self.start))?;
-        let reference_load_n = self.normal_load_n;
-        let load_exponent = verdict::load_exponent_of(&contact, reference_load_n)?;
-        let power = Solution {
-            friction_coefficient: contact.friction_coefficient,
-            attraction: Attraction::Power {
-                reference_n: contact.attraction.attraction_n(REFERENCE_V_RMS, reference_load_n)?,
-                voltage_exponent: 2.0,
-                load_exponent,
-                reference_load_n,
-            },
-        };
-        let power_of_load = solve(Form::PowerOfLoad { reference_load_n }, observations, &power);
-        let power = solve(Form::Power { load_exponent, reference_load_n }, observations, &power)?;
-        Some(Replicate { contact, power, power_of_load })
-    }
-
-    /// Gives observations more weight the closer they are to the stated voltage. A model that is a little wrong is then
-    /// right where friction is stated, at the cost of a tenth more noise.
-    fn weighted(&self, observation: &Observation) -> Observation {
-        if observation.voltage_v_rms <= 0.0 {
-            return *observation;
-        }
-        let ratio = observation.voltage_v_rms / self.voltage_v_rms;
-        let closeness = ratio.min(1.0 / ratio);
-        Observation { weight: observation.weight * closeness * closeness, ..*observation }
-    }
-}
-
-/// The interval of the friction coefficient, widened to what its slow wander leaves open.
-///
-/// Natural friction wanders for minutes, with a power that rises towards low frequencies, so that strokes beside each
-/// other are not independent. Sixths of the recording show how far it wanders: the interval is at least Student's for
-/// their means.
-fn wandering(strokes: &[StrokeMeans], estimate: Estimate) -> Estimate {
-    let coefficients: Vec<f64> = strokes.iter().filter_map(|stroke| stroke.natural_coefficient).collect();
-    let parts: Vec<f64> =
-        coefficients.chunks(coefficients.len().div_ceil(SIXTHS)).map(|part| mean(part.iter().copied())).collect();
-    let count = parts.len() as f64;
-    let centre = mean(parts.iter().copied());
-    let variance = parts.iter().map(|part| (part - centre) * (part - centre)).sum::<f64>() / (count - 1.0);
-    let room = student_quantile(Z_95, count - 1.0) * (variance / count).sqrt();
-    Estimate {
-        low: estimate.low.min(estimate.value - room),
-        high: estimate.high.max(estimate.value + room),
-        ..estimate
-    }
-}
-
-fn coupling_of(solution: &Solution) -> Option<f64> {
-    match solution.attraction {
-        Attraction::Contact(coupling) => Some(coupling.0),
-        Attraction::Power { .. } => None,
-    }
-}
-
-/// A finger to start the search from: the median friction coefficient, and the coupling that the highest voltages have.
-fn start(strokes: &[StrokeMeans], observations: &[Observation]) -> Result<Solution, FitError> {
-    let friction_coefficient = median(strokes.iter().filter_map(|stroke| stroke.natural_coefficient));
-    let top_v_rms = observations.iter().map(|one| one.voltage_v_rms).fold(0.0, f64::max);
-    let top = || observations.iter().filter(|one| one.voltage_v_rms > 0.9 * top_v_rms);
-    let attraction_n = median(top().map(|one| attraction_of(one, friction_coefficient)));
-    if !(attraction_n > 0.0) {
-        return Err(FitError::NoElectricFriction { found_n: friction_coefficient * attraction_n });
-    }
-    let load_n = median(top().map(|one| one.normal_load_n));
-    let coupling = Coupling::of_attraction(attraction_n, top_v_rms, load_n);
-    Ok(Solution { friction_coefficient, attraction: Attraction::Contact(coupling) })
-}
-
-fn attraction_of(observation: &Observation, friction_coefficient: f64) -> f64 {
-    match observation.measured {
-        Measured::Attraction(attraction_n) => attraction_n,
-        Measured::Friction(friction_n) => friction_n / friction_coefficient - observation.normal_load_n,
-    }
 }
 
 fn results(strokes: &[StrokeMeans], solution: &Solution) -> Option<Vec<StrokeResult>> {

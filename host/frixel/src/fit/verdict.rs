@@ -1,11 +1,13 @@
 //! What a fit says about the model, and rules that it must keep.
 
-use super::bootstrap::{Draws, Estimate, Z_95, Z_999};
+use super::bootstrap::{Estimate, Z_95, Z_999};
 use super::error::FitError;
-use super::law::{Attraction, Coupling};
+use super::intervals::Fitted;
+use super::law::{Attraction, Coupling, REFERENCE_V_RMS};
 use super::least_squares::{Form, Measured, Observation, Solution, residuals_n, solve};
+use super::search::{Replicate, coupling_of};
 use super::statistics::mean;
-use super::{Fit, Replicate, Settings, StrokeResult, coupling_of};
+use super::{Fit, Settings, StrokeResult};
 
 /// Highest voltage of the data below which its exponent says nothing about the model, in volts rms.
 const VERDICT_V_RMS: f64 = 100.0;
@@ -45,22 +47,21 @@ pub struct Exponent {
 
 /// Judges the model by exponents that it does not know.
 pub(super) struct Judge<'f> {
-    pub(super) best: &'f Replicate,
-    pub(super) replicates: &'f [Replicate],
+    pub(super) fitted: &'f Fitted,
     pub(super) observations: &'f [Observation],
-    pub(super) draws: &'f Draws,
 }
 
 /// `d ln attraction/d ln F_N` of a law at 150 V under a load.
 pub(super) fn load_exponent_of(solution: &Solution, normal_load_n: f64) -> Option<f64> {
-    let at = |load_n| solution.attraction.attraction_n(super::REFERENCE_V_RMS, load_n).map(libm::log);
+    let at = |load_n| solution.attraction.attraction_n(REFERENCE_V_RMS, load_n).map(libm::log);
     Some((at(normal_load_n * (1.0 + STEP))? - at(normal_load_n * (1.0 - STEP))?) / (2.0 * STEP))
 }
 
 impl Judge<'_> {
     /// The exponent of the voltage. Fails if the model's lies outside of the 99.9 % interval.
     pub(super) fn voltage(&self, reference_load_n: f64, max_v_rms: f64) -> Result<Exponent, FitError> {
-        let load_exponent = load_exponent_of(&self.best.contact, reference_load_n).ok_or(FitError::NotConverged)?;
+        let load_exponent =
+            load_exponent_of(&self.fitted.best.contact, reference_load_n).ok_or(FitError::NotConverged)?;
         let form = Form::Power { load_exponent, reference_load_n };
         let voltage_exponent = |solution: &Solution| match solution.attraction {
             Attraction::Power { voltage_exponent, .. } => Some(voltage_exponent),
@@ -102,23 +103,23 @@ impl Judge<'_> {
         of_replicate: &dyn Fn(&Replicate) -> Option<f64>,
         of_solution: &dyn Fn(&Solution) -> Option<f64>,
     ) -> Option<(Exponent, f64)> {
-        let value = of_replicate(self.best)?;
+        let value = of_replicate(&self.fitted.best)?;
         // What the model says for these data, and how that depends on the coupling.
         let modelled = |factor: f64| -> Option<f64> {
-            let coupling = Coupling(coupling_of(&self.best.contact)? * factor);
-            let solution = Solution { attraction: Attraction::Contact(coupling), ..self.best.contact };
+            let coupling = Coupling(coupling_of(&self.fitted.best.contact)? * factor);
+            let solution = Solution { attraction: Attraction::Contact(coupling), ..self.fitted.best.contact };
             let start = match form {
                 Form::Contact => return None,
-                Form::Power { .. } => &self.best.power,
-                Form::PowerOfLoad { .. } => self.best.power_of_load.as_ref()?,
+                Form::Power { .. } => &self.fitted.best.power,
+                Form::PowerOfLoad { .. } => self.fitted.best.power_of_load.as_ref()?,
             };
             of_solution(&solve(form, &exact(self.observations, &solution)?, start)?)
         };
         let model = modelled(1.0)?;
         let slope = (modelled(1.0 + STEP)? - modelled(1.0 - STEP)?) / (2.0 * STEP);
-        let best_coupling = coupling_of(&self.best.contact)?;
+        let best_coupling = coupling_of(&self.fitted.best.contact)?;
         let (mut values, mut differences) = (Vec::new(), Vec::new());
-        for replicate in self.replicates {
+        for replicate in &self.fitted.replicates {
             let (Some(value), Some(coupling)) = (of_replicate(replicate), coupling_of(&replicate.contact)) else {
                 continue;
             };
@@ -127,7 +128,7 @@ impl Judge<'_> {
         }
         let centre = mean(differences.iter().copied());
         let spread = mean(differences.iter().map(|one| (one - centre) * (one - centre))).sqrt();
-        let (low, high) = self.draws.interval(&mut values, Z_95);
+        let (low, high) = self.fitted.draws.interval(&mut values, Z_95);
         let measured = Estimate { value, low: low.min(value), high: high.max(value) };
         let verdict = if (value - model).abs() <= Z_95 * spread { Verdict::Kept } else { Verdict::Doubted };
         spread.is_finite().then_some((Exponent { measured, model, verdict }, spread))

@@ -1,4 +1,5 @@
-//! The CSV files of a play: `felt.csv` has the friction under the finger, and `events.csv` the events of the board.
+//! The CSV files of a play: `felt.csv` has the friction under the finger, `forces.csv` what a sensor
+//! under the screen measured, and `events.csv` the events of the board.
 
 use std::fmt::{self, Display};
 use std::fs::File;
@@ -10,6 +11,7 @@ use frixel_scene::recorder::FeltRow;
 use frixel_wire::fault::Flags;
 
 use super::OutputError;
+use crate::calibration::ForceRow;
 use crate::rigs::BoardEvent;
 
 /// A row of a CSV file. `docs/outputs.md` describes the columns.
@@ -37,6 +39,9 @@ pub type FeltCsv = CsvFile<FeltRow>;
 
 /// `events.csv`.
 pub type EventCsv = CsvFile<EventRow>;
+
+/// `forces.csv`, which `frixel calibrate` reads.
+pub type ForcesCsv = CsvFile<ForceRow>;
 
 /// A row of `events.csv`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,6 +113,15 @@ impl CsvRow for EventRow {
     fn write_cells(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let BoardEvent { t_s, kind } = self.event;
         write!(formatter, "{t_s:.6},{},{:.6}", kind.name(), self.last_frame_t_s)
+    }
+}
+
+impl CsvRow for ForceRow {
+    const HEADER: &'static str = "time_s,normal_force_n,friction_n";
+
+    fn write_cells(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { time_s, normal_force_n, friction_n } = self;
+        write!(formatter, "{time_s:.6},{normal_force_n:.9},{friction_n:.9}")
     }
 }
 

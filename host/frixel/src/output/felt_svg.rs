@@ -62,7 +62,7 @@ fn friction(spans: &[Span], reach: &Reach) -> Panel {
     panel.x.label.clear();
     let corners = [(start, natural_mn), (end, natural_mn), (end, most_mn), (start, most_mn)];
     panel.add("reachable", Look::line(REACH, Line::Filled(REACH_OPACITY)), corners.to_vec());
-    let signals = [("wanted", REFERENCE, Line::Thick, first), (name, FELT, Line::Solid, second)];
+    let signals = [("reference", REFERENCE, Line::Thick, first), (name, FELT, Line::Solid, second)];
     for (name, colour, line, part) in signals {
         Signal { part, scale: 1e3, range: high - low }.add_to(&mut panel, spans, name, Look::line(colour, line));
     }

@@ -34,7 +34,7 @@ fn chart_of(grid: &MapGrid, pixels: Vec<RGBColor>, reach: &Reach) -> Chart {
     let x = Axis::linear("x, mm", 0.0..width_mm).with_labels(labels(grid.width));
     let y = Axis::linear("y, mm", height_mm..0.0).with_labels(labels(grid.height));
     let friction_mn = 1e3 * reach.friction_min_n()..1e3 * reach.friction_max_n();
-    let colours = Axis::linear("friction wanted, mN", friction_mn).with_labels(labels(grid.height));
+    let colours = Axis::linear("target friction, mN", friction_mn).with_labels(labels(grid.height));
     let raster = Raster { width: grid.width, height: grid.height, pixels };
     let mut panel = Panel::new("", x, y).with_field(Field::pixels(raster, colours));
     let width = (MARGINS.left + grid.width as u32 + MARGINS.right).max(WIDTH_MIN);

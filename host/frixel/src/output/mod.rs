@@ -1,6 +1,6 @@
 //! The output files of a play.
 //!
-//! - [`FeltCsv`] and [`EventCsv`]: `felt.csv` and `events.csv`, row by row while the scene plays.
+//! - [`FeltCsv`], [`ForcesCsv`] and [`EventCsv`]: `felt.csv`, `forces.csv` and `events.csv`, row by row while the scene plays.
 //! - [`Trace`]: the same rows, downsampled for pictures, in bounded memory.
 //! - [`write_felt_svg`]: friction and voltage over time.
 //! - [`write_fit_svg`]: the residual plots of a fit.
@@ -30,12 +30,12 @@ use thiserror::Error;
 
 use crate::chart::Chart;
 
-pub use csv::{CsvFile, CsvRow, EventCsv, EventRow, FeltCsv};
+pub use csv::{CsvFile, CsvRow, EventCsv, EventRow, FeltCsv, ForcesCsv};
 pub use felt_log::{FeltLog, FeltLogError};
 pub use felt_svg::write_felt_svg;
 pub use fit_svg::write_fit_svg;
 pub use preview_png::write_preview_png;
-pub use report::{Report, WorldReport};
+pub use report::{Report, WorldReport, draft_line};
 pub use scene_png::write_scene_png;
 pub use trace::Trace;
 
@@ -46,12 +46,15 @@ pub struct Subject {
     pub name: String,
     /// Whether the finger, and possibly the board as well, is simulated.
     pub simulated: bool,
+    /// Whether a board refuses the scene.
+    pub draft: bool,
 }
 
 impl Subject {
-    /// The scene's name, marked as simulated where it is.
-    fn title(&self) -> String {
-        if self.simulated { format!("{}, simulated", self.name) } else { self.name.clone() }
+    /// The scene's name, marked as draft and as simulated where it is.
+    pub(crate) fn title(&self) -> String {
+        let mark = |is: bool, mark: &'static str| if is { mark } else { "" };
+        format!("{}{}{}", self.name, mark(self.draft, ", draft"), mark(self.simulated, ", simulated"))
     }
 }
 

@@ -13,6 +13,10 @@ use frixel_scene::{Origin, Reach};
 pub struct Report {
     /// The rig that played the scene: `sim`, `qemu` or `board`.
     pub rig: String,
+    /// Whether the scene is a draft, which a board refuses.
+    pub draft: bool,
+    /// Why a board refuses it, a sentence each with line and column in the scene's file.
+    pub board_refuses: Vec<String>,
     /// The simulated world, `natural` or `ideal`.
     pub world: Option<&'static str>,
     /// Seed of the simulated person whose finger the board does not know.
@@ -29,6 +33,14 @@ pub struct Report {
     pub inversion_error_rms_n: Option<f64>,
     /// Friction that the model computes for the commanded voltage, minus the commanded friction: largest magnitude, N.
     pub inversion_error_max_n: Option<f64>,
+    /// Ticks in which the envelope was at its slew limit, which have no inversion error.
+    pub slewing_ticks: Option<u64>,
+    /// Friction that is there because the finger presses with another load than the one that the scene is meant for:
+    /// root mean square, N. The reference has it too.
+    pub load_mismatch_rms_n: Option<f64>,
+    /// Friction that is there because the finger presses with another load than the one that the scene is meant for:
+    /// largest magnitude, N.
+    pub load_mismatch_max_n: Option<f64>,
     /// Felt friction minus its mean over a carrier period: root mean square, N.
     pub carrier_ripple_rms_n: Option<f64>,
     /// What the newtons rest on: `assumed`, `perceptual` or `measured`.
@@ -96,6 +108,8 @@ impl Report {
     ) -> Self {
         Self {
             rig: rig.to_owned(),
+            draft: false,
+            board_refuses: Vec::new(),
             world: None,
             finger_seed: None,
             ticks: metrics.ticks,
@@ -104,6 +118,9 @@ impl Report {
             friction_error_max_n: metrics.friction_error.map(|error| error.max_n),
             inversion_error_rms_n: metrics.inversion_error.map(|error| error.rms_n),
             inversion_error_max_n: metrics.inversion_error.map(|error| error.max_n),
+            slewing_ticks: metrics.slewing_ticks,
+            load_mismatch_rms_n: metrics.load_mismatch.map(|mismatch| mismatch.rms_n),
+            load_mismatch_max_n: metrics.load_mismatch.map(|mismatch| mismatch.max_n),
             carrier_ripple_rms_n: metrics.carrier_ripple_rms_n,
             finger_origin: Origin::Assumed.word(),
             reachable_min_n: reach.friction_min_n(),
@@ -138,6 +155,12 @@ impl Report {
         Self { world: world.map(|world| world.name()), finger_seed, finger_origin, ..self }
     }
 
+    /// Says why a board refuses the scene. If there is a reason, it is a draft.
+    #[must_use]
+    pub fn with_refusals(self, board_refuses: Vec<String>) -> Self {
+        Self { draft: !board_refuses.is_empty(), board_refuses, ..self }
+    }
+
     /// Adds the status of the stream, if there was one.
     #[must_use]
     pub fn with_stream(mut self, stream: Option<StreamStatus>) -> Self {
@@ -167,6 +190,9 @@ impl Report {
             // Writing to a string cannot fail.
             let _ = writeln!(text, "  {name:<16} {value}");
         };
+        if self.draft {
+            line("draft", draft_line(self.board_refuses.len()));
+        }
         if let Some(world) = self.world {
             let what = if world == IDEAL { IDEAL_WORLD } else { NATURAL_WORLD };
             line("world", format!("{world}: {what}"));
@@ -178,7 +204,7 @@ impl Report {
         let range = |least: f64, most: f64| format!("{:.2} to {:.2} mN{suffix}", 1e3 * least, 1e3 * most);
         line("reachable", range(self.reachable_min_n, self.reachable_max_n));
         if let Some((least, most)) = self.wanted_min_n.zip(self.wanted_max_n) {
-            line("wanted", range(least, most));
+            line("reference", range(least, most));
         }
         let electric_n = self.reachable_max_n - self.reachable_min_n;
         for (name, error) in [
@@ -191,6 +217,12 @@ impl Report {
                 line(name, format!("{in_mn} ({:.3} % and {:.3} % of the range)", part(rms_n), part(max_n)));
             }
         }
+        if let Some(ErrorSize { rms_n, max_n }) = size(self.load_mismatch_rms_n, self.load_mismatch_max_n)
+            && max_n > 0.0
+        {
+            let in_mn = format!("{:.4} mN rms, {:.4} mN at most", 1e3 * rms_n, 1e3 * max_n);
+            line("load mismatch", format!("{in_mn}, for another load than the profile's; not in the friction error"));
+        }
         if let Some(ripple_n) = self.carrier_ripple_rms_n {
             line("carrier ripple", format!("{:.4} mN rms", 1e3 * ripple_n));
         }
@@ -199,7 +231,11 @@ impl Report {
             0 => String::new(),
             ticks => format!(", before the first touch report {ticks}"),
         };
-        line("ticks", format!("{}{}{unreported}", self.ticks, saturated.unwrap_or_default()));
+        let slewing = match self.slewing_ticks {
+            None | Some(0) => String::new(),
+            Some(ticks) => format!(", at the slew limit {ticks} (no inversion error)"),
+        };
+        line("ticks", format!("{}{}{slewing}{unreported}", self.ticks, saturated.unwrap_or_default()));
         line(
             "link",
             format!(
@@ -221,6 +257,12 @@ impl Report {
         }
         text
     }
+}
+
+/// What a summary says of a draft.
+pub fn draft_line(refusals: usize) -> String {
+    let reasons = if refusals == 1 { "1 reason".to_owned() } else { format!("{refusals} reasons") };
+    format!("a board refuses this scene, for {reasons}; what is out of reach is clamped here")
 }
 
 fn size(rms_n: Option<f64>, max_n: Option<f64>) -> Option<ErrorSize> {

@@ -56,7 +56,7 @@ fn stroke(program: &Program, seconds: f64) -> Vec<FeltRow> {
 }
 
 fn subject(name: &str) -> Subject {
-    Subject { name: name.to_owned(), simulated: true }
+    Subject { name: name.to_owned(), simulated: true, draft: false }
 }
 
 fn trace(rows: &[FeltRow]) -> Trace {
@@ -201,7 +201,7 @@ fn felt_svg_has_axes_units_and_legend() {
     let mut rows = stroke(&program, 1.0);
     let svg = draw("felt.svg", &rows);
     for text in
-        ["a &lt; b &amp; c, simulated", "friction, mN", "voltage, V rms", "time, s", "wanted", "felt", "reachable"]
+        ["a &lt; b &amp; c, simulated", "friction, mN", "voltage, V rms", "time, s", "reference", "felt", "reachable"]
     {
         assert!(svg.lines().any(|line| line == text), "{text}");
     }
@@ -299,7 +299,7 @@ fn vibration(frequency_hz: f64, between_s: std::ops::Range<f64>) -> Vec<FeltRow>
 }
 
 #[test]
-fn what_is_too_fast_to_draw_is_drawn_as_its_envelope() {
+fn a_signal_too_fast_to_draw_is_drawn_as_its_envelope() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("felt.svg");
     let drawn = |frequency_hz: f64| {
@@ -328,8 +328,10 @@ const NOTHING: MetricsSummary = MetricsSummary {
     finger_down_ticks: 0,
     unreported_ticks: 0,
     saturated_ticks: None,
+    slewing_ticks: None,
     friction_error: None,
     inversion_error: None,
+    load_mismatch: None,
     carrier_ripple_rms_n: None,
     wanted_range_n: None,
 };
@@ -341,8 +343,10 @@ fn report_as_json() {
         finger_down_ticks: 100_000,
         unreported_ticks: 480,
         saturated_ticks: Some(7),
+        slewing_ticks: Some(9),
         friction_error: Some(ErrorSize { rms_n: 0.001, max_n: 0.005 }),
         inversion_error: Some(ErrorSize { rms_n: 1e-6, max_n: 0.00002 }),
+        load_mismatch: Some(ErrorSize { rms_n: 0.012, max_n: 0.05 }),
         carrier_ripple_rms_n: Some(0.0005),
         wanted_range_n: Some((0.25, 0.27)),
     };
@@ -350,7 +354,8 @@ fn report_as_json() {
         report(&known).to_json(),
         "{\"rig\":\"simulator\",\"world\":null,\"finger_seed\":null,\"ticks\":120000,\"unreported_ticks\":480,\
          \"friction_error_rms_n\":0.001,\"friction_error_max_n\":0.005,\
-         \"inversion_error_rms_n\":1e-6,\"inversion_error_max_n\":0.00002,\"carrier_ripple_rms_n\":0.0005,\
+         \"inversion_error_rms_n\":1e-6,\"inversion_error_max_n\":0.00002,\"slewing_ticks\":9,\
+         \"load_mismatch_rms_n\":0.012,\"load_mismatch_max_n\":0.05,\"carrier_ripple_rms_n\":0.0005,\
          \"finger_origin\":\"assumed\",\"reachable_min_n\":0.25,\"reachable_max_n\":0.275,\"wanted_min_n\":0.25,\"wanted_max_n\":0.27,\
          \"saturated_ticks\":7,\"frames_sent\":400,\"frames_rejected\":1,\"payload_bytes\":63000,\"wire_bytes\":65000,\
          \"realtime_factor\":123.4,\"stream_samples\":null,\"stream_underruns\":null,\"stream_gaps\":null,\"untouched_layers\":[]}"
@@ -358,11 +363,13 @@ fn report_as_json() {
     assert_eq!(
         report(&known).summary(),
         "  reachable        250.00 to 275.00 mN, assumed\n\
-         \x20 wanted           250.00 to 270.00 mN, assumed\n\
+         \x20 reference        250.00 to 270.00 mN, assumed\n\
          \x20 friction error   1.0000 mN rms, 5.0000 mN at most (4.000 % and 20.000 % of the range)\n\
          \x20 inversion error  0.0010 mN rms, 0.0200 mN at most (0.004 % and 0.080 % of the range)\n\
+         \x20 load mismatch    12.0000 mN rms, 50.0000 mN at most, for another load than the profile's; not in the friction \
+         error\n\
          \x20 carrier ripple   0.5000 mN rms\n\
-         \x20 ticks            120000, of which saturated 7, before the first touch report 480\n\
+         \x20 ticks            120000, of which saturated 7, at the slew limit 9 (no inversion error), before the first touch report 480\n\
          \x20 link             400 frames sent, 1 rejected, 63000 payload bytes in 65000\n\
          \x20 speed            123 times real time\n"
     );

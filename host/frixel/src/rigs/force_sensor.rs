@@ -33,6 +33,11 @@ impl ForceSensor {
         &self.rows
     }
 
+    /// Removes what was measured, and returns it.
+    pub(super) fn take_rows(&mut self) -> Vec<ForceRow> {
+        std::mem::take(&mut self.rows)
+    }
+
     /// Measures during a tick.
     pub fn measure(&mut self, record: &TickRecord) {
         self.normal_force_n += record.felt.normal_load_n;

@@ -56,6 +56,10 @@ impl ReferenceFinger {
 /// Converts the state of a simulated world into the types of the recorder.
 pub(super) fn finger_and_felt(felt: &Felt) -> (Option<FingerState>, Option<FeltFriction>) {
     let finger = felt.finger.map(|SimulatedFinger { x_m, y_m, speed_m_per_s }| FingerState { x_m, y_m, speed_m_per_s });
-    let friction = FeltFriction { friction_n: felt.friction_n, electric_friction_n: felt.electric_friction_n };
+    let friction = FeltFriction {
+        friction_n: felt.friction_n,
+        electric_friction_n: felt.electric_friction_n,
+        load_mismatch_n: felt.load_mismatch_n,
+    };
     (finger, Some(friction))
 }

@@ -49,8 +49,8 @@ pub struct Server {
 }
 
 impl Server {
-    /// Creates `felt.csv`, with a row every `ticks_per_row` ticks, and `events.csv` in `folder`; then creates the
-    /// pseudo-terminal.
+    /// Creates `felt.csv`, with a row every `ticks_per_row` ticks, `forces.csv` and `events.csv` in `folder`; then
+    /// creates the pseudo-terminal.
     pub fn open(folder: &Path, tick_hz: u32, ticks_per_row: u32) -> Result<Self, ServerError> {
         let log = ServerLog::create(folder, tick_hz, ticks_per_row)?;
         Ok(Self { terminal: PseudoTerminal::open()?, unwritten: Vec::new(), log })

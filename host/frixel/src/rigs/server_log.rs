@@ -1,4 +1,4 @@
-//! The output files of a virtual board: felt friction and events.
+//! The output files of a virtual board: felt friction, forces and events.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -7,16 +7,20 @@ use frixel_hil_sim::{Rig, TickRecord};
 use frixel_scene::recorder::Recorder;
 use frixel_wire::fault::State;
 
-use super::EventLog;
 use super::sim_link::observation;
-use crate::output::{EventCsv, EventRow, FeltCsv, OutputError};
+use super::{EventLog, ForceSensor};
+use crate::output::{EventCsv, EventRow, FeltCsv, ForcesCsv, OutputError};
 
 /// Virtual time between two flushes, which limits how much a killed server loses.
 const FLUSH_PERIOD_S: f64 = 0.1;
+/// Rows a second of the force sensor under the screen.
+const FORCES_HZ: u32 = 1_000;
 
-/// `felt.csv` and `events.csv` of a virtual board. The reference is unknown because only the client has the scene file.
+/// `felt.csv`, `forces.csv` and `events.csv` of a virtual board. The reference is unknown because only the client has the scene file.
 pub(super) struct ServerLog {
     felt_csv: FeltCsv,
+    forces_csv: ForcesCsv,
+    sensor: ForceSensor,
     events_csv: EventCsv,
     recorder: Recorder,
     events: EventLog,
@@ -27,13 +31,15 @@ pub(super) struct ServerLog {
 }
 
 impl ServerLog {
-    /// Creates the two files in `folder`. Creates the folder if necessary.
+    /// Creates the three files in `folder`. Creates the folder if necessary.
     pub(super) fn create(folder: &Path, tick_hz: u32, ticks_per_row: u32) -> Result<Self, OutputError> {
         std::fs::create_dir_all(folder).map_err(failed(folder))?;
         let mut recorder = Recorder::without_reference(tick_hz, ticks_per_row);
         recorder.start(0);
         Ok(Self {
             felt_csv: FeltCsv::create(&folder.join("felt.csv"))?,
+            forces_csv: ForcesCsv::create(&folder.join("forces.csv"))?,
+            sensor: ForceSensor::new(FORCES_HZ, tick_hz),
             events_csv: EventCsv::create(&folder.join("events.csv"))?,
             recorder,
             events: EventLog::new(State::Disarmed),
@@ -55,6 +61,10 @@ impl ServerLog {
         for row in self.recorder.take_rows() {
             self.felt_csv.write(&row)?;
         }
+        self.sensor.measure(record);
+        for row in self.sensor.take_rows() {
+            self.forces_csv.write(&row)?;
+        }
         let status = &record.status;
         let t_s = record.tick as f64 * self.tick_period_s;
         self.events.observe(t_s, status.telemetry.state, status.fault.map(|(fault, _)| fault), status.telemetry.flags);
@@ -68,6 +78,7 @@ impl ServerLog {
     /// Writes the buffered rows to the files.
     pub(super) fn flush(&mut self) -> Result<(), OutputError> {
         self.felt_csv.flush()?;
+        self.forces_csv.flush()?;
         self.events_csv.flush()
     }
 }

@@ -47,6 +47,11 @@ pub struct MetricScore {
 }
 
 impl Metric {
+    /// A metric without a unit, of which nothing is known that a person notices.
+    const fn new(key: &'static str, title: &'static str, value: fn(&Fidelity) -> f64) -> Self {
+        Self { key, title, unit: "", factor: 1.0, value, human: || None }
+    }
+
     /// Name in JSON and CSV.
     pub(super) fn key(&self) -> &'static str {
         self.key
@@ -77,100 +82,52 @@ impl Metric {
 }
 
 pub(super) const METRICS: [Metric; 11] = [
+    Metric::new("error_below_40_hz", "error below 40 Hz", |fidelity| fidelity.error_below_40_hz),
+    Metric::new("correlation_below_40_hz", "correlation below 40 Hz", |fidelity| fidelity.correlation_below_40_hz),
     Metric {
-        key: "error_below_40_hz",
-        title: "error below 40 Hz",
-        unit: "",
-        factor: 1.0,
-        value: |fidelity| fidelity.error_below_40_hz,
-        human: || None,
-    },
-    Metric {
-        key: "correlation_below_40_hz",
-        title: "correlation below 40 Hz",
-        unit: "",
-        factor: 1.0,
-        value: |fidelity| fidelity.correlation_below_40_hz,
-        human: || None,
-    },
-    Metric {
-        key: "error_weber",
-        title: "error",
         unit: "Weber fractions",
-        factor: 1.0,
-        value: |fidelity| fidelity.error_weber,
         human: || Some(Human { value: 1.0, meaning: "smallest step felt (doi:10.1098/rsif.2017.0641)" }),
+        ..Metric::new("error_weber", "error", |fidelity| fidelity.error_weber)
     },
     Metric {
-        key: "snr_below_40_hz_db",
-        title: "signal to noise below 40 Hz",
         unit: "dB",
-        factor: 1.0,
-        value: |fidelity| fidelity.snr_below_40_hz_db,
-        human: || None,
+        ..Metric::new("snr_below_40_hz_db", "signal to noise below 40 Hz", |fidelity| fidelity.snr_below_40_hz_db)
     },
     Metric {
-        key: "snr_above_40_hz_db",
-        title: "signal to noise, 40 to 400 Hz",
         unit: "dB",
-        factor: 1.0,
-        value: |fidelity| fidelity.snr_above_40_hz_db,
-        human: || None,
+        ..Metric::new("snr_above_40_hz_db", "signal to noise, 40 to 400 Hz", |fidelity| fidelity.snr_above_40_hz_db)
     },
     Metric {
-        key: "contrast_weber_steps",
-        title: "contrast felt",
         unit: "Weber steps",
-        factor: 1.0,
-        value: |fidelity| fidelity.contrast_weber_steps,
         human: || {
             Some(Human { value: weber_steps_safe(), meaning: "felt by everyone in the studies (ln 1.27 / ln 1.11)" })
         },
+        ..Metric::new("contrast_weber_steps", "contrast felt", |fidelity| fidelity.contrast_weber_steps)
     },
+    Metric::new("contrast_kept", "contrast kept", |fidelity| fidelity.contrast_kept),
     Metric {
-        key: "contrast_kept",
-        title: "contrast kept",
-        unit: "",
-        factor: 1.0,
-        value: |fidelity| fidelity.contrast_kept,
-        human: || None,
-    },
-    Metric {
-        key: "delay_ms",
-        title: "delay",
         unit: "ms",
-        factor: 1.0,
-        value: |fidelity| fidelity.delay_ms,
         human: || Some(Human { value: 50.0, meaning: "largest recommended (doi:10.1145/2611387: 5 to 50 ms)" }),
+        ..Metric::new("delay_ms", "delay", |fidelity| fidelity.delay_ms)
     },
     Metric {
-        key: "delay_mm",
-        title: "delay",
         unit: "mm",
-        factor: 1.0,
-        value: |fidelity| fidelity.delay_mm,
         human: || {
             Some(Human { value: 1.0, meaning: "spatial resolution of a fingertip, 1 to 2 mm (Basdogan's review)" })
         },
+        ..Metric::new("delay_mm", "delay", |fidelity| fidelity.delay_mm)
     },
+    Metric::new("peak_rate_kept", "peak dF/dt kept", |fidelity| fidelity.peak_rate_kept),
     Metric {
-        key: "peak_rate_kept",
-        title: "peak dF/dt kept",
-        unit: "",
-        factor: 1.0,
-        value: |fidelity| fidelity.peak_rate_kept,
-        human: || None,
-    },
-    Metric {
-        key: "spurious_40_to_400_hz_mn",
-        title: "spurious force, 40 to 400 Hz",
         unit: "mN rms",
         factor: 1e3,
-        value: |fidelity| fidelity.spurious_40_to_400_hz_n,
         human: || {
             let meaning = "a finger's own noise there (one finger, romangrigorii/data-driven-playback)";
             // A decade of noise that falls as 1/f has half of the power of the two decades that were measured.
             Some(Human { value: 1e3 * NATURAL_NOISE_RMS_N * FRAC_1_SQRT_2, meaning })
         },
+        ..Metric::new("spurious_40_to_400_hz_mn", "spurious force, 40 to 400 Hz", |fidelity| {
+            fidelity.spurious_40_to_400_hz_n
+        })
     },
 ];

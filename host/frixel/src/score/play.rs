@@ -1,13 +1,13 @@
 //! Plays a trial, and records what was felt and what the reference was.
 
-use frixel_hil_sim::{Felt, ReferenceFriction, RigConfig, TickRecord};
+use frixel_hil_sim::{RigConfig, TickRecord};
 use frixel_scene::Program;
 use frixel_scene::fidelity::{FidelitySample, SAMPLE_HZ};
 use frixel_scene::recorder::FingerState;
-use frixel_scene::reference::{Context, Reference, StrokeReference};
 use frixel_wire::fault::Flags;
 
 use super::Trial;
+use crate::finger_reference::FingerReference;
 use crate::player::{PlayError, Simulation, simulate_observed};
 
 /// Plays a trial; returns a sample for every quarter of a millisecond.
@@ -26,10 +26,8 @@ pub(super) fn samples(program: &Program, rig: &RigConfig, trial: &Trial) -> Resu
 
 /// Takes the mean of the ticks of a sample.
 struct Sampler {
-    tick_hz: f64,
     ticks_per_sample: u32,
-    scene: StrokeReference,
-    reference: ReferenceFriction,
+    reference: FingerReference,
     /// Whether the board has had a report of this touch.
     is_tracked: bool,
     ticks: u32,
@@ -40,10 +38,8 @@ struct Sampler {
 impl Sampler {
     fn new(program: &Program, tick_hz: u32) -> Self {
         Self {
-            tick_hz: f64::from(tick_hz),
             ticks_per_sample: (f64::from(tick_hz) / SAMPLE_HZ).round().max(1.0) as u32,
-            scene: Reference::new(program).along_stroke(),
-            reference: ReferenceFriction::default(),
+            reference: FingerReference::new(program, tick_hz),
             is_tracked: false,
             ticks: 0,
             sum: FidelitySample::default(),
@@ -53,7 +49,7 @@ impl Sampler {
 
     fn add(&mut self, record: &TickRecord) {
         let felt = &record.felt;
-        let reference_n = self.reference_n(felt, record.tick);
+        let reference_n = self.reference.follow(record);
         let has_finger = !record.status.telemetry.flags.contains(Flags::NO_FINGER);
         self.is_tracked = felt.finger.is_some() && (self.is_tracked || has_finger);
         self.sum.reference_n += reference_n;
@@ -70,22 +66,5 @@ impl Sampler {
             self.samples.push(FidelitySample { finger, reference_n, felt_n });
             (self.ticks, self.sum) = (0, FidelitySample::default());
         }
-    }
-
-    /// The friction that a display without fault would have given this finger, in total.
-    fn reference_n(&mut self, felt: &Felt, tick: u64) -> f64 {
-        let electric_n = if let Some(finger) = felt.finger {
-            self.scene.electric_friction_n(&Context {
-                x_m: finger.x_m,
-                y_m: finger.y_m,
-                t_s: tick as f64 / self.tick_hz,
-                speed_m_per_s: finger.speed_m_per_s,
-                ..Context::default()
-            })
-        } else {
-            self.scene.lift();
-            0.0
-        };
-        self.reference.follow(felt, electric_n)
     }
 }

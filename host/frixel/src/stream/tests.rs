@@ -70,7 +70,7 @@ fn more_samples_than_ticks_are_brought_below_them() {
 }
 
 #[test]
-fn what_is_no_stream_is_told_in_a_sentence() {
+fn a_file_that_is_not_a_stream_gives_one_sentence() {
     let folder = tempdir().unwrap();
     let message = |path: &Path| Feed::wav(path, TICK_HZ).err().unwrap().to_string();
     let path = folder.path().join("none.wav");

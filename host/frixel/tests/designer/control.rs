@@ -88,7 +88,7 @@ fn a_line_that_makes_no_sense_is_said_and_the_play_goes_on() {
 }
 
 #[test]
-fn completions_and_exit_codes_are_told() {
+fn completions_and_exit_codes_are_documented() {
     let folder = TempDir::new().unwrap();
     for shell in ["bash", "zsh", "fish"] {
         let (script, _) = succeed(folder.path(), &["completions", shell]);

@@ -28,7 +28,7 @@ fn the_demo_plays_an_edited_scene_and_never_overwrites_it() {
     assert_eq!(fs::read_to_string(&path).unwrap(), edited);
     assert_eq!(fs::read(&picture).unwrap(), mine);
     // Mortar is at 0.76 from black to white: 39 mN instead of 102 mN above the natural friction of 250 mN.
-    let wanted = said.lines().find(|line| line.trim_start().starts_with("wanted")).unwrap();
+    let wanted = said.lines().find(|line| line.trim_start().starts_with("reference")).unwrap();
     let (_, most) = wanted.split_once(" to ").unwrap();
     let most: f64 = most.split_whitespace().next().unwrap().parse().unwrap();
     assert!((288.0..290.0).contains(&most), "{wanted}");

@@ -20,7 +20,7 @@ fn a_new_scene_is_checked_and_played_as_it_is() {
         assert!(said.contains(&format!("frixel play {name}")), "{said}");
         succeed(folder.path(), &["scene", "check", name]);
         let (said, _) = succeed(folder.path(), &["play", name, "--seconds", "0.5"]);
-        assert!(said.contains("wanted"), "{said}");
+        assert!(said.contains("reference"), "{said}");
     }
     let text = fs::read_to_string(folder.path().join("near.toml")).unwrap();
     assert!(text.contains("picture = \"mine.png\"") && text.lines().count() < 20, "{text}");

@@ -3,6 +3,8 @@
 
 mod control;
 mod demo;
+#[cfg(unix)]
+mod experiments;
 mod first_scene;
 mod pictures;
 #[cfg(unix)]

@@ -47,7 +47,13 @@ pub(crate) fn write_patient_scene(path: &Path) {
 }
 
 /// Most tries of what fails when the machine lets a client or the board wait for longer than an answer may take.
-const TRIES_MAX: u32 = 20;
+pub(crate) const TRIES_MAX: u32 = 20;
+
+/// Whether a command ended because the machine let it or the board wait for too long.
+pub(crate) fn was_too_late(notes: &str) -> bool {
+    let too_late = ["was not answered by the board", "had not heard from this host", "no frixel board answered"];
+    too_late.iter().any(|part| notes.contains(part))
+}
 
 /// As [`succeed`], with as many tries as a busy machine needs.
 fn succeed_in_time(folder: &Path, arguments: &[&str]) -> (String, String) {
@@ -57,8 +63,7 @@ fn succeed_in_time(folder: &Path, arguments: &[&str]) -> (String, String) {
         if output.status.success() {
             return (String::from_utf8(output.stdout).unwrap(), notes);
         }
-        let too_late = ["was not answered by the board", "had not heard from this host", "no frixel board answered"];
-        assert!(too_late.iter().any(|part| notes.contains(part)), "{arguments:?}: {notes}");
+        assert!(was_too_late(&notes), "{arguments:?}: {notes}");
     }
     panic!("{arguments:?}: {TRIES_MAX} tries were too late");
 }

@@ -50,7 +50,7 @@ fn a_stream_ends_with_its_file_and_counts_as_wanted() {
 }
 
 #[test]
-fn a_stream_layer_without_a_stream_is_said() {
+fn a_stream_layer_without_a_stream_is_reported() {
     let folder = TempDir::new().unwrap();
     write_scene(&folder.path().join("scene.toml"));
     let (_, notes) = succeed(folder.path(), &["play", "scene.toml", "--seconds", "0.1"]);

@@ -123,7 +123,7 @@ impl Tools {
 const EMULATOR: (&str, &str) = ("qemu-system-arm", "exit 0");
 
 #[test]
-fn what_is_missing_is_said_with_the_command_that_installs_it() {
+fn a_missing_program_is_named_with_the_command_that_installs_it() {
     let command = ["`apt-get install qemu-system-arm`"];
     Tools::new(&[]).refused(None, &command);
     let command = ["`curl https://sh.rustup.rs -sSf | sh`"];

@@ -39,28 +39,28 @@ fn suffer(fault: InjectedFault) -> Option<Hello> {
 }
 
 #[test]
-fn a_panic_ends_the_drive_and_is_told() {
+fn a_panic_ends_the_drive_and_is_reported() {
     let Some(hello) = suffer(InjectedFault::Panic) else { return };
     assert_eq!((hello.reset_cause, hello.last_fault), (ResetCause::Software, Some(Fault::Panic)));
     assert_ne!(hello.fault_detail, 0, "the line");
 }
 
 #[test]
-fn a_hard_fault_ends_the_drive_and_is_told() {
+fn a_hard_fault_ends_the_drive_and_is_reported() {
     let Some(hello) = suffer(InjectedFault::HardFault) else { return };
     assert_eq!((hello.reset_cause, hello.last_fault), (ResetCause::Software, Some(Fault::HardFault)));
     assert!((0x48..0x8_0000).contains(&hello.fault_detail), "{:#x} is no place in the code", hello.fault_detail);
 }
 
 #[test]
-fn a_stack_overflow_ends_the_drive_and_is_told() {
+fn a_stack_overflow_ends_the_drive_and_is_reported() {
     let Some(hello) = suffer(InjectedFault::StackOverflow) else { return };
     assert_eq!((hello.reset_cause, hello.last_fault), (ResetCause::Software, Some(Fault::StackOverflow)));
     assert!(hello.fault_detail < 0x2000_0000, "{:#x} is above the stack's bottom", hello.fault_detail);
 }
 
 #[test]
-fn a_tick_that_takes_too_long_ends_the_drive_and_is_told() {
+fn a_tick_that_takes_too_long_ends_the_drive_and_is_reported() {
     let Some(hello) = suffer(InjectedFault::Overrun) else { return };
     assert_eq!((hello.reset_cause, hello.last_fault), (ResetCause::PowerOn, Some(Fault::Deadline)));
     assert_eq!(hello.state, State::Faulted);

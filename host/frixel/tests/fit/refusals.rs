@@ -45,7 +45,7 @@ fn good_data_are_accepted_and_give_the_example_back() {
 }
 
 #[test]
-fn what_stands_in_the_file_is_checked() {
+fn every_row_of_the_file_is_checked() {
     let header = "voltage_v_rms,normal_force_n,friction_n";
     let rows = |text: &str| fit::rows(text.as_bytes()).err().unwrap().to_string();
     assert!(rows(&format!("{header}\n150,nan,0.2\n")).contains("row 2, column normal_force_n: expected a number"));

@@ -138,7 +138,7 @@ fn check(case: &Case) -> Result<f64, String> {
 }
 
 #[test]
-fn what_is_felt_is_what_the_file_says() {
+fn every_case_feels_like_its_formula() {
     let mut wrong = Vec::new();
     for case in cases::all() {
         match check(&case) {

@@ -78,7 +78,7 @@ fn felt_error(program: &Program, range_mn: f64) -> f64 {
 }
 
 #[test]
-fn what_is_streamed_is_felt() {
+fn the_finger_feels_the_stream() {
     let program = compiled(LAYERS);
     let range_mn = 1e3 * program.reach.electric_friction_max_n;
     let error = felt_error(&program, range_mn);

@@ -53,7 +53,7 @@ fn the_three_origins_are_read() {
 }
 
 #[test]
-fn what_is_written_reads_back_the_same() {
+fn a_written_profile_reads_back_the_same() {
     for evidence in ["", MEASURED, PERCEPTUAL] {
         for elasticity in [
             "stiffness_pa_per_m = 1e7",
@@ -118,7 +118,7 @@ fn mistakes_are_told_with_their_place() {
         ),
         (
             measured.replace("[0.06, 0.08]", "[0.06]"),
-            "finger.toml:11:32: `electric_friction_interval_n` has 1 entries: expected 2",
+            "finger.toml:11:32: `electric_friction_interval_n` has 1 entry: expected 2",
         ),
         (
             measured.replace("measured_voltage_max_v_rms = 150\n", ""),

@@ -19,6 +19,7 @@ use crate::program::Program;
 use crate::reference::Context;
 use crate::source::Places;
 use crate::tables::{ANGLE_DEG, PLACE_MM, SIZE_MM, amount, flag, layer::REGION, number};
+use crate::warning::Warning;
 
 const PICTURE: FieldSpec =
     FieldSpec::new("picture", Holds::Text, Mistake, "a PNG file, found from the scene file's folder");
@@ -98,6 +99,7 @@ impl Words for Bitmap {
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {
         let visible = layer.region.as_ref().map(Region::bounds);
         let placed = lowering.place_bitmap(layer, self, visible)?;
+        lowering.warn(layer, Warning::of_stretch(&layer.title, placed.height_factor));
         let record = Record {
             crc32: placed.crc32,
             x_m: (placed.corner_mm.0 * MM) as f32,

@@ -11,13 +11,14 @@ use crate::cover::Cell;
 use crate::fields::Fields;
 use crate::grammar::Absence::{Means, Mistake};
 use crate::grammar::{AmountFields, FieldSpec};
-use crate::layer::{Amount, Layer, Unit};
+use crate::layer::{Amount, Layer, Region, Unit};
 use crate::log::Log;
 use crate::lower::{Lowering, MM};
 use crate::program::Program;
 use crate::reference::Context;
 use crate::source::Places;
 use crate::tables::{SIZE_MM, amount, number};
+use crate::warning::Warning;
 
 const RIM_WIDTH: FieldSpec = number(
     "rim_width_mm",
@@ -61,6 +62,10 @@ impl Words for Button {
     }
 
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {
+        if let Some(Region::Rectangle(sides) | Region::Ellipse(sides)) = &layer.region {
+            let side_mm = sides.width_mm.min(sides.height_mm);
+            lowering.warn(layer, Warning::of_rim(&layer.title, self.rim_width_mm, side_mm));
+        }
         let record = Record {
             rim_width_m: (self.rim_width_mm * MM) as f32,
             rim_n: lowering.amount(layer, self.rim),

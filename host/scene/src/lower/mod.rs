@@ -14,11 +14,14 @@ use super::optimisation::Optimisation;
 use super::pool::{Placed, Pool};
 use super::program::Bitmap;
 use super::reach::Reach;
+use super::warning::Warning;
 
 /// Total friction that differs from natural friction by less than this, relative to it, counts as natural friction,
 /// which is rounded to `f32`.
 const NATURAL_ROUNDING: f64 = 1e-6;
 pub(crate) const MM: f64 = 1e-3;
+/// How often the pitch of a draft's picture is doubled until the picture fits.
+const COARSER_MAX: u32 = 5;
 
 /// Compiles layers to records, and collects the points and bitmaps that they name.
 pub(crate) struct Lowering<'a, 's> {
@@ -32,6 +35,7 @@ pub(crate) struct Lowering<'a, 's> {
     pub(crate) clicks: usize,
     log: &'a mut Log<'s>,
     notes: Vec<String>,
+    warnings: Vec<Warning>,
 }
 
 /// The points and bitmaps that records name, with notes on their conversion.
@@ -39,6 +43,7 @@ pub(super) struct Gathered {
     pub(super) points: Vec<Point>,
     pub(super) bitmaps: Vec<Bitmap>,
     pub(super) notes: Vec<String>,
+    pub(super) warnings: Vec<Warning>,
     pub(super) optimisations: Vec<Optimisation>,
 }
 
@@ -51,13 +56,13 @@ impl<'a, 's> Lowering<'a, 's> {
         pool: Pool<'a>,
         log: &'a mut Log<'s>,
     ) -> Self {
-        let (points, notes) = (Vec::new(), Vec::new());
-        Self { scene, header, reach, tick_hz, pool, points, noises: 0, clicks: 0, log, notes }
+        let (points, notes, warnings) = Default::default();
+        Self { scene, header, reach, tick_hz, pool, points, noises: 0, clicks: 0, log, notes, warnings }
     }
 
     pub(super) fn finish(self) -> Gathered {
         let (bitmaps, optimisations) = self.pool.finish();
-        Gathered { points: self.points, bitmaps, notes: self.notes, optimisations }
+        Gathered { points: self.points, bitmaps, notes: self.notes, warnings: self.warnings, optimisations }
     }
 
     /// Number of mistakes so far.
@@ -78,6 +83,11 @@ impl<'a, 's> Lowering<'a, 's> {
         Some(Record { region, blend: layer.blend, gain: layer.gain as f32, layer: record_layer })
     }
 
+    /// Adds a warning, unless the layer is a copy of one that has it already.
+    pub(crate) fn warn(&mut self, layer: &Layer, warning: Option<Warning>) {
+        self.warnings.extend(warning.filter(|_| !layer.is_copy));
+    }
+
     /// Adds the picture of a layer to the pool. `visible` is the rectangle in which the picture shows.
     pub(crate) fn place_bitmap(
         &mut self,
@@ -86,7 +96,17 @@ impl<'a, 's> Lowering<'a, 's> {
         visible: Option<Rectangle>,
     ) -> Option<Placed> {
         let screen = (self.scene.screen().width_mm, self.scene.screen().height_mm);
-        self.pool.place(layer, bitmap, visible, screen, self.log, &mut self.notes)
+        let placed = self.pool.place(layer, bitmap, visible, screen, self.log, &mut self.notes);
+        let Some(Mistake::PoolTooSmall { pitch_mm, .. }) = self.log.last().filter(|_| placed.is_none()) else {
+            return placed;
+        };
+        // A draft plays it coarser; the mistake stands.
+        let (mut pitch_mm, mut coarser, mut log) = (*pitch_mm, bitmap.clone(), self.log.scratch());
+        (0..COARSER_MAX).find_map(|_| {
+            coarser.pitch_mm = pitch_mm;
+            pitch_mm *= 2.0;
+            self.pool.place(layer, &coarser, visible, screen, &mut log, &mut self.notes)
+        })
     }
 
     /// An amount of the compiled scene: electric friction in newtons, or a factor.

@@ -24,7 +24,7 @@ pub(crate) fn turns(angle_deg: f64) -> f32 {
     (angle_deg / 360.0) as f32
 }
 
-/// Refuses a layer that extends past the screen.
+/// Refuses a layer that extends past the screen. A draft plays the part of it on the screen.
 pub(crate) fn check_on_screen(scene: &Scene, layer: &Layer, rectangle: Rectangle, log: &mut Log) {
     let (screen_width_mm, screen_height_mm) = (scene.screen().width_mm, scene.screen().height_mm);
     let past = [
@@ -65,8 +65,14 @@ fn stretches(rectangle: Rectangle, header: &Header) -> [f32; 4] {
     [x_m, y_m, width_m, height_m]
 }
 
-/// Start and length of a side in metres. The length is shortened if rounding would extend it past the screen.
+/// Start and length of a side in metres. The length is shortened if rounding would extend it past the screen. A side that
+/// is meant to extend past the screen, in a draft, stays as it is.
 fn stretch(start_mm: f64, length_mm: f64, screen_m: f32) -> (f32, f32) {
+    let screen_mm = f64::from(screen_m) / MM;
+    let rounding_mm = OFF_SCREEN_MM + f64::from(f32::EPSILON) * screen_mm;
+    if start_mm < -rounding_mm || start_mm + length_mm > screen_mm + rounding_mm {
+        return ((start_mm * MM) as f32, (length_mm * MM) as f32);
+    }
     let start_m = ((start_mm * MM) as f32).max(0.0);
     let room_m = f64::from(screen_m) - f64::from(start_m);
     let rounded_m = room_m as f32;

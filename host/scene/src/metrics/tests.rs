@@ -13,6 +13,8 @@ fn sample(wanted_n: f64, felt_n: f64) -> Sample {
         asked_n: Some(wanted_n),
         felt_n: Some(felt_n),
         inversion_n: Some(felt_n),
+        slewing: false,
+        load_mismatch_n: Some(0.0),
         saturated: Some(false),
     }
 }
@@ -24,6 +26,8 @@ const UP: Sample = Sample {
     asked_n: None,
     felt_n: None,
     inversion_n: None,
+    slewing: false,
+    load_mismatch_n: None,
     saturated: Some(false),
 };
 
@@ -45,7 +49,7 @@ fn rms(values: &[f64]) -> f64 {
 }
 
 #[test]
-fn nothing_gathered_is_absent() {
+fn without_samples_there_is_no_metric() {
     let up = Sample { saturated: Some(true), ..UP };
     let summary = gather(&[up, up]);
     assert_eq!((summary.ticks, summary.finger_down_ticks, summary.saturated_ticks), (2, 0, Some(2)));
@@ -55,7 +59,7 @@ fn nothing_gathered_is_absent() {
 
 /// One sample in 40 ticks, as in a board's telemetry, without the felt friction.
 #[test]
-fn what_needs_every_tick_is_absent_when_some_were_not_seen() {
+fn metrics_that_need_every_tick_are_absent_when_some_are_missing() {
     let mut metrics = Metrics::new(HALF_PERIOD_TICKS);
     for wanted_n in [0.26, 0.27] {
         metrics.add(&Sample { felt_n: None, ..sample(wanted_n, 0.25) });
@@ -106,6 +110,23 @@ fn inversion_counts_only_what_is_in_reach_and_saturation_always() {
     close(error.max_n, 0.002);
     assert_eq!((summary.ticks, summary.saturated_ticks), (3, Some(1)));
     assert_eq!(summary.wanted_range_n, Some((0.26, 0.4)));
+}
+
+#[test]
+fn a_voltage_on_its_way_is_no_error_of_the_inverse() {
+    let slewing = Sample { slewing: true, ..sample(0.26, 0.25) };
+    let summary = gather(&[slewing, sample(0.26, 0.261), slewing, Sample { slewing: true, ..UP }]);
+    close(summary.inversion_error.expect("an error").max_n, 0.001);
+    assert_eq!(summary.slewing_ticks, Some(2));
+}
+
+#[test]
+fn the_load_mismatch_is_apart_from_the_friction_error() {
+    let pressed = |load_mismatch_n| Sample { load_mismatch_n: Some(load_mismatch_n), ..sample(0.26, 0.26) };
+    let summary = gather(&[pressed(0.01), pressed(-0.03), UP]);
+    close(summary.load_mismatch.expect("a mismatch").rms_n, rms(&[0.01, -0.03]));
+    close(summary.load_mismatch.expect("a mismatch").max_n, 0.03);
+    close(summary.friction_error.expect("an error").max_n, 0.0);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Converts a commanded voltage to friction, without the errors of amplifier and finger.
 
-use frixel_layers::Carrier;
+use frixel_layers::Waveform;
 use frixel_model::{Contact, Finger, LoadedContact, ParameterError};
 use frixel_wire::hello::BoardLimits;
 
@@ -10,7 +10,7 @@ use crate::{Program, carrier};
 #[derive(Debug)]
 pub(super) struct Inversion {
     contact: LoadedContact<f64>,
-    carrier: Carrier,
+    waveform: Waveform,
     codes_per_v_rms: f64,
     electric_friction_max_n: f64,
 }
@@ -25,11 +25,11 @@ impl Inversion {
         };
         let contact = Contact::new(&finger, f64::from(header.effective_gap_m))?;
         let half_period_s = f64::from(program.half_period_ticks) / f64::from(tick_hz);
-        let peak_per_rms = f64::from(carrier(header.carrier, half_period_s, limits).peak_per_rms());
+        let peak_per_rms = f64::from(carrier(header.waveform, half_period_s, limits).peak_per_rms());
         let codes_per_v_peak = f64::from(i16::MAX) / f64::from(limits.full_scale_v_peak);
         Ok(Self {
             contact: contact.under_load(f64::from(header.normal_load_n))?,
-            carrier: header.carrier,
+            waveform: header.waveform,
             codes_per_v_rms: peak_per_rms * codes_per_v_peak,
             electric_friction_max_n: program.reach.electric_friction_max_n,
         })
@@ -40,9 +40,9 @@ impl Inversion {
     /// The code of a square wave is its amplitude. The code of a sine wave is only one of many samples, so its
     /// amplitude is rounded as the DAC would round it.
     pub(super) fn electric_friction_n(&self, voltage_v_rms: f32, dac_code: i16) -> f64 {
-        let amplitude_code = match self.carrier {
-            Carrier::Square => f64::from(dac_code).abs(),
-            Carrier::Sine => (f64::from(voltage_v_rms) * self.codes_per_v_rms).round(),
+        let amplitude_code = match self.waveform {
+            Waveform::Square => f64::from(dac_code).abs(),
+            Waveform::Sine => (f64::from(voltage_v_rms) * self.codes_per_v_rms).round(),
         };
         self.contact.electric_friction_n(amplitude_code / self.codes_per_v_rms)
     }

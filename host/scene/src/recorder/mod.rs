@@ -225,6 +225,8 @@ impl Comparison {
             inversion_n: telemetry.filter(|_| in_reach).map(|telemetry| {
                 natural_n + self.inversion.electric_friction_n(telemetry.voltage_v_rms, telemetry.dac_code)
             }),
+            slewing: telemetry.is_some_and(|telemetry| telemetry.flags.contains(Flags::SLEWED)),
+            load_mismatch_n: observation.felt.map(|felt| felt.load_mismatch_n),
             saturated: telemetry.map(|telemetry| telemetry.flags.contains(Flags::SATURATED)),
         });
         Frictions { wanted_n, asked_n, felt_n }

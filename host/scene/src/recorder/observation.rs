@@ -37,6 +37,9 @@ pub struct FeltFriction {
     pub friction_n: f64,
     /// The part of the friction that the drive added.
     pub electric_friction_n: f64,
+    /// The part of the friction that is there because the finger presses with another load than the one that the scene
+    /// is meant for.
+    pub load_mismatch_n: f64,
 }
 
 impl Observation {

@@ -43,7 +43,7 @@ fn simulated(tick: u32, friction_n: f64) -> Observation {
     Observation {
         tick,
         finger: Some(FingerState { x_m: 0.05, y_m: 0.05, speed_m_per_s: 0.1 }),
-        felt: Some(FeltFriction { friction_n, electric_friction_n: friction_n - 0.25 }),
+        felt: Some(FeltFriction { friction_n, electric_friction_n: friction_n - 0.25, load_mismatch_n: 0.0 }),
         dac_code: Some(tick as i16),
         telemetry: None,
     }
@@ -219,7 +219,7 @@ fn another_program_is_compared_with_from_then_on() {
 #[test]
 fn the_reference_goes_through_the_finger_that_felt() {
     let mut recorder = recorder(&program(CONSTANT), 1);
-    let felt = Some(FeltFriction { friction_n: 0.32, electric_friction_n: 0.01 });
+    let felt = Some(FeltFriction { friction_n: 0.32, electric_friction_n: 0.01, load_mismatch_n: -0.02 });
     for tick in 1..=3 {
         let observation = Observation { felt, telemetry: Some(telemetry(tick)), ..simulated(tick, 0.32) };
         recorder.record_through(&observation, &mut |electric_n| 0.31 + 0.9 * electric_n);
@@ -233,6 +233,7 @@ fn the_reference_goes_through_the_finger_that_felt() {
     }
     let error = recorder.summary().friction_error.unwrap();
     assert!((error.rms_n - 1e-3).abs() < 1e-9, "{} N", error.rms_n);
+    assert_eq!(recorder.summary().load_mismatch.map(|mismatch| in_mn(Some(mismatch.max_n))), Some(Some(20_000)));
 }
 
 #[test]

@@ -59,7 +59,7 @@ fn unknown_and_missing_fields() {
         "test.toml:5:1: unknown field `colour` in [screen]; nothing more is expected here",
     );
     check_head("height_mm = 110\n", "", "test.toml:3:1: [screen] has no `height_mm`: add it");
-    check_head("version = 1\n", "", "test.toml:1:1: the scene has no `version`: add it");
+    check_head("version = 1\n", "", "test.toml:1:1: the scene has no `version`: write `version = 2` at the top");
     check_head(
         "[coating]\nthickness_um = 10\npermittivity = 1\n",
         "",
@@ -152,7 +152,7 @@ fn wrong_types() {
 }
 
 #[test]
-fn coatings_that_are_none() {
+fn invalid_coatings() {
     let slab = "[coating]\nthickness_um = 10\npermittivity = 1\n";
     let first = |coating: &str| HEAD.replace(slab, "").replace("version = 1", &format!("version = 1\n{coating}"));
     assert_eq!(message(&first("coating = []")), "test.toml:1:1: the scene has no `coating`: add it");
@@ -430,7 +430,7 @@ fn sums_are_refused_only_where_a_finger_finds_them() {
 }
 
 #[test]
-fn what_a_layer_hides_is_not_asked_for() {
+fn friction_hidden_by_a_layer_above_needs_no_reach() {
     let cover = "[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\nregion = { x_mm = 10, y_mm = 10, width_mm = 20, height_mm = 20 }";
     let hidden = "[[layer]]\nkind = \"constant\"\nfriction_n = 0.9\nregion = { x_mm = 12, y_mm = 11, width_mm = 3, height_mm = 19 }\n";
     compile_layers(&format!("{hidden}{cover}"));
@@ -522,12 +522,9 @@ fn kinds_that_do_not_make_sense() {
     let speed = |curve: &str| format!("[[layer]]\nkind = \"speed\"\n{curve}");
     check_layers(
         &speed("speeds_mm_per_s = [10]\nfactors = [1]"),
-        &[(3, 19, "`speeds_mm_per_s` has 1 entries: expected 2 to 16")],
+        &[(3, 19, "`speeds_mm_per_s` has 1 entry: expected 2 to 16")],
     );
-    check_layers(
-        &speed("speeds_mm_per_s = [10, 20]\nfactors = [1]"),
-        &[(4, 11, "`factors` has 1 entries: expected 2")],
-    );
+    check_layers(&speed("speeds_mm_per_s = [10, 20]\nfactors = [1]"), &[(4, 11, "`factors` has 1 entry: expected 2")]);
     check_layers(
         &speed("speeds_mm_per_s = [10, 5]\nfactors = [1, 2]"),
         &[(
@@ -584,7 +581,7 @@ fn more_than_a_board_has_room_for() {
 }
 
 #[test]
-fn what_varies_is_refused_by_what_it_may_be() {
+fn a_layer_out_of_reach_is_refused_with_its_range() {
     check_layers(
         "[[layer]]\nkind = \"noise\"\nwavelength_min_mm = 1\nwavelength_max_mm = 2\nlow_n = 0\nhigh_n = 0.03",
         &[(
@@ -776,15 +773,15 @@ fn an_unknown_kind_is_one_line() {
 
 /// Newtons written for millinewtons, and a button's rim with its click.
 #[test]
-fn what_is_out_of_reach_is_answered_by_what_helps() {
+fn messages_about_reach_suggest_the_fix() {
     check_layers(
         "[[layer]]\nkind = \"grating\"\nwavelength_mm = 2\nlow_n = 0\nhigh_n = 20",
         &[(
             5,
             10,
             "layer 1 (grating) asks for up to 20 N above natural friction, and at 150 V rms this finger feels at most \
-             0.02778 N above natural friction: were mN meant? 1 mN is 0.001 N; lower it, raise `voltage_max_v_rms`, or write \
-             `saturate = true` under [drive] to have it clamped",
+             0.02778 N above natural friction: were mN meant? 1 mN is 0.001 N; lower it, or write `saturate = true` \
+             under [drive] to have it clamped",
         )],
     );
     let error = message(&format!(
@@ -792,4 +789,129 @@ fn what_is_out_of_reach_is_answered_by_what_helps() {
          rim_width_mm = 2\nrim_n = 0.02\nface_n = 0\nclick_n = 0.02\nclick_ms = 20\nabove = \"natural\""
     ));
     assert!(error.contains("layer 1 \"OK\", its rim and its click together, asks for up to 0.04 N"), "{error}");
+}
+
+/// A larger voltage is proposed only where it reaches the target within the limits of screen and board, and after less
+/// friction.
+#[test]
+fn more_volts_are_proposed_only_where_they_help() {
+    let grating =
+        |high_n: &str| format!("[[layer]]\nkind = \"grating\"\nwavelength_mm = 2\nlow_n = 0\nhigh_n = {high_n}\n");
+    let with_drive = |drive: &str, high_n: &str| {
+        message(&format!("{}{}", HEAD.replace("# layers follow", &format!("[drive]\n{drive}")), grating(high_n)))
+    };
+    // 180 V rms would do, and the board allows them.
+    let raised = with_drive("voltage_max_v_rms = 150", "0.04");
+    assert!(raised.contains(": lower it, raise `voltage_max_v_rms`, or write"), "{raised}");
+    // The board's peak of 220 V allows some 210 V rms, which does not reach this.
+    let above_board = with_drive("voltage_max_v_rms = 150", "0.06");
+    assert!(above_board.contains(": lower it, or write `saturate = true`"), "{above_board}");
+    // The board's peak limits the voltage already.
+    let at_board = with_drive("voltage_max_v_rms = 300", "0.06");
+    assert!(at_board.contains(": lower it, or write `saturate = true`"), "{at_board}");
+    // The scene's own peak limits the voltage: a larger rms limit changes nothing.
+    let at_peak = with_drive("voltage_max_v_rms = 150\nvoltage_max_v_peak = 100", "0.025");
+    assert!(at_peak.contains(": lower it, or write `saturate = true`"), "{at_peak}");
+    for text in [raised, above_board, at_board, at_peak] {
+        let volts = text.find("raise `voltage").unwrap_or(usize::MAX);
+        assert!(text.find("lower it").expect("it proposes less friction") < volts, "{text}");
+    }
+}
+
+/// What can be found at once is reported at once: mistakes of a layer's fields, of a picture, of its place, of room on the
+/// board, and friction out of reach.
+#[test]
+fn mistakes_of_all_stages_come_together() {
+    let layers = "\
+        [[layer]]\nkind = \"grating\"\nwavelenght_mm = 2\nlow_n = 0\nhigh_n = 0.01\n\
+        [[layer]]\nkind = \"bitmap\"\npicture = \"textures/brik.png\"\nx_mm = 0\ny_mm = 0\nwidth_mm = 20\n\
+        [[layer]]\nkind = \"constant\"\nfriction_n = 0.26\n\
+        region = { x_mm = 100, y_mm = 0, width_mm = 30, height_mm = 5 }\n\
+        [[layer]]\nkind = \"bitmap\"\npicture = \"textures/brick.png\"\nx_mm = 0\ny_mm = 0\nwidth_mm = 100\npitch_mm = 0.25\n\
+        white_n = 0.01\n\
+        [[layer]]\nkind = \"constant\"\nfriction_n = 0.9\n\
+        region = { x_mm = 10, y_mm = 10, width_mm = 30, height_mm = 5 }\n";
+    let text = message(&format!("{HEAD}{layers}"));
+    let found: Vec<bool> =
+        ["did you mean `wavelength_mm`", "was not found", "past the right edge", "a pitch_mm of", "up to 0.9 N"]
+            .iter()
+            .map(|part| text.contains(part))
+            .collect();
+    assert_eq!(found, [true; 5], "{text}");
+}
+
+/// Scenes that a board refuses play as drafts, clamped to what can be reached, with the board's sentences.
+#[test]
+fn drafts() {
+    let draft = |layers: &str| {
+        let scene = Scene::parse(&format!("{HEAD}{layers}"), "test.toml", &*PICTURES).expect("it reads");
+        assert!(compile(&scene, &LIMITS, TICK_HZ).is_err(), "{layers}");
+        let program = compile_draft(&scene, &LIMITS, TICK_HZ).expect("a draft plays it");
+        assert!(program.is_draft());
+        program
+    };
+    let refusal = |program: &Program| program.refusals[0].to_string();
+    let reach = draft("[[layer]]\nkind = \"constant\"\nfriction_n = 0.9\n");
+    assert!(refusal(&reach).starts_with("21:14: layer 1 (constant) asks for up to 0.9 N"), "{}", refusal(&reach));
+    assert_eq!(reach.records.len(), 1);
+
+    let bytes = draft(
+        "[[layer]]\nkind = \"bitmap\"\npicture = \"textures/brick.png\"\nx_mm = 0\ny_mm = 0\nwidth_mm = 100\n\
+         pitch_mm = 0.1\nwhite_n = 0.01\n",
+    );
+    assert!(refusal(&bytes).contains("and the board has 65536"), "{}", refusal(&bytes));
+    let samples: usize = bytes.bitmaps.iter().map(|bitmap| bitmap.samples.len()).sum();
+    assert!((30_000..=65_536).contains(&samples), "{samples} bytes");
+
+    let noise = "[[layer]]\nkind = \"noise\"\nblend = \"add\"\nwavelength_min_mm = 1\nwavelength_max_mm = 4\nlow_n = 0\n\
+                 high_n = 0.001\n";
+    let time = draft(&noise.repeat(5));
+    assert!(refusal(&time).contains("and the board has time for 2550"), "{}", refusal(&time));
+    assert_eq!((time.records.len(), time.notes.len()), (5, 0));
+
+    let absent = draft(
+        "[[layer]]\nname = \"wood\"\nkind = \"bitmap\"\npicture = \"wood.png\"\nx_mm = 0\ny_mm = 0\nwidth_mm = 9\n",
+    );
+    assert_eq!(absent.notes, ["absent from this draft: layer 1 \"wood\""]);
+
+    let off = draft(
+        "[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\n\
+         region = { shape = \"ellipse\", x_mm = 100, y_mm = -10, width_mm = 40, height_mm = 20 }\n\
+         [[layer]]\nkind = \"constant\"\nfriction_n = 0.26\nregion = { x_mm = -5, y_mm = 100, width_mm = 20, height_mm = 90 }\n",
+    );
+    assert_eq!(off.records.len(), 2);
+    let header = off.header.write(2, off.points.len() as u8);
+    let whole: Vec<u8> = header.into_iter().chain(off.scene_bytes().into_iter().skip(header.len())).collect();
+    let parsed = frixel_layers::Scene::parse(&whole);
+    assert!(parsed.is_ok(), "{parsed:?}");
+}
+
+/// A draft lowers its voltage to what the board's current and the finger's contact allow.
+#[test]
+fn drafts_keep_to_the_limits_of_the_drive() {
+    let draft = |head: &str| {
+        let scene = Scene::parse(head, "test.toml", &*PICTURES).expect("it reads");
+        compile_draft(&scene, &LIMITS, TICK_HZ).expect("a draft plays it")
+    };
+    let current =
+        draft(&HEAD.replace("# layers follow", "[drive]\nvoltage_max_v_rms = 180\n[carrier]\nfrequency_hz = 5000"));
+    assert_eq!(current.refusals.len(), 1);
+    assert!((135.0..145.0).contains(&current.reach.voltage_max_v_rms), "{:?}", current.reach);
+    let fast = draft(&HEAD.replace("# layers follow", "[carrier]\nfrequency_hz = 6000"));
+    assert_eq!((fast.refusals.len(), fast.half_period_ticks), (1, 4));
+    let wide = draft(
+        "version = 2\n[screen]\nwidth_mm = 100\nheight_mm = 80\n[finger]\nfriction_coefficient = 0.5\n\
+                      normal_load_n = 0.5\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\nskin_gap_um = 0\n",
+    );
+    assert!(wide.refusals[0].to_string().contains("a skin gap is missing"), "{:?}", wide.refusals);
+    assert!(wide.reach.voltage_max_v_rms < 100.0, "{:?}", wide.reach);
+}
+
+/// A scene that cannot be read is no draft.
+#[test]
+fn what_cannot_be_read_is_no_draft() {
+    let text = format!("{HEAD}[[layer]]\nkind = \"constant\"\nfrction_n = 0.26\n");
+    let scene = Scene::parse(&text, "test.toml", &*PICTURES).expect("its head reads");
+    let refused = compile_draft(&scene, &LIMITS, TICK_HZ).expect_err("a layer has a misspelt field");
+    assert_eq!(refused, compile(&scene, &LIMITS, TICK_HZ).expect_err("a board refuses it, too"));
 }

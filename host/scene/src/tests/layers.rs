@@ -1,6 +1,6 @@
 //! Compares the target friction of compiled layers with evaluations written here from the file's numbers.
 
-use frixel_layers::{Carrier, Constant, Grating, Layer, Leader, Region, Scene as WireScene};
+use frixel_layers::{Constant, Grating, Layer, Leader, Region, Scene as WireScene, Waveform};
 
 use super::super::{picture::Picture, resample};
 use super::*;
@@ -46,7 +46,7 @@ fn header_in_si_units() {
     ] {
         assert!((found - expected).abs() <= 1e-6 * expected, "{found} is not {expected}");
     }
-    assert_eq!(header.carrier, Carrier::Sine);
+    assert_eq!(header.waveform, Waveform::Sine);
     assert!(header.autonomous && !header.prediction);
     assert_eq!(header.leader, Leader::Latest);
 }
@@ -352,4 +352,40 @@ fn a_board_of_an_older_protocol_gets_no_flag_that_it_does_not_know() {
         let scene = WireScene::parse(&bytes).unwrap();
         assert_eq!(scene.header().layers_fixed, layers_fixed, "{protocol:?}");
     }
+}
+
+/// A rim that leaves no face, and a picture that is stretched by more than 5 %, are probably not meant.
+#[test]
+fn what_is_probably_not_meant_is_warned_of() {
+    let warnings =
+        |layer: &str| -> Vec<String> { compile_layers(layer).warnings.iter().map(ToString::to_string).collect() };
+    let button = |rim_width_mm: &str, repeat: &str| {
+        format!(
+            "[[layer]]\nname = \"OK\"\nkind = \"button\"\nregion = {{ x_mm = 10, y_mm = 10, width_mm = 20, height_mm = 8 }}\n\
+             rim_width_mm = {rim_width_mm}\nrim_n = 0.02\nface_n = 0\n{repeat}"
+        )
+    };
+    assert_eq!(
+        warnings(&button("5", "")),
+        [
+            "layer 1 \"OK\": a rim of 5 mm on both sides leaves no face on a button of 8 mm: make `rim_width_mm` less than 4 mm"
+        ]
+    );
+    assert_eq!(warnings(&button("5", "repeat = { rows = 2, dy_mm = 20 }")).len(), 1);
+    assert_eq!(warnings(&button("3.9", "")).len(), 0);
+    let picture = |width_mm: u32, height_mm: u32| {
+        format!(
+            "[[layer]]\nname = \"wall\"\nkind = \"bitmap\"\npicture = \"textures/brick.png\"\npitch_mm = 0.5\nwhite_n = 0.02\n\
+             region = {{ x_mm = 0, y_mm = 0, width_mm = {width_mm}, height_mm = {height_mm} }}"
+        )
+    };
+    assert_eq!(warnings(&picture(60, 58)).len(), 0);
+    let stretched = |percent: u32, direction: &str| {
+        format!(
+            "layer 1 \"wall\": the picture is stretched by {percent} % in {direction}: leave `height_mm` out to keep its sides, \
+             or change the region"
+        )
+    };
+    assert_eq!(warnings(&picture(60, 40)), [stretched(50, "width")]);
+    assert_eq!(warnings(&picture(50, 60)), [stretched(20, "height")]);
 }

@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use frixel_control::Board;
 use frixel_wire::hello::BoardLimits;
 
-use super::{CompileError, Program, Scene, compile};
+use super::{CompileError, Located, Program, Scene, compile, compile_draft};
 
 mod docs;
 mod errors;
@@ -57,9 +57,14 @@ pub(super) fn scenes() -> &'static Path {
 /// Compiles a text, and checks that the schema for editors agrees with the parser about it.
 pub(super) fn compile_text(text: &str) -> Result<Program, CompileError> {
     let scene = Scene::parse(text, "test.toml", &*PICTURES);
-    schema::check_agrees(text, scene.as_ref().err());
+    schema::check_agrees(text, mistakes(&scene));
     // The cost of a tick has its own tests; other tests may stack many layers.
     compile::compile(&scene?, &BoardLimits { tick_cycles_max: u32::MAX, ..LIMITS }, TICK_HZ)
+}
+
+/// The mistakes that were found while a scene was read.
+fn mistakes(scene: &Result<Scene, CompileError>) -> &[Located] {
+    scene.as_ref().map_or_else(|error| error.mistakes.as_slice(), Scene::mistakes)
 }
 
 /// A scene of the repository.

@@ -35,7 +35,7 @@ fn check(layers: &str, expected: &[&str], records: usize) {
 const STRIPES: &str = "[[layer]]\nkind = \"grating\"\nwavelength_mm = 4\nlow_n = 0\nhigh_n = 0.01\n";
 
 #[test]
-fn what_another_covers_is_dropped() {
+fn a_covered_layer_is_dropped() {
     check(
         &format!("{STRIPES}[[layer]]\nkind = \"constant\"\nfriction_n = 0.26"),
         &["layer 1 (grating) is optimised away: layer 2 (constant) replaces it everywhere"],
@@ -55,7 +55,7 @@ fn what_another_covers_is_dropped() {
 }
 
 #[test]
-fn what_changes_nothing_is_dropped() {
+fn a_layer_without_effect_is_dropped() {
     check(
         &format!(
             "[[layer]]\nkind = \"constant\"\nblend = \"multiply\"\nfriction_factor = 3\n{STRIPES}blend = \"add\"\n\
@@ -119,8 +119,7 @@ fn pictures_are_cropped_to_what_can_be_found_and_shared() {
         )
     };
     let part = "region = { x_mm = 20.5, y_mm = 30, width_mm = 40, height_mm = 10.2 }\n";
-    // 42 columns, from the one whose centre is at 20.5 mm to the one at 60.5 mm, and the 11 or 12 rows around 30 to
-    // 40.2 mm.
+    // 41 columns, with centres from 20.5 mm to 60.5 mm, and 12 rows, enough to cover 30 mm to 40.2 mm.
     let program = compile_layers(&picture(part));
     assert_eq!((program.bitmaps[0].width, program.bitmaps[0].height), (41, 12));
     check(&picture(part), &["brick.png: 10000 samples are cropped to the 492 inside its region and the screen"], 1);

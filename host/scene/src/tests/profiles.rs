@@ -23,7 +23,7 @@ fn parse(text: &str) -> Result<Scene, CompileError> {
         ("latin.toml".to_owned(), vec![0xff]),
     ]);
     let scene = Scene::parse(text, "test.toml", &files);
-    schema::check_agrees(text, scene.as_ref().err());
+    schema::check_agrees(text, mistakes(&scene));
     scene
 }
 
@@ -168,7 +168,7 @@ fn more_electric_than_natural_friction_is_warned_of_with_both_numbers() {
         format!("{SHORT}{light}{}", layer.replace("HIGH", high_n))
     };
     assert_eq!(warnings(&layer("0.049")), []);
-    let [warning] = warnings(&layer("0.06"))[..] else { panic!("one warning") };
+    let [warning] = &warnings(&layer("0.06"))[..] else { panic!("one warning") };
     assert_eq!(
         warning.to_string(),
         "the scene asks for up to 0.06 N of electric friction, more than the finger's natural friction of 0.05 N: the model \
@@ -194,7 +194,7 @@ fn beyond_what_a_finger_was_measured_at_is_warned_of_and_refused_by_boards() {
     let layer = |high_n: &str| format!("[[layer]]\nkind = \"constant\"\nabove = \"natural\"\nfriction_n = {high_n}\n");
     let within = measured("150", "[0.4, 0.6]", "example");
     assert_eq!(warnings(&format!("{within}{}", layer("0.1"))), []);
-    let [warning] = warnings(&format!("{}{}", measured("75", "[0.4, 0.6]", "example"), layer("0.05")))[..] else {
+    let [warning] = &warnings(&format!("{}{}", measured("75", "[0.4, 0.6]", "example"), layer("0.05")))[..] else {
         panic!("one warning")
     };
     assert_eq!(
@@ -208,7 +208,7 @@ fn beyond_what_a_finger_was_measured_at_is_warned_of_and_refused_by_boards() {
     // The host may raise the gain of a live layer, so that all of the reach counts.
     let live = format!("{}{}live = true\n", measured("75", "[0.4, 0.6]", "example"), layer("0.01"));
     assert!(matches!(warnings(&live)[..], [Warning::BeyondMeasuredVoltage { .. }]));
-    let [warning] = warnings(&measured("150", "[0.1, 0.3]", "example"))[..] else { panic!("one warning") };
+    let [warning] = &warnings(&measured("150", "[0.1, 0.3]", "example"))[..] else { panic!("one warning") };
     assert_eq!(
         warning.to_string(),
         "the finger's load of 0.5 N lies outside of the 0.1 N to 0.3 N that it was measured at: change `normal_load_n`, or \

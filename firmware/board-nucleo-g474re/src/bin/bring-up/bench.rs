@@ -121,7 +121,7 @@ impl Bench {
             let now = tick::inputs();
             if last != Some(now) {
                 last = Some(now);
-                info!("amplifier well: {=bool}, arm switch held: {=bool}", now.0, now.1);
+                info!("amplifier ready: {=bool}, arm switch held: {=bool}", now.0, now.1);
             }
         });
     }

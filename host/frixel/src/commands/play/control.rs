@@ -121,7 +121,7 @@ impl Control {
         self.lines.try_recv().ok()
     }
 
-    /// The record of a layer. Says why if there is none.
+    /// The record of a layer. Prints the reason if the scene has no such layer.
     fn layer(&self, program: &Program, name: &str) -> Option<u8> {
         program.layers.record(name).map_err(|error| self.say(error)).ok()
     }

@@ -26,6 +26,7 @@ pub(super) fn play_on_emulator(
     let stroke = plan.choose_stroke(args)?;
     let simulated = SimulatedWorld::new(args, scene)?;
     plan.world = Some(simulated.report());
+    let has_own_reference = simulated.has_own_reference(&stroke);
     let world = world(&plan.program, &simulated, stroke, args.seed)?;
     let image = Image::build()?;
     let (sender, records) = mpsc::channel();
@@ -34,7 +35,7 @@ pub(super) fn play_on_emulator(
         let _ = sender.send(*record);
     })?;
     let mut link = EmulatedLink::open(&board, records)?;
-    if simulated.has_own_reference() {
+    if has_own_reference {
         link = link.referring_to_simulated_finger();
     }
     let device = Device::connect(link)?;

@@ -7,6 +7,7 @@ use frixel::output::Report;
 use frixel::player::{PlayError, Player};
 use frixel::rigs::RecordedLink;
 use frixel_driver::Device;
+use frixel_scene::Program;
 
 use super::control::{Control, Next};
 use super::live_scene::LiveScene;
@@ -29,13 +30,18 @@ pub(super) fn follow<L: RecordedLink>(
     let player = Player::new(device, plan.recorder()?);
     let waits = plan.target == Target::Simulator;
     let control = args.control.then(|| Control::start(&plan.program, waits, interrupt)).transpose()?;
-    let (bars, writing) = (Bars::default(), Duration::ZERO);
-    let mut play = Play { args, plan, player, outputs, live_scene, control, interrupt, bars, writing };
+    let (bars, writing, refusals) = (Bars::default(), Duration::ZERO, sentences(&plan.program));
+    let mut play = Play { args, plan, player, outputs, live_scene, control, interrupt, bars, writing, refusals };
     play.start()?;
     let begin = Instant::now();
     let ended = play.until_over();
     let playing = begin.elapsed().saturating_sub(play.writing);
     Ok(play.finish(ended, playing))
+}
+
+/// Why a board refuses a program, a sentence each.
+fn sentences(program: &Program) -> Vec<String> {
+    program.refusals.iter().map(ToString::to_string).collect()
 }
 
 /// A play in progress.
@@ -50,6 +56,8 @@ struct Play<'a, L: RecordedLink> {
     bars: Bars,
     /// Wall time spent on writing files.
     writing: Duration,
+    /// Why a board refuses the scenes that were played.
+    refusals: Vec<String>,
 }
 
 impl<L: RecordedLink> Play<'_, L> {
@@ -115,6 +123,7 @@ impl<L: RecordedLink> Play<'_, L> {
         match live_scene.refresh(&mut self.player, &self.plan.program) {
             Ok(Some(program)) => {
                 self.outputs.replace(&program);
+                self.refusals.extend(sentences(&program));
                 if let Some(control) = &mut self.control {
                     control.replace(&program);
                 }
@@ -142,10 +151,12 @@ impl<L: RecordedLink> Play<'_, L> {
         let report = Report::new(target.name(), &recorder.summary(), &program.reach, &counters, realtime_factor)
             .with_origin(program.finger.origin)
             .with_world(self.plan.world)
-            .with_stream(stream);
+            .with_stream(stream)
+            .with_refusals(self.refusals);
         let written = self.outputs.write(&recorder.take_rows());
         let report = report.with_untouched(self.outputs.untouched_layers());
-        let finished = written.and_then(|()| self.outputs.finish(program, recorder.start_s().unwrap_or(0.0)));
+        let start_s = recorder.start_s().unwrap_or(0.0);
+        let finished = written.and_then(|()| self.outputs.finish(program, &report, start_s));
         // Ctrl-C in a terminal also ends the emulator, which is not a failure.
         let failure = ended.err().filter(|_| !interrupted);
         let (files, failure) = match finished {

@@ -8,13 +8,13 @@ use frixel::player::{PlayError, Player};
 use frixel::rigs::RecordedLink;
 use frixel::scene_file::{ProfileNames, SceneFileError};
 use frixel_driver::DeviceError;
-use frixel_scene::{Program, compile};
-use frixel_wire::hello::Hello;
+use frixel_scene::Program;
 use frixel_wire::message::Refusal;
 
-use super::note;
 use super::plan::{check_measured, print_notes};
+use super::rigs::Target;
 use super::saved_file::SavedFile;
+use super::{note, note_refusals};
 
 /// Watches the scene's file, and the files that it names, while an earlier version of it plays.
 pub(super) struct LiveScene {
@@ -25,8 +25,7 @@ pub(super) struct LiveScene {
     compiling: Option<JoinHandle<Compiled>>,
     /// Whether changes of the files are played.
     watches: bool,
-    /// Whether the play waits for the compiler, because time is virtual.
-    waits: bool,
+    target: Target,
 }
 
 /// A compiled scene, and the files that it names, as they were before they were read.
@@ -38,10 +37,10 @@ struct Compiled {
 impl LiveScene {
     /// Watches a file, and the files that it names, for changes from now on if `watches` is true. Call this before the
     /// file is read.
-    pub(super) fn new(path: &Path, profiles: ProfileNames, watches: bool, waits: bool) -> Self {
+    pub(super) fn new(path: &Path, profiles: ProfileNames, watches: bool, target: Target) -> Self {
         let file = SavedFile::new(path);
         let named_files = if watches { profiles.load_with_files(path).1 } else { Vec::new() };
-        Self { profiles, file, named_files: watched(&named_files), compiling: None, watches, waits }
+        Self { profiles, file, named_files: watched(&named_files), compiling: None, watches, target }
     }
 
     /// Plays, and watches, another file from now on.
@@ -57,7 +56,9 @@ impl LiveScene {
         player: &mut Player<L>,
         playing: &Program,
     ) -> Result<Option<Program>, PlayError> {
-        if let Some(compiling) = self.compiling.take_if(|compiling| self.waits || compiling.is_finished()) {
+        // In virtual time, the play waits for the compiler.
+        let waits = self.target == Target::Simulator;
+        if let Some(compiling) = self.compiling.take_if(|compiling| waits || compiling.is_finished()) {
             let Compiled { program, named_files } = compiling.join().unwrap_or_else(|panic| resume_unwind(panic));
             self.named_files = named_files;
             return replace(self.file.path(), program, player, playing);
@@ -78,11 +79,11 @@ impl LiveScene {
     }
 
     fn compile<L: RecordedLink>(&mut self, player: &Player<L>) {
-        let (path, Hello { limits, tick_hz, .. }) = (self.file.path().to_owned(), *player.device().hello());
-        let profiles = self.profiles.clone();
+        let (limits, tick_hz) = self.target.limits(player.device().hello());
+        let (path, profiles, target) = (self.file.path().to_owned(), self.profiles.clone(), self.target);
         self.compiling = Some(thread::spawn(move || {
             let (scene, named_files) = profiles.load_with_files(&path);
-            let program = scene.and_then(|scene| Ok(compile(&scene, &limits, tick_hz)?));
+            let program = scene.and_then(|scene| Ok(target.compile(&scene, &limits, tick_hz)?));
             Compiled { program, named_files: watched(&named_files) }
         }));
     }
@@ -99,12 +100,12 @@ fn replace<L: RecordedLink>(
     player: &mut Player<L>,
     playing: &Program,
 ) -> Result<Option<Program>, PlayError> {
-    let path = path.display();
+    let (file, path) = (path, path.display());
     let program = match compiled {
         Ok(program) => program,
         Err(error) => {
             note(error);
-            note(format_args!("frixel: {path} has mistakes: the scene before plays on"));
+            note(format_args!("frixel: {path} is not played: the scene before plays on"));
             return Ok(None);
         }
     };
@@ -123,6 +124,7 @@ fn replace<L: RecordedLink>(
     };
     match replaced {
         Ok(()) => {
+            note_refusals(file, &program);
             print_notes(&program);
             note(format_args!("frixel: {path} plays as it was saved{how}"));
             Ok(Some(program))

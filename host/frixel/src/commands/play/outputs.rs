@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use frixel::output::{FeltCsv, Subject, Trace, write_felt_svg, write_scene_png};
+use frixel::output::{FeltCsv, Report, Subject, Trace, write_felt_svg, write_scene_png};
 use frixel_scene::recorder::FeltRow;
 use frixel_scene::{Program, TouchedLayers};
 
@@ -85,20 +85,30 @@ impl Outputs {
         self.write(rows)
     }
 
-    /// Closes `felt.csv`, and draws `felt.svg`, or `commanded.svg` for a board at a port, and `scene.png`. Returns the paths of the files.
+    /// Closes `felt.csv`, writes `summary.json`, and draws `felt.svg`, or `commanded.svg` for a board at a port, and
+    /// `scene.png`. Returns the paths of the files.
     ///
     /// `start_s` is the time from the power-on of the board to time zero of the rows.
-    pub(super) fn finish(mut self, program: &Program, start_s: f64) -> Result<Vec<PathBuf>, CommandError> {
+    pub(super) fn finish(
+        mut self,
+        program: &Program,
+        report: &Report,
+        start_s: f64,
+    ) -> Result<Vec<PathBuf>, CommandError> {
         let is_felt = self.target.is_virtual_time() || self.log.is_some();
         if let Some(log) = self.log.take() {
             self.write_joined(&joined(&log, &self.rows, start_s)?)?;
         }
         self.csv.finish()?;
-        let mut files = vec![self.csv_path];
+        let summary = self.folder.join("summary.json");
+        // The speed of the simulation is another one each time, and equal plays give equal files.
+        let reproducible = Report { realtime_factor: None, ..report.clone() };
+        std::fs::write(&summary, reproducible.to_json() + "\n").map_err(CommandError::writing(&summary))?;
+        let mut files = vec![self.csv_path, summary];
         // Without a finger that is simulated beside the board, what was felt is unknown.
         let name = if is_felt { "felt.svg" } else { "commanded.svg" };
         let (svg, png) = (self.folder.join(name), self.folder.join("scene.png"));
-        let subject = Subject { name: self.title, simulated: self.is_simulated };
+        let subject = Subject { name: self.title, simulated: self.is_simulated, draft: report.draft };
         write_felt_svg(&svg, &subject, &self.trace, &program.reach)?;
         write_scene_png(&png, &subject, program, &self.trace)?;
         files.extend([svg, png]);

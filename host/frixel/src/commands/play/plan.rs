@@ -8,12 +8,12 @@ use frixel::output::WorldReport;
 use frixel::stream::Feed;
 use frixel_hil_sim::Stroke;
 use frixel_scene::recorder::Recorder;
-use frixel_scene::{Program, Scene, compile};
+use frixel_scene::{Program, Scene};
 use frixel_wire::hello::{BoardKind, BoardLimits};
 
 use super::super::stroke::{check_on_screen, default_stroke};
 use super::rigs::Target;
-use super::{CommandError, PlayArgs, note};
+use super::{CommandError, PlayArgs, note, note_refusals};
 
 /// Time for which the finger is lifted before it repeats a stroke that is shorter than the stream, s.
 const PAUSE_S: f64 = 0.2;
@@ -45,7 +45,10 @@ pub(super) fn check_options(args: &PlayArgs, target: Target) -> Result<(), Comma
         return Err(CommandError::ControlAndStream);
     }
     match target {
-        Target::Simulator | Target::Emulator if args.watch => Err(CommandError::WatchInVirtualTime { port: port() }),
+        Target::Emulator if args.watch => Err(CommandError::WatchInVirtualTime { port: port() }),
+        Target::Simulator if args.watch && (args.control || args.stream.as_deref() == Some(Path::new("-"))) => {
+            Err(CommandError::WatchReadsInputOnce)
+        }
         Target::Simulator | Target::Emulator if args.with_log.is_some() => {
             Err(CommandError::LogInVirtualTime { port: port() })
         }
@@ -70,7 +73,8 @@ impl Plan {
     ) -> Result<Self, CommandError> {
         let ticks_per_row = ticks_per_row(args.csv_hz, tick_hz)?;
         args.seconds.map_or(Ok(()), |seconds| check_seconds(seconds, tick_hz))?;
-        let program = compile(scene, limits, tick_hz)?;
+        let program = target.compile(scene, limits, tick_hz)?;
+        note_refusals(&args.scene, &program);
         print_notes(&program);
         let telemetry_period_ticks = match target {
             Target::Simulator => 0,
@@ -78,6 +82,9 @@ impl Plan {
             Target::Port => telemetry_period_ticks(&program, ticks_per_row, tick_hz),
         };
         let feed = open_feed(args, tick_hz, target)?;
+        if feed.is_some() && !program.records.iter().any(|record| record.layer.is_streamed()) {
+            return Err(CommandError::NoStreamLayer { scene: args.scene.display().to_string() });
+        }
         note_streams(&program, feed.is_some());
         let (limits, seconds) = (*limits, args.seconds);
         Ok(Self { target, program, feed, world: None, ticks_per_row, telemetry_period_ticks, limits, tick_hz, seconds })
@@ -156,7 +163,7 @@ fn note_streams(program: &Program, has_feed: bool) {
 /// Rejects a program for a board with an electrode if its finger was not measured at the voltage or load that it needs.
 pub(super) fn check_measured(program: &Program, board: BoardKind) -> Result<(), CommandError> {
     match program.warnings.iter().find(|warning| warning.is_refused_by_boards()) {
-        Some(warning) if !board.is_simulated() => Err(CommandError::NotMeasured { warning: *warning }),
+        Some(warning) if !board.is_simulated() => Err(CommandError::NotMeasured { warning: warning.clone() }),
         _ => Ok(()),
     }
 }
@@ -220,7 +227,7 @@ mod tests {
                     measured_normal_load_range_n = [0.4, 0.6]\n";
         let board = RigConfig::default().board;
         let scene = Scene::parse(text, "test.toml", &BTreeMap::new()).unwrap();
-        let program = compile(&scene, &board.limits, board.tick_hz).unwrap();
+        let program = Target::Port.compile(&scene, &board.limits, board.tick_hz).unwrap();
         assert_eq!(program.warnings.len(), 1);
         check_measured(&program, BoardKind::Simulator).unwrap();
         let refused = check_measured(&program, BoardKind::NucleoG474re).unwrap_err().to_string();

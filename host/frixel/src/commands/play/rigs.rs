@@ -3,8 +3,9 @@
 use frixel::rigs::{PortLink, SimLink};
 use frixel_driver::{DEFAULT_BAUD, Device, SerialLink};
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
-use frixel_scene::Scene;
 use frixel_scene::recorder::Recorder;
+use frixel_scene::{CompileError, Program, Scene, compile, compile_draft};
+use frixel_wire::hello::{BoardLimits, Hello};
 
 #[cfg(unix)]
 pub(super) use super::emulator::play_on_emulator;
@@ -40,6 +41,21 @@ impl Target {
         self != Self::Port
     }
 
+    /// Compiles a scene for this kind of board. Only the simulator in this process plays drafts.
+    pub(super) fn compile(self, scene: &Scene, limits: &BoardLimits, tick_hz: u32) -> Result<Program, CompileError> {
+        match self {
+            Self::Simulator => compile_draft(scene, limits, tick_hz),
+            Self::Emulator | Self::Port => compile(scene, limits, tick_hz),
+        }
+    }
+
+    /// The limits and the tick rate that scenes are compiled for. The simulator's own limit of time is lifted while it plays,
+    /// for drafts.
+    pub(super) fn limits(self, hello: &Hello) -> (BoardLimits, u32) {
+        let board = RigConfig::default().board;
+        if self == Self::Simulator { (board.limits, board.tick_hz) } else { (hello.limits, hello.tick_hz) }
+    }
+
     /// The name of this kind in the report.
     pub(super) fn name(self) -> &'static str {
         match self {
@@ -63,11 +79,14 @@ pub(super) fn play_on_simulator(
     let board = (&config.board.limits, config.board.tick_hz);
     let mut plan = Plan::new(args, scene, Target::Simulator, board)?;
     let stroke = plan.choose_stroke(args)?;
+    // A draft may take longer than a board has time for.
+    config.board.limits.tick_cycles_max = u32::MAX;
+    let has_own_reference = world.has_own_reference(&stroke);
     let mut memory = BoardMemory::new();
     let mut rig = Rig::new(&mut memory, &config, stroke, args.seed)?;
     world.set_finger(rig.world_mut());
     let mut link = SimLink::new(rig, Recorder::idle());
-    if world.has_own_reference() {
+    if has_own_reference {
         link = link.referring_to_simulated_finger();
     }
     plan.world = Some(world.report());

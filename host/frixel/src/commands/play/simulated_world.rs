@@ -1,7 +1,7 @@
 //! The world around a simulated or emulated board: which effects it has, and whose finger is in it.
 
 use frixel::output::WorldReport;
-use frixel_hil_sim::{Person, World, WorldConfig};
+use frixel_hil_sim::{Person, Stroke, World, WorldConfig};
 use frixel_model::LoadedContact;
 use frixel_scene::Scene;
 
@@ -52,10 +52,10 @@ impl SimulatedWorld {
         }
     }
 
-    /// Whether the simulated finger is more than the scene's finger in steady sliding, so that the reference is meant
-    /// for it.
-    pub(super) fn has_own_reference(&self) -> bool {
-        !self.is_ideal || self.person.is_some()
+    /// Whether the simulated finger is more than the scene's finger in steady sliding under its load, so that the
+    /// reference is meant for it.
+    pub(super) fn has_own_reference(&self, stroke: &Stroke) -> bool {
+        !self.is_ideal || self.person.is_some() || stroke.has_loads()
     }
 
     /// What the report says about this world.

@@ -3,15 +3,16 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use frixel::output::write_preview_png;
+use frixel::output::{draft_line, write_preview_png};
 use frixel_hil_sim::RigConfig;
 use frixel_scene::check::feel;
 use frixel_scene::perception::Perception;
-use frixel_scene::{Preview, compile};
+use frixel_scene::{Preview, compile_draft};
 
+use super::super::argument::number;
 use super::super::error::CommandError;
 use super::super::profiles::ProfileArgs;
-use super::super::terminal::print_line;
+use super::super::terminal::{note_refusals, print_line};
 
 #[derive(Debug, Args)]
 pub(in super::super) struct PreviewArgs {
@@ -35,11 +36,15 @@ pub(super) fn run(args: &PreviewArgs) -> Result<(), CommandError> {
         return Err(CommandError::NotPng { path: args.output.clone() });
     }
     let board = RigConfig::default().board;
-    let program = compile(&args.profiles.names().load(&args.scene)?, &board.limits, board.tick_hz)?;
+    let program = compile_draft(&args.profiles.names().load(&args.scene)?, &board.limits, board.tick_hz)?;
+    note_refusals(&args.scene, &program);
     let title = args.scene.file_name().unwrap_or_default().to_string_lossy();
     let map_max = (args.map_width, args.map_width * 4 / 5);
     let preview = Preview { speed_m_per_s: 1e-3 * args.speed_mm_per_s, map_max };
     write_preview_png(&args.output, &title, &program, &preview)?;
+    if program.is_draft() {
+        print_line(format_args!("  {:<16} {}", "draft", draft_line(program.refusals.len())))?;
+    }
     for (name, text) in feel::lines(&Perception::of(&program)) {
         print_line(format_args!("  {name:<16} {text}"))?;
     }
@@ -48,8 +53,5 @@ pub(super) fn run(args: &PreviewArgs) -> Result<(), CommandError> {
 
 /// Parses the speed of a finger.
 fn speed(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(speed_mm_per_s) if (0.0..=10_000.0).contains(&speed_mm_per_s) => Ok(speed_mm_per_s),
-        _ => Err("expected a speed from 0 to 10000 mm/s".into()),
-    }
+    number(text, 0.0..=10_000.0, "a speed from 0 to 10000 mm/s")
 }

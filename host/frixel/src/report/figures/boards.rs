@@ -4,14 +4,14 @@ use crate::report::counts::Counts;
 
 /// Whether the page has a figure of a cost on a board, and if not, why.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Boards {
+pub(super) enum BoardCostFigure {
     Shown,
     NotInTheFile,
     NoFile,
 }
 
-impl Boards {
-    /// `shown` is the figure, or `None` if `counts` lacks the numbers for it.
+impl BoardCostFigure {
+    /// Says whether the figure is shown, or why not: `shown` is the figure, `counts` the file of counts, if there is one.
     pub(super) fn new<T>(shown: Option<&T>, counts: Option<&Counts>) -> Self {
         match (shown, counts) {
             (Some(_), _) => Self::Shown,

@@ -15,7 +15,7 @@ mod touch_estimators;
 
 use frixel_model::{Contact, Finger, ParameterError, Real};
 
-use boards::Boards;
+use boards::BoardCostFigure;
 
 use super::counts::Counts;
 use super::error::ReportError;
@@ -42,9 +42,9 @@ pub(super) struct Figure {
 pub(super) fn all(counts: Option<&Counts>) -> Result<Vec<Figure>, ReportError> {
     let measured = run_time::measure()?;
     let instructions = counts.map(|counts| run_time::against_instructions(&measured, counts)).transpose()?.flatten();
-    let inversions = Boards::new(instructions.as_ref(), counts);
+    let inversions = BoardCostFigure::new(instructions.as_ref(), counts);
     let layers = counts.map(tick_layers::figure).transpose()?.flatten();
-    let ticks = Boards::new(layers.as_ref(), counts);
+    let ticks = BoardCostFigure::new(layers.as_ref(), counts);
     let figures = [
         Some(core_line::figure()?),
         Some(loads::contact_radius()?),

@@ -4,7 +4,7 @@ use core::f64::consts::LOG10_2;
 
 use frixel_model::ContactModel;
 
-use super::boards::Boards;
+use super::boards::BoardCostFigure;
 use super::{EXAMPLE, Figure, GAP_M, LOAD_N, ReportError, example, example_finger};
 use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};
 use crate::report::counts::Counts;
@@ -95,7 +95,7 @@ pub(super) fn measure() -> Result<[Measured; 2], ReportError> {
 }
 
 /// Error over run time on this computer.
-pub(super) fn against_time(measured: &[Measured; 2], boards: Boards) -> Result<Figure, ReportError> {
+pub(super) fn against_time(measured: &[Measured; 2], boards: BoardCostFigure) -> Result<Figure, ReportError> {
     let time = || Axis::log("MEASURED run time / the f64 closed form's", 0.05..200.0);
     let panels = measured.each_ref().map(|one| one.panel(time(), |method| Some(method.seconds / one.unit_seconds())));
     let mut data = Data::new([

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use frixel_hil_sim::{Point, RigConfig, Stroke, TouchConfig};
 
 use super::{Figure, ReportError};
-use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
+use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, Strip, StripCell};
 use crate::player::{Simulation, simulate};
 use crate::report::data::Data;
 use frixel_scene::recorder::FeltRow;
@@ -50,7 +50,7 @@ fn cases() -> [Case; 4] {
             look: curve(PALETTE[1], Mark::Triangle),
         },
         Case {
-            name: "2 mm stripes, a real touch source",
+            name: "2 mm stripes, touch source of 100 Hz, 10 ms late",
             wavelength_mm: 2.0,
             touch: TouchConfig::default(),
             look: curve(PALETTE[3], Mark::Ring),
@@ -133,8 +133,8 @@ fn trace(panel: &mut Panel, data: &mut Data<6>, case: &Case) -> Result<(), Repor
             let (ticks, carrier) = (f64::from(tick_hz), f64::from(carrier_hz(tick_hz)));
             data.row([curve.into(), ticks.into(), carrier.into(), None.into(), time_ms.into(), friction_mn.into()]);
         };
-        for (time_ms, wanted_mn) in part(|row| row.wanted_n) {
-            put("wanted", time_ms, wanted_mn);
+        for (time_ms, reference_mn) in part(|row| row.wanted_n) {
+            put("reference", time_ms, reference_mn);
         }
         let curve = part(|row| row.felt_n);
         for (time_ms, felt_mn) in &curve {
@@ -142,10 +142,17 @@ fn trace(panel: &mut Panel, data: &mut Data<6>, case: &Case) -> Result<(), Repor
         }
         panel.add(&format!("felt at {} kHz", tick_hz / 1_000), look, curve);
         if index == 1 {
-            panel.add("wanted", Look::line(PALETTE[6], Line::Dashed), part(|row| row.wanted_n));
+            panel.add("reference", Look::line(PALETTE[6], Line::Dashed), part(|row| row.wanted_n));
         }
     }
     Ok(())
+}
+
+/// The finger's way at the times that have a label.
+fn way(time: &Axis) -> Strip {
+    let cell =
+        |time_ms: f64| StripCell { x: time_ms..time_ms, text: format!("{:.1}", SPEED_M_PER_S * time_ms), colour: None };
+    Strip { label: "way, mm".to_owned(), cells: time.ticks().into_iter().map(cell).collect() }
 }
 
 fn caption() -> Vec<String> {
@@ -156,7 +163,7 @@ fn caption() -> Vec<String> {
         format!(
             "A sine grating of 20 mN under a finger that slides at 100 mm/s, played on the simulated board with its \
              ticks at another rate, and felt through amplifier and friction lag. Left: root mean square of felt less \
-             wanted friction, both as means over 1 ms, over five seeds. The carrier is 1 kHz where half its period has \
+             reference friction, both as means over 1 ms, over five seeds. The carrier is 1 kHz where half its period has \
              the {HALF_PERIOD_MIN_TICKS} ticks that a board demands; with fewer ticks it is slower ({}). A square \
              carrier's force does not depend on its frequency but for its edges.",
             slower.join(", ")
@@ -164,9 +171,9 @@ fn caption() -> Vec<String> {
         "At few ticks a second the error is what the finger slides in a tick or two, and halves with it. It ends at \
          what ticks cannot help: the friction lag (1.4 kHz at this speed) and the carrier's edges, or, with a touch \
          source of 100 Hz that is 10 ms late and noisy, what is not known of the finger's place. The other curves have \
-         a touch source of 500 Hz without delay or noise. What is wanted is taken at the end of each tick."
+         a touch source of 500 Hz without delay or noise. The reference is taken at the end of each tick."
             .to_owned(),
-        "Right: the finest stripes tick by tick, with that touch source. The spikes at 40 kHz are the edges of the \
+        "Right: the finest stripes tick by tick, with the touch source of 500 Hz. The spikes at 40 kHz are the edges of the \
          carrier, which a mean over its period takes out."
             .to_owned(),
     ]
@@ -204,9 +211,10 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
     );
     let [_, _, finest, _] = cases();
     trace(&mut right, &mut data, &finest)?;
+    right.add_strip(way(&right.x));
     Ok(Figure {
         name: "error-against-tick-rate",
-        title: "Error against the rate of ticks, for a felt texture".to_owned(),
+        title: "Error against the rate of ticks, for a felt texture, simulated".to_owned(),
         caption: caption(),
         chart: Chart::new(vec![left, right], 2),
         csv: data.csv()?,

@@ -24,8 +24,12 @@ fn rms(recordings: &[Recording], error: impl Fn(&Recording) -> f64) -> f64 {
 fn panel(class: Class, data: &mut Data<4>) -> Result<Panel, ReportError> {
     let recordings =
         SEEDS.iter().map(|seed| Recording::new(class, MEDIAN_M_PER_S, *seed)).collect::<Result<Vec<_>, _>>()?;
-    let title =
-        format!("{} Hz, {} ms late: stripes of {} mm", class.rate_hz, 1e3 * class.latency_s, 1e3 * class.wavelength_m);
+    let title = format!(
+        "{} Hz, {} ms late, simulated: stripes of {} mm",
+        class.rate_hz,
+        1e3 * class.latency_s,
+        1e3 * class.wavelength_m
+    );
     let mut panel = Panel::new(
         &title,
         Axis::log("time a report, ns (measured)", 1.0..10_000.0),
@@ -59,7 +63,7 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
     let panels = CLASSES.iter().map(|class| panel(*class, &mut data)).collect::<Result<Vec<_>, _>>()?;
     Ok(Figure {
         name: "touch-estimators",
-        title: "Error of a felt texture against the run time of the touch estimator".to_owned(),
+        title: "Error of a felt texture, simulated, against the run time of the touch estimator".to_owned(),
         caption: vec![
             "A sine grating that is played where an estimator says the finger is, against the same grating where it is: \
              rms of the difference below 40 Hz over that of the grating. Strokes of simulated people with a median speed \

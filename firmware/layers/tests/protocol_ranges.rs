@@ -1,0 +1,99 @@
+//! The table of ranges in `PROTOCOL.md` is that of the code.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
+
+mod support;
+
+use frixel_layers::{Header, Range, range};
+use frixel_wire::hello::BoardLimits;
+use support::header;
+
+const PROTOCOL: &str = include_str!("../../wire/PROTOCOL.md");
+const TICK_HZ: u32 = 40_000;
+const LIMITS: BoardLimits = BoardLimits { voltage_max_v_peak: 220.0, ..BoardLimits::UNSTATED };
+
+/// Rows of the table: number, least, largest, name of the field.
+fn rows() -> Vec<[&'static str; 4]> {
+    let (_, table) = PROTOCOL.split_once("### `Ranges`").unwrap();
+    let lines =
+        table.lines().skip_while(|line| !line.starts_with("|---")).skip(1).take_while(|line| line.starts_with('|'));
+    let cells = |line: &'static str| line.trim_matches('|').split('|').map(str::trim).collect::<Vec<_>>();
+    lines
+        .map(|line| {
+            if let [number, least, largest, _, field] = cells(line)[..] {
+                [number, least, largest, field]
+            } else {
+                panic!("{line}")
+            }
+        })
+        .collect()
+}
+
+fn limit(text: &str) -> f32 {
+    match text {
+        "limit 4" => LIMITS.voltage_max_v_peak,
+        "an eighth of the ticks a second" => TICK_HZ as f32 / 8.0,
+        "the largest `f32`" => f32::MAX,
+        number => number.parse().unwrap(),
+    }
+}
+
+#[track_caller]
+fn check(number: &str, found: (f32, f32, String)) {
+    let row = rows().into_iter().find(|[name, ..]| *name == number).unwrap_or_else(|| panic!("no row {number}"));
+    let [_, least, largest, field] = row;
+    assert_eq!((limit(least), limit(largest), field.trim_matches('`').to_owned()), found, "{number}");
+}
+
+#[test]
+fn numbers_of_the_header() {
+    type Set = fn(&mut Header);
+    let fields: [(&str, Set); 13] = [
+        ("screen width", |header| header.screen_width_m = f32::NAN),
+        ("screen height", |header| header.screen_height_m = f32::NAN),
+        ("finger radius", |header| header.finger_radius_m = f32::NAN),
+        ("Winkler-Fuss stiffness", |header| header.stiffness_pa_per_m = f32::NAN),
+        ("friction coefficient", |header| header.friction_coefficient = f32::NAN),
+        ("normal load", |header| header.normal_load_n = f32::NAN),
+        ("effective gap", |header| header.effective_gap_m = f32::NAN),
+        ("largest voltage, rms", |header| header.voltage_max_v_rms = f32::NAN),
+        ("largest voltage, peak", |header| header.voltage_max_v_peak = f32::NAN),
+        ("fastest change of the envelope", |header| header.slew_v_per_s = f32::NAN),
+        ("carrier frequency", |header| header.carrier_hz = f32::NAN),
+        ("host timeout", |header| header.host_timeout_s = f32::NAN),
+        ("largest electric friction", |header| header.electric_friction_max_n = Some(f32::NAN)),
+    ];
+    for (name, set) in fields {
+        let mut header = header();
+        set(&mut header);
+        let refused = header.check(&LIMITS, TICK_HZ).unwrap_err();
+        check(&format!("header: {name}"), (refused.min, refused.max, format!("{:?}", refused.field)));
+    }
+}
+
+#[test]
+fn numbers_of_records_and_points() {
+    let ranges: [(&str, Range); 18] = [
+        ("gain, also of `SetLayer`", range::GAIN),
+        ("friction or factor, also of a curve's point", range::FRICTION_N),
+        ("region: left and top end", range::REGION_PLACE_M),
+        ("region: width and height", range::REGION_SIZE_M),
+        ("vertex of a polygon", range::VERTEX_M),
+        ("cycles per metre", range::CYCLES_PER_M),
+        ("phase", range::PHASE_TURNS),
+        ("duty", range::DUTY),
+        ("angle, direction", range::ANGLE_TURNS),
+        ("bitmap: corner", range::BITMAP_PLACE_M),
+        ("bitmap: distance of samples and rows", range::PITCH_M),
+        ("noise: wavelength", range::WAVELENGTH_M),
+        ("edge: place on the line; rings: middle", range::SHAPE_PLACE_M),
+        ("edge: width; button: width of the rim", range::SHAPE_WIDTH_M),
+        ("click: time", range::CLICK_S),
+        ("burst: period", range::BURST_S),
+        ("vibration: frequency", range::FREQUENCY_HZ),
+        ("curve: speed", range::SPEED_M_PER_S),
+    ];
+    for (name, range) in ranges {
+        check(name, (range.min as f32, range.max as f32, format!("{:?}", range.field)));
+    }
+    assert_eq!(rows().len(), 13 + ranges.len(), "every row is checked");
+}

@@ -1,0 +1,139 @@
+//! What `PROTOCOL.md` says in section 16, "Details for clients".
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
+
+mod support;
+
+use frixel_control::Board;
+use frixel_wire::fault::{Fault, State};
+use frixel_wire::frame::{FRAME_MAX_LEN, crc32, encode};
+use frixel_wire::message::{Accepted, Answer, Command, FromBoard, Refusal};
+use support::{Memory, TestBoard, constant};
+
+/// Ticks of the host timeout of these scenes, and a margin.
+const TIMEOUT_TICKS: u32 = 11_000;
+
+/// Sends a payload, whatever it says.
+fn send(board: &mut TestBoard, payload: &[u8]) -> usize {
+    let mut frame = [0; FRAME_MAX_LEN];
+    let frame = encode(payload, &mut frame).unwrap().to_vec();
+    board.send(&frame);
+    frame.len()
+}
+
+fn answers(board: &mut TestBoard) -> Vec<(u16, Result<Accepted, Refusal>)> {
+    let is_answer = |message: FromBoard| match message {
+        FromBoard::Answer(Answer { sequence, outcome, .. }) => Some((sequence, outcome)),
+        _ => None,
+    };
+    board.messages.drain(..).filter_map(is_answer).collect()
+}
+
+/// The state of a playing board after its host timeout, with this payload every eighth of it.
+fn state_with_only(payload: &[u8]) -> State {
+    let mut memory = Memory::new();
+    let mut board = TestBoard::new(&mut memory);
+    board.play(&constant(0.01));
+    for _ in 0..8 {
+        board.ticks(TIMEOUT_TICKS / 8);
+        send(&mut board, payload);
+    }
+    board.status().telemetry.state
+}
+
+#[test]
+fn what_is_not_understood_is_dropped_or_refused_and_costs_credit() {
+    let mut memory = Memory::new();
+    let mut board = TestBoard::new(&mut memory);
+    board.hello();
+    let mut sent = 0;
+    // A sequence number of four bytes, a request of nothing, an unknown kind, and a message of a board.
+    for payload in [&[2, 0xff, 0xff, 0xff, 0x01][..], &[2], &[0x42, 1, 2], &[3, 0, 0, 0, 0, 0]] {
+        sent += send(&mut board, payload);
+    }
+    assert_eq!(answers(&mut board), []);
+    // An unknown command, and a known one with a byte behind it.
+    sent += send(&mut board, &[2, 7, 99]);
+    sent += send(&mut board, &[2, 8, 0, 1]);
+    let unknown = Err(Refusal::UnknownCommand);
+    assert_eq!(answers(&mut board), [(7, unknown), (8, unknown)]);
+    // A ping with sequence 5, whose varint has two bytes more than it needs.
+    sent += send(&mut board, &[2, 0x85, 0x80, 0x00, 0]);
+    let FromBoard::Answer(answer) = board.messages.remove(0) else { panic!("no answer") };
+    assert_eq!((answer.sequence, answer.outcome), (5, Ok(Accepted::Done)));
+    assert_eq!(answer.received_bytes as usize, sent);
+}
+
+#[test]
+fn only_what_is_understood_is_a_sign_of_life() {
+    for payload in [&[2, 0xff, 0xff, 0xff, 0x01][..], &[0x42, 1, 2], &[3, 0, 0, 0, 0, 0]] {
+        assert_eq!(state_with_only(payload), State::Disarmed, "{payload:?}");
+    }
+    // An unknown command, and a chunk without an upload.
+    for payload in [&[2, 7, 99][..], &[0x80, 0, 1, 2, 3]] {
+        assert_eq!(state_with_only(payload), State::Active, "{payload:?}");
+    }
+}
+
+#[test]
+fn the_first_refusal_of_several() {
+    let mut memory = Memory::new();
+    let mut board = TestBoard::new(&mut memory);
+    board.hello();
+    let crc = crc32(&constant(0.01));
+    assert_eq!(board.command(Command::Play), Err(Refusal::NoScene));
+    assert_eq!(board.command(Command::Stop), Err(Refusal::WrongState(State::Disarmed)));
+    assert_eq!(board.command(Command::Disarm), Ok(Accepted::Done));
+    assert_eq!(board.command(Command::Commit { crc32: crc }), Err(Refusal::NoScene));
+    board.command(Command::Arm).unwrap();
+    assert_eq!(board.command(Command::Play), Err(Refusal::NoScene));
+    board.command(Command::Disarm).unwrap();
+    board.press_switch();
+    board.upload_scene(&constant(0.01)).unwrap();
+    let mismatch = Refusal::CrcMismatch { expected: crc, found: !crc };
+    let refused = board.command(Command::Commit { crc32: !crc }).unwrap_err();
+    assert_eq!(std::mem::discriminant(&refused), std::mem::discriminant(&mismatch));
+    board.command(Command::UploadScene { len: 10, crc32: 1 }).unwrap();
+    assert_eq!(board.command(Command::Commit { crc32: crc }), Err(Refusal::UploadIncomplete { next_chunk: 0 }));
+    board.load(&constant(0.01)).unwrap();
+    assert_eq!(board.command(Command::Play), Err(Refusal::WrongState(State::Disarmed)));
+    board.command(Command::Arm).unwrap();
+    board.sense.amplifier_fault = true;
+    board.ticks(2);
+    for command in [Command::Arm, Command::Play, Command::Stop, Command::Disarm] {
+        assert_eq!(board.command(command), Err(Refusal::Faulted(Fault::Amplifier)), "{command:?}");
+    }
+}
+
+#[test]
+fn a_switch_that_is_not_held_is_said_before_a_wrong_state() {
+    let mut memory = Memory::new();
+    let mut board = TestBoard::of(Board::SIMULATOR, &mut memory);
+    board.hello();
+    board.sense.arm_switch = false;
+    board.ticks(2);
+    assert_eq!(board.command(Command::Arm), Err(Refusal::ArmSwitch));
+}
+
+#[test]
+fn an_upload_of_nothing_ends_at_once_and_is_no_scene() {
+    let mut memory = Memory::new();
+    let mut board = TestBoard::new(&mut memory);
+    board.hello();
+    board.command(Command::UploadScene { len: 0, crc32: 0 }).unwrap();
+    assert_eq!(board.command(Command::UploadEnd), Ok(Accepted::Done));
+    let refused = board.command(Command::Commit { crc32: 0 });
+    assert!(matches!(refused, Err(Refusal::Scene(_))), "{refused:?}");
+}
+
+#[test]
+fn a_scene_is_committed_as_often_as_a_client_likes() {
+    let mut memory = Memory::new();
+    let mut board = TestBoard::new(&mut memory);
+    board.play(&constant(0.01));
+    for _ in 0..2 {
+        assert_eq!(board.command(Command::Commit { crc32: crc32(&constant(0.01)) }), Ok(Accepted::Done));
+        board.ticks(400);
+    }
+    assert_eq!(board.status().telemetry.state, State::Active);
+}

@@ -1,0 +1,28 @@
+//! Parsers of numbers on the command line.
+
+use std::ops::{Bound, RangeBounds};
+
+/// Parses a number in a range; otherwise says what was expected.
+pub(super) fn number(text: &str, range: impl RangeBounds<f64>, expected: &str) -> Result<f64, String> {
+    text.parse().ok().filter(|number| range.contains(number)).ok_or_else(|| format!("expected {expected}"))
+}
+
+/// Parses a quantity above zero.
+pub(super) fn positive(text: &str) -> Result<f64, String> {
+    number(text, (Bound::Excluded(0.0), Bound::Excluded(f64::INFINITY)), "a number above 0")
+}
+
+/// Parses the duration of a play.
+pub(super) fn seconds(text: &str) -> Result<f64, String> {
+    number(text, above_zero_to(86_400.0), "a number of seconds above 0, at most a day")
+}
+
+/// Parses the seed of random numbers.
+pub(super) fn seed(text: &str) -> Result<u64, String> {
+    text.parse().map_err(|_| format!("expected a whole number from 0 to {}", u64::MAX))
+}
+
+/// The numbers above zero up to `max`.
+pub(super) fn above_zero_to(max: f64) -> impl RangeBounds<f64> {
+    (Bound::Excluded(0.0), Bound::Included(max))
+}

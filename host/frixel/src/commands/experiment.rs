@@ -1,0 +1,50 @@
+//! What experiments with a person on a board have in common: they take minutes of that person's time, so whatever can
+//! be wrong is found before they begin.
+
+use std::fs::{OpenOptions, remove_file};
+use std::path::Path;
+
+use frixel::rigs::PortLink;
+use frixel_driver::{DEFAULT_BAUD, Device, SerialLink};
+use frixel_wire::hello::BoardLimits;
+
+use super::argument::{above_zero_to, number};
+use super::error::CommandError;
+
+/// Highest voltage of an experiment, in volts rms.
+const VOLTAGE_MAX_V_RMS: f64 = 150.0;
+/// Part of a board's peak voltage that an experiment drives. A square carrier's peak is its rms; its edges need a
+/// little more.
+const PEAK_SHARE: f64 = 0.99;
+
+/// Connects to the board at a serial port, and rejects one whose electrode may not be driven.
+pub(super) fn connect(port: &str, arm: bool) -> Result<Device<PortLink>, CommandError> {
+    let device = Device::connect(PortLink::new(SerialLink::open(port, DEFAULT_BAUD)?))?;
+    if arm || device.hello().board.is_simulated() {
+        return Ok(device);
+    }
+    Err(CommandError::NotArmed { port: port.to_owned() })
+}
+
+/// The highest voltage of an experiment, in volts rms: the given one, which must be within the board's limit, or else
+/// what the board allows, up to 150.
+pub(super) fn highest_voltage(given_v_rms: Option<f64>, limits: &BoardLimits) -> Result<f64, CommandError> {
+    let limit_v_rms = PEAK_SHARE * f64::from(limits.voltage_max_v_peak);
+    match given_v_rms {
+        None => Ok(limit_v_rms.min(VOLTAGE_MAX_V_RMS)),
+        Some(volts) if volts <= limit_v_rms => Ok(volts),
+        Some(found) => Err(CommandError::VoltageAboveBoard { found, limit_v_rms }),
+    }
+}
+
+/// Parses the highest voltage of an experiment.
+pub(super) fn voltage(text: &str) -> Result<f64, String> {
+    number(text, above_zero_to(VOLTAGE_MAX_V_RMS), "a voltage above 0, at most 150 V rms")
+}
+
+/// Fails if a file cannot be written later. Leaves what is in it.
+pub(super) fn check_writable(path: &Path) -> Result<(), CommandError> {
+    let is_new = !path.exists();
+    OpenOptions::new().append(true).create(true).open(path).map_err(CommandError::writing(path))?;
+    if is_new { remove_file(path).map_err(CommandError::writing(path)) } else { Ok(()) }
+}

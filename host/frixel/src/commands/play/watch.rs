@@ -1,0 +1,51 @@
+//! `--watch` on the simulator: a play from the beginning after each change of the scene.
+
+use std::thread::sleep;
+use std::time::Duration;
+
+use super::rigs;
+use super::saved_file::SavedFile;
+use super::{CommandError, Interrupt, PlayArgs, finish, note};
+
+/// Time between two checks of the files.
+const CHECK_PERIOD: Duration = Duration::from_millis(20);
+
+/// Plays the scene, and plays it anew whenever its file, or a file that it names, was saved, until Ctrl-C.
+///
+/// A scene that cannot be played the first time is an error. Later its mistakes are printed, and the files in the output
+/// folder stay those of the play before.
+pub(super) fn play_on_simulator(args: &PlayArgs, interrupt: &Interrupt) -> Result<(), CommandError> {
+    let (played, mut files) = play(args, interrupt);
+    played?;
+    let name = args.scene.display();
+    note(format_args!("frixel: {name} plays anew when it is saved; Ctrl-C ends"));
+    while !interrupt.is_requested() {
+        sleep(CHECK_PERIOD);
+        // Every file is checked, so that several that are saved together are one change.
+        let is_saved = files.iter_mut().fold(false, |saved, file| file.is_saved() || saved);
+        if files.first_mut().is_some_and(SavedFile::has_vanished) {
+            note(format_args!("frixel: {name} is gone: it plays anew when it is there again"));
+        }
+        if is_saved {
+            let played;
+            (played, files) = play(args, interrupt);
+            if let Err(error) = played {
+                note(error);
+                note(format_args!("frixel: {name} is not played: the files in {} stay", args.out.display()));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Loads the scene and plays it. Returns the scene's file, first, and those that it names, as they were when they were read.
+fn play(args: &PlayArgs, interrupt: &Interrupt) -> (Result<(), CommandError>, Vec<SavedFile>) {
+    let file = SavedFile::new(&args.scene);
+    let (scene, named_files) = args.profiles.names().load_with_files(&args.scene);
+    let files = std::iter::once(file).chain(named_files.iter().map(|path| SavedFile::new(path))).collect();
+    let played = scene.map_err(CommandError::from).and_then(|scene| {
+        let played = rigs::play_on_simulator(args, &scene, None, interrupt)?;
+        finish(args, played)
+    });
+    (played, files)
+}

@@ -1,0 +1,84 @@
+//! Searches the laws that fit observations best.
+
+use super::contrast::StrokeMeans;
+use super::error::FitError;
+use super::law::{Attraction, Coupling, REFERENCE_V_RMS};
+use super::least_squares::{Form, Measured, Observation, Solution, solve};
+use super::statistics::median;
+use super::verdict;
+
+/// The laws fitted to the same observations: the contact model, and power laws that know no model.
+pub(super) struct Replicate {
+    pub(super) contact: Solution,
+    pub(super) power: Solution,
+    pub(super) power_of_load: Option<Solution>,
+}
+
+/// A search for the laws that fit observations best.
+pub(super) struct Search<'s> {
+    /// Operating point at which the profile gives friction.
+    pub(super) voltage_v_rms: f64,
+    pub(super) normal_load_n: f64,
+    pub(super) start: &'s Solution,
+}
+
+impl Search<'_> {
+    /// Fits the contact model and the power laws to observations.
+    pub(super) fn run(&self, observations: &[Observation], near: &Solution) -> Option<Replicate> {
+        let weighted: Vec<_> = observations.iter().map(|observation| self.weighted(observation)).collect();
+        let contact = solve(Form::Contact, &weighted, near).or_else(|| solve(Form::Contact, &weighted, self.start))?;
+        let reference_load_n = self.normal_load_n;
+        let load_exponent = verdict::load_exponent_of(&contact, reference_load_n)?;
+        let power = Solution {
+            friction_coefficient: contact.friction_coefficient,
+            attraction: Attraction::Power {
+                reference_n: contact.attraction.attraction_n(REFERENCE_V_RMS, reference_load_n)?,
+                voltage_exponent: 2.0,
+                load_exponent,
+                reference_load_n,
+            },
+        };
+        let power_of_load = solve(Form::PowerOfLoad { reference_load_n }, observations, &power);
+        let power = solve(Form::Power { load_exponent, reference_load_n }, observations, &power)?;
+        Some(Replicate { contact, power, power_of_load })
+    }
+
+    /// Gives observations more weight the closer they are to the stated voltage. A model that is a little wrong is then
+    /// right where friction is stated, at the cost of a tenth more noise.
+    fn weighted(&self, observation: &Observation) -> Observation {
+        if observation.voltage_v_rms <= 0.0 {
+            return *observation;
+        }
+        let ratio = observation.voltage_v_rms / self.voltage_v_rms;
+        let closeness = ratio.min(1.0 / ratio);
+        Observation { weight: observation.weight * closeness * closeness, ..*observation }
+    }
+}
+
+/// A finger to start the search from: the median friction coefficient, and the coupling that the highest voltages have.
+pub(super) fn start(strokes: &[StrokeMeans], observations: &[Observation]) -> Result<Solution, FitError> {
+    let friction_coefficient = median(strokes.iter().filter_map(|stroke| stroke.natural_coefficient));
+    let top_v_rms = observations.iter().map(|one| one.voltage_v_rms).fold(0.0, f64::max);
+    let top = || observations.iter().filter(|one| one.voltage_v_rms > 0.9 * top_v_rms);
+    let attraction_n = median(top().map(|one| attraction_of(one, friction_coefficient)));
+    if !(attraction_n > 0.0) {
+        return Err(FitError::NoElectricFriction { found_n: friction_coefficient * attraction_n });
+    }
+    let load_n = median(top().map(|one| one.normal_load_n));
+    let coupling = Coupling::of_attraction(attraction_n, top_v_rms, load_n);
+    Ok(Solution { friction_coefficient, attraction: Attraction::Contact(coupling) })
+}
+
+pub(super) fn attraction_of(observation: &Observation, friction_coefficient: f64) -> f64 {
+    match observation.measured {
+        Measured::Attraction(attraction_n) => attraction_n,
+        Measured::Friction(friction_n) => friction_n / friction_coefficient - observation.normal_load_n,
+    }
+}
+
+pub(super) fn coupling_of(solution: &Solution) -> Option<f64> {
+    match solution.attraction {
+        Attraction::Contact(coupling) => Some(coupling.0),
+        Attraction::Power { .. } => None,
+    }
+}

@@ -1,0 +1,177 @@
+//! `frixel calibrate` and `frixel threshold` on the port of a virtual board, whose pace is that of the wall clock.
+
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+use std::process::Stdio;
+use std::thread::sleep;
+use std::time::Duration;
+
+use frixel_hil_sim::Person;
+use frixel_scene::FingerProfile;
+use serde_json::Value;
+use tempfile::TempDir;
+
+use super::ports::{TRIES_MAX, VirtualBoard, was_too_late};
+use super::{command, frixel, succeed};
+
+/// Strokes at a speed at which friction follows the drive.
+const STROKES: [&str; 7] = ["--from", "25,40", "--to", "95,40", "--speed", "44", "--natural"];
+/// The fewest strokes that can be fitted, which take 14 s.
+const FEW: [&str; 2] = ["--strokes", "8"];
+
+/// A minute of naps of 50 ms: whatever is waited for longer has hung.
+const NAPS_MAX: u32 = 1_200;
+
+/// What a command says that fails, in one sentence.
+fn fail(folder: &Path, arguments: &[&str]) -> String {
+    for _ in 0..TRIES_MAX {
+        let output = frixel(folder, arguments);
+        let said = String::from_utf8(output.stderr).unwrap();
+        if !was_too_late(&said) {
+            assert_eq!(output.status.code(), Some(1), "{arguments:?}: {said}");
+            let sentence = said.trim_end().lines().last().unwrap();
+            assert!(sentence.starts_with("frixel: ") && !sentence.contains(". "), "one sentence: {said}");
+            return sentence.to_owned();
+        }
+    }
+    panic!("{arguments:?}: {TRIES_MAX} tries were too late");
+}
+
+/// Calibrates until the machine lets the recording be whole: on a busy one, samples of the drive come too late, and the
+/// virtual board's time falls behind that of the client.
+fn calibrate(folder: &Path, arguments: &[&str]) {
+    let said = (0..TRIES_MAX).find_map(|_| {
+        let output = frixel(folder, &[&["calibrate", "-o", "data.csv"], &FEW[..], arguments].concat());
+        let notes = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success() || was_too_late(&notes) || notes.contains("the forces last"), "{notes}");
+        (output.status.success() && !notes.contains("ran out of samples")).then_some(output.stdout)
+    });
+    let said = String::from_utf8(said.unwrap()).unwrap();
+    assert!(said.contains("8 strokes") && said.contains("frixel fit data.csv -o finger.toml"), "{said}");
+}
+
+/// The fitted number, and its interval.
+fn fitted(folder: &Path, key: &str, interval: &str) -> (f64, [f64; 2]) {
+    let (json, _) = succeed(folder, &["fit", "data.csv", "--json"]);
+    let json: Value = serde_json::from_str(&json).unwrap();
+    (json[key].as_f64().unwrap(), [0, 1].map(|end| json[interval][end].as_f64().unwrap()))
+}
+
+/// The person of a seed is on the virtual board, and no scene changes that: what is fitted is theirs.
+#[test]
+fn a_person_at_a_port_is_calibrated_with_the_forces_of_a_sensor() {
+    let folder = TempDir::new().unwrap();
+    let board = VirtualBoard::start(folder.path(), &[&STROKES[..], &["--finger-seed", "5"]].concat());
+    calibrate(folder.path(), &["--port", &board.port, "--forces", "board/forces.csv"]);
+    drop(board);
+    let person = Person::drawn(5);
+    let contact = person.contact(1e-6 / 3.9).unwrap();
+    let electric = ("electric_friction_150_v_n", "electric_friction_150_v_interval_n");
+    let (electric_n, [low_n, high_n]) = fitted(folder.path(), electric.0, electric.1);
+    // Less what amplifier and skin take of a square wave of 1 kHz, and with eight strokes of noise.
+    let share = electric_n / contact.electric_friction_n(150.0);
+    assert!((0.80..1.05).contains(&share) && low_n < electric_n && electric_n < high_n, "{share}");
+    let (coefficient, _) = fitted(folder.path(), "friction_coefficient", "friction_coefficient_interval");
+    assert!((coefficient / person.finger.friction_coefficient - 1.0).abs() < 0.05, "{coefficient}");
+}
+
+#[test]
+fn a_finger_on_a_virtual_board_stays_whatever_scene_plays() {
+    let folder = TempDir::new().unwrap();
+    let board = VirtualBoard::start(folder.path(), &[&STROKES[..], &["--finger", "dry", "--ideal"]].concat());
+    let rows = || fs::read_to_string(folder.path().join("board/forces.csv")).unwrap();
+    let slides = (0..NAPS_MAX).any(|_| {
+        sleep(Duration::from_millis(50));
+        rows().lines().count() > 500
+    });
+    assert!(slides, "hung: the finger slides");
+    drop(board);
+    let rows = rows();
+    let ratio = |row: &str| {
+        let cells: Vec<f64> = row.split(',').map(|cell| cell.parse().unwrap()).collect();
+        (cells[1] > 0.0).then(|| cells[2] / cells[1])
+    };
+    let ratios: Vec<f64> = rows.lines().skip(1).take(400).filter_map(ratio).collect();
+    let dry = FingerProfile::bundled("dry").unwrap().friction_coefficient;
+    let wrong = ratios.iter().filter(|ratio| (*ratio - dry).abs() > 1e-6).count();
+    assert!(ratios.len() > 300 && wrong == 0, "{wrong} of {} are not {dry}", ratios.len());
+    for (arguments, words) in [
+        (&["--finger", "nobody"][..], "give its file, or a bundled one"),
+        (&["--finger", "dry", "--screen", "nothing"], "give its file, or a bundled one"),
+    ] {
+        let said = fail(folder.path(), &[&["sim"], arguments].concat());
+        assert!(said.contains(words), "{said}");
+    }
+    for arguments in [&["--finger", "dry", "--finger-seed", "1"][..], &["--screen", "example"]] {
+        assert_eq!(frixel(folder.path(), &[&["sim"], arguments].concat()).status.code(), Some(2), "{arguments:?}");
+    }
+}
+
+#[test]
+fn what_is_wrong_with_a_calibration_is_said_before_the_run() {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("mine.csv"), "old").unwrap();
+    fs::write(folder.path().join("volts.csv"), "time_s,voltage\n0,1\n").unwrap();
+    fs::write(folder.path().join("back.csv"), "time_s,normal_force_n,friction_n\n1,1,1\n0,1,1\n").unwrap();
+    let board = VirtualBoard::start(folder.path(), &[]);
+    let port = ["--port", &board.port];
+    for (arguments, words) in [
+        (&["-o", "d.csv"][..], "measures no forces"),
+        (&["-o", "d.csv", "--forces", "nowhere.csv"], "nowhere.csv cannot be read"),
+        (&["-o", "d.csv", "--forces", "volts.csv"], "give CSV with the columns time_s,normal_force_n,friction_n"),
+        (&["-o", "d.csv", "--forces", "back.csv"], "row 3 of the forces goes back in time"),
+        (&["-o", "nowhere/d.csv", "--forces", "board/forces.csv"], "nowhere/d.csv cannot be written"),
+        (&["-o", "d.csv", "--forces", "board/forces.csv", "--finger-seed", "3"], "leave --finger-seed out"),
+    ] {
+        let said = fail(folder.path(), &[&["calibrate"], &port[..], arguments].concat());
+        assert!(said.contains(words), "{words}: {said}");
+    }
+    let said = fail(folder.path(), &["calibrate", "-o", "mine.csv", "--port", "nowhere", "--forces", "back.csv"]);
+    assert!(said.contains("back.csv: row 3 of the forces"), "{said}");
+    assert_eq!(fs::read_to_string(folder.path().join("mine.csv")).unwrap(), "old", "a run that fails leaves the file");
+    assert!(!folder.path().join("d.csv").exists());
+    let events = fs::read_to_string(folder.path().join("board/events.csv")).unwrap();
+    assert!(!events.contains("active"), "no run began: {events}");
+    for arguments in [["--voltage", "151"], ["--voltage", "0"], ["--strokes", "7"]] {
+        let output = frixel(folder.path(), &[&["calibrate", "-o", "d.csv"], &arguments[..]].concat());
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+    }
+}
+
+#[test]
+fn a_threshold_is_asked_for_at_a_port() {
+    let folder = TempDir::new().unwrap();
+    let board = VirtualBoard::start(folder.path(), &STROKES);
+    let threshold = ["threshold", "--trials", "12"];
+    let port = [&threshold[..], &["--port", &board.port]].concat();
+    for (arguments, words) in [
+        (["-o", "nowhere/p.toml"], "nowhere/p.toml cannot be written"),
+        (["--screen", "nowhere.toml"], "nowhere.toml cannot be read"),
+    ] {
+        assert!(fail(folder.path(), &[&port[..], &arguments].concat()).contains(words), "{words}");
+    }
+    let said = fail(folder.path(), &[&threshold[..], &["--port", "nowhere"]].concat());
+    assert!(said.contains("there is no port nowhere"), "{said}");
+    // Two trials, of twelve that would take 41 s, and the answers end.
+    let (said, notes) = (0..TRIES_MAX)
+        .map(|_| {
+            let mut command = command(folder.path(), &port);
+            command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+            let mut child = command.spawn().unwrap();
+            // A command that has ended already reads no answers.
+            let _ = child.stdin.take().unwrap().write_all(b"1\nperhaps\n2\n");
+            let output = child.wait_with_output().unwrap();
+            assert_eq!(output.status.code(), Some(1));
+            (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap())
+        })
+        .find(|(_, notes)| !was_too_late(notes))
+        .unwrap();
+    assert!(notes.contains("the answers ended at trial 3"), "{notes}");
+    assert!(said.contains("trial 2 of 12: 1 >>>>>>>> 2 <<<<<<<<  1 or 2?"), "{said}");
+    // What the board drove: one of the two strokes of each trial.
+    let rows = fs::read_to_string(folder.path().join("board/felt.csv")).unwrap();
+    let driven =
+        rows.lines().skip(1).filter(|row| row.split(',').nth(7).unwrap().parse::<f64>().unwrap() > 1.0).count();
+    assert!((1_000..5_000).contains(&driven), "{driven} rows of a millisecond");
+}
