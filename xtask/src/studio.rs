@@ -31,8 +31,8 @@ const CARRIED: [(&str, &str, &str); 7] = [
     ("scenes/fingers", "toml", "scenes/fingers/"),
     ("scenes/screens", "toml", "scenes/screens/"),
 ];
-/// Folders below these that are no part of the page.
-const IGNORED: [&str; 2] = ["node_modules", "src"];
+/// Folders and files that are no part of the page.
+const IGNORED: [&str; 2] = ["node_modules", "entry.js"];
 
 /// Builds the page, and returns its path.
 pub(crate) fn build() -> Result<PathBuf, String> {
@@ -76,7 +76,10 @@ fn collect(
     for entry in entries {
         let path = entry.map_err(|error| format!("{}: {error}", folder.display()))?.path();
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        if path.is_dir() && is_deep && !IGNORED.contains(&name.as_str()) {
+        if IGNORED.contains(&name.as_str()) {
+            continue;
+        }
+        if path.is_dir() && is_deep {
             collect(&path, ending, &format!("{prefix}{name}/"), is_deep, files)?;
         } else if path.is_file() && path.extension().is_some_and(|extension| extension == ending) {
             files.insert(format!("{prefix}{name}"), bytes(&path)?);

@@ -207,8 +207,7 @@ pub(super) const SCENES: &[Case] = &[
         scene: "[[layer]]\n\
              kind = \"constant\"\n\
              friction_factor = 0.5\n",
-        lines: 2,
-        says: "s.toml:2:1: layer 1 (constant) has no `friction_n`: add it",
+        says: "s.toml:4:1: unknown field `friction_factor` in layer 1 (constant); did you mean `friction_fraction`?",
         ..CASE
     },
     Case {
