@@ -44,7 +44,7 @@ pub extern "C" fn input(len: usize) -> *mut u8 {
 /// Address of the last answer.
 #[unsafe(no_mangle)]
 pub extern "C" fn output() -> *const u8 {
-    OUTPUT.with_borrow(|output| output.as_ptr())
+    OUTPUT.with_borrow(Vec::as_ptr)
 }
 
 /// Length of the last answer.

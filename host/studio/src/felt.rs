@@ -198,7 +198,9 @@ mod tests {
     #[test]
     fn a_touch_makes_no_sound_by_itself() {
         let mut recorder = FeltRecorder::new(40_000);
-        records().iter().for_each(|record| recorder.add(record));
+        for record in &records() {
+            recorder.add(record);
+        }
         let samples = recorder.take();
         assert!(samples.sound_n.iter().all(|change_n| change_n.abs() < 1e-9), "a resting finger on a bare screen");
         assert!(samples.columns[0][1].is_nan() && (samples.columns[0][5] - 20.0).abs() < 1e-4);

@@ -122,10 +122,10 @@ impl<S: ByteStream + SceneListener> Host<S> {
     pub(crate) fn load(&mut self, request: &Request) -> Result<&Program, HostError> {
         let Hello { limits, tick_hz, board, .. } = *self.device.hello();
         let (_, program) = compiled(request, &limits, tick_hz)?;
-        if let Some(warning) = program.warnings.iter().find(|warning| warning.is_refused_by_boards()) {
-            if !board.is_simulated() {
-                return Err(HostError::Unmeasured { warning: warning.to_string() });
-            }
+        if let Some(warning) = program.warnings.iter().find(|warning| warning.is_refused_by_boards())
+            && !board.is_simulated()
+        {
+            return Err(HostError::Unmeasured { warning: warning.to_string() });
         }
         match upload(&mut self.device, &program) {
             Err(DeviceError::Refused { refusal: Refusal::BitmapPoolFull { .. }, .. }) => self.load_alone(&program)?,

@@ -72,10 +72,12 @@ fn layer_lines(text: &str) -> Vec<[usize; 2]> {
             ranges.push([number, number]);
         } else if line.starts_with('[') && line.ends_with(']') && !line.starts_with("[layer.") && !line.contains(',') {
             is_in_layer = false;
-        } else if is_in_layer && !line.is_empty() && !line.starts_with('#') {
-            if let Some([_, last]) = ranges.last_mut() {
-                *last = number;
-            }
+        } else if is_in_layer
+            && !line.is_empty()
+            && !line.starts_with('#')
+            && let Some([_, last]) = ranges.last_mut()
+        {
+            *last = number;
         }
     }
     ranges

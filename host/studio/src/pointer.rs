@@ -128,6 +128,7 @@ fn hermite((from, to): (f64, f64), (slope_from, slope_to): (f64, f64), t: f64) -
 }
 
 #[cfg(test)]
+#[allow(clippy::float_cmp, reason = "a place that is passed on unchanged is equal")]
 mod tests {
     use super::*;
 

@@ -78,13 +78,12 @@ impl RigStream<'_> {
         buffer: &mut Vec<u8>,
         wait: Duration,
         observer: &mut dyn FnMut(&TickRecord),
-    ) -> Result<(), LinkClosed> {
+    ) {
         let end = self.now() + wait;
         while !self.rig.has_received() && self.now() < end {
             observer(&self.step());
         }
         self.rig.receive(buffer);
-        Ok(())
     }
 }
 
@@ -107,7 +106,8 @@ impl ByteStream for RigStream<'_> {
     }
 
     fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed> {
-        self.read_observed(buffer, wait, &mut |_| {})
+        self.read_observed(buffer, wait, &mut |_| {});
+        Ok(())
     }
 
     fn now(&self) -> Duration {

@@ -75,7 +75,8 @@ impl ByteStream for Hashing<'_> {
     }
 
     fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed> {
-        self.rig.read_observed(buffer, wait, &mut |record| self.hash.add(record))
+        self.rig.read_observed(buffer, wait, &mut |record| self.hash.add(record));
+        Ok(())
     }
 
     fn now(&self) -> Duration {

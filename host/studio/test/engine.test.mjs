@@ -81,7 +81,7 @@ async function msToZeroAfter(page, silence) {
     // A finger that stands still ends the output, too: only the board's state says that it has noticed the silence.
     const silent = after.findIndex((frame) => frame.state !== "active");
     if (silent < 0) throw new Error("the board has not noticed the silence");
-    return { ms: (after[silent].tick - silentAtTick) / 40, isDriven: after.slice(silent + 1).some(drives) };
+    return { ms: (after[silent].tick - silentAtTick) / 40, isDriven: after.some((frame) => frame.state !== "active" && frame !== after[silent] && drives(frame)) };
   }, silence);
 }
 

@@ -43,7 +43,7 @@ export async function openPage(url = pageUrl, { init } = {}) {
     globalThis.Worker = class extends Native {
       constructor(url, options) {
         super(url, options);
-        workersOfPage[options?.name] = this;
+        (workersOfPage[options?.name] ??= []).push(this);
       }
     };
   });

@@ -56,7 +56,7 @@ test("a scene is played, changed and stopped on a board at a serial port", async
 test("a killed worker: the board is at zero within its host timeout", async () => {
   const { page, board, close } = await playOnVirtualBoard("constant.toml");
   await page.waitForFunction(() => felt.some((frame) => frame.voltageV.some((voltage) => voltage > 1)), null, { timeout: 40_000 });
-  await page.evaluate(() => workersOfPage.host.terminate());
+  await page.evaluate(() => workersOfPage.host.forEach((worker) => worker.terminate()));
   await silenceOf(board);
   await board.stop();
   const events = rowsOf(path.join(board.out, "events.csv"));

@@ -40,8 +40,8 @@ fn a_mistake_has_its_sentence_and_its_place() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.toml");
     std::fs::write(&path, text).unwrap();
-    let (limits, tick_hz) = (RigConfig::default().board.limits, RigConfig::default().board.tick_hz);
-    let expected = compile(&scene_file::load(&path).unwrap(), &limits, tick_hz).unwrap_err().to_string();
+    let board = RigConfig::default().board;
+    let expected = compile(&scene_file::load(&path).unwrap(), &board.limits, board.tick_hz).unwrap_err().to_string();
     let problem = &answer["problems"][0];
     let (line, column) = (&problem["line"], &problem["column"]);
     let sentence = format!("{}:{line}:{column}: {}", path.display(), problem["message"].as_str().unwrap());
