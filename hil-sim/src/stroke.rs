@@ -96,8 +96,8 @@ impl Stroke {
     }
 
     /// A stroke with the statistics of people recorded on a surface-haptic tablet, with the finger down for all of
-    /// `duration_s` seconds, 0.001 to 600: minimum-jerk submovements that overlap, reversals, pauses, and tremor at 8 to
-    /// 12 Hz. Without a median speed it has that of the seed's person, 48 to 436 mm/s.
+    /// `duration_s` seconds, 0.001 to 600: minimum-jerk submovements that overlap, reversals, pauses, and tremor at 8
+    /// to 12 Hz. Without a median speed it has that of the seed's person, 48 to 436 mm/s.
     ///
     /// It was made to match the medians of about 1,300 strokes, whose recordings cannot be shipped; the shape of the
     /// motion is that of the literature. Between milliseconds the finger goes straight.
@@ -142,9 +142,9 @@ impl Stroke {
         Ok(Self::once(motion.end_s(), Path::Rows(motion)))
     }
 
-    /// Parses a stroke from CSV text with the columns `t_s,x_mm,y_mm`, in any order, and `force_n` if the normal load is
-    /// known, in N and above 0. Other columns are ignored. The finger is off the screen in a row whose cells `x_mm` and
-    /// `y_mm` are empty, as in `felt.csv`.
+    /// Parses a stroke from CSV text with the columns `t_s,x_mm,y_mm`, in any order, and `force_n` if the normal load
+    /// is known, in N and above 0. Other columns are ignored. The finger is off the screen in a row whose cells `x_mm`
+    /// and `y_mm` are empty, as in `felt.csv`.
     ///
     /// Time is from the start of the stroke and rises from row to row; the finger touches at the first row and leaves
     /// after the last. Between rows it goes straight and at constant speed (linear interpolation), so the rows should

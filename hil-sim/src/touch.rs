@@ -41,8 +41,8 @@ pub struct TouchConfig {
 }
 
 impl TouchConfig {
-    /// An infrared frame or a fast touch panel that loses nothing: 100 Hz, 10 ms of latency, 0.02 mm of noise, 0.5 ms of
-    /// jitter.
+    /// An infrared frame or a fast touch panel that loses nothing: 100 Hz, 10 ms of latency, 0.02 mm of noise, 0.5 ms
+    /// of jitter.
     pub const IDEAL: Self = Self {
         rate_hz: 100.0,
         latency_s: 10e-3,
@@ -55,8 +55,8 @@ impl TouchConfig {
         step_m: 0.0,
     };
 
-    /// The same source with the reports of the recorded strokes: one in eight is lost, one in thirty is bunched with the
-    /// next (both within the 4 to 28 % of double intervals), a pause of up to 120 ms in ten seconds (gaps of up to
+    /// The same source with the reports of the recorded strokes: one in eight is lost, one in thirty is bunched with
+    /// the next (both within the 4 to 28 % of double intervals), a pause of up to 120 ms in ten seconds (gaps of up to
     /// 140 ms with the losses around it), and steps of 0.18 mm.
     pub const NATURAL: Self = Self {
         lost_share: 0.12,

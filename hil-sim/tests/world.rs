@@ -123,7 +123,8 @@ fn another_finger_feels_its_own_friction() {
 fn friction_follows_a_step_of_drive_with_the_lag_of_the_sliding_speed() {
     let mut world = world(ideal_amplifier());
     world.start_stroke();
-    // A first-order lag with a corner at 1,380 Hz has a time constant of 4.613 ticks: e^(-5 / 4.613) is left after five.
+    // A first-order lag with a corner at 1,380 Hz has a time constant of 4.613 ticks: e^(-5 / 4.613) is left after
+    // five.
     let felt = (0..5).map(|tick| world.apply(square(tick, 30_000))).last().unwrap();
     let share = felt.electric_friction_n / example_finger().unwrap().electric_friction_n(200.0 * 30_000.0 / DAC_FULL);
     let ticks = 40_000.0 / (core::f64::consts::TAU * 1380.0);

@@ -1,7 +1,7 @@
 //! `cargo xtask studio`: the studio as one HTML file that opens from a disk.
 //!
-//! The WebAssembly module, the page's modules, the vendored bundle and the bundled scenes are in it, each compressed and
-//! as text. `host/studio/web/boot.js` unpacks them in the browser.
+//! The WebAssembly module, the page's modules, the vendored bundle and the bundled scenes are in it, each compressed
+//! and as text. `host/studio/web/boot.js` unpacks them in the browser.
 
 use std::collections::BTreeMap;
 use std::fs;

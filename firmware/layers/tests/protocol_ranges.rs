@@ -38,10 +38,10 @@ fn limit(text: &str) -> f32 {
 }
 
 #[track_caller]
-fn check(number: &str, found: (f32, f32, String)) {
+fn check(number: &str, found: &(f32, f32, String)) {
     let row = rows().into_iter().find(|[name, ..]| *name == number).unwrap_or_else(|| panic!("no row {number}"));
     let [_, least, largest, field] = row;
-    assert_eq!((limit(least), limit(largest), field.trim_matches('`').to_owned()), found, "{number}");
+    assert_eq!(&(limit(least), limit(largest), field.trim_matches('`').to_owned()), found, "{number}");
 }
 
 #[test]
@@ -66,7 +66,7 @@ fn numbers_of_the_header() {
         let mut header = header();
         set(&mut header);
         let refused = header.check(&LIMITS, TICK_HZ).unwrap_err();
-        check(&format!("header: {name}"), (refused.min, refused.max, format!("{:?}", refused.field)));
+        check(&format!("header: {name}"), &(refused.min, refused.max, format!("{:?}", refused.field)));
     }
 }
 
@@ -93,7 +93,7 @@ fn numbers_of_records_and_points() {
         ("curve: speed", range::SPEED_M_PER_S),
     ];
     for (name, range) in ranges {
-        check(name, (range.min as f32, range.max as f32, format!("{:?}", range.field)));
+        check(name, &(range.min as f32, range.max as f32, format!("{:?}", range.field)));
     }
     assert_eq!(rows().len(), 13 + ranges.len(), "every row is checked");
 }

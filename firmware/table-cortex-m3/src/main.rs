@@ -1,9 +1,10 @@
 //! The inverse table in integers on a Cortex-M3, which has no FPU.
 //!
 //! `hil-sim/tests/integer_table.rs` runs this image in the emulator and compares what it writes with the same table on
-//! the desktop; a panic ends the emulator with an error, which that test reports. The words on the emulator's command line, all in hexadecimal, are the bits of eight `f64` (the finger's
-//! radius in m, its stiffness in Pa/m, its friction coefficient, the effective gap in m, the normal load in N, the
-//! least and the largest voltage in V rms, the relative error) and the step from one friction to the next, a `u32`.
+//! the desktop; a panic ends the emulator with an error, which that test reports. The words on the emulator's command
+//! line, all in hexadecimal, are the bits of eight `f64` (the finger's radius in m, its stiffness in Pa/m, its friction
+//! coefficient, the effective gap in m, the normal load in N, the least and the largest voltage in V rms, the relative
+//! error) and the step from one friction to the next, a `u32`.
 //!
 //! The image writes one line for each row of the table, with its coefficients, then one line for each friction, with
 //! friction and voltage as raw bits, all in hexadecimal.

@@ -14,8 +14,8 @@ use support::samples::hello;
 const LIMITS_LEN_AT: usize = 43;
 const LIMITS_AT: usize = 44;
 
-/// The hello as it was before protocol 1.3, written by hand field by field as in `PROTOCOL.md`. These bytes never change:
-/// later protocols append fields.
+/// The hello as it was before protocol 1.3, written by hand field by field as in `PROTOCOL.md`. These bytes never
+/// change: later protocols append fields.
 #[test]
 fn the_layout_is_frozen() {
     let bytes = from_hex(

@@ -9,8 +9,8 @@
 //! - `wait S`: carries the lines behind it out so many seconds later;
 //! - `quit`: ends the play.
 //!
-//! A name is that of the layer in the scene, or its number from 1. A name or file with spaces stands in quotation marks.
-//! Empty lines, and what follows `#`, are ignored.
+//! A name is that of the layer in the scene, or its number from 1. A name or file with spaces stands in quotation
+//! marks. Empty lines, and what follows `#`, are ignored.
 
 use thiserror::Error;
 

@@ -21,8 +21,8 @@ const UNAWAITED: u16 = 0;
 /// Longest time to an answer, from the time at which the request has reached the board, and longest time without any
 /// byte leaving a line on which bytes are under way.
 pub(super) const ANSWER_TIMEOUT: Duration = Duration::from_millis(750);
-/// Time after which a request without an answer is sent again, measured as [`ANSWER_TIMEOUT`] is: its frame may have been
-/// damaged.
+/// Time after which a request without an answer is sent again, measured as [`ANSWER_TIMEOUT`] is: its frame may have
+/// been damaged.
 const REPEAT_AFTER: Duration = Duration::from_millis(250);
 /// Time to the next try when the board is busy.
 const BUSY_RETRY_AFTER: Duration = Duration::from_millis(5);

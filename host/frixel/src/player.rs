@@ -80,7 +80,7 @@ pub enum PlayError {
     #[error(transparent)]
     World(#[from] WorldError),
     /// The contact model rejects the finger of the program.
-    #[error("the contact model refuses the scene's finger: {0:?}")]
+    #[error("the contact model rejects the scene's finger: {0}")]
     Finger(ParameterError),
     /// The board rejected a request, or stopped answering.
     #[error(transparent)]
@@ -148,8 +148,8 @@ impl<L: RecordedLink> Player<L> {
         self.recorder_mut().replace(program, &hello.limits, hello.tick_hz).map_err(PlayError::Finger)
     }
 
-    /// Like [`Self::replace`], for a scene whose bitmaps do not fit on the board beside those of the scene that plays: an
-    /// empty scene plays until the new one is there, so that the output fades out meanwhile.
+    /// Like [`Self::replace`], for a scene whose bitmaps do not fit on the board beside those of the scene that plays:
+    /// an empty scene plays until the new one is there, so that the output fades out meanwhile.
     pub fn replace_alone(&mut self, program: &Program) -> Result<(), PlayError> {
         let header = Header { electric_friction_max_n: None, ..program.header };
         let (records, points, bitmaps, titles) = Default::default();
@@ -255,8 +255,8 @@ pub fn simulate(program: &Program, simulation: &Simulation, feed: Option<Feed>) 
     simulate_observed(program, simulation, None, feed, |_| {})
 }
 
-/// As [`simulate`], under a finger that is not the program's if there is one, and calls `observer` with every tick of the
-/// play.
+/// As [`simulate`], under a finger that is not the program's if there is one, and calls `observer` with every tick of
+/// the play.
 pub(crate) fn simulate_observed(
     program: &Program,
     simulation: &Simulation,

@@ -20,7 +20,7 @@ pub enum RehearsalError {
     #[error(transparent)]
     World(#[from] WorldError),
     /// The screen is too small for a stroke.
-    #[error("a stroke over this scene: {0}")]
+    #[error("no stroke can be generated for this scene's screen: {0}")]
     Stroke(#[from] StrokeError),
     /// The board rejected the scene; the error states the exceeded limit.
     #[error("the board does not take this scene: {0}")]

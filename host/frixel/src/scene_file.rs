@@ -115,7 +115,8 @@ impl ProfileNames {
         self.load_with_files(path).0
     }
 
-    /// Reads a scene file, as [`load_with_files`] does, with this finger and screen. Their files are among those returned.
+    /// Reads a scene file, as [`load_with_files`] does, with this finger and screen. Their files are among those
+    /// returned.
     pub fn load_with_files(&self, path: &Path) -> (Result<Scene, SceneFileError>, Vec<PathBuf>) {
         let (scene, mut files) = load_with_files(path);
         let finger = self.finger.as_deref().filter(|name| FingerProfile::bundled(name).is_none());

@@ -1,5 +1,5 @@
-//! Drafts: scenes that a board refuses, drawn by `frixel scene preview` and played by the simulator, clamped, and marked in
-//! every output.
+//! Drafts: scenes that a board refuses, drawn by `frixel scene preview` and played by the simulator, clamped, and
+//! marked in every output.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::fs;

@@ -1,8 +1,8 @@
-//! What a finger feels of a texture, on strokes of people and with every effect of the plant: the goals for each class of
-//! touch source.
+//! What a finger feels of a texture, on strokes of people and with every effect of the plant: the goals for each class
+//! of touch source.
 //!
-//! The reference is the scene at the finger's true place, through the same finger, load and noise. Where a goal is out of
-//! reach, the case says how far.
+//! The reference is the scene at the finger's true place, through the same finger, load and noise. Where a goal is out
+//! of reach, the case says how far.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::collections::BTreeMap;
@@ -69,10 +69,10 @@ const FAST: Class = Class { rate_hz: 500.0, latency_s: 3e-3, wavelength_mm: 2.0 
 
 /// Class, median speed of the stroke in mm/s, and what is held: the goal, or how far it is missed.
 ///
-/// What misses it is latency: at a median of 200 mm/s a hand turns within 50 ms with accelerations of 3 m/s^2, and 20 ms
-/// of these are 0.6 mm. At 100 mm/s on an ideal plant, `frixel report` has an error of 0.22 for the board's filter with
-/// 100 reports a second, 0.19 for the best of 15 tunings chosen with hindsight, and 0.06 for a smoother that sees later
-/// reports. No bound has been computed at 200 mm/s.
+/// What misses it is latency: at a median of 200 mm/s a hand turns within 50 ms with accelerations of 3 m/s^2, and 20
+/// ms of these are 0.6 mm. At 100 mm/s on an ideal plant, `frixel report` has an error of 0.22 for the board's filter
+/// with 100 reports a second, 0.19 for the best of 15 tunings chosen with hindsight, and 0.06 for a smoother that sees
+/// later reports. No bound has been computed at 200 mm/s.
 const CASES: [(Class, f64, Held); 9] = [
     (SLOW, 50.0, GOAL),
     (SLOW, 100.0, Held { ratio_max: 0.32, spurious_max_n: 5e-3, ..GOAL }),

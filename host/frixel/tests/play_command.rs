@@ -122,8 +122,8 @@ fn number(json: &serde_json::Value, key: &str) -> f64 {
     json[key].as_f64().unwrap_or_else(|| panic!("{key}: {}", json[key]))
 }
 
-/// A finger that presses with 0.6 N in place of 0.5 N: 50 mN more natural friction, and the 2 mN that the drive adds grow
-/// with the root of the load.
+/// A finger that presses with 0.6 N in place of 0.5 N: 50 mN more natural friction, and the 2 mN that the drive adds
+/// grow with the root of the load.
 #[test]
 fn what_another_load_costs_is_reported_apart() {
     let folder = TempDir::new().unwrap();
@@ -192,7 +192,7 @@ fn the_summary_says_which_world_was_simulated() {
     assert!(said.contains("--ideal switches them off") && !said.contains("  finger "), "{said}");
     let said = play(&["--ideal", "--finger-seed", "7"]);
     assert!(said.contains("  world            ideal: no load changes, noise,"), "{said}");
-    assert!(said.contains("  finger           drawn person 7, assumed;"), "{said}");
+    assert!(said.contains("  finger           random person 7, assumed;"), "{said}");
 }
 
 #[test]

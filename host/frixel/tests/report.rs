@@ -461,8 +461,8 @@ fn fewer_ticks_make_a_larger_error() {
         assert_eq!((errors.len(), errors[0].0, errors[8].0), (9, 1000.0, 40_000.0));
         let [slowest, slower, slow] = [errors[0].1, errors[1].1, errors[2].1];
         // At 1 and 2 kHz the touch source reports every 2 and 4 ticks, and ticks that take reports in are most of them.
-        // With a touch source of 100 Hz, most of the error is that of the estimated place: the filter that follows people
-        // through lost reports has more noise on this even stroke than one that averages longer.
+        // With a touch source of 100 Hz, most of the error is that of the estimated place: the filter that follows
+        // people through lost reports has more noise on this even stroke than one that averages longer.
         let least = if stripes.contains("touch source") { 1.02 } else { 1.05 };
         assert!(slowest > slower && slower > least * slow, "{stripes}: {errors:?}");
         // Beyond, ticks help less and less, and what they cannot help remains: of a touch source of 100 Hz, all of it.

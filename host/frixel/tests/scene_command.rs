@@ -384,7 +384,7 @@ fn check_and_preview_say_what_a_person_feels() {
     let text = said(&["scene", "check", &scene]);
     let feel = text.lines().find(|line| line.trim_start().starts_with("feel ")).unwrap();
     assert!(feel.contains("layer 1 \"ridges\": 250.0 to 269.7 mN, 0.7 Weber steps (not felt)"), "{feel}");
-    assert!(feel.contains("at 100 mm/s 9.97 mN at 100 Hz, threshold 0.82 (felt)"), "{feel}");
+    assert!(feel.contains("at 100 mm/s 9.97 mN at 100 Hz, threshold 0.82 mN (felt)"), "{feel}");
     assert!(said(&["scene", "preview", &scene, "-o", &files.path("map.png")]).contains(feel));
     let json: Value = serde_json::from_str(&said(&["scene", "check", &scene, "--json"])).unwrap();
     let textures = &json["perception"]["layers"][0]["textures"];

@@ -43,7 +43,7 @@ impl Running {
         write!(
             stream,
             "{line} HTTP/1.1\r\n{}\r\n",
-            headers.iter().map(|header| format!("{header}\r\n")).collect::<String>()
+            headers.iter().flat_map(|header| [header.as_str(), "\r\n"]).collect::<String>()
         )
         .unwrap();
         let mut answer = String::new();
@@ -86,7 +86,7 @@ fn status(answer: &str) -> &str {
 fn the_page_is_served_to_its_own_address_only() {
     let studio = Running::new(None);
     let own = format!("Host: {}", studio.host);
-    let answer = studio.answer("GET /", &[own.clone()]);
+    let answer = studio.answer("GET /", std::slice::from_ref(&own));
     assert_eq!(status(&answer), "200", "{answer}");
     assert_eq!(answer.split_once("\r\n\r\n").unwrap().1.as_bytes(), PAGE);
     for (line, headers, expected) in [

@@ -105,7 +105,7 @@ fn a_saved_scene_plays_and_one_with_mistakes_does_not() {
     until("the second scene plays", || is(last_n(), 0.27));
 
     fs::write(path("scene.toml"), scene("0.28x").replace("[finger]", "[fingr]")).unwrap();
-    until("the mistakes are reported", || said().contains("is not played: the scene before plays on"));
+    until("the mistakes are reported", || said().contains("is not played: the previous scene keeps playing"));
     let rows = asked_n(&path("board")).len();
     until("the second scene plays on", || asked_n(&path("board")).len() > rows + 300);
 
@@ -231,8 +231,8 @@ fn an_emulated_board_that_does_not_run_in_real_time_is_not_watched() {
     assert!(said.contains("--watch") && said.contains("frixel sim"), "{said}");
 }
 
-/// On the simulator, a saved scene plays from the beginning, drafts included. After a mistake, the files of the play before
-/// stay. A virtual board behind a port refuses the draft.
+/// On the simulator, a saved scene plays from the beginning, drafts included. After a mistake, the files of the play
+/// before stay. A virtual board behind a port refuses the draft.
 #[test]
 fn a_saved_scene_plays_anew_on_the_simulator() {
     let folder = TempDir::new().unwrap();

@@ -66,9 +66,9 @@ pub fn compile(scene: &Scene, limits: &BoardLimits, tick_hz: u32) -> Result<Prog
 /// Compiles a scene for a preview, or for a simulator, whether a board plays it or not. What a board refuses is in
 /// [`Program::refusals`]; if there is any, the program is a draft.
 ///
-/// A draft keeps to what can be reached: friction, voltage, carrier and current are clamped, pictures are made coarser until
-/// they fit the board, regions are cut off at the screen's edge. A layer that cannot be played at all is absent, and a note
-/// says so. A tick may take longer than the board has time for.
+/// A draft keeps to what can be reached: friction, voltage, carrier and current are clamped, pictures are made coarser
+/// until they fit the board, regions are cut off at the screen's edge. A layer that cannot be played at all is absent,
+/// and a note says so. A tick may take longer than the board has time for.
 ///
 /// # Errors
 ///
@@ -97,7 +97,8 @@ pub fn compile_draft(scene: &Scene, limits: &BoardLimits, tick_hz: u32) -> Resul
     }
 }
 
-/// Makes a program of all that is valid, and logs all mistakes. `None` if there is no contact model of finger and coating.
+/// Makes a program of all that is valid, and logs all mistakes. `None` if there is no contact model of finger and
+/// coating.
 fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) -> Option<Program> {
     let mut notes = Vec::new();
     // What follows from another mistake is not reported.
@@ -175,8 +176,8 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
     Some(program)
 }
 
-/// The layers that can be played, and their records. A mistake that the first copy of a layer has is not reported for the
-/// others.
+/// The layers that can be played, and their records. A mistake that the first copy of a layer has is not reported for
+/// the others.
 fn records<'s>(layers: impl Iterator<Item = &'s Layer>, lowering: &mut Lowering) -> (Vec<&'s Layer>, Vec<Record>) {
     let mut mistaken = None;
     let record = |layer: &'s Layer| {
@@ -312,8 +313,8 @@ impl Voltage {
         Self { max_v_rms, max_v_peak, slew_v_per_us, raised_max_v_rms }
     }
 
-    /// Checks the current into the worst-case electrode at the largest voltage against the board's limits, and lowers the
-    /// voltage to them.
+    /// Checks the current into the worst-case electrode at the largest voltage against the board's limits, and lowers
+    /// the voltage to them.
     fn limit_current(&mut self, scene: &Scene, limits: &BoardLimits, half_period_s: f64, log: &mut Log) {
         // The board computes in `f32`, from the carrier's frequency.
         let carrier_hz = (0.5 / half_period_s) as f32;

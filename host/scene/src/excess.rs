@@ -18,8 +18,8 @@ const MUCH: f64 = 20.0;
 /// Reports a mistake for layers that exceed the reach. With `saturate`, or if the excess is not certain, adds a note
 /// instead.
 ///
-/// `played` are the layers of the program's records. `raised_n` is the largest electric friction if `voltage_max_v_rms` were
-/// raised as far as the other limits of the voltage allow.
+/// `played` are the layers of the program's records. `raised_n` is the largest electric friction if `voltage_max_v_rms`
+/// were raised as far as the other limits of the voltage allow.
 pub(super) fn check(scene: &Scene, played: &[&Layer], raised_n: f64, program: &mut Program, log: &mut Log) {
     let reach = program.reach;
     let slack_n = ROUNDING * reach.electric_friction_max_n;

@@ -34,8 +34,8 @@ pub(super) enum Version {
 /// A scene file that was read: all fields are known, of the right type and in range. [`super::compile`] makes the other
 /// checks.
 ///
-/// A layer whose own fields have mistakes is absent, and [`Self::mistakes`] has them, so that the compiler can check the
-/// layers beside it, and report all mistakes at once.
+/// A layer whose own fields have mistakes is absent, and [`Self::mistakes`] has them, so that the compiler can check
+/// the layers beside it, and report all mistakes at once.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     pub(super) source: Source,
@@ -175,8 +175,8 @@ impl Scene {
         Ok(self)
     }
 
-    /// The screen, for a finger other than the scene's own. A scene of version 1 is refused, because its coating contains
-    /// the skin of its own finger.
+    /// The screen, for a finger other than the scene's own. A scene of version 1 is refused, because its coating
+    /// contains the skin of its own finger.
     pub fn screen_without_skin(&self) -> Result<&Screen, CompileError> {
         self.refuse_version_one("finger")?;
         Ok(&self.profiles.screen)

@@ -4,8 +4,8 @@
 //! the board's limits and checks the layers against each other, and makes a [`Program`]. Both report all mistakes at
 //! once, each with line and column.
 //!
-//! The input is the text of a scene file, the bytes of the files that it names ([`Files`]), and the limits of a board. The
-//! output is the bytes that a board plays, with information for the scene's designer.
+//! The input is the text of a scene file, the bytes of the files that it names ([`Files`]), and the limits of a board.
+//! The output is the bytes that a board plays, with information for the scene's designer.
 //!
 //! ```
 //! # fn run(limits: &frixel_wire::hello::BoardLimits) -> Result<(), frixel_scene::CompileError> {

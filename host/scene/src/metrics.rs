@@ -7,8 +7,8 @@
 //!   The time from the touch to the first report that reaches the board does not count, because nothing can be felt
 //!   before the board knows of the finger; it is counted apart.
 //! - The **inversion error** is the model's friction at the commanded voltage minus the board's target. It counts while
-//!   the finger is down, the reference friction is in reach and the envelope is not at its slew limit: a voltage that is
-//!   still on its way to the target is no error of the inverse. Those ticks are counted apart.
+//!   the finger is down, the reference friction is in reach and the envelope is not at its slew limit: a voltage that
+//!   is still on its way to the target is no error of the inverse. Those ticks are counted apart.
 //! - The **load mismatch** is the part of the felt friction that is there because the finger presses with another load
 //!   than the one that the scene is meant for. The reference has it too, so that it is no part of the friction error.
 //! - The **carrier ripple** is felt friction minus its mean over the carrier period around it, half a period on either

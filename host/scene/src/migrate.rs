@@ -12,10 +12,10 @@ use super::screen::{Screen, Slab};
 
 /// Writes the text of a scene of version 1 as version 2, with its layout and its comments but for those of `[coating]`.
 ///
-/// The friction stays the same, because coating and skin keep their effective gap together. Version 1 does not say which
-/// part of it is skin: slabs of permittivity 1 are taken for air and become the finger's skin gap. If that leaves no
-/// coating, the screen gets [`Slab::EXAMPLE`], whose gap is taken from the skin's. A picture without a pitch gets the one
-/// that version 1 gives it. A scene of version 2 is refused.
+/// The friction stays the same, because coating and skin keep their effective gap together. Version 1 does not say
+/// which part of it is skin: slabs of permittivity 1 are taken for air and become the finger's skin gap. If that leaves
+/// no coating, the screen gets [`Slab::EXAMPLE`], whose gap is taken from the skin's. A picture without a pitch gets
+/// the one that version 1 gives it. A scene of version 2 is refused.
 pub fn migrate(text: &str, name: &str, files: &dyn Files) -> Result<String, CompileError> {
     let scene = Scene::parse(text, name, files)?;
     let mut log = Log::resuming(&scene.source, &scene.mistakes);

@@ -26,8 +26,8 @@ impl Nearest {
         Self { suggestion, known }
     }
 
-    /// The file that is nearest to the name of another one. Files are alike by what stands before the ending, which is the
-    /// same for many.
+    /// The file that is nearest to the name of another one. Files are alike by what stands before the ending, which is
+    /// the same for many.
     pub(super) fn file(found: &str, files: &[String]) -> Option<String> {
         let stem = Self::new(stem(found), files.iter().map(|file| self::stem(file))).suggestion?;
         let is_alike = |file: &&String| self::stem(file) == stem;

@@ -49,7 +49,8 @@ pub struct Program {
 }
 
 impl Program {
-    /// Whether the program is a draft: only previews and the simulator in this process play it, and every output says so.
+    /// Whether the program is a draft: only previews and the simulator in this process play it, and every output says
+    /// so.
     pub fn is_draft(&self) -> bool {
         !self.refusals.is_empty()
     }

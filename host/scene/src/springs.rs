@@ -9,9 +9,9 @@ use frixel_model::{Contact, ContactModel, Finger, SoftFinger};
 use super::finger::{Elasticity, FingerProfile};
 use super::mistake::Mistake;
 
-/// Largest deviation of springs from a soft finger that is played, as a part of the reachable electric friction. For the
-/// example finger this is 6.5 mN of 250 mN, a quarter of the smallest step of friction that is felt (11 %, Gueorguiev
-/// 2017).
+/// Largest deviation of springs from a soft finger that is played, as a part of the reachable electric friction. For
+/// the example finger this is 6.5 mN of 250 mN, a quarter of the smallest step of friction that is felt (11 %,
+/// Gueorguiev 2017).
 const DEVIATION_MAX: f64 = 0.05;
 /// Voltages at which the two are compared.
 const VOLTAGES: u32 = 64;

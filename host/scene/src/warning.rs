@@ -1,5 +1,5 @@
-//! Warnings: a program that can be played, but that asks for what the model or the finger's profile does not cover, or that
-//! is probably not what its author means.
+//! Warnings: a program that can be played, but that asks for what the model or the finger's profile does not cover, or
+//! that is probably not what its author means.
 
 use frixel_layers::Interval;
 use serde::Serialize;

@@ -123,8 +123,8 @@ pub extern "C" fn simulator_tick() -> f64 {
     SIMULATOR.with_borrow_mut(|simulator| simulator.as_mut().map_or(0.0, |simulator| simulator.tick() as f64))
 }
 
-/// Adds a sample of the pointer: the finger is to be at this place, in mm, at this tick. A load of 0 N stands for that of
-/// the finger's profile.
+/// Adds a sample of the pointer: the finger is to be at this place, in mm, at this tick. A load of 0 N stands for that
+/// of the finger's profile.
 #[unsafe(no_mangle)]
 pub extern "C" fn simulator_pointer(tick: f64, x_mm: f64, y_mm: f64, is_down: u32, load_n: f64) {
     SIMULATOR.with_borrow_mut(|simulator| {
@@ -148,8 +148,8 @@ pub extern "C" fn simulator_lift() {
 
 /// Lets so many ticks pass; the host lives in them only if `is_alive` is not 0. The answer is what was felt:
 ///
-/// - eight 64-bit floats: tick, first tick of the samples, ticks per sample, number of samples, number of sound samples,
-///   state, fault (0 for none), whether the finger is down;
+/// - eight 64-bit floats: tick, first tick of the samples, ticks per sample, number of samples, number of sound
+///   samples, state, fault (0 for none), whether the finger is down;
 /// - 32-bit floats, all samples of one quantity after another: place x and y in mm, speed in mm/s, reference and felt
 ///   friction in N, voltage in V rms; then the sound in N, one for each tick.
 #[unsafe(no_mangle)]

@@ -11,8 +11,8 @@
 //! - it is the host of a board at the other end of a byte stream (`host` over `link_stream`). Reading such a stream
 //!   suspends the module until bytes arrive, which needs a browser with JSPI.
 //!
-//! The simulator's host and the host of a real board are the same code; only the [`ByteStream`](frixel_driver::ByteStream)
-//! differs.
+//! The simulator's host and the host of a real board are the same code; only the
+//! [`ByteStream`](frixel_driver::ByteStream) differs.
 #![deny(unsafe_code)]
 
 mod answer;

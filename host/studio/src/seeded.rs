@@ -1,5 +1,5 @@
-//! One seeded stroke over a scene, as a hash: equal in a page and natively, or one of the crates computes differently in
-//! WebAssembly.
+//! One seeded stroke over a scene, as a hash: equal in a page and natively, or one of the crates computes differently
+//! in WebAssembly.
 
 use std::time::Duration;
 

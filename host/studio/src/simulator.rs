@@ -85,8 +85,8 @@ impl Simulator {
         stream.pointer.add(sample, now_tick);
     }
 
-    /// Lets `ticks` of virtual time pass. The host lives only while `is_alive`: without it, the board hears nothing, and
-    /// its own host timeout sets the output to zero. When the host lives again, a scene that is wanted plays on.
+    /// Lets `ticks` of virtual time pass. The host lives only while `is_alive`: without it, the board hears nothing,
+    /// and its own host timeout sets the output to zero. When the host lives again, a scene that is wanted plays on.
     pub(crate) fn run(&mut self, ticks: u32, is_alive: bool) -> Result<(), DeviceError> {
         if !is_alive {
             for _ in 0..ticks {

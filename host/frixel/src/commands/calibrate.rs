@@ -241,7 +241,10 @@ impl Plan {
         bar.finish_and_clear();
         let stream = player.device().stream_status();
         if let Some(status) = stream.filter(|status| status.underruns > 0) {
-            note(format_args!("the board ran out of samples {} times; the drive rested then", status.underruns));
+            note(format_args!(
+                "the board ran out of samples {} times; its output was zero meanwhile",
+                status.underruns
+            ));
         }
         let rows = player.recorder_mut().take_rows();
         Ok(rows

@@ -58,11 +58,11 @@ pub(crate) enum CommandError {
          --port sim"
     )]
     NoPseudoTerminal { what: &'static str },
-    #[error("the contact model refuses the scene's finger: {0:?}")]
+    #[error("the contact model rejects the scene's finger: {0}")]
     Finger(ParameterError),
     #[error("{}: {source}", path.display())]
     Stroke { path: PathBuf, source: StrokeError },
-    #[error("a stroke over this scene: {0}")]
+    #[error("no stroke can be generated for this scene's screen: {0}")]
     NaturalStroke(StrokeError),
     #[error("--from and --to: {0}; give two places that differ")]
     StraightStroke(StrokeError),
@@ -95,7 +95,7 @@ pub(crate) enum CommandError {
     Noise { path: PathBuf, source: hound::Error },
     #[error("a board at {port} measures no forces: give those of a sensor with --forces FILE.csv, or --forces -")]
     NoForces { port: String },
-    #[error("{rows} no answer; the status says why")]
+    #[error("{rows} no answer; the column `status` says why")]
     InvalidRows { rows: String },
     #[error("{} is the input as well: writing it would destroy it; give --output another name", path.display())]
     OutputIsInput { path: PathBuf },
@@ -130,10 +130,12 @@ pub(crate) enum CommandError {
     #[error("{seconds} s is shorter than one tick of the board, {tick_s} s: play for longer")]
     TooShort { seconds: f64, tick_s: f64 },
     #[error(
-        "{port} is a board with an electrode: put on --arm, and hold the switch on the board, to let it drive hundreds of volts"
+        "{port} is a board with an electrode: add --arm, and hold the board's arm switch, to let it drive hundreds of volts"
     )]
     NotArmed { port: String },
-    #[error("a board with an electrode does not extrapolate: {warning}")]
+    #[error(
+        "a real board plays only what was measured on this finger: {warning}; fit the finger again up to this voltage and load, or lower the scene's"
+    )]
     NotMeasured { warning: Warning },
     #[error("{} has no row: the board saw no finger; slide one over its screen while `frixel record` runs", path.display())]
     NothingRecorded { path: PathBuf },

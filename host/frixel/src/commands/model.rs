@@ -134,7 +134,7 @@ fn judge(summary: &Summary) -> Result<(), CommandError> {
     if summary.beyond_finger_rows > 0 {
         let rows = rows(summary.beyond_finger_rows);
         note(format_args!(
-            "frixel: {rows} a contact radius above the finger's radius, which the model cannot mean: is a skin gap missing \
+            "frixel: {rows} a contact radius above the finger's radius, where the model is not valid: is a skin gap missing \
              from the coating?"
         ));
     }

@@ -21,7 +21,7 @@ pub(super) struct NewArgs {
 
 pub(super) fn run(args: &NewArgs) -> Result<(), CommandError> {
     let stem = args.name.file_stem().map(|stem| stem.to_string_lossy());
-    if !stem.is_some_and(|stem| !stem.starts_with(['.', '~'])) {
+    if stem.is_none_or(|stem| stem.starts_with(['.', '~'])) {
         return Err(CommandError::SceneName { name: args.name.clone() });
     }
     let path = args.name.with_extension("toml");

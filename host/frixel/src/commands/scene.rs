@@ -16,7 +16,7 @@ pub(super) enum SceneCommand {
     /// Every mistake is reported, with line and column. A scene that no board can play is refused by the number that is
     /// exceeded.
     Check(check::CheckArgs),
-    /// Draw the friction map of a scene: a PNG with rulers, and a colour scale in newtons.
+    /// Draw the friction map of a scene: a PNG with rulers, and a colour scale in millinewtons.
     Preview(preview::PreviewArgs),
     /// Print a scene of version 1 as version 2, in which screen and finger are apart.
     Migrate(migrate::MigrateArgs),

@@ -19,8 +19,8 @@ pub(super) struct ScoreArgs {
     scene: PathBuf,
     #[command(flatten)]
     profiles: ProfileArgs,
-    /// Where the finger goes: `human` for randomly generated people, `natural` for even strokes, or a CSV file with the columns
-    /// `t_s,x_mm,y_mm`.
+    /// Where the finger goes: `human` for randomly generated people, `natural` for even strokes, or a CSV file with the
+    /// columns `t_s,x_mm,y_mm`.
     #[arg(long, default_value = "human", value_name = "human|natural|FILE.csv")]
     stroke: String,
     /// Play under the fingers of so many people, drawn from an assumed population, whom the board does not know; each
@@ -114,8 +114,8 @@ fn rig(args: &ScoreArgs) -> RigConfig {
         rig.world = rig.world.natural();
     }
     (rig.world.touch.rate_hz, rig.world.touch.latency_s) = args.touch.rate_and_latency();
-    // The board's limit for the time between two reports stays that of the slowest class, 10 ms: a fast source that loses
-    // reports would otherwise turn the output off (docs/touch.md).
+    // The board's limit for the time between two reports stays that of the slowest class, 10 ms: a fast source that
+    // loses reports would otherwise turn the output off (docs/touch.md).
     rig
 }
 

@@ -14,8 +14,8 @@ const PINGS: u32 = 50;
 /// Duration of the telemetry, and messages a second.
 const TELEMETRY: Duration = Duration::from_secs(1);
 const MESSAGES_HZ: u32 = 500;
-/// Largest deviation of the board's clock from this computer's, and largest share of lost messages, in percent. Crystals
-/// are within 0.01 %, a computer's timer is late by some ms.
+/// Largest deviation of the board's clock from this computer's, and largest share of lost messages, in percent.
+/// Crystals are within 0.01 %, a computer's timer is late by some ms.
 const CLOCK_MAX_PERCENT: f64 = 3.0;
 const LOST_MAX_PERCENT: f64 = 5.0;
 /// Longest round trip that leaves room within the shortest host timeout, 20 ms.

@@ -50,7 +50,8 @@ pub(super) fn run(args: &SimArgs) -> Result<(), CommandError> {
     Ok(())
 }
 
-/// Sets the effects of the world, and returns the contact of the finger that stays whatever scene plays, if there is one.
+/// Sets the effects of the world, and returns the contact of the finger that stays whatever scene plays, if there is
+/// one.
 fn own_finger(args: &SimArgs, config: &mut RigConfig) -> Result<Option<LoadedContact<f64>>, CommandError> {
     if !args.ideal {
         config.world = config.world.natural();

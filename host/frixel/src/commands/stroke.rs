@@ -71,8 +71,8 @@ impl StrokeArgs {
         self.stroke.is_some() || self.from.is_some()
     }
 
-    /// The stroke that the options describe; `None` without options. A person's stroke covers a screen of this width and
-    /// height, in m, for `seconds` seconds.
+    /// The stroke that the options describe; `None` without options. A person's stroke covers a screen of this width
+    /// and height, in m, for `seconds` seconds.
     pub(super) fn stroke(
         &self,
         screen_m: [f64; 2],

@@ -11,8 +11,8 @@ use super::terminal::{note, print_line};
 
 #[derive(Debug, Args)]
 pub(super) struct StudioArgs {
-    /// Serial port of a board for the page, for example that of a `frixel sim`. Browsers with Web Serial need none: there
-    /// the page asks for the port.
+    /// Serial port of a board for the page, for example that of a `frixel sim`. Browsers with Web Serial need none:
+    /// there the page asks for the port.
     #[arg(long, value_name = "PATH")]
     port: Option<String>,
     /// Port of 127.0.0.1 to listen on; 0 for any.
@@ -31,10 +31,10 @@ pub(super) fn run(args: &StudioArgs) -> Result<(), CommandError> {
     let interrupt = Interrupt::watch()?;
     let url = studio.url();
     print_line(&url)?;
-    if !args.no_browser {
-        if let Err(error) = open::that_detached(&url) {
-            note(format_args!("frixel: no browser could be opened ({error}): open the address above"));
-        }
+    if !args.no_browser
+        && let Err(error) = open::that_detached(&url)
+    {
+        note(format_args!("frixel: no browser could be opened ({error}): open the address above"));
     }
     Ok(studio.run(&|| interrupt.is_requested())?)
 }

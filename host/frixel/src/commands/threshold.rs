@@ -223,7 +223,7 @@ fn report(
     ))?;
     print_line(format_args!("  {:<16} {highest:.0} V rms is {:.0} dB above it", "highest", -level_db))?;
     print_line(format_args!(
-        "  {:<16} how many newtons these are, nobody knows: write scenes in fractions of what can be reached",
+        "  {:<16} this gives no newtons: write scenes in fractions of what can be reached",
         "note"
     ))?;
     let Some(output) = &args.output else { return Ok(()) };

@@ -2,8 +2,8 @@
 //!
 //! **In**: rows of voltage (rms), normal force and friction, in strokes of a finger that slides while the drive is
 //! switched on and off ([`rows`] reads them from CSV). **Out**: a [`Fit`] with the friction coefficient, the one
-//! coupling number that friction data identify, friction at a stated voltage, each with an interval, and the exponent of
-//! the voltage, which tests the model; or a [`FitError`] that says in one sentence what was found and what to do.
+//! coupling number that friction data identify, friction at a stated voltage, each with an interval, and the exponent
+//! of the voltage, which tests the model; or a [`FitError`] that says in one sentence what was found and what to do.
 //!
 //! The steps, a module each: rows become strokes of steady sliding (`recording`), strokes become means that compare the
 //! drive on with the drive off around it (`contrast`), the law of the contact model (`law`) is fitted to the means by

@@ -83,7 +83,7 @@ fn way(spans: &[Span], time: &Axis) -> Option<Strip> {
     let decimals = usize::from(total_mm < 20.0);
     let at = |t_s: f64| spans.iter().find(|span| span.end_s >= t_s).map_or(total_mm, |span| span.way_mm);
     let cell = |t_s: f64| StripCell { x: t_s..t_s, text: format!("{:.decimals$}", at(t_s)), colour: None };
-    Some(Strip { label: "way, mm".to_owned(), cells: time.ticks().into_iter().map(cell).collect() })
+    Some(Strip { label: "path length, mm".to_owned(), cells: time.ticks().into_iter().map(cell).collect() })
 }
 
 /// The topmost layer under the finger over time; `None` if no layer is known.
@@ -164,7 +164,7 @@ impl Signal {
     fn add_to(&self, panel: &mut Panel, spans: &[Span], name: &str, look: Look) {
         let envelope = Look { line: Line::Filled(OPACITY), ..look };
         let comma = if name.is_empty() { "" } else { ", " };
-        let too_fast = format!("{name}{comma}too fast to draw: least to largest");
+        let too_fast = format!("{name}{comma}envelope, minimum to maximum");
         let mut names = [Some(name), Some(too_fast.as_str())];
         let (start_s, end_s) = times(spans);
         let piece_s = (end_s - start_s) * PIECE / PLOT_WIDTH;

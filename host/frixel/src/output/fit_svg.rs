@@ -23,7 +23,7 @@ fn chart(title: &str, fit: &Fit) -> Chart {
     chart.caption = vec![
         "Each mark is the mean of one stroke at one voltage, in comparison with the friction while the drive is off \
          just before \
-         and after. Residuals that depend on voltage, load or time show what the model does not say."
+         and after. Residuals that depend on voltage, load or time show what the model does not explain."
             .to_owned(),
     ];
     chart

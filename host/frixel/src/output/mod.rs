@@ -1,6 +1,7 @@
 //! The output files of a play.
 //!
-//! - [`FeltCsv`], [`ForcesCsv`] and [`EventCsv`]: `felt.csv`, `forces.csv` and `events.csv`, row by row while the scene plays.
+//! - [`FeltCsv`], [`ForcesCsv`] and [`EventCsv`]: `felt.csv`, `forces.csv` and `events.csv`, row by row while the scene
+//!   plays.
 //! - [`Trace`]: the same rows, downsampled for pictures, in bounded memory.
 //! - [`write_felt_svg`]: friction and voltage over time.
 //! - [`write_fit_svg`]: the residual plots of a fit.

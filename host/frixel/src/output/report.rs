@@ -80,7 +80,7 @@ pub struct Report {
 pub struct WorldReport {
     /// Whether every effect beside the contact model was switched off.
     pub is_ideal: bool,
-    /// Seed of the drawn person; `None` if the finger was the scene's.
+    /// Seed of the random person; `None` if the finger was the scene's.
     pub finger_seed: Option<u64>,
 }
 
@@ -146,7 +146,7 @@ impl Report {
         Self { finger_origin: origin.word(), ..self }
     }
 
-    /// Says which world was simulated, if one was. The newtons of a drawn person are assumed, whatever those of the
+    /// Says which world was simulated, if one was. The newtons of a random person are assumed, whatever those of the
     /// scene's finger rest on.
     #[must_use]
     pub fn with_world(self, world: Option<WorldReport>) -> Self {
@@ -198,7 +198,7 @@ impl Report {
             line("world", format!("{world}: {what}"));
         }
         if let Some(seed) = self.finger_seed {
-            line("finger", format!("drawn person {seed}, assumed; the board plays for the scene's finger"));
+            line("finger", format!("random person {seed}, assumed; the board computes for the scene's finger"));
         }
         let suffix = if self.finger_origin == Origin::Measured.word() { "" } else { ", assumed" };
         let range = |least: f64, most: f64| format!("{:.2} to {:.2} mN{suffix}", 1e3 * least, 1e3 * most);

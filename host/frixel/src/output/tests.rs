@@ -206,7 +206,7 @@ fn felt_svg_has_axes_units_and_legend() {
         assert!(svg.lines().any(|line| line == text), "{text}");
     }
     assert!(svg.starts_with("<svg width=\"1000\" height="));
-    assert!(!svg.contains("too fast to draw"));
+    assert!(!svg.contains("envelope"));
     assert_eq!(svg, draw("again.svg", &rows));
     // A board that cannot tell what was felt.
     for row in &mut rows {
@@ -308,7 +308,7 @@ fn a_signal_too_fast_to_draw_is_drawn_as_its_envelope() {
         fs::read_to_string(&path).expect("the file")
     };
     let (slow, fast) = (drawn(20.0), drawn(150.0));
-    let named = "felt, too fast to draw: least to largest";
+    let named = "felt, envelope, minimum to maximum";
     assert!(!slow.contains(named) && fast.contains(named));
     // The reach is a polygon in both; in the fast one, two envelopes and two samples of them in the legend.
     let polygons = |svg: &str| svg.matches("<polygon").count();

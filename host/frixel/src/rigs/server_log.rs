@@ -16,7 +16,8 @@ const FLUSH_PERIOD_S: f64 = 0.1;
 /// Rows a second of the force sensor under the screen.
 const FORCES_HZ: u32 = 1_000;
 
-/// `felt.csv`, `forces.csv` and `events.csv` of a virtual board. The reference is unknown because only the client has the scene file.
+/// `felt.csv`, `forces.csv` and `events.csv` of a virtual board. The reference is unknown because only the client has
+/// the scene file.
 pub(super) struct ServerLog {
     felt_csv: FeltCsv,
     forces_csv: ForcesCsv,

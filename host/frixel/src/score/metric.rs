@@ -6,8 +6,8 @@ use frixel_scene::fidelity::Fidelity;
 use frixel_scene::perception::{NATURAL_NOISE_RMS_N, weber_steps_safe};
 use serde::Serialize;
 
-/// Number of standard errors on either side of a mean in its 95 % interval, by the number of independent values less one:
-/// Student's t, from 1 to 10.
+/// Number of standard errors on either side of a mean in its 95 % interval, by the number of independent values less
+/// one: Student's t, from 1 to 10.
 const STANDARD_ERRORS: [f64; 10] = [12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228];
 
 /// A number of [`Fidelity`].

@@ -86,7 +86,8 @@ impl Score {
     }
 }
 
-/// Plays a program on a simulated board, and scores it; `None` if the finger was down for less than a quarter of a second.
+/// Plays a program on a simulated board, and scores it; `None` if the finger was down for less than a quarter of a
+/// second.
 pub fn fidelity(program: &Program, rig: &RigConfig, trial: &Trial) -> Result<Option<Fidelity>, PlayError> {
     Ok(Fidelity::of(&play::samples(program, rig, trial)?))
 }

@@ -2,8 +2,8 @@
 //!
 //! The test does what a reader does, block by block: it runs every line of a block `sh`, and those that go on (`frixel
 //! sim`, `--watch`) until the page ends; it writes a block `toml` into the file that the line above the block names; it
-//! makes the edits of the form "in `FILE`, change `A` to `B`"; and it finds the lines of a block `text` in what the last
-//! command printed, up to three dots.
+//! makes the edits of the form "in `FILE`, change `A` to `B`"; and it finds the lines of a block `text` in what the
+//! last command printed, up to three dots.
 
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader};
@@ -20,7 +20,7 @@ use super::{command, scenes};
 /// The port in the page.
 const PORT: &str = "/dev/pts/3";
 /// Longest wait for what a command prints that goes on.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_mins(1);
 
 /// A reader of the page, in a folder of its own.
 struct Reader {

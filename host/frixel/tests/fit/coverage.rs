@@ -105,7 +105,8 @@ fn intervals_cover_and_are_not_too_wide() {
     let tally = people(0..FEW);
     tally.print("a few people");
     assert!(tally.reasons.len() as u64 <= FEW / 5, "{:#?}", tally.reasons);
-    // Of the people who are fitted, all but four: of 24 intervals of 95 %, five or more miss the truth once in 170 sets.
+    // Of the people who are fitted, all but four: of 24 intervals of 95 %, five or more miss the truth once in 170
+    // sets.
     for (what, count) in [("electric friction", tally.electric), ("friction coefficient", tally.coefficient)] {
         assert!(tally.fitted - count <= 4, "{what}: {count} of {}: {tally:#?}", tally.fitted);
     }
@@ -137,8 +138,8 @@ fn plants_that_break_the_law_are_refused_or_covered() {
     assert!(caught >= 18, "{caught} of 20");
 }
 
-/// 99 and 100 of 100 are caught. Rules that catch nine of ten plants reach 96 of 100 once in 42 sets of seeds; rules that
-/// catch 99 % miss it once in 290.
+/// 99 and 100 of 100 are caught. Rules that catch nine of ten plants reach 96 of 100 once in 42 sets of seeds; rules
+/// that catch 99 % miss it once in 290.
 #[test]
 #[ignore = "minutes: cargo xtask soak"]
 fn nine_of_ten_plants_that_break_the_law_are_refused_or_covered() {

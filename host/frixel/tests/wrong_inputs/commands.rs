@@ -268,7 +268,7 @@ pub(super) const CONTROLS: &[Case] = &[
         code: 0,
         lines: 2,
         says: "b.toml: this scene file cannot be read (No such file or directory (os error 2)): check the \
-             path\nfrixel: b.toml is not played: the scene before plays on",
+             path\nfrixel: b.toml is not played: the previous scene keeps playing",
         ..CASE
     },
     Case {
@@ -290,7 +290,7 @@ pub(super) const CONTROLS: &[Case] = &[
         code: 0,
         lines: 2,
         says: "b.toml:3:8: `kind = \"constat\"` is not known; did you mean `constant`?\nfrixel: b.toml is not \
-             played: the scene before plays on",
+             played: the previous scene keeps playing",
         ..CASE
     },
 ];

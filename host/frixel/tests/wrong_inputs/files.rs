@@ -175,7 +175,7 @@ pub(super) const PROFILES: &[Case] = &[
              stiffness_pa_per_m = 1.8e7\n\
              skin_gap_um = 0\n",
         says: "s.toml:2:1: at 150.0 V rms the contact would have a radius of 51.9 mm under a finger of 8 mm, \
-             which the model cannot mean: a skin gap is missing, since 0.26 um between electrode and finger \
+             where the model is not valid: a skin gap is missing, since 0.26 um between electrode and finger \
              are too few; give the finger a `skin_gap_um` of some micrometres (in version 1 another slab of \
              [[coating]]), or lower `voltage_max_v_rms`",
         ..CASE

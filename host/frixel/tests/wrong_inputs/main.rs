@@ -1,6 +1,6 @@
-//! Wrong inputs, a row each: every one gives one clear sentence with what was found and what to do, an exit code of 1, or
-//! of 2 for an invalid command line, and no panic. A wrong control line ends nothing: its sentence comes, and the play goes
-//! on.
+//! Wrong inputs, a row each: every one gives one clear sentence with what was found and what to do, an exit code of 1,
+//! or of 2 for an invalid command line, and no panic. A wrong control line ends nothing: its sentence comes, and the
+//! play goes on.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 mod commands;

@@ -2,8 +2,8 @@
 
 use crate::perception::{AlikeTextures, BorderStep, LayerPerception, Perception, Step, Texture, Verdict};
 
-/// Lines of a name and a text: one for all layers that feel the same, one for all borders with the same step, and one for
-/// each note.
+/// Lines of a name and a text: one for all layers that feel the same, one for all borders with the same step, and one
+/// for each note.
 pub fn lines(perception: &Perception) -> Vec<(&'static str, String)> {
     let layers = perception.layers.iter().map(|layer| (layer.layer.clone(), sentence(layer)));
     let borders = perception.steps.iter().map(|border| (sides(border), step(&border.step)));
@@ -37,7 +37,7 @@ pub fn sentence(layer: &LayerPerception) -> String {
     let within = if contrast.contrast_n > 0.0 {
         format!("{} within it", step(contrast))
     } else {
-        format!("{:.1} mN everywhere in it", 1e3 * contrast.from_n)
+        format!("{:.1} mN throughout", 1e3 * contrast.from_n)
     };
     // A texture that is not felt at any speed is not worth a line.
     let has_texture = layer.textures.iter().any(|texture| texture.verdict != Verdict::NotFelt);
@@ -60,7 +60,7 @@ fn step(step: &Step) -> String {
 fn texture(texture: &Texture) -> String {
     let Texture { speed_mm_per_s, frequency_hz, amplitude_n, threshold_n, verdict, .. } = texture;
     let threshold = threshold_n
-        .map_or("no threshold known".to_owned(), |threshold_n| format!("threshold {:.2}", 1e3 * threshold_n));
+        .map_or("no threshold known".to_owned(), |threshold_n| format!("threshold {:.2} mN", 1e3 * threshold_n));
     let words = verdict.words();
     format!("at {speed_mm_per_s:.0} mm/s {:.2} mN at {frequency_hz:.0} Hz, {threshold} ({words})", 1e3 * amplitude_n)
 }

@@ -83,9 +83,7 @@ fn table(ram: &RamBytes) -> String {
         1 => "1 row is cut".to_owned(),
         rows => format!("{rows} rows are cut"),
     };
-    format!(
-        "{table_bytes} of {table_whole_bytes} bytes computed, {cut}; it has room for {table_room_bytes} whatever the scene"
-    )
+    format!("{table_bytes} of {table_whole_bytes} bytes computed, {cut}; {table_room_bytes} bytes are reserved")
 }
 
 fn out_of_reach(above: &OutOfReach, below: &OutOfReach) -> String {

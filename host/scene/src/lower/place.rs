@@ -65,8 +65,8 @@ fn stretches(rectangle: Rectangle, header: &Header) -> [f32; 4] {
     [x_m, y_m, width_m, height_m]
 }
 
-/// Start and length of a side in metres. The length is shortened if rounding would extend it past the screen. A side that
-/// is meant to extend past the screen, in a draft, stays as it is.
+/// Start and length of a side in metres. The length is shortened if rounding would extend it past the screen. A side
+/// that is meant to extend past the screen, in a draft, stays as it is.
 fn stretch(start_mm: f64, length_mm: f64, screen_m: f32) -> (f32, f32) {
     let screen_mm = f64::from(screen_m) / MM;
     let rounding_mm = OFF_SCREEN_MM + f64::from(f32::EPSILON) * screen_mm;

@@ -21,8 +21,8 @@ pub(super) struct Component {
 }
 
 /// The component that exceeds the threshold of touch by the largest factor after `gain`, a factor by frequency in Hz,
-/// which its amplitude contains; where no frequency has a threshold, the component of the largest amplitude. `None` for a signal that is too short or has nothing above
-/// [`TEXTURE_MIN_HZ`].
+/// which its amplitude contains; where no frequency has a threshold, the component of the largest amplitude. `None` for
+/// a signal that is too short or has nothing above [`TEXTURE_MIN_HZ`].
 pub(super) fn most_noticeable(samples: &[f64], sample_hz: f64, gain: impl Fn(f64) -> f64) -> Option<Component> {
     if samples.len() < SAMPLES_MIN {
         return None;

@@ -8,8 +8,8 @@ use serde::Serialize;
 pub const WEBER_FRACTION: f64 = 0.11;
 
 /// Weber fraction that rubber needed under active touch, rounded up to the 0.27 of force discrimination below 0.5 N
-/// (Fehlberg 2022, doi:10.1007/978-3-031-06249-0_3: 0.2; doi:10.1038/s41598-022-12010-0: 0.15 to 0.27). A step above it is
-/// felt whichever of the three studies a person is like.
+/// (Fehlberg 2022, doi:10.1007/978-3-031-06249-0_3: 0.2; doi:10.1038/s41598-022-12010-0: 0.15 to 0.27). A step above it
+/// is felt whichever of the three studies a person is like.
 pub(super) const WEBER_FRACTION_SAFE: f64 = 0.27;
 
 /// Difference threshold of electrovibration voltage, dB (doi:10.1038/s41598-018-22865-x).

@@ -822,8 +822,8 @@ fn more_volts_are_proposed_only_where_they_help() {
     }
 }
 
-/// What can be found at once is reported at once: mistakes of a layer's fields, of a picture, of its place, of room on the
-/// board, and friction out of reach.
+/// What can be found at once is reported at once: mistakes of a layer's fields, of a picture, of its place, of room on
+/// the board, and friction out of reach.
 #[test]
 fn mistakes_of_all_stages_come_together() {
     let layers = "\

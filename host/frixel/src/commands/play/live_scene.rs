@@ -68,7 +68,9 @@ impl LiveScene {
         }
         if self.file.has_vanished() {
             let path = self.file.path().display();
-            note(format_args!("frixel: {path} is gone: the scene before plays on, until the file is there again"));
+            note(format_args!(
+                "frixel: {path} is gone: the previous scene keeps playing, until the file is there again"
+            ));
         }
         // Every file is checked, so that several that are saved together are one change.
         let is_saved = self.named_files.iter_mut().fold(self.file.is_saved(), |saved, file| file.is_saved() || saved);
@@ -105,13 +107,13 @@ fn replace<L: RecordedLink>(
         Ok(program) => program,
         Err(error) => {
             note(error);
-            note(format_args!("frixel: {path} is not played: the scene before plays on"));
+            note(format_args!("frixel: {path} is not played: the previous scene keeps playing"));
             return Ok(None);
         }
     };
     if let Err(error) = check_measured(&program, player.device().hello().board) {
         note(error);
-        note(format_args!("frixel: {path} is not played: the scene before plays on"));
+        note(format_args!("frixel: {path} is not played: the previous scene keeps playing"));
         return Ok(None);
     }
     let mut how = "";
@@ -130,7 +132,7 @@ fn replace<L: RecordedLink>(
             Ok(Some(program))
         }
         Err(PlayError::Device(refused @ DeviceError::Refused { .. })) => {
-            note(format_args!("frixel: {refused}: the scene before plays on"));
+            note(format_args!("frixel: {refused}: the previous scene keeps playing"));
             Ok(None)
         }
         Err(error) => Err(error),

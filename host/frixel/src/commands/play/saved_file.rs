@@ -8,7 +8,8 @@ use std::time::{Duration, Instant, SystemTime};
 /// while it is being written.
 const CHECK_PERIOD: Duration = Duration::from_millis(100);
 
-/// Checks after which a file that is not there counts as gone: half a second, longer than an editor takes to replace it.
+/// Checks after which a file that is not there counts as gone: half a second, longer than an editor takes to replace
+/// it.
 const CHECKS_GONE: u32 = 5;
 
 /// Detects when a file was saved, in place or by an editor that replaces it by another file.

@@ -12,8 +12,8 @@ const CHECK_PERIOD: Duration = Duration::from_millis(20);
 
 /// Plays the scene, and plays it anew whenever its file, or a file that it names, was saved, until Ctrl-C.
 ///
-/// A scene that cannot be played the first time is an error. Later its mistakes are printed, and the files in the output
-/// folder stay those of the play before.
+/// A scene that cannot be played the first time is an error. Later its mistakes are printed, and the files in the
+/// output folder stay those of the play before.
 pub(super) fn play_on_simulator(args: &PlayArgs, interrupt: &Interrupt) -> Result<(), CommandError> {
     let (played, mut files) = play(args, interrupt);
     played?;
@@ -22,7 +22,7 @@ pub(super) fn play_on_simulator(args: &PlayArgs, interrupt: &Interrupt) -> Resul
     while !interrupt.is_requested() {
         sleep(CHECK_PERIOD);
         // Every file is checked, so that several that are saved together are one change.
-        let is_saved = files.iter_mut().fold(false, |saved, file| file.is_saved() || saved);
+        let is_saved = files.iter_mut().filter_map(|file| file.is_saved().then_some(())).count() > 0;
         if files.first_mut().is_some_and(SavedFile::has_vanished) {
             note(format_args!("frixel: {name} is gone: it plays anew when it is there again"));
         }
@@ -38,7 +38,8 @@ pub(super) fn play_on_simulator(args: &PlayArgs, interrupt: &Interrupt) -> Resul
     Ok(())
 }
 
-/// Loads the scene and plays it. Returns the scene's file, first, and those that it names, as they were when they were read.
+/// Loads the scene and plays it. Returns the scene's file, first, and those that it names, as they were when they were
+/// read.
 fn play(args: &PlayArgs, interrupt: &Interrupt) -> (Result<(), CommandError>, Vec<SavedFile>) {
     let file = SavedFile::new(&args.scene);
     let (scene, named_files) = args.profiles.names().load_with_files(&args.scene);

@@ -13,8 +13,8 @@ use super::CommandError;
 const PATIENCE: Duration = Duration::from_secs(2);
 const RETRY_AFTER: Duration = Duration::from_millis(50);
 
-/// Reads the log when it has the time of the last row, and joins it to the rows. `start_s` is the time from the power-on
-/// of the board to the client's time zero.
+/// Reads the log when it has the time of the last row, and joins it to the rows. `start_s` is the time from the
+/// power-on of the board to the client's time zero.
 pub(super) fn joined(path: &Path, rows: &[FeltRow], start_s: f64) -> Result<Vec<FeltRow>, CommandError> {
     let end_s = start_s + rows.last().map_or(0.0, |row| row.t_s);
     let started = Instant::now();

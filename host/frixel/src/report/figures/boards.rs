@@ -11,7 +11,8 @@ pub(super) enum BoardCostFigure {
 }
 
 impl BoardCostFigure {
-    /// Says whether the figure is shown, or why not: `shown` is the figure, `counts` the file of counts, if there is one.
+    /// Says whether the figure is shown, or why not: `shown` is the figure, `counts` the file of counts, if there is
+    /// one.
     pub(super) fn new<T>(shown: Option<&T>, counts: Option<&Counts>) -> Self {
         match (shown, counts) {
             (Some(_), _) => Self::Shown,

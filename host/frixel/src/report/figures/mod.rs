@@ -65,8 +65,8 @@ pub(super) fn all(counts: Option<&Counts>) -> Result<Vec<Figure>, ReportError> {
     Ok(figures.into_iter().flatten().collect())
 }
 
-/// The finger of the charts: that of `scenes/fingers/example.toml`, on an effective gap of 10 um in place of 5 um. 250 mN
-/// at zero voltage and 28 mN more at 150 V rms, under 0.5 N.
+/// The finger of the charts: that of `scenes/fingers/example.toml`, on an effective gap of 10 um in place of 5 um. 250
+/// mN at zero voltage and 28 mN more at 150 V rms, under 0.5 N.
 fn example_finger() -> Finger<f64> {
     Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 }
 }
