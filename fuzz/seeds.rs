@@ -5,8 +5,8 @@ use std::fs;
 use std::path::Path;
 
 use frixel::scene_file;
-use frixel_scene::{compile};
 use frixel_hil_sim::RigConfig;
+use frixel_scene::compile;
 // Its instrumentation calls the fuzzer.
 use libfuzzer_sys as _;
 

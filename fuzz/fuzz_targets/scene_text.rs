@@ -5,8 +5,8 @@
 use std::collections::BTreeMap;
 
 use frixel::check::SceneCheck;
-use frixel_scene::{Scene, compile};
 use frixel_hil_sim::RigConfig;
+use frixel_scene::{Scene, compile};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {

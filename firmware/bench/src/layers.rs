@@ -4,8 +4,8 @@ use core::array;
 
 use frixel_layers::cost;
 use frixel_layers::{
-    Beat, Bitmap, Blend, Burst, Button, Click, Constant, Edge, Grating, Header, Layer, Noise, Point, Record,
-    Region, Rings, Speed, Stream, Vibration, Wave, Waveform,
+    Beat, Bitmap, Blend, Burst, Button, Click, Constant, Edge, Grating, Header, Layer, Noise, Point, Record, Region,
+    Rings, Speed, Stream, Vibration, Wave, Waveform,
 };
 use frixel_wire::hello::BoardLimits;
 use frixel_wire::message::Command;

@@ -9,7 +9,7 @@ use core::str;
 use cortex_m_semihosting::hprintln;
 use frixel_layers::Layer;
 use frixel_session::Touch;
-use frixel_testkit::{Pace, RandomFinger, RandomScene, FingerReport};
+use frixel_testkit::{FingerReport, Pace, RandomFinger, RandomScene};
 
 use crate::count::{Case, Counter};
 use crate::tick::{Bench, PING_TICKS, STREAM_TICKS};
