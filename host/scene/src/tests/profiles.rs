@@ -141,8 +141,8 @@ fn coating_and_skin_together_are_at_most_ten_millimetres() {
 fn a_contact_wider_than_the_finger_is_refused() {
     let sentence = |place: &str| {
         format!(
-            "test.toml:{place}: at 150.0 V rms the contact would have a radius of 51.9 mm under a finger of 8 mm, which \
-             the model cannot mean: a skin gap is missing, since 0.26 um between electrode and finger are too few; give the \
+            "test.toml:{place}: at 150.0 V rms the contact would have a radius of 51.9 mm under a finger of 8 mm, where \
+             the model is not valid: a skin gap is missing, since 0.26 um between electrode and finger are too few; give the \
              finger a `skin_gap_um` of some micrometres (in version 1 another slab of [[coating]]), or lower \
              `voltage_max_v_rms`"
         )

@@ -232,7 +232,7 @@ mod tests {
         check_measured(&program, BoardKind::Simulator).unwrap();
         let refused = check_measured(&program, BoardKind::NucleoG474re).unwrap_err().to_string();
         assert!(
-            refused.starts_with("a board with an electrode does not extrapolate: the scene needs up to "),
+            refused.starts_with("a real board plays only what was measured on this finger: the scene needs up to "),
             "{refused}"
         );
     }
