@@ -358,6 +358,21 @@ fn map(path: &str) -> Vec<u8> {
 }
 
 #[test]
+fn a_preview_never_replaces_a_picture_of_the_scene() {
+    let folder = TempDir::new().unwrap();
+    let (scene, picture) = (folder.path().join("brick.toml"), folder.path().join("brick.png"));
+    fs::copy(repository().join("scenes/textures/brick.png"), &picture).unwrap();
+    let layer =
+        "[[layer]]\nkind = \"bitmap\"\npicture = \"brick.png\"\nx_mm = 10\ny_mm = 5\nwidth_mm = 60\nwhite_n = 0.01\n";
+    fs::write(&scene, format!("{HEAD}{layer}")).unwrap();
+    let before = fs::read(&picture).unwrap();
+    let output = frixel(&["scene", "preview", scene.to_str().unwrap(), "-o", picture.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(String::from_utf8(output.stderr).unwrap().contains("brick.png is a file of the scene"));
+    assert!(fs::read(&picture).unwrap() == before);
+}
+
+#[test]
 fn a_preview_is_a_png_of_the_asked_size() {
     let files = Files::new();
     let path = files.path("map.png");

@@ -158,6 +158,8 @@ pub(crate) enum CommandError {
         path.display()
     )]
     LogTooShort { path: PathBuf, behind_s: f64 },
+    #[error("{} is a file of the scene: give another name to -o", path.display())]
+    WouldReplace { path: PathBuf },
     #[error(transparent)]
     Feed(#[from] FeedError),
     #[error(

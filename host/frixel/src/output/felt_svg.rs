@@ -83,7 +83,7 @@ fn way(spans: &[Span], time: &Axis) -> Option<Strip> {
     let decimals = usize::from(total_mm < 20.0);
     let at = |t_s: f64| spans.iter().find(|span| span.end_s >= t_s).map_or(total_mm, |span| span.way_mm);
     let cell = |t_s: f64| StripCell { x: t_s..t_s, text: format!("{:.decimals$}", at(t_s)), colour: None };
-    Some(Strip { label: "path length, mm".to_owned(), cells: time.ticks().into_iter().map(cell).collect() })
+    Some(Strip { label: "path, mm".to_owned(), cells: time.ticks().into_iter().map(cell).collect() })
 }
 
 /// The topmost layer under the finger over time; `None` if no layer is known.

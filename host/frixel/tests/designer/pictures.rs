@@ -35,7 +35,7 @@ fn time_stands_above_the_way_and_the_layers() {
     succeed(folder.path(), &[&["play", scene("brick.toml").as_str()], &stroke[..]].concat());
     let svg = std::fs::read_to_string(folder.path().join("frixel-out/felt.svg")).unwrap();
     let has = |text: &str| svg.lines().any(|line| line == text);
-    assert!(has("time, s") && has("path length, mm") && has("layer"), "names of the strips");
+    assert!(has("time, s") && has("path, mm") && has("layer"), "names of the strips");
     // 0.4 s at 100 mm/s, 0.8 s at the end, and the name of the only layer.
     assert!(has("40") && has("80") && svg.lines().any(|line| line.contains("brick") && !line.contains("toml")));
     assert!(svg.lines().any(|line| line.ends_with("brick.toml, simulated")));

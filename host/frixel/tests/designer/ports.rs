@@ -85,7 +85,7 @@ fn a_play_to_a_port_draws_what_the_board_commanded_and_joins_what_was_felt() {
     assert!(!notes.contains("left"), "no progress bar off a terminal: {notes}");
     let svg = fs::read_to_string(folder.path().join("frixel-out/commanded.svg")).unwrap();
     let has = |text: &str| svg.lines().any(|line| line == text);
-    assert!(has("commanded") && has("scene.toml, simulated") && has("path length, mm") && !has("felt"));
+    assert!(has("commanded") && has("scene.toml, simulated") && has("path, mm") && !has("felt"));
     assert!(fs::metadata(folder.path().join("frixel-out/scene.png")).unwrap().len() > 10_000);
     let (rows, felt_rows) = felt(folder.path());
     assert!(rows > 500 && felt_rows == 0, "{rows} rows, {felt_rows} felt");

@@ -12,8 +12,12 @@ pub(super) const SIGNATURE: &[u8] = &[0xff, 0xd8, 0xff];
 
 /// Decodes the bytes of a JPEG file.
 pub(super) fn decode(jpeg: &[u8]) -> Result<Picture, PictureError> {
-    let damaged = |error: zune_jpeg::errors::DecodeErrors| PictureError::Damaged(format!("{error:?}"));
-    let options = DecoderOptions::new_safe().set_max_width(PIXELS_MAX).set_max_height(PIXELS_MAX);
+    let damaged = |error: zune_jpeg::errors::DecodeErrors| {
+        let words = format!("{error:?}");
+        PictureError::Damaged(words.split_whitespace().collect::<Vec<_>>().join(" "))
+    };
+    // Strict: a picture that ends early would otherwise have a flat rest.
+    let options = DecoderOptions::new_safe().set_max_width(PIXELS_MAX).set_max_height(PIXELS_MAX).set_strict_mode(true);
     let mut decoder = JpegDecoder::new_with_options(ZCursor::new(jpeg), options);
     decoder.decode_headers().map_err(damaged)?;
     let size = decoder.info().ok_or_else(|| PictureError::Damaged("it has no size".to_owned()))?;

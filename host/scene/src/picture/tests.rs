@@ -43,8 +43,10 @@ fn what_is_no_picture_is_refused_and_never_panics() {
     assert_eq!(refused(include_bytes!("testdata/inks.jpg")), "its colours are inks (CMYK): save it as RGB or grey");
     assert_eq!(refused(b"GIF89a"), "it is neither a PNG nor a JPEG file: save it as PNG");
     assert!(refused(&COLOURS[..20]).contains("it is damaged"));
+    // A file that ends early is refused, unless all of its pixels are there.
+    let whole = Picture::decode(COLOURS).unwrap();
     for end in 0..COLOURS.len() {
-        let _ = Picture::decode(&COLOURS[..end]);
+        assert!(Picture::decode(&COLOURS[..end]).map_or(true, |cut| cut == whole), "cut to {end} bytes");
     }
     for place in 0..COLOURS.len() {
         let mut damaged = COLOURS.to_vec();

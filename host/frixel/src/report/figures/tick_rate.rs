@@ -152,7 +152,7 @@ fn trace(panel: &mut Panel, data: &mut Data<6>, case: &Case) -> Result<(), Repor
 fn way(time: &Axis) -> Strip {
     let cell =
         |time_ms: f64| StripCell { x: time_ms..time_ms, text: format!("{:.1}", SPEED_M_PER_S * time_ms), colour: None };
-    Strip { label: "path length, mm".to_owned(), cells: time.ticks().into_iter().map(cell).collect() }
+    Strip { label: "path, mm".to_owned(), cells: time.ticks().into_iter().map(cell).collect() }
 }
 
 fn caption() -> Vec<String> {
