@@ -53,6 +53,9 @@ pub enum HostError {
         /// The compiler's warning.
         warning: String,
     },
+    /// The scene would play on after the page is gone, which only a simulator may.
+    #[error("this scene plays without its host, so a board would drive on without this page: leave `autonomous` out")]
+    Autonomous,
     /// There is no board.
     #[error("no board is connected: connect one, or use the simulator")]
     NoBoard,
@@ -85,11 +88,16 @@ struct Playing {
 }
 
 impl<S: ByteStream + SceneListener> Host<S> {
-    /// Connects to a board, and disarms it.
+    /// Connects to a board, and disarms it. A board with a latched fault drives nothing; it stays as it is.
     pub(crate) fn connect(stream: S) -> Result<Self, DeviceError> {
         let mut device = Device::connect(PollingLink::new(stream))?;
-        device.disarm()?;
-        Ok(Self { device, state: State::Disarmed, fault: None, playing: None, telemetry: Vec::new() })
+        let state = if device.hello().state == State::Faulted {
+            State::Faulted
+        } else {
+            device.disarm()?;
+            State::Disarmed
+        };
+        Ok(Self { device, state, fault: None, playing: None, telemetry: Vec::new() })
     }
 
     /// The board's hello.
@@ -122,6 +130,9 @@ impl<S: ByteStream + SceneListener> Host<S> {
     pub(crate) fn load(&mut self, request: &Request) -> Result<&Program, HostError> {
         let Hello { limits, tick_hz, board, .. } = *self.device.hello();
         let (_, program) = compiled(request, &limits, tick_hz)?;
+        if program.header.autonomous && !board.is_simulated() {
+            return Err(HostError::Autonomous);
+        }
         if let Some(warning) = program.warnings.iter().find(|warning| warning.is_refused_by_boards())
             && !board.is_simulated()
         {
@@ -163,10 +174,10 @@ impl<S: ByteStream + SceneListener> Host<S> {
         Ok(())
     }
 
-    /// Sets the output to zero and disarms the board.
+    /// Sets the output to zero and disarms the board. With a latched fault the output is zero already.
     pub(crate) fn stop(&mut self) -> Result<(), DeviceError> {
-        self.device.disarm()?;
         if self.state != State::Faulted {
+            self.device.disarm()?;
             self.state = State::Disarmed;
         }
         Ok(())

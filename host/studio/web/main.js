@@ -93,6 +93,7 @@ async function start() {
   /** Opens a scene from elsewhere: a real board is disarmed before. */
   async function open({ name, text, files = [], profiles: chosen }) {
     await board.disarmBeforeForeignScene();
+    project.files.clear();
     for (const [file, content] of files) project.files.set(file, content);
     project.name = name;
     byId("scene-name").textContent = `${name}.toml`;
@@ -113,6 +114,7 @@ async function start() {
   gallery.onLayer = (text) => editor.append(text);
   incoming.onFiles = async ({ scene, files, finger: own, screen }) => {
     await board.disarmBeforeForeignScene();
+    project.files.clear();
     for (const [name, content] of files) project.files.set(name, content);
     if (own) profiles.addFinger(own);
     if (screen) profiles.addScreen(screen);

@@ -65,8 +65,10 @@ pub(super) struct CalibrateArgs {
 pub(super) fn run(args: &CalibrateArgs) -> Result<(), CommandError> {
     let interrupt = Interrupt::watch()?;
     experiment::check_writable(&args.output)?;
-    // A file of forces that is missing, or of something else, is found before the run, not after it.
-    if let Some(path) = args.forces.as_deref().filter(|path| *path != Path::new("-")) {
+    // A file of forces that is missing, or of something else, is found before the run, not after it. A pipe can be read
+    // only once.
+    let is_pipe = |path: &Path| path.exists() && !path.is_file();
+    if let Some(path) = args.forces.as_deref().filter(|path| *path != Path::new("-") && !is_pipe(path)) {
         read(path)?;
     }
     let (board, forces) = if args.port == "sim" { on_simulator(args, &interrupt)? } else { on_port(args, &interrupt)? };

@@ -19,7 +19,7 @@ export class Board {
     engine.onState = (state) => this.#show(state);
     this.#show({ link: "simulator", state: "disarmed", needsArm: false, driving: "the simulator in this page" });
     byId("open-board").onclick = () => this.#open();
-    byId("arm").onclick = () => attempt(() => engine.arm());
+    byId("arm").onclick = () => attempt(() => (byId("arm").dataset.clears ? engine.clearFault() : engine.arm()));
     byId("stop").onclick = () => attempt(() => (byId("stop").dataset.stopped ? this.#resume() : engine.stop()));
   }
 
@@ -29,7 +29,7 @@ export class Board {
 
   /** Takes the drive off a real board before something that nobody here wrote is played. */
   async disarmBeforeForeignScene() {
-    if (!this.isSimulator) await this.#engine.stop().catch(() => {});
+    if (!this.isSimulator) await this.#engine.stop();
   }
 
   #resume() {
@@ -44,8 +44,12 @@ export class Board {
     const name = link === "simulator" ? "Simulator" : driving;
     board.textContent = `${name}: ${WORDS[state] ?? state}${fault ? `, ${fault}` : ""}`;
     const arm = byId("arm");
-    arm.hidden = !needsArm;
-    arm.textContent = `Arm: drive ${driving}`;
+    // A board latches a fault also when its arm switch is let go.
+    const isFaulted = state === "faulted" && link !== "simulator";
+    arm.hidden = !needsArm && !isFaulted;
+    arm.textContent = isFaulted ? "Clear the fault" : `Arm: drive ${driving}`;
+    if (isFaulted) arm.dataset.clears = "true";
+    else delete arm.dataset.clears;
     const stop = byId("stop");
     const isStopped = state === "disarmed";
     stop.textContent = isStopped && link === "simulator" ? "Play" : "Stop";

@@ -57,17 +57,18 @@ export class Layers {
       "aria-label": `gain of ${label}`,
     });
     const shown = element("output", {}, `× ${state.gain}`);
-    isOn.onchange = () => this.#change(index, { ...state, on: isOn.checked }, state);
+    isOn.onchange = () => this.#change(index, { on: isOn.checked }, isOn.checked ? "on" : "off", state);
     gain.oninput = () => {
       shown.textContent = `× ${Number(gain.value)}`;
-      this.#change(index, { ...state, gain: Number(gain.value) }, state);
+      this.#change(index, { gain: Number(gain.value) }, `gain ${Number(gain.value)}`, state);
     };
     return element("div", { className: "live" }, element("label", { className: "check" }, isOn, " on"), gain, shown);
   }
 
-  #change(index, next, state) {
+  /** Sends only what was changed: the scene's gain stays until the slider is moved. */
+  #change(index, next, words, state) {
     Object.assign(state, next);
     this.#live.set(index, state);
-    attempt(() => this.#engine.control(`layer ${index} ${state.on ? "on" : "off"} gain ${state.gain}`));
+    attempt(() => this.#engine.control(`layer ${index} ${words}`));
   }
 }
