@@ -170,7 +170,7 @@ test("a slide is felt as the scene has it", async (context) => {
   await close();
 });
 
-test("a finger that stands still, or is lifted, gets nothing", async (context) => {
+test("a lifted finger gets nothing, and a still one is driven less than while it moves", async (context) => {
   const { page, errors, close } = await openStudio();
   const found = await page.evaluate(async (speedMmPerS) => {
     const { samples } = studioPage;
