@@ -160,7 +160,7 @@ fn every_command_of_the_tutorial_runs() {
         paragraph.clear();
     }
     assert!(reader.commands >= 14 && reader.edits >= 3, "{} commands, {} edits", reader.commands, reader.edits);
-    for name in ["wood.png", "all.png", "frixel-out/felt.svg"] {
+    for name in ["map.png", "all.png", "frixel-out/felt.svg"] {
         assert!(reader.path().join(name).metadata().unwrap().len() > 1_000, "{name}");
     }
 }
