@@ -43,17 +43,17 @@ pub(crate) struct Friction {
     /// Friction that the voltage adds.
     pub(crate) electric_friction_n: f64,
     pub(crate) normal_load_n: f64,
-    /// Part of the friction that is there because the load is not the one that the scene is meant for.
+    /// The part of the friction that comes from a load other than the profile's, in N.
     pub(crate) load_mismatch_n: f64,
     pub(crate) slip: SlipStep,
 }
 
-/// What it does to the friction that the load is not the one that the scene is meant for.
+/// The friction under the present load less that under the load of the profile.
 #[derive(Clone, Copy, Debug, Default)]
 struct LoadMismatch {
-    /// Natural friction in steady sliding, without noise, beyond that under the load that is meant, in N.
+    /// Natural friction in steady sliding, without noise, less that under the load of the profile, in N.
     natural_n: f64,
-    /// Part of the electric friction beyond that under the load that is meant.
+    /// Part of the electric friction that comes from a load other than the profile's.
     electric_share: f64,
 }
 
@@ -198,7 +198,7 @@ impl Fingertip {
         }
     }
 
-    /// What the load of this moment changes; `None` if it is the one that the scene is meant for.
+    /// How the present load changes the friction; `None` if it is the load of the profile.
     fn load_mismatch(&self, compared_v_rms: f64) -> Option<LoadMismatch> {
         if (self.load_n - self.meant_load_n).abs() <= f64::EPSILON * self.meant_load_n {
             return None;

@@ -17,7 +17,7 @@ const CLOCK_HZ: u32 = 25_000_000;
 
 static TICK: Owned<Tick> = Owned::new();
 
-/// What the tick owns.
+/// The ticker, and everything else that only the interrupt uses.
 pub struct Tick {
     /// Computes the voltage from touch and scene.
     pub ticker: Ticker<'static>,

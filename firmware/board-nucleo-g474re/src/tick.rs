@@ -39,7 +39,7 @@ const FAULT_SHIFT: u32 = 24;
 #[cfg(feature = "log")]
 defmt::timestamp!("tick {=u32}", count());
 
-/// What the tick owns.
+/// The ticker, and everything else that only the interrupt uses.
 pub struct Tick {
     /// Computes the voltage from touch and scene.
     pub ticker: Ticker<'static>,

@@ -1,4 +1,4 @@
-//! What `PROTOCOL.md` says in section 16, "Details for clients".
+//! Tests of the board against section 16 of `PROTOCOL.md`, "Details for clients".
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 

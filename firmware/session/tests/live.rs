@@ -1,4 +1,4 @@
-//! What a host may change while a scene plays, and the refusals of the rest.
+//! Tests of the changes that a host may make while a scene plays, and of the refusals of all others.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
 mod support;

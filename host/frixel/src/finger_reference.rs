@@ -1,4 +1,4 @@
-//! What a display without fault would give a simulated finger.
+//! The friction that a display without errors would give a simulated finger.
 
 use frixel_hil_sim::{ReferenceFriction, TickRecord};
 use frixel_scene::Program;
@@ -6,8 +6,8 @@ use frixel_scene::reference::{Context, Reference, StrokeReference};
 
 /// The friction of a scene at the finger's true place, through the same finger, with its load and noise.
 ///
-/// What remains between it and what the finger felt are the display's errors: where the touch source saw the finger,
-/// what the drive made of it, what leaked.
+/// The difference to the friction that the finger felt is the display's error: of the touch source, of the drive, and
+/// of the charge that leaked.
 pub(crate) struct FingerReference {
     scene: StrokeReference,
     finger: ReferenceFriction,

@@ -5,7 +5,6 @@ use std::time::Duration;
 
 use frixel_driver::{Bitmap, Counters, Device, DeviceError, Event, Link, Progress, StreamStatus, Upload};
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, TickRecord, WorldError};
-use frixel_layers::Header;
 use frixel_model::{LoadedContact, ParameterError};
 use frixel_scene::Program;
 use frixel_scene::recorder::Recorder;
@@ -151,10 +150,7 @@ impl<L: RecordedLink> Player<L> {
     /// Like [`Self::replace`], for a scene whose bitmaps do not fit on the board beside those of the scene that plays:
     /// an empty scene plays until the new one is there, so that the output fades out meanwhile.
     pub fn replace_alone(&mut self, program: &Program) -> Result<(), PlayError> {
-        let header = Header { electric_friction_max_n: None, ..program.header };
-        let (records, points, bitmaps, titles) = Default::default();
-        let empty = Program { header, records, points, bitmaps, titles, ..program.clone() };
-        self.replace(&empty)?;
+        self.replace(&program.without_layers())?;
         self.replace(program)
     }
 

@@ -1,4 +1,4 @@
-//! What a simulated board needs for a scene, measured without playing it.
+//! Memory, table and line bytes that a simulated board needs for a scene, measured without playing it.
 
 use std::ops::ControlFlow;
 

@@ -55,6 +55,15 @@ impl Program {
         !self.refusals.is_empty()
     }
 
+    /// The same scene without layers and pictures. A board plays it in between when it has no room for the pictures of
+    /// two scenes at once.
+    #[must_use]
+    pub fn without_layers(&self) -> Self {
+        let header = Header { electric_friction_max_n: None, ..self.header };
+        let (records, points, bitmaps, titles) = Default::default();
+        Self { header, records, points, bitmaps, titles, ..self.clone() }
+    }
+
     /// The scene's bytes for a board of this protocol version.
     pub fn scene_bytes(&self) -> Vec<u8> {
         self.scene_bytes_for((PROTOCOL_MAJOR, PROTOCOL_MINOR))

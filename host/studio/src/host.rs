@@ -4,7 +4,6 @@ use std::time::Duration;
 
 use frixel_driver::{Bitmap, ByteStream, ControlError, ControlLine, Device, DeviceError, Event, PollingLink, Upload};
 use frixel_hil_sim::{StrokeError, WorldError};
-use frixel_layers::Header;
 use frixel_scene::{LayerError, Program};
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::hello::Hello;
@@ -151,9 +150,7 @@ impl<S: ByteStream + SceneListener> Host<S> {
     /// Loads a scene whose pictures do not fit on the board beside those of the one before: an empty scene plays until
     /// the new one is there. If the board refuses it, the one before is put back.
     fn load_alone(&mut self, program: &Program) -> Result<(), HostError> {
-        let header = Header { electric_friction_max_n: None, ..program.header };
-        let (records, points, bitmaps, titles) = Default::default();
-        upload(&mut self.device, &Program { header, records, points, bitmaps, titles, ..program.clone() })?;
+        upload(&mut self.device, &program.without_layers())?;
         let loaded = upload(&mut self.device, program);
         if let (Err(DeviceError::Refused { .. }), Some(before)) = (&loaded, &self.playing) {
             upload(&mut self.device, &before.program)?;

@@ -259,7 +259,7 @@ impl Report {
     }
 }
 
-/// What a summary says of a draft.
+/// The line of a summary that marks a draft.
 pub fn draft_line(refusals: usize) -> String {
     let reasons = if refusals == 1 { "1 reason".to_owned() } else { format!("{refusals} reasons") };
     format!("a board refuses this scene, for {reasons}; what is out of reach is clamped here")
