@@ -3,6 +3,7 @@
 
 pub mod calibration;
 mod chart;
+mod default_stroke;
 mod finger_reference;
 pub mod fit;
 pub mod model_csv;
@@ -16,3 +17,5 @@ pub mod score;
 pub mod stream;
 pub mod studio;
 pub mod threshold;
+
+pub use default_stroke::default_stroke;

@@ -9,6 +9,7 @@ use std::fs::{self, File};
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
+use frixel::default_stroke;
 use frixel::output::write_preview_png;
 use frixel::player::{Simulation, simulate};
 use frixel::scene_file;
@@ -23,9 +24,6 @@ use frixel_wire::fault::Flags;
 const PICTURE_BYTES_MAX: u64 = 40 * 1024;
 /// How much the felt friction has to vary along a stroke over a scene, as a part of what the drive can add.
 const FELT_PART_MIN: f64 = 0.1;
-
-/// Duration of the stroke of `frixel play` without options, s.
-const DEFAULT_STROKE_S: f64 = 3.0;
 
 struct Entry {
     name: String,
@@ -69,7 +67,7 @@ impl Entry {
         let scene = self.scene.clone().with_finger(FingerProfile::bundled(finger).unwrap(), finger).unwrap();
         let program = compile(&scene, &rig.board.limits, rig.board.tick_hz)
             .unwrap_or_else(|error| panic!("under the {finger} finger: {error}"));
-        let stroke = default_stroke(&program);
+        let stroke = default_stroke(&program, None).unwrap();
         let simulation = Simulation { rig, seconds: stroke.duration_s(), stroke, seed: 1, ticks_per_row: 40 };
         let simulated = simulate(&program, &simulation, None).unwrap_or_else(|error| panic!("{}: {error}", self.name));
         let sliding = simulated.recorder.rows().iter().filter(|row| row.speed_mm_s.is_some_and(|speed| speed > 20.0));
@@ -78,11 +76,6 @@ impl Entry {
         let percentile_n = |percent: usize| wanted_n[percent * (wanted_n.len() - 1) / 100];
         weber_steps(percentile_n(5), percentile_n(95))
     }
-}
-
-fn default_stroke(program: &Program) -> Stroke {
-    let (width_m, height_m) = (program.header.screen_width_m.into(), program.header.screen_height_m.into());
-    Stroke::natural(width_m, height_m, DEFAULT_STROKE_S).unwrap()
 }
 
 #[test]
@@ -97,8 +90,8 @@ fn every_scene_has_contrast_that_is_felt() {
 #[test]
 fn the_default_stroke_touches_every_layer() {
     for Entry { name, program, .. } in &gallery() {
-        let stroke = default_stroke(program);
-        let places: Vec<_> = (0..3000).filter_map(|step| stroke.at(1e-3 * f64::from(step))).collect();
+        let stroke = default_stroke(program, None).unwrap();
+        let places: Vec<_> = (0..10_000).filter_map(|step| stroke.at(1e-3 * f64::from(step))).collect();
         let frictions_n = |program: &Program| -> Vec<f64> {
             let reference = Reference::new(program).with_vibrations_held();
             let friction_n = |place: &FingerState| {

@@ -5,8 +5,9 @@
 //! for each property that a person notices. Bands are separated at 40 Hz: below, a person feels friction as it changes
 //! along the way; above, as vibration, whose phase nobody feels.
 //!
-//! Error, correlation, signal to noise, delay, rate and spurious force compare the electric parts of the two: natural
-//! friction is the same in both, and would make any display look faithful. Contrast and Weber fractions are of totals.
+//! All of them compare the electric parts of the two: natural friction is the same in both, and would make any display
+//! look faithful. For contrast, which is relative to the total friction, the mean natural friction takes the place of
+//! the natural friction of each moment, whose own changes are no contrast of the scene.
 
 use rustfft::num_complex::Complex;
 use serde::Serialize;
@@ -70,7 +71,7 @@ pub struct Fidelity {
     pub snr_below_40_hz_db: f64,
     /// Power of the reference over that of the error from 40 to 400 Hz, dB.
     pub snr_above_40_hz_db: f64,
-    /// Felt contrast, 5th to 95th percentile, in Weber steps.
+    /// Felt contrast, 5th to 95th percentile of electric friction above the mean natural friction, in Weber steps.
     pub contrast_weber_steps: f64,
     /// The felt contrast over that of the reference, both in Weber steps.
     pub contrast_kept: f64,
@@ -98,11 +99,13 @@ impl Fidelity {
         let mean = |value: fn(&FidelitySample) -> f64| scored.iter().map(value).sum::<f64>() / scored.len() as f64;
         let mean_n = mean(|sample| sample.reference_n);
         let speed_m_per_s = mean(|sample| sample.finger.map_or(0.0, |finger| finger.speed_m_per_s));
-        let contrast = |value: fn(&FidelitySample) -> f64| {
-            let [low_n, high_n] = percentiles(scored.iter().map(value).collect(), [5, 95])?;
-            Some(weber_steps(low_n, high_n))
+        let natural_n = mean(|sample| sample.natural_n);
+        let contrast = |electric_n: fn(&FidelitySample) -> f64| {
+            let [low_n, high_n] = percentiles(scored.iter().map(electric_n).collect(), [5, 95])?;
+            Some(weber_steps(natural_n + low_n, natural_n + high_n))
         };
-        let (felt_steps, reference_steps) = (contrast(|sample| sample.felt_n)?, contrast(|sample| sample.reference_n)?);
+        let felt_steps = contrast(FidelitySample::felt_electric_n)?;
+        let reference_steps = contrast(FidelitySample::reference_electric_n)?;
         let delay_s = powers.delay() / SAMPLE_HZ;
         Some(Self {
             error_below_40_hz: (powers.error_low / powers.reference_low).sqrt(),
@@ -287,6 +290,8 @@ mod tests {
         let fidelity = Fidelity::of(&(0..8000).map(sample).collect::<Vec<_>>()).unwrap();
         assert!((fidelity.error_below_40_hz - 1.0).abs() < 1e-9, "{fidelity:?}");
         assert!(fidelity.correlation_below_40_hz.abs() < 1e-12, "{fidelity:?}");
+        assert!(fidelity.contrast_weber_steps.abs() < 1e-12, "{fidelity:?}");
+        assert!(fidelity.contrast_kept.abs() < 1e-12, "{fidelity:?}");
     }
 
     #[test]

@@ -104,5 +104,5 @@ pub use screen::{Screen, Slab};
 pub use spectrum::band_rms;
 pub use target_range::{OutOfReach, TargetRange};
 pub use tick_cost::middle_mm;
-pub use touched_layers::TouchedLayers;
+pub use touched_layers::{LayerMiddle, TouchedLayers};
 pub use warning::Warning;

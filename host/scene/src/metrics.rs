@@ -27,6 +27,8 @@ pub struct Sample {
     pub board_has_finger: Option<bool>,
     /// The reference friction at the finger's place.
     pub wanted_n: Option<f64>,
+    /// Whether the finger has just landed or turned, so that its skin does not yet pull against its motion.
+    pub turning: bool,
     /// The board's target, the input of its inverse.
     pub asked_n: Option<f64>,
     /// The friction that the finger felt.
@@ -83,7 +85,8 @@ pub struct MetricsSummary {
     pub load_mismatch: Option<ErrorSize>,
     /// Root mean square of felt minus its mean over the carrier period around it, N.
     pub carrier_ripple_rms_n: Option<f64>,
-    /// Least and largest reference friction under the finger, in total, N.
+    /// Least and largest reference friction under the finger, in total, N, but for the micrometres after it lands or
+    /// turns.
     pub wanted_range_n: Option<(f64, f64)>,
 }
 
@@ -152,7 +155,7 @@ impl Metrics {
         if let Some(ripple_n) = sample.felt_n.and_then(|felt_n| self.felt.push(felt_n)) {
             self.carrier_ripple.add(ripple_n);
         }
-        if let Some(wanted_n) = sample.wanted_n {
+        if let Some(wanted_n) = sample.wanted_n.filter(|_| !sample.turning) {
             let (least_n, largest_n) = self.wanted_range_n.unwrap_or((wanted_n, wanted_n));
             self.wanted_range_n = Some((least_n.min(wanted_n), largest_n.max(wanted_n)));
         }

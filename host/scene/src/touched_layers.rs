@@ -17,6 +17,20 @@ pub struct TouchedLayers {
     touched: Vec<bool>,
 }
 
+/// The middle of a layer, from the top left corner of the screen, and the sides of the rectangle around the layer, as far
+/// as it is on the screen, in metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LayerMiddle {
+    /// Place of the middle.
+    pub x_m: f64,
+    /// Place of the middle.
+    pub y_m: f64,
+    /// Side along x.
+    pub width_m: f64,
+    /// Side along y.
+    pub height_m: f64,
+}
+
 impl TouchedLayers {
     /// Creates a record in which no layer of the program is touched.
     pub fn new(program: &Program) -> Self {
@@ -47,9 +61,9 @@ impl TouchedLayers {
         self.touched.iter().enumerate().filter(|(_, touched)| !**touched).map(|(index, _)| index)
     }
 
-    /// A place where a finger touches a layer, in its middle if possible, in metres from the top left corner of the
-    /// screen; `None` if no tried place is inside the layer.
-    pub fn place_in(&self, index: usize) -> Option<(f64, f64)> {
+    /// The middle of a layer, or the place nearest to it where a finger touches the layer; `None` if no tried place is
+    /// inside the layer.
+    pub fn middle(&self, index: usize) -> Option<LayerMiddle> {
         let [left_m, top_m, right_m, bottom_m] = self.pieces.get(index)?.shape.bounds_m();
         let (left_m, right_m) = (left_m.max(0.0), right_m.min(self.screen_m.0));
         let (top_m, bottom_m) = (top_m.max(0.0), bottom_m.min(self.screen_m.1));
@@ -57,10 +71,22 @@ impl TouchedLayers {
         let mut places: Vec<(f64, f64)> =
             (0..PLACES * PLACES).map(|number| (part(number % PLACES), part(number / PLACES))).collect();
         places.sort_by(|one, other| off_middle(*one).total_cmp(&off_middle(*other)));
-        places
+        let (width_m, height_m) = (right_m - left_m, bottom_m - top_m);
+        let (x_m, y_m) = places
             .into_iter()
-            .map(|(x, y)| (left_m + x * (right_m - left_m), top_m + y * (bottom_m - top_m)))
-            .find(|(x_m, y_m)| self.layers_at(*x_m, *y_m).contains(&index))
+            .map(|(x, y)| (left_m + x * width_m, top_m + y * height_m))
+            .find(|(x_m, y_m)| self.is_touched_at(index, *x_m, *y_m))?;
+        Some(LayerMiddle { x_m, y_m, width_m, height_m })
+    }
+
+    /// Whether a finger at a place touches a layer.
+    pub fn is_touched_at(&self, index: usize, x_m: f64, y_m: f64) -> bool {
+        self.layers_at(x_m, y_m).contains(&index)
+    }
+
+    /// Number of layers.
+    pub fn layers(&self) -> usize {
+        self.pieces.len()
     }
 
     /// The layers that a finger touches at a place, from the topmost down.

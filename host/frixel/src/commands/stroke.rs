@@ -1,7 +1,5 @@
 //! The path of the simulated finger.
 
-mod default_stroke;
-
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
@@ -11,7 +9,6 @@ use frixel_hil_sim::{Point, Stroke, StrokeError};
 use super::argument::{above_zero_to, number};
 use super::error::CommandError;
 use super::terminal::note;
-pub(super) use default_stroke::default_stroke;
 
 /// Longest stroke: one day, in s.
 const STROKE_MAX_S: f64 = 86_400.0;

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 
+use super::off_strip;
 use super::trace::{Extremes, Span, Trace};
 use super::{OutputError, Subject};
 use crate::chart::{Axis, Chart, Line, Look, Margins, PALETTE, Panel, RGBColor, Strip, StripCell};
@@ -26,28 +27,40 @@ const TURN_MIN: f64 = 0.03;
 /// Opacity of an envelope.
 const OPACITY: f64 = 0.4;
 
+/// What an envelope is, for the caption.
+const ENVELOPE: &str = "Blocks are envelopes: the signal changes too fast to draw as a line there, and a block reaches \
+                        from its smallest to its largest value.";
+
 /// Selects one quantity of a span.
 type Part = fn(&Span) -> Option<Extremes>;
 
 /// Draws reference and felt friction over time, and the voltage below them; the reachable range is shaded. Where the
 /// felt friction is unknown, as on a real board, the commanded friction is drawn instead. Signals that change too fast
-/// for a line are drawn as their envelope. The way of the finger and the layer under it stand below the time.
+/// for a line are drawn as their envelope. The way of the finger, the layer under it, and the reasons for which the
+/// output is off stand below the time.
 pub fn write_felt_svg(path: &Path, subject: &Subject, trace: &Trace, reach: &Reach) -> Result<(), OutputError> {
     let text = chart(subject, trace, reach).svg().map_err(OutputError::drawing(path))?;
     fs::write(path, text).map_err(|source| OutputError::File { path: path.to_owned(), source })
 }
 
 fn chart(subject: &Subject, trace: &Trace, reach: &Reach) -> Chart {
-    let mut below = voltage(trace.spans());
-    for strip in [way(trace.spans(), &below.x), layers(trace)].into_iter().flatten() {
+    let spans = trace.spans();
+    let (above, fast_friction) = friction(spans, reach);
+    let (mut below, fast_voltage) = voltage(spans);
+    for strip in [way(spans, &below.x), layers(trace)].into_iter().flatten() {
         below.add_strip(strip);
     }
-    let mut chart = Chart::new(vec![friction(trace.spans(), reach), below], 1);
+    off_strip::add_to(&mut below, spans);
+    let mut chart = Chart::new(vec![above, below], 1);
     chart.title = subject.title();
+    if fast_friction || fast_voltage {
+        chart.caption.push(ENVELOPE.to_owned());
+    }
     chart
 }
 
-fn friction(spans: &[Span], reach: &Reach) -> Panel {
+/// The panel of the frictions, and whether one of them is drawn as an envelope.
+fn friction(spans: &[Span], reach: &Reach) -> (Panel, bool) {
     let felt = spans.iter().any(|span| span.felt_n.is_some());
     let (name, second): (_, Part) =
         if felt { ("felt", |span| span.felt_n) } else { ("commanded", |span| span.asked_n) };
@@ -63,18 +76,22 @@ fn friction(spans: &[Span], reach: &Reach) -> Panel {
     let corners = [(start, natural_mn), (end, natural_mn), (end, most_mn), (start, most_mn)];
     panel.add("reachable", Look::line(REACH, Line::Filled(REACH_OPACITY)), corners.to_vec());
     let signals = [("reference", REFERENCE, Line::Thick, first), (name, FELT, Line::Solid, second)];
+    let mut is_fast = false;
     for (name, colour, line, part) in signals {
-        Signal { part, scale: 1e3, range: high - low }.add_to(&mut panel, spans, name, Look::line(colour, line));
+        let signal = Signal { part, scale: 1e3, range: high - low };
+        is_fast |= signal.add_to(&mut panel, spans, name, Look::line(colour, line));
     }
-    panel
+    (panel, is_fast)
 }
 
-fn voltage(spans: &[Span]) -> Panel {
+/// The panel of the voltage, and whether it is drawn as an envelope.
+fn voltage(spans: &[Span]) -> (Panel, bool) {
     let part: Part = |span| span.voltage_v_rms;
     let largest = extremes(spans, part).map_or(0.0, |range| range.largest).max(1.0);
     let mut panel = panel("voltage, V rms", times(spans), (0.0, largest), HEIGHTS.1);
-    Signal { part, scale: 1.0, range: largest }.add_to(&mut panel, spans, "", Look::line(VOLTAGE, Line::Solid));
-    panel
+    let signal = Signal { part, scale: 1.0, range: largest };
+    let is_fast = signal.add_to(&mut panel, spans, "", Look::line(VOLTAGE, Line::Solid));
+    (panel, is_fast)
 }
 
 /// The length of the finger's way at the times that have a label; `None` without a finger.
@@ -160,8 +177,9 @@ struct Piece {
 }
 
 impl Signal {
-    /// Adds the signal to a panel: as a line, or as its envelope where it changes too fast for a line.
-    fn add_to(&self, panel: &mut Panel, spans: &[Span], name: &str, look: Look) {
+    /// Adds the signal to a panel: as a line, or as its envelope where it changes too fast for a line. Returns whether
+    /// there is an envelope.
+    fn add_to(&self, panel: &mut Panel, spans: &[Span], name: &str, look: Look) -> bool {
         let envelope = Look { line: Line::Filled(OPACITY), ..look };
         let comma = if name.is_empty() { "" } else { ", " };
         let too_fast = format!("{name}{comma}envelope, minimum to maximum");
@@ -177,6 +195,7 @@ impl Signal {
         if let Some(name) = names[0] {
             panel.add(name, look, Vec::new());
         }
+        names[1].is_none()
     }
 
     /// Lines through least and largest value of each span; a span without a value ends a line.
@@ -285,6 +304,7 @@ mod tests {
             voltage_v_rms: None,
             way_mm: 0.0,
             layer: None,
+            off: None,
         };
         let spans = [0.0, 0.25, 0.24, -0.26, 0.26].map(span);
         let felt: Part = |span| span.felt_n;

@@ -17,6 +17,7 @@ mod felt_log;
 mod felt_svg;
 mod fit_svg;
 mod map;
+mod off_strip;
 mod preview_png;
 mod report;
 mod scene_png;

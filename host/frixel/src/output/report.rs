@@ -49,9 +49,9 @@ pub struct Report {
     pub reachable_min_n: f64,
     /// Total friction at the largest voltage, N.
     pub reachable_max_n: f64,
-    /// Smallest total reference friction, N.
+    /// Smallest total reference friction, but for the micrometres after the finger lands or turns, N.
     pub wanted_min_n: Option<f64>,
-    /// Largest total reference friction, N.
+    /// Largest total reference friction, with the same exception, N.
     pub wanted_max_n: Option<f64>,
     /// Ticks in which the board clamped its command.
     pub saturated_ticks: Option<u64>,
@@ -204,7 +204,8 @@ impl Report {
         let range = |least: f64, most: f64| format!("{:.2} to {:.2} mN{suffix}", 1e3 * least, 1e3 * most);
         line("reachable", range(self.reachable_min_n, self.reachable_max_n));
         if let Some((least, most)) = self.wanted_min_n.zip(self.wanted_max_n) {
-            line("reference", range(least, most));
+            let turns = if self.world == Some(NATURAL) { "; not where the finger lands or turns" } else { "" };
+            line("reference", format!("{}{turns}", range(least, most)));
         }
         let electric_n = self.reachable_max_n - self.reachable_min_n;
         for (name, error) in [

@@ -310,10 +310,37 @@ fn a_signal_too_fast_to_draw_is_drawn_as_its_envelope() {
     let (slow, fast) = (drawn(20.0), drawn(150.0));
     let named = "felt, envelope, minimum to maximum";
     assert!(!slow.contains(named) && fast.contains(named));
+    let explained = "Blocks are envelopes: the signal changes too fast to draw as a line there";
+    assert!(!slow.contains(explained) && fast.contains(explained));
     // The reach is a polygon in both; in the fast one, two envelopes and two samples of them in the legend.
     let polygons = |svg: &str| svg.matches("<polygon").count();
     assert_eq!(polygons(&fast) - polygons(&slow), 4);
     assert!(fast.len() < slow.len());
+}
+
+#[test]
+fn a_voltage_that_is_off_has_its_reason() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("felt.svg");
+    let program = brick();
+    let rows = stroke(&program, 1.0);
+    let drawn = |flags: Flags, voltage_v_rms: f64| {
+        let mut rows = rows.clone();
+        for row in &mut rows[200..400] {
+            (row.voltage_v_rms, row.flags) = (Some(voltage_v_rms), Some(flags));
+        }
+        write_felt_svg(&path, &subject(""), &trace(&rows), &program.reach).expect("a picture");
+        fs::read_to_string(&path).expect("the file")
+    };
+    let still = drawn(Flags::STILL, 0.0);
+    assert!(still.lines().any(|line| line == "output off: the finger is still, or too slow"), "{still}");
+    assert!(still.lines().any(|line| line == "output off"), "the strip");
+    let lost = drawn(Flags::STILL.with(Flags::TOUCH_STALE), 0.0);
+    assert!(lost.contains("output off: the touch reports are too old") && !lost.contains("the finger is still"));
+    // A scene without friction, and an output that is on.
+    for svg in [drawn(Flags::SATURATED, 0.0), drawn(Flags::STILL, 20.0)] {
+        assert!(!svg.contains("output off"));
+    }
 }
 
 fn report(summary: &MetricsSummary) -> Report {

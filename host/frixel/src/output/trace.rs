@@ -2,6 +2,8 @@
 
 use frixel_scene::recorder::FeltRow;
 
+use super::off_strip;
+
 /// Largest number of time spans that are kept.
 const SPANS_MAX: usize = 1_600;
 /// Largest number of stroke points that are kept.
@@ -73,6 +75,8 @@ pub(super) struct Span {
     pub(super) way_mm: f64,
     /// The topmost layer under the finger at the end of the span, as an index for [`Trace::layer_name`].
     pub(super) layer: Option<usize>,
+    /// Why the output is off in a part of the span, see [`off_strip::reason`].
+    pub(super) off: Option<usize>,
 }
 
 /// Least and largest value of a quantity.
@@ -105,6 +109,7 @@ impl Span {
         Self {
             way_mm,
             layer,
+            off: off_strip::reason(row),
             start_s: row.t_s,
             end_s: row.t_s,
             wanted_n: Extremes::of(row.wanted_n),
@@ -123,6 +128,7 @@ impl Span {
             felt_n: Extremes::join(self.felt_n, later.felt_n),
             way_mm: later.way_mm,
             layer: later.layer,
+            off: self.off.or(later.off),
             voltage_v_rms: Extremes::join(self.voltage_v_rms, later.voltage_v_rms),
         }
     }

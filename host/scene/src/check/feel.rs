@@ -1,54 +1,110 @@
 //! What a person will feel of a scene, as text.
 
-use crate::perception::{AlikeTextures, BorderStep, LayerPerception, Perception, Step, Texture, Verdict};
+use crate::perception::{
+    AlikeLayers, BorderStep, BurstTimes, LayerPerception, NEAR_THRESHOLD, Perception, Step, Texture,
+    VOLTAGE_DIFFERENCE_DB, Verdict,
+};
+
+/// What a sentence is about, for a person.
+struct Subject {
+    text: String,
+    /// Numbers of its layers in the file. Copies of a layer have the same.
+    layers: Vec<String>,
+}
 
 /// Lines of a name and a text: one for all layers that feel the same, one for all borders with the same step, and one
 /// for each note.
 pub fn lines(perception: &Perception) -> Vec<(&'static str, String)> {
-    let layers = perception.layers.iter().map(|layer| (layer.layer.clone(), sentence(layer)));
+    let layers =
+        perception.layers.iter().map(|layer| (Subject::new(layer.layer.clone(), [&layer.layer]), sentence(layer)));
     let borders = perception.steps.iter().map(|border| (sides(border), step(&border.step)));
-    let lines = |name, texts| grouped(texts).into_iter().map(move |text| (name, text));
-    let alike = perception.alike.iter().map(|alike| {
-        let AlikeTextures { layers: [one, other], difference_db } = alike;
-        (
-            "alike",
-            format!("{one} and {other}: {difference_db:.2} dB apart in voltage; 1.21 dB are needed to tell them apart"),
-        )
-    });
+    let alike = perception.alike.iter().map(alike);
     let notes = perception.notes.iter().map(|note| ("note", note.clone()));
-    lines("feel", layers.collect()).chain(lines("step", borders.collect())).chain(alike).chain(notes).collect()
+    let near = is_near_threshold(perception).then(|| ("note", NEAR_THRESHOLD.to_owned()));
+    let lines = |name, texts| grouped(texts).into_iter().map(move |text| (name, text));
+    let felt = lines("feel", layers.collect()).chain(lines("step", borders.collect()));
+    felt.chain(lines("alike", alike.collect())).chain(near).chain(notes).collect()
 }
 
-/// Joins the subjects that have the same text.
-fn grouped(texts: Vec<(String, String)>) -> Vec<String> {
-    let mut groups: Vec<(Vec<String>, String)> = Vec::new();
+impl Subject {
+    fn new<'t>(text: String, titles: impl IntoIterator<Item = &'t String>) -> Self {
+        // A title is `layer 3 "name"`.
+        let number = |title: &String| title.split(' ').nth(1).unwrap_or_default().to_owned();
+        Self { text, layers: titles.into_iter().map(number).collect() }
+    }
+}
+
+/// Joins the subjects that have the same text. Of copies of a layer, only the first one is named.
+fn grouped(texts: Vec<(Subject, String)>) -> Vec<String> {
+    let mut groups: Vec<(Vec<(Subject, usize)>, String)> = Vec::new();
     for (subject, text) in texts {
-        match groups.iter_mut().find(|(_, other)| *other == text) {
-            Some((subjects, _)) => subjects.push(subject),
-            None => groups.push((vec![subject], text)),
+        let group = match groups.iter().position(|(_, other)| *other == text) {
+            Some(group) => group,
+            None => {
+                groups.push((Vec::new(), text));
+                groups.len() - 1
+            }
+        };
+        let Some((subjects, _)) = groups.get_mut(group) else { continue };
+        match subjects.iter_mut().find(|(other, _)| other.layers == subject.layers) {
+            Some((_, copies)) => *copies += 1,
+            None => subjects.push((subject, 0)),
         }
     }
-    groups.into_iter().map(|(subjects, text)| format!("{}: {text}", subjects.join(", "))).collect()
+    let subject = |(Subject { text, .. }, copies): &(Subject, usize)| match copies {
+        0 => text.clone(),
+        copies => format!("{text} and {copies} alike"),
+    };
+    let subjects = |subjects: &[(Subject, usize)]| subjects.iter().map(subject).collect::<Vec<String>>().join(", ");
+    groups.iter().map(|(group, text)| format!("{}: {text}", subjects(group))).collect()
 }
 
 /// What a person will feel of a layer, one sentence without its subject.
 pub fn sentence(layer: &LayerPerception) -> String {
     let contrast = &layer.contrast;
+    let place = if layer.is_narrow { "at a narrow place in it" } else { "within it" };
     let within = if contrast.contrast_n > 0.0 {
-        format!("{} within it", step(contrast))
+        format!("{} {place}", step(contrast))
     } else {
         format!("{:.1} mN throughout", 1e3 * contrast.from_n)
     };
     // A texture that is not felt at any speed is not worth a line.
     let has_texture = layer.textures.iter().any(|texture| texture.verdict != Verdict::NotFelt);
     let textures = layer.textures.iter().filter(|_| has_texture).map(texture);
-    let click = layer.click.iter().map(|click| format!("click {}", step(click)));
-    std::iter::once(within).chain(textures).chain(click).collect::<Vec<String>>().join("; ")
+    let burst = layer.burst.iter().map(|BurstTimes { on_ms, period_ms }| {
+        format!("all this while a burst lasts, {on_ms:.0} ms of every {period_ms:.0} ms")
+    });
+    let cut_off = if layer.is_click_cut_off { ", cut off at the most that the drive can give" } else { "" };
+    let click = layer.click.iter().map(|click| format!("click {}{cut_off}", step(click)));
+    std::iter::once(within).chain(textures).chain(burst).chain(click).collect::<Vec<String>>().join("; ")
 }
 
-fn sides(border: &BorderStep) -> String {
+fn alike(alike: &AlikeLayers) -> (Subject, String) {
+    let AlikeLayers { layers, difference_db, difference_weber_steps } = alike;
+    let voltage = difference_db.map(|difference_db| {
+        format!("{difference_db:.2} dB apart in voltage; {VOLTAGE_DIFFERENCE_DB} dB are needed to tell them apart")
+    });
+    let friction = difference_weber_steps
+        .map(|steps| format!("{steps:.1} Weber steps apart in friction; 1 is needed to tell them apart by it"));
+    let [one, other] = layers;
+    (Subject::new(format!("{one} and {other}"), layers), voltage.or(friction).unwrap_or_default())
+}
+
+/// Whether anything is near the threshold.
+fn is_near_threshold(perception: &Perception) -> bool {
+    let steps = perception.steps.iter().map(|border| border.step.verdict);
+    let layers = perception.layers.iter().flat_map(|layer| {
+        let textures = layer.textures.iter().map(|texture| texture.verdict);
+        let click = layer.click.iter().map(|click| click.verdict);
+        textures.chain(click).chain([layer.contrast.verdict])
+    });
+    steps.chain(layers).any(|verdict| verdict == Verdict::NearThreshold)
+}
+
+fn sides(border: &BorderStep) -> Subject {
     let side = |title: &Option<String>| title.clone().unwrap_or_else(|| "the bare screen".to_owned());
-    format!("from {} to {}", side(&border.from), side(&border.to))
+    let sides = [&border.from, &border.to].map(side);
+    Subject::new(format!("from {} to {}", sides[0], sides[1]), &sides)
 }
 
 fn step(step: &Step) -> String {

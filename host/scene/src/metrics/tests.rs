@@ -8,6 +8,7 @@ const PERIOD: usize = 8;
 fn sample(wanted_n: f64, felt_n: f64) -> Sample {
     Sample {
         finger_down: true,
+        turning: false,
         board_has_finger: Some(true),
         wanted_n: Some(wanted_n),
         asked_n: Some(wanted_n),
@@ -21,6 +22,7 @@ fn sample(wanted_n: f64, felt_n: f64) -> Sample {
 
 const UP: Sample = Sample {
     finger_down: false,
+    turning: false,
     board_has_finger: Some(false),
     wanted_n: None,
     asked_n: None,

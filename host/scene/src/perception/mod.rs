@@ -1,11 +1,13 @@
 //! What a person will feel of a program, as far as published studies can tell.
 //!
 //! The input is a compiled program. The output is a verdict for each layer, for each border between two layers, and for
-//! textures that are too much alike. A change of friction that is slower than 10 Hz under the finger is judged as a
+//! layers that are too much alike. A change of friction that is slower than 10 Hz under the finger is judged as a
 //! step, in Weber fractions of the total friction; a faster one as a texture, against the threshold of touch at its
 //! frequency and against the noise of the finger itself. The thresholds and
 //! their sources stand in one file, `thresholds.rs`.
 
+mod alike;
+mod click;
 mod neighbours;
 mod slide;
 mod spectrum;
@@ -13,17 +15,19 @@ mod spectrum;
 mod tests;
 mod thresholds;
 
-use frixel_layers::Layer;
+use frixel_layers::{Burst, Layer};
 use serde::Serialize;
 
 use crate::Program;
 use crate::percentile::percentiles;
-use crate::reach::loaded_contact;
 use crate::reference::Reference;
+pub use alike::AlikeLayers;
+use click::ClickStep;
 use slide::Slide;
+pub(crate) use thresholds::RELAXATION_LENGTH_MM;
 pub use thresholds::{
-    NATURAL_NOISE_RMS_N, NOISE_BAND_HZ, TEXTURE_MIN_HZ, VOLTAGE_DIFFERENCE_DB, Verdict, WEBER_FRACTION, lag_gain,
-    natural_noise_amplitude_n, texture_threshold_n, weber_steps, weber_steps_safe,
+    NATURAL_NOISE_RMS_N, NEAR_THRESHOLD, NOISE_BAND_HZ, TEXTURE_MIN_HZ, VOLTAGE_DIFFERENCE_DB, Verdict, WEBER_FRACTION,
+    lag_gain, natural_noise_amplitude_n, texture_threshold_n, weber_steps, weber_steps_safe,
 };
 
 /// Sliding speeds at which textures are judged, m/s: slow, usual and fast exploration.
@@ -34,8 +38,9 @@ const USUAL_M_PER_S: f64 = 0.05;
 const SAMPLE_HZ: f64 = 2000.0;
 /// A texture of a smaller amplitude is not mentioned, N: a tenth of the smallest threshold.
 const AMPLITUDE_MIN_N: f64 = 2e-5;
-/// Textures whose frequencies differ by less, in octaves, are compared by their voltage. Assumed.
-const ALIKE_OCTAVES: f64 = 1.0 / 3.0;
+/// Where the 5th and the 95th percentile are nearer to one another than this part of the whole range, the friction is
+/// the same almost everywhere but for a narrow place, such as a ridge.
+const NARROW_PART: f64 = 0.5;
 
 /// What a person will feel of a program.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -44,8 +49,8 @@ pub struct Perception {
     pub layers: Vec<LayerPerception>,
     /// The steps where one layer borders another.
     pub steps: Vec<BorderStep>,
-    /// Textures that a person cannot tell apart by their strength.
-    pub alike: Vec<AlikeTextures>,
+    /// Layers that a person cannot tell apart by their strength.
+    pub alike: Vec<AlikeLayers>,
     /// What only a sliding finger feels, and other notes, a sentence each.
     pub notes: Vec<String>,
 }
@@ -56,12 +61,27 @@ pub struct LayerPerception {
     /// The layer's title.
     pub layer: String,
     /// From the 5th to the 95th percentile of the friction along a slide over the layer: of ten slides, five along each
-    /// side, that with the largest contrast.
+    /// side, that with the largest contrast. From the least to the largest friction if [`Self::is_narrow`].
     pub contrast: Step,
+    /// Whether the friction is the same almost everywhere in the layer, but for a narrow place that makes the contrast.
+    pub is_narrow: bool,
     /// The most noticeable texture at 20, 50 and 100 mm/s; absent where there is none.
     pub textures: Vec<Texture>,
-    /// The layer's click, on the mean friction of the layer.
+    /// The bursts during which contrast and textures hold; absent if they hold all the time.
+    pub burst: Option<BurstTimes>,
+    /// The step with which the layer's click begins.
     pub click: Option<Step>,
+    /// Whether the drive cannot give all of the click.
+    pub is_click_cut_off: bool,
+}
+
+/// The times of a vibration's bursts.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct BurstTimes {
+    /// How long a burst lasts, ms.
+    pub on_ms: f64,
+    /// From the start of a burst to that of the next one, ms.
+    pub period_ms: f64,
 }
 
 /// A change of the total friction.
@@ -75,16 +95,11 @@ pub struct Step {
     pub contrast_n: f64,
     /// The change in Weber steps, `ln(to / from) / ln 1.11`.
     pub weber_steps: f64,
-    /// Below 1 step not felt, up to 2.3 felt by some.
+    /// Below 1 step not felt, up to 2.3 near the threshold.
     pub verdict: Verdict,
 }
 
 impl Step {
-    /// From the 5th to the 95th percentile of frictions, in newtons; `None` without any.
-    fn within(friction_n: &[f64]) -> Option<Self> {
-        percentiles(friction_n.to_vec(), [5, 95]).map(|[low_n, high_n]| Self::new(low_n, high_n))
-    }
-
     /// The step from one total friction to another, in newtons.
     pub fn new(from_n: f64, to_n: f64) -> Self {
         let steps = weber_steps(from_n, to_n);
@@ -120,15 +135,6 @@ pub struct BorderStep {
     pub step: Step,
 }
 
-/// Two textures of about the same frequency whose voltages differ by less than a person can tell.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct AlikeTextures {
-    /// Titles of the layers.
-    pub layers: [String; 2],
-    /// Difference of their voltages at the 95th percentile of their friction, dB.
-    pub difference_db: f64,
-}
-
 impl Perception {
     /// Judges a program.
     ///
@@ -145,40 +151,103 @@ impl Perception {
     /// # }
     /// ```
     pub fn of(program: &Program) -> Self {
-        let reference = Reference::new(program);
-        let layers: Vec<LayerPerception> =
-            (0..program.records.len()).filter_map(|layer| of_layer(layer, &reference, program)).collect();
-        let title = |side: Option<usize>| side.and_then(|layer| program.titles.get(layer).cloned());
-        let steps = neighbours::borders(program, USUAL_M_PER_S).into_iter().map(|border| {
-            let ([from, to], [from_n, to_n]) = (border.sides.map(title), border.friction_n);
-            BorderStep { from, to, step: Step::new(from_n, to_n) }
-        });
-        Self { steps: steps.collect(), alike: alike(&layers, program), notes: notes(&reference), layers }
+        // A burst is judged while it lasts, however rare it is.
+        let lasting = &without_bursts(program);
+        let reference = Reference::new(lasting);
+        let judged: Vec<JudgedLayer> = (0..lasting.records.len())
+            .filter_map(|layer| JudgedLayer::new(layer, &reference, program, lasting))
+            .collect();
+        let steps =
+            neighbours::borders(lasting, USUAL_M_PER_S).into_iter().filter_map(|border| border_step(&border, program));
+        Self {
+            steps: steps.collect(),
+            alike: alike::of(&judged, program),
+            notes: notes(&reference),
+            layers: judged.into_iter().map(|judged| judged.perception).collect(),
+        }
     }
 }
 
-fn of_layer(layer: usize, reference: &Reference, program: &Program) -> Option<LayerPerception> {
-    let screen_m = (f64::from(program.header.screen_width_m), f64::from(program.header.screen_height_m));
-    let slides = Slide::over(layer, reference.pieces(), screen_m);
-    let frictions_n = |speed_m_per_s: f64| -> Vec<Vec<f64>> {
-        slides.iter().map(|slide| slide.friction_n(reference, program, speed_m_per_s, SAMPLE_HZ)).collect()
-    };
-    let slides_n = SPEEDS_M_PER_S.map(frictions_n);
-    let [_, usual_n, _] = &slides_n;
-    let contrasts = usual_n.iter().filter_map(|friction_n| Step::within(friction_n));
-    let contrast = contrasts.max_by(|one, other| one.contrast_n.total_cmp(&other.contrast_n))?;
-    let textures = SPEEDS_M_PER_S.into_iter().zip(&slides_n).filter_map(|(speed_m_per_s, frictions_n)| {
-        let textures = frictions_n.iter().filter_map(|friction_n| Texture::of(friction_n, speed_m_per_s));
-        textures.max_by(|one, other| one.salience().total_cmp(&other.salience()))
-    });
-    let all_n = usual_n.concat();
-    let mean_n = all_n.iter().sum::<f64>() / all_n.len() as f64;
-    let click = program.records.get(layer).and_then(|record| record.layer.click());
-    Some(LayerPerception {
-        layer: program.titles.get(layer)?.clone(),
-        contrast,
-        textures: textures.collect(),
-        click: click.map(|click| Step::new(mean_n, mean_n + f64::from(click.height_n))),
+/// The program with vibrations that do not pause between bursts.
+fn without_bursts(program: &Program) -> Program {
+    let mut lasting = program.clone();
+    for record in &mut lasting.records {
+        if let Layer::Vibration(vibration) = &mut record.layer {
+            vibration.burst = Burst::default();
+        }
+    }
+    lasting
+}
+
+/// The step at a border; `None` where a ridge ends in nothing, which is no step.
+fn border_step(border: &neighbours::Border, program: &Program) -> Option<BorderStep> {
+    let ([from, to], [from_n, to_n]) = (border.sides, border.friction_n);
+    let step = Step::new(from_n, to_n);
+    let is_edge =
+        |layer: usize| program.records.get(layer).is_some_and(|record| matches!(record.layer, Layer::Edge(_)));
+    let ends_a_ridge = [from, to].into_iter().flatten().any(is_edge) && step.verdict == Verdict::NotFelt;
+    let title = |side: Option<usize>| side.and_then(|layer| program.titles.get(layer).cloned());
+    (!ends_a_ridge).then(|| BorderStep { from: title(from), to: title(to), step })
+}
+
+/// A layer with what its comparison with others needs.
+#[derive(Clone, Debug)]
+struct JudgedLayer {
+    /// Index from the bottom.
+    layer: usize,
+    /// The layers that act on its slides, a bit each.
+    visible: u64,
+    perception: LayerPerception,
+}
+
+impl JudgedLayer {
+    /// Judges a layer; `None` if it is visible nowhere. `lasting` is `program` without pauses between bursts, and
+    /// `reference` belongs to it.
+    fn new(layer: usize, reference: &Reference, program: &Program, lasting: &Program) -> Option<Self> {
+        let screen_m = (f64::from(program.header.screen_width_m), f64::from(program.header.screen_height_m));
+        let slides = Slide::over(layer, reference.pieces(), screen_m);
+        let slides_n = SPEEDS_M_PER_S.map(|speed_m_per_s| -> Vec<Vec<f64>> {
+            slides.iter().map(|slide| slide.friction_n(reference, lasting, speed_m_per_s, SAMPLE_HZ)).collect()
+        });
+        let [_, usual_n, _] = &slides_n;
+        let contrasts = usual_n.iter().filter_map(|friction_n| contrast_within(friction_n));
+        let (contrast, is_narrow) =
+            contrasts.max_by(|(one, _), (other, _)| one.contrast_n.total_cmp(&other.contrast_n))?;
+        let textures = SPEEDS_M_PER_S.into_iter().zip(&slides_n).filter_map(|(speed_m_per_s, frictions_n)| {
+            let textures = frictions_n.iter().filter_map(|friction_n| Texture::of(friction_n, speed_m_per_s));
+            textures.max_by(|one, other| one.salience().total_cmp(&other.salience()))
+        });
+        let visible = slides.iter().fold(0, |visible, slide| visible | slide.visible_layers(reference.pieces()));
+        let click = ClickStep::of(layer, &slides, lasting, USUAL_M_PER_S);
+        let perception = LayerPerception {
+            layer: program.titles.get(layer)?.clone(),
+            contrast,
+            is_narrow,
+            textures: textures.collect(),
+            burst: burst(visible, program),
+            click: click.map(|click| click.step),
+            is_click_cut_off: click.is_some_and(|click| click.is_cut_off),
+        };
+        Some(Self { layer, visible, perception })
+    }
+}
+
+/// The contrast along a slide, and whether only a narrow place makes it; `None` without any friction.
+fn contrast_within(friction_n: &[f64]) -> Option<(Step, bool)> {
+    let [least_n, low_n, high_n, most_n] = percentiles(friction_n.to_vec(), [0, 5, 95, 100])?;
+    let is_narrow = high_n - low_n < NARROW_PART * (most_n - least_n);
+    Some((if is_narrow { Step::new(least_n, most_n) } else { Step::new(low_n, high_n) }, is_narrow))
+}
+
+/// The bursts of the topmost of these layers that has any.
+fn burst(layers: u64, program: &Program) -> Option<BurstTimes> {
+    let acts = |(number, _): &(usize, _)| layers >> number & 1 == 1;
+    program.records.iter().enumerate().filter(acts).rev().find_map(|(_, record)| match record.layer {
+        Layer::Vibration(vibration) if vibration.burst.period_s > 0.0 => Some(BurstTimes {
+            on_ms: 1e3 * f64::from(vibration.burst.on_s),
+            period_ms: 1e3 * f64::from(vibration.burst.period_s),
+        }),
+        _ => None,
     })
 }
 
@@ -202,43 +271,6 @@ impl Texture {
             verdict: Verdict::of_texture(amplitude_n, frequency_hz),
         })
     }
-}
-
-/// A texture that may be felt, as far as a comparison needs it.
-struct Comparable<'a> {
-    title: &'a str,
-    layer: Layer,
-    frequency_hz: f64,
-    voltage_v_rms: f64,
-}
-
-/// Pairs of textures of about the same frequency and voltage. Layers of the same parameters are meant to feel the same.
-fn alike(layers: &[LayerPerception], program: &Program) -> Vec<AlikeTextures> {
-    // The contact is one: the program's reach was computed from it.
-    let Ok(contact) = loaded_contact(&program.header) else { return Vec::new() };
-    let comparable = |layer: &LayerPerception| {
-        let texture = layer.textures.iter().find(|texture| texture.speed_mm_per_s == 1e3 * USUAL_M_PER_S)?;
-        let number = program.titles.iter().position(|title| *title == layer.layer)?;
-        let electric_n = layer.contrast.to_n - program.reach.natural_friction_n;
-        (electric_n > 0.0 && texture.verdict != Verdict::NotFelt).then_some(Comparable {
-            title: program.titles.get(number)?,
-            layer: program.records.get(number)?.layer,
-            frequency_hz: texture.frequency_hz,
-            voltage_v_rms: contact.voltage_v_rms(electric_n),
-        })
-    };
-    let textures: Vec<Comparable> = layers.iter().filter_map(comparable).collect();
-    let pairs = textures
-        .iter()
-        .enumerate()
-        .flat_map(|(number, one)| textures.iter().skip(number + 1).map(move |other| (one, other)));
-    let alike = pairs.filter_map(|(one, other)| {
-        let difference_db = 20.0 * libm::log10(one.voltage_v_rms / other.voltage_v_rms).abs();
-        let octaves = libm::log2(one.frequency_hz / other.frequency_hz).abs();
-        let is_alike = one.layer != other.layer && octaves < ALIKE_OCTAVES && difference_db < VOLTAGE_DIFFERENCE_DB;
-        is_alike.then(|| AlikeTextures { layers: [one, other].map(|texture| texture.title.to_owned()), difference_db })
-    });
-    alike.collect()
 }
 
 fn notes(reference: &Reference) -> Vec<String> {

@@ -62,6 +62,18 @@ impl Slide {
         (!longest.is_empty()).then(|| Self { from_m: self.at(part(longest.start)), to_m: self.at(part(longest.end)) })
     }
 
+    /// The layers that have an effect somewhere on the way, a bit each.
+    pub(super) fn visible_layers(&self, pieces: &[Piece]) -> u64 {
+        let places = (0..PLACES).map(|number| self.at((number as f64 + 0.5) / PLACES as f64));
+        places.fold(0, |visible, (x_m, y_m)| visible | visible_layers(pieces, x_m, y_m))
+    }
+
+    /// The same way, begun earlier by the distance of two places at which layers are determined: outside of a layer that
+    /// begins where the way does.
+    pub(super) fn begun_outside(&self) -> Self {
+        Self { from_m: self.at(-2.0 / PLACES as f64), to_m: self.to_m }
+    }
+
     /// Total friction along the way at a constant speed, in newtons, clamped to what the drive can give.
     pub(super) fn friction_n(
         &self,
@@ -70,20 +82,23 @@ impl Slide {
         speed_m_per_s: f64,
         sample_hz: f64,
     ) -> Vec<f64> {
+        let contexts = self.contexts(speed_m_per_s, sample_hz);
+        contexts.map(|context| total_n(program, reference.electric_friction_at_n(&context))).collect()
+    }
+
+    /// A finger that slides along the way at a constant speed.
+    pub(super) fn contexts(&self, speed_m_per_s: f64, sample_hz: f64) -> impl Iterator<Item = Context> {
         let step_m = speed_m_per_s / sample_hz;
         let count = ((self.length_m() / step_m) as usize).min(SAMPLES_MAX);
-        let sample = |number: usize| {
+        (0..count).map(move |number| {
             let (x_m, y_m) = self.at((number as f64 + 0.5) * step_m / self.length_m());
-            let t_s = number as f64 / sample_hz;
-            total_n(reference, program, &Context { x_m, y_m, t_s, speed_m_per_s, ..Context::default() })
-        };
-        (0..count).map(sample).collect()
+            Context { x_m, y_m, t_s: number as f64 / sample_hz, speed_m_per_s, ..Context::default() }
+        })
     }
 }
 
-/// Total friction in a context, in newtons, clamped to what the drive can give.
-pub(super) fn total_n(reference: &Reference, program: &Program, context: &Context) -> f64 {
-    let electric_n = reference.electric_friction_at_n(context);
+/// Total friction, in newtons, with the electric friction clamped to what the drive can give.
+pub(super) fn total_n(program: &Program, electric_n: f64) -> f64 {
     program.reach.natural_friction_n + electric_n.clamp(0.0, program.reach.electric_friction_max_n)
 }
 

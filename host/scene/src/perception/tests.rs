@@ -1,4 +1,5 @@
-use super::{LayerPerception, Perception, Step, Verdict, weber_steps};
+use super::{BurstTimes, LayerPerception, NEAR_THRESHOLD, Perception, Step, Verdict, weber_steps};
+use crate::check::feel;
 use crate::tests::{HEAD, compile_text};
 
 fn of(layers: &str) -> Perception {
@@ -105,4 +106,120 @@ fn a_vibration_is_said_to_need_a_sliding_finger() {
     let texture = only(&perception).textures.last().unwrap();
     assert!((texture.frequency_hz - 80.0).abs() < 1.0, "{texture:?}");
     assert!(of(&grating(1.0, 20.0)).notes.is_empty());
+}
+
+/// On the example screen, under the example finger: 250 mN, to which the drive adds up to 130 mN.
+fn on_example(layers: &str) -> Perception {
+    Perception::of(&compile_text(&format!("version = 2\n{layers}")).unwrap())
+}
+
+/// A layer whose friction is in parts of the reach, at a place of 30 by 20 mm.
+fn plate(x_mm: u32, fields: &str) -> String {
+    let region = format!("region = {{ x_mm = {x_mm}, y_mm = 20, width_mm = 30, height_mm = 20 }}");
+    format!("[[layer]]\n{region}\n{fields}\n")
+}
+
+#[test]
+fn a_rare_burst_is_judged_while_it_lasts() {
+    let vibration = |burst: &str| {
+        let fields = "kind = \"vibration\"\nfrequency_hz = 80\nlow_fraction = 0.0\nhigh_fraction = 0.8\n";
+        on_example(&format!("[[layer]]\n{fields}{burst}"))
+    };
+    let (lasting, rare) = (vibration(""), vibration("burst = { period_ms = 5000, on_ms = 100, ramp_ms = 10 }\n"));
+    assert_eq!(only(&rare).contrast, only(&lasting).contrast);
+    assert_eq!(only(&rare).textures, only(&lasting).textures);
+    assert_eq!(only(&rare).textures[1].verdict, Verdict::Felt);
+    let BurstTimes { on_ms, period_ms } = only(&rare).burst.unwrap();
+    assert!((on_ms - 100.0).abs() < 1e-3 && (period_ms - 5000.0).abs() < 1e-3);
+    assert_eq!(only(&lasting).burst, None);
+    assert!(feel::sentence(only(&rare)).contains("; all this while a burst lasts, 100 ms of every 5000 ms"));
+}
+
+#[test]
+fn a_lone_edge_is_felt_where_it_is() {
+    let perception = on_example("[[layer]]\nkind = \"edge\"\nx_mm = 60\ny_mm = 40\nwidth_mm = 3\nridge_n = 0.02\n");
+    let layer = only(&perception);
+    assert!(layer.is_narrow && (layer.contrast.contrast_n - 0.02).abs() < 1e-5, "{layer:?}");
+    assert!(feel::sentence(layer).contains("250.0 to 270.0 mN, 0.7 Weber steps (not felt) at a narrow place in it"));
+    assert!(!only(&of(&grating(2.0, 20.0))).is_narrow);
+}
+
+/// The ridge falls off before the border of the layer: a finger feels no step there.
+#[test]
+fn a_ridge_has_no_step_at_its_foot() {
+    let ridge = "kind = \"edge\"\nx_mm = 35\ny_mm = 30\nwidth_mm = 8\nridge_n = 0.02";
+    assert_eq!(on_example(&plate(20, ridge)).steps, []);
+    assert_eq!(on_example(&plate(20, "kind = \"constant\"\nabove = \"natural\"\nfriction_n = 0.02")).steps.len(), 1);
+}
+
+#[test]
+fn a_click_is_judged_where_it_begins_and_within_what_the_drive_can_give() {
+    let button = |face_fraction: f64| {
+        let text = plate(
+            20,
+            &format!(
+                "kind = \"button\"\nrim_width_mm = 3\nrim_fraction = 0.5\nface_fraction = {face_fraction}\n\
+                 click_fraction = 0.4"
+            ),
+        );
+        on_example(&format!("{text}[drive]\nsaturate = true\n"))
+    };
+    let perception = button(0.2);
+    let layer = only(&perception);
+    let click = layer.click.unwrap();
+    let reach_n = (click.from_n - 0.25) / 0.2;
+    assert!((click.contrast_n / (0.4 * reach_n) - 1.0).abs() < 0.02 && !layer.is_click_cut_off, "{layer:?}");
+    let perception = button(1.0);
+    let layer = only(&perception);
+    assert!(layer.is_click_cut_off && layer.click.unwrap().contrast_n.abs() < 1e-4, "{layer:?}");
+    assert!(feel::sentence(layer).contains("0.0 Weber steps (not felt), cut off at the most that the drive can give"));
+}
+
+#[test]
+fn plates_and_buttons_of_almost_the_same_friction_are_alike() {
+    let constant = |fraction: f64| format!("kind = \"constant\"\nfriction_fraction = {fraction}");
+    let button = |face: f64, rim: f64| {
+        format!("kind = \"button\"\nrim_width_mm = 3\nrim_fraction = {rim}\nface_fraction = {face}")
+    };
+    let high = 0.9;
+    let alike = |one: &str, other: &str| on_example(&(plate(10, one) + &plate(60, other))).alike;
+    let pair = alike(&constant(high), &constant(0.8 * high));
+    assert_eq!(pair.len(), 1, "{pair:?}");
+    assert!(pair[0].difference_weber_steps.unwrap() < 1.0 && pair[0].difference_db.is_none());
+    assert_eq!(alike(&constant(high), &constant(high)), [], "the same layer twice is meant to be");
+    assert_eq!(alike(&button(0.4, 0.8), &button(0.5, 0.8)).len(), 1);
+    assert_eq!(alike(&button(0.4, 0.8), &constant(0.6)).len(), 1);
+}
+
+/// Layers that act at the same place are felt as one.
+#[test]
+fn layers_that_add_to_one_another_are_not_alike() {
+    let constant =
+        |friction_n: f64| format!("kind = \"constant\"\nabove = \"natural\"\nfriction_n = {friction_n}\nlive = true");
+    let below_and_above = plate(10, &constant(0.01)) + &plate(10, &format!("{}\nblend = \"add\"", constant(0.005)));
+    let perception = on_example(&below_and_above);
+    assert_eq!((perception.layers.len(), perception.alike.len()), (2, 0));
+}
+
+#[test]
+fn copies_of_a_layer_are_named_once() {
+    let detents = "[[layer]]\nname = \"detent\"\nkind = \"edge\"\nregion = { x_mm = 10, y_mm = 20, width_mm = 4, \
+         height_mm = 30 }\nrepeat = { columns = 6, dx_mm = 15 }\nx_mm = 12\ny_mm = 30\nwidth_mm = 4\nridge_n = 0.02\n";
+    let lines = feel::lines(&of(detents));
+    let feel: Vec<&String> = lines.iter().filter(|(name, _)| *name == "feel").map(|(_, text)| text).collect();
+    assert_eq!(feel.len(), 1, "{feel:?}");
+    assert!(feel[0].starts_with("layer 1 \"detent 1\" and 5 alike: 250."), "{feel:?}");
+    assert!(!lines.iter().any(|(name, _)| *name == "alike"), "{lines:?}");
+}
+
+#[test]
+fn what_near_the_threshold_means_is_said_once_and_only_then() {
+    let said = |high_n: f64| {
+        let constant = format!("kind = \"constant\"\nabove = \"natural\"\nfriction_n = {high_n}");
+        let perception = on_example(&(plate(20, &constant) + &plate(60, &constant)));
+        feel::lines(&perception).iter().filter(|(_, text)| text == NEAR_THRESHOLD).count()
+    };
+    // 0.8, 1.7 and 2.7 Weber steps.
+    assert_eq!([0.02, 0.05, 0.08].map(said), [0, 1, 0]);
+    assert_eq!(serde_json::to_string(&Verdict::NearThreshold).unwrap(), "\"felt_by_some\"");
 }

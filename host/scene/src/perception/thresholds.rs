@@ -17,7 +17,7 @@ pub const VOLTAGE_DIFFERENCE_DB: f64 = 1.21;
 
 /// Length over which friction follows its target while sliding, mm: a cutoff of 13.8 Hz for each mm/s
 /// (arXiv 2505.11162) is `1 / (2 pi 13.8)` mm at every speed.
-pub(super) const RELAXATION_LENGTH_MM: f64 = 1.0 / (std::f64::consts::TAU * 13.8);
+pub(crate) const RELAXATION_LENGTH_MM: f64 = 1.0 / (std::f64::consts::TAU * 13.8);
 
 /// Root mean square of a finger's own friction noise from [`NOISE_BAND_HZ`], N. Its spectral density falls as 1/f, so
 /// each octave has the same share. Computed from one trial of one bare finger at 0.53 N and 40 mm/s
@@ -44,14 +44,20 @@ const TANGENTIAL_DAMPING_N_S_PER_M: f64 = 1.5;
 /// were measured with a vibrating probe, not with friction. Assumed.
 pub(super) const THRESHOLD_UNCERTAINTY: f64 = 3.0;
 
+/// What [`Verdict::NearThreshold`] means, for a person. It is about a range of contrast, from the smallest Weber
+/// fraction of the studies to the largest one, or a factor of 3 on both sides of a texture's threshold; no study says
+/// which share of people is how far above it.
+pub const NEAR_THRESHOLD: &str = "near the threshold: some people or some strokes will not notice it";
+
 /// Whether a person feels something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// Too small for anyone in the studies.
     NotFelt,
-    /// Felt by some people.
-    FeltBySome,
+    /// Near the threshold, see [`NEAR_THRESHOLD`].
+    #[serde(rename = "felt_by_some")]
+    NearThreshold,
     /// Felt by everyone in the studies.
     Felt,
     /// No study covers it.
@@ -63,7 +69,7 @@ impl Verdict {
     pub fn of_step(weber_steps: f64) -> Self {
         match weber_steps.abs() {
             steps if steps < 1.0 => Self::NotFelt,
-            steps if steps < weber_steps_safe() => Self::FeltBySome,
+            steps if steps < weber_steps_safe() => Self::NearThreshold,
             steps if steps.is_finite() => Self::Felt,
             _ => Self::Unknown,
         }
@@ -75,7 +81,7 @@ impl Verdict {
         if amplitude_n < threshold_n / THRESHOLD_UNCERTAINTY {
             Self::NotFelt
         } else if amplitude_n < threshold_n * THRESHOLD_UNCERTAINTY {
-            Self::FeltBySome
+            Self::NearThreshold
         } else if amplitude_n < natural_noise_amplitude_n(frequency_hz) {
             // The thresholds were measured on a finger that did not slide.
             Self::Unknown
@@ -88,7 +94,7 @@ impl Verdict {
     pub fn words(self) -> &'static str {
         match self {
             Self::NotFelt => "not felt",
-            Self::FeltBySome => "felt by some",
+            Self::NearThreshold => "near the threshold",
             Self::Felt => "felt",
             Self::Unknown => "unknown",
         }
@@ -162,8 +168,8 @@ mod tests {
             verdicts,
             [
                 Verdict::NotFelt,
-                Verdict::FeltBySome,
-                Verdict::FeltBySome,
+                Verdict::NearThreshold,
+                Verdict::NearThreshold,
                 Verdict::Felt,
                 Verdict::Felt,
                 Verdict::Unknown
@@ -192,7 +198,7 @@ mod tests {
     fn a_texture_is_judged_by_threshold_and_noise() {
         let threshold_n = texture_threshold_n(40.0).unwrap();
         assert_eq!(Verdict::of_texture(0.3 * threshold_n, 40.0), Verdict::NotFelt);
-        assert_eq!(Verdict::of_texture(2.0 * threshold_n, 40.0), Verdict::FeltBySome);
+        assert_eq!(Verdict::of_texture(2.0 * threshold_n, 40.0), Verdict::NearThreshold);
         assert_eq!(Verdict::of_texture(4.0 * threshold_n, 40.0), Verdict::Felt);
         // At 250 Hz the threshold is far below the noise of the finger itself.
         assert_eq!(Verdict::of_texture(4.0 * texture_threshold_n(250.0).unwrap(), 250.0), Verdict::Unknown);

@@ -9,6 +9,7 @@ mod host_stream;
 mod inversion;
 mod observation;
 mod rows;
+mod turning;
 
 use frixel_model::ParameterError;
 use frixel_wire::fault::Flags;
@@ -22,6 +23,7 @@ use inversion::Inversion;
 pub use observation::{FeltFriction, FingerState, Observation};
 pub use rows::FeltRow;
 use rows::{Frictions, RowMaker};
+use turning::Turning;
 
 /// Records one play.
 ///
@@ -43,6 +45,7 @@ struct Comparison {
     reference: StrokeReference,
     inversion: Inversion,
     stream: HostStream,
+    turning: Turning,
     metrics: Metrics,
 }
 
@@ -62,6 +65,7 @@ impl Recorder {
             reference: Reference::new(program).along_stroke(),
             inversion: Inversion::new(program, limits, tick_hz)?,
             stream: HostStream::new(tick_hz),
+            turning: Turning::default(),
             metrics: Metrics::new(program.half_period_ticks),
         };
         Ok(Self { comparison: Some(comparison), ticks_max, ..Self::without_reference(tick_hz, ticks_per_row) })
@@ -207,6 +211,8 @@ impl Comparison {
         let electric_n = self.reference_electric_n(observation, t_s, ticks_passed);
         let in_scene_n = electric_n.map(|electric_n| scenes_natural_n + electric_n);
         let in_reach = in_scene_n.is_some_and(|in_scene_n| self.inversion.reaches(in_scene_n - scenes_natural_n));
+        // Only a simulated finger with a skin of its own turns.
+        let turning = self.turning.follow(observation.finger) && total_friction_n.is_some();
         let (natural_n, wanted_n) = match (total_friction_n, &observation.felt) {
             (Some(total_friction_n), Some(felt)) => {
                 (felt.friction_n - felt.electric_friction_n, electric_n.map(total_friction_n))
@@ -220,6 +226,7 @@ impl Comparison {
             finger_down: observation.finger.is_some(),
             board_has_finger: telemetry.map(|telemetry| !telemetry.flags.contains(Flags::NO_FINGER)),
             wanted_n,
+            turning,
             asked_n,
             felt_n,
             inversion_n: telemetry.filter(|_| in_reach).map(|telemetry| {

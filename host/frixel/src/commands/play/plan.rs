@@ -4,6 +4,7 @@ use std::io::stdin;
 use std::path::Path;
 use std::time::Duration;
 
+use frixel::default_stroke;
 use frixel::output::WorldReport;
 use frixel::stream::Feed;
 use frixel_hil_sim::Stroke;
@@ -11,7 +12,7 @@ use frixel_scene::recorder::Recorder;
 use frixel_scene::{Program, Scene};
 use frixel_wire::hello::{BoardKind, BoardLimits};
 
-use super::super::stroke::{check_on_screen, default_stroke};
+use super::super::stroke::check_on_screen;
 use super::rigs::Target;
 use super::{CommandError, PlayArgs, note, note_refusals};
 

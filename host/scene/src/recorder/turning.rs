@@ -1,0 +1,58 @@
+//! Where a finger lands or turns.
+
+use super::FingerState;
+use crate::perception::RELAXATION_LENGTH_MM;
+
+/// The part of its full pull against the motion from which the skin counts as turned.
+const TURNED: f64 = 0.95;
+
+/// The direction in which the skin pulls. It follows the direction of the motion over the relaxation length, so that
+/// friction against the motion is smaller, or negative, after a finger has landed or turned.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Turning {
+    /// A vector of length 1 in steady sliding.
+    pull: [f64; 2],
+    place_m: Option<[f64; 2]>,
+}
+
+impl Turning {
+    /// Moves the finger. Returns whether its skin does not yet pull against its motion.
+    pub(super) fn follow(&mut self, finger: Option<FingerState>) -> bool {
+        let Some(FingerState { x_m, y_m, .. }) = finger else {
+            *self = Self::default();
+            return true;
+        };
+        let Some([from_x_m, from_y_m]) = self.place_m.replace([x_m, y_m]) else { return true };
+        let (x_step_m, y_step_m) = (x_m - from_x_m, y_m - from_y_m);
+        let step_m = libm::hypot(x_step_m, y_step_m);
+        if step_m <= 0.0 {
+            return libm::hypot(self.pull[0], self.pull[1]) < TURNED;
+        }
+        let direction = [x_step_m / step_m, y_step_m / step_m];
+        let share = -libm::expm1(-1e3 * step_m / RELAXATION_LENGTH_MM);
+        for (pull, direction) in self.pull.iter_mut().zip(direction) {
+            *pull += share * (direction - *pull);
+        }
+        let along: f64 = self.pull.iter().zip(direction).map(|(pull, direction)| pull * direction).sum();
+        along < TURNED
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_finger_turns_for_some_relaxation_lengths() {
+        let mut turning = Turning::default();
+        let mut at =
+            |x_um: i32| turning.follow(Some(FingerState { x_m: 1e-6 * f64::from(x_um), ..FingerState::default() }));
+        // 1 - e^-3 and 1 - 2 e^-3.7 are 0.95; the relaxation length is 11.5 um.
+        let there: Vec<bool> = (0..100).map(&mut at).collect();
+        assert_eq!(there.iter().filter(|turning| **turning).count(), 35);
+        let back: Vec<bool> = (0..99).rev().map(&mut at).collect();
+        assert_eq!(back.iter().filter(|turning| **turning).count(), 42);
+        assert!(!at(0), "a finger that rests after it has slid has turned");
+        assert!(turning.follow(None));
+    }
+}
