@@ -15,7 +15,7 @@ use libfuzzer_sys::fuzz_target;
 fuzz_target!(|bytes: &[u8]| {
     let rig_config = RigConfig::default();
     let mut memory = BoardMemory::new();
-    let stroke = Stroke::natural(0.12, 0.08, 1.0).expect("a stroke");
+    let stroke = Stroke::sweep(0.12, 0.08, 1.0).expect("a stroke");
     let rig = Rig::new(&mut memory, &rig_config, stroke, 1).expect("a rig");
     let mut device = Device::connect(SimLink::new(rig, Recorder::idle())).expect("a board");
     let upload = Upload { scene: bytes, bitmaps: Vec::new() };

@@ -1,6 +1,6 @@
 //! How long a tick of the world takes, by stroke: `cargo run --release -p frixel-hil-sim --example world_speed`.
 //!
-//! A square carrier of 1 kHz drives the ideal and the natural world for a minute of virtual time. The sum of the
+//! A square carrier of 1 kHz drives the ideal and the realistic world for a minute of virtual time. The sum of the
 //! friction is printed so that the compiler cannot remove the work.
 #![allow(clippy::disallowed_types, clippy::disallowed_methods, reason = "it measures wall time")]
 
@@ -20,11 +20,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let strokes = [
         ("constant speed", Stroke::constant_speed(left, right, 0.1)?),
         ("minimum jerk", Stroke::minimum_jerk(left, right, SECONDS)?),
-        ("natural", Stroke::natural(0.1, 0.06, SECONDS)?),
+        ("sweep", Stroke::sweep(0.1, 0.06, SECONDS)?),
         ("CSV, 1 kHz", Stroke::from_csv(&csv(SECONDS))?),
     ];
     for (name, stroke) in strokes {
-        for (world, config) in [("ideal", WorldConfig::IDEAL), ("natural", WorldConfig::IDEAL.natural())] {
+        for (world, config) in [("ideal", WorldConfig::IDEAL), ("realistic", WorldConfig::IDEAL.realistic())] {
             measure(&format!("{world}, {name}"), World::new(config, stroke.clone(), 1)?);
         }
     }

@@ -38,7 +38,7 @@ impl AmplifierConfig {
 
     /// An amplifier as `docs/hardware.md` demands it: an offset of 0.5 V (assumed: 25 mV at the input of a gain of 20),
     /// and a current limit of 5 mA into the simulated board's worst electrode, 0.53 nF.
-    pub const NATURAL: Self = Self { offset_v: 0.5, slew_v_per_s: 5e-3 / 0.53e-9, ..Self::IDEAL };
+    pub const REALISTIC: Self = Self { offset_v: 0.5, slew_v_per_s: 5e-3 / 0.53e-9, ..Self::IDEAL };
 }
 
 impl Default for AmplifierConfig {

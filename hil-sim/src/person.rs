@@ -55,14 +55,14 @@ impl Person {
         let skin_gap_m = around(4.74e-6, 0.2, 0.15);
         let normal_load_n = around(0.5, 0.0, 0.2);
         let leakage_hz = around(250.0, 0.5, 0.2);
-        let natural = FingertipConfig::NATURAL;
+        let usual = FingertipConfig::REALISTIC;
         let fingertip = FingertipConfig {
             // Both were measured under 0.53 N, and grow with what they are a part of.
-            load_sd_n: natural.load_sd_n * normal_load_n / 0.53,
-            noise_rms_n: natural.noise_rms_n * finger.friction_coefficient * normal_load_n / (0.5 * 0.53),
+            load_sd_n: usual.load_sd_n * normal_load_n / 0.53,
+            noise_rms_n: usual.noise_rms_n * finger.friction_coefficient * normal_load_n / (0.5 * 0.53),
             load_exponent: 0.15 * draw(),
             leakage_hz,
-            ..natural
+            ..usual
         };
         Self { moisture, finger, skin_gap_m, normal_load_n, fingertip }
     }

@@ -2,16 +2,16 @@
 
 mod error;
 mod human;
-mod natural;
 mod rows;
 mod straight;
+mod sweep;
 mod text;
 
 use crate::error::{OutOfRange, above_zero, zero_to_ten};
 pub use error::StrokeError;
-use natural::Natural;
 use rows::{Row, Rows};
 use straight::Straight;
+use sweep::Sweep;
 
 /// A place on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,7 +60,7 @@ pub struct Stroke {
 enum Path {
     ConstantSpeed(Straight),
     MinimumJerk(Straight),
-    Natural(Natural),
+    Sweep(Sweep),
     Rows(Rows),
 }
 
@@ -90,9 +90,9 @@ impl Stroke {
     ///
     /// It keeps a tenth of the screen away from every edge, and consists of whole strokes. If `duration_s` is too
     /// short for a full stroke at this speed, the stroke is shorter.
-    pub fn natural(screen_width_m: f64, screen_height_m: f64, duration_s: f64) -> Result<Self, StrokeError> {
-        let natural = Natural::new(screen_width_m, screen_height_m, duration_s)?;
-        Ok(Self::once(duration_s, Path::Natural(natural)))
+    pub fn sweep(screen_width_m: f64, screen_height_m: f64, duration_s: f64) -> Result<Self, StrokeError> {
+        let sweep = Sweep::new(screen_width_m, screen_height_m, duration_s)?;
+        Ok(Self::once(duration_s, Path::Sweep(sweep)))
     }
 
     /// A stroke with the statistics of people recorded on a surface-haptic tablet, with the finger down for all of
@@ -102,7 +102,7 @@ impl Stroke {
     /// It was made to match the medians of about 1,300 strokes, whose recordings cannot be shipped; the shape of the
     /// motion is that of the literature. Between milliseconds the finger goes straight.
     ///
-    /// [`Self::natural`] is the even stroke of the same kind: it has no random part, and goes on for any time.
+    /// [`Self::sweep`] is the even stroke of the same kind: it has no random part, and goes on for any time.
     ///
     /// ```
     /// use frixel_hil_sim::Stroke;
@@ -172,7 +172,7 @@ impl Stroke {
     pub fn normal_load_n(&self, t_s: f64) -> Option<f64> {
         match &self.path {
             Path::Rows(rows) => rows.normal_load_n(self.in_round(t_s)?),
-            Path::ConstantSpeed(_) | Path::MinimumJerk(_) | Path::Natural(_) => None,
+            Path::ConstantSpeed(_) | Path::MinimumJerk(_) | Path::Sweep(_) => None,
         }
     }
 
@@ -200,7 +200,7 @@ impl Stroke {
         match &self.path {
             Path::ConstantSpeed(straight) => Some(straight.constant_speed(t_s)),
             Path::MinimumJerk(straight) => Some(straight.minimum_jerk(t_s)),
-            Path::Natural(natural) => Some(natural.at(t_s)),
+            Path::Sweep(sweep) => Some(sweep.at(t_s)),
             Path::Rows(rows) => rows.at(t_s),
         }
     }

@@ -58,7 +58,7 @@ impl TouchConfig {
     /// The same source with the reports of the recorded strokes: one in eight is lost, one in thirty is bunched with
     /// the next (both within the 4 to 28 % of double intervals), a pause of up to 120 ms in ten seconds (gaps of up to
     /// 140 ms with the losses around it), and steps of 0.18 mm.
-    pub const NATURAL: Self = Self {
+    pub const REALISTIC: Self = Self {
         lost_share: 0.12,
         bunched_share: 0.03,
         pause_rate_hz: 0.1,

@@ -40,11 +40,11 @@ impl WorldConfig {
 
     /// This world with every effect that was measured on real amplifiers, fingers and touch sources.
     #[must_use]
-    pub fn natural(self) -> Self {
+    pub fn realistic(self) -> Self {
         Self {
-            amplifier: AmplifierConfig::NATURAL,
-            fingertip: FingertipConfig::NATURAL,
-            touch: TouchConfig::NATURAL,
+            amplifier: AmplifierConfig::REALISTIC,
+            fingertip: FingertipConfig::REALISTIC,
+            touch: TouchConfig::REALISTIC,
             ..self
         }
     }

@@ -16,7 +16,7 @@ use script::{HEADER, Script, record, scene};
 const HOST_TIMEOUT_TICKS: u64 = 10_000;
 
 fn playing(memory: &mut BoardMemory) -> Script<'_> {
-    let stroke = Stroke::natural(0.12, 0.08, 60.0).unwrap();
+    let stroke = Stroke::sweep(0.12, 0.08, 60.0).unwrap();
     let mut script = Script::new(Rig::new(memory, &RigConfig::default(), stroke, 1).unwrap());
     script.play(&scene(&HEADER, &[record(Layer::Constant(frixel_layers::Constant { electric_friction_n: 0.02 }))]));
     script

@@ -46,7 +46,7 @@ fn assert_same(image: &Image, journal: &Journal) {
 
 /// Sine stripes in a region on a constant, under a stroke like a person's.
 fn stripes(board: Board) -> Journal {
-    let stroke = Stroke::natural(0.12, 0.08, 3.0).unwrap();
+    let stroke = Stroke::sweep(0.12, 0.08, 3.0).unwrap();
     journal(board, stroke, 1, |script| {
         let constant = record(Layer::Constant(Constant { electric_friction_n: 0.004 }));
         let stripes = Record {

@@ -238,22 +238,22 @@ proptest! {
 }
 
 /// A world with every effect, whose finger slides over a square drive.
-fn natural_run(seed: u64, ticks: u64) -> Vec<Felt> {
-    let mut world = World::new(WorldConfig::default().natural(), sliding(), seed).unwrap();
+fn realistic_run(seed: u64, ticks: u64) -> Vec<Felt> {
+    let mut world = World::new(WorldConfig::default().realistic(), sliding(), seed).unwrap();
     world.start_stroke();
     (0..ticks).map(|tick| world.apply(square(tick, 20_000))).collect()
 }
 
 #[test]
-fn a_natural_world_is_the_same_for_the_same_seed_and_has_another_finger_for_another() {
-    assert_eq!(natural_run(1, 8000), natural_run(1, 8000));
-    assert_ne!(natural_run(1, 8000), natural_run(2, 8000));
+fn a_realistic_world_is_the_same_for_the_same_seed_and_has_another_finger_for_another() {
+    assert_eq!(realistic_run(1, 8000), realistic_run(1, 8000));
+    assert_ne!(realistic_run(1, 8000), realistic_run(2, 8000));
 }
 
 /// Fixed for ever: the same bits on every platform.
 #[test]
-fn the_last_friction_of_a_natural_run_is_the_one_it_was() {
-    let last = *natural_run(1, 20_000).last().unwrap();
+fn the_last_friction_of_a_realistic_run_is_the_one_it_was() {
+    let last = *realistic_run(1, 20_000).last().unwrap();
     let bits = [last.friction_n, last.natural_friction_n, last.mean_square_v2].map(f64::to_bits);
     assert_eq!(bits, [4_598_905_268_221_903_569, 4_597_954_213_826_141_275, 4_669_351_140_877_307_118]);
 }
@@ -262,8 +262,8 @@ fn the_last_friction_of_a_natural_run_is_the_one_it_was() {
 type SwitchOff = fn(&mut WorldConfig, &WorldConfig);
 
 #[test]
-fn every_effect_of_the_natural_world_changes_what_is_felt_and_can_be_switched_off() {
-    let natural = WorldConfig::default().natural();
+fn every_effect_of_the_realistic_world_changes_what_is_felt_and_can_be_switched_off() {
+    let realistic = WorldConfig::default().realistic();
     let ideal = WorldConfig::default();
     let run = |config: WorldConfig| {
         let mut world = World::new(config, sliding(), 1).unwrap();
@@ -275,7 +275,7 @@ fn every_effect_of_the_natural_world_changes_what_is_felt_and_can_be_switched_of
             })
             .collect::<Vec<_>>()
     };
-    let all = run(natural);
+    let all = run(realistic);
     let without: [(&str, SwitchOff); 9] = [
         ("offset", |config, ideal| config.amplifier.offset_v = ideal.amplifier.offset_v),
         ("current limit", |config, ideal| config.amplifier.slew_v_per_s = ideal.amplifier.slew_v_per_s),
@@ -287,9 +287,9 @@ fn every_effect_of_the_natural_world_changes_what_is_felt_and_can_be_switched_of
         ("bunched reports", |config, ideal| config.touch.bunched_share = ideal.touch.bunched_share),
         ("pixel steps", |config, ideal| config.touch.step_m = ideal.touch.step_m),
     ];
-    let mut off = natural;
+    let mut off = realistic;
     for (name, switch_off) in without {
-        let mut config = natural;
+        let mut config = realistic;
         switch_off(&mut config, &ideal);
         assert!(run(config) != all, "{name}");
         switch_off(&mut off, &ideal);
@@ -305,7 +305,7 @@ fn the_reference_under_the_same_finger_is_what_a_perfect_display_would_be_felt_a
     // reference that follows the model's electric friction is what is felt.
     let mut config = ideal_amplifier();
     config.amplifier.offset_v = 0.0;
-    config.fingertip = FingertipConfig { leakage_hz: 0.0, ..FingertipConfig::NATURAL };
+    config.fingertip = FingertipConfig { leakage_hz: 0.0, ..FingertipConfig::REALISTIC };
     let mut world = World::new(config, sliding(), 1).unwrap();
     world.start_stroke();
     let steady_n = example_finger().unwrap().electric_friction_n(200.0 * 20_000.0 / DAC_FULL);

@@ -55,7 +55,7 @@ impl FingertipConfig {
     };
 
     /// A finger with every effect that was measured.
-    pub const NATURAL: Self = Self {
+    pub const REALISTIC: Self = Self {
         relaxation_length_m: RELAXATION_LENGTH_M,
         pre_sliding: true,
         load_sd_n: 22e-3,

@@ -113,7 +113,7 @@ fn friction_takes_the_lag_s_share_of_a_step_whatever_the_tick() {
 
 #[test]
 fn a_still_finger_keeps_the_friction_it_has() {
-    for config in [FingertipConfig::IDEAL, FingertipConfig { load_sd_n: 0.0, ..FingertipConfig::NATURAL }] {
+    for config in [FingertipConfig::IDEAL, FingertipConfig { load_sd_n: 0.0, ..FingertipConfig::REALISTIC }] {
         let mut slide = Slide::new(config, 1);
         let moving = (0..100).map(|_| slide.tick(10_000.0, 0.05)).last().unwrap();
         assert!(moving.electric_friction_n > 0.0);
@@ -140,7 +140,7 @@ fn a_change_of_speed_takes_effect_at_once() {
 
 #[test]
 fn a_lifted_finger_feels_nothing_and_starts_afresh() {
-    for (config, natural_n) in [(FingertipConfig::IDEAL, 0.25), (FingertipConfig::NATURAL, 0.0)] {
+    for (config, natural_n) in [(FingertipConfig::IDEAL, 0.25), (FingertipConfig::REALISTIC, 0.0)] {
         let mut slide = Slide::new(config, 1);
         for _ in 0..1000 {
             slide.tick(10_000.0, 0.1);

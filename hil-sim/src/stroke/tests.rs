@@ -102,9 +102,9 @@ fn a_loop_repeats_with_a_pause_for_ever() {
 }
 
 #[test]
-fn a_natural_stroke_explores_the_screen() {
+fn a_sweep_explores_the_screen() {
     let (width_m, height_m, duration_s) = (0.1, 0.06, 30.0);
-    let stroke = Stroke::natural(width_m, height_m, duration_s).unwrap();
+    let stroke = Stroke::sweep(width_m, height_m, duration_s).unwrap();
     assert_speed_is_the_rate_of_the_place(&stroke, 0.0, duration_s);
     let states: Vec<_> = (0..=30_000).map(|ms| at(&stroke, 1e-3 * f64::from(ms))).collect();
     let least = |value: fn(&FingerState) -> f64| states.iter().map(value).fold(f64::INFINITY, f64::min);
@@ -126,12 +126,12 @@ fn a_natural_stroke_explores_the_screen() {
 
 proptest! {
     #[test]
-    fn a_natural_stroke_stays_on_any_screen_at_a_human_pace_for_any_time(
+    fn a_sweep_stays_on_any_screen_at_a_human_pace_for_any_time(
         width_m in 0.01..1.0_f64,
         height_m in 0.01..1.0_f64,
         duration_s in prop_oneof![0.001..1.0_f64, 1.0..1e5_f64],
     ) {
-        let stroke = Stroke::natural(width_m, height_m, duration_s).unwrap();
+        let stroke = Stroke::sweep(width_m, height_m, duration_s).unwrap();
         prop_assert_eq!(stroke.duration_s(), duration_s);
         for step in 0..=500 {
             let state = at(&stroke, duration_s * (f64::from(step) / 500.0));
@@ -331,7 +331,7 @@ fn numbers_that_make_no_stroke_are_refused_by_name() {
         "stroke: duration_s must be finite and above 0, found inf"
     );
     assert_eq!(
-        message(Stroke::natural(0.1, -0.1, 1.0)),
+        message(Stroke::sweep(0.1, -0.1, 1.0)),
         "stroke: screen height in m must be finite and above 0, found -0.1"
     );
 }

@@ -165,16 +165,16 @@ fn a_lift_is_reported_once_after_the_latency() {
     assert_eq!(seen.len(), 26);
 }
 
-/// Distances between the arrivals of a natural source's reports, in report periods.
-fn natural_intervals(config: TouchConfig, seed: u64, seconds: u64) -> Vec<f64> {
+/// Distances between the arrivals of a realistic source's reports, in report periods.
+fn realistic_intervals(config: TouchConfig, seed: u64, seconds: u64) -> Vec<f64> {
     let reports = reports(config, seed, seconds);
     reports.windows(2).map(|pair| (pair[1].0 - pair[0].0) as f64 / 400.0).collect()
 }
 
 #[test]
-fn a_natural_source_has_the_double_intervals_and_the_gaps_of_the_recorded_strokes() {
+fn a_realistic_source_has_the_double_intervals_and_the_gaps_of_the_recorded_strokes() {
     for seed in 1..=5 {
-        let intervals = natural_intervals(TouchConfig::NATURAL, seed, SECONDS);
+        let intervals = realistic_intervals(TouchConfig::REALISTIC, seed, SECONDS);
         let at_least_double = intervals.iter().filter(|interval| **interval >= 1.8).count() as f64;
         let share = at_least_double / intervals.len() as f64;
         assert!((0.04..=0.28).contains(&share), "{share}");
@@ -187,7 +187,7 @@ fn a_natural_source_has_the_double_intervals_and_the_gaps_of_the_recorded_stroke
 
 #[test]
 fn each_loss_can_be_switched_on_alone() {
-    let lossy = |config| natural_intervals(config, 5, SECONDS);
+    let lossy = |config| realistic_intervals(config, 5, SECONDS);
     let double = |intervals: &[f64]| {
         intervals.iter().filter(|interval| **interval >= 1.8).count() as f64 / intervals.len() as f64
     };

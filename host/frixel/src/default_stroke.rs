@@ -22,7 +22,7 @@ const MIDDLE_PART: f64 = 0.2;
 /// shorter side of the layer.
 pub fn default_stroke(program: &Program, seconds: Option<f64>) -> Result<Stroke, StrokeError> {
     let screen_m = (f64::from(program.header.screen_width_m), f64::from(program.header.screen_height_m));
-    let sweep = Stroke::natural(screen_m.0, screen_m.1, seconds.unwrap_or(SWEEP_S))?;
+    let sweep = Stroke::sweep(screen_m.0, screen_m.1, seconds.unwrap_or(SWEEP_S))?;
     if seconds.is_some() {
         return Ok(sweep);
     }

@@ -299,7 +299,7 @@ mod tests {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/constant.toml");
         let program = compile(&crate::scene_file::load(&path).unwrap(), &board.limits, board.tick_hz).unwrap();
         let mut memory = BoardMemory::new();
-        let mut rig = Rig::new(&mut memory, &config, Stroke::natural(0.12, 0.11, 1.0).unwrap(), 1).unwrap();
+        let mut rig = Rig::new(&mut memory, &config, Stroke::sweep(0.12, 0.11, 1.0).unwrap(), 1).unwrap();
         rig.world_mut().schedule_amplifier_fault(20_000..u64::MAX);
         let recorder = Recorder::new(&program, &board.limits, board.tick_hz, 400_000, 40).unwrap();
         let mut player = Player::new(Device::connect(SimLink::new(rig, Recorder::idle())).unwrap(), recorder);

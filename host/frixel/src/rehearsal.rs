@@ -43,7 +43,7 @@ pub fn board_costs(program: &Program, rig: &RigConfig) -> Result<BoardCosts, Reh
 fn wire_bytes(program: &Program, rig: &RigConfig) -> Result<usize, RehearsalError> {
     let mut memory = BoardMemory::new();
     let header = &program.header;
-    let stroke = Stroke::natural(header.screen_width_m.into(), header.screen_height_m.into(), 1.0)?;
+    let stroke = Stroke::sweep(header.screen_width_m.into(), header.screen_height_m.into(), 1.0)?;
     let mut device = Device::connect(SimLink::new(Rig::new(&mut memory, rig, stroke, 1)?, Recorder::idle()))?;
     let before = device.counters().wire_bytes;
     load(&mut device, program, &mut |_| ControlFlow::Continue(()))?;

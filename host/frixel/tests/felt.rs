@@ -88,7 +88,7 @@ const CASES: [(Class, f64, Held); 9] = [
 /// Every effect of the plant, with a touch source of a class that loses one report in eight and bunches one in thirty.
 fn rig(class: &Class) -> RigConfig {
     let mut rig = RigConfig::default();
-    rig.world = rig.world.natural();
+    rig.world = rig.world.realistic();
     rig.world.touch = TouchConfig {
         rate_hz: class.rate_hz,
         latency_s: class.latency_s,
@@ -96,7 +96,7 @@ fn rig(class: &Class) -> RigConfig {
         step_m: 0.0,
         pause_rate_hz: 0.0,
         pause_max_s: 0.0,
-        ..TouchConfig::NATURAL
+        ..TouchConfig::REALISTIC
     };
     rig
 }

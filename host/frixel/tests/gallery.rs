@@ -118,7 +118,7 @@ fn every_scene_is_felt_without_a_fault_and_within_reach() {
     for Entry { name, text, program, .. } in &gallery {
         let rig = RigConfig::default();
         let (width_m, height_m) = (program.header.screen_width_m.into(), program.header.screen_height_m.into());
-        let stroke = Stroke::natural(width_m, height_m, 2.0).unwrap();
+        let stroke = Stroke::sweep(width_m, height_m, 2.0).unwrap();
         let simulation = Simulation { rig, seconds: stroke.duration_s(), stroke, seed: 1, ticks_per_row: 40 };
         let simulated = simulate(program, &simulation, None).unwrap_or_else(|error| panic!("{name}: {error}"));
         let rows = simulated.recorder.rows();
@@ -163,7 +163,7 @@ fn no_scene_is_felt_otherwise_because_its_table_is_cut() {
         }
         cut += 1;
         let (width_m, height_m) = (program.header.screen_width_m.into(), program.header.screen_height_m.into());
-        let stroke = Stroke::natural(width_m, height_m, 1.0).unwrap();
+        let stroke = Stroke::sweep(width_m, height_m, 1.0).unwrap();
         let simulation = Simulation { rig, seconds: stroke.duration_s(), stroke, seed: 1, ticks_per_row: 10 };
         let whole = Program { header: Header { electric_friction_max_n: None, ..program.header }, ..program.clone() };
         let [with_cut, without] = [program, &whole].map(|program| {

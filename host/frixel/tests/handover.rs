@@ -19,7 +19,7 @@ fn found(autonomous: bool) -> State {
     let mut program = compile(&scene, &config.board.limits, config.board.tick_hz).unwrap();
     program.header.autonomous = autonomous;
     let mut memory = BoardMemory::new();
-    let rig = Rig::new(&mut memory, &config, Stroke::natural(0.12, 0.11, 1.0).unwrap(), 1).unwrap();
+    let rig = Rig::new(&mut memory, &config, Stroke::sweep(0.12, 0.11, 1.0).unwrap(), 1).unwrap();
     let mut first = Device::connect(SimLink::new(rig, Recorder::idle())).unwrap();
     player::start(&mut first, &program, &mut |_| {}).unwrap();
     Device::connect(first.into_link()).unwrap().hello().state

@@ -1,13 +1,14 @@
 //! `frixel score`: the numbers see an output that is missing and a prediction that is switched off.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use frixel::scene_file;
 use frixel::score::{Score, Trial};
 use frixel_hil_sim::{RigConfig, Stroke};
-use frixel_scene::{Program, compile};
+use frixel_scene::{Program, Scene, compile};
 use serde_json::Value;
 
 fn scene() -> PathBuf {
@@ -38,6 +39,21 @@ fn an_output_forced_to_zero_keeps_nothing() {
     assert!(mean(&program(), "contrast_kept") > 0.9);
     assert!(mean(&zero, "contrast_kept") < 0.01);
     assert!(mean(&zero, "error_below_40_hz") > 0.9);
+}
+
+/// The finger's own noise and load changes are no contrast of the scene.
+#[test]
+fn a_scene_of_nothing_has_no_contrast() {
+    let text = "version = 2\n[[layer]]\nkind = \"constant\"\nlive = true\nfriction_fraction = 0.0\n";
+    let scene = Scene::parse(text, "nothing.toml", &BTreeMap::<String, Vec<u8>>::new()).unwrap();
+    let rig = RigConfig::default();
+    let program = compile(&scene, &rig.board.limits, rig.board.tick_hz).unwrap();
+    let stroke = Stroke::human(0.12, 0.08, 1.5, Some(0.1), 1).unwrap();
+    let trial = Trial { stroke_name: "human 1".to_owned(), stroke, seed: 1, finger: None };
+    let rig = RigConfig { world: rig.world.realistic(), ..rig };
+    let score = Score::of(&program, &rig, &[trial]).unwrap();
+    let contrast = score.metrics.iter().find(|metric| metric.key == "contrast_weber_steps").unwrap().mean;
+    assert!(contrast.abs() < 0.01, "{contrast} Weber steps");
 }
 
 #[test]

@@ -100,7 +100,7 @@ fn with_board(talk: impl FnOnce(&Path, &Path) + Send) {
     let folder = tempfile::tempdir().unwrap();
     let config = RigConfig::default();
     let mut memory = BoardMemory::new();
-    let stroke = Stroke::natural(0.12, 0.11, 60.0).unwrap();
+    let stroke = Stroke::sweep(0.12, 0.11, 60.0).unwrap();
     let mut rig = Rig::new(&mut memory, &config, stroke, 1).unwrap();
     let server = Server::open(folder.path(), config.board.tick_hz, 40).unwrap();
     let port = server.path().to_owned();

@@ -18,13 +18,13 @@ const STROKE_MS: u32 = 400;
 /// Time between two samples of the pointer, ms.
 const SAMPLE_MS: u32 = 8;
 
-/// Plays the scene of a request for its duration, in a natural world with its seed, and returns the FNV-1a hash of
+/// Plays the scene of a request for its duration, in a realistic world with its seed, and returns the FNV-1a hash of
 /// friction, electrode voltage and DAC code at every tick.
 ///
 /// The finger moves from the left to the right of the screen and accelerates, and begins again.
 pub fn seeded_hash(request: &Request) -> Result<u64, HostError> {
     let config = RigConfig::default();
-    let config = RigConfig { world: config.world.natural(), ..config };
+    let config = RigConfig { world: config.world.realistic(), ..config };
     let mut memory = BoardMemory::new();
     let mut host = Host::connect(Hashing::new(&mut memory, &config, request.numbers.seed)?)?;
     let header = host.load(request)?.header;

@@ -24,12 +24,12 @@ pub(crate) struct Simulator {
 }
 
 impl Simulator {
-    /// A board after reset, in a natural world whose random numbers are drawn from `seed`, and its host connected.
+    /// A board after reset, in a realistic world whose random numbers are drawn from `seed`, and its host connected.
     ///
     /// The board's memory is never freed: like a real board, an instance of the module has one board.
     pub(crate) fn new(seed: u64) -> Result<Self, HostError> {
         let config = RigConfig::default();
-        let config = RigConfig { world: config.world.natural(), baud: BAUD, ..config };
+        let config = RigConfig { world: config.world.realistic(), baud: BAUD, ..config };
         let stream = RigStream::new(Box::leak(BoardMemory::new()), &config, seed)?;
         Ok(Self { host: Host::connect(stream)?, is_wanted: false })
     }

@@ -86,11 +86,11 @@ type Recorded = (Vec<BoardRow>, Vec<ForceRow>);
 
 fn on_simulator(args: &CalibrateArgs, interrupt: &Interrupt) -> Result<Recorded, CommandError> {
     let (contact, fingertip) = simulated_finger(args.finger_seed)?;
-    let natural = RigConfig::default();
-    let mut config = RigConfig { world: natural.world.natural(), ..natural };
+    let rig = RigConfig::default();
+    let mut config = RigConfig { world: rig.world.realistic(), ..rig };
     config.world.fingertip = fingertip;
     let plan = Plan::new(args, &config.board.limits, config.board.tick_hz)?;
-    let stroke = Stroke::from_csv(&plan.protocol.stroke_csv()).map_err(CommandError::NaturalStroke)?;
+    let stroke = Stroke::from_csv(&plan.protocol.stroke_csv()).map_err(CommandError::GeneratedStroke)?;
     let mut memory = BoardMemory::new();
     let mut rig = Rig::new(&mut memory, &config, stroke, args.seed)?;
     rig.world_mut().set_own_finger(contact);
@@ -126,7 +126,7 @@ fn simulated_finger(seed: Option<u64>) -> Result<(LoadedContact<f64>, FingertipC
     };
     let contact = Contact::new(&finger, coating_gap_m + 1e-6 * example.skin_gap_um);
     let contact = contact.and_then(|contact| contact.under_load(example.normal_load_n));
-    Ok((contact.map_err(CommandError::Finger)?, FingertipConfig::NATURAL))
+    Ok((contact.map_err(CommandError::Finger)?, FingertipConfig::REALISTIC))
 }
 
 fn on_port(args: &CalibrateArgs, interrupt: &Interrupt) -> Result<Recorded, CommandError> {

@@ -63,7 +63,7 @@ pub(crate) enum CommandError {
     #[error("{}: {source}", path.display())]
     Stroke { path: PathBuf, source: StrokeError },
     #[error("no stroke can be generated for this scene's screen: {0}")]
-    NaturalStroke(StrokeError),
+    GeneratedStroke(StrokeError),
     #[error("--from and --to: {0}; give two places that differ")]
     StraightStroke(StrokeError),
     #[error("--from and --to are the same place: give two places that differ")]

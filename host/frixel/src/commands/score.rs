@@ -19,9 +19,9 @@ pub(super) struct ScoreArgs {
     scene: PathBuf,
     #[command(flatten)]
     profiles: ProfileArgs,
-    /// Where the finger goes: `human` for randomly generated people, `natural` for even strokes, or a CSV file with the
-    /// columns `t_s,x_mm,y_mm`.
-    #[arg(long, default_value = "human", value_name = "human|natural|FILE.csv")]
+    /// Where the finger goes: `human` for randomly generated people, `sweep` for an even sweep over the screen, or a CSV
+    /// file with the columns `t_s,x_mm,y_mm`.
+    #[arg(long, default_value = "human", value_name = "human|sweep|FILE.csv")]
     stroke: String,
     /// Play under the fingers of so many people, drawn from an assumed population, whom the board does not know; each
     /// makes strokes of their own. Without it, the finger is the scene's.
@@ -111,7 +111,7 @@ pub(super) fn run(args: &ScoreArgs) -> Result<(), CommandError> {
 fn rig(args: &ScoreArgs) -> RigConfig {
     let mut rig = RigConfig::default();
     if !args.ideal {
-        rig.world = rig.world.natural();
+        rig.world = rig.world.realistic();
     }
     (rig.world.touch.rate_hz, rig.world.touch.latency_s) = args.touch.rate_and_latency();
     // The board's limit for the time between two reports stays that of the slowest class, 10 ms: a fast source that
@@ -135,9 +135,10 @@ fn trials(args: &ScoreArgs, program: &Program, finger: Option<TrialFinger>) -> R
         "human" => (first_stroke..first_stroke + args.strokes)
             .map(|seed| human(args, screen_m, seed))
             .collect::<Result<_, _>>()?,
-        "natural" => {
-            let stroke = Stroke::natural(screen_m.0, screen_m.1, args.seconds).map_err(CommandError::NaturalStroke)?;
-            vec![("natural".to_owned(), stroke)]
+        // The name that it had before.
+        "sweep" | "natural" => {
+            let stroke = Stroke::sweep(screen_m.0, screen_m.1, args.seconds).map_err(CommandError::GeneratedStroke)?;
+            vec![("sweep".to_owned(), stroke)]
         }
         file => vec![("file".to_owned(), stroke::from_file(Path::new(file))?)],
     };
@@ -155,7 +156,7 @@ fn trials(args: &ScoreArgs, program: &Program, finger: Option<TrialFinger>) -> R
 fn human(args: &ScoreArgs, (width_m, height_m): (f64, f64), seed: u64) -> Result<(String, Stroke), CommandError> {
     let median_speed_m_per_s = args.median_speed_mm_per_s.map(|speed_mm_per_s| 1e-3 * speed_mm_per_s);
     let stroke = Stroke::human(width_m, height_m, args.seconds, median_speed_m_per_s, seed);
-    Ok((format!("human {seed}"), stroke.map_err(CommandError::NaturalStroke)?))
+    Ok((format!("human {seed}"), stroke.map_err(CommandError::GeneratedStroke)?))
 }
 
 /// Parses the median speed of a stroke.

@@ -30,9 +30,9 @@ pub(super) fn run(args: &SimArgs) -> Result<(), CommandError> {
     let interrupt = Interrupt::watch()?;
     let stroke = match args.stroke.stroke([SCREEN_WIDTH_M, SCREEN_HEIGHT_M], None, args.seed)? {
         Some(stroke) => stroke,
-        None => Stroke::natural(SCREEN_WIDTH_M, SCREEN_HEIGHT_M, STROKE_S).map_err(CommandError::NaturalStroke)?,
+        None => Stroke::sweep(SCREEN_WIDTH_M, SCREEN_HEIGHT_M, STROKE_S).map_err(CommandError::GeneratedStroke)?,
     };
-    let stroke = stroke.looped(PAUSE_S).map_err(CommandError::NaturalStroke)?;
+    let stroke = stroke.looped(PAUSE_S).map_err(CommandError::GeneratedStroke)?;
     let mut config = RigConfig::default();
     let own_finger = own_finger(args, &mut config)?;
     let mut memory = BoardMemory::new();
@@ -54,7 +54,7 @@ pub(super) fn run(args: &SimArgs) -> Result<(), CommandError> {
 /// one.
 fn own_finger(args: &SimArgs, config: &mut RigConfig) -> Result<Option<LoadedContact<f64>>, CommandError> {
     if !args.ideal {
-        config.world = config.world.natural();
+        config.world = config.world.realistic();
     }
     if let Some(seed) = args.finger_seed {
         let person = Person::drawn(seed);

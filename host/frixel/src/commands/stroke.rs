@@ -57,9 +57,9 @@ pub(super) struct StrokeArgs {
     /// How many times the finger goes along a straight stroke, back and forth. Default: 1.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000), requires = "from")]
     times: Option<u32>,
-    /// Start and end a straight stroke at rest, as a hand does (minimum jerk), rather than at constant speed.
-    #[arg(long, requires = "from")]
-    natural: bool,
+    /// Start and end a straight stroke at rest, as a hand does, rather than at constant speed.
+    #[arg(long, alias = "natural", requires = "from")]
+    minimum_jerk: bool,
 }
 
 impl StrokeArgs {
@@ -81,7 +81,7 @@ impl StrokeArgs {
                 let [width_m, height_m] = screen_m;
                 let seconds = seconds.unwrap_or(HUMAN_S).min(HUMAN_MAX_S);
                 let stroke = Stroke::human(width_m, height_m, seconds, None, seed);
-                stroke.map(Some).map_err(CommandError::NaturalStroke)
+                stroke.map(Some).map_err(CommandError::GeneratedStroke)
             }
             (Some(path), ..) => from_file(path).map(Some),
             (None, Some(from), Some(to)) => self.straight(from, to).map(Some),
@@ -105,8 +105,9 @@ impl StrokeArgs {
         if seconds > STROKE_MAX_S {
             return Err(CommandError::StrokeTooLong { name: self.name(), seconds });
         }
-        let once = if self.natural { Stroke::minimum_jerk(from, to, once_s).map_err(straight_error)? } else { once };
-        if times == 1 { Ok(once) } else { back_and_forth(&once, times, self.natural).map_err(straight_error) }
+        let once =
+            if self.minimum_jerk { Stroke::minimum_jerk(from, to, once_s).map_err(straight_error)? } else { once };
+        if times == 1 { Ok(once) } else { back_and_forth(&once, times, self.minimum_jerk).map_err(straight_error) }
     }
 }
 

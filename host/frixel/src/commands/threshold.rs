@@ -90,7 +90,7 @@ pub(super) fn run(args: &ThresholdArgs) -> Result<(), CommandError> {
         let protocol = protocol(args, &config.board.limits)?;
         let stroke = Stroke::from_csv(&protocol.stroke_csv()).and_then(|stroke| stroke.looped(0.0));
         let mut memory = BoardMemory::new();
-        let rig = Rig::new(&mut memory, &config, stroke.map_err(CommandError::NaturalStroke)?, args.seed)?;
+        let rig = Rig::new(&mut memory, &config, stroke.map_err(CommandError::GeneratedStroke)?, args.seed)?;
         session(args, &interrupt, Device::connect(SimLink::new(rig, Recorder::idle()))?, protocol)?
     } else {
         let device = experiment::connect(port, args.arm)?;

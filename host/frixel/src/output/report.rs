@@ -17,7 +17,7 @@ pub struct Report {
     pub draft: bool,
     /// Why a board refuses it, a sentence each with line and column in the scene's file.
     pub board_refuses: Vec<String>,
-    /// The simulated world, `natural` or `ideal`.
+    /// The simulated world, `realistic` or `ideal`.
     pub world: Option<&'static str>,
     /// Seed of the simulated person whose finger the board does not know.
     pub finger_seed: Option<u64>,
@@ -87,14 +87,14 @@ pub struct WorldReport {
 impl WorldReport {
     /// The name of the world, for programs.
     fn name(&self) -> &'static str {
-        if self.is_ideal { IDEAL } else { NATURAL }
+        if self.is_ideal { IDEAL } else { REALISTIC }
     }
 }
 
 const IDEAL: &str = "ideal";
-const NATURAL: &str = "natural";
+const REALISTIC: &str = "realistic";
 const IDEAL_WORLD: &str = "no load changes, noise, pre-sliding, leakage, offsets or lost touch reports";
-const NATURAL_WORLD: &str =
+const REALISTIC_WORLD: &str =
     "with load changes, noise, pre-sliding, leakage, offsets and lost touch reports; --ideal switches them off";
 
 impl Report {
@@ -194,7 +194,7 @@ impl Report {
             line("draft", draft_line(self.board_refuses.len()));
         }
         if let Some(world) = self.world {
-            let what = if world == IDEAL { IDEAL_WORLD } else { NATURAL_WORLD };
+            let what = if world == IDEAL { IDEAL_WORLD } else { REALISTIC_WORLD };
             line("world", format!("{world}: {what}"));
         }
         if let Some(seed) = self.finger_seed {
@@ -204,7 +204,7 @@ impl Report {
         let range = |least: f64, most: f64| format!("{:.2} to {:.2} mN{suffix}", 1e3 * least, 1e3 * most);
         line("reachable", range(self.reachable_min_n, self.reachable_max_n));
         if let Some((least, most)) = self.wanted_min_n.zip(self.wanted_max_n) {
-            let turns = if self.world == Some(NATURAL) { "; not where the finger lands or turns" } else { "" };
+            let turns = if self.world == Some(REALISTIC) { "; not where the finger lands or turns" } else { "" };
             line("reference", format!("{}{turns}", range(least, most)));
         }
         let electric_n = self.reachable_max_n - self.reachable_min_n;

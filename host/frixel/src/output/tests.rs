@@ -319,6 +319,14 @@ fn a_signal_too_fast_to_draw_is_drawn_as_its_envelope() {
 }
 
 #[test]
+fn every_flag_of_the_rows_is_documented() {
+    let page = include_str!("../../../../docs/outputs.md");
+    for name in Flags(u16::MAX).names() {
+        assert!(page.contains(&format!("\n| `{name}` | ")), "docs/outputs.md says nothing about the flag {name}");
+    }
+}
+
+#[test]
 fn a_voltage_that_is_off_has_its_reason() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("felt.svg");

@@ -1,14 +1,14 @@
 //! `frixel calibrate` and `frixel threshold` on the port of a virtual board, whose pace is that of the wall clock.
 
 use std::fs;
-use std::io::Write;
+use std::io::{Read, Write};
 use std::path::Path;
-use std::process::Stdio;
-use std::thread::sleep;
+use std::process::{Output, Stdio};
+use std::thread::{self, sleep};
 use std::time::Duration;
 
 use frixel_hil_sim::Person;
-use frixel_scene::FingerProfile;
+use frixel_scene::{Evidence, FingerProfile};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -16,7 +16,7 @@ use super::ports::{TRIES_MAX, VirtualBoard, was_too_late};
 use super::{command, frixel, succeed};
 
 /// Strokes at a speed at which friction follows the drive.
-const STROKES: [&str; 7] = ["--from", "25,40", "--to", "95,40", "--speed", "44", "--natural"];
+const STROKES: [&str; 7] = ["--from", "25,40", "--to", "95,40", "--speed", "44", "--minimum-jerk"];
 /// The fewest strokes that can be fitted, which take 14 s.
 const FEW: [&str; 2] = ["--strokes", "8"];
 
@@ -40,15 +40,38 @@ fn fail(folder: &Path, arguments: &[&str]) -> String {
 
 /// Calibrates until the machine lets the recording be whole: on a busy one, samples of the drive come too late, and the
 /// virtual board's time falls behind that of the client.
-fn calibrate(folder: &Path, arguments: &[&str]) {
+fn calibrate(folder: &Path, arguments: &[&str], run: fn(&Path, &[&str]) -> Output) {
     let said = (0..TRIES_MAX).find_map(|_| {
-        let output = frixel(folder, &[&["calibrate", "-o", "data.csv"], &FEW[..], arguments].concat());
+        let output = run(folder, &[&["calibrate", "-o", "data.csv"], &FEW[..], arguments].concat());
         let notes = String::from_utf8(output.stderr).unwrap();
         assert!(output.status.success() || was_too_late(&notes) || notes.contains("the forces last"), "{notes}");
         (output.status.success() && !notes.contains("ran out of samples")).then_some(output.stdout)
     });
     let said = String::from_utf8(said.unwrap()).unwrap();
     assert!(said.contains("8 strokes") && said.contains("frixel fit data.csv -o finger.toml"), "{said}");
+}
+
+/// Runs a command whose standard input is what the virtual board's sensor measures meanwhile.
+fn with_forces_on_stdin(folder: &Path, arguments: &[&str]) -> Output {
+    let mut forces = fs::File::open(folder.join("board/forces.csv")).unwrap();
+    let mut command = command(folder, arguments);
+    let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut input = child.stdin.take().unwrap();
+    let writer = thread::spawn(move || {
+        let mut lines = Vec::new();
+        for _ in 0..100 * NAPS_MAX {
+            forces.read_to_end(&mut lines).unwrap();
+            let whole = lines.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
+            // The command reads no more when it has ended.
+            if input.write_all(&lines.drain(..whole).collect::<Vec<u8>>()).is_err() {
+                return;
+            }
+            sleep(Duration::from_millis(5));
+        }
+    });
+    let output = child.wait_with_output().unwrap();
+    writer.join().unwrap();
+    output
 }
 
 /// The fitted number, and its interval.
@@ -63,7 +86,7 @@ fn fitted(folder: &Path, key: &str, interval: &str) -> (f64, [f64; 2]) {
 fn a_person_at_a_port_is_calibrated_with_the_forces_of_a_sensor() {
     let folder = TempDir::new().unwrap();
     let board = VirtualBoard::start(folder.path(), &[&STROKES[..], &["--finger-seed", "5"]].concat());
-    calibrate(folder.path(), &["--port", &board.port, "--forces", "board/forces.csv"]);
+    calibrate(folder.path(), &["--port", &board.port, "--forces", "board/forces.csv"], frixel);
     drop(board);
     let person = Person::drawn(5);
     let contact = person.contact(1e-6 / 3.9).unwrap();
@@ -76,6 +99,20 @@ fn a_person_at_a_port_is_calibrated_with_the_forces_of_a_sensor() {
     assert!(low < share && share < high, "{share} is outside of {low} to {high}");
     let (coefficient, _) = fitted(folder.path(), "friction_coefficient", "friction_coefficient_interval");
     assert!((coefficient / person.finger.friction_coefficient - 1.0).abs() < 0.05, "{coefficient}");
+}
+
+/// The same, while the sensor's rows come on standard input.
+#[test]
+fn forces_are_read_from_standard_input_while_the_board_plays() {
+    let folder = TempDir::new().unwrap();
+    let board = VirtualBoard::start(folder.path(), &[&STROKES[..], &["--finger-seed", "5"]].concat());
+    calibrate(folder.path(), &["--port", &board.port, "--forces", "-"], with_forces_on_stdin);
+    drop(board);
+    let data = fs::read_to_string(folder.path().join("data.csv")).unwrap();
+    assert!(data.lines().count() > 8_000, "{} rows", data.lines().count());
+    let (coefficient, _) = fitted(folder.path(), "friction_coefficient", "friction_coefficient_interval");
+    let drawn = Person::drawn(5).finger.friction_coefficient;
+    assert!((coefficient / drawn - 1.0).abs() < 0.05, "{coefficient}, not {drawn}");
 }
 
 #[test]
@@ -176,4 +213,42 @@ fn a_threshold_is_asked_for_at_a_port() {
     let driven =
         rows.lines().skip(1).filter(|row| row.split(',').nth(7).unwrap().parse::<f64>().unwrap() > 1.0).count();
     assert!((1_000..5_000).contains(&driven), "{driven} rows of a millisecond");
+}
+
+/// A person who always says 1 is right in half of the trials, which is what not feeling anything gives.
+#[test]
+fn a_threshold_is_found_at_a_port() {
+    let folder = TempDir::new().unwrap();
+    let board = VirtualBoard::start(folder.path(), &STROKES);
+    let threshold = ["threshold", "--trials", "12", "-o", "person.toml", "--port", &board.port];
+    let said = (0..TRIES_MAX).find_map(|_| {
+        let mut command = command(folder.path(), &threshold);
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().unwrap();
+        // A command that has ended already reads no answers.
+        let _ = child.stdin.take().unwrap().write_all("1\n".repeat(12).as_bytes());
+        let output = child.wait_with_output().unwrap();
+        let notes = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success() || was_too_late(&notes), "{notes}");
+        output.status.success().then_some(output.stdout)
+    });
+    let said = String::from_utf8(said.unwrap()).unwrap();
+    assert!(said.contains("trial 12 of 12: ") && !said.contains("trial 13"), "{said}");
+    for line in ["  threshold        ", "  highest          150 V rms is ", "  wrote            person.toml"] {
+        assert!(said.contains(line), "{line}: {said}");
+    }
+    let text = fs::read_to_string(folder.path().join("person.toml")).unwrap();
+    let profile = FingerProfile::parse(&text, "person.toml").unwrap();
+    let Evidence::Perceptual { threshold_v_rms, threshold_interval_v_rms: [low, high], experiment } = profile.evidence
+    else {
+        panic!("{text}");
+    };
+    assert!(low < threshold_v_rms && threshold_v_rms < high && high <= 150.0, "{text}");
+    // Of the threshold that was expected before the first answer, by a person who feels something: 15 dB below 150 V.
+    assert!(threshold_v_rms > 60.0, "{threshold_v_rms} V");
+    assert!(experiment.method.contains("12 trials"), "{text}");
+    let rows = fs::read_to_string(folder.path().join("board/felt.csv")).unwrap();
+    let driven = |row: &&str| row.split(',').nth(7).unwrap().parse::<f64>().is_ok_and(|volts| volts > 1.0);
+    let driven = rows.lines().skip(1).filter(driven).count();
+    assert!(driven > 12 * 1_000, "{driven} rows of a millisecond");
 }

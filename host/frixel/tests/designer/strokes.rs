@@ -33,11 +33,15 @@ fn a_straight_stroke_goes_back_and_forth_at_its_speed() {
         assert!((number(&thrice, row, 1) - x_mm).abs() < 0.01, "row {row}: {}", number(&thrice, row, 1));
     }
 
-    succeed(folder.path(), &[&from[..], &["--times", "2", "--natural"]].concat());
-    let natural = rows(&folder);
-    assert_eq!(natural.len(), 800);
+    succeed(folder.path(), &[&from[..], &["--times", "2", "--minimum-jerk"]].concat());
+    let curved = rows(&folder);
+    assert_eq!(curved.len(), 800);
     // A stroke of minimum jerk begins at rest, and is 1.875 times as fast as on average in its middle.
-    assert!(number(&natural, 2, 3) < 10.0 && (number(&natural, 599, 3) - 375.0).abs() < 1.0);
+    assert!(number(&curved, 2, 3) < 10.0 && (number(&curved, 599, 3) - 375.0).abs() < 1.0);
+
+    // The name that the option had before.
+    succeed(folder.path(), &[&from[..], &["--times", "2", "--natural"]].concat());
+    assert_eq!(rows(&folder), curved);
 }
 
 #[test]

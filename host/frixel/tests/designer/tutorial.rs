@@ -52,8 +52,9 @@ impl Reader {
         let (line, input) = line.split_once('<').map_or((line, None), |(line, file)| (line, Some(file.trim())));
         let line = line.trim().strip_prefix("frixel ").unwrap_or_else(|| panic!("{line}"));
         self.commands += 1;
-        if line == "sim" {
-            self.board = Some(VirtualBoard::start(self.path(), &[]));
+        if let Some(arguments) = line.strip_prefix("sim") {
+            let arguments: Vec<&str> = arguments.split_whitespace().collect();
+            self.board = Some(VirtualBoard::start(self.path(), &arguments));
             return;
         }
         let port = self.board.as_ref().map_or(PORT, |board| &board.port);

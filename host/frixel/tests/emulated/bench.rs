@@ -38,7 +38,7 @@ impl Bench {
             full_scale_v_peak: f64::from(BOARD.limits.full_scale_v_peak),
             ..WorldConfig::default()
         };
-        let stroke = Stroke::natural(0.12, 0.08, 600.0).unwrap();
+        let stroke = Stroke::sweep(0.12, 0.08, 600.0).unwrap();
         let world = World::new(config, stroke, 1).unwrap();
         let records = Arc::new(Mutex::new(Vec::new()));
         let seen = Arc::clone(&records);

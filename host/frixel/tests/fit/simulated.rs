@@ -17,8 +17,8 @@ const TICKS_PER_ROW: u32 = 8;
 const FULL_SCALE_V_PEAK: f64 = 200.0;
 
 fn config(fingertip: FingertipConfig) -> WorldConfig {
-    let natural = WorldConfig::IDEAL.natural();
-    WorldConfig { tick_hz: TICK_HZ, full_scale_v_peak: FULL_SCALE_V_PEAK, fingertip, ..natural }
+    let realistic = WorldConfig::IDEAL.realistic();
+    WorldConfig { tick_hz: TICK_HZ, full_scale_v_peak: FULL_SCALE_V_PEAK, fingertip, ..realistic }
 }
 
 fn drive(tick: u32, voltage_v_rms: f64) -> Drive {

@@ -100,7 +100,7 @@ impl Plan {
         let given = args.stroke.stroke([width_m, height_m], args.seconds.or(stream_s), args.seed)?;
         let stroke = match &given {
             Some(stroke) => stroke.clone(),
-            None => default_stroke(&self.program, args.seconds.or(stream_s)).map_err(CommandError::NaturalStroke)?,
+            None => default_stroke(&self.program, args.seconds.or(stream_s)).map_err(CommandError::GeneratedStroke)?,
         };
         let seconds = args.seconds.or(stream_s).unwrap_or(stroke.duration_s());
         check_seconds(seconds, self.tick_hz)?;
@@ -109,7 +109,7 @@ impl Plan {
         }
         self.seconds = Some(seconds);
         if args.seconds.is_none() && stroke.duration_s() < seconds {
-            return stroke.looped(PAUSE_S).map_err(CommandError::NaturalStroke);
+            return stroke.looped(PAUSE_S).map_err(CommandError::GeneratedStroke);
         }
         Ok(stroke)
     }

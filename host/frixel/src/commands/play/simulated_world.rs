@@ -40,9 +40,9 @@ impl SimulatedWorld {
         if self.is_ideal {
             return config;
         }
-        let natural = config.natural();
-        let fingertip = self.person.as_ref().map_or(natural.fingertip, |drawn| drawn.person.fingertip);
-        WorldConfig { fingertip, ..natural }
+        let realistic = config.realistic();
+        let fingertip = self.person.as_ref().map_or(realistic.fingertip, |drawn| drawn.person.fingertip);
+        WorldConfig { fingertip, ..realistic }
     }
 
     /// Puts the drawn person's finger into the world, if there is one.

@@ -49,7 +49,7 @@ impl Recording {
             jitter_rms_s: 0.05 / class.rate_hz,
             step_m: 0.0,
             pause_rate_hz: 0.0,
-            ..TouchConfig::NATURAL
+            ..TouchConfig::REALISTIC
         };
         let seconds = SAMPLES as f64 / f64::from(SAMPLE_HZ) + SETTLING_S;
         let stroke = Stroke::human(0.12, 0.08, seconds + 0.5, Some(median_m_per_s), seed)?;

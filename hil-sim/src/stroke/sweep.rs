@@ -17,7 +17,7 @@ const SWEEP_STROKES_MAX: f64 = 10_000.0;
 
 /// Back and forth across the screen, and slowly down and up again.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Natural {
+pub(super) struct Sweep {
     left_m: f64,
     top_m: f64,
     /// Length of a stroke along x.
@@ -30,7 +30,7 @@ pub(super) struct Natural {
     mean_speed_m_per_s: f64,
 }
 
-impl Natural {
+impl Sweep {
     pub(super) fn new(screen_width_m: f64, screen_height_m: f64, duration_s: f64) -> Result<Self, StrokeError> {
         let screen_width_m = above_zero("screen width in m", screen_width_m)?;
         let screen_height_m = above_zero("screen height in m", screen_height_m)?;
