@@ -73,7 +73,7 @@ impl Standstill {
     /// Takes the place at a tick, in m, and returns the ramp from then on.
     pub(crate) fn take(&mut self, place_m: [f32; 2], now_tick: u32, timing: &StandstillTiming) -> StandstillRamp {
         let here = Anchor { place_m, at_tick: now_tick };
-        let anchor = self.anchor.unwrap_or(here);
+        let anchor = self.anchor.get_or_insert(here);
         let gain = self.ramp.gain_at(now_tick);
         let now = StandstillRamp { from_tick: now_tick, gain, slope_per_tick: self.ramp.slope_per_tick };
         let is_still = self.ramp.slope_per_tick < 0.0 && is_past(self.ramp.from_tick, now_tick);
@@ -85,17 +85,19 @@ impl Standstill {
         let is_near = anchor.is_within(near_m, place_m);
         let until_tick = anchor.at_tick.wrapping_add(ticks);
         let is_old = is_past(until_tick, now_tick);
-        self.anchor = Some(if !is_near || is_still && is_old { here } else { anchor });
-        self.ramp = match (is_still, is_near) {
-            (true, true) => now,
-            (true, false) => StandstillRamp { slope_per_tick: timing.slope_per_tick, ..now },
+        if !is_near || (is_still && is_old) {
+            *anchor = here;
+        }
+        self.ramp = if is_still {
+            StandstillRamp { slope_per_tick: if is_near { now.slope_per_tick } else { timing.slope_per_tick }, ..now }
+        } else if gain < 1.0 {
             // Finish the ramp up first: it is shorter than `STILL_AFTER_S`.
-            (false, _) if gain < 1.0 => now,
-            (false, true) => {
-                let from_tick = if is_old { now_tick } else { until_tick };
-                StandstillRamp { from_tick, gain: 1.0, slope_per_tick: -timing.slope_per_tick }
-            }
-            (false, false) => StandstillRamp { from_tick: now_tick, ..StandstillRamp::MOVING },
+            now
+        } else if is_near {
+            let from_tick = if is_old { now_tick } else { until_tick };
+            StandstillRamp { from_tick, gain: 1.0, slope_per_tick: -timing.slope_per_tick }
+        } else {
+            StandstillRamp { from_tick: now_tick, ..StandstillRamp::MOVING }
         };
         self.ramp
     }
