@@ -59,7 +59,7 @@ fn a_finger_at_rest_is_not_driven_unless_its_source_jumps_between_pixels() {
         let shares = driven_shares(touch, resting);
         assert!(shares.iter().all(|share| *share <= 0.0), "{} Hz: {shares:?}", touch.rate_hz);
     }
-    let shares = driven_shares(TouchConfig::NATURAL, resting);
+    let shares = driven_shares(TouchConfig::REALISTIC, resting);
     let mean = shares.iter().sum::<f64>() / shares.len() as f64;
     println!("driven at rest under steps of 0.18 mm: {mean:.3}");
     assert!(mean < 0.25, "steps of 0.18 mm: {shares:?}");
@@ -74,6 +74,6 @@ fn a_slow_slide_is_driven_all_the_time() {
         }
     }
     // A pause of the source is a time without output; 0.94 is the seed with the longest.
-    let shares = driven_shares(TouchConfig::NATURAL, sliding(6e-3));
+    let shares = driven_shares(TouchConfig::REALISTIC, sliding(6e-3));
     assert!(shares.iter().all(|share| *share > 0.93), "{shares:?}");
 }

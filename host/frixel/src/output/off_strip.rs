@@ -16,7 +16,7 @@ const REASONS: [(Flags, &str); 5] = [
     (Flags::HOST_SILENT, "the host is silent"),
     (Flags::TOUCH_STALE, "the touch reports are too old"),
     (Flags::NO_FINGER, "the board knows of no finger: touch reports are late or lost"),
-    (Flags::STILL, "the finger is still, or too slow"),
+    (Flags::STILL, "the finger stands still"),
     (Flags::STREAM_DRY, "the stream has no samples"),
 ];
 

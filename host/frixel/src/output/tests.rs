@@ -341,10 +341,10 @@ fn a_voltage_that_is_off_has_its_reason() {
         fs::read_to_string(&path).expect("the file")
     };
     let still = drawn(Flags::STILL, 0.0);
-    assert!(still.lines().any(|line| line == "output off: the finger is still, or too slow"), "{still}");
+    assert!(still.lines().any(|line| line == "output off: the finger stands still"), "{still}");
     assert!(still.lines().any(|line| line == "output off"), "the strip");
     let lost = drawn(Flags::STILL.with(Flags::TOUCH_STALE), 0.0);
-    assert!(lost.contains("output off: the touch reports are too old") && !lost.contains("the finger is still"));
+    assert!(lost.contains("output off: the touch reports are too old") && !lost.contains("stands still"));
     // A scene without friction, and an output that is on.
     for svg in [drawn(Flags::SATURATED, 0.0), drawn(Flags::STILL, 20.0)] {
         assert!(!svg.contains("output off"));
