@@ -21,9 +21,9 @@ pub fn lines(perception: &Perception) -> Vec<(&'static str, String)> {
     let alike = perception.alike.iter().map(alike);
     let notes = perception.notes.iter().map(|note| ("note", note.clone()));
     let near = is_near_threshold(perception).then(|| ("note", NEAR_THRESHOLD.to_owned()));
-    let lines = |name, texts| grouped(texts).into_iter().map(move |text| (name, text));
-    let felt = lines("feel", layers.collect()).chain(lines("step", borders.collect()));
-    felt.chain(lines("alike", alike.collect())).chain(near).chain(notes).collect()
+    let lines = |name, texts, more| grouped(texts, more).into_iter().map(move |text| (name, text));
+    let felt = lines("feel", layers.collect(), " alike").chain(lines("step", borders.collect(), " alike"));
+    felt.chain(lines("alike", alike.collect(), " such pairs")).chain(near).chain(notes).collect()
 }
 
 impl Subject {
@@ -34,8 +34,9 @@ impl Subject {
     }
 }
 
-/// Joins the subjects that have the same text. Of copies of a layer, only the first one is named.
-fn grouped(texts: Vec<(Subject, String)>) -> Vec<String> {
+/// Joins the subjects that have the same text. Of copies of a layer, only the first one is named, and `more` are
+/// counted.
+fn grouped(texts: Vec<(Subject, String)>, more: &str) -> Vec<String> {
     let mut groups: Vec<(Vec<(Subject, usize)>, String)> = Vec::new();
     for (subject, text) in texts {
         let group = match groups.iter().position(|(_, other)| *other == text) {
@@ -53,7 +54,7 @@ fn grouped(texts: Vec<(Subject, String)>) -> Vec<String> {
     }
     let subject = |(Subject { text, .. }, copies): &(Subject, usize)| match copies {
         0 => text.clone(),
-        copies => format!("{text} and {copies} alike"),
+        copies => format!("{text} and {copies}{more}"),
     };
     let subjects = |subjects: &[(Subject, usize)]| subjects.iter().map(subject).collect::<Vec<String>>().join(", ");
     groups.iter().map(|(group, text)| format!("{}: {text}", subjects(group))).collect()

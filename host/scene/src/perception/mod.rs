@@ -39,8 +39,8 @@ const SAMPLE_HZ: f64 = 2000.0;
 /// A texture of a smaller amplitude is not mentioned, N: a tenth of the smallest threshold.
 const AMPLITUDE_MIN_N: f64 = 2e-5;
 /// Where the 5th and the 95th percentile are nearer to one another than this part of the whole range, the friction is
-/// the same almost everywhere but for a narrow place, such as a ridge.
-const NARROW_PART: f64 = 0.5;
+/// the same almost everywhere but for a narrow place, such as a ridge. Eight waves of noise have about 0.47.
+const NARROW_PART: f64 = 0.3;
 
 /// What a person will feel of a program.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -61,11 +61,13 @@ pub struct LayerPerception {
     /// The layer's title.
     pub layer: String,
     /// From the 5th to the 95th percentile of the friction along a slide over the layer: of ten slides, five along each
-    /// side, that with the largest contrast. From the least to the largest friction if [`Self::is_narrow`].
+    /// side, that with the largest contrast. From the least to the largest friction if the layer is an edge, or if
+    /// [`Self::is_narrow`].
     pub contrast: Step,
     /// Whether the friction is the same almost everywhere in the layer, but for a narrow place that makes the contrast.
     pub is_narrow: bool,
-    /// The most noticeable texture at 20, 50 and 100 mm/s; absent where there is none.
+    /// The most noticeable texture at 20, 50 and 100 mm/s; absent where there is none, and for an edge, which is a
+    /// single ridge.
     pub textures: Vec<Texture>,
     /// The bursts during which contrast and textures hold; absent if they hold all the time.
     pub burst: Option<BurstTimes>,
@@ -210,13 +212,16 @@ impl JudgedLayer {
             slides.iter().map(|slide| slide.friction_n(reference, lasting, speed_m_per_s, SAMPLE_HZ)).collect()
         });
         let [_, usual_n, _] = &slides_n;
-        let contrasts = usual_n.iter().filter_map(|friction_n| contrast_within(friction_n));
+        let is_edge = matches!(program.records.get(layer)?.layer, Layer::Edge(_));
+        let contrasts = usual_n.iter().filter_map(|friction_n| contrast_within(friction_n, is_edge));
         let (contrast, is_narrow) =
             contrasts.max_by(|(one, _), (other, _)| one.contrast_n.total_cmp(&other.contrast_n))?;
-        let textures = SPEEDS_M_PER_S.into_iter().zip(&slides_n).filter_map(|(speed_m_per_s, frictions_n)| {
-            let textures = frictions_n.iter().filter_map(|friction_n| Texture::of(friction_n, speed_m_per_s));
-            textures.max_by(|one, other| one.salience().total_cmp(&other.salience()))
-        });
+        let textures = SPEEDS_M_PER_S.into_iter().zip(&slides_n).filter(|_| !is_edge).filter_map(
+            |(speed_m_per_s, frictions_n)| {
+                let textures = frictions_n.iter().filter_map(|friction_n| Texture::of(friction_n, speed_m_per_s));
+                textures.max_by(|one, other| one.salience().total_cmp(&other.salience()))
+            },
+        );
         let visible = slides.iter().fold(0, |visible, slide| visible | slide.visible_layers(reference.pieces()));
         let click = ClickStep::of(layer, &slides, lasting, USUAL_M_PER_S);
         let perception = LayerPerception {
@@ -233,10 +238,11 @@ impl JudgedLayer {
 }
 
 /// The contrast along a slide, and whether only a narrow place makes it; `None` without any friction.
-fn contrast_within(friction_n: &[f64]) -> Option<(Step, bool)> {
+fn contrast_within(friction_n: &[f64], is_edge: bool) -> Option<(Step, bool)> {
     let [least_n, low_n, high_n, most_n] = percentiles(friction_n.to_vec(), [0, 5, 95, 100])?;
     let is_narrow = high_n - low_n < NARROW_PART * (most_n - least_n);
-    Some((if is_narrow { Step::new(least_n, most_n) } else { Step::new(low_n, high_n) }, is_narrow))
+    let is_whole = is_edge || is_narrow;
+    Some((if is_whole { Step::new(least_n, most_n) } else { Step::new(low_n, high_n) }, is_narrow))
 }
 
 /// The bursts of the topmost of these layers that has any.

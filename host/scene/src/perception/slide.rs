@@ -15,6 +15,8 @@ const SAMPLES_MAX: usize = 16_384;
 pub(super) struct Slide {
     from_m: (f64, f64),
     to_m: (f64, f64),
+    /// From one place at which the layers are determined to the next.
+    place_step_m: (f64, f64),
 }
 
 impl Slide {
@@ -27,11 +29,15 @@ impl Slide {
         let slides = (0..ROWS).flat_map(|number| {
             let part = (number as f64 + 0.5) / ROWS as f64;
             let (x_m, y_m) = (from_x_m + part * (to_x_m - from_x_m), from_y_m + part * (to_y_m - from_y_m));
-            let row = Self { from_m: (from_x_m, y_m), to_m: (to_x_m, y_m) };
-            let column = Self { from_m: (x_m, from_y_m), to_m: (x_m, to_y_m) };
-            [row, column]
+            [((from_x_m, y_m), (to_x_m, y_m)), ((x_m, from_y_m), (x_m, to_y_m))]
+                .map(|(from_m, to_m)| Self::new(from_m, to_m))
         });
         slides.filter_map(|slide| slide.longest_visible(layer, pieces)).collect()
+    }
+
+    fn new(from_m: (f64, f64), to_m: (f64, f64)) -> Self {
+        let place_step_m = ((to_m.0 - from_m.0) / PLACES as f64, (to_m.1 - from_m.1) / PLACES as f64);
+        Self { from_m, to_m, place_step_m }
     }
 
     fn length_m(&self) -> f64 {
@@ -44,7 +50,8 @@ impl Slide {
         (from_x_m + part * (to_x_m - from_x_m), from_y_m + part * (to_y_m - from_y_m))
     }
 
-    /// The longest stretch on which the layer is visible.
+    /// The longest stretch on which the layer is visible, from the first place there to the last one; `None` for less
+    /// than two places.
     fn longest_visible(&self, layer: usize, pieces: &[Piece]) -> Option<Self> {
         let part = |number: usize| number as f64 / PLACES as f64;
         let (mut longest, mut run) = (0..0, 0..0);
@@ -59,7 +66,8 @@ impl Slide {
                 run = number + 1..number + 1;
             }
         }
-        (!longest.is_empty()).then(|| Self { from_m: self.at(part(longest.start)), to_m: self.at(part(longest.end)) })
+        let (first, last) = (part(longest.start) + 0.5 / PLACES as f64, part(longest.end) - 0.5 / PLACES as f64);
+        (longest.len() > 1).then(|| Self { from_m: self.at(first), to_m: self.at(last), ..*self })
     }
 
     /// The layers that have an effect somewhere on the way, a bit each.
@@ -68,10 +76,10 @@ impl Slide {
         places.fold(0, |visible, (x_m, y_m)| visible | visible_layers(pieces, x_m, y_m))
     }
 
-    /// The same way, begun earlier by the distance of two places at which layers are determined: outside of a layer that
-    /// begins where the way does.
+    /// The same way, begun two places earlier: outside of a layer that begins where the way does.
     pub(super) fn begun_outside(&self) -> Self {
-        Self { from_m: self.at(-2.0 / PLACES as f64), to_m: self.to_m }
+        let ((x_m, y_m), (x_step_m, y_step_m)) = (self.from_m, self.place_step_m);
+        Self { from_m: (x_m - 2.0 * x_step_m, y_m - 2.0 * y_step_m), ..*self }
     }
 
     /// Total friction along the way at a constant speed, in newtons, clamped to what the drive can give.

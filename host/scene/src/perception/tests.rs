@@ -140,8 +140,20 @@ fn a_lone_edge_is_felt_where_it_is() {
     let perception = on_example("[[layer]]\nkind = \"edge\"\nx_mm = 60\ny_mm = 40\nwidth_mm = 3\nridge_n = 0.02\n");
     let layer = only(&perception);
     assert!(layer.is_narrow && (layer.contrast.contrast_n - 0.02).abs() < 1e-5, "{layer:?}");
-    assert!(feel::sentence(layer).contains("250.0 to 270.0 mN, 0.7 Weber steps (not felt) at a narrow place in it"));
+    assert_eq!(feel::sentence(layer), "250.0 to 270.0 mN, 0.7 Weber steps (not felt) at a narrow place in it");
     assert!(!only(&of(&grating(2.0, 20.0))).is_narrow);
+}
+
+/// A slide over a layer ends where another layer replaces it.
+#[test]
+fn a_layer_around_others_is_the_same_throughout() {
+    let around = "[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.9\n";
+    let hole = "[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.1\n\
+                region = { shape = \"ellipse\", x_mm = 33, y_mm = 17, width_mm = 52, height_mm = 31 }\n";
+    let perception = on_example(&format!("{around}{hole}"));
+    for layer in &perception.layers {
+        assert!(!layer.is_narrow && layer.contrast.contrast_n.abs() < 1e-9, "{layer:?}");
+    }
 }
 
 /// The ridge falls off before the border of the layer: a finger feels no step there.
