@@ -50,8 +50,8 @@ impl Slide {
         (from_x_m + part * (to_x_m - from_x_m), from_y_m + part * (to_y_m - from_y_m))
     }
 
-    /// The longest stretch on which the layer is visible, from the first place there to the last one; `None` for less
-    /// than two places.
+    /// The longest stretch on which the layer is visible, from the first place there to the last one, or to
+    /// the end of the row; `None` for less than two places.
     fn longest_visible(&self, layer: usize, pieces: &[Piece]) -> Option<Self> {
         let part = |number: usize| number as f64 / PLACES as f64;
         let (mut longest, mut run) = (0..0, 0..0);
@@ -66,7 +66,10 @@ impl Slide {
                 run = number + 1..number + 1;
             }
         }
-        let (first, last) = (part(longest.start) + 0.5 / PLACES as f64, part(longest.end) - 0.5 / PLACES as f64);
+        // Where the row ends, the layer does, too; elsewhere it ends somewhere between two places.
+        let half = 0.5 / PLACES as f64;
+        let first = if longest.start == 0 { 0.0 } else { part(longest.start) + half };
+        let last = if longest.end == PLACES { 1.0 } else { part(longest.end) - half };
         (longest.len() > 1).then(|| Self { from_m: self.at(first), to_m: self.at(last), ..*self })
     }
 
