@@ -39,13 +39,10 @@ impl Subject {
 fn grouped(texts: Vec<(Subject, String)>, more: &str) -> Vec<String> {
     let mut groups: Vec<(Vec<(Subject, usize)>, String)> = Vec::new();
     for (subject, text) in texts {
-        let group = match groups.iter().position(|(_, other)| *other == text) {
-            Some(group) => group,
-            None => {
-                groups.push((Vec::new(), text));
-                groups.len() - 1
-            }
-        };
+        let group = groups.iter().position(|(_, other)| *other == text).unwrap_or(groups.len());
+        if group == groups.len() {
+            groups.push((Vec::new(), text));
+        }
         let Some((subjects, _)) = groups.get_mut(group) else { continue };
         match subjects.iter_mut().find(|(other, _)| other.layers == subject.layers) {
             Some((_, copies)) => *copies += 1,
