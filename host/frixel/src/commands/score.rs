@@ -19,8 +19,8 @@ pub(super) struct ScoreArgs {
     scene: PathBuf,
     #[command(flatten)]
     profiles: ProfileArgs,
-    /// Where the finger goes: `human` for randomly generated people, `sweep` for an even sweep over the screen, or a CSV
-    /// file with the columns `t_s,x_mm,y_mm`.
+    /// Where the finger goes: `human` for randomly generated people, `sweep` for an even sweep over the screen, or a
+    /// CSV file with the columns `t_s,x_mm,y_mm`.
     #[arg(long, default_value = "human", value_name = "human|sweep|FILE.csv")]
     stroke: String,
     /// Play under the fingers of so many people, drawn from an assumed population, whom the board does not know; each

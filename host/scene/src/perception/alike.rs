@@ -26,8 +26,8 @@ pub struct AlikeLayers {
     pub difference_weber_steps: Option<f64>,
 }
 
-/// Pairs of layers that a person cannot tell apart. Layers of the same parameters are meant to feel the same, and layers
-/// that act at the same place are not felt one by one.
+/// Pairs of layers that a person cannot tell apart. Layers of the same parameters are meant to feel the same, and
+/// layers that act at the same place are not felt one by one.
 pub(super) fn of(judged: &[JudgedLayer], program: &Program) -> Vec<AlikeLayers> {
     let pairs = judged
         .iter()
