@@ -107,7 +107,10 @@ fn mistakes_are_json_where_that_is_asked_for() {
             (24, 29, "-3000", None),
         ]
     );
-    assert_eq!(mistakes[2]["message"], "layer 2 (constant) has no `friction_n`: add it");
+    assert_eq!(
+        mistakes[2]["message"],
+        "layer 2 (constant) has no `friction_n` or `friction_fraction`: add one of them"
+    );
 
     let missing = check(&files.path("none.toml"));
     assert!(missing["unreadable"].as_str().is_some_and(|reason| !reason.is_empty()), "{missing}");
