@@ -156,9 +156,12 @@ impl Demand<'_> {
     fn asking(&self, clicked: Option<String>) -> String {
         if let [Played { layer, .. }] = &self.layers[..] {
             let gain = layer.places.has("gain").then(|| format!("with its gain of {}", layer.gain));
-            let insertions: String = [gain, clicked].into_iter().flatten().map(|words| format!(", {words}")).collect();
-            let comma = if insertions.is_empty() { "" } else { "," };
-            return format!("{}{insertions}{comma} asks for", layer.title);
+            let insertions: Vec<String> = [gain, clicked].into_iter().flatten().collect();
+            return if insertions.is_empty() {
+                format!("{} asks for", layer.title)
+            } else {
+                format!("{}, {}, asks for", layer.title, insertions.join(", "))
+            };
         }
         let titles: Vec<&str> = self.layers.iter().map(|played| played.layer.title.as_str()).collect();
         let mm = |metres: f64| digits(metres * 1e3, f64::round);

@@ -245,7 +245,7 @@ impl<'i> Fields<'i> {
             .zip(self.values.values().map(|value| value.span().start))
             .map(|((name, offset), value_offset)| Unknown { name, offset, value_offset })
             .collect();
-        misplaced::report(&self.table, self.key, unknown, log)
+        misplaced::report(&self.table, self.key, &unknown, log)
     }
 
     fn described(&self) -> KnownTable {

@@ -55,7 +55,7 @@ static HOMES: LazyLock<Vec<Home>> = LazyLock::new(|| {
 });
 
 /// Reports the fields of a table, the value of `key`, that belong to other tables.
-pub(super) fn report(table: &str, key: &str, unknown: Vec<Unknown>, log: &mut Log) -> Misplaced {
+pub(super) fn report(table: &str, key: &str, unknown: &[Unknown], log: &mut Log) -> Misplaced {
     let mut misplaced = Misplaced { fields: Vec::new(), missing: None };
     // The known fields are themselves found by reading tables.
     if unknown.is_empty() || log.is_describing() {

@@ -47,7 +47,7 @@ impl Repeat {
             let mut moved = layer.clone();
             moved.number.copy = Some(copy);
             moved.is_copy = copy > 1;
-            moved.family = layer.name.clone();
+            moved.family.clone_from(&layer.name);
             moved.name = layer.name.as_ref().map(|name| format!("{name} {copy}"));
             moved.title = title(moved.number, moved.name.as_deref(), kind.word());
             moved.region = moved.region.map(|region| region.moved_by(x_mm, y_mm));

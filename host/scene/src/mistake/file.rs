@@ -186,6 +186,12 @@ fn which_has(nearest: Option<&str>) -> String {
 /// Files that include one another, beginning with the last one.
 fn in_circle(files: &[String]) -> String {
     let Some((last, others)) = files.split_last() else { return String::new() };
-    let ways: String = others.iter().map(|file| format!(" includes {file}, which")).collect();
-    format!("{last}{ways} includes {last} itself")
+    let way: Vec<&str> = std::iter::once(last).chain(others).map(String::as_str).collect();
+    match &way[..] {
+        [only] => format!("{only} includes {only} itself"),
+        [first, rest @ ..] => {
+            format!("{first} includes {}, which includes {last} itself", rest.join(", which includes "))
+        }
+        [] => String::new(),
+    }
 }
