@@ -4,13 +4,14 @@
 //! A line is one of
 //!
 //! - `layer NAME on`, `layer NAME off`, `layer NAME gain X`, or several of these words: changes a layer;
-//! - `trigger NAME [MS]`: switches a layer on, and off again after so many milliseconds, 100 without a number;
+//! - `trigger NAME [MS]`: switches a layer that is off on, and off again after so many milliseconds, 100 without a
+//!   number;
 //! - `replace FILE`: plays another scene, or the same one anew;
 //! - `wait S`: carries the lines behind it out so many seconds later;
 //! - `quit`: ends the play.
 //!
-//! A name is that of the layer in the scene, or its number from 1. A name or file with spaces stands in quotation
-//! marks. Empty lines, and what follows `#`, are ignored.
+//! A name is that of the layer in the scene, or its number as messages have it: `3`, or `3.2` for a copy. What has
+//! spaces stands in quotation marks. Empty lines, and what follows `#`, are ignored.
 
 use thiserror::Error;
 

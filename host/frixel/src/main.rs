@@ -10,7 +10,8 @@ use commands::Cli;
 
 /// Exits with 2 when the command line is invalid, and with 1 when the command fails.
 fn main() -> ExitCode {
-    match Cli::parse().run() {
+    let cli = Cli::try_parse().unwrap_or_else(|error| commands::with_nested_tip(error).exit());
+    match cli.run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             commands::report_error(&error);

@@ -5,7 +5,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use frixel_scene::{CompileError, FileUnavailable, Files, FingerProfile, Scene, Screen};
+use frixel_scene::{CompileError, FileUnavailable, Files, FingerProfile, Nearest, Scene, Screen, TILDE_ADVICE};
 use thiserror::Error;
 
 /// Why a scene file could not be loaded.
@@ -20,14 +20,14 @@ pub enum SceneFileError {
         source: io::Error,
     },
     /// The file of a finger or a screen could not be read.
-    #[error("{file}: this {what} cannot be read ({source}): give its file, or a bundled one: {bundled}")]
+    #[error("{file}: this {what} cannot be read ({source}): {}", profile_advice(.nearest, .file))]
     UnreadableProfile {
         /// `finger` or `screen`.
         what: &'static str,
         /// The name, as the caller gave it.
         file: String,
-        /// The names of the bundled ones.
-        bundled: String,
+        /// The names of the bundled ones, and the nearest one.
+        nearest: Nearest,
         /// Error of the operating system.
         source: io::Error,
     },
@@ -49,9 +49,18 @@ impl SceneFileError {
     }
 }
 
+/// What to do about a profile that cannot be read.
+fn profile_advice(nearest: &Nearest, file: &str) -> String {
+    match &nearest.suggestion {
+        Some(bundled) => format!("did you mean `{bundled}`?"),
+        None if file.starts_with('~') => TILDE_ADVICE.to_owned(),
+        None => format!("give its file, or a bundled one: {}", nearest.known.join(", ")),
+    }
+}
+
 /// What to do about a path that cannot be used: `advice`, unless the path starts with a tilde.
 pub fn check_path<'a>(path: &Path, advice: &'a str) -> &'a str {
-    if path.starts_with("~") { frixel_scene::TILDE_ADVICE } else { advice }
+    if path.starts_with("~") { TILDE_ADVICE } else { advice }
 }
 
 /// Reads a scene file. The names of files in it are paths relative to its folder.
@@ -156,7 +165,7 @@ fn profile<T>(
         Err(source) => Err(SceneFileError::UnreadableProfile {
             what,
             file: name.to_owned(),
-            bundled: bundled_names.collect::<Vec<_>>().join(", "),
+            nearest: Nearest::new(name, bundled_names),
             source,
         }),
     }

@@ -107,7 +107,10 @@ fn mistakes_are_json_where_that_is_asked_for() {
             (24, 29, "-3000", None),
         ]
     );
-    assert_eq!(mistakes[2]["message"], "layer 2 (constant) has no `friction_n`: add it");
+    assert_eq!(
+        mistakes[2]["message"],
+        "layer 2 (constant) has no `friction_n` or `friction_fraction`: add one of them"
+    );
 
     let missing = check(&files.path("none.toml"));
     assert!(missing["unreadable"].as_str().is_some_and(|reason| !reason.is_empty()), "{missing}");
@@ -255,7 +258,7 @@ fn a_scene_above_a_limit_is_refused_with_the_limit() {
     let message = refused(&["scene", "check", &files.scene(bitmap)]);
     assert!(message.contains("need 102400 bytes, and the board has 65536"), "{message}");
     let message = refused(&["scene", "check", &files.scene(&constant("friction_n = 0.26").repeat(65))]);
-    assert!(message.contains("this is layer 65, and the board takes 64"), "{message}");
+    assert!(message.contains("the scene has 65 layers, and the board takes 64"), "{message}");
     let piled = "[[layer]]\nkind = \"noise\"\nblend = \"add\"\nwavelength_min_mm = 1\nwavelength_max_mm = 2\nlow_n = 0\nhigh_n = 0.001\n";
     let message = refused(&["scene", "check", &files.scene(&piled.repeat(4))]);
     assert!(
@@ -321,7 +324,7 @@ fn a_scene_is_checked_under_the_finger_of_an_option() {
     assert!(summary.contains(" V rms), assumed\n"), "{summary}");
     let message = refused(&["scene", "check", &short, "--finger", "moost"]);
     assert!(message.starts_with("frixel: moost: this finger cannot be read ("), "{message}");
-    assert!(message.ends_with("): give its file, or a bundled one: example, dry, moist, light\n"), "{message}");
+    assert!(message.ends_with("): did you mean `moist`?\n"), "{message}");
     let broken = files.write("broken.toml", "friction_coefficient = 42\n");
     let message = refused(&["scene", "check", &short, "--finger", &broken]);
     assert!(message.contains("broken.toml:1:24: `friction_coefficient = 42` is out of range: expected 0.001 to 10"));

@@ -11,23 +11,21 @@ use super::layer::Layer;
 use super::layer_map::LayerMap;
 use super::log::Log;
 use super::lower::Lowering;
-use super::mistake::Mistake;
+use super::mistake::{FieldMistake, FitMistake};
 use super::optimise::optimise;
 use super::played_finger::PlayedFinger;
 use super::pool::Pool;
 use super::program::Program;
-use super::reach::{Reach, ReachError, carrier};
+use super::reach::{Reach, ReachError};
 use super::springs::Springs;
 use super::tick_cost;
+use super::voltage::Voltage;
 use super::warning;
 
 /// Least number of ticks in half a carrier period that a board accepts.
 const HALF_PERIOD_MIN_TICKS: f64 = 4.0;
 /// Carrier frequency below which charge leaks through skin and felt friction falls, Hz (arXiv 2409.18725).
 const LEAKAGE_HZ: f64 = 250.0;
-/// Ratio of the default peak limit to the peak that the rms limit needs. It is above 1, so that rounding never makes
-/// the peak limit the tighter one.
-const PEAK_MARGIN: f64 = 1.001;
 /// Largest effective gap that a board takes, um.
 const EFFECTIVE_GAP_MAX_UM: f64 = 10_000.0;
 const MM: f64 = 1e-3;
@@ -134,7 +132,9 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
     notes.extend(scene.design.and_then(|design| design.note_on(scene.screen())));
     let layers_max = RECORDS_MAX.min(usize::from(limits.records_max));
     if let Some(layer) = scene.layers.get(layers_max) {
-        log.add(layer.places.table(), Mistake::TooManyLayers { number: layers_max + 1, max: layers_max });
+        let has_copies = scene.layers.iter().any(|layer| layer.is_copy);
+        let (count, max) = (scene.layers.len(), layers_max);
+        log.add(layer.places.table(), FitMistake::TooManyLayers { count, has_copies, max });
     }
     let pool = Pool::new(scene, limits.bitmap_pool_bytes);
     let mut lowering = Lowering::new(scene, &header, &reach, tick_hz, pool, log);
@@ -154,17 +154,20 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
         reach,
         half_period_ticks,
         finger,
+        saturates: scene.drive.saturate,
         refusals: Vec::new(),
         warnings: Vec::new(),
         notes,
         optimisations: lowered.optimisations,
     };
     if is_reach_known {
-        let raised_n = raised_reach_n(&program.header, voltage.raised_max_v_rms);
-        excess::check(scene, &layers, raised_n, &mut program, log);
+        let raise = |friction_n| voltage.raised_for(scene, &program.header, friction_n);
+        let notes = excess::check(scene, &layers, &raise, &program, log);
+        program.notes.extend(notes);
     }
     program.warnings = warning::of(scene, &program);
     program.warnings.extend(lowered.warnings);
+    program.warnings.extend(warning::of_layers(&scene.layers));
     let live: Vec<bool> = layers.iter().map(|layer| layer.live).collect();
     optimise(&mut program, &live);
     let Program { header, records, points, .. } = &mut program;
@@ -202,18 +205,12 @@ fn absent_layers(scene: &Scene, played: &[&Layer]) -> Option<String> {
     (!absent.is_empty()).then(|| format!("absent from this draft: {}", absent.join(", ")))
 }
 
-/// The largest electric friction at another largest voltage; 0 if the contact would be wider than the finger.
-fn raised_reach_n(header: &Header, voltage_max_v_rms: f64) -> f64 {
-    let raised = Header { voltage_max_v_rms: voltage_max_v_rms as f32, ..*header };
-    Reach::of(&raised).map_or(0.0, |reach| reach.electric_friction_max_n)
-}
-
 /// Maps layers to records. Only a layer that the host may change is certain to have its own record; others may have
 /// been merged.
 fn layer_map(scene: &Scene, titles: &[String]) -> LayerMap {
     let record = |title: &String| (0..).zip(titles).find_map(|(record, other)| (other == title).then_some(record));
     let records = scene.layers.iter().map(|layer| record(&layer.title).filter(|_| layer.live));
-    LayerMap::new(scene.layers.iter().zip(records).map(|(layer, record)| (layer.name.clone(), record)))
+    LayerMap::new(scene.layers.iter().zip(records))
 }
 
 /// Ticks in half a carrier period, those of the fastest carrier if the scene's is too fast.
@@ -222,7 +219,7 @@ fn half_period_ticks(scene: &Scene, tick_hz: u32, log: &mut Log, notes: &mut Vec
     let ticks = f64::from(tick_hz) / (2.0 * found);
     if ticks < HALF_PERIOD_MIN_TICKS {
         let max = f64::from(tick_hz) / (2.0 * HALF_PERIOD_MIN_TICKS);
-        log.add(scene.carrier.places.field("frequency_hz"), Mistake::CarrierTooFast { found, tick_hz, max });
+        log.add(scene.carrier.places.field("frequency_hz"), FitMistake::CarrierTooFast { found, tick_hz, max });
         return HALF_PERIOD_MIN_TICKS as u32;
     }
     let whole = ticks.round();
@@ -243,7 +240,7 @@ fn effective_gap_um(scene: &Scene, log: &mut Log) -> f64 {
     let found = scene.screen().coating_gap_um() + scene.finger().skin_gap_um;
     if found > EFFECTIVE_GAP_MAX_UM {
         let (field, max) = ("thickness_um / permittivity + skin_gap_um, summed", EFFECTIVE_GAP_MAX_UM);
-        log.add(scene.profiles.place, Mistake::OutOfRange { field, found, min: 0.0, max, unit: " um" });
+        log.add(scene.profiles.place, FieldMistake::OutOfRange { field, found, min: 0.0, max, unit: " um" });
     }
     found.min(EFFECTIVE_GAP_MAX_UM)
 }
@@ -256,13 +253,13 @@ fn reach(scene: &Scene, header: &mut Header, log: &mut Log) -> Option<Reach> {
         Err(error) => error,
     };
     let mistake = match error {
-        ReachError::TooWide { contact_m } => Mistake::ContactWiderThanFinger {
+        ReachError::TooWide { contact_m } => FitMistake::ContactWiderThanFinger {
             voltage_v_rms: f64::from(header.voltage_max_v_rms),
             contact_mm: contact_m / MM,
             radius_mm: scene.finger().radius_mm,
             gap_um: 1e6 * f64::from(header.effective_gap_m),
         },
-        error => Mistake::Model { reason: error.to_string() },
+        error => FitMistake::Model { reason: error.to_string() },
     };
     log.add(scene.profiles.place, mistake);
     let voltages_v_rms = std::iter::successors(Some(header.voltage_max_v_rms), |voltage| Some(NARROWER * voltage));
@@ -270,69 +267,6 @@ fn reach(scene: &Scene, header: &mut Header, log: &mut Log) -> Option<Reach> {
         header.voltage_max_v_rms = voltage_max_v_rms;
         Reach::of(header).ok()
     })
-}
-
-/// The limits of the drive: the least of those of scene, screen and board.
-struct Voltage {
-    max_v_rms: f64,
-    max_v_peak: f64,
-    slew_v_per_us: f64,
-    /// The largest rms voltage if `voltage_max_v_rms` of the scene were raised.
-    raised_max_v_rms: f64,
-}
-
-impl Voltage {
-    fn of(scene: &Scene, limits: &BoardLimits, half_period_s: f64, log: &mut Log, notes: &mut Vec<String>) -> Self {
-        let (drive, screen) = (&scene.drive, scene.screen());
-        let board_v_peak = f64::from(limits.voltage_max_v_peak.min(limits.full_scale_v_peak));
-        if let Some(found) = drive.voltage_max_v_peak.filter(|found| *found > board_v_peak) {
-            log.add(drive.places.field("voltage_max_v_peak"), Mistake::PeakAboveBoard { found, board: board_v_peak });
-        }
-        let peak_per_rms = f64::from(carrier(scene.carrier.waveform, half_period_s, limits).peak_per_rms());
-        let wanted_v_rms = screen.voltage_max_v_rms.unwrap_or(f64::INFINITY).min(drive.voltage_max_v_rms);
-        if wanted_v_rms < drive.voltage_max_v_rms {
-            notes.push(format!(
-                "drive: the screen bears {wanted_v_rms} V rms, less than the {} V rms of the scene",
-                drive.voltage_max_v_rms
-            ));
-        }
-        let needed_v_peak = PEAK_MARGIN * peak_per_rms * wanted_v_rms;
-        let screen_v_peak = screen.voltage_max_v_peak.unwrap_or(f64::INFINITY);
-        let max_v_peak = drive.voltage_max_v_peak.unwrap_or(needed_v_peak).min(screen_v_peak).min(board_v_peak);
-        let max_v_rms = wanted_v_rms.min(max_v_peak / peak_per_rms);
-        if max_v_rms < wanted_v_rms {
-            notes.push(format!(
-                "drive: {wanted_v_rms} V rms would need {:.1} V peak; the limit of {max_v_peak} V peak allows \
-                 {max_v_rms:.1} V rms",
-                peak_per_rms * wanted_v_rms
-            ));
-        }
-        let slew_v_per_us = screen.slew_v_per_us.unwrap_or(f64::INFINITY).min(drive.slew_v_per_us);
-        let raised_v_peak = drive.voltage_max_v_peak.unwrap_or(f64::INFINITY).min(screen_v_peak).min(board_v_peak);
-        let raised_max_v_rms = (raised_v_peak / peak_per_rms).min(screen.voltage_max_v_rms.unwrap_or(f64::INFINITY));
-        Self { max_v_rms, max_v_peak, slew_v_per_us, raised_max_v_rms }
-    }
-
-    /// Checks the current into the worst-case electrode at the largest voltage against the board's limits, and lowers
-    /// the voltage to them.
-    fn limit_current(&mut self, scene: &Scene, limits: &BoardLimits, half_period_s: f64, log: &mut Log) {
-        // The board computes in `f32`, from the carrier's frequency.
-        let carrier_hz = (0.5 / half_period_s) as f32;
-        let carrier = carrier(scene.carrier.waveform, 0.5 / f64::from(carrier_hz), limits);
-        let drive_v_peak = self.max_v_rms as f32 * carrier.peak_per_rms();
-        let current = carrier.electrode_current(limits.electrode_capacitance_max_f, drive_v_peak);
-        let rms_cure = "`frequency_hz` under [carrier], or `voltage_max_v_rms` under [drive]";
-        for (kind, found_a, board_a, cure) in [
-            ("rms", current.a_rms, limits.current_max_a_rms, rms_cure),
-            ("peak", current.a_peak, limits.current_max_a_peak, "`voltage_max_v_rms` under [drive]"),
-        ] {
-            let (found_ma, board_ma) = (f64::from(found_a) * 1e3, f64::from(board_a) * 1e3);
-            if found_a > board_a {
-                log.add(scene.carrier.places.table(), Mistake::CurrentAboveBoard { kind, found_ma, board_ma, cure });
-                self.max_v_rms *= board_ma / found_ma;
-            }
-        }
-    }
 }
 
 fn header(scene: &Scene, voltage: &Voltage, springs: &Springs, effective_gap_um: f64, half_period_s: f64) -> Header {

@@ -1,152 +1,209 @@
 //! Finds layers whose target friction is out of reach.
 
-use frixel_layers::Interval;
+use frixel_layers::{Blend, Interval, Record};
 
-use super::cover::{Cell, Excess, excesses};
+use super::cover::{Cell, PLACES_MAX, excesses};
 use super::file::Scene;
-use super::kinds::Kind;
+use super::kinds::{Clicked, Kind};
 use super::layer::{Above, Layer};
 use super::log::Log;
-use super::mistake::Mistake;
+use super::mistake::FitMistake;
 use super::program::Program;
-use super::reach::ROUNDING;
+use super::reach::{ROUNDING, Reach};
+use super::titles::listed;
 use crate::reference::Reference;
 
 /// A friction so many times the reach may have been meant in another unit.
 const MUCH: f64 = 20.0;
 
-/// Reports a mistake for layers that exceed the reach. With `saturate`, or if the excess is not certain, adds a note
+/// The limits of [drive] that have to be raised for an electric friction in newtons, and to which value; empty if that
+/// is not possible.
+pub(super) type Raise<'r> = &'r dyn Fn(f64) -> Vec<(&'static str, f64)>;
+
+/// Reports a mistake for layers that exceed the reach. With `saturate`, or if the excess is not certain, returns a note
 /// instead.
 ///
-/// `played` are the layers of the program's records. `raised_n` is the largest electric friction if `voltage_max_v_rms`
-/// were raised as far as the other limits of the voltage allow.
-pub(super) fn check(scene: &Scene, played: &[&Layer], raised_n: f64, program: &mut Program, log: &mut Log) {
-    let reach = program.reach;
-    let slack_n = ROUNDING * reach.electric_friction_max_n;
-    let within = Interval { low: -slack_n, high: reach.electric_friction_max_n + slack_n };
+/// `played` are the layers of the program's records.
+pub(super) fn check(scene: &Scene, played: &[&Layer], raise: Raise, program: &Program, log: &mut Log) -> Vec<String> {
+    let within = program.within_reach();
     let reference = Reference::new(program);
     let width_m = f64::from(program.header.screen_width_m);
     let height_m = f64::from(program.header.screen_height_m);
-    let mut reported = Vec::new();
-    for excess in excesses(reference.pieces(), width_m, height_m, within) {
-        let layers: Vec<&Layer> = excess.layers.iter().filter_map(|number| played.get(*number).copied()).collect();
-        let sides = |friction: Interval<f64>| sides(&layers, &excess, friction, within, raised_n, program);
-        let found = sides(excess.found);
+    let (mut notes, mut reported) = (Vec::new(), Vec::new());
+    for excess in excesses(reference.pieces(), width_m, height_m, within, PLACES_MAX) {
+        let layers: Vec<Played> = excess
+            .layers
+            .iter()
+            .filter_map(|number| Some((*played.get(*number)?, program.records.get(*number)?)))
+            .map(|(layer, record)| Played { layer, record })
+            .collect();
+        let demand = Demand { layers, cell: excess.cell, within, reach: &program.reach, raise };
+        let found = demand.sides(excess.found, log);
         if found.is_empty() {
-            let possible = sides(excess.bound);
-            program.notes.extend(possible.iter().map(|side| note(side, "; no place was found where they do")));
+            let possible = demand.sides(excess.bound, log);
+            notes.extend(possible.iter().map(|side| note(side, "; no place was found where they do")));
         } else if scene.drive.saturate {
-            program.notes.extend(found.iter().map(|side| note(side, "; it is clamped there")));
+            notes.extend(found.iter().map(|side| note(side, "; it is clamped there")));
         } else {
             // Copies of a layer exceed the reach in the same way.
-            let is_copy = |offset: usize, reported: &[usize]| {
-                layers.iter().any(|layer| layer.is_copy) && reported.contains(&offset)
-            };
+            let has_copy = demand.layers.iter().any(|played| played.layer.is_copy);
             for Side { offset, mistake } in found {
-                if !is_copy(offset, &reported) {
+                if !has_copy || !reported.contains(&offset) {
                     log.add(offset, mistake);
                     reported.push(offset);
                 }
             }
         }
     }
+    notes
+}
+
+impl Program {
+    /// The electric friction that can be reached, with a margin for rounding errors, N.
+    pub(super) fn within_reach(&self) -> Interval<f64> {
+        let slack_n = ROUNDING * self.reach.electric_friction_max_n;
+        Interval { low: -slack_n, high: self.reach.electric_friction_max_n + slack_n }
+    }
+}
+
+/// A layer with its record.
+struct Played<'a> {
+    layer: &'a Layer,
+    record: &'a Record,
+}
+
+/// Layers that exceed the reach together.
+struct Demand<'a> {
+    /// From bottom to top.
+    layers: Vec<Played<'a>>,
+    cell: Cell,
+    within: Interval<f64>,
+    reach: &'a Reach,
+    raise: Raise<'a>,
 }
 
 /// One side of the reach that layers exceed, and the place in the file to change.
 struct Side {
     offset: usize,
-    mistake: Mistake,
+    mistake: FitMistake,
 }
 
-fn sides(
-    layers: &[&Layer],
-    excess: &Excess,
-    asked: Interval<f64>,
-    within: Interval<f64>,
-    raised_n: f64,
-    program: &Program,
-) -> Vec<Side> {
-    let reach = &program.reach;
-    let above = match layers {
-        [layer] => layer.above,
-        _ => Above::Natural,
-    };
-    let (reference, offset_n) = match above {
-        Above::Natural => ("above natural friction", 0.0),
-        Above::Zero => ("in total", reach.natural_friction_n),
-    };
-    let clicks = excess.layers.iter().filter_map(|number| program.records.get(*number)?.layer.click());
-    let has_click = asked.high > within.high && clicks.map(|click| click.height_n).any(|height_n| height_n > 0.0);
-    let asking = asking(layers, excess.cell, has_click);
-    let mut sides = Vec::new();
-    if asked.high > within.high {
-        let mistake = Mistake::AboveReach {
-            asking: asking.clone(),
-            asked_n: digits(asked.high + offset_n, up),
-            reference,
-            voltage_v_rms: digits(reach.voltage_max_v_rms, f64::round),
-            reach_n: digits(reach.electric_friction_max_n + offset_n, f64::floor),
-            voltage_helps: asked.high <= raised_n,
-            may_be_millinewtons: asked.high + offset_n > MUCH * (reach.electric_friction_max_n + offset_n)
-                && 1e-3 * (asked.high + offset_n) <= reach.electric_friction_max_n + offset_n,
+impl Demand<'_> {
+    /// The sides of the reach that an electric friction exceeds.
+    fn sides(&self, asked: Interval<f64>, log: &Log) -> Vec<Side> {
+        let Self { within, reach, .. } = self;
+        let above = match &self.layers[..] {
+            [Played { layer, .. }] => layer.above,
+            _ => Above::Natural,
         };
-        sides.push(Side { offset: place(layers, true), mistake });
-    }
-    if asked.low < within.low {
-        let mistake = Mistake::BelowNatural {
-            asking,
-            asked_n: digits(asked.low + offset_n, down),
-            reference,
-            natural_n: digits(reach.natural_friction_n, f64::round),
+        let (reference, offset_n) = match above {
+            Above::Natural => ("above natural friction", 0.0),
+            Above::Zero => ("in total", reach.natural_friction_n),
         };
-        sides.push(Side { offset: place(layers, false), mistake });
+        let mut sides = Vec::new();
+        if asked.high > within.high {
+            let clicked = self.clicked(log);
+            let is_sum = clicked.is_some() || self.layers.len() > 1;
+            // A larger voltage raises what a fraction asks for as well.
+            let has_fraction = self.layers.iter().any(|played| has_fraction(played.layer));
+            let has_newtons = self.layers.iter().any(|played| played.layer.places.has_unit("_n"));
+            let (asked_n, reach_n) = (asked.high + offset_n, reach.electric_friction_max_n + offset_n);
+            let part_of_reach = asked.high / reach.electric_friction_max_n;
+            let mistake = FitMistake::AboveReach {
+                asking: self.asking(clicked),
+                asked_n: digits(asked_n, up),
+                reference,
+                part_of_reach: (has_fraction && !has_newtons).then(|| digits(part_of_reach, up)),
+                voltage_v_rms: digits(reach.voltage_max_v_rms, f64::round),
+                reach_n: digits(reach_n, f64::floor),
+                lower: if is_sum { "one of them" } else { "it" },
+                raise: if has_fraction { Vec::new() } else { (self.raise)(asked.high) },
+                may_be_millinewtons: !has_fraction && asked_n > MUCH * reach_n && 1e-3 * asked_n <= reach_n,
+            };
+            sides.push(Side { offset: self.place(true), mistake });
+        }
+        if asked.low < within.low {
+            let mistake = FitMistake::BelowNatural {
+                asking: self.asking(None),
+                asked_n: digits(asked.low + offset_n, down),
+                reference,
+                natural_n: digits(reach.natural_friction_n, f64::round),
+            };
+            sides.push(Side { offset: self.place(false), mistake });
+        }
+        sides
     }
-    sides
+
+    /// The fields of a single layer that exceed the reach together with its click, with their values; `None` if the
+    /// layer has no click, or is not alone.
+    fn clicked(&self, log: &Log) -> Option<String> {
+        let [Played { layer, record }] = &self.layers[..] else { return None };
+        let gain = f64::from(record.gain);
+        let click_n = gain * f64::from(record.layer.click()?.height_n);
+        let Clicked { bases, click } = layer.kind.clicked(&layer.places, &record.layer)?;
+        let written = |field: &str| format!("`{field} = {}`", log.source().word_at(layer.places.field(field)));
+        let above = bases.iter().filter(|(_, friction_n)| gain * friction_n + click_n > self.within.high);
+        let above: Vec<String> = above.map(|(field, _)| written(field)).collect();
+        (click_n > 0.0).then_some(())?;
+        match &above[..] {
+            [] => None,
+            [only] => Some(format!("its {only} and its {} together", written(click))),
+            all => Some(format!("each of its {} together with its {}", all.join(" and "), written(click))),
+        }
+    }
+
+    /// The layers' names with the verb, and the place if there are several layers.
+    fn asking(&self, clicked: Option<String>) -> String {
+        if let [Played { layer, .. }] = &self.layers[..] {
+            let gain = layer.places.has("gain").then(|| format!("with its gain of {}", layer.gain));
+            let insertions: Vec<String> = [gain, clicked].into_iter().flatten().collect();
+            return if insertions.is_empty() {
+                format!("{} asks for", layer.title)
+            } else {
+                format!("{}, {}, asks for", layer.title, insertions.join(", "))
+            };
+        }
+        let titles: Vec<&str> = self.layers.iter().map(|played| played.layer.title.as_str()).collect();
+        let mm = |metres: f64| digits(metres * 1e3, f64::round);
+        format!(
+            "{} together (x {} to {} mm, y {} to {} mm) ask for",
+            listed(&titles),
+            mm(self.cell.left_m),
+            mm(self.cell.right_m),
+            mm(self.cell.top_m),
+            mm(self.cell.bottom_m)
+        )
+    }
+
+    /// Offset of the field that sets the largest or least friction; with several layers, of the topmost layer.
+    fn place(&self, most: bool) -> usize {
+        match &self.layers[..] {
+            [] => 0,
+            [Played { layer, record }] => {
+                let most = most == (layer.gain >= 0.0);
+                layer.places.field(layer.kind.extreme(most, &layer.places, &record.layer))
+            }
+            [.., Played { layer, .. }] => layer.places.table(),
+        }
+    }
+}
+
+/// Whether an amount of a layer is a fraction of what can be reached.
+fn has_fraction(layer: &Layer) -> bool {
+    let is_by_default = matches!(layer.kind, Kind::Bitmap(_)) && layer.blend != Blend::Multiply;
+    layer.places.has_unit("_fraction") || (is_by_default && !layer.places.has("white_n"))
 }
 
 fn note(side: &Side, ending: &str) -> String {
     match &side.mistake {
-        Mistake::AboveReach { asking, asked_n, reference, reach_n, .. } => {
+        FitMistake::AboveReach { asking, asked_n, reference, reach_n, .. } => {
             format!("{asking} up to {asked_n} N {reference}, and at most {reach_n} N can be reached{ending}")
         }
-        Mistake::BelowNatural { asking, asked_n, reference, natural_n } => {
+        FitMistake::BelowNatural { asking, asked_n, reference, natural_n } => {
             format!("{asking} down to {asked_n} N {reference}, below the natural friction of {natural_n} N{ending}")
         }
         other => other.to_string(),
     }
-}
-
-/// The layers' names, and the place if there are several layers.
-fn asking(layers: &[&Layer], cell: Cell, has_click: bool) -> String {
-    if let [layer] = layers {
-        let gained = layer.places.has("gain");
-        let gain = if gained { format!(", with its gain of {},", layer.gain) } else { String::new() };
-        if has_click {
-            let ridge = if matches!(layer.kind, Kind::Button(_)) { "rim" } else { "ridge" };
-            return format!("{}{gain}, its {ridge} and its click together, asks for", layer.title);
-        }
-        return format!("{}{gain} asks for", layer.title);
-    }
-    let titles: Vec<&str> = layers.iter().map(|layer| layer.title.as_str()).collect();
-    let mm = |metres: f64| digits(metres * 1e3, f64::round);
-    format!(
-        "{} together (x {} to {} mm, y {} to {} mm) ask for",
-        titles.join(" and "),
-        mm(cell.left_m),
-        mm(cell.right_m),
-        mm(cell.top_m),
-        mm(cell.bottom_m)
-    )
-}
-
-/// Offset of the field that sets the largest or least friction; with several layers, of the topmost layer.
-fn place(layers: &[&Layer], most: bool) -> usize {
-    let Some(layer) = layers.last() else { return 0 };
-    let most = most == (layer.gain >= 0.0);
-    if layers.len() > 1 {
-        return layer.places.table();
-    }
-    layer.places.field(layer.kind.extreme(most, &layer.places))
 }
 
 /// Four significant digits, rounded by `to_whole`.
@@ -161,11 +218,11 @@ pub(super) fn digits(value: f64, to_whole: fn(f64) -> f64) -> f64 {
 }
 
 /// Rounds up to a whole number, but ignores what rounding to `f32` may have added to the fourth digit.
-fn up(value: f64) -> f64 {
+pub(super) fn up(value: f64) -> f64 {
     (value - 0.002).ceil()
 }
 
 /// Rounds down to a whole number, but ignores what rounding to `f32` may have taken from the fourth digit.
-fn down(value: f64) -> f64 {
+pub(super) fn down(value: f64) -> f64 {
     (value + 0.002).floor()
 }

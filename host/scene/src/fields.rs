@@ -1,20 +1,22 @@
-//! Reads the fields of a TOML table, and reports missing and unknown ones. [`values`] reads their values.
+//! Reads the fields of a TOML table, and reports missing and unknown ones. [`text`] parses files, [`values`] reads the
+//! fields' values, and [`misplaced`] finds what was written in the wrong place.
 
+mod misplaced;
+mod text;
 mod values;
 
+pub(super) use text::{parsed, read_text};
 pub(super) use values::TableOrText;
 
-use std::ops::Range;
-
 use toml::Spanned;
-use toml::de::{DeArray, DeTable, DeValue};
+use toml::de::{DeTable, DeValue};
 
-use super::compile_error::CompileError;
 use super::grammar::{Absence, Axis, FieldSpec, KnownField, KnownTable, stem};
 use super::log::Log;
-use super::mistake::Mistake;
+use super::mistake::{FieldMistake, FileMistake};
 use super::nearest::Nearest;
-use super::source::{Places, Source, SourceFile};
+use super::source::Places;
+use misplaced::{Misplaced, Unknown};
 
 /// A table that is being read. Every field that the parser reads becomes known; [`Fields::close`] reports the others.
 pub(super) struct Fields<'i> {
@@ -26,6 +28,8 @@ pub(super) struct Fields<'i> {
     defaults: DeTable<'i>,
     /// The size of a pixel of the scene's design, if it has one.
     pixel_mm: Option<PixelSize>,
+    /// Valid names that defaults of other names were probably meant to have.
+    misspelt_defaults: Vec<String>,
     places: Places,
     known: Vec<KnownField>,
     required: Vec<&'static str>,
@@ -48,59 +52,6 @@ impl PixelSize {
             Axis::X => self.width_mm,
             Axis::Y => self.height_mm,
         }
-    }
-}
-
-/// Reads the text of a file: `read` gets its fields, and messages call the whole text `table` and the file `name`.
-pub(super) fn read_text<T>(
-    text: &str,
-    name: &str,
-    table: &str,
-    read: impl FnOnce(Fields, &mut Log) -> Option<T>,
-) -> Result<T, CompileError> {
-    let source = Source::new(name, text);
-    let mut log = Log::new(&source);
-    let fields = source.files().first().and_then(|file| parsed(file, &mut log));
-    let value = fields.and_then(|values| read(Fields::new(table, 0, values), &mut log));
-    log.finish(value)
-}
-
-/// The fields of a file, at their offsets in the source; `None` after a mistake, which has been logged.
-pub(super) fn parsed<'i>(file: &'i SourceFile, log: &mut Log) -> Option<DeTable<'i>> {
-    match DeTable::parse(&file.text) {
-        Ok(values) => Some(moved_table(values.into_inner(), file.start)),
-        Err(error) => {
-            let offset = error.span().map_or(0, |span| span.start);
-            let has_comma = file.text.get(offset..).is_some_and(|rest| rest.starts_with(','));
-            let hint = if has_comma { "; a decimal has a point, not a comma" } else { "" };
-            log.add(file.start + offset, Mistake::Syntax(format!("{}{hint}", error.message())));
-            None
-        }
-    }
-}
-
-/// A table whose offsets all are larger by `start`.
-fn moved_table(table: DeTable, start: usize) -> DeTable {
-    let moved = |span: Range<usize>| span.start + start..span.end + start;
-    let fields = table.into_iter().map(|(key, value)| {
-        let (key_span, span) = (moved(key.span()), moved(value.span()));
-        (Spanned::new(key_span, key.into_inner()), Spanned::new(span, moved_value(value.into_inner(), start)))
-    });
-    fields.collect()
-}
-
-fn moved_value(value: DeValue, start: usize) -> DeValue {
-    match value {
-        DeValue::Table(table) => DeValue::Table(moved_table(table, start)),
-        DeValue::Array(array) => {
-            let mut moved = DeArray::new();
-            for value in array {
-                let span = value.span().start + start..value.span().end + start;
-                moved.push(Spanned::new(span, moved_value(value.into_inner(), start)));
-            }
-            DeValue::Array(moved)
-        }
-        other => other,
     }
 }
 
@@ -127,6 +78,7 @@ impl<'i> Fields<'i> {
             values,
             defaults: DeTable::new(),
             pixel_mm: None,
+            misspelt_defaults: Vec::new(),
             places: Places::new(offset),
             known: Vec::new(),
             required: Vec::new(),
@@ -146,9 +98,9 @@ impl<'i> Fields<'i> {
     }
 
     /// Sets the values of fields that the table does not have. A field of the table counts before a default in any
-    /// unit.
-    pub(super) fn with_defaults(self, defaults: &DeTable<'i>) -> Self {
-        Self { defaults: without(defaults, &self.values), ..self }
+    /// unit. `misspelt` are valid names that defaults of other names were probably meant to have.
+    pub(super) fn with_defaults(self, defaults: &DeTable<'i>, misspelt: &[String]) -> Self {
+        Self { defaults: without(defaults, &self.values), misspelt_defaults: misspelt.to_vec(), ..self }
     }
 
     /// Moves a field here from another file's table. A field that both have is a mistake.
@@ -161,7 +113,7 @@ impl<'i> Fields<'i> {
             Some((own, _)) => {
                 let other = log.source().name_at(own.span().start).to_owned();
                 let file = log.source().name_at(key.span().start).to_owned();
-                log.add(key.span().start, Mistake::TableTwice { field: field.name, file, other });
+                log.add(key.span().start, FileMistake::TableTwice { field: field.name, file, other });
             }
             None => {
                 self.values.insert(key, value);
@@ -188,8 +140,12 @@ impl<'i> Fields<'i> {
     /// reported if a misspelling of it is, or if the fields of the table were guessed.
     pub(super) fn close(self, log: &mut Log) -> Places {
         log.describe(|| self.described());
-        let mut misspelt = Vec::new();
+        let mut misspelt = self.misspelt_defaults.clone();
+        let misplaced = self.misplaced(log);
         for (name, _) in &self.values {
+            if misplaced.contains(name.get_ref().as_ref()) {
+                continue;
+            }
             let absent = self.known.iter().map(|known| known.field.name).filter(|known| !self.places.has(known));
             // Pixels mean nothing in a scene without a design.
             let in_mm =
@@ -198,15 +154,24 @@ impl<'i> Fields<'i> {
             let nearest = Nearest::new(name.get_ref(), absent);
             misspelt.extend(nearest.suggestion.clone());
             let field = name.get_ref().clone().into_owned();
-            log.add(name.span().start, Mistake::UnknownField { field, table: self.table.clone(), nearest });
+            log.add(name.span().start, FieldMistake::UnknownField { field, table: self.table.clone(), nearest });
         }
-        for field in self.required {
-            if self.is_guess || self.places.has(field) || misspelt.iter().any(|word| stem(word) == stem(field)) {
+        for field in &self.required {
+            let is_reported =
+                misplaced.missing == Some(*field) || misspelt.iter().any(|word| stem(word) == stem(field));
+            if self.is_guess || self.places.has(field) || is_reported {
                 continue;
             }
-            log.add(self.places.table(), Mistake::MissingField { field, table: self.table.clone() });
+            let (other, table) = (self.other_unit(field), self.table.clone());
+            log.add(self.places.table(), FieldMistake::MissingField { field, other, table });
         }
         self.places
+    }
+
+    /// The field that says the same as another one in another unit, if a file can have it.
+    fn other_unit(&self, field: &str) -> Option<&'static str> {
+        let other = self.either.iter().find_map(|[one, other]| (*one == field).then_some(*other))?;
+        (self.pixel_mm.is_some() || !other.ends_with("_px")).then_some(other)
     }
 
     /// Stops reading a table that cannot be understood without `field`. If the field is missing, reports only that, or
@@ -223,15 +188,21 @@ impl<'i> Fields<'i> {
         match misspelt {
             Some((name, nearest)) => {
                 let field = name.get_ref().clone().into_owned();
-                log.add(name.span().start, Mistake::UnknownField { field, table: self.table, nearest });
+                log.add(name.span().start, FieldMistake::UnknownField { field, table: self.table, nearest });
             }
-            None => log.add(self.places.table(), Mistake::MissingField { field, table: self.table }),
+            None => log.add(self.places.table(), FieldMistake::MissingField { field, other: None, table: self.table }),
         }
     }
 
     /// Whether the file has a field that was not read yet.
     pub(super) fn has(&self, field: &str) -> bool {
         self.values.contains_key(field) || self.defaults.contains_key(field)
+    }
+
+    /// The text of a field that was not read yet, and its offset; `None` if it is absent or no text.
+    pub(super) fn raw_text(&self, field: &str) -> Option<(usize, String)> {
+        let value = self.values.get(field).or_else(|| self.defaults.get(field))?;
+        Some((value.span().start, value.get_ref().as_str()?.to_owned()))
     }
 
     /// Whether the file has a field that was read.
@@ -263,6 +234,18 @@ impl<'i> Fields<'i> {
     /// Records that two fields have the same meaning, so that a file may have only one of them.
     pub(super) fn either(&mut self, one: &FieldSpec, other: &FieldSpec) {
         self.either.push([one.name, other.name]);
+    }
+
+    /// Reports fields that belong to another table, as one mistake for each of these tables.
+    fn misplaced(&self, log: &mut Log) -> Misplaced {
+        let unknown: Vec<Unknown> = self
+            .values
+            .keys()
+            .map(|name| (name.get_ref().clone().into_owned(), name.span().start))
+            .zip(self.values.values().map(|value| value.span().start))
+            .map(|((name, offset), value_offset)| Unknown { name, offset, value_offset })
+            .collect();
+        misplaced::report(&self.table, self.key, &unknown, log)
     }
 
     fn described(&self) -> KnownTable {

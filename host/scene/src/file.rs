@@ -14,12 +14,12 @@ use super::include::{self, Gathered};
 use super::kinds::Kind;
 use super::layer::Layer;
 use super::log::Log;
-use super::mistake::Mistake;
+use super::mistake::FileMistake;
 use super::pool::PictureBytes;
 use super::profiles::{self, ProfileSource, Profiles};
 use super::screen::Screen;
 use super::source::{Places, Source};
-use super::stack;
+use super::stack::LayerTables;
 use super::tables;
 
 /// Version of the file format.
@@ -41,6 +41,7 @@ pub struct Scene {
     pub(super) source: Source,
     /// The mistakes of the layers that are absent.
     pub(super) mistakes: Vec<Located>,
+    /// Those of layers with mistakes included, since a layer may be valid on another screen.
     pub(super) pictures: PictureBytes,
     pub(super) version: Version,
     /// Offset of the version, or of the file if it is absent.
@@ -129,7 +130,6 @@ impl Scene {
         let mistakes = log.into_mistakes();
         let Some(mut scene) = scene else { return Err(CompileError { file: name.to_owned(), mistakes }) };
         scene.mistakes = mistakes;
-        scene.pictures = scene.picture_names().map(|name| (name.to_owned(), files.bytes(name))).collect();
         Ok(scene)
     }
 
@@ -141,7 +141,7 @@ impl Scene {
                 let text = String::from_utf8_lossy(bytes.get(..error.valid_up_to()).unwrap_or_default());
                 let source = Source::new(name, &text);
                 let mut log = Log::new(&source);
-                log.add(error.valid_up_to(), Mistake::NotUtf8);
+                log.add(error.valid_up_to(), FileMistake::NotUtf8);
                 log.finish(None)
             }
         }
@@ -167,8 +167,8 @@ impl Scene {
             let mut log = Log::new(&self.source);
             let pixel_mm = design.pixel_on(&self.profiles.screen);
             if let Some(mut files) = files(&mut log) {
-                let layer_tables = stack::layer_tables(&mut files, self.version, &mut log);
-                self.layers = stack::layers(layer_tables, self.version, Some(pixel_mm), &mut log);
+                let layer_tables = LayerTables::of(&mut files, self.version, &mut log);
+                self.layers = layer_tables.read(self.version, Some(pixel_mm), &mut log);
             }
             self.mistakes = log.into_mistakes();
         }
@@ -186,7 +186,7 @@ impl Scene {
         let mut log = Log::new(&self.source);
         if self.version == Version::One {
             let file = self.source.name().to_owned();
-            log.add(self.version_place, Mistake::VersionOneProfile { what, file });
+            log.add(self.version_place, FileMistake::VersionOneProfile { what, file });
         }
         log.finish(Some(()))
     }
@@ -261,7 +261,7 @@ fn read(named: &dyn Files, log: &mut Log) -> Option<Scene> {
         Version::One => None,
         Version::Two => fields.table(log, &tables::scene::DESIGN).and_then(|fields| design(fields, log)),
     };
-    let layer_tables = stack::layer_tables(&mut files, version, log);
+    let layer_tables = LayerTables::of(&mut files, version, log);
     for file in files {
         file.close(log);
     }
@@ -269,12 +269,13 @@ fn read(named: &dyn Files, log: &mut Log) -> Option<Scene> {
     let head_is_valid = log.mistakes() == 0;
     let example = Screen::example();
     let screen = profiles.as_ref().map_or(&example, |profiles| &profiles.screen);
-    let layers = stack::layers(layer_tables, version, design.map(|design| design.pixel_on(screen)), log);
+    let pictures = layer_tables.pictures(log).into_iter().map(|name| (name.clone(), named.bytes(&name))).collect();
+    let layers = layer_tables.read(version, design.map(|design| design.pixel_on(screen)), log);
     let profiles = profiles.filter(|_| head_is_valid)?;
     Some(Scene {
         source: log.source().clone(),
         mistakes: Vec::new(),
-        pictures: PictureBytes::new(),
+        pictures,
         version,
         version_place,
         profiles,
@@ -291,7 +292,7 @@ fn refuse_version_two(fields: &mut Fields, log: &mut Log) {
     for field in [tables::scene::INCLUDE, tables::scene::DEFAULTS, tables::scene::DESIGN] {
         if fields.has(field.name) {
             let file = log.source().name().to_owned();
-            log.add(fields.place(field.name), Mistake::SinceVersionTwo { field: field.name, file });
+            log.add(fields.place(field.name), FileMistake::SinceVersionTwo { field: field.name, file });
             fields.ignore(field.name);
         }
     }
@@ -301,9 +302,10 @@ fn refuse_version_two(fields: &mut Fields, log: &mut Log) {
 fn join<'i>(scene: &mut Fields<'i>, file: &mut Fields<'i>, number: usize, log: &mut Log) {
     use tables::scene::{CARRIER, DESIGN, DRIVE, FINGER, SCREEN, TOUCH};
     let place = file.place(tables::scene::VERSION.name);
-    if file.number(log, &tables::scene::VERSION).is_some_and(|version| version.to_bits() != 2.0_f64.to_bits()) {
+    let found = file.number(log, &tables::scene::VERSION);
+    if let Some(found) = found.filter(|found| found.to_bits() != 2.0_f64.to_bits()) {
         let (file, included) = (log.source().includer(number).to_owned(), log.source().name_at(place).to_owned());
-        log.add(place, Mistake::IncludedVersion { file, included });
+        log.add(place, FileMistake::IncludedVersion { file, included, found });
     }
     let _ = file.texts(log, &tables::scene::INCLUDE);
     for field in [SCREEN, FINGER, DRIVE, CARRIER, TOUCH, DESIGN] {
@@ -328,7 +330,7 @@ fn version(fields: &mut Fields, log: &mut Log) -> Version {
         Some(2.0) => Version::Two,
         found => {
             if let Some(found) = found {
-                log.add(place, Mistake::Version { found });
+                log.add(place, FileMistake::Version { found });
             }
             if fields.has(tables::scene::COATING_V1.name) { Version::One } else { Version::Two }
         }

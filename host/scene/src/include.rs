@@ -3,7 +3,7 @@
 use toml::de::{DeTable, DeValue};
 
 use super::files::{FileUnavailable, Files, file_name};
-use super::mistake::Mistake;
+use super::mistake::FileMistake;
 use super::nearest::Nearest;
 use super::source::{Source, joined};
 use super::tables;
@@ -14,7 +14,7 @@ const FILES_MAX: usize = 64;
 /// The files of a scene, and the mistakes of their `include`s, each with its offset.
 pub(super) struct Gathered {
     pub(super) source: Source,
-    pub(super) mistakes: Vec<(usize, Mistake)>,
+    pub(super) mistakes: Vec<(usize, FileMistake)>,
 }
 
 /// Reads the files that a scene file includes, and the files that these include. A text that is not TOML, or of version
@@ -33,7 +33,7 @@ impl Gathered {
         for (offset, name) in included_names(&file.text) {
             if name.is_empty() {
                 let field = tables::scene::INCLUDE.name;
-                self.mistakes.push((file.start + offset, Mistake::NoFileName { field }));
+                self.mistakes.push((file.start + offset, FileMistake::NoFileName { field }));
                 continue;
             }
             let path = joined(&file.path, &name);
@@ -50,30 +50,32 @@ impl Gathered {
     }
 
     /// Adds the file at `path` from the scene file's folder, which file `number` includes.
-    fn read(&mut self, number: usize, path: &str, chain: &[usize], files: &dyn Files) -> Result<usize, Mistake> {
+    fn read(&mut self, number: usize, path: &str, chain: &[usize], files: &dyn Files) -> Result<usize, FileMistake> {
         let all = self.source.files();
         let file = all.get(number).map_or_else(String::new, |file| file.name.clone());
         let included = joined(self.source.name(), path);
         if let Some(known) = all.iter().position(|other| other.path == path) {
-            if chain.contains(&known) {
-                return Err(Mistake::IncludedByItself { file, included });
+            if let Some(first) = chain.iter().position(|number| *number == known) {
+                let circle = chain.iter().skip(first).filter_map(|number| all.get(*number));
+                return Err(FileMistake::IncludedByItself { circle: circle.map(|file| file.name.clone()).collect() });
             }
             let other = self.source.includer(known).to_owned();
-            return Err(Mistake::IncludedTwice { file, included, other });
+            return Err(FileMistake::IncludedTwice { file, included, other });
         }
         if all.len() >= FILES_MAX {
-            return Err(Mistake::TooMany { what: "files", number: all.len() + 1, max: FILES_MAX });
+            return Err(FileMistake::TooManyFiles { max: FILES_MAX });
         }
-        let unusable = |reason| Mistake::IncludedUnusable { file: file.clone(), included: included.clone(), reason };
+        let unusable =
+            |reason| FileMistake::IncludedUnusable { file: file.clone(), included: included.clone(), reason };
         let bytes = files.bytes(path).map_err(|unavailable| match unavailable {
             FileUnavailable::Unreadable { reason } => unusable(format!("it cannot be read ({reason})")),
-            FileUnavailable::Missing { files, .. } => Mistake::IncludedMissing {
+            FileUnavailable::Missing { files, .. } => FileMistake::IncludedMissing {
                 file: file.clone(),
                 included: included.clone(),
                 nearest: Nearest::file(file_name(path), &files),
             },
         })?;
-        let text = String::from_utf8(bytes).map_err(|_| unusable(Mistake::NotUtf8.to_string()))?;
+        let text = String::from_utf8(bytes).map_err(|_| unusable(FileMistake::NotUtf8.to_string()))?;
         Ok(self.source.add(included, path.to_owned(), text))
     }
 }

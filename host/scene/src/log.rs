@@ -8,19 +8,24 @@ use super::source::Source;
 /// Collects mistakes, so that a person sees all of them at once.
 pub(super) struct Log<'s> {
     source: &'s Source,
+    /// The mistakes, each one once.
     mistakes: Vec<Located>,
+    /// How many mistakes were added, those that were there already included.
+    added: usize,
+    /// The mistake that was added last.
+    last: Option<Mistake>,
     /// The known fields of each table, in the order in which tables were closed; `None` except while a schema is made.
     described: Option<Vec<KnownTable>>,
 }
 
 impl<'s> Log<'s> {
     pub(super) fn new(source: &'s Source) -> Self {
-        Self { source, mistakes: Vec::new(), described: None }
+        Self { source, mistakes: Vec::new(), added: 0, last: None, described: None }
     }
 
     /// A log that starts with the mistakes that were found before.
     pub(super) fn resuming(source: &'s Source, mistakes: &[Located]) -> Self {
-        Self { mistakes: mistakes.to_vec(), ..Self::new(source) }
+        Self { mistakes: mistakes.to_vec(), added: mistakes.len(), ..Self::new(source) }
     }
 
     /// A log of the same file whose mistakes do not count.
@@ -40,6 +45,11 @@ impl<'s> Log<'s> {
         }
     }
 
+    /// Whether this log keeps the known fields of tables, so that its mistakes do not matter.
+    pub(super) fn is_describing(&self) -> bool {
+        self.described.is_some()
+    }
+
     /// The known fields of each table.
     pub(super) fn into_described(self) -> Vec<KnownTable> {
         self.described.unwrap_or_default()
@@ -50,12 +60,25 @@ impl<'s> Log<'s> {
         self.source
     }
 
-    /// Adds a mistake at a byte offset of the files. A mistake that is there already is not added again: layers that
-    /// share a field share its mistakes.
-    pub(super) fn add(&mut self, offset: usize, mistake: Mistake) {
+    /// Adds a mistake at a byte offset of the files. A mistake that is there already is reported once, but counted
+    /// again: layers that share a field share its mistakes.
+    pub(super) fn add(&mut self, offset: usize, mistake: impl Into<Mistake>) {
+        let mistake = mistake.into();
+        self.last = Some(mistake.clone());
         let (line, column) = self.source.line_and_column(offset);
         let (file, text) = (self.source.name_at(offset).to_owned(), self.source.word_at(offset).to_owned());
-        let located = Located { file, line, column, text, mistake };
+        self.add_located(Located { file, line, column, text, mistake });
+    }
+
+    /// Adds the mistakes of another log of the same files.
+    pub(super) fn extend(&mut self, other: Self) {
+        for located in other.mistakes {
+            self.add_located(located);
+        }
+    }
+
+    fn add_located(&mut self, located: Located) {
+        self.added += 1;
         if !self.mistakes.contains(&located) {
             self.mistakes.push(located);
         }
@@ -82,11 +105,11 @@ impl<'s> Log<'s> {
 
     /// The mistake that was added last.
     pub(super) fn last(&self) -> Option<&Mistake> {
-        self.mistakes.last().map(|located| &located.mistake)
+        self.last.as_ref()
     }
 
-    /// Number of mistakes so far.
+    /// Number of mistakes so far. A mistake that several layers share counts for each of them.
     pub(super) fn mistakes(&self) -> usize {
-        self.mistakes.len()
+        self.added
     }
 }

@@ -7,7 +7,7 @@ use super::file::{Scene, Version};
 use super::files::Files;
 use super::kinds::{Bitmap, PITCH_V1_MM, Words};
 use super::log::Log;
-use super::mistake::Mistake;
+use super::mistake::FileMistake;
 use super::screen::{Screen, Slab};
 
 /// Writes the text of a scene of version 1 as version 2, with its layout and its comments but for those of `[coating]`.
@@ -20,7 +20,7 @@ pub fn migrate(text: &str, name: &str, files: &dyn Files) -> Result<String, Comp
     let scene = Scene::parse(text, name, files)?;
     let mut log = Log::resuming(&scene.source, &scene.mistakes);
     if scene.version != Version::One {
-        log.add(scene.version_place, Mistake::NothingToMigrate);
+        log.add(scene.version_place, FileMistake::NothingToMigrate);
         return log.finish(None);
     }
     // A text that `Scene::parse` reads is TOML with these tables.

@@ -15,11 +15,15 @@ impl Nearest {
     /// Likeness (Jaro-Winkler, 0 to 1) from which a word is suggested.
     const LIKENESS_MIN: f64 = 0.75;
 
-    pub(super) fn new<'k>(found: &str, known: impl Iterator<Item = &'k str>) -> Self {
-        let known: Vec<String> = known.map(str::to_owned).collect();
+    /// Finds the nearest of some known words, upper and lower case alike. Of words that are equally near, the first one
+    /// counts.
+    pub fn new<'k>(found: &str, known: impl IntoIterator<Item = &'k str>) -> Self {
+        let known: Vec<String> = known.into_iter().map(str::to_owned).collect();
+        let found = found.to_lowercase();
         let suggestion = known
             .iter()
-            .map(|word| (strsim::jaro_winkler(found, word), word))
+            .rev()
+            .map(|word| (strsim::jaro_winkler(&found, &word.to_lowercase()), word))
             .filter(|(likeness, _)| *likeness >= Self::LIKENESS_MIN)
             .max_by(|(one, _), (other, _)| one.total_cmp(other))
             .map(|(_, word)| word.clone());

@@ -7,7 +7,7 @@ use super::files::{FileUnavailable, file_name};
 use super::kinds::{Bitmap as BitmapLayer, Kind, Levels, PITCH_MM};
 use super::layer::{Layer, Rectangle, Region};
 use super::log::Log;
-use super::mistake::Mistake;
+use super::mistake::{FileMistake, FitMistake};
 use super::nearest::Nearest;
 use super::optimisation::Optimisation;
 use super::picture::Picture;
@@ -28,7 +28,7 @@ pub(super) struct Pool {
 }
 
 /// The pictures of a scene at the levels of their layers, each decoded once, or the reason why one cannot be used.
-type Decoded = BTreeMap<(String, Levels), Result<Picture, Mistake>>;
+type Decoded = BTreeMap<(String, Levels), Result<Picture, FileMistake>>;
 
 /// A bitmap and its place on the screen.
 pub(crate) struct Placed {
@@ -201,27 +201,27 @@ fn decoded(scene: &Scene) -> Decoded {
     for layer in &scene.layers {
         if let Kind::Bitmap(bitmap) = &layer.kind {
             // `Scene::parse` has read every picture that a layer names.
-            if let Some(bytes) = scene.pictures.get(&bitmap.picture) {
-                let picture = || picture(&bitmap.picture, bitmap.levels, bytes);
-                decoded.entry(key(bitmap)).or_insert_with(picture);
-            }
+            let unread = Err(FileUnavailable::Unreadable { reason: "the scene was read without it".to_owned() });
+            let bytes = scene.pictures.get(&bitmap.picture).unwrap_or(&unread);
+            let picture = || picture(&bitmap.picture, bitmap.levels, bytes);
+            decoded.entry(key(bitmap)).or_insert_with(picture);
         }
     }
     decoded
 }
 
-fn picture(name: &str, levels: Levels, bytes: &Result<Vec<u8>, FileUnavailable>) -> Result<Picture, Mistake> {
+fn picture(name: &str, levels: Levels, bytes: &Result<Vec<u8>, FileUnavailable>) -> Result<Picture, FileMistake> {
     if name.is_empty() {
-        return Err(Mistake::NoFileName { field: "picture" });
+        return Err(FileMistake::NoFileName { field: "picture" });
     }
-    let unusable = |reason: String| Mistake::FileUnusable { what: "picture", file: name.to_owned(), reason };
+    let unusable = |reason: String| FileMistake::FileUnusable { what: "picture", file: name.to_owned(), reason };
     match bytes {
         Ok(bytes) => {
             let picture = Picture::decode(bytes).map_err(|error| unusable(error.to_string()))?;
             Ok(if levels == Levels::Stretch { picture.stretched() } else { picture })
         }
         Err(FileUnavailable::Unreadable { reason }) => Err(unusable(format!("it cannot be read ({reason})"))),
-        Err(FileUnavailable::Missing { place, files }) => Err(Mistake::FileMissing {
+        Err(FileUnavailable::Missing { place, files }) => Err(FileMistake::FileMissing {
             what: "picture",
             file: name.to_owned(),
             folder: place.clone(),
@@ -307,7 +307,7 @@ impl Pool {
         let coarser = 1.01 * (needed_bytes as f64 / f64::from(self.size_bytes)).sqrt();
         let pitch_mm = (pitch_mm * coarser * 100.0).ceil() / 100.0;
         let offset = layer.places.field(if layer.places.has("pitch_mm") { "pitch_mm" } else { "picture" });
-        log.add(offset, Mistake::PoolTooSmall { needed_bytes, pool_bytes: self.size_bytes, pitch_mm });
+        log.add(offset, FitMistake::PoolTooSmall { needed_bytes, pool_bytes: self.size_bytes, pitch_mm });
     }
 
     /// Describes the conversions of a picture, and a pitch that the scene leaves open; `None` if there is nothing to

@@ -5,7 +5,7 @@ use super::files::{FileUnavailable, Files, file_name};
 use super::finger::{self, Elasticity, Evidence, FingerProfile};
 use super::grammar::FieldSpec;
 use super::log::Log;
-use super::mistake::Mistake;
+use super::mistake::FileMistake;
 use super::nearest::Nearest;
 use super::screen::{self, Screen};
 use super::tables;
@@ -122,27 +122,27 @@ impl<T> Profile<T> {
     }
 
     /// The bundled profile of a name, or the profile in a file.
-    fn named(&self, name: &str, files: &dyn Files) -> Result<T, Mistake> {
+    fn named(&self, name: &str, files: &dyn Files) -> Result<T, FileMistake> {
         let what = self.field.name;
         if !is_file_name(name) {
             let nearest = || Nearest::new(name, self.bundled_names.iter().copied());
-            return (self.bundled)(name).ok_or_else(|| Mistake::UnknownProfile {
+            return (self.bundled)(name).ok_or_else(|| FileMistake::UnknownProfile {
                 what,
                 found: name.to_owned(),
                 nearest: nearest(),
             });
         }
-        let unusable = |reason: String| Mistake::FileUnusable { what, file: name.to_owned(), reason };
+        let unusable = |reason: String| FileMistake::FileUnusable { what, file: name.to_owned(), reason };
         let bytes = files.bytes(name).map_err(|unavailable| match unavailable {
             FileUnavailable::Unreadable { reason } => unusable(format!("it cannot be read ({reason})")),
-            FileUnavailable::Missing { place, files } => Mistake::FileMissing {
+            FileUnavailable::Missing { place, files } => FileMistake::FileMissing {
                 what,
                 file: name.to_owned(),
                 folder: place,
                 nearest: Nearest::file(file_name(name), &files),
             },
         })?;
-        let text = String::from_utf8(bytes).map_err(|_| unusable(Mistake::NotUtf8.to_string()))?;
+        let text = String::from_utf8(bytes).map_err(|_| unusable(FileMistake::NotUtf8.to_string()))?;
         (self.parse)(&text, name).map_err(|mistakes| unusable(mistakes.replace('\n', "; ")))
     }
 }

@@ -37,6 +37,8 @@ pub struct Program {
     pub half_period_ticks: u32,
     /// The finger that the program is compiled for.
     pub finger: PlayedFinger,
+    /// Whether friction out of reach is clamped because the scene says so: `saturate = true`.
+    pub saturates: bool,
     /// The mistakes for which a board refuses the scene. Empty unless the program is a draft, see
     /// [`compile_draft`](super::compile_draft).
     pub refusals: Vec<Located>,

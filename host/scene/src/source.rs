@@ -108,25 +108,22 @@ impl Source {
     }
 }
 
-/// The path of a file that the file at `path` calls `name`, without `.` and, where that is possible, without `..`. An
-/// absolute name stays as it is.
+/// The path of a file that the file at `path` calls `name`, without `.` and, where that is possible, without `..`, so
+/// that one file has one path. An absolute name does not depend on `path`.
 pub(super) fn joined(path: &str, name: &str) -> String {
     let is_absolute = name.starts_with(['/', '\\']) || name.get(1..2) == Some(":");
-    let folder = path.strip_suffix(file_name(path)).unwrap_or_default();
-    if is_absolute {
-        return name.to_owned();
-    }
+    let folder = if is_absolute { "" } else { path.strip_suffix(file_name(path)).unwrap_or_default() };
     let mut parts: Vec<&str> = Vec::new();
-    for part in folder.split('/').filter(|part| !part.is_empty()).chain(name.split('/')) {
+    for part in folder.split('/').chain(name.split('/')) {
         match part {
-            "." => {}
+            "" | "." => {}
             ".." if parts.last().is_some_and(|last| *last != "..") => {
                 parts.pop();
             }
             part => parts.push(part),
         }
     }
-    let root = if folder.starts_with('/') { "/" } else { "" };
+    let root = if folder.starts_with('/') || name.starts_with('/') { "/" } else { "" };
     format!("{root}{}", parts.join("/"))
 }
 
@@ -160,6 +157,11 @@ impl Places {
     pub(super) fn first_of(&self, fields: [&'static str; 3]) -> &'static str {
         let [first, ..] = fields;
         fields.into_iter().find(|field| self.has(field)).unwrap_or(first)
+    }
+
+    /// Whether the file has a field whose name ends in a unit.
+    pub(super) fn has_unit(&self, unit: &str) -> bool {
+        self.fields.iter().any(|(name, _)| name.ends_with(unit))
     }
 
     /// Whether the file has the field.

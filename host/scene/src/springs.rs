@@ -7,7 +7,7 @@
 use frixel_model::{Contact, ContactModel, Finger, SoftFinger};
 
 use super::finger::{Elasticity, FingerProfile};
-use super::mistake::Mistake;
+use super::mistake::FitMistake;
 
 /// Largest deviation of springs from a soft finger that is played, as a part of the reachable electric friction. For
 /// the example finger this is 6.5 mN of 250 mN, a quarter of the smallest step of friction that is felt (11 %,
@@ -31,7 +31,7 @@ pub(super) struct Springs {
 
 impl Springs {
     /// The springs for a finger on an effective gap, at voltages up to the largest.
-    pub(super) fn of(profile: &FingerProfile, gap_m: f64, voltage_max_v_rms: f64) -> Result<Self, Mistake> {
+    pub(super) fn of(profile: &FingerProfile, gap_m: f64, voltage_max_v_rms: f64) -> Result<Self, FitMistake> {
         match profile.elasticity {
             Elasticity::WinklerFuss { stiffness_pa_per_m } => Ok(Self { stiffness_pa_per_m, deviation: 0.0 }),
             Elasticity::Soft { modulus_pa, stress_exponent, shape_constant } => {
@@ -42,7 +42,7 @@ impl Springs {
                     shape_constant,
                     friction_coefficient: profile.friction_coefficient,
                 };
-                let springs = fit(profile, &finger, gap_m, voltage_max_v_rms).ok_or_else(|| Mistake::Model {
+                let springs = fit(profile, &finger, gap_m, voltage_max_v_rms).ok_or_else(|| FitMistake::Model {
                     reason: "no springs have the friction of this soft finger at the largest voltage".to_owned(),
                 })?;
                 Ok(springs)
@@ -51,9 +51,9 @@ impl Springs {
     }
 
     /// The mistake of springs that differ too much from their soft finger.
-    pub(super) fn mistake(&self) -> Option<Mistake> {
+    pub(super) fn mistake(&self) -> Option<FitMistake> {
         let found_percent = 100.0 * self.deviation;
-        let mistake = Mistake::SoftFinger { found_percent, max_percent: 100.0 * DEVIATION_MAX };
+        let mistake = FitMistake::SoftFinger { found_percent, max_percent: 100.0 * DEVIATION_MAX };
         (self.deviation > DEVIATION_MAX).then_some(mistake)
     }
 }

@@ -4,14 +4,14 @@ use std::sync::LazyLock;
 
 use toml::de::DeTable;
 
+use super::defaults;
 use super::fields::{Fields, PixelSize, overlaid};
 use super::file::Version;
 use super::grammar::KnownField;
 use super::kinds::Kind;
 use super::layer::Layer;
 use super::log::Log;
-use super::mistake::Mistake;
-use super::nearest::Nearest;
+use super::mistake::FileMistake;
 use super::schema::variant::known_layer_fields;
 use super::tables;
 
@@ -24,60 +24,67 @@ struct Part<'i> {
     defaults: DeTable<'i>,
 }
 
-/// The tables of the layers of all files of a scene, from bottom to top, with their defaults; `files` are the fields of
-/// the files, the scene file's first.
-pub(super) fn layer_tables<'i>(files: &mut [Fields<'i>], version: Version, log: &mut Log) -> Vec<Fields<'i>> {
-    let parts = files.iter_mut().map(|fields| part(fields, version, log)).collect::<Vec<Part<'i>>>();
-    let mut stacked = Vec::new();
-    stack(0, &parts, log, &mut stacked);
-    let mut parts: Vec<Option<Part>> = parts.into_iter().map(Some).collect();
-    let mut tables = Vec::new();
-    for (number, defaults) in stacked {
-        let part = parts.get_mut(number).and_then(Option::take);
-        tables.extend(part.into_iter().flat_map(|part| part.layers).map(|layer| layer.with_defaults(&defaults)));
-    }
-    tables
+/// The tables of the layers of all files of a scene.
+pub(super) struct LayerTables<'i> {
+    /// From bottom to top, with their defaults.
+    layers: Vec<Fields<'i>>,
+    /// The defaults of each file.
+    defaults: Vec<DeTable<'i>>,
 }
 
-/// Reads the layers of a scene, from bottom to top, without those that have mistakes. `pixel_mm` is the size of a pixel
-/// of the scene's design, if it has one.
-pub(super) fn layers(tables: Vec<Fields>, version: Version, pixel_mm: Option<PixelSize>, log: &mut Log) -> Vec<Layer> {
-    // Read every layer, so that the mistakes of all are reported.
-    let mut layers = Vec::new();
-    for (number, table) in (1..).zip(tables) {
-        let mistakes = log.mistakes();
-        let copies = Layer::read(table.with_pixels(pixel_mm), number, log);
-        layers.extend(copies.filter(|_| log.mistakes() == mistakes).into_iter().flatten());
+impl<'i> LayerTables<'i> {
+    /// Takes the tables out of the fields of a scene's files, the scene file's first.
+    pub(super) fn of(files: &mut [Fields<'i>], version: Version, log: &mut Log) -> Self {
+        let mut misspelt = Vec::new();
+        let parts: Vec<Part<'i>> = files.iter_mut().map(|fields| part(fields, version, &mut misspelt, log)).collect();
+        let mut stacked = Vec::new();
+        stack(0, &parts, log, &mut stacked);
+        let own_defaults = parts.iter().map(|part| part.defaults.clone()).collect();
+        let mut parts: Vec<Option<Part>> = parts.into_iter().map(Some).collect();
+        let mut layers = Vec::new();
+        for (number, defaults) in stacked {
+            let part = parts.get_mut(number).and_then(Option::take);
+            let tables = part.into_iter().flat_map(|part| part.layers);
+            layers.extend(tables.map(|layer| layer.with_defaults(&defaults, &misspelt)));
+        }
+        Self { layers, defaults: own_defaults }
     }
-    for layer in &mut layers {
-        settle(layer, version, log);
+
+    /// The paths from the scene file's folder of all pictures that layers name, those of layers with mistakes included.
+    pub(super) fn pictures(&self, log: &Log) -> Vec<String> {
+        let named = self.layers.iter().filter_map(|layer| layer.raw_text("picture"));
+        named.map(|(offset, name)| log.source().path_at(offset, &name)).collect()
     }
-    check_names(&layers, log);
-    layers
+
+    /// Reads the layers, from bottom to top, without those that have mistakes. `pixel_mm` is the size of a pixel of the
+    /// scene's design, if it has one.
+    pub(super) fn read(self, version: Version, pixel_mm: Option<PixelSize>, log: &mut Log) -> Vec<Layer> {
+        // Read every layer, so that the mistakes of all are reported.
+        let mut layers = Vec::new();
+        for (number, table) in (1..).zip(self.layers) {
+            let mistakes = log.mistakes();
+            let copies = Layer::read(table.with_pixels(pixel_mm), number, log);
+            layers.extend(copies.filter(|_| log.mistakes() == mistakes).into_iter().flatten());
+        }
+        for layer in &mut layers {
+            settle(layer, version, log);
+        }
+        check_names(&layers, log);
+        for defaults in &self.defaults {
+            defaults::check_values(defaults, pixel_mm, log);
+        }
+        layers
+    }
 }
 
-fn part<'i>(fields: &mut Fields<'i>, version: Version, log: &mut Log) -> Part<'i> {
+fn part<'i>(fields: &mut Fields<'i>, version: Version, misspelt: &mut Vec<String>, log: &mut Log) -> Part<'i> {
     let defaults = match version {
         Version::One => None,
         Version::Two => fields.table(log, &tables::scene::DEFAULTS),
     };
     let defaults = defaults.map(Fields::into_values).unwrap_or_default();
-    check_defaults(&defaults, log);
+    misspelt.extend(defaults::check_names(&defaults, log));
     Part { layers: fields.tables(log, &tables::scene::LAYER).unwrap_or_default(), defaults }
-}
-
-/// Refuses defaults that no kind of layer has.
-fn check_defaults(defaults: &DeTable, log: &mut Log) {
-    for name in defaults.keys() {
-        let (place, field) = (name.span().start, name.get_ref());
-        if *field == tables::layer::NAME.name {
-            log.add(place, Mistake::NoDefault { field: tables::layer::NAME.name });
-        } else if !LAYER_FIELDS.iter().any(|known| *field == known.field.name) {
-            let nearest = Nearest::new(field, LAYER_FIELDS.iter().map(|known| known.field.name));
-            let field = field.clone().into_owned();
-            log.add(place, Mistake::UnknownField { field, table: "[defaults]".to_owned(), nearest });
-        }
-    }
 }
 
 /// The numbers of the files from bottom to top, from those that file `number` includes to itself, each with the
@@ -115,7 +122,10 @@ fn check_names(layers: &[Layer], log: &mut Log) {
         let twin = below.filter(|other| other.name == layer.name).find(|other| source.number_at(place(other)) != here);
         if let (Some(other), Some(name)) = (twin, layer.name.clone()) {
             let file = source.name_at(place(layer)).to_owned();
-            log.add(place(layer), Mistake::NameTwice { name, file, other: source.name_at(place(other)).to_owned() });
+            log.add(
+                place(layer),
+                FileMistake::NameTwice { name, file, other: source.name_at(place(other)).to_owned() },
+            );
         }
     }
 }

@@ -7,9 +7,10 @@ use frixel_layers::{Cell, layer_numbers, layer_set};
 
 use super::file::Scene;
 use super::log::Log;
-use super::mistake::Mistake;
+use super::mistake::FitMistake;
 use super::program::Program;
 use super::reference::Shape;
+use super::titles::listed;
 
 /// Reports a mistake if the longest tick is estimated at more than `cycles_max`. Its position is that of the topmost
 /// layer at the place.
@@ -31,7 +32,7 @@ pub(super) fn check(scene: &Scene, program: &Program, cycles_max: u32, log: &mut
         layers.iter().filter_map(|number| program.titles.get(*number)).map(String::as_str).collect();
     let topmost = scene.layers.iter().rfind(|layer| titles.last().is_some_and(|title| *title == layer.title));
     let cycles = worst.cycles();
-    let mistake = Mistake::TickTooLong { cycles, cycles_max, layers: titles.join(" and "), meet, x_mm, y_mm };
+    let mistake = FitMistake::TickTooLong { cycles, cycles_max, layers: listed(&titles), meet, x_mm, y_mm };
     log.add(topmost.map_or(0, |layer| layer.places.table()), mistake);
 }
 

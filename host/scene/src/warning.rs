@@ -1,17 +1,20 @@
 //! Warnings: a program that can be played, but that asks for what the model or the finger's profile does not cover, or
 //! that is probably not what its author means.
 
-use frixel_layers::Interval;
+use frixel_layers::{Blend, Interval};
 use serde::Serialize;
 use thiserror::Error;
 
-use super::cover::excesses;
+use super::cover::{PLACES_MAX, excesses};
 use super::excess::digits;
 use super::file::Scene;
 use super::finger::Evidence;
+use super::kinds::Kind;
+use super::layer::Layer;
 use super::program::Program;
 use super::reach::{ROUNDING, Reach, loaded_contact};
 use super::reference::Reference;
+use super::titles::listed;
 
 /// A reason to doubt a program. Its text is one sentence for the scene's designer.
 #[derive(Clone, Debug, PartialEq, Error, Serialize)]
@@ -80,6 +83,36 @@ pub enum Warning {
         /// `width` or `height`.
         direction: &'static str,
     },
+    /// The line of an edge without a region crosses a scene of layers with regions.
+    #[error("{layer} has no `region`, so that its line crosses the whole screen: give it one to end the line there")]
+    EdgeAcrossScreen {
+        /// The layer.
+        layer: String,
+    },
+    /// A layer without a region hides layers below it everywhere.
+    #[error(
+        "{layer} has no `region`, so that it replaces {hidden} on the whole screen: give it a `region`, or a `blend` such \
+         as \"add\""
+    )]
+    HidesAllBelow {
+        /// The layer.
+        layer: String,
+        /// The layers that are not felt anywhere.
+        hidden: String,
+    },
+    /// Two layers of one file have the same name.
+    #[error(
+        "{layer} has the name of layer {lower}, which is the one that `--control` changes by this name: give it \
+         another name, or call it {number}"
+    )]
+    NameTwice {
+        /// The upper layer.
+        layer: String,
+        /// Its number.
+        number: String,
+        /// The number of the lower layer.
+        lower: String,
+    },
 }
 
 /// A picture that is stretched by more than this is warned of.
@@ -107,6 +140,48 @@ impl Warning {
     pub fn is_refused_by_boards(&self) -> bool {
         matches!(self, Self::BeyondMeasuredVoltage { .. } | Self::BeyondMeasuredLoad { .. })
     }
+}
+
+/// The warnings of layers that their author probably means otherwise.
+pub(super) fn of_layers(layers: &[Layer]) -> Vec<Warning> {
+    let edges = layers.iter().enumerate().filter_map(|(number, layer)| {
+        let is_crossing = matches!(layer.kind, Kind::Edge(_)) && layer.region.is_none() && !layer.is_copy;
+        let crosses = layers.iter().take(number).any(|below| below.region.is_some());
+        (is_crossing && crosses).then(|| Warning::EdgeAcrossScreen { layer: layer.title.clone() })
+    });
+    edges.chain(hiding(layers)).chain(same_names(layers)).collect()
+}
+
+/// The warning of the topmost layer that hides all layers below it, if there is one.
+fn hiding(layers: &[Layer]) -> Option<Warning> {
+    let hides = |layer: &Layer| {
+        let is_always_there = !layer.live && !matches!(layer.kind, Kind::Stream(_));
+        let is_everywhere = layer.region.is_none() && layer.kind.fills_screen();
+        layer.blend == Blend::Replace && is_everywhere && is_always_there
+    };
+    let number = layers.iter().rposition(hides).filter(|number| *number > 0)?;
+    let layer = layers.get(number)?;
+    let hidden: Vec<&str> = layers.iter().take(number).map(|below| below.title.as_str()).collect();
+    Some(Warning::HidesAllBelow { layer: layer.title.clone(), hidden: listed(&hidden) })
+}
+
+/// The warnings of layers that have the name of a lower one. Of the copies of a layer, the first one is warned of.
+fn same_names(layers: &[Layer]) -> impl Iterator<Item = Warning> {
+    let twin = |number: usize, layer: &Layer| {
+        let below = layers.iter().take(number).filter(|other| other.name.is_some() && other.name == layer.name);
+        below.map(|other| other.number).next()
+    };
+    let twins = layers.iter().enumerate().filter_map(move |(number, layer)| Some((layer, twin(number, layer)?)));
+    let mut warned = Vec::new();
+    twins.filter_map(move |(layer, lower)| {
+        let is_first = !warned.contains(&layer.number.table);
+        warned.push(layer.number.table);
+        is_first.then(|| Warning::NameTwice {
+            layer: layer.title.clone(),
+            number: layer.number.to_string(),
+            lower: lower.to_string(),
+        })
+    })
 }
 
 /// The warnings of a program.
@@ -146,7 +221,7 @@ fn demand_above(program: &Program, limit_n: f64) -> Option<f64> {
     let largest_n = if header.layers_fixed {
         let size_m = (f64::from(header.screen_width_m), f64::from(header.screen_height_m));
         let within = Interval { low: f64::NEG_INFINITY, high: limit_n };
-        let excesses = excesses(Reference::new(program).pieces(), size_m.0, size_m.1, within);
+        let excesses = excesses(Reference::new(program).pieces(), size_m.0, size_m.1, within, PLACES_MAX);
         excesses.iter().map(|excess| excess.found.high).fold(0.0, f64::max)
     } else {
         *electric_friction_max_n

@@ -29,7 +29,8 @@ mod threshold;
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, Parser, Subcommand};
+use clap::error::{ContextKind, ContextValue};
+use clap::{Args, CommandFactory, Parser, Subcommand};
 
 use error::CommandError;
 use stroke::StrokeArgs;
@@ -244,6 +245,21 @@ impl Cli {
             Some(Command::Report(args)) => report::run(&args),
         }
     }
+}
+
+/// The error of an invalid command line. A command that is part of another one is answered by its whole name:
+/// `frixel scene check` for `frixel check`.
+pub(crate) fn with_nested_tip(mut error: clap::Error) -> clap::Error {
+    let Some(ContextValue::String(found)) = error.get(ContextKind::InvalidSubcommand) else { return error };
+    let found = found.clone();
+    let cli = Cli::command();
+    let has_it = |group: &&clap::Command| group.get_subcommands().any(|command| command.get_name() == found);
+    if let Some(group) = cli.get_subcommands().find(has_it) {
+        let tip = format!("write `frixel {} {found}`", group.get_name());
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+        error.remove(ContextKind::SuggestedSubcommand);
+    }
+    error
 }
 
 /// Prints the error that ended a command.

@@ -1,11 +1,11 @@
 //! `frixel new`: a first scene, with a comment for every line.
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use frixel_scene::Screen;
+use frixel_scene::{Screen, check_picture};
 
 use super::error::CommandError;
 use super::terminal::print_line;
@@ -42,11 +42,11 @@ pub(super) fn run(args: &NewArgs) -> Result<(), CommandError> {
     ))
 }
 
-/// The path of a picture from the folder of the scene.
+/// The path from the folder of the scene of a picture that can be played.
 fn name_from(scene: &Path, picture: &Path) -> Result<String, CommandError> {
     let absolute = std::path::absolute(picture).map_err(CommandError::reading(picture))?;
-    // It says why the operating system cannot read it.
-    File::open(picture).map_err(CommandError::reading(picture))?;
+    let bytes = fs::read(picture).map_err(CommandError::reading(picture))?;
+    check_picture(&bytes).map_err(|reason| CommandError::Picture { path: picture.to_owned(), reason })?;
     let folder = scene.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let folder = std::path::absolute(folder).map_err(CommandError::reading(folder))?;
     let name = absolute.strip_prefix(&folder).unwrap_or(&absolute);

@@ -164,7 +164,47 @@ pub(super) const OPTIONS: &[Case] = &[
              leave it out",
         ..CASE
     },
+    Case {
+        what: "a part of another command",
+        run: "check s.toml",
+        code: 2,
+        says: "unrecognized subcommand 'check'\n\n  tip: write `frixel scene check`\n",
+        ..CASE
+    },
+    Case {
+        what: "a picture that is text",
+        files: &[("x.png", Content::Text("no picture"))],
+        run: "new s2 --picture x.png",
+        says: "x.png is no picture that can be played: it is neither a PNG nor a JPEG file: save it as PNG",
+        ..CASE
+    },
 ];
+
+/// Layers that change while they play: one, three copies of another, and bursts.
+const LIVE: &str = "[[layer]]\n\
+             name = \"OK\"\n\
+             kind = \"constant\"\n\
+             friction_n = 0.3\n\
+             region = { x_mm = 0, y_mm = 0, width_mm = 9, height_mm = 9 }\n\
+             live = true\n\
+             [[layer]]\n\
+             name = \"key\"\n\
+             kind = \"grating\"\n\
+             wavelength_mm = 4\n\
+             low_n = 0.01\n\
+             high_n = 0.1\n\
+             region = { x_mm = 20, y_mm = 0, width_mm = 9, height_mm = 9 }\n\
+             repeat = { columns = 3, dx_mm = 10 }\n\
+             live = true\n\
+             [[layer]]\n\
+             name = \"buzz\"\n\
+             kind = \"vibration\"\n\
+             frequency_hz = 80\n\
+             low_n = 0\n\
+             high_n = 0.01\n\
+             region = { x_mm = 0, y_mm = 20, width_mm = 9, height_mm = 9 }\n\
+             burst = { period_ms = 1000, on_ms = 400 }\n\
+             live = true\n";
 
 pub(super) const CONTROLS: &[Case] = &[
     Case {
@@ -189,8 +229,8 @@ pub(super) const CONTROLS: &[Case] = &[
         run: "play s.toml --control --seconds 0.1",
         stdin: "layer \"OK\" off\n",
         code: 0,
-        says: "line 1 of standard input: the scene has no layer \"OK\": give the name of a layer, or a number \
-             from 1 to 1",
+        says: "line 1 of standard input: the scene has no layer \"OK\": give the name of a layer, or its \
+             number, 1",
         ..CASE
     },
     Case {
@@ -291,6 +331,91 @@ pub(super) const CONTROLS: &[Case] = &[
         lines: 2,
         says: "b.toml:3:8: `kind = \"constat\"` is not known; did you mean `constant`?\nfrixel: b.toml is not \
              played: the previous scene keeps playing",
+        ..CASE
+    },
+    Case {
+        what: "a name in small letters",
+        scene: LIVE,
+        run: "play s.toml --control --seconds 0.1",
+        stdin: "layer \"ok\" off\n",
+        code: 0,
+        says: "line 1 of standard input: the scene has no layer \"ok\": did you mean \"OK\"?",
+        ..CASE
+    },
+    Case {
+        what: "the name of a layer with copies",
+        scene: LIVE,
+        run: "play s.toml --control --seconds 0.1",
+        stdin: "layer \"key\" off\n",
+        code: 0,
+        says: "line 1 of standard input: \"key\" is repeated: give one of its copies, \"key 1\" to \"key 3\"",
+        ..CASE
+    },
+    Case {
+        what: "the name of a layer with copies, misspelt",
+        scene: LIVE,
+        run: "play s.toml --control --seconds 0.1",
+        stdin: "layer \"kye\" off\n",
+        code: 0,
+        says: "line 1 of standard input: the scene has no layer \"kye\": did you mean one of \"key 1\" to \"key 3\"?",
+        ..CASE
+    },
+    Case {
+        what: "the number of a layer with copies",
+        scene: LIVE,
+        run: "play s.toml --control --seconds 0.1",
+        stdin: "layer 2 off\n",
+        code: 0,
+        says: "line 1 of standard input: \"2\" is repeated: give one of its copies, 2.1 to 2.3",
+        ..CASE
+    },
+    Case {
+        what: "a number that is too large",
+        scene: LIVE,
+        run: "play s.toml --control --seconds 0.1",
+        stdin: "layer 4 off\n",
+        code: 0,
+        says: "line 1 of standard input: the scene has no layer \"4\": give the name of a layer, or its number, 1 to 3",
+        ..CASE
+    },
+    Case {
+        what: "a gain above the reach",
+        scene: LIVE,
+        run: "play s.toml --control --seconds 0.1",
+        stdin: "layer 2.1 gain 5\n",
+        code: 0,
+        says: "line 1 of standard input: gain 5 is refused: layer 2.1 \"key 1\" would ask for up to 0.5 N above natural \
+             friction, and 0 to 0.1299 N can be reached; give a gain from 0 to 1.29",
+        ..CASE
+    },
+    Case {
+        what: "a gain below natural friction",
+        scene: LIVE,
+        run: "play s.toml --control --seconds 0.1",
+        stdin: "layer 2.1 gain -1\n",
+        code: 0,
+        says: "line 1 of standard input: gain -1 is refused: layer 2.1 \"key 1\" would ask for down to -0.1 N above natural \
+             friction, and 0 to 0.1299 N can be reached; give a gain from 0 to 1.29",
+        ..CASE
+    },
+    Case {
+        what: "a trigger of a layer that is on",
+        scene: LIVE,
+        run: "play s.toml --control --seconds 0.1",
+        stdin: "trigger OK\n",
+        code: 0,
+        says: "line 1 of standard input: layer \"OK\" is on, and a trigger plays a layer that is off: switch it off first, by \
+             `layer \"OK\" off`",
+        ..CASE
+    },
+    Case {
+        what: "a trigger between bursts",
+        scene: LIVE,
+        run: "play s.toml --control --seconds 0.1",
+        stdin: "layer buzz off\ntrigger buzz\n",
+        code: 0,
+        says: "line 2 of standard input: layer \"buzz\" comes in bursts, one every 1000 ms, so that a trigger of 100 ms may \
+             be silent: leave `burst` out in the file, or trigger it for 1000 ms or more",
         ..CASE
     },
 ];

@@ -131,6 +131,24 @@ pub(super) const PICTURES: &[Case] = &[
 
 pub(super) const PROFILES: &[Case] = &[
     Case {
+        what: "a bundled finger, misspelt",
+        scene: "[[layer]]\n\
+             kind = \"constant\"\n\
+             friction_fraction = 0.3\n",
+        run: "scene check s.toml --finger drie",
+        says: "drie: this finger cannot be read (No such file or directory (os error 2)): did you mean `dry`?",
+        ..CASE
+    },
+    Case {
+        what: "a bundled screen, misspelt",
+        scene: "[[layer]]\n\
+             kind = \"constant\"\n\
+             friction_fraction = 0.3\n",
+        run: "scene check s.toml --screen Exmple",
+        says: "Exmple: this screen cannot be read (No such file or directory (os error 2)): did you mean `example`?",
+        ..CASE
+    },
+    Case {
         what: "no such finger",
         run: "scene check s.toml --finger nobody",
         says: "nobody: this finger cannot be read (No such file or directory (os error 2)): give its file, or \

@@ -100,8 +100,8 @@ pub(super) const SCENES: &[Case] = &[
         scene: "[layer]\n\
              kind = \"constant\"\n\
              friction_n = 0.3\n",
-        says: "s.toml:2:1: `layer` has to be a list of tables, each with its name in double brackets, and this \
-             is a table",
+        says: "s.toml:2:1: `layer` has to be a list of tables, and this is a table: write `[[layer]]`, in double \
+             brackets, before the fields of each",
         ..CASE
     },
     Case {
@@ -258,9 +258,9 @@ pub(super) const SCENES: &[Case] = &[
              rim_n = 0.09\n\
              face_n = 0\n\
              click_n = 0.09\n",
-        says: "s.toml:7:9: layer 1 \"OK\", its rim and its click together, asks for up to 0.18 N above natural \
-             friction, and at 150 V rms this finger feels at most 0.1299 N above natural friction: lower it, \
-             raise `voltage_max_v_rms`, or write `saturate = true` under [drive] to have it clamped",
+        says: "s.toml:7:9: layer 1 \"OK\", its `rim_n = 0.09` and its `click_n = 0.09` together, asks for up to 0.18 N above \
+             natural friction, and at 150 V rms this finger feels at most 0.1299 N above natural friction: lower one of \
+             them, raise `voltage_max_v_rms` to 172, or write `saturate = true` under [drive] to have it clamped",
         ..CASE
     },
     Case {
@@ -269,7 +269,7 @@ pub(super) const SCENES: &[Case] = &[
         scene: "[[layer]]\n\
              kind = \"constant\"\n\
              friction_n = 0.3\n",
-        says: "s.toml:194:1: this is layer 65, and the board takes 64: leave some out or draw them into one \
+        says: "s.toml:194:1: the scene has 65 layers, and the board takes 64: leave some out or draw them into one \
              picture",
         ..CASE
     },
@@ -371,6 +371,182 @@ pub(super) const SCENES: &[Case] = &[
         what: "migrating a scene of version 2",
         run: "scene migrate s.toml",
         says: "s.toml:1:11: this scene has version 2 already: there is nothing to migrate",
+        ..CASE
+    },
+    Case {
+        what: "a region's fields straight in a layer",
+        scene: "[[layer]]\n\
+             kind = \"button\"\n\
+             x_mm = 10\n\
+             y_mm = 10\n\
+             width_mm = 20\n\
+             height_mm = 12.5\n\
+             rim_width_mm = 2\n\
+             rim_n = 0.02\n\
+             face_n = 0\n",
+        says: "s.toml:4:1: `x_mm`, `y_mm`, `width_mm` and `height_mm` in layer 1 (button) belong in `region`: write `region = \
+             { x_mm = 10, y_mm = 10, width_mm = 20, height_mm = 12.5 }`",
+        ..CASE
+    },
+    Case {
+        what: "a region as a list",
+        scene: "[[layer]]\n\
+             kind = \"constant\"\n\
+             region = [5, 10, 20.5, 30]\n\
+             friction_n = 0.3\n",
+        says: "s.toml:4:10: `region` has to be a table, and this is a list: write `region = { x_mm = 5, y_mm = 10, width_mm \
+             = 20.5, height_mm = 30 }`",
+        ..CASE
+    },
+    Case {
+        what: "[layer] twice",
+        scene: "[layer]\n\
+             kind = \"constant\"\n\
+             friction_n = 0.3\n\
+             [layer]\n\
+             kind = \"constant\"\n\
+             friction_n = 0.3\n",
+        says: "s.toml:5:2: this is not TOML: duplicate key; write `[[layer]]`, in double brackets, before the fields of each \
+             layer",
+        ..CASE
+    },
+    Case {
+        what: "saturate at the top",
+        scene: "saturate = true\n\
+             [[layer]]\n\
+             kind = \"constant\"\n\
+             friction_n = 0.9\n",
+        says: "s.toml:2:1: `saturate` in the scene belongs to [drive]: write it below a line `[drive]`",
+        ..CASE
+    },
+    Case {
+        what: "saturate in a layer",
+        scene: "[[layer]]\n\
+             kind = \"constant\"\n\
+             friction_n = 0.9\n\
+             saturate = true\n",
+        says: "s.toml:5:1: `saturate` in layer 1 (constant) belongs to [drive]: write it below a line `[drive]`",
+        ..CASE
+    },
+    Case {
+        what: "a number of copies",
+        scene: "[[layer]]\n\
+             kind = \"constant\"\n\
+             friction_n = 0.3\n\
+             repeat = 11\n",
+        says: "s.toml:5:10: `repeat` has to be a table, and this is a number: write `repeat = { columns = 11, dx_mm = 10 }`, \
+             with the distance from a copy to the next",
+        ..CASE
+    },
+    Case {
+        what: "a button without the friction of its face",
+        scene: "[[layer]]\n\
+             kind = \"button\"\n\
+             region = { x_mm = 0, y_mm = 0, width_mm = 20, height_mm = 20 }\n\
+             rim_width_mm = 2\n\
+             rim_fraction = 0.8\n",
+        says: "s.toml:2:1: layer 1 (button) has no `face_n` or `face_fraction`: add one of them",
+        ..CASE
+    },
+    Case {
+        what: "a kind in capitals",
+        scene: "[[layer]]\n\
+             kind = \"CONSTANT\"\n\
+             friction_n = 0.3\n",
+        says: "s.toml:3:8: `kind = \"CONSTANT\"` is not known; did you mean `constant`?",
+        ..CASE
+    },
+    Case {
+        what: "a field in capitals",
+        scene: "[[layer]]\n\
+             kind = \"constant\"\n\
+             Friction_N = 0.3\n",
+        says: "s.toml:4:1: unknown field `Friction_N` in layer 1 (constant); did you mean `friction_n`?",
+        ..CASE
+    },
+    Case {
+        what: "a face and a click out of reach",
+        scene: "[[layer]]\n\
+             name = \"OK\"\n\
+             kind = \"button\"\n\
+             region = { x_mm = 0, y_mm = 0, width_mm = 20, height_mm = 20 }\n\
+             rim_width_mm = 2\n\
+             rim_fraction = 0.2\n\
+             face_fraction = 0.8\n\
+             click_fraction = 0.5\n",
+        says: "s.toml:8:17: layer 1 \"OK\", its `face_fraction = 0.8` and its `click_fraction = 0.5` together, asks for up to \
+             0.169 N above natural friction (1.3 of the reach), and at 150 V rms this finger feels at most 0.1299 N above \
+             natural friction: lower one of them, or write `saturate = true` under [drive] to have it clamped",
+        ..CASE
+    },
+    Case {
+        what: "copies that are too many",
+        scene: "[[layer]]\n\
+             name = \"key\"\n\
+             kind = \"constant\"\n\
+             friction_n = 0.3\n\
+             region = { x_mm = 0, y_mm = 0, width_mm = 1, height_mm = 1 }\n\
+             repeat = { columns = 33, rows = 2, dx_mm = 2, dy_mm = 2 }\n",
+        says: "s.toml:2:1: the scene has 66 layers, each copy of a `repeat` counted, and the board takes 64: leave some out \
+             or draw them into one picture",
+        ..CASE
+    },
+    Case {
+        what: "detents whose time is too long",
+        scene: "[[layer]]\n\
+             name = \"detent\"\n\
+             kind = \"edge\"\n\
+             x_mm = 20\n\
+             y_mm = 10\n\
+             width_mm = 2\n\
+             ridge_fraction = 0.3\n\
+             repeat = { columns = 11, dx_mm = 8 }\n",
+        says: "s.toml:2:1: layer 1.1 \"detent 1\" with 10 more copies meet at x",
+        ..CASE
+    },
+    Case {
+        what: "three files in a circle",
+        scene: "include = [\"a.toml\"]\n",
+        files: &[
+            ("a.toml", Content::Text("version = 2\ninclude = [\"./b.toml\"]\n")),
+            ("b.toml", Content::Text("version = 2\ninclude = [\"s.toml\"]\n")),
+        ],
+        says: "b.toml:2:12: b.toml includes s.toml, which includes a.toml, which includes b.toml itself: take one of them \
+             out",
+        ..CASE
+    },
+    Case {
+        what: "one file by two names",
+        scene: "include = [\"a.toml\", \".//a.toml\"]\n",
+        files: &[("a.toml", Content::Text("version = 2\n"))],
+        says: "s.toml:2:22: a.toml is included by s.toml and by s.toml: a scene includes each file once, so leave one of \
+             them out",
+        ..CASE
+    },
+    Case {
+        what: "an included file of a later version",
+        scene: "include = [\"a.toml\"]\n",
+        files: &[("a.toml", Content::Text("version = 3\n"))],
+        says: "a.toml:1:11: s.toml includes a.toml, which has version 3 and not 2: use a frixel that knows it",
+        ..CASE
+    },
+    Case {
+        what: "a default that no layer uses, and that no kind takes",
+        scene: "[defaults]\n\
+             face_fraction = 30\n",
+        says: "s.toml:3:17: `face_fraction = 30` is out of range: expected -1 to 1",
+        ..CASE
+    },
+    Case {
+        what: "a misspelt default of a field that layers need",
+        scene: "[defaults]\n\
+             face_fracion = 0.3\n\
+             [[layer]]\n\
+             kind = \"button\"\n\
+             region = { x_mm = 0, y_mm = 0, width_mm = 20, height_mm = 20 }\n\
+             rim_width_mm = 2\n\
+             rim_fraction = 0.8\n",
+        says: "s.toml:3:1: unknown field `face_fracion` in [defaults]; did you mean `face_fraction`?",
         ..CASE
     },
 ];

@@ -22,8 +22,8 @@ const CELL_MIN_M: f64 = 1e-6;
 const PLACES_PER_SIDE_MAX: f64 = 256.0;
 /// Places that are evaluated along each side of a cell that an outline crosses.
 const PLACES_PER_OUTLINE: f64 = 64.0;
-/// Most places that are evaluated in a scene.
-const PLACES_MAX: usize = 1_000_000;
+/// Most places that are evaluated in a scene that is compiled.
+pub(super) const PLACES_MAX: usize = 1_000_000;
 
 /// Bare glass.
 pub(super) const ZERO: Interval<f64> = Interval { low: 0.0, high: 0.0 };
@@ -52,13 +52,20 @@ struct Stack {
     outlined: bool,
 }
 
-/// All sets of layers that exceed `reach`, or may exceed it, somewhere on a screen of this size.
-pub(super) fn excesses(pieces: &[Piece], width_m: f64, height_m: f64, reach: Interval<f64>) -> Vec<Excess> {
+/// All sets of layers that exceed `reach`, or may exceed it, somewhere on a screen of this size. At most `places_max`
+/// places are evaluated.
+pub(super) fn excesses(
+    pieces: &[Piece],
+    width_m: f64,
+    height_m: f64,
+    reach: Interval<f64>,
+    places_max: usize,
+) -> Vec<Excess> {
     let bounds: Vec<[f64; 4]> = pieces.iter().map(|piece| piece.shape.bounds_m()).collect();
     let columns = edges(width_m, bounds.iter().flat_map(|[left_m, _, right_m, _]| [*left_m, *right_m]));
     let rows = edges(height_m, bounds.iter().flat_map(|[_, top_m, _, bottom_m]| [*top_m, *bottom_m]));
     let mut worst: BTreeMap<Vec<usize>, Excess> = BTreeMap::new();
-    let mut places_left = PLACES_MAX;
+    let mut places_left = places_max;
     for row in rows.windows(2) {
         for column in columns.windows(2) {
             let cell = Cell { left_m: column[0], top_m: row[0], right_m: column[1], bottom_m: row[1] };
@@ -92,7 +99,7 @@ fn edges(screen_m: f64, layers: impl Iterator<Item = f64>) -> Vec<f64> {
 impl Stack {
     fn of(pieces: &[Piece], cell: Cell) -> Self {
         let mut stack = Self { layers: Vec::new(), bound: ZERO, doubts: 0, outlined: false };
-        for (number, piece) in pieces.iter().enumerate() {
+        for (number, piece) in pieces.iter().enumerate().filter(|(_, piece)| piece.is_on) {
             let coverage = Coverage::of(&piece.shape, cell);
             if coverage == Coverage::None {
                 continue;

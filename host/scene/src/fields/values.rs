@@ -7,7 +7,7 @@ use super::Fields;
 use crate::excess::digits;
 use crate::grammar::{Absence, Axis, FieldSpec, Holds, LengthFields, Range};
 use crate::log::Log;
-use crate::mistake::Mistake;
+use crate::mistake::FieldMistake;
 use crate::nearest::Nearest;
 
 /// A table, or the name of a file that contains it.
@@ -23,7 +23,7 @@ impl<'i> Fields<'i> {
         let value = self.take(field)?;
         let found = number(log, field.name, range, &value)?;
         if matches!(field.holds, Holds::Whole(_)) && found.fract().abs() > 0.0 {
-            log.add(self.places.field(field.name), Mistake::NotWhole { field: field.name, found });
+            log.add(self.places.field(field.name), FieldMistake::NotWhole { field: field.name, found });
             return None;
         }
         Some(found)
@@ -48,7 +48,7 @@ impl<'i> Fields<'i> {
         let mistake = match nearest.filter(|nearest| nearest.suggestion.is_some()) {
             Some(nearest) => {
                 let found = found.as_str().unwrap_or_default().to_owned();
-                Mistake::UnknownChoice { field: field.name, found, nearest }
+                FieldMistake::UnknownChoice { field: field.name, found, nearest }
             }
             None => wrong_type(field.name, "a number or \"auto\"", found),
         };
@@ -89,7 +89,7 @@ impl<'i> Fields<'i> {
         self.either(one, other);
         let has_other = self.has(other.name);
         if self.has(one.name) && has_other {
-            log.add(self.place(other.name), Mistake::TwoUnits { one: one.name, other: other.name });
+            log.add(self.place(other.name), FieldMistake::TwoUnits { one: one.name, other: other.name });
         }
         if one.absence == Absence::Mistake && !has_other {
             self.require(one);
@@ -109,7 +109,7 @@ impl<'i> Fields<'i> {
         found_px: f64,
     ) -> Option<f64> {
         let Some(pixel) = self.pixel_mm else {
-            log.add(place, Mistake::NoDesign { field });
+            log.add(place, FieldMistake::NoDesign { field });
             return None;
         };
         let pixel_mm = pixel.along(axis);
@@ -118,7 +118,7 @@ impl<'i> Fields<'i> {
             return Some(found_mm);
         }
         let (min, max) = (digits(range.min / pixel_mm, f64::ceil), digits(range.max / pixel_mm, f64::floor));
-        log.add(place, Mistake::OutOfRange { field, found: found_px, min, max, unit: " px" });
+        log.add(place, FieldMistake::OutOfRange { field, found: found_px, min, max, unit: " px" });
         None
     }
 
@@ -190,7 +190,7 @@ impl<'i> Fields<'i> {
             return Some(Ok(*choice));
         }
         let nearest = Nearest::new(&found, choices.iter().map(|(word, _)| *word));
-        log.add(self.places.field(name), Mistake::UnknownChoice { field: name, found, nearest: nearest.clone() });
+        log.add(self.places.field(name), FieldMistake::UnknownChoice { field: name, found, nearest: nearest.clone() });
         Some(Err(nearest))
     }
 
@@ -201,7 +201,7 @@ impl<'i> Fields<'i> {
         match value.into_inner() {
             DeValue::Table(values) => Some(self.of_field(&format!("[{name}]"), name, offset, values)),
             other => {
-                log.add(offset, wrong_type(name, "a table", &other));
+                log.add(offset, not_a_table(name, &other));
                 None
             }
         }
@@ -233,7 +233,7 @@ impl<'i> Fields<'i> {
                 return Some(vec![self.of_field(&format!("[{name}]"), name, offset, values)]);
             }
             other => {
-                log.add(offset, wrong_type(name, "a list of tables, each with its name in double brackets", &other));
+                log.add(offset, FieldMistake::NotTables { field: name, found: type_of(&other) });
                 return None;
             }
         };
@@ -244,7 +244,7 @@ impl<'i> Fields<'i> {
                 DeValue::Table(values) => {
                     tables.push(self.of_field(&format!("[[{name}]]"), name, offset, values));
                 }
-                other => log.add(offset, wrong_type(name, "a list of tables", &other)),
+                other => log.add(offset, FieldMistake::NotTables { field: name, found: type_of(&other) }),
             }
         }
         Some(tables)
@@ -275,13 +275,13 @@ impl<'i> Fields<'i> {
         let list = self.list(log, field, EXPECTED)?;
         let offset = self.places.field(field.name);
         let [low, high] = &list[..] else {
-            log.add(offset, Mistake::Count { field: field.name, found: list.len(), min: 2, max: 2 });
+            log.add(offset, FieldMistake::Count { field: field.name, found: list.len(), min: 2, max: 2 });
             return None;
         };
         let (low, high) = (number(log, field.name, range, low), number(log, field.name, range, high));
         let (low, high) = (low?, high?);
         if low > high {
-            log.add(offset, Mistake::IntervalReversed { field: field.name, low, high });
+            log.add(offset, FieldMistake::IntervalReversed { field: field.name, low, high });
             return None;
         }
         Some([low, high])
@@ -335,18 +335,49 @@ fn number(log: &mut Log, field: &'static str, range: Range, value: &Spanned<DeVa
     if found >= range.min && found <= range.max {
         return Some(found);
     }
-    log.add(offset, Mistake::OutOfRange { field, found, min: range.min, max: range.max, unit: range.unit });
+    log.add(offset, FieldMistake::OutOfRange { field, found, min: range.min, max: range.max, unit: range.unit });
     None
 }
 
-fn wrong_type(field: &'static str, expected: &'static str, found: &DeValue) -> Mistake {
-    let found = match found {
+fn wrong_type(field: &'static str, expected: &'static str, found: &DeValue) -> FieldMistake {
+    FieldMistake::WrongType { field, expected, found: type_of(found) }
+}
+
+fn type_of(value: &DeValue) -> &'static str {
+    match value {
         DeValue::String(_) => "a text",
         DeValue::Integer(_) | DeValue::Float(_) => "a number",
         DeValue::Boolean(_) => "`true` or `false`",
         DeValue::Datetime(_) => "a date",
         DeValue::Array(_) => "a list",
         DeValue::Table(_) => "a table",
+    }
+}
+
+/// The mistake of a value in place of a table, with the table that it may stand for.
+fn not_a_table(field: &'static str, found: &DeValue) -> FieldMistake {
+    let write = match field {
+        "region" => {
+            let [x, y, width, height] = four_numbers(found).unwrap_or(["10", "10", "40", "20"].map(str::to_owned));
+            format!("`region = {{ x_mm = {x}, y_mm = {y}, width_mm = {width}, height_mm = {height} }}`")
+        }
+        "repeat" => {
+            let columns = found.as_integer().map_or("3", |columns| columns.as_str());
+            format!("`repeat = {{ columns = {columns}, dx_mm = 10 }}`, with the distance from a copy to the next")
+        }
+        "burst" => "`burst = { period_ms = 1000, on_ms = 400 }`".to_owned(),
+        _ => format!("`[{field}]` on a line of its own, and its fields below it"),
     };
-    Mistake::WrongType { field, expected, found }
+    FieldMistake::NotATable { field, found: type_of(found), write }
+}
+
+/// The numbers of a list of four, as written.
+fn four_numbers(list: &DeValue) -> Option<[String; 4]> {
+    let number = |value: &Spanned<DeValue>| match value.get_ref() {
+        DeValue::Integer(integer) => Some(integer.as_str().to_owned()),
+        DeValue::Float(float) => Some(float.as_str().to_owned()),
+        _ => None,
+    };
+    let numbers: Option<Vec<String>> = list.as_array()?.iter().map(number).collect();
+    numbers?.try_into().ok()
 }

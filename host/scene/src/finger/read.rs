@@ -4,7 +4,7 @@ use super::{Elasticity, Evidence, Experiment, FingerProfile, Origin};
 use crate::fields::Fields;
 use crate::grammar::FieldSpec;
 use crate::log::Log;
-use crate::mistake::Mistake;
+use crate::mistake::FieldMistake;
 use crate::tables::finger as table;
 
 const MODELS: [(&str, bool); 2] = [("winkler-fuss", false), ("soft", true)];
@@ -90,7 +90,7 @@ fn date(fields: &mut Fields, log: &mut Log) -> Option<String> {
     let offset = fields.place(table::DATE.name);
     let date = fields.text(log, &table::DATE)?;
     if !is_date(&date) {
-        log.add(offset, Mistake::Date { found: date });
+        log.add(offset, FieldMistake::Date { found: date });
         return None;
     }
     Some(date)
@@ -100,7 +100,7 @@ fn not_empty(fields: &mut Fields, field: &FieldSpec, log: &mut Log) -> Option<St
     let offset = fields.place(field.name);
     let text = fields.text(log, field)?;
     if text.trim().is_empty() {
-        log.add(offset, Mistake::EmptyText { field: field.name });
+        log.add(offset, FieldMistake::EmptyText { field: field.name });
         return None;
     }
     Some(text)

@@ -117,14 +117,18 @@ impl Words for Bitmap {
         Some(Self { picture, x_mm, y_mm, width_mm, height_mm, pitch_mm, levels, angle_deg, tiled, black, white })
     }
 
+    fn fills_screen(&self) -> bool {
+        self.tiled
+    }
+
     fn move_by(&mut self, x_mm: f64, y_mm: f64) {
         self.x_mm = self.x_mm.map(|place_mm| place_mm + x_mm);
         self.y_mm = self.y_mm.map(|place_mm| place_mm + y_mm);
     }
 
-    fn extreme(&self, most: bool, places: &Places) -> &'static str {
-        let white_is_most = !self.black.is_above(self.white);
-        let amount = if most == white_is_most { WHITE } else { BLACK };
+    fn extreme(&self, most: bool, places: &Places, record: &RecordLayer) -> &'static str {
+        let is_black_most = matches!(record, RecordLayer::Bitmap(bitmap) if bitmap.black_n > bitmap.white_n);
+        let amount = if most == is_black_most { BLACK } else { WHITE };
         places.first_of(amount.names())
     }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use frixel_layers::{Button as Record, Click as RecordClick, Interval, Layer as RecordLayer, Region as RecordRegion};
 
 use super::click::Click;
-use super::{Field, Lowered, Words, click_interval};
+use super::{Clicked, Field, Lowered, Words, click_interval};
 use crate::cover::Cell;
 use crate::fields::Fields;
 use crate::grammar::Absence::{Means, Mistake};
@@ -55,10 +55,17 @@ impl Words for Button {
         Some(Self { rim_width_mm: rim_width_mm?, rim: rim?, face: face?, click })
     }
 
-    fn extreme(&self, most: bool, places: &Places) -> &'static str {
-        let rim_is_most = !self.face.is_above(self.rim);
-        let amount = if most == rim_is_most { RIM } else { FACE };
+    fn extreme(&self, most: bool, places: &Places, record: &RecordLayer) -> &'static str {
+        let is_face_most = matches!(record, RecordLayer::Button(button) if button.face_n > button.rim_n);
+        let amount = if most == is_face_most { FACE } else { RIM };
         places.first_of(amount.names())
+    }
+
+    fn clicked(&self, places: &Places, record: &RecordLayer) -> Option<Clicked> {
+        let RecordLayer::Button(Record { rim_n, face_n, .. }) = record else { return None };
+        let bases = [(RIM, rim_n), (FACE, face_n)];
+        let bases = bases.map(|(amount, friction_n)| (places.first_of(amount.names()), f64::from(*friction_n)));
+        Some(Clicked { bases: bases.to_vec(), click: places.first_of(CLICK.names()) })
     }
 
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {

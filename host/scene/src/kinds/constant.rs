@@ -33,7 +33,7 @@ impl Words for Constant {
         Some(Self { friction: Amount::read(fields, &FRICTION, unit, log)? })
     }
 
-    fn extreme(&self, _most: bool, places: &Places) -> &'static str {
+    fn extreme(&self, _most: bool, places: &Places, _record: &RecordLayer) -> &'static str {
         places.first_of(FRICTION.names())
     }
 

@@ -8,7 +8,7 @@ use frixel_layers::{
 };
 
 use super::click::Click;
-use super::{Field, Lowered, Words, click_interval};
+use super::{Clicked, Field, Lowered, Words, click_interval};
 use crate::cover::Cell;
 use crate::fields::Fields;
 use crate::grammar::Absence::{Means, Mistake, Number};
@@ -64,8 +64,14 @@ impl Words for Edge {
         self.y_mm += y_mm;
     }
 
-    fn extreme(&self, _most: bool, places: &Places) -> &'static str {
+    fn extreme(&self, _most: bool, places: &Places, _record: &RecordLayer) -> &'static str {
         places.first_of(RIDGE.names())
+    }
+
+    fn clicked(&self, places: &Places, record: &RecordLayer) -> Option<Clicked> {
+        let RecordLayer::Edge(Record { ridge_n, .. }) = record else { return None };
+        let bases = vec![(places.first_of(RIDGE.names()), f64::from(*ridge_n))];
+        Some(Clicked { bases, click: places.first_of(CLICK.names()) })
     }
 
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {

@@ -71,7 +71,7 @@ impl Words for Grating {
         self.amounts.check(places, log);
     }
 
-    fn extreme(&self, most: bool, places: &Places) -> &'static str {
+    fn extreme(&self, most: bool, places: &Places, _record: &RecordLayer) -> &'static str {
         LowHigh::extreme(most, places)
     }
 

@@ -54,8 +54,20 @@ pub(crate) trait Words: Sized {
         let _ = (places, log);
     }
 
-    /// The name of the field that sets the largest friction, or the least.
-    fn extreme(&self, most: bool, places: &Places) -> &'static str;
+    /// The name of the field that sets the largest friction, or the least, of the layer of a record.
+    fn extreme(&self, most: bool, places: &Places, record: &Record) -> &'static str;
+
+    /// The fields of the layer of a record whose friction its click is added to, each with its friction, and the field
+    /// of the click. `None` for a kind without clicks.
+    fn clicked(&self, places: &Places, record: &Record) -> Option<Clicked> {
+        let _ = (places, record);
+        None
+    }
+
+    /// Whether a layer of this kind without a region acts on the whole screen.
+    fn fills_screen(&self) -> bool {
+        true
+    }
 
     /// Moves the places that the kind's own fields name, for a copy of the layer.
     fn move_by(&mut self, x_mm: f64, y_mm: f64) {
@@ -64,6 +76,14 @@ pub(crate) trait Words: Sized {
 
     /// The layer of a record; `None` after a mistake, which has been logged.
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered>;
+}
+
+/// The fields that a click adds up with.
+pub(crate) struct Clicked {
+    /// Names of fields, each with its friction, N.
+    pub(crate) bases: Vec<(&'static str, f64)>,
+    /// The field of the click.
+    pub(crate) click: &'static str,
 }
 
 /// The compiled form of a layer's fields.
@@ -180,14 +200,24 @@ macro_rules! kinds {
         }
 
         impl Kind {
+            /// Whether a layer of this kind without a region acts on the whole screen.
+            pub(crate) fn fills_screen(&self) -> bool {
+                match self { $( Self::$kind(kind) => Words::fills_screen(kind), )* }
+            }
+
             /// Finds mistakes between fields.
             pub(crate) fn check(&self, places: &Places, log: &mut Log) {
                 match self { $( Self::$kind(kind) => Words::check(kind, places, log), )* }
             }
 
-            /// The name of the field that sets the largest friction, or the least.
-            pub(crate) fn extreme(&self, most: bool, places: &Places) -> &'static str {
-                match self { $( Self::$kind(kind) => Words::extreme(kind, most, places), )* }
+            /// The name of the field that sets the largest friction, or the least, of the layer of a record.
+            pub(crate) fn extreme(&self, most: bool, places: &Places, record: &Record) -> &'static str {
+                match self { $( Self::$kind(kind) => Words::extreme(kind, most, places, record), )* }
+            }
+
+            /// The fields of the layer of a record whose friction its click is added to; `None` without clicks.
+            pub(crate) fn clicked(&self, places: &Places, record: &Record) -> Option<Clicked> {
+                match self { $( Self::$kind(kind) => Words::clicked(kind, places, record), )* }
             }
 
             /// Moves the places that the kind's own fields name.

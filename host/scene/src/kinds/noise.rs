@@ -13,7 +13,7 @@ use crate::grammar::{AmountFields, FieldSpec, Holds, Range};
 use crate::layer::{Layer, LowHigh, Unit};
 use crate::log::Log;
 use crate::lower::{Lowering, MM};
-use crate::mistake::Mistake;
+use crate::mistake::FieldMistake;
 use crate::program::Program;
 use crate::reference::Context;
 use crate::source::Places;
@@ -65,11 +65,11 @@ impl Words for Noise {
         let (low, high) = (self.wavelength_min_mm, self.wavelength_max_mm);
         if low > high {
             let (low_name, high_name) = (MIN.name, MAX.name);
-            log.add(places.field(low_name), Mistake::LowAboveHigh { low_name, low, high_name, high });
+            log.add(places.field(low_name), FieldMistake::LowAboveHigh { low_name, low, high_name, high });
         }
     }
 
-    fn extreme(&self, most: bool, places: &Places) -> &'static str {
+    fn extreme(&self, most: bool, places: &Places, _record: &RecordLayer) -> &'static str {
         LowHigh::extreme(most, places)
     }
 

@@ -53,7 +53,7 @@ impl Words for Rings {
         self.y_mm += y_mm;
     }
 
-    fn extreme(&self, most: bool, places: &Places) -> &'static str {
+    fn extreme(&self, most: bool, places: &Places, _record: &RecordLayer) -> &'static str {
         LowHigh::extreme(most, places)
     }
 

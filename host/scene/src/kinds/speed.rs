@@ -12,7 +12,7 @@ use crate::grammar::{FieldSpec, Holds, Range};
 use crate::layer::{Layer, Unit};
 use crate::log::Log;
 use crate::lower::{Lowering, MM};
-use crate::mistake::Mistake;
+use crate::mistake::FieldMistake;
 use crate::program::Program;
 use crate::reference::Context;
 use crate::source::Places;
@@ -52,19 +52,19 @@ impl Words for Speed {
         let (speeds_mm_per_s, factors) = (speeds_mm_per_s?, factors?);
         let (found, min, max) = (speeds_mm_per_s.len(), 2, CURVE_POINTS_MAX);
         if !(min..=max).contains(&found) {
-            log.add(offset, Mistake::Count { field: SPEEDS.name, found, min, max });
+            log.add(offset, FieldMistake::Count { field: SPEEDS.name, found, min, max });
         } else if factors.len() != found {
-            let mistake = Mistake::Count { field: FACTORS.name, found: factors.len(), min: found, max: found };
+            let mistake = FieldMistake::Count { field: FACTORS.name, found: factors.len(), min: found, max: found };
             log.add(factors_offset, mistake);
         }
         let is_close = |[before, after]: &&[f64; 2]| after - before < STEP_MIN_MM_PER_S;
         if let Some([before, after]) = speeds_mm_per_s.array_windows().find(is_close) {
-            log.add(offset, Mistake::SpeedsDoNotRise { before: *before, after: *after });
+            log.add(offset, FieldMistake::SpeedsDoNotRise { before: *before, after: *after });
         }
         Some(Self { speeds_mm_per_s, factors })
     }
 
-    fn extreme(&self, _most: bool, _places: &Places) -> &'static str {
+    fn extreme(&self, _most: bool, _places: &Places, _record: &RecordLayer) -> &'static str {
         FACTORS.name
     }
 

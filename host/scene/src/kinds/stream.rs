@@ -36,7 +36,7 @@ impl Words for Stream {
         self.amounts.check(places, log);
     }
 
-    fn extreme(&self, most: bool, places: &Places) -> &'static str {
+    fn extreme(&self, most: bool, places: &Places, _record: &RecordLayer) -> &'static str {
         LowHigh::extreme(most, places)
     }
 

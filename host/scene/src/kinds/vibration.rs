@@ -14,7 +14,7 @@ use crate::grammar::{AmountFields, FieldSpec, Holds, Range};
 use crate::layer::{Layer, LowHigh, Unit};
 use crate::log::Log;
 use crate::lower::{Lowering, MM};
-use crate::mistake::Mistake;
+use crate::mistake::FieldMistake;
 use crate::program::Program;
 use crate::reference::Context;
 use crate::source::Places;
@@ -82,7 +82,7 @@ impl Words for Vibration {
         self.amounts.check(places, log);
     }
 
-    fn extreme(&self, most: bool, places: &Places) -> &'static str {
+    fn extreme(&self, most: bool, places: &Places, _record: &RecordLayer) -> &'static str {
         LowHigh::extreme(most, places)
     }
 
@@ -108,7 +108,7 @@ impl Burst {
         let (period_ms, on_ms) = (period_ms?, on_ms?);
         for (field, found, max) in [(ON.name, on_ms, period_ms), (RAMP.name, ramp_ms, 0.5 * on_ms)] {
             if found > max {
-                log.add(places.field(field), Mistake::OutOfRange { field, found, min: 0.0, max, unit: " ms" });
+                log.add(places.field(field), FieldMistake::OutOfRange { field, found, min: 0.0, max, unit: " ms" });
             }
         }
         Some(Self { period_ms, on_ms, ramp_ms })

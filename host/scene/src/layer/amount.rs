@@ -3,7 +3,7 @@
 use super::super::fields::Fields;
 use super::super::grammar::AmountFields;
 use super::super::log::Log;
-use super::super::mistake::Mistake;
+use super::super::mistake::FieldMistake;
 use super::super::source::Places;
 use super::super::tables::{HIGH, LOW};
 
@@ -26,6 +26,9 @@ pub(crate) enum Unit {
     /// Factors.
     Factor,
 }
+
+/// All units.
+pub(crate) const UNITS: [Unit; 2] = [Unit::Friction, Unit::Factor];
 
 impl Amount {
     /// Reads an amount, in the unit that the layer's amounts have.
@@ -82,7 +85,7 @@ impl LowHigh {
         if self.low.is_above(self.high) {
             let (low_name, high_name) = (places.first_of(LOW.names()), places.first_of(HIGH.names()));
             let (low, high) = (self.low.number(), self.high.number());
-            log.add(places.field(low_name), Mistake::LowAboveHigh { low_name, low, high_name, high });
+            log.add(places.field(low_name), FieldMistake::LowAboveHigh { low_name, low, high_name, high });
         }
     }
 

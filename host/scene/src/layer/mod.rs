@@ -4,25 +4,48 @@ mod amount;
 mod region;
 mod repeat;
 
+use std::fmt::{self, Display};
+
 use frixel_layers::Blend;
 
-pub(crate) use amount::{Amount, LowHigh, Unit};
+pub(crate) use amount::{Amount, LowHigh, UNITS, Unit};
 pub(crate) use region::{Rectangle, Region};
 use repeat::Repeat;
 
 use super::fields::Fields;
 use super::kinds::{Kind, KindName};
 use super::log::Log;
-use super::mistake::Mistake;
+use super::mistake::FieldMistake;
 use super::source::Places;
 use super::tables;
+
+/// The number of a layer in messages and in `frixel play --control`: that of its `[[layer]]` among those of the scene,
+/// from one at the bottom; with that of the copy, from one, for a layer with `repeat`: `3.2`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct LayerNumber {
+    pub(crate) table: usize,
+    pub(crate) copy: Option<usize>,
+}
+
+impl Display for LayerNumber {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { table, copy } = self;
+        match copy {
+            Some(copy) => write!(formatter, "{table}.{copy}"),
+            None => write!(formatter, "{table}"),
+        }
+    }
+}
 
 /// One layer as written.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Layer {
     /// The layer's title in messages: its number from one, and its name or kind.
     pub(crate) title: String,
+    pub(crate) number: LayerNumber,
     pub(crate) name: Option<String>,
+    /// The name of the layer that `repeat` made it from.
+    pub(crate) family: Option<String>,
     /// Whether `repeat` made it from another layer.
     pub(crate) is_copy: bool,
     pub(crate) region: Option<Region>,
@@ -55,24 +78,35 @@ impl Layer {
             fields.give_up_without(log, "kind");
             return None;
         };
-        let title = name.as_ref().map_or_else(
-            || format!("layer {number} ({})", kind_name.word()),
-            |name| format!("layer {number} \"{name}\""),
-        );
+        let number = LayerNumber { table: number, copy: None };
+        let title = title(number, name.as_deref(), kind_name.word());
         fields.rename(title.clone());
         let Common { region, repeat, blend, gain, live, unit, above } = Common::read(&mut fields, kind_name, log);
         let kind = kind_name.read(&mut fields, unit, log);
         let places = fields.close(log);
         if blend == Blend::Add && above == Some(Above::Zero) {
-            log.add(places.field("above"), Mistake::AddedTotal { layer: title.clone() });
+            log.add(places.field("above"), FieldMistake::AddedTotal { layer: title.clone() });
         }
         let is_total = kind_name.has_totals() && blend == Blend::Replace;
         let above = above.unwrap_or(if is_total { Above::Zero } else { Above::Natural });
         let region = region.ok()?;
         let kind = kind?;
         kind.check(&places, log);
-        Some(repeat.of(&Self { title, name, is_copy: false, region, blend, gain, above, live, kind, places }))
+        let (family, is_copy) = (None, false);
+        let layer = Self { title, number, name, family, is_copy, region, blend, gain, above, live, kind, places };
+        Some(repeat.of(&layer, kind_name))
     }
+}
+
+/// The title of a layer in messages.
+fn title(number: LayerNumber, name: Option<&str>, kind: &str) -> String {
+    name.map_or_else(|| format!("layer {number} ({kind})"), |name| format!("layer {number} \"{name}\""))
+}
+
+/// Reads the fields of a layer of a kind, whose amounts have a unit, to log their mistakes.
+pub(crate) fn read_fields(fields: &mut Fields, kind: KindName, unit: Unit, log: &mut Log) {
+    let _ = Common::read(fields, kind, log);
+    let _ = kind.read(fields, unit, log);
 }
 
 /// The fields that every kind of layer has.

@@ -2,7 +2,7 @@
 
 use super::super::fields::Fields;
 use super::super::log::Log;
-use super::super::mistake::Mistake;
+use super::super::mistake::FieldMistake;
 use super::super::tables;
 use crate::kinds::KindName;
 
@@ -83,7 +83,7 @@ pub(crate) fn read(layer: &mut Fields, kind: KindName, log: &mut Log) -> Result<
     };
     let region = region(fields, log).ok_or(Misread)?;
     if button && matches!(region, Region::Polygon(_)) {
-        log.add(offset, Mistake::ButtonPolygon);
+        log.add(offset, FieldMistake::ButtonPolygon);
         return Err(Misread);
     }
     Ok(Some(region))
@@ -121,7 +121,7 @@ fn polygon(fields: &mut Fields, log: &mut Log) -> Option<Vec<(f64, f64)>> {
     let vertices = fields.places_mm(log, points_mm, points_px)?;
     let (min, max) = VERTICES;
     if !(min..=max).contains(&vertices.len()) {
-        log.add(offset, Mistake::Count { field, found: vertices.len(), min, max });
+        log.add(offset, FieldMistake::Count { field, found: vertices.len(), min, max });
         return None;
     }
     Some(vertices)

@@ -2,9 +2,10 @@
 
 use super::super::fields::Fields;
 use super::super::log::Log;
-use super::super::mistake::Mistake;
+use super::super::mistake::FieldMistake;
 use super::super::tables;
-use super::Layer;
+use super::{Layer, title};
+use crate::kinds::KindName;
 
 /// The copies of a layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,14 +30,14 @@ impl Repeat {
         let places = fields.close(log);
         for (what, step, copies, step_mm) in [("columns", "dx_mm", columns, dx_mm), ("rows", "dy_mm", rows, dy_mm)] {
             if copies > 1 && step_mm.abs() <= 0.0 {
-                log.add(places.field(step), Mistake::RepeatInPlace { what, step });
+                log.add(places.field(step), FieldMistake::RepeatInPlace { what, step });
             }
         }
         Self { columns, rows, dx_mm, dy_mm }
     }
 
     /// The copies of a layer, row after row. Copies of a layer with a name have its name and a number from one.
-    pub(crate) fn of(self, layer: &Layer) -> Vec<Layer> {
+    pub(crate) fn of(self, layer: &Layer, kind: KindName) -> Vec<Layer> {
         if self.columns * self.rows == 1 {
             return vec![layer.clone()];
         }
@@ -44,12 +45,11 @@ impl Repeat {
         let copies = (1..).zip(places).map(|(copy, (column, row))| {
             let (x_mm, y_mm) = (f64::from(column) * self.dx_mm, f64::from(row) * self.dy_mm);
             let mut moved = layer.clone();
+            moved.number.copy = Some(copy);
             moved.is_copy = copy > 1;
+            moved.family.clone_from(&layer.name);
             moved.name = layer.name.as_ref().map(|name| format!("{name} {copy}"));
-            moved.title = match &layer.name {
-                Some(name) => layer.title.replacen(&format!("\"{name}\""), &format!("\"{name} {copy}\""), 1),
-                None => format!("{} copy {copy}", layer.title),
-            };
+            moved.title = title(moved.number, moved.name.as_deref(), kind.word());
             moved.region = moved.region.map(|region| region.moved_by(x_mm, y_mm));
             moved.kind.move_by(x_mm, y_mm);
             moved

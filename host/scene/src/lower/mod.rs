@@ -9,7 +9,7 @@ use super::file::Scene;
 use super::kinds::{Bitmap as BitmapWords, Lowered};
 use super::layer::{Above, Amount, Layer, Rectangle, Region};
 use super::log::Log;
-use super::mistake::Mistake;
+use super::mistake::{FitMistake, Mistake};
 use super::optimisation::Optimisation;
 use super::pool::{Placed, Pool};
 use super::program::Bitmap;
@@ -97,7 +97,8 @@ impl<'a, 's> Lowering<'a, 's> {
     ) -> Option<Placed> {
         let screen = (self.scene.screen().width_mm, self.scene.screen().height_mm);
         let placed = self.pool.place(layer, bitmap, visible, screen, self.log, &mut self.notes);
-        let Some(Mistake::PoolTooSmall { pitch_mm, .. }) = self.log.last().filter(|_| placed.is_none()) else {
+        let last = self.log.last().filter(|_| placed.is_none());
+        let Some(Mistake::Fit(FitMistake::PoolTooSmall { pitch_mm, .. })) = last else {
             return placed;
         };
         // A draft plays it coarser; the mistake stands.
@@ -146,7 +147,7 @@ impl<'a, 's> Lowering<'a, 's> {
 
     pub(crate) fn limit(&mut self, layer: &Layer, what: &'static str, number: usize, max: usize) -> Option<()> {
         if number > max {
-            self.log.add(layer.places.table(), Mistake::TooMany { what, number, max });
+            self.log.add(layer.places.table(), FitMistake::TooMany { what, number, max });
             return None;
         }
         Some(())

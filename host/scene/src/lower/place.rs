@@ -5,7 +5,7 @@ use frixel_layers::{Header, Region as WireRegion};
 use super::super::file::Scene;
 use super::super::layer::{Layer, Rectangle};
 use super::super::log::Log;
-use super::super::mistake::Mistake;
+use super::super::mistake::FitMistake;
 use super::MM;
 
 /// Tolerance for a layer that extends past the screen because millimetres are rounded, mm.
@@ -41,7 +41,7 @@ pub(crate) fn check_on_screen(scene: &Scene, layer: &Layer, rectangle: Rectangle
         let layer_title = layer.title.clone();
         log.add(
             layer.places.field(field),
-            Mistake::OffScreen { layer: layer_title, edge, beyond_mm, screen_width_mm, screen_height_mm },
+            FitMistake::OffScreen { layer: layer_title, edge, beyond_mm, screen_width_mm, screen_height_mm },
         );
     }
 }

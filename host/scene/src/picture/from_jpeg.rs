@@ -5,6 +5,7 @@ use zune_jpeg::zune_core::bytestream::ZCursor;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
+use super::orientation::Orientation;
 use super::{COLOUR, PIXELS_MAX, Picture, PictureError, STEP, luma, refuse_too_large};
 
 /// The first bytes of every JPEG file: start of image, and the start of a marker (ITU-T T.81, section B.2.1).
@@ -30,6 +31,7 @@ pub(super) fn decode(jpeg: &[u8]) -> Result<Picture, PictureError> {
     };
     decoder.set_options(options.jpeg_set_out_colorspace(colour));
     let bytes = decoder.decode().map_err(damaged)?;
+    let orientation = Orientation::of(decoder.exif().map(Vec::as_slice));
     let mut coloured = false;
     let grey: Vec<f32> = if colour == ColorSpace::Luma {
         bytes.into_iter().map(f32::from).collect()
@@ -46,5 +48,5 @@ pub(super) fn decode(jpeg: &[u8]) -> Result<Picture, PictureError> {
         return Err(PictureError::Damaged("pixels are missing".to_owned()));
     }
     let conversions = if coloured { vec![COLOUR.to_owned()] } else { Vec::new() };
-    Ok(Picture { width, height, grey, conversions })
+    Ok(orientation.upright(Picture { width, height, grey, conversions }))
 }

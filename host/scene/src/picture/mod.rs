@@ -2,6 +2,7 @@
 
 mod from_jpeg;
 mod from_png;
+mod orientation;
 #[cfg(test)]
 mod tests;
 
@@ -41,6 +42,15 @@ pub(super) enum PictureError {
     Inks,
     #[error("it has {width} x {height} pixels, and at most {PIXELS_MAX} are read: make it smaller")]
     TooLarge { width: usize, height: usize },
+}
+
+/// Checks the bytes of a picture before a scene names it.
+///
+/// # Errors
+///
+/// They cannot be played: a sentence without a subject says why, and what to do.
+pub fn check_picture(bytes: &[u8]) -> Result<(), String> {
+    Picture::decode(bytes).map(|_| ()).map_err(|error| error.to_string())
 }
 
 impl Picture {

@@ -71,3 +71,48 @@ fn the_darkest_and_the_lightest_hundredth_become_black_and_white() {
     let flat = Picture { width: 2, height: 1, grey: vec![7.0, 7.0], conversions: Vec::new() }.stretched();
     assert_eq!((flat.grey, flat.conversions.len()), (vec![7.0, 7.0], 1));
 }
+
+/// A JPEG file with an EXIF block that notes this orientation, in this byte order.
+fn with_orientation(jpeg: &[u8], number: u8, is_big_endian: bool) -> Vec<u8> {
+    let tiff: Vec<u8> = if is_big_endian {
+        [&b"MM\0\x2a\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0"[..], &[number], &[0; 6]].concat()
+    } else {
+        [&b"II\x2a\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0"[..], &[number], &[0; 7]].concat()
+    };
+    let length = (2 + 6 + tiff.len()) as u16;
+    [&jpeg[..2], &[0xff, 0xe1], &length.to_be_bytes(), b"Exif\0\0", &tiff, &jpeg[2..]].concat()
+}
+
+/// The six patches of the file, as the eight orientations of the standard place them.
+#[test]
+fn a_photograph_is_turned_upright() {
+    let plain = decoded(COLOURS);
+    let cells = |picture: &Picture| -> Vec<Vec<f32>> {
+        let (columns, rows) = (picture.width / 16, picture.height / 16);
+        (0..rows).map(|row| (0..columns).map(|column| patch(picture, column, row)).collect()).collect()
+    };
+    let [top, bottom] = &cells(&plain)[..] else { panic!("two rows") };
+    let [a, b, c, d, e, f] = [top[0], top[1], top[2], bottom[0], bottom[1], bottom[2]];
+    for (number, expected) in [
+        (1, vec![vec![a, b, c], vec![d, e, f]]),
+        (2, vec![vec![c, b, a], vec![f, e, d]]),
+        (3, vec![vec![f, e, d], vec![c, b, a]]),
+        (4, vec![vec![d, e, f], vec![a, b, c]]),
+        (5, vec![vec![a, d], vec![b, e], vec![c, f]]),
+        (6, vec![vec![d, a], vec![e, b], vec![f, c]]),
+        (7, vec![vec![f, c], vec![e, b], vec![d, a]]),
+        (8, vec![vec![c, f], vec![b, e], vec![a, d]]),
+    ] {
+        for is_big_endian in [false, true] {
+            let picture = decoded(&with_orientation(COLOURS, number, is_big_endian));
+            assert_eq!(cells(&picture), expected, "orientation {number}");
+            let is_said = picture.conversions.iter().any(|said| said.contains("turned upright"));
+            assert_eq!(is_said, number != 1, "orientation {number}: {:?}", picture.conversions);
+        }
+    }
+    // What cannot be read is no orientation.
+    assert_eq!(decoded(&with_orientation(COLOURS, 9, true)), plain);
+    let mut broken = with_orientation(COLOURS, 6, true);
+    broken[14] = 0xff;
+    assert_eq!(decoded(&broken), plain);
+}

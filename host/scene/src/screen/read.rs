@@ -3,7 +3,7 @@
 use super::{Screen, Slab};
 use crate::fields::Fields;
 use crate::log::Log;
-use crate::mistake::Mistake;
+use crate::mistake::FieldMistake;
 use crate::tables::{coating, scene, screen};
 
 /// Largest effective gap that a board takes.
@@ -52,7 +52,7 @@ fn coating_of(slabs: Vec<Fields>, around: &Fields, log: &mut Log) -> Option<(Vec
     if slabs.is_empty() {
         log.add(
             around.table_place(),
-            Mistake::MissingField { field: "coating", table: around.table_name().to_owned() },
+            FieldMistake::MissingField { field: "coating", other: None, table: around.table_name().to_owned() },
         );
     }
     let mut places = Vec::new();
@@ -68,7 +68,7 @@ fn coating_of(slabs: Vec<Fields>, around: &Fields, log: &mut Log) -> Option<(Vec
     let found = slabs.iter().fold(0.0, |sum, slab| sum + slab.thickness_um / slab.permittivity);
     if found > EFFECTIVE_GAP_MAX_UM {
         let (field, max) = ("thickness_um / permittivity, summed", EFFECTIVE_GAP_MAX_UM);
-        log.add(place, Mistake::OutOfRange { field, found, min: 0.0, max, unit: " um" });
+        log.add(place, FieldMistake::OutOfRange { field, found, min: 0.0, max, unit: " um" });
     }
     Some((slabs, place))
 }

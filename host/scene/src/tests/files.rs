@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::reference::Reference;
-use crate::{FileUnavailable, Files, FingerProfile, Mistake};
+use crate::{FileMistake, FileUnavailable, Files, FingerProfile};
 
 const BUTTONS: &str = "version = 2\n\n[defaults]\nrim_width_mm = 2\nrim_fraction = 0.8\nface_fraction = 0.4\n\n\
     [[layer]]\nname = \"back\"\nkind = \"button\"\nregion = { x_mm = 10, y_mm = 60, width_mm = 30, height_mm = 12 }\n";
@@ -107,7 +107,7 @@ fn includes_that_lead_nowhere_or_in_circles() {
         &[("common.toml", "version = 2\ninclude = [\"scene.toml\"]\n")],
         &[
             "play/common.toml:2:12: play/common.toml includes play/scene.toml, which includes play/common.toml itself: take \
-           one of the two out",
+           one of them out",
         ],
     );
     check_refused(
@@ -177,9 +177,9 @@ fn a_mistake_is_reported_in_its_own_file() {
         SHORT,
         &[("common.toml", &BUTTONS.replace("0.8", "1.0").replace("[defaults]", "[defaults]\nclick_fraction = 0.5"))],
         &[
-            "play/common.toml:6:16: layer 1 \"back\", its rim and its click together, asks for up to 0.195 N above natural \
-           friction, and at 150 V rms this finger feels at most 0.1299 N above natural friction: lower it, raise \
-           `voltage_max_v_rms`, or write `saturate = true` under [drive] to have it clamped",
+            "play/common.toml:6:16: layer 1 \"back\", its `rim_fraction = 1.0` and its `click_fraction = 0.5` together, asks \
+             for up to 0.195 N above natural friction (1.5 of the reach), and at 150 V rms this finger feels at most 0.1299 N \
+             above natural friction: lower one of them, or write `saturate = true` under [drive] to have it clamped",
         ],
     );
     let scene = scene(SHORT, &[("common.toml", &broken)]).expect("its layers have mistakes, and nothing else");
@@ -197,10 +197,8 @@ fn what_an_included_file_may_not_have() {
     check_refused(
         SHORT,
         &[("common.toml", "version = 1\n")],
-        &[
-            "play/common.toml:1:11: play/scene.toml includes play/common.toml, which has another version than 2: `frixel \
-           scene migrate play/common.toml` prints it as 2",
-        ],
+        &["play/common.toml:1:11: play/scene.toml includes play/common.toml, which has version 1 and not 2: `frixel \
+           scene migrate play/common.toml` prints it as version 2"],
     );
     check_refused(
         SHORT,
@@ -230,7 +228,10 @@ fn defaults_that_no_layer_can_have() {
     check_refused(
         "version = 2\ndefaults = 3\n",
         &[],
-        &["play/scene.toml:2:12: `defaults` has to be a table, and this is a number"],
+        &[
+            "play/scene.toml:2:12: `defaults` has to be a table, and this is a number: write `[defaults]` on a line of its \
+           own, and its fields below it",
+        ],
     );
     // A mistake that layers share is said once.
     check_refused(
@@ -251,10 +252,11 @@ fn scenes_of_version_one_have_one_file_and_no_defaults() {
         let [located] = &mistakes[..] else { panic!("{mistakes:?}") };
         assert_eq!(
             located.mistake,
-            Mistake::SinceVersionTwo {
+            FileMistake::SinceVersionTwo {
                 field: ["include", "defaults", "design"].into_iter().find(|name| *name == field).unwrap(),
                 file: "play/scene.toml".to_owned()
             }
+            .into()
         );
         let migrated = crate::migrate(&text, "scene.toml", &*PICTURES).expect_err("it is refused").to_string();
         assert!(migrated.contains(&format!("`{field}`")), "{migrated}");

@@ -8,9 +8,11 @@ use frixel_wire::hello::BoardLimits;
 
 use super::{CompileError, Located, Program, Scene, compile, compile_draft};
 
+mod cures;
 mod docs;
 mod errors;
 mod files;
+mod hints;
 mod json_schema;
 mod layers;
 mod optimise;

@@ -84,7 +84,7 @@ fn pixels_that_mean_nothing() {
     );
     check_refused(
         &format!("{DESIGN}{}", flat("y_px = 0, width_px = 50, height_px = 10")),
-        "test.toml:7:10: this region has no `x_mm`: add it",
+        "test.toml:7:10: this region has no `x_mm` or `x_px`: add one of them",
     );
     check_refused(
         &format!("{DESIGN}{}", flat("shape = \"polygon\", points_px = [[0, 0], [10, 10]]")),

@@ -2,7 +2,7 @@
 #![allow(clippy::float_cmp, reason = "what has to be exact is tested as exact")]
 
 use super::*;
-use crate::{Elasticity, Evidence, FingerProfile, Mistake, Origin, Screen, Warning, migrate};
+use crate::{Elasticity, Evidence, FingerProfile, FitMistake, Mistake, Origin, Screen, Warning, migrate};
 use frixel_layers::Header;
 
 /// All of a scene of version 2 but its layers: the example screen and finger.
@@ -269,7 +269,10 @@ fn a_soft_finger_far_from_springs_is_refused() {
     let scene = Scene::parse(SHORT, "test.toml", &BTreeMap::new()).expect("it reads");
     let refused = program(&scene.with_finger(soft(0.02), "soft").expect("it is taken")).expect_err("it is refused");
     let [mistake] = &refused.mistakes[..] else { panic!("{refused}") };
-    assert!(matches!(mistake.mistake, Mistake::SoftFinger { max_percent, .. } if max_percent < 6.0), "{refused}");
+    assert!(
+        matches!(mistake.mistake, Mistake::Fit(FitMistake::SoftFinger { max_percent, .. }) if max_percent < 6.0),
+        "{refused}"
+    );
     assert!(
         refused.to_string().contains("lower `voltage_max_v_rms`, or give the finger `stiffness_pa_per_m`"),
         "{refused}"

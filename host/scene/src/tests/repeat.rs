@@ -25,8 +25,8 @@ fn copies_lie_in_columns_and_rows() {
         })
         .collect();
     assert_eq!(places_mm, [(10.0, 20.0), (22.0, 20.0), (34.0, 20.0), (10.0, 30.0), (22.0, 30.0), (34.0, 30.0)]);
-    assert_eq!(program.titles[0], "layer 1 \"pad 1\"");
-    assert_eq!(program.titles[5], "layer 1 \"pad 6\"");
+    assert_eq!(program.titles[0], "layer 1.1 \"pad 1\"");
+    assert_eq!(program.titles[5], "layer 1.6 \"pad 6\"");
 }
 
 #[test]
@@ -40,7 +40,7 @@ fn places_of_a_kind_move_with_the_copy() {
             (reference.electric_friction_n(x_m, 0.0283), reference.electric_friction_n(x_m + 0.04, 0.0283));
         assert!((first_n - second_n).abs() < 1e-8, "{first_n} {second_n}");
     }
-    assert_eq!(program.titles, ["layer 1 (rings) copy 1", "layer 1 (rings) copy 2"]);
+    assert_eq!(program.titles, ["layer 1.1 (rings)", "layer 1.2 (rings)"]);
 }
 
 #[test]
@@ -49,7 +49,7 @@ fn copies_that_would_lie_on_one_another_or_off_the_screen_are_refused() {
     assert!(in_place.contains("the columns of this repeat would lie on one another"), "{in_place}");
     assert!(in_place.contains("`dx_mm`"), "{in_place}");
     let beyond = refused(&format!("{PADS}repeat = {{ columns = 20, dx_mm = 12 }}\n"));
-    assert!(beyond.contains("layer 1 \"pad 10\"") && beyond.contains("right"), "{beyond}");
+    assert!(beyond.contains("layer 1.10 \"pad 10\"") && beyond.contains("right"), "{beyond}");
     let above = PADS.replace("0.26", "0.9");
     let once = refused(&format!("{above}repeat = {{ columns = 3, dx_mm = 12 }}\n"));
     assert_eq!(once.lines().count(), 1, "a mistake that all copies have is told once: {once}");

@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use super::json_schema::is_valid;
 use super::*;
-use crate::{Mistake, json_schema};
+use crate::{FieldMistake, FileMistake, Mistake, json_schema};
 
 static SCHEMA: LazyLock<Value> = LazyLock::new(|| serde_json::from_str(&json_schema()).expect("it is JSON"));
 
@@ -33,13 +33,17 @@ fn json(text: &str) -> Option<Value> {
 fn is_grammar(mistake: &Mistake) -> bool {
     matches!(
         mistake,
-        Mistake::UnknownField { .. }
-            | Mistake::MissingField { .. }
-            | Mistake::WrongType { .. }
-            | Mistake::UnknownChoice { .. }
-            | Mistake::TwoUnits { .. }
-            | Mistake::NotWhole { .. }
-            | Mistake::Version { .. }
+        Mistake::Field(
+            FieldMistake::UnknownField { .. }
+                | FieldMistake::Misplaced { .. }
+                | FieldMistake::MissingField { .. }
+                | FieldMistake::WrongType { .. }
+                | FieldMistake::NotATable { .. }
+                | FieldMistake::NotTables { .. }
+                | FieldMistake::UnknownChoice { .. }
+                | FieldMistake::TwoUnits { .. }
+                | FieldMistake::NotWhole { .. }
+        ) | Mistake::File(FileMistake::Version { .. })
     )
 }
 

@@ -9,7 +9,9 @@ use std::time::Duration;
 use frixel::player::{PlayError, Player};
 use frixel::rigs::RecordedLink;
 use frixel_driver::{ControlLine, DeviceError};
-use frixel_scene::Program;
+use frixel_layers::{Layer, Vibration};
+use frixel_scene::{Clamped, LayerSetting, Program};
+use thiserror::Error;
 
 use super::{CommandError, Interrupt, note};
 
@@ -31,8 +33,34 @@ pub(super) struct Control {
     resume_at_s: f64,
     /// Layers to switch off, and when, in s.
     triggered: Vec<(u8, f64)>,
-    /// Whether each record is on, and its gain.
-    settings: Vec<(bool, f32)>,
+    /// The settings of each record.
+    settings: Vec<LayerSetting>,
+}
+
+/// Why a line is not carried out, or not as it was meant.
+#[derive(Debug, Error)]
+enum ControlRefusal {
+    /// The layer is on.
+    #[error(
+        "layer {layer:?} is on, and a trigger plays a layer that is off: switch it off first, by `layer {layer:?} off`"
+    )]
+    TriggerOn { layer: String },
+    /// The layer may be silent for the whole trigger.
+    #[error(
+        "layer {layer:?} comes in bursts, one every {period_ms:.0} ms, so that a trigger of {duration_ms:.0} ms may be \
+         silent: leave `burst` out in the file, or trigger it for {period_ms:.0} ms or more"
+    )]
+    TriggerBetweenBursts { layer: String, period_ms: f64, duration_ms: f64 },
+    /// A gain leads out of reach.
+    #[error("gain {gain} is refused: {clamped}{}", gain_advice(*.range))]
+    GainOutOfReach { gain: f32, clamped: Clamped, range: Option<(f32, f32)> },
+    /// Layers are out of reach now.
+    #[error("{0}; it is clamped there")]
+    Clamped(Clamped),
+}
+
+fn gain_advice(range: Option<(f32, f32)>) -> String {
+    range.map_or(String::new(), |(least, most)| format!("; give a gain from {least} to {most}"))
 }
 
 /// What the play does next.
@@ -93,15 +121,20 @@ impl Control {
                 Ok(Some(ControlLine::Replace { file })) => return Ok(Next::Replace(file.into())),
                 Ok(Some(ControlLine::Wait { duration_s })) => self.resume_at_s = t_s + duration_s,
                 Ok(Some(ControlLine::Layer { layer, on, gain })) => {
-                    if let Some(layer) = self.layer(program, &layer) {
-                        self.set(player, layer, on, gain)?;
+                    if let Some(record) = self.layer(program, &layer) {
+                        self.change(player, program, record, on, gain)?;
                     }
                 }
                 Ok(Some(ControlLine::Trigger { layer, duration_s })) => {
-                    if let Some(layer) = self.layer(program, &layer) {
-                        self.set(player, layer, Some(true), None)?;
-                        self.triggered.retain(|(triggered, _)| *triggered != layer);
-                        self.triggered.push((layer, t_s + duration_s));
+                    if let Some(record) = self.layer(program, &layer) {
+                        match self.check_trigger(program, layer, record, duration_s) {
+                            Ok(()) => {
+                                self.set(player, record, Some(true), None)?;
+                                self.triggered.retain(|(triggered, _)| *triggered != record);
+                                self.triggered.push((record, t_s + duration_s));
+                            }
+                            Err(refusal) => self.say(refusal),
+                        }
                     }
                 }
                 Err(error) => self.say(error),
@@ -126,6 +159,60 @@ impl Control {
         program.layers.record(name).map_err(|error| self.say(error)).ok()
     }
 
+    /// Changes a layer, unless its gain leads out of reach in a scene that does not saturate. What a board would clamp
+    /// is said.
+    fn change<L: RecordedLink>(
+        &mut self,
+        player: &mut Player<L>,
+        program: &Program,
+        record: u8,
+        on: Option<bool>,
+        gain: Option<f32>,
+    ) -> Result<(), PlayError> {
+        let mut changed = self.settings.clone();
+        if let Some(setting) = changed.get_mut(usize::from(record)) {
+            *setting = LayerSetting { on: on.unwrap_or(setting.on), gain: gain.unwrap_or(setting.gain) };
+        }
+        let before = program.clamped_with(&self.settings);
+        if let Some(clamped) = program.clamped_with(&changed).filter(|clamped| before.as_ref() != Some(clamped)) {
+            match gain.filter(|_| !program.saturates && !program.is_draft()) {
+                Some(gain) => {
+                    let range = program.gains_in_reach(record, &changed);
+                    self.say(ControlRefusal::GainOutOfReach { gain, clamped, range });
+                    return Ok(());
+                }
+                None => self.say(ControlRefusal::Clamped(clamped)),
+            }
+        }
+        if on.is_some() {
+            // A layer that is switched by hand stays as it is when its trigger ends.
+            self.triggered.retain(|(triggered, _)| *triggered != record);
+        }
+        self.set(player, record, on, gain)
+    }
+
+    /// Refuses a trigger that would leave a layer off that is on, or that may not be felt.
+    fn check_trigger(
+        &self,
+        program: &Program,
+        layer: String,
+        record: u8,
+        duration_s: f64,
+    ) -> Result<(), ControlRefusal> {
+        let is_on = self.settings.get(usize::from(record)).is_some_and(|setting| setting.on);
+        let is_triggered = self.triggered.iter().any(|(triggered, _)| *triggered == record);
+        if is_on && !is_triggered {
+            return Err(ControlRefusal::TriggerOn { layer });
+        }
+        match program.records.get(usize::from(record)).map(|record| &record.layer) {
+            Some(Layer::Vibration(Vibration { burst, .. })) if duration_s <= f64::from(burst.period_s - burst.on_s) => {
+                let (period_ms, duration_ms) = (1e3 * f64::from(burst.period_s), 1e3 * duration_s);
+                Err(ControlRefusal::TriggerBetweenBursts { layer, period_ms, duration_ms })
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Changes a layer. Says why if the board refuses it.
     fn set<L: RecordedLink>(
         &mut self,
@@ -135,8 +222,8 @@ impl Control {
         gain: Option<f32>,
     ) -> Result<(), PlayError> {
         let Some(setting) = self.settings.get_mut(usize::from(layer)) else { return Ok(()) };
-        *setting = (on.unwrap_or(setting.0), gain.unwrap_or(setting.1));
-        match player.set_layer(layer, setting.0, setting.1) {
+        *setting = LayerSetting { on: on.unwrap_or(setting.on), gain: gain.unwrap_or(setting.gain) };
+        match player.set_layer(layer, setting.on, setting.gain) {
             Err(PlayError::Device(refused @ DeviceError::Refused { .. })) => {
                 self.say(refused);
                 Ok(())
@@ -150,6 +237,6 @@ impl Control {
     }
 }
 
-fn settings(program: &Program) -> Vec<(bool, f32)> {
-    program.records.iter().map(|record| (true, record.gain)).collect()
+fn settings(program: &Program) -> Vec<LayerSetting> {
+    program.records.iter().map(|record| LayerSetting { on: true, gain: record.gain }).collect()
 }

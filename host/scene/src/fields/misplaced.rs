@@ -1,0 +1,106 @@
+//! Finds what was written in the wrong place: fields that belong to another table, and headers in the wrong brackets.
+
+use std::sync::LazyLock;
+
+use crate::file::describe;
+use crate::log::Log;
+use crate::mistake::FieldMistake;
+use crate::stack::LAYER_FIELDS;
+
+/// A field that its table does not have.
+pub(super) struct Unknown {
+    pub(super) name: String,
+    /// Offset of the name.
+    pub(super) offset: usize,
+    pub(super) value_offset: usize,
+}
+
+/// The fields of a table that belong to another one. Their mistakes have been reported.
+pub(super) struct Misplaced {
+    fields: Vec<String>,
+    /// The table to which they belong, if it should be inside of this table.
+    pub(super) missing: Option<&'static str>,
+}
+
+impl Misplaced {
+    pub(super) fn contains(&self, field: &str) -> bool {
+        self.fields.iter().any(|other| other == field)
+    }
+}
+
+/// A table and its fields.
+struct Home {
+    key: &'static str,
+    fields: Vec<&'static str>,
+}
+
+/// A screen has a name, but who gives one to a scene does not mean the screen.
+const NAME: &str = "name";
+/// A scene with every table of the head, and one with the tables inside a layer.
+const TABLES: &str = "version = 2\n[drive]\n[screen]\n[finger]\n[carrier]\n[touch]\n[design]\n\
+    [[layer]]\nkind = \"vibration\"\nregion = {}\nrepeat = {}\nburst = {}\n\
+    [[layer]]\nkind = \"constant\"\nregion = { shape = \"polygon\" }\n";
+/// The tables inside a layer.
+const INSIDE_LAYERS: [&str; 3] = ["region", "repeat", "burst"];
+/// The tables that a field may belong to, in the order in which they are tried.
+const KEYS: [&str; 9] = ["region", "repeat", "burst", "drive", "finger", "screen", "carrier", "touch", "design"];
+
+static HOMES: LazyLock<Vec<Home>> = LazyLock::new(|| {
+    let tables = describe(TABLES);
+    let fields = |key: &str| {
+        let of_key = tables.iter().filter(|table| table.key == key);
+        of_key.flat_map(|table| table.fields.iter().map(|known| known.field.name)).collect()
+    };
+    KEYS.into_iter().map(|key| Home { key, fields: fields(key) }).collect()
+});
+
+/// Reports the fields of a table, the value of `key`, that belong to other tables.
+pub(super) fn report(table: &str, key: &str, unknown: &[Unknown], log: &mut Log) -> Misplaced {
+    let mut misplaced = Misplaced { fields: Vec::new(), missing: None };
+    // The known fields are themselves found by reading tables.
+    if unknown.is_empty() || log.is_describing() {
+        return misplaced;
+    }
+    for home in HOMES.iter().filter(|home| home.key != key) {
+        let is_inside = INSIDE_LAYERS.contains(&home.key);
+        if is_inside && key != "layer" {
+            continue;
+        }
+        let belongs = |field: &str| {
+            let is_of_layers = key == "layer" && LAYER_FIELDS.iter().any(|known| known.field.name == field);
+            home.fields.contains(&field) && (is_inside || !is_of_layers && field != NAME)
+        };
+        let here: Vec<&Unknown> =
+            unknown.iter().filter(|field| belongs(&field.name) && !misplaced.contains(&field.name)).collect();
+        let Some(first) = here.iter().min_by_key(|field| field.offset) else { continue };
+        let (offset, mut here) = (first.offset, here.clone());
+        here.sort_by_key(|field| field.offset);
+        let written = |field: &&Unknown| format!("{} = {}", field.name, log.source().word_at(field.value_offset));
+        let written: Vec<String> = here.iter().map(written).collect();
+        let fields: Vec<String> = here.iter().map(|field| field.name.clone()).collect();
+        let (home_name, write) = if is_inside {
+            misplaced.missing = misplaced.missing.or(Some(home.key));
+            (format!("in `{}`", home.key), format!("`{} = {{ {} }}`", home.key, written.join(", ")))
+        } else {
+            let below = if fields.len() == 1 { "it" } else { "them" };
+            (format!("to [{}]", home.key), format!("{below} below a line `[{}]`", home.key))
+        };
+        misplaced.fields.extend(fields.iter().cloned());
+        log.add(offset, FieldMistake::Misplaced { fields, table: table.to_owned(), home: home_name, write });
+    }
+    misplaced
+}
+
+/// What was probably meant where a text is not TOML, to be put behind the parser's words; empty if nothing is known.
+pub(super) fn syntax_hint(text: &str, offset: usize) -> &'static str {
+    let line_start = text.get(..offset).and_then(|before| before.rfind('\n')).map_or(0, |newline| newline + 1);
+    let line = text.get(line_start..).and_then(|rest| rest.lines().next()).unwrap_or_default().trim();
+    let has_single = || text.lines().any(|line| line.trim_start().starts_with("[layer]"));
+    if text.get(offset..).is_some_and(|rest| rest.starts_with(',')) {
+        "; a decimal has a point, not a comma"
+    } else if (line.starts_with("[layer]") || line.starts_with("[[layer]]")) && has_single() {
+        "; write `[[layer]]`, in double brackets, before the fields of each layer"
+    } else {
+        ""
+    }
+}

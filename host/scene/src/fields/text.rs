@@ -1,0 +1,64 @@
+//! Parses the text of a file to its fields.
+
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeArray, DeTable, DeValue};
+
+use super::{Fields, misplaced};
+use crate::compile_error::CompileError;
+use crate::log::Log;
+use crate::mistake::FileMistake;
+use crate::source::{Source, SourceFile};
+
+/// Reads the text of a file: `read` gets its fields, and messages call the whole text `table` and the file `name`.
+pub(crate) fn read_text<T>(
+    text: &str,
+    name: &str,
+    table: &str,
+    read: impl FnOnce(Fields, &mut Log) -> Option<T>,
+) -> Result<T, CompileError> {
+    let source = Source::new(name, text);
+    let mut log = Log::new(&source);
+    let fields = source.files().first().and_then(|file| parsed(file, &mut log));
+    let value = fields.and_then(|values| read(Fields::new(table, 0, values), &mut log));
+    log.finish(value)
+}
+
+/// The fields of a file, at their offsets in the source; `None` after a mistake, which has been logged.
+pub(crate) fn parsed<'i>(file: &'i SourceFile, log: &mut Log) -> Option<DeTable<'i>> {
+    match DeTable::parse(&file.text) {
+        Ok(values) => Some(moved_table(values.into_inner(), file.start)),
+        Err(error) => {
+            let offset = error.span().map_or(0, |span| span.start);
+            let hint = misplaced::syntax_hint(&file.text, offset);
+            log.add(file.start + offset, FileMistake::Syntax(format!("{}{hint}", error.message())));
+            None
+        }
+    }
+}
+
+/// A table whose offsets all are larger by `start`.
+fn moved_table(table: DeTable, start: usize) -> DeTable {
+    let moved = |span: Range<usize>| span.start + start..span.end + start;
+    let fields = table.into_iter().map(|(key, value)| {
+        let (key_span, span) = (moved(key.span()), moved(value.span()));
+        (Spanned::new(key_span, key.into_inner()), Spanned::new(span, moved_value(value.into_inner(), start)))
+    });
+    fields.collect()
+}
+
+fn moved_value(value: DeValue, start: usize) -> DeValue {
+    match value {
+        DeValue::Table(table) => DeValue::Table(moved_table(table, start)),
+        DeValue::Array(array) => {
+            let mut moved = DeArray::new();
+            for value in array {
+                let span = value.span().start + start..value.span().end + start;
+                moved.push(Spanned::new(span, moved_value(value.into_inner(), start)));
+            }
+            DeValue::Array(moved)
+        }
+        other => other,
+    }
+}

@@ -1,0 +1,121 @@
+//! What a host asks for when it changes layers while they play.
+
+use frixel_layers::Interval;
+use thiserror::Error;
+
+use super::cover::{Excess, excesses};
+use super::excess::{digits, down, up};
+use super::program::Program;
+use super::reference::{Piece, Reference};
+use super::titles::listed;
+
+/// Most places that are searched for an excess: a check takes a few milliseconds, so that the host goes on serving the
+/// board.
+const PLACES_MAX: usize = 4_000;
+/// Steps of the search for a gain that can be reached.
+const STEPS: u32 = 10;
+/// Largest magnitude of a gain.
+const GAIN_MAX: f64 = 100.0;
+
+/// The settings of a layer while it plays.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LayerSetting {
+    /// Whether it is on.
+    pub on: bool,
+    /// The factor on its friction, in place of its record's.
+    pub gain: f32,
+}
+
+/// Layers ask for friction that the drive cannot give, so that it is clamped.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{layers} would ask for {} N above natural friction, and 0 to {reach_n} N can be reached", side(*.asked_n, *.reach_n))]
+pub struct Clamped {
+    /// The layers.
+    pub layers: String,
+    /// What they ask for, N above natural friction.
+    pub asked_n: f64,
+    /// The most that can be reached, rounded down, N above natural friction.
+    pub reach_n: f64,
+}
+
+fn side(asked_n: f64, reach_n: f64) -> String {
+    format!("{} {asked_n}", if asked_n > reach_n { "up to" } else { "down to" })
+}
+
+impl Program {
+    /// What is clamped when the layers play with these settings, one for each record; `None` if all that is found can
+    /// be reached. A stream counts with all that it may be.
+    pub fn clamped_with(&self, settings: &[LayerSetting]) -> Option<Clamped> {
+        let within = self.within_reach();
+        let excess = self.worst_with(&pieces(&Reference::new(self), settings))?;
+        let titles: Vec<&str> =
+            excess.layers.iter().filter_map(|number| self.titles.get(*number)).map(String::as_str).collect();
+        let Interval { low, high } = excess.found;
+        let is_above = high - within.high > within.low - low;
+        Some(Clamped {
+            layers: listed(&titles),
+            asked_n: if is_above { digits(high, up) } else { digits(low, down) },
+            reach_n: digits(self.reach.electric_friction_max_n, f64::floor),
+        })
+    }
+
+    /// The gains of a record with which nothing is clamped, when the layers play with these settings otherwise; `None`
+    /// if there are none. `settings` has the gain to start from.
+    pub fn gains_in_reach(&self, record: u8, settings: &[LayerSetting]) -> Option<(f32, f32)> {
+        let mut pieces = pieces(&Reference::new(self), settings);
+        let number = usize::from(record);
+        let mut is_in_reach = |gain: f64| {
+            if let Some(piece) = pieces.get_mut(number) {
+                piece.gain = gain;
+            }
+            self.worst_with(&pieces).is_none()
+        };
+        let start = f64::from(settings.get(number)?.gain);
+        let start = [start, 1.0, 0.0].into_iter().find(|gain| is_in_reach(*gain))?;
+        let [least, most] = [-GAIN_MAX, GAIN_MAX].map(|limit| {
+            if is_in_reach(limit) {
+                return limit;
+            }
+            let (mut inside, mut outside) = (start, limit);
+            // First near the start, then by halves.
+            for step in [0.1, 0.3, 1.0, 3.0, 10.0, 30.0] {
+                let gain = start + step * (limit - start).signum();
+                if !(start.min(limit)..=start.max(limit)).contains(&gain) {
+                    break;
+                }
+                if is_in_reach(gain) {
+                    inside = gain;
+                } else {
+                    outside = gain;
+                    break;
+                }
+            }
+            for _ in 0..STEPS {
+                let middle = f64::midpoint(inside, outside);
+                if is_in_reach(middle) { inside = middle } else { outside = middle }
+            }
+            // To hundredths; where rounding leads outside, towards the inside. Adding zero makes no gain a negative zero.
+            let rounded = (100.0 * inside).round() / 100.0;
+            let towards_start = if limit > start { (100.0 * inside).floor() } else { (100.0 * inside).ceil() };
+            0.0 + if is_in_reach(rounded) { rounded } else { towards_start / 100.0 }
+        });
+        Some((least as f32, most as f32))
+    }
+
+    fn worst_with(&self, pieces: &[Piece]) -> Option<Excess> {
+        let within = self.within_reach();
+        let beyond = |excess: &Excess| (within.low - excess.found.low).max(excess.found.high - within.high);
+        let (width_m, height_m) = (f64::from(self.header.screen_width_m), f64::from(self.header.screen_height_m));
+        let found = excesses(pieces, width_m, height_m, within, PLACES_MAX).into_iter();
+        found.filter(|excess| beyond(excess) > 0.0).max_by(|one, other| beyond(one).total_cmp(&beyond(other)))
+    }
+}
+
+/// The layers with their settings.
+fn pieces(reference: &Reference, settings: &[LayerSetting]) -> Vec<Piece> {
+    let mut pieces = reference.pieces().to_vec();
+    for (piece, setting) in pieces.iter_mut().zip(settings) {
+        (piece.is_on, piece.gain) = (setting.on, f64::from(setting.gain));
+    }
+    pieces
+}

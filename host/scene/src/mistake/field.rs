@@ -1,0 +1,223 @@
+//! Mistakes in the fields of a table, and between them.
+
+use thiserror::Error;
+
+use crate::nearest::Nearest;
+
+/// A mistake in a field, or between fields of a table.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum FieldMistake {
+    /// The table has no field of this name.
+    #[error("unknown field `{field}` in {table}; {nearest}")]
+    UnknownField {
+        /// The field, as written.
+        field: String,
+        /// The table that contains it.
+        table: String,
+        /// The known names, and the nearest one.
+        nearest: Nearest,
+    },
+    /// Fields that belong to another table.
+    #[error("{} in {table} belong{} {home}: write {write}", listed(.fields), if .fields.len() == 1 { "s" } else { "" })]
+    Misplaced {
+        /// The fields, as written.
+        fields: Vec<String>,
+        /// The table that contains them.
+        table: String,
+        /// The table to which they belong, with a preposition.
+        home: String,
+        /// What to write instead.
+        write: String,
+    },
+    /// A required field is missing.
+    #[error("{table} has no {}", missing(field, *.other))]
+    MissingField {
+        /// The missing field.
+        field: &'static str,
+        /// Another field that says the same in another unit, if there is one.
+        other: Option<&'static str>,
+        /// The table.
+        table: String,
+    },
+    /// A value has another type than expected.
+    #[error("`{field}` has to be {expected}, and this is {found}")]
+    WrongType {
+        /// The field.
+        field: &'static str,
+        /// The expected type.
+        expected: &'static str,
+        /// The type that was found.
+        found: &'static str,
+    },
+    /// Something else stands where a table is expected.
+    #[error("`{field}` has to be a table, and this is {found}: write {write}")]
+    NotATable {
+        /// The field.
+        field: &'static str,
+        /// The type that was found.
+        found: &'static str,
+        /// What to write instead.
+        write: String,
+    },
+    /// Something else stands where a list of tables is expected.
+    #[error(
+        "`{field}` has to be a list of tables, and this is {found}: write `[[{field}]]`, in double brackets, before the \
+         fields of each"
+    )]
+    NotTables {
+        /// The field.
+        field: &'static str,
+        /// The type that was found.
+        found: &'static str,
+    },
+    /// A number is out of range, or not a number.
+    #[error("`{field} = {found}` is out of range: expected {min} to {max}{unit}")]
+    OutOfRange {
+        /// The field.
+        field: &'static str,
+        /// Its value.
+        found: f64,
+        /// Smallest value.
+        min: f64,
+        /// Largest value.
+        max: f64,
+        /// The unit, with a space before it; empty if there is no unit.
+        unit: &'static str,
+    },
+    /// A word is not one of the choices.
+    #[error("`{field} = \"{found}\"` is not known; {nearest}")]
+    UnknownChoice {
+        /// The field.
+        field: &'static str,
+        /// The word, as written.
+        found: String,
+        /// The known names, and the nearest one.
+        nearest: Nearest,
+    },
+    /// A field differs from layer to layer and has no default.
+    #[error("`{field}` in [defaults] would be the same for every layer: write it in each layer")]
+    NoDefault {
+        /// The field.
+        field: &'static str,
+    },
+    /// A length is in pixels, and the scene does not say how large its design is.
+    #[error("`{field}` is in pixels, and the scene has no design size: add [design] with `width_px` and `height_px`")]
+    NoDesign {
+        /// The field.
+        field: &'static str,
+    },
+    /// A lower limit is above its upper limit.
+    #[error("`{low_name} = {low}` is above `{high_name} = {high}`: swap them")]
+    LowAboveHigh {
+        /// The field of the lower limit.
+        low_name: &'static str,
+        /// Its value.
+        low: f64,
+        /// The field of the upper limit.
+        high_name: &'static str,
+        /// Its value.
+        high: f64,
+    },
+    /// One amount is given in two units.
+    #[error("`{one}` and `{other}` say the same in two units: leave one of them out")]
+    TwoUnits {
+        /// A field.
+        one: &'static str,
+        /// Another field for the same amount.
+        other: &'static str,
+    },
+    /// A number has a fraction and must not.
+    #[error("`{field} = {found}` has to be a whole number: round it")]
+    NotWhole {
+        /// The field.
+        field: &'static str,
+        /// Its value.
+        found: f64,
+    },
+    /// The first number of an interval is above the second one.
+    #[error("`{field} = [{low}, {high}]` falls: write the smaller number first")]
+    IntervalReversed {
+        /// The field.
+        field: &'static str,
+        /// The first number.
+        low: f64,
+        /// The second number.
+        high: f64,
+    },
+    /// A date is not `YYYY-MM-DD`.
+    #[error("`date = \"{found}\"` is not a day: write it as \"YYYY-MM-DD\"")]
+    Date {
+        /// The date, as written.
+        found: String,
+    },
+    /// A text that has to say something is empty.
+    #[error("`{field}` is empty: say it in a few words")]
+    EmptyText {
+        /// The field.
+        field: &'static str,
+    },
+    /// A list is too short or too long.
+    #[error("`{field}` has {found} {}: expected {}", if *.found == 1 { "entry" } else { "entries" }, count(*.min, *.max))]
+    Count {
+        /// The field.
+        field: &'static str,
+        /// How many entries it has.
+        found: usize,
+        /// Fewest entries.
+        min: usize,
+        /// Most entries.
+        max: usize,
+    },
+    /// The speeds of a curve do not rise.
+    #[error(
+        "the speeds of a curve have to rise, by 0.02 mm/s or more from each to the next, and {after} comes after \
+         {before}: sort them"
+    )]
+    SpeedsDoNotRise {
+        /// A speed, mm/s.
+        before: f64,
+        /// The one after it, mm/s.
+        after: f64,
+    },
+    /// The region of a button is a polygon.
+    #[error("a button is a rectangle or an ellipse, and this region is a polygon: change its `shape`")]
+    ButtonPolygon,
+    /// Several copies of a layer would lie at the same place.
+    #[error("the {what} of this repeat would lie on one another: give the distance from one to the next, `{step}`")]
+    RepeatInPlace {
+        /// `columns` or `rows`.
+        what: &'static str,
+        /// The field of their distance.
+        step: &'static str,
+    },
+    /// The friction of a layer with `blend = "add"` is given in total.
+    #[error(
+        "{layer} is added to what lies below it, so its friction is a difference and cannot be given in total: \
+         write `above = \"natural\"` or leave `above` out"
+    )]
+    AddedTotal {
+        /// The layer.
+        layer: String,
+    },
+}
+
+fn missing(field: &str, other: Option<&str>) -> String {
+    match other {
+        _ if field == "version" => "`version`: write `version = 2` at the top".to_owned(),
+        Some(other) => format!("`{field}` or `{other}`: add one of them"),
+        None => format!("`{field}`: add it"),
+    }
+}
+
+/// Names of fields, as in a sentence.
+fn listed(fields: &[String]) -> String {
+    match fields {
+        [others @ .., last] if !others.is_empty() => format!("`{}` and `{last}`", others.join("`, `")),
+        fields => format!("`{}`", fields.concat()),
+    }
+}
+
+fn count(min: usize, max: usize) -> String {
+    if min == max { min.to_string() } else { format!("{min} to {max}") }
+}

@@ -1,0 +1,197 @@
+//! Mistakes of whole files: of a scene, of those that it includes, and of those that it names.
+
+use thiserror::Error;
+
+use super::TILDE_ADVICE;
+use crate::nearest::Nearest;
+
+/// A mistake of a whole file, or between the files of a scene.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum FileMistake {
+    /// The bytes are not UTF-8.
+    #[error("this byte is not UTF-8 text: save the file as UTF-8")]
+    NotUtf8,
+    /// The text is not TOML.
+    #[error("this is not TOML: {0}")]
+    Syntax(String),
+    /// The scene file has another version.
+    #[error("this scene file has version {found}, and this frixel reads versions 1 and 2: use a frixel that knows it")]
+    Version {
+        /// The version, as written.
+        found: f64,
+    },
+    /// Screen or finger of a scene of version 1 cannot be exchanged.
+    #[error(
+        "the coating of a scene of version 1 contains the finger's skin, so that it cannot be played with another {what}: \
+         `frixel scene migrate {file}` prints it as version 2"
+    )]
+    VersionOneProfile {
+        /// `finger` or `screen`.
+        what: &'static str,
+        /// The scene file.
+        file: String,
+    },
+    /// The scene to be written as version 2 is of version 2.
+    #[error("this scene has version 2 already: there is nothing to migrate")]
+    NothingToMigrate,
+    /// No screen or finger of this name is bundled.
+    #[error("no {what} \"{found}\" is bundled, and the name of a file has an ending such as .toml; {nearest}")]
+    UnknownProfile {
+        /// `finger` or `screen`.
+        what: &'static str,
+        /// The name, as written.
+        found: String,
+        /// The bundled names, and the nearest one.
+        nearest: Nearest,
+    },
+    /// A scene of version 1 has a field of version 2.
+    #[error("`{field}` came with version 2: `frixel scene migrate {file}` prints a scene of version 1 as version 2")]
+    SinceVersionTwo {
+        /// The field.
+        field: &'static str,
+        /// The scene file.
+        file: String,
+    },
+    /// An included file has another version.
+    #[error(
+        "{file} includes {included}, which has version {found} and not 2: {}",
+        version_advice(*.found, .included)
+    )]
+    IncludedVersion {
+        /// The file that includes it.
+        file: String,
+        /// The included file.
+        included: String,
+        /// Its version, as written.
+        found: f64,
+    },
+    /// Files include one another.
+    #[error("{}: take {} out", in_circle(.circle), if .circle.len() == 1 { "it" } else { "one of them" })]
+    IncludedByItself {
+        /// The files, each of which includes the next one, and the last one the first.
+        circle: Vec<String>,
+    },
+    /// A scene has too many files.
+    #[error("a scene has at most {max} files, and this one would be one too many: put some of them together")]
+    TooManyFiles {
+        /// Most files of a scene.
+        max: usize,
+    },
+    /// A file is included by two files, or twice by one.
+    #[error(
+        "{included} is included by {file} and by {other}: a scene includes each file once, so leave one of them out"
+    )]
+    IncludedTwice {
+        /// The file with this `include`.
+        file: String,
+        /// The included file.
+        included: String,
+        /// The file that includes it already.
+        other: String,
+    },
+    /// A file that is to be included is not there.
+    #[error(
+        "{file} includes {included}, which was not found: names start from the folder of {file}{}",
+        did_you_mean(.nearest.as_deref())
+    )]
+    IncludedMissing {
+        /// The file with this `include`.
+        file: String,
+        /// The file that it includes.
+        included: String,
+        /// The nearest name in the place that was searched, if one is near enough.
+        nearest: Option<String>,
+    },
+    /// A file that is to be included cannot be used.
+    #[error("{file} includes {included}, which cannot be used: {reason}")]
+    IncludedUnusable {
+        /// The file with this `include`.
+        file: String,
+        /// The file that it includes.
+        included: String,
+        /// The reason, and what to do.
+        reason: String,
+    },
+    /// Two files of a scene have the same table.
+    #[error("`{field}` stands in {file} and in {other}: a scene has one, so leave one of them out")]
+    TableTwice {
+        /// The table.
+        field: &'static str,
+        /// The file with this table.
+        file: String,
+        /// Another file that has it.
+        other: String,
+    },
+    /// Layers of two files have the same name.
+    #[error("a layer \"{name}\" is in {file} and in {other}: give one of them another name")]
+    NameTwice {
+        /// The name.
+        name: String,
+        /// The file with this layer.
+        file: String,
+        /// Another file that has a layer of this name.
+        other: String,
+    },
+    /// There is no file of this name.
+    #[error(
+        "{what} \"{file}\" was not found in {folder}{}: {}",
+        which_has(.nearest.as_deref()),
+        if .file.starts_with('~') { TILDE_ADVICE } else { "paths start from the folder of the file that names it" }
+    )]
+    FileMissing {
+        /// `picture`, `finger` or `screen`.
+        what: &'static str,
+        /// The file's name, as written.
+        file: String,
+        /// The place that was searched.
+        folder: String,
+        /// The nearest name in that place, if one is near enough.
+        nearest: Option<String>,
+    },
+    /// The name of a file is empty.
+    #[error("`{field}` names no file: write its name between the quotation marks")]
+    NoFileName {
+        /// The field.
+        field: &'static str,
+    },
+    /// A file cannot be used.
+    #[error("{what} \"{file}\" cannot be used: {reason}")]
+    FileUnusable {
+        /// `picture`, `finger` or `screen`.
+        what: &'static str,
+        /// The file's name, as written.
+        file: String,
+        /// The reason, and what to do.
+        reason: String,
+    },
+}
+
+fn version_advice(found: f64, file: &str) -> String {
+    if found.to_bits() == 1.0_f64.to_bits() {
+        format!("`frixel scene migrate {file}` prints it as version 2")
+    } else {
+        "use a frixel that knows it".to_owned()
+    }
+}
+
+fn did_you_mean(nearest: Option<&str>) -> String {
+    nearest.map_or(String::new(), |name| format!("; did you mean \"{name}\"?"))
+}
+
+fn which_has(nearest: Option<&str>) -> String {
+    nearest.map_or(String::new(), |name| format!(", which has \"{name}\""))
+}
+
+/// Files that include one another, beginning with the last one.
+fn in_circle(files: &[String]) -> String {
+    let Some((last, others)) = files.split_last() else { return String::new() };
+    let way: Vec<&str> = std::iter::once(last).chain(others).map(String::as_str).collect();
+    match &way[..] {
+        [only] => format!("{only} includes {only} itself"),
+        [first, rest @ ..] => {
+            format!("{first} includes {}, which includes {last} itself", rest.join(", which includes "))
+        }
+        [] => String::new(),
+    }
+}

@@ -1,0 +1,199 @@
+//! Mistakes of a scene that was read, but does not fit its screen, its finger or the board.
+
+use thiserror::Error;
+
+/// A scene asks for more than screen, finger and board have.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum FitMistake {
+    /// The scene has more of something than a board has room for.
+    #[error("this is number {number} of the scene's {what}, and a board takes {max}: leave some out")]
+    TooMany {
+        /// The kind of thing that there are too many of.
+        what: &'static str,
+        /// The number of this one, from one.
+        number: usize,
+        /// The board's limit.
+        max: usize,
+    },
+    /// A region extends past the screen.
+    #[error(
+        "{layer} reaches {beyond_mm} mm past the {edge} edge of the {screen_width_mm} mm x {screen_height_mm} mm screen: \
+         move it or make it smaller"
+    )]
+    OffScreen {
+        /// The layer.
+        layer: String,
+        /// The edge of the screen.
+        edge: &'static str,
+        /// How far the region extends past the edge, mm.
+        beyond_mm: f64,
+        /// Width of the screen, mm.
+        screen_width_mm: f64,
+        /// Height of the screen, mm.
+        screen_height_mm: f64,
+    },
+    /// The target friction of a layer is more than the drive can give.
+    #[error(
+        "{asking} up to {asked_n} N {reference}{}, and at {voltage_v_rms} V rms this finger feels at most {reach_n} N \
+         {reference}: {}lower {lower}, {}or write `saturate = true` under [drive] to have it clamped",
+        .part_of_reach.map_or(String::new(), |part| format!(" ({part} of the reach)")),
+        if *.may_be_millinewtons { "were mN meant? 1 mN is 0.001 N; " } else { "" },
+        raised(.raise),
+    )]
+    AboveReach {
+        /// The layer or layers, with the verb.
+        asking: String,
+        /// The layers' target friction, N.
+        asked_n: f64,
+        /// `in total` or `above natural friction`.
+        reference: &'static str,
+        /// The target as a part of what can be reached, if the layers' amounts are fractions.
+        part_of_reach: Option<f64>,
+        /// Largest rms voltage, V.
+        voltage_v_rms: f64,
+        /// The largest friction that can be reached, rounded down, N.
+        reach_n: f64,
+        /// What to lower.
+        lower: &'static str,
+        /// The limits of [drive] that reach the target if they are raised to these values, V; empty if other limits
+        /// forbid that, or if the amounts are fractions, which more voltage does not change.
+        raise: Vec<(&'static str, f64)>,
+        /// Whether the number is in reach if it was meant in millinewtons.
+        may_be_millinewtons: bool,
+    },
+    /// The target friction of a layer is less than the friction at no voltage.
+    #[error(
+        "{asking} down to {asked_n} N {reference}, and a drive can only add to the finger's natural friction of \
+         {natural_n} N: raise it, lower `normal_load_n`, or write `saturate = true` under [drive] to have it clamped"
+    )]
+    BelowNatural {
+        /// The layer or layers, with the verb.
+        asking: String,
+        /// The layers' target friction, N.
+        asked_n: f64,
+        /// `in total` or `above natural friction`.
+        reference: &'static str,
+        /// Friction at no voltage, N.
+        natural_n: f64,
+    },
+    /// The scene has more layers than the board takes.
+    #[error(
+        "the scene has {count} layers{}, and the board takes {max}: leave some out or draw them into one picture",
+        if *.has_copies { ", each copy of a `repeat` counted" } else { "" }
+    )]
+    TooManyLayers {
+        /// Layers of the scene.
+        count: usize,
+        /// Whether some of them are copies.
+        has_copies: bool,
+        /// The board's limit.
+        max: usize,
+    },
+    /// A tick takes too long at some place.
+    #[error(
+        "{layers} {} at x {x_mm} mm, y {y_mm} mm: a tick there is estimated at {cycles} cycles, and the board has time for \
+         {cycles_max}: move layers apart, or leave some out",
+        if *.meet { "meet" } else { "are in one cell of the board's grid, though they do not meet," }
+    )]
+    TickTooLong {
+        /// Estimated cycles of the longest tick.
+        cycles: u32,
+        /// The board's limit.
+        cycles_max: u32,
+        /// The layers that the tick evaluates there.
+        layers: String,
+        /// Whether those layers alone exceed the limit at this place. Otherwise they only share a cell of the grid.
+        meet: bool,
+        /// The place from the left edge of the screen, mm.
+        x_mm: f64,
+        /// The place from the top edge of the screen, mm.
+        y_mm: f64,
+    },
+    /// The pictures need more memory than the board has for them.
+    #[error(
+        "the pictures up to this one need {needed_bytes} bytes, and the board has {pool_bytes}: \
+         a pitch_mm of {pitch_mm} would fit"
+    )]
+    PoolTooSmall {
+        /// Bytes of all different pictures up to this one.
+        needed_bytes: u64,
+        /// Bytes of the board's pool.
+        pool_bytes: u32,
+        /// A pitch that fits, mm.
+        pitch_mm: f64,
+    },
+    /// The peak voltage is above the board's limit.
+    #[error("`voltage_max_v_peak = {found}` is above the board's limit of {board} V peak: lower it or leave it out")]
+    PeakAboveBoard {
+        /// The peak voltage, as written, V.
+        found: f64,
+        /// The board's limit, V.
+        board: f64,
+    },
+    /// The carrier is too fast for the board's tick.
+    #[error("`frequency_hz = {found}` is too fast for {tick_hz} ticks a second: expected at most {max} Hz")]
+    CarrierTooFast {
+        /// The frequency, as written, Hz.
+        found: f64,
+        /// Ticks a second.
+        tick_hz: u32,
+        /// Fastest carrier, Hz.
+        max: f64,
+    },
+    /// The current into the electrode is above the board's limit.
+    #[error(
+        "this carrier drives {found_ma:.2} mA {kind} into the board's worst-case electrode, and its limit is \
+         {board_ma:.2} mA: lower {cure}"
+    )]
+    CurrentAboveBoard {
+        /// `rms` or `peak`.
+        kind: &'static str,
+        /// The current at the largest voltage, mA.
+        found_ma: f64,
+        /// The board's limit, mA.
+        board_ma: f64,
+        /// The field to lower.
+        cure: &'static str,
+    },
+    /// The contact at the largest voltage is wider than the finger.
+    #[error(
+        "at {voltage_v_rms:.1} V rms the contact would have a radius of {contact_mm:.1} mm under a finger of {radius_mm} mm, \
+         where the model is not valid: a skin gap is missing, since {gap_um:.2} um between electrode and finger are too few; \
+         give the finger a `skin_gap_um` of some micrometres (in version 1 another slab of [[coating]]), or lower \
+         `voltage_max_v_rms`"
+    )]
+    ContactWiderThanFinger {
+        /// The largest rms voltage, V.
+        voltage_v_rms: f64,
+        /// Contact radius at that voltage, mm.
+        contact_mm: f64,
+        /// The finger's radius, mm.
+        radius_mm: f64,
+        /// Effective gap of coating and skin, um.
+        gap_um: f64,
+    },
+    /// The springs of a board cannot stand in for a soft finger.
+    #[error(
+        "a board plays springs of one stiffness, and those nearest to this soft finger differ from it by {found_percent:.1} % \
+         of the reach, more than {max_percent} %: lower `voltage_max_v_rms`, or give the finger `stiffness_pa_per_m`"
+    )]
+    SoftFinger {
+        /// Largest deviation, in percent of the reachable electric friction.
+        found_percent: f64,
+        /// Largest deviation that is played, in percent.
+        max_percent: f64,
+    },
+    /// Each number is in range, but the contact model or its table refuses their combination.
+    #[error("this finger on this coating cannot be played ({reason}): check finger, coating and `voltage_max_v_rms`")]
+    Model {
+        /// The reason.
+        reason: String,
+    },
+}
+
+/// The limits that help if they are raised.
+fn raised(limits: &[(&str, f64)]) -> String {
+    let limits: Vec<String> = limits.iter().map(|(field, to)| format!("`{field}` to {to}")).collect();
+    if limits.is_empty() { String::new() } else { format!("raise {}, ", limits.join(" and ")) }
+}

@@ -1,0 +1,43 @@
+//! The mistakes that a scene can have. Each message states what was found, what is expected, and what to do.
+
+mod field;
+mod file;
+mod fit;
+
+use thiserror::Error;
+
+pub use field::FieldMistake;
+pub use file::FileMistake;
+pub use fit::FitMistake;
+
+/// What to do about a path that starts with a tilde.
+pub const TILDE_ADVICE: &str = "only a shell replaces `~` by your folder, so write that folder's path in full";
+
+/// A mistake in a scene file. Its text is one sentence for the person who wrote the file.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum Mistake {
+    /// In a field, or between fields of a table.
+    #[error(transparent)]
+    Field(#[from] FieldMistake),
+    /// Of a whole file, or between files.
+    #[error(transparent)]
+    File(#[from] FileMistake),
+    /// The scene asks for more than screen, finger and board have.
+    #[error(transparent)]
+    Fit(#[from] FitMistake),
+}
+
+impl Mistake {
+    /// The nearest valid name to an unknown one, if one is near enough.
+    pub fn nearest(&self) -> Option<&str> {
+        match self {
+            Self::Field(FieldMistake::UnknownField { nearest, .. } | FieldMistake::UnknownChoice { nearest, .. })
+            | Self::File(FileMistake::UnknownProfile { nearest, .. }) => nearest.suggestion.as_deref(),
+            Self::File(FileMistake::FileMissing { nearest, .. } | FileMistake::IncludedMissing { nearest, .. }) => {
+                nearest.as_deref()
+            }
+            _ => None,
+        }
+    }
+}

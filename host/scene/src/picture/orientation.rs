@@ -1,0 +1,59 @@
+//! Which way up a camera was held: the tag `Orientation` of EXIF (CIPA DC-008, section 4.6.5; TIFF 6.0, tag 274).
+
+use exif::{In, Reader, Tag};
+
+use super::Picture;
+
+/// What is said of a picture that was turned.
+const UPRIGHT: &str = "turned upright, as its camera noted (EXIF)";
+
+/// How the pixels of a file lie in the picture that the camera saw.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Orientation {
+    /// Rows of the picture are columns of the file. This comes last.
+    swapped: bool,
+    /// The file's columns run from right to left.
+    from_right: bool,
+    /// The file's rows run from bottom to top.
+    from_bottom: bool,
+}
+
+impl Orientation {
+    /// Reads the orientation from the bytes of an EXIF block, from its TIFF header on. Without one, or if it cannot be
+    /// read, the file is upright.
+    pub(super) fn of(exif: Option<&[u8]>) -> Self {
+        let read = |exif: &[u8]| Reader::new().read_raw(exif.to_vec()).ok();
+        let number =
+            exif.and_then(read).and_then(|exif| exif.get_field(Tag::Orientation, In::PRIMARY)?.value.get_uint(0));
+        let (swapped, from_right, from_bottom) = match number {
+            Some(2) => (false, true, false),
+            Some(3) => (false, true, true),
+            Some(4) => (false, false, true),
+            Some(5) => (true, false, false),
+            Some(6) => (true, false, true),
+            Some(7) => (true, true, true),
+            Some(8) => (true, true, false),
+            _ => (false, false, false),
+        };
+        Self { swapped, from_right, from_bottom }
+    }
+
+    /// The picture that the camera saw.
+    pub(super) fn upright(self, picture: Picture) -> Picture {
+        if self == Self::default() {
+            return picture;
+        }
+        let (file_width, file_height) = (picture.width, picture.height);
+        let (width, height) = if self.swapped { (file_height, file_width) } else { (file_width, file_height) };
+        let pixel = |place: usize| {
+            let (x, y) = (place % width, place / width);
+            let (column, row) = if self.swapped { (y, x) } else { (x, y) };
+            let column = if self.from_right { file_width - 1 - column } else { column };
+            let row = if self.from_bottom { file_height - 1 - row } else { row };
+            picture.grey.get(row * file_width + column).copied().unwrap_or_default()
+        };
+        let grey = (0..width * height).map(pixel).collect();
+        let conversions = picture.conversions.iter().cloned().chain([UPRIGHT.to_owned()]).collect();
+        Picture { width, height, grey, conversions }
+    }
+}

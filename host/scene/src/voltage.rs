@@ -1,0 +1,127 @@
+//! The limits of the drive, and what raising them would reach.
+
+use frixel_layers::Header;
+use frixel_wire::hello::BoardLimits;
+
+use super::file::Scene;
+use super::finger::Evidence;
+use super::log::Log;
+use super::mistake::FitMistake;
+use super::reach::{Reach, carrier};
+use super::springs::Springs;
+
+/// Ratio of the default peak limit to the peak that the rms limit needs. It is above 1, so that rounding never makes
+/// the peak limit the tighter one.
+const PEAK_MARGIN: f64 = 1.001;
+
+/// The limits of the drive: the least of those of scene, screen and board.
+pub(super) struct Voltage {
+    pub(super) max_v_rms: f64,
+    pub(super) max_v_peak: f64,
+    pub(super) slew_v_per_us: f64,
+    /// Peak voltage over rms voltage of the carrier.
+    peak_per_rms: f64,
+    /// The largest rms voltage within the limits that [drive] cannot change: those of screen, board and measurement.
+    hard_max_v_rms: f64,
+    /// The largest peak voltage of screen and board.
+    hard_max_v_peak: f64,
+}
+
+impl Voltage {
+    pub(super) fn of(
+        scene: &Scene,
+        limits: &BoardLimits,
+        half_period_s: f64,
+        log: &mut Log,
+        notes: &mut Vec<String>,
+    ) -> Self {
+        let (drive, screen) = (&scene.drive, scene.screen());
+        let board_v_peak = f64::from(limits.voltage_max_v_peak.min(limits.full_scale_v_peak));
+        if let Some(found) = drive.voltage_max_v_peak.filter(|found| *found > board_v_peak) {
+            log.add(
+                drive.places.field("voltage_max_v_peak"),
+                FitMistake::PeakAboveBoard { found, board: board_v_peak },
+            );
+        }
+        let peak_per_rms = f64::from(carrier(scene.carrier.waveform, half_period_s, limits).peak_per_rms());
+        let wanted_v_rms = screen.voltage_max_v_rms.unwrap_or(f64::INFINITY).min(drive.voltage_max_v_rms);
+        if wanted_v_rms < drive.voltage_max_v_rms {
+            notes.push(format!(
+                "drive: the screen bears {wanted_v_rms} V rms, less than the {} V rms of the scene",
+                drive.voltage_max_v_rms
+            ));
+        }
+        let needed_v_peak = PEAK_MARGIN * peak_per_rms * wanted_v_rms;
+        let screen_v_peak = screen.voltage_max_v_peak.unwrap_or(f64::INFINITY);
+        let max_v_peak = drive.voltage_max_v_peak.unwrap_or(needed_v_peak).min(screen_v_peak).min(board_v_peak);
+        let max_v_rms = wanted_v_rms.min(max_v_peak / peak_per_rms);
+        if max_v_rms < wanted_v_rms {
+            notes.push(format!(
+                "drive: {wanted_v_rms} V rms would need {:.1} V peak; the limit of {max_v_peak} V peak allows \
+                 {max_v_rms:.1} V rms",
+                peak_per_rms * wanted_v_rms
+            ));
+        }
+        let slew_v_per_us = screen.slew_v_per_us.unwrap_or(f64::INFINITY).min(drive.slew_v_per_us);
+        let hard_max_v_peak = screen_v_peak.min(board_v_peak);
+        let measured_v_rms = match scene.finger().evidence {
+            // A board refuses a scene that needs more.
+            Evidence::Measured { voltage_max_v_rms, .. } => voltage_max_v_rms,
+            _ => f64::INFINITY,
+        };
+        let screen_v_rms = screen.voltage_max_v_rms.unwrap_or(f64::INFINITY);
+        let hard_max_v_rms = (hard_max_v_peak / peak_per_rms).min(screen_v_rms).min(measured_v_rms);
+        Self { max_v_rms, max_v_peak, slew_v_per_us, peak_per_rms, hard_max_v_rms, hard_max_v_peak }
+    }
+
+    /// Checks the current into the worst-case electrode at the largest voltage against the board's limits, and lowers
+    /// the voltage to them.
+    pub(super) fn limit_current(&mut self, scene: &Scene, limits: &BoardLimits, half_period_s: f64, log: &mut Log) {
+        // The board computes in `f32`, from the carrier's frequency.
+        let carrier_hz = (0.5 / half_period_s) as f32;
+        let carrier = carrier(scene.carrier.waveform, 0.5 / f64::from(carrier_hz), limits);
+        let drive_v_peak = self.max_v_rms as f32 * carrier.peak_per_rms();
+        let current = carrier.electrode_current(limits.electrode_capacitance_max_f, drive_v_peak);
+        let rms_cure = "`frequency_hz` under [carrier], or `voltage_max_v_rms` under [drive]";
+        let mut factor = f64::INFINITY;
+        for (kind, found_a, board_a, cure) in [
+            ("rms", current.a_rms, limits.current_max_a_rms, rms_cure),
+            ("peak", current.a_peak, limits.current_max_a_peak, "`voltage_max_v_rms` under [drive]"),
+        ] {
+            let (found_ma, board_ma) = (f64::from(found_a) * 1e3, f64::from(board_a) * 1e3);
+            factor = factor.min(board_ma / found_ma);
+            if found_a > board_a {
+                log.add(scene.carrier.places.table(), FitMistake::CurrentAboveBoard { kind, found_ma, board_ma, cure });
+            }
+        }
+        // Both currents are proportional to the voltage.
+        self.hard_max_v_rms = self.hard_max_v_rms.min(self.max_v_rms * factor);
+        self.max_v_rms *= factor.min(1.0);
+    }
+
+    /// The limits of [drive], with the least whole volts that reach an electric friction; empty if other limits forbid
+    /// that. `header` is that of the compiled scene.
+    pub(super) fn raised_for(&self, scene: &Scene, header: &Header, friction_n: f64) -> Vec<(&'static str, f64)> {
+        let reaches = |v_rms: f64| {
+            let gap_m = f64::from(header.effective_gap_m);
+            // Other springs stand in for a soft finger at another voltage.
+            let springs =
+                Springs::of(scene.finger(), gap_m, v_rms).ok().filter(|springs| springs.mistake().is_none())?;
+            let stiffness_pa_per_m = springs.stiffness_pa_per_m as f32;
+            let reach = Reach::of(&Header { voltage_max_v_rms: v_rms as f32, stiffness_pa_per_m, ..*header }).ok()?;
+            Some(reach.electric_friction_max_n >= friction_n)
+        };
+        let (least, most) = (self.max_v_rms.ceil() as u32, self.hard_max_v_rms.floor() as u32);
+        let reached_at = (least..=most).map(f64::from).find(|v_rms| reaches(*v_rms) == Some(true));
+        let Some(v_rms) = reached_at else { return Vec::new() };
+        let v_peak = (PEAK_MARGIN * self.peak_per_rms * v_rms).ceil().min(self.hard_max_v_peak);
+        let drive = &scene.drive;
+        [
+            ("voltage_max_v_rms", v_rms, drive.voltage_max_v_rms),
+            ("voltage_max_v_peak", v_peak, drive.voltage_max_v_peak.unwrap_or(f64::INFINITY)),
+        ]
+        .into_iter()
+        .filter_map(|(field, to, from)| (to > from).then_some((field, to)))
+        .collect()
+    }
+}
