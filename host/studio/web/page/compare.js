@@ -40,7 +40,8 @@ export class Compare {
     const start = element("button", { className: "primary", disabled: !this.#kept }, "Compare A with the scene now");
     start.onclick = () => this.#start();
     const said = this.#kept
-      ? "A is kept. Change the scene, which is B, and compare: they come as X and Y in random order, map and text hidden."
+      ? "A is kept. Change the scene, which is B, and compare: they come as X and Y in random order, map and text " +
+        "hidden."
       : "Keep a version, change the scene, and find out, without looking, which is better.";
     const { a, b, same } = this.#tally;
     this.#panel.replaceChildren(element("p", {}, said), element("div", { className: "row" }, keep, start));

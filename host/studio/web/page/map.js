@@ -1,7 +1,7 @@
 // The friction map with ruler, scale and names; the finger has a canvas of its own above it (finger.js).
 
 import { SCALE, imageOf } from "./colors.js";
-import { byId, colour } from "./dom.js";
+import { colour } from "./dom.js";
 import { drawMockup } from "./mockup.js";
 
 /** Room for the ruler and the scale around the map, CSS pixels. */
@@ -11,8 +11,8 @@ const RIGHT = 78;
 const BOTTOM = 8;
 
 export class FrictionMap {
-  #canvas = byId("map-picture");
-  #box = byId("map");
+  #canvas;
+  #box;
   #map;
   #check;
   #picture;
@@ -27,7 +27,10 @@ export class FrictionMap {
   /** The map has another size: finger.js follows. */
   onLayout = () => {};
 
-  constructor() {
+  /** Draws on the canvas `picture` in the element `box`. */
+  constructor(box, picture) {
+    this.#box = box;
+    this.#canvas = picture;
     new ResizeObserver(() => this.layout()).observe(this.#box);
   }
 
@@ -80,10 +83,11 @@ export class FrictionMap {
     context.imageSmoothingEnabled = this.scale * devicePixelRatio * widthMm < this.#map.widthPx * 2;
     context.drawImage(this.#picture, 0, 0, area.width, area.height);
     context.restore();
-    const ink = { line: colour("soft"), text: colour("ink") };
+    const ink = { line: colour("soft", this.#box), text: colour("ink", this.#box) };
     this.#drawRuler(context, area, ink);
     this.#drawScale(context, area, ink);
     if (this.hasNames && this.look !== "mockup") this.#drawNames(context, area);
+    if (this.#check.isDraft) drawDraft(context, area);
   }
 
   #drawRuler(context, { x, y, width, height }, ink) {
@@ -163,31 +167,40 @@ export class FrictionMap {
   }
 }
 
-/** Names of layers with the box of each region; a layer without a region has the whole screen. */
-function namedBoxes({ layers, text }, screen) {
-  const lines = text.split("\n");
-  return layers
-    .filter(({ name }) => name)
-    .map(({ name, from }) => {
-      const block = from ? lines.slice(from[0] - 1, from[1]).join("\n") : "";
-      return { name, box: boxOf(block) ?? { x: 0, y: 0, width: screen.widthMm, height: screen.heightMm } };
-    });
+/** Marks a map whose scene a board would refuse: stripes along the edge, and the word. */
+function drawDraft(context, { x, y, width, height }) {
+  const wide = 10;
+  context.save();
+  context.beginPath();
+  context.rect(x, y, width, height);
+  context.rect(x + wide, y + wide, width - 2 * wide, height - 2 * wide);
+  context.clip("evenodd");
+  context.fillStyle = "#000";
+  context.fillRect(x, y, width, height);
+  context.strokeStyle = "#ffd23f";
+  context.lineWidth = 7;
+  context.beginPath();
+  for (let at = -height; at < width; at += 20) {
+    context.moveTo(x + at, y + height);
+    context.lineTo(x + at + height, y);
+  }
+  context.stroke();
+  context.restore();
+  const words = "draft";
+  context.font = "700 20px system-ui, sans-serif";
+  const long = context.measureText(words).width + 28;
+  context.fillStyle = "#000";
+  context.fillRect(x, y, long, 36);
+  context.fillStyle = "#ffd23f";
+  context.textAlign = "left";
+  context.textBaseline = "middle";
+  context.fillText(words, x + 14, y + 18);
 }
 
-function boxOf(block) {
-  const region = /^\s*region\s*=\s*\{([^}]*)\}/m.exec(block)?.[1];
-  if (region === undefined) return undefined;
-  const points = [...region.matchAll(/\[\s*(-?[\d.]+)\s*,\s*(-?[\d.]+)\s*\]/g)].map(([, x, y]) => [
-    Number(x),
-    Number(y),
-  ]);
-  if (points.length > 0) {
-    const xs = points.map(([x]) => x);
-    const ys = points.map(([, y]) => y);
-    const [x, y] = [Math.min(...xs), Math.min(...ys)];
-    return { x, y, width: Math.max(...xs) - x, height: Math.max(...ys) - y };
-  }
-  const number = (name) => Number(new RegExp(`\\b${name}\\s*=\\s*(-?[\\d.]+)`).exec(region)?.[1] ?? NaN);
-  const box = { x: number("x_mm"), y: number("y_mm"), width: number("width_mm"), height: number("height_mm") };
-  return Object.values(box).some(Number.isNaN) ? undefined : box;
+/** Names of layers with the box of each region; a layer without a region has the whole screen. */
+function namedBoxes({ layers }, screen) {
+  return layers.map(({ name, boxMm }) => {
+    const [x, y, width, height] = boxMm ?? [0, 0, screen.widthMm, screen.heightMm];
+    return { name, box: { x, y, width, height } };
+  });
 }

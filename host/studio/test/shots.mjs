@@ -1,0 +1,178 @@
+// Takes the pictures of docs/studio: `cargo xtask studio`, then
+// `STUDIO_PAGE=PATH FRIXEL=PATH node shots.mjs [NAME ...]` in this folder; each picture is looked at before it is kept.
+
+import fs from "node:fs";
+import path from "node:path";
+import { cleanUp, openPage, pageUrl } from "./harness.mjs";
+
+const OUT = new URL("../../../docs/studio/", import.meta.url).pathname;
+const wanted = process.argv.slice(2);
+
+/** Opens the studio; `size` is that of the window. */
+async function open({ size = { width: 1440, height: 900 }, scheme = "light", init } = {}) {
+  const { page, close } = await openPage(pageUrl, { init });
+  await page.setViewportSize(size);
+  await page.emulateMedia({ colorScheme: scheme });
+  await page.waitForFunction(
+    () => globalThis.studioPage && document.documentElement.dataset.state === "active",
+  );
+  await page.waitForFunction(() => document.getElementById("check").textContent === "plays");
+  return { page, close };
+}
+
+/** Slides back and forth and leaves the finger down. */
+async function slide(page, { from = 0.15, to = 0.75, y = 0.45, ms = 2600 } = {}) {
+  const canvas = page.locator("#map-finger");
+  await canvas.scrollIntoViewIfNeeded();
+  const box = await canvas.boundingBox();
+  const at = (part, row = y) => page.mouse.move(box.x + part * box.width, box.y + row * box.height);
+  await at(from);
+  await page.mouse.down();
+  const begin = Date.now();
+  for (let part = 0; part < 1;) {
+    part = Math.min(1, (Date.now() - begin) / ms);
+    // To the right, back, and to the right again.
+    const along = 1 - Math.abs(((3 * part) % 2) - 1);
+    await at(from + (to - from) * along, y + 0.12 * part);
+    await page.waitForTimeout(12);
+  }
+}
+
+async function scene(page, text) {
+  await page.evaluate((text) => (studioPage.editor.text = text), text);
+  await page.waitForTimeout(2500);
+}
+
+const shot = (page, name) => page.screenshot({ path: path.join(OUT, `${name}.png`) });
+const bundled = (name) => fs.readFileSync(new URL(`../../../scenes/${name}.toml`, import.meta.url), "utf8");
+
+const SHOTS = {
+  async play() {
+    const { page, close } = await open();
+    await slide(page);
+    await shot(page, "play");
+    await close();
+  },
+  async dark() {
+    const { page, close } = await open({ scheme: "dark" });
+    await scene(page, bundled("grating"));
+    await slide(page);
+    await shot(page, "dark");
+    await close();
+  },
+  async sound() {
+    const { page, close } = await open({ scheme: "dark" });
+    await page.click("#tab-sound");
+    await page.click("text=Sound on");
+    await page.locator("text=Sound off").waitFor();
+    await slide(page);
+    await shot(page, "sound");
+    await close();
+  },
+  async size() {
+    const { page, close } = await open();
+    await page.click("summary:has-text('Options')");
+    await page.click("#real-size");
+    await page.waitForTimeout(300);
+    await shot(page, "size");
+    await page.click("text=Show in real size");
+    await page.waitForTimeout(500);
+    await shot(page, "real");
+    await close();
+  },
+  async draft() {
+    const { page, close } = await open();
+    await scene(page, bundled("grating").replace(/high_(n|fraction) = .*/, "high_n = 0.2"));
+    await slide(page);
+    await shot(page, "draft");
+    await close();
+  },
+  async files() {
+    const { page, close } = await open();
+    const keys = 'version = 2\n\n# Twelve keys.\n[[layer]]\nname = "key"\nkind = "button"\nrim_fraction = 0.9\nface_fraction = 0.4\n' +
+      "region = { x_mm = 12, y_mm = 12, width_mm = 20, height_mm = 14 }\nrepeat = { columns = 4, dx_mm = 25, rows = 3, dy_mm = 20 }\nlive = true\n";
+    const folder = fs.mkdtempSync("/tmp/frixel-shots-");
+    fs.writeFileSync(`${folder}/keys.toml`, keys.replace("face_fraction", "face_fractio"));
+    fs.writeFileSync(`${folder}/phone.toml`, 'version = 2\ninclude = ["keys.toml"]\n');
+    await page.setInputFiles("#files", [`${folder}/keys.toml`, `${folder}/phone.toml`]);
+    await page.waitForTimeout(1500);
+    await page.click("#problems button");
+    await page.waitForTimeout(500);
+    await shot(page, "files");
+    await close();
+  },
+  async mistake() {
+    const { page, close } = await open();
+    await scene(page, bundled("grating").replace('kind = "grating"', 'kind = "gratin"'));
+    await page.click("#problems button");
+    await page.waitForTimeout(400);
+    await shot(page, "mistake");
+    await close();
+  },
+  async gallery() {
+    const { page, close } = await open({ scheme: "dark" });
+    await page.click("#open-gallery");
+    await page.waitForTimeout(6000);
+    await shot(page, "gallery");
+    await close();
+  },
+  async tablet() {
+    const { page, close } = await open({ size: { width: 820, height: 1180 } });
+    await slide(page);
+    await shot(page, "tablet");
+    await close();
+  },
+  async mockup() {
+    const { page, close } = await open();
+    await scene(page, bundled("slider"));
+    await page.selectOption("#look", "both");
+    await page.waitForTimeout(500);
+    await slide(page, { y: 0.5 });
+    await shot(page, "mockup");
+    await close();
+  },
+  async compare() {
+    const { page, close } = await open();
+    await page.click("#tab-compare");
+    await page.click("text=Keep this scene as A");
+    await scene(page, bundled("grating"));
+    await page.click("text=Compare A with the scene now");
+    await page.waitForTimeout(800);
+    await slide(page);
+    await shot(page, "compare");
+    await close();
+  },
+  async board() {
+    for (const [name, state] of Object.entries({
+      "board-arm": { link: "serial", state: "disarmed", needsArm: true },
+      "board-armed": { link: "serial", state: "active", needsArm: false },
+      "board-faulted": { link: "serial", state: "faulted", needsArm: false, fault: "the arm switch was released" },
+    })) {
+      const { page, close } = await open();
+      await page.evaluate((state) => {
+        const driving = "board nucleo-g474re with an electrode, up to 50 V peak";
+        studioPage.engine.onState({ driving, fault: undefined, ...state });
+      }, state);
+      await page.waitForTimeout(300);
+      await page.screenshot({ path: path.join(OUT, `${name}.png`), clip: { x: 0, y: 0, width: 1440, height: 360 } });
+      await close();
+    }
+  },
+  async element() {
+    const { page, close } = await openPage(new URL("../../../docs/gallery/index.html", import.meta.url).href);
+    await page.setViewportSize({ width: 1000, height: 900 });
+    const canvas = page.locator("frixel-scene[scene=brick] #map-finger");
+    await canvas.waitFor();
+    await page.waitForTimeout(4000);
+    const box = await canvas.boundingBox();
+    await page.mouse.move(box.x + 0.2 * box.width, box.y + 0.4 * box.height);
+    await page.waitForTimeout(800);
+    await page.mouse.down();
+    await page.mouse.move(box.x + 0.8 * box.width, box.y + 0.6 * box.height, { steps: 140 });
+    await page.screenshot({ path: path.join(OUT, "element.png") });
+    await close();
+  },
+};
+
+for (const [name, take] of Object.entries(SHOTS)) if (wanted.length === 0 || wanted.includes(name)) await take();
+await cleanUp();
