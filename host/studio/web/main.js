@@ -55,6 +55,7 @@ async function start() {
     engine.usedFiles(files ?? (await project.filesFor(editor.text)), entry ?? project.entry),
   );
   const compare = new Compare(player, editor);
+  compare.onChange = () => map.draw();
   const replay = () => player.now(editor.text);
   const profiles = new Profiles(project, fingerNames(), replay);
   new RealSize(map);

@@ -18,6 +18,8 @@ const LABEL = "The screen. Slide with mouse, finger or pen, or hold an arrow key
 /** Only what differs from the studio's page. */
 const STYLE = `
 :host { display: block; }
+.card { background: var(--card); border: 1px solid var(--line); border-radius: 12px; overflow: hidden; }
+.map { border-top: 0; }
 .line { padding: 4px 12px; }
 .bad { color: var(--danger); white-space: pre-line; }
 `;

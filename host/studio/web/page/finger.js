@@ -168,6 +168,11 @@ export class Finger {
     requestAnimationFrame((next) => this.#frame(next));
   }
 
+  /** A blind comparison shows nothing of the friction. */
+  get #isBlind() {
+    return this.#canvas.closest(".blind") !== null;
+  }
+
   get #hasFocus() {
     return this.#canvas.matches(":focus");
   }
@@ -184,7 +189,7 @@ export class Finger {
     context.arc(x, y, Math.max(9, 4 * scale), 0, 2 * Math.PI);
     context.fillStyle = this.#isDown ? "#ffffff59" : "#ffffff1f";
     context.fill();
-    context.lineWidth = this.#isDown ? 2 + 5 * this.#friction : 2;
+    context.lineWidth = this.#isDown && !this.#isBlind ? 2 + 5 * this.#friction : 2;
     context.strokeStyle = this.#isDown ? colour("felt", this.#canvas.parentElement) : "#fff";
     context.stroke();
     context.lineWidth = 1;
@@ -196,8 +201,7 @@ export class Finger {
 
   /** The way of the finger, thicker where more friction was felt, and fading in steps, so that few paths are drawn. */
   #drawTrail(context) {
-    // A blind comparison shows nothing of the friction.
-    if (this.#canvas.closest(".blind")) return;
+    if (this.#isBlind) return;
     const { scale } = this.#map;
     const now = performance.now();
     const paths = new Map();

@@ -80,7 +80,7 @@ function sizeOf({ widthMm, heightMm }) {
 
 /** The comment at a scene's head, up to its first two sentences. */
 function introduction(text) {
-  const comment = /^(?:#.*\n)+/.exec(text)?.[0].replaceAll(/^# ?/gm, "").replaceAll("\n", " ") ?? "";
+  const comment = /^(?:#.*\n)+/.exec(text)?.[0].replaceAll(/^# ?/gm, "").replaceAll("\n", " ").replaceAll("`", "") ?? "";
   return comment
     .split(/(?<=\.) /)
     .slice(0, 2)
