@@ -2,7 +2,7 @@
 
 use std::env;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::command::{cargo_in, root, run, target_folder, text_of};
@@ -11,8 +11,11 @@ use crate::studio;
 
 /// Where Debian installs the browser; CHROMIUM names another.
 const CHROMIUM: &str = "/usr/bin/chromium";
-/// Longest time of one test, ms.
-const TEST_TIMEOUT_MS: u32 = 90_000;
+/// Examples of `frixel-studio`: the hashes of the gallery, and a virtual board that says it is real.
+const HASHES: &str = "seeded_hashes";
+const REAL_BOARD: &str = "real_board";
+/// Longest time of a file of tests, ms.
+const TEST_TIMEOUT_MS: u32 = 180_000;
 
 /// Compares the vendored bundle with its lock file, builds the page, and runs the tests in it.
 pub(crate) fn run_all() -> Result<Outcome, String> {
@@ -23,18 +26,19 @@ pub(crate) fn run_all() -> Result<Outcome, String> {
     install(&vendor)?;
     run("vendored bundle", Command::new("npm").current_dir(&vendor).args(["run", "--silent", "check"]))?;
     let page = studio::build()?;
-    run("command", cargo_in(".").args(["build", "--locked", "--package", "frixel"]))?;
+    // With the features of the whole workspace, as the other tests are built: nothing is compiled twice.
+    let native = ["build", "--locked", "--workspace", "--bin", "frixel", "--example", HASHES, "--example", REAL_BOARD];
+    run("command and examples", cargo_in(".").args(native))?;
     let hashes = target_folder().join("studio/hashes.json");
-    let example = ["run", "--quiet", "--locked", "--package", "frixel-studio", "--example", "seeded_hashes"];
-    fs::write(&hashes, text_of(cargo_in(".").args(example))?)
-        .map_err(|error| format!("{}: {error}", hashes.display()))?;
+    let computed = text_of(&mut Command::new(built(&format!("examples/{HASHES}"))?))?;
+    fs::write(&hashes, computed).map_err(|error| format!("{}: {error}", hashes.display()))?;
     let folder = root().join("host/studio/test");
     install(&folder)?;
     let mut node = Command::new("node");
     node.current_dir(&folder).args(["--test", "--test-concurrency=1"]).arg(format!("--test-timeout={TEST_TIMEOUT_MS}"));
     node.args(tests(&folder)?);
     node.env("STUDIO_PAGE", page).env("STUDIO_HASHES", absolute(&hashes)?);
-    node.env("FRIXEL", absolute(&target_folder().join("debug/frixel"))?);
+    node.env("FRIXEL", built("frixel")?).env("REAL_BOARD", built(&format!("examples/{REAL_BOARD}"))?);
     run("studio in a browser", &mut node)?;
     Ok(Outcome::Passed)
 }
@@ -71,6 +75,11 @@ fn tests(folder: &Path) -> Result<Vec<String>, String> {
     Ok(names)
 }
 
-fn absolute(path: &Path) -> Result<std::path::PathBuf, String> {
+/// A program of the test build.
+fn built(name: &str) -> Result<PathBuf, String> {
+    absolute(&target_folder().join("debug").join(name))
+}
+
+fn absolute(path: &Path) -> Result<PathBuf, String> {
     path.canonicalize().map_err(|error| format!("{}: {error}", path.display()))
 }

@@ -173,7 +173,7 @@ impl Tracker {
         let path = Path::from(before_m, &estimate, BLEND_INTERVALS * self.interval_s);
         let ticks = timing.stale_after_ticks.min(timing.sample_age_max_ticks - age_ticks) + 1;
         // The speed now, not that at the time of the sample, which is late; and that of the finger, not of the path.
-        let ramp = self.standstill.take(now.velocity_m_per_s, reported_at_tick, &timing.standstill);
+        let ramp = self.standstill.take(self.estimator.after(0.0).place_m, reported_at_tick, &timing.standstill);
         let track = Track {
             contact: self.contact,
             from_tick,

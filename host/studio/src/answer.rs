@@ -68,11 +68,11 @@ pub(crate) fn refusals(program: &Program, entry: &str) -> Vec<Problem> {
     program.refusals.iter().map(|located| Problem::located(located, entry)).collect()
 }
 
-/// An error as the page gets it: `error`, a sentence, and `problems`, as [`crate::check`] returns them.
+/// An error as the page gets it: `error`, a sentence, `problems`, as [`crate::check`] returns them, and `isLinkLost`.
 pub(crate) fn error(error: &HostError, entry: &str) -> Value {
     let problems = match error {
         HostError::Program(error) => problems(error, entry),
         error => vec![Problem::error(error)],
     };
-    json!({ "error": error.to_string(), "problems": problems })
+    json!({ "error": error.to_string(), "problems": problems, "isLinkLost": error.is_link_lost() })
 }

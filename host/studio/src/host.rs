@@ -2,7 +2,9 @@
 
 use std::time::Duration;
 
-use frixel_driver::{Bitmap, ByteStream, ControlError, ControlLine, Device, DeviceError, Event, PollingLink, Upload};
+use frixel_driver::{
+    Bitmap, ByteStream, ControlError, ControlLine, Device, DeviceError, Event, Link as _, PollingLink, Upload,
+};
 use frixel_hil_sim::{StrokeError, WorldError};
 use frixel_scene::{LayerError, Program};
 use frixel_wire::fault::{Fault, State};
@@ -60,6 +62,24 @@ pub enum HostError {
     NoBoard,
 }
 
+impl HostError {
+    /// Whether the board can no longer be talked to over this line: it is silent, gone or restarted.
+    pub(crate) fn is_link_lost(&self) -> bool {
+        let Self::Device(error) = self else { return false };
+        matches!(
+            error,
+            DeviceError::NoHello { .. }
+                | DeviceError::Silent { .. }
+                | DeviceError::Vanished { .. }
+                | DeviceError::Restarted { .. }
+                | DeviceError::TelemetryBackwards { .. }
+        )
+    }
+}
+
+/// Longer than any host is connected: pings with this period are never sent.
+const NEVER: Duration = Duration::from_secs(3600);
+
 /// Is told what the board plays, to compare with it.
 pub(crate) trait SceneListener {
     /// From now on the board plays this program.
@@ -84,6 +104,14 @@ struct Playing {
     settings: Vec<(bool, f32)>,
     /// Records to switch off, and when, on the link's clock.
     triggered: Vec<(u8, Duration)>,
+}
+
+impl Playing {
+    /// A program whose layers are as its scene sets them.
+    fn new(program: Program) -> Self {
+        let settings = program.records.iter().map(|record| (true, record.gain)).collect();
+        Self { program, settings, triggered: Vec::new() }
+    }
 }
 
 impl<S: ByteStream + SceneListener> Host<S> {
@@ -144,23 +172,31 @@ impl<S: ByteStream + SceneListener> Host<S> {
     pub(crate) fn replace(&mut self, program: Program) -> Result<&Program, HostError> {
         match upload(&mut self.device, &program) {
             Err(DeviceError::Refused { refusal: Refusal::BitmapPoolFull { .. }, .. }) => self.load_alone(&program)?,
-            Err(error @ DeviceError::Refused { .. }) => return Err(HostError::Refused(error)),
-            loaded => loaded?,
+            loaded => loaded.map_err(refused)?,
         }
-        self.stream_mut().scene_replaced(&program);
-        let settings = program.records.iter().map(|record| (true, record.gain)).collect();
-        Ok(&self.playing.insert(Playing { program, settings, triggered: Vec::new() }).program)
+        Ok(self.set_playing(program))
     }
 
     /// Loads a scene whose pictures do not fit on the board beside those of the one before: an empty scene plays until
-    /// the new one is there. If the board refuses it, the one before is put back.
+    /// the new one is there. If the board refuses it, the one before is put back. After any other error the empty scene
+    /// stays.
     fn load_alone(&mut self, program: &Program) -> Result<(), HostError> {
-        upload(&mut self.device, &program.without_layers())?;
+        let empty = program.without_layers();
+        upload(&mut self.device, &empty).map_err(refused)?;
+        self.stream_mut().scene_replaced(&empty);
+        let before = self.playing.take();
         let loaded = upload(&mut self.device, program);
-        if let (Err(DeviceError::Refused { .. }), Some(before)) = (&loaded, &self.playing) {
+        if let (Err(DeviceError::Refused { .. }), Some(before)) = (&loaded, before) {
             upload(&mut self.device, &before.program)?;
+            self.set_playing(before.program);
         }
-        loaded.map_err(HostError::Refused)
+        loaded.map_err(refused)
+    }
+
+    /// The board plays this program from now on, its layers as the scene sets them.
+    fn set_playing(&mut self, program: Program) -> &Program {
+        self.stream_mut().scene_replaced(&program);
+        &self.playing.insert(Playing::new(program)).program
     }
 
     /// Arms the board if it is disarmed, and plays the loaded scene if it does not play.
@@ -177,11 +213,19 @@ impl<S: ByteStream + SceneListener> Host<S> {
     }
 
     /// Sets the output to zero and disarms the board. With a latched fault the output is zero already.
+    ///
+    /// Nothing but the command is sent until the board has answered, so a board that it does not reach falls silent by
+    /// its host timeout.
     pub(crate) fn stop(&mut self) -> Result<(), DeviceError> {
-        if self.state != State::Faulted {
-            self.device.disarm()?;
-            self.state = State::Disarmed;
+        if self.state == State::Faulted {
+            return Ok(());
         }
+        self.device.link_mut().keep_alive(Vec::new(), NEVER);
+        self.state = match self.device.disarm() {
+            // The board has latched a fault that this host has not heard of.
+            Err(DeviceError::Refused { refusal: Refusal::WrongState(State::Faulted), .. }) => State::Faulted,
+            disarmed => disarmed.map(|()| State::Disarmed)?,
+        };
         Ok(())
     }
 
@@ -256,6 +300,11 @@ impl<S: ByteStream + SceneListener> Host<S> {
     }
 }
 
+/// The error of a load: the board has reasons against the scene, or the line has failed.
+fn refused(error: DeviceError) -> HostError {
+    if matches!(error, DeviceError::Refused { .. }) { HostError::Refused(error) } else { HostError::Device(error) }
+}
+
 /// Uploads a program and commits it.
 pub(crate) fn upload<S: ByteStream>(device: &mut Device<PollingLink<S>>, program: &Program) -> Result<(), DeviceError> {
     let scene = program.scene_bytes_for(device.hello().protocol);
@@ -268,4 +317,133 @@ pub(crate) fn upload<S: ByteStream>(device: &mut Device<PollingLink<S>>, program
     let upload = Upload { scene: &scene, bitmaps: bitmaps.collect() };
     device.upload(&upload, &mut |_| {})?;
     device.commit(upload.scene_crc32())
+}
+
+#[cfg(test)]
+mod tests {
+    use frixel_driver::LinkClosed;
+    use frixel_hil_sim::{BoardMemory, RigConfig};
+
+    use super::*;
+    use crate::rig_stream::RigStream;
+
+    const BRICK: &[u8] = include_bytes!("../../../scenes/brick.toml");
+    const LEATHER: &[u8] = include_bytes!("../../../scenes/leather.toml");
+
+    /// The rig at the end of a line that may be cut.
+    struct Line<'a> {
+        rig: RigStream<'a>,
+        /// Bytes to the board until the line is dead, in both directions.
+        left: usize,
+        /// Times and lengths of what was written.
+        written: Vec<(Duration, usize)>,
+    }
+
+    impl ByteStream for Line<'_> {
+        fn write(&mut self, bytes: &[u8]) -> Result<(), LinkClosed> {
+            self.written.push((self.now(), bytes.len()));
+            let passed = bytes.len().min(self.left);
+            self.left -= passed;
+            self.rig.write(&bytes[..passed])
+        }
+
+        fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed> {
+            let end = self.now() + wait;
+            let len = buffer.len();
+            self.rig.read(buffer, wait)?;
+            if self.left == 0 {
+                buffer.truncate(len);
+                while self.now() < end {
+                    self.rig.step();
+                }
+            }
+            Ok(())
+        }
+
+        fn now(&self) -> Duration {
+            self.rig.now()
+        }
+
+        fn name(&self) -> &str {
+            self.rig.name()
+        }
+    }
+
+    impl SceneListener for Line<'_> {
+        fn scene_replaced(&mut self, program: &Program) {
+            self.rig.scene_replaced(program);
+        }
+
+        fn layer_changed(&mut self, layer: u8, is_on: bool, gain: f32) {
+            self.rig.layer_changed(layer, is_on, gain);
+        }
+    }
+
+    fn host(memory: &mut BoardMemory) -> Host<Line<'_>> {
+        let rig = RigStream::new(memory, &RigConfig::default(), 1).unwrap();
+        Host::connect(Line { rig, left: usize::MAX, written: Vec::new() }).unwrap()
+    }
+
+    fn request(scene: &[u8]) -> Request {
+        let files = [
+            ("a.toml".to_owned(), scene.to_owned()),
+            ("textures/brick.png".to_owned(), include_bytes!("../../../scenes/textures/brick.png").to_vec()),
+            ("textures/leather.png".to_owned(), include_bytes!("../../../scenes/textures/leather.png").to_vec()),
+        ];
+        Request { entry: "a.toml".to_owned(), files: files.into(), ..Request::default() }
+    }
+
+    fn written(host: &mut Host<Line<'_>>) -> usize {
+        host.stream_mut().written.iter().map(|(_, len)| len).sum()
+    }
+
+    /// The pictures of both scenes do not fit on a board together that plays one of them.
+    #[test]
+    fn a_line_that_dies_while_pictures_are_replaced_is_a_lost_link() {
+        let mut memory = BoardMemory::new();
+        let mut whole = host(&mut memory);
+        whole.load(&request(BRICK)).unwrap();
+        whole.arm_and_play().unwrap();
+        let before = written(&mut whole);
+        whole.load(&request(LEATHER)).unwrap();
+        let all = written(&mut whole) - before;
+        for part in 1..10 {
+            let mut memory = BoardMemory::new();
+            let mut host = host(&mut memory);
+            host.load(&request(BRICK)).unwrap();
+            host.arm_and_play().unwrap();
+            host.stream_mut().left = all * part / 10;
+            let error = host.load(&request(LEATHER)).unwrap_err();
+            assert!(error.is_link_lost(), "{part}: {error:?}");
+        }
+    }
+
+    /// After the pictures are replaced in part, no layer of a scene that is gone can be changed.
+    #[test]
+    fn an_upload_that_ends_while_the_empty_scene_plays_leaves_no_scene() {
+        let mut memory = BoardMemory::new();
+        let mut host = host(&mut memory);
+        host.load(&request(BRICK)).unwrap();
+        host.arm_and_play().unwrap();
+        host.stream_mut().left = 20_000;
+        assert!(host.load(&request(LEATHER)).is_err());
+        assert!(host.playing.is_none());
+        assert!(matches!(host.control("layer 1 off"), Err(HostError::NothingPlays)));
+    }
+
+    #[test]
+    fn a_stop_that_does_not_arrive_ends_the_pings() {
+        let mut memory = BoardMemory::new();
+        let mut host = host(&mut memory);
+        host.load(&request(LEATHER)).unwrap();
+        host.arm_and_play().unwrap();
+        host.wait(Duration::from_millis(100)).unwrap();
+        host.stream_mut().left = 0;
+        let begin = host.device.now();
+        assert!(HostError::from(host.stop().unwrap_err()).is_link_lost());
+        // Only the command and its repetitions, each 250 ms after the one before.
+        let later = host.stream_mut().written.iter().filter(|(at, _)| *at >= begin);
+        assert!(later.count() <= 3);
+        assert_eq!(host.stream_mut().rig.state().0, State::Disarmed, "by the host timeout");
+    }
 }

@@ -1,7 +1,8 @@
 //! The byte stream to a board outside of the page: `host.js` moves its bytes.
 //!
 //! Reading suspends the whole module until bytes arrive or the time is over (JSPI). Meanwhile no other export of the
-//! instance may be called.
+//! instance may be called. To break off the call under way, `host.js` closes the stream to it: its next read or write
+//! fails, and the stream is open again for the call that follows.
 
 use std::time::Duration;
 
@@ -12,7 +13,7 @@ use crate::host::SceneListener;
 
 /// Bytes that one read takes at most.
 const READ_MAX: usize = 4_096;
-/// What `link_read` returns when the other end has closed the stream.
+/// What `link_write` and `link_read` return when the stream is closed, or closed to the call under way.
 const CLOSED: i32 = -1;
 
 /// The stream that `host.js` has connected this instance to.
@@ -32,8 +33,7 @@ fn closed() -> LinkClosed {
 
 impl ByteStream for LinkStream {
     fn write(&mut self, bytes: &[u8]) -> Result<(), LinkClosed> {
-        imports::link_write(bytes.as_ptr(), bytes.len());
-        Ok(())
+        if imports::link_write(bytes.as_ptr(), bytes.len()) == CLOSED { Err(closed()) } else { Ok(()) }
     }
 
     fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed> {
@@ -66,12 +66,12 @@ impl SceneListener for LinkStream {
 mod imports {
     #[link(wasm_import_module = "link")]
     unsafe extern "C" {
-        /// Sends bytes.
-        pub(super) safe fn link_write(bytes: *const u8, len: usize);
+        /// Sends bytes; -1 when the stream is closed, else 0.
+        pub(super) safe fn link_write(bytes: *const u8, len: usize) -> i32;
         /// Suspends until bytes have arrived, at most `wait_ms`, and returns how many of them it has put into the
-        /// buffer; -1 when the stream is closed.
+        /// buffer; -1 when the stream is closed. While the page gives no sign of life, it stays suspended.
         pub(super) safe fn link_read(buffer: *mut u8, len: usize, wait_ms: f64) -> i32;
-        /// Time since a fixed moment, ms.
+        /// Time since a fixed moment, ms, without the time in which the page gave no sign of life.
         pub(super) safe fn link_now_ms() -> f64;
     }
 }
@@ -79,7 +79,9 @@ mod imports {
 /// Outside of a page there is no stream.
 #[cfg(not(target_family = "wasm"))]
 mod imports {
-    pub(super) fn link_write(_bytes: *const u8, _len: usize) {}
+    pub(super) fn link_write(_bytes: *const u8, _len: usize) -> i32 {
+        super::CLOSED
+    }
 
     pub(super) fn link_read(_buffer: *mut u8, _len: usize, _wait_ms: f64) -> i32 {
         super::CLOSED

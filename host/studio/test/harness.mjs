@@ -1,12 +1,14 @@
 // What the browser tests share: the page in Chromium, the bundled scenes, and a virtual board.
 //
-// `cargo xtask studio-test` builds what they need, and says in the environment where it is:
-// STUDIO_PAGE (the HTML file), STUDIO_HASHES (the hashes of the gallery, computed natively), FRIXEL (the command).
+// `cargo xtask studio-test` builds what they need, and says in the environment where it is: STUDIO_PAGE (the HTML file),
+// STUDIO_HASHES (the hashes of the gallery, computed natively), FRIXEL (the command), REAL_BOARD (examples/real_board.rs).
 
+import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import fs from "node:fs";
 import os from "node:os";
 import path from "node:path";
+import readline from "node:readline";
 import tty from "node:tty";
 import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
@@ -115,6 +117,67 @@ export async function startVirtualBoard() {
   return { terminal, out, stop };
 }
 
+/** A scene whose host timeout is long: a board that a command disarms is told apart from one that falls silent. */
+export const CONSTANT = `version = 2
+[drive]
+host_timeout_ms = 1000
+[[layer]]
+kind = "constant"
+above = "natural"
+friction_n = 0.11
+`;
+
+/** What a virtual board does that says it is real. */
+export const stateOf = {
+  active: ({ state }) => state === "active",
+  disarmed: ({ state }) => state === "disarmed",
+  driving: ({ isDriving }) => isDriving,
+  silent: ({ isSilent }) => isSilent,
+};
+
+/**
+ * Starts a virtual board that says it is real, on a line of `baud` bits a second. Returns its terminal, its `events`
+ * `{ ms, board: { state, fault, isSilent, isDriving } }` as they come, `fail()`, which makes the amplifier report a
+ * fault, `hang(isHanging)`, `stop()`, `until(what, isMet)`, which waits until its last event is as `isMet` says, and
+ * `assertDisarmed(from, how)`: from its event number `from` on it is disarmed by a command, and stays so.
+ */
+export async function startRealBoard({ baud = 2_000_000 } = {}) {
+  const process = spawn(required("REAL_BOARD"), [String(baud)], { stdio: ["pipe", "pipe", "inherit"] });
+  const events = [];
+  const lines = readline.createInterface({ input: process.stdout });
+  const terminal = await new Promise((resolve, reject) => {
+    lines.on("line", (line) => (line.startsWith("port: ") ? resolve(line.slice(6)) : events.push(JSON.parse(line))));
+    process.on("exit", () => reject(new Error("the virtual board ended")));
+  });
+  const hang = (isHanging) => process.kill(isHanging ? "SIGSTOP" : "SIGCONT");
+  const stop = () => {
+    leftovers.delete(stop);
+    return new Promise((resolve) => {
+      process.on("exit", resolve);
+      hang(false);
+      process.stdin.end();
+    });
+  };
+  leftovers.add(stop);
+  const until = async (what, isMet) => {
+    for (let tries = 0; tries < 1000; tries += 1) {
+      if (events.length > 0 && isMet(events.at(-1).board)) return events.at(-1);
+      await new Promise((resolve) => setTimeout(resolve, 10));
+    }
+    throw new Error(`not ${what}: ${JSON.stringify(events.slice(-5))}`);
+  };
+  const assertDisarmed = async (from, how) => {
+    await until(`disarmed by ${how}`, stateOf.disarmed);
+    await new Promise((resolve) => setTimeout(resolve, 300));
+    const states = events.slice(from).map((event) => event.board);
+    const found = `${how}: ${JSON.stringify(states)}`;
+    assert.ok(!states.some(stateOf.silent), `before the host timeout, ${found}`);
+    const since = states.slice(states.findIndex(stateOf.disarmed));
+    assert.ok(since.every(stateOf.disarmed) && !since.at(-1).isDriving, found);
+  };
+  return { terminal, events, fail: () => process.stdin.write("fault\n"), hang, stop, until, assertDisarmed };
+}
+
 /** Starts `frixel studio` with the port of a board; returns the page's address. */
 export async function startStudio(terminal) {
   const port = terminal ? ["--port", terminal] : [];
@@ -127,13 +190,25 @@ export async function startStudio(terminal) {
   });
 }
 
+/** Hides the page, or shows it again: `value` is "hidden" or "visible". */
+export async function setVisibility(page, value) {
+  await page.evaluate((value) => {
+    Object.defineProperty(document, "visibilityState", { value, configurable: true });
+    document.dispatchEvent(new Event("visibilitychange"));
+  }, value);
+}
+
 /** The rows of a CSV file, as objects of texts. */
 export function rowsOf(file) {
   const [head, ...lines] = fs.readFileSync(file, "utf8").trim().split("\n").map((line) => line.split(","));
   return lines.map((cells) => Object.fromEntries(head.map((name, index) => [name, cells[index]])));
 }
 
-/** Gives the page a `navigator.serial` whose only port is made of byte streams to a terminal. */
+/**
+ * Gives the page a `navigator.serial` whose only port is made of byte streams to a terminal. Like a browser's, it opens
+ * only when it is closed, and closes only when nobody holds its streams. In the page, `serialPort` is the port,
+ * `serialPort.sent` the times and lengths of what was written, and `serialPort.pull()` pulls its cable.
+ */
 export async function addSerialPort(page, terminal) {
   const file = fs.openSync(terminal, fs.constants.O_RDWR | fs.constants.O_NOCTTY);
   const line = new tty.ReadStream(file);
@@ -143,18 +218,53 @@ export async function addSerialPort(page, terminal) {
   await page.exposeFunction("serialWrite", (bytes) => fs.writeSync(file, Buffer.from(bytes, "base64")));
   await page.evaluate(() => {
     const port = {
+      readable: null,
+      writable: null,
+      sent: [],
       async open() {
-        port.readable = new ReadableStream({ start: (controller) => (globalThis.serialArrived = (bytes) => controller.enqueue(bytes)) });
-        port.writable = new WritableStream({ write: (bytes) => serialWrite(btoa(String.fromCharCode(...bytes))) });
+        if (port.readable) throw new DOMException("The port is already open.", "InvalidStateError");
+        let incoming;
+        let outgoing;
+        port.readable = new ReadableStream({ start: (controller) => void (incoming = controller), cancel: () => (incoming = null) });
+        port.writable = new WritableStream({
+          start: (controller) => void (outgoing = controller),
+          write(bytes) {
+            port.sent.push({ ms: performance.now(), length: bytes.length });
+            serialWrite(btoa(String.fromCharCode(...bytes)));
+          },
+        });
+        globalThis.serialArrived = (bytes) => incoming?.enqueue(bytes);
+        port.pull = () => {
+          const lost = new DOMException("The device has been lost.", "NetworkError");
+          incoming.error(lost);
+          outgoing.error(lost);
+          incoming = null;
+        };
       },
-      async close() {},
+      async close() {
+        if (!port.readable) throw new DOMException("The port is already closed.", "InvalidStateError");
+        if (port.readable.locked || port.writable.locked) throw new TypeError("Cannot close a locked stream");
+        port.readable = null;
+        port.writable = null;
+      },
     };
+    globalThis.serialPort = port;
     const serial = { requestPort: async () => port, getPorts: async () => [port] };
     Object.defineProperty(navigator, "serial", { value: serial, configurable: true });
   });
-  line.on("data", (bytes) => {
-    page
-      .evaluate((text) => globalThis.serialArrived?.(Uint8Array.from(atob(text), (c) => c.charCodeAt(0))), bytes.toString("base64"))
-      .catch(() => {});
+  // What arrives while the page takes the bytes before goes with the next ones.
+  let waiting = [];
+  let isBusy = false;
+  line.on("data", async (bytes) => {
+    waiting.push(bytes);
+    if (isBusy) return;
+    isBusy = true;
+    while (waiting.length > 0) {
+      const text = Buffer.concat(waiting).toString("base64");
+      waiting = [];
+      const arrive = (text) => globalThis.serialArrived?.(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)));
+      await page.evaluate(arrive, text).catch(() => {});
+    }
+    isBusy = false;
   });
 }

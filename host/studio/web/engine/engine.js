@@ -24,6 +24,9 @@ class Engine {
   #seed;
   #board;
   #host;
+  #checker;
+  /** The line to the board outside of the page, if there is one. */
+  #line = null;
   /** "simulator", "serial", "socket" or "none" */
   #link = "simulator";
   #state = { state: "disarmed", fault: undefined, needsArm: false, driving: "the simulator in this page" };
@@ -40,8 +43,9 @@ class Engine {
   }
 
   async start() {
-    [this.#host, this.#board] = await Promise.all([
+    [this.#host, this.#checker, this.#board] = await Promise.all([
       WorkerClient.start("host", { module: this.#module }, (message) => this.#fromHost(message)),
+      WorkerClient.start("checker", { module: this.#module }, (message) => this.onFailure(message)),
       this.#newBoard(),
     ]);
     keepAlive((type) => {
@@ -75,9 +79,14 @@ class Engine {
       const { state, fault, needsArm, driving } = message;
       this.#report({ state, fault: fault ?? undefined, needsArm, driving });
     } else if (message.type === "lost") {
-      this.#link = "none";
-      this.#report({ state: "disarmed", fault: message.error, needsArm: false, driving: "no board" });
+      this.#reportNoBoard(message.error);
     }
+  }
+
+  /** No board is there: the one before was lost, or could not be reached. */
+  #reportNoBoard(why) {
+    this.#link = "none";
+    this.#report({ state: "disarmed", fault: why, needsArm: false, driving: "no board" });
   }
 
   #report(state) {
@@ -92,25 +101,25 @@ class Engine {
   #reportedLink;
 
   check(files, entry, profiles) {
-    return this.#host.ask({ type: "check", scene: { files, entry, ...profiles } });
+    return this.#checker.ask({ type: "check", scene: { files, entry, ...profiles } });
   }
 
   usedFiles(files, entry) {
-    return this.#host.ask({ type: "usedFiles", scene: { files, entry } });
+    return this.#checker.ask({ type: "usedFiles", scene: { files, entry } });
   }
 
   map(files, entry, profiles, { widthPx = 1000, heightPx = 800, speedMmPerS = 100 } = {}) {
-    return this.#host.ask({ type: "map", scene: { files, entry, ...profiles, widthPx, heightPx, speedMmPerS } });
+    return this.#checker.ask({ type: "map", scene: { files, entry, ...profiles, widthPx, heightPx, speedMmPerS } });
   }
 
   async seeded(files, entry, seed, durationMs, profiles) {
     const scene = { files, entry, ...profiles, seed, durationMs };
-    return (await this.#host.ask({ type: "seeded", scene })).hash;
+    return (await this.#checker.ask({ type: "seeded", scene })).hash;
   }
 
   /** How many times faster than real time the simulator runs a scene in a worker. */
   async speed(files, entry, { stretches = 10, stretchMs = 480 } = {}) {
-    return (await this.#host.ask({ type: "speed", scene: { files, entry }, stretches, stretchMs })).timesRealTime;
+    return (await this.#checker.ask({ type: "speed", scene: { files, entry }, stretches, stretchMs })).timesRealTime;
   }
 
   play(files, entry, profiles) {
@@ -149,7 +158,7 @@ class Engine {
 
   /** Plays on the simulator, as it is after a reset, and disconnects a board. */
   async simulate() {
-    await this.#host.ask({ type: "disconnect" });
+    await this.#disconnect();
     this.#board.terminate();
     this.#link = "simulator";
     this.#board = await this.#newBoard();
@@ -164,25 +173,40 @@ class Engine {
     return this.#connect("socket", () => socketLine(url));
   }
 
+  /** Connects to a board. If that fails, the simulator stays, if it was the board before, and plays on. */
   async #connect(link, open) {
     if (!canSuspend) throw new Error(NO_JSPI);
-    await this.#board.ask({ type: "stop" });
-    const port = await open();
-    const before = this.#link;
-    this.#link = link;
+    if (this.#isConnecting) throw new Error("a board is being connected: wait until it has answered");
+    this.#isConnecting = true;
     try {
-      await this.#host.ask({ type: "connect", port }, [port]);
+      await this.#disconnect();
+      if (this.#link !== "simulator") this.#reportNoBoard();
+      this.#line = await open();
+      const { remote } = this.#line;
+      await this.#host.ask({ type: "connect", port: remote }, [remote]);
+      this.#link = link;
+      await this.#board.ask({ type: "stop" });
     } catch (error) {
-      this.#link = before;
-      port.postMessage?.(new Uint8Array());
+      await this.#disconnect();
       throw error;
+    } finally {
+      this.#isConnecting = false;
     }
   }
+  #isConnecting = false;
 
-  /** Ends both workers. */
+  /** Disconnects the board, if there is one, and waits until its port is free. */
+  async #disconnect() {
+    await this.#host.ask({ type: "disconnect" });
+    this.#line?.close();
+    await this.#line?.closed;
+    this.#line = null;
+  }
+
+  /** Ends the workers and closes the line to a board, which its host timeout disarms. */
   close() {
-    this.#board.terminate();
-    this.#host.terminate();
+    this.#line?.close();
+    for (const worker of [this.#board, this.#host, this.#checker]) worker.terminate();
   }
 }
 

@@ -1,61 +1,103 @@
-// The worker of the compiler, and of the host of a board outside of the page.
+// The worker of the host of a board outside of the page.
 //
-// It has two instances of the module, because one that waits for bytes is suspended, and no other export of it may be
-// called meanwhile: one checks scenes, the other one talks to the board. The board's bytes come and go through a
-// MessagePort, whatever carries them beyond it.
+// The board's bytes come and go through a MessagePort, whatever carries them beyond it. A call to the module that waits
+// for bytes is suspended, and no other export may be called meanwhile, so calls wait for each other in a queue. A stop
+// breaks off the call under way and those in the queue. README.md says how a board is disarmed.
 "use strict";
 
-/** The page sends a sign of life from each animation frame. The board is pinged this long after one, ms. */
+/** The page sends a sign of life from each animation frame. The host sends bytes for this long after one, ms. */
 const LIFE_MS = 25;
 /** Time in which one call keeps the board alive, ms. */
 const WAIT_MS = 10;
+/** Bytes that wait to be read at most, for example while the page is hidden; the oldest are dropped first. */
+const ARRIVED_MAX = 1_000_000;
+/** What the imports of the module return when the stream is closed. */
+const CLOSED = -1;
+const STOPPED = "stopped: the board was disarmed meanwhile";
 
 let module;
-let checker;
 let board = null;
 let lastLifeMs = -Infinity;
 
-/** A byte stream over a MessagePort, as the imports of an instance. Empty bytes mean that the other end has closed. */
+function pageLives() {
+  return epochMs() - lastLifeMs <= LIFE_MS;
+}
+
+/** Wakes those that wait for something to have changed. */
+class Signal {
+  #waiting = new Set();
+
+  give() {
+    for (const wake of this.#waiting) wake();
+  }
+
+  /** Resolves when the signal is given, or after `waitMs`. */
+  async wait(waitMs) {
+    let wake;
+    let timer;
+    await new Promise((resolve) => {
+      wake = resolve;
+      this.#waiting.add(wake);
+      if (waitMs !== undefined) timer = setTimeout(wake, waitMs);
+    });
+    clearTimeout(timer);
+    this.#waiting.delete(wake);
+  }
+}
+
+/** Bytes have arrived, the page lives, the call under way is broken off, or the stream was closed. */
+const changed = new Signal();
+
+/** A byte stream over a MessagePort. Empty bytes mean that the other end has closed. */
 class Stream {
   #port;
   #arrived = [];
-  #isClosed = false;
-  #wake = () => {};
+  #arrivedLength = 0;
+  isClosed = false;
+  /** Bytes were dropped since this was last set to false. */
+  hasDropped = false;
 
   constructor(port) {
     this.#port = port;
-    port.onmessage = ({ data }) => {
-      if (data.length === 0) this.#isClosed = true;
-      else this.#arrived.push(data);
-      this.#wake();
-    };
+    port.onmessage = ({ data }) => this.#take(data);
+  }
+
+  #take(bytes) {
+    if (bytes.length === 0) this.isClosed = true;
+    else this.#arrived.push(bytes);
+    this.#arrivedLength += bytes.length;
+    while (this.#arrivedLength > ARRIVED_MAX) {
+      this.#arrivedLength -= this.#arrived.shift().length;
+      this.hasDropped = true;
+    }
+    changed.give();
+  }
+
+  get hasBytes() {
+    return this.#arrivedLength > 0;
   }
 
   close() {
-    this.#isClosed = true;
+    this.isClosed = true;
     this.#port.postMessage(new Uint8Array());
     this.#port.close();
+    changed.give();
   }
 
+  /** Whether the bytes were sent. */
   write(bytes) {
-    this.#port.postMessage(bytes);
+    if (!this.isClosed) this.#port.postMessage(bytes);
+    return !this.isClosed;
   }
 
-  /** Waits for bytes, and returns at most `max` of them; null when the stream is closed. */
-  async read(max, waitMs) {
-    if (this.#arrived.length === 0 && !this.#isClosed && waitMs > 0) {
-      await new Promise((resolve) => {
-        const timer = setTimeout(resolve, waitMs);
-        this.#wake = () => {
-          clearTimeout(timer);
-          resolve();
-        };
-      });
-    }
+  /** At most `max` of the bytes that have arrived; null when there are none and the stream is closed. */
+  read(max) {
     const first = this.#arrived.shift();
-    if (first === undefined) return this.#isClosed ? null : new Uint8Array();
+    if (first === undefined) return this.isClosed ? null : new Uint8Array();
     if (first.length > max) this.#arrived.unshift(first.subarray(max));
-    return first.subarray(0, max);
+    const bytes = first.subarray(0, max);
+    this.#arrivedLength -= bytes.length;
+    return bytes;
   }
 }
 
@@ -65,19 +107,32 @@ class Board {
   #stream;
   /** The calls under way: one at a time. */
   #queue = Promise.resolve();
+  /** Each stop begins a new round, which breaks off the calls of the one before. */
+  #round = 0;
+  /** The call under way: its round, and whether it is a stop, which nothing breaks off. */
+  #current = { round: 0, isStop: false };
+  /** Time in which the page gave no sign of life during a call, ms; the module's clock leaves it out. */
+  #pausedMs = 0;
   #isOpen = true;
+  /** The scene whose load a stop has broken off: the next press loads it again. */
+  #brokenOff = null;
   isSimulated = true;
   isWanted = false;
   isLoaded = false;
   state = "disarmed";
   driving = "";
 
+  /** Connects to the board at the other end of `port`. Closes the port if that fails. */
   static async connect(port) {
     const board = new Board();
     board.#stream = new Stream(port);
-    board.#engine = await Engine.start(module, board.#imports());
-    const answer = await board.#call("host_connect");
-    Object.assign(board, answer);
+    try {
+      board.#engine = await Engine.start(module, board.#imports());
+      Object.assign(board, await board.#call("host_connect"));
+    } catch (error) {
+      await board.disconnect();
+      throw error;
+    }
     board.#live();
     return board;
   }
@@ -85,64 +140,133 @@ class Board {
   #imports() {
     const stream = this.#stream;
     return {
-      link_write: (address, length) => stream.write(this.#engine.bytes.slice(address, address + length)),
+      link_write: (address, length) => {
+        const isSent = !this.#isBrokenOff && stream.write(this.#engine.bytes.slice(address, address + length));
+        return isSent ? 0 : CLOSED;
+      },
       link_read: new WebAssembly.Suspending(async (address, length, waitMs) => {
-        const bytes = await stream.read(length, waitMs);
-        if (bytes === null) return -1;
+        if (!stream.hasBytes && !stream.isClosed && !this.#isBrokenOff && waitMs > 0) await changed.wait(waitMs);
+        await this.#pageToLive();
+        const bytes = this.#isBrokenOff ? null : stream.read(length);
+        if (bytes === null) return CLOSED;
         this.#engine.bytes.set(bytes, address);
         return bytes.length;
       }),
-      link_now_ms: () => performance.now(),
+      link_now_ms: () => performance.now() - this.#pausedMs,
     };
   }
 
+  get #isBrokenOff() {
+    return !this.#current.isStop && this.#current.round !== this.#round;
+  }
+
+  /**
+   * Waits while the page gives no sign of life. The module is suspended meanwhile and sends nothing, so the board's host
+   * timeout disarms it. A stop does not wait for the page.
+   */
+  async #pageToLive() {
+    const begin = performance.now();
+    while (!pageLives() && !this.#current.isStop && !this.#isBrokenOff && !this.#stream.isClosed) {
+      await changed.wait();
+    }
+    this.#pausedMs += performance.now() - begin;
+  }
+
   #call(name, input, ...numbers) {
-    const called = this.#queue.then(() => this.#engine.callSuspending(name, input, ...numbers));
+    return this.#enqueue({ round: this.#round, isStop: false }, name, input, numbers);
+  }
+
+  #enqueue(call, name, input, numbers) {
+    const isOver = () => !call.isStop && call.round !== this.#round;
+    const called = this.#queue.then(async () => {
+      if (!this.#isOpen) throw new Error("the board was disconnected meanwhile");
+      if (isOver()) throw new Error(STOPPED);
+      this.#current = call;
+      try {
+        return await this.#engine.callSuspending(name, input, ...numbers);
+      } catch (error) {
+        if (isOver() && !this.#stream.isClosed) throw new Error(STOPPED);
+        if (error.isLinkLost) this.#lose(error);
+        throw error;
+      }
+    });
     this.#queue = called.catch(() => {});
     return called;
   }
 
   /** Keeps the board alive for as long as the page is. */
   async #live() {
-    try {
-      while (this.#isOpen) {
-        if (epochMs() - lastLifeMs > LIFE_MS) {
-          await new Promise((resolve) => setTimeout(resolve, WAIT_MS / 2));
-          continue;
-        }
-        if (this.isSimulated && this.isWanted && this.state === "disarmed") await this.#call("host_play");
-        const { state, fault, telemetry } = await this.#call("host_wait", null, WAIT_MS);
-        this.state = state;
-        this.report(fault);
-        if (telemetry.length > 0) self.postMessage({ type: "frame", frame: frameOf(telemetry) });
+    while (this.#isOpen) {
+      try {
+        if (!pageLives()) await changed.wait();
+        else await this.#keepAlive();
+      } catch (error) {
+        if (error.message !== STOPPED) this.#lose(error);
       }
-    } catch (error) {
-      this.#isOpen = false;
-      if (board === this) board = null;
-      self.postMessage({ type: "lost", error: error.message });
     }
   }
 
+  async #keepAlive() {
+    if (this.#stream.hasDropped) {
+      // Nobody knows what the board has reported: it is disarmed, and its state is known again.
+      this.#stream.hasDropped = false;
+      await this.#disarm();
+    }
+    if (this.isSimulated && this.isWanted && this.state === "disarmed") await this.#call("host_play");
+    const { state, fault, telemetry } = await this.#call("host_wait", null, WAIT_MS);
+    this.state = state;
+    this.report(fault);
+    if (telemetry.length > 0) self.postMessage({ type: "frame", frame: frameOf(telemetry) });
+  }
+
   report(fault = null) {
-    const needsArm = !this.isSimulated && this.isLoaded && this.state === "disarmed";
+    const isArmable = this.isLoaded || this.#brokenOff !== null;
+    const needsArm = !this.isSimulated && isArmable && this.state === "disarmed";
     self.postMessage({ type: "state", state: this.state, fault, needsArm, driving: this.driving });
   }
 
-  async play(scene) {
-    await this.#call("host_load", requestOf(scene));
+  async #load(scene) {
+    // What can be armed is the newest scene that was not refused, or nothing.
+    this.#brokenOff = null;
+    if (this.state === "disarmed") this.isLoaded = false;
+    try {
+      await this.#call("host_load", requestOf(scene));
+    } catch (error) {
+      if (error.message === STOPPED) this.#brokenOff = scene;
+      throw error;
+    }
     this.isLoaded = true;
+  }
+
+  async play(scene) {
+    const round = this.#round;
+    await this.#load(scene);
     // A board with an electrode waits for an explicit press.
-    if (this.isSimulated) await this.arm();
+    if (!this.isSimulated) return;
+    if (round !== this.#round) throw new Error(STOPPED);
+    await this.arm();
   }
 
   async arm() {
+    if (this.#brokenOff) await this.#load(this.#brokenOff);
     this.isWanted = true;
     await this.#call("host_play");
   }
 
+  /** Breaks off whatever is under way, and disarms the board. */
   async stop() {
     this.isWanted = false;
-    await this.#call("host_stop");
+    await this.#disarm();
+  }
+
+  #disarm() {
+    this.#breakOff();
+    return this.#enqueue({ round: this.#round, isStop: true }, "host_stop", null, []);
+  }
+
+  #breakOff() {
+    this.#round += 1;
+    changed.give();
   }
 
   control(line) {
@@ -153,11 +277,30 @@ class Board {
     return this.#call("host_clear_fault");
   }
 
+  /** Breaks off whatever is under way, disarms the board, and closes the stream. */
   async disconnect() {
     this.#isOpen = false;
+    this.#breakOff();
     await this.#queue;
-    // Dropping the host sends the frames that stop and disarm.
-    this.#engine.plain("host_disconnect");
+    this.#close();
+  }
+
+  /** The line, or the instance of the module, is of no more use: disconnects, and tells the page. */
+  #lose(error) {
+    if (!this.#isOpen) return;
+    if (board === this) board = null;
+    this.disconnect();
+    self.postMessage({ type: "lost", error: error.message });
+  }
+
+  #close() {
+    this.#current = { round: this.#round, isStop: true };
+    try {
+      // Dropping the host sends the frames that stop and disarm, if the line still takes them.
+      this.#engine.plain("host_disconnect");
+    } catch {
+      // The instance has failed; the board notices the silence.
+    }
     this.#stream.close();
   }
 }
@@ -188,68 +331,41 @@ function connected() {
   return board;
 }
 
+async function disconnect() {
+  const leaving = board;
+  board = null;
+  if (leaving) await leaving.disconnect();
+  return {};
+}
+
 serve({
-  async start(message) {
+  start(message) {
     module = message.module;
-    checker = await Engine.start(module);
     return {};
   },
 
-  check: ({ scene }) => checker.call("check", requestOf(scene)),
-  usedFiles: ({ scene }) => checker.call("used_files", requestOf(scene)),
-  seeded: ({ scene }) => checker.call("seeded_hash", requestOf(scene)),
-
-  map({ scene }) {
-    const values = new Float32Array(checker.callForBytes("map", requestOf(scene)));
-    const [widthPx, heightPx, lowN, highN] = values;
-    const count = widthPx * heightPx;
-    return { widthPx, heightPx, lowN, highN, frictionN: values.slice(4, 4 + count), outOfReach: Int8Array.from(values.subarray(4 + count)) };
-  },
-
-  /**
-   * Runs the simulator as fast as it goes, and returns how many times faster than real time that is: the fastest of
-   * some stretches, because other programs on the machine only slow it.
-   */
-  async speed({ scene, stretches, stretchMs }) {
-    const engine = await Engine.start(module);
-    engine.call("simulator_start", null, 1);
-    engine.call("simulator_play", requestOf(scene));
-    const times = Array.from({ length: stretches }, () => {
-      const begin = performance.now();
-      for (let ms = 0; ms < stretchMs; ms += 8) {
-        const tick = engine.plain("simulator_tick");
-        engine.plain("simulator_pointer", tick + 320, 65 + (30 * ms) / stretchMs, 30, 1, 0);
-        engine.callForBytes("simulator_run", null, 320, 1);
-      }
-      return performance.now() - begin;
-    });
-    return { timesRealTime: stretchMs / Math.min(...times) };
-  },
-
   async connect({ port }) {
-    if (board) await board.disconnect();
-    board = null;
+    await disconnect();
     board = await Board.connect(port);
     board.report();
     return {};
   },
-  async disconnect() {
-    const leaving = board;
-    board = null;
-    if (leaving) await leaving.disconnect();
-    return {};
-  },
+  disconnect,
 
   play: ({ scene }) => connected().play(scene),
   arm: () => connected().arm(),
-  stop: () => connected().stop(),
+  // Without a board there is nothing to stop.
+  stop: () => board?.stop(),
   control: ({ line }) => connected().control(line),
   clearFault: () => connected().clearFault(),
 
   alive() {
     lastLifeMs = epochMs();
+    changed.give();
   },
   gone() {
     lastLifeMs = -Infinity;
+    // A board with an electrode need not wait for its host timeout. If this fails, the page has been told.
+    if (board && !board.isSimulated) board.stop().catch(() => {});
   },
 });

@@ -2,24 +2,24 @@
 
 /** Line rate of a serial port, bits a second; native USB ignores it. */
 const BAUD = 2_000_000;
+/** Longest wait for each step of closing a port, ms: a port that is stuck is left. */
+const CLOSE_MAX_MS = 500;
 
-/** A line over Web Serial. `port` is a SerialPort that the user has chosen. */
+/**
+ * A line over Web Serial: `{ remote, close, closed }`. `remote` is the MessagePort; `closed` resolves once the port can
+ * be opened again, whichever end has closed the line. `port` is a SerialPort that the user has chosen.
+ */
 export async function serialLine(port) {
   await port.open({ baudRate: BAUD, bufferSize: 16384 });
   const writer = port.writable.getWriter();
   const reader = port.readable.getReader();
-  const { local, remote } = channel();
-  local.onmessage = async ({ data }) => {
-    if (data.length > 0) {
-      writer.write(data).catch(() => local.postMessage(new Uint8Array()));
-      return;
-    }
-    await reader.cancel().catch(() => {});
-    await writer.close().catch(() => {});
-    await port.close().catch(() => {});
-  };
-  readAll(reader, local);
-  return remote;
+  return line((local) => {
+    readAll(reader, local);
+    return {
+      write: (bytes) => writer.write(bytes),
+      close: () => closePort(port, reader, writer),
+    };
+  });
 }
 
 async function readAll(reader, local) {
@@ -27,13 +27,27 @@ async function readAll(reader, local) {
     for (;;) {
       const { value, done } = await reader.read();
       if (done) break;
-      if (value.length > 0) local.postMessage(value);
+      if (value.length > 0) local.receive(value);
     }
   } catch {
-    // The cable was pulled: the end of the stream says so.
+    // The cable was pulled: the end of the line says so.
   }
+  local.close();
+}
+
+/** Sends what is still to be sent, for a moment, and closes the port, which has to be free of readers and writers. */
+async function closePort(port, reader, writer) {
+  await ended(reader.cancel());
+  await ended(writer.close());
+  await ended(writer.abort());
   reader.releaseLock();
-  local.postMessage(new Uint8Array());
+  writer.releaseLock();
+  await ended(port.close());
+}
+
+/** Waits for a promise, but not for ever, and not for its outcome. */
+function ended(promise) {
+  return Promise.race([promise.catch(() => {}), new Promise((resolve) => setTimeout(resolve, CLOSE_MAX_MS))]);
 }
 
 /** The address of the bridge of `frixel studio`, if it serves this page and has a port; else null. */
@@ -42,24 +56,60 @@ export function bridgeUrl({ protocol, host, hash } = location) {
   return protocol === "http:" && token ? `ws://${host}/serial?token=${token}` : null;
 }
 
-/** A line over a WebSocket to the bridge of `frixel studio`. */
-export function socketLine(url) {
-  return new Promise((resolve, reject) => {
-    const socket = new WebSocket(url);
-    socket.binaryType = "arraybuffer";
-    const { local, remote } = channel();
-    socket.onopen = () => resolve(remote);
-    socket.onerror = () => reject(new Error("the bridge of `frixel studio` does not answer: is it still running?"));
-    socket.onmessage = ({ data }) => local.postMessage(new Uint8Array(data));
-    socket.onclose = () => local.postMessage(new Uint8Array());
-    local.onmessage = ({ data }) => {
-      if (data.length === 0) socket.close();
-      else if (socket.readyState === WebSocket.OPEN) socket.send(data);
+/** A line over a WebSocket to the bridge of `frixel studio`, as `serialLine` returns one. */
+export async function socketLine(url) {
+  const socket = new WebSocket(url);
+  socket.binaryType = "arraybuffer";
+  await new Promise((resolve, reject) => {
+    socket.onopen = resolve;
+    socket.onerror = () =>
+      reject(
+        new Error(
+          "the bridge of `frixel studio` does not answer: is it still running, its board plugged in, and no other page connected?",
+        ),
+      );
+  });
+  return line((local) => {
+    const closed = new Promise((resolve) => (socket.onclose = resolve));
+    closed.then(() => local.close());
+    socket.onmessage = ({ data }) => local.receive(new Uint8Array(data));
+    return {
+      write(bytes) {
+        if (socket.readyState === WebSocket.OPEN) socket.send(bytes);
+      },
+      async close() {
+        socket.close();
+        await ended(closed);
+      },
     };
   });
 }
 
-function channel() {
-  const { port1, port2 } = new MessageChannel();
-  return { local: port1, remote: port2 };
+/**
+ * A line whose far end `open` connects: it gets `receive(bytes)` and `close()`, and returns `write(bytes)` and
+ * `close()`, which may fail or take their time.
+ */
+function line(open) {
+  const { port1: local, port2: remote } = new MessageChannel();
+  const { promise: closed, resolve } = Promise.withResolvers();
+  let isOpen = true;
+  const close = () => {
+    if (!isOpen) return;
+    isOpen = false;
+    local.postMessage(new Uint8Array());
+    far.close().finally(() => {
+      local.close();
+      resolve();
+    });
+  };
+  const far = open({ receive: (bytes) => local.postMessage(bytes), close });
+  local.onmessage = async ({ data }) => {
+    try {
+      if (data.length === 0) close();
+      else if (isOpen) await far.write(data);
+    } catch {
+      close();
+    }
+  };
+  return { remote, close, closed };
 }

@@ -1,17 +1,21 @@
-// The WebAssembly module with values in place of buffers. A classic script, which board.js and host.js follow in the
-// source of a worker: from a file, a browser starts no worker that imports modules.
+// The WebAssembly module with values in place of buffers. A classic script, which the script of each worker follows in
+// the worker's source: from a file, a browser starts no worker that imports modules.
 "use strict";
 
-/** A request was refused; `problems` has the places in the scene's text, if there are any. */
+/**
+ * A request was refused; `problems` has the places in the scene's text, if there are any. With `isLinkLost`, the board
+ * can no longer be talked to over this line.
+ */
 class EngineError extends Error {
-  constructor({ error, problems }) {
+  constructor({ error, problems, isLinkLost }) {
     super(error);
     this.problems = problems ?? [];
+    this.isLinkLost = isLinkLost ?? false;
   }
 }
 
 /** The imports of an instance that is connected to no stream. */
-const NO_LINK = { link_write() {}, link_read: () => -1, link_now_ms: () => 0 };
+const NO_LINK = { link_write: () => -1, link_read: () => -1, link_now_ms: () => 0 };
 
 /** One instance of the module. */
 class Engine {
@@ -69,12 +73,16 @@ class Engine {
     }
   }
 
-  /** The error of a trap: the module has written the message of a panic, if it was one. */
+  /**
+   * The error of a trap: the module has written the message of a panic, if it was one. The instance is of no more use,
+   * and neither is its board.
+   */
   #failure(trap) {
     try {
-      return new EngineError(JSON.parse(new TextDecoder().decode(this.#output(0))));
+      const { error } = JSON.parse(new TextDecoder().decode(this.#output(0)));
+      return new EngineError({ error, isLinkLost: true });
     } catch {
-      return trap;
+      return Object.assign(trap, { isLinkLost: true });
     }
   }
 

@@ -1,7 +1,7 @@
 // The board that plays: the simulator in the page, or one on a serial port or behind `frixel studio`.
 
 import { bridgeUrl } from "../engine/engine.js";
-import { attempt, byId, element } from "./dom.js";
+import { attempt, byId, element, notify } from "./dom.js";
 
 const WORDS = { active: "playing", armed: "armed", disarmed: "disarmed", faulted: "faulted" };
 
@@ -37,12 +37,14 @@ export class Board {
   }
 
   #show({ link, state, fault, needsArm, driving }) {
+    if (link === "none" && this.#link !== "none" && fault) notify(fault);
     this.#link = link;
     const board = byId("board");
     board.dataset.state = state;
     document.documentElement.dataset.state = state;
     const name = link === "simulator" ? "Simulator" : driving;
-    board.textContent = `${name}: ${WORDS[state] ?? state}${fault ? `, ${fault}` : ""}`;
+    const details = fault && link !== "none" ? `, ${fault}` : "";
+    board.textContent = link === "none" ? "No board" : `${name}: ${WORDS[state] ?? state}${details}`;
     const arm = byId("arm");
     // A board latches a fault also when its arm switch is let go.
     const isFaulted = state === "faulted" && link !== "simulator";
@@ -51,6 +53,7 @@ export class Board {
     if (isFaulted) arm.dataset.clears = "true";
     else delete arm.dataset.clears;
     const stop = byId("stop");
+    stop.hidden = link === "none";
     const isStopped = state === "disarmed";
     stop.textContent = isStopped && link === "simulator" ? "Play" : "Stop";
     if (isStopped && link === "simulator") stop.dataset.stopped = "true";

@@ -1,0 +1,45 @@
+// The worker of the compiler: checks scenes, draws their maps, and measures the simulator. It has no board, so a long
+// compile delays nothing that a board waits for.
+"use strict";
+
+let module;
+let checker;
+
+serve({
+  async start(message) {
+    module = message.module;
+    checker = await Engine.start(module);
+    return {};
+  },
+
+  check: ({ scene }) => checker.call("check", requestOf(scene)),
+  usedFiles: ({ scene }) => checker.call("used_files", requestOf(scene)),
+  seeded: ({ scene }) => checker.call("seeded_hash", requestOf(scene)),
+
+  map({ scene }) {
+    const values = new Float32Array(checker.callForBytes("map", requestOf(scene)));
+    const [widthPx, heightPx, lowN, highN] = values;
+    const count = widthPx * heightPx;
+    return { widthPx, heightPx, lowN, highN, frictionN: values.slice(4, 4 + count), outOfReach: Int8Array.from(values.subarray(4 + count)) };
+  },
+
+  /**
+   * Runs the simulator as fast as it goes, and returns how many times faster than real time that is: the fastest of
+   * some stretches, because other programs on the machine only slow it.
+   */
+  async speed({ scene, stretches, stretchMs }) {
+    const engine = await Engine.start(module);
+    engine.call("simulator_start", null, 1);
+    engine.call("simulator_play", requestOf(scene));
+    const times = Array.from({ length: stretches }, () => {
+      const begin = performance.now();
+      for (let ms = 0; ms < stretchMs; ms += 8) {
+        const tick = engine.plain("simulator_tick");
+        engine.plain("simulator_pointer", tick + 320, 65 + (30 * ms) / stretchMs, 30, 1, 0);
+        engine.callForBytes("simulator_run", null, 320, 1);
+      }
+      return performance.now() - begin;
+    });
+    return { timesRealTime: stretchMs / Math.min(...times) };
+  },
+});
