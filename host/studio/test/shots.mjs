@@ -89,8 +89,19 @@ const SHOTS = {
   },
   async files() {
     const { page, close } = await open();
-    const keys = 'version = 2\n\n# Twelve keys.\n[[layer]]\nname = "key"\nkind = "button"\nrim_fraction = 0.9\nface_fraction = 0.4\n' +
-      "region = { x_mm = 12, y_mm = 12, width_mm = 20, height_mm = 14 }\nrepeat = { columns = 4, dx_mm = 25, rows = 3, dy_mm = 20 }\nlive = true\n";
+    const keys = `version = 2
+
+# Twelve keys.
+[[layer]]
+name = "key"
+kind = "button"
+rim_fraction = 0.9
+rim_width_mm = 2
+face_fraction = 0.4
+region = { x_mm = 12, y_mm = 12, width_mm = 20, height_mm = 14 }
+repeat = { columns = 4, dx_mm = 25, rows = 3, dy_mm = 20 }
+live = true
+`;
     const folder = fs.mkdtempSync("/tmp/frixel-shots-");
     fs.writeFileSync(`${folder}/keys.toml`, keys.replace("face_fraction", "face_fractio"));
     fs.writeFileSync(`${folder}/phone.toml`, 'version = 2\ninclude = ["keys.toml"]\n');

@@ -80,8 +80,10 @@ function sizeOf({ widthMm, heightMm }) {
 
 /** The comment at a scene's head, up to its first two sentences. */
 function introduction(text) {
-  const comment = /^(?:#.*\n)+/.exec(text)?.[0].replaceAll(/^# ?/gm, "").replaceAll("\n", " ").replaceAll("`", "") ?? "";
+  const comment = /^(?:#.*\n)+/.exec(text)?.[0] ?? "";
   return comment
+    .replaceAll(/^# ?|`/gm, "")
+    .replaceAll("\n", " ")
     .split(/(?<=\.) /)
     .slice(0, 2)
     .join(" ");
