@@ -21,6 +21,8 @@ high_n = 0.1
 /** Mortar of 2 mm is finer than what such reports can follow: its lines are felt, some of them late. */
 const BRICK = { error: 0.6, correlation: 0.8 };
 const CORNER_HZ = 40;
+/** A stroke is tried so often. */
+const STROKES_MAX = 8;
 const SPEED_MM_PER_S = 80;
 /** A finger is known to stand still after some reports and 50 ms; noise of the touch source can put that off, ms. */
 const STILL_ZERO_MS = 500;
@@ -59,23 +61,36 @@ function compared(felt, reference) {
   return shifts.reduce((best, each) => (each.error < best.error ? each : best));
 }
 
-/** Felt friction and reference along strokes over the scene that plays, below 40 Hz and registered in place. */
-async function feltAlong(page, linesMm) {
-  const errors = [];
-  for (const yMm of linesMm) {
-    const way = await page.evaluate(
+/** The samples of a stroke. Where the machine holds the page up, its board is disarmed: then the stroke is repeated. */
+async function wholeStroke(page, yMm) {
+  for (let tries = 0; tries < STROKES_MAX; tries += 1) {
+    const { way, isWhole } = await page.evaluate(
       async ([yMm, speedMmPerS]) => {
         const { samples } = studioPage;
+        let isWhole = true;
+        const states = new MutationObserver(() => (isWhole = false));
+        states.observe(document.documentElement, { attributeFilter: ["data-state"] });
         await running();
         const beginS = samples.nowS;
         await slide(15, 105, yMm, speedMmPerS);
         await wait(150);
         lift(105, yMm);
         await wait(200);
-        return samples.since(beginS);
+        states.disconnect();
+        return { way: samples.since(beginS), isWhole };
       },
       [yMm, SPEED_MM_PER_S],
     );
+    if (isWhole) return way;
+  }
+  throw new Error(`the machine is too busy: the board was disarmed in each of ${STROKES_MAX} strokes`);
+}
+
+/** Felt friction and reference along strokes over the scene that plays, below 40 Hz and registered in place. */
+async function feltAlong(page, linesMm) {
+  const errors = [];
+  for (const yMm of linesMm) {
+    const way = await wholeStroke(page, yMm);
     // From 150 ms after the touch, while the finger slides.
     const { timeS, xMm, speedMmPerS, feltN, referenceN } = way;
     const touchS = timeS[xMm.findIndex(Number.isFinite)];
