@@ -1,50 +1,54 @@
 // Takes the pictures of docs/studio: `cargo xtask studio`, then
 // `STUDIO_PAGE=PATH FRIXEL=PATH node shots.mjs [NAME ...]` in this folder; each picture is looked at before it is kept.
 
-import fs from "node:fs";
 import path from "node:path";
-import { cleanUp, openPage, pageUrl } from "./harness.mjs";
+import { cleanUp, openPage } from "./harness.mjs";
+import { give, openStudio } from "./page.mjs";
 
 const OUT = new URL("../../../docs/studio/", import.meta.url).pathname;
 const wanted = process.argv.slice(2);
 
 /** Opens the studio; `size` is that of the window. */
-async function open({ size = { width: 1440, height: 900 }, scheme = "light", init } = {}) {
-  const { page, close } = await openPage(pageUrl, { init });
+async function open({ size = { width: 1440, height: 900 }, scheme = "light" } = {}) {
+  const { page, close } = await openStudio();
   await page.setViewportSize(size);
   await page.emulateMedia({ colorScheme: scheme });
-  await page.waitForFunction(
-    () => globalThis.studioPage && document.documentElement.dataset.state === "active",
-  );
-  await page.waitForFunction(() => document.getElementById("check").textContent === "plays");
+  await page.waitForTimeout(300);
   return { page, close };
 }
 
-/** Slides back and forth and leaves the finger down. */
-async function slide(page, { from = 0.15, to = 0.75, y = 0.45, ms = 2600 } = {}) {
-  const canvas = page.locator("#map-finger");
-  await canvas.scrollIntoViewIfNeeded();
-  const box = await canvas.boundingBox();
-  const at = (part, row = y) => page.mouse.move(box.x + part * box.width, box.y + row * box.height);
-  await at(from);
-  await page.mouse.down();
-  const begin = Date.now();
-  for (let part = 0; part < 1;) {
-    part = Math.min(1, (Date.now() - begin) / ms);
-    // To the right, back, and to the right again.
-    const along = 1 - Math.abs(((3 * part) % 2) - 1);
-    await at(from + (to - from) * along, y + 0.12 * part);
-    await page.waitForTimeout(12);
-  }
+/** Slides twice to the right, and leaves the finger down. */
+async function slide(page, yMm = 44) {
+  await page.evaluate(async (yMm) => {
+    await running();
+    await slide(15, 105, yMm - 12, 90);
+    await wait(120);
+    lift(105, yMm - 12);
+    await wait(150);
+    await slide(20, 88, yMm, 90);
+    // The way is simulated a little later than it was made.
+    await wait(30);
+    document.getElementById("map-hint").hidden = true;
+  }, yMm);
 }
 
-async function scene(page, text) {
-  await page.evaluate((text) => (studioPage.editor.text = text), text);
-  await page.waitForTimeout(2500);
+/** Opens a bundled scene from the gallery. */
+async function bundled(page, name) {
+  await page.click("#open-gallery");
+  await page.click(`text="Open ${name}"`);
+  await page.waitForFunction((name) => document.getElementById("scene-name").textContent === name, `${name}.toml`);
+  await page.waitForTimeout(2000);
+}
+
+async function change(page, before, after) {
+  await page.evaluate(([before, after]) => {
+    const { editor } = studioPage;
+    editor.text = editor.text.replace(before, after);
+  }, [before, after]);
+  await page.waitForTimeout(2000);
 }
 
 const shot = (page, name) => page.screenshot({ path: path.join(OUT, `${name}.png`) });
-const bundled = (name) => fs.readFileSync(new URL(`../../../scenes/${name}.toml`, import.meta.url), "utf8");
 
 const SHOTS = {
   async play() {
@@ -55,7 +59,7 @@ const SHOTS = {
   },
   async dark() {
     const { page, close } = await open({ scheme: "dark" });
-    await scene(page, bundled("grating"));
+    await bundled(page, "grating");
     await slide(page);
     await shot(page, "dark");
     await close();
@@ -75,14 +79,12 @@ const SHOTS = {
     await page.click("#real-size");
     await page.waitForTimeout(300);
     await shot(page, "size");
-    await page.click("text=Show in real size");
-    await page.waitForTimeout(500);
-    await shot(page, "real");
     await close();
   },
   async draft() {
     const { page, close } = await open();
-    await scene(page, bundled("grating").replace(/high_(n|fraction) = .*/, "high_n = 0.2"));
+    await bundled(page, "grating");
+    await change(page, "high_n = 0.1", "high_n = 0.2");
     await slide(page);
     await shot(page, "draft");
     await close();
@@ -102,11 +104,13 @@ region = { x_mm = 12, y_mm = 12, width_mm = 20, height_mm = 14 }
 repeat = { columns = 4, dx_mm = 25, rows = 3, dy_mm = 20 }
 live = true
 `;
-    const folder = fs.mkdtempSync("/tmp/frixel-shots-");
-    fs.writeFileSync(`${folder}/keys.toml`, keys.replace("face_fraction", "face_fractio"));
-    fs.writeFileSync(`${folder}/phone.toml`, 'version = 2\ninclude = ["keys.toml"]\n');
-    await page.setInputFiles("#files", [`${folder}/keys.toml`, `${folder}/phone.toml`]);
-    await page.waitForTimeout(1500);
+    await give(page, ["keys.toml", keys], ["phone.toml", 'version = 2\ninclude = ["keys.toml"]\n']);
+    await page.click("#file-tabs >> text=keys.toml");
+    await page.waitForTimeout(2500);
+    await page.evaluate(() => studioPage.editor.goTo("keys.toml", 9));
+    await page.keyboard.press("Home");
+    await page.keyboard.press("Delete");
+    await page.waitForTimeout(2500);
     await page.click("#problems button");
     await page.waitForTimeout(500);
     await shot(page, "files");
@@ -114,7 +118,8 @@ live = true
   },
   async mistake() {
     const { page, close } = await open();
-    await scene(page, bundled("grating").replace('kind = "grating"', 'kind = "gratin"'));
+    await bundled(page, "grating");
+    await change(page, 'kind = "grating"', 'kind = "gratin"');
     await page.click("#problems button");
     await page.waitForTimeout(400);
     await shot(page, "mistake");
@@ -135,10 +140,10 @@ live = true
   },
   async mockup() {
     const { page, close } = await open();
-    await scene(page, bundled("slider"));
+    await bundled(page, "slider");
     await page.selectOption("#look", "both");
     await page.waitForTimeout(500);
-    await slide(page, { y: 0.5 });
+    await slide(page);
     await shot(page, "mockup");
     await close();
   },
@@ -146,7 +151,7 @@ live = true
     const { page, close } = await open();
     await page.click("#tab-compare");
     await page.click("text=Keep this scene as A");
-    await scene(page, bundled("grating"));
+    await bundled(page, "grating");
     await page.click("text=Compare A with the scene now");
     await page.waitForTimeout(800);
     await slide(page);
