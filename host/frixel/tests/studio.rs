@@ -2,8 +2,11 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by a panic")]
 
-use std::io::{Read, Write};
+use std::fs;
+use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
+use std::os::unix::fs::PermissionsExt;
+use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
@@ -118,6 +121,94 @@ fn only_the_page_with_its_token_gets_the_bridge() {
     assert_eq!(studio.bridge(&studio.origin(), &studio.token).err(), Some(409), "one page at a time");
     let without_port = Running::new(None);
     assert_eq!(without_port.bridge(&without_port.origin(), &without_port.token).err(), Some(404));
+}
+
+/// The page connects again as soon as it has seen the bridge end.
+#[test]
+fn the_bridge_is_free_once_the_page_has_seen_it_end() {
+    let terminal = PseudoTerminal::open().unwrap();
+    let studio = Running::new(Some(terminal.path()));
+    for _ in 0..20 {
+        let mut socket = studio.bridge(&studio.origin(), &studio.token).unwrap();
+        socket.close(None).unwrap();
+        while socket.read().is_ok() {}
+        let mut rest = Vec::new();
+        // Until the connection itself has ended, which is the last that the server does.
+        let _ = socket.get_mut().read_to_end(&mut rest);
+    }
+}
+
+/// Port 80 is the one that a browser leaves out of an address.
+#[test]
+fn an_address_without_a_port_is_that_of_port_80() {
+    // Where this user may not listen there, or somebody else does, there is nothing to check.
+    let Ok(studio) = Studio::open(80, PAGE.to_vec(), None) else { return };
+    assert_eq!(studio.url(), "http://127.0.0.1/");
+}
+
+#[test]
+fn the_command_opens_its_address_in_the_browser_of_the_environment() {
+    let folder = tempfile::tempdir().unwrap();
+    let (page, opened) = (folder.path().join("page.html"), folder.path().join("opened"));
+    fs::write(&page, PAGE).unwrap();
+    let browser = folder.path().join("browser");
+    fs::write(&browser, format!("#!/bin/sh\nprintf %s \"$1\" > {}.part\nmv {0}.part {0}\n", opened.display())).unwrap();
+    fs::set_permissions(&browser, fs::Permissions::from_mode(0o755)).unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_frixel"));
+    command.arg("studio").arg("--page").arg(&page).env("BROWSER", &browser).stdout(Stdio::piped());
+    let mut studio = command.spawn().unwrap();
+    let mut printed = String::new();
+    BufReader::new(studio.stdout.take().unwrap()).read_line(&mut printed).unwrap();
+    let begin = Instant::now();
+    while !opened.is_file() && begin.elapsed() < Duration::from_secs(10) {
+        thread::sleep(Duration::from_millis(10));
+    }
+    studio.kill().unwrap();
+    studio.wait().unwrap();
+    assert_eq!(fs::read_to_string(opened).unwrap(), printed.trim());
+}
+
+/// Without a page, `cargo xtask studio` of the checkout builds one, wherever its artefacts are, and prints its path.
+#[test]
+fn a_checkout_without_a_page_builds_one() {
+    let checkout = tempfile::tempdir().unwrap();
+    let web = checkout.path().join("host/studio/web");
+    fs::create_dir_all(&web).unwrap();
+    fs::write(web.join("boot.js"), "").unwrap();
+    let built = checkout.path().join("built.html");
+    let cargo = checkout.path().join("cargo");
+    let script = format!(
+        "#!/bin/sh\n[ \"$*\" = \"xtask studio\" ] && cp page {} && echo progress && echo {0}\n",
+        built.display()
+    );
+    fs::write(&cargo, script).unwrap();
+    fs::set_permissions(&cargo, fs::Permissions::from_mode(0o755)).unwrap();
+    let run = || {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_frixel"));
+        command.args(["studio", "--no-browser"]).current_dir(&web).env("CARGO", &cargo);
+        command
+            .env("CARGO_TARGET_DIR", checkout.path().join("elsewhere"))
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped());
+        let mut studio = command.spawn().unwrap();
+        let mut printed = String::new();
+        BufReader::new(studio.stdout.take().unwrap()).read_line(&mut printed).unwrap();
+        if printed.is_empty() {
+            return Err(String::from_utf8(studio.wait_with_output().unwrap().stderr).unwrap());
+        }
+        let host = printed.trim().trim_start_matches("http://").trim_end_matches('/').to_owned();
+        let mut stream = TcpStream::connect(&host).unwrap();
+        write!(stream, "GET / HTTP/1.1\r\nHost: {host}\r\n\r\n").unwrap();
+        let mut answer = String::new();
+        stream.read_to_string(&mut answer).unwrap();
+        studio.kill().unwrap();
+        studio.wait().unwrap();
+        Ok(answer)
+    };
+    let failure = run().unwrap_err();
+    assert!(failure.contains("`cargo xtask studio` failed"), "{failure}");
+    fs::write(checkout.path().join("page"), PAGE).unwrap();
+    assert!(run().unwrap().ends_with("the page</title>"));
 }
 
 #[test]

@@ -1,7 +1,8 @@
 // What the browser tests share: the page in Chromium, the bundled scenes, and a virtual board.
 //
-// `cargo xtask studio-test` builds what they need, and says in the environment where it is: STUDIO_PAGE (the HTML file),
-// STUDIO_HASHES (the hashes of the gallery, computed natively), FRIXEL (the command), REAL_BOARD (examples/real_board.rs).
+// `cargo xtask studio-test` builds what they need, and says in the environment where it is:
+// STUDIO_PAGE (the HTML file), STUDIO_HASHES (the hashes of the gallery, computed natively), FRIXEL (the command),
+// REAL_BOARD (examples/real_board.rs).
 
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
@@ -71,7 +72,7 @@ export async function openEngine(url = pageUrl, options) {
       }
       return files;
     };
-    /** Slides back and forth where constant.toml and grating.toml both drive, until `isOver()`, with a sample every 8 ms. */
+    /** Slides where constant.toml and grating.toml both drive, until `isOver()`, with a sample every 8 ms. */
     globalThis.slideUntil = async (isOver) => {
       const begin = performance.now();
       while (!isOver()) {
@@ -225,7 +226,10 @@ export async function addSerialPort(page, terminal) {
         if (port.readable) throw new DOMException("The port is already open.", "InvalidStateError");
         let incoming;
         let outgoing;
-        port.readable = new ReadableStream({ start: (controller) => void (incoming = controller), cancel: () => (incoming = null) });
+        port.readable = new ReadableStream({
+          start: (controller) => void (incoming = controller),
+          cancel: () => (incoming = null),
+        });
         port.writable = new WritableStream({
           start: (controller) => void (outgoing = controller),
           write(bytes) {

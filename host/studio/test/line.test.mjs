@@ -1,8 +1,10 @@
-// The line to a board with an electrode: what a stop, the silence of a page and a lost line do to whatever is under way.
+// The line to a board with an electrode: a stop, the silence of a page, and a lost line, whatever is under way.
 
 import assert from "node:assert/strict";
 import { after, test } from "node:test";
-import { addSerialPort, cleanUp, CONSTANT, openEngine, setVisibility, startRealBoard, stateOf } from "./harness.mjs";
+import {
+  addSerialPort, cleanUp, CONSTANT, openEngine, setVisibility, startRealBoard, startStudio, stateOf,
+} from "./harness.mjs";
 
 /** The default host timeout, within which a stop acts on a slow line, too, ms. */
 const HOST_TIMEOUT_MS = 250;
@@ -17,11 +19,17 @@ const COMMAND_MAX = 32;
 
 after(cleanUp);
 
-/** An engine with the port of a board. That of the page itself ends, so that the machine has time for this one. */
-async function withPort(board) {
-  const opened = await openEngine();
+/** An engine. That of the page itself ends, so that the machine has time for this one. */
+async function openOnlyEngine(url) {
+  const opened = await openEngine(url);
   await opened.page.waitForFunction(() => globalThis.studioPage);
   await opened.page.evaluate(() => studioPage.engine.close());
+  return opened;
+}
+
+/** An engine with the port of a board. */
+async function withPort(board) {
+  const opened = await openOnlyEngine();
   await addSerialPort(opened.page, board.terminal);
   return opened;
 }
@@ -80,7 +88,7 @@ test("a stop does not wait for an upload, and nothing but the disarm is sent", a
   await close();
 });
 
-test("a page that is hidden during an upload disarms the board, one without frames leaves it to its host timeout", async () => {
+test("during an upload, a hidden page disarms the board, and one without frames leaves it to its timeout", async () => {
   for (const [silence, expected] of [
     ["hidden", false],
     ["without frames", true],
@@ -139,5 +147,31 @@ test("a port can be connected again after a failed connection and after a lost l
   await page.evaluate(() => tested.simulate());
   assert.ok(!(await isOpen()));
   assert.deepEqual(errors, []);
+  await close();
+});
+
+test("the bridge can be connected again after a failed connection and after a board that fell silent", async () => {
+  const board = await startRealBoard();
+  const { page, close } = await openOnlyEngine(await startStudio(board.terminal));
+  const connect = () =>
+    page.evaluate(async () => {
+      const { bridgeUrl } = await import(await studio.moduleUrl("engine/lines.js"));
+      return tested.connectSocket(bridgeUrl()).catch((error) => error.message);
+    });
+  board.hang(true);
+  assert.match(await connect(), /no frixel board answered/);
+  board.hang(false);
+  assert.equal(await connect(), undefined);
+  await page.evaluate(async (text) => {
+    await tested.play({ "a.toml": text }, "a.toml", {});
+    await tested.arm();
+  }, CONSTANT);
+  await board.until("driving", stateOf.driving);
+  board.hang(true);
+  await page.waitForFunction(() => states.at(-1).link === "none");
+  assert.match(await page.evaluate(() => states.at(-1).fault), /not answered/);
+  board.hang(false);
+  await board.until("disarmed", stateOf.disarmed);
+  assert.equal(await connect(), undefined, "connected again");
   await close();
 });

@@ -32,7 +32,7 @@ before(async () => {
 });
 
 async function pressArm() {
-  const said = () => page.evaluate(() => `${document.getElementById("board").textContent}; ${document.getElementById("notice").textContent}`);
+  const said = async () => (await page.locator("#board, #notice").allTextContents()).join("; ");
   const arm = page.locator("#arm:not([hidden])");
   await arm.click({ timeout: 10_000 }).catch(async () => assert.fail(`no press to arm: ${await said()}`));
   await board.until("armed", stateOf.active);

@@ -9,7 +9,7 @@ mod http;
 mod page;
 
 use std::io;
-use std::net::{Ipv4Addr, TcpListener, TcpStream};
+use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
@@ -24,6 +24,8 @@ pub use page::page;
 const LOOK_PERIOD: Duration = Duration::from_millis(20);
 /// Longest time that a client may take to send its request.
 const REQUEST_TIMEOUT: Duration = Duration::from_secs(5);
+/// The port of an address that states none.
+const HTTP_PORT: u16 = 80;
 /// Path of the bridge.
 const BRIDGE_PATH: &str = "/serial";
 
@@ -79,7 +81,7 @@ impl Studio {
     pub fn open(listen_port: u16, page: Vec<u8>, serial_port: Option<String>) -> Result<Self, StudioError> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, listen_port))?;
         listener.set_nonblocking(true)?;
-        let host = listener.local_addr()?.to_string();
+        let host = host_of(listener.local_addr()?);
         let (is_bridge_in_use, is_over) = Default::default();
         let site = Site { page, host, serial_port, token: token()?, is_bridge_in_use, is_over };
         Ok(Self { listener, site: Arc::new(site) })
@@ -158,10 +160,17 @@ impl Site {
         if self.is_bridge_in_use.swap(true, Ordering::AcqRel) {
             return Answer::refusal(409, "another page uses the board: close it").write(&mut stream);
         }
+        // The page learns that the bridge has ended when this is dropped, and may ask for another one at once.
+        let connection = stream.try_clone();
         let bridged = bridge::run(stream, key, serial_port, &self.is_over);
         self.is_bridge_in_use.store(false, Ordering::Release);
-        bridged
+        connection.and(bridged)
     }
+}
+
+/// An address as a browser names it: without the port that HTTP has anyway.
+fn host_of(address: SocketAddr) -> String {
+    if address.port() == HTTP_PORT { address.ip().to_string() } else { address.to_string() }
 }
 
 /// 128 random bits in hexadecimal digits.

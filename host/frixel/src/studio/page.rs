@@ -3,12 +3,14 @@
 use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 
 use super::StudioError;
 
-/// The page, relative to a checkout.
-const BUILT_PAGE: &str = "target/studio/frixel-studio.html";
+/// The page in the folder of build artefacts.
+const BUILT_PAGE: &str = "studio/frixel-studio.html";
+/// That folder in a checkout, unless CARGO_TARGET_DIR names another.
+const TARGET: &str = "target";
 /// A file that only a checkout of frixel has.
 const SIGN_OF_A_CHECKOUT: &str = "host/studio/web/boot.js";
 
@@ -19,11 +21,9 @@ pub fn page(file: Option<&Path>) -> Result<Vec<u8>, StudioError> {
         return read(file);
     }
     let checkout = checkout().ok_or(StudioError::NoPage)?;
-    let built = checkout.join(BUILT_PAGE);
-    if !built.is_file() {
-        build(&checkout)?;
-    }
-    read(&built)
+    let target = env::var_os("CARGO_TARGET_DIR").map_or_else(|| checkout.join(TARGET), PathBuf::from);
+    let built = target.join(BUILT_PAGE);
+    if built.is_file() { read(&built) } else { read(&build(&checkout)?) }
 }
 
 fn checkout() -> Option<PathBuf> {
@@ -31,14 +31,20 @@ fn checkout() -> Option<PathBuf> {
     here.ancestors().find(|folder| folder.join(SIGN_OF_A_CHECKOUT).is_file()).map(Path::to_owned)
 }
 
-fn build(checkout: &Path) -> Result<(), StudioError> {
+/// Builds the page in a checkout, and returns its path.
+fn build(checkout: &Path) -> Result<PathBuf, StudioError> {
     let failed = |reason: String| StudioError::Build { reason };
     let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);
-    // Standard output has the page's path, which is known; the progress goes to standard error.
-    command.current_dir(checkout).args(["xtask", "studio"]).stdout(std::process::Stdio::null());
-    let status = command.status().map_err(|error| failed(format!("could not be started ({error})")))?;
-    if status.success() { Ok(()) } else { Err(failed(format!("failed ({status})"))) }
+    command.current_dir(checkout).args(["xtask", "studio"]).stderr(Stdio::inherit());
+    let output = command.output().map_err(|error| failed(format!("could not be started ({error})")))?;
+    if !output.status.success() {
+        return Err(failed(format!("failed ({})", output.status)));
+    }
+    // The path is the last line of standard output; the progress goes to standard error.
+    let printed = String::from_utf8_lossy(&output.stdout);
+    let path = printed.lines().last().ok_or_else(|| failed("printed no path".to_owned()))?;
+    Ok(PathBuf::from(path))
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, StudioError> {

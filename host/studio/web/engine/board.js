@@ -1,11 +1,11 @@
 // The worker of the simulated board: firmware and world, paced by the clock, moved by the pointer.
 //
-// Virtual time follows the page's clock. A sample of the pointer is played DELAY_MS after it was taken, so that the next
-// sample is here in time and the finger can be interpolated between both.
+// Virtual time follows the page's clock. A sample of the pointer is played DELAY_MS after it was taken, so that the
+// next sample is here in time and the finger can be interpolated between both.
 "use strict";
 
 const TICKS_PER_MS = 40;
-/** Delay between the pointer and the simulated finger, ms: two samples of a 60 Hz display, and a step of this worker. */
+/** Delay between the pointer and the finger, ms: two samples of a 60 Hz display, and a step of this worker. */
 const DELAY_MS = 40;
 /** Time between two steps of this worker, ms. */
 const STEP_MS = 8;
@@ -56,8 +56,8 @@ function run(ticks, isAlive) {
   const buffer = engine.callForBytes("simulator_run", null, ticks, isAlive ? 1 : 0);
   const [tick, firstTick, ticksPerSample, count, soundCount, state, fault, contact] = new Float64Array(buffer, 0, 8);
   const column = (index) => new Float32Array(buffer, 64 + 4 * count * index, count);
-  const frame = { tick, firstTick, ticksPerSample, contact: contact !== 0, slowness: 1 / clock.rate, delayMs: DELAY_MS };
-  frame.simulated = true;
+  const frame = { tick, firstTick, ticksPerSample, contact: contact !== 0, simulated: true };
+  Object.assign(frame, { slowness: 1 / clock.rate, delayMs: DELAY_MS });
   for (const [index, name] of ["xMm", "yMm", "speedMmPerS", "referenceN", "feltN", "voltageV"].entries()) {
     frame[name] = column(index);
   }

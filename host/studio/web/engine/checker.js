@@ -20,7 +20,8 @@ serve({
     const values = new Float32Array(checker.callForBytes("map", requestOf(scene)));
     const [widthPx, heightPx, lowN, highN] = values;
     const count = widthPx * heightPx;
-    return { widthPx, heightPx, lowN, highN, frictionN: values.slice(4, 4 + count), outOfReach: Int8Array.from(values.subarray(4 + count)) };
+    const [frictionN, outOfReach] = [values.slice(4, 4 + count), Int8Array.from(values.subarray(4 + count))];
+    return { widthPx, heightPx, lowN, highN, frictionN, outOfReach };
   },
 
   /**

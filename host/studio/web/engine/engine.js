@@ -55,7 +55,8 @@ class Engine {
   }
 
   #newBoard() {
-    return WorkerClient.start("board", { module: this.#module, seed: this.#seed }, (message) => this.#fromBoard(message));
+    const settings = { module: this.#module, seed: this.#seed };
+    return WorkerClient.start("board", settings, (message) => this.#fromBoard(message));
   }
 
   #fromBoard(message) {

@@ -161,8 +161,8 @@ class Board {
   }
 
   /**
-   * Waits while the page gives no sign of life. The module is suspended meanwhile and sends nothing, so the board's host
-   * timeout disarms it. A stop does not wait for the page.
+   * Waits while the page gives no sign of life. The module is suspended meanwhile and sends nothing, so the board's
+   * host timeout disarms it. A stop does not wait for the page.
    */
   async #pageToLive() {
     const begin = performance.now();

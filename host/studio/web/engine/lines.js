@@ -2,6 +2,9 @@
 
 /** Line rate of a serial port, bits a second; native USB ignores it. */
 const BAUD = 2_000_000;
+const NO_BRIDGE =
+  "The bridge of `frixel studio` gives no connection: is the command still running, its board plugged in, and no " +
+  "other page connected to it?";
 /** Longest wait for each step of closing a port, ms: a port that is stuck is left. */
 const CLOSE_MAX_MS = 500;
 
@@ -62,12 +65,7 @@ export async function socketLine(url) {
   socket.binaryType = "arraybuffer";
   await new Promise((resolve, reject) => {
     socket.onopen = resolve;
-    socket.onerror = () =>
-      reject(
-        new Error(
-          "the bridge of `frixel studio` does not answer: is it still running, its board plugged in, and no other page connected?",
-        ),
-      );
+    socket.onerror = () => reject(new Error(NO_BRIDGE));
   });
   return line((local) => {
     const closed = new Promise((resolve) => (socket.onclose = resolve));
