@@ -71,7 +71,7 @@ mod imports {
         /// Suspends until bytes have arrived, at most `wait_ms`, and returns how many of them it has put into the
         /// buffer; -1 when the stream is closed. While the page gives no sign of life, it stays suspended.
         pub(super) safe fn link_read(buffer: *mut u8, len: usize, wait_ms: f64) -> i32;
-        /// Time since a fixed moment, ms, without the time in which the page gave no sign of life.
+        /// Time since a fixed moment, ms; of a long time in which the page gave no sign of life, only a part.
         pub(super) safe fn link_now_ms() -> f64;
     }
 }

@@ -9,6 +9,11 @@
 const LIFE_MS = 25;
 /** Time in which one call keeps the board alive, ms. */
 const WAIT_MS = 10;
+/**
+ * A pause of the page counts as no more than this on the module's clock, ms: longer than the time between pings, which
+ * are then due, and shorter than the time after which a board counts as silent.
+ */
+const PAUSE_MAX_MS = 250;
 /** Bytes that wait to be read at most, for example while the page is hidden; the oldest are dropped first. */
 const ARRIVED_MAX = 1_000_000;
 /** What the imports of the module return when the stream is closed. */
@@ -111,8 +116,8 @@ class Board {
   #round = 0;
   /** The call under way: its round, and whether it is a stop, which nothing breaks off. */
   #current = { round: 0, isStop: false };
-  /** Time in which the page gave no sign of life during a call, ms; the module's clock leaves it out. */
-  #pausedMs = 0;
+  /** Time that the module's clock leaves out, ms. */
+  #leftOutMs = 0;
   #isOpen = true;
   /** The scene whose load a stop has broken off: the next press loads it again. */
   #brokenOff = null;
@@ -152,7 +157,7 @@ class Board {
         this.#engine.bytes.set(bytes, address);
         return bytes.length;
       }),
-      link_now_ms: () => performance.now() - this.#pausedMs,
+      link_now_ms: () => performance.now() - this.#leftOutMs,
     };
   }
 
@@ -169,7 +174,7 @@ class Board {
     while (!pageLives() && !this.#current.isStop && !this.#isBrokenOff && !this.#stream.isClosed) {
       await changed.wait();
     }
-    this.#pausedMs += performance.now() - begin;
+    this.#leftOutMs += Math.max(0, performance.now() - begin - PAUSE_MAX_MS);
   }
 
   #call(name, input, ...numbers) {
