@@ -7,14 +7,14 @@
 use frixel_control::StandstillRamp;
 use frixel_control::is_past;
 
-/// A finger that moves by less than [`SLOW_WITHIN_M`] in this time, 1.6 mm/s on average, counts as still.
+/// A finger that moves by less than [`SLOW_WITHIN_M`] in this time, 1.2 mm/s on average, counts as still.
 const STILL_AFTER_S: f32 = 50e-3;
 /// See [`STILL_AFTER_S`]. More would ramp down under fingers that creep, less would miss fingers at rest on a screen
 /// that reports in steps of its pixels (`cargo test -p frixel-hil-sim --test resting`).
-const SLOW_WITHIN_M: f32 = 0.08e-3;
-/// A still finger that moves by more than this in [`MOVING_WITHIN_S`], 3 mm/s on average, counts as moving. More than a
-/// step of a screen's pixels along both axes.
-const MOVING_BEYOND_M: f32 = 0.3e-3;
+const SLOW_WITHIN_M: f32 = 0.06e-3;
+/// A still finger that moves by more than this in [`MOVING_WITHIN_S`], 2 mm/s on average, counts as moving. It is more
+/// than a step of a screen's pixels.
+const MOVING_BEYOND_M: f32 = 0.2e-3;
 /// See [`MOVING_BEYOND_M`].
 const MOVING_WITHIN_S: f32 = 100e-3;
 /// Duration of a whole ramp, down or up.
@@ -142,19 +142,19 @@ mod tests {
     }
 
     #[test]
-    fn a_finger_slow_for_50_ms_is_ramped_away_in_10_ms_and_back_above_3_mm_per_s() {
+    fn a_finger_slow_for_50_ms_is_ramped_away_in_10_ms_and_back_above_2_mm_per_s() {
         for period_ticks in [1, 2, 5, 80, 400, 2_000] {
             let mut run = Run::new(period_ticks);
-            assert!(run.run_for(1.4e-3, 2000) >= 1.0, "{period_ticks}");
-            let middle = run.run_for(1.4e-3, 200);
+            assert!(run.run_for(1.1e-3, 2000) >= 1.0, "{period_ticks}");
+            let middle = run.run_for(1.1e-3, 200);
             assert!((middle - 0.5).abs() < 0.02, "{period_ticks}: {middle}");
-            assert!(run.run_for(1.4e-3, 205) <= 1e-3, "{period_ticks}");
+            assert!(run.run_for(1.1e-3, 205) <= 1e-3, "{period_ticks}");
             assert!(
-                run.run_for(2.5e-3, 8000) <= 0.0,
+                run.run_for(1.6e-3, 8000) <= 0.0,
                 "{period_ticks}: between the two speeds a still finger stays still"
             );
-            run.run_for(4e-3, 4800);
-            assert!(run.run_for(4e-3, 405) >= 1.0, "{period_ticks}");
+            run.run_for(3e-3, 4800);
+            assert!(run.run_for(3e-3, 405) >= 1.0, "{period_ticks}");
         }
     }
 
@@ -162,7 +162,7 @@ mod tests {
     fn the_distance_is_that_of_both_axes() {
         let timing = StandstillTiming::new(40_000);
         for (place_m, is_slow) in
-            [([0.07e-3, 0.0], true), ([-0.07e-3, 0.0], true), ([0.09e-3, 0.0], false), ([0.06e-3, -0.06e-3], false)]
+            [([0.05e-3, 0.0], true), ([-0.05e-3, 0.0], true), ([0.07e-3, 0.0], false), ([0.05e-3, -0.05e-3], false)]
         {
             let mut standstill = Standstill::MOVING;
             standstill.take([0.0; 2], 0, &timing);
@@ -180,14 +180,14 @@ mod tests {
         assert!(run.least_gain >= 1.0);
     }
 
-    /// Between two places 0.07 mm apart, 100 times a second, the speed is 7 mm/s.
+    /// Between two places 0.05 mm apart, 100 times a second, the speed is 5 mm/s.
     #[test]
     fn a_finger_that_only_trembles_is_still() {
         let timing = StandstillTiming::new(40_000);
         let mut standstill = Standstill::MOVING;
         let mut gain = 1.0;
         for report in 0..100_u32 {
-            let place_m = [if report.is_multiple_of(2) { 0.0 } else { 0.07e-3 }, 0.0];
+            let place_m = [if report.is_multiple_of(2) { 0.0 } else { 0.05e-3 }, 0.0];
             let ramp = standstill.take(place_m, 400 * report, &timing);
             gain = ramp.gain_at(400 * report + 399);
             assert!(gain <= 0.0 || report < 6, "report {report}: {gain}");
