@@ -16,8 +16,8 @@ use crate::program::drafted;
 use crate::request::Request;
 use crate::rig_stream::RigStream;
 
-/// Checks the scene of a request, as JSON: `ok` and `problems`; and for a scene without mistakes, or one that plays as a
-/// draft (`isDraft`), also `screen`, `layers`, `report` (the text of `frixel scene check`), and in newtons `lowN`,
+/// Checks the scene of a request, as JSON: `ok` and `problems`; and for a scene without mistakes, or one that plays as
+/// a draft (`isDraft`), also `screen`, `layers`, `report` (the text of `frixel scene check`), and in newtons `lowN`,
 /// `highN` (what the scene asks for), `reachN` and `naturalN`.
 pub fn check(request: &Request) -> Value {
     match checked(request) {

@@ -16,7 +16,7 @@ pub(crate) struct FileLayer {
     name: String,
     /// Its kind.
     kind: &'static str,
-    /// What a person will feel of it, one sentence, that of the first copy; empty for a layer that is not felt anywhere.
+    /// What a person will feel of it, or of its first copy, one sentence; empty for a layer that is not felt anywhere.
     felt: String,
     /// The numbers of its layers in control lines.
     controls: Vec<usize>,

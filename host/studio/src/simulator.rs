@@ -192,7 +192,8 @@ mod tests {
     #[test]
     fn a_draft_plays() {
         let mut simulator = Simulator::new(1).unwrap();
-        let layer = "[[layer]]\nkind = \"noise\"\nwavelength_min_mm = 1\nwavelength_max_mm = 3\nlow_n = 0.0\nhigh_n = 9.0\nblend = \"add\"\n";
+        let layer = "[[layer]]\nkind = \"noise\"\nblend = \"add\"\n\
+            wavelength_min_mm = 1\nwavelength_max_mm = 3\nlow_n = 0.0\nhigh_n = 9.0\n";
         let text = format!("version = 2\n{}", layer.repeat(12));
         let files = [("a.toml".to_owned(), text.into_bytes())].into();
         let request = Request { files, ..request() };
