@@ -78,7 +78,7 @@ impl HostError {
 }
 
 /// Longer than any host is connected: pings with this period are never sent.
-const NEVER: Duration = Duration::from_secs(3600);
+const NEVER: Duration = Duration::from_hours(1);
 
 /// Is told what the board plays, to compare with it.
 pub(crate) trait SceneListener {

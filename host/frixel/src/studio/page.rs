@@ -9,7 +9,7 @@ use super::StudioError;
 
 /// The page in the folder of build artefacts.
 const BUILT_PAGE: &str = "studio/frixel-studio.html";
-/// That folder in a checkout, unless CARGO_TARGET_DIR names another.
+/// That folder in a checkout, unless `CARGO_TARGET_DIR` names another.
 const TARGET: &str = "target";
 /// A file that only a checkout of frixel has.
 const SIGN_OF_A_CHECKOUT: &str = "host/studio/web/boot.js";
