@@ -1,6 +1,6 @@
-//! `cargo xtask studio`: the studio as one HTML file that opens from a disk.
+//! `cargo xtask studio`: the studio as one HTML file that opens from a disk, and `<frixel-scene>` as one script.
 //!
-//! The WebAssembly module, the page's modules, the vendored bundle and the bundled scenes are in it, each compressed
+//! The WebAssembly module, the page's modules, the vendored bundle and the bundled scenes are in both, each compressed
 //! and as text. `host/studio/web/boot.js` unpacks them in the browser.
 
 use std::collections::BTreeMap;
@@ -22,19 +22,25 @@ const PROFILE: &str = "studio";
 /// Largest size of the page.
 const PAGE_MAX_LEN: usize = 2_000_000;
 /// Files of the repository that the page carries, beside its modules: folder, ending, and folder in the page.
-const CARRIED: [(&str, &str, &str); 7] = [
+const CARRIED: [(&str, &str, &str); 9] = [
     ("host/studio/web", "js", ""),
     ("host/studio/vendor", "js", "vendor/"),
     ("docs", "json", "docs/"),
     ("scenes", "toml", "scenes/"),
+    ("host/studio/web/styles", "css", "styles/"),
     ("scenes/textures", "png", "scenes/textures/"),
+    ("scenes/textures", "jpg", "scenes/textures/"),
     ("scenes/fingers", "toml", "scenes/fingers/"),
     ("scenes/screens", "toml", "scenes/screens/"),
 ];
+/// The script that unpacks the files.
+const BOOT: &str = "boot.js";
+/// Module of the element.
+const ELEMENT: &str = "element/frixel_scene.js";
 /// Folders and files that are no part of the page.
 const IGNORED: [&str; 2] = ["node_modules", "entry.js"];
 
-/// Builds the page, and returns its path.
+/// Builds the page and, beside it, the script of `<frixel-scene>`; returns the page's path.
 pub(crate) fn build() -> Result<PathBuf, String> {
     let mut files = BTreeMap::from([("engine.wasm".to_owned(), module()?)]);
     for (folder, ending, prefix) in CARRIED {
@@ -48,8 +54,11 @@ pub(crate) fn build() -> Result<PathBuf, String> {
     let path = target_folder().join("studio/frixel-studio.html");
     let folder = path.parent().unwrap_or(Path::new("."));
     fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    fs::write(&path, &page).map_err(|error| format!("{}: {error}", path.display()))?;
-    eprintln!("{} bytes", page.len());
+    let element = element(&files)?;
+    for (path, content) in [(&path, &page), (&folder.join("frixel-scene.js"), &element)] {
+        fs::write(path, content).map_err(|error| format!("{}: {error}", path.display()))?;
+        eprintln!("{}: {} bytes", path.display(), content.len());
+    }
     path.canonicalize().map_err(|error| format!("{}: {error}", path.display()))
 }
 
@@ -90,23 +99,37 @@ fn collect(
 
 /// Joins the page: styles in place, the packed files, and the script that unpacks them in place of the page's module.
 fn page(index: &str, web: &Path, files: &BTreeMap<String, Vec<u8>>) -> Result<String, String> {
-    let boot = files.get("boot.js").ok_or("host/studio/web has no boot.js")?;
-    let boot = String::from_utf8_lossy(boot);
-    let carried = files.iter().filter(|(name, _)| *name != "boot.js");
-    let packed: serde_json::Map<String, serde_json::Value> =
-        carried.map(|(name, content)| Ok((name.clone(), packed(content)?.into()))).collect::<Result<_, String>>()?;
-    let packed = serde_json::Value::Object(packed);
+    let packed = all_packed(files)?;
     let index = with_styles(index, web)?;
     let (before, entry, behind) = around(&index, "<script type=\"module\" src=\"", "\"></script>")
         .ok_or("index.html has no <script type=\"module\" src=\"...\"></script>")?;
-    let scripts = format!(
-        "<script type=\"application/json\" id=\"studio-files\">{packed}</script>\n    \
-         <script data-entry=\"{entry}\">{boot}</script>"
-    );
+    let boot = boot(files, "JSON.parse(document.getElementById(\"studio-files\").textContent)", entry)?;
+    let scripts =
+        format!("<script type=\"application/json\" id=\"studio-files\">{packed}</script>\n    <script>{boot}</script>");
     let page = format!("{before}{scripts}{behind}");
     let policy = format!("<meta http-equiv=\"Content-Security-Policy\" content=\"{}\" />", policy(&boot));
     let (before, behind) = page.split_once("<head>").ok_or("index.html has no <head>")?;
     Ok(format!("{before}<head>\n    {policy}{behind}"))
+}
+
+/// The script of `<frixel-scene>`, which any document can load.
+fn element(files: &BTreeMap<String, Vec<u8>>) -> Result<String, String> {
+    let boot = boot(files, &all_packed(files)?.to_string(), ELEMENT)?;
+    Ok(format!("// <frixel-scene> of frixel: docs/studio.md says how to use it.\n(() => {{\n{boot}}})();\n"))
+}
+
+/// The script that unpacks the files, which a JavaScript expression gives, and starts a module.
+fn boot(files: &BTreeMap<String, Vec<u8>>, packed: &str, entry: &str) -> Result<String, String> {
+    let boot = files.get(BOOT).ok_or("host/studio/web has no boot.js")?;
+    Ok(format!("{}boot({packed}, \"{entry}\");\n", String::from_utf8_lossy(boot)))
+}
+
+/// The files, each compressed, as a JSON object.
+fn all_packed(files: &BTreeMap<String, Vec<u8>>) -> Result<serde_json::Value, String> {
+    let carried = files.iter().filter(|(name, _)| *name != BOOT);
+    let packed: serde_json::Map<String, serde_json::Value> =
+        carried.map(|(name, content)| Ok((name.clone(), packed(content)?.into()))).collect::<Result<_, String>>()?;
+    Ok(serde_json::Value::Object(packed))
 }
 
 /// What the page may load: nothing but what it carries, and the bridge of `frixel studio` where it was served by it.
@@ -158,14 +181,15 @@ mod tests {
     #[test]
     fn a_page_has_its_files_one_script_and_no_link() {
         let files = BTreeMap::from([
-            ("boot.js".to_owned(), b"start();".to_vec()),
+            ("boot.js".to_owned(), b"function boot() {}\n".to_vec()),
             ("main.js".to_owned(), b"import './a.js';".to_vec()),
         ]);
         let index = "<html><head></head><body><script type=\"module\" src=\"main.js\"></script></body></html>";
         let page = page(index, Path::new("."), &files).unwrap();
-        assert!(page.contains("<script data-entry=\"main.js\">start();</script></body>"), "{page}");
+        let boot = "function boot() {}\nboot(JSON.parse(document.getElementById(\"studio-files\").textContent), \"main.js\");\n";
+        assert!(page.contains(&format!("<script>{boot}</script></body>")), "{page}");
         assert!(page.contains("id=\"studio-files\">{\"main.js\":\""), "{page}");
-        // printf 'start();' | openssl dgst -sha256 -binary | base64
-        assert!(page.contains("'sha256-E6jQvrT2ZivWG9GJ4AAEZf4MhI7l3QkLroW4hgvUT4c='"), "{page}");
+        // The text of `boot` through `openssl dgst -sha256 -binary | base64`.
+        assert!(page.contains("'sha256-1z3Ic0gcGekyVFIbB8izxihMTzXEU/j6VaQk3HNGGHE='"), "{page}");
     }
 }

@@ -258,6 +258,12 @@ fn the_gallery_in_the_docs_shows_these_scenes() {
         assert!(decoded(&drawn) == decoded(&held), "{}: look at it, then bless it", held.display());
         assert!(fs::metadata(&held).unwrap().len() <= PICTURE_BYTES_MAX, "{}", held.display());
     }
-    let held = fs::read_dir(&held_in).unwrap().count();
-    assert_eq!(held, gallery.len(), "docs/gallery has pictures of no scene");
+    let held = fs::read_dir(&held_in).unwrap().map(|entry| entry.unwrap().path());
+    let pictures = held.filter(|path| path.extension().is_some_and(|ending| ending == "png")).count();
+    assert_eq!(pictures, gallery.len(), "docs/gallery has pictures of no scene");
+    let page = fs::read_to_string(held_in.join("index.html")).unwrap();
+    let elements: Vec<&str> =
+        page.split("<frixel-scene scene=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect();
+    let names: Vec<&str> = gallery.iter().map(|entry| entry.name.as_str()).collect();
+    assert_eq!(elements, names, "docs/gallery/index.html shows each scene once");
 }

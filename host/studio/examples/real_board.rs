@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let limits = BoardLimits { records_max: LAYERS_MAX, ..default.board.limits };
     let board = Board { kind: BoardKind::NucleoG474re, limits, ..default.board };
     let mut memory = BoardMemory::new();
-    let stroke = Stroke::natural(0.12, 0.11, 3.0)?.looped(0.2)?;
+    let stroke = Stroke::sweep(0.12, 0.11, 3.0)?.looped(0.2)?;
     let mut rig = Rig::new(&mut memory, &RigConfig { board, baud, ..default }, stroke, 1)?;
     let mut terminal = PseudoTerminal::open()?;
     println!("port: {}", terminal.path());

@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 
-use frixel_scene::Located;
+use frixel_scene::{Located, Program};
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -61,6 +61,11 @@ pub(crate) fn problems(error: &ProgramError, entry: &str) -> Vec<Problem> {
         ProgramError::Request(error) => vec![Problem::error(error)],
         ProgramError::Compile(error) => error.mistakes.iter().map(|located| Problem::located(located, entry)).collect(),
     }
+}
+
+/// The reasons why a board refuses a draft called `entry`; none of another program.
+pub(crate) fn refusals(program: &Program, entry: &str) -> Vec<Problem> {
+    program.refusals.iter().map(|located| Problem::located(located, entry)).collect()
 }
 
 /// An error as the page gets it: `error`, a sentence, `problems`, as [`crate::check`] returns them, and `isLinkLost`.

@@ -1,21 +1,24 @@
 //! What `frixel scene check` says of a scene.
 
+use frixel_control::Board;
 use frixel_driver::{Device, DeviceError, PollingLink};
 use frixel_hil_sim::{BoardMemory, RigConfig};
 use frixel_layers::Scene as WireScene;
 use frixel_scene::check::{BoardCosts, SceneCheck};
 use frixel_scene::{Program, Scene};
+use frixel_wire::hello::BoardLimits;
 use serde_json::{Value, json};
 
-use crate::answer::{Problem, problems};
+use crate::answer::{Problem, problems, refusals};
 use crate::host::{self, HostError};
 use crate::layers::layers;
-use crate::program::compiled;
+use crate::program::drafted;
 use crate::request::Request;
 use crate::rig_stream::RigStream;
 
-/// Checks the scene of a request, as JSON: `ok`, `problems`, and for a scene without mistakes also `screen`, `layers`,
-/// `report` (the text of `frixel scene check`), and in newtons `lowN`, `highN` (what the scene asks for) and `reachN`.
+/// Checks the scene of a request, as JSON: `ok` and `problems`; and for a scene without mistakes, or one that plays as
+/// a draft (`isDraft`), also `screen`, `layers`, `report` (the text of `frixel scene check`), and in newtons `lowN`,
+/// `highN` (what the scene asks for), `reachN` and `naturalN`.
 pub fn check(request: &Request) -> Value {
     match checked(request) {
         Ok(answer) => answer,
@@ -27,16 +30,23 @@ pub fn check(request: &Request) -> Value {
 fn checked(request: &Request) -> Result<Value, HostError> {
     // The simulated board has the limits of the smallest board.
     let config = RigConfig::default();
-    let (scene, program) = compiled(request, &config.board.limits, config.board.tick_hz)?;
-    let check = SceneCheck::of(&program, &config.board.limits, &board_costs(&program, &config)?);
-    let text = String::from_utf8_lossy(request.scene().map_err(crate::ProgramError::Request)?);
-    let warnings: Vec<Problem> = check.warnings.iter().cloned().map(Problem::warning).collect();
+    let (scene, program) = drafted(request, &config.board)?;
+    let mut problems = refusals(&program, &request.entry);
+    let costs = match board_costs(&program, &RigConfig { board: for_drafts(config.board), ..config }) {
+        // Not even the simulator plays it.
+        Err(HostError::Refused(_)) if program.is_draft() => return Ok(json!({ "ok": false, "problems": problems })),
+        costs => costs?,
+    };
+    let check = SceneCheck::of(&program, &config.board.limits, &costs);
+    problems.extend(check.warnings.iter().cloned().map(Problem::warning));
+    let draft = if program.is_draft() { "  draft            clamped: a board refuses this scene\n" } else { "" };
     Ok(json!({
-        "ok": true,
-        "problems": warnings,
+        "ok": !program.is_draft(),
+        "isDraft": program.is_draft(),
+        "problems": problems,
         "screen": screen(&scene),
-        "layers": layers(&text, &program, &check.perception),
-        "report": check.summary(),
+        "layers": layers(&scene, &request.entry, &program, &check.perception),
+        "report": format!("{draft}{}", check.summary()),
         "lowN": check.asked.least_n,
         "highN": check.asked.most_n,
         "reachN": check.reach.total_max_n,
@@ -46,6 +56,11 @@ fn checked(request: &Request) -> Result<Value, HostError> {
 
 fn screen(scene: &Scene) -> Value {
     json!({ "widthMm": scene.screen().width_mm, "heightMm": scene.screen().height_mm })
+}
+
+/// A simulated board that plays drafts: a tick may take longer than a board has time for.
+pub(crate) fn for_drafts(board: Board) -> Board {
+    Board { limits: BoardLimits { tick_cycles_max: u32::MAX, ..board.limits }, ..board }
 }
 
 /// What a simulated board needs for a program: uploads it once, without playing it.

@@ -78,6 +78,12 @@ pub extern "C" fn map() -> i32 {
     respond_bytes(|| crate::map::map(&request()?))
 }
 
+/// [`crate::used_files`].
+#[unsafe(no_mangle)]
+pub extern "C" fn used_files() -> i32 {
+    respond(|| crate::used_files(&request()?))
+}
+
 /// [`crate::seeded_hash`], as `hash` in hexadecimal digits.
 #[unsafe(no_mangle)]
 pub extern "C" fn seeded_hash() -> i32 {

@@ -156,7 +156,7 @@ impl<S: ByteStream + SceneListener> Host<S> {
     /// has mistakes or the board refuses it, the one before plays on.
     pub(crate) fn load(&mut self, request: &Request) -> Result<&Program, HostError> {
         let Hello { limits, tick_hz, board, .. } = *self.device.hello();
-        let (_, program) = compiled(request, &limits, tick_hz)?;
+        let program = compiled(request, &limits, tick_hz)?;
         if program.header.autonomous && !board.is_simulated() {
             return Err(HostError::Autonomous);
         }
@@ -165,6 +165,11 @@ impl<S: ByteStream + SceneListener> Host<S> {
         {
             return Err(HostError::Unmeasured { warning: warning.to_string() });
         }
+        self.replace(program)
+    }
+
+    /// Puts a program on the board, as [`Self::load`] does.
+    pub(crate) fn replace(&mut self, program: Program) -> Result<&Program, HostError> {
         match upload(&mut self.device, &program) {
             Err(DeviceError::Refused { refusal: Refusal::BitmapPoolFull { .. }, .. }) => self.load_alone(&program)?,
             loaded => loaded.map_err(refused)?,

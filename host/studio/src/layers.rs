@@ -1,96 +1,70 @@
-//! The layers of a scene file, for a page that lists them beside the text.
+//! The layers of a scene's files, for a page that lists them beside the text.
 
-use frixel_scene::Program;
+use frixel_layers::range;
 use frixel_scene::check::feel;
 use frixel_scene::perception::Perception;
+use frixel_scene::{LayerTable, Program, Scene};
 use serde::Serialize;
-use toml::de::{DeTable, DeValue};
 
-/// A layer of a scene file.
+/// A layer as it is written in a file. With `repeat`, it is several layers of the scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub(crate) struct FileLayer {
-    /// Number of the layer in the file, from 1.
+    /// Number of the layer in messages, from 1.
     index: usize,
     /// Its name, or else its kind.
     name: String,
     /// Its kind.
-    kind: String,
-    /// What a person will feel of it, one sentence; empty for a layer that is not felt anywhere, or repeated.
+    kind: &'static str,
+    /// What a person will feel of it, or of its first copy, one sentence; empty for a layer that is not felt anywhere.
     felt: String,
-    /// Whether it can be changed while it plays.
+    /// The numbers of its layers in control lines.
+    controls: Vec<usize>,
+    /// Whether they can be changed while they play.
     is_live: bool,
-    /// Why it cannot, one sentence; empty if it can.
+    /// Why they cannot, one sentence; empty if they can.
     why_not_live: String,
+    /// The gain in the file, and the least and the largest that a board takes.
+    gain: f64,
+    gain_min: f64,
+    gain_max: f64,
+    /// The file that it stands in, if that is not the scene.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    file: Option<String>,
     /// First and last line of its table, from 1.
-    from: [usize; 2],
+    from: (usize, usize),
+    /// Left, top, width and height of its region, mm; `null` for the whole screen.
+    box_mm: Option<[f64; 4]>,
 }
 
-/// The layers of a text that was compiled to `program`.
-pub(crate) fn layers(text: &str, program: &Program, perception: &Perception) -> Vec<FileLayer> {
-    let Ok(document) = DeTable::parse(text) else { return Vec::new() };
-    let tables = document.get_ref().get("layer").and_then(|layers| layers.get_ref().as_array());
-    let word = |table: &DeValue, key: &str| {
-        table.as_table().and_then(|table| table.get(key)?.get_ref().as_str().map(str::to_owned))
-    };
-    let tables = tables.into_iter().flat_map(|tables| tables.iter());
-    let describe = |(index, table): (usize, &toml::Spanned<DeValue>)| {
-        let kind = word(table.get_ref(), "kind").unwrap_or_default();
-        let live = program.layers.record(&index.to_string());
+/// The layers of a scene, called `entry`, that was compiled to `program`.
+pub(crate) fn layers(scene: &Scene, entry: &str, program: &Program, perception: &Perception) -> Vec<FileLayer> {
+    let describe = |table: LayerTable| {
+        let LayerTable { number, name, kind, gain, layers, file, lines, bounds_mm } = table;
+        let live = program.layers.record(&layers.start.to_string());
         FileLayer {
-            index,
-            name: word(table.get_ref(), "name").unwrap_or_else(|| kind.clone()),
+            index: number,
+            name: name.unwrap_or_else(|| kind.to_owned()),
             kind,
-            felt: felt(index, perception),
+            felt: felt(number, perception),
+            controls: layers.collect(),
             is_live: live.is_ok(),
             why_not_live: live.err().map_or(String::new(), |error| error.to_string()),
-            from: [0, 0],
+            gain,
+            gain_min: range::GAIN.min,
+            gain_max: range::GAIN.max,
+            file: (file != entry).then_some(file),
+            from: lines,
+            box_mm: bounds_mm,
         }
     };
-    let mut layers: Vec<FileLayer> = (1..).zip(tables).map(describe).collect();
-    for (layer, lines) in layers.iter_mut().zip(layer_lines(text)) {
-        layer.from = lines;
-    }
-    layers
+    scene.layer_tables().into_iter().map(describe).collect()
 }
 
 /// The sentence on the layer with this number.
-fn felt(index: usize, perception: &Perception) -> String {
-    let title = format!("layer {index}");
+fn felt(number: usize, perception: &Perception) -> String {
+    let title = format!("layer {number}");
     let is_it = |other: &str| other.strip_prefix(&title).is_some_and(|rest| rest.is_empty() || rest.starts_with(' '));
     let layer = perception.layers.iter().find(|layer| is_it(&layer.layer));
     layer.map_or(String::new(), feel::sentence)
-}
-
-/// First and last line of each `[[layer]]` table, from 1, without the empty lines and comments behind it.
-fn layer_lines(text: &str) -> Vec<[usize; 2]> {
-    let mut ranges: Vec<[usize; 2]> = Vec::new();
-    let mut is_in_layer = false;
-    for (number, line) in (1..).zip(text.lines().map(str::trim)) {
-        if line.starts_with("[[layer]]") {
-            is_in_layer = true;
-            ranges.push([number, number]);
-        } else if line.starts_with('[') && line.ends_with(']') && !line.starts_with("[layer.") && !line.contains(',') {
-            is_in_layer = false;
-        } else if is_in_layer
-            && !line.is_empty()
-            && !line.starts_with('#')
-            && let Some([_, last]) = ranges.last_mut()
-        {
-            *last = number;
-        }
-    }
-    ranges
-}
-
-#[cfg(test)]
-mod tests {
-    use super::layer_lines;
-
-    #[test]
-    fn the_lines_of_a_layer_end_before_the_next_table() {
-        let text =
-            "version = 2\n\n[[layer]]\nkind = \"grating\"\n\n# keys\n[[layer]]\nkind = \"bitmap\"\n\n[drive]\nx = 1\n";
-        assert_eq!(layer_lines(text), [[3, 4], [7, 8]]);
-    }
 }

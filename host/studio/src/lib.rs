@@ -29,9 +29,11 @@ mod request;
 mod rig_stream;
 mod seeded;
 mod simulator;
+mod used_files;
 
 pub use check::check;
 pub use host::HostError;
 pub use program::ProgramError;
 pub use request::{Numbers, Request, RequestError};
 pub use seeded::seeded_hash;
+pub use used_files::used_files;

@@ -4,15 +4,14 @@ use frixel_hil_sim::RigConfig;
 use frixel_scene::{FrictionMap, Preview, ReachSide};
 
 use crate::host::HostError;
-use crate::program::compiled;
+use crate::program::drafted;
 use crate::request::{Numbers, Request};
 
 /// The map of a request's scene, as bytes of `f32`: width and height in pixels, least and largest friction that can be
 /// reached in N, then the target friction of every pixel in N, row after row from the top left, then 0 for each pixel
 /// that is within reach, 1 for one above and -1 for one below.
 pub(crate) fn map(request: &Request) -> Result<Vec<u8>, HostError> {
-    let board = RigConfig::default().board;
-    let (_, program) = compiled(request, &board.limits, board.tick_hz)?;
+    let (_, program) = drafted(request, &RigConfig::default().board)?;
     let Numbers { width_px, height_px, speed_mm_per_s, .. } = request.numbers;
     let preview = Preview { speed_m_per_s: 1e-3 * speed_mm_per_s, map_max: (width_px.max(1), height_px.max(1)) };
     let map = FrictionMap::new(&program, &preview);

@@ -1,6 +1,7 @@
 //! From a request to a compiled scene.
 
-use frixel_scene::{CompileError, FingerProfile, Program, Scene, Screen, compile};
+use frixel_control::Board;
+use frixel_scene::{CompileError, FingerProfile, Program, Scene, Screen, compile, compile_draft};
 use frixel_wire::hello::BoardLimits;
 use thiserror::Error;
 
@@ -18,12 +19,21 @@ pub enum ProgramError {
 }
 
 /// Compiles the scene of a request for boards with these limits and a tick rate in Hz, for the finger and the screen of
-/// the request. Returns the scene as well.
-pub(crate) fn compiled(
-    request: &Request,
-    limits: &BoardLimits,
-    tick_hz: u32,
-) -> Result<(Scene, Program), ProgramError> {
+/// the request.
+pub(crate) fn compiled(request: &Request, limits: &BoardLimits, tick_hz: u32) -> Result<Program, ProgramError> {
+    Ok(compile(&scene(request)?, limits, tick_hz)?)
+}
+
+/// Compiles the scene of a request for maps and for the simulator in the page, which also show and play what a board
+/// refuses. Returns the scene as well.
+pub(crate) fn drafted(request: &Request, board: &Board) -> Result<(Scene, Program), ProgramError> {
+    let scene = scene(request)?;
+    let program = compile_draft(&scene, &board.limits, board.tick_hz)?;
+    Ok((scene, program))
+}
+
+/// The scene of a request, with its finger and its screen.
+fn scene(request: &Request) -> Result<Scene, ProgramError> {
     let mut scene = Scene::parse_bytes(request.scene()?, &request.entry, &request.files)?;
     if let Some(screen) = &request.screen {
         scene = match Screen::bundled(screen) {
@@ -37,6 +47,5 @@ pub(crate) fn compiled(
             None => scene.with_finger(FingerProfile::parse(finger, "finger")?, "finger")?,
         };
     }
-    let program = compile(&scene, limits, tick_hz)?;
-    Ok((scene, program))
+    Ok(scene)
 }

@@ -6,9 +6,11 @@ use frixel_driver::DeviceError;
 use frixel_hil_sim::{BoardMemory, RigConfig};
 use frixel_wire::fault::{Fault, State};
 
+use crate::check::for_drafts;
 use crate::felt::{FeltSamples, TICKS_PER_SAMPLE};
 use crate::host::{Host, HostError};
 use crate::pointer::{Pointer, PointerSample};
+use crate::program::drafted;
 use crate::request::Request;
 use crate::rig_stream::RigStream;
 
@@ -29,7 +31,7 @@ impl Simulator {
     /// The board's memory is never freed: like a real board, an instance of the module has one board.
     pub(crate) fn new(seed: u64) -> Result<Self, HostError> {
         let config = RigConfig::default();
-        let config = RigConfig { world: config.world.realistic(), baud: BAUD, ..config };
+        let config = RigConfig { world: config.world.realistic(), board: for_drafts(config.board), baud: BAUD };
         let stream = RigStream::new(Box::leak(BoardMemory::new()), &config, seed)?;
         Ok(Self { host: Host::connect(stream)?, is_wanted: false })
     }
@@ -54,9 +56,11 @@ impl Simulator {
         &mut self.host
     }
 
-    /// Compiles a scene and plays it. With mistakes, the one before plays on.
+    /// Compiles a scene and plays it, as a draft if a board would refuse it. If it cannot be read, the one before plays
+    /// on.
     pub(crate) fn play(&mut self, request: &Request) -> Result<(), HostError> {
-        self.host.load(request)?;
+        let (_, program) = drafted(request, &RigConfig::default().board)?;
+        self.host.replace(program)?;
         self.resume()?;
         Ok(())
     }
@@ -182,5 +186,25 @@ mod tests {
         // 250 ms, and a millisecond to act.
         simulator.run(10_040, false).unwrap();
         assert_eq!(simulator.state().0, State::Disarmed);
+    }
+
+    /// A draft plays here, clamped, even one whose ticks take longer than a board has time for.
+    #[test]
+    fn a_draft_plays() {
+        let mut simulator = Simulator::new(1).unwrap();
+        let layer = "[[layer]]\nkind = \"noise\"\nblend = \"add\"\n\
+            wavelength_min_mm = 1\nwavelength_max_mm = 3\nlow_n = 0.0\nhigh_n = 9.0\n";
+        let text = format!("version = 2\n{}", layer.repeat(12));
+        let files = [("a.toml".to_owned(), text.into_bytes())].into();
+        let request = Request { files, ..request() };
+        let (_, program) = drafted(&request, &RigConfig::default().board).unwrap();
+        let reasons: Vec<String> = program.refusals.iter().map(ToString::to_string).collect();
+        assert!(reasons.iter().any(|reason| reason.contains("cycles")), "{reasons:#?}");
+        assert!(reasons.iter().any(|reason| !reason.contains("cycles")), "{reasons:#?}");
+        simulator.play(&request).unwrap();
+        simulator.run(4_000, true).unwrap();
+        assert_eq!(simulator.state().0, State::Active);
+        // A board refuses it.
+        assert!(matches!(simulator.host.load(&request), Err(HostError::Program(_))));
     }
 }

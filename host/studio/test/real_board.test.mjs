@@ -112,6 +112,7 @@ test("a scene for another board and one that plays without its host are refused,
   for (const [text, sentence] of [
     [FOUR_LAYERS, /layer 4, and the board takes 3/],
     [AUTONOMOUS, /plays without its host/],
+    [CONSTANT.replace(/friction_(\w+) = .*/, "friction_n = 9"), /does not play this draft/],
   ]) {
     await page.evaluate((text) => (studioPage.editor.text = text), text);
     await page.waitForFunction(

@@ -8,7 +8,7 @@ use frixel::scene_file;
 use frixel_hil_sim::RigConfig;
 use frixel_scene::check::SceneCheck;
 use frixel_scene::compile;
-use frixel_studio::{Request, check};
+use frixel_studio::{Request, check, used_files};
 use serde_json::json;
 
 mod gallery;
@@ -60,4 +60,77 @@ fn a_missing_picture_and_an_empty_request_are_sentences() {
     assert!(sentence.contains("brick.png"), "{answer}");
     let answer = check(&Request { entry: "none.toml".to_owned(), ..Request::default() });
     assert!(answer["problems"][0]["message"].as_str().unwrap().contains("none.toml"), "{answer}");
+}
+
+/// A request for a scene `play.toml` with further files.
+fn request(text: &str, files: &[(&str, &str)]) -> Request {
+    let all = std::iter::once(("play.toml", text)).chain(files.iter().copied());
+    let files = all.map(|(name, text)| (name.to_owned(), text.as_bytes().to_vec())).collect();
+    Request { entry: "play.toml".to_owned(), files, ..Request::default() }
+}
+
+const PAD: &str = "kind = \"constant\"\nfriction_fraction = 0.3\n";
+
+#[test]
+fn layers_have_their_files_lines_and_numbers() {
+    let keys = format!(
+        "version = 2\n\n[[ layer ]] # spaces\nname = \"key\"\nlive = true\ngain = 0.5\n{PAD}\
+         repeat = {{ columns = 3, dx_mm = 10 }}\n\n  [layer.region]\n  x_mm = 5\n  y_mm = 6\n  width_mm = 7\n  height_mm = 8\n\n"
+    );
+    let scene = format!("include = [\"parts/keys.toml\"]\nversion = 2\n\n[[layer]]\n{PAD}[drive]\nsaturate = true\n");
+    let answer = check(&request(&scene, &[("parts/keys.toml", &keys)]));
+    assert_eq!(answer["ok"], true, "{answer}");
+    let layers = answer["layers"].as_array().unwrap();
+    let part = |layer: usize, names: [&str; 7]| names.map(|name| layers[layer][name].clone());
+    let names = ["index", "name", "file", "from", "controls", "gain", "boxMm"];
+    let key = [
+        json!(1),
+        json!("key"),
+        json!("parts/keys.toml"),
+        json!([3, 15]),
+        json!([1, 2, 3]),
+        json!(0.5),
+        json!([5.0, 6.0, 27.0, 8.0]),
+    ];
+    assert_eq!(part(0, names), key);
+    assert_eq!(
+        part(1, names),
+        [json!(2), json!("constant"), json!(null), json!([4, 6]), json!([4]), json!(1.0), json!(null)]
+    );
+    assert_eq!((&layers[0]["isLive"], &layers[1]["isLive"]), (&json!(true), &json!(false)));
+    assert_eq!((&layers[0]["gainMin"], &layers[0]["gainMax"]), (&json!(-100.0), &json!(100.0)));
+    // The layer above covers the keys.
+    assert_eq!(layers.iter().map(|layer| layer["felt"] != "").collect::<Vec<_>>(), [false, true], "{answer}");
+}
+
+#[test]
+fn a_mistake_in_an_included_file_names_it() {
+    let answer = check(&request("version = 2\ninclude = [\"a.toml\"]\n", &[("a.toml", "version = 2\n\ngratin = 2\n")]));
+    let problem = &answer["problems"][0];
+    assert_eq!((&problem["file"], &problem["line"]), (&json!("a.toml"), &json!(3)), "{answer}");
+}
+
+#[test]
+fn the_used_files_are_those_that_the_compiler_reads() {
+    let keys = "version = 2\n[[layer]]\nkind = \"bitmap\"\npicture = '../wood.jpg'\nx_mm = 1\ny_mm = 1\nwidth_mm = 9\n";
+    let scene = "version = 2\ninclude = [\"parts/keys.toml\"]\nfinger = \"mine.toml\"\nscreen = \"example\"\n";
+    let whole = request(scene, &[("parts/keys.toml", keys), ("unused.toml", "")]);
+    let names = |request: &Request| used_files(request).unwrap();
+    assert_eq!(names(&whole)["names"], json!(["mine.toml", "parts/keys.toml"]));
+    assert_eq!(names(&whole)["isWhole"], false, "pictures are read once the rest is without mistakes");
+    let finger = include_str!("../../../scenes/fingers/dry.toml");
+    let whole = request(scene, &[("parts/keys.toml", keys), ("mine.toml", finger)]);
+    assert_eq!(names(&whole), json!({ "isWhole": true, "names": ["mine.toml", "parts/keys.toml", "wood.jpg"] }));
+}
+
+#[test]
+fn a_scene_that_a_board_refuses_is_a_draft() {
+    let layer = "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_n = 9\n";
+    let answer = check(&request(layer, &[]));
+    assert_eq!((&answer["ok"], &answer["isDraft"]), (&json!(false), &json!(true)), "{answer}");
+    assert_eq!(answer["problems"][0]["severity"], "error");
+    assert!(answer["report"].as_str().unwrap().contains("draft "), "{answer}");
+    assert_eq!(answer["layers"].as_array().unwrap().len(), 1);
+    let unreadable = check(&request("version = 2\n[[layer]]\nkind = \"consant\"\n", &[]));
+    assert_ne!(unreadable["isDraft"], true, "{unreadable}");
 }

@@ -1,6 +1,8 @@
 // The first script of the page: unpacks the files that the page carries, and starts its module.
 //
-// `cargo xtask studio` puts them into one HTML file. `studio` gives the rest of the page their contents:
+// `cargo xtask studio` puts them into one HTML file, and into the script of <frixel-scene>. Both call
+// `boot(packed, entry)` with the files, each compressed by gzip and in base64, and the name of the module to start.
+// `studio` gives the rest of the page their contents:
 //
 //   await studio.bytes("engine.wasm")          Uint8Array
 //   await studio.text("scenes/brick.toml")     string
@@ -9,8 +11,7 @@
 // Modules import each other by relative paths; here they become blob URLs, because a page from a file has no others.
 "use strict";
 
-globalThis.studio = (() => {
-  const packed = JSON.parse(document.getElementById("studio-files").textContent);
+function boot(packed, entry) {
   const urls = new Map();
 
   async function bytes(name) {
@@ -46,7 +47,6 @@ globalThis.studio = (() => {
     return new URL(path, `file:///${module}`).pathname.slice(1);
   }
 
-  return { bytes, text, names, moduleUrl };
-})();
-
-studio.moduleUrl(document.currentScript.dataset.entry).then((url) => import(url));
+  globalThis.studio = { bytes, text, names, moduleUrl };
+  moduleUrl(entry).then((url) => import(url));
+}

@@ -7,6 +7,7 @@ import { fingerNames, sceneText, schema } from "./page/bundled.js";
 import { Compare } from "./page/compare.js";
 import { attempt, byId, download, element, notify } from "./page/dom.js";
 import { Editor } from "./page/editor.js";
+import { FileTabs } from "./page/file_tabs.js";
 import { Finger } from "./page/finger.js";
 import { Gallery } from "./page/gallery.js";
 import { Incoming } from "./page/incoming.js";
@@ -17,11 +18,11 @@ import { showPictures } from "./page/pictures.js";
 import { Player } from "./page/player.js";
 import { showCheck } from "./page/problems.js";
 import { Profiles } from "./page/profiles.js";
-import { Project } from "./page/project.js";
+import { Project, isPicture, isToml } from "./page/project.js";
 import { RealSize } from "./page/real_size.js";
 import { Samples } from "./page/samples.js";
 import { Scope } from "./page/scope.js";
-import { isLink, linkOf, sceneOf } from "./page/share.js";
+import { fragmentIn, isLink, linkOf, sceneOf, whoCanOpen } from "./page/share.js";
 import { Sound } from "./page/sound.js";
 import { makeTabs } from "./page/tabs.js";
 import { makeTheme } from "./page/theme.js";
@@ -30,30 +31,35 @@ import { makeView } from "./page/view.js";
 const FIRST_SCENE = "brick";
 
 async function start() {
-  const project = new Project();
   const engine = await createEngine();
+  const project = new Project(engine);
   engine.onFailure = ({ error }) =>
     notify(`The simulator has failed: ${error}. Reload the page; save the scene first.`);
   const player = new Player(engine, project);
-  const editor = new Editor(byId("editor"), await schema(), (text) => {
+  const editor = new Editor(byId("editor"), await schema(), (file, text) => {
     compare.cancel();
-    player.later(text);
+    if (file !== undefined) project.files.set(file, text);
+    player.later(editor.text);
   });
-  const map = new FrictionMap();
-  const finger = new Finger(engine, map);
+  new FileTabs(editor, project);
+  const map = new FrictionMap(byId("map"), byId("map-picture"));
+  const finger = new Finger(engine, map, byId("map-finger"));
   const samples = new Samples();
-  const scope = new Scope(samples);
+  const scope = new Scope(samples, byId("scope"));
   const numbers = new Numbers();
   const sound = new Sound();
   const layers = new Layers(engine, editor);
   const board = new Board(engine);
   const gallery = new Gallery(engine);
-  const incoming = new Incoming();
+  const incoming = new Incoming(async (files, entry) =>
+    engine.usedFiles(files ?? (await project.filesFor(editor.text)), entry ?? project.entry),
+  );
   const compare = new Compare(player, editor);
+  compare.onChange = () => map.draw();
   const replay = () => player.now(editor.text);
   const profiles = new Profiles(project, fingerNames(), replay);
   new RealSize(map);
-  makeTabs(document.querySelector('[role="tablist"]'));
+  makeTabs(byId("tools"));
   makeTheme(() => {
     map.draw();
     scope.restyle();
@@ -61,12 +67,12 @@ async function start() {
   makeView({ map, finger, scope, engine });
 
   let reach = { naturalN: 0.25, lowN: 0.25, highN: 0.38 };
-  player.onCheck = (check, text) => {
+  player.onCheck = (check) => {
     if (compare.isRunning) return;
     showCheck(check, editor);
-    if (!check.ok) return;
-    check.text = text;
+    if (!check.ok && !check.isDraft) return;
     reach = check;
+    scope.isDraft = check.isDraft;
   };
   player.onPlay = () => {
     layers.reset();
@@ -93,20 +99,24 @@ async function start() {
   /** Opens a scene from elsewhere: a real board is disarmed before. */
   async function open({ name, text, files = [], profiles: chosen }) {
     await board.disarmBeforeForeignScene();
-    project.files.clear();
-    for (const [file, content] of files) project.files.set(file, content);
+    await project.replaceFiles(files);
     project.name = name;
-    byId("scene-name").textContent = `${name}.toml`;
-    document.title = `${name} · frixel studio`;
+    byId("scene-name").textContent = project.entry;
+    document.title = `${project.name} · frixel studio`;
     if (chosen) profiles.choose(chosen);
-    showPictures(project, editor, removePicture);
+    showFiles();
     if (editor.text === text) player.now(text);
     else editor.text = text;
   }
 
+  function showFiles() {
+    showPictures(project, editor, removePicture);
+    editor.setFiles([...project.files].filter(([name]) => isToml(name)));
+  }
+
   function removePicture(name) {
     project.files.delete(name);
-    showPictures(project, editor, removePicture);
+    showFiles();
     replay();
   }
 
@@ -114,39 +124,47 @@ async function start() {
   gallery.onLayer = (text) => editor.append(text);
   incoming.onFiles = async ({ scene, files, finger: own, screen }) => {
     await board.disarmBeforeForeignScene();
-    project.files.clear();
-    for (const [name, content] of files) project.files.set(name, content);
     if (own) profiles.addFinger(own);
     if (screen) profiles.addScreen(screen);
     if (scene) await open(scene);
-    else replay();
-    showPictures(project, editor, removePicture);
-    if (files.length > 0) byId("tab-pictures").click();
+    else {
+      for (const [name, content] of files) project.add(name, content);
+      showFiles();
+      replay();
+    }
+    if (files.some(([name]) => isPicture(name))) byId("tab-pictures").click();
   };
 
   byId("open-gallery").onclick = () => attempt(() => gallery.open());
   byId("undo").onclick = () => editor.undo();
   byId("redo").onclick = () => editor.redo();
-  byId("save").onclick = () => {
-    const content = { name: project.name, text: editor.text, files: project.files, profiles: project.profiles };
-    download(`${project.name}.zip`, zipOf(content), "application/zip");
-  };
+  byId("save").onclick = () =>
+    attempt(async () => {
+      const { name, entry, profiles } = project;
+      const files = await project.filesForZip(editor.text);
+      download(`${name}.zip`, zipOf({ name, entry, profiles, text: editor.text, files }), "application/zip");
+    });
   byId("share").onclick = () =>
     attempt(async () => {
-      const files = project.ownFilesFor(editor.text).map((name) => [name, project.files.get(name)]);
-      const link = linkOf(project.name, editor.text, files);
+      const link = linkOf(project.name, editor.text, await project.filesForLink(editor.text));
       history.replaceState(null, "", new URL(link).hash);
-      await navigator.clipboard.writeText(link).then(
-        () => notify("The link is copied: it holds the whole scene, nothing is uploaded."),
-        () =>
-          notify(
-            "The link stands in the address line: copy it from there. It holds the whole scene, nothing is uploaded.",
-          ),
+      const place = await navigator.clipboard.writeText(link).then(
+        () => "The link is copied.",
+        () => "The link stands in the address line: copy it from there.",
       );
+      notify(`${place} It holds the whole scene; nothing is uploaded. ${whoCanOpen(location)}`);
     });
 
   const openLink = () => isLink(location.hash) && attempt(() => open(sceneOf(location.hash)));
   addEventListener("hashchange", openLink);
+  const takeLink = (event) => {
+    const fragment = fragmentIn(event.clipboardData?.getData("text/plain") ?? "");
+    if (fragment === undefined) return;
+    event.preventDefault();
+    event.stopPropagation();
+    attempt(() => open(sceneOf(fragment)));
+  };
+  addEventListener("paste", takeLink, { capture: true });
   await open({ name: FIRST_SCENE, text: await sceneText(FIRST_SCENE) });
   openLink();
   // The tests look at the page's parts through this.

@@ -205,6 +205,11 @@ macro_rules! kinds {
                 match self { $( Self::$kind(kind) => Words::fills_screen(kind), )* }
             }
 
+            /// The value of `kind`.
+            pub(crate) fn word(&self) -> &'static str {
+                match self { $( Self::$kind(_) => <$module::$kind as Words>::WORD, )* }
+            }
+
             /// Finds mistakes between fields.
             pub(crate) fn check(&self, places: &Places, log: &mut Log) {
                 match self { $( Self::$kind(kind) => Words::check(kind, places, log), )* }

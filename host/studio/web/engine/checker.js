@@ -13,6 +13,7 @@ serve({
   },
 
   check: ({ scene }) => checker.call("check", requestOf(scene)),
+  usedFiles: ({ scene }) => checker.call("used_files", requestOf(scene)),
   seeded: ({ scene }) => checker.call("seeded_hash", requestOf(scene)),
 
   map({ scene }) {

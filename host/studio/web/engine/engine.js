@@ -105,6 +105,10 @@ class Engine {
     return this.#checker.ask({ type: "check", scene: { files, entry, ...profiles } });
   }
 
+  usedFiles(files, entry) {
+    return this.#checker.ask({ type: "usedFiles", scene: { files, entry } });
+  }
+
   map(files, entry, profiles, { widthPx = 1000, heightPx = 800, speedMmPerS = 100 } = {}) {
     return this.#checker.ask({ type: "map", scene: { files, entry, ...profiles, widthPx, heightPx, speedMmPerS } });
   }

@@ -1,16 +1,18 @@
 // Everything of a project as a zip, and back.
 
 import { strFromU8, strToU8, unzipSync, zipSync } from "../vendor/studio-vendor.js";
-import { ENTRY } from "./project.js";
 
 /** Largest file of a zip, and most files, that are unpacked. */
 const FILE_MAX = 8_000_000;
 const FILES_MAX = 100;
+/** Name of the scene where the settings say none. */
+const ENTRY = "scene.toml";
 /** What was chosen in the page. */
 const SETTINGS = "studio.json";
 
-export function zipOf({ name, text, files, profiles }) {
-  const entries = { [ENTRY]: strToU8(text), [SETTINGS]: strToU8(JSON.stringify({ name, profiles }, null, 2)) };
+export function zipOf({ name, entry, text, files, profiles }) {
+  const settings = JSON.stringify({ name, entry, profiles }, null, 2);
+  const entries = { [entry]: strToU8(text), [SETTINGS]: strToU8(settings) };
   for (const [file, content] of files) entries[file] = typeof content === "string" ? strToU8(content) : content;
   return zipSync(entries, { level: 6 });
 }
@@ -29,14 +31,15 @@ export function projectOf(bytes) {
   } catch {
     throw new Error("This zip cannot be read: save it anew from the studio.");
   }
-  const { [ENTRY]: scene, [SETTINGS]: chosen, ...files } = entries;
-  if (!scene) throw new Error(`This zip holds no ${ENTRY}: it was not saved by the studio.`);
+  const { [SETTINGS]: chosen, ...all } = entries;
   let settings = {};
   try {
     settings = chosen ? JSON.parse(strFromU8(chosen)) : {};
   } catch {
     // Without settings the scene plays with its own finger and screen.
   }
+  const { [settings.entry ?? ENTRY]: scene, ...files } = all;
+  if (!scene) throw new Error(`This zip holds no ${settings.entry ?? ENTRY}: it was not saved by the studio.`);
   return {
     name: String(settings.name ?? "scene").slice(0, 60),
     profiles: { ...settings.profiles },

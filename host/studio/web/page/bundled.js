@@ -1,4 +1,4 @@
-// The scenes, pictures and fingers that the page carries.
+// The scenes, pictures, fingers and screens that the page carries.
 
 /** Names of the bundled scenes, without ending. */
 export function sceneNames() {
@@ -20,12 +20,16 @@ export function schema() {
   return studio.text("docs/scene.schema.json").then(JSON.parse);
 }
 
-const pictures = new Map();
+let carried;
 
-/** The bundled picture that scenes call `name`, or undefined. */
-export async function picture(name) {
-  const packed = `scenes/${name}`;
-  if (!studio.names("scenes/textures/").includes(packed)) return undefined;
-  if (!pictures.has(name)) pictures.set(name, await studio.bytes(packed));
-  return pictures.get(name);
+/** The files of the page that scenes may name, by the names that the bundled scenes use. */
+export function carriedFiles() {
+  carried ??= readCarried();
+  return carried;
+}
+
+async function readCarried() {
+  const names = studio.names("scenes/");
+  const contents = await Promise.all(names.map((name) => studio.bytes(name)));
+  return Object.fromEntries(names.map((name, at) => [name.slice("scenes/".length), contents[at]]));
 }

@@ -11,6 +11,8 @@ export class Compare {
   /** During a comparison: which text X and Y are, and what is played. */
   #trial;
   #tally = { a: 0, b: 0, same: 0 };
+  /** A comparison begins or ends. */
+  onChange = () => {};
 
   constructor(player, editor) {
     this.#player = player;
@@ -26,8 +28,14 @@ export class Compare {
   cancel() {
     if (!this.isRunning) return;
     this.#trial = undefined;
-    document.body.classList.remove("blind");
+    this.#hide(false);
     this.#show("The scene has changed: the comparison is over.");
+  }
+
+  /** Hides what says which version is felt. */
+  #hide(isBlind) {
+    document.body.classList.toggle("blind", isBlind);
+    this.onChange();
   }
 
   #show(lastAnswer) {
@@ -40,7 +48,8 @@ export class Compare {
     const start = element("button", { className: "primary", disabled: !this.#kept }, "Compare A with the scene now");
     start.onclick = () => this.#start();
     const said = this.#kept
-      ? "A is kept. Change the scene, which is B, and compare: they come as X and Y in random order, map and text hidden."
+      ? "A is kept. Change the scene, which is B, and compare: they come as X and Y in random order, map and text " +
+        "hidden."
       : "Keep a version, change the scene, and find out, without looking, which is better.";
     const { a, b, same } = this.#tally;
     this.#panel.replaceChildren(element("p", {}, said), element("div", { className: "row" }, keep, start));
@@ -57,7 +66,7 @@ export class Compare {
     }
     const order = Math.random() < 0.5 ? ["a", "b"] : ["b", "a"];
     this.#trial = { order, texts: { a: this.#kept, b: current } };
-    document.body.classList.add("blind");
+    this.#hide(true);
     this.#trialPanel();
     this.#feel(0);
   }
@@ -87,7 +96,7 @@ export class Compare {
   #answer(at) {
     const { order, texts } = this.#trial;
     this.#trial = undefined;
-    document.body.classList.remove("blind");
+    this.#hide(false);
     this.#tally[at === undefined ? "same" : order[at]] += 1;
     const which = { a: "A, the version that you kept", b: "B, the scene as it is now" };
     const chosen = at === undefined ? "You felt no difference." : `You chose ${which[order[at]]}.`;

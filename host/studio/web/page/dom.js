@@ -40,23 +40,25 @@ export async function attempt(action) {
   }
 }
 
-const colours = new Map();
+let colours = new WeakMap();
 
-/** The value of a colour of the style sheets, resolved for the theme. */
-export function colour(name) {
-  if (!colours.has(name)) {
+/** The value of a colour of the style sheets where `within` stands, resolved for the theme. */
+export function colour(name, within) {
+  if (!colours.has(within)) colours.set(within, new Map());
+  const known = colours.get(within);
+  if (!known.has(name)) {
     const probe = element("span");
     probe.style.color = `var(--${name})`;
-    document.body.append(probe);
-    colours.set(name, getComputedStyle(probe).color);
+    within.append(probe);
+    known.set(name, getComputedStyle(probe).color);
     probe.remove();
   }
-  return colours.get(name);
+  return known.get(name);
 }
 
 /** The theme has changed: colours are resolved anew. */
 export function forgetColours() {
-  colours.clear();
+  colours = new WeakMap();
 }
 
 /** A setting that outlives the page, where the browser lets it. */

@@ -1,4 +1,4 @@
-// The editor of the scene's text: colours, completion, mistakes in place, undo.
+// The editor of the scene's text and of the files that belong to it: colours, completion, mistakes in place, undo.
 
 import {
   EditorState,
@@ -36,14 +36,24 @@ const colours = HighlightStyle.define([
   { tag: [tags.number, tags.bool, tags.atom], color: "var(--felt)" },
 ]);
 
+/** A file is called by its name; `undefined` is the scene. */
 export class Editor {
   #view;
+  #extensions;
+  /** The file that is shown, and the states of the others. */
+  #shown;
+  #hidden = new Map();
+  #problems = [];
+  /** Another file is shown, or has other mistakes. */
+  onFiles = () => {};
 
-  /** `onChange(text)` is called after each change, by hand or not. */
+  /** `onChange(file, text)` is called after each change, by hand or not. */
   constructor(parent, schema, onChange) {
-    const changed = EditorView.updateListener.of((update) => update.docChanged && onChange(this.text));
+    const changed = EditorView.updateListener.of(
+      ({ docChanged, state }) => docChanged && onChange(this.#shown, state.doc.toString()),
+    );
     const label = EditorView.contentAttributes.of({ "aria-label": "Text of the scene" });
-    this.extensions = [
+    this.#extensions = [
       lineNumbers(),
       lintGutter(),
       highlightActiveLineGutter(),
@@ -62,15 +72,22 @@ export class Editor {
       // No Tab: it leaves the editor, as everywhere on the page.
       keymap.of([...completionKeymap, ...lintKeymap, ...historyKeymap, ...defaultKeymap]),
     ];
-    this.#view = new EditorView({ parent, state: EditorState.create({ extensions: this.extensions }) });
+    this.#view = new EditorView({ parent, state: this.#newState("") });
   }
 
+  #newState(doc) {
+    return EditorState.create({ doc, extensions: this.#extensions });
+  }
+
+  /** The scene's text. */
   get text() {
-    return this.#view.state.doc.toString();
+    const state = this.#shown === undefined ? this.#view.state : this.#hidden.get(undefined);
+    return state.doc.toString();
   }
 
-  /** Replaces the text; undo brings the old one back. */
+  /** Replaces the scene's text; undo brings the old one back. */
   set text(text) {
+    this.show();
     const { length } = this.#view.state.doc;
     this.#view.dispatch({
       changes: { from: 0, to: length, insert: text },
@@ -79,8 +96,45 @@ export class Editor {
     });
   }
 
-  /** Inserts text behind a line (0: before the first) and shows it. */
-  insertAfterLine(number, text) {
+  /** Sets the files beside the scene, given as `[name, text]`. */
+  setFiles(files) {
+    const names = files.map(([name]) => name);
+    if (this.#shown !== undefined && !names.includes(this.#shown)) this.show();
+    for (const name of this.#hidden.keys()) if (name !== undefined && !names.includes(name)) this.#hidden.delete(name);
+    for (const [name, text] of files) {
+      if (name !== this.#shown && this.#hidden.get(name)?.doc.toString() !== text)
+        this.#hidden.set(name, this.#newState(text));
+    }
+    this.onFiles(this.files);
+  }
+
+  /** The files, the scene's first: name, whether it is shown, and how many mistakes it has. */
+  get files() {
+    const names = [...this.#hidden.keys(), this.#shown].filter((name) => name !== undefined).sort();
+    return [undefined, ...names].map((name) => ({
+      name,
+      isShown: name === this.#shown,
+      mistakes: this.#problems.filter(({ file, severity }) => file === name && severity === "error").length,
+    }));
+  }
+
+  has(file) {
+    return file === this.#shown || this.#hidden.has(file);
+  }
+
+  show(file) {
+    if (file === this.#shown || !this.#hidden.has(file)) return;
+    this.#hidden.set(this.#shown, this.#view.state);
+    this.#shown = file;
+    this.#view.setState(this.#hidden.get(file));
+    this.#hidden.delete(file);
+    this.#markShown();
+    this.onFiles(this.files);
+  }
+
+  /** Inserts text behind a line (0: before the first) of a file and shows it. */
+  insertAfterLine(file, number, text) {
+    this.show(file);
     const { doc } = this.#view.state;
     const at = number === 0 ? 0 : doc.line(Math.min(number, doc.lines)).to;
     const insert = number === 0 ? `${text}\n` : `\n${text}`;
@@ -91,7 +145,14 @@ export class Editor {
     });
   }
 
+  /** Whether the layer table in these lines has them to itself, so that a line can be added. */
+  isTable(file, [first]) {
+    const state = file === this.#shown ? this.#view.state : this.#hidden.get(file);
+    return state !== undefined && first <= state.doc.lines && /^\s*\[\[/.test(state.doc.line(first).text);
+  }
+
   append(text) {
+    this.show();
     const { doc } = this.#view.state;
     const gap = doc.toString().endsWith("\n") || doc.length === 0 ? "\n" : "\n\n";
     const insert = `${gap}${text.trim()}\n`;
@@ -102,7 +163,8 @@ export class Editor {
     });
   }
 
-  goToLine(number) {
+  goTo(file, number) {
+    this.show(file);
     const line = this.#view.state.doc.line(Math.max(1, Math.min(number, this.#view.state.doc.lines)));
     this.#view.dispatch({
       selection: { anchor: line.from },
@@ -119,15 +181,21 @@ export class Editor {
     redo(this.#view);
   }
 
-  /** Marks mistakes and warnings of the engine in place. */
+  /** Marks mistakes and warnings of the engine in place, each in its file. */
   mark(problems) {
+    this.#problems = problems;
+    this.#markShown();
+    this.onFiles(this.files);
+  }
+
+  #markShown() {
     const { doc } = this.#view.state;
     const at = (line, column) => {
       const { from, to } = doc.line(Math.max(1, Math.min(line, doc.lines)));
       return Math.min(to, from + Math.max(0, (column ?? 1) - 1));
     };
-    const diagnostics = problems
-      .filter(({ line }) => line !== undefined)
+    const diagnostics = this.#problems
+      .filter(({ file, line }) => file === this.#shown && line !== undefined)
       .map((problem) => {
         const from = at(problem.line, problem.column);
         const end = problem.endLine === undefined ? doc.lineAt(from).to : at(problem.endLine, problem.endColumn);

@@ -1,6 +1,6 @@
 // The finger: pointer events and arrow keys to the engine, and what is drawn of it: trail and finger.
 
-import { byId, colour } from "./dom.js";
+import { colour } from "./dom.js";
 
 /** How long a trail stays, s. */
 const TRAIL_S = 2.5;
@@ -15,7 +15,7 @@ const LOAD_AT_FULL_PRESSURE_N = 1;
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
 export class Finger {
-  #canvas = byId("map-finger");
+  #canvas;
   #engine;
   #map;
   #area = { width: 1, height: 1 };
@@ -37,11 +37,12 @@ export class Finger {
   /** A stroke begins. */
   onDown = () => {};
 
-  constructor(engine, map) {
+  /** Draws on `canvas`, which lies over the map, and takes its pointer events and arrow keys. */
+  constructor(engine, map, canvas) {
     this.#engine = engine;
     this.#map = map;
+    this.#canvas = canvas;
     map.onLayout = (area) => this.#place(area);
-    const canvas = this.#canvas;
     canvas.addEventListener("pointerdown", (event) => this.#down(event));
     canvas.addEventListener("pointermove", (event) => this.#move(event));
     for (const type of ["pointerup", "pointercancel"]) canvas.addEventListener(type, (event) => this.#up(event));
@@ -161,10 +162,19 @@ export class Finger {
     this.#drawn.xMm += part * (this.#target.xMm - this.#drawn.xMm);
     this.#drawn.yMm += part * (this.#target.yMm - this.#drawn.yMm);
     this.#lastMs = ms;
-    const isShown = this.#isInside || this.#isDown || this.#trail.length > 0 || document.activeElement === this.#canvas;
+    const isShown = this.#isInside || this.#isDown || this.#trail.length > 0 || this.#hasFocus;
     if (isShown || this.#isShown) this.#draw();
     this.#isShown = isShown;
     requestAnimationFrame((next) => this.#frame(next));
+  }
+
+  /** A blind comparison shows nothing of the friction. */
+  get #isBlind() {
+    return this.#canvas.closest(".blind") !== null;
+  }
+
+  get #hasFocus() {
+    return this.#canvas.matches(":focus");
   }
 
   #draw() {
@@ -172,15 +182,15 @@ export class Finger {
     context.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
     context.clearRect(0, 0, this.#area.width, this.#area.height);
     this.#drawTrail(context);
-    if (!this.#isInside && !this.#isDown && document.activeElement !== this.#canvas) return;
+    if (!this.#isInside && !this.#isDown && !this.#hasFocus) return;
     const { scale } = this.#map;
     const [x, y] = [this.#drawn.xMm * scale, this.#drawn.yMm * scale];
     context.beginPath();
     context.arc(x, y, Math.max(9, 4 * scale), 0, 2 * Math.PI);
     context.fillStyle = this.#isDown ? "#ffffff59" : "#ffffff1f";
     context.fill();
-    context.lineWidth = this.#isDown ? 2 + 5 * this.#friction : 2;
-    context.strokeStyle = this.#isDown ? colour("felt") : "#fff";
+    context.lineWidth = this.#isDown && !this.#isBlind ? 2 + 5 * this.#friction : 2;
+    context.strokeStyle = this.#isDown ? colour("felt", this.#canvas.parentElement) : "#fff";
     context.stroke();
     context.lineWidth = 1;
     context.strokeStyle = "#000b";
@@ -191,8 +201,7 @@ export class Finger {
 
   /** The way of the finger, thicker where more friction was felt, and fading in steps, so that few paths are drawn. */
   #drawTrail(context) {
-    // A blind comparison shows nothing of the friction.
-    if (document.body.classList.contains("blind")) return;
+    if (this.#isBlind) return;
     const { scale } = this.#map;
     const now = performance.now();
     const paths = new Map();

@@ -1,9 +1,8 @@
 // The gallery: bundled scenes to start from, whole or layer by layer.
 
-import { picture, sceneNames, sceneText } from "./bundled.js";
+import { carriedFiles, sceneNames } from "./bundled.js";
 import { imageOf } from "./colors.js";
 import { byId, element } from "./dom.js";
-import { ENTRY, Project } from "./project.js";
 
 const WIDTH_PX = 300;
 
@@ -41,8 +40,11 @@ export class Gallery {
   }
 
   async #fill(card, name) {
-    const text = await sceneText(name);
-    const canvas = element("canvas", { ...sizeOf(text), "aria-hidden": "true" });
+    const files = await carriedFiles();
+    const entry = `${name}.toml`;
+    const text = new TextDecoder().decode(files[entry]);
+    const check = await this.#engine.check(files, entry, {});
+    const canvas = element("canvas", { ...sizeOf(check.screen), "aria-hidden": "true" });
     const open = element("button", { className: "primary" }, `Open ${name}`);
     open.onclick = () => {
       this.#dialog.close();
@@ -52,27 +54,19 @@ export class Gallery {
       "details",
       {},
       element("summary", {}, "Layers"),
-      element("ul", {}, ...this.#layers(name, text)),
+      element("ul", {}, ...this.#layers(name, text, check.layers)),
     );
     card.append(canvas, element("h3", {}, name), element("p", { className: "fine" }, introduction(text)), open, layers);
-    const files = { [ENTRY]: text };
-    for (const each of Project.namesIn(text)) files[each] = await picture(each);
-    const map = await this.#engine.map(
-      files,
-      ENTRY,
-      {},
-      { widthPx: canvas.width, heightPx: canvas.height, speedMmPerS: 100 },
-    );
+    const size = { widthPx: canvas.width, heightPx: canvas.height };
+    const map = await this.#engine.map(files, entry, {}, { ...size, speedMmPerS: 100 });
     canvas.getContext("2d").putImageData(imageOf(map), 0, 0);
   }
 
-  #layers(name, text) {
-    return layerTexts(text).map((layer) => {
-      const title =
-        /^\s*name\s*=\s*"([^"]*)"/m.exec(layer)?.[1] ?? /^\s*kind\s*=\s*"([^"]*)"/m.exec(layer)?.[1] ?? "layer";
+  #layers(scene, text, layers) {
+    return layers.map(({ name: title, from }) => {
       const take = element("button", { "aria-label": `Take over ${title}` }, "Take over");
       take.onclick = () => {
-        this.onLayer(layer, name);
+        this.onLayer(layerText(text, from), scene);
         take.textContent = "Taken ✓";
       };
       return element("li", {}, title, take);
@@ -80,39 +74,25 @@ export class Gallery {
   }
 }
 
-/** Size of a scene's picture: its screen is the example one where it has none of its own. */
-function sizeOf(text) {
-  const number = (name, usual) =>
-    Number(new RegExp(`^${name}\\s*=\\s*([\\d.]+)`, "m").exec(screen(text))?.[1] ?? usual);
-  return { width: WIDTH_PX, height: Math.round((WIDTH_PX * number("height_mm", 80)) / number("width_mm", 120)) };
-}
-
-function screen(text) {
-  return /^\[screen\]\n((?:[^[].*\n|\n)*)/m.exec(text)?.[1] ?? "";
+function sizeOf({ widthMm, heightMm }) {
+  return { width: WIDTH_PX, height: Math.round((WIDTH_PX * heightMm) / widthMm) };
 }
 
 /** The comment at a scene's head, up to its first two sentences. */
 function introduction(text) {
-  const comment = /^(?:#.*\n)+/.exec(text)?.[0].replaceAll(/^# ?/gm, "").replaceAll("\n", " ") ?? "";
+  const comment = /^(?:#.*\n)+/.exec(text)?.[0] ?? "";
   return comment
+    .replaceAll(/^# ?|`/gm, "")
+    .replaceAll("\n", " ")
     .split(/(?<=\.) /)
     .slice(0, 2)
     .join(" ");
 }
 
-/** The layers of a text, each with the comments above it. */
-export function layerTexts(text) {
-  const layers = [];
-  let comments = [];
-  let current;
-  for (const line of text.split("\n")) {
-    if (/^\s*\[/.test(line)) {
-      current = /^\s*\[\[layer\]\]/.test(line) ? [...comments, line] : undefined;
-      if (current) layers.push(current);
-      comments = [];
-    } else if (/^#/.test(line)) comments.push(line);
-    else if (line.trim() === "") comments = [];
-    else if (current) current.push(...comments.splice(0), line);
-  }
-  return layers.map((lines) => lines.join("\n"));
+/** The text of a layer in these lines, with the comments above it. */
+function layerText(text, [first, last]) {
+  const lines = text.split("\n");
+  let start = first - 1;
+  while (start > 0 && lines[start - 1].startsWith("#")) start -= 1;
+  return lines.slice(start, last).join("\n");
 }

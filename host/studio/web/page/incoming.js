@@ -2,16 +2,25 @@
 
 import { projectOf } from "./archive.js";
 import { byId, notify } from "./dom.js";
+import { isPicture } from "./project.js";
 
 /** Largest text, picture and zip, bytes. */
-const MAX = { toml: 500_000, png: 8_000_000, zip: 16_000_000 };
-const PNG = [0x89, 0x50, 0x4e, 0x47];
+const MAX = { toml: 500_000, png: 8_000_000, jpg: 8_000_000, jpeg: 8_000_000, zip: 16_000_000 };
+const JPEG = [0xff, 0xd8, 0xff];
+/** The first bytes of pictures, by the ending of their names. */
+const BEGINNINGS = { png: [0x89, 0x50, 0x4e, 0x47], jpg: JPEG, jpeg: JPEG };
 
 export class Incoming {
+  #usedFiles;
   /** `{ scene: { name, text, files, profiles? }, files: [[name, content]], finger, screen }`, some missing. */
   onFiles = () => {};
 
-  constructor() {
+  /**
+   * `usedFiles(files, entry)` gives the names of the files that a scene uses; without arguments, those of the scene
+   * that the page has.
+   */
+  constructor(usedFiles) {
+    this.#usedFiles = usedFiles;
     const input = byId("files");
     byId("open-files").onclick = () => input.click();
     input.onchange = () => {
@@ -36,7 +45,7 @@ export class Incoming {
 
   /** Takes what can be taken of these files, and says what cannot, and why. */
   async take(list) {
-    const found = { files: [] };
+    const found = { files: [], texts: [] };
     const refused = [];
     for (const file of list) {
       try {
@@ -45,37 +54,64 @@ export class Incoming {
         refused.push(`${file.name}: ${error.message}`);
       }
     }
+    try {
+      await this.#sort(found, refused);
+    } catch (error) {
+      refused.push(error.message);
+    }
     if (found.scene || found.finger || found.screen || found.files.length > 0) this.onFiles(found);
     if (refused.length > 0) notify(refused.join("\n"));
+  }
+
+  /** Tells the scene among the texts from the files that it uses, and from profiles to play with. */
+  async #sort(found, refused) {
+    const texts = Object.fromEntries(found.texts);
+    // A scene of the drop, or the scene that the page has, may use the others.
+    const used = new Set((await this.#usedFiles()).names);
+    for (const entry of Object.keys(texts)) {
+      const { names } = await this.#usedFiles(texts, entry);
+      for (const name of names) if (name !== entry) used.add(name);
+    }
+    for (const [fileName, text] of found.texts) {
+      const name = fileName.replace(/\.toml$/i, "");
+      const kind = kindOf(text);
+      if (used.has(fileName)) found.files.push([fileName, text]);
+      else if (kind !== "scene") found[kind] = { name, text };
+      else if (!found.scene) found.scene = { name, text, files: [] };
+      else refused.push(`${fileName}: a scene, too, but ${found.scene.name} is opened; open one at a time`);
+    }
+    if (found.scene) found.scene.files = [...found.scene.files, ...found.files];
   }
 }
 
 async function read(file, found) {
-  const ending = /\.(toml|png|zip)$/i.exec(file.name)?.[1].toLowerCase();
-  if (!ending) throw new Error("expected a scene or profile (.toml), a picture (.png) or a saved project (.zip)");
+  const ending = /\.(toml|png|jpe?g|zip)$/i.exec(file.name)?.[1].toLowerCase();
+  if (!ending) throw new Error("expected a scene or profile (.toml), a picture (.png, .jpg) or a saved project (.zip)");
   if (file.size > MAX[ending]) {
     const [size, most] = [file.size, MAX[ending]].map((bytes) => (bytes / 1e6).toFixed(1));
     throw new Error(`the file has ${size} MB, more than the ${most} MB that the studio opens`);
   }
   const bytes = new Uint8Array(await file.arrayBuffer());
   if (ending === "zip") return { scene: projectOf(bytes) };
-  if (ending === "png") {
-    if (PNG.some((byte, at) => bytes[at] !== byte)) throw new Error("this is no PNG picture, whatever its name says");
+  if (isPicture(file.name)) {
+    if (BEGINNINGS[ending].some((byte, at) => bytes[at] !== byte))
+      throw new Error(`this is no ${ending === "png" ? "PNG" : "JPEG"} picture, whatever its name says`);
     return { files: [...found.files, [file.name, bytes]] };
   }
-  return readToml(file.name, bytes);
+  return { texts: [...found.texts, [file.name, textOf(bytes)]] };
 }
 
-function readToml(fileName, bytes) {
-  let text;
+function textOf(bytes) {
   try {
-    text = new TextDecoder("utf-8", { fatal: true }).decode(bytes);
+    return new TextDecoder("utf-8", { fatal: true }).decode(bytes);
   } catch {
     throw new Error("this is no text in UTF-8");
   }
-  const name = fileName.replace(/\.toml$/i, "");
-  if (/^\s*(\[|version\s*=)/m.test(text)) return { scene: { name, text, files: [] } };
-  if (/^\s*friction_coefficient\s*=/m.test(text)) return { finger: { name, text } };
-  if (/^\s*width_mm\s*=/m.test(text)) return { screen: { name, text } };
-  return { scene: { name, text, files: [] } };
+}
+
+/** What a TOML text is meant as; one that nobody can tell is read as a scene, for its mistakes. */
+function kindOf(text) {
+  if (/^\s*(\[|version\s*=)/m.test(text)) return "scene";
+  if (/^\s*friction_coefficient\s*=/m.test(text)) return "finger";
+  return /^\s*width_mm\s*=/m.test(text) ? "screen" : "scene";
 }

@@ -5,7 +5,7 @@ import { attempt, byId, element } from "./dom.js";
 export class Layers {
   #engine;
   #editor;
-  /** Switches and gains, by layer name or number, as long as the scene plays on. */
+  /** Switches and gains, by layer number, as long as the scene plays on. */
   #live = new Map();
 
   constructor(engine, editor) {
@@ -15,8 +15,8 @@ export class Layers {
 
   show(check) {
     const panel = byId("panel-layers");
-    // While a gain is dragged the list stays.
-    if (panel.contains(document.activeElement) && document.activeElement.type === "range") return;
+    // While a gain is dragged or typed the list stays.
+    if (panel.contains(document.activeElement) && document.activeElement.dataset.gain) return;
     panel.replaceChildren(...check.layers.map((layer) => this.#row(layer)));
     if (check.layers.length === 0) panel.append(element("p", { className: "soft" }, "This scene has no layer yet."));
   }
@@ -27,48 +27,54 @@ export class Layers {
   }
 
   #row(layer) {
-    const { index, name, kind, felt, from } = layer;
-    const title = element("div", {}, element("b", {}, name || `layer ${index}`), ` ${kind}`);
+    const { name, kind, felt, file, from, controls } = layer;
+    const copies = controls.length > 1 ? ` × ${controls.length}` : "";
+    const place = this.#editor.has(file) ? { type: "button", onclick: () => this.#editor.goTo(file, from[0]) } : {};
+    const title = element(
+      "div",
+      {},
+      element(place.type ? "button" : "b", { className: "link", ...place, title: file ?? "" }, name),
+      ` ${kind}${copies}${file ? `, ${file}` : ""}`,
+    );
     const row = element("div", { className: "layer" }, title, this.#controls(layer));
     if (felt) row.append(element("p", { className: "fine" }, felt));
-    if (from) {
-      title.style.cursor = "pointer";
-      title.onclick = () => this.#editor.goToLine(from[0]);
-    }
     return row;
   }
 
   #controls(layer) {
-    const { index, isLive, whyNotLive, from } = layer;
+    const { index, name: label, isLive, whyNotLive, file, from } = layer;
     if (!isLive) {
-      const button = element("button", { title: whyNotLive ?? "", disabled: !from }, "Make live");
-      button.onclick = () => this.#editor.insertAfterLine(from[0], "live = true");
+      const button = element("button", { title: whyNotLive, disabled: !this.#editor.isTable(file, from) }, "Make live");
+      button.onclick = () => this.#editor.insertAfterLine(file, from[0], "live = true");
       return button;
     }
-    const state = this.#live.get(index) ?? { on: true, gain: 1 };
-    const label = layer.name || `layer ${index}`;
+    const state = this.#live.get(index) ?? { on: true, gain: layer.gain };
     const isOn = element("input", { type: "checkbox", checked: state.on, "aria-label": `${label} on` });
-    const gain = element("input", {
-      type: "range",
-      min: 0,
-      max: 2,
-      step: 0.05,
-      value: state.gain,
-      "aria-label": `gain of ${label}`,
-    });
-    const shown = element("output", {}, `× ${state.gain}`);
-    isOn.onchange = () => this.#change(index, { on: isOn.checked }, isOn.checked ? "on" : "off", state);
-    gain.oninput = () => {
-      shown.textContent = `× ${Number(gain.value)}`;
-      this.#change(index, { gain: Number(gain.value) }, `gain ${Number(gain.value)}`, state);
+    // The slider has the gains of every day, the number all that a board takes.
+    const most = Math.min(layer.gainMax, Math.max(2, 2 * layer.gain));
+    const input = (type, min, max, name) =>
+      element("input", { type, min, max, step: "any", value: state.gain, "aria-label": name, "data-gain": "true" });
+    const slider = input("range", Math.min(0, 2 * layer.gain), most, `gain of ${label}`);
+    slider.step = most / 40;
+    slider.value = state.gain;
+    const number = input("number", layer.gainMin, layer.gainMax, `gain of ${label}, as a number`);
+    isOn.onchange = () => this.#change(layer, { on: isOn.checked }, isOn.checked ? "on" : "off", state);
+    const change = (from, to) => () => {
+      const gain = Number(from.value);
+      if (from.value === "" || !from.checkValidity()) return;
+      to.value = gain;
+      this.#change(layer, { gain }, `gain ${gain}`, state);
     };
-    return element("div", { className: "live" }, element("label", { className: "check" }, isOn, " on"), gain, shown);
+    slider.oninput = change(slider, number);
+    number.oninput = change(number, slider);
+    const times = element("label", {}, "× ", number);
+    return element("div", { className: "live" }, element("label", { className: "check" }, isOn, " on"), slider, times);
   }
 
   /** Sends only what was changed: the scene's gain stays until the slider is moved. */
-  #change(index, next, words, state) {
+  #change({ index, controls }, next, words, state) {
     Object.assign(state, next);
     this.#live.set(index, state);
-    attempt(() => this.#engine.control(`layer ${index} ${words}`));
+    for (const number of controls) attempt(() => this.#engine.control(`layer ${number} ${words}`));
   }
 }

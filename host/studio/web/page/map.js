@@ -1,7 +1,7 @@
 // The friction map with ruler, scale and names; the finger has a canvas of its own above it (finger.js).
 
 import { SCALE, imageOf } from "./colors.js";
-import { byId, colour } from "./dom.js";
+import { colour } from "./dom.js";
 import { drawMockup } from "./mockup.js";
 
 /** Room for the ruler and the scale around the map, CSS pixels. */
@@ -9,10 +9,12 @@ const LEFT = 40;
 const TOP = 26;
 const RIGHT = 78;
 const BOTTOM = 8;
+/** Height of the word that marks a draft, CSS pixels. */
+const DRAFT_HEIGHT = 36;
 
 export class FrictionMap {
-  #canvas = byId("map-picture");
-  #box = byId("map");
+  #canvas;
+  #box;
   #map;
   #check;
   #picture;
@@ -27,7 +29,10 @@ export class FrictionMap {
   /** The map has another size: finger.js follows. */
   onLayout = () => {};
 
-  constructor() {
+  /** Draws on the canvas `picture` in the element `box`. */
+  constructor(box, picture) {
+    this.#box = box;
+    this.#canvas = picture;
     new ResizeObserver(() => this.layout()).observe(this.#box);
   }
 
@@ -75,15 +80,20 @@ export class FrictionMap {
     const area = { x: LEFT, y: TOP, width: widthMm * this.scale, height: heightMm * this.scale };
     context.save();
     context.translate(area.x, area.y);
+    // A blind comparison shows nothing of the friction.
+    const isBlind = this.#box.closest(".blind") !== null;
     if (this.look !== "map") drawMockup(context, this.mockup, area.width, area.height);
     context.globalAlpha = { map: 1, both: 0.45, mockup: 0 }[this.look];
     context.imageSmoothingEnabled = this.scale * devicePixelRatio * widthMm < this.#map.widthPx * 2;
-    context.drawImage(this.#picture, 0, 0, area.width, area.height);
+    context.fillStyle = "#777";
+    if (isBlind) context.fillRect(0, 0, area.width, area.height);
+    else context.drawImage(this.#picture, 0, 0, area.width, area.height);
     context.restore();
-    const ink = { line: colour("soft"), text: colour("ink") };
+    const ink = { line: colour("soft", this.#box), text: colour("ink", this.#box) };
     this.#drawRuler(context, area, ink);
     this.#drawScale(context, area, ink);
-    if (this.hasNames && this.look !== "mockup") this.#drawNames(context, area);
+    if (this.hasNames && this.look !== "mockup" && !isBlind) this.#drawNames(context, area);
+    if (this.#check.isDraft && !isBlind) drawDraft(context, area);
   }
 
   #drawRuler(context, { x, y, width, height }, ink) {
@@ -136,58 +146,70 @@ export class FrictionMap {
     }
   }
 
-  /** Each layer's name near the middle of the part of the map that its friction stands out in: its region. */
+  /** Each layer's name in the top left corner of its region, below the names that are there already. */
   #drawNames(context, { x, y, width, height }) {
     context.font = "600 14px system-ui, sans-serif";
-    context.textAlign = "center";
+    context.textAlign = "left";
     context.textBaseline = "middle";
     context.lineJoin = "round";
     const taken = [];
+    // Below the word in the corner.
+    const top = y + (this.#check.isDraft ? DRAFT_HEIGHT : 0) + 14;
     for (const { name, box } of namedBoxes(this.#check, this.screen)) {
-      const wide = context.measureText(name).width + 8;
-      const centre = Math.max(x + wide / 2, Math.min(x + (box.x + box.width / 2) * this.scale, x + width - wide / 2));
-      let place = Math.max(y + 14, Math.min(y + (box.y + box.height / 2) * this.scale, y + height - 14));
+      const wide = context.measureText(name).width + 16;
+      const left = Math.max(x + 8, Math.min(x + box.x * this.scale + 8, x + width - wide));
+      let place = Math.max(top, y + box.y * this.scale + 14);
       const isTaken = () =>
         taken.some(
-          (other) => Math.abs(other.place - place) < 20 && Math.abs(other.centre - centre) < (other.wide + wide) / 2,
+          (other) =>
+            Math.abs(other.place - place) < 20 && left < other.left + other.wide && other.left < left + wide,
         );
-      for (let tries = 0; tries < 4 && isTaken(); tries += 1) place += 20;
+      for (let tries = 0; tries < 6 && isTaken(); tries += 1) place += 20;
       if (place > y + height - 8 || isTaken()) continue;
-      taken.push({ centre, place, wide });
+      taken.push({ left, place, wide });
       context.strokeStyle = "#000c";
       context.lineWidth = 4;
-      context.strokeText(name, centre, place);
+      context.strokeText(name, left, place);
       context.fillStyle = "#fff";
-      context.fillText(name, centre, place);
+      context.fillText(name, left, place);
     }
   }
 }
 
-/** Names of layers with the box of each region; a layer without a region has the whole screen. */
-function namedBoxes({ layers, text }, screen) {
-  const lines = text.split("\n");
-  return layers
-    .filter(({ name }) => name)
-    .map(({ name, from }) => {
-      const block = from ? lines.slice(from[0] - 1, from[1]).join("\n") : "";
-      return { name, box: boxOf(block) ?? { x: 0, y: 0, width: screen.widthMm, height: screen.heightMm } };
-    });
+/** Marks a map whose scene a board would refuse: stripes along the edge, and the word. */
+function drawDraft(context, { x, y, width, height }) {
+  const wide = 10;
+  context.save();
+  context.beginPath();
+  context.rect(x, y, width, height);
+  context.rect(x + wide, y + wide, width - 2 * wide, height - 2 * wide);
+  context.clip("evenodd");
+  context.fillStyle = "#000";
+  context.fillRect(x, y, width, height);
+  context.strokeStyle = "#ffd23f";
+  context.lineWidth = 7;
+  context.beginPath();
+  for (let at = -height; at < width; at += 20) {
+    context.moveTo(x + at, y + height);
+    context.lineTo(x + at + height, y);
+  }
+  context.stroke();
+  context.restore();
+  const words = "draft";
+  context.font = "700 20px system-ui, sans-serif";
+  const long = context.measureText(words).width + 28;
+  context.fillStyle = "#000";
+  context.fillRect(x, y, long, DRAFT_HEIGHT);
+  context.fillStyle = "#ffd23f";
+  context.textAlign = "left";
+  context.textBaseline = "middle";
+  context.fillText(words, x + 14, y + DRAFT_HEIGHT / 2);
 }
 
-function boxOf(block) {
-  const region = /^\s*region\s*=\s*\{([^}]*)\}/m.exec(block)?.[1];
-  if (region === undefined) return undefined;
-  const points = [...region.matchAll(/\[\s*(-?[\d.]+)\s*,\s*(-?[\d.]+)\s*\]/g)].map(([, x, y]) => [
-    Number(x),
-    Number(y),
-  ]);
-  if (points.length > 0) {
-    const xs = points.map(([x]) => x);
-    const ys = points.map(([, y]) => y);
-    const [x, y] = [Math.min(...xs), Math.min(...ys)];
-    return { x, y, width: Math.max(...xs) - x, height: Math.max(...ys) - y };
-  }
-  const number = (name) => Number(new RegExp(`\\b${name}\\s*=\\s*(-?[\\d.]+)`).exec(region)?.[1] ?? NaN);
-  const box = { x: number("x_mm"), y: number("y_mm"), width: number("width_mm"), height: number("height_mm") };
-  return Object.values(box).some(Number.isNaN) ? undefined : box;
+/** Names of layers with the box of each region; a layer without a region has the whole screen. */
+function namedBoxes({ layers }, screen) {
+  return layers.map(({ name, boxMm }) => {
+    const [x, y, width, height] = boxMm ?? [0, 0, screen.widthMm, screen.heightMm];
+    return { name, box: { x, y, width, height } };
+  });
 }

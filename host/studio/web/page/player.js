@@ -1,7 +1,5 @@
 // From text to play: checks each version of the scene, draws its map and plays it, the newest one last.
 
-import { ENTRY } from "./project.js";
-
 /** A pause in typing that lets a check begin, ms. */
 const PAUSE_MS = 60;
 /** The map's width in pixels. */
@@ -16,7 +14,7 @@ export class Player {
 
   /** The check has an answer: `onCheck(check, text)`. */
   onCheck = () => {};
-  /** The friction map of a scene without mistakes: `onMap(map, check)`. */
+  /** The friction map of a scene that plays: `onMap(map, check)`. */
   onMap = () => {};
   /** The board plays this text: `onPlay(text)`. */
   onPlay = () => {};
@@ -54,15 +52,17 @@ export class Player {
 
   async #play(text) {
     const files = await this.#project.filesFor(text);
-    const { profiles } = this.#project;
-    const check = await this.#engine.check(files, ENTRY, profiles);
+    const { entry, profiles } = this.#project;
+    const check = await this.#engine.check(files, entry, profiles);
     this.onCheck(check, text);
-    if (!check.ok || this.#next !== undefined) return;
-    await this.#engine.play(files, ENTRY, profiles);
+    if (!(check.ok || check.isDraft) || this.#next !== undefined) return;
+    await this.#engine.play(files, entry, profiles).catch(({ message }) => {
+      throw new Error(check.isDraft ? `The board does not play this draft:\n${message}` : message);
+    });
     this.onPlay(text);
     if (this.#next !== undefined) return;
     const { widthMm, heightMm } = check.screen;
     const size = { widthPx: MAP_WIDTH, heightPx: Math.max(8, Math.round((MAP_WIDTH * heightMm) / widthMm)) };
-    this.onMap(await this.#engine.map(files, ENTRY, profiles, { ...size, speedMmPerS: 100 }), check);
+    this.onMap(await this.#engine.map(files, entry, profiles, { ...size, speedMmPerS: 100 }), check);
   }
 }

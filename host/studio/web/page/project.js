@@ -1,35 +1,73 @@
 // What a person works on: the scene's text (which the editor holds) and the files that it names.
 
-import { picture } from "./bundled.js";
-
-export const ENTRY = "scene.toml";
+import { carriedFiles } from "./bundled.js";
 
 export class Project {
-  /** Files of one's own, as the scene writes their names. */
+  #engine;
+  #name = "scene";
+  /** Files of one's own, as the scene writes their names: texts of TOML files, bytes of pictures. */
   files = new Map();
-  /** Name of the scene, for files that are saved. */
-  name = "scene";
   /** Finger and screen to play with in place of the scene's own; name or TOML text. */
   profiles = {};
 
-  /** Names that the text gives to other files. */
-  static namesIn(text) {
-    return [...new Set([...text.matchAll(/^\s*picture\s*=\s*"([^"]+)"/gm)].map((match) => match[1]))];
+  constructor(engine) {
+    this.#engine = engine;
   }
 
-  /** All files that the engine needs for this text. */
+  /** Name of the scene. */
+  get name() {
+    return this.#name;
+  }
+
+  set name(name) {
+    this.#name = name.replaceAll(/[/\\]/g, "-").slice(0, 60) || "scene";
+  }
+
+  /** Name of the scene's file. */
+  get entry() {
+    return `${this.#name}.toml`;
+  }
+
+  /** Replaces all files of one's own by these, given as `[name, content]`. */
+  async replaceFiles(files) {
+    const carried = await carriedFiles();
+    this.files.clear();
+    for (const [name, content] of files) if (!isSame(content, carried[name])) this.add(name, content);
+  }
+
+  add(name, content) {
+    const isText = isToml(name) && typeof content !== "string";
+    this.files.set(name, isText ? new TextDecoder().decode(content) : content);
+  }
+
+  /** All files that the engine may need for this text of the scene. */
   async filesFor(text) {
-    const files = { [ENTRY]: text };
-    for (const [name, content] of this.files) if (name !== ENTRY) files[name] = content;
-    for (const name of Project.namesIn(text)) {
-      const bundled = name in files ? undefined : await picture(name);
-      if (bundled) files[name] = bundled;
-    }
-    return files;
+    return { ...(await carriedFiles()), ...Object.fromEntries(this.files), [this.entry]: text };
   }
 
-  /** Files of one's own that this text names. */
-  ownFilesFor(text) {
-    return Project.namesIn(text).filter((name) => this.files.has(name));
+  /** Files of one's own for a link, as `[name, content]`: those that this text uses. */
+  async filesForLink(text) {
+    const { names, isWhole } = await this.#engine.usedFiles(await this.filesFor(text), this.entry);
+    // A mistake may hide the name of a file.
+    return [...this.files].filter(([name]) => !isWhole || names.includes(name));
   }
+
+  /** Files for a zip, as `[name, content]`: all of one's own, and those of the page that this text uses. */
+  async filesForZip(text) {
+    const { names } = await this.#engine.usedFiles(await this.filesFor(text), this.entry);
+    const carried = Object.entries(await carriedFiles()).filter(([name]) => names.includes(name));
+    return [...new Map([...carried, ...this.files])].filter(([name]) => name !== this.entry);
+  }
+}
+
+export function isToml(name) {
+  return /\.toml$/i.test(name);
+}
+
+export function isPicture(name) {
+  return /\.(png|jpe?g)$/i.test(name);
+}
+
+function isSame(content, other) {
+  return content.length === other?.length && content.every?.((byte, at) => byte === other[at]);
 }

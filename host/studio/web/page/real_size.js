@@ -25,6 +25,7 @@ export class RealSize {
   #show(pixelsPerMm) {
     this.#map.realSize = pixelsPerMm;
     this.#button.setAttribute("aria-pressed", pixelsPerMm !== undefined);
+    byId("real-size-mark").hidden = pixelsPerMm === undefined;
     this.#map.layout();
   }
 
@@ -39,7 +40,7 @@ export class RealSize {
       value: scale,
       "aria-label": "Width of the card",
     });
-    size.style.width = "100%";
+    Object.assign(size.style, { width: "100%", margin: "12px 0 0" });
     const draw = () =>
       Object.assign(card.style, {
         width: `${CARD.widthMm * scale}px`,

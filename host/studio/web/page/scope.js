@@ -1,7 +1,7 @@
 // The scope: reference, felt and voltage over the last seconds.
 
 import { uPlot, uPlotStyle } from "../vendor/studio-vendor.js";
-import { byId, colour, download, element } from "./dom.js";
+import { colour, download, element } from "./dom.js";
 
 /** What the scope shows while it runs, s. */
 const WINDOW_S = 3;
@@ -11,19 +11,24 @@ const FRAME_MS = 30;
 
 export class Scope {
   #samples;
+  #box;
   #plot;
   #shownNowS = -1;
   isPaused = false;
+  /** Whether a draft is felt: the names of saved files say so. */
+  isDraft = false;
   /** Paused by zooming or by the button. */
   onPause = () => {};
 
-  constructor(samples) {
+  /** Draws in the element `box`. */
+  constructor(samples, box) {
     this.#samples = samples;
-    document.head.append(element("style", {}, uPlotStyle));
+    this.#box = box;
+    box.before(element("style", {}, uPlotStyle));
     this.#make();
     new ResizeObserver(([{ contentRect }]) => {
       this.#plot.setSize({ width: Math.max(200, contentRect.width - 4), height: HEIGHT_PX });
-    }).observe(byId("scope"));
+    }).observe(this.#box);
     let drawnMs = 0;
     const frame = (ms) => {
       if (!this.isPaused && this.#shownNowS !== this.#samples.nowS && ms - drawnMs >= FRAME_MS) {
@@ -39,16 +44,16 @@ export class Scope {
   #make() {
     this.#plot?.destroy();
     const axis = {
-      stroke: colour("soft"),
-      grid: { stroke: colour("line"), width: 1 },
-      ticks: { stroke: colour("line") },
+      stroke: colour("soft", this.#box),
+      grid: { stroke: colour("line", this.#box), width: 1 },
+      ticks: { stroke: colour("line", this.#box) },
       font: "13px system-ui, sans-serif",
       labelFont: "13px system-ui, sans-serif",
       labelSize: 18,
     };
     const digits = (unit, count) => (_, value) => (Number.isFinite(value) ? `${value.toFixed(count)} ${unit}` : "–");
     const options = {
-      width: Math.max(200, byId("scope").clientWidth - 4),
+      width: Math.max(200, this.#box.clientWidth - 4),
       height: HEIGHT_PX,
       scales: { x: { time: false }, mN: { range: upper }, V: { range: lower } },
       axes: [
@@ -61,18 +66,18 @@ export class Scope {
         {
           label: "reference",
           scale: "mN",
-          stroke: colour("reference"),
+          stroke: colour("reference", this.#box),
           width: 2,
           dash: [6, 4],
           value: digits("mN", 1),
         },
-        { label: "felt", scale: "mN", stroke: colour("felt"), width: 2, value: digits("mN", 1) },
-        { label: "voltage", scale: "V", stroke: colour("voltage"), width: 1.5, value: digits("V", 0) },
+        { label: "felt", scale: "mN", stroke: colour("felt", this.#box), width: 2, value: digits("mN", 1) },
+        { label: "voltage", scale: "V", stroke: colour("voltage", this.#box), width: 1.5, value: digits("V", 0) },
       ],
       cursor: { drag: { x: true, y: false } },
       hooks: { setSelect: [({ select }) => select.width > 0 && this.pause(true)] },
     };
-    this.#plot = new uPlot(options, [[], [], [], []], byId("scope"));
+    this.#plot = new uPlot(options, [[], [], [], []], this.#box);
     this.#draw();
   }
 
@@ -98,10 +103,14 @@ export class Scope {
     this.onPause(isPaused);
   }
 
+  get #fileName() {
+    return this.isDraft ? "frixel-felt-draft" : "frixel-felt";
+  }
+
   /** What the chart shows, as numbers. */
   saveCsv() {
     const { min, max } = this.#plot.scales.x;
-    download("frixel-felt.csv", this.#samples.csv(min, max), "text/csv");
+    download(`${this.#fileName}.csv`, this.#samples.csv(min, max), "text/csv");
   }
 
   /** The chart on the card's colour, as a picture. */
@@ -109,10 +118,10 @@ export class Scope {
     const chart = this.#plot.ctx.canvas;
     const picture = element("canvas", { width: chart.width, height: chart.height });
     const context = picture.getContext("2d");
-    context.fillStyle = colour("card");
+    context.fillStyle = colour("card", this.#box);
     context.fillRect(0, 0, picture.width, picture.height);
     context.drawImage(chart, 0, 0);
-    picture.toBlob((blob) => download("frixel-felt.png", blob, "image/png"));
+    picture.toBlob((blob) => download(`${this.#fileName}.png`, blob, "image/png"));
   }
 }
 

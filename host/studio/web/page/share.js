@@ -25,6 +25,20 @@ export function linkOf(name, text, files) {
   return link;
 }
 
+/** Says what another person needs for a link that was made in a page at this address. */
+export function whoCanOpen({ protocol, hostname }) {
+  const isOwn = protocol === "file:" || ["127.0.0.1", "localhost", "[::1]"].includes(hostname);
+  return isOwn
+    ? "It begins with an address on this computer. Another person opens the studio's HTML file and pastes the link " +
+        "into the page; send them the file, too, or a saved zip."
+    : "Whoever opens it needs nothing else.";
+}
+
+/** The fragment of a link in a text that somebody pastes, or undefined. */
+export function fragmentIn(text) {
+  return /^\S*(#scene=[\w-]+)\s*$/.exec(text)?.[1];
+}
+
 export function isLink(fragment) {
   return fragment.startsWith(START);
 }

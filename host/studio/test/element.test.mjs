@@ -1,0 +1,110 @@
+// <frixel-scene> in a document of one's own, from a file and from a server.
+
+import assert from "node:assert/strict";
+import fs from "node:fs";
+import http from "node:http";
+import os from "node:os";
+import path from "node:path";
+import { after, test } from "node:test";
+import { pathToFileURL } from "node:url";
+import { cleanUp, openPage, required } from "./harness.mjs";
+
+const SCRIPT = path.join(path.dirname(required("STUDIO_PAGE")), "frixel-scene.js");
+const GRATING = fs.readFileSync(new URL("../../../scenes/grating.toml", import.meta.url), "utf8");
+
+after(cleanUp);
+
+/** A folder with a document of these elements, beside the script. */
+function documentOf(body, files = {}) {
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), "frixel-element-"));
+  fs.symlinkSync(SCRIPT, path.join(folder, "frixel-scene.js"));
+  const page = `<!doctype html><meta charset="utf-8"><body>${body}<script src="frixel-scene.js"></script>`;
+  for (const [name, content] of Object.entries({ "index.html": page, ...files })) {
+    fs.mkdirSync(path.dirname(path.join(folder, name)), { recursive: true });
+    fs.writeFileSync(path.join(folder, name), content);
+  }
+  return folder;
+}
+
+/** Waits until the element shows a map, and returns the line under it. */
+async function lineOf(page, selector) {
+  await page.locator(selector).scrollIntoViewIfNeeded();
+  const line = page.locator(`${selector} .line`);
+  await page.waitForFunction(
+    (selector) => document.querySelector(selector).shadowRoot?.querySelector(".line")?.textContent,
+    selector,
+  );
+  return line.textContent();
+}
+
+/** Slides over an element with the mouse; returns felt friction and voltage at each sample. */
+async function slideOver(page, selector) {
+  await page.evaluate((selector) => {
+    globalThis.samples = { feltN: [], voltageV: [] };
+    document.querySelector(selector).addEventListener("feel", ({ detail }) => {
+      for (const name of ["feltN", "voltageV"]) samples[name].push(...detail[name]);
+    });
+  }, selector);
+  const canvas = page.locator(`${selector} #map-finger`);
+  await canvas.scrollIntoViewIfNeeded();
+  const { x, y, width, height } = await canvas.boundingBox();
+  await page.mouse.move(x + 0.2 * width, y + 0.5 * height);
+  await page.waitForTimeout(500);
+  await page.mouse.down();
+  await page.mouse.move(x + 0.8 * width, y + 0.5 * height, { steps: 90 });
+  await page.mouse.up();
+  return page.evaluate(() => samples);
+}
+
+function assertFelt({ feltN, voltageV }) {
+  const touched = feltN.filter((felt) => felt > 0.05);
+  assert.ok(touched.length > 200, `${touched.length} samples under the finger`);
+  assert.ok(Math.max(...touched) - Math.min(...touched) > 0.02, "the friction changes");
+  assert.ok(Math.max(...voltageV) > 50, "there is a drive");
+}
+
+test("from a file, bundled scenes and scenes inside of the element play", async () => {
+  const folder = documentOf(`
+    <frixel-scene id="bundled" scene="constant"><img alt="before the script is here"></frixel-scene>
+    <frixel-scene id="inside">${GRATING}</frixel-scene>
+    <frixel-scene id="draft">version = 2\n[[layer]]\nkind = "constant"\nfriction_n = 9</frixel-scene>
+    <frixel-scene id="wrong">version = 2\n[[layer]]\nkind = "gratin"</frixel-scene>
+    <frixel-scene id="absent" src="other.toml"></frixel-scene>
+    <frixel-scene id="empty"></frixel-scene>`);
+  const { page, errors, close } = await openPage(pathToFileURL(path.join(folder, "index.html")).href);
+  assert.equal(await lineOf(page, "#bundled"), "constant.toml");
+  assertFelt(await slideOver(page, "#bundled"));
+  assert.equal(await lineOf(page, "#inside"), "scene.toml");
+  assertFelt(await slideOver(page, "#inside"));
+  assert.match(await lineOf(page, "#draft"), /draft/);
+  assert.match(await lineOf(page, "#wrong"), /scene\.toml:3: .*grating/);
+  assert.match(await lineOf(page, "#empty"), /has no scene/);
+  assert.match(await lineOf(page, "#absent"), /opened from a file/);
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("from a server, `src` names a scene with its files", async () => {
+  const part = 'version = 2\n[[layer]]\nkind = "bitmap"\npicture = "wall.png"\nx_mm = 0\ny_mm = 0\nwidth_mm = 80\n';
+  const folder = documentOf('<frixel-scene id="there" src="scenes/mine.toml"></frixel-scene>', {
+    "scenes/mine.toml": 'version = 2\ninclude = ["parts/wall.toml"]\n',
+    "scenes/parts/wall.toml": part,
+    "scenes/parts/wall.png": fs.readFileSync(new URL("../../../scenes/textures/leather.png", import.meta.url)),
+  });
+  const server = http.createServer((request, answer) => {
+    const file = path.join(folder, path.normalize(new URL(request.url, "http://a").pathname));
+    if (fs.existsSync(file)) answer.writeHead(200, { "content-type": "text/html" }).end(fs.readFileSync(file));
+    else answer.writeHead(404).end();
+  });
+  after(() => server.close());
+  await new Promise((listening) => server.listen(0, "127.0.0.1", listening));
+  const { page, close } = await openPage(`http://127.0.0.1:${server.address().port}/index.html`);
+  assert.equal(await lineOf(page, "#there"), "mine.toml");
+  assertFelt(await slideOver(page, "#there"));
+  await page.evaluate(() => document.querySelector("#there").setAttribute("src", "none.toml"));
+  await page.waitForFunction(() => {
+    const line = document.querySelector("#there").shadowRoot.querySelector(".line");
+    return /404/.test(line.textContent);
+  });
+  await close();
+});

@@ -1,0 +1,205 @@
+// The page in a browser: what is felt along a slide, and its sound.
+
+import assert from "node:assert/strict";
+import { after, test } from "node:test";
+import { cleanUp } from "./harness.mjs";
+import { WHOLE_SCREEN_GRATING, openStudio } from "./page.mjs";
+
+/**
+ * The goal of DESIGN 8: error of the felt friction below 40 Hz over the reference's own AC rms, and correlation. The
+ * page's touch source reports 100 times a second, 10 ms late; for that class the goal is meant for features of 10 mm.
+ */
+const GOAL = { error: 0.25, correlation: 0.9 };
+const FEATURES_OF_10_MM = `version = 2
+
+[[layer]]
+kind = "grating"
+wavelength_mm = 20
+low_n = 0.0
+high_n = 0.1
+`;
+/** Mortar of 2 mm is finer than what such reports can follow: its lines are felt, some of them late. */
+const BRICK = { error: 0.6, correlation: 0.8 };
+const CORNER_HZ = 40;
+/** A stroke is tried so often. */
+const STROKES_MAX = 8;
+const SPEED_MM_PER_S = 80;
+/** A finger is known to stand still after some reports and 50 ms; noise of the touch source can put that off, ms. */
+const STILL_ZERO_MS = 500;
+/** Noise of the simulated touch source looks like a slide now and then: the most that a finger at rest is driven. */
+const STILL_DRIVEN_MAX = 0.75;
+/** Rms voltage that counts as none: what the carrier's last half period leaves of a mean, V. */
+const ZERO_V = 2;
+
+after(cleanUp);
+
+/** A first-order low-pass forwards and backwards, so that it delays nothing; samples are 1 ms apart. */
+function lowPass(values) {
+  const part = 1 - Math.exp((-2 * Math.PI * CORNER_HZ) / 1000);
+  const pass = (input) => {
+    let state = input[0];
+    return input.map((value) => (state += part * (value - state)));
+  };
+  return pass(pass(values).reverse()).reverse();
+}
+
+const mean = (values) => values.reduce((sum, value) => sum + value, 0) / values.length;
+const rms = (values) => Math.sqrt(mean(values.map((value) => value * value)));
+
+/** Compares what is felt with its reference, registered in place: at the shift of at most 10 ms that suits best. */
+function compared(felt, reference) {
+  const most = 10;
+  const swing = (values) => values.map((value) => value - mean(values));
+  const wanted = swing(reference.slice(most, -most));
+  const at = (shift) => {
+    const found = swing(felt.slice(most + shift, felt.length - most + shift));
+    const error = rms(found.map((value, index) => value - wanted[index])) / rms(wanted);
+    const correlation = mean(found.map((value, index) => value * wanted[index])) / rms(found) / rms(wanted);
+    return { error, correlation, shift, swing: rms(wanted) };
+  };
+  const shifts = Array.from({ length: 2 * most + 1 }, (_, index) => at(index - most));
+  return shifts.reduce((best, each) => (each.error < best.error ? each : best));
+}
+
+/** The samples of a stroke. Where the machine holds the page up, its board is disarmed: then the stroke is repeated. */
+async function wholeStroke(page, yMm) {
+  for (let tries = 0; tries < STROKES_MAX; tries += 1) {
+    const { way, isWhole } = await page.evaluate(
+      async ([yMm, speedMmPerS]) => {
+        const { samples } = studioPage;
+        let isWhole = true;
+        const states = new MutationObserver(() => (isWhole = false));
+        states.observe(document.documentElement, { attributeFilter: ["data-state"] });
+        await running();
+        const beginS = samples.nowS;
+        await slide(15, 105, yMm, speedMmPerS);
+        await wait(150);
+        lift(105, yMm);
+        await wait(200);
+        states.disconnect();
+        return { way: samples.since(beginS), isWhole };
+      },
+      [yMm, SPEED_MM_PER_S],
+    );
+    if (isWhole) return way;
+  }
+  throw new Error(`the machine is too busy: the board was disarmed in each of ${STROKES_MAX} strokes`);
+}
+
+/** Felt friction and reference along strokes over the scene that plays, below 40 Hz and registered in place. */
+async function feltAlong(page, linesMm) {
+  const errors = [];
+  for (const yMm of linesMm) {
+    const way = await wholeStroke(page, yMm);
+    // From 150 ms after the touch, while the finger slides.
+    const { timeS, xMm, speedMmPerS, feltN, referenceN } = way;
+    const touchS = timeS[xMm.findIndex(Number.isFinite)];
+    const isOnTheWay = (_, at) => timeS[at] > touchS + 0.15 && xMm[at] < 100 && speedMmPerS[at] > 40;
+    const felt = feltN.filter(isOnTheWay);
+    assert.ok(felt.length > 500, `${felt.length} samples on the way`);
+    errors.push(compared(lowPass(felt), lowPass(referenceN.filter(isOnTheWay))));
+  }
+  return Object.fromEntries(
+    ["error", "correlation", "swing"].map((name) => [name, mean(errors.map((each) => each[name]))]),
+  );
+}
+
+function assertFelt({ error, correlation, swing }, most, context, what) {
+  context.diagnostic(
+    `${what}: error ${error.toFixed(3)} of the reference's AC rms, correlation ${correlation.toFixed(3)}`,
+  );
+  assert.ok(swing > 0.005, "there is a texture");
+  assert.ok(error <= most.error, `${what}: error ${error}`);
+  assert.ok(correlation >= most.correlation, `${what}: correlation ${correlation}`);
+}
+
+test("a slide is felt as the scene has it", async (context) => {
+  const { page, errors, close } = await openStudio();
+  assertFelt(await feltAlong(page, [30, 60, 90]), BRICK, context, "brick");
+  await page.evaluate((text) => played(text), FEATURES_OF_10_MM);
+  assertFelt(await feltAlong(page, [20, 40, 60]), GOAL, context, "features of 10 mm");
+  await page.evaluate(() => studioPage.engine.stop());
+  const silent = await feltAlong(page, [40]);
+  assert.throws(() => assertFelt(silent, GOAL, context, "with the output at zero"));
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("a lifted finger gets nothing, and a still one is driven less than while it moves", async (context) => {
+  const { page, errors, close } = await openStudio();
+  const found = await page.evaluate(async (speedMmPerS) => {
+    const { samples } = studioPage;
+    // On the rough half, where there is a drive at each place.
+    await played(await studio.text("scenes/constant.toml"));
+    await running();
+    await slide(15, 105, 60, speedMmPerS);
+    const stillS = samples.nowS;
+    await wait(2500);
+    const still = samples.since(stillS - 0.1);
+    lift(105, 60);
+    await wait(300);
+    return { still, lifted: samples.since(samples.nowS - 0.1) };
+  }, SPEED_MM_PER_S);
+  const { voltageV, speedMmPerS } = found.still;
+  const stoodAt = speedMmPerS.findLastIndex((speed) => speed > 5);
+  assert.ok(voltageV[stoodAt - 20] > 50, "there was a drive while it moved");
+  const later = voltageV.slice(stoodAt + STILL_ZERO_MS);
+  const driven = later.filter((voltage) => voltage >= ZERO_V).length / later.length;
+  context.diagnostic(
+    `later than ${STILL_ZERO_MS} ms, noise of the touch source drove ${(100 * driven).toFixed(0)} % of the time`,
+  );
+  assert.ok(later.length > 1000, `${later.length} samples at rest`);
+  assert.ok(driven < STILL_DRIVEN_MAX, `${(100 * driven).toFixed(0)} % of the time`);
+  const { voltageV: lifted, xMm } = found.lifted;
+  assert.ok(xMm.every(Number.isNaN), "the finger is up");
+  assert.ok(lifted.length > 20 && lifted.every((voltage) => voltage < ZERO_V), "zero without a finger");
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+/** Slides over a grating of 2 mm: the peak of the sound is at speed over wavelength. Returns its frequency, Hz. */
+async function assertSoundPeakHz(page, speedMmPerS) {
+  const { peak, floor, hz } = await page.evaluate(async (speedMmPerS) => {
+    const { analyser } = studioPage.sound;
+    const width = analyser.context.sampleRate / analyser.fftSize;
+    const bins = [...Array(analyser.frequencyBinCount).keys()].filter((bin) => bin * width > 20 && bin * width < 1000);
+    let found = { peak: -Infinity };
+    const listen = () => {
+      const levels = new Float32Array(analyser.frequencyBinCount);
+      analyser.getFloatFrequencyData(levels);
+      const peak = bins.reduce((best, bin) => (levels[bin] > levels[best] ? bin : best));
+      const sorted = bins.map((bin) => levels[bin]).sort((a, b) => a - b);
+      if (levels[peak] > found.peak)
+        found = { peak: levels[peak], floor: sorted[sorted.length >> 1], hz: peak * width };
+    };
+    // What was heard before dies away: the analyser holds a third of a second.
+    await wait(500);
+    let isOver = false;
+    slide(5, 112, 40, speedMmPerS).then(() => (isOver = true));
+    while (!isOver) {
+      await wait(30);
+      listen();
+    }
+    lift(112, 40);
+    return found;
+  }, speedMmPerS);
+  assert.ok(peak > -30, `no sound: peak ${peak} dB, median ${floor} dB`);
+  assert.ok(Math.abs(hz - speedMmPerS / 2) <= 0.1 * (speedMmPerS / 2), `${hz} Hz at ${speedMmPerS} mm/s`);
+  return hz;
+}
+
+test("the sound's peak is speed over wavelength; without output there is none", async (context) => {
+  const { page, errors, close } = await openStudio();
+  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
+  await page.click("#tab-sound");
+  await page.click("text=Sound on");
+  await page.locator("text=Sound off").waitFor();
+  for (const speedMmPerS of [100, 150]) {
+    const hz = await assertSoundPeakHz(page, speedMmPerS);
+    context.diagnostic(`${speedMmPerS} mm/s over 2 mm: ${hz.toFixed(1)} Hz`);
+  }
+  await page.evaluate(() => studioPage.engine.stop());
+  await assert.rejects(assertSoundPeakHz(page, 100), /no sound| Hz at/, "with the output at zero");
+  assert.deepEqual(errors, []);
+  await close();
+});

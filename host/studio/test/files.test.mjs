@@ -1,0 +1,101 @@
+// The page in a browser: files, links and zips.
+
+import assert from "node:assert/strict";
+import fs from "node:fs";
+import { after, test } from "node:test";
+import { deflateRawSync } from "node:zlib";
+import { cleanUp, pageUrl } from "./harness.mjs";
+import { KEYS, PLAY, WHOLE_SCREEN_GRATING, assertSays, give, openIncluding, openStudio, tabsOf } from "./page.mjs";
+
+after(cleanUp);
+
+test("bad files and big ones are sentences", async () => {
+  const { page, errors, close } = await openStudio();
+  const png = fs.readFileSync(new URL("../../../scenes/textures/leather.png", import.meta.url));
+  const scene = Buffer.from(
+    'version = 2\n[[layer]]\nkind = "bitmap"\npicture = "bad.png"\nx_mm = 0\ny_mm = 0\nwidth_mm = 20\n',
+  );
+  await give(page, ["bad.png", Buffer.from("not a picture")]);
+  await assertSays(page, /bad\.png: .*no PNG/);
+  await give(page, ["bad.png", png.subarray(0, 900)], ["scene.toml", scene]);
+  await assertSays(page, /bad\.png/);
+  const big = Buffer.alloc(20_000_000, 0x41);
+  for (const name of ["big.toml", "big.png", "big.zip"]) {
+    await give(page, [name, big]);
+    await assertSays(page, new RegExp(`${name}: the file has 20\\.0 MB`));
+  }
+  await give(page, ["broken.zip", png]);
+  await assertSays(page, /broken\.zip: .*cannot be read/);
+  await give(page, ["song.mp3", png]);
+  await assertSays(page, /song\.mp3: expected a scene/);
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("a link with rubbish is a sentence, and the first scene plays", async () => {
+  const packed = (text) => deflateRawSync(Buffer.from(text)).toString("base64url");
+  const bomb = packed(`{"name":"a","text":"${"#".repeat(30_000_000)}"}`).slice(0, 60_000);
+  const { page, errors, close } = await openStudio(`${pageUrl}#scene=%%%`);
+  await assertSays(page, /link does not hold a scene/);
+  for (const rubbish of ["abcd", packed("{}"), packed("[1,2"), bomb]) {
+    await page.evaluate((hash) => (location.hash = hash), `scene=${rubbish}`);
+    await assertSays(page, /link does not hold a scene/);
+    assert.ok((await page.evaluate(() => studioPage.editor.text)).includes("brick"));
+  }
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("a shared link and a saved zip bring the scene back", async () => {
+  const { page, errors, close } = await openStudio();
+  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
+  await page.selectOption("#finger", "dry");
+  await page.click("#share");
+  await page.waitForFunction(() => location.hash.startsWith("#scene="));
+  const link = page.url();
+  const [saved] = await Promise.all([page.waitForEvent("download"), page.click("#save")]);
+  const zip = fs.readFileSync(await saved.path());
+  assert.deepEqual(errors, []);
+  await close();
+  const shared = await openStudio(link);
+  await shared.page.waitForFunction((text) => studioPage.editor.text === text, WHOLE_SCREEN_GRATING);
+  await shared.close();
+  const opened = await openStudio();
+  await give(opened.page, ["mine.zip", zip]);
+  await opened.page.waitForFunction((text) => studioPage.editor.text === text, WHOLE_SCREEN_GRATING);
+  assert.equal(await opened.page.inputValue("#finger"), "dry");
+  await opened.close();
+});
+
+test("a scene of several files goes into a link and a zip, and comes back", async () => {
+  const { page, errors, close } = await openIncluding();
+  const [saved] = await Promise.all([page.waitForEvent("download"), page.click("#save")]);
+  const zip = fs.readFileSync(await saved.path());
+  // A picture of 36 kB is too big for a link: without it, the rest fits.
+  await page.click("#share");
+  await assertSays(page, /too big for a link/);
+  await page.evaluate(() => studioPage.editor.show("keys.toml"));
+  const flat = KEYS.slice(0, KEYS.indexOf("[[layer]]"));
+  await give(page, ["keys.toml", flat]);
+  await page.waitForFunction(() => document.querySelectorAll("#panel-layers .layer").length === 2);
+  await page.click("#share");
+  await page.waitForFunction(() => location.hash.startsWith("#scene="));
+  await assertSays(page, /pastes the link into the page/);
+  const link = page.url();
+  assert.deepEqual(errors, []);
+  await close();
+  const shared = await openStudio();
+  await shared.page.evaluate((link) => {
+    const clipboardData = new DataTransfer();
+    clipboardData.setData("text/plain", link);
+    const target = document.querySelector(".cm-content");
+    target.dispatchEvent(new ClipboardEvent("paste", { clipboardData, bubbles: true, cancelable: true }));
+  }, link);
+  await shared.page.waitForFunction(() => document.querySelectorAll("#panel-layers .layer").length === 2);
+  assert.deepEqual(await tabsOf(shared.page), ["play.toml", "keys.toml"]);
+  assert.equal(await shared.page.evaluate(() => studioPage.editor.text), PLAY);
+  await give(shared.page, ["mine.zip", zip]);
+  await shared.page.waitForFunction(() => document.querySelectorAll("#panel-layers .layer").length === 3);
+  assert.deepEqual(shared.errors, []);
+  await shared.close();
+});

@@ -1,0 +1,142 @@
+// What the tests of the page share: the page that plays, a finger on it, and files that are given to it.
+
+import fs from "node:fs";
+import os from "node:os";
+import path from "node:path";
+import assert from "node:assert/strict";
+import { openPage, pageUrl } from "./harness.mjs";
+
+/** Opens the page and waits until its first scene plays. */
+export async function openStudio(url = pageUrl) {
+  const opened = await openPage(url);
+  await opened.page.waitForFunction(() => globalThis.studioPage && document.documentElement.dataset.state === "active");
+  await opened.page.waitForFunction(() => document.getElementById("check").textContent === "plays");
+  await opened.page.evaluate(addHelpers);
+  return opened;
+}
+
+/** Runs in the page. */
+function addHelpers() {
+  const canvas = document.getElementById("map-finger");
+  const send = (type, xMm, yMm, timeStamp) => {
+    const box = canvas.getBoundingClientRect();
+    const { scale } = studioPage.map;
+    const place = { clientX: box.left + xMm * scale, clientY: box.top + yMm * scale };
+    const event = new PointerEvent(type, { ...place, pointerId: 1, button: 0, bubbles: true });
+    if (timeStamp !== undefined) Object.defineProperty(event, "timeStamp", { value: timeStamp });
+    canvas.dispatchEvent(event);
+  };
+  /**
+   * Slides along x at a constant speed, with an event for each 8 ms, and leaves the finger down. The events are sent
+   * ahead with their times, so that the stroke is even however busy the machine is. Resolves at its end.
+   */
+  globalThis.slide = (fromMm, toMm, yMm, speedMmPerS) => {
+    const begin = performance.now();
+    const durationMs = (1000 * (toMm - fromMm)) / speedMmPerS;
+    send("pointerdown", fromMm, yMm, begin);
+    for (let ms = 8; ms <= durationMs; ms += 8) {
+      send("pointermove", fromMm + (speedMmPerS * ms) / 1000, yMm, begin + ms);
+    }
+    return wait(durationMs);
+  };
+  globalThis.lift = (xMm, yMm) => send("pointerup", xMm, yMm);
+  /** Resolves once the simulator runs: a busy machine may hold the page up. */
+  globalThis.running = async () => {
+    const { samples } = studioPage;
+    for (let since = samples.nowS; samples.nowS < since + 0.1;) await wait(20);
+  };
+  globalThis.wait = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+  globalThis.played = (text) =>
+    new Promise((resolve) => {
+      const { player, editor } = studioPage;
+      const before = player.onPlay;
+      player.onPlay = (now) => {
+        before(now);
+        if (now !== text) return;
+        player.onPlay = before;
+        resolve(performance.now());
+      };
+      editor.text = text;
+    });
+}
+
+/** The page is there, plays, and says this. */
+export async function assertSays(page, expected) {
+  await page.waitForFunction(
+    (source) => {
+      const shown = [...document.querySelectorAll("#problems li.error, #notice:not([hidden]) span")];
+      return shown.some((each) => new RegExp(source).test(each.textContent));
+    },
+    expected.source,
+    { timeout: 10_000 },
+  );
+  // On a busy machine the page may be held up, and the board disarmed, until the page lives again.
+  await page.waitForFunction(() => document.documentElement.dataset.state === "active");
+  assert.ok(await page.locator("#map-picture").isVisible());
+  await page.evaluate(() => (document.getElementById("notice").hidden = true));
+}
+
+/** Opens files of these names and contents, as a person does. */
+export async function give(page, ...files) {
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), "frixel-page-"));
+  for (const [name, content] of files) fs.writeFileSync(path.join(folder, name), content);
+  await page.setInputFiles(
+    "#files",
+    files.map(([name]) => path.join(folder, name)),
+  );
+}
+
+export const WHOLE_SCREEN_GRATING = `version = 2
+
+[[layer]]
+kind = "grating"
+wavelength_mm = 2
+low_n = 0.0
+high_n = 0.1
+`;
+
+export const KEYS = `version = 2
+
+[[ layer ]]
+name = "key"
+kind = "constant"
+friction_fraction = 0.8
+live = true
+gain = 0.5
+region = { x_mm = 20, y_mm = 20, width_mm = 10, height_mm = 40 }
+repeat = { columns = 3, dx_mm = 30 }
+
+[[layer]]
+name = "wood"
+kind = "bitmap"
+picture = "planks.jpg"
+x_mm = 0
+y_mm = 60
+width_mm = 30
+`;
+export const PLAY = `version = 2
+include = ["keys.toml"]
+
+[[layer]]
+name = "strip"
+kind = "constant"
+friction_fraction = 0.3
+region = { x_mm = 0, y_mm = 0, width_mm = 120, height_mm = 10 }
+`;
+const JPEG = fs.readFileSync(new URL("../../../scenes/textures/wood.jpg", import.meta.url));
+
+/** Opens a scene that includes another, which shows a JPEG picture. */
+export async function openIncluding() {
+  const opened = await openStudio();
+  const files = [
+    ["keys.toml", KEYS],
+    ["play.toml", PLAY],
+    ["planks.jpg", JPEG],
+  ];
+  await give(opened.page, ...files);
+  await opened.page.waitForFunction(() => document.querySelectorAll("#panel-layers .layer").length === 3);
+  await opened.page.click("#tab-layers");
+  return opened;
+}
+
+export const tabsOf = (page) => page.locator("#file-tabs button").allTextContents();
