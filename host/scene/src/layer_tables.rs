@@ -21,8 +21,9 @@ pub struct LayerTable {
     pub kind: &'static str,
     /// The gain in the file.
     pub gain: f64,
-    /// The numbers of its layers, from one, that [`LayerMap::record`](crate::LayerMap::record) takes.
-    pub layers: Range<usize>,
+    /// The numbers of its layers that [`LayerMap::record`](crate::LayerMap::record) takes: `3`, or `3.1`, `3.2` and so
+    /// on for copies.
+    pub layers: Vec<String>,
     /// The name of the file in messages.
     pub file: String,
     /// First and last line of the table in its file, from one.
@@ -36,12 +37,12 @@ impl Scene {
     pub fn layer_tables(&self) -> Vec<LayerTable> {
         let written: Vec<Written> = self.source.files().iter().flat_map(written).collect();
         let mut found: Vec<(LayerTable, Vec<Rectangle>)> = Vec::new();
-        for (number, layer) in (1..).zip(&self.layers) {
-            if !layer.is_copy {
-                found.push((self.layer_table(found.len() + 1, number, layer, &written), Vec::new()));
+        for layer in &self.layers {
+            if found.last().is_none_or(|(table, _)| table.number != layer.number.table) {
+                found.push((self.layer_table(layer, &written), Vec::new()));
             }
             if let Some((table, regions)) = found.last_mut() {
-                table.layers.end = number + 1;
+                table.layers.push(layer.number.to_string());
                 regions.extend(layer.region.as_ref().map(Region::bounds));
             }
         }
@@ -49,17 +50,18 @@ impl Scene {
         with_bounds.collect()
     }
 
-    fn layer_table(&self, table: usize, number: usize, layer: &Layer, written: &[Written]) -> LayerTable {
+    /// The table that a layer was written in, without its layers.
+    fn layer_table(&self, layer: &Layer, written: &[Written]) -> LayerTable {
         let start = layer.places.table();
         let text = written.iter().find(|table| table.places.start == start);
         let end = text.map_or(start, |table| table.places.end);
         let line = |offset| self.source.line_and_column(offset).0;
         LayerTable {
-            number: table,
+            number: layer.number.table,
             name: text.and_then(|table| table.name.clone()),
             kind: layer.kind.word(),
             gain: layer.gain,
-            layers: number..number + 1,
+            layers: Vec::new(),
             file: self.source.name_at(start).to_owned(),
             lines: (line(start), line(end)),
             bounds_mm: None,

@@ -19,7 +19,7 @@ pub(crate) struct FileLayer {
     /// What a person will feel of it, or of its first copy, one sentence; empty for a layer that is not felt anywhere.
     felt: String,
     /// The numbers of its layers in control lines.
-    controls: Vec<usize>,
+    controls: Vec<String>,
     /// Whether they can be changed while they play.
     is_live: bool,
     /// Why they cannot, one sentence; empty if they can.
@@ -41,13 +41,13 @@ pub(crate) struct FileLayer {
 pub(crate) fn layers(scene: &Scene, entry: &str, program: &Program, perception: &Perception) -> Vec<FileLayer> {
     let describe = |table: LayerTable| {
         let LayerTable { number, name, kind, gain, layers, file, lines, bounds_mm } = table;
-        let live = program.layers.record(&layers.start.to_string());
+        let live = layers.iter().try_for_each(|layer| program.layers.record(layer).map(drop));
         FileLayer {
             index: number,
             name: name.unwrap_or_else(|| kind.to_owned()),
             kind,
             felt: felt(number, perception),
-            controls: layers.collect(),
+            controls: layers,
             is_live: live.is_ok(),
             why_not_live: live.err().map_or(String::new(), |error| error.to_string()),
             gain,
@@ -64,7 +64,8 @@ pub(crate) fn layers(scene: &Scene, entry: &str, program: &Program, perception: 
 /// The sentence on the layer with this number.
 fn felt(number: usize, perception: &Perception) -> String {
     let title = format!("layer {number}");
-    let is_it = |other: &str| other.strip_prefix(&title).is_some_and(|rest| rest.is_empty() || rest.starts_with(' '));
+    let is_it =
+        |other: &str| other.strip_prefix(&title).is_some_and(|rest| rest.is_empty() || rest.starts_with([' ', '.']));
     let layer = perception.layers.iter().find(|layer| is_it(&layer.layer));
     layer.map_or(String::new(), feel::sentence)
 }
