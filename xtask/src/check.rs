@@ -84,6 +84,9 @@ pub(crate) fn soak() -> Result<(), String> {
     let people =
         ["test", "--release", "--locked", "--package", "frixel", "--test", "fit", "--", "--ignored", "--nocapture"];
     stages.run("fits of 200 people", || passed(cargo("soak", ".", &people, &[])))?;
+    let ports =
+        ["test", "--locked", "--package", "frixel", "--test", "designer", "--", "--ignored", "--test-threads", "1"];
+    stages.run("experiments in real time", || passed(cargo("soak", ".", &ports, &[])))?;
     stages.run("random scenes", || {
         passed(Pace::ALL.into_iter().try_for_each(|pace| programs::check(pace, programs::FEW, programs::MANY)))
     })?;

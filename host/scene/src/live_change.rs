@@ -1,6 +1,6 @@
-//! What a host asks for when it changes layers while they play.
+//! Whether the drive can give what layers ask for once they are changed while they play.
 
-use frixel_layers::Interval;
+use frixel_layers::{Interval, range};
 use thiserror::Error;
 
 use super::cover::{Excess, excesses};
@@ -14,8 +14,6 @@ use super::titles::listed;
 const PLACES_MAX: usize = 4_000;
 /// Steps of the search for a gain that can be reached.
 const STEPS: u32 = 10;
-/// Largest magnitude of a gain.
-const GAIN_MAX: f64 = 100.0;
 
 /// The settings of a layer while it plays.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,7 +70,7 @@ impl Program {
         };
         let start = f64::from(settings.get(number)?.gain);
         let start = [start, 1.0, 0.0].into_iter().find(|gain| is_in_reach(*gain))?;
-        let [least, most] = [-GAIN_MAX, GAIN_MAX].map(|limit| {
+        let [least, most] = [range::GAIN.min, range::GAIN.max].map(|limit| {
             if is_in_reach(limit) {
                 return limit;
             }

@@ -117,10 +117,16 @@ pub extern "C" fn simulator_resume() -> i32 {
     with_simulator(|simulator| Ok(simulator.resume()?))
 }
 
-/// Carries out a control line, which is the input as text, on the simulator.
+/// Carries out a control line, which is the input as text, on the simulator. The answer has `notice`: a sentence on what
+/// is clamped from now on, or `null`.
 #[unsafe(no_mangle)]
 pub extern "C" fn simulator_control() -> i32 {
-    with_simulator(|simulator| simulator.host_mut().control(&line()))
+    respond(|| {
+        SIMULATOR.with_borrow_mut(|simulator| {
+            let simulator = simulator.as_mut().ok_or(HostError::NoBoard)?;
+            Ok(json!({ "notice": simulator.host_mut().control(&line())? }))
+        })
+    })
 }
 
 /// Ticks of the simulator since power-on; 0 without one.
@@ -226,13 +232,10 @@ pub extern "C" fn host_clear_fault() -> i32 {
     })
 }
 
-/// Carries out a control line, which is the input as text. Suspends.
+/// Carries out a control line, which is the input as text, as [`simulator_control`] does. Suspends.
 #[unsafe(no_mangle)]
 pub extern "C" fn host_control() -> i32 {
-    with_host(|host| {
-        host.control(&line())?;
-        Ok(json!({}))
-    })
+    with_host(|host| Ok(json!({ "notice": host.control(&line())? })))
 }
 
 /// Keeps the board alive for some milliseconds. Suspends. The answer has `state`, `fault` and `telemetry`.

@@ -6,7 +6,7 @@ use frixel_driver::{
     Bitmap, ByteStream, ControlError, ControlLine, Device, DeviceError, Event, Link as _, PollingLink, Upload,
 };
 use frixel_hil_sim::{StrokeError, WorldError};
-use frixel_scene::{LayerError, Program};
+use frixel_scene::{LayerChange, LiveError, LiveLayers, Program};
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::hello::Hello;
 use frixel_wire::message::{Refusal, Telemetry};
@@ -44,7 +44,7 @@ pub enum HostError {
     },
     /// The layer cannot be changed.
     #[error(transparent)]
-    Layer(#[from] LayerError),
+    Live(#[from] LiveError),
     /// No scene plays whose layers could be changed.
     #[error("no scene plays: play one, then change its layers")]
     NothingPlays,
@@ -100,17 +100,14 @@ pub(crate) struct Host<S: ByteStream> {
 /// The scene on the board.
 struct Playing {
     program: Program,
-    /// Whether each record is on, and its gain.
-    settings: Vec<(bool, f32)>,
-    /// Records to switch off, and when, on the link's clock.
-    triggered: Vec<(u8, Duration)>,
+    /// On the link's clock.
+    layers: LiveLayers,
 }
 
 impl Playing {
     /// A program whose layers are as its scene sets them.
     fn new(program: Program) -> Self {
-        let settings = program.records.iter().map(|record| (true, record.gain)).collect();
-        Self { program, settings, triggered: Vec::new() }
+        Self { layers: LiveLayers::new(&program), program }
     }
 }
 
@@ -241,30 +238,28 @@ impl<S: ByteStream + SceneListener> Host<S> {
         self.device.subscribe(period_ticks)
     }
 
-    /// Carries out a control line: `layer` or `trigger`, in the words of [`ControlLine`].
-    pub(crate) fn control(&mut self, line: &str) -> Result<(), HostError> {
-        let (layer, on, gain, duration_s) = match ControlLine::parse(line)? {
-            None => return Ok(()),
-            Some(ControlLine::Layer { layer, on, gain }) => (layer, on, gain, None),
-            Some(ControlLine::Trigger { layer, duration_s }) => (layer, Some(true), None, Some(duration_s)),
-            Some(_) => return Err(HostError::NotInPage { line: line.to_owned() }),
+    /// Carries out a control line: `layer` or `trigger`, in the words of [`ControlLine`]. Returns a sentence on what
+    /// is clamped from now on.
+    pub(crate) fn control(&mut self, line: &str) -> Result<Option<String>, HostError> {
+        let Some(words) = ControlLine::parse(line)? else { return Ok(None) };
+        let now = self.device.now();
+        let Playing { program, layers } = self.playing.as_mut().ok_or(HostError::NothingPlays)?;
+        let change = match words {
+            ControlLine::Layer { layer, on, gain } => layers.change(program, &layer, on, gain)?,
+            ControlLine::Trigger { layer, duration_s } => {
+                let duration = Duration::try_from_secs_f64(duration_s).unwrap_or(Duration::MAX);
+                layers.trigger(program, &layer, now, duration)?
+            }
+            _ => return Err(HostError::NotInPage { line: line.to_owned() }),
         };
-        let playing = self.playing.as_mut().ok_or(HostError::NothingPlays)?;
-        let record = playing.program.layers.record(&layer)?;
-        playing.triggered.retain(|(triggered, _)| *triggered != record);
-        if let Some(duration_s) = duration_s {
-            playing.triggered.push((record, self.device.now() + Duration::from_secs_f64(duration_s)));
-        }
-        Ok(self.set_layer(record, on, gain)?)
+        self.set_layer(&change)?;
+        Ok(change.notice())
     }
 
-    fn set_layer(&mut self, record: u8, on: Option<bool>, gain: Option<f32>) -> Result<(), DeviceError> {
-        let settings = self.playing.as_mut().and_then(|playing| playing.settings.get_mut(usize::from(record)));
-        let Some(setting) = settings else { return Ok(()) };
-        let (is_on, gain) = (on.unwrap_or(setting.0), gain.unwrap_or(setting.1));
-        self.device.set_layer(record, is_on, gain)?;
-        *setting = (is_on, gain);
-        self.stream_mut().layer_changed(record, is_on, gain);
+    fn set_layer(&mut self, change: &LayerChange) -> Result<(), DeviceError> {
+        let LayerChange { record, setting, .. } = change;
+        self.device.set_layer(*record, setting.on, setting.gain)?;
+        self.stream_mut().layer_changed(*record, setting.on, setting.gain);
         Ok(())
     }
 
@@ -273,22 +268,16 @@ impl<S: ByteStream + SceneListener> Host<S> {
         let end = self.device.now() + duration;
         loop {
             let now = self.device.now();
-            while let Some(record) = self.trigger_ended(now) {
-                self.set_layer(record, Some(false), None)?;
+            while let Some(change) = self.playing.as_mut().and_then(|playing| playing.layers.end_trigger(now)) {
+                self.set_layer(&change)?;
             }
             if now >= end {
                 return Ok(());
             }
-            let triggered = self.playing.iter().flat_map(|playing| &playing.triggered);
-            let wake_at = triggered.map(|(_, off_at)| *off_at).fold(end, Duration::min);
+            let next_end = self.playing.as_ref().and_then(|playing| playing.layers.next_end());
+            let wake_at = next_end.map_or(end, |next_end| next_end.min(end));
             self.listen(wake_at.saturating_sub(now))?;
         }
-    }
-
-    fn trigger_ended(&mut self, now: Duration) -> Option<u8> {
-        let triggered = &mut self.playing.as_mut()?.triggered;
-        let index = triggered.iter().position(|(_, off_at)| *off_at <= now)?;
-        Some(triggered.swap_remove(index).0)
     }
 
     fn listen(&mut self, duration: Duration) -> Result<(), DeviceError> {

@@ -28,8 +28,8 @@ pub fn lines(perception: &Perception) -> Vec<(&'static str, String)> {
 
 impl Subject {
     fn new<'t>(text: String, titles: impl IntoIterator<Item = &'t String>) -> Self {
-        // A title is `layer 3 "name"`.
-        let number = |title: &String| title.split(' ').nth(1).unwrap_or_default().to_owned();
+        // A title is `layer 3 "name"`, or `layer 3.1 "name 1"` for a copy.
+        let number = |title: &String| title.split([' ', '.']).nth(1).unwrap_or_default().to_owned();
         Self { text, layers: titles.into_iter().map(number).collect() }
     }
 }

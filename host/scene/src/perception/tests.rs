@@ -220,7 +220,7 @@ fn copies_of_a_layer_are_named_once() {
     let lines = feel::lines(&of(detents));
     let feel: Vec<&String> = lines.iter().filter(|(name, _)| *name == "feel").map(|(_, text)| text).collect();
     assert_eq!(feel.len(), 1, "{feel:?}");
-    assert!(feel[0].starts_with("layer 1 \"detent 1\" and 5 alike: 250."), "{feel:?}");
+    assert!(feel[0].starts_with("layer 1.1 \"detent 1\" and 5 alike: 250."), "{feel:?}");
     assert!(!lines.iter().any(|(name, _)| *name == "alike"), "{lines:?}");
 }
 

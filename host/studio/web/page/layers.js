@@ -1,6 +1,6 @@
 // The layers of the scene: what is felt of each, and live switches and gains.
 
-import { attempt, byId, element } from "./dom.js";
+import { attempt, byId, element, notify } from "./dom.js";
 
 export class Layers {
   #engine;
@@ -58,12 +58,15 @@ export class Layers {
     slider.step = most / 40;
     slider.value = state.gain;
     const number = input("number", layer.gainMin, layer.gainMax, `gain of ${label}, as a number`);
-    isOn.onchange = () => this.#change(layer, { on: isOn.checked }, isOn.checked ? "on" : "off", state);
-    const change = (from, to) => () => {
+    isOn.onchange = async () => {
+      if (!(await this.#change(layer, { on: isOn.checked }, isOn.checked ? "on" : "off", state))) isOn.checked = state.on;
+    };
+    const change = (from, to) => async () => {
       const gain = Number(from.value);
       if (from.value === "" || !from.checkValidity()) return;
       to.value = gain;
-      this.#change(layer, { gain }, `gain ${gain}`, state);
+      if (await this.#change(layer, { gain }, `gain ${gain}`, state)) return;
+      from.value = to.value = state.gain;
     };
     slider.oninput = change(slider, number);
     number.oninput = change(number, slider);
@@ -71,10 +74,15 @@ export class Layers {
     return element("div", { className: "live" }, element("label", { className: "check" }, isOn, " on"), slider, times);
   }
 
-  /** Sends only what was changed: the scene's gain stays until the slider is moved. */
-  #change({ index, controls }, next, words, state) {
+  /** Sends only what was changed: the scene's gain stays until the slider is moved. Resolves to whether it was done. */
+  async #change({ index, controls }, next, words, state) {
+    for (const number of controls) {
+      const answer = await attempt(() => this.#engine.control(`layer ${number} ${words}`));
+      if (answer === undefined) return false;
+      if (answer.notice) notify(answer.notice);
+    }
     Object.assign(state, next);
     this.#live.set(index, state);
-    for (const number of controls) attempt(() => this.#engine.control(`layer ${number} ${words}`));
+    return true;
   }
 }

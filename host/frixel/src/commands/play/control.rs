@@ -9,9 +9,7 @@ use std::time::Duration;
 use frixel::player::{PlayError, Player};
 use frixel::rigs::RecordedLink;
 use frixel_driver::{ControlLine, DeviceError};
-use frixel_layers::{Layer, Vibration};
-use frixel_scene::{Clamped, LayerSetting, Program};
-use thiserror::Error;
+use frixel_scene::{LayerChange, LiveError, LiveLayers, Program};
 
 use super::{CommandError, Interrupt, note};
 
@@ -31,36 +29,8 @@ pub(super) struct Control {
     lines_read: u32,
     /// Time of the play before which no line is carried out, s.
     resume_at_s: f64,
-    /// Layers to switch off, and when, in s.
-    triggered: Vec<(u8, f64)>,
-    /// The settings of each record.
-    settings: Vec<LayerSetting>,
-}
-
-/// Why a line is not carried out, or not as it was meant.
-#[derive(Debug, Error)]
-enum ControlRefusal {
-    /// The layer is on.
-    #[error(
-        "layer {layer:?} is on, and a trigger plays a layer that is off: switch it off first, by `layer {layer:?} off`"
-    )]
-    TriggerOn { layer: String },
-    /// The layer may be silent for the whole trigger.
-    #[error(
-        "layer {layer:?} comes in bursts, one every {period_ms:.0} ms, so that a trigger of {duration_ms:.0} ms may be \
-         silent: leave `burst` out in the file, or trigger it for {period_ms:.0} ms or more"
-    )]
-    TriggerBetweenBursts { layer: String, period_ms: f64, duration_ms: f64 },
-    /// A gain leads out of reach.
-    #[error("gain {gain} is refused: {clamped}{}", gain_advice(*.range))]
-    GainOutOfReach { gain: f32, clamped: Clamped, range: Option<(f32, f32)> },
-    /// Layers are out of reach now.
-    #[error("{0}; it is clamped there")]
-    Clamped(Clamped),
-}
-
-fn gain_advice(range: Option<(f32, f32)>) -> String {
-    range.map_or(String::new(), |(least, most)| format!("; give a gain from {least} to {most}"))
+    /// On the clock of the play.
+    layers: LiveLayers,
 }
 
 /// What the play does next.
@@ -83,20 +53,20 @@ impl Control {
         };
         let thread = thread::Builder::new().name("frixel-control".into()).spawn(read);
         thread.map_err(CommandError::reading("standard input".as_ref()))?;
-        let (settings, interrupt) = (settings(program), interrupt.clone());
-        Ok(Self { lines, waits, interrupt, lines_read: 0, resume_at_s: 0.0, triggered: Vec::new(), settings })
+        let (layers, interrupt) = (LiveLayers::new(program), interrupt.clone());
+        Ok(Self { lines, waits, interrupt, lines_read: 0, resume_at_s: 0.0, layers })
     }
 
     /// Continues with another program, all of whose layers are on.
     pub(super) fn replace(&mut self, program: &Program) {
-        self.settings = settings(program);
-        self.triggered.clear();
+        self.layers = LiveLayers::new(program);
     }
 
     /// Longest time that the play may go on at time `t_s` without a look at the lines.
     pub(super) fn time_max(&self, t_s: f64) -> Duration {
-        let waited_for = self.triggered.iter().map(|(_, off_at_s)| *off_at_s).chain([self.resume_at_s]);
-        let next_s = waited_for.filter(|at_s| *at_s > t_s).fold(f64::INFINITY, f64::min);
+        let ends_at_s = self.layers.next_end().map(|ends_at| ends_at.as_secs_f64());
+        let next_s =
+            ends_at_s.into_iter().chain([self.resume_at_s]).filter(|at_s| *at_s > t_s).fold(f64::INFINITY, f64::min);
         let until_next = Duration::try_from_secs_f64(next_s - t_s).unwrap_or(Duration::MAX).max(STEP_MIN);
         if self.waits { until_next } else { until_next.min(LOOK_PERIOD) }
     }
@@ -108,9 +78,9 @@ impl Control {
         program: &Program,
         t_s: f64,
     ) -> Result<Next, PlayError> {
-        while let Some(index) = self.triggered.iter().position(|(_, off_at_s)| *off_at_s <= t_s) {
-            let (layer, _) = self.triggered.swap_remove(index);
-            self.set(player, layer, Some(false), None)?;
+        let now = Duration::try_from_secs_f64(t_s).unwrap_or_default();
+        while let Some(change) = self.layers.end_trigger(now) {
+            self.send(player, change)?;
         }
         while t_s >= self.resume_at_s {
             let Some(line) = self.next_line() else { return Ok(Next::GoOn) };
@@ -121,21 +91,13 @@ impl Control {
                 Ok(Some(ControlLine::Replace { file })) => return Ok(Next::Replace(file.into())),
                 Ok(Some(ControlLine::Wait { duration_s })) => self.resume_at_s = t_s + duration_s,
                 Ok(Some(ControlLine::Layer { layer, on, gain })) => {
-                    if let Some(record) = self.layer(program, &layer) {
-                        self.change(player, program, record, on, gain)?;
-                    }
+                    let change = self.layers.change(program, &layer, on, gain);
+                    self.carry_out(player, change)?;
                 }
                 Ok(Some(ControlLine::Trigger { layer, duration_s })) => {
-                    if let Some(record) = self.layer(program, &layer) {
-                        match self.check_trigger(program, layer, record, duration_s) {
-                            Ok(()) => {
-                                self.set(player, record, Some(true), None)?;
-                                self.triggered.retain(|(triggered, _)| *triggered != record);
-                                self.triggered.push((record, t_s + duration_s));
-                            }
-                            Err(refusal) => self.say(refusal),
-                        }
-                    }
+                    let duration = Duration::try_from_secs_f64(duration_s).unwrap_or(Duration::MAX);
+                    let change = self.layers.trigger(program, &layer, now, duration);
+                    self.carry_out(player, change)?;
                 }
                 Err(error) => self.say(error),
             }
@@ -154,76 +116,28 @@ impl Control {
         self.lines.try_recv().ok()
     }
 
-    /// The record of a layer. Prints the reason if the scene has no such layer.
-    fn layer(&self, program: &Program, name: &str) -> Option<u8> {
-        program.layers.record(name).map_err(|error| self.say(error)).ok()
-    }
-
-    /// Changes a layer, unless its gain leads out of reach in a scene that does not saturate. What a board would clamp
-    /// is said.
-    fn change<L: RecordedLink>(
+    /// Sends a change to the board, or says why there is none.
+    fn carry_out<L: RecordedLink>(
         &mut self,
         player: &mut Player<L>,
-        program: &Program,
-        record: u8,
-        on: Option<bool>,
-        gain: Option<f32>,
+        change: Result<LayerChange, LiveError>,
     ) -> Result<(), PlayError> {
-        let mut changed = self.settings.clone();
-        if let Some(setting) = changed.get_mut(usize::from(record)) {
-            *setting = LayerSetting { on: on.unwrap_or(setting.on), gain: gain.unwrap_or(setting.gain) };
-        }
-        let before = program.clamped_with(&self.settings);
-        if let Some(clamped) = program.clamped_with(&changed).filter(|clamped| before.as_ref() != Some(clamped)) {
-            match gain.filter(|_| !program.saturates && !program.is_draft()) {
-                Some(gain) => {
-                    let range = program.gains_in_reach(record, &changed);
-                    self.say(ControlRefusal::GainOutOfReach { gain, clamped, range });
-                    return Ok(());
-                }
-                None => self.say(ControlRefusal::Clamped(clamped)),
+        match change {
+            Ok(change) => self.send(player, change),
+            Err(error) => {
+                self.say(error);
+                Ok(())
             }
-        }
-        if on.is_some() {
-            // A layer that is switched by hand stays as it is when its trigger ends.
-            self.triggered.retain(|(triggered, _)| *triggered != record);
-        }
-        self.set(player, record, on, gain)
-    }
-
-    /// Refuses a trigger that would leave a layer off that is on, or that may not be felt.
-    fn check_trigger(
-        &self,
-        program: &Program,
-        layer: String,
-        record: u8,
-        duration_s: f64,
-    ) -> Result<(), ControlRefusal> {
-        let is_on = self.settings.get(usize::from(record)).is_some_and(|setting| setting.on);
-        let is_triggered = self.triggered.iter().any(|(triggered, _)| *triggered == record);
-        if is_on && !is_triggered {
-            return Err(ControlRefusal::TriggerOn { layer });
-        }
-        match program.records.get(usize::from(record)).map(|record| &record.layer) {
-            Some(Layer::Vibration(Vibration { burst, .. })) if duration_s <= f64::from(burst.period_s - burst.on_s) => {
-                let (period_ms, duration_ms) = (1e3 * f64::from(burst.period_s), 1e3 * duration_s);
-                Err(ControlRefusal::TriggerBetweenBursts { layer, period_ms, duration_ms })
-            }
-            _ => Ok(()),
         }
     }
 
-    /// Changes a layer. Says why if the board refuses it.
-    fn set<L: RecordedLink>(
-        &mut self,
-        player: &mut Player<L>,
-        layer: u8,
-        on: Option<bool>,
-        gain: Option<f32>,
-    ) -> Result<(), PlayError> {
-        let Some(setting) = self.settings.get_mut(usize::from(layer)) else { return Ok(()) };
-        *setting = LayerSetting { on: on.unwrap_or(setting.on), gain: gain.unwrap_or(setting.gain) };
-        match player.set_layer(layer, setting.on, setting.gain) {
+    /// Sends a change to the board. Says what is clamped, and why if the board refuses the change.
+    fn send<L: RecordedLink>(&mut self, player: &mut Player<L>, change: LayerChange) -> Result<(), PlayError> {
+        if let Some(notice) = change.notice() {
+            self.say(notice);
+        }
+        let LayerChange { record, setting, .. } = change;
+        match player.set_layer(record, setting.on, setting.gain) {
             Err(PlayError::Device(refused @ DeviceError::Refused { .. })) => {
                 self.say(refused);
                 Ok(())
@@ -235,8 +149,4 @@ impl Control {
     fn say(&self, error: impl std::fmt::Display) {
         note(format_args!("frixel: line {} of standard input: {error}", self.lines_read));
     }
-}
-
-fn settings(program: &Program) -> Vec<LayerSetting> {
-    program.records.iter().map(|record| LayerSetting { on: true, gain: record.gain }).collect()
 }
