@@ -152,6 +152,14 @@ fn defaults_are_checked_whether_a_layer_uses_them_or_not() {
     ] {
         assert_eq!(refused(defaults), [mistake], "{defaults}");
     }
+    let text = format!(
+        "version = 2\n[defaults]\nregion = {{ x_mm = 0, y_mm = 0, width_mm = 9, height_mm = 9 }}\n\
+         [[layer]]\nkind = \"constant\"\nfriction_fraction = 0\nregion = {{ x_mm = 1, y_mm = 0, width_mm = 9 }}\n{TRACK}"
+    );
+    assert_eq!(
+        compile_text(&text).expect_err("it is refused").to_string(),
+        "test.toml:7:10: this region, which replaces the default as a whole, has no `height_mm`: add it"
+    );
     // A blend that one kind does not have is right for the others.
     let text = format!("version = 2\n[defaults]\nblend = \"add\"\nfactors = [0, 1]\nabove = \"natural\"\n{TRACK}");
     compile_text(&text).expect("it is right");
