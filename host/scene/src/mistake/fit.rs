@@ -56,7 +56,7 @@ pub enum FitMistake {
         reach_n: f64,
         /// What to lower.
         lower: &'static str,
-        /// The limits of [drive] that reach the target if they are raised to these values, V; empty if other limits
+        /// The limits of `[drive]` that reach the target if they are raised to these values, V; empty if other limits
         /// forbid that, or if the amounts are fractions, which more voltage does not change.
         raise: Vec<(&'static str, f64)>,
         /// Whether the number is in reach if it was meant in millinewtons.

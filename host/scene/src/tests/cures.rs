@@ -35,6 +35,9 @@ fn raised(drive: &[(&str, f64)], limits: &[(String, f64)]) -> String {
 
 /// More volts are proposed only where they help, and just so many as help: within the limits of board, screen and
 /// measurement, and not for fractions.
+/// Head, limits of the drive, crest, and the limits that the message proposes to raise.
+type Case<'c> = (&'c str, &'c [(&'c str, f64)], &'c str, &'c [&'c str]);
+
 #[test]
 fn more_volts_that_are_proposed_help() {
     let grating = "[[layer]]\nkind = \"grating\"\nwavelength_mm = 2\nlow_n = 0\nhigh_n = HIGH\n";
@@ -46,7 +49,7 @@ fn more_volts_that_are_proposed_help() {
     let soft = "[finger]\nfriction_coefficient = 0.5\nnormal_load_n = 0.5\nradius_mm = 8\nmodel = \"soft\"\n\
         modulus_pa = 1e5\nstress_exponent = 0.9\nshape_constant = 4.5\nskin_gap_um = 4.74\n";
     let (rms, peak) = ("voltage_max_v_rms", "voltage_max_v_peak");
-    let cases: [(&str, &[(&str, f64)], &str, &[&str]); 12] = [
+    let cases: [Case<'_>; 12] = [
         ("", &[], "0.16", &[rms]),
         ("", &[(rms, 120.0)], "0.12", &[rms]),
         // The board's peak allows some 210 V rms, which is too little.

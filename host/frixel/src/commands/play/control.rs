@@ -80,7 +80,7 @@ impl Control {
     ) -> Result<Next, PlayError> {
         let now = Duration::try_from_secs_f64(t_s).unwrap_or_default();
         while let Some(change) = self.layers.end_trigger(now) {
-            self.send(player, change)?;
+            self.send(player, &change)?;
         }
         while t_s >= self.resume_at_s {
             let Some(line) = self.next_line() else { return Ok(Next::GoOn) };
@@ -123,7 +123,7 @@ impl Control {
         change: Result<LayerChange, LiveError>,
     ) -> Result<(), PlayError> {
         match change {
-            Ok(change) => self.send(player, change),
+            Ok(change) => self.send(player, &change),
             Err(error) => {
                 self.say(error);
                 Ok(())
@@ -132,11 +132,11 @@ impl Control {
     }
 
     /// Sends a change to the board. Says what is clamped, and why if the board refuses the change.
-    fn send<L: RecordedLink>(&mut self, player: &mut Player<L>, change: LayerChange) -> Result<(), PlayError> {
+    fn send<L: RecordedLink>(&mut self, player: &mut Player<L>, change: &LayerChange) -> Result<(), PlayError> {
         if let Some(notice) = change.notice() {
             self.say(notice);
         }
-        let LayerChange { record, setting, .. } = change;
+        let LayerChange { record, setting, .. } = *change;
         match player.set_layer(record, setting.on, setting.gain) {
             Err(PlayError::Device(refused @ DeviceError::Refused { .. })) => {
                 self.say(refused);
