@@ -82,7 +82,7 @@ impl Gathered {
 
 /// Those of some files that may be scenes.
 fn scenes(files: Vec<String>) -> Vec<String> {
-    files.into_iter().filter(|file| file.ends_with(".toml")).collect()
+    files.into_iter().filter(|file| file.rsplit_once('.').is_some_and(|(_, ending)| ending == "toml")).collect()
 }
 
 /// The names in `include` of a text, each with its offset.

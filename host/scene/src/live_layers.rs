@@ -38,7 +38,8 @@ pub enum LiveError {
     },
     /// The layer is triggered with a gain of zero.
     #[error(
-        "layer {layer:?} has a gain of 0, so that a trigger plays nothing: give it one first, by `layer {layer:?} gain 1`"
+        "layer {layer:?} has a gain of 0, so that a trigger plays nothing: give it one first, by \
+         `layer {layer:?} gain 1`"
     )]
     TriggerSilent {
         /// The name or number that was given.

@@ -190,7 +190,7 @@ pub(super) fn of_layers(layers: &[Layer]) -> Vec<Warning> {
 }
 
 /// The warnings of the topmost layer that hides all layers below it for good, and of the topmost one above it that
-/// hides them while it is on.
+/// hides them while it is on. Whole screens that the host switches are meant to hide one another.
 fn hiding(layers: &[Layer]) -> impl Iterator<Item = Warning> {
     let hides = |layer: &Layer| {
         let is_everywhere = layer.region.is_none() && layer.kind.fills_screen();
@@ -198,7 +198,9 @@ fn hiding(layers: &[Layer]) -> impl Iterator<Item = Warning> {
     };
     let topmost = |is_live: bool| layers.iter().rposition(|layer| layer.live == is_live && hides(layer));
     let (for_good, while_on) = (topmost(false), topmost(true));
-    let while_on = while_on.filter(|number| for_good.is_none_or(|for_good| *number > for_good));
+    let has_regions = |number: usize| layers.iter().take(number).any(|below| below.region.is_some());
+    let is_above = |number: usize| for_good.is_none_or(|for_good| number > for_good);
+    let while_on = while_on.filter(|number| is_above(*number) && has_regions(*number));
     for_good.into_iter().chain(while_on).filter(|number| *number > 0).filter_map(|number| {
         let layer = layers.get(number)?;
         let hidden: Vec<&str> = layers.iter().take(number).map(|below| below.title.as_str()).collect();

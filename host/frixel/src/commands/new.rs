@@ -26,10 +26,7 @@ pub(super) fn run(args: &NewArgs) -> Result<(), CommandError> {
     }
     let path = args.name.with_extension("toml");
     let text = match &args.picture {
-        Some(picture) => {
-            let pixels = pixels(picture)?;
-            with_picture(&name_from(&path, picture)?, pixels)
-        }
+        Some(picture) => with_picture(&name_from(&path, picture)?, pixels(picture)?),
         None => with_stripes(),
     };
     let created = File::create_new(&path).and_then(|mut file| file.write_all(text.as_bytes()));
@@ -45,15 +42,11 @@ pub(super) fn run(args: &NewArgs) -> Result<(), CommandError> {
     ))
 }
 
-/// Width and height of a picture that can be played.
-fn pixels(picture: &Path) -> Result<(usize, usize), CommandError> {
-    let bytes = fs::read(picture).map_err(CommandError::reading(picture))?;
-    check_picture(&bytes).map_err(|reason| CommandError::Picture { path: picture.to_owned(), reason })
-}
-
-/// The path of a picture from the folder of the scene.
+/// The path from the folder of the scene of a picture that can be played.
 fn name_from(scene: &Path, picture: &Path) -> Result<String, CommandError> {
     let absolute = std::path::absolute(picture).map_err(CommandError::reading(picture))?;
+    let bytes = fs::read(picture).map_err(CommandError::reading(picture))?;
+    check_picture(&bytes).map_err(|reason| CommandError::Picture { path: picture.to_owned(), reason })?;
     let folder = scene.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let folder = std::path::absolute(folder).map_err(CommandError::reading(folder))?;
     let name = absolute.strip_prefix(&folder).unwrap_or(&absolute);
@@ -92,6 +85,12 @@ fn with_stripes() -> String {
          high_fraction = 0.9  # friction on the ribs\n",
         head()
     )
+}
+
+/// Width and height of a picture.
+fn pixels(picture: &Path) -> Result<(usize, usize), CommandError> {
+    let bytes = fs::read(picture).map_err(CommandError::reading(picture))?;
+    check_picture(&bytes).map_err(|reason| CommandError::Picture { path: picture.to_owned(), reason })
 }
 
 /// The largest rectangle with the ratio of a picture's sides in the middle of the example screen: left, top, width,

@@ -65,6 +65,8 @@ fn a_layer_that_hides_everything_below_it_is_pointed_out() {
              it a `region`, or a `blend` such as \"add\""
         ]
     );
+    let ground = "[[layer]]\nname = \"ground\"\nkind = \"constant\"\nfriction_fraction = 0.2\n";
+    assert_eq!(warnings(&format!("{ground}{plate}live = true\n")), Vec::<String>::new(), "one surface after another");
     let ping = plate.replace("plate", "ping") + "live = true\n";
     assert_eq!(warnings(&format!("{TRACK}{plate}{ping}")).len(), 2, "one hides for good, one while it is on");
     assert_eq!(warnings(&format!("{TRACK}{ping}{plate}")).len(), 1, "what is hidden for good hides nothing");
