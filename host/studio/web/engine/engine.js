@@ -159,6 +159,7 @@ class Engine {
 
   /** Plays on the simulator, as it is after a reset, and disconnects a board. */
   async simulate() {
+    this.#refuseWhileConnecting();
     await this.#disconnect();
     this.#board.terminate();
     this.#link = "simulator";
@@ -177,7 +178,7 @@ class Engine {
   /** Connects to a board. If that fails, the simulator stays, if it was the board before, and plays on. */
   async #connect(link, open) {
     if (!canSuspend) throw new Error(NO_JSPI);
-    if (this.#isConnecting) throw new Error("a board is being connected: wait until it has answered");
+    this.#refuseWhileConnecting();
     this.#isConnecting = true;
     try {
       await this.#disconnect();
@@ -195,6 +196,10 @@ class Engine {
     }
   }
   #isConnecting = false;
+
+  #refuseWhileConnecting() {
+    if (this.#isConnecting) throw new Error("a board is being connected: wait until it has answered");
+  }
 
   /** Disconnects the board, if there is one, and waits until its port is free. */
   async #disconnect() {
