@@ -38,6 +38,8 @@ function keys(schema, context, line, before) {
       label: name,
       apply: `${name} = `,
       type: "property",
+      // What a layer is comes before what it has.
+      boost: name === "kind" ? 99 : 0,
       detail: minimum === undefined ? "" : `${minimum} to ${maximum}`,
       info: description,
     }));

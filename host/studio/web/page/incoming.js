@@ -1,7 +1,7 @@
 // Files that a person drops or opens: scenes, pictures, profiles and saved projects.
 
 import { projectOf } from "./archive.js";
-import { byId, notify } from "./dom.js";
+import { byId, forgetNotice, notify } from "./dom.js";
 import { isPicture } from "./project.js";
 
 /** Largest text, picture and zip, bytes. */
@@ -47,6 +47,7 @@ export class Incoming {
   async take(list) {
     const found = { files: [], texts: [] };
     const refused = [];
+    forgetNotice();
     for (const file of list) {
       try {
         Object.assign(found, await read(file, found));
@@ -56,11 +57,15 @@ export class Incoming {
     }
     try {
       await this.#sort(found, refused);
+      if (found.scene || found.finger || found.screen || found.files.length > 0) await this.onFiles(found);
     } catch (error) {
       refused.push(error.message);
     }
-    if (found.scene || found.finger || found.screen || found.files.length > 0) this.onFiles(found);
     if (refused.length > 0) notify(refused.join("\n"));
+    else if (!found.scene) {
+      const profiles = [found.finger, found.screen].filter((profile) => profile !== undefined);
+      notify(`Added: ${[...found.files.map(([name]) => name), ...profiles.map(({ name }) => name)].join(", ")}.`);
+    }
   }
 
   /** Tells the scene among the texts from the files that it uses, and from profiles to play with. */
