@@ -29,6 +29,11 @@ test("a reload brings back the scene, its name and its finger", async () => {
   assert.equal(await page.evaluate(() => studioPage.editor.text), WHOLE_SCREEN_GRATING);
   assert.equal(await page.inputValue("#scene-name"), "ridges");
   assert.equal(await page.inputValue("#finger"), "dry");
+  const broken = WHOLE_SCREEN_GRATING.replace("grating", "gratin");
+  await page.evaluate((text) => (studioPage.editor.text = text), broken);
+  await page.reload();
+  await page.locator("#map-hint", { hasText: "mend the mistake" }).waitFor();
+  assert.equal(await page.evaluate(() => studioPage.editor.text), broken);
   assert.deepEqual(errors, []);
   await close();
 });

@@ -85,11 +85,19 @@ async function start() {
   });
   makeView({ map, finger, scope, engine });
 
+  const hint = byId("map-hint");
+  let hasSlid = false;
+  /** Whether a scene without a mistake has come. */
+  let isPlayable = false;
   let reach = { naturalN: 0.25, lowN: 0.25, highN: 0.38 };
   player.onCheck = (check) => {
     if (compare.isRunning) return;
     showCheck(check, editor);
-    if (!check.ok && !check.isDraft) return;
+    if (!check.ok && !check.isDraft) {
+      if (!isPlayable) hint.textContent = "nothing to feel yet: mend the mistake under the text";
+      return;
+    }
+    isPlayable = true;
     reach = check;
     scope.isDraft = check.isDraft;
   };
@@ -102,8 +110,6 @@ async function start() {
     note.hidden = changes.length === 0;
     note.textContent = `The map shows the scene as it is written. Now: ${changes.join(", ")}.`;
   };
-  const hint = byId("map-hint");
-  let hasSlid = false;
   player.onMap = (picture, check) => {
     if (!hasSlid) hint.textContent = "press and slide: the trail is thick where friction is high";
     if (!compare.isRunning) map.show(picture, check);
@@ -146,7 +152,8 @@ async function start() {
   }
 
   function showName() {
-    byId("scene-name").value = project.name;
+    const { name } = project;
+    Object.assign(byId("scene-name"), { value: name, size: Math.max(4, Math.min(name.length, 24)) });
     document.title = `${project.name} · frixel studio`;
   }
 
@@ -159,6 +166,7 @@ async function start() {
     }
     showName();
     if (project.name === before) return;
+    compare.cancel();
     autosave.changed();
     showFiles();
     replay();

@@ -92,7 +92,7 @@ export class Compare {
       element("p", {}, "Slide, change between X and Y as often as you like, then choose."),
       element("div", { className: "row" }, ...feel, this.#soundButton()),
       element("div", { className: "row" }, ...answer, same, cancel),
-      element("p", { className: "fine" }, "Without a board, the difference is in the sound, and in how the finger lags."),
+      element("p", { className: "fine" }, "Without a board you hear the difference, and see how the finger lags."),
     );
     Object.assign(this.#trial, { feel, answers: [...answer, same] });
   }

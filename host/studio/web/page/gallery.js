@@ -59,7 +59,8 @@ export class Gallery {
       element("summary", {}, "Layers"),
       element("ul", {}, ...this.#layers(name, text, check.layers)),
     );
-    card.replaceChildren(canvas, element("h3", {}, name), element("p", { className: "fine" }, introduction(text)), open, layers);
+    const words = element("p", { className: "fine" }, introduction(text));
+    card.replaceChildren(canvas, element("h3", {}, name), words, open, layers);
     const size = { widthPx: canvas.width, heightPx: canvas.height };
     const map = await this.#engine.map(files, entry, {}, { ...size, speedMmPerS: 100 });
     canvas.getContext("2d").putImageData(imageOf(map), 0, 0);

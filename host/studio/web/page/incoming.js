@@ -9,6 +9,9 @@ const MAX = { toml: 500_000, png: 8_000_000, jpg: 8_000_000, jpeg: 8_000_000, zi
 const JPEG = [0xff, 0xd8, 0xff];
 /** The first bytes of pictures, by the ending of their names. */
 const BEGINNINGS = { png: [0x89, 0x50, 0x4e, 0x47], jpg: JPEG, jpeg: JPEG };
+/** The last chunk of a PNG, and in how many bytes at the end it is looked for. */
+const PNG_END = "IEND";
+const PNG_END_BYTES = 64;
 
 export class Incoming {
   #usedFiles;
@@ -101,6 +104,8 @@ async function read(file, found) {
   if (isPicture(file.name)) {
     if (BEGINNINGS[ending].some((byte, at) => bytes[at] !== byte))
       throw new Error(`this is no ${ending === "png" ? "PNG" : "JPEG"} picture, whatever its name says`);
+    if (ending === "png" && !String.fromCharCode(...bytes.slice(-PNG_END_BYTES)).includes(PNG_END))
+      throw new Error("this PNG picture is cut off: its end is missing; save or copy it anew");
     return { files: [...found.files, [file.name, bytes]] };
   }
   return { texts: [...found.texts, [file.name, textOf(bytes)]] };

@@ -50,7 +50,8 @@ export class Layers {
   #controls(layer, note) {
     const { index, name: label, isLive, whyNotLive, file, from } = layer;
     if (!isLive) {
-      const button = element("button", { title: whyNotLive, disabled: !this.#editor.isTable(file, from) }, "Make live: switch, gain");
+      const isPossible = this.#editor.isTable(file, from);
+      const button = element("button", { title: whyNotLive, disabled: !isPossible }, "Make live: switch, gain");
       button.onclick = () => this.#editor.insertAfterLine(file, from[0], "live = true");
       return button;
     }
@@ -65,7 +66,8 @@ export class Layers {
     slider.value = state.gain;
     const number = input("number", layer.gainMin, layer.gainMax, `gain of ${label}, as a number`);
     isOn.onchange = async () => {
-      if (!(await this.#change(layer, { on: isOn.checked }, isOn.checked ? "on" : "off", state))) isOn.checked = state.on;
+      const on = isOn.checked;
+      if (!(await this.#change(layer, { on }, on ? "on" : "off", state))) isOn.checked = state.on;
       this.#note(layer, state, note);
     };
     const change = (from, to) => async () => {

@@ -24,7 +24,7 @@ export class Numbers {
         ),
       );
     };
-    const wanders = "It wanders with load and noise of the simulated finger, also below bare glass and the map's scale.";
+    const wanders = "It wanders with the simulated finger's load and noise, also below the map's scale.";
     add("friction", "Felt friction", "mN", `Friction that the simulated finger feels. ${wanders}`, "felt");
     const step = "A Weber step is a factor of 1.11, about the smallest change of friction that a finger feels.";
     add("weber", "Above bare glass", "Weber steps", `${step} ${wanders}`, "felt");

@@ -27,9 +27,15 @@ export function showOutcome() {
 
 /** The report with what a person feels before what a board needs. */
 function feltFirst(report) {
-  const isFelt = (line) => /^\s*(feel|step|out of reach|draft)\b/.test(line);
-  const lines = report.split("\n");
-  return [...lines.filter(isFelt), ...lines.filter((line) => !isFelt(line))].join("\n");
+  const first = ["draft", "feel", "step", "out of reach"];
+  const rank = (line) => {
+    const at = first.findIndex((word) => line.trimStart().startsWith(`${word} `));
+    return at < 0 ? first.length : at;
+  };
+  return report
+    .split("\n")
+    .sort((a, b) => rank(a) - rank(b))
+    .join("\n");
 }
 
 function item({ severity, message, file, line }, editor) {
