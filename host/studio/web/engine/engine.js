@@ -152,6 +152,11 @@ class Engine {
     return this.#board.ask({ type: "replay", slowness });
   }
 
+  /** Ends a replay before its end, if there is one. */
+  endReplay() {
+    return this.#board.ask({ type: "endReplay" });
+  }
+
   /** The worker that plays scenes. */
   get #player() {
     return this.#link === "simulator" ? this.#board : this.#host;
