@@ -115,6 +115,7 @@ fn a_saved_scene_plays_and_one_with_mistakes_does_not() {
     assert!(board.interrupt());
 
     let said = said();
+    assert!(said.contains("frixel: scene.toml plays; what is saved replaces it; Ctrl-C ends"), "{said}");
     assert!(said.contains("scene.toml:"), "where the mistakes are: {said}");
     assert_eq!(said.matches("plays as it was saved").count(), 2, "{said}");
 

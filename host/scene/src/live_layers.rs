@@ -178,6 +178,11 @@ impl LiveLayers {
         Some(LayerChange { record, setting, clamped: None })
     }
 
+    /// The layers that are off, by their index from the bottom.
+    pub fn off(&self) -> Vec<usize> {
+        self.settings.iter().enumerate().filter(|(_, setting)| !setting.on).map(|(layer, _)| layer).collect()
+    }
+
     /// When the next trigger ends.
     pub fn next_end(&self) -> Option<Duration> {
         self.triggered.iter().map(|(_, ends_at)| *ends_at).min()

@@ -14,6 +14,8 @@ pub(super) const STRIP_HEIGHT: u32 = 20;
 const GAP: u32 = 8;
 /// Opacity of a cell's colour.
 const OPACITY: f64 = 0.3;
+/// Least width of a coloured cell, in pixels: a part of some milliseconds must be seen, too.
+const COLOUR_WIDTH_MIN: u32 = 2;
 
 /// A row of texts under the axis of a plot.
 #[derive(Clone, Debug)]
@@ -51,6 +53,7 @@ pub(super) fn draw<DB: DrawingBackend>(
         for cell in &strip.cells {
             let (left, right) = (place(cell.x.start), place(cell.x.end));
             if let Some(colour) = cell.colour {
+                let right = right.max(left + scale.px(COLOUR_WIDTH_MIN) as i32);
                 let corners = [(left, scale.px(top + 2) as i32), (right, scale.px(top + STRIP_HEIGHT - 2) as i32)];
                 area.draw(&Rectangle::new(corners, colour.mix(OPACITY).filled()))?;
             }

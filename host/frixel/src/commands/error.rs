@@ -145,6 +145,11 @@ pub(crate) enum CommandError {
     SelftestFailed { port: String, failed: usize },
     #[error("\"{}\" has no name for a scene: give one such as wood, or scenes/wood.toml", name.display())]
     SceneName { name: PathBuf },
+    #[error(
+        "{} is a picture, and no name for a scene; a scene that plays it: frixel new {scene} --picture {picture}",
+        name.display()
+    )]
+    SceneNameOfPicture { name: PathBuf, scene: String, picture: String },
     #[error("{} is there already, and is not overwritten: give another name, or remove it", path.display())]
     SceneExists { path: PathBuf },
     #[error("standard input has either the lines of --control or the samples of --stream -: give --stream a file")]

@@ -1,14 +1,18 @@
 //! `frixel new`: a first scene, with a comment for every line.
 
+use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::{ErrorKind, Write};
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use clap::Args;
 use frixel_scene::{Screen, check_picture};
 
 use super::error::CommandError;
 use super::terminal::print_line;
+
+/// How the names of pictures end.
+const PICTURE_EXTENSIONS: [&str; 3] = ["png", "jpg", "jpeg"];
 
 #[derive(Debug, Args)]
 pub(super) struct NewArgs {
@@ -25,8 +29,15 @@ pub(super) fn run(args: &NewArgs) -> Result<(), CommandError> {
         return Err(CommandError::SceneName { name: args.name.clone() });
     }
     let path = args.name.with_extension("toml");
+    if args.name.extension().is_some_and(is_of_picture) {
+        let (name, scene) = (args.name.clone(), quoted(&args.name.with_extension("")));
+        return Err(CommandError::SceneNameOfPicture { scene, picture: quoted(&name), name });
+    }
     let text = match &args.picture {
-        Some(picture) => with_picture(&name_from(&path, picture)?, pixels(picture)?),
+        Some(picture) => {
+            let pixels = pixels(picture)?;
+            with_picture(&name_from(&path, picture)?, pixels)
+        }
         None => with_stripes(),
     };
     let created = File::create_new(&path).and_then(|mut file| file.write_all(text.as_bytes()));
@@ -35,23 +46,52 @@ pub(super) fn run(args: &NewArgs) -> Result<(), CommandError> {
         Err(error) if error.kind() == ErrorKind::AlreadyExists => return Err(CommandError::SceneExists { path }),
         Err(error) => return Err(CommandError::writing(&path)(error)),
     }
-    let path = path.display();
+    let (name, path) = (path.display(), quoted(&path));
     print_line(format_args!(
-        "{path} is new. What it costs and what will be felt: frixel scene check {path}\nHow it looks: frixel scene preview \
+        "{name} is new. What it costs and what will be felt: frixel scene check {path}\nHow it looks: frixel scene preview \
          {path} -o map.png\nUnder a simulated finger: frixel play {path}"
     ))
 }
 
-/// The path from the folder of the scene of a picture that can be played.
-fn name_from(scene: &Path, picture: &Path) -> Result<String, CommandError> {
-    let absolute = std::path::absolute(picture).map_err(CommandError::reading(picture))?;
+/// Width and height of a picture that can be played.
+fn pixels(picture: &Path) -> Result<(usize, usize), CommandError> {
     let bytes = fs::read(picture).map_err(CommandError::reading(picture))?;
-    check_picture(&bytes).map_err(|reason| CommandError::Picture { path: picture.to_owned(), reason })?;
-    let folder = scene.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let folder = std::path::absolute(folder).map_err(CommandError::reading(folder))?;
-    let name = absolute.strip_prefix(&folder).unwrap_or(&absolute);
+    check_picture(&bytes).map_err(|reason| CommandError::Picture { path: picture.to_owned(), reason })
+}
+
+fn is_of_picture(extension: &OsStr) -> bool {
+    PICTURE_EXTENSIONS.iter().any(|known| extension.eq_ignore_ascii_case(known))
+}
+
+/// A path as one word of a command that a person may copy: in single quotes, unless it is a word without them.
+fn quoted(path: &Path) -> String {
+    let text = path.display().to_string();
+    let is_plain = |letter: char| letter.is_alphanumeric() || "/\\:._-+,@".contains(letter);
+    if text.chars().all(is_plain) { text } else { format!("'{}'", text.replace('\'', "'\\''")) }
+}
+
+/// The path of a picture from the folder of the scene.
+fn name_from(scene: &Path, picture: &Path) -> Result<String, CommandError> {
+    let (from, to) = (real_folder(scene)?, real_folder(picture)?);
+    let name = relative(&from, &to).join(picture.file_name().unwrap_or_default());
     // TOML texts have slashes on every operating system, and no backslashes.
     Ok(name.display().to_string().replace('\\', "/"))
+}
+
+/// The folder of a file, without links and dots.
+fn real_folder(file: &Path) -> Result<PathBuf, CommandError> {
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    fs::canonicalize(folder).map_err(CommandError::writing(file))
+}
+
+/// The way from a folder to another, both without links and dots; the whole path if they are on different drives.
+fn relative(from: &Path, to: &Path) -> PathBuf {
+    let common = from.components().zip(to.components()).take_while(|(one, other)| one == other).count();
+    if common == 0 {
+        return to.to_owned();
+    }
+    let up = from.components().skip(common).map(|_| Component::ParentDir);
+    up.chain(to.components().skip(common)).collect()
 }
 
 /// The beginning of every scene.
@@ -85,12 +125,6 @@ fn with_stripes() -> String {
          high_fraction = 0.9  # friction on the ribs\n",
         head()
     )
-}
-
-/// Width and height of a picture.
-fn pixels(picture: &Path) -> Result<(usize, usize), CommandError> {
-    let bytes = fs::read(picture).map_err(CommandError::reading(picture))?;
-    check_picture(&bytes).map_err(|reason| CommandError::Picture { path: picture.to_owned(), reason })
 }
 
 /// The largest rectangle with the ratio of a picture's sides in the middle of the example screen: left, top, width,

@@ -42,14 +42,16 @@ const KNOWN_COLUMNS: [&str; 11] = [
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct StrokeArgs {
     /// Where the simulated finger goes: a CSV file with the columns `t_s,x_mm,y_mm`, and `force_n` for the
-    /// normal load, for example a felt.csv; or `human`: the stroke of a person, another for every --seed.
+    /// normal load, for example a felt.csv; or `human`: the stroke of a person, another for every --seed. Without it and
+    /// without --from: a sweep over the screen, and in a play without --seconds and --stream, after the finger was
+    /// lifted, a stroke over each layer whose middle the sweep missed.
     #[arg(long, value_name = "FILE.csv", conflicts_with = "from")]
     stroke: Option<PathBuf>,
     /// Start of a straight stroke, in mm from the top left corner of the screen.
-    #[arg(long, value_name = "X,Y", value_parser = place_mm, requires = "to")]
+    #[arg(long, value_name = "X,Y", value_parser = place_mm, requires = "to", allow_hyphen_values = true)]
     from: Option<Point>,
     /// End of a straight stroke, in mm.
-    #[arg(long, value_name = "X,Y", value_parser = place_mm, requires = "from")]
+    #[arg(long, value_name = "X,Y", value_parser = place_mm, requires = "from", allow_hyphen_values = true)]
     to: Option<Point>,
     /// Mean speed of a straight stroke, in mm/s. Default: 100.
     #[arg(long, value_name = "MM_PER_S", value_parser = speed_m_per_s, requires = "from")]

@@ -123,9 +123,10 @@ fn layers(trace: &Trace) -> Option<Strip> {
     (!cells.is_empty()).then(|| Strip { label: "layer".to_owned(), cells })
 }
 
-/// The name of a layer without its number, if it has a name.
+/// The name of a layer without its number, if it has a name, and what follows the name.
 fn short(title: &str) -> String {
-    title.split('"').nth(1).unwrap_or(title).to_owned()
+    let mut parts = title.splitn(3, '"').skip(1);
+    parts.next().map_or(title.to_owned(), |name| format!("{name}{}", parts.next().unwrap_or_default()))
 }
 
 /// An empty panel over time, whose upright axis extends a twentieth of the range beyond both ends.
@@ -292,6 +293,12 @@ fn envelope_of(places: &[(f64, f64)], piece_s: f64) -> Vec<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_layer_that_is_off_has_its_name_and_off() {
+        let titles = ["layer 2 \"ok\" off", "layer 2 \"ok\"", "layer 2 off", "layer 2"];
+        assert_eq!(titles.map(short), ["ok off", "ok", "layer 2 off", "layer 2"]);
+    }
 
     #[test]
     fn the_axis_leaves_out_where_a_finger_turns() {

@@ -71,8 +71,10 @@ pub struct Report {
     pub stream_underruns: Option<u32>,
     /// Runs of samples that were lost on the line.
     pub stream_gaps: Option<u32>,
-    /// Names of the layers that the finger never touched.
+    /// Names of the layers of the last scene that the finger never touched.
     pub untouched_layers: Vec<String>,
+    /// When that scene replaced the one before, s; `null` if the first scene played to the end.
+    pub replaced_at_s: Option<f64>,
 }
 
 /// The world that was simulated beside a board.
@@ -137,6 +139,7 @@ impl Report {
             stream_underruns: None,
             stream_gaps: None,
             untouched_layers: Vec::new(),
+            replaced_at_s: None,
         }
     }
 
@@ -170,10 +173,11 @@ impl Report {
         self
     }
 
-    /// Adds the names of the layers that the finger never touched.
+    /// Adds the names of the layers of the last scene that the finger never touched, and when that scene replaced
+    /// another one, if it did.
     #[must_use]
-    pub fn with_untouched(self, untouched_layers: Vec<String>) -> Self {
-        Self { untouched_layers, ..self }
+    pub fn with_untouched(self, untouched_layers: Vec<String>, replaced_at_s: Option<f64>) -> Self {
+        Self { untouched_layers, replaced_at_s, ..self }
     }
 
     /// The report as one JSON object on one line.
@@ -202,10 +206,15 @@ impl Report {
         }
         let suffix = if self.finger_origin == Origin::Measured.word() { "" } else { ", assumed" };
         let range = |least: f64, most: f64| format!("{:.2} to {:.2} mN{suffix}", 1e3 * least, 1e3 * most);
-        line("reachable", range(self.reachable_min_n, self.reachable_max_n));
+        let mismatch = size(self.load_mismatch_rms_n, self.load_mismatch_max_n).filter(|error| error.max_n > 0.0);
+        let (at_load, with_load) = match mismatch {
+            Some(_) => (", at the load of the scene's finger", ", at the load of the finger that plays"),
+            None => ("", ""),
+        };
+        line("reachable", range(self.reachable_min_n, self.reachable_max_n) + at_load);
         if let Some((least, most)) = self.wanted_min_n.zip(self.wanted_max_n) {
             let turns = if self.world == Some(REALISTIC) { "; not where the finger lands or turns" } else { "" };
-            line("reference", format!("{}{turns}", range(least, most)));
+            line("reference", format!("{}{with_load}{turns}", range(least, most)));
         }
         let electric_n = self.reachable_max_n - self.reachable_min_n;
         for (name, error) in [
@@ -218,9 +227,7 @@ impl Report {
                 line(name, format!("{in_mn} ({:.3} % and {:.3} % of the range)", part(rms_n), part(max_n)));
             }
         }
-        if let Some(ErrorSize { rms_n, max_n }) = size(self.load_mismatch_rms_n, self.load_mismatch_max_n)
-            && max_n > 0.0
-        {
+        if let Some(ErrorSize { rms_n, max_n }) = mismatch {
             let in_mn = format!("{:.4} mN rms, {:.4} mN at most", 1e3 * rms_n, 1e3 * max_n);
             line("load mismatch", format!("{in_mn}, for another load than the profile's; not in the friction error"));
         }
@@ -250,7 +257,9 @@ impl Report {
             line("stream", format!("{samples} samples, {underruns} underruns, {gaps} gaps"));
         }
         if !self.untouched_layers.is_empty() {
-            line("never touched", self.untouched_layers.join(", "));
+            let since = |t_s: f64| format!("; since {t_s:.2} s, when the scene was replaced");
+            let layers = without_copies(&self.untouched_layers);
+            line("never touched", format!("{layers}{}", self.replaced_at_s.map_or(String::new(), since)));
         }
         if let Some(factor) = self.realtime_factor {
             let decimals = if factor < 10.0 { 2 } else { 0 };
@@ -258,6 +267,20 @@ impl Report {
         }
         text
     }
+}
+
+/// The titles of layers, a comma between two. Of the copies of a layer, the first one is named, and the others are
+/// counted.
+fn without_copies(titles: &[String]) -> String {
+    // A title is `layer 3 "name"`, or `layer 3.1 "name 1"` for a copy.
+    let number = |title: &str| title.split([' ', '.']).nth(1).map(str::to_owned);
+    let groups = titles.chunk_by(|one, other| number(one) == number(other));
+    let name = |group: &[String]| match group {
+        [] => String::new(),
+        [one] => one.clone(),
+        [first, others @ ..] => format!("{first} and {} alike", others.len()),
+    };
+    groups.map(name).collect::<Vec<String>>().join(", ")
 }
 
 /// The line of a summary that marks a draft.

@@ -343,6 +343,13 @@ fn a_voltage_that_is_off_has_its_reason() {
     let still = drawn(Flags::STILL, 0.0);
     assert!(still.lines().any(|line| line == "output off: the finger stands still"), "{still}");
     assert!(still.lines().any(|line| line == "output off"), "the strip");
+    let mut rows_of_moment = rows.clone();
+    for row in &mut rows_of_moment[200..201] {
+        (row.voltage_v_rms, row.flags) = (Some(0.0), Some(Flags::TOUCH_STALE));
+    }
+    write_felt_svg(&path, &subject(""), &trace(&rows_of_moment), &program.reach).expect("a picture");
+    let moment = fs::read_to_string(&path).expect("the file");
+    assert!(moment.contains("output off: the touch") && !moment.contains("width=\"0\""), "a moment is drawn");
     let lost = drawn(Flags::STILL.with(Flags::TOUCH_STALE), 0.0);
     assert!(lost.contains("output off: the touch reports are too old") && !lost.contains("stands still"));
     // A scene without friction, and an output that is on.
@@ -393,12 +400,12 @@ fn report_as_json() {
          \"load_mismatch_rms_n\":0.012,\"load_mismatch_max_n\":0.05,\"carrier_ripple_rms_n\":0.0005,\
          \"finger_origin\":\"assumed\",\"reachable_min_n\":0.25,\"reachable_max_n\":0.275,\"wanted_min_n\":0.25,\"wanted_max_n\":0.27,\
          \"saturated_ticks\":7,\"frames_sent\":400,\"frames_rejected\":1,\"payload_bytes\":63000,\"wire_bytes\":65000,\
-         \"realtime_factor\":123.4,\"stream_samples\":null,\"stream_underruns\":null,\"stream_gaps\":null,\"untouched_layers\":[]}"
+         \"realtime_factor\":123.4,\"stream_samples\":null,\"stream_underruns\":null,\"stream_gaps\":null,\"untouched_layers\":[],\"replaced_at_s\":null}"
     );
     assert_eq!(
         report(&known).summary(),
-        "  reachable        250.00 to 275.00 mN, assumed\n\
-         \x20 reference        250.00 to 270.00 mN, assumed\n\
+        "  reachable        250.00 to 275.00 mN, assumed, at the load of the scene's finger\n\
+         \x20 reference        250.00 to 270.00 mN, assumed, at the load of the finger that plays\n\
          \x20 friction error   1.0000 mN rms, 5.0000 mN at most (4.000 % and 20.000 % of the range)\n\
          \x20 inversion error  0.0010 mN rms, 0.0200 mN at most (0.004 % and 0.080 % of the range)\n\
          \x20 load mismatch    12.0000 mN rms, 50.0000 mN at most, for another load than the profile's; not in the friction \
@@ -408,6 +415,16 @@ fn report_as_json() {
          \x20 link             400 frames sent, 1 rejected, 63000 payload bytes in 65000\n\
          \x20 speed            123 times real time\n"
     );
+}
+
+#[test]
+fn layers_that_were_never_touched_are_counted_from_the_last_replacement() {
+    let titles =
+        ["layer 1 \"base\"", "layer 3.1 \"key 1\"", "layer 3.2 \"key 2\"", "layer 3.3 \"key 3\""].map(str::to_owned);
+    let summary = |replaced_at_s| report(&NOTHING).with_untouched(titles.to_vec(), replaced_at_s).summary();
+    let layers = "never touched    layer 1 \"base\", layer 3.1 \"key 1\" and 2 alike";
+    assert!(summary(None).contains(&format!("{layers}\n")), "{}", summary(None));
+    assert!(summary(Some(1.5)).contains(&format!("{layers}; since 1.50 s, when the scene was replaced\n")));
 }
 
 #[test]

@@ -47,6 +47,9 @@ fn layers_are_switched_turned_down_and_triggered() {
         assert!((wanted_mn - expected_mn).abs() < 0.1, "{t_ms} ms: {wanted_mn} mN wanted");
         assert!((felt_mn - expected_mn).abs() < 0.5, "{t_ms} ms: {felt_mn} mN felt");
     }
+    let svg = fs::read_to_string(folder.path().join("frixel-out/felt.svg")).unwrap();
+    let names = ["plate one", "plate one off"].map(|name| svg.lines().filter(|line| *line == name).count());
+    assert_eq!(names, [3, 2], "a tenth of a second has no room for a name");
 }
 
 #[test]
@@ -57,7 +60,10 @@ fn a_scene_is_replaced_and_the_play_ended() {
     let output =
         control(folder.path(), "wait 0.2\nreplace \"other scene.toml\"\nwait 0.4\nlayer 1 gain 0\nwait 0.2\nquit\n");
     let said = String::from_utf8(output.stderr).unwrap();
-    assert!(output.status.success() && said.contains("other scene.toml plays"), "{said}");
+    assert!(output.status.success() && said.contains("other scene.toml plays\n"), "{said}");
+    let summary = fs::read_to_string(folder.path().join("frixel-out/summary.json")).unwrap();
+    let replaced_at_s = serde_json::from_str::<serde_json::Value>(&summary).unwrap()["replaced_at_s"].as_f64().unwrap();
+    assert!((0.2..0.25).contains(&replaced_at_s), "{replaced_at_s} s");
     for (t_ms, expected_mn) in [(190, 260.0), (590, 270.0), (780, 250.0)] {
         let (wanted_mn, _) = friction_mn(folder.path(), t_ms);
         assert!((wanted_mn - expected_mn).abs() < 0.1, "{t_ms} ms: {wanted_mn} mN wanted");

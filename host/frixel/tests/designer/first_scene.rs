@@ -25,6 +25,12 @@ fn a_new_scene_is_checked_and_played_as_it_is() {
         let (said, _) = succeed(folder.path(), &["play", name, "--seconds", "0.5"]);
         assert!(said.contains("reference"), "{said}");
     }
+    fs::create_dir(folder.path().join("sub")).unwrap();
+    succeed(folder.path(), &["new", "sub/w", "--picture", "mine.png"]);
+    assert!(fs::read_to_string(folder.path().join("sub/w.toml")).unwrap().contains("picture = \"../mine.png\""));
+    succeed(folder.path(), &["scene", "check", "sub/w.toml"]);
+    let (said, _) = succeed(folder.path(), &["new", "my ribs"]);
+    assert!(said.contains("frixel scene check 'my ribs.toml'\n"), "{said}");
     let text = fs::read_to_string(folder.path().join("near.toml")).unwrap();
     assert!(text.contains("levels = \"stretch\"") && !text.contains("pitch_mm"), "{text}");
     let (said, _) = succeed(folder.path(), &["scene", "check", "photo.toml"]);
@@ -43,6 +49,7 @@ fn a_new_scene_overwrites_nothing_and_needs_its_picture() {
         (&["new", "mine"][..], "mine.toml is there already"),
         (&["new", "other", "--picture", "none.png"], "none.png cannot be read"),
         (&["new", "nowhere/mine"], "mine.toml cannot be written"),
+        (&["new", "my wood.jpg"], "; a scene that plays it: frixel new 'my wood' --picture 'my wood.jpg'"),
     ] {
         let output = frixel(folder.path(), arguments);
         let said = String::from_utf8(output.stderr).unwrap();

@@ -67,7 +67,7 @@ fn layers_that_were_never_touched_are_named() {
     let folder = TempDir::new().unwrap();
     let keyboard = scene("keyboard.toml");
     let (said, _) = succeed(folder.path(), &["play", &keyboard, "--from", "1,1", "--to", "3,1", "--speed", "20"]);
-    assert!(said.contains("never touched"), "{said}");
+    assert!(said.contains("never touched") && said.contains("alike"), "{said}");
     let (json, _) = succeed(folder.path(), &["play", &keyboard, "--seconds", "0.1", "--json"]);
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert!(!json["untouched_layers"].as_array().unwrap().is_empty());
@@ -86,6 +86,8 @@ fn a_stroke_that_makes_no_sense_is_explained() {
         (&["--from", "20,40", "--to", "50,40", "--stroke", "a.csv"], 2, "cannot be used with"),
         (&["--from", "20,40", "--to", "20,40"], 1, "give two places that differ"),
         (&["--from", "320,40", "--to", "300,40"], 1, "nowhere on the screen"),
+        (&["--from", "-5,40", "--to", "-1,40"], 1, "nowhere on the screen"),
+        (&["--from", "--to", "1,1"], 2, "unexpected argument '1,1'"),
         (&["--from", "20,40", "--to", "100,40", "--speed", "0.001", "--times", "9"], 1, "longer than a day"),
     ] {
         let output = frixel(folder.path(), &[&["play", brick.as_str()], arguments].concat());

@@ -80,6 +80,27 @@ impl Reader {
         let output = process.output().unwrap();
         self.printed = String::from_utf8(output.stdout).unwrap() + &String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.success(), comment.trim() != "fails", "{line}: {}", self.printed);
+        if input.is_some() {
+            self.expect_notification();
+        }
+    }
+
+    /// The felt friction and the names of layers are those that the page promises for its control lines.
+    fn expect_notification(&self) {
+        let rows = fs::read_to_string(self.path().join("frixel-out/felt.csv")).unwrap();
+        let number = |row: &str, column: usize| row.split(',').nth(column).unwrap().parse::<f64>().unwrap();
+        // The buzz of 0.8 of 130 mN, in mN from least to largest, beside load changes of some 30 mN.
+        let range_mn = |from_s: f64, to_s: f64| {
+            let inside = |row: &&str| (from_s..to_s).contains(&number(row, 0));
+            let felt_n = rows.lines().skip(1).filter(inside).map(|row| number(row, 6));
+            let (least, most) = felt_n.fold((f64::MAX, f64::MIN), |(least, most), n| (least.min(n), most.max(n)));
+            1e3 * (most - least)
+        };
+        assert!(range_mn(0.05, 0.28) < 50.0 && range_mn(0.75, 1.05) < 50.0, "the layer is off");
+        let (whole, half) = (range_mn(0.35, 0.65), range_mn(1.15, 1.45));
+        assert!(whole > 100.0 && half > 60.0 && half < 0.9 * whole, "{whole} and {half} mN");
+        let svg = fs::read_to_string(self.path().join("frixel-out/felt.svg")).unwrap();
+        assert!(svg.contains("notification off"));
     }
 
     /// Finds lines in what the last command printed, or waits for them if it goes on.

@@ -20,10 +20,13 @@ pub fn lines(perception: &Perception) -> Vec<(&'static str, String)> {
     let borders = perception.steps.iter().map(|border| (sides(border), step(&border.step)));
     let alike = perception.alike.iter().map(alike);
     let notes = perception.notes.iter().map(|note| ("note", note.clone()));
-    let near = is_near_threshold(perception).then(|| ("note", NEAR_THRESHOLD.to_owned()));
+    let near = near_threshold(perception).into_iter().map(|subject| (subject, NEAR_THRESHOLD.to_owned()));
     let lines = |name, texts, more| grouped(texts, more).into_iter().map(move |text| (name, text));
     let felt = lines("feel", layers.collect(), " alike").chain(lines("step", borders.collect(), " alike"));
-    felt.chain(lines("alike", alike.collect(), " such pairs")).chain(near).chain(notes).collect()
+    felt.chain(lines("alike", alike.collect(), " such pairs"))
+        .chain(lines("note", near.collect(), " alike"))
+        .chain(notes)
+        .collect()
 }
 
 impl Subject {
@@ -88,15 +91,24 @@ fn alike(alike: &AlikeLayers) -> (Subject, String) {
     (Subject::new(format!("{one} and {other}"), layers), voltage.or(friction).unwrap_or_default())
 }
 
-/// Whether anything is near the threshold.
-fn is_near_threshold(perception: &Perception) -> bool {
-    let steps = perception.steps.iter().map(|border| border.step.verdict);
-    let layers = perception.layers.iter().flat_map(|layer| {
+/// The layers and borders that are near the threshold, and of which nothing else is felt.
+fn near_threshold(perception: &Perception) -> Vec<Subject> {
+    let verdicts = |layer: &LayerPerception| {
         let textures = layer.textures.iter().map(|texture| texture.verdict);
         let click = layer.click.iter().map(|click| click.verdict);
-        textures.chain(click).chain([layer.contrast.verdict])
-    });
-    steps.chain(layers).any(|verdict| verdict == Verdict::NearThreshold)
+        textures.chain(click).chain([layer.contrast.verdict]).collect::<Vec<Verdict>>()
+    };
+    let is_felt = |layer: &LayerPerception| verdicts(layer).contains(&Verdict::Felt);
+    let is_near = |layer: &&LayerPerception| !is_felt(layer) && verdicts(layer).contains(&Verdict::NearThreshold);
+    let layers = perception.layers.iter().filter(is_near);
+    let borders_felt = |border: &BorderStep| {
+        let sides = [&border.from, &border.to];
+        perception.layers.iter().any(|layer| is_felt(layer) && sides.contains(&&Some(layer.layer.clone())))
+    };
+    let is_near = |border: &&BorderStep| border.step.verdict == Verdict::NearThreshold && !borders_felt(border);
+    let borders = perception.steps.iter().filter(is_near).map(sides);
+    let borders = borders.map(|subject| Subject { text: format!("the step {}", subject.text), ..subject });
+    layers.map(|layer| Subject::new(layer.layer.clone(), [&layer.layer])).chain(borders).collect()
 }
 
 fn sides(border: &BorderStep) -> Subject {

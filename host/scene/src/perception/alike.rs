@@ -46,7 +46,7 @@ fn acts_on(one: &JudgedLayer, other: &JudgedLayer) -> bool {
 }
 
 /// Whether two layers have the same parameters, but for their place.
-fn are_copies(one: &JudgedLayer, other: &JudgedLayer, program: &Program) -> bool {
+pub(super) fn are_copies(one: &JudgedLayer, other: &JudgedLayer, program: &Program) -> bool {
     let placeless = |judged: &JudgedLayer| {
         let mut layer = program.records.get(judged.layer)?.layer;
         match &mut layer {

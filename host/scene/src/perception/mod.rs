@@ -38,6 +38,9 @@ const USUAL_M_PER_S: f64 = 0.05;
 const SAMPLE_HZ: f64 = 2000.0;
 /// A texture of a smaller amplitude is not mentioned, N: a tenth of the smallest threshold.
 const AMPLITUDE_MIN_N: f64 = 2e-5;
+/// Frictions of the copies of a layer that differ by less are the same, N: a slide meets the top of a narrow ridge only
+/// as exactly as its samples lie.
+const SAMPLING_N: f64 = 2e-4;
 /// Where the 5th and the 95th percentile are nearer to one another than this part of the whole range, the friction is
 /// the same almost everywhere but for a narrow place, such as a ridge. Eight waves of noise have about 0.47.
 const NARROW_PART: f64 = 0.3;
@@ -66,8 +69,8 @@ pub struct LayerPerception {
     pub contrast: Step,
     /// Whether the friction is the same almost everywhere in the layer, but for a narrow place that makes the contrast.
     pub is_narrow: bool,
-    /// The most noticeable texture at 20, 50 and 100 mm/s; absent where there is none, and for an edge, which is a
-    /// single ridge.
+    /// The most noticeable texture at 20, 50 and 100 mm/s; absent where there is none, for an edge, which is a single
+    /// ridge, and where all that is felt has steps only, such as a button.
     pub textures: Vec<Texture>,
     /// The bursts during which contrast and textures hold; absent if they hold all the time.
     pub burst: Option<BurstTimes>,
@@ -156,9 +159,10 @@ impl Perception {
         // A burst is judged while it lasts, however rare it is.
         let lasting = &without_bursts(program);
         let reference = Reference::new(lasting);
-        let judged: Vec<JudgedLayer> = (0..lasting.records.len())
+        let mut judged: Vec<JudgedLayer> = (0..lasting.records.len())
             .filter_map(|layer| JudgedLayer::new(layer, &reference, program, lasting))
             .collect();
+        unite_copies(&mut judged, program);
         let steps =
             neighbours::borders(lasting, USUAL_M_PER_S).into_iter().filter_map(|border| border_step(&border, program));
         Self {
@@ -166,6 +170,27 @@ impl Perception {
             alike: alike::of(&judged, program),
             notes: notes(&reference),
             layers: judged.into_iter().map(|judged| judged.perception).collect(),
+        }
+    }
+}
+
+/// Gives copies of a layer the same contrast and click, if they differ only by how they were sampled.
+fn unite_copies(judged: &mut [JudgedLayer], program: &Program) {
+    let are_near = |one: &Step, other: &Step| {
+        (one.from_n - other.from_n).abs() < SAMPLING_N && (one.to_n - other.to_n).abs() < SAMPLING_N
+    };
+    for number in 1..judged.len() {
+        let (before, rest) = judged.split_at_mut(number);
+        let Some(copy) = rest.first_mut() else { return };
+        let is_like = |one: &&JudgedLayer| {
+            alike::are_copies(one, copy, program) && are_near(&one.perception.contrast, &copy.perception.contrast)
+        };
+        let Some(one) = before.iter().find(is_like) else { continue };
+        copy.perception.contrast = one.perception.contrast;
+        if let (Some(click), Some(of_copy)) = (one.perception.click, &mut copy.perception.click)
+            && are_near(&click, of_copy)
+        {
+            *of_copy = click;
         }
     }
 }
@@ -203,33 +228,36 @@ struct JudgedLayer {
 }
 
 impl JudgedLayer {
-    /// Judges a layer; `None` if it is visible nowhere. `lasting` is `program` without pauses between bursts, and
-    /// `reference` belongs to it.
+    /// Judges a layer, with those below it but without those above it, which are judged themselves; `None` if it is
+    /// visible nowhere. `lasting` is `program` without pauses between bursts, and `reference` belongs to it.
     fn new(layer: usize, reference: &Reference, program: &Program, lasting: &Program) -> Option<Self> {
         let screen_m = (f64::from(program.header.screen_width_m), f64::from(program.header.screen_height_m));
         let slides = Slide::over(layer, reference.pieces(), screen_m);
+        let uncovered = reference.clone().with_only(|other| other <= layer);
         let slides_n = SPEEDS_M_PER_S.map(|speed_m_per_s| -> Vec<Vec<f64>> {
-            slides.iter().map(|slide| slide.friction_n(reference, lasting, speed_m_per_s, SAMPLE_HZ)).collect()
+            slides.iter().map(|slide| slide.friction_n(&uncovered, lasting, speed_m_per_s, SAMPLE_HZ)).collect()
         });
         let [_, usual_n, _] = &slides_n;
         let is_edge = matches!(program.records.get(layer)?.layer, Layer::Edge(_));
         let contrasts = usual_n.iter().filter_map(|friction_n| contrast_within(friction_n, is_edge));
         let (contrast, is_narrow) =
             contrasts.max_by(|(one, _), (other, _)| one.contrast_n.total_cmp(&other.contrast_n))?;
-        let textures = SPEEDS_M_PER_S.into_iter().zip(&slides_n).filter(|_| !is_edge).filter_map(
+        let visible = slides.iter().fold(0, |visible, slide| visible | slide.visible_layers(reference.pieces()));
+        let felt = visible & (u64::MAX >> (63 - layer));
+        let has_texture = !is_edge && has_texture(felt, program);
+        let textures = SPEEDS_M_PER_S.into_iter().zip(&slides_n).filter(|_| has_texture).filter_map(
             |(speed_m_per_s, frictions_n)| {
                 let textures = frictions_n.iter().filter_map(|friction_n| Texture::of(friction_n, speed_m_per_s));
                 textures.max_by(|one, other| one.salience().total_cmp(&other.salience()))
             },
         );
-        let visible = slides.iter().fold(0, |visible, slide| visible | slide.visible_layers(reference.pieces()));
         let click = ClickStep::of(layer, &slides, lasting, USUAL_M_PER_S);
         let perception = LayerPerception {
             layer: program.titles.get(layer)?.clone(),
             contrast,
             is_narrow,
             textures: textures.collect(),
-            burst: burst(visible, program),
+            burst: burst(felt, program),
             click: click.map(|click| click.step),
             is_click_cut_off: click.is_some_and(|click| click.is_cut_off),
         };
@@ -243,6 +271,15 @@ fn contrast_within(friction_n: &[f64], is_edge: bool) -> Option<(Step, bool)> {
     let is_narrow = high_n - low_n < NARROW_PART * (most_n - least_n);
     let is_whole = is_edge || is_narrow;
     Some((if is_whole { Step::new(least_n, most_n) } else { Step::new(low_n, high_n) }, is_narrow))
+}
+
+/// Whether any of these layers repeats or changes by itself. The others have steps and lone ridges, whose spectrum is
+/// not a texture.
+fn has_texture(layers: u64, program: &Program) -> bool {
+    let mut records = program.records.iter().enumerate().filter(|(number, _)| layers >> number & 1 == 1);
+    records.any(|(_, record)| {
+        !matches!(record.layer, Layer::Constant(_) | Layer::Button(_) | Layer::Edge(_) | Layer::Speed(_))
+    })
 }
 
 /// The bursts of the topmost of these layers that has any.

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use frixel_layers::{Blend, Layer};
+
 use super::slide::{total_n, visible_layers};
 use crate::Program;
 use crate::reference::{Context, Reference};
@@ -26,10 +28,14 @@ struct Pairs {
     sums_n: [f64; 2],
 }
 
-/// The borders between the layers of a program, for a slow finger, with vibrations at their largest and without clicks
-/// and streams.
+/// The borders between the layers of a program, for a slow finger, with vibrations at their largest and without clicks,
+/// streams, and ridges on what lies below: a ridge is felt by itself, and its region ends where nothing is felt.
 pub(super) fn borders(program: &Program, speed_m_per_s: f64) -> Vec<Border> {
-    let reference = Reference::new(program).with_vibrations_held();
+    let is_ridge_on_ground = |layer: usize| {
+        let record = program.records.get(layer);
+        record.is_some_and(|record| matches!(record.layer, Layer::Edge(_)) && record.blend != Blend::Replace)
+    };
+    let reference = Reference::new(program).with_vibrations_held().with_only(|layer| !is_ridge_on_ground(layer));
     let (width_m, height_m) = (f64::from(program.header.screen_width_m), f64::from(program.header.screen_height_m));
     let pitch_m = width_m.max(height_m) / PLACES;
     let (columns, rows) = ((width_m / pitch_m) as usize, (height_m / pitch_m) as usize);

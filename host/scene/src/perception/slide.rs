@@ -113,11 +113,12 @@ pub(super) fn total_n(program: &Program, electric_n: f64) -> f64 {
     program.reach.natural_friction_n + electric_n.clamp(0.0, program.reach.electric_friction_max_n)
 }
 
-/// The layers that have an effect at a place, a bit each: those that cover it and that no layer above replaces.
+/// The layers that have an effect at a place, a bit each: those that are on and cover it, and that no layer above
+/// replaces.
 pub(super) fn visible_layers(pieces: &[Piece], x_m: f64, y_m: f64) -> u64 {
     let mut visible = 0;
     for (number, piece) in pieces.iter().enumerate().rev() {
-        if piece.shape.covers(x_m, y_m) {
+        if piece.is_on && piece.shape.covers(x_m, y_m) {
             visible |= 1 << number;
             if piece.hides_below() {
                 break;

@@ -224,14 +224,51 @@ fn copies_of_a_layer_are_named_once() {
     assert!(!lines.iter().any(|(name, _)| *name == "alike"), "{lines:?}");
 }
 
+/// A groove with ridges on it is the same throughout, and a step or a ridge is no texture.
+#[test]
+fn a_layer_is_judged_without_the_layers_above_it() {
+    let groove = "[[layer]]\nname = \"groove\"\nkind = \"constant\"\nfriction_fraction = 0.1\n\
+                  region = { x_mm = 10, y_mm = 30, width_mm = 80, height_mm = 20 }\n";
+    let detents = "[[layer]]\nname = \"detent\"\nkind = \"edge\"\nx_mm = 14\ny_mm = 40\nwidth_mm = 3\nridge_fraction = 0.8\n\
+                   region = { x_mm = 10, y_mm = 30, width_mm = 8, height_mm = 20 }\nrepeat = { columns = 10, dx_mm = 8 }\n";
+    let perception = on_example(&format!("{groove}{detents}"));
+    let lines = feel::lines(&perception);
+    let of = |kind: &str| -> Vec<&str> {
+        lines.iter().filter(|(name, _)| *name == kind).map(|(_, text)| text.as_str()).collect()
+    };
+    assert_eq!(of("feel").len(), 2, "the ridges are the same: {lines:?}");
+    assert_eq!(of("feel")[0], "layer 1 \"groove\": 263.0 mN throughout");
+    assert!(of("feel")[1].starts_with("layer 2.1 \"detent 1\" and 9 alike: 263.0 to 36"), "{lines:?}");
+    // The detents cover all of the groove, whose border is there all the same.
+    let step = "from the bare screen to layer 1 \"groove\": 250.0 to 263.0 mN, 0.5 Weber steps (not felt)";
+    assert_eq!(of("step"), [step]);
+
+    let button = plate(20, "kind = \"button\"\nrim_width_mm = 3\nrim_fraction = 0.9\nface_fraction = 0\n");
+    let perception = on_example(&button);
+    assert_eq!(only(&perception).textures, []);
+    let over_texture =
+        grating(2.0, 20.0) + &plate(20, "kind = \"constant\"\nblend = \"multiply\"\nfriction_factor = 0.5\n");
+    let over_texture = on_example(&over_texture);
+    assert!(!over_texture.layers[1].textures.is_empty(), "what lies below is felt: {over_texture:?}");
+}
+
 #[test]
 fn what_near_the_threshold_means_is_said_once_and_only_then() {
     let said = |high_n: f64| {
         let constant = format!("kind = \"constant\"\nabove = \"natural\"\nfriction_n = {high_n}");
         let perception = on_example(&(plate(20, &constant) + &plate(60, &constant)));
-        feel::lines(&perception).iter().filter(|(_, text)| text == NEAR_THRESHOLD).count()
+        let lines = feel::lines(&perception);
+        let near = lines.into_iter().filter(|(_, text)| text.ends_with(NEAR_THRESHOLD));
+        near.map(|(_, text)| text.split(": near").next().unwrap().to_owned()).collect::<Vec<String>>()
     };
     // 0.8, 1.7 and 2.7 Weber steps.
-    assert_eq!([0.02, 0.05, 0.08].map(said), [0, 1, 0]);
+    let both =
+        "the step from the bare screen to layer 1 (constant), the step from the bare screen to layer 2 (constant)";
+    assert_eq!([0.02, 0.05, 0.08].map(said), [vec![], vec![both.to_owned()], vec![]]);
+    // At 20 mm/s it is near the threshold.
+    let fine = on_example("[[layer]]\nkind = \"grating\"\nwavelength_mm = 1\nlow_fraction = 0\nhigh_fraction = 0.2\n");
+    let verdicts: Vec<Verdict> = only(&fine).textures.iter().map(|texture| texture.verdict).collect();
+    assert!(verdicts.contains(&Verdict::NearThreshold) && verdicts.contains(&Verdict::Felt), "{verdicts:?}");
+    assert!(!feel::lines(&fine).iter().any(|(name, _)| *name == "note"), "{:?}", feel::lines(&fine));
     assert_eq!(serde_json::to_string(&Verdict::NearThreshold).unwrap(), "\"felt_by_some\"");
 }

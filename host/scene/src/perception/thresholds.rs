@@ -47,7 +47,7 @@ pub(super) const THRESHOLD_UNCERTAINTY: f64 = 3.0;
 /// What [`Verdict::NearThreshold`] means, for a person. It is about a range of contrast, from the smallest Weber
 /// fraction of the studies to the largest one, or a factor of 3 on both sides of a texture's threshold; no study says
 /// which share of people is how far above it.
-pub const NEAR_THRESHOLD: &str = "near the threshold: some people or some strokes will not notice it";
+pub const NEAR_THRESHOLD: &str = "near the threshold, where some people or some strokes will not notice it";
 
 /// Whether a person feels something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

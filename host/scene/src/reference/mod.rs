@@ -74,6 +74,15 @@ impl Reference {
         self
     }
 
+    /// The same reference with only those layers on for whose index, from the bottom, `is_on` is true.
+    #[must_use]
+    pub(crate) fn with_only(mut self, is_on: impl Fn(usize) -> bool) -> Self {
+        for (layer, piece) in self.pieces.iter_mut().enumerate() {
+            piece.is_on = is_on(layer);
+        }
+        self
+    }
+
     /// The reference along a stroke, with clicks where the finger crosses an edge or enters a button.
     pub fn along_stroke(self) -> StrokeReference {
         StrokeReference::new(self)

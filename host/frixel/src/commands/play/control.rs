@@ -62,6 +62,11 @@ impl Control {
         self.layers = LiveLayers::new(program);
     }
 
+    /// The layers that are off, by their index from the bottom.
+    pub(super) fn layers_off(&self) -> Vec<usize> {
+        self.layers.off()
+    }
+
     /// Longest time that the play may go on at time `t_s` without a look at the lines.
     pub(super) fn time_max(&self, t_s: f64) -> Duration {
         let ends_at_s = self.layers.next_end().map(|ends_at| ends_at.as_secs_f64());

@@ -62,11 +62,14 @@ struct Play<'a, L: RecordedLink> {
 
 impl<L: RecordedLink> Play<'_, L> {
     fn start(&mut self) -> Result<(), CommandError> {
-        let Self { plan, player, bars, interrupt, .. } = self;
+        let Self { args, plan, player, bars, interrupt, .. } = self;
         let started = player.start(&plan.program, plan.telemetry_period_ticks, &mut |progress| {
             bars.upload(progress);
             if interrupt.is_requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
+        if args.watch && started.is_ok() {
+            note(format_args!("frixel: {} plays; what is saved replaces it; Ctrl-C ends", args.scene.display()));
+        }
         started.map_err(|error| self.error(error))
     }
 
@@ -103,6 +106,7 @@ impl<L: RecordedLink> Play<'_, L> {
         let t_s = self.player.recorder_mut().t_s();
         let next = control.step(&mut self.player, &self.plan.program, t_s);
         let step_max = control.time_max(t_s);
+        self.outputs.switch(t_s, control.layers_off());
         match next.map_err(|error| self.error(error))? {
             Next::GoOn => {}
             Next::Quit => return Ok(None),
@@ -122,7 +126,7 @@ impl<L: RecordedLink> Play<'_, L> {
         let Some(live_scene) = &mut self.live_scene else { return Ok(()) };
         match live_scene.refresh(&mut self.player, &self.plan.program) {
             Ok(Some(program)) => {
-                self.outputs.replace(&program);
+                self.outputs.replace(self.player.recorder_mut().t_s(), &program);
                 self.refusals.extend(sentences(&program));
                 if let Some(control) = &mut self.control {
                     control.replace(&program);
@@ -154,7 +158,7 @@ impl<L: RecordedLink> Play<'_, L> {
             .with_stream(stream)
             .with_refusals(self.refusals);
         let written = self.outputs.write(&recorder.take_rows());
-        let report = report.with_untouched(self.outputs.untouched_layers());
+        let report = report.with_untouched(self.outputs.untouched_layers(), self.outputs.replaced_at_s());
         let start_s = recorder.start_s().unwrap_or(0.0);
         let finished = written.and_then(|()| self.outputs.finish(program, &report, start_s));
         // Ctrl-C in a terminal also ends the emulator, which is not a failure.

@@ -23,6 +23,8 @@ pub(super) struct LiveScene {
     named_files: Vec<SavedFile>,
     /// The thread that compiles a saved scene, because the host must keep sending to the board meanwhile.
     compiling: Option<JoinHandle<Compiled>>,
+    /// Whether the scene that is being compiled is another one, by `replace`, and not a saved one.
+    is_other: bool,
     /// Whether changes of the files are played.
     watches: bool,
     target: Target,
@@ -40,12 +42,13 @@ impl LiveScene {
     pub(super) fn new(path: &Path, profiles: ProfileNames, watches: bool, target: Target) -> Self {
         let file = SavedFile::new(path);
         let named_files = if watches { profiles.load_with_files(path).1 } else { Vec::new() };
-        Self { profiles, file, named_files: watched(&named_files), compiling: None, watches, target }
+        Self { profiles, file, named_files: watched(&named_files), compiling: None, is_other: false, watches, target }
     }
 
     /// Plays, and watches, another file from now on.
     pub(super) fn load<L: RecordedLink>(&mut self, path: &Path, player: &Player<L>) {
         self.file = SavedFile::new(path);
+        self.is_other = true;
         self.compile(player);
     }
 
@@ -61,7 +64,8 @@ impl LiveScene {
         if let Some(compiling) = self.compiling.take_if(|compiling| waits || compiling.is_finished()) {
             let Compiled { program, named_files } = compiling.join().unwrap_or_else(|panic| resume_unwind(panic));
             self.named_files = named_files;
-            return replace(self.file.path(), program, player, playing);
+            let how = if std::mem::take(&mut self.is_other) { "" } else { " as it was saved" };
+            return replace(self.file.path(), how, program, player, playing);
         }
         if !self.watches {
             return Ok(None);
@@ -95,9 +99,10 @@ fn watched(paths: &[PathBuf]) -> Vec<SavedFile> {
     paths.iter().map(|path| SavedFile::new(path)).collect()
 }
 
-/// Plays a compiled scene. If it has errors or the board rejects it, prints why, and keeps the earlier scene playing.
+/// Plays a compiled scene, and says so: its file, and `how` it plays. If it has errors or the board rejects it, prints why, and keeps the earlier scene playing.
 fn replace<L: RecordedLink>(
     path: &Path,
+    how: &str,
     compiled: Result<Program, SceneFileError>,
     player: &mut Player<L>,
     playing: &Program,
@@ -116,10 +121,11 @@ fn replace<L: RecordedLink>(
         note(format_args!("frixel: {path} is not played: the previous scene keeps playing"));
         return Ok(None);
     }
-    let mut how = "";
+    let mut meanwhile = "";
     let replaced = match player.replace(&program) {
         Err(PlayError::Device(DeviceError::Refused { refusal: Refusal::BitmapPoolFull { .. }, .. })) => {
-            how = "; its pictures and those before it do not fit on the board together: the output faded out meanwhile";
+            meanwhile =
+                "; its pictures and those before it do not fit on the board together: the output faded out meanwhile";
             replace_alone(&program, player, playing)
         }
         replaced => replaced,
@@ -128,7 +134,7 @@ fn replace<L: RecordedLink>(
         Ok(()) => {
             note_refusals(file, &program);
             print_notes(&program);
-            note(format_args!("frixel: {path} plays as it was saved{how}"));
+            note(format_args!("frixel: {path} plays{how}{meanwhile}"));
             Ok(Some(program))
         }
         Err(PlayError::Device(refused @ DeviceError::Refused { .. })) => {

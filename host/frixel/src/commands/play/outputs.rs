@@ -21,6 +21,10 @@ pub(super) struct Outputs {
     /// Whether finger or board is simulated.
     is_simulated: bool,
     touched: TouchedLayers,
+    /// When the scene that plays replaced the one before, s.
+    replaced_at_s: Option<f64>,
+    /// The layers of the scene that are off, by index, from a time on, s.
+    off: Vec<(f64, Vec<usize>)>,
     log: Option<PathBuf>,
     /// The rows so far, if they will be joined with a log.
     rows: Vec<FeltRow>,
@@ -49,6 +53,8 @@ impl Outputs {
             target,
             is_simulated,
             touched,
+            replaced_at_s: None,
+            off: Vec::new(),
             log,
             rows: Vec::new(),
         })
@@ -63,17 +69,39 @@ impl Outputs {
             }
             let place_mm = row.x_mm.zip(row.y_mm);
             let layer = place_mm.and_then(|(x_mm, y_mm)| self.touched.add(1e-3 * x_mm, 1e-3 * y_mm));
-            self.trace.push(row, layer.map(|layer| self.touched.title(layer)));
+            let name = layer.map(|layer| self.name_at(layer, row.t_s));
+            self.trace.push(row, name.as_deref());
         }
         Ok(self.csv.flush()?)
     }
 
-    /// Continues with another program, whose layers nobody has touched yet.
-    pub(super) fn replace(&mut self, program: &Program) {
-        self.touched = TouchedLayers::new(program);
+    /// The title of a layer for the picture, which says when the layer is off.
+    fn name_at(&self, layer: usize, t_s: f64) -> String {
+        let last = self.off.iter().rfind(|(from_s, _)| *from_s < t_s);
+        let suffix = if last.is_some_and(|(_, off)| off.contains(&layer)) { " off" } else { "" };
+        format!("{}{suffix}", self.touched.title(layer))
     }
 
-    /// Names of the layers that the finger never touched.
+    /// Says which layers of the scene are off from a time on, by index.
+    pub(super) fn switch(&mut self, t_s: f64, off: Vec<usize>) {
+        if self.off.last().is_none_or(|(_, last)| *last != off) {
+            self.off.push((t_s, off));
+        }
+    }
+
+    /// Continues with another program from a time on, whose layers nobody has touched yet, and all of which are on.
+    pub(super) fn replace(&mut self, t_s: f64, program: &Program) {
+        self.touched = TouchedLayers::new(program);
+        self.replaced_at_s = Some(t_s);
+        self.off.clear();
+    }
+
+    /// When the scene of [`Self::untouched_layers`] replaced the one before, s.
+    pub(super) fn replaced_at_s(&self) -> Option<f64> {
+        self.replaced_at_s
+    }
+
+    /// Names of the layers of the last scene that the finger never touched.
     pub(super) fn untouched_layers(&self) -> Vec<String> {
         self.touched.untouched().map(|layer| self.touched.title(layer).to_owned()).collect()
     }
