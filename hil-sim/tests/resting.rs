@@ -28,8 +28,9 @@ fn driven_shares(touch: TouchConfig, stroke: impl Fn(u64) -> Stroke) -> Vec<f64>
             script.run(SETTLE_TICKS);
             let mut driven = 0_u64;
             for _ in 0..MEASURED_TICKS / 1_000 {
+                // With it, the host's ping, which takes some ticks.
                 script.run(1);
-                driven += (1..1_000).filter(|_| script.step().status.telemetry.dac_code != 0).count() as u64;
+                driven += (0..1_000).filter(|_| script.step().status.telemetry.dac_code != 0).count() as u64;
             }
             driven as f64 / MEASURED_TICKS as f64
         })
@@ -62,7 +63,7 @@ fn a_finger_at_rest_is_not_driven_unless_its_source_jumps_between_pixels() {
     let shares = driven_shares(TouchConfig::REALISTIC, resting);
     let mean = shares.iter().sum::<f64>() / shares.len() as f64;
     println!("driven at rest under steps of 0.18 mm: {mean:.3}");
-    assert!(mean < 0.6, "steps of 0.18 mm: {shares:?}");
+    assert!(mean < 0.48, "steps of 0.18 mm: {shares:?}");
 }
 
 #[test]

@@ -172,7 +172,8 @@ impl Tracker {
             .map(|track| track.place_m(track.elapsed_s(reported_at_tick, timing.tick_period_s)));
         let path = Path::from(before_m, &estimate, BLEND_INTERVALS * self.interval_s);
         let ticks = timing.stale_after_ticks.min(timing.sample_age_max_ticks - age_ticks) + 1;
-        // The speed now, not that at the time of the sample, which is late; and that of the finger, not of the path.
+        // The estimate at the sample, not now: prediction adds noise. The time is that of the report, on which the ramp
+        // depends.
         let ramp = self.standstill.take(self.estimator.after(0.0).place_m, reported_at_tick, &timing.standstill);
         let track = Track {
             contact: self.contact,

@@ -160,7 +160,7 @@ impl<L: Link> Device<L> {
         self.request(Command::Arm)
     }
 
-    /// Disarms the board from any state, and sets its output to zero.
+    /// Disarms the board, and sets its output to zero. Refused while a fault is latched: the output is zero then.
     pub fn disarm(&mut self) -> Result<(), DeviceError> {
         self.request(Command::Disarm)?;
         self.armed = false;

@@ -128,10 +128,21 @@ impl Demand<'_> {
                 asked_n: digits(asked.low + offset_n, down),
                 reference,
                 natural_n: digits(reach.natural_friction_n, f64::round),
+                cure: self.cure_below(above),
             };
             sides.push(Side { offset: self.place(false), mistake });
         }
         sides
+    }
+
+    /// What to change where the friction is below natural friction, which less load lowers.
+    fn cure_below(&self, above: Above) -> &'static str {
+        match &self.layers[..] {
+            [_] if above == Above::Zero => "raise it, or lower `normal_load_n`",
+            [Played { layer, .. }] if layer.blend == Blend::Replace => "raise it",
+            [_] => "raise it, or the ground beneath it, by a layer with more friction",
+            _ => "raise one of them, or the ground beneath them",
+        }
     }
 
     /// The fields of a single layer that exceed the reach together with its click, with their values; `None` if the
@@ -147,7 +158,7 @@ impl Demand<'_> {
         (click_n > 0.0).then_some(())?;
         match &above[..] {
             [] => None,
-            [only] => Some(format!("its {only} and its {} together", written(click))),
+            [only] => Some(format!("with its {only} and its {} together", written(click))),
             all => Some(format!("each of its {} together with its {}", all.join(" and "), written(click))),
         }
     }
@@ -199,7 +210,7 @@ fn note(side: &Side, ending: &str) -> String {
         FitMistake::AboveReach { asking, asked_n, reference, reach_n, .. } => {
             format!("{asking} up to {asked_n} N {reference}, and at most {reach_n} N can be reached{ending}")
         }
-        FitMistake::BelowNatural { asking, asked_n, reference, natural_n } => {
+        FitMistake::BelowNatural { asking, asked_n, reference, natural_n, .. } => {
             format!("{asking} down to {asked_n} N {reference}, below the natural friction of {natural_n} N{ending}")
         }
         other => other.to_string(),

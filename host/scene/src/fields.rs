@@ -36,6 +36,10 @@ pub(super) struct Fields<'i> {
     either: Vec<[&'static str; 2]>,
     /// The fields of the table follow from a word that was misspelt.
     pub(super) is_guess: bool,
+    /// Tables inside this one in place of which another one is the default.
+    replaced_defaults: Vec<String>,
+    /// Whether this table replaces one of `[defaults]`.
+    replaces_default: bool,
 }
 
 /// Width and height of a pixel of a scene's design on its screen, mm.
@@ -84,12 +88,15 @@ impl<'i> Fields<'i> {
             required: Vec::new(),
             either: Vec::new(),
             is_guess: false,
+            replaced_defaults: Vec::new(),
+            replaces_default: false,
         }
     }
 
     /// The table of a field.
     fn of_field(&self, brackets: &str, key: &'static str, offset: usize, values: DeTable<'i>) -> Self {
-        Self { key, pixel_mm: self.pixel_mm, ..Self::new(brackets, offset, values) }
+        let replaces_default = self.replaced_defaults.iter().any(|field| field == key);
+        Self { key, pixel_mm: self.pixel_mm, replaces_default, ..Self::new(brackets, offset, values) }
     }
 
     /// Sets the size of a pixel of the scene's design, in this table and in the tables inside it.
@@ -100,7 +107,16 @@ impl<'i> Fields<'i> {
     /// Sets the values of fields that the table does not have. A field of the table counts before a default in any
     /// unit. `misspelt` are valid names that defaults of other names were probably meant to have.
     pub(super) fn with_defaults(self, defaults: &DeTable<'i>, misspelt: &[String]) -> Self {
-        Self { defaults: without(defaults, &self.values), misspelt_defaults: misspelt.to_vec(), ..self }
+        let replaced_defaults = defaults
+            .keys()
+            .map(|name| name.get_ref().to_string())
+            .filter(|name| self.values.contains_key(name.as_str()));
+        Self {
+            defaults: without(defaults, &self.values),
+            misspelt_defaults: misspelt.to_vec(),
+            replaced_defaults: replaced_defaults.collect(),
+            ..self
+        }
     }
 
     /// Moves a field here from another file's table. A field that both have is a mistake.
@@ -151,7 +167,14 @@ impl<'i> Fields<'i> {
             let in_mm =
                 |px: &str| self.known.iter().any(|other| other.field.name != px && stem(other.field.name) == stem(px));
             let absent = absent.filter(|known| self.pixel_mm.is_some() || !known.ends_with("_px") || !in_mm(known));
-            let nearest = Nearest::new(name.get_ref(), absent);
+            // One amount is given in one unit.
+            let is_said = |known: &&str| {
+                self.known.iter().any(|other| {
+                    let other = other.field.name;
+                    stem(other) == stem(known) && self.places.has(other)
+                })
+            };
+            let nearest = Nearest::new(name.get_ref(), absent.filter(|known| !is_said(known)));
             misspelt.extend(nearest.suggestion.clone());
             let field = name.get_ref().clone().into_owned();
             log.add(name.span().start, FieldMistake::UnknownField { field, table: self.table.clone(), nearest });
@@ -162,7 +185,8 @@ impl<'i> Fields<'i> {
             if self.is_guess || self.places.has(field) || is_reported {
                 continue;
             }
-            let (other, table) = (self.other_unit(field), self.table.clone());
+            let replaces = if self.replaces_default { ", which replaces the default as a whole," } else { "" };
+            let (other, table) = (self.other_unit(field), format!("{}{replaces}", self.table));
             log.add(self.places.table(), FieldMistake::MissingField { field, other, table });
         }
         self.places
@@ -245,7 +269,8 @@ impl<'i> Fields<'i> {
             .zip(self.values.values().map(|value| value.span().start))
             .map(|((name, offset), value_offset)| Unknown { name, offset, value_offset })
             .collect();
-        misplaced::report(&self.table, self.key, &unknown, log)
+        let has = |field: &str| self.known.iter().any(|known| known.field.name == field);
+        misplaced::report(&self.table, self.key, &unknown, has, log)
     }
 
     fn described(&self) -> KnownTable {

@@ -72,12 +72,17 @@ impl Gathered {
             FileUnavailable::Missing { files, .. } => FileMistake::IncludedMissing {
                 file: file.clone(),
                 included: included.clone(),
-                nearest: Nearest::file(file_name(path), &files),
+                nearest: Nearest::file(file_name(path), &scenes(files)),
             },
         })?;
         let text = String::from_utf8(bytes).map_err(|_| unusable(FileMistake::NotUtf8.to_string()))?;
         Ok(self.source.add(included, path.to_owned(), text))
     }
+}
+
+/// Those of some files that may be scenes.
+fn scenes(files: Vec<String>) -> Vec<String> {
+    files.into_iter().filter(|file| file.ends_with(".toml")).collect()
 }
 
 /// The names in `include` of a text, each with its offset.

@@ -36,6 +36,14 @@ pub enum LiveError {
         /// Of the trigger, ms.
         duration_ms: f64,
     },
+    /// The layer is triggered with a gain of zero.
+    #[error(
+        "layer {layer:?} has a gain of 0, so that a trigger plays nothing: give it one first, by `layer {layer:?} gain 1`"
+    )]
+    TriggerSilent {
+        /// The name or number that was given.
+        layer: String,
+    },
     /// A gain leads out of reach.
     #[error("gain {gain} is refused: {clamped}{}", gain_advice(*.range))]
     GainOutOfReach {
@@ -91,8 +99,8 @@ impl LiveLayers {
     ///
     /// # Errors
     ///
-    /// An unknown layer, one that cannot be changed, and a gain that leads out of reach in a scene that does not
-    /// saturate and is no draft. Nothing is changed then.
+    /// An unknown layer, one that cannot be changed, and a gain that leads out of reach, now or once all layers are on,
+    /// in a scene that does not saturate and is no draft. Nothing is changed then.
     pub fn change(
         &mut self,
         program: &Program,
@@ -105,10 +113,14 @@ impl LiveLayers {
         let mut changed = self.settings.clone();
         let setting = set(&mut changed, record, on, gain);
         let clamped = program.clamped_with(&changed).filter(|clamped| before.as_ref() != Some(clamped));
-        let is_strict = !program.saturates && !program.is_draft();
-        if let (Some(gain), Some(clamped), true) = (gain, &clamped, is_strict) {
-            let range = program.gains_in_reach(record, &changed);
-            return Err(LiveError::GainOutOfReach { gain, clamped: clamped.clone(), range });
+        if let Some(gain) = gain.filter(|_| !program.saturates && !program.is_draft()) {
+            // A layer that is off may be switched on later.
+            let all_on: Vec<LayerSetting> =
+                changed.iter().map(|setting| LayerSetting { on: true, ..*setting }).collect();
+            if let Some(clamped) = program.clamped_with(&all_on) {
+                let range = program.gains_in_reach(record, &all_on);
+                return Err(LiveError::GainOutOfReach { gain, clamped, range });
+            }
         }
         self.settings = changed;
         if on.is_some() {
@@ -118,11 +130,13 @@ impl LiveLayers {
         Ok(LayerChange { record, setting, clamped })
     }
 
-    /// Switches a layer that is off on at the time `now`, until `duration` later.
+    /// Switches a layer that is off on at the time `now`, until `duration` later. If it is triggered already, it is
+    /// switched off at the later of both ends.
     ///
     /// # Errors
     ///
-    /// An unknown layer, one that cannot be changed, one that is on, and one whose bursts the trigger may miss.
+    /// An unknown layer, one that cannot be changed, one that is on, one whose gain is zero, and one whose bursts the
+    /// trigger may miss.
     pub fn trigger(
         &mut self,
         program: &Program,
@@ -131,10 +145,14 @@ impl LiveLayers {
         duration: Duration,
     ) -> Result<LayerChange, LiveError> {
         let record = program.layers.record(layer)?;
-        let is_on = self.settings.get(usize::from(record)).is_some_and(|setting| setting.on);
-        let is_triggered = self.triggered.iter().any(|(triggered, _)| *triggered == record);
-        if is_on && !is_triggered {
+        let before = self.settings.get(usize::from(record));
+        let triggered_until =
+            self.triggered.iter().find(|(triggered, _)| *triggered == record).map(|(_, ends_at)| *ends_at);
+        if before.is_some_and(|setting| setting.on) && triggered_until.is_none() {
             return Err(LiveError::TriggerOn { layer: layer.to_owned() });
+        }
+        if before.is_some_and(|setting| setting.gain.abs() <= 0.0) {
+            return Err(LiveError::TriggerSilent { layer: layer.to_owned() });
         }
         let (duration_s, vibration) =
             (duration.as_secs_f64(), program.records.get(usize::from(record)).map(|record| &record.layer));
@@ -145,7 +163,8 @@ impl LiveLayers {
             return Err(LiveError::TriggerBetweenBursts { layer: layer.to_owned(), period_ms, duration_ms });
         }
         self.triggered.retain(|(triggered, _)| *triggered != record);
-        self.triggered.push((record, now.saturating_add(duration)));
+        let ends_at = now.saturating_add(duration);
+        self.triggered.push((record, triggered_until.map_or(ends_at, |until| until.max(ends_at))));
         let setting = set(&mut self.settings, record, Some(true), None);
         Ok(LayerChange { record, setting, clamped: None })
     }
@@ -176,4 +195,88 @@ fn set(settings: &mut [LayerSetting], record: u8, on: Option<bool>, gain: Option
     let setting = settings.get_mut(usize::from(record)).unwrap_or(&mut nothing);
     *setting = LayerSetting { on: on.unwrap_or(setting.on), gain: gain.unwrap_or(setting.gain) };
     *setting
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use frixel_control::Board;
+
+    use super::*;
+    use crate::{Scene, compile};
+
+    /// The simulator's board, with a drive that adds some 0.13 N.
+    fn program(text: &str) -> Program {
+        let text = format!("version = 2\n{text}");
+        let scene = Scene::parse(&text, "live.toml", &BTreeMap::new()).expect("it is a scene");
+        compile(&scene, &Board::SIMULATOR.limits, 40_000).expect("it compiles")
+    }
+
+    fn layer(name: &str, more: &str) -> String {
+        format!(
+            "[[layer]]\nname = \"{name}\"\nkind = \"constant\"\nabove = \"natural\"\nfriction_n = 0.05\nblend = \"add\"\n\
+             live = true\n{more}"
+        )
+    }
+
+    fn ms(ms: u64) -> Duration {
+        Duration::from_millis(ms)
+    }
+
+    #[test]
+    fn a_second_trigger_does_not_shorten_the_first() {
+        let program = program(&layer("ping", ""));
+        let mut layers = LiveLayers::new(&program);
+        layers.change(&program, "ping", Some(false), None).expect("it is live");
+        layers.trigger(&program, "ping", ms(0), ms(300)).expect("it is off");
+        layers.trigger(&program, "ping", ms(50), ms(100)).expect("it is triggered");
+        assert_eq!(layers.next_end(), Some(ms(300)));
+        layers.trigger(&program, "ping", ms(250), ms(100)).expect("it is triggered");
+        assert_eq!(layers.next_end(), Some(ms(350)));
+        assert_eq!(layers.end_trigger(ms(340)), None);
+        let ended = layers.end_trigger(ms(350)).expect("it has ended");
+        assert!(!ended.setting.on && layers.next_end().is_none());
+    }
+
+    #[test]
+    fn a_trigger_of_no_gain_is_refused() {
+        let program = program(&layer("ping", ""));
+        let mut layers = LiveLayers::new(&program);
+        layers.change(&program, "ping", Some(false), Some(0.0)).expect("it is in reach");
+        let refused = layers.trigger(&program, "ping", ms(0), ms(100)).expect_err("nothing would be felt");
+        assert_eq!(
+            refused.to_string(),
+            "layer \"ping\" has a gain of 0, so that a trigger plays nothing: give it one first, by `layer \"ping\" gain 1`"
+        );
+    }
+
+    /// A layer that is off is not clamped, but may be switched on.
+    #[test]
+    fn a_gain_is_judged_as_if_all_layers_were_on() {
+        let text = format!("{}{}", layer("A", ""), layer("B", ""));
+        let strict = program(&text);
+        let mut layers = LiveLayers::new(&strict);
+        layers.change(&strict, "A", Some(false), None).expect("it is live");
+        layers.change(&strict, "B", Some(false), None).expect("it is live");
+        let before = layers.clone();
+        let refused = layers.change(&strict, "B", None, Some(2.0)).expect_err("with A it is out of reach");
+        assert!(
+            refused.to_string().starts_with("gain 2 is refused: layer 1 \"A\" and layer 2 \"B\" would"),
+            "{refused}"
+        );
+        assert!(refused.to_string().ends_with("give a gain from -1 to 1.59"), "{refused}");
+        assert_eq!(layers, before);
+        for layer in ["A", "B"] {
+            let on = layers.change(&strict, layer, Some(true), None).expect("it is live");
+            assert_eq!(on.notice(), None);
+        }
+        // With `saturate` it is taken, and the notice comes when it is felt.
+        let clamping = program(&format!("[drive]\nsaturate = true\n{text}"));
+        let mut layers = LiveLayers::new(&clamping);
+        let change = layers.change(&clamping, "B", Some(false), Some(5.0)).expect("it is clamped");
+        assert_eq!(change.notice(), None);
+        let on = layers.change(&clamping, "B", Some(true), None).expect("it is clamped");
+        assert!(on.notice().is_some_and(|notice| notice.ends_with("it is clamped there")));
+    }
 }

@@ -9,7 +9,28 @@ pub struct Nearest {
     pub suggestion: Option<String>,
     /// All known words.
     pub known: Vec<String>,
+    /// What belongs to the suggestion, with a comma before it; empty if nothing does.
+    remark: &'static str,
 }
+
+/// Words of other trades for words of a scene, each with a remark. Of those with one word, the first one whose meaning
+/// is known where it is written counts.
+const SYNONYMS: [(&str, &str, &str); 14] = [
+    ("file", "picture", ""),
+    ("image", "picture", ""),
+    ("photo", "picture", ""),
+    ("src", "picture", ""),
+    ("path", "picture", ""),
+    ("image", "bitmap", ""),
+    ("photo", "bitmap", ""),
+    ("picture", "bitmap", ""),
+    ("slider", "edge", ", one for each detent, with `repeat`"),
+    ("detent", "edge", ""),
+    ("line", "edge", ""),
+    ("notification", "vibration", ", with `live = true`, so that a program can trigger it"),
+    ("buzz", "vibration", ""),
+    ("key", "button", ""),
+];
 
 impl Nearest {
     /// Likeness (Jaro-Winkler, 0 to 1) from which a word is suggested.
@@ -20,6 +41,11 @@ impl Nearest {
     pub fn new<'k>(found: &str, known: impl IntoIterator<Item = &'k str>) -> Self {
         let known: Vec<String> = known.into_iter().map(str::to_owned).collect();
         let found = found.to_lowercase();
+        let is_known = |word: &str| known.iter().any(|known| known == word);
+        let synonym = SYNONYMS.iter().find(|(synonym, meant, _)| *synonym == found && is_known(meant));
+        if let Some((_, meant, remark)) = synonym.filter(|_| !is_known(&found)) {
+            return Self { suggestion: Some((*meant).to_owned()), known, remark };
+        }
         let suggestion = known
             .iter()
             .rev()
@@ -27,7 +53,7 @@ impl Nearest {
             .filter(|(likeness, _)| *likeness >= Self::LIKENESS_MIN)
             .max_by(|(one, _), (other, _)| one.total_cmp(other))
             .map(|(_, word)| word.clone());
-        Self { suggestion, known }
+        Self { suggestion, known, remark: "" }
     }
 
     /// The file that is nearest to the name of another one. Files are alike by what stands before the ending, which is
@@ -53,7 +79,7 @@ fn ending(name: &str) -> &str {
 impl Display for Nearest {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.suggestion {
-            Some(word) => write!(formatter, "did you mean `{word}`?"),
+            Some(word) => write!(formatter, "did you mean `{word}`{}?", self.remark),
             None if self.known.is_empty() => write!(formatter, "nothing more is expected here"),
             None => write!(formatter, "expected one of `{}`", self.known.join("`, `")),
         }

@@ -1,5 +1,6 @@
 //! Compiles pictures to bitmaps for the board's pool.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use super::file::Scene;
@@ -27,8 +28,8 @@ pub(super) struct Pool {
     optimisations: Vec<Optimisation>,
 }
 
-/// The pictures of a scene at the levels of their layers, each decoded once, or the reason why one cannot be used.
-type Decoded = BTreeMap<(String, Levels), Result<Picture, FileMistake>>;
+/// The pictures of a scene, each decoded once, or the reason why one cannot be used.
+type Decoded = BTreeMap<String, Result<Picture, FileMistake>>;
 
 /// A bitmap and its place on the screen.
 pub(crate) struct Placed {
@@ -44,6 +45,8 @@ pub(crate) struct Placed {
     pub(crate) outline: Option<Region>,
     /// Its height over its width, relative to that of its pixels.
     pub(crate) height_factor: f64,
+    /// The height that its width demands.
+    pub(crate) height_kept_mm: f64,
 }
 
 impl Placed {
@@ -83,8 +86,10 @@ impl Placed {
             ])),
         };
         let angle_turns = (bitmap.angle_deg / 360.0) as f32;
-        let height_factor = whole.height_mm / whole.width_mm * picture.width as f64 / picture.height as f64;
-        Self { crc32, corner_mm, pitches_mm, angle_turns, tiled: bitmap.tiled, outline, height_factor }
+        let height_kept_mm = whole.width_mm * height_per_width(picture);
+        let height_factor = whole.height_mm / height_kept_mm;
+        let tiled = bitmap.tiled;
+        Self { crc32, corner_mm, pitches_mm, angle_turns, tiled, outline, height_factor, height_kept_mm }
     }
 }
 
@@ -157,7 +162,7 @@ fn shared_pitch_mm(scene: &Scene, pictures: &Decoded, size_bytes: u32) -> f64 {
     let screen_mm = (scene.screen().width_mm, scene.screen().height_mm);
     let bitmaps = scene.layers.iter().filter_map(|layer| {
         let Kind::Bitmap(bitmap) = &layer.kind else { return None };
-        let picture = pictures.get(&key(bitmap))?.as_ref().ok()?;
+        let picture = pictures.get(&bitmap.picture)?.as_ref().ok()?;
         let region = layer.region.as_ref().map(Region::bounds);
         Some((bitmap, picture, region, rectangle(bitmap, region, height_per_width(picture))?))
     });
@@ -166,7 +171,7 @@ fn shared_pitch_mm(scene: &Scene, pictures: &Decoded, size_bytes: u32) -> f64 {
         let mut grids = Vec::new();
         for (bitmap, picture, region, whole) in &bitmaps {
             let pitch_mm = pitch_mm(bitmap, picture, *whole, f64::from(hundredths) / 100.0);
-            let grid = (key(bitmap), axes(bitmap, pitch_mm, picture, *whole, *region, screen_mm));
+            let grid = ((&bitmap.picture, bitmap.levels), axes(bitmap, pitch_mm, picture, *whole, *region, screen_mm));
             if !grids.contains(&grid) {
                 grids.push(grid);
             }
@@ -191,8 +196,15 @@ fn shared_pitch_mm(scene: &Scene, pictures: &Decoded, size_bytes: u32) -> f64 {
     f64::from(high) / 100.0
 }
 
-fn key(bitmap: &BitmapLayer) -> (String, Levels) {
-    (bitmap.picture.clone(), bitmap.levels)
+/// The picture at the levels of its layer, which are those of its samples, so that a picture of more pixels is felt as
+/// one of few.
+fn levelled<'p>(bitmap: &BitmapLayer, picture: &'p Picture, across: Axis, down: Axis) -> Cow<'p, Picture> {
+    if bitmap.levels == Levels::Full {
+        return Cow::Borrowed(picture);
+    }
+    let (across, down) = (across.whole_in_pixels(picture.width), down.whole_in_pixels(picture.height));
+    let samples = resample(&picture.grey, picture.width, across, down);
+    Cow::Owned(picture.clone().stretched(samples))
 }
 
 /// Decodes the pictures of a scene, each one once.
@@ -203,23 +215,19 @@ fn decoded(scene: &Scene) -> Decoded {
             // `Scene::parse` has read every picture that a layer names.
             let unread = Err(FileUnavailable::Unreadable { reason: "the scene was read without it".to_owned() });
             let bytes = scene.pictures.get(&bitmap.picture).unwrap_or(&unread);
-            let picture = || picture(&bitmap.picture, bitmap.levels, bytes);
-            decoded.entry(key(bitmap)).or_insert_with(picture);
+            decoded.entry(bitmap.picture.clone()).or_insert_with(|| picture(&bitmap.picture, bytes));
         }
     }
     decoded
 }
 
-fn picture(name: &str, levels: Levels, bytes: &Result<Vec<u8>, FileUnavailable>) -> Result<Picture, FileMistake> {
+fn picture(name: &str, bytes: &Result<Vec<u8>, FileUnavailable>) -> Result<Picture, FileMistake> {
     if name.is_empty() {
         return Err(FileMistake::NoFileName { field: "picture" });
     }
     let unusable = |reason: String| FileMistake::FileUnusable { what: "picture", file: name.to_owned(), reason };
     match bytes {
-        Ok(bytes) => {
-            let picture = Picture::decode(bytes).map_err(|error| unusable(error.to_string()))?;
-            Ok(if levels == Levels::Stretch { picture.stretched() } else { picture })
-        }
+        Ok(bytes) => Picture::decode(bytes).map_err(|error| unusable(error.to_string())),
         Err(FileUnavailable::Unreadable { reason }) => Err(unusable(format!("it cannot be read ({reason})"))),
         Err(FileUnavailable::Missing { place, files }) => Err(FileMistake::FileMissing {
             what: "picture",
@@ -253,7 +261,7 @@ impl Pool {
         log: &mut Log,
         notes: &mut Vec<String>,
     ) -> Option<Placed> {
-        let picture = match self.pictures.get(&key(bitmap))? {
+        let picture = match self.pictures.get(&bitmap.picture)? {
             Ok(picture) => picture,
             Err(mistake) => {
                 log.add(layer.places.field("picture"), mistake.clone());
@@ -273,6 +281,7 @@ impl Pool {
             self.too_small(layer, pitch_mm, bytes, log);
             return None;
         };
+        let picture = levelled(bitmap, picture, across, down);
         let compiled = Bitmap::new(width, height, resample(&picture.grey, picture.width, across, down));
         let crc32 = compiled.crc32;
         let (picture_name, kept) = (file_name(&bitmap.picture).to_owned(), across.samples * down.samples);
@@ -289,8 +298,8 @@ impl Pool {
             }
             self.bitmaps.push(compiled);
         }
-        notes.extend(self.note(bitmap, pitch_mm, across, down));
-        Some(Placed::new(bitmap, picture, whole, pitch_mm, (across, down), crc32))
+        notes.extend(self.note(bitmap, &picture, pitch_mm, across, down));
+        Some(Placed::new(bitmap, &picture, whole, pitch_mm, (across, down), crc32))
     }
 
     fn fits(&self, layer: &Layer, pitch_mm: f64, needed_bytes: u64, log: &mut Log) -> bool {
@@ -312,8 +321,7 @@ impl Pool {
 
     /// Describes the conversions of a picture, and a pitch that the scene leaves open; `None` if there is nothing to
     /// say.
-    fn note(&self, bitmap: &BitmapLayer, pitch_mm: f64, across: Axis, down: Axis) -> Option<String> {
-        let picture = self.pictures.get(&key(bitmap))?.as_ref().ok()?;
+    fn note(&self, bitmap: &BitmapLayer, picture: &Picture, pitch_mm: f64, across: Axis, down: Axis) -> Option<String> {
         let mut done = picture.conversions.clone();
         let is_resampled = (across.whole, down.whole) != (picture.width, picture.height);
         if is_resampled {

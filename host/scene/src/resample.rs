@@ -37,6 +37,14 @@ impl Axis {
         Self { skipped, samples: end - skipped + 1, ..self }
     }
 
+    /// All samples of the picture, or all of its pixels if they are fewer.
+    pub(super) fn whole_in_pixels(self, pixels: usize) -> Self {
+        if self.pixels_per_sample < 1.0 {
+            return Self { whole: pixels, skipped: 0, samples: pixels, pixels_per_sample: 1.0 };
+        }
+        Self { skipped: 0, samples: self.whole, ..self }
+    }
+
     /// The first pixel of a sample, and the weights of that pixel and those after it, which sum to one. A sample of one
     /// pixel or more is the mean over its area. A smaller one is interpolated between pixel centres, and constant
     /// beyond the outermost ones.

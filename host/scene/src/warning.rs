@@ -72,8 +72,15 @@ pub enum Warning {
     },
     /// A picture is stretched along one side.
     #[error(
-        "{layer}: the picture is stretched by {percent} % in {direction}: leave `height_mm` out to keep its sides, or change \
-         the region"
+        "{layer}: the picture is stretched by {percent} % in {direction}: to keep its sides, {}",
+        if *.has_own_height {
+            "leave the layer's `height_mm` out".to_owned()
+        } else {
+            format!(
+                "make its region {height_mm} mm high, or write `x_mm`, `y_mm` and `width_mm` of the picture in the layer, \
+                 beside `region`"
+            )
+        }
     )]
     PictureStretched {
         /// The layer.
@@ -82,6 +89,10 @@ pub enum Warning {
         percent: f64,
         /// `width` or `height`.
         direction: &'static str,
+        /// Whether the layer itself has a `height_mm`.
+        has_own_height: bool,
+        /// The height that its width demands, mm.
+        height_mm: f64,
     },
     /// The line of an edge without a region crosses a scene of layers with regions.
     #[error("{layer} has no `region`, so that its line crosses the whole screen: give it one to end the line there")]
@@ -89,14 +100,27 @@ pub enum Warning {
         /// The layer.
         layer: String,
     },
+    /// The line of an edge does not cross its region.
+    #[error(
+        "{layer}: its line lies {distance_mm} mm outside of its `region`, so that nobody crosses it: move `x_mm` and `y_mm`, \
+         which are a place on the screen, or the region"
+    )]
+    EdgeOutsideRegion {
+        /// The layer.
+        layer: String,
+        /// From the line to the nearest corner of the rectangle around the region, mm.
+        distance_mm: f64,
+    },
     /// A layer without a region hides layers below it everywhere.
     #[error(
-        "{layer} has no `region`, so that it replaces {hidden} on the whole screen: give it a `region`, or a `blend` such \
-         as \"add\""
+        "{layer} has no `region`, so that it replaces {hidden} on the whole screen{}: give it a `region`, or a `blend` such \
+         as \"add\"", if *.is_live { " while it is on" } else { "" }
     )]
     HidesAllBelow {
         /// The layer.
         layer: String,
+        /// Whether the host switches the layer.
+        is_live: bool,
         /// The layers that are not felt anywhere.
         hidden: String,
     },
@@ -129,11 +153,24 @@ impl Warning {
     }
 
     /// The warning of a picture that is higher for its width by this factor than its pixels are, if that is much.
-    pub(super) fn of_stretch(layer: &str, height_factor: f64) -> Option<Self> {
+    /// `height_mm` is the height that its width demands.
+    pub(super) fn of_stretch(layer: &str, height_factor: f64, height_mm: f64, has_own_height: bool) -> Option<Self> {
         let (factor, direction) =
             if height_factor > 1.0 { (height_factor, "height") } else { (1.0 / height_factor, "width") };
         let percent = (100.0 * (factor - 1.0)).round();
-        (factor > STRETCH_MAX).then(|| Self::PictureStretched { layer: layer.to_owned(), percent, direction })
+        (factor > STRETCH_MAX).then(|| Self::PictureStretched {
+            layer: layer.to_owned(),
+            percent,
+            direction,
+            has_own_height,
+            height_mm: digits(height_mm, f64::round),
+        })
+    }
+
+    /// The warning of an edge whose line lies so far outside of its region, if it does.
+    pub(super) fn of_line(layer: &str, distance_mm: f64) -> Option<Self> {
+        let distance_mm = digits(distance_mm, f64::round);
+        (distance_mm > 0.0).then(|| Self::EdgeOutsideRegion { layer: layer.to_owned(), distance_mm })
     }
 
     /// Whether a board with an electrode refuses the program: it extrapolates from a measurement.
@@ -152,17 +189,22 @@ pub(super) fn of_layers(layers: &[Layer]) -> Vec<Warning> {
     edges.chain(hiding(layers)).chain(same_names(layers)).collect()
 }
 
-/// The warning of the topmost layer that hides all layers below it, if there is one.
-fn hiding(layers: &[Layer]) -> Option<Warning> {
+/// The warnings of the topmost layer that hides all layers below it for good, and of the topmost one above it that
+/// hides them while it is on.
+fn hiding(layers: &[Layer]) -> impl Iterator<Item = Warning> {
     let hides = |layer: &Layer| {
-        let is_always_there = !layer.live && !matches!(layer.kind, Kind::Stream(_));
         let is_everywhere = layer.region.is_none() && layer.kind.fills_screen();
-        layer.blend == Blend::Replace && is_everywhere && is_always_there
+        layer.blend == Blend::Replace && is_everywhere && !matches!(layer.kind, Kind::Stream(_))
     };
-    let number = layers.iter().rposition(hides).filter(|number| *number > 0)?;
-    let layer = layers.get(number)?;
-    let hidden: Vec<&str> = layers.iter().take(number).map(|below| below.title.as_str()).collect();
-    Some(Warning::HidesAllBelow { layer: layer.title.clone(), hidden: listed(&hidden) })
+    let topmost = |is_live: bool| layers.iter().rposition(|layer| layer.live == is_live && hides(layer));
+    let (for_good, while_on) = (topmost(false), topmost(true));
+    let while_on = while_on.filter(|number| for_good.is_none_or(|for_good| *number > for_good));
+    for_good.into_iter().chain(while_on).filter(|number| *number > 0).filter_map(|number| {
+        let layer = layers.get(number)?;
+        let hidden: Vec<&str> = layers.iter().take(number).map(|below| below.title.as_str()).collect();
+        let (is_live, hidden) = (layer.live, listed(&hidden));
+        Some(Warning::HidesAllBelow { layer: layer.title.clone(), is_live, hidden })
+    })
 }
 
 /// The warnings of layers that have the name of a lower one. Of the copies of a layer, the first one is warned of.

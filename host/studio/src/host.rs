@@ -218,10 +218,11 @@ impl<S: ByteStream + SceneListener> Host<S> {
             return Ok(());
         }
         self.device.link_mut().keep_alive(Vec::new(), NEVER);
-        self.state = match self.device.disarm() {
+        (self.state, self.fault) = match self.device.disarm() {
             // The board has latched a fault that this host has not heard of.
-            Err(DeviceError::Refused { refusal: Refusal::WrongState(State::Faulted), .. }) => State::Faulted,
-            disarmed => disarmed.map(|()| State::Disarmed)?,
+            Err(DeviceError::Refused { refusal: Refusal::Faulted(fault), .. }) => (State::Faulted, Some(fault)),
+            Err(DeviceError::Refused { refusal: Refusal::WrongState(State::Faulted), .. }) => (State::Faulted, None),
+            disarmed => disarmed.map(|()| (State::Disarmed, None))?,
         };
         Ok(())
     }
@@ -418,6 +419,25 @@ mod tests {
         assert!(host.load(&request(LEATHER)).is_err());
         assert!(host.playing.is_none());
         assert!(matches!(host.control("layer 1 off"), Err(HostError::NothingPlays)));
+    }
+
+    /// The board refuses to be disarmed while a fault is latched: its output is zero already.
+    #[test]
+    fn a_stop_after_a_fault_that_was_not_heard_of_is_no_error() {
+        let mut memory = BoardMemory::new();
+        let mut host = host(&mut memory);
+        host.load(&request(LEATHER)).unwrap();
+        host.arm_and_play().unwrap();
+        let rig = &mut host.stream_mut().rig;
+        let now = rig.tick();
+        rig.world_mut().schedule_amplifier_fault(now..now + 400);
+        while rig.state().0 != State::Faulted {
+            rig.step();
+        }
+        assert_eq!(host.state, State::Active);
+        host.stop().unwrap();
+        assert_eq!(host.state, State::Faulted);
+        assert!(host.fault.is_some());
     }
 
     #[test]

@@ -32,6 +32,12 @@ impl<'a> RigStream<'a> {
         Ok(Self { rig, pointer: Pointer::default(), felt, last: None })
     }
 
+    /// The world, to inject faults.
+    #[cfg(test)]
+    pub(crate) fn world_mut(&mut self) -> &mut frixel_hil_sim::World {
+        self.rig.world_mut()
+    }
+
     /// Ticks since power-on.
     pub(crate) fn tick(&self) -> u64 {
         self.rig.tick()

@@ -17,7 +17,9 @@ test("bad files and big ones are sentences", async () => {
   );
   await give(page, ["bad.png", Buffer.from("not a picture")]);
   await assertSays(page, /bad\.png: .*no PNG/);
-  await give(page, ["bad.png", png.subarray(0, 900)], ["scene.toml", scene]);
+  await give(page, ["bad.png", png.subarray(0, 900)]);
+  await assertSays(page, /bad\.png: .*cut off/);
+  await give(page, ["bad.png", Buffer.concat([png.subarray(0, 900), png.subarray(-12)])], ["scene.toml", scene]);
   await assertSays(page, /bad\.png/);
   const big = Buffer.alloc(20_000_000, 0x41);
   for (const name of ["big.toml", "big.png", "big.zip"]) {

@@ -36,7 +36,7 @@ async function slide(page, yMm = 44) {
 async function bundled(page, name) {
   await page.click("#open-gallery");
   await page.click(`text="Open ${name}"`);
-  await page.waitForFunction((name) => document.getElementById("scene-name").textContent === name, `${name}.toml`);
+  await page.waitForFunction((name) => document.getElementById("scene-name").value === name, name);
   await page.waitForTimeout(2000);
 }
 

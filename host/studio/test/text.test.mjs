@@ -124,7 +124,7 @@ test("layers of other files and with copies have their places, switches and gain
   });
   await gain.fill("0.25");
   await page.waitForFunction(() => lines.length === 3);
-  assert.deepEqual(await page.evaluate(() => lines.sort()), [1, 2, 3].map((number) => `layer ${number} gain 0.25`));
+  assert.deepEqual(await page.evaluate(() => lines.sort()), [1, 2, 3].map((copy) => `layer 1.${copy} gain 0.25`));
   await page.click("#panel-layers >> text=wood");
   const line = await page.evaluate(() => {
     const { editor } = studioPage;

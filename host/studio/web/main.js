@@ -2,10 +2,11 @@
 
 import { createEngine } from "./engine/engine.js";
 import { zipOf } from "./page/archive.js";
+import { Autosave } from "./page/autosave.js";
 import { Board } from "./page/board.js";
 import { fingerNames, sceneText, schema } from "./page/bundled.js";
 import { Compare } from "./page/compare.js";
-import { attempt, byId, download, element, notify } from "./page/dom.js";
+import { attempt, byId, download, element, forgetNotice, notify } from "./page/dom.js";
 import { Editor } from "./page/editor.js";
 import { FileTabs } from "./page/file_tabs.js";
 import { Finger } from "./page/finger.js";
@@ -16,7 +17,7 @@ import { FrictionMap } from "./page/map.js";
 import { Numbers } from "./page/numbers.js";
 import { showPictures } from "./page/pictures.js";
 import { Player } from "./page/player.js";
-import { showCheck } from "./page/problems.js";
+import { showCheck, showOutcome } from "./page/problems.js";
 import { Profiles } from "./page/profiles.js";
 import { Project, isPicture, isToml } from "./page/project.js";
 import { RealSize } from "./page/real_size.js";
@@ -29,6 +30,10 @@ import { makeTheme } from "./page/theme.js";
 import { makeView } from "./page/view.js";
 
 const FIRST_SCENE = "brick";
+const NEW_SCENE = `version = 2
+
+# Type [[layer]], then Ctrl+Space for what a layer can have; or take layers from the Gallery.
+`;
 
 async function start() {
   const engine = await createEngine();
@@ -39,8 +44,19 @@ async function start() {
   const editor = new Editor(byId("editor"), await schema(), (file, text) => {
     compare.cancel();
     if (file !== undefined) project.files.set(file, text);
+    autosave.changed();
     player.later(editor.text);
   });
+  const current = () => {
+    const { name, entry, profiles, files } = project;
+    return { name, entry, profiles: { ...profiles }, text: editor.text, files: [...files] };
+  };
+  const last = Autosave.last();
+  const autosave = new Autosave(current);
+  editor.onHistory = () => {
+    byId("undo").disabled = !editor.canUndo;
+    byId("redo").disabled = !editor.canRedo;
+  };
   new FileTabs(editor, project);
   const map = new FrictionMap(byId("map"), byId("map-picture"));
   const finger = new Finger(engine, map, byId("map-finger"));
@@ -54,10 +70,13 @@ async function start() {
   const incoming = new Incoming(async (files, entry) =>
     engine.usedFiles(files ?? (await project.filesFor(editor.text)), entry ?? project.entry),
   );
-  const compare = new Compare(player, editor);
+  const compare = new Compare(player, editor, sound);
   compare.onChange = () => map.draw();
   const replay = () => player.now(editor.text);
-  const profiles = new Profiles(project, fingerNames(), replay);
+  const profiles = new Profiles(project, fingerNames(), () => {
+    autosave.changed();
+    replay();
+  });
   new RealSize(map);
   makeTabs(byId("tools"));
   makeTheme(() => {
@@ -66,11 +85,19 @@ async function start() {
   });
   makeView({ map, finger, scope, engine });
 
+  const hint = byId("map-hint");
+  let hasSlid = false;
+  /** Whether a scene without a mistake has come. */
+  let isPlayable = false;
   let reach = { naturalN: 0.25, lowN: 0.25, highN: 0.38 };
   player.onCheck = (check) => {
     if (compare.isRunning) return;
     showCheck(check, editor);
-    if (!check.ok && !check.isDraft) return;
+    if (!check.ok && !check.isDraft) {
+      if (!isPlayable) hint.textContent = "nothing to feel yet: mend the mistake under the text";
+      return;
+    }
+    isPlayable = true;
     reach = check;
     scope.isDraft = check.isDraft;
   };
@@ -78,35 +105,71 @@ async function start() {
     layers.reset();
     if (!compare.isRunning) layers.show(reach);
   };
+  layers.onLive = (changes) => {
+    const note = byId("map-note");
+    note.hidden = changes.length === 0;
+    note.textContent = `The map shows the scene as it is written. Now: ${changes.join(", ")}.`;
+  };
   player.onMap = (picture, check) => {
+    if (!hasSlid) hint.textContent = "press and slide: the trail is thick where friction is high";
     if (!compare.isRunning) map.show(picture, check);
   };
   player.onFailure = notify;
 
   engine.onFrames = (frame) => {
     samples.add(frame);
+    scope.feel(frame);
     numbers.feel(frame, reach.naturalN);
     finger.feel(frame, reach);
   };
   engine.onAudio = (change, _tick, slowness) => sound.feel(change, slowness);
   finger.onDown = () => {
-    byId("map-hint").hidden = true;
+    hasSlid = true;
+    hint.hidden = board.isPlaying;
+    hint.textContent = "nothing plays: press Play or Arm, at the top";
     byId("replay").disabled = false;
-    if (scope.isPaused) scope.pause(false);
+  };
+  board.onState = () => {
+    showOutcome();
+    if (hasSlid && board.isPlaying) hint.hidden = true;
   };
   board.onBoard = replay;
 
-  /** Opens a scene from elsewhere: a real board is disarmed before. */
-  async function open({ name, text, files = [], profiles: chosen }) {
+  /** Opens a scene from elsewhere: a real board is disarmed before. A changed scene can be brought back. */
+  async function open({ name, text, files = [], profiles: chosen, isEdited = false }) {
     await board.disarmBeforeForeignScene();
+    const before = { ...current(), isEdited: autosave.isEdited };
+    forgetNotice();
     await project.replaceFiles(files);
     project.name = name;
-    byId("scene-name").textContent = project.entry;
-    document.title = `${project.name} · frixel studio`;
+    showName();
     if (chosen) profiles.choose(chosen);
+    editor.open(text);
     showFiles();
-    if (editor.text === text) player.now(text);
-    else editor.text = text;
+    autosave.opened(isEdited);
+    if (before.isEdited)
+      notify(`${project.name} is open.`, { words: `Back to ${before.name}`, action: () => open(before) });
+  }
+
+  function showName() {
+    const { name } = project;
+    Object.assign(byId("scene-name"), { value: name, size: Math.max(4, Math.min(name.length, 24)) });
+    document.title = `${project.name} · frixel studio`;
+  }
+
+  function rename(name) {
+    const before = project.name;
+    project.name = name.trim();
+    if (project.files.has(project.entry)) {
+      notify(`${project.entry} is a file of this scene already: choose another name.`);
+      project.name = before;
+    }
+    showName();
+    if (project.name === before) return;
+    compare.cancel();
+    autosave.changed();
+    showFiles();
+    replay();
   }
 
   function showFiles() {
@@ -116,6 +179,7 @@ async function start() {
 
   function removePicture(name) {
     project.files.delete(name);
+    autosave.changed();
     showFiles();
     replay();
   }
@@ -129,6 +193,7 @@ async function start() {
     if (scene) await open(scene);
     else {
       for (const [name, content] of files) project.add(name, content);
+      autosave.changed();
       showFiles();
       replay();
     }
@@ -136,13 +201,14 @@ async function start() {
   };
 
   byId("open-gallery").onclick = () => attempt(() => gallery.open());
+  byId("new").onclick = () => attempt(() => open({ name: "untitled", text: NEW_SCENE }));
+  byId("scene-name").onchange = ({ target }) => rename(target.value);
   byId("undo").onclick = () => editor.undo();
   byId("redo").onclick = () => editor.redo();
   byId("save").onclick = () =>
     attempt(async () => {
-      const { name, entry, profiles } = project;
       const files = await project.filesForZip(editor.text);
-      download(`${name}.zip`, zipOf({ name, entry, profiles, text: editor.text, files }), "application/zip");
+      download(`${project.name}.zip`, zipOf({ ...current(), files }), "application/zip");
     });
   byId("share").onclick = () =>
     attempt(async () => {
@@ -165,8 +231,10 @@ async function start() {
     attempt(() => open(sceneOf(fragment)));
   };
   addEventListener("paste", takeLink, { capture: true });
-  await open({ name: FIRST_SCENE, text: await sceneText(FIRST_SCENE) });
-  openLink();
+  await open(last ?? { name: FIRST_SCENE, text: await sceneText(FIRST_SCENE) });
+  // A reload keeps what was changed since the link was opened.
+  const isReload = performance.getEntriesByType("navigation")[0]?.type === "reload";
+  if (!(isReload && last)) openLink();
   // The tests look at the page's parts through this.
   globalThis.studioPage = { engine, editor, sound, samples, map, player };
 }

@@ -34,7 +34,10 @@ pub(super) fn run(args: &NewArgs) -> Result<(), CommandError> {
         return Err(CommandError::SceneNameOfPicture { scene, picture: quoted(&name), name });
     }
     let text = match &args.picture {
-        Some(picture) => with_picture(&name_from(&path, picture)?),
+        Some(picture) => {
+            let pixels = pixels(picture)?;
+            with_picture(&name_from(&path, picture)?, pixels)
+        }
         None => with_stripes(),
     };
     let created = File::create_new(&path).and_then(|mut file| file.write_all(text.as_bytes()));
@@ -50,6 +53,12 @@ pub(super) fn run(args: &NewArgs) -> Result<(), CommandError> {
     ))
 }
 
+/// Width and height of a picture that can be played.
+fn pixels(picture: &Path) -> Result<(usize, usize), CommandError> {
+    let bytes = fs::read(picture).map_err(CommandError::reading(picture))?;
+    check_picture(&bytes).map_err(|reason| CommandError::Picture { path: picture.to_owned(), reason })
+}
+
 fn is_of_picture(extension: &OsStr) -> bool {
     PICTURE_EXTENSIONS.iter().any(|known| extension.eq_ignore_ascii_case(known))
 }
@@ -61,10 +70,8 @@ fn quoted(path: &Path) -> String {
     if text.chars().all(is_plain) { text } else { format!("'{}'", text.replace('\'', "'\\''")) }
 }
 
-/// The path from the folder of the scene of a picture that can be played.
+/// The path of a picture from the folder of the scene.
 fn name_from(scene: &Path, picture: &Path) -> Result<String, CommandError> {
-    let bytes = fs::read(picture).map_err(CommandError::reading(picture))?;
-    check_picture(&bytes).map_err(|reason| CommandError::Picture { path: picture.to_owned(), reason })?;
     let (from, to) = (real_folder(scene)?, real_folder(picture)?);
     let name = relative(&from, &to).join(picture.file_name().unwrap_or_default());
     // TOML texts have slashes on every operating system, and no backslashes.
@@ -120,11 +127,23 @@ fn with_stripes() -> String {
     )
 }
 
-fn with_picture(picture: &str) -> String {
+/// The largest rectangle with the ratio of a picture's sides in the middle of the example screen: left, top, width,
+/// height.
+fn fitted_mm((width, height): (usize, usize)) -> [f64; 4] {
     let [x_mm, y_mm, width_mm, height_mm] = middle_mm();
+    let (width, height) = (width.max(1) as f64, height.max(1) as f64);
+    let pixel_mm = (width_mm / width).min(height_mm / height);
+    let hundredths = |mm: f64| (100.0 * mm).round() / 100.0;
+    // A side of a region has at least a hundredth of a millimetre.
+    let (wide_mm, high_mm) = (hundredths(width * pixel_mm).max(0.01), hundredths(height * pixel_mm).max(0.01));
+    [hundredths(x_mm + 0.5 * (width_mm - wide_mm)), hundredths(y_mm + 0.5 * (height_mm - high_mm)), wide_mm, high_mm]
+}
+
+fn with_picture(picture: &str, pixels: (usize, usize)) -> String {
+    let [x_mm, y_mm, width_mm, height_mm] = fitted_mm(pixels);
     format!(
         "{}\n\
-         # The picture, as friction: it is stretched to the region.\n\
+         # The picture, as friction: it fills the region, whose sides have the ratio of its own.\n\
          [[layer]]\n\
          name = \"picture\"\n\
          kind = \"bitmap\"\n\

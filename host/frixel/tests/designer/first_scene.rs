@@ -20,7 +20,8 @@ fn a_new_scene_is_checked_and_played_as_it_is() {
     ] {
         let (said, _) = succeed(folder.path(), arguments);
         assert!(said.contains(&format!("frixel play {name}")), "{said}");
-        succeed(folder.path(), &["scene", "check", name]);
+        let (said, _) = succeed(folder.path(), &["scene", "check", name]);
+        assert!(!said.contains("stretched by"), "{said}");
         let (said, _) = succeed(folder.path(), &["play", name, "--seconds", "0.5"]);
         assert!(said.contains("reference"), "{said}");
     }

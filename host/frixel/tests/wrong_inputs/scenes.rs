@@ -92,7 +92,7 @@ pub(super) const SCENES: &[Case] = &[
         what: "no kind",
         scene: "[[layer]]\n\
              friction_n = 0.3\n",
-        says: "s.toml:2:1: layer 1 has no `kind`: add it",
+        says: "s.toml:2:1: layer 1 has no `kind`: write one of `constant`, `grating`,",
         ..CASE
     },
     Case {
@@ -177,7 +177,7 @@ pub(super) const SCENES: &[Case] = &[
              kind = \"constant\"\n\
              friction_n = 0.1\n",
         says: "s.toml:4:14: layer 1 (constant) asks for down to 0.1 N in total, and a drive can only add to \
-             the finger's natural friction of 0.25 N: raise it, lower `normal_load_n`, or write `saturate = \
+             the finger's natural friction of 0.25 N: raise it, or lower `normal_load_n`, or write `saturate = \
              true` under [drive] to have it clamped",
         ..CASE
     },
@@ -258,7 +258,7 @@ pub(super) const SCENES: &[Case] = &[
              rim_n = 0.09\n\
              face_n = 0\n\
              click_n = 0.09\n",
-        says: "s.toml:7:9: layer 1 \"OK\", its `rim_n = 0.09` and its `click_n = 0.09` together, asks for up to 0.18 N above \
+        says: "s.toml:7:9: layer 1 \"OK\", with its `rim_n = 0.09` and its `click_n = 0.09` together, asks for up to 0.18 N above \
              natural friction, and at 150 V rms this finger feels at most 0.1299 N above natural friction: lower one of \
              them, raise `voltage_max_v_rms` to 172, or write `saturate = true` under [drive] to have it clamped",
         ..CASE
@@ -474,7 +474,7 @@ pub(super) const SCENES: &[Case] = &[
              rim_fraction = 0.2\n\
              face_fraction = 0.8\n\
              click_fraction = 0.5\n",
-        says: "s.toml:8:17: layer 1 \"OK\", its `face_fraction = 0.8` and its `click_fraction = 0.5` together, asks for up to \
+        says: "s.toml:8:17: layer 1 \"OK\", with its `face_fraction = 0.8` and its `click_fraction = 0.5` together, asks for up to \
              0.169 N above natural friction (1.3 of the reach), and at 150 V rms this finger feels at most 0.1299 N above \
              natural friction: lower one of them, or write `saturate = true` under [drive] to have it clamped",
         ..CASE
@@ -519,8 +519,7 @@ pub(super) const SCENES: &[Case] = &[
         what: "one file by two names",
         scene: "include = [\"a.toml\", \".//a.toml\"]\n",
         files: &[("a.toml", Content::Text("version = 2\n"))],
-        says: "s.toml:2:22: a.toml is included by s.toml and by s.toml: a scene includes each file once, so leave one of \
-             them out",
+        says: "s.toml:2:22: a.toml is included twice by s.toml: a scene includes each file once, so leave one of them out",
         ..CASE
     },
     Case {

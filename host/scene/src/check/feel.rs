@@ -2,7 +2,7 @@
 
 use crate::perception::{
     AlikeLayers, BorderStep, BurstTimes, LayerPerception, NEAR_THRESHOLD, Perception, Step, Texture,
-    VOLTAGE_DIFFERENCE_DB, Verdict,
+    VOLTAGE_DIFFERENCE_DB, Verdict, weber_steps_text,
 };
 
 /// What a sentence is about, for a person.
@@ -120,7 +120,8 @@ fn sides(border: &BorderStep) -> Subject {
 fn step(step: &Step) -> String {
     let Step { from_n, to_n, weber_steps, verdict, .. } = step;
     let words = verdict.words();
-    format!("{:.1} to {:.1} mN, {weber_steps:.1} Weber steps ({words})", 1e3 * from_n, 1e3 * to_n)
+    let steps = weber_steps_text(*weber_steps);
+    format!("{:.1} to {:.1} mN, {steps} Weber steps ({words})", 1e3 * from_n, 1e3 * to_n)
 }
 
 fn texture(texture: &Texture) -> String {

@@ -49,7 +49,10 @@ impl SceneCheck {
             "reachable",
             format!(
                 "{:.4} to {:.4} N in total, up to {:.4} N above natural (at {:.1} V rms){suffix}",
-                reach.natural_n, reach.total_max_n, reach.electric_max_n, reach.voltage_max_v_rms
+                reach.natural_n,
+                rounded_down(reach.total_max_n),
+                rounded_down(reach.electric_max_n),
+                reach.voltage_max_v_rms
             ),
         );
         line("targets", format!("{:.4} to {:.4} N in total{suffix}", asked.least_n, asked.most_n));
@@ -73,6 +76,11 @@ impl SceneCheck {
         }
         text
     }
+}
+
+/// A limit in newtons with four digits after the point, which is itself within the limit.
+fn rounded_down(limit_n: f64) -> f64 {
+    (1e4 * limit_n).floor() / 1e4
 }
 
 /// The part of the inverse table that the board computes.

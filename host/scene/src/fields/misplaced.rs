@@ -2,6 +2,7 @@
 
 use std::sync::LazyLock;
 
+use crate::excess::digits;
 use crate::file::describe;
 use crate::log::Log;
 use crate::mistake::FieldMistake;
@@ -54,8 +55,21 @@ static HOMES: LazyLock<Vec<Home>> = LazyLock::new(|| {
     KEYS.into_iter().map(|key| Home { key, fields: fields(key) }).collect()
 });
 
-/// Reports the fields of a table, the value of `key`, that belong to other tables.
-pub(super) fn report(table: &str, key: &str, unknown: &[Unknown], log: &mut Log) -> Misplaced {
+/// The name that a field has in a table, which a person may leave the unit of.
+fn name_in(home: &Home, field: &str) -> Option<&'static str> {
+    let is_named = |name: &&&'static str| **name == field || name.strip_suffix("_mm") == Some(field);
+    home.fields.iter().find(is_named).copied()
+}
+
+/// Reports the fields of a table, the value of `key`, that belong to other tables. `has` says whether the table can
+/// have a field.
+pub(super) fn report(
+    table: &str,
+    key: &str,
+    unknown: &[Unknown],
+    has: impl Fn(&str) -> bool,
+    log: &mut Log,
+) -> Misplaced {
     let mut misplaced = Misplaced { fields: Vec::new(), missing: None };
     // The known fields are themselves found by reading tables.
     if unknown.is_empty() || log.is_describing() {
@@ -68,14 +82,21 @@ pub(super) fn report(table: &str, key: &str, unknown: &[Unknown], log: &mut Log)
         }
         let belongs = |field: &str| {
             let is_of_layers = key == "layer" && LAYER_FIELDS.iter().any(|known| known.field.name == field);
-            home.fields.contains(&field) && (is_inside || !is_of_layers && field != NAME)
+            match name_in(home, field) {
+                Some(name) if name == field => is_inside || !is_of_layers && field != NAME,
+                Some(name) => is_inside && !has(name),
+                None => false,
+            }
         };
         let here: Vec<&Unknown> =
             unknown.iter().filter(|field| belongs(&field.name) && !misplaced.contains(&field.name)).collect();
         let Some(first) = here.iter().min_by_key(|field| field.offset) else { continue };
         let (offset, mut here) = (first.offset, here.clone());
         here.sort_by_key(|field| field.offset);
-        let written = |field: &&Unknown| format!("{} = {}", field.name, log.source().word_at(field.value_offset));
+        let written = |field: &&Unknown| {
+            let name = name_in(home, &field.name).unwrap_or(&field.name);
+            format!("{name} = {}", log.source().word_at(field.value_offset))
+        };
         let written: Vec<String> = here.iter().map(written).collect();
         let fields: Vec<String> = here.iter().map(|field| field.name.clone()).collect();
         let (home_name, write) = if is_inside {
@@ -92,15 +113,29 @@ pub(super) fn report(table: &str, key: &str, unknown: &[Unknown], log: &mut Log)
 }
 
 /// What was probably meant where a text is not TOML, to be put behind the parser's words; empty if nothing is known.
-pub(super) fn syntax_hint(text: &str, offset: usize) -> &'static str {
+pub(super) fn syntax_hint(text: &str, offset: usize) -> String {
     let line_start = text.get(..offset).and_then(|before| before.rfind('\n')).map_or(0, |newline| newline + 1);
     let line = text.get(line_start..).and_then(|rest| rest.lines().next()).unwrap_or_default().trim();
     let has_single = || text.lines().any(|line| line.trim_start().starts_with("[layer]"));
+    let value = line.split_once('=').map_or("", |(_, value)| value.trim());
     if text.get(offset..).is_some_and(|rest| rest.starts_with(',')) {
-        "; a decimal has a point, not a comma"
+        "; a decimal has a point, not a comma".to_owned()
     } else if (line.starts_with("[layer]") || line.starts_with("[[layer]]")) && has_single() {
-        "; write `[[layer]]`, in double brackets, before the fields of each layer"
+        "; write `[[layer]]`, in double brackets, before the fields of each layer".to_owned()
+    } else if value.starts_with(CURLY_QUOTES) {
+        "; quotation marks are straight: \"".to_owned()
+    } else if let Some(percent) = percent(value) {
+        format!("; write the part as a number: {}", digits(percent / 100.0, f64::round))
     } else {
-        ""
+        String::new()
     }
+}
+
+/// Quotation marks that text editors put in place of straight ones.
+const CURLY_QUOTES: [char; 6] = ['\u{201c}', '\u{201d}', '\u{201e}', '\u{2018}', '\u{2019}', '\u{ab}'];
+
+/// The number of a value with a percent sign, before a comment.
+fn percent(value: &str) -> Option<f64> {
+    let value = value.split('#').next().unwrap_or_default().trim();
+    value.strip_suffix('%')?.trim().parse().ok()
 }

@@ -135,7 +135,9 @@ impl Words for Bitmap {
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {
         let visible = layer.region.as_ref().map(Region::bounds);
         let placed = lowering.place_bitmap(layer, self, visible)?;
-        lowering.warn(layer, Warning::of_stretch(&layer.title, placed.height_factor));
+        let has_own_height = self.height_mm.is_some();
+        let warning = Warning::of_stretch(&layer.title, placed.height_factor, placed.height_kept_mm, has_own_height);
+        lowering.warn(layer, warning);
         let record = Record {
             crc32: placed.crc32,
             x_m: (placed.corner_mm.0 * MM) as f32,

@@ -13,13 +13,14 @@ use crate::cover::Cell;
 use crate::fields::Fields;
 use crate::grammar::Absence::{Means, Mistake, Number};
 use crate::grammar::{AmountFields, FieldSpec, LengthFields};
-use crate::layer::{Amount, Layer, Unit};
+use crate::layer::{Amount, Layer, Rectangle, Unit};
 use crate::log::Log;
 use crate::lower::{Lowering, MM, place};
 use crate::program::Program;
 use crate::reference::Context;
 use crate::source::Places;
 use crate::tables::{ANGLE_DEG, PLACE_MM, SIZE_MM, amount, length, number};
+use crate::warning::Warning;
 
 const X: LengthFields = length!("x", X, PLACE_MM, Mistake, "x of a place on the line");
 const Y: LengthFields = length!("y", Y, PLACE_MM, Mistake, "y of the same place");
@@ -75,6 +76,8 @@ impl Words for Edge {
     }
 
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {
+        let outside_mm = layer.region.as_ref().map_or(0.0, |region| self.outside_mm(region.bounds()));
+        lowering.warn(layer, Warning::of_line(&layer.title, outside_mm));
         let record = Record {
             x_m: (self.x_mm * MM) as f32,
             y_m: (self.y_mm * MM) as f32,
@@ -85,6 +88,20 @@ impl Words for Edge {
             click: Click::lower(self.click, layer, lowering)?,
         };
         Some(RecordLayer::Edge(record).into())
+    }
+}
+
+impl Edge {
+    /// Distance of the line from a rectangle; 0 if it crosses or touches it.
+    fn outside_mm(&self, Rectangle { x_mm, y_mm, width_mm, height_mm }: Rectangle) -> f64 {
+        let angle_rad = self.angle_deg.to_radians();
+        let corners =
+            [(x_mm, y_mm), (x_mm + width_mm, y_mm), (x_mm, y_mm + height_mm), (x_mm + width_mm, y_mm + height_mm)];
+        let distances = corners
+            .map(|(x_mm, y_mm)| (x_mm - self.x_mm) * libm::cos(angle_rad) + (y_mm - self.y_mm) * libm::sin(angle_rad));
+        let Interval { low, high } = Interval::of(distances);
+        // What rounding adds is no distance.
+        (low.max(-high) - 1e-6).max(0.0)
     }
 }
 

@@ -106,9 +106,11 @@ impl Burst {
         let ramp_ms = fields.number_or_default(log, &RAMP);
         let places = fields.close(log);
         let (period_ms, on_ms) = (period_ms?, on_ms?);
-        for (field, found, max) in [(ON.name, on_ms, period_ms), (RAMP.name, ramp_ms, 0.5 * on_ms)] {
-            if found > max {
-                log.add(places.field(field), FieldMistake::OutOfRange { field, found, min: 0.0, max, unit: " ms" });
+        for (field, found, whole, max_ms) in
+            [(ON.name, on_ms, "`period_ms`", period_ms), (RAMP.name, ramp_ms, "half of `on_ms`", 0.5 * on_ms)]
+        {
+            if found > max_ms {
+                log.add(places.field(field), FieldMistake::TooLong { field, found, whole, max_ms });
             }
         }
         Some(Self { period_ms, on_ms, ramp_ms })

@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use crate::kinds::KindName;
 use crate::nearest::Nearest;
 
 /// A mistake in a field, or between fields of a table.
@@ -31,7 +32,7 @@ pub enum FieldMistake {
         write: String,
     },
     /// A required field is missing.
-    #[error("{table} has no {}", missing(field, *.other))]
+    #[error("{table} has no {}", missing(table, field, *.other))]
     MissingField {
         /// The missing field.
         field: &'static str,
@@ -84,6 +85,18 @@ pub enum FieldMistake {
         max: f64,
         /// The unit, with a space before it; empty if there is no unit.
         unit: &'static str,
+    },
+    /// A time is longer than one that it is a part of.
+    #[error("`{field} = {found}` is longer than {whole}: expected at most {max_ms} ms")]
+    TooLong {
+        /// The field.
+        field: &'static str,
+        /// Its value, ms.
+        found: f64,
+        /// The longer time, in words.
+        whole: &'static str,
+        /// The longer time, ms.
+        max_ms: f64,
     },
     /// A word is not one of the choices.
     #[error("`{field} = \"{found}\"` is not known; {nearest}")]
@@ -202,9 +215,17 @@ pub enum FieldMistake {
     },
 }
 
-fn missing(field: &str, other: Option<&str>) -> String {
+fn missing(table: &str, field: &str, other: Option<&str>) -> String {
     match other {
         _ if field == "version" => "`version`: write `version = 2` at the top".to_owned(),
+        // A scene needs one in version 1 alone.
+        _ if field == "coating" && table == "the scene" => {
+            "`coating`: add it, or write `version = 2`, which new scenes have".to_owned()
+        }
+        _ if field == "kind" => {
+            let kinds: Vec<&str> = KindName::ALL.iter().map(|(word, _)| *word).collect();
+            format!("`kind`: write one of `{}`", kinds.join("`, `"))
+        }
         Some(other) => format!("`{field}` or `{other}`: add one of them"),
         None => format!("`{field}`: add it"),
     }

@@ -80,7 +80,8 @@ pub enum FileMistake {
     },
     /// A file is included by two files, or twice by one.
     #[error(
-        "{included} is included by {file} and by {other}: a scene includes each file once, so leave one of them out"
+        "{included} is included {}: a scene includes each file once, so leave one of them out",
+        if .file == .other { format!("twice by {file}") } else { format!("by {file} and by {other}") }
     )]
     IncludedTwice {
         /// The file with this `include`.

@@ -65,7 +65,7 @@ pub enum FitMistake {
     /// The target friction of a layer is less than the friction at no voltage.
     #[error(
         "{asking} down to {asked_n} N {reference}, and a drive can only add to the finger's natural friction of \
-         {natural_n} N: raise it, lower `normal_load_n`, or write `saturate = true` under [drive] to have it clamped"
+         {natural_n} N: {cure}, or write `saturate = true` under [drive] to have it clamped"
     )]
     BelowNatural {
         /// The layer or layers, with the verb.
@@ -76,6 +76,8 @@ pub enum FitMistake {
         reference: &'static str,
         /// Friction at no voltage, N.
         natural_n: f64,
+        /// What to change.
+        cure: &'static str,
     },
     /// The scene has more layers than the board takes.
     #[error(

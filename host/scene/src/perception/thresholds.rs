@@ -113,6 +113,16 @@ pub fn weber_steps(from_n: f64, to_n: f64) -> f64 {
     libm::log(to_n / from_n) / libm::log1p(WEBER_FRACTION)
 }
 
+/// A number of Weber steps with one digit after the point, or with as many more as its verdict needs: 2.3 is felt, and
+/// 2.28 is near the threshold.
+pub fn weber_steps_text(weber_steps: f64) -> String {
+    let rounded = |digits: i32| (weber_steps * 10f64.powi(digits)).round() / 10f64.powi(digits);
+    let is_faithful = |digits: &i32| Verdict::of_step(rounded(*digits)) == Verdict::of_step(weber_steps);
+    let digits = (1..=3).find(is_faithful).unwrap_or(3);
+    // Adding zero makes no negative zero.
+    format!("{:.*}", digits as usize, 0.0 + rounded(digits))
+}
+
 /// Number of Weber steps that everyone in the studies feels, about 2.3.
 pub fn weber_steps_safe() -> f64 {
     weber_steps(1.0, 1.0 + WEBER_FRACTION_SAFE)
@@ -175,6 +185,21 @@ mod tests {
                 Verdict::Unknown
             ]
         );
+    }
+
+    #[test]
+    fn a_number_of_steps_is_written_as_it_is_judged() {
+        for (steps, text) in [
+            (2.326, "2.3"),
+            (2.275, "2.28"),
+            (0.96, "0.96"),
+            (1.04, "1.0"),
+            (-0.01, "0.0"),
+            (-0.98, "-0.98"),
+            (-3.04, "-3.0"),
+        ] {
+            assert_eq!(weber_steps_text(steps), text);
+        }
     }
 
     #[test]

@@ -18,7 +18,7 @@ const WHITE: u16 = u16::MAX;
 const STEP: f32 = 257.0;
 /// What is said of a picture whose colours were turned to grey.
 const COLOUR: &str = "colour turned to grey by luminance";
-/// One over the part of a picture's pixels that `levels = "stretch"` leaves darker than black, and lighter than white.
+/// One over the part of a picture's samples that `levels = "stretch"` leaves darker than black, and lighter than white.
 const STRETCHED_PART: usize = 100;
 
 /// A picture as grey values from 0 (black) to 255 (white), row after row from the top left.
@@ -44,13 +44,14 @@ pub(super) enum PictureError {
     TooLarge { width: usize, height: usize },
 }
 
-/// Checks the bytes of a picture before a scene names it.
+/// Checks the bytes of a picture before a scene names it, and returns its width and height, in pixels, as it is played:
+/// a photograph upright.
 ///
 /// # Errors
 ///
 /// They cannot be played: a sentence without a subject says why, and what to do.
-pub fn check_picture(bytes: &[u8]) -> Result<(), String> {
-    Picture::decode(bytes).map(|_| ()).map_err(|error| error.to_string())
+pub fn check_picture(bytes: &[u8]) -> Result<(usize, usize), String> {
+    Picture::decode(bytes).map(|picture| (picture.width, picture.height)).map_err(|error| error.to_string())
 }
 
 impl Picture {
@@ -65,15 +66,12 @@ impl Picture {
         }
     }
 
-    /// The picture with its levels stretched: a hundredth of the pixels is black or darker, and a hundredth is white or
-    /// lighter. A picture of one grey stays as it is.
-    pub(super) fn stretched(mut self) -> Self {
-        if self.grey.is_empty() {
-            return self;
-        }
-        let mut sorted = self.grey.clone();
-        let last = sorted.len() - 1;
-        let mut at = |place: usize| *sorted.select_nth_unstable_by(place, f32::total_cmp).1;
+    /// The picture with its levels stretched as its samples on a board demand: of these, a hundredth is then black or
+    /// darker, and a hundredth is white or lighter. Pixels are means over less than samples are, so that they may lie
+    /// below black and above white. A picture whose samples have one grey stays as it is.
+    pub(super) fn stretched(mut self, mut samples: Vec<u8>) -> Self {
+        let Some(last) = samples.len().checked_sub(1) else { return self };
+        let mut at = |place: usize| f32::from(*samples.select_nth_unstable(place).1);
         let (black, white) = (at(last / STRETCHED_PART), at(last - last / STRETCHED_PART));
         if white - black < 1.0 {
             self.conversions.push("of one grey, so that its levels cannot be stretched".to_owned());
@@ -81,7 +79,7 @@ impl Picture {
         }
         let scale = 255.0 / (white - black);
         for grey in &mut self.grey {
-            *grey = ((*grey - black) * scale).clamp(0.0, 255.0);
+            *grey = (*grey - black) * scale;
         }
         self.conversions.push(format!("levels {black:.0} to {white:.0} stretched to 0 to 255"));
         self

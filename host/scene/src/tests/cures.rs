@@ -96,13 +96,13 @@ fn fractions_out_of_reach_are_answered_by_less() {
     for (fields, expected, lowered) in [
         (
             "rim_fraction = 0.8\nface_fraction = 0.4\nclick_fraction = 0.5\n",
-            "7:16: layer 1 \"OK\", its `rim_fraction = 0.8` and its `click_fraction = 0.5` together, asks for up to 0.169 N \
+            "7:16: layer 1 \"OK\", with its `rim_fraction = 0.8` and its `click_fraction = 0.5` together, asks for up to 0.169 N \
              above natural friction (1.3 of the reach), and",
             ("0.8", "0.5"),
         ),
         (
             "rim_fraction = 0.2\nface_fraction = 0.8\nclick_fraction = 0.5\n",
-            "8:17: layer 1 \"OK\", its `face_fraction = 0.8` and its `click_fraction = 0.5` together, asks for up to 0.169 N \
+            "8:17: layer 1 \"OK\", with its `face_fraction = 0.8` and its `click_fraction = 0.5` together, asks for up to 0.169 N \
              above natural friction (1.3 of the reach), and",
             ("0.8", "0.5"),
         ),
@@ -115,7 +115,7 @@ fn fractions_out_of_reach_are_answered_by_less() {
         // Rim and face in different units are compared in newtons.
         (
             "rim_n = 0.02\nface_fraction = 0.9\nclick_fraction = 0.3\n",
-            "8:17: layer 1 \"OK\", its `face_fraction = 0.9` and its `click_fraction = 0.3` together, asks for up to \
+            "8:17: layer 1 \"OK\", with its `face_fraction = 0.9` and its `click_fraction = 0.3` together, asks for up to \
              0.156 N above natural friction, and",
             ("0.9", "0.7"),
         ),

@@ -43,6 +43,24 @@ fn syntax() {
         "120 mm",
         "test.toml:4:12: this is not TOML: string values must be quoted, expected literal string",
     );
+    for (written, hint) in [
+        ("\u{201c}120\u{201d}", "; quotation marks are straight: \""),
+        ("50%", "; write the part as a number: 0.5"),
+        ("12.5 %", "; write the part as a number: 0.125"),
+    ] {
+        let refused = message(&HEAD.replacen("width_mm = 120", &format!("width_mm = {written}"), 1));
+        assert!(refused.starts_with("test.toml:4:") && refused.ends_with(hint), "{refused}");
+    }
+    // The list has no field that would say again what another one says.
+    check_layers(
+        "[[layer]]\nkind = \"grating\"\nwavelength_mm = 2\nlow_fraction = 0\nhigh_n = 0.01\nenabled = true",
+        &[(
+            6,
+            1,
+            "unknown field `enabled` in layer 1 (grating); expected one of `name`, `region`, `repeat`, `blend`, `gain`, \
+             `live`, `above`, `wave`, `angle_deg`, `phase_deg`, `origin`",
+        )],
+    );
     check_head("version = 1", "version = 1\nversion = 2", "test.toml:2:1: this is not TOML: duplicate key");
 }
 
@@ -63,7 +81,7 @@ fn unknown_and_missing_fields() {
     check_head(
         "[coating]\nthickness_um = 10\npermittivity = 1\n",
         "",
-        "test.toml:1:1: the scene has no `coating`: add it",
+        "test.toml:1:1: the scene has no `coating`: add it, or write `version = 2`, which new scenes have",
     );
     check_head(
         "# layers follow",
@@ -71,7 +89,46 @@ fn unknown_and_missing_fields() {
         "test.toml:18:1: unknown field `limit` in [drive]; expected one of `voltage_max_v_rms`, `voltage_max_v_peak`, \
          `slew_v_per_us`, `host_timeout_ms`, `autonomous`, `saturate`",
     );
-    check_layers("[[layer]]\nfriction_n = 1", &[(1, 1, "layer 1 has no `kind`: add it")]);
+    check_layers(
+        "[[layer]]\nfriction_n = 1",
+        &[(
+            1,
+            1,
+            "layer 1 has no `kind`: write one of `constant`, `grating`, `bitmap`, `noise`, `edge`, `button`, `vibration`, \
+             `speed`, `stream`, `rings`",
+        )],
+    );
+    check_layers(
+        "[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\nx = 10\ny = 20\nwidth = 30\nheight = 5",
+        &[(
+            4,
+            1,
+            "`x`, `y`, `width` and `height` in layer 1 (constant) belong in `region`: write `region = { x_mm = 10, y_mm = 20, \
+             width_mm = 30, height_mm = 5 }`",
+        )],
+    );
+    // A kind with fields of its own for its place and size.
+    check_layers(
+        "[[layer]]\nkind = \"edge\"\nx = 10\ny_mm = 20\nwidth_mm = 3\nridge_n = 0.01",
+        &[(3, 1, "unknown field `x` in layer 1 (edge); did you mean `x_mm`?")],
+    );
+    // Words of other trades.
+    for (word, answer) in [
+        ("slider", "did you mean `edge`, one for each detent, with `repeat`?"),
+        ("picture", "did you mean `bitmap`?"),
+        ("notification", "did you mean `vibration`, with `live = true`, so that a program can trigger it?"),
+        ("key", "did you mean `button`?"),
+    ] {
+        let layer = format!("[[layer]]\nkind = \"{word}\"");
+        check_layers(&layer, &[(2, 8, &format!("`kind = \"{word}\"` is not known; {answer}"))]);
+    }
+    for word in ["file", "image"] {
+        let layer = format!("[[layer]]\nkind = \"bitmap\"\nx_mm = 0\ny_mm = 0\nwidth_mm = 9\n{word} = \"a.png\"");
+        check_layers(
+            &layer,
+            &[(6, 1, &format!("unknown field `{word}` in layer 1 (bitmap); did you mean `picture`?"))],
+        );
+    }
     check_layers(
         "[[layer]]\nkimd = \"constant\"\nfriction_n = 1",
         &[(2, 1, "unknown field `kimd` in layer 1; did you mean `kind`?")],
@@ -165,7 +222,10 @@ fn wrong_types() {
 fn invalid_coatings() {
     let slab = "[coating]\nthickness_um = 10\npermittivity = 1\n";
     let first = |coating: &str| HEAD.replace(slab, "").replace("version = 1", &format!("version = 1\n{coating}"));
-    assert_eq!(message(&first("coating = []")), "test.toml:1:1: the scene has no `coating`: add it");
+    assert_eq!(
+        message(&first("coating = []")),
+        "test.toml:1:1: the scene has no `coating`: add it, or write `version = 2`, which new scenes have"
+    );
     assert_eq!(
         message(&first("coating = 3")),
         "test.toml:2:11: `coating` has to be a list of tables, and this is a number: write `[[coating]]`, in double \
@@ -293,7 +353,7 @@ fn friction_out_of_reach() {
             3,
             14,
             "layer 1 (constant) asks for down to 0.2 N in total, and a drive can only add to the finger's natural friction \
-             of 0.25 N: raise it, lower `normal_load_n`, or write `saturate = true` under [drive] to have it clamped",
+             of 0.25 N: raise it, or lower `normal_load_n`, or write `saturate = true` under [drive] to have it clamped",
         )],
     );
     check_layers(
@@ -303,8 +363,7 @@ fn friction_out_of_reach() {
                 4,
                 9,
                 "layer 1 (grating) asks for down to -0.001 N above natural friction, and a drive can only add to the \
-                 finger's natural friction of 0.25 N: raise it, lower `normal_load_n`, or write `saturate = true` under \
-                 [drive] to have it clamped",
+                 finger's natural friction of 0.25 N: raise it, or write `saturate = true` under [drive] to have it clamped",
             ),
             (
                 5,
@@ -408,8 +467,8 @@ fn sums_out_of_reach() {
             7,
             1,
             "layer 1 \"stripes\" and layer 2 \"patch\" together (x 10 to 15 mm, y 20 to 26 mm) ask for down to -0.01 N above \
-             natural friction, and a drive can only add to the finger's natural friction of 0.25 N: raise it, lower \
-             `normal_load_n`, or write `saturate = true` under [drive] to have it clamped",
+             natural friction, and a drive can only add to the finger's natural friction of 0.25 N: raise one of \
+             them, or the ground beneath them, or write `saturate = true` under [drive] to have it clamped",
         )],
     );
     check_layers(
@@ -552,7 +611,12 @@ fn kinds_that_do_not_make_sense() {
     check_layers(
         "[[layer]]\nkind = \"vibration\"\nfrequency_hz = 80\nlow_n = 0\nhigh_n = 0.01\n\
          burst = { period_ms = 100, on_ms = 200, ramp_ms = 20 }",
-        &[(6, 36, "`on_ms = 200` is out of range: expected 0 to 100 ms")],
+        &[(6, 36, "`on_ms = 200` is longer than `period_ms`: expected at most 100 ms")],
+    );
+    check_layers(
+        "[[layer]]\nkind = \"vibration\"\nfrequency_hz = 80\nlow_n = 0\nhigh_n = 0.01\n\
+         burst = { period_ms = 100, on_ms = 80, ramp_ms = 50 }",
+        &[(6, 50, "`ramp_ms = 50` is longer than half of `on_ms`: expected at most 40 ms")],
     );
 }
 
@@ -617,7 +681,7 @@ fn a_layer_out_of_reach_is_refused_with_its_range() {
         &[(
             6,
             18,
-            "layer 1 (edge) asks for down to -0.0139 N above natural friction, and a drive can only add to the finger's natural friction of 0.25 N: raise it, lower `normal_load_n`, or write `saturate = true` under [drive] to have it clamped",
+            "layer 1 (edge) asks for down to -0.0139 N above natural friction, and a drive can only add to the finger's natural friction of 0.25 N: raise it, or the ground beneath it, by a layer with more friction, or write `saturate = true` under [drive] to have it clamped",
         )],
     );
 }
@@ -808,7 +872,9 @@ fn messages_about_reach_suggest_the_fix() {
          rim_width_mm = 2\nrim_n = 0.02\nface_n = 0\nclick_n = 0.02\nclick_ms = 20\nabove = \"natural\""
     ));
     assert!(
-        error.contains("layer 1 \"OK\", its `rim_n = 0.02` and its `click_n = 0.02` together, asks for up to 0.04 N"),
+        error.contains(
+            "layer 1 \"OK\", with its `rim_n = 0.02` and its `click_n = 0.02` together, asks for up to 0.04 N"
+        ),
         "{error}"
     );
 }

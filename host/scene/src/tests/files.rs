@@ -103,6 +103,20 @@ fn includes_that_lead_nowhere_or_in_circles() {
            from the folder of play/scene.toml; did you mean \"common.toml\"?"],
     );
     check_refused(
+        "version = 2\ninclude = [\"none.toml\"]\n",
+        &[("one.png", ""), ("nine.md", "")],
+        &["play/scene.toml:2:12: play/scene.toml includes play/none.toml, which was not found: names start \
+           from the folder of play/scene.toml"],
+    );
+    check_refused(
+        "version = 2\ninclude = [\"common.toml\", \"common.toml\"]\n",
+        &[("common.toml", BUTTONS)],
+        &[
+            "play/scene.toml:2:27: play/common.toml is included twice by play/scene.toml: a scene includes each file once, so \
+           leave one of them out",
+        ],
+    );
+    check_refused(
         SHORT,
         &[("common.toml", "version = 2\ninclude = [\"scene.toml\"]\n")],
         &[
@@ -177,7 +191,7 @@ fn a_mistake_is_reported_in_its_own_file() {
         SHORT,
         &[("common.toml", &BUTTONS.replace("0.8", "1.0").replace("[defaults]", "[defaults]\nclick_fraction = 0.5"))],
         &[
-            "play/common.toml:6:16: layer 1 \"back\", its `rim_fraction = 1.0` and its `click_fraction = 0.5` together, asks \
+            "play/common.toml:6:16: layer 1 \"back\", with its `rim_fraction = 1.0` and its `click_fraction = 0.5` together, asks \
              for up to 0.195 N above natural friction (1.5 of the reach), and at 150 V rms this finger feels at most 0.1299 N \
              above natural friction: lower one of them, or write `saturate = true` under [drive] to have it clamped",
         ],

@@ -28,6 +28,26 @@ fn an_edge_that_crosses_the_whole_screen_is_pointed_out_once() {
     assert_eq!(warnings(EDGE), Vec::<String>::new(), "a scene of one line means it");
 }
 
+/// The fields of an edge are a place on the screen, not in the region.
+#[test]
+fn an_edge_whose_line_misses_its_region_is_pointed_out() {
+    let region = "region = { x_mm = 30, y_mm = 10, width_mm = 20, height_mm = 20 }\n";
+    let warned = warnings(&format!("{EDGE}{region}"));
+    assert_eq!(
+        warned,
+        [
+            "layer 1 \"detent\": its line lies 10 mm outside of its `region`, so that nobody crosses it: move `x_mm` and \
+             `y_mm`, which are a place on the screen, or the region"
+        ]
+    );
+    assert_eq!(warnings(&format!("{EDGE}{region}repeat = {{ columns = 2, dx_mm = 30 }}\n")).len(), 1);
+    // Turned by 90 degrees the line runs along the region's top side, and turned by 45 through its corner.
+    for harmless in ["angle_deg = 90\n", "angle_deg = -45\n", "angle_deg = 45\n"] {
+        let expected = usize::from(harmless == "angle_deg = 45\n");
+        assert_eq!(warnings(&format!("{EDGE}{region}{harmless}")).len(), expected, "{harmless}");
+    }
+}
+
 #[test]
 fn a_layer_that_hides_everything_below_it_is_pointed_out() {
     let plate = "[[layer]]\nname = \"plate\"\nkind = \"vibration\"\nfrequency_hz = 80\nlow_n = 0\nhigh_n = 0.01\n";
@@ -38,9 +58,17 @@ fn a_layer_that_hides_everything_below_it_is_pointed_out() {
              or a `blend` such as \"add\""
         ]
     );
-    for harmless in
-        ["blend = \"add\"\n", "live = true\n", "region = { x_mm = 0, y_mm = 0, width_mm = 9, height_mm = 9 }\n"]
-    {
+    assert_eq!(
+        warnings(&format!("{TRACK}{plate}live = true\n")),
+        [
+            "layer 2 \"plate\" has no `region`, so that it replaces layer 1 \"track\" on the whole screen while it is on: give \
+             it a `region`, or a `blend` such as \"add\""
+        ]
+    );
+    let ping = plate.replace("plate", "ping") + "live = true\n";
+    assert_eq!(warnings(&format!("{TRACK}{plate}{ping}")).len(), 2, "one hides for good, one while it is on");
+    assert_eq!(warnings(&format!("{TRACK}{ping}{plate}")).len(), 1, "what is hidden for good hides nothing");
+    for harmless in ["blend = \"add\"\n", "region = { x_mm = 0, y_mm = 0, width_mm = 9, height_mm = 9 }\n"] {
         assert_eq!(warnings(&format!("{TRACK}{plate}{harmless}")), Vec::<String>::new(), "{harmless}");
     }
     assert_eq!(warnings(&format!("{plate}{TRACK}")), Vec::<String>::new(), "below the others it hides nothing");
@@ -124,6 +152,14 @@ fn defaults_are_checked_whether_a_layer_uses_them_or_not() {
     ] {
         assert_eq!(refused(defaults), [mistake], "{defaults}");
     }
+    let text = format!(
+        "version = 2\n[defaults]\nregion = {{ x_mm = 0, y_mm = 0, width_mm = 9, height_mm = 9 }}\n\
+         [[layer]]\nkind = \"constant\"\nfriction_fraction = 0\nregion = {{ x_mm = 1, y_mm = 0, width_mm = 9 }}\n{TRACK}"
+    );
+    assert_eq!(
+        compile_text(&text).expect_err("it is refused").to_string(),
+        "test.toml:7:10: this region, which replaces the default as a whole, has no `height_mm`: add it"
+    );
     // A blend that one kind does not have is right for the others.
     let text = format!("version = 2\n[defaults]\nblend = \"add\"\nfactors = [0, 1]\nabove = \"natural\"\n{TRACK}");
     compile_text(&text).expect("it is right");

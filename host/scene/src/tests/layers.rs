@@ -380,12 +380,21 @@ fn what_is_probably_not_meant_is_warned_of() {
         )
     };
     assert_eq!(warnings(&picture(60, 58)).len(), 0);
-    let stretched = |percent: u32, direction: &str| {
+    let stretched = |percent: u32, direction: &str, height_mm: u32| {
         format!(
-            "layer 1 \"wall\": the picture is stretched by {percent} % in {direction}: leave `height_mm` out to keep its sides, \
-             or change the region"
+            "layer 1 \"wall\": the picture is stretched by {percent} % in {direction}: to keep its sides, make its region \
+             {height_mm} mm high, or write `x_mm`, `y_mm` and `width_mm` of the picture in the layer, beside `region`"
         )
     };
-    assert_eq!(warnings(&picture(60, 40)), [stretched(50, "width")]);
-    assert_eq!(warnings(&picture(50, 60)), [stretched(20, "height")]);
+    assert_eq!(warnings(&picture(60, 40)), [stretched(50, "width", 60)]);
+    assert_eq!(warnings(&picture(50, 60)), [stretched(20, "height", 50)]);
+    assert_eq!(warnings(&picture(60, 60)).len(), 0);
+    let place = "\nx_mm = 0\ny_mm = 0\nwidth_mm = 60";
+    assert_eq!(warnings(&format!("{}{place}", picture(60, 40))).len(), 0);
+    assert_eq!(
+        warnings(&format!("{}{place}\nheight_mm = 40", picture(60, 40))),
+        [
+            "layer 1 \"wall\": the picture is stretched by 50 % in width: to keep its sides, leave the layer's `height_mm` out"
+        ]
+    );
 }

@@ -121,6 +121,10 @@ fn stretched_levels_use_the_whole_range() {
     assert!(black > 40 && white < 230, "{black} to {white}");
     assert_eq!(range("levels = \"full\""), (black, white));
     assert_eq!(range("levels = \"stretch\""), (0, 255));
+    // The mean over many pixels varies less than they do.
+    let (black, white) = range("pitch_mm = 2");
+    assert!(black > 60 && white < 170, "{black} to {white}");
+    assert_eq!(range("pitch_mm = 2\nlevels = \"stretch\""), (0, 255));
     check_note(
         &program(&layer("wood.jpg", 0, 60, "levels = \"stretch\"")),
         "wood.jpg: colour turned to grey by luminance, levels ",

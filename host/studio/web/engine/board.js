@@ -49,7 +49,7 @@ function step() {
     ticks = STEP_MS * TICKS_PER_MS;
   }
   if (ticks > 0) run(ticks, sinceLifeMs <= LIFE_MS);
-  if (replay && engine.plain("simulator_tick") >= replay.endTick) endReplay();
+  if (replay && engine.plain("simulator_tick") >= replay.endTick) endReplay(true);
 }
 
 function run(ticks, isAlive) {
@@ -84,11 +84,12 @@ function remember(sample) {
   stroke.isOver = !sample.down;
 }
 
-function endReplay() {
+function endReplay(isWhole) {
   const { resolve } = replay;
   replay = null;
+  if (!isWhole) engine.plain("simulator_lift");
   setClock(1);
-  resolve({});
+  resolve({ isWhole });
 }
 
 serve({
@@ -106,6 +107,8 @@ serve({
   control: ({ line }) => engine.call("simulator_control", new TextEncoder().encode(line)),
 
   pointer({ sample }) {
+    // A press takes the finger back from a replay.
+    if (replay && sample.down) endReplay(false);
     if (replay) return;
     remember(sample);
     addSample(sample, tickAt(sample.epochMs + DELAY_MS));
@@ -116,7 +119,7 @@ serve({
     const { samples } = stroke;
     if (samples.length === 0) throw new Error("nothing to replay: slide over the scene first");
     if (!(slowness > 0)) throw new Error(`slowness is ${slowness}: give a number above 0`);
-    if (replay) endReplay();
+    if (replay) endReplay(false);
     setClock(1 / slowness);
     engine.plain("simulator_lift");
     const start = clock.tick + STEP_MS * TICKS_PER_MS;
@@ -128,6 +131,11 @@ serve({
     return new Promise((resolve) => {
       replay = { endTick, resolve };
     });
+  },
+
+  endReplay() {
+    if (replay) endReplay(false);
+    return {};
   },
 
   alive() {

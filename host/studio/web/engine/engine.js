@@ -152,6 +152,11 @@ class Engine {
     return this.#board.ask({ type: "replay", slowness });
   }
 
+  /** Ends a replay before its end, if there is one. */
+  endReplay() {
+    return this.#board.ask({ type: "endReplay" });
+  }
+
   /** The worker that plays scenes. */
   get #player() {
     return this.#link === "simulator" ? this.#board : this.#host;
@@ -159,6 +164,7 @@ class Engine {
 
   /** Plays on the simulator, as it is after a reset, and disconnects a board. */
   async simulate() {
+    this.#refuseWhileConnecting();
     await this.#disconnect();
     this.#board.terminate();
     this.#link = "simulator";
@@ -177,7 +183,7 @@ class Engine {
   /** Connects to a board. If that fails, the simulator stays, if it was the board before, and plays on. */
   async #connect(link, open) {
     if (!canSuspend) throw new Error(NO_JSPI);
-    if (this.#isConnecting) throw new Error("a board is being connected: wait until it has answered");
+    this.#refuseWhileConnecting();
     this.#isConnecting = true;
     try {
       await this.#disconnect();
@@ -195,6 +201,10 @@ class Engine {
     }
   }
   #isConnecting = false;
+
+  #refuseWhileConnecting() {
+    if (this.#isConnecting) throw new Error("a board is being connected: wait until it has answered");
+  }
 
   /** Disconnects the board, if there is one, and waits until its port is free. */
   async #disconnect() {

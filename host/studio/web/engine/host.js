@@ -232,16 +232,21 @@ class Board {
 
   async #load(scene) {
     // What can be armed is the newest scene that was not refused, or nothing.
+    this.#loads += 1;
+    const load = this.#loads;
     this.#brokenOff = null;
-    if (this.state === "disarmed") this.isLoaded = false;
+    if (this.state !== "active") this.isLoaded = false;
     try {
       await this.#call("host_load", requestOf(scene));
     } catch (error) {
-      if (error.message === STOPPED) this.#brokenOff = scene;
+      if (error.message === STOPPED && load === this.#loads) this.#brokenOff = scene;
       throw error;
     }
+    if (load === this.#loads) this.#brokenOff = null;
     this.isLoaded = true;
   }
+  /** How many loads have begun. */
+  #loads = 0;
 
   async play(scene) {
     const round = this.#round;
@@ -254,6 +259,8 @@ class Board {
 
   async arm() {
     if (this.#brokenOff) await this.#load(this.#brokenOff);
+    // After a refused load the board has another scene than the page.
+    if (!this.isLoaded) throw new Error("no scene is on the board: open one that it does not refuse");
     this.isWanted = true;
     await this.#call("host_play");
   }
@@ -262,6 +269,9 @@ class Board {
   async stop() {
     this.isWanted = false;
     await this.#disarm();
+    // A hidden page hears nothing more of the board until it is visible again.
+    if (this.state !== "faulted") this.state = "disarmed";
+    this.report();
   }
 
   #disarm() {

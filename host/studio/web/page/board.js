@@ -13,14 +13,21 @@ export class Board {
   #bridge = bridgeUrl();
   /** Another board is connected: the scene is played there. */
   onBoard = () => {};
+  /** The board plays, or no longer. */
+  onState = () => {};
 
   constructor(engine) {
     this.#engine = engine;
     engine.onState = (state) => this.#show(state);
     this.#show({ link: "simulator", state: "disarmed", needsArm: false, driving: "the simulator in this page" });
+    byId("board").textContent = "Simulator: starting…";
     byId("open-board").onclick = () => this.#open();
     byId("arm").onclick = () => attempt(() => (byId("arm").dataset.clears ? engine.clearFault() : engine.arm()));
     byId("stop").onclick = () => attempt(() => (byId("stop").dataset.stopped ? this.#resume() : engine.stop()));
+  }
+
+  get isPlaying() {
+    return document.documentElement.dataset.state === "active";
   }
 
   get isSimulator() {
@@ -58,6 +65,7 @@ export class Board {
     stop.textContent = isStopped && link === "simulator" ? "Play" : "Stop";
     if (isStopped && link === "simulator") stop.dataset.stopped = "true";
     else delete stop.dataset.stopped;
+    this.onState();
   }
 
   #open() {

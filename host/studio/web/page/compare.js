@@ -1,11 +1,12 @@
 // Two versions of a scene, compared blind: neither text nor map says which one is felt.
 
-import { byId, element } from "./dom.js";
+import { attempt, byId, element } from "./dom.js";
 
 export class Compare {
   #panel = byId("panel-compare");
   #player;
   #editor;
+  #sound;
   /** The text that was put aside. */
   #kept;
   /** During a comparison: which text X and Y are, and what is played. */
@@ -14,9 +15,10 @@ export class Compare {
   /** A comparison begins or ends. */
   onChange = () => {};
 
-  constructor(player, editor) {
+  constructor(player, editor, sound) {
     this.#player = player;
     this.#editor = editor;
+    this.#sound = sound;
     this.#show();
   }
 
@@ -25,11 +27,11 @@ export class Compare {
   }
 
   /** Ends a comparison without an answer: the scene changes. */
-  cancel() {
+  cancel(why = "The scene has changed: the comparison is over.") {
     if (!this.isRunning) return;
     this.#trial = undefined;
     this.#hide(false);
-    this.#show("The scene has changed: the comparison is over.");
+    this.#show(why);
   }
 
   /** Hides what says which version is felt. */
@@ -65,7 +67,7 @@ export class Compare {
       return;
     }
     const order = Math.random() < 0.5 ? ["a", "b"] : ["b", "a"];
-    this.#trial = { order, texts: { a: this.#kept, b: current } };
+    this.#trial = { order, texts: { a: this.#kept, b: current }, felt: new Set() };
     this.#hide(true);
     this.#trialPanel();
     this.#feel(0);
@@ -75,21 +77,42 @@ export class Compare {
     const feel = ["X", "Y"].map((name, at) =>
       element("button", { "aria-pressed": "false", onclick: () => this.#feel(at) }, `Feel ${name}`),
     );
+    const why = { disabled: true, title: "Feel X and Y first." };
     const answer = ["X", "Y"].map((name, at) =>
-      element("button", { onclick: () => this.#answer(at) }, `${name} is better`),
+      element("button", { ...why, onclick: () => this.#answer(at) }, `${name} is better`),
     );
-    const same = element("button", { onclick: () => this.#answer() }, "No difference");
+    const same = element("button", { ...why, onclick: () => this.#answer() }, "No difference");
+    const cancel = element("button", {}, "Cancel");
+    cancel.onclick = () => {
+      const { b } = this.#trial.texts;
+      this.cancel("The comparison is cancelled; it does not count.");
+      this.#player.now(b);
+    };
     this.#panel.replaceChildren(
       element("p", {}, "Slide, change between X and Y as often as you like, then choose."),
-      element("div", { className: "row" }, ...feel),
-      element("div", { className: "row" }, ...answer, same),
+      element("div", { className: "row" }, ...feel, this.#soundButton()),
+      element("div", { className: "row" }, ...answer, same, cancel),
+      element("p", { className: "fine" }, "Without a board you hear the difference, and see how the finger lags."),
     );
-    this.#trial.buttons = feel;
+    Object.assign(this.#trial, { feel, answers: [...answer, same] });
+  }
+
+  #soundButton() {
+    const button = element("button", {}, "Turn sound on");
+    button.hidden = this.#sound.isOn;
+    button.onclick = () =>
+      attempt(async () => {
+        await this.#sound.start();
+        button.hidden = true;
+      });
+    return button;
   }
 
   #feel(at) {
-    const { order, texts, buttons } = this.#trial;
-    for (const [index, button] of buttons.entries()) button.setAttribute("aria-pressed", index === at);
+    const { order, texts, felt, feel, answers } = this.#trial;
+    for (const [index, button] of feel.entries()) button.setAttribute("aria-pressed", index === at);
+    felt.add(at);
+    if (felt.size === 2) for (const button of answers) Object.assign(button, { disabled: false, title: "" });
     this.#player.now(texts[order[at]]);
   }
 

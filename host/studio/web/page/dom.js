@@ -22,12 +22,27 @@ export function download(name, content, type) {
   setTimeout(() => URL.revokeObjectURL(url), 10_000);
 }
 
-/** Shows one sentence above the page until it is dismissed or another one comes. */
-export function notify(sentence) {
+/**
+ * Shows one sentence above the page until it is dismissed or another one comes; with `{ words, action }`, also a button
+ * that does something about it.
+ */
+export function notify(sentence, offer) {
   const notice = byId("notice");
-  notice.firstElementChild.textContent = sentence;
-  notice.lastElementChild.onclick = () => (notice.hidden = true);
+  const [said, offered, dismiss] = notice.children;
+  said.textContent = sentence;
+  offered.hidden = offer === undefined;
+  offered.textContent = offer?.words ?? "";
+  offered.onclick = () => {
+    forgetNotice();
+    attempt(offer.action);
+  };
+  dismiss.onclick = forgetNotice;
   notice.hidden = false;
+}
+
+/** Removes the sentence: what it says is over. */
+export function forgetNotice() {
+  byId("notice").hidden = true;
 }
 
 /** Runs what a person asked for; where it fails, says why. */
@@ -70,11 +85,13 @@ export const settings = {
       return null;
     }
   },
+  /** Whether the setting is kept: private windows have no storage, and a full one takes nothing. */
   set(name, value) {
     try {
       localStorage.setItem(`frixel.${name}`, value);
+      return true;
     } catch {
-      // Private windows have no storage: the setting holds until the page is closed.
+      return false;
     }
   },
 };

@@ -44,14 +44,20 @@ export class Editor {
   #shown;
   #hidden = new Map();
   #problems = [];
+  #onChange;
+  /** What can be undone or redone in the file that is shown may have changed. */
+  onHistory = () => {};
   /** Another file is shown, or has other mistakes. */
   onFiles = () => {};
 
   /** `onChange(file, text)` is called after each change, by hand or not. */
   constructor(parent, schema, onChange) {
-    const changed = EditorView.updateListener.of(
-      ({ docChanged, state }) => docChanged && onChange(this.#shown, state.doc.toString()),
-    );
+    this.#onChange = onChange;
+    const changed = EditorView.updateListener.of(({ docChanged, state }) => {
+      if (!docChanged) return;
+      onChange(this.#shown, state.doc.toString());
+      this.onHistory();
+    });
     const label = EditorView.contentAttributes.of({ "aria-label": "Text of the scene" });
     this.#extensions = [
       lineNumbers(),
@@ -96,6 +102,14 @@ export class Editor {
     });
   }
 
+  /** Shows another scene, with a history of its own: undo does not lead back into the scene before. */
+  open(text) {
+    this.show();
+    this.#view.setState(this.#newState(text));
+    this.#onChange(undefined, text);
+    this.onHistory();
+  }
+
   /** Sets the files beside the scene, given as `[name, text]`. */
   setFiles(files) {
     const names = files.map(([name]) => name);
@@ -130,6 +144,7 @@ export class Editor {
     this.#hidden.delete(file);
     this.#markShown();
     this.onFiles(this.files);
+    this.onHistory();
   }
 
   /** Inserts text behind a line (0: before the first) of a file and shows it. */
@@ -179,6 +194,19 @@ export class Editor {
 
   redo() {
     redo(this.#view);
+  }
+
+  get canUndo() {
+    return this.#can(undo);
+  }
+
+  get canRedo() {
+    return this.#can(redo);
+  }
+
+  /** A command of the editor tells, without a view to change, whether there is something to do. */
+  #can(command) {
+    return command({ state: this.#view.state, dispatch: () => {} });
   }
 
   /** Marks mistakes and warnings of the engine in place, each in its file. */

@@ -30,11 +30,14 @@ export class Gallery {
       element(
         "p",
         { className: "soft" },
-        "Open a scene, or take single layers over into yours. Undo brings your scene back.",
+        "Open a scene, or take single layers over into yours.",
       ),
       scenes,
     );
-    const cards = sceneNames().map((name) => ({ name, card: element("article", { className: "scene" }) }));
+    const cards = sceneNames().map((name) => ({
+      name,
+      card: element("article", { className: "scene" }, element("h3", {}, name)),
+    }));
     scenes.append(...cards.map(({ card }) => card));
     for (const { name, card } of cards) await this.#fill(card, name);
   }
@@ -56,7 +59,8 @@ export class Gallery {
       element("summary", {}, "Layers"),
       element("ul", {}, ...this.#layers(name, text, check.layers)),
     );
-    card.append(canvas, element("h3", {}, name), element("p", { className: "fine" }, introduction(text)), open, layers);
+    const words = element("p", { className: "fine" }, introduction(text));
+    card.replaceChildren(canvas, element("h3", {}, name), words, open, layers);
     const size = { widthPx: canvas.width, heightPx: canvas.height };
     const map = await this.#engine.map(files, entry, {}, { ...size, speedMmPerS: 100 });
     canvas.getContext("2d").putImageData(imageOf(map), 0, 0);

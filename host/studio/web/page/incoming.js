@@ -1,7 +1,7 @@
 // Files that a person drops or opens: scenes, pictures, profiles and saved projects.
 
 import { projectOf } from "./archive.js";
-import { byId, notify } from "./dom.js";
+import { byId, forgetNotice, notify } from "./dom.js";
 import { isPicture } from "./project.js";
 
 /** Largest text, picture and zip, bytes. */
@@ -9,6 +9,9 @@ const MAX = { toml: 500_000, png: 8_000_000, jpg: 8_000_000, jpeg: 8_000_000, zi
 const JPEG = [0xff, 0xd8, 0xff];
 /** The first bytes of pictures, by the ending of their names. */
 const BEGINNINGS = { png: [0x89, 0x50, 0x4e, 0x47], jpg: JPEG, jpeg: JPEG };
+/** The last chunk of a PNG, and in how many bytes at the end it is looked for. */
+const PNG_END = "IEND";
+const PNG_END_BYTES = 64;
 
 export class Incoming {
   #usedFiles;
@@ -47,6 +50,7 @@ export class Incoming {
   async take(list) {
     const found = { files: [], texts: [] };
     const refused = [];
+    forgetNotice();
     for (const file of list) {
       try {
         Object.assign(found, await read(file, found));
@@ -56,11 +60,15 @@ export class Incoming {
     }
     try {
       await this.#sort(found, refused);
+      if (found.scene || found.finger || found.screen || found.files.length > 0) await this.onFiles(found);
     } catch (error) {
       refused.push(error.message);
     }
-    if (found.scene || found.finger || found.screen || found.files.length > 0) this.onFiles(found);
     if (refused.length > 0) notify(refused.join("\n"));
+    else if (!found.scene) {
+      const profiles = [found.finger, found.screen].filter((profile) => profile !== undefined);
+      notify(`Added: ${[...found.files.map(([name]) => name), ...profiles.map(({ name }) => name)].join(", ")}.`);
+    }
   }
 
   /** Tells the scene among the texts from the files that it uses, and from profiles to play with. */
@@ -96,6 +104,8 @@ async function read(file, found) {
   if (isPicture(file.name)) {
     if (BEGINNINGS[ending].some((byte, at) => bytes[at] !== byte))
       throw new Error(`this is no ${ending === "png" ? "PNG" : "JPEG"} picture, whatever its name says`);
+    if (ending === "png" && !String.fromCharCode(...bytes.slice(-PNG_END_BYTES)).includes(PNG_END))
+      throw new Error("this PNG picture is cut off: its end is missing; save or copy it anew");
     return { files: [...found.files, [file.name, bytes]] };
   }
   return { texts: [...found.texts, [file.name, textOf(bytes)]] };

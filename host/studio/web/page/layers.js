@@ -7,6 +7,9 @@ export class Layers {
   #editor;
   /** Switches and gains, by layer number, as long as the scene plays on. */
   #live = new Map();
+  #shown = [];
+  /** Switches or gains differ from the scene's text: `onLive(["brick off", ...])`; empty where none does. */
+  onLive = () => {};
 
   constructor(engine, editor) {
     this.#engine = engine;
@@ -17,6 +20,7 @@ export class Layers {
     const panel = byId("panel-layers");
     // While a gain is dragged or typed the list stays.
     if (panel.contains(document.activeElement) && document.activeElement.dataset.gain) return;
+    this.#shown = check.layers;
     panel.replaceChildren(...check.layers.map((layer) => this.#row(layer)));
     if (check.layers.length === 0) panel.append(element("p", { className: "soft" }, "This scene has no layer yet."));
   }
@@ -24,6 +28,7 @@ export class Layers {
   /** A play begins: all layers are on, with the gain of the scene. */
   reset() {
     this.#live.clear();
+    this.onLive([]);
   }
 
   #row(layer) {
@@ -36,15 +41,17 @@ export class Layers {
       element(place.type ? "button" : "b", { className: "link", ...place, title: file ?? "" }, name),
       ` ${kind}${copies}${file ? `, ${file}` : ""}`,
     );
-    const row = element("div", { className: "layer" }, title, this.#controls(layer));
+    const note = element("p", { className: "fine live-note", hidden: true });
+    const row = element("div", { className: "layer" }, title, this.#controls(layer, note), note);
     if (felt) row.append(element("p", { className: "fine" }, felt));
     return row;
   }
 
-  #controls(layer) {
+  #controls(layer, note) {
     const { index, name: label, isLive, whyNotLive, file, from } = layer;
     if (!isLive) {
-      const button = element("button", { title: whyNotLive, disabled: !this.#editor.isTable(file, from) }, "Make live");
+      const isPossible = this.#editor.isTable(file, from);
+      const button = element("button", { title: whyNotLive, disabled: !isPossible }, "Make live: switch, gain");
       button.onclick = () => this.#editor.insertAfterLine(file, from[0], "live = true");
       return button;
     }
@@ -59,19 +66,42 @@ export class Layers {
     slider.value = state.gain;
     const number = input("number", layer.gainMin, layer.gainMax, `gain of ${label}, as a number`);
     isOn.onchange = async () => {
-      if (!(await this.#change(layer, { on: isOn.checked }, isOn.checked ? "on" : "off", state))) isOn.checked = state.on;
+      const on = isOn.checked;
+      if (!(await this.#change(layer, { on }, on ? "on" : "off", state))) isOn.checked = state.on;
+      this.#note(layer, state, note);
     };
     const change = (from, to) => async () => {
       const gain = Number(from.value);
       if (from.value === "" || !from.checkValidity()) return;
       to.value = gain;
-      if (await this.#change(layer, { gain }, `gain ${gain}`, state)) return;
-      from.value = to.value = state.gain;
+      if (!(await this.#change(layer, { gain }, `gain ${gain}`, state))) from.value = to.value = state.gain;
+      this.#note(layer, state, note);
     };
     slider.oninput = change(slider, number);
     number.oninput = change(number, slider);
+    number.onchange = () => {
+      if (number.value !== "" && number.checkValidity()) return;
+      notify(`A gain of ${label} is a number from ${layer.gainMin} to ${layer.gainMax}: it stays ${state.gain}.`);
+      number.value = state.gain;
+    };
     const times = element("label", {}, "× ", number);
     return element("div", { className: "live" }, element("label", { className: "check" }, isOn, " on"), slider, times);
+  }
+
+  /** Says at the layer, and to the map, what differs from the scene's text. */
+  #note({ gain: written }, { on, gain }, note) {
+    const isGain = gain !== written;
+    note.hidden = on && !isGain;
+    const now = on ? `Gain ${gain} now` : "Off now";
+    const keep = isGain ? `, and write \`gain = ${gain}\` into it to keep it` : "";
+    note.textContent = `${now}, until the scene changes. What is said here is for the scene as it is written${keep}.`;
+    const changes = [...this.#live].flatMap(([index, state]) => {
+      const layer = this.#shown.find((each) => each.index === index);
+      if (!layer) return [];
+      if (!state.on) return [`${layer.name} off`];
+      return state.gain === layer.gain ? [] : [`${layer.name} × ${state.gain}`];
+    });
+    this.onLive(changes);
   }
 
   /** Sends only what was changed: the scene's gain stays until the slider is moved. Resolves to whether it was done. */

@@ -91,7 +91,7 @@ export class FrictionMap {
     context.restore();
     const ink = { line: colour("soft", this.#box), text: colour("ink", this.#box) };
     this.#drawRuler(context, area, ink);
-    this.#drawScale(context, area, ink);
+    if (this.look !== "mockup") this.#drawScale(context, area, ink);
     if (this.hasNames && this.look !== "mockup" && !isBlind) this.#drawNames(context, area);
     if (this.#check.isDraft && !isBlind) drawDraft(context, area);
   }

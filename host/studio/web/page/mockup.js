@@ -24,8 +24,11 @@ export function drawMockup(context, name, width, height) {
   context.save();
   context.fillStyle = "#f7f7fa";
   context.fillRect(0, 0, width, height);
-  context.scale(width / 120, height / 80);
-  ({ player, keypad, shop, own })[name](context, width / height);
+  // The mock-ups are drawn for 120 x 80: on another shape they keep theirs, in the middle.
+  const scale = Math.min(width / 120, height / 80);
+  context.translate((width - 120 * scale) / 2, (height - 80 * scale) / 2);
+  context.scale(scale, scale);
+  ({ player, keypad, shop, own })[name](context);
   context.restore();
 }
 
@@ -86,5 +89,8 @@ function shop(context) {
 }
 
 function own(context) {
-  if (ownPicture) context.drawImage(ownPicture, 0, 0, 120, 80);
+  if (!ownPicture) return;
+  const scale = Math.min(120 / ownPicture.width, 80 / ownPicture.height);
+  const [width, height] = [ownPicture.width * scale, ownPicture.height * scale];
+  context.drawImage(ownPicture, (120 - width) / 2, (80 - height) / 2, width, height);
 }

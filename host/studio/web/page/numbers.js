@@ -12,22 +12,24 @@ export class Numbers {
   #means = {};
 
   constructor() {
-    const add = (key, title, unit, kind = "") => {
+    const add = (key, title, unit, meaning, kind = "") => {
       const value = element("span");
       this.#fields[key] = value;
       byId("numbers").append(
         element(
           "div",
-          {},
+          { title: meaning },
           element("dt", {}, title),
           element("dd", { className: kind }, value, " ", element("small", {}, unit)),
         ),
       );
     };
-    add("friction", "Felt friction", "mN", "felt");
-    add("weber", "Above bare glass", "Weber steps", "felt");
-    add("voltage", "Drive", "V rms", "voltage");
-    add("speed", "Speed", "mm/s");
+    const wanders = "It wanders with the simulated finger's load and noise, also below the map's scale.";
+    add("friction", "Felt friction", "mN", `Friction that the simulated finger feels. ${wanders}`, "felt");
+    const step = "A Weber step is a factor of 1.11, about the smallest change of friction that a finger feels.";
+    add("weber", "Above bare glass", "Weber steps", `${step} ${wanders}`, "felt");
+    add("voltage", "Drive", "V rms", "Voltage on the electrode: it adds friction, and takes none away.", "voltage");
+    add("speed", "Speed", "mm/s", "Speed of the simulated finger.");
     this.#show({});
   }
 

@@ -1,6 +1,8 @@
 // The last seconds of what was felt, for the scope and for files.
 
 const CAPACITY = 40_000;
+/** Without a touch for this long, s, nothing is kept, so that the last strokes stay. */
+const IDLE_S = 1;
 
 export class Samples {
   #columns = ["timeS", "xMm", "yMm", "speedMmPerS", "referenceN", "feltN", "voltageV"];
@@ -9,9 +11,10 @@ export class Samples {
   count = 0;
   /** Time of the newest sample, s of board time. */
   nowS = 0;
+  #touchedS = 0;
 
   add(frame) {
-    const { firstTick, ticksPerSample, feltN } = frame;
+    const { firstTick, ticksPerSample, feltN, xMm } = frame;
     // In slow motion there are frames without a sample.
     if (feltN.length === 0) return;
     const startS = firstTick / 40_000;
@@ -19,6 +22,8 @@ export class Samples {
     if (startS < this.nowS - 0.01) this.clear();
     for (let at = 0; at < feltN.length; at += 1) {
       this.nowS = startS + (at * ticksPerSample) / 40_000;
+      if (Number.isFinite(xMm[at])) this.#touchedS = this.nowS;
+      if (this.nowS - this.#touchedS > IDLE_S) continue;
       this.#data.timeS[this.#next] = this.nowS;
       for (const name of this.#columns.slice(1)) this.#data[name][this.#next] = frame[name][at];
       this.#next = (this.#next + 1) % CAPACITY;
@@ -30,6 +35,7 @@ export class Samples {
     this.count = 0;
     this.#next = 0;
     this.nowS = 0;
+    this.#touchedS = 0;
   }
 
   /** Columns of the samples since `fromS`, oldest first. */

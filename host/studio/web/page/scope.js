@@ -8,12 +8,26 @@ const WINDOW_S = 3;
 const HEIGHT_PX = 190;
 /** Least time between two drawings, ms. */
 const FRAME_MS = 30;
+/** The scope runs on for this long after a lift, s. */
+const AFTER_LIFT_S = 0.3;
+/** Height of the words above a saved chart, CSS pixels. */
+const HEAD_PX = 30;
+
+/** What time and series mean. */
+const MEANINGS = [
+  "time of the board, s",
+  "reference: the friction that the scene asks for where the finger is, mN",
+  "felt: the friction that the simulated finger feels; it wanders with the finger's load and noise, mN",
+  "voltage: the drive on the electrode, V rms",
+];
 
 export class Scope {
   #samples;
   #box;
   #plot;
   #shownNowS = -1;
+  /** The last touch, s of board time. */
+  #touchedS = 0;
   isPaused = false;
   /** Whether a draft is felt: the names of saved files say so. */
   isDraft = false;
@@ -31,7 +45,7 @@ export class Scope {
     }).observe(this.#box);
     let drawnMs = 0;
     const frame = (ms) => {
-      if (!this.isPaused && this.#shownNowS !== this.#samples.nowS && ms - drawnMs >= FRAME_MS) {
+      if (!this.isPaused && this.#shownNowS !== this.#endS && ms - drawnMs >= FRAME_MS) {
         this.#draw();
         drawnMs = ms;
       }
@@ -57,7 +71,7 @@ export class Scope {
       height: HEIGHT_PX,
       scales: { x: { time: false }, mN: { range: upper }, V: { range: lower } },
       axes: [
-        axis,
+        { ...axis, values: (_, splits) => splits.map((value) => `${Number(value.toFixed(4))} s`) },
         { ...axis, scale: "mN", label: "mN", size: 48 },
         { ...axis, scale: "V", label: "V rms", side: 1, size: 44, grid: { show: false } },
       ],
@@ -78,6 +92,7 @@ export class Scope {
       hooks: { setSelect: [({ select }) => select.width > 0 && this.pause(true)] },
     };
     this.#plot = new uPlot(options, [[], [], [], []], this.#box);
+    for (const [at, row] of this.#box.querySelectorAll(".u-legend tr").entries()) row.title = MEANINGS[at] ?? "";
     this.#draw();
   }
 
@@ -85,8 +100,19 @@ export class Scope {
     this.#make();
   }
 
-  #draw() {
+  /** The scope stands still while nothing touches. */
+  feel({ contact }) {
     const { nowS } = this.#samples;
+    if (contact || nowS < this.#touchedS) this.#touchedS = nowS;
+  }
+
+  /** Where the chart ends, s of board time. */
+  get #endS() {
+    return Math.max(WINDOW_S, Math.min(this.#samples.nowS, this.#touchedS + AFTER_LIFT_S));
+  }
+
+  #draw() {
+    const nowS = this.#endS;
     this.#shownNowS = nowS;
     const { timeS, xMm, referenceN, feltN, voltageV } = this.#samples.since(nowS - WINDOW_S);
     // No friction is drawn while the finger is up, comes down or leaves, so that the axis serves what is felt.
@@ -116,11 +142,26 @@ export class Scope {
   /** The chart on the card's colour, as a picture. */
   savePng() {
     const chart = this.#plot.ctx.canvas;
-    const picture = element("canvas", { width: chart.width, height: chart.height });
+    const ratio = devicePixelRatio;
+    const picture = element("canvas", { width: chart.width, height: chart.height + HEAD_PX * ratio });
     const context = picture.getContext("2d");
     context.fillStyle = colour("card", this.#box);
     context.fillRect(0, 0, picture.width, picture.height);
-    context.drawImage(chart, 0, 0);
+    context.drawImage(chart, 0, HEAD_PX * ratio);
+    context.scale(ratio, ratio);
+    context.font = "14px system-ui, sans-serif";
+    context.textBaseline = "middle";
+    let left = 12;
+    const write = (words, ink) => {
+      context.fillStyle = colour(ink, this.#box);
+      context.fillText(words, left, HEAD_PX / 2);
+      left += context.measureText(words).width + 22;
+    };
+    if (this.isDraft) write("DRAFT", "danger");
+    write("reference (dashed), mN", "reference");
+    write("felt, mN", "felt");
+    write("voltage, V rms", "voltage");
+    write("time in s", "ink");
     picture.toBlob((blob) => download(`${this.#fileName}.png`, blob, "image/png"));
   }
 }

@@ -56,19 +56,21 @@ function makeScope(scope) {
   byId("save-png").onclick = () => scope.savePng();
 }
 
-/** The last stroke again, slower; in a loop until the box is cleared. */
+/** The last stroke again, slower; in a loop until the box is cleared, the button pressed, or the map. */
 function makeReplay(engine) {
   const button = byId("replay");
-  button.onclick = () =>
-    attempt(async () => {
-      button.textContent = "Replaying…";
-      button.disabled = true;
-      try {
-        do await engine.replay({ slowness: Number(byId("slowness").value) });
-        while (byId("loop").checked);
-      } finally {
-        button.textContent = "Replay slowly";
-        button.disabled = false;
-      }
-    });
+  let isRunning = false;
+  const replay = async () => {
+    isRunning = true;
+    button.textContent = "Stop replay";
+    try {
+      let isWhole;
+      do ({ isWhole } = await engine.replay({ slowness: Number(byId("slowness").value) }));
+      while (isWhole && byId("loop").checked);
+    } finally {
+      isRunning = false;
+      button.textContent = "Replay slowly";
+    }
+  };
+  button.onclick = () => attempt(() => (isRunning ? engine.endReplay() : replay()));
 }
