@@ -159,7 +159,10 @@ fn the_reference_has_the_load_and_the_noise_of_the_finger() {
     assert!(number(&turns, "wanted_min_n") > 0.15, "{turns}");
     let felt = fs::read_to_string(folder.path().join("frixel-out/felt.csv")).unwrap();
     let said = succeed(folder.path(), &["play", "constant.toml", "--seconds", "0.1"]);
-    assert!(said.contains(" mN, assumed; not where the finger lands or turns"), "{said}");
+    assert!(
+        said.contains(" mN, assumed, at the load of the finger that plays; not where the finger lands or turns"),
+        "{said}"
+    );
     assert!(felt.lines().count() > 3_000);
 
     let ideal = play_constant(folder.path(), &["--ideal"]);
