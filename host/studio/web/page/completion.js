@@ -122,7 +122,8 @@ function merged(root, schemas, present) {
   const fields = {};
   const fitting = schemas.flatMap((schema) => tables(root, schema)).filter(fits);
   // A table for all kinds, as in a scene of several files, says less than those for the kind that stands there.
-  const ofKind = fitting.filter(({ properties }) => wordsOf(resolve(root, properties.kind ?? {})).includes(present.kind));
+  const kindsOf = ({ properties }) => wordsOf(resolve(root, properties.kind ?? {}));
+  const ofKind = fitting.filter((table) => kindsOf(table).includes(present.kind));
   for (const table of ofKind.length > 0 ? ofKind : fitting) {
     for (const [name, raw] of Object.entries(table.properties)) {
       const property = resolve(root, raw);
