@@ -65,6 +65,26 @@ test("a typed mistake shows the sentence of `frixel scene check`, and the mended
   await close();
 });
 
+test("completion offers what the kind of a layer has, and the kind first", async () => {
+  const { page, errors, close } = await openStudio();
+  const offered = async (layer) => {
+    await page.evaluate((text) => (studioPage.editor.text = text), `version = 2\n[[layer]]\n${layer}\n`);
+    await page.evaluate(() => studioPage.editor.goTo(undefined, 99));
+    await page.keyboard.press("Control+Space");
+    const labels = page.locator(".cm-tooltip-autocomplete .cm-completionLabel");
+    await labels.first().waitFor();
+    const found = await labels.allTextContents();
+    await page.keyboard.press("Escape");
+    return found;
+  };
+  assert.equal((await offered(""))[0], "kind");
+  assert.ok((await offered('kind = "grating"')).includes("duty"));
+  const constant = await offered('kind = "constant"');
+  assert.ok(constant.includes("friction_n") && !constant.includes("duty") && !constant.includes("x_px"), `${constant}`);
+  assert.deepEqual(errors, []);
+  await close();
+});
+
 test("bad scenes are sentences", async () => {
   const { page, errors, close } = await openStudio();
   for (const [text, expected] of [

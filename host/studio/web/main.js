@@ -30,6 +30,8 @@ import { makeTheme } from "./page/theme.js";
 import { makeView } from "./page/view.js";
 
 const FIRST_SCENE = "brick";
+/** Height of header, tools, numbers and scope, CSS pixels: in a low window they are seen together with the map. */
+const AROUND_MAP_PX = 530;
 const NEW_SCENE = `version = 2
 
 # Type [[layer]], then Ctrl+Space for what a layer can have; or take layers from the Gallery.
@@ -59,6 +61,7 @@ async function start() {
   };
   new FileTabs(editor, project);
   const map = new FrictionMap(byId("map"), byId("map-picture"));
+  map.reservedPx = AROUND_MAP_PX;
   const finger = new Finger(engine, map, byId("map-finger"));
   const samples = new Samples();
   const scope = new Scope(samples, byId("scope"));

@@ -120,10 +120,7 @@ function merged(root, schemas, present) {
       return words.length === 0 || words.includes(value);
     });
   const fields = {};
-  const fitting = schemas.flatMap((schema) => tables(root, schema)).filter(fits);
-  // A table for all kinds, as in a scene of several files, says less than those for the kind that stands there.
-  const ofKind = fitting.filter(({ properties }) => wordsOf(resolve(root, properties.kind ?? {})).includes(present.kind));
-  for (const table of ofKind.length > 0 ? ofKind : fitting) {
+  for (const table of schemas.flatMap((schema) => tables(root, schema)).filter(fits)) {
     for (const [name, raw] of Object.entries(table.properties)) {
       const property = resolve(root, raw);
       fields[name] ??= { ...property, description: raw.description ?? property.description, words: [], schemas: [] };

@@ -9,6 +9,8 @@ const LEFT = 40;
 const TOP = 26;
 const RIGHT = 78;
 const BOTTOM = 8;
+/** The map takes at most this part of the window's height. */
+const HEIGHT_PART = 0.44;
 /** Height of the word that marks a draft, CSS pixels. */
 const DRAFT_HEIGHT = 36;
 
@@ -23,6 +25,8 @@ export class FrictionMap {
   scale = 5;
   /** CSS pixels per mm of the real size, or undefined to fit the page. */
   realSize;
+  /** Height of the window that is kept for other parts of the page, CSS pixels. */
+  reservedPx = 0;
   look = "map";
   hasNames = true;
   mockup = "player";
@@ -51,7 +55,8 @@ export class FrictionMap {
     const { widthMm, heightMm } = this.screen;
     const style = getComputedStyle(this.#box);
     const room = this.#box.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
-    const fitted = Math.min((room - LEFT - RIGHT) / widthMm, Math.max(240, 0.44 * innerHeight) / heightMm);
+    const most = Math.max(240, Math.min(HEIGHT_PART * innerHeight, innerHeight - this.reservedPx));
+    const fitted = Math.min((room - LEFT - RIGHT) / widthMm, most / heightMm);
     this.scale = this.realSize ?? Math.max(0.5, fitted);
     const width = LEFT + RIGHT + widthMm * this.scale;
     const height = TOP + BOTTOM + heightMm * this.scale;

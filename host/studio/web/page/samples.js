@@ -14,7 +14,7 @@ export class Samples {
   #touchedS = 0;
 
   add(frame) {
-    const { firstTick, ticksPerSample, feltN, xMm } = frame;
+    const { firstTick, ticksPerSample, feltN, xMm, contact } = frame;
     // In slow motion there are frames without a sample.
     if (feltN.length === 0) return;
     const startS = firstTick / 40_000;
@@ -22,7 +22,7 @@ export class Samples {
     if (startS < this.nowS - 0.01) this.clear();
     for (let at = 0; at < feltN.length; at += 1) {
       this.nowS = startS + (at * ticksPerSample) / 40_000;
-      if (Number.isFinite(xMm[at])) this.#touchedS = this.nowS;
+      if (contact || Number.isFinite(xMm[at])) this.#touchedS = this.nowS;
       if (this.nowS - this.#touchedS > IDLE_S) continue;
       this.#data.timeS[this.#next] = this.nowS;
       for (const name of this.#columns.slice(1)) this.#data[name][this.#next] = frame[name][at];

@@ -5,7 +5,9 @@ import { colour, download, element } from "./dom.js";
 
 /** What the scope shows while it runs, s. */
 const WINDOW_S = 3;
-const HEIGHT_PX = 190;
+const HEIGHT_PX = { usual: 190, low: 155 };
+/** A window below this height has a low chart, so that map and chart are seen together. */
+const LOW_WINDOW_PX = 900;
 /** Least time between two drawings, ms. */
 const FRAME_MS = 30;
 /** The scope runs on for this long after a lift, s. */
@@ -41,7 +43,7 @@ export class Scope {
     box.before(element("style", {}, uPlotStyle));
     this.#make();
     new ResizeObserver(([{ contentRect }]) => {
-      this.#plot.setSize({ width: Math.max(200, contentRect.width - 4), height: HEIGHT_PX });
+      this.#plot.setSize({ width: Math.max(200, contentRect.width - 4), height: heightPx() });
     }).observe(this.#box);
     let drawnMs = 0;
     const frame = (ms) => {
@@ -68,7 +70,7 @@ export class Scope {
     const digits = (unit, count) => (_, value) => (Number.isFinite(value) ? `${value.toFixed(count)} ${unit}` : "–");
     const options = {
       width: Math.max(200, this.#box.clientWidth - 4),
-      height: HEIGHT_PX,
+      height: heightPx(),
       scales: { x: { time: false }, mN: { range: upper }, V: { range: lower } },
       axes: [
         { ...axis, values: (_, splits) => splits.map((value) => `${Number(value.toFixed(4))} s`) },
@@ -164,6 +166,10 @@ export class Scope {
     write("time in s", "ink");
     picture.toBlob((blob) => download(`${this.#fileName}.png`, blob, "image/png"));
   }
+}
+
+function heightPx() {
+  return innerHeight < LOW_WINDOW_PX ? HEIGHT_PX.low : HEIGHT_PX.usual;
 }
 
 /** Friction takes the upper part of the chart: what is usual is shown, and more where there is more. */
