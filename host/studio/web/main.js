@@ -41,7 +41,7 @@ async function start() {
   const engine = await createEngine();
   const project = new Project(engine);
   engine.onFailure = ({ error }) =>
-    notify(`The simulator has failed: ${error}. Reload the page; save the scene first.`);
+    notify(`The studio has failed: ${error}. Save the scene, then reload the page; a board disarms itself.`);
   const player = new Player(engine, project);
   const editor = new Editor(byId("editor"), await schema(), (file, text) => {
     compare.cancel();

@@ -2,7 +2,7 @@
 
 import { carriedFiles, sceneNames } from "./bundled.js";
 import { imageOf } from "./colors.js";
-import { byId, element } from "./dom.js";
+import { attempt, byId, element } from "./dom.js";
 
 const WIDTH_PX = 300;
 
@@ -51,7 +51,7 @@ export class Gallery {
     const open = element("button", { className: "primary" }, `Open ${name}`);
     open.onclick = () => {
       this.#dialog.close();
-      this.onScene(name, text);
+      attempt(() => this.onScene(name, text));
     };
     const layers = element(
       "details",

@@ -104,11 +104,20 @@ export class Layers {
     this.onLive(changes);
   }
 
-  /** Sends only what was changed: the scene's gain stays until the slider is moved. Resolves to whether it was done. */
+  /**
+   * Sends only what was changed: the scene's gain stays until the slider is moved. Resolves to whether it was done. If
+   * one copy is refused, those before it get their old setting back.
+   */
   async #change({ index, controls }, next, words, state) {
-    for (const number of controls) {
+    const before = "on" in next ? (state.on ? "on" : "off") : `gain ${state.gain}`;
+    for (const [copy, number] of controls.entries()) {
       const answer = await attempt(() => this.#engine.control(`layer ${number} ${words}`));
-      if (answer === undefined) return false;
+      if (answer === undefined) {
+        for (const changed of controls.slice(0, copy)) {
+          await attempt(() => this.#engine.control(`layer ${changed} ${before}`));
+        }
+        return false;
+      }
       if (answer.notice) notify(answer.notice);
     }
     Object.assign(state, next);
