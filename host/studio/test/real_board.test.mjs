@@ -110,7 +110,7 @@ test("a scene for another board and one that plays without its host are refused,
   await board.until("disarmed", stateOf.disarmed);
   const from = board.events.length;
   for (const [text, sentence] of [
-    [FOUR_LAYERS, /layer 4, and the board takes 3/],
+    [FOUR_LAYERS, /4 layers, and the board takes 3/],
     [AUTONOMOUS, /plays without its host/],
     [CONSTANT.replace(/friction_(\w+) = .*/, "friction_n = 9"), /does not play this draft/],
   ]) {
