@@ -10,17 +10,17 @@ pub(crate) const SINE_CARRIER: u32 = 36;
 
 // Layers, in a rectangle.
 pub(crate) const CONSTANT: u32 = 72;
-pub(crate) const SINE: u32 = 166;
+pub(crate) const SINE: u32 = 162;
 pub(crate) const SQUARE: u32 = 131;
 pub(crate) const TRIANGLE: u32 = 123;
-pub(crate) const SAW: u32 = 122;
-pub(crate) const RINGS: u32 = 13;
+pub(crate) const SAW: u32 = 118;
+pub(crate) const RINGS: u32 = 17;
 pub(crate) const BITMAP: u32 = 223;
 pub(crate) const BITMAP_TILED: u32 = 274;
 pub(crate) const NOISE: u32 = 402;
 pub(crate) const EDGE: u32 = 247;
 pub(crate) const BUTTON: u32 = 275;
-pub(crate) const VIBRATION_SINE: u32 = 180;
+pub(crate) const VIBRATION_SINE: u32 = 172;
 pub(crate) const VIBRATION_SQUARE: u32 = 147;
 
 // A curve, and each of its points.
