@@ -1,8 +1,8 @@
 //! Standstill detector. A still finger feels almost nothing while its current rises, so the tracker ramps the friction
 //! down at standstill, and up again when the finger moves.
 //!
-//! The detector takes distances, not the estimated speed: at 100 reports a second, 0.02 mm of noise make several mm/s of
-//! speed, but the finger stays where it is.
+//! The detector takes distances, not the estimated speed: at 100 reports a second, 0.02 mm of noise make several mm/s
+//! of speed, but the finger stays where it is.
 
 use frixel_control::StandstillRamp;
 use frixel_control::is_past;

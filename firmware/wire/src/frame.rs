@@ -9,7 +9,7 @@
 //! let mut decoder = Decoder::new();
 //! let mut input = sent;
 //! assert_eq!(decoder.next_frame(&mut input), Some(&b"hello"[..]));
-//! # Ok::<(), frixel_wire::frame::PayloadTooLong>(())
+//! # Ok::<(), frixel_wire::frame::PayloadLength>(())
 //! ```
 
 use core::fmt;
@@ -78,33 +78,33 @@ impl fmt::Debug for Crc32 {
     }
 }
 
-/// The payload is longer than [`PAYLOAD_MAX_LEN`] bytes.
+/// The payload is empty, or longer than [`PAYLOAD_MAX_LEN`] bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PayloadTooLong {
+pub struct PayloadLength {
     /// Bytes of the payload.
     pub len: usize,
 }
 
-impl fmt::Display for PayloadTooLong {
+impl fmt::Display for PayloadLength {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "a payload of {} bytes does not fit into a frame, which takes {PAYLOAD_MAX_LEN}: split it", self.len)
+        write!(f, "a payload takes 1 to {PAYLOAD_MAX_LEN} bytes, this one has {}: split a longer one", self.len)
     }
 }
 
-impl core::error::Error for PayloadTooLong {}
+impl core::error::Error for PayloadLength {}
 
 /// Encodes a payload as a frame and returns the frame's bytes, including the zero byte.
-pub fn encode<'f>(payload: &[u8], frame: &'f mut [u8; FRAME_MAX_LEN]) -> Result<&'f [u8], PayloadTooLong> {
-    let too_long = PayloadTooLong { len: payload.len() };
-    if payload.len() > PAYLOAD_MAX_LEN {
-        return Err(too_long);
+pub fn encode<'f>(payload: &[u8], frame: &'f mut [u8; FRAME_MAX_LEN]) -> Result<&'f [u8], PayloadLength> {
+    let wrong_length = PayloadLength { len: payload.len() };
+    if !(1..=PAYLOAD_MAX_LEN).contains(&payload.len()) {
+        return Err(wrong_length);
     }
     let mut encoder = CobsEncoder::new(frame.as_mut_slice());
-    encoder.push(payload).map_err(|_| too_long)?;
-    encoder.push(&crc32(payload).to_le_bytes()).map_err(|_| too_long)?;
+    encoder.push(payload).map_err(|_| wrong_length)?;
+    encoder.push(&crc32(payload).to_le_bytes()).map_err(|_| wrong_length)?;
     let len = encoder.finalize();
-    *frame.get_mut(len).ok_or(too_long)? = 0;
-    frame.get(..=len).ok_or(too_long)
+    *frame.get_mut(len).ok_or(wrong_length)? = 0;
+    frame.get(..=len).ok_or(wrong_length)
 }
 
 /// Finds valid frames in a stream of bytes.
@@ -199,12 +199,13 @@ impl Decoder {
         }
     }
 
-    /// Removes the CRC behind the payload; returns whether the CRC is correct.
+    /// Removes the CRC behind the payload; returns whether the CRC is correct. An empty payload is refused: its CRC is
+    /// zero, so that a single wrong bit makes its frame of any five zeros in a row.
     fn strip_crc(&mut self) -> bool {
         let decoded = self.decoded.get(..self.len).unwrap_or_default();
         let Some((payload, crc)) = decoded.split_last_chunk::<CRC_LEN>() else { return false };
         self.len = payload.len();
-        crc32(payload) == u32::from_le_bytes(*crc)
+        !payload.is_empty() && crc32(payload) == u32::from_le_bytes(*crc)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Frames on a line that loses, changes and adds bytes.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
-use frixel_wire::frame::{Crc32, Decoder, FRAME_MAX_LEN, PayloadTooLong, crc32, encode};
+use frixel_wire::frame::{Crc32, Decoder, FRAME_MAX_LEN, PayloadLength, crc32, encode};
 use frixel_wire::payload::PAYLOAD_MAX_LEN;
 use proptest::prelude::*;
 
@@ -52,7 +52,9 @@ fn reference_decode(bytes: &[u8]) -> (Vec<Vec<u8>>, u32) {
         let decoded = reference_uncobs(encoded).filter(|decoded| decoded.len() <= PAYLOAD_MAX_LEN + 4);
         let split = decoded.as_deref().and_then(<[u8]>::split_last_chunk::<4>);
         match split {
-            Some((payload, crc)) if reference_crc32(payload).to_le_bytes() == *crc => payloads.push(payload.to_vec()),
+            Some((payload @ [_, ..], crc)) if reference_crc32(payload).to_le_bytes() == *crc => {
+                payloads.push(payload.to_vec());
+            }
             _ => rejected += 1,
         }
     }
@@ -99,7 +101,7 @@ fn disturb(line: &mut Vec<u8>, noise: &Noise) {
 fn payload() -> impl Strategy<Value = Vec<u8>> {
     // Zeros and full runs are the special cases of COBS: make them frequent.
     let byte = prop_oneof![Just(0u8), Just(1), Just(0xff), any::<u8>()];
-    prop::collection::vec(byte, 0..=PAYLOAD_MAX_LEN)
+    prop::collection::vec(byte, 1..=PAYLOAD_MAX_LEN)
 }
 
 #[test]
@@ -111,7 +113,7 @@ fn crc_is_iso_hdlc() {
 /// Every length: a frame is one COBS byte, payload, CRC and zero, and never longer than the largest.
 #[test]
 fn every_length_goes_there_and_back() {
-    for len in 0..=PAYLOAD_MAX_LEN {
+    for len in 1..=PAYLOAD_MAX_LEN {
         for fill in [|_| 0, |_| 0xff, |i| i as u8, |i| ((i * 89) >> 3) as u8] as [fn(usize) -> u8; 4] {
             let payload: Vec<u8> = (0..len).map(fill).collect();
             let frame = frame(&payload);
@@ -125,9 +127,10 @@ fn every_length_goes_there_and_back() {
 }
 
 #[test]
-fn too_long_a_payload_is_refused() {
-    let payload = [0x55; PAYLOAD_MAX_LEN + 1];
-    assert_eq!(encode(&payload, &mut [0; FRAME_MAX_LEN]), Err(PayloadTooLong { len: PAYLOAD_MAX_LEN + 1 }));
+fn an_empty_and_too_long_a_payload_are_refused() {
+    for len in [0, PAYLOAD_MAX_LEN + 1] {
+        assert_eq!(encode(&vec![0x55; len], &mut [0; FRAME_MAX_LEN]), Err(PayloadLength { len }));
+    }
 }
 
 #[test]
@@ -168,6 +171,16 @@ fn frames_too_short_for_a_crc_are_bad() {
         let (payloads, decoder) = decode(&short);
         assert_eq!((payloads.len(), decoder.frames(), decoder.rejected()), (0, 0, 1), "{len} bytes");
     }
+}
+
+/// The frame of an empty payload has the right CRC, and may come from a payload of zeros by a single wrong bit.
+#[test]
+fn a_wrong_bit_in_zeros_makes_no_frame_of_an_empty_payload() {
+    let mut line = frame(&[0; 100]);
+    assert_eq!(line[..6], [1; 6]);
+    line[5] ^= 1;
+    let (payloads, decoder) = decode(&line);
+    assert_eq!((payloads.len(), decoder.frames(), decoder.rejected()), (0, 0, 2));
 }
 
 proptest! {

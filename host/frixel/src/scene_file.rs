@@ -49,7 +49,7 @@ impl SceneFileError {
     }
 }
 
-/// What to do about a profile that cannot be read.
+/// Advice for a profile that cannot be read: the nearest name, or how to give one.
 fn profile_advice(nearest: &Nearest, file: &str) -> String {
     match &nearest.suggestion {
         Some(bundled) => format!("did you mean `{bundled}`?"),

@@ -135,7 +135,7 @@ impl Demand<'_> {
         sides
     }
 
-    /// What to change where the friction is below natural friction, which less load lowers.
+    /// Advice for friction below natural friction. Less load lowers natural friction.
     fn cure_below(&self, above: Above) -> &'static str {
         match &self.layers[..] {
             [_] if above == Above::Zero => "raise it, or lower `normal_load_n`",

@@ -114,5 +114,6 @@ pub use screen::{Screen, Slab};
 pub use spectrum::band_rms;
 pub use target_range::{OutOfReach, TargetRange};
 pub use tick_cost::middle_mm;
+pub use titles::table_number;
 pub use touched_layers::{LayerMiddle, TouchedLayers};
 pub use warning::Warning;

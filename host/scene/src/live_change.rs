@@ -30,7 +30,7 @@ pub struct LayerSetting {
 pub struct Clamped {
     /// The layers.
     pub layers: String,
-    /// What they ask for, N above natural friction.
+    /// The friction that they ask for, N above natural friction.
     pub asked_n: f64,
     /// The most that can be reached, rounded down, N above natural friction.
     pub reach_n: f64,
@@ -41,8 +41,8 @@ fn side(asked_n: f64, reach_n: f64) -> String {
 }
 
 impl Program {
-    /// What is clamped when the layers play with these settings, one for each record; `None` if all that is found can
-    /// be reached. A stream counts with all that it may be.
+    /// The layers whose friction the board clamps when they play with these settings, one for each record; `None` if the
+    /// drive can give all friction that the search finds. A stream counts with every value that it may have.
     pub fn clamped_with(&self, settings: &[LayerSetting]) -> Option<Clamped> {
         let within = self.within_reach();
         let excess = self.worst_with(&pieces(&Reference::new(self), settings))?;
@@ -57,8 +57,8 @@ impl Program {
         })
     }
 
-    /// The gains of a record with which nothing is clamped, when the layers play with these settings otherwise; `None`
-    /// if there are none. `settings` has the gain to start from.
+    /// The least and the largest gain of a record with which the board clamps nothing, while all other settings stay as
+    /// they are; `None` if it clamps with every gain. The search starts from the record's gain in `settings`.
     pub fn gains_in_reach(&self, record: u8, settings: &[LayerSetting]) -> Option<(f32, f32)> {
         let mut pieces = pieces(&Reference::new(self), settings);
         let number = usize::from(record);

@@ -50,7 +50,7 @@ pub enum LiveError {
     GainOutOfReach {
         /// The gain that was given.
         gain: f32,
-        /// What would be clamped.
+        /// The layers whose friction would be clamped.
         clamped: Clamped,
         /// The least and the largest gain that can be reached; `None` if there is none.
         range: Option<(f32, f32)>,
@@ -131,8 +131,8 @@ impl LiveLayers {
         Ok(LayerChange { record, setting, clamped })
     }
 
-    /// Switches a layer that is off on at the time `now`, until `duration` later. If it is triggered already, it is
-    /// switched off at the later of both ends.
+    /// Switches a layer that is off on at the time `now`, until `duration_s` seconds later. If it is triggered already,
+    /// it is switched off at the later of both ends.
     ///
     /// # Errors
     ///
@@ -143,7 +143,7 @@ impl LiveLayers {
         program: &Program,
         layer: &str,
         now: Duration,
-        duration: Duration,
+        duration_s: f64,
     ) -> Result<LayerChange, LiveError> {
         let record = program.layers.record(layer)?;
         let before = self.settings.get(usize::from(record));
@@ -155,8 +155,7 @@ impl LiveLayers {
         if before.is_some_and(|setting| setting.gain.abs() <= 0.0) {
             return Err(LiveError::TriggerSilent { layer: layer.to_owned() });
         }
-        let (duration_s, vibration) =
-            (duration.as_secs_f64(), program.records.get(usize::from(record)).map(|record| &record.layer));
+        let vibration = program.records.get(usize::from(record)).map(|record| &record.layer);
         if let Some(Layer::Vibration(Vibration { burst, .. })) = vibration
             && duration_s <= f64::from(burst.period_s - burst.on_s)
         {
@@ -164,6 +163,7 @@ impl LiveLayers {
             return Err(LiveError::TriggerBetweenBursts { layer: layer.to_owned(), period_ms, duration_ms });
         }
         self.triggered.retain(|(triggered, _)| *triggered != record);
+        let duration = Duration::try_from_secs_f64(duration_s).unwrap_or(Duration::MAX);
         let ends_at = now.saturating_add(duration);
         self.triggered.push((record, triggered_until.map_or(ends_at, |until| until.max(ends_at))));
         let setting = set(&mut self.settings, record, Some(true), None);
@@ -230,10 +230,10 @@ mod tests {
         let program = program(&layer("ping", ""));
         let mut layers = LiveLayers::new(&program);
         layers.change(&program, "ping", Some(false), None).expect("it is live");
-        layers.trigger(&program, "ping", ms(0), ms(300)).expect("it is off");
-        layers.trigger(&program, "ping", ms(50), ms(100)).expect("it is triggered");
+        layers.trigger(&program, "ping", ms(0), 0.3).expect("it is off");
+        layers.trigger(&program, "ping", ms(50), 0.1).expect("it is triggered");
         assert_eq!(layers.next_end(), Some(ms(300)));
-        layers.trigger(&program, "ping", ms(250), ms(100)).expect("it is triggered");
+        layers.trigger(&program, "ping", ms(250), 0.1).expect("it is triggered");
         assert_eq!(layers.next_end(), Some(ms(350)));
         assert_eq!(layers.end_trigger(ms(340)), None);
         let ended = layers.end_trigger(ms(350)).expect("it has ended");
@@ -245,11 +245,25 @@ mod tests {
         let program = program(&layer("ping", ""));
         let mut layers = LiveLayers::new(&program);
         layers.change(&program, "ping", Some(false), Some(0.0)).expect("it is in reach");
-        let refused = layers.trigger(&program, "ping", ms(0), ms(100)).expect_err("nothing would be felt");
+        let refused = layers.trigger(&program, "ping", ms(0), 0.1).expect_err("nothing would be felt");
         assert_eq!(
             refused.to_string(),
             "layer \"ping\" has a gain of 0, so that a trigger plays nothing: give it one first, by `layer \"ping\" gain 1`"
         );
+    }
+
+    /// Outlines cut the screen into many cells, each of which is searched.
+    #[test]
+    fn the_gain_of_a_texture_in_an_outline_is_judged() {
+        let circles = "[[layer]]\nname = \"wood\"\nkind = \"grating\"\nabove = \"natural\"\nwavelength_mm = 1.3\n\
+             low_n = 0.0\nhigh_n = 0.05\nlive = true\n\
+             region = { shape = \"ellipse\", x_mm = 5, y_mm = 10, width_mm = 30, height_mm = 30 }\n\
+             repeat = { columns = 3, dx_mm = 32 }\n";
+        let program = program(circles);
+        let mut layers = LiveLayers::new(&program);
+        layers.change(&program, "1.2", None, Some(2.0)).expect("it is in reach");
+        let refused = layers.change(&program, "1.2", None, Some(4.0)).expect_err("it is out of reach").to_string();
+        assert!(refused.starts_with("gain 4 is refused: layer 1.2 \"wood 2\" would ask for up to 0.2"), "{refused}");
     }
 
     /// A layer that is off is not clamped, but may be switched on.

@@ -1,4 +1,4 @@
-//! Lists of layers in messages.
+//! Titles of layers in messages: `layer 3 "name"`, or `layer 3.1 "name 1"` for a copy that `repeat` has made.
 
 /// Copies of one layer from which on a list names only the first.
 const FOLDED_MIN: usize = 3;
@@ -6,7 +6,7 @@ const FOLDED_MIN: usize = 3;
 /// The titles of layers as a sentence lists them. Of several copies of one layer that follow one another, only the
 /// first is named.
 pub(super) fn listed(titles: &[&str]) -> String {
-    let groups = titles.chunk_by(|one, other| table(one).is_some() && table(one) == table(other));
+    let groups = titles.chunk_by(|one, other| copied(one).is_some() && copied(one) == copied(other));
     let words = groups.map(|group| match group {
         [first, rest @ ..] if group.len() >= FOLDED_MIN => format!("{first} with {} more copies", rest.len()),
         titles => titles.join(" and "),
@@ -14,10 +14,28 @@ pub(super) fn listed(titles: &[&str]) -> String {
     words.collect::<Vec<String>>().join(" and ")
 }
 
-/// The number of the layer that a copy was made from; `None` for the title of a layer that is no copy.
-fn table(title: &str) -> Option<&str> {
+/// The number of the table in the file that a copy was made from; `None` for the title of a layer that is no copy.
+fn copied(title: &str) -> Option<usize> {
+    number(title).filter(|(_, is_copy)| *is_copy).map(|(table, _)| table)
+}
+
+/// The number of a layer's table in the file; copies of a layer have the same. `None` for a text that is no title.
+///
+/// ```
+/// # use frixel_scene::table_number;
+/// assert_eq!(table_number("layer 3 \"wood\""), Some(3));
+/// assert_eq!(table_number("layer 3.1 \"wood 1\""), Some(3));
+/// assert_eq!(table_number("the bare screen"), None);
+/// ```
+pub fn table_number(title: &str) -> Option<usize> {
+    number(title).map(|(table, _)| table)
+}
+
+/// The number of a layer's table in the file, and whether the layer is a copy.
+fn number(title: &str) -> Option<(usize, bool)> {
     let number = title.strip_prefix("layer ")?.split(' ').next()?;
-    number.split_once('.').map(|(table, _)| table)
+    let (table, is_copy) = number.split_once('.').map_or((number, false), |(table, _)| (table, true));
+    Some((table.parse().ok()?, is_copy))
 }
 
 #[cfg(test)]

@@ -1,18 +1,16 @@
 //! What `frixel scene check` says of a scene.
 
-use frixel_control::Board;
 use frixel_driver::{Device, DeviceError, PollingLink};
 use frixel_hil_sim::{BoardMemory, RigConfig};
 use frixel_layers::Scene as WireScene;
 use frixel_scene::check::{BoardCosts, SceneCheck};
 use frixel_scene::{Program, Scene};
-use frixel_wire::hello::BoardLimits;
 use serde_json::{Value, json};
 
 use crate::answer::{Problem, problems, refusals};
 use crate::host::{self, HostError};
 use crate::layers::layers;
-use crate::program::drafted;
+use crate::program::{drafted, for_drafts};
 use crate::request::Request;
 use crate::rig_stream::RigStream;
 
@@ -30,7 +28,7 @@ pub fn check(request: &Request) -> Value {
 fn checked(request: &Request) -> Result<Value, HostError> {
     // The simulated board has the limits of the smallest board.
     let config = RigConfig::default();
-    let (scene, program) = drafted(request, &config.board)?;
+    let (scene, program) = drafted(request)?;
     let mut problems = refusals(&program, &request.entry);
     let costs = match board_costs(&program, &RigConfig { board: for_drafts(config.board), ..config }) {
         // Not even the simulator plays it.
@@ -56,11 +54,6 @@ fn checked(request: &Request) -> Result<Value, HostError> {
 
 fn screen(scene: &Scene) -> Value {
     json!({ "widthMm": scene.screen().width_mm, "heightMm": scene.screen().height_mm })
-}
-
-/// A simulated board that plays drafts: a tick may take longer than a board has time for.
-pub(crate) fn for_drafts(board: Board) -> Board {
-    Board { limits: BoardLimits { tick_cycles_max: u32::MAX, ..board.limits }, ..board }
 }
 
 /// What a simulated board needs for a program: uploads it once, without playing it.

@@ -102,31 +102,35 @@ pub extern "C" fn simulator_start(seed: u32) -> i32 {
 /// Compiles a scene and plays it on the simulator.
 #[unsafe(no_mangle)]
 pub extern "C" fn simulator_play() -> i32 {
-    with_simulator(|simulator| simulator.play(&request()?))
+    with_simulator(|simulator| {
+        simulator.play(&request()?)?;
+        Ok(json!({}))
+    })
 }
 
 /// Stops the simulator.
 #[unsafe(no_mangle)]
 pub extern "C" fn simulator_stop() -> i32 {
-    with_simulator(|simulator| Ok(simulator.stop()?))
+    with_simulator(|simulator| {
+        simulator.stop()?;
+        Ok(json!({}))
+    })
 }
 
 /// Plays the simulator's scene again after a stop.
 #[unsafe(no_mangle)]
 pub extern "C" fn simulator_resume() -> i32 {
-    with_simulator(|simulator| Ok(simulator.resume()?))
+    with_simulator(|simulator| {
+        simulator.resume()?;
+        Ok(json!({}))
+    })
 }
 
 /// Carries out a control line, which is the input as text, on the simulator. The answer has `notice`: a sentence on what
 /// is clamped from now on, or `null`.
 #[unsafe(no_mangle)]
 pub extern "C" fn simulator_control() -> i32 {
-    respond(|| {
-        SIMULATOR.with_borrow_mut(|simulator| {
-            let simulator = simulator.as_mut().ok_or(HostError::NoBoard)?;
-            Ok(json!({ "notice": simulator.host_mut().control(&line())? }))
-        })
-    })
+    with_simulator(|simulator| Ok(json!({ "notice": simulator.host_mut().control(&line())? })))
 }
 
 /// Ticks of the simulator since power-on; 0 without one.
@@ -308,11 +312,8 @@ fn line() -> String {
     INPUT.with_borrow(|input| String::from_utf8_lossy(input).into_owned())
 }
 
-fn with_simulator(act: impl FnOnce(&mut Simulator) -> Result<(), HostError>) -> i32 {
-    respond(|| {
-        SIMULATOR.with_borrow_mut(|simulator| act(simulator.as_mut().ok_or(HostError::NoBoard)?))?;
-        Ok(json!({}))
-    })
+fn with_simulator(act: impl FnOnce(&mut Simulator) -> Result<Value, HostError>) -> i32 {
+    respond(|| SIMULATOR.with_borrow_mut(|simulator| act(simulator.as_mut().ok_or(HostError::NoBoard)?)))
 }
 
 fn with_host(act: impl FnOnce(&mut Host<LinkStream>) -> Result<Value, HostError>) -> i32 {

@@ -247,10 +247,7 @@ impl<S: ByteStream + SceneListener> Host<S> {
         let Playing { program, layers } = self.playing.as_mut().ok_or(HostError::NothingPlays)?;
         let change = match words {
             ControlLine::Layer { layer, on, gain } => layers.change(program, &layer, on, gain)?,
-            ControlLine::Trigger { layer, duration_s } => {
-                let duration = Duration::try_from_secs_f64(duration_s).unwrap_or(Duration::MAX);
-                layers.trigger(program, &layer, now, duration)?
-            }
+            ControlLine::Trigger { layer, duration_s } => layers.trigger(program, &layer, now, duration_s)?,
             _ => return Err(HostError::NotInPage { line: line.to_owned() }),
         };
         self.set_layer(&change)?;

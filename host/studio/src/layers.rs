@@ -3,7 +3,7 @@
 use frixel_layers::range;
 use frixel_scene::check::feel;
 use frixel_scene::perception::Perception;
-use frixel_scene::{LayerTable, Program, Scene};
+use frixel_scene::{LayerTable, Program, Scene, table_number};
 use serde::Serialize;
 
 /// A layer as it is written in a file. With `repeat`, it is several layers of the scene.
@@ -63,9 +63,6 @@ pub(crate) fn layers(scene: &Scene, entry: &str, program: &Program, perception: 
 
 /// The sentence on the layer with this number.
 fn felt(number: usize, perception: &Perception) -> String {
-    let title = format!("layer {number}");
-    let is_it =
-        |other: &str| other.strip_prefix(&title).is_some_and(|rest| rest.is_empty() || rest.starts_with([' ', '.']));
-    let layer = perception.layers.iter().find(|layer| is_it(&layer.layer));
+    let layer = perception.layers.iter().find(|layer| table_number(&layer.layer) == Some(number));
     layer.map_or(String::new(), feel::sentence)
 }

@@ -1,6 +1,5 @@
 //! The friction map of a scene.
 
-use frixel_hil_sim::RigConfig;
 use frixel_scene::{FrictionMap, Preview, ReachSide};
 
 use crate::host::HostError;
@@ -11,7 +10,7 @@ use crate::request::{Numbers, Request};
 /// reached in N, then the target friction of every pixel in N, row after row from the top left, then 0 for each pixel
 /// that is within reach, 1 for one above and -1 for one below.
 pub(crate) fn map(request: &Request) -> Result<Vec<u8>, HostError> {
-    let (_, program) = drafted(request, &RigConfig::default().board)?;
+    let (_, program) = drafted(request)?;
     let Numbers { width_px, height_px, speed_mm_per_s, .. } = request.numbers;
     let preview = Preview { speed_m_per_s: 1e-3 * speed_mm_per_s, map_max: (width_px.max(1), height_px.max(1)) };
     let map = FrictionMap::new(&program, &preview);

@@ -26,10 +26,15 @@ pub(crate) fn compiled(request: &Request, limits: &BoardLimits, tick_hz: u32) ->
 
 /// Compiles the scene of a request for maps and for the simulator in the page, which also show and play what a board
 /// refuses. Returns the scene as well.
-pub(crate) fn drafted(request: &Request, board: &Board) -> Result<(Scene, Program), ProgramError> {
+pub(crate) fn drafted(request: &Request) -> Result<(Scene, Program), ProgramError> {
     let scene = scene(request)?;
-    let program = compile_draft(&scene, &board.limits, board.tick_hz)?;
+    let program = compile_draft(&scene, &Board::SIMULATOR.limits, Board::SIMULATOR.tick_hz)?;
     Ok((scene, program))
+}
+
+/// A simulated board that plays drafts: a tick may take longer than a board has time for.
+pub(crate) fn for_drafts(board: Board) -> Board {
+    Board { limits: BoardLimits { tick_cycles_max: u32::MAX, ..board.limits }, ..board }
 }
 
 /// The scene of a request, with its finger and its screen.

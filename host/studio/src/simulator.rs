@@ -6,11 +6,10 @@ use frixel_driver::DeviceError;
 use frixel_hil_sim::{BoardMemory, RigConfig};
 use frixel_wire::fault::{Fault, State};
 
-use crate::check::for_drafts;
 use crate::felt::{FeltSamples, TICKS_PER_SAMPLE};
 use crate::host::{Host, HostError};
 use crate::pointer::{Pointer, PointerSample};
-use crate::program::drafted;
+use crate::program::{drafted, for_drafts};
 use crate::request::Request;
 use crate::rig_stream::RigStream;
 
@@ -59,7 +58,7 @@ impl Simulator {
     /// Compiles a scene and plays it, as a draft if a board would refuse it. If it cannot be read, the one before plays
     /// on.
     pub(crate) fn play(&mut self, request: &Request) -> Result<(), HostError> {
-        let (_, program) = drafted(request, &RigConfig::default().board)?;
+        let (_, program) = drafted(request)?;
         self.host.replace(program)?;
         self.resume()?;
         Ok(())
@@ -197,7 +196,7 @@ mod tests {
         let text = format!("version = 2\n{}", layer.repeat(12));
         let files = [("a.toml".to_owned(), text.into_bytes())].into();
         let request = Request { files, ..request() };
-        let (_, program) = drafted(&request, &RigConfig::default().board).unwrap();
+        let (_, program) = drafted(&request).unwrap();
         let reasons: Vec<String> = program.refusals.iter().map(ToString::to_string).collect();
         assert!(reasons.iter().any(|reason| reason.contains("cycles")), "{reasons:#?}");
         assert!(reasons.iter().any(|reason| !reason.contains("cycles")), "{reasons:#?}");

@@ -41,7 +41,11 @@ async function pressArm() {
 
 test("a board with an electrode waits for a press, and foreign scenes disarm it", async () => {
   assert.match(await page.textContent("#arm"), /drive NUCLEO-G474RE with an electrode, up to 220 V peak/);
-  await page.evaluate((text) => (studioPage.editor.text = text), CONSTANT.replace("0.11", "0.1"));
+  const canArm = await page.evaluate((text) => {
+    studioPage.editor.text = text;
+    return !document.getElementById("arm").disabled;
+  }, CONSTANT.replace("0.11", "0.1"));
+  assert.ok(!canArm, "what is armed is the scene that is shown");
   await new Promise((resolve) => setTimeout(resolve, 500));
   assert.ok(board.events.every((event) => stateOf.disarmed(event.board)), "nothing arms it but the press");
 

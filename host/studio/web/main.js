@@ -118,6 +118,7 @@ async function start() {
     if (!compare.isRunning) map.show(picture, check);
   };
   player.onFailure = notify;
+  player.onPending = (isPending) => (board.isScenePending = isPending);
 
   engine.onFrames = (frame) => {
     samples.add(frame);

@@ -3,7 +3,7 @@
 use core::fmt;
 
 use super::{CHUNK_LEN, CHUNK_NUMBER_MAX, PAYLOAD_MAX_LEN, SAMPLES_MAX};
-use crate::frame::PayloadTooLong;
+use crate::frame::PayloadLength;
 use crate::hello::HelloError;
 
 /// Why a payload cannot be read.
@@ -88,8 +88,8 @@ impl fmt::Display for WriteError {
 
 impl core::error::Error for WriteError {}
 
-impl From<PayloadTooLong> for WriteError {
-    fn from(_: PayloadTooLong) -> Self {
+impl From<PayloadLength> for WriteError {
+    fn from(_: PayloadLength) -> Self {
         Self::TooLong
     }
 }

@@ -27,7 +27,7 @@ const TURN_MIN: f64 = 0.03;
 /// Opacity of an envelope.
 const OPACITY: f64 = 0.4;
 
-/// What an envelope is, for the caption.
+/// The sentence of the caption that explains an envelope.
 const ENVELOPE: &str = "Blocks are envelopes: the signal changes too fast to draw as a line there, and a block reaches \
                         from its smallest to its largest value.";
 

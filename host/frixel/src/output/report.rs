@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use frixel_driver::{Counters, StreamStatus};
 use frixel_scene::metrics::{ErrorSize, MetricsSummary};
-use frixel_scene::{Origin, Reach};
+use frixel_scene::{Origin, Reach, table_number};
 
 /// The results of a run; the field names are the keys of `--json`. Unknown values are `null` there.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -272,9 +272,7 @@ impl Report {
 /// The titles of layers, a comma between two. Of the copies of a layer, the first one is named, and the others are
 /// counted.
 fn without_copies(titles: &[String]) -> String {
-    // A title is `layer 3 "name"`, or `layer 3.1 "name 1"` for a copy.
-    let number = |title: &str| title.split([' ', '.']).nth(1).map(str::to_owned);
-    let groups = titles.chunk_by(|one, other| number(one) == number(other));
+    let groups = titles.chunk_by(|one, other| table_number(one) == table_number(other));
     let name = |group: &[String]| match group {
         [] => String::new(),
         [one] => one.clone(),

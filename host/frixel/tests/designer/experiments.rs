@@ -209,7 +209,7 @@ fn a_threshold_is_asked_for_at_a_port() {
         .unwrap();
     assert!(notes.contains("the answers ended at trial 3"), "{notes}");
     assert!(said.contains("trial 2 of 12: 1 >>>>>>>> 2 <<<<<<<<  1 or 2?"), "{said}");
-    // What the board drove in each try: one of the two strokes of each trial.
+    // In each try the board drives in one of the two strokes of each trial.
     let rows = fs::read_to_string(folder.path().join("board/felt.csv")).unwrap();
     let driven =
         rows.lines().skip(1).filter(|row| row.split(',').nth(7).unwrap().parse::<f64>().unwrap() > 1.0).count();

@@ -411,6 +411,24 @@ pub(super) const SCENES: &[Case] = &[
         ..CASE
     },
     Case {
+        what: "a comma in a number",
+        scene: "[[layer]]\n\
+             kind = \"constant\"\n\
+             friction_n = 0,3\n",
+        says: "s.toml:4:15: this is not TOML: unexpected key or value, expected newline, `#`; a decimal has a point, not \
+             a comma",
+        ..CASE
+    },
+    Case {
+        what: "commas after fields",
+        scene: "[[layer]]\n\
+             kind = \"constant\",\n\
+             friction_n = 0.3,\n",
+        says: "s.toml:3:18: this is not TOML: unexpected key or value, expected newline, `#`; leave the comma out: each \
+             field has a line of its own",
+        ..CASE
+    },
+    Case {
         what: "saturate at the top",
         scene: "saturate = true\n\
              [[layer]]\n\

@@ -4,12 +4,13 @@ use crate::perception::{
     AlikeLayers, BorderStep, BurstTimes, LayerPerception, NEAR_THRESHOLD, Perception, Step, Texture,
     VOLTAGE_DIFFERENCE_DB, Verdict, weber_steps_text,
 };
+use crate::titles::table_number;
 
-/// What a sentence is about, for a person.
+/// The subject of a sentence: a layer, or the border of two.
 struct Subject {
     text: String,
-    /// Numbers of its layers in the file. Copies of a layer have the same.
-    layers: Vec<String>,
+    /// The numbers of its layers in the file; `None` for the bare screen. Copies of a layer have the same number.
+    layers: Vec<Option<usize>>,
 }
 
 /// Lines of a name and a text: one for all layers that feel the same, one for all borders with the same step, and one
@@ -31,9 +32,7 @@ pub fn lines(perception: &Perception) -> Vec<(&'static str, String)> {
 
 impl Subject {
     fn new<'t>(text: String, titles: impl IntoIterator<Item = &'t String>) -> Self {
-        // A title is `layer 3 "name"`, or `layer 3.1 "name 1"` for a copy.
-        let number = |title: &String| title.split([' ', '.']).nth(1).unwrap_or_default().to_owned();
-        Self { text, layers: titles.into_iter().map(number).collect() }
+        Self { text, layers: titles.into_iter().map(|title| table_number(title)).collect() }
     }
 }
 

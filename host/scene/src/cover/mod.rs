@@ -52,8 +52,16 @@ struct Stack {
     outlined: bool,
 }
 
-/// All sets of layers that exceed `reach`, or may exceed it, somewhere on a screen of this size. At most `places_max`
-/// places are evaluated.
+/// A cell in which the reach may be exceeded.
+struct Suspect {
+    cell: Cell,
+    stack: Stack,
+    /// Places to evaluate across and down; `None` if the bound is reached.
+    grid: Option<(f64, f64)>,
+}
+
+/// All sets of layers that exceed `reach`, or may exceed it, somewhere on a screen of this size. At about `places_max`
+/// places at most are evaluated: a scene that has more is searched with coarser steps.
 pub(super) fn excesses(
     pieces: &[Piece],
     width_m: f64,
@@ -64,24 +72,29 @@ pub(super) fn excesses(
     let bounds: Vec<[f64; 4]> = pieces.iter().map(|piece| piece.shape.bounds_m()).collect();
     let columns = edges(width_m, bounds.iter().flat_map(|[left_m, _, right_m, _]| [*left_m, *right_m]));
     let rows = edges(height_m, bounds.iter().flat_map(|[_, top_m, _, bottom_m]| [*top_m, *bottom_m]));
-    let mut worst: BTreeMap<Vec<usize>, Excess> = BTreeMap::new();
-    let mut places_left = places_max;
+    let mut suspects = Vec::new();
     for row in rows.windows(2) {
         for column in columns.windows(2) {
             let cell = Cell { left_m: column[0], top_m: row[0], right_m: column[1], bottom_m: row[1] };
             let stack = Stack::of(pieces, cell);
-            if beyond(stack.bound, reach) <= 0.0 {
-                continue;
+            if beyond(stack.bound, reach) > 0.0 {
+                let grid = (stack.doubts > 1).then(|| grid(pieces, &stack, cell));
+                suspects.push(Suspect { cell, stack, grid });
             }
-            let found = if stack.doubts > 1 { search(pieces, &stack, cell, &mut places_left) } else { stack.bound };
-            let excess = Excess { layers: stack.layers.clone(), cell, found, bound: stack.bound };
-            let further = |other: &Excess| {
-                (beyond(found, reach), beyond(stack.bound, reach))
-                    > (beyond(other.found, reach), beyond(other.bound, reach))
-            };
-            if worst.get(&stack.layers).is_none_or(further) {
-                worst.insert(stack.layers, excess);
-            }
+        }
+    }
+    let places: f64 = suspects.iter().filter_map(|suspect| suspect.grid).map(|(across, down)| across * down).sum();
+    let coarseness = (places / places_max as f64).sqrt().max(1.0);
+    let mut worst: BTreeMap<Vec<usize>, Excess> = BTreeMap::new();
+    for Suspect { cell, stack, grid } in suspects {
+        let found = match grid {
+            Some((across, down)) => search(pieces, &stack, cell, [across / coarseness, down / coarseness]),
+            None => stack.bound,
+        };
+        let excess = Excess { layers: stack.layers, cell, found, bound: stack.bound };
+        let extent = |excess: &Excess| (beyond(excess.found, reach), beyond(excess.bound, reach));
+        if worst.get(&excess.layers).is_none_or(|other| extent(&excess) > extent(other)) {
+            worst.insert(excess.layers.clone(), excess);
         }
     }
     worst.into_values().collect()
@@ -125,17 +138,19 @@ impl Stack {
     }
 }
 
-/// Range of the friction at places of a cell; zero once the scene's limit of places is used up.
-fn search(pieces: &[Piece], stack: &Stack, cell: Cell, places_left: &mut usize) -> Interval<f64> {
-    let layers: Vec<&Piece> = stack.layers.iter().filter_map(|layer| pieces.get(*layer)).collect();
-    let detail_m = layers.iter().filter_map(|piece| piece.field.detail_m()).fold(f64::INFINITY, f64::min);
+/// Places to evaluate across and down a cell, so that no detail of its layers is missed.
+fn grid(pieces: &[Piece], stack: &Stack, cell: Cell) -> (f64, f64) {
+    let layers = stack.layers.iter().filter_map(|layer| pieces.get(*layer));
+    let detail_m = layers.filter_map(|piece| piece.field.detail_m()).fold(f64::INFINITY, f64::min);
     let least = if stack.outlined { PLACES_PER_OUTLINE } else { 8.0 };
-    let places = |length_m: f64| (length_m / detail_m).ceil().clamp(least, PLACES_PER_SIDE_MAX) as usize;
-    let (across, down) = (places(cell.right_m - cell.left_m), places(cell.bottom_m - cell.top_m));
-    *places_left = places_left.saturating_sub(across * down);
-    if *places_left == 0 {
-        return ZERO;
-    }
+    let places = |length_m: f64| (length_m / detail_m).ceil().clamp(least, PLACES_PER_SIDE_MAX);
+    (places(cell.right_m - cell.left_m), places(cell.bottom_m - cell.top_m))
+}
+
+/// Range of the friction at so many places across and down a cell.
+fn search(pieces: &[Piece], stack: &Stack, cell: Cell, grid: [f64; 2]) -> Interval<f64> {
+    let layers: Vec<&Piece> = stack.layers.iter().filter_map(|layer| pieces.get(*layer)).collect();
+    let [across, down] = grid.map(|places| places.round().max(1.0) as usize);
     let at = |start: f64, end: f64, place: usize, places: usize| {
         start + (end - start) * (place as f64 + 0.5) / places as f64
     };

@@ -112,14 +112,18 @@ pub(super) fn report(
     misplaced
 }
 
-/// What was probably meant where a text is not TOML, to be put behind the parser's words; empty if nothing is known.
+/// Advice that follows the parser's message on a text that is not TOML; empty for an unknown mistake.
 pub(super) fn syntax_hint(text: &str, offset: usize) -> String {
     let line_start = text.get(..offset).and_then(|before| before.rfind('\n')).map_or(0, |newline| newline + 1);
     let line = text.get(line_start..).and_then(|rest| rest.lines().next()).unwrap_or_default().trim();
     let has_single = || text.lines().any(|line| line.trim_start().starts_with("[layer]"));
     let value = line.split_once('=').map_or("", |(_, value)| value.trim());
-    if text.get(offset..).is_some_and(|rest| rest.starts_with(',')) {
-        "; a decimal has a point, not a comma".to_owned()
+    if let Some(after) = text.get(offset..).and_then(|rest| rest.strip_prefix(',')) {
+        if after.starts_with(|next: char| next.is_ascii_digit()) {
+            "; a decimal has a point, not a comma".to_owned()
+        } else {
+            "; leave the comma out: each field has a line of its own".to_owned()
+        }
     } else if (line.starts_with("[layer]") || line.starts_with("[[layer]]")) && has_single() {
         "; write `[[layer]]`, in double brackets, before the fields of each layer".to_owned()
     } else if value.starts_with(CURLY_QUOTES) {

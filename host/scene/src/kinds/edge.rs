@@ -100,7 +100,7 @@ impl Edge {
         let distances = corners
             .map(|(x_mm, y_mm)| (x_mm - self.x_mm) * libm::cos(angle_rad) + (y_mm - self.y_mm) * libm::sin(angle_rad));
         let Interval { low, high } = Interval::of(distances);
-        // What rounding adds is no distance.
+        // Rounding errors may look like a distance.
         (low.max(-high) - 1e-6).max(0.0)
     }
 }

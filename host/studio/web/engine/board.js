@@ -11,8 +11,6 @@ const DELAY_MS = 40;
 const STEP_MS = 8;
 /** A worker that was held up longer than this, ms, skips the time in place of running after it. */
 const LAG_MAX_MS = 100;
-/** The page sends a sign of life from each animation frame. The host lives this long after one, ms. */
-const LIFE_MS = 25;
 /** Without a sign of life the board is stepped on for this long, ms, so that its host timeout acts; then it rests. */
 const REST_AFTER_MS = 2000;
 /** Samples of a stroke that a replay can have. */

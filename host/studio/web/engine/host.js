@@ -5,8 +5,6 @@
 // breaks off the call under way and those in the queue. README.md says how a board is disarmed.
 "use strict";
 
-/** The page sends a sign of life from each animation frame. The host sends bytes for this long after one, ms. */
-const LIFE_MS = 25;
 /** Time in which one call keeps the board alive, ms. */
 const WAIT_MS = 10;
 /**

@@ -1,6 +1,9 @@
-// The WebAssembly module with values in place of buffers. A classic script, which the script of each worker follows in
-// the worker's source: from a file, a browser starts no worker that imports modules.
+// What the workers share, above all the WebAssembly module with values in place of buffers. A classic script, which the
+// script of each worker follows in the worker's source: from a file, a browser starts no worker that imports modules.
 "use strict";
+
+/** The page sends a sign of life from each animation frame. The host lives this long after one, ms. */
+const LIFE_MS = 25;
 
 /**
  * A request was refused; `problems` has the places in the scene's text, if there are any. With `isLinkLost`, the board

@@ -9,6 +9,7 @@ export class Board {
   #engine;
   #dialog = byId("board-dialog");
   #link = "simulator";
+  #isScenePending = false;
   /** The bridge of `frixel studio`, or null; read at the start, since a shared scene takes its place in the address. */
   #bridge = bridgeUrl();
   /** Another board is connected: the scene is played there. */
@@ -32,6 +33,18 @@ export class Board {
 
   get isSimulator() {
     return this.#link === "simulator";
+  }
+
+  /** Whether a scene is on its way to the board: until it is there, nothing can be armed. */
+  set isScenePending(isPending) {
+    this.#isScenePending = isPending;
+    this.#allowArm();
+  }
+
+  #allowArm() {
+    const arm = byId("arm");
+    arm.disabled = this.#isScenePending && !arm.dataset.clears;
+    arm.title = arm.disabled ? "The scene is on its way to the board." : "";
   }
 
   /** Takes the drive off a real board before something that nobody here wrote is played. */
@@ -59,6 +72,7 @@ export class Board {
     arm.textContent = isFaulted ? "Clear the fault" : `Arm: drive ${driving}`;
     if (isFaulted) arm.dataset.clears = "true";
     else delete arm.dataset.clears;
+    this.#allowArm();
     const stop = byId("stop");
     stop.hidden = link === "none";
     const isStopped = state === "disarmed";

@@ -11,6 +11,7 @@ export class Player {
   #timer;
   #isBusy = false;
   #next;
+  #isPending = false;
 
   /** The check has an answer: `onCheck(check, text)`. */
   onCheck = () => {};
@@ -20,6 +21,8 @@ export class Player {
   onPlay = () => {};
   /** The board refused, or something failed: `onFailure(sentence)`. */
   onFailure = () => {};
+  /** Whether a text has come that neither plays yet nor was refused: `onPending(isPending)`. */
+  onPending = () => {};
 
   constructor(engine, project) {
     this.#engine = engine;
@@ -28,13 +31,16 @@ export class Player {
 
   /** Plays this text once nothing has changed for a moment. */
   later(text) {
+    this.#setPending(true);
     clearTimeout(this.#timer);
     this.#timer = setTimeout(() => this.now(text), PAUSE_MS);
   }
 
   /** Plays this text; of texts that come meanwhile, the newest is played after it. */
   async now(text) {
+    this.#setPending(true);
     clearTimeout(this.#timer);
+    this.#timer = undefined;
     this.#next = text;
     if (this.#isBusy) return;
     this.#isBusy = true;
@@ -46,8 +52,20 @@ export class Player {
       } catch (error) {
         this.onFailure(error.message);
       }
+      this.#settle();
     }
     this.#isBusy = false;
+  }
+
+  /** The text of before plays, or was refused. */
+  #settle() {
+    if (this.#next === undefined && this.#timer === undefined) this.#setPending(false);
+  }
+
+  #setPending(isPending) {
+    if (isPending === this.#isPending) return;
+    this.#isPending = isPending;
+    this.onPending(isPending);
   }
 
   async #play(text) {
@@ -60,6 +78,7 @@ export class Player {
       throw new Error(check.isDraft ? `The board does not play this draft:\n${message}` : message);
     });
     this.onPlay(text);
+    this.#settle();
     if (this.#next !== undefined) return;
     const { widthMm, heightMm } = check.screen;
     const size = { widthPx: MAP_WIDTH, heightPx: Math.max(8, Math.round((MAP_WIDTH * heightMm) / widthMm)) };

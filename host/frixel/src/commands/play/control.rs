@@ -100,8 +100,7 @@ impl Control {
                     self.carry_out(player, change)?;
                 }
                 Ok(Some(ControlLine::Trigger { layer, duration_s })) => {
-                    let duration = Duration::try_from_secs_f64(duration_s).unwrap_or(Duration::MAX);
-                    let change = self.layers.trigger(program, &layer, now, duration);
+                    let change = self.layers.trigger(program, &layer, now, duration_s);
                     self.carry_out(player, change)?;
                 }
                 Err(error) => self.say(error),
@@ -121,7 +120,7 @@ impl Control {
         self.lines.try_recv().ok()
     }
 
-    /// Sends a change to the board, or says why there is none.
+    /// Sends a change to the board, or prints why it is refused.
     fn carry_out<L: RecordedLink>(
         &mut self,
         player: &mut Player<L>,

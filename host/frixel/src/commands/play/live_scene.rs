@@ -99,7 +99,8 @@ fn watched(paths: &[PathBuf]) -> Vec<SavedFile> {
     paths.iter().map(|path| SavedFile::new(path)).collect()
 }
 
-/// Plays a compiled scene, and says so: its file, and `how` it plays. If it has errors or the board rejects it, prints why, and keeps the earlier scene playing.
+/// Plays a compiled scene, and prints its file and `how` it plays. If it has errors or the board rejects it, prints why,
+/// and keeps the earlier scene playing.
 fn replace<L: RecordedLink>(
     path: &Path,
     how: &str,
