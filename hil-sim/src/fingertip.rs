@@ -48,12 +48,12 @@ pub(crate) struct Friction {
     pub(crate) slip: SlipStep,
 }
 
-/// The friction under the present load less that under the load of the profile.
+/// The friction under the present load less that under the load of the scene's finger.
 #[derive(Clone, Copy, Debug, Default)]
 struct LoadMismatch {
-    /// Natural friction in steady sliding, without noise, less that under the load of the profile, in N.
+    /// Natural friction in steady sliding, without noise, less that under the load of the scene's finger, in N.
     natural_n: f64,
-    /// Part of the electric friction that comes from a load other than the profile's.
+    /// Part of the electric friction that comes from a load other than that of the scene's finger.
     electric_share: f64,
 }
 
@@ -65,8 +65,8 @@ pub(crate) struct Fingertip {
     profile: LoadedContact<f64>,
     /// The load of the profile, in N.
     profile_load_n: f64,
-    /// The load that the scene is meant for, in N.
-    meant_load_n: f64,
+    /// The load of the finger that the scene is compiled for, in N.
+    scene_load_n: f64,
     /// The contact under the load of this tick.
     contact: LoadedContact<f64>,
     /// The load of this tick, in N.
@@ -96,7 +96,7 @@ impl Fingertip {
             config,
             profile: contact,
             profile_load_n: load_n(&contact),
-            meant_load_n: load_n(&contact),
+            scene_load_n: load_n(&contact),
             contact,
             load_n: load_n(&contact),
             coefficient_gain: 1.0,
@@ -121,9 +121,9 @@ impl Fingertip {
         (self.coefficient_gain, self.electric_gain) = (1.0, 1.0);
     }
 
-    /// Sets the load that the scene is meant for.
-    pub(crate) fn set_meant_load(&mut self, contact: &LoadedContact<f64>) {
-        self.meant_load_n = load_n(contact);
+    /// Sets the load of the finger that the scene is compiled for.
+    pub(crate) fn set_scene_load(&mut self, contact: &LoadedContact<f64>) {
+        self.scene_load_n = load_n(contact);
     }
 
     /// Returns the friction at the end of a tick, in which the finger slid to `finger` over an electrode with the
@@ -198,18 +198,18 @@ impl Fingertip {
         }
     }
 
-    /// How the present load changes the friction; `None` if it is the load of the profile.
+    /// How the present load changes the friction; `None` if it is the load of the scene's finger.
     fn load_mismatch(&self, compared_v_rms: f64) -> Option<LoadMismatch> {
-        if (self.load_n - self.meant_load_n).abs() <= f64::EPSILON * self.meant_load_n {
+        if (self.load_n - self.scene_load_n).abs() <= f64::EPSILON * self.scene_load_n {
             return None;
         }
-        let meant = self.profile.contact().under_load(self.meant_load_n).ok()?;
-        let meant_gain = self.coefficient_gain_at(self.meant_load_n);
+        let in_scene = self.profile.contact().under_load(self.scene_load_n).ok()?;
+        let scene_gain = self.coefficient_gain_at(self.scene_load_n);
         let natural_n = self.coefficient_gain * self.contact.natural_friction_n();
         let electric_n = self.coefficient_gain * self.contact.electric_friction_n(compared_v_rms);
         Some(LoadMismatch {
-            natural_n: natural_n - meant_gain * meant.natural_friction_n(),
-            electric_share: 1.0 - meant_gain * meant.electric_friction_n(compared_v_rms) / electric_n,
+            natural_n: natural_n - scene_gain * in_scene.natural_friction_n(),
+            electric_share: 1.0 - scene_gain * in_scene.electric_friction_n(compared_v_rms) / electric_n,
         })
     }
 }

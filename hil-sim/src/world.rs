@@ -171,7 +171,7 @@ impl World {
     /// Replaces the finger from now on by the contact of a profile under its load.
     pub fn set_finger(&mut self, contact: LoadedContact<f64>) {
         self.fingertip.set_contact(contact);
-        self.fingertip.set_meant_load(&contact);
+        self.fingertip.set_scene_load(&contact);
     }
 
     /// Replaces the finger from now on by one of its own, whatever profile a scene is meant for. The board does not
@@ -183,7 +183,7 @@ impl World {
 
     /// Replaces the finger by that of the scene's profile, unless this world has a finger of its own.
     pub(crate) fn set_scenes_finger(&mut self, contact: LoadedContact<f64>) {
-        self.fingertip.set_meant_load(&contact);
+        self.fingertip.set_scene_load(&contact);
         if !self.owns_finger {
             self.fingertip.set_contact(contact);
         }

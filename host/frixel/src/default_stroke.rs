@@ -69,7 +69,7 @@ struct Middles {
 impl Middles {
     fn new(program: &Program) -> Self {
         let layers = TouchedLayers::new(program);
-        let missed = (0..layers.layers()).map(|layer| layers.middle(layer)).collect();
+        let missed = (0..layers.layer_count()).map(|layer| layers.middle(layer)).collect();
         Self { layers, missed }
     }
 
@@ -164,7 +164,7 @@ mod tests {
                 x.abs().max(y.abs()) <= 0.2 && layers.is_touched_at(*layer, finger.x_m, finger.y_m)
             })
         };
-        let titles = (0..layers.layers()).filter(is_missed).map(|layer| layers.title(layer).to_owned()).collect();
+        let titles = (0..layers.layer_count()).filter(is_missed).map(|layer| layers.title(layer).to_owned()).collect();
         (titles, stroke.duration_s())
     }
 }

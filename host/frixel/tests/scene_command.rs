@@ -76,6 +76,23 @@ impl Files {
     }
 }
 
+/// A scene that asks for the whole reach is printed with no more than the reach.
+#[test]
+fn targets_in_reach_are_printed_in_reach() {
+    let files = Files::new();
+    for voltage_v_rms in [90, 100, 110, 120, 130, 140, 150] {
+        let text = format!(
+            "version = 2\n[drive]\nvoltage_max_v_rms = {voltage_v_rms}\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 1\n"
+        );
+        let summary = said(&["scene", "check", &files.write("whole.toml", &text)]);
+        let most = |name: &str| -> f64 {
+            let line = summary.lines().find(|line| line.trim_start().starts_with(name)).unwrap();
+            line.split(" N in total").next().unwrap().split(' ').next_back().unwrap().parse().unwrap()
+        };
+        assert!(most("targets") <= most("reachable"), "{summary}");
+    }
+}
+
 #[test]
 fn mistakes_are_json_where_that_is_asked_for() {
     let files = Files::new();

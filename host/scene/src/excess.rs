@@ -3,6 +3,7 @@
 use frixel_layers::{Blend, Interval, Record};
 
 use super::cover::{Cell, PLACES_MAX, excesses};
+use super::digits::{digits, down, up};
 use super::file::Scene;
 use super::kinds::{Clicked, Kind};
 use super::layer::{Above, Layer};
@@ -13,8 +14,8 @@ use super::reach::{ROUNDING, Reach};
 use super::titles::listed;
 use crate::reference::Reference;
 
-/// A friction so many times the reach may have been meant in another unit.
-const MUCH: f64 = 20.0;
+/// From this multiple of the reach on, another unit was probably meant.
+const UNIT_MISTAKE_FACTOR: f64 = 20.0;
 
 /// The limits of [drive] that have to be raised for an electric friction in newtons, and to which value; empty if that
 /// is not possible.
@@ -118,7 +119,9 @@ impl Demand<'_> {
                 reach_n: digits(reach_n, f64::floor),
                 lower: if is_sum { "one of them" } else { "it" },
                 raise: if has_fraction { Vec::new() } else { (self.raise)(asked.high) },
-                may_be_millinewtons: !has_fraction && asked_n > MUCH * reach_n && 1e-3 * asked_n <= reach_n,
+                may_be_millinewtons: !has_fraction
+                    && asked_n > UNIT_MISTAKE_FACTOR * reach_n
+                    && 1e-3 * asked_n <= reach_n,
             };
             sides.push(Side { offset: self.place(true), mistake });
         }
@@ -150,12 +153,11 @@ impl Demand<'_> {
     fn clicked(&self, log: &Log) -> Option<String> {
         let [Played { layer, record }] = &self.layers[..] else { return None };
         let gain = f64::from(record.gain);
-        let click_n = gain * f64::from(record.layer.click()?.height_n);
+        let click_n = Some(gain * f64::from(record.layer.click()?.height_n)).filter(|click_n| *click_n > 0.0)?;
         let Clicked { bases, click } = layer.kind.clicked(&layer.places, &record.layer)?;
         let written = |field: &str| format!("`{field} = {}`", log.source().word_at(layer.places.field(field)));
         let above = bases.iter().filter(|(_, friction_n)| gain * friction_n + click_n > self.within.high);
         let above: Vec<String> = above.map(|(field, _)| written(field)).collect();
-        (click_n > 0.0).then_some(())?;
         match &above[..] {
             [] => None,
             [only] => Some(format!("with its {only} and its {} together", written(click))),
@@ -215,25 +217,4 @@ fn note(side: &Side, ending: &str) -> String {
         }
         other => other.to_string(),
     }
-}
-
-/// Four significant digits, rounded by `to_whole`.
-pub(super) fn digits(value: f64, to_whole: fn(f64) -> f64) -> f64 {
-    if !(value.abs() > 0.0) {
-        return 0.0;
-    }
-    let digits = 3 - value.abs().log10().floor() as i32;
-    // A power of ten with a whole exponent of zero or more is exact, so the result prints with few digits.
-    let scale = 10f64.powi(digits.abs());
-    if digits >= 0 { to_whole(value * scale) / scale } else { to_whole(value / scale) * scale }
-}
-
-/// Rounds up to a whole number, but ignores what rounding to `f32` may have added to the fourth digit.
-pub(super) fn up(value: f64) -> f64 {
-    (value - 0.002).ceil()
-}
-
-/// Rounds down to a whole number, but ignores what rounding to `f32` may have taken from the fourth digit.
-pub(super) fn down(value: f64) -> f64 {
-    (value + 0.002).floor()
 }

@@ -28,7 +28,7 @@ pub(super) struct Fields<'i> {
     defaults: DeTable<'i>,
     /// The size of a pixel of the scene's design, if it has one.
     pixel_mm: Option<PixelSize>,
-    /// Valid names that defaults of other names were probably meant to have.
+    /// Valid names that misspelt defaults were probably meant to be.
     misspelt_defaults: Vec<String>,
     places: Places,
     known: Vec<KnownField>,
@@ -36,7 +36,7 @@ pub(super) struct Fields<'i> {
     either: Vec<[&'static str; 2]>,
     /// The fields of the table follow from a word that was misspelt.
     pub(super) is_guess: bool,
-    /// Tables inside this one in place of which another one is the default.
+    /// Fields of this table that are tables in `[defaults]`, too: each of them replaces its default as a whole.
     replaced_defaults: Vec<String>,
     /// Whether this table replaces one of `[defaults]`.
     replaces_default: bool,

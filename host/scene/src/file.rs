@@ -11,7 +11,6 @@ use super::files::Files;
 use super::finger::FingerProfile;
 use super::grammar::KnownTable;
 use super::include::{self, Gathered};
-use super::kinds::Kind;
 use super::layer::Layer;
 use super::log::Log;
 use super::mistake::FileMistake;
@@ -41,7 +40,8 @@ pub struct Scene {
     pub(super) source: Source,
     /// The mistakes of the layers that are absent.
     pub(super) mistakes: Vec<Located>,
-    /// Those of layers with mistakes included, since a layer may be valid on another screen.
+    /// The pictures that layers name. Those of layers with mistakes are included, since a layer may be valid on another
+    /// screen.
     pub(super) pictures: PictureBytes,
     pub(super) version: Version,
     /// Offset of the version, or of the file if it is absent.
@@ -204,14 +204,6 @@ impl Scene {
     /// The finger that the scene is compiled for.
     pub fn finger(&self) -> &FingerProfile {
         &self.profiles.finger
-    }
-
-    /// The names of the pictures of the scene's layers, as written in the file.
-    pub fn picture_names(&self) -> impl Iterator<Item = &str> {
-        self.layers.iter().filter_map(|layer| match &layer.kind {
-            Kind::Bitmap(bitmap) => Some(bitmap.picture.as_str()),
-            _ => None,
-        })
     }
 }
 

@@ -88,6 +88,10 @@ impl LayerMap {
     /// Number of the record, from zero, of the layer with the name `layer`, or with the number `layer` as messages have
     /// it: `3`, or `3.2` for a copy. If several layers have the same name, the lowest one counts.
     /// `Device::set_layer` of the driver takes the record's number.
+    ///
+    /// # Errors
+    ///
+    /// There is no such layer, it is a family of copies, or it cannot be changed while it plays.
     pub fn record(&self, layer: &str) -> Result<u8, LayerError> {
         let named = self.0.iter().find(|entry| entry.name.as_deref() == Some(layer));
         let numbered = || self.0.iter().find(|entry| entry.number.to_string() == layer);

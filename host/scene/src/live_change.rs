@@ -3,14 +3,14 @@
 use frixel_layers::{Interval, range};
 use thiserror::Error;
 
-use super::cover::{Excess, excesses};
-use super::excess::{digits, down, up};
+use super::cover::{Excess, beyond, excesses};
+use super::digits::{digits, down, up};
 use super::program::Program;
 use super::reference::{Piece, Reference};
 use super::titles::listed;
 
-/// Most places that are searched for an excess: a check takes a few milliseconds, so that the host goes on serving the
-/// board.
+/// Most places that are searched for an excess. A refused gain takes some forty searches, during which the host does not
+/// serve the board.
 const PLACES_MAX: usize = 4_000;
 /// Steps of the search for a gain that can be reached.
 const STEPS: u32 = 10;
@@ -43,7 +43,7 @@ fn side(asked_n: f64, reach_n: f64) -> String {
 impl Program {
     /// The layers whose friction the board clamps when they play with these settings, one for each record; `None` if the
     /// drive can give all friction that the search finds. A stream counts with every value that it may have.
-    pub fn clamped_with(&self, settings: &[LayerSetting]) -> Option<Clamped> {
+    pub(crate) fn clamped_with(&self, settings: &[LayerSetting]) -> Option<Clamped> {
         let within = self.within_reach();
         let excess = self.worst_with(&pieces(&Reference::new(self), settings))?;
         let titles: Vec<&str> =
@@ -59,7 +59,7 @@ impl Program {
 
     /// The least and the largest gain of a record with which the board clamps nothing, while all other settings stay as
     /// they are; `None` if it clamps with every gain. The search starts from the record's gain in `settings`.
-    pub fn gains_in_reach(&self, record: u8, settings: &[LayerSetting]) -> Option<(f32, f32)> {
+    pub(crate) fn gains_in_reach(&self, record: u8, settings: &[LayerSetting]) -> Option<(f32, f32)> {
         let mut pieces = pieces(&Reference::new(self), settings);
         let number = usize::from(record);
         let mut is_in_reach = |gain: f64| {
@@ -102,7 +102,7 @@ impl Program {
 
     fn worst_with(&self, pieces: &[Piece]) -> Option<Excess> {
         let within = self.within_reach();
-        let beyond = |excess: &Excess| (within.low - excess.found.low).max(excess.found.high - within.high);
+        let beyond = |excess: &Excess| beyond(excess.found, within);
         let (width_m, height_m) = (f64::from(self.header.screen_width_m), f64::from(self.header.screen_height_m));
         let found = excesses(pieces, width_m, height_m, within, PLACES_MAX).into_iter();
         found.filter(|excess| beyond(excess) > 0.0).max_by(|one, other| beyond(one).total_cmp(&beyond(other)))

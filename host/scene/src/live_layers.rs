@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use frixel_layers::{Layer, Vibration};
+use frixel_layers::{Blend, Layer, Vibration};
 use thiserror::Error;
 
 use super::layer_map::LayerError;
@@ -15,6 +15,9 @@ pub enum LiveError {
     /// There is no such layer, or it cannot be changed.
     #[error(transparent)]
     Layer(#[from] LayerError),
+    /// The settings belong to another program.
+    #[error("the layer is not one of the program that plays: create `LiveLayers` anew with each program")]
+    OtherProgram,
     /// The layer is on.
     #[error(
         "layer {layer:?} is on, and a trigger plays a layer that is off: switch it off first, by `layer {layer:?} off`"
@@ -36,9 +39,9 @@ pub enum LiveError {
         /// Of the trigger, ms.
         duration_ms: f64,
     },
-    /// The layer is triggered with a gain of zero.
+    /// The layer has a gain of zero, and its blend leaves the layers below as they are then.
     #[error(
-        "layer {layer:?} has a gain of 0, so that a trigger plays nothing: give it one first, by \
+        "layer {layer:?} has a gain of 0 and adds nothing, so that a trigger plays nothing: give it one first, by \
          `layer {layer:?} gain 1`"
     )]
     TriggerSilent {
@@ -110,10 +113,8 @@ impl LiveLayers {
         gain: Option<f32>,
     ) -> Result<LayerChange, LiveError> {
         let record = program.layers.record(layer)?;
-        let before = program.clamped_with(&self.settings);
-        let mut changed = self.settings.clone();
-        let setting = set(&mut changed, record, on, gain);
-        let clamped = program.clamped_with(&changed).filter(|clamped| before.as_ref() != Some(clamped));
+        let (changed, setting) = self.changed(record, on, gain)?;
+        let clamped = self.newly_clamped(program, &changed);
         if let Some(gain) = gain.filter(|_| !program.saturates && !program.is_draft()) {
             // A layer that is off may be switched on later.
             let all_on: Vec<LayerSetting> =
@@ -136,8 +137,8 @@ impl LiveLayers {
     ///
     /// # Errors
     ///
-    /// An unknown layer, one that cannot be changed, one that is on, one whose gain is zero, and one whose bursts the
-    /// trigger may miss.
+    /// An unknown layer, one that cannot be changed, one that is on, one that plays nothing because its gain is zero, and
+    /// one whose bursts the trigger may miss.
     pub fn trigger(
         &mut self,
         program: &Program,
@@ -146,17 +147,19 @@ impl LiveLayers {
         duration_s: f64,
     ) -> Result<LayerChange, LiveError> {
         let record = program.layers.record(layer)?;
-        let before = self.settings.get(usize::from(record));
+        let played = program.records.get(usize::from(record));
+        let (changed, setting) = self.changed(record, Some(true), None)?;
+        let was_on = self.settings.get(usize::from(record)).is_some_and(|setting| setting.on);
         let triggered_until =
             self.triggered.iter().find(|(triggered, _)| *triggered == record).map(|(_, ends_at)| *ends_at);
-        if before.is_some_and(|setting| setting.on) && triggered_until.is_none() {
+        if was_on && triggered_until.is_none() {
             return Err(LiveError::TriggerOn { layer: layer.to_owned() });
         }
-        if before.is_some_and(|setting| setting.gain.abs() <= 0.0) {
+        let adds = played.is_some_and(|record| matches!(record.blend, Blend::Add | Blend::Max));
+        if adds && setting.gain.abs() <= 0.0 {
             return Err(LiveError::TriggerSilent { layer: layer.to_owned() });
         }
-        let vibration = program.records.get(usize::from(record)).map(|record| &record.layer);
-        if let Some(Layer::Vibration(Vibration { burst, .. })) = vibration
+        if let Some(Layer::Vibration(Vibration { burst, .. })) = played.map(|record| &record.layer)
             && duration_s <= f64::from(burst.period_s - burst.on_s)
         {
             let (period_ms, duration_ms) = (1e3 * f64::from(burst.period_s), 1e3 * duration_s);
@@ -166,16 +169,19 @@ impl LiveLayers {
         let duration = Duration::try_from_secs_f64(duration_s).unwrap_or(Duration::MAX);
         let ends_at = now.saturating_add(duration);
         self.triggered.push((record, triggered_until.map_or(ends_at, |until| until.max(ends_at))));
-        let setting = set(&mut self.settings, record, Some(true), None);
-        Ok(LayerChange { record, setting, clamped: None })
+        let clamped = self.newly_clamped(program, &changed);
+        self.settings = changed;
+        Ok(LayerChange { record, setting, clamped })
     }
 
-    /// Switches off the layer of a trigger that has ended by `now`; `None` if there is none left.
+    /// Switches off the layer of a trigger that has ended by `now`; `None` if there is none left. What the board clamped
+    /// before the trigger, it clamps again, without a notice.
     pub fn end_trigger(&mut self, now: Duration) -> Option<LayerChange> {
         let index = self.triggered.iter().position(|(_, ends_at)| *ends_at <= now)?;
         let (record, _) = self.triggered.swap_remove(index);
-        let setting = set(&mut self.settings, record, Some(false), None);
-        Some(LayerChange { record, setting, clamped: None })
+        let setting = self.settings.get_mut(usize::from(record))?;
+        setting.on = false;
+        Some(LayerChange { record, setting: *setting, clamped: None })
     }
 
     /// The layers that are off, by their index from the bottom.
@@ -187,15 +193,26 @@ impl LiveLayers {
     pub fn next_end(&self) -> Option<Duration> {
         self.triggered.iter().map(|(_, ends_at)| *ends_at).min()
     }
-}
 
-/// Changes the setting of a record, and returns it.
-fn set(settings: &mut [LayerSetting], record: u8, on: Option<bool>, gain: Option<f32>) -> LayerSetting {
-    // A record of the program has a setting.
-    let mut nothing = LayerSetting { on: true, gain: 1.0 };
-    let setting = settings.get_mut(usize::from(record)).unwrap_or(&mut nothing);
-    *setting = LayerSetting { on: on.unwrap_or(setting.on), gain: gain.unwrap_or(setting.gain) };
-    *setting
+    /// The settings with that of a record changed, and its setting.
+    fn changed(
+        &self,
+        record: u8,
+        on: Option<bool>,
+        gain: Option<f32>,
+    ) -> Result<(Vec<LayerSetting>, LayerSetting), LiveError> {
+        let mut changed = self.settings.clone();
+        let setting = changed.get_mut(usize::from(record)).ok_or(LiveError::OtherProgram)?;
+        *setting = LayerSetting { on: on.unwrap_or(setting.on), gain: gain.unwrap_or(setting.gain) };
+        let setting = *setting;
+        Ok((changed, setting))
+    }
+
+    /// What the board clamps with these settings, unless it clamps the same already.
+    fn newly_clamped(&self, program: &Program, changed: &[LayerSetting]) -> Option<Clamped> {
+        let clamped = program.clamped_with(changed)?;
+        (program.clamped_with(&self.settings).as_ref() != Some(&clamped)).then_some(clamped)
+    }
 }
 
 #[cfg(test)]
@@ -208,7 +225,7 @@ mod tests {
     use crate::{Scene, compile};
 
     /// The simulator's board, with a drive that adds some 0.13 N.
-    fn program(text: &str) -> Program {
+    fn program_of(text: &str) -> Program {
         let text = format!("version = 2\n{text}");
         let scene = Scene::parse(&text, "live.toml", &BTreeMap::new()).expect("it is a scene");
         compile(&scene, &Board::SIMULATOR.limits, 40_000).expect("it compiles")
@@ -227,7 +244,7 @@ mod tests {
 
     #[test]
     fn a_second_trigger_does_not_shorten_the_first() {
-        let program = program(&layer("ping", ""));
+        let program = program_of(&layer("ping", ""));
         let mut layers = LiveLayers::new(&program);
         layers.change(&program, "ping", Some(false), None).expect("it is live");
         layers.trigger(&program, "ping", ms(0), 0.3).expect("it is off");
@@ -242,14 +259,27 @@ mod tests {
 
     #[test]
     fn a_trigger_of_no_gain_is_refused() {
-        let program = program(&layer("ping", ""));
+        let program = program_of(&layer("ping", ""));
         let mut layers = LiveLayers::new(&program);
         layers.change(&program, "ping", Some(false), Some(0.0)).expect("it is in reach");
         let refused = layers.trigger(&program, "ping", ms(0), 0.1).expect_err("nothing would be felt");
         assert_eq!(
             refused.to_string(),
-            "layer \"ping\" has a gain of 0, so that a trigger plays nothing: give it one first, by `layer \"ping\" gain 1`"
+            "layer \"ping\" has a gain of 0 and adds nothing, so that a trigger plays nothing: give it one first, by \
+             `layer \"ping\" gain 1`"
         );
+        // Other blends cut the layers below out, or silence them.
+        for blend in ["replace", "multiply"] {
+            let mask =
+                if blend == "replace" { "above = \"natural\"\nfriction_n = 0.05" } else { "friction_factor = 0.5" };
+            let mask =
+                format!("[[layer]]\nname = \"mask\"\nkind = \"constant\"\nblend = \"{blend}\"\nlive = true\n{mask}\n");
+            let program = program_of(&format!("{}{mask}", layer("wood", "")));
+            let mut layers = LiveLayers::new(&program);
+            layers.change(&program, "mask", Some(false), Some(0.0)).expect("it is in reach");
+            let trigger = layers.trigger(&program, "mask", ms(0), 0.1);
+            assert!(trigger.is_ok_and(|change| change.setting.on), "{blend}");
+        }
     }
 
     /// Outlines cut the screen into many cells, each of which is searched.
@@ -259,7 +289,7 @@ mod tests {
              low_n = 0.0\nhigh_n = 0.05\nlive = true\n\
              region = { shape = \"ellipse\", x_mm = 5, y_mm = 10, width_mm = 30, height_mm = 30 }\n\
              repeat = { columns = 3, dx_mm = 32 }\n";
-        let program = program(circles);
+        let program = program_of(circles);
         let mut layers = LiveLayers::new(&program);
         layers.change(&program, "1.2", None, Some(2.0)).expect("it is in reach");
         let refused = layers.change(&program, "1.2", None, Some(4.0)).expect_err("it is out of reach").to_string();
@@ -270,7 +300,7 @@ mod tests {
     #[test]
     fn a_gain_is_judged_as_if_all_layers_were_on() {
         let text = format!("{}{}", layer("A", ""), layer("B", ""));
-        let strict = program(&text);
+        let strict = program_of(&text);
         let mut layers = LiveLayers::new(&strict);
         layers.change(&strict, "A", Some(false), None).expect("it is live");
         layers.change(&strict, "B", Some(false), None).expect("it is live");
@@ -287,11 +317,14 @@ mod tests {
             assert_eq!(on.notice(), None);
         }
         // With `saturate` it is taken, and the notice comes when it is felt.
-        let clamping = program(&format!("[drive]\nsaturate = true\n{text}"));
+        let clamping = program_of(&format!("[drive]\nsaturate = true\n{text}"));
         let mut layers = LiveLayers::new(&clamping);
         let change = layers.change(&clamping, "B", Some(false), Some(5.0)).expect("it is clamped");
         assert_eq!(change.notice(), None);
         let on = layers.change(&clamping, "B", Some(true), None).expect("it is clamped");
         assert!(on.notice().is_some_and(|notice| notice.ends_with("it is clamped there")));
+        layers.change(&clamping, "B", Some(false), None).expect("it is live");
+        let triggered = layers.trigger(&clamping, "B", ms(0), 0.1).expect("it is off");
+        assert_eq!(triggered.notice(), on.notice());
     }
 }

@@ -12,15 +12,13 @@ pub(super) struct Log<'s> {
     mistakes: Vec<Located>,
     /// How many mistakes were added, those that were there already included.
     added: usize,
-    /// The mistake that was added last.
-    last: Option<Mistake>,
     /// The known fields of each table, in the order in which tables were closed; `None` except while a schema is made.
     described: Option<Vec<KnownTable>>,
 }
 
 impl<'s> Log<'s> {
     pub(super) fn new(source: &'s Source) -> Self {
-        Self { source, mistakes: Vec::new(), added: 0, last: None, described: None }
+        Self { source, mistakes: Vec::new(), added: 0, described: None }
     }
 
     /// A log that starts with the mistakes that were found before.
@@ -63,11 +61,9 @@ impl<'s> Log<'s> {
     /// Adds a mistake at a byte offset of the files. A mistake that is there already is reported once, but counted
     /// again: layers that share a field share its mistakes.
     pub(super) fn add(&mut self, offset: usize, mistake: impl Into<Mistake>) {
-        let mistake = mistake.into();
-        self.last = Some(mistake.clone());
         let (line, column) = self.source.line_and_column(offset);
         let (file, text) = (self.source.name_at(offset).to_owned(), self.source.word_at(offset).to_owned());
-        self.add_located(Located { file, line, column, text, mistake });
+        self.add_located(Located { file, line, column, text, mistake: mistake.into() });
     }
 
     /// Adds the mistakes of another log of the same files.
@@ -101,11 +97,6 @@ impl<'s> Log<'s> {
         let number = |mistake: &Located| files.iter().position(|file| file.name == mistake.file);
         self.mistakes.sort_by_key(|mistake| (number(mistake), mistake.line, mistake.column));
         self.mistakes
-    }
-
-    /// The mistake that was added last.
-    pub(super) fn last(&self) -> Option<&Mistake> {
-        self.last.as_ref()
     }
 
     /// Number of mistakes so far. A mistake that several layers share counts for each of them.

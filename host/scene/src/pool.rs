@@ -6,9 +6,8 @@ use std::collections::BTreeMap;
 use super::file::Scene;
 use super::files::{FileUnavailable, file_name};
 use super::kinds::{Bitmap as BitmapLayer, Kind, Levels, PITCH_MM};
-use super::layer::{Layer, Rectangle, Region};
-use super::log::Log;
-use super::mistake::{FileMistake, FitMistake};
+use super::layer::{Rectangle, Region};
+use super::mistake::FileMistake;
 use super::nearest::Nearest;
 use super::optimisation::Optimisation;
 use super::picture::Picture;
@@ -30,6 +29,22 @@ pub(super) struct Pool {
 
 /// The pictures of a scene, each decoded once, or the reason why one cannot be used.
 type Decoded = BTreeMap<String, Result<Picture, FileMistake>>;
+
+/// The reason why a picture has no place in the pool.
+pub(super) enum Unplaced {
+    /// A mistake that was logged when the scene was read.
+    Reported,
+    /// The picture cannot be used.
+    Unusable(FileMistake),
+    /// The pool has too little room for it.
+    PoolTooSmall {
+        /// Bytes that the pictures so far need, this one included.
+        needed_bytes: u64,
+        pool_bytes: u32,
+        /// A pitch at which they fit.
+        pitch_mm: f64,
+    },
+}
 
 /// A bitmap and its place on the screen.
 pub(crate) struct Placed {
@@ -251,35 +266,25 @@ impl Pool {
         (self.bitmaps, self.optimisations)
     }
 
-    /// Resamples a layer's picture. `region` bounds the layer's region, if it has one.
+    /// Resamples the picture of a layer. `region` bounds the layer's region, if it has one.
     pub(super) fn place(
         &mut self,
-        layer: &Layer,
         bitmap: &BitmapLayer,
         region: Option<Rectangle>,
         screen_mm: (f64, f64),
-        log: &mut Log,
         notes: &mut Vec<String>,
-    ) -> Option<Placed> {
-        let picture = match self.pictures.get(&bitmap.picture)? {
-            Ok(picture) => picture,
-            Err(mistake) => {
-                log.add(layer.places.field("picture"), mistake.clone());
-                return None;
-            }
-        };
-        let whole = rectangle(bitmap, region, height_per_width(picture))?;
+    ) -> Result<Placed, Unplaced> {
+        let picture = self.pictures.get(&bitmap.picture).ok_or(Unplaced::Reported)?;
+        let picture = picture.as_ref().map_err(|mistake| Unplaced::Unusable(mistake.clone()))?;
+        let whole = rectangle(bitmap, region, height_per_width(picture)).ok_or(Unplaced::Reported)?;
         let pitch_mm = pitch_mm(bitmap, picture, whole, self.shared_pitch_mm);
         let (across, down) = axes(bitmap, pitch_mm, picture, whole, region, screen_mm);
         // Check before resampling, so that a pitch that is far too fine allocates no memory.
         let bytes = across.samples as u64 * down.samples as u64;
-        if !self.fits(layer, pitch_mm, bytes, log) {
-            return None;
-        }
+        self.check_room(pitch_mm, bytes)?;
         // One side may still exceed the protocol's 16 bits.
         let (Ok(width), Ok(height)) = (u16::try_from(across.samples), u16::try_from(down.samples)) else {
-            self.too_small(layer, pitch_mm, bytes, log);
-            return None;
+            return Err(self.too_small(pitch_mm, bytes));
         };
         let picture = levelled(bitmap, picture, across, down);
         let compiled = Bitmap::new(width, height, resample(&picture.grey, picture.width, across, down));
@@ -293,30 +298,23 @@ impl Pool {
             self.optimisations.push(Optimisation::Shared { picture: picture_name, bytes: kept });
         } else {
             let held: u64 = self.bitmaps.iter().map(|bitmap| bitmap.samples.len() as u64).sum();
-            if !self.fits(layer, pitch_mm, held + bytes, log) {
-                return None;
-            }
+            self.check_room(pitch_mm, held + bytes)?;
             self.bitmaps.push(compiled);
         }
         notes.extend(self.note(bitmap, &picture, pitch_mm, across, down));
-        Some(Placed::new(bitmap, &picture, whole, pitch_mm, (across, down), crc32))
+        Ok(Placed::new(bitmap, &picture, whole, pitch_mm, (across, down), crc32))
     }
 
-    fn fits(&self, layer: &Layer, pitch_mm: f64, needed_bytes: u64, log: &mut Log) -> bool {
-        let fits = needed_bytes <= u64::from(self.size_bytes);
-        if !fits {
-            self.too_small(layer, pitch_mm, needed_bytes, log);
-        }
-        fits
+    fn check_room(&self, pitch_mm: f64, needed_bytes: u64) -> Result<(), Unplaced> {
+        if needed_bytes > u64::from(self.size_bytes) { Err(self.too_small(pitch_mm, needed_bytes)) } else { Ok(()) }
     }
 
-    fn too_small(&self, layer: &Layer, pitch_mm: f64, needed_bytes: u64, log: &mut Log) {
+    fn too_small(&self, pitch_mm: f64, needed_bytes: u64) -> Unplaced {
         // The pitch at which all pictures fit if they are coarsened alike: 1 % is added for samples at the edges, and
         // the result is rounded up to 0.01 mm.
         let coarser = 1.01 * (needed_bytes as f64 / f64::from(self.size_bytes)).sqrt();
         let pitch_mm = (pitch_mm * coarser * 100.0).ceil() / 100.0;
-        let offset = layer.places.field(if layer.places.has("pitch_mm") { "pitch_mm" } else { "picture" });
-        log.add(offset, FitMistake::PoolTooSmall { needed_bytes, pool_bytes: self.size_bytes, pitch_mm });
+        Unplaced::PoolTooSmall { needed_bytes, pool_bytes: self.size_bytes, pitch_mm }
     }
 
     /// Describes the conversions of a picture, and a pitch that the scene leaves open; `None` if there is nothing to

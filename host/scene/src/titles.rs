@@ -3,15 +3,20 @@
 /// Copies of one layer from which on a list names only the first.
 const FOLDED_MIN: usize = 3;
 
-/// The titles of layers as a sentence lists them. Of several copies of one layer that follow one another, only the
-/// first is named.
+/// The titles of layers as a sentence lists them, with copies folded.
 pub(super) fn listed(titles: &[&str]) -> String {
+    fold_copies(titles).join(" and ")
+}
+
+/// The titles of layers for a list. Of several copies of one layer that follow one another, only the first is named, and
+/// the others are counted.
+pub fn fold_copies(titles: &[&str]) -> Vec<String> {
     let groups = titles.chunk_by(|one, other| copied(one).is_some() && copied(one) == copied(other));
-    let words = groups.map(|group| match group {
-        [first, rest @ ..] if group.len() >= FOLDED_MIN => format!("{first} with {} more copies", rest.len()),
-        titles => titles.join(" and "),
+    let words = groups.flat_map(|group| match group {
+        [first, rest @ ..] if group.len() >= FOLDED_MIN => vec![format!("{first} with {} more copies", rest.len())],
+        titles => titles.iter().map(|title| (*title).to_owned()).collect(),
     });
-    words.collect::<Vec<String>>().join(" and ")
+    words.collect()
 }
 
 /// The number of the table in the file that a copy was made from; `None` for the title of a layer that is no copy.

@@ -1,9 +1,7 @@
 //! Which layers of a program a finger has touched.
 
-use frixel_layers::Blend;
-
 use super::program::Program;
-use crate::reference::{Piece, Reference};
+use crate::reference::{Piece, Reference, visible_at};
 
 /// Places that are tried along each side of a layer's region.
 const PLACES: u32 = 40;
@@ -85,25 +83,14 @@ impl TouchedLayers {
     }
 
     /// Number of layers.
-    pub fn layers(&self) -> usize {
+    pub fn layer_count(&self) -> usize {
         self.pieces.len()
     }
 
     /// The layers that a finger touches at a place, from the topmost down.
     fn layers_at(&self, x_m: f64, y_m: f64) -> Vec<usize> {
-        let mut layers = Vec::new();
-        if !((0.0..=self.screen_m.0).contains(&x_m) && (0.0..=self.screen_m.1).contains(&y_m)) {
-            return layers;
-        }
-        for (index, piece) in self.pieces.iter().enumerate().rev() {
-            if piece.shape.covers(x_m, y_m) {
-                layers.push(index);
-                if piece.blend == Blend::Replace && !piece.is_streamed {
-                    break;
-                }
-            }
-        }
-        layers
+        let is_on_screen = (0.0..=self.screen_m.0).contains(&x_m) && (0.0..=self.screen_m.1).contains(&y_m);
+        visible_at(&self.pieces, x_m, y_m).filter(|_| is_on_screen).collect()
     }
 }
 

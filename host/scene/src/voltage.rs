@@ -44,22 +44,22 @@ impl Voltage {
             );
         }
         let peak_per_rms = f64::from(carrier(scene.carrier.waveform, half_period_s, limits).peak_per_rms());
-        let wanted_v_rms = screen.voltage_max_v_rms.unwrap_or(f64::INFINITY).min(drive.voltage_max_v_rms);
-        if wanted_v_rms < drive.voltage_max_v_rms {
+        let scene_max_v_rms = screen.voltage_max_v_rms.unwrap_or(f64::INFINITY).min(drive.voltage_max_v_rms);
+        if scene_max_v_rms < drive.voltage_max_v_rms {
             notes.push(format!(
-                "drive: the screen bears {wanted_v_rms} V rms, less than the {} V rms of the scene",
+                "drive: the screen bears {scene_max_v_rms} V rms, less than the {} V rms of the scene",
                 drive.voltage_max_v_rms
             ));
         }
-        let needed_v_peak = PEAK_MARGIN * peak_per_rms * wanted_v_rms;
+        let needed_v_peak = PEAK_MARGIN * peak_per_rms * scene_max_v_rms;
         let screen_v_peak = screen.voltage_max_v_peak.unwrap_or(f64::INFINITY);
         let max_v_peak = drive.voltage_max_v_peak.unwrap_or(needed_v_peak).min(screen_v_peak).min(board_v_peak);
-        let max_v_rms = wanted_v_rms.min(max_v_peak / peak_per_rms);
-        if max_v_rms < wanted_v_rms {
+        let max_v_rms = scene_max_v_rms.min(max_v_peak / peak_per_rms);
+        if max_v_rms < scene_max_v_rms {
             notes.push(format!(
-                "drive: {wanted_v_rms} V rms would need {:.1} V peak; the limit of {max_v_peak} V peak allows \
+                "drive: {scene_max_v_rms} V rms would need {:.1} V peak; the limit of {max_v_peak} V peak allows \
                  {max_v_rms:.1} V rms",
-                peak_per_rms * wanted_v_rms
+                peak_per_rms * scene_max_v_rms
             ));
         }
         let slew_v_per_us = screen.slew_v_per_us.unwrap_or(f64::INFINITY).min(drive.slew_v_per_us);

@@ -6,7 +6,7 @@ use serde::Serialize;
 use thiserror::Error;
 
 use super::cover::{PLACES_MAX, excesses};
-use super::excess::digits;
+use super::digits::digits;
 use super::file::Scene;
 use super::finger::Evidence;
 use super::kinds::Kind;
@@ -182,9 +182,9 @@ impl Warning {
 /// The warnings of layers that their author probably means otherwise.
 pub(super) fn of_layers(layers: &[Layer]) -> Vec<Warning> {
     let edges = layers.iter().enumerate().filter_map(|(number, layer)| {
-        let is_crossing = matches!(layer.kind, Kind::Edge(_)) && layer.region.is_none() && !layer.is_copy;
-        let crosses = layers.iter().take(number).any(|below| below.region.is_some());
-        (is_crossing && crosses).then(|| Warning::EdgeAcrossScreen { layer: layer.title.clone() })
+        let has_no_end = matches!(layer.kind, Kind::Edge(_)) && layer.region.is_none() && !layer.is_copy;
+        let has_regions_below = layers.iter().take(number).any(|below| below.region.is_some());
+        (has_no_end && has_regions_below).then(|| Warning::EdgeAcrossScreen { layer: layer.title.clone() })
     });
     edges.chain(hiding(layers)).chain(same_names(layers)).collect()
 }

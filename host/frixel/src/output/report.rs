@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use frixel_driver::{Counters, StreamStatus};
 use frixel_scene::metrics::{ErrorSize, MetricsSummary};
-use frixel_scene::{Origin, Reach, table_number};
+use frixel_scene::{Origin, Reach, fold_copies};
 
 /// The results of a run; the field names are the keys of `--json`. Unknown values are `null` there.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -258,7 +258,8 @@ impl Report {
         }
         if !self.untouched_layers.is_empty() {
             let since = |t_s: f64| format!("; since {t_s:.2} s, when the scene was replaced");
-            let layers = without_copies(&self.untouched_layers);
+            let titles: Vec<&str> = self.untouched_layers.iter().map(String::as_str).collect();
+            let layers = fold_copies(&titles).join(", ");
             line("never touched", format!("{layers}{}", self.replaced_at_s.map_or(String::new(), since)));
         }
         if let Some(factor) = self.realtime_factor {
@@ -267,18 +268,6 @@ impl Report {
         }
         text
     }
-}
-
-/// The titles of layers, a comma between two. Of the copies of a layer, the first one is named, and the others are
-/// counted.
-fn without_copies(titles: &[String]) -> String {
-    let groups = titles.chunk_by(|one, other| table_number(one) == table_number(other));
-    let name = |group: &[String]| match group {
-        [] => String::new(),
-        [one] => one.clone(),
-        [first, others @ ..] => format!("{first} and {} alike", others.len()),
-    };
-    groups.map(name).collect::<Vec<String>>().join(", ")
 }
 
 /// The line of a summary that marks a draft.

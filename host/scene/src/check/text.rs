@@ -55,7 +55,9 @@ impl SceneCheck {
                 reach.voltage_max_v_rms
             ),
         );
-        line("targets", format!("{:.4} to {:.4} N in total{suffix}", asked.least_n, asked.most_n));
+        // What is within reach is never printed as more than the reach.
+        let most_n = if asked.above.screen_percent <= 0.0 { rounded_down(asked.most_n) } else { asked.most_n };
+        line("targets", format!("{:.4} to {most_n:.4} N in total{suffix}", asked.least_n));
         line("out of reach", out_of_reach(&asked.above, &asked.below));
         for warning in &self.warnings {
             line("warning", warning.clone());

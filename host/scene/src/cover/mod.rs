@@ -172,6 +172,6 @@ pub(super) fn interval_at<'p>(layers: impl Iterator<Item = &'p Piece>, x_m: f64,
 }
 
 /// How far an interval exceeds the reach; zero within it.
-fn beyond(interval: Interval<f64>, reach: Interval<f64>) -> f64 {
+pub(super) fn beyond(interval: Interval<f64>, reach: Interval<f64>) -> f64 {
     (reach.low - interval.low).max(interval.high - reach.high).max(0.0)
 }

@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use crate::excess::digits;
+use crate::digits::digits;
 use crate::file::describe;
 use crate::log::Log;
 use crate::mistake::FieldMistake;

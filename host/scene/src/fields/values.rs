@@ -4,7 +4,7 @@ use toml::Spanned;
 use toml::de::{DeArray, DeValue};
 
 use super::Fields;
-use crate::excess::digits;
+use crate::digits::digits;
 use crate::grammar::{Absence, Axis, FieldSpec, Holds, LengthFields, Range};
 use crate::log::Log;
 use crate::mistake::FieldMistake;

@@ -9,9 +9,9 @@ use super::file::Scene;
 use super::kinds::{Bitmap as BitmapWords, Lowered};
 use super::layer::{Above, Amount, Layer, Rectangle, Region};
 use super::log::Log;
-use super::mistake::{FitMistake, Mistake};
+use super::mistake::FitMistake;
 use super::optimisation::Optimisation;
-use super::pool::{Placed, Pool};
+use super::pool::{Placed, Pool, Unplaced};
 use super::program::Bitmap;
 use super::reach::Reach;
 use super::warning::Warning;
@@ -96,18 +96,26 @@ impl<'a, 's> Lowering<'a, 's> {
         visible: Option<Rectangle>,
     ) -> Option<Placed> {
         let screen = (self.scene.screen().width_mm, self.scene.screen().height_mm);
-        let placed = self.pool.place(layer, bitmap, visible, screen, self.log, &mut self.notes);
-        let last = self.log.last().filter(|_| placed.is_none());
-        let Some(Mistake::Fit(FitMistake::PoolTooSmall { pitch_mm, .. })) = last else {
-            return placed;
-        };
-        // A draft plays it coarser; the mistake stands.
-        let (mut pitch_mm, mut coarser, mut log) = (*pitch_mm, bitmap.clone(), self.log.scratch());
-        (0..COARSER_MAX).find_map(|_| {
-            coarser.pitch_mm = Some(pitch_mm);
-            pitch_mm *= 2.0;
-            self.pool.place(layer, &coarser, visible, screen, &mut log, &mut self.notes)
-        })
+        let picture = layer.places.field("picture");
+        match self.pool.place(bitmap, visible, screen, &mut self.notes) {
+            Ok(placed) => Some(placed),
+            Err(Unplaced::Reported) => None,
+            Err(Unplaced::Unusable(mistake)) => {
+                self.log.add(picture, mistake);
+                None
+            }
+            Err(Unplaced::PoolTooSmall { needed_bytes, pool_bytes, mut pitch_mm }) => {
+                let offset = if layer.places.has("pitch_mm") { layer.places.field("pitch_mm") } else { picture };
+                self.log.add(offset, FitMistake::PoolTooSmall { needed_bytes, pool_bytes, pitch_mm });
+                // A draft plays it coarser.
+                let mut coarser = bitmap.clone();
+                (0..COARSER_MAX).find_map(|_| {
+                    coarser.pitch_mm = Some(pitch_mm);
+                    pitch_mm *= 2.0;
+                    self.pool.place(&coarser, visible, screen, &mut self.notes).ok()
+                })
+            }
+        }
     }
 
     /// An amount of the compiled scene: electric friction in newtons, or a factor.

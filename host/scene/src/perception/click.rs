@@ -18,17 +18,18 @@ pub(super) struct ClickStep {
 }
 
 impl ClickStep {
-    /// The click of a layer, on the slide that makes the largest step; `None` for a layer that does not click.
+    /// The click of a layer, on the slide that makes the largest step, without the layers above it and the clicks of
+    /// those below; `None` for a layer that does not click.
     pub(super) fn of(layer: usize, slides: &[Slide], program: &Program, speed_m_per_s: f64) -> Option<Self> {
         program.records.get(layer)?.layer.click()?;
-        let steps = slides.iter().filter_map(|slide| Self::on(&slide.begun_outside(), program, speed_m_per_s));
+        let steps = slides.iter().filter_map(|slide| Self::on(&slide.begun_outside(), layer, program, speed_m_per_s));
         steps.max_by(|one, other| one.step.contrast_n.abs().total_cmp(&other.step.contrast_n.abs()))
     }
 
-    /// The largest click on a slide.
-    fn on(slide: &Slide, program: &Program, speed_m_per_s: f64) -> Option<Self> {
-        let without = Reference::new(program);
-        let mut with = without.clone().along_stroke();
+    /// The largest click of a layer on a slide.
+    fn on(slide: &Slide, layer: usize, program: &Program, speed_m_per_s: f64) -> Option<Self> {
+        let without = Reference::new(program).with_only(|other| other <= layer);
+        let mut with = without.clone().along_stroke().with_clicks_of(layer);
         let frictions = slide
             .contexts(speed_m_per_s, SAMPLE_HZ)
             .map(|context| [without.electric_friction_at_n(&context), with.electric_friction_n(&context)]);

@@ -42,7 +42,7 @@ const AMPLITUDE_MIN_N: f64 = 2e-5;
 /// as exactly as its samples lie.
 const SAMPLING_N: f64 = 2e-4;
 /// Where the 5th and the 95th percentile are nearer to one another than this part of the whole range, the friction is
-/// the same almost everywhere but for a narrow place, such as a ridge. Eight waves of noise have about 0.47.
+/// the same almost everywhere but for a narrow place, such as a ridge. Noise, whose extremes are rare, stays above it.
 const NARROW_PART: f64 = 0.3;
 
 /// What a person will feel of a program.

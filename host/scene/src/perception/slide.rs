@@ -1,7 +1,7 @@
 //! Straight slides over a layer, and the friction along them.
 
 use crate::Program;
-use crate::reference::{Context, Piece, Reference};
+use crate::reference::{Context, Piece, Reference, visible_at};
 
 /// Rows and columns over the bounding rectangle of a layer.
 const ROWS: usize = 5;
@@ -113,17 +113,7 @@ pub(super) fn total_n(program: &Program, electric_n: f64) -> f64 {
     program.reach.natural_friction_n + electric_n.clamp(0.0, program.reach.electric_friction_max_n)
 }
 
-/// The layers that have an effect at a place, a bit each: those that are on and cover it, and that no layer above
-/// replaces.
+/// The layers that have an effect at a place, a bit each.
 pub(super) fn visible_layers(pieces: &[Piece], x_m: f64, y_m: f64) -> u64 {
-    let mut visible = 0;
-    for (number, piece) in pieces.iter().enumerate().rev() {
-        if piece.is_on && piece.shape.covers(x_m, y_m) {
-            visible |= 1 << number;
-            if piece.hides_below() {
-                break;
-            }
-        }
-    }
-    visible
+    visible_at(pieces, x_m, y_m).fold(0, |visible, layer| visible | 1 << layer)
 }

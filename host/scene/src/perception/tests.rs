@@ -165,6 +165,22 @@ fn a_ridge_has_no_step_at_its_foot() {
 }
 
 #[test]
+fn the_rare_extremes_of_noise_are_no_narrow_place() {
+    let noise = "kind = \"noise\"\nwavelength_min_mm = 2\nwavelength_max_mm = 8\nlow_fraction = 0\nhigh_fraction = 0.9";
+    assert!(!only(&on_example(&plate(20, noise))).is_narrow);
+    assert!(!only(&on_example(&format!("[[layer]]\n{noise}\n"))).is_narrow);
+}
+
+#[test]
+fn a_layer_has_its_own_click_only() {
+    let button = "kind = \"button\"\nrim_width_mm = 3\nrim_fraction = 0.2\nface_fraction = 0.1\nclick_n = 0.01";
+    let edge = "kind = \"edge\"\nblend = \"add\"\nx_mm = 40\ny_mm = 30\nwidth_mm = 8\nridge_n = 0.01\nclick_n = 0.08";
+    let perception = on_example(&format!("{}{}", plate(20, button), plate(20, edge)));
+    let clicks_n: Vec<f64> = perception.layers.iter().map(|layer| layer.click.unwrap().contrast_n).collect();
+    assert!((clicks_n[0] - 0.01).abs() < 2e-4 && (clicks_n[1] - 0.08).abs() < 2e-3, "{clicks_n:?}");
+}
+
+#[test]
 fn a_click_is_judged_where_it_begins_and_within_what_the_drive_can_give() {
     let button = |face_fraction: f64| {
         let text = plate(

@@ -4,13 +4,13 @@ use exif::{In, Reader, Tag};
 
 use super::Picture;
 
-/// What is said of a picture that was turned.
+/// The conversion of a picture that was turned.
 const UPRIGHT: &str = "turned upright, as its camera noted (EXIF)";
 
 /// How the pixels of a file lie in the picture that the camera saw.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Orientation {
-    /// Rows of the picture are columns of the file. This comes last.
+    /// Rows of the picture are columns of the file.
     swapped: bool,
     /// The file's columns run from right to left.
     from_right: bool,

@@ -112,6 +112,15 @@ impl Reference {
     }
 }
 
+/// The layers that have an effect at a place, from the topmost down: those that are on and cover it, and that no layer
+/// above replaces.
+pub(crate) fn visible_at(pieces: &[Piece], x_m: f64, y_m: f64) -> impl Iterator<Item = usize> {
+    let covers = move |piece: &Piece| piece.is_on && piece.shape.covers(x_m, y_m);
+    let lowest = pieces.iter().rposition(|piece| piece.hides_below() && covers(piece)).unwrap_or(0);
+    let visible = pieces.iter().enumerate().skip(lowest).rev().filter(move |(_, piece)| covers(piece));
+    visible.map(|(number, _)| number)
+}
+
 impl Piece {
     /// Whether the layers below have no effect where this layer is.
     pub(crate) fn hides_below(&self) -> bool {

@@ -47,6 +47,12 @@ impl StrokeReference {
         Self { reference, clicking, touching: false }
     }
 
+    /// The same reference without the clicks of all other layers.
+    pub(crate) fn with_clicks_of(mut self, layer: usize) -> Self {
+        self.clicking.retain(|clicking| clicking.layer == layer);
+        self
+    }
+
     /// Friction at no voltage, `mu F_N`, in newtons.
     pub fn natural_friction_n(&self) -> f64 {
         self.reference.natural_friction_n
