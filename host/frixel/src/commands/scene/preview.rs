@@ -1,6 +1,6 @@
 //! `frixel scene preview`: draws the friction map of a scene, and says what a person will feel.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use frixel::output::{draft_line, write_preview_png};
@@ -37,8 +37,8 @@ pub(super) fn run(args: &PreviewArgs) -> Result<(), CommandError> {
     }
     let board = RigConfig::default().board;
     let (scene, files) = args.profiles.names().load_with_files(&args.scene);
-    if let Some(file) = files.into_iter().find(|file| is_same_file(file, &args.output)) {
-        return Err(CommandError::WouldReplace { path: file });
+    if let Some(file) = files.find(&args.output) {
+        return Err(CommandError::WouldReplace { path: file.to_owned() });
     }
     let program = compile_draft(&scene?, &board.limits, board.tick_hz)?;
     note_refusals(&args.scene, &program);
@@ -53,11 +53,6 @@ pub(super) fn run(args: &PreviewArgs) -> Result<(), CommandError> {
         print_line(format_args!("  {name:<16} {text}"))?;
     }
     print_line(format_args!("  {:<16} {}", "wrote", args.output.display()))
-}
-
-/// Whether two paths lead to one file that exists.
-fn is_same_file(one: &Path, other: &Path) -> bool {
-    one.canonicalize().is_ok_and(|one| other.canonicalize().is_ok_and(|other| one == other))
 }
 
 /// Parses the speed of a finger.
