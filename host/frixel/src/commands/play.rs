@@ -23,6 +23,7 @@ use frixel::output::Report;
 use super::PlayArgs;
 use super::error::CommandError;
 use super::interrupt::Interrupt;
+use super::overwrite;
 use super::terminal::{self, note, note_refusals, print_line};
 use live_scene::LiveScene;
 use rigs::Target;
@@ -43,6 +44,7 @@ pub(super) fn run(args: &PlayArgs) -> Result<(), CommandError> {
         return watch::play_on_simulator(args, &interrupt);
     }
     let (scene, files) = args.profiles.names().load_with_files(&args.scene);
+    outputs::check_outputs(&files, &outputs::output_paths(args, target))?;
     let scene = scene?;
     let live_scene = (args.watch || args.control).then(|| LiveScene::new(args, target, files));
     let played = match target {

@@ -6,15 +6,16 @@ use std::thread::{self, JoinHandle};
 
 use frixel::player::{PlayError, Player};
 use frixel::rigs::RecordedLink;
-use frixel::scene_file::{ProfileNames, SceneFileError, SceneFiles};
+use frixel::scene_file::{ProfileNames, SceneFiles};
 use frixel_driver::DeviceError;
 use frixel_scene::Program;
 use frixel_wire::hello::BoardLimits;
 use frixel_wire::message::Refusal;
 
+use super::outputs::{check_outputs, output_paths};
 use super::plan::{check_measured, print_notes};
 use super::rigs::Target;
-use super::{PlayArgs, note, note_refusals};
+use super::{CommandError, PlayArgs, note, note_refusals};
 
 /// Loads and compiles scenes while one plays.
 pub(super) struct LiveScene {
@@ -45,7 +46,7 @@ enum Origin {
 
 /// A compiled scene, and the files that it was read from.
 struct Compiled {
-    program: Result<Program, SceneFileError>,
+    program: Result<Program, CommandError>,
     files: SceneFiles,
 }
 
@@ -54,12 +55,16 @@ struct Compiled {
 struct Loader {
     profiles: ProfileNames,
     target: Target,
+    /// The files that the play writes.
+    outputs: [PathBuf; 4],
 }
 
 impl Loader {
     fn compile(&self, path: &Path, limits: &BoardLimits, tick_hz: u32) -> Compiled {
         let (scene, files) = self.profiles.load_with_files(path);
-        let program = scene.and_then(|scene| Ok(self.target.compile(&scene, limits, tick_hz)?));
+        let program = check_outputs(&files, &self.outputs)
+            .and_then(|()| Ok(scene?))
+            .and_then(|scene| Ok(self.target.compile(&scene, limits, tick_hz)?));
         Compiled { program, files }
     }
 }
@@ -67,7 +72,7 @@ impl Loader {
 impl LiveScene {
     /// `files` are those of the first scene.
     pub(super) fn new(args: &PlayArgs, target: Target, files: SceneFiles) -> Self {
-        let loader = Loader { profiles: args.profiles.names(), target };
+        let loader = Loader { profiles: args.profiles.names(), target, outputs: output_paths(args, target) };
         Self { loader, files, watches: args.watch, next: None }
     }
 
@@ -137,7 +142,7 @@ impl LiveScene {
 fn replace<L: RecordedLink>(
     path: &Path,
     how: &str,
-    compiled: Result<Program, SceneFileError>,
+    compiled: Result<Program, CommandError>,
     player: &mut Player<L>,
     playing: &Program,
 ) -> Result<Option<Program>, PlayError> {

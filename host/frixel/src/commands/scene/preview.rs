@@ -11,6 +11,7 @@ use frixel_scene::{Preview, compile_draft};
 
 use super::super::argument::number;
 use super::super::error::CommandError;
+use super::super::overwrite::check_outputs;
 use super::super::profiles::ProfileArgs;
 use super::super::terminal::{note_refusals, print_line};
 
@@ -37,9 +38,7 @@ pub(super) fn run(args: &PreviewArgs) -> Result<(), CommandError> {
     }
     let board = RigConfig::default().board;
     let (scene, files) = args.profiles.names().load_with_files(&args.scene);
-    if let Some(file) = files.find(&args.output) {
-        return Err(CommandError::WouldReplace { path: file.to_owned() });
-    }
+    check_outputs(&files, std::slice::from_ref(&args.output), "give another name to -o")?;
     let program = compile_draft(&scene?, &board.limits, board.tick_hz)?;
     note_refusals(&args.scene, &program);
     let title = args.scene.file_name().unwrap_or_default().to_string_lossy();
