@@ -4,14 +4,14 @@
 //! A line is one of
 //!
 //! - `layer NAME on`, `layer NAME off`, `layer NAME gain X`, or several of these words: changes a layer;
-//! - `trigger NAME [MS]`: switches a layer that is off on, and off again after so many milliseconds, 100 without a
-//!   number;
+//! - `trigger NAME [MS]`: switches on a layer that is off, and switches it off again after MS milliseconds, 100 by
+//!   default;
 //! - `replace FILE`: plays another scene, or the same one anew;
-//! - `wait S`: carries the lines behind it out so many seconds later;
+//! - `wait S`: carries out the following lines S seconds later;
 //! - `quit`: ends the play.
 //!
-//! A name is that of the layer in the scene, or its number as messages have it: `3`, or `3.2` for a copy. What has
-//! spaces stands in quotation marks. Empty lines, and what follows `#`, are ignored.
+//! NAME is the name of a layer in the scene, or its number as in messages: `3`, or `3.2` for a copy. Names and paths with
+//! spaces stand in quotation marks. Empty lines, and what follows `#`, are ignored.
 
 use thiserror::Error;
 
@@ -27,7 +27,7 @@ const GAIN_MAX: f32 = 100.0;
 pub enum ControlLine {
     /// Changes a layer.
     Layer {
-        /// Its name, or its number from 1.
+        /// Its name, or its number: `3`, or `3.2` for a copy.
         layer: String,
         /// Whether it is on from now on; `None` leaves it as it is.
         on: Option<bool>,
@@ -36,7 +36,7 @@ pub enum ControlLine {
     },
     /// Switches a layer on for a time.
     Trigger {
-        /// Its name, or its number from 1.
+        /// Its name, or its number: `3`, or `3.2` for a copy.
         layer: String,
         /// How long, in s.
         duration_s: f64,
@@ -82,7 +82,7 @@ pub enum ControlError {
     OpenQuote(String),
 }
 
-const LAYER: &str = "give the name of a layer, or its number from 1";
+const LAYER: &str = "give the name of a layer, or its number: 3, or 3.2 for a copy";
 const CHANGE: &str = "write on, off, or gain and a number from -100 to 100";
 const FILE: &str = "give the path of a scene file";
 const MILLISECONDS: &str = "give a number of milliseconds above 0, at most an hour";
@@ -206,7 +206,7 @@ mod tests {
     fn an_unknown_line_gives_one_sentence() {
         for (line, parts) in [
             ("leyer OK off", ["`leyer` is no control word", "layer, trigger, replace, wait or quit"]),
-            ("layer", ["`layer` ends too early", "name of a layer"]),
+            ("layer", ["`layer` ends too early", "name of a layer, or its number: 3, or 3.2 for a copy"]),
             ("layer OK", ["ends too early", "write on, off, or gain"]),
             ("layer OK louder", ["`louder` is unexpected", "write on, off, or gain"]),
             ("layer OK gain 200", ["`200` is unexpected", "-100 to 100"]),

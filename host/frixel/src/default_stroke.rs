@@ -9,8 +9,9 @@ const SWEEP_S: f64 = 3.0;
 const SAMPLE_PERIOD_S: f64 = 1e-3;
 /// Time for which the finger is lifted before it visits a layer, s.
 const PAUSE_S: f64 = 0.1;
-/// How far the stroke over a layer begins and ends outside of it, m, and its least length, m.
+/// How far outside of a layer the stroke over it begins and ends, m.
 const VISIT_MARGIN_M: f64 = 5e-3;
+/// Least length of the stroke over a layer, m.
 const VISIT_MIN_M: f64 = 0.03;
 /// Mean speed of the stroke over a layer, m/s.
 const VISIT_M_PER_S: f64 = 0.1;

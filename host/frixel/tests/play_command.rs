@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::thread::sleep;
@@ -387,4 +388,33 @@ fn an_interrupted_play_leaves_what_was_played() {
     for name in ["felt.svg", "scene.png"] {
         assert!(fs::metadata(folder.path().join("frixel-out").join(name)).unwrap().len() > 10_000);
     }
+}
+
+/// A picture that a play would draw over, by another path; and one of a scene that comes later.
+#[test]
+fn a_play_never_overwrites_a_file_of_its_scene() {
+    let folder = TempDir::new().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    fs::create_dir(path("out")).unwrap();
+    fs::copy(repository().join("scenes/textures/brick.png"), path("out/scene.png")).unwrap();
+    let before = fs::read(path("out/scene.png")).unwrap();
+    succeed(folder.path(), &["new", "out/own", "--picture", "out/scene.png"]);
+    let output = frixel(folder.path(), &["play", "out/own.toml", "--seconds", "0.1", "--out", "./out"]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("scene.png is a file of the scene, and would be overwritten: give another folder to --out"));
+    assert!(!path("out/felt.csv").exists(), "nothing is written");
+    assert!(fs::read(path("out/scene.png")).unwrap() == before);
+
+    fs::write(path("constant.toml"), CONSTANT).unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_frixel"));
+    command.args(["play", "constant.toml", "--control", "--seconds", "0.1", "--out", "out/.."]);
+    command.current_dir(folder.path()).stdin(Stdio::piped()).stderr(Stdio::piped()).stdout(Stdio::null());
+    fs::rename(path("out/scene.png"), path("scene.png")).unwrap();
+    succeed(folder.path(), &["new", "own", "--picture", "scene.png"]);
+    let mut play = command.spawn().unwrap();
+    play.stdin.take().unwrap().write_all(b"replace own.toml\n").unwrap();
+    let said = String::from_utf8(play.wait_with_output().unwrap().stderr).unwrap();
+    assert!(said.contains("scene.png is a file of the scene") && said.contains("own.toml is not played"), "{said}");
+    assert!(path("felt.csv").exists());
 }

@@ -147,25 +147,50 @@ fn an_address_without_a_port_is_that_of_port_80() {
 }
 
 #[test]
-fn the_command_opens_its_address_in_the_browser_of_the_environment() {
+fn the_command_opens_its_address_in_a_browser_that_starts() {
     let folder = tempfile::tempdir().unwrap();
-    let (page, opened) = (folder.path().join("page.html"), folder.path().join("opened"));
+    let path = |name: &str| folder.path().join(name);
+    let (page, opened) = (path("page.html"), path("opened"));
     fs::write(&page, PAGE).unwrap();
-    let browser = folder.path().join("browser");
-    fs::write(&browser, format!("#!/bin/sh\nprintf %s \"$1\" > {}.part\nmv {0}.part {0}\n", opened.display())).unwrap();
-    fs::set_permissions(&browser, fs::Permissions::from_mode(0o755)).unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_frixel"));
-    command.arg("studio").arg("--page").arg(&page).env("BROWSER", &browser).stdout(Stdio::piped());
-    let mut studio = command.spawn().unwrap();
-    let mut printed = String::new();
-    BufReader::new(studio.stdout.take().unwrap()).read_line(&mut printed).unwrap();
-    let begin = Instant::now();
-    while !opened.is_file() && begin.elapsed() < Duration::from_secs(10) {
-        thread::sleep(Duration::from_millis(10));
+    let script = format!("#!/bin/sh\nprintf %s \"$*\" > {}.part\nmv {0}.part {0}\n", opened.display());
+    // The second one is the desktop's.
+    for browser in ["browser", "xdg-open"] {
+        fs::write(path(browser), &script).unwrap();
+        fs::set_permissions(path(browser), fs::Permissions::from_mode(0o755)).unwrap();
     }
-    studio.kill().unwrap();
-    studio.wait().unwrap();
-    assert_eq!(fs::read_to_string(opened).unwrap(), printed.trim());
+    let browser = path("browser").display().to_string();
+    let search_path = format!("{}:{}", folder.path().display(), std::env::var("PATH").unwrap());
+    for (variable, expected) in [
+        (browser.clone(), "URL"),
+        (format!("frixel-knows-no-such-browser:{browser}"), "URL"),
+        (format!("{browser} --new %s in-front"), "--new URL in-front"),
+        ("frixel-knows-no-such-browser %s".to_owned(), "URL"),
+        (String::new(), "URL"),
+    ] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_frixel"));
+        command.arg("studio").arg("--page").arg(&page).stdout(Stdio::piped());
+        let mut studio = command.env("BROWSER", &variable).env("PATH", &search_path).spawn().unwrap();
+        let mut printed = String::new();
+        BufReader::new(studio.stdout.take().unwrap()).read_line(&mut printed).unwrap();
+        let begin = Instant::now();
+        while !opened.is_file() && begin.elapsed() < Duration::from_secs(10) {
+            thread::sleep(Duration::from_millis(10));
+        }
+        studio.kill().unwrap();
+        studio.wait().unwrap();
+        let arguments = fs::read_to_string(&opened).unwrap_or_default();
+        assert_eq!(arguments, expected.replace("URL", printed.trim()), "BROWSER={variable}");
+        fs::remove_file(&opened).unwrap();
+    }
+}
+
+#[test]
+fn a_page_that_cannot_be_read_is_said_with_what_to_do() {
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_frixel")).args(["studio", "--page", "nowhere.html"]).output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.code() == Some(1) && said.contains("nowhere.html cannot be read ("), "{said}");
+    assert!(said.contains("give --page the file that `cargo xtask studio` prints"), "{said}");
 }
 
 /// Without a page, `cargo xtask studio` of the checkout builds one, wherever its artefacts are, and prints its path.

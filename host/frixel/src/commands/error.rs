@@ -146,8 +146,7 @@ pub(crate) enum CommandError {
     #[error("\"{}\" has no name for a scene: give one such as wood, or scenes/wood.toml", name.display())]
     SceneName { name: PathBuf },
     #[error(
-        "{} is a picture, and no name for a scene; a scene that plays it: frixel new {scene} --picture {picture}",
-        name.display()
+        "{} is the name of a picture, and a scene needs another: frixel new {scene} --picture {picture}", name.display()
     )]
     SceneNameOfPicture { name: PathBuf, scene: String, picture: String },
     #[error("{} is there already, and is not overwritten: give another name, or remove it", path.display())]
@@ -165,8 +164,8 @@ pub(crate) enum CommandError {
         path.display()
     )]
     LogTooShort { path: PathBuf, behind_s: f64 },
-    #[error("{} is a file of the scene: give another name to -o", path.display())]
-    WouldReplace { path: PathBuf },
+    #[error("{} is a file of the scene, and would be overwritten: {advice}", path.display())]
+    WouldReplace { path: PathBuf, advice: &'static str },
     #[error(transparent)]
     Feed(#[from] FeedError),
     #[error(

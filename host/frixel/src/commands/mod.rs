@@ -12,6 +12,7 @@ mod info;
 mod interrupt;
 mod model;
 mod new;
+mod overwrite;
 mod play;
 mod ports;
 mod profiles;

@@ -2,11 +2,11 @@
 
 use std::ffi::OsStr;
 use std::fs::{self, File};
-use std::io::{ErrorKind, Write};
-use std::path::{Component, Path, PathBuf};
+use std::io::{self, ErrorKind, Write};
+use std::path::{Component, MAIN_SEPARATOR, Path, PathBuf};
 
 use clap::Args;
-use frixel_scene::{Screen, check_picture};
+use frixel_scene::{Screen, check_picture, layer_kinds};
 
 use super::error::CommandError;
 use super::terminal::print_line;
@@ -16,7 +16,7 @@ const PICTURE_EXTENSIONS: [&str; 3] = ["png", "jpg", "jpeg"];
 
 #[derive(Debug, Args)]
 pub(super) struct NewArgs {
-    /// Name of the scene; `NAME.toml` is written.
+    /// Name of the scene; `NAME.toml` is written, or `NAME` if it ends in `.toml`.
     name: PathBuf,
     /// A PNG or JPEG file that the scene plays as friction: dark is low, light is high.
     #[arg(long, value_name = "FILE")]
@@ -28,10 +28,11 @@ pub(super) fn run(args: &NewArgs) -> Result<(), CommandError> {
     if stem.is_none_or(|stem| stem.starts_with(['.', '~'])) {
         return Err(CommandError::SceneName { name: args.name.clone() });
     }
-    let path = args.name.with_extension("toml");
+    let path = scene_path(&args.name);
     if args.name.extension().is_some_and(is_of_picture) {
         let (name, scene) = (args.name.clone(), quoted(&args.name.with_extension("")));
-        return Err(CommandError::SceneNameOfPicture { scene, picture: quoted(&name), name });
+        let picture = quoted(args.picture.as_ref().unwrap_or(&name));
+        return Err(CommandError::SceneNameOfPicture { scene, picture, name });
     }
     let text = match &args.picture {
         Some(picture) => {
@@ -53,6 +54,16 @@ pub(super) fn run(args: &NewArgs) -> Result<(), CommandError> {
     ))
 }
 
+/// The path of the scene of a name. A dot in the name does not begin an extension: `wood-0.5mm` is a name.
+fn scene_path(name: &Path) -> PathBuf {
+    if name.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
+        return name.to_owned();
+    }
+    let mut path = name.as_os_str().to_owned();
+    path.push(".toml");
+    path.into()
+}
+
 /// Width and height of a picture that can be played.
 fn pixels(picture: &Path) -> Result<(usize, usize), CommandError> {
     let bytes = fs::read(picture).map_err(CommandError::reading(picture))?;
@@ -66,22 +77,23 @@ fn is_of_picture(extension: &OsStr) -> bool {
 /// A path as one word of a command that a person may copy: in single quotes, unless it is a word without them.
 fn quoted(path: &Path) -> String {
     let text = path.display().to_string();
-    let is_plain = |letter: char| letter.is_alphanumeric() || "/\\:._-+,@".contains(letter);
+    let is_plain = |letter: char| letter.is_alphanumeric() || letter == MAIN_SEPARATOR || "/:._-+,@".contains(letter);
     if text.chars().all(is_plain) { text } else { format!("'{}'", text.replace('\'', "'\\''")) }
 }
 
 /// The path of a picture from the folder of the scene.
 fn name_from(scene: &Path, picture: &Path) -> Result<String, CommandError> {
-    let (from, to) = (real_folder(scene)?, real_folder(picture)?);
+    let from = real_folder(scene).map_err(CommandError::writing(scene))?;
+    let to = real_folder(picture).map_err(CommandError::reading(picture))?;
     let name = relative(&from, &to).join(picture.file_name().unwrap_or_default());
-    // TOML texts have slashes on every operating system, and no backslashes.
-    Ok(name.display().to_string().replace('\\', "/"))
+    // Scenes have slashes on every operating system.
+    Ok(name.display().to_string().replace(MAIN_SEPARATOR, "/"))
 }
 
 /// The folder of a file, without links and dots.
-fn real_folder(file: &Path) -> Result<PathBuf, CommandError> {
+fn real_folder(file: &Path) -> io::Result<PathBuf> {
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    fs::canonicalize(folder).map_err(CommandError::writing(file))
+    fs::canonicalize(folder)
 }
 
 /// The way from a folder to another, both without links and dots; the whole path if they are on different drives.
@@ -113,17 +125,20 @@ fn middle_mm() -> [f64; 4] {
 
 fn with_stripes() -> String {
     let [x_mm, y_mm, width_mm, height_mm] = middle_mm();
+    let kind = "grating";
+    let others: Vec<&str> = layer_kinds().filter(|other| *other != kind).collect();
     format!(
         "{}\n\
          # Stripes in the middle of the screen: a finger that slides across them feels ribs.\n\
          [[layer]]\n\
          name = \"stripes\"\n\
-         kind = \"grating\"  # or constant, bitmap, noise, edge, button, vibration, speed, stream, rings\n\
+         kind = \"{kind}\"  # or {}\n\
          region = {{ x_mm = {x_mm}, y_mm = {y_mm}, width_mm = {width_mm}, height_mm = {height_mm} }}\n\
          wavelength_mm = 4    # from one rib to the next\n\
          low_fraction = 0     # friction between the ribs\n\
          high_fraction = 0.9  # friction on the ribs\n",
-        head()
+        head(),
+        others.join(", ")
     )
 }
 
@@ -141,13 +156,15 @@ fn fitted_mm((width, height): (usize, usize)) -> [f64; 4] {
 
 fn with_picture(picture: &str, pixels: (usize, usize)) -> String {
     let [x_mm, y_mm, width_mm, height_mm] = fitted_mm(pixels);
+    // With the quotation marks, and what else the name needs to be one.
+    let picture = toml_edit::Value::from(picture);
     format!(
         "{}\n\
          # The picture, as friction: it fills the region, whose sides have the ratio of its own.\n\
          [[layer]]\n\
          name = \"picture\"\n\
          kind = \"bitmap\"\n\
-         picture = \"{picture}\"\n\
+         picture = {picture}\n\
          region = {{ x_mm = {x_mm}, y_mm = {y_mm}, width_mm = {width_mm}, height_mm = {height_mm} }}\n\
          levels = \"stretch\"    # the darkest and the lightest hundredth of the picture are black and white\n\
          black_fraction = 0    # friction where the picture is black\n\

@@ -12,7 +12,6 @@ mod outputs;
 mod plan;
 mod progress;
 mod rigs;
-mod saved_file;
 mod simulated_world;
 mod watch;
 mod with_log;
@@ -24,6 +23,7 @@ use frixel::output::Report;
 use super::PlayArgs;
 use super::error::CommandError;
 use super::interrupt::Interrupt;
+use super::overwrite;
 use super::terminal::{self, note, note_refusals, print_line};
 use live_scene::LiveScene;
 use rigs::Target;
@@ -43,10 +43,10 @@ pub(super) fn run(args: &PlayArgs) -> Result<(), CommandError> {
     if args.watch && target == Target::Simulator {
         return watch::play_on_simulator(args, &interrupt);
     }
-    // This comes before the file is read for the first time, so that no change is missed.
-    let live_scene =
-        (args.watch || args.control).then(|| LiveScene::new(&args.scene, args.profiles.names(), args.watch, target));
-    let scene = args.profiles.names().load(&args.scene)?;
+    let (scene, files) = args.profiles.names().load_with_files(&args.scene);
+    outputs::check_outputs(&files, &outputs::output_paths(args, target))?;
+    let scene = scene?;
+    let live_scene = (args.watch || args.control).then(|| LiveScene::new(args, target, files));
     let played = match target {
         Target::Simulator => rigs::play_on_simulator(args, &scene, live_scene, &interrupt),
         Target::Emulator => rigs::play_on_emulator(args, &scene, live_scene, &interrupt),

@@ -42,9 +42,9 @@ const KNOWN_COLUMNS: [&str; 11] = [
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct StrokeArgs {
     /// Where the simulated finger goes: a CSV file with the columns `t_s,x_mm,y_mm`, and `force_n` for the
-    /// normal load, for example a felt.csv; or `human`: the stroke of a person, another for every --seed. Without it and
-    /// without --from: a sweep over the screen, and in a play without --seconds and --stream, after the finger was
-    /// lifted, a stroke over each layer whose middle the sweep missed.
+    /// normal load, for example a felt.csv; or `human`: the stroke of a person, another for every --seed. Default: a
+    /// sweep over the screen; `play` then visits each layer whose middle the sweep missed, unless --seconds or --stream
+    /// is given.
     #[arg(long, value_name = "FILE.csv", conflicts_with = "from")]
     stroke: Option<PathBuf>,
     /// Start of a straight stroke, in mm from the top left corner of the screen.

@@ -1,8 +1,10 @@
 //! `frixel studio`: serves the studio on loopback, and opens it in the browser.
 
 use std::env;
+use std::ffi::OsStr;
 use std::io;
 use std::path::PathBuf;
+use std::process::{Command, Stdio};
 
 use clap::Args;
 use frixel::studio::{Studio, page};
@@ -41,10 +43,36 @@ pub(super) fn run(args: &StudioArgs) -> Result<(), CommandError> {
     Ok(studio.run(&|| interrupt.is_requested())?)
 }
 
-/// Opens an address in the program that the environment names in `BROWSER`, or in the browser of the desktop.
+/// Opens an address in the first browser of `BROWSER` that starts, or else in that of the desktop.
 fn open_browser(url: &str) -> io::Result<()> {
-    match env::var("BROWSER") {
-        Ok(browser) if !browser.is_empty() => open::with_detached(url, browser),
-        _ => open::that_detached(url),
+    let list = env::var_os("BROWSER").unwrap_or_default();
+    if browsers(&list, url).iter().any(|words| start(words).is_ok()) {
+        return Ok(());
     }
+    open::that_detached(url)
+}
+
+/// The commands that `BROWSER` lists, separated as in `PATH`, with the address in place of `%s`, or else as the last
+/// word.
+fn browsers(list: &OsStr, url: &str) -> Vec<Vec<String>> {
+    let command = |entry: PathBuf| {
+        let entry = entry.to_string_lossy();
+        let mut words: Vec<String> = entry.split_whitespace().map(|word| word.replace("%s", url)).collect();
+        if !entry.contains("%s") {
+            words.push(url.to_owned());
+        }
+        words
+    };
+    env::split_paths(list).map(command).collect()
+}
+
+/// Starts a command that goes on without this one.
+fn start(words: &[String]) -> io::Result<()> {
+    let (program, arguments) = words.split_first().ok_or(io::ErrorKind::NotFound)?;
+    let mut command = Command::new(program);
+    command.args(arguments).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    // Ctrl-C ends the studio, and not the browser.
+    #[cfg(unix)]
+    std::os::unix::process::CommandExt::process_group(&mut command, 0);
+    command.spawn().map(drop)
 }

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use super::off_strip;
-use super::trace::{Extremes, Span, Trace};
+use super::trace::{Extremes, Span, Trace, TracedLayer};
 use super::{OutputError, Subject};
 use crate::chart::{Axis, Chart, Line, Look, Margins, PALETTE, Panel, RGBColor, Strip, StripCell};
 use frixel_scene::Reach;
@@ -103,18 +103,19 @@ fn way(spans: &[Span], time: &Axis) -> Option<Strip> {
     Some(Strip { label: "path, mm".to_owned(), cells: time.ticks().into_iter().map(cell).collect() })
 }
 
-/// The topmost layer under the finger over time; `None` if no layer is known.
+/// The topmost layer under the finger over time, without a colour while it is off; `None` if no layer is known.
 fn layers(trace: &Trace) -> Option<Strip> {
     let mut cells: Vec<StripCell> = Vec::new();
-    let mut last: Option<usize> = None;
+    let mut last: Option<TracedLayer> = None;
     for span in trace.spans() {
         match (span.layer, cells.last_mut()) {
             (Some(layer), Some(cell)) if last == Some(layer) => cell.x.end = span.end_s,
             (Some(layer), before) => {
                 // Cells that follow each other touch.
                 let start_s = before.filter(|_| last.is_some()).map_or(span.start_s, |before| before.x.end);
-                let colour = PALETTE.get(layer % PALETTE.len()).copied();
-                cells.push(StripCell { x: start_s..span.end_s, text: short(trace.layer_name(layer)), colour });
+                let colour = PALETTE.get(layer.index % PALETTE.len()).copied().filter(|_| !layer.is_off);
+                let text = format!("{}{}", short(trace.title(layer)), if layer.is_off { " off" } else { "" });
+                cells.push(StripCell { x: start_s..span.end_s, text, colour });
             }
             (None, _) => {}
         }
@@ -123,10 +124,9 @@ fn layers(trace: &Trace) -> Option<Strip> {
     (!cells.is_empty()).then(|| Strip { label: "layer".to_owned(), cells })
 }
 
-/// The name of a layer without its number, if it has a name, and what follows the name.
-fn short(title: &str) -> String {
-    let mut parts = title.splitn(3, '"').skip(1);
-    parts.next().map_or(title.to_owned(), |name| format!("{name}{}", parts.next().unwrap_or_default()))
+/// The name of a layer without its number; the whole title if it has no name.
+fn short(title: &str) -> &str {
+    title.split('"').nth(1).unwrap_or(title)
 }
 
 /// An empty panel over time, whose upright axis extends a twentieth of the range beyond both ends.
@@ -292,12 +292,22 @@ fn envelope_of(places: &[(f64, f64)], piece_s: f64) -> Vec<(f64, f64)> {
 
 #[cfg(test)]
 mod tests {
+    use frixel_scene::recorder::FeltRow;
+
     use super::*;
 
     #[test]
-    fn a_layer_that_is_off_has_its_name_and_off() {
-        let titles = ["layer 2 \"ok\" off", "layer 2 \"ok\"", "layer 2 off", "layer 2"];
-        assert_eq!(titles.map(short), ["ok off", "ok", "layer 2 off", "layer 2"]);
+    fn a_layer_that_is_off_has_its_name_and_no_colour() {
+        let mut trace = Trace::new();
+        let titles = ["layer 1 \"ok\"", "layer 1 \"ok\"", "layer 1 \"ok\"", "layer 2 (noise)"];
+        for (number, title) in titles.into_iter().enumerate() {
+            let layer = trace.layer(title, number == 1);
+            trace.push(&FeltRow { t_s: number as f64, ..FeltRow::default() }, Some(layer));
+        }
+        let cells = layers(&trace).unwrap().cells;
+        let shown: Vec<_> = cells.iter().map(|cell| (cell.text.as_str(), cell.colour)).collect();
+        let [first, second] = [PALETTE[0], PALETTE[1]].map(Some);
+        assert_eq!(shown, [("ok", first), ("ok off", None), ("ok", first), ("layer 2 (noise)", second)]);
     }
 
     #[test]
@@ -311,7 +321,9 @@ mod tests {
             voltage_v_rms: None,
             way_mm: 0.0,
             layer: None,
-            off: None,
+            rows: 1,
+            off_rows: 0,
+            off_reason: None,
         };
         let spans = [0.0, 0.25, 0.24, -0.26, 0.26].map(span);
         let felt: Part = |span| span.felt_n;

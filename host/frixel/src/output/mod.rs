@@ -39,7 +39,7 @@ pub use fit_svg::write_fit_svg;
 pub use preview_png::write_preview_png;
 pub use report::{Report, WorldReport, draft_line};
 pub use scene_png::write_scene_png;
-pub use trace::Trace;
+pub use trace::{Trace, TracedLayer};
 
 /// The subject of a picture, from which its title is made.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -33,7 +33,8 @@ pub(super) fn add_to(panel: &mut Panel, spans: &[Span]) {
     let mut cells: Vec<(usize, StripCell)> = Vec::new();
     let mut last = None;
     for span in spans {
-        match (span.off, cells.last_mut()) {
+        let off = span.off();
+        match (off, cells.last_mut()) {
             (Some(reason), Some((_, cell))) if last == Some(reason) => cell.x.end = span.end_s,
             (Some(reason), _) => {
                 let cell = StripCell { x: span.start_s..span.end_s, text: String::new(), colour: Some(colour(reason)) };
@@ -41,7 +42,7 @@ pub(super) fn add_to(panel: &mut Panel, spans: &[Span]) {
             }
             (None, _) => {}
         }
-        last = span.off;
+        last = off;
     }
     for (reason, (_, meaning)) in REASONS.iter().enumerate() {
         if cells.iter().any(|(other, _)| *other == reason) {

@@ -358,6 +358,53 @@ fn a_voltage_that_is_off_has_its_reason() {
     }
 }
 
+/// Ten minutes to and fro, a row each hundredth of a second: the finger stands still for one row a second, and the host
+/// is silent for a tenth of a second.
+#[test]
+fn a_moment_at_each_turn_does_not_fill_the_strip_of_a_long_play() {
+    let mut trace = Trace::new();
+    for row in 0..60_000_usize {
+        let flags = if (30_000..30_010).contains(&row) {
+            Flags::HOST_SILENT
+        } else if row.is_multiple_of(100) {
+            Flags::STILL
+        } else {
+            Flags::default()
+        };
+        let voltage_v_rms = Some(if flags == Flags::default() { 100.0 } else { 0.0 });
+        let t_s = 0.01 * row as f64;
+        let row = FeltRow { t_s, x_mm: Some(1.0), voltage_v_rms, flags: Some(flags), ..FeltRow::default() };
+        trace.push(&row, None);
+    }
+    let off: Vec<(f64, usize)> = trace.spans().iter().filter_map(|span| Some((span.start_s, span.off()?))).collect();
+    let host_silent = 0;
+    assert!(
+        matches!(off[..], [(from_s, reason)] if reason == host_silent && (299.0..300.2).contains(&from_s)),
+        "{off:?}"
+    );
+}
+
+/// Rows that become one span: the strongest reason is that of the strip, whichever comes first.
+#[test]
+fn the_strongest_reason_of_a_span_is_shown() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("felt.svg");
+    let program = brick();
+    for flags in [[Flags::STILL, Flags::HOST_SILENT], [Flags::HOST_SILENT, Flags::STILL]] {
+        let row = |row: usize| FeltRow {
+            t_s: 1e-3 * row as f64,
+            x_mm: Some(1.0),
+            voltage_v_rms: Some(0.0),
+            flags: Some(flags[row % 2]),
+            ..FeltRow::default()
+        };
+        let rows: Vec<FeltRow> = (0..4_000).map(row).collect();
+        write_felt_svg(&path, &subject(""), &trace(&rows), &program.reach).expect("a picture");
+        let svg = fs::read_to_string(&path).expect("the file");
+        assert!(svg.contains("output off: the host is silent") && !svg.contains("stands still"), "{flags:?}");
+    }
+}
+
 fn report(summary: &MetricsSummary) -> Report {
     let link = Counters { frames_sent: 400, frames_rejected: 1, payload_bytes: 63_000, wire_bytes: 65_000 };
     let mut reach = brick().reach;

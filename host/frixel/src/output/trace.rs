@@ -13,8 +13,11 @@ const PLACE_STEP_MM: f64 = 0.2;
 
 /// Largest number of speeds that are stored for the median.
 const SPEEDS_MAX: usize = 8_192;
-/// A finger slower than this stands still and feels no texture, mm/s.
+/// A finger slower than this is left out of the median, mm/s.
 const SLIDES_FROM_MM_S: f64 = 2.0;
+/// A span counts as off if the output is off in this part of its rows. In a long play, the moments at which the finger
+/// turns are less, and a pause of a tenth of a second is not.
+const OFF_PART_MIN: f64 = 0.1;
 
 /// Friction, voltage and stroke of a run. Long runs are reduced to least and largest value of each span of time.
 #[derive(Clone, Debug)]
@@ -28,7 +31,15 @@ pub struct Trace {
     /// Length of the finger's way so far, mm, and its last place.
     way_mm: f64,
     last_place_mm: Option<(f64, f64)>,
-    layers: Vec<String>,
+    titles: Vec<String>,
+}
+
+/// A layer that [`Trace::layer`] knows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TracedLayer {
+    /// Index of its title.
+    pub(super) index: usize,
+    pub(super) is_off: bool,
 }
 
 /// Every n-th speed of the sliding finger.
@@ -73,10 +84,12 @@ pub(super) struct Span {
     pub(super) voltage_v_rms: Option<Extremes>,
     /// Length of the finger's way at the end of the span, mm.
     pub(super) way_mm: f64,
-    /// The topmost layer under the finger at the end of the span, as an index for [`Trace::layer_name`].
-    pub(super) layer: Option<usize>,
-    /// Why the output is off in a part of the span, see [`off_strip::reason`].
-    pub(super) off: Option<usize>,
+    /// The topmost layer under the finger at the end of the span.
+    pub(super) layer: Option<TracedLayer>,
+    pub(super) rows: u32,
+    pub(super) off_rows: u32,
+    /// The strongest reason for which the output is off at one of these rows, see [`off_strip::reason`].
+    pub(super) off_reason: Option<usize>,
 }
 
 /// Least and largest value of a quantity.
@@ -105,11 +118,14 @@ impl Extremes {
 }
 
 impl Span {
-    fn of(row: &FeltRow, way_mm: f64, layer: Option<usize>) -> Self {
+    fn of(row: &FeltRow, way_mm: f64, layer: Option<TracedLayer>) -> Self {
+        let off_reason = off_strip::reason(row);
         Self {
             way_mm,
             layer,
-            off: off_strip::reason(row),
+            rows: 1,
+            off_rows: u32::from(off_reason.is_some()),
+            off_reason,
             start_s: row.t_s,
             end_s: row.t_s,
             wanted_n: Extremes::of(row.wanted_n),
@@ -128,9 +144,16 @@ impl Span {
             felt_n: Extremes::join(self.felt_n, later.felt_n),
             way_mm: later.way_mm,
             layer: later.layer,
-            off: self.off.or(later.off),
+            rows: self.rows + later.rows,
+            off_rows: self.off_rows + later.off_rows,
+            off_reason: self.off_reason.into_iter().chain(later.off_reason).min(),
             voltage_v_rms: Extremes::join(self.voltage_v_rms, later.voltage_v_rms),
         }
+    }
+
+    /// Why the output is off; `None` if it is on for nearly all of the span.
+    pub(super) fn off(&self) -> Option<usize> {
+        self.off_reason.filter(|_| f64::from(self.off_rows) >= OFF_PART_MIN * f64::from(self.rows))
     }
 }
 
@@ -152,19 +175,28 @@ impl Trace {
             speeds: Speeds { mm_s: Vec::new(), rows_per_speed: 1, rows: 0 },
             way_mm: 0.0,
             last_place_mm: None,
-            layers: Vec::new(),
+            titles: Vec::new(),
         }
     }
 
-    /// Adds the next row, with the name of the topmost layer under the finger.
-    pub fn push(&mut self, row: &FeltRow, layer: Option<&str>) {
+    /// A layer for [`Self::push`], by its title in messages. Layers with the same title are one.
+    pub fn layer(&mut self, title: &str, is_off: bool) -> TracedLayer {
+        let known = self.titles.iter().position(|known| known == title);
+        let index = known.unwrap_or_else(|| {
+            self.titles.push(title.to_owned());
+            self.titles.len() - 1
+        });
+        TracedLayer { index, is_off }
+    }
+
+    /// Adds the next row, with the topmost layer under the finger.
+    pub fn push(&mut self, row: &FeltRow, layer: Option<TracedLayer>) {
         let place_mm = row.x_mm.zip(row.y_mm);
         if let (Some(from), Some(to)) = (self.last_place_mm, place_mm) {
             let step_mm = (to.0 - from.0).hypot(to.1 - from.1);
             self.way_mm += if step_mm.is_finite() { step_mm } else { 0.0 };
         }
         self.last_place_mm = place_mm;
-        let layer = layer.map(|name| self.layer_index(name));
         self.push_span(Span::of(row, self.way_mm, layer));
         if let Some(speed_mm_s) = row.speed_mm_s.filter(|speed_mm_s| *speed_mm_s >= SLIDES_FROM_MM_S) {
             self.speeds.push(speed_mm_s);
@@ -172,17 +204,9 @@ impl Trace {
         self.push_place(row.x_mm.zip(row.y_mm).filter(|(x_mm, y_mm)| x_mm.is_finite() && y_mm.is_finite()));
     }
 
-    /// The name of a span's layer.
-    pub(super) fn layer_name(&self, layer: usize) -> &str {
-        self.layers.get(layer).map_or("", String::as_str)
-    }
-
-    fn layer_index(&mut self, name: &str) -> usize {
-        let known = self.layers.iter().position(|known| known == name);
-        known.unwrap_or_else(|| {
-            self.layers.push(name.to_owned());
-            self.layers.len() - 1
-        })
+    /// The title of a layer.
+    pub(super) fn title(&self, layer: TracedLayer) -> &str {
+        self.titles.get(layer.index).map_or("", String::as_str)
     }
 
     /// Spans in order of time.

@@ -42,7 +42,7 @@ pub enum StudioError {
     #[error("no page is given, and this folder is in no checkout of frixel that could build it: give --page FILE.html")]
     NoPage,
     /// The page cannot be read.
-    #[error("{path} cannot be read: {source}")]
+    #[error("{path} cannot be read ({source}): give --page the file that `cargo xtask studio` prints")]
     Page {
         /// Path of the page.
         path: String,

@@ -1,6 +1,7 @@
 //! `frixel new`, and what a designer does next.
 
 use std::fs;
+use std::path::Path;
 
 use tempfile::TempDir;
 
@@ -29,6 +30,11 @@ fn a_new_scene_is_checked_and_played_as_it_is() {
     succeed(folder.path(), &["new", "sub/w", "--picture", "mine.png"]);
     assert!(fs::read_to_string(folder.path().join("sub/w.toml")).unwrap().contains("picture = \"../mine.png\""));
     succeed(folder.path(), &["scene", "check", "sub/w.toml"]);
+    for name in ["my \"best\".png", "it's mine.png", "both \"'\".png", "# \u{7f}.png"] {
+        named_as_it_is(folder.path(), name);
+    }
+    #[cfg(unix)]
+    named_as_it_is(folder.path(), "a\\b.png");
     let (said, _) = succeed(folder.path(), &["new", "my ribs"]);
     assert!(said.contains("frixel scene check 'my ribs.toml'\n"), "{said}");
     let text = fs::read_to_string(folder.path().join("near.toml")).unwrap();
@@ -41,6 +47,28 @@ fn a_new_scene_is_checked_and_played_as_it_is() {
     assert!(text.contains("picture = \"mine.png\"") && text.lines().count() < 20, "{text}");
 }
 
+/// A picture of any name is played by a new scene.
+fn named_as_it_is(folder: &Path, picture: &str) {
+    fs::copy(folder.join("mine.png"), folder.join(picture)).unwrap();
+    succeed(folder, &["new", "named", "--picture", picture]);
+    succeed(folder, &["scene", "check", "named.toml"]);
+    fs::remove_file(folder.join("named.toml")).unwrap();
+}
+
+#[test]
+fn dots_in_the_name_of_a_scene_stay() {
+    let folder = TempDir::new().unwrap();
+    for (name, file) in [("wood-0.5mm", "wood-0.5mm.toml"), ("wood-0.7mm", "wood-0.7mm.toml"), ("a.b.toml", "a.b.toml")]
+    {
+        let (said, _) = succeed(folder.path(), &["new", name]);
+        assert!(said.starts_with(&format!("{file} is new.")) && folder.path().join(file).is_file(), "{said}");
+    }
+    let text = fs::read_to_string(folder.path().join("a.b.toml")).unwrap();
+    let (_, kinds) = text.lines().find_map(|line| line.split_once("kind = \"grating\"  # or ")).unwrap();
+    let all: Vec<&str> = frixel_scene::layer_kinds().filter(|kind| *kind != "grating").collect();
+    assert_eq!(kinds, all.join(", "));
+}
+
 #[test]
 fn a_new_scene_overwrites_nothing_and_needs_its_picture() {
     let folder = TempDir::new().unwrap();
@@ -49,7 +77,8 @@ fn a_new_scene_overwrites_nothing_and_needs_its_picture() {
         (&["new", "mine"][..], "mine.toml is there already"),
         (&["new", "other", "--picture", "none.png"], "none.png cannot be read"),
         (&["new", "nowhere/mine"], "mine.toml cannot be written"),
-        (&["new", "my wood.jpg"], "; a scene that plays it: frixel new 'my wood' --picture 'my wood.jpg'"),
+        (&["new", "my wood.jpg"], ": frixel new 'my wood' --picture 'my wood.jpg'"),
+        (&["new", "a.png", "--picture", "b.png"], "a scene needs another: frixel new a --picture b.png"),
     ] {
         let output = frixel(folder.path(), arguments);
         let said = String::from_utf8(output.stderr).unwrap();

@@ -150,6 +150,11 @@ pub(crate) trait Field: Debug + Send + Sync {
     }
 }
 
+/// The values of the field `kind` of a layer.
+pub fn layer_kinds() -> impl Iterator<Item = &'static str> {
+    KindName::ALL.iter().map(|(word, _)| *word)
+}
+
 /// The reference of the same friction everywhere, N.
 pub(crate) fn constant_field(friction_n: f64) -> Arc<dyn Field> {
     Arc::new(constant::ConstantField(friction_n))

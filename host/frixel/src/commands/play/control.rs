@@ -1,5 +1,6 @@
 //! `--control`: lines on standard input that change the scene while it plays.
 
+use std::fmt::{self, Display};
 use std::io::{BufRead, stdin};
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
@@ -11,7 +12,7 @@ use frixel::rigs::RecordedLink;
 use frixel_driver::{ControlLine, DeviceError};
 use frixel_scene::{LayerChange, LiveError, LiveLayers, Program};
 
-use super::{CommandError, Interrupt, note};
+use super::{CommandError, Interrupt};
 
 /// Longest time between two looks at standard input.
 const LOOK_PERIOD: Duration = Duration::from_millis(5);
@@ -31,6 +32,24 @@ pub(super) struct Control {
     resume_at_s: f64,
     /// On the clock of the play.
     layers: LiveLayers,
+}
+
+/// What a change of the scene comes from, for messages.
+#[derive(Clone, Debug)]
+enum Origin {
+    /// A line, by its number.
+    Line(u32),
+    /// The end of a trigger of a layer, by its title.
+    TriggerEnd(String),
+}
+
+impl Display for Origin {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Line(number) => write!(formatter, "line {number} of standard input"),
+            Self::TriggerEnd(layer) => write!(formatter, "the end of the trigger of {layer}"),
+        }
+    }
 }
 
 /// What the play does next.
@@ -76,20 +95,24 @@ impl Control {
         if self.waits { until_next } else { until_next.min(LOOK_PERIOD) }
     }
 
-    /// Carries out the lines that have arrived at time `t_s` of the play.
+    /// Carries out the lines that have arrived at time `t_s` of the play. Calls `say` with what is refused or clamped, a
+    /// sentence each.
     pub(super) fn step<L: RecordedLink>(
         &mut self,
         player: &mut Player<L>,
         program: &Program,
         t_s: f64,
+        say: &mut dyn FnMut(String),
     ) -> Result<Next, PlayError> {
         let now = Duration::try_from_secs_f64(t_s).unwrap_or_default();
         while let Some(change) = self.layers.end_trigger(now) {
-            self.send(player, &change)?;
+            let title = program.titles.get(usize::from(change.record)).cloned().unwrap_or_default();
+            send(player, &change, &Origin::TriggerEnd(title), say)?;
         }
         while t_s >= self.resume_at_s {
             let Some(line) = self.next_line() else { return Ok(Next::GoOn) };
             self.lines_read += 1;
+            let origin = Origin::Line(self.lines_read);
             match ControlLine::parse(&line) {
                 Ok(None) => {}
                 Ok(Some(ControlLine::Quit)) => return Ok(Next::Quit),
@@ -97,13 +120,13 @@ impl Control {
                 Ok(Some(ControlLine::Wait { duration_s })) => self.resume_at_s = t_s + duration_s,
                 Ok(Some(ControlLine::Layer { layer, on, gain })) => {
                     let change = self.layers.change(program, &layer, on, gain);
-                    self.carry_out(player, change)?;
+                    carry_out(player, change, &origin, say)?;
                 }
                 Ok(Some(ControlLine::Trigger { layer, duration_s })) => {
                     let change = self.layers.trigger(program, &layer, now, duration_s);
-                    self.carry_out(player, change)?;
+                    carry_out(player, change, &origin, say)?;
                 }
-                Err(error) => self.say(error),
+                Err(error) => say(format!("{origin}: {error}")),
             }
         }
         Ok(Next::GoOn)
@@ -119,38 +142,91 @@ impl Control {
         }
         self.lines.try_recv().ok()
     }
+}
 
-    /// Sends a change to the board, or prints why it is refused.
-    fn carry_out<L: RecordedLink>(
-        &mut self,
-        player: &mut Player<L>,
-        change: Result<LayerChange, LiveError>,
-    ) -> Result<(), PlayError> {
-        match change {
-            Ok(change) => self.send(player, &change),
-            Err(error) => {
-                self.say(error);
-                Ok(())
-            }
+/// Sends a change to the board, or says why it is refused.
+fn carry_out<L: RecordedLink>(
+    player: &mut Player<L>,
+    change: Result<LayerChange, LiveError>,
+    origin: &Origin,
+    say: &mut dyn FnMut(String),
+) -> Result<(), PlayError> {
+    match change {
+        Ok(change) => send(player, &change, origin, say),
+        Err(error) => {
+            say(format!("{origin}: {error}"));
+            Ok(())
         }
     }
+}
 
-    /// Sends a change to the board. Says what is clamped, and why if the board refuses the change.
-    fn send<L: RecordedLink>(&mut self, player: &mut Player<L>, change: &LayerChange) -> Result<(), PlayError> {
-        if let Some(notice) = change.notice() {
-            self.say(notice);
+/// Sends a change to the board. Says what is clamped, and why if the board refuses the change.
+fn send<L: RecordedLink>(
+    player: &mut Player<L>,
+    change: &LayerChange,
+    origin: &Origin,
+    say: &mut dyn FnMut(String),
+) -> Result<(), PlayError> {
+    if let Some(notice) = change.notice() {
+        say(format!("{origin}: {notice}"));
+    }
+    let LayerChange { record, setting, .. } = *change;
+    match player.set_layer(record, setting.on, setting.gain) {
+        Err(PlayError::Device(refused @ DeviceError::Refused { .. })) => {
+            say(format!("{origin}: {refused}"));
+            Ok(())
         }
-        let LayerChange { record, setting, .. } = *change;
-        match player.set_layer(record, setting.on, setting.gain) {
-            Err(PlayError::Device(refused @ DeviceError::Refused { .. })) => {
-                self.say(refused);
-                Ok(())
-            }
-            outcome => outcome,
-        }
+        outcome => outcome,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+    use std::ops::ControlFlow;
+
+    use frixel::rigs::SimLink;
+    use frixel_driver::Device;
+    use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
+    use frixel_scene::recorder::Recorder;
+    use frixel_scene::{Scene, compile};
+
+    use super::*;
+
+    fn program(live: bool) -> Program {
+        let text = format!(
+            "version = 2\n[[layer]]\nname = \"ping\"\nkind = \"constant\"\nfriction_fraction = 0.5\nlive = {live}\n"
+        );
+        let scene = Scene::parse(&text, "test.toml", &BTreeMap::new()).unwrap();
+        let board = RigConfig::default().board;
+        compile(&scene, &board.limits, board.tick_hz).unwrap()
     }
 
-    fn say(&self, error: impl std::fmt::Display) {
-        note(format_args!("frixel: line {} of standard input: {error}", self.lines_read));
+    /// The board refuses to change a layer that is not live in the scene that it plays.
+    #[test]
+    fn the_end_of_a_trigger_that_is_refused_is_not_blamed_on_a_line() {
+        let (config, mut memory) = (RigConfig::default(), BoardMemory::new());
+        let (limits, tick_hz) = (config.board.limits, config.board.tick_hz);
+        let playing = program(false);
+        let rig = Rig::new(&mut memory, &config, Stroke::sweep(0.12, 0.08, 1.0).unwrap(), 1).unwrap();
+        let recorder = Recorder::new(&playing, &limits, tick_hz, u64::MAX, 40).unwrap();
+        let device = Device::connect(SimLink::new(rig, Recorder::idle())).unwrap();
+        let mut player = Player::new(device, recorder);
+        player.start(&playing, 0, &mut |_| ControlFlow::Continue(())).unwrap();
+
+        let (sender, lines) = channel();
+        for line in ["layer ping off", "trigger ping 50", "# nothing"] {
+            sender.send(line.to_owned()).unwrap();
+        }
+        let live = program(true);
+        let (layers, interrupt) = (LiveLayers::new(&live), Interrupt::default());
+        let mut control = Control { lines, waits: false, interrupt, lines_read: 0, resume_at_s: 0.0, layers };
+        let mut said = Vec::new();
+        for t_s in [0.01, 0.1] {
+            control.step(&mut player, &live, t_s, &mut |sentence| said.push(sentence)).unwrap();
+        }
+        let origins: Vec<&str> = said.iter().filter_map(|sentence| Some(sentence.split_once(": ")?.0)).collect();
+        let trigger_end = "the end of the trigger of layer 1 \"ping\"";
+        assert_eq!(origins, ["line 1 of standard input", "line 2 of standard input", trigger_end], "{said:?}");
     }
 }

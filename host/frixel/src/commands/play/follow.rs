@@ -104,7 +104,8 @@ impl<L: RecordedLink> Play<'_, L> {
     fn control(&mut self) -> Result<Option<Duration>, CommandError> {
         let Some(control) = &mut self.control else { return Ok(Some(Duration::MAX)) };
         let t_s = self.player.recorder_mut().t_s();
-        let next = control.step(&mut self.player, &self.plan.program, t_s);
+        let say = &mut |sentence| note(format_args!("frixel: {sentence}"));
+        let next = control.step(&mut self.player, &self.plan.program, t_s, say);
         let step_max = control.time_max(t_s);
         self.outputs.switch(t_s, control.layers_off());
         match next.map_err(|error| self.error(error))? {

@@ -1,4 +1,4 @@
-//! A scene that is replaced whenever its file, or a file that it names, is saved.
+//! A scene that is replaced whenever one of its files is saved, or by another scene.
 
 use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
@@ -6,97 +6,135 @@ use std::thread::{self, JoinHandle};
 
 use frixel::player::{PlayError, Player};
 use frixel::rigs::RecordedLink;
-use frixel::scene_file::{ProfileNames, SceneFileError};
+use frixel::scene_file::{ProfileNames, SceneFiles};
 use frixel_driver::DeviceError;
 use frixel_scene::Program;
+use frixel_wire::hello::BoardLimits;
 use frixel_wire::message::Refusal;
 
+use super::outputs::{check_outputs, output_paths};
 use super::plan::{check_measured, print_notes};
 use super::rigs::Target;
-use super::saved_file::SavedFile;
-use super::{note, note_refusals};
+use super::{CommandError, PlayArgs, note, note_refusals};
 
-/// Watches the scene's file, and the files that it names, while an earlier version of it plays.
+/// Loads and compiles scenes while one plays.
 pub(super) struct LiveScene {
-    profiles: ProfileNames,
-    file: SavedFile,
-    named_files: Vec<SavedFile>,
-    /// The thread that compiles a saved scene, because the host must keep sending to the board meanwhile.
-    compiling: Option<JoinHandle<Compiled>>,
-    /// Whether the scene that is being compiled is another one, by `replace`, and not a saved one.
-    is_other: bool,
-    /// Whether changes of the files are played.
+    loader: Loader,
+    /// The files of the last version of the scene that plays, playable or not.
+    files: SceneFiles,
+    /// Whether saved files are played.
     watches: bool,
-    target: Target,
+    /// The scene that comes next. Meanwhile, the files are not checked: those of the next scene are as they were before
+    /// they were read, so that no change is missed.
+    next: Option<NextScene>,
 }
 
-/// A compiled scene, and the files that it names, as they were before they were read.
+/// A scene that is being compiled in a thread, because the host must keep sending to the board meanwhile.
+struct NextScene {
+    origin: Origin,
+    compiling: JoinHandle<Compiled>,
+}
+
+/// Why a scene is compiled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Origin {
+    /// A file of the scene that plays was saved.
+    Saved,
+    /// `replace` names another scene.
+    Other,
+}
+
+/// A compiled scene, and the files that it was read from.
 struct Compiled {
-    program: Result<Program, SceneFileError>,
-    named_files: Vec<SavedFile>,
+    program: Result<Program, CommandError>,
+    files: SceneFiles,
+}
+
+/// How scenes are loaded and compiled.
+#[derive(Clone)]
+struct Loader {
+    profiles: ProfileNames,
+    target: Target,
+    /// The files that the play writes.
+    outputs: [PathBuf; 4],
+}
+
+impl Loader {
+    fn compile(&self, path: &Path, limits: &BoardLimits, tick_hz: u32) -> Compiled {
+        let (scene, files) = self.profiles.load_with_files(path);
+        let program = check_outputs(&files, &self.outputs)
+            .and_then(|()| Ok(scene?))
+            .and_then(|scene| Ok(self.target.compile(&scene, limits, tick_hz)?));
+        Compiled { program, files }
+    }
 }
 
 impl LiveScene {
-    /// Watches a file, and the files that it names, for changes from now on if `watches` is true. Call this before the
-    /// file is read.
-    pub(super) fn new(path: &Path, profiles: ProfileNames, watches: bool, target: Target) -> Self {
-        let file = SavedFile::new(path);
-        let named_files = if watches { profiles.load_with_files(path).1 } else { Vec::new() };
-        Self { profiles, file, named_files: watched(&named_files), compiling: None, is_other: false, watches, target }
+    /// `files` are those of the first scene.
+    pub(super) fn new(args: &PlayArgs, target: Target, files: SceneFiles) -> Self {
+        let loader = Loader { profiles: args.profiles.names(), target, outputs: output_paths(args, target) };
+        Self { loader, files, watches: args.watch, next: None }
     }
 
-    /// Plays, and watches, another file from now on.
+    /// Plays another scene next, and watches its files once it plays.
     pub(super) fn load<L: RecordedLink>(&mut self, path: &Path, player: &Player<L>) {
-        self.file = SavedFile::new(path);
-        self.is_other = true;
-        self.compile(player);
+        self.compile(path.to_owned(), Origin::Other, player);
     }
 
-    /// Plays the file if it was saved, or if a file that it names was. Returns the new program if it replaced
-    /// `playing`.
+    /// Plays the next scene once it is compiled. Without one, compiles the scene that plays anew if one of its files was
+    /// saved. Returns the new program if it replaced `playing`.
     pub(super) fn refresh<L: RecordedLink>(
         &mut self,
         player: &mut Player<L>,
         playing: &Program,
     ) -> Result<Option<Program>, PlayError> {
         // In virtual time, the play waits for the compiler.
-        let waits = self.target == Target::Simulator;
-        if let Some(compiling) = self.compiling.take_if(|compiling| waits || compiling.is_finished()) {
-            let Compiled { program, named_files } = compiling.join().unwrap_or_else(|panic| resume_unwind(panic));
-            self.named_files = named_files;
-            let how = if std::mem::take(&mut self.is_other) { "" } else { " as it was saved" };
-            return replace(self.file.path(), how, program, player, playing);
+        let waits = self.loader.target == Target::Simulator;
+        if let Some(next) = self.next.take_if(|next| waits || next.compiling.is_finished()) {
+            let compiled = next.compiling.join().unwrap_or_else(|panic| resume_unwind(panic));
+            return self.play(next.origin, compiled, player, playing);
         }
-        if !self.watches {
-            return Ok(None);
-        }
-        if self.file.has_vanished() {
-            let path = self.file.path().display();
-            note(format_args!(
-                "frixel: {path} is gone: the previous scene keeps playing, until the file is there again"
-            ));
-        }
-        // Every file is checked, so that several that are saved together are one change.
-        let is_saved = self.named_files.iter_mut().fold(self.file.is_saved(), |saved, file| file.is_saved() || saved);
-        if self.compiling.is_none() && is_saved {
-            self.compile(player);
+        if self.watches && self.next.is_none() {
+            self.check_files(player);
         }
         Ok(None)
     }
 
-    fn compile<L: RecordedLink>(&mut self, player: &Player<L>) {
-        let (limits, tick_hz) = self.target.limits(player.device().hello());
-        let (path, profiles, target) = (self.file.path().to_owned(), self.profiles.clone(), self.target);
-        self.compiling = Some(thread::spawn(move || {
-            let (scene, named_files) = profiles.load_with_files(&path);
-            let program = scene.and_then(|scene| Ok(target.compile(&scene, &limits, tick_hz)?));
-            Compiled { program, named_files: watched(&named_files) }
-        }));
+    /// Plays a compiled scene. The files of another scene that cannot be played are not watched.
+    fn play<L: RecordedLink>(
+        &mut self,
+        origin: Origin,
+        Compiled { program, files }: Compiled,
+        player: &mut Player<L>,
+        playing: &Program,
+    ) -> Result<Option<Program>, PlayError> {
+        let how = if origin == Origin::Saved { " as it was saved" } else { "" };
+        let replaced = replace(files.path(), how, program, player, playing)?;
+        if origin == Origin::Saved || replaced.is_some() {
+            self.files = files;
+        }
+        Ok(replaced)
     }
-}
 
-fn watched(paths: &[PathBuf]) -> Vec<SavedFile> {
-    paths.iter().map(|path| SavedFile::new(path)).collect()
+    fn check_files<L: RecordedLink>(&mut self, player: &Player<L>) {
+        let is_saved = self.files.is_saved();
+        if self.files.has_vanished() {
+            let path = self.files.path().display();
+            note(format_args!(
+                "frixel: {path} is gone: the previous scene keeps playing, until the file is there again"
+            ));
+        }
+        if is_saved {
+            self.compile(self.files.path().to_owned(), Origin::Saved, player);
+        }
+    }
+
+    fn compile<L: RecordedLink>(&mut self, path: PathBuf, origin: Origin, player: &Player<L>) {
+        let (limits, tick_hz) = self.loader.target.limits(player.device().hello());
+        let loader = self.loader.clone();
+        let compiling = thread::spawn(move || loader.compile(&path, &limits, tick_hz));
+        self.next = Some(NextScene { origin, compiling });
+    }
 }
 
 /// Plays a compiled scene, and prints its file and `how` it plays. If it has errors or the board rejects it, prints why,
@@ -104,7 +142,7 @@ fn watched(paths: &[PathBuf]) -> Vec<SavedFile> {
 fn replace<L: RecordedLink>(
     path: &Path,
     how: &str,
-    compiled: Result<Program, SceneFileError>,
+    compiled: Result<Program, CommandError>,
     player: &mut Player<L>,
     playing: &Program,
 ) -> Result<Option<Program>, PlayError> {
@@ -157,4 +195,140 @@ fn replace_alone<L: RecordedLink>(
         player.replace(playing)?;
     }
     replaced
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+    use std::ops::ControlFlow;
+    use std::sync::mpsc::{Sender, channel};
+    use std::thread::sleep;
+    use std::time::{Duration, Instant};
+
+    use frixel::rigs::SimLink;
+    use frixel_driver::Device;
+    use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
+    use frixel_scene::recorder::Recorder;
+    use frixel_scene::{TargetRange, compile};
+    use tempfile::TempDir;
+
+    use super::*;
+
+    /// A scene with a part of its own: the same friction everywhere.
+    const SCENE: &str = "version = 2\ninclude = [\"part.toml\"]\n";
+
+    fn part(friction_n: f64) -> String {
+        format!("version = 2\n[[layer]]\nkind = \"constant\"\nfriction_n = {friction_n}\n")
+    }
+
+    /// A simulated board that plays `scene.toml`, watched as at a port: the play does not wait for the compiler.
+    struct Watched<'a> {
+        folder: TempDir,
+        player: Player<SimLink<'a>>,
+        program: Program,
+        live: LiveScene,
+    }
+
+    impl<'a> Watched<'a> {
+        fn new(memory: &'a mut BoardMemory) -> Self {
+            let folder = TempDir::new().unwrap();
+            let path = folder.path().join("scene.toml");
+            fs::write(&path, SCENE).unwrap();
+            fs::write(folder.path().join("part.toml"), part(0.25)).unwrap();
+            let args = PlayArgs { watch: true, ..PlayArgs::ideal(&path) };
+            let (scene, files) = args.profiles.names().load_with_files(&path);
+            let config = RigConfig::default();
+            let (limits, tick_hz) = (config.board.limits, config.board.tick_hz);
+            let program = compile(&scene.unwrap(), &limits, tick_hz).unwrap();
+            let rig = Rig::new(memory, &config, Stroke::sweep(0.12, 0.08, 1.0).unwrap(), 1).unwrap();
+            let recorder = Recorder::new(&program, &limits, tick_hz, u64::MAX, 40).unwrap();
+            let device = Device::connect(SimLink::new(rig, Recorder::idle())).unwrap();
+            let mut player = Player::new(device, recorder);
+            player.start(&program, 0, &mut |_| ControlFlow::Continue(())).unwrap();
+            Self { folder, player, program, live: LiveScene::new(&args, Target::Port, files) }
+        }
+
+        fn write(&self, name: &str, text: &str) {
+            fs::write(self.folder.path().join(name), text).unwrap();
+        }
+
+        /// Compiles the scene as it is now; the compiler is done when something is sent.
+        fn compile_until_sent(&mut self) -> Sender<()> {
+            let (loader, path) = (self.live.loader.clone(), self.live.files.path().to_owned());
+            let (limits, tick_hz) = loader.target.limits(self.player.device().hello());
+            let (sender, receiver) = channel();
+            let (loaded, is_loaded) = channel();
+            let compiling = thread::spawn(move || {
+                let compiled = loader.compile(&path, &limits, tick_hz);
+                loaded.send(()).unwrap();
+                receiver.recv().unwrap();
+                compiled
+            });
+            is_loaded.recv().unwrap();
+            self.live.next = Some(NextScene { origin: Origin::Saved, compiling });
+            sender
+        }
+
+        fn refresh(&mut self) {
+            if let Some(program) = self.live.refresh(&mut self.player, &self.program).unwrap() {
+                self.program = program;
+            }
+            self.player.step(Duration::from_millis(1)).unwrap();
+            sleep(Duration::from_millis(5));
+        }
+
+        /// Refreshes until a scene with this friction plays.
+        fn until_plays(&mut self, friction_n: f64) {
+            let begin = Instant::now();
+            while (TargetRange::of(&self.program).most_n - friction_n).abs() > 1e-6 {
+                assert!(begin.elapsed() < Duration::from_secs(20), "{friction_n} N never plays");
+                self.refresh();
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_saved_while_a_scene_compiles_plays_next() {
+        let mut memory = BoardMemory::new();
+        let mut watched = Watched::new(&mut memory);
+        let alone = |friction_n: f64| part(friction_n) + "# no part\n";
+        for (name, text, friction_n) in [("part.toml", part(0.255), 0.255), ("scene.toml", alone(0.26), 0.26)] {
+            let compiler = watched.compile_until_sent();
+            watched.write(name, &text);
+            let begin = Instant::now();
+            while begin.elapsed() < Duration::from_millis(400) {
+                watched.refresh();
+            }
+            compiler.send(()).unwrap();
+            watched.until_plays(friction_n);
+        }
+    }
+
+    #[test]
+    fn another_scene_that_cannot_be_played_leaves_the_first_one_watched() {
+        let mut memory = BoardMemory::new();
+        let mut watched = Watched::new(&mut memory);
+        let nowhere = watched.folder.path().join("nowhere.toml");
+        watched.live.load(&nowhere, &watched.player);
+        while watched.live.next.is_some() {
+            watched.refresh();
+        }
+        watched.write("part.toml", &part(0.255));
+        watched.until_plays(0.255);
+
+        // What is saved plays although the other scene comes before it is compiled.
+        watched.write("part.toml", &part(0.2575));
+        while watched.live.next.is_none() {
+            watched.refresh();
+        }
+        watched.live.load(&nowhere, &watched.player);
+        watched.until_plays(0.2575);
+
+        watched.write("other.toml", &part(0.26));
+        let other = watched.folder.path().join("other.toml");
+        watched.live.load(&other, &watched.player);
+        watched.until_plays(0.26);
+        watched.write("other.toml", &part(0.265));
+        watched.until_plays(0.265);
+    }
 }

@@ -3,8 +3,10 @@
 use std::thread::sleep;
 use std::time::Duration;
 
-use super::rigs;
-use super::saved_file::SavedFile;
+use frixel::scene_file::SceneFiles;
+
+use super::outputs::{check_outputs, output_paths};
+use super::rigs::{self, Target};
 use super::{CommandError, Interrupt, PlayArgs, finish, note};
 
 /// Time between two checks of the files.
@@ -21,9 +23,8 @@ pub(super) fn play_on_simulator(args: &PlayArgs, interrupt: &Interrupt) -> Resul
     note(format_args!("frixel: {name} plays anew when it is saved; Ctrl-C ends"));
     while !interrupt.is_requested() {
         sleep(CHECK_PERIOD);
-        // Every file is checked, so that several that are saved together are one change.
-        let is_saved = files.iter_mut().filter_map(|file| file.is_saved().then_some(())).count() > 0;
-        if files.first_mut().is_some_and(SavedFile::has_vanished) {
+        let is_saved = files.is_saved();
+        if files.has_vanished() {
             note(format_args!("frixel: {name} is gone: it plays anew when it is there again"));
         }
         if is_saved {
@@ -38,13 +39,11 @@ pub(super) fn play_on_simulator(args: &PlayArgs, interrupt: &Interrupt) -> Resul
     Ok(())
 }
 
-/// Loads the scene and plays it. Returns the scene's file, first, and those that it names, as they were when they were
-/// read.
-fn play(args: &PlayArgs, interrupt: &Interrupt) -> (Result<(), CommandError>, Vec<SavedFile>) {
-    let file = SavedFile::new(&args.scene);
-    let (scene, named_files) = args.profiles.names().load_with_files(&args.scene);
-    let files = std::iter::once(file).chain(named_files.iter().map(|path| SavedFile::new(path))).collect();
-    let played = scene.map_err(CommandError::from).and_then(|scene| {
+/// Loads the scene and plays it. Returns the files that it was read from as well.
+fn play(args: &PlayArgs, interrupt: &Interrupt) -> (Result<(), CommandError>, SceneFiles) {
+    let (scene, files) = args.profiles.names().load_with_files(&args.scene);
+    let checked = check_outputs(&files, &output_paths(args, Target::Simulator));
+    let played = checked.and_then(|()| Ok(scene?)).and_then(|scene| {
         let played = rigs::play_on_simulator(args, &scene, None, interrupt)?;
         finish(args, played)
     });

@@ -1,6 +1,6 @@
 //! `frixel scene preview`: draws the friction map of a scene, and says what a person will feel.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use frixel::output::{draft_line, write_preview_png};
@@ -11,6 +11,7 @@ use frixel_scene::{Preview, compile_draft};
 
 use super::super::argument::number;
 use super::super::error::CommandError;
+use super::super::overwrite::check_outputs;
 use super::super::profiles::ProfileArgs;
 use super::super::terminal::{note_refusals, print_line};
 
@@ -37,9 +38,7 @@ pub(super) fn run(args: &PreviewArgs) -> Result<(), CommandError> {
     }
     let board = RigConfig::default().board;
     let (scene, files) = args.profiles.names().load_with_files(&args.scene);
-    if let Some(file) = files.into_iter().find(|file| is_same_file(file, &args.output)) {
-        return Err(CommandError::WouldReplace { path: file });
-    }
+    check_outputs(&files, std::slice::from_ref(&args.output), "give another name to -o")?;
     let program = compile_draft(&scene?, &board.limits, board.tick_hz)?;
     note_refusals(&args.scene, &program);
     let title = args.scene.file_name().unwrap_or_default().to_string_lossy();
@@ -53,11 +52,6 @@ pub(super) fn run(args: &PreviewArgs) -> Result<(), CommandError> {
         print_line(format_args!("  {name:<16} {text}"))?;
     }
     print_line(format_args!("  {:<16} {}", "wrote", args.output.display()))
-}
-
-/// Whether two paths lead to one file that exists.
-fn is_same_file(one: &Path, other: &Path) -> bool {
-    one.canonicalize().is_ok_and(|one| other.canonicalize().is_ok_and(|other| one == other))
 }
 
 /// Parses the speed of a finger.

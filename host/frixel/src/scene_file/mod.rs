@@ -1,5 +1,8 @@
 //! Loading of scene files and of the files that they name.
 
+mod files;
+mod saved_file;
+
 use std::cell::RefCell;
 use std::fs;
 use std::io;
@@ -7,6 +10,8 @@ use std::path::{Path, PathBuf};
 
 use frixel_scene::{CompileError, FileUnavailable, Files, FingerProfile, Nearest, Scene, Screen, TILDE_ADVICE};
 use thiserror::Error;
+
+pub use files::SceneFiles;
 
 /// Why a scene file could not be loaded.
 #[derive(Debug, Error)]
@@ -68,37 +73,42 @@ pub fn load(path: &Path) -> Result<Scene, SceneFileError> {
     load_with_files(path).0
 }
 
-/// Reads a scene file, and returns the paths of the files that it names as well, whether they could be read or not.
-pub fn load_with_files(path: &Path) -> (Result<Scene, SceneFileError>, Vec<PathBuf>) {
+/// Reads a scene file, and returns the files that it was read from as well.
+pub fn load_with_files(path: &Path) -> (Result<Scene, SceneFileError>, SceneFiles) {
     let file = path.display().to_string();
+    let files = SceneFiles::new(path);
     match fs::read(path) {
         Ok(bytes) => {
-            let folder = SceneFolder(path.parent().unwrap_or(Path::new("")).to_owned());
-            let files = NamedFiles { folder, paths: RefCell::default() };
-            let scene = Scene::parse_bytes(&bytes, &file, &files).map_err(SceneFileError::from);
-            (scene, files.paths.into_inner())
+            let named = NamedFiles { folder: folder_of(path), files: RefCell::new(files) };
+            let scene = Scene::parse_bytes(&bytes, &file, &named).map_err(SceneFileError::from);
+            (scene, named.files.into_inner())
         }
-        Err(source) => (Err(SceneFileError::Unreadable { file, source }), Vec::new()),
+        Err(source) => (Err(SceneFileError::Unreadable { file, source }), files),
     }
 }
 
-/// The files that a scene names, and their paths.
+/// Notes each file that a scene names before it is read.
 struct NamedFiles {
     folder: SceneFolder,
-    paths: RefCell<Vec<PathBuf>>,
+    files: RefCell<SceneFiles>,
 }
 
 impl Files for NamedFiles {
     fn bytes(&self, name: &str) -> Result<Vec<u8>, FileUnavailable> {
-        self.paths.borrow_mut().push(self.folder.0.join(name));
+        self.files.borrow_mut().add(&self.folder.0.join(name));
         self.folder.bytes(name)
     }
+}
+
+/// The folder that the names in a scene file are relative to.
+fn folder_of(scene: &Path) -> SceneFolder {
+    SceneFolder(scene.parent().unwrap_or(Path::new("")).to_owned())
 }
 
 /// Reads a scene file of version 1, and returns it as version 2.
 pub fn migrate(path: &Path) -> Result<String, SceneFileError> {
     let file = path.display().to_string();
-    let folder = SceneFolder(path.parent().unwrap_or(Path::new("")).to_owned());
+    let folder = folder_of(path);
     match fs::read(path) {
         Ok(bytes) => {
             // Report bytes that are not text in the same way as everywhere.
@@ -126,11 +136,13 @@ impl ProfileNames {
 
     /// Reads a scene file, as [`load_with_files`] does, with this finger and screen. Their files are among those
     /// returned.
-    pub fn load_with_files(&self, path: &Path) -> (Result<Scene, SceneFileError>, Vec<PathBuf>) {
+    pub fn load_with_files(&self, path: &Path) -> (Result<Scene, SceneFileError>, SceneFiles) {
         let (scene, mut files) = load_with_files(path);
         let finger = self.finger.as_deref().filter(|name| FingerProfile::bundled(name).is_none());
         let screen = self.screen.as_deref().filter(|name| Screen::bundled(name).is_none());
-        files.extend([finger, screen].into_iter().flatten().map(PathBuf::from));
+        for name in [finger, screen].into_iter().flatten() {
+            files.add(Path::new(name));
+        }
         (scene.and_then(|scene| self.applied_to(scene)), files)
     }
 
@@ -200,6 +212,9 @@ fn files_in(folder: &Path) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
+    use std::thread::sleep;
+    use std::time::{Duration, Instant};
+
     use frixel_model::{Contact, Finger};
     use frixel_scene::Elasticity;
 
@@ -230,6 +245,35 @@ mod tests {
         let gap_m = 1e-6 * (screen.coating_gap_um() + finger.skin_gap_um);
         let contact = Contact::new(&on_springs, gap_m).unwrap().under_load(finger.normal_load_n).unwrap();
         assert_eq!(frixel_hil_sim::example_finger(), Ok(contact));
+    }
+
+    #[test]
+    fn a_file_that_is_saved_once_it_is_read_is_saved() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        for name in ["scene.toml", "one.png", "other.png"] {
+            fs::write(path(name), b"bytes").unwrap();
+        }
+        for saved in ["scene.toml", "one.png", "other.png"] {
+            let files = RefCell::new(SceneFiles::new(&path("scene.toml")));
+            let named = NamedFiles { folder: folder_of(&path("scene.toml")), files };
+            named.bytes("one.png").unwrap();
+            named.bytes("other.png").unwrap();
+            // As while the rest of the scene is read, or compiled.
+            fs::write(path(saved), saved.repeat(2)).unwrap();
+            let mut files = named.files.into_inner();
+            let begin = Instant::now();
+            while !files.is_saved() {
+                assert!(begin.elapsed() < Duration::from_secs(10), "{saved}");
+                sleep(Duration::from_millis(10));
+            }
+        }
+        let mut files = load_with_files(&path("scene.toml")).1;
+        let begin = Instant::now();
+        while begin.elapsed() < Duration::from_millis(500) {
+            assert!(!files.is_saved());
+            sleep(Duration::from_millis(10));
+        }
     }
 
     #[test]

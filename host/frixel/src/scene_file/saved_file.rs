@@ -16,7 +16,7 @@ const CHECKS_GONE: u32 = 5;
 pub(super) struct SavedFile {
     path: PathBuf,
     checked_at: Instant,
-    /// State of the file when it was last read.
+    /// State of the file before it was read.
     read: Option<Fingerprint>,
     /// State of the file at the last check.
     checked: Option<Fingerprint>,
@@ -50,7 +50,7 @@ fn file_number(_metadata: &Metadata) -> u64 {
 }
 
 impl SavedFile {
-    /// Watches a file for changes from now on. Call this before the file is read for the first time.
+    /// Watches a file for changes from now on. Call this before the file is read.
     pub(super) fn new(path: &Path) -> Self {
         let now = Fingerprint::of(path);
         Self { path: path.to_owned(), checked_at: Instant::now(), read: now, checked: now, missed: 0 }
@@ -69,8 +69,8 @@ impl SavedFile {
         has_vanished
     }
 
-    /// Whether the file has changed since this method last returned true. Returns false between two checks, and while
-    /// the file does not exist.
+    /// Whether the file has changed since it was read. Returns false between two checks, and while the file does not
+    /// exist.
     pub(super) fn is_saved(&mut self) -> bool {
         if self.checked_at.elapsed() < CHECK_PERIOD {
             return false;
@@ -83,11 +83,7 @@ impl SavedFile {
         let now = Fingerprint::of(&self.path);
         self.missed = if now.is_some() { 0 } else { self.missed.saturating_add(1) };
         let is_settled = now == std::mem::replace(&mut self.checked, now);
-        let saved = is_settled && now.is_some() && now != self.read;
-        if saved {
-            self.read = now;
-        }
-        saved
+        is_settled && now.is_some() && now != self.read
     }
 }
 
@@ -108,11 +104,13 @@ mod tests {
         let mut file = SavedFile::new(&path);
         assert_eq!(checks(&mut file), [false; 3]);
         fs::write(&path, "another").unwrap();
-        assert_eq!(checks(&mut file), [false, true, false]);
+        assert_eq!(checks(&mut file), [false, true, true], "until it is read again");
+        let mut file = SavedFile::new(&path);
         let other = folder.path().join(".scene.toml.swp");
         fs::write(&other, "another").unwrap();
         fs::rename(&other, &path).unwrap();
-        assert_eq!(checks(&mut file), [false, true, false]);
+        assert_eq!(checks(&mut file), [false, true, true]);
+        let mut file = SavedFile::new(&path);
         fs::remove_file(&path).unwrap();
         assert_eq!(checks(&mut file), [false; 3], "a file that was removed was not saved");
         assert!(!file.has_vanished(), "an editor may be replacing it");
@@ -120,7 +118,7 @@ mod tests {
         file.missed = CHECKS_GONE;
         assert_eq!([file.has_vanished(), file.has_vanished()], [true, false]);
         fs::write(&path, "again").unwrap();
-        assert_eq!(checks(&mut file), [false, true, false]);
+        assert_eq!(checks(&mut file), [false, true, true]);
     }
 
     #[test]

@@ -1,0 +1,48 @@
+//! The files that a scene is read from.
+
+use std::iter::once;
+use std::path::Path;
+
+use super::saved_file::SavedFile;
+
+/// The files that a scene was read from, each as it was just before it was read: the scene's own file, and those that
+/// it names, whether they could be read or not.
+pub struct SceneFiles {
+    scene: SavedFile,
+    named: Vec<SavedFile>,
+}
+
+impl SceneFiles {
+    /// The scene's own file. Call this before the file is read.
+    pub(super) fn new(scene: &Path) -> Self {
+        Self { scene: SavedFile::new(scene), named: Vec::new() }
+    }
+
+    /// Adds a file that the scene names. Call this before the file is read.
+    pub(super) fn add(&mut self, named: &Path) {
+        self.named.push(SavedFile::new(named));
+    }
+
+    /// The path of the scene's own file.
+    pub fn path(&self) -> &Path {
+        self.scene.path()
+    }
+
+    /// Whether any of the files was saved after it was read. Returns false between two checks, a tenth of a second
+    /// apart, and while a file is being written.
+    pub fn is_saved(&mut self) -> bool {
+        once(&mut self.scene).chain(&mut self.named).any(SavedFile::is_saved)
+    }
+
+    /// Whether the scene's own file is gone, once after it was there. Only [`Self::is_saved`] checks for it.
+    pub fn has_vanished(&mut self) -> bool {
+        self.scene.has_vanished()
+    }
+
+    /// The path of the file that another path leads to; `None` if that is none of these files, or does not exist.
+    pub fn find(&self, path: &Path) -> Option<&Path> {
+        let found = path.canonicalize().ok()?;
+        let is_it = |path: &&Path| path.canonicalize().is_ok_and(|path| path == found);
+        once(&self.scene).chain(&self.named).map(SavedFile::path).find(is_it)
+    }
+}
