@@ -86,7 +86,7 @@ async function slideOn([selector, [from, to], durationMs]) {
   });
   const canvas = document.querySelector(selector).shadowRoot.querySelector("#map-finger");
   const { left, top, width, height } = canvas.getBoundingClientRect();
-  const begin = performance.now();
+  const begin = performance.now() + AHEAD_MS;
   for (let ms = 8; ms <= durationMs; ms += 8) {
     const part = from + ((to - from) * ms) / durationMs;
     const place = { clientX: left + part * width, clientY: top + 0.5 * height };
@@ -94,8 +94,9 @@ async function slideOn([selector, [from, to], durationMs]) {
     Object.defineProperty(event, "timeStamp", { value: begin + ms });
     canvas.dispatchEvent(event);
   }
+  sentUntil(begin);
   // What is felt comes 40 ms later.
-  await new Promise((resolve) => setTimeout(resolve, durationMs + 100));
+  await new Promise((resolve) => setTimeout(resolve, AHEAD_MS + durationMs + 100));
   leave();
   return samples;
 }

@@ -10,6 +10,7 @@ import fs from "node:fs";
 import os from "node:os";
 import path from "node:path";
 import readline from "node:readline";
+import { test } from "node:test";
 import tty from "node:tty";
 import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
@@ -53,6 +54,26 @@ export async function endLeftovers() {
 export async function cleanUp() {
   await endLeftovers();
   await browser?.close();
+}
+
+/** How a test fails in which the machine was held up for long: a line without answers, or a time that is too long. */
+const HELD_UP = /was not answered by|before the host timeout|does not get past 0 of|too late/;
+/** A test is tried so often. */
+const TRIES_MAX = 8;
+
+/** A test of times that the machine, too, makes longer: it has to pass once in a few tries, and may fail only so. */
+export function timedTest(name, body) {
+  test(name, async (context) => {
+    for (let tries = 1; ; tries += 1) {
+      try {
+        return await body(context);
+      } catch (error) {
+        if (tries === TRIES_MAX || !HELD_UP.test(error.message)) throw error;
+        context.diagnostic(`tried again: ${error.message.split("\n")[0]}`);
+        await endLeftovers();
+      }
+    }
+  });
 }
 
 /** Makes a program end with `quit`, and waits until it has ended. */

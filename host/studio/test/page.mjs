@@ -32,13 +32,14 @@ function addHelpers() {
    * ahead with their times, so that the stroke is even however busy the machine is. Resolves at its end.
    */
   globalThis.slide = (fromMm, toMm, yMm, speedMmPerS) => {
-    const begin = performance.now();
+    const begin = performance.now() + AHEAD_MS;
     const durationMs = (1000 * (toMm - fromMm)) / speedMmPerS;
     send("pointerdown", fromMm, yMm, begin);
     for (let ms = 8; ms <= durationMs; ms += 8) {
       send("pointermove", fromMm + (speedMmPerS * ms) / 1000, yMm, begin + ms);
     }
-    return wait(durationMs);
+    sentUntil(begin);
+    return wait(AHEAD_MS + durationMs);
   };
   globalThis.lift = (xMm, yMm) => send("pointerup", xMm, yMm);
   const listeners = new Set();
@@ -73,6 +74,11 @@ const SPEED_MM_PER_S = 80;
 
 /** Runs in the page, which has a function `eachFrame(listen)` that returns how to listen no more. */
 export function addWatch() {
+  /** The samples of a stroke are sent so long before the first of them, ms: a busy machine takes its time. */
+  globalThis.AHEAD_MS = 300;
+  let isSentInTime = true;
+  /** All samples of a stroke have been sent, of which the first one is at `ms`. */
+  globalThis.sentUntil = (ms) => (isSentInTime &&= performance.now() < ms);
   const FRAMES = 10;
   /** A worker that is held up skips more time than this, and frames are rarely so late, ms. */
   const SKIPPED_MS = 50;
@@ -87,9 +93,10 @@ export function addWatch() {
         resolve();
       });
     });
-  /** From now on, `isUndisturbed()` says whether the board's state is the same, and its time never stood still. */
+  /** From now on, `isUndisturbed()` says whether strokes came in time, and the board's state and clock did not jump. */
   globalThis.watchBoard = async () => {
     await running();
+    isSentInTime = true;
     const [lagsMs, states] = [[], new Set()];
     const leave = eachFrame(({ tick, slowness, state }) => {
       states.add(state);
@@ -99,14 +106,15 @@ export function addWatch() {
     });
     globalThis.isUndisturbed = () => {
       leave();
-      return states.size === 1 && Math.min(...lagsMs.slice(-FRAMES)) < Math.min(...lagsMs) + SKIPPED_MS;
+      if (!isSentInTime || states.size !== 1) return false;
+      return Math.min(...lagsMs.slice(-FRAMES)) < Math.min(...lagsMs) + SKIPPED_MS;
     };
   };
 }
 
 /**
- * Does `act()`, and returns its value. A busy machine holds the page up, so that its board is disarmed, or the board
- * itself, which then skips time: `act` is repeated until neither has happened.
+ * Does `act()`, and returns its value. A busy machine holds the page up, so that its board is disarmed or its samples
+ * come late, or the board itself, which then skips time: `act` is repeated until nothing of this has happened.
  */
 export async function undisturbed(page, act) {
   for (let tries = 0; tries < STROKES_MAX; tries += 1) {
