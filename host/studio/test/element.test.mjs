@@ -5,13 +5,17 @@ import fs from "node:fs";
 import http from "node:http";
 import os from "node:os";
 import path from "node:path";
-import { after, test } from "node:test";
+import { after, afterEach, test } from "node:test";
 import { pathToFileURL } from "node:url";
-import { cleanUp, openPage, required } from "./harness.mjs";
+import { cleanUp, endLeftovers, openPage, required } from "./harness.mjs";
+import { addWatch, undisturbed } from "./page.mjs";
 
 const SCRIPT = path.join(path.dirname(required("STUDIO_PAGE")), "frixel-scene.js");
+/** Duration of a stroke, ms. */
+const STROKE_MS = 1000;
 const GRATING = fs.readFileSync(new URL("../../../scenes/grating.toml", import.meta.url), "utf8");
 
+afterEach(endLeftovers);
 after(cleanUp);
 
 /** A folder with a document of these elements, beside the script. */
@@ -39,21 +43,62 @@ async function lineOf(page, selector) {
 
 /** Slides over an element with the mouse; returns felt friction and voltage at each sample. */
 async function slideOver(page, selector) {
-  await page.evaluate((selector) => {
-    globalThis.samples = { feltN: [], voltageV: [] };
-    document.querySelector(selector).addEventListener("feel", ({ detail }) => {
-      for (const name of ["feltN", "voltageV"]) samples[name].push(...detail[name]);
-    });
-  }, selector);
   const canvas = page.locator(`${selector} #map-finger`);
   await canvas.scrollIntoViewIfNeeded();
   const { x, y, width, height } = await canvas.boundingBox();
-  await page.mouse.move(x + 0.2 * width, y + 0.5 * height);
-  await page.waitForTimeout(500);
-  await page.mouse.down();
-  await page.mouse.move(x + 0.8 * width, y + 0.5 * height, { steps: 90 });
-  await page.mouse.up();
-  return page.evaluate(() => samples);
+  const moveTo = (part) => page.mouse.move(x + part * width, y + 0.5 * height);
+  await page.evaluate((selector) => {
+    globalThis.eachFrame = (listen) => {
+      const element = document.querySelector(selector);
+      const feel = ({ detail }) => listen(detail);
+      element.addEventListener("feel", feel);
+      return () => element.removeEventListener("feel", feel);
+    };
+  }, selector);
+  await page.evaluate(addWatch);
+  // The scene under the pointer is the one that plays.
+  await moveTo(0.2);
+  await page.evaluate(
+    () =>
+      new Promise((resolve) => {
+        const leave = eachFrame(({ state, feltN }) => {
+          if (state !== "active" || feltN.length === 0) return;
+          leave();
+          resolve();
+        });
+      }),
+  );
+  return undisturbed(page, async () => {
+    await moveTo(0.2);
+    await page.mouse.down();
+    const samples = await page.evaluate(slideOn, [selector, [0.2, 0.8], STROKE_MS]);
+    await moveTo(0.8);
+    await page.mouse.up();
+    return samples;
+  });
+}
+
+/** Runs in the page. The events are sent ahead with their times, so that the stroke is even on a busy machine. */
+async function slideOn([selector, [from, to], durationMs]) {
+  const samples = { feltN: [], voltageV: [] };
+  const leave = eachFrame((frame) => {
+    for (const name of ["feltN", "voltageV"]) samples[name].push(...frame[name]);
+  });
+  const canvas = document.querySelector(selector).shadowRoot.querySelector("#map-finger");
+  const { left, top, width, height } = canvas.getBoundingClientRect();
+  const begin = performance.now() + AHEAD_MS;
+  for (let ms = 8; ms <= durationMs; ms += 8) {
+    const part = from + ((to - from) * ms) / durationMs;
+    const place = { clientX: left + part * width, clientY: top + 0.5 * height };
+    const event = new PointerEvent("pointermove", { ...place, pointerId: 1, bubbles: true });
+    Object.defineProperty(event, "timeStamp", { value: begin + ms });
+    canvas.dispatchEvent(event);
+  }
+  sentUntil(begin);
+  // What is felt comes 40 ms later.
+  await new Promise((resolve) => setTimeout(resolve, AHEAD_MS + durationMs + 100));
+  leave();
+  return samples;
 }
 
 function assertFelt({ feltN, voltageV }) {
@@ -84,7 +129,7 @@ test("from a file, bundled scenes and scenes inside of the element play", async 
   await close();
 });
 
-test("from a server, `src` names a scene with its files", async () => {
+test("from a server, `src` names a scene with its files", async (context) => {
   const part = 'version = 2\n[[layer]]\nkind = "bitmap"\npicture = "wall.png"\nx_mm = 0\ny_mm = 0\nwidth_mm = 80\n';
   const folder = documentOf('<frixel-scene id="there" src="scenes/mine.toml"></frixel-scene>', {
     "scenes/mine.toml": 'version = 2\ninclude = ["parts/wall.toml"]\n',
@@ -96,7 +141,7 @@ test("from a server, `src` names a scene with its files", async () => {
     if (fs.existsSync(file)) answer.writeHead(200, { "content-type": "text/html" }).end(fs.readFileSync(file));
     else answer.writeHead(404).end();
   });
-  after(() => server.close());
+  context.after(() => server.close());
   await new Promise((listening) => server.listen(0, "127.0.0.1", listening));
   const { page, close } = await openPage(`http://127.0.0.1:${server.address().port}/index.html`);
   assert.equal(await lineOf(page, "#there"), "mine.toml");

@@ -2,11 +2,12 @@
 
 import assert from "node:assert/strict";
 import fs from "node:fs";
-import { after, test } from "node:test";
+import { after, afterEach, test } from "node:test";
 import { deflateRawSync } from "node:zlib";
-import { cleanUp, pageUrl } from "./harness.mjs";
+import { cleanUp, endLeftovers, pageUrl } from "./harness.mjs";
 import { KEYS, PLAY, WHOLE_SCREEN_GRATING, assertSays, give, openIncluding, openStudio, tabsOf } from "./page.mjs";
 
+afterEach(endLeftovers);
 after(cleanUp);
 
 test("bad files and big ones are sentences", async () => {

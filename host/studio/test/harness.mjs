@@ -10,6 +10,7 @@ import fs from "node:fs";
 import os from "node:os";
 import path from "node:path";
 import readline from "node:readline";
+import { test } from "node:test";
 import tty from "node:tty";
 import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
@@ -18,6 +19,9 @@ const FLAGS = [
   "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
   "--disable-component-update", "--disable-sync",
 ];
+
+/** Longest wait for something that has no time limit of its own: a busy machine may be slow, ms. */
+export const WAIT_MAX_MS = 40_000;
 
 export const pageUrl = pathToFileURL(required("STUDIO_PAGE")).href;
 
@@ -28,13 +32,63 @@ export function required(name) {
 }
 
 let browser;
-/** What to end after the tests of a file, in whatever way they ended. */
+/** What the tests have started and not ended, in this order. */
 const leftovers = new Set();
 
+/** Ends something after the test, in whatever way the test ends. Returns a function that ends it before. */
+function endLater(end) {
+  const endNow = () => {
+    leftovers.delete(endNow);
+    return end();
+  };
+  leftovers.add(endNow);
+  return endNow;
+}
+
+/** Ends the pages and programs of a test, the newest first: they would take the machine's time from the next test. */
+export async function endLeftovers() {
+  for (const end of [...leftovers].reverse()) await end();
+}
+
+/** Ends everything that the tests of a file have started. */
+export async function cleanUp() {
+  await endLeftovers();
+  await browser?.close();
+}
+
+/** How a test fails in which the machine was held up for long: a line without answers, or a time that is too long. */
+const HELD_UP = /was not answered by|before the host timeout|does not get past 0 of|too late/;
+/** A test is tried so often. */
+const TRIES_MAX = 8;
+
+/** A test of times that the machine, too, makes longer: it has to pass once in a few tries, and may fail only so. */
+export function timedTest(name, body) {
+  test(name, async (context) => {
+    for (let tries = 1; ; tries += 1) {
+      try {
+        return await body(context);
+      } catch (error) {
+        if (tries === TRIES_MAX || !HELD_UP.test(error.message)) throw error;
+        context.diagnostic(`tried again: ${error.message.split("\n")[0]}`);
+        await endLeftovers();
+      }
+    }
+  });
+}
+
+/** Makes a program end with `quit`, and waits until it has ended. */
+async function endProgram(program, quit) {
+  if (program.exitCode !== null || program.signalCode !== null) return;
+  const ended = new Promise((resolve) => program.once("exit", resolve));
+  quit();
+  await ended;
+}
+
 /** Opens the page, and returns it with the list of errors that it reports. */
-export async function openPage(url = pageUrl, { init } = {}) {
+export async function openPage(url = pageUrl) {
   browser ??= await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: FLAGS });
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 } });
+  context.setDefaultTimeout(WAIT_MAX_MS);
   const page = await context.newPage();
   const errors = [];
   page.on("pageerror", (error) => errors.push(error.message));
@@ -49,16 +103,31 @@ export async function openPage(url = pageUrl, { init } = {}) {
         (workersOfPage[options?.name] ??= []).push(this);
       }
     };
+    globalThis.setVisibility = (value) => {
+      Object.defineProperty(document, "visibilityState", { value, configurable: true });
+      document.dispatchEvent(new Event("visibilitychange"));
+    };
   });
-  if (init) await page.addInitScript(init);
+  const close = endLater(() => context.close());
   await page.goto(url);
-  return { page, errors, close: () => context.close() };
+  return { page, errors, close };
 }
 
-/** Opens the page, and an engine of the test's own in it, as `tested`, with a function `sceneFiles(name)`. */
-export async function openEngine(url = pageUrl, options) {
-  const opened = await openPage(url, options);
-  await opened.page.evaluate(async () => {
+/** Opens the page with an engine of the test's own: see `addOnlyEngine`. */
+export async function openOnlyEngine(url) {
+  const opened = await openPage(url);
+  await addOnlyEngine(opened.page);
+  return opened;
+}
+
+/**
+ * Gives the page an engine of the test's own, as `tested`, with a function `sceneFiles(name)`. That of the page itself
+ * ends, so that the machine has time for this one.
+ */
+export async function addOnlyEngine(page) {
+  await page.waitForFunction(() => globalThis.studioPage);
+  await page.evaluate(async () => {
+    studioPage.engine.close();
     const { createEngine } = await import(await studio.moduleUrl("engine/engine.js"));
     globalThis.tested = await createEngine();
     globalThis.felt = [];
@@ -72,10 +141,10 @@ export async function openEngine(url = pageUrl, options) {
       }
       return files;
     };
-    /** Slides where constant.toml and grating.toml both drive, until `isOver()`, with a sample every 8 ms. */
-    globalThis.slideUntil = async (isOver) => {
+    /** Slides where constant.toml drives, as long as the page is open, with a sample every 8 ms. */
+    globalThis.keepSliding = async () => {
       const begin = performance.now();
-      while (!isOver()) {
+      for (;;) {
         const t = ((performance.now() - begin) / 1000) % 2;
         const xMm = 65 + 30 * Math.abs(t - 1);
         tested.pointer({ timeMs: performance.now(), xMm, yMm: 30, down: true });
@@ -83,19 +152,13 @@ export async function openEngine(url = pageUrl, options) {
       }
     };
   });
-  return opened;
-}
-
-/** Ends everything that the tests of a file have started. */
-export async function cleanUp() {
-  for (const end of leftovers) await end();
-  await browser?.close();
 }
 
 /** Starts `frixel sim`; returns its terminal, the folder of its log, and `stop()`. */
 export async function startVirtualBoard() {
   const out = fs.mkdtempSync(path.join(os.tmpdir(), "frixel-studio-"));
   const board = spawn(required("FRIXEL"), ["sim", "--out", out], { stdio: ["ignore", "pipe", "pipe"] });
+  const stop = endLater(() => endProgram(board, () => board.kill("SIGINT")));
   const terminal = await new Promise((resolve, reject) => {
     let said = "";
     const listen = (bytes) => {
@@ -107,14 +170,6 @@ export async function startVirtualBoard() {
     board.stderr.on("data", listen);
     board.on("exit", () => reject(new Error(`frixel sim ended: ${said}`)));
   });
-  const stop = () => {
-    leftovers.delete(stop);
-    return new Promise((resolve) => {
-      board.on("exit", resolve);
-      board.kill("SIGINT");
-    });
-  };
-  leftovers.add(stop);
   return { terminal, out, stop };
 }
 
@@ -143,25 +198,23 @@ export const stateOf = {
  * `assertDisarmed(from, how)`: from its event number `from` on it is disarmed by a command, and stays so.
  */
 export async function startRealBoard({ baud = 2_000_000 } = {}) {
-  const process = spawn(required("REAL_BOARD"), [String(baud)], { stdio: ["pipe", "pipe", "inherit"] });
+  const board = spawn(required("REAL_BOARD"), [String(baud)], { stdio: ["pipe", "pipe", "inherit"] });
+  const hang = (isHanging) => board.kill(isHanging ? "SIGSTOP" : "SIGCONT");
+  const stop = endLater(() =>
+    endProgram(board, () => {
+      hang(false);
+      board.stdin.end();
+    }),
+  );
   const events = [];
-  const lines = readline.createInterface({ input: process.stdout });
+  const lines = readline.createInterface({ input: board.stdout });
   const terminal = await new Promise((resolve, reject) => {
     lines.on("line", (line) => (line.startsWith("port: ") ? resolve(line.slice(6)) : events.push(JSON.parse(line))));
-    process.on("exit", () => reject(new Error("the virtual board ended")));
+    board.on("exit", () => reject(new Error("the virtual board ended")));
   });
-  const hang = (isHanging) => process.kill(isHanging ? "SIGSTOP" : "SIGCONT");
-  const stop = () => {
-    leftovers.delete(stop);
-    return new Promise((resolve) => {
-      process.on("exit", resolve);
-      hang(false);
-      process.stdin.end();
-    });
-  };
-  leftovers.add(stop);
   const until = async (what, isMet) => {
-    for (let tries = 0; tries < 1000; tries += 1) {
+    const begin = performance.now();
+    while (performance.now() < begin + WAIT_MAX_MS) {
       if (events.length > 0 && isMet(events.at(-1).board)) return events.at(-1);
       await new Promise((resolve) => setTimeout(resolve, 10));
     }
@@ -176,7 +229,7 @@ export async function startRealBoard({ baud = 2_000_000 } = {}) {
     const since = states.slice(states.findIndex(stateOf.disarmed));
     assert.ok(since.every(stateOf.disarmed) && !since.at(-1).isDriving, found);
   };
-  return { terminal, events, fail: () => process.stdin.write("fault\n"), hang, stop, until, assertDisarmed };
+  return { terminal, events, fail: () => board.stdin.write("fault\n"), hang, stop, until, assertDisarmed };
 }
 
 /** Starts `frixel studio` with the port of a board; returns the page's address. */
@@ -184,7 +237,7 @@ export async function startStudio(terminal) {
   const port = terminal ? ["--port", terminal] : [];
   const options = ["studio", "--no-browser", "--page", required("STUDIO_PAGE"), ...port];
   const server = spawn(required("FRIXEL"), options, { stdio: ["ignore", "pipe", "inherit"] });
-  leftovers.add(() => server.kill("SIGINT"));
+  endLater(() => endProgram(server, () => server.kill("SIGINT")));
   return new Promise((resolve, reject) => {
     server.stdout.once("data", (line) => resolve(String(line).trim()));
     server.on("exit", () => reject(new Error("frixel studio ended")));
@@ -193,10 +246,7 @@ export async function startStudio(terminal) {
 
 /** Hides the page, or shows it again: `value` is "hidden" or "visible". */
 export async function setVisibility(page, value) {
-  await page.evaluate((value) => {
-    Object.defineProperty(document, "visibilityState", { value, configurable: true });
-    document.dispatchEvent(new Event("visibilitychange"));
-  }, value);
+  await page.evaluate((value) => setVisibility(value), value);
 }
 
 /** The rows of a CSV file, as objects of texts. */
@@ -208,20 +258,24 @@ export function rowsOf(file) {
 /**
  * Gives the page a `navigator.serial` whose only port is made of byte streams to a terminal. Like a browser's, it opens
  * only when it is closed, and closes only when nobody holds its streams. In the page, `serialPort` is the port,
- * `serialPort.sent` the times and lengths of what was written, and `serialPort.pull()` pulls its cable.
+ * `serialPort.sent` what was written, a piece each; `serialPort.arrived` what came from the terminal, each piece with
+ * the count of pieces that had been written; and `serialPort.pull()` pulls its cable.
  */
 export async function addSerialPort(page, terminal) {
   const file = fs.openSync(terminal, fs.constants.O_RDWR | fs.constants.O_NOCTTY);
   const line = new tty.ReadStream(file);
   line.setRawMode(true);
   line.on("error", () => {});
-  leftovers.add(() => line.destroy());
-  await page.exposeFunction("serialWrite", (bytes) => fs.writeSync(file, Buffer.from(bytes, "base64")));
+  endLater(() => line.destroy());
+  await page.exposeFunction("serialWrite", (bytes) => {
+    if (!line.destroyed) fs.writeSync(file, Buffer.from(bytes, "base64"));
+  });
   await page.evaluate(() => {
     const port = {
       readable: null,
       writable: null,
       sent: [],
+      arrived: [],
       async open() {
         if (port.readable) throw new DOMException("The port is already open.", "InvalidStateError");
         let incoming;
@@ -233,11 +287,14 @@ export async function addSerialPort(page, terminal) {
         port.writable = new WritableStream({
           start: (controller) => void (outgoing = controller),
           write(bytes) {
-            port.sent.push({ ms: performance.now(), length: bytes.length });
+            port.sent.push(Array.from(bytes));
             serialWrite(btoa(String.fromCharCode(...bytes)));
           },
         });
-        globalThis.serialArrived = (bytes) => incoming?.enqueue(bytes);
+        globalThis.serialArrived = (bytes) => {
+          port.arrived.push({ bytes: Array.from(bytes), sentBefore: port.sent.length });
+          incoming?.enqueue(bytes);
+        };
         port.pull = () => {
           const lost = new DOMException("The device has been lost.", "NetworkError");
           incoming.error(lost);

@@ -1,10 +1,12 @@
 // The line to a board with an electrode: a stop, the silence of a page, and a lost line, whatever is under way.
 
 import assert from "node:assert/strict";
-import { after, test } from "node:test";
+import { after, afterEach } from "node:test";
 import {
-  addSerialPort, cleanUp, CONSTANT, openEngine, setVisibility, startRealBoard, startStudio, stateOf,
+  addSerialPort, cleanUp, CONSTANT, endLeftovers, openOnlyEngine, startRealBoard, startStudio, stateOf,
+  timedTest,
 } from "./harness.mjs";
+import { answeredIn, framesIn, requestIn } from "./wire.mjs";
 
 /** The default host timeout, within which a stop acts on a slow line, too, ms. */
 const HOST_TIMEOUT_MS = 250;
@@ -14,18 +16,9 @@ const SHARED_MS = 100;
 const SLOW_BAUD = 230_400;
 /** A command without an answer is sent again after this time, ms. */
 const REPEAT_MS = 250;
-/** A frame of a command is no longer than this, bytes. */
-const COMMAND_MAX = 32;
 
+afterEach(endLeftovers);
 after(cleanUp);
-
-/** An engine. That of the page itself ends, so that the machine has time for this one. */
-async function openOnlyEngine(url) {
-  const opened = await openEngine(url);
-  await opened.page.waitForFunction(() => globalThis.studioPage);
-  await opened.page.evaluate(() => studioPage.engine.close());
-  return opened;
-}
 
 /** An engine with the port of a board. */
 async function withPort(board) {
@@ -44,79 +37,145 @@ async function drive(page, board) {
   await board.until("driving", stateOf.driving);
 }
 
-/** An engine with a board on a slow line that plays, and an upload to it that is under way. */
-async function uploading() {
+/**
+ * An engine with a board on a slow line that plays; `from` counts the events of the board until then. Once an upload to
+ * it is under way, `act` happens: `{ ms, first, sent, arrived, outcome }` are the time that it took, the number of the
+ * first piece that was written since, what went over the line, and how the upload ended.
+ */
+async function duringUpload(act) {
   const board = await startRealBoard({ baud: SLOW_BAUD });
   const opened = await withPort(board);
   await drive(opened.page, board);
-  await opened.page.evaluate(async () => {
-    const bytes = () => serialPort.sent.reduce((sum, { length }) => sum + length, 0);
+  const from = board.events.length;
+  const found = await opened.page.evaluate(async (act) => {
+    const acts = {
+      stop: () => tested.stop(),
+      hidden: () => setVisibility("hidden"),
+      "without frames": () => void (globalThis.requestAnimationFrame = () => {}),
+    };
+    const { sent, arrived } = serialPort;
+    const bytes = () => sent.reduce((sum, piece) => sum + piece.length, 0);
     const before = bytes();
     let isOver = false;
-    globalThis.upload = tested
+    const upload = tested
       .play(await sceneFiles("brick.toml"), "brick.toml", {})
       .catch((error) => error.message)
       .finally(() => (isOver = true));
     while (bytes() < before + 10_000 && !isOver) await new Promise((resolve) => setTimeout(resolve, 5));
     if (isOver) throw new Error(await upload);
-  });
-  return { ...opened, board };
+    const [begin, first] = [performance.now(), sent.length];
+    await acts[act]();
+    const ms = performance.now() - begin;
+    const outcome = act === "stop" ? await upload : undefined;
+    return { ms, first, sent: [...sent], arrived: [...arrived], outcome };
+  }, act);
+  return { ...opened, board, from, ...found };
 }
 
-test("a stop does not wait for an upload, and nothing but the disarm is sent", async () => {
-  const { page, board, close } = await uploading();
-  const from = board.events.length;
-  const { sent, ms, outcome } = await page.evaluate(async () => {
-    const begin = performance.now();
-    await tested.stop();
-    const ms = performance.now() - begin;
-    const sent = serialPort.sent.filter((write) => write.ms >= begin && write.ms <= begin + ms);
-    return { sent, ms, outcome: await upload };
+/** From the first frame on that disarms the board, nothing else is sent until the board has answered it. */
+function assertOnlyDisarmed({ ms, first, sent, arrived }) {
+  const requests = framesIn(sent).map(({ payload, piece }) => ({ ...requestIn(payload), piece }));
+  // Frames that the worker had sent before it took the stop may be written after it was called.
+  const disarm = requests.findIndex(({ name, piece }) => piece >= first && name === "disarm");
+  assert.ok(disarm >= 0, "the disarm is sent");
+  const sequences = requests.filter(({ name }) => name === "disarm").map(({ sequence }) => sequence);
+  const answers = framesIn(arrived.map(({ bytes }) => bytes));
+  const answer = answers.find(({ payload, piece }) => {
+    return arrived[piece].sentBefore > requests[disarm].piece && sequences.includes(answeredIn(payload));
   });
-  assert.match(outcome, /stopped/);
-  assert.ok(ms <= HOST_TIMEOUT_MS + SHARED_MS, `${ms} ms`);
-  // Once the board has answered, the host pings again.
-  const frames = 2 + Math.floor(ms / REPEAT_MS);
-  const isCommand = ({ length }) => length <= COMMAND_MAX;
-  assert.ok(sent.length <= frames && sent.every(isCommand), `after the stop: ${JSON.stringify(sent)}`);
+  assert.ok(answer, "the disarm is answered");
+  const { sentBefore } = arrived[answer.piece];
+  const [before, later] = [requests.slice(disarm), []];
+  while (before.length > 0 && before.at(-1).piece >= sentBefore) later.unshift(before.pop());
+  const found = `after the stop: ${JSON.stringify({ ms, before, later })}`;
+  assert.ok(before.every(({ name }) => name === "disarm"), found);
+  assert.ok(before.length <= 1 + Math.floor(ms / REPEAT_MS), found);
+  assert.ok(later.every(({ name }) => name === "disarm" || name === "ping"), found);
+}
+
+/** Time without telemetry that means that the host compiles, ms. */
+const PAUSE_MS = 150;
+/** Pixels along a side of a picture that takes long to compile. */
+const SLOW_PX = 3000;
+const PICTURE_SCENE = `version = 2
+[drive]
+host_timeout_ms = 1000
+[[layer]]
+kind = "bitmap"
+picture = "picture.png"
+x_mm = 0
+y_mm = 0
+width_mm = 60
+`;
+
+timedTest("a stop does not wait for an upload, and nothing but the disarm is sent", async (context) => {
+  const { page, board, from, ...stopped } = await duringUpload("stop");
+  assert.match(stopped.outcome, /stopped/);
+  assertOnlyDisarmed(stopped);
   await board.assertDisarmed(from, "the stop");
+  assert.ok(stopped.ms <= HOST_TIMEOUT_MS + SHARED_MS, `too late: ${stopped.ms} ms`);
+  context.diagnostic(`${stopped.ms.toFixed(0)} ms`);
   await page.waitForFunction(() => states.at(-1).needsArm);
   await page.evaluate(() => tested.arm());
   await board.until("armed", stateOf.active);
   const refused = await page.evaluate(() => tested.control('layer "brick" off').catch((error) => error.message));
   assert.match(refused, /layer "brick" may be merged/, "arming has loaded the scene that was broken off");
-  await close();
 });
 
-test("during an upload, a hidden page disarms the board, and one without frames leaves it to its timeout", async () => {
-  for (const [silence, expected] of [
-    ["hidden", false],
-    ["without frames", true],
-  ]) {
-    const { page, board, close } = await uploading();
-    if (silence === "hidden") await setVisibility(page, "hidden");
-    else await page.evaluate(() => void (globalThis.requestAnimationFrame = () => {}));
-    const { board: found } = await board.until(`disarmed when ${silence}`, stateOf.disarmed);
-    assert.equal(found.isSilent, expected, silence);
-    await close();
+timedTest("during an upload, a hidden page disarms the board", async () => {
+  const { board, from } = await duringUpload("hidden");
+  await board.assertDisarmed(from, "hiding");
+});
+
+timedTest("during an upload, a page without frames leaves the board to its host timeout", async () => {
+  const { board } = await duringUpload("without frames");
+  const { board: found } = await board.until("disarmed without frames", stateOf.disarmed);
+  assert.ok(found.isSilent);
+});
+
+/** Plays a scene that takes long to compile, and stops meanwhile. */
+async function stopDuringCompilation([scene, px, pauseMs]) {
+  const canvas = new OffscreenCanvas(px, px);
+  canvas.getContext("2d").fillRect(0, 0, px, px);
+  const picture = new Uint8Array(await (await canvas.convertToBlob()).arrayBuffer());
+  let isOver = false;
+  const playing = tested
+    .play({ "a.toml": scene, "picture.png": picture }, "a.toml", {})
+    .catch((error) => error.message)
+    .finally(() => (isOver = true));
+  // The host sends frames of telemetry all the time, but not while it compiles.
+  let [frames, sinceMs] = [felt.length, performance.now()];
+  while (performance.now() < sinceMs + pauseMs && !isOver) {
+    await new Promise((resolve) => setTimeout(resolve, 5));
+    if (felt.length > frames) [frames, sinceMs] = [felt.length, performance.now()];
   }
-});
+  if (isOver) throw new Error(`the compilation was seen too late: ${await playing}`);
+  const [first, stopMs] = [serialPort.sent.length, performance.now()];
+  await tested.stop();
+  const ms = performance.now() - stopMs;
+  return { ms, first, sent: [...serialPort.sent], arrived: [...serialPort.arrived], outcome: await playing };
+}
 
-test("a stop during the compilation of a scene disarms the board", async () => {
+timedTest("a stop during the compilation of a scene disarms the board after it", async (context) => {
   const board = await startRealBoard();
-  const { page, close } = await withPort(board);
+  const { page } = await withPort(board);
   await drive(page, board);
-  const outcome = await page.evaluate(async () => {
-    const playing = tested.play(await sceneFiles("brick.toml"), "brick.toml", {}).catch((error) => error.message);
-    await tested.stop();
-    return playing;
-  });
-  assert.match(outcome, /stopped/);
+  const stopped = await page.evaluate(stopDuringCompilation, [PICTURE_SCENE, SLOW_PX, PAUSE_MS]);
+  assert.match(stopped.outcome, /stopped/);
+  // The request that begins the upload may be sent before the worker hears of the stop, but nothing of the scene is.
+  assertOnlyDisarmed(stopped);
+  const names = framesIn(stopped.sent.slice(stopped.first)).map(({ payload }) => requestIn(payload).name);
+  assert.ok(!names.includes("chunk"), names.join());
+  // A compilation may be longer than the host timeout, so the board may be silent.
   await board.until("disarmed", stateOf.disarmed);
-  await close();
+  await new Promise((resolve) => setTimeout(resolve, 300));
+  assert.ok(stateOf.disarmed(board.events.at(-1).board) && !board.events.at(-1).board.isDriving);
+  context.diagnostic(`${stopped.ms.toFixed(0)} ms`);
+  // Where the machine was held up and nothing was compiled yet, the stop is not delayed.
+  assert.ok(stopped.ms >= PAUSE_MS, `the compilation began too late: stopped after ${stopped.ms} ms`);
 });
 
-test("a port can be connected again after a failed connection and after a lost line", async () => {
+timedTest("a port can be connected again after a failed connection and after a lost line", async () => {
   const board = await startRealBoard();
   const { page, errors, close } = await withPort(board);
   const connect = () => page.evaluate(() => tested.connectSerial(serialPort).catch((error) => error.message));
@@ -142,15 +201,16 @@ test("a port can be connected again after a failed connection and after a lost l
   await play();
   await page.evaluate(() => tested.arm());
   await board.until("armed", stateOf.active);
-  assert.equal(await connect(), undefined, "connecting again disarms");
-  await board.until("disarmed", stateOf.disarmed);
+  const from = board.events.length;
+  assert.equal(await connect(), undefined);
+  await board.assertDisarmed(from, "connecting again");
   await page.evaluate(() => tested.simulate());
   assert.ok(!(await isOpen()));
   assert.deepEqual(errors, []);
   await close();
 });
 
-test("the bridge can be connected again after a failed connection and after a board that fell silent", async () => {
+timedTest("the bridge can be connected again after a failed connection and after a silent board", async () => {
   const board = await startRealBoard();
   const { page, close } = await openOnlyEngine(await startStudio(board.terminal));
   const connect = () =>

@@ -5,14 +5,36 @@ import { execFileSync } from "node:child_process";
 import fs from "node:fs";
 import os from "node:os";
 import path from "node:path";
-import { after, test } from "node:test";
-import { cleanUp, required } from "./harness.mjs";
-import { assertSays, openIncluding, openStudio, tabsOf } from "./page.mjs";
+import { after, afterEach, test } from "node:test";
+import { cleanUp, endLeftovers, required } from "./harness.mjs";
+import { assertSays, openIncluding, openStudio, tabsOf, wholeStroke } from "./page.mjs";
 
-/** A mended scene plays on within 300 ms on a machine of one's own; the tests share theirs, ms. */
-const MENDED_MAX_MS = 1500;
+/** A mended scene plays on within this time, ms: once in so many mends, as the tests share their machine. */
+const MENDED_MAX_MS = 300;
+const MENDS = 5;
 
+afterEach(endLeftovers);
 after(cleanUp);
+
+/** Deletes the letter before the cursor, which is the scene's mistake. Returns ms until the scene plays. */
+async function msToMend(page) {
+  await page.evaluate(() => {
+    globalThis.mended = new Promise((resolve) => {
+      const { player, editor } = studioPage;
+      const before = player.onPlay;
+      let changedMs;
+      document.addEventListener("keydown", () => (changedMs = performance.now()), { capture: true, once: true });
+      player.onPlay = (text) => {
+        before(text);
+        if (text !== editor.text) return;
+        player.onPlay = before;
+        resolve(performance.now() - changedMs);
+      };
+    });
+  });
+  await page.keyboard.press("Backspace");
+  return page.evaluate(() => mended);
+}
 
 test("a typed mistake shows the sentence of `frixel scene check`, and the mended scene plays on", async (context) => {
   const { page, errors, close } = await openStudio();
@@ -38,27 +60,16 @@ test("a typed mistake shows the sentence of `frixel scene check`, and the mended
   assert.equal(await shown.evaluate((item) => item.lastChild.textContent), sentence);
   assert.ok(sentence.includes("gratingx"), sentence);
   await page.locator(".cm-lintRange-error").waitFor();
-  assert.equal(
-    await page.evaluate(() => document.documentElement.dataset.state),
-    "active",
-    "the scene before plays on",
-  );
-  await page.evaluate(() => {
-    globalThis.mended = new Promise((resolve) => {
-      const { player, editor } = studioPage;
-      const before = player.onPlay;
-      let changedMs;
-      document.addEventListener("keydown", () => (changedMs ??= performance.now()), { capture: true, once: true });
-      player.onPlay = (text) => {
-        before(text);
-        if (text === editor.text) resolve(performance.now() - changedMs);
-      };
-    });
-  });
-  await page.keyboard.press("Backspace");
-  const ms = await page.evaluate(() => mended);
-  context.diagnostic(`plays on ${ms.toFixed(0)} ms after the key`);
-  assert.ok(ms <= MENDED_MAX_MS, `${ms} ms`);
+  // The scene before plays on; a page that was held up has its board disarmed for a moment.
+  await page.waitForFunction(() => document.documentElement.dataset.state === "active");
+  let least = await msToMend(page);
+  for (let mends = 1; mends < MENDS && least > MENDED_MAX_MS; mends += 1) {
+    await page.keyboard.type("x");
+    await shown.waitFor();
+    least = Math.min(least, await msToMend(page));
+  }
+  context.diagnostic(`plays on ${least.toFixed(0)} ms after the key`);
+  assert.ok(least <= MENDED_MAX_MS, `${least} ms`);
   assert.equal(await shown.count(), 0);
   assert.equal(await page.evaluate(() => studioPage.editor.text), good);
   assert.deepEqual(errors, []);
@@ -165,31 +176,23 @@ test("a scene that a board refuses plays as a draft, and is called so", async ()
   assert.match(await page.locator("#check").textContent(), /1 mistake; draft/);
   assert.match(await page.locator("#problems li.error").textContent(), /line 4.*newton|line 4.* N/s);
   assert.ok(await page.locator(".scope-card .draft").isVisible());
-  const most = await page.evaluate(async () => {
-    await running();
-    const sinceS = studioPage.samples.nowS;
-    await slide(20, 100, 40, 80);
-    lift(100, 40);
-    return Math.max(...studioPage.samples.since(sinceS).voltageV);
-  });
+  const most = Math.max(...(await wholeStroke(page, 40)).voltageV);
   assert.ok(most > 140, `clamped to the largest voltage, found ${most} V`);
   const [saved] = await Promise.all([page.waitForEvent("download"), page.click("#save-csv")]);
   assert.match(saved.suggestedFilename(), /draft/);
-  const corner = () =>
-    page.evaluate(() => {
+  /** Waits until the map is marked as a draft, with black in its corner, or is not. */
+  const markedAs = (isDraft) =>
+    page.waitForFunction((isDraft) => {
       const canvas = document.getElementById("map-picture");
-      const [x, y] = [(40 + 4) * devicePixelRatio, (26 + 4) * devicePixelRatio];
-      return [...canvas.getContext("2d").getImageData(x, y, 1, 1).data];
-    });
-  assert.deepEqual(await corner(), [0, 0, 0, 255], "the map is marked");
+      const place = [(40 + 4) * devicePixelRatio, (26 + 4) * devicePixelRatio];
+      const [red, green, blue, alpha] = canvas.getContext("2d").getImageData(...place, 1, 1).data;
+      return alpha === 255 && (isDraft ? red + green + blue === 0 : blue > 0);
+    }, isDraft);
+  await markedAs(true);
   await page.evaluate((text) => played(text), heavy.replace("0.9", "0.3"));
   await page.waitForFunction(() => document.getElementById("check").textContent === "plays");
   assert.ok(await page.locator(".scope-card .draft").isHidden());
-  await page.waitForFunction(() => {
-    const canvas = document.getElementById("map-picture");
-    const place = [(40 + 4) * devicePixelRatio, (26 + 4) * devicePixelRatio];
-    return canvas.getContext("2d").getImageData(...place, 1, 1).data[2] > 0;
-  });
+  await markedAs(false);
   assert.deepEqual(errors, []);
   await close();
 });

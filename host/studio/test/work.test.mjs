@@ -1,22 +1,14 @@
 // The page in a browser: a person's work is not lost, and what is shown agrees with what is felt.
 
 import assert from "node:assert/strict";
-import { after, test } from "node:test";
-import { cleanUp } from "./harness.mjs";
-import { WHOLE_SCREEN_GRATING, openStudio } from "./page.mjs";
+import { after, afterEach, test } from "node:test";
+import { cleanUp, endLeftovers } from "./harness.mjs";
+import { WHOLE_SCREEN_GRATING, openStudio, undisturbed, wholeStroke } from "./page.mjs";
 
+afterEach(endLeftovers);
 after(cleanUp);
 
 const LIVE = WHOLE_SCREEN_GRATING.replace('kind = "grating"', 'name = "ridges"\nkind = "grating"\nlive = true');
-
-/** Slides over the scene for a second and lifts. */
-const stroke = (page) =>
-  page.evaluate(async () => {
-    await running();
-    await slide(20, 100, 40, 80);
-    lift(100, 40);
-    await wait(200);
-  });
 
 test("a reload brings back the scene, its name and its finger", async () => {
   const { page, errors, close } = await openStudio();
@@ -56,21 +48,23 @@ test("another scene has a history of its own, and the changed one before can be 
 
 test("a press on the map ends a replay and is felt; the button stops one, too", async () => {
   const { page, errors, close } = await openStudio();
-  await stroke(page);
+  await wholeStroke(page, 40);
   const button = page.locator("#replay");
   await page.selectOption("#slowness", "25");
   await page.check("#loop");
-  await button.click();
-  await page.locator("text=Stop replay").waitFor();
-  const felt = await page.evaluate(async () => {
+  const pressOnReplay = async () => {
     const { samples } = studioPage;
+    const replay = document.getElementById("replay");
+    replay.click();
+    while (replay.textContent !== "Stop replay") await wait(20);
     await wait(300);
     const beginS = samples.nowS;
     await slide(20, 60, 20, 80);
     lift(60, 20);
     await wait(200);
     return samples.since(beginS).yMm.filter((mm) => Math.abs(mm - 20) < 2).length;
-  });
+  };
+  const felt = await undisturbed(page, () => page.evaluate(pressOnReplay));
   assert.ok(felt > 200, `${felt} samples of the new stroke`);
   await page.locator("text=Replay slowly").waitFor();
   await button.click();
