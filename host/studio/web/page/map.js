@@ -14,6 +14,11 @@ const HEIGHT_PART = 0.44;
 /** Height of the word that marks a draft, CSS pixels. */
 const DRAFT_HEIGHT = 36;
 
+/** Size of the picture of a screen's friction map with this width, for `engine.map`. */
+export function mapSizePx({ widthMm, heightMm }, widthPx) {
+  return { widthPx, heightPx: Math.max(8, Math.round((widthPx * heightMm) / widthMm)) };
+}
+
 export class FrictionMap {
   #canvas;
   #box;
