@@ -10,9 +10,6 @@ const NO_DRIVE = CONSTANT.replace("0.11", "0.0");
 const MISTAKEN = CONSTANT.replace('"constant"', '"constan"');
 const AUTONOMOUS = CONSTANT.replace("host_timeout_ms = 1000", "autonomous = true");
 
-/** A slow line, bits a second: the picture of brick.toml takes seconds. */
-const SLOW_BAUD = 230_400;
-
 after(cleanUp);
 
 /** Resolves once Arm can be pressed: the gallery may be drawing its maps, and each check waits for one. */
@@ -27,8 +24,8 @@ const linkTo = (text) => deflateRawSync(JSON.stringify({ name: "foreign", text, 
 const openLink = (page, text) => page.evaluate((hash) => (location.hash = hash), `scene=${linkTo(text)}`);
 
 /** The page with a board that is connected and has this scene, as a person does it. */
-async function connected({ baud, init } = {}) {
-  const board = await startRealBoard({ baud });
+async function connected({ init } = {}) {
+  const board = await startRealBoard();
   const opened = await openPage(undefined, { init });
   const { page } = opened;
   await page.waitForFunction(() => globalThis.studioPage);
@@ -54,6 +51,7 @@ before(async () => {
 });
 
 async function pressArm() {
+  await write(page, CONSTANT);
   await armable(page);
   await page.click("#arm");
   await board.until("armed", stateOf.active);
@@ -65,15 +63,20 @@ async function assertNotArmable(from) {
   assert.ok(!(await page.locator("#arm:not([hidden]):enabled").count()), "Arm can be pressed");
   const refused = await page.evaluate(() => studioPage.engine.arm().catch((error) => error.message));
   assert.match(refused, /no scene is on the board/);
-  await board.assertDisarmed(from, "before");
+  await assertStaysDisarmed(from);
+}
+
+async function assertStaysDisarmed(from) {
+  await new Promise((resolve) => setTimeout(resolve, 300));
+  const found = board.events.slice(from);
+  assert.ok(found.every((event) => stateOf.disarmed(event.board)), JSON.stringify(found));
 }
 
 test("a board with an electrode waits for a press, and foreign scenes disarm it", async () => {
   assert.match(await page.textContent("#arm"), /drive NUCLEO-G474RE with an electrode, up to 220 V peak/);
   await write(page, NO_DRIVE);
   await armable(page);
-  await new Promise((resolve) => setTimeout(resolve, 300));
-  assert.ok(board.events.every((event) => stateOf.disarmed(event.board)), "nothing arms it but the press");
+  await assertStaysDisarmed(0);
   await page.evaluate(async (text) => {
     const arm = document.getElementById("arm");
     studioPage.editor.text = text;
@@ -110,12 +113,12 @@ test("a board with an electrode waits for a press, and foreign scenes disarm it"
     await open();
     await board.assertDisarmed(from, how);
   }
-  await write(page, CONSTANT);
 });
 
 test("a press on Arm while a scene from elsewhere opens arms nothing", async () => {
+  await write(page, CONSTANT);
   await armable(page);
-  const from = board.events.length - 1;
+  const from = board.events.length;
   await page.click("#open-gallery");
   const button = page.locator("text=Open constant");
   await button.waitFor();
@@ -126,22 +129,21 @@ test("a press on Arm while a scene from elsewhere opens arms nothing", async () 
   });
   assert.match(refused, /no scene is on the board/);
   await armable(page);
-  await board.assertDisarmed(from, "opening");
-  await write(page, CONSTANT);
+  await assertStaysDisarmed(from);
 });
 
 test("a scene that is not on the board leaves no other one to arm", async () => {
+  await write(page, CONSTANT);
   await armable(page);
   await write(page, MISTAKEN);
   await checkSays(page, "1 mistake");
   assert.ok(await page.isDisabled("#arm"), "a mistake of one's own");
   await write(page, CONSTANT);
   await armable(page);
-  const from = board.events.length - 1;
+  const from = board.events.length;
   await openLink(page, MISTAKEN);
   await checkSays(page, "1 mistake");
   await assertNotArmable(from);
-  await write(page, CONSTANT);
 
   await pressArm();
   await write(page, FOUR_LAYERS);
@@ -150,8 +152,7 @@ test("a scene that is not on the board leaves no other one to arm", async () => 
   await page.click("#stop");
   await board.assertDisarmed(stopped, "the stop button");
   await checkSays(page, "not on the board");
-  await assertNotArmable(stopped);
-  await write(page, CONSTANT);
+  await assertNotArmable(board.events.length);
 });
 
 test("a hidden page disarms the board, which waits for a press when the page is back", async () => {
@@ -199,16 +200,16 @@ test("a fault is shown, and cleared by a press, and a second press in its place 
 test("a scene for another board and one that plays without its host are refused, and cannot be armed", async () => {
   await board.until("disarmed", stateOf.disarmed);
   const from = board.events.length;
+  await write(page, CONSTANT);
+  await armable(page);
   for (const [text, sentence] of [
     [FOUR_LAYERS, /4 layers, and the board takes 3/],
     [AUTONOMOUS, /plays without its host/],
     [CONSTANT.replace(/friction_(\w+) = .*/, "friction_n = 9"), /does not play this draft/],
   ]) {
     await write(page, text);
-    await page.waitForFunction(
-      (source) => new RegExp(source).test(document.querySelector("#notice:not([hidden])")?.textContent),
-      sentence.source,
-    );
+    await checkSays(page, "not on the board");
+    assert.match(await page.textContent("#notice"), sentence);
     assert.ok(await page.locator("#arm").isHidden());
     await write(page, CONSTANT);
     await armable(page);
@@ -216,20 +217,12 @@ test("a scene for another board and one that plays without its host are refused,
   assert.ok(board.events.slice(from).every((event) => stateOf.disarmed(event.board)));
 });
 
-test("a page that is closed leaves no board armed", async () => {
-  await pressArm();
-  assert.deepEqual(errors, []);
-  await close();
-  await board.until("disarmed", stateOf.disarmed);
-});
-
 test("a stop during an upload leaves the scene that is shown to be armed, with its layers", async () => {
-  const { page, board, close } = await connected({ baud: SLOW_BAUD });
-  await page.click("#arm");
-  await board.until("driving", stateOf.driving);
+  await pressArm();
+  const from = board.events.length;
   const brick = await page.evaluate(() => studio.text("scenes/brick.toml"));
-  await page.evaluate(async (text) => {
-    const { player } = studioPage;
+  const check = await page.evaluate(async (text) => {
+    const { player, editor } = studioPage;
     const show = player.onMap;
     player.onMap = (map, check) => {
       show(map, check);
@@ -237,22 +230,30 @@ test("a stop during an upload leaves the scene that is shown to be armed, with i
     };
     const bytes = () => serialPort.sent.reduce((sum, { length }) => sum + length, 0);
     const before = bytes();
-    studioPage.editor.text = text;
-    while (bytes() < before + 10_000) await new Promise((resolve) => setTimeout(resolve, 5));
+    editor.text = text;
+    while (bytes() < before + 3_000) await new Promise((resolve) => setTimeout(resolve, 1));
+    document.getElementById("stop").click();
+    return document.getElementById("check").textContent;
   }, brick);
-  assert.equal(await page.textContent("#check"), "loading…", await page.textContent("#notice"));
-  const from = board.events.length;
-  await page.click("#stop");
-  await board.assertDisarmed(from, "the stop button");
+  assert.equal(check, "loading…");
   await armable(page);
   assert.match(await page.textContent("#panel-layers"), /brick/);
-  await page.waitForFunction(() => globalThis.mapped?.includes("brick"));
-  await board.assertDisarmed(from, "the stop button, and the upload after it");
+  await page.waitForFunction(() => globalThis.mapped?.includes("brick"), null, { timeout: 40_000 });
+  await board.assertDisarmed(from, "the stop button");
   await page.click("#arm");
   await board.until("armed", stateOf.active);
   const refused = await page.evaluate(() => studioPage.engine.control('layer "brick" off').catch((error) => error.message));
   assert.match(refused, /layer "brick" may be merged/, "what is armed is the scene that is shown");
+  const stopped = board.events.length;
+  await page.click("#stop");
+  await board.assertDisarmed(stopped, "the stop button");
+});
+
+test("a page that is closed leaves no board armed", async () => {
+  await pressArm();
+  assert.deepEqual(errors, []);
   await close();
+  await board.until("disarmed", stateOf.disarmed);
 });
 
 test("leaving a board disarms it, however late the bytes come that do", async () => {

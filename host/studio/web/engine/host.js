@@ -13,7 +13,7 @@ const WAIT_MS = 10;
  */
 const PAUSE_MAX_MS = 250;
 /** Bytes that wait to be read at most, for example while the page is hidden; the oldest are dropped first. */
-const ARRIVED_MAX = 1_000_000;
+const ARRIVED_MAX_BYTES = 1_000_000;
 /** What the imports of the module return when the stream is closed. */
 const CLOSED = -1;
 const STOPPED = "stopped: the board was disarmed meanwhile";
@@ -69,7 +69,7 @@ class Stream {
     if (bytes.length === 0) this.isClosed = true;
     else this.#arrived.push(bytes);
     this.#arrivedLength += bytes.length;
-    while (this.#arrivedLength > ARRIVED_MAX) {
+    while (this.#arrivedLength > ARRIVED_MAX_BYTES) {
       this.#arrivedLength -= this.#arrived.shift().length;
       this.hasDropped = true;
     }
