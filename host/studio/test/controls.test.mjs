@@ -7,7 +7,8 @@ import { WHOLE_SCREEN_GRATING, openStudio } from "./page.mjs";
 
 after(cleanUp);
 
-const live = (name) => WHOLE_SCREEN_GRATING.replace('kind = "grating"', `name = "${name}"\nkind = "grating"\nlive = true`);
+const live = (name) =>
+  WHOLE_SCREEN_GRATING.replace('kind = "grating"', `name = "${name}"\nkind = "grating"\nlive = true`);
 
 test("the gains that are shown are those of the scene that plays, also where one has the focus", async () => {
   const { page, errors, close } = await openStudio();

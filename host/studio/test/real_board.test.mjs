@@ -242,7 +242,9 @@ test("a stop during an upload leaves the scene that is shown to be armed, with i
   await board.assertDisarmed(from, "the stop button");
   await page.click("#arm");
   await board.until("armed", stateOf.active);
-  const refused = await page.evaluate(() => studioPage.engine.control('layer "brick" off').catch((error) => error.message));
+  const refused = await page.evaluate(() =>
+    studioPage.engine.control('layer "brick" off').catch((error) => error.message),
+  );
   assert.match(refused, /layer "brick" may be merged/, "what is armed is the scene that is shown");
   const stopped = board.events.length;
   await page.click("#stop");

@@ -147,8 +147,8 @@ async function start() {
   board.onBoard = replay;
 
   /**
-   * Runs an action that brings something from elsewhere into the scene. A real board is disarmed before, and nothing can
-   * be armed until it has the scene that is shown then.
+   * Runs an action that brings something from elsewhere into the scene. A real board is disarmed before, and nothing
+   * can be armed until it has the scene that is shown then.
    */
   function bringIn(action) {
     return player.expect(async () => {

@@ -19,7 +19,7 @@ export class Player {
   #outcome = "loading";
   #status = "loading";
 
-  /** The check has an answer: `onCheck(check, text)`. */
+  /** The check has an answer: `onCheck(check)`. */
   onCheck = () => {};
   /** The friction map of a scene that plays: `onMap(map, check)`. */
   onMap = () => {};
@@ -101,7 +101,7 @@ export class Player {
     const { entry, profiles } = this.#project;
     const scene = [files, entry, { ...profiles }];
     const check = await this.#engine.check(...scene);
-    this.onCheck(check, text);
+    this.onCheck(check);
     if (!check.ok && !check.isDraft) this.#settle("mistaken");
     // A board that was disarmed for another scene gets none but that.
     else if (this.#next === undefined && this.#expected === 0 && (await this.#load(scene, check))) {

@@ -33,8 +33,8 @@ export function showOutcome() {
     failed: isPlaying ? `the board refuses it${meanwhile}` : "not on the board",
     loaded: isPlaying ? "plays" : "no mistakes",
   };
-  const isDraftLoaded = status === "loaded" && found.isDraft;
-  byId("check").textContent = isDraftLoaded ? `${found.count}; draft: plays clamped, a board refuses it` : words[status];
+  if (found.isDraft) words.loaded = `${found.count}; draft: plays clamped, a board refuses it`;
+  byId("check").textContent = words[status];
 }
 
 /** The report with what a person feels before what a board needs. */
