@@ -47,13 +47,15 @@ fn main() -> Result<(), Box<dyn Error>> {
                 let now = rig.tick();
                 rig.world_mut().schedule_amplifier_fault(now..now + FAULT_TICKS);
             }
+            Ok(command) => return Err(format!("unknown command `{command}`: write `fault`").into()),
             Err(TryRecvError::Disconnected) => return Ok(()),
-            _ => {}
+            Err(TryRecvError::Empty) => {}
         }
         exchange(&mut terminal, &mut rig, &mut unwritten)?;
-        let mut behind = ((epoch.elapsed().as_secs_f64() * f64::from(rig.tick_hz())) as u64).saturating_sub(rig.tick());
+        let tick_hz = f64::from(rig.tick_hz());
+        let mut behind = ((epoch.elapsed().as_secs_f64() * tick_hz) as u64).saturating_sub(rig.tick());
         if behind > LAG_MAX_TICKS {
-            epoch += Duration::from_secs(behind) / rig.tick_hz();
+            epoch += Duration::from_secs_f64(behind as f64 / tick_hz);
             behind = 0;
         }
         for _ in 0..behind.min(BATCH_TICKS) {

@@ -6,23 +6,42 @@ import { deflateRawSync } from "node:zlib";
 import { addSerialPort, cleanUp, CONSTANT, openPage, setVisibility, startRealBoard, stateOf } from "./harness.mjs";
 
 const FOUR_LAYERS = CONSTANT + '[[layer]]\nkind = "constant"\nabove = "natural"\nfriction_n = 0.01\n'.repeat(3);
+const NO_DRIVE = CONSTANT.replace("0.11", "0.0");
+const MISTAKEN = CONSTANT.replace('"constant"', '"constan"');
 const AUTONOMOUS = CONSTANT.replace("host_timeout_ms = 1000", "autonomous = true");
 
 after(cleanUp);
 
+/** Resolves once Arm can be pressed: the gallery may be drawing its maps, and each check waits for one. */
+async function armable(page) {
+  const said = async () => (await page.locator("#board, #notice, #check").allTextContents()).join("; ");
+  const arm = page.locator("#arm:not([hidden]):enabled");
+  await arm.waitFor({ timeout: 40_000 }).catch(async () => assert.fail(`nothing can be armed: ${await said()}`));
+}
+const checkSays = (page, words) =>
+  page.waitForFunction((words) => document.getElementById("check").textContent === words, words);
+const linkTo = (text) => deflateRawSync(JSON.stringify({ name: "foreign", text, files: {} })).toString("base64url");
+const openLink = (page, text) => page.evaluate((hash) => (location.hash = hash), `scene=${linkTo(text)}`);
+
 /** The page with a board that is connected and has this scene, as a person does it. */
-async function connected() {
+async function connected({ init } = {}) {
   const board = await startRealBoard();
-  const opened = await openPage();
+  const opened = await openPage(undefined, { init });
   const { page } = opened;
-  await page.waitForFunction(() => globalThis.studioPage && document.getElementById("check").textContent === "plays");
+  await page.waitForFunction(() => globalThis.studioPage);
+  await checkSays(page, "plays");
   await addSerialPort(page, board.terminal);
-  await page.evaluate((text) => (studioPage.editor.text = text), CONSTANT);
-  await page.waitForFunction(() => document.getElementById("check").textContent === "plays");
+  await write(page, CONSTANT);
+  await checkSays(page, "plays");
   await page.click("#open-board");
   await page.click("text=Board on a USB port");
-  await page.locator("#arm:not([hidden])").waitFor({ timeout: 40_000 });
+  await armable(page);
   return { ...opened, board };
+}
+
+/** Writes this text in place of the scene's, as a person types it. */
+function write(page, text) {
+  return page.evaluate((text) => (studioPage.editor.text = text), text);
 }
 
 /** One page with one board for all tests: each of them begins by arming it, and leaves it disarmed. */
@@ -32,27 +51,44 @@ before(async () => {
 });
 
 async function pressArm() {
-  const said = async () => (await page.locator("#board, #notice").allTextContents()).join("; ");
-  const arm = page.locator("#arm:not([hidden])");
-  await arm.click({ timeout: 10_000 }).catch(async () => assert.fail(`no press to arm: ${await said()}`));
+  await write(page, CONSTANT);
+  await armable(page);
+  await page.click("#arm");
   await board.until("armed", stateOf.active);
   await board.until("driving", stateOf.driving);
 }
 
+/** Nothing can be armed, neither by the button nor by a press that comes too early for it. */
+async function assertNotArmable(from) {
+  assert.ok(!(await page.locator("#arm:not([hidden]):enabled").count()), "Arm can be pressed");
+  const refused = await page.evaluate(() => studioPage.engine.arm().catch((error) => error.message));
+  assert.match(refused, /no scene is on the board/);
+  await assertStaysDisarmed(from);
+}
+
+async function assertStaysDisarmed(from) {
+  await new Promise((resolve) => setTimeout(resolve, 300));
+  const found = board.events.slice(from);
+  assert.ok(found.every((event) => stateOf.disarmed(event.board)), JSON.stringify(found));
+}
+
 test("a board with an electrode waits for a press, and foreign scenes disarm it", async () => {
   assert.match(await page.textContent("#arm"), /drive NUCLEO-G474RE with an electrode, up to 220 V peak/);
-  const canArm = await page.evaluate((text) => {
+  await write(page, NO_DRIVE);
+  await armable(page);
+  await assertStaysDisarmed(0);
+  await page.evaluate(async (text) => {
+    const arm = document.getElementById("arm");
     studioPage.editor.text = text;
-    return !document.getElementById("arm").disabled;
-  }, CONSTANT.replace("0.11", "0.1"));
-  assert.ok(!canArm, "what is armed is the scene that is shown");
-  await new Promise((resolve) => setTimeout(resolve, 500));
-  assert.ok(board.events.every((event) => stateOf.disarmed(event.board)), "nothing arms it but the press");
+    while (arm.hidden || arm.disabled) await new Promise((resolve) => setTimeout(resolve, 1));
+    arm.click();
+  }, CONSTANT);
+  await board.until("driving: what is armed is the scene that is shown", stateOf.driving);
+  await page.click("#stop");
 
-  const link = deflateRawSync(JSON.stringify({ name: "foreign", text: CONSTANT, files: {} })).toString("base64url");
   const foreign = {
     "the stop button": () => page.click("#stop"),
-    "a link in the fragment": () => page.evaluate((hash) => (location.hash = hash), `scene=${link}`),
+    "a link in the fragment": () => openLink(page, CONSTANT),
     "a dropped file": () =>
       page.evaluate((text) => {
         const dataTransfer = new DataTransfer();
@@ -63,6 +99,13 @@ test("a board with an electrode waits for a press, and foreign scenes disarm it"
       await page.click("#open-gallery");
       await page.click("text=Open constant");
     },
+    async "a layer of the gallery"() {
+      await page.click("#open-gallery");
+      const scene = page.locator(".scene", { hasText: "Open constant" });
+      await scene.locator("summary").click();
+      await scene.locator("text=Take over").first().click();
+      await page.click("#gallery >> text=Close");
+    },
   };
   for (const [how, open] of Object.entries(foreign)) {
     await pressArm();
@@ -70,7 +113,46 @@ test("a board with an electrode waits for a press, and foreign scenes disarm it"
     await open();
     await board.assertDisarmed(from, how);
   }
-  await page.evaluate((text) => (studioPage.editor.text = text), CONSTANT);
+});
+
+test("a press on Arm while a scene from elsewhere opens arms nothing", async () => {
+  await write(page, CONSTANT);
+  await armable(page);
+  const from = board.events.length;
+  await page.click("#open-gallery");
+  const button = page.locator("text=Open constant");
+  await button.waitFor();
+  const refused = await button.evaluate((open) => {
+    open.click();
+    document.getElementById("arm").click();
+    return studioPage.engine.arm().catch((error) => error.message);
+  });
+  assert.match(refused, /no scene is on the board/);
+  await armable(page);
+  await assertStaysDisarmed(from);
+});
+
+test("a scene that is not on the board leaves no other one to arm", async () => {
+  await write(page, CONSTANT);
+  await armable(page);
+  await write(page, MISTAKEN);
+  await checkSays(page, "1 mistake");
+  assert.ok(await page.isDisabled("#arm"), "a mistake of one's own");
+  await write(page, CONSTANT);
+  await armable(page);
+  const from = board.events.length;
+  await openLink(page, MISTAKEN);
+  await checkSays(page, "1 mistake");
+  await assertNotArmable(from);
+
+  await pressArm();
+  await write(page, FOUR_LAYERS);
+  await checkSays(page, "the board refuses it; the version before plays on");
+  const stopped = board.events.length;
+  await page.click("#stop");
+  await board.assertDisarmed(stopped, "the stop button");
+  await checkSays(page, "not on the board");
+  await assertNotArmable(board.events.length);
 });
 
 test("a hidden page disarms the board, which waits for a press when the page is back", async () => {
@@ -94,40 +176,81 @@ test("a page that hangs leaves the board to its host timeout, and it waits for a
   await pressArm();
   await page.evaluate(() => {
     const begin = performance.now();
-    while (performance.now() - begin < 1500);
+    while (performance.now() - begin < 5000);
   });
   await assertSilent();
 });
 
-test("a fault is shown, and cleared by a press", async () => {
+test("a fault is shown, and cleared by a press, and a second press in its place arms nothing", async () => {
   await pressArm();
   board.fail();
   await page.waitForFunction(() => /faulted, .*amplifier/.test(document.getElementById("board").textContent));
-  assert.equal(await page.textContent("#arm"), "Clear the fault");
   await board.until("faulted", ({ state, isDriving }) => state === "faulted" && !isDriving);
-  await page.click("#arm");
+  const from = board.events.length;
+  // A double-click whose second press comes when Arm is there.
+  const { x, y } = await page.locator("#clear-fault").boundingBox();
+  await page.mouse.click(x + 10, y + 10);
   await board.until("cleared", stateOf.disarmed);
-  await page.locator("#arm", { hasText: "Arm: drive" }).waitFor();
+  await armable(page);
+  await page.mouse.down({ clickCount: 2 });
+  await page.mouse.up({ clickCount: 2 });
+  await board.assertDisarmed(from, "the fault");
 });
 
 test("a scene for another board and one that plays without its host are refused, and cannot be armed", async () => {
   await board.until("disarmed", stateOf.disarmed);
   const from = board.events.length;
+  await write(page, CONSTANT);
+  await armable(page);
   for (const [text, sentence] of [
     [FOUR_LAYERS, /4 layers, and the board takes 3/],
     [AUTONOMOUS, /plays without its host/],
     [CONSTANT.replace(/friction_(\w+) = .*/, "friction_n = 9"), /does not play this draft/],
   ]) {
-    await page.evaluate((text) => (studioPage.editor.text = text), text);
-    await page.waitForFunction(
-      (source) => new RegExp(source).test(document.querySelector("#notice:not([hidden])")?.textContent),
-      sentence.source,
-    );
+    await write(page, text);
+    await checkSays(page, "not on the board");
+    assert.match(await page.textContent("#notice"), sentence);
     assert.ok(await page.locator("#arm").isHidden());
-    await page.evaluate((text) => (studioPage.editor.text = text), CONSTANT);
-    await page.locator("#arm:not([hidden])").waitFor();
+    await write(page, CONSTANT);
+    await armable(page);
   }
   assert.ok(board.events.slice(from).every((event) => stateOf.disarmed(event.board)));
+});
+
+test("a stop during an upload leaves the scene that is shown to be armed, with its layers", async () => {
+  await pressArm();
+  const brick = await page.evaluate(() => studio.text("scenes/brick.toml"));
+  const check = await page.evaluate(async (text) => {
+    const { player, editor } = studioPage;
+    const show = player.onMap;
+    player.onMap = (map, check) => {
+      show(map, check);
+      globalThis.mapped = check.layers.map(({ name }) => name);
+    };
+    const bytes = () => serialPort.sent.reduce((sum, { length }) => sum + length, 0);
+    const before = bytes();
+    editor.text = text;
+    while (bytes() < before + 3_000) await new Promise((resolve) => setTimeout(resolve, 1));
+    document.getElementById("stop").click();
+    return document.getElementById("check").textContent;
+  }, brick);
+  assert.equal(check, "loading…");
+  // By the stop, or already by its host timeout while the scene was compiled.
+  await board.until("disarmed", stateOf.disarmed);
+  const from = board.events.length;
+  await armable(page);
+  assert.match(await page.textContent("#panel-layers"), /brick/);
+  await page.waitForFunction(() => globalThis.mapped?.includes("brick"), null, { timeout: 40_000 });
+  await assertStaysDisarmed(from);
+  await page.click("#arm");
+  await board.until("armed", stateOf.active);
+  const refused = await page.evaluate(() =>
+    studioPage.engine.control('layer "brick" off').catch((error) => error.message),
+  );
+  assert.match(refused, /layer "brick" may be merged/, "what is armed is the scene that is shown");
+  const stopped = board.events.length;
+  await page.click("#stop");
+  await board.assertDisarmed(stopped, "the stop button");
 });
 
 test("a page that is closed leaves no board armed", async () => {
@@ -135,4 +258,25 @@ test("a page that is closed leaves no board armed", async () => {
   assert.deepEqual(errors, []);
   await close();
   await board.until("disarmed", stateOf.disarmed);
+});
+
+test("leaving a board disarms it, however late the bytes come that do", async () => {
+  const { page, board, close } = await connected({
+    init() {
+      const { get, set } = Object.getOwnPropertyDescriptor(MessagePort.prototype, "onmessage");
+      Object.defineProperty(MessagePort.prototype, "onmessage", {
+        get,
+        set(take) {
+          set.call(this, (event) => setTimeout(() => take(event), 50));
+        },
+      });
+    },
+  });
+  await page.click("#arm");
+  await board.until("driving", stateOf.driving);
+  const from = board.events.length;
+  await page.click("#open-board");
+  await page.click("#board-dialog >> text=Simulator");
+  await board.assertDisarmed(from, "leaving");
+  await close();
 });

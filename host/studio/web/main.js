@@ -17,7 +17,7 @@ import { FrictionMap } from "./page/map.js";
 import { Numbers } from "./page/numbers.js";
 import { showPictures } from "./page/pictures.js";
 import { Player } from "./page/player.js";
-import { showCheck, showOutcome } from "./page/problems.js";
+import { showCheck, showOutcome, showStatus } from "./page/problems.js";
 import { Profiles } from "./page/profiles.js";
 import { Project, isPicture, isToml } from "./page/project.js";
 import { RealSize } from "./page/real_size.js";
@@ -75,7 +75,10 @@ async function start() {
   );
   const compare = new Compare(player, editor, sound);
   compare.onChange = () => map.draw();
-  const replay = () => player.now(editor.text);
+  const replay = () => {
+    compare.cancel();
+    player.now(editor.text);
+  };
   const profiles = new Profiles(project, fingerNames(), () => {
     autosave.changed();
     replay();
@@ -118,7 +121,11 @@ async function start() {
     if (!compare.isRunning) map.show(picture, check);
   };
   player.onFailure = notify;
-  player.onPending = (isPending) => (board.isScenePending = isPending);
+  player.onStatus = (status) => {
+    board.allowArm(status);
+    layers.isSceneLoading = status === "loading";
+    showStatus(status);
+  };
 
   engine.onFrames = (frame) => {
     samples.add(frame);
@@ -139,9 +146,27 @@ async function start() {
   };
   board.onBoard = replay;
 
-  /** Opens a scene from elsewhere: a real board is disarmed before. A changed scene can be brought back. */
-  async function open({ name, text, files = [], profiles: chosen, isEdited = false }) {
-    await board.disarmBeforeForeignScene();
+  /**
+   * Runs an action that brings something from elsewhere into the scene. A real board is disarmed before, and nothing
+   * can be armed until it has the scene that is shown then.
+   */
+  function bringIn(action) {
+    return player.expect(async () => {
+      try {
+        await engine.forget();
+        await action();
+      } catch (error) {
+        // The board gets the scene back that is still shown.
+        replay();
+        throw error;
+      }
+    });
+  }
+
+  /** Opens a scene from elsewhere. A changed scene can be brought back. */
+  const open = (scene) => bringIn(() => replaceScene(scene));
+
+  async function replaceScene({ name, text, files = [], profiles: chosen, isEdited = false }) {
     const before = { ...current(), isEdited: autosave.isEdited };
     forgetNotice();
     await project.replaceFiles(files);
@@ -170,7 +195,6 @@ async function start() {
     }
     showName();
     if (project.name === before) return;
-    compare.cancel();
     autosave.changed();
     showFiles();
     replay();
@@ -189,20 +213,20 @@ async function start() {
   }
 
   gallery.onScene = (name, text) => open({ name, text });
-  gallery.onLayer = (text) => editor.append(text);
-  incoming.onFiles = async ({ scene, files, finger: own, screen }) => {
-    await board.disarmBeforeForeignScene();
-    if (own) profiles.addFinger(own);
-    if (screen) profiles.addScreen(screen);
-    if (scene) await open(scene);
-    else {
-      for (const [name, content] of files) project.add(name, content);
-      autosave.changed();
-      showFiles();
-      replay();
-    }
-    if (files.some(([name]) => isPicture(name))) byId("tab-pictures").click();
-  };
+  gallery.onLayer = (text) => bringIn(() => editor.append(text));
+  incoming.onFiles = ({ scene, files, finger: own, screen }) =>
+    bringIn(async () => {
+      if (own) profiles.addFinger(own);
+      if (screen) profiles.addScreen(screen);
+      if (scene) await replaceScene(scene);
+      else {
+        for (const [name, content] of files) project.add(name, content);
+        autosave.changed();
+        showFiles();
+        replay();
+      }
+      if (files.some(([name]) => isPicture(name))) byId("tab-pictures").click();
+    });
 
   byId("open-gallery").onclick = () => attempt(() => gallery.open());
   byId("new").onclick = () => attempt(() => open({ name: "untitled", text: NEW_SCENE }));

@@ -6,12 +6,12 @@ import { createEngine } from "../engine/engine.js";
 import { carriedFiles } from "../page/bundled.js";
 import { element, forgetColours } from "../page/dom.js";
 import { Finger } from "../page/finger.js";
-import { FrictionMap } from "../page/map.js";
+import { FrictionMap, mapSizePx } from "../page/map.js";
 import { Samples } from "../page/samples.js";
 import { Scope } from "../page/scope.js";
 
-/** The map's width in pixels. */
-const MAP_WIDTH = 640;
+/** Width of the map's picture, pixels. */
+const MAP_WIDTH_PX = 640;
 /** How far from the window an element draws its map already. */
 const NEARBY = "400px";
 const LABEL = "The screen. Slide with mouse, finger or pen, or hold an arrow key.";
@@ -113,9 +113,8 @@ class FrixelScene extends HTMLElement {
     }
     this.#scene = [files, entry, profiles];
     this.#check = check;
-    const { widthMm, heightMm } = check.screen;
-    const size = { widthPx: MAP_WIDTH, heightPx: Math.max(8, Math.round((MAP_WIDTH * heightMm) / widthMm)) };
-    this.#map.show(await this.#engine.map(...this.#scene, { ...size, speedMmPerS: 100 }), check);
+    const sizePx = mapSizePx(check.screen, MAP_WIDTH_PX);
+    this.#map.show(await this.#engine.map(...this.#scene, { ...sizePx, speedMmPerS: 100 }), check);
     this.#line.className = "line fine";
     this.#line.textContent = check.isDraft ? `${entry}: draft, clamped; a board refuses it` : entry;
     this.dispatchEvent(new CustomEvent("ready", { detail: check }));

@@ -1,6 +1,6 @@
 // The engine of the studio, as the page uses it: README.md has the contract.
 
-import { serialLine, socketLine } from "./lines.js";
+import { after, serialLine, socketLine } from "./lines.js";
 
 export { bridgeUrl } from "./lines.js";
 
@@ -18,6 +18,9 @@ export const canSuspend = typeof WebAssembly.Suspending === "function";
 const NO_JSPI =
   "This browser cannot connect to a board: it lacks JSPI (Chrome 137, Firefox 153, Safari 27 or newer have it). " +
   "The simulator plays on.";
+const THIS_PAGE = "the simulator in this page";
+/** Longest wait for the end of a line whose board the host has disconnected, ms. */
+const LINE_END_MAX_MS = 1000;
 
 class Engine {
   #module;
@@ -29,7 +32,9 @@ class Engine {
   #line = null;
   /** "simulator", "serial", "socket" or "none" */
   #link = "simulator";
-  #state = { state: "disarmed", fault: undefined, needsArm: false, driving: "the simulator in this page" };
+  #state = { state: "disarmed", fault: undefined, needsArm: false, driving: THIS_PAGE };
+  /** The link and the state that the page knows of, as JSON. */
+  #reported = "";
 
   onFrames = () => {};
   onAudio = () => {};
@@ -66,20 +71,25 @@ class Engine {
       this.onFrames({ ...message.frame, state: this.#state.state });
       this.onAudio(message.sound, message.soundTick, message.frame.slowness);
     } else if (message.type === "state") {
-      const { state, fault } = message;
-      this.#report({ state, fault: fault ?? undefined, needsArm: false, driving: "the simulator in this page" });
+      this.#reportSimulator(message.state, message.fault ?? undefined);
+    } else if (message.type === "failure") {
+      this.#reportSimulator("disarmed", message.error);
     }
   }
 
   #fromHost(message) {
-    if (message.type === "failure") this.onFailure(message);
+    if (message.type === "failure") {
+      this.onFailure(message);
+      this.#line?.close();
+      this.#line = null;
+    }
     if (this.#link === "simulator") return;
     if (message.type === "frame") {
       this.onFrames({ ...message.frame, state: this.#state.state });
     } else if (message.type === "state") {
       const { state, fault, needsArm, driving } = message;
       this.#report({ state, fault: fault ?? undefined, needsArm, driving });
-    } else if (message.type === "lost") {
+    } else if (message.type === "lost" || message.type === "failure") {
       this.#reportNoBoard(message.error);
     }
   }
@@ -90,16 +100,17 @@ class Engine {
     this.#report({ state: "disarmed", fault: why, needsArm: false, driving: "no board" });
   }
 
-  #report(state) {
-    const before = JSON.stringify(this.#state) + this.#reportedLink;
-    this.#state = state;
-    this.#reportedLink ??= "";
-    if (JSON.stringify(state) + this.#link !== before) {
-      this.#reportedLink = this.#link;
-      this.onState({ link: this.#link, ...state });
-    }
+  #reportSimulator(state, fault) {
+    this.#report({ state, fault, needsArm: false, driving: THIS_PAGE });
   }
-  #reportedLink;
+
+  #report(state) {
+    this.#state = state;
+    const now = { link: this.#link, ...state };
+    if (JSON.stringify(now) === this.#reported) return;
+    this.#reported = JSON.stringify(now);
+    this.onState(now);
+  }
 
   check(files, entry, profiles) {
     return this.#checker.ask({ type: "check", scene: { files, entry, ...profiles } });
@@ -135,8 +146,19 @@ class Engine {
     return this.#player.ask({ type: "stop" });
   }
 
+  /** Plays on after a stop, on the simulator in the page. */
+  resume() {
+    return this.#board.ask({ type: "resume" });
+  }
+
+  /** Arms the board outside of the page, which plays the scene that it has. Only a person's press may call this. */
   arm() {
-    return this.#player.ask({ type: this.#link === "simulator" ? "resume" : "arm" });
+    return this.#host.ask({ type: "arm" });
+  }
+
+  /** Disarms a board outside of the page. It cannot be armed again before another scene is played there. */
+  async forget() {
+    if (this.#line) await this.#host.ask({ type: "forget" });
   }
 
   clearFault() {
@@ -164,12 +186,13 @@ class Engine {
 
   /** Plays on the simulator, as it is after a reset, and disconnects a board. */
   async simulate() {
-    this.#refuseWhileConnecting();
-    await this.#disconnect();
-    this.#board.terminate();
-    this.#link = "simulator";
-    this.#board = await this.#newBoard();
-    this.#report({ state: "disarmed", fault: undefined, needsArm: false, driving: "the simulator in this page" });
+    await this.#change(async () => {
+      await this.#disconnect();
+      this.#board.terminate();
+      this.#link = "simulator";
+      this.#board = await this.#newBoard();
+      this.#reportSimulator("disarmed");
+    });
   }
 
   connectSerial(port) {
@@ -183,34 +206,47 @@ class Engine {
   /** Connects to a board. If that fails, the simulator stays, if it was the board before, and plays on. */
   async #connect(link, open) {
     if (!canSuspend) throw new Error(NO_JSPI);
-    this.#refuseWhileConnecting();
-    this.#isConnecting = true;
+    await this.#change(async () => {
+      try {
+        await this.#disconnect();
+        if (this.#link !== "simulator") this.#reportNoBoard();
+        this.#line = await open();
+        const { remote } = this.#line;
+        await this.#host.ask({ type: "connect", port: remote }, [remote]);
+        this.#link = link;
+      } catch (error) {
+        await this.#disconnect();
+        throw error;
+      }
+      // A simulator that has failed plays nothing.
+      await this.#board.ask({ type: "stop" }).catch(() => {});
+    });
+  }
+
+  /** Changes the board, one change at a time. */
+  async #change(action) {
+    if (this.#isChanging) throw new Error("a board is being connected: wait until it has answered");
+    this.#isChanging = true;
     try {
-      await this.#disconnect();
-      if (this.#link !== "simulator") this.#reportNoBoard();
-      this.#line = await open();
-      const { remote } = this.#line;
-      await this.#host.ask({ type: "connect", port: remote }, [remote]);
-      this.#link = link;
-      await this.#board.ask({ type: "stop" });
-    } catch (error) {
-      await this.#disconnect();
-      throw error;
+      await action();
     } finally {
-      this.#isConnecting = false;
+      this.#isChanging = false;
     }
   }
-  #isConnecting = false;
+  #isChanging = false;
 
-  #refuseWhileConnecting() {
-    if (this.#isConnecting) throw new Error("a board is being connected: wait until it has answered");
-  }
-
-  /** Disconnects the board, if there is one, and waits until its port is free. */
+  /**
+   * Disconnects the board, if there is one, and waits until its port is free. The host ends the line, behind the bytes
+   * that disarm the board: a line that is closed at this end could drop them.
+   */
   async #disconnect() {
-    await this.#host.ask({ type: "disconnect" });
-    this.#line?.close();
-    await this.#line?.closed;
+    // A host that has failed ends no line.
+    await this.#host.ask({ type: "disconnect" }).catch(() => {});
+    const line = this.#line;
+    if (!line) return;
+    await Promise.race([line.closed, after(LINE_END_MAX_MS)]);
+    line.close();
+    await line.closed;
     this.#line = null;
   }
 
@@ -226,19 +262,26 @@ class WorkerClient {
   #worker;
   #asked = new Map();
   #lastId = 0;
+  /** Why the worker answers no more, once it has failed or was ended. */
+  #whyEnded;
 
   /** Starts the worker of a file of this folder. */
   static async start(name, settings, onMessage) {
     // One classic script: from a file, a browser starts no worker that imports modules.
     const source = `${await studio.text("engine/wasm.js")}\n${await studio.text(`engine/${name}.js`)}`;
     const url = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
-    const worker = new WorkerClient();
-    worker.#worker = new Worker(url, { name });
-    worker.#worker.onmessage = ({ data }) => (data.type === "answer" ? worker.#settle(data) : onMessage(data));
-    worker.#worker.onerror = ({ message }) => onMessage({ type: "failure", error: `the ${name} worker: ${message}` });
-    await worker.ask({ type: "start", ...settings });
+    const client = new WorkerClient();
+    client.#worker = new Worker(url, { name });
+    client.#worker.onmessage = ({ data }) => (data.type === "answer" ? client.#settle(data) : onMessage(data));
+    client.#worker.onerror = ({ message }) => {
+      // What is left of it must not keep a board alive.
+      const error = `the ${name} worker: ${message}`;
+      client.terminate(error);
+      onMessage({ type: "failure", error });
+    };
+    await client.ask({ type: "start", ...settings });
     URL.revokeObjectURL(url);
-    return worker;
+    return client;
   }
 
   send(message) {
@@ -246,6 +289,7 @@ class WorkerClient {
   }
 
   ask(message, transfer = []) {
+    if (this.#whyEnded !== undefined) return Promise.reject(new Error(this.#whyEnded));
     const id = ++this.#lastId;
     return new Promise((resolve, reject) => {
       this.#asked.set(id, { resolve, reject });
@@ -253,16 +297,18 @@ class WorkerClient {
     });
   }
 
-  #settle({ id, value, error, problems }) {
-    const { resolve, reject } = this.#asked.get(id);
+  #settle({ id, value, error, problems = [], canLoadAgain = false }) {
+    const asked = this.#asked.get(id);
     this.#asked.delete(id);
-    if (error === undefined) resolve(value);
-    else reject(Object.assign(new Error(error), { problems: problems ?? [] }));
+    if (error === undefined) asked?.resolve(value);
+    else asked?.reject(Object.assign(new Error(error), { problems, canLoadAgain }));
   }
 
-  terminate() {
+  /** Ends the worker: what it was asked and has not answered is rejected, and what it will be asked. */
+  terminate(why = "the board was reset meanwhile") {
     this.#worker.terminate();
-    for (const { reject } of this.#asked.values()) reject(new Error("the board was reset meanwhile"));
+    this.#whyEnded ??= why;
+    for (const { reject } of this.#asked.values()) reject(new Error(why));
     this.#asked.clear();
   }
 }

@@ -13,7 +13,7 @@ const WAIT_MS = 10;
  */
 const PAUSE_MAX_MS = 250;
 /** Bytes that wait to be read at most, for example while the page is hidden; the oldest are dropped first. */
-const ARRIVED_MAX = 1_000_000;
+const ARRIVED_MAX_BYTES = 1_000_000;
 /** What the imports of the module return when the stream is closed. */
 const CLOSED = -1;
 const STOPPED = "stopped: the board was disarmed meanwhile";
@@ -69,7 +69,7 @@ class Stream {
     if (bytes.length === 0) this.isClosed = true;
     else this.#arrived.push(bytes);
     this.#arrivedLength += bytes.length;
-    while (this.#arrivedLength > ARRIVED_MAX) {
+    while (this.#arrivedLength > ARRIVED_MAX_BYTES) {
       this.#arrivedLength -= this.#arrived.shift().length;
       this.hasDropped = true;
     }
@@ -117,10 +117,12 @@ class Board {
   /** Time that the module's clock leaves out, ms. */
   #leftOutMs = 0;
   #isOpen = true;
-  /** The scene whose load a stop has broken off: the next press loads it again. */
-  #brokenOff = null;
+  /** The number of the newest scene: each load, and each `forget`, begins another. */
+  #newest = 0;
+  #fault = null;
   isSimulated = true;
   isWanted = false;
+  /** Whether the board has the newest scene: nothing else can be armed. */
   isLoaded = false;
   state = "disarmed";
   driving = "";
@@ -183,18 +185,23 @@ class Board {
     const isOver = () => !call.isStop && call.round !== this.#round;
     const called = this.#queue.then(async () => {
       if (!this.#isOpen) throw new Error("the board was disconnected meanwhile");
-      if (isOver()) throw new Error(STOPPED);
+      if (isOver()) throw this.#stopped();
       this.#current = call;
       try {
         return await this.#engine.callSuspending(name, input, ...numbers);
       } catch (error) {
-        if (isOver() && !this.#stream.isClosed) throw new Error(STOPPED);
+        if (isOver() && !this.#stream.isClosed) throw this.#stopped();
         if (error.isLinkLost) this.#lose(error);
         throw error;
       }
     });
     this.#queue = called.catch(() => {});
     return called;
+  }
+
+  /** The error of a call that a stop has broken off. A simulated board would play what is loaded again. */
+  #stopped() {
+    return Object.assign(new Error(STOPPED), { canLoadAgain: this.#isOpen && !this.isSimulated });
   }
 
   /** Keeps the board alive for as long as the page is. */
@@ -218,47 +225,48 @@ class Board {
     if (this.isSimulated && this.isWanted && this.state === "disarmed") await this.#call("host_play");
     const { state, fault, telemetry } = await this.#call("host_wait", null, WAIT_MS);
     this.state = state;
-    this.report(fault);
+    this.#fault = fault;
+    this.report();
     if (telemetry.length > 0) self.postMessage({ type: "frame", frame: frameOf(telemetry) });
   }
 
-  report(fault = null) {
-    const isArmable = this.isLoaded || this.#brokenOff !== null;
-    const needsArm = !this.isSimulated && isArmable && this.state === "disarmed";
-    self.postMessage({ type: "state", state: this.state, fault, needsArm, driving: this.driving });
+  report() {
+    if (!this.#isOpen) return;
+    const needsArm = !this.isSimulated && this.isLoaded && this.state === "disarmed";
+    self.postMessage({ type: "state", state: this.state, fault: this.#fault, needsArm, driving: this.driving });
   }
 
-  async #load(scene) {
-    // What can be armed is the newest scene that was not refused, or nothing.
-    this.#loads += 1;
-    const load = this.#loads;
-    this.#brokenOff = null;
-    if (this.state !== "active") this.isLoaded = false;
-    try {
-      await this.#call("host_load", requestOf(scene));
-    } catch (error) {
-      if (error.message === STOPPED && load === this.#loads) this.#brokenOff = scene;
-      throw error;
-    }
-    if (load === this.#loads) this.#brokenOff = null;
-    this.isLoaded = true;
+  /** A scene is about to come: until the board has it, nothing can be armed. Returns the scene's number. */
+  #expectScene() {
+    this.isLoaded = false;
+    this.#newest += 1;
+    return this.#newest;
   }
-  /** How many loads have begun. */
-  #loads = 0;
 
   async play(scene) {
     const round = this.#round;
-    await this.#load(scene);
+    const number = this.#expectScene();
+    try {
+      await this.#call("host_load", requestOf(scene));
+      this.isLoaded = number === this.#newest;
+    } finally {
+      // Before the answer: who waits for it knows whether the scene can be armed.
+      this.report();
+    }
     // A board with an electrode waits for an explicit press.
     if (!this.isSimulated) return;
-    if (round !== this.#round) throw new Error(STOPPED);
-    await this.arm();
+    if (round !== this.#round) throw this.#stopped();
+    await this.#drive();
   }
 
-  async arm() {
-    if (this.#brokenOff) await this.#load(this.#brokenOff);
+  /** Arms the board. */
+  arm() {
     // After a refused load the board has another scene than the page.
     if (!this.isLoaded) throw new Error("no scene is on the board: open one that it does not refuse");
+    return this.#drive();
+  }
+
+  async #drive() {
     this.isWanted = true;
     await this.#call("host_play");
   }
@@ -268,8 +276,14 @@ class Board {
     this.isWanted = false;
     await this.#disarm();
     // A hidden page hears nothing more of the board until it is visible again.
-    if (this.state !== "faulted") this.state = "disarmed";
+    if (this.state !== "faulted") [this.state, this.#fault] = ["disarmed", null];
     this.report();
+  }
+
+  /** Disarms the board, which cannot be armed before another scene is loaded. */
+  forget() {
+    this.#expectScene();
+    return this.stop();
   }
 
   #disarm() {
@@ -369,6 +383,7 @@ serve({
   arm: () => connected().arm(),
   // Without a board there is nothing to stop.
   stop: () => board?.stop(),
+  forget: () => board?.forget(),
   control: ({ line }) => connected().control(line),
   clearFault: () => connected().clearFault(),
 

@@ -7,6 +7,8 @@ const NO_BRIDGE =
   "other page connected to it?";
 /** Longest wait for each step of closing a port, ms: a port that is stuck is left. */
 const CLOSE_MAX_MS = 500;
+/** Longest wait for the bridge to accept a connection, ms. */
+const OPEN_MAX_MS = 5000;
 
 /**
  * A line over Web Serial: `{ remote, close, closed }`. `remote` is the MessagePort; `closed` resolves once the port can
@@ -50,7 +52,12 @@ async function closePort(port, reader, writer) {
 
 /** Waits for a promise, but not for ever, and not for its outcome. */
 function ended(promise) {
-  return Promise.race([promise.catch(() => {}), new Promise((resolve) => setTimeout(resolve, CLOSE_MAX_MS))]);
+  return Promise.race([promise.catch(() => {}), after(CLOSE_MAX_MS)]);
+}
+
+/** Resolves, to nothing, after this time. */
+export function after(ms) {
+  return new Promise((resolve) => setTimeout(resolve, ms));
 }
 
 /** The address of the bridge of `frixel studio`, if it serves this page and has a port; else null. */
@@ -63,10 +70,12 @@ export function bridgeUrl({ protocol, host, hash } = location) {
 export async function socketLine(url) {
   const socket = new WebSocket(url);
   socket.binaryType = "arraybuffer";
-  await new Promise((resolve, reject) => {
-    socket.onopen = resolve;
-    socket.onerror = () => reject(new Error(NO_BRIDGE));
-  });
+  const opened = new Promise((resolve) => (socket.onopen = () => resolve(true)));
+  const failed = new Promise((resolve) => (socket.onerror = () => resolve(false)));
+  if (!(await Promise.race([opened, failed, after(OPEN_MAX_MS)]))) {
+    socket.close();
+    throw new Error(NO_BRIDGE);
+  }
   return line((local) => {
     const closed = new Promise((resolve) => (socket.onclose = resolve));
     closed.then(() => local.close());

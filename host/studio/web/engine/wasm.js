@@ -143,9 +143,9 @@ function serve(actions) {
       const value = await actions[message.type](message);
       if (message.id !== undefined) self.postMessage({ type: "answer", id: message.id, value });
     } catch (error) {
-      const { message: sentence, problems } = error;
+      const { message: sentence, problems, canLoadAgain } = error;
       if (message.id !== undefined) {
-        self.postMessage({ type: "answer", id: message.id, error: sentence, problems });
+        self.postMessage({ type: "answer", id: message.id, error: sentence, problems, canLoadAgain });
       } else {
         self.postMessage({ type: "failure", error: sentence });
       }

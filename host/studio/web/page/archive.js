@@ -3,7 +3,7 @@
 import { strFromU8, strToU8, unzipSync, zipSync } from "../vendor/studio-vendor.js";
 
 /** Largest file of a zip, and most files, that are unpacked. */
-const FILE_MAX = 8_000_000;
+const FILE_MAX_BYTES = 8_000_000;
 const FILES_MAX = 100;
 /** Name of the scene where the settings say none. */
 const ENTRY = "scene.toml";
@@ -25,7 +25,7 @@ export function projectOf(bytes) {
     entries = unzipSync(bytes, {
       filter: ({ name, originalSize }) => {
         count += 1;
-        return count <= FILES_MAX && originalSize <= FILE_MAX && !name.endsWith("/");
+        return count <= FILES_MAX && originalSize <= FILE_MAX_BYTES && !name.endsWith("/");
       },
     });
   } catch {

@@ -3,13 +3,18 @@
 import { bridgeUrl } from "../engine/engine.js";
 import { attempt, byId, element, notify } from "./dom.js";
 
+/** Why a scene that is shown cannot be armed, by its status as player.js reports it. */
+const WHY_NOT_ARMED = {
+  loading: "The scene is on its way to the board.",
+  mistaken: "The scene has mistakes: mend them, then arm.",
+  failed: "The board does not have the scene that is shown.",
+};
 const WORDS = { active: "playing", armed: "armed", disarmed: "disarmed", faulted: "faulted" };
 
 export class Board {
   #engine;
   #dialog = byId("board-dialog");
   #link = "simulator";
-  #isScenePending = false;
   /** The bridge of `frixel studio`, or null; read at the start, since a shared scene takes its place in the address. */
   #bridge = bridgeUrl();
   /** Another board is connected: the scene is played there. */
@@ -23,37 +28,19 @@ export class Board {
     this.#show({ link: "simulator", state: "disarmed", needsArm: false, driving: "the simulator in this page" });
     byId("board").textContent = "Simulator: starting…";
     byId("open-board").onclick = () => this.#open();
-    byId("arm").onclick = () => attempt(() => (byId("arm").dataset.clears ? engine.clearFault() : engine.arm()));
-    byId("stop").onclick = () => attempt(() => (byId("stop").dataset.stopped ? this.#resume() : engine.stop()));
+    // Where "Clear the fault" was is "Arm" after the first press of a double-click: its second one arms nothing.
+    byId("arm").onclick = ({ detail: pressNumber }) => pressNumber <= 1 && attempt(() => engine.arm());
+    byId("clear-fault").onclick = () => attempt(() => engine.clearFault());
+    byId("stop").onclick = () => attempt(() => (byId("stop").dataset.stopped ? engine.resume() : engine.stop()));
   }
 
   get isPlaying() {
     return document.documentElement.dataset.state === "active";
   }
 
-  get isSimulator() {
-    return this.#link === "simulator";
-  }
-
-  /** Whether a scene is on its way to the board: until it is there, nothing can be armed. */
-  set isScenePending(isPending) {
-    this.#isScenePending = isPending;
-    this.#allowArm();
-  }
-
-  #allowArm() {
-    const arm = byId("arm");
-    arm.disabled = this.#isScenePending && !arm.dataset.clears;
-    arm.title = arm.disabled ? "The scene is on its way to the board." : "";
-  }
-
-  /** Takes the drive off a real board before something that nobody here wrote is played. */
-  async disarmBeforeForeignScene() {
-    if (!this.isSimulator) await this.#engine.stop();
-  }
-
-  #resume() {
-    return this.#engine.arm();
+  /** Lets nothing be armed but the scene that is shown: `status` is where that is, as player.js reports it. */
+  allowArm(status) {
+    Object.assign(byId("arm"), { disabled: status !== "loaded", title: WHY_NOT_ARMED[status] ?? "" });
   }
 
   #show({ link, state, fault, needsArm, driving }) {
@@ -65,14 +52,10 @@ export class Board {
     const name = link === "simulator" ? "Simulator" : driving;
     const details = fault && link !== "none" ? `, ${fault}` : "";
     board.textContent = link === "none" ? "No board" : `${name}: ${WORDS[state] ?? state}${details}`;
-    const arm = byId("arm");
+    byId("arm").hidden = !needsArm;
+    byId("arm").textContent = `Arm: drive ${driving}`;
     // A board latches a fault also when its arm switch is let go.
-    const isFaulted = state === "faulted" && link !== "simulator";
-    arm.hidden = !needsArm && !isFaulted;
-    arm.textContent = isFaulted ? "Clear the fault" : `Arm: drive ${driving}`;
-    if (isFaulted) arm.dataset.clears = "true";
-    else delete arm.dataset.clears;
-    this.#allowArm();
+    byId("clear-fault").hidden = state !== "faulted" || link === "simulator";
     const stop = byId("stop");
     stop.hidden = link === "none";
     const isStopped = state === "disarmed";

@@ -31,7 +31,6 @@ export class Finger {
   #isShown = false;
   /** Part of the reach that is felt now, 0 to 1. */
   #friction = 0;
-  #speed = 0;
   usesPressure = false;
   drags = true;
   /** A stroke begins. */
@@ -145,7 +144,6 @@ export class Finger {
       if (!Number.isFinite(frame.xMm[at])) this.#trail.push(null);
       else {
         this.#friction = Math.max(0, Math.min(1.2, (felt - reach.lowN) / span));
-        this.#speed = frame.speedMmPerS[at];
         this.#trail.push({ xMm: frame.xMm[at], yMm: frame.yMm[at], friction: this.#friction, ms: performance.now() });
       }
     }

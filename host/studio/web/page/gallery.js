@@ -12,7 +12,7 @@ export class Gallery {
   #isFilled = false;
   /** A whole scene is chosen: `onScene(name, text)`. */
   onScene = () => {};
-  /** A layer is taken over: `onLayer(text, scene)`. */
+  /** A layer is taken over: `onLayer(text)`. */
   onLayer = () => {};
 
   constructor(engine) {
@@ -57,7 +57,7 @@ export class Gallery {
       "details",
       {},
       element("summary", {}, "Layers"),
-      element("ul", {}, ...this.#layers(name, text, check.layers)),
+      element("ul", {}, ...this.#layers(text, check.layers)),
     );
     const words = element("p", { className: "fine" }, introduction(text));
     card.replaceChildren(canvas, element("h3", {}, name), words, open, layers);
@@ -66,11 +66,11 @@ export class Gallery {
     canvas.getContext("2d").putImageData(imageOf(map), 0, 0);
   }
 
-  #layers(scene, text, layers) {
+  #layers(text, layers) {
     return layers.map(({ name: title, from }) => {
       const take = element("button", { "aria-label": `Take over ${title}` }, "Take over");
       take.onclick = () => {
-        this.onLayer(layerText(text, from), scene);
+        attempt(() => this.onLayer(layerText(text, from)));
         take.textContent = "Taken ✓";
       };
       return element("li", {}, title, take);

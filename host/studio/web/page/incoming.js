@@ -5,7 +5,7 @@ import { byId, forgetNotice, notify } from "./dom.js";
 import { isPicture } from "./project.js";
 
 /** Largest text, picture and zip, bytes. */
-const MAX = { toml: 500_000, png: 8_000_000, jpg: 8_000_000, jpeg: 8_000_000, zip: 16_000_000 };
+const MAX_BYTES = { toml: 500_000, png: 8_000_000, jpg: 8_000_000, jpeg: 8_000_000, zip: 16_000_000 };
 const JPEG = [0xff, 0xd8, 0xff];
 /** The first bytes of pictures, by the ending of their names. */
 const BEGINNINGS = { png: [0x89, 0x50, 0x4e, 0x47], jpg: JPEG, jpeg: JPEG };
@@ -95,8 +95,8 @@ export class Incoming {
 async function read(file, found) {
   const ending = /\.(toml|png|jpe?g|zip)$/i.exec(file.name)?.[1].toLowerCase();
   if (!ending) throw new Error("expected a scene or profile (.toml), a picture (.png, .jpg) or a saved project (.zip)");
-  if (file.size > MAX[ending]) {
-    const [size, most] = [file.size, MAX[ending]].map((bytes) => (bytes / 1e6).toFixed(1));
+  if (file.size > MAX_BYTES[ending]) {
+    const [size, most] = [file.size, MAX_BYTES[ending]].map((bytes) => (bytes / 1e6).toFixed(1));
     throw new Error(`the file has ${size} MB, more than the ${most} MB that the studio opens`);
   }
   const bytes = new Uint8Array(await file.arrayBuffer());

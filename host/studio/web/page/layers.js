@@ -8,6 +8,8 @@ export class Layers {
   /** Switches and gains, by layer number, as long as the scene plays on. */
   #live = new Map();
   #shown = [];
+  /** Whether another scene is on its way to the board, whose layers have other numbers. */
+  isSceneLoading = false;
   /** Switches or gains differ from the scene's text: `onLive(["brick off", ...])`; empty where none does. */
   onLive = () => {};
 
@@ -18,11 +20,11 @@ export class Layers {
 
   show(check) {
     const panel = byId("panel-layers");
-    // While a gain is dragged or typed the list stays.
-    if (panel.contains(document.activeElement) && document.activeElement.dataset.gain) return;
+    const focused = panel.contains(document.activeElement) && document.activeElement.getAttribute("aria-label");
     this.#shown = check.layers;
     panel.replaceChildren(...check.layers.map((layer) => this.#row(layer)));
     if (check.layers.length === 0) panel.append(element("p", { className: "soft" }, "This scene has no layer yet."));
+    if (focused) panel.querySelector(`[aria-label="${CSS.escape(focused)}"]`)?.focus();
   }
 
   /** A play begins: all layers are on, with the gain of the scene. */
@@ -60,7 +62,7 @@ export class Layers {
     // The slider has the gains of every day, the number all that a board takes.
     const most = Math.min(layer.gainMax, Math.max(2, 2 * layer.gain));
     const input = (type, min, max, name) =>
-      element("input", { type, min, max, step: "any", value: state.gain, "aria-label": name, "data-gain": "true" });
+      element("input", { type, min, max, step: "any", value: state.gain, "aria-label": name });
     const slider = input("range", Math.min(0, 2 * layer.gain), most, `gain of ${label}`);
     slider.step = most / 40;
     slider.value = state.gain;
@@ -109,6 +111,10 @@ export class Layers {
    * one copy is refused, those before it get their old setting back.
    */
   async #change({ index, controls }, next, words, state) {
+    if (this.isSceneLoading) {
+      notify("The scene is on its way to the board: change its layers once it is there.");
+      return false;
+    }
     const before = "on" in next ? (state.on ? "on" : "off") : `gain ${state.gain}`;
     for (const [copy, number] of controls.entries()) {
       const answer = await attempt(() => this.#engine.control(`layer ${number} ${words}`));

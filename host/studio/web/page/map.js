@@ -5,14 +5,19 @@ import { colour } from "./dom.js";
 import { drawMockup } from "./mockup.js";
 
 /** Room for the ruler and the scale around the map, CSS pixels. */
-const LEFT = 40;
-const TOP = 26;
-const RIGHT = 78;
-const BOTTOM = 8;
+const LEFT_PX = 40;
+const TOP_PX = 26;
+const RIGHT_PX = 78;
+const BOTTOM_PX = 8;
 /** The map takes at most this part of the window's height. */
 const HEIGHT_PART = 0.44;
 /** Height of the word that marks a draft, CSS pixels. */
-const DRAFT_HEIGHT = 36;
+const DRAFT_HEIGHT_PX = 36;
+
+/** Size of the picture of a screen's friction map with this width, for `engine.map`. */
+export function mapSizePx({ widthMm, heightMm }, widthPx) {
+  return { widthPx, heightPx: Math.max(8, Math.round((widthPx * heightMm) / widthMm)) };
+}
 
 export class FrictionMap {
   #canvas;
@@ -56,10 +61,10 @@ export class FrictionMap {
     const style = getComputedStyle(this.#box);
     const room = this.#box.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
     const most = Math.max(240, Math.min(HEIGHT_PART * innerHeight, innerHeight - this.reservedPx));
-    const fitted = Math.min((room - LEFT - RIGHT) / widthMm, most / heightMm);
+    const fitted = Math.min((room - LEFT_PX - RIGHT_PX) / widthMm, most / heightMm);
     this.scale = this.realSize ?? Math.max(0.5, fitted);
-    const width = LEFT + RIGHT + widthMm * this.scale;
-    const height = TOP + BOTTOM + heightMm * this.scale;
+    const width = LEFT_PX + RIGHT_PX + widthMm * this.scale;
+    const height = TOP_PX + BOTTOM_PX + heightMm * this.scale;
     const ratio = devicePixelRatio;
     Object.assign(this.#canvas, { width: Math.round(width * ratio), height: Math.round(height * ratio) });
     Object.assign(this.#canvas.style, {
@@ -69,8 +74,8 @@ export class FrictionMap {
     });
     this.draw();
     this.onLayout({
-      left: this.#canvas.offsetLeft + LEFT,
-      top: this.#canvas.offsetTop + TOP,
+      left: this.#canvas.offsetLeft + LEFT_PX,
+      top: this.#canvas.offsetTop + TOP_PX,
       width: widthMm * this.scale,
       height: heightMm * this.scale,
     });
@@ -82,7 +87,7 @@ export class FrictionMap {
     context.clearRect(0, 0, this.#canvas.width, this.#canvas.height);
     if (!this.#map) return;
     const { widthMm, heightMm } = this.screen;
-    const area = { x: LEFT, y: TOP, width: widthMm * this.scale, height: heightMm * this.scale };
+    const area = { x: LEFT_PX, y: TOP_PX, width: widthMm * this.scale, height: heightMm * this.scale };
     context.save();
     context.translate(area.x, area.y);
     // A blind comparison shows nothing of the friction.
@@ -159,7 +164,7 @@ export class FrictionMap {
     context.lineJoin = "round";
     const taken = [];
     // Below the word in the corner.
-    const top = y + (this.#check.isDraft ? DRAFT_HEIGHT : 0) + 14;
+    const top = y + (this.#check.isDraft ? DRAFT_HEIGHT_PX : 0) + 14;
     for (const { name, box } of namedBoxes(this.#check, this.screen)) {
       const wide = context.measureText(name).width + 16;
       const left = Math.max(x + 8, Math.min(x + box.x * this.scale + 8, x + width - wide));
@@ -204,11 +209,11 @@ function drawDraft(context, { x, y, width, height }) {
   context.font = "700 20px system-ui, sans-serif";
   const long = context.measureText(words).width + 28;
   context.fillStyle = "#000";
-  context.fillRect(x, y, long, DRAFT_HEIGHT);
+  context.fillRect(x, y, long, DRAFT_HEIGHT_PX);
   context.fillStyle = "#ffd23f";
   context.textAlign = "left";
   context.textBaseline = "middle";
-  context.fillText(words, x + 14, y + DRAFT_HEIGHT / 2);
+  context.fillText(words, x + 14, y + DRAFT_HEIGHT_PX / 2);
 }
 
 /** Names of layers with the box of each region; a layer without a region has the whole screen. */

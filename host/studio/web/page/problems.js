@@ -2,27 +2,39 @@
 
 import { byId, element } from "./dom.js";
 
-/** What the last check came to. */
-let outcome = "";
+/** What the last check found: how many mistakes, in words, and whether the simulator plays the scene as a draft. */
+let found = { count: "", isDraft: false };
+/** Where the newest text is, as player.js reports it. */
+let status = "loading";
 
 export function showCheck({ ok, isDraft, problems, report }, editor) {
   const errors = problems.filter(({ severity }) => severity === "error");
-  const result = byId("check");
-  result.dataset.bad = !ok;
+  byId("check").dataset.bad = !ok;
   document.documentElement.toggleAttribute("data-draft", isDraft === true);
-  const count = errors.length === 1 ? "1 mistake" : `${errors.length} mistakes`;
-  const meanwhile = isDraft ? "draft: plays clamped, a board refuses it" : "the version before plays on";
-  outcome = ok ? "" : `${count}; ${meanwhile}`;
+  found = { count: errors.length === 1 ? "1 mistake" : `${errors.length} mistakes`, isDraft };
   showOutcome();
   byId("problems").replaceChildren(...problems.map((problem) => item(problem, editor)));
   if (report) byId("report").textContent = feltFirst(report);
   editor.mark(problems);
 }
 
-/** Says what the check came to; a scene without mistakes plays only where the board does. */
+export function showStatus(newStatus) {
+  status = newStatus;
+  showOutcome();
+}
+
+/** Says what came of the newest text. What plays meanwhile, if anything does, is what the board had before. */
 export function showOutcome() {
   const isPlaying = document.documentElement.dataset.state === "active";
-  byId("check").textContent = outcome || (isPlaying ? "plays" : "no mistakes");
+  const meanwhile = isPlaying ? "; the version before plays on" : "";
+  const words = {
+    loading: "loading…",
+    mistaken: `${found.count}${meanwhile}`,
+    failed: isPlaying ? `the board refuses it${meanwhile}` : "not on the board",
+    loaded: isPlaying ? "plays" : "no mistakes",
+  };
+  if (found.isDraft) words.loaded = `${found.count}; draft: plays clamped, a board refuses it`;
+  byId("check").textContent = words[status];
 }
 
 /** The report with what a person feels before what a board needs. */

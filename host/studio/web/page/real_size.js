@@ -5,7 +5,7 @@ import { byId, element, settings } from "./dom.js";
 /** A bank card, mm (ISO/IEC 7810 ID-1). */
 const CARD = { widthMm: 85.6, heightMm: 53.98 };
 /** CSS pixels per mm where nobody held a card to the screen: a CSS inch has 96. */
-const NOMINAL = 96 / 25.4;
+const NOMINAL_PX_PER_MM = 96 / 25.4;
 
 export class RealSize {
   #map;
@@ -30,7 +30,7 @@ export class RealSize {
   }
 
   #ask() {
-    let scale = this.#pixelsPerMm ?? NOMINAL;
+    let scale = this.#pixelsPerMm ?? NOMINAL_PX_PER_MM;
     const card = element("div", { className: "bank-card" }, "bank card");
     const size = element("input", {
       type: "range",

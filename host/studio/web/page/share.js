@@ -5,7 +5,7 @@ import { deflateSync, inflateSync, strFromU8, strToU8 } from "../vendor/studio-v
 /** Longest link that mail programs and chats take, characters. */
 const LINK_MAX = 32_000;
 /** Largest content of a link, unpacked: a link cannot make the page unpack gigabytes. */
-const CONTENT_MAX = 4_000_000;
+const CONTENT_MAX_BYTES = 4_000_000;
 const START = "#scene=";
 
 /** The link of a scene; throws a sentence where it would be too long. */
@@ -49,7 +49,7 @@ export function sceneOf(fragment) {
   try {
     if (fragment.length > LINK_MAX) throw new Error(broken);
     const packed = fromBase64(fragment.slice(START.length));
-    const content = JSON.parse(strFromU8(inflateSync(packed, { out: new Uint8Array(CONTENT_MAX) })));
+    const content = JSON.parse(strFromU8(inflateSync(packed, { out: new Uint8Array(CONTENT_MAX_BYTES) })));
     if (typeof content.text !== "string" || typeof content.name !== "string") throw new Error(broken);
     const files = Object.entries(content.files ?? {}).map(([name, value]) => [name, fromBase64(value)]);
     return { name: content.name.slice(0, 60), text: content.text, files };

@@ -1,0 +1,75 @@
+// The engine's workers: whatever ends or fails, every question has an answer.
+
+import assert from "node:assert/strict";
+import { after, test } from "node:test";
+import { CONSTANT, cleanUp, openEngine } from "./harness.mjs";
+
+after(cleanUp);
+
+/** Runs in the page: the outcome of a promise as a sentence, also where it never settles. */
+function addOutcome() {
+  globalThis.outcome = (promise) =>
+    Promise.race([
+      promise.then(() => "done", (error) => error.message),
+      new Promise((resolve) => setTimeout(() => resolve("no answer"), 20_000)),
+    ]);
+}
+
+test("what is asked while the simulator is reset is rejected, and only one reset runs at a time", async () => {
+  const { page, errors, close } = await openEngine();
+  await page.evaluate(addOutcome);
+  const outcomes = await page.evaluate(async (text) => {
+    const play = () => tested.play({ "a.toml": text }, "a.toml", {});
+    const [first, second] = [tested.simulate(), tested.simulate()].map(outcome);
+    let asked;
+    const { board } = workersOfPage;
+    const count = board.length;
+    while (board.length === count) await new Promise((resolve) => setTimeout(resolve, 0));
+    asked = outcome(play());
+    return { asked: await asked, first: await first, second: await second, after: await outcome(play()) };
+  }, CONSTANT);
+  assert.match(outcomes.asked, /done|reset meanwhile/);
+  assert.equal(outcomes.first, "done");
+  assert.match(outcomes.second, /wait until it has answered/);
+  assert.equal(outcomes.after, "done");
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("what a worker was asked is rejected when it fails, and the simulator can be started again", async () => {
+  const { page, close } = await openEngine();
+  await page.evaluate(addOutcome);
+  const outcomes = await page.evaluate(async (text) => {
+    const failures = [];
+    tested.onFailure = ({ error }) => failures.push(error);
+    const play = () => tested.play({ "a.toml": text }, "a.toml", {});
+    const fail = (name) => {
+      // The page's own engine has workers of the same names, which were started before.
+      workersOfPage[name].at(-1).dispatchEvent(new ErrorEvent("error", { message: "out of memory" }));
+    };
+    const asked = outcome(play());
+    fail("board");
+    const found = { asked: await asked, later: await outcome(play()) };
+    fail("host");
+    return { ...found, simulate: await outcome(tested.simulate()), after: await outcome(play()), failures };
+  }, CONSTANT);
+  assert.match(outcomes.asked, /the board worker: out of memory/);
+  assert.match(outcomes.later, /the board worker: out of memory/);
+  assert.equal(outcomes.simulate, "done");
+  assert.equal(outcomes.after, "done");
+  assert.deepEqual(outcomes.failures, ["the board worker: out of memory", "the host worker: out of memory"]);
+  await close();
+});
+
+test("a bridge that does not answer is given up", async () => {
+  const { page, close } = await openEngine();
+  await page.evaluate(addOutcome);
+  const found = await page.evaluate(() => {
+    globalThis.WebSocket = class {
+      close() {}
+    };
+    return outcome(tested.connectSocket("ws://localhost/"));
+  });
+  assert.match(found, /gives no connection/);
+  await close();
+});
