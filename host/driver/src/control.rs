@@ -10,8 +10,8 @@
 //! - `wait S`: carries out the following lines S seconds later;
 //! - `quit`: ends the play.
 //!
-//! NAME is the name of a layer in the scene, or its number as in messages: `3`, or `3.2` for a copy. Names and paths with
-//! spaces stand in quotation marks. Empty lines, and what follows `#`, are ignored.
+//! NAME is the name of a layer in the scene, or its number as in messages: `3`, or `3.2` for a copy. Names and paths
+//! with spaces stand in quotation marks. Empty lines, and what follows `#`, are ignored.
 
 use thiserror::Error;
 

@@ -95,8 +95,8 @@ impl Control {
         if self.waits { until_next } else { until_next.min(LOOK_PERIOD) }
     }
 
-    /// Carries out the lines that have arrived at time `t_s` of the play. Calls `say` with what is refused or clamped, a
-    /// sentence each.
+    /// Carries out the lines that have arrived at time `t_s` of the play. Calls `say` with what is refused or clamped,
+    /// a sentence each.
     pub(super) fn step<L: RecordedLink>(
         &mut self,
         player: &mut Player<L>,

@@ -81,8 +81,8 @@ impl LiveScene {
         self.compile(path.to_owned(), Origin::Other, player);
     }
 
-    /// Plays the next scene once it is compiled. Without one, compiles the scene that plays anew if one of its files was
-    /// saved. Returns the new program if it replaced `playing`.
+    /// Plays the next scene once it is compiled. Without one, compiles the scene that plays anew if one of its files
+    /// was saved. Returns the new program if it replaced `playing`.
     pub(super) fn refresh<L: RecordedLink>(
         &mut self,
         player: &mut Player<L>,
