@@ -14,6 +14,8 @@ const HOST_TIMEOUT_MS = 250;
 const SHARED_MS = 100;
 /** A slow line, bits a second: the picture of brick.toml takes seconds. */
 const SLOW_BAUD = 230_400;
+/** A host sends nothing so long after the last frame of its page: 25 ms, and the machine's share, ms. */
+const LAST_SENT_MS = 200;
 /** A command without an answer is sent again after this time, ms. */
 const REPEAT_MS = 250;
 
@@ -47,11 +49,14 @@ async function duringUpload(act) {
   const opened = await withPort(board);
   await drive(opened.page, board);
   const from = board.events.length;
-  const found = await opened.page.evaluate(async (act) => {
+  const found = await opened.page.evaluate(async ([act, lastSentMs]) => {
     const acts = {
       stop: () => tested.stop(),
       hidden: () => setVisibility("hidden"),
-      "without frames": () => void (globalThis.requestAnimationFrame = () => {}),
+      async "without frames"() {
+        globalThis.requestAnimationFrame = () => {};
+        await new Promise((resolve) => setTimeout(resolve, lastSentMs));
+      },
     };
     const { sent, arrived } = serialPort;
     const bytes = () => sent.reduce((sum, piece) => sum + piece.length, 0);
@@ -68,7 +73,7 @@ async function duringUpload(act) {
     const ms = performance.now() - begin;
     const outcome = act === "stop" ? await upload : undefined;
     return { ms, first, sent: [...sent], arrived: [...arrived], outcome };
-  }, act);
+  }, [act, LAST_SENT_MS]);
   return { ...opened, board, from, ...found };
 }
 
@@ -125,9 +130,11 @@ timedTest("during an upload, a hidden page disarms the board", async () => {
 });
 
 timedTest("during an upload, a page without frames leaves the board to its host timeout", async () => {
-  const { board } = await duringUpload("without frames");
+  const { page, board, sent } = await duringUpload("without frames");
   const { board: found } = await board.until("disarmed without frames", stateOf.disarmed);
   assert.ok(found.isSilent);
+  const later = await page.evaluate(() => serialPort.sent.length);
+  assert.equal(later, sent.length, "the host was silent too late");
 });
 
 /** Plays a scene that takes long to compile, and stops meanwhile. */

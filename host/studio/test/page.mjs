@@ -69,7 +69,7 @@ function addHelpers() {
 }
 
 /** A stroke is tried so often. */
-const STROKES_MAX = 8;
+const STROKES_MAX = 20;
 const SPEED_MM_PER_S = 80;
 
 /** Runs in the page, which has a function `eachFrame(listen)` that returns how to listen no more. */
