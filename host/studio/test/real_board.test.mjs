@@ -262,12 +262,13 @@ test("a page that is closed leaves no board armed", async () => {
 
 test("leaving a board disarms it, however late the bytes come that do", async () => {
   const { page, board, close } = await connected({
-    init() {
+    init: () => {
+      globalThis.portDelayMs = 0;
       const { get, set } = Object.getOwnPropertyDescriptor(MessagePort.prototype, "onmessage");
       Object.defineProperty(MessagePort.prototype, "onmessage", {
         get,
         set(take) {
-          set.call(this, (event) => setTimeout(() => take(event), 50));
+          set.call(this, (event) => (portDelayMs > 0 ? setTimeout(take, portDelayMs, event) : take(event)));
         },
       });
     },
@@ -276,6 +277,7 @@ test("leaving a board disarms it, however late the bytes come that do", async ()
   await board.until("driving", stateOf.driving);
   const from = board.events.length;
   await page.click("#open-board");
+  await page.evaluate(() => (globalThis.portDelayMs = 50));
   await page.click("#board-dialog >> text=Simulator");
   await board.assertDisarmed(from, "leaving");
   await close();
