@@ -81,24 +81,35 @@ fn fitted(folder: &Path, key: &str, interval: &str) -> (f64, [f64; 2]) {
     (json[key].as_f64().unwrap(), [0, 1].map(|end| json[interval][end].as_f64().unwrap()))
 }
 
-/// The person of a seed is on the virtual board, and no scene changes that: what is fitted is theirs.
-#[test]
-fn a_person_at_a_port_is_calibrated_with_the_forces_of_a_sensor() {
+/// A person whose finger slides over a virtual board, calibrated with the forces of a sensor under the screen.
+fn calibrated_at_a_port() -> TempDir {
     let folder = TempDir::new().unwrap();
     let board = VirtualBoard::start(folder.path(), &[&STROKES[..], &["--finger-seed", "5"]].concat());
     calibrate(folder.path(), &["--port", &board.port, "--forces", "board/forces.csv"], frixel);
-    drop(board);
-    let person = Person::drawn(5);
-    let contact = person.contact(1e-6 / 3.9).unwrap();
-    let electric = ("electric_friction_150_v_n", "electric_friction_150_v_interval_n");
-    let (electric_n, [low_n, high_n]) = fitted(folder.path(), electric.0, electric.1);
+    folder
+}
+
+/// The person of a seed is on the virtual board, and no scene changes that: what is fitted is theirs.
+#[test]
+fn a_person_at_a_port_is_calibrated_with_the_forces_of_a_sensor() {
+    let folder = calibrated_at_a_port();
+    let drawn = Person::drawn(5).finger.friction_coefficient;
+    let (coefficient, [low, high]) = fitted(folder.path(), "friction_coefficient", "friction_coefficient_interval");
+    assert!((coefficient / drawn - 1.0).abs() < 0.05, "{coefficient}, not {drawn}");
+    assert!(low < coefficient && coefficient < high, "{coefficient} is outside of {low} to {high}");
+}
+
+/// The board runs in real time, so that every recording has other noise, and one interval in twenty misses the truth.
+/// `--test fit` counts the misses in virtual time.
+#[test]
+#[ignore = "one interval in twenty misses: cargo xtask soak"]
+fn the_electric_friction_of_a_person_at_a_port_is_in_its_interval() {
+    let folder = calibrated_at_a_port();
+    let contact = Person::drawn(5).contact(1e-6 / 3.9).unwrap();
+    let (_, interval_n) = fitted(folder.path(), "electric_friction_150_v_n", "electric_friction_150_v_interval_n");
     // Less what amplifier and skin take of a square wave of 1 kHz, and with eight strokes of noise.
-    // The board runs in real time, so that every recording has other noise: what counts is the interval.
-    let [low, share, high] = [low_n, electric_n, high_n].map(|newtons| newtons / contact.electric_friction_n(150.0));
+    let [low, high] = interval_n.map(|newtons| newtons / contact.electric_friction_n(150.0));
     assert!(low < 1.05 && 0.80 < high && high - low < 0.5, "{low} to {high}");
-    assert!(low < share && share < high, "{share} is outside of {low} to {high}");
-    let (coefficient, _) = fitted(folder.path(), "friction_coefficient", "friction_coefficient_interval");
-    assert!((coefficient / person.finger.friction_coefficient - 1.0).abs() < 0.05, "{coefficient}");
 }
 
 /// The same, while the sensor's rows come on standard input.
