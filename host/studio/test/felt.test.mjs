@@ -60,6 +60,13 @@ function compared(felt, reference) {
   return shifts.reduce((best, each) => (each.error < best.error ? each : best));
 }
 
+/** Stops the board; its strokes are whole without an output. */
+const stopOutput = (page) =>
+  page.evaluate(() => {
+    globalThis.expectedState = "disarmed";
+    return studioPage.engine.stop();
+  });
+
 /** Felt friction and reference along strokes over the scene that plays, below 40 Hz and registered in place. */
 async function feltAlong(page, linesMm) {
   const errors = [];
@@ -92,7 +99,7 @@ test("a slide is felt as the scene has it", async (context) => {
   assertFelt(await feltAlong(page, [30, 60, 90]), BRICK, context, "brick");
   await page.evaluate((text) => played(text), FEATURES_OF_10_MM);
   assertFelt(await feltAlong(page, [20, 40, 60]), GOAL, context, "features of 10 mm");
-  await page.evaluate(() => studioPage.engine.stop());
+  await stopOutput(page);
   const silent = await feltAlong(page, [40]);
   assert.throws(() => assertFelt(silent, GOAL, context, "with the output at zero"));
   assert.deepEqual(errors, []);
@@ -173,7 +180,7 @@ test("the sound's peak is speed over wavelength; without output there is none", 
     const hz = await assertSoundPeakHz(page, speedMmPerS);
     context.diagnostic(`${speedMmPerS} mm/s over 2 mm: ${hz.toFixed(1)} Hz`);
   }
-  await page.evaluate(() => studioPage.engine.stop());
+  await stopOutput(page);
   await assert.rejects(assertSoundPeakHz(page, 100), /no sound| Hz at/, "with the output at zero");
   assert.deepEqual(errors, []);
   await close();

@@ -82,13 +82,16 @@ export function addWatch() {
   const FRAMES = 10;
   /** A worker that is held up skips more time than this, and frames are rarely so late, ms. */
   const SKIPPED_MS = 50;
-  /** Resolves once the simulator runs: a busy machine may hold the page up. */
+  /** The state that the board has in a stroke. */
+  globalThis.expectedState = "active";
+  /** Resolves once the simulator runs in this state: a busy machine may hold the page up. */
   globalThis.running = () =>
     new Promise((resolve) => {
       let begin;
-      const leave = eachFrame(({ tick }) => {
-        begin ??= tick;
-        if (tick < begin + 100 * 40) return;
+      const leave = eachFrame(({ tick, state }) => {
+        if (state !== expectedState) begin = undefined;
+        else begin ??= tick;
+        if (begin === undefined || tick < begin + 100 * 40) return;
         leave();
         resolve();
       });
@@ -106,7 +109,7 @@ export function addWatch() {
     });
     globalThis.isUndisturbed = () => {
       leave();
-      if (!isSentInTime || states.size !== 1) return false;
+      if (!isSentInTime || states.size !== 1 || !states.has(expectedState)) return false;
       return Math.min(...lagsMs.slice(-FRAMES)) < Math.min(...lagsMs) + SKIPPED_MS;
     };
   };
