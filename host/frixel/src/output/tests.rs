@@ -469,7 +469,7 @@ fn layers_that_were_never_touched_are_counted_from_the_last_replacement() {
     let titles =
         ["layer 1 \"base\"", "layer 3.1 \"key 1\"", "layer 3.2 \"key 2\"", "layer 3.3 \"key 3\""].map(str::to_owned);
     let summary = |replaced_at_s| report(&NOTHING).with_untouched(titles.to_vec(), replaced_at_s).summary();
-    let layers = "never touched    layer 1 \"base\", layer 3.1 \"key 1\" and 2 alike";
+    let layers = "never touched    layer 1 \"base\", layer 3.1 \"key 1\" with 2 more copies";
     assert!(summary(None).contains(&format!("{layers}\n")), "{}", summary(None));
     assert!(summary(Some(1.5)).contains(&format!("{layers}; since 1.50 s, when the scene was replaced\n")));
 }
