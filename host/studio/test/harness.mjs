@@ -84,8 +84,11 @@ async function endProgram(program, quit) {
   await ended;
 }
 
-/** Opens the page, and returns it with the list of errors that it reports. */
-export async function openPage(url = pageUrl) {
+/**
+ * Opens the page, and returns it with the list of errors that it reports. `init`, if given, runs in the page before its
+ * scripts.
+ */
+export async function openPage(url = pageUrl, { init } = {}) {
   browser ??= await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: FLAGS });
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 } });
   context.setDefaultTimeout(WAIT_MAX_MS);
@@ -108,6 +111,7 @@ export async function openPage(url = pageUrl) {
       document.dispatchEvent(new Event("visibilitychange"));
     };
   });
+  if (init) await page.addInitScript(init);
   const close = endLater(() => context.close());
   await page.goto(url);
   return { page, errors, close };

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { after, test } from "node:test";
-import { CONSTANT, cleanUp, openEngine } from "./harness.mjs";
+import { CONSTANT, cleanUp, openOnlyEngine } from "./harness.mjs";
 
 after(cleanUp);
 
@@ -16,7 +16,7 @@ function addOutcome() {
 }
 
 test("what is asked while the simulator is reset is rejected, and only one reset runs at a time", async () => {
-  const { page, errors, close } = await openEngine();
+  const { page, errors, close } = await openOnlyEngine();
   await page.evaluate(addOutcome);
   const outcomes = await page.evaluate(async (text) => {
     const play = () => tested.play({ "a.toml": text }, "a.toml", {});
@@ -37,7 +37,7 @@ test("what is asked while the simulator is reset is rejected, and only one reset
 });
 
 test("what a worker was asked is rejected when it fails, and the simulator can be started again", async () => {
-  const { page, close } = await openEngine();
+  const { page, close } = await openOnlyEngine();
   await page.evaluate(addOutcome);
   const outcomes = await page.evaluate(async (text) => {
     const failures = [];
@@ -62,7 +62,7 @@ test("what a worker was asked is rejected when it fails, and the simulator can b
 });
 
 test("a bridge that does not answer is given up", async () => {
-  const { page, close } = await openEngine();
+  const { page, close } = await openOnlyEngine();
   await page.evaluate(addOutcome);
   const found = await page.evaluate(() => {
     globalThis.WebSocket = class {
