@@ -154,7 +154,7 @@ fn the_command_opens_its_address_in_a_browser_that_starts() {
     fs::write(&page, PAGE).unwrap();
     let script = format!("#!/bin/sh\nprintf %s \"${{0##*/}} $*\" > {}.part\nmv {0}.part {0}\n", opened.display());
     // The second one is the desktop's.
-    for browser in ["browser", "xdg-open"] {
+    for browser in ["browser", "a browser", "xdg-open"] {
         fs::write(path(browser), &script).unwrap();
         fs::set_permissions(path(browser), fs::Permissions::from_mode(0o755)).unwrap();
     }
@@ -162,6 +162,7 @@ fn the_command_opens_its_address_in_a_browser_that_starts() {
     let search_path = format!("{}:{}", folder.path().display(), std::env::var("PATH").unwrap());
     let mut cases = vec![
         (browser.clone(), "browser URL"),
+        (path("a browser").display().to_string(), "a browser URL"),
         (format!("frixel-knows-no-such-browser:{browser}"), "browser URL"),
         (format!("{browser} --new %s in-front"), "browser --new URL in-front"),
     ];

@@ -30,7 +30,7 @@ test("what is asked while the simulator is reset is rejected, and only one reset
   }, CONSTANT);
   assert.match(outcomes.asked, /done|reset meanwhile/);
   assert.equal(outcomes.first, "done");
-  assert.match(outcomes.second, /wait until it has answered/);
+  assert.match(outcomes.second, /wait until that is done/);
   assert.equal(outcomes.after, "done");
   assert.deepEqual(errors, []);
   await close();

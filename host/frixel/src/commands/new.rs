@@ -59,9 +59,9 @@ fn scene_path(name: &Path) -> PathBuf {
     if name.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
         return name.to_owned();
     }
-    let mut path = name.as_os_str().to_owned();
-    path.push(".toml");
-    path.into()
+    let mut file = name.file_name().unwrap_or_default().to_owned();
+    file.push(".toml");
+    name.with_file_name(file)
 }
 
 /// Width and height of a picture that can be played.

@@ -44,7 +44,7 @@ pub(super) fn run(args: &PlayArgs) -> Result<(), CommandError> {
         return watch::play_on_simulator(args, &interrupt);
     }
     let (scene, files) = args.profiles.names().load_with_files(&args.scene);
-    outputs::check_outputs(&files, &outputs::output_paths(args, target))?;
+    outputs::check_play_outputs(&files, &outputs::output_paths(args, target))?;
     let scene = scene?;
     let live_scene = (args.watch || args.control).then(|| LiveScene::new(args, target, files));
     let played = match target {

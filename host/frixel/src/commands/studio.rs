@@ -56,14 +56,16 @@ fn open_browser(url: &str) -> io::Result<()> {
 /// word.
 fn browsers(list: &OsStr, url: &str) -> Vec<Vec<String>> {
     let command = |entry: PathBuf| {
-        let entry = entry.to_string_lossy();
-        let mut words: Vec<String> = entry.split_whitespace().map(|word| word.replace("%s", url)).collect();
-        if !entry.contains("%s") {
-            words.push(url.to_owned());
+        let words = entry.to_string_lossy().into_owned();
+        // The path of a program may have spaces.
+        if entry.is_file() {
+            return vec![words, url.to_owned()];
         }
-        words
+        let has_place = words.contains("%s");
+        let words = words.split_whitespace().map(|word| word.replace("%s", url));
+        words.chain((!has_place).then(|| url.to_owned())).collect()
     };
-    env::split_paths(list).map(command).collect()
+    env::split_paths(list).filter(|entry| !entry.as_os_str().is_empty()).map(command).collect()
 }
 
 /// Starts a command that goes on without this one.

@@ -16,7 +16,7 @@ const SPEEDS_MAX: usize = 8_192;
 /// A finger slower than this is left out of the median, mm/s.
 const SLIDES_FROM_MM_S: f64 = 2.0;
 /// A span counts as off if the output is off in this part of its rows. In a long play, the moments at which the finger
-/// turns are less, and a pause of a tenth of a second is not.
+/// turns are less. A pause of a tenth of a second is not, in a play of up to ten minutes.
 const OFF_PART_MIN: f64 = 0.1;
 
 /// Friction, voltage and stroke of a run. Long runs are reduced to least and largest value of each span of time.

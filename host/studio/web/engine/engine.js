@@ -158,7 +158,11 @@ class Engine {
 
   /** Disarms a board outside of the page. It cannot be armed again before another scene is played there. */
   async forget() {
-    if (this.#line) await this.#host.ask({ type: "forget" });
+    if (!this.#line) return;
+    await this.#host.ask({ type: "forget" }).catch((error) => {
+      // A board that is lost cannot be armed.
+      if (this.#link !== "none") throw error;
+    });
   }
 
   clearFault() {
@@ -225,7 +229,7 @@ class Engine {
 
   /** Changes the board, one change at a time. */
   async #change(action) {
-    if (this.#isChanging) throw new Error("a board is being connected: wait until it has answered");
+    if (this.#isChanging) throw new Error("the board is being changed: wait until that is done");
     this.#isChanging = true;
     try {
       await action();

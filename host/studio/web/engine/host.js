@@ -280,10 +280,11 @@ class Board {
     this.report();
   }
 
-  /** Disarms the board, which cannot be armed before another scene is loaded. */
-  forget() {
+  /** Disarms a board with an electrode, which cannot be armed before another scene is loaded. */
+  async forget() {
+    if (this.isSimulated) return;
     this.#expectScene();
-    return this.stop();
+    await this.stop();
   }
 
   #disarm() {

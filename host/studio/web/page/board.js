@@ -3,6 +3,8 @@
 import { bridgeUrl } from "../engine/engine.js";
 import { attempt, byId, element, notify } from "./dom.js";
 
+/** For so long after Arm has appeared it cannot be pressed, ms: a press was meant for what stood in its place. */
+const ARM_REST_MS = 1000;
 /** Why a scene that is shown cannot be armed, by its status as player.js reports it. */
 const WHY_NOT_ARMED = {
   loading: "The scene is on its way to the board.",
@@ -15,6 +17,11 @@ export class Board {
   #engine;
   #dialog = byId("board-dialog");
   #link = "simulator";
+  /** Where the scene that is shown is, as player.js reports it. */
+  #status = "loading";
+  /** Arm has only just appeared. */
+  #isArmResting = false;
+  #armRestTimer;
   /** The bridge of `frixel studio`, or null; read at the start, since a shared scene takes its place in the address. */
   #bridge = bridgeUrl();
   /** Another board is connected: the scene is played there. */
@@ -28,8 +35,7 @@ export class Board {
     this.#show({ link: "simulator", state: "disarmed", needsArm: false, driving: "the simulator in this page" });
     byId("board").textContent = "Simulator: starting…";
     byId("open-board").onclick = () => this.#open();
-    // Where "Clear the fault" was is "Arm" after the first press of a double-click: its second one arms nothing.
-    byId("arm").onclick = ({ detail: pressNumber }) => pressNumber <= 1 && attempt(() => engine.arm());
+    byId("arm").onclick = () => attempt(() => engine.arm());
     byId("clear-fault").onclick = () => attempt(() => engine.clearFault());
     byId("stop").onclick = () => attempt(() => (byId("stop").dataset.stopped ? engine.resume() : engine.stop()));
   }
@@ -40,7 +46,27 @@ export class Board {
 
   /** Lets nothing be armed but the scene that is shown: `status` is where that is, as player.js reports it. */
   allowArm(status) {
-    Object.assign(byId("arm"), { disabled: status !== "loaded", title: WHY_NOT_ARMED[status] ?? "" });
+    this.#status = status;
+    this.#enableArm();
+  }
+
+  #enableArm() {
+    const disabled = this.#status !== "loaded" || this.#isArmResting;
+    Object.assign(byId("arm"), { disabled, title: WHY_NOT_ARMED[this.#status] ?? "" });
+  }
+
+  #showArm(isShown) {
+    const arm = byId("arm");
+    if (isShown && arm.hidden) {
+      this.#isArmResting = true;
+      clearTimeout(this.#armRestTimer);
+      this.#armRestTimer = setTimeout(() => {
+        this.#isArmResting = false;
+        this.#enableArm();
+      }, ARM_REST_MS);
+      this.#enableArm();
+    }
+    arm.hidden = !isShown;
   }
 
   #show({ link, state, fault, needsArm, driving }) {
@@ -52,7 +78,7 @@ export class Board {
     const name = link === "simulator" ? "Simulator" : driving;
     const details = fault && link !== "none" ? `, ${fault}` : "";
     board.textContent = link === "none" ? "No board" : `${name}: ${WORDS[state] ?? state}${details}`;
-    byId("arm").hidden = !needsArm;
+    this.#showArm(needsArm);
     byId("arm").textContent = `Arm: drive ${driving}`;
     // A board latches a fault also when its arm switch is let go.
     byId("clear-fault").hidden = state !== "faulted" || link === "simulator";

@@ -111,16 +111,17 @@ export class Layers {
    * one copy is refused, those before it get their old setting back.
    */
   async #change({ index, controls }, next, words, state) {
-    if (this.isSceneLoading) {
-      notify("The scene is on its way to the board: change its layers once it is there.");
-      return false;
-    }
     const before = "on" in next ? (state.on ? "on" : "off") : `gain ${state.gain}`;
     for (const [copy, number] of controls.entries()) {
+      // Another scene may come between two copies.
+      if (this.isSceneLoading) {
+        notify("The scene is on its way to the board: change its layers once it is there.");
+        return false;
+      }
       const answer = await attempt(() => this.#engine.control(`layer ${number} ${words}`));
       if (answer === undefined) {
         for (const changed of controls.slice(0, copy)) {
-          await attempt(() => this.#engine.control(`layer ${changed} ${before}`));
+          if (!this.isSceneLoading) await attempt(() => this.#engine.control(`layer ${changed} ${before}`));
         }
         return false;
       }

@@ -104,12 +104,14 @@ export class Player {
     this.onCheck(check);
     if (!check.ok && !check.isDraft) this.#settle("mistaken");
     // A board that was disarmed for another scene gets none but that.
-    else if (this.#next === undefined && this.#expected === 0 && (await this.#load(scene, check))) {
+    else if (!this.#isOutdated && (await this.#load(scene, check))) {
       this.onPlay(text);
       this.#settle("loaded");
       if (this.#next !== undefined) return;
       const sizePx = mapSizePx(check.screen, MAP_WIDTH_PX);
-      this.onMap(await this.#engine.map(...scene, { ...sizePx, speedMmPerS: 100 }), check);
+      const size = { ...sizePx, speedMmPerS: 100 };
+      const map = await this.#engine.map(...scene, size).catch(({ message }) => this.onFailure(message));
+      if (map) this.onMap(map, check);
     }
   }
 

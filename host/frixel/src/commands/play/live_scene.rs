@@ -12,7 +12,7 @@ use frixel_scene::Program;
 use frixel_wire::hello::BoardLimits;
 use frixel_wire::message::Refusal;
 
-use super::outputs::{check_outputs, output_paths};
+use super::outputs::{check_play_outputs, output_paths};
 use super::plan::{check_measured, print_notes};
 use super::rigs::Target;
 use super::{CommandError, PlayArgs, note, note_refusals};
@@ -62,7 +62,7 @@ struct Loader {
 impl Loader {
     fn compile(&self, path: &Path, limits: &BoardLimits, tick_hz: u32) -> Compiled {
         let (scene, files) = self.profiles.load_with_files(path);
-        let program = check_outputs(&files, &self.outputs)
+        let program = check_play_outputs(&files, &self.outputs)
             .and_then(|()| Ok(scene?))
             .and_then(|scene| Ok(self.target.compile(&scene, limits, tick_hz)?));
         Compiled { program, files }

@@ -21,7 +21,7 @@ pub(super) fn output_paths(args: &PlayArgs, target: Target) -> [PathBuf; 4] {
 }
 
 /// Rejects a play whose files would overwrite a file of its scene.
-pub(super) fn check_outputs(files: &SceneFiles, outputs: &[PathBuf]) -> Result<(), CommandError> {
+pub(super) fn check_play_outputs(files: &SceneFiles, outputs: &[PathBuf]) -> Result<(), CommandError> {
     overwrite::check_outputs(files, outputs, "give another folder to --out")
 }
 
