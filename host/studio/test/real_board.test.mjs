@@ -193,6 +193,7 @@ test("a fault is shown, and cleared by a press", async () => {
 
 test("a press where Arm has only just appeared arms nothing", async () => {
   await pressArm();
+  await page.locator("#arm").waitFor({ state: "hidden" });
   const from = board.events.length;
   const enabledMs = await page.evaluate(async () => {
     const arm = document.getElementById("arm");
