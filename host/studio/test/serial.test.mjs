@@ -53,6 +53,8 @@ test("a scene is played, changed and stopped on a board at a serial port", async
   const { page, board, errors, close } = await playOnVirtualBoard("keyboard.toml");
   await page.waitForFunction(() => felt.filter((frame) => !frame.simulated).length > 30);
   await page.waitForFunction(() => states.at(-1).state === "active");
+  // The simulated finger reaches a key.
+  await page.waitForFunction(() => felt.some((frame) => frame.voltageV.some((voltage) => voltage > 1)));
   const seen = await page.evaluate(() => ({ frame: felt.at(-1), link: states.at(-1) }));
   assert.equal(seen.frame.simulated, false);
   assert.equal(seen.link.link, "serial");
