@@ -174,8 +174,8 @@ impl LiveLayers {
         Ok(LayerChange { record, setting, clamped })
     }
 
-    /// Switches off the layer of a trigger that has ended by `now`; `None` if there is none left. What the board clamped
-    /// before the trigger, it clamps again, without a notice.
+    /// Switches off the layer of a trigger that has ended by `now`; `None` if no trigger has ended. The change carries no
+    /// notice: the board clamps what it clamped before the trigger.
     pub fn end_trigger(&mut self, now: Duration) -> Option<LayerChange> {
         let index = self.triggered.iter().position(|(_, ends_at)| *ends_at <= now)?;
         let (record, _) = self.triggered.swap_remove(index);
@@ -194,7 +194,7 @@ impl LiveLayers {
         self.triggered.iter().map(|(_, ends_at)| *ends_at).min()
     }
 
-    /// The settings with that of a record changed, and its setting.
+    /// Returns a copy of all settings in which a record has another one, and that one.
     fn changed(
         &self,
         record: u8,
@@ -208,7 +208,7 @@ impl LiveLayers {
         Ok((changed, setting))
     }
 
-    /// What the board clamps with these settings, unless it clamps the same already.
+    /// The layers that the board clamps with these settings; `None` if it already clamps the same ones in the same way.
     fn newly_clamped(&self, program: &Program, changed: &[LayerSetting]) -> Option<Clamped> {
         let clamped = program.clamped_with(changed)?;
         (program.clamped_with(&self.settings).as_ref() != Some(&clamped)).then_some(clamped)

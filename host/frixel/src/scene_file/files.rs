@@ -39,7 +39,7 @@ impl SceneFiles {
         self.scene.has_vanished()
     }
 
-    /// The path of the file that another path leads to; `None` if that is none of these files, or does not exist.
+    /// Finds the file of the scene that `path` leads to, also by links; `None` if `path` leads to no file of the scene.
     pub fn find(&self, path: &Path) -> Option<&Path> {
         let found = path.canonicalize().ok()?;
         let is_it = |path: &&Path| path.canonicalize().is_ok_and(|path| path == found);

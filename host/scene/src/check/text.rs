@@ -55,7 +55,7 @@ impl SceneCheck {
                 reach.voltage_max_v_rms
             ),
         );
-        // What is within reach is never printed as more than the reach.
+        // The limit is printed rounded down: round a target within reach down as well, so that it is not above.
         let most_n = if asked.above.screen_percent <= 0.0 { rounded_down(asked.most_n) } else { asked.most_n };
         line("targets", format!("{:.4} to {most_n:.4} N in total{suffix}", asked.least_n));
         line("out of reach", out_of_reach(&asked.above, &asked.below));

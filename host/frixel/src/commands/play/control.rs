@@ -34,7 +34,7 @@ pub(super) struct Control {
     layers: LiveLayers,
 }
 
-/// What a change of the scene comes from, for messages.
+/// The cause of a change of the scene, as messages name it.
 #[derive(Clone, Debug)]
 enum Origin {
     /// A line, by its number.

@@ -316,7 +316,7 @@ mod tests {
         watched.write("part.toml", &part(0.255));
         watched.until_plays(0.255);
 
-        // What is saved plays although the other scene comes before it is compiled.
+        // `replace` fails while the saved version compiles: the saved version still plays.
         watched.write("part.toml", &part(0.2575));
         while watched.live.next.is_none() {
             watched.refresh();
