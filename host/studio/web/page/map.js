@@ -14,9 +14,14 @@ const HEIGHT_PART = 0.44;
 /** Height of the word that marks a draft, CSS pixels. */
 const DRAFT_HEIGHT_PX = 36;
 
-/** Size of the picture of a screen's friction map with this width, for `engine.map`. */
-export function mapSizePx({ widthMm, heightMm }, widthPx) {
-  return { widthPx, heightPx: Math.max(8, Math.round((widthPx * heightMm) / widthMm)) };
+/** Fewest pixels along the shorter side of a map's picture. */
+const SHORT_SIDE_MIN_PX = 8;
+
+/** Size of the picture of a screen's friction map whose longer side has this many pixels, for `engine.map`. */
+export function mapSizePx({ widthMm, heightMm }, longSidePx) {
+  const perMm = longSidePx / Math.max(widthMm, heightMm);
+  const [widthPx, heightPx] = [widthMm, heightMm].map((mm) => Math.max(SHORT_SIDE_MIN_PX, Math.round(mm * perMm)));
+  return { widthPx, heightPx };
 }
 
 export class FrictionMap {
