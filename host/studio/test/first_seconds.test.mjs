@@ -134,8 +134,8 @@ test("the map of a long screen has as many pixels along its longer side as any",
     }
     return sizes;
   });
+  assert.ok(sizes.some(([widthPx, heightPx]) => widthPx < heightPx / 50), "the long screen stands");
   for (const [widthPx, heightPx] of sizes) assert.ok(Math.max(widthPx, heightPx) <= 960, `${widthPx} x ${heightPx}`);
-  assert.equal(sizes.length, 2);
   assert.deepEqual(errors, []);
   await close();
 });

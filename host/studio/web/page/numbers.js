@@ -86,6 +86,7 @@ export class Numbers {
     // Where nothing is added, noise takes what is felt below bare glass: never below zero.
     const text = Number.isFinite(number) ? Math.max(0, number).toFixed(digits) : "–";
     value.textContent = isStill ? SLIDE_TO_FEEL : text;
+    value.parentElement.classList.toggle("words", isStill);
     unit.hidden = isStill;
   }
 }
