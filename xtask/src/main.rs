@@ -4,6 +4,7 @@ mod bench;
 mod budgets;
 mod check;
 mod command;
+mod licences;
 mod outcome;
 mod portability;
 mod stages;

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -14,7 +15,8 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use sha2::{Digest, Sha256};
 
-use crate::command::{add_target, cargo_in, root, run, target_folder};
+use crate::command::{add_target, cargo_in, root, run, target_folder, text_of};
+use crate::licences;
 
 const WASM: &str = "wasm32-unknown-unknown";
 /// Cargo profile of the module: small, fast, and without debug information.
@@ -46,6 +48,8 @@ pub(crate) fn build() -> Result<PathBuf, String> {
     for (folder, ending, prefix) in CARRIED {
         collect(&root().join(folder), ending, prefix, folder == "host/studio/web", &mut files)?;
     }
+    files.insert("licences.txt".to_owned(), licences::text()?.into_bytes());
+    files.insert("about.json".to_owned(), about().into_bytes());
     let web = root().join("host/studio/web");
     let page = page(&text(&web.join("index.html"))?, &web, &files)?;
     if page.len() > PAGE_MAX_LEN {
@@ -60,6 +64,15 @@ pub(crate) fn build() -> Result<PathBuf, String> {
         eprintln!("{}: {} bytes", path.display(), content.len());
     }
     path.canonicalize().map_err(|error| format!("{}: {error}", path.display()))
+}
+
+/// Version and commit of the page, as JSON: `commit` is null outside of a checkout, `isChanged` says whether files differ
+/// from it.
+fn about() -> String {
+    let git = |arguments: &[&str]| text_of(Command::new("git").current_dir(root()).args(arguments)).ok();
+    let commit = git(&["rev-parse", "--short=12", "HEAD"]).map(|commit| commit.trim().to_owned());
+    let is_changed = git(&["status", "--porcelain"]).is_some_and(|files| !files.trim().is_empty());
+    serde_json::json!({ "version": env!("CARGO_PKG_VERSION"), "commit": commit, "isChanged": is_changed }).to_string()
 }
 
 /// Compiles the WebAssembly module and reads it.

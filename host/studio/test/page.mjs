@@ -6,9 +6,9 @@ import path from "node:path";
 import assert from "node:assert/strict";
 import { openPage, pageUrl } from "./harness.mjs";
 
-/** Opens the page and waits until its first scene plays. */
-export async function openStudio(url = pageUrl) {
-  const opened = await openPage(url);
+/** Opens the page, as `openPage` does, and waits until its first scene plays. */
+export async function openStudio(url = pageUrl, options) {
+  const opened = await openPage(url, options);
   await opened.page.waitForFunction(() => globalThis.studioPage && document.documentElement.dataset.state === "active");
   await opened.page.waitForFunction(() => document.getElementById("check").textContent === "plays");
   await opened.page.evaluate(addHelpers);

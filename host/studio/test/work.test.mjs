@@ -2,7 +2,8 @@
 
 import assert from "node:assert/strict";
 import { after, afterEach, test } from "node:test";
-import { cleanUp, endLeftovers } from "./harness.mjs";
+import { deflateRawSync } from "node:zlib";
+import { cleanUp, endLeftovers, pageUrl } from "./harness.mjs";
 import { WHOLE_SCREEN_GRATING, openStudio, undisturbed, wholeStroke } from "./page.mjs";
 
 afterEach(endLeftovers);
@@ -44,6 +45,105 @@ test("another scene has a history of its own, and the changed one before can be 
   assert.equal(await page.inputValue("#scene-name"), "brick");
   assert.deepEqual(errors, []);
   await close();
+});
+
+/** Changes the scene to this text, and waits until it plays. */
+const change = (page, text) => page.evaluate((text) => played(text), text);
+
+/** The names of the recent scenes in Open, as a person sees them. */
+async function recent(page) {
+  await page.click("#open-files");
+  await page.locator("#open h3", { hasText: "Recent scenes" }).waitFor();
+  await page.waitForFunction(() => document.querySelector("#open .scenes").textContent !== "");
+  const names = await page.locator("#open article h3").allTextContents();
+  await page.click("#open >> text=Close");
+  return names;
+}
+
+/** Opens the recent scene of this name. */
+async function reopen(page, name) {
+  await page.click("#open-files");
+  await page.click(`#open article:has(h3:text-is("${name}")) >> text=Open`);
+}
+
+const GRATING_OF_3_MM = WHOLE_SCREEN_GRATING.replace("wavelength_mm = 2", "wavelength_mm = 3");
+
+test("what was changed is in Open after New, the gallery, a link and a closed tab, one entry for each", async () => {
+  const { page, errors } = await openStudio();
+  await change(page, WHOLE_SCREEN_GRATING);
+  await page.fill("#scene-name", "mine");
+  await page.press("#scene-name", "Enter");
+  await change(page, GRATING_OF_3_MM);
+  await page.click("#new");
+  await page.waitForFunction(() => document.getElementById("scene-name").value === "untitled");
+  assert.deepEqual(await recent(page), ["mine"]);
+  await page.click("#open-gallery");
+  await page.click("text=Open linen");
+  await page.waitForFunction(() => document.getElementById("scene-name").value === "linen");
+  assert.deepEqual(await recent(page), ["mine"], "what was only opened is not work");
+  const link = `#scene=${deflateRawSync(JSON.stringify({ name: "theirs", text: WHOLE_SCREEN_GRATING })).toString("base64url")}`;
+  await page.evaluate((link) => (location.hash = link), link);
+  await page.waitForFunction(() => document.getElementById("scene-name").value === "theirs");
+  await change(page, GRATING_OF_3_MM);
+  const other = await page.context().newPage();
+  await page.close();
+  await other.goto(pageUrl);
+  await other.waitForFunction(() => globalThis.studioPage);
+  assert.equal(await other.inputValue("#scene-name"), "theirs", "a new tab goes on with what was changed last");
+  assert.deepEqual(await recent(other), ["theirs", "mine"]);
+  await reopen(other, "mine");
+  await other.waitForFunction((text) => studioPage.editor.text === text, GRATING_OF_3_MM);
+  assert.ok(await other.locator("#open").isHidden());
+  const picture = () => document.querySelector("#open article img")?.naturalWidth > 0;
+  await other.click("#open-files");
+  await other.waitForFunction(picture);
+  await other.click("#open article:has(h3:text-is('theirs')) >> text=Delete");
+  await other.click("#open >> text=Delete for good");
+  await other.waitForFunction(() => document.querySelectorAll("#open article").length === 1);
+  assert.deepEqual(errors, []);
+});
+
+test("two tabs never write the same piece of work", async () => {
+  const { page, errors } = await openStudio();
+  await change(page, WHOLE_SCREEN_GRATING);
+  const other = await page.context().newPage();
+  await other.goto(pageUrl);
+  await other.waitForFunction(() => globalThis.studioPage && document.getElementById("check").textContent === "plays");
+  await reopen(other, "brick");
+  await other.waitForFunction((text) => studioPage.editor.text === text, WHOLE_SCREEN_GRATING);
+  await other.evaluate((text) => (studioPage.editor.text = text), GRATING_OF_3_MM);
+  await other.close({ runBeforeUnload: true });
+  await page.reload();
+  await page.waitForFunction(() => globalThis.studioPage);
+  assert.equal(await page.evaluate(() => studioPage.editor.text), WHOLE_SCREEN_GRATING);
+  assert.deepEqual(await recent(page), ["brick", "brick"]);
+  assert.deepEqual(errors, []);
+});
+
+test("a browser that keeps nothing says so at the first change", async () => {
+  const init = () => {
+    IDBObjectStore.prototype.put = () => {
+      throw new DOMException("full", "QuotaExceededError");
+    };
+  };
+  const { page, errors } = await openStudio(pageUrl, { init });
+  const notice = page.locator("#notice:not([hidden]) span");
+  assert.equal(await notice.count(), 0, "nothing is lost yet");
+  await change(page, WHOLE_SCREEN_GRATING);
+  await notice.filter({ hasText: /does not keep brick: its store is full\. Save it before you close/ }).waitFor();
+  assert.deepEqual(errors, []);
+});
+
+test("About says what is simulated, the version, and whose work the file carries", async () => {
+  const { page, errors } = await openStudio();
+  await page.click("#open-about");
+  const about = page.locator("#about");
+  await about.getByText("Not simulated: how friction feels").waitFor();
+  await about.getByText(/^Version \d+\.\d+\.\d+, commit [0-9a-f]{12}/).waitFor();
+  await page.click("#about summary");
+  for (const whose of [/CodeMirror|codemirror/, /uplot/, /heapless 0/, /Apache License/])
+    await about.locator("pre", { hasText: whose }).waitFor();
+  assert.deepEqual(errors, []);
 });
 
 test("a press on the map ends a replay and is felt; the button stops one, too", async () => {

@@ -1,6 +1,7 @@
 // The studio's page: makes its parts and tells each what the others found out.
 
 import { createEngine } from "./engine/engine.js";
+import { makeAbout } from "./page/about.js";
 import { zipOf } from "./page/archive.js";
 import { Autosave } from "./page/autosave.js";
 import { Board } from "./page/board.js";
@@ -15,6 +16,7 @@ import { Incoming } from "./page/incoming.js";
 import { Layers } from "./page/layers.js";
 import { FrictionMap } from "./page/map.js";
 import { Numbers } from "./page/numbers.js";
+import { Open } from "./page/open.js";
 import { showPictures } from "./page/pictures.js";
 import { Player } from "./page/player.js";
 import { showCheck, showOutcome, showStatus } from "./page/problems.js";
@@ -28,6 +30,7 @@ import { Sound } from "./page/sound.js";
 import { makeTabs } from "./page/tabs.js";
 import { makeTheme } from "./page/theme.js";
 import { makeView } from "./page/view.js";
+import { Works } from "./page/works.js";
 
 const FIRST_SCENE = "brick";
 /** Height of header, tools, numbers and scope, CSS pixels: in a low window they are seen together with the map. */
@@ -53,8 +56,9 @@ async function start() {
     const { name, entry, profiles, files } = project;
     return { name, entry, profiles: { ...profiles }, text: editor.text, files: [...files] };
   };
-  const last = Autosave.last();
-  const autosave = new Autosave(current);
+  const works = new Works();
+  const autosave = new Autosave(works, current);
+  const last = await autosave.last();
   editor.onHistory = () => {
     byId("undo").disabled = !editor.canUndo;
     byId("redo").disabled = !editor.canRedo;
@@ -84,6 +88,7 @@ async function start() {
     replay();
   });
   new RealSize(map);
+  makeAbout();
   makeTabs(byId("tools"));
   makeTheme(() => {
     map.draw();
@@ -118,7 +123,9 @@ async function start() {
   };
   player.onMap = (picture, check) => {
     if (!hasSlid) hint.textContent = "press and slide: the trail is thick where friction is high";
-    if (!compare.isRunning) map.show(picture, check);
+    if (compare.isRunning) return;
+    map.show(picture, check);
+    map.thumbnail().then((thumbnail) => autosave.show(thumbnail));
   };
   player.onFailure = notify;
   player.onStatus = (status) => {
@@ -166,16 +173,17 @@ async function start() {
   /** Opens a scene from elsewhere. A changed scene can be brought back. */
   const open = (scene) => bringIn(() => replaceScene(scene));
 
-  async function replaceScene({ name, text, files = [], profiles: chosen, isEdited = false }) {
-    const before = { ...current(), isEdited: autosave.isEdited };
+  async function replaceScene({ name, text, files = [], profiles: chosen, ...work }) {
+    const before = { ...current(), ...autosave.state };
     forgetNotice();
+    await autosave.leave();
     await project.replaceFiles(files);
     project.name = name;
     showName();
     if (chosen) profiles.choose(chosen);
     editor.open(text);
     showFiles();
-    autosave.opened(isEdited);
+    await autosave.opened(work);
     if (before.isEdited)
       notify(`${project.name} is open.`, { words: `Back to ${before.name}`, action: () => open(before) });
   }
@@ -228,6 +236,8 @@ async function start() {
       if (files.some(([name]) => isPicture(name))) byId("tab-pictures").click();
     });
 
+  const openDialog = new Open(works, () => byId("files").click());
+  openDialog.onWork = async (id) => open(await autosave.work(id));
   byId("open-gallery").onclick = () => attempt(() => gallery.open());
   byId("new").onclick = () => attempt(() => open({ name: "untitled", text: NEW_SCENE }));
   byId("scene-name").onchange = ({ target }) => rename(target.value);

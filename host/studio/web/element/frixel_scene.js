@@ -10,8 +10,8 @@ import { FrictionMap, mapSizePx } from "../page/map.js";
 import { Samples } from "../page/samples.js";
 import { Scope } from "../page/scope.js";
 
-/** Width of the map's picture, pixels. */
-const MAP_WIDTH_PX = 640;
+/** Longer side of the map's picture, pixels. */
+const MAP_LONG_SIDE_PX = 640;
 /** How far from the window an element draws its map already. */
 const NEARBY = "400px";
 const LABEL = "The screen. Slide with mouse, finger or pen, or hold an arrow key.";
@@ -113,7 +113,7 @@ class FrixelScene extends HTMLElement {
     }
     this.#scene = [files, entry, profiles];
     this.#check = check;
-    const sizePx = mapSizePx(check.screen, MAP_WIDTH_PX);
+    const sizePx = mapSizePx(check.screen, MAP_LONG_SIDE_PX);
     this.#map.show(await this.#engine.map(...this.#scene, { ...sizePx, speedMmPerS: 100 }), check);
     this.#line.className = "line fine";
     this.#line.textContent = check.isDraft ? `${entry}: draft, clamped; a board refuses it` : entry;

@@ -2,8 +2,8 @@
 
 import { strFromU8, strToU8, unzipSync, zipSync } from "../vendor/studio-vendor.js";
 
-/** Largest file of a zip, and most files, that are unpacked. */
-const FILE_MAX_BYTES = 8_000_000;
+/** Most bytes that a zip may unpack to, and most files in it. A small zip can hold gigabytes of zeros. */
+const UNPACKED_MAX_BYTES = 32_000_000;
 const FILES_MAX = 100;
 /** Name of the scene where the settings say none. */
 const ENTRY = "scene.toml";
@@ -19,18 +19,7 @@ export function zipOf({ name, entry, text, files, profiles }) {
 
 /** A project from a zip; throws a sentence where it holds none. */
 export function projectOf(bytes) {
-  let count = 0;
-  let entries;
-  try {
-    entries = unzipSync(bytes, {
-      filter: ({ name, originalSize }) => {
-        count += 1;
-        return count <= FILES_MAX && originalSize <= FILE_MAX_BYTES && !name.endsWith("/");
-      },
-    });
-  } catch {
-    throw new Error("This zip cannot be read: save it anew from the studio.");
-  }
+  const entries = unpacked(bytes);
   const { [SETTINGS]: chosen, ...all } = entries;
   let settings = {};
   try {
@@ -46,4 +35,31 @@ export function projectOf(bytes) {
     text: strFromU8(scene),
     files: Object.entries(files),
   };
+}
+
+/** The files of a zip by their names; throws a sentence where there are too many or they are too big. */
+function unpacked(bytes) {
+  let [files, size] = [0, 0];
+  const hasRoom = () => files <= FILES_MAX && size <= UNPACKED_MAX_BYTES;
+  // The sizes are those that the zip states; a file is unpacked into no more than its stated size.
+  const filter = ({ name, originalSize }) => {
+    files += 1;
+    size += originalSize;
+    return hasRoom() && !name.endsWith("/");
+  };
+  let entries;
+  try {
+    entries = unzipSync(bytes, { filter });
+  } catch {
+    throw new Error("This zip cannot be read: save it anew from the studio.");
+  }
+  if (!hasRoom()) {
+    const limits = `at most ${FILES_MAX} files of together ${UNPACKED_MAX_BYTES / 1e6} MB`;
+    throw new Error(`This zip unpacks to ${files} files of together ${mb(size)} MB; the studio opens ${limits}.`);
+  }
+  return entries;
+}
+
+function mb(bytes) {
+  return (bytes / 1e6).toFixed(1);
 }

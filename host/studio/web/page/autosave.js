@@ -1,54 +1,101 @@
-// The scene that a person works on, kept in the browser, so that a reload or a closed tab does not lose it.
+// Keeps the scene that a person works on in the browser (works.js), a moment after each change.
 
 import { projectOf, zipOf } from "./archive.js";
-import { settings } from "./dom.js";
-import { fromBase64, toBase64 } from "./share.js";
+import { notify } from "./dom.js";
 
-const SETTING = "scene";
+/** Name under which a page remembers its piece of work over a reload. */
+const OWN = "frixel.work";
 /** A pause in typing after which the scene is kept, ms. */
 const PAUSE_MS = 400;
-/** What stands before the zip: whether the scene was changed since it was opened. */
-const MARKS = { edited: "edited ", opened: "opened " };
 
 export class Autosave {
   #current;
+  #works;
+  #id = newId();
+  #changedMs = Date.now();
+  /** A picture of the scene's map, or null. */
+  #picture = null;
   #timer;
-  #isKept = true;
+  /** Why the scene is not kept, if it is not. */
+  #problem;
   /** Whether the scene was changed since it was opened. */
   isEdited = false;
 
   /** `current()` gives the project as archive.js packs it. */
-  constructor(current) {
+  constructor(works, current) {
+    this.#works = works;
     this.#current = current;
     addEventListener("pagehide", () => this.#keepNow());
     addEventListener("beforeunload", (event) => {
       this.#keepNow();
-      if (this.isEdited && !this.#isKept) event.preventDefault();
+      if (this.isEdited && this.#problem) event.preventDefault();
     });
   }
 
-  /** The project that was kept last, with `isEdited`, or undefined. */
-  static last() {
-    const kept = settings.get(SETTING);
-    const mark = Object.values(MARKS).find((each) => kept?.startsWith(each));
-    if (!mark) return undefined;
+  /** What this page had before its reload, or else what was changed last and no other page has; or undefined. */
+  async last() {
     try {
-      return { ...projectOf(fromBase64(kept.slice(mark.length))), isEdited: mark === MARKS.edited };
+      const own = sessionStorage.getItem(OWN);
+      if (own && (await this.#works.claim(own, { waits: true }))) return sceneOf(await this.#works.get(own));
+      for (const { id } of await this.#works.all()) if (await this.#works.claim(id)) return await this.work(id);
     } catch {
-      return undefined;
+      // Without a store, or with a broken entry, the page begins with its first scene.
     }
+    return undefined;
+  }
+
+  /** A piece of work that is kept, as a scene to open. */
+  async work(id) {
+    return sceneOf(await this.#works.get(id));
+  }
+
+  /** The piece of work that is open: `id` and `isEdited` bring it back where a scene is opened with them. */
+  get state() {
+    return { id: this.#id, isEdited: this.isEdited, changedMs: this.#changedMs };
   }
 
   /** The scene was changed by hand. */
   changed() {
     this.isEdited = true;
+    this.#changedMs = Date.now();
     this.#later();
   }
 
-  /** Another scene is open. */
-  opened(isEdited) {
-    this.isEdited = isEdited;
+  /** The scene's map has this picture. */
+  show(picture) {
+    this.#picture = picture;
     this.#later();
+  }
+
+  /** Another scene takes this one's place: call it before. What was only opened is forgotten, what was changed stays. */
+  async leave() {
+    if (this.isEdited) await this.#keepNow();
+    else await this.#forget();
+  }
+
+  /** Another scene is open; with `id`, a piece of work that is kept, unless another page has it. */
+  async opened({ id = newId(), isEdited = false, changedMs = Date.now() }) {
+    this.#id = (await this.#claim(id)) ? id : newId();
+    await this.#claim(this.#id);
+    this.isEdited = isEdited;
+    this.#changedMs = changedMs;
+    this.#picture = null;
+    try {
+      sessionStorage.setItem(OWN, this.#id);
+    } catch {
+      // Without a session's store, a reload finds the newest piece of work.
+    }
+    this.#later();
+  }
+
+  #claim(id) {
+    return this.#works.claim(id).catch(() => false);
+  }
+
+  async #forget() {
+    clearTimeout(this.#timer);
+    this.#timer = undefined;
+    await this.#works.delete(this.#id).catch(() => {});
   }
 
   #later() {
@@ -57,14 +104,37 @@ export class Autosave {
   }
 
   /** Keeps what waits to be kept. */
-  #keepNow() {
-    if (this.#timer !== undefined) this.#keep();
+  async #keepNow() {
+    if (this.#timer !== undefined) await this.#keep();
   }
 
-  #keep() {
+  async #keep() {
     clearTimeout(this.#timer);
     this.#timer = undefined;
-    const mark = this.isEdited ? MARKS.edited : MARKS.opened;
-    this.#isKept = settings.set(SETTING, mark + toBase64(zipOf(this.#current())));
+    const project = this.#current();
+    try {
+      await this.#works.put({ ...this.state, name: project.name, zip: zipOf(project), picture: this.#picture });
+      this.#problem = undefined;
+    } catch (error) {
+      this.#isNotKept(error);
+    }
   }
+
+  /** Says once that the scene is not kept, and why. */
+  #isNotKept(error) {
+    const why = error?.name === "QuotaExceededError" ? "its store is full" : "it keeps nothing for this page";
+    if (this.isEdited && this.#problem !== why) {
+      const cure = "Save it before you close the page; Open deletes pieces of work that you no longer need.";
+      notify(`The browser does not keep ${this.#current().name}: ${why}. ${cure}`);
+      this.#problem = why;
+    }
+  }
+}
+
+function sceneOf({ id, isEdited, changedMs, zip }) {
+  return { ...projectOf(zip), id, isEdited, changedMs };
+}
+
+function newId() {
+  return [...crypto.getRandomValues(new Uint32Array(4))].map((part) => part.toString(16)).join("-");
 }

@@ -3,8 +3,10 @@
 import { carriedFiles, sceneNames } from "./bundled.js";
 import { imageOf } from "./colors.js";
 import { attempt, byId, element } from "./dom.js";
+import { mapSizePx } from "./map.js";
 
-const WIDTH_PX = 300;
+/** Longer side of a scene's picture, pixels. */
+const LONG_SIDE_PX = 300;
 
 export class Gallery {
   #engine;
@@ -47,7 +49,8 @@ export class Gallery {
     const entry = `${name}.toml`;
     const text = new TextDecoder().decode(files[entry]);
     const check = await this.#engine.check(files, entry, {});
-    const canvas = element("canvas", { ...sizeOf(check.screen), "aria-hidden": "true" });
+    const size = mapSizePx(check.screen, LONG_SIDE_PX);
+    const canvas = element("canvas", { width: size.widthPx, height: size.heightPx, "aria-hidden": "true" });
     const open = element("button", { className: "primary" }, `Open ${name}`);
     open.onclick = () => {
       this.#dialog.close();
@@ -61,7 +64,6 @@ export class Gallery {
     );
     const words = element("p", { className: "fine" }, introduction(text));
     card.replaceChildren(canvas, element("h3", {}, name), words, open, layers);
-    const size = { widthPx: canvas.width, heightPx: canvas.height };
     const map = await this.#engine.map(files, entry, {}, { ...size, speedMmPerS: 100 });
     canvas.getContext("2d").putImageData(imageOf(map), 0, 0);
   }
@@ -76,10 +78,6 @@ export class Gallery {
       return element("li", {}, title, take);
     });
   }
-}
-
-function sizeOf({ widthMm, heightMm }) {
-  return { width: WIDTH_PX, height: Math.round((WIDTH_PX * heightMm) / widthMm) };
 }
 
 /** The comment at a scene's head, up to its first two sentences. */

@@ -25,7 +25,6 @@ export class Incoming {
   constructor(usedFiles) {
     this.#usedFiles = usedFiles;
     const input = byId("files");
-    byId("open-files").onclick = () => input.click();
     input.onchange = () => {
       this.take([...input.files]);
       input.value = "";

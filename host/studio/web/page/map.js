@@ -14,9 +14,16 @@ const HEIGHT_PART = 0.44;
 /** Height of the word that marks a draft, CSS pixels. */
 const DRAFT_HEIGHT_PX = 36;
 
-/** Size of the picture of a screen's friction map with this width, for `engine.map`. */
-export function mapSizePx({ widthMm, heightMm }, widthPx) {
-  return { widthPx, heightPx: Math.max(8, Math.round((widthPx * heightMm) / widthMm)) };
+/** Longer side of a small picture of the map, pixels. */
+const THUMBNAIL_PX = 240;
+/** Fewest pixels along the shorter side of a map's picture. */
+const SHORT_SIDE_MIN_PX = 8;
+
+/** Size of the picture of a screen's friction map whose longer side has this many pixels, for `engine.map`. */
+export function mapSizePx({ widthMm, heightMm }, longSidePx) {
+  const perMm = longSidePx / Math.max(widthMm, heightMm);
+  const [widthPx, heightPx] = [widthMm, heightMm].map((mm) => Math.max(SHORT_SIDE_MIN_PX, Math.round(mm * perMm)));
+  return { widthPx, heightPx };
 }
 
 export class FrictionMap {
@@ -53,6 +60,15 @@ export class FrictionMap {
     picture.getContext("2d").putImageData(imageOf(map), 0, 0);
     this.#picture = picture;
     this.layout();
+  }
+
+  /** A small picture of the friction alone, as a PNG. */
+  thumbnail() {
+    const { width, height } = this.#picture;
+    const { widthPx, heightPx } = mapSizePx({ widthMm: width, heightMm: height }, THUMBNAIL_PX);
+    const small = new OffscreenCanvas(widthPx, heightPx);
+    small.getContext("2d").drawImage(this.#picture, 0, 0, widthPx, heightPx);
+    return small.convertToBlob();
   }
 
   /** Fits the map into its box, or shows it in real size. */

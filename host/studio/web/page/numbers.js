@@ -6,21 +6,30 @@ import { byId, element } from "./dom.js";
 const WEBER_STEP = Math.log(1.11);
 /** Numbers are means over this many samples, so that they can be read. */
 const SAMPLES = 40;
+/**
+ * Speeds at which a finger begins to slide and stands still, mm/s. They are those of the board's standstill detector,
+ * which drives nothing below them.
+ */
+const SLIDES_ABOVE = 5;
+const STANDS_BELOW = 2;
+/** What stands in place of the friction of a finger that does not slide: sliding friction is not defined there. */
+const SLIDE_TO_FEEL = "slide to feel";
 
 export class Numbers {
   #fields = {};
   #means = {};
+  #isSliding = false;
 
   constructor() {
     const add = (key, title, unit, meaning, kind = "") => {
-      const value = element("span");
-      this.#fields[key] = value;
+      const [value, unitShown] = [element("span"), element("small", {}, unit)];
+      this.#fields[key] = { value, unit: unitShown };
       byId("numbers").append(
         element(
           "div",
           { title: meaning },
           element("dt", {}, title),
-          element("dd", { className: kind }, value, " ", element("small", {}, unit)),
+          element("dd", { className: kind }, value, " ", unitShown),
         ),
       );
     };
@@ -34,12 +43,24 @@ export class Numbers {
   }
 
   feel({ feltN, voltageV, speedMmPerS, contact }, naturalN) {
-    const felt = this.#mean("felt", feltN);
     const values = { voltage: this.#mean("voltage", voltageV), speed: this.#mean("speed", speedMmPerS) };
-    if (contact && felt > 0)
+    this.#followSlide(values.speed);
+    if (this.#isSliding) {
+      const felt = this.#mean("felt", feltN);
       Object.assign(values, { friction: felt * 1000, weber: Math.log(felt / naturalN) / WEBER_STEP });
+    }
     this.#show(contact ? values : { voltage: 0 });
-    if (!contact) this.#means = {};
+    if (contact) return;
+    this.#means = {};
+    this.#isSliding = false;
+  }
+
+  /** A finger that has come to a standstill is felt anew at its next slide: the friction before is of another slide. */
+  #followSlide(speedMmPerS) {
+    if (speedMmPerS > SLIDES_ABOVE) this.#isSliding = true;
+    if (!(speedMmPerS < STANDS_BELOW)) return;
+    this.#isSliding = false;
+    delete this.#means.felt;
   }
 
   #mean(name, values) {
@@ -52,11 +73,20 @@ export class Numbers {
   }
 
   #show({ friction, weber, voltage, speed }) {
-    const text = (value, digits) =>
-      Number.isFinite(value) ? (Math.abs(value) < 0.05 ? 0 : value).toFixed(digits) : "–";
-    this.#fields.friction.textContent = text(friction, 0);
-    this.#fields.weber.textContent = text(weber, 1);
-    this.#fields.voltage.textContent = text(voltage, 0);
-    this.#fields.speed.textContent = text(speed, 0);
+    const isStill = speed !== undefined && friction === undefined;
+    this.#write("friction", friction, 0, isStill);
+    this.#write("weber", weber, 1, isStill);
+    this.#write("voltage", voltage, 0);
+    this.#write("speed", speed, 0);
+  }
+
+  /** Writes a number, or what to do to get one. */
+  #write(name, number, digits, isStill = false) {
+    const { value, unit } = this.#fields[name];
+    // Where nothing is added, noise takes what is felt below bare glass: never below zero.
+    const text = Number.isFinite(number) ? Math.max(0, number).toFixed(digits) : "–";
+    value.textContent = isStill ? SLIDE_TO_FEEL : text;
+    value.parentElement.classList.toggle("words", isStill);
+    unit.hidden = isStill;
   }
 }

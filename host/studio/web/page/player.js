@@ -4,8 +4,8 @@ import { mapSizePx } from "./map.js";
 
 /** A pause in typing that lets a check begin, ms. */
 const PAUSE_MS = 60;
-/** Width of the map's picture, pixels. */
-const MAP_WIDTH_PX = 960;
+/** Longer side of the map's picture, pixels. */
+const MAP_LONG_SIDE_PX = 960;
 
 export class Player {
   #engine;
@@ -108,7 +108,7 @@ export class Player {
       this.onPlay(text);
       this.#settle("loaded");
       if (this.#next !== undefined) return;
-      const sizePx = mapSizePx(check.screen, MAP_WIDTH_PX);
+      const sizePx = mapSizePx(check.screen, MAP_LONG_SIDE_PX);
       const size = { ...sizePx, speedMmPerS: 100 };
       const map = await this.#engine.map(...scene, size).catch(({ message }) => this.onFailure(message));
       if (map) this.onMap(map, check);

@@ -27,7 +27,8 @@ export class Scope {
   #samples;
   #box;
   #plot;
-  #shownNowS = -1;
+  /** Time of the newest sample in the chart, s of board time. */
+  #shownS = -1;
   /** The last touch, s of board time. */
   #touchedS = 0;
   isPaused = false;
@@ -47,7 +48,7 @@ export class Scope {
     }).observe(this.#box);
     let drawnMs = 0;
     const frame = (ms) => {
-      if (!this.isPaused && this.#shownNowS !== this.#endS && ms - drawnMs >= FRAME_MS) {
+      if (!this.isPaused && this.#shownS !== this.#newestS && ms - drawnMs >= FRAME_MS) {
         this.#draw();
         drawnMs = ms;
       }
@@ -108,14 +109,15 @@ export class Scope {
     if (contact || nowS < this.#touchedS) this.#touchedS = nowS;
   }
 
-  /** Where the chart ends, s of board time. */
-  get #endS() {
-    return Math.max(WINDOW_S, Math.min(this.#samples.nowS, this.#touchedS + AFTER_LIFT_S));
+  /** Time of the newest sample that is drawn, s of board time. */
+  get #newestS() {
+    return Math.min(this.#samples.nowS, this.#touchedS + AFTER_LIFT_S);
   }
 
   #draw() {
-    const nowS = this.#endS;
-    this.#shownNowS = nowS;
+    this.#shownS = this.#newestS;
+    // The board's first seconds fill the chart from its left edge on.
+    const nowS = Math.max(WINDOW_S, this.#shownS);
     const { timeS, xMm, referenceN, feltN, voltageV } = this.#samples.since(nowS - WINDOW_S);
     // No friction is drawn while the finger is up, comes down or leaves, so that the axis serves what is felt.
     const isTouch = (at) => Number.isFinite(xMm[at]);

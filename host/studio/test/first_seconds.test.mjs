@@ -1,0 +1,141 @@
+// The page in a browser: its first seconds say nothing that is wrong, and a file takes no more memory than is stated.
+
+import assert from "node:assert/strict";
+import { after, afterEach, test } from "node:test";
+import { cleanUp, endLeftovers } from "./harness.mjs";
+import { assertSays, give, openStudio, undisturbed } from "./page.mjs";
+
+afterEach(endLeftovers);
+after(cleanUp);
+
+const BARE_GLASS = "version = 2\n";
+
+/** Collects, in the page, what the numbers say at each frame until `stop()`; returns the texts of friction and Weber steps. */
+function watchNumbers() {
+  const texts = [];
+  const leave = eachFrame(() => {
+    const shown = [...document.querySelectorAll("#numbers dd.felt")].map((each) => each.innerText.trim());
+    texts.push(...shown);
+  });
+  globalThis.stopWatching = () => {
+    leave();
+    return [...new Set(texts)];
+  };
+}
+
+/** A number of at most three digits with its unit, no number, or what to do to get one. */
+const SENSIBLE = /^(\d{1,3} mN|\d{1,2}\.\d Weber steps|– (mN|Weber steps)|slide to feel)$/;
+
+test("press and hold, bare glass and standstill say no negative number, but slide to feel", async () => {
+  const { page, errors, close } = await openStudio();
+  const pressAndHold = async () => {
+    slide(40, 40, 30, 80);
+    await wait(1500);
+    const texts = stopWatching();
+    lift(40, 30);
+    await wait(300);
+    return texts;
+  };
+  const held = await undisturbed(page, async () => {
+    await page.evaluate(watchNumbers);
+    return page.evaluate(pressAndHold);
+  });
+  assert.ok(held.includes("slide to feel"), held.join(", "));
+  assert.deepEqual(held.filter((text) => !SENSIBLE.test(text)), []);
+
+  await page.evaluate((text) => played(text), BARE_GLASS);
+  const slideAndRest = async () => {
+    await slide(15, 105, 30, 80);
+    await wait(1000);
+    const texts = stopWatching();
+    lift(105, 30);
+    await wait(300);
+    return texts;
+  };
+  const slid = await undisturbed(page, async () => {
+    await page.evaluate(watchNumbers);
+    return page.evaluate(slideAndRest);
+  });
+  assert.ok(slid.includes("slide to feel"), "the finger rests at the end");
+  assert.ok(slid.some((text) => /^\d+ mN$/.test(text)), "friction is felt on the way");
+  assert.deepEqual(slid.filter((text) => !SENSIBLE.test(text)), []);
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("the scope draws from its first sample on", async () => {
+  const { page, errors, close } = await openStudio();
+  // A scope of the test's own, with a board that has just been switched on.
+  const changes = await page.evaluate(async () => {
+    const [{ Scope }, { Samples }] = await Promise.all(
+      ["page/scope.js", "page/samples.js"].map(async (name) => import(await studio.moduleUrl(name))),
+    );
+    const box = document.body.appendChild(document.createElement("div"));
+    const samples = new Samples();
+    const scope = new Scope(samples, box);
+    const picture = () => box.querySelector("canvas").toDataURL();
+    await wait(300);
+    const empty = picture();
+    const values = (number) => new Float32Array(100).fill(number);
+    const frame = {
+      firstTick: 0, ticksPerSample: 40, contact: true, xMm: values(20), yMm: values(20), speedMmPerS: values(80),
+      referenceN: values(0.3), feltN: values(0.3), voltageV: values(90),
+    };
+    samples.add(frame);
+    scope.feel(frame);
+    await wait(300);
+    box.remove();
+    return picture() !== empty;
+  });
+  assert.ok(changes, "a tenth of a second is drawn");
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+/** A zip of files of zeros, which the page's own library packs: its sizes in bytes, as they are unpacked. */
+async function zipOfZeros(page, sizes) {
+  const packed = await page.evaluate(async (sizes) => {
+    const { zipSync } = await import(await studio.moduleUrl("vendor/studio-vendor.js"));
+    const files = sizes.map((size, at) => [`zeros-${at}.png`, new Uint8Array(size)]);
+    const bytes = zipSync(Object.fromEntries([["scene.toml", new TextEncoder().encode("version = 2\n")], ...files]));
+    let text = "";
+    for (const byte of bytes) text += String.fromCharCode(byte);
+    return btoa(text);
+  }, sizes);
+  return Buffer.from(packed, "base64");
+}
+
+test("a small zip that unpacks to more than 32 MB is refused with its size", async () => {
+  const { page, errors, close } = await openStudio();
+  const bomb = await zipOfZeros(page, Array(6).fill(7_000_000));
+  assert.ok(bomb.length < 100_000, `${bomb.length} bytes`);
+  await give(page, ["bomb.zip", bomb]);
+  await assertSays(page, /unpacks to 7 files of together 42\.0 MB; .* at most 100 files of together 32 MB/);
+  await give(page, ["many.zip", await zipOfZeros(page, Array(150).fill(1))]);
+  await assertSays(page, /unpacks to 151 files/);
+  assert.match(await page.evaluate(() => studioPage.editor.text), /brick/, "the scene before stays");
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("the map of a long screen has as many pixels along its longer side as any", async () => {
+  const { page, errors, close } = await openStudio();
+  const sizes = await page.evaluate(async () => {
+    const { player } = studioPage;
+    const before = player.onMap;
+    const sizes = [];
+    player.onMap = (map, check) => {
+      sizes.push([map.widthPx, map.heightPx]);
+      before(map, check);
+    };
+    for (const [widthMm, heightMm] of [[5, 2000], [2000, 5]]) {
+      await played(`version = 2\n[screen]\nwidth_mm = ${widthMm}\nheight_mm = ${heightMm}\n`);
+      while (sizes.length === 0 || sizes.at(-1)[0] > sizes.at(-1)[1] !== widthMm > heightMm) await wait(20);
+    }
+    return sizes;
+  });
+  assert.ok(sizes.some(([widthPx, heightPx]) => widthPx < heightPx / 50), "the long screen stands");
+  for (const [widthPx, heightPx] of sizes) assert.ok(Math.max(widthPx, heightPx) <= 960, `${widthPx} x ${heightPx}`);
+  assert.deepEqual(errors, []);
+  await close();
+});
