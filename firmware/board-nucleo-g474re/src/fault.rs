@@ -9,12 +9,13 @@ use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use cortex_m::interrupt;
 use cortex_m::peripheral::SCB;
 use cortex_m_rt::exception;
-use frixel_drivers::fault_record::{FaultRecord, Text, Writer};
+use frixel_drivers::fault_record::{FaultRecord, STARTS_FORGOTTEN_AFTER_S, Text, Writer};
 use frixel_drivers::reset;
 use frixel_wire::fault::Fault;
 use frixel_wire::hello::ResetCause;
 use stm32_metapac::RCC;
 
+use crate::board::TICK_HZ;
 use crate::{flash, output};
 
 /// In memory that the start-up code does not clear.
@@ -34,6 +35,8 @@ pub struct LastReset {
     pub fault: Option<(Fault, u32)>,
     /// The text stored with the fault.
     pub text: &'static [u8],
+    /// Number of starts in a row before this one that ended in a fault.
+    pub fault_starts: u8,
 }
 
 impl LastReset {
@@ -49,7 +52,15 @@ impl LastReset {
             }
             None => (None, b""),
         };
-        Self { cause, fault, text }
+        Self { cause, fault, text, fault_starts: RECORD.count_start(fault.is_some()) }
+    }
+}
+
+/// Forgets the faults of earlier starts once this one has run for [`STARTS_FORGOTTEN_AFTER_S`]. To be called
+/// repeatedly.
+pub fn forget_starts(now_tick: u32) {
+    if now_tick >= STARTS_FORGOTTEN_AFTER_S * TICK_HZ {
+        RECORD.forget_starts();
     }
 }
 

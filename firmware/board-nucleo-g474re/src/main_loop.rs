@@ -17,7 +17,7 @@ use crate::pins::Pin;
 use crate::serial::Serial;
 use crate::tick;
 use crate::watchdog::Watchdog;
-use crate::{arming, clock};
+use crate::{arming, clock, fault};
 
 /// All that runs in the main loop.
 pub struct MainLoop {
@@ -60,6 +60,7 @@ impl MainLoop {
                 store.step(flash, self.session, now_tick);
             }
             self.light.show(self.status.telemetry.state, now_tick);
+            fault::forget_starts(now_tick);
             self.watchdog.feed();
         }
     }
