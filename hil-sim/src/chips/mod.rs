@@ -9,6 +9,6 @@ mod ad5761r;
 mod contact;
 mod zforce;
 
-pub use ad5761r::{Ad5761rChip, ChipDelay, ChipSpi};
+pub use ad5761r::{Ad5761rChip, ChipDelay, ChipPin, ChipSpi};
 pub use contact::{BouncingContact, ContactPin};
 pub use zforce::{BusFault, DataReadyPin, ModuleBus, PolledDelay, TouchEvent, ZForceModule};
