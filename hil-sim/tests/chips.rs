@@ -12,7 +12,7 @@ use embedded_hal::digital::OutputPin;
 use embedded_hal::spi::SpiDevice;
 use embedded_io::{ErrorType, Read, ReadReady, Write, WriteReady};
 use frixel_drivers::ad5761r::{self, Ad5761r};
-use frixel_drivers::amplifier::Amplifier;
+use frixel_drivers::amplifier::{Amplifier, KickedEnable};
 use frixel_drivers::arm_switch::ArmSwitch;
 use frixel_drivers::bus_handover::BusHandover;
 use frixel_drivers::polling::poll_once;
@@ -497,18 +497,28 @@ impl embedded_hal::digital::OutputPin for &mut OneShot {
     }
 }
 
+impl KickedEnable for &mut OneShot {
+    fn kick(&mut self) {
+        self.left_ticks = 1;
+    }
+
+    fn disable(&mut self) {
+        self.left_ticks = 0;
+    }
+}
+
 #[test]
 fn an_amplifier_whose_wire_is_off_has_a_fault() {
     let ready = BouncingContact::new(true, 0, 1);
     let mut enable = OneShot::default();
     let mut amplifier = Amplifier::new(&mut enable, ready.pin());
     assert!(!amplifier.has_fault());
-    assert!(amplifier.set_enabled(true));
+    amplifier.set_enabled(true);
     ready.press(false);
     ready.tick();
     assert!(amplifier.has_fault());
     assert_eq!(enable.left_ticks, 1);
-    assert!(Amplifier::new(&mut enable, ready.pin()).set_enabled(false));
+    Amplifier::new(&mut enable, ready.pin()).set_enabled(false);
     assert_eq!(enable.left_ticks, 0);
 }
 

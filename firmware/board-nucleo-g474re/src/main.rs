@@ -69,6 +69,9 @@ fn start(text: &'static mut Text, queues: &'static mut Queues) -> MainLoop {
     clock::start_cycle_counter(&mut core.DCB, &mut core.DWT);
     let light = indicator::start();
     period::start();
+    // Before the flash is searched, which takes up to 0.2 s: until then, the DAC has the settings of the last start.
+    let (frames, mut dac) = dac::start();
+    log_dac(dac.prepare());
 
     let flash = BankTwo::new();
     let board = board::board(&last_reset, flash.as_ref());
@@ -79,8 +82,6 @@ fn start(text: &'static mut Text, queues: &'static mut Queues) -> MainLoop {
     let store = flash.map(|flash| (SceneStore::new(board::SCENE_SLOT, board::TICK_HZ, &flash, session), flash));
 
     let (session_ends, tick_ends) = queues.split();
-    let (frames, mut dac) = dac::start();
-    log_dac(dac.prepare());
     let (amplifier, arm_switch) = (tick::amplifier(output), tick::arm_switch());
     let tick = Tick { ticker, queues: tick_ends, adc: Adc::new(), dac: frames, amplifier, arm_switch };
     let serial = SerialLink::new(Serial::new());

@@ -83,8 +83,8 @@ impl MainLoop {
         self.tick.exchange(self.session, |order| {
             if matches!(order, Order::Arm) {
                 watchdog.freeze_with_debugger(false);
-                arming::prepare(dac);
             }
+            arming::check_before(order, dac);
         });
     }
 }

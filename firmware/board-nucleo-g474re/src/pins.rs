@@ -69,6 +69,39 @@ impl OutputPin for Pin {
     }
 }
 
+/// A pin that becomes an output when it is set, whatever it was connected to before, without a pulse of the other level.
+pub(crate) struct ForcedPin {
+    port: Gpio,
+    number: u32,
+}
+
+impl ForcedPin {
+    pub(crate) fn new(port: Gpio, number: u32) -> Self {
+        Self { port, number }
+    }
+
+    fn force(&self, high: bool) {
+        set(self.port, self.number, high);
+        mode(self.port, self.number, Moder::OUTPUT);
+    }
+}
+
+impl ErrorType for ForcedPin {
+    type Error = Infallible;
+}
+
+impl OutputPin for ForcedPin {
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        self.force(true);
+        Ok(())
+    }
+
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        self.force(false);
+        Ok(())
+    }
+}
+
 /// Connects a pin to a peripheral.
 pub(crate) fn alternate(port: Gpio, pin: u32, function: u8) {
     port.ospeedr().modify(|w| w.0 = field(w.0, 2, pin, Ospeedr::HIGH_SPEED as u32));
