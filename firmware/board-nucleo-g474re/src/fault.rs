@@ -1,6 +1,6 @@
 //! Panics and faults: they set the output to zero, store the reason, and reset. The next start reports the reason.
 
-use core::arch::naked_asm;
+use core::arch::{asm, naked_asm};
 #[cfg(feature = "panic-message")]
 use core::panic::Location;
 use core::panic::PanicInfo;
@@ -10,7 +10,7 @@ use cortex_m::interrupt;
 use cortex_m::peripheral::SCB;
 use cortex_m_rt::exception;
 use frixel_drivers::fault_record::{FaultRecord, STARTS_FORGOTTEN_AFTER_S, Text, Writer};
-use frixel_drivers::reset;
+use frixel_drivers::stm32g4;
 use frixel_wire::fault::Fault;
 use frixel_wire::hello::ResetCause;
 use stm32_metapac::RCC;
@@ -44,8 +44,8 @@ impl LastReset {
     pub fn take(text: &'static mut Text) -> Self {
         let flags = RCC.csr().read().0;
         RCC.csr().modify(|w| w.set_rmvf(true));
-        let cause = reset::cause(flags, MARKED.swap(MARK, Ordering::Relaxed) == MARK);
-        let (fault, text): (_, &[u8]) = match RECORD.take(text) {
+        let cause = stm32g4::reset_cause(flags, outlasting(&MARKED).swap(MARK, Ordering::Relaxed) == MARK);
+        let (fault, text): (_, &[u8]) = match outlasting(&RECORD).take(text) {
             Some((fault, detail, text)) => (Some((fault, detail)), text),
             None if cause == ResetCause::Watchdog => {
                 (Some((Fault::Watchdog, 0)), b"the main loop or the tick stood still")
@@ -54,6 +54,15 @@ impl LastReset {
         };
         Self { cause, fault, text, fault_starts: RECORD.count_start(fault.is_some()) }
     }
+}
+
+/// Returns a place that the start-up code does not clear. Its initialiser is never written, so the compiler must not
+/// conclude from it what the place holds.
+fn outlasting<T>(place: &'static T) -> &'static T {
+    // SAFETY: no instruction. For all that the compiler knows, it writes the place, whose type is made of atomics, of
+    // which every content is valid.
+    unsafe { asm!("/* {} */", in(reg) place, options(nostack, preserves_flags)) };
+    place
 }
 
 /// Forgets the faults of earlier starts once this one has run for [`STARTS_FORGOTTEN_AFTER_S`]. To be called

@@ -8,6 +8,8 @@ use core::pin::pin;
 use board_nucleo_g474re::adc::Adc;
 use board_nucleo_g474re::dac::DacError;
 use board_nucleo_g474re::fault::{self, LastReset};
+#[cfg(feature = "log")]
+use board_nucleo_g474re::flash;
 use board_nucleo_g474re::flash::BankTwo;
 use board_nucleo_g474re::main_loop::MainLoop;
 #[cfg(feature = "optical-frame")]
@@ -150,6 +152,9 @@ fn log(board: &Board, bank: bool) {
     defmt::info!("at most {=f32} V peak", board.limits.voltage_max_v_peak);
     if !bank {
         defmt::warn!("the flash is not in two banks (option byte DBANK): the scene is not stored");
+    }
+    for warning in flash::option_byte_warnings() {
+        defmt::warn!("option bytes: {=str}", warning);
     }
 }
 

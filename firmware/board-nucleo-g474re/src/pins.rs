@@ -34,6 +34,12 @@ impl Pin {
         Self { port, number }
     }
 
+    /// The level of a pin that a peripheral uses.
+    #[cfg(feature = "optical-frame")]
+    pub(crate) fn reads(port: Gpio, number: u32) -> Self {
+        Self { port, number }
+    }
+
     /// An input that is pulled down: a disconnected wire reads as low.
     pub(crate) fn input_pulled_down(port: Gpio, number: u32) -> Self {
         input_pulled_down(port, number);

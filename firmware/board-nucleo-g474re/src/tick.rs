@@ -18,6 +18,7 @@ use frixel_wire::fault::Fault;
 use stm32_metapac::{GPIOC, Interrupt, interrupt};
 
 use crate::adc::Adc;
+use crate::board::TICK_HZ;
 use crate::dac::DacFrames;
 use crate::output::Output;
 use crate::owned::Owned;
@@ -71,7 +72,7 @@ pub fn amplifier(output: Output) -> Amplifier<Output, Pin> {
 
 /// The arm switch.
 pub fn arm_switch() -> ArmSwitch<Pin> {
-    ArmSwitch::new(Pin::input_pulled_down(GPIOC, ARM_SWITCH))
+    ArmSwitch::new(Pin::input_pulled_down(GPIOC, ARM_SWITCH), TICK_HZ)
 }
 
 /// Configures all input pins, and the button of the board, PC13, for bring-up.
