@@ -11,19 +11,19 @@ use crate::{limited_polls, tick};
 /// does not hold its configuration, this raises fault `Dac`, which the order does not clear.
 pub fn check_before(order: &Order, dac: &mut Dac) {
     match order {
-        Order::Arm => between_frames(|| dac.prepare()),
-        Order::Play => between_frames(|| dac.check()),
+        Order::Arm => between_frames(dac, Dac::prepare),
+        Order::Play => between_frames(dac, Dac::check),
         _ => {}
     }
 }
 
-/// Does the work while the tick sends no frames, and returns when the tick sends them again.
+/// Does work on the DAC while the tick sends no frames, and returns when the tick sends them again.
 ///
 /// It takes some 0.2 ms: up to five frames and the hand-over. Meanwhile the output is zero and the amplifier disabled. If
 /// a stop is still under way, it waits until the output is zero.
 #[inline(never)]
-fn between_frames(work: impl FnOnce() -> Result<(), DacError>) {
-    if let Err(error) = tick::DAC_BUS.while_frames_rest(limited_polls("the tick"), work) {
+fn between_frames(dac: &mut Dac, work: fn(&mut Dac) -> Result<(), DacError>) {
+    if let Err(error) = tick::DAC_BUS.while_frames_rest(limited_polls("the tick"), || work(dac)) {
         #[cfg(feature = "log")]
         defmt::error!("the DAC is not ready: {}", error);
         tick::raise(Fault::Dac, error.detail());
