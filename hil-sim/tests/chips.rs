@@ -293,7 +293,9 @@ fn a_frame_that_is_cut_short_is_ignored_and_of_a_longer_one_the_last_24_bits_cou
         let chip = Ad5761rChip::new();
         dac(&chip).prepare().unwrap();
         chip.set_sync(false);
-        bits.iter().for_each(|bit| chip.clock(*bit));
+        for bit in bits {
+            chip.clock(*bit);
+        }
         chip.set_sync(true);
         chip.output_v()
     };
@@ -317,17 +319,16 @@ fn a_dac_that_lost_its_configuration_while_armed_is_found_before_play() {
     let chip = Ad5761rChip::new();
     let mut dac = dac(&chip);
     let bus = BusHandover::new();
-    let mut check = |work: fn(&mut Ad5761r<ChipSpi, ChipDelay>) -> Result<(), ad5761r::Error<Infallible>>| {
-        bus.while_frames_rest(|| _ = bus.tick_sends(true), || work(&mut dac))
-    };
-    check(Ad5761r::prepare).unwrap();
-    check(Ad5761r::check).unwrap();
+    let bus = &bus;
+    let ticks = || move || _ = bus.tick_sends(true);
+    bus.while_frames_rest(ticks(), || dac.prepare()).unwrap();
+    bus.while_frames_rest(ticks(), || dac.check()).unwrap();
     chip.brown_out();
-    assert!(matches!(check(Ad5761r::check), Err(ad5761r::Error::BrownOut(_))));
-    check(Ad5761r::prepare).unwrap();
+    assert!(matches!(bus.while_frames_rest(ticks(), || dac.check()), Err(ad5761r::Error::BrownOut(_))));
+    bus.while_frames_rest(ticks(), || dac.prepare()).unwrap();
     chip.supply(false);
     chip.supply(true);
-    assert!(matches!(check(Ad5761r::check), Err(ad5761r::Error::Configuration(_))));
+    assert!(matches!(bus.while_frames_rest(ticks(), || dac.check()), Err(ad5761r::Error::Configuration(_))));
     assert!(chip.output_v().abs() < f64::EPSILON);
 }
 

@@ -160,7 +160,7 @@ mod tests {
         let first_low_tick = (discharge_s / period_s).floor() + 1.0;
         let mut switch = released(TICK_HZ);
         run(&mut switch, true, TICK_HZ);
-        let ticks = (1..).find(|_| !run(&mut switch, false, 1)).unwrap();
+        let ticks = (1..100).find(|_| !run(&mut switch, false, 1)).unwrap();
         (first_low_tick + f64::from(ticks - 1) + 1.0) * period_s
     }
 

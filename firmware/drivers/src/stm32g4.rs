@@ -37,6 +37,9 @@ const ECC_NOT_CORRECTED: u32 = 1 << 31;
 /// While a store is read (`reading_store`), the bank that `FLASH_ECCR` states does not matter: the register's content may
 /// be corrupt after a reset or a loss of power during programming, which is when such words exist (errata sheet
 /// ES0430, on `FLASH_ECCR` after a reset or power-down during programming or erasing, unread).
+///
+/// So an error of the image's own flash in that time counts as the store's, too: the read fails, and what the processor
+/// has fetched is left to the fault handlers.
 pub const fn is_store_ecc_error(flash_eccr: u32, reading_store: bool) -> bool {
     flash_eccr & ECC_NOT_CORRECTED != 0 && (reading_store || flash_eccr & ECC_IN_BANK_2 != 0)
 }
@@ -101,7 +104,7 @@ mod tests {
         }
     }
 
-    /// The factory's option bytes of the STM32G474 (RM0440, "Option bytes": 0xffef_f8aa, unread).
+    /// The factory's option bytes of the STM32G474 (RM0440, "Option bytes": `0xffef_f8aa`, unread).
     #[test]
     fn the_factorys_option_bytes_lack_brown_out_level_and_watchdog() {
         let warnings: Vec<_> = option_byte_warnings(0xffef_f8aa).collect();
