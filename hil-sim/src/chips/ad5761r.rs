@@ -38,6 +38,7 @@ struct Chip {
     is_shorted: bool,
     clear_is_high: bool,
     sync_is_high: bool,
+    reset_is_high: bool,
     /// The last bits that were shifted in while SYNC was low, and their number.
     shifted_in: u32,
     clocks: u32,
@@ -59,6 +60,7 @@ struct Chip {
 enum Input {
     Sync,
     Clear,
+    Reset,
 }
 
 /// A DAC on a board.
@@ -91,6 +93,7 @@ impl Ad5761rChip {
             is_shorted: false,
             clear_is_high: true,
             sync_is_high: true,
+            reset_is_high: true,
             shifted_in: 0,
             clocks: 0,
             control: 0,
@@ -157,6 +160,12 @@ impl Ad5761rChip {
     /// Sets the level of SYNC. Its rising edge executes the frame.
     pub fn set_sync(&self, high: bool) {
         self.0.borrow_mut().set(Input::Sync, high);
+    }
+
+    /// Sets the level of RESET: while it is low, the registers have their values after power-on and the output is clamped
+    /// to ground, whatever the other inputs do.
+    pub fn set_reset(&self, high: bool) {
+        self.0.borrow_mut().set(Input::Reset, high);
     }
 
     /// A falling edge of SCLK, at which the chip takes `bit` from SDI.
@@ -228,6 +237,10 @@ impl Chip {
         match input {
             Input::Sync => self.set_sync(high),
             Input::Clear => self.set_clear(high),
+            Input::Reset => {
+                self.reset_is_high = high;
+                self.reset();
+            }
         }
         if (self.output_v() - before_v).abs() > 0.0 {
             self.changed_at_ns = self.now_ns;
@@ -246,7 +259,7 @@ impl Chip {
             self.clocks = 0;
         } else if !self.sync_is_high && high && self.clocks >= FRAME_CLOCKS {
             let [_, frame @ ..] = self.shifted_in.to_be_bytes();
-            if self.is_supplied && self.now_ns >= self.ready_at_ns {
+            if self.is_supplied && self.reset_is_high && self.now_ns >= self.ready_at_ns {
                 self.execute(frame);
             }
         }
