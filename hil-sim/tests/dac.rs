@@ -139,8 +139,8 @@ enum Edge {
     SyncHigh,
 }
 
-/// The edges of a period of 25 us with a frame, with their times: the tick begins the frame after 5 us at 21.25 MHz, and
-/// the timer latches it after 24.1 us. DMA sends the clocks, whatever the processor does meanwhile.
+/// The edges of a period of 25 us with a frame, with their times: the tick begins the frame after 5 us at 21.25 MHz,
+/// and the timer latches it after 24.1 us. DMA sends the clocks, whatever the processor does meanwhile.
 fn period(code: i16) -> Vec<(u64, Edge)> {
     let [address, high, low] = ad5761r::output(DacCode::from_bits(code));
     let bits = u32::from_be_bytes([0, address, high, low]);
@@ -162,8 +162,9 @@ fn wait_until(chip: &Ad5761rChip, at_ns: u64) {
     chip.delay().delay_ns(u32::try_from(at_ns.saturating_sub(chip.now_ns())).unwrap());
 }
 
-/// A prepared DAC that has put a code out, in the middle of a frame with the next code: the first `edges_before` edges of
-/// a period have occurred, and `part` of the time until the following one has passed. Returns the edges to come, too.
+/// A prepared DAC that has put a code out, in the middle of a frame with the next code: the first `edges_before` edges
+/// of a period have occurred, and `part` of the time until the following one has passed. Returns the edges to come,
+/// too.
 fn in_mid_frame(edges_before: usize, part: f64) -> (Ad5761rChip, Vec<(u64, Edge)>) {
     let chip = Ad5761rChip::new();
     dac(&chip).prepare().unwrap();

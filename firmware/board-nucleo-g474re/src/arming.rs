@@ -7,11 +7,11 @@ use crate::dac::Dac;
 use crate::{limited_polls, tick};
 
 /// Checks the DAC before an order reaches the ticker: configures it and reads it back before [`Order::Arm`], and reads
-/// it back before [`Order::Play`], so that a DAC whose supply dipped while the board was armed is not driven. If the DAC
-/// does not hold its configuration, this raises fault `Dac`, which the order does not clear.
+/// it back before [`Order::Play`], so that a DAC whose supply dipped while the board was armed is not driven. If the
+/// DAC does not hold its configuration, this raises fault `Dac`, which the order does not clear.
 ///
-/// The tick sends no frames meanwhile. It takes some 0.2 ms, up to five frames and the hand-over, in which the output is
-/// zero and the amplifier disabled; if a stop is still under way, it begins once the output is zero.
+/// The tick sends no frames meanwhile. It takes some 0.2 ms, up to five frames and the hand-over, in which the output
+/// is zero and the amplifier disabled; if a stop is still under way, it begins once the output is zero.
 pub fn check_before(order: &Order, dac: &mut Dac) {
     let configures = match order {
         Order::Arm => true,

@@ -2,8 +2,8 @@
 //!
 //! Both pins are channels of TIM4 in one-pulse mode. A kick sets them high, and they go low by themselves [`LIFE_US`]
 //! after the last kick, whatever the core does (RM0440, "General-purpose timers": "One-pulse mode", "PWM mode"). They
-//! are low while the counter is zero, which is where it stops. External resistors pull both wires down, so that
-//! they are low in reset, too: that disables the amplifier, but a frame that is latched meanwhile leaves its code in the
+//! are low while the counter is zero, which is where it stops. External resistors pull both wires down, so that they
+//! are low in reset, too: that disables the amplifier, but a frame that is latched meanwhile leaves its code in the
 //! DAC. So [`zero_for_good`] is the first thing after every reset.
 //!
 //! | pin | function | |

@@ -75,7 +75,8 @@ impl OutputPin for Pin {
     }
 }
 
-/// A pin that becomes an output when it is set, whatever it was connected to before, without a pulse of the other level.
+/// A pin that becomes an output when it is set, whatever it was connected to before, without a pulse of the other
+/// level.
 pub(crate) struct ForcedPin {
     port: Gpio,
     number: u32,

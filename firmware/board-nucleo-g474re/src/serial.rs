@@ -87,8 +87,8 @@ impl ErrorType for Serial {
 
 impl ReadReady for Serial {
     fn read_ready(&mut self) -> Result<bool, Infallible> {
-        // Nothing is received while the flag of an overrun is set (RM0440, "USART receiver": "Overrun error", unread). The
-        // bytes that are lost until then damage frames, which the host sends again.
+        // Nothing is received while the flag of an overrun is set (RM0440, "USART receiver": "Overrun error", unread).
+        // The bytes that are lost until then damage frames, which the host sends again.
         if USART2.isr().read().ore() {
             USART2.icr().write(|w| w.set_ore(true));
         }

@@ -31,7 +31,8 @@ const BUTTON: u32 = 13;
 
 static TICK: Owned<Tick> = Owned::new();
 static COUNT: AtomicU32 = AtomicU32::new(0);
-/// Arbitrates the DAC's bus between the tick and the main loop, which checks the DAC before it arms the board.
+/// Arbitrates the DAC's bus between the tick and the main loop, which checks the DAC before the board arms and before
+/// it plays.
 pub static DAC_BUS: BusHandover = BusHandover::new();
 /// A fault that the main loop has found: its number above [`FAULT_SHIFT`], its detail below; zero without a fault.
 static FAULT: AtomicU32 = AtomicU32::new(0);

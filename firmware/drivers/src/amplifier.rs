@@ -4,9 +4,9 @@ use embedded_hal::digital::InputPin;
 
 /// The amplifier's enable behind a one-shot in hardware: it is low unless it is kicked again and again.
 ///
-/// A pin that stays as it was set is none: if the firmware hangs, nothing switches the amplifier off. So
-/// [`Amplifier`] takes no `OutputPin`, and a board implements this trait for its one-shot only. Nothing here can fail: an
-/// enable behind a bus that may report errors is none either.
+/// A pin that stays as it was set is none: if the firmware hangs, nothing switches the amplifier off. So [`Amplifier`]
+/// takes no `OutputPin`, and a board implements this trait for its one-shot only. Nothing here can fail: an enable
+/// behind a bus that may report errors is none either.
 pub trait KickedEnable {
     /// Enables the amplifier until the one-shot ends, at most 1 ms after the last kick.
     fn kick(&mut self);

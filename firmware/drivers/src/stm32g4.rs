@@ -1,5 +1,5 @@
-//! What registers of the STM32G4 mean: values in, values out, so that tests can hold it without the processor. RM0440 is
-//! its reference manual.
+//! What registers of the STM32G4 mean: values in, values out, so that tests can hold it without the processor. RM0440
+//! is its reference manual.
 
 use frixel_wire::hello::ResetCause;
 
@@ -34,8 +34,8 @@ const ECC_NOT_CORRECTED: u32 = 1 << 31;
 /// Whether a non-maskable interrupt reports an error that a read of bank 2, which holds the stores, has met, as when
 /// power failed while the word was written: not a reason to reset, because every start reads the stores.
 ///
-/// While a store is read (`reading_store`), the bank that `FLASH_ECCR` states does not matter: the register's content may
-/// be corrupt after a reset or a loss of power during programming, which is when such words exist (errata sheet
+/// While a store is read (`reading_store`), the bank that `FLASH_ECCR` states does not matter: the register's content
+/// may be corrupt after a reset or a loss of power during programming, which is when such words exist (errata sheet
 /// ES0430, on `FLASH_ECCR` after a reset or power-down during programming or erasing, unread).
 ///
 /// So an error of the image's own flash in that time counts as the store's, too: the read fails, and what the processor

@@ -151,8 +151,8 @@ impl Ad5761rChip {
         self.0.borrow_mut().has_sdo = connected;
     }
 
-    /// Sets the level of CLEAR. Its falling edge, and only the edge, sets the DAC register to the value that the control
-    /// register selects.
+    /// Sets the level of CLEAR. Its falling edge, and only the edge, sets the DAC register to the value that the
+    /// control register selects.
     pub fn set_clear(&self, high: bool) {
         self.0.borrow_mut().set(Input::Clear, high);
     }
@@ -162,8 +162,8 @@ impl Ad5761rChip {
         self.0.borrow_mut().set(Input::Sync, high);
     }
 
-    /// Sets the level of RESET: while it is low, the registers have their values after power-on and the output is clamped
-    /// to ground, whatever the other inputs do.
+    /// Sets the level of RESET: while it is low, the registers have their values after power-on and the output is
+    /// clamped to ground, whatever the other inputs do.
     pub fn set_reset(&self, high: bool) {
         self.0.borrow_mut().set(Input::Reset, high);
     }

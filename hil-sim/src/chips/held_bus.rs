@@ -1,5 +1,5 @@
-//! An I2C bus whose target was left in the middle of a transfer by a reset of the controller (NXP UM10204, "Byte format",
-//! "Acknowledge (ACK) and Not Acknowledge (NACK)", unread).
+//! An I2C bus whose target was left in the middle of a transfer by a reset of the controller (NXP UM10204, "Byte
+//! format", "Acknowledge (ACK) and Not Acknowledge (NACK)", unread).
 
 use std::cell::RefCell;
 use std::convert::Infallible;
@@ -68,8 +68,8 @@ impl HeldBus {
         SdaPin(Rc::clone(&self.0))
     }
 
-    /// The controller begins a transfer: a START condition, which resets the target. Returns whether it can, which needs
-    /// both lines high.
+    /// The controller begins a transfer: a START condition, which resets the target. Returns whether it can, which
+    /// needs both lines high.
     #[must_use]
     pub fn start(&self) -> bool {
         let mut bus = self.0.borrow_mut();

@@ -2,8 +2,8 @@
 //!
 //! [`Ad5761r`] configures and checks the chip over `embedded-hal`. A board that updates the output at a fixed rate
 //! sends [`output`] frames by its own hardware meanwhile; driver and tick share the bus in turns
-//! ([`BusHandover`](crate::bus_handover::BusHandover)). [`zero_output`] is for panics, faults and the first instructions
-//! after a reset.
+//! ([`BusHandover`](crate::bus_handover::BusHandover)). [`zero_output`] is for panics, faults and the first
+//! instructions after a reset.
 
 mod frame;
 
@@ -84,11 +84,12 @@ impl<E> From<E> for Error<E> {
 /// Sets the output to zero from any state, even in the middle of a frame: for panics, faults, and as the first thing
 /// after every reset. Returns with CLEAR low.
 ///
-/// The order of the edges matters. The amplifier is disabled first. Then SYNC rises, at which the DAC executes the frame
-/// that it has received, or discards one that is cut short; after that, clocks that are still under way have no effect.
-/// The falling edge of CLEAR comes last, because only the edge sets the DAC to zero: a frame that is executed after it
-/// puts its code out (data sheet, "Pin configuration and function descriptions", unread). CLEAR is set high before,
-/// because it may be low already, as after a reset.
+/// The order of the edges matters. The amplifier is disabled first. Then SYNC rises, at which the DAC executes the
+/// frame that it has received, or discards one that is cut short; after that, clocks that are still under way have no
+/// effect. The falling edge of CLEAR comes last, because only the edge sets the DAC to zero: a frame that is executed
+/// after it puts its code out (data sheet, "Pin configuration and function descriptions", unread). CLEAR is set high
+/// before, because it may be low already, as after a reset. The times that the chip needs between these edges are
+/// unread (data sheet, "Timing characteristics"); setting a pin takes 70 ns or more at 170 MHz.
 ///
 /// The pins' former functions must no longer drive them once they are set. A pin that reports an error is passed over:
 /// the others are set all the same.
