@@ -9,7 +9,7 @@ use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use cortex_m::interrupt;
 use cortex_m::peripheral::SCB;
 use cortex_m_rt::exception;
-use frixel_drivers::fault_record::{FaultRecord, STARTS_FORGOTTEN_AFTER_S, Text, Writer};
+use frixel_drivers::fault_record::{FaultRecord, Text, Writer};
 use frixel_drivers::stm32g4;
 use frixel_wire::fault::Fault;
 use frixel_wire::hello::ResetCause;
@@ -65,12 +65,9 @@ fn outlasting<T>(place: &'static T) -> &'static T {
     place
 }
 
-/// Forgets the faults of earlier starts once this one has run for [`STARTS_FORGOTTEN_AFTER_S`]. To be called
-/// repeatedly.
-pub fn forget_starts(now_tick: u32) {
-    if now_tick >= STARTS_FORGOTTEN_AFTER_S * TICK_HZ {
-        RECORD.forget_starts();
-    }
+/// Forgets the faults of earlier starts once this one has run for a minute. To be called repeatedly.
+pub fn has_run_for(ticks: u32) {
+    RECORD.has_run_for(ticks, TICK_HZ);
 }
 
 /// Sets the output to zero, stores the reason and resets.

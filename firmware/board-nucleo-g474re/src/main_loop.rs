@@ -60,7 +60,7 @@ impl MainLoop {
                 store.step(flash, self.session, now_tick);
             }
             self.light.show(self.status.telemetry.state, now_tick);
-            fault::forget_starts(now_tick);
+            fault::has_run_for(now_tick);
             self.watchdog.feed();
         }
     }

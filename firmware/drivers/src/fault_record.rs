@@ -5,8 +5,8 @@
 //! power-on the memory holds random bits, which a CRC-32 distinguishes from a record.
 //!
 //! The record counts the starts in a row that ended in a fault, too, so that a board that cannot start with what it has
-//! stored starts without it. Each start calls [`FaultRecord::count_start`] once, and
-//! [`FaultRecord::forget_starts`] once it has run for [`STARTS_FORGOTTEN_AFTER_S`].
+//! stored starts without it. Each start calls [`FaultRecord::count_start`] once, and then
+//! [`FaultRecord::has_run_for`] repeatedly, which ends the row after a minute.
 
 use core::fmt;
 use core::sync::atomic::{AtomicU8, AtomicU32, Ordering};
@@ -18,7 +18,7 @@ use frixel_wire::message::FAULT_TEXT_MAX_LEN;
 /// Seconds for which a start must run until the faults before it no longer count. Much longer than the few seconds in
 /// which a board takes its stored scene and a host reconnects: what makes every start fail there fails within this
 /// time. A board that runs longer between two faults can be reached, and needs no help.
-pub const STARTS_FORGOTTEN_AFTER_S: u32 = 60;
+const STARTS_FORGOTTEN_AFTER_S: u32 = 60;
 
 /// The count's word has this value, with the count in every byte: 24 bits distinguish it from random memory, and no
 /// single changed bit leaves it valid.
@@ -62,9 +62,12 @@ impl FaultRecord {
         starts
     }
 
-    /// Ends the row of starts that ended in a fault: the next fault is the first again.
-    pub fn forget_starts(&self) {
-        self.store_starts(0);
+    /// Ends the row of starts that ended in a fault once this start has run for a minute: its own fault is the first of
+    /// the next row. To be called repeatedly, with the ticks since the start.
+    pub fn has_run_for(&self, ticks: u32, tick_hz: u32) {
+        if ticks >= STARTS_FORGOTTEN_AFTER_S.saturating_mul(tick_hz) {
+            self.store_starts(0);
+        }
     }
 
     fn store_starts(&self, count: u8) {
@@ -209,7 +212,18 @@ mod tests {
         let record = FaultRecord::new();
         assert_eq!([true, true, true].map(|after_fault| record.count_start(after_fault)), [1, 2, 3]);
         assert_eq!([false, true].map(|after_fault| record.count_start(after_fault)), [0, 1]);
-        record.forget_starts();
+    }
+
+    #[test]
+    fn a_start_that_has_run_for_a_minute_ends_the_row() {
+        const TICK_HZ: u32 = 40_000;
+        let record = FaultRecord::new();
+        assert_eq!([true, true].map(|after_fault| record.count_start(after_fault)), [1, 2]);
+        record.has_run_for(60 * TICK_HZ - 1, TICK_HZ);
+        assert_eq!(record.count_start(true), 3, "a fault within the minute goes on with the row");
+        record.has_run_for(60 * TICK_HZ, TICK_HZ);
+        // The ticks wrap after 30 hours.
+        record.has_run_for(0, TICK_HZ);
         assert_eq!([true, true].map(|after_fault| record.count_start(after_fault)), [1, 2]);
     }
 
@@ -233,7 +247,7 @@ mod tests {
             }
         }
         for bit in 0..32 {
-            record.forget_starts();
+            record.count_start(false);
             assert_eq!([true; 4].map(|_| record.count_start(true)), [1, 2, 3, 4]);
             record.starts.fetch_xor(1 << bit, Ordering::Relaxed);
             assert_eq!(record.count_start(true), 1, "bit {bit}");
