@@ -67,7 +67,10 @@ pub(crate) fn begin(channel: usize, len: u16) {
 
 /// Bytes that have not been transferred yet.
 pub(crate) fn remaining(channel: usize) -> usize {
-    usize::from(DMA1.ch(channel).ndtr().read().ndt())
+    let remaining = usize::from(DMA1.ch(channel).ndtr().read().ndt());
+    // Loads after this fence find what DMA has written before.
+    fence(Ordering::Acquire);
+    remaining
 }
 
 fn stop(ch: Ch) {

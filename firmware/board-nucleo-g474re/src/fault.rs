@@ -1,6 +1,6 @@
 //! Panics and faults: they set the output to zero, store the reason, and reset. The next start reports the reason.
 
-use core::arch::naked_asm;
+use core::arch::{asm, naked_asm};
 #[cfg(feature = "panic-message")]
 use core::panic::Location;
 use core::panic::PanicInfo;
@@ -10,11 +10,12 @@ use cortex_m::interrupt;
 use cortex_m::peripheral::SCB;
 use cortex_m_rt::exception;
 use frixel_drivers::fault_record::{FaultRecord, Text, Writer};
-use frixel_drivers::reset;
+use frixel_drivers::stm32g4;
 use frixel_wire::fault::Fault;
 use frixel_wire::hello::ResetCause;
 use stm32_metapac::RCC;
 
+use crate::board::TICK_HZ;
 use crate::{flash, output};
 
 /// In memory that the start-up code does not clear.
@@ -34,6 +35,8 @@ pub struct LastReset {
     pub fault: Option<(Fault, u32)>,
     /// The text stored with the fault.
     pub text: &'static [u8],
+    /// Number of starts in a row before this one that ended in a fault.
+    pub fault_starts: u8,
 }
 
 impl LastReset {
@@ -41,16 +44,30 @@ impl LastReset {
     pub fn take(text: &'static mut Text) -> Self {
         let flags = RCC.csr().read().0;
         RCC.csr().modify(|w| w.set_rmvf(true));
-        let cause = reset::cause(flags, MARKED.swap(MARK, Ordering::Relaxed) == MARK);
-        let (fault, text): (_, &[u8]) = match RECORD.take(text) {
+        let cause = stm32g4::reset_cause(flags, outlasting(&MARKED).swap(MARK, Ordering::Relaxed) == MARK);
+        let (fault, text): (_, &[u8]) = match outlasting(&RECORD).take(text) {
             Some((fault, detail, text)) => (Some((fault, detail)), text),
             None if cause == ResetCause::Watchdog => {
                 (Some((Fault::Watchdog, 0)), b"the main loop or the tick stood still")
             }
             None => (None, b""),
         };
-        Self { cause, fault, text }
+        Self { cause, fault, text, fault_starts: RECORD.count_start(fault.is_some()) }
     }
+}
+
+/// Returns a place that the start-up code does not clear. Its initialiser is never written, so the compiler must not
+/// conclude from it what the place holds.
+fn outlasting<T>(place: &'static T) -> &'static T {
+    // SAFETY: no instruction. For all that the compiler knows, it writes the place, whose type is made of atomics, of
+    // which every content is valid.
+    unsafe { asm!("/* {} */", in(reg) place, options(nostack, preserves_flags)) };
+    place
+}
+
+/// Forgets the faults of earlier starts once this one has run for a minute. To be called repeatedly.
+pub fn has_run_for(ticks: u32) {
+    RECORD.has_run_for(ticks, TICK_HZ);
 }
 
 /// Sets the output to zero, stores the reason and resets.

@@ -3,8 +3,9 @@
 //! operations").
 
 use core::ptr;
-use core::sync::atomic::{AtomicBool, Ordering};
+use core::sync::atomic::{AtomicBool, Ordering, compiler_fence};
 
+use frixel_drivers::stm32g4;
 use frixel_session::store::{Flash, Operation, WORD_LEN};
 use stm32_metapac::FLASH;
 
@@ -18,6 +19,8 @@ const KEYS: [u32; 2] = [0x4567_0123, 0xcdef_89ab];
 
 /// A word that was read had an error that cannot be corrected.
 static UNREADABLE: AtomicBool = AtomicBool::new(false);
+/// Bank 2 is being read.
+static READING: AtomicBool = AtomicBool::new(false);
 
 /// Bank 2.
 pub struct BankTwo {
@@ -56,6 +59,8 @@ impl Flash for BankTwo {
             return false;
         }
         UNREADABLE.store(false, Ordering::Relaxed);
+        READING.store(true, Ordering::Relaxed);
+        compiler_fence(Ordering::SeqCst);
         for (address, byte) in (START + offset..).zip(bytes) {
             // SAFETY: the address lies in bank 2, as checked above, and any byte there is valid.
             *byte = unsafe { ptr::with_exposed_provenance::<u8>(address as usize).read_volatile() };
@@ -63,6 +68,7 @@ impl Flash for BankTwo {
         // The exception occurs before anything after this.
         cortex_m::asm::dsb();
         cortex_m::asm::isb();
+        READING.store(false, Ordering::Relaxed);
         !UNREADABLE.load(Ordering::Relaxed)
     }
 
@@ -124,11 +130,15 @@ fn clear_flags() {
     FLASH.sr().modify(|_| {});
 }
 
+/// What differs in the option bytes from what the board needs.
+pub fn option_byte_warnings() -> impl Iterator<Item = &'static str> {
+    stm32g4::option_byte_warnings(FLASH.optr().read().0)
+}
+
 /// Returns whether a non-maskable interrupt has reported a word of bank 2 that cannot be corrected, as when power
 /// failed during a write. The read that met the word then reports it (RM0440, "Error code correction (ECC)").
 pub(crate) fn take_unreadable() -> bool {
-    let status = FLASH.eccr().read();
-    let ours = status.eccd() && status.bk_ecc();
+    let ours = stm32g4::is_store_ecc_error(FLASH.eccr().read().0, READING.load(Ordering::Relaxed));
     if ours {
         FLASH.eccr().modify(|w| w.set_eccd(true));
         UNREADABLE.store(true, Ordering::Relaxed);

@@ -8,6 +8,8 @@ use core::pin::pin;
 use board_nucleo_g474re::adc::Adc;
 use board_nucleo_g474re::dac::DacError;
 use board_nucleo_g474re::fault::{self, LastReset};
+#[cfg(feature = "log")]
+use board_nucleo_g474re::flash;
 use board_nucleo_g474re::flash::BankTwo;
 use board_nucleo_g474re::main_loop::MainLoop;
 #[cfg(feature = "optical-frame")]
@@ -69,6 +71,9 @@ fn start(text: &'static mut Text, queues: &'static mut Queues) -> MainLoop {
     clock::start_cycle_counter(&mut core.DCB, &mut core.DWT);
     let light = indicator::start();
     period::start();
+    // Before the flash is searched, which takes up to 0.2 s: until then, the DAC has the settings of the last start.
+    let (frames, mut dac) = dac::start();
+    log_dac(dac.prepare());
 
     let flash = BankTwo::new();
     let board = board::board(&last_reset, flash.as_ref());
@@ -79,8 +84,6 @@ fn start(text: &'static mut Text, queues: &'static mut Queues) -> MainLoop {
     let store = flash.map(|flash| (SceneStore::new(board::SCENE_SLOT, board::TICK_HZ, &flash, session), flash));
 
     let (session_ends, tick_ends) = queues.split();
-    let (frames, mut dac) = dac::start();
-    log_dac(dac.prepare());
     let (amplifier, arm_switch) = (tick::amplifier(output), tick::arm_switch());
     let tick = Tick { ticker, queues: tick_ends, adc: Adc::new(), dac: frames, amplifier, arm_switch };
     let serial = SerialLink::new(Serial::new());
@@ -149,6 +152,9 @@ fn log(board: &Board, bank: bool) {
     defmt::info!("at most {=f32} V peak", board.limits.voltage_max_v_peak);
     if !bank {
         defmt::warn!("the flash is not in two banks (option byte DBANK): the scene is not stored");
+    }
+    for warning in flash::option_byte_warnings() {
+        defmt::warn!("option bytes: {=str}", warning);
     }
 }
 

@@ -17,7 +17,7 @@ use crate::pins::Pin;
 use crate::serial::Serial;
 use crate::tick;
 use crate::watchdog::Watchdog;
-use crate::{arming, clock};
+use crate::{arming, clock, fault};
 
 /// All that runs in the main loop.
 pub struct MainLoop {
@@ -60,6 +60,7 @@ impl MainLoop {
                 store.step(flash, self.session, now_tick);
             }
             self.light.show(self.status.telemetry.state, now_tick);
+            fault::has_run_for(now_tick);
             self.watchdog.feed();
         }
     }
@@ -82,8 +83,8 @@ impl MainLoop {
         self.tick.exchange(self.session, |order| {
             if matches!(order, Order::Arm) {
                 watchdog.freeze_with_debugger(false);
-                arming::prepare(dac);
             }
+            arming::check_before(order, dac);
         });
     }
 }

@@ -17,6 +17,7 @@ use core::task::Poll;
 
 use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::i2c::{self, ErrorKind, ErrorType, I2c, NoAcknowledgeSource, Operation};
+use frixel_drivers::i2c_bus_clear::clear_bus;
 use frixel_drivers::polling::{poll_once, yield_now};
 use frixel_drivers::zforce::{self, MESSAGE_MAX_LEN, ZForce};
 use frixel_session::Touch;
@@ -26,7 +27,7 @@ use stm32_metapac::rcc::vals::I2csel;
 use stm32_metapac::{GPIOC, GPIOD, I2C3, RCC};
 
 use crate::board::TICK_HZ;
-use crate::pins::Pin;
+use crate::pins::{ForcedPin, Pin};
 use crate::{dma, pins, tick};
 
 const SCL: u32 = 8;
@@ -117,6 +118,8 @@ pub enum Error {
     ArbitrationLoss,
     /// The transfer took longer than 6 ms.
     Timeout,
+    /// SDA is low before the transfer, and nine clocks have not freed it: a short, or a module without supply.
+    BusHeld,
     /// A transaction of several transfers, or of more than 127 bytes, which the module never needs.
     Unsupported,
 }
@@ -126,7 +129,7 @@ impl i2c::Error for Error {
         match self {
             Self::NoAcknowledge => ErrorKind::NoAcknowledge(NoAcknowledgeSource::Unknown),
             Self::ArbitrationLoss => ErrorKind::ArbitrationLoss,
-            Self::Timeout | Self::Unsupported => ErrorKind::Other,
+            Self::Timeout | Self::BusHeld | Self::Unsupported => ErrorKind::Other,
         }
     }
 }
@@ -144,6 +147,9 @@ impl I2c for Bus {
         };
         if len > MESSAGE_MAX_LEN {
             return Err(Error::Unsupported);
+        }
+        if !pins::is_high(GPIOC, SDA) && !clear().await {
+            return Err(Error::BusHeld);
         }
         match operation {
             Operation::Write(bytes) => begin_write(address, bytes),
@@ -166,11 +172,26 @@ impl I2c for Bus {
 impl Bus {
     fn new() -> Self {
         RCC.ccipr().modify(|w| w.set_i2c3sel(I2csel::HSI));
-        pins::alternate_open_drain(GPIOC, SCL, I2C3_FUNCTION);
         pins::alternate_open_drain(GPIOC, SDA, I2C3_FUNCTION);
-        enable();
+        connect();
         Self(())
     }
+}
+
+/// Clears the bus from a transfer that a reset or a time-out has cut off, and returns whether SDA is free.
+async fn clear() -> bool {
+    // Releases both lines.
+    I2C3.cr1().write(|w| w.set_pe(false));
+    let mut scl = ForcedPin::new(GPIOC, SCL);
+    let is_free = clear_bus(&mut scl, &mut Pin::reads(GPIOC, SDA), &mut TickDelay).await;
+    connect();
+    is_free
+}
+
+/// Connects SCL to the peripheral, and enables it.
+fn connect() {
+    pins::alternate_open_drain(GPIOC, SCL, I2C3_FUNCTION);
+    enable();
 }
 
 fn poll_transfer(from_tick: u32) -> Poll<Result<(), Error>> {

@@ -2,22 +2,23 @@
 //!
 //! Both pins are channels of TIM4 in one-pulse mode. A kick sets them high, and they go low by themselves [`LIFE_US`]
 //! after the last kick, whatever the core does (RM0440, "General-purpose timers": "One-pulse mode", "PWM mode"). They
-//! are low while the counter is zero, which is where it stops. External resistors pull both wires down, so that
-//! they are low in reset, too.
+//! are low while the counter is zero, which is where it stops. External resistors pull both wires down, so that they
+//! are low in reset, too: that disables the amplifier, but a frame that is latched meanwhile leaves its code in the
+//! DAC. So [`zero_for_good`] is the first thing after every reset.
 //!
 //! | pin | function | |
 //! |---|---|---|
 //! | PB6 | TIM4_CH1 | amplifier enable, high enables |
 //! | PB7 | TIM4_CH2 | CLEAR of the DAC, low clears |
 
-use core::convert::Infallible;
-
-use embedded_hal::digital::{ErrorType, OutputPin};
+use frixel_drivers::ad5761r::zero_output;
+use frixel_drivers::amplifier::KickedEnable;
 use stm32_metapac::timer::vals::Ocm;
-use stm32_metapac::{GPIOB, RCC, TIM4};
+use stm32_metapac::{GPIOB, GPIOC, RCC, TIM4};
 
 use crate::clock::CORE_HZ;
-use crate::pins;
+use crate::period::SYNC;
+use crate::pins::{self, ForcedPin};
 
 /// Time from the last kick until the output is zero, in us. The specification is 1 ms.
 pub const LIFE_US: u16 = 900;
@@ -30,7 +31,7 @@ const TIM4_FUNCTION: u8 = 2;
 pub struct Output(());
 
 impl Output {
-    /// Takes the pins and sets both low.
+    /// Sets the output to zero, and takes the pins of the one-shot, which are low.
     pub fn new() -> Self {
         zero_for_good();
         RCC.apb1enr1().modify(|w| w.set_tim4en(true));
@@ -82,22 +83,15 @@ impl Output {
     }
 }
 
-impl ErrorType for Output {
-    type Error = Infallible;
-}
-
-/// The amplifier's enable: high for [`LIFE_US`] only, unless it is set again.
-impl OutputPin for Output {
+impl KickedEnable for Output {
     #[inline]
-    fn set_high(&mut self) -> Result<(), Infallible> {
-        self.kick();
-        Ok(())
+    fn kick(&mut self) {
+        Self::kick(self);
     }
 
     #[inline]
-    fn set_low(&mut self) -> Result<(), Infallible> {
+    fn disable(&mut self) {
         self.zero();
-        Ok(())
     }
 }
 
@@ -109,9 +103,13 @@ fn mode(mode: Ocm) {
     });
 }
 
-/// Sets the output to zero until the next reset, from any context: disconnects the pins from the timer.
+/// Sets the output to zero until the next reset, from any context: disconnects amplifier enable, SYNC and CLEAR from
+/// their timers, in the order that [`zero_output`] explains.
 pub fn zero_for_good() {
     pins::start();
-    pins::output_low(GPIOB, AMPLIFIER_ENABLE);
-    pins::output_low(GPIOB, DAC_CLEAR);
+    zero_output(
+        &mut ForcedPin::new(GPIOB, AMPLIFIER_ENABLE),
+        &mut ForcedPin::new(GPIOC, SYNC),
+        &mut ForcedPin::new(GPIOB, DAC_CLEAR),
+    );
 }

@@ -22,7 +22,8 @@ pub const LATCH_CYCLES: u32 = PERIOD_CYCLES - 150;
 /// Latest cycle at which a frame may begin: 24 bits at 21.25 MHz are 192 cycles, doubled for DMA and the first byte.
 pub const DEADLINE_CYCLES: u32 = LATCH_CYCLES - 400;
 
-const SYNC: u32 = 6;
+/// PC6.
+pub(crate) const SYNC: u32 = 6;
 const TIM3_FUNCTION: u8 = 2;
 
 const _: () = assert!(CORE_HZ.is_multiple_of(crate::board::TICK_HZ) && PERIOD_CYCLES <= 1 << 16);
@@ -48,7 +49,7 @@ pub(crate) fn start_interrupts() {
 pub fn has_begun() -> bool {
     let begun = TIM3.sr().read().uif();
     if begun {
-        // Zeros clear flags, and ones leave them unchanged: the other flags are not affected.
+        // Zeros clear flags: this clears all of them, and no other is used.
         TIM3.sr().write(|w| w.set_uif(false));
     }
     begun

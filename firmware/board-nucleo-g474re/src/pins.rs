@@ -34,6 +34,12 @@ impl Pin {
         Self { port, number }
     }
 
+    /// The level of a pin that a peripheral uses.
+    #[cfg(feature = "optical-frame")]
+    pub(crate) fn reads(port: Gpio, number: u32) -> Self {
+        Self { port, number }
+    }
+
     /// An input that is pulled down: a disconnected wire reads as low.
     pub(crate) fn input_pulled_down(port: Gpio, number: u32) -> Self {
         input_pulled_down(port, number);
@@ -65,6 +71,40 @@ impl OutputPin for Pin {
 
     fn set_low(&mut self) -> Result<(), Infallible> {
         set(self.port, self.number, false);
+        Ok(())
+    }
+}
+
+/// A pin that becomes an output when it is set, whatever it was connected to before, without a pulse of the other
+/// level.
+pub(crate) struct ForcedPin {
+    port: Gpio,
+    number: u32,
+}
+
+impl ForcedPin {
+    pub(crate) fn new(port: Gpio, number: u32) -> Self {
+        Self { port, number }
+    }
+
+    fn force(&self, high: bool) {
+        set(self.port, self.number, high);
+        mode(self.port, self.number, Moder::OUTPUT);
+    }
+}
+
+impl ErrorType for ForcedPin {
+    type Error = Infallible;
+}
+
+impl OutputPin for ForcedPin {
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        self.force(true);
+        Ok(())
+    }
+
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        self.force(false);
         Ok(())
     }
 }

@@ -18,6 +18,7 @@ use frixel_wire::fault::Fault;
 use stm32_metapac::{GPIOC, Interrupt, interrupt};
 
 use crate::adc::Adc;
+use crate::board::TICK_HZ;
 use crate::dac::DacFrames;
 use crate::output::Output;
 use crate::owned::Owned;
@@ -30,7 +31,8 @@ const BUTTON: u32 = 13;
 
 static TICK: Owned<Tick> = Owned::new();
 static COUNT: AtomicU32 = AtomicU32::new(0);
-/// Arbitrates the DAC's bus between the tick and the main loop, which checks the DAC before it arms the board.
+/// Arbitrates the DAC's bus between the tick and the main loop, which checks the DAC before the board arms and before
+/// it plays.
 pub static DAC_BUS: BusHandover = BusHandover::new();
 /// A fault that the main loop has found: its number above [`FAULT_SHIFT`], its detail below; zero without a fault.
 static FAULT: AtomicU32 = AtomicU32::new(0);
@@ -71,7 +73,7 @@ pub fn amplifier(output: Output) -> Amplifier<Output, Pin> {
 
 /// The arm switch.
 pub fn arm_switch() -> ArmSwitch<Pin> {
-    ArmSwitch::new(Pin::input_pulled_down(GPIOC, ARM_SWITCH))
+    ArmSwitch::new(Pin::input_pulled_down(GPIOC, ARM_SWITCH), TICK_HZ)
 }
 
 /// Configures all input pins, and the button of the board, PC13, for bring-up.

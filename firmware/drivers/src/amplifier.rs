@@ -1,38 +1,66 @@
 //! The logic lines of the high-voltage amplifier: enable out, ready in.
 
-use embedded_hal::digital::{InputPin, OutputPin};
+use embedded_hal::digital::InputPin;
+
+/// The amplifier's enable behind a one-shot in hardware: it is low unless it is kicked again and again.
+///
+/// A pin that stays as it was set is none: if the firmware hangs, nothing switches the amplifier off. So [`Amplifier`]
+/// takes no `OutputPin`, and a board implements this trait for its one-shot only. Nothing here can fail: an enable
+/// behind a bus that may report errors is none either.
+pub trait KickedEnable {
+    /// Enables the amplifier until the one-shot ends, at most 1 ms after the last kick.
+    fn kick(&mut self);
+
+    /// Disables the amplifier at once.
+    fn disable(&mut self);
+}
 
 /// The amplifier's enable input and ready output.
+///
+/// ```
+/// use embedded_hal::digital::InputPin;
+/// use frixel_drivers::amplifier::{Amplifier, KickedEnable};
+///
+/// fn driver<E: KickedEnable, W: InputPin>(enable: E, ready: W) -> Amplifier<E, W> {
+///     Amplifier::new(enable, ready)
+/// }
+/// ```
+///
+/// An output that is no one-shot does not compile:
+///
+/// ```compile_fail,E0277
+/// use embedded_hal::digital::{InputPin, OutputPin};
+/// use frixel_drivers::amplifier::{Amplifier, KickedEnable};
+///
+/// fn driver<E: OutputPin, W: InputPin>(enable: E, ready: W) -> Amplifier<E, W> {
+///     Amplifier::new(enable, ready)
+/// }
+/// ```
 #[derive(Debug)]
 pub struct Amplifier<E, W> {
     enable: E,
     ready: W,
 }
 
-impl<E: OutputPin, W: InputPin> Amplifier<E, W> {
-    /// The driver of an amplifier that is enabled while `enable` is high, and holds `ready` high while it can drive: a
-    /// disconnected wire reads as a fault.
-    ///
-    /// `enable` may be a one-shot that goes low by itself unless [`Self::set_enabled`] is called again.
+impl<E, W> Amplifier<E, W>
+where
+    E: KickedEnable,
+    W: InputPin,
+{
+    /// The driver of an amplifier that holds `ready` high while it can drive: a disconnected wire reads as a fault.
     pub const fn new(enable: E, ready: W) -> Self {
         Self { enable, ready }
     }
 
-    /// Enables or disables the output. Returns `false` when the pin could not be set.
+    /// Enables the output for the life of the one-shot, or disables it at once.
     #[inline]
-    pub fn set_enabled(&mut self, enabled: bool) -> bool {
-        let set = if enabled { self.enable.set_high() } else { self.enable.set_low() };
-        set.is_ok()
+    pub fn set_enabled(&mut self, enabled: bool) {
+        if enabled { self.enable.kick() } else { self.enable.disable() }
     }
 
     /// Whether the amplifier reports that it cannot drive. A pin that cannot be read counts as a fault.
     #[inline]
     pub fn has_fault(&mut self) -> bool {
         !matches!(self.ready.is_high(), Ok(true))
-    }
-
-    /// The enable pin.
-    pub fn enable_mut(&mut self) -> &mut E {
-        &mut self.enable
     }
 }

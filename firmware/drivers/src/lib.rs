@@ -8,14 +8,15 @@
 //! | [`bus_handover`] | sharing the DAC's bus with the tick | |
 //! | [`zforce`] | optical touch frame | asynchronous `I2c` and `DelayNs`, `InputPin` |
 //! | [`polling`] | futures without an executor | |
-//! | [`amplifier`] | enable and ready lines of the amplifier | `OutputPin`, `InputPin` |
+//! | [`amplifier`] | enable and ready lines of the amplifier | `KickedEnable`, `InputPin` |
 //! | [`monitor`] | the amplifier's monitor output behind an ADC | |
 //! | [`arm_switch`] | switch that a person holds | `InputPin` |
 //! | [`state_light`] | light that shows the state | `OutputPin` |
 //! | [`serial`] | bytes between port and session | `embedded-io` |
 //! | [`ring`] | reading a ring that DMA writes | |
 //! | [`fault_record`] | the last fault, kept in RAM over a reset | |
-//! | [`reset`] | reset cause of the STM32G4 | |
+//! | [`i2c_bus_clear`] | freeing an I2C bus whose data line is held low | `OutputPin`, `InputPin`, `DelayNs` |
+//! | [`stm32g4`] | meaning of registers of the STM32G4 | |
 //!
 //! With the feature `defmt`, the errors implement `defmt::Format`.
 #![cfg_attr(not(test), no_std)]
@@ -26,10 +27,11 @@ pub mod amplifier;
 pub mod arm_switch;
 pub mod bus_handover;
 pub mod fault_record;
+pub mod i2c_bus_clear;
 pub mod monitor;
 pub mod polling;
-pub mod reset;
 pub mod ring;
 pub mod serial;
 pub mod state_light;
+pub mod stm32g4;
 pub mod zforce;

@@ -3,19 +3,20 @@
 use embedded_hal::digital::OutputPin;
 use frixel_wire::fault::State;
 
-/// Half a period of the blinking: 1/8 s at 40 kHz.
-const BLINK_TICKS: u32 = 5_000;
+/// Changes a second while it blinks.
+const BLINK_HZ: u32 = 8;
 
 /// A light that is off while the board is disarmed, on while it is armed or plays, and blinks while a fault is latched.
 #[derive(Debug)]
 pub struct StateLight<P> {
     pin: P,
+    blink_ticks: u32,
 }
 
 impl<P: OutputPin> StateLight<P> {
-    /// A light that is on while `pin` is high.
-    pub const fn new(pin: P) -> Self {
-        Self { pin }
+    /// A light that is on while `pin` is high, of a board with `tick_hz` ticks a second.
+    pub const fn new(pin: P, tick_hz: u32) -> Self {
+        Self { pin, blink_ticks: tick_hz / BLINK_HZ }
     }
 
     /// Shows a state. Ignores a pin that cannot be set: nothing depends on the light.
@@ -23,7 +24,9 @@ impl<P: OutputPin> StateLight<P> {
         let on = match state {
             State::Disarmed => false,
             State::Armed | State::Active => true,
-            State::Faulted => (now_tick / BLINK_TICKS).is_multiple_of(2),
+            State::Faulted => {
+                now_tick.checked_div(self.blink_ticks).is_some_and(|half_period| half_period.is_multiple_of(2))
+            }
         };
         let _ = if on { self.pin.set_high() } else { self.pin.set_low() };
     }

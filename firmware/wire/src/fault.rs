@@ -73,8 +73,8 @@ pub enum Fault {
     Watchdog,
     /// The arm switch was released while armed or playing.
     ArmSwitch,
-    /// The configuration read back from the DAC before arming was wrong. Since protocol 1.3; the fault's detail is the
-    /// control register as read.
+    /// The configuration read back from the DAC before arming or playing was wrong. Since protocol 1.3; the fault's
+    /// detail is the control register as read.
     Dac,
     /// A fault of newer firmware that this crate does not know, by number.
     Other(u8),
@@ -153,7 +153,7 @@ impl fmt::Display for Fault {
                  and hold it, and arm again"
             }
             Self::Dac => {
-                "the DAC did not answer with its configuration before arming; check its supplies and wires, \
+                "the DAC did not answer with its configuration before arming or playing; check its supplies and wires, \
                  clear the fault and arm again"
             }
             Self::Other(_) => "unknown to this version; update the frixel command",

@@ -5,6 +5,7 @@ use std::convert::Infallible;
 use std::rc::Rc;
 
 use embedded_hal::delay::DelayNs;
+use embedded_hal::digital::{self, OutputPin};
 use embedded_hal::spi::{ErrorType, Operation, SpiDevice};
 
 /// Internal reference, in volts.
@@ -17,6 +18,14 @@ const BYTE_NS: u64 = 1_500;
 /// Nanoseconds after a software reset in which the chip ignores frames. Assumed: the data sheet gives no time.
 const RESET_NS: u64 = 10_000;
 
+/// Clocks of a frame. Of more, the last 24 count; with fewer, the chip ignores the frame.
+const FRAME_CLOCKS: u32 = 24;
+/// Nanoseconds in which software sets a pin: a few instructions at 16 MHz, the processor's clock after a reset.
+const PIN_NS: u64 = 500;
+/// Nanoseconds in which the output settles. The data sheet's first page says 7.5 us, typical, for selected ranges; its
+/// table with the longest time is unread, so this is twice that.
+const SETTLING_NS: u64 = 15_000;
+
 const SHORT_CIRCUIT: u16 = 1 << 12;
 const BROWN_OUT: u16 = 1 << 11;
 const WRITABLE: u16 = 0x07ff;
@@ -28,6 +37,11 @@ struct Chip {
     has_sdo: bool,
     is_shorted: bool,
     clear_is_high: bool,
+    sync_is_high: bool,
+    reset_is_high: bool,
+    /// The last bits that were shifted in while SYNC was low, and their number.
+    shifted_in: u32,
+    clocks: u32,
     /// The control register, status bits included.
     control: u16,
     input: u16,
@@ -38,6 +52,15 @@ struct Chip {
     shifting_out: [u8; 3],
     now_ns: u64,
     ready_at_ns: u64,
+    /// When the output last began to change.
+    changed_at_ns: u64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Input {
+    Sync,
+    Clear,
+    Reset,
 }
 
 /// A DAC on a board.
@@ -47,6 +70,13 @@ pub struct Ad5761rChip(Rc<RefCell<Chip>>);
 /// The chip's SPI side: SCLK, SDI, SDO and SYNC.
 #[derive(Debug)]
 pub struct ChipSpi(Rc<RefCell<Chip>>);
+
+/// An input of the chip, as a pin that software sets.
+#[derive(Debug)]
+pub struct ChipPin {
+    chip: Rc<RefCell<Chip>>,
+    input: Input,
+}
 
 /// A delay that advances the chip's virtual time.
 #[derive(Debug)]
@@ -62,6 +92,10 @@ impl Ad5761rChip {
             has_sdo: true,
             is_shorted: false,
             clear_is_high: true,
+            sync_is_high: true,
+            reset_is_high: true,
+            shifted_in: 0,
+            clocks: 0,
             control: 0,
             input: 0,
             output: 0,
@@ -69,6 +103,7 @@ impl Ad5761rChip {
             shifting_out: [0; 3],
             now_ns: 0,
             ready_at_ns: 0,
+            changed_at_ns: 0,
         };
         chip.reset();
         Self(Rc::new(RefCell::new(chip)))
@@ -77,6 +112,16 @@ impl Ad5761rChip {
     /// The bus for a driver.
     pub fn spi(&self) -> ChipSpi {
         ChipSpi(Rc::clone(&self.0))
+    }
+
+    /// SYNC, as a pin that software sets. Each change takes some of the chip's virtual time.
+    pub fn sync_pin(&self) -> ChipPin {
+        ChipPin { chip: Rc::clone(&self.0), input: Input::Sync }
+    }
+
+    /// CLEAR, likewise.
+    pub fn clear_pin(&self) -> ChipPin {
+        ChipPin { chip: Rc::clone(&self.0), input: Input::Clear }
     }
 
     /// A delay that advances the chip's virtual time.
@@ -106,14 +151,38 @@ impl Ad5761rChip {
         self.0.borrow_mut().has_sdo = connected;
     }
 
-    /// Sets the level of CLEAR. Its falling edge sets the DAC register to the value that the control register selects.
+    /// Sets the level of CLEAR. Its falling edge, and only the edge, sets the DAC register to the value that the
+    /// control register selects.
     pub fn set_clear(&self, high: bool) {
-        let mut chip = self.0.borrow_mut();
-        if chip.clear_is_high && !high {
-            let value = chip.control >> 9;
-            chip.output = chip.scale_point(value);
-        }
-        chip.clear_is_high = high;
+        self.0.borrow_mut().set(Input::Clear, high);
+    }
+
+    /// Sets the level of SYNC. Its rising edge executes the frame.
+    pub fn set_sync(&self, high: bool) {
+        self.0.borrow_mut().set(Input::Sync, high);
+    }
+
+    /// Sets the level of RESET: while it is low, the registers have their values after power-on and the output is
+    /// clamped to ground, whatever the other inputs do.
+    pub fn set_reset(&self, high: bool) {
+        self.0.borrow_mut().set(Input::Reset, high);
+    }
+
+    /// A falling edge of SCLK, at which the chip takes `bit` from SDI.
+    pub fn clock(&self, bit: bool) {
+        let _ = self.0.borrow_mut().clock(bit);
+    }
+
+    /// The chip's virtual time, in nanoseconds.
+    #[must_use]
+    pub fn now_ns(&self) -> u64 {
+        self.0.borrow().now_ns
+    }
+
+    /// When the output has settled after its last change, in nanoseconds of the chip's virtual time.
+    #[must_use]
+    pub fn settled_at_ns(&self) -> u64 {
+        self.0.borrow().changed_at_ns + SETTLING_NS
     }
 
     /// Volts on the output.
@@ -162,6 +231,60 @@ impl Chip {
         REFERENCE_V * (m * f64::from(self.coded(self.output)) / 65_536.0 - c)
     }
 
+    /// Sets an input and notes when the output changes.
+    fn set(&mut self, input: Input, high: bool) {
+        let before_v = self.output_v();
+        match input {
+            Input::Sync => self.set_sync(high),
+            Input::Clear => self.set_clear(high),
+            Input::Reset => {
+                self.reset_is_high = high;
+                self.reset();
+            }
+        }
+        if (self.output_v() - before_v).abs() > 0.0 {
+            self.changed_at_ns = self.now_ns;
+        }
+    }
+
+    fn set_clear(&mut self, high: bool) {
+        if self.clear_is_high && !high {
+            self.output = self.scale_point(self.control >> 9);
+        }
+        self.clear_is_high = high;
+    }
+
+    fn set_sync(&mut self, high: bool) {
+        if self.sync_is_high && !high {
+            self.clocks = 0;
+        } else if !self.sync_is_high && high && self.clocks >= FRAME_CLOCKS {
+            let [_, frame @ ..] = self.shifted_in.to_be_bytes();
+            if self.is_supplied && self.reset_is_high && self.now_ns >= self.ready_at_ns {
+                self.execute(frame);
+            }
+        }
+        self.sync_is_high = high;
+    }
+
+    /// Shifts a bit in, and returns the bit on SDO. Does nothing while SYNC is high.
+    fn clock(&mut self, bit: bool) -> bool {
+        if self.sync_is_high {
+            return true;
+        }
+        let [first, second, third] = self.shifting_out;
+        let outgoing = u32::from_be_bytes([0, first, second, third]);
+        let level = self.clocks < FRAME_CLOCKS && outgoing >> (FRAME_CLOCKS - 1 - self.clocks) & 1 != 0;
+        self.shifted_in = self.shifted_in << 1 | u32::from(bit);
+        self.clocks += 1;
+        !self.has_sdo || self.is_supplied && level
+    }
+
+    /// Shifts a byte in, and returns the byte on SDO.
+    fn exchange(&mut self, byte: u8) -> u8 {
+        self.now_ns += BYTE_NS;
+        (0..8).rev().fold(0, |received, place| received << 1 | u8::from(self.clock(byte >> place & 1 != 0)))
+    }
+
     /// Executes a frame at the rising edge of SYNC.
     fn execute(&mut self, frame: [u8; 3]) {
         let [address, high, low] = frame;
@@ -203,24 +326,15 @@ impl ErrorType for ChipSpi {
 impl SpiDevice for ChipSpi {
     fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Infallible> {
         let mut chip = self.0.borrow_mut();
-        let mut received = Vec::new();
-        let outgoing = if chip.is_supplied { chip.shifting_out } else { [0; 3] };
-        let mut exchange = |chip: &mut Chip, byte: u8| {
-            chip.now_ns += BYTE_NS;
-            let answer = outgoing.get(received.len()).copied().unwrap_or_default();
-            received.push(byte);
-            if chip.has_sdo { answer } else { 0xff }
-        };
+        chip.set(Input::Sync, false);
         for operation in operations {
             match operation {
-                Operation::Read(bytes) => bytes.iter_mut().for_each(|byte| *byte = exchange(&mut chip, 0)),
-                Operation::Write(bytes) => bytes.iter().for_each(|byte| _ = exchange(&mut chip, *byte)),
-                Operation::TransferInPlace(bytes) => {
-                    bytes.iter_mut().for_each(|byte| *byte = exchange(&mut chip, *byte));
-                }
+                Operation::Read(bytes) => bytes.iter_mut().for_each(|byte| *byte = chip.exchange(0)),
+                Operation::Write(bytes) => bytes.iter().for_each(|byte| _ = chip.exchange(*byte)),
+                Operation::TransferInPlace(bytes) => bytes.iter_mut().for_each(|byte| *byte = chip.exchange(*byte)),
                 Operation::Transfer(read, write) => {
                     for index in 0..read.len().max(write.len()) {
-                        let answer = exchange(&mut chip, write.get(index).copied().unwrap_or_default());
+                        let answer = chip.exchange(write.get(index).copied().unwrap_or_default());
                         if let Some(byte) = read.get_mut(index) {
                             *byte = answer;
                         }
@@ -229,12 +343,32 @@ impl SpiDevice for ChipSpi {
                 Operation::DelayNs(ns) => chip.now_ns += u64::from(*ns),
             }
         }
-        // Only the last 24 bits count; a frame that is too short is ignored.
-        let is_ready = chip.is_supplied && chip.now_ns >= chip.ready_at_ns;
-        if let Some(frame) = received.last_chunk::<3>().filter(|_| is_ready) {
-            chip.execute(*frame);
-        }
+        chip.set(Input::Sync, true);
         Ok(())
+    }
+}
+
+impl digital::ErrorType for ChipPin {
+    type Error = Infallible;
+}
+
+impl OutputPin for ChipPin {
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        self.set(false);
+        Ok(())
+    }
+
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        self.set(true);
+        Ok(())
+    }
+}
+
+impl ChipPin {
+    fn set(&mut self, high: bool) {
+        let mut chip = self.chip.borrow_mut();
+        chip.now_ns += PIN_NS;
+        chip.set(self.input, high);
     }
 }
 

@@ -2,13 +2,15 @@
 //!
 //! [`Ad5761r`] configures and checks the chip over `embedded-hal`. A board that updates the output at a fixed rate
 //! sends [`output`] frames by its own hardware meanwhile; driver and tick share the bus in turns
-//! ([`BusHandover`](crate::bus_handover::BusHandover)).
+//! ([`BusHandover`](crate::bus_handover::BusHandover)). [`zero_output`] is for panics, faults and the first
+//! instructions after a reset.
 
 mod frame;
 
 use core::fmt;
 
 use embedded_hal::delay::DelayNs;
+use embedded_hal::digital::OutputPin;
 use embedded_hal::spi::SpiDevice;
 use frixel_wire::dac_code::DacCode;
 
@@ -77,6 +79,25 @@ impl<E> From<E> for Error<E> {
     fn from(error: E) -> Self {
         Self::Spi(error)
     }
+}
+
+/// Sets the output to zero from any state, even in the middle of a frame: for panics, faults, and as the first thing
+/// after every reset. Returns with CLEAR low.
+///
+/// The order of the edges matters. The amplifier is disabled first. Then SYNC rises, at which the DAC executes the
+/// frame that it has received, or discards one that is cut short; after that, clocks that are still under way have no
+/// effect. The falling edge of CLEAR comes last, because only the edge sets the DAC to zero: a frame that is executed
+/// after it puts its code out (data sheet, "Pin configuration and function descriptions", unread). CLEAR is set high
+/// before, because it may be low already, as after a reset. The times that the chip needs between these edges are
+/// unread (data sheet, "Timing characteristics"); setting a pin takes 70 ns or more at 170 MHz.
+///
+/// The pins' former functions must no longer drive them once they are set. A pin that reports an error is passed over:
+/// the others are set all the same.
+pub fn zero_output(enable: &mut impl OutputPin, sync: &mut impl OutputPin, clear: &mut impl OutputPin) {
+    let _ = enable.set_low();
+    let _ = sync.set_high();
+    let _ = clear.set_high();
+    let _ = clear.set_low();
 }
 
 impl<S: SpiDevice, D: DelayNs> Ad5761r<S, D> {

@@ -1,0 +1,113 @@
+//! What registers of the STM32G4 mean: values in, values out, so that tests can hold it without the processor. RM0440
+//! is its reference manual.
+
+use frixel_wire::hello::ResetCause;
+
+// Flags of RCC_CSR (RM0440, section 7.4.29).
+const OPTION_BYTES: u32 = 1 << 25;
+const PIN: u32 = 1 << 26;
+const BROWN_OUT: u32 = 1 << 27;
+const SOFTWARE: u32 = 1 << 28;
+const INDEPENDENT_WATCHDOG: u32 = 1 << 29;
+const WINDOW_WATCHDOG: u32 = 1 << 30;
+
+/// The cause of a reset from the flags of `RCC_CSR`. Every reset sets the flag of the pin, and power-on sets that of a
+/// brown-out: it was a brown-out if RAM has kept its content (`ram_survived`).
+pub const fn reset_cause(rcc_csr: u32, ram_survived: bool) -> ResetCause {
+    if rcc_csr & (INDEPENDENT_WATCHDOG | WINDOW_WATCHDOG) != 0 {
+        ResetCause::Watchdog
+    } else if rcc_csr & (SOFTWARE | OPTION_BYTES) != 0 {
+        ResetCause::Software
+    } else if rcc_csr & BROWN_OUT != 0 {
+        if ram_survived { ResetCause::BrownOut } else { ResetCause::PowerOn }
+    } else if rcc_csr & PIN != 0 {
+        ResetCause::Pin
+    } else {
+        ResetCause::PowerOn
+    }
+}
+
+// Flags of FLASH_ECCR (RM0440, "Flash ECC register (FLASH_ECCR)"; bit positions from stm32-metapac).
+const ECC_IN_BANK_2: u32 = 1 << 21;
+const ECC_NOT_CORRECTED: u32 = 1 << 31;
+
+/// Whether a non-maskable interrupt reports an error that a read of bank 2, which holds the stores, has met, as when
+/// power failed while the word was written: not a reason to reset, because every start reads the stores.
+///
+/// While a store is read (`reading_store`), the bank that `FLASH_ECCR` states does not matter: the register's content
+/// may be corrupt after a reset or a loss of power during programming, which is when such words exist (errata sheet
+/// ES0430, on `FLASH_ECCR` after a reset or power-down during programming or erasing, unread).
+///
+/// So an error of the image's own flash in that time counts as the store's, too: the read fails, and what the processor
+/// has fetched is left to the fault handlers.
+pub const fn is_store_ecc_error(flash_eccr: u32, reading_store: bool) -> bool {
+    flash_eccr & ECC_NOT_CORRECTED != 0 && (reading_store || flash_eccr & ECC_IN_BANK_2 != 0)
+}
+
+// Fields of FLASH_OPTR (RM0440, "Flash option register (FLASH_OPTR)"; bit positions from stm32-metapac).
+const BROWN_OUT_LEVEL: u32 = 0b111 << 8;
+const BROWN_OUT_LEVEL_4: u32 = 4 << 8;
+const SOFTWARE_WATCHDOG: u32 = 1 << 16;
+const NO_RAM_PARITY: u32 = 1 << 24;
+const RESET_PIN_MODE: u32 = 0b11 << 28;
+const RESET_PIN_IN_AND_OUT: u32 = 0b11 << 28;
+
+/// What differs in the option bytes, as `FLASH_OPTR` shows them, from what `docs/hardware.md` asks for.
+pub fn option_byte_warnings(flash_optr: u32) -> impl Iterator<Item = &'static str> {
+    let checks = [
+        (flash_optr & BROWN_OUT_LEVEL == BROWN_OUT_LEVEL_4, "BOR_LEV is not 4: below 2.8 V the processor runs on"),
+        (flash_optr & SOFTWARE_WATCHDOG == 0, "IWDG_SW is 1: no watchdog runs until the firmware has started it"),
+        (flash_optr & NO_RAM_PARITY != 0, "SRAM_PE is 0: the fault record is read before it is written, and faults"),
+        (flash_optr & RESET_PIN_MODE == RESET_PIN_IN_AND_OUT, "NRST_MODE is not 3: NRST does not show every reset"),
+    ];
+    checks.into_iter().filter(|(is_right, _)| !is_right).map(|(_, warning)| warning)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_pin_is_the_cause_only_when_there_is_no_other() {
+        assert_eq!(reset_cause(PIN, true), ResetCause::Pin);
+        assert_eq!(reset_cause(PIN | SOFTWARE, true), ResetCause::Software);
+        assert_eq!(reset_cause(PIN | INDEPENDENT_WATCHDOG, true), ResetCause::Watchdog);
+        assert_eq!(reset_cause(PIN | BROWN_OUT, false), ResetCause::PowerOn);
+        assert_eq!(reset_cause(PIN | BROWN_OUT, true), ResetCause::BrownOut);
+        assert_eq!(reset_cause(0, false), ResetCause::PowerOn);
+    }
+
+    #[test]
+    fn an_ecc_error_during_a_read_of_the_store_is_the_stores_whatever_the_bank_bit_says() {
+        for noise in [0, u32::MAX >> 1] {
+            for bank in [0, ECC_IN_BANK_2] {
+                let eccr = noise & !ECC_IN_BANK_2 | bank;
+                assert!(is_store_ecc_error(eccr | ECC_NOT_CORRECTED, true), "{eccr:#010x}");
+                assert!(!is_store_ecc_error(eccr, true), "{eccr:#010x}: an error that was corrected, or none");
+                assert_eq!(is_store_ecc_error(eccr | ECC_NOT_CORRECTED, false), bank != 0, "{eccr:#010x}");
+            }
+        }
+    }
+
+    #[test]
+    fn each_option_byte_that_differs_is_a_warning() {
+        let right = BROWN_OUT_LEVEL_4 | NO_RAM_PARITY | RESET_PIN_IN_AND_OUT;
+        assert_eq!(option_byte_warnings(right).count(), 0);
+        for (differs, warning) in [
+            (0b001 << 8, "BOR_LEV"),
+            (SOFTWARE_WATCHDOG, "IWDG_SW"),
+            (NO_RAM_PARITY, "SRAM_PE"),
+            (0b10 << 28, "NRST_MODE"),
+        ] {
+            let warnings: Vec<_> = option_byte_warnings(right ^ differs).collect();
+            assert!(warnings.len() == 1 && warnings[0].starts_with(warning), "{warnings:?}");
+        }
+    }
+
+    /// The factory's option bytes of the STM32G474 (RM0440, "Option bytes": `0xffef_f8aa`, unread).
+    #[test]
+    fn the_factorys_option_bytes_lack_brown_out_level_and_watchdog() {
+        let warnings: Vec<_> = option_byte_warnings(0xffef_f8aa).collect();
+        assert!(matches!(warnings[..], [level, watchdog] if level.starts_with("BOR") && watchdog.starts_with("IWDG")));
+    }
+}

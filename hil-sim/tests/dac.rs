@@ -1,0 +1,387 @@
+//! The driver of the DAC against the chip's model, and the order of edges that puts the DAC at zero from any state.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
+
+use std::cell::Cell;
+use std::convert::Infallible;
+
+use embedded_hal::delay::DelayNs;
+use embedded_hal::digital::{ErrorType, OutputPin};
+use embedded_hal::spi::SpiDevice;
+use frixel_drivers::ad5761r::{self, Ad5761r};
+use frixel_drivers::bus_handover::BusHandover;
+use frixel_hil_sim::chips::{Ad5761rChip, ChipDelay, ChipSpi};
+use frixel_wire::dac_code::DacCode;
+
+/// A step of the DAC, in volts.
+const STEP_V: f64 = 10.0 / 32_768.0;
+
+fn dac(chip: &Ad5761rChip) -> Ad5761r<ChipSpi, ChipDelay> {
+    Ad5761r::new(chip.spi(), chip.delay())
+}
+
+/// A frame that the tick sends by hardware of its own.
+fn tick_frame(chip: &Ad5761rChip, code: i16) {
+    chip.spi().write(&ad5761r::output(DacCode::from_bits(code))).unwrap();
+}
+
+#[test]
+fn codes_are_volts_once_the_dac_is_prepared() {
+    let chip = Ad5761rChip::new();
+    tick_frame(&chip, 16_384);
+    assert!(chip.output_v().abs() < f64::EPSILON, "clamped until it is configured");
+    let mut dac = dac(&chip);
+    dac.prepare().unwrap();
+    assert!(chip.output_v().abs() < f64::EPSILON);
+    for code in [i16::MIN, -i16::MAX, -16_384, -1, 0, 1, 16_384, i16::MAX] {
+        tick_frame(&chip, code);
+        assert!((chip.output_v() - f64::from(code) * STEP_V).abs() < 1e-9, "{code}: {} V", chip.output_v());
+        dac.check().unwrap();
+    }
+}
+
+#[test]
+fn preparing_sets_the_output_to_zero() {
+    let chip = Ad5761rChip::new();
+    let mut dac = dac(&chip);
+    dac.prepare().unwrap();
+    tick_frame(&chip, 30_000);
+    dac.prepare().unwrap();
+    assert!(chip.output_v().abs() < f64::EPSILON);
+}
+
+#[test]
+fn the_falling_edge_of_clear_sets_the_output_to_zero() {
+    let chip = Ad5761rChip::new();
+    dac(&chip).prepare().unwrap();
+    tick_frame(&chip, 30_000);
+    chip.set_clear(false);
+    assert!(chip.output_v().abs() < f64::EPSILON);
+}
+
+/// Without configuration, zero in two's complement would be minus full scale in straight binary.
+#[test]
+fn a_dac_that_lost_its_configuration_is_noticed_and_configured_again() {
+    let chip = Ad5761rChip::new();
+    let mut dac = dac(&chip);
+    dac.prepare().unwrap();
+    chip.supply(false);
+    chip.supply(true);
+    assert!(matches!(dac.check(), Err(ad5761r::Error::Configuration(_))));
+    tick_frame(&chip, 16_384);
+    assert!(chip.output_v().abs() < f64::EPSILON);
+    dac.prepare().unwrap();
+    tick_frame(&chip, 16_384);
+    assert!((chip.output_v() - 5.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_dac_that_does_not_answer_is_an_error() {
+    let chip = Ad5761rChip::new();
+    chip.supply(false);
+    let error = dac(&chip).prepare().unwrap_err();
+    assert!(matches!(error, ad5761r::Error::Configuration(_)), "{error}");
+    chip.supply(true);
+    chip.connect_sdo(false);
+    let error = dac(&chip).prepare().unwrap_err();
+    assert_eq!(error.detail(), 0xffff);
+    chip.connect_sdo(true);
+    dac(&chip).prepare().unwrap();
+}
+
+#[test]
+fn a_brown_out_is_reported_until_the_dac_is_prepared_again() {
+    let chip = Ad5761rChip::new();
+    let mut dac = dac(&chip);
+    dac.prepare().unwrap();
+    chip.brown_out();
+    assert!(matches!(dac.check(), Err(ad5761r::Error::BrownOut(_))));
+    dac.prepare().unwrap();
+}
+
+#[test]
+fn a_short_circuit_is_reported_as_long_as_it_lasts() {
+    let chip = Ad5761rChip::new();
+    let mut dac = dac(&chip);
+    chip.short_circuit(true);
+    assert!(matches!(dac.prepare(), Err(ad5761r::Error::ShortCircuit(_))));
+    chip.short_circuit(false);
+    dac.prepare().unwrap();
+}
+
+/// Time from a panic until the DAC must be at zero.
+const ZERO_WITHIN_NS: u64 = 30_000;
+
+/// The amplifier's enable.
+struct Wire(bool);
+
+impl ErrorType for Wire {
+    type Error = Infallible;
+}
+
+impl OutputPin for Wire {
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        self.0 = false;
+        Ok(())
+    }
+
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        self.0 = true;
+        Ok(())
+    }
+}
+
+/// What happens on the DAC's wires in a period of the tick.
+#[derive(Clone, Copy, Debug)]
+enum Edge {
+    SyncLow,
+    Clock(bool),
+    /// The timer's edge; it does not reach the wire once software has taken the pin.
+    SyncHigh,
+}
+
+/// The edges of a period of 25 us with a frame, with their times: the tick begins the frame after 5 us at 21.25 MHz,
+/// and the timer latches it after 24.1 us. DMA sends the clocks, whatever the processor does meanwhile.
+fn period(code: i16) -> Vec<(u64, Edge)> {
+    let [address, high, low] = ad5761r::output(DacCode::from_bits(code));
+    let bits = u32::from_be_bytes([0, address, high, low]);
+    let mut edges = vec![(5_000, Edge::SyncLow)];
+    edges.extend((0..24).map(|clock| (5_100 + 47 * clock, Edge::Clock(bits >> (23 - clock) & 1 != 0))));
+    edges.push((24_118, Edge::SyncHigh));
+    edges
+}
+
+fn apply(chip: &Ad5761rChip, edge: Edge) {
+    match edge {
+        Edge::SyncLow => chip.set_sync(false),
+        Edge::Clock(bit) => chip.clock(bit),
+        Edge::SyncHigh => chip.set_sync(true),
+    }
+}
+
+fn wait_until(chip: &Ad5761rChip, at_ns: u64) {
+    chip.delay().delay_ns(u32::try_from(at_ns.saturating_sub(chip.now_ns())).unwrap());
+}
+
+/// A prepared DAC that has put a code out, in the middle of a frame with the next code: the first `edges_before` edges
+/// of a period have occurred, and `part` of the time until the following one has passed. Returns the edges to come,
+/// too.
+fn in_mid_frame(edges_before: usize, part: f64) -> (Ad5761rChip, Vec<(u64, Edge)>) {
+    let chip = Ad5761rChip::new();
+    dac(&chip).prepare().unwrap();
+    tick_frame(&chip, 30_000);
+    let from_ns = chip.now_ns();
+    let mut edges: Vec<_> = period(-30_000).into_iter().map(|(at_ns, edge)| (from_ns + at_ns, edge)).collect();
+    let to_come = edges.split_off(edges_before);
+    for (at_ns, edge) in edges {
+        wait_until(&chip, at_ns);
+        apply(&chip, edge);
+    }
+    let next_ns = to_come.first().map_or(from_ns + 25_000, |(at_ns, _)| *at_ns);
+    wait_until(&chip, chip.now_ns() + ((next_ns - chip.now_ns()) as f64 * part) as u64);
+    (chip, to_come)
+}
+
+/// Every phase of a period: before and after each edge, and between.
+fn phases() -> impl Iterator<Item = (usize, f64)> {
+    (0..=period(0).len()).flat_map(|edges_before| [0.0, 0.5, 1.0].map(|part| (edges_before, part)))
+}
+
+/// The clocks that DMA still sends, while software has the pins.
+fn send_rest(chip: &Ad5761rChip, to_come: &[(u64, Edge)]) {
+    for (at_ns, edge) in to_come {
+        if matches!(edge, Edge::Clock(_)) {
+            wait_until(chip, *at_ns);
+            apply(chip, *edge);
+        }
+    }
+}
+
+#[test]
+fn a_panic_at_any_phase_of_a_frame_puts_the_dac_at_zero_within_30_us() {
+    for phase in phases() {
+        let (chip, to_come) = in_mid_frame(phase.0, phase.1);
+        let (from_ns, from_v) = (chip.now_ns(), chip.output_v());
+        assert!(from_v.abs() > 9.0, "{phase:?}");
+        let mut enable = Wire(true);
+        ad5761r::zero_output(&mut enable, &mut chip.sync_pin(), &mut chip.clear_pin());
+        send_rest(&chip, &to_come);
+        wait_until(&chip, from_ns + 100_000);
+        assert!(chip.output_v().abs() < f64::EPSILON, "{phase:?}: {} V", chip.output_v());
+        assert!(chip.settled_at_ns() - from_ns <= ZERO_WITHIN_NS, "{phase:?}: {} ns", chip.settled_at_ns() - from_ns);
+        assert!(!enable.0);
+    }
+}
+
+/// The amplifier is disabled before the frame in flight is put out.
+#[test]
+fn the_amplifier_is_disabled_before_the_dac_changes() {
+    struct Enable<'a>(&'a Ad5761rChip, Option<(u64, f64)>);
+    impl ErrorType for Enable<'_> {
+        type Error = Infallible;
+    }
+    impl OutputPin for Enable<'_> {
+        fn set_low(&mut self) -> Result<(), Infallible> {
+            self.1 = Some((self.0.now_ns(), self.0.output_v()));
+            Ok(())
+        }
+        fn set_high(&mut self) -> Result<(), Infallible> {
+            panic!("enabled")
+        }
+    }
+    for phase in phases() {
+        let (chip, _) = in_mid_frame(phase.0, phase.1);
+        let at_panic = (chip.now_ns(), chip.output_v());
+        let mut enable = Enable(&chip, None);
+        ad5761r::zero_output(&mut enable, &mut chip.sync_pin(), &mut chip.clear_pin());
+        assert_eq!(enable.1, Some(at_panic), "{phase:?}");
+    }
+}
+
+/// What [`ad5761r::zero_output`] is for: a complete frame is latched when SYNC rises after CLEAR has fallen.
+#[test]
+fn a_frame_that_is_latched_after_clear_puts_its_code_out() {
+    let stays_at_zero = |edges_before| {
+        let (chip, _) = in_mid_frame(edges_before, 0.5);
+        chip.set_clear(false);
+        assert!(chip.output_v().abs() < f64::EPSILON);
+        chip.set_sync(true);
+        chip.output_v().abs() < f64::EPSILON
+    };
+    assert_eq!((0..=25).filter(|edges| !stays_at_zero(*edges)).collect::<Vec<_>>(), [25], "SYNC low and 24 clocks");
+}
+
+/// In reset the pins float: one resistor pulls SYNC up, another CLEAR down, whichever comes first.
+#[test]
+fn a_reset_at_any_phase_of_a_frame_leaves_the_dac_at_zero_once_the_board_starts() {
+    let mut kept_a_code = 0;
+    for phase in phases() {
+        for clear_first in [false, true] {
+            let (chip, to_come) = in_mid_frame(phase.0, phase.1);
+            if clear_first {
+                chip.set_clear(false);
+                chip.set_sync(true);
+            } else {
+                chip.set_sync(true);
+                chip.set_clear(false);
+            }
+            kept_a_code += usize::from(chip.output_v().abs() > 9.0);
+            // The clock's wire floats, too.
+            send_rest(&chip, &to_come);
+            let from_ns = chip.now_ns();
+            ad5761r::zero_output(&mut Wire(false), &mut chip.sync_pin(), &mut chip.clear_pin());
+            assert!(chip.output_v().abs() < f64::EPSILON, "{phase:?}, {clear_first}: {} V", chip.output_v());
+            assert!(chip.settled_at_ns() <= from_ns + ZERO_WITHIN_NS, "{phase:?}, {clear_first}");
+            dac(&chip).prepare().unwrap();
+            assert!(chip.output_v().abs() < f64::EPSILON);
+        }
+    }
+    assert!(kept_a_code > 0, "the pull-downs alone do not put the DAC at zero");
+}
+
+/// RESET of the DAC is tied to the processor's reset.
+#[test]
+fn a_reset_at_any_phase_of_a_frame_clamps_a_dac_that_is_reset_with_the_processor() {
+    for phase in phases() {
+        let (chip, to_come) = in_mid_frame(phase.0, phase.1);
+        chip.set_reset(false);
+        chip.set_clear(false);
+        chip.set_sync(true);
+        send_rest(&chip, &to_come);
+        chip.set_reset(true);
+        assert!(chip.output_v().abs() < f64::EPSILON, "{phase:?}: {} V", chip.output_v());
+    }
+}
+
+/// The one-shot has let CLEAR fall before the panic, so that the panic must make an edge.
+#[test]
+fn a_dac_whose_clear_is_low_already_is_set_to_zero() {
+    let chip = Ad5761rChip::new();
+    dac(&chip).prepare().unwrap();
+    chip.set_clear(false);
+    tick_frame(&chip, 30_000);
+    assert!(chip.output_v() > 9.0);
+    ad5761r::zero_output(&mut Wire(true), &mut chip.sync_pin(), &mut chip.clear_pin());
+    assert!(chip.output_v().abs() < f64::EPSILON);
+}
+
+#[test]
+fn a_frame_that_is_cut_short_is_ignored_and_of_a_longer_one_the_last_24_bits_count() {
+    let code = |bits: &[bool]| {
+        let chip = Ad5761rChip::new();
+        dac(&chip).prepare().unwrap();
+        chip.set_sync(false);
+        for bit in bits {
+            chip.clock(*bit);
+        }
+        chip.set_sync(true);
+        chip.output_v()
+    };
+    let frame: Vec<bool> = period(30_000)
+        .into_iter()
+        .filter_map(|(_, edge)| if let Edge::Clock(bit) = edge { Some(bit) } else { None })
+        .collect();
+    assert!((code(&frame) - 30_000.0 * STEP_V).abs() < 1e-9);
+    for cut in 0..24 {
+        assert!(code(&frame[..cut]).abs() < f64::EPSILON, "{cut} clocks");
+    }
+    for extra in 1..50 {
+        let longer: Vec<bool> = vec![true; extra].into_iter().chain(frame.iter().copied()).collect();
+        assert!((code(&longer) - 30_000.0 * STEP_V).abs() < 1e-9, "{extra} more clocks");
+    }
+}
+
+/// A supply that dips between Arm and Play: the DAC is read back before it plays.
+#[test]
+fn a_dac_that_lost_its_configuration_while_armed_is_found_before_play() {
+    let chip = Ad5761rChip::new();
+    let mut dac = dac(&chip);
+    let bus = BusHandover::new();
+    let bus = &bus;
+    let ticks = || move || _ = bus.tick_sends(true);
+    bus.while_frames_rest(ticks(), || dac.prepare()).unwrap();
+    bus.while_frames_rest(ticks(), || dac.check()).unwrap();
+    chip.brown_out();
+    assert!(matches!(bus.while_frames_rest(ticks(), || dac.check()), Err(ad5761r::Error::BrownOut(_))));
+    bus.while_frames_rest(ticks(), || dac.prepare()).unwrap();
+    chip.supply(false);
+    chip.supply(true);
+    assert!(matches!(bus.while_frames_rest(ticks(), || dac.check()), Err(ad5761r::Error::Configuration(_))));
+    assert!(chip.output_v().abs() < f64::EPSILON);
+}
+
+/// Before it arms, the main loop configures the DAC and reads it back in the middle of the tick's frames.
+#[test]
+fn the_dac_is_prepared_between_the_frames_of_the_tick() {
+    let chip = Ad5761rChip::new();
+    let mut dac = dac(&chip);
+    let bus = BusHandover::new();
+    let frames = Cell::new(0);
+    let tick = || {
+        if bus.tick_sends(true) {
+            tick_frame(&chip, 0);
+            frames.set(frames.get() + 1);
+        }
+    };
+    tick();
+    let mut polls = 0;
+    let poll = || {
+        tick();
+        polls += 1;
+        assert!(polls < 10, "the main loop waits in vain");
+    };
+    let prepared = bus.while_frames_rest(poll, || {
+        let before = frames.get();
+        tick();
+        dac.read_control().unwrap();
+        tick();
+        let prepared = dac.prepare();
+        assert_eq!(frames.get(), before, "the tick sent a frame in between");
+        prepared
+    });
+    assert_eq!(prepared, Ok(()));
+    let before = frames.get();
+    tick();
+    assert_eq!(frames.get(), before + 1);
+    tick_frame(&chip, 16_384);
+    assert!((chip.output_v() - 5.0).abs() < 1e-9);
+}
