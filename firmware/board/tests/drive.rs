@@ -1,0 +1,197 @@
+//! A voltage of bring-up, driven through the firmware's session, ticker and supervisor.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+use frixel_board::bring_up::{Drive, DriveError, Reading};
+use frixel_control::{Active, Board, Sense, Ticker};
+use frixel_layers::BitmapPool;
+use frixel_session::Session;
+use frixel_testkit::IdealMonitor;
+use frixel_wire::fault::{Fault, State};
+use frixel_wire::hello::{BoardKind, BoardLimits};
+
+const BOARD: Board = Board {
+    kind: BoardKind::NucleoG474re,
+    limits: BoardLimits {
+        voltage_max_v_peak: 50.0,
+        full_scale_v_peak: 200.0,
+        edge_time_constant_s: 36e-6,
+        current_max_a_rms: 0.5e-3,
+        current_max_a_peak: 1.8e-3,
+        ..Board::SIMULATOR.limits
+    },
+    touch_from_host: true,
+    ..Board::SIMULATOR
+};
+/// Ticks from one round of the main loop to the next.
+const ROUND_TICKS: u32 = 4;
+/// More than a drive takes: ten seconds.
+const TICKS_MAX: u32 = 400_000;
+
+struct Memory {
+    pool: BitmapPool,
+    first: Active,
+    second: Active,
+}
+
+fn memory() -> Box<Memory> {
+    Box::new(Memory { pool: BitmapPool::new(), first: Active::new(), second: Active::new() })
+}
+
+/// What happens at a tick of a drive.
+type World<'w> = &'w dyn Fn(u32, &mut Sense);
+
+struct TestBoard<'a> {
+    session: Session<'a>,
+    ticker: Ticker<'a>,
+    monitor: IdealMonitor,
+    /// Largest code that was driven, as a part of full scale.
+    code_max: i16,
+    /// The last tick with an enabled amplifier.
+    last_driven_tick: Option<u32>,
+}
+
+impl<'a> TestBoard<'a> {
+    fn new(memory: &'a mut Memory) -> Self {
+        let Memory { pool, first, second } = memory;
+        Self {
+            session: Session::new(BOARD, pool, second),
+            ticker: Ticker::new(&BOARD, pool, first),
+            monitor: IdealMonitor::new(&BOARD.limits, BOARD.tick_hz),
+            code_max: 0,
+            last_driven_tick: None,
+        }
+    }
+
+    fn tick(&mut self, tick: u32, switch_held: bool, world: World) {
+        self.session.hand_order_to(&mut self.ticker);
+        let mut sense = Sense { arm_switch: switch_held, monitor_v: self.monitor.voltage_v(), ..Sense::default() };
+        world(tick, &mut sense);
+        let drive = self.ticker.tick(&sense);
+        self.monitor.follow(drive.dac_code);
+        self.code_max = self.code_max.max(drive.dac_code.bits());
+        if drive.amplifier_enable {
+            self.last_driven_tick = Some(tick);
+        }
+    }
+
+    fn press(&mut self) {
+        self.tick(0, false, &|_, _| ());
+        self.tick(0, true, &|_, _| ());
+    }
+
+    /// Drives a voltage with the switch held, while `world` changes what the board senses.
+    fn drive(&mut self, peak_v: f32, world: World) -> Result<Reading, DriveError> {
+        let mut drive = Drive::new(peak_v, &BOARD);
+        (self.code_max, self.last_driven_tick) = (0, None);
+        for tick in 1..TICKS_MAX {
+            self.tick(tick, true, world);
+            if tick.is_multiple_of(ROUND_TICKS) {
+                let status = self.ticker.status();
+                let now_tick = status.telemetry.tick;
+                let result = drive.step(&status, now_tick, self.monitor.voltage_v(), &mut self.session);
+                self.session.poll(&status);
+                while self.session.transmit(&mut [0; 64]) > 0 {}
+                if let Some(result) = result {
+                    return result;
+                }
+            }
+        }
+        panic!("it never ends")
+    }
+
+    fn state(&self) -> State {
+        self.ticker.state()
+    }
+}
+
+const GOOD: World<'static> = &|_, _| ();
+
+#[test]
+fn a_voltage_is_driven_through_the_firmware_and_read_on_the_monitor() {
+    let mut memory = memory();
+    let mut board = TestBoard::new(&mut memory);
+    for peak_v in [10.0, 25.0, 50.0] {
+        board.press();
+        let reading = board.drive(peak_v, GOOD).unwrap();
+        let expected = Reading { driven_v_peak: peak_v, high_v: peak_v, low_v: -peak_v, rest_v: 0.0 };
+        for (found, expected) in [
+            (reading.driven_v_peak, expected.driven_v_peak),
+            (reading.high_v, expected.high_v),
+            (reading.low_v, expected.low_v),
+            (reading.rest_v, expected.rest_v),
+        ] {
+            assert!((found - expected).abs() < 0.05, "{reading:?}");
+        }
+        assert!(f32::from(board.code_max) <= peak_v / 200.0 * f32::from(i16::MAX));
+        assert_eq!(board.state(), State::Disarmed);
+        let driven_ticks = board.last_driven_tick.unwrap();
+        assert!((115_000..125_000).contains(&driven_ticks), "three seconds: {driven_ticks}");
+    }
+}
+
+#[test]
+fn nothing_is_driven_without_a_press_after_the_last_drive() {
+    let mut memory = memory();
+    let mut board = TestBoard::new(&mut memory);
+    board.press();
+    board.drive(10.0, GOOD).unwrap();
+    // The switch is still held.
+    assert_eq!(board.drive(25.0, GOOD), Err(DriveError::State(State::Disarmed)));
+    assert_eq!((board.last_driven_tick, board.code_max), (None, 0));
+}
+
+#[test]
+fn a_voltage_beyond_the_limits_is_refused() {
+    let mut memory = memory();
+    let mut board = TestBoard::new(&mut memory);
+    board.press();
+    assert_eq!(board.drive(51.0, GOOD), Err(DriveError::Refused));
+    assert_eq!(board.last_driven_tick, None);
+}
+
+#[test]
+fn nothing_resumes_after_a_fault() {
+    const AT_TICK: u32 = 60_000;
+    let at = |tick: u32| tick >= AT_TICK;
+    let amplifier: World = &|tick, sense| sense.amplifier_fault |= at(tick);
+    let switch: World = &|tick, sense| sense.arm_switch &= !at(tick);
+    let monitor: World = &|tick, sense| {
+        if at(tick) {
+            sense.monitor_v = 0.0;
+        }
+    };
+    for (world, fault) in [(amplifier, Fault::Amplifier), (switch, Fault::ArmSwitch), (monitor, Fault::Monitor)] {
+        let mut memory = memory();
+        let mut board = TestBoard::new(&mut memory);
+        board.press();
+        let result = board.drive(50.0, world);
+        assert!(matches!(result, Err(DriveError::Fault(found, _)) if found == fault), "{result:?}");
+        let last = board.last_driven_tick.unwrap();
+        assert!((AT_TICK - 1..AT_TICK + 40).contains(&last), "{fault}: {last}");
+        // All is well again, and the person presses the switch anew.
+        board.press();
+        let result = board.drive(10.0, GOOD);
+        assert!(matches!(result, Err(DriveError::Fault(found, _)) if found == fault), "{result:?}");
+        assert_eq!(board.last_driven_tick, None);
+    }
+}
+
+/// A host that hangs takes the output with it: bring-up's host is one, too.
+#[test]
+fn a_main_loop_that_hangs_ends_the_drive() {
+    let mut memory = memory();
+    let mut board = TestBoard::new(&mut memory);
+    board.press();
+    let mut drive = Drive::new(10.0, &BOARD);
+    for tick in 1..80_000 {
+        board.tick(tick, true, GOOD);
+        if tick < 40_000 && tick.is_multiple_of(ROUND_TICKS) {
+            let status = board.ticker.status();
+            assert_eq!(drive.step(&status, status.telemetry.tick, 0.0, &mut board.session), None);
+            board.session.poll(&status);
+        }
+    }
+    assert_eq!(board.state(), State::Disarmed);
+    let last = board.last_driven_tick.unwrap();
+    assert!(last < 40_000 + 10_001, "{last}");
+}
