@@ -29,7 +29,6 @@ use crate::{period, pins};
 
 const AMPLIFIER_READY: u32 = 10;
 const ARM_SWITCH: u32 = 2;
-const BUTTON: u32 = 13;
 
 static TICK: Owned<Tick> = Owned::new();
 static COUNT: AtomicU32 = AtomicU32::new(0);
@@ -77,11 +76,10 @@ pub fn arm_switch() -> ArmSwitch<Pin> {
     ArmSwitch::new(Pin::input_pulled_down(GPIOB, ARM_SWITCH))
 }
 
-/// Configures all input pins, and the button of the board, PC13, for bring-up.
+/// Configures both input pins before the tick runs, for bring-up.
 pub fn start_inputs() {
     pins::input_pulled_down(GPIOC, AMPLIFIER_READY);
     pins::input_pulled_down(GPIOB, ARM_SWITCH);
-    pins::input(GPIOC, BUTTON);
 }
 
 /// Ticks since reset, modulo 2^32.

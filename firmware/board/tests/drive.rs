@@ -22,7 +22,7 @@ const BOARD: Board = Board {
     touch_from_host: true,
     ..Board::SIMULATOR
 };
-/// Ticks from one round of the main loop to the next.
+/// Ticks from one round of the main loop to the next, as long as a test says nothing else.
 const ROUND_TICKS: u32 = 4;
 /// More than a drive takes: ten seconds.
 const TICKS_MAX: u32 = 400_000;
@@ -44,6 +44,7 @@ struct TestBoard<'a> {
     session: Session<'a>,
     ticker: Ticker<'a>,
     monitor: IdealMonitor,
+    round_ticks: u32,
     /// Largest code that was driven, as a part of full scale.
     code_max: i16,
     /// The last tick with an enabled amplifier.
@@ -57,6 +58,7 @@ impl<'a> TestBoard<'a> {
             session: Session::new(BOARD, pool, second),
             ticker: Ticker::new(&BOARD, pool, first),
             monitor: IdealMonitor::new(&BOARD.limits, BOARD.tick_hz),
+            round_ticks: ROUND_TICKS,
             code_max: 0,
             last_driven_tick: None,
         }
@@ -85,7 +87,7 @@ impl<'a> TestBoard<'a> {
         (self.code_max, self.last_driven_tick) = (0, None);
         for tick in 1..TICKS_MAX {
             self.tick(tick, true, world);
-            if tick.is_multiple_of(ROUND_TICKS) {
+            if tick.is_multiple_of(self.round_ticks) {
                 let status = self.ticker.status();
                 let now_tick = status.telemetry.tick;
                 let result = drive.step(&status, now_tick, self.monitor.voltage_v(), &mut self.session);
@@ -126,6 +128,28 @@ fn a_voltage_is_driven_through_the_firmware_and_read_on_the_monitor() {
         assert_eq!(board.state(), State::Disarmed);
         let driven_ticks = board.last_driven_tick.unwrap();
         assert!((115_000..125_000).contains(&driven_ticks), "three seconds: {driven_ticks}");
+    }
+}
+
+#[test]
+fn a_main_loop_of_any_speed_reads_the_same() {
+    for round_ticks in [1, 3, 7, 15, 24] {
+        let mut memory = memory();
+        let mut board = TestBoard { round_ticks, ..TestBoard::new(&mut memory) };
+        board.press();
+        let reading = board.drive(50.0, GOOD).unwrap();
+        assert!((reading.high_v - 50.0).abs() < 0.05 && (reading.low_v + 50.0).abs() < 0.05, "{reading:?}");
+    }
+}
+
+/// Each drive is a session of its own: the host's credit, some 4,096 bytes, does not run out.
+#[test]
+fn one_drive_after_the_other_is_heard() {
+    let mut memory = memory();
+    let mut board = TestBoard::new(&mut memory);
+    for _ in 0..12 {
+        board.press();
+        assert!(board.drive(10.0, GOOD).is_ok());
     }
 }
 

@@ -14,6 +14,7 @@
 
 mod drive;
 mod fault_injection;
+mod line_reader;
 mod script;
 
 use core::fmt;
@@ -22,6 +23,7 @@ use frixel_wire::hello::BoardLimits;
 
 pub use drive::{Drive, DriveError, Reading};
 pub use fault_injection::{FAULTS, Injection};
+pub use line_reader::{LineReader, Typed};
 pub use script::{Pressed, Stop, run};
 
 /// Longest line that a person may type, in bytes.
