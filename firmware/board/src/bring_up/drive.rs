@@ -172,7 +172,8 @@ impl Drive {
     }
 
     /// One round: looks at the last status, the tick count and the monitor as they are now, and tells the session what
-    /// a host would. Returns the result once the output is zero again.
+    /// a host would. The caller discards what the session sends, so that it goes on listening. Returns the result once
+    /// the output is zero again.
     pub fn step(
         &mut self,
         status: &Status,
@@ -194,7 +195,6 @@ impl Drive {
                 if !session.restore(read) {
                     return Some(Err(DriveError::Refused));
                 }
-                greet(session, status);
                 self.send(Command::Arm, session, status);
                 self.enter(Phase::Arming, now_tick);
             }
@@ -289,14 +289,6 @@ impl Drive {
             }
             _ => Err(DriveError::NoReading),
         }
-    }
-}
-
-/// Begins a session, so that the credit of the drive before does not run out.
-fn greet(session: &mut Session<'_>, status: &Status) {
-    let mut frame = [0; FRAME_MAX_LEN];
-    if let Ok(frame) = payload::hello_request_frame(&mut frame) {
-        session.receive(frame, status);
     }
 }
 
