@@ -1,6 +1,8 @@
 //! The script of bring-up with a board and a person who do what they are told, but for one thing.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
+mod support;
+
 use std::fmt::Arguments;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
@@ -167,48 +169,24 @@ impl TestBench {
 
     /// The person does what the board says.
     fn act(&mut self) {
-        let said = self.said.as_str();
-        let says = |what: &str| said.contains(what);
-        if says("switch the amplifier's supply on") || says("switch it on") || says("wire to 3.3 V") {
-            self.inputs.amplifier_ready = self.odd != Some(Odd::NeverReady);
-        } else if says("switch it off") || says("supply off") || says("wire off again") {
-            self.inputs.amplifier_ready = false;
-        } else if says("hold the switch.") {
-            self.inputs.switch_closed = true;
-        } else if says("release the switch.") {
-            self.inputs.switch_closed = false;
-        } else if says("Release the switch, then hold it") {
+        if let Some(ready) = support::ready_after(&self.said) {
+            self.inputs.amplifier_ready = ready && self.odd != Some(Odd::NeverReady);
+        }
+        if let Some(closed) = support::contact_after(&self.said) {
+            self.inputs.switch_closed = closed;
+        }
+        if self.said.contains("Release the switch, then hold it") {
             self.held = self.odd == Some(Odd::Taped);
         }
     }
 
     fn answer(&mut self, dac_v: Option<f32>) -> String {
-        let said = self.said.clone();
-        let says = |what: &str| said.contains(what);
-        if let Some((_, word)) = said.split_once("Then type: ") {
-            return word.to_owned();
+        if self.said.contains("Type a number") {
+            self.events.push(Event::Asked);
         }
-        assert!(says("Type a number"), "{said}");
-        self.events.push(Event::Asked);
-        if says("kOhm") {
-            "9.9".to_owned()
-        } else if says("MOhm") {
-            "999".to_owned()
-        } else if says("voltmeter") {
-            format!("{}", dac_v.unwrap_or(0.0))
-        } else if says("probe") {
-            let Some(Event::Driven(driven_v)) =
-                self.events.iter().rev().find(|event| matches!(event, Event::Driven(_)))
-            else {
-                panic!("asked for a voltage before one was driven");
-            };
-            // Four hundredths above, with the decimal comma of some countries.
-            format!("{}", driven_v * 1.04).replace('.', ",")
-        } else if says("at the capacitor") {
-            "38".to_owned()
-        } else {
-            " 8.5 ".to_owned()
-        }
+        // Four hundredths above what is driven, with the decimal comma of some countries.
+        let probe_v = 1.04 * self.driven().last().copied().unwrap_or(f32::NAN);
+        support::answer(&self.said, dac_v, probe_v).replace('.', ",")
     }
 
     fn driven(&self) -> Vec<f32> {

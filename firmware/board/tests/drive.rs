@@ -220,4 +220,8 @@ fn a_main_loop_that_hangs_ends_the_drive() {
     assert_eq!(board.state(), State::Disarmed);
     let last = board.last_driven_tick.unwrap();
     assert!(last < 40_000 + 10_001, "{last}");
+    // It goes on too late.
+    let status = board.ticker.status();
+    let result = drive.step(&status, status.telemetry.tick, 0.0, &mut board.session);
+    assert_eq!(result, Some(Err(DriveError::State(State::Disarmed))));
 }
