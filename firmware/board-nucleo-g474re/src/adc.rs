@@ -46,7 +46,7 @@ impl Adc {
             w.set_cont(true);
             w.set_ovrmod(Ovrmod::OVERWRITE);
         });
-        // 92.5 + 12.5 clocks, 2.5 us: enough for ten times the 1 kOhm between level shifter and pin.
+        // 92.5 + 12.5 clocks, 2.5 us: enough for the level shifter's 10 kOhm.
         ADC1.smpr().modify(|w| w.set_smp(usize::from(CHANNEL), SampleTime::CYCLES92_5));
         ADC1.sqr1().modify(|w| {
             w.set_l(0);

@@ -1,27 +1,16 @@
 //! A voltage of bring-up, driven through the firmware's session, ticker and supervisor.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
+mod support;
+
 use frixel_board::bring_up::{Drive, DriveError, Reading};
-use frixel_control::{Active, Board, Sense, Ticker};
+use frixel_control::{Active, Sense, Ticker};
 use frixel_layers::BitmapPool;
 use frixel_session::Session;
 use frixel_testkit::IdealMonitor;
 use frixel_wire::fault::{Fault, State};
-use frixel_wire::hello::{BoardKind, BoardLimits};
+use support::firmware::{BOARD, monitor};
 
-const BOARD: Board = Board {
-    kind: BoardKind::NucleoG474re,
-    limits: BoardLimits {
-        voltage_max_v_peak: 50.0,
-        full_scale_v_peak: 200.0,
-        edge_time_constant_s: 36e-6,
-        current_max_a_rms: 0.5e-3,
-        current_max_a_peak: 1.8e-3,
-        ..Board::SIMULATOR.limits
-    },
-    touch_from_host: true,
-    ..Board::SIMULATOR
-};
 /// Ticks from one round of the main loop to the next, as long as a test says nothing else.
 const ROUND_TICKS: u32 = 4;
 /// More than a drive takes: ten seconds.
@@ -57,7 +46,7 @@ impl<'a> TestBoard<'a> {
         Self {
             session: Session::new(BOARD, pool, second),
             ticker: Ticker::new(&BOARD, pool, first),
-            monitor: IdealMonitor::new(&BOARD.limits, BOARD.tick_hz),
+            monitor: monitor(),
             round_ticks: ROUND_TICKS,
             code_max: 0,
             last_driven_tick: None,

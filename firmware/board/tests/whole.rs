@@ -7,26 +7,17 @@ mod support;
 use std::fmt::Arguments;
 
 use frixel_board::bring_up::{Bench, Check, Drive, DriveError, Inputs, Line, Pressed, Reading, Stop, run};
-use frixel_control::{Active, Board, Sense, Status, Ticker};
+use frixel_control::{Active, Sense, Status, Ticker};
 use frixel_layers::BitmapPool;
 use frixel_session::Session;
 use frixel_testkit::IdealMonitor;
 use frixel_wire::fault::{Fault, State};
-use frixel_wire::hello::{BoardKind, BoardLimits};
+use frixel_wire::hello::BoardLimits;
+use support::firmware::{BOARD, monitor};
+use support::person;
 
-const BOARD: Board = Board {
-    kind: BoardKind::NucleoG474re,
-    limits: BoardLimits {
-        voltage_max_v_peak: 50.0,
-        full_scale_v_peak: 200.0,
-        edge_time_constant_s: 36e-6,
-        current_max_a_rms: 0.5e-3,
-        current_max_a_peak: 1.8e-3,
-        ..Board::SIMULATOR.limits
-    },
-    touch_from_host: true,
-    ..Board::SIMULATOR
-};
+/// What the board may store.
+const MAY_STORE_V_PEAK: f32 = 50.0;
 const GAIN: f32 = 1.03;
 /// Ticks of a round of the main loop.
 const ROUND_TICKS: u32 = 4;
@@ -76,7 +67,7 @@ impl<'a> WholeBench<'a> {
             session: Session::new(BOARD, pool, second),
             status: ticker.status(),
             ticker,
-            monitor: IdealMonitor::new(&BOARD.limits, BOARD.tick_hz),
+            monitor: monitor(),
             said: String::new(),
             inputs: Inputs { amplifier_ready: false, switch_closed: false },
             hand: Hand::Releases { at_tick: 0 },
@@ -117,15 +108,15 @@ impl<'a> WholeBench<'a> {
 impl Bench for WholeBench<'_> {
     fn say(&mut self, text: Arguments<'_>) {
         self.said = text.to_string();
-        self.inputs.amplifier_ready = support::ready_after(&self.said).unwrap_or(self.inputs.amplifier_ready);
-        self.inputs.switch_closed = support::contact_after(&self.said).unwrap_or(self.inputs.switch_closed);
+        self.inputs.amplifier_ready = person::ready_after(&self.said).unwrap_or(self.inputs.amplifier_ready);
+        self.inputs.switch_closed = person::contact_after(&self.said).unwrap_or(self.inputs.switch_closed);
         if self.said.contains("Release the switch, then hold it") {
             self.hand = Hand::Releases { at_tick: self.ticks + LATE_TICKS };
         }
     }
 
     fn read_line(&mut self, dac_v: Option<f32>) -> Line {
-        Line::try_from(support::answer(&self.said, dac_v, GAIN * self.driven_v).as_str()).unwrap()
+        Line::try_from(person::answer(&self.said, dac_v, GAIN * self.driven_v).as_str()).unwrap()
     }
 
     fn check(&mut self, check: Check) -> bool {
@@ -162,6 +153,10 @@ impl Bench for WholeBench<'_> {
                 return result;
             }
         }
+    }
+
+    fn may_store(&self, limits: &BoardLimits) -> bool {
+        limits.voltage_max_v_peak <= MAY_STORE_V_PEAK
     }
 
     fn store(&mut self, limits: &BoardLimits) -> bool {

@@ -2,7 +2,6 @@
 
 use core::fmt;
 
-use frixel_session::store::{read_limits, write_limits};
 use frixel_wire::hello::BoardLimits;
 
 use super::{Bench, Check, DriveError, Inputs, LINE_MAX_LEN, Reading};
@@ -123,7 +122,7 @@ const CLOSED: Inputs = Inputs { switch_closed: true, ..IDLE };
 /// Brings a board up, from nothing connected to stored limits, and returns these: `built_in`, with full scale and edges
 /// as measured. Voltages go up to `built_in.voltage_max_v_peak`.
 pub fn run(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<BoardLimits, Stop> {
-    if !may_be_stored(built_in) {
+    if !bench.may_store(built_in) {
         return Err(Stop::Limits);
     }
     greet(bench);
@@ -136,10 +135,6 @@ pub fn run(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<BoardLimits
     let limits = BoardLimits { full_scale_v_peak, edge_time_constant_s, ..*built_in };
     store(bench, &limits)?;
     Ok(limits)
-}
-
-fn may_be_stored(limits: &BoardLimits) -> bool {
-    read_limits(&write_limits(limits), limits).is_some()
 }
 
 /// The serial port works in both directions once this returns.
@@ -300,7 +295,7 @@ fn measure_edges(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<f32, 
 
 fn store(bench: &mut impl Bench, limits: &BoardLimits) -> Result<(), Stop> {
     await_inputs(bench, READY, IDLE, "7. Switch the amplifier's supply off")?;
-    if !may_be_stored(limits) {
+    if !bench.may_store(limits) {
         return Err(Stop::Limits);
     }
     if bench.store(limits) { Ok(()) } else { Err(Stop::NotStored) }

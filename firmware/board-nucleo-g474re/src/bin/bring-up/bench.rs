@@ -141,6 +141,10 @@ impl Bench for NucleoBench {
         }
     }
 
+    fn may_store(&self, limits: &BoardLimits) -> bool {
+        limits::may_store(limits)
+    }
+
     fn store(&mut self, limits: &BoardLimits) -> bool {
         let Some(mut flash) = self.flash.take() else { return false };
         let stored = limits::store(&mut flash, limits, || self.turn(None));

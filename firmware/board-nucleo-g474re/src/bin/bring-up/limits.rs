@@ -2,7 +2,7 @@
 
 use board_nucleo_g474re::board::{LIMITS, LIMITS_SLOT, stored_limits};
 use board_nucleo_g474re::flash::BankTwo;
-use frixel_session::store::{LIMITS_LEN, WORD_LEN, Writer, Writing, write_limits};
+use frixel_session::store::{LIMITS_LEN, WORD_LEN, Writer, Writing, read_limits, write_limits};
 use frixel_wire::hello::BoardLimits;
 
 /// The limits of `src/board.rs`, with what the environment of the build says instead. `None` if something there is not
@@ -25,6 +25,11 @@ pub(crate) fn built_in() -> Option<BoardLimits> {
         current_max_a_peak: number(option_env!("FRIXEL_CURRENT_MA_PEAK"), 1e-3, LIMITS.current_max_a_peak)?,
         ..LIMITS
     })
+}
+
+/// Whether limits are within what this board may store.
+pub(crate) fn may_store(limits: &BoardLimits) -> bool {
+    read_limits(&write_limits(limits), &LIMITS).is_some()
 }
 
 /// Stores limits and reads them back; `meanwhile` is called between two operations of the flash. `false` if that
