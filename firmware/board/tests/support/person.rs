@@ -3,8 +3,9 @@
 
 /// Whether ready is high after the person has done what was said; `None` if that does not concern it.
 pub(crate) fn ready_after(said: &str) -> Option<bool> {
+    let said = said.to_lowercase();
     let says = |what: &str| said.contains(what);
-    if says("switch the amplifier's supply on") || says("switch it on") || says("wire to 3.3 V") {
+    if says("switch the amplifier's supply on") || says("switch it on") || says("wire to 3.3 v") {
         Some(true)
     } else if says("switch it off") || says("supply off") || says("wire off again") {
         Some(false)
@@ -15,7 +16,7 @@ pub(crate) fn ready_after(said: &str) -> Option<bool> {
 
 /// Whether the contact is closed after the person has done what was said.
 pub(crate) fn contact_after(said: &str) -> Option<bool> {
-    match said {
+    match said.to_lowercase() {
         said if said.contains("hold the switch.") => Some(true),
         said if said.contains("release the switch.") => Some(false),
         _ => None,

@@ -66,7 +66,12 @@ impl NucleoBench {
                 self.terminal.say(format_args!("{fault}: it was injected, and not stored as the reason of the reset"));
                 false
             }
-            Injection::NotBegun | Injection::Next(_) => fault_injection::inject(FAULTS[0]),
+            Injection::NotBegun | Injection::Next(_) => {
+                self.terminal.say(format_args!(
+                    "The board panics, faults, overflows its stack and hangs, restarts each time, and begins again."
+                ));
+                fault_injection::inject(FAULTS[0])
+            }
         }
     }
 
