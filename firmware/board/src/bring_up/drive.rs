@@ -3,21 +3,18 @@
 use core::fmt;
 
 use frixel_control::Status;
-use frixel_layers::{Blend, Constant, HEADER_LEN, Header, Layer, Leader, RECORD_LEN, Record, Region, Waveform};
 use frixel_session::{Session, Touch};
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::frame::FRAME_MAX_LEN;
 use frixel_wire::message::{Command, Request};
 use frixel_wire::payload;
 
+use super::scene::{CARRIER_HZ, HOST_TIMEOUT_S, read_at, stored_scene};
+
 /// Seconds that the output is driven: time to read a voltage from an oscilloscope that was set up before.
 const DRIVEN_S: f32 = 3.0;
-/// Seconds until the voltage is measured. The envelope has then reached the voltage, at [`SLEW_V_PER_S`], up to 400 V.
+/// Seconds until the voltage is measured. The envelope has then reached the voltage, at 1,000 V/s, up to 400 V.
 const SETTLING_S: f32 = 0.5;
-/// Slow enough that a wrong gain shows before the whole voltage is there.
-const SLEW_V_PER_S: f32 = 1000.0;
-/// Frequency of the square wave: the lowest that a scene may have, so that most of a half period is settled.
-const CARRIER_HZ: f32 = 125.0;
 /// Part of a half period, counted from the tick of its edge, in which the monitor is read: 1.2 to 3.2 ms of 4 ms. The
 /// edges are tens of microseconds long, and the main loop sees them a few ticks late.
 const READ_FROM: f32 = 0.3;
@@ -27,18 +24,11 @@ const ANSWER_S: f32 = 0.5;
 /// Seconds after the end until the monitor is read once more, and for which it is read. The output must be zero 1 ms
 /// after the end.
 const REST_S: f32 = 0.05;
-/// Seconds between two pings: a fifth of the scene's host timeout.
-const PING_S: f32 = 0.05;
+/// Seconds between two pings: a fifth of the host timeout.
+const PING_S: f32 = HOST_TIMEOUT_S / 5.0;
 /// The finger moves along x, because the output is zero at standstill (below 2 mm/s).
 const FINGER_SPEED_M_PER_S: f32 = 0.02;
 const FINGER_Y_M: f32 = 0.05;
-/// Electric friction of the scene, N. Its finger reaches less than 1 N at any voltage, so that the voltage is always at
-/// the scene's limit.
-const ELECTRIC_FRICTION_N: f32 = 100.0;
-
-/// Offsets of a stored scene without bitmaps: the scene's length, then the scene.
-const SCENE_OFFSET: usize = 8;
-const STORED_LEN: usize = SCENE_OFFSET + HEADER_LEN + RECORD_LEN;
 
 /// What was driven and what the amplifier's monitor showed meanwhile, in V.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -290,49 +280,4 @@ impl Drive {
             _ => Err(DriveError::NoReading),
         }
     }
-}
-
-/// The scene, as the store would keep it: constant friction everywhere, far beyond what `peak_v` reaches.
-fn stored_scene(peak_v: f32) -> [u8; STORED_LEN] {
-    let header = Header {
-        screen_width_m: 0.1,
-        screen_height_m: 0.1,
-        finger_radius_m: 8e-3,
-        stiffness_pa_per_m: 1.8e7,
-        friction_coefficient: 0.5,
-        normal_load_n: 0.5,
-        effective_gap_m: 1e-5,
-        voltage_max_v_rms: peak_v,
-        voltage_max_v_peak: peak_v,
-        slew_v_per_s: SLEW_V_PER_S,
-        carrier_hz: CARRIER_HZ,
-        host_timeout_s: 5.0 * PING_S,
-        waveform: Waveform::Square,
-        autonomous: false,
-        prediction: true,
-        leader: Leader::First,
-        layers_fixed: true,
-        electric_friction_max_n: None,
-    };
-    let layer = Layer::Constant(Constant { electric_friction_n: ELECTRIC_FRICTION_N });
-    let record = Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer };
-    let mut bytes = [0; STORED_LEN];
-    let len = ((HEADER_LEN + RECORD_LEN) as u64).to_le_bytes();
-    let all = len.into_iter().chain(header.write(1, 0)).chain(record.write());
-    for (to, from) in bytes.iter_mut().zip(all) {
-        *to = from;
-    }
-    bytes
-}
-
-/// Fills `bytes` from an offset of the stored scene; `false` beyond its end.
-fn read_at(stored: &[u8], offset: u32, bytes: &mut [u8]) -> bool {
-    let Some(rest) = stored.get(offset as usize..) else { return false };
-    if rest.is_empty() {
-        return false;
-    }
-    for (to, from) in bytes.iter_mut().zip(rest) {
-        *to = *from;
-    }
-    true
 }

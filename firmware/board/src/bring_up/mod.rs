@@ -12,9 +12,11 @@
 //! - Voltage comes from the firmware's own session, ticker and supervisor, to which [`Drive`] is the host. Bring-up has
 //!   no way to clear a fault.
 
+mod dialogue;
 mod drive;
 mod fault_injection;
 mod line_reader;
+mod scene;
 mod script;
 
 use core::fmt;
