@@ -86,7 +86,7 @@ fn start(text: &'static mut Text, queues: &'static mut Queues) -> MainLoop {
     let (session_ends, tick_ends) = queues.split();
     let (amplifier, arm_switch) = (tick::amplifier(output), tick::arm_switch());
     let tick = Tick { ticker, queues: tick_ends, adc: Adc::new(), dac: frames, amplifier, arm_switch };
-    let serial = SerialLink::new(Serial::new());
+    let serial = Some(SerialLink::new(Serial::new()));
     tick::start(tick);
     let watchdog = Watchdog::start();
     MainLoop {

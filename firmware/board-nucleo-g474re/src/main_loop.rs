@@ -5,7 +5,7 @@ use frixel_drivers::serial::SerialLink;
 use frixel_drivers::state_light::StateLight;
 #[cfg(feature = "store")]
 use frixel_session::store::SceneStore;
-use frixel_session::{Session, SessionEnds};
+use frixel_session::{Session, SessionEnds, Touch};
 use frixel_wire::fault::State;
 
 use crate::dac::Dac;
@@ -27,8 +27,8 @@ pub struct MainLoop {
     pub session: &'static mut Session<'static>,
     /// The last status from the tick.
     pub status: Status,
-    /// The serial link to the host.
-    pub serial: SerialLink<Serial>,
+    /// The serial link to the host; `None` when the host is on the board, as in bring-up.
+    pub serial: Option<SerialLink<Serial>>,
     /// The DAC, while the board is not armed.
     pub dac: Dac,
     /// The light that shows the state.
@@ -44,25 +44,38 @@ impl MainLoop {
     /// Runs the loop for ever.
     pub fn run(mut self, #[cfg(feature = "optical-frame")] mut touch_source: OpticalFrame<'_>) -> ! {
         loop {
-            self.follow_status();
-            let (serial, session, status) = (&mut self.serial, &mut self.session, &self.status);
-            let Ok(()) = serial.receive(|bytes| session.receive(bytes, status));
             #[cfg(feature = "optical-frame")]
-            if let Some(touch) = touch_source.next_touch() {
-                self.session.touch(touch, tick::count());
-            }
-            self.exchange();
-            self.session.poll(&self.status);
-            let Ok(()) = self.serial.transmit(|bytes| self.session.transmit(bytes));
-            let now_tick = tick::count();
-            #[cfg(feature = "store")]
-            if let Some((store, flash)) = &mut self.store {
-                store.step(flash, self.session, now_tick);
-            }
-            self.light.show(self.status.telemetry.state, now_tick);
-            fault::has_run_for(now_tick);
-            self.watchdog.feed();
+            let touch = touch_source.next_touch();
+            #[cfg(not(feature = "optical-frame"))]
+            let touch = None;
+            self.turn(touch);
         }
+    }
+
+    /// Runs the loop once. `touch` is a report of the board's own touch source.
+    #[inline]
+    pub fn turn(&mut self, touch: Option<Touch>) {
+        self.follow_status();
+        if let Some(serial) = &mut self.serial {
+            let (session, status) = (&mut self.session, &self.status);
+            let Ok(()) = serial.receive(|bytes| session.receive(bytes, status));
+        }
+        if let Some(touch) = touch {
+            self.session.touch(touch, tick::count());
+        }
+        self.exchange();
+        self.session.poll(&self.status);
+        if let Some(serial) = &mut self.serial {
+            let Ok(()) = serial.transmit(|bytes| self.session.transmit(bytes));
+        }
+        let now_tick = tick::count();
+        #[cfg(feature = "store")]
+        if let Some((store, flash)) = &mut self.store {
+            store.step(flash, self.session, now_tick);
+        }
+        self.light.show(self.status.telemetry.state, now_tick);
+        fault::has_run_for(now_tick);
+        self.watchdog.feed();
     }
 
     /// Takes a new status, if there is one.

@@ -135,11 +135,6 @@ pub(crate) fn input_pulled_down(port: Gpio, pin: u32) {
     mode(port, pin, Moder::INPUT);
 }
 
-/// Makes a pin an input that an external circuit drives.
-pub(crate) fn input(port: Gpio, pin: u32) {
-    mode(port, pin, Moder::INPUT);
-}
-
 /// Whether a pin is high.
 pub(crate) fn is_high(port: Gpio, pin: u32) -> bool {
     port.idr().read().0 & 1 << pin != 0

@@ -4,7 +4,10 @@
 //! | pin | function | |
 //! |---|---|---|
 //! | PC10 | input, pulled down | amplifier: high while it is ready |
-//! | PC11 | input, pulled down | arm switch: high while held |
+//! | PB2 | input, pulled down | arm switch: high while held |
+//!
+//! The two lie on different connectors (PC10 on CN7, PB2 on CN10 beside a ground pin), so that no bridge between
+//! neighbours closes the switch (UM2505, "Extension connectors", unread).
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
@@ -15,7 +18,7 @@ use frixel_drivers::arm_switch::ArmSwitch;
 use frixel_drivers::bus_handover::BusHandover;
 use frixel_session::TickEnds;
 use frixel_wire::fault::Fault;
-use stm32_metapac::{GPIOC, Interrupt, interrupt};
+use stm32_metapac::{GPIOB, GPIOC, Interrupt, interrupt};
 
 use crate::adc::Adc;
 use crate::board::TICK_HZ;
@@ -26,8 +29,7 @@ use crate::pins::Pin;
 use crate::{period, pins};
 
 const AMPLIFIER_READY: u32 = 10;
-const ARM_SWITCH: u32 = 11;
-const BUTTON: u32 = 13;
+const ARM_SWITCH: u32 = 2;
 
 static TICK: Owned<Tick> = Owned::new();
 static COUNT: AtomicU32 = AtomicU32::new(0);
@@ -73,14 +75,13 @@ pub fn amplifier(output: Output) -> Amplifier<Output, Pin> {
 
 /// The arm switch.
 pub fn arm_switch() -> ArmSwitch<Pin> {
-    ArmSwitch::new(Pin::input_pulled_down(GPIOC, ARM_SWITCH), TICK_HZ)
+    ArmSwitch::new(Pin::input_pulled_down(GPIOB, ARM_SWITCH), TICK_HZ)
 }
 
-/// Configures all input pins, and the button of the board, PC13, for bring-up.
+/// Configures both input pins before the tick runs, for bring-up.
 pub fn start_inputs() {
     pins::input_pulled_down(GPIOC, AMPLIFIER_READY);
-    pins::input_pulled_down(GPIOC, ARM_SWITCH);
-    pins::input(GPIOC, BUTTON);
+    pins::input_pulled_down(GPIOB, ARM_SWITCH);
 }
 
 /// Ticks since reset, modulo 2^32.
@@ -95,7 +96,7 @@ pub fn raise(fault: Fault, detail: u32) {
 
 /// The levels of the inputs: the amplifier is ready, and the contact of the arm switch is closed.
 pub fn inputs() -> (bool, bool) {
-    (pins::is_high(GPIOC, AMPLIFIER_READY), pins::is_high(GPIOC, ARM_SWITCH))
+    (pins::is_high(GPIOC, AMPLIFIER_READY), pins::is_high(GPIOB, ARM_SWITCH))
 }
 
 /// Deadline: the frame for the DAC must begin within [`period::DEADLINE_CYCLES`] of the period, 21.8 us. A tick that

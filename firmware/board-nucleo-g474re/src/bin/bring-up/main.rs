@@ -1,23 +1,32 @@
-//! Brings up a new board, step by step, with the output disconnected first: `cargo run --release --bin bring-up`,
-//! described in `docs/hardware.md`. Every step states over RTT what to do; the blue button continues.
+//! Brings up a new board, step by step: `cargo run --release --bin bring-up`, described in `docs/hardware.md`. The
+//! script is `frixel_board::bring_up`; here is what it needs of this board. The person types at a terminal on the
+//! ST-Link's serial port, at 2 Mbaud.
 #![no_std]
 #![no_main]
 
 mod bench;
 mod fault_injection;
-mod store;
+mod limits;
+mod start;
+mod still;
+mod terminal;
 
 use board_nucleo_g474re::fault::{self, LastReset};
+use board_nucleo_g474re::flash::BankTwo;
 use board_nucleo_g474re::output::Output;
-use board_nucleo_g474re::{clock, guard, indicator, output, period};
+use board_nucleo_g474re::serial::Serial;
+use board_nucleo_g474re::{board, clock, dac, guard, output, period, tick};
 use cortex_m::Peripherals;
 use cortex_m_rt::entry;
-use defmt::{error, info, println};
 use defmt_rtt as _;
+use frixel_board::bring_up::{self, Injection};
+use frixel_control::Board;
 use frixel_drivers::fault_record::Text;
 use frixel_wire::message::FAULT_TEXT_MAX_LEN;
 
-use bench::Bench;
+use bench::{NucleoBench, Stage};
+use still::Still;
+use terminal::Terminal;
 
 #[entry]
 fn main() -> ! {
@@ -31,56 +40,55 @@ fn main() -> ! {
     clock::start_peripherals();
     clock::keep_timers_running_in_debug();
     clock::start_cycle_counter(&mut core.DCB, &mut core.DWT);
-    let _ = indicator::start();
     period::start();
+    tick::start_inputs();
 
-    let mut bench = Bench::new(output);
-    if fault_injection::continues_after(&last_reset) {
-        fault_injection::next();
+    let injection = fault_injection::after(&last_reset);
+    if let Injection::Next(fault) = injection
+        && !tick::inputs().0
+    {
+        fault_injection::inject(fault);
     }
-    println!("");
-    println!("frixel bring-up. Read docs/hardware.md first: this board drives hundreds of volts.");
-
-    bench.prompt("1. Nothing is connected but USB.");
-    stop_unless(bench.one_shot());
-
-    bench.prompt("2. Connect the DAC, and a voltmeter to its output. The amplifier stays disconnected.");
-    stop_unless(bench.dac());
-
-    bench.prompt("3. Connect amplifier and arm switch, supply off. The electrode stays disconnected.");
-    bench.inputs();
-
-    bench.prompt(
-        "4. Switch the amplifier's supply on, a high-voltage probe on its output. Hold the arm switch meanwhile.",
-    );
-    for peak_v in [10.0, 25.0, 50.0] {
-        stop_unless(bench.square(peak_v));
+    let (frames, dac) = dac::start();
+    let mut terminal = Terminal::new(Serial::new());
+    let Some(limits) = limits::built_in() else {
+        terminal.say(format_args!("a limit in the environment of this build is not a number"));
+        stop()
+    };
+    if let (Some((fault, _)), Injection::NotBegun) = (last_reset.fault, injection) {
+        let text = str::from_utf8(last_reset.text).unwrap_or_default();
+        terminal.say(format_args!("The last start ended in {fault} ({text})"));
     }
-
-    bench.prompt("5. Connect series resistor and a capacitor of the electrode's worst case instead of the electrode.");
-    stop_unless(bench.edge());
-
-    bench.prompt("6. Switch the amplifier's supply off. The board will panic, fault and hang, and restart each time.");
-    if !fault_injection::are_done() {
-        fault_injection::next();
+    let flash = BankTwo::new();
+    let board = Board { limits, ..board::board(&last_reset, None) };
+    let stage = Stage::Still(Still { output, frames, dac });
+    let mut bench = NucleoBench { board, terminal, flash, injection, stage };
+    match bring_up::run(&mut bench, &limits) {
+        Ok(limits) => {
+            bench.terminal.say(format_args!(
+                "Stored: up to {} V peak, full scale {:.1} V peak, edges {:.1} us. Flash the firmware with `cargo run \
+                 --release`.",
+                limits.voltage_max_v_peak,
+                limits.full_scale_v_peak,
+                limits.edge_time_constant_s * 1e6
+            ));
+        }
+        Err(stop) => {
+            output::zero_for_good();
+            bench
+                .terminal
+                .say(format_args!("STOP. {stop}. Switch the amplifier's supply off, mend it, reset the board."));
+        }
     }
-
-    bench.prompt("7. The limits that were built in are stored.");
-    store::limits();
-    info!("done: flash the firmware with `cargo run --release`");
+    // The watchdog may run.
     loop {
-        cortex_m::asm::wfi();
+        bench.turn(None);
     }
 }
 
-/// Ends bring-up at a step that has failed, with the output at zero: no later step drives a board that failed an
-/// earlier one.
-fn stop_unless(passed: bool) {
-    if passed {
-        return;
-    }
+/// Ends the program with the output at zero.
+fn stop() -> ! {
     output::zero_for_good();
-    error!("the step has failed and bring-up stops here: mend it, and reset the board to begin again");
     loop {
         cortex_m::asm::wfi();
     }

@@ -1,0 +1,56 @@
+//! The limits that bring-up starts from, and their place in flash.
+
+use board_nucleo_g474re::board::{LIMITS, LIMITS_SLOT, stored_limits};
+use board_nucleo_g474re::flash::BankTwo;
+use frixel_session::store::{LIMITS_LEN, WORD_LEN, Writer, Writing, read_limits, write_limits};
+use frixel_wire::hello::BoardLimits;
+
+/// The limits of `src/board.rs`, with what the environment of the build says instead. `None` if something there is not
+/// a number.
+pub(crate) fn built_in() -> Option<BoardLimits> {
+    let number = |text: Option<&str>, unit: f32, default: f32| match text {
+        None => Some(default),
+        Some(text) => text.parse::<f32>().ok().map(|number| number * unit),
+    };
+    Some(BoardLimits {
+        voltage_max_v_peak: number(option_env!("FRIXEL_VOLTAGE_MAX_V_PEAK"), 1.0, LIMITS.voltage_max_v_peak)?,
+        full_scale_v_peak: number(option_env!("FRIXEL_FULL_SCALE_V_PEAK"), 1.0, LIMITS.full_scale_v_peak)?,
+        edge_time_constant_s: number(option_env!("FRIXEL_EDGE_US"), 1e-6, LIMITS.edge_time_constant_s)?,
+        electrode_capacitance_max_f: number(
+            option_env!("FRIXEL_ELECTRODE_PF"),
+            1e-12,
+            LIMITS.electrode_capacitance_max_f,
+        )?,
+        current_max_a_rms: number(option_env!("FRIXEL_CURRENT_MA_RMS"), 1e-3, LIMITS.current_max_a_rms)?,
+        current_max_a_peak: number(option_env!("FRIXEL_CURRENT_MA_PEAK"), 1e-3, LIMITS.current_max_a_peak)?,
+        ..LIMITS
+    })
+}
+
+/// Whether limits are within what this board may store.
+pub(crate) fn may_store(limits: &BoardLimits) -> bool {
+    read_limits(&write_limits(limits), &LIMITS).is_some()
+}
+
+/// Stores limits and reads them back; `meanwhile` is called between two operations of the flash. `false` if that
+/// failed.
+pub(crate) fn store(flash: &mut BankTwo, limits: &BoardLimits, mut meanwhile: impl FnMut()) -> bool {
+    let bytes = write_limits(limits);
+    let found = LIMITS_SLOT.find(flash);
+    let Some(mut writer) = Writer::new::<BankTwo>(LIMITS_SLOT, found.as_ref(), LIMITS_LEN as u32) else { return false };
+    let word = |offset: u32| {
+        let mut word = [0; WORD_LEN];
+        for (to, from) in word.iter_mut().zip(bytes.iter().skip(offset as usize)) {
+            *to = *from;
+        }
+        word
+    };
+    loop {
+        meanwhile();
+        match writer.step(flash, word) {
+            Writing::UnderWay => {}
+            Writing::Done(_) => return stored_limits(flash) == Some(*limits),
+            Writing::Failed => return false,
+        }
+    }
+}

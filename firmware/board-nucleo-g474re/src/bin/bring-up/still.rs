@@ -1,0 +1,93 @@
+//! The board before the tick runs: kicks the one-shot, and sends codes to the DAC by itself. No voltage: it enables
+//! the amplifier only while that is not ready.
+
+use board_nucleo_g474re::board::TICK_HZ;
+use board_nucleo_g474re::clock::CORE_HZ;
+use board_nucleo_g474re::dac::{Dac, DacFrames};
+use board_nucleo_g474re::output::{LIFE_US, Output};
+use board_nucleo_g474re::{period, tick};
+use cortex_m::peripheral::DWT;
+use frixel_wire::dac_code::DacCode;
+
+use crate::terminal::Terminal;
+
+const CYCLES_PER_US: u32 = CORE_HZ / 1_000_000;
+/// Voltage of the DAC at full scale, V.
+const DAC_FULL_SCALE_V: f32 = 10.0;
+/// Longest time from the last kick until the output is off, us.
+const OFF_WITHIN_US: u32 = 1000;
+
+/// What the tick takes over when it starts.
+pub(crate) struct Still {
+    pub(crate) output: Output,
+    pub(crate) frames: DacFrames,
+    pub(crate) dac: Dac,
+}
+
+impl Still {
+    /// Waits for the next period, and puts out a voltage of the DAC at its end, or zero.
+    pub(crate) fn next_period(&mut self, dac_v: Option<f32>) {
+        let _ = period::has_begun();
+        while !period::has_begun() {}
+        let may_drive = !tick::inputs().0;
+        match dac_v {
+            Some(volts) if may_drive && self.frames.send(code(volts)) => self.output.kick(),
+            _ => self.output.zero(),
+        }
+    }
+
+    /// Sets the output to zero. The last frame has been latched before, so that CLEAR comes after it.
+    pub(crate) fn zero(&mut self) {
+        for _ in 0..2 {
+            let _ = period::has_begun();
+            while !period::has_begun() {}
+        }
+        self.output.zero();
+    }
+
+    /// Configures the DAC and reads it back.
+    pub(crate) fn check_dac(&mut self, terminal: &mut Terminal) -> bool {
+        let prepared = self.dac.prepare();
+        if let Err(error) = &prepared {
+            terminal.say(format_args!("On PB13 (SCLK), PB15 (SDI), PB14 (SDO), PC6 (SYNC): {error}."));
+        }
+        prepared.is_ok()
+    }
+
+    /// Measures how long the output stays enabled after a kick.
+    pub(crate) fn check_one_shot(&mut self, terminal: &mut Terminal) -> bool {
+        let mut passed = self.is(false, terminal, "Amplifier enable (PB6) or DAC clear (PB7) is high without a kick.");
+        for _ in 0..3 {
+            if tick::inputs().0 {
+                terminal.say(format_args!("The amplifier is ready: switch its supply off."));
+                return false;
+            }
+            let start = DWT::cycle_count();
+            let us = || DWT::cycle_count().wrapping_sub(start) / CYCLES_PER_US;
+            self.output.kick();
+            while us() < 10 {}
+            passed &= self.is(true, terminal, "A kick does not put both PB6 and PB7 high: is one shorted?");
+            while self.output.pins() != (false, false) && us() < 10 * OFF_WITHIN_US {}
+            let off_us = us();
+            terminal.say(format_args!("Output off {off_us} us after the last kick; {LIFE_US} us expected."));
+            passed &= off_us <= OFF_WITHIN_US;
+        }
+        self.output.kick();
+        self.output.zero();
+        passed & self.is(false, terminal, "The output does not go off at once.")
+    }
+
+    fn is(&self, high: bool, terminal: &mut Terminal, otherwise: &str) -> bool {
+        let passed = self.output.pins() == (high, high);
+        if !passed {
+            terminal.say(format_args!("{otherwise}"));
+        }
+        passed
+    }
+}
+
+fn code(volts: f32) -> DacCode {
+    DacCode::from_bits((volts / DAC_FULL_SCALE_V * f32::from(i16::MAX)) as i16)
+}
+
+const _: () = assert!(TICK_HZ * 25 == 1_000_000, "the periods above are 25 us");

@@ -1,0 +1,311 @@
+//! The script. [`run`] is its table of contents.
+
+use core::fmt;
+
+use frixel_wire::hello::BoardLimits;
+
+use super::dialogue::{ask, ask_while, await_inputs, confirm, expect, expect_inputs};
+use super::{Bench, Check, DriveError, Inputs, Reading};
+
+/// What the person types when a step without a reading is done.
+const DONE: &str = "done";
+/// What the person types first, which shows that the board receives.
+const GREETING: &str = "frixel";
+
+/// The pull-downs of amplifier enable and DAC clear are 10 kOhm; a meter that supplies the processor through its
+/// protection diodes reads less.
+const PULL_DOWN_KOHM: (f32, f32) = (8.0, 12.0);
+/// Least resistance between the board's ground and protective earth: more than any connection, less than an isolator.
+const ISOLATION_MIN_MOHM: f32 = 10.0;
+
+/// Voltages that the DAC puts out, in V. Its error is some millivolts; the voltmeter's is what the tolerance is for.
+const DAC_VOLTAGES_V: [f32; 3] = [0.0, 5.0, -5.0];
+const DAC_TOLERANCE_V: f32 = 0.15;
+
+/// The first voltage at the amplifier's output, V peak.
+const FIRST_V_PEAK: f32 = 10.0;
+/// Largest step from a voltage that has passed to the next, V peak.
+const STEP_V_PEAK: f32 = 25.0;
+/// The voltage at which edges are measured, V peak: one that has passed before.
+const EDGES_V_PEAK: f32 = 25.0;
+/// Largest deviation of probe and monitor from the driven peak: the amplifier's gain is within 5 %, level shifter, ADC
+/// reference and probe within 2 % each.
+const GAIN_TOLERANCE: f32 = 0.1;
+/// What is added to it: the resolution of an oscilloscope with a 100:1 probe.
+const READ_OFF_V: f32 = 1.0;
+/// Largest offset of the monitor: half of what the supervisor tolerates at 200 V full scale, so that it has the other
+/// half for the edges.
+const OFFSET_MAX_V: f32 = 4.0;
+
+/// Time constants may be this factor above or below the one that the limits assume: tolerance of resistor and
+/// capacitor, and the amplifier's own edge.
+const EDGE_FACTOR: (f32, f32) = (0.7, 1.4);
+/// The amplifier's own time constant is at most this part of the electrode's; more is an amplifier that is too slow, or
+/// the same point measured twice.
+const AMPLIFIER_SHARE_MAX: f32 = 0.5;
+/// No amplifier of some tens of volts a microsecond is faster.
+const AMPLIFIER_MIN_US: f32 = 0.1;
+
+/// Why bring-up has ended. The output is zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stop {
+    /// The limits of this build cannot be stored.
+    Limits,
+    /// A check has failed.
+    Check(Check),
+    /// A reading was out of its range.
+    Reading {
+        /// What was read, with its unit.
+        what: &'static str,
+        /// The reading.
+        found: f32,
+        /// Its range.
+        expected: (f32, f32),
+    },
+    /// An input has changed that should not have.
+    Inputs {
+        /// What was done.
+        after: &'static str,
+        /// Inputs that were expected after it.
+        expected: Inputs,
+        /// The inputs.
+        found: Inputs,
+    },
+    /// The output was not driven to the end.
+    Drive(DriveError),
+    /// The limits were not stored.
+    NotStored,
+}
+
+impl fmt::Display for Stop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Limits => f.write_str("the limits that were built in are beyond what a board may store"),
+            Self::Check(check) => write!(f, "the check of {check:?} has failed"),
+            Self::Reading { what, found, expected: (min, max) } => {
+                write!(f, "{what} is {found}; it must be from {min} to {max}")
+            }
+            Self::Inputs { after, expected, found } => write!(
+                f,
+                "after \"{after}\": ready {} and switch {} expected, ready {} and switch {} found",
+                level(expected.amplifier_ready),
+                level(expected.switch_closed),
+                level(found.amplifier_ready),
+                level(found.switch_closed),
+            ),
+            Self::Drive(error) => error.fmt(f),
+            Self::NotStored => f.write_str("the limits could not be stored and read back with the tick in time"),
+        }
+    }
+}
+
+fn level(high: bool) -> &'static str {
+    if high { "high" } else { "low" }
+}
+
+impl From<DriveError> for Stop {
+    fn from(error: DriveError) -> Self {
+        Self::Drive(error)
+    }
+}
+
+/// Proof that the arm switch was released and then pressed. Each voltage uses one up.
+#[derive(Debug)]
+pub struct Pressed(());
+
+/// Neither ready nor switch.
+const IDLE: Inputs = Inputs { amplifier_ready: false, switch_closed: false };
+/// The amplifier is on.
+const READY: Inputs = Inputs { amplifier_ready: true, ..IDLE };
+/// The switch is closed.
+const CLOSED: Inputs = Inputs { switch_closed: true, ..IDLE };
+
+/// Brings a board up, from nothing connected to stored limits, and returns these: `built_in`, with full scale and edges
+/// as measured. Voltages go up to `built_in.voltage_max_v_peak`.
+pub fn run(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<BoardLimits, Stop> {
+    if !bench.may_store(built_in) {
+        return Err(Stop::Limits);
+    }
+    greet(bench);
+    check_processor(bench)?;
+    check_dac(bench)?;
+    check_inputs(bench)?;
+    check_amplifier(bench)?;
+    let full_scale_v_peak = drive_voltages(bench, built_in)?;
+    let edge_time_constant_s = measure_edges(bench, built_in)?;
+    let limits = BoardLimits { full_scale_v_peak, edge_time_constant_s, ..*built_in };
+    store(bench, &limits)?;
+    Ok(limits)
+}
+
+/// The serial port works in both directions once this returns.
+fn greet(bench: &mut impl Bench) {
+    bench.say(format_args!(""));
+    bench.say(format_args!("frixel bring-up. Read docs/hardware.md first: this board drives hundreds of volts."));
+    bench.say(format_args!(
+        "Nothing is driven before step 5. A wrong reading ends bring-up, and only a reset begins it again."
+    ));
+    confirm(bench, format_args!("0. Serial port."), GREETING);
+}
+
+fn check_processor(bench: &mut impl Bench) -> Result<(), Stop> {
+    confirm(
+        bench,
+        format_args!("1. The amplifier's supply is off; on a new board, nothing is connected but USB."),
+        DONE,
+    );
+    expect_inputs(bench, IDLE, "amplifier off, switch released")?;
+    check(bench, Check::Storage)?;
+    check(bench, Check::OneShot)?;
+    check(bench, Check::FaultsAreStored)?;
+    ask(bench, "with USB pulled: PB6 (enable) to ground, kOhm", PULL_DOWN_KOHM)?;
+    ask(bench, "with USB pulled: PB7 (CLEAR) to ground, kOhm", PULL_DOWN_KOHM)?;
+    Ok(())
+}
+
+fn check_dac(bench: &mut impl Bench) -> Result<(), Stop> {
+    confirm(
+        bench,
+        format_args!("2. Connect the DAC, and a voltmeter to its output. The amplifier's supply stays off."),
+        DONE,
+    );
+    expect_inputs(bench, IDLE, "amplifier off, switch released")?;
+    check(bench, Check::Dac)?;
+    for volts in DAC_VOLTAGES_V {
+        let expected = (volts - DAC_TOLERANCE_V, volts + DAC_TOLERANCE_V);
+        ask_while(bench, Some(volts), "the voltmeter shows, V", expected)?;
+        expect_inputs(bench, IDLE, "amplifier off, switch released")?;
+    }
+    bench.say(format_args!("The last code was {} V, and CLEAR is low since then.", DAC_VOLTAGES_V[2]));
+    ask(bench, "the voltmeter shows, V", (-DAC_TOLERANCE_V, DAC_TOLERANCE_V))?;
+    Ok(())
+}
+
+/// Each input changes, and it changes alone.
+fn check_inputs(bench: &mut impl Bench) -> Result<(), Stop> {
+    confirm(
+        bench,
+        format_args!("3. Connect the arm switch. The ready wire ends in the air. The amplifier's supply stays off."),
+        DONE,
+    );
+    expect_inputs(bench, IDLE, "switch released, ready in the air")?;
+    for (what, from, to) in [
+        ("Hold the switch", IDLE, CLOSED),
+        ("Release the switch", CLOSED, IDLE),
+        ("Pull the switch's wire off, and press the switch", IDLE, IDLE),
+        ("Put the wire back, and hold the switch", IDLE, CLOSED),
+        ("Release the switch", CLOSED, IDLE),
+        ("Put the ready wire to 3.3 V", IDLE, READY),
+        ("Take the ready wire off again", READY, IDLE),
+    ] {
+        if from == to {
+            confirm(bench, format_args!("{what}."), DONE);
+            expect_inputs(bench, to, what)?;
+        } else {
+            await_inputs(bench, from, to, what)?;
+        }
+    }
+    Ok(())
+}
+
+/// The amplifier's ready follows its supply, and the tick runs with the output at zero.
+fn check_amplifier(bench: &mut impl Bench) -> Result<(), Stop> {
+    confirm(
+        bench,
+        format_args!(
+            "4. Connect the amplifier, supply off; the series resistor, and the capacitor in place of the electrode. \
+             The high-voltage probe on the capacitor, an ordinary one on the monitor."
+        ),
+        DONE,
+    );
+    expect_inputs(bench, IDLE, "amplifier off, switch released")?;
+    ask(
+        bench,
+        "USB in its isolator: GND to protective earth, MOhm (999 for no reading)",
+        (ISOLATION_MIN_MOHM, f32::MAX),
+    )?;
+    await_inputs(bench, IDLE, READY, "Switch the amplifier's supply on")?;
+    await_inputs(bench, READY, IDLE, "Switch it off")?;
+    await_inputs(bench, IDLE, READY, "Switch it on")?;
+    check(bench, Check::Dac)?;
+    check(bench, Check::Ticks)
+}
+
+/// Drives one voltage after the other, and returns the full scale, in V peak, as the probe shows it.
+fn drive_voltages(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<f32, Stop> {
+    bench.say(format_args!("5. Voltage. Hold the switch until the output is off: a release before that is a fault."));
+    let mut full_scale_v_peak = built_in.full_scale_v_peak;
+    let mut passed_v_peak = None;
+    while let Some(peak_v) = next_voltage(passed_v_peak, built_in.voltage_max_v_peak) {
+        let reading = drive(bench, peak_v)?;
+        let probe_v = ask(bench, "half of the probe's peak-to-peak voltage, V", around(reading.driven_v_peak))?;
+        let monitor_v = 0.5 * (reading.high_v - reading.low_v);
+        expect("the monitor, V, against the probe", monitor_v, around(probe_v))?;
+        full_scale_v_peak = built_in.full_scale_v_peak * probe_v / reading.driven_v_peak;
+        passed_v_peak = Some(peak_v);
+    }
+    Ok(full_scale_v_peak)
+}
+
+/// The voltage after one that has passed: 10 V, then multiples of [`STEP_V_PEAK`] up to `max_v_peak`, which is the last.
+fn next_voltage(passed_v_peak: Option<f32>, max_v_peak: f32) -> Option<f32> {
+    match passed_v_peak {
+        None => Some(FIRST_V_PEAK.min(max_v_peak)),
+        Some(passed) if passed >= max_v_peak => None,
+        Some(passed) => Some((((passed / STEP_V_PEAK) as u32 + 1) as f32 * STEP_V_PEAK).min(max_v_peak)),
+    }
+}
+
+/// Drives a voltage, and checks what the monitor has shown.
+fn drive(bench: &mut impl Bench, peak_v: f32) -> Result<Reading, Stop> {
+    let pressed = press(bench, peak_v);
+    let reading = bench.drive(pressed, peak_v)?;
+    bench.say(format_args!(
+        "Off. {:.1} V peak were driven; the monitor showed {:.1} V and {:.1} V, and {:.1} V afterwards.",
+        reading.driven_v_peak, reading.high_v, reading.low_v, reading.rest_v
+    ));
+    expect("the driven voltage, V peak", reading.driven_v_peak, (peak_v - READ_OFF_V, peak_v + READ_OFF_V))?;
+    let offset = (-OFFSET_MAX_V, OFFSET_MAX_V);
+    expect("the monitor, V", 0.5 * (reading.high_v - reading.low_v), around(reading.driven_v_peak))?;
+    expect("the monitor's mean, V", 0.5 * (reading.high_v + reading.low_v), offset)?;
+    expect("the monitor afterwards, V", reading.rest_v, offset)?;
+    Ok(reading)
+}
+
+/// Waits until the switch is released, and then until it is held.
+fn press(bench: &mut impl Bench, peak_v: f32) -> Pressed {
+    bench.say(format_args!("Release the switch, then hold it: {peak_v} V peak follow for three seconds."));
+    while bench.switch_is_held() {}
+    while !bench.switch_is_held() {}
+    Pressed(())
+}
+
+/// Asks for both time constants, and returns the electrode's, in s.
+fn measure_edges(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<f32, Stop> {
+    bench.say(format_args!("6. Edges: set both probes to trigger once, 20 us a division."));
+    drive(bench, EDGES_V_PEAK.min(built_in.voltage_max_v_peak))?;
+    let assumed_us = 1e6 * built_in.edge_time_constant_s;
+    let expected_us = (EDGE_FACTOR.0 * assumed_us, EDGE_FACTOR.1 * assumed_us);
+    let electrode_us = ask(bench, "at the capacitor: time from the edge's start to 63 % of it, us", expected_us)?;
+    let amplifier_us = (AMPLIFIER_MIN_US, AMPLIFIER_SHARE_MAX * electrode_us);
+    ask(bench, "at the monitor: time from the edge's start to 63 % of it, us", amplifier_us)?;
+    Ok(1e-6 * electrode_us)
+}
+
+fn store(bench: &mut impl Bench, limits: &BoardLimits) -> Result<(), Stop> {
+    await_inputs(bench, READY, IDLE, "7. Switch the amplifier's supply off")?;
+    if !bench.may_store(limits) {
+        return Err(Stop::Limits);
+    }
+    if bench.store(limits) { Ok(()) } else { Err(Stop::NotStored) }
+}
+
+/// The range that is within the tolerance of a gain.
+fn around(volts: f32) -> (f32, f32) {
+    let tolerance_v = GAIN_TOLERANCE * volts.abs() + READ_OFF_V;
+    (volts - tolerance_v, volts + tolerance_v)
+}
+
+fn check(bench: &mut impl Bench, check: Check) -> Result<(), Stop> {
+    if bench.check(check) { Ok(()) } else { Err(Stop::Check(check)) }
+}

@@ -1,0 +1,8 @@
+//! What every board does in the same way, whatever its processor. A board's own crate holds registers and wiring, and
+//! implements the traits of this one.
+//!
+//! - [`bring_up`]: the script that takes a new board from nothing connected to stored limits.
+#![cfg_attr(not(test), no_std)]
+#![forbid(unsafe_code)]
+
+pub mod bring_up;

@@ -1,0 +1,486 @@
+//! The script of bring-up with a board and a person who do what they are told, but for one thing.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+mod support;
+
+use std::fmt::Arguments;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+
+use frixel_board::bring_up::{Bench, Check, DriveError, FAULTS, Injection, Inputs, Line, Pressed, Reading, Stop, run};
+use frixel_control::Board;
+use frixel_wire::fault::{Fault, State};
+use frixel_wire::hello::BoardLimits;
+use support::person;
+
+const LIMITS: BoardLimits = BoardLimits {
+    voltage_max_v_peak: 50.0,
+    full_scale_v_peak: 200.0,
+    edge_time_constant_s: 36e-6,
+    current_max_a_rms: 0.5e-3,
+    current_max_a_peak: 1.8e-3,
+    ..Board::SIMULATOR.limits
+};
+/// What the board may store.
+const MAY_STORE_V_PEAK: f32 = 120.0;
+/// All checks, in the order in which a start makes them.
+const CHECKS: [Check; 6] =
+    [Check::Storage, Check::OneShot, Check::FaultsAreStored, Check::Dac, Check::Dac, Check::Ticks];
+/// More polls of an input than any test needs.
+const POLLS_MAX: u32 = 10_000;
+
+/// What happened, in this order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Event {
+    /// The script began.
+    Start,
+    Checked(Check),
+    /// The contact was seen closed, or open, before the tick ran.
+    Contact(bool),
+    /// The debounced switch was seen held, or not.
+    Held(bool),
+    /// A number was asked for.
+    Asked,
+    Driven(f32),
+    Stored(BoardLimits),
+}
+
+/// How a script ends that does not return.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Ending {
+    Reset,
+    /// It waits for ever.
+    Waits,
+}
+
+/// What is odd about the inputs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Odd {
+    /// Ready and switch are connected with each other.
+    Bridged,
+    /// The amplifier never gets ready.
+    NeverReady,
+    /// The person never releases the switch once the amplifier is on.
+    Taped,
+    /// The contact bounces.
+    Bouncing,
+}
+
+/// A board and a person. The fields of the first half are what a test sets wrong.
+struct TestBench {
+    limits: BoardLimits,
+    /// The n-th question is answered with this first.
+    wrong_answer: Option<(u32, &'static str)>,
+    wrong_check: Option<Check>,
+    /// The n-th drive gives this.
+    wrong_drive: Option<(u32, Result<Reading, DriveError>)>,
+    /// The n-th call of the bench resets the board.
+    reset_at_call: Option<u32>,
+    odd: Option<Odd>,
+
+    calls: u32,
+    polls: u32,
+    asked: u32,
+    drives: u32,
+    said: String,
+    questions: Vec<String>,
+    answers: Vec<String>,
+    inputs: Inputs,
+    held: bool,
+    /// The last drive has used up the press.
+    used_up: bool,
+    injected: usize,
+    /// The fault that the last reset has stored.
+    stored_fault: Option<Fault>,
+    injection: Injection,
+    events: Vec<Event>,
+}
+
+const IDLE: Inputs = Inputs { amplifier_ready: false, switch_closed: false };
+
+impl TestBench {
+    fn new() -> Self {
+        Self {
+            limits: LIMITS,
+            wrong_answer: None,
+            wrong_check: None,
+            wrong_drive: None,
+            reset_at_call: None,
+            odd: None,
+            calls: 0,
+            polls: 0,
+            asked: 0,
+            drives: 0,
+            said: String::new(),
+            questions: Vec::new(),
+            answers: Vec::new(),
+            inputs: IDLE,
+            held: false,
+            used_up: false,
+            injected: 0,
+            stored_fault: None,
+            injection: Injection::NotBegun,
+            events: Vec::new(),
+        }
+    }
+
+    /// Runs the script, and after each reset runs it again. Returns its end, or `None` if it waits for ever.
+    fn bring_up(&mut self) -> Option<Result<BoardLimits, Stop>> {
+        loop {
+            match catch_unwind(AssertUnwindSafe(|| self.start())) {
+                Ok(result) => return Some(result),
+                Err(ending) => match ending.downcast_ref() {
+                    Some(Ending::Reset) => {}
+                    Some(Ending::Waits) => return None,
+                    None => resume_unwind(ending),
+                },
+            }
+        }
+    }
+
+    /// One start of the board: the person switches the amplifier off first.
+    fn start(&mut self) -> Result<BoardLimits, Stop> {
+        (self.inputs, self.held, self.used_up) = (IDLE, false, false);
+        self.injection = Injection::after_reset(std::mem::take(&mut self.injected), self.stored_fault.take());
+        if let Injection::Next(fault) = self.injection {
+            self.inject(fault);
+        }
+        self.events.push(Event::Start);
+        let limits = self.limits;
+        run(self, &limits)
+    }
+
+    fn inject(&mut self, fault: Fault) -> ! {
+        self.injected = FAULTS.iter().position(|other| *other == fault).unwrap() + 1;
+        self.stored_fault = Some(fault);
+        resume_unwind(Box::new(Ending::Reset))
+    }
+
+    fn call(&mut self) {
+        self.calls += 1;
+        if self.reset_at_call == Some(self.calls) {
+            resume_unwind(Box::new(Ending::Reset));
+        }
+    }
+
+    fn poll(&mut self) {
+        self.call();
+        self.polls += 1;
+        if self.polls > POLLS_MAX {
+            resume_unwind(Box::new(Ending::Waits));
+        }
+    }
+
+    /// The person does what the board says.
+    fn act(&mut self) {
+        if let Some(ready) = person::ready_after(&self.said) {
+            self.inputs.amplifier_ready = ready && self.odd != Some(Odd::NeverReady);
+        }
+        if let Some(closed) = person::contact_after(&self.said) {
+            self.inputs.switch_closed = closed;
+        }
+        if self.said.contains("Release the switch, then hold it") {
+            self.held = self.odd == Some(Odd::Taped);
+        }
+    }
+
+    fn answer(&mut self, dac_v: Option<f32>) -> String {
+        if self.said.contains("Type a number") {
+            self.events.push(Event::Asked);
+        }
+        // Four hundredths above what is driven, with the decimal comma of some countries.
+        let probe_v = 1.04 * self.driven().last().copied().unwrap_or(f32::NAN);
+        person::answer(&self.said, dac_v, probe_v).replace('.', ",")
+    }
+
+    fn driven(&self) -> Vec<f32> {
+        let driven = |event: &Event| if let Event::Driven(volts) = event { Some(*volts) } else { None };
+        self.events.iter().filter_map(driven).collect()
+    }
+}
+
+impl Bench for TestBench {
+    fn say(&mut self, text: Arguments<'_>) {
+        self.call();
+        self.said = text.to_string();
+        self.act();
+    }
+
+    fn read_line(&mut self, dac_v: Option<f32>) -> Line {
+        self.poll();
+        let answer = self.answer(dac_v);
+        self.answers.push(answer.clone());
+        self.asked += 1;
+        self.questions.push(self.said.clone());
+        let wrong = self.wrong_answer.filter(|(number, _)| *number == self.asked);
+        Line::try_from(wrong.map_or(answer.as_str(), |(_, answer)| answer)).unwrap()
+    }
+
+    fn check(&mut self, check: Check) -> bool {
+        self.call();
+        let is_next = check == Check::FaultsAreStored && self.injection != Injection::Passed;
+        if is_next && self.wrong_check != Some(check) {
+            self.inject(FAULTS[0]);
+        }
+        self.events.push(Event::Checked(check));
+        self.wrong_check != Some(check)
+    }
+
+    fn inputs(&mut self) -> Inputs {
+        self.poll();
+        self.events.push(Event::Contact(self.inputs.switch_closed));
+        let bounce = self.odd == Some(Odd::Bouncing) && self.polls.is_multiple_of(2);
+        let switch_closed = self.inputs.switch_closed ^ (bounce && self.said.contains("the switch."));
+        let both = self.inputs.amplifier_ready || switch_closed;
+        if self.odd == Some(Odd::Bridged) {
+            Inputs { amplifier_ready: both, switch_closed: both }
+        } else {
+            Inputs { switch_closed, ..self.inputs }
+        }
+    }
+
+    fn switch_is_held(&mut self) -> bool {
+        self.poll();
+        // The person holds on for some time after each drive, and presses again once the release was seen.
+        let held = self.held && !self.used_up;
+        self.used_up &= self.held;
+        self.events.push(Event::Held(held));
+        self.held = !held || self.odd == Some(Odd::Taped);
+        held
+    }
+
+    fn drive(&mut self, _pressed: Pressed, peak_v: f32) -> Result<Reading, DriveError> {
+        self.call();
+        self.drives += 1;
+        self.used_up = true;
+        self.events.push(Event::Driven(peak_v));
+        match self.wrong_drive.filter(|(number, _)| *number == self.drives) {
+            Some((_, wrong)) => wrong,
+            None => Ok(good(peak_v)),
+        }
+    }
+
+    fn may_store(&self, limits: &BoardLimits) -> bool {
+        limits.voltage_max_v_peak <= MAY_STORE_V_PEAK
+    }
+
+    fn store(&mut self, limits: &BoardLimits) -> bool {
+        self.call();
+        self.events.push(Event::Stored(*limits));
+        true
+    }
+}
+
+fn good(peak_v: f32) -> Reading {
+    Reading { driven_v_peak: peak_v, high_v: 1.02 * peak_v + 1.0, low_v: -1.02 * peak_v + 1.0, rest_v: 1.0 }
+}
+
+#[test]
+fn a_good_board_is_driven_up_to_its_limit_and_its_measured_limits_are_stored() {
+    let mut bench = TestBench::new();
+    let limits = bench.bring_up().unwrap().unwrap();
+    assert_eq!(bench.driven(), [10.0, 25.0, 50.0, 25.0]);
+    assert!((limits.full_scale_v_peak - 208.0).abs() < 0.1 && (limits.edge_time_constant_s - 38e-6).abs() < 1e-9);
+    assert_eq!(
+        limits,
+        BoardLimits {
+            full_scale_v_peak: limits.full_scale_v_peak,
+            edge_time_constant_s: limits.edge_time_constant_s,
+            ..LIMITS
+        }
+    );
+    assert_eq!(bench.events.last(), Some(&Event::Stored(limits)));
+    // Four injected faults, each a reset; the script begins twice.
+    assert_eq!(bench.events.iter().filter(|event| **event == Event::Start).count(), 2);
+}
+
+#[test]
+fn a_bouncing_contact_is_no_wrong_input() {
+    let mut bench = TestBench { odd: Some(Odd::Bouncing), ..TestBench::new() };
+    assert!(bench.bring_up().unwrap().is_ok());
+}
+
+#[test]
+fn voltages_rise_by_25_v_at_most_up_to_the_limit_that_was_built_in() {
+    for (max_v, expected) in [
+        (5.0, vec![5.0, 5.0]),
+        (10.0, vec![10.0, 10.0]),
+        (30.0, vec![10.0, 25.0, 30.0, 25.0]),
+        (110.0, vec![10.0, 25.0, 50.0, 75.0, 100.0, 110.0, 25.0]),
+    ] {
+        let limits = BoardLimits { voltage_max_v_peak: max_v, ..LIMITS };
+        let mut bench = TestBench { limits, ..TestBench::new() };
+        assert!(bench.bring_up().unwrap().is_ok());
+        assert_eq!(bench.driven(), expected);
+    }
+}
+
+#[test]
+fn a_wrong_reading_stops_whatever_is_asked() {
+    let mut good = TestBench::new();
+    good.bring_up();
+    let mut readings = 0;
+    for (index, (question, answer)) in good.questions.iter().zip(&good.answers).enumerate() {
+        if !question.contains("Type a number") {
+            continue;
+        }
+        for wrong in ["-1000", "1e6", "0,01"] {
+            let mut bench = TestBench { wrong_answer: Some((index as u32 + 1, wrong)), ..TestBench::new() };
+            let end = bench.bring_up().unwrap();
+            if question.contains("MOhm") && wrong == "1e6" || answer == "0" && wrong == "0,01" {
+                assert!(end.is_ok(), "an isolator may have a million megohms, and 0 V are 0.01 V: {end:?}");
+            } else {
+                readings += 1;
+                assert!(matches!(end, Err(Stop::Reading { .. })), "{question} {wrong}: {end:?}");
+                assert_eq!(bench.events.last(), Some(&Event::Asked), "something follows a wrong reading");
+            }
+        }
+    }
+    assert!(readings >= 3 * 9, "{readings}");
+}
+
+#[test]
+fn text_that_is_no_number_is_asked_again() {
+    let mut good = TestBench::new();
+    good.bring_up();
+    for number in 1..=good.asked {
+        for wrong in ["", "NaN", "inf", "ten", "1e400", "1 2", "\u{b5}"] {
+            let mut bench = TestBench { wrong_answer: Some((number, wrong)), ..TestBench::new() };
+            assert!(bench.bring_up().unwrap().is_ok(), "{number} {wrong}");
+            assert_eq!(bench.asked, good.asked + 1);
+        }
+    }
+}
+
+#[test]
+fn a_check_that_fails_stops() {
+    for check in CHECKS {
+        let mut bench = TestBench { wrong_check: Some(check), ..TestBench::new() };
+        assert_eq!(bench.bring_up().unwrap(), Err(Stop::Check(check)));
+        assert_eq!(bench.events.last(), Some(&Event::Checked(check)));
+        assert!(bench.driven().is_empty());
+    }
+}
+
+#[test]
+fn limits_that_cannot_be_stored_stop_before_anything_else() {
+    let limits = BoardLimits { voltage_max_v_peak: 121.0, ..LIMITS };
+    let mut bench = TestBench { limits, ..TestBench::new() };
+    assert_eq!(bench.bring_up().unwrap(), Err(Stop::Limits));
+    assert_eq!(bench.events, [Event::Start]);
+}
+
+/// The checks without voltage and the test of the switch come between each start and the first voltage, whenever the
+/// board was reset before.
+#[test]
+fn a_reset_at_any_point_begins_with_the_checks_without_voltage_and_the_switch() {
+    let mut good = TestBench::new();
+    good.bring_up();
+    for call in 1..=good.calls {
+        let mut bench = TestBench { reset_at_call: Some(call), ..TestBench::new() };
+        assert!(bench.bring_up().unwrap().is_ok(), "{call}");
+        for start in bench.events.split(|event| *event == Event::Start) {
+            let first_voltage = start.iter().position(|event| matches!(event, Event::Driven(_)));
+            let Some(first_voltage) = first_voltage else { continue };
+            let before = &start[..first_voltage];
+            let checks: Vec<Event> =
+                before.iter().filter(|event| matches!(event, Event::Checked(_))).copied().collect();
+            assert_eq!(checks, CHECKS.map(Event::Checked), "{call}");
+            for contact in [Event::Contact(true), Event::Contact(false), Event::Held(true), Event::Held(false)] {
+                assert!(before.contains(&contact), "{call}: {contact:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn every_voltage_follows_a_release_and_a_press() {
+    let mut bench = TestBench::new();
+    bench.bring_up();
+    let mut since_last: Vec<bool> = Vec::new();
+    for event in &bench.events {
+        match event {
+            Event::Held(held) => since_last.push(*held),
+            Event::Driven(volts) => {
+                let released = since_last.iter().position(|held| !held);
+                assert!(released.is_some_and(|at| since_last[at..].contains(&true)), "{volts} V: {since_last:?}");
+                since_last.clear();
+            }
+            _ => {}
+        }
+    }
+}
+
+#[test]
+fn a_switch_that_stays_closed_drives_nothing() {
+    let mut bench = TestBench { odd: Some(Odd::Taped), ..TestBench::new() };
+    assert_eq!(bench.bring_up(), None, "it waits for a release");
+    assert!(bench.driven().is_empty());
+}
+
+#[test]
+fn an_amplifier_that_is_not_ready_drives_nothing() {
+    let mut bench = TestBench { odd: Some(Odd::NeverReady), ..TestBench::new() };
+    assert_eq!(bench.bring_up(), None, "it waits for ready");
+    assert!(bench.driven().is_empty());
+}
+
+#[test]
+fn ready_and_switch_that_are_bridged_stop() {
+    let mut bench = TestBench { odd: Some(Odd::Bridged), ..TestBench::new() };
+    assert!(matches!(bench.bring_up().unwrap(), Err(Stop::Inputs { .. })));
+    assert!(bench.driven().is_empty());
+}
+
+#[test]
+fn a_fault_ends_the_script_and_no_voltage_follows() {
+    for number in 1..=4 {
+        for error in [
+            DriveError::Fault(Fault::ArmSwitch, 0),
+            DriveError::Fault(Fault::Monitor, 7),
+            DriveError::State(State::Disarmed),
+            DriveError::Refused,
+            DriveError::NoReading,
+        ] {
+            let mut bench = TestBench { wrong_drive: Some((number, Err(error))), ..TestBench::new() };
+            assert_eq!(bench.bring_up().unwrap(), Err(Stop::Drive(error)));
+            assert_eq!(bench.driven().len(), number as usize);
+            assert!(matches!(bench.events.last(), Some(Event::Driven(_))));
+        }
+    }
+}
+
+#[test]
+fn a_higher_voltage_follows_only_a_right_monitor() {
+    for (number, peak_v) in [(1, 10.0), (2, 25.0), (3, 50.0), (4, 25.0)] {
+        for wrong in [
+            // Dead, one half dead, a wrong gain, an offset, charge that stays, another voltage than the one wanted.
+            Reading { high_v: 0.0, low_v: 0.0, ..good(peak_v) },
+            Reading { low_v: 0.0, ..good(peak_v) },
+            Reading { high_v: 1.25 * peak_v, low_v: -1.25 * peak_v, ..good(peak_v) },
+            Reading { high_v: peak_v + 5.0, low_v: -peak_v + 5.0, ..good(peak_v) },
+            Reading { rest_v: 5.0, ..good(peak_v) },
+            Reading { driven_v_peak: 0.8 * peak_v, ..good(peak_v) },
+            Reading { high_v: f32::NAN, ..good(peak_v) },
+        ] {
+            let mut bench = TestBench { wrong_drive: Some((number, Ok(wrong))), ..TestBench::new() };
+            let end = bench.bring_up().unwrap();
+            assert!(matches!(end, Err(Stop::Reading { .. })), "{wrong:?}: {end:?}");
+            assert_eq!(bench.driven().len(), number as usize, "{wrong:?}");
+        }
+    }
+}
+
+/// Amplifier gain and monitor scale that are wrong by the same factor are only seen by the probe.
+#[test]
+fn a_probe_that_contradicts_drive_or_monitor_stops() {
+    let mut good = TestBench::new();
+    good.bring_up();
+    let number = 1 + good.questions.iter().rposition(|question| question.contains("probe's")).unwrap() as u32;
+    // 50 V are driven, and the monitor shows 51 V. 45 V would be within the amplifier's tolerance.
+    for (probe, is_right) in [("45", false), ("47", true), ("50", true), ("55", true), ("57", false)] {
+        let mut bench = TestBench { wrong_answer: Some((number, probe)), ..TestBench::new() };
+        let end = bench.bring_up().unwrap();
+        assert_eq!(end.is_ok(), is_right, "{probe}: {end:?}");
+        assert_eq!(bench.driven().len(), if is_right { 4 } else { 3 });
+    }
+}

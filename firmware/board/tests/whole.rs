@@ -1,0 +1,202 @@
+//! The script of bring-up through the firmware's session, ticker and supervisor, in virtual time: an amplifier whose
+//! gain is 3 % high, with a person at the switch.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+mod support;
+
+use std::fmt::Arguments;
+
+use frixel_board::bring_up::{Bench, Check, Drive, DriveError, Inputs, Line, Pressed, Reading, Stop, run};
+use frixel_control::{Active, Sense, Status, Ticker};
+use frixel_layers::BitmapPool;
+use frixel_session::Session;
+use frixel_testkit::IdealMonitor;
+use frixel_wire::fault::{Fault, State};
+use frixel_wire::hello::BoardLimits;
+use support::firmware::{BOARD, monitor};
+use support::person;
+
+/// What the board may store.
+const MAY_STORE_V_PEAK: f32 = 50.0;
+const GAIN: f32 = 1.03;
+/// Ticks of a round of the main loop.
+const ROUND_TICKS: u32 = 4;
+/// Ticks for which a person holds on after the output is off: a second.
+const LATE_TICKS: u32 = 40_000;
+/// More ticks than bring-up takes: two minutes.
+const TICKS_MAX: u32 = 120 * 40_000;
+
+/// What the person does next at the switch, and when.
+#[derive(Clone, Copy)]
+enum Hand {
+    Releases { at_tick: u32 },
+    Presses { at_tick: u32 },
+}
+
+impl Hand {
+    fn holds(self, tick: u32) -> bool {
+        match self {
+            Self::Releases { at_tick } => tick < at_tick,
+            Self::Presses { at_tick } => tick >= at_tick,
+        }
+    }
+}
+
+struct WholeBench<'a> {
+    session: Session<'a>,
+    ticker: Ticker<'a>,
+    /// The status of the round before.
+    status: Status,
+    monitor: IdealMonitor,
+    said: String,
+    inputs: Inputs,
+    hand: Hand,
+    ticks: u32,
+    driven_v: f32,
+    /// Ticks with an enabled amplifier.
+    enabled_ticks: u32,
+    /// At this tick of the enabled output, the amplifier loses its supply for a moment.
+    dips_at: Option<u32>,
+    stored: Option<BoardLimits>,
+}
+
+impl<'a> WholeBench<'a> {
+    fn new(pool: &'a BitmapPool, [first, second]: [&'a mut Active; 2]) -> Self {
+        let ticker = Ticker::new(&BOARD, pool, first);
+        Self {
+            session: Session::new(BOARD, pool, second),
+            status: ticker.status(),
+            ticker,
+            monitor: monitor(),
+            said: String::new(),
+            inputs: Inputs { amplifier_ready: false, switch_closed: false },
+            hand: Hand::Releases { at_tick: 0 },
+            ticks: 0,
+            driven_v: 0.0,
+            enabled_ticks: 0,
+            dips_at: None,
+            stored: None,
+        }
+    }
+
+    fn monitor_v(&self) -> f32 {
+        GAIN * self.monitor.voltage_v()
+    }
+
+    /// A round of the main loop.
+    fn turn(&mut self) {
+        for _ in 0..ROUND_TICKS {
+            self.ticks += 1;
+            assert!(self.ticks < TICKS_MAX, "it waits for ever, after: {}", self.said);
+            self.session.hand_order_to(&mut self.ticker);
+            let dips = self.dips_at.is_some_and(|at| self.enabled_ticks == at);
+            let sense = Sense {
+                amplifier_fault: !self.inputs.amplifier_ready || dips,
+                monitor_v: self.monitor_v(),
+                arm_switch: self.hand.holds(self.ticks),
+            };
+            let drive = self.ticker.tick(&sense);
+            self.monitor.follow(drive.dac_code);
+            self.enabled_ticks += u32::from(drive.amplifier_enable);
+        }
+        self.status = self.ticker.status();
+        self.session.poll(&self.status);
+        while self.session.transmit(&mut [0; 64]) > 0 {}
+    }
+}
+
+impl Bench for WholeBench<'_> {
+    fn say(&mut self, text: Arguments<'_>) {
+        self.said = text.to_string();
+        self.inputs.amplifier_ready = person::ready_after(&self.said).unwrap_or(self.inputs.amplifier_ready);
+        self.inputs.switch_closed = person::contact_after(&self.said).unwrap_or(self.inputs.switch_closed);
+        if self.said.contains("Release the switch, then hold it") {
+            self.hand = Hand::Releases { at_tick: self.ticks + LATE_TICKS };
+        }
+    }
+
+    fn read_line(&mut self, dac_v: Option<f32>) -> Line {
+        Line::try_from(person::answer(&self.said, dac_v, GAIN * self.driven_v).as_str()).unwrap()
+    }
+
+    fn check(&mut self, check: Check) -> bool {
+        if check == Check::Ticks {
+            // As on the board, the ticker is new then: it has not seen an amplifier that was off.
+            assert!(self.inputs.amplifier_ready && self.ticks == 0);
+            self.turn();
+        }
+        true
+    }
+
+    fn inputs(&mut self) -> Inputs {
+        self.inputs
+    }
+
+    fn switch_is_held(&mut self) -> bool {
+        self.turn();
+        if let Hand::Releases { at_tick } = self.hand
+            && self.ticks >= at_tick
+        {
+            self.hand = Hand::Presses { at_tick: self.ticks + LATE_TICKS };
+        }
+        self.status.arm_switch
+    }
+
+    fn drive(&mut self, _pressed: Pressed, peak_v: f32) -> Result<Reading, DriveError> {
+        let mut drive = Drive::new(peak_v, &BOARD);
+        loop {
+            let status = self.status;
+            self.turn();
+            let (now_tick, monitor_v) = (self.ticker.status().telemetry.tick, self.monitor_v());
+            if let Some(result) = drive.step(&status, now_tick, monitor_v, &mut self.session) {
+                self.driven_v = peak_v;
+                return result;
+            }
+        }
+    }
+
+    fn may_store(&self, limits: &BoardLimits) -> bool {
+        limits.voltage_max_v_peak <= MAY_STORE_V_PEAK
+    }
+
+    fn store(&mut self, limits: &BoardLimits) -> bool {
+        self.stored = Some(*limits);
+        true
+    }
+}
+
+fn bring_up(dips_at: Option<u32>, then: impl FnOnce(Result<BoardLimits, Stop>, &mut WholeBench)) {
+    let pool = Box::new(BitmapPool::new());
+    let (mut first, mut second) = (Box::new(Active::new()), Box::new(Active::new()));
+    let mut bench = WholeBench::new(&pool, [&mut first, &mut second]);
+    bench.dips_at = dips_at;
+    let end = run(&mut bench, &BOARD.limits);
+    then(end, &mut bench);
+}
+
+#[test]
+fn a_board_is_brought_up_through_the_firmware() {
+    bring_up(None, |end, bench| {
+        let limits = end.unwrap();
+        assert_eq!(bench.stored, Some(limits));
+        assert!((limits.full_scale_v_peak - 206.0).abs() < 0.1, "{limits:?}");
+        // Four voltages of three seconds.
+        assert!((470_000..490_000).contains(&bench.enabled_ticks), "{}", bench.enabled_ticks);
+    });
+}
+
+#[test]
+fn a_dip_of_the_amplifier_ends_bring_up_in_any_voltage() {
+    for seconds in [0, 1, 4, 7, 10] {
+        let dips_at = 40_000 * seconds + 1_000;
+        bring_up(Some(dips_at), |end, bench| {
+            assert!(matches!(end, Err(Stop::Drive(DriveError::Fault(Fault::Amplifier, _)))), "{end:?}");
+            assert_eq!(bench.ticker.state(), State::Faulted);
+            assert_eq!(bench.enabled_ticks, dips_at);
+            for _ in 0..LATE_TICKS {
+                bench.turn();
+            }
+            assert_eq!(bench.enabled_ticks, dips_at, "nothing resumes");
+        });
+    }
+}
