@@ -18,7 +18,7 @@ pub const MAGIC: [u8; 4] = *b"FRXL";
 /// Major protocol version of this crate, incremented by incompatible changes.
 pub const PROTOCOL_MAJOR: u8 = 1;
 /// Minor protocol version of this crate, incremented by additions that an older peer may ignore.
-pub const PROTOCOL_MINOR: u8 = 3;
+pub const PROTOCOL_MINOR: u8 = 4;
 /// Maximum length of a hello of any protocol, in bytes.
 pub const HELLO_MAX_LEN: usize = 128;
 /// Length of the hello that this crate writes, in bytes.

@@ -160,13 +160,13 @@ fn mismatch_says_which_side_to_change() {
     let older = Hello { protocol: (PROTOCOL_MAJOR - 1, 7), firmware: (0, 0, 9), ..hello() }.compatibility();
     assert_eq!(older, Err(Mismatch::BoardOlder { board: (PROTOCOL_MAJOR - 1, 7), firmware: (0, 0, 9) }));
     let sentence = older.unwrap_err().to_string();
-    assert!(sentence.contains("firmware 0.0.9 speaks protocol 0.7") && sentence.contains("speaks 1.3"), "{sentence}");
+    assert!(sentence.contains("firmware 0.0.9 speaks protocol 0.7") && sentence.contains("speaks 1.4"), "{sentence}");
     assert!(sentence.contains("flash newer firmware") && !sentence.contains("update"), "{sentence}");
 
     let newer = Hello { protocol: (PROTOCOL_MAJOR + 1, 3), ..hello() }.compatibility();
     assert_eq!(newer, Err(Mismatch::BoardNewer { board: (PROTOCOL_MAJOR + 1, 3), firmware: (0, 1, 0) }));
     let sentence = newer.unwrap_err().to_string();
-    assert!(sentence.contains("speaks protocol 2.3") && sentence.contains("speaks 1.3"), "{sentence}");
+    assert!(sentence.contains("speaks protocol 2.3") && sentence.contains("speaks 1.4"), "{sentence}");
     assert!(sentence.contains("update the frixel command") && !sentence.contains("flash"), "{sentence}");
 
     let short = Hello { frame_max_len: 191, ..hello() }.compatibility();

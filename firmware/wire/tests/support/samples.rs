@@ -32,6 +32,7 @@ pub fn from_host() -> Vec<Payload<'static>> {
         Payload::Samples { first_index: 70_000, samples: &[[0xff, 0xff], [0x00, 0x80], [0x34, 0x12]] },
         Payload::Samples { first_index: u32::MAX, samples: &FULL_SAMPLES },
         Payload::HelloRequest { protocol: (1, 3) },
+        Payload::HelloRequest { protocol: (1, 4) },
     ]);
     payloads
 }
