@@ -63,6 +63,7 @@ pub fn board(last_reset: &LastReset, flash: Option<&BankTwo>) -> Board {
         reset_cause: last_reset.cause,
         reset_fault: last_reset.fault,
         reset_text: last_reset.text,
+        reset_fault_starts: 0,
         touch_from_host: !cfg!(feature = "optical-frame"),
     }
 }

@@ -23,6 +23,10 @@ pub struct Board {
     pub reset_fault: Option<(Fault, u32)>,
     /// Description of that fault by the firmware, in UTF-8; empty without a fault.
     pub reset_text: &'static [u8],
+    /// Number of starts in a row before this one that ended in a fault: a panic, a hard fault or the watchdog. 0 after
+    /// power-on, after any reset that was not a fault, and after a start that had run for a minute before its fault.
+    /// At most 255. Boards that keep nothing over a reset say 0.
+    pub reset_fault_starts: u8,
     /// The host reports the finger's position. Otherwise the board has its own touch source.
     pub touch_from_host: bool,
 }
@@ -53,6 +57,7 @@ impl Board {
         reset_cause: ResetCause::PowerOn,
         reset_fault: None,
         reset_text: b"",
+        reset_fault_starts: 0,
         touch_from_host: false,
     };
 

@@ -34,6 +34,8 @@ pub(crate) struct Commands<'a> {
     pub(crate) directory: Directory,
     pub(crate) upload: Option<Upload>,
     pub(crate) staging: Staging,
+    /// The stored scene was not loaded at this start ([`Commands::skip_stored_scene`]).
+    pub(crate) stored_scene_skipped: bool,
     /// CRC-32 of the ticker's scene; zero without a scene.
     pub(crate) committed_crc32: u32,
     /// Bitmaps of the ticker's scene.
@@ -73,6 +75,7 @@ impl<'a> Commands<'a> {
             directory: Directory::default(),
             upload: None,
             staging: Staging::new(),
+            stored_scene_skipped: false,
             committed_crc32: 0,
             committed_bitmaps: Vec::new(),
             announced_bitmaps: Vec::new(),

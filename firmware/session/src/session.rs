@@ -165,6 +165,14 @@ impl<'a> Session<'a> {
         self.commands.restore(read).is_some()
     }
 
+    /// Whether this start must leave the stored scene alone; if so, the hello says it. See [`SceneStore::new`].
+    ///
+    /// [`SceneStore::new`]: crate::store::SceneStore::new
+    #[cfg(feature = "store")]
+    pub(crate) fn skips_stored_scene(&mut self) -> bool {
+        self.commands.skips_stored_scene()
+    }
+
     /// Number of frames received intact and within the host's credit, and number of frames discarded as corrupt or
     /// beyond the credit.
     pub fn frame_counts(&self) -> (u32, u32) {

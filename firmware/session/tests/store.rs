@@ -8,7 +8,7 @@ use frixel_control::{Board, Drive};
 use frixel_layers::{Bitmap, Layer, Record, Region};
 use frixel_session::store::{Found, SceneStore, Slot, WORD_LEN, Writer, Writing};
 use frixel_wire::frame::crc32;
-use frixel_wire::hello::BoardLimits;
+use frixel_wire::hello::{BoardLimits, notice};
 use frixel_wire::message::{Accepted, Command};
 use frixel_wire::scene::bitmap_crc32;
 use proptest::prelude::*;
@@ -228,6 +228,81 @@ fn the_last_scene_plays_after_power_off() {
     assert_eq!(hello.state, frixel_wire::fault::State::Disarmed);
     assert_eq!(board.session.scene(), Some(scene.as_slice()));
     assert!(played(&mut board) == before);
+}
+
+/// Starts a board with this flash after so many starts that ended in a fault.
+fn start_after_faults<'a>(
+    memory: &'a mut Memory,
+    flash: &SimulatedFlash,
+    fault_starts: u8,
+) -> (TestBoard<'a>, SceneStore) {
+    let board = Board { reset_fault_starts: fault_starts, ..Board::SIMULATOR };
+    let mut board = TestBoard::of(board, memory);
+    let store = SceneStore::new(SCENE_SLOT, 40_000, flash, &mut board.session);
+    (board, store)
+}
+
+#[test]
+fn a_stored_scene_is_skipped_after_three_starts_in_a_row_that_ended_in_a_fault() {
+    let mut memory = Memory::new();
+    let (_, flash, scene) = with_stored_texture(&mut memory);
+    for (fault_starts, skipped) in [(0, false), (1, false), (2, false), (3, true), (4, true), (255, true)] {
+        let mut memory = Memory::new();
+        let (mut board, store) = start_after_faults(&mut memory, &flash, fault_starts);
+        let hello = board.hello();
+        let expected = if skipped { (0, notice::STORED_SCENE_SKIPPED) } else { (crc32(&scene), 0) };
+        assert_eq!((hello.scene_crc32, hello.notices), expected, "{fault_starts}");
+        assert_eq!(store.stored_crc32().is_none(), skipped, "{fault_starts}");
+        assert_eq!(board.command(Command::Arm), Ok(Accepted::Done));
+        assert_eq!(board.command(Command::Play).is_err(), skipped, "{fault_starts}");
+    }
+}
+
+#[test]
+fn a_skipped_scene_plays_again_once_a_start_has_not_followed_faults() {
+    let mut memory = Memory::new();
+    let (_, mut flash, scene) = with_stored_texture(&mut memory);
+    let mut memory = Memory::new();
+    let (mut board, mut store) = start_after_faults(&mut memory, &flash, 3);
+    let done = flash.done;
+    board.hello();
+    finish_writing(&mut store, &mut flash, &board, 0);
+    assert_eq!(flash.done, done, "skipping a scene writes nothing");
+
+    let mut memory = Memory::new();
+    let (mut board, _) = start_after_faults(&mut memory, &flash, 0);
+    let hello = board.hello();
+    assert_eq!((hello.scene_crc32, hello.notices), (crc32(&scene), 0));
+    assert!(played(&mut board).iter().any(|drive| drive.dac_code.bits() != 0));
+}
+
+#[test]
+fn a_scene_that_is_stored_in_place_of_a_skipped_one_plays_at_the_next_start() {
+    let mut memory = Memory::new();
+    let (_, mut flash, _) = with_stored_texture(&mut memory);
+    let mut memory = Memory::new();
+    let (mut board, mut store) = start_after_faults(&mut memory, &flash, 3);
+    board.hello();
+    let fine = constant(0.02);
+    board.load(&fine).unwrap();
+    let hello = board.hello();
+    assert_eq!((hello.scene_crc32, hello.notices), (crc32(&fine), 0));
+    finish_writing(&mut store, &mut flash, &board, 0);
+    assert_eq!(store.stored_crc32(), Some(crc32(&fine)));
+
+    let mut memory = Memory::new();
+    let (mut board, _) = start_after_faults(&mut memory, &flash, 0);
+    let hello = board.hello();
+    assert_eq!((hello.scene_crc32, hello.notices), (crc32(&fine), 0));
+    assert!(played(&mut board).iter().any(|drive| drive.dac_code.bits() != 0));
+}
+
+/// There is nothing to skip, and nothing to say.
+#[test]
+fn a_board_that_has_stored_no_scene_skips_none() {
+    let mut memory = Memory::new();
+    let (mut board, _) = start_after_faults(&mut memory, &scene_flash(), 3);
+    assert_eq!(board.hello().notices, 0);
 }
 
 #[test]

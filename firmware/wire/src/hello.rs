@@ -22,7 +22,7 @@ pub const PROTOCOL_MINOR: u8 = 4;
 /// Maximum length of a hello of any protocol, in bytes.
 pub const HELLO_MAX_LEN: usize = 128;
 /// Length of the hello that this crate writes, in bytes.
-pub const HELLO_LEN: usize = codec::FIXED_LEN + codec::LIMITS_LEN;
+pub const HELLO_LEN: usize = codec::FIXED_LEN + codec::VALUES_LEN;
 
 const _: () = assert!(HELLO_LEN <= HELLO_MAX_LEN && HELLO_MAX_LEN < PAYLOAD_MAX_LEN);
 
@@ -55,6 +55,24 @@ pub struct Hello {
     pub state: State,
     /// Limits of the board, encoded as tag-length-value.
     pub limits: BoardLimits,
+    /// What a person should know before playing ([`notice`]), encoded after the limits. Zero on boards of protocols
+    /// before 1.4.
+    pub notices: u8,
+}
+
+/// Bits of [`Hello::notices`]: something that the board has kept over power-off is not in effect. Since protocol 1.4.
+pub mod notice {
+    /// The last starts of the board ended in faults one after the other, so this start left the stored scene alone.
+    /// Cleared once a scene is committed.
+    pub const STORED_SCENE_SKIPPED: u8 = 1;
+
+    /// What each notice means, and what to do, as a sentence without a full stop.
+    pub const SENTENCES: [(u8, &str); 1] = [(
+        STORED_SCENE_SKIPPED,
+        "the board did not load its stored scene, because its last starts ended in faults: look at the last fault, \
+         then play another scene, which is stored in its place, or switch the board off and on to try the stored one \
+         again",
+    )];
 }
 
 /// Bits of [`Hello::features`]: the features enabled in the firmware build, in addition to constant layers and the

@@ -147,9 +147,7 @@ fn one_call_frames_are_the_same() {
     use frixel_wire::payload::{
         chunk_frame, from_board_frame, hello_frame, hello_request_frame, request_frame, samples_frame,
     };
-    let older = |payload: &Payload| {
-        matches!(payload, Payload::HelloRequest { protocol } if *protocol != (PROTOCOL_MAJOR, PROTOCOL_MINOR))
-    };
+    let older = |payload: &Payload| matches!(payload, Payload::HelloRequest { protocol } if *protocol != (PROTOCOL_MAJOR, PROTOCOL_MINOR));
     for payload in samples::from_host().into_iter().chain(samples::from_board()).filter(|payload| !older(payload)) {
         let mut direct = [0; FRAME_MAX_LEN];
         let direct = match payload {

@@ -2,7 +2,7 @@
 
 use frixel_wire::fault::{Fault, Flags, State};
 use frixel_wire::frame::FRAME_MAX_LEN;
-use frixel_wire::hello::{BoardKind, BoardLimits, Hello, ResetCause};
+use frixel_wire::hello::{BoardKind, BoardLimits, Hello, ResetCause, notice};
 use frixel_wire::message::{
     Accepted, Answer, Command, ConfigField, ConfigRefusal, FromBoard, Refusal, Request, Telemetry,
 };
@@ -98,6 +98,7 @@ pub fn hello() -> Hello {
             touch_report_period_s: 0.01,
             tick_cycles_max: 2_000,
         },
+        notices: 0,
     }
 }
 
@@ -107,6 +108,7 @@ fn hellos() -> Vec<Hello> {
     hellos.extend((2..=6).map(|number| Hello { reset_cause: ResetCause::from(number), ..hello() }));
     hellos.extend(faults().map(|fault| Hello { last_fault: Some(fault), fault_detail: 0x0a0b_0c0d, ..hello() }));
     hellos.extend(STATES.map(|state| Hello { state, scene_crc32: 0xcbf4_3926, ..hello() }));
+    hellos.extend(notice::SENTENCES.map(|(notices, _)| Hello { protocol: (1, 4), notices, ..hello() }));
     hellos
 }
 

@@ -316,5 +316,6 @@ fn hello() -> Hello {
             receive_window_bytes: WINDOW,
             ..BoardLimits::UNSTATED
         },
+        notices: 0,
     }
 }
