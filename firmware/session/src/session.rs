@@ -3,6 +3,8 @@
 use frixel_layers::Header;
 use frixel_wire::fault::State;
 use frixel_wire::frame::Decoder;
+#[cfg(feature = "store")]
+use frixel_wire::hello::ResetCause;
 use frixel_wire::message::FromBoard;
 use frixel_wire::payload::Payload;
 
@@ -171,6 +173,12 @@ impl<'a> Session<'a> {
     #[cfg(feature = "store")]
     pub(crate) fn skips_stored_scene(&mut self) -> bool {
         self.commands.skips_stored_scene()
+    }
+
+    /// Whether a person has started the board: the power came on, or the reset pin was used.
+    #[cfg(feature = "store")]
+    pub(crate) fn was_started_by_a_person(&self) -> bool {
+        matches!(self.commands.board.reset_cause, ResetCause::PowerOn | ResetCause::Pin)
     }
 
     /// Number of frames received intact and within the host's credit, and number of frames discarded as corrupt or

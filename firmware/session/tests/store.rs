@@ -8,7 +8,7 @@ use frixel_control::{Board, Drive};
 use frixel_layers::{Bitmap, Layer, Record, Region};
 use frixel_session::store::{Found, SceneStore, Slot, WORD_LEN, Writer, Writing};
 use frixel_wire::frame::crc32;
-use frixel_wire::hello::{BoardLimits, notice};
+use frixel_wire::hello::{BoardLimits, ResetCause, notice};
 use frixel_wire::message::{Accepted, Command};
 use frixel_wire::scene::bitmap_crc32;
 use proptest::prelude::*;
@@ -324,6 +324,114 @@ fn a_scene_is_written_once_and_only_after_the_board_was_disarmed_for_a_while() {
     board.load(&constant(0.01)).unwrap();
     finish_writing(&mut store, &mut flash, &board, 0);
     assert_eq!(flash.done, done, "the same scene is not written again");
+}
+
+/// Steps the scene store until its write has ended; time stands still.
+fn finish_writing_at(store: &mut SceneStore, flash: &mut SimulatedFlash, board: &TestBoard, tick: u32) {
+    for _ in 0..30_000 {
+        store.step(flash, &board.session, tick);
+    }
+}
+
+/// Loads a scene, and lets the board be disarmed with it until it may be stored.
+fn load_and_wait(board: &mut TestBoard, store: &mut SceneStore, flash: &mut SimulatedFlash, scene: &[u8], tick: u32) {
+    board.load(scene).unwrap();
+    store.step(flash, &board.session, tick);
+}
+
+#[test]
+fn two_writes_of_a_slot_are_45_minutes_apart_and_the_last_scene_wins() {
+    const INTERVAL_TICKS: u32 = 45 * 60 * 40_000;
+    let mut flash = scene_flash();
+    let mut memory = Memory::new();
+    let mut board = TestBoard::new(&mut memory);
+    let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
+    board.hello();
+    let mut begun = 100;
+    load_and_wait(&mut board, &mut store, &mut flash, &constant(0.01), begun);
+    begun += STORE_AFTER_TICKS;
+    finish_writing_at(&mut store, &mut flash, &board, begun);
+    assert_eq!(store.stored_crc32(), Some(crc32(&constant(0.01))), "the first does not wait");
+
+    // Over the wrap of the tick count, too: 2^32 ticks are some 40 intervals.
+    let mut erased = flash.done;
+    for number in 0..50 {
+        let scenes = [0.02, 0.03, 0.04].map(|newtons| constant(newtons + 1e-4 * number as f32));
+        for (scene, tenth) in scenes.iter().zip([2, 5, 8]) {
+            let tick = begun.wrapping_add(INTERVAL_TICKS / 10 * tenth);
+            load_and_wait(&mut board, &mut store, &mut flash, scene, tick);
+            finish_writing_at(&mut store, &mut flash, &board, tick.wrapping_add(STORE_AFTER_TICKS));
+        }
+        finish_writing_at(&mut store, &mut flash, &board, begun.wrapping_add(INTERVAL_TICKS - 1));
+        assert_eq!(flash.done, erased, "{number}");
+        begun = begun.wrapping_add(INTERVAL_TICKS);
+        finish_writing_at(&mut store, &mut flash, &board, begun);
+        assert_eq!(store.stored_crc32(), Some(crc32(&scenes[2])), "{number}");
+        erased = flash.done;
+    }
+}
+
+#[test]
+fn a_board_that_resets_again_and_again_does_not_write() {
+    let mut flash = scene_flash();
+    let causes = [ResetCause::Software, ResetCause::Watchdog, ResetCause::BrownOut, ResetCause::Other(9)];
+    for (number, reset_cause) in (1_u8..).zip(causes) {
+        let mut memory = Memory::new();
+        let mut board = TestBoard::of(Board { reset_cause, ..Board::SIMULATOR }, &mut memory);
+        let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
+        board.hello();
+        load_and_wait(&mut board, &mut store, &mut flash, &constant(0.01 * f32::from(number)), 0);
+        finish_writing_at(&mut store, &mut flash, &board, 44 * 60 * 40_000);
+        assert_eq!(flash.done, 0, "{reset_cause:?}");
+    }
+    for reset_cause in [ResetCause::PowerOn, ResetCause::Pin] {
+        let mut flash = scene_flash();
+        let mut memory = Memory::new();
+        let mut board = TestBoard::of(Board { reset_cause, ..Board::SIMULATOR }, &mut memory);
+        let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
+        board.hello();
+        load_and_wait(&mut board, &mut store, &mut flash, &constant(0.01), 0);
+        finish_writing_at(&mut store, &mut flash, &board, STORE_AFTER_TICKS);
+        assert!(flash.done > 0, "{reset_cause:?}: a person's scene is stored at once");
+    }
+}
+
+/// Its pages are erased already: to begin anew would wear them once more.
+#[test]
+fn a_write_that_arming_interrupts_goes_on_once_the_board_is_disarmed() {
+    let mut flash = scene_flash();
+    let mut memory = Memory::new();
+    let mut board = TestBoard::new(&mut memory);
+    let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
+    board.hello();
+    let scene = textured(&mut board);
+    load_and_wait(&mut board, &mut store, &mut flash, &scene, 0);
+    let mut uninterrupted = flash.clone();
+    let mut cuts = 0;
+    while store.stored_crc32().is_none() {
+        for _ in 0..300 {
+            store.step(&mut flash, &board.session, STORE_AFTER_TICKS);
+        }
+        board.command(Command::Arm).unwrap();
+        let done = flash.done;
+        finish_writing_at(&mut store, &mut flash, &board, STORE_AFTER_TICKS);
+        assert_eq!(flash.done, done);
+        board.command(Command::Disarm).unwrap();
+        board.press_switch();
+        cuts += 1;
+    }
+    assert!(cuts > 3, "{cuts}");
+    assert_eq!((store.stored_crc32(), store.failures()), (Some(crc32(&scene)), 0));
+
+    let mut memory = Memory::new();
+    let mut board = TestBoard::new(&mut memory);
+    let mut store = SceneStore::new(SCENE_SLOT, 40_000, &uninterrupted, &mut board.session);
+    board.hello();
+    let scene = textured(&mut board);
+    load_and_wait(&mut board, &mut store, &mut uninterrupted, &scene, 0);
+    finish_writing_at(&mut store, &mut uninterrupted, &board, STORE_AFTER_TICKS);
+    assert_eq!(uninterrupted.done, flash.done);
+    assert!(uninterrupted.bytes == flash.bytes);
 }
 
 #[test]
