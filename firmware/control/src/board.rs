@@ -27,6 +27,8 @@ pub struct Board {
     /// power-on, after any reset that was not a fault, and after a start that had run for a minute before its fault.
     /// At most 255. Boards that keep nothing over a reset say 0.
     pub reset_fault_starts: u8,
+    /// Notices of the hello that hold from the start on ([`frixel_wire::hello::notice`]).
+    pub notices: u8,
     /// The host reports the finger's position. Otherwise the board has its own touch source.
     pub touch_from_host: bool,
 }
@@ -58,6 +60,7 @@ impl Board {
         reset_fault: None,
         reset_text: b"",
         reset_fault_starts: 0,
+        notices: 0,
         touch_from_host: false,
     };
 

@@ -72,7 +72,8 @@ impl Commands<'_> {
 
     /// What a person should know before playing.
     fn notices(&self) -> u8 {
-        if self.stored_scene_skipped && self.committed_crc32 == 0 { notice::STORED_SCENE_SKIPPED } else { 0 }
+        let is_skipped = self.stored_scene_skipped && self.committed_crc32 == 0;
+        self.board.notices | if is_skipped { notice::STORED_SCENE_SKIPPED } else { 0 }
     }
 
     #[cfg(feature = "stream")]

@@ -6,7 +6,7 @@ mod support;
 
 use frixel_control::{Board, Drive};
 use frixel_layers::{Bitmap, Layer, Record, Region};
-use frixel_session::store::{Found, SceneStore, Slot, WORD_LEN, Writer, Writing};
+use frixel_session::store::{Ceilings, Found, SceneStore, Slot, WORD_LEN, Writer, Writing, load_limits, write_limits};
 use frixel_wire::frame::crc32;
 use frixel_wire::hello::{BoardLimits, ResetCause, notice};
 use frixel_wire::message::{Accepted, Command};
@@ -184,6 +184,45 @@ fn textured(board: &mut TestBoard) -> Vec<u8> {
     };
     let left = beside(0.0, layer(first, 1e-3));
     scene(&HEADER, &[left, beside(0.04, layer(second, 1e-2)), beside(0.08, layer(first, 7e-4))])
+}
+
+/// A build with the other setting starts as if nothing were stored, and every start says what is the matter.
+#[test]
+fn a_board_starts_with_stored_limits_only_if_its_build_allows_them() {
+    let built_in = BoardLimits { voltage_max_v_peak: 50.0, full_scale_v_peak: 400.0, ..Board::SIMULATOR.limits };
+    let stored = |voltage_max_v_peak| BoardLimits {
+        voltage_max_v_peak,
+        current_max_a_rms: 0.5e-3,
+        current_max_a_peak: 1.8e-3,
+        ..built_in
+    };
+    let (low, high) = (stored(150.0), stored(300.0));
+    let (in_force, lifted) = (Ceilings::InForce, Ceilings::Lifted);
+    let (refused, above) = (notice::STORED_LIMITS_REFUSED, notice::LIMITS_ABOVE_CEILINGS);
+    let load = |flash: &SimulatedFlash, ceilings| load_limits(Some(flash), SLOT, &built_in, ceilings);
+
+    let empty = SimulatedFlash::new(PAGES, false);
+    assert_eq!(load(&empty, in_force), (built_in, 0));
+    assert_eq!(load(&empty, lifted), (built_in, above));
+    assert_eq!(load_limits(None::<&SimulatedFlash>, SLOT, &built_in, in_force), (built_in, 0));
+
+    let written = |limits, ceilings| flash_with(&[&write_limits(limits, ceilings).unwrap()], false);
+    let flash = written(&low, in_force);
+    assert_eq!(load(&flash, in_force), (low, 0));
+    assert_eq!(load(&flash, lifted), (built_in, refused | above));
+    let flash = written(&high, lifted);
+    assert_eq!(load(&flash, lifted), (high, above));
+    assert_eq!(load(&flash, in_force), (built_in, refused));
+
+    // Above a ceiling, under the version of a build that has ceilings.
+    let mut bytes = write_limits(&high, lifted).unwrap();
+    bytes[0] = 1;
+    assert_eq!(load(&flash_with(&[&bytes], false), in_force), (built_in, refused));
+    assert_eq!(load(&flash_with(&[&bytes[..20]], false), in_force), (built_in, refused));
+
+    let mut memory = Memory::new();
+    let mut board = TestBoard::of(Board { notices: refused, ..Board::SIMULATOR }, &mut memory);
+    assert_eq!(board.hello().notices, refused);
 }
 
 /// Steps the scene store 30,000 times, enough to finish any write.

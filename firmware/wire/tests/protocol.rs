@@ -123,7 +123,12 @@ fn features_have_the_bits_that_the_table_says() {
 #[test]
 fn notices_have_the_bits_that_the_table_says() {
     let page: Vec<(u8, &str)> = numbered("Notices").into_iter().map(|(bit, name)| (1 << bit, name)).collect();
-    assert_eq!(page, [(notice::STORED_SCENE_SKIPPED, "STORED_SCENE_SKIPPED")]);
+    let code = [
+        (notice::STORED_SCENE_SKIPPED, "STORED_SCENE_SKIPPED"),
+        (notice::STORED_LIMITS_REFUSED, "STORED_LIMITS_REFUSED"),
+        (notice::LIMITS_ABOVE_CEILINGS, "LIMITS_ABOVE_CEILINGS"),
+    ];
+    assert_eq!(page, code);
     assert_eq!(page.len(), notice::SENTENCES.len());
 }
 

@@ -1,10 +1,10 @@
 //! Stores the board's measured limits in flash.
 
-use board_nucleo_g474re::board::{LIMITS, LIMITS_SLOT, stored_limits};
+use board_nucleo_g474re::board::{CEILINGS, LIMITS, LIMITS_SLOT};
 use board_nucleo_g474re::flash::BankTwo;
-use defmt::{error, info, println};
-use frixel_session::store::{LIMITS_LEN, WORD_LEN, Writer, Writing, read_limits, write_limits};
-use frixel_wire::hello::BoardLimits;
+use defmt::{Display2Format, error, info, println, warn};
+use frixel_session::store::{LIMITS_LEN, WORD_LEN, Writer, Writing, load_limits, write_limits};
+use frixel_wire::hello::{BoardLimits, notice};
 
 /// Stores the limits that were set in the environment at build time, and logs the limits in effect.
 pub(crate) fn limits() {
@@ -16,7 +16,13 @@ pub(crate) fn limits() {
         Some(limits) => write(&mut flash, &limits),
         None => println!("no limits were built in (docs/hardware.md says how); the stored ones stay"),
     }
-    let limits = stored_limits(&flash).unwrap_or(LIMITS);
+    let (limits, notices) = load_limits(Some(&flash), LIMITS_SLOT, &LIMITS, CEILINGS);
+    if notices & notice::STORED_LIMITS_REFUSED != 0 {
+        error!("the stored limits are not used: one exceeds a ceiling, or a build with other ceilings stored them");
+    }
+    if notices & notice::LIMITS_ABOVE_CEILINGS != 0 {
+        warn!("this build stores limits above the ceilings: nobody touches this board");
+    }
     info!(
         "largest voltage {=f32} V peak, full scale {=f32} V peak",
         limits.voltage_max_v_peak, limits.full_scale_v_peak
@@ -30,11 +36,10 @@ pub(crate) fn limits() {
 }
 
 fn write(flash: &mut BankTwo, limits: &BoardLimits) {
-    let bytes = write_limits(limits);
-    if read_limits(&bytes, &LIMITS).is_none() {
-        error!("no board can have these limits: they were not stored");
-        return;
-    }
+    let bytes = match write_limits(limits, CEILINGS) {
+        Ok(bytes) => bytes,
+        Err(refused) => return error!("not stored: {}", Display2Format(&refused)),
+    };
     let found = LIMITS_SLOT.find(flash);
     let Some(mut writer) = Writer::new::<BankTwo>(LIMITS_SLOT, found.as_ref(), LIMITS_LEN as u32) else {
         error!("the limits do not fit");
