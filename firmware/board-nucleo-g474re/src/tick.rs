@@ -9,7 +9,7 @@
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use cortex_m::peripheral::NVIC;
-use frixel_control::{Sense, Ticker};
+use frixel_control::{Sense, TickMeter, Ticker};
 use frixel_drivers::amplifier::Amplifier;
 use frixel_drivers::arm_switch::ArmSwitch;
 use frixel_drivers::bus_handover::BusHandover;
@@ -29,6 +29,8 @@ const ARM_SWITCH: u32 = 11;
 const BUTTON: u32 = 13;
 
 static TICK: Owned<Tick> = Owned::new();
+/// How long the ticks take.
+pub static METER: TickMeter = TickMeter::new(period::DEADLINE_CYCLES);
 static COUNT: AtomicU32 = AtomicU32::new(0);
 /// Arbitrates the DAC's bus between the tick and the main loop, which checks the DAC before it arms the board.
 pub static DAC_BUS: BusHandover = BusHandover::new();
@@ -118,6 +120,7 @@ impl Tick {
         }
         let sense = self.sense();
         let drive = self.ticker.tick(&sense);
+        let cycles = period::cycles();
         let output_is_zero = !drive.amplifier_enable && !self.queues.has_order();
         if !DAC_BUS.tick_sends(output_is_zero) {
             self.amplifier.set_enabled(false);
@@ -128,7 +131,11 @@ impl Tick {
         }
         self.queues.offer_status(&self.ticker);
         if period::has_begun() {
-            self.late(period::PERIOD_CYCLES + period::cycles());
+            let cycles = period::PERIOD_CYCLES + period::cycles();
+            METER.record(cycles);
+            self.late(cycles);
+        } else {
+            METER.record(cycles);
         }
     }
 

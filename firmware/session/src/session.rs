@@ -16,7 +16,7 @@ use crate::transmit_queue::TransmitQueue;
 use frixel_control::Status;
 #[cfg(feature = "stream")]
 use frixel_control::StreamBuffer;
-use frixel_control::{Active, Board, Order, Ticker};
+use frixel_control::{Active, Board, Order, TickMeter, Ticker};
 use frixel_layers::BitmapPool;
 
 /// The board's end of the serial line.
@@ -48,6 +48,11 @@ impl<'a> Session<'a> {
     #[cfg(feature = "stream")]
     pub fn attach_stream(&mut self, buffer: &'a StreamBuffer) {
         self.commands.attach_stream(buffer);
+    }
+
+    /// Reports the tick times in `meter` from now on. The board's tick records them there.
+    pub fn attach_tick_meter(&mut self, meter: &'a TickMeter) {
+        self.commands.tick_meter = Some(meter);
     }
 
     /// Takes bytes from the serial line. Fetch answers with [`Session::transmit`] and orders with

@@ -4,7 +4,8 @@ use frixel_wire::fault::{Fault, Flags, State};
 use frixel_wire::frame::FRAME_MAX_LEN;
 use frixel_wire::hello::{BoardKind, BoardLimits, Hello, ResetCause, notice};
 use frixel_wire::message::{
-    Accepted, Answer, Command, ConfigField, ConfigRefusal, FromBoard, Refusal, Request, Telemetry,
+    Accepted, Answer, Command, ConfigField, ConfigRefusal, FromBoard, Refusal, Request, TICK_TIME_CLASSES, Telemetry,
+    TickTimes,
 };
 use frixel_wire::payload::{CHUNK_LEN, CHUNK_NUMBER_MAX, Payload, SAMPLES_MAX};
 use frixel_wire::scene::SceneError;
@@ -33,6 +34,7 @@ pub fn from_host() -> Vec<Payload<'static>> {
         Payload::Samples { first_index: u32::MAX, samples: &FULL_SAMPLES },
         Payload::HelloRequest { protocol: (1, 3) },
         Payload::HelloRequest { protocol: (1, 4) },
+        Payload::Request(Request { sequence: 9, command: Command::TickTimes }),
     ]);
     payloads
 }
@@ -152,6 +154,27 @@ fn messages() -> Vec<FromBoard> {
         received_bytes: 200_000,
         state: State::Armed,
         outcome: Err(Refusal::Config(config_refusal(ConfigField::ElectricFrictionMax, ConfigRefusal::WHOLE_SCENE))),
+    }));
+    // Since protocol 1.4.
+    let measured = TickTimes {
+        deadline_cycles: 3_700,
+        worst_cycles: 2_131,
+        missed_deadlines: 2,
+        histogram: [0, 127, 128, 39_600, 300, 0, 0, 0, 1],
+    };
+    let longest = TickTimes {
+        deadline_cycles: u32::MAX,
+        worst_cycles: u32::MAX,
+        missed_deadlines: u32::MAX,
+        histogram: [u32::MAX; TICK_TIME_CLASSES + 1],
+    };
+    messages.extend([TickTimes::default(), measured, longest].map(|times| {
+        FromBoard::Answer(Answer {
+            sequence: 9,
+            received_bytes: 1_055,
+            state: State::Disarmed,
+            outcome: Ok(Accepted::TickTimes(times)),
+        })
     }));
     messages
 }
