@@ -9,7 +9,9 @@
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use cortex_m::peripheral::NVIC;
-use frixel_control::{Sense, TickMeter, Ticker};
+#[cfg(feature = "telemetry")]
+use frixel_control::TickMeter;
+use frixel_control::{Sense, Ticker};
 use frixel_drivers::amplifier::Amplifier;
 use frixel_drivers::arm_switch::ArmSwitch;
 use frixel_drivers::bus_handover::BusHandover;
@@ -29,7 +31,8 @@ const ARM_SWITCH: u32 = 11;
 const BUTTON: u32 = 13;
 
 static TICK: Owned<Tick> = Owned::new();
-/// How long the ticks take.
+/// How long the ticks take, for telemetry.
+#[cfg(feature = "telemetry")]
 pub static METER: TickMeter = TickMeter::new(period::DEADLINE_CYCLES);
 static COUNT: AtomicU32 = AtomicU32::new(0);
 /// Arbitrates the DAC's bus between the tick and the main loop, which checks the DAC before it arms the board.
@@ -130,12 +133,12 @@ impl Tick {
             self.late(period::cycles());
         }
         self.queues.offer_status(&self.ticker);
-        if period::has_begun() {
-            let cycles = period::PERIOD_CYCLES + period::cycles();
-            METER.record(cycles);
+        let has_ended_in_time = !period::has_begun();
+        let cycles = if has_ended_in_time { cycles } else { period::PERIOD_CYCLES + period::cycles() };
+        #[cfg(feature = "telemetry")]
+        METER.record(cycles);
+        if !has_ended_in_time {
             self.late(cycles);
-        } else {
-            METER.record(cycles);
         }
     }
 
