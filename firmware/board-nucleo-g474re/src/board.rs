@@ -71,8 +71,8 @@ pub fn board(last_reset: &LastReset, flash: Option<&BankTwo>) -> Board {
         reset_fault: last_reset.fault,
         reset_text: last_reset.text,
         reset_fault_starts: 0,
-        notices,
         touch_from_host: !cfg!(feature = "optical-frame"),
+        notices,
     }
 }
 

@@ -24,13 +24,13 @@ pub struct Board {
     /// Description of that fault by the firmware, in UTF-8; empty without a fault.
     pub reset_text: &'static [u8],
     /// Number of starts in a row before this one that ended in a fault: a panic, a hard fault or the watchdog. 0 after
-    /// power-on, after any reset that was not a fault, and after a start that had run for a minute before its fault.
-    /// At most 255. Boards that keep nothing over a reset say 0.
+    /// power-on and after any reset that was not a fault. A start that has run for a minute ends the row: its own fault
+    /// is the first of the next. At most 255. Boards that keep nothing over a reset say 0.
     pub reset_fault_starts: u8,
-    /// Notices of the hello that hold from the start on ([`frixel_wire::hello::notice`]).
-    pub notices: u8,
     /// The host reports the finger's position. Otherwise the board has its own touch source.
     pub touch_from_host: bool,
+    /// Notices of the hello that hold from the start on ([`frixel_wire::hello::notice`]).
+    pub notices: u8,
 }
 
 impl Board {
@@ -60,8 +60,8 @@ impl Board {
         reset_fault: None,
         reset_text: b"",
         reset_fault_starts: 0,
-        notices: 0,
         touch_from_host: false,
+        notices: 0,
     };
 
     /// Seconds between two ticks.
