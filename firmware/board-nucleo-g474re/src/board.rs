@@ -4,7 +4,7 @@
 use frixel_control::Board;
 use frixel_drivers::monitor::MonitorScale;
 use frixel_layers::BITMAP_POOL_LEN;
-use frixel_session::store::{Flash, LIMITS_LEN, Slot, read_limits};
+use frixel_session::store::{Ceilings, Flash, Slot, check_ceilings, load_limits};
 use frixel_wire::hello::{BoardKind, BoardLimits};
 use frixel_wire::scene::RECORDS_MAX;
 use stm32_metapac::UID;
@@ -42,6 +42,12 @@ pub const LIMITS: BoardLimits = BoardLimits {
     tick_cycles_max: BoardLimits::SMALLEST_TICK_CYCLES_MAX,
 };
 
+const _: () = assert!(check_ceilings(&LIMITS).is_ok());
+
+/// Whether stored limits above the ceilings are refused.
+pub const CEILINGS: Ceilings =
+    if cfg!(feature = "limits-above-ceilings") { Ceilings::Lifted } else { Ceilings::InForce };
+
 /// Where the limits are stored: the first two pages of bank 2.
 pub const LIMITS_SLOT: Slot = Slot { first_page: 0, pages: 1 };
 /// Where the last scene is stored: the rest of bank 2, 126 KiB a copy. 64 KiB of bitmaps and the largest scene need 71
@@ -55,24 +61,19 @@ const _: () = assert!(
 
 /// The board's description, with the cause of the last reset.
 pub fn board(last_reset: &LastReset, flash: Option<&BankTwo>) -> Board {
+    let (limits, notices) = load_limits(flash, LIMITS_SLOT, &LIMITS, CEILINGS);
     Board {
         kind: BoardKind::NucleoG474re,
         id: unique_number(),
         tick_hz: TICK_HZ,
-        limits: flash.and_then(stored_limits).unwrap_or(LIMITS),
+        limits,
         reset_cause: last_reset.cause,
         reset_fault: last_reset.fault,
         reset_text: last_reset.text,
         reset_fault_starts: last_reset.fault_starts,
         touch_from_host: !cfg!(feature = "optical-frame"),
+        notices,
     }
-}
-
-/// The limits that bring-up has stored.
-pub fn stored_limits(flash: &BankTwo) -> Option<BoardLimits> {
-    let found = LIMITS_SLOT.find(flash).filter(|found| found.len as usize == LIMITS_LEN)?;
-    let mut bytes = [0; LIMITS_LEN];
-    if LIMITS_SLOT.read(flash, &found, 0, &mut bytes) { read_limits(&bytes, &LIMITS) } else { None }
 }
 
 /// The processor's unique number, 96 bits (RM0440, "Unique device ID register").

@@ -109,6 +109,8 @@ fn make(board: Board) -> (Ticker<'static>, &'static mut Session<'static>) {
     #[cfg_attr(not(feature = "stream"), allow(unused_mut, reason = "a stream is attached to it"))]
     let mut ticker = Ticker::new(&board, &POOL, first);
     let Some(session) = session(board, second) else { fault::never() };
+    #[cfg(feature = "telemetry")]
+    session.attach_tick_meter(&tick::METER);
     #[cfg(feature = "stream")]
     {
         ticker.attach_stream(&STREAM);

@@ -12,6 +12,8 @@
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use cortex_m::peripheral::NVIC;
+#[cfg(feature = "telemetry")]
+use frixel_control::TickMeter;
 use frixel_control::{Sense, Ticker};
 use frixel_drivers::amplifier::Amplifier;
 use frixel_drivers::arm_switch::ArmSwitch;
@@ -32,6 +34,9 @@ const AMPLIFIER_READY: u32 = 10;
 const ARM_SWITCH: u32 = 2;
 
 static TICK: Owned<Tick> = Owned::new();
+/// How long the ticks take, for telemetry.
+#[cfg(feature = "telemetry")]
+pub static METER: TickMeter = TickMeter::new(period::DEADLINE_CYCLES);
 static COUNT: AtomicU32 = AtomicU32::new(0);
 /// Arbitrates the DAC's bus between the tick and the main loop, which checks the DAC before the board arms and before
 /// it plays.
@@ -121,6 +126,7 @@ impl Tick {
         }
         let sense = self.sense();
         let drive = self.ticker.tick(&sense);
+        let cycles = period::cycles();
         let output_is_zero = !drive.amplifier_enable && !self.queues.has_order();
         if !DAC_BUS.tick_sends(output_is_zero) {
             self.amplifier.set_enabled(false);
@@ -130,8 +136,12 @@ impl Tick {
             self.late(period::cycles());
         }
         self.queues.offer_status(&self.ticker);
-        if period::has_begun() {
-            self.late(period::PERIOD_CYCLES + period::cycles());
+        let has_ended_in_time = !period::has_begun();
+        let cycles = if has_ended_in_time { cycles } else { period::PERIOD_CYCLES + period::cycles() };
+        #[cfg(feature = "telemetry")]
+        METER.record(cycles);
+        if !has_ended_in_time {
+            self.late(cycles);
         }
     }
 

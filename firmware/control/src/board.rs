@@ -29,6 +29,8 @@ pub struct Board {
     pub reset_fault_starts: u8,
     /// The host reports the finger's position. Otherwise the board has its own touch source.
     pub touch_from_host: bool,
+    /// Notices of the hello that hold from the start on ([`frixel_wire::hello::notice`]).
+    pub notices: u8,
 }
 
 impl Board {
@@ -59,6 +61,7 @@ impl Board {
         reset_text: b"",
         reset_fault_starts: 0,
         touch_from_host: false,
+        notices: 0,
     };
 
     /// Seconds between two ticks.

@@ -33,6 +33,7 @@ mod order;
 mod stream;
 mod supervisor;
 mod tick_count;
+mod tick_meter;
 mod ticker;
 mod track;
 
@@ -45,5 +46,6 @@ pub use order::{Counters, Order, Status};
 #[cfg(feature = "stream")]
 pub use stream::{STREAM_LEN, StreamBuffer, StreamIntake, StreamStart};
 pub use tick_count::is_past;
+pub use tick_meter::TickMeter;
 pub use ticker::Ticker;
 pub use track::{StandstillRamp, Track};

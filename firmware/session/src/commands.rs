@@ -3,7 +3,7 @@
 use frixel_wire::fault::State;
 use frixel_wire::message::{
     Accepted, Answer, Command, FAULT_TEXT_MAX_LEN, FAULT_TEXT_PIECE_LEN, FromBoard, Refusal, Request,
-    TELEMETRY_PERIOD_MIN_TICKS,
+    TELEMETRY_PERIOD_MIN_TICKS, TickTimes,
 };
 use frixel_wire::payload::{ParseError, Payload};
 use heapless::{Deque, Vec};
@@ -20,7 +20,7 @@ use crate::tracker::Tracker;
 use crate::transmit_queue::TransmitQueue;
 use crate::upload::{Staging, Upload};
 use frixel_control::Status;
-use frixel_control::{Active, Board, Order};
+use frixel_control::{Active, Board, Order, TickMeter};
 use frixel_layers::BitmapPool;
 
 /// Requests that may wait for a commit to end; further ones are refused as busy. A host that waits for its answers has
@@ -34,6 +34,10 @@ pub(crate) struct Commands<'a> {
     pub(crate) directory: Directory,
     pub(crate) upload: Option<Upload>,
     pub(crate) staging: Staging,
+    /// How long the ticks have taken; `None` on a board that does not measure it.
+    pub(crate) tick_meter: Option<&'a TickMeter>,
+    /// The stored scene was not loaded at this start ([`Commands::skip_stored_scene`]).
+    pub(crate) stored_scene_skipped: bool,
     /// CRC-32 of the ticker's scene; zero without a scene.
     pub(crate) committed_crc32: u32,
     /// Bitmaps of the ticker's scene.
@@ -73,6 +77,8 @@ impl<'a> Commands<'a> {
             directory: Directory::default(),
             upload: None,
             staging: Staging::new(),
+            tick_meter: None,
+            stored_scene_skipped: false,
             committed_crc32: 0,
             committed_bitmaps: Vec::new(),
             announced_bitmaps: Vec::new(),
@@ -218,8 +224,18 @@ impl<'a> Commands<'a> {
             Command::StartStream { .. } | Command::EndStream => Err(Refusal::UnknownCommand),
             Command::TouchFinger { finger, x_m, y_m, age_ticks } => self.touch(finger, (x_m, y_m), age_ticks, status),
             Command::LiftFinger { finger } => self.lift(finger, status),
+            Command::TickTimes if cfg!(feature = "telemetry") => Ok(Accepted::TickTimes(self.tick_times(status))),
+            Command::TickTimes => Err(Refusal::UnknownCommand),
             Command::ClearFault => self.change_state(Order::ClearFault, &[State::Faulted], State::Disarmed),
             Command::Arm | Command::Disarm | Command::Play | Command::Stop => self.drive(command, status),
+        }
+    }
+
+    fn tick_times(&self, status: &Status) -> TickTimes {
+        let missed_deadlines = status.counters.missed_deadlines;
+        match self.tick_meter {
+            Some(meter) => meter.times(missed_deadlines),
+            None => TickTimes { missed_deadlines, ..TickTimes::default() },
         }
     }
 
@@ -246,6 +262,7 @@ fn may_overtake_a_commit(command: Command) -> bool {
             | Command::FaultText { .. }
             | Command::TouchFinger { .. }
             | Command::LiftFinger { .. }
+            | Command::TickTimes
     )
 }
 

@@ -1,7 +1,7 @@
 //! Handles the hello, which begins a new session.
 
 use frixel_wire::fault::State;
-use frixel_wire::hello::{Hello, PROTOCOL_MAJOR, PROTOCOL_MINOR, feature};
+use frixel_wire::hello::{Hello, PROTOCOL_MAJOR, PROTOCOL_MINOR, feature, notice};
 
 use crate::commands::Commands;
 use crate::transmit_queue::TransmitQueue;
@@ -66,7 +66,14 @@ impl Commands<'_> {
             fault_detail: status.fault.map_or(0, |(_, detail)| detail),
             state: self.state,
             limits: self.board.limits,
+            notices: self.notices(),
         });
+    }
+
+    /// What a person should know before playing.
+    fn notices(&self) -> u8 {
+        let is_skipped = self.stored_scene_skipped && self.committed_crc32 == 0;
+        self.board.notices | if is_skipped { notice::STORED_SCENE_SKIPPED } else { 0 }
     }
 
     #[cfg(feature = "stream")]

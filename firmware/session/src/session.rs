@@ -3,6 +3,8 @@
 use frixel_layers::Header;
 use frixel_wire::fault::State;
 use frixel_wire::frame::Decoder;
+#[cfg(feature = "store")]
+use frixel_wire::hello::ResetCause;
 use frixel_wire::message::FromBoard;
 use frixel_wire::payload::Payload;
 
@@ -14,7 +16,7 @@ use crate::transmit_queue::TransmitQueue;
 use frixel_control::Status;
 #[cfg(feature = "stream")]
 use frixel_control::StreamBuffer;
-use frixel_control::{Active, Board, Order, Ticker};
+use frixel_control::{Active, Board, Order, TickMeter, Ticker};
 use frixel_layers::BitmapPool;
 
 /// The board's end of the serial line.
@@ -46,6 +48,11 @@ impl<'a> Session<'a> {
     #[cfg(feature = "stream")]
     pub fn attach_stream(&mut self, buffer: &'a StreamBuffer) {
         self.commands.attach_stream(buffer);
+    }
+
+    /// Reports the tick times in `meter` from now on. The board's tick records them there.
+    pub fn attach_tick_meter(&mut self, meter: &'a TickMeter) {
+        self.commands.tick_meter = Some(meter);
     }
 
     /// Takes bytes from the serial line. Fetch answers with [`Session::transmit`] and orders with
@@ -163,6 +170,20 @@ impl<'a> Session<'a> {
     #[cfg(feature = "store")]
     pub fn restore(&mut self, read: impl Fn(u32, &mut [u8]) -> bool) -> bool {
         self.commands.restore(read).is_some()
+    }
+
+    /// Whether this start must leave the stored scene alone; if so, the hello says it. See [`SceneStore::new`].
+    ///
+    /// [`SceneStore::new`]: crate::store::SceneStore::new
+    #[cfg(feature = "store")]
+    pub(crate) fn skips_stored_scene(&mut self) -> bool {
+        self.commands.skips_stored_scene()
+    }
+
+    /// Whether a person has started the board: the power came on, or the reset pin was used.
+    #[cfg(feature = "store")]
+    pub(crate) fn was_started_by_a_person(&self) -> bool {
+        matches!(self.commands.board.reset_cause, ResetCause::PowerOn | ResetCause::Pin)
     }
 
     /// Number of frames received intact and within the host's credit, and number of frames discarded as corrupt or

@@ -13,6 +13,10 @@ use crate::commit::BitmapNames;
 use crate::store::WORD_LEN;
 use frixel_layers::{BitmapPool, SCENE_MAX_LEN, StoredBitmap as Bitmap};
 
+/// After this many starts in a row that ended in a fault, the stored scene is not loaded: it may be what makes every
+/// start fail, and a board that restarts for ever takes no other scene. Two faults may be a disturbance.
+const FAULT_STARTS_MAX: u8 = 3;
+
 /// The committed scene with its bitmaps.
 pub struct StoredScene<'s> {
     scene: &'s [u8],
@@ -86,6 +90,13 @@ impl Commands<'_> {
             }
         }
         Some(StoredScene { scene: self.scene()?, crc32, bitmaps, pool: self.pool })
+    }
+
+    /// Whether this start must leave the stored scene alone, because the last starts ended in faults. If so, the hello
+    /// says it until a scene is committed.
+    pub(crate) fn skips_stored_scene(&mut self) -> bool {
+        self.stored_scene_skipped = self.board.reset_fault_starts >= FAULT_STARTS_MAX;
+        self.stored_scene_skipped
     }
 
     /// Commits a scene from the bytes of a [`StoredScene`]. If this fails, its bytes and bitmaps are dropped.

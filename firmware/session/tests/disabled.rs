@@ -120,4 +120,6 @@ fn commands_of_disabled_features_are_rejected() {
     assert_eq!(found, (!has(feature::BITMAP)).then_some(full));
     let found = board.command(Command::Subscribe { period_ticks: 40 }).err();
     assert_eq!(found, (!cfg!(feature = "telemetry")).then_some(Refusal::UnknownCommand));
+    let found = board.command(Command::TickTimes).err();
+    assert_eq!(found, (!cfg!(feature = "telemetry")).then_some(Refusal::UnknownCommand));
 }

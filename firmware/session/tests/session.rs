@@ -10,6 +10,8 @@ use frixel_session::Touch;
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::frame::crc32;
 use frixel_wire::hello::feature;
+#[cfg(feature = "telemetry")]
+use frixel_wire::message::TickTimes;
 use frixel_wire::message::{Accepted, Command, ConfigField, FromBoard, Refusal};
 use frixel_wire::payload::CHUNK_LEN;
 #[cfg(feature = "bitmap")]
@@ -625,4 +627,28 @@ fn the_text_of_a_fault_is_reported_whole() {
         let beyond = board.command(Command::FaultText { offset: 255 });
         assert!(matches!(beyond, Ok(Accepted::FaultText { len: 0, .. })));
     }
+}
+
+#[cfg(feature = "telemetry")]
+#[test]
+fn tick_times_are_those_that_the_tick_recorded_and_zero_where_nothing_measures() {
+    let meter = frixel_control::TickMeter::new(3_700);
+    let mut memory = Memory::new();
+    let mut board = TestBoard::new(&mut memory);
+    board.hello();
+    assert_eq!(board.command(Command::TickTimes), Ok(Accepted::TickTimes(TickTimes::default())));
+
+    board.session.attach_tick_meter(&meter);
+    for cycles in [400, 2_000, 2_131, 3_701] {
+        meter.record(cycles);
+    }
+    board.ticker.raise(Fault::Deadline, 3_701);
+    board.tick();
+    let expected = TickTimes {
+        deadline_cycles: 3_700,
+        worst_cycles: 3_701,
+        missed_deadlines: 1,
+        histogram: [1, 0, 0, 0, 2, 0, 0, 0, 1],
+    };
+    assert_eq!(board.command(Command::TickTimes), Ok(Accepted::TickTimes(expected)));
 }

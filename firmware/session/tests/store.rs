@@ -6,9 +6,9 @@ mod support;
 
 use frixel_control::{Board, Drive};
 use frixel_layers::{Bitmap, Layer, Record, Region};
-use frixel_session::store::{Found, SceneStore, Slot, WORD_LEN, Writer, Writing};
+use frixel_session::store::{Ceilings, Found, SceneStore, Slot, WORD_LEN, Writer, Writing, load_limits, write_limits};
 use frixel_wire::frame::crc32;
-use frixel_wire::hello::BoardLimits;
+use frixel_wire::hello::{BoardLimits, ResetCause, notice};
 use frixel_wire::message::{Accepted, Command};
 use frixel_wire::scene::bitmap_crc32;
 use proptest::prelude::*;
@@ -186,6 +186,45 @@ fn textured(board: &mut TestBoard) -> Vec<u8> {
     scene(&HEADER, &[left, beside(0.04, layer(second, 1e-2)), beside(0.08, layer(first, 7e-4))])
 }
 
+/// A build with the other setting starts as if nothing were stored, and every start says what is the matter.
+#[test]
+fn a_board_starts_with_stored_limits_only_if_its_build_allows_them() {
+    let built_in = BoardLimits { voltage_max_v_peak: 50.0, full_scale_v_peak: 400.0, ..Board::SIMULATOR.limits };
+    let stored = |voltage_max_v_peak| BoardLimits {
+        voltage_max_v_peak,
+        current_max_a_rms: 0.5e-3,
+        current_max_a_peak: 1.8e-3,
+        ..built_in
+    };
+    let (low, high) = (stored(150.0), stored(300.0));
+    let (in_force, lifted) = (Ceilings::InForce, Ceilings::Lifted);
+    let (refused, above) = (notice::STORED_LIMITS_REFUSED, notice::LIMITS_ABOVE_CEILINGS);
+    let load = |flash: &SimulatedFlash, ceilings| load_limits(Some(flash), SLOT, &built_in, ceilings);
+
+    let empty = SimulatedFlash::new(PAGES, false);
+    assert_eq!(load(&empty, in_force), (built_in, 0));
+    assert_eq!(load(&empty, lifted), (built_in, above));
+    assert_eq!(load_limits(None::<&SimulatedFlash>, SLOT, &built_in, in_force), (built_in, 0));
+
+    let written = |limits, ceilings| flash_with(&[&write_limits(limits, ceilings).unwrap()], false);
+    let flash = written(&low, in_force);
+    assert_eq!(load(&flash, in_force), (low, 0));
+    assert_eq!(load(&flash, lifted), (built_in, refused | above));
+    let flash = written(&high, lifted);
+    assert_eq!(load(&flash, lifted), (high, above));
+    assert_eq!(load(&flash, in_force), (built_in, refused));
+
+    // Above a ceiling, under the version of a build that has ceilings.
+    let mut bytes = write_limits(&high, lifted).unwrap();
+    bytes[0] = 1;
+    assert_eq!(load(&flash_with(&[&bytes], false), in_force), (built_in, refused));
+    assert_eq!(load(&flash_with(&[&bytes[..20]], false), in_force), (built_in, refused));
+
+    let mut memory = Memory::new();
+    let mut board = TestBoard::of(Board { notices: refused, ..Board::SIMULATOR }, &mut memory);
+    assert_eq!(board.hello().notices, refused);
+}
+
 /// Steps the scene store 30,000 times, enough to finish any write.
 fn finish_writing(store: &mut SceneStore, flash: &mut SimulatedFlash, board: &TestBoard, mut now_tick: u32) {
     for _ in 0..30_000 {
@@ -230,6 +269,81 @@ fn the_last_scene_plays_after_power_off() {
     assert!(played(&mut board) == before);
 }
 
+/// Starts a board with this flash after so many starts that ended in a fault.
+fn start_after_faults<'a>(
+    memory: &'a mut Memory,
+    flash: &SimulatedFlash,
+    fault_starts: u8,
+) -> (TestBoard<'a>, SceneStore) {
+    let board = Board { reset_fault_starts: fault_starts, ..Board::SIMULATOR };
+    let mut board = TestBoard::of(board, memory);
+    let store = SceneStore::new(SCENE_SLOT, 40_000, flash, &mut board.session);
+    (board, store)
+}
+
+#[test]
+fn a_stored_scene_is_skipped_after_three_starts_in_a_row_that_ended_in_a_fault() {
+    let mut memory = Memory::new();
+    let (_, flash, scene) = with_stored_texture(&mut memory);
+    for (fault_starts, skipped) in [(0, false), (1, false), (2, false), (3, true), (4, true), (255, true)] {
+        let mut memory = Memory::new();
+        let (mut board, store) = start_after_faults(&mut memory, &flash, fault_starts);
+        let hello = board.hello();
+        let expected = if skipped { (0, notice::STORED_SCENE_SKIPPED) } else { (crc32(&scene), 0) };
+        assert_eq!((hello.scene_crc32, hello.notices), expected, "{fault_starts}");
+        assert_eq!(store.stored_crc32().is_none(), skipped, "{fault_starts}");
+        assert_eq!(board.command(Command::Arm), Ok(Accepted::Done));
+        assert_eq!(board.command(Command::Play).is_err(), skipped, "{fault_starts}");
+    }
+}
+
+#[test]
+fn a_skipped_scene_plays_again_once_a_start_has_not_followed_faults() {
+    let mut memory = Memory::new();
+    let (_, mut flash, scene) = with_stored_texture(&mut memory);
+    let mut memory = Memory::new();
+    let (mut board, mut store) = start_after_faults(&mut memory, &flash, 3);
+    let done = flash.done;
+    board.hello();
+    finish_writing(&mut store, &mut flash, &board, 0);
+    assert_eq!(flash.done, done, "skipping a scene writes nothing");
+
+    let mut memory = Memory::new();
+    let (mut board, _) = start_after_faults(&mut memory, &flash, 0);
+    let hello = board.hello();
+    assert_eq!((hello.scene_crc32, hello.notices), (crc32(&scene), 0));
+    assert!(played(&mut board).iter().any(|drive| drive.dac_code.bits() != 0));
+}
+
+#[test]
+fn a_scene_that_is_stored_in_place_of_a_skipped_one_plays_at_the_next_start() {
+    let mut memory = Memory::new();
+    let (_, mut flash, _) = with_stored_texture(&mut memory);
+    let mut memory = Memory::new();
+    let (mut board, mut store) = start_after_faults(&mut memory, &flash, 3);
+    board.hello();
+    let fine = constant(0.02);
+    board.load(&fine).unwrap();
+    let hello = board.hello();
+    assert_eq!((hello.scene_crc32, hello.notices), (crc32(&fine), 0));
+    finish_writing(&mut store, &mut flash, &board, 0);
+    assert_eq!(store.stored_crc32(), Some(crc32(&fine)));
+
+    let mut memory = Memory::new();
+    let (mut board, _) = start_after_faults(&mut memory, &flash, 0);
+    let hello = board.hello();
+    assert_eq!((hello.scene_crc32, hello.notices), (crc32(&fine), 0));
+    assert!(played(&mut board).iter().any(|drive| drive.dac_code.bits() != 0));
+}
+
+/// There is nothing to skip, and nothing to say.
+#[test]
+fn a_board_that_has_stored_no_scene_skips_none() {
+    let mut memory = Memory::new();
+    let (mut board, _) = start_after_faults(&mut memory, &scene_flash(), 3);
+    assert_eq!(board.hello().notices, 0);
+}
+
 #[test]
 fn a_scene_is_written_once_and_only_after_the_board_was_disarmed_for_a_while() {
     let mut flash = scene_flash();
@@ -249,6 +363,114 @@ fn a_scene_is_written_once_and_only_after_the_board_was_disarmed_for_a_while() {
     board.load(&constant(0.01)).unwrap();
     finish_writing(&mut store, &mut flash, &board, 0);
     assert_eq!(flash.done, done, "the same scene is not written again");
+}
+
+/// Steps the scene store until its write has ended; time stands still.
+fn finish_writing_at(store: &mut SceneStore, flash: &mut SimulatedFlash, board: &TestBoard, tick: u32) {
+    for _ in 0..30_000 {
+        store.step(flash, &board.session, tick);
+    }
+}
+
+/// Loads a scene, and lets the board be disarmed with it until it may be stored.
+fn load_and_wait(board: &mut TestBoard, store: &mut SceneStore, flash: &mut SimulatedFlash, scene: &[u8], tick: u32) {
+    board.load(scene).unwrap();
+    store.step(flash, &board.session, tick);
+}
+
+#[test]
+fn two_writes_of_a_slot_are_45_minutes_apart_and_the_last_scene_wins() {
+    const INTERVAL_TICKS: u32 = 45 * 60 * 40_000;
+    let mut flash = scene_flash();
+    let mut memory = Memory::new();
+    let mut board = TestBoard::new(&mut memory);
+    let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
+    board.hello();
+    let mut begun = 100;
+    load_and_wait(&mut board, &mut store, &mut flash, &constant(0.01), begun);
+    begun += STORE_AFTER_TICKS;
+    finish_writing_at(&mut store, &mut flash, &board, begun);
+    assert_eq!(store.stored_crc32(), Some(crc32(&constant(0.01))), "the first does not wait");
+
+    // Over the wrap of the tick count, too: 2^32 ticks are some 40 intervals.
+    let mut erased = flash.done;
+    for number in 0..50 {
+        let scenes = [0.02, 0.03, 0.04].map(|newtons| constant(newtons + 1e-4 * number as f32));
+        for (scene, tenth) in scenes.iter().zip([2, 5, 8]) {
+            let tick = begun.wrapping_add(INTERVAL_TICKS / 10 * tenth);
+            load_and_wait(&mut board, &mut store, &mut flash, scene, tick);
+            finish_writing_at(&mut store, &mut flash, &board, tick.wrapping_add(STORE_AFTER_TICKS));
+        }
+        finish_writing_at(&mut store, &mut flash, &board, begun.wrapping_add(INTERVAL_TICKS - 1));
+        assert_eq!(flash.done, erased, "{number}");
+        begun = begun.wrapping_add(INTERVAL_TICKS);
+        finish_writing_at(&mut store, &mut flash, &board, begun);
+        assert_eq!(store.stored_crc32(), Some(crc32(&scenes[2])), "{number}");
+        erased = flash.done;
+    }
+}
+
+#[test]
+fn a_board_that_resets_again_and_again_does_not_write() {
+    let mut flash = scene_flash();
+    let causes = [ResetCause::Software, ResetCause::Watchdog, ResetCause::BrownOut, ResetCause::Other(9)];
+    for (number, reset_cause) in (1_u8..).zip(causes) {
+        let mut memory = Memory::new();
+        let mut board = TestBoard::of(Board { reset_cause, ..Board::SIMULATOR }, &mut memory);
+        let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
+        board.hello();
+        load_and_wait(&mut board, &mut store, &mut flash, &constant(0.01 * f32::from(number)), 0);
+        finish_writing_at(&mut store, &mut flash, &board, 44 * 60 * 40_000);
+        assert_eq!(flash.done, 0, "{reset_cause:?}");
+    }
+    for reset_cause in [ResetCause::PowerOn, ResetCause::Pin] {
+        let mut flash = scene_flash();
+        let mut memory = Memory::new();
+        let mut board = TestBoard::of(Board { reset_cause, ..Board::SIMULATOR }, &mut memory);
+        let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
+        board.hello();
+        load_and_wait(&mut board, &mut store, &mut flash, &constant(0.01), 0);
+        finish_writing_at(&mut store, &mut flash, &board, STORE_AFTER_TICKS);
+        assert!(flash.done > 0, "{reset_cause:?}: a person's scene is stored at once");
+    }
+}
+
+/// Its pages are erased already: to begin anew would wear them once more.
+#[test]
+fn a_write_that_arming_interrupts_goes_on_once_the_board_is_disarmed() {
+    let mut flash = scene_flash();
+    let mut memory = Memory::new();
+    let mut board = TestBoard::new(&mut memory);
+    let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
+    board.hello();
+    let scene = textured(&mut board);
+    load_and_wait(&mut board, &mut store, &mut flash, &scene, 0);
+    let mut uninterrupted = flash.clone();
+    let mut cuts = 0;
+    while store.stored_crc32().is_none() {
+        for _ in 0..300 {
+            store.step(&mut flash, &board.session, STORE_AFTER_TICKS);
+        }
+        board.command(Command::Arm).unwrap();
+        let done = flash.done;
+        finish_writing_at(&mut store, &mut flash, &board, STORE_AFTER_TICKS);
+        assert_eq!(flash.done, done);
+        board.command(Command::Disarm).unwrap();
+        board.press_switch();
+        cuts += 1;
+    }
+    assert!(cuts > 3, "{cuts}");
+    assert_eq!((store.stored_crc32(), store.failures()), (Some(crc32(&scene)), 0));
+
+    let mut memory = Memory::new();
+    let mut board = TestBoard::new(&mut memory);
+    let mut store = SceneStore::new(SCENE_SLOT, 40_000, &uninterrupted, &mut board.session);
+    board.hello();
+    let scene = textured(&mut board);
+    load_and_wait(&mut board, &mut store, &mut uninterrupted, &scene, 0);
+    finish_writing_at(&mut store, &mut uninterrupted, &board, STORE_AFTER_TICKS);
+    assert_eq!(uninterrupted.done, flash.done);
+    assert!(uninterrupted.bytes == flash.bytes);
 }
 
 #[test]

@@ -18,11 +18,11 @@ pub const MAGIC: [u8; 4] = *b"FRXL";
 /// Major protocol version of this crate, incremented by incompatible changes.
 pub const PROTOCOL_MAJOR: u8 = 1;
 /// Minor protocol version of this crate, incremented by additions that an older peer may ignore.
-pub const PROTOCOL_MINOR: u8 = 3;
+pub const PROTOCOL_MINOR: u8 = 4;
 /// Maximum length of a hello of any protocol, in bytes.
 pub const HELLO_MAX_LEN: usize = 128;
 /// Length of the hello that this crate writes, in bytes.
-pub const HELLO_LEN: usize = codec::FIXED_LEN + codec::LIMITS_LEN;
+pub const HELLO_LEN: usize = codec::FIXED_LEN + codec::VALUES_LEN;
 
 const _: () = assert!(HELLO_LEN <= HELLO_MAX_LEN && HELLO_MAX_LEN < PAYLOAD_MAX_LEN);
 
@@ -55,6 +55,51 @@ pub struct Hello {
     pub state: State,
     /// Limits of the board, encoded as tag-length-value.
     pub limits: BoardLimits,
+    /// What a person should know before playing ([`notice`]), encoded after the limits. Zero on boards of protocols
+    /// before 1.4.
+    pub notices: u8,
+}
+
+/// Bits of [`Hello::notices`]: what a person should know of a board before playing. Since protocol 1.4.
+pub mod notice {
+    /// The last starts of the board ended in faults one after the other, so this start left the stored scene alone.
+    /// Cleared once a scene is committed.
+    pub const STORED_SCENE_SKIPPED: u8 = 1;
+
+    /// The stored limits are not in effect, because one exceeds a ceiling of the firmware, or because a build with other
+    /// ceilings has stored them. The limits that are built in are in effect.
+    pub const STORED_LIMITS_REFUSED: u8 = 1 << 1;
+    /// The firmware was built to take stored limits above its ceilings for voltage and current.
+    pub const LIMITS_ABOVE_CEILINGS: u8 = 1 << 2;
+
+    /// What each notice means, and what to do, as a sentence without a full stop.
+    pub const SENTENCES: [(u8, &str); 3] = [
+        (
+            STORED_SCENE_SKIPPED,
+            "the board did not load its stored scene, because its last starts ended in faults: look at the last \
+             fault, then play another scene, which is stored in its place, or switch the board off and on to try the \
+             stored one again",
+        ),
+        (
+            STORED_LIMITS_REFUSED,
+            "the board does not use its stored limits, but those built into its firmware: one exceeds a ceiling, or \
+             a build with other ceilings has stored them; store them again with bring-up",
+        ),
+        (
+            LIMITS_ABOVE_CEILINGS,
+            "the board's firmware takes voltages and currents above the ceilings for a person who touches it: flash a \
+             build without the feature limits-above-ceilings before anybody does",
+        ),
+    ];
+}
+
+impl Hello {
+    /// What a person should know of the board before playing: a sentence without a full stop for each notice that this
+    /// crate knows.
+    pub fn notice_sentences(&self) -> impl Iterator<Item = &'static str> {
+        let notices = self.notices;
+        notice::SENTENCES.iter().filter(move |(bit, _)| notices & bit != 0).map(|(_, sentence)| *sentence)
+    }
 }
 
 /// Bits of [`Hello::features`]: the features enabled in the firmware build, in addition to constant layers and the

@@ -116,6 +116,9 @@ pub enum Command {
         /// The finger's number.
         finger: u8,
     },
+    /// Reads how long the ticks have taken. The board answers [`Accepted::TickTimes`]. Since protocol 1.4; refused by
+    /// a board without telemetry.
+    TickTimes,
 }
 
 /// Largest start level of a stream, in samples: it leaves room for two more frames in the smallest buffer.
@@ -196,6 +199,26 @@ pub enum Accepted {
         /// The text, padded with zeros.
         bytes: [u8; FAULT_TEXT_PIECE_LEN],
     },
+    /// How long the ticks have taken. Since protocol 1.4.
+    TickTimes(TickTimes),
+}
+
+/// Number of classes that [`TickTimes::histogram`] has below the deadline.
+pub const TICK_TIME_CLASSES: usize = 8;
+
+/// How long the ticks have taken since power-on, from the beginning of the tick's period until its drive was handed to
+/// the DAC. All zero but for the missed deadlines on a board that does not measure it, such as a simulated one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, MaxSize)]
+pub struct TickTimes {
+    /// Cycles of the processor after which a drive is too late; zero if the board does not measure its ticks.
+    pub deadline_cycles: u32,
+    /// Cycles of the longest tick.
+    pub worst_cycles: u32,
+    /// Missed deadlines, modulo 2^32: late drives, and ticks that had not ended when the next began.
+    pub missed_deadlines: u32,
+    /// Number of ticks that took up to one eighth of the deadline, up to two eighths, and so on; the last counts those
+    /// beyond the deadline. A count stays at 2^32 - 1.
+    pub histogram: [u32; TICK_TIME_CLASSES + 1],
 }
 
 /// The state of the output at one tick.

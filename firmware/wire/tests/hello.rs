@@ -5,7 +5,7 @@ mod support;
 
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::hello::{
-    BoardKind, BoardLimits, HELLO_LEN, HELLO_MAX_LEN, Hello, HelloError, Mismatch, PROTOCOL_MAJOR, ResetCause,
+    BoardKind, BoardLimits, HELLO_LEN, HELLO_MAX_LEN, Hello, HelloError, Mismatch, PROTOCOL_MAJOR, ResetCause, notice,
 };
 use support::hex::from_hex;
 use support::samples::hello;
@@ -50,11 +50,12 @@ fn the_layout_is_frozen() {
             touch_report_period_s: 5.0,
             tick_cycles_max: BoardLimits::SMALLEST_TICK_CYCLES_MAX,
         },
+        notices: 0,
     };
     assert_eq!(Hello::parse(&bytes), Ok(hello));
-    let since_1_3 = from_hex("0b 04 f6 09 00 00");
-    let mut expected = [bytes, since_1_3.clone()].concat();
-    expected[LIMITS_LEN_AT] += since_1_3.len() as u8;
+    let appended = from_hex("0b 04 f6 09 00 00  0c 01 00");
+    let mut expected = [bytes, appended.clone()].concat();
+    expected[LIMITS_LEN_AT] += appended.len() as u8;
     assert_eq!(expected.len(), HELLO_LEN);
     assert_eq!(hello.write().as_slice(), expected);
 }
@@ -72,7 +73,7 @@ fn a_hello_of_the_future_is_read() {
     let unknown = [200, 3, 1, 2, 3, 201, 0, 1, 2, 0xff, 0xff, 4, 1, 0xff];
     bytes.splice(LIMITS_AT..LIMITS_AT, unknown);
     bytes[LIMITS_LEN_AT] += unknown.len() as u8;
-    bytes.extend([0x55; 9]);
+    bytes.extend([0x55; 6]);
     assert!(bytes.len() <= HELLO_MAX_LEN);
     let read = Hello::parse(&bytes).unwrap();
     let expected = Hello {
@@ -100,12 +101,22 @@ fn limits_that_are_left_out_allow_nothing() {
     assert_eq!((limits.edge_time_constant_s, limits.touch_report_period_s), (0.0, 0.0));
     assert!(limits.electrode_capacitance_max_f.is_infinite());
     assert_eq!(limits.tick_cycles_max, BoardLimits::SMALLEST_TICK_CYCLES_MAX);
+    assert_eq!(Hello::parse(&bytes).unwrap().notices, 0);
+}
+
+/// A host of protocol 1.3 ignores the notices by their tag; they end the hello, so that what it knows stays in place.
+#[test]
+fn notices_are_the_last_value_of_the_hello() {
+    let with = Hello { notices: notice::STORED_SCENE_SKIPPED, ..hello() };
+    assert_eq!(Hello::parse(&with.write()), Ok(with));
+    assert_eq!(with.write()[HELLO_LEN - 3..], [12, 1, 1]);
+    assert_eq!(with.write()[..HELLO_LEN - 1], hello().write()[..HELLO_LEN - 1]);
 }
 
 /// An omitted limit has its default value; the others have the values sent.
 #[test]
 fn each_limit_is_read_by_its_tag() {
-    let whole = hello().write();
+    let whole = Hello { notices: 0xff, ..hello() }.write();
     let mut at = LIMITS_AT;
     let mut tags = 0;
     while at < whole.len() {
@@ -129,7 +140,7 @@ fn each_limit_is_read_by_its_tag() {
         at += len;
         tags += 1;
     }
-    assert_eq!(tags, 11);
+    assert_eq!(tags, 12);
 }
 
 /// A hello truncated at any byte is an error.
@@ -160,13 +171,13 @@ fn mismatch_says_which_side_to_change() {
     let older = Hello { protocol: (PROTOCOL_MAJOR - 1, 7), firmware: (0, 0, 9), ..hello() }.compatibility();
     assert_eq!(older, Err(Mismatch::BoardOlder { board: (PROTOCOL_MAJOR - 1, 7), firmware: (0, 0, 9) }));
     let sentence = older.unwrap_err().to_string();
-    assert!(sentence.contains("firmware 0.0.9 speaks protocol 0.7") && sentence.contains("speaks 1.3"), "{sentence}");
+    assert!(sentence.contains("firmware 0.0.9 speaks protocol 0.7") && sentence.contains("speaks 1.4"), "{sentence}");
     assert!(sentence.contains("flash newer firmware") && !sentence.contains("update"), "{sentence}");
 
     let newer = Hello { protocol: (PROTOCOL_MAJOR + 1, 3), ..hello() }.compatibility();
     assert_eq!(newer, Err(Mismatch::BoardNewer { board: (PROTOCOL_MAJOR + 1, 3), firmware: (0, 1, 0) }));
     let sentence = newer.unwrap_err().to_string();
-    assert!(sentence.contains("speaks protocol 2.3") && sentence.contains("speaks 1.3"), "{sentence}");
+    assert!(sentence.contains("speaks protocol 2.3") && sentence.contains("speaks 1.4"), "{sentence}");
     assert!(sentence.contains("update the frixel command") && !sentence.contains("flash"), "{sentence}");
 
     let short = Hello { frame_max_len: 191, ..hello() }.compatibility();

@@ -7,7 +7,7 @@ use std::fmt::Debug;
 
 use frixel_wire::fault::{Fault, Flags, State};
 use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, encode};
-use frixel_wire::hello::{BoardKind, BoardLimits, HELLO_LEN, Hello, MAGIC, ResetCause, feature};
+use frixel_wire::hello::{BoardKind, BoardLimits, HELLO_LEN, Hello, MAGIC, ResetCause, feature, notice};
 use frixel_wire::message::{
     Accepted, Command, ConfigField, ConfigRefusal, FAULT_TEXT_MAX_LEN, FAULT_TEXT_PIECE_LEN, FromBoard, Refusal,
     STREAM_START_LEVEL_MAX, TELEMETRY_PERIOD_MIN_TICKS,
@@ -118,6 +118,18 @@ fn features_have_the_bits_that_the_table_says() {
         (feature::RINGS, "RINGS"),
     ];
     assert_eq!(page, code);
+}
+
+#[test]
+fn notices_have_the_bits_that_the_table_says() {
+    let page: Vec<(u8, &str)> = numbered("Notices").into_iter().map(|(bit, name)| (1 << bit, name)).collect();
+    let code = [
+        (notice::STORED_SCENE_SKIPPED, "STORED_SCENE_SKIPPED"),
+        (notice::STORED_LIMITS_REFUSED, "STORED_LIMITS_REFUSED"),
+        (notice::LIMITS_ABOVE_CEILINGS, "LIMITS_ABOVE_CEILINGS"),
+    ];
+    assert_eq!(page, code);
+    assert_eq!(page.len(), notice::SENTENCES.len());
 }
 
 /// The fields that a table names, in order, are those of the value.

@@ -6,6 +6,7 @@ mod support;
 use std::collections::BTreeSet;
 
 use frixel_wire::fault::{Fault, Flags, State};
+use frixel_wire::hello::{Hello, notice};
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
 use frixel_wire::scene::SceneError;
 use support::samples;
@@ -145,4 +146,18 @@ fn config_refusals_name_the_place_and_the_unit() {
     );
     let open = ConfigRefusal { max: f32::INFINITY, ..refusal };
     assert!(open.to_string().ends_with("it takes 0.125 V or more"));
+}
+
+/// Bits that this crate does not know are left out: only a newer host can say what they mean.
+#[test]
+fn notices_are_said_with_a_cure() {
+    let said = |notices| Hello { notices, ..samples::hello() }.notice_sentences().collect::<Vec<_>>();
+    assert!(said(0).is_empty() && said(0x80).is_empty());
+    for (bit, sentence) in notice::SENTENCES {
+        assert_eq!(said(bit), [sentence]);
+        let (found, cure) = sentence.split_once(": ").expect(sentence);
+        assert!(found.starts_with("the board"), "{sentence}");
+        assert!(["play", "store", "flash"].iter().any(|verb| cure.contains(verb)), "{sentence}");
+    }
+    assert_eq!(said(u8::MAX).len(), notice::SENTENCES.len());
 }

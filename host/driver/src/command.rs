@@ -33,6 +33,7 @@ pub(super) fn name_of(command: &Command) -> &'static str {
         Command::EndStream => "end of a stream",
         Command::TouchFinger { .. } => "touch of a finger",
         Command::LiftFinger { .. } => "lift of a finger",
+        Command::TickTimes => "tick times",
     }
 }
 
@@ -55,6 +56,7 @@ pub(super) fn state_after(command: &Command) -> Option<State> {
         | Command::StartStream { .. }
         | Command::EndStream
         | Command::TouchFinger { .. }
-        | Command::LiftFinger { .. } => None,
+        | Command::LiftFinger { .. }
+        | Command::TickTimes => None,
     }
 }

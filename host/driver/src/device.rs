@@ -9,7 +9,7 @@ use frixel_layers::{Scene, features_of};
 use frixel_wire::fault::{Fault, Flags, State};
 use frixel_wire::frame::Decoder;
 use frixel_wire::hello::{Hello, feature};
-use frixel_wire::message::{Accepted, Command, FAULT_TEXT_MAX_LEN, FAULT_TEXT_PIECE_LEN, Telemetry};
+use frixel_wire::message::{Accepted, Command, FAULT_TEXT_MAX_LEN, FAULT_TEXT_PIECE_LEN, Telemetry, TickTimes};
 
 use super::command::name_of;
 use super::error::DeviceError;
@@ -208,6 +208,17 @@ impl<L: Link> Device<L> {
             }
         }
         Ok(String::from_utf8_lossy(&text).into_owned())
+    }
+
+    /// How long the board's ticks have taken; `None` if the board does not measure it, or is too old to be asked.
+    pub fn tick_times(&mut self) -> Result<Option<TickTimes>, DeviceError> {
+        if self.hello.protocol < (1, 4) || self.hello.features & feature::TELEMETRY == 0 {
+            return Ok(None);
+        }
+        match self.exchange.request(Command::TickTimes)? {
+            Accepted::TickTimes(times) if times.deadline_cycles > 0 => Ok(Some(times)),
+            _ => Ok(None),
+        }
     }
 
     /// Checks that the board answers.

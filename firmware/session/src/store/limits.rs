@@ -1,45 +1,213 @@
-//! Stored form of the limits that were measured on a board during bring-up.
+//! Stored form of the limits that were measured on a board during bring-up, and their ceilings.
+//!
+//! A person types measured limits in, and nothing on the board can tell a wrong number from a right one. So they are
+//! bounded twice, when they are stored and when they are read back: by [`VOLTAGE_CEILING_V_PEAK`],
+//! [`CURRENT_CEILING_A_RMS`] and [`CURRENT_CEILING_A_PEAK`]. The ceilings are those of boards that people touch: a
+//! simulated board stores no limits, and has its own. None of this is a certification.
 
-use frixel_wire::hello::BoardLimits;
+use core::fmt;
 
-/// Version of the layout.
-const VERSION: u32 = 1;
+use frixel_wire::hello::{BoardLimits, notice};
+
+use super::{Flash, Slot};
+
 /// Bytes of the stored limits: the version, then six numbers.
 pub const LIMITS_LEN: usize = 28;
-/// Largest voltage that is accepted, in V peak: no electrovibration screen takes more.
+
+/// Largest voltage that is stored, in V peak.
+///
+/// Behind 68 kOhm, a square carrier of 1 kHz and 200 V peak puts 0.60 mA peak through an intact coating, weighted as
+/// IEC 60990 does (Fig. 4, unread), of the 0.7 mA that IEC 61010-1, 6.3.1 (unread) allows in normal use: a margin of
+/// 14 %. A bridged coating, a single fault, lets 2.36 mA through, of the 5 mA of 6.3.2 (unread).
+pub const VOLTAGE_CEILING_V_PEAK: f32 = 200.0;
+/// Largest rms current that is stored, in A: what IEC 61010-1, 6.3.1 (unread) allows in normal use.
+///
+/// The board compares currents without the weighting of IEC 60990, which only makes them smaller: a sine of 1 kHz by a
+/// factor of 1.7, the margin.
+pub const CURRENT_CEILING_A_RMS: f32 = 0.5e-3;
+/// Largest peak current that is stored, in A: what IEC 61010-1, 6.3.2 (unread) allows in a single-fault condition.
+///
+/// Compared without the weighting of IEC 60990, too. With it, a current of 5 mA that decays within 36 us, as at the
+/// carrier's edges behind 68 kOhm, counts as 0.51 mA, of the 0.7 mA of 6.3.1 (unread): a margin of 27 %.
+pub const CURRENT_CEILING_A_PEAK: f32 = 5e-3;
+
+/// Part of a ceiling by which a number may exceed it, because numbers that are typed in mA are rounded.
+const ROUNDING: f32 = 1e-6;
+/// Largest voltage that is plausible without ceilings, in V peak: no electrovibration screen takes more.
 const VOLTAGE_MAX_V_PEAK: f32 = 500.0;
 /// Upper bound of all stored numbers, in any unit.
 const NUMBER_MAX: f32 = 1e9;
 
-/// Writes the measured limits as bytes to store.
-pub fn write_limits(limits: &BoardLimits) -> [u8; LIMITS_LEN] {
-    let mut bytes = [0; LIMITS_LEN];
-    let numbers = measured(limits).map(f32::to_bits);
-    for (to, from) in bytes.as_chunks_mut().0.iter_mut().zip([VERSION].into_iter().chain(numbers)) {
-        *to = from.to_le_bytes();
-    }
-    bytes
+/// Whether a firmware build bounds the stored limits by the ceilings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ceilings {
+    /// Limits above a ceiling are refused. What every board is built with unless its maker decides otherwise.
+    InForce,
+    /// Limits above the ceilings are stored and used, and the hello says so ([`notice::LIMITS_ABOVE_CEILINGS`]).
+    Lifted,
 }
 
-/// Returns `limits` with the stored numbers; `None` if their layout is unknown or a number is out of range.
-pub fn read_limits(bytes: &[u8; LIMITS_LEN], limits: &BoardLimits) -> Option<BoardLimits> {
+impl Ceilings {
+    /// Version of the layout. It differs, so that a build takes no limits that a build of the other kind stored.
+    const fn version(self) -> u32 {
+        match self {
+            Self::InForce => 1,
+            Self::Lifted => 2,
+        }
+    }
+
+    /// The notices of a board that is built with these ceilings.
+    const fn notices(self) -> u8 {
+        match self {
+            Self::InForce => 0,
+            Self::Lifted => notice::LIMITS_ABOVE_CEILINGS,
+        }
+    }
+}
+
+/// Why limits are not stored, or stored limits are not used.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LimitsError {
+    /// The layout is not that of this build: another build has stored them.
+    Layout,
+    /// A number is not positive or not finite, or the voltage is above the full scale or above 500 V.
+    Implausible,
+    /// The voltage is above [`VOLTAGE_CEILING_V_PEAK`].
+    VoltagePeak {
+        /// The voltage, in V peak.
+        found: f32,
+    },
+    /// The rms current is above [`CURRENT_CEILING_A_RMS`].
+    CurrentRms {
+        /// The current, in A.
+        found: f32,
+    },
+    /// The peak current is above [`CURRENT_CEILING_A_PEAK`].
+    CurrentPeak {
+        /// The current, in A.
+        found: f32,
+    },
+}
+
+impl fmt::Display for LimitsError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Layout => f.write_str("the stored limits are of another firmware build: store them again"),
+            Self::Implausible => f.write_str(
+                "the limits must be positive numbers, and the largest voltage at most the full scale and 500 V: \
+                 measure again",
+            ),
+            Self::VoltagePeak { found } => {
+                write!(f, "the largest voltage is {found} V peak, its ceiling {VOLTAGE_CEILING_V_PEAK} V: lower it")
+            }
+            Self::CurrentRms { found } => write!(
+                f,
+                "the largest current is {} mA rms, its ceiling {} mA: lower it",
+                1e3 * found,
+                1e3 * CURRENT_CEILING_A_RMS
+            ),
+            Self::CurrentPeak { found } => write!(
+                f,
+                "the largest current is {} mA peak, its ceiling {} mA: lower it",
+                1e3 * found,
+                1e3 * CURRENT_CEILING_A_PEAK
+            ),
+        }
+    }
+}
+
+impl core::error::Error for LimitsError {}
+
+/// Checks limits against the ceilings. A board asserts it of the limits that are built in.
+pub const fn check_ceilings(limits: &BoardLimits) -> Result<(), LimitsError> {
+    const fn exceeds(number: f32, ceiling: f32) -> bool {
+        number > ceiling * (1.0 + ROUNDING)
+    }
+    if exceeds(limits.voltage_max_v_peak, VOLTAGE_CEILING_V_PEAK) {
+        Err(LimitsError::VoltagePeak { found: limits.voltage_max_v_peak })
+    } else if exceeds(limits.current_max_a_rms, CURRENT_CEILING_A_RMS) {
+        Err(LimitsError::CurrentRms { found: limits.current_max_a_rms })
+    } else if exceeds(limits.current_max_a_peak, CURRENT_CEILING_A_PEAK) {
+        Err(LimitsError::CurrentPeak { found: limits.current_max_a_peak })
+    } else {
+        Ok(())
+    }
+}
+
+/// Writes the measured limits as bytes to store. Refuses limits that [`read_limits`] would refuse.
+pub fn write_limits(limits: &BoardLimits, ceilings: Ceilings) -> Result<[u8; LIMITS_LEN], LimitsError> {
+    check(limits, ceilings)?;
+    let mut bytes = [0; LIMITS_LEN];
+    let numbers = measured(limits).map(f32::to_bits);
+    for (to, from) in bytes.as_chunks_mut().0.iter_mut().zip([ceilings.version()].into_iter().chain(numbers)) {
+        *to = from.to_le_bytes();
+    }
+    Ok(bytes)
+}
+
+/// Returns `limits` with the stored numbers.
+pub fn read_limits(
+    bytes: &[u8; LIMITS_LEN],
+    limits: &BoardLimits,
+    ceilings: Ceilings,
+) -> Result<BoardLimits, LimitsError> {
     let (words, _) = bytes.as_chunks::<4>();
-    let [version, numbers @ ..] = words else { return None };
-    let mut numbers = numbers.iter().map(|number| f32::from_le_bytes(*number));
-    let plausible = numbers.clone().all(|number| number > 0.0 && number < NUMBER_MAX);
+    let [version, numbers @ ..] = words else { return Err(LimitsError::Layout) };
+    let &[voltage, full_scale, edge, electrode, current_rms, current_peak] = numbers else {
+        return Err(LimitsError::Layout);
+    };
+    if u32::from_le_bytes(*version) != ceilings.version() {
+        return Err(LimitsError::Layout);
+    }
     let limits = BoardLimits {
-        voltage_max_v_peak: numbers.next()?,
-        full_scale_v_peak: numbers.next()?,
-        edge_time_constant_s: numbers.next()?,
-        electrode_capacitance_max_f: numbers.next()?,
-        current_max_a_rms: numbers.next()?,
-        current_max_a_peak: numbers.next()?,
+        voltage_max_v_peak: f32::from_le_bytes(voltage),
+        full_scale_v_peak: f32::from_le_bytes(full_scale),
+        edge_time_constant_s: f32::from_le_bytes(edge),
+        electrode_capacitance_max_f: f32::from_le_bytes(electrode),
+        current_max_a_rms: f32::from_le_bytes(current_rms),
+        current_max_a_peak: f32::from_le_bytes(current_peak),
         ..*limits
     };
-    let plausible = plausible
+    check(&limits, ceilings).map(|()| limits)
+}
+
+/// The limits with which a board starts, and its notices: what is stored in `slot`, or else what is built in.
+/// `flash` is `None` on a board without a usable flash.
+pub fn load_limits<F: Flash>(
+    flash: Option<&F>,
+    slot: Slot,
+    built_in: &BoardLimits,
+    ceilings: Ceilings,
+) -> (BoardLimits, u8) {
+    match flash.and_then(|flash| find_limits(flash, slot, built_in, ceilings)) {
+        None => (*built_in, ceilings.notices()),
+        Some(Ok(stored)) => (stored, ceilings.notices()),
+        Some(Err(_)) => (*built_in, ceilings.notices() | notice::STORED_LIMITS_REFUSED),
+    }
+}
+
+/// `None` if no good copy is stored.
+fn find_limits<F: Flash>(
+    flash: &F,
+    slot: Slot,
+    built_in: &BoardLimits,
+    ceilings: Ceilings,
+) -> Option<Result<BoardLimits, LimitsError>> {
+    let found = slot.find(flash)?;
+    let mut bytes = [0; LIMITS_LEN];
+    let is_read = found.len as usize == LIMITS_LEN && slot.read(flash, &found, 0, &mut bytes);
+    Some(if is_read { read_limits(&bytes, built_in, ceilings) } else { Err(LimitsError::Layout) })
+}
+
+fn check(limits: &BoardLimits, ceilings: Ceilings) -> Result<(), LimitsError> {
+    let is_plausible = measured(limits).iter().all(|number| *number > 0.0 && *number < NUMBER_MAX)
         && limits.voltage_max_v_peak <= limits.full_scale_v_peak
         && limits.voltage_max_v_peak <= VOLTAGE_MAX_V_PEAK;
-    (u32::from_le_bytes(*version) == VERSION && plausible).then_some(limits)
+    match ceilings {
+        _ if !is_plausible => Err(LimitsError::Implausible),
+        Ceilings::InForce => check_ceilings(limits),
+        Ceilings::Lifted => Ok(()),
+    }
 }
 
 /// The numbers that are measured during bring-up, in the order in which they are stored.
@@ -59,37 +227,87 @@ mod tests {
     use super::*;
     use frixel_control::Board;
 
+    /// The limits of a simulated board are above the ceilings: nobody can touch it.
     const DEFAULTS: BoardLimits = Board::SIMULATOR.limits;
+    const MEASURED: BoardLimits = BoardLimits {
+        voltage_max_v_peak: 120.0,
+        full_scale_v_peak: 201.5,
+        edge_time_constant_s: 23e-6,
+        electrode_capacitance_max_f: 0.4e-9,
+        current_max_a_rms: 0.4e-3,
+        current_max_a_peak: 2e-3,
+        ..DEFAULTS
+    };
 
     #[test]
     fn limits_come_back_as_they_were() {
-        let limits = BoardLimits {
-            voltage_max_v_peak: 120.0,
-            full_scale_v_peak: 201.5,
-            edge_time_constant_s: 23e-6,
-            electrode_capacitance_max_f: 0.4e-9,
-            current_max_a_rms: 0.4e-3,
-            current_max_a_peak: 2e-3,
-            ..DEFAULTS
-        };
-        assert_eq!(read_limits(&write_limits(&limits), &DEFAULTS), Some(limits));
+        for ceilings in [Ceilings::InForce, Ceilings::Lifted] {
+            let bytes = write_limits(&MEASURED, ceilings).unwrap();
+            assert_eq!(read_limits(&bytes, &DEFAULTS, ceilings), Ok(MEASURED));
+        }
+    }
+
+    /// Limits of a build without ceilings, as if this build had stored them.
+    fn forged(limits: &BoardLimits) -> [u8; LIMITS_LEN] {
+        let mut bytes = [0; LIMITS_LEN];
+        for (to, from) in
+            bytes.as_chunks_mut().0.iter_mut().zip([1].into_iter().chain(measured(limits).map(f32::to_bits)))
+        {
+            *to = from.to_le_bytes();
+        }
+        bytes
     }
 
     #[test]
     fn numbers_that_no_board_has_are_not_believed() {
         for limits in [
-            BoardLimits { voltage_max_v_peak: 501.0, full_scale_v_peak: 600.0, ..DEFAULTS },
-            BoardLimits { voltage_max_v_peak: DEFAULTS.full_scale_v_peak * 1.1, ..DEFAULTS },
-            BoardLimits { voltage_max_v_peak: f32::NAN, ..DEFAULTS },
-            BoardLimits { full_scale_v_peak: f32::INFINITY, ..DEFAULTS },
-            BoardLimits { edge_time_constant_s: 0.0, ..DEFAULTS },
-            BoardLimits { electrode_capacitance_max_f: -1e-9, ..DEFAULTS },
-            BoardLimits { current_max_a_rms: f32::NAN, ..DEFAULTS },
+            BoardLimits { voltage_max_v_peak: 501.0, full_scale_v_peak: 600.0, ..MEASURED },
+            BoardLimits { voltage_max_v_peak: MEASURED.full_scale_v_peak * 1.1, ..MEASURED },
+            BoardLimits { voltage_max_v_peak: f32::NAN, ..MEASURED },
+            BoardLimits { full_scale_v_peak: f32::INFINITY, ..MEASURED },
+            BoardLimits { edge_time_constant_s: 0.0, ..MEASURED },
+            BoardLimits { electrode_capacitance_max_f: -1e-9, ..MEASURED },
+            BoardLimits { current_max_a_rms: f32::NAN, ..MEASURED },
         ] {
-            assert_eq!(read_limits(&write_limits(&limits), &DEFAULTS), None, "{limits:?}");
+            for ceilings in [Ceilings::InForce, Ceilings::Lifted] {
+                assert_eq!(write_limits(&limits, ceilings), Err(LimitsError::Implausible), "{limits:?}");
+            }
+            let read = read_limits(&forged(&limits), &DEFAULTS, Ceilings::InForce);
+            assert_eq!(read, Err(LimitsError::Implausible), "{limits:?}");
         }
-        let mut bytes = write_limits(&DEFAULTS);
-        bytes[0] += 1;
-        assert_eq!(read_limits(&bytes, &DEFAULTS), None);
+    }
+
+    #[test]
+    fn limits_above_a_ceiling_are_neither_stored_nor_read_back() {
+        let above = |ceiling: f32| ceiling * 1.001;
+        let (volts, rms, peak) = (above(200.0), above(0.5e-3), above(5e-3));
+        for (limits, error) in [
+            (BoardLimits { voltage_max_v_peak: volts, ..MEASURED }, LimitsError::VoltagePeak { found: volts }),
+            (BoardLimits { current_max_a_rms: rms, ..MEASURED }, LimitsError::CurrentRms { found: rms }),
+            (BoardLimits { current_max_a_peak: peak, ..MEASURED }, LimitsError::CurrentPeak { found: peak }),
+        ] {
+            assert_eq!(write_limits(&limits, Ceilings::InForce), Err(error));
+            assert_eq!(read_limits(&forged(&limits), &DEFAULTS, Ceilings::InForce), Err(error));
+            assert!(error.to_string().contains("ceiling"), "{error}");
+            let bytes = write_limits(&limits, Ceilings::Lifted).unwrap();
+            assert_eq!(read_limits(&bytes, &DEFAULTS, Ceilings::Lifted), Ok(limits));
+        }
+        // As bring-up computes them from numbers in mA.
+        let at_the_ceilings = BoardLimits {
+            voltage_max_v_peak: 200.0,
+            current_max_a_rms: 0.5 * 1e-3,
+            current_max_a_peak: 5.0 * 1e-3,
+            ..MEASURED
+        };
+        assert!(write_limits(&at_the_ceilings, Ceilings::InForce).is_ok());
+    }
+
+    #[test]
+    fn limits_of_a_build_with_other_ceilings_are_not_taken() {
+        let (in_force, lifted) = (Ceilings::InForce, Ceilings::Lifted);
+        for (written, read) in [(in_force, lifted), (lifted, in_force)] {
+            let bytes = write_limits(&MEASURED, written).unwrap();
+            assert_eq!(read_limits(&bytes, &DEFAULTS, read), Err(LimitsError::Layout));
+        }
     }
 }

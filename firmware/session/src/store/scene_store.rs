@@ -3,14 +3,27 @@
 use super::{Flash, Found, Slot, Writer, Writing};
 use crate::Session;
 
-/// A new scene is written after the board has been disarmed with it for this time, in s. A page bears some 10,000
-/// erasures; the delay avoids wear by a host that commits, arms and plays, or that tries one scene after another.
+/// A new scene is written after the board has been disarmed with it for this time, in s. The delay avoids wear by a
+/// host that commits, arms and plays.
 const STORE_AFTER_S: u32 = 2;
+
+/// Erasures that a page bears: the least that the STM32G474 is specified for (DS12288, "Flash memory endurance and data
+/// retention", unread). A page that bears less is found when the copy is read back; the copy before then stays.
+const PAGE_ERASURES: u32 = 10_000;
+/// Time for which a slot lasts with a host that changes the scene all the time, in s: 5 years of 250 days of 8 hours.
+const LIFE_S: u32 = 5 * 250 * 8 * 3600;
+/// Shortest time between the beginnings of two writes, in s: 45 minutes. Two thirds of the erasures of two copies are
+/// used up in [`LIFE_S`]. The margin is the last third: the first write after a power-on does not wait, and five
+/// power-ons on each of those days fit into it.
+const WRITE_INTERVAL_S: u32 = LIFE_S / (2 * PAGE_ERASURES / 3 * 2);
 
 /// Keeps the last scene over power-off.
 pub struct SceneStore {
     slot: Slot,
     store_after_ticks: u32,
+    write_interval_ticks: u32,
+    /// When the last write began; `None` if that was long enough ago for the next one.
+    last_write_tick: Option<u32>,
     found: Option<Found>,
     /// CRC-32 of the scene that is stored, or that could not be stored.
     stored_crc32: Option<u32>,
@@ -28,21 +41,47 @@ struct Pending {
 impl SceneStore {
     /// Finds the scene that is stored in `slot`, and commits it in `session`, which then orders the ticker to load it.
     /// This does not arm the board.
+    ///
+    /// After three starts in a row that ended in a fault ([`Board::reset_fault_starts`]), the stored scene is left alone
+    /// and the hello says so ([`notice::STORED_SCENE_SKIPPED`]). It stays stored until another scene takes its place,
+    /// and a start that does not follow three faults loads it again.
+    ///
+    /// [`Board::reset_fault_starts`]: frixel_control::Board::reset_fault_starts
+    /// [`notice::STORED_SCENE_SKIPPED`]: frixel_wire::hello::notice::STORED_SCENE_SKIPPED
     pub fn new<F: Flash>(slot: Slot, tick_hz: u32, flash: &F, session: &mut Session) -> Self {
         let found = slot.find(flash);
-        if let Some(found) = &found {
+        if let Some(found) = &found
+            && !session.skips_stored_scene()
+        {
             session.restore(|offset, bytes| slot.read(flash, found, offset, bytes));
         }
         let stored_crc32 = session.crc32_to_store();
-        let store_after_ticks = STORE_AFTER_S * tick_hz;
-        Self { slot, store_after_ticks, found, stored_crc32, pending: None, failures: 0 }
+        Self {
+            slot,
+            store_after_ticks: STORE_AFTER_S * tick_hz,
+            write_interval_ticks: WRITE_INTERVAL_S * tick_hz,
+            last_write_tick: (!session.was_started_by_a_person()).then_some(0),
+            found,
+            stored_crc32,
+            pending: None,
+            failures: 0,
+        }
     }
 
-    /// Does the next small step without waiting; call it repeatedly. A write under way is abandoned as soon as the
-    /// board is armed or has another scene.
+    /// Does the next small step without waiting; call it repeatedly, with the ticks since the start.
+    ///
+    /// Two writes begin at least 45 minutes apart, so that a host that changes the scene all the time does not wear the
+    /// flash out. A scene that is committed meanwhile is written after that time, unless another has taken its place;
+    /// a power-off before loses it, and the scene stored last is loaded at the next start. The first write after the
+    /// power came on, or the reset pin was used, does not wait. After any other reset it does: a board that resets
+    /// again and again does not write.
+    ///
+    /// A write under way pauses while the board is armed, and ends when the board has another scene.
     pub fn step<F: Flash>(&mut self, flash: &mut F, session: &Session, now_tick: u32) {
+        let waits = |tick: &u32| now_tick.wrapping_sub(*tick) < self.write_interval_ticks;
+        self.last_write_tick = self.last_write_tick.filter(waits);
         let Some(scene) = session.scene_to_store().filter(|scene| Some(scene.crc32()) != self.stored_crc32) else {
-            self.pending = None;
+            self.pending.take_if(|pending| pending.writer.is_none());
             // Let an operation that began before arming end: polling it locks the flash again.
             let _ = flash.operation();
             return;
@@ -52,7 +91,8 @@ impl SceneStore {
             Some(pending) if pending.crc32 == scene.crc32() => pending,
             other => other.insert(begun),
         };
-        if now_tick.wrapping_sub(pending.since_tick) < self.store_after_ticks {
+        let is_early = now_tick.wrapping_sub(pending.since_tick) < self.store_after_ticks;
+        if pending.writer.is_none() && (is_early || self.last_write_tick.is_some()) {
             let _ = flash.operation();
             return;
         }
@@ -60,21 +100,18 @@ impl SceneStore {
             Some(writer) => writer.step(flash, |offset| scene.word(offset)),
             writer_slot => {
                 *writer_slot = Writer::new::<F>(self.slot, self.found.as_ref(), scene.len_to_keep());
+                self.last_write_tick = writer_slot.as_ref().map(|_| now_tick);
                 if writer_slot.is_some() { Writing::UnderWay } else { Writing::Failed }
             }
         };
         match writing {
-            Writing::UnderWay => {}
-            Writing::Done(found) => {
-                self.found = Some(found);
-                self.stored_crc32 = Some(scene.crc32());
-            }
-            Writing::Failed => {
-                self.failures = self.failures.wrapping_add(1);
-                // Do not try again: a page that has failed is likely to fail again.
-                self.stored_crc32 = Some(scene.crc32());
-            }
+            Writing::UnderWay => return,
+            Writing::Done(found) => self.found = Some(found),
+            // Do not try again: a page that has failed is likely to fail again.
+            Writing::Failed => self.failures = self.failures.wrapping_add(1),
         }
+        self.stored_crc32 = Some(scene.crc32());
+        self.pending = None;
     }
 
     /// CRC-32 of the scene that is stored, or that could not be stored; `None` if nothing is stored.

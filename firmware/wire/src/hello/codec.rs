@@ -9,7 +9,9 @@ use crate::fault::{Fault, State};
 /// Number of bytes before the limits.
 pub(super) const FIXED_LEN: usize = 44;
 /// Bytes of all the limits that this crate knows, tags and lengths included: one of 1 byte, one of 2, nine of 4.
-pub(super) const LIMITS_LEN: usize = 11 * 2 + 1 + 2 + 9 * 4;
+const LIMITS_LEN: usize = 11 * 2 + 1 + 2 + 9 * 4;
+/// Bytes of the limits and of the notices.
+pub(super) const VALUES_LEN: usize = LIMITS_LEN + 2 + 1;
 
 const TAG_BITMAP_POOL_BYTES: u8 = 1;
 const TAG_RECORDS_MAX: u8 = 2;
@@ -22,6 +24,7 @@ const TAG_CURRENT_MAX_A_RMS: u8 = 8;
 const TAG_CURRENT_MAX_A_PEAK: u8 = 9;
 const TAG_TOUCH_REPORT_PERIOD_S: u8 = 10;
 const TAG_TICK_CYCLES_MAX: u8 = 11;
+const TAG_NOTICES: u8 = 12;
 
 /// Why bytes are not a hello of any protocol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,8 +74,9 @@ impl Hello {
         put_u8::<37, _>(&mut b, self.last_fault.map_or(0, Fault::number));
         put_u32::<38, _>(&mut b, self.fault_detail);
         put_u8::<42, _>(&mut b, self.state.number());
-        put_u8::<43, _>(&mut b, LIMITS_LEN as u8);
+        put_u8::<43, _>(&mut b, VALUES_LEN as u8);
         put::<FIXED_LEN, LIMITS_LEN, _>(&mut b, self.limits.write());
+        put::<{ FIXED_LEN + LIMITS_LEN }, 3, _>(&mut b, [TAG_NOTICES, 1, self.notices]);
         b
     }
 
@@ -84,7 +88,14 @@ impl Hello {
             return Err(HelloError::Magic { found: magic });
         }
         let (b, rest) = bytes.split_first_chunk::<FIXED_LEN>().ok_or(truncated)?;
-        let limits = rest.get(..usize::from(get_u8::<43, _>(b))).ok_or(truncated)?;
+        let values = rest.get(..usize::from(get_u8::<43, _>(b))).ok_or(truncated)?;
+        let (mut limits, mut notices) = (BoardLimits::UNSTATED, 0);
+        for value in tagged(values) {
+            match value.ok_or(truncated)? {
+                (TAG_NOTICES, &[bits]) => notices = bits,
+                (tag, value) => limits.set(tag, value),
+            }
+        }
         Ok(Self {
             protocol: (get_u8::<4, _>(b), get_u8::<5, _>(b)),
             firmware: (get_u8::<6, _>(b), get_u8::<7, _>(b), get_u8::<8, _>(b)),
@@ -98,7 +109,8 @@ impl Hello {
             last_fault: Fault::try_from(get_u8::<37, _>(b)).ok(),
             fault_detail: get_u32::<38, _>(b),
             state: State::try_from(get_u8::<42, _>(b)).unwrap_or(State::Faulted),
-            limits: BoardLimits::parse(limits).ok_or(truncated)?,
+            limits,
+            notices,
         })
     }
 }
@@ -118,18 +130,6 @@ impl BoardLimits {
         limit::<49, 4>(&mut b, TAG_TOUCH_REPORT_PERIOD_S, self.touch_report_period_s.to_le_bytes());
         limit::<55, 4>(&mut b, TAG_TICK_CYCLES_MAX, self.tick_cycles_max.to_le_bytes());
         b
-    }
-
-    /// `None` if the last limit is truncated.
-    fn parse(mut bytes: &[u8]) -> Option<Self> {
-        let mut limits = Self::UNSTATED;
-        while let Some((&tag, rest)) = bytes.split_first() {
-            let (&len, rest) = rest.split_first()?;
-            let (value, rest) = rest.split_at_checked(usize::from(len))?;
-            limits.set(tag, value);
-            bytes = rest;
-        }
-        Some(limits)
     }
 
     /// Stores a limit. A limit with an unknown tag or an unexpected length is ignored.
@@ -161,6 +161,16 @@ impl BoardLimits {
             _ => None,
         }
     }
+}
+
+/// The tags and values of these bytes, one after the other; ends with a `None` if the last one is truncated.
+fn tagged(mut bytes: &[u8]) -> impl Iterator<Item = Option<(u8, &[u8])>> {
+    core::iter::from_fn(move || {
+        let (tag, rest) = bytes.split_first()?;
+        let value = rest.split_first().and_then(|(len, rest)| rest.split_at_checked(usize::from(*len)));
+        bytes = value.map_or(&[], |(_, rest)| rest);
+        Some(value.map(|(value, _)| (*tag, value)))
+    })
 }
 
 /// Writes tag, length and value of a limit.

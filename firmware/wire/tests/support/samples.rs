@@ -2,9 +2,10 @@
 
 use frixel_wire::fault::{Fault, Flags, State};
 use frixel_wire::frame::FRAME_MAX_LEN;
-use frixel_wire::hello::{BoardKind, BoardLimits, Hello, ResetCause};
+use frixel_wire::hello::{BoardKind, BoardLimits, Hello, ResetCause, notice};
 use frixel_wire::message::{
-    Accepted, Answer, Command, ConfigField, ConfigRefusal, FromBoard, Refusal, Request, Telemetry,
+    Accepted, Answer, Command, ConfigField, ConfigRefusal, FromBoard, Refusal, Request, TICK_TIME_CLASSES, Telemetry,
+    TickTimes,
 };
 use frixel_wire::payload::{CHUNK_LEN, CHUNK_NUMBER_MAX, Payload, SAMPLES_MAX};
 use frixel_wire::scene::SceneError;
@@ -32,6 +33,8 @@ pub fn from_host() -> Vec<Payload<'static>> {
         Payload::Samples { first_index: 70_000, samples: &[[0xff, 0xff], [0x00, 0x80], [0x34, 0x12]] },
         Payload::Samples { first_index: u32::MAX, samples: &FULL_SAMPLES },
         Payload::HelloRequest { protocol: (1, 3) },
+        Payload::HelloRequest { protocol: (1, 4) },
+        Payload::Request(Request { sequence: 9, command: Command::TickTimes }),
     ]);
     payloads
 }
@@ -97,6 +100,7 @@ pub fn hello() -> Hello {
             touch_report_period_s: 0.01,
             tick_cycles_max: 2_000,
         },
+        notices: 0,
     }
 }
 
@@ -106,6 +110,7 @@ fn hellos() -> Vec<Hello> {
     hellos.extend((2..=6).map(|number| Hello { reset_cause: ResetCause::from(number), ..hello() }));
     hellos.extend(faults().map(|fault| Hello { last_fault: Some(fault), fault_detail: 0x0a0b_0c0d, ..hello() }));
     hellos.extend(STATES.map(|state| Hello { state, scene_crc32: 0xcbf4_3926, ..hello() }));
+    hellos.extend(notice::SENTENCES.map(|(notices, _)| Hello { protocol: (1, 4), notices, ..hello() }));
     hellos
 }
 
@@ -149,6 +154,27 @@ fn messages() -> Vec<FromBoard> {
         received_bytes: 200_000,
         state: State::Armed,
         outcome: Err(Refusal::Config(config_refusal(ConfigField::ElectricFrictionMax, ConfigRefusal::WHOLE_SCENE))),
+    }));
+    // Since protocol 1.4.
+    let measured = TickTimes {
+        deadline_cycles: 3_700,
+        worst_cycles: 2_131,
+        missed_deadlines: 2,
+        histogram: [0, 127, 128, 39_600, 300, 0, 0, 0, 1],
+    };
+    let longest = TickTimes {
+        deadline_cycles: u32::MAX,
+        worst_cycles: u32::MAX,
+        missed_deadlines: u32::MAX,
+        histogram: [u32::MAX; TICK_TIME_CLASSES + 1],
+    };
+    messages.extend([TickTimes::default(), measured, longest].map(|times| {
+        FromBoard::Answer(Answer {
+            sequence: 9,
+            received_bytes: 1_055,
+            state: State::Disarmed,
+            outcome: Ok(Accepted::TickTimes(times)),
+        })
     }));
     messages
 }

@@ -7,7 +7,7 @@ use frixel_layers::{Blend, Header, Layer, Record, Region, Stream};
 use frixel_testkit::HEADER;
 use frixel_wire::fault::State;
 use frixel_wire::hello::feature;
-use frixel_wire::message::{Command, Refusal};
+use frixel_wire::message::{Command, Refusal, TickTimes};
 
 use crate::fake_board::FakeBoard;
 use crate::virtual_link::{Fate, VirtualLink};
@@ -262,4 +262,21 @@ fn damaged_frames_of_the_board_are_counted() {
     assert_eq!(device.counters().frames_rejected, 0);
     device.ping().unwrap();
     assert_eq!(device.counters().frames_rejected, 1);
+}
+
+#[test]
+fn tick_times_are_read_only_from_a_board_that_knows_them() {
+    let measured = TickTimes { deadline_cycles: 3_700, worst_cycles: 2_131, ..TickTimes::default() };
+    for (protocol, features, board_says, found, is_asked) in [
+        ((1, 4), feature::TELEMETRY, measured, Some(measured), true),
+        ((1, 4), feature::TELEMETRY, TickTimes::default(), None, true),
+        ((1, 3), feature::TELEMETRY, measured, None, false),
+        ((1, 4), 0, measured, None, false),
+    ] {
+        let mut board = FakeBoard::new();
+        (board.hello.protocol, board.hello.features, board.tick_times) = (protocol, features, board_says);
+        let mut device = connected(VirtualLink::new(board));
+        assert_eq!(device.tick_times().unwrap(), found, "{protocol:?}");
+        assert_eq!(!device.into_link().board.commands.is_empty(), is_asked, "{protocol:?}");
+    }
 }

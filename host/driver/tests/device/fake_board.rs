@@ -6,7 +6,7 @@ use std::time::Duration;
 use frixel_wire::fault::{Flags, State};
 use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, crc32};
 use frixel_wire::hello::{BoardKind, BoardLimits, Hello, PROTOCOL_MAJOR, PROTOCOL_MINOR, ResetCause};
-use frixel_wire::message::{Accepted, Answer, Command, FromBoard, Refusal, Request, Telemetry};
+use frixel_wire::message::{Accepted, Answer, Command, FromBoard, Refusal, Request, Telemetry, TickTimes};
 use frixel_wire::payload::{Payload, from_board_frame, hello_frame};
 
 pub(crate) const TICK_HZ: u32 = 40_000;
@@ -43,6 +43,7 @@ pub(crate) struct FakeBoard {
     pub(crate) falls_to: Option<(Duration, State)>,
     /// Unsolicited bytes, and when to send them.
     pub(crate) says_at: Option<(Duration, Vec<u8>)>,
+    pub(crate) tick_times: TickTimes,
     /// Samples of the stream under way, and how many of them have been played: so many more at every ping.
     pub(crate) samples: Vec<u16>,
     pub(crate) plays_per_ping: usize,
@@ -82,6 +83,7 @@ impl FakeBoard {
             reset_at: None,
             falls_to: None,
             says_at: None,
+            tick_times: TickTimes::default(),
             samples: Vec::new(),
             plays_per_ping: 0,
             played: 0,
@@ -226,6 +228,7 @@ impl FakeBoard {
             Command::UploadBitmap { width, height, crc32 } => {
                 self.upload = Some(FakeUpload::new(true, usize::from(width) * usize::from(height), crc32));
             }
+            Command::TickTimes => return Ok(Accepted::TickTimes(self.tick_times)),
             Command::FaultText { .. } => return Ok(Accepted::FaultText { len: 0, bytes: [0; 32] }),
             Command::UploadEnd => self.end_upload()?,
             Command::Commit { crc32: meant } if self.scene.as_ref().is_some_and(|scene| crc32(scene) == meant) => {}
@@ -316,5 +319,6 @@ fn hello() -> Hello {
             receive_window_bytes: WINDOW,
             ..BoardLimits::UNSTATED
         },
+        notices: 0,
     }
 }

@@ -1,4 +1,4 @@
-//! What experiments with a person on a board have in common: they take minutes of that person's time, so whatever can
+//! What plays and experiments on a board have in common. Experiments take minutes of a person's time, so whatever can
 //! be wrong is found before they begin.
 
 use std::fs::{OpenOptions, remove_file};
@@ -10,6 +10,7 @@ use frixel_wire::hello::BoardLimits;
 
 use super::argument::{above_zero_to, number};
 use super::error::CommandError;
+use super::terminal::note;
 
 /// Highest voltage of an experiment, in volts rms.
 const VOLTAGE_MAX_V_RMS: f64 = 150.0;
@@ -17,9 +18,13 @@ const VOLTAGE_MAX_V_RMS: f64 = 150.0;
 /// little more.
 const PEAK_SHARE: f64 = 0.99;
 
-/// Connects to the board at a serial port, and rejects one whose electrode may not be driven.
+/// Connects to the board at a serial port, says what a person should know of it, and rejects one whose electrode may
+/// not be driven.
 pub(super) fn connect(port: &str, arm: bool) -> Result<Device<PortLink>, CommandError> {
     let device = Device::connect(PortLink::new(SerialLink::open(port, DEFAULT_BAUD)?))?;
+    for sentence in device.hello().notice_sentences() {
+        note(format_args!("note: {sentence}"));
+    }
     if arm || device.hello().board.is_simulated() {
         return Ok(device);
     }

@@ -39,7 +39,9 @@ fn describe(hello: &Hello) -> String {
         ("records", limits.records_max.to_string()),
         ("touch reports", format!("every {} ms", 1e3 * limits.touch_report_period_s)),
     ];
-    lines.iter().fold(String::new(), |text, (name, value)| text + &format!("{name:16} {value}\n"))
+    let notices = hello.notice_sentences().map(|sentence| ("note", sentence.to_owned()));
+    let lines = lines.into_iter().chain(notices);
+    lines.fold(String::new(), |text, (name, value)| text + &format!("{name:16} {value}\n"))
 }
 
 /// Names of the firmware's features; unknown features are printed as bits.
@@ -49,4 +51,46 @@ fn features(bits: u32) -> String {
     let names = named.map(|(_, name)| (*name).to_owned());
     let names: Vec<String> = names.chain((unnamed != 0).then(|| format!("{unnamed:#x}"))).collect();
     if names.is_empty() { "none".into() } else { names.join(", ") }
+}
+
+#[cfg(test)]
+mod tests {
+    use frixel_wire::fault::State;
+    use frixel_wire::hello::{BoardKind, BoardLimits, ResetCause, notice};
+
+    use super::*;
+
+    #[test]
+    fn info_says_each_notice_in_a_sentence_with_its_cure() {
+        let mut hello = Hello {
+            protocol: (1, 4),
+            firmware: (0, 1, 0),
+            board: BoardKind::NucleoG474re,
+            id: [0; 12],
+            tick_hz: 40_000,
+            frame_max_len: 192,
+            features: 0,
+            scene_crc32: 0,
+            reset_cause: ResetCause::Software,
+            last_fault: None,
+            fault_detail: 0,
+            state: State::Disarmed,
+            limits: BoardLimits::UNSTATED,
+            notices: 0,
+        };
+        assert!(!describe(&hello).contains("note"));
+        // Bits of a newer protocol are ignored.
+        hello.notices = 0x80;
+        assert!(!describe(&hello).contains("note"));
+        for (bit, cure) in [
+            (notice::STORED_SCENE_SKIPPED, "play another scene"),
+            (notice::STORED_LIMITS_REFUSED, "store them again"),
+            (notice::LIMITS_ABOVE_CEILINGS, "flash a build"),
+        ] {
+            hello.notices = bit;
+            let said = describe(&hello);
+            let notes: Vec<&str> = said.lines().filter(|line| line.starts_with("note ")).collect();
+            assert!(matches!(notes[..], [note] if note.contains(cure)), "{said}");
+        }
+    }
 }

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use frixel_driver::{DEFAULT_BAUD, Device, Event, SerialLink};
 use frixel_wire::fault::State;
+use frixel_wire::message::TickTimes;
 
 use super::error::CommandError;
 use super::terminal::print_line;
@@ -46,6 +47,7 @@ pub(super) fn run(args: &SelftestArgs) -> Result<(), CommandError> {
     };
     let mut checks = vec![fault, round_trip(&mut device)?];
     checks.extend(telemetry(&mut device, hello.tick_hz)?);
+    checks.push(tick_time(device.tick_times()?));
     let rejected = device.counters().frames_rejected;
     checks.push(Check { name: "clean line", passed: rejected == 0, found: format!("{rejected} damaged frames") });
     for Check { name, passed, found } in &checks {
@@ -107,6 +109,57 @@ fn telemetry(device: &mut Device<SerialLink>, tick_hz: u32) -> Result<[Check; 3]
     ])
 }
 
+/// Checks that no tick of the board was late since power-on.
+fn tick_time(times: Option<TickTimes>) -> Check {
+    let name = "tick time";
+    let Some(times) = times else {
+        return Check { name, passed: true, found: "this board does not measure its ticks".to_owned() };
+    };
+    let TickTimes { deadline_cycles, worst_cycles, missed_deadlines, histogram } = times;
+    let worst_percent = 100.0 * f64::from(worst_cycles) / f64::from(deadline_cycles);
+    let [in_time @ .., late] = histogram;
+    let classes = in_time.map(|count| count.to_string()).join(" ");
+    let found = format!(
+        "at most {worst_cycles} of {deadline_cycles} cycles ({worst_percent:.0} %), {missed_deadlines} deadlines \
+         missed; ticks by eighths of the deadline: {classes}, late: {late}"
+    );
+    Check { name, passed: missed_deadlines == 0 && late == 0, found }
+}
+
 fn in_ms(time: Duration) -> f64 {
     1e3 * time.as_secs_f64()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MEASURED: TickTimes = TickTimes {
+        deadline_cycles: 3_700,
+        worst_cycles: 2_131,
+        missed_deadlines: 0,
+        histogram: [0, 127, 128, 39_600, 300, 0, 0, 0, 0],
+    };
+
+    #[test]
+    fn the_worst_tick_the_histogram_and_missed_deadlines_are_said() {
+        let check = tick_time(Some(MEASURED));
+        assert!(check.passed);
+        for part in ["2131 of 3700 cycles (58 %)", "0 deadlines missed", "0 127 128 39600 300 0 0 0, late: 0"] {
+            assert!(check.found.contains(part), "{}", check.found);
+        }
+    }
+
+    #[test]
+    fn a_late_tick_and_a_missed_deadline_fail() {
+        assert!(!tick_time(Some(TickTimes { missed_deadlines: 1, ..MEASURED })).passed);
+        let late = TickTimes { worst_cycles: 3_900, histogram: [0, 0, 0, 9, 0, 0, 0, 0, 1], ..MEASURED };
+        assert!(!tick_time(Some(late)).passed);
+    }
+
+    #[test]
+    fn a_board_that_does_not_measure_its_ticks_says_so() {
+        let check = tick_time(None);
+        assert!(check.passed && check.found.contains("does not measure"), "{}", check.found);
+    }
 }

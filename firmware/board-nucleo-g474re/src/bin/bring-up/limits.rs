@@ -1,8 +1,8 @@
 //! The limits that bring-up starts from, and their place in flash.
 
-use board_nucleo_g474re::board::{LIMITS, LIMITS_SLOT, stored_limits};
+use board_nucleo_g474re::board::{CEILINGS, LIMITS, LIMITS_SLOT};
 use board_nucleo_g474re::flash::BankTwo;
-use frixel_session::store::{LIMITS_LEN, WORD_LEN, Writer, Writing, read_limits, write_limits};
+use frixel_session::store::{LIMITS_LEN, WORD_LEN, Writer, Writing, load_limits, write_limits};
 use frixel_wire::hello::BoardLimits;
 
 /// The limits of `src/board.rs`, with what the environment of the build says instead. `None` if something there is not
@@ -29,13 +29,13 @@ pub(crate) fn built_in() -> Option<BoardLimits> {
 
 /// Whether limits are within what this board may store.
 pub(crate) fn may_store(limits: &BoardLimits) -> bool {
-    read_limits(&write_limits(limits), &LIMITS).is_some()
+    write_limits(limits, CEILINGS).is_ok()
 }
 
 /// Stores limits and reads them back; `meanwhile` is called between two operations of the flash. `false` if that
 /// failed.
 pub(crate) fn store(flash: &mut BankTwo, limits: &BoardLimits, mut meanwhile: impl FnMut()) -> bool {
-    let bytes = write_limits(limits);
+    let Ok(bytes) = write_limits(limits, CEILINGS) else { return false };
     let found = LIMITS_SLOT.find(flash);
     let Some(mut writer) = Writer::new::<BankTwo>(LIMITS_SLOT, found.as_ref(), LIMITS_LEN as u32) else { return false };
     let word = |offset: u32| {
@@ -49,7 +49,7 @@ pub(crate) fn store(flash: &mut BankTwo, limits: &BoardLimits, mut meanwhile: im
         meanwhile();
         match writer.step(flash, word) {
             Writing::UnderWay => {}
-            Writing::Done(_) => return stored_limits(flash) == Some(*limits),
+            Writing::Done(_) => return load_limits(Some(&*flash), LIMITS_SLOT, &LIMITS, CEILINGS).0 == *limits,
             Writing::Failed => return false,
         }
     }

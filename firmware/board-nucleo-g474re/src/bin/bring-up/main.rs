@@ -11,6 +11,7 @@ mod start;
 mod still;
 mod terminal;
 
+use board_nucleo_g474re::board::CEILINGS;
 use board_nucleo_g474re::fault::{self, LastReset};
 use board_nucleo_g474re::flash::BankTwo;
 use board_nucleo_g474re::output::Output;
@@ -22,6 +23,7 @@ use defmt_rtt as _;
 use frixel_board::bring_up::{self, Injection};
 use frixel_control::Board;
 use frixel_drivers::fault_record::Text;
+use frixel_session::store::Ceilings;
 use frixel_wire::message::FAULT_TEXT_MAX_LEN;
 
 use bench::{NucleoBench, Stage};
@@ -58,6 +60,9 @@ fn main() -> ! {
     if let (Some((fault, _)), Injection::NotBegun) = (last_reset.fault, injection) {
         let text = str::from_utf8(last_reset.text).unwrap_or_default();
         terminal.say(format_args!("The last start ended in {fault} ({text})"));
+    }
+    if matches!(CEILINGS, Ceilings::Lifted) {
+        terminal.say(format_args!("This build stores limits above the ceilings: nobody may touch this board."));
     }
     let flash = BankTwo::new();
     let board = Board { limits, ..board::board(&last_reset, None) };

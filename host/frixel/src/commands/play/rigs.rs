@@ -1,12 +1,13 @@
 //! The boards that `--port` can name, and how to open them.
 
-use frixel::rigs::{PortLink, SimLink};
-use frixel_driver::{DEFAULT_BAUD, Device, SerialLink};
+use frixel::rigs::SimLink;
+use frixel_driver::Device;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
 use frixel_scene::recorder::Recorder;
 use frixel_scene::{CompileError, Program, Scene, compile, compile_draft};
 use frixel_wire::hello::{BoardLimits, Hello};
 
+use super::super::experiment;
 #[cfg(unix)]
 pub(super) use super::emulator::play_on_emulator;
 use super::follow::follow;
@@ -112,11 +113,8 @@ pub(super) fn play_on_port(
     live_scene: Option<LiveScene>,
     interrupt: &Interrupt,
 ) -> Result<Played, CommandError> {
-    let device = Device::connect(PortLink::new(SerialLink::open(&args.port, DEFAULT_BAUD)?))?;
+    let device = experiment::connect(&args.port, args.arm)?;
     let hello = *device.hello();
-    if !(args.arm || hello.board.is_simulated()) {
-        return Err(CommandError::NotArmed { port: args.port.clone() });
-    }
     let plan = Plan::new(args, scene, Target::Port, (&hello.limits, hello.tick_hz))?;
     check_measured(&plan.program, hello.board)?;
     follow(args, plan, device, live_scene, interrupt)
