@@ -70,7 +70,10 @@ impl Carrier {
         let lag_twice_s = DoubleSingle::TWO * DoubleSingle::from(self.edge_time_constant_s);
         let has_lag = self.edge_time_constant_s > 0.0;
         let square = match self.waveform {
-            Waveform::Square if has_lag => DoubleSingle::ONE / square_left(half_period_s / lag_twice_s),
+            Waveform::Square if has_lag => {
+                let lags = half_period_s / lag_twice_s;
+                DoubleSingle::ONE / tangent_deficit(lags, lags * lags)
+            }
             Waveform::Square => DoubleSingle::ONE,
             Waveform::Sine if has_lag => {
                 let ticks = DoubleSingle::from(self.half_period_ticks as f32);
@@ -98,30 +101,28 @@ impl Carrier {
     }
 }
 
-/// Part of a square wave's mean square that a lag leaves, `1 - tanh(r)/r`.
-fn square_left<T: Real>(r: T) -> T {
-    /// From here on `tanh` is one to the last bit of `f64`.
-    const STEEP: f32 = 20.0;
-    if r > T::from(STEEP) { T::ONE - T::ONE / r } else { tangent_deficit(r * r) }
-}
-
 /// Part of the mean square that a lag leaves of a sine of `half_period_ticks` ticks, of which each is `2 r` time
 /// constants.
 fn held_sine_left<T: Real>(r: T, half_period_ticks: T) -> T {
     let half_angle = T::from_f64(0.5 * PI) / half_period_ticks;
-    let tan = half_angle * (T::ONE - tangent_deficit(-(half_angle * half_angle)));
-    let kept = square_left(r);
+    let tan = half_angle * (T::ONE - tangent_deficit(half_angle, -(half_angle * half_angle)));
+    let kept = tangent_deficit(r, r * r);
     let tanh = r * (T::ONE - kept);
     let (tan_squared, tanh_squared) = (tan * tan, tanh * tanh);
     (tanh_squared + tan_squared * kept) / (tanh_squared + tan_squared)
 }
 
-/// `1 - tanh(r)/r` of `square = r^2`, and `1 - tan(r)/r` of `square = -r^2`, for `r` up to 20 or pi/4: by Lambert's
-/// continued fraction `tanh(r) = r/(1 + r^2/(3 + r^2/(5 + ...)))`, which keeps its digits for small `r` and is a tenth
-/// of the code of `tanh`.
-fn tangent_deficit<T: Real>(square: T) -> T {
+/// `1 - tanh(r)/r` if `square` is `r^2`, and `1 - tan(r)/r` if it is `-r^2` and `r` at most pi/4: by Lambert's continued
+/// fraction `tanh(r) = r/(1 + r^2/(3 + r^2/(5 + ...)))`, which keeps its digits for small `r` and is a tenth of the code
+/// of `tanh`.
+fn tangent_deficit<T: Real>(r: T, square: T) -> T {
+    /// From here on `tanh` is one to the last bit of `f64`.
+    const STEEP: f32 = 20.0;
     /// Terms that leave less than a last bit up to there.
     const TERMS: u16 = 32;
+    if r > T::from(STEEP) {
+        return T::ONE - T::ONE / r;
+    }
     let odd = |term: u16| T::from(f32::from(2 * term + 1));
     let tail = (1..TERMS).rev().fold(odd(TERMS), |tail, term| odd(term) + square / tail);
     square / (tail + square)
@@ -138,11 +139,11 @@ mod tests {
             let expected = 1.0 - libm::tanh(r) / r;
             // The expression that it is compared with loses digits for small r.
             let tolerance = 4.0 * f64::EPSILON * (1.0 + 1.0 / expected);
-            assert!((square_left(r) / expected - 1.0).abs() < tolerance, "{r}");
+            assert!((tangent_deficit(r, r * r) / expected - 1.0).abs() < tolerance, "{r}");
         }
         for r in [1e-3, 1e-6, 1e-9] {
             let series = r * r * (1.0 / 3.0 - r * r * (2.0 / 15.0 - 17.0 / 315.0 * r * r));
-            assert!((square_left(r) / series - 1.0).abs() < 4.0 * f64::EPSILON, "{r}");
+            assert!((tangent_deficit(r, r * r) / series - 1.0).abs() < 4.0 * f64::EPSILON, "{r}");
         }
     }
 

@@ -136,7 +136,7 @@ impl Carrier {
     }
 
     /// Ends a half period.
-    #[cold]
+    #[inline]
     fn turn(&mut self, timing: &CarrierTiming) {
         self.sign = -self.sign;
         self.left_ticks = timing.half_period_ticks;
