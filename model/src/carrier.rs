@@ -67,17 +67,18 @@ impl Carrier {
     /// ```
     pub fn peak_per_rms(&self) -> f32 {
         let half_period_s = DoubleSingle::from(self.half_period_s);
-        let lag_twice_s = DoubleSingle::TWO * DoubleSingle::from(self.edge_time_constant_s);
+        let edge_time_constant_s = DoubleSingle::from(self.edge_time_constant_s);
         let has_lag = self.edge_time_constant_s > 0.0;
         let square = match self.waveform {
             Waveform::Square if has_lag => {
-                let lags = half_period_s / lag_twice_s;
+                let lags = half_period_s / (DoubleSingle::TWO * edge_time_constant_s);
                 DoubleSingle::ONE / tangent_deficit(lags, lags * lags)
             }
             Waveform::Square => DoubleSingle::ONE,
             Waveform::Sine if has_lag => {
                 let ticks = DoubleSingle::from(self.half_period_ticks as f32);
-                DoubleSingle::TWO / held_sine_left(half_period_s / (ticks * lag_twice_s), ticks)
+                DoubleSingle::TWO
+                    / held_sine_left(half_period_s / (ticks * (DoubleSingle::TWO * edge_time_constant_s)), ticks)
             }
             Waveform::Sine => DoubleSingle::TWO,
         };

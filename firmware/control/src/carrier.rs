@@ -118,21 +118,18 @@ impl Carrier {
         DacCode(I1F15::wrapping_from_num(code))
     }
 
-    /// Handles a code that would take the integral beyond its limit: if the code moves the integral away from zero, ends
-    /// the half period before this tick, and returns the first code of the next.
+    /// Handles a code that would take the integral beyond its limit: if the half period moves the integral away from
+    /// zero, ends it before this tick, and returns the first code of the next.
     #[cold]
     fn within_balance(&mut self, code: I17F15, timing: &CarrierTiming, tick: u32) -> I17F15 {
-        if (self.integral + code).abs() <= self.integral.abs() {
+        if self.integral.is_negative() != self.sign.is_negative() {
             return code;
         }
         self.early_edges = self.early_edges.wrapping_add(1);
         self.last_early_tick = tick;
         self.turn(timing);
-        match timing.waveform {
-            Waveform::Square => -code,
-            // A half wave begins at zero.
-            Waveform::Sine => I17F15::ZERO,
-        }
+        // A half wave of a sine begins at zero.
+        if cfg!(feature = "sine-carrier") && timing.waveform == Waveform::Sine { I17F15::ZERO } else { -code }
     }
 
     /// Ends a half period.
