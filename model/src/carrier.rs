@@ -23,7 +23,12 @@ pub struct Carrier {
     pub waveform: Waveform,
     /// Half a period `T`, in seconds.
     pub half_period_s: f32,
+    /// Half a period, in ticks. Above 1.
+    pub half_period_ticks: u32,
     /// Time constant `tau` of the lag, in seconds; zero if there is no lag.
+    ///
+    /// An amplifier's lag `a` and a series resistor's `b` in a row take as much of a square wave's mean square as one of
+    /// `a + b - a b/(a + b)`: within 0.5 % of the mean square from a half period of 6 `tau` on.
     pub edge_time_constant_s: f32,
 }
 
@@ -40,29 +45,42 @@ impl Carrier {
     /// Ratio of the peak at the DAC to the rms on the electrode: the crest factor, corrected for the loss in the edges.
     ///
     /// The lag leaves `1 - (2 tau/T) tanh(T/(2 tau))` of a square wave's mean square: the steady response goes from
-    /// minus to plus its peak along `1 - 2 exp(-t/tau)/(1 + exp(-T/tau))`. It leaves `1/(1 + (w tau)^2)` of a sine's,
-    /// with `w = pi/T`.
+    /// minus to plus its peak along `1 - 2 exp(-t/tau)/(1 + exp(-T/tau))`.
+    ///
+    /// A sine is held for a tick at a time, so that it has harmonics: of its mean square the lag leaves
+    /// `1 - (1 - cos w) sinh(x)/(x (cosh x - cos w))`, with `x` the time constants in a tick and `w = pi/H` the angle of
+    /// a tick, a half period being `H` ticks. That is `(h^2 + t^2 (1 - h/(x/2)))/(h^2 + t^2)` with `h = tanh(x/2)` and
+    /// `t = tan(w/2)`. For many ticks it becomes the `1/(1 + (pi tau/T)^2)` of a smooth sine.
     ///
     /// ```
     /// use frixel_model::{Carrier, Waveform};
     ///
     /// // 20 us edges take 8 % of the mean square of a 1 kHz square wave.
-    /// let carrier = Carrier { waveform: Waveform::Square, half_period_s: 500e-6, edge_time_constant_s: 20e-6 };
+    /// let carrier = Carrier {
+    ///     waveform: Waveform::Square,
+    ///     half_period_s: 500e-6,
+    ///     half_period_ticks: 20,
+    ///     edge_time_constant_s: 20e-6,
+    /// };
     /// let peak = carrier.peak_per_rms();
     /// assert!((peak * peak * 0.92 - 1.0).abs() < 2e-7);
     /// ```
     pub fn peak_per_rms(&self) -> f32 {
         let half_period_s = DoubleSingle::from(self.half_period_s);
         let edge_time_constant_s = DoubleSingle::from(self.edge_time_constant_s);
+        let has_lag = self.edge_time_constant_s > 0.0;
         let square = match self.waveform {
-            Waveform::Square if self.edge_time_constant_s > 0.0 => {
-                DoubleSingle::ONE / square_left(half_period_s / (DoubleSingle::TWO * edge_time_constant_s))
+            Waveform::Square if has_lag => {
+                let lags = half_period_s / (DoubleSingle::TWO * edge_time_constant_s);
+                DoubleSingle::ONE / tangent_deficit(lags, lags * lags)
             }
             Waveform::Square => DoubleSingle::ONE,
-            Waveform::Sine => {
-                let lag = DoubleSingle::from_f64(PI) / half_period_s * edge_time_constant_s;
-                DoubleSingle::TWO * (DoubleSingle::ONE + lag * lag)
+            Waveform::Sine if has_lag => {
+                let ticks = DoubleSingle::from(self.half_period_ticks as f32);
+                DoubleSingle::TWO
+                    / held_sine_left(half_period_s / (ticks * (DoubleSingle::TWO * edge_time_constant_s)), ticks)
             }
+            Waveform::Sine => DoubleSingle::TWO,
         };
         square.sqrt().to_f32()
     }
@@ -84,9 +102,21 @@ impl Carrier {
     }
 }
 
-/// `1 - tanh(r)/r`: by Lambert's continued fraction `tanh(r) = r/(1 + r^2/(3 + r^2/(5 + ...)))`, which keeps its digits
-/// for small `r` and is a tenth of the code of `tanh`.
-fn square_left<T: Real>(r: T) -> T {
+/// Part of the mean square that a lag leaves of a sine of `half_period_ticks` ticks, of which each is `2 r` time
+/// constants.
+fn held_sine_left<T: Real>(r: T, half_period_ticks: T) -> T {
+    let half_angle = T::from_f64(0.5 * PI) / half_period_ticks;
+    let tan = half_angle * (T::ONE - tangent_deficit(half_angle, -(half_angle * half_angle)));
+    let kept = tangent_deficit(r, r * r);
+    let tanh = r * (T::ONE - kept);
+    let (tan_squared, tanh_squared) = (tan * tan, tanh * tanh);
+    (tanh_squared + tan_squared * kept) / (tanh_squared + tan_squared)
+}
+
+/// `1 - tanh(r)/r` if `square` is `r^2`, and `1 - tan(r)/r` if it is `-r^2` and `r` at most pi/4: by Lambert's continued
+/// fraction `tanh(r) = r/(1 + r^2/(3 + r^2/(5 + ...)))`, which keeps its digits for small `r` and is a tenth of the code
+/// of `tanh`.
+fn tangent_deficit<T: Real>(r: T, square: T) -> T {
     /// From here on `tanh` is one to the last bit of `f64`.
     const STEEP: f32 = 20.0;
     /// Terms that leave less than a last bit up to there.
@@ -94,7 +124,6 @@ fn square_left<T: Real>(r: T) -> T {
     if r > T::from(STEEP) {
         return T::ONE - T::ONE / r;
     }
-    let square = r * r;
     let odd = |term: u16| T::from(f32::from(2 * term + 1));
     let tail = (1..TERMS).rev().fold(odd(TERMS), |tail, term| odd(term) + square / tail);
     square / (tail + square)
@@ -111,11 +140,11 @@ mod tests {
             let expected = 1.0 - libm::tanh(r) / r;
             // The expression that it is compared with loses digits for small r.
             let tolerance = 4.0 * f64::EPSILON * (1.0 + 1.0 / expected);
-            assert!((square_left(r) / expected - 1.0).abs() < tolerance, "{r}");
+            assert!((tangent_deficit(r, r * r) / expected - 1.0).abs() < tolerance, "{r}");
         }
         for r in [1e-3, 1e-6, 1e-9] {
             let series = r * r * (1.0 / 3.0 - r * r * (2.0 / 15.0 - 17.0 / 315.0 * r * r));
-            assert!((square_left(r) / series - 1.0).abs() < 4.0 * f64::EPSILON, "{r}");
+            assert!((tangent_deficit(r, r * r) / series - 1.0).abs() < 4.0 * f64::EPSILON, "{r}");
         }
     }
 
@@ -123,10 +152,11 @@ mod tests {
     fn stepped(wave: impl Fn(f64) -> f64, half_period_s: f64, tau_s: f64) -> f64 {
         let steps = 100_000;
         let step_s = 2.0 * half_period_s / f64::from(steps);
+        let followed = -libm::expm1(-step_s / tau_s);
         let (mut v, mut sum) = (0.0_f64, 0.0);
         for i in 0..20 * steps {
             let turns = (f64::from(i) + 0.5) / f64::from(steps);
-            v += (wave(turns) - v) * step_s / tau_s;
+            v += (wave(turns) - v) * followed;
             if i >= 19 * steps {
                 sum += v * v;
             }
@@ -135,20 +165,28 @@ mod tests {
     }
 
     fn carrier(waveform: Waveform, edge_time_constant_s: f64) -> Carrier {
-        Carrier { waveform, half_period_s: 500e-6, edge_time_constant_s: edge_time_constant_s as f32 }
+        let edge_time_constant_s = edge_time_constant_s as f32;
+        Carrier { waveform, half_period_s: 500e-6, half_period_ticks: 20, edge_time_constant_s }
     }
 
     #[test]
     fn peaks_agree_with_waves_integrated_step_by_step() {
         let square = |turns: f64| if turns - libm::floor(turns) < 0.5 { 1.0 } else { -1.0 };
-        let sine = |turns: f64| libm::sin(2.0 * PI * turns);
         for tau_s in [5e-6, 20e-6, 400e-6] {
             let peak = f64::from(carrier(Waveform::Square, tau_s).peak_per_rms());
-            assert!((peak * peak * stepped(square, 500e-6, tau_s) - 1.0).abs() < 1e-3, "square {tau_s}");
-            let peak = f64::from(carrier(Waveform::Sine, tau_s).peak_per_rms());
-            assert!((peak * peak * stepped(sine, 500e-6, tau_s) - 1.0).abs() < 1e-3, "sine {tau_s}");
+            let found = peak * peak * stepped(square, 500e-6, tau_s);
+            assert!((found - 1.0).abs() < 1e-6, "square {tau_s}: {found}");
+            for half_period_ticks in [4, 5, 20, 1000] {
+                let ticks = f64::from(half_period_ticks);
+                let sine = |turns: f64| libm::sin(PI / ticks * libm::floor(2.0 * ticks * turns));
+                let carrier = Carrier { half_period_ticks, ..carrier(Waveform::Sine, tau_s) };
+                let peak = f64::from(carrier.peak_per_rms());
+                let found = peak * peak * stepped(sine, 500e-6, tau_s);
+                assert!((found - 1.0).abs() < 1e-6, "sine of {half_period_ticks} ticks, {tau_s}: {found}");
+            }
         }
         assert!(carrier(Waveform::Square, 0.0).peak_per_rms() <= 1.0);
+        assert!((carrier(Waveform::Sine, 0.0).peak_per_rms() - core::f32::consts::SQRT_2).abs() < 1e-7);
     }
 
     /// Current through a capacitance whose voltage follows a wave of ticks with a lag, stepped through: rms and peak.

@@ -30,8 +30,9 @@ pub const LIMITS: BoardLimits = BoardLimits {
     voltage_max_v_peak: 50.0,
     // 10 V of the DAC behind an amplifier of gain 20.
     full_scale_v_peak: 200.0,
-    // 68 kOhm in series with the electrode below.
-    edge_time_constant_s: 36e-6,
+    // The one lag that takes as much of the mean square as 68 kOhm in series with the electrode below, 36 us, behind an
+    // amplifier of 20 kHz, 8 us.
+    edge_time_constant_s: 37.5e-6,
     // 2 cm^2 of bare 10 um polymer, relative permittivity 3.
     electrode_capacitance_max_f: 0.53e-9,
     // The limit for touch currents in normal use of IEC 61010-1, without its weighting by frequency.

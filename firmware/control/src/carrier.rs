@@ -1,8 +1,13 @@
 //! The carrier: alternates the envelope's sign, so that no charge leaks through the skin and no direct current flows.
 //!
 //! The running integral of the DAC code, exact in fixed point, never leaves plus or minus one half period at full
-//! voltage, however the amplitude changes: a code that would leave this range is output with the opposite sign, as an
-//! early edge.
+//! voltage, however the amplitude changes: before a code that would leave this range, the half period ends early.
+//!
+//! A whole half period begins at an early edge, so that an envelope has at most one while it is constant: the half period
+//! behind the edge takes back at most one half of the range, and the next one returns to where the edge was. From the
+//! second period after a change on, all half periods have their nominal length, and the codes of a period add up to
+//! zero. The mean of the integral stays where the changes have left it, which is no direct current. An integral beyond the
+//! smaller limit of a new scene falls first.
 
 use fixed::types::{I1F15, I17F15};
 use frixel_layers::Waveform;
@@ -101,7 +106,7 @@ impl Carrier {
         // One unsigned comparison checks both limits. Neither sum can overflow.
         let above_least = (self.integral + code + timing.integral_max).to_bits().cast_unsigned();
         if above_least > 2 * timing.integral_max.to_bits().cast_unsigned() {
-            code = self.within_balance(code, tick);
+            code = self.within_balance(code, timing, tick);
         }
         self.integral += code;
         if self.left_ticks > 1 {
@@ -113,21 +118,22 @@ impl Carrier {
         DacCode(I1F15::wrapping_from_num(code))
     }
 
-    /// Handles a code that would take the integral beyond its limit: if the code moves the integral away from zero,
-    /// returns it with the opposite sign, as an early edge.
+    /// Handles a code that would take the integral beyond its limit: if the half period moves the integral away from
+    /// zero, ends it before this tick, and returns the first code of the next.
     #[cold]
-    fn within_balance(&mut self, code: I17F15, tick: u32) -> I17F15 {
-        if (self.integral + code).abs() <= self.integral.abs() {
+    fn within_balance(&mut self, code: I17F15, timing: &CarrierTiming, tick: u32) -> I17F15 {
+        if self.integral.is_negative() != self.sign.is_negative() {
             return code;
         }
-        self.sign = -self.sign;
         self.early_edges = self.early_edges.wrapping_add(1);
         self.last_early_tick = tick;
-        -code
+        self.turn(timing);
+        // A half wave of a sine begins at zero.
+        if cfg!(feature = "sine-carrier") && timing.waveform == Waveform::Sine { I17F15::ZERO } else { -code }
     }
 
     /// Ends a half period.
-    #[cold]
+    #[inline]
     fn turn(&mut self, timing: &CarrierTiming) {
         self.sign = -self.sign;
         self.left_ticks = timing.half_period_ticks;
@@ -150,5 +156,7 @@ impl Carrier {
     }
 }
 
+#[cfg(test)]
+mod random_envelopes;
 #[cfg(test)]
 mod tests;

@@ -133,6 +133,7 @@ fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), Confi
             _ => Waveform::Square,
         },
         half_period_s: half_period_ticks as f32 * board.tick_period_s(),
+        half_period_ticks,
         edge_time_constant_s: limits.edge_time_constant_s,
     };
     let peak_per_rms = carrier.peak_per_rms();

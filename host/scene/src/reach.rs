@@ -80,6 +80,7 @@ pub(super) fn loaded_contact(header: &Header) -> Result<LoadedContact<f64>, Para
 }
 
 /// The carrier of a scene on a board, in the board's arithmetic.
-pub fn carrier(waveform: Waveform, half_period_s: f64, limits: &BoardLimits) -> Carrier {
-    Carrier { waveform, half_period_s: half_period_s as f32, edge_time_constant_s: limits.edge_time_constant_s }
+pub fn carrier(waveform: Waveform, half_period_ticks: u32, tick_hz: u32, limits: &BoardLimits) -> Carrier {
+    let half_period_s = (f64::from(half_period_ticks) / f64::from(tick_hz)) as f32;
+    Carrier { waveform, half_period_s, half_period_ticks, edge_time_constant_s: limits.edge_time_constant_s }
 }

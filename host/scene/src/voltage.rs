@@ -1,13 +1,14 @@
 //! The limits of the drive, and what raising them would reach.
 
 use frixel_layers::Header;
+use frixel_model::Carrier;
 use frixel_wire::hello::BoardLimits;
 
 use super::file::Scene;
 use super::finger::Evidence;
 use super::log::Log;
 use super::mistake::FitMistake;
-use super::reach::{Reach, carrier};
+use super::reach::Reach;
 use super::springs::Springs;
 
 /// Ratio of the default peak limit to the peak that the rms limit needs. It is above 1, so that rounding never makes
@@ -31,7 +32,7 @@ impl Voltage {
     pub(super) fn of(
         scene: &Scene,
         limits: &BoardLimits,
-        half_period_s: f64,
+        carrier: &Carrier,
         log: &mut Log,
         notes: &mut Vec<String>,
     ) -> Self {
@@ -43,7 +44,7 @@ impl Voltage {
                 FitMistake::PeakAboveBoard { found, board: board_v_peak },
             );
         }
-        let peak_per_rms = f64::from(carrier(scene.carrier.waveform, half_period_s, limits).peak_per_rms());
+        let peak_per_rms = f64::from(carrier.peak_per_rms());
         let scene_max_v_rms = screen.voltage_max_v_rms.unwrap_or(f64::INFINITY).min(drive.voltage_max_v_rms);
         if scene_max_v_rms < drive.voltage_max_v_rms {
             notes.push(format!(
@@ -76,10 +77,7 @@ impl Voltage {
 
     /// Checks the current into the worst-case electrode at the largest voltage against the board's limits, and lowers
     /// the voltage to them.
-    pub(super) fn limit_current(&mut self, scene: &Scene, limits: &BoardLimits, half_period_s: f64, log: &mut Log) {
-        // The board computes in `f32`, from the carrier's frequency.
-        let carrier_hz = (0.5 / half_period_s) as f32;
-        let carrier = carrier(scene.carrier.waveform, 0.5 / f64::from(carrier_hz), limits);
+    pub(super) fn limit_current(&mut self, scene: &Scene, limits: &BoardLimits, carrier: &Carrier, log: &mut Log) {
         let drive_v_peak = self.max_v_rms as f32 * carrier.peak_per_rms();
         let current = carrier.electrode_current(limits.electrode_capacitance_max_f, drive_v_peak);
         let rms_cure = "`frequency_hz` under [carrier], or `voltage_max_v_rms` under [drive]";

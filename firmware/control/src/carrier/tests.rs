@@ -124,8 +124,8 @@ fn a_slower_carrier_finishes_the_half_period_under_way() {
     assert_eq!((after.iter().position(|code| *code > 0), positive), (Some(3), 20));
 }
 
-/// Every positive half wave is large and every negative one small, so that the integral drifts to its limit: there a
-/// code comes with the other sign, and that is counted.
+/// Every positive half wave is large and every negative one small, so that the integral drifts to its limit: there the
+/// half period ends early, which is counted, and a whole one begins.
 #[test]
 fn an_early_edge_is_counted_with_its_tick() {
     let timing = timing(Waveform::Square, 20);
@@ -137,7 +137,7 @@ fn an_early_edge_is_counted_with_its_tick() {
         let code = i32::from(carrier.next(envelope_v_rms, &timing, tick).bits());
         if (integral + wanted).abs() > 20 * 20_000 {
             assert_eq!(code, -wanted, "tick {tick}: the integral is {integral}");
-            sign = -sign;
+            (sign, left_ticks) = (-sign, 20);
             early_edges += 1;
             last_early_tick = tick;
         } else {
@@ -151,6 +151,26 @@ fn an_early_edge_is_counted_with_its_tick() {
         assert_eq!((carrier.early_edges(), carrier.last_early_tick()), (early_edges, last_early_tick));
     }
     assert!(early_edges > 10, "{early_edges}");
+}
+
+/// A half wave that begins early is whole: from zero, over its crest, to zero.
+#[cfg(feature = "sine-carrier")]
+#[test]
+fn a_sine_begins_a_whole_half_wave_at_an_early_edge() {
+    let timing = timing(Waveform::Sine, 20);
+    let mut carrier = Carrier::new(&timing);
+    // Steps up in the negative half waves and down in the positive ones, until the integral is at its limit.
+    let mut tick = 0;
+    while carrier.early_edges() == 0 {
+        carrier.next(if carrier.sign > 0 { 3.0 } else { 200.0 }, &timing, tick);
+        tick += 1;
+    }
+    let after = codes(&mut carrier, &timing, 200.0, 39);
+    let half_wave = |i: i32| 20_000.0 * (f64::from(i) / 20.0 * core::f64::consts::PI).sin();
+    for (i, code) in (1..).zip(after) {
+        assert!((f64::from(code) - half_wave(i)).abs() <= 1.0, "{code} {i} ticks after the early edge");
+    }
+    assert_eq!(carrier.early_edges(), 1);
 }
 
 /// A new scene may allow less than what has gathered: every code then takes the integral towards zero.

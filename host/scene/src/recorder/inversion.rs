@@ -24,8 +24,8 @@ impl Inversion {
             friction_coefficient: f64::from(header.friction_coefficient),
         };
         let contact = Contact::new(&finger, f64::from(header.effective_gap_m))?;
-        let half_period_s = f64::from(program.half_period_ticks) / f64::from(tick_hz);
-        let peak_per_rms = f64::from(carrier(header.waveform, half_period_s, limits).peak_per_rms());
+        let carrier = carrier(header.waveform, program.half_period_ticks, tick_hz, limits);
+        let peak_per_rms = f64::from(carrier.peak_per_rms());
         let codes_per_v_peak = f64::from(i16::MAX) / f64::from(limits.full_scale_v_peak);
         Ok(Self {
             contact: contact.under_load(f64::from(header.normal_load_n))?,

@@ -79,9 +79,11 @@ fn the_largest_voltage_keeps_every_limit() {
     assert_eq!(notes, ["drive: 150 V rms would need 156.4 V peak; the limit of 100 V peak allows 95.9 V rms"]);
     let (rms, peak, _) = reached("[drive]\nvoltage_max_v_rms = 400");
     close(&[rms, peak], &[220.0 * edges, 220.0], 1e-4);
-    let lag = std::f64::consts::TAU * 1000.0 * 20e-6;
+    // A sine of 20 ticks per half period, held for a tick at a time, of which each is 1.25 time constants long.
+    let (lags, cosine) = (1.25_f64, (std::f64::consts::PI / 20.0).cos());
+    let left = 1.0 - (1.0 - cosine) * lags.sinh() / (lags * (lags.cosh() - cosine));
     let (rms, _, _) = reached("[drive]\nvoltage_max_v_peak = 100\n[carrier]\nshape = \"sine\"");
-    close(&[rms], &[100.0 / (2.0 * (1.0 + lag * lag)).sqrt()], 1e-4);
+    close(&[rms], &[100.0 * (0.5 * left).sqrt()], 1e-4);
 }
 
 #[test]
