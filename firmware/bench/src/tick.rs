@@ -67,7 +67,7 @@ impl Bench {
         Self {
             host: Host::new(session, ticker),
             kinds_counted: 0,
-            monitor: IdealMonitor::new(&board.limits, board.tick_hz),
+            monitor: IdealMonitor::new(board.limits.full_scale_v_peak, board.amplifier.time_constant_s / board.tick_period_s()),
         }
     }
 

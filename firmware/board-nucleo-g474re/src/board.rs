@@ -1,7 +1,7 @@
 //! Identity and limits of this board. The numbers here belong to the parts that `docs/hardware.md` lists: another
 //! amplifier or electrode needs other numbers.
 
-use frixel_control::Board;
+use frixel_control::{AmplifierSpec, Board, ReadyWhileDisabled, SwitchingTime};
 use frixel_drivers::monitor::MonitorScale;
 use frixel_layers::BITMAP_POOL_LEN;
 use frixel_session::store::{Flash, LIMITS_LEN, Slot, read_limits};
@@ -42,6 +42,16 @@ pub const LIMITS: BoardLimits = BoardLimits {
     tick_cycles_max: BoardLimits::SMALLEST_TICK_CYCLES_MAX,
 };
 
+/// The amplifier, as `docs/hardware.md` demands it.
+pub const AMPLIFIER: AmplifierSpec = AmplifierSpec {
+    // A large-signal bandwidth of 20 kHz. The series resistor is behind the monitor.
+    time_constant_s: 8e-6,
+    // Assumed.
+    turn_on: SwitchingTime::from_s(1e-3),
+    turn_off: SwitchingTime::from_s(1e-3),
+    ready_while_disabled: ReadyWhileDisabled::High,
+};
+
 /// Where the limits are stored: the first two pages of bank 2.
 pub const LIMITS_SLOT: Slot = Slot { first_page: 0, pages: 1 };
 /// Where the last scene is stored: the rest of bank 2, 126 KiB a copy. 64 KiB of bitmaps and the largest scene need 71
@@ -60,6 +70,8 @@ pub fn board(last_reset: &LastReset, flash: Option<&BankTwo>) -> Board {
         id: unique_number(),
         tick_hz: TICK_HZ,
         limits: flash.and_then(stored_limits).unwrap_or(LIMITS),
+        amplifier: AMPLIFIER,
+        hold_to_run: true,
         reset_cause: last_reset.cause,
         reset_fault: last_reset.fault,
         reset_text: last_reset.text,
