@@ -129,48 +129,57 @@ impl MonitorCheck {
         (comparison, !comparison.is_within(self.uncounted_below_v))
     }
 
-    /// Counts a tick, and returns whether the monitor shows a fault. The count is limited, so that it soon falls again
-    /// however long the monitor was wrong.
+    /// Counts a tick, and returns whether the monitor shows a fault.
     pub(crate) fn count(&mut self, comparison: Comparison) -> bool {
-        let monitor_v = self.monitor_v;
-        let is_right = match (self.switching_ticks > 0, self.is_enabled) {
-            (false, _) => comparison.is_within(self.floor_v),
-            (true, true) => self.is_right_while_turning_on(monitor_v),
-            (true, false) => {
-                let is_right = self.is_right_while_turning_off(monitor_v);
-                if !is_right {
-                    self.wrong_ticks = self.wrong_ticks_max;
-                }
-                is_right
-            }
-        };
+        if self.switching_ticks == 0 {
+            return self.count_one(comparison.is_within(self.floor_v));
+        }
+        self.switching_ticks -= 1;
+        let is_right =
+            if self.is_enabled { self.is_right_while_turning_on() } else { self.is_right_while_turning_off() };
+        if self.switching_ticks > 0 && is_right {
+            return false;
+        }
+        if self.switching_ticks == 0 {
+            self.ceiling_v = 0.0;
+        }
+        if !self.is_enabled && !is_right {
+            self.wrong_ticks = self.wrong_ticks_max;
+        }
+        self.count_one(is_right)
+    }
+
+    /// Counts a right or a wrong tick, and returns whether there were too many wrong ones. The count is limited, so that
+    /// it soon falls again however long the monitor was wrong.
+    fn count_one(&mut self, is_right: bool) -> bool {
         self.wrong_ticks = if is_right {
             self.wrong_ticks.saturating_sub(1)
         } else {
             (self.wrong_ticks + 1).min(self.wrong_ticks_max)
         };
-        if self.switching_ticks == 0 {
-            self.ceiling_v = 0.0;
-        }
         self.choose_ticks_to_count();
         !is_right && self.wrong_ticks == self.wrong_ticks_max
     }
 
-    fn is_right_while_turning_on(&mut self, monitor_v: f32) -> bool {
-        self.switching_ticks -= 1;
+    fn is_right_while_turning_on(&mut self) -> bool {
         // The next reading may show what was driven in this tick.
-        self.ceiling_v = self.ceiling_v.max(self.with_tolerance_v(self.expected_v));
-        monitor_v.abs() < self.ceiling_v
+        let driven_v = self.with_tolerance_v(self.expected_v);
+        // Not `max`, which is a call on a Cortex-M4F.
+        if driven_v > self.ceiling_v {
+            self.ceiling_v = driven_v;
+        }
+        self.monitor_v.abs() < self.ceiling_v
     }
 
-    fn is_right_while_turning_off(&mut self, monitor_v: f32) -> bool {
-        self.switching_ticks -= 1;
-        let is_right = monitor_v.abs() < self.ceiling_v;
+    fn is_right_while_turning_off(&mut self) -> bool {
+        let monitor_v = self.monitor_v.abs();
+        let is_right = monitor_v < self.ceiling_v && (self.switching_ticks > 0 || monitor_v < self.floor_v);
         // The first reading may still show the voltage before the enable fell.
-        if self.switching_ticks + 1 < self.turn_off_ticks {
-            self.ceiling_v = self.ceiling_v.min(monitor_v.abs() + self.floor_v);
+        let risen_v = monitor_v + self.floor_v;
+        if risen_v < self.ceiling_v && self.switching_ticks + 1 < self.turn_off_ticks {
+            self.ceiling_v = risen_v;
         }
-        is_right && (self.switching_ticks > 0 || monitor_v.abs() < self.floor_v)
+        is_right
     }
 
     /// The enable rises at this tick.
@@ -188,10 +197,13 @@ impl MonitorCheck {
         self.is_enabled = false;
         self.switching_ticks = self.turn_off_ticks;
         self.uncounted_below_v = f32::NEG_INFINITY;
-        let driven_v = f32::from(dac_code) * self.volts_per_code;
-        let last_v = self.monitor_v.abs().max(driven_v.abs());
-        self.ceiling_v = self.ceiling_v.max(self.with_tolerance_v(last_v));
         self.expected_v = 0.0;
+        for last_v in [self.monitor_v, f32::from(dac_code) * self.volts_per_code] {
+            let ceiling_v = self.with_tolerance_v(last_v);
+            if ceiling_v > self.ceiling_v {
+                self.ceiling_v = ceiling_v;
+            }
+        }
     }
 
     fn with_tolerance_v(&self, voltage_v: f32) -> f32 {

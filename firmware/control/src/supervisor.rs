@@ -32,6 +32,9 @@ pub(crate) struct Supervisor {
     /// way out of Active leads through Disarmed, from where only an open switch leads back.
     held_ticks: u32,
     active_since_tick: u32,
+    /// The next tick at which [`Self::expire`] has something to do; `None` if there is none. Stored, because it is read
+    /// whenever the finger has a new track.
+    expiry_tick: Option<u32>,
     monitor: MonitorCheck,
 }
 
@@ -47,6 +50,7 @@ impl Supervisor {
             held_ticks_max: board.hold_to_run.then(|| board.ticks(SWITCH_HELD_MAX_S)),
             held_ticks: 0,
             active_since_tick: 0,
+            expiry_tick: None,
             monitor: MonitorCheck::new(board),
         }
     }
@@ -109,9 +113,11 @@ impl Supervisor {
         }
     }
 
-    /// Sets the host timeout; `None` for a scene that plays without a host.
+    /// Sets the host timeout; `None` for a scene that plays without a host. Called after every order that is not about
+    /// the finger.
     pub(crate) fn set_host_timeout(&mut self, ticks: Option<u32>) {
         self.host_timeout_ticks = ticks;
+        self.find_expiry();
     }
 
     /// Latches a fault if the amplifier, its monitor or the arm switch requires it. `dac_code` is the output of the
@@ -128,7 +134,7 @@ impl Supervisor {
     #[cold]
     #[inline(never)]
     fn latch_first_fault(&mut self, sense: &Sense, comparison: Comparison) {
-        let amplifier_wrong = self.monitor.is_ready_wrong(!sense.amplifier_fault);
+        let is_ready_wrong = self.monitor.is_ready_wrong(!sense.amplifier_fault);
         let monitor_wrong = self.monitor.count(comparison);
         if !sense.arm_switch {
             self.switch_was_released = true;
@@ -139,7 +145,7 @@ impl Supervisor {
         }
         if monitor_wrong {
             self.raise(Fault::Monitor, sense.monitor_v as i32 as u32);
-        } else if amplifier_wrong {
+        } else if is_ready_wrong {
             self.raise(Fault::Amplifier, 0);
         } else if self.state != State::Disarmed && !sense.arm_switch {
             self.raise(Fault::ArmSwitch, 0);
@@ -153,12 +159,16 @@ impl Supervisor {
     }
 
     /// The tick at which the host timeout or the longest time of play without an open switch passes; `None` if neither
-    /// applies.
+    /// applies. A fault may leave it early.
     pub(crate) fn expiry_tick(&self) -> Option<u32> {
-        match (self.host_expiry_tick(), self.switch_expiry_tick()) {
+        self.expiry_tick
+    }
+
+    fn find_expiry(&mut self) {
+        self.expiry_tick = match (self.host_expiry_tick(), self.switch_expiry_tick()) {
             (Some(host_tick), Some(switch_tick)) => Some(earlier(host_tick, switch_tick)),
             (host_tick, switch_tick) => host_tick.or(switch_tick),
-        }
+        };
     }
 
     /// The tick at which the switch has been held for too long; `None` outside of Active.
@@ -183,6 +193,7 @@ impl Supervisor {
             self.disarm();
             self.host_silent = true;
         }
+        self.find_expiry();
     }
 }
 
