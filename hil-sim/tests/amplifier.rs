@@ -105,7 +105,7 @@ fn lift_and_stop(script: &mut Script, random: &mut Random, ticks: u64) {
             }
             _ => {
                 script.rig.world_mut().lift_finger();
-                for _ in 0..1 + random.below(120) {
+                for _ in 0..=random.below(120) {
                     script.step();
                 }
             }

@@ -45,7 +45,7 @@ pub enum Decay {
         time_constant_s: f64,
     },
     /// The output stage lets go: output and electrode are one node, which discharges through bleed resistor and finger
-    /// with this time constant. 10 MOhm and 0.53 nF have 5.3 ms.
+    /// with this time constant: 5.3 ms for 10 megohms and 0.53 nF.
     HighImpedance {
         /// In seconds: 0 (at once) to 10.
         time_constant_s: f64,

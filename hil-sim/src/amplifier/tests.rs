@@ -230,9 +230,12 @@ fn the_electrode_follows_the_output_that_follows_the_dac() {
     }
 }
 
+/// A kind of decay from 200 V, and the voltage that it leaves after a time.
+type Decaying = (Decay, fn(f64) -> f64);
+
 #[test]
 fn a_disabled_output_waits_and_then_decays_as_configured() {
-    let decays: [(Decay, fn(f64) -> f64); 3] = [
+    let decays: [Decaying; 3] = [
         (Decay::Linear { v_per_s: 2e5 }, |time_s| (200.0 - 2e5 * time_s).max(0.0)),
         (Decay::Exponential { time_constant_s: 200e-6 }, |time_s| 200.0 * libm::exp(-time_s / 200e-6)),
         (Decay::HighImpedance { time_constant_s: 5e-3 }, |time_s| 200.0 * libm::exp(-time_s / 5e-3)),
