@@ -32,7 +32,7 @@ mod stroke;
 mod touch;
 mod world;
 
-pub use amplifier::AmplifierConfig;
+pub use amplifier::{AmplifierConfig, Decay};
 pub use error::{OutOfRange, WorldError};
 pub use fingertip::{FingertipConfig, RELAXATION_LENGTH_M, SlipStep, example_finger};
 pub use frixel_control::Drive;

@@ -125,6 +125,7 @@ impl ReferenceFriction {
 pub struct World {
     tick_hz: u32,
     tick: u64,
+    full_scale_v_peak: f64,
     amplifier: Amplifier,
     amplifier_faults: Vec<Range<u64>>,
     fingertip: Fingertip,
@@ -158,6 +159,7 @@ impl World {
         Ok(Self {
             tick_hz,
             tick: 0,
+            full_scale_v_peak,
             amplifier: Amplifier::new(&amplifier, full_scale_v_peak, tick_hz)?,
             amplifier_faults: Vec::new(),
             fingertip: Fingertip::new(fingertip, example_finger().map_err(WorldError::Finger)?, tick_hz, seed)?,
@@ -220,6 +222,12 @@ impl World {
         self.amplifier_faults.push(ticks);
     }
 
+    /// Gives the amplifier other properties from now on, such as those of a broken one. Its voltages stay.
+    pub fn set_amplifier(&mut self, config: &AmplifierConfig) -> Result<(), WorldError> {
+        self.amplifier = self.amplifier.reconfigured(config, self.full_scale_v_peak, self.tick_hz)?;
+        Ok(())
+    }
+
     /// Number of ticks since the start.
     pub fn tick(&self) -> u64 {
         self.tick
@@ -252,7 +260,7 @@ impl World {
     pub fn sense(&self) -> Sense {
         Sense {
             amplifier_fault: self.amplifier_faults.iter().any(|ticks| ticks.contains(&self.tick)),
-            monitor_v: self.amplifier.output_v() as f32,
+            monitor_v: self.amplifier.monitor_v() as f32,
             arm_switch: true,
         }
     }

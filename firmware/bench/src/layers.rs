@@ -142,6 +142,9 @@ impl Bench {
         self.play(&HEADER, &[under(AROUND, CONSTANT), under(away(0), STREAM)]);
         self.start_stream();
         self.slide(counter.case("tick_stream_elsewhere"));
+        self.disturbs_monitor = true;
+        self.alone(counter, "tick_disturbed_alone", under(AROUND, CONSTANT), &[]);
+        self.disturbs_monitor = false;
         self.polygons(counter);
         self.curves(counter);
         for kind in Layer::NUMBERS {

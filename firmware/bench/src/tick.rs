@@ -48,6 +48,10 @@ pub(crate) struct Bench {
     /// A bit for each kind of layer whose cost was counted, by the kind's number.
     pub(crate) kinds_counted: u32,
     monitor: IdealMonitor,
+    /// Every other reading of the monitor is wrong while the amplifier is enabled. The supervisor then looks at each of
+    /// them, as it does while the amplifier switches.
+    pub(crate) disturbs_monitor: bool,
+    is_enabled: bool,
 }
 
 impl Bench {
@@ -67,7 +71,12 @@ impl Bench {
         Self {
             host: Host::new(session, ticker),
             kinds_counted: 0,
-            monitor: IdealMonitor::new(&board.limits, board.tick_hz),
+            monitor: IdealMonitor::new(
+                board.limits.full_scale_v_peak,
+                board.amplifier.time_constant_s / board.tick_period_s(),
+            ),
+            disturbs_monitor: false,
+            is_enabled: false,
         }
     }
 
@@ -127,6 +136,12 @@ impl Bench {
     /// Counts ticks under a finger that touches down, slides, rests for a while and slides again.
     pub(crate) fn slide(&mut self, mut case: Case) {
         self.tick(Some(Touch::Up));
+        // The amplifier has switched on before anything is counted.
+        self.tick(Some(Touch::Down { x_m: 0.02, y_m: 0.03, age_ticks: 0 }));
+        self.tick(None);
+        self.tick(None);
+        self.tick(None);
+        self.tick(None);
         // Every case begins at the same distance from a report, so that all cases have the same events in the same
         // ticks.
         while !self.host.ticker.status().telemetry.tick.is_multiple_of(REPORT_TICKS) {
@@ -157,6 +172,7 @@ impl Bench {
         let sense = self.sense();
         let drive = tick(&mut self.host, &sense);
         self.monitor.follow(drive.dac_code);
+        self.is_enabled = drive.amplifier_enable;
         drive
     }
 
@@ -165,12 +181,16 @@ impl Bench {
         let sense = self.sense();
         let drive = case.take(tick, &mut self.host, &sense);
         self.monitor.follow(drive.dac_code);
+        self.is_enabled = drive.amplifier_enable;
         drive
     }
 
     fn sense(&self) -> Sense {
         let arm_switch = !self.host.ticker.waits_for_release();
-        Sense { amplifier_fault: false, monitor_v: self.monitor.voltage_v(), arm_switch }
+        let disturbs = self.disturbs_monitor && self.is_enabled;
+        let is_wrong = disturbs && self.host.ticker.status().telemetry.tick.is_multiple_of(2);
+        let monitor_v = self.monitor.voltage_v() + if is_wrong { 1e3 } else { 0.0 };
+        Sense { amplifier_fault: false, monitor_v, arm_switch }
     }
 }
 

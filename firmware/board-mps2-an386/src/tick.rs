@@ -29,10 +29,11 @@ pub struct Tick {
     pub count: u32,
 }
 
-/// The amplifier's monitor. There is no amplifier: the monitor follows the driven voltage, with the edges that the
-/// board specifies.
+/// The amplifier's monitor. There is no amplifier: the monitor follows the driven voltage as the board's amplifier is
+/// specified to, a tick late, as on a board that latches a tick's code at its end.
 pub struct SimulatedMonitor {
     voltage_v: f32,
+    latched_code: DacCode,
     volts_per_code: f32,
     step: f32,
 }
@@ -43,13 +44,15 @@ impl SimulatedMonitor {
         let tick_period_s = 1.0 / board.tick_hz as f32;
         Self {
             voltage_v: 0.0,
+            latched_code: DacCode::ZERO,
             volts_per_code: board.limits.full_scale_v_peak / f32::from(i16::MAX),
-            step: 1.0 - libm::expf(-tick_period_s / board.limits.edge_time_constant_s),
+            step: 1.0 - libm::expf(-tick_period_s / board.amplifier.time_constant_s),
         }
     }
 
     fn follow(&mut self, dac_code: DacCode) {
-        self.voltage_v += self.step * (f32::from(dac_code.bits()) * self.volts_per_code - self.voltage_v);
+        self.voltage_v += self.step * (f32::from(self.latched_code.bits()) * self.volts_per_code - self.voltage_v);
+        self.latched_code = dac_code;
     }
 }
 

@@ -1,7 +1,7 @@
 //! Identity and limits of this board. The numbers here belong to the parts that `docs/hardware.md` lists: another
 //! amplifier or electrode needs other numbers.
 
-use frixel_control::Board;
+use frixel_control::{AmplifierSpec, Board, ReadyWhileDisabled, SwitchingTime};
 use frixel_drivers::monitor::MonitorScale;
 use frixel_layers::BITMAP_POOL_LEN;
 use frixel_session::store::{Ceilings, Flash, Slot, check_ceilings, load_limits};
@@ -48,6 +48,15 @@ const _: () = assert!(check_ceilings(&LIMITS).is_ok());
 /// Whether stored limits above the ceilings are refused.
 pub const CEILINGS: Ceilings =
     if cfg!(feature = "limits-above-ceilings") { Ceilings::Lifted } else { Ceilings::InForce };
+/// The amplifier, as `docs/hardware.md` demands it.
+pub const AMPLIFIER: AmplifierSpec = AmplifierSpec {
+    // A large-signal bandwidth of 20 kHz. The series resistor is behind the monitor.
+    time_constant_s: 8e-6,
+    // Assumed.
+    turn_on: SwitchingTime::from_s(1e-3),
+    turn_off: SwitchingTime::from_s(1e-3),
+    ready_while_disabled: ReadyWhileDisabled::High,
+};
 
 /// Where the limits are stored: the first two pages of bank 2.
 pub const LIMITS_SLOT: Slot = Slot { first_page: 0, pages: 1 };
@@ -68,6 +77,8 @@ pub fn board(last_reset: &LastReset, flash: Option<&BankTwo>) -> Board {
         id: unique_number(),
         tick_hz: TICK_HZ,
         limits,
+        amplifier: AMPLIFIER,
+        hold_to_run: true,
         reset_cause: last_reset.cause,
         reset_fault: last_reset.fault,
         reset_text: last_reset.text,

@@ -6,6 +6,8 @@ use frixel_wire::scene::RECORDS_MAX;
 
 use frixel_layers::{BITMAP_POOL_LEN, ticks};
 
+use crate::{AmplifierSpec, ReadyWhileDisabled, SwitchingTime};
+
 /// A board's identity, tick rate and limits. They do not change while the firmware runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Board {
@@ -17,6 +19,11 @@ pub struct Board {
     pub tick_hz: u32,
     /// Limits that every scene must respect.
     pub limits: BoardLimits,
+    /// What the amplifier is specified to do.
+    pub amplifier: AmplifierSpec,
+    /// A person must hold the arm switch for as long as the board is armed, and a contact that does not open for ten
+    /// minutes of play is a fault. `false` for a switch that stays where it is put, and for a simulated one.
+    pub hold_to_run: bool,
     /// Why the processor started.
     pub reset_cause: ResetCause,
     /// The fault that caused the reset, and its detail number.
@@ -56,6 +63,14 @@ impl Board {
             touch_report_period_s: 10e-3,
             tick_cycles_max: BoardLimits::SMALLEST_TICK_CYCLES_MAX,
         },
+        // The edges' 20 us contain the amplifier's own time constant. It switches at once.
+        amplifier: AmplifierSpec {
+            time_constant_s: 0.0,
+            turn_on: SwitchingTime::from_s(0.0),
+            turn_off: SwitchingTime::from_s(0.0),
+            ready_while_disabled: ReadyWhileDisabled::High,
+        },
+        hold_to_run: false,
         reset_cause: ResetCause::PowerOn,
         reset_fault: None,
         reset_text: b"",

@@ -5,9 +5,12 @@ use frixel_wire::dac_code::DacCode;
 /// The board's inputs at a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sense {
-    /// The amplifier signals a fault.
+    /// The amplifier's ready line is low. What that means while the amplifier is disabled is a property of the board
+    /// ([`ReadyWhileDisabled`](crate::ReadyWhileDisabled)).
     pub amplifier_fault: bool,
-    /// Voltage on the electrode at the end of the previous tick, measured by the amplifier's monitor, in volts.
+    /// Voltage at the amplifier's output, before the series resistor, in V, as the amplifier's monitor shows it at the
+    /// beginning of the tick. A board latches the code of a tick at the end of the tick's period, so this is the output
+    /// after the code of the tick before the last one has been there for a whole tick.
     pub monitor_v: f32,
     /// The arm switch is held.
     pub arm_switch: bool,

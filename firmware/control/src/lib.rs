@@ -23,11 +23,13 @@
 #![forbid(unsafe_code)]
 
 mod active;
+mod amplifier;
 mod board;
 mod carrier;
 mod envelope;
 mod finger;
 mod io;
+mod monitor;
 mod order;
 #[cfg(feature = "stream")]
 mod stream;
@@ -38,6 +40,7 @@ mod ticker;
 mod track;
 
 pub use active::Active;
+pub use amplifier::{AmplifierSpec, ReadyWhileDisabled, SwitchingTime};
 pub use board::Board;
 pub use carrier::CarrierTiming;
 pub use finger::STALE_AFTER_PERIODS;

@@ -4,18 +4,15 @@
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::{Fault, State};
 
-use crate::tick_count::is_past;
+use crate::monitor::{Comparison, MonitorCheck};
+use crate::tick_count::{earlier, is_past};
 use crate::{Board, Order, Sense};
 
 /// Host timeout before a scene has set one.
 const HOST_TIMEOUT_DEFAULT_S: f32 = 0.25;
-/// Tolerance of the monitor voltage, as a fraction of full scale; [`MONITOR_GAIN_TOLERANCE`] of the driven voltage is
-/// added to it.
-const MONITOR_FLOOR: f32 = 0.04;
-const MONITOR_GAIN_TOLERANCE: f32 = 0.25;
-/// Count at which the monitor faults: a tick with a wrong voltage adds 1, one with a right voltage subtracts 1, down to
-/// 0.
-const MONITOR_WRONG_TICKS: u32 = 20;
+/// Longest time of play without the arm switch open. A contact that is welded never opens, and a person who holds the
+/// switch is asked to let go from time to time. Ten minutes are longer than any stroke or trial (assumed).
+const SWITCH_HELD_MAX_S: f32 = 600.0;
 
 /// State of the supervisor.
 #[derive(Clone, Copy, Debug)]
@@ -29,74 +26,16 @@ pub(crate) struct Supervisor {
     /// The arm switch was open at some tick since the reset or the last disarming: if it is held now, it was pressed
     /// since.
     switch_was_released: bool,
+    /// `None` on a board whose switch need not be held.
+    held_ticks_max: Option<u32>,
+    /// Ticks in Active since the switch was last open, up to the last time that Active was left for Armed. Every other
+    /// way out of Active leads through Disarmed, from where only an open switch leads back.
+    held_ticks: u32,
+    active_since_tick: u32,
+    /// The next tick at which [`Self::expire`] has something to do; `None` if there is none. Stored, because it is read
+    /// whenever the finger has a new track.
+    expiry_tick: Option<u32>,
     monitor: MonitorCheck,
-}
-
-/// The expected monitor voltage, and the count of ticks at which the monitor read something else.
-#[derive(Clone, Copy, Debug)]
-struct MonitorCheck {
-    expected_v: f32,
-    volts_per_code: f32,
-    step: f32,
-    /// [`MONITOR_GAIN_TOLERANCE`], stored here because the compiler would hold a constant in a register over the whole
-    /// tick.
-    gain_tolerance: f32,
-    floor_v: f32,
-    /// Equal to `floor_v`; minus infinity while `wrong_ticks` is above 0, so that every tick is then counted.
-    uncounted_below_v: f32,
-    wrong_ticks: u32,
-}
-
-impl MonitorCheck {
-    fn new(board: &Board) -> Self {
-        let floor_v = MONITOR_FLOOR * board.limits.full_scale_v_peak;
-        Self {
-            expected_v: 0.0,
-            volts_per_code: board.limits.full_scale_v_peak / f32::from(i16::MAX),
-            step: lag_step(board.tick_period_s() / board.limits.edge_time_constant_s),
-            gain_tolerance: MONITOR_GAIN_TOLERANCE,
-            floor_v,
-            uncounted_below_v: floor_v,
-            wrong_ticks: 0,
-        }
-    }
-
-    /// Advances the expected voltage by a tick that began with `driven_v` at the output. Returns whether
-    /// [`Self::count`] has to count the voltage that the monitor read at its end.
-    #[inline]
-    fn advance(&mut self, driven_v: f32, monitor_v: f32) -> bool {
-        self.expected_v += self.step * (driven_v - self.expected_v);
-        !self.is_within(self.uncounted_below_v, driven_v, monitor_v)
-    }
-
-    /// Whether the monitor voltage is within tolerance; `false` if it is not a number.
-    #[inline]
-    fn is_within(&self, floor_v: f32, driven_v: f32, monitor_v: f32) -> bool {
-        (monitor_v - self.expected_v).abs() < floor_v + self.gain_tolerance * driven_v.abs()
-    }
-
-    /// Counts a tick, and returns whether there were too many wrong ones. The count is limited to
-    /// [`MONITOR_WRONG_TICKS`], so that it soon falls again however long the monitor was wrong.
-    fn count(&mut self, driven_v: f32, monitor_v: f32) -> bool {
-        self.wrong_ticks = if self.is_within(self.floor_v, driven_v, monitor_v) {
-            self.wrong_ticks.saturating_sub(1)
-        } else {
-            (self.wrong_ticks + 1).min(MONITOR_WRONG_TICKS)
-        };
-        self.uncounted_below_v = if self.wrong_ticks > 0 { f32::NEG_INFINITY } else { self.floor_v };
-        self.wrong_ticks == MONITOR_WRONG_TICKS
-    }
-}
-
-/// `1 - exp(-x)`, the step response of a first-order lag after `x` time constants, within 1e-5 for `x` up to one and
-/// 1e-3 for any above zero: 64 steps of the trapezoidal rule. `libm::expf` would make the image larger.
-fn lag_step(x: f32) -> f32 {
-    let half_step = (x / 128.0).min(1.0);
-    let mut left = (1.0 - half_step) / (1.0 + half_step);
-    for _ in 0..6 {
-        left *= left;
-    }
-    1.0 - left
 }
 
 impl Supervisor {
@@ -108,6 +47,10 @@ impl Supervisor {
             host_timeout_ticks: Some(host_timeout_default_ticks(board)),
             host_silent: false,
             switch_was_released: false,
+            held_ticks_max: board.hold_to_run.then(|| board.ticks(SWITCH_HELD_MAX_S)),
+            held_ticks: 0,
+            active_since_tick: 0,
+            expiry_tick: None,
             monitor: MonitorCheck::new(board),
         }
     }
@@ -136,8 +79,14 @@ impl Supervisor {
                 self.state = State::Armed;
                 self.host_silent = false;
             }
-            (Order::Play, State::Armed) => self.state = State::Active,
-            (Order::Stop, State::Active) => self.state = State::Armed,
+            (Order::Play, State::Armed) => {
+                self.state = State::Active;
+                self.active_since_tick = now_tick;
+            }
+            (Order::Stop, State::Active) => {
+                self.state = State::Armed;
+                self.held_ticks = self.held_ticks.saturating_add(now_tick.wrapping_sub(self.active_since_tick));
+            }
             (Order::Disarm, State::Armed | State::Active) | (Order::ClearFault, State::Faulted) => {
                 self.disarm();
             }
@@ -164,54 +113,87 @@ impl Supervisor {
         }
     }
 
-    /// Sets the host timeout; `None` for a scene that plays without a host.
+    /// Sets the host timeout; `None` for a scene that plays without a host. Called after every order that is not about
+    /// the finger.
     pub(crate) fn set_host_timeout(&mut self, ticks: Option<u32>) {
         self.host_timeout_ticks = ticks;
+        self.find_expiry();
     }
 
     /// Latches a fault if the amplifier, its monitor or the arm switch requires it. `dac_code` is the output of the
     /// previous tick.
     #[inline]
     pub(crate) fn check(&mut self, sense: &Sense, dac_code: DacCode) {
-        let driven_v = f32::from(dac_code.bits()) * self.monitor.volts_per_code;
-        if self.monitor.advance(driven_v, sense.monitor_v) || sense.amplifier_fault || !sense.arm_switch {
-            self.latch_first_fault(sense, driven_v);
+        let (comparison, must_count) = self.monitor.advance(dac_code.bits(), sense.monitor_v);
+        if must_count || sense.amplifier_fault || !sense.arm_switch {
+            self.latch_first_fault(sense, comparison);
         }
     }
 
     /// Latches the fault that the inputs of [`Self::check`] show; if there are several, the first one below.
     #[cold]
     #[inline(never)]
-    fn latch_first_fault(&mut self, sense: &Sense, driven_v: f32) {
-        let monitor_wrong = self.monitor.count(driven_v, sense.monitor_v);
-        self.switch_was_released |= !sense.arm_switch;
+    fn latch_first_fault(&mut self, sense: &Sense, comparison: Comparison) {
+        let is_ready_wrong = self.monitor.is_ready_wrong(!sense.amplifier_fault);
+        let monitor_wrong = self.monitor.count(comparison);
+        if !sense.arm_switch {
+            self.switch_was_released = true;
+            self.held_ticks = 0;
+        }
         if self.state == State::Faulted {
             return;
         }
         if monitor_wrong {
             self.raise(Fault::Monitor, sense.monitor_v as i32 as u32);
-        } else if sense.amplifier_fault {
+        } else if is_ready_wrong {
             self.raise(Fault::Amplifier, 0);
         } else if self.state != State::Disarmed && !sense.arm_switch {
             self.raise(Fault::ArmSwitch, 0);
         }
     }
 
+    /// Follows the amplifier's enable of this tick. `dac_code` is the code of the previous tick.
+    #[inline]
+    pub(crate) fn set_amplifier_enabled(&mut self, is_enabled: bool, dac_code: DacCode) {
+        self.monitor.set_enabled(is_enabled, dac_code.bits());
+    }
+
+    /// The tick at which the host timeout or the longest time of play without an open switch passes; `None` if neither
+    /// applies. A fault may leave it early.
+    pub(crate) fn expiry_tick(&self) -> Option<u32> {
+        self.expiry_tick
+    }
+
+    fn find_expiry(&mut self) {
+        self.expiry_tick = match (self.host_expiry_tick(), self.switch_expiry_tick()) {
+            (Some(host_tick), Some(switch_tick)) => Some(earlier(host_tick, switch_tick)),
+            (host_tick, switch_tick) => host_tick.or(switch_tick),
+        };
+    }
+
+    /// The tick at which the switch has been held for too long; `None` outside of Active.
+    fn switch_expiry_tick(&self) -> Option<u32> {
+        let held_ticks_max = self.held_ticks_max.filter(|_| self.state == State::Active)?;
+        Some(self.active_since_tick.wrapping_add(held_ticks_max.saturating_sub(self.held_ticks)).wrapping_add(1))
+    }
+
     /// The tick at which the host timeout passes; `None` if no host is required.
-    pub(crate) fn host_expiry_tick(&self) -> Option<u32> {
+    fn host_expiry_tick(&self) -> Option<u32> {
         let needed = matches!(self.state, State::Armed | State::Active);
         let timeout_ticks = self.host_timeout_ticks.filter(|_| needed)?;
         Some(self.host_heard_at_tick.wrapping_add(timeout_ticks).wrapping_add(1))
     }
 
-    /// Disarms if the host timeout has passed.
+    /// Disarms if the host timeout has passed, and latches a fault if the switch has been held for too long.
     pub(crate) fn expire(&mut self, now_tick: u32) {
-        if let Some(tick) = self.host_expiry_tick()
-            && is_past(tick, now_tick)
-        {
+        if self.switch_expiry_tick().is_some_and(|tick| is_past(tick, now_tick)) {
+            self.raise(Fault::ContactWelded, 0);
+        }
+        if self.host_expiry_tick().is_some_and(|tick| is_past(tick, now_tick)) {
             self.disarm();
             self.host_silent = true;
         }
+        self.find_expiry();
     }
 }
 

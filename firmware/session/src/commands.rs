@@ -67,6 +67,9 @@ pub(crate) struct Commands<'a> {
     /// Fingers that the host reported.
     pub(crate) fingers: Fingers,
     pub(crate) tracker: Tracker,
+    /// The tick from which on the last report of the board's own touch source is too old to let an autonomous scene
+    /// play; `None` without one.
+    pub(crate) own_touch_until_tick: Option<u32>,
 }
 
 impl<'a> Commands<'a> {
@@ -97,6 +100,7 @@ impl<'a> Commands<'a> {
             stream: None,
             fingers: Fingers::new(),
             tracker: Tracker::new(&board),
+            own_touch_until_tick: None,
         }
     }
 

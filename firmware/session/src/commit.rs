@@ -5,6 +5,7 @@
 //! commit wait until it has ended. A hello drops both: the client that would have been answered is gone.
 
 use frixel_layers::{Scene, disabled_record};
+use frixel_wire::fault::State;
 use frixel_wire::message::{Accepted, Refusal};
 use frixel_wire::scene::{RECORDS_MAX, SceneError};
 use heapless::Vec;
@@ -142,6 +143,9 @@ impl Commands<'_> {
     fn hand_scene_over(&mut self, crc32: u32) -> Result<(), Refusal> {
         self.room_for_order()?;
         let scene = self.uploaded_scene()?;
+        if scene.header().autonomous {
+            self.check_autonomous(self.state == State::Active)?;
+        }
         let active = self.spare.as_deref().ok_or(Refusal::Busy)?;
         let (bitmaps, playing) = (bitmaps_of(&scene), Playing::new(&scene, &active.layers));
         let spare = self.spare.take().ok_or(Refusal::Busy)?;

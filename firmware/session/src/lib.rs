@@ -48,6 +48,7 @@
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 
+mod autonomous;
 mod bitmap_directory;
 mod commands;
 mod commit;

@@ -87,6 +87,7 @@ impl<'a> Session<'a> {
     /// at least once a telemetry period, and pass on touch reports, orders and bytes between two calls.
     pub fn poll(&mut self, status: &Status) {
         self.commands.tracker.expire(status.telemetry.tick);
+        self.commands.forget_old_touch(status.telemetry.tick);
         // First, so that a request that waited for the commit meets the state that the board is in.
         self.commands.report_state(status, &mut self.queue);
         self.commands.step_commit(status, &mut self.queue);
@@ -103,6 +104,7 @@ impl<'a> Session<'a> {
 
     /// Takes a report of the board's touch source that arrived at `tick`.
     pub fn touch(&mut self, touch: Touch, tick: u32) {
+        self.commands.own_touch_reported(tick);
         self.commands.tracker.report(touch, tick);
     }
 

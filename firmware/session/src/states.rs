@@ -61,7 +61,12 @@ impl<'a> Commands<'a> {
             Command::Arm if !status.arm_switch => Err(Refusal::ArmSwitch),
             Command::Arm => self.change_state(Order::Arm, &[State::Disarmed], State::Armed),
             Command::Play if self.committed_crc32 == 0 => Err(Refusal::NoScene),
-            Command::Play => self.change_state(Order::Play, &[State::Armed], State::Active),
+            Command::Play => {
+                if self.playing.is_autonomous() {
+                    self.check_autonomous(true)?;
+                }
+                self.change_state(Order::Play, &[State::Armed], State::Active)
+            }
             Command::Stop => self.change_state(Order::Stop, &[State::Active], State::Armed),
             _ => self.change_state(Order::Disarm, &[State::Disarmed, State::Armed, State::Active], State::Disarmed),
         }

@@ -2,11 +2,12 @@
 
 mod support;
 
-use frixel_control::Drive;
+use frixel_control::{AmplifierSpec, Board, Drive, ReadyWhileDisabled, SwitchingTime};
 use frixel_layers::{Constant, Header, Layer};
 use frixel_session::Touch;
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::{Fault, Flags, State};
+use frixel_wire::hello::BoardKind;
 use frixel_wire::message::{Command, FromBoard, Refusal};
 use support::{HEADER, Memory, TestBoard, constant, record, scene};
 
@@ -394,4 +395,231 @@ fn a_source_that_reports_at_every_tick_is_followed_as_any_other() {
         assert!((telemetry.finger_x_m - 0.035).abs() < 5e-5, "every {period_ticks}: {telemetry:?}");
         assert_ne!(telemetry.dac_code, 0, "every {period_ticks}");
     }
+}
+
+/// A board that a person can touch, with a touch source of its own and a switch that must be held. Its amplifier takes
+/// a millisecond to switch.
+const REAL_BOARD: Board = Board {
+    kind: BoardKind::NucleoG474re,
+    amplifier: AmplifierSpec {
+        turn_on: SwitchingTime::from_s(1e-3),
+        turn_off: SwitchingTime::from_s(1e-3),
+        ..Board::SIMULATOR.amplifier
+    },
+    hold_to_run: true,
+    ..Board::SIMULATOR
+};
+/// Ticks of those switching times, and the two in which an edge of the enable shows.
+const SWITCHING_TICKS: u32 = 42;
+/// Ticks with a wrong monitor voltage after which the board faults.
+const WRONG_TICKS: u32 = 20;
+
+fn touched(board: &mut TestBoard) {
+    board.touch = Some(Touch::Down { x_m: 0.03, y_m: 0.03, age_ticks: 0 });
+    board.tick();
+}
+
+/// The monitor's voltage on top of what is right, from now on, and the ticks until the board faults.
+fn ticks_to_fault(board: &mut TestBoard, monitor_v: impl Fn(u32) -> f32) -> Option<u32> {
+    (1..400).find(|tick| {
+        board.sense.monitor_v = monitor_v(*tick);
+        board.tick();
+        board.status().telemetry.state == State::Faulted
+    })
+}
+
+#[test]
+fn an_output_that_is_at_zero_within_the_turn_off_time_is_no_fault() {
+    for amplifier_v in [10.0, 49.0, 150.0] {
+        let mut memory = Memory::new();
+        let mut board = TestBoard::of(REAL_BOARD, &mut memory);
+        board.play(&constant(0.02));
+        board.slide(2000);
+        board.touch = Some(Touch::Up);
+        board.tick();
+        // From the last voltage down, with the delay of a tick.
+        let decay_v = |tick: u32| if tick < 2 { 0.0 } else { amplifier_v * (1.0 - tick as f32 / 40.0).max(0.0) };
+        assert_eq!(ticks_to_fault(&mut board, decay_v), None, "{amplifier_v} V");
+    }
+}
+
+#[test]
+fn an_output_that_is_not_at_zero_after_the_turn_off_time_is_a_fault() {
+    for command in [Command::Stop, Command::Disarm] {
+        let mut memory = Memory::new();
+        let mut board = TestBoard::of(REAL_BOARD, &mut memory);
+        board.play(&constant(0.02));
+        board.slide(2000);
+        board.command(command).unwrap();
+        board.tick();
+        assert_eq!(ticks_to_fault(&mut board, |_| 30.0), Some(SWITCHING_TICKS), "{command:?}");
+        assert_eq!(board.status().fault.map(|(fault, _)| fault), Some(Fault::Monitor));
+    }
+}
+
+#[test]
+fn an_output_that_rises_after_the_enable_has_fallen_is_a_fault_at_once() {
+    let mut memory = Memory::new();
+    let mut board = TestBoard::of(REAL_BOARD, &mut memory);
+    board.play(&constant(0.02));
+    board.slide(2000);
+    board.touch = Some(Touch::Up);
+    board.tick();
+    assert_eq!(ticks_to_fault(&mut board, |tick| if tick < 10 { 20.0 } else { 40.0 }), Some(10));
+}
+
+#[test]
+fn an_output_above_the_last_voltage_is_a_fault_at_once_when_the_enable_has_fallen() {
+    let mut memory = Memory::new();
+    let mut board = TestBoard::of(REAL_BOARD, &mut memory);
+    let header = Header { voltage_max_v_rms: 20.0, ..HEADER };
+    board.play(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 1.0 }))]));
+    board.slide(2000);
+    board.touch = Some(Touch::Up);
+    board.tick();
+    assert_eq!(ticks_to_fault(&mut board, |_| 70.0), Some(1));
+}
+
+#[test]
+fn a_dead_amplifier_is_a_fault_half_a_millisecond_after_its_turn_on_time() {
+    let mut memory = Memory::new();
+    let mut board = TestBoard::of(REAL_BOARD, &mut memory);
+    board.play(&constant(0.02));
+    board.amplifier_dead = true;
+    let ticks = (1..400).find(|_| {
+        board.slide(1);
+        board.status().telemetry.state == State::Faulted
+    });
+    assert!(ticks.is_some_and(|ticks| (60..=SWITCHING_TICKS + WRONG_TICKS + 2).contains(&ticks)), "{ticks:?}");
+}
+
+#[test]
+fn an_amplifier_that_is_ready_only_while_enabled_can_be_armed_and_faults_when_it_fails() {
+    for ready_while_disabled in [ReadyWhileDisabled::Low, ReadyWhileDisabled::DontCare] {
+        let amplifier = AmplifierSpec { ready_while_disabled, ..REAL_BOARD.amplifier };
+        let mut memory = Memory::new();
+        let mut board = TestBoard::of(Board { amplifier, ..REAL_BOARD }, &mut memory);
+        // Until here the line was high, as if it were stuck.
+        let stuck = (ready_while_disabled == ReadyWhileDisabled::Low).then_some((Fault::Amplifier, 0));
+        assert_eq!(board.status().fault, stuck);
+        board.sense.amplifier_fault = true;
+        board.tick();
+        if stuck.is_some() {
+            board.command(Command::ClearFault).unwrap();
+            board.press_switch();
+        }
+        board.play(&constant(0.02));
+        for tick in 0..4_000 {
+            let drive = if tick < 3_000 { board.slide(1)[0] } else { board.tick() };
+            // Ready a millisecond after the enable rises, and until it falls.
+            board.sense.amplifier_fault = tick < 40 || !drive.amplifier_enable;
+        }
+        assert_eq!(board.status().telemetry.state, State::Active, "{ready_while_disabled:?}");
+        board.slide(40);
+        board.sense.amplifier_fault = false;
+        board.slide(100);
+        board.sense.amplifier_fault = true;
+        assert_faults(&mut board, Fault::Amplifier, 0);
+    }
+}
+
+#[test]
+fn an_autonomous_scene_needs_a_switch_that_must_be_held_and_a_touch_source_on_the_board() {
+    for (hold_to_run, touch_from_host) in [(false, false), (true, true), (false, true)] {
+        let mut memory = Memory::new();
+        let mut board = TestBoard::of(Board { hold_to_run, touch_from_host, ..REAL_BOARD }, &mut memory);
+        board.hello();
+        assert_eq!(board.load(&autonomous()), Err(Refusal::Autonomous), "{hold_to_run}, {touch_from_host}");
+        board.load(&constant(0.02)).unwrap();
+    }
+}
+
+#[test]
+fn an_autonomous_scene_plays_only_if_the_boards_touch_source_has_reported_lately() {
+    let mut memory = Memory::new();
+    let mut board = TestBoard::of(REAL_BOARD, &mut memory);
+    board.hello();
+    board.load(&autonomous()).unwrap();
+    board.command(Command::Arm).unwrap();
+    assert_eq!(board.command(Command::Play), Err(Refusal::Autonomous), "it has never reported");
+    touched(&mut board);
+    for _ in 0..50 {
+        board.command(Command::Ping).unwrap();
+        board.ticks(8_000);
+    }
+    assert_eq!(board.command(Command::Play), Err(Refusal::Autonomous), "its report is ten seconds old");
+    touched(&mut board);
+    board.command(Command::Play).unwrap();
+    board.ticks(2 * HOST_TIMEOUT_TICKS);
+    assert_eq!(board.status().telemetry.state, State::Active);
+}
+
+#[test]
+fn a_playing_scene_is_not_replaced_by_an_autonomous_one_without_a_report_of_the_touch_source() {
+    let mut memory = Memory::new();
+    let mut board = TestBoard::of(REAL_BOARD, &mut memory);
+    board.play(&constant(0.02));
+    assert_eq!(board.load(&autonomous()), Err(Refusal::Autonomous));
+    touched(&mut board);
+    board.load(&autonomous()).unwrap();
+}
+
+#[test]
+fn a_switch_that_is_let_go_ends_an_autonomous_scene() {
+    let mut memory = Memory::new();
+    let mut board = TestBoard::of(REAL_BOARD, &mut memory);
+    board.hello();
+    board.load(&autonomous()).unwrap();
+    touched(&mut board);
+    board.command(Command::Arm).unwrap();
+    board.command(Command::Play).unwrap();
+    assert!(board.slide(1000).last().unwrap().amplifier_enable);
+    board.sense.arm_switch = false;
+    assert_eq!(board.tick(), OFF);
+    assert_eq!(board.status().fault, Some((Fault::ArmSwitch, 0)));
+}
+
+/// Stopping and playing again does not start the ten minutes anew, and letting go of the switch does.
+#[test]
+fn a_switch_that_never_opens_in_ten_minutes_of_play_is_a_fault() {
+    const TICK_HZ: u32 = 5_000;
+    const MINUTE: u32 = 60 * TICK_HZ;
+    let mut memory = Memory::new();
+    let mut board = TestBoard::of(Board { tick_hz: TICK_HZ, ..REAL_BOARD }, &mut memory);
+    let header = Header { autonomous: true, carrier_hz: 500.0, ..HEADER };
+    board.hello();
+    board.load(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.02 }))])).unwrap();
+    let play = |board: &mut TestBoard| {
+        touched(board);
+        board.command(Command::Play).unwrap();
+    };
+    board.command(Command::Arm).unwrap();
+    play(&mut board);
+    board.ticks(9 * MINUTE);
+    board.command(Command::Disarm).unwrap();
+    board.press_switch();
+    board.command(Command::Arm).unwrap();
+    for _ in 0..9 {
+        play(&mut board);
+        board.ticks(MINUTE);
+        board.command(Command::Stop).unwrap();
+        board.tick();
+    }
+    play(&mut board);
+    board.ticks(MINUTE - 10);
+    assert_eq!(board.status().telemetry.state, State::Active, "{:?}", board.status().fault);
+    board.ticks(30);
+    assert_eq!(board.status().fault, Some((Fault::ContactWelded, 0)));
+    assert_eq!(board.tick(), OFF);
+}
+
+#[test]
+fn a_simulated_board_plays_an_autonomous_scene_for_longer_than_ten_minutes() {
+    const TICK_HZ: u32 = 5_000;
+    let mut memory = Memory::new();
+    let mut board = TestBoard::of(Board { tick_hz: TICK_HZ, ..Board::SIMULATOR }, &mut memory);
+    let header = Header { autonomous: true, carrier_hz: 500.0, ..HEADER };
+    board.play(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.02 }))]));
+    board.ticks(11 * 60 * TICK_HZ);
+    assert_eq!(board.status().telemetry.state, State::Active);
 }

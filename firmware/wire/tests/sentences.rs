@@ -109,7 +109,8 @@ fn numbers(refusal: Refusal) -> Vec<String> {
         | Refusal::ArmSwitch
         | Refusal::TouchSource
         | Refusal::NoStreamLayer
-        | Refusal::LayersFixed => vec![],
+        | Refusal::LayersFixed
+        | Refusal::Autonomous => vec![],
     }
 }
 

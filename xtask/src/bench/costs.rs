@@ -83,7 +83,9 @@ fn costs_of_ticks(tick: impl Fn(&str) -> Result<u64, String>) -> Result<Vec<Cost
     // than others: take the longest.
     let longest =
         base.max(tick("1_of_64")?.saturating_sub(constant)).max(tick("out_of_reach_alone")?.saturating_sub(constant));
-    let empty = longest + RARE;
+    // In any of them, the amplifier may be switching on.
+    let switching = tick("disturbed_alone")?.saturating_sub(tick("constant_alone")?);
+    let empty = longest + switching + RARE;
     let stream_elsewhere = tick("stream_elsewhere")?.saturating_sub(tick("constant_alone")?);
     let (speed, speed_point) = line_through(SPEED_POINTS, alone("speed_2")?, alone("speed_8")?);
     let (polygon, polygon_edge) = line_through(POLYGON_POINTS, alone("polygon_4")?, alone("polygon_12")?);

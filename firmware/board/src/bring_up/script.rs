@@ -280,7 +280,8 @@ fn press(bench: &mut impl Bench, peak_v: f32) -> Pressed {
     Pressed(())
 }
 
-/// Asks for both time constants, and returns the electrode's, in s.
+/// Asks for the rise times at electrode and amplifier, and returns the one time constant that takes as much of the
+/// carrier's mean square as amplifier and series resistor in a row ([`BoardLimits::edge_time_constant_s`]), in s.
 fn measure_edges(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<f32, Stop> {
     bench.say(format_args!("6. Edges: set both probes to trigger once, 20 us a division."));
     drive(bench, EDGES_V_PEAK.min(built_in.voltage_max_v_peak))?;
@@ -288,8 +289,10 @@ fn measure_edges(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<f32, 
     let expected_us = (EDGE_FACTOR.0 * assumed_us, EDGE_FACTOR.1 * assumed_us);
     let electrode_us = ask(bench, "at the capacitor: time from the edge's start to 63 % of it, us", expected_us)?;
     let amplifier_us = (AMPLIFIER_MIN_US, AMPLIFIER_SHARE_MAX * electrode_us);
-    ask(bench, "at the monitor: time from the edge's start to 63 % of it, us", amplifier_us)?;
-    Ok(1e-6 * electrode_us)
+    let amplifier_us = ask(bench, "at the monitor: time from the edge's start to 63 % of it, us", amplifier_us)?;
+    // Of two lags in a row, the rise to 63 % takes about as long as both together.
+    let resistor_us = electrode_us - amplifier_us;
+    Ok(1e-6 * (electrode_us - amplifier_us * resistor_us / electrode_us))
 }
 
 fn store(bench: &mut impl Bench, limits: &BoardLimits) -> Result<(), Stop> {

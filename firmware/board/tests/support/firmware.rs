@@ -21,5 +21,5 @@ pub(crate) const BOARD: Board = Board {
 
 /// Its monitor.
 pub(crate) fn monitor() -> IdealMonitor {
-    IdealMonitor::new(&BOARD.limits, BOARD.tick_hz)
+    IdealMonitor::new(BOARD.limits.full_scale_v_peak, BOARD.amplifier.time_constant_s / BOARD.tick_period_s())
 }

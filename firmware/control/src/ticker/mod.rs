@@ -4,10 +4,11 @@
 //!
 //! The output is zero in every tick in which one of these holds:
 //!
-//! - The state is not Active. A fault leaves Active in the tick that detects it: the amplifier's fault line or the arm
-//!   switch ([`Sense`]) at once, the monitor voltage once wrong ticks exceed right ones by 20, and a fault that the
-//!   board detects by [`Ticker::raise`]. [`Order::Stop`], [`Order::Disarm`] and the host timeout leave it too. Only an
-//!   Active scene may continue without a host; an Armed board always needs one.
+//! - The state is not Active. A fault leaves Active in the tick that detects it: the amplifier's ready line or the arm
+//!   switch ([`Sense`]) at once, the monitor voltage once wrong ticks exceed right ones by those of 0.5 ms, an arm
+//!   switch that has not opened in ten minutes of play, and a fault that the board detects by [`Ticker::raise`].
+//!   [`Order::Stop`], [`Order::Disarm`] and the host timeout leave it too. Only an Active scene may continue without a
+//!   host; an Armed board always needs one.
 //! - No finger has a valid track: after [`Order::Lift`], and when a track expires. A [`Track`] of another contact than
 //!   the previous one counts as a lift: zero in the tick that takes it.
 //! - There is no scene ([`Order::Unload`]). [`Order::Load`] of another scene lowers the envelope to the new voltage
@@ -44,7 +45,8 @@ pub struct Ticker<'a> {
     finger: Finger,
     /// The finger was lifted since the last tick, even if another has touched the screen since.
     was_lifted: bool,
-    /// The earlier of the end of the finger's track and the host timeout; `None` if neither applies.
+    /// The earliest of the end of the finger's track, the host timeout and the longest time of play without an open
+    /// switch; `None` if none applies.
     expiry_tick: Option<u32>,
     /// Coefficients of the current scene.
     active: &'a mut Active,
@@ -164,6 +166,7 @@ impl<'a> Ticker<'a> {
         if self.envelope.follow(target_v_rms, self.active.slew_step_v) {
             self.counters.slewed_ticks = self.counters.slewed_ticks.wrapping_add(1);
         }
+        self.supervisor.set_amplifier_enabled(true, self.dac_code);
         let dac_code = self.carrier.next(self.envelope.voltage_v_rms(), &self.active.carrier, self.tick);
 
         self.electric_friction_n = friction_n;
@@ -186,6 +189,7 @@ impl<'a> Ticker<'a> {
         if self.supervisor.state() != State::Active {
             self.stop_stream();
         }
+        self.supervisor.set_amplifier_enabled(false, self.dac_code);
         self.clicks.lift();
         self.envelope.reset_to_zero();
         self.carrier.reset_to_zero(&self.active.carrier);
@@ -195,7 +199,7 @@ impl<'a> Ticker<'a> {
         Drive { dac_code: DacCode::ZERO, amplifier_enable: false }
     }
 
-    /// Drops a finger whose track has expired, and disarms if the host timeout has passed.
+    /// Drops a finger whose track has expired, and leaves the state if one of the supervisor's times has passed.
     #[cold]
     #[inline(never)]
     fn handle_expiry(&mut self) {
@@ -207,9 +211,9 @@ impl<'a> Ticker<'a> {
     /// Finds the next expiry. Called after every order and every expiry; a fault may leave it early, which costs one
     /// extra call of [`Self::handle_expiry`].
     fn find_next_expiry(&mut self) {
-        self.expiry_tick = match (self.finger.until_tick(), self.supervisor.host_expiry_tick()) {
-            (Some(finger_tick), Some(host_tick)) => Some(earlier(finger_tick, host_tick)),
-            (finger_tick, host_tick) => finger_tick.or(host_tick),
+        self.expiry_tick = match (self.finger.until_tick(), self.supervisor.expiry_tick()) {
+            (Some(finger_tick), Some(supervisor_tick)) => Some(earlier(finger_tick, supervisor_tick)),
+            (finger_tick, supervisor_tick) => finger_tick.or(supervisor_tick),
         };
     }
 

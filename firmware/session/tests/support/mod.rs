@@ -100,7 +100,10 @@ impl<'a> TestBoard<'a> {
             hello: None,
             amplifier_dead: false,
             reads: true,
-            monitor: IdealMonitor::new(&board.limits, board.tick_hz),
+            monitor: IdealMonitor::new(
+                board.limits.full_scale_v_peak,
+                board.amplifier.time_constant_s / board.tick_period_s(),
+            ),
             decoder: Decoder::new(),
             sequence: 0,
         };

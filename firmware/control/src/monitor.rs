@@ -1,0 +1,233 @@
+//! Compares the amplifier's monitor with what was driven.
+//!
+//! A board latches the code of a tick at the end of that tick's period, and reads the monitor at the beginning of a
+//! period. So the reading at a tick shows the codes up to the tick before the last one, each held for a whole tick.
+//!
+//! | the amplifier is | right is |
+//! |---|---|
+//! | enabled | a voltage near the expected one |
+//! | enabled since less than its turn-on time | any up to the ceiling: the largest of what it had and what is driven |
+//! | disabled since less than its turn-off time | any up to the ceiling, and none above an earlier one |
+//! | disabled | a voltage near zero |
+//!
+//! A wrong voltage after the enable has fallen is a fault at once, and so is one that is not near zero at the end of
+//! the turn-off time. Elsewhere wrong ticks are counted, so that a single disturbed reading does not stop the output.
+
+use crate::{Board, ReadyWhileDisabled};
+
+/// Tolerance of the monitor voltage, as a fraction of full scale; [`GAIN_TOLERANCE`] is added to it. For offsets of
+/// amplifier, level shifter and ADC (assumed; none has been measured).
+const FLOOR: f32 = 0.04;
+/// Tolerance as a fraction of a constant voltage: for the gain errors of the same parts (5 % are asked of the
+/// amplifier), for an amplifier that is faster or slower than its board says, and for the 2 us for which the newest code
+/// is out when the monitor is read.
+const GAIN_TOLERANCE: f32 = 0.25;
+/// The monitor faults once ticks with a wrong voltage exceed ticks with a right one by as many as are in this time, in
+/// s. Long against a disturbed reading, short against the 100 ms in which a hand lets go.
+const WRONG_S: f32 = 0.5e-3;
+/// Ticks between an edge of the enable and the first reading that shows it for a whole tick, one more for an edge that
+/// falls anywhere within its tick.
+const EDGE_TICKS: u32 = 2;
+
+/// The expected monitor voltage, and the count of ticks at which the monitor read something else.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MonitorCheck {
+    /// What the monitor is expected to read at the next tick.
+    expected_v: f32,
+    volts_per_code: f32,
+    step: f32,
+    /// Half of [`GAIN_TOLERANCE`], for the sum of the expected and the newest voltage. Stored here because the compiler
+    /// would hold a constant in a register over the whole tick.
+    half_gain_tolerance: f32,
+    floor_v: f32,
+    /// Equal to `floor_v`; minus infinity while every tick has to be [counted](Self::count).
+    uncounted_below_v: f32,
+    /// The last reading.
+    monitor_v: f32,
+    is_enabled: bool,
+    /// Ticks for which the amplifier may still be switching on or off.
+    switching_ticks: u32,
+    /// Largest magnitude that the monitor may read while the amplifier switches; zero when it has switched.
+    ceiling_v: f32,
+    wrong_ticks: u32,
+    wrong_ticks_max: u32,
+    turn_on_ticks: u32,
+    turn_off_ticks: u32,
+    ready_while_disabled: ReadyWhileDisabled,
+}
+
+/// A reading of the monitor and what was expected.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Comparison {
+    difference_v: f32,
+    gain_tolerance_v: f32,
+}
+
+impl Comparison {
+    /// Whether the reading is within tolerance; `false` if it is not a number.
+    #[inline]
+    fn is_within(self, floor_v: f32) -> bool {
+        self.difference_v < floor_v + self.gain_tolerance_v
+    }
+}
+
+impl MonitorCheck {
+    pub(crate) fn new(board: &Board) -> Self {
+        let floor_v = FLOOR * board.limits.full_scale_v_peak;
+        let amplifier = &board.amplifier;
+        let mut check = Self {
+            expected_v: 0.0,
+            volts_per_code: board.limits.full_scale_v_peak / f32::from(i16::MAX),
+            step: lag_step(board.tick_period_s() / amplifier.time_constant_s),
+            half_gain_tolerance: 0.5 * GAIN_TOLERANCE,
+            floor_v,
+            uncounted_below_v: floor_v,
+            monitor_v: 0.0,
+            is_enabled: false,
+            switching_ticks: 0,
+            ceiling_v: 0.0,
+            wrong_ticks: 0,
+            wrong_ticks_max: board.ticks(WRONG_S).max(1),
+            turn_on_ticks: amplifier.turn_on.ticks(board.tick_hz) + EDGE_TICKS,
+            turn_off_ticks: amplifier.turn_off.ticks(board.tick_hz) + EDGE_TICKS,
+            ready_while_disabled: amplifier.ready_while_disabled,
+        };
+        check.choose_ticks_to_count();
+        check
+    }
+
+    /// Follows the amplifier's enable of this tick. `dac_code` is the code of the last tick.
+    #[inline]
+    pub(crate) fn set_enabled(&mut self, is_enabled: bool, dac_code: i16) {
+        if self.is_enabled != is_enabled {
+            if is_enabled { self.turn_on() } else { self.turn_off(dac_code) }
+        }
+    }
+
+    /// Whether the level of the ready line is a fault.
+    pub(crate) fn is_ready_wrong(&self, is_ready: bool) -> bool {
+        match self.ready_while_disabled {
+            ReadyWhileDisabled::High => !is_ready,
+            _ if self.switching_ticks > 0 => false,
+            ReadyWhileDisabled::Low => is_ready != self.is_enabled,
+            ReadyWhileDisabled::DontCare => self.is_enabled && !is_ready,
+        }
+    }
+
+    /// Compares a reading with the expected voltage, and advances that by the code of the last tick. Returns whether
+    /// [`Self::count`] has to look at the comparison.
+    #[inline]
+    pub(crate) fn advance(&mut self, dac_code: i16, monitor_v: f32) -> (Comparison, bool) {
+        let expected_v = self.expected_v;
+        let driven_v = f32::from(dac_code) * self.volts_per_code;
+        self.expected_v = expected_v + self.step * (driven_v - expected_v);
+        self.monitor_v = monitor_v;
+        let comparison = Comparison {
+            difference_v: (monitor_v - expected_v).abs(),
+            gain_tolerance_v: self.half_gain_tolerance * (expected_v.abs() + driven_v.abs()),
+        };
+        (comparison, !comparison.is_within(self.uncounted_below_v))
+    }
+
+    /// Counts a tick, and returns whether the monitor shows a fault.
+    pub(crate) fn count(&mut self, comparison: Comparison) -> bool {
+        if self.switching_ticks == 0 {
+            return self.count_one(comparison.is_within(self.floor_v));
+        }
+        self.switching_ticks -= 1;
+        let is_right =
+            if self.is_enabled { self.is_right_while_turning_on() } else { self.is_right_while_turning_off() };
+        if self.switching_ticks > 0 && is_right {
+            return false;
+        }
+        if self.switching_ticks == 0 {
+            self.ceiling_v = 0.0;
+        }
+        if !self.is_enabled && !is_right {
+            self.wrong_ticks = self.wrong_ticks_max;
+        }
+        self.count_one(is_right)
+    }
+
+    /// Counts a right or a wrong tick, and returns whether there were too many wrong ones. The count is limited, so that
+    /// it soon falls again however long the monitor was wrong.
+    fn count_one(&mut self, is_right: bool) -> bool {
+        self.wrong_ticks = if is_right {
+            self.wrong_ticks.saturating_sub(1)
+        } else {
+            (self.wrong_ticks + 1).min(self.wrong_ticks_max)
+        };
+        self.choose_ticks_to_count();
+        !is_right && self.wrong_ticks == self.wrong_ticks_max
+    }
+
+    fn is_right_while_turning_on(&mut self) -> bool {
+        // The next reading may show what was driven in this tick.
+        let driven_v = self.with_tolerance_v(self.expected_v);
+        // Not `max`, which is a call on a Cortex-M4F.
+        if driven_v > self.ceiling_v {
+            self.ceiling_v = driven_v;
+        }
+        self.monitor_v.abs() < self.ceiling_v
+    }
+
+    fn is_right_while_turning_off(&mut self) -> bool {
+        let monitor_v = self.monitor_v.abs();
+        let is_right = monitor_v < self.ceiling_v && (self.switching_ticks > 0 || monitor_v < self.floor_v);
+        // The first reading may still show the voltage before the enable fell.
+        let risen_v = monitor_v + self.floor_v;
+        if risen_v < self.ceiling_v && self.switching_ticks + 1 < self.turn_off_ticks {
+            self.ceiling_v = risen_v;
+        }
+        is_right
+    }
+
+    /// The enable rises at this tick.
+    #[inline]
+    fn turn_on(&mut self) {
+        self.is_enabled = true;
+        self.switching_ticks = self.turn_on_ticks;
+        self.uncounted_below_v = f32::NEG_INFINITY;
+    }
+
+    /// The enable falls at this tick.
+    #[cold]
+    #[inline(never)]
+    fn turn_off(&mut self, dac_code: i16) {
+        self.is_enabled = false;
+        self.switching_ticks = self.turn_off_ticks;
+        self.uncounted_below_v = f32::NEG_INFINITY;
+        self.expected_v = 0.0;
+        for last_v in [self.monitor_v, f32::from(dac_code) * self.volts_per_code] {
+            let ceiling_v = self.with_tolerance_v(last_v);
+            if ceiling_v > self.ceiling_v {
+                self.ceiling_v = ceiling_v;
+            }
+        }
+    }
+
+    fn with_tolerance_v(&self, voltage_v: f32) -> f32 {
+        self.floor_v + (1.0 + GAIN_TOLERANCE) * voltage_v.abs()
+    }
+
+    fn choose_ticks_to_count(&mut self) {
+        // A ready line that is wrong when it is high does not call for attention by itself.
+        let watches_ready = self.ready_while_disabled == ReadyWhileDisabled::Low && !self.is_enabled;
+        let counts_all = self.wrong_ticks > 0 || self.switching_ticks > 0 || watches_ready;
+        self.uncounted_below_v = if counts_all { f32::NEG_INFINITY } else { self.floor_v };
+    }
+}
+
+/// `1 - exp(-x)`, the step response of a first-order lag after `x` time constants, within 1e-5 for `x` up to one and
+/// 1e-3 for any above zero: 64 steps of the trapezoidal rule. `libm::expf` would make the image larger.
+fn lag_step(x: f32) -> f32 {
+    let half_step = (x / 128.0).min(1.0);
+    let mut left = (1.0 - half_step) / (1.0 + half_step);
+    for _ in 0..6 {
+        left *= left;
+    }
+    1.0 - left
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,397 @@
+//! What the supervisor takes for a healthy amplifier, and in which time it finds a broken one.
+//!
+//! The plant here is a board and its amplifier in steps of 0.2 us: the enable changes 10 us into a tick, the DAC latches
+//! the code at 24 us and slews at 5 V/us (AD5761R datasheet, "Slew rate", unread). The monitor's ADC takes 2.5 us for a
+//! conversion, of which it samples for 2.2 us, and runs by itself: what a tick reads 0.9 us after its beginning was
+//! sampled up to 0.6 us after it, and as early as 1.8 us before.
+
+use frixel_wire::hello::BoardLimits;
+
+use super::{MonitorCheck, lag_step};
+use crate::{AmplifierSpec, Board, ReadyWhileDisabled, SwitchingTime};
+
+const STEP_S: f32 = 0.2e-6;
+const STEPS_PER_US: u32 = 5;
+const TICK_STEPS: u32 = 25 * STEPS_PER_US;
+const ENABLE_STEP: u32 = 10 * STEPS_PER_US;
+const LATCH_STEP: u32 = 24 * STEPS_PER_US;
+/// The latest and the earliest step of a tick in which the ADC samples what the next reading shows.
+const SAMPLE_STEPS: [u32; 2] = [3, TICK_STEPS - 9];
+
+/// A board like the NUCLEO-G474RE's: an amplifier of 20 kHz that takes 1 ms to switch.
+const BOARD: Board = Board {
+    limits: BoardLimits { full_scale_v_peak: 200.0, ..Board::SIMULATOR.limits },
+    amplifier: AmplifierSpec {
+        time_constant_s: 8e-6,
+        turn_on: SwitchingTime::from_s(1e-3),
+        turn_off: SwitchingTime::from_s(1e-3),
+        ready_while_disabled: ReadyWhileDisabled::High,
+    },
+    ..Board::SIMULATOR
+};
+/// 4 % of full scale.
+const FLOOR_V: f32 = 8.0;
+const WRONG_TICKS: u32 = 20;
+
+/// How the output of a disabled amplifier goes to zero.
+#[derive(Clone, Copy, Debug)]
+enum Decay {
+    Linear {
+        v_per_s: f32,
+    },
+    Exponential {
+        time_constant_s: f32,
+    },
+    /// The output jumps to the electrode's voltage, which lags behind by the series resistor's 36 us.
+    HighImpedance {
+        time_constant_s: f32,
+    },
+}
+
+/// The three kinds, each at 8 V within 0.75 ms of 200 V.
+const DECAYS: [Decay; 3] = [
+    Decay::Linear { v_per_s: 2.6e5 },
+    Decay::Exponential { time_constant_s: 230e-6 },
+    Decay::HighImpedance { time_constant_s: 230e-6 },
+];
+
+#[derive(Clone, Copy, Debug)]
+struct Plant {
+    gain: f32,
+    monitor_gain: f32,
+    turn_on_steps: u32,
+    turn_off_steps: u32,
+    sample_step: u32,
+    sampled_v: f32,
+    decay: Decay,
+    /// The output stage keeps its voltage when it is disabled.
+    stuck: bool,
+    code: i16,
+    dac_v: f32,
+    output_v: f32,
+    electrode_v: f32,
+    enable: bool,
+    since_edge_steps: u32,
+    /// Part of the distance to the DAC's voltage that the output covers in a step.
+    lag: f32,
+    is_on: bool,
+}
+
+impl Plant {
+    fn new(decay: Decay) -> Self {
+        Self {
+            gain: 1.0,
+            monitor_gain: 1.0,
+            turn_on_steps: 900 * STEPS_PER_US,
+            turn_off_steps: 200 * STEPS_PER_US,
+            sample_step: SAMPLE_STEPS[0],
+            sampled_v: 0.0,
+            lag: 1.0 - (-STEP_S / BOARD.amplifier.time_constant_s).exp(),
+            decay,
+            stuck: false,
+            code: 0,
+            dac_v: 0.0,
+            output_v: 0.0,
+            electrode_v: 0.0,
+            enable: false,
+            since_edge_steps: u32::MAX / 2,
+            is_on: false,
+        }
+    }
+
+    fn step(&mut self) {
+        let wanted_v = self.gain * f32::from(self.code) * 200.0 / 32_767.0;
+        // 5 V/us behind a gain of 20.
+        self.dac_v += (wanted_v - self.dac_v).clamp(-20.0, 20.0);
+        self.since_edge_steps = self.since_edge_steps.saturating_add(1);
+        if self.since_edge_steps >= if self.enable { self.turn_on_steps } else { self.turn_off_steps } {
+            self.is_on = self.enable;
+        }
+        if self.is_on && self.enable {
+            self.output_v += self.lag * (self.dac_v - self.output_v);
+        } else if !self.stuck && !self.is_on {
+            match self.decay {
+                Decay::Linear { v_per_s } => {
+                    let left_v = (self.output_v.abs() - v_per_s * STEP_S).max(0.0);
+                    self.output_v = left_v.copysign(self.output_v);
+                }
+                Decay::Exponential { time_constant_s } => self.output_v *= 1.0 - STEP_S / time_constant_s,
+                Decay::HighImpedance { time_constant_s } => {
+                    self.electrode_v *= 1.0 - STEP_S / time_constant_s;
+                    self.output_v = self.electrode_v;
+                }
+            }
+        }
+        self.electrode_v += STEP_S / 36e-6 * (self.output_v - self.electrode_v);
+    }
+}
+
+/// A plant and the check of its monitor, tick by tick.
+struct Bench {
+    plant: Plant,
+    check: MonitorCheck,
+    code: i16,
+    faults: u32,
+    most_wrong_ticks: u32,
+    ticks: u32,
+}
+
+impl Bench {
+    fn new(plant: Plant) -> Self {
+        Self { plant, check: MonitorCheck::new(&BOARD), code: 0, faults: 0, most_wrong_ticks: 0, ticks: 0 }
+    }
+
+    /// A tick that puts out `code`, or nothing.
+    fn tick(&mut self, code: Option<i16>) {
+        self.run(0, SAMPLE_STEPS[0]);
+        let monitor_v = self.plant.monitor_gain * self.plant.sampled_v;
+        let (comparison, must_count) = self.check.advance(self.code, monitor_v);
+        if must_count && self.check.count(comparison) {
+            self.faults += 1;
+        }
+        self.most_wrong_ticks = self.most_wrong_ticks.max(self.check.wrong_ticks);
+        self.check.set_enabled(code.is_some(), self.code);
+        self.code = code.unwrap_or(0);
+        self.run(SAMPLE_STEPS[0], ENABLE_STEP);
+        if self.plant.enable != code.is_some() {
+            self.plant.enable = code.is_some();
+            self.plant.since_edge_steps = 0;
+        }
+        // The enable and CLEAR are one output: the DAC is at zero at once.
+        if code.is_none() {
+            self.plant.code = 0;
+        }
+        self.run(ENABLE_STEP, LATCH_STEP);
+        self.plant.code = self.code;
+        self.run(LATCH_STEP, TICK_STEPS);
+        self.ticks += 1;
+    }
+
+    /// The steps of a tick from one to before another.
+    fn run(&mut self, from_step: u32, to_step: u32) {
+        for step in from_step..to_step {
+            self.plant.step();
+            if step + 1 == self.plant.sample_step {
+                self.plant.sampled_v = self.plant.output_v;
+            }
+        }
+    }
+
+    /// A square carrier for so many ticks.
+    fn square(&mut self, ticks: u32, amplitude: i16, half_period_ticks: u32) {
+        for tick in 0..ticks {
+            let is_positive = (tick / half_period_ticks).is_multiple_of(2);
+            self.tick(Some(if is_positive { amplitude } else { -amplitude }));
+        }
+    }
+
+    fn off(&mut self, ticks: u32) {
+        (0..ticks).for_each(|_| self.tick(None));
+    }
+
+    /// Ticks until the check faults, `limit` at most.
+    fn ticks_to_fault(&mut self, limit: u32, mut tick: impl FnMut(&mut Self, u32)) -> Option<u32> {
+        (1..=limit).find(|number| {
+            tick(self, *number);
+            self.faults > 0
+        })
+    }
+}
+
+/// A code for a voltage.
+fn code_of(voltage_v: f32) -> i16 {
+    (voltage_v * 32_767.0 / 200.0) as i16
+}
+
+#[test]
+fn a_lag_is_followed_as_an_exponential() {
+    for i in 1..=1000 {
+        let x = i as f32 * 1e-3;
+        let exact = 1.0 - (-f64::from(x)).exp();
+        assert!((f64::from(lag_step(x)) - exact).abs() < 1e-5, "{x}");
+    }
+    for i in 1..2000 {
+        let x = i as f32 * 0.25;
+        let exact = 1.0 - (-f64::from(x)).exp();
+        assert!((f64::from(lag_step(x)) - exact).abs() < 1e-3, "{x}");
+    }
+    assert!((lag_step(f32::INFINITY) - 1.0).abs() < 1e-9, "an amplifier without lag");
+}
+
+#[test]
+fn a_healthy_amplifier_has_no_wrong_tick_at_any_carrier_and_voltage() {
+    for (gain, sample_step) in [0.95, 1.0, 1.05].into_iter().flat_map(|gain| SAMPLE_STEPS.map(|step| (gain, step))) {
+        for voltage_v in [5.0, 10.7, 20.0, 50.0, 70.0, 100.0, 150.0, 200.0] {
+            for half_period_ticks in [4, 5, 7, 10, 20, 160] {
+                let mut bench = Bench::new(Plant { gain, sample_step, ..Plant::new(DECAYS[0]) });
+                bench.square(640, code_of(voltage_v), half_period_ticks);
+                // A sine of the same length.
+                for tick in 0..640 {
+                    let turns = f64::from(tick) / f64::from(2 * half_period_ticks);
+                    let sine = (core::f64::consts::TAU * turns).sin() as f32;
+                    bench.tick(Some(code_of(voltage_v * sine)));
+                }
+                let wrong = (bench.faults, bench.most_wrong_ticks);
+                assert_eq!(wrong, (0, 0), "gain {gain}, {voltage_v} V, {half_period_ticks} ticks, {sample_step}");
+            }
+        }
+    }
+}
+
+/// Lifts, stops and re-touches at every phase of the carrier, after and before the amplifier has switched.
+#[test]
+fn an_amplifier_that_switches_as_its_board_says_never_faults() {
+    for (decay, sample_step) in DECAYS.into_iter().flat_map(|decay| SAMPLE_STEPS.map(|step| (decay, step))) {
+        for voltage_v in [5.0, 10.7, 20.0, 50.0, 100.0, 200.0] {
+            for half_period_ticks in [4, 7, 20, 160] {
+                let mut bench = Bench::new(Plant { sample_step, ..Plant::new(decay) });
+                let (mut on_ticks, mut off_ticks) = (1, 1);
+                while bench.ticks < 20_000 {
+                    bench.square(on_ticks, code_of(voltage_v), half_period_ticks);
+                    bench.off(off_ticks);
+                    // All pairs of up to 89 and up to 97 ticks come, in another order.
+                    (on_ticks, off_ticks) = (1 + (on_ticks + 31) % 89, 1 + (off_ticks + 40) % 97);
+                }
+                assert_eq!(bench.faults, 0, "{decay:?}, {voltage_v} V, {half_period_ticks} ticks, {sample_step}");
+            }
+        }
+    }
+}
+
+#[test]
+fn an_output_that_stays_after_the_enable_has_fallen_faults_when_the_turn_off_time_is_over() {
+    for voltage_v in [9.0, 20.0, 50.0, 200.0] {
+        let mut bench = Bench::new(Plant { stuck: true, ..Plant::new(DECAYS[0]) });
+        bench.square(2_010, code_of(voltage_v), 20);
+        let ticks = bench.ticks_to_fault(200, |bench, _| bench.tick(None));
+        // 40 ticks of turn-off, and two for the edge.
+        assert_eq!(ticks, Some(43), "{voltage_v} V");
+    }
+}
+
+#[test]
+fn an_output_that_is_slower_than_the_turn_off_time_faults_when_that_is_over() {
+    for decay in [
+        Decay::Linear { v_per_s: 1.2e5 },
+        Decay::Exponential { time_constant_s: 500e-6 },
+        // 10 MOhm and 0.53 nF.
+        Decay::HighImpedance { time_constant_s: 5.3e-3 },
+    ] {
+        let mut bench = Bench::new(Plant { turn_off_steps: 0, ..Plant::new(decay) });
+        bench.square(2_010, code_of(200.0), 20);
+        assert_eq!(bench.ticks_to_fault(200, |bench, _| bench.tick(None)), Some(43), "{decay:?}");
+    }
+}
+
+#[test]
+fn an_output_that_rises_while_it_turns_off_faults_at_once() {
+    let mut bench = Bench::new(Plant::new(Decay::Exponential { time_constant_s: 100e-6 }));
+    bench.square(2_010, code_of(100.0), 20);
+    bench.off(30);
+    let before_v = bench.plant.output_v;
+    assert!(before_v.abs() < FLOOR_V && bench.faults == 0);
+    bench.plant.output_v = before_v + 3.0 * FLOOR_V;
+    bench.tick(None);
+    assert_eq!(bench.faults, 1);
+}
+
+#[test]
+fn an_output_above_the_last_voltage_faults_at_once_when_it_is_disabled() {
+    let mut bench = Bench::new(Plant { stuck: true, ..Plant::new(DECAYS[0]) });
+    bench.square(2_010, code_of(50.0), 20);
+    bench.tick(None);
+    bench.plant.output_v = 90.0;
+    bench.tick(None);
+    assert_eq!(bench.faults, 1);
+}
+
+#[test]
+fn an_output_that_rises_long_after_it_was_disabled_faults_within_half_a_millisecond() {
+    let mut bench = Bench::new(Plant { stuck: true, ..Plant::new(DECAYS[0]) });
+    bench.off(10_000);
+    bench.plant.output_v = 60.0;
+    assert_eq!(bench.ticks_to_fault(100, |bench, _| bench.tick(None)), Some(WRONG_TICKS));
+}
+
+#[test]
+fn a_dead_monitor_and_a_wrong_gain_fault_within_half_a_millisecond_of_the_turn_on_time() {
+    let dead = Plant { monitor_gain: 0.0, ..Plant::new(DECAYS[0]) };
+    let strong = Plant { gain: 1.5, ..Plant::new(DECAYS[0]) };
+    let weak = Plant { gain: 0.5, ..Plant::new(DECAYS[0]) };
+    for (plant, voltage_v) in [(dead, 12.0), (dead, 50.0), (dead, 200.0), (strong, 50.0), (weak, 50.0), (weak, 120.0)] {
+        let mut bench = Bench::new(plant);
+        let carrier = |number: u32| if (number / 20).is_multiple_of(2) { 1 } else { -1 };
+        let ticks = bench.ticks_to_fault(1_000, |bench, number| {
+            bench.tick(Some(code_of(voltage_v) * carrier(number)));
+        });
+        // 40 ticks of turn-on, two for the edge, and one until the first reading.
+        assert!(ticks.is_some_and(|ticks| (60..=66).contains(&ticks)), "{plant:?}, {voltage_v} V: {ticks:?}");
+    }
+}
+
+/// The same when it has worked until then.
+#[test]
+fn a_monitor_that_dies_while_the_amplifier_drives_faults_within_half_a_millisecond() {
+    for voltage_v in [12.0, 50.0, 200.0] {
+        let mut bench = Bench::new(Plant::new(DECAYS[0]));
+        bench.square(4_000, code_of(voltage_v), 20);
+        assert_eq!(bench.faults, 0);
+        bench.plant.monitor_gain = 0.0;
+        let ticks = bench.ticks_to_fault(100, |bench, number| {
+            bench.tick(Some(code_of(voltage_v) * if (number / 20).is_multiple_of(2) { 1 } else { -1 }));
+        });
+        assert!(ticks.is_some_and(|ticks| (20..=22).contains(&ticks)), "{voltage_v} V: {ticks:?}");
+    }
+}
+
+/// The amplifier keeps its voltage when it is disabled, and whatever it is told after that.
+#[test]
+fn an_amplifier_that_is_stuck_faults_although_it_is_enabled_again_before_its_turn_off_time_is_over() {
+    let mut bench = Bench::new(Plant { stuck: true, ..Plant::new(DECAYS[0]) });
+    bench.square(2_010, code_of(100.0), 20);
+    bench.off(10);
+    bench.plant.turn_on_steps = u32::MAX;
+    bench.plant.is_on = false;
+    let ticks = bench.ticks_to_fault(1_000, |bench, number| {
+        bench.tick(Some(code_of(100.0) * if (number / 20).is_multiple_of(2) { 1 } else { -1 }));
+    });
+    assert!(ticks.is_some_and(|ticks| ticks < 150), "{ticks:?}");
+}
+
+#[test]
+fn the_time_of_wrong_ticks_is_the_same_at_every_tick_rate() {
+    for (tick_hz, wrong_ticks) in [(10_000, 5), (20_000, 10), (40_000, 20), (80_000, 40)] {
+        let mut check = MonitorCheck::new(&Board { tick_hz, ..BOARD });
+        let ticks = (1..1_000).find(|_| {
+            let (comparison, must_count) = check.advance(0, 60.0);
+            must_count && check.count(comparison)
+        });
+        assert_eq!(ticks, Some(wrong_ticks), "{tick_hz} Hz");
+    }
+}
+
+#[test]
+fn a_ready_line_means_what_its_board_says() {
+    use ReadyWhileDisabled::{DontCare, High, Low};
+    // Wrong levels while disabled, while turning on, while enabled, while turning off.
+    for (ready_while_disabled, wrong) in [
+        (High, [[true, false], [true, false], [true, false], [true, false]]),
+        (Low, [[false, true], [false, false], [true, false], [false, false]]),
+        (DontCare, [[false, false], [false, false], [true, false], [false, false]]),
+    ] {
+        let amplifier = AmplifierSpec { ready_while_disabled, ..BOARD.amplifier };
+        let mut check = MonitorCheck::new(&Board { amplifier, ..BOARD });
+        let mut found = Vec::new();
+        for (enabled, ticks) in [(false, 100), (true, 1), (true, 100), (false, 1)] {
+            for _ in 0..ticks {
+                check.set_enabled(enabled, 0);
+                let (comparison, must_count) = check.advance(0, 0.0);
+                if must_count {
+                    check.count(comparison);
+                }
+            }
+            found.push([false, true].map(|is_ready| check.is_ready_wrong(is_ready)));
+        }
+        assert_eq!(found, wrong, "{ready_while_disabled:?}");
+    }
+}

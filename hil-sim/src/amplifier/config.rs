@@ -1,0 +1,111 @@
+//! What a simulated amplifier deviates from an ideal one by.
+
+use crate::error::{OutOfRange, above_zero, zero_to_ten};
+
+/// Deviations of the amplifier from an ideal one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AmplifierConfig {
+    /// True gain over the gain that the board assumes: 1 for an ideal amplifier. Above 0.
+    pub gain: f64,
+    /// Largest voltage that the output reaches in either direction, in volts, peak. Above 0.
+    pub saturation_v_peak: f64,
+    /// Time constant of the amplifier's output, before the series resistor, in seconds: 0 (no lag) to 10.
+    pub output_time_constant_s: f64,
+    /// Time constant of the electrode behind the series resistor, in seconds: 0 (no lag) to 10.
+    pub electrode_time_constant_s: f64,
+    /// Voltage that is added to the output while the amplifier is enabled, in volts: -10 to 10.
+    pub offset_v: f64,
+    /// Fastest change of the electrode, in V/s, above 0: the amplifier's current limit over the capacitance that it
+    /// charges.
+    pub slew_v_per_s: f64,
+    /// Time from the rise of the enable until the output follows the DAC, in seconds: 0 to 10. In whole ticks, rounded
+    /// up.
+    pub turn_on_s: f64,
+    /// Time from the fall of the enable until the output begins to [decay](Self::decay), in seconds: 0 to 10. The
+    /// output stays where it is meanwhile. In whole ticks, rounded up.
+    pub turn_off_delay_s: f64,
+    /// How the output goes to zero.
+    pub decay: Decay,
+    /// Voltage that the monitor shows over the voltage at the output: 1 for an ideal monitor, 0 for a dead one. Finite.
+    pub monitor_gain: f64,
+}
+
+/// How the output of a disabled amplifier goes to zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Decay {
+    /// The output stage lowers its output at a constant rate, in V/s. With 0 it stays, and with less it rises to
+    /// saturation: an output stage that is broken.
+    Linear {
+        /// Rate in V/s, finite.
+        v_per_s: f64,
+    },
+    /// The output stage discharges its output through a resistor, with this time constant.
+    Exponential {
+        /// In seconds: 0 (at once) to 10.
+        time_constant_s: f64,
+    },
+    /// The output stage lets go: output and electrode are one node, which discharges through bleed resistor and finger
+    /// with this time constant: 5.3 ms for 10 megohms and 0.53 nF.
+    HighImpedance {
+        /// In seconds: 0 (at once) to 10.
+        time_constant_s: f64,
+    },
+}
+
+impl AmplifierConfig {
+    /// Exact gain, no offset, no current limit, an electrode with a time constant of 20 us that contains the
+    /// amplifier's own, and 250 V: the simulated board's full scale, above any voltage that it allows. It switches on
+    /// and off at once, as that board says of its amplifier.
+    pub const IDEAL: Self = Self {
+        gain: 1.0,
+        saturation_v_peak: 250.0,
+        output_time_constant_s: 0.0,
+        electrode_time_constant_s: 20e-6,
+        offset_v: 0.0,
+        slew_v_per_s: f64::INFINITY,
+        turn_on_s: 0.0,
+        turn_off_delay_s: 0.0,
+        decay: Decay::Exponential { time_constant_s: 0.0 },
+        monitor_gain: 1.0,
+    };
+
+    /// An amplifier as `docs/hardware.md` demands it: an offset of 0.5 V (assumed: 25 mV at the input of a gain of 20),
+    /// and a current limit of 5 mA into the simulated board's worst electrode, 0.53 nF. It switches at once, like
+    /// [`Self::IDEAL`].
+    pub const REALISTIC: Self = Self { offset_v: 0.5, slew_v_per_s: 5e-3 / 0.53e-9, ..Self::IDEAL };
+
+    /// Checks the range of every number.
+    pub(super) fn check(&self) -> Result<(), OutOfRange> {
+        above_zero("amplifier gain", self.gain)?;
+        above_zero("amplifier saturation_v_peak", self.saturation_v_peak)?;
+        zero_to_ten("amplifier output_time_constant_s", self.output_time_constant_s)?;
+        zero_to_ten("amplifier electrode_time_constant_s", self.electrode_time_constant_s)?;
+        zero_to_ten("amplifier turn_on_s", self.turn_on_s)?;
+        zero_to_ten("amplifier turn_off_delay_s", self.turn_off_delay_s)?;
+        if self.slew_v_per_s != f64::INFINITY {
+            above_zero("amplifier slew_v_per_s", self.slew_v_per_s)?;
+        }
+        if !(-10.0..=10.0).contains(&self.offset_v) {
+            return Err(OutOfRange { name: "amplifier offset_v", expected: "from -10 to 10", found: self.offset_v });
+        }
+        match self.decay {
+            Decay::Linear { v_per_s } => finite("amplifier decay v_per_s", v_per_s)?,
+            Decay::Exponential { time_constant_s } | Decay::HighImpedance { time_constant_s } => {
+                zero_to_ten("amplifier decay time_constant_s", time_constant_s)?
+            }
+        };
+        finite("amplifier monitor_gain", self.monitor_gain)?;
+        Ok(())
+    }
+}
+
+impl Default for AmplifierConfig {
+    /// [`Self::IDEAL`].
+    fn default() -> Self {
+        Self::IDEAL
+    }
+}
+
+fn finite(name: &'static str, found: f64) -> Result<f64, OutOfRange> {
+    if found.is_finite() { Ok(found) } else { Err(OutOfRange { name, expected: "finite", found }) }
+}
