@@ -6,19 +6,33 @@ use std::process::Command;
 
 use serde_json::Value;
 
-use crate::command::{M3, M4F, add_target, cargo_in, root, run, text_of};
-use crate::outcome::{Outcome, skip};
-use crate::{bench, stamps};
+use crate::command::{cargo_in, root, text_of};
+use crate::outcome::Outcome;
+use crate::{results, stamps};
 
-/// The packages whose tests use the emulator.
-const WITH_EMULATOR: [&str; 2] = ["frixel", "frixel-hil-sim"];
+/// The name of the test programs that need an emulator, one in each package that has such tests.
+const ON_EMULATORS: &str = "emulated";
+
+/// Which test programs are run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Programs {
+    /// All but those that need an emulator.
+    OnThisMachine,
+    /// Those that need an emulator.
+    OnEmulators,
+}
 
 /// Inputs of tests besides the folders of their package and of its dependencies.
-const MORE_INPUTS: [(&str, &[&str]); 3] = [
+const MORE_INPUTS: [(&str, &[&str]); 5] = [
     ("frixel", &["README.md", "docs", "firmware", "scenes"]),
+    ("frixel-fuzz", &["scenes"]),
     ("frixel-scene", &["docs", "scenes"]),
-    ("frixel-hil-sim", &["firmware", "scenes"]),
+    ("frixel-studio", &["scenes"]),
+    ("frixel-hil-sim", &["firmware"]),
 ];
+
+/// Inputs of the tests of every package.
+const ALWAYS: [&str; 2] = ["Cargo.lock", "Cargo.toml"];
 
 /// A package of the workspace.
 struct Package {
@@ -30,26 +44,25 @@ struct Package {
 /// A built test program.
 struct TestProgram {
     package: String,
+    name: String,
     path: PathBuf,
 }
 
-/// Builds and runs all tests except documentation tests. The tests of [`WITH_EMULATOR`] skip a part without the
-/// emulator or its targets.
-pub(crate) fn run_all() -> Result<Outcome, String> {
+/// Builds all test programs, and runs these.
+pub(crate) fn run_all(which: Programs) -> Result<Outcome, String> {
     let packages = packages()?;
     let programs = build()?;
-    let emulated = match bench::emulator().and_then(|()| add_target(M4F)).and_then(|()| add_target(M3)) {
-        Ok(()) => Outcome::Passed,
-        Err(missing) => skip("tests on emulated processors", missing)?,
-    };
     let mut all = Outcome::Passed;
     for (name, package) in &packages {
-        let programs: Vec<&TestProgram> = programs.iter().filter(|program| program.package == *name).collect();
+        let programs = programs.iter().filter(|program| program.package == *name && program.is_of(which));
+        let programs: Vec<&TestProgram> = programs.collect();
         if !programs.is_empty() {
-            let inputs = inputs(name, &packages);
-            all = all.and(stamps::unless_unchanged(&format!("tests-{name}"), &inputs, || {
-                programs.iter().try_for_each(|program| program.run(&package.folder))?;
-                Ok(if WITH_EMULATOR.contains(&name.as_str()) { emulated } else { Outcome::Passed })
+            let stamp = match which {
+                Programs::OnThisMachine => format!("tests-{name}"),
+                Programs::OnEmulators => format!("tests-{name}-{ON_EMULATORS}"),
+            };
+            all = all.and(stamps::unless_unchanged(&stamp, &inputs(name, &packages), || {
+                programs.iter().try_for_each(|program| program.run(&package.folder)).map(|()| Outcome::Passed)
             })?);
         }
     }
@@ -58,20 +71,27 @@ pub(crate) fn run_all() -> Result<Outcome, String> {
 
 /// Runs the documentation tests.
 pub(crate) fn run_documentation() -> Result<Outcome, String> {
-    let folders: Vec<String> = packages()?.into_values().map(|package| package.folder).collect();
-    stamps::unless_unchanged("documentation-tests", &folders, || {
-        run("documentation tests", cargo_in(".").args(["test", "--workspace", "--locked", "--doc"]))?;
+    let folders = packages()?.into_values().map(|package| package.folder);
+    let inputs: Vec<String> = folders.chain(ALWAYS.iter().map(|path| (*path).to_owned())).collect();
+    stamps::unless_unchanged("documentation-tests", &inputs, || {
+        results::run("documentation tests", cargo_in(".").args(["test", "--workspace", "--locked", "--doc"]))?;
         Ok(Outcome::Passed)
     })
 }
 
 impl TestProgram {
+    fn is_of(&self, which: Programs) -> bool {
+        (self.name == ON_EMULATORS) == (which == Programs::OnEmulators)
+    }
+
     fn run(&self, folder: &str) -> Result<(), String> {
-        let name = self.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let folder = root().join(folder);
         // Runs the program in the same way as cargo does.
         let mut command = Command::new(&self.path);
-        run(&format!("{}: {name}", self.package), command.current_dir(&folder).env("CARGO_MANIFEST_DIR", &folder))
+        results::run(
+            &format!("{}: {}", self.package, self.name),
+            command.current_dir(&folder).env("CARGO_MANIFEST_DIR", &folder),
+        )
     }
 }
 
@@ -88,8 +108,7 @@ fn inputs(name: &str, packages: &BTreeMap<String, Package>) -> Vec<String> {
     }
     let folders = found.iter().filter_map(|name| packages.get(*name)).map(|package| package.folder.clone());
     let more = MORE_INPUTS.iter().filter(|(package, _)| *package == name).flat_map(|(_, more)| *more);
-    let always = ["Cargo.lock", "Cargo.toml"].iter();
-    folders.chain(more.chain(always).map(|path| (*path).to_owned())).collect()
+    folders.chain(more.chain(&ALWAYS).map(|path| (*path).to_owned())).collect()
 }
 
 /// Builds every test program of the workspace, with the same set of features for all.
@@ -107,7 +126,8 @@ fn test_program(line: &str) -> Result<Option<TestProgram>, String> {
     let path = message.get("executable").and_then(Value::as_str);
     let manifest = message.get("manifest_path").and_then(Value::as_str);
     let (true, Some(path), Some(manifest)) = (is_test, path, manifest) else { return Ok(None) };
-    Ok(Some(TestProgram { package: name_in(Path::new(manifest))?, path: path.into() }))
+    let name = message.pointer("/target/name").and_then(Value::as_str).unwrap_or_default().to_owned();
+    Ok(Some(TestProgram { package: name_in(Path::new(manifest))?, name, path: path.into() }))
 }
 
 /// Reads the name of the package from its manifest.
