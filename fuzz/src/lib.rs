@@ -1,6 +1,11 @@
 //! What a fuzzer feeds with arbitrary bytes: a function for each target, which panics where it finds a mistake.
 #![forbid(unsafe_code)]
-#![allow(clippy::expect_used, clippy::panic, reason = "a panic is how a target reports what it found")]
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::missing_panics_doc,
+    reason = "a panic is how a target reports what it found"
+)]
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -9,8 +14,8 @@ use frixel::rehearsal::board_costs;
 use frixel::rigs::SimLink;
 use frixel_driver::{Device, DeviceError, Upload};
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
-use frixel_layers::Scene as WireScene;
 use frixel_layers::cost::worst_of_scene;
+use frixel_layers::{Point, Record, Scene as WireScene};
 use frixel_scene::recorder::Recorder;
 use frixel_scene::{Scene, compile};
 
@@ -33,8 +38,8 @@ pub fn scene_bytes(bytes: &[u8]) {
     let records: Vec<_> = scene.records().collect();
     let points: Vec<_> = scene.points().collect();
     let mut written = scene.header().write(records.len() as u8, points.len() as u8).to_vec();
-    written.extend(records.iter().flat_map(|record| record.write()));
-    written.extend(points.iter().flat_map(|point| point.write()));
+    written.extend(records.iter().flat_map(Record::write));
+    written.extend(points.iter().flat_map(Point::write));
     let again = WireScene::parse(&written).expect("what was read can be written");
     let records_again: Vec<_> = again.records().collect();
     let points_again: Vec<_> = again.points().collect();

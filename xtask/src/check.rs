@@ -224,3 +224,63 @@ pub(crate) fn check_budgets() -> Result<(), String> {
 fn cargo(name: &str, folder: &str, arguments: &[&str], variables: &[(&str, &str)]) -> Result<(), String> {
     run(name, cargo_in(folder).args(arguments).envs(variables.iter().copied()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::studio;
+
+    fn manifest(folder: &str, name: &str) -> toml::Table {
+        toml::from_str(&fs::read_to_string(root().join(folder).join(name)).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn every_file_that_the_page_carries_is_among_the_inputs_of_its_tests() {
+        for (folder, _, _) in studio::CARRIED {
+            let is_input = HOST_INPUTS.iter().any(|input| std::path::Path::new(folder).starts_with(input));
+            assert!(is_input, "{folder} is no input of the tests of the studio");
+        }
+    }
+
+    /// Images of equal profiles take what they have in common from one folder.
+    #[test]
+    fn all_images_have_one_target_folder_and_one_profile() {
+        let of = |folder: &str| {
+            let profile = manifest(folder, "Cargo.toml")["profile"]["release"].clone();
+            let profile = profile.as_table().unwrap().clone();
+            let own = |(key, _): &(String, toml::Value)| key != "package";
+            let shared: toml::Table = profile.into_iter().filter(own).collect();
+            (shared, manifest(folder, ".cargo/config.toml")["build"]["target-dir"].clone())
+        };
+        let first = of(IMAGES[0].folder);
+        assert_eq!(first.1.as_str(), Some(IMAGES_TARGET_FOLDER));
+        for image in &IMAGES {
+            assert_eq!(of(image.folder), first, "{}", image.folder);
+        }
+        for folder in ["firmware/board-nucleo-g474re", "firmware/board-mps2-an386", "firmware/bench"] {
+            let packages = manifest(folder, "Cargo.toml")["profile"]["release"]["package"].clone();
+            assert_eq!(packages["frixel-control"]["opt-level"].as_integer(), Some(3), "{folder}");
+        }
+    }
+
+    /// Version 2.7 of `half` takes `zerocopy` with its derive macro, half of an image's compile time.
+    #[test]
+    fn no_lock_file_has_zerocopy() {
+        for folder in IMAGES.iter().map(|image| image.folder).chain(["."]) {
+            let lock = manifest(folder, "Cargo.lock");
+            let names = lock["package"].as_array().unwrap().iter().filter_map(|package| package["name"].as_str());
+            let has = names.into_iter().any(|name| name.starts_with("zerocopy"));
+            assert!(!has, "{folder}/Cargo.lock: `cargo update -p half --precise 2.6.0` takes zerocopy out of it");
+        }
+    }
+
+    #[test]
+    fn every_stage_has_a_name_of_its_own_and_the_first_tier_needs_no_emulator() {
+        for (index, stage) in STAGES.iter().enumerate() {
+            assert!(STAGES[..index].iter().all(|other| other.name != stage.name), "{}", stage.name);
+            assert!(stage.tier == Tier::All || !stage.needs.contains(&Need::Emulator), "{}", stage.name);
+        }
+        let tiers: Vec<Tier> = STAGES.iter().map(|stage| stage.tier).collect();
+        assert!(tiers.is_sorted(), "the first tier runs first");
+    }
+}

@@ -197,6 +197,8 @@ pub(crate) fn require(needs: &[Need]) -> Result<(), String> {
 
 #[cfg(all(test, unix))]
 mod tests {
+    #![allow(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
+
     use std::fs;
     use std::os::unix::fs::PermissionsExt;
 

@@ -60,7 +60,7 @@ fn processor_time() -> Option<Duration> {
     processor_time_in(&fs::read_to_string("/proc/self/stat").ok()?)
 }
 
-/// The fields `cutime` and `cstime` of proc_pid_stat(5), in hundredths of a second.
+/// The fields `cutime` and `cstime` of `/proc/self/stat`, proc(5), in hundredths of a second.
 fn processor_time_in(stat: &str) -> Option<Duration> {
     // The second field is a name in parentheses, which may have spaces; the next is the third.
     let mut fields = stat.rsplit_once(')')?.1.split_whitespace().skip(16 - 3);

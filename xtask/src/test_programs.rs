@@ -164,6 +164,8 @@ fn package_of(package: &Value, root: &Path) -> Option<(String, Package)> {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     #[test]
@@ -182,6 +184,113 @@ mod tests {
             assert!(found.iter().any(|path| path == expected), "{expected} is missing in {found:?}");
         }
         assert_eq!(inputs("model", &packages), ["model", "Cargo.lock", "Cargo.toml"]);
+    }
+
+    /// The files below a folder that have this ending.
+    fn files_below(folder: &Path, ending: &str, found: &mut Vec<PathBuf>) {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            let is_built = path.file_name().is_some_and(|name| name == "target" || name == "node_modules");
+            if path.is_dir() && !is_built {
+                files_below(&path, ending, found);
+            } else if path.extension().is_some_and(|found| found == ending) {
+                found.push(path);
+            }
+        }
+    }
+
+    /// The string literals of a source file that lead out of a folder.
+    fn paths_outwards(text: &str) -> impl Iterator<Item = &str> {
+        let literals = text.split('"').skip(1).step_by(2);
+        literals.filter(|literal| literal.contains("../") && !literal.contains(char::is_whitespace))
+    }
+
+    /// What a relative path names in the repository, if it is there.
+    fn in_repository(folder: &Path, path: &str) -> Option<String> {
+        let path = folder.join(path.trim_start_matches('/')).canonicalize().ok()?;
+        let path = path.strip_prefix(root().canonicalize().unwrap()).ok()?.to_str()?.to_owned();
+        // Artefacts are not files of the repository.
+        (!path.split('/').any(|name| name == "target")).then_some(path)
+    }
+
+    /// Tests read files by paths relative to their source file (`include_str!`) or to their package's folder. A path to a
+    /// folder that the package lies in, such as the repository's root, says nothing and is not looked at.
+    #[test]
+    fn every_file_that_a_package_reads_by_a_relative_path_is_among_the_inputs_of_its_tests() {
+        let packages = packages().unwrap();
+        let mut outwards = 0;
+        for (name, package) in &packages {
+            let folder = root().join(&package.folder);
+            let inputs = inputs(name, &packages);
+            let mut sources = Vec::new();
+            files_below(&folder, "rs", &mut sources);
+            for source in sources {
+                let text = fs::read_to_string(&source).unwrap();
+                let beside = source.parent().unwrap();
+                for path in paths_outwards(&text) {
+                    let meant = [beside, &folder].map(|folder| in_repository(folder, path));
+                    for meant in
+                        meant.into_iter().flatten().filter(|meant| !Path::new(&package.folder).starts_with(meant))
+                    {
+                        let is_input = inputs.iter().any(|input| Path::new(&meant).starts_with(input));
+                        assert!(is_input, "{}: {meant} is no input of the tests of {name}", source.display());
+                        outwards += 1;
+                    }
+                }
+            }
+        }
+        assert!(outwards > 20, "only {outwards} paths were found");
+    }
+
+    #[test]
+    fn the_scenes_are_inputs_of_the_studios_tests() {
+        assert!(inputs("frixel-studio", &packages().unwrap()).contains(&"scenes".to_owned()));
+    }
+
+    /// The files of `tests` are modules of few programs, which cargo does not look for by itself.
+    #[test]
+    fn every_file_of_tests_belongs_to_a_test_program() {
+        for package in packages().unwrap().into_values() {
+            let folder = root().join(&package.folder);
+            let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap();
+            let manifest: toml::Table = toml::from_str(&manifest).unwrap();
+            if manifest["package"].get("autotests").is_none() {
+                continue;
+            }
+            let programs = manifest["test"].as_array().unwrap().iter();
+            let programs: Vec<PathBuf> = programs.map(|test| folder.join(test["path"].as_str().unwrap())).collect();
+            let modules: Vec<PathBuf> = programs.iter().flat_map(|program| modules_of(program)).collect();
+            let mut files = Vec::new();
+            files_below(&folder.join("tests"), "rs", &mut files);
+            for file in files.iter().filter(|file| !programs.contains(file)) {
+                assert!(modules.contains(file), "{} is in no test program: name it in main.rs", file.display());
+            }
+        }
+    }
+
+    /// The files of the modules that a source file declares, of theirs, and so on.
+    fn modules_of(file: &Path) -> Vec<PathBuf> {
+        let text = fs::read_to_string(file).unwrap();
+        let is_root = ["main", "mod", "emulated", "safety"].iter().any(|name| file.file_stem().unwrap() == *name);
+        let beside = file.parent().unwrap();
+        let folder = if is_root { beside.to_owned() } else { file.with_extension("") };
+        let mut attribute = None;
+        let mut found = Vec::new();
+        for line in text.lines().map(str::trim) {
+            if let Some(path) = line.strip_prefix("#[path = \"") {
+                attribute = path.split('"').next();
+            } else if let Some(name) = line.strip_suffix(';').and_then(|line| line.rsplit_once("mod ")) {
+                let candidates = match attribute.take() {
+                    Some(path) => vec![beside.join(path)],
+                    None => vec![folder.join(format!("{}.rs", name.1)), folder.join(name.1).join("mod.rs")],
+                };
+                for module in candidates.into_iter().filter(|module| module.is_file()) {
+                    found.extend(modules_of(&module));
+                    found.push(module);
+                }
+            }
+        }
+        found
     }
 
     #[test]

@@ -1,0 +1,9 @@
+//! The tests of the crate as a whole, one program for all of them.
+
+mod chips;
+mod link_credit;
+mod live;
+mod resting;
+mod rig;
+mod script;
+mod world;
