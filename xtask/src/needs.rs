@@ -163,11 +163,11 @@ impl Missing {
                 }
             }
         }
-        for line in missing.lines() {
-            say(&line);
-        }
         if machine.is_ci && !missing.0.is_empty() {
             return Err(format!("this machine lacks what the checks need:\n{}", missing.lines().join("\n")));
+        }
+        for line in missing.lines() {
+            say(&line);
         }
         for (stage, needs) in stages {
             if let Some(names) = missing.among(needs) {
