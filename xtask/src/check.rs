@@ -230,8 +230,6 @@ mod tests {
     use super::*;
     use crate::studio;
 
-    const EMULATED_BOARD: &str = "firmware/board-mps2-an386";
-
     fn manifest(folder: &str, name: &str) -> toml::Table {
         toml::from_str(&fs::read_to_string(root().join(folder).join(name)).unwrap()).unwrap()
     }
@@ -244,10 +242,9 @@ mod tests {
         }
     }
 
-    /// Images of equal profiles take what they have in common from one folder, and others at least what runs in the
-    /// compiler. The emulated board is built for speed: its tests run it for minutes.
+    /// Images of equal profiles take what they have in common from one folder.
     #[test]
-    fn all_images_have_one_target_folder_and_all_but_the_emulated_board_one_profile() {
+    fn all_images_have_one_target_folder_and_one_profile() {
         let of = |folder: &str| {
             let profile = manifest(folder, "Cargo.toml")["profile"]["release"].clone();
             let profile = profile.as_table().unwrap().clone();
@@ -258,11 +255,9 @@ mod tests {
         let first = of(IMAGES[0].folder);
         assert_eq!(first.1.as_str(), Some(IMAGES_TARGET_FOLDER));
         for image in &IMAGES {
-            let (profile, target_folder) = of(image.folder);
-            assert_eq!(target_folder, first.1, "{}", image.folder);
-            assert!(profile == first.0 || image.folder == EMULATED_BOARD, "{}: {profile}", image.folder);
+            assert_eq!(of(image.folder), first, "{}", image.folder);
         }
-        for folder in ["firmware/board-nucleo-g474re", "firmware/bench"] {
+        for folder in ["firmware/board-nucleo-g474re", "firmware/board-mps2-an386", "firmware/bench"] {
             let packages = manifest(folder, "Cargo.toml")["profile"]["release"]["package"].clone();
             assert_eq!(packages["frixel-control"]["opt-level"].as_integer(), Some(3), "{folder}");
         }
