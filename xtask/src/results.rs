@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError};
 /// What the runners of this run have reported.
 static RESULTS: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
-/// Runs a test runner, cargo's or node's: prints its output as it comes, without its results, which [`print`] prints.
+/// Runs a test runner, cargo's or node's: prints its output as it comes, without its results, which [`print()`] prints.
 /// Fails if it fails.
 pub(crate) fn run(name: &str, command: &mut Command) -> Result<(), String> {
     eprintln!("-- {name}");
