@@ -1,28 +1,24 @@
-//! Writes the compiled scenes of the gallery, those that have no pictures, for the fuzzer to start from.
+//! Writes the compiled scenes of the gallery, those that have no pictures, into the folder that its argument names.
 
 use std::error::Error;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use frixel::scene_file;
 use frixel_hil_sim::RigConfig;
 use frixel_scene::compile;
-// Its instrumentation calls the fuzzer.
-use libfuzzer_sys as _;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let corpus = PathBuf::from(std::env::args_os().nth(1).ok_or("expected a folder")?);
+    fs::create_dir_all(&corpus)?;
     let board = RigConfig::default().board;
-    for entry in fs::read_dir(root.join("../scenes"))? {
+    for entry in fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes"))? {
         let path = entry?.path();
-        if path.extension().is_none_or(|extension| extension != "toml") {
-            continue;
-        }
-        let program = compile(&scene_file::load(&path)?, &board.limits, board.tick_hz)?;
-        for target in ["scene_bytes", "scene_load"].iter().filter(|_| program.bitmaps.is_empty()) {
-            let folder = root.join("corpus").join(target);
-            fs::create_dir_all(&folder)?;
-            fs::write(folder.join(path.file_stem().unwrap_or_default()), program.scene_bytes())?;
+        if path.extension().is_some_and(|extension| extension == "toml") {
+            let program = compile(&scene_file::load(&path)?, &board.limits, board.tick_hz)?;
+            if program.bitmaps.is_empty() {
+                fs::write(corpus.join(path.file_stem().unwrap_or_default()), program.scene_bytes())?;
+            }
         }
     }
     Ok(())

@@ -1,8 +1,7 @@
 //! Amplifiers as they are, in the in-process rig: healthy ones never fault, and broken ones do in time.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-mod script;
-
+use crate::script::{HEADER, Script, record, scene};
 use frixel_control::{AmplifierSpec, Board, ReadyWhileDisabled, SwitchingTime};
 use frixel_hil_sim::{AmplifierConfig, BoardMemory, Decay, FingerState, Rig, RigConfig, Stroke, WorldConfig};
 use frixel_layers::{Constant, Header, Layer, Waveform};
@@ -10,7 +9,6 @@ use frixel_testkit::Random;
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::hello::BoardLimits;
 use frixel_wire::message::Command;
-use script::{HEADER, Script, record, scene};
 
 /// The board of `docs/hardware.md`, with limits that allow the full voltage at every carrier.
 const BOARD: Board = Board {

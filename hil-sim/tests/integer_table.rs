@@ -40,7 +40,7 @@ fn is_available() -> bool {
 fn on_the_cortex_m3(load_n: f64) -> String {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../firmware").join(IMAGE);
     let build = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
-        .args(["build", "--release", "--locked", "--quiet", "--target-dir", "target"])
+        .args(["build", "--release", "--locked", "--quiet", "--target-dir", "../target"])
         .current_dir(&folder)
         .output()
         .unwrap();
@@ -60,7 +60,7 @@ fn on_the_cortex_m3(load_n: f64) -> String {
         .args(["-M", "mps2-an385", "-display", "none", "-monitor", "none", "-serial", "null", "-semihosting-config"])
         .arg(format!("enable=on,target=native,arg={IMAGE},{words},arg={STEP:x}"))
         .arg("-kernel")
-        .arg(folder.join("target").join(TARGET).join("release").join(IMAGE))
+        .arg(folder.join("../target").join(TARGET).join("release").join(IMAGE))
         .stdin(Stdio::null())
         .output()
         .unwrap();

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
-mod script;
+use crate::script;
 
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, TickRecord};
 use frixel_layers::Layer;

@@ -1,7 +1,7 @@
 //! What changes while a scene plays, tick by tick: a layer's gain, a scene that takes another's place.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-mod script;
+use crate::script;
 
 use frixel_hil_sim::{
     AmplifierConfig, BoardMemory, Point, Rig, RigConfig, Stroke, TickRecord, TouchConfig, contact_of,

@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 #![allow(clippy::disallowed_types, clippy::disallowed_methods, reason = "the test runs an emulator")]
 
-mod emulator;
-mod script;
+use crate::emulator;
+use crate::script;
 
 use frixel_control::Board;
 use frixel_exchange::BOARD;

@@ -1,7 +1,7 @@
 //! A finger at rest and a slow one, under touch sources with noise, steps and losses.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
-mod script;
+use crate::script;
 
 use frixel_hil_sim::{BoardMemory, Point, Rig, RigConfig, Stroke, TouchConfig};
 use frixel_layers::{Constant, Layer};

@@ -79,7 +79,7 @@
 //! - Eq. (22) allows a stress exponent of 0, but Eq. (24) contains its reciprocal. This crate refuses zero.
 //!
 //! Print these figures and those of the next section with
-//! `cargo test -p frixel-model --test documented -- --nocapture`.
+//! `cargo test -p frixel-model --test main documented -- --nocapture`.
 //!
 //! # What friction can and cannot identify
 //!

@@ -1,7 +1,7 @@
 //! Every variant, forward and inverse, in both precisions, against the paper's dimensional equations in 80 digits.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-mod common;
+use crate::common;
 
 use std::collections::BTreeMap;
 

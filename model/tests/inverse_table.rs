@@ -38,7 +38,7 @@ fn example_finger_is_within_the_bound_and_zero_output_is_not() {
 }
 
 #[test]
-#[ignore = "every f32 pattern, run by `cargo xtask soak`"]
+#[ignore = "every f32 pattern, run by `cargo xtask soak tables`"]
 fn example_finger_is_within_the_bound_at_every_f32() {
     for normal_load_n in [0.0, 0.5] {
         let contact = contact(normal_load_n);
@@ -84,7 +84,7 @@ fn strided_patterns_are_answered() {
 }
 
 #[test]
-#[ignore = "every f32 pattern, run by `cargo xtask soak`"]
+#[ignore = "every f32 pattern, run by `cargo xtask soak tables`"]
 fn every_f32_pattern_is_answered() {
     for normal_load_n in [0.0, 0.5] {
         every_pattern_is_answered(normal_load_n, 200.0, 1);

@@ -2,7 +2,7 @@
 //! load from a measured contact, pull-off, the onset of slip. Each test is also shown to fail with a zero output.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-mod common;
+use crate::common;
 
 use common::{Row, relative_error, rows};
 use frixel_model::{Contact, Finger, Real, Slab, TissueSpring, contact_attraction_pa, effective_gap_m};

@@ -119,7 +119,7 @@ fn bounds_hold_and_are_not_idle() {
 }
 
 #[test]
-#[ignore = "every f32 pattern, run by `cargo xtask soak`"]
+#[ignore = "every f32 pattern, run by `cargo xtask soak tables`"]
 fn every_f32_pattern_is_answered() {
     for contact in [contact(1e-5, 0.0), contact(1e-5, 0.5)] {
         let (low, high) = range(&contact);
@@ -146,7 +146,7 @@ fn every_f32_pattern_is_answered() {
 }
 
 #[test]
-#[ignore = "every 32-bit code, run by `cargo xtask soak`"]
+#[ignore = "every 32-bit code, run by `cargo xtask soak tables`"]
 fn every_code_is_answered() {
     for contact in contacts() {
         let (low, high) = range(&contact);

@@ -12,9 +12,8 @@ mod stack;
 mod thumb;
 
 use std::fs;
-use std::process::{Command, Stdio};
 
-use crate::command::{M3, M4F, add_target, root};
+use crate::command::{M3, M4F, root};
 pub(crate) use figures::Figures;
 use image::Image;
 
@@ -32,20 +31,10 @@ const M3_CORE: Core = Core { name: "m3", target: M3, machine: "mps2-an385" };
 /// Name of the emulator's executable.
 const EMULATOR: &str = "qemu-system-arm";
 
-/// Fails if the emulator is not installed.
-pub(crate) fn emulator() -> Result<(), String> {
-    match Command::new(EMULATOR).arg("--version").stdout(Stdio::null()).status() {
-        Ok(_) => Ok(()),
-        Err(_) => Err("the emulator is not installed: `apt-get install qemu-system-arm`".to_owned()),
-    }
-}
-
 /// Measures everything and writes `target/bench/bench.json`.
 pub(crate) fn bench() -> Result<Figures, String> {
-    emulator()?;
     let mut figures = Figures::default();
     for core in [&M4F_CORE, &M3_CORE] {
-        add_target(core.target)?;
         Image::build(core, false)?.measure(&mut figures)?;
     }
     size::measure(&mut figures)?;

@@ -1,70 +1,89 @@
-//! `cargo xtask test`: all checks that must pass before a change is merged.
+//! `cargo xtask test`: the checks that must pass before a change is merged.
 
 use std::fs;
 
 use crate::bench::programs::{self, Pace};
-use crate::command::{M4F, add_target, cargo_in, root, run};
+use crate::command::{IMAGES_TARGET_FOLDER, M3, M4F, WASM, cargo_in, root, run};
+use crate::needs::{Machine, Missing, Need};
 use crate::outcome::{Outcome, skip};
 use crate::stages::Stages;
-use crate::{bench, budgets, portability, stamps, studio_tests, test_programs};
+use crate::test_programs::{self, Programs};
+use crate::{bench, budgets, fuzz, portability, results, stamps, studio_tests};
 
 /// Inputs of the images and of the budgets.
-const FIRMWARE_INPUTS: [&str; 6] = ["budgets.toml", "Cargo.lock", "Cargo.toml", "firmware", "model", "xtask"];
-/// Inputs of the portability checks.
-const PORTABILITY_INPUTS: [&str; 8] =
-    ["Cargo.lock", "Cargo.toml", "firmware", "hil-sim", "host", "model", "scenes", "xtask/src/portability.rs"];
-/// Inputs of the browser tests of the studio.
-const STUDIO_INPUTS: [&str; 8] =
-    ["Cargo.lock", "Cargo.toml", "firmware", "hil-sim", "host", "model", "scenes", "xtask"];
+const FIRMWARE_INPUTS: [&str; 8] =
+    ["budgets.toml", "Cargo.lock", "Cargo.toml", "clippy.toml", "firmware", "model", "rustfmt.toml", "xtask"];
+/// Inputs of everything that is made of the crates of the page and of the command.
+pub(crate) const HOST_INPUTS: [&str; 10] =
+    ["Cargo.lock", "Cargo.toml", "clippy.toml", "docs", "firmware", "hil-sim", "host", "model", "scenes", "xtask"];
 /// The crate whose features an image selects.
 const SESSION: &str = "firmware/session";
 
-/// A firmware image outside the workspace.
-struct Image {
-    folder: &'static str,
-    /// The target folder in which its size is measured and its emulator expects it.
-    target_folder: &'static str,
-    /// Further sets of features to check: additional ones, and replacements of the default ones.
-    more: &'static [&'static [&'static str]],
+/// How much is checked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Tier {
+    /// `cargo xtask test`: at most 15 minutes from a clean clone on two cores.
+    First,
+    /// `cargo xtask test --all`: the first tier, and then what is slow; at most 45 minutes.
+    All,
 }
 
-const IMAGES: [Image; 4] = [
-    Image {
-        folder: "firmware/board-nucleo-g474re",
-        target_folder: "target/full",
-        more: &[
-            &["--features", "optical-frame"],
-            &["--no-default-features"],
-            &["--no-default-features", "--features", "grating"],
-            &["--no-default-features", "--features", "bitmap,store,panic-message"],
-        ],
+/// One check.
+struct Stage {
+    name: &'static str,
+    tier: Tier,
+    needs: &'static [Need],
+    run: fn() -> Result<Outcome, String>,
+}
+
+pub(crate) const CLIPPY: Need = Need::Component("clippy", "clippy");
+const FORMAT: Need = Need::Component("fmt", "rustfmt");
+pub(crate) const M4F_TARGET: Need = Need::Target(M4F);
+pub(crate) const M3_TARGET: Need = Need::Target(M3);
+pub(crate) const WASM_TARGET: Need = Need::Target(WASM);
+
+/// All checks, in the order in which they run: a cheap one fails first.
+const STAGES: [Stage; 13] = [
+    Stage { name: "format", tier: Tier::First, needs: &[FORMAT], run: format },
+    Stage { name: "lints", tier: Tier::First, needs: &[CLIPPY], run: lints },
+    Stage { name: "feature sets", tier: Tier::First, needs: &[M4F_TARGET], run: feature_sets },
+    Stage { name: "images", tier: Tier::First, needs: &[M4F_TARGET, M3_TARGET, CLIPPY, FORMAT], run: images },
+    Stage { name: "tests", tier: Tier::First, needs: &[], run: tests },
+    Stage { name: "documentation tests", tier: Tier::First, needs: &[], run: test_programs::run_documentation },
+    Stage { name: "documentation", tier: Tier::First, needs: &[], run: documentation },
+    Stage { name: "crates of the page for WebAssembly", tier: Tier::First, needs: &[WASM_TARGET, CLIPPY], run: page },
+    Stage { name: "studio in a browser", tier: Tier::First, needs: &studio_tests::NEEDS, run: studio_in_a_browser },
+    Stage {
+        name: "tests on emulators",
+        tier: Tier::All,
+        needs: &[M4F_TARGET, M3_TARGET, Need::Emulator],
+        run: tests_on_emulators,
     },
-    Image { folder: "firmware/board-mps2-an386", target_folder: "target", more: &[] },
-    Image { folder: "firmware/bench", target_folder: "target", more: &[] },
-    Image { folder: "firmware/table-cortex-m3", target_folder: "target", more: &[] },
+    Stage { name: "budgets", tier: Tier::All, needs: &[M4F_TARGET, M3_TARGET, Need::Emulator], run: budgets_stage },
+    Stage { name: "other systems", tier: Tier::All, needs: &portability::NEEDS, run: other_systems },
+    Stage { name: "fuzz targets for libFuzzer", tier: Tier::All, needs: &[Need::CppCompiler], run: fuzz::run_all },
 ];
 
-/// Runs every check, and prints the run time of each stage.
-pub(crate) fn test() -> Result<(), String> {
-    let mut stages = Stages::new();
-    stages.run("format", || passed(cargo("format", ".", &["fmt", "--all", "--check"], &[])))?;
-    let lints = ["clippy", "--workspace", "--all-targets", "--locked", "--", "-D", "warnings"];
-    stages.run("lints", || passed(cargo("lints", ".", &lints, &[])))?;
-    stages.run("feature sets", || unless_firmware_unchanged("feature-sets", || passed(feature_sets())))?;
-    stages.run("images", || unless_firmware_unchanged("images", || passed(images())))?;
-    stages.run("tests", test_programs::run_all)?;
-    stages.run("portability", || {
-        stamps::unless_unchanged("portability", &PORTABILITY_INPUTS.map(str::to_owned), || passed(portability::check()))
-    })?;
-    stages.run("studio in a browser", || {
-        stamps::unless_unchanged("studio", &STUDIO_INPUTS.map(str::to_owned), studio_tests::run_all)
-    })?;
-    stages.run("documentation tests", test_programs::run_documentation)?;
-    let docs = ["doc", "--workspace", "--no-deps", "--locked"];
-    let flags = [("RUSTDOCFLAGS", "-D warnings")];
-    stages.run("documentation", || passed(cargo("documentation", ".", &docs, &flags)))?;
-    stages.run("budgets", || unless_firmware_unchanged("budgets", budgets))?;
-    eprint!("{}", stages.table());
+/// Looks at what the machine has, runs every check of a tier, and prints the time of each and the results of the test
+/// runners.
+pub(crate) fn test(tier: Tier) -> Result<(), String> {
+    let stages: Vec<&Stage> = STAGES.iter().filter(|stage| stage.tier <= tier).collect();
+    let needs: Vec<(&str, &[Need])> = stages.iter().map(|stage| (stage.name, stage.needs)).collect();
+    eprintln!("what the checks need of this machine:");
+    let missing = Missing::look(&Machine::this(), &needs, &mut |line| eprintln!("{line}"))?;
+    let mut timed = Stages::new();
+    for stage in stages {
+        let result = timed.run(stage.name, || match missing.among(stage.needs) {
+            Some(names) => skip(stage.name, format!("without {names}")),
+            None => (stage.run)(),
+        });
+        if result.is_err() {
+            results::print();
+            return result;
+        }
+    }
+    eprint!("{}", timed.table());
+    results::print();
     Ok(())
 }
 
@@ -73,41 +92,70 @@ fn passed(result: Result<(), String>) -> Result<Outcome, String> {
     result.map(|()| Outcome::Passed)
 }
 
-/// Runs the tests that take too long for every change, because they are exhaustive.
-pub(crate) fn soak() -> Result<(), String> {
-    let mut stages = Stages::new();
-    let sweeps = ["test", "--release", "--locked", "--package", "frixel-model", "--", "--ignored", "--nocapture"];
-    stages.run("every f32", || passed(cargo("soak", ".", &sweeps, &[])))?;
-    let felt =
-        ["test", "--release", "--locked", "--package", "frixel", "--test", "felt", "--", "--ignored", "--nocapture"];
-    stages.run("textures on many strokes", || passed(cargo("soak", ".", &felt, &[])))?;
-    let people =
-        ["test", "--release", "--locked", "--package", "frixel", "--test", "fit", "--", "--ignored", "--nocapture"];
-    stages.run("fits of 200 people", || passed(cargo("soak", ".", &people, &[])))?;
-    let ports =
-        ["test", "--locked", "--package", "frixel", "--test", "designer", "--", "--ignored", "--test-threads", "1"];
-    stages.run("experiments in real time", || passed(cargo("soak", ".", &ports, &[])))?;
-    stages.run("random scenes", || {
-        passed(Pace::ALL.into_iter().try_for_each(|pace| programs::check(pace, programs::FEW, programs::MANY)))
-    })?;
-    eprint!("{}", stages.table());
-    Ok(())
+fn format() -> Result<Outcome, String> {
+    passed(cargo("format", ".", &["fmt", "--all", "--check"], &[]))
+}
+
+fn lints() -> Result<Outcome, String> {
+    let lints = ["clippy", "--workspace", "--all-targets", "--locked", "--", "-D", "warnings"];
+    passed(cargo("lints", ".", &lints, &[]))
+}
+
+fn feature_sets() -> Result<Outcome, String> {
+    unless_firmware_unchanged("feature-sets", || passed(check_feature_sets()))
+}
+
+fn images() -> Result<Outcome, String> {
+    unless_firmware_unchanged("images", || passed(check_images()))
+}
+
+fn tests() -> Result<Outcome, String> {
+    test_programs::run_all(Programs::OnThisMachine)
+}
+
+fn tests_on_emulators() -> Result<Outcome, String> {
+    test_programs::run_all(Programs::OnEmulators)
+}
+
+fn documentation() -> Result<Outcome, String> {
+    let docs = ["doc", "--workspace", "--no-deps", "--locked"];
+    passed(cargo("documentation", ".", &docs, &[("RUSTDOCFLAGS", "-D warnings")]))
+}
+
+fn page() -> Result<Outcome, String> {
+    unless_host_unchanged("page", || passed(portability::page_crates()))
+}
+
+fn studio_in_a_browser() -> Result<Outcome, String> {
+    unless_host_unchanged("studio", || passed(studio_tests::run_all()))
+}
+
+fn budgets_stage() -> Result<Outcome, String> {
+    unless_firmware_unchanged("budgets", || passed(check_budgets()))
+}
+
+fn other_systems() -> Result<Outcome, String> {
+    unless_host_unchanged("other-systems", || passed(portability::other_systems()))
 }
 
 fn unless_firmware_unchanged(name: &str, check: impl FnOnce() -> Result<Outcome, String>) -> Result<Outcome, String> {
     stamps::unless_unchanged(name, &FIRMWARE_INPUTS.map(str::to_owned), check)
 }
 
+fn unless_host_unchanged(name: &str, check: impl FnOnce() -> Result<Outcome, String>) -> Result<Outcome, String> {
+    stamps::unless_unchanged(name, &HOST_INPUTS.map(str::to_owned), check)
+}
+
 /// Checks the session without features, and with each feature alone, with warnings as errors. Also runs the tests of
 /// the layers without features.
-fn feature_sets() -> Result<(), String> {
-    add_target(M4F)?;
+fn check_feature_sets() -> Result<(), String> {
     let path = root().join(SESSION).join("Cargo.toml");
     let text = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
     let manifest: toml::Table = toml::from_str(&text).map_err(|error| format!("{}: {error}", path.display()))?;
     let features = manifest.get("features").and_then(toml::Value::as_table);
     let features = features.ok_or_else(|| format!("{} has no features", path.display()))?;
-    let all = ["check", "--quiet", "--locked", "--target", M4F, "--target-dir", "../../target/cross"];
+    // As the images are built, so that they share what the compiler itself takes.
+    let all = ["check", "--quiet", "--release", "--locked", "--target", M4F, "--target-dir", IMAGES_TARGET_FOLDER];
     let none = [&all[..], &["--no-default-features"]].concat();
     let flags = [("RUSTFLAGS", "-D warnings")];
     cargo("session with all features", SESSION, &all, &flags)?;
@@ -118,30 +166,48 @@ fn feature_sets() -> Result<(), String> {
     }
     let package = ["test", "--quiet", "--locked", "--package", "frixel-layers", "--no-default-features"];
     let tests = [&package[..], &["--lib", "--test", "disabled"]].concat();
-    cargo("layers without features", ".", &tests, &[])
+    results::run("layers without features", cargo_in(".").args(tests))
 }
 
+/// A firmware image outside the workspace.
+struct Image {
+    folder: &'static str,
+    /// Further sets of features to check: additional ones, and replacements of the default ones.
+    more: &'static [&'static [&'static str]],
+}
+
+const IMAGES: [Image; 4] = [
+    Image {
+        folder: "firmware/board-nucleo-g474re",
+        more: &[
+            &["--features", "optical-frame"],
+            &["--no-default-features"],
+            &["--no-default-features", "--features", "grating"],
+            &["--no-default-features", "--features", "bitmap,store,panic-message"],
+        ],
+    },
+    Image { folder: "firmware/board-mps2-an386", more: &[] },
+    Image { folder: "firmware/bench", more: &[] },
+    Image { folder: "firmware/table-cortex-m3", more: &[] },
+];
+
 /// Checks format and lints of every image, and builds it.
-fn images() -> Result<(), String> {
-    for Image { folder, target_folder, more } in &IMAGES {
+fn check_images() -> Result<(), String> {
+    let into = ["--quiet", "--release", "--locked", "--target-dir", IMAGES_TARGET_FOLDER];
+    for Image { folder, more } in &IMAGES {
         cargo(&format!("format of {folder}"), folder, &["fmt", "--check"], &[])?;
         for features in [&[][..]].iter().chain(*more) {
-            let lints = ["clippy", "--quiet", "--release", "--locked", "--target-dir", target_folder];
-            let lints = [&lints[..], features, &["--", "-D", "warnings"]].concat();
+            let lints = [&["clippy"], &into[..], features, &["--", "-D", "warnings"]].concat();
             cargo(&format!("lints of {folder} {}", features.join(" ")), folder, &lints, &[])?;
         }
-        let build = ["build", "--release", "--locked", "--target-dir", target_folder];
-        cargo(&format!("build of {folder}"), folder, &build, &[])?;
+        cargo(&format!("build of {folder}"), folder, &[&["build"], &into[..]].concat(), &[])?;
     }
     Ok(())
 }
 
 /// Counts instructions, measures sizes and compares them with their limits. Also checks that an image that
 /// deliberately exceeds its budget is detected.
-pub(crate) fn budgets() -> Result<Outcome, String> {
-    if let Err(missing) = bench::emulator() {
-        return skip("budgets", missing);
-    }
+pub(crate) fn check_budgets() -> Result<(), String> {
     let figures = bench::bench()?;
     eprint!("{}", figures.table());
     let limits = budgets::read(&root().join("budgets.toml"))?;
@@ -150,11 +216,71 @@ pub(crate) fn budgets() -> Result<Outcome, String> {
     Pace::ALL.into_iter().try_for_each(|pace| programs::check(pace, 0, programs::FEW))?;
     let broken = budgets::only(&limits, bench::BROKEN)?;
     match budgets::check(&broken, &bench::breach()?) {
-        Err(_) => Ok(Outcome::Passed),
+        Err(_) => Ok(()),
         Ok(()) => Err(format!("an image that breaks the budget of {} was not noticed", bench::BROKEN)),
     }
 }
 
 fn cargo(name: &str, folder: &str, arguments: &[&str], variables: &[(&str, &str)]) -> Result<(), String> {
     run(name, cargo_in(folder).args(arguments).envs(variables.iter().copied()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::studio;
+
+    fn manifest(folder: &str, name: &str) -> toml::Table {
+        toml::from_str(&fs::read_to_string(root().join(folder).join(name)).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn every_file_that_the_page_carries_is_among_the_inputs_of_its_tests() {
+        for (folder, _, _) in studio::CARRIED {
+            let is_input = HOST_INPUTS.iter().any(|input| std::path::Path::new(folder).starts_with(input));
+            assert!(is_input, "{folder} is no input of the tests of the studio");
+        }
+    }
+
+    /// Images of equal profiles take what they have in common from one folder.
+    #[test]
+    fn all_images_have_one_target_folder_and_one_profile() {
+        let of = |folder: &str| {
+            let profile = manifest(folder, "Cargo.toml")["profile"]["release"].clone();
+            let profile = profile.as_table().unwrap().clone();
+            let own = |(key, _): &(String, toml::Value)| key != "package";
+            let shared: toml::Table = profile.into_iter().filter(own).collect();
+            (shared, manifest(folder, ".cargo/config.toml")["build"]["target-dir"].clone())
+        };
+        let first = of(IMAGES[0].folder);
+        assert_eq!(first.1.as_str(), Some(IMAGES_TARGET_FOLDER));
+        for image in &IMAGES {
+            assert_eq!(of(image.folder), first, "{}", image.folder);
+        }
+        for folder in ["firmware/board-nucleo-g474re", "firmware/board-mps2-an386", "firmware/bench"] {
+            let packages = manifest(folder, "Cargo.toml")["profile"]["release"]["package"].clone();
+            assert_eq!(packages["frixel-control"]["opt-level"].as_integer(), Some(3), "{folder}");
+        }
+    }
+
+    /// Version 2.7 of `half` takes `zerocopy` with its derive macro, half of an image's compile time.
+    #[test]
+    fn no_lock_file_has_zerocopy() {
+        for folder in IMAGES.iter().map(|image| image.folder).chain(["."]) {
+            let lock = manifest(folder, "Cargo.lock");
+            let names = lock["package"].as_array().unwrap().iter().filter_map(|package| package["name"].as_str());
+            let has = names.into_iter().any(|name| name.starts_with("zerocopy"));
+            assert!(!has, "{folder}/Cargo.lock: `cargo update -p half --precise 2.6.0` takes zerocopy out of it");
+        }
+    }
+
+    #[test]
+    fn every_stage_has_a_name_of_its_own_and_the_first_tier_needs_no_emulator() {
+        for (index, stage) in STAGES.iter().enumerate() {
+            assert!(STAGES[..index].iter().all(|other| other.name != stage.name), "{}", stage.name);
+            assert!(stage.tier == Tier::All || !stage.needs.contains(&Need::Emulator), "{}", stage.name);
+        }
+        let tiers: Vec<Tier> = STAGES.iter().map(|stage| stage.tier).collect();
+        assert!(tiers.is_sorted(), "the first tier runs first");
+    }
 }

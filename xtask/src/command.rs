@@ -2,12 +2,17 @@
 
 use std::env;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 
 /// Compiler target of the boards.
 pub(crate) const M4F: &str = "thumbv7em-none-eabihf";
 /// Compiler target of a processor without floating point.
 pub(crate) const M3: &str = "thumbv7m-none-eabi";
+/// Compiler target of the studio's page.
+pub(crate) const WASM: &str = "wasm32-unknown-unknown";
+
+/// The folder of the artefacts of all images, seen from the folder of any of them.
+pub(crate) const IMAGES_TARGET_FOLDER: &str = "../target";
 
 /// The root of the repository.
 pub(crate) fn root() -> PathBuf {
@@ -24,16 +29,6 @@ pub(crate) fn cargo_in(folder: &str) -> Command {
     let mut command = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.current_dir(root().join(folder));
     command
-}
-
-/// Installs a compiler target if it is missing.
-pub(crate) fn add_target(target: &str) -> Result<(), String> {
-    let libraries = Command::new("rustc").args(["--print", "target-libdir", "--target", target]).output();
-    let is_there = |output: Output| Path::new(String::from_utf8_lossy(&output.stdout).trim()).is_dir();
-    if libraries.is_ok_and(is_there) {
-        return Ok(());
-    }
-    run("rustup target", Command::new("rustup").args(["target", "add", target]))
 }
 
 /// Runs a command and returns its standard output.

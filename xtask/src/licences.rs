@@ -5,11 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::command::{cargo_in, root, text_of};
+use crate::command::{WASM, cargo_in, root, text_of};
 
-/// The crate that the module is made of, and its target.
+/// The crate that the module is made of.
 const MODULE: &str = "frixel-studio";
-const WASM: &str = "wasm32-unknown-unknown";
 /// A line between two licences.
 const RULE: &str = "------------------------------------------------------------------------------";
 /// How the names of licence files begin, in lower case.

@@ -4,9 +4,13 @@ mod bench;
 mod budgets;
 mod check;
 mod command;
+mod fuzz;
 mod licences;
+mod needs;
 mod outcome;
 mod portability;
+mod results;
+mod soak;
 mod stages;
 mod stamps;
 mod studio;
@@ -15,11 +19,17 @@ mod test_programs;
 
 use std::env;
 use std::process::ExitCode;
+use std::time::Duration;
 
 use bench::programs::{self, Pace};
+use check::{CLIPPY, M3_TARGET, M4F_TARGET, Tier, WASM_TARGET};
+use needs::{Need, require};
 
 const USAGE: &str = "\
-cargo xtask test     format, lints, cross-builds, all tests, docs, budgets: what CI runs
+cargo xtask test     format, lints, images, all tests but those on emulators, the studio in a browser, docs
+         --all       and what is slow: tests on emulators, budgets, other systems, fuzz targets; what CI runs
+cargo xtask soak     the parts of what takes too long for that; each takes an hour at most
+cargo xtask soak PART
 cargo xtask bench    instructions and estimated cycles on emulated processors, and image sizes
          --bless     and writes down what each kind of layer costs, which compiler and board use
 cargo xtask budgets  the same, held against budgets.toml, and random scenes against the loader's estimate for them
@@ -28,31 +38,52 @@ cargo xtask portability
 cargo xtask studio   the studio as one HTML file; its path is the last line
 cargo xtask studio-test
                      the studio in a browser: needs node, npm and Chromium
-cargo xtask soak     what takes too long for every change: every f32 through the tables, fits of 200
-                     people, thousands of random scenes
+cargo xtask fuzz SECONDS
+                     each fuzz target for this time, with libFuzzer; needs a C++ compiler
 cargo xtask programs PACE FIRST COUNT
                      random scenes from seed FIRST on, under touch sources of a PACE that is usual or fast
 ";
+
+/// What the commands that count instructions need.
+const EMULATED: [Need; 3] = [M4F_TARGET, M3_TARGET, Need::Emulator];
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = env::args().skip(1).collect();
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let result = match arguments.as_slice() {
-        ["test"] => check::test(),
-        ["budgets"] => check::budgets().map(drop),
-        ["portability"] => portability::check(),
-        ["studio"] => studio::build().map(|path| println!("{}", path.display())),
-        ["studio-test"] => studio_tests::run_all().map(drop),
-        ["soak"] => check::soak(),
-        ["bench", "--bless"] => bench::bench().and_then(|figures| {
+        ["test"] => check::test(Tier::First),
+        ["test", "--all"] => check::test(Tier::All),
+        ["soak"] => {
+            print!("{}", soak::list());
+            Ok(())
+        }
+        ["soak", part] => soak::run(part),
+        ["budgets"] => require(&EMULATED).and_then(|()| check::check_budgets()),
+        ["portability"] => require(&[WASM_TARGET, CLIPPY])
+            .and_then(|()| require(&portability::NEEDS))
+            .and_then(|()| portability::page_crates())
+            .and_then(|()| portability::other_systems()),
+        ["studio"] => require(&[WASM_TARGET]).and_then(|()| studio::build()).map(|path| println!("{}", path.display())),
+        ["studio-test"] => {
+            let result = require(&studio_tests::NEEDS).and_then(|()| studio_tests::run_all());
+            results::print();
+            result
+        }
+        ["fuzz", seconds] => match seconds.parse() {
+            Ok(seconds) => require(&[Need::CppCompiler]).and_then(|()| fuzz::run_for(Duration::from_secs(seconds))),
+            Err(_) => Err(format!("expected a number of seconds, found `{seconds}`\n{USAGE}")),
+        },
+        ["bench", "--bless"] => require(&EMULATED).and_then(|()| bench::bench()).and_then(|figures| {
             print!("{}", figures.table());
             bench::costs::bless(&figures)
         }),
         ["programs", pace, first, count] => match (Pace::named(pace), first.parse(), count.parse()) {
-            (Some(pace), Ok(first), Ok(count)) => programs::check(pace, first, count),
+            (Some(pace), Ok(first), Ok(count)) => {
+                require(&[M4F_TARGET, Need::Emulator]).and_then(|()| programs::check(pace, first, count))
+            }
             _ => Err(format!("no such random scenes: {}\n{USAGE}", arguments.join(" "))),
         },
-        ["bench"] => bench::bench().map(|figures| print!("{}", figures.table())),
+        ["bench"] => require(&EMULATED).and_then(|()| bench::bench()).map(|figures| print!("{}", figures.table())),
         _ => Err(format!("no such command: {}\n{USAGE}", arguments.join(" "))),
     };
     match result {

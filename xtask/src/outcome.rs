@@ -27,6 +27,6 @@ pub(crate) fn skip(check: &str, missing: String) -> Result<Outcome, String> {
     Ok(Outcome::Skipped)
 }
 
-fn is_ci() -> bool {
+pub(crate) fn is_ci() -> bool {
     env::var_os("CI").is_some_and(|ci| !ci.is_empty() && ci != "false" && ci != "0")
 }

@@ -1,39 +1,32 @@
 //! Checks that the crates compile for other platforms: WebAssembly, Windows, macOS. That scenes have the same bits in
 //! WebAssembly is checked in the studio's page (`studio_tests.rs`).
 
-use std::process::Command;
+use crate::command::{WASM, cargo_in, run};
+use crate::needs::Need;
+use crate::studio;
 
-use crate::command::{add_target, cargo_in, run};
+const WINDOWS: &str = "x86_64-pc-windows-gnu";
+const MACOS: &str = "aarch64-apple-darwin";
+/// What [`other_systems`] needs.
+pub(crate) const NEEDS: [Need; 2] = [Need::Target(WINDOWS), Need::Target(MACOS)];
+/// The crates of the page whose code differs for WebAssembly. The `clippy.toml` of these, and of those that they
+/// depend on, disallows clocks, files, threads and processes on every platform.
+const WASM_CRATES: [&str; 2] = ["frixel-hil-sim", "frixel-studio"];
 
-const WASM: &str = "wasm32-unknown-unknown";
-/// Targets that the whole command compiles for. Functions that need a pseudo-terminal fail there at run time.
-const COMMAND_TARGETS: [&str; 2] = ["x86_64-pc-windows-gnu", "aarch64-apple-darwin"];
-/// The crates for use in a web page: they use no clocks, files, threads or processes. The `clippy.toml` of each
-/// disallows these.
-const WASM_CRATES: [&str; 3] = ["frixel-scene", "frixel-driver", "frixel-hil-sim"];
-
-/// Runs all checks of this module.
-pub(crate) fn check() -> Result<(), String> {
-    page_crates()?;
-    for target in COMMAND_TARGETS {
-        add_target(target)?;
-        run(&format!("command for {target}"), &mut cargo(&["check", "--package", "frixel", "--target", target]))?;
+/// Compiles the whole command for Windows and macOS. Functions that need a pseudo-terminal fail there at run time.
+pub(crate) fn other_systems() -> Result<(), String> {
+    for target in [WINDOWS, MACOS] {
+        let check = ["check", "--locked", "--package", "frixel", "--target", target];
+        run(&format!("command for {target}"), cargo_in(".").args(check))?;
     }
     Ok(())
 }
 
-/// Compiles the crates for web pages for WebAssembly, with clippy's disallowed types and methods as errors.
-fn page_crates() -> Result<(), String> {
-    add_target(WASM)?;
-    let mut arguments = vec!["clippy", "--target", WASM, "--no-default-features", "--lib"];
+/// Compiles the crates of the page for WebAssembly, with clippy's warnings as errors.
+pub(crate) fn page_crates() -> Result<(), String> {
+    // In the profile of the page, whose build shares what the compiler itself takes.
+    let mut arguments = vec!["clippy", "--locked", "--target", WASM, "--profile", studio::PROFILE, "--lib"];
     arguments.extend(WASM_CRATES.iter().flat_map(|name| ["--package", name]));
     arguments.extend(["--", "-D", "warnings"]);
-    run("crates of the page for WebAssembly", &mut cargo(&arguments))
-}
-
-fn cargo(arguments: &[&str]) -> Command {
-    let mut command = cargo_in(".");
-    let (subcommand, rest) = arguments.split_first().unwrap_or((&"", &[]));
-    command.args([subcommand, "--locked"]).args(rest);
-    command
+    run("crates of the page for WebAssembly", cargo_in(".").args(arguments))
 }

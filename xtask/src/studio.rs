@@ -15,16 +15,15 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use sha2::{Digest, Sha256};
 
-use crate::command::{add_target, cargo_in, root, run, target_folder, text_of};
+use crate::command::{WASM, cargo_in, root, run, target_folder, text_of};
 use crate::licences;
 
-const WASM: &str = "wasm32-unknown-unknown";
 /// Cargo profile of the module: small, fast, and without debug information.
-const PROFILE: &str = "studio";
+pub(crate) const PROFILE: &str = "studio";
 /// Largest size of the page.
 const PAGE_MAX_LEN: usize = 2_000_000;
 /// Files of the repository that the page carries, beside its modules: folder, ending, and folder in the page.
-const CARRIED: [(&str, &str, &str); 9] = [
+pub(crate) const CARRIED: [(&str, &str, &str); 9] = [
     ("host/studio/web", "js", ""),
     ("host/studio/vendor", "js", "vendor/"),
     ("docs", "json", "docs/"),
@@ -77,7 +76,6 @@ fn about() -> String {
 
 /// Compiles the WebAssembly module and reads it.
 fn module() -> Result<Vec<u8>, String> {
-    add_target(WASM)?;
     let build = ["build", "--locked", "--package", "frixel-studio", "--lib", "--profile", PROFILE, "--target", WASM];
     run("studio for WebAssembly", cargo_in(".").args(build))?;
     bytes(&target_folder().join(WASM).join(PROFILE).join("frixel_studio.wasm"))

@@ -1,16 +1,15 @@
 //! The browser tests of the studio: `host/studio/test`, in Chromium, driven by node and playwright-core.
 
-use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::command::{cargo_in, root, run, target_folder, text_of};
-use crate::outcome::{Outcome, skip};
-use crate::studio;
+use crate::command::{WASM, cargo_in, root, run, target_folder, text_of};
+use crate::needs::Need;
+use crate::{results, studio};
 
-/// Where Debian installs the browser; CHROMIUM names another.
-const CHROMIUM: &str = "/usr/bin/chromium";
+/// What the tests need.
+pub(crate) const NEEDS: [Need; 4] = [Need::Target(WASM), Need::Node, Need::Npm, Need::Chromium];
 /// Examples of `frixel-studio`: the hashes of the gallery, and a virtual board that says it is real.
 const HASHES: &str = "seeded_hashes";
 const REAL_BOARD: &str = "real_board";
@@ -18,10 +17,7 @@ const REAL_BOARD: &str = "real_board";
 const TEST_TIMEOUT_MS: u32 = 600_000;
 
 /// Compares the vendored bundle with its lock file, builds the page, and runs the tests in it.
-pub(crate) fn run_all() -> Result<Outcome, String> {
-    if let Some(missing) = missing() {
-        return skip("the studio in a browser", missing);
-    }
+pub(crate) fn run_all() -> Result<(), String> {
     let vendor = root().join("host/studio/vendor");
     install(&vendor)?;
     run("vendored bundle", Command::new("npm").current_dir(&vendor).args(["run", "--silent", "check"]))?;
@@ -39,21 +35,7 @@ pub(crate) fn run_all() -> Result<Outcome, String> {
     node.args(tests(&folder)?);
     node.env("STUDIO_PAGE", page).env("STUDIO_HASHES", absolute(&hashes)?);
     node.env("FRIXEL", built("frixel")?).env("REAL_BOARD", built(&format!("examples/{REAL_BOARD}"))?);
-    run("studio in a browser", &mut node)?;
-    Ok(Outcome::Passed)
-}
-
-/// What has to be installed, if anything is missing.
-fn missing() -> Option<String> {
-    if Command::new("node").arg("--version").output().is_err() || Command::new("npm").arg("--version").output().is_err()
-    {
-        return Some(
-            "node or npm is not installed (Debian: `apt-get install nodejs npm`; node 20 or newer)".to_owned(),
-        );
-    }
-    let chromium = env::var_os("CHROMIUM").unwrap_or_else(|| CHROMIUM.into());
-    let is_there = Path::new(&chromium).is_file();
-    (!is_there).then(|| "Chromium is not installed (Debian: `apt-get install chromium`, or set CHROMIUM)".to_owned())
+    results::run("studio in a browser", &mut node)
 }
 
 /// Installs the packages of the lock file, unless they are there.

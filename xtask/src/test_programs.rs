@@ -6,19 +6,33 @@ use std::process::Command;
 
 use serde_json::Value;
 
-use crate::command::{M3, M4F, add_target, cargo_in, root, run, text_of};
-use crate::outcome::{Outcome, skip};
-use crate::{bench, stamps};
+use crate::command::{cargo_in, root, text_of};
+use crate::outcome::Outcome;
+use crate::{results, stamps};
 
-/// The packages whose tests use the emulator.
-const WITH_EMULATOR: [&str; 2] = ["frixel", "frixel-hil-sim"];
+/// The name of the test programs that need an emulator, one in each package that has such tests.
+const ON_EMULATORS: &str = "emulated";
+
+/// Which test programs are run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Programs {
+    /// All but those that need an emulator.
+    OnThisMachine,
+    /// Those that need an emulator.
+    OnEmulators,
+}
 
 /// Inputs of tests besides the folders of their package and of its dependencies.
-const MORE_INPUTS: [(&str, &[&str]); 3] = [
+const MORE_INPUTS: [(&str, &[&str]); 5] = [
     ("frixel", &["README.md", "docs", "firmware", "scenes"]),
+    ("frixel-fuzz", &["scenes"]),
     ("frixel-scene", &["docs", "scenes"]),
-    ("frixel-hil-sim", &["firmware", "scenes"]),
+    ("frixel-studio", &["scenes"]),
+    ("frixel-hil-sim", &["firmware"]),
 ];
+
+/// Inputs of the tests of every package.
+const ALWAYS: [&str; 2] = ["Cargo.lock", "Cargo.toml"];
 
 /// A package of the workspace.
 struct Package {
@@ -30,26 +44,25 @@ struct Package {
 /// A built test program.
 struct TestProgram {
     package: String,
+    name: String,
     path: PathBuf,
 }
 
-/// Builds and runs all tests except documentation tests. The tests of [`WITH_EMULATOR`] skip a part without the
-/// emulator or its targets.
-pub(crate) fn run_all() -> Result<Outcome, String> {
+/// Builds all test programs, and runs these.
+pub(crate) fn run_all(which: Programs) -> Result<Outcome, String> {
     let packages = packages()?;
     let programs = build()?;
-    let emulated = match bench::emulator().and_then(|()| add_target(M4F)).and_then(|()| add_target(M3)) {
-        Ok(()) => Outcome::Passed,
-        Err(missing) => skip("tests on emulated processors", missing)?,
-    };
     let mut all = Outcome::Passed;
     for (name, package) in &packages {
-        let programs: Vec<&TestProgram> = programs.iter().filter(|program| program.package == *name).collect();
+        let programs = programs.iter().filter(|program| program.package == *name && program.is_of(which));
+        let programs: Vec<&TestProgram> = programs.collect();
         if !programs.is_empty() {
-            let inputs = inputs(name, &packages);
-            all = all.and(stamps::unless_unchanged(&format!("tests-{name}"), &inputs, || {
-                programs.iter().try_for_each(|program| program.run(&package.folder))?;
-                Ok(if WITH_EMULATOR.contains(&name.as_str()) { emulated } else { Outcome::Passed })
+            let stamp = match which {
+                Programs::OnThisMachine => format!("tests-{name}"),
+                Programs::OnEmulators => format!("tests-{name}-{ON_EMULATORS}"),
+            };
+            all = all.and(stamps::unless_unchanged(&stamp, &inputs(name, &packages), || {
+                programs.iter().try_for_each(|program| program.run(&package.folder)).map(|()| Outcome::Passed)
             })?);
         }
     }
@@ -58,20 +71,27 @@ pub(crate) fn run_all() -> Result<Outcome, String> {
 
 /// Runs the documentation tests.
 pub(crate) fn run_documentation() -> Result<Outcome, String> {
-    let folders: Vec<String> = packages()?.into_values().map(|package| package.folder).collect();
-    stamps::unless_unchanged("documentation-tests", &folders, || {
-        run("documentation tests", cargo_in(".").args(["test", "--workspace", "--locked", "--doc"]))?;
+    let folders = packages()?.into_values().map(|package| package.folder);
+    let inputs: Vec<String> = folders.chain(ALWAYS.iter().map(|path| (*path).to_owned())).collect();
+    stamps::unless_unchanged("documentation-tests", &inputs, || {
+        results::run("documentation tests", cargo_in(".").args(["test", "--workspace", "--locked", "--doc"]))?;
         Ok(Outcome::Passed)
     })
 }
 
 impl TestProgram {
+    fn is_of(&self, which: Programs) -> bool {
+        (self.name == ON_EMULATORS) == (which == Programs::OnEmulators)
+    }
+
     fn run(&self, folder: &str) -> Result<(), String> {
-        let name = self.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let folder = root().join(folder);
         // Runs the program in the same way as cargo does.
         let mut command = Command::new(&self.path);
-        run(&format!("{}: {name}", self.package), command.current_dir(&folder).env("CARGO_MANIFEST_DIR", &folder))
+        results::run(
+            &format!("{}: {}", self.package, self.name),
+            command.current_dir(&folder).env("CARGO_MANIFEST_DIR", &folder),
+        )
     }
 }
 
@@ -88,8 +108,7 @@ fn inputs(name: &str, packages: &BTreeMap<String, Package>) -> Vec<String> {
     }
     let folders = found.iter().filter_map(|name| packages.get(*name)).map(|package| package.folder.clone());
     let more = MORE_INPUTS.iter().filter(|(package, _)| *package == name).flat_map(|(_, more)| *more);
-    let always = ["Cargo.lock", "Cargo.toml"].iter();
-    folders.chain(more.chain(always).map(|path| (*path).to_owned())).collect()
+    folders.chain(more.chain(&ALWAYS).map(|path| (*path).to_owned())).collect()
 }
 
 /// Builds every test program of the workspace, with the same set of features for all.
@@ -107,7 +126,8 @@ fn test_program(line: &str) -> Result<Option<TestProgram>, String> {
     let path = message.get("executable").and_then(Value::as_str);
     let manifest = message.get("manifest_path").and_then(Value::as_str);
     let (true, Some(path), Some(manifest)) = (is_test, path, manifest) else { return Ok(None) };
-    Ok(Some(TestProgram { package: name_in(Path::new(manifest))?, path: path.into() }))
+    let name = message.pointer("/target/name").and_then(Value::as_str).unwrap_or_default().to_owned();
+    Ok(Some(TestProgram { package: name_in(Path::new(manifest))?, name, path: path.into() }))
 }
 
 /// Reads the name of the package from its manifest.
@@ -144,6 +164,8 @@ fn package_of(package: &Value, root: &Path) -> Option<(String, Package)> {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     #[test]
@@ -162,6 +184,113 @@ mod tests {
             assert!(found.iter().any(|path| path == expected), "{expected} is missing in {found:?}");
         }
         assert_eq!(inputs("model", &packages), ["model", "Cargo.lock", "Cargo.toml"]);
+    }
+
+    /// The files below a folder that have this ending.
+    fn files_below(folder: &Path, ending: &str, found: &mut Vec<PathBuf>) {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            let is_built = path.file_name().is_some_and(|name| name == "target" || name == "node_modules");
+            if path.is_dir() && !is_built {
+                files_below(&path, ending, found);
+            } else if path.extension().is_some_and(|found| found == ending) {
+                found.push(path);
+            }
+        }
+    }
+
+    /// The string literals of a source file that lead out of a folder.
+    fn paths_outwards(text: &str) -> impl Iterator<Item = &str> {
+        let literals = text.split('"').skip(1).step_by(2);
+        literals.filter(|literal| literal.contains("../") && !literal.contains(char::is_whitespace))
+    }
+
+    /// What a relative path names in the repository, if it is there.
+    fn in_repository(folder: &Path, path: &str) -> Option<String> {
+        let path = folder.join(path.trim_start_matches('/')).canonicalize().ok()?;
+        let path = path.strip_prefix(root().canonicalize().unwrap()).ok()?.to_str()?.to_owned();
+        // Artefacts are not files of the repository.
+        (!path.split('/').any(|name| name == "target")).then_some(path)
+    }
+
+    /// Tests read files by paths relative to their source file (`include_str!`) or to their package's folder. A path to a
+    /// folder that the package lies in, such as the repository's root, says nothing and is not looked at.
+    #[test]
+    fn every_file_that_a_package_reads_by_a_relative_path_is_among_the_inputs_of_its_tests() {
+        let packages = packages().unwrap();
+        let mut outwards = 0;
+        for (name, package) in &packages {
+            let folder = root().join(&package.folder);
+            let inputs = inputs(name, &packages);
+            let mut sources = Vec::new();
+            files_below(&folder, "rs", &mut sources);
+            for source in sources {
+                let text = fs::read_to_string(&source).unwrap();
+                let beside = source.parent().unwrap();
+                for path in paths_outwards(&text) {
+                    let meant = [beside, &folder].map(|folder| in_repository(folder, path));
+                    for meant in
+                        meant.into_iter().flatten().filter(|meant| !Path::new(&package.folder).starts_with(meant))
+                    {
+                        let is_input = inputs.iter().any(|input| Path::new(&meant).starts_with(input));
+                        assert!(is_input, "{}: {meant} is no input of the tests of {name}", source.display());
+                        outwards += 1;
+                    }
+                }
+            }
+        }
+        assert!(outwards > 20, "only {outwards} paths were found");
+    }
+
+    #[test]
+    fn the_scenes_are_inputs_of_the_studios_tests() {
+        assert!(inputs("frixel-studio", &packages().unwrap()).contains(&"scenes".to_owned()));
+    }
+
+    /// The files of `tests` are modules of few programs, which cargo does not look for by itself.
+    #[test]
+    fn every_file_of_tests_belongs_to_a_test_program() {
+        for package in packages().unwrap().into_values() {
+            let folder = root().join(&package.folder);
+            let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap();
+            let manifest: toml::Table = toml::from_str(&manifest).unwrap();
+            if manifest["package"].get("autotests").is_none() {
+                continue;
+            }
+            let programs = manifest["test"].as_array().unwrap().iter();
+            let programs: Vec<PathBuf> = programs.map(|test| folder.join(test["path"].as_str().unwrap())).collect();
+            let modules: Vec<PathBuf> = programs.iter().flat_map(|program| modules_of(program)).collect();
+            let mut files = Vec::new();
+            files_below(&folder.join("tests"), "rs", &mut files);
+            for file in files.iter().filter(|file| !programs.contains(file)) {
+                assert!(modules.contains(file), "{} is in no test program: name it in main.rs", file.display());
+            }
+        }
+    }
+
+    /// The files of the modules that a source file declares, of theirs, and so on.
+    fn modules_of(file: &Path) -> Vec<PathBuf> {
+        let text = fs::read_to_string(file).unwrap();
+        let is_root = ["main", "mod", "emulated", "safety"].iter().any(|name| file.file_stem().unwrap() == *name);
+        let beside = file.parent().unwrap();
+        let folder = if is_root { beside.to_owned() } else { file.with_extension("") };
+        let mut attribute = None;
+        let mut found = Vec::new();
+        for line in text.lines().map(str::trim) {
+            if let Some(path) = line.strip_prefix("#[path = \"") {
+                attribute = path.split('"').next();
+            } else if let Some(name) = line.strip_suffix(';').and_then(|line| line.rsplit_once("mod ")) {
+                let candidates = match attribute.take() {
+                    Some(path) => vec![beside.join(path)],
+                    None => vec![folder.join(format!("{}.rs", name.1)), folder.join(name.1).join("mod.rs")],
+                };
+                for module in candidates.into_iter().filter(|module| module.is_file()) {
+                    found.extend(modules_of(&module));
+                    found.push(module);
+                }
+            }
+        }
+        found
     }
 
     #[test]

@@ -1,16 +1,14 @@
 //! The script of bring-up with a board and a person who do what they are told, but for one thing.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-mod support;
-
 use std::fmt::Arguments;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
+use crate::support::person;
 use frixel_board::bring_up::{Bench, Check, DriveError, FAULTS, Injection, Inputs, Line, Pressed, Reading, Stop, run};
 use frixel_control::Board;
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::hello::BoardLimits;
-use support::person;
 
 const LIMITS: BoardLimits = BoardLimits {
     voltage_max_v_peak: 50.0,

@@ -1,15 +1,13 @@
 //! A voltage of bring-up, driven through the firmware's session, ticker and supervisor.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-mod support;
-
+use crate::support::firmware::{BOARD, monitor};
 use frixel_board::bring_up::{Drive, DriveError, Reading};
 use frixel_control::{Active, Sense, Ticker};
 use frixel_layers::BitmapPool;
 use frixel_session::Session;
 use frixel_testkit::IdealMonitor;
 use frixel_wire::fault::{Fault, State};
-use support::firmware::{BOARD, monitor};
 
 /// Ticks from one round of the main loop to the next, as long as a test says nothing else.
 const ROUND_TICKS: u32 = 4;

@@ -2,10 +2,10 @@
 //! gain is 3 % high, with a person at the switch.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-mod support;
-
 use std::fmt::Arguments;
 
+use crate::support::firmware::{BOARD, monitor};
+use crate::support::person;
 use frixel_board::bring_up::{Bench, Check, Drive, DriveError, Inputs, Line, Pressed, Reading, Stop, run};
 use frixel_control::{Active, Sense, Status, Ticker};
 use frixel_layers::BitmapPool;
@@ -13,8 +13,6 @@ use frixel_session::Session;
 use frixel_testkit::IdealMonitor;
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::hello::BoardLimits;
-use support::firmware::{BOARD, monitor};
-use support::person;
 
 /// What the board may store.
 const MAY_STORE_V_PEAK: f32 = 50.0;

@@ -1,7 +1,7 @@
 //! The largest electric friction that a scene can ask for.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
-mod support;
+use crate::support;
 
 use frixel_layers::{
     Blend, Button, Click, Constant, Edge, Grating, Layer, Point, Record, Region, Speed, Stream, Wave,

@@ -1,7 +1,7 @@
 //! What a scene is estimated to cost.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
-mod support;
+use crate::support;
 
 use frixel_layers::cost::{of_empty_scene, of_record, worst_of_scene};
 use frixel_layers::{Blend, Constant, Layer, Noise, Point, Record, Region, Stream};

@@ -1,11 +1,11 @@
-//! The bytes of scenes, held in `golden/`. To accept a change: `FRIXEL_BLESS=1 cargo test -p frixel-layers --test
+//! The bytes of scenes, held in `golden/`. To accept a change: `FRIXEL_BLESS=1 cargo test -p frixel-layers --test main
 //! golden`.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
 #[allow(unreachable_pub, reason = "it is shared with the tests of `frixel-wire`")]
 #[path = "../../wire/tests/support/hex.rs"]
 mod hex;
-mod support;
+use crate::support;
 
 use std::fmt::Write;
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! Parsers of scenes under arbitrary bytes.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
-mod support;
+use crate::support;
 
 use frixel_layers::{HEADER_LEN, Header, RECORD_LEN, Record, Scene};
 use proptest::prelude::*;

@@ -1,7 +1,7 @@
 //! The table of ranges in `PROTOCOL.md` is that of the code.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
-mod support;
+use crate::support;
 
 use frixel_layers::{Header, Range, range};
 use frixel_wire::hello::BoardLimits;

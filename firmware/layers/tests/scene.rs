@@ -1,7 +1,7 @@
 //! Scenes that are refused, each with its reason; `golden.rs` has those that are read.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
-mod support;
+use crate::support;
 
 use std::collections::BTreeSet;
 

@@ -1,7 +1,7 @@
 //! Credit: how many bytes a host may have under way, and what happens to a client that sends more (`PROTOCOL.md`,
 //! section 9).
 
-mod support;
+use crate::support;
 
 use frixel_control::{Board, Drive, Order};
 use frixel_session::Touch;

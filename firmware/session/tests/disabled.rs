@@ -1,6 +1,6 @@
 //! What the firmware was built without is refused by name, and the rest plays.
 
-mod support;
+use crate::support;
 
 use frixel_layers::{
     Beat, Burst, Button, Click, Constant, Edge, Grating, Header, Layer, Noise, Point, Record, Region, Speed, Stream,

@@ -1,7 +1,7 @@
 //! Tests of the changes that a host may make while a scene plays, and of the refusals of all others.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
-mod support;
+use crate::support;
 
 use frixel_control::{Board, Drive};
 use frixel_layers::{Blend, Constant, Header, Layer, Leader, Record};

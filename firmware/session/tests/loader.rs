@@ -1,7 +1,7 @@
 //! The device's loader: what it refuses by number, and that no bytes make it or the tick panic.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
-mod support;
+use crate::support;
 
 use frixel_layers::{
     Beat, Bitmap, Blend, Burst, Button, Click, Constant, Edge, Grating, HEADER_LEN, Layer, Noise, Point, RECORD_LEN,

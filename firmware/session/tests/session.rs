@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
-mod support;
+use crate::support;
 
 use frixel_control::{Board, Order};
 use frixel_layers::{Constant, Grating, HEADER_LEN, Header, Layer, RECORD_LEN, Record, Region};

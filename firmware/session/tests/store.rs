@@ -2,7 +2,7 @@
 #![cfg(all(feature = "store", feature = "bitmap"))]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
-mod support;
+use crate::support;
 
 use frixel_control::{Board, Drive};
 use frixel_layers::{Bitmap, Layer, Record, Region};

@@ -12,7 +12,7 @@
 ))]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
-mod support;
+use crate::support;
 
 use frixel_control::Board;
 use frixel_layers::{Blend, Constant, Header, Layer, Record, Region, Scene, electric_friction_max_n};

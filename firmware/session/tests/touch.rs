@@ -1,7 +1,7 @@
 //! From touch reports to the drive: lifts, late tracks, and a tick count that wraps.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
-mod support;
+use crate::support;
 
 use frixel_control::{Board, Drive, Order, Track};
 use frixel_layers::{Constant, Header, Layer, Record, Region};

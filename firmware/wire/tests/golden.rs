@@ -1,8 +1,8 @@
 //! The bytes of everything that goes over the wire, held in `golden/`. To accept a change:
-//! `FRIXEL_BLESS=1 cargo test -p frixel-wire --test golden`.
+//! `FRIXEL_BLESS=1 cargo test -p frixel-wire --test main golden`.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
-mod support;
+use crate::support;
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -30,7 +30,7 @@ fn hold(name: &str, found: &str) {
     assert!(
         golden == found,
         "{name} is not what is written now: first difference {difference:#?}; when the change is meant, run \
-         `FRIXEL_BLESS=1 cargo test -p frixel-wire --test golden`"
+         `FRIXEL_BLESS=1 cargo test -p frixel-wire --test main golden`"
     );
 }
 

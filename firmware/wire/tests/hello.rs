@@ -1,7 +1,7 @@
 //! The frozen hello, and hellos of future protocol versions.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
-mod support;
+use crate::support;
 
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::hello::{

@@ -1,7 +1,7 @@
 //! Parsers under arbitrary bytes.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
-mod support;
+use crate::support;
 
 use frixel_wire::hello::Hello;
 use frixel_wire::message::{Command, Request};

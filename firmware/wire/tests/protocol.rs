@@ -1,7 +1,7 @@
 //! `PROTOCOL.md` agrees with the code: these tests read its tables and examples and compare them.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
-mod support;
+use crate::support;
 
 use std::fmt::Debug;
 

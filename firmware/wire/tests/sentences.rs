@@ -1,7 +1,7 @@
 //! Human-readable sentences: each states what was found and what to do.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
-mod support;
+use crate::support;
 
 use std::collections::BTreeSet;
 

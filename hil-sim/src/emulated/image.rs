@@ -28,7 +28,8 @@ impl Image {
     pub fn build() -> Result<Self, EmulatorError> {
         available()?;
         let folder = sources()?;
-        let target = folder.join("target");
+        // The folder that all images share.
+        let target = folder.join("../target");
         let output = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
             .args(["build", "--release", "--locked", "--quiet", "--target-dir"])
             .arg(&target)

@@ -158,7 +158,7 @@ fn textures_are_felt_within_the_goals() {
 }
 
 #[test]
-#[ignore = "takes minutes: cargo xtask soak"]
+#[ignore = "takes minutes: cargo xtask soak strokes"]
 fn textures_are_felt_within_the_goals_on_many_strokes() {
     hold(&(1..=24));
 }
@@ -168,7 +168,7 @@ type Change = fn(&mut TouchConfig);
 
 /// Prints the tables of `docs/touch.md`.
 #[test]
-#[ignore = "takes minutes: cargo xtask soak"]
+#[ignore = "takes minutes: cargo xtask soak strokes"]
 fn tables_of_source_and_feature_size() {
     for class in [SLOW, MEDIUM, FAST] {
         for wavelength_mm in [2.0, 5.0, 10.0, 20.0] {

@@ -1,6 +1,6 @@
 //! Every scene of `scenes/` plays on the simulator, and `docs/gallery.md` shows it.
 //!
-//! `FRIXEL_BLESS=1 cargo test -p frixel --test gallery` writes page and pictures anew; without it, this test holds
+//! `FRIXEL_BLESS=1 cargo test -p frixel --test main gallery` writes page and pictures anew; without it, this test holds
 //! them.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
@@ -207,7 +207,7 @@ fn page(gallery: &[Entry]) -> String {
     let mut page = "# Gallery\n\nScenes to start from: copy one, change it, look at it with `frixel scene preview`, \
                     play it with `frixel play`. After `cargo xtask studio`,\n[gallery/index.html](gallery/index.html) lets \
                     you slide over them in a browser. The pictures are made by\n`FRIXEL_BLESS=1 cargo test -p frixel \
-                    --test gallery`, and the same test plays every scene on the simulator.\n"
+                    --test main gallery`, and the same test plays every scene on the simulator.\n"
         .to_owned();
     page.push_str(
         "\n## Contrast\n\nFrom the 5th to the 95th percentile of friction on the stroke of `frixel play`, in Weber steps: factors of 1.11, \

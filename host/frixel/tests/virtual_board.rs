@@ -4,7 +4,7 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-mod processes;
+use crate::processes;
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};

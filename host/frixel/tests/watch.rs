@@ -3,7 +3,7 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-mod processes;
+use crate::processes;
 
 use std::fmt::Write;
 use std::fs::{self, File};

@@ -1,4 +1,5 @@
 //! Reading the fixtures of `reference/generate.py`.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 #![allow(dead_code, reason = "each test program uses its own part")]
 
 use std::collections::HashMap;

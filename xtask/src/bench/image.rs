@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 use super::figures::{CYCLES, Figures, MEAN};
 use super::follow::{self, Seen};
 use super::{Core, EMULATOR};
-use crate::command::{cargo_in, root, run};
+use crate::command::{IMAGES_TARGET_FOLDER, cargo_in, root, run};
 
 /// Each instruction takes 1,024 ns of virtual time, and nothing else takes any.
 const COUNTING: [&str; 2] = ["-icount", "shift=10,sleep=off"];
@@ -28,17 +28,17 @@ pub(super) struct Count {
 }
 
 impl<'a> Image<'a> {
-    /// Builds the image. With `breach`, it deliberately exceeds its budget.
+    /// Builds the image. With `breach`, it deliberately exceeds its budget. It replaces the image of the same core that
+    /// was built before.
     pub(super) fn build(core: &'a Core, breach: bool) -> Result<Self, String> {
-        let target_folder = if breach { "target/breach" } else { "target" };
         let mut command = cargo_in("firmware/bench");
         command.args(["build", "--release", "--locked", "--quiet", "--target", core.target]);
-        command.args(["--target-dir", target_folder]);
+        command.args(["--target-dir", IMAGES_TARGET_FOLDER]);
         if breach {
             command.args(["--features", "breach"]);
         }
         run(&format!("benchmark for {}", core.name), &mut command)?;
-        let path = root().join("firmware/bench").join(target_folder).join(core.target).join("release/bench");
+        let path = root().join("firmware/bench").join(IMAGES_TARGET_FOLDER).join(core.target).join("release/bench");
         Ok(Self { core, path })
     }
 

@@ -9,7 +9,6 @@ use std::fmt;
 use super::follow::Seen;
 use super::image::Image;
 use super::{EMULATOR, M4F_CORE};
-use crate::command::add_target;
 
 /// Number of scenes per pace that are played for every change, which takes about ten seconds.
 pub(crate) const FEW: u64 = 500;
@@ -61,8 +60,6 @@ struct Played {
 /// Plays the scenes of `count` seeds, starting at `first`. Fails if a scene has a tick that takes more than its
 /// estimate.
 pub(crate) fn check(pace: Pace, first: u64, count: u64) -> Result<(), String> {
-    super::emulator()?;
-    add_target(M4F_CORE.target)?;
     let image = Image::build(&M4F_CORE, false)?;
     let mut played = play(&image, pace, first, count)?;
     played.sort_by_key(|played| Reverse(played.share()));

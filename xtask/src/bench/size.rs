@@ -9,7 +9,7 @@ use object::read::elf::{FileHeader, ProgramHeader};
 
 use super::figures::Figures;
 use super::stack::Functions;
-use crate::command::{M4F, cargo_in, root, run};
+use crate::command::{IMAGES_TARGET_FOLDER, M4F, cargo_in, root, run};
 
 /// A set of features that a board's image is built with.
 struct Build {
@@ -39,13 +39,13 @@ pub(super) fn measure(figures: &mut Figures) -> Result<(), String> {
         return Ok(());
     }
     for build in &G474_BUILDS {
-        let target_folder = format!("target/{}", build.name);
         let mut command = cargo_in(folder);
         command
-            .args(["build", "--release", "--locked", "--quiet", "--target-dir", &target_folder])
+            .args(["build", "--release", "--locked", "--quiet", "--target-dir", IMAGES_TARGET_FOLDER])
             .args(build.features);
         run(&format!("image of {folder}, {}", build.name), &mut command)?;
-        let path = root().join(folder).join(target_folder).join(M4F).join("release").join(image);
+        // The image of the next set of features takes its place.
+        let path = root().join(folder).join(IMAGES_TARGET_FOLDER).join(M4F).join("release").join(image);
         let (flash, ram) = sizes(&path)?;
         figures.put(format!("g474.flash_{}", build.name), flash);
         figures.put(format!("g474.ram_{}", build.name), ram);

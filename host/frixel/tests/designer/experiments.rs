@@ -100,9 +100,9 @@ fn a_person_at_a_port_is_calibrated_with_the_forces_of_a_sensor() {
 }
 
 /// The board runs in real time, so that every recording has other noise, and one interval in twenty misses the truth.
-/// `--test fit` counts the misses in virtual time.
+/// `--test main fit` counts the misses in virtual time.
 #[test]
-#[ignore = "one interval in twenty misses: cargo xtask soak"]
+#[ignore = "one interval in twenty misses: cargo xtask soak experiments"]
 fn the_electric_friction_of_a_person_at_a_port_is_in_its_interval() {
     let folder = calibrated_at_a_port();
     let contact = Person::drawn(5).contact(1e-6 / 3.9).unwrap();
@@ -114,7 +114,7 @@ fn the_electric_friction_of_a_person_at_a_port_is_in_its_interval() {
 
 /// The same, while the sensor's rows come on standard input.
 #[test]
-#[ignore = "a minute of real time on an idle machine: cargo xtask soak"]
+#[ignore = "a minute of real time on an idle machine: cargo xtask soak experiments"]
 fn forces_are_read_from_standard_input_while_the_board_plays() {
     let folder = TempDir::new().unwrap();
     let board = VirtualBoard::start(folder.path(), &[&STROKES[..], &["--finger-seed", "5"]].concat());
@@ -229,7 +229,7 @@ fn a_threshold_is_asked_for_at_a_port() {
 
 /// A person who always says 1 is right in half of the trials, which is what not feeling anything gives.
 #[test]
-#[ignore = "a minute of real time on an idle machine: cargo xtask soak"]
+#[ignore = "a minute of real time on an idle machine: cargo xtask soak experiments"]
 fn a_threshold_is_found_at_a_port() {
     let folder = TempDir::new().unwrap();
     let board = VirtualBoard::start(folder.path(), &STROKES);

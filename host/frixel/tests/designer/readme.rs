@@ -1,7 +1,7 @@
 //! Figures in the README are what the command beside them prints.
 //!
 //! A line `    $ frixel ...` is run, and the lines behind it, indented by six, are lines of its output.
-//! `FRIXEL_BLESS=1 cargo test -p frixel --test designer readme` writes them anew.
+//! `FRIXEL_BLESS=1 cargo test -p frixel --test main designer::readme` writes them anew.
 
 use std::fs;
 

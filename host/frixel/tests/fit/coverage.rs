@@ -90,7 +90,7 @@ fn people(seeds: std::ops::Range<u64>) -> Tally {
 }
 
 #[test]
-#[ignore = "many minutes: cargo xtask soak"]
+#[ignore = "many minutes: cargo xtask soak people"]
 fn intervals_cover_over_200_people() {
     let tally = people(0..MANY);
     tally.print("200 people");
@@ -141,7 +141,7 @@ fn plants_that_break_the_law_are_refused_or_covered() {
 /// 99 and 100 of 100 are caught. Rules that catch nine of ten plants reach 96 of 100 once in 42 sets of seeds; rules
 /// that catch 99 % miss it once in 290.
 #[test]
-#[ignore = "minutes: cargo xtask soak"]
+#[ignore = "minutes: cargo xtask soak people"]
 fn nine_of_ten_plants_that_break_the_law_are_refused_or_covered() {
     for law in LAWS {
         let caught = caught(law, 100);

@@ -1,4 +1,5 @@
 //! What tests of `frixel` as a process share.
+#![allow(clippy::panic, reason = "part of a test, which may fail")]
 
 use std::process::Command;
 use std::thread::sleep;

@@ -1,0 +1,6 @@
+//! The tests of the crate as a whole, one program for all of them.
+
+mod bring_up;
+mod drive;
+mod support;
+mod whole;

@@ -1,0 +1,14 @@
+//! The tests of the crate as a whole, one program for all of them.
+
+mod arm_switch;
+mod credit;
+mod details;
+mod disabled;
+mod live;
+mod loader;
+mod queues;
+mod session;
+mod store;
+mod support;
+mod table_cut;
+mod touch;

@@ -1,0 +1,80 @@
+//! What a fuzzer feeds with arbitrary bytes: a function for each target, which panics where it finds a mistake.
+#![forbid(unsafe_code)]
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::missing_panics_doc,
+    reason = "a panic is how a target reports what it found"
+)]
+
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+use frixel::rehearsal::board_costs;
+use frixel::rigs::SimLink;
+use frixel_driver::{Device, DeviceError, Upload};
+use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
+use frixel_layers::cost::worst_of_scene;
+use frixel_layers::{Point, Record, Scene as WireScene};
+use frixel_scene::recorder::Recorder;
+use frixel_scene::{Scene, compile};
+
+/// Compiles arbitrary text as a scene file. It is rejected, or becomes a program that a board accepts, with ticks in
+/// time.
+pub fn scene_text(text: &str) {
+    let rig = RigConfig::default();
+    // There are no pictures, because only the text is tested.
+    let Ok(scene) = Scene::parse(text, "fuzz.toml", &BTreeMap::new()) else { return };
+    let Ok(program) = compile(&scene, &rig.board.limits, rig.board.tick_hz) else { return };
+    assert!(program.worst_tick().cycles() <= rig.board.limits.tick_cycles_max);
+    if let Err(error) = board_costs(&program, &rig) {
+        panic!("it compiles, and the board does not take it: {error}");
+    }
+}
+
+/// Parses arbitrary bytes as a compiled scene. They are rejected, or every record can be read and written back.
+pub fn scene_bytes(bytes: &[u8]) {
+    let Ok(scene) = WireScene::parse(bytes) else { return };
+    let records: Vec<_> = scene.records().collect();
+    let points: Vec<_> = scene.points().collect();
+    let mut written = scene.header().write(records.len() as u8, points.len() as u8).to_vec();
+    written.extend(records.iter().flat_map(Record::write));
+    written.extend(points.iter().flat_map(Point::write));
+    let again = WireScene::parse(&written).expect("what was read can be written");
+    let records_again: Vec<_> = again.records().collect();
+    let points_again: Vec<_> = again.points().collect();
+    // Compare the text, because not-a-number is not equal to itself.
+    assert_eq!(format!("{records:?} {points:?}"), format!("{records_again:?} {points_again:?}"));
+}
+
+/// Uploads arbitrary bytes as a compiled scene. The board rejects them, or estimates their longest tick to be within
+/// its limit and plays them under a finger without a fault. Returns whether it plays them.
+pub fn scene_load(bytes: &[u8]) -> bool {
+    let rig_config = RigConfig::default();
+    let mut memory = BoardMemory::new();
+    let stroke = Stroke::sweep(0.12, 0.08, 1.0).expect("a stroke");
+    let rig = Rig::new(&mut memory, &rig_config, stroke, 1).expect("a rig");
+    let mut device = Device::connect(SimLink::new(rig, Recorder::idle())).expect("a board");
+    let upload = Upload { scene: bytes, bitmaps: Vec::new() };
+    let taken = device.upload(&upload, &mut |_| {}).and_then(|()| device.commit(upload.scene_crc32()));
+    match taken {
+        Ok(()) => {
+            let scene = WireScene::parse(bytes).expect("the board has read it");
+            let (records, points): (Vec<_>, Vec<_>) = (scene.records().collect(), scene.points().collect());
+            let worst = worst_of_scene(scene.header(), &records, &points);
+            assert!(worst.cycles() <= rig_config.board.limits.tick_cycles_max, "{worst:?}");
+        }
+        Err(DeviceError::Refused { .. }) => return false,
+        Err(error) => panic!("{error}"),
+    }
+    let played = device
+        .arm()
+        .and_then(|()| device.play())
+        .and_then(|()| device.wait(Duration::from_millis(60), &mut |_| {}))
+        .and_then(|()| device.stop())
+        .and_then(|()| device.disarm());
+    if let Err(error) = played {
+        panic!("{error}");
+    }
+    true
+}

@@ -1,0 +1,11 @@
+//! The tests of the crate as a whole, one program for all of them.
+
+mod amplifier;
+mod chips;
+mod dac;
+mod link_credit;
+mod live;
+mod resting;
+mod rig;
+mod script;
+mod world;

@@ -1,0 +1,26 @@
+//! The tests of the crate as a whole, one program for all of them.
+
+mod brick;
+#[path = "designer/main.rs"]
+mod designer;
+mod draft;
+mod felt;
+#[path = "fit/main.rs"]
+mod fit;
+mod gallery;
+mod handover;
+#[path = "kinds/main.rs"]
+mod kinds;
+mod model_command;
+mod play_command;
+mod processes;
+mod report;
+mod scene_command;
+mod score;
+mod server_credit;
+mod stream;
+mod studio;
+mod virtual_board;
+mod watch;
+#[path = "wrong_inputs/main.rs"]
+mod wrong_inputs;

@@ -1,0 +1,103 @@
+//! `cargo xtask fuzz`: the targets of `fuzz` under libFuzzer, on the stable toolchain.
+
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command};
+use std::time::Duration;
+
+use crate::check::HOST_INPUTS;
+use crate::command::{cargo_in, root, run, target_folder, text_of};
+use crate::outcome::Outcome;
+use crate::stamps;
+
+/// How long each target runs in `cargo xtask test --all`.
+const TIME: Duration = Duration::from_mins(2);
+const TARGETS: [&str; 3] = ["scene_text", "scene_bytes", "scene_load"];
+/// Longest time of one input: beyond it, the target hangs.
+const INPUT_MAX: Duration = Duration::from_secs(30);
+/// Coverage as libFuzzer reads it. The compiler's own option for it is unstable; these are not.
+const RUSTFLAGS: &str = "--cfg fuzzing -Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
+                         -Cllvm-args=-sanitizer-coverage-inline-8bit-counters \
+                         -Cllvm-args=-sanitizer-coverage-pc-table \
+                         -Cllvm-args=-sanitizer-coverage-trace-compares -Ccodegen-units=1";
+const PROFILE: &str = "fuzz";
+/// Runs every target for the minutes of `cargo xtask test --all`.
+pub(crate) fn run_all() -> Result<Outcome, String> {
+    let inputs: Vec<String> = HOST_INPUTS.iter().chain(&["fuzz"]).map(|path| (*path).to_owned()).collect();
+    stamps::unless_unchanged("fuzz", &inputs, || run_for(TIME).map(|()| Outcome::Passed))
+}
+
+/// Runs every target for this time, all at once. Inputs that are worth starting from the next time are kept in
+/// `target/fuzz`.
+pub(crate) fn run_for(time: Duration) -> Result<(), String> {
+    // With the features of the whole workspace, as the tests are built: nothing is compiled twice.
+    run("seeds", cargo_in(".").args(["build", "--locked", "--workspace", "--bin", "seeds"]))?;
+    let folder = target_folder().join("fuzz");
+    let host = text_of(Command::new("rustc").args(["--print", "host-tuple"]))?;
+    let mut build = cargo_in(".");
+    build.args(["build", "--locked", "--package", "frixel-fuzz", "--features", "libfuzzer", "--profile", PROFILE]);
+    // With a target, what runs in the compiler carries no instrumentation.
+    build.args(["--target", host.trim(), "--target-dir"]).arg(&folder).env("RUSTFLAGS", RUSTFLAGS);
+    for target in TARGETS {
+        build.args(["--bin", target]);
+    }
+    run("fuzz targets", &mut build)?;
+    let programs = folder.join(host.trim()).join(PROFILE);
+    let running: Vec<Fuzzer> =
+        TARGETS.iter().map(|name| Fuzzer::start(name, &programs, &folder, time)).collect::<Result<_, _>>()?;
+    let failures: Vec<String> = running.into_iter().filter_map(|fuzzer| fuzzer.end().err()).collect();
+    if failures.is_empty() { Ok(()) } else { Err(failures.join("\n")) }
+}
+
+/// A target that runs.
+struct Fuzzer {
+    name: &'static str,
+    process: Child,
+    /// What it writes.
+    log: PathBuf,
+}
+
+impl Fuzzer {
+    fn start(name: &'static str, programs: &Path, folder: &Path, time: Duration) -> Result<Self, String> {
+        let explain = |path: &Path, error: std::io::Error| format!("{}: {error}", path.display());
+        let corpus = folder.join("corpus").join(name);
+        fs::create_dir_all(&corpus).map_err(|error| explain(&corpus, error))?;
+        let mut command = Command::new(programs.join(name));
+        command.arg(&corpus);
+        if name == "scene_text" {
+            command.arg(root().join("scenes"));
+        } else {
+            let seeds = target_folder().join("debug/seeds");
+            run(&format!("seeds of {name}"), Command::new(seeds).arg(&corpus))?;
+        }
+        let found = folder.join("found");
+        fs::create_dir_all(&found).map_err(|error| explain(&found, error))?;
+        command.arg(format!("-artifact_prefix={}/{name}-", found.display()));
+        command.arg(format!("-max_total_time={}", time.as_secs())).arg(format!("-timeout={}", INPUT_MAX.as_secs()));
+        let log = folder.join(format!("{name}.log"));
+        let file = File::create(&log).map_err(|error| explain(&log, error))?;
+        let process = command.stderr(file).spawn().map_err(|error| format!("{command:?}: {error}"))?;
+        Ok(Self { name, process, log })
+    }
+
+    /// Waits until its time is over, and prints how many inputs it has tried.
+    fn end(mut self) -> Result<(), String> {
+        let status = self.process.wait().map_err(|error| format!("{}: {error}", self.name))?;
+        let said = fs::read(&self.log).map_err(|error| format!("{}: {error}", self.log.display()))?;
+        let said = String::from_utf8_lossy(&said);
+        let last =
+            said.lines().rev().find(|line| line.starts_with("Done ")).unwrap_or("no line says how much was done");
+        eprintln!("-- {}: {last}", self.name);
+        if status.success() {
+            return Ok(());
+        }
+        let end: Vec<&str> = said.lines().rev().take(30).collect();
+        let end: Vec<&str> = end.into_iter().rev().collect();
+        Err(format!(
+            "the fuzz target {} failed ({status}); {} says:\n{}",
+            self.name,
+            self.log.display(),
+            end.join("\n")
+        ))
+    }
+}

@@ -1,0 +1,115 @@
+//! `cargo xtask soak`: what takes too long for `cargo xtask test --all`, in parts that take an hour at most.
+
+use std::fmt::Write;
+use std::time::Duration;
+
+use crate::bench::programs::{self, Pace};
+use crate::check::M4F_TARGET;
+use crate::command::cargo_in;
+use crate::needs::{self, Need};
+use crate::outcome::Outcome;
+use crate::stages::Stages;
+use crate::{fuzz, results};
+
+/// How long each fuzz target runs.
+const FUZZ_TIME: Duration = Duration::from_mins(15);
+
+/// One part.
+struct Part {
+    name: &'static str,
+    what: &'static str,
+    needs: &'static [Need],
+    run: fn() -> Result<(), String>,
+}
+
+const PARTS: [Part; 6] = [
+    Part {
+        name: "tables",
+        what: "every f32 and every 32-bit code through the inverse tables",
+        needs: &[],
+        run: tables,
+    },
+    Part { name: "strokes", what: "textures under many strokes of people", needs: &[], run: strokes },
+    Part { name: "people", what: "fits of 200 simulated people, and what they cover", needs: &[], run: people },
+    Part {
+        name: "experiments",
+        what: "calibration and thresholds on a virtual board in real time; on an idle machine",
+        needs: &[],
+        run: experiments,
+    },
+    Part {
+        name: "scenes",
+        what: "12,000 random scenes in the emulator: no tick above the loader's estimate",
+        needs: &[M4F_TARGET, Need::Emulator],
+        run: scenes,
+    },
+    Part {
+        name: "fuzz",
+        what: "each fuzz target for 15 minutes, with libFuzzer",
+        needs: &[Need::CppCompiler],
+        run: fuzz_targets,
+    },
+];
+
+/// Runs the part of this name.
+pub(crate) fn run(name: &str) -> Result<(), String> {
+    let part = PARTS.iter().find(|part| part.name == name);
+    let part = part.ok_or_else(|| format!("the soak has no part `{name}`; it has:\n{}", list()))?;
+    needs::require(part.needs)?;
+    let mut stages = Stages::new();
+    let result = stages.run(part.name, || (part.run)().map(|()| Outcome::Passed));
+    eprint!("{}", stages.table());
+    results::print();
+    result
+}
+
+/// The parts and what they do, a line each.
+pub(crate) fn list() -> String {
+    PARTS.iter().fold(String::new(), |mut list, part| {
+        // Writing to a string cannot fail.
+        let _ = writeln!(list, "  {:12} {}", part.name, part.what);
+        list
+    })
+}
+
+/// Runs the ignored tests of a package that have this filter in their name.
+fn ignored(name: &str, build: &[&str], run: &[&str]) -> Result<(), String> {
+    let arguments = [&["test", "--locked"], build, &["--", "--ignored", "--nocapture"], run].concat();
+    results::run(name, cargo_in(".").args(arguments))
+}
+
+fn tables() -> Result<(), String> {
+    ignored("every f32", &["--release", "--package", "frixel-model"], &[])
+}
+
+fn strokes() -> Result<(), String> {
+    ignored("textures on many strokes", &["--release", "--package", "frixel", "--test", "main"], &["felt::"])
+}
+
+fn people() -> Result<(), String> {
+    ignored("fits of 200 people", &["--release", "--package", "frixel", "--test", "main"], &["fit::"])
+}
+
+fn experiments() -> Result<(), String> {
+    let one_by_one = ["designer::", "--test-threads", "1"];
+    ignored("experiments in real time", &["--package", "frixel", "--test", "main"], &one_by_one)
+}
+
+fn scenes() -> Result<(), String> {
+    Pace::ALL.into_iter().try_for_each(|pace| programs::check(pace, programs::FEW, programs::MANY))
+}
+
+fn fuzz_targets() -> Result<(), String> {
+    fuzz::run_for(FUZZ_TIME)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_unknown_part_is_answered_with_the_list_of_those_that_there_are() {
+        let error = run("everything").unwrap_err();
+        assert!(error.contains("`everything`") && PARTS.iter().all(|part| error.contains(part.what)), "{error}");
+    }
+}
