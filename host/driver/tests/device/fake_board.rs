@@ -31,6 +31,8 @@ pub(crate) struct FakeBoard {
     pub(crate) longest_silence: Duration,
     pub(crate) pings: u32,
     pub(crate) hellos: u32,
+    /// Says which chunk it expects next.
+    pub(crate) tells_progress: bool,
     /// Never says a word.
     pub(crate) mute: bool,
     /// Commands that it refuses, and why.
@@ -76,6 +78,7 @@ impl FakeBoard {
             longest_silence: Duration::ZERO,
             pings: 0,
             hellos: 0,
+            tells_progress: true,
             mute: false,
             refuse: None,
             garbage: Vec::new(),
@@ -261,7 +264,7 @@ impl FakeBoard {
             upload.bytes.extend_from_slice(bytes);
             upload.next_chunk += 1;
         }
-        if !fits || upload.next_chunk.is_multiple_of(CHUNKS_PER_PROGRESS) {
+        if self.tells_progress && (!fits || upload.next_chunk.is_multiple_of(CHUNKS_PER_PROGRESS)) {
             let next_chunk = upload.next_chunk;
             send(out, &FromBoard::Progress { next_chunk, received_bytes: self.received_bytes });
         }
