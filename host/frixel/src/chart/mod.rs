@@ -17,6 +17,7 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 pub(crate) use plotters::style::RGBColor;
 use plotters::style::text_anchor::HPos;
+use frixel_scene::printable_lines;
 use thiserror::Error;
 
 pub(crate) use axis::Axis;
@@ -157,6 +158,8 @@ impl Chart {
         }
         let size = |width: u32, height: u32| format!("width=\"{width}\" height=\"{height}\"");
         let drawn = size(fine(self.width), fine(layout.height));
+        // A title may be a name from a scene, and XML has no form for control characters.
+        let text = printable_lines(&text);
         Ok(text.replacen(&drawn, &size(self.width, layout.height), 1))
     }
 

@@ -49,6 +49,26 @@ impl Levels {
         Some(self.levels.partition_point(|(_, high)| *high < voltage_v_rms))
     }
 
+    /// Number of levels.
+    pub(super) fn count(&self) -> usize {
+        self.levels.len()
+    }
+
+    /// Mean number of rows for which the voltage rests at a level, while the drive is on.
+    pub(super) fn rows_per_run(&self, recording: &Recording) -> f64 {
+        let (mut rows, mut runs) = (0.0, 0.0);
+        for stroke in &recording.strokes {
+            let mut last = None;
+            for row in &stroke.rows {
+                let level = self.level(row.voltage_v_rms);
+                rows += f64::from(u8::from(level.is_some()));
+                runs += f64::from(u8::from(level.is_some() && level != last));
+                last = level;
+            }
+        }
+        rows / runs
+    }
+
     /// Lowest and highest voltage at which the drive is on, in volts rms.
     pub(super) fn range_v_rms(&self) -> Option<(f64, f64)> {
         Some((self.levels.first()?.0, self.levels.last()?.1))

@@ -50,6 +50,17 @@ pub enum FitError {
         /// The voltage.
         found: f64,
     },
+    /// The voltages are samples of the carrier.
+    #[error(
+        "the voltages look like samples of the carrier itself: they go through {levels} levels, and stay at each for \
+         {rows_per_level:.1} rows; give the root mean square of the drive over one carrier period"
+    )]
+    RawCarrier {
+        /// Levels that differ by more than 5 %.
+        levels: usize,
+        /// Mean number of rows at a level.
+        rows_per_level: f64,
+    },
     /// A voltage is above what any driver board has.
     #[error(
         "row {row}, column voltage_v_rms: {found} V is above 1000 V: give volts rms, not millivolts and not DAC codes"
